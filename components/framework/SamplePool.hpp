@@ -1,0 +1,30 @@
+#pragma once
+#include <atomic>
+#include <memory>
+#include <vector>
+
+namespace insonify::framework {
+
+/** Large samples used again once no reader holds them any more, so that a steady stream allocates nothing.
+ *
+ *      std::shared_ptr<types::Sonar> ping = pool_.take();   // contents are those of an earlier use
+ *      ... fill it ...
+ *      port.write(ping);
+ *
+ *  Grows while readers hold on to samples; never shrinks. For one thread. */
+template <class T> class SamplePool {
+public:
+    std::shared_ptr<T> take() {
+        for (const auto& sample : samples_)
+            if (sample.use_count() == 1) {
+                std::atomic_thread_fence(std::memory_order_acquire);  // the last reader's reads are over
+                return sample;
+            }
+        return samples_.emplace_back(std::make_shared<T>());
+    }
+
+private:
+    std::vector<std::shared_ptr<T>> samples_;
+};
+
+}  // namespace insonify::framework

@@ -1,0 +1,148 @@
+#pragma once
+#include <atomic>
+#include <filesystem>
+#include <functional>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <string>
+#include <vector>
+
+#include "components/framework/Statistics.hpp"
+#include "types/ConfigError.hpp"
+#include "types/Plan.hpp"
+#include "types/Time.hpp"
+
+namespace insonify::framework {
+
+/** The states of Orocos, with its numbers. */
+enum class TaskState : int32_t { Init, PreOperational, FatalError, Exception, Stopped, Running, RunTimeError };
+const char* toString(TaskState state);
+
+/** Whether a transition was made, and if not, why. */
+struct Outcome {
+    bool done = true;
+    std::string reason;  ///< Empty when done.
+    explicit operator bool() const { return done; }
+};
+
+/** Where a task finds and leaves files, and what time it is. Shared by all tasks of a deployment. */
+struct Environment {
+    std::filesystem::path input_folder = ".";   ///< Of the deployment file.
+    std::filesystem::path output_folder = ".";  ///< `--out`.
+    std::function<types::Time()> now;           ///< Wall clock, simulated time or log time; set by the deployment.
+    std::function<types::Time()> start_time;    ///< Of the run, on the same clock.
+    bool lockstep = false;
+    std::string deployment_text;                ///< The YAML as read, for the log's metadata.
+    uint64_t seed = 0;                          ///< Of the run (`--seed`), 0 when not given.
+};
+
+class Activity;
+class InputPortBase;
+class OutputPortBase;
+class PropertiesBase;
+class OperationBase;
+
+/** A component: ports, properties and operations as members, and the hooks of the Orocos life cycle.
+ *
+ *      PreOperational -configure-> Stopped -start-> Running -stop-> Stopped -cleanup-> PreOperational
+ *
+ *  All hooks run on the task's own thread, whoever asks. configureHook is undone by cleanupHook, startHook by
+ *  stopHook, each exactly once. A hook that throws is caught, what had been done is undone, and the task ends in
+ *  Exception with the message (FatalError when the undoing throws as well). `types::ConfigError` from
+ *  configureHook is kept whole in `configError()`. */
+class TaskContext {
+public:
+    explicit TaskContext(std::string name);
+    virtual ~TaskContext();
+    TaskContext(const TaskContext&) = delete;
+    TaskContext& operator=(const TaskContext&) = delete;
+
+    const std::string& name() const { return name_; }
+    TaskState state() const { return state_.load(); }
+    bool isRunning() const { return state() == TaskState::Running || state() == TaskState::RunTimeError; }
+
+    // Transitions; each returns once its hooks have run on the task's thread. See rock semantics in the README.
+    Outcome configure();
+    Outcome start();      ///< Clears the input ports, then startHook.
+    Outcome stop();
+    Outcome cleanup();
+    Outcome recover();    ///< RunTimeError -> Running; Exception -> PreOperational.
+    /** One cycle: updateHook (errorHook in RunTimeError), again until no triggering port holds a new sample. */
+    void update();
+
+    /** Text of the last throw, error() or refusal; empty if there was none. */
+    std::string lastError() const;
+    /** The fault that configureHook threw, if it was one of the configuration. */
+    const types::ConfigError* configError() const { return config_error_.get(); }
+
+    // What `describe`, the deployment and tests look at. Order is that of declaration.
+    const std::vector<InputPortBase*>& inputs() const { return inputs_; }
+    const std::vector<OutputPortBase*>& outputs() const { return outputs_; }
+    const std::vector<PropertiesBase*>& properties() const { return properties_; }
+    const std::vector<OperationBase*>& operations() const { return operations_; }
+    InputPortBase* input(const std::string& port);    ///< Null when there is none of that name.
+    OutputPortBase* output(const std::string& port);
+
+    /** A port that exists only because a connection names it (a logger's inputs, a replay's outputs): null refuses. */
+    virtual InputPortBase* makeInput(const std::string& /*port*/, OutputPortBase& /*source*/) { return nullptr; }
+    virtual OutputPortBase* makeOutput(const std::string& /*port*/) { return nullptr; }
+
+    /** Faults that can be seen without configuring (files that are not there...); paths as in types::Problem. */
+    virtual void check(types::Problems& /*problems*/) const {}
+    /** What is compiled and run, if this task decides such a thing. Valid after the first cycle. */
+    virtual const types::Plan* plan() const { return nullptr; }
+    /** Notices for the user (a mesh without triangles, dropped vertices). Valid after configure. */
+    virtual std::vector<std::string> notices() const { return {}; }
+    /** True once a source has nothing more to say: a lockstep run ends when all sources have. */
+    virtual bool finished() const { return false; }
+
+    Environment& environment() { return *environment_; }
+    void setEnvironment(std::shared_ptr<Environment> environment) { environment_ = std::move(environment); }
+    Activity& activity() { return *activity_; }
+    const Statistics& cycles() const { return cycles_; }                             ///< Times of updateHook [s].
+    const std::map<std::string, Statistics>& stages() const { return stages_; }     ///< Read when stopped.
+
+    // For ports, properties and operations only, which enlist themselves.
+    void enlist(InputPortBase* port) { inputs_.push_back(port); }
+    void enlist(OutputPortBase* port) { outputs_.push_back(port); }
+    void enlist(PropertiesBase* properties) { properties_.push_back(properties); }
+    void enlist(OperationBase* operation) { operations_.push_back(operation); }
+
+protected:
+    virtual bool configureHook() { return true; }
+    virtual bool startHook() { return true; }
+    virtual void updateHook() {}
+    virtual void errorHook() {}
+    virtual void stopHook() {}
+    virtual void cleanupHook() {}
+    virtual void exceptionHook() {}
+
+    /** Running -> RunTimeError: recoverable trouble; from here errorHook runs instead of updateHook.
+     *  The default errorHook does nothing; a task that heals itself calls recover() from it. */
+    void error(const std::string& why);
+    /** Time of one named stage of this cycle [s]; names must be string literals met in the first cycle. */
+    void recordStage(const char* name, double seconds);
+
+    types::Time now() const { return environment_->now(); }
+    std::filesystem::path inputPath(const std::string& file) const;    ///< Relative to the deployment file.
+    std::filesystem::path outputPath(const std::string& file) const;   ///< Relative to `--out`; makes no folders.
+
+private:
+    // (implementation: see TaskContext.cpp)
+    std::string name_;
+    std::atomic<TaskState> state_{TaskState::PreOperational};
+    std::shared_ptr<Environment> environment_;
+    std::unique_ptr<Activity> activity_;
+    std::unique_ptr<types::ConfigError> config_error_;
+    mutable std::mutex error_mutex_;
+    std::string last_error_;
+    std::vector<InputPortBase*> inputs_;
+    std::vector<OutputPortBase*> outputs_;
+    std::vector<PropertiesBase*> properties_;
+    std::vector<OperationBase*> operations_;
+    Statistics cycles_;
+    std::map<std::string, Statistics> stages_;
+};
+
+}  // namespace insonify::framework

@@ -1,0 +1,49 @@
+#pragma once
+// How a struct tells what it holds, once: YAML, log, export and help are all read from this description.
+//
+//     struct Sample {
+//         double range = 0;
+//         template <class Self, class V> static void describe(Self& self, V& visit) {
+//             visit(Field{"range", "m", "slant range", 0, 500}, self.range);
+//         }
+//     };
+#include <limits>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace insonify::types {
+
+/** One field: its name in files, SI unit ("1" for a pure number, "" for text and blocks), meaning, inclusive bounds. */
+struct Field {
+    const char* name;
+    const char* unit = "1";
+    const char* doc = "";
+    double min = -std::numeric_limits<double>::infinity();
+    double max = std::numeric_limits<double>::infinity();
+};
+
+/** True for a struct that describes itself as above. */
+struct AnyVisitor {
+    template <class T> void operator()(const Field&, T&) {}
+};
+template <class T>
+concept Described = requires(T& value, AnyVisitor& visit) { T::describe(value, visit); };
+
+/** Names of an enum whose values are 0, 1, 2...: specialise with `static constexpr std::string_view names[] = {...}`. */
+template <class E> struct EnumNames;
+template <class E>
+concept NamedEnum = requires { EnumNames<E>::names; };
+
+/** A fault in a configuration: `path` is below the described struct ("tvg.max_db"), `message` what it is and may be. */
+struct Problem {
+    std::string path;
+    std::string message;
+};
+using Problems = std::vector<Problem>;
+
+/** A described struct may judge its fields together: `void check(types::Problems&) const`. */
+template <class T>
+concept Checked = requires(const T& value, Problems& problems) { value.check(problems); };
+
+}  // namespace insonify::types

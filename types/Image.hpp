@@ -1,0 +1,76 @@
+#pragma once
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "types/Time.hpp"
+
+namespace insonify::types {
+
+/** Values are Rock's, with gaps: an enum on the log is an int32 of these values. */
+enum class ImageMode : int32_t { Undefined = 0, Grayscale = 1, Rgb = 2, Bgr = 4 };
+enum class ImageStatus : int32_t { Empty = 0, Valid = 1, Invalid = 2 };
+
+struct ImageAttribute {
+    static constexpr const char* type_name = "/base/samples/frame/frame_attrib_t";
+    std::string data;
+    std::string name;
+    template <class Self, class V> static void describe(Self& self, V& visit) {
+        visit(Field{"data_", "", "value"}, self.data);
+        visit(Field{"name_", "", "key"}, self.name);
+    }
+};
+
+struct ImageSize {
+    static constexpr const char* type_name = "/base/samples/frame/frame_size_t";
+    uint16_t width = 0;
+    uint16_t height = 0;
+    template <class Self, class V> static void describe(Self& self, V& visit) {
+        visit(Field{"width", "1", "pixels in a row"}, self.width);
+        visit(Field{"height", "1", "rows"}, self.height);
+    }
+};
+
+/** A picture, field for field Rock's base::samples::frame::Frame. Rows from top to bottom, row_size bytes each. */
+struct Image {
+    static constexpr const char* type_name = "/base/samples/frame/Frame";
+
+    Time time;
+    Time received_time;
+    std::vector<uint8_t> image;
+    std::vector<ImageAttribute> attributes;
+    ImageSize size;
+    uint32_t data_depth = 8;
+    uint32_t pixel_size = 0;
+    uint32_t row_size = 0;
+    ImageMode frame_mode = ImageMode::Undefined;
+    ImageStatus frame_status = ImageStatus::Empty;
+
+    template <class Self, class V> static void describe(Self& self, V& visit) {
+        visit(Field{"time", "us", "when the picture was true in the world"}, self.time);
+        visit(Field{"received_time", "us", "when it reached this system"}, self.received_time);
+        visit(Field{"image", "1", "pixels"}, self.image);
+        visit(Field{"attributes", "", "keys and values"}, self.attributes);
+        visit(Field{"size", "1", "width and height"}, self.size);
+        visit(Field{"data_depth", "bit", "effective bits per channel"}, self.data_depth);
+        visit(Field{"pixel_size", "B", "size of a pixel"}, self.pixel_size);
+        visit(Field{"row_size", "B", "size of a row"}, self.row_size);
+        visit(Field{"frame_mode", "1", "1 grey, 2 RGB, 4 BGR"}, self.frame_mode);
+        visit(Field{"frame_status", "1", "0 empty, 1 valid, 2 invalid"}, self.frame_status);
+    }
+};
+using ImagePtr = std::shared_ptr<const Image>;
+
+/** Typelib names and symbols of the two enums, as the log's registry lists them. */
+struct EnumSymbol {
+    const char* symbol;
+    int32_t value;
+};
+inline constexpr const char* image_mode_type = "/base/samples/frame/frame_mode_t";
+inline constexpr EnumSymbol image_mode_symbols[] = {
+    {"MODE_UNDEFINED", 0}, {"MODE_GRAYSCALE", 1}, {"MODE_RGB", 2}, {"MODE_BGR", 4}};
+inline constexpr const char* image_status_type = "/base/samples/frame/frame_status_t";
+inline constexpr EnumSymbol image_status_symbols[] = {{"STATUS_EMPTY", 0}, {"STATUS_VALID", 1}, {"STATUS_INVALID", 2}};
+
+}  // namespace insonify::types

@@ -1,0 +1,55 @@
+#pragma once
+#include <glm/gtc/quaternion.hpp>
+#include <glm/mat3x3.hpp>
+#include <glm/mat4x4.hpp>
+#include <glm/vec3.hpp>
+#include <limits>
+#include <string>
+
+#include "types/Time.hpp"
+
+namespace insonify::types {
+
+/** State of a body in the world, field for field Rock's base::samples::RigidBodyState.
+ *
+ *  Frames: body x forward, y left, z up (`source_frame`); world x north, y west, z up (`target_frame`).
+ *  NaN means unknown. Covariances are row-symmetric 3x3 of the quantity above them. */
+struct Pose {
+    static constexpr const char* type_name = "/base/samples/RigidBodyState";
+    static constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
+
+    Time time;
+    std::string source_frame;
+    std::string target_frame;
+    glm::dvec3 position{0};
+    glm::dmat3 cov_position{unknown};
+    glm::dquat orientation{1, 0, 0, 0};
+    glm::dmat3 cov_orientation{unknown};
+    glm::dvec3 velocity{unknown};
+    glm::dmat3 cov_velocity{unknown};
+    glm::dvec3 angular_velocity{unknown};
+    glm::dmat3 cov_angular_velocity{unknown};
+
+    /** Homogeneous transform from body to world coordinates; `orientation` must be of unit length. */
+    glm::dmat4 worldFromBody() const {
+        glm::dmat4 transform = glm::mat4_cast(orientation);
+        transform[3] = glm::dvec4(position, 1);
+        return transform;
+    }
+
+    template <class Self, class V> static void describe(Self& self, V& visit) {
+        visit(Field{"time", "us", "when the state was true in the world"}, self.time);
+        visit(Field{"sourceFrame", "", "the body whose state this is"}, self.source_frame);
+        visit(Field{"targetFrame", "", "the frame in which it is given"}, self.target_frame);
+        visit(Field{"position", "m", "origin of the body in the target frame"}, self.position);
+        visit(Field{"cov_position", "m^2", "covariance of position"}, self.cov_position);
+        visit(Field{"orientation", "1", "unit quaternion that turns body vectors into the target frame"}, self.orientation);
+        visit(Field{"cov_orientation", "rad^2", "covariance of orientation, axis-angle in the body"}, self.cov_orientation);
+        visit(Field{"velocity", "m/s", "of the body, in the target frame"}, self.velocity);
+        visit(Field{"cov_velocity", "m^2/s^2", "covariance of velocity"}, self.cov_velocity);
+        visit(Field{"angular_velocity", "rad/s", "axis-angle rate, in the body"}, self.angular_velocity);
+        visit(Field{"cov_angular_velocity", "rad^2/s^2", "covariance of angular velocity"}, self.cov_angular_velocity);
+    }
+};
+
+}  // namespace insonify::types

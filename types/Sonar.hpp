@@ -1,0 +1,47 @@
+#pragma once
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "types/Angle.hpp"
+#include "types/Time.hpp"
+
+namespace insonify::types {
+
+/** One ping, field for field Rock's base::samples::Sonar.
+ *
+ *  Beam-first: the echo of beam b in bin k is bins[b * bin_count + k]. Bin k covers slant ranges
+ *  [k, k + 1) * bin_duration * speed_of_sound: bin_duration is one-way time. */
+struct Sonar {
+    static constexpr const char* type_name = "/base/samples/Sonar";
+
+    Time time;
+    std::vector<Time> timestamps;
+    Time bin_duration;
+    Angle beam_width;
+    Angle beam_height;
+    std::vector<Angle> bearings;
+    float speed_of_sound = 1497.0f;
+    uint32_t bin_count = 0;
+    uint32_t beam_count = 0;
+    std::vector<float> bins;
+
+    /** Slant range at which bin k starts [m]; k = bin_count gives the far edge. */
+    double binStart(double k) const { return k * bin_duration.seconds() * static_cast<double>(speed_of_sound); }
+
+    template <class Self, class V> static void describe(Self& self, V& visit) {
+        visit(Field{"time", "us", "when the ping was true in the world"}, self.time);
+        visit(Field{"timestamps", "us", "start of each beam's acquisition; empty: `time` for all"}, self.timestamps);
+        visit(Field{"bin_duration", "us", "one-way travel time through one bin"}, self.bin_duration);
+        visit(Field{"beam_width", "rad", "opening of one beam across the fan"}, self.beam_width);
+        visit(Field{"beam_height", "rad", "opening of one beam along the device's z axis"}, self.beam_height);
+        visit(Field{"bearings", "rad", "centre of each beam, 0 ahead, positive to port"}, self.bearings);
+        visit(Field{"speed_of_sound", "m/s", "speed of sound that turns time into range"}, self.speed_of_sound);
+        visit(Field{"bin_count", "1", "bins per beam"}, self.bin_count);
+        visit(Field{"beam_count", "1", "beams"}, self.beam_count);
+        visit(Field{"bins", "1", "linear echo strength, beam-first; NaN when unknown"}, self.bins);
+    }
+};
+using SonarPtr = std::shared_ptr<const Sonar>;
+
+}  // namespace insonify::types
