@@ -1,0 +1,75 @@
+#include "components/pose/Trajectory.hpp"
+
+#include <algorithm>
+#include <glm/geometric.hpp>
+#include <stdexcept>
+
+#include "types/Angle.hpp"
+
+namespace insonify::pose {
+namespace {
+
+std::vector<Trajectory::Stamp> stampsOf(const std::vector<Waypoint>& waypoints) {
+    std::vector<Trajectory::Stamp> stamps;
+    for (const Waypoint& waypoint : waypoints)
+        stamps.push_back({waypoint.time, waypoint.position, waypoint.orientation()});
+    return stamps;
+}
+
+/** Body rate that turns `from` into `to` in `seconds`, the shorter way [rad/s]. */
+glm::dvec3 angularVelocity(const glm::dquat& from, const glm::dquat& to, double seconds) {
+    glm::dquat turn = glm::conjugate(from) * to;
+    if (turn.w < 0) turn = -turn;
+    const glm::dvec3 half(turn.x, turn.y, turn.z);
+    const double sine = glm::length(half);
+    return sine == 0 ? glm::dvec3(0) : half * (2 * std::atan2(sine, turn.w) / (sine * seconds));
+}
+
+}  // namespace
+
+glm::dquat Waypoint::orientation() const {
+    return glm::angleAxis(types::radians(yaw_deg), glm::dvec3(0, 0, 1)) *
+           glm::angleAxis(types::radians(pitch_deg), glm::dvec3(0, 1, 0)) *
+           glm::angleAxis(types::radians(roll_deg), glm::dvec3(1, 0, 0));
+}
+
+void TrajectoryConfig::check(types::Problems& problems) const {
+    if (file && !waypoints.empty()) problems.push_back({"waypoints", "given besides file; only one of them may be"});
+    if (!file && waypoints.empty()) problems.push_back({"file", "is not given; give a file or at least one waypoint"});
+    for (size_t i = 1; i < waypoints.size(); ++i)
+        if (!(waypoints[i].time > waypoints[i - 1].time))
+            problems.push_back({"waypoints[" + std::to_string(i) + "].time",
+                                "is not after the one before; times must increase"});
+}
+
+Trajectory::Trajectory(std::vector<Stamp> stamps) : stamps_(std::move(stamps)) {
+    const auto out_of_order = [](const Stamp& a, const Stamp& b) { return !(a.time < b.time); };
+    if (stamps_.empty() || std::adjacent_find(stamps_.begin(), stamps_.end(), out_of_order) != stamps_.end())
+        throw std::invalid_argument("a trajectory needs a stamp, and increasing times");
+}
+
+Trajectory::Trajectory(const std::vector<Waypoint>& waypoints) : Trajectory(stampsOf(waypoints)) {}
+
+types::Pose Trajectory::at(double time) const {
+    types::Pose pose;
+    pose.source_frame = "body";
+    pose.target_frame = "world";
+    pose.velocity = pose.angular_velocity = glm::dvec3(0);
+    const auto after = std::upper_bound(stamps_.begin(), stamps_.end(), time,
+                                        [](double t, const Stamp& stamp) { return t < stamp.time; });
+    const bool moving = after != stamps_.begin() && after != stamps_.end();
+    const Stamp& from = after == stamps_.begin() ? *after : *(after - 1);
+    const Stamp& to = moving ? *after : from;
+    pose.position = from.position;
+    pose.orientation = from.orientation;
+    if (!moving) return pose;
+    const double seconds = to.time - from.time;
+    const double share = (time - from.time) / seconds;
+    pose.position = glm::mix(from.position, to.position, share);
+    pose.orientation = glm::normalize(glm::slerp(from.orientation, to.orientation, share));
+    pose.velocity = (to.position - from.position) / seconds;
+    pose.angular_velocity = angularVelocity(from.orientation, to.orientation, seconds);
+    return pose;
+}
+
+}  // namespace insonify::pose

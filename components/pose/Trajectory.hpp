@@ -1,0 +1,78 @@
+#pragma once
+#include <filesystem>
+#include <glm/gtc/quaternion.hpp>
+#include <glm/vec3.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "types/Pose.hpp"
+
+namespace insonify::pose {
+
+/** Where the body is at one time. R = Rz(yaw) Ry(pitch) Rx(roll), right-handed about the axes of the z-up world:
+ *  positive pitch looks down, positive yaw turns to port. */
+struct Waypoint {
+    double time = 0;
+    glm::dvec3 position{0};
+    double roll_deg = 0;
+    double pitch_deg = 0;
+    double yaw_deg = 0;
+
+    /** Unit quaternion that turns body vectors into the world. */
+    glm::dquat orientation() const;
+
+    template <class Self, class V> static void describe(Self& self, V& visit) {
+        using types::Field;
+        visit(Field{"time", "s", "since the start of the run", -1e9, 1e9}, self.time);
+        visit(Field{"position", "m", "of the body in the world: north, west, up", -1e9, 1e9}, self.position);
+        visit(Field{"roll_deg", "deg", "about x, positive lowers starboard", -360, 360}, self.roll_deg);
+        visit(Field{"pitch_deg", "deg", "about y, positive looks down", -360, 360}, self.pitch_deg);
+        visit(Field{"yaw_deg", "deg", "about z, positive turns to port", -360, 360}, self.yaw_deg);
+    }
+};
+
+/** Where a trajectory comes from: a file or waypoints, exactly one of them. */
+struct TrajectoryConfig {
+    std::optional<std::string> file;
+    std::vector<Waypoint> waypoints;
+
+    template <class Self, class V> static void describe(Self& self, V& visit) {
+        using types::Field;
+        visit(Field{"file", "", "CSV with header time,x,y,z,qw,qx,qy,qz in [s], [m], [1]"}, self.file);
+        visit(Field{"waypoints", "", "instead of a file; a single one is a fixed pose"}, self.waypoints);
+    }
+    /** Exactly one source; the waypoints' times increase. */
+    void check(types::Problems& problems) const;
+};
+
+/** A path through the world: position linear between stamps, orientation by slerp the shorter way; before the first
+ *  stamp and after the last it holds still. Immutable. */
+class Trajectory {
+public:
+    struct Stamp {
+        double time = 0;                     ///< Since the start of the run [s].
+        glm::dvec3 position{0};              ///< In the world [m].
+        glm::dquat orientation{1, 0, 0, 0};  ///< Unit quaternion, body to world [1].
+    };
+
+    /** @param stamps at least one, at strictly increasing times; else std::invalid_argument. */
+    explicit Trajectory(std::vector<Stamp> stamps);
+    explicit Trajectory(const std::vector<Waypoint>& waypoints);
+
+    /** Reads a CSV with header `time,x,y,z,qw,qx,qy,qz`; quaternions are made unit, blank lines skipped.
+     *  @throws types::ConfigError with line and column of every fault: a field that is missing, too many or no finite
+     *  number, a time that does not increase, a quaternion shorter than 1e-6. */
+    static Trajectory fromCsv(const std::filesystem::path& file);
+
+    /** Body "body" in frame "world" at `time` [s] since the start of the run, with velocity [m/s] in the world and
+     *  angular velocity [rad/s] in the body, both zero where the trajectory holds still. Pose::time is left null. */
+    types::Pose at(double time) const;
+
+    const std::vector<Stamp>& stamps() const { return stamps_; }
+
+private:
+    std::vector<Stamp> stamps_;
+};
+
+}  // namespace insonify::pose

@@ -1,0 +1,163 @@
+#include "components/pose/Trajectory.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <glm/geometric.hpp>
+#include <numbers>
+
+#include "types/ConfigError.hpp"
+
+namespace insonify::pose {
+namespace {
+
+using ::testing::HasSubstr;
+
+/** A file of the given text, gone at the end of the test. */
+class TextFile {
+public:
+    explicit TextFile(const std::string& text) {
+        const auto* test = ::testing::UnitTest::GetInstance()->current_test_info();
+        path = std::filesystem::temp_directory_path() / (std::string(test->name()) + ".csv");
+        std::ofstream(path, std::ios::binary) << text;
+    }
+    ~TextFile() { std::filesystem::remove(path); }
+    std::filesystem::path path;
+};
+
+std::vector<types::Diagnostic> faultsOf(const std::string& text) {
+    const TextFile file(text);
+    try {
+        Trajectory::fromCsv(file.path);
+    } catch (const types::ConfigError& error) {
+        return error.diagnostics();
+    }
+    return {};
+}
+
+constexpr double tiny = 1e-12;
+const std::string header = "time,x,y,z,qw,qx,qy,qz\n";
+
+TEST(TrajectoryTest, PositionIsLinearBetweenStampsAndHeldOutside) {
+    const Trajectory path({Waypoint{.time = 1, .position = {0, 0, 0}}, Waypoint{.time = 3, .position = {4, -2, 1}}});
+    EXPECT_LT(glm::distance(path.at(1.5).position, {1, -0.5, 0.25}), tiny);
+    EXPECT_EQ(path.at(0).position, glm::dvec3(0, 0, 0));
+    EXPECT_EQ(path.at(1e9).position, glm::dvec3(4, -2, 1));
+    EXPECT_EQ(path.at(3).position, glm::dvec3(4, -2, 1));
+}
+
+TEST(TrajectoryTest, VelocityIsThatOfTheSegmentAndZeroWhereItHolds) {
+    const Trajectory path({Waypoint{.time = 0}, Waypoint{.time = 2, .position = {4, 0, -2}, .yaw_deg = 90}});
+    EXPECT_LT(glm::distance(path.at(1).velocity, {2, 0, -1}), tiny);
+    EXPECT_LT(glm::distance(path.at(1).angular_velocity, {0, 0, std::numbers::pi / 4}), tiny);
+    EXPECT_EQ(path.at(2.5).velocity, glm::dvec3(0));
+    EXPECT_EQ(path.at(-1).angular_velocity, glm::dvec3(0));
+}
+
+TEST(TrajectoryTest, OrientationTurnsEvenlyTheShorterWay) {
+    const Trajectory path({Waypoint{.time = 0, .yaw_deg = 170}, Waypoint{.time = 1, .yaw_deg = -170}});
+    const glm::dvec3 ahead = path.at(0.25).orientation * glm::dvec3(1, 0, 0);
+    const double yaw = std::atan2(ahead.y, ahead.x) * 180 / std::numbers::pi;
+    EXPECT_NEAR(yaw, 175, 1e-9);
+    EXPECT_NEAR(glm::length(path.at(0.25).orientation), 1, tiny);
+}
+
+TEST(TrajectoryTest, QuaternionsOfOppositeSignAreTheSameOrientation) {
+    const Trajectory path(std::vector<Trajectory::Stamp>{{0, {}, {1, 0, 0, 0}}, {1, {}, {-1, 0, 0, 0}}});
+    EXPECT_NEAR(std::abs(path.at(0.5).orientation.w), 1, tiny);
+    EXPECT_LT(glm::length(path.at(0.5).angular_velocity), tiny);
+}
+
+TEST(TrajectoryTest, PositivePitchLooksDownPositiveYawTurnsToPortPositiveRollLowersStarboard) {
+    const auto turned = [](Waypoint waypoint, glm::dvec3 axis) { return waypoint.orientation() * axis; };
+    EXPECT_LT(turned({.pitch_deg = 30}, {1, 0, 0}).z, -0.49);
+    EXPECT_GT(turned({.yaw_deg = 30}, {1, 0, 0}).y, 0.49);
+    EXPECT_LT(turned({.roll_deg = 30}, {0, -1, 0}).z, -0.49);
+    // Rz(90) Ry(90): the nose points down, and the belly to the west, where the yaw had turned it.
+    EXPECT_LT(glm::distance(turned({.pitch_deg = 90, .yaw_deg = 90}, {0, 0, 1}), {0, 1, 0}), tiny);
+}
+
+TEST(TrajectoryTest, OneWaypointIsAFixedPose) {
+    const Trajectory path({Waypoint{.time = 5, .position = {1, 2, 3}}});
+    for (const double time : {0.0, 5.0, 10.0}) EXPECT_EQ(path.at(time).position, glm::dvec3(1, 2, 3)) << time;
+    EXPECT_EQ(path.at(0).source_frame, "body");
+    EXPECT_EQ(path.at(0).target_frame, "world");
+}
+
+TEST(TrajectoryTest, StampsThatDoNotIncreaseAreRefused) {
+    EXPECT_THROW(Trajectory(std::vector<Waypoint>{}), std::invalid_argument);
+    EXPECT_THROW(Trajectory({Waypoint{.time = 1}, Waypoint{.time = 1}}), std::invalid_argument);
+}
+
+TEST(TrajectoryTest, AFileWithCarriageReturnsBlankLinesAndByteOrderMarkIsRead) {
+    const TextFile file("\xEF\xBB\xBFtime,x,y,z,qw,qx,qy,qz\r\n0,1,2,3,1,0,0,0\r\n\r\n 1.5 ,4,5,6e0,0,0,0,-1");
+    const Trajectory path = Trajectory::fromCsv(file.path);
+    ASSERT_EQ(path.stamps().size(), 2u);
+    EXPECT_EQ(path.stamps()[1].time, 1.5);
+    EXPECT_EQ(path.stamps()[1].position, glm::dvec3(4, 5, 6));
+}
+
+TEST(TrajectoryTest, AQuaternionThatIsNotQuiteUnitIsNormalised) {
+    const TextFile file(header + "0,0,0,0,1.001,0,0,0\n1,0,0,0,0,0,0,2e-6\n");
+    const Trajectory path = Trajectory::fromCsv(file.path);
+    EXPECT_NEAR(path.stamps()[0].orientation.w, 1, tiny);
+    EXPECT_NEAR(path.stamps()[1].orientation.z, 1, tiny);
+}
+
+TEST(TrajectoryTest, EveryFaultOfAFileIsToldWithItsPlace) {
+    const auto faults = faultsOf(header +
+                                 "0,0,0,0,1,0,0,0\n"       // 2: good
+                                 "1,0,abc,0,1,0,0,0\n"     // 3: no number
+                                 "2,0,0,0,1,0,0\n"         // 4: too few
+                                 "3,0,0,0,1,0,0,0,9\n"     // 5: too many
+                                 "4,0,0,0,0,0,1e-7,0\n"    // 6: no direction
+                                 "4,0,0,nan,1,0,0,0x1\n"   // 7: two faults
+                                 "4,0,0,0,1,0,0,0\n");     // 8: time stands still
+    struct Place { int line, column; const char *path, *message; };
+    const Place expected[] = {{3, 5, "y", "'abc'"},     {4, 14, "qz", "missing"}, {5, 17, "", "too many"},
+                              {6, 9, "qw", "quaternion"}, {7, 7, "z", "finite"},    {7, 17, "qz", "'0x1'"},
+                              {8, 1, "time", "increase"}};
+    ASSERT_EQ(faults.size(), std::size(expected));
+    for (size_t i = 0; i < faults.size(); ++i) {
+        EXPECT_EQ(faults[i].line, expected[i].line) << i;
+        EXPECT_EQ(faults[i].column, expected[i].column) << i;
+        EXPECT_EQ(faults[i].path, expected[i].path) << i;
+        EXPECT_THAT(faults[i].message, HasSubstr(expected[i].message)) << i;
+    }
+}
+
+TEST(TrajectoryTest, AFileWithoutHeaderStampsOrContentIsRefused) {
+    for (const char* text : {"", "\n\n", "time,x,y,z,qw,qx,qy,qz\n", "t,x\n0,0,0,0,1,0,0,0\n"})
+        EXPECT_EQ(faultsOf(text).size(), 1u) << text;
+}
+
+TEST(TrajectoryTest, AFolderAndAFileThatIsNotThereAreRefused) {
+    EXPECT_THROW(Trajectory::fromCsv(std::filesystem::temp_directory_path()), types::ConfigError);
+    EXPECT_THROW(Trajectory::fromCsv("no/such/file.csv"), types::ConfigError);
+}
+
+TEST(TrajectoryTest, AHundredFaultsAreEnough) {
+    std::string text = header;
+    for (int i = 0; i < 5000; ++i) text += "x,x,x,x,x,x,x,x\n";
+    EXPECT_LE(faultsOf(text).size(), 108u);
+}
+
+TEST(TrajectoryConfigTest, ExactlyOneSourceIsAskedForAndTimesMustIncrease) {
+    const auto problemsOf = [](const TrajectoryConfig& config) {
+        types::Problems problems;
+        config.check(problems);
+        return problems;
+    };
+    EXPECT_EQ(problemsOf({}).size(), 1u);
+    EXPECT_EQ(problemsOf({.file = "a.csv", .waypoints = {Waypoint{}}}).size(), 1u);
+    EXPECT_TRUE(problemsOf({.file = "a.csv", .waypoints = {}}).empty());
+    const auto problems = problemsOf({.file = {}, .waypoints = {{.time = 1}, {.time = 2}, {.time = 2}, {.time = 1}}});
+    ASSERT_EQ(problems.size(), 2u);
+    EXPECT_EQ(problems[0].path, "waypoints[2].time");
+}
+
+}  // namespace
+}  // namespace insonify::pose
