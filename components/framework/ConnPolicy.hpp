@@ -6,7 +6,8 @@ namespace insonify::framework {
 /** How samples wait between a writer and a reader, named as in Orocos. Every loss is counted. */
 struct ConnPolicy {
     enum Type { Data, Buffer, CircularBuffer };
-    Type type = Data;   ///< Data: newest only. Buffer: when full, the newest is refused. CircularBuffer: the oldest is dropped.
+    Type type =
+        Data;  ///< Data: newest only. Buffer: when full, the newest is refused. CircularBuffer: the oldest is dropped.
     size_t size = 1;    ///< Capacity of a buffer [samples].
     bool init = false;  ///< Hand the writer's last sample to a reader that connects later.
 

@@ -66,10 +66,12 @@ public:
     virtual std::vector<const ChannelBase*> channels() const = 0;
     /** Whether a new sample wakes the task. */
     bool triggers() const { return triggers_; }
+    uint64_t taken() const { return taken_; }  ///< Samples read since construction; for the task's thread.
     void setTriggers(bool on) { triggers_ = on; }
 
 protected:
     void signal() const;  ///< A sample has arrived: wakes the task if this port triggers.
+    uint64_t taken_ = 0;
 
 private:
     Need need_;
@@ -77,7 +79,8 @@ private:
 };
 
 /** Where samples of one connection wait: a ring of fixed capacity. Writers are never blocked by a slow reader. */
-template <class T> class Channel final : public ChannelBase {
+template <class T>
+class Channel final : public ChannelBase {
 public:
     Channel(const OutputPortBase& source, ConnPolicy policy)
         : ChannelBase(source), policy_(policy), ring_(policy.type == ConnPolicy::Data ? 1 : policy.size) {}
@@ -102,9 +105,18 @@ public:
         --count_;
         return true;
     }
-    bool empty() const { std::lock_guard lock(mutex_); return count_ == 0; }
-    void clear() { for (T dropped; pop(dropped);) {} }
-    uint64_t lost() const override { std::lock_guard lock(mutex_); return lost_; }
+    bool empty() const {
+        std::lock_guard lock(mutex_);
+        return count_ == 0;
+    }
+    void clear() {
+        for (T dropped; pop(dropped);) {
+        }
+    }
+    uint64_t lost() const override {
+        std::lock_guard lock(mutex_);
+        return lost_;
+    }
 
 private:
     mutable std::mutex mutex_;
@@ -114,7 +126,8 @@ private:
     uint64_t lost_ = 0;
 };
 
-template <class T> class InputPort final : public InputPortBase {
+template <class T>
+class InputPort final : public InputPortBase {
 public:
     InputPort(TaskContext* owner, std::string name, std::string doc, Need need = Need::Required)
         : InputPortBase(owner, std::move(name), std::move(doc), need) {}
@@ -124,6 +137,7 @@ public:
         for (const auto& channel : channels_)
             if (channel->pop(last_)) {
                 has_last_ = true;
+                ++taken_;
                 sample = last_;
                 return FlowStatus::NewData;
             }
@@ -134,7 +148,9 @@ public:
     /** Drains the port and gives the newest sample. */
     FlowStatus readNewest(T& sample, bool copy_old = true) {
         const FlowStatus first = read(sample, copy_old);
-        if (first == FlowStatus::NewData) while (read(sample, false) == FlowStatus::NewData) {}
+        if (first == FlowStatus::NewData)
+            while (read(sample, false) == FlowStatus::NewData) {
+            }
         return first;
     }
     bool readNew(T& sample) { return read(sample, false) == FlowStatus::NewData; }
@@ -142,7 +158,8 @@ public:
     std::string typeName() const override { return types::typeName<T>(); }
     bool connected() const override { return !channels_.empty(); }
     bool hasNew() const override {
-        for (const auto& channel : channels_) if (!channel->empty()) return true;
+        for (const auto& channel : channels_)
+            if (!channel->empty()) return true;
         return false;
     }
     void clear() override {
@@ -159,7 +176,9 @@ public:
     Channel<T>& connect(const OutputPortBase& source, ConnPolicy policy) {
         return *channels_.emplace_back(std::make_unique<Channel<T>>(source, policy));
     }
-    void push(Channel<T>& channel, const T& sample) { if (channel.push(sample)) signal(); }
+    void push(Channel<T>& channel, const T& sample) {
+        if (channel.push(sample)) signal();
+    }
 
 private:
     std::vector<std::unique_ptr<Channel<T>>> channels_;
@@ -184,7 +203,8 @@ protected:
     std::atomic<uint64_t> written_{0};
 };
 
-template <class T> class OutputPort final : public OutputPortBase {
+template <class T>
+class OutputPort final : public OutputPortBase {
 public:
     using OutputPortBase::OutputPortBase;
     void write(const T& sample) {
@@ -209,7 +229,10 @@ public:
     }
 
 private:
-    struct Reader { InputPort<T>* port; Channel<T>* channel; };
+    struct Reader {
+        InputPort<T>* port;
+        Channel<T>* channel;
+    };
     std::vector<Reader> readers_;
     T last_{};
     bool keep_last_ = false, has_last_ = false;

@@ -12,7 +12,8 @@ namespace insonify::framework {
  *      port.write(ping);
  *
  *  Grows while readers hold on to samples; never shrinks. For one thread. */
-template <class T> class SamplePool {
+template <class T>
+class SamplePool {
 public:
     std::shared_ptr<T> take() {
         for (const auto& sample : samples_)

@@ -1,5 +1,6 @@
 #pragma once
 #include <atomic>
+#include <exception>
 #include <filesystem>
 #include <functional>
 #include <map>
@@ -33,13 +34,15 @@ struct Environment {
     std::function<types::Time()> now;           ///< Wall clock, simulated time or log time; set by the deployment.
     std::function<types::Time()> start_time;    ///< Of the run, on the same clock.
     bool lockstep = false;
-    std::string deployment_text;                ///< The YAML as read, for the log's metadata.
-    uint64_t seed = 0;                          ///< Of the run (`--seed`), 0 when not given.
+    std::string deployment_text;  ///< The YAML as read, for the log's metadata.
+    uint64_t seed = 0;            ///< Of the run (`--seed`), 0 when not given.
 };
 
 class Activity;
 class InputPortBase;
 class OutputPortBase;
+template <class T>
+class OutputPort;
 class PropertiesBase;
 class OperationBase;
 
@@ -48,11 +51,15 @@ class OperationBase;
  *      PreOperational -configure-> Stopped -start-> Running -stop-> Stopped -cleanup-> PreOperational
  *
  *  All hooks run on the task's own thread, whoever asks. configureHook is undone by cleanupHook, startHook by
- *  stopHook, each exactly once. A hook that throws is caught, what had been done is undone, and the task ends in
- *  Exception with the message (FatalError when the undoing throws as well). `types::ConfigError` from
- *  configureHook is kept whole in `configError()`. */
+ *  stopHook, each exactly once; a hook that returns false or throws has not done its work and is not undone. A hook
+ *  that throws is caught, what had been done is undone, exceptionHook runs, and the task ends in Exception with the
+ *  message (FatalError when the undoing throws as well). `types::ConfigError` from configureHook is kept whole in
+ *  `configError()`. Where Orocos differs: a second configure() cleans up first; a throw in stopHook or cleanupHook
+ *  can be recovered from; start() runs no updateHook of its own; a transition asked for within another is refused. */
 class TaskContext {
 public:
+    using Stages = std::map<std::string, Statistics, std::less<>>;
+
     explicit TaskContext(std::string name);
     virtual ~TaskContext();
     TaskContext(const TaskContext&) = delete;
@@ -62,12 +69,12 @@ public:
     TaskState state() const { return state_.load(); }
     bool isRunning() const { return state() == TaskState::Running || state() == TaskState::RunTimeError; }
 
-    // Transitions; each returns once its hooks have run on the task's thread. See rock semantics in the README.
+    // Transitions; each returns once its hooks have run on the task's thread.
     Outcome configure();
-    Outcome start();      ///< Clears the input ports, then startHook.
+    Outcome start();  ///< Clears the input ports, then startHook.
     Outcome stop();
     Outcome cleanup();
-    Outcome recover();    ///< RunTimeError -> Running; Exception -> PreOperational.
+    Outcome recover();  ///< RunTimeError -> Running; Exception -> PreOperational.
     /** One cycle: updateHook (errorHook in RunTimeError), again until no triggering port holds a new sample. */
     void update();
 
@@ -81,7 +88,7 @@ public:
     const std::vector<OutputPortBase*>& outputs() const { return outputs_; }
     const std::vector<PropertiesBase*>& properties() const { return properties_; }
     const std::vector<OperationBase*>& operations() const { return operations_; }
-    InputPortBase* input(const std::string& port);    ///< Null when there is none of that name.
+    InputPortBase* input(const std::string& port);  ///< Null when there is none of that name.
     OutputPortBase* output(const std::string& port);
 
     /** A port that exists only because a connection names it (a logger's inputs, a replay's outputs): null refuses. */
@@ -100,8 +107,8 @@ public:
     Environment& environment() { return *environment_; }
     void setEnvironment(std::shared_ptr<Environment> environment) { environment_ = std::move(environment); }
     Activity& activity() { return *activity_; }
-    const Statistics& cycles() const { return cycles_; }                             ///< Times of updateHook [s].
-    const std::map<std::string, Statistics>& stages() const { return stages_; }     ///< Read when stopped.
+    const Statistics& cycles() const { return cycles_; }  ///< Times of updateHook [s].
+    const Stages& stages() const { return stages_; }      ///< Read when stopped.
 
     // For ports, properties and operations only, which enlist themselves.
     void enlist(InputPortBase* port) { inputs_.push_back(port); }
@@ -125,11 +132,31 @@ protected:
     void recordStage(const char* name, double seconds);
 
     types::Time now() const { return environment_->now(); }
-    std::filesystem::path inputPath(const std::string& file) const;    ///< Relative to the deployment file.
-    std::filesystem::path outputPath(const std::string& file) const;   ///< Relative to `--out`; makes no folders.
+    std::filesystem::path inputPath(const std::string& file) const;   ///< Relative to the deployment file.
+    std::filesystem::path outputPath(const std::string& file) const;  ///< Relative to `--out`; makes no folders.
 
 private:
-    // (implementation: see TaskContext.cpp)
+    friend class Activity;
+    using Hook = void (TaskContext::*)();
+
+    /** One pass of updateHook or errorHook; true when a triggering port still holds a sample and this pass took one. */
+    bool cycle();
+    template <class Transition>
+    Outcome transition(const char* verb, Transition&& work);
+    Outcome configureNow();
+    Outcome startNow();
+    Outcome stopNow();
+    Outcome cleanupNow();
+    Outcome recoverNow();
+    Outcome refuse(const std::string& why);
+    Outcome notAllowed(const char* allowed);
+    Outcome notDone(const char* hook);
+    Outcome fail(const char* hook, std::exception_ptr thrown, bool undo_start, bool undo_configure);
+    bool attempt(Hook hook);
+    void setState(TaskState state);
+    void setLastError(const std::string& text);
+    uint64_t samplesTaken() const;
+
     std::string name_;
     std::atomic<TaskState> state_{TaskState::PreOperational};
     std::shared_ptr<Environment> environment_;
@@ -141,8 +168,10 @@ private:
     std::vector<OutputPortBase*> outputs_;
     std::vector<PropertiesBase*> properties_;
     std::vector<OperationBase*> operations_;
+    std::unique_ptr<OutputPort<int32_t>> state_port_;
+    const char* transition_ = nullptr;  // the one under way
     Statistics cycles_;
-    std::map<std::string, Statistics> stages_;
+    Stages stages_;
 };
 
 }  // namespace insonify::framework

@@ -1,0 +1,124 @@
+#include "components/framework/Activity.hpp"
+
+#include <algorithm>
+
+#include "components/framework/Port.hpp"
+#include "components/framework/TaskContext.hpp"
+
+namespace insonify::framework {
+namespace {
+
+std::chrono::nanoseconds nanoseconds(double seconds) {
+    return std::chrono::duration_cast<std::chrono::nanoseconds>(std::chrono::duration<double>(seconds));
+}
+
+}  // namespace
+
+Activity::~Activity() {
+    {
+        std::lock_guard lock(mutex_);
+        ending_ = true;
+    }
+    wake_.notify_one();
+    if (thread_.joinable()) thread_.join();
+}
+
+void Activity::configure(ActivitySettings settings) {
+    settings_ = std::move(settings);
+    const auto& names = settings_.trigger;
+    for (InputPortBase* port : owner_.inputs()) {
+        const bool named = names.empty() || std::find(names.begin(), names.end(), port->name()) != names.end();
+        port->setTriggers(!settings_.periodic() && named);
+    }
+}
+
+void Activity::submit(Job& job) {
+    std::unique_lock lock(mutex_);
+    if (thread_.get_id() == std::this_thread::get_id()) {
+        lock.unlock();
+        return job.function(job.callable);
+    }
+    Job** last = &first_job_;
+    while (*last) last = &(*last)->next;
+    *last = &job;
+    if (!thread_.joinable()) thread_ = std::thread(&Activity::loop, this);
+    wake_.notify_one();
+    served_.wait(lock, [&] { return job.done; });
+    if (job.error) std::rethrow_exception(job.error);
+}
+
+void Activity::release() {
+    std::lock_guard lock(mutex_);
+    free_ = true;
+    woken_ = false;
+    next_cycle_ = Clock::now();
+    wake_.notify_one();
+}
+
+void Activity::hold() {
+    {
+        std::lock_guard lock(mutex_);
+        free_ = false;
+    }
+    call([] {});  // a cycle that has begun ends first
+}
+
+void Activity::trigger() {
+    std::lock_guard lock(mutex_);
+    if (!free_) return;
+    woken_ = true;
+    wake_.notify_one();
+}
+
+void Activity::loop() {
+    std::unique_lock lock(mutex_);
+    while (!ending_) {
+        if (first_job_)
+            serve(lock);
+        else if (due())
+            runCycle(lock);
+        else
+            wait(lock);
+    }
+}
+
+void Activity::serve(std::unique_lock<std::mutex>& lock) {
+    Job& job = *first_job_;
+    first_job_ = job.next;
+    lock.unlock();
+    try {
+        job.function(job.callable);
+    } catch (...) {
+        job.error = std::current_exception();
+    }
+    lock.lock();
+    job.done = true;
+    served_.notify_all();
+}
+
+bool Activity::due() const {
+    if (!free_) return false;
+    return settings_.periodic() ? Clock::now() >= next_cycle_ : woken_;
+}
+
+void Activity::runCycle(std::unique_lock<std::mutex>& lock) {
+    // Times are absolute: a late cycle does not shift the next; periods missed altogether are left out.
+    if (settings_.periodic()) {
+        const auto period = nanoseconds(settings_.period);
+        next_cycle_ += period * (1 + (Clock::now() - next_cycle_) / period);
+    }
+    woken_ = false;
+    lock.unlock();
+    const bool more = owner_.cycle();
+    lock.lock();
+    woken_ = woken_ || more;
+}
+
+void Activity::wait(std::unique_lock<std::mutex>& lock) {
+    if (free_ && settings_.periodic())
+        wake_.wait_until(lock, next_cycle_);
+    else
+        wake_.wait(lock);
+}
+
+}  // namespace insonify::framework

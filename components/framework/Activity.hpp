@@ -1,0 +1,78 @@
+#pragma once
+#include <chrono>
+#include <condition_variable>
+#include <exception>
+#include <memory>
+#include <mutex>
+#include <string>
+#include <thread>
+#include <type_traits>
+#include <vector>
+
+namespace insonify::framework {
+
+class TaskContext;
+
+/** When a task's updateHook runs: every `period` seconds, or when a sample arrives on one of its triggering ports. */
+struct ActivitySettings {
+    double period = 0;                 ///< 0: triggered [s].
+    std::vector<std::string> trigger;  ///< Input ports that wake the task; empty: all that are connected.
+    bool periodic() const { return period > 0; }
+};
+
+/** The one thread on which all hooks and operations of a task run. It starts with the first call.
+ *
+ *  It serves calls at any time. Cycles of its own, paced by the wall clock or by new samples, it runs only between
+ *  release() and hold(): in lockstep the deployment asks for each cycle. */
+class Activity {
+public:
+    explicit Activity(TaskContext& owner) : owner_(owner) {}
+    ~Activity();
+    Activity(const Activity&) = delete;
+    Activity& operator=(const Activity&) = delete;
+
+    const ActivitySettings& settings() const { return settings_; }
+    /** Takes the settings and tells the input ports which of them trigger. Not while released. */
+    void configure(ActivitySettings settings);
+
+    /** Runs `work` on the task's thread and waits for its end; at once when this is that thread.
+     *  What `work` throws is thrown here. Allocates nothing. */
+    template <class Work>
+    void call(Work&& work) {
+        using Callable = std::remove_reference_t<Work>;
+        Job job{[](void* callable) { (*static_cast<Callable*>(callable))(); }, &work};
+        submit(job);
+    }
+
+    void release();  ///< From now on the thread runs cycles by itself.
+    void hold();     ///< No cycle runs any more once this returns (called from another thread).
+    void trigger();  ///< A new sample is there; any thread.
+
+private:
+    struct Job {
+        void (*function)(void*);
+        void* callable;
+        std::exception_ptr error = nullptr;
+        bool done = false;
+        Job* next = nullptr;
+    };
+    using Clock = std::chrono::steady_clock;
+
+    void submit(Job& job);
+    void loop();
+    void serve(std::unique_lock<std::mutex>& lock);
+    bool due() const;
+    void runCycle(std::unique_lock<std::mutex>& lock);
+    void wait(std::unique_lock<std::mutex>& lock);
+
+    TaskContext& owner_;
+    ActivitySettings settings_;
+    std::mutex mutex_;
+    std::condition_variable wake_, served_;
+    Job* first_job_ = nullptr;
+    bool free_ = false, woken_ = false, ending_ = false;
+    Clock::time_point next_cycle_;
+    std::thread thread_;
+};
+
+}  // namespace insonify::framework

@@ -1,0 +1,206 @@
+#include "components/framework/ConfigReader.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <numeric>
+
+namespace insonify::framework {
+namespace {
+
+/** A scalar without quotes: in strict YAML only such a one can be a number or a truth value. */
+bool isPlain(const YAML::Node& node) { return node.IsScalar() && node.Tag() != "!"; }
+
+/** What stands there, for messages. */
+std::string shown(const YAML::Node& node) {
+    if (!node.IsDefined() || node.IsNull()) return "empty";
+    if (node.IsMap()) return "a block";
+    if (node.IsSequence()) return "a list";
+    std::string text = node.Scalar().substr(0, 60);
+    for (char& c : text)
+        if (static_cast<unsigned char>(c) < ' ') c = ' ';
+    return isPlain(node) ? text : "the text \"" + text + "\"";
+}
+
+std::string withUnit(const std::string& number, const types::Field& field) {
+    const std::string unit = field.unit;
+    return unit.empty() || unit == "1" ? number : number + " " + unit;
+}
+
+std::string allowed(const types::Field& field) {
+    if (std::isinf(field.max)) return "must be at least " + withUnit(fmt::format("{}", field.min), field);
+    if (std::isinf(field.min)) return "must be at most " + withUnit(fmt::format("{}", field.max), field);
+    return "may be " + withUnit(fmt::format("{} to {}", field.min, field.max), field);
+}
+
+bool parseDouble(std::string_view text, double& value) {
+    if (text.starts_with('+')) text.remove_prefix(1);
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+    return error == std::errc() && end == text.data() + text.size();
+}
+
+size_t editDistance(std::string_view a, std::string_view b) {
+    std::vector<size_t> row(b.size() + 1);
+    std::iota(row.begin(), row.end(), size_t{0});
+    for (size_t i = 0; i < a.size(); ++i) {
+        size_t diagonal = row[0]++;
+        for (size_t j = 0; j < b.size(); ++j) {
+            const size_t changed = diagonal + (a[i] != b[j]);
+            diagonal = row[j + 1];
+            row[j + 1] = std::min({changed, row[j] + 1, diagonal + 1});
+        }
+    }
+    return row.back();
+}
+
+/** The node that a path such as "tvg.max_db" or "waypoints[2].time" leads to, or the last on the way that exists. */
+YAML::Node nodeAt(const YAML::Node& block, std::string_view path) {
+    YAML::Node node = block;
+    while (!path.empty() && node.IsDefined()) {
+        const size_t end = std::min(path.find_first_of(".["), path.size());
+        YAML::Node next(YAML::NodeType::Undefined);
+        if (node.IsMap()) next.reset(child(node, path.substr(0, end)));
+        if (size_t index = 0;
+            node.IsSequence() && std::from_chars(path.data(), path.data() + end, index).ec == std::errc())
+            if (index < node.size()) next.reset(node[index]);
+        if (!next.IsDefined()) break;
+        node.reset(next);
+        path.remove_prefix(end);
+        path.remove_prefix(std::min(path.find_first_not_of(".[]"), path.size()));
+    }
+    return node;
+}
+
+}  // namespace
+
+std::string suggestion(std::string_view wrong, const std::vector<std::string>& known) {
+    if (known.empty()) return "there are none";
+    const auto distance = [&](const std::string& name) { return editDistance(wrong, name); };
+    const auto nearest = std::min_element(known.begin(), known.end(),
+                                          [&](const auto& a, const auto& b) { return distance(a) < distance(b); });
+    const bool close = distance(*nearest) <= std::max<size_t>(1, wrong.size() / 3);
+    return (close ? "did you mean " + *nearest + "? " : "") + fmt::format("known: {}", fmt::join(known, ", "));
+}
+
+YAML::Node child(const YAML::Node& map, std::string_view key) {
+    if (map.IsDefined() && map.IsMap())
+        for (const auto& entry : map)
+            if (entry.first.IsScalar() && entry.first.Scalar() == key) return entry.second;
+    return YAML::Node(YAML::NodeType::Undefined);
+}
+
+void ConfigReader::fault(const YAML::Node& node, const std::string& path, const std::string& message) {
+    const auto covers = [&](const std::string& set) {
+        return path == set || path.starts_with(set + ".") || path.starts_with(set + "[");
+    };
+    if (std::any_of(set_paths_.begin(), set_paths_.end(), covers)) {
+        faults_.push_back({"--set", 0, 0, path, message});
+        return;
+    }
+    YAML::Mark mark = node.IsDefined() ? node.Mark() : fallback_;
+    if (mark.is_null()) mark = fallback_;
+    faults_.push_back({file_, mark.line + 1, mark.column + 1, path, message});
+}
+
+void ConfigReader::report(const YAML::Node& block, const std::string& path, const types::Problems& problems) {
+    for (const types::Problem& problem : problems)
+        fault(nodeAt(block, problem.path), problem.path.empty() ? path : below(path, problem.path), problem.message);
+}
+
+bool ConfigReader::isMap(const YAML::Node& node, const std::string& path) {
+    if (node.IsNull()) return true;
+    if (!node.IsMap()) return fault(node, path, "is " + shown(node) + "; must be a block of keys and values"), false;
+    std::set<std::string> seen;
+    bool good = true;
+    for (const auto& entry : node) {
+        if (!entry.first.IsScalar())
+            fault(entry.first, path, "has a key that is " + shown(entry.first) + "; keys are names"), good = false;
+        else if (!seen.insert(entry.first.Scalar()).second)
+            fault(entry.first, below(path, entry.first.Scalar()), "stands here twice; once is allowed"), good = false;
+    }
+    return good;
+}
+
+bool ConfigReader::isSequence(const YAML::Node& node, const std::string& path) {
+    if (node.IsSequence()) return true;
+    fault(node, path, "is " + shown(node) + "; must be a list");
+    return false;
+}
+
+void ConfigReader::refuseUnknown(const YAML::Node& map, const std::string& path,
+                                 const std::vector<std::string>& known) {
+    if (!map.IsDefined() || !map.IsMap()) return;
+    for (const auto& entry : map) {
+        if (!entry.first.IsScalar()) continue;
+        const std::string& key = entry.first.Scalar();
+        if (std::find(known.begin(), known.end(), key) == known.end())
+            fault(entry.first, below(path, key), "is not a key here; " + suggestion(key, known));
+    }
+}
+
+bool ConfigReader::number(const YAML::Node& node, const std::string& path, const types::Field& field, double& value) {
+    double read = 0;
+    if (!isPlain(node) || !parseDouble(node.Scalar(), read) || !std::isfinite(read)) {
+        fault(node, path, "is " + shown(node) + "; must be a finite number");
+        return false;
+    }
+    if (read < field.min || read > field.max) {
+        fault(node, path, "is " + withUnit(fmt::format("{}", read), field) + "; " + allowed(field));
+        return false;
+    }
+    value = read;
+    return true;
+}
+
+bool ConfigReader::whole(const YAML::Node& node, const std::string& path, const types::Field& field, int64_t lowest,
+                         uint64_t highest, bool& negative, uint64_t& magnitude) {
+    double wide = 0;
+    if (!number(node, path, field, wide)) return false;
+    if (wide != std::floor(wide)) return fault(node, path, "is " + shown(node) + "; must be a whole number"), false;
+    std::string_view digits = node.Scalar();
+    negative = digits.starts_with('-');
+    if (digits.starts_with('-') || digits.starts_with('+')) digits.remove_prefix(1);
+    const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), magnitude);
+    const bool exact = error == std::errc() && end == digits.data() + digits.size();
+    // Written with a point or an exponent: exact as a double, or not a whole number that can be trusted.
+    if (!exact && error == std::errc() && std::abs(wide) <= 0x1p53) magnitude = static_cast<uint64_t>(std::abs(wide));
+    const uint64_t limit = negative ? ~static_cast<uint64_t>(lowest) + 1 : highest;
+    if ((exact || (error == std::errc() && std::abs(wide) <= 0x1p53)) && magnitude <= limit) return true;
+    fault(node, path, fmt::format("is {}; must be a whole number from {} to {}", shown(node), lowest, highest));
+    return false;
+}
+
+bool ConfigReader::oneOf(const YAML::Node& node, const std::string& path, const std::string_view* names, size_t count,
+                         size_t& index) {
+    for (index = 0; index < count; ++index)
+        if (node.IsScalar() && node.Scalar() == names[index]) return true;
+    fault(node, path, "is " + shown(node) + "; may be " + fmt::format("{}", fmt::join(names, names + count, ", ")));
+    return false;
+}
+
+bool ConfigReader::text(const YAML::Node& node, const std::string& path, std::string& value) {
+    if (!node.IsScalar()) return fault(node, path, "is " + shown(node) + "; must be a text"), false;
+    value = node.Scalar();
+    return true;
+}
+
+bool ConfigReader::boolean(const YAML::Node& node, const std::string& path, bool& value) {
+    const bool good = isPlain(node) && (node.Scalar() == "true" || node.Scalar() == "false");
+    if (good)
+        value = node.Scalar() == "true";
+    else
+        fault(node, path, "is " + shown(node) + "; may be true or false");
+    return good;
+}
+
+bool ConfigReader::vector3(const YAML::Node& node, const std::string& path, const types::Field& field,
+                           glm::dvec3& value) {
+    if (!node.IsSequence() || node.size() != 3)
+        return fault(node, path, "is " + shown(node) + "; must be a list of three numbers [x, y, z]"), false;
+    bool good = true;
+    for (int i = 0; i < 3; ++i) good &= number(node[i], path + "[" + std::to_string(i) + "]", field, value[i]);
+    return good;
+}
+
+}  // namespace insonify::framework

@@ -1,0 +1,215 @@
+#pragma once
+// Strict reading of YAML into described structs: every fault is collected, with its place, none stops the reading.
+#include <yaml-cpp/yaml.h>
+
+#include <cmath>
+#include <concepts>
+#include <cstdint>
+#include <glm/vec3.hpp>
+#include <map>
+#include <optional>
+#include <set>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "types/ConfigError.hpp"
+#include "types/Describe.hpp"
+
+namespace insonify::framework {
+
+template <class T>
+concept Number = std::integral<T> || std::floating_point<T>;
+
+class ConfigReader {
+public:
+    /** Faults name `file`, but for paths that begin with one of `set_paths`: these name `--set`. */
+    explicit ConfigReader(std::string file, std::vector<std::string> set_paths = {})
+        : file_(std::move(file)), set_paths_(std::move(set_paths)) {}
+
+    const std::vector<types::Diagnostic>& faults() const { return faults_; }
+    void fault(const YAML::Node& node, const std::string& path, const std::string& message);
+    /** Where faults of nodes that do not exist are reported: the block that lacks them. */
+    void setFallback(const YAML::Mark& mark) { fallback_ = mark; }
+
+    /** Reads `node` into `value`; what the node does not name keeps its value. False when there was any fault. */
+    template <types::Described T>
+    bool read(const YAML::Node& node, const std::string& path, T& value);
+
+    bool isMap(const YAML::Node& node, const std::string& path);       ///< A map or empty, keys unique; else a fault.
+    bool isSequence(const YAML::Node& node, const std::string& path);  ///< Else a fault.
+    /** A fault for each key that is not among `known`, with the nearest known one. */
+    void refuseUnknown(const YAML::Node& map, const std::string& path, const std::vector<std::string>& known);
+    bool number(const YAML::Node& node, const std::string& path, const types::Field& field, double& value);
+
+    template <class T>
+    bool readValue(const YAML::Node& node, const std::string& path, const types::Field& field, T& value);
+    /** Reads a value from a piece of YAML that stands alone: an argument, a `--set`. */
+    template <class T>
+    bool readText(const std::string& yaml, const std::string& path, T& value);
+
+private:
+    bool whole(const YAML::Node& node, const std::string& path, const types::Field& field, int64_t lowest,
+               uint64_t highest, bool& negative, uint64_t& magnitude);
+    bool oneOf(const YAML::Node& node, const std::string& path, const std::string_view* names, size_t count,
+               size_t& index);
+    bool text(const YAML::Node& node, const std::string& path, std::string& value);
+    bool boolean(const YAML::Node& node, const std::string& path, bool& value);
+    bool vector3(const YAML::Node& node, const std::string& path, const types::Field& field, glm::dvec3& value);
+    template <Number T>
+    bool readNumber(const YAML::Node& node, const std::string& path, const types::Field& field, T& value);
+    void report(const YAML::Node& block, const std::string& path, const types::Problems& problems);
+
+    std::string file_;
+    std::vector<std::string> set_paths_;
+    std::vector<types::Diagnostic> faults_;
+    YAML::Mark fallback_ = YAML::Mark::null_mark();
+};
+
+/** "did you mean range? known: range, model": for a name that is not known. */
+std::string suggestion(std::string_view wrong, const std::vector<std::string>& known);
+
+/** The value of `key` in a map, an undefined node if there is none (YAML::Node's operator[] of a const node, but for
+ *  maps with keys that are not scalars as well). */
+YAML::Node child(const YAML::Node& map, std::string_view key);
+
+// -- templates --------------------------------------------------------------------------------------------------------
+
+template <class T>
+struct Inner {
+    using type = void;
+};
+template <class T>
+struct Inner<std::vector<T>> {
+    using type = T;
+    static constexpr bool sequence = true;
+};
+template <class T>
+struct Inner<std::optional<T>> {
+    using type = T;
+    static constexpr bool optional = true;
+};
+template <class T>
+struct Inner<std::map<std::string, T>> {
+    using type = T;
+    static constexpr bool map = true;
+};
+template <class T>
+concept Sequence = requires {
+    Inner<T>::sequence;
+};
+template <class T>
+concept Optional = requires {
+    Inner<T>::optional;
+};
+template <class T>
+concept NamedMap = requires {
+    Inner<T>::map;
+};
+
+/** Calls `visit(field, value)` for each field, and knows their names. */
+template <class Visit>
+struct FieldVisitor {
+    Visit visit;
+    template <class T>
+    void operator()(const types::Field& field, T& value) {
+        visit(field, value);
+    }
+};
+template <class Visit>
+FieldVisitor(Visit) -> FieldVisitor<Visit>;
+
+inline std::string below(const std::string& path, const std::string& name) {
+    return path.empty() ? name : path + "." + name;
+}
+
+template <types::Described T>
+bool ConfigReader::read(const YAML::Node& node, const std::string& path, T& value) {
+    const size_t before = faults_.size();
+    if (node.IsDefined() && !isMap(node, path)) return false;
+    std::vector<std::string> known;
+    FieldVisitor visitor{[&](const types::Field& field, auto& member) {
+        known.push_back(field.name);
+        if (const YAML::Node entry = child(node, field.name); entry.IsDefined())
+            readValue(entry, below(path, field.name), field, member);
+    }};
+    T::describe(value, visitor);
+    refuseUnknown(node, path, known);
+    if constexpr (types::Checked<T>) {
+        types::Problems problems;
+        if (faults_.size() == before) value.check(problems);
+        report(node, path, problems);
+    }
+    return faults_.size() == before;
+}
+
+template <class T>
+bool ConfigReader::readValue(const YAML::Node& node, const std::string& path, const types::Field& field, T& value) {
+    if constexpr (std::same_as<T, bool>) {
+        return boolean(node, path, value);
+    } else if constexpr (Number<T>) {
+        return readNumber(node, path, field, value);
+    } else if constexpr (std::same_as<T, std::string>) {
+        return text(node, path, value);
+    } else if constexpr (std::same_as<T, glm::dvec3>) {
+        return vector3(node, path, field, value);
+    } else if constexpr (types::NamedEnum<T>) {
+        size_t index = 0;
+        if (!oneOf(node, path, std::data(types::EnumNames<T>::names), std::size(types::EnumNames<T>::names), index))
+            return false;
+        value = static_cast<T>(index);
+        return true;
+    } else if constexpr (Optional<T>) {
+        if (!value) value.emplace();
+        return readValue(node, path, field, *value);
+    } else if constexpr (Sequence<T>) {
+        if (!isSequence(node, path)) return false;
+        value.assign(node.size(), {});
+        bool good = true;
+        for (size_t i = 0; i < value.size(); ++i) {
+            typename Inner<T>::type element{};
+            good &= readValue(node[i], path + "[" + std::to_string(i) + "]", field, element);
+            value[i] = std::move(element);
+        }
+        return good;
+    } else if constexpr (NamedMap<T>) {
+        if (!isMap(node, path)) return false;
+        value.clear();
+        bool good = true;
+        for (const auto& entry : node)
+            good &= readValue(entry.second, below(path, entry.first.Scalar()), field, value[entry.first.Scalar()]);
+        return good;
+    } else {
+        return read(node, path, value);
+    }
+}
+
+template <class T>
+bool ConfigReader::readText(const std::string& yaml, const std::string& path, T& value) {
+    try {
+        return readValue(YAML::Load(yaml), path, types::Field{path.c_str()}, value);
+    } catch (const YAML::Exception& error) {
+        fault(YAML::Node(YAML::NodeType::Undefined), path, error.msg);
+        return false;
+    }
+}
+
+template <Number T>
+bool ConfigReader::readNumber(const YAML::Node& node, const std::string& path, const types::Field& field, T& value) {
+    if constexpr (std::integral<T>) {
+        bool negative = false;
+        uint64_t magnitude = 0;
+        if (!whole(node, path, field, static_cast<int64_t>(std::numeric_limits<T>::min()),
+                   static_cast<uint64_t>(std::numeric_limits<T>::max()), negative, magnitude))
+            return false;
+        value = static_cast<T>(negative ? ~magnitude + 1 : magnitude);
+        return true;
+    } else {
+        double wide = 0;
+        if (!number(node, path, field, wide)) return false;
+        value = static_cast<T>(wide);
+        return true;
+    }
+}
+
+}  // namespace insonify::framework

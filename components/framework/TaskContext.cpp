@@ -1,0 +1,257 @@
+#include "components/framework/TaskContext.hpp"
+
+#include <chrono>
+
+#include "components/framework/Activity.hpp"
+#include "components/framework/Port.hpp"
+
+namespace insonify::framework {
+namespace {
+
+types::Time wallClock() {
+    const auto since_epoch = std::chrono::system_clock::now().time_since_epoch();
+    return {std::chrono::duration_cast<std::chrono::microseconds>(since_epoch).count()};
+}
+
+std::string textOf(std::exception_ptr thrown) {
+    try {
+        std::rethrow_exception(thrown);
+    } catch (const std::exception& error) {
+        return error.what();
+    } catch (...) {
+        return "an exception that is not a std::exception";
+    }
+}
+
+template <class Ports>
+auto find(const Ports& ports, const std::string& name) -> typename Ports::value_type {
+    for (auto* port : ports)
+        if (port->name() == name) return port;
+    return nullptr;
+}
+
+}  // namespace
+
+const char* toString(TaskState state) {
+    static constexpr const char* names[] = {"Init",    "PreOperational", "FatalError",  "Exception",
+                                            "Stopped", "Running",        "RunTimeError"};
+    return names[static_cast<size_t>(state)];
+}
+
+TaskContext::TaskContext(std::string name)
+    : name_(std::move(name)),
+      environment_(std::make_shared<Environment>()),
+      activity_(std::make_unique<Activity>(*this)) {
+    environment_->now = wallClock;
+    environment_->start_time = [start = wallClock()] { return start; };
+    state_port_ = std::make_unique<OutputPort<int32_t>>(this, "state", "state of the task, numbered as in Orocos");
+}
+
+TaskContext::~TaskContext() = default;
+
+InputPortBase* TaskContext::input(const std::string& port) { return find(inputs_, port); }
+OutputPortBase* TaskContext::output(const std::string& port) { return find(outputs_, port); }
+
+std::string TaskContext::lastError() const {
+    std::lock_guard lock(error_mutex_);
+    return last_error_;
+}
+
+void TaskContext::setLastError(const std::string& text) {
+    std::lock_guard lock(error_mutex_);
+    last_error_ = text;
+}
+
+void TaskContext::setState(TaskState state) {
+    state_ = state;
+    state_port_->write(static_cast<int32_t>(state));
+}
+
+std::filesystem::path TaskContext::inputPath(const std::string& file) const {
+    return environment_->input_folder / file;
+}
+std::filesystem::path TaskContext::outputPath(const std::string& file) const {
+    return environment_->output_folder / file;
+}
+
+void TaskContext::recordStage(const char* name, double seconds) {
+    auto stage = stages_.find(std::string_view(name));
+    if (stage == stages_.end()) stage = stages_.emplace(name, Statistics{}).first;
+    stage->second.add(seconds);
+}
+
+void TaskContext::error(const std::string& why) {
+    setLastError(why);
+    if (state() == TaskState::Running) setState(TaskState::RunTimeError);
+}
+
+// -- transitions ------------------------------------------------------------------------------------------------------
+
+template <class Transition>
+Outcome TaskContext::transition(const char* verb, Transition&& work) {
+    Outcome outcome;
+    activity_->call([&] {
+        if (transition_) {
+            outcome = refuse(std::string("cannot ") + verb + ": " + name_ + " is in the middle of " + transition_);
+            return;
+        }
+        transition_ = verb;
+        outcome = work();
+        transition_ = nullptr;
+    });
+    return outcome;
+}
+
+Outcome TaskContext::configure() {
+    return transition("configure", [this] { return configureNow(); });
+}
+Outcome TaskContext::start() {
+    return transition("start", [this] { return startNow(); });
+}
+Outcome TaskContext::stop() {
+    return transition("stop", [this] { return stopNow(); });
+}
+Outcome TaskContext::cleanup() {
+    return transition("cleanup", [this] { return cleanupNow(); });
+}
+Outcome TaskContext::recover() {
+    return transition("recover", [this] { return recoverNow(); });
+}
+
+Outcome TaskContext::refuse(const std::string& why) {
+    setLastError(why);
+    return {false, why};
+}
+
+Outcome TaskContext::notAllowed(const char* allowed) {
+    return refuse(std::string("cannot ") + transition_ + ": " + name_ + " is " + toString(state()) + ", must be " +
+                  allowed);
+}
+
+Outcome TaskContext::notDone(const char* hook) {
+    const std::string why = lastError();
+    return refuse(name_ + ": " + hook + " refused" + (why.empty() ? "" : ": " + why));
+}
+
+Outcome TaskContext::configureNow() {
+    if (state() != TaskState::PreOperational && state() != TaskState::Stopped)
+        return notAllowed("PreOperational or Stopped");
+    if (state() == TaskState::Stopped)
+        if (Outcome cleaned = cleanupNow(); !cleaned) return cleaned;
+    config_error_.reset();
+    setLastError("");
+    try {
+        if (!configureHook()) return notDone("configureHook");
+    } catch (const types::ConfigError& error) {
+        config_error_ = std::make_unique<types::ConfigError>(error);
+        return fail("configureHook", std::current_exception(), false, false);
+    } catch (...) {
+        return fail("configureHook", std::current_exception(), false, false);
+    }
+    setState(TaskState::Stopped);
+    return {};
+}
+
+Outcome TaskContext::startNow() {
+    if (state() != TaskState::Stopped) return notAllowed("Stopped");
+    for (InputPortBase* port : inputs_) port->clear();
+    setLastError("");
+    try {
+        if (!startHook()) return notDone("startHook");
+    } catch (...) {
+        return fail("startHook", std::current_exception(), false, true);
+    }
+    setState(TaskState::Running);
+    return {};
+}
+
+Outcome TaskContext::stopNow() {
+    if (!isRunning()) return notAllowed("Running or RunTimeError");
+    try {
+        stopHook();
+    } catch (...) {
+        return fail("stopHook", std::current_exception(), false, true);
+    }
+    setState(TaskState::Stopped);
+    return {};
+}
+
+Outcome TaskContext::cleanupNow() {
+    if (state() != TaskState::Stopped) return notAllowed("Stopped");
+    try {
+        cleanupHook();
+    } catch (...) {
+        return fail("cleanupHook", std::current_exception(), false, false);
+    }
+    setState(TaskState::PreOperational);
+    return {};
+}
+
+Outcome TaskContext::recoverNow() {
+    if (state() == TaskState::RunTimeError)
+        setState(TaskState::Running);
+    else if (state() == TaskState::Exception)
+        setState(TaskState::PreOperational);
+    else
+        return notAllowed("RunTimeError or Exception");
+    return {};
+}
+
+bool TaskContext::attempt(Hook hook) {
+    try {
+        (this->*hook)();
+        return true;
+    } catch (...) {
+        setLastError(lastError() + "; then " + textOf(std::current_exception()));
+        return false;
+    }
+}
+
+Outcome TaskContext::fail(const char* hook, std::exception_ptr thrown, bool undo_start, bool undo_configure) {
+    setLastError(std::string(hook) + ": " + textOf(thrown));
+    bool undone = true;
+    if (undo_start) undone &= attempt(&TaskContext::stopHook);
+    if (undo_configure) undone &= attempt(&TaskContext::cleanupHook);
+    undone &= attempt(&TaskContext::exceptionHook);
+    setState(undone ? TaskState::Exception : TaskState::FatalError);
+    return {false, lastError()};
+}
+
+// -- cycles -----------------------------------------------------------------------------------------------------------
+
+void TaskContext::update() {
+    activity_->call([this] {
+        while (cycle()) {
+        }
+    });
+}
+
+uint64_t TaskContext::samplesTaken() const {
+    uint64_t taken = 0;
+    for (const InputPortBase* port : inputs_) taken += port->taken();
+    return taken;
+}
+
+bool TaskContext::cycle() {
+    if (!isRunning()) return false;
+    const bool running = state() == TaskState::Running;
+    const uint64_t taken = samplesTaken();
+    const auto begin = std::chrono::steady_clock::now();
+    try {
+        running ? updateHook() : errorHook();
+    } catch (...) {
+        // A hook may have stopped the task itself before it threw: then there is nothing left of start to undo.
+        const bool configured = state() >= TaskState::Stopped;
+        transition_ = "undo a throw";
+        fail(running ? "updateHook" : "errorHook", std::current_exception(), isRunning(), configured);
+        transition_ = nullptr;
+        return false;
+    }
+    cycles_.add(std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count());
+    if (!isRunning() || samplesTaken() == taken) return false;
+    for (const InputPortBase* port : inputs_)
+        if (port->triggers() && port->hasNew()) return true;
+    return false;
+}
+
+}  // namespace insonify::framework
