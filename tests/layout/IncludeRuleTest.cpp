@@ -1,0 +1,88 @@
+// Who may include whom: the rule of the README's architecture page, read from the sources.
+#include <gtest/gtest.h>
+
+#include <map>
+#include <set>
+
+#include "tests/layout/Sources.hpp"
+
+using namespace insonify::layout;
+
+namespace {
+
+struct Include {
+    std::string target;
+    bool ours = false;  ///< In quotes, from the root.
+};
+
+std::vector<Include> includesOf(const Source& source) {
+    std::vector<Include> found;
+    for (const std::string& line : source.lines) {
+        if (!line.starts_with("#include ")) continue;
+        const bool ours = line[9] == '"';
+        found.push_back({line.substr(10, line.find_first_of(ours ? "\"" : ">", 10) - 10), ours});
+    }
+    return found;
+}
+
+/** Folders that a file may include from, besides its own and `types`. */
+std::set<std::string> neighboursOf(const Source& source) {
+    const std::string folder = source.folder();
+    std::set<std::string> allowed;
+    if (source.isTaskHalf()) allowed.insert("framework");
+    if (folder == "sonar") allowed.insert({"gpu", "shaders"});
+    if (folder == "logger" || folder == "replay") allowed.insert("pocolog");
+    return allowed;
+}
+
+bool mayInclude(const Source& source, const Source& target) {
+    const std::string from = source.folder(), to = target.folder();
+    if (from == "deployer") return true;
+    if (from == to) return from == "framework" || source.isTaskHalf() || !target.isTaskHalf();
+    if (to == "types") return from != "gpu";
+    return from != "types" && from != "gpu" && from != "framework" && neighboursOf(source).contains(to);
+}
+
+std::vector<Source> ourSources() {
+    std::vector<Source> all = sourcesIn("components", {".hpp", ".cpp"});
+    for (Source& source : sourcesIn("types", {".hpp", ".cpp"})) all.push_back(std::move(source));
+    return all;
+}
+
+}  // namespace
+
+TEST(IncludeRuleTest, ComponentsMeetInTypesOnly) {
+    for (const Source& source : ourSources())
+        for (const Include& include : includesOf(source))
+            EXPECT_TRUE(!include.ours || mayInclude(source, {include.target, {}}))
+                << source.path << " includes " << include.target;
+}
+
+TEST(IncludeRuleTest, EveryThirdPartyPackageHasOneHome) {
+    const std::map<std::string, std::string> homes = {
+        {"tiny_gltf.h", "scene"}, {"meshoptimizer.h", "scene"},
+        {"stb", "scene"},         {"opencv2/", "output"},
+        {"EGL/", "gpu"},          {"GL/", "gpu"},
+        {"epoxy/", "gpu"},        {"yaml-cpp/", "framework"},
+        {"CLI/", "deployer"},     {"nlohmann/", "deployer"},
+    };
+    for (const Source& source : ourSources())
+        for (const Include& include : includesOf(source))
+            for (const auto& [prefix, home] : homes)
+                EXPECT_TRUE(include.ours || !include.target.starts_with(prefix) || source.folder() == home)
+                    << source.path << " includes " << include.target;
+}
+
+TEST(IncludeRuleTest, TheRuleRefusesWhatItShould) {
+    const auto allowed = [](const char* from, const char* to) { return mayInclude({from, {}}, {to, {}}); };
+    EXPECT_FALSE(allowed("components/noise/Speckle.hpp", "components/framework/Port.hpp"));
+    EXPECT_FALSE(allowed("components/noise/NoiseTask.hpp", "components/sonar/Plan.hpp"));
+    EXPECT_FALSE(allowed("components/noise/Speckle.cpp", "components/noise/NoiseTask.hpp"));
+    EXPECT_FALSE(allowed("types/Sonar.hpp", "components/gpu/Context.hpp"));
+    EXPECT_FALSE(allowed("components/gpu/Context.hpp", "types/Sonar.hpp"));
+    EXPECT_FALSE(allowed("components/noise/NoiseTask.cpp", "components/pocolog/Reader.hpp"));
+    EXPECT_TRUE(allowed("components/noise/NoiseTask.cpp", "components/noise/Speckle.hpp"));
+    EXPECT_TRUE(allowed("components/logger/LoggerTask.cpp", "components/pocolog/Writer.hpp"));
+    EXPECT_TRUE(allowed("components/sonar/SonarRenderer.cpp", "components/gpu/Context.hpp"));
+    EXPECT_TRUE(allowed("components/deployer/main.cpp", "components/noise/registerTasks.hpp"));
+}

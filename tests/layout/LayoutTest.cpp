@@ -1,0 +1,71 @@
+#include <gtest/gtest.h>
+
+#include <set>
+
+#include "tests/layout/Sources.hpp"
+
+using namespace insonify::layout;
+
+namespace {
+
+std::string textOf(const std::string& path) {
+    std::string text;
+    for (const std::string& line : readSource(std::filesystem::path(INSONIFY_SOURCE_DIR) / path).lines)
+        text += line + "\n";
+    return text;
+}
+
+/** Targets of the links and pictures in a Markdown text that are files of ours. */
+std::vector<std::string> localLinks(const std::string& text) {
+    std::vector<std::string> links;
+    for (size_t at = text.find("]("); at != std::string::npos; at = text.find("](", at + 2)) {
+        const std::string target = text.substr(at + 2, text.find(')', at) - at - 2);
+        if (!target.starts_with("http") && !target.starts_with("#")) links.push_back(target);
+    }
+    return links;
+}
+
+}  // namespace
+
+TEST(LayoutTest, TheTopLevelHoldsOnlyWhatTheDesignNames) {
+    const std::set<std::string> expected = {"CMakeLists.txt", "README.md",   "LICENSE",    "CHANGELOG.md",
+                                            "types",          "components",  "shaders",    "deploy",
+                                            "tests",          "scripts",     ".ci",        ".git",
+                                            ".clang-format",  ".clang-tidy", ".gitignore", "out"};
+    for (const auto& entry : std::filesystem::directory_iterator(INSONIFY_SOURCE_DIR)) {
+        const std::string name = entry.path().filename();
+        EXPECT_TRUE(expected.contains(name) || name.starts_with("build")) << name;
+    }
+}
+
+TEST(LayoutTest, AComponentsFolderIsItsNamespace) {
+    for (const Source& source : sourcesIn("components", {".hpp", ".cpp"})) {
+        if (source.stem() == "main") continue;
+        const auto opensIt = [&](const std::string& line) {
+            return line.find("namespace insonify::" + source.folder()) != std::string::npos;
+        };
+        EXPECT_TRUE(std::ranges::any_of(source.lines, opensIt)) << source.path;
+    }
+}
+
+TEST(LayoutTest, NoSourceFileIsLongerThan300Lines) {
+    for (const char* folder : {"types", "components", "shaders", "tests", "scripts"})
+        for (const Source& source : sourcesIn(folder, {".hpp", ".cpp", ".glsl", ".vert", ".frag", ".comp", ".py", ""}))
+            EXPECT_LE(source.lines.size(), 300u) << source.path;
+}
+
+TEST(LayoutTest, EveryTestFileIsNamedAfterWhatItTests) {
+    for (const Source& source : sourcesIn("tests", {".cpp"})) {
+        if (source.path.starts_with("tests/support/")) continue;
+        EXPECT_TRUE(source.stem().ends_with("Test")) << source.path;
+    }
+}
+
+TEST(LayoutTest, TheReadmeNamesEveryCommandAndItsLinksLeadSomewhere) {
+    const std::string readme = textOf("README.md");
+    for (const char* command : {"scripts/run", "scripts/test", "insonify run", "insonify check", "insonify plan",
+                                "insonify describe", "insonify log info", "insonify log export", "insonify replay"})
+        EXPECT_NE(readme.find(command), std::string::npos) << command;
+    for (const std::string& link : localLinks(readme))
+        EXPECT_TRUE(std::filesystem::exists(std::filesystem::path(INSONIFY_SOURCE_DIR) / link)) << link;
+}
