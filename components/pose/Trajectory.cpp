@@ -38,8 +38,8 @@ void TrajectoryConfig::check(types::Problems& problems) const {
     if (!file && waypoints.empty()) problems.push_back({"file", "is not given; give a file or at least one waypoint"});
     for (size_t i = 1; i < waypoints.size(); ++i)
         if (!(waypoints[i].time > waypoints[i - 1].time))
-            problems.push_back({"waypoints[" + std::to_string(i) + "].time",
-                                "is not after the one before; times must increase"});
+            problems.push_back(
+                {"waypoints[" + std::to_string(i) + "].time", "is not after the one before; times must increase"});
 }
 
 Trajectory::Trajectory(std::vector<Stamp> stamps) : stamps_(std::move(stamps)) {

@@ -22,7 +22,8 @@ struct Waypoint {
     /** Unit quaternion that turns body vectors into the world. */
     glm::dquat orientation() const;
 
-    template <class Self, class V> static void describe(Self& self, V& visit) {
+    template <class Self, class V>
+    static void describe(Self& self, V& visit) {
         using types::Field;
         visit(Field{"time", "s", "since the start of the run", -1e9, 1e9}, self.time);
         visit(Field{"position", "m", "of the body in the world: north, west, up", -1e9, 1e9}, self.position);
@@ -37,7 +38,8 @@ struct TrajectoryConfig {
     std::optional<std::string> file;
     std::vector<Waypoint> waypoints;
 
-    template <class Self, class V> static void describe(Self& self, V& visit) {
+    template <class Self, class V>
+    static void describe(Self& self, V& visit) {
         using types::Field;
         visit(Field{"file", "", "CSV with header time,x,y,z,qw,qx,qy,qz in [s], [m], [1]"}, self.file);
         visit(Field{"waypoints", "", "instead of a file; a single one is a fixed pose"}, self.waypoints);

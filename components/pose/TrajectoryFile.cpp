@@ -34,8 +34,10 @@ public:
             readLine(text.substr(0, end));
             text.remove_prefix(std::min(end + 1, text.size()));
         }
-        if (!has_header_) fault(1, "", "is empty; it must start with the header " + std::string(header));
-        else if (stamps_.empty() && faults_.empty()) fault(1, "", "has no line after its header; it needs at least one");
+        if (!has_header_)
+            fault(1, "", "is empty; it must start with the header " + std::string(header));
+        else if (stamps_.empty() && faults_.empty())
+            fault(1, "", "has no line after its header; it needs at least one");
         if (!faults_.empty()) throw types::ConfigError(std::move(faults_));
         return std::move(stamps_);
     }
@@ -46,7 +48,8 @@ private:
         if (has_header_) return readStamp(line);
         has_header_ = true;
         if (trimmed(line) != header)
-            fault(1, "", "is '" + std::string(trimmed(line).substr(0, 80)) + "'; the header must be " + std::string(header));
+            fault(1, "",
+                  "is '" + std::string(trimmed(line).substr(0, 80)) + "'; the header must be " + std::string(header));
     }
 
     void readStamp(std::string_view line) {
@@ -109,7 +112,8 @@ private:
 Trajectory Trajectory::fromCsv(const std::filesystem::path& file) {
     std::ifstream stream(file, std::ios::binary);
     if (!stream || std::filesystem::is_directory(file))
-        throw types::ConfigError(file.string(), "", "cannot be read; it must be a CSV file with header " + std::string(header));
+        throw types::ConfigError(file.string(), "",
+                                 "cannot be read; it must be a CSV file with header " + std::string(header));
     const std::string text{std::istreambuf_iterator<char>(stream), {}};
     return Trajectory(Reader(file.string()).read(text));
 }

@@ -1,5 +1,3 @@
-#include "components/pose/Trajectory.hpp"
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -9,6 +7,7 @@
 #include <glm/geometric.hpp>
 #include <numbers>
 
+#include "components/pose/Trajectory.hpp"
 #include "types/ConfigError.hpp"
 
 namespace insonify::pose {
@@ -109,15 +108,18 @@ TEST(TrajectoryTest, AQuaternionThatIsNotQuiteUnitIsNormalised) {
 
 TEST(TrajectoryTest, EveryFaultOfAFileIsToldWithItsPlace) {
     const auto faults = faultsOf(header +
-                                 "0,0,0,0,1,0,0,0\n"       // 2: good
-                                 "1,0,abc,0,1,0,0,0\n"     // 3: no number
-                                 "2,0,0,0,1,0,0\n"         // 4: too few
-                                 "3,0,0,0,1,0,0,0,9\n"     // 5: too many
-                                 "4,0,0,0,0,0,1e-7,0\n"    // 6: no direction
-                                 "4,0,0,nan,1,0,0,0x1\n"   // 7: two faults
-                                 "4,0,0,0,1,0,0,0\n");     // 8: time stands still
-    struct Place { int line, column; const char *path, *message; };
-    const Place expected[] = {{3, 5, "y", "'abc'"},     {4, 14, "qz", "missing"}, {5, 17, "", "too many"},
+                                 "0,0,0,0,1,0,0,0\n"      // 2: good
+                                 "1,0,abc,0,1,0,0,0\n"    // 3: no number
+                                 "2,0,0,0,1,0,0\n"        // 4: too few
+                                 "3,0,0,0,1,0,0,0,9\n"    // 5: too many
+                                 "4,0,0,0,0,0,1e-7,0\n"   // 6: no direction
+                                 "4,0,0,nan,1,0,0,0x1\n"  // 7: two faults
+                                 "4,0,0,0,1,0,0,0\n");    // 8: time stands still
+    struct Place {
+        int line, column;
+        const char *path, *message;
+    };
+    const Place expected[] = {{3, 5, "y", "'abc'"},       {4, 14, "qz", "missing"}, {5, 17, "", "too many"},
                               {6, 9, "qw", "quaternion"}, {7, 7, "z", "finite"},    {7, 17, "qz", "'0x1'"},
                               {8, 1, "time", "increase"}};
     ASSERT_EQ(faults.size(), std::size(expected));

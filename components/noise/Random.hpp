@@ -1,0 +1,80 @@
+#pragma once
+// Counter-based random numbers: no state, any element at any time, in any order. Everything here is written for loops
+// over lanes that the compiler turns into vector code: no branches, no library calls.
+#include <array>
+#include <bit>
+#include <cmath>
+#include <cstdint>
+#include <numbers>
+
+namespace insonify::noise {
+
+using Counter = std::array<uint32_t, 4>;
+using Key = std::array<uint32_t, 2>;
+
+/** Philox4x32-10: four words of 32 random bits for each counter and key.
+ *  J. Salmon et al., "Parallel random numbers: as easy as 1, 2, 3", SC 2011. */
+inline Counter philox(Counter counter, Key key) {
+    for (int round = 0; round < 10; ++round) {
+        const uint64_t first = uint64_t{0xD2511F53} * counter[0];
+        const uint64_t third = uint64_t{0xCD9E8D57} * counter[2];
+        counter = {static_cast<uint32_t>(third >> 32) ^ counter[1] ^ key[0], static_cast<uint32_t>(third),
+                   static_cast<uint32_t>(first >> 32) ^ counter[3] ^ key[1], static_cast<uint32_t>(first)};
+        key[0] += 0x9E3779B9;
+        key[1] += 0xBB67AE85;
+    }
+    return counter;
+}
+
+/** ln(1 + x) for x in [sqrt(1/2) - 1, sqrt(2) - 1], within 1e-7 relative (minimax polynomial of Cephes' logf). */
+inline float log1pSmall(float x) {
+    constexpr float coefficients[] = {-1.1514610310e-1f, 1.1676998740e-1f, -1.2420140846e-1f, 1.4249322787e-1f,
+                                      -1.6668057665e-1f, 2.0000714765e-1f, -2.4999993993e-1f, 3.3333331174e-1f};
+    float sum = 7.0376836292e-2f;
+    for (const float coefficient : coefficients) sum = sum * x + coefficient;
+    const float square = x * x;
+    return x + (x * square * sum - 0.5f * square);
+}
+
+/** -ln(u) for u = (bits + 0.5) / 2^32: exponentially distributed of unit mean, in [1.2e-10, 22.9], within 1e-6
+ * relative. */
+inline float exponential(uint32_t bits) {
+    constexpr uint32_t half_root = 0xB504F333;  // 2^32 sqrt(1/2): above it 1 - u is small, and exact from ~bits
+    const float above = -(static_cast<float>(~bits) + 0.5f) * 0x1p-32f;
+    // Below it, split into 2^exponent and a mantissa in [sqrt(1/2), sqrt(2)).
+    const float u = (static_cast<float>(bits) + 0.5f) * 0x1p-32f;
+    const int32_t split = std::bit_cast<int32_t>(u) - 0x3F3504F3;
+    const int32_t exponent = split >> 23;
+    const float mantissa = std::bit_cast<float>((split & 0x007FFFFF) + 0x3F3504F3);
+    const bool near_one = bits >= half_root;
+    const float x = near_one ? above : mantissa - 1.0f;
+    const float powers = near_one ? 0.0f : static_cast<float>(exponent);
+    return -(log1pSmall(x) + powers * 0.69314718f);
+}
+
+struct Normals {
+    float first, second;
+};
+
+/** Two independent variates of N(0, 1), at most 6.8 from 0 (Box and Muller 1958). */
+inline Normals normals(uint32_t radius_bits, uint32_t angle_bits) {
+    const float radius = std::sqrt(2.0f * exponential(radius_bits));
+    // The angle is 2 pi angle_bits / 2^32: the nearest quarter turn and a rest within pi / 4 of it.
+    const uint32_t quarter = (angle_bits + 0x20000000u) >> 30;
+    const float rest = (static_cast<float>(static_cast<int32_t>(angle_bits - (quarter << 30))) + 0.5f) *
+                       static_cast<float>(std::numbers::pi * 0x1p-31);
+    const float square = rest * rest;
+    const float sine =
+        rest + rest * square * ((-1.9515295891e-4f * square + 8.3321608736e-3f) * square - 1.6666654611e-1f);
+    const float cosine =
+        1.0f - 0.5f * square +
+        square * square * ((2.443315711809948e-5f * square - 1.388731625493765e-3f) * square + 4.166664568298827e-2f);
+    const bool swapped = quarter & 1;
+    const float along = swapped ? sine : cosine;
+    const float across = swapped ? cosine : sine;
+    const float along_sign = ((quarter + 1) & 2) ? -radius : radius;
+    const float across_sign = (quarter & 2) ? -radius : radius;
+    return {along * along_sign, across * across_sign};
+}
+
+}  // namespace insonify::noise

@@ -1,0 +1,48 @@
+#include "components/pose/TrajectoryTask.hpp"
+
+#include "components/framework/Activity.hpp"
+
+namespace insonify::pose {
+
+void TrajectoryTask::check(types::Problems& problems) const {
+    if (!config->file) return;
+    try {
+        Trajectory::fromCsv(inputPath(*config->file));
+    } catch (const types::ConfigError& error) {
+        for (const types::Diagnostic& fault : error.diagnostics()) problems.push_back({"file", fault.text()});
+    }
+}
+
+bool TrajectoryTask::configureHook() {
+    if (config->file)
+        trajectory_ = Trajectory::fromCsv(inputPath(*config->file));
+    else
+        trajectory_.emplace(config->waypoints);
+    return true;
+}
+
+bool TrajectoryTask::startHook() {
+    finished_ = false;
+    return true;
+}
+
+void TrajectoryTask::updateHook() {
+    const types::Time time = now();
+    const types::Time elapsed = time - environment().start_time();
+    types::Pose sample = trajectory_->at(elapsed.seconds());
+    sample.time = time;
+    pose.write(sample);
+    finished_ = finished_ || isLast(elapsed);
+}
+
+bool TrajectoryTask::isLast(types::Time elapsed) {
+    const auto& stamps = trajectory_->stamps();
+    const types::Time end = types::Time::fromSeconds(stamps.back().time);
+    const types::Time next = elapsed + types::Time::fromSeconds(activity().settings().period);
+    const types::Time rounding{1};
+    return stamps.size() == 1 || elapsed >= end || next > end + rounding;
+}
+
+void TrajectoryTask::cleanupHook() { trajectory_.reset(); }
+
+}  // namespace insonify::pose

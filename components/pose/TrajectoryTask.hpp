@@ -1,0 +1,39 @@
+#pragma once
+#include <atomic>
+#include <optional>
+
+#include "components/framework/Port.hpp"
+#include "components/framework/Properties.hpp"
+#include "components/framework/TaskContext.hpp"
+#include "components/pose/Trajectory.hpp"
+
+namespace insonify::pose {
+
+/** Moves the vehicle along a prescribed trajectory: a source, to be run by a periodic activity.
+ *
+ *  Each cycle writes the pose at now(); the trajectory's times count from the start of the run. It has finished once
+ *  the next pose would lie beyond the last stamp (a single waypoint: after one pose), and holds its end if it goes on
+ *  running. A file that is at fault refuses configure. */
+class TrajectoryTask final : public framework::TaskContext {
+public:
+    using TaskContext::TaskContext;
+
+    framework::Properties<TrajectoryConfig> config{this};
+    framework::OutputPort<types::Pose> pose{this, "pose", "body in the world: x north, y west, z up"};
+
+    void check(types::Problems& problems) const override;
+    bool finished() const override { return finished_; }
+
+private:
+    bool configureHook() override;
+    bool startHook() override;
+    void updateHook() override;
+    void cleanupHook() override;
+    /** Whether no later pose of this period lies on the trajectory. */
+    bool isLast(types::Time elapsed);
+
+    std::optional<Trajectory> trajectory_;
+    std::atomic<bool> finished_{false};
+};
+
+}  // namespace insonify::pose

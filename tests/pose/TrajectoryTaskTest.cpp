@@ -1,0 +1,102 @@
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+#include <memory>
+
+#include "components/framework/Activity.hpp"
+#include "components/pose/TrajectoryTask.hpp"
+#include "tests/support/Ports.hpp"
+
+namespace insonify::pose {
+namespace {
+
+/** A task on a clock that the test sets; the run starts at 1 s. */
+class TrajectoryTaskTest : public ::testing::Test {
+protected:
+    TrajectoryTaskTest() {
+        auto environment = std::make_shared<framework::Environment>();
+        environment->now = [this] { return time_; };
+        environment->start_time = [] { return types::Time::fromSeconds(1); };
+        environment->input_folder = std::filesystem::temp_directory_path();
+        task_.setEnvironment(environment);
+        task_.pose.connectTo(out_.port, {});
+    }
+    types::Pose poseAt(double seconds) {
+        time_ = types::Time::fromSeconds(seconds);
+        task_.update();
+        types::Pose pose;
+        EXPECT_TRUE(out_.port.readNew(pose));
+        return pose;
+    }
+
+    types::Time time_;
+    TrajectoryTask task_{"vehicle"};
+    test::Reader<types::Pose> out_;
+};
+
+TEST_F(TrajectoryTaskTest, TimesCountFromTheStartOfTheRun) {
+    task_.config.set({.file = {}, .waypoints = {{.time = 0}, {.time = 2, .position = {4, 0, 0}}}});
+    ASSERT_TRUE(task_.configure());
+    ASSERT_TRUE(task_.start());
+    const types::Pose pose = poseAt(1.5);
+    EXPECT_DOUBLE_EQ(pose.position.x, 1);
+    EXPECT_EQ(pose.time, types::Time::fromSeconds(1.5));
+}
+
+TEST_F(TrajectoryTaskTest, ItHasFinishedWithTheLastPoseThatLiesOnTheTrajectory) {
+    task_.config.set({.file = {}, .waypoints = {{.time = 0}, {.time = 1}}});
+    task_.activity().configure({.period = 0.3, .trigger = {}});
+    ASSERT_TRUE(task_.configure());
+    ASSERT_TRUE(task_.start());
+    poseAt(1.6);
+    EXPECT_FALSE(task_.finished());
+    poseAt(1.9);
+    EXPECT_TRUE(task_.finished());
+    ASSERT_TRUE(task_.stop());
+    ASSERT_TRUE(task_.start());
+    EXPECT_FALSE(task_.finished());
+}
+
+TEST_F(TrajectoryTaskTest, APeriodThatDividesTheTrajectoryReachesItsLastStamp) {
+    task_.config.set({.file = {}, .waypoints = {{.time = 0}, {.time = 1}}});
+    task_.activity().configure({.period = 1.0 / 3, .trigger = {}});
+    ASSERT_TRUE(task_.configure());
+    ASSERT_TRUE(task_.start());
+    poseAt(1 + 2.0 / 3);
+    EXPECT_FALSE(task_.finished());
+    poseAt(2);
+    EXPECT_TRUE(task_.finished());
+}
+
+TEST_F(TrajectoryTaskTest, AFixedPoseHasFinishedAfterOnePose) {
+    task_.config.set({.file = {}, .waypoints = {{.time = 100, .position = {1, 2, 3}}}});
+    ASSERT_TRUE(task_.configure());
+    ASSERT_TRUE(task_.start());
+    EXPECT_FALSE(task_.finished());
+    EXPECT_EQ(poseAt(1).position, glm::dvec3(1, 2, 3));
+    EXPECT_TRUE(task_.finished());
+}
+
+TEST_F(TrajectoryTaskTest, AFileIsFoundBesideTheDeployment) {
+    const auto file = std::filesystem::temp_directory_path() / "insonify_trajectory_task.csv";
+    std::ofstream(file) << "time,x,y,z,qw,qx,qy,qz\n0,7,8,9,1,0,0,0\n";
+    task_.config.set({.file = "insonify_trajectory_task.csv", .waypoints = {}});
+    ASSERT_TRUE(task_.configure());
+    ASSERT_TRUE(task_.start());
+    EXPECT_EQ(poseAt(1).position, glm::dvec3(7, 8, 9));
+    std::filesystem::remove(file);
+}
+
+TEST_F(TrajectoryTaskTest, AFileThatIsNotThereIsSeenBeforeAndRefusedByConfigure) {
+    task_.config.set({.file = "no_such.csv", .waypoints = {}});
+    types::Problems problems;
+    task_.check(problems);
+    ASSERT_EQ(problems.size(), 1u);
+    EXPECT_EQ(problems[0].path, "file");
+    EXPECT_FALSE(task_.configure());
+    EXPECT_NE(task_.configError(), nullptr);
+}
+
+}  // namespace
+}  // namespace insonify::pose
