@@ -35,6 +35,11 @@ template <class E> struct EnumNames;
 template <class E>
 concept NamedEnum = requires { EnumNames<E>::names; };
 
+/** The value of a key that is reserved: whatever a file gives it is refused with "is not built yet". */
+struct NotBuiltYet {
+    template <class Self, class V> static void describe(Self&, V&) {}
+};
+
 /** A fault in a configuration: `path` is below the described struct ("tvg.max_db"), `message` what it is and may be. */
 struct Problem {
     std::string path;

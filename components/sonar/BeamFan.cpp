@@ -1,0 +1,102 @@
+#include "components/sonar/BeamFan.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "types/Angle.hpp"
+
+namespace insonify::sonar {
+namespace {
+
+constexpr double widest_slab = types::radians(60);
+
+double halfElevation(const SonarConfig& config) { return types::radians(config.beam_height_deg) / 2; }
+
+/** Azimuth at which a cone of bearing `bearing` meets elevation `elevation`; clamped to +-90 deg. */
+double coneAzimuth(double bearing, double elevation) {
+    return std::asin(std::clamp(std::sin(bearing) / std::cos(elevation), -1.0, 1.0));
+}
+
+/** u at which the bearing `bearing` crosses the image row v: a vertical line for planes, a hyperbola for cones. */
+double boundary(const SonarConfig& config, const Slab& slab, double bearing, double v) {
+    double azimuth = bearing;
+    if (config.beam_geometry == BeamGeometry::Conical) {
+        // v = tan(elevation) / cos(azimuth in the slab): a few fixed-point rounds settle both.
+        for (int round = 0; round < 30; ++round) {
+            const double elevation = std::atan(v * std::cos(azimuth - slab.azimuth));
+            azimuth = coneAzimuth(bearing, elevation);
+        }
+    }
+    const double inside = std::clamp(azimuth - slab.azimuth, -slab.half_width, slab.half_width);
+    return std::tan(inside);
+}
+
+/** Beams that touch the slab, with their edges in u, for one image row. */
+void addRow(const SonarConfig& config, const std::vector<Beam>& beams, const Slab& slab, double v, ColumnShares& result) {
+    struct Edges { double low, high; uint32_t beam; };
+    std::vector<Edges> edges;
+    for (size_t k = 0; k < beams.size(); ++k) {
+        const Edges e{boundary(config, slab, beams[k].low, v), boundary(config, slab, beams[k].high, v), static_cast<uint32_t>(k)};
+        if (e.high > e.low) edges.push_back(e);
+    }
+    for (int column = 0; column < slab.columns; ++column) {
+        result.starts.push_back(static_cast<uint32_t>(result.shares.size()));
+        const double low = slab.u(column), high = slab.u(column + 1);
+        for (const Edges& e : edges) {
+            const double from = std::max(low, e.low), to = std::min(high, e.high);
+            if (to - from > 1e-9 * (high - low)) result.shares.push_back({from, to, e.beam});
+        }
+    }
+}
+
+}  // namespace
+
+std::vector<Beam> makeBeams(const SonarConfig& config) {
+    std::vector<Beam> beams;
+    if (!config.bearings_deg.empty()) {
+        const double half = types::radians(*config.beam_width_deg) / 2;
+        for (double bearing : config.bearings_deg) {
+            const double centre = types::radians(bearing);
+            beams.push_back({centre, centre - half, centre + half});
+        }
+        return beams;
+    }
+    const double fov = types::radians(config.field_of_view_deg), width = fov / config.beam_count;
+    for (int k = 0; k < config.beam_count; ++k)
+        beams.push_back({-fov / 2 + (k + 0.5) * width, -fov / 2 + k * width, -fov / 2 + (k + 1) * width});
+    return beams;
+}
+
+std::vector<Slab> makeSlabs(const SonarConfig& config, const std::vector<Beam>& beams) {
+    double low = beams.front().low, high = beams.front().high;
+    for (const Beam& beam : beams) { low = std::min(low, beam.low); high = std::max(high, beam.high); }
+    const double half_elevation = halfElevation(config);
+    if (config.beam_geometry == BeamGeometry::Conical) {
+        low = coneAzimuth(low, half_elevation);
+        high = coneAzimuth(high, half_elevation);
+    }
+    const int count = std::max(1, static_cast<int>(std::ceil((high - low) / widest_slab - 1e-9)));
+    const double columns = static_cast<double>(config.columnsPerBeam()) * static_cast<double>(beams.size()) / count;
+    std::vector<Slab> slabs(static_cast<size_t>(count));
+    for (int i = 0; i < count; ++i) {
+        Slab& slab = slabs[static_cast<size_t>(i)];
+        slab.half_width = (high - low) / count / 2;
+        slab.azimuth = low + (2 * i + 1) * slab.half_width;
+        slab.columns = std::max(1, static_cast<int>(std::ceil(columns - 1e-9)));
+        slab.rows = config.imageRows();
+        slab.extent_u = std::tan(slab.half_width);
+        slab.extent_v = std::tan(half_elevation) / std::cos(slab.half_width);
+    }
+    return slabs;
+}
+
+ColumnShares makeShares(const SonarConfig& config, const std::vector<Beam>& beams, const Slab& slab) {
+    ColumnShares result;
+    result.per_row = config.beam_geometry == BeamGeometry::Conical;
+    for (int row = 0; row < (result.per_row ? slab.rows : 1); ++row) addRow(config, beams, slab, slab.v(row + 0.5), result);
+    result.starts.push_back(static_cast<uint32_t>(result.shares.size()));
+    return result;
+}
+
+}  // namespace insonify::sonar

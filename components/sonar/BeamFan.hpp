@@ -1,0 +1,53 @@
+#pragma once
+#include <cstdint>
+#include <vector>
+
+#include "components/sonar/SonarConfig.hpp"
+
+namespace insonify::sonar {
+
+/** One beam's share of bearings [rad], positive to port. */
+struct Beam {
+    double centre, low, high;
+};
+
+/** The beams of a configuration, in ascending bearing: a regular fan, or the explicit table. */
+std::vector<Beam> makeBeams(const SonarConfig& config);
+
+/** One perspective image of the fan. u = tan(azimuth - centre), growing to port; v = tan(elevation) / cos(...). */
+struct Slab {
+    double azimuth = 0;     ///< Of the image's centre in the sonar frame [rad].
+    double half_width = 0;  ///< [rad]
+    int columns = 0, rows = 0;
+    double extent_u = 0;  ///< u at the left edge: tan(half_width) [1].
+    double extent_v = 0;  ///< v at the top edge [1].
+
+    double du() const { return 2 * extent_u / columns; }
+    double dv() const { return 2 * extent_v / rows; }
+    double u(double column) const { return column * du() - extent_u; }
+    double v(double row) const { return row * dv() - extent_v; }
+};
+
+/** As few slabs of at most 60 deg as cover the beams (physics.md 3.1); cones reach wider than their bearing. */
+std::vector<Slab> makeSlabs(const SonarConfig& config, const std::vector<Beam>& beams);
+
+/** Part of one image column that belongs to one beam; laid out as ShareRecord of shaders/interface.glsl. */
+struct Share {
+    double u_low, u_high;
+    uint32_t beam, unused = 0;
+};
+
+/** Fractional overlap of columns and beams. Planar beams: one row of columns serves all image rows. */
+struct ColumnShares {
+    std::vector<uint32_t> starts;  ///< Shares of (row, column) begin at starts[row * columns + column].
+    std::vector<Share> shares;
+    bool per_row = false;  ///< Conical beams: the boundary between beams bends with elevation.
+
+    size_t cell(int row, int column, int columns) const {
+        return static_cast<size_t>(per_row ? row : 0) * static_cast<size_t>(columns) + static_cast<size_t>(column);
+    }
+};
+
+ColumnShares makeShares(const SonarConfig& config, const std::vector<Beam>& beams, const Slab& slab);
+
+}  // namespace insonify::sonar

@@ -1,0 +1,26 @@
+#pragma once
+#include <cstdint>
+
+#include "components/sonar/SonarConfig.hpp"
+
+namespace insonify::sonar {
+
+/** The range bins of a ping: bin k holds slant ranges [edge(k), edge(k + 1)). */
+struct BinGrid {
+    int bin_count = 0;            ///< [1]
+    int64_t bin_duration_us = 0;  ///< One-way travel time through a bin, as the sample carries it [us].
+    double bin_width = 0;         ///< Exact [m].
+    double range_min = 0;         ///< Nearer echoes are blanked [m].
+    double range_max = 0;         ///< Far edge of the last bin that can receive an echo [m].
+    double speed_of_sound = 0;    ///< Exactly representable in the sample's float [m/s].
+
+    double edge(int k) const { return k * bin_width; }            ///< [m]
+    double centre(int k) const { return (k + 0.5) * bin_width; }  ///< [m]
+};
+
+/** `sample`: the bin lasts the asked time rounded up to whole microseconds (within 1e-6 of a whole number is that
+ *  number; at least 1), and the edges follow. `exact`: the edges are as asked, and the duration is the nearest.
+ *  `published`: bins are range/(bin_count - 1) wide, so that the last one only receives r = range_max. */
+BinGrid makeBinGrid(const SonarConfig& config);
+
+}  // namespace insonify::sonar

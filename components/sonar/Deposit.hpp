@@ -1,0 +1,45 @@
+#pragma once
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "components/gpu/Objects.hpp"
+#include "components/sonar/BeamFan.hpp"
+#include "components/sonar/BinGrid.hpp"
+
+namespace insonify::sonar {
+
+/** What a deposit needs to know, fixed for the life of a renderer. */
+struct DepositSetup {
+    std::vector<Slab> slabs;
+    std::vector<ColumnShares> shares;  ///< One for each slab.
+    uint32_t beam_count = 0;
+    BinGrid bins;
+    double tan_elevation = 0;  ///< Of the upper edge of the aperture [1].
+    double attenuation = 0;    ///< Amplitude, one way, in `cerqueira2017` [Np/m].
+    Model model = Model::Physical;
+
+    size_t channels() const { return model == Model::Cerqueira2017 ? 2 : 1; }
+    size_t sumCount() const { return beam_count * static_cast<size_t>(bins.bin_count) * channels(); }
+};
+
+/** Inverse ranges of the bins' edges: [0] at the near blanking, [bin_count] at the far end [1/m]. */
+std::vector<double> inverseEdges(const BinGrid& bins);
+
+/** Sums are counted in quanta of 2^-40 of a whole pixel of unit strength: exact, so the order of summation is free. */
+constexpr double quanta_per_unit = 1099511627776.0;
+
+/** Spreads the pixels of the slabs over beams and bins. One interface, on the graphics card or on the processor. */
+class Deposit {
+public:
+    virtual ~Deposit() = default;
+    /** Takes the picture of a slab, drawn last. Call for each slab once a ping. */
+    virtual void take(size_t slab, const gpu::Texture& picture) = 0;
+    /** Sums over all slabs taken since the last call, [beam][bin][channel] in quanta; valid until the next take. */
+    virtual std::span<const uint64_t> finish() = 0;
+};
+
+std::unique_ptr<Deposit> makeGpuDeposit(const DepositSetup& setup);
+
+}  // namespace insonify::sonar

@@ -1,0 +1,190 @@
+#pragma once
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "types/Describe.hpp"
+
+namespace insonify::sonar {
+
+enum class Model { Physical, Cerqueira2017 };
+enum class Output { Intensity, ReceivedLevelDb, LevelDb };
+enum class BeamGeometry { Planar, Conical };
+enum class RangeRounding { Sample, Exact };
+enum class Deposit { Auto, Cpu, Gpu };
+enum class AbsorptionLaw { FrancoisGarrison, AinslieMccolm };
+
+/** State of the water; with it the speed of sound and absorption are computed. */
+struct WaterConfig {
+    double temperature_celsius = 10;
+    double salinity_psu = 35;
+    double depth = 0;
+    double ph = 8;
+
+    template <class Self, class V>
+    static void describe(Self& self, V& visit) {
+        using types::Field;
+        visit(Field{"temperature_celsius", "degC", "temperature", -6, 50}, self.temperature_celsius);
+        visit(Field{"salinity_psu", "psu", "practical salinity, 0 for fresh water", 0, 50}, self.salinity_psu);
+        visit(Field{"depth", "m", "depth below the surface", 0, 12000}, self.depth);
+        visit(Field{"ph", "1", "acidity", 6, 10}, self.ph);
+    }
+};
+
+/** Absorption as one number, or by a law from a frequency and the water. */
+struct AbsorptionConfig {
+    std::optional<double> db_per_m;
+    AbsorptionLaw law = AbsorptionLaw::FrancoisGarrison;
+    std::optional<double> frequency_khz;
+
+    template <class Self, class V>
+    static void describe(Self& self, V& visit) {
+        using types::Field;
+        visit(Field{"db_per_m", "dB/m", "one-way absorption, instead of a law", 0, 1000}, self.db_per_m);
+        visit(Field{"law", "", "computes it from frequency and water"}, self.law);
+        visit(Field{"frequency_khz", "kHz", "frequency for the law", 0, 1e5}, self.frequency_khz);
+    }
+    void check(types::Problems& problems) const;
+};
+
+/** Time-varied gain: log_coefficient log10(r) + 2 db_per_m r [dB], at most max_db; r in metres. */
+struct TvgConfig {
+    double log_coefficient = 0;
+    double db_per_m = 0;
+    double max_db = 100;
+
+    template <class Self, class V>
+    static void describe(Self& self, V& visit) {
+        using types::Field;
+        visit(Field{"log_coefficient", "dB", "gain per decade of range", 0, 1000}, self.log_coefficient);
+        visit(Field{"db_per_m", "dB/m", "one-way absorption made up for, twice per metre of range", 0, 1000},
+              self.db_per_m);
+        visit(Field{"max_db", "dB", "the gain is clamped here", -1000, 1000}, self.max_db);
+    }
+};
+
+/** Samples per beam. */
+struct QualityConfig {
+    int rows = 256;
+    int columns_per_beam = 2;
+    std::optional<types::NotBuiltYet> target_error, budget_ms;
+
+    template <class Self, class V>
+    static void describe(Self& self, V& visit) {
+        using types::Field;
+        visit(Field{"rows", "1", "image rows over beam_height_deg", 1, 16384}, self.rows);
+        visit(Field{"columns_per_beam", "1", "image columns per beam", 1, 256}, self.columns_per_beam);
+        visit(Field{"target_error", "1", "relative error to be reached (not built yet)"}, self.target_error);
+        visit(Field{"budget_ms", "ms", "time to be kept (not built yet)"}, self.budget_ms);
+    }
+};
+
+/** An imaging sonar. Beam k of a fan covers bearings [-fov/2 + k fov/N, -fov/2 + (k + 1) fov/N], positive to port;
+ *  `bearings_deg` takes the place of `field_of_view_deg` and `beam_count`. */
+struct SonarConfig {
+    Model model = Model::Physical;
+    double range = 50;
+    double range_min = 0.1;
+    int beam_count = 256;
+    int bin_count = 500;
+    double field_of_view_deg = 120;
+    std::vector<double> bearings_deg;
+    std::optional<double> beam_width_deg;
+    double beam_height_deg = 20;
+    BeamGeometry beam_geometry = BeamGeometry::Planar;
+    std::optional<double> speed_of_sound;
+    std::optional<WaterConfig> water;
+    double source_level_db = 0;
+    std::optional<AbsorptionConfig> absorption;
+    Output output = Output::Intensity;
+    std::optional<TvgConfig> tvg;
+    QualityConfig quality;
+    RangeRounding range_rounding = RangeRounding::Sample;
+    bool published = false;
+    std::string device;
+    Deposit deposit = Deposit::Auto;
+    std::optional<types::NotBuiltYet> beam_pattern, pulse, volume, multipath;
+
+    /** Beams per ping: of the table, else beam_count [1]. */
+    int beams() const { return bearings_deg.empty() ? beam_count : static_cast<int>(bearings_deg.size()); }
+    /** Centre of beam k [deg], 0 ahead, positive to port. */
+    double bearingDeg(int k) const;
+    /** Opening of one beam across the fan [deg]. */
+    double beamWidthDeg() const { return bearings_deg.empty() ? field_of_view_deg / beam_count : *beam_width_deg; }
+    /** Azimuth from the outer edge of the first beam to that of the last [deg], at most 360. */
+    double coverageDeg() const;
+    /** Configured, or Leroy's of `water`, or 1500 [m/s]. */
+    double speedOfSound() const;
+
+    template <class Self, class V>
+    static void describe(Self& self, V& visit) {
+        using types::Field;
+        visit(Field{"beam_count", "1", "beams per ping", 1, 4096}, self.beam_count);
+        visit(Field{"field_of_view_deg", "deg", "azimuth covered, edge to edge", 0.01, 360}, self.field_of_view_deg);
+        visit(Field{"bearings_deg", "deg", "instead of a regular fan: centre of each beam", -180, 180},
+              self.bearings_deg);
+        describeBeam(self, visit);
+    }
+    /** The properties that a scanning sonar has as well. */
+    template <class Self, class V>
+    static void describeBeam(Self& self, V& visit);
+    void check(types::Problems& problems) const;
+    /** The faults that a scanning sonar can have as well. */
+    void checkBeam(types::Problems& problems) const;
+};
+
+template <class Self, class V>
+void SonarConfig::describeBeam(Self& self, V& visit) {
+    using types::Field;
+    visit(Field{"model", "", "active sonar equation, or the published mean of S(n.d)"}, self.model);
+    visit(Field{"range", "m", "far edge of the last bin", 0.001, 1e5}, self.range);
+    visit(Field{"range_min", "m", "nearer echoes are blanked", 0, 1e5}, self.range_min);
+    visit(Field{"bin_count", "1", "range bins per beam", 1, 65536}, self.bin_count);
+    visit(Field{"beam_width_deg", "deg", "opening of one beam, with bearings_deg", 0.001, 120}, self.beam_width_deg);
+    visit(Field{"beam_height_deg", "deg", "total elevation aperture", 0.001, 89.99}, self.beam_height_deg);
+    visit(Field{"beam_geometry", "", "planar: az = a_k; conical: sin(az) cos(el) = sin(a_k)"}, self.beam_geometry);
+    visit(Field{"speed_of_sound", "m/s", "absent: computed from water, else 1500", 1, 20000}, self.speed_of_sound);
+    visit(Field{"water", "", "state of the water"}, self.water);
+    visit(Field{"source_level_db", "dB re 1 uPa m", "used by output received_level_db", -300, 400},
+          self.source_level_db);
+    visit(Field{"absorption", "", "absent: none"}, self.absorption);
+    visit(Field{"output", "", "intensity E/S0, level 10 log10(E/S0), or the level received"}, self.output);
+    visit(Field{"tvg", "", "time-varied gain"}, self.tvg);
+    visit(Field{"quality", "", "samples per beam"}, self.quality);
+    visit(Field{"range_rounding", "", "sample: bins of whole microseconds; exact: edges as asked"},
+          self.range_rounding);
+    visit(Field{"published", "", "cerqueira2017 to the letter, for comparison"}, self.published);
+    visit(Field{"device", "", "EGL device to draw on; absent: INSONIFY_EGL_DEVICE, else the first"}, self.device);
+    visit(Field{"deposit", "", "where samples are summed into bins"}, self.deposit);
+    visit(Field{"beam_pattern", "", "directivity (not built yet)"}, self.beam_pattern);
+    visit(Field{"pulse", "", "range point-spread (not built yet)"}, self.pulse);
+    visit(Field{"volume", "", "volume reverberation (not built yet)"}, self.volume);
+    visit(Field{"multipath", "", "second bounce (not built yet)"}, self.multipath);
+}
+
+}  // namespace insonify::sonar
+
+template <>
+struct insonify::types::EnumNames<insonify::sonar::Model> {
+    static constexpr std::string_view names[] = {"physical", "cerqueira2017"};
+};
+template <>
+struct insonify::types::EnumNames<insonify::sonar::Output> {
+    static constexpr std::string_view names[] = {"intensity", "received_level_db", "level_db"};
+};
+template <>
+struct insonify::types::EnumNames<insonify::sonar::BeamGeometry> {
+    static constexpr std::string_view names[] = {"planar", "conical"};
+};
+template <>
+struct insonify::types::EnumNames<insonify::sonar::RangeRounding> {
+    static constexpr std::string_view names[] = {"sample", "exact"};
+};
+template <>
+struct insonify::types::EnumNames<insonify::sonar::Deposit> {
+    static constexpr std::string_view names[] = {"auto", "cpu", "gpu"};
+};
+template <>
+struct insonify::types::EnumNames<insonify::sonar::AbsorptionLaw> {
+    static constexpr std::string_view names[] = {"francois_garrison", "ainslie_mccolm"};
+};

@@ -1,0 +1,48 @@
+#include "components/sonar/ThreadPool.hpp"
+
+#include <algorithm>
+
+namespace insonify::sonar {
+
+ThreadPool::ThreadPool(int threads) {
+    const int cores = std::clamp(static_cast<int>(std::thread::hardware_concurrency()), 1, 16);
+    const int count = threads > 0 ? threads : cores;
+    for (int part = 1; part < count; ++part) workers_.emplace_back([this, part] { work(part); });
+}
+
+ThreadPool::~ThreadPool() {
+    { std::lock_guard lock(mutex_); quit_ = true; }
+    started_.notify_all();
+    for (std::thread& worker : workers_) worker.join();
+}
+
+void ThreadPool::start(Call call, const void* context) {
+    {
+        std::lock_guard lock(mutex_);
+        call_ = call;
+        context_ = context;
+        busy_ = static_cast<int>(workers_.size());
+        ++round_;
+    }
+    started_.notify_all();
+}
+
+void ThreadPool::wait() {
+    std::unique_lock lock(mutex_);
+    done_.wait(lock, [this] { return busy_ == 0; });
+}
+
+void ThreadPool::work(int part) {
+    for (uint64_t seen = 0;;) {
+        std::unique_lock lock(mutex_);
+        started_.wait(lock, [&] { return quit_ || round_ != seen; });
+        if (quit_) return;
+        seen = round_;
+        lock.unlock();
+        call_(context_, part, size());
+        lock.lock();
+        if (--busy_ == 0) done_.notify_one();
+    }
+}
+
+}  // namespace insonify::sonar

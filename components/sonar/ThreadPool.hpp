@@ -1,0 +1,44 @@
+#pragma once
+#include <condition_variable>
+#include <mutex>
+#include <thread>
+#include <vector>
+
+namespace insonify::sonar {
+
+/** A few threads that share out parts of one job. Running a job allocates nothing. */
+class ThreadPool {
+public:
+    /** `threads` counts the caller; 0: as many as the machine has cores, at most 16. */
+    explicit ThreadPool(int threads = 0);
+    ~ThreadPool();
+    ThreadPool(const ThreadPool&) = delete;
+    ThreadPool& operator=(const ThreadPool&) = delete;
+
+    int size() const { return static_cast<int>(workers_.size()) + 1; }
+    /** Calls job(part, size()) once for each part in [0, size()), the caller doing part 0; returns when all are done.
+     */
+    template <class Job>
+    void run(const Job& job) {
+        start([](const void* context, int part, int parts) { (*static_cast<const Job*>(context))(part, parts); }, &job);
+        job(0, size());
+        wait();
+    }
+
+private:
+    using Call = void (*)(const void*, int, int);
+    void start(Call call, const void* context);
+    void wait();
+    void work(int part);
+
+    std::vector<std::thread> workers_;
+    std::mutex mutex_;
+    std::condition_variable started_, done_;
+    Call call_ = nullptr;
+    const void* context_ = nullptr;
+    uint64_t round_ = 0;
+    int busy_ = 0;
+    bool quit_ = false;
+};
+
+}  // namespace insonify::sonar
