@@ -1,0 +1,54 @@
+#pragma once
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "components/framework/Activity.hpp"
+#include "components/framework/ConfigReader.hpp"
+#include "components/framework/ConnPolicy.hpp"
+
+namespace insonify::framework {
+
+struct TaskSpec {
+    std::string name, type;
+    ActivitySettings activity;
+    YAML::Node properties{YAML::NodeType::Undefined};  ///< As written; undefined when there are none.
+    YAML::Node place{YAML::NodeType::Undefined};       ///< The task's whole block, for faults.
+
+    std::string path() const { return "tasks." + name; }
+};
+
+struct ConnectionSpec {
+    std::string from, to;  ///< "task.port"
+    ConnPolicy policy;
+    YAML::Node place{YAML::NodeType::Undefined};
+    std::string path;      ///< "connections[2]"
+};
+
+/** A deployment as written: nothing in it is made or checked against the tasks yet, and all of it may be edited.
+ *  Faults of reading are collected, so that Deployment reports them together with its own. */
+struct DeploymentSpec {
+    std::string file;  ///< As given, for faults.
+    std::string text;  ///< The YAML as read.
+    bool lockstep = true;
+    double start_time = 1;                 ///< Of simulated time [s].
+    std::vector<std::string> libraries;    ///< Shared objects, relative to the deployment file.
+    std::vector<TaskSpec> tasks;           ///< In file order, the order of configuring.
+    std::vector<ConnectionSpec> connections;
+    std::vector<std::string> set_paths;    ///< "tasks.sonar.properties.range": what set() has changed.
+    std::vector<types::Diagnostic> faults;
+
+    /** Throws types::ConfigError when there is no text to be read or it is not YAML; other faults go to `faults`. */
+    static DeploymentSpec load(const std::filesystem::path& file);
+    static DeploymentSpec parse(const std::string& text, const std::string& file);
+
+    TaskSpec* task(const std::string& name);  ///< Null when there is none.
+    std::vector<std::string> taskNames() const;
+    /** `task.property.path=value`, the value in YAML: a layer over the file. Faults go to `faults`. */
+    void set(const std::string& assignment);
+};
+
+/** "sonar.ping" -> {"sonar", "ping"}: split at the first dot; the second is empty when there is none. */
+std::pair<std::string, std::string> splitPort(const std::string& path);
+
+}  // namespace insonify::framework
