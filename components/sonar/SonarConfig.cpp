@@ -1,0 +1,88 @@
+#include "components/sonar/SonarConfig.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "components/sonar/Acoustics.hpp"
+#include "components/sonar/BinGrid.hpp"
+
+namespace insonify::sonar {
+namespace {
+
+constexpr int64_t most_bins = int64_t{1} << 24;  // sums of 16 bytes: 256 MiB
+
+void checkPublished(const SonarConfig& config, types::Problems& problems) {
+    if (config.model != Model::Cerqueira2017)
+        problems.push_back({"published", "is true; only with model: cerqueira2017"});
+    if (config.bin_count < 2) problems.push_back({"bin_count", "is 1; must be at least 2 with published: true"});
+    if (config.coverageDeg() >= 180)
+        problems.push_back({"published", fmt::format("is true with {} deg of azimuth; one image shows less than 180",
+                                                     config.coverageDeg())});
+    if (config.beam_geometry != BeamGeometry::Planar)
+        problems.push_back({"beam_geometry", "is conical; must be planar with published: true"});
+}
+
+void checkRangeReached(const SonarConfig& config, types::Problems& problems) {
+    const BinGrid grid = makeBinGrid(config);
+    if (grid.range_max > 1.25 * config.range)
+        problems.push_back(
+            {"range", fmt::format("is {} m; {} bins of whole microseconds reach {:.6g} m, which may be at most 25 % "
+                                  "more: lower bin_count, raise range, or set range_rounding: exact",
+                                  config.range, config.bin_count, grid.range_max)});
+}
+
+}  // namespace
+
+void AbsorptionConfig::check(types::Problems& problems) const {
+    if (db_per_m && frequency_khz)
+        problems.push_back({"db_per_m", "stands beside frequency_khz; give one of the two"});
+    if (!db_per_m && !frequency_khz)
+        problems.push_back({"", "has no value; give db_per_m, or frequency_khz for a law"});
+}
+
+double SonarConfig::bearingDeg(int k) const {
+    return bearings_deg.empty() ? field_of_view_deg * ((k + 0.5) / beam_count - 0.5)
+                                : bearings_deg[static_cast<size_t>(k)];
+}
+
+double SonarConfig::coverageDeg() const {
+    if (bearings_deg.empty()) return field_of_view_deg;
+    const auto [first, last] = std::minmax_element(bearings_deg.begin(), bearings_deg.end());
+    return std::min(*last - *first + beamWidthDeg(), 360.0);
+}
+
+double SonarConfig::speedOfSound() const { return speed_of_sound.value_or(water ? leroySpeed(*water) : 1500); }
+
+void SonarConfig::check(types::Problems& problems) const {
+    if (!bearings_deg.empty() && !beam_width_deg)
+        return problems.push_back({"beam_width_deg", "is absent; bearings_deg needs the width of one beam"});
+    if (bearings_deg.empty() && beam_width_deg)
+        problems.push_back({"beam_width_deg",
+                            "stands without bearings_deg; the beams of a regular fan are field_of_view_deg / "
+                            "beam_count wide"});
+    if (bearings_deg.size() > 4096)
+        problems.push_back({"bearings_deg", fmt::format("has {} beams; may have 4096", bearings_deg.size())});
+    if (int64_t{beams()} * bin_count > most_bins)
+        problems.push_back({"bin_count", fmt::format("is {} for each of {} beams, {} bins in all; may be {}", bin_count,
+                                                     beams(), int64_t{beams()} * bin_count, most_bins)});
+    if (beam_geometry == BeamGeometry::Conical && coverageDeg() > 180)
+        problems.push_back({"beam_geometry", "is conical; a straight array sees at most 180 deg of azimuth"});
+    if (published && !bearings_deg.empty())
+        problems.push_back({"bearings_deg", "is given; published: true has a regular fan"});
+    checkBeam(problems);
+}
+
+void SonarConfig::checkBeam(types::Problems& problems) const {
+    if (range_min >= range)
+        problems.push_back({"range_min", fmt::format("is {} m; must be below range, {} m", range_min, range)});
+    if (absorption && absorption->frequency_khz && !water)
+        problems.push_back({"absorption.frequency_khz", "is given without water; a law needs the water block"});
+    if (model == Model::Cerqueira2017 && output != Output::Intensity)
+        problems.push_back({"output", "is a level; cerqueira2017 gives means of S in [0, 1], output: intensity"});
+    if (published) checkPublished(*this, problems);
+    checkRangeReached(*this, problems);
+}
+
+}  // namespace insonify::sonar
