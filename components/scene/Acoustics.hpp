@@ -1,0 +1,61 @@
+#pragma once
+#include <optional>
+#include <string>
+
+#include "types/Describe.hpp"
+#include "types/Geometry.hpp"
+
+namespace insonify::scene {
+
+/** Seabeds with a Lambert parameter fitted to APL-UW TR 9407 at 100 kHz (physics.md 1.8). */
+enum class Sediment {
+    RoughRock, Rock, Cobble, SandyGravel, CoarseSand, MediumSand, FineSand, MuddySand, VeryFineSand, CoarseSilt,
+    SandySilt, MediumSilt, FineSilt, VeryFineSilt, Clay, Mackenzie
+};
+
+/** Matter with a typical pressure reflection coefficient at normal incidence (physics.md 1.9). */
+enum class Matter {
+    Steel, Aluminium, CastIron, Bronze, Granite, Basalt, Concrete, Limestone, Gravel, Sand, Mud, Pvc, Acrylic, Hdpe,
+    Neoprene, NaturalRubber, WaterloggedWood, DryWood, ClosedCellFoam, Ice, Air
+};
+
+double lambertDb(Sediment sediment);    ///< [dB]
+double reflection(Matter matter);       ///< Signed pressure reflection coefficient [1].
+/** Lambert parameter that gives a convex body of this reflection its target strength: -9.23 + 20 log10|R| [dB]. */
+double lambertDb(Matter matter);
+
+/** The acoustic values that a file or a property gives to a material. What is absent stays as it was.
+ *
+ *  A `sediment` sets lambert_db; a `material` sets reflection and lambert_db; numbers beside them refine. */
+struct Acoustics {
+    std::optional<Sediment> sediment;
+    std::optional<Matter> material;
+    std::optional<double> lambert_db, reflection, roughness_slope, reflectivity;
+
+    void applyTo(types::Material& target) const;
+    void check(types::Problems& problems) const;
+
+    template <class Self, class V> static void describe(Self& self, V& visit) {
+        using types::Field;
+        visit(Field{"sediment", "", "a seabed of the table, sets lambert_db"}, self.sediment);
+        visit(Field{"material", "", "matter of the table, sets reflection and lambert_db"}, self.material);
+        visit(Field{"lambert_db", "dB", "Lambert parameter, backscatter at normal incidence", -200, 20}, self.lambert_db);
+        visit(Field{"reflection", "1", "signed pressure reflection coefficient at normal incidence", -1, 1},
+              self.reflection);
+        visit(Field{"roughness_slope", "1", "rms slope of the micro-relief", 0, 10}, self.roughness_slope);
+        visit(Field{"reflectivity", "1", "factor of cerqueira2017", 0, 1}, self.reflectivity);
+    }
+};
+
+}  // namespace insonify::scene
+
+template <> struct insonify::types::EnumNames<insonify::scene::Sediment> {
+    static constexpr std::string_view names[] = {
+        "rough_rock", "rock",           "cobble",      "sandy_gravel", "coarse_sand", "medium_sand", "fine_sand", "muddy_sand",
+        "very_fine_sand", "coarse_silt", "sandy_silt", "medium_silt",  "fine_silt",   "very_fine_silt", "clay",   "mackenzie"};
+};
+template <> struct insonify::types::EnumNames<insonify::scene::Matter> {
+    static constexpr std::string_view names[] = {
+        "steel", "aluminium", "cast_iron", "bronze", "granite", "basalt", "concrete", "limestone", "gravel", "sand", "mud",
+        "pvc", "acrylic", "hdpe", "neoprene", "natural_rubber", "waterlogged_wood", "dry_wood", "closed_cell_foam", "ice", "air"};
+};

@@ -1,0 +1,42 @@
+#pragma once
+#include <tiny_gltf.h>
+
+#include <cstdint>
+#include <glm/vec2.hpp>
+#include <glm/vec3.hpp>
+#include <glm/vec4.hpp>
+#include <string>
+#include <vector>
+
+namespace insonify::scene {
+
+/** Reads the accessors of a model in which no number has been checked yet.
+ *
+ *  Strides, sparse values, absent bufferViews (zeros) and normalised integers are resolved; alignment does not matter.
+ *  Any index, length or type that does not fit is a types::ConfigError that names the accessor and the bound. */
+class GltfAccessors {
+public:
+    GltfAccessors(const tinygltf::Model& model, std::string file) : model_(model), file_(std::move(file)) {}
+
+    /** Vectors of as many components as Vector has; integers are scaled to [-1, 1] where `normalized` says so. */
+    template <class Vector> std::vector<Vector> vectors(int accessor) const;
+    std::vector<uint32_t> indices(int accessor) const;
+    /** Bytes [begin, end) of a bufferView. */
+    std::pair<const uint8_t*, const uint8_t*> bytes(int buffer_view, const std::string& path) const;
+    /** Largest value of the accessor's component type: the index that restarts a strip. */
+    uint32_t restartIndex(int accessor) const;
+
+private:
+    struct Layout;
+    const tinygltf::Accessor& checked(int accessor, const std::string& path) const;
+    Layout layout(const tinygltf::Accessor& accessor, const std::string& path) const;
+    Layout locate(Layout layout, int buffer_view, size_t offset, size_t count, const std::string& path) const;
+    template <class Store>
+    void forEach(const tinygltf::Accessor& accessor, const Layout& base, const std::string& path, Store store) const;
+    [[noreturn]] void fail(const std::string& path, const std::string& message) const;
+
+    const tinygltf::Model& model_;
+    std::string file_;
+};
+
+}  // namespace insonify::scene

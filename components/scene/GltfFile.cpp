@@ -1,0 +1,156 @@
+#include "components/scene/GltfFile.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstring>
+#include <fstream>
+#include <string_view>
+
+#include "types/ConfigError.hpp"
+
+namespace insonify::scene {
+namespace {
+
+/** Deeper JSON would overflow the stack of the parser, which is recursive. */
+constexpr int kMaxNesting = 200;
+/** tinygltf and .glb count bytes in 32 bits; its sizes are cast to int. */
+constexpr uintmax_t kMaxBytes = 0x7fffffff;
+
+/** What a file may require: read, or without influence on shape. */
+constexpr std::string_view kSupported[] = {
+    "KHR_mesh_quantization", "KHR_texture_transform", "EXT_mesh_gpu_instancing", "KHR_lights_punctual", "KHR_materials_unlit",
+    "KHR_materials_emissive_strength", "KHR_materials_clearcoat", "KHR_materials_ior", "KHR_materials_sheen",
+    "KHR_materials_specular", "KHR_materials_transmission", "KHR_materials_volume", "KHR_materials_iridescence",
+    "KHR_materials_anisotropy", "KHR_materials_pbrSpecularGlossiness", "KHR_materials_variants", "KHR_xmp_json_ld"};
+
+std::string readBytes(const std::filesystem::path& file) {
+    std::error_code error;
+    if (!std::filesystem::exists(file, error)) throw std::runtime_error("does not exist; give the path of a .gltf or .glb file");
+    if (!std::filesystem::is_regular_file(file, error)) throw std::runtime_error("is not a file; give the path of a .gltf or .glb file");
+    const uintmax_t size = std::filesystem::file_size(file, error);
+    if (error || size > kMaxBytes) throw std::runtime_error("is larger than 2 GiB; split it");
+    std::string bytes(static_cast<size_t>(size), '\0');
+    std::ifstream stream(file, std::ios::binary);
+    if (!stream.read(bytes.data(), static_cast<std::streamsize>(size))) throw std::runtime_error("cannot be read; check its permissions");
+    return bytes;
+}
+
+/** Callbacks of tinygltf: it would expand shell variables in names and allocate what a folder claims as its size. */
+bool fileExists(const std::string& file, void*) {
+    std::error_code error;
+    return std::filesystem::is_regular_file(file, error);
+}
+std::string unexpanded(const std::string& file, void*) { return file; }
+bool readWhole(std::vector<unsigned char>* bytes, std::string* error, const std::string& file, void*) try {
+    const std::string read = readBytes(file);
+    bytes->assign(read.begin(), read.end());
+    return true;
+} catch (const std::exception& failure) {
+    *error = failure.what();
+    return false;
+}
+
+/** Keeps an image as it is. Those in a bufferView are left there: its bounds are not checked at this point. */
+bool keepEncoded(tinygltf::Image* image, const int, std::string*, std::string*, int, int, const unsigned char* bytes,
+                 int size, void*) {
+    if (image->bufferView < 0) image->image.assign(bytes, bytes + size);
+    return true;
+}
+
+bool isBinary(std::string_view bytes) { return bytes.starts_with("glTF"); }
+
+/** The JSON in a .gltf, or in the first chunk of a .glb, as far as it is there. */
+std::string_view jsonPart(std::string_view bytes) {
+    if (!isBinary(bytes)) return bytes;
+    if (bytes.size() < 20) return {};
+    uint32_t length;
+    std::memcpy(&length, bytes.data() + 12, sizeof length);
+    return bytes.substr(20, length);
+}
+
+/** Deepest nesting of arrays and objects, without recursion. */
+int nesting(std::string_view json) {
+    int depth = 0, deepest = 0;
+    bool in_string = false;
+    for (size_t i = 0; i < json.size(); ++i) {
+        const char c = json[i];
+        if (in_string && c == '\\') ++i;
+        else if (c == '"') in_string = !in_string;
+        else if (!in_string && (c == '[' || c == '{')) deepest = std::max(deepest, ++depth);
+        else if (!in_string && (c == ']' || c == '}')) --depth;
+    }
+    return deepest;
+}
+
+void checkBytes(const std::string& bytes) {
+    if (bytes.empty()) throw std::runtime_error("is empty; must be a glTF 2.0 file (.gltf or .glb)");
+    if (const int depth = nesting(jsonPart(bytes)); depth > kMaxNesting)
+        throw std::runtime_error(fmt::format("nests JSON {} levels deep; may be up to {}", depth, kMaxNesting));
+    if (isBinary(bytes) && bytes.size() >= 12) {
+        uint32_t length;
+        std::memcpy(&length, bytes.data() + 8, sizeof length);
+        if (length > bytes.size())
+            throw std::runtime_error(fmt::format("is truncated: it has {} of {} bytes; export or copy it again", bytes.size(), length));
+    }
+}
+
+std::string remedy(const std::string& extension) {
+    if (extension == "KHR_draco_mesh_compression") return "decompress it: `gltf-transform copy in.glb out.glb`, or export without Draco";
+    if (extension == "EXT_meshopt_compression" || extension == "KHR_meshopt_compression")
+        return "decompress it: `gltf-transform copy in.glb out.glb`, or run gltfpack without -c";
+    if (extension == "KHR_texture_basisu" || extension == "EXT_texture_webp" || extension == "EXT_texture_avif")
+        return "convert its images to PNG or JPEG: `gltf-transform png in.glb out.glb`";
+    return "export the model without it";
+}
+
+void checkExtensions(GltfFile& gltf) {
+    std::vector<types::Diagnostic> refused;
+    const auto supported = [](const std::string& name) { return std::ranges::count(kSupported, name) > 0; };
+    const auto& required = gltf.model.extensionsRequired;
+    for (const std::string& name : required)
+        if (!supported(name))
+            refused.push_back({gltf.name, 0, 0, "extensionsRequired", fmt::format("{} cannot be read; {}", name, remedy(name))});
+    if (!refused.empty()) throw types::ConfigError(std::move(refused));
+    for (const std::string& name : gltf.model.extensionsUsed)
+        if (!supported(name)) gltf.notices.push_back(fmt::format("extension {} is not read; its fallback is used", name));
+}
+
+/** False with `errors` filled when tinygltf refuses; whatever it throws on bad input becomes such an error. */
+bool parse(GltfFile& gltf, const std::string& bytes, const std::string& folder, std::string& errors) try {
+    tinygltf::TinyGLTF loader;
+    loader.SetImageLoader(keepEncoded, nullptr);
+    loader.SetFsCallbacks({fileExists, unexpanded, readWhole, nullptr, nullptr});
+    std::string warnings;
+    const auto size = static_cast<unsigned>(bytes.size());
+    return isBinary(bytes) ? loader.LoadBinaryFromMemory(&gltf.model, &errors, &warnings,
+                                                         reinterpret_cast<const unsigned char*>(bytes.data()), size, folder)
+                           : loader.LoadASCIIFromString(&gltf.model, &errors, &warnings, bytes.data(), size, folder);
+} catch (const std::exception& failure) {
+    errors += failure.what();
+    return false;
+}
+
+std::string firstLine(const std::string& text) { return text.substr(0, text.find('\n')); }
+
+}  // namespace
+
+GltfFile readGltfFile(const std::filesystem::path& file) {
+    GltfFile gltf;
+    gltf.name = file.string();
+    std::string bytes;
+    try {
+        bytes = readBytes(file);
+        checkBytes(bytes);
+    } catch (const std::runtime_error& failure) {
+        throw types::ConfigError(gltf.name, "", failure.what());
+    }
+    std::string errors;
+    const std::filesystem::path folder = file.has_parent_path() ? file.parent_path() : ".";
+    const bool parsed = parse(gltf, bytes, folder.string(), errors);
+    checkExtensions(gltf);
+    if (!parsed) throw types::ConfigError(gltf.name, "", fmt::format("is not valid glTF 2.0: {}", firstLine(errors)));
+    return gltf;
+}
+
+}  // namespace insonify::scene

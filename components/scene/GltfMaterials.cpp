@@ -1,0 +1,188 @@
+#include "components/scene/GltfMaterials.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <stb_image.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <memory>
+#include <ranges>
+
+#include "components/scene/Acoustics.hpp"
+#include "types/ConfigError.hpp"
+
+namespace insonify::scene {
+namespace {
+
+/** Larger images are refused before they are decoded [pixels a side]. */
+constexpr int kMaxImageSide = 8192;
+
+/** Fills a described struct from a JSON object; collects what is wrong. */
+class JsonReader {
+public:
+    JsonReader(const tinygltf::Value& object, types::Problems& problems) : object_(object), problems_(problems) {}
+
+    template <class T> void operator()(const types::Field& field, std::optional<T>& value) {
+        known_.emplace_back(field.name);
+        if (!object_.Has(field.name)) return;
+        if constexpr (types::NamedEnum<T>) readName(field, object_.Get(field.name), value);
+        else readNumber(field, object_.Get(field.name), value);
+    }
+    void refuseUnknown() {
+        for (const std::string& key : object_.Keys())
+            if (std::ranges::count(known_, key) == 0)
+                problems_.push_back({key, fmt::format("is not known; may be {}", fmt::join(known_, ", "))});
+    }
+
+private:
+    void readNumber(const types::Field& field, const tinygltf::Value& json, std::optional<double>& value) {
+        if (json.IsNumber() && json.GetNumberAsDouble() >= field.min && json.GetNumberAsDouble() <= field.max)
+            value = json.GetNumberAsDouble();
+        else
+            problems_.push_back({field.name, fmt::format("is {}; must be a number from {} to {}", text(json), field.min, field.max)});
+    }
+    template <class E> void readName(const types::Field& field, const tinygltf::Value& json, std::optional<E>& value) {
+        const auto& names = types::EnumNames<E>::names;
+        const auto* found = json.IsString() ? std::ranges::find(names, json.Get<std::string>()) : std::end(names);
+        if (found != std::end(names)) value = static_cast<E>(found - names);
+        else problems_.push_back({field.name, fmt::format("is {}; may be {}", text(json), fmt::join(names, ", "))});
+    }
+    static std::string text(const tinygltf::Value& json) {
+        if (json.IsNumber()) return fmt::format("{}", json.GetNumberAsDouble());
+        return json.IsString() ? fmt::format("\"{}\"", json.Get<std::string>()) : "no number and no text";
+    }
+
+    const tinygltf::Value& object_;
+    types::Problems& problems_;
+    std::vector<std::string> known_;
+};
+
+void readAcoustics(const tinygltf::Value& extras, types::Material& material, types::Problems& problems) {
+    if (!extras.IsObject() || !extras.Has("acoustics")) return;
+    const tinygltf::Value& json = extras.Get("acoustics");
+    if (!json.IsObject()) return problems.push_back({"", "must be an object such as {\"sediment\": \"medium_sand\"}"});
+    Acoustics acoustics;
+    JsonReader reader(json, problems);
+    Acoustics::describe(acoustics, reader);
+    reader.refuseUnknown();
+    acoustics.check(problems);
+    acoustics.applyTo(material);
+}
+
+/** Bytes of an encoded image; empty when its file was not found. */
+std::pair<const uint8_t*, const uint8_t*> encoded(const tinygltf::Image& image, int index, const GltfAccessors& accessors) {
+    if (image.bufferView >= 0) return accessors.bytes(image.bufferView, fmt::format("images[{}]", index));
+    return {image.image.data(), image.image.data() + image.image.size()};
+}
+
+types::NormalMap decode(std::pair<const uint8_t*, const uint8_t*> bytes) {
+    const auto [begin, end] = bytes;
+    if (begin == end) throw std::runtime_error("its image file was not found or is empty");
+    const auto size = static_cast<int>(end - begin);
+    types::NormalMap map;
+    int channels = 0;
+    if (!stbi_info_from_memory(begin, size, &map.width, &map.height, &channels))
+        throw std::runtime_error("its image is neither PNG nor JPEG");
+    if (map.width > kMaxImageSide || map.height > kMaxImageSide)
+        throw std::runtime_error(fmt::format("its image has {} x {} pixels; may have up to {} a side", map.width, map.height, kMaxImageSide));
+    const std::unique_ptr<stbi_uc, decltype(&stbi_image_free)> pixels(
+        stbi_load_from_memory(begin, size, &map.width, &map.height, &channels, 3), stbi_image_free);
+    if (!pixels) throw std::runtime_error(fmt::format("its image is damaged ({})", stbi_failure_reason()));
+    map.rgb.assign(pixels.get(), pixels.get() + size_t{3} * static_cast<size_t>(map.width) * static_cast<size_t>(map.height));
+    return map;
+}
+
+/** Normal maps of a file, each decoded once. */
+class NormalMaps {
+public:
+    NormalMaps(const GltfFile& gltf, const GltfAccessors& accessors, types::Geometry& geometry)
+        : gltf_(gltf), accessors_(accessors), geometry_(geometry) {}
+
+    /** Index of a texture's map, or -1 with a notice. */
+    int find(int texture, const std::string& material) {
+        const auto [known, is_new] = indices_.try_emplace(texture, -1);
+        if (is_new) try {
+            geometry_.normal_maps.push_back(load(texture));
+            known->second = static_cast<int>(geometry_.normal_maps.size()) - 1;
+        } catch (const types::ConfigError&) {
+            throw;
+        } catch (const std::runtime_error& failure) {
+            geometry_.notices.push_back(fmt::format("material \"{}\" is loaded without its normal map: {}", material, failure.what()));
+        }
+        return known->second;
+    }
+
+private:
+    types::NormalMap load(int index) {
+        const tinygltf::Texture& texture = at(gltf_.model.textures, index, "textures");
+        if (texture.source < 0) throw std::runtime_error("its texture has no PNG or JPEG image");
+        types::NormalMap map = decode(encoded(at(gltf_.model.images, texture.source, "images"), texture.source, accessors_));
+        if (texture.sampler >= 0) {
+            const tinygltf::Sampler& sampler = at(gltf_.model.samplers, texture.sampler, "samplers");
+            map.repeat_u = sampler.wrapS != TINYGLTF_TEXTURE_WRAP_CLAMP_TO_EDGE;
+            map.repeat_v = sampler.wrapT != TINYGLTF_TEXTURE_WRAP_CLAMP_TO_EDGE;
+        }
+        return map;
+    }
+    template <class T> const T& at(const std::vector<T>& items, int index, const char* what) const {
+        if (index < 0 || static_cast<size_t>(index) >= items.size())
+            throw types::ConfigError(gltf_.name, fmt::format("{}[{}]", what, index), fmt::format("does not exist; the file has {}", items.size()));
+        return items[static_cast<size_t>(index)];
+    }
+
+    const GltfFile& gltf_;
+    const GltfAccessors& accessors_;
+    types::Geometry& geometry_;
+    std::map<int, int> indices_;
+};
+
+glm::vec2 pairOf(const tinygltf::Value& object, const char* key, glm::vec2 otherwise) {
+    if (!object.Has(key) || object.Get(key).ArrayLen() != 2) return otherwise;
+    const tinygltf::Value& array = object.Get(key);
+    return {static_cast<float>(array.Get(0).GetNumberAsDouble()), static_cast<float>(array.Get(1).GetNumberAsDouble())};
+}
+
+/** KHR_texture_transform: scaled, then turned counter-clockwise as seen (v points down), then shifted. */
+NormalMapping mapping(const tinygltf::NormalTextureInfo& texture) {
+    NormalMapping result{texture.texCoord};
+    const auto found = texture.extensions.find("KHR_texture_transform");
+    if (found == texture.extensions.end() || !found->second.IsObject()) return result;
+    const tinygltf::Value& json = found->second;
+    if (json.Has("texCoord")) result.uv_set = json.Get("texCoord").GetNumberAsInt();
+    const double angle = json.Has("rotation") ? json.Get("rotation").GetNumberAsDouble() : 0;
+    const auto c = static_cast<float>(std::cos(angle)), s = static_cast<float>(std::sin(angle));
+    const glm::vec2 scale = pairOf(json, "scale", glm::vec2(1));
+    result.transform = {scale.x * glm::vec2(c, -s), scale.y * glm::vec2(s, c), pairOf(json, "offset", glm::vec2(0))};
+    return result;
+}
+
+}  // namespace
+
+std::vector<std::optional<NormalMapping>> readMaterials(const GltfFile& gltf, const GltfAccessors& accessors,
+                                                        types::Geometry& geometry) {
+    std::vector<std::optional<NormalMapping>> mappings;
+    std::vector<types::Diagnostic> faults;
+    NormalMaps maps(gltf, accessors, geometry);
+    for (const tinygltf::Material& from : gltf.model.materials) {
+        const size_t index = geometry.materials.size();
+        types::Material material;
+        material.name = from.name.empty() ? fmt::format("material_{}", index) : from.name;
+        material.double_sided = from.doubleSided;
+        types::Problems problems;
+        readAcoustics(from.extras, material, problems);
+        for (const types::Problem& problem : problems)
+            faults.push_back({gltf.name, 0, 0, fmt::format("materials[{}].extras.acoustics{}{}", index, problem.path.empty() ? "" : ".", problem.path), problem.message});
+        if (from.normalTexture.index >= 0) {
+            material.normal_map = maps.find(from.normalTexture.index, material.name);
+            material.normal_scale = static_cast<float>(from.normalTexture.scale);
+        }
+        mappings.push_back(material.normal_map < 0 ? std::nullopt : std::optional(mapping(from.normalTexture)));
+        geometry.materials.push_back(std::move(material));
+    }
+    if (!faults.empty()) throw types::ConfigError(std::move(faults));
+    return mappings;
+}
+
+}  // namespace insonify::scene

@@ -1,0 +1,52 @@
+#pragma once
+#include <map>
+#include <optional>
+#include <vector>
+
+#include "components/scene/GltfAccessor.hpp"
+#include "components/scene/GltfMaterials.hpp"
+#include "types/Geometry.hpp"
+
+namespace insonify::scene {
+
+/** What was left out of the meshes of a file. */
+struct Omissions {
+    size_t bad_triangles = 0;      ///< With a vertex that is not a finite number.
+    size_t empty_triangles = 0;    ///< Of no area.
+    size_t other_primitives = 0;   ///< Points and lines.
+    size_t unmapped_primitives = 0;  ///< With a normal map but no texture coordinates for it.
+    size_t morphed_meshes = 0;     ///< With morph targets, loaded unmorphed.
+};
+
+/** Turns the meshes of a file into ours, one at a time. */
+class GltfMeshes {
+public:
+    /** `geometry` holds the file's materials; a default material is added when a primitive has none. */
+    GltfMeshes(const GltfFile& gltf, const GltfAccessors& accessors, std::vector<std::optional<NormalMapping>> mappings,
+               types::Geometry& geometry)
+        : gltf_(gltf), accessors_(accessors), mappings_(std::move(mappings)), geometry_(geometry) {}
+
+    /** One mesh of the file with a cluster for each of its primitives; it may end up without triangles.
+     *  Wrong indices are a types::ConfigError. */
+    types::Mesh read(size_t mesh);
+    const Omissions& omissions() const { return omissions_; }
+
+private:
+    void append(const tinygltf::Primitive& primitive, const std::string& path, types::Mesh& mesh);
+    int material(const tinygltf::Primitive& primitive, const std::string& path);
+    int withoutMap(int material);
+    void charge(size_t vertices, const std::string& path);
+    struct Attributes;
+    [[noreturn]] void fail(const std::string& path, const std::string& message) const;
+
+    const GltfFile& gltf_;
+    const GltfAccessors& accessors_;
+    std::vector<std::optional<NormalMapping>> mappings_;
+    types::Geometry& geometry_;
+    Omissions omissions_;
+    size_t elements_ = 0;
+    int default_material_ = -1;
+    std::map<int, int> unmapped_;  ///< Material without normal map, by material with.
+};
+
+}  // namespace insonify::scene

@@ -1,0 +1,72 @@
+#include "components/scene/Scene.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
+#include <glm/geometric.hpp>
+#include <glm/matrix.hpp>
+
+#include "components/scene/Gltf.hpp"
+#include "types/ConfigError.hpp"
+
+namespace insonify::scene {
+namespace {
+
+/** What is left of a transform when its rotation is taken away: scale and shear, in the axes of the node.
+ *  A mirroring matrix keeps its mirror in x; with a scale given, the signs are those of the scale. */
+glm::dmat3 withoutRotation(const glm::dmat3& matrix, glm::dvec3 scale) {
+    glm::dmat3 rotation;
+    rotation[0] = glm::normalize(matrix[0]) * glm::sign(scale.x);
+    rotation[1] = glm::normalize(matrix[1] - rotation[0] * glm::dot(rotation[0], matrix[1])) * glm::sign(scale.y);
+    rotation[2] = glm::normalize(glm::cross(rotation[0], rotation[1])) ;
+    if (glm::dot(rotation[2], matrix[2]) * scale.z < 0) {
+        rotation[0] = -rotation[0];
+        rotation[2] = -rotation[2];
+    }
+    return glm::transpose(rotation) * matrix;
+}
+
+}  // namespace
+
+Scene readScene(const std::filesystem::path& file) {
+    std::string extension = file.extension().string();
+    std::ranges::transform(extension, extension.begin(), [](unsigned char c) { return std::tolower(c); });
+    if (extension == ".gltf" || extension == ".glb") return readGltf(file);
+    if (extension == ".world" || extension == ".sdf")
+        throw types::ConfigError(file.string(), "", "SDF is not built yet; use .gltf or .glb");
+    throw types::ConfigError(file.string(), "", fmt::format("has extension \"{}\"; may be .gltf or .glb", extension));
+}
+
+types::GeometryPtr loadScene(const std::filesystem::path& file) { return readScene(file).geometry; }
+
+int findNode(const Scene& scene, const std::string& name) {
+    const auto found = std::ranges::find(scene.nodes, name, &Node::name);
+    return found == scene.nodes.end() ? -1 : static_cast<int>(found - scene.nodes.begin());
+}
+
+std::vector<Part> partsOf(const Scene& scene, int node) {
+    glm::dmat4 world_from_node(1);
+    for (int i = node; i >= 0; i = scene.nodes[static_cast<size_t>(i)].parent)
+        world_from_node = scene.nodes[static_cast<size_t>(i)].parent_from_node * world_from_node;
+
+    // body_from_node of the nodes at and below; children come after their parents
+    std::vector<glm::dmat4> body_from_node(scene.nodes.size());
+    std::vector<bool> moves(scene.nodes.size());
+    const auto top = static_cast<size_t>(node);
+    body_from_node[top] = z_up_from_y_up * glm::dmat4(withoutRotation(glm::dmat3(world_from_node), scene.nodes[top].scale));
+    moves[top] = true;
+    for (size_t i = top + 1; i < scene.nodes.size(); ++i) {
+        const Node& below = scene.nodes[i];
+        if (below.parent < 0 || !moves[static_cast<size_t>(below.parent)]) continue;
+        moves[i] = true;
+        body_from_node[i] = body_from_node[static_cast<size_t>(below.parent)] * below.parent_from_node;
+    }
+    std::vector<Part> parts;
+    for (size_t i = 0; i < scene.object_nodes.size(); ++i)
+        if (const auto at = static_cast<size_t>(scene.object_nodes[i]); moves[at])
+            parts.push_back({static_cast<uint32_t>(i), body_from_node[at] * scene.node_from_object[i]});
+    return parts;
+}
+
+}  // namespace insonify::scene

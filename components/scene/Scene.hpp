@@ -1,0 +1,46 @@
+#pragma once
+#include <filesystem>
+#include <glm/mat4x4.hpp>
+#include <string>
+#include <vector>
+
+#include "types/Geometry.hpp"
+
+namespace insonify::scene {
+
+/** A node of a scene, as the file arranges them. Every parent comes before its children. */
+struct Node {
+    std::string name;                    ///< Unique: the file's, else its mesh's, else "node_3".
+    int parent = -1;                     ///< Index of a node, -1 at the root.
+    glm::dmat4 parent_from_node{1};      ///< At the root: world_from_node, with the turn to z-up.
+    glm::dvec3 scale{1};                 ///< As given beside translation and rotation; 1 with a matrix.
+};
+
+/** A scene file: immutable geometry, and the tree that says which objects move together. */
+struct Scene {
+    types::GeometryPtr geometry;
+    std::vector<Node> nodes;
+    std::vector<int> object_nodes;       ///< For each object of the geometry, its node.
+    std::vector<glm::dmat4> node_from_object;  ///< For each object; 1 but for instances (EXT_mesh_gpu_instancing).
+};
+
+/** An object that moves with a node. */
+struct Part {
+    uint32_t object = 0;                 ///< Index into Geometry::objects.
+    glm::dmat4 body_from_object{1};      ///< Body: the node without its rotation, axes turned like the world's, scale kept.
+};
+
+/** Reads a scene: .gltf or .glb. World coordinates are z-up: (x, y, z) of the file is (x, -z, y).
+ *  Throws types::ConfigError for whatever is wrong with the file; what was left out is in Geometry::notices. */
+Scene readScene(const std::filesystem::path& file);
+
+/** The geometry of `readScene`. */
+types::GeometryPtr loadScene(const std::filesystem::path& file);
+
+/** Index of the node of that name, -1 for none. */
+int findNode(const Scene& scene, const std::string& name);
+
+/** The objects at and below a node. With a pose of the body, world_from_object = world_from_body * body_from_object. */
+std::vector<Part> partsOf(const Scene& scene, int node);
+
+}  // namespace insonify::scene
