@@ -1,0 +1,94 @@
+#include <fmt/format.h>
+
+#include <cerrno>
+#include <fstream>
+#include <iterator>
+#include <system_error>
+
+#include "components/pocolog/Export.hpp"
+#include "components/pocolog/SampleTypes.hpp"
+
+namespace insonify::pocolog {
+namespace {
+
+using types::Pose;
+using types::Sonar;
+
+/** A text file that gathers lines; close() throws std::runtime_error when not all of them arrived. */
+class CsvFile {
+public:
+    CsvFile(const std::filesystem::path& path, const char* header) : path_(path), file_(path) {
+        if (!file_) throw types::ConfigError(path, "", "cannot be written: " + std::generic_category().message(errno));
+        file_ << header << '\n';
+    }
+    /** A line of numbers, each as short as it can be read back exactly; times with six decimals. */
+    template <class... Values> void line(types::Time time, const Values&... values) {
+        text_.clear();
+        fmt::format_to(std::back_inserter(text_), "{:.6f}", time.seconds());
+        (fmt::format_to(std::back_inserter(text_), ",{}", values), ...);
+        text_.push_back('\n');
+        file_.write(text_.data(), static_cast<std::streamsize>(text_.size()));
+    }
+    void close() {
+        file_.close();
+        if (!file_) throw std::runtime_error(path_.string() + ": cannot be written: the disk may be full");
+    }
+
+private:
+    std::filesystem::path path_;
+    std::ofstream file_;
+    fmt::memory_buffer text_;
+};
+
+void writePing(CsvFile& csv, const Sonar& ping, types::Time time) {
+    for (size_t beam = 0; beam < ping.beam_count; ++beam)
+        for (size_t bin = 0; bin < ping.bin_count; ++bin)
+            csv.line(time, beam, ping.bearings.at(beam).rad, bin, ping.bins.at(beam * ping.bin_count + bin));
+}
+
+template <Numeric T> void writeNumbers(Reader& log, const std::string& stream, const std::filesystem::path& path) {
+    CsvFile csv(path, "time,value");
+    log.forEach<T>(stream, [&](const T& value, const SampleRef& at) {
+        if constexpr (std::is_same_v<T, bool>) csv.line(at.time, value ? 1 : 0);
+        else csv.line(at.time, value);
+    });
+    csv.close();
+}
+
+void writePings(Reader& log, const std::string& stream, const std::filesystem::path& path) {
+    CsvFile csv(path, "time,beam,bearing,bin,value");
+    log.forEach<Sonar>(stream, [&](const Sonar& ping, const SampleRef& at) {
+        if (ping.bins.size() != size_t{ping.beam_count} * ping.bin_count || ping.bearings.size() != ping.beam_count)
+            throw types::ConfigError(log.path(), stream, "a ping has other numbers of bins or bearings than it says");
+        writePing(csv, ping, sampleTime(ping, at.time));
+    });
+    csv.close();
+}
+
+void writePoses(Reader& log, const std::string& stream, const std::filesystem::path& path) {
+    CsvFile csv(path, "time,x,y,z,qw,qx,qy,qz");
+    log.forEach<Pose>(stream, [&](const Pose& pose, const SampleRef& at) {
+        const auto& [p, q] = std::tie(pose.position, pose.orientation);
+        csv.line(sampleTime(pose, at.time), p.x, p.y, p.z, q.w, q.x, q.y, q.z);
+    });
+    csv.close();
+}
+
+}  // namespace
+
+void exportCsv(Reader& log, const std::string& stream, const std::filesystem::path& path) {
+    const Stream& declared = log.streams()[log.indexOf(stream)];
+    if (declared.holds<Sonar>()) return writePings(log, stream, path);
+    if (declared.holds<Pose>()) return writePoses(log, stream, path);
+    bool done = false;
+    forEachSampleType([&]<class T>(std::type_identity<T>) {
+        if constexpr (Numeric<T>)
+            if (declared.holds<T>()) {
+                writeNumbers<T>(log, stream, path);
+                done = true;
+            }
+    });
+    if (!done) failExport(log, stream);
+}
+
+}  // namespace insonify::pocolog

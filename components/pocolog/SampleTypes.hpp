@@ -1,0 +1,45 @@
+#pragma once
+// Every type that a log can hold, in one place: the logger, the replay and the exports read this list.
+#include <concepts>
+#include <memory>
+#include <tuple>
+
+#include "components/pocolog/Typelib.hpp"
+#include "types/Angle.hpp"
+#include "types/Image.hpp"
+#include "types/Pose.hpp"
+#include "types/Sonar.hpp"
+
+namespace insonify::pocolog {
+
+using SampleTypes = std::tuple<types::Sonar, types::Pose, types::Image, types::Time, types::Angle, double, float,
+                               int32_t, int64_t, bool, std::string>;
+
+/** What travels on a port for a logged T: large samples by reference. */
+template <class T>
+using Carried = std::conditional_t<std::is_same_v<T, types::Sonar> || std::is_same_v<T, types::Image>,
+                                   std::shared_ptr<const T>, T>;
+
+/** The sample itself, whichever way it travels. */
+template <class T> const T& carriedSample(const T& sample) { return sample; }
+template <class T> const T& carriedSample(const std::shared_ptr<const T>& sample) { return *sample; }
+
+/** Calls `use(std::type_identity<T>{})` for each type of the list. */
+template <class Use> void forEachSampleType(Use&& use) {
+    [&]<class... T>(std::type_identity<std::tuple<T...>>) {
+        (use(std::type_identity<T>{}), ...);
+    }(std::type_identity<SampleTypes>{});
+}
+
+template <class T>
+concept Stamped = requires(const T& sample) {
+    { sample.time } -> std::convertible_to<types::Time>;
+};
+
+/** When the sample was true in the world; `otherwise` for one without a stamp or with a null one. */
+template <class T> types::Time sampleTime(const T& sample, types::Time otherwise) {
+    if constexpr (Stamped<T>) return sample.time.isNull() ? otherwise : sample.time;
+    else return otherwise;
+}
+
+}  // namespace insonify::pocolog

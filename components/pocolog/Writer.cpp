@@ -1,0 +1,152 @@
+#include "components/pocolog/Writer.hpp"
+
+#include <fcntl.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <system_error>
+
+#include "types/ConfigError.hpp"
+
+namespace insonify::pocolog {
+namespace {
+
+constexpr size_t flush_size = 1 << 20;  // [B]
+
+std::string reason(int error_number) { return std::generic_category().message(error_number); }
+
+/** Not before `earliest`, and within what the format can hold. */
+types::Time logTime(types::Time time, types::Time earliest) {
+    return std::clamp(time, std::max(earliest, types::Time{}), latest_time);
+}
+
+void split(types::Time time, uint32_t& s, uint32_t& us) {
+    s = static_cast<uint32_t>(time.microseconds / 1'000'000);
+    us = static_cast<uint32_t>(time.microseconds % 1'000'000);
+}
+
+}  // namespace
+
+Writer::Writer(std::filesystem::path path) : path_(std::move(path)) {
+    file_ = open(path_.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644);
+    if (file_ < 0) throw types::ConfigError(path_, "", "the log cannot be written: " + reason(errno));
+    std::error_code none_there;
+    std::filesystem::remove(indexPath(path_), none_there);
+    Prologue prologue;
+    std::copy(magic.begin(), magic.end(), prologue.magic_bytes.begin());
+    put(&prologue, sizeof prologue);
+}
+
+Writer::~Writer() {
+    try {
+        close();
+    } catch (const std::exception&) {
+        // A destructor has nobody to tell; flush() and close() do.
+    }
+}
+
+Metadata Writer::standardMetadata(const std::string& name, const std::string& cxx_type) {
+    const size_t dot = std::min(name.find('.'), name.size());
+    return {{"rock_task_name", name.substr(0, dot)},
+            {"rock_task_object_name", name.substr(std::min(dot + 1, name.size()))},
+            {"rock_stream_type", "port"},
+            {"rock_cxx_type_name", cxx_type},
+            {"rock_orocos_type_name", cxx_type}};
+}
+
+size_t Writer::declare(const std::string& name, const std::string& type, const std::string& registry,
+                       const Metadata& metadata) {
+    if (streams_.size() > std::numeric_limits<uint16_t>::max())
+        throw std::length_error(path_.string() + ": a log holds at most 65536 streams");
+    const std::string yaml = toYaml(metadata);
+    const uint8_t data_stream = 1;
+    const size_t size = sizeof data_stream + 4 * sizeof(uint32_t) + name.size() + type.size() + registry.size() +
+                        yaml.size();
+    Stream& stream = streams_.emplace_back();
+    stream.index.declaration = flushed_ + buffer_.size();
+    BlockHeader header{.type = BlockType::Stream, .stream = static_cast<uint16_t>(streams_.size() - 1),
+                       .size = static_cast<uint32_t>(size)};
+    put(&header, sizeof header);
+    put(&data_stream, sizeof data_stream);
+    for (const std::string* text : {&name, &type, &registry, &yaml}) putText(*text);
+    return streams_.size() - 1;
+}
+
+size_t Writer::beginSample() {
+    if (file_ < 0) throw std::runtime_error(path_.string() + ": the log is closed");
+    const size_t start = buffer_.size();
+    buffer_.resize(start + sizeof(BlockHeader) + data_header_size);
+    return start;
+}
+
+void Writer::endSample(size_t number, size_t start, types::Time received, types::Time time) {
+    const size_t size = buffer_.size() - start - sizeof(BlockHeader);
+    if (size > std::numeric_limits<uint32_t>::max()) {
+        buffer_.resize(start);
+        throw std::length_error(path_.string() + ": a sample on a log may not exceed 4 GiB");
+    }
+    Stream& stream = streams_.at(number);
+    received = logTime(received, stream.index.last_received);
+    time = logTime(time, stream.last_time);
+    BlockHeader block{.type = BlockType::Data, .stream = static_cast<uint16_t>(number),
+                      .size = static_cast<uint32_t>(size)};
+    DataHeader data{.size = static_cast<uint32_t>(size - data_header_size)};
+    split(received, data.received_s, data.received_us);
+    split(time, data.time_s, data.time_us);
+    std::memcpy(buffer_.data() + start, &block, sizeof block);
+    std::memcpy(buffer_.data() + start + sizeof block, &data, data_header_size);
+
+    if (stream.index.samples.empty()) stream.index.first_received = received;
+    stream.index.last_received = received;
+    stream.last_time = time;
+    stream.index.samples.push_back({flushed_ + start, time});
+    if (buffer_.size() >= flush_size) flush();
+}
+
+void Writer::put(const void* data, size_t size) {
+    const char* first = static_cast<const char*>(data);
+    buffer_.insert(buffer_.end(), first, first + size);
+}
+
+void Writer::putText(const std::string& text) {
+    const auto size = static_cast<uint32_t>(text.size());
+    put(&size, sizeof size);
+    put(text.data(), text.size());
+}
+
+void Writer::writeOut(const char* data, size_t size) {
+    while (size > 0) {
+        const ssize_t written = ::write(file_, data, size);
+        if (written < 0 && errno == EINTR) continue;
+        if (written < 0) fail(errno);
+        data += written;
+        size -= static_cast<size_t>(written);
+    }
+}
+
+void Writer::flush() {
+    if (file_ < 0) return;
+    writeOut(buffer_.data(), buffer_.size());
+    flushed_ += buffer_.size();
+    buffer_.clear();
+}
+
+void Writer::fail(int error_number) {
+    // Half a block at the end would stop Rock's Ruby reader: back to the last whole one. A device cannot be cut.
+    [[maybe_unused]] const int cut = ftruncate(file_, static_cast<off_t>(flushed_));
+    ::close(std::exchange(file_, -1));
+    throw std::runtime_error(path_.string() + ": the log cannot be written: " + reason(error_number));
+}
+
+void Writer::close() {
+    if (file_ < 0) return;
+    flush();
+    if (::close(std::exchange(file_, -1)) != 0)
+        throw std::runtime_error(path_.string() + ": the log cannot be written: " + reason(errno));
+    std::vector<StreamIndex> index;
+    for (Stream& stream : streams_) index.push_back(std::move(stream.index));
+    writeIndex(path_, index);
+}
+
+}  // namespace insonify::pocolog

@@ -1,0 +1,76 @@
+#pragma once
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "components/pocolog/Block.hpp"
+#include "components/pocolog/Index.hpp"
+#include "components/pocolog/Metadata.hpp"
+#include "components/pocolog/SampleTypes.hpp"
+#include "components/pocolog/Wire.hpp"
+
+namespace insonify::pocolog {
+
+/** Writes a pocolog v2 file that Rock's readers open, and its index at the end.
+ *
+ *      Writer log("harbour.0.log");
+ *      const size_t ping = log.addStream<types::Sonar>("sonar.ping");
+ *      log.write(ping, received, sample);
+ *
+ *  Blocks gather in memory and go to the file whole: with flush(), close(), or when a megabyte has come together.
+ *  A write that fails throws std::runtime_error with the system's reason and leaves what was flushed before, whole;
+ *  after it the writer takes nothing more. For one thread. Used again, its memory is not allocated again. */
+class Writer {
+public:
+    /** Creates the file, or empties it. Throws ConfigError when that cannot be done. */
+    explicit Writer(std::filesystem::path path);
+    ~Writer();  ///< Closes; trouble at that point is not reported.
+    Writer(const Writer&) = delete;
+    Writer& operator=(const Writer&) = delete;
+
+    /** Declares a stream "task.port" of T and returns its number. `extra` joins what Rock's tools look for. Throws
+     *  std::length_error for the 65537th stream. */
+    template <class T> size_t addStream(const std::string& name, Metadata extra = {}) {
+        Metadata metadata = standardMetadata(name, cxxName<T>());
+        if constexpr (Stamped<T>) metadata["rock_timestamp_field"] = "time";
+        metadata.merge(extra);
+        return declare(name, typelibName<T>(), registryOf<T>(), metadata);
+    }
+
+    /** Adds a sample, received at this moment. Times before 1970 or after 2106 are moved to those years in the block's
+     *  header, and one that runs backwards to that of the stream's sample before it: readers search by them. The
+     *  stamp in the sample is written as it is. Throws std::length_error above 4 GiB. */
+    template <class T> void write(size_t stream, types::Time received, const T& sample) {
+        const size_t start = beginSample();
+        marshal(sample, buffer_);
+        endSample(stream, start, received, sampleTime(sample, received));
+    }
+
+    void flush();  ///< Hands all samples to the system: they survive the end of this process.
+    void close();  ///< Flushes, closes, writes the index. Nothing may be written after it.
+    const std::filesystem::path& path() const { return path_; }
+
+private:
+    struct Stream {
+        StreamIndex index;
+        types::Time last_time;
+    };
+
+    static Metadata standardMetadata(const std::string& name, const std::string& cxx_type);
+    size_t declare(const std::string& name, const std::string& type, const std::string& registry,
+                   const Metadata& metadata);
+    size_t beginSample();
+    void endSample(size_t stream, size_t start, types::Time received, types::Time time);
+    void put(const void* data, size_t size);
+    void putText(const std::string& text);
+    void writeOut(const char* data, size_t size);
+    [[noreturn]] void fail(int error_number);
+
+    std::filesystem::path path_;
+    int file_ = -1;
+    std::vector<char> buffer_;  ///< Whole blocks that are not in the file yet.
+    uint64_t flushed_ = 0;      ///< Size of the file [B].
+    std::vector<Stream> streams_;
+};
+
+}  // namespace insonify::pocolog
