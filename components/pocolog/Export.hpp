@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "components/pocolog/Reader.hpp"
+#include "types/Sonar.hpp"
 
 namespace insonify::pocolog {
 
@@ -18,6 +19,9 @@ std::vector<std::filesystem::path> exportNpz(Reader& log, const std::string& str
 /** Writes a stream as text. Pings: `time,beam,bearing,bin,value`, a line for each bin [s, 1, rad, 1, 1]. Poses:
  *  `time,x,y,z,qw,qx,qy,qz`, which a trajectory reads [s, m, 1]. Numbers: `time,value`. Throws as exportNpz. */
 void exportCsv(Reader& log, const std::string& stream, const std::filesystem::path& path);
+
+/** Throws ConfigError unless the ping has as many bins and bearings as it says. */
+void checkShape(const Reader& log, const std::string& stream, const types::Sonar& ping);
 
 /** Throws the ConfigError that says which types can be exported. */
 [[noreturn]] void failExport(const Reader& log, const std::string& stream);

@@ -43,7 +43,7 @@ private:
 void writePing(CsvFile& csv, const Sonar& ping, types::Time time) {
     for (size_t beam = 0; beam < ping.beam_count; ++beam)
         for (size_t bin = 0; bin < ping.bin_count; ++bin)
-            csv.line(time, beam, ping.bearings.at(beam).rad, bin, ping.bins.at(beam * ping.bin_count + bin));
+            csv.line(time, beam, ping.bearings[beam].rad, bin, ping.bins[beam * ping.bin_count + bin]);
 }
 
 template <Numeric T> void writeNumbers(Reader& log, const std::string& stream, const std::filesystem::path& path) {
@@ -58,8 +58,7 @@ template <Numeric T> void writeNumbers(Reader& log, const std::string& stream, c
 void writePings(Reader& log, const std::string& stream, const std::filesystem::path& path) {
     CsvFile csv(path, "time,beam,bearing,bin,value");
     log.forEach<Sonar>(stream, [&](const Sonar& ping, const SampleRef& at) {
-        if (ping.bins.size() != size_t{ping.beam_count} * ping.bin_count || ping.bearings.size() != ping.beam_count)
-            throw types::ConfigError(log.path(), stream, "a ping has other numbers of bins or bearings than it says");
+        checkShape(log, stream, ping);
         writePing(csv, ping, sampleTime(ping, at.time));
     });
     csv.close();

@@ -20,8 +20,7 @@ struct Run {
 std::vector<Run> runsOfOneShape(Reader& log, const std::string& stream) {
     std::vector<Run> runs;
     log.forEach<Sonar>(stream, [&](const Sonar& ping, const SampleRef& at) {
-        if (ping.bins.size() != size_t{ping.beam_count} * ping.bin_count || ping.bearings.size() != ping.beam_count)
-            throw types::ConfigError(log.path(), stream, "a ping has other numbers of bins or bearings than it says");
+        checkShape(log, stream, ping);
         if (runs.empty() || runs.back().beams != ping.beam_count || runs.back().bins != ping.bin_count)
             runs.push_back({ping.beam_count, ping.bin_count, {}});
         runs.back().pings.push_back(at);
@@ -109,6 +108,11 @@ std::vector<Path> exportNpz(Reader& log, const std::string& stream, const Path& 
     });
     if (!done) failExport(log, stream);
     return {path};
+}
+
+void checkShape(const Reader& log, const std::string& stream, const Sonar& ping) {
+    if (ping.bins.size() != size_t{ping.beam_count} * ping.bin_count || ping.bearings.size() != ping.beam_count)
+        throw types::ConfigError(log.path(), stream, "a ping has other numbers of bins or bearings than it says");
 }
 
 void failExport(const Reader& log, const std::string& stream) {

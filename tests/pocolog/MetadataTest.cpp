@@ -1,0 +1,32 @@
+#include "components/pocolog/Metadata.hpp"
+
+#include <gtest/gtest.h>
+
+namespace insonify::pocolog {
+namespace {
+
+TEST(MetadataTest, IsAFlatMapOfQuotedScalarsOneALine) {
+    EXPECT_EQ(toYaml({{"rock_task_name", "sonar"}, {"text", "a: \"b\"\n\\c\t"}}),
+              "rock_task_name: \"sonar\"\ntext: \"a: \\\"b\\\"\\n\\\\c\\x09\"\n");
+}
+
+TEST(MetadataTest, ADeploymentOfManyLinesIsReadBack) {
+    const Metadata sent{{"insonify_deployment", "# a 'b' \"c\"\ntasks:\n  kai: {mauer: \"h\xc3\xb6he\", x: \\n}\n\x01"},
+                        {"insonify_seed", "18446744073709551615"},
+                        {"empty", ""}};
+    EXPECT_EQ(metadataFromYaml(toYaml(sent)), sent);
+}
+
+TEST(MetadataTest, RocksWaysOfWritingScalarsAreRead) {
+    const Metadata got = metadataFromYaml("---\nrock_task_name: sonar\nrock_stream_type: 'port'\n\"key\": \"a b\"\r\n");
+    EXPECT_EQ(got, (Metadata{{"rock_task_name", "sonar"}, {"rock_stream_type", "port"}, {"key", "a b"}}));
+}
+
+TEST(MetadataTest, WhatIsNoMapIsPassedOver) {
+    EXPECT_TRUE(metadataFromYaml("").empty());
+    EXPECT_TRUE(metadataFromYaml("--- {}\n").empty());
+    EXPECT_TRUE(metadataFromYaml("- a\n- \"\\x\n").empty());
+}
+
+}  // namespace
+}  // namespace insonify::pocolog
