@@ -6,6 +6,7 @@
 #include <map>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -103,6 +104,9 @@ public:
     virtual std::vector<std::string> notices() const { return {}; }
     /** True once a source has nothing more to say: a lockstep run ends when all sources have. */
     virtual bool finished() const { return false; }
+    /** When a source without a period wants its next cycle in lockstep, on simulated time; none: not by itself. Valid
+     *  after configure; then the earliest of all is also when simulated time starts (a log's first stamp). */
+    virtual std::optional<types::Time> nextTime() const { return std::nullopt; }
 
     Environment& environment() { return *environment_; }
     void setEnvironment(std::shared_ptr<Environment> environment) { environment_ = std::move(environment); }
