@@ -189,7 +189,7 @@ def add_chain(glb, floor, steel, concrete):
 
 def add_pipeline(glb, floor, steel, concrete):
     """Half buried, from the quay out to the south-east, on saddles."""
-    ends = np.array([[50.0, 8.6], [12.0, -36.0]])
+    ends = np.array([[50.0, 8.6], [4.0, -30.0]])
     t = np.linspace(0, 1, 60)[:, None]
     plan = ends[0] + t * (ends[1] - ends[0])
     z = floor.z(plan[:, 0], plan[:, 1])
