@@ -36,8 +36,8 @@ std::string outside(std::initializer_list<Limit> limits) {
 
 double mackenzieSpeed(const WaterConfig& water) {
     const double t = water.temperature_celsius, s = water.salinity_psu - 35, z = water.depth;
-    return 1448.96 + 4.591 * t - 5.304e-2 * t * t + 2.374e-4 * t * t * t + 1.340 * s + 1.630e-2 * z +
-           1.675e-7 * z * z - 1.025e-2 * t * s - 7.139e-13 * t * z * z * z;
+    return 1448.96 + 4.591 * t - 5.304e-2 * t * t + 2.374e-4 * t * t * t + 1.340 * s + 1.630e-2 * z + 1.675e-7 * z * z -
+           1.025e-2 * t * s - 7.139e-13 * t * z * z * z;
 }
 
 double medwinSpeed(const WaterConfig& water) {

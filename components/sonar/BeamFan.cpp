@@ -45,7 +45,7 @@ void addRow(const SonarConfig& config, const std::vector<Beam>& beams, const Sla
         const double low = slab.u(column), high = slab.u(column + 1);
         for (const Edges& e : edges) {
             const double from = std::max(low, e.low), to = std::min(high, e.high);
-            if (to - from > 1e-9 * (high - low)) result.shares.push_back({from, to, e.beam});
+            if (to - from > 1e-9 * (high - low)) result.shares.push_back({from, to, e.beam, 0});
         }
     }
 }
@@ -55,7 +55,7 @@ void addRow(const SonarConfig& config, const std::vector<Beam>& beams, const Sla
 std::vector<Beam> makeBeams(const SonarConfig& config) {
     std::vector<Beam> beams;
     if (!config.bearings_deg.empty()) {
-        const double half = types::radians(*config.beam_width_deg) / 2;
+        const double half = types::radians(config.beamWidthDeg()) / 2;
         for (double bearing : config.bearings_deg) {
             const double centre = types::radians(bearing);
             beams.push_back({centre, centre - half, centre + half});
@@ -77,14 +77,14 @@ std::vector<Slab> makeSlabs(const SonarConfig& config, const std::vector<Beam>& 
         high = coneAzimuth(high, half_elevation);
     }
     const int count = std::max(1, static_cast<int>(std::ceil((high - low) / widest_slab - 1e-9)));
-    const double columns = static_cast<double>(config.columnsPerBeam()) * static_cast<double>(beams.size()) / count;
+    const double columns = static_cast<double>(config.quality.columns_per_beam) * static_cast<double>(beams.size()) / count;
     std::vector<Slab> slabs(static_cast<size_t>(count));
     for (int i = 0; i < count; ++i) {
         Slab& slab = slabs[static_cast<size_t>(i)];
         slab.half_width = (high - low) / count / 2;
         slab.azimuth = low + (2 * i + 1) * slab.half_width;
         slab.columns = std::max(1, static_cast<int>(std::ceil(columns - 1e-9)));
-        slab.rows = config.imageRows();
+        slab.rows = config.quality.rows;
         slab.extent_u = std::tan(slab.half_width);
         slab.extent_v = std::tan(half_elevation) / std::cos(slab.half_width);
     }

@@ -2,6 +2,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "components/sonar/Interface.hpp"
 #include "components/sonar/SonarConfig.hpp"
 
 namespace insonify::sonar {
@@ -31,16 +32,10 @@ struct Slab {
 /** As few slabs of at most 60 deg as cover the beams (physics.md 3.1); cones reach wider than their bearing. */
 std::vector<Slab> makeSlabs(const SonarConfig& config, const std::vector<Beam>& beams);
 
-/** Part of one image column that belongs to one beam; laid out as ShareRecord of shaders/interface.glsl. */
-struct Share {
-    double u_low, u_high;
-    uint32_t beam, unused = 0;
-};
-
 /** Fractional overlap of columns and beams. Planar beams: one row of columns serves all image rows. */
 struct ColumnShares {
     std::vector<uint32_t> starts;  ///< Shares of (row, column) begin at starts[row * columns + column].
-    std::vector<Share> shares;
+    std::vector<ShareRecord> shares;
     bool per_row = false;  ///< Conical beams: the boundary between beams bends with elevation.
 
     size_t cell(int row, int column, int columns) const {

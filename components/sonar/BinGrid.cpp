@@ -20,8 +20,8 @@ BinGrid makeBinGrid(const SonarConfig& config) {
     const int intervals = std::max(1, config.published ? config.bin_count - 1 : config.bin_count);
     const double asked_us = config.range / intervals / c * 1e6;
     const int64_t us = wholeMicroseconds(asked_us, config.range_rounding);
-    const double width = config.range_rounding == RangeRounding::Exact ? config.range / intervals
-                                                                       : static_cast<double>(us) * 1e-6 * c;
+    const double width =
+        config.range_rounding == RangeRounding::Exact ? config.range / intervals : static_cast<double>(us) * 1e-6 * c;
     return {config.bin_count, us, width, config.range_min, intervals * width, c};
 }
 

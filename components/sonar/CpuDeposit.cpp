@@ -7,7 +7,6 @@ namespace insonify::sonar {
 namespace {
 
 using std::abs, std::clamp, std::exp, std::max, std::min, std::sqrt, std::tanh;
-using uint = uint32_t;
 #include "shaders/footprint.glsl"
 
 /** Where the shared code of shaders/deposit.glsl finds its bins; HAVE_CERQUEIRA2017 chooses the model at compile time. */
@@ -15,6 +14,7 @@ struct Bins {
     const double* edges;
     uint64_t* sums;
     uint bin_count;
+    double bin_width, attenuation;
     double binEdge(uint k) const { return edges[k]; }
     static uint64_t quanta(double amount) {
         return static_cast<uint64_t>(std::min(amount, 1048576.0) * quanta_per_unit + 0.5);
@@ -61,12 +61,12 @@ template <class Model> void depositImage(const DepositSetup& setup, size_t index
             if (!(texel[0] > 0) || std::isinf(texel[0])) continue;
             const size_t at = shares.cell(row, column, slab.columns);
             for (uint i = shares.starts[at]; i < shares.starts[at + 1]; ++i) {
-                const Share& share = shares.shares[i];
+                const ShareRecord& share = shares.shares[i];
                 if (share.beam < first || share.beam >= last) continue;
                 const Footprint cell = cellFootprint(slab.u(column + 0.5), slab.v(row + 0.5), share.u_low, share.u_high, dv,
                                                      setup.tan_elevation, texel[0], texel[1], texel[2]);
                 if (cell.solid_angle > 0)
-                    bins.depositCell(cell, share.beam, texel[0], texel[3], scale, bins.bin_count, setup.bins.bin_width, setup.attenuation);
+                    bins.depositCell(cell, share.beam, texel[0], texel[3], scale);
             }
         }
 }
@@ -102,7 +102,7 @@ void CpuDeposit::depositBeams(uint32_t first, uint32_t last) {
 }
 
 void CpuDeposit::depositSlab(size_t slab, uint32_t first, uint32_t last) {
-    const Bins bins{edges_.data(), sums_.data(), static_cast<uint>(setup_.bins.bin_count)};
+    const Bins bins{edges_.data(), sums_.data(), static_cast<uint>(setup_.bins.bin_count), setup_.bins.bin_width, setup_.attenuation};
     if (setup_.model == Model::Cerqueira2017)
         depositImage(setup_, slab, pictures_[slab].data(), CerqueiraBins{bins}, first, last);
     else

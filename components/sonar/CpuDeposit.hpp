@@ -1,12 +1,12 @@
 #pragma once
-#include "components/sonar/Deposit.hpp"
+#include "components/sonar/BinDeposit.hpp"
 #include "components/sonar/ThreadPool.hpp"
 
 namespace insonify::sonar {
 
 /** The deposit on the processor: reads the pictures back; each thread owns a run of beams, so none waits for another.
  */
-class CpuDeposit final : public Deposit {
+class CpuDeposit final : public BinDeposit {
 public:
     CpuDeposit(DepositSetup setup, ThreadPool& threads);
     void take(size_t slab, const gpu::Texture& picture) override;

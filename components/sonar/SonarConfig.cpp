@@ -36,8 +36,7 @@ void checkRangeReached(const SonarConfig& config, types::Problems& problems) {
 }  // namespace
 
 void AbsorptionConfig::check(types::Problems& problems) const {
-    if (db_per_m && frequency_khz)
-        problems.push_back({"db_per_m", "stands beside frequency_khz; give one of the two"});
+    if (db_per_m && frequency_khz) problems.push_back({"db_per_m", "stands beside frequency_khz; give one of the two"});
     if (!db_per_m && !frequency_khz)
         problems.push_back({"", "has no value; give db_per_m, or frequency_khz for a law"});
 }

@@ -113,6 +113,8 @@ struct SonarConfig {
     double beamWidthDeg() const { return bearings_deg.empty() ? field_of_view_deg / beam_count : *beam_width_deg; }
     /** Azimuth from the outer edge of the first beam to that of the last [deg], at most 360. */
     double coverageDeg() const;
+    int imageRows() const { return quality.rows; }
+    int columnsPerBeam() const { return quality.columns_per_beam; }
     /** Configured, or Leroy's of `water`, or 1500 [m/s]. */
     double speedOfSound() const;
 
@@ -140,7 +142,7 @@ void SonarConfig::describeBeam(Self& self, V& visit) {
     visit(Field{"range", "m", "far edge of the last bin", 0.001, 1e5}, self.range);
     visit(Field{"range_min", "m", "nearer echoes are blanked", 0, 1e5}, self.range_min);
     visit(Field{"bin_count", "1", "range bins per beam", 1, 65536}, self.bin_count);
-    visit(Field{"beam_width_deg", "deg", "opening of one beam, with bearings_deg", 0.001, 120}, self.beam_width_deg);
+    visit(Field{"beam_width_deg", "deg", "opening of one beam", 0.001, 120}, self.beam_width_deg);
     visit(Field{"beam_height_deg", "deg", "total elevation aperture", 0.001, 89.99}, self.beam_height_deg);
     visit(Field{"beam_geometry", "", "planar: az = a_k; conical: sin(az) cos(el) = sin(a_k)"}, self.beam_geometry);
     visit(Field{"speed_of_sound", "m/s", "absent: computed from water, else 1500", 1, 20000}, self.speed_of_sound);

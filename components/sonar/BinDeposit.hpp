@@ -31,15 +31,15 @@ std::vector<double> inverseEdges(const BinGrid& bins);
 constexpr double quanta_per_unit = 1099511627776.0;
 
 /** Spreads the pixels of the slabs over beams and bins. One interface, on the graphics card or on the processor. */
-class Deposit {
+class BinDeposit {
 public:
-    virtual ~Deposit() = default;
+    virtual ~BinDeposit() = default;
     /** Takes the picture of a slab, drawn last. Call for each slab once a ping. */
     virtual void take(size_t slab, const gpu::Texture& picture) = 0;
     /** Sums over all slabs taken since the last call, [beam][bin][channel] in quanta; valid until the next take. */
     virtual std::span<const uint64_t> finish() = 0;
 };
 
-std::unique_ptr<Deposit> makeGpuDeposit(const DepositSetup& setup);
+std::unique_ptr<BinDeposit> makeGpuDeposit(const DepositSetup& setup);
 
 }  // namespace insonify::sonar

@@ -1,4 +1,4 @@
-#include "components/sonar/Deposit.hpp"
+#include "components/sonar/BinDeposit.hpp"
 
 #include <algorithm>
 #include <limits>

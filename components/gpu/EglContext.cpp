@@ -1,0 +1,136 @@
+#include "components/gpu/EglContext.hpp"
+
+#include <epoxy/egl.h>
+#include <epoxy/gl.h>
+
+#include <charconv>
+#include <cstdlib>
+#include <utility>
+#include <vector>
+
+namespace insonify::gpu {
+namespace {
+
+constexpr const char* hint =
+    "install Mesa's software renderer (Debian: libegl1 libegl-mesa0 libgl1-mesa-dri) or a graphics driver with EGL, "
+    "and set the property `device` or INSONIFY_EGL_DEVICE to auto, software or a device number";
+
+bool clientHas(const char* extension) { return epoxy_has_egl_extension(EGL_NO_DISPLAY, extension); }
+
+std::vector<EGLDeviceEXT> devices() {
+    if (!clientHas("EGL_EXT_device_base") && !clientHas("EGL_EXT_device_enumeration")) return {};
+    EGLint count = 0;
+    if (!eglQueryDevicesEXT(0, nullptr, &count)) return {};
+    std::vector<EGLDeviceEXT> all(static_cast<size_t>(count));
+    eglQueryDevicesEXT(count, all.data(), &count);
+    return all;
+}
+
+bool isSoftwareDevice(EGLDeviceEXT device) {
+    const char* extensions = eglQueryDeviceStringEXT(device, EGL_EXTENSIONS);
+    return extensions && std::string(extensions).find("EGL_MESA_device_software") != std::string::npos;
+}
+
+EGLDisplay initialised(EGLDisplay display) {
+    return display != EGL_NO_DISPLAY && eglInitialize(display, nullptr, nullptr) ? display : EGL_NO_DISPLAY;
+}
+
+EGLDisplay deviceDisplay(EGLDeviceEXT device) {
+    return initialised(eglGetPlatformDisplayEXT(EGL_PLATFORM_DEVICE_EXT, device, nullptr));
+}
+
+EGLDisplay surfacelessDisplay() {
+    if (!clientHas("EGL_MESA_platform_surfaceless")) return EGL_NO_DISPLAY;
+    return initialised(eglGetPlatformDisplayEXT(EGL_PLATFORM_SURFACELESS_MESA, nullptr, nullptr));
+}
+
+/** A context of OpenGL 4.5 core, current on this thread; null when this display has none. */
+EGLContext contextOn(EGLDisplay display, bool robust) {
+    if (!eglBindAPI(EGL_OPENGL_API)) return EGL_NO_CONTEXT;
+    std::vector<EGLint> wish = {EGL_CONTEXT_MAJOR_VERSION, 4, EGL_CONTEXT_MINOR_VERSION, 5,
+                                EGL_CONTEXT_OPENGL_PROFILE_MASK, EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT};
+    if (robust)
+        wish.insert(wish.end(), {EGL_CONTEXT_OPENGL_ROBUST_ACCESS, EGL_TRUE,
+                                 EGL_CONTEXT_OPENGL_RESET_NOTIFICATION_STRATEGY, EGL_LOSE_CONTEXT_ON_RESET});
+    wish.push_back(EGL_NONE);
+    EGLContext context = eglCreateContext(display, EGL_NO_CONFIG_KHR, EGL_NO_CONTEXT, wish.data());
+    if (context == EGL_NO_CONTEXT) return context;
+    if (eglMakeCurrent(display, EGL_NO_SURFACE, EGL_NO_SURFACE, context)) return context;
+    eglDestroyContext(display, context);
+    return EGL_NO_CONTEXT;
+}
+
+/** The displays that a choice of device allows, best first. */
+std::vector<EGLDisplay> candidates(const std::string& device) {
+    std::vector<EGLDisplay> displays;
+    const auto all = devices();
+    if (device == "auto" || device == "software") {
+        for (bool software : {false, true})
+            for (EGLDeviceEXT candidate : all)
+                if (isSoftwareDevice(candidate) == software && (software || device == "auto"))
+                    displays.push_back(deviceDisplay(candidate));
+        displays.push_back(surfacelessDisplay());
+        return displays;
+    }
+    size_t index = 0;
+    const auto [end, fault] = std::from_chars(device.data(), device.data() + device.size(), index);
+    if (fault != std::errc{} || end != device.data() + device.size() || index >= all.size())
+        throw GlError("EGL device '" + device + "': must be auto, software or a number below " +
+                      std::to_string(all.size()) + ", the devices that EGL lists here");
+    return {deviceDisplay(all[index])};
+}
+
+void GLAPIENTRY remember(GLenum, GLenum type, GLuint, GLenum, GLsizei, const GLchar* message, const void* first) {
+    auto& text = *static_cast<std::string*>(const_cast<void*>(first));
+    if (type == GL_DEBUG_TYPE_ERROR && text.empty()) text = message;
+}
+
+}  // namespace
+
+EglContext::EglContext(const std::string& device) {
+    const char* variable = std::getenv("INSONIFY_EGL_DEVICE");
+    create(!device.empty() ? device : variable && *variable ? variable : "auto");
+    watch();
+}
+
+EglContext::~EglContext() {
+    if (std::this_thread::get_id() == thread_) eglMakeCurrent(display_, nullptr, nullptr, nullptr);
+    eglDestroyContext(display_, context_);  // the display is shared by all contexts of this process and stays
+}
+
+void EglContext::create(const std::string& device) {
+    for (EGLDisplay display : candidates(device))
+        for (bool robust : {true, false})
+            if (display != EGL_NO_DISPLAY && !context_) {
+                display_ = display;
+                context_ = contextOn(display, robust);
+                robust_ = robust;
+            }
+    if (!context_) throw GlError("no OpenGL 4.5 core context from EGL device '" + device + "': " + hint);
+}
+
+void EglContext::watch() {
+    renderer_ = reinterpret_cast<const char*>(glGetString(GL_RENDERER));
+    software_ = renderer_.find("llvmpipe") != std::string::npos || renderer_.find("softpipe") != std::string::npos;
+    glEnable(GL_DEBUG_OUTPUT);
+    glEnable(GL_DEBUG_OUTPUT_SYNCHRONOUS);
+    glDebugMessageControl(GL_DONT_CARE, GL_DONT_CARE, GL_DONT_CARE, 0, nullptr, GL_FALSE);
+    glDebugMessageControl(GL_DONT_CARE, GL_DEBUG_TYPE_ERROR, GL_DONT_CARE, 0, nullptr, GL_TRUE);
+    glDebugMessageCallback(remember, &error_);
+}
+
+void EglContext::requireThread() const {
+    if (std::this_thread::get_id() != thread_)
+        throw GlError("the OpenGL context was made on another thread: make, use and destroy it on one task's thread");
+}
+
+void EglContext::check() {
+    requireThread();
+    if (robust_ && glGetGraphicsResetStatus() != GL_NO_ERROR)
+        throw GlError("the OpenGL context was lost (" + renderer_ + "): restart the task; " + hint);
+    if (const GLenum code = glGetError(); code != GL_NO_ERROR && error_.empty())
+        error_ = "error " + std::to_string(code);
+    if (!error_.empty()) throw GlError("OpenGL: " + std::exchange(error_, {}));
+}
+
+}  // namespace insonify::gpu

@@ -1,0 +1,46 @@
+#pragma once
+#include <stdexcept>
+#include <string>
+#include <thread>
+
+namespace insonify::gpu {
+
+/** OpenGL or EGL said no; the message says what to install or set where that helps. */
+struct GlError : std::runtime_error {
+    using std::runtime_error::runtime_error;
+};
+
+/** A headless OpenGL 4.5 core context, current on the thread that made it and usable only there.
+ *
+ *  Needs no X server: devices by EGL_EXT_platform_device, else Mesa's surfaceless platform. `device` chooses:
+ *  "software" (Mesa llvmpipe), a number (position in EGL's device list), "auto" (the first graphics card that
+ *  gives a context, else software); empty: the environment variable INSONIFY_EGL_DEVICE, else "auto". */
+class EglContext {
+public:
+    explicit EglContext(const std::string& device = {});
+    ~EglContext();
+    EglContext(const EglContext&) = delete;
+    EglContext& operator=(const EglContext&) = delete;
+
+    /** Throws GlError on another thread than the one that made the context: there GL would silently do nothing. */
+    void requireThread() const;
+    /** Throws GlError with the first error that GL has reported since the last call, or when the context is lost. */
+    void check();
+
+    const std::string& renderer() const { return renderer_; }  ///< "llvmpipe (LLVM 15.0.6, 256 bits)".
+    bool isSoftware() const { return software_; }
+
+private:
+    void create(const std::string& device);
+    void watch();
+
+    void* display_ = nullptr;
+    void* context_ = nullptr;
+    std::thread::id thread_ = std::this_thread::get_id();
+    std::string renderer_;
+    std::string error_;
+    bool software_ = false;
+    bool robust_ = false;
+};
+
+}  // namespace insonify::gpu

@@ -1,0 +1,61 @@
+#include "components/gpu/Objects.hpp"
+
+#include <algorithm>
+#include <bit>
+
+#include "components/gpu/EglContext.hpp"
+
+namespace insonify::gpu {
+namespace {
+
+template <class Create> GLuint created(Create create) {
+    GLuint id = 0;
+    create(id);
+    return id;
+}
+
+}  // namespace
+
+Buffer::Buffer(size_t bytes, const void* data, GLbitfield flags)
+    : name_(created([](GLuint& id) { glCreateBuffers(1, &id); }), [](GLuint id) { glDeleteBuffers(1, &id); }),
+      bytes_(std::max<size_t>(bytes, 16)) {
+    glNamedBufferStorage(id(), static_cast<GLsizeiptr>(bytes_), bytes >= 16 ? data : nullptr, flags);
+    if (data && bytes > 0 && bytes < 16) write(data, bytes);
+}
+
+void Buffer::write(const void* data, size_t bytes, size_t offset) {
+    glNamedBufferSubData(id(), static_cast<GLintptr>(offset), static_cast<GLsizeiptr>(bytes), data);
+}
+
+void Buffer::read(void* data, size_t bytes, size_t offset) const {
+    glGetNamedBufferSubData(id(), static_cast<GLintptr>(offset), static_cast<GLsizeiptr>(bytes), data);
+}
+
+void Buffer::clear() { glClearNamedBufferData(id(), GL_R32UI, GL_RED_INTEGER, GL_UNSIGNED_INT, nullptr); }
+
+Texture::Texture(GLenum format, int width, int height, bool mipmapped)
+    : name_(created([](GLuint& id) { glCreateTextures(GL_TEXTURE_2D, 1, &id); }),
+            [](GLuint id) { glDeleteTextures(1, &id); }) {
+    const int levels = mipmapped ? std::bit_width(static_cast<unsigned>(std::max(width, height))) : 1;
+    glTextureStorage2D(id(), levels, format, width, height);
+}
+
+Framebuffer::Framebuffer(const Texture& colour, const Texture& depth)
+    : name_(created([](GLuint& id) { glCreateFramebuffers(1, &id); }), [](GLuint id) { glDeleteFramebuffers(1, &id); }) {
+    glNamedFramebufferTexture(id(), GL_COLOR_ATTACHMENT0, colour.id(), 0);
+    glNamedFramebufferTexture(id(), GL_DEPTH_ATTACHMENT, depth.id(), 0);
+    if (glCheckNamedFramebufferStatus(id(), GL_FRAMEBUFFER) != GL_FRAMEBUFFER_COMPLETE)
+        throw GlError("this device cannot draw into a 32-bit float picture of the size asked");
+}
+
+VertexArray::VertexArray()
+    : name_(created([](GLuint& id) { glCreateVertexArrays(1, &id); }), [](GLuint id) { glDeleteVertexArrays(1, &id); }) {}
+
+void VertexArray::attribute(GLuint location, const Buffer& buffer, int components) const {
+    glVertexArrayVertexBuffer(id(), location, buffer.id(), 0, components * static_cast<int>(sizeof(float)));
+    glEnableVertexArrayAttrib(id(), location);
+    glVertexArrayAttribFormat(id(), location, components, GL_FLOAT, GL_FALSE, 0);
+    glVertexArrayAttribBinding(id(), location, location);
+}
+
+}  // namespace insonify::gpu

@@ -1,0 +1,32 @@
+#pragma once
+#include <initializer_list>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "components/gpu/EglContext.hpp"
+#include "components/gpu/Objects.hpp"
+
+namespace insonify::gpu {
+
+/** Text of a file of shaders/, as built in. Throws GlError for an unknown name. */
+std::string_view shaderFile(std::string_view name);
+
+/** The file with its `#include "x.glsl"` lines replaced and `#define` lines put after `#version 450 core`. */
+std::string shaderSource(std::string_view name, const std::vector<std::string>& defines);
+
+/** A linked program. Compiler messages become the text of a GlError. */
+class Program {
+public:
+    Program() = default;
+    static Program raster(std::string_view vertex, std::string_view fragment, const std::vector<std::string>& defines);
+    static Program compute(std::string_view file, const std::vector<std::string>& defines);
+    void use() const { glUseProgram(name_.id()); }
+    GLuint id() const { return name_.id(); }
+
+private:
+    explicit Program(std::initializer_list<GLuint> shaders);
+    Name name_;
+};
+
+}  // namespace insonify::gpu

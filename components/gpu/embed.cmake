@@ -1,0 +1,10 @@
+# Writes OUTPUT: shaderFile(name), the text of each file in SHADERS.
+set(text "#include \"components/gpu/Program.hpp\"\n\nnamespace insonify::gpu {\n\n")
+string(APPEND text "std::string_view shaderFile(std::string_view name) {\n")
+foreach(file ${SHADERS})
+  get_filename_component(name ${file} NAME)
+  file(READ ${file} content)
+  string(APPEND text "    if (name == \"${name}\") return R\"GLSL(${content})GLSL\";\n")
+endforeach()
+string(APPEND text "    throw GlError(\"no shader file '\" + std::string(name) + \"'\");\n}\n\n}  // namespace insonify::gpu\n")
+file(WRITE ${OUTPUT} "${text}")

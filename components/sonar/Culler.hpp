@@ -1,0 +1,50 @@
+#pragma once
+#include <cstdint>
+#include <vector>
+
+#include "components/sonar/BeamFan.hpp"
+#include "components/sonar/Interface.hpp"
+#include "types/Snapshot.hpp"
+
+namespace insonify::sonar {
+
+/** Chooses what of a scene is drawn: objects, and clusters of triangles in them, whose bounding spheres reach a
+ *  slab's view within the range. */
+class Culler {
+public:
+    /** One draw: a run of triangles of one object and material; first_index counts within the object's mesh. */
+    struct Run {
+        uint32_t object, first_index, index_count;
+        int material;
+    };
+
+    /** `geometry` must outlive the culler. */
+    Culler(const types::Geometry& geometry, double range_max);
+
+    /** Places all objects relative to the sonar; once a ping, before `visible`. */
+    void place(const types::Snapshot& snapshot);
+    /** Runs that a slab may see, neighbours joined; valid until the next call. */
+    const std::vector<Run>& visible(const Slab& slab);
+    const std::vector<ObjectRecord>& records() const { return records_; }
+    size_t runLimit() const { return runs_.capacity(); }
+
+private:
+    struct Sphere {
+        glm::vec3 centre{0};
+        float radius = 0;
+    };
+    void placeObject(size_t index, const glm::dmat4& sonar_from_object);
+    void addRuns(size_t object, const Slab& slab);
+    bool sees(const Slab& slab, const Sphere& sphere) const;
+
+    const types::Geometry& geometry_;
+    float range_max_;
+    std::vector<Sphere> mesh_spheres_;      ///< In mesh coordinates.
+    std::vector<Sphere> object_spheres_;    ///< In the sonar frame.
+    std::vector<float> scales_;             ///< Largest stretch of each object [1].
+    std::vector<glm::dmat4> world_from_object_;
+    std::vector<ObjectRecord> records_;
+    std::vector<Run> runs_;
+};
+
+}  // namespace insonify::sonar

@@ -1,0 +1,76 @@
+#include <string>
+
+#include "components/gpu/Program.hpp"
+#include "components/sonar/BinDeposit.hpp"
+
+namespace insonify::sonar {
+namespace {
+
+/** The deposit as a compute shader: pictures stay on the device, only the sums come back. */
+class GpuDeposit final : public BinDeposit {
+public:
+    explicit GpuDeposit(const DepositSetup& setup);
+    void take(size_t slab, const gpu::Texture& picture) override;
+    std::span<const uint64_t> finish() override;
+
+private:
+    struct SlabShares { gpu::Buffer starts, shares; };
+    void setUniforms(const Slab& slab, bool shares_per_row) const;
+    GLint uniform(const char* name) const { return glGetUniformLocation(program_.id(), name); }
+
+    DepositSetup setup_;
+    gpu::Program program_;
+    gpu::Buffer edges_, device_sums_;
+    std::vector<SlabShares> shares_;
+    std::vector<uint64_t> sums_;
+    bool cleared_ = false;
+};
+
+GpuDeposit::GpuDeposit(const DepositSetup& setup) : setup_(setup), sums_(setup.sumCount()) {
+    std::vector<std::string> defines;
+    if (setup.model == Model::Cerqueira2017) defines.push_back("HAVE_CERQUEIRA2017");
+    program_ = gpu::Program::compute("deposit.comp.glsl", defines);
+    const auto edges = inverseEdges(setup.bins);
+    edges_ = gpu::Buffer::of(std::span(edges));
+    device_sums_ = gpu::Buffer(sums_.size() * sizeof(uint64_t));
+    for (const ColumnShares& slab : setup.shares)
+        shares_.push_back({gpu::Buffer::of(std::span(slab.starts)), gpu::Buffer::of(std::span(slab.shares))});
+}
+
+void GpuDeposit::setUniforms(const Slab& slab, bool shares_per_row) const {
+    glUniform2i(uniform("image_size"), slab.columns, slab.rows);
+    glUniform1i(uniform("shares_per_row"), shares_per_row);
+    glUniform1ui(uniform("bin_count"), static_cast<GLuint>(setup_.bins.bin_count));
+    glUniform1d(uniform("tan_elevation"), setup_.tan_elevation);
+    glUniform1d(uniform("bin_width"), setup_.bins.bin_width);
+    glUniform1d(uniform("attenuation"), setup_.attenuation);
+    glUniform2d(uniform("extent"), slab.extent_u, slab.extent_v);
+    glUniform2d(uniform("pixel_size"), slab.du(), slab.dv());
+}
+
+void GpuDeposit::take(size_t slab, const gpu::Texture& picture) {
+    if (!std::exchange(cleared_, true)) device_sums_.clear();
+    program_.use();
+    setUniforms(setup_.slabs[slab], setup_.shares[slab].per_row);
+    picture.bind(0);
+    shares_[slab].shares.bindBase(GL_SHADER_STORAGE_BUFFER, SHARES_BINDING);
+    shares_[slab].starts.bindBase(GL_SHADER_STORAGE_BUFFER, SHARE_STARTS_BINDING);
+    edges_.bindBase(GL_SHADER_STORAGE_BUFFER, EDGES_BINDING);
+    device_sums_.bindBase(GL_SHADER_STORAGE_BUFFER, SUMS_BINDING);
+    glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_FRAMEBUFFER_BARRIER_BIT);
+    const auto groups = [](int pixels) { return static_cast<GLuint>((pixels + 7) / 8); };
+    glDispatchCompute(groups(setup_.slabs[slab].columns), groups(setup_.slabs[slab].rows), 1);
+}
+
+std::span<const uint64_t> GpuDeposit::finish() {
+    if (!std::exchange(cleared_, false)) device_sums_.clear();  // no slab held anything
+    glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
+    device_sums_.read(sums_.data(), sums_.size() * sizeof(uint64_t));
+    return sums_;
+}
+
+}  // namespace
+
+std::unique_ptr<BinDeposit> makeGpuDeposit(const DepositSetup& setup) { return std::make_unique<GpuDeposit>(setup); }
+
+}  // namespace insonify::sonar

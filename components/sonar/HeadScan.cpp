@@ -1,0 +1,47 @@
+#include "components/sonar/HeadScan.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+namespace insonify::sonar {
+
+void HeadConfig::check(types::Problems& problems) const {
+    if (left_deg <= right_deg)
+        return problems.push_back(
+            {"left_deg",
+             fmt::format("is {} deg; must be above right_deg, {} deg (positive to port)", left_deg, right_deg)});
+    if (sectorDeg() > 360)
+        problems.push_back({"left_deg", fmt::format("is {} deg from right_deg; may be at most 360 deg", sectorDeg())});
+    if (turnsOn() && sectorDeg() != 360)
+        problems.push_back(
+            {"continuous", fmt::format("is true over a sector of {} deg; the limits of a head that turns "
+                                       "on are 360 deg apart, or absent",
+                                       sectorDeg())});
+    if (step_deg > sectorDeg())
+        problems.push_back({"step_deg", fmt::format("is {} deg; the sector has {} deg", step_deg, sectorDeg())});
+}
+
+SonarConfig ScanningSonarConfig::beam() const {
+    SonarConfig one = sonar;
+    one.bearings_deg = {0};
+    return one;
+}
+
+HeadScan::HeadScan(const HeadConfig& config)
+    : config_(config), steps_(static_cast<int64_t>(std::floor(config.sectorDeg() / config.step_deg + 1e-9))) {}
+
+double HeadScan::bearingDeg() const {
+    if (config_.turnsOn()) return config_.left_deg - std::fmod(static_cast<double>(ping_) * config_.step_deg, 360.0);
+    const int64_t phase = ping_ % (2 * steps_);
+    const int64_t step = phase <= steps_ ? phase : 2 * steps_ - phase;
+    return config_.left_deg - static_cast<double>(step) * config_.step_deg;
+}
+
+void HeadScan::advance() { ++ping_; }
+
+double stepDuration(const HeadConfig& config) {
+    return config.speed_deg_per_s ? config.step_deg / *config.speed_deg_per_s : 0;
+}
+
+}  // namespace insonify::sonar

@@ -1,0 +1,14 @@
+#pragma once
+// shaders/interface.glsl as C++ structs: one file describes the layout to both languages.
+#include <cstdint>
+#include <glm/vec4.hpp>
+
+namespace insonify::sonar {
+
+using glm::vec4;
+using uint = uint32_t;
+#include "shaders/interface.glsl"
+
+static_assert(sizeof(ObjectRecord) == 96 && sizeof(CommandRecord) == 16 && sizeof(MaterialRecord) == 16 && sizeof(ShareRecord) == 24);
+
+}  // namespace insonify::sonar

@@ -1,0 +1,40 @@
+#include "components/sonar/ScanningSonarTask.hpp"
+
+#include <fmt/format.h>
+
+#include "types/Angle.hpp"
+#include "types/ConfigError.hpp"
+
+namespace insonify::sonar {
+
+bool ScanningSonarTask::startHook() {
+    scan_.emplace(config->head);
+    last_.reset();
+    step_checked_ = false;
+    return true;
+}
+
+const char* ScanningSonarTask::aim(types::Snapshot& snapshot) {
+    if (last_ && snapshot.time < *last_) return "the snapshot is older than the one before";
+    if (last_ && !step_checked_) checkStep((snapshot.time - *last_).seconds());
+    step_checked_ = last_.has_value();
+    last_ = snapshot.time;
+    const double bearing = types::radians(scan_->bearingDeg());
+    snapshot.sonar.orientation *= glm::angleAxis(bearing, glm::dvec3(0, 0, 1));
+    return nullptr;
+}
+
+void ScanningSonarTask::label(types::Sonar& ping) {
+    ping.bearings[0] = types::Angle::fromDeg(scan_->bearingDeg());
+    scan_->advance();
+}
+
+void ScanningSonarTask::checkStep(double period) const {
+    const double needed = stepDuration(config->head);
+    if (needed <= period * 1.01) return;  // one per cent for the jitter of a wall clock
+    throw types::ConfigError("", name() + ".head.step_deg",
+                             fmt::format("is {} deg, which takes {:.4g} s at {} deg/s; the ping period is {:.4g} s",
+                                         config->head.step_deg, needed, *config->head.speed_deg_per_s, period));
+}
+
+}  // namespace insonify::sonar

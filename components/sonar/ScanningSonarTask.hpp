@@ -1,0 +1,34 @@
+#pragma once
+#include <optional>
+
+#include "components/framework/Properties.hpp"
+#include "components/sonar/HeadScan.hpp"
+#include "components/sonar/SonarTaskBase.hpp"
+
+namespace insonify::sonar {
+
+/** A mechanically scanning sonar: one beam per ping, each at its own pose and bearing of the head.
+ *
+ *  The scan starts at `head.left_deg` with the first ping after start. A snapshot older than the one before leads to
+ *  RunTimeError until time goes on. A step that `head.speed_deg_per_s` cannot make between the first two pings is an
+ *  error of the configuration. */
+class ScanningSonarTask final : public SonarTaskBase {
+public:
+    using SonarTaskBase::SonarTaskBase;
+    framework::Properties<ScanningSonarConfig> config{this};
+
+protected:
+    SonarConfig sonarConfig() const override { return config->beam(); }
+    bool startHook() override;
+    const char* aim(types::Snapshot& snapshot) override;
+    void label(types::Sonar& ping) override;
+
+private:
+    void checkStep(double period) const;
+
+    std::optional<HeadScan> scan_;
+    std::optional<types::Time> last_;  ///< Of the ping before.
+    bool step_checked_ = false;
+};
+
+}  // namespace insonify::sonar

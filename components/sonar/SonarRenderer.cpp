@@ -1,0 +1,161 @@
+#include "components/sonar/SonarRenderer.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+
+#include "components/gpu/EglContext.hpp"
+#include "components/sonar/Acoustics.hpp"
+#include "components/sonar/BinLevels.hpp"
+#include "components/sonar/CpuDeposit.hpp"
+#include "components/sonar/Plan.hpp"
+#include "components/sonar/SurfacePass.hpp"
+#include "types/Angle.hpp"
+
+namespace insonify::sonar {
+namespace {
+
+std::vector<std::string> defines(const types::Plan& plan) {
+    std::vector<std::string> result;
+    for (std::string feature : plan.features) {
+        std::transform(feature.begin(), feature.end(), feature.begin(), [](unsigned char c) { return static_cast<char>(std::toupper(c)); });
+        result.push_back("HAVE_" + feature);
+    }
+    return result;
+}
+
+/** Distance of the image plane before which nothing is drawn: under the blanking even in the picture's corners. */
+double nearPlane(const SonarConfig& config, const Slab& slab) {
+    const double corner = std::sqrt(1 + slab.extent_u * slab.extent_u + slab.extent_v * slab.extent_v);
+    return std::max(config.range_min, 1e-3) / corner;
+}
+
+DepositSetup depositSetup(const SonarConfig& config, const std::vector<Beam>& beams, const std::vector<Slab>& slabs, const BinGrid& bins) {
+    DepositSetup setup;
+    setup.slabs = slabs;
+    for (const Slab& slab : slabs) setup.shares.push_back(makeShares(config, beams, slab));
+    setup.beam_count = static_cast<uint32_t>(beams.size());
+    setup.bins = bins;
+    setup.tan_elevation = std::tan(types::radians(config.beam_height_deg) / 2);
+    setup.attenuation = config.model == Model::Cerqueira2017 ? makeAbsorption(config).amplitudeNepersPerMetre() : 0;
+    setup.model = config.model;
+    return setup;
+}
+
+}  // namespace
+
+struct SonarRenderer::Parts {
+    Parts(const SonarConfig& config, types::GeometryPtr scene);
+    void drawSlabs(const types::Snapshot& snapshot);
+    void fillHeader(const types::Snapshot& snapshot, types::Sonar& ping) const;
+    void fillBins(std::span<const uint64_t> sums, types::Sonar& ping);
+    void fillBeam(std::span<const uint64_t> sums, size_t beam, double* scratch, types::Sonar& ping) const;
+    /** Seconds since the last call, put down for a stage. */
+    void lap(size_t stage);
+
+    SonarConfig config;
+    types::GeometryPtr geometry;
+    types::Plan plan;
+    gpu::EglContext context;
+    std::vector<Beam> beams;
+    std::vector<Slab> slabs;
+    BinGrid bins;
+    BinLevels levels;
+    Culler culler;
+    SurfacePass surface;
+    ThreadPool threads;
+    std::unique_ptr<BinDeposit> deposit;
+    std::vector<double> scratch;
+    std::array<Stage, 5> stages{{{"cull", 0}, {"draw", 0}, {"read", 0}, {"deposit", 0}, {"beams", 0}}};
+    std::chrono::steady_clock::time_point last;
+};
+
+SonarRenderer::Parts::Parts(const SonarConfig& c, types::GeometryPtr scene)
+    : config(c), geometry(std::move(scene)), plan(makePlan(config, *geometry)), context(config.device),
+      beams(makeBeams(config)), slabs(makeSlabs(config, beams)), bins(makeBinGrid(config)), levels(config, bins),
+      culler(*geometry, bins.range_max),
+      surface(*geometry, slabs, defines(plan), nearPlane(config, slabs.front()), culler.runLimit()) {
+    DepositSetup setup = depositSetup(config, beams, slabs, bins);
+    const bool on_cpu = config.deposit == Deposit::Cpu || (config.deposit == Deposit::Auto && context.isSoftware());
+    if (on_cpu) deposit = std::make_unique<CpuDeposit>(std::move(setup), threads);
+    else deposit = makeGpuDeposit(setup);
+    scratch.resize(static_cast<size_t>(threads.size()) * static_cast<size_t>(bins.bin_count));
+    context.check();
+}
+
+void SonarRenderer::Parts::lap(size_t stage) {
+    const auto now = std::chrono::steady_clock::now();
+    stages[stage].seconds += std::chrono::duration<double>(now - last).count();
+    last = now;
+}
+
+void SonarRenderer::Parts::drawSlabs(const types::Snapshot& snapshot) {
+    culler.place(snapshot);
+    surface.place(culler.records());
+    for (size_t i = 0; i < slabs.size(); ++i) {
+        const auto& runs = culler.visible(slabs[i]);
+        lap(0);
+        if (runs.empty()) continue;
+        surface.draw(slabs[i], runs);
+        glFinish();
+        lap(1);
+        deposit->take(i, surface.picture());
+        lap(2);
+    }
+}
+
+void SonarRenderer::Parts::fillHeader(const types::Snapshot& snapshot, types::Sonar& ping) const {
+    ping.time = snapshot.time;
+    ping.timestamps.clear();
+    ping.bin_duration.microseconds = bins.bin_duration_us;
+    ping.beam_width = types::Angle::fromDeg(config.beamWidthDeg());
+    ping.beam_height = types::Angle::fromDeg(config.beam_height_deg);
+    ping.bearings.resize(beams.size());
+    for (size_t k = 0; k < beams.size(); ++k) ping.bearings[k] = types::Angle::fromRad(beams[k].centre);
+    ping.speed_of_sound = static_cast<float>(bins.speed_of_sound);
+    ping.bin_count = static_cast<uint32_t>(bins.bin_count);
+    ping.beam_count = static_cast<uint32_t>(beams.size());
+    ping.bins.resize(beams.size() * static_cast<size_t>(bins.bin_count));
+}
+
+void SonarRenderer::Parts::fillBeam(std::span<const uint64_t> sums, size_t beam, double* values, types::Sonar& ping) const {
+    const auto count = static_cast<size_t>(bins.bin_count);
+    const double pixel = slabs.front().du() * slabs.front().dv();  // solid angle of a whole pixel [sr]
+    for (size_t k = 0; k < count; ++k) {
+        const size_t at = beam * count + k;
+        if (config.model == Model::Physical) values[k] = static_cast<double>(sums[at]) * (pixel / quanta_per_unit);
+        else values[k] = sums[2 * at + 1] ? static_cast<double>(sums[2 * at]) / static_cast<double>(sums[2 * at + 1]) : 0;
+    }
+    levels.apply({values, count}, {ping.bins.data() + beam * count, count});
+}
+
+void SonarRenderer::Parts::fillBins(std::span<const uint64_t> sums, types::Sonar& ping) {
+    threads.run([&](int part, int parts) {
+        double* values = scratch.data() + static_cast<size_t>(part) * static_cast<size_t>(bins.bin_count);
+        for (auto beam = static_cast<size_t>(part); beam < beams.size(); beam += static_cast<size_t>(parts)) fillBeam(sums, beam, values, ping);
+    });
+}
+
+SonarRenderer::SonarRenderer(const SonarConfig& config, types::GeometryPtr geometry)
+    : parts_(std::make_unique<Parts>(config, std::move(geometry))) {}
+
+SonarRenderer::~SonarRenderer() = default;
+
+void SonarRenderer::render(const types::Snapshot& snapshot, types::Sonar& ping) {
+    parts_->context.requireThread();
+    for (Stage& stage : parts_->stages) stage.seconds = 0;
+    parts_->last = std::chrono::steady_clock::now();
+    parts_->drawSlabs(snapshot);
+    parts_->context.check();
+    const auto sums = parts_->deposit->finish();
+    parts_->lap(3);
+    parts_->fillHeader(snapshot, ping);
+    parts_->fillBins(sums, ping);
+    parts_->lap(4);
+}
+
+std::span<const SonarRenderer::Stage> SonarRenderer::stages() const { return parts_->stages; }
+const types::Plan& SonarRenderer::plan() const { return parts_->plan; }
+const std::string& SonarRenderer::device() const { return parts_->context.renderer(); }
+
+}  // namespace insonify::sonar

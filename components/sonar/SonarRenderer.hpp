@@ -1,0 +1,42 @@
+#pragma once
+#include <array>
+#include <memory>
+#include <span>
+
+#include "components/sonar/SonarConfig.hpp"
+#include "types/Plan.hpp"
+#include "types/Snapshot.hpp"
+#include "types/Sonar.hpp"
+
+namespace insonify::sonar {
+
+/** Renders what a sonar hears of a geometry, noiseless. Make it, use it and destroy it on one thread.
+ *
+ *      SonarRenderer renderer(config, geometry);
+ *      renderer.render(snapshot, ping);    // ping.bins[beam * bin_count + bin]
+ *
+ *  Throws gpu::GlError when there is no OpenGL 4.5 context, or when it is lost. */
+class SonarRenderer {
+public:
+    SonarRenderer(const SonarConfig& config, types::GeometryPtr geometry);
+    ~SonarRenderer();
+
+    /** One ping from snapshot.sonar (sonar frame in the world; orientation of unit length). Fills the whole sample;
+     *  allocates nothing when `ping` has been filled by this renderer before. */
+    void render(const types::Snapshot& snapshot, types::Sonar& ping);
+
+    struct Stage {
+        const char* name;
+        double seconds;
+    };
+    /** Where the time of the last ping went: cull, draw, read, deposit, beams. */
+    std::span<const Stage> stages() const;
+    const types::Plan& plan() const;
+    const std::string& device() const;  ///< Name of the OpenGL renderer in use.
+
+private:
+    struct Parts;
+    std::unique_ptr<Parts> parts_;
+};
+
+}  // namespace insonify::sonar

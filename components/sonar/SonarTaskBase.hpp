@@ -1,0 +1,55 @@
+#pragma once
+#include <memory>
+#include <optional>
+
+#include "components/framework/Port.hpp"
+#include "components/framework/SamplePool.hpp"
+#include "components/framework/TaskContext.hpp"
+#include "components/sonar/SonarRenderer.hpp"
+#include "types/Snapshot.hpp"
+#include "types/Sonar.hpp"
+
+namespace insonify::sonar {
+
+/** What the sonar tasks share: one ping for each snapshot, at the snapshot's time and sonar pose.
+ *
+ *  The renderer is made at the first snapshot, when the geometry is known, and again when the geometry changes. A
+ *  snapshot that cannot be rendered (a pose that is not finite, a quaternion of no length, no geometry) leads to
+ *  RunTimeError, from which the next good one recovers. A quaternion that is not of unit length is normalised. */
+class SonarTaskBase : public framework::TaskContext {
+public:
+    using TaskContext::TaskContext;
+
+    framework::InputPort<types::SnapshotPtr> snapshot{this, "snapshot", "sonar pose and scene at one instant"};
+    framework::OutputPort<types::SonarPtr> ping{this, "ping", "one ping, noiseless, at the time of its snapshot"};
+
+    const types::Plan* plan() const override { return plan_ ? &*plan_ : nullptr; }
+    std::vector<std::string> notices() const override;
+
+protected:
+    /** The sonar to render, as configured. */
+    virtual SonarConfig sonarConfig() const = 0;
+    /** Last changes to a snapshot with a valid pose before it is rendered; a reason refuses it. */
+    virtual const char* aim(types::Snapshot& /*snapshot*/) { return nullptr; }
+    /** Last changes to a ping before it is written. */
+    virtual void label(types::Sonar& /*ping*/) {}
+
+    bool configureHook() override;
+    void updateHook() override;
+    void errorHook() override { updateHook(); }
+    void cleanupHook() override { renderer_.reset(); }
+
+private:
+    void render();
+
+    std::unique_ptr<SonarRenderer> renderer_;
+    std::optional<types::Plan> plan_;  ///< Outlives the renderer, for the summary.
+    types::GeometryPtr geometry_;      ///< The renderer's.
+    types::Snapshot aimed_;
+    framework::SamplePool<types::Sonar> pool_;
+};
+
+/** Why a pose cannot be used, null when it can; makes its quaternion one of unit length. */
+const char* normalisePose(types::Pose& pose);
+
+}  // namespace insonify::sonar

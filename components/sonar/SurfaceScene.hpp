@@ -1,0 +1,34 @@
+#pragma once
+#include <vector>
+
+#include "components/gpu/Objects.hpp"
+#include "components/sonar/Interface.hpp"
+#include "types/Geometry.hpp"
+
+namespace insonify::sonar {
+
+/** A geometry on the device: all meshes behind one another, a plane for each triangle, materials, normal maps. */
+class SurfaceScene {
+public:
+    /** Where a mesh begins in the shared buffers. */
+    struct MeshPlace { uint32_t first_vertex, first_index, first_triangle; };
+
+    SurfaceScene(const types::Geometry& geometry, bool with_normal_maps);
+    const MeshPlace& place(int mesh) const { return places_[static_cast<size_t>(mesh)]; }
+    void bind() const;
+    /** Binds the normal map of a material; the flat map when it has none. */
+    void bindNormalMap(int map) const;
+
+private:
+    void uploadVertices(const types::Geometry& geometry, bool with_normal_maps);
+    void uploadPlanes(const types::Geometry& geometry);
+    void uploadMaterials(const types::Geometry& geometry);
+    void uploadNormalMaps(const types::Geometry& geometry);
+
+    std::vector<MeshPlace> places_;
+    gpu::VertexArray vertices_;
+    gpu::Buffer positions_, normals_, tangents_, uvs_, indices_, planes_, materials_;
+    std::vector<gpu::Texture> normal_maps_;  ///< The last one is flat.
+};
+
+}  // namespace insonify::sonar

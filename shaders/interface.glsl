@@ -1,0 +1,32 @@
+// Shared by C++ and GLSL: what the surface pass and the deposit are told. Groups of 16 bytes, so that std430 and C++ agree.
+
+#define OBJECTS_BINDING 0
+#define COMMANDS_BINDING 1
+#define PLANES_BINDING 2
+#define MATERIALS_BINDING 3
+#define SHARES_BINDING 4
+#define SHARE_STARTS_BINDING 5
+#define EDGES_BINDING 6
+#define SUMS_BINDING 7
+
+// One placing of a mesh, relative to the sonar: rows of the matrix from object to sonar axes, and of its inverse transpose.
+struct ObjectRecord {
+    vec4 row_x, row_y, row_z;           // xyz: matrix row [1], w: translation [m]
+    vec4 normal_x, normal_y, normal_z;  // xyz: row of the inverse transpose [1]
+};
+
+// One draw of a run of triangles.
+struct CommandRecord {
+    uint object, first_triangle, material, unused;
+};
+
+// What the model needs of a material: x mu = 10^(lambert_db/10), y reflectivity, z normal scale.
+struct MaterialRecord {
+    vec4 values;
+};
+
+// The part [u_low, u_high] of an image column that belongs to one beam; u = tan(azimuth in the slab).
+struct ShareRecord {
+    double u_low, u_high;
+    uint beam, unused;
+};
