@@ -36,6 +36,9 @@ public:
     template <types::Described T>
     bool read(const YAML::Node& node, const std::string& path, T& value);
 
+    /** Problems of a block, each at the node that its path leads to. */
+    void report(const YAML::Node& block, const std::string& path, const types::Problems& problems);
+
     bool isMap(const YAML::Node& node, const std::string& path);       ///< A map or empty, keys unique; else a fault.
     bool isSequence(const YAML::Node& node, const std::string& path);  ///< Else a fault.
     /** A fault for each key that is not among `known`, with the nearest known one. */
@@ -58,7 +61,6 @@ private:
     bool vector3(const YAML::Node& node, const std::string& path, const types::Field& field, glm::dvec3& value);
     template <Number T>
     bool readNumber(const YAML::Node& node, const std::string& path, const types::Field& field, T& value);
-    void report(const YAML::Node& block, const std::string& path, const types::Problems& problems);
 
     std::string file_;
     std::vector<std::string> set_paths_;
@@ -145,7 +147,10 @@ bool ConfigReader::read(const YAML::Node& node, const std::string& path, T& valu
 
 template <class T>
 bool ConfigReader::readValue(const YAML::Node& node, const std::string& path, const types::Field& field, T& value) {
-    if constexpr (std::same_as<T, bool>) {
+    if constexpr (std::same_as<T, YAML::Node>) {
+        value.reset(node);  // read later, by somebody who knows what it is
+        return true;
+    } else if constexpr (std::same_as<T, bool>) {
         return boolean(node, path, value);
     } else if constexpr (Number<T>) {
         return readNumber(node, path, field, value);

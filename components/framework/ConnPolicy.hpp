@@ -1,5 +1,8 @@
 #pragma once
 #include <cstddef>
+#include <string_view>
+
+#include "types/Describe.hpp"
 
 namespace insonify::framework {
 
@@ -7,7 +10,7 @@ namespace insonify::framework {
 struct ConnPolicy {
     enum Type { Data, Buffer, CircularBuffer };
     Type type =
-        Data;  ///< Data: newest only. Buffer: when full, the newest is refused. CircularBuffer: the oldest is dropped.
+        Data;  ///< Data: newest only. Full Buffer: the newest is refused. Full CircularBuffer: the oldest is dropped.
     size_t size = 1;    ///< Capacity of a buffer [samples].
     bool init = false;  ///< Hand the writer's last sample to a reader that connects later.
 
@@ -17,3 +20,8 @@ struct ConnPolicy {
 };
 
 }  // namespace insonify::framework
+
+template <>
+struct insonify::types::EnumNames<insonify::framework::ConnPolicy::Type> {
+    static constexpr std::string_view names[] = {"data", "buffer", "circular_buffer"};
+};

@@ -1,5 +1,6 @@
 #pragma once
 #include <atomic>
+#include <chrono>
 #include <cstdint>
 #include <filesystem>
 #include <functional>
@@ -32,7 +33,7 @@ struct RunLimits {
 };
 
 struct Progress {
-    uint64_t pings = 0;  ///< Written by every sonar.
+    uint64_t pings = 0;    ///< Written by every sonar.
     double elapsed_s = 0;  ///< On the deployment's clock [s].
     double wall_s = 0;     ///< [s]
 };
@@ -89,16 +90,17 @@ public:
 private:
     friend class Wiring;
     void setClock();
-    bool startAll(std::vector<std::string>& failures);
-    void stopAll(std::vector<std::string>& failures);
     void runLockstep(const RunLimits& limits, const std::atomic<bool>& stop,
                      const std::function<void(const Progress&)>& progress);
     void runRealtime(const RunLimits& limits, const std::atomic<bool>& stop,
                      const std::function<void(const Progress&)>& progress);
-    bool broken() const;
+    bool startAll(std::vector<std::string>& failures);
+    void stopAll(std::vector<std::string>& failures);
+    void stopOne(TaskContext& task, std::vector<std::string>& failures);
+    void noteBroken(std::vector<std::string>& failures) const;
+    bool broken(const RunLimits& limits) const;
     bool reached(const RunLimits& limits) const;
     Progress progressNow() const;
-    types::Diagnostic configureFault(const TaskContext& task, const std::string& why) const;
 
     DeploymentSpec spec_;
     std::shared_ptr<Environment> environment_;
@@ -107,8 +109,8 @@ private:
     std::vector<TaskContext*> order_;
     std::vector<const OutputPortBase*> sonars_;
     std::atomic<int64_t> simulated_us_{0};
-    int64_t start_us_ = 0;
-    double wall_start_s_ = 0;
+    types::Time start_;
+    std::chrono::steady_clock::time_point wall_start_;
 };
 
 /** Which seed a task gets from `run --seed`: stable over runs, machines and versions; below 2^53. */

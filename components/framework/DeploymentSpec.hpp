@@ -22,7 +22,7 @@ struct ConnectionSpec {
     std::string from, to;  ///< "task.port"
     ConnPolicy policy;
     YAML::Node place{YAML::NodeType::Undefined};
-    std::string path;      ///< "connections[2]"
+    std::string path;  ///< "connections[2]"
 };
 
 /** A deployment as written: nothing in it is made or checked against the tasks yet, and all of it may be edited.
@@ -31,11 +31,11 @@ struct DeploymentSpec {
     std::string file;  ///< As given, for faults.
     std::string text;  ///< The YAML as read.
     bool lockstep = true;
-    double start_time = 1;                 ///< Of simulated time [s].
-    std::vector<std::string> libraries;    ///< Shared objects, relative to the deployment file.
-    std::vector<TaskSpec> tasks;           ///< In file order, the order of configuring.
+    double start_time = 1;               ///< Of simulated time [s].
+    std::vector<std::string> libraries;  ///< Shared objects, relative to the deployment file.
+    std::vector<TaskSpec> tasks;         ///< In file order, the order of configuring.
     std::vector<ConnectionSpec> connections;
-    std::vector<std::string> set_paths;    ///< "tasks.sonar.properties.range": what set() has changed.
+    std::vector<std::string> set_paths;  ///< "tasks.sonar.properties.range": what set() has changed.
     std::vector<types::Diagnostic> faults;
 
     /** Throws types::ConfigError when there is no text to be read or it is not YAML; other faults go to `faults`. */

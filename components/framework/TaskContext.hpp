@@ -130,7 +130,8 @@ protected:
     virtual void exceptionHook() {}
 
     /** Running -> RunTimeError: recoverable trouble; from here errorHook runs instead of updateHook.
-     *  The default errorHook does nothing; a task that heals itself calls recover() from it. */
+     *  The default errorHook does nothing; a task that heals itself calls recover() from it. Only while running: a hook
+     *  of another transition keeps the text for its refusal, and throws where it cannot refuse. */
     void error(const std::string& why);
     /** Time of one named stage of this cycle [s]; names must be string literals met in the first cycle. */
     void recordStage(const char* name, double seconds);

@@ -1,0 +1,204 @@
+#include "components/framework/Deployment.hpp"
+
+#include <algorithm>
+#include <limits>
+
+#include "components/framework/Activity.hpp"
+#include "components/framework/Lockstep.hpp"
+#include "components/framework/Wiring.hpp"
+
+namespace insonify::framework {
+namespace {
+
+constexpr const char* sonar_type = "/base/samples/Sonar";
+
+template <class Ports>
+bool hasSonar(const Ports& ports) {
+    return std::any_of(ports.begin(), ports.end(), [](const auto* port) { return port->typeName() == sonar_type; });
+}
+
+bool hasFailed(const TaskContext& task) {
+    return task.state() == TaskState::Exception || task.state() == TaskState::FatalError;
+}
+
+bool holdsSamples(const TaskContext& task) {
+    const auto& inputs = task.inputs();
+    return std::any_of(inputs.begin(), inputs.end(), [](const auto* port) { return port->hasNew(); });
+}
+
+}  // namespace
+
+uint64_t seedOf(uint64_t seed, const std::string& task) {
+    uint64_t hash = 0xcbf29ce484222325;  // FNV-1a of the name, then splitmix64 with the seed
+    for (const char c : task) hash = (hash ^ static_cast<unsigned char>(c)) * 0x100000001b3;
+    hash += seed * 0x9e3779b97f4a7c15;
+    hash = (hash ^ (hash >> 30)) * 0xbf58476d1ce4e5b9;
+    hash = (hash ^ (hash >> 27)) * 0x94d049bb133111eb;
+    return (hash ^ (hash >> 31)) >> 11;
+}
+
+Deployment::Deployment(DeploymentSpec spec, Registry& registry, std::filesystem::path output_folder, uint64_t seed)
+    : spec_(std::move(spec)), environment_(std::make_shared<Environment>()) {
+    const auto folder = std::filesystem::path(spec_.file).parent_path();
+    environment_->input_folder = folder.empty() ? "." : folder;
+    environment_->output_folder = std::move(output_folder);
+    environment_->lockstep = spec_.lockstep;
+    environment_->deployment_text = spec_.text;
+    environment_->seed = seed;
+    start_ = types::Time::fromSeconds(spec_.start_time);
+    setClock();
+    Wiring(*this, registry).make(seed);
+    for (const auto& task : tasks_)
+        for (const OutputPortBase* port : task->outputs())
+            if (port->typeName() == sonar_type && !hasSonar(task->inputs())) sonars_.push_back(port);
+}
+
+Deployment::~Deployment() { cleanup(); }
+
+void Deployment::setClock() {
+    simulated_us_ = start_.microseconds;
+    environment_->start_time = [this] { return start_; };
+    if (spec_.lockstep)
+        environment_->now = [this] { return types::Time{simulated_us_.load()}; };
+    else
+        environment_->now = [] {
+            const auto since_epoch = std::chrono::system_clock::now().time_since_epoch();
+            return types::Time{std::chrono::duration_cast<std::chrono::microseconds>(since_epoch).count()};
+        };
+}
+
+TaskContext* Deployment::task(const std::string& name) const {
+    for (const auto& task : tasks_)
+        if (task->name() == name) return task.get();
+    return nullptr;
+}
+
+void Deployment::configure() {
+    std::vector<types::Diagnostic> faults;
+    for (const auto& task : tasks_) {
+        const Outcome outcome = task->configure();
+        if (outcome) continue;
+        if (const types::ConfigError* error = task->configError()) {
+            faults.insert(faults.end(), error->diagnostics().begin(), error->diagnostics().end());
+            continue;
+        }
+        const TaskSpec& spec = *spec_.task(task->name());
+        ConfigReader reader(spec_.file);
+        reader.fault(spec.place, spec.path(), outcome.reason);
+        faults.push_back(reader.faults().front());
+    }
+    if (faults.empty()) return;
+    cleanup();
+    throw types::ConfigError(faults);
+}
+
+RunResult Deployment::run(const RunLimits& limits, const std::atomic<bool>& stop,
+                          const std::function<void(const Progress&)>& progress) {
+    RunResult result;
+    wall_start_ = std::chrono::steady_clock::now();
+    if (!spec_.lockstep) start_ = environment_->now();
+    if (startAll(result.failures))
+        spec_.lockstep ? runLockstep(limits, stop, progress) : runRealtime(limits, stop, progress);
+    noteBroken(result.failures);
+    stopAll(result.failures);
+    const Progress end = progressNow();
+    result.pings = end.pings;
+    result.elapsed_s = end.elapsed_s;
+    result.wall_s = end.wall_s;
+    return result;
+}
+
+void Deployment::runLockstep(const RunLimits& limits, const std::atomic<bool>& stop,
+                             const std::function<void(const Progress&)>& progress) {
+    Lockstep lockstep(tasks_, order_, start_);
+    const bool limited = limits.pings > 0 || limits.duration_s > 0;
+    const types::Time end = limits.duration_s > 0 ? start_ + types::Time::fromSeconds(limits.duration_s)
+                                                  : types::Time{std::numeric_limits<int64_t>::max()};
+    while (!stop && !lockstep.idle() && lockstep.next() < end) {
+        simulated_us_ = lockstep.next().microseconds;
+        lockstep.step();
+        if (progress) progress(progressNow());
+        if (broken(limits) || reached(limits)) return;
+        // With a limit a trajectory goes on holding its end; a log that has been played gives nothing more.
+        if (lockstep.sourcesFinished() && (!limited || !lockstep.sourcesWrote())) return;
+    }
+}
+
+void Deployment::runRealtime(const RunLimits& limits, const std::atomic<bool>& stop,
+                             const std::function<void(const Progress&)>& progress) {
+    while (!stop && !broken(limits) && !reached(limits)) {
+        std::this_thread::sleep_for(std::chrono::milliseconds(2));
+        if (limits.duration_s > 0 && progressNow().elapsed_s >= limits.duration_s) return;
+        if (progress) progress(progressNow());
+    }
+}
+
+bool Deployment::reached(const RunLimits& limits) const { return limits.pings > 0 && pings() >= limits.pings; }
+
+bool Deployment::broken(const RunLimits& limits) const {
+    if (std::any_of(tasks_.begin(), tasks_.end(), [](const auto& task) { return hasFailed(*task); })) return true;
+    // A sonar that is in error gives no ping to count.
+    return limits.pings > 0 && std::any_of(sonars_.begin(), sonars_.end(), [](const auto* port) {
+               return port->owner().state() == TaskState::RunTimeError;
+           });
+}
+
+void Deployment::noteBroken(std::vector<std::string>& failures) const {
+    for (const auto& task : tasks_)
+        if (hasFailed(*task)) failures.push_back(task->name() + ": " + task->lastError());
+}
+
+bool Deployment::startAll(std::vector<std::string>& failures) {
+    for (auto task = order_.rbegin(); task != order_.rend(); ++task) {
+        const Outcome outcome = (*task)->start();
+        if (!outcome) {
+            if (!hasFailed(**task)) failures.push_back((*task)->name() + ": " + outcome.reason);
+            return false;
+        }
+        if (!spec_.lockstep) (*task)->activity().release();
+    }
+    return true;
+}
+
+void Deployment::stopAll(std::vector<std::string>& failures) {
+    for (TaskContext* task : order_)
+        if (task->isRunning()) stopOne(*task, failures);
+}
+
+void Deployment::stopOne(TaskContext& task, std::vector<std::string>& failures) {
+    task.activity().hold();
+    if (holdsSamples(task)) task.update();
+    const bool in_error = task.state() == TaskState::RunTimeError;
+    if (in_error) failures.push_back(task.name() + ": " + task.lastError());
+    if (task.isRunning()) task.stop();
+    if (hasFailed(task)) failures.push_back(task.name() + ": " + task.lastError());
+}
+
+std::vector<std::string> Deployment::cleanup() {
+    std::vector<std::string> failures;
+    stopAll(failures);
+    for (TaskContext* task : order_) {
+        if (task->state() != TaskState::Stopped) continue;
+        if (const Outcome outcome = task->cleanup(); !outcome) failures.push_back(task->name() + ": " + outcome.reason);
+    }
+    return failures;
+}
+
+std::map<std::string, uint64_t> Deployment::losses() const {
+    std::map<std::string, uint64_t> losses;
+    for (const Connection& connection : connections_) losses[connection.text()] = connection.channel->lost();
+    return losses;
+}
+
+uint64_t Deployment::pings() const {
+    if (sonars_.empty()) return 0;
+    const auto fewer = [](const auto* a, const auto* b) { return a->written() < b->written(); };
+    return (*std::min_element(sonars_.begin(), sonars_.end(), fewer))->written();
+}
+
+Progress Deployment::progressNow() const {
+    const auto wall = std::chrono::steady_clock::now() - wall_start_;
+    return {pings(), (environment_->now() - start_).seconds(), std::chrono::duration<double>(wall).count()};
+}
+
+}  // namespace insonify::framework

@@ -1,0 +1,71 @@
+#include "components/framework/Lockstep.hpp"
+
+#include <algorithm>
+
+#include "components/framework/Activity.hpp"
+#include "components/framework/Port.hpp"
+
+namespace insonify::framework {
+namespace {
+
+bool readsNothing(const TaskContext& task) {
+    const auto& inputs = task.inputs();
+    return std::none_of(inputs.begin(), inputs.end(), [](const auto* port) { return port->connected(); });
+}
+
+bool triggered(const TaskContext& task) {
+    const auto& inputs = task.inputs();
+    return std::any_of(inputs.begin(), inputs.end(),
+                       [](const auto* port) { return port->triggers() && port->hasNew(); });
+}
+
+uint64_t samplesWritten(const TaskContext& task) {
+    uint64_t written = 0;
+    for (const OutputPortBase* port : task.outputs()) written += port->written();
+    return written;
+}
+
+}  // namespace
+
+types::Time Lockstep::Periodic::due(types::Time start) const {
+    return start + types::Time::fromSeconds(static_cast<double>(cycle) * task->activity().settings().period);
+}
+
+Lockstep::Lockstep(const std::vector<std::unique_ptr<TaskContext>>& tasks, const std::vector<TaskContext*>& order,
+                   types::Time start)
+    : start_(start) {
+    for (const auto& task : tasks) {
+        if (!task->activity().settings().periodic()) continue;
+        periodic_.push_back({task.get()});
+        if (readsNothing(*task)) sources_.push_back(task.get());
+    }
+    for (TaskContext* task : order)
+        if (!task->activity().settings().periodic()) triggered_.push_back(task);
+}
+
+types::Time Lockstep::next() const {
+    types::Time next = periodic_.front().due(start_);
+    for (const Periodic& periodic : periodic_) next = std::min(next, periodic.due(start_));
+    return next;
+}
+
+void Lockstep::step() {
+    const types::Time instant = next();
+    sources_wrote_ = false;
+    for (Periodic& periodic : periodic_) {
+        if (periodic.due(start_) != instant) continue;
+        const uint64_t written = samplesWritten(*periodic.task);
+        periodic.task->update();
+        sources_wrote_ |= samplesWritten(*periodic.task) != written;
+        ++periodic.cycle;
+    }
+    // Writers come before readers and update() empties the triggering ports, so one pass leaves all quiet.
+    for (TaskContext* task : triggered_)
+        if (triggered(*task)) task->update();
+}
+
+bool Lockstep::sourcesFinished() const {
+    return std::all_of(sources_.begin(), sources_.end(), [](const TaskContext* task) { return task->finished(); });
+}
+
+}  // namespace insonify::framework

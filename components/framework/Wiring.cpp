@@ -1,0 +1,225 @@
+#include "components/framework/Wiring.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "components/framework/Graph.hpp"
+#include "components/framework/Properties.hpp"
+
+namespace insonify::framework {
+namespace {
+
+template <class Ports>
+std::vector<std::string> namesOf(const Ports& ports) {
+    std::vector<std::string> names;
+    for (const auto* port : ports) names.push_back(port->name());
+    return names;
+}
+
+std::vector<std::string> typesOf(const Registry& registry) {
+    std::vector<std::string> types;
+    for (const Registry::Entry& entry : registry.list()) types.push_back(entry.type);
+    return types;
+}
+
+}  // namespace
+
+void Wiring::make(uint64_t seed) {
+    faults_ = deployment_.spec_.faults;
+    loadLibraries();
+    makeTasks();
+    loadProperties(seed);
+    connect();
+    checkTasks();
+    checkLoops();
+    if (!faults_.empty()) throw types::ConfigError(faults_);
+}
+
+void Wiring::fault(const YAML::Node& place, const std::string& path, const std::string& message) {
+    ConfigReader reader(deployment_.spec_.file);
+    reader.fault(place, path, message);
+    faults_.push_back(reader.faults().front());
+}
+
+void Wiring::loadLibraries() {
+    for (const std::string& library : deployment_.spec_.libraries) try {
+            registry_.loadLibrary(deployment_.environment_->input_folder / library);
+        } catch (const types::ConfigError& error) {
+            faults_.insert(faults_.end(), error.diagnostics().begin(), error.diagnostics().end());
+        }
+}
+
+void Wiring::makeTasks() {
+    for (const TaskSpec& spec : deployment_.spec_.tasks) {
+        if (spec.type.empty()) continue;  // told by the reading
+        auto task = registry_.make(spec.type, spec.name);
+        if (!task) {
+            const YAML::Node type = child(spec.place, "type");
+            fault(type, spec.path() + ".type", "is " + spec.type + "; " + suggestion(spec.type, typesOf(registry_)));
+            continue;
+        }
+        task->setEnvironment(deployment_.environment_);
+        deployment_.tasks_.push_back(std::move(task));
+    }
+}
+
+void Wiring::loadProperties(uint64_t seed) {
+    for (const auto& task : deployment_.tasks_) {
+        TaskSpec& spec = *deployment_.spec_.task(task->name());
+        if (seed != 0) seedTask(*task, spec, seed);
+        ConfigReader reader(deployment_.spec_.file, deployment_.spec_.set_paths);
+        reader.setFallback(spec.place.Mark());
+        const std::string path = spec.path() + ".properties";
+        for (PropertiesBase* properties : task->properties()) properties->load(reader, spec.properties, path);
+        if (task->properties().empty()) reader.refuseUnknown(spec.properties, path, {});
+        if (reader.faults().empty()) continue;
+        faulty_.push_back(task.get());
+        faults_.insert(faults_.end(), reader.faults().begin(), reader.faults().end());
+    }
+}
+
+void Wiring::seedTask(const TaskContext& task, const TaskSpec& spec, uint64_t seed) {
+    const std::string path = spec.path() + ".properties.seed";
+    const auto& set = deployment_.spec_.set_paths;
+    if (std::find(set.begin(), set.end(), path) != set.end()) return;
+    for (const PropertiesBase* properties : task.properties())
+        for (const PropertyInfo& info : properties->list())
+            if (info.name == "seed")
+                return deployment_.spec_.set(fmt::format("{}.seed={}", task.name(), seedOf(seed, task.name())));
+}
+
+void Wiring::connect() {
+    std::vector<std::string> made;
+    for (const ConnectionSpec& connection : deployment_.spec_.connections) {
+        const std::string text = connection.from + ">" + connection.to;
+        if (std::find(made.begin(), made.end(), text) != made.end())
+            fault(connection.place, connection.path, "stands here twice: " + text);
+        else
+            connectOne(connection);
+        made.push_back(text);
+    }
+}
+
+void Wiring::connectOne(const ConnectionSpec& connection) {
+    OutputPortBase* from = findOutput(connection);
+    if (!from) {
+        findTask(connection, "to", connection.to);  // tells when that one is unknown as well
+        return;
+    }
+    InputPortBase* to = findInput(connection, *from);
+    if (!to) return;
+    if (&from->owner() == &to->owner())
+        return fault(connection.place, connection.path, "connects " + from->owner().name() + " with itself");
+    if (!from->connectTo(*to, connection.policy))
+        return fault(connection.place, connection.path,
+                     fmt::format("{} is {}, {} is {}; types must be equal", from->path(), from->typeName(), to->path(),
+                                 to->typeName()));
+    deployment_.connections_.push_back({from, to, connection.policy, to->channels().back()});
+}
+
+TaskContext* Wiring::findTask(const ConnectionSpec& connection, const char* key, const std::string& port) {
+    const std::string name = splitPort(port).first;
+    TaskContext* task = deployment_.task(name);
+    if (!task && !deployment_.spec_.task(name))
+        fault(child(connection.place, key), connection.path + "." + key,
+              "there is no task " + name + "; " + suggestion(name, deployment_.spec_.taskNames()));
+    return task;
+}
+
+OutputPortBase* Wiring::findOutput(const ConnectionSpec& connection) {
+    TaskContext* task = findTask(connection, "from", connection.from);
+    if (!task) return nullptr;
+    const std::string name = splitPort(connection.from).second;
+    if (OutputPortBase* port = task->output(name)) return port;
+    const YAML::Node place = child(connection.place, "from");
+    // A port made on demand may depend on properties (a log's streams): with faulty ones it would only repeat them.
+    if (std::find(faulty_.begin(), faulty_.end(), task) != faulty_.end()) return nullptr;
+    try {
+        if (OutputPortBase* port = task->makeOutput(name)) return port;
+        fault(place, connection.path + ".from",
+              fmt::format("{} has no output port {}; {}", task->name(), name,
+                          suggestion(name, namesOf(task->outputs()))));
+    } catch (const std::exception& error) {
+        fault(place, connection.path + ".from", error.what());
+    }
+    return nullptr;
+}
+
+InputPortBase* Wiring::findInput(const ConnectionSpec& connection, OutputPortBase& source) {
+    TaskContext* task = findTask(connection, "to", connection.to);
+    if (!task) return nullptr;
+    const std::string name = splitPort(connection.to).second;
+    if (InputPortBase* port = task->input(name)) return port;
+    const YAML::Node place = child(connection.place, "to");
+    if (std::find(faulty_.begin(), faulty_.end(), task) != faulty_.end()) return nullptr;
+    try {
+        if (InputPortBase* port = task->makeInput(name, source)) return port;
+        fault(
+            place, connection.path + ".to",
+            fmt::format("{} has no input port {}; {}", task->name(), name, suggestion(name, namesOf(task->inputs()))));
+    } catch (const std::exception& error) {
+        fault(place, connection.path + ".to", error.what());
+    }
+    return nullptr;
+}
+
+void Wiring::checkTasks() {
+    for (const auto& task : deployment_.tasks_) {
+        const TaskSpec& spec = *deployment_.spec_.task(task->name());
+        const bool relied = std::find(faulty_.begin(), faulty_.end(), task.get()) == faulty_.end();
+        if (relied) checkInputs(*task, spec);
+        checkActivity(*task, spec);
+        if (!relied) continue;
+        ConfigReader reader(deployment_.spec_.file, deployment_.spec_.set_paths);
+        reader.setFallback(spec.place.Mark());
+        types::Problems problems;
+        task->check(problems);
+        reader.report(spec.properties, spec.path() + ".properties", problems);
+        faults_.insert(faults_.end(), reader.faults().begin(), reader.faults().end());
+    }
+}
+
+void Wiring::checkInputs(const TaskContext& task, const TaskSpec& spec) {
+    // A connection that failed has been told; that its port is now without one need not be.
+    const auto meant = [&](const InputPortBase& port) {
+        const auto& all = deployment_.spec_.connections;
+        return std::any_of(all.begin(), all.end(), [&](const auto& c) { return c.to == port.path(); });
+    };
+    for (const InputPortBase* port : task.inputs())
+        if (port->need() == Need::Required && !port->connected() && !meant(*port))
+            fault(spec.place, spec.path(),
+                  fmt::format("input port {} ({}) is not connected; it must be", port->name(), port->typeName()));
+}
+
+void Wiring::checkActivity(TaskContext& task, const TaskSpec& spec) {
+    const YAML::Node place = child(spec.place, "activity");
+    for (const std::string& name : spec.activity.trigger)
+        if (!task.input(name))
+            fault(place, spec.path() + ".activity.trigger",
+                  "there is no input port " + name + "; " + suggestion(name, namesOf(task.inputs())));
+    const auto runs = [](const InputPortBase* port) { return port->connected() || port->need() == Need::Required; };
+    const auto meant = [&](const ConnectionSpec& c) { return splitPort(c.to).first == task.name(); };
+    const auto& inputs = task.inputs();
+    const auto& connections = deployment_.spec_.connections;
+    if (!spec.activity.periodic() && std::none_of(inputs.begin(), inputs.end(), runs) &&
+        std::none_of(connections.begin(), connections.end(), meant))
+        fault(spec.place, spec.path(), "has nothing that would run it; give it activity: {period: seconds}");
+    task.activity().configure(spec.activity);
+}
+
+void Wiring::checkLoops() {
+    const auto& all = deployment_.connections_;
+    for (const Connection* loop : unbufferedLoops(all)) {
+        const auto made = [&](const ConnectionSpec& c) {
+            return c.from == loop->from->path() && c.to == loop->to->path();
+        };
+        const auto& specs = deployment_.spec_.connections;
+        const auto spec = std::find_if(specs.begin(), specs.end(), made);
+        fault(spec->place, spec->path,
+              loop->text() + " closes a loop without a buffer; give one of its connections one");
+    }
+    deployment_.order_ = writersFirst(deployment_.tasks_, all);
+}
+
+}  // namespace insonify::framework
