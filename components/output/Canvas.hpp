@@ -1,0 +1,30 @@
+#pragma once
+#include <opencv2/core.hpp>
+#include <string>
+
+#include "components/output/Colours.hpp"
+#include "types/Image.hpp"
+#include "types/Sonar.hpp"
+
+namespace insonify::output {
+
+/** Makes `picture` a BGR image of this size and time, and gives a view of its pixels. */
+cv::Mat openCanvas(types::Image& picture, cv::Size size, types::Time time);
+
+/** The line of text on top of every picture: time, range, shape, reference level. Keeps its memory. */
+class Title {
+public:
+    /** Draws on the uppermost rows of `canvas`; what does not fit in its width is left out. */
+    void draw(cv::Mat& canvas, const types::Sonar& ping, double reference_db);
+
+private:
+    void add(cv::Mat& canvas);
+
+    std::string text_;
+    int column_ = 0;
+};
+
+/** Paints the ground of title and picture, and the bar of all colours with its upper left corner at `bar`. */
+void paintGround(cv::Mat& canvas, const Palette& palette, cv::Point bar);
+
+}  // namespace insonify::output

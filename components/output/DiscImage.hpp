@@ -1,0 +1,30 @@
+#pragma once
+#include "components/output/FanImage.hpp"
+
+namespace insonify::output {
+
+/** The picture of a mechanically scanning sonar: a disc on which every ping overwrites the sector of its beam width,
+ *  so that each direction shows the last echo from there. A line shows where the head looks. Ahead is up, port left.
+ *  A ping of other bins or range starts an empty disc. */
+class DiscImage final : public Painter {
+public:
+    explicit DiscImage(const DisplayConfig& config) : fan_(config) {}
+
+    void paint(const types::Sonar& ping, types::Image& picture) override;
+    void skip(const types::Sonar& ping) override;
+
+    const FanLayout& layout() const { return fan_.layout(); }
+
+    /** Directions that the disc keeps apart: 0.45 degrees each, the finest step of common heads. */
+    static constexpr uint32_t sectors = 800;
+
+private:
+    void clear(const types::Sonar& ping);
+    void overwrite(const types::Sonar& ping, uint32_t beam);
+
+    FanImage fan_;
+    types::Sonar disc_;
+    Title title_;
+};
+
+}  // namespace insonify::output

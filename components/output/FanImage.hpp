@@ -1,0 +1,65 @@
+#pragma once
+#include <opencv2/core.hpp>
+#include <optional>
+#include <vector>
+
+#include "components/output/Canvas.hpp"
+#include "components/output/FanShape.hpp"
+#include "components/output/LevelScale.hpp"
+#include "components/output/Overlay.hpp"
+#include "components/output/Painter.hpp"
+
+namespace insonify::output {
+
+/** Draws a ping as the fan that it was in the water: ahead is up, port is left, with range rings in metres and
+ *  bearings in degrees. Bearings may be in any order and unevenly spaced; up to the full circle.
+ *
+ *  Where each pixel's echo comes from is tabled once and kept until bearings, bins or range change. Ranges that are
+ *  finer than the picture are averaged as intensities first. */
+class FanImage final : public Painter {
+public:
+    explicit FanImage(const DisplayConfig& config);
+
+    void paint(const types::Sonar& ping, types::Image& picture) override;
+
+    /** The same without the line of text on top; gives a view of the picture's pixels. */
+    cv::Mat draw(const types::Sonar& ping, types::Image& picture);
+
+    /** Where things are in the last picture. There must have been one. */
+    const FanLayout& layout() const { return *layout_; }
+    double referenceDb() const { return scale_.referenceDb(); }
+    int tablesBuilt() const { return tables_built_; }
+
+private:
+    /** Pixels of one row that show water. */
+    struct Span {
+        int row, begin, end;
+    };
+
+    bool fits(const types::Sonar& ping) const;
+    void build(const types::Sonar& ping);
+    void buildTables();
+    void buildGround();
+    void gather(const types::Sonar& ping);
+    void colour(cv::Mat& canvas) const;
+
+    DisplayConfig config_;
+    Palette palette_;
+    LevelScale scale_;
+    Title title_;
+
+    std::vector<types::Angle> bearings_;  // as in the ping for which the tables were built
+    double beam_width_ = 0;
+    FanShape shape_;
+    std::optional<FanLayout> layout_;
+    int columns_ = 0;  // range cells of the polar picture
+    cv::Mat source_, fraction_;
+    std::vector<Span> spans_;
+    std::optional<Overlay> overlay_;
+    cv::Mat ground_;
+    int tables_built_ = 0;
+
+    cv::Mat bins_, polar_, polar_levels_, levels_;
+};
+
+}  // namespace insonify::output

@@ -1,0 +1,139 @@
+#include "components/output/Overlay.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <numbers>
+#include <opencv2/imgproc.hpp>
+
+#include "components/output/Colours.hpp"
+#include "types/Angle.hpp"
+
+namespace insonify::output {
+namespace {
+
+constexpr int font = cv::FONT_HERSHEY_SIMPLEX;
+constexpr double font_scale = 0.42;
+constexpr int full = 235, ring_opacity = 74, spoke_opacity = 44, outline_opacity = 140;
+constexpr int sub_pixel_bits = 4;
+
+cv::Point subPixel(cv::Point2d at) {
+    return {cvRound(at.x * (1 << sub_pixel_bits)), cvRound(at.y * (1 << sub_pixel_bits))};
+}
+
+/** Degrees between spokes, so that their labels have room on the outer arc. */
+double spokeStep(double radius) {
+    for (const double step : {1, 2, 5, 10, 15, 30, 45})
+        if (types::radians(step) * radius > 56) return step;
+    return 90;
+}
+
+void addRings(Overlay& overlay, const FanLayout& layout) {
+    const double metres_per_pixel = layout.range() / layout.radius();
+    const double step = roundStep(64 * metres_per_pixel);
+    const bool half_plane = layout.left() < std::numbers::pi / 2 && layout.right() > -std::numbers::pi / 2;
+    for (double range = step; range < layout.range() * (1 + 1e-9); range += step) {
+        const double radius = range / metres_per_pixel;
+        if (radius < layout.radius() - 1)
+            overlay.arc(layout.origin(), radius, layout.right(), layout.left(), ring_opacity);
+        // Beside the starboard edge where there is room, else along the line to the right of the origin or straight
+        // ahead.
+        const double bearing = half_plane ? layout.right() : 0;
+        const cv::Point2d at = layout.pixel(range, bearing);
+        const cv::Point2d aside = half_plane ? cv::Point2d(8, 9 * std::sin(-bearing)) : cv::Point2d(5, 9);
+        if (half_plane || radius < layout.radius() - 12)
+            overlay.text(fmt::format("{:g} m", range), at + aside, Overlay::Anchor::Left);
+    }
+}
+
+void addSpokes(Overlay& overlay, const FanLayout& layout) {
+    const double step = spokeStep(layout.radius());
+    const double left = types::degrees(layout.left()), right = types::degrees(layout.right());
+    for (double degrees = std::ceil(right / step - 1e-6) * step; degrees < left + 1e-6; degrees += step) {
+        if (degrees < -180 + 1e-6) continue;
+        const double bearing = types::radians(degrees);
+        overlay.line(layout.pixel(layout.range() * 0.04, bearing), layout.pixel(layout.range(), bearing),
+                     spoke_opacity);
+        const cv::Point2d outward(-std::sin(bearing), -std::cos(bearing));
+        const cv::Point2d end = layout.pixel(layout.range(), bearing);
+        overlay.line(end, end + 5 * outward, full);
+        overlay.text(fmt::format("{:g}", degrees + 0.0), end + cv::Point2d(22 * outward.x, 15 * outward.y),
+                     Overlay::Anchor::Centre, true);
+    }
+}
+
+void addOutline(Overlay& overlay, const FanLayout& layout) {
+    overlay.arc(layout.origin(), layout.radius(), layout.right(), layout.left(), outline_opacity);
+    if (layout.left() - layout.right() > 2 * std::numbers::pi - 1e-6) return;
+    for (const double edge : {layout.left(), layout.right()})
+        overlay.line(layout.origin(), layout.pixel(layout.range(), edge), outline_opacity);
+}
+
+}  // namespace
+
+void Overlay::line(cv::Point2d from, cv::Point2d to, int opacity) {
+    cv::line(cover_, subPixel(from), subPixel(to), opacity, 1, cv::LINE_AA, sub_pixel_bits);
+}
+
+void Overlay::arc(cv::Point2d centre, double radius, double right, double left, int opacity) {
+    const int steps = std::max(8, static_cast<int>(radius * (left - right) / 4));
+    std::vector<cv::Point> points;
+    for (int i = 0; i <= steps; ++i) {
+        const double bearing = right + (left - right) * i / steps;
+        points.push_back(subPixel({centre.x - radius * std::sin(bearing), centre.y - radius * std::cos(bearing)}));
+    }
+    cv::polylines(cover_, points, false, opacity, 1, cv::LINE_AA, sub_pixel_bits);
+}
+
+void Overlay::text(const std::string& text, cv::Point2d at, Anchor anchor, bool degrees) {
+    int baseline = 0;
+    const cv::Size size = cv::getTextSize(text, font, font_scale, 1, &baseline);
+    const double back = anchor == Anchor::Left ? 0 : anchor == Anchor::Centre ? size.width / 2.0 : size.width;
+    const cv::Point start(cvRound(at.x - back), cvRound(at.y + size.height / 2.0));
+    cv::putText(cover_, text, start, font, font_scale, full, 1, cv::LINE_AA);
+    if (degrees)
+        cv::circle(cover_, subPixel({start.x + size.width + 2.0, start.y - size.height + 1.0}), 2 << sub_pixel_bits,
+                   full, 1, cv::LINE_AA, sub_pixel_bits);
+}
+
+void Overlay::finish() {
+    for (int row = 0; row < cover_.rows; ++row)
+        for (int column = 0; column < cover_.cols; ++column)
+            if (const uint8_t opacity = cover_.at<uint8_t>(row, column)) touched_.push_back({row, column, opacity});
+}
+
+void Overlay::blend(cv::Mat& picture) const {
+    for (const Touch& touch : touched_) {
+        cv::Vec3b& pixel = picture.at<cv::Vec3b>(touch.row, touch.column);
+        for (int channel = 0; channel < 3; ++channel)
+            pixel[channel] =
+                static_cast<uint8_t>(pixel[channel] + (ink[channel] - pixel[channel]) * touch.opacity / 255);
+    }
+}
+
+Overlay fanOverlay(const FanLayout& layout) {
+    Overlay overlay(layout.size());
+    addRings(overlay, layout);
+    addSpokes(overlay, layout);
+    addOutline(overlay, layout);
+    return overlay;
+}
+
+void addColourBar(Overlay& overlay, cv::Point at, double dynamic_range_db) {
+    const double step = roundStep(dynamic_range_db / 4.5);
+    for (double below = 0; below < dynamic_range_db * (1 + 1e-9); below += step) {
+        const double y = at.y + below / dynamic_range_db * (colour_bar_size.height - 1);
+        overlay.line({at.x + colour_bar_size.width + 1.0, y}, {at.x + colour_bar_size.width + 4.0, y}, full);
+        const std::string text = below == 0 ? "0 dB" : fmt::format("{:g}", -below);
+        overlay.text(text, {at.x + colour_bar_size.width + 8.0, y}, Overlay::Anchor::Left);
+    }
+}
+
+double roundStep(double least) {
+    const double power = std::pow(10, std::floor(std::log10(least)));
+    for (const double factor : {1, 2, 5})
+        if (factor * power >= least * (1 - 1e-9)) return factor * power;
+    return 10 * power;
+}
+
+}  // namespace insonify::output

@@ -1,0 +1,44 @@
+#pragma once
+#include <cstdint>
+#include <opencv2/core.hpp>
+#include <string>
+#include <vector>
+
+#include "components/output/FanShape.hpp"
+
+namespace insonify::output {
+
+/** Lines and text that lie over every picture, drawn once and then blended where they cover anything. */
+class Overlay {
+public:
+    explicit Overlay(cv::Size size) : cover_(size, CV_8U, cv::Scalar(0)) {}
+
+    enum class Anchor { Left, Centre, Right };
+    void line(cv::Point2d from, cv::Point2d to, int opacity);
+    void arc(cv::Point2d centre, double radius, double right, double left, int opacity);
+    /** Text whose middle line runs through `at`, which is its left end, centre or right end. */
+    void text(const std::string& text, cv::Point2d at, Anchor anchor, bool degrees = false);
+    /** To be called once everything is drawn. */
+    void finish();
+    void blend(cv::Mat& picture) const;
+
+private:
+    struct Touch {
+        int row, column;
+        uint8_t opacity;
+    };
+    cv::Mat cover_;
+    std::vector<Touch> touched_;
+};
+
+/** Range rings labelled in metres and spokes labelled in degrees, positive to port. */
+Overlay fanOverlay(const FanLayout& layout);
+
+/** A bar of all colours with levels relative to the brightest, at `at` (its upper left corner). */
+void addColourBar(Overlay& overlay, cv::Point at, double dynamic_range_db);
+inline const cv::Size colour_bar_size{12, 128};
+
+/** A round step (1, 2 or 5 times a power of ten) not below `least`. */
+double roundStep(double least);
+
+}  // namespace insonify::output

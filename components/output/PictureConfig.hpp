@@ -1,0 +1,79 @@
+#pragma once
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "types/Describe.hpp"
+
+namespace insonify::output {
+
+/** Colours from the weakest to the strongest echo. */
+enum class ColourMap { Amber, Copper, Turbo, Viridis, Inferno, Gray };
+
+/** What the bins hold: linear intensities, or levels in dB. */
+enum class BinScale { Linear, Decibel };
+
+/** How a picture looks. */
+struct DisplayConfig {
+    uint32_t width = 1024;
+    double dynamic_range_db = 40;
+    std::optional<double> reference_db;
+    ColourMap colour_map = ColourMap::Amber;
+    BinScale scale = BinScale::Linear;
+
+    template <class Self, class V>
+    static void describe(Self& self, V& visit) {
+        using types::Field;
+        visit(Field{"width", "1", "of the picture in pixels; an odd one is made even; the height follows", 256, 8192},
+              self.width);
+        visit(Field{"dynamic_range_db", "dB", "between the darkest and the brightest colour", 1, 300},
+              self.dynamic_range_db);
+        visit(Field{"reference_db", "dB",
+                    "level of the brightest colour, 10 log10 of a bin; absent: follows the echoes", -3000, 3000},
+              self.reference_db);
+        visit(Field{"colour_map", "", "colours from weak to strong"}, self.colour_map);
+        visit(Field{"scale", "", "what the bins hold: linear intensities, or decibel"}, self.scale);
+    }
+};
+
+/** Which files are written; names are relative to the output folder. */
+struct RecordingConfig {
+    std::optional<std::string> file;
+    std::optional<std::string> video;
+    std::optional<double> video_rate;
+
+    template <class Self, class V>
+    static void describe(Self& self, V& visit) {
+        using types::Field;
+        visit(Field{"file", "", "PNG files, numbered from 0: fan_%06d.png; absent: none"}, self.file);
+        visit(Field{"video", "", "video file, .avi (MJPG) or .mp4 (mp4v); absent: none"}, self.video);
+        visit(Field{"video_rate", "Hz", "pictures a second in the video; absent: that of the pings", 0.01, 1000},
+              self.video_rate);
+    }
+    /** The number in `file` and the kind of `video` must be such as can be written. */
+    void check(types::Problems& problems) const;
+};
+
+/** The properties of every task that makes pictures of pings. */
+struct PictureConfig : DisplayConfig, RecordingConfig {
+    uint32_t every = 1;
+
+    template <class Self, class V>
+    static void describe(Self& self, V& visit) {
+        RecordingConfig::describe(self, visit);
+        visit(types::Field{"every", "1", "one picture for so many pings", 1, 1e6}, self.every);
+        DisplayConfig::describe(self, visit);
+    }
+};
+
+}  // namespace insonify::output
+
+template <>
+struct insonify::types::EnumNames<insonify::output::ColourMap> {
+    static constexpr std::string_view names[] = {"amber", "copper", "turbo", "viridis", "inferno", "gray"};
+};
+template <>
+struct insonify::types::EnumNames<insonify::output::BinScale> {
+    static constexpr std::string_view names[] = {"linear", "decibel"};
+};

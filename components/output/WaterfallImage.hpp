@@ -1,0 +1,48 @@
+#pragma once
+#include <array>
+#include <optional>
+#include <string>
+
+#include "components/output/Canvas.hpp"
+#include "components/output/LevelScale.hpp"
+#include "components/output/Overlay.hpp"
+#include "components/output/Painter.hpp"
+
+namespace insonify::output {
+
+/** Range against time: every ping is a row, the newest on top, range from left to right. A row is the mean intensity
+ *  over the ping's beams. Labels give range in metres and each row's age in seconds. A ping of other bins or range
+ *  starts anew. */
+class WaterfallImage final : public Painter {
+public:
+    explicit WaterfallImage(const DisplayConfig& config);
+
+    void paint(const types::Sonar& ping, types::Image& picture) override;
+    void skip(const types::Sonar& ping) override;
+
+    static constexpr int history = 480;  ///< Pings that are shown, a row of pixels each.
+
+    /** The part of the picture that shows echoes. */
+    cv::Rect water() const;
+
+private:
+    void clear(const types::Sonar& ping);
+    void addRow(const types::Sonar& ping);
+    void labelAges(cv::Mat& canvas);
+
+    DisplayConfig config_;
+    int width_;
+    Palette palette_;
+    LevelScale scale_;
+    Title title_;
+
+    uint32_t bin_count_ = 0;
+    double range_ = 0;
+    cv::Mat mean_, rows_, levels_, ground_;
+    std::array<types::Time, history> times_{};
+    int filled_ = 0;
+    std::optional<Overlay> overlay_;
+    std::string text_;
+};
+
+}  // namespace insonify::output
