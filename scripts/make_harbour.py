@@ -24,6 +24,7 @@ DEPTH = 9.0             # mean [m]
 SOUTH, EAST = -30.0, -52.0   # corner of the part that is kept [m]
 ROWS, COLUMNS = 352, 194     # its grid points: 112 m north, 62 m west
 QUAY = 9.0              # y of the wall's face [m]
+BUOY = -6.9             # z of the chain's upper end, under a buoy below the surface [m]
 
 
 def fractal_surface(rng):
@@ -162,12 +163,12 @@ def link():
 
 
 def chain_path(floor):
-    """From the mooring block in curves over the floor, then up as a catenary to a buoy: points about 0.2 m apart."""
+    """From the mooring block in curves over the floor, then up as a catenary: points 0.2 m apart."""
     t = np.linspace(0, 1, 400)
     x, y = 20 + 7 * t, -7 + 1.6 * np.sin(2 * np.pi * t) + 2.5 * t
     lying = np.stack([x, y, floor.z(x, y) + 0.06], 1)
     t = np.linspace(0, 1, 400)[1:]
-    rise = -lying[-1, 2] * (np.cosh(2.2 * t) - 1) / (np.cosh(2.2) - 1)
+    rise = (BUOY - lying[-1, 2]) * (np.cosh(2.2 * t) - 1) / (np.cosh(2.2) - 1)
     rising = lying[-1] + np.stack([5 * t, 1.2 * t, rise], 1)
     path = np.vstack([lying, rising])
     along = np.concatenate([[0], np.cumsum(np.linalg.norm(np.diff(path, axis=0), axis=1))])
@@ -185,6 +186,9 @@ def add_chain(glb, floor, steel, concrete):
         left = unit(np.cross([0, 0, 1], ahead))
         frame = np.stack([ahead, left, np.cross(ahead, left)], 1)
         glb.node(f"chain_{n:02d}", mesh, here, frame @ rotation(roll=45 + 90 * (n % 2)))
+    ball = icosphere(3)
+    glb.node("buoy", glb.mesh("buoy", [Mesh(0.4 * ball.positions, ball.faces)], steel), path[-1] + (0, 0, 0.45))
+
 
 
 def add_pipeline(glb, floor, steel, concrete):
@@ -197,17 +201,18 @@ def add_pipeline(glb, floor, steel, concrete):
     glb.node("pipeline", glb.mesh("pipeline", [tube(np.c_[plan, z], 0.35, 20)], steel))
     saddle = glb.mesh("saddle", [box((0.6, 1.5, 1.0)).textured(1.0, smooth=False)], concrete)
     yaw = np.degrees(np.arctan2(*(ends[1] - ends[0])[::-1]))
-    for n, at in enumerate(range(4, 60, 7)):
+    for n, at in enumerate(range(4, 50, 7)):
         glb.node(f"saddle_{n:02d}", saddle, (*plan[at], z[at] - 0.05), rotation(yaw=yaw))
 
 
 def rock_places(rng):
-    """Riprap along the toe of the wall, a reef to starboard, and single stones: (x, y, size) [m]."""
-    toe = [(rng.uniform(-10, 75), QUAY - rng.uniform(0.5, 2.6), rng.uniform(0.35, 1.0)) for _ in range(60)]
-    reef = [(*(np.array([25, -25]) + rng.normal(0, (4.5, 2.0)) @ rotation(yaw=30)[:2, :2]), rng.uniform(0.5, 2.2))
+    """Riprap along the toe of the wall, a reef to starboard, and single stones ahead: (x, y, size) [m]."""
+    toe = [(rng.uniform(9, 58), QUAY - rng.uniform(0.5, 2.6), rng.uniform(0.35, 1.0)) for _ in range(60)]
+    reef = [(*(np.array([26, -24]) + rng.normal(0, (4.5, 2.0)) @ rotation(yaw=30)[:2, :2]), rng.uniform(0.5, 2.2))
             for _ in range(45)]
-    single = [(rng.uniform(-15, 75), rng.uniform(-45, 6), rng.uniform(0.25, 1.1)) for _ in range(45)]
-    return toe + reef + single
+    distance, bearing = rng.uniform(8, 42, 45), np.radians(rng.uniform(-60, 10, 45))
+    single = zip(9 + distance * np.cos(bearing), distance * np.sin(bearing), rng.uniform(0.25, 1.1, 45))
+    return [*toe, *reef, *single]
 
 
 def add_rocks(glb, rng, floor, stone):
@@ -220,12 +225,12 @@ def add_rocks(glb, rng, floor, stone):
 
 def add_quay(glb, rng, floor, steel, concrete, rubber):
     glb.node("quay_wall", glb.mesh("quay_wall", [quay(rng).textured(1.0, smooth=False)], concrete))
-    glb.node("ladder", glb.mesh("ladder", [ladder()], steel), (15.5, QUAY - 0.3, 0))
+    glb.node("ladder", glb.mesh("ladder", [ladder()], steel), (17, QUAY - 0.3, 0))
     pile = glb.mesh("pile", [tube([(0, 0, -12), (0, 0, 2)], 0.38, 20)], steel)
-    for n, x in enumerate(np.arange(-22.0, 80.0, 6.0)):
+    for n, x in enumerate(np.arange(8.0, 64.0, 6.0)):
         glb.node(f"pile_{n:02d}", pile, (x, QUAY - 0.9, 0), rotation(roll=0.4 * np.sin(9 * n), pitch=0.5 * np.cos(7 * n)))
     fender = glb.mesh("fender", [tube([(0, 0, -7.6), (0, 0, -0.4)], 0.42, 20)], rubber)
-    for n, x in enumerate(np.arange(-13.0, 75.0, 12.0)):
+    for n, x in enumerate(np.arange(11.0, 60.0, 12.0)):
         glb.node(f"fender_{n:02d}", fender, (x, QUAY - 0.45, 0))
 
 
