@@ -15,7 +15,7 @@ enum class Sediment {
 
 /** Matter with a typical pressure reflection coefficient at normal incidence (physics.md 1.9). */
 enum class Matter {
-    Steel, Aluminium, CastIron, Bronze, Granite, Basalt, Concrete, Limestone, Gravel, Sand, Mud, Pvc, Acrylic, Hdpe,
+    Steel, CarbonSteel, Aluminium, CastIron, Bronze, Granite, Basalt, Concrete, Limestone, Gravel, Sand, Mud, Pvc, Acrylic, Hdpe,
     Neoprene, NaturalRubber, WaterloggedWood, DryWood, ClosedCellFoam, Ice, Air
 };
 
@@ -56,6 +56,6 @@ template <> struct insonify::types::EnumNames<insonify::scene::Sediment> {
 };
 template <> struct insonify::types::EnumNames<insonify::scene::Matter> {
     static constexpr std::string_view names[] = {
-        "steel", "aluminium", "cast_iron", "bronze", "granite", "basalt", "concrete", "limestone", "gravel", "sand", "mud",
+        "steel", "carbon_steel", "aluminium", "cast_iron", "bronze", "granite", "basalt", "concrete", "limestone", "gravel", "sand", "mud",
         "pvc", "acrylic", "hdpe", "neoprene", "natural_rubber", "waterlogged_wood", "dry_wood", "closed_cell_foam", "ice", "air"};
 };

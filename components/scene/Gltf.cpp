@@ -181,7 +181,8 @@ private:
         std::optional<size_t> count;
         const auto read = [&]<class Vector>(const char* key, Vector) {
             if (!attributes.Has(key)) return std::vector<Vector>{};
-            std::vector<Vector> values = accessors_.vectors<Vector>(attributes.Get(key).GetNumberAsInt());
+            const tinygltf::Value& accessor = attributes.Get(key);
+            std::vector<Vector> values = accessors_.vectors<Vector>(accessor.IsInt() ? accessor.GetNumberAsInt() : -1);
             if (count.value_or(values.size()) != values.size()) fail(path, "has attributes of different counts");
             count = values.size();
             return values;

@@ -36,10 +36,11 @@ std::string readBytes(const std::filesystem::path& file) {
     return bytes;
 }
 
-/** Callbacks of tinygltf: it would expand shell variables in names and allocate what a folder claims as its size. */
-bool fileExists(const std::string& file, void*) {
+/** Callbacks of tinygltf: it would look in the working folder as well, expand shell variables in names, and allocate
+ *  what a folder claims as its size. */
+bool fileExists(const std::string& file, void* folder) {
     std::error_code error;
-    return std::filesystem::is_regular_file(file, error);
+    return file.starts_with(*static_cast<const std::string*>(folder)) && std::filesystem::is_regular_file(file, error);
 }
 std::string unexpanded(const std::string& file, void*) { return file; }
 bool readWhole(std::vector<unsigned char>* bytes, std::string* error, const std::string& file, void*) try {
@@ -117,10 +118,10 @@ void checkExtensions(GltfFile& gltf) {
 }
 
 /** False with `errors` filled when tinygltf refuses; whatever it throws on bad input becomes such an error. */
-bool parse(GltfFile& gltf, const std::string& bytes, const std::string& folder, std::string& errors) try {
+bool parse(GltfFile& gltf, const std::string& bytes, std::string folder, std::string& errors) try {
     tinygltf::TinyGLTF loader;
     loader.SetImageLoader(keepEncoded, nullptr);
-    loader.SetFsCallbacks({fileExists, unexpanded, readWhole, nullptr, nullptr});
+    loader.SetFsCallbacks({fileExists, unexpanded, readWhole, nullptr, &folder});
     std::string warnings;
     const auto size = static_cast<unsigned>(bytes.size());
     return isBinary(bytes) ? loader.LoadBinaryFromMemory(&gltf.model, &errors, &warnings,

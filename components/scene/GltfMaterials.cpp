@@ -150,7 +150,7 @@ NormalMapping mapping(const tinygltf::NormalTextureInfo& texture) {
     const auto found = texture.extensions.find("KHR_texture_transform");
     if (found == texture.extensions.end() || !found->second.IsObject()) return result;
     const tinygltf::Value& json = found->second;
-    if (json.Has("texCoord")) result.uv_set = json.Get("texCoord").GetNumberAsInt();
+    if (json.Has("texCoord") && json.Get("texCoord").IsInt()) result.uv_set = json.Get("texCoord").GetNumberAsInt();
     const double angle = json.Has("rotation") ? json.Get("rotation").GetNumberAsDouble() : 0;
     const auto c = static_cast<float>(std::cos(angle)), s = static_cast<float>(std::sin(angle));
     const glm::vec2 scale = pairOf(json, "scale", glm::vec2(1));
@@ -176,7 +176,8 @@ std::vector<std::optional<NormalMapping>> readMaterials(const GltfFile& gltf, co
             faults.push_back({gltf.name, 0, 0, fmt::format("materials[{}].extras.acoustics{}{}", index, problem.path.empty() ? "" : ".", problem.path), problem.message});
         if (from.normalTexture.index >= 0) {
             material.normal_map = maps.find(from.normalTexture.index, material.name);
-            material.normal_scale = static_cast<float>(from.normalTexture.scale);
+            const auto scale = static_cast<float>(from.normalTexture.scale);
+            material.normal_scale = std::isfinite(scale) ? scale : 1;
         }
         mappings.push_back(material.normal_map < 0 ? std::nullopt : std::optional(mapping(from.normalTexture)));
         geometry.materials.push_back(std::move(material));

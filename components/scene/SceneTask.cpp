@@ -1,0 +1,133 @@
+#include "components/scene/SceneTask.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "components/framework/Activity.hpp"
+#include "components/scene/Overrides.hpp"
+
+namespace insonify::scene {
+namespace {
+
+bool isUsable(const types::Pose& pose) {
+    const double length = glm::length(pose.orientation);
+    return std::isfinite(pose.position.x) && std::isfinite(pose.position.y) && std::isfinite(pose.position.z) &&
+           std::isfinite(length) && length > 1e-6;
+}
+
+constexpr const char* kUnusable = ": pose dropped: position and orientation must be finite, the quaternion of unit length";
+
+}  // namespace
+
+std::shared_ptr<const Scene> SceneTask::load() const {
+    const std::string file = inputPath(config->file).string();
+    if (!scene_ || scene_file_ != file) {
+        if (config->file.empty()) throw types::ConfigError("", name() + ".file", "is missing; give the path of a .gltf or .glb file");
+        scene_ = std::make_shared<const Scene>(readScene(file));
+        scene_file_ = file;
+    }
+    return scene_;
+}
+
+framework::InputPortBase* SceneTask::makeInput(const std::string& port, framework::OutputPortBase&) {
+    constexpr std::string_view ending = ".pose";
+    if (!port.ends_with(ending)) return nullptr;
+    const std::string node = port.substr(0, port.size() - ending.size());
+    try {
+        if (findNode(*load(), node) < 0) return nullptr;
+    } catch (const types::ConfigError&) {
+        // check() tells what is wrong with the file; the port may well be right
+    }
+    const std::string doc = "place of " + node + " in the world";
+    auto made = std::make_unique<framework::InputPort<types::Pose>>(this, port, doc, framework::Need::Optional);
+    return movables_.emplace_back(Movable{std::move(made), node, -1, {}, {}}).port.get();
+}
+
+void SceneTask::check(types::Problems& problems) const try {
+    overrideMaterials(*load(), config->materials, problems);
+} catch (const types::ConfigError& error) {
+    for (const types::Diagnostic& fault : error.diagnostics()) problems.push_back({"file", fault.text()});
+}
+
+std::vector<std::string> SceneTask::notices() const {
+    return geometry_ ? geometry_->notices : std::vector<std::string>{};
+}
+
+bool SceneTask::configureHook() {
+    const auto scene = load();
+    types::Problems problems;
+    geometry_ = overrideMaterials(*scene, config->materials, problems);
+    if (!problems.empty()) throw types::ConfigError("", name() + "." + problems.front().path, problems.front().message);
+    for (Movable& movable : movables_) {
+        movable.node = findNode(*scene, movable.node_name);
+        movable.parts = partsOf(*scene, movable.node);
+    }
+    std::ranges::sort(movables_, {}, &Movable::node);
+    mover_.assign(geometry_->objects.size(), nullptr);
+    return true;
+}
+
+bool SceneTask::startHook() {
+    for (Movable& movable : movables_) {
+        movable.world_from_body.reset();
+        if (activity().settings().trigger.empty()) movable.port->setTriggers(false);
+    }
+    return true;
+}
+
+void SceneTask::updateHook() {
+    const bool movables_good = readMovables();
+    types::Pose body;
+    if (!pose.readNew(body)) return movables_good ? void() : error(name() + kUnusable);
+    if (!isUsable(body)) return error(pose.path() + kUnusable);
+    const auto sample = pool_.take();
+    sample->time = body.time;
+    place(body, config->mount, sample->sonar);
+    sample->geometry = geometry_;
+    sample->water_surface = config->water_surface;
+    addMoved(sample->moved);
+    snapshot.write(sample);
+    if (!movables_good) error(name() + kUnusable);
+}
+
+/** Takes the newest pose of each movable; false when one was unusable, which leaves that node where it was. */
+bool SceneTask::readMovables() {
+    bool good = true;
+    types::Pose sample;
+    for (Movable& movable : movables_) {
+        if (movable.port->readNewest(sample, false) != framework::FlowStatus::NewData) continue;
+        if (isUsable(sample)) {
+            sample.orientation = glm::normalize(sample.orientation);
+            movable.world_from_body = sample.worldFromBody();
+        } else {
+            good = false;
+        }
+    }
+    return good;
+}
+
+/** Each object follows the innermost of its nodes that has a pose. */
+void SceneTask::addMoved(std::vector<types::MovedObject>& moved) {
+    for (const Movable& movable : movables_)
+        if (movable.world_from_body)
+            for (const Part& part : movable.parts) mover_[part.object] = &movable;
+    moved.clear();
+    for (const Movable& movable : movables_)
+        if (movable.world_from_body)
+            for (const Part& part : movable.parts)
+                if (mover_[part.object] == &movable)
+                    moved.push_back({part.object, *movable.world_from_body * part.body_from_object});
+}
+
+void SceneTask::errorHook() {
+    recover();
+    updateHook();
+}
+
+void SceneTask::cleanupHook() {
+    geometry_.reset();
+    scene_.reset();
+    pool_ = {};
+}
+
+}  // namespace insonify::scene

@@ -1,0 +1,66 @@
+#pragma once
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "components/framework/Port.hpp"
+#include "components/framework/Properties.hpp"
+#include "components/framework/SamplePool.hpp"
+#include "components/framework/TaskContext.hpp"
+#include "components/scene/Scene.hpp"
+#include "components/scene/SceneConfig.hpp"
+#include "types/Snapshot.hpp"
+
+namespace insonify::scene {
+
+/** Holds a scene and says, for each pose of the vehicle, what the sonar has before it.
+ *
+ *  In: `pose`, body in the world (x north, y west, z up); each new one gives one `snapshot`, with its time.
+ *  In: `<node>.pose` for any node of the file that a connection names: the node's place in the world, instead of its
+ *  translation and rotation in the file; axes turned like the world's, scale kept, nodes below move along. The newest
+ *  is taken; it does not trigger. Before the first the node is where the file has it.
+ *  Out: `snapshot`, sonar in the world (body times `mount`), shared geometry, moved objects.
+ *
+ *  A pose that is not finite, or whose orientation has no length, is dropped: RunTimeError until the next good one. */
+class SceneTask final : public framework::TaskContext {
+public:
+    using TaskContext::TaskContext;
+
+    framework::Properties<SceneConfig> config{this};
+    framework::InputPort<types::Pose> pose{this, "pose", "body in the world: x north, y west, z up"};
+    framework::OutputPort<types::SnapshotPtr> snapshot{this, "snapshot", "sonar, objects and geometry at one instant"};
+
+    framework::InputPortBase* makeInput(const std::string& port, framework::OutputPortBase& source) override;
+    void check(types::Problems& problems) const override;
+    std::vector<std::string> notices() const override;
+
+private:
+    bool configureHook() override;
+    bool startHook() override;
+    void updateHook() override;
+    void errorHook() override;
+    void cleanupHook() override;
+
+    /** A node that follows a port. */
+    struct Movable {
+        std::unique_ptr<framework::InputPort<types::Pose>> port;
+        std::string node_name;
+        int node = -1;                     ///< Index into Scene::nodes.
+        std::vector<Part> parts;
+        std::optional<glm::dmat4> world_from_body;  ///< None before its first pose.
+    };
+
+    std::shared_ptr<const Scene> load() const;
+    bool readMovables();
+    void addMoved(std::vector<types::MovedObject>& moved);
+
+    mutable std::shared_ptr<const Scene> scene_;   ///< Read once for check, ports and configure.
+    mutable std::string scene_file_;
+    types::GeometryPtr geometry_;
+    std::vector<Movable> movables_;                ///< Outer nodes before inner ones, once configured.
+    std::vector<const Movable*> mover_;            ///< For each object, who moves it now.
+    framework::SamplePool<types::Snapshot> pool_;
+};
+
+}  // namespace insonify::scene
