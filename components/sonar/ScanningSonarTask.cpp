@@ -14,18 +14,18 @@ bool ScanningSonarTask::startHook() {
     return true;
 }
 
-const char* ScanningSonarTask::aim(types::Snapshot& snapshot) {
-    if (last_ && snapshot.time < *last_) return "the snapshot is older than the one before";
-    if (last_ && !step_checked_) checkStep((snapshot.time - *last_).seconds());
+const char* ScanningSonarTask::aim(types::Snapshot& scene) {
+    if (last_ && scene.time < *last_) return "the snapshot is older than the one before";
+    if (last_ && !step_checked_) checkStep((scene.time - *last_).seconds());
     step_checked_ = last_.has_value();
-    last_ = snapshot.time;
+    last_ = scene.time;
     const double bearing = types::radians(scan_->bearingDeg());
-    snapshot.sonar.orientation *= glm::angleAxis(bearing, glm::dvec3(0, 0, 1));
+    scene.sonar.orientation *= glm::angleAxis(bearing, glm::dvec3(0, 0, 1));
     return nullptr;
 }
 
-void ScanningSonarTask::label(types::Sonar& ping) {
-    ping.bearings[0] = types::Angle::fromDeg(scan_->bearingDeg());
+void ScanningSonarTask::label(types::Sonar& sample) {
+    sample.bearings[0] = types::Angle::fromDeg(scan_->bearingDeg());
     scan_->advance();
 }
 

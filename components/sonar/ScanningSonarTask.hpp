@@ -3,7 +3,7 @@
 
 #include "components/framework/Properties.hpp"
 #include "components/sonar/HeadScan.hpp"
-#include "components/sonar/SonarTaskBase.hpp"
+#include "components/sonar/PingTask.hpp"
 
 namespace insonify::sonar {
 
@@ -12,16 +12,16 @@ namespace insonify::sonar {
  *  The scan starts at `head.left_deg` with the first ping after start. A snapshot older than the one before leads to
  *  RunTimeError until time goes on. A step that `head.speed_deg_per_s` cannot make between the first two pings is an
  *  error of the configuration. */
-class ScanningSonarTask final : public SonarTaskBase {
+class ScanningSonarTask final : public PingTask {
 public:
-    using SonarTaskBase::SonarTaskBase;
+    using PingTask::PingTask;
     framework::Properties<ScanningSonarConfig> config{this};
 
 protected:
     SonarConfig sonarConfig() const override { return config->beam(); }
     bool startHook() override;
-    const char* aim(types::Snapshot& snapshot) override;
-    void label(types::Sonar& ping) override;
+    const char* aim(types::Snapshot& scene) override;
+    void label(types::Sonar& sample) override;
 
 private:
     void checkStep(double period) const;

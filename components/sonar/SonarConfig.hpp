@@ -113,8 +113,6 @@ struct SonarConfig {
     double beamWidthDeg() const { return bearings_deg.empty() ? field_of_view_deg / beam_count : *beam_width_deg; }
     /** Azimuth from the outer edge of the first beam to that of the last [deg], at most 360. */
     double coverageDeg() const;
-    int imageRows() const { return quality.rows; }
-    int columnsPerBeam() const { return quality.columns_per_beam; }
     /** Configured, or Leroy's of `water`, or 1500 [m/s]. */
     double speedOfSound() const;
 

@@ -1,6 +1,6 @@
 #pragma once
 #include "components/framework/Properties.hpp"
-#include "components/sonar/SonarTaskBase.hpp"
+#include "components/sonar/PingTask.hpp"
 
 namespace insonify::sonar {
 
@@ -8,9 +8,9 @@ namespace insonify::sonar {
  *
  *  Bins hold E/S0 of the active sonar equation (`physical`) or means of S(n.d) (`cerqueira2017`), beam-first. The
  *  sonar frame is x ahead, y to port, z up; bearings are positive to port. */
-class SonarTask final : public SonarTaskBase {
+class SonarTask final : public PingTask {
 public:
-    using SonarTaskBase::SonarTaskBase;
+    using PingTask::PingTask;
     framework::Properties<SonarConfig> config{this};
 
 protected:

@@ -16,7 +16,7 @@ namespace insonify::sonar {
  *  The renderer is made at the first snapshot, when the geometry is known, and again when the geometry changes. A
  *  snapshot that cannot be rendered (a pose that is not finite, a quaternion of no length, no geometry) leads to
  *  RunTimeError, from which the next good one recovers. A quaternion that is not of unit length is normalised. */
-class SonarTaskBase : public framework::TaskContext {
+class PingTask : public framework::TaskContext {
 public:
     using TaskContext::TaskContext;
 
@@ -30,9 +30,9 @@ protected:
     /** The sonar to render, as configured. */
     virtual SonarConfig sonarConfig() const = 0;
     /** Last changes to a snapshot with a valid pose before it is rendered; a reason refuses it. */
-    virtual const char* aim(types::Snapshot& /*snapshot*/) { return nullptr; }
+    virtual const char* aim(types::Snapshot& /*scene*/) { return nullptr; }
     /** Last changes to a ping before it is written. */
-    virtual void label(types::Sonar& /*ping*/) {}
+    virtual void label(types::Sonar& /*sample*/) {}
 
     bool configureHook() override;
     void updateHook() override;

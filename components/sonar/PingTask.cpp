@@ -1,4 +1,4 @@
-#include "components/sonar/SonarTaskBase.hpp"
+#include "components/sonar/PingTask.hpp"
 
 #include <cmath>
 
@@ -16,17 +16,17 @@ const char* normalisePose(types::Pose& pose) {
     return nullptr;
 }
 
-std::vector<std::string> SonarTaskBase::notices() const {
+std::vector<std::string> PingTask::notices() const {
     return plan_ ? plan_->notices : configNotices(sonarConfig());
 }
 
-bool SonarTaskBase::configureHook() {
+bool PingTask::configureHook() {
     renderer_.reset();
     plan_.reset();
     return true;
 }
 
-void SonarTaskBase::updateHook() {
+void PingTask::updateHook() {
     types::SnapshotPtr sample;
     if (!snapshot.readNew(sample)) return;
     aimed_ = *sample;
@@ -37,7 +37,7 @@ void SonarTaskBase::updateHook() {
     render();
 }
 
-void SonarTaskBase::render() {
+void PingTask::render() {
     if (!renderer_ || geometry_ != aimed_.geometry) {
         renderer_.reset();
         geometry_ = aimed_.geometry;
