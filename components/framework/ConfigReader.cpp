@@ -94,8 +94,9 @@ void ConfigReader::fault(const YAML::Node& node, const std::string& path, const 
     const auto covers = [&](const std::string& set) {
         return path == set || path.starts_with(set + ".") || path.starts_with(set + "[");
     };
-    if (std::any_of(set_paths_.begin(), set_paths_.end(), covers)) {
-        faults_.push_back({"--set", 0, 0, path, message});
+    const bool is_set = std::any_of(set_paths_.begin(), set_paths_.end(), covers);
+    if (is_set || file_.empty()) {
+        faults_.push_back({is_set ? "--set" : "", 0, 0, path, message});
         return;
     }
     YAML::Mark mark = node.IsDefined() ? node.Mark() : fallback_;

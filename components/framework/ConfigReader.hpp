@@ -23,7 +23,8 @@ concept Number = std::integral<T> || std::floating_point<T>;
 
 class ConfigReader {
 public:
-    /** Faults name `file`, but for paths that begin with one of `set_paths`: these name `--set`. */
+    /** Faults name `file`, but for paths that begin with one of `set_paths`: these name `--set`.
+     *  Without a file faults have no place. */
     explicit ConfigReader(std::string file, std::vector<std::string> set_paths = {})
         : file_(std::move(file)), set_paths_(std::move(set_paths)) {}
 

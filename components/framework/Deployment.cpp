@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <optional>
 
 #include "components/framework/Activity.hpp"
 #include "components/framework/Lockstep.hpp"
@@ -48,6 +49,7 @@ Deployment::Deployment(DeploymentSpec spec, Registry& registry, std::filesystem:
     start_ = types::Time::fromSeconds(spec_.start_time);
     setClock();
     Wiring(*this, registry).make(seed);
+    startAtFirstStamp();
     for (const auto& task : tasks_)
         for (const OutputPortBase* port : task->outputs())
             if (port->typeName() == sonar_type && !hasSonar(task->inputs())) sonars_.push_back(port);
@@ -65,6 +67,14 @@ void Deployment::setClock() {
             const auto since_epoch = std::chrono::system_clock::now().time_since_epoch();
             return types::Time{std::chrono::duration_cast<std::chrono::microseconds>(since_epoch).count()};
         };
+}
+
+void Deployment::startAtFirstStamp() {
+    std::optional<types::Time> first;
+    for (const auto& task : tasks_)
+        if (const auto next = task->nextTime()) first = std::min(first.value_or(*next), *next);
+    start_ = first.value_or(start_);
+    simulated_us_ = start_.microseconds;
 }
 
 TaskContext* Deployment::task(const std::string& name) const {

@@ -90,6 +90,8 @@ public:
 private:
     friend class Wiring;
     void setClock();
+    /** Simulated time starts with what a source wants to play, if there is one. */
+    void startAtFirstStamp();
     void runLockstep(const RunLimits& limits, const std::atomic<bool>& stop,
                      const std::function<void(const Progress&)>& progress);
     void runRealtime(const RunLimits& limits, const std::atomic<bool>& stop,

@@ -27,7 +27,8 @@ uint64_t samplesWritten(const TaskContext& task) {
 
 }  // namespace
 
-types::Time Lockstep::Periodic::due(types::Time start) const {
+types::Time Lockstep::Timed::due(types::Time start) const {
+    if (!task->activity().settings().periodic()) return task->nextTime().value_or(never);
     return start + types::Time::fromSeconds(static_cast<double>(cycle) * task->activity().settings().period);
 }
 
@@ -35,8 +36,8 @@ Lockstep::Lockstep(const std::vector<std::unique_ptr<TaskContext>>& tasks, const
                    types::Time start)
     : start_(start) {
     for (const auto& task : tasks) {
-        if (!task->activity().settings().periodic()) continue;
-        periodic_.push_back({task.get()});
+        if (!task->activity().settings().periodic() && !task->nextTime()) continue;
+        timed_.push_back({task.get()});
         if (readsNothing(*task)) sources_.push_back(task.get());
     }
     for (TaskContext* task : order)
@@ -44,20 +45,20 @@ Lockstep::Lockstep(const std::vector<std::unique_ptr<TaskContext>>& tasks, const
 }
 
 types::Time Lockstep::next() const {
-    types::Time next = periodic_.front().due(start_);
-    for (const Periodic& periodic : periodic_) next = std::min(next, periodic.due(start_));
+    types::Time next = never;
+    for (const Timed& timed : timed_) next = std::min(next, timed.due(start_));
     return next;
 }
 
 void Lockstep::step() {
     const types::Time instant = next();
     sources_wrote_ = false;
-    for (Periodic& periodic : periodic_) {
-        if (periodic.due(start_) != instant) continue;
-        const uint64_t written = samplesWritten(*periodic.task);
-        periodic.task->update();
-        sources_wrote_ |= samplesWritten(*periodic.task) != written;
-        ++periodic.cycle;
+    for (Timed& timed : timed_) {
+        if (timed.due(start_) != instant) continue;
+        const uint64_t written = samplesWritten(*timed.task);
+        timed.task->update();
+        sources_wrote_ |= samplesWritten(*timed.task) != written;
+        ++timed.cycle;
     }
     // Writers come before readers and update() empties the triggering ports, so one pass leaves all quiet.
     for (TaskContext* task : triggered_)

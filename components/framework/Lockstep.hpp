@@ -1,5 +1,6 @@
 #pragma once
 #include <cstdint>
+#include <limits>
 #include <memory>
 #include <vector>
 
@@ -14,24 +15,27 @@ public:
     Lockstep(const std::vector<std::unique_ptr<TaskContext>>& tasks, const std::vector<TaskContext*>& order,
              types::Time start);
 
-    bool idle() const { return periodic_.empty(); }  ///< No task is ever due.
-    types::Time next() const;                        ///< The next instant at which a task is due.
+    bool idle() const { return next() == never; }  ///< No task is due any more.
+    types::Time next() const;                      ///< The next instant at which a task is due.
     /** Runs the due tasks in file order, then triggered ones until no sample triggers any. */
     void step();
-    /** Every source, a periodic task that reads nothing, has nothing more to say. */
+    /** Every source, a task that runs by the clock and reads nothing, has nothing more to say. */
     bool sourcesFinished() const;
-    /** Whether a periodic task wrote anything in the last step. */
+    /** Whether a task that runs by the clock wrote anything in the last step. */
     bool sourcesWrote() const { return sources_wrote_; }
 
 private:
-    struct Periodic {
+    static constexpr types::Time never{std::numeric_limits<int64_t>::max()};
+
+    /** A task with a period, or one that says itself when it wants to run. */
+    struct Timed {
         TaskContext* task;
         uint64_t cycle = 0;
         types::Time due(types::Time start) const;
     };
 
     types::Time start_;
-    std::vector<Periodic> periodic_;
+    std::vector<Timed> timed_;
     std::vector<TaskContext*> triggered_;
     std::vector<const TaskContext*> sources_;
     bool sources_wrote_ = false;

@@ -104,8 +104,9 @@ public:
     virtual std::vector<std::string> notices() const { return {}; }
     /** True once a source has nothing more to say: a lockstep run ends when all sources have. */
     virtual bool finished() const { return false; }
-    /** When a source without a period wants its next cycle in lockstep, on simulated time; none: not by itself. Valid
-     *  after configure; then the earliest of all is also when simulated time starts (a log's first stamp). */
+    /** When a source without a period wants its next cycle in lockstep, on simulated time; none: not, or not any more.
+     *  A cycle at that time must move it on. Valid once the connections are made: the earliest of all tasks is then
+     *  when simulated time starts (a log's first stamp). */
     virtual std::optional<types::Time> nextTime() const { return std::nullopt; }
 
     Environment& environment() { return *environment_; }

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <tuple>
 
 #include "components/framework/Graph.hpp"
 #include "components/framework/Properties.hpp"
@@ -33,6 +34,10 @@ void Wiring::make(uint64_t seed) {
     connect();
     checkTasks();
     checkLoops();
+    const auto earlier = [](const auto& a, const auto& b) {
+        return std::tie(a.line, a.column) < std::tie(b.line, b.column);
+    };
+    std::stable_sort(faults_.begin(), faults_.end(), earlier);
     if (!faults_.empty()) throw types::ConfigError(faults_);
 }
 
@@ -127,21 +132,23 @@ TaskContext* Wiring::findTask(const ConnectionSpec& connection, const char* key,
     return task;
 }
 
+bool Wiring::isFaulty(const TaskContext& task) const {
+    return std::find(faulty_.begin(), faulty_.end(), &task) != faulty_.end();
+}
+
 OutputPortBase* Wiring::findOutput(const ConnectionSpec& connection) {
     TaskContext* task = findTask(connection, "from", connection.from);
     if (!task) return nullptr;
     const std::string name = splitPort(connection.from).second;
     if (OutputPortBase* port = task->output(name)) return port;
     const YAML::Node place = child(connection.place, "from");
-    // A port made on demand may depend on properties (a log's streams): with faulty ones it would only repeat them.
-    if (std::find(faulty_.begin(), faulty_.end(), task) != faulty_.end()) return nullptr;
     try {
         if (OutputPortBase* port = task->makeOutput(name)) return port;
         fault(place, connection.path + ".from",
               fmt::format("{} has no output port {}; {}", task->name(), name,
                           suggestion(name, namesOf(task->outputs()))));
     } catch (const std::exception& error) {
-        fault(place, connection.path + ".from", error.what());
+        if (!isFaulty(*task)) fault(place, connection.path + ".from", error.what());
     }
     return nullptr;
 }
@@ -152,14 +159,13 @@ InputPortBase* Wiring::findInput(const ConnectionSpec& connection, OutputPortBas
     const std::string name = splitPort(connection.to).second;
     if (InputPortBase* port = task->input(name)) return port;
     const YAML::Node place = child(connection.place, "to");
-    if (std::find(faulty_.begin(), faulty_.end(), task) != faulty_.end()) return nullptr;
     try {
         if (InputPortBase* port = task->makeInput(name, source)) return port;
         fault(
             place, connection.path + ".to",
             fmt::format("{} has no input port {}; {}", task->name(), name, suggestion(name, namesOf(task->inputs()))));
     } catch (const std::exception& error) {
-        fault(place, connection.path + ".to", error.what());
+        if (!isFaulty(*task)) fault(place, connection.path + ".to", error.what());
     }
     return nullptr;
 }
@@ -167,10 +173,9 @@ InputPortBase* Wiring::findInput(const ConnectionSpec& connection, OutputPortBas
 void Wiring::checkTasks() {
     for (const auto& task : deployment_.tasks_) {
         const TaskSpec& spec = *deployment_.spec_.task(task->name());
-        const bool relied = std::find(faulty_.begin(), faulty_.end(), task.get()) == faulty_.end();
-        if (relied) checkInputs(*task, spec);
+        checkInputs(*task, spec);
         checkActivity(*task, spec);
-        if (!relied) continue;
+        if (isFaulty(*task)) continue;
         ConfigReader reader(deployment_.spec_.file, deployment_.spec_.set_paths);
         reader.setFallback(spec.place.Mark());
         types::Problems problems;
@@ -202,8 +207,8 @@ void Wiring::checkActivity(TaskContext& task, const TaskSpec& spec) {
     const auto meant = [&](const ConnectionSpec& c) { return splitPort(c.to).first == task.name(); };
     const auto& inputs = task.inputs();
     const auto& connections = deployment_.spec_.connections;
-    if (!spec.activity.periodic() && std::none_of(inputs.begin(), inputs.end(), runs) &&
-        std::none_of(connections.begin(), connections.end(), meant))
+    if (!child(place, "period").IsDefined() && !spec.activity.periodic() && !task.nextTime() &&
+        std::none_of(inputs.begin(), inputs.end(), runs) && std::none_of(connections.begin(), connections.end(), meant))
         fault(spec.place, spec.path(), "has nothing that would run it; give it activity: {period: seconds}");
     task.activity().configure(spec.activity);
 }

@@ -20,6 +20,8 @@ private:
     OutputPortBase* findOutput(const ConnectionSpec& connection);
     InputPortBase* findInput(const ConnectionSpec& connection, OutputPortBase& source);
     TaskContext* findTask(const ConnectionSpec& connection, const char* key, const std::string& port);
+    /** Its properties are not to be relied on: ports made on demand and checks would only repeat their faults. */
+    bool isFaulty(const TaskContext& task) const;
     void checkTasks();
     void checkInputs(const TaskContext& task, const TaskSpec& spec);
     void checkActivity(TaskContext& task, const TaskSpec& spec);
@@ -29,7 +31,7 @@ private:
     Deployment& deployment_;
     Registry& registry_;
     std::vector<types::Diagnostic> faults_;
-    std::vector<const TaskContext*> faulty_;  // their properties are not to be relied on
+    std::vector<const TaskContext*> faulty_;
 };
 
 }  // namespace insonify::framework

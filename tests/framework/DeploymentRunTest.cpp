@@ -1,0 +1,164 @@
+#include <gtest/gtest.h>
+
+#include "tests/framework/Tasks.hpp"
+#include "types/Sonar.hpp"
+
+namespace insonify::framework {
+namespace {
+
+const std::atomic<bool> never{false};
+
+struct LockstepRun {
+    Registry registry = test::testRegistry();
+    std::unique_ptr<Deployment> deployment;
+    RunResult result;
+    explicit LockstepRun(const std::string& yaml, const RunLimits& limits = {}, uint64_t seed = 0) {
+        deployment = std::make_unique<Deployment>(DeploymentSpec::parse(yaml, "a.yml"), registry, ".", seed);
+        deployment->configure();
+        result = deployment->run(limits, never);
+    }
+    std::vector<std::string> notes(const std::string& task) {
+        return dynamic_cast<test::Relay&>(*deployment->task(task)).notes;
+    }
+};
+
+const char* chain = R"(
+tasks:
+  last: {type: test::Relay}
+  middle: {type: test::Relay, activity: {trigger: [in]}}
+  source: {type: test::Source, activity: {period: 0.1}}
+connections:
+  - {from: middle.out, to: last.in}
+  - {from: source.value, to: middle.in}
+)";
+
+TEST(DeploymentRunTest, InLockstepWritersRunBeforeReadersAtEachInstantOfSimulatedTime) {
+    LockstepRun run(chain);
+    EXPECT_FALSE(run.result.failed());
+    EXPECT_EQ(run.notes("middle"),
+              (std::vector<std::string>{"middle:1@1000000", "middle:2@1100000", "middle:3@1200000"}));
+    EXPECT_EQ(run.notes("last"),
+              (std::vector<std::string>{"last:101@1000000", "last:102@1100000", "last:103@1200000"}));
+    EXPECT_NEAR(run.result.elapsed_s, 0.2, 1e-9);
+}
+
+TEST(DeploymentRunTest, TheSameDeploymentGivesTheSameRun) {
+    EXPECT_EQ(LockstepRun(chain).notes("last"), LockstepRun(chain).notes("last"));
+}
+
+TEST(DeploymentRunTest, TimeStartsAtStartTimeAndInstantsDoNotDrift) {
+    LockstepRun run(std::string("start_time: 10\n") + chain, {.duration_s = 100});
+    EXPECT_EQ(run.notes("last").front(), "last:101@10000000");
+    EXPECT_EQ(run.notes("last").back(), "last:1100@109900000");
+}
+
+TEST(DeploymentRunTest, TasksOfDifferentPeriodsMeetInFileOrder) {
+    LockstepRun run(R"(
+tasks:
+  slow: {type: test::Source, activity: {period: 0.3}, properties: {last: 2}}
+  fast: {type: test::Source, activity: {period: 0.1}}
+  relay: {type: test::Relay}
+connections:
+  - {from: fast.value, to: relay.in, policy: {type: buffer, size: 9}}
+  - {from: slow.value, to: relay.in, policy: {type: buffer, size: 9}}
+)");
+    EXPECT_EQ(run.notes("relay"), (std::vector<std::string>{"relay:1@1000000", "relay:1@1000000", "relay:2@1100000",
+                                                            "relay:3@1200000", "relay:4@1300000", "relay:2@1300000"}));
+}
+
+TEST(DeploymentRunTest, ATriggeredTaskRunsUntilItsPortsAreEmptyAndLossesAreCounted) {
+    LockstepRun run(R"(
+tasks:
+  burst: {type: test::Burst, activity: {period: 0.1}}
+  all: {type: test::Relay}
+  four: {type: test::Relay}
+  one: {type: test::Relay}
+connections:
+  - {from: burst.value, to: all.in, policy: {type: buffer, size: 10}}
+  - {from: burst.value, to: four.in, policy: {type: circular_buffer, size: 4}}
+  - {from: burst.value, to: one.in}
+)");
+    EXPECT_EQ(run.notes("all").size(), 10u);
+    EXPECT_EQ(run.notes("four").front(), "four:6@1000000");
+    EXPECT_EQ(run.notes("one"), (std::vector<std::string>{"one:9@1000000"}));
+    EXPECT_EQ(run.deployment->losses(),
+              (std::map<std::string, uint64_t>{
+                  {"burst.value>all.in", 0}, {"burst.value>four.in", 6}, {"burst.value>one.in", 9}}));
+}
+
+TEST(DeploymentRunTest, WhatABufferCarriesBackwardsArrivesAtTheNextInstant) {
+    LockstepRun run(R"(
+tasks:
+  source: {type: test::Source, activity: {period: 0.1}}
+  a: {type: test::Relay}
+  b: {type: test::Relay}
+connections:
+  - {from: source.value, to: a.in}
+  - {from: a.out, to: b.in}
+  - {from: b.out, to: a.in, policy: {type: buffer, size: 4}}
+)");
+    EXPECT_EQ(run.notes("a")[2], "a:201@1100000");
+    EXPECT_FALSE(run.result.failed());
+}
+
+TEST(DeploymentRunTest, ATaskThatThrowsEndsTheRunAndTheRestStopsInOrder) {
+    LockstepRun run(R"(
+tasks:
+  source: {type: test::Source, activity: {period: 0.1}, properties: {last: 9}}
+  faulty: {type: test::Faulty}
+  relay: {type: test::Relay}
+connections:
+  - {from: source.value, to: faulty.in}
+  - {from: source.value, to: relay.in}
+)");
+    EXPECT_EQ(run.result.failures, (std::vector<std::string>{"faulty: updateHook: the third is too much"}));
+    EXPECT_EQ(run.notes("relay").size(), 3u);
+    EXPECT_EQ(run.deployment->task("faulty")->state(), TaskState::Exception);
+    EXPECT_EQ(run.deployment->task("source")->state(), TaskState::Stopped);
+}
+
+/** A sonar: writes a ping each cycle. */
+struct Sonar : TaskContext {
+    using TaskContext::TaskContext;
+    OutputPort<types::SonarPtr> ping{this, "ping", "empty"};
+    void updateHook() override { ping.write(nullptr); }
+    bool finished() const override { return true; }
+};
+
+TEST(DeploymentRunTest, PingsEndTheRunWhenEverySonarHasThem) {
+    Registry registry;
+    registry.add<Sonar>("test::Sonar", "pings");
+    const char* yaml =
+        "tasks: {a: {type: test::Sonar, activity: {period: 0.1}}, b: {type: test::Sonar, activity: {period: 0.2}}}";
+    Deployment deployment(DeploymentSpec::parse(yaml, "a.yml"), registry);
+    deployment.configure();
+    EXPECT_EQ(deployment.run({.pings = 4}, never).pings, 4u);
+    EXPECT_EQ(deployment.task("a")->cycles().count(), 7u);
+}
+
+TEST(DeploymentRunTest, WithoutLimitsARunEndsWithItsSources) {
+    EXPECT_EQ(LockstepRun("tasks: {s: {type: test::Source, activity: {period: 1}, properties: {last: 5}}}")
+                  .deployment->task("s")
+                  ->cycles()
+                  .count(),
+              5u);
+}
+
+TEST(DeploymentRunTest, ASeedOfTheRunReachesEveryTaskThatHasOne) {
+    const char* yaml =
+        "tasks: {a: {type: test::Source, activity: {period: 1}}, b: {type: test::Source, activity: {period: 1}}}";
+    const auto seeds = [&](uint64_t seed) {
+        LockstepRun run(yaml, {}, seed);
+        const auto of = [&](const char* name) {
+            return dynamic_cast<test::Source&>(*run.deployment->task(name)).config->seed;
+        };
+        return std::pair(of("a"), of("b"));
+    };
+    EXPECT_EQ(seeds(0), std::pair(uint64_t{1}, uint64_t{1}));
+    EXPECT_EQ(seeds(7), seeds(7));
+    EXPECT_NE(seeds(7), seeds(8));
+    EXPECT_NE(seeds(7).first, seeds(7).second);
+}
+
+}  // namespace
+}  // namespace insonify::framework

@@ -1,0 +1,184 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <filesystem>
+
+#include "components/framework/DeploymentSpec.hpp"
+#include "tests/framework/Tasks.hpp"
+
+namespace insonify::framework {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::UnorderedElementsAre;
+
+std::vector<std::string> texts(const types::ConfigError& error) {
+    std::vector<std::string> all;
+    for (const auto& diagnostic : error.diagnostics()) all.push_back(diagnostic.text());
+    return all;
+}
+
+/** Every fault of a deployment, as told before anything starts. */
+std::vector<std::string> faultsOf(const std::string& yaml, const std::vector<std::string>& sets = {}) {
+    Registry registry = test::testRegistry();
+    try {
+        DeploymentSpec spec = DeploymentSpec::parse(yaml, "a.yml");
+        for (const std::string& set : sets) spec.set(set);
+        Deployment deployment(spec, registry);
+    } catch (const types::ConfigError& error) {
+        return texts(error);
+    }
+    return {};
+}
+
+TEST(DeploymentSpecTest, AllFaultsOfAFileAreToldInOneGo) {
+    const char* yaml =
+        "schedule: sometimes\n"
+        "color: red\n"
+        "tasks:\n"
+        "  source: {type: test::Source, activity: {period: -1}, properties: {last: 0, sed: 3}}\n"
+        "  source: {type: test::Source}\n"
+        "  ghost: {type: test::Gost}\n"
+        "  relay: {type: test::Relay, activity: {trigger: [inn]}}\n"
+        "  idle: {type: test::Relay, activty: {}}\n"
+        "  words: {type: test::Words}\n"
+        "connections:\n"
+        "  - {from: source.value, to: relay.in}\n"
+        "  - {from: source.value, to: relay.in}\n"
+        "  - {from: source.valu, to: relay.extra}\n"
+        "  - {from: sorce.value, to: nobody.in}\n"
+        "  - {from: burst, to: relay.in}\n"
+        "  - {from: relay.out, to: words.in}\n"
+        "  - {from: relay.out, to: relay.extra, policy: {type: ring, size: 0}}\n";
+    EXPECT_THAT(
+        faultsOf(yaml),
+        UnorderedElementsAre(
+            "a.yml:1:11: schedule: is sometimes; may be lockstep, realtime",
+            HasSubstr("a.yml:2:1: color: is not a key here"),
+            "a.yml:4:51: tasks.source.activity.period: is -1 s; may be 1e-06 to 1000000 s",
+            "a.yml:4:75: tasks.source.properties.last: is 0; may be 1 to 1000000",
+            "a.yml:4:78: tasks.source.properties.sed: is not a key here; did you mean seed? known: last, seed",
+            "a.yml:5:3: tasks.source: stands here twice; once is allowed",
+            HasSubstr("a.yml:6:17: tasks.ghost.type: is test::Gost; did you mean "),
+            "a.yml:7:40: tasks.relay.activity.trigger: there is no input port inn; did you mean in? known: in, extra",
+            HasSubstr("a.yml:8:29: tasks.idle.activty: is not a key here; did you mean activity?"),
+            "a.yml:8:9: tasks.idle: input port in (/double) is not connected; it must be",
+            "a.yml:12:5: connections[1]: stands here twice: source.value>relay.in",
+            HasSubstr("a.yml:13:12: connections[2].from: source has no output port valu; did you mean value?"),
+            HasSubstr("a.yml:14:12: connections[3].from: there is no task sorce; did you mean source?"),
+            HasSubstr("a.yml:14:29: connections[3].to: there is no task nobody"),
+            "a.yml:15:12: connections[4].from: is \"burst\"; must be task.port",
+            "a.yml:16:5: connections[5]: relay.out is /double, words.in is /std/string; types must be equal",
+            "a.yml:17:55: connections[6].policy.type: is ring; may be data, buffer, circular_buffer",
+            "a.yml:17:67: connections[6].policy.size: is 0; may be 1 to 1000000"));
+}
+
+TEST(DeploymentSpecTest, APortThatIsNotThereIsNamedWithThoseThatAre) {
+    EXPECT_THAT(
+        faultsOf("tasks:\n"
+                 "  s: {type: test::Source, activity: {period: 1}}\n"
+                 "  r: {type: test::Relay}\n"
+                 "connections:\n"
+                 "  - {from: s.vlue, to: r.in}\n"
+                 "  - {from: s.value, to: r.inn}\n"),
+        ElementsAre(
+            "a.yml:5:12: connections[0].from: s has no output port vlue; did you mean value? known: state, value",
+            "a.yml:6:25: connections[1].to: r has no input port inn; did you mean in? known: in, extra"));
+}
+
+TEST(DeploymentSpecTest, ALoopNeedsABuffer) {
+    const std::string head =
+        "tasks:\n"
+        "  s: {type: test::Source, activity: {period: 1}}\n"
+        "  a: {type: test::Relay}\n"
+        "  b: {type: test::Relay}\n"
+        "connections:\n"
+        "  - {from: s.value, to: a.in}\n"
+        "  - {from: a.out, to: b.in}\n";
+    EXPECT_THAT(faultsOf(head + "  - {from: b.out, to: a.extra}\n"),
+                testing::Contains(HasSubstr("closes a loop without a buffer")));
+    EXPECT_THAT(faultsOf(head + "  - {from: b.out, to: a.extra, policy: {type: buffer, size: 1}}\n"),
+                testing::IsEmpty());
+    EXPECT_THAT(faultsOf(head + "  - {from: b.out, to: b.extra, policy: {type: buffer, size: 1}}\n"),
+                ElementsAre("a.yml:8:5: connections[2]: connects b with itself"));
+}
+
+TEST(DeploymentSpecTest, ATaskThatNothingWouldRunIsRefused) {
+    EXPECT_THAT(faultsOf("tasks: {s: {type: test::Source}}"), ElementsAre(HasSubstr("has nothing that would run it")));
+    EXPECT_THAT(faultsOf("tasks: {s: {type: test::Source, activity: {period: 1, trigger: [a]}}}"),
+                testing::Contains(HasSubstr("both period and trigger")));
+    EXPECT_THAT(faultsOf("tasks: {s: {type: test::Source, activity: {period: .nan}}}"),
+                testing::Contains(HasSubstr("must be a finite number")));
+}
+
+TEST(DeploymentSpecTest, ATextThatIsNoDeploymentIsRefused) {
+    EXPECT_THAT(faultsOf(""), ElementsAre("a.yml: is empty; a deployment needs tasks"));
+    EXPECT_THAT(faultsOf("# nothing\n"), ElementsAre(HasSubstr("is empty")));
+    EXPECT_THAT(faultsOf("tasks: {}"), ElementsAre("a.yml:1:8: tasks: is empty; a deployment needs a task"));
+    EXPECT_THAT(faultsOf("hello"), ElementsAre("a.yml:1:1: is hello; must be a block of keys and values"));
+    EXPECT_THAT(faultsOf("- 1\n"), ElementsAre(HasSubstr("is a list")));
+    EXPECT_THAT(faultsOf("tasks:\n  a: [1\nb: 2\n"), ElementsAre(HasSubstr("a.yml:3:2: is not YAML")));
+    EXPECT_THAT(faultsOf("tasks: {a: *nobody}"), ElementsAre(HasSubstr("is not YAML")));
+    EXPECT_THAT(faultsOf("tasks: {}\n---\ntasks: {}\n"), ElementsAre(HasSubstr("several YAML documents")));
+    EXPECT_THAT(faultsOf(std::string("\0\1\2\xff", 4)), ElementsAre(HasSubstr("is not text")));
+    EXPECT_THAT(faultsOf("tasks: {[1, 2]: 3}"), testing::Contains(HasSubstr("has a key that is a list")));
+    EXPECT_THAT(faultsOf("tasks: 3\nconnections: 4\nlibraries: {}\n"), testing::SizeIs(3));
+}
+
+TEST(DeploymentSpecTest, DeepNestingIsRefusedNotFatal) {
+    for (const char* bracket : {"[", "{", "[a: ", "- ", "? "}) {
+        std::string yaml = "tasks: ";
+        for (int i = 0; i < 100000; ++i) yaml += bracket;
+        EXPECT_THAT(faultsOf(yaml), testing::SizeIs(1)) << bracket;
+    }
+}
+
+TEST(DeploymentSpecTest, AMissingFileAndADirectoryAreNamed) {
+    const auto loading = [](const std::string& file) {
+        try {
+            DeploymentSpec::load(file);
+        } catch (const types::ConfigError& error) {
+            return texts(error).front();
+        }
+        return std::string();
+    };
+    EXPECT_EQ(loading("no/such.yml"), "no/such.yml: cannot be opened; must be a deployment file");
+    EXPECT_EQ(loading("."), ".: is a directory; must be a deployment file");
+}
+
+TEST(DeploymentSpecTest, ASettingIsALayerOverTheFile) {
+    Registry registry = test::testRegistry();
+    DeploymentSpec spec = DeploymentSpec::parse(
+        "tasks: {s: {type: test::Source, activity: {period: 1}, properties: {last: 5}}}", "a.yml");
+    spec.set("s.last=7");
+    spec.set("s.seed=11");
+    Deployment deployment(spec, registry);
+    const auto& config = dynamic_cast<test::Source&>(*deployment.task("s")).config;
+    EXPECT_EQ(config->last, 7);
+    EXPECT_EQ(config->seed, 11u);
+}
+
+TEST(DeploymentSpecTest, ASettingReachesIntoBlocks) {
+    DeploymentSpec spec = DeploymentSpec::parse("tasks: {s: {type: t, properties: {tvg: {a: 1, b: 2}}}}", "a.yml");
+    spec.set("s.tvg.b=[3]");
+    spec.set("s.water.depth=8");
+    const YAML::Node properties = spec.task("s")->properties;
+    EXPECT_EQ(properties["tvg"]["a"].as<int>(), 1);
+    EXPECT_EQ(properties["tvg"]["b"][0].as<int>(), 3);
+    EXPECT_EQ(properties["water"]["depth"].as<int>(), 8);
+}
+
+TEST(DeploymentSpecTest, ASettingThatDoesNotFitIsNamed) {
+    EXPECT_THAT(
+        faultsOf("tasks: {s: {type: test::Source, activity: {period: 1}}}",
+                 {"s.last=many", "s.lost=1", "t.last=1", "s.last", "s=1", "s.seed=["}),
+        UnorderedElementsAre("--set: tasks.s.properties.last: is many; must be a finite number",
+                             HasSubstr("--set: tasks.s.properties.lost: is not a key here; did you mean last?"),
+                             HasSubstr("--set: t.last=1: there is no task t; did you mean s?"),
+                             "--set: s.last: must be task.property=value", "--set: s=1: must be task.property=value",
+                             HasSubstr("--set: s.seed=[: is not YAML")));
+}
+
+}  // namespace
+}  // namespace insonify::framework

@@ -1,0 +1,1 @@
+extern "C" int insonify_something_else() { return 0; }

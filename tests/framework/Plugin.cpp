@@ -1,0 +1,17 @@
+#include "components/framework/Port.hpp"
+#include "components/framework/Registry.hpp"
+
+using namespace insonify;
+
+class PluginTask final : public framework::TaskContext {
+public:
+    using TaskContext::TaskContext;
+    framework::OutputPort<double> value{this, "value", "42, each cycle"};
+
+private:
+    void updateHook() override { value.write(42); }
+};
+
+extern "C" void insonify_register(framework::Registry& registry) {
+    registry.add<PluginTask>("plugin::PluginTask", "writes 42");
+}

@@ -1,0 +1,136 @@
+#include <gtest/gtest.h>
+
+#include "components/framework/Port.hpp"
+#include "tests/support/Ports.hpp"
+
+namespace insonify::framework {
+namespace {
+
+/** What a reader gets that comes after `count` writes of 0, 1, 2... */
+std::pair<std::vector<int32_t>, uint64_t> slowReader(ConnPolicy policy, int count) {
+    test::Writer<int32_t> writer;
+    test::Reader<int32_t> reader;
+    writer.port.connectTo(reader.port, policy);
+    for (int i = 0; i < count; ++i) writer.port.write(i);
+    std::vector<int32_t> got;
+    for (int32_t value; reader.port.readNew(value);) got.push_back(value);
+    return {got, reader.port.channels().front()->lost()};
+}
+
+using Got = std::pair<std::vector<int32_t>, uint64_t>;
+
+TEST(PortTest, DataKeepsTheNewest) { EXPECT_EQ(slowReader(ConnPolicy::data(), 4), (Got{{3}, 3})); }
+TEST(PortTest, AFullBufferRefusesTheNewest) { EXPECT_EQ(slowReader(ConnPolicy::buffer(2), 4), (Got{{0, 1}, 2})); }
+TEST(PortTest, AFullCircularBufferDropsTheOldest) {
+    EXPECT_EQ(slowReader(ConnPolicy::circularBuffer(2), 4), (Got{{2, 3}, 2}));
+}
+TEST(PortTest, NothingIsLostWithinCapacity) { EXPECT_EQ(slowReader(ConnPolicy::buffer(3), 3), (Got{{0, 1, 2}, 0})); }
+
+TEST(PortTest, ReadingTellsNoneOldAndNew) {
+    test::Writer<int32_t> writer;
+    test::Reader<int32_t> reader;
+    writer.port.connectTo(reader.port, {});
+    int32_t value = -1;
+    EXPECT_EQ(reader.port.read(value), FlowStatus::NoData);
+    writer.port.write(7);
+    EXPECT_EQ(reader.port.read(value), FlowStatus::NewData);
+    value = -1;
+    EXPECT_EQ(reader.port.read(value, false), FlowStatus::OldData);
+    EXPECT_EQ(value, -1);
+    EXPECT_EQ(reader.port.read(value), FlowStatus::OldData);
+    EXPECT_EQ(value, 7);
+}
+
+TEST(PortTest, ReadNewestDrains) {
+    test::Writer<int32_t> writer;
+    test::Reader<int32_t> reader;
+    writer.port.connectTo(reader.port, ConnPolicy::buffer(4));
+    for (int i = 0; i < 3; ++i) writer.port.write(i);
+    int32_t value = -1;
+    EXPECT_EQ(reader.port.readNewest(value), FlowStatus::NewData);
+    EXPECT_EQ(value, 2);
+    EXPECT_FALSE(reader.port.hasNew());
+}
+
+TEST(PortTest, InitHandsTheLastSampleToALaterReader) {
+    test::Writer<int32_t> writer;
+    test::Reader<int32_t> first, late;
+    ConnPolicy policy;
+    policy.init = true;
+    writer.port.connectTo(first.port, policy);
+    writer.port.write(5);
+    writer.port.connectTo(late.port, policy);
+    int32_t value = 0;
+    EXPECT_TRUE(late.port.readNew(value));
+    EXPECT_EQ(value, 5);
+}
+
+TEST(PortTest, ASharedSampleIsTheSameAddressAtBothEnds) {
+    using Large = std::shared_ptr<const std::vector<float>>;
+    test::Writer<Large> writer;
+    test::Reader<Large> reader;
+    writer.port.connectTo(reader.port, ConnPolicy::buffer(2));
+    const Large sent = std::make_shared<std::vector<float>>(1000);
+    writer.port.write(sent);
+    Large got;
+    ASSERT_TRUE(reader.port.readNew(got));
+    EXPECT_EQ(got.get(), sent.get());
+}
+
+TEST(PortTest, PortsOfDifferentTypesDoNotConnect) {
+    test::Writer<int32_t> writer;
+    test::Reader<double> reader;
+    EXPECT_FALSE(writer.port.connectTo(reader.port, {}));
+    EXPECT_FALSE(reader.port.connected());
+}
+
+TEST(PortTest, StartForgetsWhatCameBefore) {
+    test::Writer<int32_t> writer;
+    test::Reader<int32_t> reader;
+    writer.port.connectTo(reader.port, ConnPolicy::buffer(4));
+    reader.configure();
+    writer.port.write(1);
+    ASSERT_TRUE(reader.start());
+    int32_t value = 0;
+    EXPECT_EQ(reader.port.read(value), FlowStatus::NoData);
+}
+
+/** Reads one sample a cycle. */
+struct OneByOne : TaskContext {
+    using TaskContext::TaskContext;
+    InputPort<int32_t> in{this, "in", "numbers"};
+    int cycles_run = 0, samples = 0;
+    bool reads = true;
+    void updateHook() override {
+        int32_t value = 0;
+        ++cycles_run;
+        if (reads && in.readNew(value)) ++samples;
+    }
+};
+
+TEST(PortTest, TheHookRunsAgainUntilItsPortsAreEmpty) {
+    test::Writer<int32_t> writer;
+    OneByOne task("slow");
+    writer.port.connectTo(task.in, ConnPolicy::buffer(300));
+    task.configure();
+    task.start();
+    for (int i = 0; i < 300; ++i) writer.port.write(i);
+    task.update();
+    EXPECT_EQ(task.samples, 300);
+    EXPECT_EQ(task.cycles_run, 300);
+}
+
+TEST(PortTest, AHookThatReadsNothingIsNotRunForEver) {
+    test::Writer<int32_t> writer;
+    OneByOne task("blind");
+    task.reads = false;
+    writer.port.connectTo(task.in, ConnPolicy::buffer(3));
+    task.configure();
+    task.start();
+    writer.port.write(1);
+    task.update();
+    EXPECT_EQ(task.cycles_run, 1);
+}
+
+}  // namespace
+}  // namespace insonify::framework

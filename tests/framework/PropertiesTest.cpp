@@ -1,0 +1,193 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <limits>
+
+#include "components/framework/Properties.hpp"
+
+namespace insonify {
+namespace {
+
+using types::Field;
+
+enum class Law { Rayleigh, Gaussian };
+
+struct Speckle {
+    Law law = Law::Rayleigh;
+    double mean = 0.4;
+    template <class Self, class V>
+    static void describe(Self& self, V& visit) {
+        visit(Field{"law", "", "distribution"}, self.law);
+        visit(Field{"mean", "1", "of the factor", 0, 10}, self.mean);
+    }
+};
+
+struct Config {
+    double range = 50;
+    int32_t bins = 500;
+    uint64_t seed = 1;
+    int64_t offset = 0;
+    bool loud = false;
+    std::string file;
+    glm::dvec3 position{0};
+    std::optional<Speckle> speckle;
+    std::optional<double> gain;
+    std::vector<double> bearings;
+    std::vector<Speckle> layers;
+    std::map<std::string, Speckle> materials;
+    Speckle always;
+    template <class Self, class V>
+    static void describe(Self& self, V& visit) {
+        visit(Field{"range", "m", "far edge", 0.1, 500}, self.range);
+        visit(Field{"bins", "1", "per beam", 1, 65536}, self.bins);
+        visit(Field{"seed", "1", "of the noise"}, self.seed);
+        visit(Field{"offset", "1", "any"}, self.offset);
+        visit(Field{"loud", "", "or not"}, self.loud);
+        visit(Field{"file", "", "to read"}, self.file);
+        visit(Field{"position", "m", "of the sensor", -100, 100}, self.position);
+        visit(Field{"speckle", "", "noise"}, self.speckle);
+        visit(Field{"gain", "dB", "if any"}, self.gain);
+        visit(Field{"bearings", "deg", "centres", -180, 180}, self.bearings);
+        visit(Field{"layers", "", "some"}, self.layers);
+        visit(Field{"materials", "", "by name"}, self.materials);
+        visit(Field{"always", "", "a block"}, self.always);
+    }
+    void check(types::Problems& problems) const {
+        if (loud && file.empty()) problems.push_back({"loud", "needs file"});
+        if (layers.size() > 1) problems.push_back({"layers[1].mean", "is one too many"});
+    }
+};
+
+struct Task : framework::TaskContext {
+    using TaskContext::TaskContext;
+    framework::Properties<Config> config{this};
+};
+
+std::vector<std::string> faultsOf(Task& task, const std::string& yaml) {
+    framework::ConfigReader reader("a.yml");
+    task.config.load(reader, YAML::Load(yaml), "p");
+    std::vector<std::string> texts;
+    for (const auto& fault : reader.faults()) texts.push_back(fault.text());
+    return texts;
+}
+
+}  // namespace
+}  // namespace insonify
+
+template <>
+struct insonify::types::EnumNames<insonify::Law> {
+    static constexpr std::string_view names[] = {"rayleigh", "gaussian"};
+};
+
+namespace insonify {
+namespace {
+
+TEST(PropertiesTest, EveryKindOfMemberIsRead) {
+    Task task("t");
+    const char* yaml = R"(
+range: 12.5
+bins: 1e3
+seed: 18446744073709551615
+offset: -9223372036854775808
+loud: true
+file: a.glb
+position: [1, -2.5, 3]
+speckle:
+gain: -3
+bearings: [-10, 0, 10]
+layers: [{law: gaussian}]
+materials: {sand: {mean: 0.1}, rock: {mean: 0.2}}
+always: {mean: 2}
+)";
+    EXPECT_THAT(faultsOf(task, yaml), testing::IsEmpty());
+    const Config& config = *task.config;
+    EXPECT_EQ(config.range, 12.5);
+    EXPECT_EQ(config.bins, 1000);
+    EXPECT_EQ(config.seed, std::numeric_limits<uint64_t>::max());
+    EXPECT_EQ(config.offset, std::numeric_limits<int64_t>::min());
+    EXPECT_TRUE(config.loud);
+    EXPECT_EQ(config.file, "a.glb");
+    EXPECT_EQ(config.position, glm::dvec3(1, -2.5, 3));
+    ASSERT_TRUE(config.speckle);  // an empty block is a block
+    EXPECT_EQ(config.speckle->mean, 0.4);
+    EXPECT_EQ(config.gain, -3);
+    EXPECT_EQ(config.bearings, (std::vector<double>{-10, 0, 10}));
+    EXPECT_EQ(config.layers.at(0).law, Law::Gaussian);
+    EXPECT_EQ(config.materials.at("rock").mean, 0.2);
+    EXPECT_EQ(config.always.mean, 2);
+    EXPECT_EQ(config.always.law, Law::Rayleigh);
+}
+
+TEST(PropertiesTest, EveryFaultIsReportedAtItsPlaceInOneGo) {
+    Task task("t");
+    const char* yaml =
+        "rang: 3\n"
+        "range: 1000\n"
+        "bins: 1.5\n"
+        "seed: -1\n"
+        "offset: 9223372036854775808\n"
+        "loud: yes\n"
+        "file: [a]\n"
+        "position: [1, 2]\n"
+        "speckle: {law: poisson, mean: .nan}\n"
+        "gain: \"3\"\n"
+        "bearings: [0, 200, x]\n"
+        "layers: {law: gaussian}\n"
+        "materials: {sand: {mean: 11}}\n"
+        "always: {mean: 1, mean: 2}\n";
+    EXPECT_THAT(
+        faultsOf(task, yaml),
+        testing::UnorderedElementsAre(
+            "a.yml:1:1: p.rang: is not a key here; did you mean range? known: range, bins, seed, offset, loud, file, "
+            "position, speckle, gain, bearings, layers, materials, always",
+            "a.yml:2:8: p.range: is 1000 m; may be 0.1 to 500 m", "a.yml:3:7: p.bins: is 1.5; must be a whole number",
+            "a.yml:4:7: p.seed: is -1; must be a whole number from 0 to 18446744073709551615",
+            "a.yml:5:9: p.offset: is 9223372036854775808; must be a whole number from -9223372036854775808 to "
+            "9223372036854775807",
+            "a.yml:6:7: p.loud: is yes; may be true or false", "a.yml:7:7: p.file: is a list; must be a text",
+            "a.yml:8:11: p.position: is a list; must be a list of three numbers [x, y, z]",
+            "a.yml:9:16: p.speckle.law: is poisson; may be rayleigh, gaussian",
+            "a.yml:9:31: p.speckle.mean: is .nan; must be a finite number",
+            "a.yml:10:7: p.gain: is the text \"3\"; must be a finite number",
+            "a.yml:11:15: p.bearings[1]: is 200 deg; may be -180 to 180 deg",
+            "a.yml:11:20: p.bearings[2]: is x; must be a finite number",
+            "a.yml:12:9: p.layers: is a block; must be a list",
+            "a.yml:13:26: p.materials.sand.mean: is 11; may be 0 to 10",
+            "a.yml:14:19: p.always.mean: stands here twice; once is allowed"));
+}
+
+TEST(PropertiesTest, AProblemOfFieldsTogetherIsReportedWhereItStands) {
+    Task task("t");
+    EXPECT_THAT(faultsOf(task, "range: 1\nloud: true\nlayers:\n  - {}\n  - {law: gaussian, mean: 3}\n"),
+                testing::ElementsAre("a.yml:2:7: p.loud: needs file", "a.yml:5:27: p.layers[1].mean: is one too many"));
+}
+
+TEST(PropertiesTest, NumbersThatAreNoneAreRefused) {
+    for (const char* number : {".inf", "-.inf", "nan", "inf", "1e999", "0x10", "1_000", "1,5", "", "1m"}) {
+        Task task("t");
+        EXPECT_EQ(faultsOf(task, std::string("range: ") + number).size(), 1u) << number;
+        EXPECT_EQ(faultsOf(task, std::string("bins: ") + number).size(), 1u) << number;
+        EXPECT_EQ(task.config->range, 50);
+    }
+}
+
+TEST(PropertiesTest, TheListingTellsAll) {
+    const auto list = Task("t").config.list();
+    const auto named = [&](const std::string& name) {
+        return *std::find_if(list.begin(), list.end(), [&](const auto& info) { return info.name == name; });
+    };
+    EXPECT_EQ(named("range").type, "double");
+    EXPECT_EQ(named("range").unit, "m");
+    EXPECT_EQ(named("range").default_value, "50");
+    EXPECT_EQ(named("range").min, 0.1);
+    EXPECT_EQ(named("range").max, 500);
+    EXPECT_EQ(named("range").doc, "far edge");
+    EXPECT_EQ(named("speckle").type, "block, optional");
+    EXPECT_EQ(named("speckle.law").type, "rayleigh|gaussian");
+    EXPECT_EQ(named("speckle.law").default_value, "rayleigh");
+    EXPECT_EQ(named("layers[].mean").default_value, "0.4");
+    EXPECT_EQ(named("materials.<name>.mean").max, 10);
+}
+
+}  // namespace
+}  // namespace insonify

@@ -1,0 +1,49 @@
+#include <gtest/gtest.h>
+
+#include "components/framework/Registry.hpp"
+#include "tests/framework/Tasks.hpp"
+#include "tests/support/Ports.hpp"
+
+namespace insonify::framework {
+namespace {
+
+TEST(RegistryTest, MakesWhatItLists) {
+    const Registry registry = test::testRegistry();
+    EXPECT_EQ(registry.list().front().type, "test::Source");
+    EXPECT_EQ(registry.list().front().doc, "counts");
+    EXPECT_EQ(registry.make("test::Source", "a")->name(), "a");
+    EXPECT_EQ(registry.make("test::Sourc", "a"), nullptr);
+}
+
+TEST(RegistryTest, ADeploymentLoadsTasksFromASharedObject) {
+    Registry registry = test::testRegistry();
+    const std::string yaml = std::string("libraries: [") + PLUGIN + R"(]
+tasks:
+  plugin: {type: plugin::PluginTask, activity: {period: 0.1}}
+  relay: {type: test::Relay}
+connections: [{from: plugin.value, to: relay.in}]
+)";
+    Deployment deployment(DeploymentSpec::parse(yaml, "plugin.yml"), registry);
+    deployment.configure();
+    const std::atomic<bool> stop{false};
+    EXPECT_FALSE(deployment.run({.duration_s = 0.15}, stop).failed());
+    EXPECT_EQ(dynamic_cast<test::Relay&>(*deployment.task("relay")).notes,
+              (std::vector<std::string>{"relay:42@1000000", "relay:42@1100000"}));
+}
+
+TEST(RegistryTest, ALibraryThatIsNotThereOrHasNoEntryIsNamed) {
+    Registry registry;
+    const std::string yaml = std::string("libraries: [nowhere.so, ") + NO_PLUGIN + "]\ntasks: {a: {type: b::C}}\n";
+    try {
+        Deployment deployment(DeploymentSpec::parse(yaml, "plugin.yml"), registry);
+        FAIL();
+    } catch (const types::ConfigError& error) {
+        ASSERT_EQ(error.diagnostics().size(), 3u);
+        EXPECT_NE(error.diagnostics()[0].text().find("nowhere.so: cannot be loaded"), std::string::npos);
+        EXPECT_NE(error.diagnostics()[1].text().find("has no function insonify_register"), std::string::npos);
+        EXPECT_NE(error.diagnostics()[2].text().find("is b::C; there are none"), std::string::npos);
+    }
+}
+
+}  // namespace
+}  // namespace insonify::framework
