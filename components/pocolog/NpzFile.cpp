@@ -88,6 +88,7 @@ void NpzFile::begin(const std::string& name, const std::string& type, const std:
 }
 
 void NpzFile::append(const void* data, size_t size) {
+    if (size == 0) return;  // zlib takes a null pointer for a new start
     Entry& entry = entries_.back();
     file_.write(static_cast<const char*>(data), static_cast<std::streamsize>(size));
     entry.size += size;
