@@ -40,7 +40,7 @@ void main() {
     ObjectRecord object = objects[run.object];
     vec4 plane = planes[run.first_triangle + uint(gl_PrimitiveID)];
     vec3 normal = vec3(dot(object.normal_x.xyz, plane.xyz), dot(object.normal_y.xyz, plane.xyz), dot(object.normal_z.xyz, plane.xyz));
-    float distance = dot(normal, vec3(object.row_x.w, object.row_y.w, object.row_z.w)) - plane.w;
+    float distance = dot(normal, vec3(object.row_x.w, object.row_y.w, object.row_z.w)) + plane.w;
     float scale = inversesqrt(max(dot(normal, normal), 1e-30));
     normal = slabFromSonar(normal * scale);
     distance *= scale;

@@ -19,7 +19,7 @@ template <class T> std::vector<T> joined(const types::Geometry& geometry, std::v
 
 template <class T> gpu::Buffer uploaded(const std::vector<T>& items) { return gpu::Buffer::of(std::span(items)); }
 
-/** Unit normal and offset of a triangle's plane, n.p = -w ... kept as n and n.p, in object axes. */
+/** A triangle's plane in object axes: xyz its unit normal n, w = n.p for its points p [m]. */
 vec4 planeOf(glm::dvec3 a, glm::dvec3 b, glm::dvec3 c) {
     const glm::dvec3 across = glm::cross(b - a, c - a);
     const double length = glm::length(across);
