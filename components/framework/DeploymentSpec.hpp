@@ -43,6 +43,7 @@ struct DeploymentSpec {
     static DeploymentSpec parse(const std::string& text, const std::string& file);
 
     TaskSpec* task(const std::string& name);  ///< Null when there is none.
+    const TaskSpec* task(const std::string& name) const { return const_cast<DeploymentSpec*>(this)->task(name); }
     std::vector<std::string> taskNames() const;
     /** `task.property.path=value`, the value in YAML: a layer over the file. Faults go to `faults`. */
     void set(const std::string& assignment);

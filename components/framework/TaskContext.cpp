@@ -130,7 +130,7 @@ Outcome TaskContext::notAllowed(const char* allowed) {
 
 Outcome TaskContext::notDone(const char* hook) {
     const std::string why = lastError();
-    return refuse(name_ + ": " + hook + " refused" + (why.empty() ? "" : ": " + why));
+    return refuse(std::string(hook) + " refused" + (why.empty() ? "" : ": " + why));
 }
 
 Outcome TaskContext::configureNow() {

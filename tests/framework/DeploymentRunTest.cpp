@@ -136,6 +136,74 @@ TEST(DeploymentRunTest, PingsEndTheRunWhenEverySonarHasThem) {
     EXPECT_EQ(deployment.task("a")->cycles().count(), 7u);
 }
 
+/** Notes its transitions in a list shared by all; one named "bad" refuses to be configured, "writer" writes on start.
+ */
+struct Tracer : TaskContext {
+    explicit Tracer(const std::string& task, std::vector<std::string>& shared) : TaskContext(task), all(shared) {}
+    std::vector<std::string>& all;
+    InputPort<double> in{this, "in", "numbers", Need::Optional};
+    OutputPort<double> out{this, "out", "numbers"};
+    void note(const char* what) { all.push_back(std::string(what) + " " + name()); }
+    bool configureHook() override {
+        note("configure");
+        if (name().starts_with("bad")) error("out of order");
+        return !name().starts_with("bad");
+    }
+    bool startHook() override {
+        note("start");
+        if (name() == "writer") out.write(1);
+        return true;
+    }
+    void updateHook() override {
+        for (double value; in.readNew(value);) note("update");
+    }
+    void stopHook() override {
+        note("stop");
+        if (name() == "writer") out.write(2);
+    }
+    void cleanupHook() override { note("cleanup"); }
+};
+
+TEST(DeploymentRunTest, ReadersStartFirstAndStopLastAndNothingThatWaitsForThemIsLost) {
+    std::vector<std::string> all;
+    Registry registry;
+    registry.add(
+        {"test::Tracer", "traces", [&](const std::string& name) { return std::make_unique<Tracer>(name, all); }});
+    const char* yaml =
+        "tasks: {reader: {type: test::Tracer}, writer: {type: test::Tracer, activity: {period: 1}}}\n"
+        "connections: [{from: writer.out, to: reader.in}]\n";
+    {
+        Deployment deployment(DeploymentSpec::parse(yaml, "a.yml"), registry);
+        deployment.configure();
+        EXPECT_FALSE(deployment.run({.duration_s = 1}, never).failed());
+    }
+    EXPECT_EQ(all, (std::vector<std::string>{"configure reader", "configure writer", "start reader", "start writer",
+                                             "update reader", "stop writer", "update reader", "stop reader",
+                                             "cleanup writer", "cleanup reader"}));
+}
+
+TEST(DeploymentRunTest, TasksThatCannotBeConfiguredAreAllNamedAndTheRestIsCleanedUp) {
+    std::vector<std::string> all;
+    Registry registry;
+    registry.add(
+        {"test::Tracer", "traces", [&](const std::string& name) { return std::make_unique<Tracer>(name, all); }});
+    const char* yaml =
+        "tasks:\n"
+        "  bad: {type: test::Tracer, activity: {period: 1}}\n"
+        "  good: {type: test::Tracer, activity: {period: 1}}\n"
+        "  bad2: {type: test::Tracer, activity: {period: 1}}\n";
+    Deployment deployment(DeploymentSpec::parse(yaml, "a.yml"), registry);
+    try {
+        deployment.configure();
+        FAIL();
+    } catch (const types::ConfigError& error) {
+        ASSERT_EQ(error.diagnostics().size(), 2u);
+        EXPECT_EQ(error.diagnostics()[0].text(), "a.yml:2:8: tasks.bad: configureHook refused: out of order");
+        EXPECT_EQ(error.diagnostics()[1].text(), "a.yml:4:9: tasks.bad2: configureHook refused: out of order");
+    }
+    EXPECT_EQ(all, (std::vector<std::string>{"configure bad", "configure good", "configure bad2", "cleanup good"}));
+}
+
 TEST(DeploymentRunTest, WithoutLimitsARunEndsWithItsSources) {
     EXPECT_EQ(LockstepRun("tasks: {s: {type: test::Source, activity: {period: 1}, properties: {last: 5}}}")
                   .deployment->task("s")
