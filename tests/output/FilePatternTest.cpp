@@ -1,0 +1,38 @@
+#include <gtest/gtest.h>
+
+#include "components/output/FilePattern.hpp"
+#include "components/output/PictureConfig.hpp"
+
+namespace insonify::output {
+namespace {
+
+TEST(FilePatternTest, NumbersAreWrittenAsPrintfWould) {
+    EXPECT_EQ(FilePattern::parse("fan_%06d.png")->name(42), "fan_000042.png");
+    EXPECT_EQ(FilePattern::parse("fan_%d.png")->name(42), "fan_42.png");
+    EXPECT_EQ(FilePattern::parse("a/%4d.png")->name(7), "a/   7.png");
+    EXPECT_EQ(FilePattern::parse("%02d.png")->name(1234567), "1234567.png");
+}
+
+TEST(FilePatternTest, AnythingElseIsRefused) {
+    for (const char* pattern :
+         {"", "fan.png", "fan_%s.png", "fan_%d_%d.png", "fan_%n.png", "%", "fan_%", "fan_%06.png", "%%d.png",
+          "fan_%-6d.png", "fan_%9999999999d.png", "fan_%0100d.png", "fan_%ld.png", "fan_%06d.bmp", "fan_%06d"})
+        EXPECT_FALSE(FilePattern::parse(pattern)) << pattern;
+}
+
+TEST(RecordingConfigTest, NamesThatCannotBeWrittenAreProblems) {
+    const auto problemsOf = [](const RecordingConfig& config) {
+        types::Problems problems;
+        config.check(problems);
+        return problems;
+    };
+    EXPECT_TRUE(problemsOf({}).empty());
+    EXPECT_TRUE(problemsOf({.file = "a%d.png", .video = "b.mp4", .video_rate = {}}).empty());
+    const auto problems = problemsOf({.file = "%s%n", .video = "b.mkv", .video_rate = {}});
+    ASSERT_EQ(problems.size(), 2u);
+    EXPECT_EQ(problems[0].path, "file");
+    EXPECT_EQ(problems[1].path, "video");
+}
+
+}  // namespace
+}  // namespace insonify::output
