@@ -16,6 +16,11 @@ const char* normalisePose(types::Pose& pose) {
     return nullptr;
 }
 
+PingTask::~PingTask() {
+    stop();
+    cleanup();
+}
+
 std::vector<std::string> PingTask::notices() const {
     return plan_ ? plan_->notices : configNotices(sonarConfig());
 }

@@ -19,6 +19,8 @@ namespace insonify::sonar {
 class PingTask : public framework::TaskContext {
 public:
     using TaskContext::TaskContext;
+    /** Stops and cleans up: the renderer must go on the task's own thread. */
+    ~PingTask() override;
 
     framework::InputPort<types::SnapshotPtr> snapshot{this, "snapshot", "sonar pose and scene at one instant"};
     framework::OutputPort<types::SonarPtr> ping{this, "ping", "one ping, noiseless, at the time of its snapshot"};

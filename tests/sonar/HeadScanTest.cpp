@@ -1,0 +1,63 @@
+#include <gmock/gmock.h>
+
+#include "components/sonar/HeadScan.hpp"
+
+namespace insonify::sonar {
+namespace {
+
+using ::testing::ElementsAre;
+
+std::vector<double> bearings(const HeadConfig& config, int pings) {
+    HeadScan scan(config);
+    std::vector<double> all;
+    for (int i = 0; i < pings; ++i) {
+        all.push_back(scan.bearingDeg());
+        scan.advance();
+    }
+    return all;
+}
+
+TEST(HeadScanTest, ASectorStartsAtItsLeftLimitAndTurnsBackWithoutADoubledPing) {
+    EXPECT_THAT(
+        bearings({.left_deg = 20, .right_deg = -20, .step_deg = 20, .continuous = {}, .speed_deg_per_s = {}}, 9),
+        ElementsAre(20, 0, -20, 0, 20, 0, -20, 0, 20));
+}
+
+TEST(HeadScanTest, ASectorThatTheStepDoesNotDivideIsNeverLeft) {
+    EXPECT_THAT(
+        bearings({.left_deg = 10, .right_deg = -15, .step_deg = 10, .continuous = {}, .speed_deg_per_s = {}}, 6),
+        ElementsAre(10, 0, -10, 0, 10, 0));
+}
+
+TEST(HeadScanTest, AStepAsWideAsTheSectorGoesBetweenItsLimits) {
+    EXPECT_THAT(bearings({.left_deg = 5, .right_deg = -5, .step_deg = 10, .continuous = {}, .speed_deg_per_s = {}}, 4),
+                ElementsAre(5, -5, 5, -5));
+}
+
+TEST(HeadScanTest, AFullTurnGoesOnToStarboard) {
+    EXPECT_THAT(
+        bearings({.left_deg = 180, .right_deg = -180, .step_deg = 90, .continuous = {}, .speed_deg_per_s = {}}, 6),
+        ElementsAre(180, 90, 0, -90, 180, 90));
+}
+
+TEST(HeadScanTest, AFullTurnMayTurnBackToo) {
+    EXPECT_THAT(
+        bearings({.left_deg = 180, .right_deg = -180, .step_deg = 180, .continuous = false, .speed_deg_per_s = {}}, 5),
+        ElementsAre(180, 0, -180, 0, 180));
+}
+
+TEST(HeadScanTest, BearingsDoNotDriftInAMillionPings) {
+    HeadScan scan(HeadConfig{});
+    for (int i = 0; i < 1'000'000; ++i) scan.advance();
+    EXPECT_NEAR(scan.bearingDeg(), 180, 1e-6);  // 200 steps of 1.8 deg to a turn
+}
+
+TEST(HeadScanTest, AStepTakesTimeAtTheHeadsSpeed) {
+    HeadConfig config;
+    EXPECT_EQ(stepDuration(config), 0);
+    config.speed_deg_per_s = 18;
+    EXPECT_DOUBLE_EQ(stepDuration(config), 0.1);
+}
+
+}  // namespace
+}  // namespace insonify::sonar

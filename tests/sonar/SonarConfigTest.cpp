@@ -1,0 +1,156 @@
+#include <gmock/gmock.h>
+
+#include "components/framework/ConfigReader.hpp"
+#include "components/sonar/HeadConfig.hpp"
+#include "components/sonar/SonarConfig.hpp"
+
+namespace insonify::sonar {
+namespace {
+
+using ::testing::AllOf;
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+
+template <class Config>
+std::vector<std::string> faultsOf(const char* yaml) {
+    framework::ConfigReader reader("sonar.yml");
+    Config config;
+    reader.read(YAML::Load(yaml), "", config);
+    std::vector<std::string> texts;
+    for (const auto& fault : reader.faults()) texts.push_back(fault.path + ": " + fault.message);
+    return texts;
+}
+
+TEST(SonarConfigTest, EveryKeyOfTheContractIsAccepted) {
+    EXPECT_THAT(faultsOf<SonarConfig>(R"(
+        model: physical
+        range: 75
+        range_min: 0.5
+        bin_count: 500
+        bearings_deg: [-30, -10, 0, 5]
+        beam_width_deg: 1.5
+        beam_height_deg: 12
+        beam_geometry: conical
+        speed_of_sound: 1480
+        water: {temperature_celsius: 12, salinity_psu: 35, depth: 8, ph: 8.1}
+        source_level_db: 210
+        absorption: {law: ainslie_mccolm, frequency_khz: 750}
+        output: received_level_db
+        tvg: {log_coefficient: 50, db_per_m: 0.4, max_db: 100}
+        quality: {rows: 512, columns_per_beam: 4}
+        range_rounding: exact
+        device: software
+        deposit: cpu)"),
+                IsEmpty());
+    EXPECT_THAT(faultsOf<SonarConfig>("{model: cerqueira2017, published: true, absorption: {db_per_m: 0.2}}"),
+                IsEmpty());
+    EXPECT_THAT(
+        faultsOf<ScanningSonarConfig>("head: {left_deg: 60, right_deg: -60, step_deg: 0.9, speed_deg_per_s: 90}"),
+        IsEmpty());
+    EXPECT_THAT(faultsOf<ScanningSonarConfig>("{}"), IsEmpty());
+}
+
+TEST(SonarConfigTest, ValuesOutOfBoundsAreRefused) {
+    for (const char* yaml : {"range: 0",
+                             "range: -5",
+                             "range: .nan",
+                             "range_min: -1",
+                             "beam_count: 0",
+                             "beam_count: 5000",
+                             "bin_count: 0",
+                             "field_of_view_deg: 0",
+                             "field_of_view_deg: -10",
+                             "field_of_view_deg: 361",
+                             "beam_height_deg: 0",
+                             "beam_height_deg: 90",
+                             "beam_height_deg: 180",
+                             "speed_of_sound: 0",
+                             "speed_of_sound: -1500",
+                             "speed_of_sound: 1.0e+9",
+                             "speed_of_sound: .nan",
+                             "water: {salinity_psu: -1}",
+                             "quality: {rows: 0}",
+                             "{bearings_deg: [0, 200], beam_width_deg: 1}",
+                             "beam_count: 2.5",
+                             "model: magic",
+                             "output: volts"})
+        EXPECT_EQ(faultsOf<SonarConfig>(yaml).size(), 1u) << yaml;
+}
+
+TEST(SonarConfigTest, WhatIsNotBuiltYetSaysSo) {
+    for (const char* yaml :
+         {"beam_pattern: {azimuth: {weighting: hann, width_deg: 1}}", "pulse: {bandwidth_khz: 20}", "volume: {}",
+          "multipath: {}", "quality: {target_error: 0.01}", "quality: {budget_ms: 20}"})
+        EXPECT_THAT(faultsOf<SonarConfig>(yaml), ElementsAre(HasSubstr("not built yet"))) << yaml;
+}
+
+TEST(SonarConfigTest, ValuesThatDoNotGoTogetherAreNamed) {
+    struct Case {
+        const char* yaml;
+        const char* path;
+        const char* words;
+    };
+    for (const Case& c :
+         {Case{"{range: 10, range_min: 10}", "range_min: ", "must be below range, 10 m"},
+          Case{"bearings_deg: [0, 1]", "beam_width_deg: ", "bearings_deg needs the width"},
+          Case{"beam_width_deg: 3", "beam_width_deg: ", "stands without bearings_deg"},
+          Case{"{beam_count: 4096, bin_count: 20000, range: 2000}",
+               "bin_count: ", "81920000 bins in all; may be 16777216"},
+          Case{"{beam_geometry: conical, field_of_view_deg: 200}", "beam_geometry: ", "at most 180 deg"},
+          Case{"absorption: {frequency_khz: 700}", "absorption.frequency_khz: ", "needs the water block"},
+          Case{"absorption: {}", "absorption: ", "give db_per_m, or frequency_khz"},
+          Case{"absorption: {db_per_m: 1, frequency_khz: 700}", "absorption.db_per_m: ", "give one of the two"},
+          Case{"{model: cerqueira2017, output: level_db}", "output: ", "output: intensity"},
+          Case{"published: true", "published: ", "only with model: cerqueira2017"},
+          Case{"{model: cerqueira2017, published: true, bin_count: 1}", "bin_count: ", "at least 2"},
+          Case{"{model: cerqueira2017, published: true, field_of_view_deg: 180}", "published: ", "less than 180"},
+          Case{"{range: 1, bin_count: 1000}", "range: ", "1000 bins of whole microseconds reach 1.5 m"}})
+        EXPECT_THAT(faultsOf<SonarConfig>(c.yaml), ElementsAre(AllOf(HasSubstr(c.path), HasSubstr(c.words)))) << c.yaml;
+}
+
+TEST(SonarConfigTest, ExactRangesNeedNoWholeMicroseconds) {
+    EXPECT_THAT(faultsOf<SonarConfig>("{range: 1, bin_count: 1000, range_rounding: exact}"), IsEmpty());
+}
+
+TEST(SonarConfigTest, HeadsThatCannotTurnSoAreRefused) {
+    struct Case {
+        const char* yaml;
+        const char* words;
+    };
+    for (const Case& c :
+         {Case{"head: {left_deg: -60, right_deg: 60}", "must be above right_deg"},
+          Case{"head: {left_deg: 30, right_deg: 30}", "must be above right_deg"},
+          Case{"head: {left_deg: 300, right_deg: -300}", "at most 360 deg"},
+          Case{"head: {left_deg: 60, right_deg: -60, continuous: true}", "sector of 120 deg"},
+          Case{"head: {left_deg: 1, right_deg: -1, step_deg: 3}", "the sector has 2 deg"},
+          Case{"head: {step_deg: 0}", "0.001 to 360"}, Case{"head: {step_deg: 400}", "0.001 to 360"},
+          Case{"field_of_view_deg: 120", "is not a key here"}, Case{"beam_count: 2", "is not a key here"},
+          Case{"{range: 10, range_min: 20}", "must be below range"}})
+        EXPECT_THAT(faultsOf<ScanningSonarConfig>(c.yaml), ElementsAre(HasSubstr(c.words))) << c.yaml;
+}
+
+TEST(SonarConfigTest, BeamsOfAFanAreEvenAndCentredAndThoseOfATableAreAsGiven) {
+    SonarConfig config;
+    config.beam_count = 4;
+    config.field_of_view_deg = 120;
+    EXPECT_DOUBLE_EQ(config.bearingDeg(0), -45);
+    EXPECT_DOUBLE_EQ(config.bearingDeg(3), 45);
+    EXPECT_DOUBLE_EQ(config.beamWidthDeg(), 30);
+    config.bearings_deg = {-20, 5, 30};
+    config.beam_width_deg = 2;
+    EXPECT_EQ(config.beams(), 3);
+    EXPECT_DOUBLE_EQ(config.bearingDeg(1), 5);
+    EXPECT_DOUBLE_EQ(config.coverageDeg(), 52);
+}
+
+TEST(SonarConfigTest, AScanningSonarHasOneBeamOfThreeByThirtyFiveDegrees) {
+    const SonarConfig beam = ScanningSonarConfig{}.beam();
+    EXPECT_EQ(beam.beams(), 1);
+    EXPECT_EQ(beam.bearingDeg(0), 0);
+    EXPECT_EQ(beam.beamWidthDeg(), 3);
+    EXPECT_EQ(beam.beam_height_deg, 35);
+}
+
+}  // namespace
+}  // namespace insonify::sonar

@@ -1,0 +1,111 @@
+#include <gmock/gmock.h>
+
+#include <cmath>
+#include <limits>
+
+#include "components/sonar/SonarTask.hpp"
+#include "tests/sonar/WallScene.hpp"
+#include "tests/support/Ports.hpp"
+
+namespace insonify::sonar {
+namespace {
+
+using framework::TaskState;
+
+class SonarTaskTest : public ::testing::Test {
+protected:
+    SonarTaskTest() {
+        in_.port.connectTo(task_.snapshot, framework::ConnPolicy::buffer(4));
+        task_.ping.connectTo(out_.port, framework::ConnPolicy::buffer(4));
+    }
+    void start(const SonarConfig& config = smallSonar()) {
+        task_.config.set(config);
+        ASSERT_TRUE(task_.configure()) << task_.lastError();
+        ASSERT_TRUE(task_.start()) << task_.lastError();
+    }
+    /** The ping for one snapshot; null when there was none. */
+    types::SonarPtr pingOf(types::Snapshot snapshot) {
+        in_.port.write(std::make_shared<types::Snapshot>(std::move(snapshot)));
+        task_.update();
+        types::SonarPtr ping;
+        out_.port.readNew(ping);
+        return ping;
+    }
+
+    SonarTask task_{"sonar"};
+    test::Writer<types::SnapshotPtr> in_;
+    test::Reader<types::SonarPtr> out_;
+};
+
+TEST_F(SonarTaskTest, APingCarriesTheTimeOfItsSnapshotAndTheGridOfItsBins) {
+    start();
+    const auto ping = pingOf(facingWall(5));
+    ASSERT_TRUE(ping) << task_.lastError();
+    EXPECT_EQ(ping->time, types::Time{7'000'000});
+    EXPECT_EQ(ping->beam_count, 8u);
+    EXPECT_EQ(ping->bin_count, 100u);
+    EXPECT_EQ(ping->bins.size(), 800u);
+    EXPECT_EQ(ping->bin_duration.microseconds, 100);
+    EXPECT_NEAR(ping->bearings[0].deg(), -35, 1e-9);
+    EXPECT_NEAR(ping->beam_width.deg(), 10, 1e-9);
+    EXPECT_NEAR(firstEcho(*ping, 4), 5, 0.16);
+    ASSERT_TRUE(task_.plan());
+    EXPECT_THAT(task_.plan()->features, ::testing::Contains("physical"));
+    EXPECT_EQ(task_.stages().count("draw"), 1u);
+}
+
+TEST_F(SonarTaskTest, APoseThatCannotBeUsedIsARunTimeErrorUntilTheNextGoodOne) {
+    const double nan = std::numeric_limits<double>::quiet_NaN();
+    start();
+    types::Snapshot lost = facingWall(5), unturned = facingWall(5), spun = facingWall(5), empty = facingWall(5);
+    lost.sonar.position.x = nan;
+    unturned.sonar.orientation = {0, 0, 0, 1e-7};
+    spun.sonar.orientation.w = nan;
+    empty.geometry = nullptr;
+    for (const types::Snapshot& bad : {lost, unturned, spun, empty}) {
+        EXPECT_FALSE(pingOf(bad));
+        EXPECT_EQ(task_.state(), TaskState::RunTimeError);
+        EXPECT_FALSE(task_.lastError().empty());
+        EXPECT_TRUE(pingOf(facingWall(5)));
+        EXPECT_EQ(task_.state(), TaskState::Running);
+    }
+}
+
+TEST_F(SonarTaskTest, AQuaternionThatIsNotOfUnitLengthIsNormalised) {
+    start();
+    const auto ping = pingOf(facingWall(5));
+    types::Snapshot longer = facingWall(5);
+    longer.sonar.orientation *= 1.001;
+    const auto same = pingOf(longer);
+    ASSERT_TRUE(ping && same);
+    EXPECT_EQ(ping->bins, same->bins);
+}
+
+TEST_F(SonarTaskTest, ANewSceneIsRenderedFromThenOn) {
+    start();
+    EXPECT_NEAR(firstEcho(*pingOf(facingWall(5)), 4), 5, 0.16);
+    EXPECT_NEAR(firstEcho(*pingOf(facingWall(9)), 4), 9, 0.16);
+}
+
+TEST_F(SonarTaskTest, ItCanBeCleanedUpAndConfiguredAnew) {
+    start();
+    ASSERT_TRUE(pingOf(facingWall(5)));
+    ASSERT_TRUE(task_.stop());
+    ASSERT_TRUE(task_.cleanup());
+    SonarConfig config = smallSonar();
+    config.beam_count = 4;
+    start(config);
+    EXPECT_EQ(pingOf(facingWall(5))->beam_count, 4u);
+}
+
+TEST_F(SonarTaskTest, NoticesAreThoseOfTheConfigurationUntilTheSceneIsKnown) {
+    SonarConfig config = smallSonar();
+    config.speed_of_sound = 1700;
+    start(config);
+    EXPECT_THAT(task_.notices(), ::testing::Contains(::testing::HasSubstr("speed of sound is 1700 m/s")));
+    ASSERT_TRUE(pingOf(facingWall(5)));
+    EXPECT_THAT(task_.notices(), ::testing::Contains(::testing::HasSubstr("medium sand")));
+}
+
+}  // namespace
+}  // namespace insonify::sonar
