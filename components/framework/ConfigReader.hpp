@@ -215,6 +215,10 @@ bool ConfigReader::readNumber(const YAML::Node& node, const std::string& path, c
     } else {
         double wide = 0;
         if (!number(node, path, field, wide)) return false;
+        if (std::abs(wide) > static_cast<double>(std::numeric_limits<T>::max())) {
+            fault(node, path, "is " + node.Scalar() + "; is too large");
+            return false;
+        }
         value = static_cast<T>(wide);
         return true;
     }

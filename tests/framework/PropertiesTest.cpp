@@ -171,6 +171,20 @@ TEST(PropertiesTest, NumbersThatAreNoneAreRefused) {
     }
 }
 
+TEST(PropertiesTest, NumbersThatDoNotFitTheirTypeAreRefused) {
+    framework::ConfigReader reader("a.yml");
+    float narrow = 1;
+    uint32_t word = 1;
+    EXPECT_FALSE(reader.readValue(YAML::Load("1e39"), "narrow", Field{"narrow"}, narrow));
+    EXPECT_FALSE(reader.readValue(YAML::Load("4294967296"), "word", Field{"word"}, word));
+    EXPECT_FALSE(reader.readValue(YAML::Load("1e30"), "word", Field{"word"}, word));
+    EXPECT_EQ(reader.faults().size(), 3u);
+    EXPECT_EQ(narrow, 1);
+    EXPECT_EQ(word, 1u);
+    EXPECT_TRUE(reader.readValue(YAML::Load("4294967295"), "word", Field{"word"}, word));
+    EXPECT_EQ(word, 4294967295u);
+}
+
 TEST(PropertiesTest, TheListingTellsAll) {
     const auto list = Task("t").config.list();
     const auto named = [&](const std::string& name) {
