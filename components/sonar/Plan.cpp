@@ -44,13 +44,14 @@ void omitAbsorption(const SonarConfig& config, const BinGrid& grid, types::Plan&
     if (!config.absorption) return plan.omitted.push_back({"absorption", "not configured"});
     const double residual = makeAbsorption(config).intensityPerMetre() * grid.bin_width / 2;
     if (config.model == Model::Cerqueira2017) return;
-    const std::string bound = fmt::format("beta dR/2 = {:.1e}", residual);
-    plan.omitted.push_back({"absorption inside a bin", bound + (residual < 1e-3 ? " < 1e-3" : "")});
-    if (residual >= 1e-3)
+    const double decibels = 10 * residual / std::numbers::ln10;
+    const std::string bound = residual < 1e-3 ? " < 1e-3" : fmt::format(", {:.2g} dB to either side", decibels);
+    plan.omitted.push_back({"absorption inside a bin", fmt::format("beta dR/2 = {:.1e}{}", residual, bound)});
+    if (decibels > 0.1)
         plan.notices.push_back(
-            fmt::format("Absorption changes within a bin by {:.2g} dB to either side of its middle; "
-                        "it is taken in the middle",
-                        10 * residual / std::numbers::ln10));
+            fmt::format("Warning: absorption changes within a bin by {:.2g} dB to either side of its "
+                        "middle; it is taken in the middle",
+                        decibels));
 }
 
 void omitPhysical(const SonarConfig& config, const types::Geometry& geometry, types::Plan& plan) {

@@ -112,6 +112,10 @@ TEST(PlanTest, AbsorptionWithinABinIsBounded) {
     types::Plan plan = makePlan(config, sceneOf({sand()}));
     EXPECT_EQ(reason(plan, "absorption inside a bin"), "beta dR/2 = 6.9e-04 < 1e-3");
     EXPECT_THAT(plan.notices, IsEmpty());
+    config.absorption->db_per_m = 0.2;
+    plan = makePlan(config, sceneOf({sand()}));
+    EXPECT_EQ(reason(plan, "absorption inside a bin"), "beta dR/2 = 6.9e-03, 0.03 dB to either side");
+    EXPECT_THAT(plan.notices, IsEmpty());
     config.absorption->db_per_m = 2;
     plan = makePlan(config, sceneOf({sand()}));
     EXPECT_THAT(plan.notices, ElementsAre(HasSubstr("changes within a bin by 0.3 dB")));
