@@ -207,11 +207,11 @@ def add_pipeline(glb, floor, steel, concrete):
 
 def rock_places(rng):
     """Riprap along the toe of the wall, a reef to starboard, and single stones ahead: (x, y, size) [m]."""
-    toe = [(rng.uniform(9, 58), QUAY - rng.uniform(0.5, 2.6), rng.uniform(0.35, 1.0)) for _ in range(60)]
+    toe = [(rng.uniform(9, 58), QUAY - rng.uniform(0.3, 2.2), rng.uniform(0.25, 0.7)) for _ in range(50)]
     reef = [(*(np.array([26, -24]) + rng.normal(0, (4.5, 2.0)) @ rotation(yaw=30)[:2, :2]), rng.uniform(0.5, 2.2))
             for _ in range(45)]
-    distance, bearing = rng.uniform(8, 42, 45), np.radians(rng.uniform(-60, 10, 45))
-    single = zip(9 + distance * np.cos(bearing), distance * np.sin(bearing), rng.uniform(0.25, 1.1, 45))
+    distance, bearing = rng.uniform(8, 42, 55), np.radians(rng.uniform(-60, 10, 55))
+    single = zip(9 + distance * np.cos(bearing), distance * np.sin(bearing), rng.uniform(0.25, 1.1, 55))
     return [*toe, *reef, *single]
 
 
@@ -228,7 +228,7 @@ def add_quay(glb, rng, floor, steel, concrete, rubber):
     glb.node("ladder", glb.mesh("ladder", [ladder()], steel), (17, QUAY - 0.3, 0))
     pile = glb.mesh("pile", [tube([(0, 0, -12), (0, 0, 2)], 0.38, 20)], steel)
     for n, x in enumerate(np.arange(8.0, 64.0, 6.0)):
-        glb.node(f"pile_{n:02d}", pile, (x, QUAY - 0.9, 0), rotation(roll=0.4 * np.sin(9 * n), pitch=0.5 * np.cos(7 * n)))
+        glb.node(f"pile_{n:02d}", pile, (x, QUAY - 1.6, 0), rotation(roll=0.4 * np.sin(9 * n), pitch=0.5 * np.cos(7 * n)))
     fender = glb.mesh("fender", [tube([(0, 0, -7.6), (0, 0, -0.4)], 0.42, 20)], rubber)
     for n, x in enumerate(np.arange(11.0, 60.0, 12.0)):
         glb.node(f"fender_{n:02d}", fender, (x, QUAY - 0.45, 0))
@@ -245,7 +245,7 @@ def make_scene(rng, floor):
     glb.node("sea_floor", glb.mesh("sea_floor", list(floor.parts()), sand))
     add_quay(glb, rng, floor, steel, concrete, rubber)
     x, y = 39.0, -15.0
-    glb.node("hull", glb.mesh("hull", [wreck()], steel), (x, y, floor.z(x, y) + 1.55), rotation(roll=24, pitch=-3, yaw=125))
+    glb.node("hull", glb.mesh("hull", [wreck()], steel), (x, y, floor.z(x, y) + 1.55), rotation(roll=-20, pitch=-3, yaw=125))
     add_pipeline(glb, floor, steel, concrete)
     add_chain(glb, floor, steel, concrete)
     add_rocks(glb, rng, floor, stone)
