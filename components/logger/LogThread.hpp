@@ -1,0 +1,71 @@
+#pragma once
+#include <condition_variable>
+#include <mutex>
+#include <string>
+#include <thread>
+#include <type_traits>
+#include <variant>
+#include <vector>
+
+#include "components/pocolog/SampleTypes.hpp"
+#include "components/pocolog/Writer.hpp"
+
+namespace insonify::logger {
+
+template <class Types> struct AnyCarried;
+template <class... T> struct AnyCarried<std::tuple<T...>> { using type = std::variant<pocolog::Carried<T>...>; };
+/** Any sample that a log takes, as it travels on ports. */
+using AnySample = AnyCarried<pocolog::SampleTypes>::type;
+
+/** Writes samples to a log on a thread of its own, in the order in which they were pushed, and flushes in between.
+ *
+ *  Between push() and the file lies a ring of fixed size. Where the file is slower than the samples for long, push()
+ *  waits for room. Trouble with the file is thrown once, by the next push() or by finish(). */
+class LogThread {
+public:
+    /** `log` is the thread's alone until finish(). Flushes every `flush_period` [s]; `capacity` is above 0. */
+    LogThread(pocolog::Writer& log, size_t capacity, double flush_period);
+    ~LogThread();
+    LogThread(const LogThread&) = delete;
+    LogThread& operator=(const LogThread&) = delete;
+
+    /** Takes a sample of a stream, received at that time. Throws std::runtime_error once the file has failed. */
+    template <class Sample> void push(size_t stream, types::Time received, Sample sample) {
+        Entry& entry = freeEntry();
+        entry.stream = stream;
+        entry.received = received;
+        entry.sample = std::move(sample);
+        commit();
+    }
+    /** Writes and flushes what waits, and ends the thread. Throws std::runtime_error if the file has failed and push()
+     *  has not told it. */
+    void finish();
+
+private:
+    struct Entry {
+        size_t stream = 0;
+        types::Time received;
+        AnySample sample;
+    };
+    using Clock = std::chrono::steady_clock;
+
+    Entry& freeEntry();
+    void commit();
+    void run();
+    void writeAll();
+    void write(Entry& entry);
+    [[noreturn]] void tellFailure();
+
+    pocolog::Writer& log_;
+    std::chrono::nanoseconds flush_period_;
+    std::mutex mutex_;
+    std::condition_variable work_, room_;
+    std::vector<Entry> ring_;
+    size_t first_ = 0, count_ = 0;  ///< The thread owns ring_[first_] while count_ > 0; push() the entries after them.
+    bool ending_ = false;
+    bool failed_ = false;
+    std::string failure_;  ///< Not told yet.
+    std::thread thread_;
+};
+
+}  // namespace insonify::logger

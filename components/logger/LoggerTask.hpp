@@ -1,0 +1,62 @@
+#pragma once
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "components/framework/Port.hpp"
+#include "components/framework/Properties.hpp"
+#include "components/framework/TaskContext.hpp"
+#include "components/logger/LogThread.hpp"
+#include "components/logger/LoggerConfig.hpp"
+#include "components/pocolog/Writer.hpp"
+
+namespace insonify::logger {
+
+/** Writes what it is connected to into a pocolog file that Rock's tools open.
+ *
+ *  Ports: an input for each connection that names one, whatever the name, of any type in pocolog/SampleTypes.hpp; give
+ *  it a buffer. The stream is named after its source, `task.port`. Samples bear the time at which they were true and
+ *  the time at which they reached this task. Every stream carries the deployment and its seed in its metadata.
+ *
+ *  The file is opened by configure (what cannot be written refuses it), written by a thread of its own, flushed every
+ *  `flush_period`, and finished with its index by cleanup. A file slower than the samples makes this task wait, and
+ *  then its ports' buffers count what they lose. A disk that is full or broken ends in Exception; what was flushed
+ *  stays. */
+class LoggerTask final : public framework::TaskContext {
+public:
+    using TaskContext::TaskContext;
+
+    framework::Properties<LoggerConfig> config{this};
+
+    /** Throws ConfigError for a type that a log cannot hold. */
+    framework::InputPortBase* makeInput(const std::string& port, framework::OutputPortBase& source) override;
+    std::vector<std::string> notices() const override;
+
+private:
+    /** One input and its stream. */
+    class Inlet {
+    public:
+        explicit Inlet(std::string name) : stream(std::move(name)) {}
+        virtual ~Inlet() = default;
+        virtual framework::InputPortBase& port() const = 0;
+        virtual void declare(pocolog::Writer& log, const pocolog::Metadata& metadata) = 0;
+        virtual void drain(LogThread& log, types::Time received) = 0;
+        const std::string stream;  ///< "task.port" of the source.
+    };
+    template <class T> class TypedInlet;
+
+    bool configureHook() override;
+    bool startHook() override;
+    void updateHook() override;
+    void stopHook() override;
+    void cleanupHook() override;
+    void checkInlets() const;
+    pocolog::Metadata metadata();
+
+    std::vector<std::unique_ptr<Inlet>> inlets_;
+    std::optional<pocolog::Writer> log_;
+    std::optional<LogThread> thread_;
+};
+
+}  // namespace insonify::logger
