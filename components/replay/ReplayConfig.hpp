@@ -1,0 +1,23 @@
+#pragma once
+#include <string>
+
+#include "types/Describe.hpp"
+
+namespace insonify::replay {
+
+struct ReplayConfig {
+    std::string file;
+    double pace = 1;
+
+    template <class Self, class V> static void describe(Self& self, V& visit) {
+        using types::Field;
+        visit(Field{"file", "", "pocolog file, relative to the deployment"}, self.file);
+        visit(Field{"pace", "1",
+                    "recorded seconds per second of the wall clock; 0: one instant of the log each cycle; without "
+                    "effect in lockstep, where simulated time follows the log",
+                    0, 1e6},
+              self.pace);
+    }
+};
+
+}  // namespace insonify::replay

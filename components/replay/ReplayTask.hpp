@@ -1,0 +1,62 @@
+#pragma once
+#include <atomic>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "components/framework/Port.hpp"
+#include "components/framework/Properties.hpp"
+#include "components/framework/TaskContext.hpp"
+#include "components/pocolog/Reader.hpp"
+#include "components/replay/ReplayConfig.hpp"
+
+namespace insonify::replay {
+
+/** Publishes a log's streams again, sample by sample in the order of the file: a source.
+ *
+ *  Ports: an output for each connection that names a stream of the log, as in `replay.sonar.ping`; the samples are
+ *  the recorded ones, stamps and all. A sample is due at its world time, or with the one before it in the file if that
+ *  is later. In lockstep simulated time starts at the first sample and goes from one to the next; in realtime the task
+ *  keeps `pace`, checking every millisecond unless its activity has a period.
+ *
+ *  A log that was cut off plays up to its last whole block, with a notice; streams that nothing is connected to, or
+ *  whose type is not known, are listed in notices. A sample that cannot be decoded ends in Exception. */
+class ReplayTask final : public framework::TaskContext {
+public:
+    explicit ReplayTask(std::string name);
+    ~ReplayTask() override;
+
+    framework::Properties<ReplayConfig> config{this};
+
+    /** Throws ConfigError when the log cannot be read or has no such stream; null when its type is not known. */
+    framework::OutputPortBase* makeOutput(const std::string& stream) override;
+    void check(types::Problems& problems) const override;
+    std::vector<std::string> notices() const override;
+    bool finished() const override { return finished_; }
+    std::optional<types::Time> nextTime() const override;
+
+private:
+    class Outlet;
+    template <class T> class TypedOutlet;
+
+    bool configureHook() override;
+    bool startHook() override;
+    void updateHook() override;
+    void open();
+    void rewind();
+    /** Moves on to the next sample that has an outlet, at `next_` or after it. */
+    void settle();
+    /** World time of the log up to which samples are due now. */
+    types::Time due();
+
+    std::optional<pocolog::Reader> log_;
+    std::vector<std::unique_ptr<Outlet>> outlets_;  ///< One for each stream of the log; null without a connection.
+    size_t next_ = 0;                               ///< Index into the log's samples.
+    types::Time next_time_;                         ///< When it is due, on the log's clock.
+    types::Time first_time_;                        ///< When the first one was.
+    types::Time started_;                           ///< On the deployment's clock.
+    std::atomic<bool> finished_{false};
+};
+
+}  // namespace insonify::replay
