@@ -160,7 +160,8 @@ TEST(ClosedFormTest, SphereFollowsItsRangeDensity) {
         };
     };
     const auto snapshot = test::snapshotOf(test::sceneOf({test::sphere(1, 256)}, 0, {{10, 0, 0}}));
-    expectForm(pingOf(sonarOf(14, 14, 1, 0.1, 120), snapshot), form(1), form(1.03));
+    // Bins of 0.2 m: at the limb one pixel spans 0.1 m of range, so that narrower bins would test the silhouette.
+    expectForm(pingOf(sonarOf(12, 12, 1, 0.2, 60), snapshot), form(1), form(1.03));
 }
 
 TEST(ClosedFormTest, WallAheadFollowsTheThinVerticalBeamForm) {
