@@ -1,0 +1,20 @@
+#pragma once
+#include <CLI/App.hpp>
+#include <CLI/Config.hpp>
+#include <CLI/Formatter.hpp>
+#include <functional>
+
+namespace insonify::deployer {
+
+/** What the command line asks for: does it and gives the exit code. */
+using Action = std::function<int()>;
+
+// Each adds one command with its options to `app`; parsing that command sets `action`.
+void addRunCommand(CLI::App& app, Action& action);
+void addCheckCommand(CLI::App& app, Action& action);
+void addPlanCommand(CLI::App& app, Action& action);
+void addDescribeCommand(CLI::App& app, Action& action);
+void addLogCommand(CLI::App& app, Action& action);
+void addReplayCommand(CLI::App& app, Action& action);
+
+}  // namespace insonify::deployer

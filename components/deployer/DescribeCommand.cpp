@@ -1,0 +1,154 @@
+// insonify describe [TYPE]
+#include <fmt/core.h>
+#include <fmt/ranges.h>
+
+#include <cmath>
+#include <memory>
+
+#include "components/deployer/Commands.hpp"
+#include "components/deployer/Json.hpp"
+#include "components/deployer/Tasks.hpp"
+#include "components/framework/Operation.hpp"
+#include "components/framework/Port.hpp"
+#include "components/framework/Properties.hpp"
+#include "types/MaterialTable.hpp"
+
+namespace insonify::deployer {
+namespace {
+
+using framework::PropertyInfo;
+using framework::TaskState;
+
+/** Numbers and switches as such, the rest as text, nothing for what is absent unless given. */
+Json defaultOf(const PropertyInfo& property) {
+    if (property.default_value.empty()) return nullptr;
+    const Json value = Json::parse(property.default_value, nullptr, false);
+    return value.is_number() || value.is_boolean() || value.is_array() ? value : Json(property.default_value);
+}
+
+Json boundOf(double bound) { return std::isfinite(bound) ? Json(bound) : Json(nullptr); }
+
+Json propertyJson(const PropertyInfo& property) {
+    return {{"name", property.name},        {"type", property.type},
+            {"unit", property.unit},        {"default", defaultOf(property)},
+            {"min", boundOf(property.min)}, {"max", boundOf(property.max)},
+            {"doc", property.doc}};
+}
+
+Json portJson(const framework::PortBase& port, const char* direction) {
+    return {{"name", port.name()}, {"direction", direction}, {"type", port.typeName()}, {"doc", port.doc()}};
+}
+
+/** One line a state of the life cycle that every task shares. */
+std::vector<std::string> states() {
+    std::vector<std::string> names;
+    for (TaskState state : {TaskState::PreOperational, TaskState::Stopped, TaskState::Running, TaskState::RunTimeError,
+                            TaskState::Exception, TaskState::FatalError})
+        names.emplace_back(framework::toString(state));
+    return names;
+}
+
+Json describeTask(const framework::Registry::Entry& entry) {
+    const auto task = entry.make("task");
+    Json json = {{"type", entry.type},          {"doc", entry.doc},
+                 {"ports", Json::array()},      {"properties", Json::array()},
+                 {"operations", Json::array()}, {"states", states()}};
+    for (const auto* port : task->inputs()) json["ports"].push_back(portJson(*port, "in"));
+    for (const auto* port : task->outputs()) json["ports"].push_back(portJson(*port, "out"));
+    for (const auto* properties : task->properties())
+        for (const PropertyInfo& property : properties->list()) json["properties"].push_back(propertyJson(property));
+    for (const auto* operation : task->operations())
+        json["operations"].push_back(
+            {{"name", operation->name()}, {"signature", operation->signature()}, {"doc", operation->doc()}});
+    return json;
+}
+
+std::string boundsText(const Json& property) {
+    if (property["min"].is_null() && property["max"].is_null()) return "";
+    const auto text = [](const Json& bound, const char* otherwise) {
+        return bound.is_null() ? otherwise : fmt::format("{}", bound.get<double>());
+    };
+    return fmt::format(", {} to {}", text(property["min"], "-inf"), text(property["max"], "inf"));
+}
+
+std::string defaultText(const Json& property) {
+    const Json& value = property["default"];
+    if (value.is_null()) return "";
+    return ", default " + (value.is_string() ? value.get<std::string>() : value.dump());
+}
+
+std::string unitText(const Json& property) {
+    const auto unit = property["unit"].get<std::string>();
+    return unit.empty() ? "" : fmt::format(" [{}]", unit);
+}
+
+std::string field(const Json& json, const char* key) { return json[key].get<std::string>(); }
+
+void printTask(const Json& task) {
+    fmt::print("{}: {}\n\nports\n", field(task, "type"), field(task, "doc"));
+    for (const Json& port : task["ports"])
+        fmt::print("  {:3}  {}  {}\n       {}\n", field(port, "direction"), field(port, "name"), field(port, "type"),
+                   field(port, "doc"));
+    fmt::print("\nproperties\n");
+    for (const Json& property : task["properties"])
+        fmt::print("  {}: {}{}{}\n       {}{}\n", field(property, "name"), field(property, "type"),
+                   defaultText(property), boundsText(property), field(property, "doc"), unitText(property));
+    fmt::print("\noperations\n");
+    for (const Json& operation : task["operations"])
+        fmt::print("  {}: {}\n       {}\n", field(operation, "name"), field(operation, "signature"),
+                   field(operation, "doc"));
+    fmt::print("\nstates\n  {}\n", fmt::join(task["states"].get<std::vector<std::string>>(), ", "));
+}
+
+int listTasks(const framework::Registry& registry, bool json) {
+    Json list = Json::array();
+    for (const auto& entry : registry.list()) list.push_back({{"type", entry.type}, {"doc", entry.doc}});
+    if (json)
+        print(list);
+    else
+        for (const auto& entry : registry.list()) fmt::print("{:28} {}\n", entry.type, entry.doc);
+    return 0;
+}
+
+int listMaterials(bool json) {
+    if (json) {
+        print({{"sediments", types::sedimentNames()}, {"materials", types::materialNames()}});
+        return 0;
+    }
+    fmt::print("sediments (material.extras.acoustics = {{\"sediment\": NAME}})\n  {}\n",
+               fmt::join(types::sedimentNames(), "\n  "));
+    fmt::print("materials (material.extras.acoustics = {{\"material\": NAME}})\n  {}\n",
+               fmt::join(types::materialNames(), "\n  "));
+    return 0;
+}
+
+int describe(const std::string& type, bool json) {
+    const framework::Registry registry = builtInTasks();
+    if (type.empty()) return listTasks(registry, json);
+    if (type == "materials") return listMaterials(json);
+    for (const auto& entry : registry.list()) {
+        if (entry.type != type) continue;
+        const Json task = describeTask(entry);
+        json ? print(task) : printTask(task);
+        return 0;
+    }
+    std::vector<std::string> known{"materials"};
+    for (const auto& entry : registry.list()) known.push_back(entry.type);
+    throw types::ConfigError("", type, "is no task type; known: " + fmt::format("{}", fmt::join(known, ", ")));
+}
+
+}  // namespace
+
+void addDescribeCommand(CLI::App& app, Action& action) {
+    struct Options {
+        std::string type;
+        bool json = false;
+    };
+    const auto options = std::make_shared<Options>();
+    CLI::App* command = app.add_subcommand("describe", "Lists the tasks; or a task's ports, properties and operations");
+    command->add_option("TYPE", options->type, "a task type, or `materials` for the names of materials");
+    command->add_flag("--json", options->json, "for machines");
+    command->callback([options, &action] { action = [options] { return describe(options->type, options->json); }; });
+}
+
+}  // namespace insonify::deployer

@@ -1,0 +1,47 @@
+#include "components/deployer/Json.hpp"
+
+#include <fmt/core.h>
+
+#include <fstream>
+#include <stdexcept>
+
+namespace insonify::deployer {
+
+Json toJson(const types::Diagnostic& diagnostic) {
+    return {{"file", diagnostic.file},
+            {"line", diagnostic.line},
+            {"column", diagnostic.column},
+            {"path", diagnostic.path},
+            {"message", diagnostic.message}};
+}
+
+Json toJson(const std::vector<types::Omission>& omitted) {
+    Json list = Json::array();
+    for (const types::Omission& omission : omitted)
+        list.push_back({{"name", omission.name}, {"reason", omission.reason}});
+    return list;
+}
+
+Json toJson(const types::Plan& plan) {
+    return {{"features", plan.features},
+            {"passes", plan.passes},
+            {"omitted", toJson(plan.omitted)},
+            {"quality",
+             {{"rows", plan.rows},
+              {"columns_per_beam", plan.columns_per_beam},
+              {"slabs", plan.slabs},
+              {"predicted_error", plan.predicted_error}}},
+            {"notices", plan.notices}};
+}
+
+std::string text(const Json& json) { return json.dump(2, ' ', false, Json::error_handler_t::replace); }
+
+void print(const Json& json) { fmt::print("{}\n", text(json)); }
+
+void write(const Json& json, const std::string& file) {
+    std::ofstream stream(file);
+    stream << text(json) << '\n';
+    if (!stream.flush()) throw std::runtime_error(fmt::format("{}: cannot be written", file));
+}
+
+}  // namespace insonify::deployer

@@ -1,0 +1,107 @@
+// insonify plan DEPLOYMENT
+#include <fmt/core.h>
+
+#include <memory>
+#include <set>
+#include <stdexcept>
+
+#include "components/deployer/Commands.hpp"
+#include "components/deployer/Json.hpp"
+#include "components/deployer/StopSignal.hpp"
+#include "components/deployer/Tasks.hpp"
+#include "components/framework/Deployment.hpp"
+#include "types/Sonar.hpp"
+
+namespace insonify::deployer {
+namespace {
+
+using framework::Deployment;
+using framework::DeploymentSpec;
+
+template <class Ports>
+bool carriesPings(const Ports& ports) {
+    for (const auto* port : ports)
+        if (port->typeName() == types::Sonar::type_name) return true;
+    return false;
+}
+
+/** Sonars and all from which they hear, directly or not. */
+std::set<std::string> upstreamOfSonars(const Deployment& deployment) {
+    std::set<std::string> names;
+    for (const auto& task : deployment.tasks())
+        if (carriesPings(task->outputs()) && !carriesPings(task->inputs())) names.insert(task->name());
+    for (size_t before = 0; before != names.size();) {
+        before = names.size();
+        for (const framework::Connection& connection : deployment.connections())
+            if (names.contains(connection.to->owner().name())) names.insert(connection.from->owner().name());
+    }
+    return names;
+}
+
+/** The deployment down to its sonars, in lockstep so that it takes no longer than it must. */
+DeploymentSpec pipelineOf(DeploymentSpec spec, framework::Registry& registry) {
+    const std::set<std::string> kept = upstreamOfSonars(Deployment(spec, registry));
+    std::erase_if(spec.tasks, [&](const auto& task) { return !kept.contains(task.name); });
+    std::erase_if(spec.connections, [&](const auto& connection) {
+        return !kept.contains(framework::splitPort(connection.from).first) ||
+               !kept.contains(framework::splitPort(connection.to).first);
+    });
+    spec.lockstep = true;
+    return spec;
+}
+
+void printPlan(const std::string& task, const types::Plan& plan) {
+    fmt::print("{}\n  quality: {} rows, {} columns per beam, {} slabs", task, plan.rows, plan.columns_per_beam,
+               plan.slabs);
+    fmt::print("{}\n", plan.predicted_error >= 0 ? fmt::format(", predicted error {}", plan.predicted_error) : "");
+    for (const std::string& feature : plan.features) fmt::print("  compiled: {}\n", feature);
+    for (const std::string& pass : plan.passes) fmt::print("  run: {}\n", pass);
+    for (const types::Omission& omission : plan.omitted)
+        fmt::print("  left out: {}: {}\n", omission.name, omission.reason);
+    for (const std::string& notice : plan.notices) fmt::print("  notice: {}\n", notice);
+}
+
+using Plans = std::vector<std::pair<std::string, const types::Plan*>>;
+
+/** One sonar: its plan; several: plans by task. */
+void printJson(const Plans& plans) {
+    if (plans.size() == 1) return print(toJson(*plans.front().second));
+    Json all = Json::object();
+    for (const auto& [task, plan] : plans) all[task] = toJson(*plan);
+    print(all);
+}
+
+int showPlan(const std::string& file, bool json) {
+    framework::Registry registry = builtInTasks();
+    Deployment deployment(pipelineOf(DeploymentSpec::load(file), registry), registry);
+    deployment.configure();
+    const framework::RunResult result = deployment.run({.pings = 1}, stopOnSignals());
+    if (result.failed()) throw std::runtime_error(result.failures.front());
+
+    Plans plans;
+    for (const auto& task : deployment.tasks())
+        if (task->plan()) plans.emplace_back(task->name(), task->plan());
+    if (plans.empty()) throw types::ConfigError(file, "tasks", "has no sonar that sends a ping: nothing to plan");
+    if (json)
+        printJson(plans);
+    else
+        for (const auto& [task, decided] : plans) printPlan(task, *decided);
+    return 0;
+}
+
+}  // namespace
+
+void addPlanCommand(CLI::App& app, Action& action) {
+    struct Options {
+        std::string deployment;
+        bool json = false;
+    };
+    const auto options = std::make_shared<Options>();
+    CLI::App* command = app.add_subcommand("plan", "Tells what is compiled and run, what is left out, and why");
+    command->add_option("DEPLOYMENT", options->deployment, "a YAML file")->required();
+    command->add_flag("--json", options->json, "for machines");
+    command->callback(
+        [options, &action] { action = [options] { return showPlan(options->deployment, options->json); }; });
+}
+
+}  // namespace insonify::deployer

@@ -1,0 +1,100 @@
+// insonify run DEPLOYMENT
+#include <fmt/core.h>
+#include <unistd.h>
+
+#include <filesystem>
+#include <memory>
+
+#include "components/deployer/Commands.hpp"
+#include "components/deployer/OutputFolder.hpp"
+#include "components/deployer/RunOptions.hpp"
+#include "components/deployer/StopSignal.hpp"
+#include "components/deployer/Summary.hpp"
+#include "components/deployer/Tasks.hpp"
+#include "types/ConfigError.hpp"
+
+namespace insonify::deployer {
+namespace {
+
+/** One line on a terminal, ten times a second, wiped at the end; nothing elsewhere. */
+class ProgressLine {
+public:
+    explicit ProgressLine(bool wanted) : shown_(wanted && isatty(STDERR_FILENO)) {}
+    ~ProgressLine() {
+        if (shown_) fmt::print(stderr, "\r\033[K");
+    }
+    ProgressLine(const ProgressLine&) = delete;
+    ProgressLine& operator=(const ProgressLine&) = delete;
+
+    void operator()(const framework::Progress& progress) {
+        if (!shown_ || progress.wall_s < next_s_) return;
+        next_s_ = progress.wall_s + 0.1;
+        fmt::print(stderr, "\r\033[K{} pings, {:.1f} per second, {:.1f} s simulated", progress.pings,
+                   static_cast<double>(progress.pings) / progress.wall_s, progress.elapsed_s);
+        std::fflush(stderr);
+    }
+
+private:
+    bool shown_;
+    double next_s_ = 0.1;
+};
+
+void printNotices(const framework::TaskContext& task, const std::vector<std::string>& notices) {
+    for (const std::string& notice : notices) fmt::print(stderr, "notice: {}: {}\n", task.name(), notice);
+}
+
+/** Looks, but makes no file yet. */
+void refuseUnwritable(const std::filesystem::path& summary_file) {
+    namespace fs = std::filesystem;
+    const fs::path folder = summary_file.has_parent_path() ? summary_file.parent_path() : ".";
+    const fs::path judged = fs::exists(summary_file) ? summary_file : folder;
+    if (!summary_file.empty() && (fs::is_directory(summary_file) || access(judged.c_str(), W_OK) != 0))
+        throw types::ConfigError(summary_file, "--summary", "cannot be written to");
+}
+
+void tell(const framework::Deployment& deployment, const Summary& summary, const OutputFolder& folder) {
+    for (const auto& task : deployment.tasks())
+        if (const types::Plan* plan = task->plan()) printNotices(*task, plan->notices);
+    fmt::print("{}files in {}\n", summary.text(), folder.path().string());
+}
+
+framework::RunResult runAll(framework::Deployment& deployment, const RunOptions& options,
+                            const std::atomic<bool>& stop) {
+    if (!options.quiet)
+        for (const auto& task : deployment.tasks()) printNotices(*task, task->notices());
+    ProgressLine progress(!options.quiet);
+    return deployment.run(options.limits, stop, std::ref(progress));
+}
+
+}  // namespace
+
+int runDeployment(framework::DeploymentSpec spec, const RunOptions& options) {
+    framework::Registry registry = builtInTasks();
+    framework::Deployment deployment(std::move(spec), registry, options.out, options.seed);
+    OutputFolder folder(options.out, options.deployment);
+    deployment.environment().output_folder = folder.path();
+    refuseUnwritable(options.summary);
+
+    const std::atomic<bool>& stop = stopOnSignals();
+    deployment.configure();
+    folder.keep();
+
+    framework::RunResult result = runAll(deployment, options, stop);
+    const Summary summary(deployment, result);
+    if (!options.quiet) tell(deployment, summary, folder);
+    if (!options.summary.empty()) write(summary.json(), options.summary);
+    for (std::string& failure : deployment.cleanup()) result.failures.push_back(std::move(failure));
+    for (const std::string& failure : result.failures) fmt::print(stderr, "insonify: {}\n", failure);
+    return result.failed() ? 1 : 0;
+}
+
+void addRunCommand(CLI::App& app, Action& action) {
+    const auto options = std::make_shared<RunOptions>();
+    CLI::App* command = app.add_subcommand("run", "Runs a deployment");
+    command->add_option("DEPLOYMENT", options->deployment, "a YAML file")->required();
+    options->addTo(*command);
+    command->callback(
+        [options, &action] { action = [options] { return runDeployment(loadSpec(*options), *options); }; });
+}
+
+}  // namespace insonify::deployer

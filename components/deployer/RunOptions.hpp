@@ -1,0 +1,32 @@
+#pragma once
+#include <CLI/App.hpp>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "components/framework/Deployment.hpp"
+
+namespace insonify::deployer {
+
+/** What `run` and `replay` can be told. */
+struct RunOptions {
+    std::string deployment;        ///< File.
+    std::string out;               ///< Folder for what the run writes; empty: a fresh one.
+    std::string summary;           ///< File for the summary in JSON; empty: none.
+    std::vector<std::string> set;  ///< "task.property.path=value"
+    framework::RunLimits limits;
+    uint64_t seed = 0;  ///< 0: tasks keep the seeds of the file.
+    bool quiet = false;
+
+    /** All but `deployment`. */
+    void addTo(CLI::App& command);
+};
+
+/** The deployment as written, with the `--set` laid over it. */
+framework::DeploymentSpec loadSpec(const RunOptions& options);
+
+/** Makes and runs a deployment as asked, tells how it went, and gives the exit code. Throws types::ConfigError, with
+ *  every fault, before anything has started. */
+int runDeployment(framework::DeploymentSpec spec, const RunOptions& options);
+
+}  // namespace insonify::deployer

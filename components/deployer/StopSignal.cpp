@@ -1,0 +1,25 @@
+#include "components/deployer/StopSignal.hpp"
+
+#include <csignal>
+
+namespace insonify::deployer {
+namespace {
+
+std::atomic<bool> stop{false};
+static_assert(std::atomic<bool>::is_always_lock_free, "a signal handler may only touch lock-free atomics");
+
+extern "C" void raiseStop(int) { stop = true; }
+
+}  // namespace
+
+const std::atomic<bool>& stopOnSignals() {
+    struct sigaction action {};
+    action.sa_handler = raiseStop;
+    action.sa_flags = SA_RESTART | static_cast<int>(SA_RESETHAND);
+    sigaction(SIGINT, &action, nullptr);
+    sigaction(SIGTERM, &action, nullptr);
+    std::signal(SIGXFSZ, SIG_IGN);
+    return stop;
+}
+
+}  // namespace insonify::deployer

@@ -1,0 +1,33 @@
+#pragma once
+#include <map>
+#include <string>
+#include <vector>
+
+#include "components/deployer/Json.hpp"
+#include "components/framework/Deployment.hpp"
+
+namespace insonify::deployer {
+
+/** How a run went: what `--summary` writes and what is printed at the end. Taken before tasks are cleaned up. */
+struct Summary {
+    struct Times {
+        uint64_t cycles = 0;
+        double median_ms = 0, p99_ms = 0, max_ms = 0;
+    };
+    struct Task {
+        std::string name, state;
+        Times update;                         ///< Of updateHook.
+        std::map<std::string, Times> stages;  ///< Parts of it, by name.
+    };
+    uint64_t pings = 0;
+    double wall_s = 0;
+    std::vector<Task> tasks;                 ///< In file order.
+    std::map<std::string, uint64_t> losses;  ///< By "from>to" [samples].
+    std::vector<types::Omission> omitted;    ///< Of all sonars, each once.
+
+    Summary(const framework::Deployment& deployment, const framework::RunResult& result);
+    Json json() const;
+    std::string text() const;
+};
+
+}  // namespace insonify::deployer

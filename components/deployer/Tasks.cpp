@@ -1,0 +1,25 @@
+#include "components/deployer/Tasks.hpp"
+
+#include "components/logger/registerTasks.hpp"
+#include "components/noise/registerTasks.hpp"
+#include "components/output/registerTasks.hpp"
+#include "components/pose/registerTasks.hpp"
+#include "components/replay/registerTasks.hpp"
+#include "components/scene/registerTasks.hpp"
+#include "components/sonar/registerTasks.hpp"
+
+namespace insonify::deployer {
+
+framework::Registry builtInTasks() {
+    framework::Registry registry;
+    pose::registerTasks(registry);
+    scene::registerTasks(registry);
+    sonar::registerTasks(registry);
+    noise::registerTasks(registry);
+    output::registerTasks(registry);
+    logger::registerTasks(registry);
+    replay::registerTasks(registry);
+    return registry;
+}
+
+}  // namespace insonify::deployer
