@@ -6,7 +6,7 @@
 #include "components/pocolog/Reader.hpp"
 #include "components/pocolog/SampleTypes.hpp"
 #include "components/pocolog/Writer.hpp"
-#include "tests/pocolog/Folder.hpp"
+#include "tests/support/Folder.hpp"
 
 namespace insonify::pocolog {
 namespace {

@@ -5,7 +5,7 @@
 #include <cstdlib>
 
 #include "components/pocolog/Writer.hpp"
-#include "tests/pocolog/Folder.hpp"
+#include "tests/support/Folder.hpp"
 
 namespace insonify::pocolog {
 namespace {

@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "components/pocolog/Writer.hpp"
-#include "tests/pocolog/Folder.hpp"
+#include "tests/support/Folder.hpp"
 
 namespace insonify::pocolog {
 namespace {

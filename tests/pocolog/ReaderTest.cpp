@@ -6,7 +6,7 @@
 #include "components/pocolog/Block.hpp"
 #include "components/pocolog/Info.hpp"
 #include "components/pocolog/Writer.hpp"
-#include "tests/pocolog/Folder.hpp"
+#include "tests/support/Folder.hpp"
 
 namespace insonify::pocolog {
 namespace {

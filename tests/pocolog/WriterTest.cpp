@@ -6,7 +6,7 @@
 #include <csignal>
 
 #include "components/pocolog/Reader.hpp"
-#include "tests/pocolog/Folder.hpp"
+#include "tests/support/Folder.hpp"
 
 namespace insonify::pocolog {
 namespace {

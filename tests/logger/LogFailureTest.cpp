@@ -1,0 +1,113 @@
+// Disks that are full, folders that are not there.
+#include <gmock/gmock.h>
+#include <sys/resource.h>
+
+#include <csignal>
+
+#include "components/logger/LoggerTask.hpp"
+#include "components/pocolog/Reader.hpp"
+#include "tests/support/Folder.hpp"
+#include "tests/support/Ports.hpp"
+
+namespace insonify::logger {
+namespace {
+
+using framework::ConnPolicy;
+using framework::TaskState;
+
+LoggerConfig configFor(const std::string& file) {
+    LoggerConfig config;
+    config.file = file;
+    config.flush_period = 0.001;
+    return config;
+}
+
+/** Logs texts of 1000 bytes until the task is in trouble, at most 5000 of them. */
+void logUntilTrouble(LoggerTask& task, test::Writer<std::string>& source) {
+    for (int i = 0; i < 5000 && task.state() == TaskState::Running; ++i) {
+        source.port.write(std::string(1000, 'x'));
+        task.update();
+        std::this_thread::sleep_for(std::chrono::microseconds(200));
+    }
+}
+
+TEST(LogFailureTest, AFolderThatCannotBeMadeRefusesConfigure) {
+    Folder folder;
+    writeBytes(folder / "file", {'x'});
+    LoggerTask task("log");
+    task.environment().output_folder = folder / "file";
+    task.config.set(configFor("x.0.log"));
+    EXPECT_FALSE(task.configure());
+    ASSERT_NE(task.configError(), nullptr);
+    EXPECT_THAT(task.configError()->what(), testing::HasSubstr((folder / "file").string()));
+}
+
+TEST(LogFailureTest, AFileThatCannotBeOpenedRefusesConfigure) {
+    Folder folder;
+    std::filesystem::create_directory(folder / "x.0.log");
+    LoggerTask task("log");
+    task.environment().output_folder = folder.path();
+    task.config.set(configFor("x.0.log"));
+    EXPECT_FALSE(task.configure());
+    ASSERT_NE(task.configError(), nullptr);
+    EXPECT_THAT(task.configError()->what(), testing::HasSubstr("cannot be written"));
+}
+
+TEST(LogFailureTest, AFullDiskEndsInExceptionWithTheSystemsReason) {
+    Folder folder;
+    std::filesystem::create_symlink("/dev/full", folder / "x.0.log");
+    LoggerTask task("log");
+    task.environment().output_folder = folder.path();
+    task.config.set(configFor("x.0.log"));
+    test::Writer<std::string> source;
+    source.port.connectTo(*task.makeInput("in", source.port), ConnPolicy::buffer(10));
+    ASSERT_TRUE(task.configure());
+    ASSERT_TRUE(task.start());
+    logUntilTrouble(task, source);
+    EXPECT_EQ(task.state(), TaskState::Exception);
+    EXPECT_THAT(task.lastError(), testing::HasSubstr("No space left on device"));
+}
+
+TEST(LogFailureTest, ADiskThatIsFullOnlyAtTheEndIsToldByStop) {
+    Folder folder;
+    std::filesystem::create_symlink("/dev/full", folder / "x.0.log");
+    LoggerTask task("log");
+    task.environment().output_folder = folder.path();
+    LoggerConfig config = configFor("x.0.log");
+    config.flush_period = 1;
+    task.config.set(config);
+    ASSERT_TRUE(task.configure());
+    ASSERT_TRUE(task.start());
+    EXPECT_FALSE(task.stop());
+    EXPECT_EQ(task.state(), TaskState::Exception);
+    EXPECT_THAT(task.lastError(), testing::HasSubstr("No space left on device"));
+}
+
+/** Logs into a file that may not exceed 50000 bytes; exits 0 when the task ends in Exception. */
+[[noreturn]] void fillLimitedDisk(const std::filesystem::path& folder) {
+    const rlimit limit{50000, 50000};
+    setrlimit(RLIMIT_FSIZE, &limit);
+    std::signal(SIGXFSZ, SIG_IGN);
+    LoggerTask task("log");
+    task.environment().output_folder = folder;
+    task.config.set(configFor("x.0.log"));
+    test::Writer<std::string> source;
+    source.port.connectTo(*task.makeInput("in", source.port), ConnPolicy::buffer(10));
+    task.configure();
+    task.start();
+    logUntilTrouble(task, source);
+    std::_Exit(task.state() == TaskState::Exception ? 0 : 1);
+}
+
+TEST(LogFailureTest, WhatWasFlushedBeforeTheDiskWasFullIsKeptWhole) {
+    Folder folder;
+    EXPECT_EXIT(fillLimitedDisk(folder.path()), testing::ExitedWithCode(0), "");
+    pocolog::Reader log(folder / "x.0.log");
+    EXPECT_TRUE(log.complete()) << log.fault();
+    EXPECT_GT(log.samples().size(), 5u);
+    log.forEach<std::string>("writer.port",
+                             [](const std::string& text, const pocolog::SampleRef&) { EXPECT_EQ(text.size(), 1000u); });
+}
+
+}  // namespace
+}  // namespace insonify::logger

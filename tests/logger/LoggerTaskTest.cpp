@@ -1,0 +1,200 @@
+#include "components/logger/LoggerTask.hpp"
+
+#include <gmock/gmock.h>
+
+#include "components/pocolog/Reader.hpp"
+#include "tests/support/Folder.hpp"
+#include "tests/support/Ports.hpp"
+#include "types/Snapshot.hpp"
+
+namespace insonify::logger {
+namespace {
+
+using framework::ConnPolicy;
+using framework::TaskState;
+
+/** A source and its connection to a logger's port. */
+template <class T> struct Source {
+    test::Writer<T> writer;
+    Source(LoggerTask& logger, const std::string& name) : writer(name) {
+        writer.port.connectTo(*logger.makeInput(name, writer.port), ConnPolicy::buffer(2000));
+    }
+    void write(const T& sample) { writer.port.write(sample); }
+};
+
+/** A logger that writes to x.0.log in its folder, at 5 s. */
+struct Bench {
+    Folder folder;
+    LoggerTask task{"log"};
+    explicit Bench(LoggerConfig config = {}) {
+        config.file = "x.0.log";
+        task.config.set(config);
+        task.environment().output_folder = folder.path();
+        task.environment().now = [] { return types::Time{5'000'000}; };
+    }
+    std::filesystem::path path() const { return folder / "x.0.log"; }
+    void finish() {
+        ASSERT_TRUE(task.stop());
+        ASSERT_TRUE(task.cleanup());
+    }
+};
+
+types::SonarPtr ping(int64_t time) {
+    auto sample = std::make_shared<types::Sonar>();
+    sample->time = {time};
+    sample->bins = {1, 2, 3};
+    return sample;
+}
+
+TEST(LoggerTaskTest, EverySampleIsLoggedUnderItsSourcesNameWithBothTimes) {
+    Bench bench;
+    Source<types::SonarPtr> sonar(bench.task, "sonar");
+    Source<types::Pose> vehicle(bench.task, "vehicle");
+    ASSERT_TRUE(bench.task.configure());
+    ASSERT_TRUE(bench.task.start());
+    sonar.write(ping(3'000'000));
+    vehicle.write({});
+    bench.task.update();
+    sonar.write(ping(4'000'000));
+    bench.task.update();
+    bench.finish();
+
+    pocolog::Reader log(bench.path());
+    EXPECT_TRUE(log.complete());
+    EXPECT_EQ(log.find("sonar.port")->type, "/base/samples/Sonar");
+    EXPECT_EQ(log.find("vehicle.port")->type, "/base/samples/RigidBodyState_m");
+    ASSERT_EQ(log.samples().size(), 3u);
+    EXPECT_EQ(log.samples()[0].time.microseconds, 3'000'000);
+    EXPECT_EQ(log.samples()[0].received.microseconds, 5'000'000);
+    EXPECT_EQ(log.samples()[1].time.microseconds, 5'000'000) << "a pose without a stamp";
+    EXPECT_EQ(log.samples()[2].time.microseconds, 4'000'000);
+    EXPECT_TRUE(std::filesystem::exists(bench.folder / "x.0.idx"));
+}
+
+TEST(LoggerTaskTest, EveryTypeOfTheListCanBeLogged) {
+    Bench bench;
+    pocolog::forEachSampleType([&]<class T>(std::type_identity<T>) {
+        test::Writer<pocolog::Carried<T>> writer("source");
+        EXPECT_NE(bench.task.makeInput("in", writer.port), nullptr) << pocolog::typelibName<T>();
+    });
+}
+
+TEST(LoggerTaskTest, ATypeThatALogCannotHoldIsRefusedByName) {
+    Bench bench;
+    test::Writer<types::SnapshotPtr> scene("scene");
+    try {
+        bench.task.makeInput("snapshot", scene.port);
+        FAIL() << "a snapshot was taken";
+    } catch (const types::ConfigError& error) {
+        EXPECT_STREQ(error.what(), "scene.port is /insonify/Snapshot, which a log cannot hold");
+    }
+    EXPECT_TRUE(bench.task.inputs().empty());
+}
+
+TEST(LoggerTaskTest, TheLogCarriesTheDeploymentItsSeedAndWhatTheUserAdds) {
+    LoggerConfig config;
+    config.metadata = {{"vessel", "Kai"}};
+    Bench bench(config);
+    bench.task.environment().deployment_text = "tasks:\n  a: {type: \"b\"}\n";
+    bench.task.environment().seed = 7;
+    Source<double> source(bench.task, "depth");
+    ASSERT_TRUE(bench.task.configure());
+    ASSERT_TRUE(bench.task.cleanup());
+    const pocolog::Reader log(bench.path());
+    const pocolog::Metadata& metadata = log.streams().at(0).metadata;
+    EXPECT_EQ(metadata.at("insonify_deployment"), "tasks:\n  a: {type: \"b\"}\n");
+    EXPECT_EQ(metadata.at("insonify_seed"), "7");
+    EXPECT_EQ(metadata.at("vessel"), "Kai");
+}
+
+TEST(LoggerTaskTest, AFileSlowerThanTheSamplesLosesNone) {
+    LoggerConfig config;
+    config.queue = 1;
+    Bench bench(config);
+    Source<int32_t> source(bench.task, "counter");
+    ASSERT_TRUE(bench.task.configure());
+    ASSERT_TRUE(bench.task.start());
+    for (int32_t i = 0; i < 2000; ++i) source.write(i);
+    bench.task.update();
+    bench.finish();
+    int32_t expected = 0;
+    pocolog::Reader log(bench.path());
+    log.forEach<int32_t>("counter.port", [&](int32_t value, const pocolog::SampleRef&) { EXPECT_EQ(value, expected++); });
+    EXPECT_EQ(expected, 2000);
+}
+
+TEST(LoggerTaskTest, WhatWasLoggedIsInTheFileWithinTheFlushPeriod) {
+    LoggerConfig config;
+    config.flush_period = 0.05;
+    Bench bench(config);
+    Source<double> source(bench.task, "depth");
+    ASSERT_TRUE(bench.task.configure());
+    ASSERT_TRUE(bench.task.start());
+    source.write(1.5);
+    bench.task.update();
+    const auto logged = [&] {
+        const bool has_prologue = std::filesystem::file_size(bench.path()) >= 16;
+        return has_prologue && pocolog::Reader(bench.path()).samples().size() == 1;
+    };
+    for (int tries = 0; !logged() && tries < 500; ++tries) std::this_thread::sleep_for(std::chrono::milliseconds(10));
+    EXPECT_TRUE(logged()) << "while the task is still running";
+    bench.finish();
+}
+
+TEST(LoggerTaskTest, TheSameSamplesGiveTheSameLogBitForBit) {
+    const auto run = [] {
+        Bench bench;
+        Source<types::SonarPtr> sonar(bench.task, "sonar");
+        Source<double> depth(bench.task, "depth");
+        bench.task.configure();
+        bench.task.start();
+        for (int64_t i = 1; i <= 100; ++i) {
+            sonar.write(ping(i));
+            depth.write(static_cast<double>(i));
+            bench.task.update();
+        }
+        bench.task.stop();
+        bench.task.cleanup();
+        return bytesOf(bench.path());
+    };
+    EXPECT_EQ(run(), run());
+}
+
+TEST(LoggerTaskTest, StoppedAndStartedAgainItGoesOnInTheSameFile) {
+    Bench bench;
+    Source<double> source(bench.task, "depth");
+    ASSERT_TRUE(bench.task.configure());
+    for (int i = 0; i < 2; ++i) {
+        ASSERT_TRUE(bench.task.start());
+        source.write(i);
+        bench.task.update();
+        ASSERT_TRUE(bench.task.stop());
+    }
+    ASSERT_TRUE(bench.task.cleanup());
+    EXPECT_EQ(pocolog::Reader(bench.path()).samples().size(), 2u);
+}
+
+TEST(LoggerTaskTest, OneStreamCannotBeLoggedTwiceNorTwoStreamsOnOnePort) {
+    Bench twice;
+    test::Writer<double> source("depth");
+    source.port.connectTo(*twice.task.makeInput("a", source.port), {});
+    source.port.connectTo(*twice.task.makeInput("b", source.port), {});
+    EXPECT_FALSE(twice.task.configure());
+    ASSERT_NE(twice.task.configError(), nullptr);
+    EXPECT_THAT(twice.task.configError()->what(), testing::HasSubstr("a second time"));
+
+    Bench shared;
+    Source<double> first(shared.task, "first");
+    test::Writer<double> second("second");
+    second.port.connectTo(*shared.task.input("first"), {});
+    EXPECT_FALSE(shared.task.configure());
+    ASSERT_NE(shared.task.configError(), nullptr);
+    EXPECT_THAT(shared.task.configError()->what(), testing::HasSubstr("several connections"));
+}
+
+TEST(LoggerTaskTest, ALoggerWithoutConnectionsSaysSo) {
+    EXPECT_THAT(Bench().task.notices(), testing::ElementsAre(testing::HasSubstr("nothing is connected")));
+}
+
+}  // namespace
+}  // namespace insonify::logger
