@@ -216,17 +216,17 @@ private:
         std::vector<std::string>& notices = geometry_.notices;
         notices.insert(notices.end(), gltf_.notices.begin(), gltf_.notices.end());
         const auto count = [&notices](size_t number, const char* what) {
-            if (number > 0) notices.push_back(fmt::format("{} {}", number, what));
+            if (number > 0) notices.push_back(fmt::format("{}: {}", what, number));
         };
         const Omissions& omissions = meshes_.omissions();
-        count(omissions.bad_triangles, "triangles with a vertex that is not a finite number were dropped");
-        count(omissions.empty_triangles, "triangles without area were dropped");
-        count(omissions.other_primitives, "primitives of points or lines were left out: they have no surface");
-        count(omissions.morphed_meshes, "meshes with morph targets are loaded unmorphed");
-        count(omissions.unmapped_primitives, "primitives are loaded without their normal map: they have no texture coordinates for it");
-        count(flat_objects_, "objects were left out: their scale is zero in some direction");
-        count(gltf_.model.animations.size(), "animations are not played: the scene is loaded at rest");
-        if (has_skin_) notices.push_back("skins are not applied: the meshes are loaded at rest");
+        count(omissions.bad_triangles, "triangles dropped for a vertex that is not a finite number");
+        count(omissions.empty_triangles, "triangles dropped for having no area");
+        count(omissions.other_primitives, "primitives of points or lines left out, they have no surface");
+        count(omissions.morphed_meshes, "meshes with morph targets loaded unmorphed");
+        count(omissions.unmapped_primitives, "primitives loaded without their normal map for want of texture coordinates");
+        count(flat_objects_, "objects left out, their scale is zero in some direction");
+        count(gltf_.model.animations.size(), "animations not played, the scene is loaded at rest");
+        if (has_skin_) notices.push_back("skins not applied, the meshes are loaded at rest");
         if (geometry_.objects.empty()) notices.push_back("the scene has no triangles: an empty sea");
     }
 

@@ -132,7 +132,12 @@ bool parse(GltfFile& gltf, const std::string& bytes, std::string folder, std::st
     return false;
 }
 
-std::string firstLine(const std::string& text) { return text.substr(0, text.find('\n')); }
+/** First line of tinygltf's errors, which may be silent about what it refuses. */
+std::string reason(const std::string& errors) {
+    const size_t begin = errors.find_first_not_of(" \n");
+    if (begin == std::string::npos) return "a required property is missing or of the wrong type";
+    return errors.substr(begin, errors.find('\n', begin) - begin);
+}
 
 }  // namespace
 
@@ -150,7 +155,9 @@ GltfFile readGltfFile(const std::filesystem::path& file) {
     const std::filesystem::path folder = file.has_parent_path() ? file.parent_path() : ".";
     const bool parsed = parse(gltf, bytes, folder.string(), errors);
     checkExtensions(gltf);
-    if (!parsed) throw types::ConfigError(gltf.name, "", fmt::format("is not valid glTF 2.0: {}", firstLine(errors)));
+    if (!parsed) throw types::ConfigError(gltf.name, "", fmt::format("cannot be read as glTF 2.0: {}", reason(errors)));
+    if (const std::string& version = gltf.model.asset.version; !version.starts_with("2."))
+        throw types::ConfigError(gltf.name, "asset.version", fmt::format("is \"{}\"; must be 2.0: export the model as glTF 2.0", version));
     return gltf;
 }
 

@@ -177,7 +177,7 @@ void GltfMeshes::append(const tinygltf::Primitive& primitive, const std::string&
     uint32_t restart = no_restart;
     if (primitive.indices >= 0) {
         corners = accessors_.indices(primitive.indices);
-        restart = accessors_.restartIndex(primitive.indices);
+        if (mode != TINYGLTF_MODE_TRIANGLES) restart = accessors_.restartIndex(primitive.indices);
     } else {
         corners.resize(count);
         for (size_t i = 0; i < count; ++i) corners[i] = static_cast<uint32_t>(i);

@@ -19,7 +19,7 @@ glm::dmat3 withoutRotation(const glm::dmat3& matrix, glm::dvec3 scale) {
     glm::dmat3 rotation;
     rotation[0] = glm::normalize(matrix[0]) * glm::sign(scale.x);
     rotation[1] = glm::normalize(matrix[1] - rotation[0] * glm::dot(rotation[0], matrix[1])) * glm::sign(scale.y);
-    rotation[2] = glm::normalize(glm::cross(rotation[0], rotation[1])) ;
+    rotation[2] = glm::normalize(glm::cross(rotation[0], rotation[1]));
     if (glm::dot(rotation[2], matrix[2]) * scale.z < 0) {
         rotation[0] = -rotation[0];
         rotation[2] = -rotation[2];

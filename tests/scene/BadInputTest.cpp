@@ -1,0 +1,184 @@
+// Files that are wrong: a ConfigError that names the file, or a scene; never a crash.
+#include <random>
+
+#include "tests/scene/SceneFiles.hpp"
+
+namespace insonify::scene {
+namespace {
+
+class BadInputTest : public SceneFiles {
+protected:
+    void expectFault(const std::filesystem::path& file, const std::string& part) const {
+        const std::string fault = faultOf(file);
+        EXPECT_NE(fault.find(file.string()), std::string::npos) << fault;
+        EXPECT_NE(fault.find(part), std::string::npos) << fault;
+    }
+    void expectGltfFault(const std::string& rest, const std::string& part) const {
+        expectFault(write("case.gltf", gltf(rest)), part);
+    }
+    /** A triangle of which the accessors and bufferViews are given. */
+    static std::string triangle(const std::string& accessors, const std::string& views) {
+        return R"("nodes":[{"mesh":0}],"meshes":[{"primitives":[{"attributes":{"POSITION":0}}]}],"accessors":[)" + accessors +
+               R"(],"bufferViews":[)" + views + "]," + buffers(bytesOf<float>({0, 0, 0, 1, 0, 0, 0, 1, 0}));
+    }
+};
+
+const char* const good_accessor = R"({"bufferView":0,"componentType":5126,"type":"VEC3","count":3})";
+const char* const good_view = R"({"buffer":0,"byteLength":36})";
+
+std::string glb(const std::string& json, const std::string& binary) {
+    const auto chunk = [](const std::string& type, std::string bytes, char pad) {
+        while (bytes.size() % 4 != 0) bytes += pad;
+        return bytesOf<uint32_t>({static_cast<uint32_t>(bytes.size())}) + type + bytes;
+    };
+    const std::string chunks = chunk("JSON", json, ' ') + chunk(std::string("BIN\0", 4), binary, '\0');
+    return "glTF" + bytesOf<uint32_t>({2, static_cast<uint32_t>(12 + chunks.size())}) + chunks;
+}
+
+TEST_F(BadInputTest, AFileThatIsMissingOrAFolderOrEmptyOrOfAnotherKindIsNamed) {
+    std::filesystem::create_directory(folder_ / "folder.glb");
+    expectFault(folder_ / "missing.glb", "does not exist; give the path of a .gltf or .glb");
+    expectFault(folder_ / "folder.glb", "is not a file");
+    expectFault(write("empty.glb", ""), "is empty");
+    expectFault(write("cube.obj", "v 0 0 0"), "has extension \".obj\"; may be .gltf or .glb");
+    expectFault(write("sea.world", "<sdf/>"), "SDF is not built yet; use .gltf or .glb");
+    expectFault(write("sea.sdf", "<sdf/>"), "SDF is not built yet");
+    expectFault(write("noise.glb", "this is no model at all"), "cannot be read as glTF 2.0");
+}
+
+TEST_F(BadInputTest, AnImageNameWhoseReadingExhaustsMemoryIsNotRead) {
+    expectFault(write("416.gltf", R"({"images":[{"uri":"%!QAAAQAAA5"}],"asset":{"version":""}})"), "asset.version");
+    expectFault(write("cut.gltf", R"({"asset":{"version":"2.0"},"images":[{"uri":"%!QAAAQA)"), "cannot be read as glTF 2.0");
+    EXPECT_EQ(faultOfGltf(R"("images":[{"uri":"."},{"uri":""},{"uri":"/"},{"uri":"/dev/zero"}])"), "");
+}
+
+TEST_F(BadInputTest, OtherVersionsAreRefused) {
+    expectFault(write("one.gltf", R"({"asset":{"version":"1.0"}})"), "asset.version: is \"1.0\"; must be 2.0");
+}
+
+TEST_F(BadInputTest, JsonNestedTooDeeplyIsRefusedBeforeItIsParsed) {
+    const std::string deep(100'000, '[');
+    expectFault(write("deep.gltf", R"({"asset":{"version":"2.0","extras":)" + deep), "nests JSON 100002 levels deep; may be up to 200");
+    expectFault(write("deep.glb", glb(R"({"asset":{"version":"2.0","extras":)" + deep, "")), "levels deep");
+    EXPECT_EQ(faultOfGltf(R"("extras":")" + deep + "\""), "");  // brackets in a text do not nest
+}
+
+TEST_F(BadInputTest, GigabytesDeclaredInAKilobyteAreRefusedWithoutBeingAllocated) {
+    expectGltfFault(R"("buffers":[{"byteLength":4294967295,"uri":"data:application/octet-stream;base64,AAAA"}])", "");
+    expectGltfFault(triangle(R"({"bufferView":0,"componentType":5126,"type":"VEC3","count":4294967295})", good_view),
+                    "accessors[0]: 4294967295 elements of 12 bytes from byteOffset 0 run over the bufferView's 36 bytes");
+    expectGltfFault(triangle(R"({"componentType":5126,"type":"VEC3","count":4294967295})", good_view), "accessors[0].count");
+    expectGltfFault(triangle(R"({"bufferView":0,"componentType":5126,"type":"VEC3","count":18446744073709551615})", good_view),
+                    "run over");
+    expectFault(write("4g.glb", "glTF" + bytesOf<uint32_t>({2, 0xffffffff, 0xfffffff0}) + "JSON{}"), "truncated");
+}
+
+TEST_F(BadInputTest, ManyPrimitivesOfTheSameDataAreCharged) {
+    std::string primitives;
+    for (int i = 0; i < 30; ++i) primitives += R"({"attributes":{"POSITION":0}},)";
+    primitives += R"({"attributes":{"POSITION":0}})";
+    expectGltfFault(R"("nodes":[{"mesh":0}],"meshes":[{"primitives":[)" + primitives +
+                        R"(]}],"accessors":[{"componentType":5126,"type":"VEC3","count":10000000}])",
+                    "brings the file over 200000000 vertices and indices");
+}
+
+TEST_F(BadInputTest, EveryBoundOfAnAccessorIsChecked) {
+    const auto accessor = [](const std::string& fields) { return triangle("{" + fields + "}", good_view); };
+    const auto view = [](const std::string& fields) { return triangle(good_accessor, "{" + fields + "}"); };
+    EXPECT_EQ(faultOfGltf(triangle(good_accessor, good_view)), "");
+    expectGltfFault(accessor(R"("bufferView":3,"componentType":5126,"type":"VEC3","count":3)"), "accessors[0].bufferView: is 3; the file has 1");
+    expectGltfFault(accessor(R"("bufferView":0,"byteOffset":1,"componentType":5126,"type":"VEC3","count":3)"), "run over");
+    expectGltfFault(accessor(R"("bufferView":0,"byteOffset":18446744073709551615,"componentType":5126,"type":"VEC3","count":3)"), "run over");
+    expectGltfFault(accessor(R"("bufferView":0,"componentType":5124,"type":"VEC3","count":3)"), "componentType: is 5124");
+    expectGltfFault(accessor(R"("bufferView":0,"componentType":5126,"type":"VEC2","count":3)"), "must be VEC3");
+    expectGltfFault(view(R"("buffer":0,"byteLength":37)"), "bufferViews[0]: byteOffset 0 + byteLength 37 run over the buffer's 36 bytes");
+    expectGltfFault(view(R"("buffer":0,"byteOffset":18446744073709551615,"byteLength":36)"), "run over the buffer's");
+    expectGltfFault(view(R"("buffer":1,"byteLength":36)"), "bufferViews[0].buffer: is 1; the file has 1");
+    expectGltfFault(view(R"("buffer":-1,"byteLength":36)"), "bufferViews[0].buffer: is -1");
+    expectGltfFault(view(R"("buffer":0,"byteLength":36,"byteStride":8)"), "byteStride is 8; its elements have 12 bytes");
+    expectGltfFault(view(R"("buffer":0,"byteLength":36,"byteStride":16)"), "run over");
+    expectGltfFault(R"("nodes":[{"mesh":0}],"meshes":[{"primitives":[{"attributes":{"POSITION":9}}]}])", "accessors[9]: does not exist");
+    expectGltfFault(R"("nodes":[{"mesh":0}],"meshes":[{"primitives":[{"attributes":{"POSITION":-2}}]}])", "accessors[-2]: does not exist");
+}
+
+TEST_F(BadInputTest, SparseIndicesAreChecked) {
+    const auto sparse = [](const std::string& fields) {
+        return triangle(R"({"componentType":5126,"type":"VEC3","count":2,"sparse":{)" + fields + "}}", good_view);
+    };
+    expectGltfFault(sparse(R"("count":1,"indices":{"bufferView":0,"componentType":5125,"byteOffset":12},"values":{"bufferView":0})"),
+                    "sparse.indices: hold 1065353216; the accessor has 2 elements");
+    expectGltfFault(sparse(R"("count":-1,"indices":{"bufferView":0,"componentType":5121},"values":{"bufferView":0})"), "negative");
+    expectGltfFault(sparse(R"("count":99,"indices":{"bufferView":0,"componentType":5121},"values":{"bufferView":0})"), "run over");
+    expectGltfFault(sparse(R"("count":1,"indices":{"bufferView":0,"componentType":5126},"values":{"bufferView":0})"), "may be 5121");
+    expectGltfFault(sparse(R"("count":1,"indices":{"bufferView":7,"componentType":5121},"values":{"bufferView":0})"), "bufferView: is 7");
+}
+
+TEST_F(BadInputTest, IndicesOfTrianglesAndAttributesOfOtherLengthsAreRefused) {
+    const auto indexed = [](const std::string& primitive) {
+        return R"("nodes":[{"mesh":0}],"meshes":[{"primitives":[{"attributes":{"POSITION":0}, )" + primitive + R"(}]}],
+            "accessors":[{"bufferView":0,"componentType":5126,"type":"VEC3","count":3},
+                         {"bufferView":1,"componentType":5121,"type":"SCALAR","count":3}],
+            "bufferViews":[{"buffer":0,"byteLength":36},{"buffer":0,"byteOffset":36,"byteLength":3}],)" +
+               buffers(bytesOf<float>({0, 0, 0, 1, 0, 0, 0, 1, 0}) + bytesOf<uint8_t>({0, 1, 3}));
+    };
+    expectGltfFault(indexed(R"("indices":1)"), "meshes[0].primitives[0].indices: hold 3; the primitive has 3 vertices");
+    expectGltfFault(indexed(R"("indices":0)"), "accessors[0]: holds indices but");
+    expectGltfFault(indexed(R"("mode":9)"), "mode: is 9; may be 0 to 6");
+    expectGltfFault(indexed(R"("material":4)"), "material: is 4; the file has 0");
+}
+
+TEST_F(BadInputTest, WhatCannotBeReadIsNamedWithWhatToDo) {
+    const auto require = [this](const std::string& name, const std::string& part) {
+        expectGltfFault(R"("extensionsUsed":[")" + name + R"("],"extensionsRequired":[")" + name + "\"]", name + " cannot be read; " + part);
+    };
+    require("KHR_draco_mesh_compression", "decompress it: `gltf-transform copy");
+    require("EXT_meshopt_compression", "decompress it");
+    require("EXT_texture_webp", "convert its images to PNG");
+    require("KHR_texture_basisu", "convert its images to PNG");
+    require("VENDOR_curves", "export the model without it");
+    EXPECT_TRUE(hasNotice(*load(R"("extensionsUsed":["EXT_texture_webp"])"), "EXT_texture_webp is not read"));
+}
+
+TEST_F(BadInputTest, AFileCutOffAnywhereIsAnErrorOrAScene) {
+    const std::string whole = glb(R"({"asset":{"version":"2.0"},"nodes":[{"mesh":0}],"meshes":[{"primitives":[{"attributes":{"POSITION":0}}]}],
+        "accessors":[{"bufferView":0,"componentType":5126,"type":"VEC3","count":3}],
+        "bufferViews":[{"buffer":0,"byteLength":36}],"buffers":[{"byteLength":36}]})",
+                                  bytesOf<float>({0, 0, 0, 1, 0, 0, 0, 1, 0}));
+    EXPECT_EQ(loadScene(write("whole.glb", whole))->triangleCount(), 1u);
+    for (size_t size = 0; size < whole.size(); ++size)
+        EXPECT_THROW(loadScene(write("cut.glb", whole.substr(0, size))), types::ConfigError) << size;
+}
+
+TEST_F(BadInputTest, DamagedBytesGiveAnErrorOrASoundScene) {
+    const std::string texts[] = {
+        gltf(triangle(good_accessor, good_view)),
+        glb(R"({"asset":{"version":"2.0"},"nodes":[{"mesh":0,"scale":[1,2,3],"children":[1]},{"mesh":0,"rotation":[0,0,0,1]}],
+            "meshes":[{"primitives":[{"attributes":{"POSITION":0,"TEXCOORD_0":2},"indices":1,"material":0,"mode":5}]}],
+            "materials":[{"extras":{"acoustics":{"sediment":"clay"}},"normalTexture":{"index":0}}],"textures":[{"source":0}],
+            "images":[{"bufferView":0,"mimeType":"image/png"}],
+            "accessors":[{"bufferView":0,"componentType":5126,"type":"VEC3","count":3},
+                         {"bufferView":1,"componentType":5121,"type":"SCALAR","count":3},
+                         {"componentType":5126,"type":"VEC2","count":3,
+                          "sparse":{"count":1,"indices":{"bufferView":1,"componentType":5121},"values":{"bufferView":0}}}],
+            "bufferViews":[{"buffer":0,"byteLength":36},{"buffer":0,"byteOffset":36,"byteLength":3}],"buffers":[{"byteLength":40}]})",
+            bytesOf<float>({0, 0, 0, 1, 0, 0, 0, 1, 0}) + bytesOf<uint8_t>({0, 1, 2, 0}))};
+    std::mt19937 random(7);
+    size_t scenes = 0;
+    const size_t rounds = std::getenv("INSONIFY_FUZZ") ? std::stoul(std::getenv("INSONIFY_FUZZ")) : 250;
+    for (const std::string& text : texts)
+        for (size_t round = 0; round < rounds; ++round) {
+            std::string damaged = text;
+            for (unsigned flips = 1 + random() % 4; flips > 0; --flips)
+                damaged[random() % damaged.size()] = random() % 2 ? static_cast<char>(random()) : static_cast<char>('0' + random() % 10);
+            try {
+                expectSound(*loadScene(write(text.starts_with("glTF") ? "fuzz.glb" : "fuzz.gltf", damaged)));
+                ++scenes;
+            } catch (const types::ConfigError& error) {
+                EXPECT_NE(std::string(error.what()), "");
+            }
+        }
+    EXPECT_GT(scenes, 0u);  // not every byte matters
+}
+
+}  // namespace
+}  // namespace insonify::scene

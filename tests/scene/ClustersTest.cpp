@@ -1,0 +1,98 @@
+#include "components/scene/Clusters.hpp"
+
+#include <array>
+#include <set>
+
+#include "tests/scene/SceneFiles.hpp"
+
+namespace insonify::scene {
+namespace {
+
+/** A grid of n x n unit squares, the left half of one material and the right half of another. */
+types::Mesh grid(uint32_t n) {
+    types::Mesh mesh;
+    for (uint32_t y = 0; y <= n; ++y)
+        for (uint32_t x = 0; x <= n; ++x) {
+            mesh.positions.emplace_back(x, y, 0);
+            mesh.uvs.emplace_back(x, y);
+        }
+    for (uint32_t half = 0; half < 2; ++half) {
+        types::Cluster run;
+        run.first_index = static_cast<uint32_t>(mesh.indices.size());
+        run.material = static_cast<int>(half);
+        for (uint32_t y = 0; y < n; ++y)
+            for (uint32_t x = half * n / 2; x < (half + 1) * n / 2; ++x) {
+                const uint32_t a = y * (n + 1) + x, b = a + n + 1;
+                mesh.indices.insert(mesh.indices.end(), {a, a + 1, b, b, a + 1, b + 1});
+            }
+        run.index_count = static_cast<uint32_t>(mesh.indices.size()) - run.first_index;
+        mesh.clusters.push_back(run);
+    }
+    return mesh;
+}
+
+/** Corners of each triangle with its material, each turned so that the smallest corner comes first. */
+std::multiset<std::array<float, 7>> triangles(const types::Mesh& mesh) {
+    std::multiset<std::array<float, 7>> all;
+    for (const types::Cluster& cluster : mesh.clusters)
+        for (size_t i = cluster.first_index; i < cluster.first_index + cluster.index_count; i += 3) {
+            std::array<std::array<float, 2>, 3> corners;
+            for (size_t k = 0; k < 3; ++k) corners[k] = {mesh.positions[mesh.indices[i + k]].x, mesh.positions[mesh.indices[i + k]].y};
+            std::ranges::rotate(corners, std::ranges::min_element(corners));
+            all.insert({corners[0][0], corners[0][1], corners[1][0], corners[1][1], corners[2][0], corners[2][1],
+                        static_cast<float>(cluster.material)});
+        }
+    return all;
+}
+
+TEST(ClustersTest, ALargeMeshIsSplitIntoCompactClustersOfTheSameTriangles) {
+    types::Mesh mesh = grid(100);
+    const auto before = triangles(mesh);
+    buildClusters(mesh);
+    expectSoundMesh(mesh, 2);
+    EXPECT_EQ(triangles(mesh), before);
+    EXPECT_GE(mesh.clusters.size(), 20u);
+    for (const types::Cluster& cluster : mesh.clusters) {
+        EXPECT_LE(cluster.index_count / 3, kClusterTriangles);
+        EXPECT_GE(cluster.index_count / 3, kClusterTriangles / 2);
+        // a square of so many triangles has a half diagonal of sqrt(n / 4); up to twice that is compact
+        EXPECT_LT(cluster.radius, 2 * std::sqrt(cluster.index_count / 12.0));
+    }
+}
+
+TEST(ClustersTest, ASmallMeshKeepsOneClusterForEachMaterial) {
+    types::Mesh mesh = grid(10);
+    const auto before = triangles(mesh);
+    buildClusters(mesh);
+    expectSoundMesh(mesh, 2);
+    EXPECT_EQ(triangles(mesh), before);
+    EXPECT_EQ(mesh.clusters.size(), 2u);
+}
+
+TEST(ClustersTest, AttributesFollowTheirVertices) {
+    types::Mesh mesh = grid(100);
+    buildClusters(mesh);
+    ASSERT_EQ(mesh.uvs.size(), mesh.positions.size());
+    for (size_t i = 0; i < mesh.uvs.size(); ++i) ASSERT_EQ(mesh.uvs[i], glm::vec2(mesh.positions[i]));
+}
+
+TEST(ClustersTest, VerticesWithoutTrianglesAreGone) {
+    types::Mesh mesh = grid(10);
+    mesh.positions.emplace_back(7, 7, 7);
+    mesh.uvs.emplace_back(0, 0);
+    buildClusters(mesh);
+    EXPECT_EQ(mesh.positions.size(), 121u);
+}
+
+TEST(ClustersTest, TrianglesInOnePlaceAreSplitAllTheSame) {
+    types::Mesh mesh;
+    mesh.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
+    for (size_t i = 0; i < 20'000; ++i) mesh.indices.insert(mesh.indices.end(), {0, 1, 2});
+    mesh.clusters = {{.first_index = 0, .index_count = 60'000}};
+    buildClusters(mesh);
+    expectSoundMesh(mesh, 1);
+    EXPECT_EQ(mesh.clusters.size(), 32u);
+}
+
+}  // namespace
+}  // namespace insonify::scene

@@ -1,0 +1,116 @@
+// Models made by others, good and bad, from the shared folder.
+#include <glm/gtc/matrix_transform.hpp>
+#include <map>
+
+#include "tests/scene/SceneFiles.hpp"
+
+namespace insonify::scene {
+namespace {
+
+class CorpusTest : public ::testing::Test {
+protected:
+    void SetUp() override {
+        if (!std::filesystem::is_directory(models_)) GTEST_SKIP() << "NO MODELS AT " << models_ << ": NOTHING WAS TESTED";
+    }
+    types::GeometryPtr load(const std::string& file) const { return loadScene(models_ / file); }
+    /** Every glTF file below a folder ends in a sound scene or a ConfigError; returns the number of scenes. */
+    size_t loadAll(const std::string& folder, size_t at_least) const {
+        size_t files = 0, scenes = 0;
+        for (const auto& entry : std::filesystem::recursive_directory_iterator(models_ / folder)) {
+            const auto extension = entry.path().extension();
+            if (extension != ".gltf" && extension != ".glb") continue;
+            ++files;
+            SCOPED_TRACE(entry.path());
+            try {
+                expectSound(*loadScene(entry.path()));
+                ++scenes;
+            } catch (const types::ConfigError& error) {
+                EXPECT_EQ(std::string(error.what()).find(entry.path().string()), 0u) << error.what();
+            }
+        }
+        EXPECT_GE(files, at_least);
+        return scenes;
+    }
+
+    std::filesystem::path models_ = std::filesystem::path(INSONIFY_SHARED_DATA) / "gltf";
+};
+
+TEST_F(CorpusTest, EveryValidModelIsLoaded) { EXPECT_EQ(loadAll("valid", 11), 11u); }
+
+TEST_F(CorpusTest, EveryConformanceCaseIsLoaded) { EXPECT_EQ(loadAll("asset-generator", 43), 43u); }
+
+TEST_F(CorpusTest, OfTheEncodingsOnlyDracoIsRefused) { EXPECT_EQ(loadAll("ext", 10), 9u); }
+
+TEST_F(CorpusTest, EveryValidatorCaseIsASceneOrAnError) { EXPECT_GT(loadAll("validator", 150), 50u); }
+
+TEST_F(CorpusTest, EveryInvalidFileIsASceneOrAnError) { loadAll("invalid", 20); }
+
+TEST_F(CorpusTest, KnownModelsHaveTheirTrianglesAndSize) {
+    const std::map<std::string, std::pair<size_t, Bounds>> known = {
+        {"valid/Box/Box.glb", {12, {glm::dvec3(-0.5), glm::dvec3(0.5)}}},
+        {"valid/BoxInterleaved/BoxInterleaved.glb", {12, {glm::dvec3(-0.5), glm::dvec3(0.5)}}},
+        {"valid/SimpleSparseAccessor/SimpleSparseAccessor.gltf", {12, {{0, 0, 0}, {6, 0, 4}}}},
+        {"valid/TriangleWithoutIndices/TriangleWithoutIndices.gltf", {1, {{0, 0, 0}, {1, 0, 1}}}},
+        {"ext/TriangleWithPaddingInGlbBin.glb", {1, {{0, 0, 0}, {1, 0, 1}}}},
+        {"ext/webp_BoxTextured/BoxTexturedWebp.gltf", {12, {glm::dvec3(-0.5), glm::dvec3(0.5)}}},
+    };
+    for (const auto& [file, expected] : known) {
+        const auto geometry = load(file);
+        const Bounds bounds = boundsOf(*geometry);
+        EXPECT_EQ(geometry->triangleCount(), expected.first) << file;
+        EXPECT_LT(glm::distance(bounds.low, expected.second.low) + glm::distance(bounds.high, expected.second.high), 1e-6) << file;
+    }
+}
+
+TEST_F(CorpusTest, OneCubeInFiveEncodingsHasTheSameSurface) {
+    for (const char* name : {"cube", "cubeIndexed", "cubeStrip", "cubeFan", "cubeQuantized"}) {
+        const auto geometry = load("ext/" + std::string(name) + ".glb");
+        const auto corners = worldCorners(*geometry);
+        double area = 0, volume = 0;
+        for (size_t i = 0; i < corners.size(); i += 3) {
+            area += glm::length(glm::cross(corners[i + 1] - corners[i], corners[i + 2] - corners[i])) / 2;
+            volume += glm::dot(corners[i], glm::cross(corners[i + 1], corners[i + 2])) / 6;  // positive: faces look outward
+        }
+        EXPECT_NEAR(area, 6, 1e-6) << name;
+        EXPECT_NEAR(volume, 1, 1e-6) << name;
+    }
+}
+
+TEST_F(CorpusTest, TheArrowsOfTheOrientationTestPointAtTheirTargets) {
+    // An arrow lies on a face of a cube, turned by its node; its target is drawn on the face without any transform.
+    const auto geometry = load("valid/OrientationTest/OrientationTest.glb");
+    const auto wayFromAxis = [&](const std::string& name, int axis) {
+        const auto object = std::ranges::find(geometry->objects, name, &types::Object::name);
+        EXPECT_NE(object, geometry->objects.end()) << name;
+        const Bounds bounds = boundsOf(*geometry, *object);
+        glm::dvec3 centre = (bounds.low + bounds.high) / 2.0;
+        centre[axis] = 0;
+        return glm::normalize(centre);
+    };
+    const std::map<std::string, int> axes = {{"X", 0}, {"Y", 2}, {"Z", 1}};  // y of the file is z of the world
+    for (const auto& [letter, axis] : axes)
+        for (const char* number : {"1", "2"})
+            EXPECT_GT(glm::dot(wayFromAxis("Arrow" + letter + number, axis), wayFromAxis("Target" + letter + number, axis)), 0.98)  // centres of boxes are 10 degrees off
+                << letter << number;
+}
+
+TEST_F(CorpusTest, MirroredNodesReflectTheSameMesh) {
+    const auto plain = load("asset-generator/Node_NegativeScale/Node_NegativeScale_00.gltf");
+    const auto by_matrix = load("asset-generator/Node_NegativeScale/Node_NegativeScale_03.gltf");
+    const auto by_scale = load("asset-generator/Node_NegativeScale/Node_NegativeScale_12.gltf");
+    const glm::dmat4 reflected = plain->objects.at(1).world_from_object * glm::scale(glm::dmat4(1), glm::dvec3(-1));
+    EXPECT_EQ(by_matrix->objects.at(1).world_from_object, reflected);
+    EXPECT_EQ(by_scale->objects.at(1).world_from_object, reflected);
+    EXPECT_TRUE(hasNotice(*by_scale, "without its normal map"));
+}
+
+TEST_F(CorpusTest, ModelsWithSkinsAnimationsAndNormalMapsLoadAtRest) {
+    EXPECT_TRUE(hasNotice(*load("valid/Fox/Fox.gltf"), "skins not applied"));
+    EXPECT_TRUE(hasNotice(*load("valid/CesiumMilkTruck/CesiumMilkTruck.glb"), "animations not played"));
+    const auto bottle = load("valid/WaterBottle/WaterBottle.gltf");
+    EXPECT_EQ(bottle->normal_maps.size(), 1u);
+    EXPECT_FALSE(bottle->meshes.at(0).tangents.empty());
+}
+
+}  // namespace
+}  // namespace insonify::scene

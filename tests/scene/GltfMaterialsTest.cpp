@@ -1,0 +1,148 @@
+// Acoustic extras and normal maps.
+#include "tests/scene/SceneFiles.hpp"
+
+namespace insonify::scene {
+namespace {
+
+/** Two pixels side by side: (255, 128, 128) and (10, 20, 30). */
+const std::string png = "data:image/png;base64,iVBORw0KGgoAAAANSUhEUgAAAAIAAAABCAIAAAB7QOjdAAAAD0lEQVR4nGP439DAJSIHAArlAjybukczAAAAAElFTkSuQmCC";
+class GltfMaterialsTest : public SceneFiles {
+protected:
+    types::Material acoustics(const std::string& json) const {
+        return load(R"("materials":[{"name":"m","doubleSided":true,"extras":{"acoustics":)" + json + "}}]")->materials.at(0);
+    }
+    std::string faultOfAcoustics(const std::string& json) const {
+        return faultOfGltf(R"("materials":[{},{"extras":{"acoustics":)" + json + "}}]");
+    }
+    /** A unit square whose uvs are its x and -y (v down), with a normal map from `image`; `info` is inside normalTexture,
+     *  `attributes` beside POSITION and TEXCOORD_0 (accessor 1). */
+    types::GeometryPtr mapped(const std::string& image, const std::string& info = "", const std::string& attributes = "") const {
+        return load(R"("nodes":[{"mesh":0}],"meshes":[{"primitives":[{"material":0,"attributes":{"POSITION":0,"TEXCOORD_0":1)" +
+                    attributes + R"(}}]}],"materials":[{"name":"wall","normalTexture":{"index":0)" + info + R"(}}],
+            "textures":[{"source":0,"sampler":0}],"samplers":[{"wrapS":33071}],"images":[{"uri":")" + image + R"("}],
+            "accessors":[{"bufferView":0,"componentType":5126,"type":"VEC3","count":3},
+                         {"bufferView":1,"componentType":5126,"type":"VEC2","count":3},
+                         {"bufferView":2,"componentType":5126,"type":"VEC3","count":3},
+                         {"bufferView":3,"componentType":5126,"type":"VEC4","count":3}],
+            "bufferViews":[{"buffer":0,"byteLength":36},{"buffer":0,"byteOffset":36,"byteLength":24},
+                           {"buffer":0,"byteOffset":60,"byteLength":36},{"buffer":0,"byteOffset":96,"byteLength":48}],)" +
+                    buffers(bytesOf<float>({0, 0, 0, 1, 0, 0, 0, 1, 0}) + bytesOf<float>({0, 1, 1, 1, 0, 0}) +
+                            bytesOf<float>({0, 0, 2, 0, 0, 2, 0, 0, 2}) +
+                            bytesOf<float>({0, 1, 0, -1, 0, 1, 0, -1, 0, 1, 0, -1})));
+    }
+};
+
+TEST_F(GltfMaterialsTest, WithoutExtrasAMaterialIsMediumSand) {
+    const auto geometry = load(R"("materials":[{"name":"plain"},{}])");
+    EXPECT_FALSE(geometry->materials[0].has_acoustics);
+    EXPECT_FLOAT_EQ(geometry->materials[0].lambert_db, -16.7f);
+    EXPECT_EQ(geometry->materials[1].name, "material_1");
+}
+
+TEST_F(GltfMaterialsTest, AcousticNumbersAreTaken) {
+    const types::Material m = acoustics(R"({"lambert_db":-12,"reflection":-0.5,"roughness_slope":0.2,"reflectivity":0.25})");
+    EXPECT_TRUE(m.has_acoustics && m.double_sided);
+    EXPECT_FLOAT_EQ(m.lambert_db, -12);
+    EXPECT_FLOAT_EQ(m.reflection, -0.5);
+    EXPECT_FLOAT_EQ(m.roughness_slope, 0.2f);
+    EXPECT_FLOAT_EQ(m.reflectivity, 0.25);
+}
+
+TEST_F(GltfMaterialsTest, NamesOfTheTablesAreTakenAndNumbersRefineThem) {
+    EXPECT_FLOAT_EQ(acoustics(R"({"sediment":"cobble"})").lambert_db, -8.1f);
+    const types::Material steel = acoustics(R"({"material":"steel","reflectivity":0.5})");
+    EXPECT_FLOAT_EQ(steel.reflection, 0.936f);
+    EXPECT_NEAR(steel.lambert_db, -9.23 + 20 * std::log10(0.936), 1e-4);
+    EXPECT_FLOAT_EQ(steel.reflectivity, 0.5);
+    EXPECT_FLOAT_EQ(acoustics(R"({"sediment":"clay","lambert_db":-30})").lambert_db, -30);
+}
+
+TEST_F(GltfMaterialsTest, WrongAcousticsSayWhatTheyMayBe) {
+    const auto expect = [this](const char* json, const char* part) {
+        EXPECT_NE(faultOfAcoustics(json).find(part), std::string::npos) << json << ": " << faultOfAcoustics(json);
+    };
+    expect(R"({"sediment":"sandd"})", "materials[1].extras.acoustics.sediment: is \"sandd\"; may be rough_rock, rock");
+    expect(R"({"material":7})", "material: is 7; may be steel");
+    expect(R"({"lambert_db":"loud"})", "lambert_db: is \"loud\"; must be a number from -200 to 20");
+    expect(R"({"reflection":1.5})", "reflection: is 1.5; must be a number from -1 to 1");
+    expect(R"({"reflectivity":-0.1})", "reflectivity");
+    expect(R"({"lamberd_db":-3})", "lamberd_db: is not known; may be sediment, material, lambert_db");
+    expect(R"({"sediment":"clay","material":"steel"})", "give one of the two");
+    expect(R"([1])", "must be an object");
+}
+
+TEST_F(GltfMaterialsTest, ANormalMapBringsUvsNormalsAndTangents) {
+    const auto geometry = mapped(png, R"(,"scale":0.5)");
+    expectSound(*geometry);
+    const types::Mesh& mesh = geometry->meshes.at(0);
+    ASSERT_EQ(geometry->normal_maps.size(), 1u);
+    const types::NormalMap& map = geometry->normal_maps[0];
+    EXPECT_EQ(map.rgb, (std::vector<uint8_t>{255, 128, 128, 10, 20, 30}));
+    EXPECT_FALSE(map.repeat_u);
+    EXPECT_TRUE(map.repeat_v);
+    EXPECT_FLOAT_EQ(geometry->materials[0].normal_scale, 0.5);
+    for (size_t i = 0; i < 3; ++i) {  // flat normals and made tangents: u grows along x, v against y
+        EXPECT_EQ(mesh.normals.at(i), glm::vec3(0, 0, 1));
+        EXPECT_EQ(mesh.tangents.at(i), glm::vec4(1, 0, 0, 1));
+    }
+}
+
+TEST_F(GltfMaterialsTest, NormalsAndTangentsOfTheFileGoFirst) {
+    const auto geometry = mapped(png, "", R"(,"NORMAL":2,"TANGENT":3)");
+    expectSound(*geometry);
+    EXPECT_EQ(geometry->meshes[0].tangents.at(0), glm::vec4(0, 1, 0, -1));
+}
+
+TEST_F(GltfMaterialsTest, TheTextureTransformScalesThenTurnsThenShifts) {
+    const auto geometry = mapped(png, R"(,"extensions":{"KHR_texture_transform":
+        {"offset":[0.5,0.25],"rotation":1.5707963267948966,"scale":[2,4]}})");
+    const types::Mesh& mesh = geometry->meshes.at(0);
+    for (size_t i = 0; i < 3; ++i) {  // u' = 4 v + 0.5, v' = -2 u + 0.25 with u = x and v = 1 - y
+        EXPECT_NEAR(mesh.uvs.at(i).x, 4 * (1 - mesh.positions[i].y) + 0.5, 1e-6);
+        EXPECT_NEAR(mesh.uvs.at(i).y, -2 * mesh.positions[i].x + 0.25, 1e-6);
+    }
+}
+
+TEST_F(GltfMaterialsTest, WithoutTheTextureCoordinatesTheMapIsLeftOut) {
+    const auto geometry = mapped(png, R"(,"texCoord":1)");
+    expectSound(*geometry);
+    EXPECT_TRUE(hasNotice(*geometry, "want of texture coordinates: 1"));
+    const int material = geometry->meshes.at(0).clusters.at(0).material;
+    EXPECT_EQ(geometry->materials.at(static_cast<size_t>(material)).normal_map, -1);
+}
+
+TEST_F(GltfMaterialsTest, AnImageThatIsNotThereOrDamagedIsANotice) {
+    for (const std::string& image : {std::string("nowhere.png"), std::string("https://example.org/a.png"), png.substr(0, 90),
+                                     std::string("data:image/png;base64,AAAA")}) {
+        const auto geometry = mapped(image);
+        EXPECT_EQ(geometry->triangleCount(), 1u);
+        EXPECT_TRUE(geometry->normal_maps.empty());
+        EXPECT_TRUE(hasNotice(*geometry, "\"wall\" is loaded without its normal map")) << image;
+    }
+}
+
+TEST_F(GltfMaterialsTest, OtherImagesAreNeverDecoded) {
+    const auto geometry = load(R"("materials":[{"pbrMetallicRoughness":{"baseColorTexture":{"index":0}}}],
+        "textures":[{"source":0}],"images":[{"uri":"data:image/png;base64,AAAA"}])");
+    EXPECT_TRUE(geometry->normal_maps.empty());
+    EXPECT_EQ(geometry->notices.size(), 1u);  // the empty sea
+}
+
+TEST_F(GltfMaterialsTest, IndicesOfTexturesImagesSamplersAndMaterialsAreChecked) {
+    const std::string material = R"("materials":[{"normalTexture":{"index":0}}])";
+    EXPECT_NE(faultOfGltf(material).find("textures[0]: does not exist"), std::string::npos);
+    EXPECT_NE(faultOfGltf(material + R"(,"textures":[{"source":4}])").find("images[4]"), std::string::npos);
+    EXPECT_NE(faultOfGltf(material + R"(,"textures":[{"source":0,"sampler":2}],"images":[{"uri":")" + png + "\"}]").find("samplers[2]"),
+              std::string::npos);
+}
+
+TEST_F(GltfMaterialsTest, FilesBesideTheSceneMayHaveSpacesInTheirNames) {
+    write("the floor.bin", bytesOf<float>({0, 0, 0, 1, 0, 0, 0, 1, 0}));
+    const auto geometry = load(R"("nodes":[{"mesh":0}],"meshes":[{"primitives":[{"attributes":{"POSITION":0}}]}],
+        "accessors":[{"bufferView":0,"componentType":5126,"type":"VEC3","count":3}],
+        "bufferViews":[{"buffer":0,"byteLength":36}],"buffers":[{"byteLength":36,"uri":"the%20floor.bin"}])");
+    EXPECT_EQ(geometry->triangleCount(), 1u);
+}
+
+}  // namespace
+}  // namespace insonify::scene

@@ -1,0 +1,58 @@
+#include "components/scene/Overrides.hpp"
+
+#include "tests/scene/SceneFiles.hpp"
+
+namespace insonify::scene {
+namespace {
+
+class OverridesTest : public SceneFiles {
+protected:
+    /** Two walls of one mesh and material, the second below a group. */
+    Scene walls() const {
+        return readScene(write("walls.gltf", gltf(R"("scenes":[{"nodes":[0,1]}],
+            "nodes":[{"mesh":0,"name":"near"},{"name":"group","children":[2]},{"mesh":0,"name":"far"}],
+            "materials":[{"name":"stone"}],"meshes":[{"primitives":[{"attributes":{"POSITION":0},"material":0}]}],
+            "accessors":[{"bufferView":0,"componentType":5126,"type":"VEC3","count":3}],
+            "bufferViews":[{"buffer":0,"byteLength":36}],)" + buffers(bytesOf<float>({0, 0, 0, 1, 0, 0, 0, 1, 0})))));
+    }
+    static Acoustics lambert(double db) {
+        Acoustics acoustics;
+        acoustics.lambert_db = db;
+        return acoustics;
+    }
+    static float lambertOf(const types::Geometry& geometry, size_t object) {
+        const types::Mesh& mesh = geometry.meshes.at(static_cast<size_t>(geometry.objects.at(object).mesh));
+        return geometry.materials.at(static_cast<size_t>(mesh.clusters.at(0).material)).lambert_db;
+    }
+    types::Problems problems_;
+};
+
+TEST_F(OverridesTest, WithoutAnyTheGeometryIsTheSame) {
+    const Scene scene = walls();
+    EXPECT_EQ(overrideMaterials(scene, {}, problems_), scene.geometry);
+}
+
+TEST_F(OverridesTest, AMaterialChangesWhereverItIs) {
+    const auto geometry = overrideMaterials(walls(), {{"stone", lambert(-9)}}, problems_);
+    EXPECT_TRUE(problems_.empty());
+    EXPECT_FLOAT_EQ(lambertOf(*geometry, 0), -9);
+    EXPECT_FLOAT_EQ(lambertOf(*geometry, 1), -9);
+}
+
+TEST_F(OverridesTest, AModelChangesAloneWithAllBelowItAndGoesBeforeItsMaterial) {
+    const auto geometry = overrideMaterials(walls(), {{"group", lambert(-3)}, {"stone", lambert(-9)}}, problems_);
+    EXPECT_TRUE(problems_.empty());
+    expectSound(*geometry);
+    EXPECT_FLOAT_EQ(lambertOf(*geometry, 0), -9);
+    EXPECT_FLOAT_EQ(lambertOf(*geometry, 1), -3);
+}
+
+TEST_F(OverridesTest, AnUnknownNameIsAProblemThatListsTheKnown) {
+    overrideMaterials(walls(), {{"stoone", lambert(-9)}}, problems_);
+    ASSERT_EQ(problems_.size(), 1u);
+    EXPECT_EQ(problems_[0].path, "materials.stoone");
+    EXPECT_NE(problems_[0].message.find("may be far, group, near, stone"), std::string::npos) << problems_[0].message;
+}
+
+}  // namespace
+}  // namespace insonify::scene

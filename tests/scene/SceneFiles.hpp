@@ -1,0 +1,153 @@
+#pragma once
+// Small glTF files made inside a test, and what must hold for every scene that was loaded.
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <initializer_list>
+#include <string>
+#include <vector>
+
+#include "components/scene/Scene.hpp"
+#include "types/ConfigError.hpp"
+
+namespace insonify::scene {
+
+template <class T>
+std::string bytesOf(std::initializer_list<T> values) {
+    std::string bytes(values.size() * sizeof(T), '\0');
+    std::memcpy(bytes.data(), std::data(values), bytes.size());
+    return bytes;
+}
+
+inline std::string base64(const std::string& bytes) {
+    constexpr char digits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+    std::string text;
+    for (size_t i = 0; i < bytes.size(); i += 3) {
+        uint32_t group = 0;
+        for (size_t k = 0; k < 3; ++k) group = group << 8 | (i + k < bytes.size() ? static_cast<uint8_t>(bytes[i + k]) : 0u);
+        for (size_t k = 0; k < 4; ++k) text += i + k <= bytes.size() ? digits[group >> (18 - 6 * k) & 63] : '=';
+    }
+    return text;
+}
+
+/** `"buffers":[...]` of one buffer with these bytes. */
+inline std::string buffers(const std::string& bytes) {
+    return R"("buffers":[{"byteLength":)" + std::to_string(bytes.size()) +
+           R"(,"uri":"data:application/octet-stream;base64,)" + base64(bytes) + R"("}])";
+}
+
+/** A folder of its own for each test. */
+class SceneFiles : public ::testing::Test {
+protected:
+    SceneFiles()
+        : folder_(std::filesystem::temp_directory_path() /
+                  ("insonify_scene_" + std::to_string(getpid()) + "_" +
+                   ::testing::UnitTest::GetInstance()->current_test_info()->name())) {
+        std::filesystem::create_directories(folder_);
+    }
+    ~SceneFiles() override { std::filesystem::remove_all(folder_); }
+
+    std::filesystem::path write(const std::string& name, const std::string& bytes) const {
+        std::ofstream(folder_ / name, std::ios::binary) << bytes;
+        return folder_ / name;
+    }
+    /** Loads `{"asset":{"version":"2.0"},` + rest + `}`. */
+    types::GeometryPtr load(const std::string& rest) const { return loadScene(write("case.gltf", gltf(rest))); }
+    static std::string gltf(const std::string& rest) { return R"({"asset":{"version":"2.0"},)" + rest + "}"; }
+    /** What is wrong with it; empty when nothing is. */
+    std::string faultOf(const std::filesystem::path& file) const {
+        try {
+            loadScene(file);
+            return "";
+        } catch (const types::ConfigError& error) {
+            return error.what();
+        }
+    }
+    std::string faultOfGltf(const std::string& rest) const { return faultOf(write("case.gltf", gltf(rest))); }
+
+    std::filesystem::path folder_;
+};
+
+inline std::vector<glm::dvec3> worldCorners(const types::Geometry& geometry, const types::Object& object) {
+    std::vector<glm::dvec3> corners;
+    const types::Mesh& mesh = geometry.meshes[static_cast<size_t>(object.mesh)];
+    for (const uint32_t index : mesh.indices)
+        corners.emplace_back(object.world_from_object * glm::dvec4(mesh.positions[index], 1));
+    return corners;
+}
+inline std::vector<glm::dvec3> worldCorners(const types::Geometry& geometry) {
+    std::vector<glm::dvec3> corners;
+    for (const types::Object& object : geometry.objects)
+        for (const glm::dvec3 corner : worldCorners(geometry, object)) corners.push_back(corner);
+    return corners;
+}
+
+struct Bounds {
+    glm::dvec3 low{1e300}, high{-1e300};
+};
+/** Of the whole geometry, or of one object given after it. */
+template <class... Object>
+Bounds boundsOf(const types::Geometry& geometry, const Object&... object) {
+    Bounds bounds;
+    for (const glm::dvec3 corner : worldCorners(geometry, object...)) {
+        bounds.low = glm::min(bounds.low, corner);
+        bounds.high = glm::max(bounds.high, corner);
+    }
+    return bounds;
+}
+
+inline bool isFinite(glm::vec3 v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
+
+inline void expectSoundMesh(const types::Mesh& mesh, size_t material_count) {
+    for (const uint32_t index : mesh.indices) ASSERT_LT(index, mesh.positions.size());
+    for (const glm::vec3 position : mesh.positions) ASSERT_TRUE(isFinite(position));
+    for (const glm::vec3 normal : mesh.normals) ASSERT_NEAR(glm::length(normal), 1, 1e-4);
+    for (const glm::vec4 tangent : mesh.tangents) ASSERT_NEAR(glm::length(glm::vec3(tangent)), 1, 1e-4);
+    for (const glm::vec2 uv : mesh.uvs) ASSERT_TRUE(std::isfinite(uv.x) && std::isfinite(uv.y));
+    const auto none_or_all = [&mesh](size_t size) { return size == 0 || size == mesh.positions.size(); };
+    EXPECT_TRUE(none_or_all(mesh.normals.size()) && none_or_all(mesh.tangents.size()) && none_or_all(mesh.uvs.size()));
+    size_t next = 0;
+    for (const types::Cluster& cluster : mesh.clusters) {
+        EXPECT_EQ(cluster.first_index, next);
+        EXPECT_GT(cluster.index_count, 0u);
+        EXPECT_EQ(cluster.index_count % 3, 0u);
+        EXPECT_TRUE(cluster.material >= 0 && static_cast<size_t>(cluster.material) < material_count);
+        next += cluster.index_count;
+        ASSERT_LE(next, mesh.indices.size());
+        for (size_t i = cluster.first_index; i < next; ++i) {
+            const glm::dvec3 position = mesh.positions[mesh.indices[i]];
+            ASSERT_LE(glm::distance(position, glm::dvec3(cluster.centre)), cluster.radius * (1 + 1e-6));
+        }
+    }
+    EXPECT_EQ(next, mesh.indices.size());
+}
+
+/** What types::Geometry promises its users. */
+inline void expectSound(const types::Geometry& geometry) {
+    std::vector<std::string> names;
+    for (const types::Object& object : geometry.objects) {
+        ASSERT_TRUE(object.mesh >= 0 && static_cast<size_t>(object.mesh) < geometry.meshes.size());
+        for (int c = 0; c < 4; ++c)
+            for (int r = 0; r < 4; ++r) ASSERT_TRUE(std::isfinite(object.world_from_object[c][r]));
+        names.push_back(object.name);
+    }
+    std::ranges::sort(names);
+    EXPECT_TRUE(std::ranges::adjacent_find(names) == names.end());
+    for (const types::Mesh& mesh : geometry.meshes) expectSoundMesh(mesh, geometry.materials.size());
+    for (const types::Material& material : geometry.materials)
+        EXPECT_LT(material.normal_map, static_cast<int>(geometry.normal_maps.size()));
+    for (const types::NormalMap& map : geometry.normal_maps)
+        EXPECT_EQ(map.rgb.size(), size_t{3} * static_cast<size_t>(map.width) * static_cast<size_t>(map.height));
+}
+
+inline bool hasNotice(const types::Geometry& geometry, const std::string& part) {
+    return std::ranges::any_of(geometry.notices, [&](const std::string& notice) { return notice.find(part) != std::string::npos; });
+}
+
+}  // namespace insonify::scene
