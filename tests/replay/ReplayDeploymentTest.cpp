@@ -1,0 +1,87 @@
+// A log replayed in a deployment and logged again.
+#include <gmock/gmock.h>
+
+#include "components/framework/Deployment.hpp"
+#include "components/logger/registerTasks.hpp"
+#include "components/pocolog/Reader.hpp"
+#include "components/pocolog/Writer.hpp"
+#include "components/replay/registerTasks.hpp"
+#include "tests/support/Folder.hpp"
+
+namespace insonify::replay {
+namespace {
+
+const std::atomic<bool> never{false};
+
+/** Poses each 0.1 s from 100 s on, and a ping for each, a little later in the file. */
+void writeLog(const std::filesystem::path& path) {
+    pocolog::Writer log(path);
+    const size_t vehicle = log.addStream<types::Pose>("vehicle.pose");
+    const size_t sonar = log.addStream<types::Sonar>("sonar.ping");
+    for (int i = 0; i < 20; ++i) {
+        types::Pose pose;
+        pose.time = types::Time::fromSeconds(100 + 0.1 * i);
+        pose.position.x = i;
+        types::Sonar ping;
+        ping.time = pose.time;
+        ping.bins = {static_cast<float>(i)};
+        log.write(vehicle, pose.time, pose);
+        log.write(sonar, pose.time + types::Time{500}, ping);
+    }
+    log.close();
+}
+
+framework::RunResult runIn(const Folder& folder, const std::string& yaml) {
+    framework::Registry registry;
+    replay::registerTasks(registry);
+    logger::registerTasks(registry);
+    auto spec = framework::DeploymentSpec::parse(yaml, (folder / "replay.yml").string());
+    framework::Deployment deployment(std::move(spec), registry, folder.path());
+    deployment.configure();
+    return deployment.run({}, never);
+}
+
+const char* again = R"(
+tasks:
+  replay: {type: replay::ReplayTask, properties: {file: a.0.log}}
+  log: {type: logger::LoggerTask, properties: {file: b.0.log}}
+connections:
+  - {from: replay.vehicle.pose, to: log.pose, policy: {type: buffer, size: 8}}
+  - {from: replay.sonar.ping, to: log.ping, policy: {type: buffer, size: 8}}
+)";
+
+TEST(ReplayDeploymentTest, AReplayedLogIsTheSameLogAgainAndTheRunEndsWithIt) {
+    Folder folder;
+    writeLog(folder / "a.0.log");
+    const framework::RunResult result = runIn(folder, again);
+    EXPECT_FALSE(result.failed());
+    EXPECT_NEAR(result.elapsed_s, 1.9, 1e-9);
+    pocolog::Reader first(folder / "a.0.log"), second(folder / "b.0.log");
+    ASSERT_EQ(second.samples().size(), 40u);
+    for (size_t i = 0; i < 40; ++i) EXPECT_EQ(second.samples()[i].time, first.samples()[i].time);
+    int count = 0;
+    second.forEach<types::Sonar>("replay.sonar.ping", [&](const types::Sonar& ping, const pocolog::SampleRef& at) {
+        EXPECT_EQ(ping.bins, std::vector<float>{static_cast<float>(count++)});
+        EXPECT_EQ(at.received, ping.time) << "simulated time is the log's time";
+    });
+    second.forEach<types::Pose>("replay.vehicle.pose", [&](const types::Pose& pose, const pocolog::SampleRef& at) {
+        EXPECT_EQ(at.received, pose.time);
+    });
+}
+
+TEST(ReplayDeploymentTest, TwoReplaysGiveTheSameLogBitForBit) {
+    Folder folder;
+    writeLog(folder / "a.0.log");
+    runIn(folder, again);
+    const std::vector<char> first = bytesOf(folder / "b.0.log");
+    runIn(folder, again);
+    EXPECT_EQ(bytesOf(folder / "b.0.log"), first);
+}
+
+TEST(ReplayDeploymentTest, ALogThatIsNotThereIsAConfigurationError) {
+    Folder folder;
+    EXPECT_THROW(runIn(folder, again), types::ConfigError);
+}
+
+}  // namespace
+}  // namespace insonify::replay
