@@ -1,7 +1,11 @@
 // One pixel of a slab: its echo into the bins of the beams that own its column, in 64-bit fixed point.
 #include "interface.glsl"
 layout(local_size_x = 8, local_size_y = 8) in;
-layout(binding = 0) uniform sampler2D surface;
+layout(binding = 0) uniform usampler2D picture;
+layout(std430, binding = OBJECTS_BINDING) readonly buffer Objects { ObjectRecord objects[]; };
+layout(std430, binding = COMMANDS_BINDING) readonly buffer Commands { CommandRecord commands[]; };
+layout(std430, binding = PLANES_BINDING) readonly buffer Planes { vec4 planes[]; };
+layout(std430, binding = MATERIALS_BINDING) readonly buffer Materials { MaterialRecord materials[]; };
 layout(std430, binding = SHARES_BINDING) readonly buffer Shares { ShareRecord shares[]; };
 layout(std430, binding = SHARE_STARTS_BINDING) readonly buffer ShareStarts { uint share_starts[]; };
 layout(std430, binding = EDGES_BINDING) readonly buffer Edges { double edges[]; };
@@ -11,7 +15,7 @@ uniform ivec2 image_size;
 uniform bool shares_per_row;
 uniform uint bin_count;
 uniform double tan_elevation, bin_width, attenuation;
-uniform dvec2 extent, pixel_size;
+uniform dvec2 extent, pixel_size, slab_axis;
 
 double binEdge(uint k) { return edges[k]; }
 
@@ -35,20 +39,43 @@ void addToBin(uint beam, uint bin, double amount, double weight) {
     addFixed(cell, amount);
 }
 
+#include "surface.glsl"
 #include "footprint.glsl"
 #include "deposit.glsl"
+
+dvec3 slabFromSonar(dvec3 p) {
+    return dvec3(slab_axis.x * p.x + slab_axis.y * p.y, slab_axis.x * p.y - slab_axis.y * p.x, p.z);
+}
+
+Surface surfaceOf(CommandRecord command, uint triangle, dvec2 uv) {
+    ObjectRecord object = objects[command.object];
+    dvec4 plane = dvec4(planes[command.first_triangle + triangle]);
+    dvec3 normal = dvec3(dot(dvec3(object.normal_x.xyz), plane.xyz), dot(dvec3(object.normal_y.xyz), plane.xyz), dot(dvec3(object.normal_z.xyz), plane.xyz));
+    double distance = dot(normal, dvec3(object.row_x.w, object.row_y.w, object.row_z.w)) + plane.w;
+    normal = slabFromSonar(normal);
+    return surfaceAt(normal.x, normal.y, normal.z, distance, uv.x, uv.y);
+}
 
 void main() {
     ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
     if (any(greaterThanEqual(pixel, image_size))) return;
-    vec4 texel = texelFetch(surface, pixel, 0);
-    if (!(texel.x > 0.0) || isinf(texel.x)) return;
+    uvec4 texel = texelFetch(picture, pixel, 0);
+    if (texel.x == 0u) return;
     dvec2 uv = (dvec2(pixel) + 0.5) * pixel_size - extent;
+    CommandRecord command = commands[texel.x - 1u];
+    Surface surface = surfaceOf(command, texel.y, uv);
+    if (surface.range == 0.0) return;
+    double cosine = texel.z == 0u ? surface.cosine : double(uintBitsToFloat(texel.z));
+#ifdef HAVE_CERQUEIRA2017
+    double strength = cosine * double(materials[command.material].values.y);
+#else
+    double strength = cosine * double(materials[command.material].values.x);
+#endif
     double scale = 1.0 / (pixel_size.x * pixel_size.y);
     uint at = uint((shares_per_row ? pixel.y * image_size.x : 0) + pixel.x);
     for (uint i = share_starts[at]; i < share_starts[at + 1u]; ++i) {
         ShareRecord share = shares[i];
-        Footprint cell = cellFootprint(uv.x, uv.y, share.u_low, share.u_high, pixel_size.y, tan_elevation, texel.x, texel.y, texel.z);
-        if (cell.solid_angle > 0.0) depositCell(cell, share.beam, texel.x, texel.w, scale);
+        Footprint cell = cellFootprint(uv.x, uv.y, share.u_low, share.u_high, pixel_size.y, tan_elevation, surface.range, surface.slope_u, surface.slope_v);
+        if (cell.solid_angle > 0.0) depositCell(cell, share.beam, surface.range, strength, scale, double(objects[command.object].extent.x), double(objects[command.object].extent.y));
     }
 }

@@ -22,12 +22,13 @@ void depositPart(uint beam, uint bin, double share, double inverse_range, double
 #endif
 }
 
+// No part goes beyond [far_limit, near_limit], the inverse ranges of the object: a facet seen edge-on is steep, not long.
 // `scale` = 1 / solid angle of a whole pixel at the picture's centre.
-void depositCell(Footprint cell, uint beam, double range, double strength, double scale) {
+void depositCell(Footprint cell, uint beam, double range, double strength, double scale, double near_limit, double far_limit) {
     double wide = max(cell.wide, 1e-12 * abs(cell.centre));
     double half_length = 0.5 * (wide + cell.narrow);
-    double near_end = min(cell.centre + half_length, binEdge(0u));
-    double far_end = max(cell.centre - half_length, binEdge(bin_count));
+    double near_end = min(min(cell.centre + half_length, near_limit), binEdge(0u));
+    double far_end = max(max(cell.centre - half_length, far_limit), binEdge(bin_count));
     if (!(near_end > far_end)) return;
     uint bin = min(uint(1.0 / (near_end * bin_width)), bin_count - 1u);
     while (bin > 0u && binEdge(bin) < near_end) --bin;

@@ -13,6 +13,7 @@
 struct ObjectRecord {
     vec4 row_x, row_y, row_z;           // xyz: matrix row [1], w: translation [m]
     vec4 normal_x, normal_y, normal_z;  // xyz: row of the inverse transpose [1]
+    vec4 extent;                        // x, y: the object lies within these inverse ranges, y below x [1/m]
 };
 
 // One draw of a run of triangles.

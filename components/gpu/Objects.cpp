@@ -38,6 +38,9 @@ Texture::Texture(GLenum format, int width, int height, bool mipmapped)
             [](GLuint id) { glDeleteTextures(1, &id); }) {
     const int levels = mipmapped ? std::bit_width(static_cast<unsigned>(std::max(width, height))) : 1;
     glTextureStorage2D(id(), levels, format, width, height);
+    if (mipmapped) return;
+    glTextureParameteri(id(), GL_TEXTURE_MIN_FILTER, GL_NEAREST);  // integers cannot be blended
+    glTextureParameteri(id(), GL_TEXTURE_MAG_FILTER, GL_NEAREST);
 }
 
 Framebuffer::Framebuffer(const Texture& colour, const Texture& depth)

@@ -4,9 +4,9 @@
 #include <span>
 #include <vector>
 
-#include "components/gpu/Objects.hpp"
 #include "components/sonar/BeamFan.hpp"
 #include "components/sonar/BinGrid.hpp"
+#include "components/sonar/SurfacePass.hpp"
 
 namespace insonify::sonar {
 
@@ -34,8 +34,8 @@ constexpr double quanta_per_unit = 1099511627776.0;
 class BinDeposit {
 public:
     virtual ~BinDeposit() = default;
-    /** Takes the picture of a slab, drawn last. Call for each slab once a ping. */
-    virtual void take(size_t slab, const gpu::Texture& picture) = 0;
+    /** Takes the picture of a slab, drawn last by `surface`. Call for each slab once a ping. */
+    virtual void take(size_t slab, const SurfacePass& surface) = 0;
     /** Sums over all slabs taken since the last call, [beam][bin][channel] in quanta; valid until the next take. */
     virtual std::span<const uint64_t> finish() = 0;
 };

@@ -8,9 +8,23 @@ namespace insonify::sonar {
  */
 class CpuDeposit final : public BinDeposit {
 public:
-    CpuDeposit(DepositSetup setup, ThreadPool& threads);
-    void take(size_t slab, const gpu::Texture& picture) override;
+    CpuDeposit(DepositSetup setup, const SurfacePass& surface, ThreadPool& threads);
+    void take(size_t slab, const SurfacePass& surface) override;
     std::span<const uint64_t> finish() override;
+
+    /** How the planes of one run of triangles are turned from object axes into those of a slab. */
+    struct Run {
+        double normal_x[3], normal_y[3], normal_z[3], origin[3];  ///< Rows of the normals' matrix; origin, slab axes [m].
+        double near_limit, far_limit;                             ///< Inverse ranges of the object [1/m].
+        double strength;                                          ///< Of the material at normal incidence.
+        uint32_t first_triangle;
+    };
+    /** A slab's picture and what its numbers mean, copied when taken. */
+    struct Picture {
+        std::vector<uint32_t> words;
+        std::vector<Run> runs;
+        bool taken = false;
+    };
 
 private:
     void depositBeams(uint32_t first, uint32_t last);
@@ -19,8 +33,9 @@ private:
     DepositSetup setup_;
     ThreadPool& threads_;
     std::vector<double> edges_;
-    std::vector<std::vector<float>> pictures_;  ///< RGBA of each slab.
-    std::vector<bool> taken_;
+    const std::vector<vec4>& planes_;
+    size_t channels_;
+    std::vector<Picture> pictures_;
     std::vector<uint64_t> sums_;
 };
 

@@ -41,6 +41,9 @@ Culler::Culler(const types::Geometry& geometry, double range_max) : geometry_(ge
             low = glm::min(low, cluster.centre - cluster.radius);
             high = glm::max(high, cluster.centre + cluster.radius);
         }
+        Box box{glm::dvec3(std::numeric_limits<double>::max()), glm::dvec3(std::numeric_limits<double>::lowest())};
+        for (const glm::vec3& p : mesh.positions) box = {glm::min(box.low, glm::dvec3(p)), glm::max(box.high, glm::dvec3(p))};
+        mesh_boxes_.push_back(box);
         const bool empty = mesh.clusters.empty();
         mesh_spheres_.push_back(empty ? Sphere{} : Sphere{low * 0.5f + high * 0.5f, glm::length(high * 0.5f - low * 0.5f)});
     }
@@ -61,11 +64,32 @@ void Culler::place(const types::Snapshot& snapshot) {
         placeObject(i, relative(rotation, snapshot.sonar.position, world_from_object_[i]));
 }
 
+vec4 Culler::extent(size_t index, const glm::dmat4& m) const {
+    const Box& box = mesh_boxes_[static_cast<size_t>(geometry_.objects[index].mesh)];
+    double farthest = 0;
+    for (int corner = 0; corner < 8; ++corner) {
+        const glm::dvec4 p(corner & 1 ? box.high.x : box.low.x, corner & 2 ? box.high.y : box.low.y, corner & 4 ? box.high.z : box.low.z, 1);
+        farthest = std::max(farthest, glm::length(glm::dvec3(m * p)));
+    }
+    glm::dvec3 nearest(m[3]);  // the box's axes stay orthogonal unless the object is sheared: then nothing is known
+    const bool sheared = std::abs(glm::dot(glm::normalize(glm::dvec3(m[0])), glm::normalize(glm::dvec3(m[1])))) > 1e-6 ||
+                         std::abs(glm::dot(glm::normalize(glm::dvec3(m[0])), glm::normalize(glm::dvec3(m[2])))) > 1e-6 ||
+                         std::abs(glm::dot(glm::normalize(glm::dvec3(m[1])), glm::normalize(glm::dvec3(m[2])))) > 1e-6;
+    for (int axis = 0; axis < 3; ++axis) {
+        const glm::dvec3 direction(m[axis]);
+        const double at = -glm::dot(glm::dvec3(m[3]), direction) / glm::dot(direction, direction);
+        nearest += direction * std::clamp(at, box.low[axis], std::max(box.low[axis], box.high[axis]));
+    }
+    const double distance = sheared ? 0 : glm::length(nearest);
+    const double slack = 1e-5;  // of the float that carries it
+    return vec4(distance > 1e-6 ? (1 + slack) / distance : 1e6, farthest > 0 ? (1 - slack) / farthest : 0, 0, 0);
+}
+
 void Culler::placeObject(size_t index, const glm::dmat4& sonar_from_object) {
     const glm::dmat3 linear(sonar_from_object);
     const glm::dmat4 normals(glm::transpose(glm::inverse(linear)));
     ObjectRecord& record = records_[index];
-    record = {row(sonar_from_object, 0), row(sonar_from_object, 1), row(sonar_from_object, 2), row(normals, 0), row(normals, 1), row(normals, 2)};
+    record = {row(sonar_from_object, 0), row(sonar_from_object, 1), row(sonar_from_object, 2), row(normals, 0), row(normals, 1), row(normals, 2), extent(index, sonar_from_object)};
     const Sphere& mesh = mesh_spheres_[static_cast<size_t>(geometry_.objects[index].mesh)];
     scales_[index] = static_cast<float>(stretch(linear));
     object_spheres_[index] = {glm::vec3(sonar_from_object * glm::dvec4(mesh.centre, 1)), mesh.radius * scales_[index]};

@@ -33,13 +33,18 @@ private:
         glm::vec3 centre{0};
         float radius = 0;
     };
+    vec4 extent(size_t index, const glm::dmat4& sonar_from_object) const;
     void placeObject(size_t index, const glm::dmat4& sonar_from_object);
     void addRuns(size_t object, const Slab& slab);
     bool sees(const Slab& slab, const Sphere& sphere) const;
 
     const types::Geometry& geometry_;
     float range_max_;
+    struct Box {
+        glm::dvec3 low{0}, high{0};
+    };
     std::vector<Sphere> mesh_spheres_;      ///< In mesh coordinates.
+    std::vector<Box> mesh_boxes_;           ///< In mesh coordinates.
     std::vector<Sphere> object_spheres_;    ///< In the sonar frame.
     std::vector<float> scales_;             ///< Largest stretch of each object [1].
     std::vector<glm::dmat4> world_from_object_;

@@ -1,3 +1,4 @@
+#include <cmath>
 #include <string>
 
 #include "components/gpu/Program.hpp"
@@ -10,7 +11,7 @@ namespace {
 class GpuDeposit final : public BinDeposit {
 public:
     explicit GpuDeposit(const DepositSetup& setup);
-    void take(size_t slab, const gpu::Texture& picture) override;
+    void take(size_t slab, const SurfacePass& surface) override;
     std::span<const uint64_t> finish() override;
 
 private:
@@ -44,15 +45,16 @@ void GpuDeposit::setUniforms(const Slab& slab, bool shares_per_row) const {
     glUniform1d(uniform("tan_elevation"), setup_.tan_elevation);
     glUniform1d(uniform("bin_width"), setup_.bins.bin_width);
     glUniform1d(uniform("attenuation"), setup_.attenuation);
+    glUniform2d(uniform("slab_axis"), std::cos(slab.azimuth), std::sin(slab.azimuth));
     glUniform2d(uniform("extent"), slab.extent_u, slab.extent_v);
     glUniform2d(uniform("pixel_size"), slab.du(), slab.dv());
 }
 
-void GpuDeposit::take(size_t slab, const gpu::Texture& picture) {
+void GpuDeposit::take(size_t slab, const SurfacePass& surface) {
     if (!std::exchange(cleared_, true)) device_sums_.clear();
     program_.use();
     setUniforms(setup_.slabs[slab], setup_.shares[slab].per_row);
-    picture.bind(0);
+    surface.bindResults();
     shares_[slab].shares.bindBase(GL_SHADER_STORAGE_BUFFER, SHARES_BINDING);
     shares_[slab].starts.bindBase(GL_SHADER_STORAGE_BUFFER, SHARE_STARTS_BINDING);
     edges_.bindBase(GL_SHADER_STORAGE_BUFFER, EDGES_BINDING);

@@ -77,7 +77,7 @@ SonarRenderer::Parts::Parts(const SonarConfig& c, types::GeometryPtr scene)
       surface(*geometry, slabs, defines(plan), nearPlane(config, slabs.front()), culler.runLimit()) {
     DepositSetup setup = depositSetup(config, beams, slabs, bins);
     const bool on_cpu = config.deposit == Deposit::Cpu || (config.deposit == Deposit::Auto && context.isSoftware());
-    if (on_cpu) deposit = std::make_unique<CpuDeposit>(std::move(setup), threads);
+    if (on_cpu) deposit = std::make_unique<CpuDeposit>(std::move(setup), surface, threads);
     else deposit = makeGpuDeposit(setup);
     scratch.resize(static_cast<size_t>(threads.size()) * static_cast<size_t>(bins.bin_count));
     context.check();
@@ -99,7 +99,7 @@ void SonarRenderer::Parts::drawSlabs(const types::Snapshot& snapshot) {
         surface.draw(slabs[i], runs);
         glFinish();
         lap(1);
-        deposit->take(i, surface.picture());
+        deposit->take(i, surface);
         lap(2);
     }
 }

@@ -8,15 +8,15 @@ namespace insonify::sonar {
 SurfacePass::SurfacePass(const types::Geometry& geometry, const std::vector<Slab>& slabs, const std::vector<std::string>& defines,
                          double near_plane, size_t run_limit)
     : geometry_(geometry),
-      scene_(geometry, std::find(defines.begin(), defines.end(), "HAVE_NORMAL_MAP") != defines.end()),
+      with_normal_maps_(std::find(defines.begin(), defines.end(), "HAVE_NORMAL_MAP") != defines.end()),
+      scene_(geometry, with_normal_maps_),
       program_(gpu::Program::raster("surface.vert.glsl", "surface.frag.glsl", defines)),
-      picture_(GL_RGBA32F, slabs.front().columns, slabs.front().rows),
+      picture_(with_normal_maps_ ? GL_RGBA32UI : GL_RG32UI, slabs.front().columns, slabs.front().rows),
       depth_(GL_DEPTH_COMPONENT32F, slabs.front().columns, slabs.front().rows),
       target_(picture_, depth_),
       objects_(geometry.objects.size() * sizeof(ObjectRecord)),
       records_(run_limit * sizeof(CommandRecord)),
       commands_(run_limit * sizeof(DrawCommand)),
-      with_normal_maps_(std::find(defines.begin(), defines.end(), "HAVE_NORMAL_MAP") != defines.end()),
       near_plane_(near_plane) {
     record_list_.reserve(run_limit);
     command_list_.reserve(run_limit);
@@ -27,14 +27,16 @@ SurfacePass::SurfacePass(const types::Geometry& geometry, const std::vector<Slab
 }
 
 void SurfacePass::place(const std::vector<ObjectRecord>& records) {
+    placed_ = &records;
     if (!records.empty()) objects_.write(records.data(), records.size() * sizeof(ObjectRecord));
 }
 
 void SurfacePass::draw(const Slab& slab, const std::vector<Culler::Run>& runs) {
     target_.bind();
     glViewport(0, 0, slab.columns, slab.rows);
-    glClearColor(0, 0, 0, 0);
-    glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
+    const GLuint miss[4] = {};
+    glClearBufferuiv(GL_COLOR, 0, miss);
+    glClear(GL_DEPTH_BUFFER_BIT);
     if (runs.empty()) return;
     upload(runs);
     program_.use();
@@ -44,6 +46,18 @@ void SurfacePass::draw(const Slab& slab, const std::vector<Culler::Run>& runs) {
     records_.bindBase(GL_SHADER_STORAGE_BUFFER, COMMANDS_BINDING);
     commands_.bind(GL_DRAW_INDIRECT_BUFFER);
     drawGroups();
+}
+
+void SurfacePass::bindResults() const {
+    picture_.bind(0);
+    scene_.bind();
+    objects_.bindBase(GL_SHADER_STORAGE_BUFFER, OBJECTS_BINDING);
+    records_.bindBase(GL_SHADER_STORAGE_BUFFER, COMMANDS_BINDING);
+}
+
+void SurfacePass::read(std::vector<uint32_t>& words) const {
+    glGetTextureImage(picture_.id(), 0, channels() == 4 ? GL_RGBA_INTEGER : GL_RG_INTEGER, GL_UNSIGNED_INT,
+                      static_cast<GLsizei>(words.size() * sizeof(uint32_t)), words.data());
 }
 
 void SurfacePass::setUniforms(const Slab& slab) const {
@@ -74,6 +88,7 @@ void SurfacePass::drawGroups() const {
     for (size_t first = 0, last = 0; first < command_list_.size(); first = last) {
         while (last < command_list_.size() && map(last) == map(first)) ++last;
         scene_.bindNormalMap(map(first));
+        glUniform1i(glGetUniformLocation(program_.id(), "mapped"), map(first) >= 0);
         glMultiDrawElementsIndirect(GL_TRIANGLES, GL_UNSIGNED_INT, reinterpret_cast<const void*>(first * sizeof(DrawCommand)),
                                     static_cast<GLsizei>(last - first), sizeof(DrawCommand));
     }

@@ -67,18 +67,16 @@ void SurfaceScene::uploadVertices(const types::Geometry& geometry, bool with_nor
 }
 
 void SurfaceScene::uploadPlanes(const types::Geometry& geometry) {
-    std::vector<vec4> planes;
     for (const types::Mesh& mesh : geometry.meshes)
         for (size_t i = 0; i + 2 < mesh.indices.size(); i += 3)
-            planes.push_back(planeOf(mesh.positions[mesh.indices[i]], mesh.positions[mesh.indices[i + 1]], mesh.positions[mesh.indices[i + 2]]));
-    planes_ = uploaded(planes);
+            plane_list_.push_back(planeOf(mesh.positions[mesh.indices[i]], mesh.positions[mesh.indices[i + 1]], mesh.positions[mesh.indices[i + 2]]));
+    planes_ = uploaded(plane_list_);
 }
 
 void SurfaceScene::uploadMaterials(const types::Geometry& geometry) {
-    std::vector<MaterialRecord> records;
     for (const types::Material& material : geometry.materials)
-        records.push_back({vec4(std::pow(10.0f, material.lambert_db / 10), material.reflectivity, material.normal_scale, 0)});
-    materials_ = uploaded(records);
+        material_list_.push_back({vec4(std::pow(10.0f, material.lambert_db / 10), material.reflectivity, material.normal_scale, 0)});
+    materials_ = uploaded(material_list_);
 }
 
 void SurfaceScene::uploadNormalMaps(const types::Geometry& geometry) {
@@ -88,7 +86,6 @@ void SurfaceScene::uploadNormalMaps(const types::Geometry& geometry) {
     gpu::Texture flat(GL_RGB32F, 1, 1);
     const float up[] = {0.5f, 0.5f, 1.0f};
     glTextureSubImage2D(flat.id(), 0, 0, 0, 1, 1, GL_RGB, GL_FLOAT, up);
-    glTextureParameteri(flat.id(), GL_TEXTURE_MIN_FILTER, GL_NEAREST);
     normal_maps_.push_back(std::move(flat));
 }
 

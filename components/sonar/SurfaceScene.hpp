@@ -15,6 +15,9 @@ public:
 
     SurfaceScene(const types::Geometry& geometry, bool with_normal_maps);
     const MeshPlace& place(int mesh) const { return places_[static_cast<size_t>(mesh)]; }
+    /** Plane of each triangle in object axes: xyz its unit normal n, w = n.p for its points p [m]. */
+    const std::vector<vec4>& planes() const { return plane_list_; }
+    const std::vector<MaterialRecord>& materials() const { return material_list_; }
     void bind() const;
     /** Binds the normal map of a material; the flat map when it has none. */
     void bindNormalMap(int map) const;
@@ -26,6 +29,8 @@ private:
     void uploadNormalMaps(const types::Geometry& geometry);
 
     std::vector<MeshPlace> places_;
+    std::vector<vec4> plane_list_;
+    std::vector<MaterialRecord> material_list_;
     gpu::VertexArray vertices_;
     gpu::Buffer positions_, normals_, tangents_, uvs_, indices_, planes_, materials_;
     std::vector<gpu::Texture> normal_maps_;  ///< The last one is flat.
