@@ -41,11 +41,15 @@ std::set<std::string> upstreamOfSonars(const Deployment& deployment) {
 /** The deployment down to its sonars, in lockstep so that it takes no longer than it must. */
 DeploymentSpec pipelineOf(DeploymentSpec spec, framework::Registry& registry) {
     const std::set<std::string> kept = upstreamOfSonars(Deployment(spec, registry));
-    std::erase_if(spec.tasks, [&](const auto& task) { return !kept.contains(task.name); });
-    std::erase_if(spec.connections, [&](const auto& connection) {
-        return !kept.contains(framework::splitPort(connection.from).first) ||
-               !kept.contains(framework::splitPort(connection.to).first);
-    });
+    const auto keeps = [&](const std::string& port) { return kept.contains(framework::splitPort(port).first); };
+    std::vector<framework::TaskSpec> tasks;  // made anew: assigning a YAML node changes what other nodes see
+    for (const auto& task : spec.tasks)
+        if (kept.contains(task.name)) tasks.push_back(task);
+    std::vector<framework::ConnectionSpec> connections;
+    for (const auto& connection : spec.connections)
+        if (keeps(connection.from) && keeps(connection.to)) connections.push_back(connection);
+    spec.tasks.swap(tasks);
+    spec.connections.swap(connections);
     spec.lockstep = true;
     return spec;
 }

@@ -1,6 +1,4 @@
 // insonify replay LOG DEPLOYMENT
-#include <fmt/core.h>
-
 #include <filesystem>
 #include <memory>
 #include <set>
@@ -39,37 +37,34 @@ framework::TaskSpec replayTask(const std::string& name, const std::filesystem::p
     return task;
 }
 
-/** Leads connections of logged ports from the replay, drops what a replaced task would have read or not logged, and
- *  tells which streams lead somewhere. */
-std::set<std::string> reconnect(DeploymentSpec& spec, const pocolog::Reader& log, const std::set<std::string>& replaced,
-                                const std::string& replay) {
-    std::erase_if(spec.connections, [&](const framework::ConnectionSpec& connection) {
-        const bool from_replaced = replaced.contains(splitPort(connection.from).first);
-        return replaced.contains(splitPort(connection.to).first) || (from_replaced && !log.find(connection.from));
-    });
-    std::set<std::string> used;
-    for (framework::ConnectionSpec& connection : spec.connections) {
-        if (!replaced.contains(splitPort(connection.from).first)) continue;
-        used.insert(connection.from);
-        connection.from = replay + "." + connection.from;
+/** Connections of logged ports lead from the replay; those that a replaced task would have read, or written without
+ *  a stream in the log, are left out. */
+std::vector<framework::ConnectionSpec> reconnected(const DeploymentSpec& spec, const pocolog::Reader& log,
+                                                   const std::set<std::string>& replaced, const std::string& replay) {
+    std::vector<framework::ConnectionSpec> connections;
+    for (const framework::ConnectionSpec& written : spec.connections) {
+        const bool from_log = replaced.contains(splitPort(written.from).first);
+        if (replaced.contains(splitPort(written.to).first) || (from_log && !log.find(written.from))) continue;
+        connections.push_back(written);
+        if (from_log) connections.back().from = replay + "." + written.from;
     }
-    return used;
+    return connections;
 }
 
-/** The deployment with the log in the place of the tasks that it has streams of. */
+/** The deployment with the log in the place of the tasks that it has streams of. New lists are made, since assigning
+ *  a YAML node changes what other nodes see. */
 DeploymentSpec replaying(DeploymentSpec spec, const std::string& log_file) {
     const pocolog::Reader log(log_file);
     const std::set<std::string> replaced = loggedTasks(log, spec);
-    const std::string name = freeName(spec);
-    const std::set<std::string> used = reconnect(spec, log, replaced, name);
-    for (const pocolog::Stream& stream : log.streams())
-        if (!used.contains(stream.name))
-            fmt::print(stderr, "notice: stream {} matches no connected port of {}\n", stream.name, spec.file);
-    if (used.empty())
-        throw types::ConfigError(log_file, "", "no stream of it matches a connected port of " + spec.file);
+    if (replaced.empty()) throw types::ConfigError(log_file, "", "none of its streams is of a task of " + spec.file);
 
-    std::erase_if(spec.tasks, [&](const framework::TaskSpec& task) { return replaced.contains(task.name); });
-    spec.tasks.insert(spec.tasks.begin(), replayTask(name, log_file));
+    const std::string name = freeName(spec);
+    std::vector<framework::TaskSpec> tasks{replayTask(name, log_file)};
+    for (const framework::TaskSpec& task : spec.tasks)
+        if (!replaced.contains(task.name)) tasks.push_back(task);
+    std::vector<framework::ConnectionSpec> connections = reconnected(spec, log, replaced, name);
+    spec.tasks.swap(tasks);
+    spec.connections.swap(connections);
     return spec;
 }
 

@@ -2,6 +2,7 @@
 
 #include <CLI/Config.hpp>
 #include <CLI/Formatter.hpp>
+#include <charconv>
 #include <cmath>
 
 namespace insonify::deployer {
@@ -11,6 +12,13 @@ std::string refuseUnlessPositive(const std::string& text) {
     double number = 0;
     if (CLI::detail::lexical_cast(text, number) && std::isfinite(number) && number > 0) return "";
     return text + " is no number above 0";
+}
+
+std::string refuseUnlessWhole(const std::string& text) {
+    uint64_t number = 0;
+    const char* end = text.data() + text.size();
+    const auto [stop, error] = std::from_chars(text.data(), end, number);
+    return error == std::errc() && stop == end ? "" : text + " is no whole number from 0 to 2^64 - 1";
 }
 
 }  // namespace
@@ -26,7 +34,9 @@ void RunOptions::addTo(CLI::App& command) {
     command.add_option("--out", out, "folder for the files (default: out/<deployment>-<UTC time>)")->type_name("DIR");
     command.add_option("--set", set, "task.property.path=value: a property other than in the file; may be repeated")
         ->allow_extra_args(false);
-    command.add_option("--seed", seed, "seeds every task anew (0: as the file says)")->type_name("N");
+    command.add_option("--seed", seed, "seeds every task anew (0: as the file says)")
+        ->type_name("N")
+        ->check(refuseUnlessWhole);
     command.add_option("--summary", summary, "writes the summary as JSON")->type_name("FILE");
     command.add_flag("--quiet", quiet, "no progress, no notices, no summary");
 }

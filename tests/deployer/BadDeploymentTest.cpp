@@ -1,0 +1,98 @@
+// Everything that can be wrong with a deployment: exit code 2, a message with its place, and nothing started.
+#include <gmock/gmock.h>
+
+#include "tests/deployer/Wall.hpp"
+
+using namespace insonify::deployer;
+using testing::HasSubstr;
+
+namespace {
+
+struct BadDeployment {
+    const char* name;
+    std::string text;
+    std::vector<std::string> messages;  ///< All are in what is printed.
+};
+
+void PrintTo(const BadDeployment& tested, std::ostream* stream) { *stream << tested.name; }
+
+BadDeployment edited(const char* name, const char* what, const char* with, std::vector<std::string> messages) {
+    return {name, replaced(wall_deployment, what, with), std::move(messages)};
+}
+
+const BadDeployment cases[] = {
+    {"Empty", "", {"wall.yml"}},
+    edited("YamlSyntax", "tasks:\n", "tasks: [\n", {"wall.yml:"}),
+    edited("UnknownTaskType", "noise::NoiseTask", "noise::NoisyTask", {"wall.yml:23:", "noise::NoisyTask"}),
+    edited("UnknownTaskInConnection", "from: sonar.ping", "from: sonor.ping", {"wall.yml:32:", "sonor"}),
+    edited("UnknownPort", "from: sonar.ping", "from: sonar.pong", {"wall.yml:32:", "pong"}),
+    edited("UnknownProperty", "range: 20", "rnage: 20", {"wall.yml:16:7:", "tasks.sonar.properties", "rnage", "range"}),
+    edited("UnknownTopLevelKey", "schedule: lockstep", "shedule: lockstep", {"wall.yml:1:1:", "shedule"}),
+    edited("UnknownPolicy", "type: buffer", "type: bufer", {"wall.yml:33:", "bufer", "buffer"}),
+    edited("WrongType", "beam_count: 16", "beam_count: many", {"wall.yml:17:", "beam_count", "many"}),
+    edited("OutOfBounds", "range: 20", "range: -20", {"wall.yml:16:14:", "range", "-20"}),
+    edited("NotANumber", "range: 20", "range: .nan", {"wall.yml:16:14:", "range"}),
+    edited("PortTypesThatDiffer", "from: sonar.ping, to: noise.clean", "from: vehicle.pose, to: noise.clean",
+           {"wall.yml:32:", "/base/samples/RigidBodyState", "/base/samples/Sonar"}),
+    edited("UnconnectedRequiredInput", "  - {from: scene.snapshot, to: sonar.snapshot}\n", "",
+           {"wall.yml:", "sonar", "snapshot"}),
+    edited("TwoTasksOfOneName", "  noise:\n", "  sonar:\n", {"wall.yml:22:", "sonar"}),
+    edited("KeyGivenTwice", "range: 20", "range: 20\n      range: 30", {"wall.yml:17:", "range"}),
+    edited("ReservedKey", "range: 20", "range: 20\n      multipath: {}",
+           {"wall.yml:17:", "multipath", "not built yet"}),
+    edited("TrajectoryFileMissing",
+           "waypoints: [{time: 0, position: [0, 0, 0], roll_deg: 0, pitch_deg: 0, yaw_deg: 0}]", "file: nowhere.csv",
+           {"nowhere.csv"}),
+};
+
+class BadDeploymentTest : public testing::TestWithParam<BadDeployment> {};
+
+}  // namespace
+
+TEST_P(BadDeploymentTest, IsRefusedWithItsPlaceBeforeAnythingStarts) {
+    const WallFolder folder(GetParam().text);
+    for (const std::vector<std::string>& command :
+         {std::vector<std::string>{"run", "wall.yml", "--out", "out"}, {"check", "wall.yml"}}) {
+        const Outcome outcome = callInsonify(folder, command);
+        EXPECT_EQ(outcome.code, 2) << outcome.err;
+        for (const std::string& message : GetParam().messages) EXPECT_THAT(outcome.err, HasSubstr(message));
+        EXPECT_EQ(outcome.out, "");
+    }
+    EXPECT_FALSE(fs::exists(folder / "out"));
+}
+
+INSTANTIATE_TEST_SUITE_P(All, BadDeploymentTest, testing::ValuesIn(cases),
+                         [](const auto& tested) { return tested.param.name; });
+
+TEST(BadDeploymentsTest, AFileThatIsNotThereIsNamed) {
+    const TestFolder folder;
+    const Outcome outcome = callInsonify(folder, {"run", "nowhere.yml"});
+    EXPECT_EQ(outcome.code, 2);
+    EXPECT_THAT(outcome.err, HasSubstr("nowhere.yml"));
+    EXPECT_FALSE(fs::exists(folder / "out"));
+}
+
+TEST(BadDeploymentsTest, AFolderIsNoDeployment) {
+    const TestFolder folder;
+    EXPECT_EQ(callInsonify(folder, {"run", "."}).code, 2);
+}
+
+TEST(BadDeploymentsTest, AllErrorsAreTold) {
+    std::string text = replaced(wall_deployment, "range: 20", "range: -20");
+    text = replaced(text, "bin_count: 50", "bin_count: few");
+    text = replaced(text, "to: noise.clean", "to: noise.dirty");
+    const WallFolder folder(text);
+    const Outcome outcome = folder.run();
+    EXPECT_EQ(outcome.code, 2);
+    for (const char* place : {"wall.yml:16:", "wall.yml:18:", "wall.yml:32:"})
+        EXPECT_THAT(outcome.err, HasSubstr(place));
+}
+
+TEST(BadDeploymentsTest, ALogThatIsNoLogIsRefusedByReplay) {
+    const WallFolder folder;
+    writeFile(folder / "no.0.log", "this is no log at all, but it is longer than a header of one would be");
+    const Outcome outcome = callInsonify(folder, {"replay", "no.0.log", "wall.yml", "--out", "out"});
+    EXPECT_EQ(outcome.code, 2);
+    EXPECT_THAT(outcome.err, HasSubstr("no.0.log"));
+    EXPECT_FALSE(fs::exists(folder / "out"));
+}

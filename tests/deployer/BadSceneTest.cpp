@@ -1,0 +1,79 @@
+// Scene files that cannot be read: exit code 2 and a message that names the file; nothing has run.
+#include <gmock/gmock.h>
+
+#include <limits>
+
+#include "tests/deployer/Wall.hpp"
+
+using namespace insonify::deployer;
+using testing::HasSubstr;
+
+namespace {
+
+void expectRefused(const WallFolder& folder, const std::string& message) {
+    const Outcome outcome = folder.run();
+    EXPECT_EQ(outcome.code, 2) << outcome.err;
+    EXPECT_THAT(outcome.err, HasSubstr("wall.gltf"));
+    EXPECT_THAT(outcome.err, HasSubstr(message));
+    EXPECT_FALSE(fs::exists(folder / "out")) << "nothing may be left of a run that did not start";
+}
+
+}  // namespace
+
+TEST(BadSceneTest, AMissingFileIsNamed) {
+    const WallFolder folder;
+    fs::remove(folder / "wall.gltf");
+    expectRefused(folder, "");
+}
+
+TEST(BadSceneTest, AFolderIsNoScene) {
+    const WallFolder folder;
+    fs::remove(folder / "wall.gltf");
+    fs::create_directory(folder / "wall.gltf");
+    expectRefused(folder, "");
+}
+
+TEST(BadSceneTest, ATruncatedFileIsRefused) {
+    expectRefused(WallFolder(wall_deployment, wallGltf().substr(0, wallGltf().size() / 2)), "");
+}
+
+TEST(BadSceneTest, FiftyEightBytesAreNoScene) {
+    expectRefused(WallFolder(wall_deployment, R"({"asset": {"version": "2.0"}, "buffers": [{"byteLength":)"), "");
+}
+
+TEST(BadSceneTest, AnIndexOutOfRangeIsToldWithItsPrimitive) {
+    expectRefused(WallFolder(wall_deployment, gltfOf({10, -20, 20, 10, -20, -20, 10, 20, -20}, {0, 1, 3})), "mesh");
+}
+
+TEST(BadSceneTest, AHundredThousandNestedArraysAreRefused) {
+    expectRefused(WallFolder(wall_deployment, std::string(100'000, '[')), "");
+    expectRefused(WallFolder(wall_deployment, std::string(100'000, '[') + std::string(100'000, ']')), "");
+}
+
+TEST(BadSceneTest, FourGigabytesDeclaredInAKilobyteAreRefused) {
+    const std::string count = R"("count": 4, "type": "VEC3")";
+    expectRefused(WallFolder(wall_deployment, replaced(wallGltf(), count, R"("count": 357913941, "type": "VEC3")")),
+                  "");
+    expectRefused(WallFolder(wall_deployment, replaced(wallGltf(), R"("buffers": [{"byteLength": 60)",
+                                                       R"("buffers": [{"byteLength": 4294967295)")),
+                  "");
+}
+
+TEST(BadSceneTest, VerticesThatAreNaNAreDroppedWithANotice) {
+    const float nan = std::numeric_limits<float>::quiet_NaN();
+    const WallFolder folder(wall_deployment,
+                            gltfOf({10, -20, 20, 10, -20, -20, 10, 20, -20, nan, 20, 20}, {0, 1, 2, 0, 2, 3}));
+    const Outcome outcome = folder.run();
+    EXPECT_EQ(outcome.code, 0) << outcome.err;
+    EXPECT_THAT(outcome.err, HasSubstr("notice: scene: "));
+}
+
+TEST(BadSceneTest, ASceneWithoutATriangleIsAnEmptySea) {
+    const WallFolder folder(wall_deployment, R"({"asset": {"version": "2.0"}, "scenes": [{"nodes": []}], "scene": 0})");
+    const Outcome outcome = folder.run();
+    EXPECT_EQ(outcome.code, 0) << outcome.err;
+    ASSERT_EQ(
+        callInsonify(folder, {"log", "export", "out/wall.0.log", "--stream", "sonar.ping", "--to", "ping.npz"}).code,
+        0);
+    EXPECT_EQ(python(folder, "import numpy; print(abs(numpy.load('ping.npz')['bins']).max())").out, "0.0\n");
+}

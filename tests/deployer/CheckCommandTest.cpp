@@ -1,0 +1,43 @@
+#include <gmock/gmock.h>
+
+#include "tests/deployer/Wall.hpp"
+
+using namespace insonify::deployer;
+using testing::HasSubstr;
+
+TEST(CheckCommandTest, AValidDeploymentIsPrintedAsAGraph) {
+    const WallFolder folder;
+    const Outcome outcome = callInsonify(folder, {"check", "wall.yml"});
+    EXPECT_EQ(outcome.code, 0) << outcome.err;
+    EXPECT_THAT(outcome.out, HasSubstr("wall.yml: valid, lockstep, 5 tasks, 6 connections\n"));
+    EXPECT_THAT(outcome.out, HasSubstr("vehicle (pose::TrajectoryTask, every 0.1 s)\n"));
+    EXPECT_THAT(outcome.out, HasSubstr("  noisy -> log.noisy  /base/samples/Sonar, buffer 64\n"));
+}
+
+TEST(CheckCommandTest, JsonTellsTasksAndConnections) {
+    const WallFolder folder;
+    const json told = json::parse(callInsonify(folder, {"check", "wall.yml", "--json"}).out);
+    EXPECT_TRUE(told["valid"]);
+    EXPECT_EQ(told["errors"], json::array());
+    EXPECT_EQ(told["tasks"].size(), 5u);
+    EXPECT_EQ(told["tasks"][2]["name"], "sonar");
+    EXPECT_EQ(told["tasks"][2]["type"], "sonar::SonarTask");
+    EXPECT_EQ(told["connections"][4]["from"], "noise.noisy");
+    EXPECT_EQ(told["connections"][4]["to"], "log.noisy");
+    EXPECT_EQ(told["connections"][4]["policy"]["size"], 64);
+}
+
+TEST(CheckCommandTest, JsonTellsEveryErrorWithItsPlace) {
+    const WallFolder folder(replaced(wall_deployment, "range: 20", "range: -20"));
+    const Outcome outcome = callInsonify(folder, {"check", "wall.yml", "--json"});
+    EXPECT_EQ(outcome.code, 2);
+    const json told = json::parse(outcome.out);
+    EXPECT_FALSE(told["valid"]);
+    ASSERT_EQ(told["errors"].size(), 1u);
+    const json& error = told["errors"][0];
+    EXPECT_EQ(error["file"], "wall.yml");
+    EXPECT_EQ(error["line"], 16);
+    EXPECT_EQ(error["column"], 14);
+    EXPECT_EQ(error["path"], "tasks.sonar.properties.range");
+    EXPECT_NE(error["message"], "");
+}

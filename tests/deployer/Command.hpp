@@ -1,0 +1,98 @@
+#pragma once
+// The `insonify` command as a user calls it: another process, its exit code and what it printed.
+#include <fcntl.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <sstream>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+namespace insonify::deployer {
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+
+inline std::string readFile(const fs::path& file) {
+    std::ifstream stream(file, std::ios::binary);
+    std::ostringstream text;
+    text << stream.rdbuf();
+    return text.str();
+}
+
+inline void writeFile(const fs::path& file, const std::string& text) { std::ofstream(file, std::ios::binary) << text; }
+
+/** A fresh folder that is gone with its test. */
+class TestFolder {
+public:
+    TestFolder() {
+        std::string name = (fs::temp_directory_path() / "insonify-XXXXXX").string();
+        if (!mkdtemp(name.data())) throw std::runtime_error("no temporary folder");
+        path_ = name;
+    }
+    ~TestFolder() { fs::remove_all(path_); }
+    TestFolder(const TestFolder&) = delete;
+    TestFolder& operator=(const TestFolder&) = delete;
+    fs::path operator/(const std::string& name) const { return path_ / name; }
+    const fs::path& path() const { return path_; }
+
+private:
+    fs::path path_;
+};
+
+struct Outcome {
+    int code = -1;  ///< Exit code; minus the signal that killed it.
+    std::string out, err;
+};
+
+/** A program that runs; its output goes to files in `folder`, which is its current folder as well. */
+class Process {
+public:
+    Process(std::vector<std::string> words, fs::path folder) : folder_(std::move(folder)) {
+        std::vector<char*> arguments;
+        for (std::string& word : words) arguments.push_back(word.data());
+        arguments.push_back(nullptr);
+        const std::string out = folder_ / "stdout.txt", err = folder_ / "stderr.txt";
+        pid_ = fork();
+        if (pid_ != 0) return;
+        if (chdir(folder_.c_str()) == 0 && redirect(out, STDOUT_FILENO) && redirect(err, STDERR_FILENO))
+            execvp(arguments[0], arguments.data());
+        _exit(127);
+    }
+    void signal(int number) const { kill(pid_, number); }
+    Outcome wait() const {
+        int status = 0;
+        waitpid(pid_, &status, 0);
+        const int code = WIFEXITED(status) ? WEXITSTATUS(status) : -WTERMSIG(status);
+        return {code, readFile(folder_ / "stdout.txt"), readFile(folder_ / "stderr.txt")};
+    }
+
+private:
+    static bool redirect(const std::string& file, int descriptor) {
+        const int opened = open(file.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0600);
+        return opened >= 0 && dup2(opened, descriptor) >= 0;
+    }
+
+    fs::path folder_;
+    pid_t pid_ = -1;
+};
+
+inline std::vector<std::string> insonifyWords(std::vector<std::string> arguments) {
+    arguments.insert(arguments.begin(), std::string(INSONIFY_BIN_DIR) + "/insonify");
+    return arguments;
+}
+
+inline Outcome callInsonify(const TestFolder& folder, std::vector<std::string> arguments) {
+    return Process(insonifyWords(std::move(arguments)), folder.path()).wait();
+}
+
+/** Runs a program in Debian's Python, which has numpy; what it prints is the answer. */
+inline Outcome python(const TestFolder& folder, const std::string& program) {
+    return Process({"/usr/bin/python3", "-c", program}, folder.path()).wait();
+}
+
+}  // namespace insonify::deployer

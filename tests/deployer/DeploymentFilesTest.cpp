@@ -1,0 +1,60 @@
+// Every file in deploy/ runs.
+#include <gmock/gmock.h>
+
+#include "tests/deployer/Command.hpp"
+
+using namespace insonify::deployer;
+
+namespace {
+
+const fs::path deploy = fs::path(INSONIFY_SOURCE_DIR) / "deploy";
+
+std::vector<std::string> deployments() {
+    std::vector<std::string> names;
+    for (const auto& entry : fs::directory_iterator(deploy))
+        if (entry.path().extension() == ".yml" && entry.path().stem() != "replay") names.push_back(entry.path().stem());
+    std::sort(names.begin(), names.end());
+    return names;
+}
+
+std::vector<std::string> runOf(const std::string& deployment, std::vector<std::string> more) {
+    std::vector<std::string> words = {"run", deploy / (deployment + ".yml"), "--out", deployment};
+    words.insert(words.end(), more.begin(), more.end());
+    return words;
+}
+
+class DeploymentFilesTest : public testing::TestWithParam<std::string> {};
+
+}  // namespace
+
+TEST_P(DeploymentFilesTest, RunsForTwoPings) {
+    const TestFolder folder;
+    const Outcome outcome = callInsonify(folder, runOf(GetParam(), {"--pings", "2", "--summary", "summary.json"}));
+    ASSERT_EQ(outcome.code, 0) << outcome.err;
+    const json summary = json::parse(readFile(folder / "summary.json"));
+    EXPECT_GE(summary["pings"], 2);
+    for (const auto& [connection, lost] : summary["losses"].items()) EXPECT_EQ(lost, 0) << connection;
+}
+
+TEST_P(DeploymentFilesTest, IsValid) {
+    const TestFolder folder;
+    EXPECT_EQ(callInsonify(folder, {"check", deploy / (GetParam() + ".yml")}).code, 0);
+}
+
+INSTANTIATE_TEST_SUITE_P(All, DeploymentFilesTest, testing::ValuesIn(deployments()),
+                         [](const auto& tested) { return tested.param; });
+
+TEST(DeploymentFilesTest, TheNamedOnesAreThere) {
+    EXPECT_THAT(deployments(), testing::IsSupersetOf(
+                                   {"gemini_720i", "harbour_fls", "harbour_msis", "harbour_msis_sector", "minimal"}));
+}
+
+TEST(DeploymentFilesTest, ReplayShowsWhatTheHarbourRunLeftInLatest) {
+    const TestFolder folder;
+    fs::copy(deploy, folder / "deploy", fs::copy_options::recursive);
+    ASSERT_EQ(callInsonify(folder, {"run", "deploy/harbour_fls.yml", "--pings", "2"}).code, 0);
+    const Outcome outcome =
+        callInsonify(folder, {"run", "deploy/replay.yml", "--out", "again", "--summary", "summary.json"});
+    ASSERT_EQ(outcome.code, 0) << outcome.err;
+    EXPECT_FALSE(fs::is_empty(folder / "again"));
+}

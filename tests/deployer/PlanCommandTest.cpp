@@ -1,0 +1,62 @@
+#include <gmock/gmock.h>
+
+#include "tests/deployer/Wall.hpp"
+
+using namespace insonify::deployer;
+using testing::HasSubstr;
+
+TEST(PlanCommandTest, JsonTellsWhatIsRunAndWhatIsLeftOut) {
+    const WallFolder folder;
+    const Outcome outcome = callInsonify(folder, {"plan", "wall.yml", "--json"});
+    ASSERT_EQ(outcome.code, 0) << outcome.err;
+    const json plan = json::parse(outcome.out);
+    EXPECT_TRUE(plan["features"].is_array());
+    EXPECT_FALSE(plan["passes"].empty());
+    ASSERT_FALSE(plan["omitted"].empty());
+    for (const json& omitted : plan["omitted"]) {
+        EXPECT_NE(omitted["name"], "");
+        EXPECT_NE(omitted["reason"], "");
+    }
+    EXPECT_EQ(plan["quality"]["rows"], 32);
+    EXPECT_EQ(plan["quality"]["columns_per_beam"], 2);
+    EXPECT_GE(plan["quality"]["slabs"], 1);
+    EXPECT_TRUE(plan["quality"].contains("predicted_error"));
+}
+
+TEST(PlanCommandTest, TheTextNamesEachOmissionWithItsReason) {
+    const WallFolder folder;
+    const Outcome outcome = callInsonify(folder, {"plan", "wall.yml"});
+    ASSERT_EQ(outcome.code, 0) << outcome.err;
+    EXPECT_THAT(outcome.out, HasSubstr("sonar\n  quality: 32 rows, 2 columns per beam"));
+    EXPECT_THAT(outcome.out, HasSubstr("  left out: "));
+}
+
+TEST(PlanCommandTest, NothingIsWritten) {
+    const WallFolder folder;
+    ASSERT_EQ(callInsonify(folder, {"plan", "wall.yml"}).code, 0);
+    EXPECT_FALSE(fs::exists(folder / "out"));
+    EXPECT_FALSE(fs::exists(folder / "wall.0.log"));
+}
+
+TEST(PlanCommandTest, SeveralSonarsAreToldByName) {
+    std::string two =
+        replaced(wall_deployment, "  noise:\n",
+                 "  second: {type: sonar::SonarTask, properties: {beam_count: 8, bin_count: 20}}\n  noise:\n");
+    two = replaced(two, "  - {from: sonar.ping, to: noise.clean}\n",
+                   "  - {from: sonar.ping, to: noise.clean}\n  - {from: scene.snapshot, to: second.snapshot}\n");
+    const WallFolder folder(two);
+    const Outcome outcome = callInsonify(folder, {"plan", "wall.yml", "--json"});
+    ASSERT_EQ(outcome.code, 0) << outcome.err;
+    const json plans = json::parse(outcome.out);
+    EXPECT_EQ(plans["sonar"]["quality"]["rows"], 32);
+    EXPECT_TRUE(plans.contains("second"));
+}
+
+TEST(PlanCommandTest, ADeploymentWithoutASonarHasNoPlan) {
+    const WallFolder folder(
+        "schedule: lockstep\ntasks:\n  vehicle: {type: pose::TrajectoryTask, activity: {period: 0.1}, properties: "
+        "{waypoints: [{time: 0, position: [0, 0, 0], roll_deg: 0, pitch_deg: 0, yaw_deg: 0}]}}\n");
+    const Outcome outcome = callInsonify(folder, {"plan", "wall.yml"});
+    EXPECT_EQ(outcome.code, 2);
+    EXPECT_THAT(outcome.err, HasSubstr("no sonar"));
+}

@@ -1,0 +1,85 @@
+#include <gmock/gmock.h>
+
+#include "tests/deployer/Wall.hpp"
+
+using namespace insonify::deployer;
+using testing::HasSubstr;
+
+namespace {
+
+json infoOf(const TestFolder& folder, const std::string& log) {
+    return json::parse(callInsonify(folder, {"log", "info", log, "--json"}).out);
+}
+
+}  // namespace
+
+TEST(ReplayCommandTest, AStreamTakesThePlaceOfItsPortAndItsTaskIsNotStarted) {
+    const WallFolder folder;
+    ASSERT_EQ(folder.run({"--pings", "3"}).code, 0);
+    const Outcome outcome =
+        callInsonify(folder, {"replay", "out/wall.0.log", "wall.yml", "--out", "again", "--summary", "summary.json"});
+    ASSERT_EQ(outcome.code, 0) << outcome.err;
+    const json tasks = json::parse(readFile(folder / "summary.json"))["tasks"];
+    for (const char* replaced_task : {"vehicle", "sonar", "noise"}) EXPECT_FALSE(tasks.contains(replaced_task));
+    EXPECT_TRUE(tasks.contains("log"));
+    for (const json& stream : infoOf(folder, "again/wall.0.log")["streams"]) EXPECT_EQ(stream["count"], 3) << stream;
+}
+
+TEST(ReplayCommandTest, ALoggedPoseDrivesTheSonarToTheSamePings) {
+    const std::string pose_only = replaced(
+        replaced(wall_deployment, "  - {from: sonar.ping, to: log.clean, policy: {type: buffer, size: 64}}\n", ""),
+        "  - {from: noise.noisy, to: log.noisy, policy: {type: buffer, size: 64}}\n", "");
+    const WallFolder folder(pose_only);
+    ASSERT_EQ(folder.run({"--pings", "3"}).code, 0);
+    writeFile(folder / "full.yml", wall_deployment);
+    ASSERT_EQ(callInsonify(folder, {"run", "full.yml", "--pings", "3", "--out", "direct"}).code, 0);
+    const Outcome outcome = callInsonify(folder, {"replay", "out/wall.0.log", "full.yml", "--out", "again"});
+    ASSERT_EQ(outcome.code, 0) << outcome.err;
+    for (const char* run : {"direct", "again"})
+        ASSERT_EQ(callInsonify(folder, {"log", "export", std::string(run) + "/wall.0.log", "--stream", "noise.noisy",
+                                        "--to", std::string(run) + ".npz"})
+                      .code,
+                  0);
+    EXPECT_EQ(python(folder,
+                     "import numpy\na, b = numpy.load('direct.npz'), numpy.load('again.npz')\n"
+                     "print(all((a[k] == b[k]).all() for k in a))")
+                  .out,
+              "True\n");
+}
+
+TEST(ReplayCommandTest, StreamsThatMatchNothingAreListed) {
+    const WallFolder folder;
+    ASSERT_EQ(folder.run({"--pings", "2"}).code, 0);
+    std::string other = replaced(wall_deployment, "  noise:\n", "  speckle:\n");
+    for (int i = 0; i < 2; ++i)
+        other = replaced(other, i ? "from: noise.noisy" : "to: noise.clean",
+                         i ? "from: speckle.noisy" : "to: speckle.clean");
+    writeFile(folder / "other.yml", other);
+    const Outcome outcome = callInsonify(folder, {"replay", "out/wall.0.log", "other.yml", "--out", "again"});
+    EXPECT_EQ(outcome.code, 0) << outcome.err;
+    EXPECT_THAT(outcome.err, HasSubstr("noise.noisy"));
+    EXPECT_THAT(outcome.err, testing::Not(HasSubstr("vehicle.pose")));
+}
+
+TEST(ReplayCommandTest, ALogThatMatchesNothingIsRefused) {
+    const WallFolder folder;
+    ASSERT_EQ(folder.run({"--pings", "2"}).code, 0);
+    std::string other = wall_deployment;
+    for (const char* name : {"vehicle", "sonar", "noise"})
+        for (const auto& [before, after] : {std::pair{"  ", ":\n"}, {"from: ", "."}, {"to: ", "."}})
+            for (const std::string key = before + std::string(name) + after; other.find(key) != std::string::npos;)
+                other = replaced(other, key, before + std::string("my_") + name + after);
+    writeFile(folder / "other.yml", other);
+    const Outcome outcome = callInsonify(folder, {"replay", "out/wall.0.log", "other.yml", "--out", "again"});
+    EXPECT_EQ(outcome.code, 2) << outcome.err;
+    EXPECT_FALSE(fs::exists(folder / "again"));
+}
+
+TEST(ReplayCommandTest, ACutLogIsReplayedUpToItsLastWholeBlock) {
+    const WallFolder folder;
+    ASSERT_EQ(folder.run({"--pings", "3"}).code, 0);
+    fs::resize_file(folder / "out/wall.0.log", fs::file_size(folder / "out/wall.0.log") - 5);
+    const Outcome outcome = callInsonify(folder, {"replay", "out/wall.0.log", "wall.yml", "--out", "again"});
+    EXPECT_EQ(outcome.code, 0) << outcome.err;
+    EXPECT_TRUE(infoOf(folder, "again/wall.0.log")["complete"]);
+}

@@ -1,0 +1,133 @@
+#include <gmock/gmock.h>
+
+#include <chrono>
+#include <thread>
+
+#include "tests/deployer/Wall.hpp"
+
+using namespace insonify::deployer;
+using testing::HasSubstr;
+
+namespace {
+
+json logInfo(const TestFolder& folder, const std::string& log) {
+    return json::parse(callInsonify(folder, {"log", "info", log, "--json"}).out);
+}
+
+/** Samples of the first stream of a log. */
+size_t samplesIn(const TestFolder& folder, const std::string& log) {
+    return logInfo(folder, log)["streams"][0]["count"];
+}
+
+std::string realtime() { return replaced(wall_deployment, "schedule: lockstep", "schedule: realtime"); }
+
+}  // namespace
+
+TEST(RunCommandTest, TheSummaryTellsPingsTimesLossesAndOmissions) {
+    const WallFolder folder;
+    const Outcome outcome = folder.run({"--pings", "3", "--summary", "summary.json"});
+    ASSERT_EQ(outcome.code, 0) << outcome.err;
+    EXPECT_THAT(outcome.out, HasSubstr("3 pings in "));
+    const json summary = json::parse(readFile(folder / "summary.json"));
+    EXPECT_EQ(summary["pings"], 3);
+    EXPECT_GT(summary["wall_s"], 0);
+    const json& sonar = summary["tasks"]["sonar"];
+    EXPECT_EQ(sonar["state"], "Stopped");
+    EXPECT_EQ(sonar["cycles"], 3);
+    for (const char* time : {"median_ms", "p99_ms", "max_ms"}) EXPECT_GT(sonar[time], 0) << time;
+    for (const char* stage : {"cull", "draw", "read", "deposit", "beams"})
+        EXPECT_TRUE(sonar["stages"][stage].contains("p99_ms")) << stage;
+    EXPECT_EQ(summary["losses"]["noise.noisy>log.noisy"], 0);
+    EXPECT_NE(summary["omitted"][0]["reason"], "");
+}
+
+TEST(RunCommandTest, QuietPrintsNothing) {
+    const WallFolder folder;
+    const Outcome outcome = folder.run({"--pings", "2", "--quiet"});
+    EXPECT_EQ(outcome.code, 0);
+    EXPECT_EQ(outcome.out + outcome.err, "");
+}
+
+TEST(RunCommandTest, WithoutAnOutputFolderAFreshOneIsMadeAndLatestLeadsToIt) {
+    const WallFolder folder;
+    ASSERT_EQ(callInsonify(folder, {"run", "wall.yml", "--pings", "1"}).code, 0);
+    ASSERT_EQ(callInsonify(folder, {"run", "wall.yml", "--pings", "2"}).code, 0);
+    EXPECT_TRUE(fs::is_symlink(folder / "out/latest"));
+    EXPECT_EQ(samplesIn(folder, "out/latest/wall.0.log"), 2u);
+    EXPECT_TRUE(fs::read_symlink(folder / "out/latest").string().starts_with("wall-"));
+}
+
+TEST(RunCommandTest, DurationIsInSecondsOfSimulatedTime) {
+    const WallFolder folder;
+    ASSERT_EQ(folder.run({"--duration", "1.05"}).code, 0);
+    const size_t samples = samplesIn(folder, "out/wall.0.log");
+    EXPECT_GE(samples, 10u);
+    EXPECT_LE(samples, 12u);
+}
+
+TEST(RunCommandTest, AFixedPoseInLockstepIsOnePing) {
+    const WallFolder folder;
+    ASSERT_EQ(folder.run({}).code, 0);
+    EXPECT_EQ(samplesIn(folder, "out/wall.0.log"), 1u);
+}
+
+TEST(RunCommandTest, SetLaysAValueOverTheFile) {
+    const WallFolder folder;
+    ASSERT_EQ(folder.run({"--set", "sonar.bin_count=7", "--set", "sonar.quality.rows=16", "--pings", "1"}).code, 0);
+    ASSERT_EQ(
+        callInsonify(folder, {"log", "export", "out/wall.0.log", "--stream", "sonar.ping", "--to", "ping.npz"}).code,
+        0);
+    EXPECT_EQ(python(folder, "import numpy; print(numpy.load('ping.npz')['bins'].shape)").out, "(1, 16, 7)\n");
+}
+
+TEST(RunCommandTest, LockstepRunTwiceGivesTheSameLogBitForBit) {
+    const WallFolder folder;
+    for (const char* out : {"first", "second"})
+        ASSERT_EQ(callInsonify(folder, {"run", "wall.yml", "--pings", "5", "--seed", "3", "--out", out}).code, 0);
+    const std::string log = readFile(folder / "first/wall.0.log");
+    EXPECT_GT(log.size(), 30'000u);
+    EXPECT_TRUE(log == readFile(folder / "second/wall.0.log"));
+}
+
+TEST(RunCommandTest, AnotherSeedGivesOtherNoise) {
+    const WallFolder folder;
+    for (const char* seed : {"3", "4"})
+        ASSERT_EQ(callInsonify(folder, {"run", "wall.yml", "--pings", "1", "--seed", seed, "--out", seed}).code, 0);
+    for (const char* seed : {"3", "4"})
+        for (const char* stream : {"sonar.ping", "noise.noisy"})
+            ASSERT_EQ(callInsonify(folder, {"log", "export", std::string(seed) + "/wall.0.log", "--stream", stream,
+                                            "--to", std::string(stream) + seed + ".npz"})
+                          .code,
+                      0);
+    const Outcome told = python(folder, R"(
+import numpy
+same = lambda stream: (numpy.load(f'{stream}3.npz')['bins'] == numpy.load(f'{stream}4.npz')['bins']).all()
+print(same('sonar.ping'), same('noise.noisy')))");
+    EXPECT_EQ(told.out, "True False\n") << told.err;
+}
+
+class SignalTest : public testing::TestWithParam<int> {};
+
+TEST_P(SignalTest, StopsCleanlyAndClosesTheLog) {
+    const WallFolder folder(realtime());
+    const Process process(insonifyWords({"run", "wall.yml", "--out", "out"}), folder.path());
+    for (int i = 0; i < 100 && !fs::exists(folder / "out/wall.0.log"); ++i)
+        std::this_thread::sleep_for(std::chrono::milliseconds(100));
+    std::this_thread::sleep_for(std::chrono::milliseconds(700));
+    process.signal(GetParam());
+    const Outcome outcome = process.wait();
+    EXPECT_EQ(outcome.code, 0) << outcome.err;
+    EXPECT_THAT(outcome.out, HasSubstr(" pings in "));
+    const json info = logInfo(folder, "out/wall.0.log");
+    EXPECT_TRUE(info["complete"]);
+    EXPECT_GT(info["streams"][0]["count"], 1);
+}
+
+INSTANTIATE_TEST_SUITE_P(Both, SignalTest, testing::Values(SIGINT, SIGTERM),
+                         [](const auto& tested) { return tested.param == SIGINT ? "Interrupt" : "Terminate"; });
+
+TEST(RunCommandTest, ARealtimeRunEndsAfterItsPings) {
+    const WallFolder folder(realtime());
+    ASSERT_EQ(folder.run({"--pings", "3"}).code, 0);
+    EXPECT_GE(samplesIn(folder, "out/wall.0.log"), 3u);
+}
