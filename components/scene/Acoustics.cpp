@@ -9,8 +9,8 @@ namespace {
 // In the order of the enums.
 constexpr double kSedimentLambertDb[] = {-5.0,  -3.7,  -8.1,  -11.7, -14.2, -16.7, -19.3, -20.0,
                                          -20.0, -20.2, -20.4, -23.7, -23.7, -23.7, -23.7, -27.0};
-constexpr double kReflection[] = {0.936, 0.936, 0.835, 0.91, 0.93, 0.81, 0.81,  0.69,  0.65,  0.40, 0.355, 0.06,
-                                  0.37,  0.35,  0.21, 0.15, -0.02, -0.07, -0.5, -0.94, 0.39, -0.9995};
+constexpr double kReflection[] = {0.936, 0.936, 0.835, 0.91, 0.93, 0.81,  0.81,  0.69, 0.65,  0.40, 0.355,
+                                  0.06,  0.37,  0.35,  0.21, 0.15, -0.02, -0.07, -0.5, -0.94, 0.39, -0.9995};
 static_assert(std::size(kSedimentLambertDb) == std::size(types::EnumNames<Sediment>::names));
 static_assert(std::size(kReflection) == std::size(types::EnumNames<Matter>::names));
 

@@ -9,18 +9,52 @@ namespace insonify::scene {
 
 /** Seabeds with a Lambert parameter fitted to APL-UW TR 9407 at 100 kHz (physics.md 1.8). */
 enum class Sediment {
-    RoughRock, Rock, Cobble, SandyGravel, CoarseSand, MediumSand, FineSand, MuddySand, VeryFineSand, CoarseSilt,
-    SandySilt, MediumSilt, FineSilt, VeryFineSilt, Clay, Mackenzie
+    RoughRock,
+    Rock,
+    Cobble,
+    SandyGravel,
+    CoarseSand,
+    MediumSand,
+    FineSand,
+    MuddySand,
+    VeryFineSand,
+    CoarseSilt,
+    SandySilt,
+    MediumSilt,
+    FineSilt,
+    VeryFineSilt,
+    Clay,
+    Mackenzie
 };
 
 /** Matter with a typical pressure reflection coefficient at normal incidence (physics.md 1.9). */
 enum class Matter {
-    Steel, CarbonSteel, Aluminium, CastIron, Bronze, Granite, Basalt, Concrete, Limestone, Gravel, Sand, Mud, Pvc, Acrylic, Hdpe,
-    Neoprene, NaturalRubber, WaterloggedWood, DryWood, ClosedCellFoam, Ice, Air
+    Steel,
+    CarbonSteel,
+    Aluminium,
+    CastIron,
+    Bronze,
+    Granite,
+    Basalt,
+    Concrete,
+    Limestone,
+    Gravel,
+    Sand,
+    Mud,
+    Pvc,
+    Acrylic,
+    Hdpe,
+    Neoprene,
+    NaturalRubber,
+    WaterloggedWood,
+    DryWood,
+    ClosedCellFoam,
+    Ice,
+    Air
 };
 
-double lambertDb(Sediment sediment);    ///< [dB]
-double reflection(Matter matter);       ///< Signed pressure reflection coefficient [1].
+double lambertDb(Sediment sediment);  ///< [dB]
+double reflection(Matter matter);     ///< Signed pressure reflection coefficient [1].
 /** Lambert parameter that gives a convex body of this reflection its target strength: -9.23 + 20 log10|R| [dB]. */
 double lambertDb(Matter matter);
 
@@ -35,11 +69,13 @@ struct Acoustics {
     void applyTo(types::Material& target) const;
     void check(types::Problems& problems) const;
 
-    template <class Self, class V> static void describe(Self& self, V& visit) {
+    template <class Self, class V>
+    static void describe(Self& self, V& visit) {
         using types::Field;
         visit(Field{"sediment", "", "a seabed of the table, sets lambert_db"}, self.sediment);
         visit(Field{"material", "", "matter of the table, sets reflection and lambert_db"}, self.material);
-        visit(Field{"lambert_db", "dB", "Lambert parameter, backscatter at normal incidence", -200, 20}, self.lambert_db);
+        visit(Field{"lambert_db", "dB", "Lambert parameter, backscatter at normal incidence", -200, 20},
+              self.lambert_db);
         visit(Field{"reflection", "1", "signed pressure reflection coefficient at normal incidence", -1, 1},
               self.reflection);
         visit(Field{"roughness_slope", "1", "rms slope of the micro-relief", 0, 10}, self.roughness_slope);
@@ -49,13 +85,18 @@ struct Acoustics {
 
 }  // namespace insonify::scene
 
-template <> struct insonify::types::EnumNames<insonify::scene::Sediment> {
-    static constexpr std::string_view names[] = {
-        "rough_rock", "rock",           "cobble",      "sandy_gravel", "coarse_sand", "medium_sand", "fine_sand", "muddy_sand",
-        "very_fine_sand", "coarse_silt", "sandy_silt", "medium_silt",  "fine_silt",   "very_fine_silt", "clay",   "mackenzie"};
+template <>
+struct insonify::types::EnumNames<insonify::scene::Sediment> {
+    static constexpr std::string_view names[] = {"rough_rock",     "rock",           "cobble",     "sandy_gravel",
+                                                 "coarse_sand",    "medium_sand",    "fine_sand",  "muddy_sand",
+                                                 "very_fine_sand", "coarse_silt",    "sandy_silt", "medium_silt",
+                                                 "fine_silt",      "very_fine_silt", "clay",       "mackenzie"};
 };
-template <> struct insonify::types::EnumNames<insonify::scene::Matter> {
+template <>
+struct insonify::types::EnumNames<insonify::scene::Matter> {
     static constexpr std::string_view names[] = {
-        "steel", "carbon_steel", "aluminium", "cast_iron", "bronze", "granite", "basalt", "concrete", "limestone", "gravel", "sand", "mud",
-        "pvc", "acrylic", "hdpe", "neoprene", "natural_rubber", "waterlogged_wood", "dry_wood", "closed_cell_foam", "ice", "air"};
+        "steel",    "carbon_steel",     "aluminium", "cast_iron", "bronze",         "granite",
+        "basalt",   "concrete",         "limestone", "gravel",    "sand",           "mud",
+        "pvc",      "acrylic",          "hdpe",      "neoprene",  "natural_rubber", "waterlogged_wood",
+        "dry_wood", "closed_cell_foam", "ice",       "air"};
 };

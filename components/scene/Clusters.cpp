@@ -29,7 +29,8 @@ struct Box {
 };
 
 /** Halves `triangles` at the median of the longest axis until each part is small enough; appends a cluster for each. */
-void split(types::Mesh& mesh, std::span<Triangle> triangles, types::Cluster cluster, std::vector<types::Cluster>& clusters) {
+void split(types::Mesh& mesh, std::span<Triangle> triangles, types::Cluster cluster,
+           std::vector<types::Cluster>& clusters) {
     if (triangles.size() <= kClusterTriangles) {
         cluster.index_count = static_cast<uint32_t>(3 * triangles.size());
         clusters.push_back(cluster);
@@ -42,8 +43,9 @@ void split(types::Mesh& mesh, std::span<Triangle> triangles, types::Cluster clus
     for (const Triangle& triangle : triangles) box.add(centroid(triangle));
     const int axis = box.longestAxis();
     const size_t half = triangles.size() / 2;
-    std::ranges::nth_element(triangles, triangles.begin() + static_cast<std::ptrdiff_t>(half),
-                             [&](const Triangle& a, const Triangle& b) { return centroid(a)[axis] < centroid(b)[axis]; });
+    std::ranges::nth_element(
+        triangles, triangles.begin() + static_cast<std::ptrdiff_t>(half),
+        [&](const Triangle& a, const Triangle& b) { return centroid(a)[axis] < centroid(b)[axis]; });
     split(mesh, triangles.first(half), cluster, clusters);
     cluster.first_index += static_cast<uint32_t>(3 * half);
     split(mesh, triangles.subspan(half), cluster, clusters);
@@ -79,7 +81,8 @@ void boundSphere(const types::Mesh& mesh, types::Cluster& cluster) {
     cluster.radius = std::nextafter(static_cast<float>(radius), std::numeric_limits<float>::infinity());
 }
 
-template <class T> void remap(std::vector<T>& values, const std::vector<uint32_t>& new_place, size_t count) {
+template <class T>
+void remap(std::vector<T>& values, const std::vector<uint32_t>& new_place, size_t count) {
     if (values.empty()) return;
     std::vector<T> placed(count);
     meshopt_remapVertexBuffer(placed.data(), values.data(), values.size(), sizeof(T), new_place.data());

@@ -38,7 +38,8 @@ glm::dmat4 compose(glm::dvec3 translation, glm::dquat rotation, glm::dvec3 scale
 class GltfReader {
 public:
     explicit GltfReader(const std::filesystem::path& file)
-        : gltf_(readGltfFile(file)), accessors_(gltf_.model, gltf_.name),
+        : gltf_(readGltfFile(file)),
+          accessors_(gltf_.model, gltf_.name),
           meshes_(gltf_, accessors_, readMaterials(gltf_, accessors_, geometry_), geometry_) {}
 
     Scene read() {
@@ -51,7 +52,7 @@ public:
 private:
     struct Visit {
         int node;
-        int parent;          ///< Index into Scene::nodes.
+        int parent;  ///< Index into Scene::nodes.
         glm::dmat4 world_from_parent;
     };
 
@@ -85,10 +86,12 @@ private:
             const std::string path = fmt::format("nodes[{}]", visit.node);
             if (visit.node < 0 || static_cast<size_t>(visit.node) >= seen.size())
                 fail(path, fmt::format("does not exist; the file has {}", seen.size()));
-            if (seen[static_cast<size_t>(visit.node)]) fail(path, "is reached twice; a node may have one parent and no cycle");
+            if (seen[static_cast<size_t>(visit.node)])
+                fail(path, "is reached twice; a node may have one parent and no cycle");
             seen[static_cast<size_t>(visit.node)] = true;
             const glm::dmat4 world_from_node = addNode(visit, path);
-            add(gltf_.model.nodes[static_cast<size_t>(visit.node)].children, static_cast<int>(scene_.nodes.size()) - 1, world_from_node);
+            add(gltf_.model.nodes[static_cast<size_t>(visit.node)].children, static_cast<int>(scene_.nodes.size()) - 1,
+                world_from_node);
         }
     }
 
@@ -103,8 +106,10 @@ private:
         if (visit.parent < 0) node.parent_from_node = world_from_node;
         if (!isFinite(world_from_node)) fail(path, "has a transform that is not finite");
         scene_.nodes.push_back(node);
-        if (from.mesh >= 0) addObjects(from, node.name, world_from_node, path);
-        else if (from.mesh != -1) fail(path + ".mesh", fmt::format("is {}", from.mesh));
+        if (from.mesh >= 0)
+            addObjects(from, node.name, world_from_node, path);
+        else if (from.mesh != -1)
+            fail(path + ".mesh", fmt::format("is {}", from.mesh));
         has_skin_ = has_skin_ || from.skin >= 0;
         return world_from_node;
     }
@@ -137,38 +142,43 @@ private:
         }
         glm::dvec3 translation{0};
         glm::dquat rotation{1, 0, 0, 0};
-        if (expect(node.translation, 3, ".translation")) translation = {node.translation[0], node.translation[1], node.translation[2]};
+        if (expect(node.translation, 3, ".translation"))
+            translation = {node.translation[0], node.translation[1], node.translation[2]};
         if (expect(node.scale, 3, ".scale")) scale = {node.scale[0], node.scale[1], node.scale[2]};
         if (expect(node.rotation, 4, ".rotation")) {
             rotation = {node.rotation[3], node.rotation[0], node.rotation[1], node.rotation[2]};
             const double length = glm::length(rotation);
-            if (!(length > 1e-6) || !std::isfinite(length)) fail(path + ".rotation", "has no length; must be a unit quaternion x, y, z, w");
+            if (!(length > 1e-6) || !std::isfinite(length))
+                fail(path + ".rotation", "has no length; must be a unit quaternion x, y, z, w");
             rotation /= length;
         }
         return compose(translation, rotation, scale);
     }
 
-    void addObjects(const tinygltf::Node& node, const std::string& name, const glm::dmat4& world_from_node, const std::string& path) {
+    void addObjects(const tinygltf::Node& node, const std::string& name, const glm::dmat4& world_from_node,
+                    const std::string& path) {
         if (static_cast<size_t>(node.mesh) >= gltf_.model.meshes.size())
             fail(path + ".mesh", fmt::format("is {}; the file has {}", node.mesh, gltf_.model.meshes.size()));
         const int mesh = meshIndex(static_cast<size_t>(node.mesh));
         if (mesh < 0) return;
         const auto instancing = node.extensions.find("EXT_mesh_gpu_instancing");
         if (instancing == node.extensions.end()) return addObject(name, mesh, world_from_node, glm::dmat4(1), path);
-        const std::vector<glm::dmat4> instances = readInstances(instancing->second, path + ".extensions.EXT_mesh_gpu_instancing");
+        const std::vector<glm::dmat4> instances =
+            readInstances(instancing->second, path + ".extensions.EXT_mesh_gpu_instancing");
         for (size_t i = 0; i < instances.size(); ++i)
             addObject(uniqueName(fmt::format("{}[{}]", name, i)), mesh, world_from_node, instances[i], path);
     }
 
-    void addObject(const std::string& name, int mesh, const glm::dmat4& world_from_node, const glm::dmat4& node_from_object,
-                   const std::string& path) {
+    void addObject(const std::string& name, int mesh, const glm::dmat4& world_from_node,
+                   const glm::dmat4& node_from_object, const std::string& path) {
         const glm::dmat4 world_from_object = world_from_node * node_from_object;
         if (!isFinite(world_from_object)) fail(path, "has a transform that is not finite");
         if (glm::determinant(glm::dmat3(world_from_object)) == 0) {
             ++flat_objects_;
             return;
         }
-        if (geometry_.objects.size() == kMaxObjects) fail(path, fmt::format("brings the file over {} objects", kMaxObjects));
+        if (geometry_.objects.size() == kMaxObjects)
+            fail(path, fmt::format("brings the file over {} objects", kMaxObjects));
         geometry_.objects.push_back({name, mesh, world_from_object});
         scene_.object_nodes.push_back(static_cast<int>(scene_.nodes.size()) - 1);
         scene_.node_from_object.push_back(node_from_object);
@@ -223,7 +233,8 @@ private:
         count(omissions.empty_triangles, "triangles dropped for having no area");
         count(omissions.other_primitives, "primitives of points or lines left out, they have no surface");
         count(omissions.morphed_meshes, "meshes with morph targets loaded unmorphed");
-        count(omissions.unmapped_primitives, "primitives loaded without their normal map for want of texture coordinates");
+        count(omissions.unmapped_primitives,
+              "primitives loaded without their normal map for want of texture coordinates");
         count(flat_objects_, "objects left out, their scale is zero in some direction");
         count(gltf_.model.animations.size(), "animations not played, the scene is loaded at rest");
         if (has_skin_) notices.push_back("skins not applied, the meshes are loaded at rest");

@@ -27,13 +27,15 @@ size_t componentSize(int type) {
     }
 }
 
-template <class T> T load(const uint8_t* from) {
+template <class T>
+T load(const uint8_t* from) {
     T value;
     std::memcpy(&value, from, sizeof value);
     return value;
 }
 
-template <class T> float loadScaled(const uint8_t* from, bool normalized) {
+template <class T>
+float loadScaled(const uint8_t* from, bool normalized) {
     const auto value = static_cast<float>(load<T>(from));
     if constexpr (std::is_integral_v<T>)
         if (normalized) return std::max(value / static_cast<float>(std::numeric_limits<T>::max()), -1.0f);
@@ -122,8 +124,7 @@ GltfAccessors::Layout GltfAccessors::layout(const tinygltf::Accessor& accessor, 
     Layout layout;
     layout.element_size = componentSize(accessor.componentType) *
                           static_cast<size_t>(tinygltf::GetNumComponentsInType(static_cast<uint32_t>(accessor.type)));
-    if (accessor.bufferView >= 0)
-        return locate(layout, accessor.bufferView, accessor.byteOffset, accessor.count, path);
+    if (accessor.bufferView >= 0) return locate(layout, accessor.bufferView, accessor.byteOffset, accessor.count, path);
     if (accessor.count > kMaxEmptyCount)
         fail(path + ".count", fmt::format("is {} without data; may be up to {}", accessor.count, kMaxEmptyCount));
     return layout;
@@ -150,12 +151,14 @@ void GltfAccessors::forEach(const tinygltf::Accessor& accessor, const Layout& ba
     for (size_t i = 0; i < count; ++i) {
         const size_t element = loadIndex(indices.data + i * indices.stride, index_type);
         if (element >= accessor.count)
-            fail(path + ".sparse.indices", fmt::format("hold {}; the accessor has {} elements", element, accessor.count));
+            fail(path + ".sparse.indices",
+                 fmt::format("hold {}; the accessor has {} elements", element, accessor.count));
         store(element, values.data + i * values.stride);
     }
 }
 
-template <class Vector> std::vector<Vector> GltfAccessors::vectors(int accessor) const {
+template <class Vector>
+std::vector<Vector> GltfAccessors::vectors(int accessor) const {
     const std::string path = fmt::format("accessors[{}]", accessor);
     const tinygltf::Accessor& from = checked(accessor, path);
     if (tinygltf::GetNumComponentsInType(static_cast<uint32_t>(from.type)) != Vector::length())
@@ -181,7 +184,8 @@ std::vector<uint32_t> GltfAccessors::indices(int accessor) const {
                                from.componentType));
     const Layout base = layout(from, path);
     std::vector<uint32_t> result(from.count, 0);
-    forEach(from, base, path, [&](size_t i, const uint8_t* bytes) { result[i] = loadIndex(bytes, from.componentType); });
+    forEach(from, base, path,
+            [&](size_t i, const uint8_t* bytes) { result[i] = loadIndex(bytes, from.componentType); });
     return result;
 }
 

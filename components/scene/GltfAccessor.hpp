@@ -19,7 +19,8 @@ public:
     GltfAccessors(const tinygltf::Model& model, std::string file) : model_(model), file_(std::move(file)) {}
 
     /** Vectors of as many components as Vector has; integers are scaled to [-1, 1] where `normalized` says so. */
-    template <class Vector> std::vector<Vector> vectors(int accessor) const;
+    template <class Vector>
+    std::vector<Vector> vectors(int accessor) const;
     std::vector<uint32_t> indices(int accessor) const;
     /** Bytes [begin, end) of a bufferView. */
     std::pair<const uint8_t*, const uint8_t*> bytes(int buffer_view, const std::string& path) const;

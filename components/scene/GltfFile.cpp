@@ -18,21 +18,36 @@ constexpr int kMaxNesting = 200;
 constexpr uintmax_t kMaxBytes = 0x7fffffff;
 
 /** What a file may require: read, or without influence on shape. */
-constexpr std::string_view kSupported[] = {
-    "KHR_mesh_quantization", "KHR_texture_transform", "EXT_mesh_gpu_instancing", "KHR_lights_punctual", "KHR_materials_unlit",
-    "KHR_materials_emissive_strength", "KHR_materials_clearcoat", "KHR_materials_ior", "KHR_materials_sheen",
-    "KHR_materials_specular", "KHR_materials_transmission", "KHR_materials_volume", "KHR_materials_iridescence",
-    "KHR_materials_anisotropy", "KHR_materials_pbrSpecularGlossiness", "KHR_materials_variants", "KHR_xmp_json_ld"};
+constexpr std::string_view kSupported[] = {"KHR_mesh_quantization",
+                                           "KHR_texture_transform",
+                                           "EXT_mesh_gpu_instancing",
+                                           "KHR_lights_punctual",
+                                           "KHR_materials_unlit",
+                                           "KHR_materials_emissive_strength",
+                                           "KHR_materials_clearcoat",
+                                           "KHR_materials_ior",
+                                           "KHR_materials_sheen",
+                                           "KHR_materials_specular",
+                                           "KHR_materials_transmission",
+                                           "KHR_materials_volume",
+                                           "KHR_materials_iridescence",
+                                           "KHR_materials_anisotropy",
+                                           "KHR_materials_pbrSpecularGlossiness",
+                                           "KHR_materials_variants",
+                                           "KHR_xmp_json_ld"};
 
 std::string readBytes(const std::filesystem::path& file) {
     std::error_code error;
-    if (!std::filesystem::exists(file, error)) throw std::runtime_error("does not exist; give the path of a .gltf or .glb file");
-    if (!std::filesystem::is_regular_file(file, error)) throw std::runtime_error("is not a file; give the path of a .gltf or .glb file");
+    if (!std::filesystem::exists(file, error))
+        throw std::runtime_error("does not exist; give the path of a .gltf or .glb file");
+    if (!std::filesystem::is_regular_file(file, error))
+        throw std::runtime_error("is not a file; give the path of a .gltf or .glb file");
     const uintmax_t size = std::filesystem::file_size(file, error);
     if (error || size > kMaxBytes) throw std::runtime_error("is larger than 2 GiB; split it");
     std::string bytes(static_cast<size_t>(size), '\0');
     std::ifstream stream(file, std::ios::binary);
-    if (!stream.read(bytes.data(), static_cast<std::streamsize>(size))) throw std::runtime_error("cannot be read; check its permissions");
+    if (!stream.read(bytes.data(), static_cast<std::streamsize>(size)))
+        throw std::runtime_error("cannot be read; check its permissions");
     return bytes;
 }
 
@@ -76,10 +91,14 @@ int nesting(std::string_view json) {
     bool in_string = false;
     for (size_t i = 0; i < json.size(); ++i) {
         const char c = json[i];
-        if (in_string && c == '\\') ++i;
-        else if (c == '"') in_string = !in_string;
-        else if (!in_string && (c == '[' || c == '{')) deepest = std::max(deepest, ++depth);
-        else if (!in_string && (c == ']' || c == '}')) --depth;
+        if (in_string && c == '\\')
+            ++i;
+        else if (c == '"')
+            in_string = !in_string;
+        else if (!in_string && (c == '[' || c == '{'))
+            deepest = std::max(deepest, ++depth);
+        else if (!in_string && (c == ']' || c == '}'))
+            --depth;
     }
     return deepest;
 }
@@ -92,12 +111,14 @@ void checkBytes(const std::string& bytes) {
         uint32_t length;
         std::memcpy(&length, bytes.data() + 8, sizeof length);
         if (length > bytes.size())
-            throw std::runtime_error(fmt::format("is truncated: it has {} of {} bytes; export or copy it again", bytes.size(), length));
+            throw std::runtime_error(
+                fmt::format("is truncated: it has {} of {} bytes; export or copy it again", bytes.size(), length));
     }
 }
 
 std::string remedy(const std::string& extension) {
-    if (extension == "KHR_draco_mesh_compression") return "decompress it: `gltf-transform copy in.glb out.glb`, or export without Draco";
+    if (extension == "KHR_draco_mesh_compression")
+        return "decompress it: `gltf-transform copy in.glb out.glb`, or export without Draco";
     if (extension == "EXT_meshopt_compression" || extension == "KHR_meshopt_compression")
         return "decompress it: `gltf-transform copy in.glb out.glb`, or run gltfpack without -c";
     if (extension == "KHR_texture_basisu" || extension == "EXT_texture_webp" || extension == "EXT_texture_avif")
@@ -111,10 +132,12 @@ void checkExtensions(GltfFile& gltf) {
     const auto& required = gltf.model.extensionsRequired;
     for (const std::string& name : required)
         if (!supported(name))
-            refused.push_back({gltf.name, 0, 0, "extensionsRequired", fmt::format("{} cannot be read; {}", name, remedy(name))});
+            refused.push_back(
+                {gltf.name, 0, 0, "extensionsRequired", fmt::format("{} cannot be read; {}", name, remedy(name))});
     if (!refused.empty()) throw types::ConfigError(std::move(refused));
     for (const std::string& name : gltf.model.extensionsUsed)
-        if (!supported(name)) gltf.notices.push_back(fmt::format("extension {} is not read; its fallback is used", name));
+        if (!supported(name))
+            gltf.notices.push_back(fmt::format("extension {} is not read; its fallback is used", name));
 }
 
 /** False with `errors` filled when tinygltf refuses; whatever it throws on bad input becomes such an error. */
@@ -124,9 +147,10 @@ bool parse(GltfFile& gltf, const std::string& bytes, std::string folder, std::st
     loader.SetFsCallbacks({fileExists, unexpanded, readWhole, nullptr, &folder});
     std::string warnings;
     const auto size = static_cast<unsigned>(bytes.size());
-    return isBinary(bytes) ? loader.LoadBinaryFromMemory(&gltf.model, &errors, &warnings,
-                                                         reinterpret_cast<const unsigned char*>(bytes.data()), size, folder)
-                           : loader.LoadASCIIFromString(&gltf.model, &errors, &warnings, bytes.data(), size, folder);
+    return isBinary(bytes)
+               ? loader.LoadBinaryFromMemory(&gltf.model, &errors, &warnings,
+                                             reinterpret_cast<const unsigned char*>(bytes.data()), size, folder)
+               : loader.LoadASCIIFromString(&gltf.model, &errors, &warnings, bytes.data(), size, folder);
 } catch (const std::exception& failure) {
     errors += failure.what();
     return false;
@@ -157,7 +181,8 @@ GltfFile readGltfFile(const std::filesystem::path& file) {
     checkExtensions(gltf);
     if (!parsed) throw types::ConfigError(gltf.name, "", fmt::format("cannot be read as glTF 2.0: {}", reason(errors)));
     if (const std::string& version = gltf.model.asset.version; !version.starts_with("2."))
-        throw types::ConfigError(gltf.name, "asset.version", fmt::format("is \"{}\"; must be 2.0: export the model as glTF 2.0", version));
+        throw types::ConfigError(gltf.name, "asset.version",
+                                 fmt::format("is \"{}\"; must be 2.0: export the model as glTF 2.0", version));
     return gltf;
 }
 

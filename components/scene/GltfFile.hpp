@@ -9,7 +9,7 @@ namespace insonify::scene {
 
 /** A glTF file as parsed; encoded images are kept in Image::image, not decoded. */
 struct GltfFile {
-    std::string name;                  ///< For messages.
+    std::string name;  ///< For messages.
     tinygltf::Model model;
     std::vector<std::string> notices;
 };

@@ -24,11 +24,14 @@ class JsonReader {
 public:
     JsonReader(const tinygltf::Value& object, types::Problems& problems) : object_(object), problems_(problems) {}
 
-    template <class T> void operator()(const types::Field& field, std::optional<T>& value) {
+    template <class T>
+    void operator()(const types::Field& field, std::optional<T>& value) {
         known_.emplace_back(field.name);
         if (!object_.Has(field.name)) return;
-        if constexpr (types::NamedEnum<T>) readName(field, object_.Get(field.name), value);
-        else readNumber(field, object_.Get(field.name), value);
+        if constexpr (types::NamedEnum<T>)
+            readName(field, object_.Get(field.name), value);
+        else
+            readNumber(field, object_.Get(field.name), value);
     }
     void refuseUnknown() {
         for (const std::string& key : object_.Keys())
@@ -41,13 +44,17 @@ private:
         if (json.IsNumber() && json.GetNumberAsDouble() >= field.min && json.GetNumberAsDouble() <= field.max)
             value = json.GetNumberAsDouble();
         else
-            problems_.push_back({field.name, fmt::format("is {}; must be a number from {} to {}", text(json), field.min, field.max)});
+            problems_.push_back(
+                {field.name, fmt::format("is {}; must be a number from {} to {}", text(json), field.min, field.max)});
     }
-    template <class E> void readName(const types::Field& field, const tinygltf::Value& json, std::optional<E>& value) {
+    template <class E>
+    void readName(const types::Field& field, const tinygltf::Value& json, std::optional<E>& value) {
         const auto& names = types::EnumNames<E>::names;
         const auto* found = json.IsString() ? std::ranges::find(names, json.Get<std::string>()) : std::end(names);
-        if (found != std::end(names)) value = static_cast<E>(found - names);
-        else problems_.push_back({field.name, fmt::format("is {}; may be {}", text(json), fmt::join(names, ", "))});
+        if (found != std::end(names))
+            value = static_cast<E>(found - names);
+        else
+            problems_.push_back({field.name, fmt::format("is {}; may be {}", text(json), fmt::join(names, ", "))});
     }
     static std::string text(const tinygltf::Value& json) {
         if (json.IsNumber()) return fmt::format("{}", json.GetNumberAsDouble());
@@ -72,7 +79,8 @@ void readAcoustics(const tinygltf::Value& extras, types::Material& material, typ
 }
 
 /** Bytes of an encoded image; empty when its file was not found. */
-std::pair<const uint8_t*, const uint8_t*> encoded(const tinygltf::Image& image, int index, const GltfAccessors& accessors) {
+std::pair<const uint8_t*, const uint8_t*> encoded(const tinygltf::Image& image, int index,
+                                                  const GltfAccessors& accessors) {
     if (image.bufferView >= 0) return accessors.bytes(image.bufferView, fmt::format("images[{}]", index));
     return {image.image.data(), image.image.data() + image.image.size()};
 }
@@ -86,11 +94,13 @@ types::NormalMap decode(std::pair<const uint8_t*, const uint8_t*> bytes) {
     if (!stbi_info_from_memory(begin, size, &map.width, &map.height, &channels))
         throw std::runtime_error("its image is neither PNG nor JPEG");
     if (map.width > kMaxImageSide || map.height > kMaxImageSide)
-        throw std::runtime_error(fmt::format("its image has {} x {} pixels; may have up to {} a side", map.width, map.height, kMaxImageSide));
+        throw std::runtime_error(fmt::format("its image has {} x {} pixels; may have up to {} a side", map.width,
+                                             map.height, kMaxImageSide));
     const std::unique_ptr<stbi_uc, decltype(&stbi_image_free)> pixels(
         stbi_load_from_memory(begin, size, &map.width, &map.height, &channels, 3), stbi_image_free);
     if (!pixels) throw std::runtime_error(fmt::format("its image is damaged ({})", stbi_failure_reason()));
-    map.rgb.assign(pixels.get(), pixels.get() + size_t{3} * static_cast<size_t>(map.width) * static_cast<size_t>(map.height));
+    map.rgb.assign(pixels.get(),
+                   pixels.get() + size_t{3} * static_cast<size_t>(map.width) * static_cast<size_t>(map.height));
     return map;
 }
 
@@ -104,13 +114,14 @@ public:
     int find(int texture, const std::string& material) {
         const auto [known, is_new] = indices_.try_emplace(texture, -1);
         if (is_new) try {
-            geometry_.normal_maps.push_back(load(texture));
-            known->second = static_cast<int>(geometry_.normal_maps.size()) - 1;
-        } catch (const types::ConfigError&) {
-            throw;
-        } catch (const std::runtime_error& failure) {
-            geometry_.notices.push_back(fmt::format("material \"{}\" is loaded without its normal map: {}", material, failure.what()));
-        }
+                geometry_.normal_maps.push_back(load(texture));
+                known->second = static_cast<int>(geometry_.normal_maps.size()) - 1;
+            } catch (const types::ConfigError&) {
+                throw;
+            } catch (const std::runtime_error& failure) {
+                geometry_.notices.push_back(
+                    fmt::format("material \"{}\" is loaded without its normal map: {}", material, failure.what()));
+            }
         return known->second;
     }
 
@@ -118,7 +129,8 @@ private:
     types::NormalMap load(int index) {
         const tinygltf::Texture& texture = at(gltf_.model.textures, index, "textures");
         if (texture.source < 0) throw std::runtime_error("its texture has no PNG or JPEG image");
-        types::NormalMap map = decode(encoded(at(gltf_.model.images, texture.source, "images"), texture.source, accessors_));
+        types::NormalMap map =
+            decode(encoded(at(gltf_.model.images, texture.source, "images"), texture.source, accessors_));
         if (texture.sampler >= 0) {
             const tinygltf::Sampler& sampler = at(gltf_.model.samplers, texture.sampler, "samplers");
             map.repeat_u = sampler.wrapS != TINYGLTF_TEXTURE_WRAP_CLAMP_TO_EDGE;
@@ -126,9 +138,11 @@ private:
         }
         return map;
     }
-    template <class T> const T& at(const std::vector<T>& items, int index, const char* what) const {
+    template <class T>
+    const T& at(const std::vector<T>& items, int index, const char* what) const {
         if (index < 0 || static_cast<size_t>(index) >= items.size())
-            throw types::ConfigError(gltf_.name, fmt::format("{}[{}]", what, index), fmt::format("does not exist; the file has {}", items.size()));
+            throw types::ConfigError(gltf_.name, fmt::format("{}[{}]", what, index),
+                                     fmt::format("does not exist; the file has {}", items.size()));
         return items[static_cast<size_t>(index)];
     }
 
@@ -173,7 +187,10 @@ std::vector<std::optional<NormalMapping>> readMaterials(const GltfFile& gltf, co
         types::Problems problems;
         readAcoustics(from.extras, material, problems);
         for (const types::Problem& problem : problems)
-            faults.push_back({gltf.name, 0, 0, fmt::format("materials[{}].extras.acoustics{}{}", index, problem.path.empty() ? "" : ".", problem.path), problem.message});
+            faults.push_back({gltf.name, 0, 0,
+                              fmt::format("materials[{}].extras.acoustics{}{}", index, problem.path.empty() ? "" : ".",
+                                          problem.path),
+                              problem.message});
         if (from.normalTexture.index >= 0) {
             material.normal_map = maps.find(from.normalTexture.index, material.name);
             const auto scale = static_cast<float>(from.normalTexture.scale);

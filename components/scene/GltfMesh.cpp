@@ -32,8 +32,10 @@ std::vector<uint32_t> triangulate(const std::vector<uint32_t>& corners, int mode
         }
         const size_t k = i - first;
         if (k < 2) continue;
-        if (mode == TINYGLTF_MODE_TRIANGLES && k % 3 == 2) triangles.insert(triangles.end(), {corners[i - 2], corners[i - 1], corners[i]});
-        if (mode == TINYGLTF_MODE_TRIANGLE_FAN) triangles.insert(triangles.end(), {corners[first], corners[i - 1], corners[i]});
+        if (mode == TINYGLTF_MODE_TRIANGLES && k % 3 == 2)
+            triangles.insert(triangles.end(), {corners[i - 2], corners[i - 1], corners[i]});
+        if (mode == TINYGLTF_MODE_TRIANGLE_FAN)
+            triangles.insert(triangles.end(), {corners[first], corners[i - 1], corners[i]});
         if (mode == TINYGLTF_MODE_TRIANGLE_STRIP)
             triangles.insert(triangles.end(), {corners[i - 2 + k % 2], corners[i - 1 - k % 2], corners[i]});
     }
@@ -45,7 +47,8 @@ void dropUseless(Surface& surface, Omissions& omissions) {
     size_t kept = 0;
     for (size_t i = 0; i + 2 < surface.indices.size(); i += 3) {
         const uint32_t* corner = &surface.indices[i];
-        const glm::vec3 a = surface.positions[corner[0]], b = surface.positions[corner[1]], c = surface.positions[corner[2]];
+        const glm::vec3 a = surface.positions[corner[0]], b = surface.positions[corner[1]],
+                        c = surface.positions[corner[2]];
         if (!isUsable(a) || !isUsable(b) || !isUsable(c)) {
             ++omissions.bad_triangles;
             continue;
@@ -81,7 +84,8 @@ void normalise(Surface& surface) {
 }
 
 /** `to` grows to `size` with `filler`, then takes `from`; nothing happens while both are empty. */
-template <class T> void appendFilled(std::vector<T>& to, const std::vector<T>& from, size_t size, T filler) {
+template <class T>
+void appendFilled(std::vector<T>& to, const std::vector<T>& from, size_t size, T filler) {
     if (to.empty() && from.empty()) return;
     to.resize(size, filler);
     to.insert(to.end(), from.begin(), from.end());
@@ -110,13 +114,15 @@ void GltfMeshes::fail(const std::string& path, const std::string& message) const
 
 void GltfMeshes::charge(size_t elements, const std::string& path) {
     elements_ += elements;
-    if (elements_ > kMaxElements) fail(path, fmt::format("brings the file over {} vertices and indices; split it", kMaxElements));
+    if (elements_ > kMaxElements)
+        fail(path, fmt::format("brings the file over {} vertices and indices; split it", kMaxElements));
 }
 
 int GltfMeshes::material(const tinygltf::Primitive& primitive, const std::string& path) {
     const size_t count = gltf_.model.materials.size();
     if (primitive.material >= 0 && static_cast<size_t>(primitive.material) < count) return primitive.material;
-    if (primitive.material != -1) fail(path + ".material", fmt::format("is {}; the file has {}", primitive.material, count));
+    if (primitive.material != -1)
+        fail(path + ".material", fmt::format("is {}; the file has {}", primitive.material, count));
     if (default_material_ < 0) {
         default_material_ = static_cast<int>(geometry_.materials.size());
         geometry_.materials.emplace_back().name = "default";
@@ -143,12 +149,14 @@ struct GltfMeshes::Attributes {
     size_t count;
 
     /** Empty when the primitive has no such attribute. */
-    template <class Vector> std::vector<Vector> read(const std::string& name) const {
+    template <class Vector>
+    std::vector<Vector> read(const std::string& name) const {
         const auto found = primitive.attributes.find(name);
         if (found == primitive.attributes.end()) return {};
         std::vector<Vector> values = meshes.accessors_.vectors<Vector>(found->second);
         if (values.size() != count)
-            meshes.fail(path + ".attributes." + name, fmt::format("has {} elements; POSITION has {}", values.size(), count));
+            meshes.fail(path + ".attributes." + name,
+                        fmt::format("has {} elements; POSITION has {}", values.size(), count));
         return values;
     }
     /** What a normal map needs. */
@@ -184,19 +192,23 @@ void GltfMeshes::append(const tinygltf::Primitive& primitive, const std::string&
     }
     charge(corners.size(), path);
     for (const uint32_t index : corners)
-        if (index >= count && index != restart) fail(path + ".indices", fmt::format("hold {}; the primitive has {} vertices", index, count));
+        if (index >= count && index != restart)
+            fail(path + ".indices", fmt::format("hold {}; the primitive has {} vertices", index, count));
     surface.indices = triangulate(corners, mode, restart);
     dropUseless(surface, omissions_);
     mendUnused(surface);
     if (surface.indices.empty()) return;
 
     int index = material(primitive, path);
-    const auto& mapping = static_cast<size_t>(index) < mappings_.size() ? mappings_[static_cast<size_t>(index)] : std::nullopt;
+    const auto& mapping =
+        static_cast<size_t>(index) < mappings_.size() ? mappings_[static_cast<size_t>(index)] : std::nullopt;
     if (mapping) {
         Attributes{primitive, *this, path, count}.readMapped(*mapping, surface);
         normalise(surface);
-        if (surface.uvs.empty()) index = withoutMap(index);
-        else if (surface.normals.empty()) makeFlatNormals(surface);
+        if (surface.uvs.empty())
+            index = withoutMap(index);
+        else if (surface.normals.empty())
+            makeFlatNormals(surface);
         if (!surface.uvs.empty() && surface.tangents.empty()) makeTangents(surface);
     }
     appendSurface(surface, index, mesh);
@@ -208,7 +220,8 @@ types::Mesh GltfMeshes::read(size_t index) {
     mesh.name = from.name;
     for (size_t i = 0; i < from.primitives.size(); ++i)
         append(from.primitives[i], fmt::format("meshes[{}].primitives[{}]", index, i), mesh);
-    const bool morphed = std::ranges::any_of(from.primitives, [](const auto& primitive) { return !primitive.targets.empty(); });
+    const bool morphed =
+        std::ranges::any_of(from.primitives, [](const auto& primitive) { return !primitive.targets.empty(); });
     if (morphed) ++omissions_.morphed_meshes;
     const size_t count = mesh.positions.size();
     appendFilled(mesh.normals, {}, count, glm::vec3(0, 1, 0));

@@ -59,7 +59,8 @@ types::GeometryPtr overrideMaterials(const Scene& scene, const std::map<std::str
         const int node = findNode(scene, name);
         if (node < 0 && !used.contains(name)) problems.push_back(unknown(scene, name));
         if (node >= 0)
-            for (const Part& part : partsOf(scene, node)) overrideObject(*geometry, geometry->objects[part.object], acoustics);
+            for (const Part& part : partsOf(scene, node))
+                overrideObject(*geometry, geometry->objects[part.object], acoustics);
     }
     return geometry;
 }

@@ -54,7 +54,8 @@ std::vector<Part> partsOf(const Scene& scene, int node) {
     std::vector<glm::dmat4> body_from_node(scene.nodes.size());
     std::vector<bool> moves(scene.nodes.size());
     const auto top = static_cast<size_t>(node);
-    body_from_node[top] = z_up_from_y_up * glm::dmat4(withoutRotation(glm::dmat3(world_from_node), scene.nodes[top].scale));
+    body_from_node[top] =
+        z_up_from_y_up * glm::dmat4(withoutRotation(glm::dmat3(world_from_node), scene.nodes[top].scale));
     moves[top] = true;
     for (size_t i = top + 1; i < scene.nodes.size(); ++i) {
         const Node& below = scene.nodes[i];

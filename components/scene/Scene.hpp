@@ -10,24 +10,24 @@ namespace insonify::scene {
 
 /** A node of a scene, as the file arranges them. Every parent comes before its children. */
 struct Node {
-    std::string name;                    ///< Unique: the file's, else its mesh's, else "node_3".
-    int parent = -1;                     ///< Index of a node, -1 at the root.
-    glm::dmat4 parent_from_node{1};      ///< At the root: world_from_node, with the turn to z-up.
-    glm::dvec3 scale{1};                 ///< As given beside translation and rotation; 1 with a matrix.
+    std::string name;                ///< Unique: the file's, else its mesh's, else "node_3".
+    int parent = -1;                 ///< Index of a node, -1 at the root.
+    glm::dmat4 parent_from_node{1};  ///< At the root: world_from_node, with the turn to z-up.
+    glm::dvec3 scale{1};             ///< As given beside translation and rotation; 1 with a matrix.
 };
 
 /** A scene file: immutable geometry, and the tree that says which objects move together. */
 struct Scene {
     types::GeometryPtr geometry;
     std::vector<Node> nodes;
-    std::vector<int> object_nodes;       ///< For each object of the geometry, its node.
+    std::vector<int> object_nodes;             ///< For each object of the geometry, its node.
     std::vector<glm::dmat4> node_from_object;  ///< For each object; 1 but for instances (EXT_mesh_gpu_instancing).
 };
 
 /** An object that moves with a node. */
 struct Part {
-    uint32_t object = 0;                 ///< Index into Geometry::objects.
-    glm::dmat4 body_from_object{1};      ///< Body: the node without its rotation, axes turned like the world's, scale kept.
+    uint32_t object = 0;             ///< Index into Geometry::objects.
+    glm::dmat4 body_from_object{1};  ///< Body: the node without its rotation, axes turned like the world's, scale kept.
 };
 
 /** Reads a scene: .gltf or .glb. World coordinates are z-up: (x, y, z) of the file is (x, -z, y).

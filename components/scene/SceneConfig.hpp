@@ -12,12 +12,13 @@ namespace insonify::scene {
 
 /** Where a sensor sits in the body: x forward, y left, z up; R = Rz(yaw) Ry(pitch) Rx(roll). */
 struct Mount {
-    glm::dvec3 position{0};                               ///< [m]
-    double roll_deg = 0, pitch_deg = 0, yaw_deg = 0;      ///< Positive pitch looks down, positive yaw turns to port [deg].
+    glm::dvec3 position{0};                           ///< [m]
+    double roll_deg = 0, pitch_deg = 0, yaw_deg = 0;  ///< Positive pitch looks down, positive yaw turns to port [deg].
 
     glm::dquat orientation() const;
 
-    template <class Self, class V> static void describe(Self& self, V& visit) {
+    template <class Self, class V>
+    static void describe(Self& self, V& visit) {
         using types::Field;
         visit(Field{"position", "m", "of the sensor in the body"}, self.position);
         visit(Field{"roll_deg", "deg", "about x", -360, 360}, self.roll_deg);
@@ -35,7 +36,8 @@ struct SceneConfig {
     std::optional<double> water_surface;
     std::map<std::string, Acoustics> materials;
 
-    template <class Self, class V> static void describe(Self& self, V& visit) {
+    template <class Self, class V>
+    static void describe(Self& self, V& visit) {
         using types::Field;
         visit(Field{"file", "", "scene: .gltf or .glb, relative to the deployment"}, self.file);
         visit(Field{"mount", "", "the sonar in the body"}, self.mount);

@@ -15,14 +15,16 @@ bool isUsable(const types::Pose& pose) {
            std::isfinite(length) && length > 1e-6;
 }
 
-constexpr const char* kUnusable = ": pose dropped: position and orientation must be finite, the quaternion of unit length";
+constexpr const char* kUnusable =
+    ": pose dropped: position and orientation must be finite, the quaternion of unit length";
 
 }  // namespace
 
 std::shared_ptr<const Scene> SceneTask::load() const {
     const std::string file = inputPath(config->file).string();
     if (!scene_ || scene_file_ != file) {
-        if (config->file.empty()) throw types::ConfigError("", name() + ".file", "is missing; give the path of a .gltf or .glb file");
+        if (config->file.empty())
+            throw types::ConfigError("", name() + ".file", "is missing; give the path of a .gltf or .glb file");
         scene_ = std::make_shared<const Scene>(readScene(file));
         scene_file_ = file;
     }

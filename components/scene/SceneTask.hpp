@@ -46,7 +46,7 @@ private:
     struct Movable {
         std::unique_ptr<framework::InputPort<types::Pose>> port;
         std::string node_name;
-        int node = -1;                     ///< Index into Scene::nodes.
+        int node = -1;  ///< Index into Scene::nodes.
         std::vector<Part> parts;
         std::optional<glm::dmat4> world_from_body;  ///< None before its first pose.
     };
@@ -55,11 +55,11 @@ private:
     bool readMovables();
     void addMoved(std::vector<types::MovedObject>& moved);
 
-    mutable std::shared_ptr<const Scene> scene_;   ///< Read once for check, ports and configure.
+    mutable std::shared_ptr<const Scene> scene_;  ///< Read once for check, ports and configure.
     mutable std::string scene_file_;
     types::GeometryPtr geometry_;
-    std::vector<Movable> movables_;                ///< Outer nodes before inner ones, once configured.
-    std::vector<const Movable*> mover_;            ///< For each object, who moves it now.
+    std::vector<Movable> movables_;      ///< Outer nodes before inner ones, once configured.
+    std::vector<const Movable*> mover_;  ///< For each object, who moves it now.
     framework::SamplePool<types::Snapshot> pool_;
 };
 

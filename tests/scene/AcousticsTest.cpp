@@ -1,8 +1,8 @@
-#include "components/scene/Acoustics.hpp"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
+
+#include "components/scene/Acoustics.hpp"
 
 namespace insonify::scene {
 namespace {

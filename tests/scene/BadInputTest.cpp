@@ -18,8 +18,8 @@ protected:
     }
     /** A triangle of which the accessors and bufferViews are given. */
     static std::string triangle(const std::string& accessors, const std::string& views) {
-        return R"("nodes":[{"mesh":0}],"meshes":[{"primitives":[{"attributes":{"POSITION":0}}]}],"accessors":[)" + accessors +
-               R"(],"bufferViews":[)" + views + "]," + buffers(bytesOf<float>({0, 0, 0, 1, 0, 0, 0, 1, 0}));
+        return R"("nodes":[{"mesh":0}],"meshes":[{"primitives":[{"attributes":{"POSITION":0}}]}],"accessors":[)" +
+               accessors + R"(],"bufferViews":[)" + views + "]," + buffers(bytesOf<float>({0, 0, 0, 1, 0, 0, 0, 1, 0}));
     }
 };
 
@@ -48,7 +48,8 @@ TEST_F(BadInputTest, AFileThatIsMissingOrAFolderOrEmptyOrOfAnotherKindIsNamed) {
 
 TEST_F(BadInputTest, AnImageNameWhoseReadingExhaustsMemoryIsNotRead) {
     expectFault(write("416.gltf", R"({"images":[{"uri":"%!QAAAQAAA5"}],"asset":{"version":""}})"), "asset.version");
-    expectFault(write("cut.gltf", R"({"asset":{"version":"2.0"},"images":[{"uri":"%!QAAAQA)"), "cannot be read as glTF 2.0");
+    expectFault(write("cut.gltf", R"({"asset":{"version":"2.0"},"images":[{"uri":"%!QAAAQA)"),
+                "cannot be read as glTF 2.0");
     EXPECT_EQ(faultOfGltf(R"("images":[{"uri":"."},{"uri":""},{"uri":"/"},{"uri":"/dev/zero"}])"), "");
 }
 
@@ -58,18 +59,22 @@ TEST_F(BadInputTest, OtherVersionsAreRefused) {
 
 TEST_F(BadInputTest, JsonNestedTooDeeplyIsRefusedBeforeItIsParsed) {
     const std::string deep(100'000, '[');
-    expectFault(write("deep.gltf", R"({"asset":{"version":"2.0","extras":)" + deep), "nests JSON 100002 levels deep; may be up to 200");
+    expectFault(write("deep.gltf", R"({"asset":{"version":"2.0","extras":)" + deep),
+                "nests JSON 100002 levels deep; may be up to 200");
     expectFault(write("deep.glb", glb(R"({"asset":{"version":"2.0","extras":)" + deep, "")), "levels deep");
     EXPECT_EQ(faultOfGltf(R"("extras":")" + deep + "\""), "");  // brackets in a text do not nest
 }
 
 TEST_F(BadInputTest, GigabytesDeclaredInAKilobyteAreRefusedWithoutBeingAllocated) {
     expectGltfFault(R"("buffers":[{"byteLength":4294967295,"uri":"data:application/octet-stream;base64,AAAA"}])", "");
-    expectGltfFault(triangle(R"({"bufferView":0,"componentType":5126,"type":"VEC3","count":4294967295})", good_view),
-                    "accessors[0]: 4294967295 elements of 12 bytes from byteOffset 0 run over the bufferView's 36 bytes");
-    expectGltfFault(triangle(R"({"componentType":5126,"type":"VEC3","count":4294967295})", good_view), "accessors[0].count");
-    expectGltfFault(triangle(R"({"bufferView":0,"componentType":5126,"type":"VEC3","count":18446744073709551615})", good_view),
-                    "run over");
+    expectGltfFault(
+        triangle(R"({"bufferView":0,"componentType":5126,"type":"VEC3","count":4294967295})", good_view),
+        "accessors[0]: 4294967295 elements of 12 bytes from byteOffset 0 run over the bufferView's 36 bytes");
+    expectGltfFault(triangle(R"({"componentType":5126,"type":"VEC3","count":4294967295})", good_view),
+                    "accessors[0].count");
+    expectGltfFault(
+        triangle(R"({"bufferView":0,"componentType":5126,"type":"VEC3","count":18446744073709551615})", good_view),
+        "run over");
     expectFault(write("4g.glb", "glTF" + bytesOf<uint32_t>({2, 0xffffffff, 0xfffffff0}) + "JSON{}"), "truncated");
 }
 
@@ -86,31 +91,46 @@ TEST_F(BadInputTest, EveryBoundOfAnAccessorIsChecked) {
     const auto accessor = [](const std::string& fields) { return triangle("{" + fields + "}", good_view); };
     const auto view = [](const std::string& fields) { return triangle(good_accessor, "{" + fields + "}"); };
     EXPECT_EQ(faultOfGltf(triangle(good_accessor, good_view)), "");
-    expectGltfFault(accessor(R"("bufferView":3,"componentType":5126,"type":"VEC3","count":3)"), "accessors[0].bufferView: is 3; the file has 1");
-    expectGltfFault(accessor(R"("bufferView":0,"byteOffset":1,"componentType":5126,"type":"VEC3","count":3)"), "run over");
-    expectGltfFault(accessor(R"("bufferView":0,"byteOffset":18446744073709551615,"componentType":5126,"type":"VEC3","count":3)"), "run over");
-    expectGltfFault(accessor(R"("bufferView":0,"componentType":5124,"type":"VEC3","count":3)"), "componentType: is 5124");
+    expectGltfFault(accessor(R"("bufferView":3,"componentType":5126,"type":"VEC3","count":3)"),
+                    "accessors[0].bufferView: is 3; the file has 1");
+    expectGltfFault(accessor(R"("bufferView":0,"byteOffset":1,"componentType":5126,"type":"VEC3","count":3)"),
+                    "run over");
+    expectGltfFault(
+        accessor(R"("bufferView":0,"byteOffset":18446744073709551615,"componentType":5126,"type":"VEC3","count":3)"),
+        "run over");
+    expectGltfFault(accessor(R"("bufferView":0,"componentType":5124,"type":"VEC3","count":3)"),
+                    "componentType: is 5124");
     expectGltfFault(accessor(R"("bufferView":0,"componentType":5126,"type":"VEC2","count":3)"), "must be VEC3");
-    expectGltfFault(view(R"("buffer":0,"byteLength":37)"), "bufferViews[0]: byteOffset 0 + byteLength 37 run over the buffer's 36 bytes");
+    expectGltfFault(view(R"("buffer":0,"byteLength":37)"),
+                    "bufferViews[0]: byteOffset 0 + byteLength 37 run over the buffer's 36 bytes");
     expectGltfFault(view(R"("buffer":0,"byteOffset":18446744073709551615,"byteLength":36)"), "run over the buffer's");
     expectGltfFault(view(R"("buffer":1,"byteLength":36)"), "bufferViews[0].buffer: is 1; the file has 1");
     expectGltfFault(view(R"("buffer":-1,"byteLength":36)"), "bufferViews[0].buffer: is -1");
-    expectGltfFault(view(R"("buffer":0,"byteLength":36,"byteStride":8)"), "byteStride is 8; its elements have 12 bytes");
+    expectGltfFault(view(R"("buffer":0,"byteLength":36,"byteStride":8)"),
+                    "byteStride is 8; its elements have 12 bytes");
     expectGltfFault(view(R"("buffer":0,"byteLength":36,"byteStride":16)"), "run over");
-    expectGltfFault(R"("nodes":[{"mesh":0}],"meshes":[{"primitives":[{"attributes":{"POSITION":9}}]}])", "accessors[9]: does not exist");
-    expectGltfFault(R"("nodes":[{"mesh":0}],"meshes":[{"primitives":[{"attributes":{"POSITION":-2}}]}])", "accessors[-2]: does not exist");
+    expectGltfFault(R"("nodes":[{"mesh":0}],"meshes":[{"primitives":[{"attributes":{"POSITION":9}}]}])",
+                    "accessors[9]: does not exist");
+    expectGltfFault(R"("nodes":[{"mesh":0}],"meshes":[{"primitives":[{"attributes":{"POSITION":-2}}]}])",
+                    "accessors[-2]: does not exist");
 }
 
 TEST_F(BadInputTest, SparseIndicesAreChecked) {
     const auto sparse = [](const std::string& fields) {
         return triangle(R"({"componentType":5126,"type":"VEC3","count":2,"sparse":{)" + fields + "}}", good_view);
     };
-    expectGltfFault(sparse(R"("count":1,"indices":{"bufferView":0,"componentType":5125,"byteOffset":12},"values":{"bufferView":0})"),
-                    "sparse.indices: hold 1065353216; the accessor has 2 elements");
-    expectGltfFault(sparse(R"("count":-1,"indices":{"bufferView":0,"componentType":5121},"values":{"bufferView":0})"), "negative");
-    expectGltfFault(sparse(R"("count":99,"indices":{"bufferView":0,"componentType":5121},"values":{"bufferView":0})"), "run over");
-    expectGltfFault(sparse(R"("count":1,"indices":{"bufferView":0,"componentType":5126},"values":{"bufferView":0})"), "may be 5121");
-    expectGltfFault(sparse(R"("count":1,"indices":{"bufferView":7,"componentType":5121},"values":{"bufferView":0})"), "bufferView: is 7");
+    expectGltfFault(
+        sparse(
+            R"("count":1,"indices":{"bufferView":0,"componentType":5125,"byteOffset":12},"values":{"bufferView":0})"),
+        "sparse.indices: hold 1065353216; the accessor has 2 elements");
+    expectGltfFault(sparse(R"("count":-1,"indices":{"bufferView":0,"componentType":5121},"values":{"bufferView":0})"),
+                    "negative");
+    expectGltfFault(sparse(R"("count":99,"indices":{"bufferView":0,"componentType":5121},"values":{"bufferView":0})"),
+                    "run over");
+    expectGltfFault(sparse(R"("count":1,"indices":{"bufferView":0,"componentType":5126},"values":{"bufferView":0})"),
+                    "may be 5121");
+    expectGltfFault(sparse(R"("count":1,"indices":{"bufferView":7,"componentType":5121},"values":{"bufferView":0})"),
+                    "bufferView: is 7");
 }
 
 TEST_F(BadInputTest, IndicesOfTrianglesAndAttributesOfOtherLengthsAreRefused) {
@@ -129,7 +149,8 @@ TEST_F(BadInputTest, IndicesOfTrianglesAndAttributesOfOtherLengthsAreRefused) {
 
 TEST_F(BadInputTest, WhatCannotBeReadIsNamedWithWhatToDo) {
     const auto require = [this](const std::string& name, const std::string& part) {
-        expectGltfFault(R"("extensionsUsed":[")" + name + R"("],"extensionsRequired":[")" + name + "\"]", name + " cannot be read; " + part);
+        expectGltfFault(R"("extensionsUsed":[")" + name + R"("],"extensionsRequired":[")" + name + "\"]",
+                        name + " cannot be read; " + part);
     };
     require("KHR_draco_mesh_compression", "decompress it: `gltf-transform copy");
     require("EXT_meshopt_compression", "decompress it");
@@ -140,10 +161,11 @@ TEST_F(BadInputTest, WhatCannotBeReadIsNamedWithWhatToDo) {
 }
 
 TEST_F(BadInputTest, AFileCutOffAnywhereIsAnErrorOrAScene) {
-    const std::string whole = glb(R"({"asset":{"version":"2.0"},"nodes":[{"mesh":0}],"meshes":[{"primitives":[{"attributes":{"POSITION":0}}]}],
+    const std::string whole = glb(
+        R"({"asset":{"version":"2.0"},"nodes":[{"mesh":0}],"meshes":[{"primitives":[{"attributes":{"POSITION":0}}]}],
         "accessors":[{"bufferView":0,"componentType":5126,"type":"VEC3","count":3}],
         "bufferViews":[{"buffer":0,"byteLength":36}],"buffers":[{"byteLength":36}]})",
-                                  bytesOf<float>({0, 0, 0, 1, 0, 0, 0, 1, 0}));
+        bytesOf<float>({0, 0, 0, 1, 0, 0, 0, 1, 0}));
     EXPECT_EQ(loadScene(write("whole.glb", whole))->triangleCount(), 1u);
     for (size_t size = 0; size < whole.size(); ++size)
         EXPECT_THROW(loadScene(write("cut.glb", whole.substr(0, size))), types::ConfigError) << size;
@@ -169,7 +191,8 @@ TEST_F(BadInputTest, DamagedBytesGiveAnErrorOrASoundScene) {
         for (size_t round = 0; round < rounds; ++round) {
             std::string damaged = text;
             for (unsigned flips = 1 + random() % 4; flips > 0; --flips)
-                damaged[random() % damaged.size()] = random() % 2 ? static_cast<char>(random()) : static_cast<char>('0' + random() % 10);
+                damaged[random() % damaged.size()] =
+                    random() % 2 ? static_cast<char>(random()) : static_cast<char>('0' + random() % 10);
             try {
                 expectSound(*loadScene(write(text.starts_with("glTF") ? "fuzz.glb" : "fuzz.gltf", damaged)));
                 ++scenes;

@@ -1,8 +1,7 @@
-#include "components/scene/Clusters.hpp"
-
 #include <array>
 #include <set>
 
+#include "components/scene/Clusters.hpp"
 #include "tests/scene/SceneFiles.hpp"
 
 namespace insonify::scene {
@@ -37,7 +36,8 @@ std::multiset<std::array<float, 7>> triangles(const types::Mesh& mesh) {
     for (const types::Cluster& cluster : mesh.clusters)
         for (size_t i = cluster.first_index; i < cluster.first_index + cluster.index_count; i += 3) {
             std::array<std::array<float, 2>, 3> corners;
-            for (size_t k = 0; k < 3; ++k) corners[k] = {mesh.positions[mesh.indices[i + k]].x, mesh.positions[mesh.indices[i + k]].y};
+            for (size_t k = 0; k < 3; ++k)
+                corners[k] = {mesh.positions[mesh.indices[i + k]].x, mesh.positions[mesh.indices[i + k]].y};
             std::ranges::rotate(corners, std::ranges::min_element(corners));
             all.insert({corners[0][0], corners[0][1], corners[1][0], corners[1][1], corners[2][0], corners[2][1],
                         static_cast<float>(cluster.material)});

@@ -10,7 +10,8 @@ namespace {
 class CorpusTest : public ::testing::Test {
 protected:
     void SetUp() override {
-        if (!std::filesystem::is_directory(models_)) GTEST_SKIP() << "NO MODELS AT " << models_ << ": NOTHING WAS TESTED";
+        if (!std::filesystem::is_directory(models_))
+            GTEST_SKIP() << "NO MODELS AT " << models_ << ": NOTHING WAS TESTED";
     }
     types::GeometryPtr load(const std::string& file) const { return loadScene(models_ / file); }
     /** Every glTF file below a folder ends in a sound scene or a ConfigError; returns the number of scenes. */
@@ -58,7 +59,9 @@ TEST_F(CorpusTest, KnownModelsHaveTheirTrianglesAndSize) {
         const auto geometry = load(file);
         const Bounds bounds = boundsOf(*geometry);
         EXPECT_EQ(geometry->triangleCount(), expected.first) << file;
-        EXPECT_LT(glm::distance(bounds.low, expected.second.low) + glm::distance(bounds.high, expected.second.high), 1e-6) << file;
+        EXPECT_LT(glm::distance(bounds.low, expected.second.low) + glm::distance(bounds.high, expected.second.high),
+                  1e-6)
+            << file;
     }
 }
 
@@ -69,7 +72,8 @@ TEST_F(CorpusTest, OneCubeInFiveEncodingsHasTheSameSurface) {
         double area = 0, volume = 0;
         for (size_t i = 0; i < corners.size(); i += 3) {
             area += glm::length(glm::cross(corners[i + 1] - corners[i], corners[i + 2] - corners[i])) / 2;
-            volume += glm::dot(corners[i], glm::cross(corners[i + 1], corners[i + 2])) / 6;  // positive: faces look outward
+            volume +=
+                glm::dot(corners[i], glm::cross(corners[i + 1], corners[i + 2])) / 6;  // positive: faces look outward
         }
         EXPECT_NEAR(area, 6, 1e-6) << name;
         EXPECT_NEAR(volume, 1, 1e-6) << name;
@@ -90,7 +94,9 @@ TEST_F(CorpusTest, TheArrowsOfTheOrientationTestPointAtTheirTargets) {
     const std::map<std::string, int> axes = {{"X", 0}, {"Y", 2}, {"Z", 1}};  // y of the file is z of the world
     for (const auto& [letter, axis] : axes)
         for (const char* number : {"1", "2"})
-            EXPECT_GT(glm::dot(wayFromAxis("Arrow" + letter + number, axis), wayFromAxis("Target" + letter + number, axis)), 0.98)  // centres of boxes are 10 degrees off
+            EXPECT_GT(
+                glm::dot(wayFromAxis("Arrow" + letter + number, axis), wayFromAxis("Target" + letter + number, axis)),
+                0.98)  // centres of boxes are 10 degrees off
                 << letter << number;
 }
 

@@ -5,30 +5,36 @@ namespace insonify::scene {
 namespace {
 
 /** Two pixels side by side: (255, 128, 128) and (10, 20, 30). */
-const std::string png = "data:image/png;base64,iVBORw0KGgoAAAANSUhEUgAAAAIAAAABCAIAAAB7QOjdAAAAD0lEQVR4nGP439DAJSIHAArlAjybukczAAAAAElFTkSuQmCC";
+const std::string png =
+    "data:image/"
+    "png;base64,iVBORw0KGgoAAAANSUhEUgAAAAIAAAABCAIAAAB7QOjdAAAAD0lEQVR4nGP439DAJSIHAArlAjybukczAAAAAElFTkSuQmCC";
 class GltfMaterialsTest : public SceneFiles {
 protected:
     types::Material acoustics(const std::string& json) const {
-        return load(R"("materials":[{"name":"m","doubleSided":true,"extras":{"acoustics":)" + json + "}}]")->materials.at(0);
+        return load(R"("materials":[{"name":"m","doubleSided":true,"extras":{"acoustics":)" + json + "}}]")
+            ->materials.at(0);
     }
     std::string faultOfAcoustics(const std::string& json) const {
         return faultOfGltf(R"("materials":[{},{"extras":{"acoustics":)" + json + "}}]");
     }
-    /** A unit square whose uvs are its x and -y (v down), with a normal map from `image`; `info` is inside normalTexture,
-     *  `attributes` beside POSITION and TEXCOORD_0 (accessor 1). */
-    types::GeometryPtr mapped(const std::string& image, const std::string& info = "", const std::string& attributes = "") const {
-        return load(R"("nodes":[{"mesh":0}],"meshes":[{"primitives":[{"material":0,"attributes":{"POSITION":0,"TEXCOORD_0":1)" +
-                    attributes + R"(}}]}],"materials":[{"name":"wall","normalTexture":{"index":0)" + info + R"(}}],
-            "textures":[{"source":0,"sampler":0}],"samplers":[{"wrapS":33071}],"images":[{"uri":")" + image + R"("}],
+    /** A unit square whose uvs are its x and -y (v down), with a normal map from `image`; `info` is inside
+     * normalTexture, `attributes` beside POSITION and TEXCOORD_0 (accessor 1). */
+    types::GeometryPtr mapped(const std::string& image, const std::string& info = "",
+                              const std::string& attributes = "") const {
+        return load(
+            R"("nodes":[{"mesh":0}],"meshes":[{"primitives":[{"material":0,"attributes":{"POSITION":0,"TEXCOORD_0":1)" +
+            attributes + R"(}}]}],"materials":[{"name":"wall","normalTexture":{"index":0)" + info + R"(}}],
+            "textures":[{"source":0,"sampler":0}],"samplers":[{"wrapS":33071}],"images":[{"uri":")" +
+            image + R"("}],
             "accessors":[{"bufferView":0,"componentType":5126,"type":"VEC3","count":3},
                          {"bufferView":1,"componentType":5126,"type":"VEC2","count":3},
                          {"bufferView":2,"componentType":5126,"type":"VEC3","count":3},
                          {"bufferView":3,"componentType":5126,"type":"VEC4","count":3}],
             "bufferViews":[{"buffer":0,"byteLength":36},{"buffer":0,"byteOffset":36,"byteLength":24},
                            {"buffer":0,"byteOffset":60,"byteLength":36},{"buffer":0,"byteOffset":96,"byteLength":48}],)" +
-                    buffers(bytesOf<float>({0, 0, 0, 1, 0, 0, 0, 1, 0}) + bytesOf<float>({0, 1, 1, 1, 0, 0}) +
-                            bytesOf<float>({0, 0, 2, 0, 0, 2, 0, 0, 2}) +
-                            bytesOf<float>({0, 1, 0, -1, 0, 1, 0, -1, 0, 1, 0, -1})));
+            buffers(bytesOf<float>({0, 0, 0, 1, 0, 0, 0, 1, 0}) + bytesOf<float>({0, 1, 1, 1, 0, 0}) +
+                    bytesOf<float>({0, 0, 2, 0, 0, 2, 0, 0, 2}) +
+                    bytesOf<float>({0, 1, 0, -1, 0, 1, 0, -1, 0, 1, 0, -1})));
     }
 };
 
@@ -40,7 +46,8 @@ TEST_F(GltfMaterialsTest, WithoutExtrasAMaterialIsMediumSand) {
 }
 
 TEST_F(GltfMaterialsTest, AcousticNumbersAreTaken) {
-    const types::Material m = acoustics(R"({"lambert_db":-12,"reflection":-0.5,"roughness_slope":0.2,"reflectivity":0.25})");
+    const types::Material m =
+        acoustics(R"({"lambert_db":-12,"reflection":-0.5,"roughness_slope":0.2,"reflectivity":0.25})");
     EXPECT_TRUE(m.has_acoustics && m.double_sided);
     EXPECT_FLOAT_EQ(m.lambert_db, -12);
     EXPECT_FLOAT_EQ(m.reflection, -0.5);
@@ -112,8 +119,8 @@ TEST_F(GltfMaterialsTest, WithoutTheTextureCoordinatesTheMapIsLeftOut) {
 }
 
 TEST_F(GltfMaterialsTest, AnImageThatIsNotThereOrDamagedIsANotice) {
-    for (const std::string& image : {std::string("nowhere.png"), std::string("https://example.org/a.png"), png.substr(0, 90),
-                                     std::string("data:image/png;base64,AAAA")}) {
+    for (const std::string& image : {std::string("nowhere.png"), std::string("https://example.org/a.png"),
+                                     png.substr(0, 90), std::string("data:image/png;base64,AAAA")}) {
         const auto geometry = mapped(image);
         EXPECT_EQ(geometry->triangleCount(), 1u);
         EXPECT_TRUE(geometry->normal_maps.empty());
@@ -132,7 +139,8 @@ TEST_F(GltfMaterialsTest, IndicesOfTexturesImagesSamplersAndMaterialsAreChecked)
     const std::string material = R"("materials":[{"normalTexture":{"index":0}}])";
     EXPECT_NE(faultOfGltf(material).find("textures[0]: does not exist"), std::string::npos);
     EXPECT_NE(faultOfGltf(material + R"(,"textures":[{"source":4}])").find("images[4]"), std::string::npos);
-    EXPECT_NE(faultOfGltf(material + R"(,"textures":[{"source":0,"sampler":2}],"images":[{"uri":")" + png + "\"}]").find("samplers[2]"),
+    EXPECT_NE(faultOfGltf(material + R"(,"textures":[{"source":0,"sampler":2}],"images":[{"uri":")" + png + "\"}]")
+                  .find("samplers[2]"),
               std::string::npos);
 }
 

@@ -9,19 +9,24 @@ namespace {
 /** One triangle (0,0,0) (1,0,0) (0,2,0) as mesh 0. */
 const std::string triangle = R"("meshes":[{"name":"tri","primitives":[{"attributes":{"POSITION":0}}]}],
     "accessors":[{"bufferView":0,"componentType":5126,"type":"VEC3","count":3}],
-    "bufferViews":[{"buffer":0,"byteLength":36}],)" + buffers(bytesOf<float>({0, 0, 0, 1, 0, 0, 0, 2, 0}));
+    "bufferViews":[{"buffer":0,"byteLength":36}],)" +
+                             buffers(bytesOf<float>({0, 0, 0, 1, 0, 0, 0, 2, 0}));
 
 class GltfNodesTest : public SceneFiles {
 protected:
     types::GeometryPtr nodes(const std::string& json) const { return load(R"("nodes":)" + json + "," + triangle); }
-    std::string faultOfNodes(const std::string& json) const { return faultOfGltf(R"("nodes":)" + json + "," + triangle); }
+    std::string faultOfNodes(const std::string& json) const {
+        return faultOfGltf(R"("nodes":)" + json + "," + triangle);
+    }
 };
 
 glm::dvec3 worldPoint(const types::Object& object, glm::dvec3 point) {
     return glm::dvec3(object.world_from_object * glm::dvec4(point, 1));
 }
 
-void expectNear(glm::dvec3 a, glm::dvec3 b) { EXPECT_LT(glm::distance(a, b), 1e-12) << a.x << " " << a.y << " " << a.z; }
+void expectNear(glm::dvec3 a, glm::dvec3 b) {
+    EXPECT_LT(glm::distance(a, b), 1e-12) << a.x << " " << a.y << " " << a.z;
+}
 
 TEST_F(GltfNodesTest, YUpBecomesZUp) {
     const auto geometry = nodes(R"([{"mesh":0,"translation":[1,2,3]}])");
@@ -30,7 +35,8 @@ TEST_F(GltfNodesTest, YUpBecomesZUp) {
 }
 
 TEST_F(GltfNodesTest, TranslationRotationAndScaleComposeDownTheTree) {
-    const auto geometry = nodes(R"([{"children":[1],"translation":[10,0,0],"rotation":[0,0,0.7071067811865476,0.7071067811865476]},
+    const auto geometry =
+        nodes(R"([{"children":[1],"translation":[10,0,0],"rotation":[0,0,0.7071067811865476,0.7071067811865476]},
                                     {"mesh":0,"translation":[1,0,0],"scale":[2,3,4]}])");
     // x of the child is y of the file, which is z of the world
     expectNear(worldPoint(geometry->objects[0], {1, 0, 0}), {10, 0, 3});
@@ -64,11 +70,13 @@ TEST_F(GltfNodesTest, NodesShareAMeshAndHaveNamesOfTheirOwn) {
 }
 
 TEST_F(GltfNodesTest, InstancesOfAnExtensionAreObjects) {
-    const auto geometry = load(R"("extensionsUsed":["EXT_mesh_gpu_instancing"],"extensionsRequired":["EXT_mesh_gpu_instancing"],
+    const auto geometry =
+        load(R"("extensionsUsed":["EXT_mesh_gpu_instancing"],"extensionsRequired":["EXT_mesh_gpu_instancing"],
         "nodes":[{"mesh":0,"name":"rocks","extensions":{"EXT_mesh_gpu_instancing":{"attributes":{"TRANSLATION":0}}}}],
         "meshes":[{"primitives":[{"attributes":{"POSITION":0}}]}],
         "accessors":[{"bufferView":0,"componentType":5126,"type":"VEC3","count":3}],
-        "bufferViews":[{"buffer":0,"byteLength":36}],)" + buffers(bytesOf<float>({0, 0, 0, 1, 0, 0, 0, 2, 0})));
+        "bufferViews":[{"buffer":0,"byteLength":36}],)" +
+             buffers(bytesOf<float>({0, 0, 0, 1, 0, 0, 0, 2, 0})));
     ASSERT_EQ(geometry->objects.size(), 3u);
     EXPECT_EQ(geometry->objects[1].name, "rocks[1]");
     expectNear(worldPoint(geometry->objects[2], {0, 0, 0}), {0, 0, 2});
@@ -76,7 +84,8 @@ TEST_F(GltfNodesTest, InstancesOfAnExtensionAreObjects) {
 
 TEST_F(GltfNodesTest, OnlyTheDefaultSceneIsLoaded) {
     const auto geometry = load(R"("scene":1,"scenes":[{"nodes":[0,1]},{"nodes":[1]}],
-        "nodes":[{"mesh":0,"name":"a"},{"mesh":0,"name":"b"}],)" + triangle);
+        "nodes":[{"mesh":0,"name":"a"},{"mesh":0,"name":"b"}],)" +
+                               triangle);
     ASSERT_EQ(geometry->objects.size(), 1u);
     EXPECT_EQ(geometry->objects[0].name, "b");
 }
@@ -89,7 +98,8 @@ TEST_F(GltfNodesTest, AChainOfManyNodesDoesNotOverflowTheStack) {
 }
 
 TEST_F(GltfNodesTest, CyclesSecondParentsAndWrongIndicesAreRefused) {
-    EXPECT_NE(faultOfGltf(R"("scenes":[{"nodes":[0]}],"nodes":[{"children":[0]}])").find("reached twice"), std::string::npos);
+    EXPECT_NE(faultOfGltf(R"("scenes":[{"nodes":[0]}],"nodes":[{"children":[0]}])").find("reached twice"),
+              std::string::npos);
     EXPECT_NE(faultOfNodes(R"([{"children":[2]},{"children":[2]},{"mesh":0}])").find("nodes[2]"), std::string::npos);
     EXPECT_NE(faultOfNodes(R"([{"children":[7]}])").find("nodes[7]: does not exist"), std::string::npos);
     EXPECT_NE(faultOfNodes(R"([{"mesh":5}])").find("nodes[0].mesh: is 5"), std::string::npos);
@@ -97,10 +107,12 @@ TEST_F(GltfNodesTest, CyclesSecondParentsAndWrongIndicesAreRefused) {
 }
 
 TEST_F(GltfNodesTest, TransformsThatAreNoneAreRefused) {
-    EXPECT_NE(faultOfNodes(R"([{"mesh":0,"translation":[1,2]}])").find("has 2 numbers; must have 3"), std::string::npos);
-    EXPECT_NE(faultOfNodes(R"([{"mesh":0,"rotation":[0,0,0,0]}])").find("has no length"), std::string::npos);
-    EXPECT_NE(faultOfNodes(R"([{"children":[1],"scale":[1e300,1,1]},{"mesh":0,"scale":[1e300,1,1]}])").find("not finite"),
+    EXPECT_NE(faultOfNodes(R"([{"mesh":0,"translation":[1,2]}])").find("has 2 numbers; must have 3"),
               std::string::npos);
+    EXPECT_NE(faultOfNodes(R"([{"mesh":0,"rotation":[0,0,0,0]}])").find("has no length"), std::string::npos);
+    EXPECT_NE(
+        faultOfNodes(R"([{"children":[1],"scale":[1e300,1,1]},{"mesh":0,"scale":[1e300,1,1]}])").find("not finite"),
+        std::string::npos);
 }
 
 TEST_F(GltfNodesTest, AnObjectOfScaleZeroIsLeftOutWithANotice) {
@@ -121,7 +133,8 @@ TEST_F(GltfNodesTest, SkinsMorphsAndAnimationsRestWithANotice) {
 TEST_F(GltfNodesTest, APartIsTheNodeWithoutItsPlaceAndRotationButWithItsScale) {
     const Scene scene = readScene(write("case.gltf", gltf(R"("nodes":[
         {"name":"boat","mesh":0,"translation":[9,9,9],"rotation":[0.6,0,0,0.8],"scale":[-2,3,4],"children":[1]},
-        {"name":"mast","mesh":0,"translation":[0,5,0]},{"name":"quay","mesh":0}],)" + triangle)));
+        {"name":"mast","mesh":0,"translation":[0,5,0]},{"name":"quay","mesh":0}],)" +
+                                                          triangle)));
     const std::vector<Part> parts = partsOf(scene, findNode(scene, "boat"));
     ASSERT_EQ(parts.size(), 2u);
     EXPECT_EQ(scene.geometry->objects[parts[1].object].name, "mast");
@@ -132,7 +145,8 @@ TEST_F(GltfNodesTest, APartIsTheNodeWithoutItsPlaceAndRotationButWithItsScale) {
 
 TEST_F(GltfNodesTest, AMatrixNodeKeepsItsMirrorAsAPart) {
     const Scene scene = readScene(write("case.gltf", gltf(R"("nodes":[
-        {"name":"m","mesh":0,"matrix":[-2,0,0,0, 0,1,0,0, 0,0,1,0, 3,4,5,1]}],)" + triangle)));
+        {"name":"m","mesh":0,"matrix":[-2,0,0,0, 0,1,0,0, 0,0,1,0, 3,4,5,1]}],)" +
+                                                          triangle)));
     const Part part = partsOf(scene, 0).at(0);
     expectNear(glm::dvec3(part.body_from_object * glm::dvec4(1, 1, 0, 1)), {-2, 0, 1});
 }

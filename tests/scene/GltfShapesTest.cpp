@@ -14,8 +14,9 @@ protected:
         return load(one_node + R"("meshes":[{"primitives":[{"attributes":{"POSITION":0},"indices":1,"mode":)" +
                     std::to_string(mode) + R"(}]}],"accessors":[
                     {"bufferView":0,"componentType":5126,"type":"VEC3","count":4},
-                    {"bufferView":1,"componentType":)" + std::to_string(component_type) + R"(,"type":"SCALAR","count":)" +
-                    std::to_string(count) + R"(}],"bufferViews":[{"buffer":0,"byteLength":48},{"buffer":0,"byteOffset":48,"byteLength":)" +
+                    {"bufferView":1,"componentType":)" +
+                    std::to_string(component_type) + R"(,"type":"SCALAR","count":)" + std::to_string(count) +
+                    R"(}],"bufferViews":[{"buffer":0,"byteLength":48},{"buffer":0,"byteOffset":48,"byteLength":)" +
                     std::to_string(indices.size()) + "}]," + buffers(square + indices));
     }
     /** Area of the triangles with the sign of their z-up normal's y: -1 for a unit square that faced +z in the file. */
@@ -63,7 +64,8 @@ TEST_F(GltfShapesTest, PointsAndLinesAreLeftOutWithANotice) {
 TEST_F(GltfShapesTest, TrianglesNeedNoIndices) {
     const auto geometry = load(one_node + R"("meshes":[{"primitives":[{"attributes":{"POSITION":0}}]}],
         "accessors":[{"bufferView":0,"componentType":5126,"type":"VEC3","count":3}],
-        "bufferViews":[{"buffer":0,"byteLength":48}],)" + buffers(square));
+        "bufferViews":[{"buffer":0,"byteLength":48}],)" +
+                               buffers(square));
     EXPECT_EQ(geometry->triangleCount(), 1u);
     EXPECT_EQ(geometry->materials.size(), 1u);
     EXPECT_FALSE(geometry->materials[0].has_acoustics);
@@ -78,10 +80,11 @@ TEST_F(GltfShapesTest, InterleavedAttributesAreReadWithTheirStride) {
 }
 
 TEST_F(GltfShapesTest, SparseValuesReplaceThoseOfTheBaseAndZerosStandForAnAbsentOne) {
-    const std::string sparse = R"("sparse":{"count":2,"indices":{"bufferView":1,"componentType":5121},"values":{"bufferView":2}}}],
+    const std::string sparse =
+        R"("sparse":{"count":2,"indices":{"bufferView":1,"componentType":5121},"values":{"bufferView":2}}}],
         "bufferViews":[{"buffer":0,"byteLength":48},{"buffer":0,"byteOffset":48,"byteLength":2},
                        {"buffer":0,"byteOffset":52,"byteLength":24}],)" +
-                               buffers(square + bytesOf<uint8_t>({1, 2, 0, 0}) + bytesOf<float>({5, 0, 0, 0, 7, 0}));
+        buffers(square + bytesOf<uint8_t>({1, 2, 0, 0}) + bytesOf<float>({5, 0, 0, 0, 7, 0}));
     const std::string mesh = one_node + R"("meshes":[{"primitives":[{"attributes":{"POSITION":0}}]}],"accessors":[{)";
     const std::string accessor = R"("componentType":5126,"type":"VEC3","count":3,)";
     EXPECT_EQ(boundsOf(*load(mesh + R"("bufferView":0,)" + accessor + sparse)).high, glm::dvec3(5, 0, 7));
@@ -97,11 +100,13 @@ TEST_F(GltfShapesTest, AZeroFilledMeshHasNoAreaAndIsAnEmptySea) {
 
 TEST_F(GltfShapesTest, QuantisedPositionsAreScaledOnlyWhenNormalised) {
     const auto quantised = [this](const char* normalized) {
-        return boundsOf(*load(one_node + R"("extensionsUsed":["KHR_mesh_quantization"],"extensionsRequired":["KHR_mesh_quantization"],
+        return boundsOf(*load(
+            one_node + R"("extensionsUsed":["KHR_mesh_quantization"],"extensionsRequired":["KHR_mesh_quantization"],
             "meshes":[{"primitives":[{"attributes":{"POSITION":0}}]}],
-            "accessors":[{"bufferView":0,"componentType":5122,"normalized":)" + std::string(normalized) +
-                              R"(,"type":"VEC3","count":3}],"bufferViews":[{"buffer":0,"byteLength":24,"byteStride":8}],)" +
-                              buffers(bytesOf<int16_t>({0, 0, 0, 0, 32767, 0, 0, 0, 0, -32768, 0, 0}))));
+            "accessors":[{"bufferView":0,"componentType":5122,"normalized":)" +
+            std::string(normalized) +
+            R"(,"type":"VEC3","count":3}],"bufferViews":[{"buffer":0,"byteLength":24,"byteStride":8}],)" +
+            buffers(bytesOf<int16_t>({0, 0, 0, 0, 32767, 0, 0, 0, 0, -32768, 0, 0}))));
     };
     EXPECT_EQ(quantised("true").high.x, 1);
     EXPECT_EQ(quantised("true").low.z, -1);

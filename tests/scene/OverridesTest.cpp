@@ -1,5 +1,4 @@
 #include "components/scene/Overrides.hpp"
-
 #include "tests/scene/SceneFiles.hpp"
 
 namespace insonify::scene {
@@ -13,7 +12,8 @@ protected:
             "nodes":[{"mesh":0,"name":"near"},{"name":"group","children":[2]},{"mesh":0,"name":"far"}],
             "materials":[{"name":"stone"}],"meshes":[{"primitives":[{"attributes":{"POSITION":0},"material":0}]}],
             "accessors":[{"bufferView":0,"componentType":5126,"type":"VEC3","count":3}],
-            "bufferViews":[{"buffer":0,"byteLength":36}],)" + buffers(bytesOf<float>({0, 0, 0, 1, 0, 0, 0, 1, 0})))));
+            "bufferViews":[{"buffer":0,"byteLength":36}],)" +
+                                                  buffers(bytesOf<float>({0, 0, 0, 1, 0, 0, 0, 1, 0})))));
     }
     static Acoustics lambert(double db) {
         Acoustics acoustics;

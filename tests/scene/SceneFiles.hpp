@@ -30,7 +30,8 @@ inline std::string base64(const std::string& bytes) {
     std::string text;
     for (size_t i = 0; i < bytes.size(); i += 3) {
         uint32_t group = 0;
-        for (size_t k = 0; k < 3; ++k) group = group << 8 | (i + k < bytes.size() ? static_cast<uint8_t>(bytes[i + k]) : 0u);
+        for (size_t k = 0; k < 3; ++k)
+            group = group << 8 | (i + k < bytes.size() ? static_cast<uint8_t>(bytes[i + k]) : 0u);
         for (size_t k = 0; k < 4; ++k) text += i + k <= bytes.size() ? digits[group >> (18 - 6 * k) & 63] : '=';
     }
     return text;
@@ -147,7 +148,8 @@ inline void expectSound(const types::Geometry& geometry) {
 }
 
 inline bool hasNotice(const types::Geometry& geometry, const std::string& part) {
-    return std::ranges::any_of(geometry.notices, [&](const std::string& notice) { return notice.find(part) != std::string::npos; });
+    return std::ranges::any_of(geometry.notices,
+                               [&](const std::string& notice) { return notice.find(part) != std::string::npos; });
 }
 
 }  // namespace insonify::scene

@@ -1,6 +1,5 @@
-#include "components/scene/SceneTask.hpp"
-
 #include "components/framework/Activity.hpp"
+#include "components/scene/SceneTask.hpp"
 #include "tests/scene/SceneFiles.hpp"
 #include "tests/support/Ports.hpp"
 #include "types/Angle.hpp"
@@ -16,7 +15,9 @@ protected:
                      {"mesh":0,"name":"mast","translation":[0,5,0]},{"mesh":0,"name":"quay"}],
             "materials":[{"name":"wood"}],"meshes":[{"primitives":[{"attributes":{"POSITION":0},"material":0}]}],
             "accessors":[{"bufferView":0,"componentType":5126,"type":"VEC3","count":3}],
-            "bufferViews":[{"buffer":0,"byteLength":36}],)" + buffers(bytesOf<float>({0, 0, 0, 1, 0, 0, 0, 1, 0})))).string();
+            "bufferViews":[{"buffer":0,"byteLength":36}],)" +
+                                                  buffers(bytesOf<float>({0, 0, 0, 1, 0, 0, 0, 1, 0}))))
+                           .string();
         vehicle_.port.connectTo(task_.pose, framework::ConnPolicy::buffer(8));
         task_.snapshot.connectTo(out_.port, framework::ConnPolicy::buffer(8));
     }
@@ -139,7 +140,8 @@ TEST_F(SceneTaskTest, ANodesPoseDoesNotTrigger) {
 TEST_F(SceneTaskTest, AnUnusablePoseIsAnErrorUntilTheNextGoodOne) {
     start();
     const double nan = types::Pose::unknown;
-    for (const types::Pose& bad : {at(1, {nan, 0, 0}), at(1, {0, 0, 0}, {0, 0, 0, 0}), at(1, {0, 0, 0}, {nan, 0, 0, 0})}) {
+    for (const types::Pose& bad :
+         {at(1, {nan, 0, 0}), at(1, {0, 0, 0}, {0, 0, 0, 0}), at(1, {0, 0, 0}, {nan, 0, 0, 0})}) {
         EXPECT_EQ(ping(bad), nullptr);
         EXPECT_EQ(task_.state(), framework::TaskState::RunTimeError);
         EXPECT_NE(task_.lastError().find("scene.pose: pose dropped"), std::string::npos);

@@ -1,9 +1,9 @@
-#include "components/scene/Tangents.hpp"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <glm/geometric.hpp>
+
+#include "components/scene/Tangents.hpp"
 
 namespace insonify::scene {
 namespace {
