@@ -158,7 +158,8 @@ glm::vec2 pairOf(const tinygltf::Value& object, const char* key, glm::vec2 other
     return {static_cast<float>(array.Get(0).GetNumberAsDouble()), static_cast<float>(array.Get(1).GetNumberAsDouble())};
 }
 
-/** KHR_texture_transform: scaled, then turned counter-clockwise as seen (v points down), then shifted. */
+/** KHR_texture_transform: scaled, then turned counter-clockwise as seen, where v points down, then shifted. The listing
+ *  in the specification turns the other way (KhronosGroup/glTF issue 1563). */
 NormalMapping mapping(const tinygltf::NormalTextureInfo& texture) {
     NormalMapping result{texture.texCoord};
     const auto found = texture.extensions.find("KHR_texture_transform");
