@@ -12,8 +12,12 @@
 
 namespace insonify::logger {
 
-template <class Types> struct AnyCarried;
-template <class... T> struct AnyCarried<std::tuple<T...>> { using type = std::variant<pocolog::Carried<T>...>; };
+template <class Types>
+struct AnyCarried;
+template <class... T>
+struct AnyCarried<std::tuple<T...>> {
+    using type = std::variant<pocolog::Carried<T>...>;
+};
 /** Any sample that a log takes, as it travels on ports. */
 using AnySample = AnyCarried<pocolog::SampleTypes>::type;
 
@@ -30,7 +34,8 @@ public:
     LogThread& operator=(const LogThread&) = delete;
 
     /** Takes a sample of a stream, received at that time. Throws std::runtime_error once the file has failed. */
-    template <class Sample> void push(size_t stream, types::Time received, Sample sample) {
+    template <class Sample>
+    void push(size_t stream, types::Time received, Sample sample) {
         Entry& entry = freeEntry();
         entry.stream = stream;
         entry.received = received;

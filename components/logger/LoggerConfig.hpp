@@ -13,7 +13,8 @@ struct LoggerConfig {
     int queue = 64;
     std::map<std::string, std::string> metadata;
 
-    template <class Self, class V> static void describe(Self& self, V& visit) {
+    template <class Self, class V>
+    static void describe(Self& self, V& visit) {
         using types::Field;
         visit(Field{"file", "", "log to write, relative to --out: NAME.0.log; an old one is replaced"}, self.file);
         visit(Field{"flush_period", "s", "at most this much is lost when the process is killed", 0.001, 1},
@@ -25,7 +26,8 @@ struct LoggerConfig {
     void check(types::Problems& problems) const {
         const std::filesystem::path path(file);
         if (path.extension() != ".log" || path.stem().empty())
-            problems.push_back({"file", "is '" + file + "'; it must be a file name that ends in .log, as in harbour.0.log"});
+            problems.push_back(
+                {"file", "is '" + file + "'; it must be a file name that ends in .log, as in harbour.0.log"});
     }
 };
 

@@ -8,7 +8,8 @@
 
 namespace insonify::logger {
 
-template <class T> class LoggerTask::TypedInlet final : public Inlet {
+template <class T>
+class LoggerTask::TypedInlet final : public Inlet {
 public:
     using Port = framework::InputPort<pocolog::Carried<T>>;
 

@@ -44,7 +44,8 @@ private:
         virtual void drain(LogThread& log, types::Time received) = 0;
         const std::string stream;  ///< "task.port" of the source.
     };
-    template <class T> class TypedInlet;
+    template <class T>
+    class TypedInlet;
 
     bool configureHook() override;
     bool startHook() override;

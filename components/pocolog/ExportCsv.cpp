@@ -22,7 +22,8 @@ public:
         file_ << header << '\n';
     }
     /** A line of numbers, each as short as it can be read back exactly; times with six decimals. */
-    template <class... Values> void line(types::Time time, const Values&... values) {
+    template <class... Values>
+    void line(types::Time time, const Values&... values) {
         text_.clear();
         fmt::format_to(std::back_inserter(text_), "{:.6f}", time.seconds());
         (fmt::format_to(std::back_inserter(text_), ",{}", values), ...);
@@ -46,11 +47,14 @@ void writePing(CsvFile& csv, const Sonar& ping, types::Time time) {
             csv.line(time, beam, ping.bearings[beam].rad, bin, ping.bins[beam * ping.bin_count + bin]);
 }
 
-template <Numeric T> void writeNumbers(Reader& log, const std::string& stream, const std::filesystem::path& path) {
+template <Numeric T>
+void writeNumbers(Reader& log, const std::string& stream, const std::filesystem::path& path) {
     CsvFile csv(path, "time,value");
     log.forEach<T>(stream, [&](const T& value, const SampleRef& at) {
-        if constexpr (std::is_same_v<T, bool>) csv.line(at.time, value ? 1 : 0);
-        else csv.line(at.time, value);
+        if constexpr (std::is_same_v<T, bool>)
+            csv.line(at.time, value ? 1 : 0);
+        else
+            csv.line(at.time, value);
     });
     csv.close();
 }

@@ -78,7 +78,8 @@ void writePoses(Reader& log, const std::string& stream, const Path& path) {
     npz.close();
 }
 
-template <Numeric T> void writeNumbers(Reader& log, const std::string& stream, const Path& path) {
+template <Numeric T>
+void writeNumbers(Reader& log, const std::string& stream, const Path& path) {
     using Stored = std::conditional_t<std::is_same_v<T, bool>, uint8_t, T>;
     std::vector<double> time;
     std::vector<Stored> value;
@@ -116,9 +117,10 @@ void checkShape(const Reader& log, const std::string& stream, const Sonar& ping)
 }
 
 void failExport(const Reader& log, const std::string& stream) {
-    throw types::ConfigError(log.path(), stream, "holds " + log.find(stream)->type +
-                                                     "; what can be exported are pings (/base/samples/Sonar), poses "
-                                                     "(/base/samples/RigidBodyState) and numbers");
+    throw types::ConfigError(log.path(), stream,
+                             "holds " + log.find(stream)->type +
+                                 "; what can be exported are pings (/base/samples/Sonar), poses "
+                                 "(/base/samples/RigidBodyState) and numbers");
 }
 
 }  // namespace insonify::pocolog

@@ -13,7 +13,8 @@ constexpr uint32_t index_version = 3;
 constexpr uint64_t stream_entry_size = 8 * sizeof(uint64_t);
 constexpr uint64_t sample_entry_size = 2 * sizeof(uint64_t);
 
-template <class T> void putBigEndian(std::vector<char>& bytes, T value) {
+template <class T>
+void putBigEndian(std::vector<char>& bytes, T value) {
     for (size_t i = sizeof value; i-- > 0;) bytes.push_back(static_cast<char>(value >> (8 * i)));
 }
 
@@ -61,7 +62,7 @@ std::vector<char> indexBytes(const std::vector<StreamIndex>& streams, uint64_t l
 }
 
 void writeIndex(const std::filesystem::path& log, const std::vector<StreamIndex>& streams) {
-    struct stat status{};
+    struct stat status {};
     if (stat(log.c_str(), &status) != 0) return;
     const types::Time modified{int64_t{status.st_mtim.tv_sec} * 1'000'000 + status.st_mtim.tv_nsec / 1000};
     const std::vector<char> bytes = indexBytes(streams, static_cast<uint64_t>(status.st_size), modified);

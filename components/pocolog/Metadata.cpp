@@ -8,10 +8,14 @@ namespace {
 std::string quoted(std::string_view value) {
     std::string text = "\"";
     for (const char c : value) {
-        if (c == '"' || c == '\\') text += {'\\', c};
-        else if (c == '\n') text += "\\n";
-        else if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f) text += fmt::format("\\x{:02x}", c);
-        else text += c;
+        if (c == '"' || c == '\\')
+            text += {'\\', c};
+        else if (c == '\n')
+            text += "\\n";
+        else if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f)
+            text += fmt::format("\\x{:02x}", c);
+        else
+            text += c;
     }
     return text + '"';
 }
@@ -37,7 +41,8 @@ std::string withoutEscapes(std::string_view text) {
         if (escape == 'x' && digits.size() == 2 && digits.find_first_not_of("0123456789abcdefABCDEF") == digits.npos) {
             value += hexadecimal(digits);
             i += 2;
-        } else value += escape == 'n' ? '\n' : escape == 't' ? '\t' : escape;
+        } else
+            value += escape == 'n' ? '\n' : escape == 't' ? '\t' : escape;
     }
     return value;
 }

@@ -18,7 +18,8 @@ constexpr uint32_t see_extra = 0xffffffff;
 /** Bytes of a zip record, little endian. */
 class Record {
 public:
-    template <class T> Record& put(T value) {
+    template <class T>
+    Record& put(T value) {
         bytes_.append(reinterpret_cast<const char*>(&value), sizeof value);
         return *this;
     }

@@ -9,7 +9,8 @@
 namespace insonify::pocolog {
 
 /** Numpy's name of a little-endian number: "<f4". */
-template <class T> std::string numpyType() {
+template <class T>
+std::string numpyType() {
     const char* kind = std::is_floating_point_v<T> ? "<f" : std::is_signed_v<T> ? "<i" : "<u";
     return kind + std::to_string(sizeof(T));
 }

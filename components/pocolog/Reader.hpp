@@ -18,20 +18,23 @@ struct Stream {
     std::string type;      ///< Typelib name; this program may not know it.
     std::string registry;  ///< XML.
     Metadata metadata;
-    size_t count = 0;                  ///< Samples [1].
-    types::Time first, last;           ///< World time of its first and last sample, 0 without samples.
+    size_t count = 0;         ///< Samples [1].
+    types::Time first, last;  ///< World time of its first and last sample, 0 without samples.
 
     /** Whether its samples can be read as T. */
-    template <class T> bool holds() const { return type == typelibName<T>() || type == cxxName<T>(); }
+    template <class T>
+    bool holds() const {
+        return type == typelibName<T>() || type == cxxName<T>();
+    }
 };
 
 /** Where one sample stands in the file. */
 struct SampleRef {
-    size_t stream = 0;       ///< Index into Reader::streams().
-    types::Time received;    ///< When it was logged.
-    types::Time time;        ///< When it was true in the world.
-    uint64_t position = 0;   ///< Of its bytes in the file [B].
-    uint32_t size = 0;       ///< Of its bytes in the file [B].
+    size_t stream = 0;      ///< Index into Reader::streams().
+    types::Time received;   ///< When it was logged.
+    types::Time time;       ///< When it was true in the world.
+    uint64_t position = 0;  ///< Of its bytes in the file [B].
+    uint32_t size = 0;      ///< Of its bytes in the file [B].
     bool compressed = false;
 };
 
@@ -50,17 +53,18 @@ public:
     Reader& operator=(const Reader&) = delete;
 
     const std::filesystem::path& path() const { return path_; }
-    uint64_t bytes() const { return bytes_; }                      ///< Size of the file [B].
+    uint64_t bytes() const { return bytes_; }  ///< Size of the file [B].
     bool complete() const { return fault_.empty(); }
-    const std::string& fault() const { return fault_; }            ///< Why and where reading stopped; empty: it did not.
+    const std::string& fault() const { return fault_; }  ///< Why and where reading stopped; empty: it did not.
     const std::vector<Stream>& streams() const { return streams_; }
     const std::vector<SampleRef>& samples() const { return samples_; }  ///< Of all streams, in file order.
-    const Stream* find(const std::string& name) const;             ///< Null when there is none.
+    const Stream* find(const std::string& name) const;                  ///< Null when there is none.
     /** Index of a stream; throws ConfigError that lists the streams when there is none. */
     size_t indexOf(const std::string& name) const;
 
     /** Decodes one sample into `sample`, whose memory is used again. */
-    template <class T> void read(const SampleRef& at, T& sample) {
+    template <class T>
+    void read(const SampleRef& at, T& sample) {
         if (!streams_[at.stream].holds<T>()) failType(at, typelibName<T>());
         try {
             unmarshal(payload(at), sample);
@@ -69,7 +73,8 @@ public:
         }
     }
     /** Calls `use(sample, ref)` for each sample of the stream, in order; the sample is only lent. */
-    template <class T, class Use> void forEach(const std::string& stream, Use&& use) {
+    template <class T, class Use>
+    void forEach(const std::string& stream, Use&& use) {
         const size_t index = indexOf(stream);
         T sample{};
         for (const SampleRef& at : samples_)

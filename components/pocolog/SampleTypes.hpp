@@ -17,15 +17,22 @@ using SampleTypes = std::tuple<types::Sonar, types::Pose, types::Image, types::T
 
 /** What travels on a port for a logged T: large samples by reference. */
 template <class T>
-using Carried = std::conditional_t<std::is_same_v<T, types::Sonar> || std::is_same_v<T, types::Image>,
-                                   std::shared_ptr<const T>, T>;
+using Carried =
+    std::conditional_t<std::is_same_v<T, types::Sonar> || std::is_same_v<T, types::Image>, std::shared_ptr<const T>, T>;
 
 /** The sample itself, whichever way it travels. */
-template <class T> const T& carriedSample(const T& sample) { return sample; }
-template <class T> const T& carriedSample(const std::shared_ptr<const T>& sample) { return *sample; }
+template <class T>
+const T& carriedSample(const T& sample) {
+    return sample;
+}
+template <class T>
+const T& carriedSample(const std::shared_ptr<const T>& sample) {
+    return *sample;
+}
 
 /** Calls `use(std::type_identity<T>{})` for each type of the list. */
-template <class Use> void forEachSampleType(Use&& use) {
+template <class Use>
+void forEachSampleType(Use&& use) {
     [&]<class... T>(std::type_identity<std::tuple<T...>>) {
         (use(std::type_identity<T>{}), ...);
     }(std::type_identity<SampleTypes>{});
@@ -37,9 +44,12 @@ concept Stamped = requires(const T& sample) {
 };
 
 /** When the sample was true in the world; `otherwise` for one without a stamp or with a null one. */
-template <class T> types::Time sampleTime(const T& sample, types::Time otherwise) {
-    if constexpr (Stamped<T>) return sample.time.isNull() ? otherwise : sample.time;
-    else return otherwise;
+template <class T>
+types::Time sampleTime(const T& sample, types::Time otherwise) {
+    if constexpr (Stamped<T>)
+        return sample.time.isNull() ? otherwise : sample.time;
+    else
+        return otherwise;
 }
 
 }  // namespace insonify::pocolog

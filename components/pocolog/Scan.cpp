@@ -53,7 +53,8 @@ private:
             Decoder decoder(bytes);
             uint8_t kind = 0;
             decoder.scalar(kind);
-            for (std::string* text : {&stream.name, &stream.type, &stream.registry, &metadata}) takeText(decoder, *text);
+            for (std::string* text : {&stream.name, &stream.type, &stream.registry, &metadata})
+                takeText(decoder, *text);
         } catch (const std::runtime_error&) {
             throw Fault("the declaration of a stream is damaged");
         }
@@ -96,8 +97,9 @@ void checkPrologue(const Prologue& prologue, const std::filesystem::path& path) 
     if (!std::equal(magic.begin(), magic.end(), prologue.magic_bytes.begin()))
         throw types::ConfigError(path, "", "is not a pocolog file: it does not start with POCOSIM");
     if (prologue.version != format_version)
-        throw types::ConfigError(path, "", "is a pocolog file of version " + std::to_string(prologue.version) +
-                                               "; only version 2 can be read");
+        throw types::ConfigError(
+            path, "",
+            "is a pocolog file of version " + std::to_string(prologue.version) + "; only version 2 can be read");
     if (prologue.flags & big_endian_flag)
         throw types::ConfigError(path, "", "was logged on a big-endian machine; only little-endian logs can be read");
 }
@@ -118,9 +120,8 @@ bool readAt(int file, uint64_t position, void* to, size_t size) {
 }
 
 Scan scan(int file, const std::filesystem::path& path) {
-    struct stat status{};
-    if (fstat(file, &status) != 0 || !S_ISREG(status.st_mode))
-        throw types::ConfigError(path, "", "is not a file");
+    struct stat status {};
+    if (fstat(file, &status) != 0 || !S_ISREG(status.st_mode)) throw types::ConfigError(path, "", "is not a file");
     Scan result;
     result.bytes = static_cast<uint64_t>(status.st_size);
     Prologue prologue;
@@ -128,8 +129,10 @@ Scan scan(int file, const std::filesystem::path& path) {
     if (there < magic.size() || !readAt(file, 0, &prologue, there))
         throw types::ConfigError(path, "", "is not a pocolog file: it is too short");
     checkPrologue(prologue, path);
-    if (there < sizeof prologue) result.fault = "the file ends within its prologue";
-    else Scanner(file, result).run();
+    if (there < sizeof prologue)
+        result.fault = "the file ends within its prologue";
+    else
+        Scanner(file, result).run();
     return result;
 }
 

@@ -8,9 +8,12 @@ namespace {
 std::string escaped(const std::string& name) {
     std::string text;
     for (const char c : name) {
-        if (c == '<') text += "&lt;";
-        else if (c == '>') text += "&gt;";
-        else text += c;
+        if (c == '<')
+            text += "&lt;";
+        else if (c == '>')
+            text += "&gt;";
+        else
+            text += c;
     }
     return text;
 }

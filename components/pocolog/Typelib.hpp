@@ -16,65 +16,96 @@
 
 namespace insonify::pocolog {
 
-template <class T> struct IsVector : std::false_type {};
-template <class T> struct IsVector<std::vector<T>> : std::true_type {};
-template <class T> concept Vector = IsVector<T>::value;
-template <class T> concept Numeric = std::is_arithmetic_v<T>;
-template <class T> concept Text = std::is_same_v<T, std::string>;
+template <class T>
+struct IsVector : std::false_type {};
+template <class T>
+struct IsVector<std::vector<T>> : std::true_type {};
+template <class T>
+concept Vector = IsVector<T>::value;
+template <class T>
+concept Numeric = std::is_arithmetic_v<T>;
+template <class T>
+concept Text = std::is_same_v<T, std::string>;
 /** Eigen types in Rock, opaque there: they travel as /wrappers/Matrix and /wrappers/Quaternion. */
-template <class T> concept Matrix = std::is_same_v<T, glm::dvec3> || std::is_same_v<T, glm::dmat3>;
-template <class T> concept Quaternion = std::is_same_v<T, glm::dquat>;
+template <class T>
+concept Matrix = std::is_same_v<T, glm::dvec3> || std::is_same_v<T, glm::dmat3>;
+template <class T>
+concept Quaternion = std::is_same_v<T, glm::dquat>;
 
 /** The enums that a log can hold: typelib name and symbols. */
-template <class E> struct EnumTable;
-template <> struct EnumTable<types::ImageMode> {
+template <class E>
+struct EnumTable;
+template <>
+struct EnumTable<types::ImageMode> {
     static constexpr const char* name = types::image_mode_type;
     static constexpr std::span<const types::EnumSymbol> symbols = types::image_mode_symbols;
 };
-template <> struct EnumTable<types::ImageStatus> {
+template <>
+struct EnumTable<types::ImageStatus> {
     static constexpr const char* name = types::image_status_type;
     static constexpr std::span<const types::EnumSymbol> symbols = types::image_status_symbols;
 };
 
 /** Calls `visit(field, value)` for each field of a value-initialised T. */
-template <types::Described T, class V> void forEachField(V&& visit) {
+template <types::Described T, class V>
+void forEachField(V&& visit) {
     T value{};
     T::describe(value, visit);
 }
 
 /** Whether Rock has T only by way of opaque (Eigen) fields, so that its logged type is another, named `..._m`. */
-template <class T> bool hasOpaque() {
-    if constexpr (Vector<T>) return hasOpaque<typename T::value_type>();
+template <class T>
+bool hasOpaque() {
+    if constexpr (Vector<T>)
+        return hasOpaque<typename T::value_type>();
     else if constexpr (types::Described<T>) {
         bool found = false;
         forEachField<T>([&]<class F>(const types::Field&, F&) { found = found || hasOpaque<F>(); });
         return found;
-    } else return Matrix<T> || Quaternion<T>;
+    } else
+        return Matrix<T> || Quaternion<T>;
 }
 
-template <Numeric T> std::string numericName() {
-    if constexpr (std::is_same_v<T, bool>) return "/bool";
-    else if constexpr (std::is_same_v<T, double>) return "/double";
-    else if constexpr (std::is_same_v<T, float>) return "/float";
-    else return (std::is_signed_v<T> ? "/int" : "/uint") + std::to_string(8 * sizeof(T)) + "_t";
+template <Numeric T>
+std::string numericName() {
+    if constexpr (std::is_same_v<T, bool>)
+        return "/bool";
+    else if constexpr (std::is_same_v<T, double>)
+        return "/double";
+    else if constexpr (std::is_same_v<T, float>)
+        return "/float";
+    else
+        return (std::is_signed_v<T> ? "/int" : "/uint") + std::to_string(8 * sizeof(T)) + "_t";
 }
 
 /** Name of T as logged: "/base/samples/RigidBodyState_m", "/std/vector</float>". */
-template <class T> std::string typelibName() {
-    if constexpr (Numeric<T>) return numericName<T>();
-    else if constexpr (Text<T>) return "/std/string";
-    else if constexpr (Vector<T>) return "/std/vector<" + typelibName<typename T::value_type>() + ">";
-    else if constexpr (std::is_same_v<T, glm::dvec3>) return "/wrappers/Matrix</double,3,1>";
-    else if constexpr (std::is_same_v<T, glm::dmat3>) return "/wrappers/Matrix</double,3,3>";
-    else if constexpr (Quaternion<T>) return "/wrappers/Quaternion</double>";
-    else if constexpr (std::is_enum_v<T>) return EnumTable<T>::name;
-    else return std::string(T::type_name) + (hasOpaque<T>() ? "_m" : "");
+template <class T>
+std::string typelibName() {
+    if constexpr (Numeric<T>)
+        return numericName<T>();
+    else if constexpr (Text<T>)
+        return "/std/string";
+    else if constexpr (Vector<T>)
+        return "/std/vector<" + typelibName<typename T::value_type>() + ">";
+    else if constexpr (std::is_same_v<T, glm::dvec3>)
+        return "/wrappers/Matrix</double,3,1>";
+    else if constexpr (std::is_same_v<T, glm::dmat3>)
+        return "/wrappers/Matrix</double,3,3>";
+    else if constexpr (Quaternion<T>)
+        return "/wrappers/Quaternion</double>";
+    else if constexpr (std::is_enum_v<T>)
+        return EnumTable<T>::name;
+    else
+        return std::string(T::type_name) + (hasOpaque<T>() ? "_m" : "");
 }
 
 /** Name of T in Rock's C++: without the suffix of opaques. */
-template <class T> std::string cxxName() {
-    if constexpr (types::Described<T>) return T::type_name;
-    else return typelibName<T>();
+template <class T>
+std::string cxxName() {
+    if constexpr (types::Described<T>)
+        return T::type_name;
+    else
+        return typelibName<T>();
 }
 
 /** Size and alignment of a type in Rock's memory (g++, x86-64) [B]. */
@@ -94,34 +125,45 @@ struct Extent {
     constexpr size_t stride() const { return aligned(size, align); }
 };
 
-template <class T> Extent extentOf();
+template <class T>
+Extent extentOf();
 
-template <types::Described T> Extent extentOfFields() {
+template <types::Described T>
+Extent extentOfFields() {
     Extent extent;
     forEachField<T>([&]<class F>(const types::Field&, F&) { extent.append(extentOf<F>()); });
     extent.size = extent.stride();
     return extent;
 }
 
-template <class T> Extent extentOf() {
-    if constexpr (Text<T>) return {32, 8};
-    else if constexpr (Vector<T>) return {24, 8};
-    else if constexpr (Matrix<T> || Quaternion<T>) return {sizeof(T), 8};
+template <class T>
+Extent extentOf() {
+    if constexpr (Text<T>)
+        return {32, 8};
+    else if constexpr (Vector<T>)
+        return {24, 8};
+    else if constexpr (Matrix<T> || Quaternion<T>)
+        return {sizeof(T), 8};
     else if constexpr (types::Described<T>) {
         static const Extent extent = extentOfFields<T>();
         return extent;
-    } else return {sizeof(T), alignof(T)};
+    } else
+        return {sizeof(T), alignof(T)};
 }
 
 /** XML nodes of a registry, each type once, what a type needs before the type. */
 class RegistryXml {
 public:
-    template <class T> void add() {
+    template <class T>
+    void add() {
         const std::string name = typelibName<T>();
         if (knows(name)) return;
-        if constexpr (Numeric<T>) addNumeric(name, std::is_floating_point_v<T> ? "float" : category<T>(), sizeof(T));
-        else if constexpr (Text<T>) addContainer<int8_t>(name, "/std/string", 32);
-        else if constexpr (Vector<T>) addContainer<typename T::value_type>(name, "/std/vector", 24);
+        if constexpr (Numeric<T>)
+            addNumeric(name, std::is_floating_point_v<T> ? "float" : category<T>(), sizeof(T));
+        else if constexpr (Text<T>)
+            addContainer<int8_t>(name, "/std/string", 32);
+        else if constexpr (Vector<T>)
+            addContainer<typename T::value_type>(name, "/std/vector", 24);
         else if constexpr (Matrix<T>) {
             add<double>();
             const std::string type = "/double[" + std::to_string(sizeof(T) / sizeof(double)) + "]";
@@ -129,8 +171,10 @@ public:
         } else if constexpr (Quaternion<T>) {
             add<double>();
             addCompound(name, sizeof(T), {{"im", "/double[3]", 0, false}, {"re", "/double", 24, false}});
-        } else if constexpr (std::is_enum_v<T>) addEnum(name, EnumTable<T>::symbols);
-        else addDescribed<T>(name);
+        } else if constexpr (std::is_enum_v<T>)
+            addEnum(name, EnumTable<T>::symbols);
+        else
+            addDescribed<T>(name);
     }
     /** The whole document. */
     std::string text() const;
@@ -142,12 +186,17 @@ private:
         bool logical_time;  ///< Rock's tools sort by the field that has this role.
     };
 
-    template <class T> static const char* category() { return std::is_signed_v<T> ? "sint" : "uint"; }
-    template <class Element> void addContainer(const std::string& name, const char* kind, size_t size) {
+    template <class T>
+    static const char* category() {
+        return std::is_signed_v<T> ? "sint" : "uint";
+    }
+    template <class Element>
+    void addContainer(const std::string& name, const char* kind, size_t size) {
         add<Element>();
         addContainerNode(name, kind, size, typelibName<Element>());
     }
-    template <class T> void addDescribed(const std::string& name) {
+    template <class T>
+    void addDescribed(const std::string& name) {
         std::vector<Member> members;
         Extent extent;
         forEachField<T>([&]<class F>(const types::Field& field, F&) {
@@ -167,7 +216,8 @@ private:
 };
 
 /** The registry that a stream of T declares. */
-template <class T> std::string registryOf() {
+template <class T>
+std::string registryOf() {
     RegistryXml registry;
     registry.add<T>();
     return registry.text();

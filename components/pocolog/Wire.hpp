@@ -12,16 +12,19 @@
 
 namespace insonify::pocolog {
 
-static_assert(std::endian::native == std::endian::little, "samples are copied in host order, which must be little endian");
+static_assert(std::endian::native == std::endian::little,
+              "samples are copied in host order, which must be little endian");
 
 /** Elements that stand on the wire as they stand in memory, so that a vector of them is one block. */
 template <class T>
-concept Bulk = (Numeric<T> && !std::is_same_v<T, bool>) || std::is_same_v<T, types::Time> ||
-               std::is_same_v<T, types::Angle>;
+concept Bulk =
+    (Numeric<T> && !std::is_same_v<T, bool>) || std::is_same_v<T, types::Time> || std::is_same_v<T, types::Angle>;
 
 /** The fewest bytes that a T takes on the wire [B]. */
-template <class T> size_t minimumSize() {
-    if constexpr (Text<T> || Vector<T>) return sizeof(uint64_t);
+template <class T>
+size_t minimumSize() {
+    if constexpr (Text<T> || Vector<T>)
+        return sizeof(uint64_t);
     else if constexpr (types::Described<T>) {
         static const size_t size = [] {
             size_t sum = 0;
@@ -29,7 +32,8 @@ template <class T> size_t minimumSize() {
             return sum;
         }();
         return size;
-    } else return sizeof(T);
+    } else
+        return sizeof(T);
 }
 
 /** Appends to a byte buffer. */
@@ -42,9 +46,18 @@ public:
         bytes_.insert(bytes_.end(), first, first + size);
     }
     void zeros(size_t size) { bytes_.resize(bytes_.size() + size); }
-    template <class Items> void count(const Items& items) { scalar(static_cast<uint64_t>(items.size())); }
-    template <class T> void scalar(const T& value) { bytes(&value, sizeof value); }
-    template <class T> void block(const std::vector<T>& items) { bytes(items.data(), items.size() * sizeof(T)); }
+    template <class Items>
+    void count(const Items& items) {
+        scalar(static_cast<uint64_t>(items.size()));
+    }
+    template <class T>
+    void scalar(const T& value) {
+        bytes(&value, sizeof value);
+    }
+    template <class T>
+    void block(const std::vector<T>& items) {
+        bytes(items.data(), items.size() * sizeof(T));
+    }
 
 private:
     std::vector<char>& bytes_;
@@ -65,20 +78,27 @@ public:
         data_ = data_.subspan(size);
     }
     /** Makes room for as many items as the count says. A count that cannot fit is refused before memory is taken. */
-    template <class Items> void count(Items& items) {
+    template <class Items>
+    void count(Items& items) {
         uint64_t wanted = 0;
         scalar(wanted);
         if (wanted > data_.size() / minimumSize<typename Items::value_type>())
             throw std::runtime_error("announces " + std::to_string(wanted) + " elements, more than it holds");
         items.resize(wanted);
     }
-    template <class T> void scalar(T& value) { bytes(&value, sizeof value); }
+    template <class T>
+    void scalar(T& value) {
+        bytes(&value, sizeof value);
+    }
     void scalar(bool& value) {
         uint8_t byte = 0;
         scalar(byte);
         value = byte != 0;
     }
-    template <class T> void block(std::vector<T>& items) { bytes(items.data(), items.size() * sizeof(T)); }
+    template <class T>
+    void block(std::vector<T>& items) {
+        bytes(items.data(), items.size() * sizeof(T));
+    }
     size_t left() const { return data_.size(); }
 
 private:
@@ -86,24 +106,32 @@ private:
 };
 
 /** Walks through a value in wire order, for an Encoder (const values) or a Decoder. */
-template <class Archive> class Walk {
+template <class Archive>
+class Walk {
 public:
     explicit Walk(Archive& archive) : archive_(archive) {}
 
-    template <class T> void value(T& item) {
+    template <class T>
+    void value(T& item) {
         using Plain = std::remove_const_t<T>;
-        if constexpr (types::Described<Plain>) fields(item);
+        if constexpr (types::Described<Plain>)
+            fields(item);
         else {
             flushPadding();
-            if constexpr (Text<Plain>) text(item);
-            else if constexpr (Vector<Plain>) elements(item);
-            else if constexpr (Quaternion<Plain>) quaternion(item);
-            else archive_.scalar(item);
+            if constexpr (Text<Plain>)
+                text(item);
+            else if constexpr (Vector<Plain>)
+                elements(item);
+            else if constexpr (Quaternion<Plain>)
+                quaternion(item);
+            else
+                archive_.scalar(item);
         }
     }
 
 private:
-    template <class T> void fields(T& item) {
+    template <class T>
+    void fields(T& item) {
         using Plain = std::remove_const_t<T>;
         Extent extent;
         auto visit = [&](const types::Field&, auto& field) {
@@ -114,20 +142,24 @@ private:
         Plain::describe(item, visit);
         padding_ += extent.stride() - extent.size;
     }
-    template <class T> void text(T& item) {
+    template <class T>
+    void text(T& item) {
         archive_.count(item);
         archive_.bytes(item.data(), item.size());
     }
-    template <class T> void elements(T& items) {
+    template <class T>
+    void elements(T& items) {
         archive_.count(items);
-        if constexpr (Bulk<typename T::value_type>) archive_.block(items);
+        if constexpr (Bulk<typename T::value_type>)
+            archive_.block(items);
         else
             for (auto& item : items) {
                 value(item);
                 flushPadding();
             }
     }
-    template <class T> void quaternion(T& q) {
+    template <class T>
+    void quaternion(T& q) {
         archive_.scalar(q.x);
         archive_.scalar(q.y);
         archive_.scalar(q.z);
@@ -140,13 +172,15 @@ private:
 };
 
 /** Appends the sample to `bytes`. */
-template <class T> void marshal(const T& sample, std::vector<char>& bytes) {
+template <class T>
+void marshal(const T& sample, std::vector<char>& bytes) {
     Encoder encoder(bytes);
     Walk<Encoder>(encoder).value(sample);
 }
 
 /** Fills `sample`, whose memory is used again. Throws std::runtime_error unless `bytes` is exactly one sample. */
-template <class T> void unmarshal(std::span<const char> bytes, T& sample) {
+template <class T>
+void unmarshal(std::span<const char> bytes, T& sample) {
     Decoder decoder(bytes);
     Walk<Decoder>(decoder).value(sample);
     if (decoder.left() > 0) throw std::runtime_error("has " + std::to_string(decoder.left()) + " bytes too many");

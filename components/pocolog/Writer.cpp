@@ -61,11 +61,12 @@ size_t Writer::declare(const std::string& name, const std::string& type, const s
         throw std::length_error(path_.string() + ": a log holds at most 65536 streams");
     const std::string yaml = toYaml(metadata);
     const uint8_t data_stream = 1;
-    const size_t size = sizeof data_stream + 4 * sizeof(uint32_t) + name.size() + type.size() + registry.size() +
-                        yaml.size();
+    const size_t size =
+        sizeof data_stream + 4 * sizeof(uint32_t) + name.size() + type.size() + registry.size() + yaml.size();
     Stream& stream = streams_.emplace_back();
     stream.index.declaration = flushed_ + buffer_.size();
-    BlockHeader header{.type = BlockType::Stream, .stream = static_cast<uint16_t>(streams_.size() - 1),
+    BlockHeader header{.type = BlockType::Stream,
+                       .stream = static_cast<uint16_t>(streams_.size() - 1),
                        .size = static_cast<uint32_t>(size)};
     put(&header, sizeof header);
     put(&data_stream, sizeof data_stream);
@@ -89,8 +90,8 @@ void Writer::endSample(size_t number, size_t start, types::Time received, types:
     Stream& stream = streams_.at(number);
     received = logTime(received, stream.index.last_received);
     time = logTime(time, stream.last_time);
-    BlockHeader block{.type = BlockType::Data, .stream = static_cast<uint16_t>(number),
-                      .size = static_cast<uint32_t>(size)};
+    BlockHeader block{
+        .type = BlockType::Data, .stream = static_cast<uint16_t>(number), .size = static_cast<uint32_t>(size)};
     DataHeader data{.size = static_cast<uint32_t>(size - data_header_size)};
     split(received, data.received_s, data.received_us);
     split(time, data.time_s, data.time_us);

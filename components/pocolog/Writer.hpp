@@ -30,7 +30,8 @@ public:
 
     /** Declares a stream "task.port" of T and returns its number. `extra` joins what Rock's tools look for. Throws
      *  std::length_error for the 65537th stream. */
-    template <class T> size_t addStream(const std::string& name, Metadata extra = {}) {
+    template <class T>
+    size_t addStream(const std::string& name, Metadata extra = {}) {
         Metadata metadata = standardMetadata(name, cxxName<T>());
         if constexpr (Stamped<T>) metadata["rock_timestamp_field"] = "time";
         metadata.merge(extra);
@@ -40,7 +41,8 @@ public:
     /** Adds a sample, received at this moment. Times before 1970 or after 2106 are moved to those years in the block's
      *  header, and one that runs backwards to that of the stream's sample before it: readers search by them. The
      *  stamp in the sample is written as it is. Throws std::length_error above 4 GiB. */
-    template <class T> void write(size_t stream, types::Time received, const T& sample) {
+    template <class T>
+    void write(size_t stream, types::Time received, const T& sample) {
         const size_t start = beginSample();
         marshal(sample, buffer_);
         endSample(stream, start, received, sampleTime(sample, received));

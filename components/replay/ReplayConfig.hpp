@@ -9,7 +9,8 @@ struct ReplayConfig {
     std::string file;
     double pace = 1;
 
-    template <class Self, class V> static void describe(Self& self, V& visit) {
+    template <class Self, class V>
+    static void describe(Self& self, V& visit) {
         using types::Field;
         visit(Field{"file", "", "pocolog file, relative to the deployment"}, self.file);
         visit(Field{"pace", "1",

@@ -15,7 +15,8 @@ public:
     virtual void publish(pocolog::Reader& log, const pocolog::SampleRef& at) = 0;
 };
 
-template <class T> class ReplayTask::TypedOutlet final : public Outlet {
+template <class T>
+class ReplayTask::TypedOutlet final : public Outlet {
 public:
     TypedOutlet(ReplayTask* owner, const std::string& stream)
         : port_(owner, stream, "stream " + stream + " of the log") {}
@@ -97,7 +98,8 @@ void ReplayTask::rewind() {
 bool ReplayTask::configureHook() {
     open();
     // Lockstep asks for nextTime(); the wall clock knows only periods.
-    if (!environment().lockstep && !activity().settings().periodic()) activity().configure({.period = 0.001, .trigger = {}});
+    if (!environment().lockstep && !activity().settings().periodic())
+        activity().configure({.period = 0.001, .trigger = {}});
     return true;
 }
 

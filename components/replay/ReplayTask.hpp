@@ -38,7 +38,8 @@ public:
 
 private:
     class Outlet;
-    template <class T> class TypedOutlet;
+    template <class T>
+    class TypedOutlet;
 
     bool configureHook() override;
     bool startHook() override;

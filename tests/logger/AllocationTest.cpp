@@ -55,7 +55,10 @@ TEST(AllocationTest, TheTasksThreadAllocatesNothingOnceItRuns) {
     for (int i = 0; i < 200; ++i) cycle();
     watched = std::thread::id();
     EXPECT_EQ(allocations, 0u);
-    task.activity().call([] { watched = std::this_thread::get_id(); operator delete(operator new(1)); });
+    task.activity().call([] {
+        watched = std::this_thread::get_id();
+        operator delete(operator new(1));
+    });
     EXPECT_GE(allocations, 1u) << "counting counts";
     watched = std::thread::id();
 }

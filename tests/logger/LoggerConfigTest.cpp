@@ -1,6 +1,6 @@
-#include "components/logger/LoggerConfig.hpp"
-
 #include <gtest/gtest.h>
+
+#include "components/logger/LoggerConfig.hpp"
 
 namespace insonify::logger {
 namespace {
@@ -14,8 +14,10 @@ size_t problemsOf(const std::string& file) {
 }
 
 TEST(LoggerConfigTest, OnlyANameThatEndsInLogIsTaken) {
-    for (const char* good : {"harbour.0.log", "harbour.log", "day/harbour.1.log"}) EXPECT_EQ(problemsOf(good), 0u) << good;
-    for (const char* bad : {"", ".log", "harbour", "harbour.log.gz", "harbour.log/"}) EXPECT_EQ(problemsOf(bad), 1u) << bad;
+    for (const char* good : {"harbour.0.log", "harbour.log", "day/harbour.1.log"})
+        EXPECT_EQ(problemsOf(good), 0u) << good;
+    for (const char* bad : {"", ".log", "harbour", "harbour.log.gz", "harbour.log/"})
+        EXPECT_EQ(problemsOf(bad), 1u) << bad;
 }
 
 }  // namespace

@@ -1,7 +1,6 @@
-#include "components/logger/LoggerTask.hpp"
-
 #include <gmock/gmock.h>
 
+#include "components/logger/LoggerTask.hpp"
 #include "components/pocolog/Reader.hpp"
 #include "tests/support/Folder.hpp"
 #include "tests/support/Ports.hpp"
@@ -14,7 +13,8 @@ using framework::ConnPolicy;
 using framework::TaskState;
 
 /** A source and its connection to a logger's port. */
-template <class T> struct Source {
+template <class T>
+struct Source {
     test::Writer<T> writer;
     Source(LoggerTask& logger, const std::string& name) : writer(name) {
         writer.port.connectTo(*logger.makeInput(name, writer.port), ConnPolicy::buffer(2000));
@@ -119,7 +119,8 @@ TEST(LoggerTaskTest, AFileSlowerThanTheSamplesLosesNone) {
     bench.finish();
     int32_t expected = 0;
     pocolog::Reader log(bench.path());
-    log.forEach<int32_t>("counter.port", [&](int32_t value, const pocolog::SampleRef&) { EXPECT_EQ(value, expected++); });
+    log.forEach<int32_t>("counter.port",
+                         [&](int32_t value, const pocolog::SampleRef&) { EXPECT_EQ(value, expected++); });
     EXPECT_EQ(expected, 2000);
 }
 

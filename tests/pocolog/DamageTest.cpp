@@ -44,7 +44,8 @@ size_t readAll(const std::filesystem::path& path) {
             if (reader.streams()[at.stream].holds<types::Sonar>()) {
                 reader.read(at, ping);
                 ++pings;
-            } else reader.read(at, pose);
+            } else
+                reader.read(at, pose);
         } catch (const types::ConfigError&) {
             continue;
         }

@@ -1,9 +1,8 @@
-#include "components/pocolog/Export.hpp"
-
 #include <gmock/gmock.h>
 
 #include <cstdlib>
 
+#include "components/pocolog/Export.hpp"
 #include "components/pocolog/Writer.hpp"
 #include "tests/support/Folder.hpp"
 

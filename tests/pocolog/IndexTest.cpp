@@ -1,7 +1,6 @@
-#include "components/pocolog/Index.hpp"
-
 #include <gtest/gtest.h>
 
+#include "components/pocolog/Index.hpp"
 #include "components/pocolog/Writer.hpp"
 #include "tests/support/Folder.hpp"
 
@@ -23,10 +22,10 @@ TEST(IndexTest, HasRocksBytes) {
     EXPECT_EQ(std::string(bytes.data(), 17), std::string("POCOSIM_INDEX\0\0\0\3", 17));
     std::vector<uint64_t> numbers;
     for (size_t position = 17; position < bytes.size(); position += 8) numbers.push_back(number(bytes, position));
-    EXPECT_EQ(numbers, (std::vector<uint64_t>{500, 7, 2,                                                        //
-                                              16, 169, 1000000, 2, 1000000, 3000000, 1000000, 2500000,          //
-                                              200, 201, 0, 0, 0, 0, 0, 0,                                       //
-                                              300, 0, 400, 1500000}));
+    EXPECT_EQ(numbers, (std::vector<uint64_t>{500, 7,   2,                                                    //
+                                              16,  169, 1000000, 2,      1000000, 3000000, 1000000, 2500000,  //
+                                              200, 201, 0,       0,      0,       0,       0,       0,        //
+                                              300, 0,   400,     1500000}));
 }
 
 TEST(IndexTest, PointsAtTheBlocksOfTheLogAndKnowsItsSize) {

@@ -1,6 +1,6 @@
-#include "components/pocolog/Metadata.hpp"
-
 #include <gtest/gtest.h>
+
+#include "components/pocolog/Metadata.hpp"
 
 namespace insonify::pocolog {
 namespace {

@@ -1,10 +1,9 @@
-#include "components/pocolog/Reader.hpp"
-
 #include <gmock/gmock.h>
 #include <zlib.h>
 
 #include "components/pocolog/Block.hpp"
 #include "components/pocolog/Info.hpp"
+#include "components/pocolog/Reader.hpp"
 #include "components/pocolog/Writer.hpp"
 #include "tests/support/Folder.hpp"
 
@@ -13,7 +12,8 @@ namespace {
 
 using testing::HasSubstr;
 
-template <class T> void append(std::vector<char>& bytes, const T& value) {
+template <class T>
+void append(std::vector<char>& bytes, const T& value) {
     const char* data = reinterpret_cast<const char*>(&value);
     bytes.insert(bytes.end(), data, data + sizeof value);
 }
@@ -24,7 +24,8 @@ std::vector<char> foreignLog(const std::string& type, uint32_t flags = 0) {
     append(bytes, format_version);
     append(bytes, flags);
     std::vector<char> payload{1};
-    for (const std::string& text : {std::string("other.port"), type, std::string("<typelib/>"), std::string("a: b\n")}) {
+    for (const std::string& text :
+         {std::string("other.port"), type, std::string("<typelib/>"), std::string("a: b\n")}) {
         append(payload, static_cast<uint32_t>(text.size()));
         payload.insert(payload.end(), text.begin(), text.end());
     }

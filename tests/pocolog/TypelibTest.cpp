@@ -1,21 +1,20 @@
-#include "components/pocolog/Typelib.hpp"
-
 #include <gmock/gmock.h>
 
 #include <vector>
 
 #include "components/pocolog/SampleTypes.hpp"
+#include "components/pocolog/Typelib.hpp"
 
 namespace insonify::pocolog {
 namespace {
 
 using testing::HasSubstr;
 
-template <class T> std::vector<size_t> offsetsOf() {
+template <class T>
+std::vector<size_t> offsetsOf() {
     std::vector<size_t> offsets;
     Extent extent;
-    forEachField<T>(
-        [&]<class F>(const types::Field&, F&) { offsets.push_back(extent.append(extentOf<F>())); });
+    forEachField<T>([&]<class F>(const types::Field&, F&) { offsets.push_back(extent.append(extentOf<F>())); });
     return offsets;
 }
 

@@ -1,10 +1,9 @@
-#include "components/pocolog/Wire.hpp"
-
 #include <gmock/gmock.h>
 
 #include <limits>
 
 #include "components/pocolog/SampleTypes.hpp"
+#include "components/pocolog/Wire.hpp"
 
 namespace insonify::pocolog {
 namespace {
@@ -20,7 +19,8 @@ std::string hex(const std::vector<char>& bytes) {
     return text;
 }
 
-template <class T> std::vector<char> marshalled(const T& value) {
+template <class T>
+std::vector<char> marshalled(const T& value) {
     std::vector<char> bytes;
     marshal(value, bytes);
     return bytes;
@@ -47,7 +47,8 @@ struct Padded {
     static constexpr const char* type_name = "/test/Padded";
     double value = 0;
     uint8_t flag = 0;
-    template <class Self, class V> static void describe(Self& self, V& visit) {
+    template <class Self, class V>
+    static void describe(Self& self, V& visit) {
         visit(Field{"value"}, self.value);
         visit(Field{"flag"}, self.flag);
     }
@@ -57,7 +58,8 @@ struct PaddedTwice {
     static constexpr const char* type_name = "/test/PaddedTwice";
     std::vector<Padded> many{2};
     Padded one;
-    template <class Self, class V> static void describe(Self& self, V& visit) {
+    template <class Self, class V>
+    static void describe(Self& self, V& visit) {
         visit(Field{"many"}, self.many);
         visit(Field{"one"}, self.one);
     }
@@ -67,7 +69,8 @@ struct Holder {
     static constexpr const char* type_name = "/test/Holder";
     std::vector<float> values;
     uint8_t flag = 0;
-    template <class Self, class V> static void describe(Self& self, V& visit) {
+    template <class Self, class V>
+    static void describe(Self& self, V& visit) {
         visit(Field{"values"}, self.values);
         visit(Field{"flag"}, self.flag);
     }
@@ -77,7 +80,8 @@ struct Inner {
     static constexpr const char* type_name = "/test/Inner";
     Padded first;
     double second = 2;
-    template <class Self, class V> static void describe(Self& self, V& visit) {
+    template <class Self, class V>
+    static void describe(Self& self, V& visit) {
         visit(Field{"first"}, self.first);
         visit(Field{"second"}, self.second);
     }

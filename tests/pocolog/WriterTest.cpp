@@ -1,11 +1,10 @@
-#include "components/pocolog/Writer.hpp"
-
 #include <gmock/gmock.h>
 #include <sys/resource.h>
 
 #include <csignal>
 
 #include "components/pocolog/Reader.hpp"
+#include "components/pocolog/Writer.hpp"
 #include "tests/support/Folder.hpp"
 
 namespace insonify::pocolog {
@@ -21,9 +20,11 @@ TEST(WriterTest, AFileIsAPrologueThenBlocks) {
     EXPECT_EQ(text.substr(0, 16), std::string_view("POCOSIM\0\2\0\0\0\0\0\0\0", 16));
     EXPECT_EQ(text.substr(16, 4), std::string_view("\1\xff\0\0", 4));
     EXPECT_EQ(text.substr(24, 8), std::string_view("\1\3\0\0\0a.b", 8));
-    const std::string_view sample("\2\xff\0\0\x1d\0\0\0"                              // block: 21 + 8 bytes
-                                  "\1\0\0\0\x20\xa1\7\0\1\0\0\0\x20\xa1\7\0\10\0\0\0\0"  // 1.5 s, 1.5 s, 8 bytes
-                                  "\0\0\0\0\0\0\xf0\x3f", 37);
+    const std::string_view sample(
+        "\2\xff\0\0\x1d\0\0\0"                                 // block: 21 + 8 bytes
+        "\1\0\0\0\x20\xa1\7\0\1\0\0\0\x20\xa1\7\0\10\0\0\0\0"  // 1.5 s, 1.5 s, 8 bytes
+        "\0\0\0\0\0\0\xf0\x3f",
+        37);
     EXPECT_EQ(text.substr(text.size() - 37), sample);
 }
 
@@ -109,7 +110,8 @@ TEST(WriterTest, AFullDeviceIsToldWithTheSystemsReason) {
     }
 }
 
-/** Writes samples of 1000 bytes, a flush after each, into a file that may not exceed 20000; exits 0 when that is told. */
+/** Writes samples of 1000 bytes, a flush after each, into a file that may not exceed 20000; exits 0 when that is told.
+ */
 [[noreturn]] void fillLimitedFile(const std::filesystem::path& path) {
     const rlimit limit{20000, 20000};
     setrlimit(RLIMIT_FSIZE, &limit);
@@ -135,7 +137,8 @@ TEST(WriterTest, AWriteThatFailsLeavesTheFlushedBlocksWhole) {
     EXPECT_TRUE(reader.complete()) << reader.fault();
     EXPECT_GT(reader.samples().size(), 10u);
     EXPECT_LT(reader.samples().size(), 20u);
-    reader.forEach<std::string>("a.b", [](const std::string& text, const SampleRef&) { EXPECT_EQ(text.size(), 1000u); });
+    reader.forEach<std::string>("a.b",
+                                [](const std::string& text, const SampleRef&) { EXPECT_EQ(text.size(), 1000u); });
 }
 
 TEST(WriterTest, NothingIsWrittenAfterTheEnd) {

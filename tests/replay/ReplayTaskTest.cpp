@@ -1,9 +1,8 @@
-#include "components/replay/ReplayTask.hpp"
-
 #include <gmock/gmock.h>
 
 #include "components/framework/Activity.hpp"
 #include "components/pocolog/Writer.hpp"
+#include "components/replay/ReplayTask.hpp"
 #include "tests/support/Folder.hpp"
 #include "tests/support/Ports.hpp"
 #include "types/Sonar.hpp"
@@ -57,7 +56,8 @@ struct Bench {
         log.write(ping, {35}, pingAt(20));
         log.close();
     }
-    template <class T> void connect(const std::string& stream, test::Reader<T>& reader) {
+    template <class T>
+    void connect(const std::string& stream, test::Reader<T>& reader) {
         ASSERT_TRUE(task.makeOutput(stream)->connectTo(reader.port, ConnPolicy::buffer(100)));
     }
     void updateAt(int64_t time) {
@@ -66,7 +66,8 @@ struct Bench {
     }
 };
 
-template <class T> std::vector<int64_t> stampsIn(test::Reader<T>& reader) {
+template <class T>
+std::vector<int64_t> stampsIn(test::Reader<T>& reader) {
     std::vector<int64_t> stamps;
     for (T sample; reader.port.readNew(sample);) stamps.push_back(pocolog::carriedSample(sample).time.microseconds);
     return stamps;
