@@ -8,10 +8,10 @@
 #include "components/deployer/Commands.hpp"
 #include "components/deployer/Json.hpp"
 #include "components/deployer/Tasks.hpp"
+#include "components/scene/Acoustics.hpp"
 #include "components/framework/Operation.hpp"
 #include "components/framework/Port.hpp"
 #include "components/framework/Properties.hpp"
-#include "types/MaterialTable.hpp"
 
 namespace insonify::deployer {
 namespace {
@@ -110,15 +110,19 @@ int listTasks(const framework::Registry& registry, bool json) {
     return 0;
 }
 
+template <class Enum> std::vector<std::string_view> namesOf() {
+    return {std::begin(types::EnumNames<Enum>::names), std::end(types::EnumNames<Enum>::names)};
+}
+
 int listMaterials(bool json) {
     if (json) {
-        print({{"sediments", types::sedimentNames()}, {"materials", types::materialNames()}});
+        print({{"sediments", namesOf<scene::Sediment>()}, {"materials", namesOf<scene::Matter>()}});
         return 0;
     }
     fmt::print("sediments (material.extras.acoustics = {{\"sediment\": NAME}})\n  {}\n",
-               fmt::join(types::sedimentNames(), "\n  "));
+               fmt::join(namesOf<scene::Sediment>(), "\n  "));
     fmt::print("materials (material.extras.acoustics = {{\"material\": NAME}})\n  {}\n",
-               fmt::join(types::materialNames(), "\n  "));
+               fmt::join(namesOf<scene::Matter>(), "\n  "));
     return 0;
 }
 

@@ -2,6 +2,7 @@
 #include <fmt/core.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <memory>
 
@@ -39,6 +40,11 @@ private:
     double next_s_ = 0.1;
 };
 
+std::vector<std::string> without(std::vector<std::string> notices, const std::vector<std::string>& told) {
+    std::erase_if(notices, [&](const std::string& notice) { return std::ranges::count(told, notice) > 0; });
+    return notices;
+}
+
 void printNotices(const framework::TaskContext& task, const std::vector<std::string>& notices) {
     for (const std::string& notice : notices) fmt::print(stderr, "notice: {}: {}\n", task.name(), notice);
 }
@@ -54,7 +60,7 @@ void refuseUnwritable(const std::filesystem::path& summary_file) {
 
 void tell(const framework::Deployment& deployment, const Summary& summary, const OutputFolder& folder) {
     for (const auto& task : deployment.tasks())
-        if (const types::Plan* plan = task->plan()) printNotices(*task, plan->notices);
+        if (const types::Plan* plan = task->plan()) printNotices(*task, without(plan->notices, task->notices()));
     fmt::print("{}files in {}\n", summary.text(), folder.path().string());
 }
 
