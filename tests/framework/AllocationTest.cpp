@@ -1,7 +1,6 @@
 #include <gtest/gtest.h>
 
 #include <cstdlib>
-#include <new>
 
 #include "components/framework/SamplePool.hpp"
 #include "tests/support/Ports.hpp"
@@ -17,6 +16,10 @@ std::atomic<uint64_t> allocations{0};  // of all threads
     ++allocations;
     if (void* memory = std::malloc(size)) return memory;
     throw std::bad_alloc();
+}
+[[gnu::noinline]] void* operator new(size_t size, const std::nothrow_t&) noexcept {
+    ++allocations;
+    return std::malloc(size);
 }
 [[gnu::noinline]] void operator delete(void* memory) noexcept { std::free(memory); }
 [[gnu::noinline]] void operator delete(void* memory, size_t) noexcept { std::free(memory); }
