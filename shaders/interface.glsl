@@ -18,7 +18,7 @@ struct ObjectRecord {
 
 // One draw of a run of triangles.
 struct CommandRecord {
-    uint object, first_triangle, material, unused;
+    uint object, first_triangle, material, unused;  // first_triangle: of the mesh, among all planes
 };
 
 // What the model needs of a material: x mu = 10^(lambert_db/10), y reflectivity, z normal scale.

@@ -2,7 +2,7 @@
 // Range, slope and strength follow from the triangle's plane, exactly, in surface.glsl.
 #include "interface.glsl"
 
-flat in uint command;
+flat in uvec2 seen;
 #ifdef HAVE_NORMAL_MAP
 layout(std430, binding = COMMANDS_BINDING) readonly buffer Commands { CommandRecord commands[]; };
 layout(std430, binding = MATERIALS_BINDING) readonly buffer Materials { MaterialRecord materials[]; };
@@ -14,7 +14,7 @@ in vec3 slab_normal;
 in vec4 slab_tangent;
 in vec2 map_uv;
 
-// x: command + 1, 0 for a miss; y: triangle within the command; z: bits of the mapped cosine, 0 without a map
+// x: command + 1, 0 for a miss; y: triangle within the mesh; z: bits of the mapped cosine, 0 without a map
 layout(location = 0) out uvec4 surface;
 
 float mappedCosine(vec3 direction, float scale) {
@@ -29,12 +29,12 @@ void main() {
     float cosine = 0.0;
     if (mapped) {
         vec3 direction = normalize(vec3(1.0, gl_FragCoord.xy * pixel_size - extent));
-        cosine = mappedCosine(direction, materials[commands[command].material].values.z);
+        cosine = mappedCosine(direction, materials[commands[seen.x].material].values.z);
     }
-    surface = uvec4(command + 1u, gl_PrimitiveID, floatBitsToUint(cosine), 0u);
+    surface = uvec4(seen.x + 1u, seen.y, floatBitsToUint(cosine), 0u);
 }
 #else
 layout(location = 0) out uvec2 surface;
 
-void main() { surface = uvec2(command + 1u, gl_PrimitiveID); }
+void main() { surface = uvec2(seen.x + 1u, seen.y); }
 #endif

@@ -9,7 +9,7 @@ uniform vec2 extent;      // tan of the half azimuth and of the half elevation o
 uniform float near_plane; // [m]
 
 layout(location = 0) in vec3 position;
-flat out uint command;
+flat out uvec2 seen;  // command, triangle (SurfaceScene.cpp has each triangle end in a vertex of its number)
 #ifdef HAVE_NORMAL_MAP
 layout(location = 1) in vec3 normal;
 layout(location = 2) in vec4 tangent;
@@ -24,8 +24,8 @@ vec3 slabFromSonar(vec3 p) {
 }
 
 void main() {
-    command = uint(gl_BaseInstanceARB);
-    ObjectRecord object = objects[commands[command].object];
+    seen = uvec2(gl_BaseInstanceARB, gl_VertexID - gl_BaseVertexARB);
+    ObjectRecord object = objects[commands[seen.x].object];
     vec4 p = vec4(position, 1.0);
     vec3 at = slabFromSonar(vec3(dot(object.row_x, p), dot(object.row_y, p), dot(object.row_z, p)));
     gl_Position = vec4(at.y / extent.x, at.z / extent.y, near_plane, at.x);  // reversed, infinite depth: near / x

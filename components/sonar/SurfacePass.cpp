@@ -75,7 +75,7 @@ void SurfacePass::upload(const std::vector<Culler::Run>& runs) {
         const SurfaceScene::MeshPlace& place = scene_.place(geometry_.objects[run.object].mesh);
         command_list_.push_back({run.index_count, 1, place.first_index + run.first_index, place.first_vertex,
                                  static_cast<uint32_t>(record_list_.size())});
-        record_list_.push_back({run.object, place.first_triangle + run.first_index / 3, static_cast<uint32_t>(run.material), 0});
+        record_list_.push_back({run.object, place.first_triangle, static_cast<uint32_t>(run.material), 0});
     }
     records_.write(record_list_.data(), record_list_.size() * sizeof(CommandRecord));
     commands_.write(command_list_.data(), command_list_.size() * sizeof(DrawCommand));

@@ -1,18 +1,54 @@
 #include "components/sonar/SurfaceScene.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <glm/geometric.hpp>
 
 namespace insonify::sonar {
 namespace {
 
-/** One attribute of all meshes behind one another; `neutral` where a mesh has none. */
-template <class T> std::vector<T> joined(const types::Geometry& geometry, std::vector<T> types::Mesh::* attribute, T neutral) {
+/** A mesh as it is drawn: triangle t ends in vertex t, which no other triangle ends in. So the last vertex of a triangle,
+ *  the provoking one, tells which triangle it is, and gl_PrimitiveID, for which llvmpipe takes meshes apart, is not needed. */
+struct Drawn {
+    std::vector<uint32_t> sources;  ///< Of each drawn vertex, in the mesh.
+    std::vector<uint32_t> indices;
+};
+
+constexpr uint32_t nobody = 0xffffffff;
+
+Drawn drawn(const types::Mesh& mesh) {
+    const size_t count = mesh.indices.size() / 3;
+    Drawn result{std::vector<uint32_t>(count), mesh.indices};
+    std::vector<uint32_t> place(mesh.positions.size(), nobody);
+    for (size_t t = 0; t < count; ++t) {
+        uint32_t* corners = result.indices.data() + 3 * t;
+        uint32_t* free = std::find_if(corners, corners + 3, [&](uint32_t vertex) { return place[vertex] == nobody; });
+        std::rotate(corners, free == corners + 3 ? corners : free + 1, corners + 3);
+        result.sources[t] = corners[2];
+        if (place[corners[2]] == nobody) place[corners[2]] = static_cast<uint32_t>(t);
+    }
+    for (size_t i = 0; i < result.indices.size(); ++i) {
+        uint32_t& index = result.indices[i];
+        if (i % 3 == 2) {
+            index = static_cast<uint32_t>(i / 3);
+        } else {
+            if (place[index] == nobody) {
+                place[index] = static_cast<uint32_t>(result.sources.size());
+                result.sources.push_back(index);
+            }
+            index = place[index];
+        }
+    }
+    return result;
+}
+
+/** One attribute of all drawn vertices; `neutral` where a mesh has none. */
+template <class T>
+std::vector<T> joined(const types::Geometry& geometry, const std::vector<Drawn>& meshes, std::vector<T> types::Mesh::* attribute, T neutral) {
     std::vector<T> all;
-    for (const types::Mesh& mesh : geometry.meshes) {
-        const std::vector<T>& values = mesh.*attribute;
-        all.insert(all.end(), values.begin(), values.end());
-        all.resize(all.size() + mesh.positions.size() - values.size(), neutral);
+    for (size_t m = 0; m < meshes.size(); ++m) {
+        const std::vector<T>& values = geometry.meshes[m].*attribute;
+        for (uint32_t source : meshes[m].sources) all.push_back(values.empty() ? neutral : values[source]);
     }
     return all;
 }
@@ -49,21 +85,23 @@ SurfaceScene::SurfaceScene(const types::Geometry& geometry, bool with_normal_map
 }
 
 void SurfaceScene::uploadVertices(const types::Geometry& geometry, bool with_normal_maps) {
+    std::vector<Drawn> meshes;
     std::vector<uint32_t> indices;
     uint32_t vertex = 0;
     for (const types::Mesh& mesh : geometry.meshes) {
+        const Drawn& added = meshes.emplace_back(drawn(mesh));
         const auto first_index = static_cast<uint32_t>(indices.size());
         places_.push_back({vertex, first_index, first_index / 3});
-        vertex += static_cast<uint32_t>(mesh.positions.size());
-        indices.insert(indices.end(), mesh.indices.begin(), mesh.indices.end());
+        vertex += static_cast<uint32_t>(added.sources.size());
+        indices.insert(indices.end(), added.indices.begin(), added.indices.end());
     }
     indices_ = uploaded(indices);
     vertices_.indices(indices_);
-    vertices_.attribute(0, positions_ = uploaded(joined(geometry, &types::Mesh::positions, glm::vec3(0))), 3);
+    vertices_.attribute(0, positions_ = uploaded(joined(geometry, meshes, &types::Mesh::positions, glm::vec3(0))), 3);
     if (!with_normal_maps) return;
-    vertices_.attribute(1, normals_ = uploaded(joined(geometry, &types::Mesh::normals, glm::vec3(0, 0, 1))), 3);
-    vertices_.attribute(2, tangents_ = uploaded(joined(geometry, &types::Mesh::tangents, glm::vec4(1, 0, 0, 1))), 4);
-    vertices_.attribute(3, uvs_ = uploaded(joined(geometry, &types::Mesh::uvs, glm::vec2(0))), 2);
+    vertices_.attribute(1, normals_ = uploaded(joined(geometry, meshes, &types::Mesh::normals, glm::vec3(0, 0, 1))), 3);
+    vertices_.attribute(2, tangents_ = uploaded(joined(geometry, meshes, &types::Mesh::tangents, glm::vec4(1, 0, 0, 1))), 4);
+    vertices_.attribute(3, uvs_ = uploaded(joined(geometry, meshes, &types::Mesh::uvs, glm::vec2(0))), 2);
 }
 
 void SurfaceScene::uploadPlanes(const types::Geometry& geometry) {

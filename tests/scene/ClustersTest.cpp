@@ -91,7 +91,7 @@ TEST(ClustersTest, TrianglesInOnePlaceAreSplitAllTheSame) {
     mesh.clusters = {{.first_index = 0, .index_count = 60'000}};
     buildClusters(mesh);
     expectSoundMesh(mesh, 1);
-    EXPECT_EQ(mesh.clusters.size(), 32u);
+    EXPECT_GE(mesh.clusters.size(), 20'000 / kClusterTriangles);
 }
 
 }  // namespace
