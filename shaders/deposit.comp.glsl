@@ -14,7 +14,7 @@ layout(std430, binding = SUMS_BINDING) buffer Sums { uvec2 sums[]; };  // low an
 uniform ivec2 image_size;
 uniform bool shares_per_row;
 uniform uint bin_count;
-uniform double tan_elevation, bin_width, attenuation;
+uniform double bin_width, attenuation;
 uniform dvec2 extent, pixel_size, slab_axis;
 
 double binEdge(uint k) { return edges[k]; }
@@ -64,7 +64,6 @@ void main() {
     dvec2 uv = (dvec2(pixel) + 0.5) * pixel_size - extent;
     CommandRecord command = commands[texel.x - 1u];
     Surface surface = surfaceOf(command, texel.y, uv);
-    if (surface.range == 0.0) return;
     double cosine = texel.z == 0u ? surface.cosine : double(uintBitsToFloat(texel.z));
 #ifdef HAVE_CERQUEIRA2017
     double strength = cosine * double(materials[command.material].values.y);
@@ -75,7 +74,10 @@ void main() {
     uint at = uint((shares_per_row ? pixel.y * image_size.x : 0) + pixel.x);
     for (uint i = share_starts[at]; i < share_starts[at + 1u]; ++i) {
         ShareRecord share = shares[i];
-        Footprint cell = cellFootprint(uv.x, uv.y, share.u_low, share.u_high, pixel_size.y, tan_elevation, surface.range, surface.slope_u, surface.slope_v);
-        if (cell.solid_angle > 0.0) depositCell(cell, share.beam, surface.range, strength, scale, double(objects[command.object].extent.x), double(objects[command.object].extent.y));
+        Footprint cell = cellFootprint(uv.x, uv.y, share.middle, share.width, share.limit, share.shear, pixel_size.y,
+                                       surface.inverse_range, surface.slope_u, surface.slope_v,
+                                       double(objects[command.object].extent.x), double(objects[command.object].extent.y),
+                                       binEdge(0u), binEdge(bin_count));
+        depositCell(cell, share.beam, strength * surface.range, cell.solid_angle * scale);
     }
 }

@@ -2,45 +2,39 @@
 // Over a plane 1/r is linear in the picture but for the slow |q|, so a cell covers a trapezoid of inverse ranges
 // (box times box), exact to second order even where one pixel spans hundreds of bins.
 
-// A cell, in inverse range: centre, widths of the two boxes [1/m], and its solid angle [sr].
+// A cell's trapezoid, in inverse range [1/m]: widths of its two boxes, and what of it is in reach.
 struct Footprint {
-    double centre, wide, narrow, solid_angle;
+    double centre, wide, narrow;
+    double per_wide, steepness;  // 1 / wide, and 1 / (2 wide narrow)
+    double near_end, far_end;    // near_end <= far_end: nothing in reach
+    double solid_angle;          // [sr]
 };
 
-// The cell of pixel (u, v) between u_low and u_high, bounded by curves of constant elevation and clipped at
-// |tan(elevation)| <= tan_elevation. `surface` is the pixel's texel. Its solid angle is 0 when nothing is left.
-Footprint cellFootprint(double u, double v, double u_low, double u_high, double dv, double tan_elevation,
-                        double range, double slope_u, double slope_v) {
-    double middle = 0.5 * (u_low + u_high);
-    double shear = v * u / (1.0 + u * u);
-    double stretch = sqrt(1.0 + middle * middle);
-    double limit = tan_elevation * stretch;
-    double at = v + shear * (middle - u);
+// The share of pixel (u, v), bounded by curves of constant elevation and clipped at the aperture; shares are described
+// in interface.glsl. `slope`: of the inverse range over u and v. No part goes beyond [far_limit, near_limit], the inverse
+// ranges of the object (a facet seen edge-on is steep, not long), nor beyond [far_edge, near_edge], those of the bins.
+Footprint cellFootprint(double u, double v, double middle, double width, double limit, double shear, double dv,
+                        double inverse_range, double slope_u, double slope_v, double near_limit, double far_limit,
+                        double near_edge, double far_edge) {
+    double aside = middle - u;
+    double lean = v * shear;
+    double at = v + lean * aside;
     double low = max(at - 0.5 * dv, -limit);
     double high = min(at + 0.5 * dv, limit);
     double height = max(high - low, 0.0);
     double centre_v = 0.5 * (low + high);
-    double along = abs(slope_u + slope_v * shear) * (u_high - u_low);
+    double along = abs(slope_u + slope_v * lean) * width;
     double across = abs(slope_v) * height;
     double q2 = 1.0 + middle * middle + centre_v * centre_v;
     Footprint cell;
-    cell.centre = 1.0 / range + slope_u * (middle - u) + slope_v * (centre_v - v);
-    cell.wide = max(along, across);
-    cell.narrow = min(along, across);
-    cell.solid_angle = (u_high - u_low) * height / (q2 * sqrt(q2));
+    cell.centre = inverse_range + slope_u * aside + slope_v * (centre_v - v);
+    cell.wide = max(max(along, across), 1e-12 * inverse_range + 1e-300);
+    cell.narrow = max(min(along, across), 1e-12 * cell.wide);
+    cell.per_wide = 1.0 / cell.wide;
+    cell.steepness = 0.5 * cell.per_wide / cell.narrow;
+    double half_length = 0.5 * (cell.wide + cell.narrow);
+    cell.near_end = height > 0.0 ? min(min(cell.centre + half_length, near_limit), near_edge) : 0.0;
+    cell.far_end = max(max(cell.centre - half_length, far_limit), far_edge);
+    cell.solid_angle = width * height / (q2 * sqrt(q2));
     return cell;
-}
-
-double squareOfPositive(double x) {
-    double positive = max(x, 0.0);
-    return positive * positive;
-}
-
-// Share of the trapezoid that lies below centre + t. Where one box is under 2^-10 of the other it is a plain box.
-double trapezoidBelow(double t, double wide, double narrow) {
-    if (narrow < 0.0009765625 * wide) return clamp(t / wide + 0.5, 0.0, 1.0);
-    double outer = 0.5 * (wide + narrow);
-    double inner = 0.5 * (wide - narrow);
-    double area = squareOfPositive(t + outer) - squareOfPositive(t + inner) - squareOfPositive(t - inner) + squareOfPositive(t - outer);
-    return clamp(area / (2.0 * wide * narrow), 0.0, 1.0);
 }

@@ -26,8 +26,10 @@ struct MaterialRecord {
     vec4 values;
 };
 
-// The part [u_low, u_high] of an image column that belongs to one beam; u = tan(azimuth in the slab).
+// The part of an image column that belongs to one beam; u = tan(azimuth in the slab).
 struct ShareRecord {
-    double u_low, u_high;
-    uint beam, unused;
+    double middle, width;  // of the part, in u [1]
+    double limit;          // the aperture ends at v = +-limit there [1]
+    double shear;          // u / (1 + u u) at the column's middle: curves of constant elevation lean by v * shear [1]
+    uint beam, column;
 };

@@ -1,9 +1,9 @@
 // Shared by C++ and GLSL: what a ray through (u, v) of a slab's picture meets on a triangle's plane.
 
 struct Surface {
-    double range;             // slant range [m], 0: no echo (edge-on, or behind)
-    double slope_u, slope_v;  // d(1/range)/du and /dv [1/m]
-    double cosine;            // of the angle between ray and geometric normal, either side [1]
+    double range, inverse_range;  // slant range [m], and 1 / range; both 0: no echo (edge-on, or behind)
+    double slope_u, slope_v;      // d(1/range)/du and /dv [1/m]
+    double cosine;                // of the angle between ray and geometric normal, either side [1]
 };
 
 // Plane normal.p = distance in slab axes (x into the picture, y to port, z up); the normal may have any length and sign.
@@ -11,11 +11,14 @@ struct Surface {
 Surface surfaceAt(double normal_x, double normal_y, double normal_z, double distance, double u, double v) {
     double q2 = 1.0 + u * u + v * v;
     double facing = normal_x + normal_y * u + normal_z * v;
-    double depth = distance / facing;
     Surface surface;
     surface.cosine = abs(facing) / sqrt(q2 * (normal_x * normal_x + normal_y * normal_y + normal_z * normal_z));
-    surface.range = surface.cosine > 0.0001 && depth > 0.0 ? depth * sqrt(q2) : 0.0;
-    surface.slope_u = (normal_y / facing - u / q2) / surface.range;
-    surface.slope_v = (normal_z / facing - v / q2) / surface.range;
+    bool echo = surface.cosine > 0.0001 && distance * facing > 0.0;
+    double per_facing = echo ? 1.0 / facing : 0.0;
+    double per_q2 = 1.0 / q2;
+    surface.range = distance * per_facing * sqrt(q2);
+    surface.inverse_range = echo ? 1.0 / surface.range : 0.0;
+    surface.slope_u = (normal_y * per_facing - u * per_q2) * surface.inverse_range;
+    surface.slope_v = (normal_z * per_facing - v * per_q2) * surface.inverse_range;
     return surface;
 }

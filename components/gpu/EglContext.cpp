@@ -45,7 +45,7 @@ EGLDisplay surfacelessDisplay() {
 }
 
 /** A context of OpenGL 4.5 core, current on this thread; null when this display has none. */
-EGLContext contextOn(EGLDisplay display, bool robust) {
+EGLContext contextOn(EGLDisplay display, bool robust, EGLContext shared) {
     if (!eglBindAPI(EGL_OPENGL_API)) return EGL_NO_CONTEXT;
     std::vector<EGLint> wish = {EGL_CONTEXT_MAJOR_VERSION, 4, EGL_CONTEXT_MINOR_VERSION, 5,
                                 EGL_CONTEXT_OPENGL_PROFILE_MASK, EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT};
@@ -53,7 +53,7 @@ EGLContext contextOn(EGLDisplay display, bool robust) {
         wish.insert(wish.end(), {EGL_CONTEXT_OPENGL_ROBUST_ACCESS, EGL_TRUE,
                                  EGL_CONTEXT_OPENGL_RESET_NOTIFICATION_STRATEGY, EGL_LOSE_CONTEXT_ON_RESET});
     wish.push_back(EGL_NONE);
-    EGLContext context = eglCreateContext(display, EGL_NO_CONFIG_KHR, EGL_NO_CONTEXT, wish.data());
+    EGLContext context = eglCreateContext(display, EGL_NO_CONFIG_KHR, shared, wish.data());
     if (context == EGL_NO_CONTEXT) return context;
     if (eglMakeCurrent(display, EGL_NO_SURFACE, EGL_NO_SURFACE, context)) return context;
     eglDestroyContext(display, context);
@@ -93,6 +93,12 @@ EglContext::EglContext(const std::string& device) {
     watch();
 }
 
+EglContext::EglContext(const EglContext& other) {
+    if (!createOn(other.display_, other.robust_, other.context_))
+        throw GlError("no second OpenGL context beside that of " + other.renderer_);
+    watch();
+}
+
 EglContext::~EglContext() {
     if (std::this_thread::get_id() == thread_) eglMakeCurrent(display_, nullptr, nullptr, nullptr);
     eglDestroyContext(display_, context_);  // the display is shared by all contexts of this process and stays
@@ -101,12 +107,15 @@ EglContext::~EglContext() {
 void EglContext::create(const std::string& device) {
     for (EGLDisplay display : candidates(device))
         for (bool robust : {true, false})
-            if (display != EGL_NO_DISPLAY && !context_) {
-                display_ = display;
-                context_ = contextOn(display, robust);
-                robust_ = robust;
-            }
-    if (!context_) throw GlError("no OpenGL 4.5 core context from EGL device '" + device + "': " + hint);
+            if (display != EGL_NO_DISPLAY && createOn(display, robust, EGL_NO_CONTEXT)) return;
+    throw GlError("no OpenGL 4.5 core context from EGL device '" + device + "': " + hint);
+}
+
+bool EglContext::createOn(void* display, bool robust, void* shared) {
+    display_ = display;
+    robust_ = robust;
+    context_ = contextOn(display, robust, shared);
+    return context_ != EGL_NO_CONTEXT;
 }
 
 void EglContext::watch() {

@@ -18,8 +18,10 @@ struct GlError : std::runtime_error {
 class EglContext {
 public:
     explicit EglContext(const std::string& device = {});
+    /** A context for this thread on the device of `other`, with which it shares buffers, textures and programs; vertex
+     *  arrays and framebuffers belong to one context. `other` may be current on another thread. */
+    explicit EglContext(const EglContext& other);
     ~EglContext();
-    EglContext(const EglContext&) = delete;
     EglContext& operator=(const EglContext&) = delete;
 
     /** Throws GlError on another thread than the one that made the context: there GL would silently do nothing. */
@@ -32,6 +34,7 @@ public:
 
 private:
     void create(const std::string& device);
+    bool createOn(void* display, bool robust, void* shared);
     void watch();
 
     void* display_ = nullptr;

@@ -61,4 +61,16 @@ void VertexArray::attribute(GLuint location, const Buffer& buffer, int component
     glVertexArrayAttribBinding(id(), location, location);
 }
 
+void VertexArray::instanceRows(GLuint location, const Buffer& buffer, int rows) const {
+    constexpr int row_bytes = 4 * static_cast<int>(sizeof(float));
+    glVertexArrayVertexBuffer(id(), location, buffer.id(), 0, rows * row_bytes);
+    glVertexArrayBindingDivisor(id(), location, 1);
+    for (int row = 0; row < rows; ++row) {
+        const GLuint at = location + static_cast<GLuint>(row);
+        glEnableVertexArrayAttrib(id(), at);
+        glVertexArrayAttribFormat(id(), at, 4, GL_FLOAT, GL_FALSE, static_cast<GLuint>(row * row_bytes));
+        glVertexArrayAttribBinding(id(), at, location);
+    }
+}
+
 }  // namespace insonify::gpu

@@ -79,6 +79,8 @@ public:
     void bind() const { glBindVertexArray(id()); }
     /** Floats, `components` a vertex, tightly packed, as attribute `location`. */
     void attribute(GLuint location, const Buffer& buffer, int components) const;
+    /** Attributes `location` to `location + rows - 1` from rows of four floats: the same for all vertices of an instance. */
+    void instanceRows(GLuint location, const Buffer& buffer, int rows) const;
     void indices(const Buffer& buffer) const { glVertexArrayElementBuffer(id(), buffer.id()); }
 
 private:

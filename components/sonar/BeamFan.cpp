@@ -32,6 +32,12 @@ double boundary(const SonarConfig& config, const Slab& slab, double bearing, dou
     return std::tan(inside);
 }
 
+/** The part [from, to] of the column around u; `limit` = tan of the aperture's half height. */
+ShareRecord share(double from, double to, double u, double limit, uint32_t beam, uint32_t column) {
+    const double middle = 0.5 * (from + to);
+    return {middle, to - from, limit * std::sqrt(1 + middle * middle), u / (1 + u * u), beam, column};
+}
+
 /** Beams that touch the slab, with their edges in u, for one image row. */
 void addRow(const SonarConfig& config, const std::vector<Beam>& beams, const Slab& slab, double v, ColumnShares& result) {
     struct Edges { double low, high; uint32_t beam; };
@@ -40,12 +46,13 @@ void addRow(const SonarConfig& config, const std::vector<Beam>& beams, const Sla
         const Edges e{boundary(config, slab, beams[k].low, v), boundary(config, slab, beams[k].high, v), static_cast<uint32_t>(k)};
         if (e.high > e.low) edges.push_back(e);
     }
+    const double limit = std::tan(halfElevation(config));
     for (int column = 0; column < slab.columns; ++column) {
         result.starts.push_back(static_cast<uint32_t>(result.shares.size()));
         const double low = slab.u(column), high = slab.u(column + 1);
         for (const Edges& e : edges) {
             const double from = std::max(low, e.low), to = std::min(high, e.high);
-            if (to - from > 1e-9 * (high - low)) result.shares.push_back({from, to, e.beam, 0});
+            if (to - from > 1e-9 * (high - low)) result.shares.push_back(share(from, to, slab.u(column + 0.5), limit, e.beam, static_cast<uint32_t>(column)));
         }
     }
 }

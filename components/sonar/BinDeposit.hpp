@@ -16,7 +16,6 @@ struct DepositSetup {
     std::vector<ColumnShares> shares;  ///< One for each slab.
     uint32_t beam_count = 0;
     BinGrid bins;
-    double tan_elevation = 0;  ///< Of the upper edge of the aperture [1].
     double attenuation = 0;    ///< Amplitude, one way, in `cerqueira2017` [Np/m].
     Model model = Model::Physical;
 
@@ -34,7 +33,7 @@ constexpr double quanta_per_unit = 1099511627776.0;
 class BinDeposit {
 public:
     virtual ~BinDeposit() = default;
-    /** Takes the picture of a slab, drawn last by `surface`. Call for each slab once a ping. */
+    /** Takes the picture of a slab. Call for each slab that sees anything once a ping. */
     virtual void take(size_t slab, const SurfacePass& surface) = 0;
     /** Sums over all slabs taken since the last call, [beam][bin][channel] in quanta; valid until the next take. */
     virtual std::span<const uint64_t> finish() = 0;

@@ -1,5 +1,5 @@
 #pragma once
-#include "components/sonar/BinDeposit.hpp"
+#include "components/sonar/DepositRow.hpp"
 #include "components/sonar/ThreadPool.hpp"
 
 namespace insonify::sonar {
@@ -12,30 +12,17 @@ public:
     void take(size_t slab, const SurfacePass& surface) override;
     std::span<const uint64_t> finish() override;
 
-    /** How the planes of one run of triangles are turned from object axes into those of a slab. */
-    struct Run {
-        double normal_x[3], normal_y[3], normal_z[3], origin[3];  ///< Rows of the normals' matrix; origin, slab axes [m].
-        double near_limit, far_limit;                             ///< Inverse ranges of the object [1/m].
-        double strength;                                          ///< Of the material at normal incidence.
-        uint32_t first_triangle;
-    };
-    /** A slab's picture and what its numbers mean, copied when taken. */
-    struct Picture {
-        std::vector<uint32_t> words;
-        std::vector<Run> runs;
-        bool taken = false;
-    };
-
 private:
-    void depositBeams(uint32_t first, uint32_t last);
-    void depositSlab(size_t slab, uint32_t first, uint32_t last);
+    void depositPart(size_t part);
+    /** Where a thread's run of beams begins. */
+    uint32_t firstBeam(size_t part) const;
 
     DepositSetup setup_;
     ThreadPool& threads_;
     std::vector<double> edges_;
     const std::vector<vec4>& planes_;
-    size_t channels_;
-    std::vector<Picture> pictures_;
+    std::vector<std::vector<std::array<int, 2>>> columns_;  ///< Of each thread and slab: from, to.
+    std::vector<TakenPicture> pictures_;
     std::vector<uint64_t> sums_;
 };
 

@@ -47,9 +47,7 @@ Culler::Culler(const types::Geometry& geometry, double range_max) : geometry_(ge
         const bool empty = mesh.clusters.empty();
         mesh_spheres_.push_back(empty ? Sphere{} : Sphere{low * 0.5f + high * 0.5f, glm::length(high * 0.5f - low * 0.5f)});
     }
-    size_t runs = 0;
-    for (const types::Object& object : geometry.objects) runs += geometry.meshes[static_cast<size_t>(object.mesh)].clusters.size();
-    runs_.reserve(std::max<size_t>(runs, 1));
+    for (const types::Object& object : geometry.objects) run_limit_ += geometry.meshes[static_cast<size_t>(object.mesh)].clusters.size();
     object_spheres_.resize(geometry.objects.size());
     scales_.resize(geometry.objects.size());
     records_.resize(geometry.objects.size());
@@ -95,14 +93,13 @@ void Culler::placeObject(size_t index, const glm::dmat4& sonar_from_object) {
     object_spheres_[index] = {glm::vec3(sonar_from_object * glm::dvec4(mesh.centre, 1)), mesh.radius * scales_[index]};
 }
 
-const std::vector<Culler::Run>& Culler::visible(const Slab& slab) {
-    runs_.clear();
+void Culler::visible(const Slab& slab, std::vector<Run>& runs) const {
+    runs.clear();
     for (size_t i = 0; i < object_spheres_.size(); ++i)
-        if (sees(slab, object_spheres_[i])) addRuns(i, slab);
-    return runs_;
+        if (sees(slab, object_spheres_[i])) addRuns(i, slab, runs);
 }
 
-void Culler::addRuns(size_t object, const Slab& slab) {
+void Culler::addRuns(size_t object, const Slab& slab, std::vector<Run>& runs) const {
     const types::Mesh& mesh = geometry_.meshes[static_cast<size_t>(geometry_.objects[object].mesh)];
     const ObjectRecord& record = records_[object];
     for (const types::Cluster& cluster : mesh.clusters) {
@@ -111,11 +108,11 @@ void Culler::addRuns(size_t object, const Slab& slab) {
                             cluster.radius * scales_[object]};
         if (mesh.clusters.size() > 1 && !sees(slab, sphere)) continue;
         const auto id = static_cast<uint32_t>(object);
-        if (!runs_.empty() && runs_.back().object == id && runs_.back().material == cluster.material &&
-            runs_.back().first_index + runs_.back().index_count == cluster.first_index)
-            runs_.back().index_count += cluster.index_count;
+        if (!runs.empty() && runs.back().object == id && runs.back().material == cluster.material &&
+            runs.back().first_index + runs.back().index_count == cluster.first_index)
+            runs.back().index_count += cluster.index_count;
         else
-            runs_.push_back({id, cluster.first_index, cluster.index_count, cluster.material});
+            runs.push_back({id, cluster.first_index, cluster.index_count, cluster.material});
     }
 }
 

@@ -23,10 +23,10 @@ public:
 
     /** Places all objects relative to the sonar; once a ping, before `visible`. */
     void place(const types::Snapshot& snapshot);
-    /** Runs that a slab may see, neighbours joined; valid until the next call. */
-    const std::vector<Run>& visible(const Slab& slab);
+    /** Runs that a slab may see, neighbours joined. */
+    void visible(const Slab& slab, std::vector<Run>& runs) const;
     const std::vector<ObjectRecord>& records() const { return records_; }
-    size_t runLimit() const { return runs_.capacity(); }
+    size_t runLimit() const { return run_limit_; }  ///< Of what `visible` gives.
 
 private:
     struct Sphere {
@@ -35,7 +35,7 @@ private:
     };
     vec4 extent(size_t index, const glm::dmat4& sonar_from_object) const;
     void placeObject(size_t index, const glm::dmat4& sonar_from_object);
-    void addRuns(size_t object, const Slab& slab);
+    void addRuns(size_t object, const Slab& slab, std::vector<Run>& runs) const;
     bool sees(const Slab& slab, const Sphere& sphere) const;
 
     const types::Geometry& geometry_;
@@ -49,7 +49,7 @@ private:
     std::vector<float> scales_;             ///< Largest stretch of each object [1].
     std::vector<glm::dmat4> world_from_object_;
     std::vector<ObjectRecord> records_;
-    std::vector<Run> runs_;
+    size_t run_limit_ = 0;
 };
 
 }  // namespace insonify::sonar

@@ -42,7 +42,6 @@ void GpuDeposit::setUniforms(const Slab& slab, bool shares_per_row) const {
     glUniform2i(uniform("image_size"), slab.columns, slab.rows);
     glUniform1i(uniform("shares_per_row"), shares_per_row);
     glUniform1ui(uniform("bin_count"), static_cast<GLuint>(setup_.bins.bin_count));
-    glUniform1d(uniform("tan_elevation"), setup_.tan_elevation);
     glUniform1d(uniform("bin_width"), setup_.bins.bin_width);
     glUniform1d(uniform("attenuation"), setup_.attenuation);
     glUniform2d(uniform("slab_axis"), std::cos(slab.azimuth), std::sin(slab.azimuth));
@@ -54,7 +53,7 @@ void GpuDeposit::take(size_t slab, const SurfacePass& surface) {
     if (!std::exchange(cleared_, true)) device_sums_.clear();
     program_.use();
     setUniforms(setup_.slabs[slab], setup_.shares[slab].per_row);
-    surface.bindResults();
+    surface.bindResults(slab);
     shares_[slab].shares.bindBase(GL_SHADER_STORAGE_BUFFER, SHARES_BINDING);
     shares_[slab].starts.bindBase(GL_SHADER_STORAGE_BUFFER, SHARE_STARTS_BINDING);
     edges_.bindBase(GL_SHADER_STORAGE_BUFFER, EDGES_BINDING);

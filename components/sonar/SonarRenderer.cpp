@@ -36,7 +36,6 @@ DepositSetup depositSetup(const SonarConfig& config, const std::vector<Beam>& be
     for (const Slab& slab : slabs) setup.shares.push_back(makeShares(config, beams, slab));
     setup.beam_count = static_cast<uint32_t>(beams.size());
     setup.bins = bins;
-    setup.tan_elevation = std::tan(types::radians(config.beam_height_deg) / 2);
     setup.attenuation = config.model == Model::Cerqueira2017 ? makeAbsorption(config).amplitudeNepersPerMetre() : 0;
     setup.model = config.model;
     return setup;
@@ -62,8 +61,8 @@ struct SonarRenderer::Parts {
     BinGrid bins;
     BinLevels levels;
     Culler culler;
-    SurfacePass surface;
     ThreadPool threads;
+    SurfacePass surface;
     std::unique_ptr<BinDeposit> deposit;
     std::vector<double> scratch;
     std::array<Stage, 5> stages{{{"cull", 0}, {"draw", 0}, {"read", 0}, {"deposit", 0}, {"beams", 0}}};
@@ -74,7 +73,7 @@ SonarRenderer::Parts::Parts(const SonarConfig& c, types::GeometryPtr scene)
     : config(c), geometry(std::move(scene)), plan(makePlan(config, *geometry)), context(config.device),
       beams(makeBeams(config)), slabs(makeSlabs(config, beams)), bins(makeBinGrid(config)), levels(config, bins),
       culler(*geometry, bins.range_max),
-      surface(*geometry, slabs, defines(plan), nearPlane(config, slabs.front()), culler.runLimit()) {
+      surface(context, {*geometry, slabs, defines(plan), nearPlane(config, slabs.front()), culler.runLimit()}, threads) {
     DepositSetup setup = depositSetup(config, beams, slabs, bins);
     const bool on_cpu = config.deposit == Deposit::Cpu || (config.deposit == Deposit::Auto && context.isSoftware());
     if (on_cpu) deposit = std::make_unique<CpuDeposit>(std::move(setup), surface, threads);
@@ -91,17 +90,13 @@ void SonarRenderer::Parts::lap(size_t stage) {
 
 void SonarRenderer::Parts::drawSlabs(const types::Snapshot& snapshot) {
     culler.place(snapshot);
-    surface.place(culler.records());
-    for (size_t i = 0; i < slabs.size(); ++i) {
-        const auto& runs = culler.visible(slabs[i]);
-        lap(0);
-        if (runs.empty()) continue;
-        surface.draw(slabs[i], runs);
-        glFinish();
-        lap(1);
-        deposit->take(i, surface);
-        lap(2);
-    }
+    surface.cull(culler);
+    lap(0);
+    surface.draw();
+    lap(1);
+    for (size_t i = 0; i < slabs.size(); ++i)
+        if (!surface.picture(i).empty()) deposit->take(i, surface);
+    lap(2);
 }
 
 void SonarRenderer::Parts::fillHeader(const types::Snapshot& snapshot, types::Sonar& ping) const {

@@ -1,51 +1,55 @@
 #pragma once
+#include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
-#include "components/gpu/Program.hpp"
-#include "components/sonar/Culler.hpp"
-#include "components/sonar/SurfaceScene.hpp"
+#include "components/sonar/SurfacePainter.hpp"
+#include "components/sonar/ThreadPool.hpp"
 
 namespace insonify::sonar {
 
-/** Draws what one slab sees: for each pixel its triangle, and with normal maps the mapped cosine (surface.frag.glsl). */
+/** Draws what all slabs see. On a graphics card one context does it; Mesa's software renderer prepares triangles on the
+ *  calling thread alone, so there each thread of the pool has a context and a share of the slabs. */
 class SurfacePass {
 public:
-    SurfacePass(const types::Geometry& geometry, const std::vector<Slab>& slabs, const std::vector<std::string>& defines,
-                double near_plane, size_t run_limit);
+    struct Setup {
+        const types::Geometry& geometry;
+        const std::vector<Slab>& slabs;
+        std::vector<std::string> defines;  ///< As the plan's features.
+        double near_plane;                 ///< [m]
+        size_t run_limit;                  ///< Most runs that a slab may see.
+    };
+    /** `context` is current on this thread; context, geometry and threads must outlive the pass. */
+    SurfacePass(gpu::EglContext& context, const Setup& setup, ThreadPool& threads);
+    ~SurfacePass();
 
-    /** Where all objects are; once a ping. */
-    void place(const std::vector<ObjectRecord>& records);
-    /** Draws the runs into `picture()`; everything else in it is a miss. */
-    void draw(const Slab& slab, const std::vector<Culler::Run>& runs);
-    /** Binds picture (unit 0), objects, commands, planes and materials, for a compute shader. */
-    void bindResults() const;
-    /** Reads the picture: channels() words a pixel, row by row from below. */
-    void read(std::vector<uint32_t>& words) const;
-    int channels() const { return with_normal_maps_ ? 4 : 2; }
+    /** Lists what each slab sees of what the culler has placed. */
+    void cull(const Culler& culler);
+    /** Draws the slabs that see anything; returns when the pictures are there. Throws GlError. */
+    void draw();
 
-    // What the picture's numbers mean, as last drawn.
-    const std::vector<CommandRecord>& commands() const { return record_list_; }
-    const std::vector<ObjectRecord>& objects() const { return *placed_; }
+    const SlabPicture& picture(size_t slab) const { return *pictures_[slab]; }
     const SurfaceScene& scene() const { return scene_; }
+    const std::vector<ObjectRecord>& objects() const { return *placed_; }
+    /** Binds a picture (unit 0), its commands, objects, planes and materials, for a compute shader. */
+    void bindResults(size_t slab) const;
 
 private:
-    struct DrawCommand { uint32_t count, instances, first_index, base_vertex, base_instance; };
-    void setUniforms(const Slab& slab) const;
-    void upload(const std::vector<Culler::Run>& runs);
-    void drawGroups() const;
+    /** One thread's part; made, used and destroyed there. */
+    struct Part {
+        std::optional<gpu::EglContext> own;  ///< Of all threads but the first, which has the renderer's.
+        std::optional<SurfacePainter> painter;
+    };
+    void makePart(int part, const Setup& setup);
+    template <class Job> void onEachPart(const Job& job);
 
-    const types::Geometry& geometry_;
-    bool with_normal_maps_;
+    gpu::EglContext& context_;
+    ThreadPool& threads_;
     SurfaceScene scene_;
-    gpu::Program program_;
-    gpu::Texture picture_, depth_;
-    gpu::Framebuffer target_;
-    gpu::Buffer objects_, records_, commands_;
-    double near_plane_;
+    std::vector<Part> parts_;
+    std::vector<std::unique_ptr<SlabPicture>> pictures_;
     const std::vector<ObjectRecord>* placed_ = nullptr;
-    std::vector<CommandRecord> record_list_;
-    std::vector<DrawCommand> command_list_;
 };
 
 }  // namespace insonify::sonar

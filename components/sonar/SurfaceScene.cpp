@@ -77,14 +77,14 @@ gpu::Texture uploadedMap(int width, int height, const uint8_t* rgb, bool repeat_
 
 }  // namespace
 
-SurfaceScene::SurfaceScene(const types::Geometry& geometry, bool with_normal_maps) {
-    uploadVertices(geometry, with_normal_maps);
+SurfaceScene::SurfaceScene(const types::Geometry& geometry, bool with_normal_maps) : with_normal_maps_(with_normal_maps) {
+    uploadVertices(geometry);
     uploadPlanes(geometry);
     uploadMaterials(geometry);
     if (with_normal_maps) uploadNormalMaps(geometry);
 }
 
-void SurfaceScene::uploadVertices(const types::Geometry& geometry, bool with_normal_maps) {
+void SurfaceScene::uploadVertices(const types::Geometry& geometry) {
     std::vector<Drawn> meshes;
     std::vector<uint32_t> indices;
     uint32_t vertex = 0;
@@ -96,12 +96,11 @@ void SurfaceScene::uploadVertices(const types::Geometry& geometry, bool with_nor
         indices.insert(indices.end(), added.indices.begin(), added.indices.end());
     }
     indices_ = uploaded(indices);
-    vertices_.indices(indices_);
-    vertices_.attribute(0, positions_ = uploaded(joined(geometry, meshes, &types::Mesh::positions, glm::vec3(0))), 3);
-    if (!with_normal_maps) return;
-    vertices_.attribute(1, normals_ = uploaded(joined(geometry, meshes, &types::Mesh::normals, glm::vec3(0, 0, 1))), 3);
-    vertices_.attribute(2, tangents_ = uploaded(joined(geometry, meshes, &types::Mesh::tangents, glm::vec4(1, 0, 0, 1))), 4);
-    vertices_.attribute(3, uvs_ = uploaded(joined(geometry, meshes, &types::Mesh::uvs, glm::vec2(0))), 2);
+    positions_ = uploaded(joined(geometry, meshes, &types::Mesh::positions, glm::vec3(0)));
+    if (!with_normal_maps_) return;
+    normals_ = uploaded(joined(geometry, meshes, &types::Mesh::normals, glm::vec3(0, 0, 1)));
+    tangents_ = uploaded(joined(geometry, meshes, &types::Mesh::tangents, glm::vec4(1, 0, 0, 1)));
+    uvs_ = uploaded(joined(geometry, meshes, &types::Mesh::uvs, glm::vec2(0)));
 }
 
 void SurfaceScene::uploadPlanes(const types::Geometry& geometry) {
@@ -127,8 +126,16 @@ void SurfaceScene::uploadNormalMaps(const types::Geometry& geometry) {
     normal_maps_.push_back(std::move(flat));
 }
 
-void SurfaceScene::bind() const {
-    vertices_.bind();
+void SurfaceScene::describe(const gpu::VertexArray& vertices) const {
+    vertices.indices(indices_);
+    vertices.attribute(0, positions_, 3);
+    if (!with_normal_maps_) return;
+    vertices.attribute(4, normals_, 3);
+    vertices.attribute(5, tangents_, 4);
+    vertices.attribute(6, uvs_, 2);
+}
+
+void SurfaceScene::bindRecords() const {
     planes_.bindBase(GL_SHADER_STORAGE_BUFFER, PLANES_BINDING);
     materials_.bindBase(GL_SHADER_STORAGE_BUFFER, MATERIALS_BINDING);
 }

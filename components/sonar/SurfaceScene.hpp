@@ -18,20 +18,23 @@ public:
     /** Plane of each triangle in object axes: xyz its unit normal n, w = n.p for its points p [m]. */
     const std::vector<vec4>& planes() const { return plane_list_; }
     const std::vector<MaterialRecord>& materials() const { return material_list_; }
-    void bind() const;
+    /** Attributes and indices of a context's vertex array. */
+    void describe(const gpu::VertexArray& vertices) const;
+    /** Binds planes and materials. */
+    void bindRecords() const;
     /** Binds the normal map of a material; the flat map when it has none. */
     void bindNormalMap(int map) const;
 
 private:
-    void uploadVertices(const types::Geometry& geometry, bool with_normal_maps);
+    void uploadVertices(const types::Geometry& geometry);
     void uploadPlanes(const types::Geometry& geometry);
     void uploadMaterials(const types::Geometry& geometry);
     void uploadNormalMaps(const types::Geometry& geometry);
 
+    bool with_normal_maps_;
     std::vector<MeshPlace> places_;
     std::vector<vec4> plane_list_;
     std::vector<MaterialRecord> material_list_;
-    gpu::VertexArray vertices_;
     gpu::Buffer positions_, normals_, tangents_, uvs_, indices_, planes_, materials_;
     std::vector<gpu::Texture> normal_maps_;  ///< The last one is flat.
 };

@@ -1,6 +1,7 @@
 #include "components/sonar/ThreadPool.hpp"
 
 #include <algorithm>
+#include <utility>
 
 namespace insonify::sonar {
 
@@ -27,9 +28,10 @@ void ThreadPool::start(Call call, const void* context) {
     started_.notify_all();
 }
 
-void ThreadPool::wait() {
+std::exception_ptr ThreadPool::wait() {
     std::unique_lock lock(mutex_);
     done_.wait(lock, [this] { return busy_ == 0; });
+    return std::exchange(fault_, {});
 }
 
 void ThreadPool::work(int part) {
@@ -39,8 +41,9 @@ void ThreadPool::work(int part) {
         if (quit_) return;
         seen = round_;
         lock.unlock();
-        call_(context_, part, size());
+        const std::exception_ptr fault = caught([&] { call_(context_, part, size()); });
         lock.lock();
+        if (fault) fault_ = fault;
         if (--busy_ == 0) done_.notify_one();
     }
 }

@@ -1,5 +1,6 @@
 #pragma once
 #include <condition_variable>
+#include <exception>
 #include <mutex>
 #include <thread>
 #include <vector>
@@ -16,19 +17,29 @@ public:
     ThreadPool& operator=(const ThreadPool&) = delete;
 
     int size() const { return static_cast<int>(workers_.size()) + 1; }
-    /** Calls job(part, size()) once for each part in [0, size()), the caller doing part 0; returns when all are done.
-     */
+    /** Calls job(part, size()) once for each part in [0, size()), the caller doing part 0, a worker always the
+     *  same one; returns when all are done. Throws what a part threw, the caller's first. */
     template <class Job>
     void run(const Job& job) {
         start([](const void* context, int part, int parts) { (*static_cast<const Job*>(context))(part, parts); }, &job);
-        job(0, size());
-        wait();
+        std::exception_ptr fault = caught([&] { job(0, size()); });
+        std::exception_ptr other = wait();
+        if (fault || other) std::rethrow_exception(fault ? fault : other);
     }
 
 private:
     using Call = void (*)(const void*, int, int);
+    template <class Work>
+    static std::exception_ptr caught(const Work& work) {
+        try {
+            work();
+        } catch (...) {
+            return std::current_exception();
+        }
+        return {};
+    }
     void start(Call call, const void* context);
-    void wait();
+    std::exception_ptr wait();
     void work(int part);
 
     std::vector<std::thread> workers_;
@@ -38,6 +49,7 @@ private:
     const void* context_ = nullptr;
     uint64_t round_ = 0;
     int busy_ = 0;
+    std::exception_ptr fault_;
     bool quit_ = false;
 };
 

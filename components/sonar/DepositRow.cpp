@@ -1,0 +1,194 @@
+#include "components/sonar/DepositRow.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+
+// The arithmetic of a stretch of pixels is done in plain loops over arrays, which the compiler turns into vector
+// instructions; twice, for processors with and without AVX2. No products are fused: both give the same bits.
+#if defined(__x86_64__) && !defined(__SANITIZE_ADDRESS__)
+#define INSONIFY_VECTORISED __attribute__((target_clones("avx2", "default")))
+#else
+#define INSONIFY_VECTORISED
+#endif
+
+namespace insonify::sonar {
+namespace {
+
+using std::abs, std::exp, std::sqrt, std::tanh;
+// By value, so that they become instructions and not branches that nobody can predict.
+inline double min(double a, double b) { return a < b ? a : b; }
+inline double max(double a, double b) { return a > b ? a : b; }
+inline uint min(uint a, uint b) { return a < b ? a : b; }
+#include "shaders/surface.glsl"
+#include "shaders/footprint.glsl"
+
+/** Where the shared code of shaders/deposit.glsl finds its bins; HAVE_CERQUEIRA2017 chooses the model at compile time. */
+struct Bins {
+    const double* edges;
+    uint64_t* sums;
+    uint bin_count;
+    double bin_width, attenuation;
+    double binEdge(uint k) const { return edges[k]; }
+    static uint64_t quanta(double amount) {  // by way of a signed number, for which there is an instruction
+        return static_cast<uint64_t>(static_cast<int64_t>(min(amount, 1048576.0) * quanta_per_unit + 0.5));
+    }
+};
+
+struct PhysicalBins : Bins {
+    void addToBin(uint beam, uint bin, double amount, double) const { sums[beam * bin_count + bin] += quanta(amount); }
+#include "shaders/deposit.glsl"
+};
+
+struct CerqueiraBins : Bins {
+    void addToBin(uint beam, uint bin, double amount, double weight) const {
+        uint64_t* cell = sums + 2 * static_cast<size_t>(beam * bin_count + bin);
+        cell[0] += quanta(amount);
+        cell[1] += quanta(weight);
+    }
+#define HAVE_CERQUEIRA2017
+#include "shaders/deposit.glsl"
+#undef HAVE_CERQUEIRA2017
+};
+
+constexpr int stretch = 64;  ///< Pixels at a time: their numbers stay in the nearest cache.
+
+/** A stretch of a picture's row. */
+struct Pixels {
+    double normal_x[stretch], normal_y[stretch], normal_z[stretch], distance[stretch];  ///< Planes, slab axes.
+    double u[stretch], mapped[stretch], strength[stretch];
+    double near_limit[stretch], far_limit[stretch];
+    double inverse_range[stretch], slope_u[stretch], slope_v[stretch], strength_range[stretch];
+};
+
+/** What a stretch of shares covers: Footprint, and the pixel's strength times range, as arrays. */
+struct Cells {
+    double centre[stretch], wide[stretch], narrow[stretch], per_wide[stretch], steepness[stretch], near_end[stretch],
+        far_end[stretch], solid_angle[stretch], strength_range[stretch];
+
+    void set(int i, const Footprint& f) {
+        centre[i] = f.centre;
+        wide[i] = f.wide;
+        narrow[i] = f.narrow;
+        per_wide[i] = f.per_wide;
+        steepness[i] = f.steepness;
+        near_end[i] = f.near_end;
+        far_end[i] = f.far_end;
+        solid_angle[i] = f.solid_angle;
+    }
+    Footprint get(int i) const {
+        return {centre[i], wide[i], narrow[i], per_wide[i], steepness[i], near_end[i], far_end[i], solid_angle[i]};
+    }
+};
+
+void miss(Pixels& pixels, int i) {
+    pixels.normal_x[i] = pixels.distance[i] = 1;
+    pixels.normal_y[i] = pixels.normal_z[i] = pixels.strength[i] = pixels.mapped[i] = 0;
+    pixels.near_limit[i] = pixels.far_limit[i] = 0;
+}
+
+void hit(const PlacedRun& run, const vec4& plane, double mapped, Pixels& pixels, int i) {
+    const auto turned = [&](const double* row) { return row[0] * plane.x + row[1] * plane.y + row[2] * plane.z; };
+    const double x = turned(run.normal_x), y = turned(run.normal_y), z = turned(run.normal_z);
+    pixels.normal_x[i] = x;
+    pixels.normal_y[i] = y;
+    pixels.normal_z[i] = z;
+    pixels.distance[i] = x * run.origin[0] + y * run.origin[1] + z * run.origin[2] + plane.w;
+    pixels.mapped[i] = mapped;
+    pixels.strength[i] = run.strength;
+    pixels.near_limit[i] = run.near_limit;
+    pixels.far_limit[i] = run.far_limit;
+}
+
+/** Looks up what `count` pixels from `first` show; false when all are misses. */
+bool look(const SlabPart& part, int row, int first, int count, Pixels& pixels) {
+    const TakenPicture& picture = part.picture;
+    const size_t at = static_cast<size_t>(row) * static_cast<size_t>(part.slab.columns) + static_cast<size_t>(first);
+    const uint32_t* texel = picture.words.data() + picture.channels * at;
+    bool any = false;
+    for (int i = 0; i < count; ++i, texel += picture.channels) {
+        pixels.u[i] = part.slab.u(first + i + 0.5);
+        if (texel[0] == 0) {
+            miss(pixels, i);
+            continue;
+        }
+        any = true;
+        const PlacedRun& run = picture.runs[texel[0] - 1];
+        const double mapped = picture.channels == 4 ? static_cast<double>(std::bit_cast<float>(texel[2])) : 0;
+        hit(run, part.planes[run.first_triangle + texel[1]], mapped, pixels, i);
+    }
+    return any;
+}
+
+INSONIFY_VECTORISED void meet(Pixels& pixels, int count, double v) {
+    for (int i = 0; i < count; ++i) {
+        const Surface surface =
+            surfaceAt(pixels.normal_x[i], pixels.normal_y[i], pixels.normal_z[i], pixels.distance[i], pixels.u[i], v);
+        const double cosine = pixels.mapped[i] == 0 ? surface.cosine : pixels.mapped[i];
+        pixels.inverse_range[i] = surface.inverse_range;
+        pixels.slope_u[i] = surface.slope_u;
+        pixels.slope_v[i] = surface.slope_v;
+        pixels.strength_range[i] = pixels.strength[i] * cosine * surface.range;
+    }
+}
+
+INSONIFY_VECTORISED void cover(const Pixels& pixels, const ShareRecord* shares, int count, uint first_column, double v,
+                               double dv, double near_edge, double far_edge, Cells& cells) {
+    for (int i = 0; i < count; ++i) {
+        const ShareRecord& share = shares[i];
+        const uint p = share.column - first_column;
+        cells.set(i, cellFootprint(pixels.u[p], v, share.middle, share.width, share.limit, share.shear, dv,
+                                   pixels.inverse_range[p], pixels.slope_u[p], pixels.slope_v[p], pixels.near_limit[p],
+                                   pixels.far_limit[p], near_edge, far_edge));
+        cells.strength_range[i] = pixels.strength_range[p];
+    }
+}
+
+/** The part row by row, a stretch of pixels and then of shares at a time. */
+template <class Model> class PartDeposit {
+public:
+    PartDeposit(const SlabPart& part, Model bins)
+        : part_(part), bins_(bins), scale_(1 / (part.slab.du() * part.slab.dv())) {}
+
+    void run() {
+        for (int row = 0; row < part_.slab.rows; ++row)
+            for (int column = part_.columns[0]; column < part_.columns[1]; column += stretch)
+                pixels(row, column, std::min(stretch, part_.columns[1] - column));
+    }
+
+private:
+    void pixels(int row, int first, int count) {
+        if (!look(part_, row, first, count, pixels_)) return;
+        const double v = part_.slab.v(row + 0.5);
+        meet(pixels_, count, v);
+        const size_t at = part_.shares.cell(row, first, part_.slab.columns);
+        const uint end = part_.shares.starts[at + static_cast<size_t>(count)];
+        for (uint i = part_.shares.starts[at]; i < end; i += stretch)
+            shares(i, static_cast<int>(std::min<uint>(stretch, end - i)), static_cast<uint>(first), v);
+    }
+
+    void shares(uint first_share, int count, uint first_column, double v) {
+        const ShareRecord* shares = part_.shares.shares.data() + first_share;
+        cover(pixels_, shares, count, first_column, v, part_.slab.dv(), part_.edges.front(), part_.edges.back(), cells_);
+        for (int i = 0; i < count; ++i)
+            if (shares[i].beam >= part_.first && shares[i].beam < part_.last)
+                bins_.depositCell(cells_.get(i), shares[i].beam, cells_.strength_range[i], cells_.solid_angle[i] * scale_);
+    }
+
+    const SlabPart& part_;
+    Model bins_;
+    double scale_;  ///< 1 / solid angle of a whole pixel at the picture's centre.
+    Pixels pixels_;
+    Cells cells_;
+};
+
+}  // namespace
+
+void deposit(const SlabPart& part, uint64_t* sums) {
+    const BinGrid& grid = part.setup.bins;
+    const Bins bins{part.edges.data(), sums, static_cast<uint>(grid.bin_count), grid.bin_width, part.setup.attenuation};
+    if (part.setup.model == Model::Cerqueira2017) PartDeposit(part, CerqueiraBins{bins}).run();
+    else PartDeposit(part, PhysicalBins{bins}).run();
+}
+
+}  // namespace insonify::sonar

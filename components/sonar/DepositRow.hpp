@@ -1,0 +1,39 @@
+#pragma once
+#include <array>
+
+#include "components/sonar/BinDeposit.hpp"
+
+namespace insonify::sonar {
+
+/** How the triangles of one draw are turned from object axes into those of a slab. */
+struct PlacedRun {
+    double normal_x[3], normal_y[3], normal_z[3], origin[3];  ///< Rows of the normals' matrix; origin, slab axes [m].
+    double near_limit, far_limit;                             ///< Inverse ranges of the object [1/m].
+    double strength;                                          ///< Of the material at normal incidence.
+    uint32_t first_triangle;
+};
+
+/** A slab's picture and what its numbers mean, copied when taken. */
+struct TakenPicture {
+    std::vector<uint32_t> words;
+    size_t channels = 2;  ///< Words a pixel.
+    std::vector<PlacedRun> runs;
+    bool taken = false;
+};
+
+/** What one thread deposits of one slab: the beams [first, last). */
+struct SlabPart {
+    const DepositSetup& setup;
+    const Slab& slab;
+    const ColumnShares& shares;
+    const TakenPicture& picture;
+    const std::vector<vec4>& planes;
+    const std::vector<double>& edges;  ///< inverseEdges.
+    uint32_t first, last;
+    std::array<int, 2> columns;  ///< From, to: those that these beams touch.
+};
+
+/** Adds the part's echoes to `sums`, [beam][bin][channel]. */
+void deposit(const SlabPart& part, uint64_t* sums);
+
+}  // namespace insonify::sonar

@@ -1,0 +1,48 @@
+#pragma once
+#include <vector>
+
+#include "components/gpu/Objects.hpp"
+#include "components/sonar/Culler.hpp"
+
+namespace insonify::sonar {
+
+/** What one slab sees: for each pixel its triangle, and with normal maps the mapped cosine (surface.frag.glsl).
+ *  Make, draw and destroy it in one context; other contexts of the same device may read it once it is finished. */
+class SlabPicture {
+public:
+    /** One indirect draw, as OpenGL lays it out. */
+    struct DrawCommand { uint32_t count, instances, first_index, base_vertex, base_instance; };
+
+    /** Rows of the matrix from object axes to the image: u and v times depth over their extents, depth along the axis. */
+    struct Clip { vec4 x, y, w; };
+
+    /** At most `run_limit` runs are drawn. */
+    SlabPicture(const Slab& slab, bool with_normal_maps, size_t run_limit);
+
+    const Slab& slab() const { return slab_; }
+    bool empty() const { return runs.empty(); }
+    int channels() const { return channels_; }
+    /** The picture: channels() words a pixel, row by row from below. */
+    void read(std::vector<uint32_t>& words) const;
+    void bindTexture(GLuint unit) const { ids_.bind(unit); }
+    void bindCommands() const;
+    /** Makes the picture the target and all of it a miss. */
+    void clear() const;
+    /** Tells the device `commands`, `clips` and `draws`. */
+    void upload();
+    const gpu::Buffer& deviceClips() const { return device_clips_; }
+
+    std::vector<Culler::Run> runs;        ///< What there is to draw.
+    std::vector<CommandRecord> commands;  ///< One for each run.
+    std::vector<Clip> clips;              ///< One for each run.
+    std::vector<DrawCommand> draws;       ///< One for each run.
+
+private:
+    Slab slab_;
+    int channels_;
+    gpu::Texture ids_, depth_;
+    gpu::Framebuffer target_;
+    gpu::Buffer device_commands_, device_clips_, device_draws_;
+};
+
+}  // namespace insonify::sonar

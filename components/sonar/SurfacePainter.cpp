@@ -1,0 +1,86 @@
+#include "components/sonar/SurfacePainter.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace insonify::sonar {
+namespace {
+
+SlabPicture::Clip clip(const ObjectRecord& object, const Slab& slab) {
+    const glm::dvec4 x(object.row_x), y(object.row_y), z(object.row_z);
+    const double cosine = std::cos(slab.azimuth), sine = std::sin(slab.azimuth);
+    return {vec4((cosine * y - sine * x) / slab.extent_u), vec4(z / slab.extent_v), vec4(cosine * x + sine * y)};
+}
+
+}  // namespace
+
+SurfacePainter::SurfacePainter(const types::Geometry& geometry, const SurfaceScene& scene,
+                               const std::vector<std::string>& defines, double near_plane)
+    : geometry_(geometry), scene_(scene),
+      with_normal_maps_(std::find(defines.begin(), defines.end(), "HAVE_NORMAL_MAP") != defines.end()),
+      near_plane_(near_plane),
+      program_(gpu::Program::raster("surface.vert.glsl", "surface.frag.glsl", defines)),
+      objects_(geometry.objects.size() * sizeof(ObjectRecord)) {
+    const auto at = [&](const char* name) { return glGetUniformLocation(program_.id(), name); };
+    uniforms_ = {at("slab_axis"), at("extent"), at("pixel_size"), at("near_plane"), at("mapped")};
+    scene_.describe(vertices_);
+    glClipControl(GL_LOWER_LEFT, GL_ZERO_TO_ONE);
+    glEnable(GL_DEPTH_TEST);
+    glDepthFunc(GL_GREATER);
+    glClearDepth(0);
+}
+
+void SurfacePainter::place(const std::vector<ObjectRecord>& records) {
+    if (!records.empty()) objects_.write(records.data(), records.size() * sizeof(ObjectRecord));
+}
+
+void SurfacePainter::draw(SlabPicture& picture, const std::vector<ObjectRecord>& placed) const {
+    picture.clear();
+    if (picture.empty()) return;
+    listDraws(picture, placed);
+    picture.upload();
+    picture.bindCommands();
+    program_.use();
+    setUniforms(picture.slab());
+    vertices_.instanceRows(1, picture.deviceClips(), 3);
+    vertices_.bind();
+    scene_.bindRecords();
+    bindObjects();
+    drawGroups(picture);
+}
+
+void SurfacePainter::listDraws(SlabPicture& picture, const std::vector<ObjectRecord>& placed) const {
+    picture.commands.clear();
+    picture.clips.clear();
+    picture.draws.clear();
+    for (const Culler::Run& run : picture.runs) {
+        const SurfaceScene::MeshPlace& place = scene_.place(geometry_.objects[run.object].mesh);
+        picture.draws.push_back({run.index_count, 1, place.first_index + run.first_index, place.first_vertex,
+                                 static_cast<uint32_t>(picture.commands.size())});
+        picture.clips.push_back(clip(placed[run.object], picture.slab()));
+        picture.commands.push_back({run.object, place.first_triangle, static_cast<uint32_t>(run.material), 0});
+    }
+}
+
+void SurfacePainter::setUniforms(const Slab& slab) const {
+    glUniform2f(uniforms_.slab_axis, static_cast<float>(std::cos(slab.azimuth)), static_cast<float>(std::sin(slab.azimuth)));
+    glUniform2f(uniforms_.extent, static_cast<float>(slab.extent_u), static_cast<float>(slab.extent_v));
+    glUniform2f(uniforms_.pixel_size, static_cast<float>(slab.du()), static_cast<float>(slab.dv()));
+    glUniform1f(uniforms_.near_plane, static_cast<float>(near_plane_));
+}
+
+void SurfacePainter::drawGroups(const SlabPicture& picture) const {
+    const auto map = [&](size_t i) {
+        return with_normal_maps_ ? geometry_.materials[picture.commands[i].material].normal_map : -1;
+    };
+    for (size_t first = 0, last = 0; first < picture.draws.size(); first = last) {
+        while (last < picture.draws.size() && map(last) == map(first)) ++last;
+        scene_.bindNormalMap(map(first));
+        glUniform1i(uniforms_.mapped, map(first) >= 0);
+        const auto offset = reinterpret_cast<const void*>(first * sizeof(SlabPicture::DrawCommand));
+        glMultiDrawElementsIndirect(GL_TRIANGLES, GL_UNSIGNED_INT, offset, static_cast<GLsizei>(last - first),
+                                    sizeof(SlabPicture::DrawCommand));
+    }
+}
+
+}  // namespace insonify::sonar
