@@ -1,0 +1,158 @@
+#include <epoxy/gl.h>
+#include <gmock/gmock.h>
+
+#include <cstdlib>
+#include <memory>
+#include <thread>
+#include <vector>
+
+#include "components/gpu/EglContext.hpp"
+#include "components/gpu/Objects.hpp"
+
+namespace insonify::gpu {
+namespace {
+
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+using ::testing::Not;
+
+/** What GlError says when `job` throws one; empty when it does not. */
+template <class Job>
+std::string errorOf(const Job& job) {
+    try {
+        job();
+    } catch (const GlError& error) {
+        return error.what();
+    }
+    return {};
+}
+
+/** As errorOf, on a thread of its own. */
+template <class Job>
+std::string errorElsewhere(const Job& job) {
+    std::string text;
+    std::thread([&] { text = errorOf(job); }).join();
+    return text;
+}
+
+/** INSONIFY_EGL_DEVICE for the length of a test. */
+class DeviceVariable {
+public:
+    explicit DeviceVariable(const char* value) {
+        if (const char* before = std::getenv(name)) before_ = std::make_unique<std::string>(before);
+        setenv(name, value, 1);
+    }
+    ~DeviceVariable() {
+        if (before_)
+            setenv(name, before_->c_str(), 1);
+        else
+            unsetenv(name);
+    }
+
+private:
+    static constexpr const char* name = "INSONIFY_EGL_DEVICE";
+    std::unique_ptr<std::string> before_;
+};
+
+TEST(EglContextTest, TheSoftwareDeviceIsLlvmpipeWithOpenGl45) {
+    EglContext context("software");
+    EXPECT_TRUE(context.isSoftware());
+    EXPECT_THAT(context.renderer(), HasSubstr("llvmpipe"));
+    GLint major = 0, minor = 0, profile = 0;
+    glGetIntegerv(GL_MAJOR_VERSION, &major);
+    glGetIntegerv(GL_MINOR_VERSION, &minor);
+    glGetIntegerv(GL_CONTEXT_PROFILE_MASK, &profile);
+    EXPECT_GE(10 * major + minor, 45);
+    EXPECT_EQ(profile, GL_CONTEXT_CORE_PROFILE_BIT);
+    EXPECT_NO_THROW(context.check());
+}
+
+TEST(EglContextTest, WithoutADeviceTheVariableChooses) {
+    const DeviceVariable variable("software");
+    EXPECT_TRUE(EglContext().isSoftware());
+}
+
+TEST(EglContextTest, AnUnknownDeviceIsNamedWithWhatItMayBe) {
+    for (const char* device : {"quantum", "4000000000", "99999999999999999999", "-1", "0x", "1.5", " software", "Auto"})
+        EXPECT_THAT(errorOf([&] { EglContext context(device); }),
+                    AllOf(HasSubstr("'" + std::string(device) + "'"), HasSubstr("auto, software or a number below ")));
+}
+
+TEST(EglContextTest, AnUnknownDeviceInTheVariableIsNamedToo) {
+    for (const char* device : {"quantum", "4000000000"}) {
+        const DeviceVariable variable(device);
+        EXPECT_THAT(errorOf([] { EglContext context; }),
+                    AllOf(HasSubstr("'" + std::string(device) + "'"), HasSubstr("auto, software or a number below ")));
+    }
+}
+
+TEST(EglContextTest, AGivenDeviceGoesBeforeTheVariable) {
+    const DeviceVariable variable("quantum");
+    EXPECT_TRUE(EglContext("software").isSoftware());
+}
+
+TEST(EglContextTest, AnEmptyVariableIsAsGoodAsNone) {
+    const DeviceVariable variable("");
+    EXPECT_THAT(EglContext().renderer(), Not(IsEmpty()));
+}
+
+TEST(EglContextTest, AnotherThreadIsToldToMakeAContextOfItsOwn) {
+    EglContext context("software");
+    EXPECT_THAT(errorElsewhere([&] { context.requireThread(); }), HasSubstr("made on another thread"));
+    EXPECT_THAT(errorElsewhere([&] { context.check(); }), HasSubstr("made on another thread"));
+    EXPECT_EQ(errorOf([&] { context.check(); }), "") << "its own thread may go on";
+}
+
+TEST(EglContextTest, AMistakeIsThrownOnceByTheNextCheck) {
+    EglContext context("software");
+    glEnable(GL_TEXTURE_2D);  // not in the core profile
+    EXPECT_THAT(errorOf([&] { context.check(); }), AllOf(HasSubstr("OpenGL: "), HasSubstr("glEnable")));
+    EXPECT_EQ(errorOf([&] { context.check(); }), "");
+}
+
+TEST(EglContextTest, OfTwoMistakesTheFirstIsTold) {
+    EglContext context("software");
+    glEnable(GL_TEXTURE_2D);
+    glBindFramebuffer(GL_FRAMEBUFFER, 4711);
+    EXPECT_THAT(errorOf([&] { context.check(); }), HasSubstr("glEnable"));
+}
+
+TEST(EglContextTest, ASecondContextOnAnotherThreadSharesTheBuffersOfTheFirst) {
+    const std::vector<uint32_t> written = {1, 2, 3, 4, 5};
+    EglContext context("software");
+    Buffer buffer = Buffer::of(std::span(written));
+    glFinish();
+    std::vector<uint32_t> seen(written.size());
+    std::string renderer;
+    const std::string error = errorElsewhere([&] {
+        EglContext other(context);
+        renderer = other.renderer();
+        buffer.read(seen.data(), seen.size() * sizeof(uint32_t));
+        const uint32_t last = 50;
+        buffer.write(&last, sizeof last, 4 * sizeof(uint32_t));
+        glFinish();
+        other.check();
+    });
+    EXPECT_EQ(error, "");
+    EXPECT_EQ(renderer, context.renderer());
+    EXPECT_EQ(seen, written);
+    buffer.read(seen.data(), seen.size() * sizeof(uint32_t));
+    EXPECT_EQ(seen.back(), 50u) << "and the first sees what the second wrote";
+    EXPECT_NO_THROW(context.check());
+}
+
+TEST(EglContextTest, UnrelatedContextsShareNothing) {
+    EglContext context("software");
+    const Buffer buffer(64);
+    bool known = true;
+    std::thread([&] {
+        EglContext other("software");
+        known = glIsBuffer(buffer.id());
+    }).join();
+    EXPECT_TRUE(glIsBuffer(buffer.id()));
+    EXPECT_FALSE(known);
+}
+
+}  // namespace
+}  // namespace insonify::gpu

@@ -1,0 +1,82 @@
+#include <gmock/gmock.h>
+
+#include "components/gpu/Program.hpp"
+
+namespace insonify::gpu {
+namespace {
+
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+using ::testing::Not;
+using ::testing::StartsWith;
+
+template <class Job>
+std::string errorOf(const Job& job) {
+    try {
+        job();
+    } catch (const GlError& error) {
+        return error.what();
+    }
+    return {};
+}
+
+TEST(ProgramTest, AnUnknownShaderFileIsNamed) {
+    EXPECT_THAT(errorOf([] { shaderFile("sonar.glsl"); }), HasSubstr("'sonar.glsl'"));
+    EXPECT_THAT(errorOf([] { shaderSource("", {}); }), HasSubstr("''"));
+}
+
+TEST(ProgramTest, AFileIsThereToTheLastLine) {
+    const std::string_view text = shaderFile("surface.vert.glsl");
+    EXPECT_THAT(std::string(text), HasSubstr("void main()"));
+    EXPECT_EQ(text.substr(text.size() - 2), "}\n");
+}
+
+TEST(ProgramTest, IncludesAreReplacedByTheirFiles) {
+    ASSERT_THAT(std::string(shaderFile("deposit.comp.glsl")), HasSubstr("#include \"interface.glsl\""));
+    const std::string source = shaderSource("deposit.comp.glsl", {});
+    EXPECT_THAT(source, Not(HasSubstr("#include")));
+    for (const char* file : {"interface.glsl", "surface.glsl", "footprint.glsl", "deposit.glsl"})
+        EXPECT_THAT(source, HasSubstr(std::string(shaderFile(file)))) << file;
+}
+
+TEST(ProgramTest, DefinesStandAfterTheVersionAndBeforeTheText) {
+    const std::string source = shaderSource("surface.frag.glsl", {"HAVE_NORMAL_MAP", "ANSWER 42"});
+    EXPECT_THAT(source, StartsWith("#version 450 core\n"));
+    const size_t first = source.find("#define HAVE_NORMAL_MAP\n"), second = source.find("#define ANSWER 42\n");
+    ASSERT_NE(first, std::string::npos);
+    EXPECT_LT(first, second);
+    EXPECT_LT(second, source.find("flat in uvec2 seen"));
+}
+
+TEST(ProgramTest, WhatTheShadersHaveCompilesInEveryCombination) {
+    EglContext context("software");
+    using Defines = std::vector<std::string>;
+    for (const Defines& defines : {Defines{}, Defines{"HAVE_NORMAL_MAP"}})
+        EXPECT_GT(Program::raster("surface.vert.glsl", "surface.frag.glsl", defines).id(), 0u);
+    for (const Defines& defines : {Defines{}, Defines{"HAVE_CERQUEIRA2017"}}) {
+        const Program program = Program::compute("deposit.comp.glsl", defines);
+        program.use();
+        GLint used = 0;
+        glGetIntegerv(GL_CURRENT_PROGRAM, &used);
+        EXPECT_EQ(static_cast<GLuint>(used), program.id());
+    }
+    EXPECT_NO_THROW(context.check());
+}
+
+TEST(ProgramTest, AMistakeInAShaderComesWithItsFileAndTheCompilersWords) {
+    EglContext context("software");
+    EXPECT_THAT(errorOf([] { Program::compute("deposit.comp.glsl", {"image_size no_such_thing +"}); }),
+                AllOf(StartsWith("deposit.comp.glsl: "), HasSubstr("error")));
+    EXPECT_THAT(
+        errorOf([] { Program::raster("surface.vert.glsl", "surface.frag.glsl", {"gl_Position no_such_thing"}); }),
+        AllOf(StartsWith("surface.vert.glsl: "), HasSubstr("no_such_thing")));
+}
+
+TEST(ProgramTest, WhatTheLinkerMissesIsTold) {
+    EglContext context("software");
+    EXPECT_THAT(errorOf([] { Program::raster("surface.vert.glsl", "surface.frag.glsl", {"main not_main"}); }),
+                AllOf(StartsWith("linking: "), HasSubstr("main")));
+}
+
+}  // namespace
+}  // namespace insonify::gpu
