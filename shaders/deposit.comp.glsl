@@ -56,28 +56,35 @@ Surface surfaceOf(CommandRecord command, uint triangle, dvec2 uv) {
     return surfaceAt(normal.x, normal.y, normal.z, distance, uv.x, uv.y);
 }
 
+double strengthOf(uint material) {
+#ifdef HAVE_CERQUEIRA2017
+    return double(materials[material].values.y);
+#else
+    return double(materials[material].values.x);
+#endif
+}
+
 void main() {
     ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
     if (any(greaterThanEqual(pixel, image_size))) return;
     uvec4 texel = texelFetch(picture, pixel, 0);
-    if (texel.x == 0u) return;
     dvec2 uv = (dvec2(pixel) + 0.5) * pixel_size - extent;
-    CommandRecord command = commands[texel.x - 1u];
-    Surface surface = surfaceOf(command, texel.y, uv);
-    double cosine = texel.z == 0u ? surface.cosine : double(uintBitsToFloat(texel.z));
-#ifdef HAVE_CERQUEIRA2017
-    double strength = cosine * double(materials[command.material].values.y);
-#else
-    double strength = cosine * double(materials[command.material].values.x);
-#endif
-    double scale = 1.0 / (pixel_size.x * pixel_size.y);
+    Surface surface = Surface(0.0, 0.0, 0.0, 0.0, 0.0);
+    double strength = 0.0;
+    dvec2 reach = dvec2(0.0);  // inverse ranges of the object
+    if (texel.x != 0u) {
+        CommandRecord command = commands[texel.x - 1u];
+        surface = surfaceOf(command, texel.y, uv);
+        strength = strengthOf(command.material) * (texel.z == 0u ? surface.cosine : double(uintBitsToFloat(texel.z)));
+        reach = dvec2(objects[command.object].extent.xy);
+    }
+    double per_pixel = 1.0 / (pixel_size.x * pixel_size.y);
     uint at = uint((shares_per_row ? pixel.y * image_size.x : 0) + pixel.x);
     for (uint i = share_starts[at]; i < share_starts[at + 1u]; ++i) {
         ShareRecord share = shares[i];
         Footprint cell = cellFootprint(uv.x, uv.y, share.middle, share.width, share.limit, share.shear, pixel_size.y,
-                                       surface.inverse_range, surface.slope_u, surface.slope_v,
-                                       double(objects[command.object].extent.x), double(objects[command.object].extent.y),
-                                       binEdge(0u), binEdge(bin_count));
-        depositCell(cell, share.beam, strength * surface.range, cell.solid_angle * scale);
+                                       surface.inverse_range, surface.slope_u, surface.slope_v, reach.x, reach.y,
+                                       binEdge(0u), binEdge(bin_count), per_pixel);
+        depositCell(cell, share.beam, strength * surface.range);
     }
 }

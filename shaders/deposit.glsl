@@ -21,6 +21,17 @@ void depositPart(uint beam, uint bin, double share, double inverse_range, double
 #endif
 }
 
+#ifdef HAVE_PUBLISHED
+// cerqueira2017 to the letter (physics.md 2, items 1, 3, 4): each pixel counts once, in the bin of its centre; what meets
+// nothing in range counts in bin 0 with a cosine of 0.
+void depositCell(Footprint cell, uint beam, double strength_range) {
+    double range = cell.pixel > 0.0 ? 1.0 / cell.pixel : 0.0;
+    bool heard = range > 0.0 && range <= double(bin_count - 1u) * bin_width;
+    uint bin = heard ? uint(range / bin_width) : 0u;
+    double cosine = heard ? min(strength_range * cell.pixel, 1.0) : 0.0;
+    addToBin(beam, bin, cerqueiraEcho(cosine * double(exp(float(-2.0 * attenuation * range)))), 1.0);
+}
+#else
 // Share of the trapezoid between its centre and centre + t, signed as t.
 double trapezoidShare(Footprint cell, double t) {
     double outer = 0.5 * (cell.wide + cell.narrow), inner = 0.5 * (cell.wide - cell.narrow);
@@ -29,8 +40,8 @@ double trapezoidShare(Footprint cell, double t) {
     return within * cell.per_wide - corner * abs(corner) * cell.steepness;
 }
 
-// `size` = the cell's solid angle relative to a whole pixel; `strength_range` = strength times slant range [m].
-void depositCell(Footprint cell, uint beam, double strength_range, double size) {
+// `strength_range` = strength times slant range [m].
+void depositCell(Footprint cell, uint beam, double strength_range) {
     if (!(cell.near_end > cell.far_end)) return;
     uint bin = min(uint(1.0 / (cell.near_end * bin_width)), bin_count - 1u);
     while (bin > 0u && binEdge(bin) < cell.near_end) --bin;
@@ -40,8 +51,9 @@ void depositCell(Footprint cell, uint beam, double strength_range, double size) 
     for (; above > cell.far_end; ++bin) {
         double below = max(binEdge(bin + 1u), cell.far_end);
         double share_below = trapezoidShare(cell, below - cell.centre);
-        depositPart(beam, bin, size * (share_above - share_below), 0.5 * (above + below), strength_range);
+        depositPart(beam, bin, cell.size * (share_above - share_below), 0.5 * (above + below), strength_range);
         above = below;
         share_above = share_below;
     }
 }
+#endif

@@ -4,18 +4,19 @@
 
 // A cell's trapezoid, in inverse range [1/m]: widths of its two boxes, and what of it is in reach.
 struct Footprint {
+    double pixel;  // inverse range of the pixel's centre, of which the cell is a part; 0: no echo
     double centre, wide, narrow;
     double per_wide, steepness;  // 1 / wide, and 1 / (2 wide narrow)
     double near_end, far_end;    // near_end <= far_end: nothing in reach
-    double solid_angle;          // [sr]
+    double size;                 // solid angle relative to a whole pixel at the picture's centre [1]
 };
 
 // The share of pixel (u, v), bounded by curves of constant elevation and clipped at the aperture; shares are described
-// in interface.glsl. `slope`: of the inverse range over u and v. No part goes beyond [far_limit, near_limit], the inverse
+// in interface.glsl. `slope`: of the inverse range over u and v; `per_pixel`: 1 / (du dv). No part goes beyond [far_limit, near_limit], the inverse
 // ranges of the object (a facet seen edge-on is steep, not long), nor beyond [far_edge, near_edge], those of the bins.
 Footprint cellFootprint(double u, double v, double middle, double width, double limit, double shear, double dv,
                         double inverse_range, double slope_u, double slope_v, double near_limit, double far_limit,
-                        double near_edge, double far_edge) {
+                        double near_edge, double far_edge, double per_pixel) {
     double aside = middle - u;
     double lean = v * shear;
     double at = v + lean * aside;
@@ -27,6 +28,7 @@ Footprint cellFootprint(double u, double v, double middle, double width, double 
     double across = abs(slope_v) * height;
     double q2 = 1.0 + middle * middle + centre_v * centre_v;
     Footprint cell;
+    cell.pixel = inverse_range;
     cell.centre = inverse_range + slope_u * aside + slope_v * (centre_v - v);
     cell.wide = max(max(along, across), 1e-12 * inverse_range + 1e-300);
     cell.narrow = max(min(along, across), 1e-12 * cell.wide);
@@ -35,6 +37,6 @@ Footprint cellFootprint(double u, double v, double middle, double width, double 
     double half_length = 0.5 * (cell.wide + cell.narrow);
     cell.near_end = height > 0.0 ? min(min(cell.centre + half_length, near_limit), near_edge) : 0.0;
     cell.far_end = max(max(cell.centre - half_length, far_limit), far_edge);
-    cell.solid_angle = width * height / (q2 * sqrt(q2));
+    cell.size = width * height / (q2 * sqrt(q2)) * per_pixel;
     return cell;
 }

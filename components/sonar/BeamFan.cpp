@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 #include "types/Angle.hpp"
@@ -57,6 +58,31 @@ void addRow(const SonarConfig& config, const std::vector<Beam>& beams, const Sla
     }
 }
 
+/** One image of the whole fan, its top and bottom edges straight (physics.md 2, item 2). */
+Slab publishedFrustum(const SonarConfig& config) {
+    const double half_width = types::radians(config.field_of_view_deg) / 2;
+    return {0, half_width, config.quality.columns_per_beam * config.beam_count, config.quality.rows, std::tan(half_width),
+            std::tan(halfElevation(config))};
+}
+
+/** Whole columns: beam k has [round(w/2 + tan(a_k) K), round(w/2 + tan(a_k+1) K)), K = (w/2) / tan(fov/2). */
+ColumnShares roundedShares(const std::vector<Beam>& beams, const Slab& slab) {
+    const auto column = [&](double bearing) {
+        return static_cast<int>(std::lround(slab.columns / 2.0 * (1 + std::tan(bearing) / slab.extent_u)));
+    };
+    ColumnShares result;
+    size_t beam = 0;
+    for (int c = 0; c < slab.columns; ++c) {
+        result.starts.push_back(static_cast<uint32_t>(result.shares.size()));
+        while (beam + 1 < beams.size() && column(beams[beam].high) <= c) ++beam;
+        const double u = slab.u(c + 0.5);
+        result.shares.push_back({u, slab.du(), std::numeric_limits<double>::infinity(), u / (1 + u * u),
+                                 static_cast<uint32_t>(beam), static_cast<uint32_t>(c)});
+    }
+    result.starts.push_back(static_cast<uint32_t>(result.shares.size()));
+    return result;
+}
+
 }  // namespace
 
 std::vector<Beam> makeBeams(const SonarConfig& config) {
@@ -76,6 +102,7 @@ std::vector<Beam> makeBeams(const SonarConfig& config) {
 }
 
 std::vector<Slab> makeSlabs(const SonarConfig& config, const std::vector<Beam>& beams) {
+    if (config.published) return {publishedFrustum(config)};
     double low = beams.front().low, high = beams.front().high;
     for (const Beam& beam : beams) { low = std::min(low, beam.low); high = std::max(high, beam.high); }
     const double half_elevation = halfElevation(config);
@@ -99,6 +126,7 @@ std::vector<Slab> makeSlabs(const SonarConfig& config, const std::vector<Beam>& 
 }
 
 ColumnShares makeShares(const SonarConfig& config, const std::vector<Beam>& beams, const Slab& slab) {
+    if (config.published) return roundedShares(beams, slab);
     ColumnShares result;
     result.per_row = config.beam_geometry == BeamGeometry::Conical;
     for (int row = 0; row < (result.per_row ? slab.rows : 1); ++row) addRow(config, beams, slab, slab.v(row + 0.5), result);

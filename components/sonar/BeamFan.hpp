@@ -29,10 +29,12 @@ struct Slab {
     double v(double row) const { return row * dv() - extent_v; }
 };
 
-/** As few slabs of at most 60 deg as cover the beams (physics.md 3.1); cones reach wider than their bearing. */
+/** As few slabs of at most 60 deg as cover the beams (physics.md 3.1); cones reach wider than their bearing. One with
+ *  `published`. */
 std::vector<Slab> makeSlabs(const SonarConfig& config, const std::vector<Beam>& beams);
 
-/** Fractional overlap of columns and beams. Planar beams: one row of columns serves all image rows. */
+/** Overlap of columns and beams: fractional, or with `published` rounded to whole columns. Planar beams: one row of
+ *  columns serves all image rows. */
 struct ColumnShares {
     std::vector<uint32_t> starts;  ///< Shares of (row, column) begin at starts[row * columns + column].
     std::vector<ShareRecord> shares;

@@ -48,6 +48,12 @@ struct CerqueiraBins : Bins {
     }
 #define HAVE_CERQUEIRA2017
 #include "shaders/deposit.glsl"
+};
+
+struct PublishedBins : CerqueiraBins {
+#define HAVE_PUBLISHED
+#include "shaders/deposit.glsl"
+#undef HAVE_PUBLISHED
 #undef HAVE_CERQUEIRA2017
 };
 
@@ -63,10 +69,11 @@ struct Pixels {
 
 /** What a stretch of shares covers: Footprint, and the pixel's strength times range, as arrays. */
 struct Cells {
-    double centre[stretch], wide[stretch], narrow[stretch], per_wide[stretch], steepness[stretch], near_end[stretch],
-        far_end[stretch], solid_angle[stretch], strength_range[stretch];
+    double pixel[stretch], centre[stretch], wide[stretch], narrow[stretch], per_wide[stretch], steepness[stretch], near_end[stretch],
+        far_end[stretch], size[stretch], strength_range[stretch];
 
     void set(int i, const Footprint& f) {
+        pixel[i] = f.pixel;
         centre[i] = f.centre;
         wide[i] = f.wide;
         narrow[i] = f.narrow;
@@ -74,16 +81,16 @@ struct Cells {
         steepness[i] = f.steepness;
         near_end[i] = f.near_end;
         far_end[i] = f.far_end;
-        solid_angle[i] = f.solid_angle;
+        size[i] = f.size;
     }
     Footprint get(int i) const {
-        return {centre[i], wide[i], narrow[i], per_wide[i], steepness[i], near_end[i], far_end[i], solid_angle[i]};
+        return {pixel[i], centre[i], wide[i], narrow[i], per_wide[i], steepness[i], near_end[i], far_end[i], size[i]};
     }
 };
 
 void miss(Pixels& pixels, int i) {
-    pixels.normal_x[i] = pixels.distance[i] = 1;
-    pixels.normal_y[i] = pixels.normal_z[i] = pixels.strength[i] = pixels.mapped[i] = 0;
+    pixels.normal_x[i] = 1;
+    pixels.normal_y[i] = pixels.normal_z[i] = pixels.distance[i] = pixels.strength[i] = pixels.mapped[i] = 0;
     pixels.near_limit[i] = pixels.far_limit[i] = 0;
 }
 
@@ -133,13 +140,13 @@ INSONIFY_VECTORISED void meet(Pixels& pixels, int count, double v) {
 }
 
 INSONIFY_VECTORISED void cover(const Pixels& pixels, const ShareRecord* shares, int count, uint first_column, double v,
-                               double dv, double near_edge, double far_edge, Cells& cells) {
+                               double dv, double near_edge, double far_edge, double per_pixel, Cells& cells) {
     for (int i = 0; i < count; ++i) {
         const ShareRecord& share = shares[i];
         const uint p = share.column - first_column;
         cells.set(i, cellFootprint(pixels.u[p], v, share.middle, share.width, share.limit, share.shear, dv,
                                    pixels.inverse_range[p], pixels.slope_u[p], pixels.slope_v[p], pixels.near_limit[p],
-                                   pixels.far_limit[p], near_edge, far_edge));
+                                   pixels.far_limit[p], near_edge, far_edge, per_pixel));
         cells.strength_range[i] = pixels.strength_range[p];
     }
 }
@@ -148,7 +155,7 @@ INSONIFY_VECTORISED void cover(const Pixels& pixels, const ShareRecord* shares, 
 template <class Model> class PartDeposit {
 public:
     PartDeposit(const SlabPart& part, Model bins)
-        : part_(part), bins_(bins), scale_(1 / (part.slab.du() * part.slab.dv())) {}
+        : part_(part), bins_(bins), per_pixel_(1 / (part.slab.du() * part.slab.dv())) {}
 
     void run() {
         for (int row = 0; row < part_.slab.rows; ++row)
@@ -158,7 +165,7 @@ public:
 
 private:
     void pixels(int row, int first, int count) {
-        if (!look(part_, row, first, count, pixels_)) return;
+        if (!look(part_, row, first, count, pixels_) && !part_.setup.published) return;
         const double v = part_.slab.v(row + 0.5);
         meet(pixels_, count, v);
         const size_t at = part_.shares.cell(row, first, part_.slab.columns);
@@ -169,15 +176,15 @@ private:
 
     void shares(uint first_share, int count, uint first_column, double v) {
         const ShareRecord* shares = part_.shares.shares.data() + first_share;
-        cover(pixels_, shares, count, first_column, v, part_.slab.dv(), part_.edges.front(), part_.edges.back(), cells_);
+        cover(pixels_, shares, count, first_column, v, part_.slab.dv(), part_.edges.front(), part_.edges.back(), per_pixel_, cells_);
         for (int i = 0; i < count; ++i)
             if (shares[i].beam >= part_.first && shares[i].beam < part_.last)
-                bins_.depositCell(cells_.get(i), shares[i].beam, cells_.strength_range[i], cells_.solid_angle[i] * scale_);
+                bins_.depositCell(cells_.get(i), shares[i].beam, cells_.strength_range[i]);
     }
 
     const SlabPart& part_;
     Model bins_;
-    double scale_;  ///< 1 / solid angle of a whole pixel at the picture's centre.
+    double per_pixel_;  ///< 1 / solid angle of a whole pixel at the picture's centre [1/sr].
     Pixels pixels_;
     Cells cells_;
 };
@@ -187,7 +194,8 @@ private:
 void deposit(const SlabPart& part, uint64_t* sums) {
     const BinGrid& grid = part.setup.bins;
     const Bins bins{part.edges.data(), sums, static_cast<uint>(grid.bin_count), grid.bin_width, part.setup.attenuation};
-    if (part.setup.model == Model::Cerqueira2017) PartDeposit(part, CerqueiraBins{bins}).run();
+    if (part.setup.published) PartDeposit(part, PublishedBins{{bins}}).run();
+    else if (part.setup.model == Model::Cerqueira2017) PartDeposit(part, CerqueiraBins{bins}).run();
     else PartDeposit(part, PhysicalBins{bins}).run();
 }
 

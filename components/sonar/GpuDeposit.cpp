@@ -30,6 +30,7 @@ private:
 GpuDeposit::GpuDeposit(const DepositSetup& setup) : setup_(setup), sums_(setup.sumCount()) {
     std::vector<std::string> defines;
     if (setup.model == Model::Cerqueira2017) defines.push_back("HAVE_CERQUEIRA2017");
+    if (setup.published) defines.push_back("HAVE_PUBLISHED");
     program_ = gpu::Program::compute("deposit.comp.glsl", defines);
     const auto edges = inverseEdges(setup.bins);
     edges_ = gpu::Buffer::of(std::span(edges));

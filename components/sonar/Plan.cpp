@@ -68,7 +68,11 @@ void omitPublished(const SonarConfig& config, types::Plan& plan) {
     plan.omitted.push_back({"spreading", reason});
     plan.omitted.push_back({"backscatter by material", reason + "; reflectivity scales n.d"});
     if (config.tvg) plan.omitted.push_back({"tvg", reason + " in [0, 1]"});
-    if (config.published) plan.omitted.push_back({"range footprints", "published: one bin per pixel"});
+    if (!config.published) return;
+    plan.omitted.push_back({"range footprints", "published: one bin per pixel"});
+    plan.omitted.push_back({"elevation mask", "published: the image's edge, nearer than the aperture away from ahead"});
+    plan.omitted.push_back({"shared columns", "published: every column belongs to one beam"});
+    plan.omitted.push_back({"near blanking", "published: bins begin at range 0"});
 }
 
 void omitEffects(const SonarConfig& config, const BinGrid& grid, types::Plan& plan) {

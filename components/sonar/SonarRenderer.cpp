@@ -27,7 +27,7 @@ std::vector<std::string> defines(const types::Plan& plan) {
 /** Distance of the image plane before which nothing is drawn: under the blanking even in the picture's corners. */
 double nearPlane(const SonarConfig& config, const Slab& slab) {
     const double corner = std::sqrt(1 + slab.extent_u * slab.extent_u + slab.extent_v * slab.extent_v);
-    return std::max(config.range_min, 1e-3) / corner;
+    return std::max(config.published ? 0 : config.range_min, 1e-3) / corner;
 }
 
 DepositSetup depositSetup(const SonarConfig& config, const std::vector<Beam>& beams, const std::vector<Slab>& slabs, const BinGrid& bins) {
@@ -38,6 +38,7 @@ DepositSetup depositSetup(const SonarConfig& config, const std::vector<Beam>& be
     setup.bins = bins;
     setup.attenuation = config.model == Model::Cerqueira2017 ? makeAbsorption(config).amplitudeNepersPerMetre() : 0;
     setup.model = config.model;
+    setup.published = config.published;
     return setup;
 }
 
@@ -73,7 +74,7 @@ SonarRenderer::Parts::Parts(const SonarConfig& c, types::GeometryPtr scene)
     : config(c), geometry(std::move(scene)), plan(makePlan(config, *geometry)), context(config.device),
       beams(makeBeams(config)), slabs(makeSlabs(config, beams)), bins(makeBinGrid(config)), levels(config, bins),
       culler(*geometry, bins.range_max),
-      surface(context, {*geometry, slabs, defines(plan), nearPlane(config, slabs.front()), culler.runLimit()}, threads) {
+      surface(context, {*geometry, slabs, defines(plan), nearPlane(config, slabs.front()), culler.runLimit(), config.published}, threads) {
     DepositSetup setup = depositSetup(config, beams, slabs, bins);
     const bool on_cpu = config.deposit == Deposit::Cpu || (config.deposit == Deposit::Auto && context.isSoftware());
     if (on_cpu) deposit = std::make_unique<CpuDeposit>(std::move(setup), surface, threads);
@@ -95,7 +96,7 @@ void SonarRenderer::Parts::drawSlabs(const types::Snapshot& snapshot) {
     surface.draw();
     lap(1);
     for (size_t i = 0; i < slabs.size(); ++i)
-        if (!surface.picture(i).empty()) deposit->take(i, surface);
+        if (surface.draws(i)) deposit->take(i, surface);
     lap(2);
 }
 

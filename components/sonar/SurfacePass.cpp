@@ -16,7 +16,7 @@ size_t partCount(const gpu::EglContext& context, const SurfacePass::Setup& setup
 
 SurfacePass::SurfacePass(gpu::EglContext& context, const Setup& setup, ThreadPool& threads)
     : context_(context), threads_(threads), scene_(setup.geometry, hasNormalMaps(setup)),
-      parts_(partCount(context, setup, threads)), pictures_(setup.slabs.size()) {
+      parts_(partCount(context, setup, threads)), pictures_(setup.slabs.size()), empty_too_(setup.empty_too) {
     glFinish();  // the other contexts must find the scene's buffers filled
     onEachPart([&](size_t part) { makePart(static_cast<int>(part), setup); });
 }
@@ -54,7 +54,7 @@ void SurfacePass::draw() {
         SurfacePainter& painter = *parts_[part].painter;
         painter.place(*placed_);
         for (size_t slab = part; slab < pictures_.size(); slab += parts_.size())
-            if (!pictures_[slab]->empty()) painter.draw(*pictures_[slab], *placed_);
+            if (draws(slab)) painter.draw(*pictures_[slab], *placed_);
         glFinish();
         if (parts_[part].own) parts_[part].own->check();
     });

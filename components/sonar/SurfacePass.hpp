@@ -19,6 +19,7 @@ public:
         std::vector<std::string> defines;  ///< As the plan's features.
         double near_plane;                 ///< [m]
         size_t run_limit;                  ///< Most runs that a slab may see.
+        bool empty_too;                    ///< Slabs that see nothing are drawn as well: misses count.
     };
     /** `context` is current on this thread; context, geometry and threads must outlive the pass. */
     SurfacePass(gpu::EglContext& context, const Setup& setup, ThreadPool& threads);
@@ -26,7 +27,9 @@ public:
 
     /** Lists what each slab sees of what the culler has placed. */
     void cull(const Culler& culler);
-    /** Draws the slabs that see anything; returns when the pictures are there. Throws GlError. */
+    /** Whether a slab's picture is drawn. */
+    bool draws(size_t slab) const { return empty_too_ || !pictures_[slab]->empty(); }
+    /** Draws the slabs; returns when the pictures are there. Throws GlError. */
     void draw();
 
     const SlabPicture& picture(size_t slab) const { return *pictures_[slab]; }
@@ -49,6 +52,7 @@ private:
     SurfaceScene scene_;
     std::vector<Part> parts_;
     std::vector<std::unique_ptr<SlabPicture>> pictures_;
+    bool empty_too_;
     const std::vector<ObjectRecord>* placed_ = nullptr;
 };
 
