@@ -50,6 +50,21 @@ inline types::Mesh sphere(float radius, int rings = 128) {
     return meshOf(std::move(positions), std::move(indices));
 }
 
+/** A disc of radius `radius` square to the x axis at x = distance. */
+inline types::Mesh disc(double distance, double radius) {
+    std::vector<glm::vec3> positions = {{distance, 0, 0}};
+    std::vector<uint32_t> indices;
+    for (uint32_t i = 0; i < 256; ++i) {
+        const double angle = 2 * std::numbers::pi * i / 256;
+        positions.push_back({distance, radius * std::cos(angle), radius * std::sin(angle)});
+        indices.insert(indices.end(), {0, 1 + i, 1 + (i + 1) % 256});
+    }
+    return meshOf(positions, indices);
+}
+
+/** A wall of 200 x 200 m square to the x axis at x = distance. */
+inline types::Mesh wall(float distance) { return quad({distance, -100, -100}, {0, 200, 0}, {0, 0, 200}); }
+
 /** One object for each mesh, at `positions` (or the origin), all of one material of lambert_db `mu_db`. */
 inline types::GeometryPtr sceneOf(std::vector<types::Mesh> meshes, float mu_db = 0, std::vector<glm::dvec3> positions = {}) {
     auto geometry = std::make_shared<types::Geometry>();
