@@ -8,10 +8,10 @@
 #include "components/deployer/Commands.hpp"
 #include "components/deployer/Json.hpp"
 #include "components/deployer/Tasks.hpp"
-#include "components/scene/Acoustics.hpp"
 #include "components/framework/Operation.hpp"
 #include "components/framework/Port.hpp"
 #include "components/framework/Properties.hpp"
+#include "components/scene/Acoustics.hpp"
 
 namespace insonify::deployer {
 namespace {

@@ -8,12 +8,16 @@
 namespace insonify::sonar {
 namespace {
 
-/** Largest factor by which a matrix stretches a vector, or a little more when its columns are not orthogonal. */
+/** Whether the axes of an object do not stay at right angles. */
+bool isSheared(const glm::dmat3& m) {
+    const auto cosine = [&](int i, int j) { return std::abs(glm::dot(glm::normalize(m[i]), glm::normalize(m[j]))); };
+    return !(std::max({cosine(0, 1), cosine(0, 2), cosine(1, 2)}) < 1e-6);
+}
+
+/** Largest factor by which a matrix stretches a vector, or a little more when it shears. */
 double stretch(const glm::dmat3& m) {
     const double x = glm::dot(m[0], m[0]), y = glm::dot(m[1], m[1]), z = glm::dot(m[2], m[2]);
-    const double largest = std::max({x, y, z});
-    const double skew = std::max({std::abs(glm::dot(m[0], m[1])), std::abs(glm::dot(m[0], m[2])), std::abs(glm::dot(m[1], m[2]))});
-    return std::sqrt(skew < 1e-6 * largest ? largest * (1 + 3e-6) : x + y + z);
+    return std::sqrt(isSheared(m) ? x + y + z : std::max({x, y, z}) * (1 + 3e-6));
 }
 
 vec4 row(const glm::dmat4& m, int i) { return vec4(glm::dvec4(m[0][i], m[1][i], m[2][i], m[3][i])); }
@@ -70,15 +74,12 @@ vec4 Culler::extent(size_t index, const glm::dmat4& m) const {
         farthest = std::max(farthest, glm::length(glm::dvec3(m * p)));
     }
     glm::dvec3 nearest(m[3]);  // the box's axes stay orthogonal unless the object is sheared: then nothing is known
-    const bool sheared = std::abs(glm::dot(glm::normalize(glm::dvec3(m[0])), glm::normalize(glm::dvec3(m[1])))) > 1e-6 ||
-                         std::abs(glm::dot(glm::normalize(glm::dvec3(m[0])), glm::normalize(glm::dvec3(m[2])))) > 1e-6 ||
-                         std::abs(glm::dot(glm::normalize(glm::dvec3(m[1])), glm::normalize(glm::dvec3(m[2])))) > 1e-6;
     for (int axis = 0; axis < 3; ++axis) {
         const glm::dvec3 direction(m[axis]);
         const double at = -glm::dot(glm::dvec3(m[3]), direction) / glm::dot(direction, direction);
         nearest += direction * std::clamp(at, box.low[axis], std::max(box.low[axis], box.high[axis]));
     }
-    const double distance = sheared ? 0 : glm::length(nearest);
+    const double distance = isSheared(glm::dmat3(m)) ? 0 : glm::length(nearest);
     const double slack = 1e-5;  // of the float that carries it
     return vec4(distance > 1e-6 ? (1 + slack) / distance : 1e6, farthest > 0 ? (1 - slack) / farthest : 0, 0, 0);
 }
