@@ -77,7 +77,7 @@ std::vector<std::string> ReplayTask::notices() const {
 }
 
 std::optional<types::Time> ReplayTask::nextTime() const {
-    if (!log_ || next_ == log_->samples().size()) return std::nullopt;
+    if (log_ && next_ == log_->samples().size()) return std::nullopt;  // unread, it is not known to have none
     return next_time_;
 }
 
