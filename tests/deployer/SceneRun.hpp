@@ -1,0 +1,115 @@
+#pragma once
+// A scene built in code, run as a user runs it: written as a glTF file, drawn by `insonify run` of a deployment with
+// one fixed pose, and read back by numpy from what `insonify log export` wrote.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <string>
+
+#include "tests/deployer/Wall.hpp"
+#include "types/Geometry.hpp"
+#include "types/Sonar.hpp"
+
+namespace insonify::deployer {
+
+/** A glTF scene with its bytes in `scene.bin`. Vertices are written in glTF's axes: x, z, -y of ours. */
+class GltfWriter {
+public:
+    explicit GltfWriter(const types::Geometry& geometry) {
+        for (const types::Material& material : geometry.materials)
+            gltf_["materials"].push_back({{"extras", {{"acoustics", {{"lambert_db", material.lambert_db}}}}}});
+        for (const types::Mesh& mesh : geometry.meshes) add(mesh);
+        for (const types::Object& object : geometry.objects) {
+            const glm::dvec4 at = object.world_from_object[3];
+            gltf_["scenes"][0]["nodes"].push_back(gltf_["scenes"][0]["nodes"].size());
+            gltf_["nodes"].push_back(
+                {{"name", object.name}, {"mesh", object.mesh}, {"translation", {at.x, at.z, -at.y}}});
+        }
+        gltf_["buffers"] = {{{"byteLength", bytes_.size()}, {"uri", "scene.bin"}}};
+    }
+    void write(const TestFolder& folder) const {
+        writeFile(folder / "scene.gltf", gltf_.dump());
+        writeFile(folder / "scene.bin", bytes_);
+    }
+
+private:
+    void add(const types::Mesh& mesh) {
+        std::vector<glm::vec3> turned;
+        glm::vec3 low(1e30f), high(-1e30f);
+        for (const glm::vec3 p : mesh.positions) {
+            turned.emplace_back(p.x, p.z, -p.y);
+            low = glm::min(low, turned.back());
+            high = glm::max(high, turned.back());
+        }
+        const size_t positions = accessor(bytesOf(turned), turned.size(), 5126, "VEC3");
+        gltf_["accessors"].back()["min"] = {low.x, low.y, low.z};
+        gltf_["accessors"].back()["max"] = {high.x, high.y, high.z};
+        const size_t indices = accessor(bytesOf(mesh.indices), mesh.indices.size(), 5125, "SCALAR");
+        const json primitive = {{"attributes", {{"POSITION", positions}}}, {"indices", indices}, {"material", 0}};
+        gltf_["meshes"].push_back({{"primitives", {primitive}}});
+    }
+    size_t accessor(const std::string& bytes, size_t count, int component, const char* type) {
+        const size_t index = gltf_["accessors"].size();
+        gltf_["bufferViews"].push_back({{"buffer", 0}, {"byteOffset", bytes_.size()}, {"byteLength", bytes.size()}});
+        gltf_["accessors"].push_back(
+            {{"bufferView", index}, {"componentType", component}, {"count", count}, {"type", type}});
+        bytes_ += bytes;
+        return index;
+    }
+
+    json gltf_ = {{"asset", {{"version", "2.0"}}}, {"scene", 0}};
+    std::string bytes_;
+};
+
+/** The first ping of a stream, as numpy reads it from the npz file of `insonify log export`. */
+inline types::Sonar exportedPing(const TestFolder& folder, const std::string& log, const std::string& stream) {
+    const Outcome exported = callInsonify(folder, {"log", "export", log, "--stream", stream, "--to", "ping.npz"});
+    if (exported.code != 0) throw std::runtime_error(exported.err);
+    const Outcome read = python(folder, R"(
+import numpy
+ping = numpy.load('ping.npz')
+names = ('bin_duration', 'speed_of_sound', 'bearings', 'bins')
+print(*ping['bins'].shape[1:])
+numpy.concatenate([ping[name][0].ravel() for name in names]).astype('<f8').tofile('ping.f8'))");
+    if (read.code != 0) throw std::runtime_error("numpy cannot read the export: " + read.err);
+    types::Sonar ping;
+    std::istringstream(read.out) >> ping.beam_count >> ping.bin_count;
+    const std::string bytes = readFile(folder / "ping.f8");
+    std::vector<double> numbers(bytes.size() / sizeof(double));
+    std::memcpy(numbers.data(), bytes.data(), bytes.size());
+    ping.bin_duration = {std::llround(numbers.at(0) * 1e6)};
+    ping.speed_of_sound = static_cast<float>(numbers.at(1));
+    const auto bearings = numbers.begin() + 2, bins = bearings + ping.beam_count;
+    for (auto bearing = bearings; bearing != bins; ++bearing) ping.bearings.push_back({*bearing});
+    ping.bins.assign(bins, numbers.end());
+    return ping;
+}
+
+/** What a sonar with these properties logs of a scene from the origin; `mount` turns it in the vehicle. Both are YAML.
+ */
+inline types::Sonar loggedPing(const types::Geometry& scene, const std::string& sonar,
+                               const std::string& mount = "{yaw_deg: 0}", const std::string& type = "SonarTask") {
+    const TestFolder folder;
+    GltfWriter(scene).write(folder);
+    writeFile(folder / "scene.yml", R"(schedule: lockstep
+tasks:
+  vehicle:
+    type: pose::TrajectoryTask
+    activity: {period: 0.1}
+    properties: {waypoints: [{time: 0, position: [0, 0, 0], roll_deg: 0, pitch_deg: 0, yaw_deg: 0}]}
+  scene: {type: scene::SceneTask, activity: {trigger: [pose]}, properties: {file: scene.gltf, mount: )" +
+                                        mount + R"(}}
+  sonar: {type: sonar::)" + type + R"(, activity: {trigger: [snapshot]}, properties: )" +
+                                        sonar + R"(}
+  log: {type: logger::LoggerTask, properties: {file: x.0.log}}
+connections:
+  - {from: vehicle.pose, to: scene.pose}
+  - {from: scene.snapshot, to: sonar.snapshot}
+  - {from: sonar.ping, to: log.ping, policy: {type: buffer, size: 64}}
+)");
+    const Outcome run = callInsonify(folder, {"run", "scene.yml", "--pings", "1", "--out", "out"});
+    if (run.code != 0) throw std::runtime_error(run.err);
+    return exportedPing(folder, "out/x.0.log", "sonar.ping");
+}
+
+}  // namespace insonify::deployer
