@@ -39,6 +39,7 @@ void addToBin(uint beam, uint bin, double amount, double weight) {
     addFixed(cell, amount);
 }
 
+#include "jitter.glsl"
 #include "surface.glsl"
 #include "footprint.glsl"
 #include "deposit.glsl"
@@ -74,7 +75,11 @@ void main() {
     dvec2 reach = dvec2(0.0);  // inverse ranges of the object
     if (texel.x != 0u) {
         CommandRecord command = commands[texel.x - 1u];
-        surface = surfaceOf(command, texel.y, uv);
+        dvec2 ray = uv;
+#ifdef HAVE_JITTER
+        ray += pixel_size * dvec2(jitter(pixel.x, pixel.y, 0u), jitter(pixel.x, pixel.y, 1u));
+#endif
+        surface = surfaceOf(command, texel.y, ray);
         strength = strengthOf(command.material) * (texel.z == 0u ? surface.cosine : double(uintBitsToFloat(texel.z)));
         reach = dvec2(objects[command.object].extent.xy);
     }

@@ -31,6 +31,14 @@ void depositCell(Footprint cell, uint beam, double strength_range) {
     double cosine = heard ? min(strength_range * cell.pixel, 1.0) : 0.0;
     addToBin(beam, bin, cerqueiraEcho(cosine * double(exp(float(-2.0 * attenuation * range)))), 1.0);
 }
+#elif defined(HAVE_NEAREST)
+// All of a cell in one bin, that of a point in its pixel.
+void depositCell(Footprint cell, uint beam, double strength_range) {
+    if (!(cell.pixel > binEdge(bin_count)) || cell.pixel > binEdge(0u)) return;
+    uint bin = min(uint(1.0 / (cell.pixel * bin_width)), bin_count - 1u);
+    double relative = (double(bin) + 0.5) * bin_width * cell.pixel;
+    addToBin(beam, bin, strength_range * cell.size * cell.pixel * relative * relative, 0.0);
+}
 #else
 // Share of the trapezoid between its centre and centre + t, signed as t.
 double trapezoidShare(Footprint cell, double t) {

@@ -102,7 +102,7 @@ std::vector<Beam> makeBeams(const SonarConfig& config) {
 }
 
 std::vector<Slab> makeSlabs(const SonarConfig& config, const std::vector<Beam>& beams) {
-    if (config.published) return {publishedFrustum(config)};
+    if (config.published || config.one_frustum) return {publishedFrustum(config)};
     double low = beams.front().low, high = beams.front().high;
     for (const Beam& beam : beams) { low = std::min(low, beam.low); high = std::max(high, beam.high); }
     const double half_elevation = halfElevation(config);
@@ -126,7 +126,7 @@ std::vector<Slab> makeSlabs(const SonarConfig& config, const std::vector<Beam>& 
 }
 
 ColumnShares makeShares(const SonarConfig& config, const std::vector<Beam>& beams, const Slab& slab) {
-    if (config.published) return roundedShares(beams, slab);
+    if (config.published || config.one_frustum) return roundedShares(beams, slab);
     ColumnShares result;
     result.per_row = config.beam_geometry == BeamGeometry::Conical;
     for (int row = 0; row < (result.per_row ? slab.rows : 1); ++row) addRow(config, beams, slab, slab.v(row + 0.5), result);

@@ -19,6 +19,7 @@ struct DepositSetup {
     double attenuation = 0;    ///< Amplitude, one way, in `cerqueira2017` [Np/m].
     Model model = Model::Physical;
     bool published = false;    ///< `cerqueira2017` to the letter.
+    Estimator estimator = Estimator::Footprint;
 
     size_t channels() const { return model == Model::Cerqueira2017 ? 2 : 1; }
     size_t sumCount() const { return beam_count * static_cast<size_t>(bins.bin_count) * channels(); }

@@ -20,6 +20,7 @@ using std::abs, std::exp, std::sqrt, std::tanh;
 inline double min(double a, double b) { return a < b ? a : b; }
 inline double max(double a, double b) { return a > b ? a : b; }
 inline uint min(uint a, uint b) { return a < b ? a : b; }
+#include "shaders/jitter.glsl"
 #include "shaders/surface.glsl"
 #include "shaders/footprint.glsl"
 
@@ -38,6 +39,12 @@ struct Bins {
 struct PhysicalBins : Bins {
     void addToBin(uint beam, uint bin, double amount, double) const { sums[beam * bin_count + bin] += quanta(amount); }
 #include "shaders/deposit.glsl"
+};
+
+struct NearestBins : PhysicalBins {
+#define HAVE_NEAREST
+#include "shaders/deposit.glsl"
+#undef HAVE_NEAREST
 };
 
 struct CerqueiraBins : Bins {
@@ -62,7 +69,7 @@ constexpr int stretch = 64;  ///< Pixels at a time: their numbers stay in the ne
 /** A stretch of a picture's row. */
 struct Pixels {
     double normal_x[stretch], normal_y[stretch], normal_z[stretch], distance[stretch];  ///< Planes, slab axes.
-    double u[stretch], mapped[stretch], strength[stretch];
+    double u[stretch], ray_u[stretch], ray_v[stretch], mapped[stretch], strength[stretch];
     double near_limit[stretch], far_limit[stretch];
     double inverse_range[stretch], slope_u[stretch], slope_v[stretch], strength_range[stretch];
 };
@@ -114,7 +121,6 @@ bool look(const SlabPart& part, int row, int first, int count, Pixels& pixels) {
     const uint32_t* texel = picture.words.data() + picture.channels * at;
     bool any = false;
     for (int i = 0; i < count; ++i, texel += picture.channels) {
-        pixels.u[i] = part.slab.u(first + i + 0.5);
         if (texel[0] == 0) {
             miss(pixels, i);
             continue;
@@ -127,10 +133,23 @@ bool look(const SlabPart& part, int row, int first, int count, Pixels& pixels) {
     return any;
 }
 
-INSONIFY_VECTORISED void meet(Pixels& pixels, int count, double v) {
+/** Where each pixel is looked at: its centre, or a point at random in it. */
+void aim(const SlabPart& part, int row, int first, int count, Pixels& pixels) {
+    const bool jittered = part.setup.estimator == Estimator::NearestJitter;
+    for (int i = 0; i < count; ++i) {
+        pixels.ray_u[i] = pixels.u[i] = part.slab.u(first + i + 0.5);
+        pixels.ray_v[i] = part.slab.v(row + 0.5);
+        if (!jittered) continue;
+        const auto x = static_cast<uint>(first + i), y = static_cast<uint>(row);
+        pixels.ray_u[i] += part.slab.du() * jitter(x, y, 0);
+        pixels.ray_v[i] += part.slab.dv() * jitter(x, y, 1);
+    }
+}
+
+INSONIFY_VECTORISED void meet(Pixels& pixels, int count) {
     for (int i = 0; i < count; ++i) {
         const Surface surface =
-            surfaceAt(pixels.normal_x[i], pixels.normal_y[i], pixels.normal_z[i], pixels.distance[i], pixels.u[i], v);
+            surfaceAt(pixels.normal_x[i], pixels.normal_y[i], pixels.normal_z[i], pixels.distance[i], pixels.ray_u[i], pixels.ray_v[i]);
         const double cosine = pixels.mapped[i] == 0 ? surface.cosine : pixels.mapped[i];
         pixels.inverse_range[i] = surface.inverse_range;
         pixels.slope_u[i] = surface.slope_u;
@@ -166,12 +185,12 @@ public:
 private:
     void pixels(int row, int first, int count) {
         if (!look(part_, row, first, count, pixels_) && !part_.setup.published) return;
-        const double v = part_.slab.v(row + 0.5);
-        meet(pixels_, count, v);
+        aim(part_, row, first, count, pixels_);
+        meet(pixels_, count);
         const size_t at = part_.shares.cell(row, first, part_.slab.columns);
         const uint end = part_.shares.starts[at + static_cast<size_t>(count)];
         for (uint i = part_.shares.starts[at]; i < end; i += stretch)
-            shares(i, static_cast<int>(std::min<uint>(stretch, end - i)), static_cast<uint>(first), v);
+            shares(i, static_cast<int>(std::min<uint>(stretch, end - i)), static_cast<uint>(first), part_.slab.v(row + 0.5));
     }
 
     void shares(uint first_share, int count, uint first_column, double v) {
@@ -196,6 +215,7 @@ void deposit(const SlabPart& part, uint64_t* sums) {
     const Bins bins{part.edges.data(), sums, static_cast<uint>(grid.bin_count), grid.bin_width, part.setup.attenuation};
     if (part.setup.published) PartDeposit(part, PublishedBins{{bins}}).run();
     else if (part.setup.model == Model::Cerqueira2017) PartDeposit(part, CerqueiraBins{bins}).run();
+    else if (part.setup.estimator != Estimator::Footprint) PartDeposit(part, NearestBins{{bins}}).run();
     else PartDeposit(part, PhysicalBins{bins}).run();
 }
 

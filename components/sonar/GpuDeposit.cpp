@@ -31,6 +31,8 @@ GpuDeposit::GpuDeposit(const DepositSetup& setup) : setup_(setup), sums_(setup.s
     std::vector<std::string> defines;
     if (setup.model == Model::Cerqueira2017) defines.push_back("HAVE_CERQUEIRA2017");
     if (setup.published) defines.push_back("HAVE_PUBLISHED");
+    if (setup.estimator != Estimator::Footprint) defines.push_back("HAVE_NEAREST");
+    if (setup.estimator == Estimator::NearestJitter) defines.push_back("HAVE_JITTER");
     program_ = gpu::Program::compute("deposit.comp.glsl", defines);
     const auto edges = inverseEdges(setup.bins);
     edges_ = gpu::Buffer::of(std::span(edges));

@@ -63,6 +63,13 @@ struct TvgConfig {
     }
 };
 
+/** How a pixel's echo finds its bins. All but the first are for comparison, in studies of the error. */
+enum class Estimator {
+    Footprint,      ///< Spread over the ranges that the pixel covers.
+    Nearest,        ///< All in the bin of its centre.
+    NearestJitter,  ///< All in the bin of a point drawn at random in it.
+};
+
 /** Samples per beam. */
 struct QualityConfig {
     int rows = 256;
@@ -101,6 +108,8 @@ struct SonarConfig {
     QualityConfig quality;
     RangeRounding range_rounding = RangeRounding::Sample;
     bool published = false;
+    Estimator estimator = Estimator::Footprint;  ///< Not a property. Others than the first: `physical` only.
+    bool one_frustum = false;                    ///< Not a property: one wide image and rounded columns, as `published`.
     std::string device;
     Deposit deposit = Deposit::Auto;
     std::optional<types::NotBuiltYet> beam_pattern, pulse, volume, multipath;

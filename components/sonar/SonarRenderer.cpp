@@ -38,7 +38,8 @@ DepositSetup depositSetup(const SonarConfig& config, const std::vector<Beam>& be
     setup.bins = bins;
     setup.attenuation = config.model == Model::Cerqueira2017 ? makeAbsorption(config).amplitudeNepersPerMetre() : 0;
     setup.model = config.model;
-    setup.published = config.published;
+    setup.published = config.published && config.model == Model::Cerqueira2017;
+    setup.estimator = config.estimator;
     return setup;
 }
 
