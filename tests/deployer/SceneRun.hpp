@@ -4,7 +4,10 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstring>
+#include <sstream>
 #include <string>
+#include <vector>
 
 #include "tests/deployer/Wall.hpp"
 #include "types/Geometry.hpp"
@@ -61,34 +64,43 @@ private:
     std::string bytes_;
 };
 
-/** The first ping of a stream, as numpy reads it from the npz file of `insonify log export`. */
-inline types::Sonar exportedPing(const TestFolder& folder, const std::string& log, const std::string& stream) {
+/** The pings of a stream, as numpy reads them from the npz file of `insonify log export`. */
+inline std::vector<types::Sonar> exportedPings(const TestFolder& folder, const std::string& log,
+                                               const std::string& stream) {
     const Outcome exported = callInsonify(folder, {"log", "export", log, "--stream", stream, "--to", "ping.npz"});
     if (exported.code != 0) throw std::runtime_error(exported.err);
     const Outcome read = python(folder, R"(
 import numpy
 ping = numpy.load('ping.npz')
-names = ('bin_duration', 'speed_of_sound', 'bearings', 'bins')
-print(*ping['bins'].shape[1:])
-numpy.concatenate([ping[name][0].ravel() for name in names]).astype('<f8').tofile('ping.f8'))");
+print(*ping['bins'].shape)
+flat = [ping[name].reshape(len(ping['time']), -1) for name in ('bin_duration', 'speed_of_sound', 'bearings', 'bins')]
+numpy.hstack(flat).astype('<f8').tofile('ping.f8'))");
     if (read.code != 0) throw std::runtime_error("numpy cannot read the export: " + read.err);
+    size_t count = 0;
     types::Sonar ping;
-    std::istringstream(read.out) >> ping.beam_count >> ping.bin_count;
+    std::istringstream(read.out) >> count >> ping.beam_count >> ping.bin_count;
     const std::string bytes = readFile(folder / "ping.f8");
     std::vector<double> numbers(bytes.size() / sizeof(double));
     std::memcpy(numbers.data(), bytes.data(), bytes.size());
-    ping.bin_duration = {std::llround(numbers.at(0) * 1e6)};
-    ping.speed_of_sound = static_cast<float>(numbers.at(1));
-    const auto bearings = numbers.begin() + 2, bins = bearings + ping.beam_count;
-    for (auto bearing = bearings; bearing != bins; ++bearing) ping.bearings.push_back({*bearing});
-    ping.bins.assign(bins, numbers.end());
-    return ping;
+    const size_t stride = 2 + ping.beam_count * (1 + size_t{ping.bin_count});
+    if (numbers.size() != count * stride) throw std::runtime_error("the export's arrays do not fit together");
+    std::vector<types::Sonar> pings;
+    for (const double* next = numbers.data(); pings.size() < count; next += stride) {
+        ping.bin_duration = {std::llround(next[0] * 1e6)};
+        ping.speed_of_sound = static_cast<float>(next[1]);
+        const double* const bins = next + 2 + ping.beam_count;
+        ping.bearings.clear();
+        for (const double* bearing = next + 2; bearing != bins; ++bearing) ping.bearings.push_back({*bearing});
+        ping.bins.assign(bins, next + stride);
+        pings.push_back(ping);
+    }
+    return pings;
 }
 
-/** What a sonar with these properties logs of a scene from the origin; `mount` turns it in the vehicle. Both are YAML.
+/** What a sonar (its type and its properties in YAML) logs of a scene from the origin; `mount` turns it in the vehicle.
  */
-inline types::Sonar loggedPing(const types::Geometry& scene, const std::string& sonar,
-                               const std::string& mount = "{yaw_deg: 0}", const std::string& type = "SonarTask") {
+inline std::vector<types::Sonar> loggedPings(const types::Geometry& scene, const std::string& type,
+                                             const std::string& properties, const std::string& mount, size_t count) {
     const TestFolder folder;
     GltfWriter(scene).write(folder);
     writeFile(folder / "scene.yml", R"(schedule: lockstep
@@ -99,17 +111,23 @@ tasks:
     properties: {waypoints: [{time: 0, position: [0, 0, 0], roll_deg: 0, pitch_deg: 0, yaw_deg: 0}]}
   scene: {type: scene::SceneTask, activity: {trigger: [pose]}, properties: {file: scene.gltf, mount: )" +
                                         mount + R"(}}
-  sonar: {type: sonar::)" + type + R"(, activity: {trigger: [snapshot]}, properties: )" +
-                                        sonar + R"(}
+  sonar: {type: )" + type + R"(, activity: {trigger: [snapshot]}, properties: )" +
+                                        properties + R"(}
   log: {type: logger::LoggerTask, properties: {file: x.0.log}}
 connections:
   - {from: vehicle.pose, to: scene.pose}
   - {from: scene.snapshot, to: sonar.snapshot}
   - {from: sonar.ping, to: log.ping, policy: {type: buffer, size: 64}}
 )");
-    const Outcome run = callInsonify(folder, {"run", "scene.yml", "--pings", "1", "--out", "out"});
+    const Outcome run = callInsonify(folder, {"run", "scene.yml", "--pings", std::to_string(count), "--out", "out"});
     if (run.code != 0) throw std::runtime_error(run.err);
-    return exportedPing(folder, "out/x.0.log", "sonar.ping");
+    return exportedPings(folder, "out/x.0.log", "sonar.ping");
+}
+
+/** The one ping of a forward-looking sonar. */
+inline types::Sonar loggedPing(const types::Geometry& scene, const std::string& properties,
+                               const std::string& mount = "{yaw_deg: 0}") {
+    return loggedPings(scene, "sonar::SonarTask", properties, mount, 1).at(0);
 }
 
 }  // namespace insonify::deployer
