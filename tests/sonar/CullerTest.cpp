@@ -1,0 +1,298 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <glm/gtc/matrix_transform.hpp>
+#include <random>
+
+#include "components/scene/Clusters.hpp"
+#include "components/sonar/Culler.hpp"
+#include "components/sonar/SonarRenderer.hpp"
+#include "tests/support/Scenes.hpp"
+
+namespace insonify::sonar {
+namespace {
+
+using Random = std::mt19937_64;
+
+double uniform(Random& random, double low, double high) {
+    return std::uniform_real_distribution<double>(low, high)(random);
+}
+
+glm::dvec3 uniformVector(Random& random, double size) {
+    return {uniform(random, -size, size), uniform(random, -size, size), uniform(random, -size, size)};
+}
+
+/** Turned, stretched unevenly, sheared, half of the time mirrored, and placed within `reach` [m]. */
+glm::dmat4 randomPlace(Random& random, double reach) {
+    glm::dmat4 place = glm::rotate(glm::dmat4(1), uniform(random, 0, 6), uniformVector(random, 1) + 1e-3);
+    place = glm::scale(place, glm::dvec3(uniform(random, 0.1, 6), uniform(random, -3, 3), uniform(random, 0.2, 2)));
+    place[1] += uniform(random, -1, 1) * place[0];
+    place[3] = glm::dvec4(uniformVector(random, reach), 1);
+    return place;
+}
+
+types::Mesh triangleSoup(Random& random, int triangles) {
+    std::vector<glm::vec3> positions;
+    std::vector<uint32_t> indices;
+    for (int i = 0; i < triangles; ++i) {
+        const glm::dvec3 at = uniformVector(random, 1);
+        for (int corner = 0; corner < 3; ++corner) {
+            indices.push_back(static_cast<uint32_t>(positions.size()));
+            positions.push_back(glm::vec3(at + uniformVector(random, 0.4)));
+        }
+    }
+    return test::meshOf(positions, indices);
+}
+
+/** A rough sheet of 2 n n triangles between -1 and 1, split into clusters. */
+types::Mesh clusteredSheet(Random& random, int n) {
+    std::vector<glm::vec3> positions;
+    std::vector<uint32_t> indices;
+    for (int i = 0; i <= n; ++i)
+        for (int j = 0; j <= n; ++j) positions.push_back({2.0 * i / n - 1, 2.0 * j / n - 1, uniform(random, 0, 0.1)});
+    for (uint32_t i = 0, side = static_cast<uint32_t>(n) + 1; i + 1 < side; ++i)
+        for (uint32_t j = 0; j + 1 < side; ++j) {
+            const uint32_t a = i * side + j;
+            indices.insert(indices.end(), {a, a + side, a + 1, a + 1, a + side, a + side + 1});
+        }
+    types::Mesh mesh = test::meshOf(positions, indices);
+    scene::buildClusters(mesh);
+    return mesh;
+}
+
+bool inView(const Slab& slab, glm::dvec3 p, double range_max) {
+    const double x = std::cos(slab.azimuth) * p.x + std::sin(slab.azimuth) * p.y;
+    const double y = std::cos(slab.azimuth) * p.y - std::sin(slab.azimuth) * p.x;
+    return x > 0 && std::abs(y) <= slab.extent_u * x && std::abs(p.z) <= slab.extent_v * x &&
+           glm::length(p) <= range_max;
+}
+
+/** Whether any of some points of the triangle is in view. */
+bool triangleSeen(const Slab& slab, const glm::dvec3 (&corner)[3], double range_max) {
+    for (double a = 0; a <= 1; a += 0.25)
+        for (double b = 0; a + b <= 1; b += 0.25)
+            if (inView(slab, a * corner[0] + b * corner[1] + (1 - a - b) * corner[2], range_max)) return true;
+    return false;
+}
+
+/** For each object, whether each of its triangles is in a run. */
+std::vector<std::vector<bool>> drawn(const types::Geometry& geometry, const std::vector<Culler::Run>& runs) {
+    std::vector<std::vector<bool>> marks;
+    for (const types::Object& object : geometry.objects)
+        marks.emplace_back(geometry.meshes[static_cast<size_t>(object.mesh)].indices.size() / 3);
+    for (const Culler::Run& run : runs)
+        for (uint32_t i = run.first_index / 3; i < (run.first_index + run.index_count) / 3; ++i) {
+            EXPECT_FALSE(marks[run.object].at(i)) << "drawn twice";
+            marks[run.object].at(i) = true;
+        }
+    return marks;
+}
+
+struct Count {
+    size_t seen = 0, missed = 0, drawn = 0, all = 0;
+};
+
+/** Compares the runs of all slabs with the triangles that are in view. */
+Count compare(const SonarConfig& config, const types::Snapshot& snapshot) {
+    const double range = config.range;
+    Culler culler(*snapshot.geometry, range);
+    culler.place(snapshot);
+    const glm::dmat4 sonar_from_world = glm::inverse(snapshot.sonar.worldFromBody());
+    Count count;
+    std::vector<Culler::Run> runs;
+    for (const Slab& slab : makeSlabs(config, makeBeams(config))) {
+        culler.visible(slab, runs);
+        EXPECT_LE(runs.size(), culler.runLimit());
+        const auto marks = drawn(*snapshot.geometry, runs);
+        for (size_t i = 0; i < marks.size(); ++i) {
+            const types::Object& object = snapshot.geometry->objects[i];
+            glm::dmat4 place = object.world_from_object;
+            for (const types::MovedObject& moved : snapshot.moved)
+                if (moved.object == i) place = moved.world_from_object;
+            const types::Mesh& mesh = snapshot.geometry->meshes[static_cast<size_t>(object.mesh)];
+            for (size_t t = 0; t < marks[i].size(); ++t) {
+                glm::dvec3 corner[3];
+                for (size_t k = 0; k < 3; ++k)
+                    corner[k] = sonar_from_world * place * glm::dvec4(mesh.positions[mesh.indices[3 * t + k]], 1);
+                const bool seen = triangleSeen(slab, corner, range);
+                count.seen += seen;
+                count.missed += seen && !marks[i][t];
+                count.drawn += marks[i][t];
+                ++count.all;
+            }
+        }
+    }
+    return count;
+}
+
+SonarConfig fan(double field_of_view_deg) {
+    SonarConfig config;
+    config.speed_of_sound = 1000;
+    config.range = 30;
+    config.bin_count = 300;
+    config.beam_count = 32;
+    config.field_of_view_deg = field_of_view_deg;
+    config.quality.rows = 96;
+    config.device = "software";
+    return config;
+}
+
+types::Snapshot randomSnapshot(Random& random, types::GeometryPtr geometry) {
+    return test::snapshotOf(std::move(geometry), uniformVector(random, 10), uniform(random, -3, 3),
+                            uniform(random, -1, 1), uniform(random, -3, 3));
+}
+
+/** Of 1 m, known by its own sphere. */
+types::Mesh ball() {
+    types::Mesh mesh = test::sphere(1, 8);
+    mesh.clusters[0].radius = 1;
+    return mesh;
+}
+
+/** Runs over all slabs for one sphere of 1 m about `position`, the sonar at the origin. */
+size_t runsOfBall(glm::dvec3 position, double field_of_view_deg = 60) {
+    const auto snapshot = test::snapshotOf(test::sceneOf({ball()}, 0, {position}));
+    const SonarConfig config = fan(field_of_view_deg);
+    Culler culler(*snapshot.geometry, config.range);
+    culler.place(snapshot);
+    std::vector<Culler::Run> runs;
+    size_t count = 0;
+    for (const Slab& slab : makeSlabs(config, makeBeams(config))) {
+        culler.visible(slab, runs);
+        count += runs.size();
+    }
+    return count;
+}
+
+/** The bins of three pings from different poses, one after the other. */
+std::vector<float> pings(const SonarConfig& config, const types::GeometryPtr& geometry) {
+    SonarRenderer renderer(config, geometry);
+    std::vector<float> bins;
+    for (int i = 0; i < 3; ++i) {
+        types::Sonar ping;
+        renderer.render(test::snapshotOf(geometry, {i - 1.0, 0.5 * i, 0.0}, 0.4 * i, 0.15, 0.1 * i), ping);
+        bins.insert(bins.end(), ping.bins.begin(), ping.bins.end());
+    }
+    return bins;
+}
+
+/** A floor of clusters and, in the middle, a ball of clusters. */
+std::shared_ptr<types::Geometry> clusteredHarbour(Random& random) {
+    auto geometry = std::make_shared<types::Geometry>();
+    geometry->materials.resize(1);
+    geometry->meshes = {clusteredSheet(random, 120), test::sphere(1, 80)};
+    scene::buildClusters(geometry->meshes[1]);
+    geometry->objects = {{"floor", 0, glm::scale(glm::translate(glm::dmat4(1), {0.0, 0.0, -4.0}), {50.0, 50.0, 6.0})},
+                         {"ball", 1, glm::translate(glm::dmat4(1), {9.0, 4.0, -3.0})},
+                         {"egg", 1, glm::scale(glm::translate(glm::dmat4(1), {-12.0, 5.0, -2.0}), {1.0, 3.0, -1.0})}};
+    return geometry;
+}
+
+/** One cluster for each mesh, which reaches into every view. */
+types::GeometryPtr withoutCulling(const types::Geometry& geometry) {
+    auto whole = std::make_shared<types::Geometry>(geometry);
+    for (types::Mesh& mesh : whole->meshes)
+        mesh.clusters = {{0, static_cast<uint32_t>(mesh.indices.size()), 0, {0, 0, 0}, 1e6f}};
+    return whole;
+}
+
+}  // namespace
+
+TEST(CullerTest, NothingThatASlabSeesIsCulled) {
+    Random random(1);
+    Count total;
+    for (int round = 0; round < 200; ++round) {
+        auto geometry = std::make_shared<types::Geometry>();
+        geometry->materials.resize(1);
+        geometry->meshes = {triangleSoup(random, 20), triangleSoup(random, 5)};
+        for (int i = 0; i < 30; ++i)
+            geometry->objects.push_back(
+                {"object", i % 2, randomPlace(random, i % 5 ? 40 : 2)});  // some about the sonar
+        types::Snapshot snapshot = randomSnapshot(random, geometry);
+        for (uint32_t i = 0; i < 8; ++i) snapshot.moved.push_back({i, randomPlace(random, 30)});
+        for (double degrees : {10.0, 130.0, 360.0}) {
+            const Count count = compare(fan(degrees), snapshot);
+            EXPECT_EQ(count.missed, 0u) << "round " << round << ", " << degrees << " deg";
+            total.seen += count.seen;
+            total.drawn += count.drawn;
+            total.all += count.all;
+        }
+    }
+    EXPECT_GT(total.seen, 8'000u);
+    EXPECT_LT(total.drawn, total.all / 2) << "most of the scene is out of view";
+}
+
+TEST(CullerTest, NoTriangleOfAClusterInViewIsCulled) {
+    Random random(2);
+    const auto geometry = clusteredHarbour(random);
+    ASSERT_GT(geometry->meshes[0].clusters.size(), 100u);
+    for (int round = 0; round < 4; ++round) {
+        auto turned = std::make_shared<types::Geometry>(*geometry);
+        for (types::Object& object : turned->objects)
+            object.world_from_object = randomPlace(random, 5) * object.world_from_object;
+        for (const types::GeometryPtr& scene : {types::GeometryPtr(geometry), types::GeometryPtr(turned)}) {
+            const Count count = compare(fan(130), randomSnapshot(random, scene));
+            EXPECT_EQ(count.missed, 0u) << round;
+            EXPECT_LT(count.drawn, count.all);
+        }
+    }
+}
+
+TEST(CullerTest, ObjectsBehindAsideAboveOrBeyondTheRangeAreNotDrawn) {
+    EXPECT_EQ(runsOfBall({10, 0, 0}), 1u);
+    EXPECT_EQ(runsOfBall({-10, 0, 0}), 0u) << "behind";
+    EXPECT_EQ(runsOfBall({10, 9, 0}), 0u) << "to port";
+    EXPECT_EQ(runsOfBall({10, -9, 0}), 0u) << "to starboard";
+    EXPECT_EQ(runsOfBall({10, 0, 4}), 0u) << "above";
+    EXPECT_EQ(runsOfBall({10, 0, -4}), 0u) << "below";
+    EXPECT_EQ(runsOfBall({32, 0, 0}), 0u) << "too far";
+    EXPECT_EQ(runsOfBall({30.5, 0, 0}), 1u) << "its near side is in range";
+}
+
+TEST(CullerTest, AnObjectAboutTheSonarIsDrawnInEverySlab) {
+    EXPECT_EQ(runsOfBall({0, 0, 0}, 360), 6u);
+    EXPECT_EQ(runsOfBall({10, 0, 0}, 360), 2u) << "the slabs of a full turn meet ahead";
+}
+
+TEST(CullerTest, AMovedObjectIsDrawnWhereItIs) {
+    types::Snapshot snapshot = test::snapshotOf(test::sceneOf({ball()}, 0, {{-10, 0, 0}}));
+    Culler culler(*snapshot.geometry, 30);
+    std::vector<Culler::Run> runs;
+    const Slab slab = makeSlabs(fan(60), makeBeams(fan(60))).front();
+    culler.place(snapshot);
+    culler.visible(slab, runs);
+    EXPECT_TRUE(runs.empty());
+    snapshot.moved = {{0, glm::translate(glm::dmat4(1), {10.0, 0.0, 0.0})}};
+    culler.place(snapshot);
+    culler.visible(slab, runs);
+    EXPECT_EQ(runs.size(), 1u);
+    snapshot.moved.clear();
+    culler.place(snapshot);
+    culler.visible(slab, runs);
+    EXPECT_TRUE(runs.empty()) << "back at its place";
+}
+
+TEST(CullerTest, ThePingOfClustersCulledByViewIsThatOfTheWholeScene) {
+    Random random(3);
+    const auto clustered = clusteredHarbour(random);
+    for (double degrees : {50.0, 100.0, 360.0}) {
+        SonarConfig config = fan(degrees);
+        config.range = 120;  // holds all of the scene
+        const auto culled = pings(config, clustered);
+        EXPECT_EQ(culled, pings(config, withoutCulling(*clustered))) << degrees << " deg";
+        EXPECT_GT(std::count_if(culled.begin(), culled.end(), [](float x) { return x > 0; }), 3000);
+    }
+}
+
+TEST(CullerTest, CullingByRangeTakesOnlyEchoesThatAPixelBeyondItWouldSmearBack) {
+    Random random(3);
+    const auto clustered = clusteredHarbour(random);
+    const auto culled = pings(fan(100), clustered), all = pings(fan(100), withoutCulling(*clustered));
+    const float most = *std::ranges::max_element(all);
+    for (size_t i = 0; i < all.size(); ++i) {
+        EXPECT_LE(culled[i], all[i]) << i;
+        EXPECT_NEAR(culled[i], all[i], 1e-5 * most) << i;
+    }
+}
+
+}  // namespace insonify::sonar
