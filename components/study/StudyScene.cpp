@@ -1,0 +1,104 @@
+#include "components/study/StudyScene.hpp"
+
+#include <cmath>
+#include <limits>
+
+#include "components/sonar/BeamFan.hpp"
+#include "components/sonar/BinGrid.hpp"
+#include "components/study/Shapes.hpp"
+#include "types/Angle.hpp"
+
+namespace insonify::study {
+namespace {
+
+using types::radians;
+
+/** Bins of 0.1 m that are whole microseconds at 1000 m/s. */
+sonar::SonarConfig sonarOf(double fov_deg, double height_deg, int beams, double range) {
+    sonar::SonarConfig config;
+    config.speed_of_sound = 1000;
+    config.range = range;
+    config.bin_count = static_cast<int>(std::lround(range / 0.1));
+    config.beam_count = beams;
+    config.field_of_view_deg = fov_deg;
+    config.beam_height_deg = height_deg;
+    return config;
+}
+
+types::Snapshot snapshotOf(types::GeometryPtr geometry, double pitch = 0, double roll = 0) {
+    types::Snapshot snapshot;
+    snapshot.geometry = std::move(geometry);
+    snapshot.sonar.orientation = glm::angleAxis(pitch, glm::dvec3(0, 1, 0)) * glm::angleAxis(roll, glm::dvec3(1, 0, 0));
+    return snapshot;
+}
+
+types::Mesh ground() { return quad({-500, -500, -5}, {1000, 0, 0}, {0, 1000, 0}); }
+types::Mesh wall(float distance) { return quad({distance, -200, -200}, {0, 400, 0}, {0, 0, 400}); }
+
+/** Down, in the axes of a sonar that is pitched down and then rolled to starboard. */
+glm::dvec3 downOf(const types::Snapshot& snapshot) {
+    return glm::conjugate(snapshot.sonar.orientation) * glm::dvec3(0, 0, -1);
+}
+
+StudyScene flatBottom(const std::string& name, const std::string& doc, double range_from, double pitch, double roll) {
+    StudyScene scene{name, doc, sonarOf(130, 40, 64, 50), snapshotOf(sceneOf({ground()}), pitch, roll), {}, range_from, true};
+    scene.truth = planeTruth(downOf(scene.snapshot), 5);
+    return scene;
+}
+
+StudyScene wallAhead() {
+    return {"wall", "a wall 10 m ahead, 60 x 40 deg", sonarOf(60, 40, 32, 15), snapshotOf(sceneOf({wall(10)})),
+            planeTruth({1, 0, 0}, 10), 0, true};
+}
+
+StudyScene facingDisc() {
+    return {"facing_disc", "a disc of 2.9 m radius, 10 m ahead, in one beam", sonarOf(40, 40, 1, 12),
+            snapshotOf(sceneOf({disc(10, 2.9, 2048)})), discTruth(10, 2.9)};
+}
+
+StudyScene oneSphere() {
+    return {"sphere", "a sphere of 1 m radius, 10 m ahead, in one beam", sonarOf(16, 16, 1, 12),
+            snapshotOf(sceneOf({sphere(1, 256)}, {{10, 0, 0}})), sphereTruth(1, 10)};
+}
+
+StudyScene twoSpheres() {
+    const double up = radians(10), x = 10 * std::cos(up), z = 10 * std::sin(up);
+    return {"two_spheres", "two spheres of 1 m radius at 10 m, one above the other, in one beam", sonarOf(16, 36, 1, 12),
+            snapshotOf(sceneOf({sphere(1, 256), sphere(1, 256)}, {{x, 0, z}, {x, 0, -z}})),
+            sum({sphereTruth(1, 10), sphereTruth(1, 10)})};
+}
+
+/** A screen 2 m high stands on the bottom 15 m ahead and hides what lies behind. */
+StudyScene shadowScreen() {
+    const double height = 5, top = 2, ahead = 15;
+    const auto elevation = [=](double azimuth, double z) { return std::atan2(z - height, ahead / std::cos(azimuth)); };
+    const Window screen = [=](double azimuth) { return Elevations{elevation(azimuth, 0), elevation(azimuth, top)}; };
+    const Window before = [=](double azimuth) { return Elevations{-std::numbers::pi / 2, elevation(azimuth, 0)}; };
+    const Window behind = [=](double azimuth) { return Elevations{elevation(azimuth, top), std::numbers::pi / 2}; };
+    const auto geometry = sceneOf({ground(), quad({15, -200, -5}, {0, 400, 0}, {0, 0, 2})});
+    return {"shadow_screen", "a screen 2 m high on a flat bottom 5 m below, 15 m ahead: echo and shadow",
+            sonarOf(60, 60, 32, 50), snapshotOf(geometry),
+            sum({planeTruth({0, 0, -1}, height, before), planeTruth({1, 0, 0}, ahead, screen), planeTruth({0, 0, -1}, height, behind)})};
+}
+
+}  // namespace
+
+std::vector<StudyScene> closedFormScenes() {
+    return {flatBottom("flat_bottom", "a flat bottom 5 m below a level fan, 130 x 40 deg, from 15 m on", 15, 0, 0),
+            flatBottom("flat_bottom_edge", "the same with the bins of the aperture's edge", 0, 0, 0),
+            flatBottom("flat_bottom_pitched", "the same bottom, the sonar pitched down by 15 deg", 0, radians(15), 0),
+            flatBottom("tilted_plane", "the same bottom, pitched by 20 and rolled by 25 deg", 0, radians(20), radians(25)),
+            wallAhead(), facingDisc(), oneSphere(), twoSpheres(), shadowScreen()};
+}
+
+std::vector<double> trueEnergies(const StudyScene& scene) {
+    const sonar::BinGrid grid = sonar::makeBinGrid(scene.config);
+    const double half_height = radians(scene.config.beam_height_deg) / 2;
+    std::vector<double> energies;
+    for (const sonar::Beam& beam : sonar::makeBeams(scene.config))
+        for (int k = 0; k < grid.bin_count; ++k)
+            energies.push_back(grid.edge(k + 1) <= grid.range_min ? 0 : scene.truth({beam.low, beam.high, half_height}, std::max(grid.edge(k), grid.range_min), grid.edge(k + 1)));
+    return energies;
+}
+
+}  // namespace insonify::study

@@ -1,0 +1,37 @@
+#pragma once
+#include <functional>
+#include <glm/vec3.hpp>
+#include <vector>
+
+namespace insonify::study {
+
+/** Limits of azimuth (positive to port) and of elevation that one beam hears [rad]. */
+struct BeamLimits {
+    double azimuth_low, azimuth_high, half_height;
+};
+
+/** Energy E/S0 that a beam hears between slant ranges r1 and r2 [m], without absorption: exact. */
+using Truth = std::function<double(const BeamLimits& beam, double r1, double r2)>;
+
+/** A stretch of elevations [rad]. */
+struct Elevations {
+    double low, high;
+};
+/** Which elevations of a plane are seen at an azimuth; all of them when empty. */
+using Window = std::function<Elevations(double azimuth)>;
+
+/** Echo of the plane normal.p = distance (unit normal away from the sonar, sonar axes, distance above 0) of Lambert
+ *  parameter 1. physics.md 1.2 (1) with cos(theta) = distance / r: over a plane the integrand depends on direction alone,
+ *  and each bin is, at each azimuth, two stretches of elevation. */
+Truth planeTruth(glm::dvec3 normal, double distance, Window window = {});
+
+/** The echo of a sphere wholly inside one beam: physics.md 3.5, item 4. */
+Truth sphereTruth(double radius, double centre);
+
+/** A disc of a radius that faces the sonar, wholly inside one beam: physics.md 3.5, items 1 and 5. */
+Truth discTruth(double distance, double radius);
+
+/** Echoes that do not hide one another. */
+Truth sum(std::vector<Truth> parts);
+
+}  // namespace insonify::study
