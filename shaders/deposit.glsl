@@ -5,7 +5,7 @@
 //     uint bin_count; double bin_width [m], attenuation (amplitude, one way, cerqueira2017) [Np/m]
 
 // S of cerqueira2017; x = reflectivity cos(theta), attenuated.
-double cerqueiraEcho(double x) { return 0.5 + 0.5 * double(tanh(float(9.0 * (x - 2.0 / 3.0)))); }
+double cerqueiraEcho(double x) { return 1.0 / (1.0 + double(exp(float(12.0 - 18.0 * x)))); }
 
 // What the includer's addToBin is told: `amount` is, for `physical`, the part's energy times the square of the bin's
 // central range; for cerqueira2017 it is S weighted by the part's size `weight`. Both are relative to one whole pixel.
