@@ -64,6 +64,8 @@ bool SceneTask::configureHook() {
         movable.node = findNode(*scene, movable.node_name);
         movable.parts = partsOf(*scene, movable.node);
     }
+    part_count_ = 0;
+    for (const Movable& movable : movables_) part_count_ += movable.parts.size();
     std::ranges::sort(movables_, {}, &Movable::node);
     mover_.assign(geometry_->objects.size(), nullptr);
     return true;
@@ -114,6 +116,7 @@ void SceneTask::addMoved(std::vector<types::MovedObject>& moved) {
         if (movable.world_from_body)
             for (const Part& part : movable.parts) mover_[part.object] = &movable;
     moved.clear();
+    moved.reserve(part_count_);
     for (const Movable& movable : movables_)
         if (movable.world_from_body)
             for (const Part& part : movable.parts)

@@ -59,6 +59,7 @@ private:
     mutable std::string scene_file_;
     types::GeometryPtr geometry_;
     std::vector<Movable> movables_;      ///< Outer nodes before inner ones, once configured.
+    size_t part_count_ = 0;              ///< Of all movables, room for which is made before they move.
     std::vector<const Movable*> mover_;  ///< For each object, who moves it now.
     framework::SamplePool<types::Snapshot> pool_;
 };

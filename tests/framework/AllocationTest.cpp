@@ -1,28 +1,8 @@
-#include <gtest/gtest.h>
-
-#include <cstdlib>
+#include <gmock/gmock.h>
 
 #include "components/framework/SamplePool.hpp"
+#include "tests/support/Allocations.hpp"
 #include "tests/support/Ports.hpp"
-
-namespace {
-
-std::atomic<uint64_t> allocations{0};  // of all threads
-
-}  // namespace
-
-// Not inlined: g++ would take the pairs apart and warn that they do not match.
-[[gnu::noinline]] void* operator new(size_t size) {
-    ++allocations;
-    if (void* memory = std::malloc(size)) return memory;
-    throw std::bad_alloc();
-}
-[[gnu::noinline]] void* operator new(size_t size, const std::nothrow_t&) noexcept {
-    ++allocations;
-    return std::malloc(size);
-}
-[[gnu::noinline]] void operator delete(void* memory) noexcept { std::free(memory); }
-[[gnu::noinline]] void operator delete(void* memory, size_t) noexcept { std::free(memory); }
 
 namespace insonify::framework {
 namespace {
@@ -45,10 +25,13 @@ struct Copier : TaskContext {
     }
 };
 
-TEST(AllocationTest, CountingCounts) {
-    const uint64_t before = allocations;
-    const auto something = std::make_unique<int>(1);
-    EXPECT_EQ(allocations - before, 1u);
+TEST(AllocationTest, CountingCountsOnTheTasksThreadOnly) {
+    Copier task("copier");
+    std::unique_ptr<int> kept;
+    auto allocate = [&] { kept = std::make_unique<int>(1); };
+    EXPECT_THAT(test::allocationsOn(task, [&] { task.activity().call(allocate); }),
+                testing::ElementsAre(testing::HasSubstr("framework_test+0x")));
+    EXPECT_THAT(test::allocationsOn(task, allocate), testing::IsEmpty());
 }
 
 TEST(AllocationTest, ASteadyStreamAllocatesNothing) {
@@ -68,9 +51,12 @@ TEST(AllocationTest, ASteadyStreamAllocatesNothing) {
             return reader.port.readNew(got);
         };
         for (int warm_up = 0; warm_up < 5; ++warm_up) ASSERT_TRUE(ping());
-        const uint64_t before = allocations;
-        for (int i = 0; i < 100; ++i) ping();
-        EXPECT_EQ(allocations - before, 0u);
+        const auto allocations = test::allocationsOn(task, [&] {
+            test::countHere(true);  // the ends of the connections allocate nothing either
+            for (int i = 0; i < 100; ++i) ping();
+            test::countHere(false);
+        });
+        EXPECT_THAT(allocations, testing::IsEmpty());
     }
 }
 

@@ -1,30 +1,9 @@
-#include <gtest/gtest.h>
+#include <gmock/gmock.h>
 
-#include <atomic>
-#include <cstdlib>
-#include <new>
-#include <thread>
-
-#include "components/framework/Activity.hpp"
 #include "components/logger/LoggerTask.hpp"
+#include "tests/support/Allocations.hpp"
 #include "tests/support/Folder.hpp"
 #include "tests/support/Ports.hpp"
-
-namespace {
-
-std::atomic<uint64_t> allocations{0};
-std::atomic<std::thread::id> watched;  // only this thread's allocations count
-
-}  // namespace
-
-// Not inlined: g++ would take the pairs apart and warn that they do not match.
-[[gnu::noinline]] void* operator new(size_t size) {
-    if (watched.load() == std::this_thread::get_id()) ++allocations;
-    if (void* memory = std::malloc(size)) return memory;
-    throw std::bad_alloc();
-}
-[[gnu::noinline]] void operator delete(void* memory) noexcept { std::free(memory); }
-[[gnu::noinline]] void operator delete(void* memory, size_t) noexcept { std::free(memory); }
 
 namespace insonify::logger {
 namespace {
@@ -51,16 +30,11 @@ TEST(AllocationTest, TheTasksThreadAllocatesNothingOnceItRuns) {
         task.update();
     };
     cycle();
-    task.activity().call([] { watched = std::this_thread::get_id(); });
-    for (int i = 0; i < 200; ++i) cycle();
-    watched = std::thread::id();
-    EXPECT_EQ(allocations, 0u);
-    task.activity().call([] {
-        watched = std::this_thread::get_id();
-        operator delete(operator new(1));
-    });
-    EXPECT_GE(allocations, 1u) << "counting counts";
-    watched = std::thread::id();
+    EXPECT_THAT(test::allocationsOn(task,
+                                    [&] {
+                                        for (int i = 0; i < 200; ++i) cycle();
+                                    }),
+                testing::IsEmpty());
 }
 
 }  // namespace

@@ -1,0 +1,56 @@
+// OpenCV may allocate (the contract excepts it): a call of operator new out of its libraries is left out, and one out
+// of our code counts. Picture files are written by another thread.
+#include <gmock/gmock.h>
+
+#include "components/output/PictureTask.hpp"
+#include "tests/output/Pings.hpp"
+#include "tests/support/Allocations.hpp"
+#include "tests/support/Ports.hpp"
+
+namespace insonify::output {
+namespace {
+
+types::SonarPtr pingAt(int i, uint32_t beams) {
+    types::Sonar ping = test::withEcho(test::emptyPing(2.0 * beams, beams), static_cast<uint32_t>(i) % beams, 50);
+    ping.time = types::Time::fromSeconds(1 + 0.1 * i);
+    if (beams == 1) ping.bearings[0] = types::Angle::fromDeg(2 * i);  // the head of a scanning sonar turns
+    return std::make_shared<const types::Sonar>(ping);
+}
+
+/** Those that OpenCV's libraries did not make. */
+std::vector<std::string> ours(std::vector<std::string> places) {
+    std::erase_if(places, [](const std::string& place) { return place.starts_with("libopencv_"); });
+    return places;
+}
+
+template <class Task>
+void expectNoAllocation(uint32_t beams) {
+    Task task("picture");
+    test::Writer<types::SonarPtr> in;
+    test::Reader<types::ImagePtr> out;
+    in.port.connectTo(task.ping, {});
+    task.image.connectTo(out.port, {});
+    PictureConfig config;
+    config.width = 320;
+    task.config.set(config);
+    ASSERT_TRUE(task.configure()) << task.lastError();
+    ASSERT_TRUE(task.start());
+    const auto cycle = [&](int i) {
+        in.port.write(pingAt(i, beams));
+        task.update();
+    };
+    for (int i = 0; i < 3; ++i) cycle(i);
+    EXPECT_THAT(ours(test::allocationsOn(task,
+                                         [&] {
+                                             for (int i = 3; i < 50; ++i) cycle(i);
+                                         })),
+                testing::IsEmpty());
+    EXPECT_EQ(task.image.written(), 50u);
+}
+
+TEST(AllocationTest, AFanPictureAllocatesNothingOfOurs) { expectNoAllocation<FanImageTask>(60); }
+TEST(AllocationTest, AWaterfallAllocatesNothingOfOurs) { expectNoAllocation<WaterfallImageTask>(60); }
+TEST(AllocationTest, ADiscAllocatesNothingOfOurs) { expectNoAllocation<DiscImageTask>(1); }
+
+}  // namespace
+}  // namespace insonify::output

@@ -1,0 +1,53 @@
+#include <gmock/gmock.h>
+
+#include "components/scene/SceneTask.hpp"
+#include "tests/scene/SceneFiles.hpp"
+#include "tests/support/Allocations.hpp"
+#include "tests/support/Ports.hpp"
+
+namespace insonify::scene {
+namespace {
+
+class AllocationTest : public SceneFiles {};
+
+TEST_F(AllocationTest, ASceneAllocatesNothingAfterItsFirstPosesEvenWhenThingsBeginToMove) {
+    SceneTask task("scene");
+    SceneConfig config;
+    config.file = write("boats.gltf", gltf(R"("scenes":[{"nodes":[0,2]}],
+        "nodes":[{"mesh":0,"name":"boat","children":[1]},{"mesh":0,"name":"mast"},{"mesh":0,"name":"quay"}],
+        "meshes":[{"primitives":[{"attributes":{"POSITION":0}}]}],
+        "accessors":[{"bufferView":0,"componentType":5126,"type":"VEC3","count":3}],
+        "bufferViews":[{"buffer":0,"byteLength":36}],)" +
+                                           buffers(bytesOf<float>({0, 0, 0, 1, 0, 0, 0, 1, 0}))))
+                      .string();
+    task.config.set(config);
+    test::Writer<types::Pose> vehicle("vehicle"), boat("boat");
+    test::Reader<types::SnapshotPtr> out;
+    vehicle.port.connectTo(task.pose, framework::ConnPolicy::buffer(8));
+    boat.port.connectTo(*task.makeInput("boat.pose", boat.port), {});
+    task.snapshot.connectTo(out.port, {});
+    ASSERT_TRUE(task.configure()) << task.lastError();
+    ASSERT_TRUE(task.start());
+    const auto cycle = [&](int i) {
+        types::Pose pose;
+        pose.time = types::Time::fromSeconds(1 + 0.1 * i);
+        pose.position = {0.1 * i, 0, 0};
+        pose.orientation = {1, 0, 0, 0};
+        if (i > 10) boat.port.write(pose);
+        vehicle.port.write(pose);
+        task.update();
+    };
+    for (int i = 0; i < 4; ++i) cycle(i);  // until the readers hold as many samples as they ever will
+    EXPECT_THAT(test::allocationsOn(task,
+                                    [&] {
+                                        for (int i = 4; i < 100; ++i) cycle(i);
+                                    }),
+                testing::IsEmpty());
+    types::SnapshotPtr last;
+    ASSERT_TRUE(out.port.readNew(last));
+    EXPECT_EQ(last->moved.size(), 2u);
+    EXPECT_EQ(task.snapshot.written(), 100u);
+}
+
+}  // namespace
+}  // namespace insonify::scene

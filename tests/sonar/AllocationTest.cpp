@@ -1,0 +1,108 @@
+// No operator new on the sonars' threads after the first pings, even when later ones see more.
+#include <gmock/gmock.h>
+
+#include "components/sonar/ScanningSonarTask.hpp"
+#include "components/sonar/SonarTask.hpp"
+#include "tests/support/Allocations.hpp"
+#include "tests/support/Ports.hpp"
+#include "tests/support/Scenes.hpp"
+
+namespace insonify::sonar {
+namespace {
+
+constexpr size_t warm_up = 4;  // pings, until the reader holds as many samples as it ever will
+
+/** A bottom and ten balls in a row to port; the third follows a pose. */
+types::GeometryPtr balls() {
+    std::vector<types::Mesh> meshes = {test::ground(-3)};
+    std::vector<glm::dvec3> positions = {glm::dvec3(0)};
+    for (int i = 0; i < 10; ++i) {
+        meshes.push_back(test::sphere(0.5f, 16));
+        positions.emplace_back(i, 5, 0);
+    }
+    return test::sceneOf(std::move(meshes), -10, positions);
+}
+
+/** Snapshots of a sonar that looks to starboard first, and then turns to port, where things are. */
+std::vector<types::SnapshotPtr> turning() {
+    const types::GeometryPtr geometry = balls();
+    std::vector<types::SnapshotPtr> snapshots;
+    for (int i = 0; i < 40; ++i) {
+        types::Snapshot snapshot = test::snapshotOf(geometry, {0.1 * i, 0, 0}, -1.5 + 0.1 * i);
+        snapshot.time = types::Time::fromSeconds(1 + 0.1 * i);
+        glm::dmat4 place(1);
+        place[3] = glm::dvec4(2, 4, 0.01 * i, 1);
+        snapshot.moved = {{3, place}};
+        snapshots.push_back(std::make_shared<types::Snapshot>(snapshot));
+    }
+    return snapshots;
+}
+
+template <class Task, class Config>
+void expectNoAllocation(const Config& config) {
+    Task task("sonar");
+    test::Writer<types::SnapshotPtr> in;
+    test::Reader<types::SonarPtr> out;
+    in.port.connectTo(task.snapshot, framework::ConnPolicy::buffer(4));
+    task.ping.connectTo(out.port, framework::ConnPolicy::data());
+    task.config.set(config);
+    ASSERT_TRUE(task.configure()) << task.lastError();
+    ASSERT_TRUE(task.start()) << task.lastError();
+    const std::vector<types::SnapshotPtr> snapshots = turning();
+    const auto cycle = [&](const types::SnapshotPtr& snapshot) {
+        in.port.write(snapshot);
+        task.update();
+    };
+    for (size_t i = 0; i < warm_up; ++i) cycle(snapshots[i]);
+    const auto allocations = test::allocationsOn(task, [&] {
+        for (size_t i = warm_up; i < snapshots.size(); ++i) cycle(snapshots[i]);
+    });
+    EXPECT_THAT(allocations, testing::IsEmpty());
+    EXPECT_EQ(task.ping.written(), snapshots.size()) << task.lastError();
+}
+
+SonarConfig fan() {
+    SonarConfig config;
+    config.range = 20;
+    config.bin_count = 100;
+    config.beam_count = 64;
+    config.quality.rows = 64;
+    config.device = "software";
+    return config;
+}
+
+TEST(AllocationTest, AForwardLookingSonarAllocatesNothingAfterItsFirstPings) { expectNoAllocation<SonarTask>(fan()); }
+
+TEST(AllocationTest, NorDoesItWithTheDepositOnTheGraphicsDevice) {
+    SonarConfig config = fan();
+    config.deposit = Deposit::Gpu;
+    expectNoAllocation<SonarTask>(config);
+}
+
+TEST(AllocationTest, NorWithEveryEffectThereIs) {
+    SonarConfig config = fan();
+    config.water.emplace();
+    config.absorption.emplace().frequency_khz = 700;
+    config.tvg.emplace().log_coefficient = 40;
+    config.output = Output::ReceivedLevelDb;
+    config.beam_geometry = BeamGeometry::Conical;
+    expectNoAllocation<SonarTask>(config);
+}
+
+TEST(AllocationTest, NorInThePublishedModel) {
+    SonarConfig config = fan();
+    config.model = Model::Cerqueira2017;
+    expectNoAllocation<SonarTask>(config);
+}
+
+TEST(AllocationTest, AScanningSonarAllocatesNothingAfterItsFirstPings) {
+    ScanningSonarConfig config;
+    config.sonar.range = 20;
+    config.sonar.bin_count = 100;
+    config.sonar.quality.rows = 64;
+    config.sonar.device = "software";
+    expectNoAllocation<ScanningSonarTask>(config);
+}
+
+}  // namespace
+}  // namespace insonify::sonar
