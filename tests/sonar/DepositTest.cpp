@@ -1,0 +1,121 @@
+// Both deposits, on the processor and by compute shader, in the pings that they make.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <numeric>
+
+#include "components/sonar/SonarRenderer.hpp"
+#include "tests/support/Surfaces.hpp"
+
+namespace insonify::sonar {
+namespace {
+
+SonarConfig fan(Model model, BeamGeometry beams, Deposit deposit, double field_of_view_deg = 130) {
+    SonarConfig config;
+    config.model = model;
+    config.beam_geometry = beams;
+    config.deposit = deposit;
+    config.device = "software";
+    config.speed_of_sound = 1000;
+    config.range = 40;
+    config.bin_count = 400;
+    config.beam_count = 64;
+    config.field_of_view_deg = field_of_view_deg;
+    config.beam_height_deg = 50;
+    config.quality.rows = 128;
+    return config;
+}
+
+types::Snapshot hardScene() { return test::snapshotOf(test::surfaces(), {0, 0, 0}, 0.1, 0.15, 0.05); }
+
+types::Sonar pingOf(const SonarConfig& config, const types::Snapshot& snapshot) {
+    SonarRenderer renderer(config, snapshot.geometry);
+    types::Sonar ping;
+    renderer.render(snapshot, ping);
+    return ping;
+}
+
+struct Kind {
+    Model model;
+    BeamGeometry beams;
+    double field_of_view_deg;
+};
+
+class DepositTest : public testing::TestWithParam<Kind> {
+protected:
+    SonarConfig with(Deposit deposit) const {
+        return fan(GetParam().model, GetParam().beams, deposit, GetParam().field_of_view_deg);
+    }
+};
+
+double sum(const types::Sonar& ping) { return std::accumulate(ping.bins.begin(), ping.bins.end(), 0.0); }
+
+/** Energy in 2000 bins over that in one of the same length. */
+double manyOverOne(SonarConfig config, const types::Snapshot& snapshot) {
+    config.bin_count = 2000;
+    const double many = sum(pingOf(config, snapshot));
+    config.bin_count = 1;
+    return many / sum(pingOf(config, snapshot));
+}
+
+}  // namespace
+
+TEST_P(DepositTest, TheProcessorAndTheComputeShaderAgree) {
+    const auto cpu = pingOf(with(Deposit::Cpu), hardScene()), gpu = pingOf(with(Deposit::Gpu), hardScene());
+    const double floor = 1e-6 * *std::ranges::max_element(cpu.bins);
+    size_t compared = 0;
+    for (size_t i = 0; i < cpu.bins.size(); ++i) {
+        const double a = cpu.bins[i], b = gpu.bins[i];
+        if (std::max(a, b) <= floor) continue;
+        EXPECT_LE(std::abs(a - b), 1e-5 * std::max(a, b))
+            << "beam " << i / cpu.bin_count << ", bin " << i % cpu.bin_count;
+        ++compared;
+    }
+    EXPECT_GT(compared, 3000u);
+}
+
+TEST_P(DepositTest, EachIsBitForBitItselfAgainAndInANewRenderer) {
+    for (Deposit where : {Deposit::Cpu, Deposit::Gpu}) {
+        const types::Snapshot snapshot = hardScene();
+        SonarRenderer renderer(with(where), snapshot.geometry);
+        types::Sonar first, elsewhere, again;
+        renderer.render(snapshot, first);
+        types::Snapshot moved = snapshot;
+        moved.sonar.position.x += 3;
+        renderer.render(moved, elsewhere);
+        renderer.render(snapshot, again);
+        EXPECT_NE(first.bins, elsewhere.bins);
+        EXPECT_EQ(first.bins, again.bins);
+        EXPECT_EQ(first.bins, pingOf(with(where), snapshot).bins);
+    }
+}
+
+INSTANTIATE_TEST_SUITE_P(Kinds, DepositTest,
+                         testing::Values(Kind{Model::Physical, BeamGeometry::Planar, 130},
+                                         Kind{Model::Physical, BeamGeometry::Conical, 130},
+                                         Kind{Model::Physical, BeamGeometry::Planar, 180},
+                                         Kind{Model::Cerqueira2017, BeamGeometry::Planar, 130},
+                                         Kind{Model::Cerqueira2017, BeamGeometry::Conical, 130},
+                                         Kind{Model::Cerqueira2017, BeamGeometry::Planar, 180}),
+                         [](const auto& kind) {
+                             return std::string(kind.param.model == Model::Physical ? "Physical" : "Cerqueira2017") +
+                                    (kind.param.beams == BeamGeometry::Planar ? "Planar" : "Conical") +
+                                    std::to_string(static_cast<int>(kind.param.field_of_view_deg));
+                         });
+
+TEST(DepositEnergyTest, OneBinHoldsTheEnergyOfTheManyThatItCovers) {
+    // A pixel's energy is that of the middle of its part of each bin: exact to second order in the pixel's depth, so
+    // that it depends on the bins only where a pixel is deep.
+    const auto wall = test::snapshotOf(test::sceneOf({test::quad({10, -100, -100}, {0, 200, 0}, {0, 0, 200})}));
+    for (Deposit where : {Deposit::Cpu, Deposit::Gpu}) {
+        SonarConfig config = fan(Model::Physical, BeamGeometry::Planar, where, 30);
+        config.beam_height_deg = 20;
+        EXPECT_NEAR(manyOverOne(config, wall), 1, 1e-6) << "faced";
+        config = fan(Model::Physical, BeamGeometry::Planar, where);
+        EXPECT_NEAR(manyOverOne(config, hardScene()), 1, 2e-4) << "grazed";
+        config.quality.rows = 512;
+        EXPECT_NEAR(manyOverOne(config, hardScene()), 1, 5e-5) << "grazed, in shallower pixels";
+    }
+}
+
+}  // namespace insonify::sonar
