@@ -1,0 +1,257 @@
+// What the plan leaves out: each effect equals the same effect with neutral values, bit for bit or within the bound
+// that its reason states.
+#include <gmock/gmock.h>
+
+#include <algorithm>
+#include <cmath>
+#include <regex>
+#include <set>
+
+#include "components/sonar/Acoustics.hpp"
+#include "components/sonar/BinGrid.hpp"
+#include "components/sonar/Plan.hpp"
+#include "components/sonar/SonarRenderer.hpp"
+#include "tests/support/Surfaces.hpp"
+#include "types/Angle.hpp"
+
+namespace insonify::sonar {
+namespace {
+
+using ::testing::HasSubstr;
+using Bins = std::vector<float>;
+
+SonarConfig plainSonar(Model model = Model::Physical) {
+    SonarConfig config;
+    config.model = model;
+    config.speed_of_sound = 1000;
+    config.range = 40;
+    config.bin_count = 400;
+    config.beam_count = 52;
+    config.field_of_view_deg = 130;
+    config.beam_height_deg = 40;
+    config.quality.rows = 96;
+    config.device = "software";
+    return config;
+}
+
+Bins binsOf(const SonarConfig& config, const types::GeometryPtr& geometry = test::surfaces()) {
+    SonarRenderer renderer(config, geometry);
+    types::Sonar ping;
+    renderer.render(test::snapshotOf(geometry, {}, 0.1, 0.15), ping);
+    EXPECT_GT(std::ranges::count_if(ping.bins, [](float x) { return x != 0; }), 50);
+    return ping.bins;
+}
+
+/** The scene after `change`. */
+template <class Change>
+types::GeometryPtr changed(Change change) {
+    auto geometry = test::surfaces();
+    change(*geometry);
+    return geometry;
+}
+
+/** Without normal maps. */
+types::GeometryPtr unmapped() {
+    return changed([](types::Geometry& g) { g.materials[1].normal_map = -1; });
+}
+
+/** The reason for which `name` is left out; empty when it is not. */
+std::string reason(const SonarConfig& config, const std::string& name) {
+    const types::Plan plan = makePlan(config, *unmapped());
+    const auto found = std::ranges::find(plan.omitted, name, &types::Omission::name);
+    return found == plan.omitted.end() ? "" : found->reason;
+}
+
+/** The numbers in a text. */
+std::vector<double> numbersIn(const std::string& text) {
+    static const std::regex number(R"(\d+(\.\d+)?(e[-+]?\d+)?)");
+    std::vector<double> values;
+    for (std::sregex_iterator it(text.begin(), text.end(), number); it != std::sregex_iterator(); ++it)
+        values.push_back(std::stod(it->str()));
+    return values;
+}
+
+/** Relative L2 of their difference. */
+double difference(const Bins& a, const Bins& b) {
+    double error = 0, norm = 0;
+    for (size_t i = 0; i < a.size(); ++i) {
+        error += std::pow(double{a[i]} - b[i], 2);
+        norm += std::pow(double{b[i]}, 2);
+    }
+    return std::sqrt(error / norm);
+}
+
+Bins times(Bins bins, float factor) {
+    for (float& bin : bins) bin *= factor;
+    return bins;
+}
+
+}  // namespace
+
+TEST(OmissionTest, NoEffectIsLeftOutThatIsNotTestedHere) {
+    const std::set<std::string> tested = {
+        "absorption", "absorption inside a bin", "tvg", "source level", "specular lobe", "spreading",
+        "backscatter by material", "further slabs", "refraction", "motion within a ping", "normal maps",
+        // of `published`, in PublishedTest.cpp:
+        "range footprints", "elevation mask", "shared columns", "near blanking",
+        // without values yet; SonarConfig refuses them:
+        "azimuth beam pattern", "elevation beam pattern", "range point-spread", "volume reverberation", "multipath"};
+    SonarConfig absorbing = plainSonar(), published = plainSonar(Model::Cerqueira2017);
+    absorbing.absorption.emplace().db_per_m = 0.1;
+    absorbing.field_of_view_deg = 50;
+    published.published = true;
+    published.tvg.emplace();
+    for (const SonarConfig& config : {plainSonar(), plainSonar(Model::Cerqueira2017), absorbing, published})
+        for (const types::Omission& omission : makePlan(config, *unmapped()).omitted)
+            EXPECT_TRUE(tested.contains(omission.name)) << omission.name;
+}
+
+TEST(OmissionTest, NoAbsorptionIsAbsorptionOfZero) {
+    for (Model model : {Model::Physical, Model::Cerqueira2017}) {
+        SonarConfig with = plainSonar(model);
+        with.absorption.emplace().db_per_m = 0;
+        EXPECT_EQ(binsOf(with), binsOf(plainSonar(model)));
+        with.absorption->db_per_m = 0.05;
+        EXPECT_NE(binsOf(with), binsOf(plainSonar(model)));
+    }
+}
+
+TEST(OmissionTest, AbsorptionInsideABinIsWithinTheStatedBound) {
+    SonarConfig coarse = plainSonar();
+    coarse.absorption.emplace().db_per_m = 1;
+    const double bound = makeAbsorption(coarse).intensityPerMetre() * 0.1 / 2;
+    EXPECT_NEAR(numbersIn(reason(coarse, "absorption inside a bin")).at(1), bound, 0.05 * bound) << "beta dR/2 = ...";
+    SonarConfig fine = coarse;
+    fine.bin_count = 4000;
+    const Bins whole = binsOf(coarse), tenths = binsOf(fine);
+    for (size_t i = 0; i < whole.size(); ++i) {
+        double sum = 0;
+        for (size_t j = 0; j < 10; ++j) sum += tenths[10 * i + j];
+        EXPECT_NEAR(whole[i], sum, (bound + 1e-3) * sum) << i;
+    }
+}
+
+TEST(OmissionTest, NoTvgIsATvgWithoutGain) {
+    SonarConfig with = plainSonar();
+    with.tvg.emplace();
+    EXPECT_EQ(binsOf(with), binsOf(plainSonar()));
+    with.tvg->log_coefficient = 30;
+    EXPECT_NE(binsOf(with), binsOf(plainSonar()));
+}
+
+TEST(OmissionTest, TheSourceLevelActsOnReceivedLevelsOnly) {
+    SonarConfig loud = plainSonar(), level = plainSonar(), received = plainSonar();
+    loud.source_level_db = 200;
+    EXPECT_EQ(binsOf(loud), binsOf(plainSonar()));
+    level.output = Output::LevelDb;
+    received.output = Output::ReceivedLevelDb;
+    const Bins relative = binsOf(level);
+    EXPECT_EQ(binsOf(received), relative) << "of a source of 0 dB";
+    received.source_level_db = 200;
+    EXPECT_NE(binsOf(received), relative);
+}
+
+TEST(OmissionTest, ASmoothMaterialHasNoLobeWhateverItReflects) {
+    const auto shiny = changed([](types::Geometry& g) { g.materials[0].reflection = 0.9f; });
+    EXPECT_EQ(binsOf(plainSonar(), shiny), binsOf(plainSonar()));
+    const auto rough = changed([](types::Geometry& g) { g.materials[0].roughness_slope = 0.1f; });
+    EXPECT_EQ(binsOf(plainSonar(), rough), binsOf(plainSonar())) << "of reflection 0";
+}
+
+TEST(OmissionTest, TheModelOfCerqueiraKnowsNoSpreading) {
+    for (Model model : {Model::Cerqueira2017, Model::Physical}) {
+        SonarConfig twice = plainSonar(model);
+        twice.range *= 2;
+        twice.range_min *= 2;
+        twice.speed_of_sound = 2000;
+        const auto larger = changed([](types::Geometry& g) {
+            for (types::Object& object : g.objects)
+                object.world_from_object = glm::scale(glm::dmat4(1), glm::dvec3(2)) * object.world_from_object;
+        });
+        const Bins bins = binsOf(plainSonar(model));
+        const float spreading = model == Model::Physical ? 4 : 1;  // 1 / r^2
+        EXPECT_LT(difference(times(binsOf(twice, larger), spreading), bins), 1e-6);
+    }
+}
+
+TEST(OmissionTest, TheModelOfCerqueiraKnowsNeitherBackscatterNorTvg) {
+    const Bins bins = binsOf(plainSonar(Model::Cerqueira2017));
+    const auto hard = changed([](types::Geometry& g) { g.materials[0].lambert_db = -3; });
+    EXPECT_EQ(binsOf(plainSonar(Model::Cerqueira2017), hard), bins);
+    SonarConfig gained = plainSonar(Model::Cerqueira2017);
+    gained.tvg = {.log_coefficient = 40, .db_per_m = 0.5, .max_db = 100};
+    EXPECT_EQ(binsOf(gained), bins);
+    EXPECT_NE(binsOf(plainSonar(), hard), binsOf(plainSonar())) << "physical does";
+}
+
+TEST(OmissionTest, ReflectivityOfOneIsNone) {
+    const auto plain = changed([](types::Geometry& g) { g.materials[1] = {}; });
+    const auto one = changed([](types::Geometry& g) { g.materials[1] = {}, g.materials[1].reflectivity = 1; });
+    EXPECT_EQ(binsOf(plainSonar(Model::Cerqueira2017), one), binsOf(plainSonar(Model::Cerqueira2017), plain));
+    EXPECT_NE(binsOf(plainSonar(Model::Cerqueira2017)), binsOf(plainSonar(Model::Cerqueira2017), unmapped()))
+        << "0.8, mapped";
+}
+
+TEST(OmissionTest, NoNormalMapIsAMapThatBendsNothing) {
+    for (Model model : {Model::Physical, Model::Cerqueira2017}) {
+        const Bins bins = binsOf(plainSonar(model), unmapped());
+        const auto unused = changed([](types::Geometry& g) {
+            g.materials.push_back(g.materials[1]);
+            g.materials[1].normal_map = -1;
+        });
+        EXPECT_EQ(binsOf(plainSonar(model), unused), bins) << "compiled, but no surface has it";
+        const auto unscaled = changed([](types::Geometry& g) { g.materials[1].normal_scale = 0; });
+        EXPECT_LT(difference(binsOf(plainSonar(model), unscaled), bins), 1e-6) << "its cosine is of single precision";
+        const auto flat = changed([](types::Geometry& g) { g.normal_maps = {test::flatMap()}; });
+        EXPECT_LT(difference(binsOf(plainSonar(model), flat), bins), 5e-3) << "(128, 128, 255) leans by 0.3 deg";
+        EXPECT_GT(difference(binsOf(plainSonar(model)), bins), 0.01);
+    }
+}
+
+TEST(OmissionTest, OneSlabShowsWhatSeveralDo) {
+    SonarConfig one = plainSonar(), two = plainSonar();
+    one.quality.rows = two.quality.rows = 512;
+    one.field_of_view_deg = one.beam_count = 60;
+    two.field_of_view_deg = two.beam_count = 62;
+    EXPECT_THAT(reason(one, "further slabs"), HasSubstr("60 deg"));
+    EXPECT_EQ(reason(two, "further slabs"), "");
+    const auto floor = test::sceneOf({test::ground(-5)});
+    const Bins narrow = binsOf(one, floor), wide = binsOf(two, floor);
+    EXPECT_LT(difference(narrow, {wide.begin() + 400, wide.end() - 400}), 1e-3) << "beams 1 to 60 of 62";
+}
+
+TEST(OmissionTest, AheadConesAreNearlyPlanes) {
+    SonarConfig planar = plainSonar(), conical = plainSonar();
+    planar.beam_count = conical.beam_count = 1;
+    planar.field_of_view_deg = conical.field_of_view_deg = 2;
+    conical.beam_geometry = BeamGeometry::Conical;
+    const double widest =
+        1 / std::cos(types::radians(20)) - 1;  // of the cone against the plane, at the aperture's edge
+    const Bins flat = binsOf(planar, unmapped()), cone = binsOf(conical, unmapped());
+    EXPECT_LT(difference(cone, flat), widest);
+    EXPECT_NE(cone, flat);
+}
+
+TEST(OmissionTest, RefractionIsLeftOutByTheNumbersInItsReason) {
+    const auto numbers =
+        numbersIn(reason(plainSonar(), "refraction"));  // gradient, 1 (of 1/s), offset, range, tolerated
+    ASSERT_EQ(numbers.size(), 5u);
+    EXPECT_NEAR(numbers[2], numbers[0] * 40 * 40 / (2 * 1000), 0.05 * numbers[2]);
+    EXPECT_EQ(numbers[3], 40);
+    EXPECT_NEAR(numbers[4], 0.1 * 40 * types::radians(40), 0.05 * numbers[4]) << "a tenth of the aperture's height";
+    EXPECT_LT(numbers[2], numbers[4]);
+    SonarConfig far = plainSonar();
+    far.range = 4000;
+    far.beam_height_deg = 2;
+    EXPECT_EQ(reason(far, "refraction"), "");
+    EXPECT_THAT(configNotices(far), testing::Contains(HasSubstr("rays are straight")));
+}
+
+TEST(OmissionTest, MotionWithinAPingIsLeftOutBelowTheSpeedInItsReason) {
+    const auto numbers = numbersIn(reason(plainSonar(), "motion within a ping"));
+    ASSERT_FALSE(numbers.empty());
+    const double travel_time = 2 * 40 / 1000.0;  // [s]
+    EXPECT_NEAR(numbers[0] * travel_time, 0.1 / 2, 0.05 * 0.1 / 2) << "half a bin [m]";
+}
+
+}  // namespace insonify::sonar
