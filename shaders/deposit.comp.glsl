@@ -70,7 +70,7 @@ void main() {
     if (any(greaterThanEqual(pixel, image_size))) return;
     uvec4 texel = texelFetch(picture, pixel, 0);
     dvec2 uv = (dvec2(pixel) + 0.5) * pixel_size - extent;
-    Surface surface = Surface(0.0, 0.0, 0.0, 0.0, 0.0);
+    Surface surface = Surface(0.0, 0.0, 0.0, 0.0, 0.0, 0.0);
     double strength = 0.0;
     dvec2 reach = dvec2(0.0);  // inverse ranges of the object
     if (texel.x != 0u) {
@@ -88,7 +88,7 @@ void main() {
     for (uint i = share_starts[at]; i < share_starts[at + 1u]; ++i) {
         ShareRecord share = shares[i];
         Footprint cell = cellFootprint(uv.x, uv.y, share.middle, share.width, share.limit, share.shear, pixel_size.y,
-                                       surface.inverse_range, surface.slope_u, surface.slope_v, reach.x, reach.y,
+                                       surface.inverse_range, surface.slope_u, surface.slope_v, min(reach.x, surface.nearest), reach.y,
                                        binEdge(0u), binEdge(bin_count), per_pixel);
         depositCell(cell, share.beam, strength * surface.range);
     }

@@ -13,7 +13,7 @@ struct Footprint {
 
 // The share of pixel (u, v), bounded by curves of constant elevation and clipped at the aperture; shares are described
 // in interface.glsl. `slope`: of the inverse range over u and v; `per_pixel`: 1 / (du dv). No part goes beyond [far_limit, near_limit], the inverse
-// ranges of the object (a facet seen edge-on is steep, not long), nor beyond [far_edge, near_edge], those of the bins.
+// ranges of the object (a facet seen edge-on is steep, not long) and of its plane, nor beyond [far_edge, near_edge], those of the bins.
 Footprint cellFootprint(double u, double v, double middle, double width, double limit, double shear, double dv,
                         double inverse_range, double slope_u, double slope_v, double near_limit, double far_limit,
                         double near_edge, double far_edge, double per_pixel) {

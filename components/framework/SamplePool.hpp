@@ -9,6 +9,7 @@ namespace insonify::framework {
  *
  *      std::shared_ptr<types::Sonar> ping = pool_.take();   // contents are those of an earlier use
  *      ... fill it ...
+ *      pool_.stock(*ping);
  *      port.write(ping);
  *
  *  Grows while readers hold on to samples; never shrinks. For one thread. */
@@ -24,7 +25,15 @@ public:
         return samples_.emplace_back(std::make_shared<T>());
     }
 
+    /** Makes what readers in step with the writer will need, copies of the first sample filled: later ones of its size
+     *  allocate nothing. Does nothing when there are as many. */
+    void stock(const T& filled) {
+        while (samples_.size() < stocked) samples_.push_back(std::make_shared<T>(filled));
+    }
+
 private:
+    static constexpr size_t stocked = 4;  ///< One to fill, one with each of three readers [1].
+
     std::vector<std::shared_ptr<T>> samples_;
 };
 

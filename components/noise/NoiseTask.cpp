@@ -18,6 +18,7 @@ types::SonarPtr NoiseTask::withNoise(const types::SonarPtr& ping) {
     if (!config->speckle && !config->additive) return ping;
     const auto result = pool_.take();
     clamped_ += addNoise(*config, *ping, *result);
+    pool_.stock(*result);
     return result;
 }
 

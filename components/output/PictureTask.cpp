@@ -34,6 +34,7 @@ void PictureTask::show(const types::Sonar& sample) {
     const auto picture = pool_.take();
     painter_->paint(sample, *picture);
     recordStage("paint", std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count());
+    pool_.stock(*picture);
     image.write(picture);
     if (writer_) writer_->write(picture);
 }

@@ -90,6 +90,7 @@ void SceneTask::updateHook() {
     sample->geometry = geometry_;
     sample->water_surface = config->water_surface;
     addMoved(sample->moved);
+    pool_.stock(*sample);
     snapshot.write(sample);
     if (!movables_good) error(name() + kUnusable);
 }

@@ -110,8 +110,8 @@ std::vector<Slab> makeSlabs(const SonarConfig& config, const std::vector<Beam>& 
         low = coneAzimuth(low, half_elevation);
         high = coneAzimuth(high, half_elevation);
     }
-    const int count = std::max(1, static_cast<int>(std::ceil((high - low) / widest_slab - 1e-9)));
-    const double columns = static_cast<double>(config.quality.columns_per_beam) * static_cast<double>(beams.size()) / count;
+    const int count = std::max(config.least_slabs, static_cast<int>(std::ceil((high - low) / widest_slab - 1e-9)));
+    const double columns = config.quality.columns_per_beam * (high - low) / types::radians(config.beamWidthDeg()) / count;
     std::vector<Slab> slabs(static_cast<size_t>(count));
     for (int i = 0; i < count; ++i) {
         Slab& slab = slabs[static_cast<size_t>(i)];

@@ -154,6 +154,7 @@ INSONIFY_VECTORISED void meet(Pixels& pixels, int count) {
         pixels.inverse_range[i] = surface.inverse_range;
         pixels.slope_u[i] = surface.slope_u;
         pixels.slope_v[i] = surface.slope_v;
+        pixels.near_limit[i] = min(pixels.near_limit[i], surface.nearest);
         pixels.strength_range[i] = pixels.strength[i] * cosine * surface.range;
     }
 }

@@ -48,11 +48,13 @@ void PingTask::render() {
         geometry_ = aimed_.geometry;
         renderer_ = std::make_unique<SonarRenderer>(sonarConfig(), geometry_);
         plan_ = renderer_->plan();
+        aimed_.moved.reserve(geometry_->objects.size());
     }
     const auto sample = pool_.take();
     renderer_->render(aimed_, *sample);
     label(*sample);
     for (const SonarRenderer::Stage& stage : renderer_->stages()) recordStage(stage.name, stage.seconds);
+    pool_.stock(*sample);
     ping.write(sample);
 }
 

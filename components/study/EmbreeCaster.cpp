@@ -28,7 +28,7 @@ struct Image {
 
 std::vector<Image> imagesOf(const types::Pose& sonar, const sonar::SonarConfig& config) {
     const double fov = config.field_of_view_deg * degree;
-    const int count = static_cast<int>(std::ceil(config.field_of_view_deg / 60 - 1e-9));
+    const int count = std::max(config.least_slabs, static_cast<int>(std::ceil(config.field_of_view_deg / 60 - 1e-9)));
     std::vector<Image> images;
     for (int i = 0; i < count; ++i) {
         const double half = fov / count / 2, centre = -fov / 2 + (2 * i + 1) * half;

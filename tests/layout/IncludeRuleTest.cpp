@@ -30,6 +30,7 @@ std::set<std::string> neighboursOf(const Source& source) {
     const std::string folder = source.folder();
     std::set<std::string> allowed;
     if (source.isTaskHalf()) allowed.insert("framework");
+    if (folder == "study") allowed.insert({"sonar", "scene"});
     if (folder == "sonar") allowed.insert({"gpu", "shaders"});
     if (folder == "logger" || folder == "replay") allowed.insert("pocolog");
     return allowed;
@@ -40,6 +41,7 @@ bool mayInclude(const Source& source, const Source& target) {
     if (from == "deployer") return true;
     if (from == to) return from == "framework" || source.isTaskHalf() || !target.isTaskHalf();
     if (to == "types") return from != "gpu";
+    if (from == "study" && target.isTaskHalf()) return false;
     return from != "types" && from != "gpu" && from != "framework" && neighboursOf(source).contains(to);
 }
 
@@ -65,6 +67,7 @@ TEST(IncludeRuleTest, EveryThirdPartyPackageHasOneHome) {
         {"EGL/", "gpu"},          {"GL/", "gpu"},
         {"epoxy/", "gpu"},        {"yaml-cpp/", "framework"},
         {"CLI/", "deployer"},     {"nlohmann/", "deployer"},
+        {"embree3/", "study"},
     };
     for (const Source& source : ourSources())
         for (const Include& include : includesOf(source))
@@ -81,6 +84,8 @@ TEST(IncludeRuleTest, TheRuleRefusesWhatItShould) {
     EXPECT_FALSE(allowed("types/Sonar.hpp", "components/gpu/Context.hpp"));
     EXPECT_FALSE(allowed("components/gpu/Context.hpp", "types/Sonar.hpp"));
     EXPECT_FALSE(allowed("components/noise/NoiseTask.cpp", "components/pocolog/Reader.hpp"));
+    EXPECT_FALSE(allowed("components/study/ErrorStudy.cpp", "components/sonar/SonarTask.hpp"));
+    EXPECT_TRUE(allowed("components/study/ErrorStudy.cpp", "components/sonar/SonarRenderer.hpp"));
     EXPECT_TRUE(allowed("components/noise/NoiseTask.cpp", "components/noise/Speckle.hpp"));
     EXPECT_TRUE(allowed("components/logger/LoggerTask.cpp", "components/pocolog/Writer.hpp"));
     EXPECT_TRUE(allowed("components/sonar/SonarRenderer.cpp", "components/gpu/Context.hpp"));

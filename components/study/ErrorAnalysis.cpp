@@ -1,0 +1,128 @@
+#include "components/study/ErrorAnalysis.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace insonify::study {
+namespace {
+
+double referenceError(const ErrorResult& result, const std::string& scene) {
+    const auto found = std::ranges::find(result.references, scene, &Reference::scene);
+    return found == result.references.end() ? 0 : found->error;
+}
+
+bool has(const ErrorResult& result, const std::string& scene) {
+    return std::ranges::find(result.references, scene, &Reference::scene) != result.references.end();
+}
+
+const Measurement* find(const ErrorResult& result, const std::string& scene, Method method, int rows, int columns) {
+    const auto found = std::ranges::find_if(result.measurements, [&](const Measurement& m) {
+        return m.scene == scene && m.method == method && m.rows == rows && m.columns_per_beam == columns;
+    });
+    return found == result.measurements.end() ? nullptr : &*found;
+}
+
+double onLine(double x, double x1, double y1, double x2, double y2) {
+    return std::exp(std::log(y1) + (std::log(x) - std::log(x1)) * (std::log(y2) - std::log(y1)) / (std::log(x2) - std::log(x1)));
+}
+
+void judgeFlatBottom(const ErrorResult& result, std::vector<Verdict>& all) {
+    if (const Measurement* m = find(result, "flat_bottom", Method::Footprint, 512, 2))
+        all.push_back({"flat bottom, 512 rows: mean relative L2 of footprints", m->metrics.mean_rel_l2, 5e-4, true});
+    if (const Measurement* m = find(result, "flat_bottom_edge", Method::Footprint, 512, 2))
+        all.push_back({"flat bottom with the aperture's edge, 512 rows: mean relative L2 of footprints", m->metrics.mean_rel_l2, 3e-3, true});
+    const auto footprint = ladder(result, "flat_bottom", Method::Footprint), nearest = ladder(result, "flat_bottom", Method::Nearest);
+    if (footprint.empty() || nearest.empty()) return;
+    const auto slow = timeTo(0.01, nearest), fast = timeTo(0.01, footprint);
+    if (slow && fast) all.push_back({"flat bottom, error of 1 %: time of nearest bin over that of footprints", *slow / *fast, 30, false});
+    const double ms = std::min(nearest.back().median_ms, footprint.back().median_ms);
+    all.push_back({fmt::format("flat bottom, {:.3g} ms: error of nearest bin over that of footprints", ms), *errorAt(ms, nearest) / *errorAt(ms, footprint), 20, false});
+}
+
+void judgeSlopes(const ErrorResult& result, std::vector<Verdict>& all) {
+    for (const char* scene : {"flat_bottom", "flat_bottom_edge", "flat_bottom_pitched", "tilted_plane", "wall"}) {
+        if (!has(result, scene)) continue;
+        const double error = referenceError(result, scene);
+        if (const auto s = slope(ladder(result, scene, Method::Footprint), error))
+            all.push_back({fmt::format("{}: slope of footprints over samples", scene), *s, -0.85, true});
+        if (const auto s = slope(ladder(result, scene, Method::Nearest), error)) {
+            all.push_back({fmt::format("{}: slope of nearest bin over samples, at most", scene), *s, -0.6, true});
+            all.push_back({fmt::format("{}: slope of nearest bin over samples, at least", scene), *s, -1.0, false});
+        }
+    }
+}
+
+void judgeComputed(const ErrorResult& result, std::vector<Verdict>& all) {
+    for (const Reference& reference : result.references) {
+        if (!(reference.error > 0)) continue;
+        double smallest = std::numeric_limits<double>::infinity();
+        for (const Measurement& m : result.measurements)
+            if (m.scene == reference.scene) smallest = std::min(smallest, m.metrics.rel_l2);
+        all.push_back({fmt::format("{}: smallest error over that of the reference", reference.scene), smallest / reference.error, 10, false});
+        const auto rays = timeTo(0.01, ladder(result, reference.scene, Method::Embree));
+        const auto drawn = timeTo(0.01, ladder(result, reference.scene, Method::Footprint));
+        if (rays && drawn) all.push_back({fmt::format("{}, error of 1 %: time of rays (Embree) over that of footprints", reference.scene), *rays / *drawn, 1, false});
+    }
+}
+
+}  // namespace
+
+std::vector<Measurement> ladder(const ErrorResult& result, const std::string& scene, Method method) {
+    std::vector<Measurement> points;
+    for (const Measurement& m : result.measurements) {
+        if (m.scene != scene || m.method != method) continue;
+        if (points.empty() || (m.rows == 2 * points.back().rows && m.columns_per_beam == 2 * points.back().columns_per_beam)) points.push_back(m);
+    }
+    return points;
+}
+
+std::optional<double> slope(const std::vector<Measurement>& points, double reference_error) {
+    double n = 0, x = 0, y = 0, xx = 0, xy = 0;
+    for (const Measurement& m : points) {
+        if (!(m.metrics.rel_l2 < 0.5) || m.metrics.rel_l2 < 10 * reference_error) continue;
+        const double a = std::log(m.samples()), b = std::log(m.metrics.rel_l2);
+        n += 1, x += a, y += b, xx += a * a, xy += a * b;
+    }
+    if (n < 2) return std::nullopt;
+    return (n * xy - x * y) / (n * xx - x * x);
+}
+
+std::optional<double> timeTo(double error, const std::vector<Measurement>& points) {
+    if (points.empty()) return std::nullopt;
+    if (points.front().metrics.rel_l2 <= error) return points.front().median_ms;
+    for (size_t i = 1; i < points.size(); ++i) {
+        const Measurement &coarse = points[i - 1], &fine = points[i];
+        if (fine.metrics.rel_l2 > error && i + 1 < points.size()) continue;
+        if (fine.metrics.rel_l2 >= coarse.metrics.rel_l2) return std::nullopt;
+        return onLine(error, coarse.metrics.rel_l2, coarse.median_ms, fine.metrics.rel_l2, fine.median_ms);
+    }
+    return std::nullopt;
+}
+
+std::optional<double> errorAt(double ms, const std::vector<Measurement>& points) {
+    if (points.empty()) return std::nullopt;
+    if (ms <= points.front().median_ms) return points.front().metrics.rel_l2;
+    for (size_t i = 1; i < points.size(); ++i)
+        if (points[i].median_ms >= ms)
+            return onLine(ms, points[i - 1].median_ms, points[i - 1].metrics.rel_l2, points[i].median_ms, points[i].metrics.rel_l2);
+    return points.back().metrics.rel_l2;
+}
+
+bool onParetoFront(const Measurement& point, const ErrorResult& result) {
+    return std::ranges::none_of(result.measurements, [&](const Measurement& other) {
+        return other.scene == point.scene && other.median_ms < point.median_ms && other.metrics.rel_l2 < point.metrics.rel_l2;
+    });
+}
+
+std::vector<Verdict> verdicts(const ErrorResult& result) {
+    std::vector<Verdict> all;
+    judgeFlatBottom(result, all);
+    judgeSlopes(result, all);
+    judgeComputed(result, all);
+    return all;
+}
+
+}  // namespace insonify::study

@@ -1,0 +1,161 @@
+#include "components/study/ErrorStudy.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <ctime>
+#include <memory>
+
+#include "components/sonar/BeamFan.hpp"
+#include "components/sonar/BinGrid.hpp"
+#include "components/sonar/SonarRenderer.hpp"
+#include "components/study/EmbreeCaster.hpp"
+
+namespace insonify::study {
+namespace {
+
+constexpr int least_rows = 64;
+constexpr int reference_refinement = 4;  ///< Of the finest point measured, in rows and columns each.
+
+double wallMs() {
+    return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
+
+double processorMs() {
+    timespec spent{};
+    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &spent);
+    return static_cast<double>(spent.tv_sec) * 1e3 + static_cast<double>(spent.tv_nsec) * 1e-6;
+}
+
+/** What makes one ping, whatever the method. */
+using Ping = std::function<void(std::vector<float>& energies)>;
+
+void time(const Ping& ping, int pings, std::vector<float>& energies, Measurement& point) {
+    for (int warm_up = 0; warm_up < 2; ++warm_up) ping(energies);
+    std::vector<double> times;
+    const double processor = processorMs();
+    for (int i = 0; i < pings; ++i) {
+        const double start = wallMs();
+        ping(energies);
+        times.push_back(wallMs() - start);
+    }
+    point.cpu_ms = (processorMs() - processor) / pings;
+    std::ranges::sort(times);
+    point.median_ms = times[times.size() / 2];
+    point.p99_ms = times[std::min(times.size() - 1, static_cast<size_t>(std::ceil(0.99 * static_cast<double>(times.size()))))];
+}
+
+sonar::SonarConfig configOf(const StudyScene& scene, const Measurement& point) {
+    sonar::SonarConfig config = scene.config;
+    config.quality.rows = point.rows;
+    config.quality.columns_per_beam = point.columns_per_beam;
+    config.least_slabs = point.slabs;
+    if (point.method == Method::Nearest || point.method == Method::Published) config.estimator = sonar::Estimator::Nearest;
+    if (point.method == Method::NearestJitter) config.estimator = sonar::Estimator::NearestJitter;
+    config.one_frustum = point.method == Method::Published;
+    return config;
+}
+
+/** One scene under study: its reference, and what measures a point of it. */
+class SceneStudy {
+public:
+    SceneStudy(const StudyScene& scene, const ErrorOptions& options, ErrorResult& result)
+        : scene_(scene), options_(options), result_(result), caster_(scene.snapshot) {
+        const sonar::BinGrid grid = sonar::makeBinGrid(scene.config);
+        layout_ = {scene.config.beam_count, grid.bin_count, grid.bin_width, scene.range_from};
+        base_columns_ = std::max(1, least_rows / scene.config.beam_count);
+        makeReference();
+    }
+
+    void run() {
+        const int slabs = static_cast<int>(sonar::makeSlabs(scene_.config, sonar::makeBeams(scene_.config)).size());
+        for (const Method method : methods)
+            for (int level = 0; level < options_.levels; ++level)
+                measure(method, least_rows << level, base_columns_ << level, method == Method::Published ? 1 : slabs);
+        for (int level = 0; level < options_.levels; ++level)
+            if (base_columns_ << level != 2) measure(Method::Footprint, least_rows << level, 2, slabs);
+        for (const int more : {2 * slabs, 4 * slabs}) measure(Method::Footprint, 4 * least_rows, 4 * base_columns_, more);
+    }
+
+private:
+    void measure(Method method, int rows, int columns, int slabs) {
+        Measurement point{scene_.name, method, rows, columns, 1, slabs, {}, 0, 0, 0, 0};
+        options_.progress(fmt::format("{} {} {} x {}", scene_.name, nameOf(method), rows, columns));
+        const sonar::SonarConfig config = configOf(scene_, point);
+        std::vector<float> energies;
+        if (method == Method::Embree) time([&](auto& e) { caster_.render(scene_.snapshot.sonar, config, e); }, options_.pings, energies, point);
+        else timeRenderer(config, energies, point);
+        point.kappa_max = kappa(config);
+        point.metrics = compare(energies, reference_, layout_);
+        result_.measurements.push_back(point);
+    }
+
+    void timeRenderer(const sonar::SonarConfig& config, std::vector<float>& energies, Measurement& point) {
+        sonar::SonarRenderer renderer(config, scene_.snapshot.geometry);
+        types::Sonar ping;
+        time([&](auto&) { renderer.render(scene_.snapshot, ping); }, options_.pings, energies, point);
+        energies = ping.bins;
+        result_.device = renderer.device();
+    }
+
+    double kappa(const sonar::SonarConfig& config) {
+        std::vector<float> unused;
+        caster_.render(scene_.snapshot.sonar, config, unused);
+        return caster_.kappaMax();
+    }
+
+    void makeReference() {
+        if (scene_.truth) {
+            reference_ = trueEnergies(scene_);
+            result_.references.push_back({scene_.name, "closed form", 0});
+            return;
+        }
+        const int finest = reference_refinement << (options_.levels - 1);
+        const std::vector<float> half = cast(finest / 2), whole = cast(finest);
+        reference_.assign(whole.begin(), whole.end());
+        // Errors fall at least as N^(-2/3) with silhouettes: what halving rows and columns changes bounds what is left.
+        const double error = compare(half, reference_, layout_).rel_l2 / (std::pow(4, 2.0 / 3) - 1);
+        result_.references.push_back({scene_.name, fmt::format("Embree, {} rows, {} columns per beam", least_rows * finest, base_columns_ * finest), error});
+    }
+
+    std::vector<float> cast(int refinement) {
+        options_.progress(fmt::format("{} reference, {} rows", scene_.name, least_rows * refinement));
+        sonar::SonarConfig config = scene_.config;
+        config.quality.rows = least_rows * refinement;
+        config.quality.columns_per_beam = base_columns_ * refinement;
+        std::vector<float> energies;
+        caster_.render(scene_.snapshot.sonar, config, energies);
+        return energies;
+    }
+
+    const StudyScene& scene_;
+    const ErrorOptions& options_;
+    ErrorResult& result_;
+    EmbreeCaster caster_;
+    Layout layout_{};
+    int base_columns_ = 1;
+    std::vector<double> reference_;
+};
+
+}  // namespace
+
+const char* nameOf(Method method) {
+    switch (method) {
+        case Method::Footprint: return "footprint";
+        case Method::Nearest: return "nearest";
+        case Method::NearestJitter: return "nearest_jitter";
+        case Method::Published: return "published";
+        case Method::Embree: return "embree";
+    }
+    return "";
+}
+
+ErrorResult studyError(const std::vector<StudyScene>& scenes, const ErrorOptions& options) {
+    ErrorResult result;
+    for (const StudyScene& scene : scenes) SceneStudy(scene, options, result).run();
+    return result;
+}
+
+}  // namespace insonify::study

@@ -1,0 +1,51 @@
+#pragma once
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "components/study/Metrics.hpp"
+#include "components/study/StudyScene.hpp"
+
+namespace insonify::study {
+
+/** How energies are estimated; see sonar::Estimator. `Published`: nearest bin on one wide frustum with rounded columns. */
+enum class Method { Footprint, Nearest, NearestJitter, Published, Embree };
+inline constexpr Method methods[] = {Method::Footprint, Method::Nearest, Method::NearestJitter, Method::Published, Method::Embree};
+/** "footprint", "nearest", "nearest_jitter", "published", "embree". */
+const char* nameOf(Method method);
+
+/** One point of a work-precision diagram. */
+struct Measurement {
+    std::string scene;
+    Method method = Method::Footprint;
+    int rows = 0, columns_per_beam = 0, samples_per_pixel = 1, slabs = 0;
+    Metrics metrics;
+    double kappa_max = 0;                           ///< Bins that the longest cell covers [1].
+    double median_ms = 0, p99_ms = 0, cpu_ms = 0;   ///< Of one ping: wall time, and processor time of the process.
+    double samples() const { return static_cast<double>(rows) * columns_per_beam * samples_per_pixel; }  ///< Per beam.
+};
+
+/** Where the reference of a scene comes from. */
+struct Reference {
+    std::string scene, source;  ///< "closed form", or how it was computed.
+    double error = 0;           ///< Its own relative L2 error, estimated; 0: exact to rounding.
+};
+
+struct ErrorResult {
+    std::vector<Measurement> measurements;
+    std::vector<Reference> references;
+    std::string device;  ///< Name of the OpenGL renderer.
+};
+
+struct ErrorOptions {
+    int pings = 30;     ///< Timed for each point, after a warm-up.
+    int levels = 5;     ///< Rows and columns are doubled together so often, less one.
+    std::function<void(const std::string&)> progress = [](const std::string&) {};
+};
+
+/** Measures all methods on all scenes: rows and columns doubled together from 64 rows on; footprints also with rows
+ *  alone (2 columns per beam) and with more slabs. A scene without truth gets a reference from the ray caster. */
+ErrorResult studyError(const std::vector<StudyScene>& scenes, const ErrorOptions& options);
+
+}  // namespace insonify::study
