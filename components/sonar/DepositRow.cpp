@@ -74,10 +74,31 @@ struct Pixels {
     double inverse_range[stretch], slope_u[stretch], slope_v[stretch], strength_range[stretch];
 };
 
-/** What a stretch of shares covers: Footprint, and the pixel's strength times range, as arrays. */
+/** A stretch of shares, each with what its pixel shows. */
+struct Shared {
+    double middle[stretch], width[stretch], limit[stretch], shear[stretch];
+    double u[stretch], inverse_range[stretch], slope_u[stretch], slope_v[stretch], near_limit[stretch], far_limit[stretch];
+    double strength_range[stretch];
+
+    void set(int i, const ShareRecord& share, const Pixels& pixels, uint p) {
+        middle[i] = share.middle;
+        width[i] = share.width;
+        limit[i] = share.limit;
+        shear[i] = share.shear;
+        u[i] = pixels.u[p];
+        inverse_range[i] = pixels.inverse_range[p];
+        slope_u[i] = pixels.slope_u[p];
+        slope_v[i] = pixels.slope_v[p];
+        near_limit[i] = pixels.near_limit[p];
+        far_limit[i] = pixels.far_limit[p];
+        strength_range[i] = pixels.strength_range[p];
+    }
+};
+
+/** What a stretch of shares covers: Footprint as arrays. */
 struct Cells {
     double pixel[stretch], centre[stretch], wide[stretch], narrow[stretch], per_wide[stretch], steepness[stretch], near_end[stretch],
-        far_end[stretch], size[stretch], strength_range[stretch];
+        far_end[stretch], size[stretch];
 
     void set(int i, const Footprint& f) {
         pixel[i] = f.pixel;
@@ -159,16 +180,16 @@ INSONIFY_VECTORISED void meet(Pixels& pixels, int count) {
     }
 }
 
-INSONIFY_VECTORISED void cover(const Pixels& pixels, const ShareRecord* shares, int count, uint first_column, double v,
-                               double dv, double near_edge, double far_edge, double per_pixel, Cells& cells) {
-    for (int i = 0; i < count; ++i) {
-        const ShareRecord& share = shares[i];
-        const uint p = share.column - first_column;
-        cells.set(i, cellFootprint(pixels.u[p], v, share.middle, share.width, share.limit, share.shear, dv,
-                                   pixels.inverse_range[p], pixels.slope_u[p], pixels.slope_v[p], pixels.near_limit[p],
-                                   pixels.far_limit[p], near_edge, far_edge, per_pixel));
-        cells.strength_range[i] = pixels.strength_range[p];
-    }
+/** The same of all cells of a stretch. */
+struct Reach {
+    double v, dv, near_edge, far_edge, per_pixel;
+};
+
+INSONIFY_VECTORISED void cover(const Shared& shared, int count, const Reach& reach, Cells& __restrict cells) {
+    for (int i = 0; i < count; ++i)
+        cells.set(i, cellFootprint(shared.u[i], reach.v, shared.middle[i], shared.width[i], shared.limit[i], shared.shear[i],
+                                   reach.dv, shared.inverse_range[i], shared.slope_u[i], shared.slope_v[i],
+                                   shared.near_limit[i], shared.far_limit[i], reach.near_edge, reach.far_edge, reach.per_pixel));
 }
 
 /** The part row by row, a stretch of pixels and then of shares at a time. */
@@ -196,16 +217,18 @@ private:
 
     void shares(uint first_share, int count, uint first_column, double v) {
         const ShareRecord* shares = part_.shares.shares.data() + first_share;
-        cover(pixels_, shares, count, first_column, v, part_.slab.dv(), part_.edges.front(), part_.edges.back(), per_pixel_, cells_);
+        for (int i = 0; i < count; ++i) shared_.set(i, shares[i], pixels_, shares[i].column - first_column);
+        cover(shared_, count, {v, part_.slab.dv(), part_.edges.front(), part_.edges.back(), per_pixel_}, cells_);
         for (int i = 0; i < count; ++i)
             if (shares[i].beam >= part_.first && shares[i].beam < part_.last)
-                bins_.depositCell(cells_.get(i), shares[i].beam, cells_.strength_range[i]);
+                bins_.depositCell(cells_.get(i), shares[i].beam, shared_.strength_range[i]);
     }
 
     const SlabPart& part_;
     Model bins_;
     double per_pixel_;  ///< 1 / solid angle of a whole pixel at the picture's centre [1/sr].
     Pixels pixels_;
+    Shared shared_;
     Cells cells_;
 };
 
