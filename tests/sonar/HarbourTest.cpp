@@ -1,0 +1,153 @@
+// The demo's harbour as its deployment shows it: same scene, trajectory, mount and sonar.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "components/framework/ConfigReader.hpp"
+#include "components/pose/Trajectory.hpp"
+#include "components/scene/Scene.hpp"
+#include "components/scene/SceneConfig.hpp"
+#include "components/sonar/SonarRenderer.hpp"
+#include "types/Angle.hpp"
+
+namespace insonify::sonar {
+namespace {
+
+const std::filesystem::path deploy = std::filesystem::path(INSONIFY_SOURCE_DIR) / "deploy";
+
+template <class Config>
+Config propertiesOf(const std::string& task) {
+    const std::filesystem::path file = deploy / "harbour_fls.yml";
+    framework::ConfigReader reader(file);
+    Config config;
+    EXPECT_TRUE(reader.read(YAML::LoadFile(file)["tasks"][task]["properties"], task, config)) << task;
+    return config;
+}
+
+/** A pose that has one of an object's vertices in view: how far, and at which bearing [m, rad]. */
+struct View {
+    double range, bearing;
+    size_t pose;
+};
+
+class HarbourTest : public testing::Test {
+protected:
+    static void SetUpTestSuite() {
+        const auto scene = propertiesOf<scene::SceneConfig>("scene");
+        geometry = scene::loadScene(deploy / scene.file);
+        const auto file = propertiesOf<pose::TrajectoryConfig>("vehicle").file;
+        const auto pass = pose::Trajectory::fromCsv(deploy / *file);
+        for (double time = 0; time <= pass.stamps().back().time; time += 1) {
+            poses.emplace_back();
+            scene::place(pass.at(time), scene.mount, poses.back());
+        }
+        sonar = propertiesOf<SonarConfig>("sonar");
+        sonar.device = "software";
+    }
+    static void TearDownTestSuite() { geometry.reset(); }
+
+    static bool inView(const glm::dvec3& p) {
+        const double range = glm::length(p);
+        return range > 0.5 && range < sonar.range &&
+               std::abs(std::atan2(p.y, p.x)) < types::radians(sonar.field_of_view_deg / 2) &&
+               std::abs(std::asin(p.z / range)) < types::radians(sonar.beam_height_deg / 2);
+    }
+    static types::Snapshot snapshotAt(size_t pose) {
+        types::Snapshot snapshot;
+        snapshot.sonar = poses[pose];
+        snapshot.geometry = geometry;
+        return snapshot;
+    }
+
+    /** Points along some of the triangles' edges. */
+    static std::vector<glm::dvec3> pointsOf(const types::Mesh& mesh) {
+        std::vector<glm::dvec3> points;
+        const size_t triangles = mesh.indices.size() / 3;
+        for (size_t t = 0; t < triangles; t += 1 + triangles / 40)
+            for (double along = 0; along < 1; along += 0.125)
+                points.push_back(glm::mix(glm::dvec3(mesh.positions[mesh.indices[3 * t]]),
+                                          glm::dvec3(mesh.positions[mesh.indices[3 * t + 1]]), along));
+        return points;
+    }
+    static std::vector<View> viewsOf(const types::Object& object) {
+        const auto points = pointsOf(geometry->meshes[static_cast<size_t>(object.mesh)]);
+        std::vector<View> views;
+        for (size_t k = 0; k < poses.size(); ++k) {
+            const glm::dmat4 sonar_from_object = glm::inverse(poses[k].worldFromBody()) * object.world_from_object;
+            View nearest{1e9, 0, k};
+            for (const glm::dvec3& point : points)
+                if (const glm::dvec3 p = sonar_from_object * glm::dvec4(point, 1);
+                    inView(p) && glm::length(p) < nearest.range)
+                    nearest = {glm::length(p), std::atan2(p.y, p.x), k};
+            if (nearest.range < 1e9) views.push_back(nearest);
+        }
+        std::ranges::sort(views, {}, &View::range);
+        views.resize(std::min<size_t>(views.size(), 10));
+        return views;
+    }
+    /** Whether the ping is clearly another one without the object: some bin by more than half. */
+    static bool differs(SonarRenderer& renderer, uint32_t object, const View& view) {
+        types::Snapshot snapshot = snapshotAt(view.pose);
+        snapshot.sonar.orientation *= glm::angleAxis(view.bearing, glm::dvec3(0, 0, 1));
+        types::Sonar with, without;
+        renderer.render(snapshot, with);
+        glm::dmat4 away = geometry->objects[object].world_from_object;
+        away[3].z += 1e5;
+        snapshot.moved = {{object, away}};
+        renderer.render(snapshot, without);
+        const float floor = 1e-4f * *std::ranges::max_element(with.bins);
+        for (size_t b = 0; b < with.bins.size(); ++b)
+            if (with.bins[b] > floor && with.bins[b] > 2 * without.bins[b]) return true;
+        return false;
+    }
+
+    static inline types::GeometryPtr geometry;
+    static inline std::vector<types::Pose> poses;  ///< Of the sonar, every second of the pass.
+    static inline SonarConfig sonar;
+};
+
+}  // namespace
+
+TEST_F(HarbourTest, MoreThanAHundredThousandTrianglesAreInViewOverThePass) {
+    size_t total = 0;
+    for (const types::Object& object : geometry->objects) {
+        const types::Mesh& mesh = geometry->meshes[static_cast<size_t>(object.mesh)];
+        std::vector<bool> vertex_seen(mesh.positions.size());
+        for (const types::Pose& pose : poses) {
+            const glm::dmat4 sonar_from_object = glm::inverse(pose.worldFromBody()) * object.world_from_object;
+            for (size_t i = 0; i < vertex_seen.size(); ++i)
+                if (!vertex_seen[i]) vertex_seen[i] = inView(sonar_from_object * glm::dvec4(mesh.positions[i], 1));
+        }
+        for (size_t i = 0; i < mesh.indices.size(); i += 3)
+            total +=
+                vertex_seen[mesh.indices[i]] || vertex_seen[mesh.indices[i + 1]] || vertex_seen[mesh.indices[i + 2]];
+    }
+    EXPECT_GT(total, 100'000u);
+    RecordProperty("triangles", std::to_string(total));
+}
+
+TEST_F(HarbourTest, EveryNamedObjectAppearsInSomePing) {
+    // Sixteen beams of the fan about the object: the sonar is turned to them, which changes nothing (BeamFanTest.cpp).
+    SonarConfig beams = sonar;
+    beams.beam_count = 16;
+    beams.field_of_view_deg = 16 * sonar.beamWidthDeg();
+    SonarRenderer renderer(beams, geometry);
+    std::map<std::string, std::vector<std::string>> shown, hidden;  // numbered ones together
+    for (uint32_t i = 0; i < geometry->objects.size(); ++i) {
+        const std::string& name = geometry->objects[i].name;
+        if (name == "sea_floor") continue;
+        const auto views = viewsOf(geometry->objects[i]);
+        const bool appears = std::ranges::any_of(views, [&](const View& view) { return differs(renderer, i, view); });
+        (appears ? shown : hidden)[name.substr(0, name.find_last_not_of("0123456789_") + 1)].push_back(name);
+    }
+    EXPECT_EQ(shown.size(), 11u) << "wall, ladder, piles, fenders, hull, pipeline, saddles, block, chain, buoy, rocks";
+    for (const auto& [kind, names] : hidden) {
+        // Links begin inside the mooring block and end in the buoy; some stones lie behind and under others.
+        const bool crowded = kind == "chain" || kind == "rock";
+        EXPECT_TRUE(crowded && names.size() < shown[kind].size() / 7) << testing::PrintToString(names);
+    }
+}
+
+}  // namespace insonify::sonar
