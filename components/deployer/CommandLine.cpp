@@ -51,6 +51,7 @@ int runCommandLine(int argc, char** argv) {
     addDescribeCommand(app, action);
     addLogCommand(app, action);
     addReplayCommand(app, action);
+    addStudyCommand(app, action);
 
     const int code = guarded(app, action, argc, argv);
     if (flushed()) return code;

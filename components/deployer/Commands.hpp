@@ -16,5 +16,6 @@ void addPlanCommand(CLI::App& app, Action& action);
 void addDescribeCommand(CLI::App& app, Action& action);
 void addLogCommand(CLI::App& app, Action& action);
 void addReplayCommand(CLI::App& app, Action& action);
+void addStudyCommand(CLI::App& app, Action& action);
 
 }  // namespace insonify::deployer

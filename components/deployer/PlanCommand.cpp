@@ -2,57 +2,20 @@
 #include <fmt/core.h>
 
 #include <memory>
-#include <set>
 #include <stdexcept>
 
 #include "components/deployer/Commands.hpp"
 #include "components/deployer/Json.hpp"
+#include "components/deployer/Pipeline.hpp"
 #include "components/deployer/StopSignal.hpp"
 #include "components/deployer/Tasks.hpp"
 #include "components/framework/Deployment.hpp"
-#include "types/Sonar.hpp"
 
 namespace insonify::deployer {
 namespace {
 
 using framework::Deployment;
 using framework::DeploymentSpec;
-
-template <class Ports>
-bool carriesPings(const Ports& ports) {
-    for (const auto* port : ports)
-        if (port->typeName() == types::Sonar::type_name) return true;
-    return false;
-}
-
-/** Sonars and all from which they hear, directly or not. */
-std::set<std::string> upstreamOfSonars(const Deployment& deployment) {
-    std::set<std::string> names;
-    for (const auto& task : deployment.tasks())
-        if (carriesPings(task->outputs()) && !carriesPings(task->inputs())) names.insert(task->name());
-    for (size_t before = 0; before != names.size();) {
-        before = names.size();
-        for (const framework::Connection& connection : deployment.connections())
-            if (names.contains(connection.to->owner().name())) names.insert(connection.from->owner().name());
-    }
-    return names;
-}
-
-/** The deployment down to its sonars, in lockstep so that it takes no longer than it must. */
-DeploymentSpec pipelineOf(DeploymentSpec spec, framework::Registry& registry) {
-    const std::set<std::string> kept = upstreamOfSonars(Deployment(spec, registry));
-    const auto keeps = [&](const std::string& port) { return kept.contains(framework::splitPort(port).first); };
-    std::vector<framework::TaskSpec> tasks;  // made anew: assigning a YAML node changes what other nodes see
-    for (const auto& task : spec.tasks)
-        if (kept.contains(task.name)) tasks.push_back(task);
-    std::vector<framework::ConnectionSpec> connections;
-    for (const auto& connection : spec.connections)
-        if (keeps(connection.from) && keeps(connection.to)) connections.push_back(connection);
-    spec.tasks.swap(tasks);
-    spec.connections.swap(connections);
-    spec.lockstep = true;
-    return spec;
-}
 
 void printPlan(const std::string& task, const types::Plan& plan) {
     fmt::print("{}\n  quality: {} rows, {} columns per beam, {} slabs", task, plan.rows, plan.columns_per_beam,

@@ -28,9 +28,10 @@ public:
     const types::Plan* plan() const override { return plan_ ? &*plan_ : nullptr; }
     std::vector<std::string> notices() const override;
 
-protected:
     /** The sonar to render, as configured. */
     virtual SonarConfig sonarConfig() const = 0;
+
+protected:
     /** Last changes to a snapshot with a valid pose before it is rendered; a reason refuses it. */
     virtual const char* aim(types::Snapshot& /*scene*/) { return nullptr; }
     /** Last changes to a ping before it is written. */

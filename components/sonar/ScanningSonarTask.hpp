@@ -16,9 +16,9 @@ class ScanningSonarTask final : public PingTask {
 public:
     using PingTask::PingTask;
     framework::Properties<ScanningSonarConfig> config{this};
+    SonarConfig sonarConfig() const override { return config->beam(); }
 
 protected:
-    SonarConfig sonarConfig() const override { return config->beam(); }
     bool startHook() override;
     const char* aim(types::Snapshot& scene) override;
     void label(types::Sonar& sample) override;

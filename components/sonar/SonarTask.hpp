@@ -12,8 +12,6 @@ class SonarTask final : public PingTask {
 public:
     using PingTask::PingTask;
     framework::Properties<SonarConfig> config{this};
-
-protected:
     SonarConfig sonarConfig() const override { return *config; }
 };
 

@@ -21,6 +21,16 @@ template <class F> double integral(double from, double to, const F& f) {
     return half * total;
 }
 
+/** Halves the stretch until that changes nothing: apertures cut corners into what is integrated. */
+template <class F> double adaptive(double from, double to, const F& f, double whole, int depth) {
+    constexpr double tolerance = 1e-8;
+    constexpr int least_depth = 2, most_depth = 24;
+    const double middle = 0.5 * (from + to), low = integral(from, middle, f), high = integral(middle, to, f);
+    const bool settled = std::abs(low + high - whole) <= tolerance * std::abs(low + high);
+    if (depth >= most_depth || (settled && depth >= least_depth)) return low + high;
+    return adaptive(from, middle, f, low, depth + 1) + adaptive(middle, to, f, high, depth + 1);
+}
+
 /** The plane at one azimuth: 1/r = slope * cos(elevation - steepest). */
 struct Profile {
     double slope, steepest;
@@ -54,16 +64,12 @@ Elevations both(Elevations a, Elevations b) { return {std::max(a.low, b.low), st
 
 Truth planeTruth(glm::dvec3 normal, double distance, Window window) {
     return [=](const BeamLimits& beam, double r1, double r2) {
-        constexpr int parts = 40;  // of a beam, each with eight nodes: the aperture cuts corners into the integrand
-        const double width = (beam.azimuth_high - beam.azimuth_low) / parts;
-        double total = 0;
-        for (int i = 0; i < parts; ++i)
-            total += integral(beam.azimuth_low + i * width, beam.azimuth_low + (i + 1) * width, [&](double azimuth) {
-                Elevations seen{-beam.half_height, beam.half_height};
-                if (window) seen = both(seen, window(azimuth));
-                return profileEcho(Profile(normal, distance, azimuth), distance, seen, r1, r2);
-            });
-        return total;
+        const auto per_azimuth = [&](double azimuth) {
+            Elevations seen{-beam.half_height, beam.half_height};
+            if (window) seen = both(seen, window(azimuth));
+            return profileEcho(Profile(normal, distance, azimuth), distance, seen, r1, r2);
+        };
+        return adaptive(beam.azimuth_low, beam.azimuth_high, per_azimuth, integral(beam.azimuth_low, beam.azimuth_high, per_azimuth), 0);
     };
 }
 

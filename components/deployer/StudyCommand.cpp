@@ -1,0 +1,14 @@
+// insonify study error|stability
+#include "components/deployer/StudyCommand.hpp"
+
+#include "components/deployer/Commands.hpp"
+
+namespace insonify::deployer {
+
+void addStudyCommand(CLI::App& app, Action& action) {
+    CLI::App* study = app.add_subcommand("study", "Measures the simulator itself");
+    study->require_subcommand(1);
+    addErrorStudy(*study, action);
+}
+
+}  // namespace insonify::deployer

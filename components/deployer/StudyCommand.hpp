@@ -1,0 +1,9 @@
+#pragma once
+#include "components/deployer/Commands.hpp"
+
+namespace insonify::deployer {
+
+// Each adds one study to the command `study`.
+void addErrorStudy(CLI::App& study, Action& action);
+
+}  // namespace insonify::deployer
