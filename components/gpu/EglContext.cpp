@@ -131,6 +131,8 @@ void EglContext::watch() {
 void EglContext::requireThread() const {
     if (std::this_thread::get_id() != thread_)
         throw GlError("the OpenGL context was made on another thread: make, use and destroy it on one task's thread");
+    if (eglGetCurrentContext() != context_)
+        throw GlError("another OpenGL context has been current on this thread since: use one at a time on a thread");
 }
 
 void EglContext::check() {

@@ -24,7 +24,8 @@ public:
     ~EglContext();
     EglContext& operator=(const EglContext&) = delete;
 
-    /** Throws GlError on another thread than the one that made the context: there GL would silently do nothing. */
+    /** Throws GlError on another thread than the one that made the context, where GL would silently do nothing, and
+     *  when a later context has taken its place on this one, where GL would silently serve that. */
     void requireThread() const;
     /** Throws GlError with the first error that GL has reported since the last call, or when the context is lost. */
     void check();

@@ -104,6 +104,16 @@ TEST(EglContextTest, AnotherThreadIsToldToMakeAContextOfItsOwn) {
     EXPECT_EQ(errorOf([&] { context.check(); }), "") << "its own thread may go on";
 }
 
+TEST(EglContextTest, AContextWhosePlaceALaterOneTookIsRefused) {
+    EglContext first("software");
+    {
+        EglContext second("software");
+        EXPECT_THAT(errorOf([&] { first.requireThread(); }), HasSubstr("one at a time"));
+        EXPECT_EQ(errorOf([&] { second.check(); }), "");
+    }
+    EXPECT_THAT(errorOf([&] { first.check(); }), HasSubstr("one at a time"));
+}
+
 TEST(EglContextTest, AMistakeIsThrownOnceByTheNextCheck) {
     EglContext context("software");
     glEnable(GL_TEXTURE_2D);  // not in the core profile
