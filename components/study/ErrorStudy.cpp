@@ -17,7 +17,8 @@ namespace insonify::study {
 namespace {
 
 constexpr int least_rows = 64;
-constexpr int reference_refinement = 4;  ///< Of the finest point measured, in rows and columns each.
+constexpr int most_levels_computed = 4;   ///< Without a closed form: the reference costs 64 times the finest point.
+constexpr int reference_refinement = 8;  ///< Of the finest point measured, in rows and columns each.
 
 double wallMs() {
     return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now().time_since_epoch()).count();
@@ -72,14 +73,27 @@ public:
     void run() {
         const int slabs = static_cast<int>(sonar::makeSlabs(scene_.config, sonar::makeBeams(scene_.config)).size());
         for (const Method method : methods)
-            for (int level = 0; level < options_.levels; ++level)
+            for (int level = 0; level < levels(); ++level)
                 measure(method, least_rows << level, base_columns_ << level, method == Method::Published ? 1 : slabs);
-        for (int level = 0; level < options_.levels; ++level)
+        for (int level = 0; level < levels(); ++level)
             if (base_columns_ << level != 2) measure(Method::Footprint, least_rows << level, 2, slabs);
         for (const int more : {2 * slabs, 4 * slabs}) measure(Method::Footprint, 4 * least_rows, 4 * base_columns_, more);
+        if (!scene_.truth) result_.references.back().error = halving_ / (convergence() - 1);
     }
 
 private:
+    int levels() const { return scene_.truth ? options_.levels : std::min(options_.levels, most_levels_computed); }
+
+    /** What doubling rows and columns divides the error of rays by, where it divides least. */
+    double convergence() const {
+        std::vector<double> errors;
+        for (const Measurement& m : result_.measurements)
+            if (m.scene == scene_.name && m.method == Method::Embree) errors.push_back(m.metrics.rel_l2);
+        double least = 4;  // of smooth surfaces
+        for (size_t i = 1; i < errors.size(); ++i) least = std::min(least, errors[i - 1] / errors[i]);
+        return std::max(least, 1.5);
+    }
+
     void measure(Method method, int rows, int columns, int slabs) {
         Measurement point{scene_.name, method, rows, columns, 1, slabs, {}, 0, 0, 0, 0};
         options_.progress(fmt::format("{} {} {} x {}", scene_.name, nameOf(method), rows, columns));
@@ -112,12 +126,11 @@ private:
             result_.references.push_back({scene_.name, "closed form", 0});
             return;
         }
-        const int finest = reference_refinement << (options_.levels - 1);
+        const int finest = reference_refinement << (levels() - 1);
         const std::vector<float> half = cast(finest / 2), whole = cast(finest);
         reference_.assign(whole.begin(), whole.end());
-        // Errors fall at least as N^(-2/3) with silhouettes: what halving rows and columns changes bounds what is left.
-        const double error = compare(half, reference_, layout_).rel_l2 / (std::pow(4, 2.0 / 3) - 1);
-        result_.references.push_back({scene_.name, fmt::format("Embree, {} rows, {} columns per beam", least_rows * finest, base_columns_ * finest), error});
+        halving_ = compare(half, reference_, layout_).rel_l2;
+        result_.references.push_back({scene_.name, fmt::format("Embree, {} rows, {} columns per beam", least_rows * finest, base_columns_ * finest), 0});
     }
 
     std::vector<float> cast(int refinement) {
@@ -137,6 +150,7 @@ private:
     Layout layout_{};
     int base_columns_ = 1;
     std::vector<double> reference_;
+    double halving_ = 0;  ///< What half the rows and columns change of a computed reference [1].
 };
 
 }  // namespace
