@@ -1,0 +1,117 @@
+// Threads and extreme scenes (physics.md 4).
+#include <gmock/gmock.h>
+
+#include <algorithm>
+#include <numeric>
+#include <thread>
+
+#include "components/gpu/EglContext.hpp"
+#include "components/sonar/SonarRenderer.hpp"
+#include "tests/support/Surfaces.hpp"
+
+namespace insonify::sonar {
+namespace {
+
+using ::testing::Each;
+using ::testing::HasSubstr;
+
+SonarConfig fan() {
+    SonarConfig config;
+    config.speed_of_sound = 1000;
+    config.range = 40;
+    config.bin_count = 400;
+    config.beam_count = 32;
+    config.field_of_view_deg = 100;
+    config.beam_height_deg = 40;
+    config.quality.rows = 128;
+    config.device = "software";
+    return config;
+}
+
+std::vector<float> binsOf(const types::Snapshot& snapshot) {
+    SonarRenderer renderer(fan(), snapshot.geometry);
+    types::Sonar ping;
+    renderer.render(snapshot, ping);
+    return ping.bins;
+}
+
+double energy(const std::vector<float>& bins) { return std::accumulate(bins.begin(), bins.end(), 0.0); }
+
+/** Relative L2 of their difference. */
+double difference(const std::vector<float>& a, const std::vector<float>& b) {
+    double error = 0;
+    for (size_t i = 0; i < a.size(); ++i) error += std::pow(double{a[i]} - b[i], 2);
+    return std::sqrt(error / std::inner_product(b.begin(), b.end(), b.begin(), 0.0));
+}
+
+types::Mesh wall() { return test::quad({10, -50, -50}, {0, 100, 0}, {0, 0, 100}); }
+
+}  // namespace
+
+TEST(SonarRendererTest, AnotherThreadIsRefused) {
+    const auto snapshot = test::snapshotOf(test::surfaces());
+    SonarRenderer renderer(fan(), snapshot.geometry);
+    std::string error;
+    std::thread([&] {
+        try {
+            types::Sonar ping;
+            renderer.render(snapshot, ping);
+        } catch (const gpu::GlError& fault) {
+            error = fault.what();
+        }
+    }).join();
+    EXPECT_THAT(error, HasSubstr("another thread"));
+}
+
+TEST(SonarRendererTest, NothingInViewIsSilence) {
+    const types::Snapshot ahead = test::snapshotOf(test::sceneOf({wall()}));
+    EXPECT_GT(energy(binsOf(ahead)), 0);
+    EXPECT_THAT(binsOf(test::snapshotOf(std::make_shared<types::Geometry>())), Each(0)) << "empty";
+    EXPECT_THAT(binsOf(test::snapshotOf(ahead.geometry, {20, 0, 0})), Each(0)) << "behind";
+    EXPECT_THAT(binsOf(test::snapshotOf(ahead.geometry, {-50, 0, 0})), Each(0)) << "beyond the range";
+    EXPECT_THAT(binsOf(test::snapshotOf(ahead.geometry, {9.95, 0, 0})), Each(testing::Ge(0)))
+        << "nearer than range_min";
+}
+
+TEST(SonarRendererTest, ASonarOnASurfaceOrInsideABodyHearsFiniteEchoes) {
+    const auto ball = test::sceneOf({test::sphere(5, 32)});
+    for (double x : {0.0, 4.0, 4.99, 5.0, 5.01})
+        EXPECT_THAT(binsOf(test::snapshotOf(ball, {x, 0, 0}, 0.3)),
+                    Each(testing::AllOf(testing::Ge(0), testing::Le(1e6f))))
+            << x;
+    EXPECT_GT(energy(binsOf(test::snapshotOf(ball))), 0) << "the inside reflects";
+}
+
+TEST(SonarRendererTest, FacesTurnedAwayReflectTheSame) {
+    types::Mesh turned = wall();
+    std::ranges::reverse(turned.indices);
+    EXPECT_EQ(binsOf(test::snapshotOf(test::sceneOf({turned}))), binsOf(test::snapshotOf(test::sceneOf({wall()}))));
+}
+
+TEST(SonarRendererTest, DoubledFacesAndTrianglesWithoutAreaAddNothing) {
+    types::Mesh doubled = wall(), degenerate = wall();
+    doubled.indices.insert(doubled.indices.end(), {0, 1, 2, 0, 2, 3});
+    doubled.clusters[0].index_count = 12;
+    degenerate.indices.insert(degenerate.indices.end(), {0, 0, 1, 0, 2, 2});
+    degenerate.clusters[0].index_count = 12;
+    const auto bins = binsOf(test::snapshotOf(test::sceneOf({wall()})));
+    EXPECT_EQ(binsOf(test::snapshotOf(test::sceneOf({doubled}))), bins);
+    EXPECT_EQ(binsOf(test::snapshotOf(test::sceneOf({degenerate}))), bins);
+    EXPECT_EQ(binsOf(test::snapshotOf(test::sceneOf({wall(), wall()}))), bins) << "an object in the same place";
+}
+
+TEST(SonarRendererTest, FarFromTheOriginOfTheWorldEchoesAreTheSame) {
+    const auto here = test::surfaces();
+    auto there = std::make_shared<types::Geometry>(*here);
+    const glm::dvec3 offset(500'000, 4'500'000, -100);  // as in UTM
+    for (types::Object& object : there->objects) object.world_from_object[3] += glm::dvec4(offset, 0);
+    const auto bins = binsOf(test::snapshotOf(here, {0, 0, 0}, 0.1, 0.1));
+    EXPECT_LT(difference(binsOf(test::snapshotOf(there, offset, 0.1, 0.1)), bins), 1e-6);
+}
+
+TEST(SonarRendererTest, ASeaFloorOfTwoHugeTrianglesIsASeaFloor) {
+    const auto small = binsOf(test::snapshotOf(test::sceneOf({test::ground(-5, 1000)}), {}, 0, 0.2));
+    EXPECT_LT(difference(binsOf(test::snapshotOf(test::sceneOf({test::ground(-5, 1e8f)}), {}, 0, 0.2)), small), 0.01);
+}
+
+}  // namespace insonify::sonar
