@@ -35,7 +35,8 @@ TEST(DeviceTest, AnUnknownDeviceIsNamedWithWhatItMayBe) {
         for (const Outcome& outcome : {runWith(folder, {"INSONIFY_EGL_DEVICE=" + device}),
                                        runWith(folder, {}, {"--set", "sonar.device=" + device})}) {
             EXPECT_NE(outcome.code, 0);
-            EXPECT_THAT(outcome.err, AllOf(HasSubstr("'" + device + "'"), HasSubstr("auto, software or a number below ")));
+            EXPECT_THAT(outcome.err,
+                        AllOf(HasSubstr("'" + device + "'"), HasSubstr("auto, software or a number below ")));
         }
     }
 }

@@ -90,7 +90,9 @@ std::vector<std::vector<bool>> drawn(const types::Geometry& geometry, const std:
     return marks;
 }
 
-struct Count { size_t seen = 0, missed = 0, drawn = 0, all = 0; };
+struct Count {
+    size_t seen = 0, missed = 0, drawn = 0, all = 0;
+};
 
 /** Compares the runs of all slabs with the triangles that are in view. */
 Count compare(const SonarConfig& config, const types::Snapshot& snapshot) {
@@ -177,7 +179,8 @@ std::vector<float> pings(const SonarConfig& config, const types::GeometryPtr& ge
 }
 
 /** A floor of clusters and, in the middle, a ball of clusters. */
-std::shared_ptr<types::Geometry> clusteredHarbour(Random& random) {
+std::shared_ptr<types::Geometry> clusteredHarbour() {
+    Random random(3);
     auto geometry = std::make_shared<types::Geometry>();
     geometry->materials.resize(1);
     geometry->meshes = {clusteredSheet(random, 120), test::sphere(1, 80)};
@@ -224,7 +227,7 @@ TEST(CullerTest, NothingThatASlabSeesIsCulled) {
 
 TEST(CullerTest, NoTriangleOfAClusterInViewIsCulled) {
     Random random(2);
-    const auto geometry = clusteredHarbour(random);
+    const auto geometry = clusteredHarbour();
     ASSERT_GT(geometry->meshes[0].clusters.size(), 100u);
     for (int round = 0; round < 4; ++round) {
         auto turned = std::make_shared<types::Geometry>(*geometry);
@@ -273,8 +276,7 @@ TEST(CullerTest, AMovedObjectIsDrawnWhereItIs) {
 }
 
 TEST(CullerTest, ThePingOfClustersCulledByViewIsThatOfTheWholeScene) {
-    Random random(3);
-    const auto clustered = clusteredHarbour(random);
+    const auto clustered = clusteredHarbour();
     for (double degrees : {50.0, 100.0, 360.0}) {
         SonarConfig config = fan(degrees);
         config.range = 120;  // holds all of the scene
@@ -285,8 +287,7 @@ TEST(CullerTest, ThePingOfClustersCulledByViewIsThatOfTheWholeScene) {
 }
 
 TEST(CullerTest, CullingByRangeTakesOnlyEchoesThatAPixelBeyondItWouldSmearBack) {
-    Random random(3);
-    const auto clustered = clusteredHarbour(random);
+    const auto clustered = clusteredHarbour();
     const auto culled = pings(fan(100), clustered), all = pings(fan(100), withoutCulling(*clustered));
     const float most = *std::ranges::max_element(all);
     for (size_t i = 0; i < all.size(); ++i) {
