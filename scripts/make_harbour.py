@@ -163,7 +163,7 @@ def link():
 
 
 def chain_path(floor):
-    """From the mooring block in curves over the floor, then up as a catenary: points 0.2 m apart."""
+    """From beside the mooring block in curves over the floor, then up as a catenary: points 0.2 m apart."""
     t = np.linspace(0, 1, 400)
     x, y = 20 + 7 * t, -7 + 1.6 * np.sin(2 * np.pi * t) + 2.5 * t
     lying = np.stack([x, y, floor.z(x, y) + 0.06], 1)
@@ -172,7 +172,7 @@ def chain_path(floor):
     rising = lying[-1] + np.stack([5 * t, 1.2 * t, rise], 1)
     path = np.vstack([lying, rising])
     along = np.concatenate([[0], np.cumsum(np.linalg.norm(np.diff(path, axis=0), axis=1))])
-    at = np.arange(0.1, along[-1], 0.2)
+    at = np.arange(1.0, along[-1] - 0.1, 0.2)
     return np.stack([np.interp(at, along, path[:, axis]) for axis in range(3)], 1)
 
 
@@ -206,13 +206,18 @@ def add_pipeline(glb, floor, steel, concrete):
 
 
 def rock_places(rng):
-    """Riprap along the toe of the wall, a reef to starboard, and single stones ahead: (x, y, size) [m]."""
+    """Riprap along the toe of the wall, a reef to starboard, and single stones ahead: (x, y, size) [m]; none of them
+    under another."""
     toe = [(rng.uniform(9, 58), QUAY - rng.uniform(0.3, 2.2), rng.uniform(0.25, 0.7)) for _ in range(50)]
     reef = [(*(np.array([26, -24]) + rng.normal(0, (4.5, 2.0)) @ rotation(yaw=30)[:2, :2]), rng.uniform(0.5, 2.2))
             for _ in range(45)]
     distance, bearing = rng.uniform(8, 42, 55), np.radians(rng.uniform(-60, 10, 55))
     single = zip(9 + distance * np.cos(bearing), distance * np.sin(bearing), rng.uniform(0.25, 1.1, 55))
-    return [*toe, *reef, *single]
+    places = []
+    for place in sorted([*toe, *reef, *single], key=lambda place: -place[2]):
+        if all(np.hypot(place[0] - x, place[1] - y) > 0.9 * size + 0.6 * place[2] for x, y, size in places):
+            places.append(place)
+    return places
 
 
 def add_rocks(glb, rng, floor, stone):

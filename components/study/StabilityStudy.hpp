@@ -1,0 +1,51 @@
+#pragma once
+#include <filesystem>
+#include <functional>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace insonify::study {
+
+enum class Verdict { Pass, Fail, Later };
+/** "pass", "fail", "later": the effect that it needs is not built yet. */
+const char* nameOf(Verdict verdict);
+
+/** Condition numbers of a case, by name. */
+using Conditions = std::vector<std::pair<std::string, double>>;
+
+/** What came out of a case. */
+struct Outcome {
+    Conditions conditions;
+    std::string got;
+    double deviation = 0;  ///< From what is expected, relative unless `got` names a unit [1].
+    Verdict verdict = Verdict::Later;
+};
+
+/** A stiff or extreme case of physics.md section 4, or one found since (numbers from 56 on). */
+struct StabilityCase {
+    int number;
+    std::string name, expected;
+    std::function<Outcome()> run;
+};
+
+/** The cases that a library half can see, by number. Cases of tasks, noise and trajectories come from the deployer. */
+std::vector<StabilityCase> stabilityCases();
+
+/** A case with its outcome. */
+struct StabilityRow {
+    int number;
+    std::string name, expected;
+    Outcome outcome;
+};
+
+/** Runs a case; one that throws has failed. */
+StabilityRow runCase(const StabilityCase& stability_case);
+/** Runs all of them in the order of their numbers; `done` hears of each. */
+std::vector<StabilityRow> studyStability(std::vector<StabilityCase> cases, const std::function<void(const StabilityRow&)>& done);
+
+/** Writes `stability.md`, a sheet to read, and `stability.json`, [{case, conditions: {}, expected, got, deviation,
+ *  verdict}], into a folder that exists. Throws std::runtime_error when they cannot be written. */
+void writeStability(const std::vector<StabilityRow>& rows, const std::filesystem::path& folder);
+
+}  // namespace insonify::study

@@ -1,0 +1,74 @@
+#include "components/study/ErrorAnalysis.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace insonify::study {
+namespace {
+
+/** A ladder whose error falls as samples^power from `error` on, in a time proportional to samples. */
+void addLadder(ErrorResult& result, const std::string& scene, Method method, double error, double power, int levels = 4) {
+    for (int level = 0; level < levels; ++level) {
+        Measurement m{scene, method, 64 << level, 1 << level, 1, 1, {}, 0, 0, 0, 0};
+        m.metrics.rel_l2 = error * std::pow(m.samples() / 64, power);
+        m.median_ms = m.samples() / 64;
+        result.measurements.push_back(m);
+    }
+}
+
+ErrorResult made() {
+    ErrorResult result;
+    result.references = {{"flat_bottom", "closed form", 0}};
+    addLadder(result, "flat_bottom", Method::Footprint, 0.001, -1);
+    addLadder(result, "flat_bottom", Method::Nearest, 0.4, -0.8);
+    return result;
+}
+
+TEST(ErrorAnalysisTest, TheLadderLeavesOutOtherSweeps) {
+    ErrorResult result = made();
+    result.measurements.push_back({"flat_bottom", Method::Footprint, 128, 4, 1, 1, {}, 0, 0, 0, 0});
+    EXPECT_EQ(ladder(result, "flat_bottom", Method::Footprint).size(), 4u);
+    EXPECT_TRUE(ladder(result, "wall", Method::Footprint).empty());
+}
+
+TEST(ErrorAnalysisTest, TheSlopeIsThatOfTheLine) {
+    const ErrorResult result = made();
+    EXPECT_NEAR(*slope(ladder(result, "flat_bottom", Method::Nearest), 0), -0.8, 1e-9);
+    EXPECT_NEAR(*slope(ladder(result, "flat_bottom", Method::Footprint), 1e-6), -1, 1e-9);
+    EXPECT_FALSE(slope(ladder(result, "flat_bottom", Method::Footprint), 1e-4)) << "too near the reference's own error";
+}
+
+TEST(ErrorAnalysisTest, TimesAndErrorsLieOnTheLineOrBeyondItsEnd) {
+    const auto points = ladder(made(), "flat_bottom", Method::Nearest);
+    const double ms = std::pow(0.1 / 0.4, 1 / -0.8);
+    EXPECT_NEAR(*timeTo(0.1, points), ms, 1e-9 * ms);
+    EXPECT_NEAR(*errorAt(ms, points), 0.1, 1e-9);
+    EXPECT_NEAR(*timeTo(1e-4, points), std::pow(1e-4 / 0.4, 1 / -0.8), 1e-3) << "beyond the finest point";
+    EXPECT_EQ(*timeTo(0.5, points), 1) << "the coarsest point is good enough";
+    ErrorResult flat;
+    addLadder(flat, "x", Method::Published, 0.4, 0);
+    EXPECT_FALSE(timeTo(0.1, ladder(flat, "x", Method::Published))) << "it never gets there";
+}
+
+TEST(ErrorAnalysisTest, TheParetoFrontIsWhatNothingBeats) {
+    const ErrorResult result = made();
+    for (const Measurement& m : result.measurements)
+        EXPECT_EQ(onParetoFront(m, result), m.method == Method::Footprint || m.rows == 64) << nameOf(m.method) << m.rows;
+}
+
+TEST(ErrorAnalysisTest, AClaimThatDoesNotHoldFails) {
+    ErrorResult result = made();
+    const auto failures = [&] {
+        int count = 0;
+        for (const Verdict& verdict : verdicts(result)) count += !verdict.holds();
+        return count;
+    };
+    EXPECT_EQ(failures(), 0);
+    for (Measurement& m : result.measurements)
+        if (m.method == Method::Footprint) m.metrics.rel_l2 = 0.3 * std::pow(m.samples() / 64, -0.5);
+    EXPECT_EQ(failures(), 3) << "time at equal error, error at equal time, slope";
+}
+
+}  // namespace
+}  // namespace insonify::study
