@@ -60,11 +60,29 @@ EGLContext contextOn(EGLDisplay display, bool robust, EGLContext shared) {
     return EGL_NO_CONTEXT;
 }
 
+/** The property, or the environment's choice, or any. */
+std::string chosen(const std::string& device) {
+    const char* variable = std::getenv("INSONIFY_EGL_DEVICE");
+    return !device.empty() ? device : variable && *variable ? variable : "auto";
+}
+
+bool isWord(const std::string& device) { return device == "auto" || device == "software"; }
+
+/** Position in EGL's list; throws GlError when it has none such. */
+size_t indexOf(const std::string& device, size_t count) {
+    size_t index = 0;
+    const auto [end, fault] = std::from_chars(device.data(), device.data() + device.size(), index);
+    if (fault != std::errc{} || end != device.data() + device.size() || index >= count)
+        throw GlError("EGL device '" + device + "': must be auto, software or a number below " + std::to_string(count) +
+                      ", the devices that EGL lists here");
+    return index;
+}
+
 /** The displays that a choice of device allows, best first. */
 std::vector<EGLDisplay> candidates(const std::string& device) {
     std::vector<EGLDisplay> displays;
     const auto all = devices();
-    if (device == "auto" || device == "software") {
+    if (isWord(device)) {
         for (bool software : {false, true})
             for (EGLDeviceEXT candidate : all)
                 if (isSoftwareDevice(candidate) == software && (software || device == "auto"))
@@ -72,12 +90,7 @@ std::vector<EGLDisplay> candidates(const std::string& device) {
         displays.push_back(surfacelessDisplay());
         return displays;
     }
-    size_t index = 0;
-    const auto [end, fault] = std::from_chars(device.data(), device.data() + device.size(), index);
-    if (fault != std::errc{} || end != device.data() + device.size() || index >= all.size())
-        throw GlError("EGL device '" + device + "': must be auto, software or a number below " +
-                      std::to_string(all.size()) + ", the devices that EGL lists here");
-    return {deviceDisplay(all[index])};
+    return {deviceDisplay(all[indexOf(device, all.size())])};
 }
 
 void GLAPIENTRY remember(GLenum, GLenum type, GLuint, GLenum, GLsizei, const GLchar* message, const void* first) {
@@ -88,9 +101,12 @@ void GLAPIENTRY remember(GLenum, GLenum type, GLuint, GLenum, GLsizei, const GLc
 }  // namespace
 
 EglContext::EglContext(const std::string& device) {
-    const char* variable = std::getenv("INSONIFY_EGL_DEVICE");
-    create(!device.empty() ? device : variable && *variable ? variable : "auto");
+    create(chosen(device));
     watch();
+}
+
+void EglContext::requireDevice(const std::string& device) {
+    if (const std::string name = chosen(device); !isWord(name)) indexOf(name, devices().size());
 }
 
 EglContext::EglContext(const EglContext& other) {

@@ -18,6 +18,8 @@ struct GlError : std::runtime_error {
 class EglContext {
 public:
     explicit EglContext(const std::string& device = {});
+    /** Throws GlError when EGL lists no such device; makes no context. */
+    static void requireDevice(const std::string& device);
     /** A context for this thread on the device of `other`, with which it shares buffers, textures and programs; vertex
      *  arrays and framebuffers belong to one context. `other` may be current on another thread. */
     explicit EglContext(const EglContext& other);

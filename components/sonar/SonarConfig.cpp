@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "components/gpu/EglContext.hpp"
 #include "components/sonar/Acoustics.hpp"
 #include "components/sonar/BinGrid.hpp"
 
@@ -31,6 +32,14 @@ void checkRangeReached(const SonarConfig& config, types::Problems& problems) {
             {"range", fmt::format("is {} m; {} bins of whole microseconds reach {:.6g} m, which may be at most 25 % "
                                   "more: lower bin_count, raise range, or set range_rounding: exact",
                                   config.range, config.bin_count, grid.range_max)});
+}
+
+void checkDevice(const std::string& device, types::Problems& problems) {
+    try {
+        gpu::EglContext::requireDevice(device);
+    } catch (const gpu::GlError& error) {
+        problems.push_back({"device", error.what()});
+    }
 }
 
 }  // namespace
@@ -80,6 +89,7 @@ void SonarConfig::checkBeam(types::Problems& problems) const {
         problems.push_back({"absorption.frequency_khz", "is given without water; a law needs the water block"});
     if (model == Model::Cerqueira2017 && output != Output::Intensity)
         problems.push_back({"output", "is a level; cerqueira2017 gives means of S in [0, 1], output: intensity"});
+    checkDevice(device, problems);
     if (published) checkPublished(*this, problems);
     checkRangeReached(*this, problems);
 }

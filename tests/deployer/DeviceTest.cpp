@@ -34,7 +34,8 @@ TEST(DeviceTest, AnUnknownDeviceIsNamedWithWhatItMayBe) {
         const WallFolder folder;
         for (const Outcome& outcome : {runWith(folder, {"INSONIFY_EGL_DEVICE=" + device}),
                                        runWith(folder, {}, {"--set", "sonar.device=" + device})}) {
-            EXPECT_NE(outcome.code, 0);
+            EXPECT_EQ(outcome.code, 2);
+            EXPECT_FALSE(fs::exists(folder / "out/wall.0.log")) << "nothing has started";
             EXPECT_THAT(outcome.err,
                         AllOf(HasSubstr("'" + device + "'"), HasSubstr("auto, software or a number below ")));
         }

@@ -1,0 +1,212 @@
+// Sums and their order, buffers between pings, devices, sizes.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <glm/gtc/matrix_transform.hpp>
+#include <set>
+
+#include "components/sonar/SonarRenderer.hpp"
+#include "components/study/Probe.hpp"
+#include "components/study/Shapes.hpp"
+#include "components/study/StabilityGroups.hpp"
+
+namespace insonify::study {
+namespace {
+
+using sonar::SonarConfig;
+
+double seconds() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
+
+/** Ground, two balls and a wall: silhouettes, grazing, and several parts in a beam. */
+types::GeometryPtr cluttered() {
+    return sceneOf({levelGround(-4), sphere(1.5, 48), sphere(0.7, 24), facingWall(18)}, {{0, 0, 0}, {9, 3, -1}, {6, -2, -2}, {0, 0, 0}});
+}
+
+SonarConfig wideFan(sonar::Deposit where = sonar::Deposit::Auto, sonar::Model model = sonar::Model::Physical) {
+    SonarConfig config = fan(130, 40, 61, 30);
+    config.deposit = where;
+    config.model = model;
+    return config;
+}
+
+Outcome manySamplesInABin() {
+    SonarConfig config = fan(20, 20, 1, 12);
+    config.bin_count = 1;
+    config.quality = {.rows = 4000, .columns_per_beam = 2500};
+    const Probe heard = probe(config, lookingAt(sceneOf({facingWall(10)})));
+    return within(1e-6, worstBeam(heard, config, planeTruth({1, 0, 0}, 10)), "1e7 pixels of a wall in one bin, against the closed form", heard);
+}
+
+Outcome loudSamplesInABin() {
+    SonarConfig config = fan(20, 20, 1, 12);
+    config.bin_count = 1;
+    config.quality = {.rows = 2000, .columns_per_beam = 1000};
+    const auto geometry = copyOf(sceneOf({facingWall(10)}));
+    geometry->materials[0].lambert_db = 20;
+    const Probe heard = probe(config, lookingAt(geometry));
+    return within(1e-6, std::abs(heard.energy() / trueEnergy(config, 0, planeTruth({1, 0, 0}, 10)) / 100 - 1),
+                  "2e6 pixels of the loudest material that a file may have, in one bin", heard);
+}
+
+/** Pings of one kind that are not bit for bit the first. */
+template <class Kinds, class Ping> int unlike(const Kinds& kinds, const Ping& ping) {
+    int count = 0;
+    for (const auto model : {sonar::Model::Physical, sonar::Model::Cerqueira2017}) {
+        const auto first = ping(model, *std::begin(kinds));
+        for (const auto& kind : kinds) count += ping(model, kind).bins != first.bins;
+    }
+    return count;
+}
+
+Outcome twoRuns() {
+    int different = 0;
+    for (const auto where : {sonar::Deposit::Cpu, sonar::Deposit::Gpu})
+        different += unlike(std::array{1, 2, 3}, [&](auto model, int) { return probe(wideFan(where, model), lookingAt(cluttered())).ping; });
+    return within(0, different, "three runs by processor and by compute shader, both models: bit-identical each", probe(wideFan(), lookingAt(cluttered())));
+}
+
+Outcome anyNumberOfThreads() {
+    const int different = unlike(std::array{1, 2, 3, 5, 8, 16}, [](auto model, int threads) {
+        SonarConfig config = wideFan(sonar::Deposit::Cpu, model);
+        config.threads = threads;
+        return probe(config, lookingAt(cluttered())).ping;
+    });
+    return within(0, different, "1, 2, 3, 5, 8 and 16 threads, both models: bit-identical", probe(wideFan(), lookingAt(cluttered())));
+}
+
+/** Relative difference of the bins that two pings share, without the edges of echoes. */
+double innerDifference(const types::Sonar& a, const types::Sonar& b) {
+    double worst = 0;
+    for (size_t i = 1; i + 1 < a.bins.size(); ++i) {
+        const bool inside = a.bins[i - 1] > 0 && a.bins[i] > 0 && a.bins[i + 1] > 0;
+        if (inside) worst = std::max(worst, off(a.bins[i], b.bins[i]));
+    }
+    return worst;
+}
+
+Outcome devices() {
+    SonarConfig software = wideFan(sonar::Deposit::Cpu);
+    software.device = "software";
+    const auto scene = lookingAt(sceneOf({levelGround(-4), facingWall(18)}));
+    const Probe reference = probe(software, scene);
+    double worst = 0;
+    std::set<std::string> names;
+    for (const char* device : {"software", "auto"})
+        for (const auto where : {sonar::Deposit::Cpu, sonar::Deposit::Gpu}) {
+            SonarConfig config = wideFan(where);
+            config.device = device;
+            const Probe heard = probe(config, scene);
+            names.insert(heard.device);
+            worst = std::max(worst, innerDifference(heard.ping, reference.ping));
+        }
+    Outcome outcome = within(1e-4, worst, "", reference);
+    for (const std::string& name : names) outcome.got += (outcome.got.empty() ? "" : ", ") + name;
+    outcome.got = "processor and compute shader on " + outcome.got;
+    outcome.conditions.push_back({"devices", static_cast<double>(names.size())});
+    return outcome;
+}
+
+Outcome resizedBetweenPings() {
+    SonarConfig small = fan(40, 20, 5, 12), large = wideFan();
+    const auto scene = lookingAt(cluttered());
+    types::Sonar ping;
+    int stale = 0;
+    for (const SonarConfig& config : {large, small, large, small}) {
+        sonar::SonarRenderer renderer(config, scene.geometry);
+        renderer.render(scene, ping);
+        stale += ping.bins != probe(config, scene).ping.bins;
+    }
+    types::Snapshot away = scene;
+    away.sonar.position.z = 1000;
+    sonar::SonarRenderer renderer(large, scene.geometry);
+    renderer.render(scene, ping);
+    renderer.render(away, ping);
+    stale += std::ranges::any_of(ping.bins, [](float bin) { return bin != 0; });
+    return within(0, stale, "one sample through sonars of 61 x 300 and 5 x 120 bins, and out of the scene: nothing of the ping before", probe(small, scene));
+}
+
+Outcome noDevice() {
+    SonarConfig config = wideFan();
+    config.device = "99";
+    std::string message;
+    try {
+        probe(config, lookingAt(cluttered()));
+    } catch (const std::exception& error) {
+        message = error.what();
+    }
+    return none(message.empty(), "device \"99\": " + message);
+}
+
+Outcome manyTriangles() {
+    const types::Mesh ball = sphere(1, 224);  // 200,000 triangles
+    const auto geometry = std::make_shared<types::Geometry>(*sceneOf({ball}));
+    const size_t copies = 100'000'000 / geometry->triangleCount() + 1;
+    for (size_t i = 1; i < copies; ++i) {
+        types::Object& object = geometry->objects.emplace_back(geometry->objects[0]);
+        object.name += std::to_string(i);
+    }
+    for (types::Object& object : geometry->objects) object.world_from_object[3] = {10, 0, 0, 1};
+    SonarConfig config = fan(10, 10, 1, 12);
+    config.quality = {.rows = 1, .columns_per_beam = 1};
+    const double start = seconds();
+    Probe heard = probe(config, lookingAt(geometry));
+    const double taken = seconds() - start;
+    heard.conditions.push_back({"triangles", static_cast<double>(geometry->triangleCount())});
+    heard.conditions.push_back({"seconds", taken});
+    const bool right = heard.firstReturn(0) >= 89 && heard.firstReturn(0) <= 90;
+    return within(60, right ? taken : INFINITY, "500 balls in one place on one pixel; deviation is the time of set-up and ping, at most 60 s [s]", heard);
+}
+
+Outcome largeImage() {
+    SonarConfig config = fan(20, 20, 1, 12);
+    config.quality = {.rows = 16384, .columns_per_beam = 64};
+    const auto triangle = copyOf(sceneOf({quad({10, -50, -50}, {0, 200, 0}, {0, 0, 200})}));
+    triangle->meshes[0].indices.resize(3);
+    triangle->meshes[0].clusters[0].index_count = 3;
+    const double start = seconds();
+    Probe heard = probe(config, lookingAt(triangle));
+    heard.conditions.push_back({"seconds", seconds() - start});
+    const double deviation = heard.energy() > 0 ? worstBeam(heard, config, planeTruth({1, 0, 0}, 10)) : INFINITY;
+    return within(1e-6, deviation, "one triangle, 16384 rows", heard);
+}
+
+Outcome impossibleImage() {
+    SonarConfig config = fan(120, 20, 4096, 12);
+    config.quality = {.rows = 16384, .columns_per_beam = 256};
+    std::string message;
+    try {
+        probe(config, lookingAt(sceneOf({facingWall(10)})));
+    } catch (const std::exception& error) {
+        message = error.what();
+    }
+    return none(message.empty(), "16384 rows x 524,288 columns a slab: " + message);
+}
+
+}  // namespace
+
+std::vector<StabilityCase> sumCases() {
+    return {{41, "1e7 samples in one bin", "to 1e-6 of the closed form", manySamplesInABin},
+            {42, "Order of sums", "two runs are bit-identical", twoRuns},
+            {43, "Number of threads", "bit-identical", anyNumberOfThreads},
+            {44, "Software and graphics card, processor and shader", "within 1e-4 but for the edges of echoes", devices},
+            {53, "Beams, bins and range changed between pings", "no stale data", resizedBetweenPings},
+            {54, "No such graphics device", "a clear error (software instead: case 44)", noDevice},
+            {55, "1e8 triangles on one pixel", "time-bounded", manyTriangles},
+            {55, "One triangle, 16k rows", "to 1e-6 of the closed form", largeImage},
+            {57, "An image larger than any device's", "a clear error", impossibleImage},
+            {58, "2e6 samples of +20 dB in one bin", "to 1e-6 of the closed form: no wrap of the sums", loudSamplesInABin}};
+}
+
+std::vector<StabilityCase> laterCases() {
+    const auto waits = [](int number, const char* name, const char* expected, const char* effect) {
+        return StabilityCase{number, name, expected, [effect] { return Outcome{{}, std::string("waits for: ") + effect, 0, Verdict::Later}; }};
+    };
+    return {waits(31, "Beam pattern narrower than a column", "importance sampling or an error", "beam patterns"),
+            waits(38, "Specular lobe of a mirror", "finite; level independent of resolution to 1 dB", "the specular lobe"),
+            waits(48, "K statistics of shape 1e-3 and 1e6", "finite with an extreme tail; exponential", "K-distributed speckle"),
+            waits(59, "Range point-spread narrower than a bin and wider than the range", "energy kept", "range point-spread")};
+}
+
+}  // namespace insonify::study
