@@ -56,7 +56,7 @@ TEST(StudyErrorCommandTest, WhatCannotBeStudiedIsRefused) {
     EXPECT_EQ(outcome.code, 2);
     EXPECT_THAT(outcome.err, HasSubstr("moon is not a scene with a closed form; those are flat_bottom, "));
     std::string conical = wall_deployment;
-    conical.insert(conical.find("range: "), "beam_geometry: conical, ");
+    conical.insert(conical.find("range: "), "beam_geometry: conical\n      ");
     writeFile(folder / "conical.yml", conical);
     outcome = callInsonify(folder, {"study", "error", "conical.yml", "--out", "report"});
     EXPECT_EQ(outcome.code, 2) << outcome.err;
