@@ -74,7 +74,7 @@ struct SonarRenderer::Parts {
 SonarRenderer::Parts::Parts(const SonarConfig& c, types::GeometryPtr scene)
     : config(c), geometry(std::move(scene)), plan(makePlan(config, *geometry)), context(config.device),
       beams(makeBeams(config)), slabs(makeSlabs(config, beams)), bins(makeBinGrid(config)), levels(config, bins),
-      culler(*geometry, bins.range_max),
+      culler(*geometry, bins.range_max), threads(config.threads),
       surface(context, {*geometry, slabs, defines(plan), nearPlane(config, slabs.front()), culler.runLimit(), config.published}, threads) {
     DepositSetup setup = depositSetup(config, beams, slabs, bins);
     const bool on_cpu = config.deposit == Deposit::Cpu || (config.deposit == Deposit::Auto && context.isSoftware());

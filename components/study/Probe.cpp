@@ -95,6 +95,11 @@ sonar::SonarConfig fan(double fov_deg, double height_deg, int beams, double rang
     return config;
 }
 
+void setSamples(sonar::SonarConfig& config, int rows, int columns_per_beam) {
+    config.quality.rows = rows;
+    config.quality.columns_per_beam = columns_per_beam;
+}
+
 types::Snapshot lookingAt(types::GeometryPtr geometry, glm::dvec3 position, double yaw, double pitch) {
     types::Snapshot snapshot;
     snapshot.geometry = std::move(geometry);

@@ -118,7 +118,7 @@ Outcome hugeSeaFloor(float width) {
 /** A strip a tenth of a pixel wide, moved through a pixel in 40 steps. */
 Outcome sliver() {
     sonar::SonarConfig config = fan(20, 20, 1, 12);
-    config.quality = {.rows = 64, .columns_per_beam = 64};
+    setSamples(config, 64, 64);
     const double pixel = 2 * std::tan(radians(10)) / 64 * 10;
     const auto geometry = sceneOf({quad({10, 0, -0.5f}, {0, static_cast<float>(pixel / 10), 0}, {0, 0, 1})});
     sonar::SonarRenderer renderer(config, geometry);

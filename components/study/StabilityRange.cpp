@@ -63,7 +63,7 @@ Outcome surfaceOnABinEdge() {
     config.speed_of_sound = 1250;
     config.bin_count = 400;  // 0.125 m, exact in binary
     config.range_min = 0.05;
-    config.quality.rows = 16;
+    setSamples(config, 16);
     const auto geometry = sceneOf({facingWall(0)});
     sonar::SonarRenderer renderer(config, geometry);
     types::Snapshot snapshot = lookingAt(geometry);

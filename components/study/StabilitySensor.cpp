@@ -40,7 +40,8 @@ Outcome wideFan(double fov_deg) {
     const int beams = 360;
     const double width = fov_deg / beams;
     sonar::SonarConfig wide = fan(fov_deg, 40, beams, 25), narrow = fan(10 * width, 40, 10, 25);
-    wide.quality = narrow.quality = {.rows = 512, .columns_per_beam = 4};
+    setSamples(wide, 512, 4);
+    setSamples(narrow, 512, 4);
     const Probe all = probe(wide, lookingAt(room()));
     double worst = 0;
     for (const int first : {0, 55, 117, 175, 236, 290, 350}) {
@@ -53,7 +54,7 @@ Outcome wideFan(double fov_deg) {
 
 Outcome seams(double fov_deg) {
     sonar::SonarConfig config = fan(fov_deg, 40, 360, 50);
-    config.quality.rows = 512;
+    setSamples(config, 512);
     const Probe heard = probe(config, lookingAt(sceneOf({levelGround(-5)})));
     double worst = 0;
     for (uint32_t k = 0; k < 360; ++k) worst = std::max(worst, beamDifference(heard.ping, k, heard.ping, (k + 1) % 360));
@@ -85,7 +86,7 @@ Outcome badAngles() {
 /** A fan of `beams` before a wall. */
 Outcome beamsBeforeAWall(int beams, double fov_deg) {
     sonar::SonarConfig config = fan(fov_deg, 20, beams, 25);
-    config.quality.rows = 64;
+    setSamples(config, 64);
     const Probe heard = probe(config, lookingAt(sceneOf({facingWall(10)})));
     return within(1e-3, worstBeam(heard, config, planeTruth({1, 0, 0}, 10)), fmt::format("worst of {} beams against the closed form", beams), heard);
 }
@@ -95,7 +96,7 @@ Outcome moreBeamsThanColumns() {
     config.bearings_deg.resize(1000);
     for (size_t k = 0; k < 1000; ++k) config.bearings_deg[k] = 0.01 * (static_cast<double>(k) - 500);
     config.beam_width_deg = 1;
-    config.quality.columns_per_beam = 1;
+    setSamples(config, 256, 1);
     const Probe heard = probe(config, lookingAt(sceneOf({facingWall(10)})));
     return within(1e-3, worstBeam(heard, config, planeTruth({1, 0, 0}, 10)), "1000 beams 1 deg wide and 0.01 deg apart, one column per beam's width: none empty", heard);
 }
@@ -108,7 +109,7 @@ Outcome thinAperture() {
 
 Outcome oneRow() {
     sonar::SonarConfig config = fan(20, 10, 20, 15);
-    config.quality = {.rows = 1, .columns_per_beam = 1};
+    setSamples(config, 1, 1);
     const Probe heard = probe(config, lookingAt(sceneOf({facingWall(10)})));
     return within(0.01, worstBeam(heard, config, planeTruth({1, 0, 0}, 10)), "10 deg on a wall by one row and one column per beam", heard);
 }

@@ -34,7 +34,7 @@ SonarConfig wideFan(sonar::Deposit where = sonar::Deposit::Auto, sonar::Model mo
 Outcome manySamplesInABin() {
     SonarConfig config = fan(20, 20, 1, 12);
     config.bin_count = 1;
-    config.quality = {.rows = 4000, .columns_per_beam = 2500};
+    setSamples(config, 4000, 2500);
     const Probe heard = probe(config, lookingAt(sceneOf({facingWall(10)})));
     return within(1e-6, worstBeam(heard, config, planeTruth({1, 0, 0}, 10)), "1e7 pixels of a wall in one bin, against the closed form", heard);
 }
@@ -42,7 +42,7 @@ Outcome manySamplesInABin() {
 Outcome loudSamplesInABin() {
     SonarConfig config = fan(20, 20, 1, 12);
     config.bin_count = 1;
-    config.quality = {.rows = 2000, .columns_per_beam = 1000};
+    setSamples(config, 2000, 1000);
     const auto geometry = copyOf(sceneOf({facingWall(10)}));
     geometry->materials[0].lambert_db = 20;
     const Probe heard = probe(config, lookingAt(geometry));
@@ -149,7 +149,7 @@ Outcome manyTriangles() {
     }
     for (types::Object& object : geometry->objects) object.world_from_object[3] = {10, 0, 0, 1};
     SonarConfig config = fan(10, 10, 1, 12);
-    config.quality = {.rows = 1, .columns_per_beam = 1};
+    setSamples(config, 1, 1);
     const double start = seconds();
     Probe heard = probe(config, lookingAt(geometry));
     const double taken = seconds() - start;
@@ -161,7 +161,7 @@ Outcome manyTriangles() {
 
 Outcome largeImage() {
     SonarConfig config = fan(20, 20, 1, 12);
-    config.quality = {.rows = 16384, .columns_per_beam = 64};
+    setSamples(config, 16384, 64);
     const auto triangle = copyOf(sceneOf({quad({10, -50, -50}, {0, 200, 0}, {0, 0, 200})}));
     triangle->meshes[0].indices.resize(3);
     triangle->meshes[0].clusters[0].index_count = 3;
@@ -174,7 +174,7 @@ Outcome largeImage() {
 
 Outcome impossibleImage() {
     SonarConfig config = fan(120, 20, 4096, 12);
-    config.quality = {.rows = 16384, .columns_per_beam = 256};
+    setSamples(config, 16384, 256);
     std::string message;
     try {
         probe(config, lookingAt(sceneOf({facingWall(10)})));
