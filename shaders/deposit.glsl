@@ -7,17 +7,19 @@
 // S of cerqueira2017; x = reflectivity cos(theta), attenuated.
 double cerqueiraEcho(double x) { return 1.0 / (1.0 + double(exp(float(12.0 - 18.0 * x)))); }
 
-// What the includer's addToBin is told: `amount` is, for `physical`, the part's energy times the square of the bin's
-// central range; for cerqueira2017 it is S weighted by the part's size `weight`. Both are relative to one whole pixel.
-void depositPart(uint beam, uint bin, double share, double inverse_range, double strength_range) {
+// What the includer's addToBin is told of the part of a cell between two inverse ranges: `amount` is, for `physical`, the
+// part's energy times the square of the bin's central range; for cerqueira2017 it is S weighted by the part's size `weight`.
+// Both are relative to one whole pixel.
+void depositPart(uint beam, uint bin, double share, double above, double below, double strength_range) {
+    double inverse_range = 0.5 * (above + below);
 #ifdef HAVE_CERQUEIRA2017
     double cosine = min(strength_range * inverse_range, 1.0);
     double echo = cerqueiraEcho(cosine * double(exp(float(-2.0 * attenuation / inverse_range))));
     addToBin(beam, bin, share * echo, share);
 #else
-    // On a plane cos(theta) goes as 1/r, so the density over inverse range goes as its cube.
-    double relative = (double(bin) + 0.5) * bin_width * inverse_range;
-    addToBin(beam, bin, strength_range * share * inverse_range * relative * relative, 0.0);
+    // On a plane cos(theta) goes as 1/r, so the density over inverse range goes as its cube: here its mean over the part.
+    double centre = (double(bin) + 0.5) * bin_width, cube = 0.5 * inverse_range * (above * above + below * below);
+    addToBin(beam, bin, strength_range * share * centre * centre * cube, 0.0);
 #endif
 }
 
@@ -55,11 +57,12 @@ void depositCell(Footprint cell, uint beam, double strength_range) {
     while (bin > 0u && binEdge(bin) < cell.near_end) --bin;
     while (binEdge(bin + 1u) >= cell.near_end) ++bin;
     double above = cell.near_end;
-    double share_above = trapezoidShare(cell, above - cell.centre);
+    // What a plane's nearest point cuts off lies about that point: only the blanking takes anything away.
+    double share_above = above < binEdge(0u) ? 0.5 : trapezoidShare(cell, above - cell.centre);
     for (; above > cell.far_end; ++bin) {
         double below = max(binEdge(bin + 1u), cell.far_end);
         double share_below = trapezoidShare(cell, below - cell.centre);
-        depositPart(beam, bin, cell.size * (share_above - share_below), 0.5 * (above + below), strength_range);
+        depositPart(beam, bin, cell.size * (share_above - share_below), above, below, strength_range);
         above = below;
         share_above = share_below;
     }

@@ -29,7 +29,7 @@ Footprint cellFootprint(double u, double v, double middle, double width, double 
     double q2 = 1.0 + middle * middle + centre_v * centre_v;
     Footprint cell;
     cell.pixel = inverse_range;
-    cell.centre = inverse_range + slope_u * aside + slope_v * (centre_v - v);
+    cell.centre = min(inverse_range + slope_u * aside + slope_v * (centre_v - v), near_limit);
     cell.wide = max(max(along, across), 1e-12 * inverse_range + 1e-300);
     cell.narrow = max(min(along, across), 1e-12 * cell.wide);
     cell.per_wide = 1.0 / cell.wide;
