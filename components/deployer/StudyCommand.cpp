@@ -9,6 +9,7 @@ void addStudyCommand(CLI::App& app, Action& action) {
     CLI::App* study = app.add_subcommand("study", "Measures the simulator itself");
     study->require_subcommand(1);
     addErrorStudy(*study, action);
+    addStabilityStudy(*study, action);
 }
 
 }  // namespace insonify::deployer

@@ -5,5 +5,6 @@ namespace insonify::deployer {
 
 // Each adds one study to the command `study`.
 void addErrorStudy(CLI::App& study, Action& action);
+void addStabilityStudy(CLI::App& study, Action& action);
 
 }  // namespace insonify::deployer

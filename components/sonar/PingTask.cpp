@@ -1,10 +1,22 @@
 #include "components/sonar/PingTask.hpp"
 
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
 #include <cmath>
+#include <glm/geometric.hpp>
+#include <utility>
 
 #include "components/sonar/Plan.hpp"
 
 namespace insonify::sonar {
+namespace {
+
+constexpr double budget_share = 0.7;  ///< Of the budget, for the qualities to choose from: later pings may take longer.
+constexpr double fine_enough = 1e-3;  ///< Error below which time that is left is not used [1].
+
+}  // namespace
 
 const char* normalisePose(types::Pose& pose) {
     const glm::dvec3& p = pose.position;
@@ -22,13 +34,29 @@ PingTask::~PingTask() {
 }
 
 std::vector<std::string> PingTask::notices() const {
-    return plan_ ? plan_->notices : configNotices(sonarConfig());
+    std::vector<std::string> all = plan_ ? plan_->notices : configNotices(sonarConfig());
+    if (shortest_ < echoTime() * (1 - 1e-6))
+        all.push_back(fmt::format("Warning: pings {:.3g} s apart are ambiguous in range, sound takes {:.3g} s to {:.4g} m and back; each "
+                                  "is rendered by itself",
+                                  shortest_, echoTime(), grid_.range_max));
+    return all;
 }
 
 bool PingTask::configureHook() {
     renderer_.reset();
     plan_.reset();
+    grid_ = makeBinGrid(sonarConfig());
+    shortest_ = std::numeric_limits<double>::infinity();
     return true;
+}
+
+const char* PingTask::follow(const types::Snapshot& scene) {
+    const std::optional<Mark> before = std::exchange(before_, Mark{scene.time, scene.sonar.position});
+    const double seconds = before ? (scene.time - before->time).seconds() : 0;
+    if (!(seconds > 0)) return nullptr;
+    shortest_ = std::min(shortest_, seconds);
+    const bool too_fast = glm::distance(scene.sonar.position, before->position) > 0.1 * grid_.speed_of_sound * seconds;
+    return too_fast ? "the sonar moves faster than a tenth of the speed of sound" : nullptr;
 }
 
 void PingTask::updateHook() {
@@ -36,22 +64,63 @@ void PingTask::updateHook() {
     if (!snapshot.readNew(sample)) return;
     aimed_ = *sample;
     const char* fault = aimed_.geometry ? normalisePose(aimed_.sonar) : "the snapshot has no geometry";
+    if (!fault) fault = follow(aimed_);
     if (!fault) fault = aim(aimed_);
     if (fault) return error(fault);
     if (state() == framework::TaskState::RunTimeError) recover();
     render();
 }
 
+void PingTask::makeRenderer() {
+    renderer_.reset();
+    keeper_.reset();
+    geometry_ = aimed_.geometry;
+    const SonarConfig config = sonarConfig();
+    chosen_ = !config.quality.target_error && !config.quality.budget_ms;
+    renderer_ = std::make_unique<SonarRenderer>(config, geometry_);
+    plan_ = renderer_->plan();
+    aimed_.moved.reserve(geometry_->objects.size());
+}
+
+void PingTask::chooseQuality() {
+    const SonarConfig config = sonarConfig();
+    const QualityConfig& wish = config.quality;
+    renderer_.reset();  // trials draw on this thread, too
+    const double budget = wish.budget_ms ? budget_share * *wish.budget_ms : std::numeric_limits<double>::infinity();
+    std::vector<Quality> ladder = tryQualities(config, aimed_, wish.target_error.value_or(fine_enough), budget);
+    renderer_ = std::make_unique<SonarRenderer>(config, geometry_);
+    chosen_ = true;
+    if (wish.target_error && ladder.back().error > *wish.target_error)
+        plan_->notices.push_back(fmt::format("Warning: the finest quality leaves an error of {:.2g}; the target is {:g}",
+                                             ladder.back().error, *wish.target_error));
+    setQuality(ladder.back());
+    if (wish.budget_ms) keeper_.emplace(std::move(ladder), *wish.budget_ms);
+}
+
+void PingTask::setQuality(const Quality& quality) {
+    renderer_->setQuality(quality.rows, quality.columns_per_beam);
+    plan_->rows = quality.rows;
+    plan_->columns_per_beam = quality.columns_per_beam;
+    plan_->predicted_error = quality.error;
+}
+
+void PingTask::keepBudget(double ms) {
+    if (!keeper_ || !keeper_->heard(ms)) return;
+    setQuality(keeper_->quality());
+    plan_->notices.push_back(fmt::format("from {:.3f} s on {} rows, {} columns per beam, to keep to {:g} ms", aimed_.time.seconds(),
+                                         plan_->rows, plan_->columns_per_beam, *sonarConfig().quality.budget_ms));
+}
+
 void PingTask::render() {
-    if (!renderer_ || geometry_ != aimed_.geometry) {
-        renderer_.reset();
-        geometry_ = aimed_.geometry;
-        renderer_ = std::make_unique<SonarRenderer>(sonarConfig(), geometry_);
-        plan_ = renderer_->plan();
-        aimed_.moved.reserve(geometry_->objects.size());
-    }
+    if (!renderer_ || geometry_ != aimed_.geometry) makeRenderer();
     const auto sample = pool_.take();
+    const auto start = std::chrono::steady_clock::now();
     renderer_->render(aimed_, *sample);
+    keepBudget(std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count());
+    if (!chosen_ && std::ranges::any_of(sample->bins, [](float bin) { return bin != 0; })) {
+        chooseQuality();
+        renderer_->render(aimed_, *sample);
+    }
     label(*sample);
     for (const SonarRenderer::Stage& stage : renderer_->stages()) recordStage(stage.name, stage.seconds);
     pool_.stock(*sample);

@@ -1,10 +1,13 @@
 #pragma once
+#include <limits>
 #include <memory>
 #include <optional>
 
 #include "components/framework/Port.hpp"
 #include "components/framework/SamplePool.hpp"
 #include "components/framework/TaskContext.hpp"
+#include "components/sonar/BinGrid.hpp"
+#include "components/sonar/Quality.hpp"
 #include "components/sonar/SonarRenderer.hpp"
 #include "types/Snapshot.hpp"
 #include "types/Sonar.hpp"
@@ -14,8 +17,11 @@ namespace insonify::sonar {
 /** What the sonar tasks share: one ping for each snapshot, at the snapshot's time and sonar pose.
  *
  *  The renderer is made at the first snapshot, when the geometry is known, and again when the geometry changes. A
- *  snapshot that cannot be rendered (a pose that is not finite, a quaternion of no length, no geometry) leads to
- *  RunTimeError, from which the next good one recovers. A quaternion that is not of unit length is normalised. */
+ *  snapshot that cannot be rendered (a pose that is not finite, a quaternion of no length, no geometry, a place that
+ *  only more than a tenth of the speed of sound reaches) leads to RunTimeError, from which the next good one recovers. A
+ *  quaternion that is not of unit length is normalised. Pings closer in time than sound's way to the range and back are
+ *  rendered, each by itself, and told of in the notices. With a target or a budget the quality is chosen on the first
+ *  ping that hears anything, which takes long; a budget may change it later. */
 class PingTask : public framework::TaskContext {
 public:
     using TaskContext::TaskContext;
@@ -40,12 +46,30 @@ protected:
     bool configureHook() override;
     void updateHook() override;
     void errorHook() override { updateHook(); }
+    void stopHook() override { before_.reset(); }
     void cleanupHook() override { renderer_.reset(); }
 
 private:
+    /** Time and place of a snapshot. */
+    struct Mark {
+        types::Time time;
+        glm::dvec3 position;
+    };
+    /** Judges the time and way since the snapshot before; a reason refuses this one. */
+    const char* follow(const types::Snapshot& scene);
+    double echoTime() const { return 2 * grid_.range_max / grid_.speed_of_sound; }  ///< To the range and back [s].
     void render();
+    void makeRenderer();
+    void chooseQuality();
+    void setQuality(const Quality& quality);
+    void keepBudget(double ms);
 
+    BinGrid grid_;
+    std::optional<Mark> before_;
+    double shortest_ = std::numeric_limits<double>::infinity();  ///< Time between two snapshots so far [s].
     std::unique_ptr<SonarRenderer> renderer_;
+    std::optional<BudgetKeeper> keeper_;
+    bool chosen_ = false;              ///< Whether the quality is the configured one, or what was chosen for it.
     std::optional<types::Plan> plan_;  ///< Outlives the renderer, for the summary.
     types::GeometryPtr geometry_;      ///< The renderer's.
     types::Snapshot aimed_;

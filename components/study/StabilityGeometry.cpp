@@ -145,6 +145,7 @@ Outcome nothingToHear() {
 
 Outcome straightDown() {
     sonar::SonarConfig config = fan(40, 40, 1, 12);
+    setSamples(config, 256, 64);
     const Probe heard = probe(config, lookingAt(sceneOf({levelGround(-5.05f)}), {}, 0.7, radians(90)));
     return within(1e-3, worstBeam(heard, config, planeTruth({1, 0, 0}, 5.05)), "a level bottom below a sonar that looks straight down", heard);
 }

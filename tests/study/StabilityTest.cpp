@@ -1,0 +1,81 @@
+// Every stiff and extreme case of the stability study: none may fail.
+#include <gmock/gmock.h>
+
+#include <set>
+
+#include "components/deployer/StabilityTasks.hpp"
+#include "components/study/StabilityStudy.hpp"
+#include "tests/support/Folder.hpp"
+
+namespace insonify::study {
+
+void PrintTo(const StabilityCase& c, std::ostream* out) { *out << c.name; }
+
+namespace {
+
+using ::testing::HasSubstr;
+
+std::vector<StabilityCase> allCases() {
+    std::vector<StabilityCase> cases = stabilityCases();
+    for (StabilityCase& added : deployer::taskStabilityCases()) cases.push_back(std::move(added));
+    return cases;
+}
+
+/** "33 TVG gain of 1e20" as a name for a test. */
+std::string testName(const testing::TestParamInfo<StabilityCase>& info) {
+    std::string name = "Case" + std::to_string(info.param.number) + "_";
+    bool begins = true;
+    for (const char c : info.param.name) {
+        const bool letter = std::isalnum(static_cast<unsigned char>(c)) != 0;
+        if (letter) name += begins ? static_cast<char>(std::toupper(static_cast<unsigned char>(c))) : c;
+        begins = !letter;
+    }
+    return name;
+}
+
+class StabilityTest : public testing::TestWithParam<StabilityCase> {};
+
+TEST_P(StabilityTest, DoesAsExpected) {
+    const StabilityRow row = runCase(GetParam());
+    EXPECT_NE(row.outcome.verdict, Verdict::Fail)
+        << row.number << ". " << row.name << "\n  expected: " << row.expected << "\n  got: " << row.outcome.got << "\n  deviation: " << row.outcome.deviation;
+    EXPECT_FALSE(row.outcome.got.empty());
+}
+
+INSTANTIATE_TEST_SUITE_P(Cases, StabilityTest, testing::ValuesIn(allCases()), testName);
+
+TEST(StabilityStudyTest, NoneOfThe55CasesIsLeftOut) {
+    std::set<int> numbers;
+    for (const StabilityCase& c : allCases()) numbers.insert(c.number);
+    for (int number = 1; number <= 55; ++number) EXPECT_TRUE(numbers.contains(number)) << number;
+}
+
+TEST(StabilityStudyTest, ACaseThatThrowsHasFailedAndTheSheetsSaySo) {
+    const std::vector<StabilityCase> cases = {
+        {7, "a \"quoted\" | case", "calm", [] { return Outcome{{{"kappa", 2.5}}, "calm", 1e-3, Verdict::Pass}; }},
+        {3, "storm", "calm", []() -> Outcome { throw std::runtime_error("mast lost"); }},
+        {9, "fog", "sight", [] { return Outcome{{}, "waits for: wind", 0, Verdict::Later}; }}};
+    Folder folder;
+    const std::vector<StabilityRow> rows = studyStability(cases, [](const StabilityRow&) {});
+    ASSERT_EQ(rows.size(), 3u);
+    EXPECT_EQ(rows[0].number, 3) << "in order";
+    EXPECT_EQ(rows[0].outcome.verdict, Verdict::Fail);
+    writeStability(rows, folder.path());
+    const auto text = [&](const char* name) {
+        const std::vector<char> bytes = bytesOf(folder / name);
+        return std::string(bytes.begin(), bytes.end());
+    };
+    EXPECT_EQ(text("stability.json"), R"([
+ {"case": "3. storm", "conditions": {}, "expected": "calm", "got": "threw: mast lost", "deviation": null, "verdict": "fail"},
+ {"case": "7. a \"quoted\" | case", "conditions": {"kappa": 2.5}, "expected": "calm", "got": "calm", "deviation": 0.001, "verdict": "pass"},
+ {"case": "9. fog", "conditions": {}, "expected": "sight", "got": "waits for: wind", "deviation": 0, "verdict": "later"}
+]
+)");
+    EXPECT_THAT(text("stability.md"), HasSubstr("1 pass, 1 fail, 1 later"));
+    EXPECT_THAT(text("stability.md"), HasSubstr("| 7. a \"quoted\" \\| case | kappa 2.5 | calm | calm | 0.001 | pass |"));
+}
+
+TEST(StabilityStudyTest, ASheetThatCannotBeWrittenIsAnError) { EXPECT_THROW(writeStability({}, "/proc/nowhere"), std::runtime_error); }
+
+}  // namespace
+}  // namespace insonify::study
