@@ -90,10 +90,10 @@ int studyError(Options options) {
     if (!options.quiet && isatty(STDERR_FILENO)) fmt::print(stderr, "\r\033[K");
 
     bool all = true;
-    for (const study::Verdict& verdict : study::verdicts(result)) {
-        all = all && verdict.holds();
-        fmt::print("{}  {}: {:.4g}, {} {:.4g}\n", verdict.holds() ? "pass" : "FAIL", verdict.claim, verdict.measured,
-                   verdict.at_most ? "at most" : "at least", verdict.bound);
+    for (const study::Claim& claim : study::claims(result)) {
+        all = all && claim.holds();
+        fmt::print("{}  {}: {:.4g}, {} {:.4g}\n", claim.holds() ? "pass" : "FAIL", claim.text, claim.measured,
+                   claim.at_most ? "at most" : "at least", claim.bound);
     }
     fmt::print("{} points; report in {}\n", result.measurements.size(), (folder.path() / "index.html").string());
     return all ? 0 : 1;

@@ -82,6 +82,14 @@ void SonarConfig::check(types::Problems& problems) const {
     checkBeam(problems);
 }
 
+void QualityConfig::check(types::Problems& problems) const {
+    const QualityConfig absent;
+    const bool given = rows != absent.rows || columns_per_beam != absent.columns_per_beam;
+    for (const auto& [name, value] : {std::pair{"target_error", target_error}, {"budget_ms", budget_ms}})
+        if (value && (given || (target_error && budget_ms)))
+            problems.push_back({name, "is given with another choice; give rows and columns_per_beam, or target_error, or budget_ms"});
+}
+
 void SonarConfig::checkBeam(types::Problems& problems) const {
     if (range_min >= range)
         problems.push_back({"range_min", fmt::format("is {} m; must be below range, {} m", range_min, range)});

@@ -70,20 +70,21 @@ enum class Estimator {
     NearestJitter,  ///< All in the bin of a point drawn at random in it.
 };
 
-/** Samples per beam. */
+/** Samples per beam: given, or found for an error or a time on the first ping that hears anything. */
 struct QualityConfig {
     int rows = 256;
     int columns_per_beam = 2;
-    std::optional<types::NotBuiltYet> target_error, budget_ms;
+    std::optional<double> target_error, budget_ms;
 
     template <class Self, class V>
     static void describe(Self& self, V& visit) {
         using types::Field;
         visit(Field{"rows", "1", "image rows over beam_height_deg", 1, 16384}, self.rows);
         visit(Field{"columns_per_beam", "1", "image columns per beam", 1, 256}, self.columns_per_beam);
-        visit(Field{"target_error", "1", "relative error to be reached (not built yet)"}, self.target_error);
-        visit(Field{"budget_ms", "ms", "time to be kept (not built yet)"}, self.budget_ms);
+        visit(Field{"target_error", "1", "instead: relative L2 error of energies times r^5, 1e-4 to 1", 1e-4, 1}, self.target_error);
+        visit(Field{"budget_ms", "ms", "instead: time of a ping, kept by lowering the quality", 0.1, 1e5}, self.budget_ms);
     }
+    void check(types::Problems& problems) const;
 };
 
 /** An imaging sonar. Beam k of a fan covers bearings [-fov/2 + k fov/N, -fov/2 + (k + 1) fov/N], positive to port;
@@ -161,7 +162,7 @@ void SonarConfig::describeBeam(Self& self, V& visit) {
     visit(Field{"absorption", "", "absent: none"}, self.absorption);
     visit(Field{"output", "", "intensity E/S0, level 10 log10(E/S0), or the level received"}, self.output);
     visit(Field{"tvg", "", "time-varied gain"}, self.tvg);
-    visit(Field{"quality", "", "samples per beam"}, self.quality);
+    visit(Field{"quality", "", "samples per beam, or what they are chosen for"}, self.quality);
     visit(Field{"range_rounding", "", "sample: bins of whole microseconds; exact: edges as asked"},
           self.range_rounding);
     visit(Field{"published", "", "cerqueira2017 to the letter, for comparison"}, self.published);

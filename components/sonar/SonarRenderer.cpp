@@ -47,6 +47,7 @@ DepositSetup depositSetup(const SonarConfig& config, const std::vector<Beam>& be
 
 struct SonarRenderer::Parts {
     Parts(const SonarConfig& config, types::GeometryPtr scene);
+    void makeDeposit();
     void drawSlabs(const types::Snapshot& snapshot);
     void fillHeader(const types::Snapshot& snapshot, types::Sonar& ping) const;
     void fillBins(std::span<const uint64_t> sums, types::Sonar& ping);
@@ -76,12 +77,16 @@ SonarRenderer::Parts::Parts(const SonarConfig& c, types::GeometryPtr scene)
       beams(makeBeams(config)), slabs(makeSlabs(config, beams)), bins(makeBinGrid(config)), levels(config, bins),
       culler(*geometry, bins.range_max), threads(config.threads),
       surface(context, {*geometry, slabs, defines(plan), nearPlane(config, slabs.front()), culler.runLimit(), config.published}, threads) {
+    makeDeposit();
+    scratch.resize(static_cast<size_t>(threads.size()) * static_cast<size_t>(bins.bin_count));
+    context.check();
+}
+
+void SonarRenderer::Parts::makeDeposit() {
     DepositSetup setup = depositSetup(config, beams, slabs, bins);
     const bool on_cpu = config.deposit == Deposit::Cpu || (config.deposit == Deposit::Auto && context.isSoftware());
     if (on_cpu) deposit = std::make_unique<CpuDeposit>(std::move(setup), surface, threads);
     else deposit = makeGpuDeposit(setup);
-    scratch.resize(static_cast<size_t>(threads.size()) * static_cast<size_t>(bins.bin_count));
-    context.check();
 }
 
 void SonarRenderer::Parts::lap(size_t stage) {
@@ -149,6 +154,16 @@ void SonarRenderer::render(const types::Snapshot& snapshot, types::Sonar& ping) 
     parts_->fillHeader(snapshot, ping);
     parts_->fillBins(sums, ping);
     parts_->lap(4);
+}
+
+void SonarRenderer::setQuality(int rows, int columns_per_beam) {
+    parts_->context.requireThread();
+    parts_->plan.rows = parts_->config.quality.rows = rows;
+    parts_->plan.columns_per_beam = parts_->config.quality.columns_per_beam = columns_per_beam;
+    parts_->slabs = makeSlabs(parts_->config, parts_->beams);
+    parts_->surface.resize(parts_->slabs);
+    parts_->makeDeposit();
+    parts_->context.check();
 }
 
 std::span<const SonarRenderer::Stage> SonarRenderer::stages() const { return parts_->stages; }

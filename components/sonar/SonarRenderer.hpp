@@ -25,6 +25,9 @@ public:
      *  allocates nothing when `ping` has been filled by this renderer before. */
     void render(const types::Snapshot& snapshot, types::Sonar& ping);
 
+    /** Renders from now on with so many image rows and columns per beam [1]; allocates. */
+    void setQuality(int rows, int columns_per_beam);
+
     struct Stage {
         const char* name;
         double seconds;

@@ -14,11 +14,16 @@ size_t partCount(const gpu::EglContext& context, const SurfacePass::Setup& setup
 
 }  // namespace
 
-SurfacePass::SurfacePass(gpu::EglContext& context, const Setup& setup, ThreadPool& threads)
-    : context_(context), threads_(threads), scene_(setup.geometry, hasNormalMaps(setup)),
-      parts_(partCount(context, setup, threads)), pictures_(setup.slabs.size()), empty_too_(setup.empty_too) {
+SurfacePass::SurfacePass(gpu::EglContext& context, Setup setup, ThreadPool& threads)
+    : setup_(std::move(setup)), context_(context), threads_(threads), scene_(setup_.geometry, hasNormalMaps(setup_)),
+      parts_(partCount(context, setup_, threads)), pictures_(setup_.slabs.size()) {
     glFinish();  // the other contexts must find the scene's buffers filled
-    onEachPart([&](size_t part) { makePart(static_cast<int>(part), setup); });
+    onEachPart([this](size_t part) { makePart(part); });
+}
+
+void SurfacePass::resize(const std::vector<Slab>& slabs) {
+    setup_.slabs = slabs;
+    onEachPart([this](size_t part) { makePictures(part); });
 }
 
 SurfacePass::~SurfacePass() {
@@ -36,12 +41,15 @@ template <class Job> void SurfacePass::onEachPart(const Job& job) {
     });
 }
 
-void SurfacePass::makePart(int part, const Setup& setup) {
-    const auto index = static_cast<size_t>(part);
-    if (part > 0) parts_[index].own.emplace(context_);
-    parts_[index].painter.emplace(setup.geometry, scene_, setup.defines, setup.near_plane);
-    for (size_t slab = index; slab < pictures_.size(); slab += parts_.size())
-        pictures_[slab] = std::make_unique<SlabPicture>(setup.slabs[slab], hasNormalMaps(setup), setup.run_limit);
+void SurfacePass::makePart(size_t part) {
+    if (part > 0) parts_[part].own.emplace(context_);
+    parts_[part].painter.emplace(setup_.geometry, scene_, setup_.defines, setup_.near_plane);
+    makePictures(part);
+}
+
+void SurfacePass::makePictures(size_t part) {
+    for (size_t slab = part; slab < pictures_.size(); slab += parts_.size())
+        pictures_[slab] = std::make_unique<SlabPicture>(setup_.slabs[slab], hasNormalMaps(setup_), setup_.run_limit);
 }
 
 void SurfacePass::cull(const Culler& culler) {

@@ -15,20 +15,23 @@ class SurfacePass {
 public:
     struct Setup {
         const types::Geometry& geometry;
-        const std::vector<Slab>& slabs;
+        std::vector<Slab> slabs;
         std::vector<std::string> defines;  ///< As the plan's features.
         double near_plane;                 ///< [m]
         size_t run_limit;                  ///< Most runs that a slab may see.
         bool empty_too;                    ///< Slabs that see nothing are drawn as well: misses count.
     };
     /** `context` is current on this thread; context, geometry and threads must outlive the pass. */
-    SurfacePass(gpu::EglContext& context, const Setup& setup, ThreadPool& threads);
+    SurfacePass(gpu::EglContext& context, Setup setup, ThreadPool& threads);
     ~SurfacePass();
+
+    /** Other pictures of the same slabs: as many, in more or fewer pixels. */
+    void resize(const std::vector<Slab>& slabs);
 
     /** Lists what each slab sees of what the culler has placed. */
     void cull(const Culler& culler);
     /** Whether a slab's picture is drawn. */
-    bool draws(size_t slab) const { return empty_too_ || !pictures_[slab]->empty(); }
+    bool draws(size_t slab) const { return setup_.empty_too || !pictures_[slab]->empty(); }
     /** Draws the slabs; returns when the pictures are there. Throws GlError. */
     void draw();
 
@@ -44,15 +47,16 @@ private:
         std::optional<gpu::EglContext> own;  ///< Of all threads but the first, which has the renderer's.
         std::optional<SurfacePainter> painter;
     };
-    void makePart(int part, const Setup& setup);
+    void makePart(size_t part);
+    void makePictures(size_t part);
     template <class Job> void onEachPart(const Job& job);
 
+    Setup setup_;
     gpu::EglContext& context_;
     ThreadPool& threads_;
     SurfaceScene scene_;
     std::vector<Part> parts_;
     std::vector<std::unique_ptr<SlabPicture>> pictures_;
-    bool empty_too_;
     const std::vector<ObjectRecord>* placed_ = nullptr;
 };
 

@@ -29,7 +29,7 @@ double onLine(double x, double x1, double y1, double x2, double y2) {
     return std::exp(std::log(y1) + (std::log(x) - std::log(x1)) * (std::log(y2) - std::log(y1)) / (std::log(x2) - std::log(x1)));
 }
 
-void judgeFlatBottom(const ErrorResult& result, std::vector<Verdict>& all) {
+void judgeFlatBottom(const ErrorResult& result, std::vector<Claim>& all) {
     if (const Measurement* m = find(result, "flat_bottom", Method::Footprint, 512, 2))
         all.push_back({"flat bottom, 512 rows: mean relative L2 of footprints", m->metrics.mean_rel_l2, 5e-4, true});
     if (const Measurement* m = find(result, "flat_bottom_edge", Method::Footprint, 512, 2))
@@ -42,7 +42,7 @@ void judgeFlatBottom(const ErrorResult& result, std::vector<Verdict>& all) {
     all.push_back({fmt::format("flat bottom, {:.3g} ms: error of nearest bin over that of footprints", ms), *errorAt(ms, nearest) / *errorAt(ms, footprint), 20, false});
 }
 
-void judgeSlopes(const ErrorResult& result, std::vector<Verdict>& all) {
+void judgeSlopes(const ErrorResult& result, std::vector<Claim>& all) {
     for (const char* scene : {"flat_bottom", "flat_bottom_edge", "flat_bottom_pitched", "tilted_plane", "wall"}) {
         if (!has(result, scene)) continue;
         const double error = referenceError(result, scene);
@@ -55,7 +55,7 @@ void judgeSlopes(const ErrorResult& result, std::vector<Verdict>& all) {
     }
 }
 
-void judgeComputed(const ErrorResult& result, std::vector<Verdict>& all) {
+void judgeComputed(const ErrorResult& result, std::vector<Claim>& all) {
     for (const Reference& reference : result.references) {
         if (!(reference.error > 0)) continue;
         double smallest = std::numeric_limits<double>::infinity();
@@ -117,8 +117,8 @@ bool onParetoFront(const Measurement& point, const ErrorResult& result) {
     });
 }
 
-std::vector<Verdict> verdicts(const ErrorResult& result) {
-    std::vector<Verdict> all;
+std::vector<Claim> claims(const ErrorResult& result) {
+    std::vector<Claim> all;
     judgeFlatBottom(result, all);
     judgeSlopes(result, all);
     judgeComputed(result, all);

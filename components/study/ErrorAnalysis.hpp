@@ -24,14 +24,14 @@ std::optional<double> errorAt(double ms, const std::vector<Measurement>& points)
 bool onParetoFront(const Measurement& point, const ErrorResult& result);
 
 /** A claim, what came out, and whether it holds. */
-struct Verdict {
-    std::string claim;
+struct Claim {
+    std::string text;
     double measured, bound;
     bool at_most;  ///< The bound is an upper one, else a lower one.
     bool holds() const { return at_most ? measured <= bound : measured >= bound; }
 };
 
 /** Every claim that the scenes at hand can settle. */
-std::vector<Verdict> verdicts(const ErrorResult& result);
+std::vector<Claim> claims(const ErrorResult& result);
 
 }  // namespace insonify::study

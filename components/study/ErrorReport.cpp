@@ -48,8 +48,8 @@ void addTable(Out out, const ErrorResult& result) {
 
 void addVerdicts(Out out, const ErrorResult& result) {
     fmt::format_to(out, "<h2>Claims</h2>\n<table><tr><th>claim<th>measured<th>bound<th>verdict</tr>\n");
-    for (const Verdict& v : verdicts(result))
-        fmt::format_to(out, "<tr><td>{}<td>{:.4g}<td>{} {:.4g}<td>{}</tr>\n", v.claim, v.measured, v.at_most ? "at most" : "at least", v.bound, v.holds() ? "pass" : "<b>fail</b>");
+    for (const Claim& v : claims(result))
+        fmt::format_to(out, "<tr><td>{}<td>{:.4g}<td>{} {:.4g}<td>{}</tr>\n", v.text, v.measured, v.at_most ? "at most" : "at least", v.bound, v.holds() ? "pass" : "<b>fail</b>");
     fmt::format_to(out, "</table>\n");
 }
 
@@ -106,8 +106,8 @@ std::string jsonOf(const ErrorResult& result) {
     });
     fmt::format_to(out, "],\n\"verdicts\": [");
     comma = "\n";
-    for (const Verdict& v : verdicts(result))
-        fmt::format_to(out, "{}{{\"claim\": \"{}\", \"measured\": {:.6g}, \"bound\": {:.6g}, \"at_most\": {}, \"verdict\": \"{}\"}}", next(), v.claim, v.measured, v.bound, v.at_most, v.holds() ? "pass" : "fail");
+    for (const Claim& v : claims(result))
+        fmt::format_to(out, "{}{{\"claim\": \"{}\", \"measured\": {:.6g}, \"bound\": {:.6g}, \"at_most\": {}, \"verdict\": \"{}\"}}", next(), v.text, v.measured, v.bound, v.at_most, v.holds() ? "pass" : "fail");
     fmt::format_to(out, "],\n\"points\": [");
     comma = "\n";
     for (const Measurement& m : result.measurements)

@@ -61,7 +61,7 @@ TEST(ErrorAnalysisTest, AClaimThatDoesNotHoldFails) {
     ErrorResult result = made();
     const auto failures = [&] {
         int count = 0;
-        for (const Verdict& verdict : verdicts(result)) count += !verdict.holds();
+        for (const Claim& claim : claims(result)) count += !claim.holds();
         return count;
     };
     EXPECT_EQ(failures(), 0);

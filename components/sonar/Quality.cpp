@@ -1,0 +1,115 @@
+#include "components/sonar/Quality.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <limits>
+
+#include "components/sonar/SonarRenderer.hpp"
+
+namespace insonify::sonar {
+namespace {
+
+constexpr int least_rows = 8, most_rows = 2048, most_columns = 256;
+constexpr int patience = 20, late_of_patience = 2, early_in_a_row = 100;
+
+/** Energies as they are summed: a gain or a level would hide or invent errors. */
+SonarConfig plain(SonarConfig config) {
+    config.output = Output::Intensity;
+    config.tvg.reset();
+    return config;
+}
+
+/** Renders one scene at any quality. */
+class Trial {
+public:
+    Trial(const SonarConfig& config, const types::Snapshot& scene)
+        : config_(plain(config)), scene_(scene), renderer_(config_, scene.geometry) {}
+
+    std::vector<float> bins(int rows, int columns) {
+        renderer_.setQuality(rows, columns);
+        renderer_.render(scene_, ping_);
+        return ping_.bins;
+    }
+    double ms(int rows, int columns) {
+        renderer_.setQuality(rows, columns);
+        double least = std::numeric_limits<double>::infinity();
+        for (int i = 0; i < 4; ++i) {
+            const auto start = std::chrono::steady_clock::now();
+            renderer_.render(scene_, ping_);
+            least = std::min(least, std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count());
+        }
+        return least;
+    }
+    /** Relative L2 of `coarse` against `fine`; 0 when nothing is heard. */
+    double change(const std::vector<float>& coarse, const std::vector<float>& fine) const {
+        double error = 0, norm = 0;
+        const auto count = static_cast<size_t>(config_.bin_count);
+        for (size_t i = 0; i < fine.size(); ++i) {
+            const double range = static_cast<double>(i % count) + 0.5;
+            const double weight = config_.model == Model::Physical ? std::pow(range / static_cast<double>(count), 5) : 1;
+            error += std::pow(weight * (static_cast<double>(coarse[i]) - fine[i]), 2);
+            norm += std::pow(weight * fine[i], 2);
+        }
+        return norm > 0 ? std::sqrt(error / norm) : 0;
+    }
+
+private:
+    SonarConfig config_;
+    const types::Snapshot& scene_;
+    SonarRenderer renderer_;
+    types::Sonar ping_;
+};
+
+/** What more rows, columns, or both change. */
+struct Changes {
+    double of_rows, of_columns, of_both;
+    double error() const { return std::max(std::hypot(of_rows, of_columns), of_both); }
+};
+
+/** Rows are also tried at factors that are not powers of 2: an edge along the rows may lie as wrong at twice as many. Both
+ *  together, because a small thing may need more of both before it is seen at all. */
+Changes changesOf(Trial& trial, int rows, int columns) {
+    const auto here = trial.bins(rows, columns);
+    const auto change = [&](double taller, int wider) {
+        return trial.change(here, trial.bins(static_cast<int>(std::lround(taller * rows)), wider * columns));
+    };
+    return {std::max({change(1.4, 1), change(2, 1), change(2.7, 1)}), change(1, 2), change(2, 2)};
+}
+
+}  // namespace
+
+std::vector<Quality> tryQualities(const SonarConfig& config, const types::Snapshot& scene, double target_error, double budget_ms) {
+    Trial trial(config, scene);
+    std::vector<Quality> ladder;
+    for (int rows = least_rows, columns = 1; rows <= most_rows && columns <= most_columns;) {
+        const Changes changes = changesOf(trial, rows, columns);
+        const Quality quality{rows, columns, changes.error(), std::isfinite(budget_ms) ? trial.ms(rows, columns) : 0};
+        if (!ladder.empty() && quality.ms > budget_ms) break;
+        ladder.push_back(quality);
+        if (quality.error <= target_error) break;
+        (changes.of_rows >= changes.of_columns ? rows : columns) *= 2;
+    }
+    return ladder;
+}
+
+BudgetKeeper::BudgetKeeper(std::vector<Quality> ladder, double budget_ms)
+    : ladder_(std::move(ladder)), budget_ms_(budget_ms), at_(ladder_.size() - 1) {}
+
+bool BudgetKeeper::moveTo(size_t at) {
+    pings_ = late_ = early_ = 0;
+    if (at >= ladder_.size() || at == at_) return false;
+    at_ = at;
+    return true;
+}
+
+bool BudgetKeeper::heard(double ms) {
+    late_ += ms > budget_ms_;
+    early_ = ms < budget_ms_ / 3 ? early_ + 1 : 0;
+    if (late_ >= late_of_patience) return moveTo(at_ > 0 ? at_ - 1 : 0);
+    if (early_ >= early_in_a_row) return moveTo(at_ + 1);
+    if (++pings_ == patience) pings_ = late_ = 0;
+    return false;
+}
+
+}  // namespace insonify::sonar
