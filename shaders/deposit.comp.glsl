@@ -14,7 +14,7 @@ layout(std430, binding = SUMS_BINDING) buffer Sums { uvec2 sums[]; };  // low an
 uniform ivec2 image_size;
 uniform bool shares_per_row;
 uniform uint bin_count;
-uniform double bin_width, attenuation;
+uniform double bin_width, attenuation, strength_scale;
 uniform dvec2 extent, pixel_size, slab_axis;
 
 double binEdge(uint k) { return edges[k]; }
@@ -59,9 +59,9 @@ Surface surfaceOf(CommandRecord command, uint triangle, dvec2 uv) {
 
 double strengthOf(uint material) {
 #ifdef HAVE_CERQUEIRA2017
-    return double(materials[material].values.y);
+    return double(materials[material].values.y) * strength_scale;
 #else
-    return double(materials[material].values.x);
+    return double(materials[material].values.x) * strength_scale;
 #endif
 }
 

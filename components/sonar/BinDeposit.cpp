@@ -1,6 +1,7 @@
 #include "components/sonar/BinDeposit.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 namespace insonify::sonar {
@@ -10,6 +11,15 @@ std::vector<double> inverseEdges(const BinGrid& bins) {
     std::vector<double> edges;
     for (int k = 0; k <= bins.bin_count; ++k) edges.push_back(k == 0 ? nearest : std::min(nearest, 1 / bins.edge(k)));
     return edges;
+}
+
+double strengthScale(const SonarConfig& config, const BinGrid& bins, double loudest) {
+    constexpr double most = 1048576, most_sum = 8 * most;  // of one deposit, and of a bin: half of 64 bits
+    if (config.model != Model::Physical) return 1;         // S and its weights are at most 1
+    const double ratio = std::max(1.5, 0.5 * bins.bin_width / std::max(bins.range_min, 1e-3));  // of a bin's middle to its ranges
+    const double strongest = loudest * ratio * ratio;
+    const double pixels = static_cast<double>(config.quality.rows) * (config.quality.columns_per_beam + 2);
+    return std::exp2(-std::ceil(std::max(0.0, std::log2(strongest * std::max(1 / most, pixels / most_sum)))));
 }
 
 }  // namespace insonify::sonar

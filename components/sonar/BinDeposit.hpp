@@ -20,6 +20,7 @@ struct DepositSetup {
     Model model = Model::Physical;
     bool published = false;    ///< `cerqueira2017` to the letter.
     Estimator estimator = Estimator::Footprint;
+    double strength_scale = 1;  ///< Strengths are deposited times this: strengthScale.
 
     size_t channels() const { return model == Model::Cerqueira2017 ? 2 : 1; }
     size_t sumCount() const { return beam_count * static_cast<size_t>(bins.bin_count) * channels(); }
@@ -30,6 +31,10 @@ std::vector<double> inverseEdges(const BinGrid& bins);
 
 /** Sums are counted in quanta of 2^-40 of a whole pixel of unit strength: exact, so the order of summation is free. */
 constexpr double quanta_per_unit = 1099511627776.0;
+
+/** The power of 2, at most 1, by which strengths of up to `loudest` must be scaled so that no sum of quanta overflows:
+ *  1 but for materials, images or bins that are extreme together. */
+double strengthScale(const SonarConfig& config, const BinGrid& bins, double loudest);
 
 /** Spreads the pixels of the slabs over beams and bins. One interface, on the graphics card or on the processor. */
 class BinDeposit {

@@ -55,7 +55,7 @@ void CpuDeposit::take(size_t slab, const SurfacePass& surface) {
     const double cosine = std::cos(setup_.slabs[slab].azimuth), sine = std::sin(setup_.slabs[slab].azimuth);
     const int value = setup_.model == Model::Cerqueira2017 ? 1 : 0;
     for (const CommandRecord& command : surface.picture(slab).commands)
-        picture.runs.push_back(placed(surface.objects()[command.object], surface.scene().materials()[command.material].values[value],
+        picture.runs.push_back(placed(surface.objects()[command.object], surface.scene().materials()[command.material].values[value] * setup_.strength_scale,
                                       command.first_triangle, cosine, sine));
 }
 

@@ -47,6 +47,7 @@ void GpuDeposit::setUniforms(const Slab& slab, bool shares_per_row) const {
     glUniform1ui(uniform("bin_count"), static_cast<GLuint>(setup_.bins.bin_count));
     glUniform1d(uniform("bin_width"), setup_.bins.bin_width);
     glUniform1d(uniform("attenuation"), setup_.attenuation);
+    glUniform1d(uniform("strength_scale"), setup_.strength_scale);
     glUniform2d(uniform("slab_axis"), std::cos(slab.azimuth), std::sin(slab.azimuth));
     glUniform2d(uniform("extent"), slab.extent_u, slab.extent_v);
     glUniform2d(uniform("pixel_size"), slab.du(), slab.dv());

@@ -30,6 +30,13 @@ double nearPlane(const SonarConfig& config, const Slab& slab) {
     return std::max(config.published ? 0 : config.range_min, 1e-3) / corner;
 }
 
+/** Strongest Lambert parameter [1]. */
+double loudest(const types::Geometry& geometry) {
+    double strongest = 0;
+    for (const types::Material& material : geometry.materials) strongest = std::max(strongest, std::pow(10.0, material.lambert_db / 10.0));
+    return strongest;
+}
+
 DepositSetup depositSetup(const SonarConfig& config, const std::vector<Beam>& beams, const std::vector<Slab>& slabs, const BinGrid& bins) {
     DepositSetup setup;
     setup.slabs = slabs;
@@ -67,6 +74,7 @@ struct SonarRenderer::Parts {
     ThreadPool threads;
     SurfacePass surface;
     std::unique_ptr<BinDeposit> deposit;
+    double strength_scale = 1;
     std::vector<double> scratch;
     std::array<Stage, 5> stages{{{"cull", 0}, {"draw", 0}, {"read", 0}, {"deposit", 0}, {"beams", 0}}};
     std::chrono::steady_clock::time_point last;
@@ -84,6 +92,7 @@ SonarRenderer::Parts::Parts(const SonarConfig& c, types::GeometryPtr scene)
 
 void SonarRenderer::Parts::makeDeposit() {
     DepositSetup setup = depositSetup(config, beams, slabs, bins);
+    setup.strength_scale = strength_scale = strengthScale(config, bins, loudest(*geometry));
     const bool on_cpu = config.deposit == Deposit::Cpu || (config.deposit == Deposit::Auto && context.isSoftware());
     if (on_cpu) deposit = std::make_unique<CpuDeposit>(std::move(setup), surface, threads);
     else deposit = makeGpuDeposit(setup);
@@ -125,7 +134,7 @@ void SonarRenderer::Parts::fillBeam(std::span<const uint64_t> sums, size_t beam,
     const double pixel = slabs.front().du() * slabs.front().dv();  // solid angle of a whole pixel [sr]
     for (size_t k = 0; k < count; ++k) {
         const size_t at = beam * count + k;
-        if (config.model == Model::Physical) values[k] = static_cast<double>(sums[at]) * (pixel / quanta_per_unit);
+        if (config.model == Model::Physical) values[k] = static_cast<double>(sums[at]) * (pixel / (quanta_per_unit * strength_scale));
         else values[k] = sums[2 * at + 1] ? static_cast<double>(sums[2 * at]) / static_cast<double>(sums[2 * at + 1]) : 0;
     }
     levels.apply({values, count}, {ping.bins.data() + beam * count, count});

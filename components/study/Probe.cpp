@@ -130,8 +130,12 @@ double off(double a, double b) { return a == b ? 0 : std::abs(a / b - 1); }
 
 double trueEnergy(const sonar::SonarConfig& config, uint32_t beam, const Truth& truth) {
     const sonar::BinGrid grid = sonar::makeBinGrid(config);
+    return trueEnergy(config, beam, truth, grid.range_min, grid.range_max);
+}
+
+double trueEnergy(const sonar::SonarConfig& config, uint32_t beam, const Truth& truth, double r1, double r2) {
     const sonar::Beam limits = sonar::makeBeams(config)[beam];
-    return truth({limits.low, limits.high, types::radians(config.beam_height_deg) / 2}, grid.range_min, grid.range_max);
+    return truth({limits.low, limits.high, types::radians(config.beam_height_deg) / 2}, r1, r2);
 }
 
 double worstBeam(const Probe& heard, const sonar::SonarConfig& config, const Truth& truth) {

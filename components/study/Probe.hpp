@@ -43,8 +43,9 @@ types::Mesh facingWall(float x, float half_width = 200);  ///< Square to the x a
 double difference(const types::Sonar& a, const types::Sonar& b);
 /** |a / b - 1|. */
 double off(double a, double b);
-/** What a beam of `config` hears in all its bins. */
+/** What a beam of `config` hears in all its bins, or between two ranges [m]. */
 double trueEnergy(const sonar::SonarConfig& config, uint32_t beam, const Truth& truth);
+double trueEnergy(const sonar::SonarConfig& config, uint32_t beam, const Truth& truth, double r1, double r2);
 /** Largest |energy / truth - 1| over the beams. */
 double worstBeam(const Probe& heard, const sonar::SonarConfig& config, const Truth& truth);
 

@@ -40,8 +40,8 @@ Outcome wideFan(double fov_deg) {
     const int beams = 360;
     const double width = fov_deg / beams;
     sonar::SonarConfig wide = fan(fov_deg, 40, beams, 25), narrow = fan(10 * width, 40, 10, 25);
-    setSamples(wide, 512, 8);
-    setSamples(narrow, 512, 8);
+    setSamples(wide, 2048, 4);
+    setSamples(narrow, 2048, 4);
     const Probe all = probe(wide, lookingAt(room()));
     double worst = 0;
     for (const int first : {0, 40, 100, 175, 250, 310, 350}) {  // none has a corner of the room
