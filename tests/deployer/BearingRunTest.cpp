@@ -96,7 +96,7 @@ TEST(BearingRunTest, ATargetAtEveryBearingOfATurningHeadIsInItsPingAndBin) {
     const std::vector<Sonar> pings =
         loggedPings(*targetsAt(bearings), "sonar::ScanningSonarTask",
                     R"({speed_of_sound: 1000, range: 20, bin_count: 200, head: {step_deg: 3},
-        quality: {rows: 512, columns_per_beam: 8}})",
+        quality: {rows: 512, columns_per_beam: 16}})",
                     "{yaw_deg: 0}", 120);
     ASSERT_EQ(pings.size(), 120u);
     for (size_t k = 0; k < pings.size(); ++k) expectTarget(pings[k], 0, bearings[k], binOf(k, 120));
