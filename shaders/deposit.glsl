@@ -57,8 +57,8 @@ void depositCell(Footprint cell, uint beam, double strength_range) {
     while (bin > 0u && binEdge(bin) < cell.near_end) --bin;
     while (binEdge(bin + 1u) >= cell.near_end) ++bin;
     double above = cell.near_end;
-    // What a plane's nearest point cuts off lies about that point: only the blanking takes anything away.
-    double share_above = above < binEdge(0u) ? 0.5 : trapezoidShare(cell, above - cell.centre);
+    // What the plane's nearest point cuts off lies about that point; what object, blanking and range cut off is gone.
+    double share_above = above < cell.nearest ? trapezoidShare(cell, above - cell.centre) : 0.5;
     for (; above > cell.far_end; ++bin) {
         double below = max(binEdge(bin + 1u), cell.far_end);
         double share_below = trapezoidShare(cell, below - cell.centre);

@@ -22,7 +22,8 @@ float mappedCosine(vec3 direction, float scale) {
     vec3 t = normalize(slab_tangent.xyz - n * dot(n, slab_tangent.xyz));
     vec3 texel = texture(normal_map, map_uv).xyz * 2.0 - 1.0;
     vec3 bent = normalize(mat3(t, cross(n, t) * slab_tangent.w, n) * (texel * vec3(scale, scale, 1.0)));
-    return max(-dot(bent, direction) * sign(-dot(n, direction)), 1e-6);  // both sides of a surface reflect
+    float cosine = -dot(bent, direction) * sign(-dot(n, direction));  // both sides of a surface reflect
+    return cosine > 1e-6 ? cosine : 1e-6;                              // also where normal and tangent make no frame
 }
 
 void main() {

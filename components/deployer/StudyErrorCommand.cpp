@@ -3,6 +3,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <cctype>
 #include <memory>
 
 #include "components/deployer/OutputFolder.hpp"
@@ -48,6 +49,15 @@ types::GeometryPtr withoutNormalMaps(const types::GeometryPtr& geometry) {
     return result;
 }
 
+/** Of the scene: the file's, in letters that every report can show; never that of a scene with a closed form. */
+std::string nameOf(const std::string& file) {
+    std::string name = std::filesystem::path(file).stem().string();
+    for (char& c : name)
+        if (!std::isalnum(static_cast<unsigned char>(c)) && c != '-' && c != '.') c = '_';
+    const auto scenes = study::closedFormScenes();
+    return std::ranges::find(scenes, name, &study::StudyScene::name) == scenes.end() ? name : "deployment_" + name;
+}
+
 /** The first sonar of a deployment, where it is at its ping number `ping`. */
 study::StudyScene sceneOf(const std::string& file, uint64_t ping) {
     framework::Registry registry = builtInTasks();
@@ -59,7 +69,7 @@ study::StudyScene sceneOf(const std::string& file, uint64_t ping) {
         auto* sonar = dynamic_cast<sonar::PingTask*>(task.get());
         types::SnapshotPtr snapshot;
         if (!sonar || sonar->snapshot.read(snapshot) == framework::FlowStatus::NoData) continue;
-        study::StudyScene scene{std::filesystem::path(file).stem().string(), file, plain(sonar->sonarConfig(), file), *snapshot, {}};
+        study::StudyScene scene{nameOf(file), file, plain(sonar->sonarConfig(), file), *snapshot, {}};
         scene.snapshot.geometry = withoutNormalMaps(snapshot->geometry);
         return scene;
     }

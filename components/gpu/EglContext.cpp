@@ -109,7 +109,8 @@ void EglContext::requireDevice(const std::string& device) {
     if (const std::string name = chosen(device); !isWord(name)) indexOf(name, devices().size());
 }
 
-EglContext::EglContext(const EglContext& other) {
+EglContext::EglContext(Sharing with) {
+    const EglContext& other = with.other;
     if (!createOn(other.display_, other.robust_, other.context_))
         throw GlError("no second OpenGL context beside that of " + other.renderer_);
     watch();

@@ -20,9 +20,13 @@ public:
     explicit EglContext(const std::string& device = {});
     /** Throws GlError when EGL lists no such device; makes no context. */
     static void requireDevice(const std::string& device);
-    /** A context for this thread on the device of `other`, with which it shares buffers, textures and programs; vertex
-     *  arrays and framebuffers belong to one context. `other` may be current on another thread. */
-    explicit EglContext(const EglContext& other);
+    struct Sharing {
+        const EglContext& other;
+    };
+    /** A context for this thread on the device of another one, with which it shares buffers, textures and programs; vertex
+     *  arrays and framebuffers belong to one context. The other one may be current on another thread. */
+    explicit EglContext(Sharing with);
+    EglContext(const EglContext&) = delete;
     ~EglContext();
     EglContext& operator=(const EglContext&) = delete;
 

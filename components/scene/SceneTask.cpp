@@ -90,7 +90,7 @@ void SceneTask::updateHook() {
     sample->geometry = geometry_;
     sample->water_surface = config->water_surface;
     addMoved(sample->moved);
-    pool_.stock(*sample);
+    pool_.stock(*sample, [this](types::Snapshot& stocked) { stocked.moved.reserve(part_count_); });
     snapshot.write(sample);
     if (!movables_good) error(name() + kUnusable);
 }

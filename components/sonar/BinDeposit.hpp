@@ -40,7 +40,9 @@ double strengthScale(const SonarConfig& config, const BinGrid& bins, double loud
 class BinDeposit {
 public:
     virtual ~BinDeposit() = default;
-    /** Takes the picture of a slab. Call for each slab that sees anything once a ping. */
+    /** Forgets what an earlier ping left that came to no end. */
+    virtual void begin() = 0;
+    /** Takes the picture of a slab. Call once a ping for each slab that is drawn. */
     virtual void take(size_t slab, const SurfacePass& surface) = 0;
     /** Sums over all slabs taken since the last call, [beam][bin][channel] in quanta; valid until the next take. */
     virtual std::span<const uint64_t> finish() = 0;

@@ -47,6 +47,10 @@ CpuDeposit::CpuDeposit(DepositSetup setup, const SurfacePass& surface, ThreadPoo
             columns_[part].push_back(touched(shares, firstBeam(part), firstBeam(part + 1)));
 }
 
+void CpuDeposit::begin() {
+    for (TakenPicture& picture : pictures_) picture.taken = false;
+}
+
 void CpuDeposit::take(size_t slab, const SurfacePass& surface) {
     TakenPicture& picture = pictures_[slab];
     surface.picture(slab).read(picture.words);
@@ -61,7 +65,6 @@ void CpuDeposit::take(size_t slab, const SurfacePass& surface) {
 
 std::span<const uint64_t> CpuDeposit::finish() {
     threads_.run([this](int part, int) { depositPart(static_cast<size_t>(part)); });
-    for (TakenPicture& picture : pictures_) picture.taken = false;
     return sums_;
 }
 

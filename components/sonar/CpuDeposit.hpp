@@ -9,6 +9,7 @@ namespace insonify::sonar {
 class CpuDeposit final : public BinDeposit {
 public:
     CpuDeposit(DepositSetup setup, const SurfacePass& surface, ThreadPool& threads);
+    void begin() override;
     void take(size_t slab, const SurfacePass& surface) override;
     std::span<const uint64_t> finish() override;
 

@@ -15,7 +15,7 @@
 namespace insonify::sonar {
 namespace {
 
-using std::abs, std::exp, std::sqrt, std::tanh;
+using std::abs, std::exp, std::sqrt;
 // By value, so that they become instructions and not branches that nobody can predict.
 inline double min(double a, double b) { return a < b ? a : b; }
 inline double max(double a, double b) { return a > b ? a : b; }
@@ -32,7 +32,7 @@ struct Bins {
     double bin_width, attenuation;
     double binEdge(uint k) const { return edges[k]; }
     static uint64_t quanta(double amount) {  // by way of a signed number, for which there is an instruction
-        return static_cast<uint64_t>(static_cast<int64_t>(min(amount, 1048576.0) * quanta_per_unit + 0.5));
+        return static_cast<uint64_t>(static_cast<int64_t>(min(max(amount, 0.0), 1048576.0) * quanta_per_unit + 0.5));
     }
 };
 
@@ -70,14 +70,14 @@ constexpr int stretch = 64;  ///< Pixels at a time: their numbers stay in the ne
 struct Pixels {
     double normal_x[stretch], normal_y[stretch], normal_z[stretch], distance[stretch];  ///< Planes, slab axes.
     double u[stretch], ray_u[stretch], ray_v[stretch], mapped[stretch], strength[stretch];
-    double near_limit[stretch], far_limit[stretch];
+    double near_limit[stretch], far_limit[stretch], nearest[stretch];
     double inverse_range[stretch], slope_u[stretch], slope_v[stretch], strength_range[stretch];
 };
 
 /** A stretch of shares, each with what its pixel shows. */
 struct Shared {
     double middle[stretch], width[stretch], limit[stretch], shear[stretch];
-    double u[stretch], inverse_range[stretch], slope_u[stretch], slope_v[stretch], near_limit[stretch], far_limit[stretch];
+    double u[stretch], inverse_range[stretch], slope_u[stretch], slope_v[stretch], nearest[stretch], near_limit[stretch], far_limit[stretch];
     double strength_range[stretch];
 
     void set(int i, const ShareRecord& share, const Pixels& pixels, uint p) {
@@ -89,6 +89,7 @@ struct Shared {
         inverse_range[i] = pixels.inverse_range[p];
         slope_u[i] = pixels.slope_u[p];
         slope_v[i] = pixels.slope_v[p];
+        nearest[i] = pixels.nearest[p];
         near_limit[i] = pixels.near_limit[p];
         far_limit[i] = pixels.far_limit[p];
         strength_range[i] = pixels.strength_range[p];
@@ -98,7 +99,7 @@ struct Shared {
 /** What a stretch of shares covers: Footprint as arrays. */
 struct Cells {
     double pixel[stretch], centre[stretch], wide[stretch], narrow[stretch], per_wide[stretch], steepness[stretch], near_end[stretch],
-        far_end[stretch], size[stretch];
+        far_end[stretch], nearest[stretch], size[stretch];
 
     void set(int i, const Footprint& f) {
         pixel[i] = f.pixel;
@@ -109,10 +110,11 @@ struct Cells {
         steepness[i] = f.steepness;
         near_end[i] = f.near_end;
         far_end[i] = f.far_end;
+        nearest[i] = f.nearest;
         size[i] = f.size;
     }
     Footprint get(int i) const {
-        return {pixel[i], centre[i], wide[i], narrow[i], per_wide[i], steepness[i], near_end[i], far_end[i], size[i]};
+        return {pixel[i], centre[i], wide[i], narrow[i], per_wide[i], steepness[i], near_end[i], far_end[i], nearest[i], size[i]};
     }
 };
 
@@ -175,7 +177,7 @@ INSONIFY_VECTORISED void meet(Pixels& pixels, int count) {
         pixels.inverse_range[i] = surface.inverse_range;
         pixels.slope_u[i] = surface.slope_u;
         pixels.slope_v[i] = surface.slope_v;
-        pixels.near_limit[i] = min(pixels.near_limit[i], surface.nearest);
+        pixels.nearest[i] = surface.nearest;
         pixels.strength_range[i] = pixels.strength[i] * cosine * surface.range;
     }
 }
@@ -189,7 +191,7 @@ INSONIFY_VECTORISED void cover(const Shared& shared, int count, const Reach& rea
     for (int i = 0; i < count; ++i)
         cells.set(i, cellFootprint(shared.u[i], reach.v, shared.middle[i], shared.width[i], shared.limit[i], shared.shear[i],
                                    reach.dv, shared.inverse_range[i], shared.slope_u[i], shared.slope_v[i],
-                                   shared.near_limit[i], shared.far_limit[i], reach.near_edge, reach.far_edge, reach.per_pixel));
+                                   shared.nearest[i], shared.near_limit[i], shared.far_limit[i], reach.near_edge, reach.far_edge, reach.per_pixel));
 }
 
 /** The part row by row, a stretch of pixels and then of shares at a time. */

@@ -9,14 +9,14 @@ namespace insonify::sonar {
 struct PlacedRun {
     double normal_x[3], normal_y[3], normal_z[3], origin[3];  ///< Rows of the normals' matrix; origin, slab axes [m].
     double near_limit, far_limit;                             ///< Inverse ranges of the object [1/m].
-    double strength;                                          ///< Of the material at normal incidence.
-    uint32_t first_triangle;
+    double strength;                                          ///< Of the material at normal incidence [1].
+    uint32_t first_triangle;                                  ///< Of the mesh, among all planes [1].
 };
 
 /** A slab's picture and what its numbers mean, copied when taken. */
 struct TakenPicture {
     std::vector<uint32_t> words;
-    size_t channels = 2;  ///< Words a pixel.
+    size_t channels = 2;  ///< Words a pixel [1].
     std::vector<PlacedRun> runs;
     bool taken = false;
 };
@@ -29,8 +29,8 @@ struct SlabPart {
     const TakenPicture& picture;
     const std::vector<vec4>& planes;
     const std::vector<double>& edges;  ///< inverseEdges.
-    uint32_t first, last;
-    std::array<int, 2> columns;  ///< From, to: those that these beams touch.
+    uint32_t first, last;              ///< Beams [1].
+    std::array<int, 2> columns;  ///< From, to: those that these beams touch [1].
 };
 
 /** Adds the part's echoes to `sums`, [beam][bin][channel]. */

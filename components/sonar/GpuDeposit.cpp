@@ -11,6 +11,7 @@ namespace {
 class GpuDeposit final : public BinDeposit {
 public:
     explicit GpuDeposit(const DepositSetup& setup);
+    void begin() override { cleared_ = false; }
     void take(size_t slab, const SurfacePass& surface) override;
     std::span<const uint64_t> finish() override;
 

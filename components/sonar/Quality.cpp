@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "components/sonar/BeamFan.hpp"
 #include "components/sonar/SonarRenderer.hpp"
 
 namespace insonify::sonar {
@@ -61,6 +62,12 @@ private:
     types::Sonar ping_;
 };
 
+/** Whether a device can draw so many columns per beam. */
+bool fits(SonarConfig config, int columns) {
+    config.quality.columns_per_beam = columns;
+    return makeSlabs(config, makeBeams(config)).front().columns <= most_image_size;
+}
+
 /** What more rows, columns, or both change. */
 struct Changes {
     double of_rows, of_columns, of_both;
@@ -82,7 +89,7 @@ Changes changesOf(Trial& trial, int rows, int columns) {
 std::vector<Quality> tryQualities(const SonarConfig& config, const types::Snapshot& scene, double target_error, double budget_ms) {
     Trial trial(config, scene);
     std::vector<Quality> ladder;
-    for (int rows = least_rows, columns = 1; rows <= most_rows && columns <= most_columns;) {
+    for (int rows = least_rows, columns = 1; rows <= most_rows && columns <= most_columns && fits(config, 2 * columns);) {
         const Changes changes = changesOf(trial, rows, columns);
         const Quality quality{rows, columns, changes.error(), std::isfinite(budget_ms) ? trial.ms(rows, columns) : 0};
         if (!ladder.empty() && quality.ms > budget_ms) break;

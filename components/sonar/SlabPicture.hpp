@@ -22,7 +22,7 @@ public:
     const Slab& slab() const { return slab_; }
     bool empty() const { return runs.empty(); }
     int channels() const { return channels_; }
-    /** The picture: channels() words a pixel, row by row from below. */
+    /** The picture: channels() words a pixel, row by row from below; `words` has its size already. */
     void read(std::vector<uint32_t>& words) const;
     void bindTexture(GLuint unit) const { ids_.bind(unit); }
     void bindCommands() const;

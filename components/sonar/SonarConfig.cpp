@@ -7,6 +7,7 @@
 
 #include "components/gpu/EglContext.hpp"
 #include "components/sonar/Acoustics.hpp"
+#include "components/sonar/BeamFan.hpp"
 #include "components/sonar/BinGrid.hpp"
 
 namespace insonify::sonar {
@@ -32,6 +33,14 @@ void checkRangeReached(const SonarConfig& config, types::Problems& problems) {
             {"range", fmt::format("is {} m; {} bins of whole microseconds reach {:.6g} m, which may be at most 25 % "
                                   "more: lower bin_count, raise range, or set range_rounding: exact",
                                   config.range, config.bin_count, grid.range_max)});
+}
+
+void checkImages(const SonarConfig& config, types::Problems& problems) {
+    const int columns = makeSlabs(config, makeBeams(config)).front().columns;
+    if (columns > most_image_size)
+        problems.push_back({"quality.columns_per_beam",
+                            fmt::format("is {}, which with beams of {:g} deg over {:g} deg makes images of {} columns; may be {}",
+                                        config.quality.columns_per_beam, config.beamWidthDeg(), config.coverageDeg(), columns, most_image_size)});
 }
 
 void checkDevice(const std::string& device, types::Problems& problems) {
@@ -100,6 +109,7 @@ void SonarConfig::checkBeam(types::Problems& problems) const {
     checkDevice(device, problems);
     if (published) checkPublished(*this, problems);
     checkRangeReached(*this, problems);
+    if (problems.empty()) checkImages(*this, problems);
 }
 
 }  // namespace insonify::sonar

@@ -105,6 +105,7 @@ void SonarRenderer::Parts::lap(size_t stage) {
 }
 
 void SonarRenderer::Parts::drawSlabs(const types::Snapshot& snapshot) {
+    deposit->begin();
     culler.place(snapshot);
     surface.cull(culler);
     lap(0);

@@ -18,7 +18,12 @@ SurfacePass::SurfacePass(gpu::EglContext& context, Setup setup, ThreadPool& thre
     : setup_(std::move(setup)), context_(context), threads_(threads), scene_(setup_.geometry, hasNormalMaps(setup_)),
       parts_(partCount(context, setup_, threads)), pictures_(setup_.slabs.size()) {
     glFinish();  // the other contexts must find the scene's buffers filled
-    onEachPart([this](size_t part) { makePart(part); });
+    try {
+        onEachPart([this](size_t part) { makePart(part); });
+    } catch (...) {
+        release();
+        throw;
+    }
 }
 
 void SurfacePass::resize(const std::vector<Slab>& slabs) {
@@ -26,7 +31,9 @@ void SurfacePass::resize(const std::vector<Slab>& slabs) {
     onEachPart([this](size_t part) { makePictures(part); });
 }
 
-SurfacePass::~SurfacePass() {
+SurfacePass::~SurfacePass() { release(); }
+
+void SurfacePass::release() {
     onEachPart([this](size_t part) {
         for (size_t slab = part; slab < pictures_.size(); slab += parts_.size()) pictures_[slab].reset();
         parts_[part].painter.reset();
@@ -42,7 +49,7 @@ template <class Job> void SurfacePass::onEachPart(const Job& job) {
 }
 
 void SurfacePass::makePart(size_t part) {
-    if (part > 0) parts_[part].own.emplace(context_);
+    if (part > 0) parts_[part].own.emplace(gpu::EglContext::Sharing{context_});
     parts_[part].painter.emplace(setup_.geometry, scene_, setup_.defines, setup_.near_plane);
     makePictures(part);
 }

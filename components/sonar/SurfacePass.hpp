@@ -47,6 +47,7 @@ private:
         std::optional<gpu::EglContext> own;  ///< Of all threads but the first, which has the renderer's.
         std::optional<SurfacePainter> painter;
     };
+    void release();
     void makePart(size_t part);
     void makePictures(size_t part);
     template <class Job> void onEachPart(const Job& job);

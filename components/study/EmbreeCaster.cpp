@@ -7,8 +7,10 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <glm/gtc/quaternion.hpp>
+#include <limits>
 #include <numbers>
 #include <stdexcept>
+#include <string>
 #include <thread>
 
 namespace insonify::study {
@@ -103,6 +105,8 @@ void EmbreeCaster::Tree::commit() {
     rtcReleaseGeometry(geometry);
     rtcSetSceneFlags(scene, RTC_SCENE_FLAG_ROBUST);
     rtcCommitScene(scene);
+    if (const RTCError error = rtcGetDeviceError(device); error != RTC_ERROR_NONE)
+        throw std::runtime_error("Embree cannot build the scene: error " + std::to_string(error));
 }
 
 namespace {
@@ -115,7 +119,6 @@ public:
           bin_width_(config.range / config.bin_count), sums_(bins_ * static_cast<size_t>(config.beam_count)) {}
 
     void castColumn(const Image& image, int column) {
-        column_ = column;
         u_ = (column + 0.5) * image.du() - image.half_u;
         for (int row = 0; row < image.rows; row += packet) castPacket(image, row, std::min(packet, image.rows - row));
     }
@@ -158,7 +161,8 @@ private:
         const double low = u_ - image.du() / 2, high = u_ + image.du() / 2;
         const double fov = config_.field_of_view_deg * degree, width = fov / config_.beam_count;
         const auto beamAt = [&](double u) { return static_cast<int>((image.centre + std::atan(u) + fov / 2) / width); };
-        const auto edge = [&](int beam) { return std::tan(beam * width - fov / 2 - image.centre); };
+        const double half = std::atan(image.half_u);
+        const auto edge = [&](int beam) { return std::tan(std::clamp(beam * width - fov / 2 - image.centre, -half, half)); };
         const int last = std::min(beamAt(high), config_.beam_count - 1);
         for (int beam = std::max(0, beamAt(low)); beam <= last; ++beam) {
             const double from = std::max(low, edge(beam)), to = std::min(high, edge(beam + 1));
@@ -181,7 +185,6 @@ private:
         const double along = std::abs(slope_u + slope_v * lean) * width, across = std::abs(slope_v) * (top - bottom);
         const double centre = inverse + slope_u * (middle - u_) + slope_v * (centre_v - v);
         const double solid_angle = width * (top - bottom) * std::pow(1 + middle * middle + centre_v * centre_v, -1.5);
-        kappa_max_ = std::max(kappa_max_, (along + across) / (inverse * inverse * bin_width_));
         spread(beam, centre, std::max(along, 1e-12 * inverse), across, solid_angle * hit.mu * cosine / inverse);
     }
 
@@ -189,6 +192,7 @@ private:
     void spread(int beam, double centre, double a, double b, double amount) {
         const double near = std::min(centre + (a + b) / 2, 1 / config_.range_min), far = std::max(centre - (a + b) / 2, 1 / config_.range);
         if (!(near > far)) return;
+        kappa_max_ = std::max(kappa_max_, (1 / far - 1 / near) / bin_width_);
         double* bins = sums_.data() + static_cast<size_t>(beam) * bins_;
         double above = near, share_above = below(near - centre, a, b);
         for (auto bin = static_cast<size_t>(1 / (near * bin_width_)); above > far && bin < bins_; ++bin) {
@@ -205,7 +209,6 @@ private:
     size_t bins_;
     double bin_width_;
     std::vector<double> sums_;
-    int column_ = 0;
     double u_ = 0, kappa_max_ = 0;
 };
 

@@ -7,8 +7,9 @@
 
 namespace insonify::study {
 
-/** The same physics by casting rays on the processor (Embree), all cores: an independent reference, and the answer to
- *  "why not just cast rays". Shares no code with the renderer; rays find triangles in float, everything after is in
+/** The same physics by casting rays on the processor (Embree), all cores: an independent program, and the answer to
+ *  "why not just cast rays". Shares no code with the renderer, but its estimate: energies converge to the truth at the
+ *  same rate; rays find triangles in float, everything after is in
  *  double. `physical` without gain, absorption, normal maps and `published`; planar beams of a regular fan. */
 class EmbreeCaster {
 public:

@@ -20,10 +20,6 @@ constexpr std::array<double, 3> goals = {0.1, 0.01, 0.001};
 
 using Out = std::back_insert_iterator<std::string>;
 
-double referenceError(const ErrorResult& result, const std::string& scene) {
-    return std::ranges::find(result.references, scene, &Reference::scene)->error;
-}
-
 /** A number, or what stands for none. */
 std::string orNone(const std::optional<double>& value, const char* format, const char* none) {
     return value ? fmt::format(fmt::runtime(format), *value) : none;
@@ -64,10 +60,16 @@ void addPoints(Out out, const ErrorResult& result) {
     fmt::format_to(out, "</table>\n");
 }
 
+/** Without what JSON and HTML would have to quote. */
+std::string plain(std::string text) {
+    std::erase_if(text, [](char c) { return c == '"' || c == '\\' || c == '<' || c == '&' || static_cast<unsigned char>(c) < ' '; });
+    return text;
+}
+
 std::string processorName() {
     std::ifstream info("/proc/cpuinfo");
     for (std::string line; std::getline(info, line);)
-        if (line.starts_with("model name")) return line.substr(line.find(':') + 2);
+        if (line.starts_with("model name") && line.size() > line.find(':') + 2) return plain(line.substr(line.find(':') + 2));
     return "unknown processor";
 }
 
@@ -92,7 +94,7 @@ std::string csvOf(const ErrorResult& result) {
 }
 
 std::string jsonOf(const ErrorResult& result) {
-    std::string text = fmt::format("{{\"device\": \"{}\", \"processor\": \"{}\", \"cores\": {},\n\"references\": [", result.device, processorName(), std::thread::hardware_concurrency());
+    std::string text = fmt::format("{{\"device\": \"{}\", \"processor\": \"{}\", \"cores\": {},\n\"references\": [", plain(result.device), processorName(), std::thread::hardware_concurrency());
     Out out(text);
     const char* comma = "\n";
     const auto next = [&] { return std::exchange(comma, ",\n"); };
@@ -135,7 +137,7 @@ std::string pageOf(const ErrorResult& result) {
                        "body{font-family:sans-serif;margin:2em;max-width:80em}table{border-collapse:collapse;font-size:13px}"
                        "td,th{padding:2px 8px;border-bottom:1px solid #dde;text-align:left}</style></head><body>\n<h1>Error against run time</h1>\n";
     Out out(text);
-    fmt::format_to(out, "<p>{}; {} cores, {}. Errors are of noiseless energies; lines double rows and columns together.</p>\n", result.device, std::thread::hardware_concurrency(), processorName());
+    fmt::format_to(out, "<p>{}; {} cores, {}. Errors are of noiseless energies; lines double rows and columns together.</p>\n", plain(result.device), std::thread::hardware_concurrency(), processorName());
     for (const Reference& reference : result.references) {
         text += diagramOf(result, reference.scene);
         fmt::format_to(out, "<p>{}: reference {}{}</p>\n", reference.scene, reference.source, reference.error > 0 ? fmt::format(", its own error about {:.1e}", reference.error) : "");

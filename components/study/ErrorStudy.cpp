@@ -7,6 +7,7 @@
 #include <cmath>
 #include <ctime>
 #include <memory>
+#include <stdexcept>
 
 #include "components/sonar/BeamFan.hpp"
 #include "components/sonar/BinGrid.hpp"
@@ -45,7 +46,7 @@ void time(const Ping& ping, int pings, std::vector<float>& energies, Measurement
     point.cpu_ms = (processorMs() - processor) / pings;
     std::ranges::sort(times);
     point.median_ms = times[times.size() / 2];
-    point.p99_ms = times[std::min(times.size() - 1, static_cast<size_t>(std::ceil(0.99 * static_cast<double>(times.size()))))];
+    point.p99_ms = times[std::min(times.size() - 1, static_cast<size_t>(std::ceil(0.99 * static_cast<double>(times.size()))) - 1)];
 }
 
 sonar::SonarConfig configOf(const StudyScene& scene, const Measurement& point) {
@@ -73,7 +74,7 @@ public:
     void run() {
         const int slabs = static_cast<int>(sonar::makeSlabs(scene_.config, sonar::makeBeams(scene_.config)).size());
         for (const Method method : methods)
-            for (int level = 0; level < levels(); ++level)
+            if (method != Method::Published || fitsOneFrustum()) for (int level = 0; level < levels(); ++level)
                 measure(method, least_rows << level, base_columns_ << level, method == Method::Published ? 1 : slabs);
         for (int level = 0; level < levels(); ++level)
             if (base_columns_ << level != 2) measure(Method::Footprint, least_rows << level, 2, slabs);
@@ -94,6 +95,12 @@ private:
         return std::max(least, 1.5);
     }
 
+    /** Whether one perspective image can hold the fan, at all levels. */
+    bool fitsOneFrustum() const {
+        const int64_t columns = int64_t{base_columns_} << (levels() - 1);
+        return scene_.config.field_of_view_deg < 175 && columns * scene_.config.beam_count <= sonar::most_image_size;
+    }
+
     void measure(Method method, int rows, int columns, int slabs) {
         Measurement point{scene_.name, method, rows, columns, 1, slabs, {}, 0, 0, 0, 0};
         options_.progress(fmt::format("{} {} {} x {}", scene_.name, nameOf(method), rows, columns));
@@ -101,7 +108,7 @@ private:
         std::vector<float> energies;
         if (method == Method::Embree) time([&](auto& e) { caster_.render(scene_.snapshot.sonar, config, e); }, options_.pings, energies, point);
         else timeRenderer(config, energies, point);
-        point.kappa_max = kappa(config);
+        if (method != Method::Published) point.kappa_max = kappa(config);
         point.metrics = compare(energies, reference_, layout_);
         result_.measurements.push_back(point);
     }
@@ -129,8 +136,10 @@ private:
         const int finest = reference_refinement << (levels() - 1);
         const std::vector<float> half = cast(finest / 2), whole = cast(finest);
         reference_.assign(whole.begin(), whole.end());
+        if (std::ranges::none_of(reference_, [](double energy) { return energy > 0; }))
+            throw std::runtime_error(scene_.name + ": the sonar hears nothing in this ping; choose another one with --ping");
         halving_ = compare(half, reference_, layout_).rel_l2;
-        result_.references.push_back({scene_.name, fmt::format("Embree, {} rows, {} columns per beam", least_rows * finest, base_columns_ * finest), 0});
+        result_.references.push_back({scene_.name, fmt::format("the same estimate by rays (Embree), {} rows, {} columns per beam", least_rows * finest, base_columns_ * finest), 0});
     }
 
     std::vector<float> cast(int refinement) {

@@ -19,9 +19,9 @@ const char* nameOf(Method method);
 struct Measurement {
     std::string scene;
     Method method = Method::Footprint;
-    int rows = 0, columns_per_beam = 0, samples_per_pixel = 1, slabs = 0;
+    int rows = 0, columns_per_beam = 0, samples_per_pixel = 1, slabs = 0;  ///< [1]
     Metrics metrics;
-    double kappa_max = 0;                           ///< Bins that the longest cell covers [1].
+    double kappa_max = 0;                           ///< Bins that the longest cell covers; 0: not known [1].
     double median_ms = 0, p99_ms = 0, cpu_ms = 0;   ///< Of one ping: wall time, and processor time of the process.
     double samples() const { return static_cast<double>(rows) * columns_per_beam * samples_per_pixel; }  ///< Per beam.
 };
@@ -39,8 +39,8 @@ struct ErrorResult {
 };
 
 struct ErrorOptions {
-    int pings = 30;     ///< Timed for each point, after a warm-up.
-    int levels = 5;     ///< Rows and columns are doubled together so often, less one.
+    int pings = 30;     ///< Timed for each point, after a warm-up [1].
+    int levels = 5;     ///< Rows and columns are doubled together so often, less one [1].
     std::function<void(const std::string&)> progress = [](const std::string&) {};
 };
 

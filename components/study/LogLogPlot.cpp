@@ -21,13 +21,16 @@ public:
         high_ = std::max(high_, std::ceil(std::log10(value) - 1e-9));
     }
     double at(double value) const {
+        if (empty()) return from_;
         const double span = std::max(1.0, high_ - low_);
         return from_ + (std::log10(value) - low_) / span * (to_ - from_);
     }
-    int first() const { return static_cast<int>(low_); }
-    int last() const { return static_cast<int>(std::max(high_, low_ + 1)); }
+    int first() const { return empty() ? 0 : static_cast<int>(low_); }
+    int last() const { return empty() ? 0 : static_cast<int>(std::max(high_, low_ + 1)); }
 
 private:
+    bool empty() const { return !(low_ <= high_); }
+
     double from_, to_;
     double low_ = std::numeric_limits<double>::infinity(), high_ = -std::numeric_limits<double>::infinity();
 };

@@ -145,7 +145,7 @@ void addEnergies(const Comparison& c, Metrics& metrics) {
     metrics.ripple = std::sqrt(ripple / std::max(1, heard));
 }
 
-/** FNV-1a, 64 bits. */
+/** Like FNV-1a of 64 bits, but a word of 32 bits at a time. */
 uint64_t hashOf(std::span<const float> values) {
     uint64_t hash = 14695981039346656037ull;
     for (const float value : values) hash = (hash ^ std::bit_cast<uint32_t>(value)) * 1099511628211ull;

@@ -6,7 +6,7 @@ namespace insonify::study {
 
 /** Shape of what is compared: [beam][bin], bins of equal width from range 0 on. */
 struct Layout {
-    int beams, bins;
+    int beams, bins;    ///< [1]
     double bin_width;   ///< [m]
     double range_from;  ///< Bins that begin nearer are not compared [m].
 };

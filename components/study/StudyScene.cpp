@@ -41,14 +41,14 @@ glm::dvec3 downOf(const types::Snapshot& snapshot) {
 }
 
 StudyScene flatBottom(const std::string& name, const std::string& doc, double range_from, double pitch, double roll) {
-    StudyScene scene{name, doc, sonarOf(130, 40, 64, 50), snapshotOf(sceneOf({ground()}), pitch, roll), {}, range_from, true};
+    StudyScene scene{name, doc, sonarOf(130, 40, 64, 50), snapshotOf(sceneOf({ground()}), pitch, roll), {}, range_from};
     scene.truth = planeTruth(downOf(scene.snapshot), 5);
     return scene;
 }
 
 StudyScene wallAhead() {
     return {"wall", "a wall 10 m ahead, 60 x 40 deg", sonarOf(60, 40, 32, 15), snapshotOf(sceneOf({wall(10)})),
-            planeTruth({1, 0, 0}, 10), 0, true};
+            planeTruth({1, 0, 0}, 10)};
 }
 
 StudyScene facingDisc() {

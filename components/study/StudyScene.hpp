@@ -16,7 +16,6 @@ struct StudyScene {
     types::Snapshot snapshot;
     Truth truth;                ///< Empty: the reference has to be computed.
     double range_from = 0;      ///< Bins that begin nearer are not compared: the aperture's edge lies there [m].
-    bool planes_only = false;   ///< No silhouettes and no curved surface: the convergence of planes is expected.
 };
 
 /** The scenes with a closed form: flat_bottom, flat_bottom_edge (its aperture's edge included), flat_bottom_pitched,

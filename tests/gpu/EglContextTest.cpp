@@ -136,7 +136,7 @@ TEST(EglContextTest, ASecondContextOnAnotherThreadSharesTheBuffersOfTheFirst) {
     std::vector<uint32_t> seen(written.size());
     std::string renderer;
     const std::string error = errorElsewhere([&] {
-        EglContext other(context);
+        EglContext other(EglContext::Sharing{context});
         renderer = other.renderer();
         buffer.read(seen.data(), seen.size() * sizeof(uint32_t));
         const uint32_t last = 50;

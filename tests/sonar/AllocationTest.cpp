@@ -10,7 +10,7 @@
 namespace insonify::sonar {
 namespace {
 
-constexpr size_t warm_up = 4;  // pings, until the reader holds as many samples as it ever will
+constexpr size_t warm_up = 1;  // ping
 
 /** A bottom and ten balls in a row to port; the third follows a pose. */
 types::GeometryPtr balls() {

@@ -44,7 +44,8 @@ TEST(ErrorAnalysisTest, TimesAndErrorsLieOnTheLineOrBeyondItsEnd) {
     const double ms = std::pow(0.1 / 0.4, 1 / -0.8);
     EXPECT_NEAR(*timeTo(0.1, points), ms, 1e-9 * ms);
     EXPECT_NEAR(*errorAt(ms, points), 0.1, 1e-9);
-    EXPECT_NEAR(*timeTo(1e-4, points), std::pow(1e-4 / 0.4, 1 / -0.8), 1e-3) << "beyond the finest point";
+    EXPECT_NEAR(*timeTo(0.004, points), std::pow(0.01, 1 / -0.8), 1e-6) << "beyond the finest point";
+    EXPECT_FALSE(timeTo(1e-4, points)) << "too far beyond it";
     EXPECT_EQ(*timeTo(0.5, points), 1) << "the coarsest point is good enough";
     ErrorResult flat;
     addLadder(flat, "x", Method::Published, 0.4, 0);
