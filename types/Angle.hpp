@@ -21,7 +21,8 @@ struct Angle {
     double deg() const { return rad * 180 / std::numbers::pi; }
     bool isUnknown() const { return std::isnan(rad); }
 
-    template <class Self, class V> static void describe(Self& self, V& visit) {
+    template <class Self, class V>
+    static void describe(Self& self, V& visit) {
         visit(Field{"rad", "rad", "angle, NaN when unknown"}, self.rad);
     }
 };

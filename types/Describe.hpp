@@ -25,19 +25,27 @@ struct Field {
 
 /** True for a struct that describes itself as above. */
 struct AnyVisitor {
-    template <class T> void operator()(const Field&, T&) {}
+    template <class T>
+    void operator()(const Field&, T&) {}
 };
 template <class T>
-concept Described = requires(T& value, AnyVisitor& visit) { T::describe(value, visit); };
+concept Described = requires(T& value, AnyVisitor& visit) {
+    T::describe(value, visit);
+};
 
-/** Names of an enum whose values are 0, 1, 2...: specialise with `static constexpr std::string_view names[] = {...}`. */
-template <class E> struct EnumNames;
+/** Names of an enum whose values are 0, 1, 2...: specialise with `static constexpr std::string_view names[] = {...}`.
+ */
 template <class E>
-concept NamedEnum = requires { EnumNames<E>::names; };
+struct EnumNames;
+template <class E>
+concept NamedEnum = requires {
+    EnumNames<E>::names;
+};
 
 /** The value of a key that is reserved: whatever a file gives it is refused with "is not built yet". */
 struct NotBuiltYet {
-    template <class Self, class V> static void describe(Self&, V&) {}
+    template <class Self, class V>
+    static void describe(Self&, V&) {}
 };
 
 /** A fault in a configuration: `path` is below the described struct ("tvg.max_db"), `message` what it is and may be. */
@@ -49,6 +57,8 @@ using Problems = std::vector<Problem>;
 
 /** A described struct may judge its fields together: `void check(types::Problems&) const`. */
 template <class T>
-concept Checked = requires(const T& value, Problems& problems) { value.check(problems); };
+concept Checked = requires(const T& value, Problems& problems) {
+    value.check(problems);
+};
 
 }  // namespace insonify::types

@@ -14,14 +14,14 @@ namespace insonify::types {
 /** What a surface does to sound. Neutral: medium sand in `physical`, reflectivity 1 in `cerqueira2017`. */
 struct Material {
     std::string name;
-    float lambert_db = -16.7f;      ///< Lambert parameter mu, backscatter at normal incidence [dB].
-    float reflection = 0;           ///< Pressure reflection coefficient at normal incidence, signed [1].
-    float roughness_slope = 0;      ///< Total rms slope of the micro-relief, for the specular lobe [1].
-    float reflectivity = 1;         ///< Factor of `cerqueira2017` [1].
-    bool has_acoustics = false;     ///< False: no acoustic values in the file, the defaults above stand.
-    bool double_sided = false;      ///< As the file says; sound is reflected by both sides in any case.
-    int normal_map = -1;            ///< Index into Geometry::normal_maps, -1 for none [1].
-    float normal_scale = 1;         ///< Scale of the map's x and y [1].
+    float lambert_db = -16.7f;   ///< Lambert parameter mu, backscatter at normal incidence [dB].
+    float reflection = 0;        ///< Pressure reflection coefficient at normal incidence, signed [1].
+    float roughness_slope = 0;   ///< Total rms slope of the micro-relief, for the specular lobe [1].
+    float reflectivity = 1;      ///< Factor of `cerqueira2017` [1].
+    bool has_acoustics = false;  ///< False: no acoustic values in the file, the defaults above stand.
+    bool double_sided = false;   ///< As the file says; sound is reflected by both sides in any case.
+    int normal_map = -1;         ///< Index into Geometry::normal_maps, -1 for none [1].
+    float normal_scale = 1;      ///< Scale of the map's x and y [1].
 };
 
 /** A tangent-space normal map: RGB, 8 bits, rows from top to bottom; (r, g, b) * 2 / 255 - 1 is the normal. */
@@ -33,36 +33,38 @@ struct NormalMap {
 
 /** A run of triangles of one material that is drawn or culled as one. */
 struct Cluster {
-    uint32_t first_index = 0;       ///< Into Mesh::indices; a multiple of 3 [1].
-    uint32_t index_count = 0;       ///< A multiple of 3 [1].
-    int material = 0;               ///< Index into Geometry::materials [1].
-    glm::vec3 centre{0};            ///< Of a sphere that holds all its triangles, in mesh coordinates [m].
-    float radius = 0;               ///< [m]
+    uint32_t first_index = 0;  ///< Into Mesh::indices; a multiple of 3 [1].
+    uint32_t index_count = 0;  ///< A multiple of 3 [1].
+    int material = 0;          ///< Index into Geometry::materials [1].
+    glm::vec3 centre{0};       ///< Of a sphere that holds all its triangles, in mesh coordinates [m].
+    float radius = 0;          ///< [m]
 };
 
-/** Triangles in their own coordinates (z up, x north-like). Every index is below positions.size(); positions are finite. */
+/** Triangles in their own coordinates (z up, x north-like). Every index is below positions.size(); positions are
+ * finite. */
 struct Mesh {
     std::string name;
     std::vector<glm::vec3> positions;  ///< [m]
-    std::vector<glm::vec3> normals;    ///< Per vertex, unit; empty or as many as positions. Only used with normal maps [1].
-    std::vector<glm::vec4> tangents;   ///< Per vertex, w = handedness; empty or as many as positions [1].
-    std::vector<glm::vec2> uvs;        ///< Of the normal map, texture transform applied; empty or as many as positions [1].
-    std::vector<uint32_t> indices;     ///< Three a triangle.
-    std::vector<Cluster> clusters;     ///< Together they cover all indices, in order.
+    std::vector<glm::vec3>
+        normals;  ///< Per vertex, unit; empty or as many as positions. Only used with normal maps [1].
+    std::vector<glm::vec4> tangents;  ///< Per vertex, w = handedness; empty or as many as positions [1].
+    std::vector<glm::vec2> uvs;  ///< Of the normal map, texture transform applied; empty or as many as positions [1].
+    std::vector<uint32_t> indices;  ///< Three a triangle.
+    std::vector<Cluster> clusters;  ///< Together they cover all indices, in order.
 };
 
 /** One placing of a mesh in the world. */
 struct Object {
-    std::string name;                  ///< Of the node; unique within the geometry.
-    int mesh = 0;                      ///< Index into Geometry::meshes.
-    glm::dmat4 world_from_object{1};   ///< May scale and mirror [m].
+    std::string name;                 ///< Of the node; unique within the geometry.
+    int mesh = 0;                     ///< Index into Geometry::meshes.
+    glm::dmat4 world_from_object{1};  ///< May scale and mirror [m].
 };
 
 /** A scene, immutable once loaded: an equal pointer means that nothing changed. World is z-up. */
 struct Geometry {
     std::vector<Mesh> meshes;
     std::vector<Object> objects;
-    std::vector<Material> materials;   ///< Never empty when there is a mesh.
+    std::vector<Material> materials;  ///< Never empty when there is a mesh.
     std::vector<NormalMap> normal_maps;
     std::vector<std::string> notices;  ///< What the loader left out or mended, a sentence each.
 

@@ -16,7 +16,8 @@ struct ImageAttribute {
     static constexpr const char* type_name = "/base/samples/frame/frame_attrib_t";
     std::string data;
     std::string name;
-    template <class Self, class V> static void describe(Self& self, V& visit) {
+    template <class Self, class V>
+    static void describe(Self& self, V& visit) {
         visit(Field{"data_", "", "value"}, self.data);
         visit(Field{"name_", "", "key"}, self.name);
     }
@@ -26,7 +27,8 @@ struct ImageSize {
     static constexpr const char* type_name = "/base/samples/frame/frame_size_t";
     uint16_t width = 0;
     uint16_t height = 0;
-    template <class Self, class V> static void describe(Self& self, V& visit) {
+    template <class Self, class V>
+    static void describe(Self& self, V& visit) {
         visit(Field{"width", "1", "pixels in a row"}, self.width);
         visit(Field{"height", "1", "rows"}, self.height);
     }
@@ -47,7 +49,8 @@ struct Image {
     ImageMode frame_mode = ImageMode::Undefined;
     ImageStatus frame_status = ImageStatus::Empty;
 
-    template <class Self, class V> static void describe(Self& self, V& visit) {
+    template <class Self, class V>
+    static void describe(Self& self, V& visit) {
         visit(Field{"time", "us", "when the picture was true in the world"}, self.time);
         visit(Field{"received_time", "us", "when it reached this system"}, self.received_time);
         visit(Field{"image", "1", "pixels"}, self.image);

@@ -19,10 +19,10 @@ struct Snapshot {
     static constexpr const char* type_name = "/insonify/Snapshot";
 
     Time time;
-    Pose sonar;                                ///< Sonar frame in the world: x ahead, y port, z up.
+    Pose sonar;  ///< Sonar frame in the world: x ahead, y port, z up.
     GeometryPtr geometry;
     std::vector<MovedObject> moved;
-    std::optional<double> water_surface;       ///< World z of the surface [m].
+    std::optional<double> water_surface;  ///< World z of the surface [m].
 };
 using SnapshotPtr = std::shared_ptr<const Snapshot>;
 

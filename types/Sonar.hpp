@@ -29,7 +29,8 @@ struct Sonar {
     /** Slant range at which bin k starts [m]; k = bin_count gives the far edge. */
     double binStart(double k) const { return k * bin_duration.seconds() * static_cast<double>(speed_of_sound); }
 
-    template <class Self, class V> static void describe(Self& self, V& visit) {
+    template <class Self, class V>
+    static void describe(Self& self, V& visit) {
         visit(Field{"time", "us", "when the ping was true in the world"}, self.time);
         visit(Field{"timestamps", "us", "start of each beam's acquisition; empty: `time` for all"}, self.timestamps);
         visit(Field{"bin_duration", "us", "one-way travel time through one bin"}, self.bin_duration);

@@ -110,7 +110,8 @@ int listTasks(const framework::Registry& registry, bool json) {
     return 0;
 }
 
-template <class Enum> std::vector<std::string_view> namesOf() {
+template <class Enum>
+std::vector<std::string_view> namesOf() {
     return {std::begin(types::EnumNames<Enum>::names), std::end(types::EnumNames<Enum>::names)};
 }
 

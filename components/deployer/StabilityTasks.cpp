@@ -28,19 +28,23 @@ using study::Verdict;
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
 /** One end of a connection. */
-template <class T> struct Writer : framework::TaskContext {
+template <class T>
+struct Writer : framework::TaskContext {
     Writer() : TaskContext("writer") {}
     framework::OutputPort<T> port{this, "port", "snapshots of a case"};
 };
-template <class T> struct Reader : framework::TaskContext {
+template <class T>
+struct Reader : framework::TaskContext {
     Reader() : TaskContext("reader") {}
     framework::InputPort<T> port{this, "port", "pings of a case"};
 };
 
 /** A sonar task that runs, and a wall before it. */
-template <class Task> class Bench {
+template <class Task>
+class Bench {
 public:
-    template <class Config> explicit Bench(const Config& config) {
+    template <class Config>
+    explicit Bench(const Config& config) {
         in_.port.connectTo(task_.snapshot, framework::ConnPolicy::buffer(2));
         task_.ping.connectTo(out_.port, framework::ConnPolicy::buffer(2));
         task_.config.set(config);
@@ -83,7 +87,8 @@ Outcome longQuaternion() {
     const glm::dquat turned = glm::angleAxis(0.3, glm::dvec3(0, 0, 1));
     const auto unit = bench.ping(1, turned), longer = bench.ping(2, turned * 1.001);
     int wrong = !unit || !longer || study::difference(*longer, *unit) > 1e-9;
-    for (const glm::dquat& bad : {glm::dquat(nan, 0, 0, 0), glm::dquat(0, 0, 0, 1e-7), glm::dquat(0, 0, 0, 0)}) wrong += bench.ping(3, bad) != nullptr;
+    for (const glm::dquat& bad : {glm::dquat(nan, 0, 0, 0), glm::dquat(0, 0, 0, 1e-7), glm::dquat(0, 0, 0, 0)})
+        wrong += bench.ping(3, bad) != nullptr;
     wrong += bench.ping(4, turned) == nullptr;
     return study::none(wrong, "1.001 is normalised; NaN, 1e-7 and 0 refused; the next good pose is heard");
 }
@@ -113,8 +118,10 @@ Outcome wideSpeckle() {
     const auto zeros = static_cast<uint64_t>(std::ranges::count(result.bins, 0.0f));
     const auto bad = std::ranges::count_if(result.bins, [](float bin) { return !(bin >= 0) || !std::isfinite(bin); });
     const double share = static_cast<double>(clamped) / 32000, expected = 0.484;  // of N(0.4, 10) below 0
-    return study::none(static_cast<double>(bad) + (clamped != zeros) + (std::abs(share - expected) > 0.02),
-                       fmt::format("{} of 32,000 factors below 0, clamped and counted ({:.1f} %, the normal law has 48.4 %)", clamped, 100 * share));
+    return study::none(
+        static_cast<double>(bad) + (clamped != zeros) + (std::abs(share - expected) > 0.02),
+        fmt::format("{} of 32,000 factors below 0, clamped and counted ({:.1f} %, the normal law has 48.4 %)", clamped,
+                    100 * share));
 }
 
 Outcome exponentialEnds() {
@@ -125,7 +132,8 @@ Outcome exponentialEnds() {
         bad += !(variate > 0) || !std::isfinite(variate);
         largest = std::max(largest, double{variate});
     }
-    return study::none(bad, fmt::format("u is never 0: variates of all bits equal are finite and positive, at most {:.1f}", largest));
+    return study::none(
+        bad, fmt::format("u is never 0: variates of all bits equal are finite and positive, at most {:.1f}", largest));
 }
 
 /** Correlation of the first two beams. */
@@ -154,8 +162,12 @@ Outcome seeds() {
         worst = std::max(worst, std::abs(correlation(first)));
     }
     wrong += worst > 4 / std::sqrt(bins);
-    return {{{"samples", bins}}, fmt::format("seeds 0, 1 and 2^64 - 1: the same again, another ping differs, beams correlate by at most {:.1e} (bound {:.1e})", worst, 4 / std::sqrt(bins)),
-            worst, wrong ? Verdict::Fail : Verdict::Pass};
+    return {{{"samples", bins}},
+            fmt::format("seeds 0, 1 and 2^64 - 1: the same again, another ping differs, beams correlate by at most "
+                        "{:.1e} (bound {:.1e})",
+                        worst, 4 / std::sqrt(bins)),
+            worst,
+            wrong ? Verdict::Fail : Verdict::Pass};
 }
 
 Outcome timeGoesBackwards() {
@@ -164,7 +176,9 @@ Outcome timeGoesBackwards() {
     wrong += bench.ping(9) != nullptr || !bench.tells("older than the one before");
     wrong += !bench.ping(10) || !bench.ping(10);
     wrong += !bench.ping(10 + 5 * 86400.0);
-    return study::none(wrong, "a scanning head: an older snapshot is refused with an error, an equal time and a gap of five days are taken");
+    return study::none(
+        wrong,
+        "a scanning head: an older snapshot is refused with an error, an equal time and a gap of five days are taken");
 }
 
 Outcome trajectoryTimes() {
@@ -179,13 +193,16 @@ Outcome trajectoryTimes() {
     for (const double second : {-1.0, 0.0, nan}) wrong += study::faultsOf(waypoints(second)).empty();
     const pose::Trajectory path(waypoints(2).waypoints);
     wrong += path.at(-1e9).position.x != 0 || path.at(1e9).position.x != 10 || path.at(1).position.x != 5;
-    return study::none(wrong, "waypoints at times that fall, repeat or are NaN refused; outside a trajectory its ends are held");
+    return study::none(
+        wrong, "waypoints at times that fall, repeat or are NaN refused; outside a trajectory its ends are held");
 }
 
 Outcome shortInterval() {
     Bench<sonar::SonarTask> slow(smallFan()), quick(smallFan());
-    const bool heard = slow.ping(1) && slow.ping(1.1) && quick.ping(1) && quick.ping(1.001);  // 2 x 10 m / 1000 m/s = 20 ms
-    return study::none(!heard + !quick.tells("ambiguous") + slow.tells("ambiguous"), "pings 1 ms apart where sound takes 20 ms: heard, told as ambiguous in range; not so at 100 ms");
+    const bool heard =
+        slow.ping(1) && slow.ping(1.1) && quick.ping(1) && quick.ping(1.001);  // 2 x 10 m / 1000 m/s = 20 ms
+    return study::none(!heard + !quick.tells("ambiguous") + slow.tells("ambiguous"),
+                       "pings 1 ms apart where sound takes 20 ms: heard, told as ambiguous in range; not so at 100 ms");
 }
 
 Outcome tooFast() {
@@ -193,7 +210,9 @@ Outcome tooFast() {
     int wrong = !bench.ping(1) || !bench.ping(2, {1, 0, 0, 0}, {0, 90, 0});
     wrong += bench.ping(3, {1, 0, 0, 0}, {0, 300, 0}) != nullptr;  // 210 m/s; a tenth of the speed of sound is 100
     wrong += bench.ping(4, {1, 0, 0, 0}, {0, 310, 0}) == nullptr;
-    return study::none(wrong, "90 m/s is heard, 210 m/s at a speed of sound of 1000 m/s refused with an error, the ping after it heard");
+    return study::none(
+        wrong,
+        "90 m/s is heard, 210 m/s at a speed of sound of 1000 m/s refused with an error, the ping after it heard");
 }
 
 }  // namespace

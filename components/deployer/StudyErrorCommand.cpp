@@ -30,7 +30,9 @@ struct Options {
 /** What a study can take away without changing where echoes come from: gain, absorption, model, shading maps. */
 sonar::SonarConfig plain(sonar::SonarConfig config, const std::string& file) {
     if (!config.bearings_deg.empty() || config.beam_geometry != sonar::BeamGeometry::Planar)
-        throw types::ConfigError(file, "tasks", "has a sonar with bearings_deg or conical beams; a study of the error takes a regular planar fan");
+        throw types::ConfigError(
+            file, "tasks",
+            "has a sonar with bearings_deg or conical beams; a study of the error takes a regular planar fan");
     const sonar::BinGrid grid = sonar::makeBinGrid(config);
     config.range = grid.bin_width * grid.bin_count;
     config.speed_of_sound = grid.speed_of_sound;
@@ -84,7 +86,8 @@ std::vector<study::StudyScene> scenesOf(const Options& options) {
         if (std::ranges::find(scenes, name, &study::StudyScene::name) == scenes.end())
             throw types::ConfigError("", "--scene", name + " is not a scene with a closed form; those are " + known);
     const bool chosen = !options.scenes.empty() || !options.deployment.empty();
-    if (chosen) std::erase_if(scenes, [&](const auto& scene) { return std::ranges::count(options.scenes, scene.name) == 0; });
+    if (chosen)
+        std::erase_if(scenes, [&](const auto& scene) { return std::ranges::count(options.scenes, scene.name) == 0; });
     if (!options.deployment.empty()) scenes.push_back(sceneOf(options.deployment, options.ping));
     return scenes;
 }
@@ -114,12 +117,14 @@ int studyError(Options options) {
 void addErrorStudy(CLI::App& study, Action& action) {
     const auto options = std::make_shared<Options>();
     CLI::App* command = study.add_subcommand("error", "Error against run time, for each way to estimate an echo");
-    command->add_option("DEPLOYMENT", options->deployment, "a YAML file whose sonar and scene are studied; absent: all scenes with a closed form");
+    command->add_option("DEPLOYMENT", options->deployment,
+                        "a YAML file whose sonar and scene are studied; absent: all scenes with a closed form");
     command->add_option("--out", options->out, "folder of the report");
     command->add_option("--scene", options->scenes, "only this scene with a closed form (more than one: say it again)");
     command->add_option("--ping", options->ping, "which ping of the deployment")->check(CLI::PositiveNumber);
     command->add_option("--pings", options->study.pings, "timed for each point")->check(CLI::Range(1, 1000));
-    command->add_option("--levels", options->study.levels, "how often rows and columns are doubled, less one")->check(CLI::Range(1, 6));
+    command->add_option("--levels", options->study.levels, "how often rows and columns are doubled, less one")
+        ->check(CLI::Range(1, 6));
     command->add_flag("--quiet", options->quiet, "no progress");
     command->callback([options, &action] { action = [options] { return studyError(*options); }; });
 }

@@ -18,12 +18,14 @@ using study::Verdict;
 void makeFolder(const std::filesystem::path& folder) {
     std::error_code error;
     std::filesystem::create_directories(folder, error);
-    if (error) throw types::ConfigError("", "--out", fmt::format("{} cannot be made: {}", folder.string(), error.message()));
+    if (error)
+        throw types::ConfigError("", "--out", fmt::format("{} cannot be made: {}", folder.string(), error.message()));
 }
 
 void printRow(const StabilityRow& row) {
     const study::Outcome& outcome = row.outcome;
-    fmt::print("{:>3}  {:<5}  {:>8}  {}\n", row.number, nameOf(outcome.verdict), outcome.verdict == Verdict::Later ? "" : fmt::format("{:.1e}", outcome.deviation), row.name);
+    fmt::print("{:>3}  {:<5}  {:>8}  {}\n", row.number, nameOf(outcome.verdict),
+               outcome.verdict == Verdict::Later ? "" : fmt::format("{:.1e}", outcome.deviation), row.name);
     if (outcome.verdict == Verdict::Fail) fmt::print("     expected: {}\n     got: {}\n", row.expected, outcome.got);
     std::fflush(stdout);
 }
@@ -35,8 +37,11 @@ int studyStability(const std::filesystem::path& folder) {
     fmt::print("case  verdict  deviation\n");
     const std::vector<StabilityRow> rows = study::studyStability(std::move(cases), printRow);
     study::writeStability(rows, folder);
-    const auto count = [&](Verdict verdict) { return std::ranges::count_if(rows, [=](const StabilityRow& row) { return row.outcome.verdict == verdict; }); };
-    fmt::print("{} pass, {} fail, {} later; {} and stability.json\n", count(Verdict::Pass), count(Verdict::Fail), count(Verdict::Later), (folder / "stability.md").string());
+    const auto count = [&](Verdict verdict) {
+        return std::ranges::count_if(rows, [=](const StabilityRow& row) { return row.outcome.verdict == verdict; });
+    };
+    fmt::print("{} pass, {} fail, {} later; {} and stability.json\n", count(Verdict::Pass), count(Verdict::Fail),
+               count(Verdict::Later), (folder / "stability.md").string());
     return count(Verdict::Fail) > 0 ? 1 : 0;
 }
 

@@ -25,8 +25,9 @@ public:
         return samples_.emplace_back(std::make_shared<T>());
     }
 
-    /** Makes what readers in step with the writer will need, copies of the first sample filled, so that later ones of its
-     *  size allocate nothing; `prepare` makes room in each that a copy does not have. Does nothing when there are as many. */
+    /** Makes what readers in step with the writer will need, copies of the first sample filled, so that later ones of
+     * its size allocate nothing; `prepare` makes room in each that a copy does not have. Does nothing when there are as
+     * many. */
     template <class Prepare>
     void stock(const T& filled, const Prepare& prepare) {
         while (samples_.size() < stocked) prepare(*samples_.emplace_back(std::make_shared<T>(filled)));

@@ -47,7 +47,8 @@ EGLDisplay surfacelessDisplay() {
 /** A context of OpenGL 4.5 core, current on this thread; null when this display has none. */
 EGLContext contextOn(EGLDisplay display, bool robust, EGLContext shared) {
     if (!eglBindAPI(EGL_OPENGL_API)) return EGL_NO_CONTEXT;
-    std::vector<EGLint> wish = {EGL_CONTEXT_MAJOR_VERSION, 4, EGL_CONTEXT_MINOR_VERSION, 5,
+    std::vector<EGLint> wish = {EGL_CONTEXT_MAJOR_VERSION,       4,
+                                EGL_CONTEXT_MINOR_VERSION,       5,
                                 EGL_CONTEXT_OPENGL_PROFILE_MASK, EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT};
     if (robust)
         wish.insert(wish.end(), {EGL_CONTEXT_OPENGL_ROBUST_ACCESS, EGL_TRUE,

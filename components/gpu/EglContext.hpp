@@ -23,8 +23,8 @@ public:
     struct Sharing {
         const EglContext& other;
     };
-    /** A context for this thread on the device of another one, with which it shares buffers, textures and programs; vertex
-     *  arrays and framebuffers belong to one context. The other one may be current on another thread. */
+    /** A context for this thread on the device of another one, with which it shares buffers, textures and programs;
+     * vertex arrays and framebuffers belong to one context. The other one may be current on another thread. */
     explicit EglContext(Sharing with);
     EglContext(const EglContext&) = delete;
     ~EglContext();

@@ -8,7 +8,8 @@
 namespace insonify::gpu {
 namespace {
 
-template <class Create> GLuint created(Create create) {
+template <class Create>
+GLuint created(Create create) {
     GLuint id = 0;
     create(id);
     return id;
@@ -44,7 +45,8 @@ Texture::Texture(GLenum format, int width, int height, bool mipmapped)
 }
 
 Framebuffer::Framebuffer(const Texture& colour, const Texture& depth)
-    : name_(created([](GLuint& id) { glCreateFramebuffers(1, &id); }), [](GLuint id) { glDeleteFramebuffers(1, &id); }) {
+    : name_(created([](GLuint& id) { glCreateFramebuffers(1, &id); }),
+            [](GLuint id) { glDeleteFramebuffers(1, &id); }) {
     glNamedFramebufferTexture(id(), GL_COLOR_ATTACHMENT0, colour.id(), 0);
     glNamedFramebufferTexture(id(), GL_DEPTH_ATTACHMENT, depth.id(), 0);
     if (glCheckNamedFramebufferStatus(id(), GL_FRAMEBUFFER) != GL_FRAMEBUFFER_COMPLETE)
@@ -52,7 +54,8 @@ Framebuffer::Framebuffer(const Texture& colour, const Texture& depth)
 }
 
 VertexArray::VertexArray()
-    : name_(created([](GLuint& id) { glCreateVertexArrays(1, &id); }), [](GLuint id) { glDeleteVertexArrays(1, &id); }) {}
+    : name_(created([](GLuint& id) { glCreateVertexArrays(1, &id); }),
+            [](GLuint id) { glDeleteVertexArrays(1, &id); }) {}
 
 void VertexArray::attribute(GLuint location, const Buffer& buffer, int components) const {
     glVertexArrayVertexBuffer(id(), location, buffer.id(), 0, components * static_cast<int>(sizeof(float)));

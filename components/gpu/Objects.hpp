@@ -20,7 +20,9 @@ public:
         std::swap(destroy_, other.destroy_);
         return *this;
     }
-    ~Name() { if (id_) destroy_(id_); }
+    ~Name() {
+        if (id_) destroy_(id_);
+    }
     GLuint id() const { return id_; }
 
 private:
@@ -33,13 +35,16 @@ class Buffer {
 public:
     Buffer() = default;
     explicit Buffer(size_t bytes, const void* data = nullptr, GLbitfield flags = GL_DYNAMIC_STORAGE_BIT);
-    template <class T> static Buffer of(std::span<const T> items) { return Buffer(items.size_bytes(), items.data()); }
+    template <class T>
+    static Buffer of(std::span<const T> items) {
+        return Buffer(items.size_bytes(), items.data());
+    }
 
     GLuint id() const { return name_.id(); }
     size_t bytes() const { return bytes_; }
     void write(const void* data, size_t bytes, size_t offset = 0);
     void read(void* data, size_t bytes, size_t offset = 0) const;
-    void clear();                                     ///< All bytes zero.
+    void clear();  ///< All bytes zero.
     void bind(GLenum target) const { glBindBuffer(target, id()); }
     void bindBase(GLenum target, GLuint index) const { glBindBufferBase(target, index, id()); }
 
@@ -79,7 +84,8 @@ public:
     void bind() const { glBindVertexArray(id()); }
     /** Floats, `components` a vertex, tightly packed, as attribute `location`. */
     void attribute(GLuint location, const Buffer& buffer, int components) const;
-    /** Attributes `location` to `location + rows - 1` from rows of four floats: the same for all vertices of an instance. */
+    /** Attributes `location` to `location + rows - 1` from rows of four floats: the same for all vertices of an
+     * instance. */
     void instanceRows(GLuint location, const Buffer& buffer, int rows) const;
     void indices(const Buffer& buffer) const { glVertexArrayElementBuffer(id(), buffer.id()); }
 

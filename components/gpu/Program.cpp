@@ -22,7 +22,8 @@ std::string withIncludes(std::string_view text) {
     return result;
 }
 
-template <class Get, class GetLog> std::string buildLog(GLuint id, Get get, GetLog getLog) {
+template <class Get, class GetLog>
+std::string buildLog(GLuint id, Get get, GetLog getLog) {
     GLint length = 0;
     get(id, GL_INFO_LOG_LENGTH, &length);
     std::string text(static_cast<size_t>(length), '\0');
@@ -52,7 +53,8 @@ std::string shaderSource(std::string_view name, const std::vector<std::string>& 
     return text + withIncludes(shaderFile(name));
 }
 
-Program::Program(std::initializer_list<GLuint> shaders) : name_(glCreateProgram(), [](GLuint id) { glDeleteProgram(id); }) {
+Program::Program(std::initializer_list<GLuint> shaders)
+    : name_(glCreateProgram(), [](GLuint id) { glDeleteProgram(id); }) {
     for (GLuint shader : shaders) glAttachShader(id(), shader);
     glLinkProgram(id());
     for (GLuint shader : shaders) glDeleteShader(shader);

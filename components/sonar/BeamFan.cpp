@@ -40,11 +40,16 @@ ShareRecord share(double from, double to, double u, double limit, uint32_t beam,
 }
 
 /** Beams that touch the slab, with their edges in u, for one image row. */
-void addRow(const SonarConfig& config, const std::vector<Beam>& beams, const Slab& slab, double v, ColumnShares& result) {
-    struct Edges { double low, high; uint32_t beam; };
+void addRow(const SonarConfig& config, const std::vector<Beam>& beams, const Slab& slab, double v,
+            ColumnShares& result) {
+    struct Edges {
+        double low, high;
+        uint32_t beam;
+    };
     std::vector<Edges> edges;
     for (size_t k = 0; k < beams.size(); ++k) {
-        const Edges e{boundary(config, slab, beams[k].low, v), boundary(config, slab, beams[k].high, v), static_cast<uint32_t>(k)};
+        const Edges e{boundary(config, slab, beams[k].low, v), boundary(config, slab, beams[k].high, v),
+                      static_cast<uint32_t>(k)};
         if (e.high > e.low) edges.push_back(e);
     }
     const double limit = std::tan(halfElevation(config));
@@ -53,7 +58,9 @@ void addRow(const SonarConfig& config, const std::vector<Beam>& beams, const Sla
         const double low = slab.u(column), high = slab.u(column + 1);
         for (const Edges& e : edges) {
             const double from = std::max(low, e.low), to = std::min(high, e.high);
-            if (to - from > 1e-9 * (high - low)) result.shares.push_back(share(from, to, slab.u(column + 0.5), limit, e.beam, static_cast<uint32_t>(column)));
+            if (to - from > 1e-9 * (high - low))
+                result.shares.push_back(
+                    share(from, to, slab.u(column + 0.5), limit, e.beam, static_cast<uint32_t>(column)));
         }
     }
 }
@@ -61,7 +68,11 @@ void addRow(const SonarConfig& config, const std::vector<Beam>& beams, const Sla
 /** One image of the whole fan, its top and bottom edges straight (physics.md 2, item 2). */
 Slab publishedFrustum(const SonarConfig& config) {
     const double half_width = types::radians(config.field_of_view_deg) / 2;
-    return {0, half_width, config.quality.columns_per_beam * config.beam_count, config.quality.rows, std::tan(half_width),
+    return {0,
+            half_width,
+            config.quality.columns_per_beam * config.beam_count,
+            config.quality.rows,
+            std::tan(half_width),
             std::tan(halfElevation(config))};
 }
 
@@ -104,14 +115,18 @@ std::vector<Beam> makeBeams(const SonarConfig& config) {
 std::vector<Slab> makeSlabs(const SonarConfig& config, const std::vector<Beam>& beams) {
     if (config.published || config.one_frustum) return {publishedFrustum(config)};
     double low = beams.front().low, high = beams.front().high;
-    for (const Beam& beam : beams) { low = std::min(low, beam.low); high = std::max(high, beam.high); }
+    for (const Beam& beam : beams) {
+        low = std::min(low, beam.low);
+        high = std::max(high, beam.high);
+    }
     const double half_elevation = halfElevation(config);
     if (config.beam_geometry == BeamGeometry::Conical) {
         low = coneAzimuth(low, half_elevation);
         high = coneAzimuth(high, half_elevation);
     }
     const int count = std::max(config.least_slabs, static_cast<int>(std::ceil((high - low) / widest_slab - 1e-9)));
-    const double columns = config.quality.columns_per_beam * (high - low) / types::radians(config.beamWidthDeg()) / count;
+    const double columns =
+        config.quality.columns_per_beam * (high - low) / types::radians(config.beamWidthDeg()) / count;
     std::vector<Slab> slabs(static_cast<size_t>(count));
     for (int i = 0; i < count; ++i) {
         Slab& slab = slabs[static_cast<size_t>(i)];
@@ -129,7 +144,8 @@ ColumnShares makeShares(const SonarConfig& config, const std::vector<Beam>& beam
     if (config.published || config.one_frustum) return roundedShares(beams, slab);
     ColumnShares result;
     result.per_row = config.beam_geometry == BeamGeometry::Conical;
-    for (int row = 0; row < (result.per_row ? slab.rows : 1); ++row) addRow(config, beams, slab, slab.v(row + 0.5), result);
+    for (int row = 0; row < (result.per_row ? slab.rows : 1); ++row)
+        addRow(config, beams, slab, slab.v(row + 0.5), result);
     result.starts.push_back(static_cast<uint32_t>(result.shares.size()));
     return result;
 }

@@ -16,9 +16,9 @@ struct DepositSetup {
     std::vector<ColumnShares> shares;  ///< One for each slab.
     uint32_t beam_count = 0;
     BinGrid bins;
-    double attenuation = 0;    ///< Amplitude, one way, in `cerqueira2017` [Np/m].
+    double attenuation = 0;  ///< Amplitude, one way, in `cerqueira2017` [Np/m].
     Model model = Model::Physical;
-    bool published = false;    ///< `cerqueira2017` to the letter.
+    bool published = false;  ///< `cerqueira2017` to the letter.
     Estimator estimator = Estimator::Footprint;
     double strength_scale = 1;  ///< Strengths are deposited times this: strengthScale.
 

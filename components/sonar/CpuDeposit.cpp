@@ -35,11 +35,17 @@ PlacedRun placed(const ObjectRecord& object, double strength, uint32_t first_tri
 }  // namespace
 
 CpuDeposit::CpuDeposit(DepositSetup setup, const SurfacePass& surface, ThreadPool& threads)
-    : setup_(std::move(setup)), threads_(threads), edges_(inverseEdges(setup_.bins)), planes_(surface.scene().planes()),
-      columns_(static_cast<size_t>(threads.size())), pictures_(setup_.slabs.size()), sums_(setup_.sumCount()) {
+    : setup_(std::move(setup)),
+      threads_(threads),
+      edges_(inverseEdges(setup_.bins)),
+      planes_(surface.scene().planes()),
+      columns_(static_cast<size_t>(threads.size())),
+      pictures_(setup_.slabs.size()),
+      sums_(setup_.sumCount()) {
     for (size_t i = 0; i < pictures_.size(); ++i) {
         pictures_[i].channels = static_cast<size_t>(surface.picture(i).channels());
-        pictures_[i].words.resize(pictures_[i].channels * static_cast<size_t>(setup_.slabs[i].columns) * static_cast<size_t>(setup_.slabs[i].rows));
+        pictures_[i].words.resize(pictures_[i].channels * static_cast<size_t>(setup_.slabs[i].columns) *
+                                  static_cast<size_t>(setup_.slabs[i].rows));
         pictures_[i].runs.reserve(surface.picture(i).commands.capacity());
     }
     for (size_t part = 0; part < columns_.size(); ++part)
@@ -59,8 +65,10 @@ void CpuDeposit::take(size_t slab, const SurfacePass& surface) {
     const double cosine = std::cos(setup_.slabs[slab].azimuth), sine = std::sin(setup_.slabs[slab].azimuth);
     const int value = setup_.model == Model::Cerqueira2017 ? 1 : 0;
     for (const CommandRecord& command : surface.picture(slab).commands)
-        picture.runs.push_back(placed(surface.objects()[command.object], surface.scene().materials()[command.material].values[value] * setup_.strength_scale,
-                                      command.first_triangle, cosine, sine));
+        picture.runs.push_back(
+            placed(surface.objects()[command.object],
+                   surface.scene().materials()[command.material].values[value] * setup_.strength_scale,
+                   command.first_triangle, cosine, sine));
 }
 
 std::span<const uint64_t> CpuDeposit::finish() {
@@ -71,10 +79,13 @@ std::span<const uint64_t> CpuDeposit::finish() {
 void CpuDeposit::depositPart(size_t part) {
     const uint first = firstBeam(part), last = firstBeam(part + 1);
     const size_t stride = static_cast<size_t>(setup_.bins.bin_count) * setup_.channels();
-    std::fill(sums_.begin() + static_cast<ptrdiff_t>(first * stride), sums_.begin() + static_cast<ptrdiff_t>(last * stride), 0);
+    std::fill(sums_.begin() + static_cast<ptrdiff_t>(first * stride),
+              sums_.begin() + static_cast<ptrdiff_t>(last * stride), 0);
     for (size_t i = 0; i < pictures_.size(); ++i)
         if (pictures_[i].taken)
-            deposit({setup_, setup_.slabs[i], setup_.shares[i], pictures_[i], planes_, edges_, first, last, columns_[part][i]}, sums_.data());
+            deposit({setup_, setup_.slabs[i], setup_.shares[i], pictures_[i], planes_, edges_, first, last,
+                     columns_[part][i]},
+                    sums_.data());
 }
 
 uint32_t CpuDeposit::firstBeam(size_t part) const {

@@ -38,7 +38,8 @@ glm::dmat4 relative(const glm::dmat3& rotation, const glm::dvec3& sonar, const g
 
 }  // namespace
 
-Culler::Culler(const types::Geometry& geometry, double range_max) : geometry_(geometry), range_max_(static_cast<float>(range_max)) {
+Culler::Culler(const types::Geometry& geometry, double range_max)
+    : geometry_(geometry), range_max_(static_cast<float>(range_max)) {
     for (const types::Mesh& mesh : geometry.meshes) {
         glm::vec3 low(std::numeric_limits<float>::max()), high(-low);
         for (const types::Cluster& cluster : mesh.clusters) {
@@ -46,12 +47,15 @@ Culler::Culler(const types::Geometry& geometry, double range_max) : geometry_(ge
             high = glm::max(high, cluster.centre + cluster.radius);
         }
         Box box{glm::dvec3(std::numeric_limits<double>::max()), glm::dvec3(std::numeric_limits<double>::lowest())};
-        for (const glm::vec3& p : mesh.positions) box = {glm::min(box.low, glm::dvec3(p)), glm::max(box.high, glm::dvec3(p))};
+        for (const glm::vec3& p : mesh.positions)
+            box = {glm::min(box.low, glm::dvec3(p)), glm::max(box.high, glm::dvec3(p))};
         mesh_boxes_.push_back(box);
         const bool empty = mesh.clusters.empty();
-        mesh_spheres_.push_back(empty ? Sphere{} : Sphere{low * 0.5f + high * 0.5f, glm::length(high * 0.5f - low * 0.5f)});
+        mesh_spheres_.push_back(empty ? Sphere{}
+                                      : Sphere{low * 0.5f + high * 0.5f, glm::length(high * 0.5f - low * 0.5f)});
     }
-    for (const types::Object& object : geometry.objects) run_limit_ += geometry.meshes[static_cast<size_t>(object.mesh)].clusters.size();
+    for (const types::Object& object : geometry.objects)
+        run_limit_ += geometry.meshes[static_cast<size_t>(object.mesh)].clusters.size();
     object_spheres_.resize(geometry.objects.size());
     scales_.resize(geometry.objects.size());
     records_.resize(geometry.objects.size());
@@ -59,7 +63,8 @@ Culler::Culler(const types::Geometry& geometry, double range_max) : geometry_(ge
 }
 
 void Culler::place(const types::Snapshot& snapshot) {
-    for (size_t i = 0; i < geometry_.objects.size(); ++i) world_from_object_[i] = geometry_.objects[i].world_from_object;
+    for (size_t i = 0; i < geometry_.objects.size(); ++i)
+        world_from_object_[i] = geometry_.objects[i].world_from_object;
     for (const types::MovedObject& moved : snapshot.moved) world_from_object_[moved.object] = moved.world_from_object;
     const glm::dmat3 rotation(sonarFromWorld(snapshot.sonar));
     for (size_t i = 0; i < world_from_object_.size(); ++i)
@@ -70,7 +75,8 @@ vec4 Culler::extent(size_t index, const glm::dmat4& m) const {
     const Box& box = mesh_boxes_[static_cast<size_t>(geometry_.objects[index].mesh)];
     double farthest = 0;
     for (int corner = 0; corner < 8; ++corner) {
-        const glm::dvec4 p(corner & 1 ? box.high.x : box.low.x, corner & 2 ? box.high.y : box.low.y, corner & 4 ? box.high.z : box.low.z, 1);
+        const glm::dvec4 p(corner & 1 ? box.high.x : box.low.x, corner & 2 ? box.high.y : box.low.y,
+                           corner & 4 ? box.high.z : box.low.z, 1);
         farthest = std::max(farthest, glm::length(glm::dvec3(m * p)));
     }
     glm::dvec3 nearest(m[3]);  // the box's axes stay orthogonal unless the object is sheared: then nothing is known
@@ -88,7 +94,8 @@ void Culler::placeObject(size_t index, const glm::dmat4& sonar_from_object) {
     const glm::dmat3 linear(sonar_from_object);
     const glm::dmat4 normals(glm::transpose(glm::inverse(linear)));
     ObjectRecord& record = records_[index];
-    record = {row(sonar_from_object, 0), row(sonar_from_object, 1), row(sonar_from_object, 2), row(normals, 0), row(normals, 1), row(normals, 2), extent(index, sonar_from_object)};
+    record = {row(sonar_from_object, 0), row(sonar_from_object, 1), row(sonar_from_object, 2),       row(normals, 0),
+              row(normals, 1),           row(normals, 2),           extent(index, sonar_from_object)};
     const Sphere& mesh = mesh_spheres_[static_cast<size_t>(geometry_.objects[index].mesh)];
     scales_[index] = static_cast<float>(stretch(linear));
     object_spheres_[index] = {glm::vec3(sonar_from_object * glm::dvec4(mesh.centre, 1)), mesh.radius * scales_[index]};
@@ -105,8 +112,9 @@ void Culler::addRuns(size_t object, const Slab& slab, std::vector<Run>& runs) co
     const ObjectRecord& record = records_[object];
     for (const types::Cluster& cluster : mesh.clusters) {
         const vec4 centre(cluster.centre, 1);
-        const Sphere sphere{{glm::dot(record.row_x, centre), glm::dot(record.row_y, centre), glm::dot(record.row_z, centre)},
-                            cluster.radius * scales_[object]};
+        const Sphere sphere{
+            {glm::dot(record.row_x, centre), glm::dot(record.row_y, centre), glm::dot(record.row_z, centre)},
+            cluster.radius * scales_[object]};
         if (mesh.clusters.size() > 1 && !sees(slab, sphere)) continue;
         const auto id = static_cast<uint32_t>(object);
         if (!runs.empty() && runs.back().object == id && runs.back().material == cluster.material &&
@@ -119,12 +127,14 @@ void Culler::addRuns(size_t object, const Slab& slab, std::vector<Run>& runs) co
 
 bool Culler::sees(const Slab& slab, const Sphere& sphere) const {
     const auto cosine = static_cast<float>(std::cos(slab.azimuth)), sine = static_cast<float>(std::sin(slab.azimuth));
-    const float x = cosine * sphere.centre.x + sine * sphere.centre.y, y = cosine * sphere.centre.y - sine * sphere.centre.x;
+    const float x = cosine * sphere.centre.x + sine * sphere.centre.y,
+                y = cosine * sphere.centre.y - sine * sphere.centre.x;
     const float z = sphere.centre.z;
     const auto u = static_cast<float>(slab.extent_u), v = static_cast<float>(slab.extent_v);
     const float margin = sphere.radius + 1e-5f * (std::abs(x) + std::abs(y) + std::abs(z));  // rounding of the centre
-    return std::abs(y) - u * x <= margin * std::sqrt(1 + u * u) && std::abs(z) - v * x <= margin * std::sqrt(1 + v * v) &&
-           x >= -margin && glm::length(sphere.centre) - margin <= range_max_;
+    return std::abs(y) - u * x <= margin * std::sqrt(1 + u * u) &&
+           std::abs(z) - v * x <= margin * std::sqrt(1 + v * v) && x >= -margin &&
+           glm::length(sphere.centre) - margin <= range_max_;
 }
 
 }  // namespace insonify::sonar

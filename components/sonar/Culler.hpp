@@ -43,10 +43,10 @@ private:
     struct Box {
         glm::dvec3 low{0}, high{0};
     };
-    std::vector<Sphere> mesh_spheres_;      ///< In mesh coordinates.
-    std::vector<Box> mesh_boxes_;           ///< In mesh coordinates.
-    std::vector<Sphere> object_spheres_;    ///< In the sonar frame.
-    std::vector<float> scales_;             ///< Largest stretch of each object [1].
+    std::vector<Sphere> mesh_spheres_;    ///< In mesh coordinates.
+    std::vector<Box> mesh_boxes_;         ///< In mesh coordinates.
+    std::vector<Sphere> object_spheres_;  ///< In the sonar frame.
+    std::vector<float> scales_;           ///< Largest stretch of each object [1].
     std::vector<glm::dmat4> world_from_object_;
     std::vector<ObjectRecord> records_;
     size_t run_limit_ = 0;

@@ -20,11 +20,12 @@ using std::abs, std::exp, std::sqrt;
 inline double min(double a, double b) { return a < b ? a : b; }
 inline double max(double a, double b) { return a > b ? a : b; }
 inline uint min(uint a, uint b) { return a < b ? a : b; }
+#include "shaders/footprint.glsl"
 #include "shaders/jitter.glsl"
 #include "shaders/surface.glsl"
-#include "shaders/footprint.glsl"
 
-/** Where the shared code of shaders/deposit.glsl finds its bins; HAVE_CERQUEIRA2017 chooses the model at compile time. */
+/** Where the shared code of shaders/deposit.glsl finds its bins; HAVE_CERQUEIRA2017 chooses the model at compile time.
+ */
 struct Bins {
     const double* edges;
     uint64_t* sums;
@@ -77,7 +78,8 @@ struct Pixels {
 /** A stretch of shares, each with what its pixel shows. */
 struct Shared {
     double middle[stretch], width[stretch], limit[stretch], shear[stretch];
-    double u[stretch], inverse_range[stretch], slope_u[stretch], slope_v[stretch], nearest[stretch], near_limit[stretch], far_limit[stretch];
+    double u[stretch], inverse_range[stretch], slope_u[stretch], slope_v[stretch], nearest[stretch],
+        near_limit[stretch], far_limit[stretch];
     double strength_range[stretch];
 
     void set(int i, const ShareRecord& share, const Pixels& pixels, uint p) {
@@ -98,8 +100,8 @@ struct Shared {
 
 /** What a stretch of shares covers: Footprint as arrays. */
 struct Cells {
-    double pixel[stretch], centre[stretch], wide[stretch], narrow[stretch], per_wide[stretch], steepness[stretch], near_end[stretch],
-        far_end[stretch], nearest[stretch], size[stretch];
+    double pixel[stretch], centre[stretch], wide[stretch], narrow[stretch], per_wide[stretch], steepness[stretch],
+        near_end[stretch], far_end[stretch], nearest[stretch], size[stretch];
 
     void set(int i, const Footprint& f) {
         pixel[i] = f.pixel;
@@ -114,7 +116,8 @@ struct Cells {
         size[i] = f.size;
     }
     Footprint get(int i) const {
-        return {pixel[i], centre[i], wide[i], narrow[i], per_wide[i], steepness[i], near_end[i], far_end[i], nearest[i], size[i]};
+        return {pixel[i],     centre[i],   wide[i],    narrow[i],  per_wide[i],
+                steepness[i], near_end[i], far_end[i], nearest[i], size[i]};
     }
 };
 
@@ -171,8 +174,8 @@ void aim(const SlabPart& part, int row, int first, int count, Pixels& pixels) {
 
 INSONIFY_VECTORISED void meet(Pixels& pixels, int count) {
     for (int i = 0; i < count; ++i) {
-        const Surface surface =
-            surfaceAt(pixels.normal_x[i], pixels.normal_y[i], pixels.normal_z[i], pixels.distance[i], pixels.ray_u[i], pixels.ray_v[i]);
+        const Surface surface = surfaceAt(pixels.normal_x[i], pixels.normal_y[i], pixels.normal_z[i],
+                                          pixels.distance[i], pixels.ray_u[i], pixels.ray_v[i]);
         const double cosine = pixels.mapped[i] == 0 ? surface.cosine : pixels.mapped[i];
         pixels.inverse_range[i] = surface.inverse_range;
         pixels.slope_u[i] = surface.slope_u;
@@ -189,13 +192,15 @@ struct Reach {
 
 INSONIFY_VECTORISED void cover(const Shared& shared, int count, const Reach& reach, Cells& __restrict cells) {
     for (int i = 0; i < count; ++i)
-        cells.set(i, cellFootprint(shared.u[i], reach.v, shared.middle[i], shared.width[i], shared.limit[i], shared.shear[i],
-                                   reach.dv, shared.inverse_range[i], shared.slope_u[i], shared.slope_v[i],
-                                   shared.nearest[i], shared.near_limit[i], shared.far_limit[i], reach.near_edge, reach.far_edge, reach.per_pixel));
+        cells.set(i, cellFootprint(shared.u[i], reach.v, shared.middle[i], shared.width[i], shared.limit[i],
+                                   shared.shear[i], reach.dv, shared.inverse_range[i], shared.slope_u[i],
+                                   shared.slope_v[i], shared.nearest[i], shared.near_limit[i], shared.far_limit[i],
+                                   reach.near_edge, reach.far_edge, reach.per_pixel));
 }
 
 /** The part row by row, a stretch of pixels and then of shares at a time. */
-template <class Model> class PartDeposit {
+template <class Model>
+class PartDeposit {
 public:
     PartDeposit(const SlabPart& part, Model bins)
         : part_(part), bins_(bins), per_pixel_(1 / (part.slab.du() * part.slab.dv())) {}
@@ -214,7 +219,8 @@ private:
         const size_t at = part_.shares.cell(row, first, part_.slab.columns);
         const uint end = part_.shares.starts[at + static_cast<size_t>(count)];
         for (uint i = part_.shares.starts[at]; i < end; i += stretch)
-            shares(i, static_cast<int>(std::min<uint>(stretch, end - i)), static_cast<uint>(first), part_.slab.v(row + 0.5));
+            shares(i, static_cast<int>(std::min<uint>(stretch, end - i)), static_cast<uint>(first),
+                   part_.slab.v(row + 0.5));
     }
 
     void shares(uint first_share, int count, uint first_column, double v) {
@@ -239,10 +245,14 @@ private:
 void deposit(const SlabPart& part, uint64_t* sums) {
     const BinGrid& grid = part.setup.bins;
     const Bins bins{part.edges.data(), sums, static_cast<uint>(grid.bin_count), grid.bin_width, part.setup.attenuation};
-    if (part.setup.published) PartDeposit(part, PublishedBins{{bins}}).run();
-    else if (part.setup.model == Model::Cerqueira2017) PartDeposit(part, CerqueiraBins{bins}).run();
-    else if (part.setup.estimator != Estimator::Footprint) PartDeposit(part, NearestBins{{bins}}).run();
-    else PartDeposit(part, PhysicalBins{bins}).run();
+    if (part.setup.published)
+        PartDeposit(part, PublishedBins{{bins}}).run();
+    else if (part.setup.model == Model::Cerqueira2017)
+        PartDeposit(part, CerqueiraBins{bins}).run();
+    else if (part.setup.estimator != Estimator::Footprint)
+        PartDeposit(part, NearestBins{{bins}}).run();
+    else
+        PartDeposit(part, PhysicalBins{bins}).run();
 }
 
 }  // namespace insonify::sonar

@@ -30,7 +30,7 @@ struct SlabPart {
     const std::vector<vec4>& planes;
     const std::vector<double>& edges;  ///< inverseEdges.
     uint32_t first, last;              ///< Beams [1].
-    std::array<int, 2> columns;  ///< From, to: those that these beams touch [1].
+    std::array<int, 2> columns;        ///< From, to: those that these beams touch [1].
 };
 
 /** Adds the part's echoes to `sums`, [beam][bin][channel]. */

@@ -16,7 +16,9 @@ public:
     std::span<const uint64_t> finish() override;
 
 private:
-    struct SlabShares { gpu::Buffer starts, shares; };
+    struct SlabShares {
+        gpu::Buffer starts, shares;
+    };
     void setUniforms(const Slab& slab, bool shares_per_row) const;
     GLint uniform(const char* name) const { return glGetUniformLocation(program_.id(), name); }
 

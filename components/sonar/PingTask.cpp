@@ -36,9 +36,10 @@ PingTask::~PingTask() {
 std::vector<std::string> PingTask::notices() const {
     std::vector<std::string> all = plan_ ? plan_->notices : configNotices(sonarConfig());
     if (shortest_ < echoTime() * (1 - 1e-6))
-        all.push_back(fmt::format("Warning: pings {:.3g} s apart are ambiguous in range, sound takes {:.3g} s to {:.4g} m and back; each "
-                                  "is rendered by itself",
-                                  shortest_, echoTime(), grid_.range_max));
+        all.push_back(fmt::format(
+            "Warning: pings {:.3g} s apart are ambiguous in range, sound takes {:.3g} s to {:.4g} m and back; each "
+            "is rendered by itself",
+            shortest_, echoTime(), grid_.range_max));
     return all;
 }
 
@@ -91,8 +92,9 @@ void PingTask::chooseQuality() {
     renderer_ = std::make_unique<SonarRenderer>(config, geometry_);
     chosen_ = true;
     if (wish.target_error && ladder.back().error > *wish.target_error)
-        plan_->notices.push_back(fmt::format("Warning: the finest quality leaves an error of {:.2g}; the target is {:g}",
-                                             ladder.back().error, *wish.target_error));
+        plan_->notices.push_back(
+            fmt::format("Warning: the finest quality leaves an error of {:.2g}; the target is {:g}",
+                        ladder.back().error, *wish.target_error));
     setQuality(ladder.back());
     if (wish.budget_ms) keeper_.emplace(std::move(ladder), *wish.budget_ms);
 }
@@ -107,8 +109,9 @@ void PingTask::setQuality(const Quality& quality) {
 void PingTask::keepBudget(double ms) {
     if (!keeper_ || !keeper_->heard(ms)) return;
     setQuality(keeper_->quality());
-    plan_->notices.push_back(fmt::format("from {:.3f} s on {} rows, {} columns per beam, to keep to {:g} ms", aimed_.time.seconds(),
-                                         plan_->rows, plan_->columns_per_beam, *sonarConfig().quality.budget_ms));
+    plan_->notices.push_back(fmt::format("from {:.3f} s on {} rows, {} columns per beam, to keep to {:g} ms",
+                                         aimed_.time.seconds(), plan_->rows, plan_->columns_per_beam,
+                                         *sonarConfig().quality.budget_ms));
 }
 
 void PingTask::render() {

@@ -18,10 +18,10 @@ namespace insonify::sonar {
  *
  *  The renderer is made at the first snapshot, when the geometry is known, and again when the geometry changes. A
  *  snapshot that cannot be rendered (a pose that is not finite, a quaternion of no length, no geometry, a place that
- *  only more than a tenth of the speed of sound reaches) leads to RunTimeError, from which the next good one recovers. A
- *  quaternion that is not of unit length is normalised. Pings closer in time than sound's way to the range and back are
- *  rendered, each by itself, and told of in the notices. With a target or a budget the quality is chosen on the first
- *  ping that hears anything, which takes long; a budget may change it later. */
+ *  only more than a tenth of the speed of sound reaches) leads to RunTimeError, from which the next good one recovers.
+ * A quaternion that is not of unit length is normalised. Pings closer in time than sound's way to the range and back
+ * are rendered, each by itself, and told of in the notices. With a target or a budget the quality is chosen on the
+ * first ping that hears anything, which takes long; a budget may change it later. */
 class PingTask : public framework::TaskContext {
 public:
     using TaskContext::TaskContext;

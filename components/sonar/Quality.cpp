@@ -38,7 +38,8 @@ public:
         for (int i = 0; i < 4; ++i) {
             const auto start = std::chrono::steady_clock::now();
             renderer_.render(scene_, ping_);
-            least = std::min(least, std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count());
+            least = std::min(
+                least, std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count());
         }
         return least;
     }
@@ -48,7 +49,8 @@ public:
         const auto count = static_cast<size_t>(config_.bin_count);
         for (size_t i = 0; i < fine.size(); ++i) {
             const double range = static_cast<double>(i % count) + 0.5;
-            const double weight = config_.model == Model::Physical ? std::pow(range / static_cast<double>(count), 5) : 1;
+            const double weight =
+                config_.model == Model::Physical ? std::pow(range / static_cast<double>(count), 5) : 1;
             error += std::pow(weight * (static_cast<double>(coarse[i]) - fine[i]), 2);
             norm += std::pow(weight * fine[i], 2);
         }
@@ -74,8 +76,8 @@ struct Changes {
     double error() const { return std::max(std::hypot(of_rows, of_columns), of_both); }
 };
 
-/** Rows are also tried at factors that are not powers of 2: an edge along the rows may lie as wrong at twice as many. Both
- *  together, because a small thing may need more of both before it is seen at all. */
+/** Rows are also tried at factors that are not powers of 2: an edge along the rows may lie as wrong at twice as many.
+ * Both together, because a small thing may need more of both before it is seen at all. */
 Changes changesOf(Trial& trial, int rows, int columns) {
     const auto here = trial.bins(rows, columns);
     const auto change = [&](double taller, int wider) {
@@ -86,10 +88,12 @@ Changes changesOf(Trial& trial, int rows, int columns) {
 
 }  // namespace
 
-std::vector<Quality> tryQualities(const SonarConfig& config, const types::Snapshot& scene, double target_error, double budget_ms) {
+std::vector<Quality> tryQualities(const SonarConfig& config, const types::Snapshot& scene, double target_error,
+                                  double budget_ms) {
     Trial trial(config, scene);
     std::vector<Quality> ladder;
-    for (int rows = least_rows, columns = 1; rows <= most_rows && columns <= most_columns && fits(config, 2 * columns);) {
+    for (int rows = least_rows, columns = 1;
+         rows <= most_rows && columns <= most_columns && fits(config, 2 * columns);) {
         const Changes changes = changesOf(trial, rows, columns);
         const Quality quality{rows, columns, changes.error(), std::isfinite(budget_ms) ? trial.ms(rows, columns) : 0};
         if (!ladder.empty() && quality.ms > budget_ms) break;

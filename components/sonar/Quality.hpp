@@ -9,13 +9,14 @@ namespace insonify::sonar {
 /** So many samples per beam, what error they leave and how long they take, as tried out on a scene. */
 struct Quality {
     int rows = 0, columns_per_beam = 0;
-    double error = 0;  ///< Relative L2 of bin energies after a gain of 50 log10(r) (`physical`); of bins (`cerqueira2017`) [1].
-    double ms = 0;     ///< Of one ping, the least of a few; 0 without a budget [ms].
+    double error =
+        0;  ///< Relative L2 of bin energies after a gain of 50 log10(r) (`physical`); of bins (`cerqueira2017`) [1].
+    double ms = 0;  ///< Of one ping, the least of a few; 0 without a budget [ms].
 };
 
-/** Qualities of rising cost on this machine for what the sonar sees in a snapshot. Each doubles the rows or the columns of
- *  the one before, whichever changes the bins more; how much they change tells the error. Ends with the first whose error
- *  is at most `target_error`, or before the first that takes longer than `budget_ms`; never empty. */
+/** Qualities of rising cost on this machine for what the sonar sees in a snapshot. Each doubles the rows or the columns
+ * of the one before, whichever changes the bins more; how much they change tells the error. Ends with the first whose
+ * error is at most `target_error`, or before the first that takes longer than `budget_ms`; never empty. */
 std::vector<Quality> tryQualities(const SonarConfig& config, const types::Snapshot& scene, double target_error,
                                   double budget_ms);
 

@@ -3,7 +3,8 @@
 namespace insonify::sonar {
 
 SlabPicture::SlabPicture(const Slab& slab, bool with_normal_maps, size_t run_limit)
-    : slab_(slab), channels_(with_normal_maps ? 4 : 2),
+    : slab_(slab),
+      channels_(with_normal_maps ? 4 : 2),
       ids_(with_normal_maps ? GL_RGBA32UI : GL_RG32UI, slab.columns, slab.rows),
       depth_(GL_DEPTH_COMPONENT32F, slab.columns, slab.rows),
       target_(ids_, depth_),
@@ -22,9 +23,7 @@ void SlabPicture::read(std::vector<uint32_t>& words) const {
                       static_cast<GLsizei>(words.size() * sizeof(uint32_t)), words.data());
 }
 
-void SlabPicture::bindCommands() const {
-    device_commands_.bindBase(GL_SHADER_STORAGE_BUFFER, COMMANDS_BINDING);
-}
+void SlabPicture::bindCommands() const { device_commands_.bindBase(GL_SHADER_STORAGE_BUFFER, COMMANDS_BINDING); }
 
 void SlabPicture::clear() const {
     target_.bind();

@@ -11,10 +11,15 @@ namespace insonify::sonar {
 class SlabPicture {
 public:
     /** One indirect draw, as OpenGL lays it out. */
-    struct DrawCommand { uint32_t count, instances, first_index, base_vertex, base_instance; };
+    struct DrawCommand {
+        uint32_t count, instances, first_index, base_vertex, base_instance;
+    };
 
-    /** Rows of the matrix from object axes to the image: u and v times depth over their extents, depth along the axis. */
-    struct Clip { vec4 x, y, w; };
+    /** Rows of the matrix from object axes to the image: u and v times depth over their extents, depth along the axis.
+     */
+    struct Clip {
+        vec4 x, y, w;
+    };
 
     /** At most `run_limit` runs are drawn. */
     SlabPicture(const Slab& slab, bool with_normal_maps, size_t run_limit);

@@ -38,9 +38,11 @@ void checkRangeReached(const SonarConfig& config, types::Problems& problems) {
 void checkImages(const SonarConfig& config, types::Problems& problems) {
     const int columns = makeSlabs(config, makeBeams(config)).front().columns;
     if (columns > most_image_size)
-        problems.push_back({"quality.columns_per_beam",
-                            fmt::format("is {}, which with beams of {:g} deg over {:g} deg makes images of {} columns; may be {}",
-                                        config.quality.columns_per_beam, config.beamWidthDeg(), config.coverageDeg(), columns, most_image_size)});
+        problems.push_back(
+            {"quality.columns_per_beam",
+             fmt::format("is {}, which with beams of {:g} deg over {:g} deg makes images of {} columns; may be {}",
+                         config.quality.columns_per_beam, config.beamWidthDeg(), config.coverageDeg(), columns,
+                         most_image_size)});
 }
 
 void checkDevice(const std::string& device, types::Problems& problems) {
@@ -96,7 +98,8 @@ void QualityConfig::check(types::Problems& problems) const {
     const bool given = rows != absent.rows || columns_per_beam != absent.columns_per_beam;
     for (const auto& [name, value] : {std::pair{"target_error", target_error}, {"budget_ms", budget_ms}})
         if (value && (given || (target_error && budget_ms)))
-            problems.push_back({name, "is given with another choice; give rows and columns_per_beam, or target_error, or budget_ms"});
+            problems.push_back(
+                {name, "is given with another choice; give rows and columns_per_beam, or target_error, or budget_ms"});
 }
 
 void SonarConfig::checkBeam(types::Problems& problems) const {

@@ -81,8 +81,10 @@ struct QualityConfig {
         using types::Field;
         visit(Field{"rows", "1", "image rows over beam_height_deg", 1, 16384}, self.rows);
         visit(Field{"columns_per_beam", "1", "image columns per beam", 1, 256}, self.columns_per_beam);
-        visit(Field{"target_error", "1", "instead: relative L2 error of energies times r^5, 1e-4 to 1", 1e-4, 1}, self.target_error);
-        visit(Field{"budget_ms", "ms", "instead: time of a ping, kept by lowering the quality", 0.1, 1e5}, self.budget_ms);
+        visit(Field{"target_error", "1", "instead: relative L2 error of energies times r^5, 1e-4 to 1", 1e-4, 1},
+              self.target_error);
+        visit(Field{"budget_ms", "ms", "instead: time of a ping, kept by lowering the quality", 0.1, 1e5},
+              self.budget_ms);
     }
     void check(types::Problems& problems) const;
 };
@@ -110,9 +112,9 @@ struct SonarConfig {
     RangeRounding range_rounding = RangeRounding::Sample;
     bool published = false;
     Estimator estimator = Estimator::Footprint;  ///< Not a property. Others than the first: `physical` only.
-    bool one_frustum = false;                    ///< Not a property: one wide image and rounded columns, as `published`.
-    int least_slabs = 1;                         ///< Not a property: more images than the fan needs [1].
-    int threads = 0;                             ///< Not a property: 0, as many as there are cores [1].
+    bool one_frustum = false;  ///< Not a property: one wide image and rounded columns, as `published`.
+    int least_slabs = 1;       ///< Not a property: more images than the fan needs [1].
+    int threads = 0;           ///< Not a property: 0, as many as there are cores [1].
     std::string device;
     Deposit deposit = Deposit::Auto;
     std::optional<types::NotBuiltYet> beam_pattern, pulse, volume, multipath;

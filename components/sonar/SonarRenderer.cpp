@@ -18,7 +18,8 @@ namespace {
 std::vector<std::string> defines(const types::Plan& plan) {
     std::vector<std::string> result;
     for (std::string feature : plan.features) {
-        std::transform(feature.begin(), feature.end(), feature.begin(), [](unsigned char c) { return static_cast<char>(std::toupper(c)); });
+        std::transform(feature.begin(), feature.end(), feature.begin(),
+                       [](unsigned char c) { return static_cast<char>(std::toupper(c)); });
         result.push_back("HAVE_" + feature);
     }
     return result;
@@ -33,11 +34,13 @@ double nearPlane(const SonarConfig& config, const Slab& slab) {
 /** Strongest Lambert parameter [1]. */
 double loudest(const types::Geometry& geometry) {
     double strongest = 0;
-    for (const types::Material& material : geometry.materials) strongest = std::max(strongest, std::pow(10.0, material.lambert_db / 10.0));
+    for (const types::Material& material : geometry.materials)
+        strongest = std::max(strongest, std::pow(10.0, material.lambert_db / 10.0));
     return strongest;
 }
 
-DepositSetup depositSetup(const SonarConfig& config, const std::vector<Beam>& beams, const std::vector<Slab>& slabs, const BinGrid& bins) {
+DepositSetup depositSetup(const SonarConfig& config, const std::vector<Beam>& beams, const std::vector<Slab>& slabs,
+                          const BinGrid& bins) {
     DepositSetup setup;
     setup.slabs = slabs;
     for (const Slab& slab : slabs) setup.shares.push_back(makeShares(config, beams, slab));
@@ -81,10 +84,19 @@ struct SonarRenderer::Parts {
 };
 
 SonarRenderer::Parts::Parts(const SonarConfig& c, types::GeometryPtr scene)
-    : config(c), geometry(std::move(scene)), plan(makePlan(config, *geometry)), context(config.device),
-      beams(makeBeams(config)), slabs(makeSlabs(config, beams)), bins(makeBinGrid(config)), levels(config, bins),
-      culler(*geometry, bins.range_max), threads(config.threads),
-      surface(context, {*geometry, slabs, defines(plan), nearPlane(config, slabs.front()), culler.runLimit(), config.published}, threads) {
+    : config(c),
+      geometry(std::move(scene)),
+      plan(makePlan(config, *geometry)),
+      context(config.device),
+      beams(makeBeams(config)),
+      slabs(makeSlabs(config, beams)),
+      bins(makeBinGrid(config)),
+      levels(config, bins),
+      culler(*geometry, bins.range_max),
+      threads(config.threads),
+      surface(context,
+              {*geometry, slabs, defines(plan), nearPlane(config, slabs.front()), culler.runLimit(), config.published},
+              threads) {
     makeDeposit();
     scratch.resize(static_cast<size_t>(threads.size()) * static_cast<size_t>(bins.bin_count));
     context.check();
@@ -94,8 +106,10 @@ void SonarRenderer::Parts::makeDeposit() {
     DepositSetup setup = depositSetup(config, beams, slabs, bins);
     setup.strength_scale = strength_scale = strengthScale(config, bins, loudest(*geometry));
     const bool on_cpu = config.deposit == Deposit::Cpu || (config.deposit == Deposit::Auto && context.isSoftware());
-    if (on_cpu) deposit = std::make_unique<CpuDeposit>(std::move(setup), surface, threads);
-    else deposit = makeGpuDeposit(setup);
+    if (on_cpu)
+        deposit = std::make_unique<CpuDeposit>(std::move(setup), surface, threads);
+    else
+        deposit = makeGpuDeposit(setup);
 }
 
 void SonarRenderer::Parts::lap(size_t stage) {
@@ -130,13 +144,17 @@ void SonarRenderer::Parts::fillHeader(const types::Snapshot& snapshot, types::So
     ping.bins.resize(beams.size() * static_cast<size_t>(bins.bin_count));
 }
 
-void SonarRenderer::Parts::fillBeam(std::span<const uint64_t> sums, size_t beam, double* values, types::Sonar& ping) const {
+void SonarRenderer::Parts::fillBeam(std::span<const uint64_t> sums, size_t beam, double* values,
+                                    types::Sonar& ping) const {
     const auto count = static_cast<size_t>(bins.bin_count);
     const double pixel = slabs.front().du() * slabs.front().dv();  // solid angle of a whole pixel [sr]
     for (size_t k = 0; k < count; ++k) {
         const size_t at = beam * count + k;
-        if (config.model == Model::Physical) values[k] = static_cast<double>(sums[at]) * (pixel / (quanta_per_unit * strength_scale));
-        else values[k] = sums[2 * at + 1] ? static_cast<double>(sums[2 * at]) / static_cast<double>(sums[2 * at + 1]) : 0;
+        if (config.model == Model::Physical)
+            values[k] = static_cast<double>(sums[at]) * (pixel / (quanta_per_unit * strength_scale));
+        else
+            values[k] =
+                sums[2 * at + 1] ? static_cast<double>(sums[2 * at]) / static_cast<double>(sums[2 * at + 1]) : 0;
     }
     levels.apply({values, count}, {ping.bins.data() + beam * count, count});
 }
@@ -144,7 +162,8 @@ void SonarRenderer::Parts::fillBeam(std::span<const uint64_t> sums, size_t beam,
 void SonarRenderer::Parts::fillBins(std::span<const uint64_t> sums, types::Sonar& ping) {
     threads.run([&](int part, int parts) {
         double* values = scratch.data() + static_cast<size_t>(part) * static_cast<size_t>(bins.bin_count);
-        for (auto beam = static_cast<size_t>(part); beam < beams.size(); beam += static_cast<size_t>(parts)) fillBeam(sums, beam, values, ping);
+        for (auto beam = static_cast<size_t>(part); beam < beams.size(); beam += static_cast<size_t>(parts))
+            fillBeam(sums, beam, values, ping);
     });
 }
 

@@ -10,8 +10,8 @@
 
 namespace insonify::sonar {
 
-/** Renders what a sonar hears of a geometry, noiseless. Make it, use it and destroy it on one thread, and destroy it before
- *  another one is made there.
+/** Renders what a sonar hears of a geometry, noiseless. Make it, use it and destroy it on one thread, and destroy it
+ * before another one is made there.
  *
  *      SonarRenderer renderer(config, geometry);
  *      renderer.render(snapshot, ping);    // ping.bins[beam * bin_count + bin]

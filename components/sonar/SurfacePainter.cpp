@@ -16,7 +16,8 @@ SlabPicture::Clip clip(const ObjectRecord& object, const Slab& slab) {
 
 SurfacePainter::SurfacePainter(const types::Geometry& geometry, const SurfaceScene& scene,
                                const std::vector<std::string>& defines, double near_plane)
-    : geometry_(geometry), scene_(scene),
+    : geometry_(geometry),
+      scene_(scene),
       with_normal_maps_(std::find(defines.begin(), defines.end(), "HAVE_NORMAL_MAP") != defines.end()),
       near_plane_(near_plane),
       program_(gpu::Program::raster("surface.vert.glsl", "surface.frag.glsl", defines)),
@@ -63,7 +64,8 @@ void SurfacePainter::listDraws(SlabPicture& picture, const std::vector<ObjectRec
 }
 
 void SurfacePainter::setUniforms(const Slab& slab) const {
-    glUniform2f(uniforms_.slab_axis, static_cast<float>(std::cos(slab.azimuth)), static_cast<float>(std::sin(slab.azimuth)));
+    glUniform2f(uniforms_.slab_axis, static_cast<float>(std::cos(slab.azimuth)),
+                static_cast<float>(std::sin(slab.azimuth)));
     glUniform2f(uniforms_.extent, static_cast<float>(slab.extent_u), static_cast<float>(slab.extent_v));
     glUniform2f(uniforms_.pixel_size, static_cast<float>(slab.du()), static_cast<float>(slab.dv()));
     glUniform1f(uniforms_.near_plane, static_cast<float>(near_plane_));

@@ -34,7 +34,9 @@ private:
     gpu::Program program_;
     gpu::VertexArray vertices_;
     gpu::Buffer objects_;
-    struct Uniforms { GLint slab_axis, extent, pixel_size, near_plane, mapped; } uniforms_;
+    struct Uniforms {
+        GLint slab_axis, extent, pixel_size, near_plane, mapped;
+    } uniforms_;
 };
 
 }  // namespace insonify::sonar

@@ -15,8 +15,12 @@ size_t partCount(const gpu::EglContext& context, const SurfacePass::Setup& setup
 }  // namespace
 
 SurfacePass::SurfacePass(gpu::EglContext& context, Setup setup, ThreadPool& threads)
-    : setup_(std::move(setup)), context_(context), threads_(threads), scene_(setup_.geometry, hasNormalMaps(setup_)),
-      parts_(partCount(context, setup_, threads)), pictures_(setup_.slabs.size()) {
+    : setup_(std::move(setup)),
+      context_(context),
+      threads_(threads),
+      scene_(setup_.geometry, hasNormalMaps(setup_)),
+      parts_(partCount(context, setup_, threads)),
+      pictures_(setup_.slabs.size()) {
     glFinish();  // the other contexts must find the scene's buffers filled
     try {
         onEachPart([this](size_t part) { makePart(part); });
@@ -41,7 +45,8 @@ void SurfacePass::release() {
     });
 }
 
-template <class Job> void SurfacePass::onEachPart(const Job& job) {
+template <class Job>
+void SurfacePass::onEachPart(const Job& job) {
     if (parts_.size() == 1) return job(0);
     threads_.run([&](int part, int) {
         if (static_cast<size_t>(part) < parts_.size()) job(static_cast<size_t>(part));

@@ -50,7 +50,8 @@ private:
     void release();
     void makePart(size_t part);
     void makePictures(size_t part);
-    template <class Job> void onEachPart(const Job& job);
+    template <class Job>
+    void onEachPart(const Job& job);
 
     Setup setup_;
     gpu::EglContext& context_;

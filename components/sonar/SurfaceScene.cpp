@@ -7,8 +7,9 @@
 namespace insonify::sonar {
 namespace {
 
-/** A mesh as it is drawn: triangle t ends in vertex t, which no other triangle ends in. So the last vertex of a triangle,
- *  the provoking one, tells which triangle it is, and gl_PrimitiveID, for which llvmpipe takes meshes apart, is not needed. */
+/** A mesh as it is drawn: triangle t ends in vertex t, which no other triangle ends in. So the last vertex of a
+ * triangle, the provoking one, tells which triangle it is, and gl_PrimitiveID, for which llvmpipe takes meshes apart,
+ * is not needed. */
 struct Drawn {
     std::vector<uint32_t> sources;  ///< Of each drawn vertex, in the mesh.
     std::vector<uint32_t> indices;
@@ -44,7 +45,8 @@ Drawn drawn(const types::Mesh& mesh) {
 
 /** One attribute of all drawn vertices; `neutral` where a mesh has none. */
 template <class T>
-std::vector<T> joined(const types::Geometry& geometry, const std::vector<Drawn>& meshes, std::vector<T> types::Mesh::* attribute, T neutral) {
+std::vector<T> joined(const types::Geometry& geometry, const std::vector<Drawn>& meshes,
+                      std::vector<T> types::Mesh::*attribute, T neutral) {
     std::vector<T> all;
     for (size_t m = 0; m < meshes.size(); ++m) {
         const std::vector<T>& values = geometry.meshes[m].*attribute;
@@ -53,7 +55,10 @@ std::vector<T> joined(const types::Geometry& geometry, const std::vector<Drawn>&
     return all;
 }
 
-template <class T> gpu::Buffer uploaded(const std::vector<T>& items) { return gpu::Buffer::of(std::span(items)); }
+template <class T>
+gpu::Buffer uploaded(const std::vector<T>& items) {
+    return gpu::Buffer::of(std::span(items));
+}
 
 /** A triangle's plane in object axes: xyz its unit normal n, w = n.p for its points p [m]. */
 vec4 planeOf(glm::dvec3 a, glm::dvec3 b, glm::dvec3 c) {
@@ -77,7 +82,8 @@ gpu::Texture uploadedMap(int width, int height, const uint8_t* rgb, bool repeat_
 
 }  // namespace
 
-SurfaceScene::SurfaceScene(const types::Geometry& geometry, bool with_normal_maps) : with_normal_maps_(with_normal_maps) {
+SurfaceScene::SurfaceScene(const types::Geometry& geometry, bool with_normal_maps)
+    : with_normal_maps_(with_normal_maps) {
     uploadVertices(geometry);
     uploadPlanes(geometry);
     uploadMaterials(geometry);
@@ -106,13 +112,15 @@ void SurfaceScene::uploadVertices(const types::Geometry& geometry) {
 void SurfaceScene::uploadPlanes(const types::Geometry& geometry) {
     for (const types::Mesh& mesh : geometry.meshes)
         for (size_t i = 0; i + 2 < mesh.indices.size(); i += 3)
-            plane_list_.push_back(planeOf(mesh.positions[mesh.indices[i]], mesh.positions[mesh.indices[i + 1]], mesh.positions[mesh.indices[i + 2]]));
+            plane_list_.push_back(planeOf(mesh.positions[mesh.indices[i]], mesh.positions[mesh.indices[i + 1]],
+                                          mesh.positions[mesh.indices[i + 2]]));
     planes_ = uploaded(plane_list_);
 }
 
 void SurfaceScene::uploadMaterials(const types::Geometry& geometry) {
     for (const types::Material& material : geometry.materials)
-        material_list_.push_back({vec4(std::pow(10.0f, material.lambert_db / 10), material.reflectivity, material.normal_scale, 0)});
+        material_list_.push_back(
+            {vec4(std::pow(10.0f, material.lambert_db / 10), material.reflectivity, material.normal_scale, 0)});
     materials_ = uploaded(material_list_);
 }
 

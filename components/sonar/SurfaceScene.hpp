@@ -11,7 +11,9 @@ namespace insonify::sonar {
 class SurfaceScene {
 public:
     /** Where a mesh begins in the shared buffers. */
-    struct MeshPlace { uint32_t first_vertex, first_index, first_triangle; };
+    struct MeshPlace {
+        uint32_t first_vertex, first_index, first_triangle;
+    };
 
     SurfaceScene(const types::Geometry& geometry, bool with_normal_maps);
     const MeshPlace& place(int mesh) const { return places_[static_cast<size_t>(mesh)]; }

@@ -12,7 +12,10 @@ ThreadPool::ThreadPool(int threads) {
 }
 
 ThreadPool::~ThreadPool() {
-    { std::lock_guard lock(mutex_); quit_ = true; }
+    {
+        std::lock_guard lock(mutex_);
+        quit_ = true;
+    }
     started_.notify_all();
     for (std::thread& worker : workers_) worker.join();
 }

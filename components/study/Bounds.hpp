@@ -14,26 +14,31 @@ namespace insonify::study {
 struct BoundsVisitor {
     types::Problems problems;
 
-    template <class T> void operator()(const types::Field& field, const T& value) {
+    template <class T>
+    void operator()(const types::Field& field, const T& value) {
         if constexpr (std::floating_point<T> || std::integral<T>) {
             const auto number = static_cast<double>(value);
-            if (!(number >= field.min && number <= field.max) || !std::isfinite(number)) problems.push_back({field.name, "is out of bounds"});
+            if (!(number >= field.min && number <= field.max) || !std::isfinite(number))
+                problems.push_back({field.name, "is out of bounds"});
         } else if constexpr (types::Described<T>) {
             T::describe(value, *this);
             if constexpr (types::Checked<T>) value.check(problems);
         }
     }
-    template <class T> void operator()(const types::Field& field, const std::optional<T>& value) {
+    template <class T>
+    void operator()(const types::Field& field, const std::optional<T>& value) {
         if (value) (*this)(field, *value);
     }
-    template <class T> void operator()(const types::Field& field, const std::vector<T>& values) {
+    template <class T>
+    void operator()(const types::Field& field, const std::vector<T>& values) {
         for (const T& value : values) (*this)(field, value);
     }
 };
 
 /** Why a configuration is refused before anything starts: its fields' bounds, then, as a reader of YAML does it only
  *  when those are kept, what its fields have to do with one another. */
-template <types::Described T> types::Problems faultsOf(const T& config) {
+template <types::Described T>
+types::Problems faultsOf(const T& config) {
     BoundsVisitor visitor;
     T::describe(config, visitor);
     if constexpr (types::Checked<T>)

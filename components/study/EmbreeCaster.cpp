@@ -36,8 +36,8 @@ std::vector<Image> imagesOf(const types::Pose& sonar, const sonar::SonarConfig& 
         const double half = fov / count / 2, centre = -fov / 2 + (2 * i + 1) * half;
         const auto turn = glm::angleAxis(centre, glm::dvec3(0, 0, 1));
         images.push_back({centre, std::tan(half), std::tan(config.beam_height_deg * degree / 2) / std::cos(half),
-                          (config.quality.columns_per_beam * config.beam_count + count - 1) / count, config.quality.rows,
-                          glm::mat3_cast(sonar.orientation * turn)});
+                          (config.quality.columns_per_beam * config.beam_count + count - 1) / count,
+                          config.quality.rows, glm::mat3_cast(sonar.orientation * turn)});
     }
     return images;
 }
@@ -54,7 +54,8 @@ double squareAbove(double x) { return x > 0 ? x * x : 0; }
 double below(double t, double a, double b) {
     if (std::min(a, b) < 1e-6 * std::max(a, b)) return std::clamp(t / std::max(a, b) + 0.5, 0.0, 1.0);
     return (squareAbove(t + (a + b) / 2) - squareAbove(t + (a - b) / 2) - squareAbove(t - (a - b) / 2) +
-            squareAbove(t - (a + b) / 2)) / (2 * a * b);
+            squareAbove(t - (a + b) / 2)) /
+           (2 * a * b);
 }
 
 }  // namespace
@@ -62,9 +63,9 @@ double below(double t, double a, double b) {
 struct EmbreeCaster::Tree {
     RTCDevice device = rtcNewDevice(nullptr);
     RTCScene scene = rtcNewScene(device);
-    glm::dvec3 origin;                           ///< Of the tree, in the world.
+    glm::dvec3 origin;                                 ///< Of the tree, in the world.
     std::vector<std::array<glm::dvec3, 3>> triangles;  ///< About the origin.
-    std::vector<float> mu;                       ///< Of each triangle.
+    std::vector<float> mu;                             ///< Of each triangle.
 
     ~Tree() {
         rtcReleaseScene(scene);
@@ -74,7 +75,8 @@ struct EmbreeCaster::Tree {
     void commit();
 };
 
-void EmbreeCaster::Tree::add(const types::Geometry& geometry, const types::Object& object, const glm::dmat4& world_from_object) {
+void EmbreeCaster::Tree::add(const types::Geometry& geometry, const types::Object& object,
+                             const glm::dmat4& world_from_object) {
     glm::dmat4 place = world_from_object;
     place[3] -= glm::dvec4(origin, 0);
     const types::Mesh& mesh = geometry.meshes[static_cast<size_t>(object.mesh)];
@@ -92,8 +94,10 @@ void EmbreeCaster::Tree::add(const types::Geometry& geometry, const types::Objec
 void EmbreeCaster::Tree::commit() {
     RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
     const size_t count = triangles.size();
-    auto* vertices = static_cast<float*>(rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, 3 * sizeof(float), 3 * count));
-    auto* indices = static_cast<uint32_t*>(rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, 3 * sizeof(uint32_t), count));
+    auto* vertices = static_cast<float*>(
+        rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, 3 * sizeof(float), 3 * count));
+    auto* indices = static_cast<uint32_t*>(
+        rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, 3 * sizeof(uint32_t), count));
     if (count > 0 && (!vertices || !indices)) throw std::runtime_error("Embree has no memory for the scene");
     for (size_t i = 0; i < 3 * count; ++i) {
         const glm::dvec3& p = triangles[i / 3][i % 3];
@@ -112,11 +116,16 @@ void EmbreeCaster::Tree::commit() {
 namespace {
 
 /** One thread's part of a ping: every so many columns of each image, into sums of its own. */
-template <class Tree> class Caster {
+template <class Tree>
+class Caster {
 public:
     Caster(const Tree& tree, const types::Pose& sonar, const sonar::SonarConfig& config)
-        : tree_(tree), config_(config), from_(sonar.position - tree.origin), bins_(static_cast<size_t>(config.bin_count)),
-          bin_width_(config.range / config.bin_count), sums_(bins_ * static_cast<size_t>(config.beam_count)) {}
+        : tree_(tree),
+          config_(config),
+          from_(sonar.position - tree.origin),
+          bins_(static_cast<size_t>(config.bin_count)),
+          bin_width_(config.range / config.bin_count),
+          sums_(bins_ * static_cast<size_t>(config.beam_count)) {}
 
     void castColumn(const Image& image, int column) {
         u_ = (column + 0.5) * image.du() - image.half_u;
@@ -133,8 +142,10 @@ private:
             valid[i] = i < count ? -1 : 0;
             const double v = (first_row + i + 0.5) * image.dv() - image.half_v;
             const glm::dvec3 d = glm::normalize(image.world_from_image * glm::dvec3(1, u_, v));
-            rays.ray.org_x[i] = static_cast<float>(from_.x), rays.ray.org_y[i] = static_cast<float>(from_.y), rays.ray.org_z[i] = static_cast<float>(from_.z);
-            rays.ray.dir_x[i] = static_cast<float>(d.x), rays.ray.dir_y[i] = static_cast<float>(d.y), rays.ray.dir_z[i] = static_cast<float>(d.z);
+            rays.ray.org_x[i] = static_cast<float>(from_.x), rays.ray.org_y[i] = static_cast<float>(from_.y),
+            rays.ray.org_z[i] = static_cast<float>(from_.z);
+            rays.ray.dir_x[i] = static_cast<float>(d.x), rays.ray.dir_y[i] = static_cast<float>(d.y),
+            rays.ray.dir_z[i] = static_cast<float>(d.z);
             rays.ray.tnear[i] = static_cast<float>(config_.range_min);
             rays.ray.tfar[i] = std::numeric_limits<float>::infinity();
             rays.ray.mask[i] = 0xffffffffu;
@@ -147,7 +158,8 @@ private:
         rtcIntersect8(valid, tree_.scene, &context, &rays);
         for (int i = 0; i < count; ++i)
             if (rays.hit.geomID[i] != RTC_INVALID_GEOMETRY_ID)
-                depositPixel(image, (first_row + i + 0.5) * image.dv() - image.half_v, hitOf(image, rays.hit.primID[i]));
+                depositPixel(image, (first_row + i + 0.5) * image.dv() - image.half_v,
+                             hitOf(image, rays.hit.primID[i]));
     }
 
     Hit hitOf(const Image& image, uint32_t triangle) const {
@@ -162,7 +174,9 @@ private:
         const double fov = config_.field_of_view_deg * degree, width = fov / config_.beam_count;
         const auto beamAt = [&](double u) { return static_cast<int>((image.centre + std::atan(u) + fov / 2) / width); };
         const double half = std::atan(image.half_u);
-        const auto edge = [&](int beam) { return std::tan(std::clamp(beam * width - fov / 2 - image.centre, -half, half)); };
+        const auto edge = [&](int beam) {
+            return std::tan(std::clamp(beam * width - fov / 2 - image.centre, -half, half));
+        };
         const int last = std::min(beamAt(high), config_.beam_count - 1);
         for (int beam = std::max(0, beamAt(low)); beam <= last; ++beam) {
             const double from = std::max(low, edge(beam)), to = std::min(high, edge(beam + 1));
@@ -174,9 +188,11 @@ private:
     void depositCell(const Image& image, double middle, double width, double v, const Hit& hit, int beam) {
         const glm::dvec3 q(1, u_, v);
         const double length = glm::length(q), facing = glm::dot(hit.normal, q), square = length * length;
-        const double cosine = std::abs(facing) / (length * glm::length(hit.normal)), inverse = facing / (hit.distance * length);
+        const double cosine = std::abs(facing) / (length * glm::length(hit.normal)),
+                     inverse = facing / (hit.distance * length);
         if (!(cosine > 1e-4) || !(inverse > 0)) return;
-        const double slope_u = inverse * (hit.normal.y / facing - u_ / square), slope_v = inverse * (hit.normal.z / facing - v / square);
+        const double slope_u = inverse * (hit.normal.y / facing - u_ / square),
+                     slope_v = inverse * (hit.normal.z / facing - v / square);
         const double lean = v * u_ / (1 + u_ * u_), moved = v + lean * (middle - u_);
         const double edge = std::tan(config_.beam_height_deg * degree / 2) * std::sqrt(1 + middle * middle);
         const double top = std::min(moved + image.dv() / 2, edge), bottom = std::max(moved - image.dv() / 2, -edge);
@@ -190,7 +206,8 @@ private:
 
     /** Energy goes as 1/r^3 over inverse range; `amount` is energy times r^3. */
     void spread(int beam, double centre, double a, double b, double amount) {
-        const double near = std::min(centre + (a + b) / 2, 1 / config_.range_min), far = std::max(centre - (a + b) / 2, 1 / config_.range);
+        const double near = std::min(centre + (a + b) / 2, 1 / config_.range_min),
+                     far = std::max(centre - (a + b) / 2, 1 / config_.range);
         if (!(near > far)) return;
         kappa_max_ = std::max(kappa_max_, (1 / far - 1 / near) / bin_width_);
         double* bins = sums_.data() + static_cast<size_t>(beam) * bins_;
@@ -234,7 +251,8 @@ void EmbreeCaster::render(const types::Pose& sonar, const sonar::SonarConfig& co
         for (int t = 0; t < threads; ++t)
             running.emplace_back([&, t] {
                 for (const Image& image : images)
-                    for (int column = t; column < image.columns; column += threads) casters[static_cast<size_t>(t)].castColumn(image, column);
+                    for (int column = t; column < image.columns; column += threads)
+                        casters[static_cast<size_t>(t)].castColumn(image, column);
             });
     }
     energies.assign(casters.front().sums().size(), 0);

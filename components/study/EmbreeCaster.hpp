@@ -18,7 +18,8 @@ public:
     ~EmbreeCaster();
 
     /** Energies E/S0 of one ping from `sonar`, [beam][bin], with one ray for each cell of a grid of
-     *  config.quality.rows over the aperture and columns_per_beam for each beam, spread over the ranges that it covers. */
+     *  config.quality.rows over the aperture and columns_per_beam for each beam, spread over the ranges that it covers.
+     */
     void render(const types::Pose& sonar, const sonar::SonarConfig& config, std::vector<float>& energies);
 
     /** Of the last ping: bins that the longest cell covered, kappa of physics.md 3.2 [1]. */

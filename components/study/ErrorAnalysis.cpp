@@ -23,20 +23,26 @@ const Measurement* find(const ErrorResult& result, const std::string& scene, Met
 constexpr double farthest_extension = 30;  ///< Beyond the finest point, of its time [1].
 
 double onLine(double x, double x1, double y1, double x2, double y2) {
-    return std::exp(std::log(y1) + (std::log(x) - std::log(x1)) * (std::log(y2) - std::log(y1)) / (std::log(x2) - std::log(x1)));
+    return std::exp(std::log(y1) +
+                    (std::log(x) - std::log(x1)) * (std::log(y2) - std::log(y1)) / (std::log(x2) - std::log(x1)));
 }
 
 void judgeFlatBottom(const ErrorResult& result, std::vector<Claim>& all) {
     if (const Measurement* m = find(result, "flat_bottom", Method::Footprint, 512, 2))
         all.push_back({"flat bottom, 512 rows: mean relative L2 of footprints", m->metrics.mean_rel_l2, 5e-4, true});
     if (const Measurement* m = find(result, "flat_bottom_edge", Method::Footprint, 512, 2))
-        all.push_back({"flat bottom with the aperture's edge, 512 rows: mean relative L2 of footprints", m->metrics.mean_rel_l2, 3e-3, true});
-    const auto footprint = ladder(result, "flat_bottom", Method::Footprint), nearest = ladder(result, "flat_bottom", Method::Nearest);
+        all.push_back({"flat bottom with the aperture's edge, 512 rows: mean relative L2 of footprints",
+                       m->metrics.mean_rel_l2, 3e-3, true});
+    const auto footprint = ladder(result, "flat_bottom", Method::Footprint),
+               nearest = ladder(result, "flat_bottom", Method::Nearest);
     if (footprint.empty() || nearest.empty()) return;
     const auto slow = timeTo(0.01, nearest), fast = timeTo(0.01, footprint);
-    if (slow && fast) all.push_back({"flat bottom, error of 1 %: time of nearest bin over that of footprints", *slow / *fast, 30, false});
+    if (slow && fast)
+        all.push_back(
+            {"flat bottom, error of 1 %: time of nearest bin over that of footprints", *slow / *fast, 30, false});
     const double ms = std::min(nearest.back().median_ms, footprint.back().median_ms);
-    all.push_back({fmt::format("flat bottom, {:.3g} ms: error of nearest bin over that of footprints", ms), *errorAt(ms, nearest) / *errorAt(ms, footprint), 20, false});
+    all.push_back({fmt::format("flat bottom, {:.3g} ms: error of nearest bin over that of footprints", ms),
+                   *errorAt(ms, nearest) / *errorAt(ms, footprint), 20, false});
 }
 
 void judgeSlopes(const ErrorResult& result, std::vector<Claim>& all) {
@@ -58,11 +64,16 @@ void judgeComputed(const ErrorResult& result, std::vector<Claim>& all) {
         double smallest = std::numeric_limits<double>::infinity();
         for (const Measurement& m : result.measurements)
             if (m.scene == reference.scene) smallest = std::min(smallest, m.metrics.rel_l2);
-        all.push_back({fmt::format("{}: smallest error over that of the reference", reference.scene), smallest / reference.error, 10, false});
+        all.push_back({fmt::format("{}: smallest error over that of the reference", reference.scene),
+                       smallest / reference.error, 10, false});
         const auto traced = ladder(result, reference.scene, Method::Embree);
-        const auto rays = timeTo(0.01, traced), drawn = timeTo(0.01, ladder(result, reference.scene, Method::Footprint));
+        const auto rays = timeTo(0.01, traced),
+                   drawn = timeTo(0.01, ladder(result, reference.scene, Method::Footprint));
         const bool only_bound = !traced.empty() && traced.front().metrics.rel_l2 <= 0.01;
-        if (rays && drawn && !only_bound) all.push_back({fmt::format("{}, error of 1 %: time of rays (Embree) over that of footprints", reference.scene), *rays / *drawn, 1, false});
+        if (rays && drawn && !only_bound)
+            all.push_back(
+                {fmt::format("{}, error of 1 %: time of rays (Embree) over that of footprints", reference.scene),
+                 *rays / *drawn, 1, false});
     }
 }
 
@@ -77,7 +88,9 @@ std::vector<Measurement> ladder(const ErrorResult& result, const std::string& sc
     std::vector<Measurement> points;
     for (const Measurement& m : result.measurements) {
         if (m.scene != scene || m.method != method) continue;
-        if (points.empty() || (m.rows == 2 * points.back().rows && m.columns_per_beam == 2 * points.back().columns_per_beam)) points.push_back(m);
+        if (points.empty() ||
+            (m.rows == 2 * points.back().rows && m.columns_per_beam == 2 * points.back().columns_per_beam))
+            points.push_back(m);
     }
     return points;
 }
@@ -112,13 +125,15 @@ std::optional<double> errorAt(double ms, const std::vector<Measurement>& points)
     if (ms <= points.front().median_ms) return points.front().metrics.rel_l2;
     for (size_t i = 1; i < points.size(); ++i)
         if (points[i].median_ms >= ms)
-            return onLine(ms, points[i - 1].median_ms, points[i - 1].metrics.rel_l2, points[i].median_ms, points[i].metrics.rel_l2);
+            return onLine(ms, points[i - 1].median_ms, points[i - 1].metrics.rel_l2, points[i].median_ms,
+                          points[i].metrics.rel_l2);
     return points.back().metrics.rel_l2;
 }
 
 bool onParetoFront(const Measurement& point, const ErrorResult& result) {
     return std::ranges::none_of(result.measurements, [&](const Measurement& other) {
-        return other.scene == point.scene && other.median_ms < point.median_ms && other.metrics.rel_l2 < point.metrics.rel_l2;
+        return other.scene == point.scene && other.median_ms < point.median_ms &&
+               other.metrics.rel_l2 < point.metrics.rel_l2;
     });
 }
 

@@ -11,13 +11,13 @@ double referenceError(const ErrorResult& result, const std::string& scene);
 /** The points of a scene and method in which rows and columns are doubled together, coarsest first. */
 std::vector<Measurement> ladder(const ErrorResult& result, const std::string& scene, Method method);
 
-/** Slope of ln(rel_l2) over ln(samples), fitted through the points with an error below one half and above 10 times that of
- *  the reference; nothing with fewer than two of them. */
+/** Slope of ln(rel_l2) over ln(samples), fitted through the points with an error below one half and above 10 times that
+ * of the reference; nothing with fewer than two of them. */
 std::optional<double> slope(const std::vector<Measurement>& points, double reference_error);
 
-/** Time to reach an error [ms], from the line through the two points about it on logarithmic scales. Coarsest point good
- *  enough: its time, an upper bound. Finest point not good enough: extended from the last two, nothing when they hardly
- *  fall: further than 30 times the finest point's time. */
+/** Time to reach an error [ms], from the line through the two points about it on logarithmic scales. Coarsest point
+ * good enough: its time, an upper bound. Finest point not good enough: extended from the last two, nothing when they
+ * hardly fall: further than 30 times the finest point's time. */
 std::optional<double> timeTo(double error, const std::vector<Measurement>& points);
 
 /** Error that is reached in a time, likewise; the nearest point's beyond the ends. */

@@ -26,16 +26,21 @@ std::string orNone(const std::optional<double>& value, const char* format, const
 }
 
 /** Calls with scene and method wherever there are points. */
-template <class F> void forEachLadder(const ErrorResult& result, const F& f) {
+template <class F>
+void forEachLadder(const ErrorResult& result, const F& f) {
     for (const Reference& reference : result.references)
         for (const Method method : methods)
-            if (const auto points = ladder(result, reference.scene, method); !points.empty()) f(reference.scene, method, points);
+            if (const auto points = ladder(result, reference.scene, method); !points.empty())
+                f(reference.scene, method, points);
 }
 
 void addTable(Out out, const ErrorResult& result) {
-    fmt::format_to(out, "<h2>Time to an error</h2>\n<table><tr><th>scene<th>method<th>slope<th>10 % [ms]<th>1 % [ms]<th>0.1 % [ms]</tr>\n");
+    fmt::format_to(out,
+                   "<h2>Time to an error</h2>\n<table><tr><th>scene<th>method<th>slope<th>10 % [ms]<th>1 % [ms]<th>0.1 "
+                   "% [ms]</tr>\n");
     forEachLadder(result, [&](const std::string& scene, Method method, const std::vector<Measurement>& points) {
-        fmt::format_to(out, "<tr><td>{}<td>{}<td>{}", scene, nameOf(method), orNone(slope(points, referenceError(result, scene)), "{:.2f}", "-"));
+        fmt::format_to(out, "<tr><td>{}<td>{}<td>{}", scene, nameOf(method),
+                       orNone(slope(points, referenceError(result, scene)), "{:.2f}", "-"));
         for (const double goal : goals) fmt::format_to(out, "<td>{}", orNone(timeTo(goal, points), "{:.3g}", "never"));
         fmt::format_to(out, "</tr>\n");
     });
@@ -45,31 +50,41 @@ void addTable(Out out, const ErrorResult& result) {
 void addVerdicts(Out out, const ErrorResult& result) {
     fmt::format_to(out, "<h2>Claims</h2>\n<table><tr><th>claim<th>measured<th>bound<th>verdict</tr>\n");
     for (const Claim& v : claims(result))
-        fmt::format_to(out, "<tr><td>{}<td>{:.4g}<td>{} {:.4g}<td>{}</tr>\n", v.text, v.measured, v.at_most ? "at most" : "at least", v.bound, v.holds() ? "pass" : "<b>fail</b>");
+        fmt::format_to(out, "<tr><td>{}<td>{:.4g}<td>{} {:.4g}<td>{}</tr>\n", v.text, v.measured,
+                       v.at_most ? "at most" : "at least", v.bound, v.holds() ? "pass" : "<b>fail</b>");
     fmt::format_to(out, "</table>\n");
 }
 
 void addPoints(Out out, const ErrorResult& result) {
-    fmt::format_to(out, "<h2>Every point</h2>\n<table><tr><th>scene<th>method<th>rows<th>columns<th>slabs<th>rel L2<th>with TVG<th>dB rmse<th>missing<th>ghosts<th>bias<th>ripple<th>kappa<th>median ms<th>p99 ms<th>CPU ms</tr>\n");
+    fmt::format_to(
+        out,
+        "<h2>Every point</h2>\n<table><tr><th>scene<th>method<th>rows<th>columns<th>slabs<th>rel L2<th>with TVG<th>dB "
+        "rmse<th>missing<th>ghosts<th>bias<th>ripple<th>kappa<th>median ms<th>p99 ms<th>CPU ms</tr>\n");
     for (const Measurement& m : result.measurements) {
         const Metrics& e = m.metrics;
-        fmt::format_to(out, "<tr><td>{}<td>{}<td>{}<td>{}<td>{}<td>{:.2e}<td>{:.2e}<td>{:.3f}<td>{}<td>{}<td>{:.1e}<td>{:.1e}<td>{:.1f}<td>{:.3f}<td>{:.3f}<td>{:.3f}</tr>\n",
-                       m.scene, nameOf(m.method), m.rows, m.columns_per_beam, m.slabs, e.rel_l2, e.rel_l2_tvg, e.db_rmse, e.missing_bins, e.ghost_bins,
-                       e.energy_bias, e.ripple, m.kappa_max, m.median_ms, m.p99_ms, m.cpu_ms);
+        fmt::format_to(out,
+                       "<tr><td>{}<td>{}<td>{}<td>{}<td>{}<td>{:.2e}<td>{:.2e}<td>{:.3f}<td>{}<td>{}<td>{:.1e}<td>{:."
+                       "1e}<td>{:.1f}<td>{:.3f}<td>{:.3f}<td>{:.3f}</tr>\n",
+                       m.scene, nameOf(m.method), m.rows, m.columns_per_beam, m.slabs, e.rel_l2, e.rel_l2_tvg,
+                       e.db_rmse, e.missing_bins, e.ghost_bins, e.energy_bias, e.ripple, m.kappa_max, m.median_ms,
+                       m.p99_ms, m.cpu_ms);
     }
     fmt::format_to(out, "</table>\n");
 }
 
 /** Without what JSON and HTML would have to quote. */
 std::string plain(std::string text) {
-    std::erase_if(text, [](char c) { return c == '"' || c == '\\' || c == '<' || c == '&' || static_cast<unsigned char>(c) < ' '; });
+    std::erase_if(text, [](char c) {
+        return c == '"' || c == '\\' || c == '<' || c == '&' || static_cast<unsigned char>(c) < ' ';
+    });
     return text;
 }
 
 std::string processorName() {
     std::ifstream info("/proc/cpuinfo");
     for (std::string line; std::getline(info, line);)
-        if (line.starts_with("model name") && line.size() > line.find(':') + 2) return plain(line.substr(line.find(':') + 2));
+        if (line.starts_with("model name") && line.size() > line.find(':') + 2)
+            return plain(line.substr(line.find(':') + 2));
     return "unknown processor";
 }
 
@@ -82,39 +97,57 @@ void write(const std::filesystem::path& path, const std::string& text) {
 }  // namespace
 
 std::string csvOf(const ErrorResult& result) {
-    std::string text = "scene,method,rows,columns_per_beam,samples_per_pixel,slabs,rel_l2,rel_l2_tvg,db_rmse,db_p95,missing_bins,ghost_bins,"
-                       "first_return_bins,shadow_bins,energy_bias,ripple,kappa_max,hash,median_ms,p99_ms,cpu_ms\n";
+    std::string text =
+        "scene,method,rows,columns_per_beam,samples_per_pixel,slabs,rel_l2,rel_l2_tvg,db_rmse,db_p95,missing_bins,"
+        "ghost_bins,"
+        "first_return_bins,shadow_bins,energy_bias,ripple,kappa_max,hash,median_ms,p99_ms,cpu_ms\n";
     for (const Measurement& m : result.measurements) {
         const Metrics& e = m.metrics;
-        fmt::format_to(Out(text), "{},{},{},{},{},{},{:.6g},{:.6g},{:.6g},{:.6g},{},{},{:.6g},{:.6g},{:.6g},{:.6g},{:.6g},{:016x},{:.6g},{:.6g},{:.6g}\n",
-                       m.scene, nameOf(m.method), m.rows, m.columns_per_beam, m.samples_per_pixel, m.slabs, e.rel_l2, e.rel_l2_tvg, e.db_rmse, e.db_p95,
-                       e.missing_bins, e.ghost_bins, e.first_return_bins, e.shadow_bins, e.energy_bias, e.ripple, m.kappa_max, e.hash, m.median_ms, m.p99_ms, m.cpu_ms);
+        fmt::format_to(Out(text),
+                       "{},{},{},{},{},{},{:.6g},{:.6g},{:.6g},{:.6g},{},{},{:.6g},{:.6g},{:.6g},{:.6g},{:.6g},{:016x},"
+                       "{:.6g},{:.6g},{:.6g}\n",
+                       m.scene, nameOf(m.method), m.rows, m.columns_per_beam, m.samples_per_pixel, m.slabs, e.rel_l2,
+                       e.rel_l2_tvg, e.db_rmse, e.db_p95, e.missing_bins, e.ghost_bins, e.first_return_bins,
+                       e.shadow_bins, e.energy_bias, e.ripple, m.kappa_max, e.hash, m.median_ms, m.p99_ms, m.cpu_ms);
     }
     return text;
 }
 
 std::string jsonOf(const ErrorResult& result) {
-    std::string text = fmt::format("{{\"device\": \"{}\", \"processor\": \"{}\", \"cores\": {},\n\"references\": [", plain(result.device), processorName(), std::thread::hardware_concurrency());
+    std::string text = fmt::format("{{\"device\": \"{}\", \"processor\": \"{}\", \"cores\": {},\n\"references\": [",
+                                   plain(result.device), processorName(), std::thread::hardware_concurrency());
     Out out(text);
     const char* comma = "\n";
     const auto next = [&] { return std::exchange(comma, ",\n"); };
-    for (const Reference& r : result.references) fmt::format_to(out, "{}{{\"scene\": \"{}\", \"source\": \"{}\", \"error\": {:.6g}}}", next(), r.scene, r.source, r.error);
+    for (const Reference& r : result.references)
+        fmt::format_to(out, "{}{{\"scene\": \"{}\", \"source\": \"{}\", \"error\": {:.6g}}}", next(), r.scene, r.source,
+                       r.error);
     fmt::format_to(out, "],\n\"methods\": [");
     comma = "\n";
     forEachLadder(result, [&](const std::string& scene, Method method, const std::vector<Measurement>& points) {
-        fmt::format_to(out, "{}{{\"scene\": \"{}\", \"method\": \"{}\", \"slope\": {}, \"ms_to_10_percent\": {}, \"ms_to_1_percent\": {}, \"ms_to_0.1_percent\": {}}}", next(), scene, nameOf(method),
-                       orNone(slope(points, referenceError(result, scene)), "{:.6g}", "null"), orNone(timeTo(goals[0], points), "{:.6g}", "null"),
-                       orNone(timeTo(goals[1], points), "{:.6g}", "null"), orNone(timeTo(goals[2], points), "{:.6g}", "null"));
+        fmt::format_to(
+            out,
+            "{}{{\"scene\": \"{}\", \"method\": \"{}\", \"slope\": {}, \"ms_to_10_percent\": {}, \"ms_to_1_percent\": "
+            "{}, \"ms_to_0.1_percent\": {}}}",
+            next(), scene, nameOf(method), orNone(slope(points, referenceError(result, scene)), "{:.6g}", "null"),
+            orNone(timeTo(goals[0], points), "{:.6g}", "null"), orNone(timeTo(goals[1], points), "{:.6g}", "null"),
+            orNone(timeTo(goals[2], points), "{:.6g}", "null"));
     });
     fmt::format_to(out, "],\n\"verdicts\": [");
     comma = "\n";
     for (const Claim& v : claims(result))
-        fmt::format_to(out, "{}{{\"claim\": \"{}\", \"measured\": {:.6g}, \"bound\": {:.6g}, \"at_most\": {}, \"verdict\": \"{}\"}}", next(), v.text, v.measured, v.bound, v.at_most, v.holds() ? "pass" : "fail");
+        fmt::format_to(
+            out,
+            "{}{{\"claim\": \"{}\", \"measured\": {:.6g}, \"bound\": {:.6g}, \"at_most\": {}, \"verdict\": \"{}\"}}",
+            next(), v.text, v.measured, v.bound, v.at_most, v.holds() ? "pass" : "fail");
     fmt::format_to(out, "],\n\"points\": [");
     comma = "\n";
     for (const Measurement& m : result.measurements)
-        fmt::format_to(out, "{}{{\"scene\": \"{}\", \"method\": \"{}\", \"rows\": {}, \"columns_per_beam\": {}, \"slabs\": {}, \"rel_l2\": {:.6g}, \"rel_l2_tvg\": {:.6g}, \"median_ms\": {:.6g}, \"pareto\": {}}}",
-                       next(), m.scene, nameOf(m.method), m.rows, m.columns_per_beam, m.slabs, m.metrics.rel_l2, m.metrics.rel_l2_tvg, m.median_ms, onParetoFront(m, result));
+        fmt::format_to(out,
+                       "{}{{\"scene\": \"{}\", \"method\": \"{}\", \"rows\": {}, \"columns_per_beam\": {}, \"slabs\": "
+                       "{}, \"rel_l2\": {:.6g}, \"rel_l2_tvg\": {:.6g}, \"median_ms\": {:.6g}, \"pareto\": {}}}",
+                       next(), m.scene, nameOf(m.method), m.rows, m.columns_per_beam, m.slabs, m.metrics.rel_l2,
+                       m.metrics.rel_l2_tvg, m.median_ms, onParetoFront(m, result));
     return text + "]}\n";
 }
 
@@ -124,7 +157,9 @@ std::string diagramOf(const ErrorResult& result, const std::string& scene) {
         const auto points = ladder(result, scene, method);
         if (points.empty()) continue;
         const auto fitted = slope(points, referenceError(result, scene));
-        Curve curve{fmt::format("{} {}", nameOf(method), orNone(fitted, "N^{:.2f}", "")), colours[static_cast<size_t>(method)], {}};
+        Curve curve{fmt::format("{} {}", nameOf(method), orNone(fitted, "N^{:.2f}", "")),
+                    colours[static_cast<size_t>(method)],
+                    {}};
         for (const Measurement& m : points)
             if (m.metrics.rel_l2 > 0) curve.points.push_back({m.median_ms, m.metrics.rel_l2, onParetoFront(m, result)});
         curves.push_back(curve);
@@ -133,14 +168,19 @@ std::string diagramOf(const ErrorResult& result, const std::string& scene) {
 }
 
 std::string pageOf(const ErrorResult& result) {
-    std::string text = "<!doctype html><html lang='en'><head><meta charset='utf-8'><title>Error against run time</title><style>"
-                       "body{font-family:sans-serif;margin:2em;max-width:80em}table{border-collapse:collapse;font-size:13px}"
-                       "td,th{padding:2px 8px;border-bottom:1px solid #dde;text-align:left}</style></head><body>\n<h1>Error against run time</h1>\n";
+    std::string text =
+        "<!doctype html><html lang='en'><head><meta charset='utf-8'><title>Error against run time</title><style>"
+        "body{font-family:sans-serif;margin:2em;max-width:80em}table{border-collapse:collapse;font-size:13px}"
+        "td,th{padding:2px 8px;border-bottom:1px solid #dde;text-align:left}</style></head><body>\n<h1>Error against "
+        "run time</h1>\n";
     Out out(text);
-    fmt::format_to(out, "<p>{}; {} cores, {}. Errors are of noiseless energies; lines double rows and columns together.</p>\n", plain(result.device), std::thread::hardware_concurrency(), processorName());
+    fmt::format_to(
+        out, "<p>{}; {} cores, {}. Errors are of noiseless energies; lines double rows and columns together.</p>\n",
+        plain(result.device), std::thread::hardware_concurrency(), processorName());
     for (const Reference& reference : result.references) {
         text += diagramOf(result, reference.scene);
-        fmt::format_to(out, "<p>{}: reference {}{}</p>\n", reference.scene, reference.source, reference.error > 0 ? fmt::format(", its own error about {:.1e}", reference.error) : "");
+        fmt::format_to(out, "<p>{}: reference {}{}</p>\n", reference.scene, reference.source,
+                       reference.error > 0 ? fmt::format(", its own error about {:.1e}", reference.error) : "");
     }
     addTable(out, result);
     addVerdicts(out, result);
@@ -153,7 +193,8 @@ void writeReport(const ErrorResult& result, const std::filesystem::path& folder)
     write(folder / "error_time.csv", csvOf(result));
     write(folder / "error_time.json", jsonOf(result));
     write(folder / "index.html", pageOf(result));
-    for (const Reference& reference : result.references) write(folder / (reference.scene + ".svg"), diagramOf(result, reference.scene));
+    for (const Reference& reference : result.references)
+        write(folder / (reference.scene + ".svg"), diagramOf(result, reference.scene));
 }
 
 }  // namespace insonify::study

@@ -18,7 +18,7 @@ namespace insonify::study {
 namespace {
 
 constexpr int least_rows = 64;
-constexpr int most_levels_computed = 4;   ///< Without a closed form: the reference costs 64 times the finest point.
+constexpr int most_levels_computed = 4;  ///< Without a closed form: the reference costs 64 times the finest point.
 constexpr int reference_refinement = 8;  ///< Of the finest point measured, in rows and columns each.
 
 double wallMs() {
@@ -46,7 +46,8 @@ void time(const Ping& ping, int pings, std::vector<float>& energies, Measurement
     point.cpu_ms = (processorMs() - processor) / pings;
     std::ranges::sort(times);
     point.median_ms = times[times.size() / 2];
-    point.p99_ms = times[std::min(times.size() - 1, static_cast<size_t>(std::ceil(0.99 * static_cast<double>(times.size()))) - 1)];
+    point.p99_ms =
+        times[std::min(times.size() - 1, static_cast<size_t>(std::ceil(0.99 * static_cast<double>(times.size()))) - 1)];
 }
 
 sonar::SonarConfig configOf(const StudyScene& scene, const Measurement& point) {
@@ -54,7 +55,8 @@ sonar::SonarConfig configOf(const StudyScene& scene, const Measurement& point) {
     config.quality.rows = point.rows;
     config.quality.columns_per_beam = point.columns_per_beam;
     config.least_slabs = point.slabs;
-    if (point.method == Method::Nearest || point.method == Method::Published) config.estimator = sonar::Estimator::Nearest;
+    if (point.method == Method::Nearest || point.method == Method::Published)
+        config.estimator = sonar::Estimator::Nearest;
     if (point.method == Method::NearestJitter) config.estimator = sonar::Estimator::NearestJitter;
     config.one_frustum = point.method == Method::Published;
     return config;
@@ -74,11 +76,14 @@ public:
     void run() {
         const int slabs = static_cast<int>(sonar::makeSlabs(scene_.config, sonar::makeBeams(scene_.config)).size());
         for (const Method method : methods)
-            if (method != Method::Published || fitsOneFrustum()) for (int level = 0; level < levels(); ++level)
-                measure(method, least_rows << level, base_columns_ << level, method == Method::Published ? 1 : slabs);
+            if (method != Method::Published || fitsOneFrustum())
+                for (int level = 0; level < levels(); ++level)
+                    measure(method, least_rows << level, base_columns_ << level,
+                            method == Method::Published ? 1 : slabs);
         for (int level = 0; level < levels(); ++level)
             if (base_columns_ << level != 2) measure(Method::Footprint, least_rows << level, 2, slabs);
-        for (const int more : {2 * slabs, 4 * slabs}) measure(Method::Footprint, 4 * least_rows, 4 * base_columns_, more);
+        for (const int more : {2 * slabs, 4 * slabs})
+            measure(Method::Footprint, 4 * least_rows, 4 * base_columns_, more);
         if (!scene_.truth) result_.references.back().error = halving_ / (convergence() - 1);
     }
 
@@ -106,8 +111,10 @@ private:
         options_.progress(fmt::format("{} {} {} x {}", scene_.name, nameOf(method), rows, columns));
         const sonar::SonarConfig config = configOf(scene_, point);
         std::vector<float> energies;
-        if (method == Method::Embree) time([&](auto& e) { caster_.render(scene_.snapshot.sonar, config, e); }, options_.pings, energies, point);
-        else timeRenderer(config, energies, point);
+        if (method == Method::Embree)
+            time([&](auto& e) { caster_.render(scene_.snapshot.sonar, config, e); }, options_.pings, energies, point);
+        else
+            timeRenderer(config, energies, point);
         if (method != Method::Published) point.kappa_max = kappa(config);
         point.metrics = compare(energies, reference_, layout_);
         result_.measurements.push_back(point);
@@ -137,9 +144,13 @@ private:
         const std::vector<float> half = cast(finest / 2), whole = cast(finest);
         reference_.assign(whole.begin(), whole.end());
         if (std::ranges::none_of(reference_, [](double energy) { return energy > 0; }))
-            throw std::runtime_error(scene_.name + ": the sonar hears nothing in this ping; choose another one with --ping");
+            throw std::runtime_error(scene_.name +
+                                     ": the sonar hears nothing in this ping; choose another one with --ping");
         halving_ = compare(half, reference_, layout_).rel_l2;
-        result_.references.push_back({scene_.name, fmt::format("the same estimate by rays (Embree), {} rows, {} columns per beam", least_rows * finest, base_columns_ * finest), 0});
+        result_.references.push_back({scene_.name,
+                                      fmt::format("the same estimate by rays (Embree), {} rows, {} columns per beam",
+                                                  least_rows * finest, base_columns_ * finest),
+                                      0});
     }
 
     std::vector<float> cast(int refinement) {

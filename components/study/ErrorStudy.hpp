@@ -9,9 +9,11 @@
 
 namespace insonify::study {
 
-/** How energies are estimated; see sonar::Estimator. `Published`: nearest bin on one wide frustum with rounded columns. */
+/** How energies are estimated; see sonar::Estimator. `Published`: nearest bin on one wide frustum with rounded columns.
+ */
 enum class Method { Footprint, Nearest, NearestJitter, Published, Embree };
-inline constexpr Method methods[] = {Method::Footprint, Method::Nearest, Method::NearestJitter, Method::Published, Method::Embree};
+inline constexpr Method methods[] = {Method::Footprint, Method::Nearest, Method::NearestJitter, Method::Published,
+                                     Method::Embree};
 /** "footprint", "nearest", "nearest_jitter", "published", "embree". */
 const char* nameOf(Method method);
 
@@ -21,8 +23,8 @@ struct Measurement {
     Method method = Method::Footprint;
     int rows = 0, columns_per_beam = 0, samples_per_pixel = 1, slabs = 0;  ///< [1]
     Metrics metrics;
-    double kappa_max = 0;                           ///< Bins that the longest cell covers; 0: not known [1].
-    double median_ms = 0, p99_ms = 0, cpu_ms = 0;   ///< Of one ping: wall time, and processor time of the process.
+    double kappa_max = 0;                          ///< Bins that the longest cell covers; 0: not known [1].
+    double median_ms = 0, p99_ms = 0, cpu_ms = 0;  ///< Of one ping: wall time, and processor time of the process.
     double samples() const { return static_cast<double>(rows) * columns_per_beam * samples_per_pixel; }  ///< Per beam.
 };
 
@@ -39,8 +41,8 @@ struct ErrorResult {
 };
 
 struct ErrorOptions {
-    int pings = 30;     ///< Timed for each point, after a warm-up [1].
-    int levels = 5;     ///< Rows and columns are doubled together so often, less one [1].
+    int pings = 30;  ///< Timed for each point, after a warm-up [1].
+    int levels = 5;  ///< Rows and columns are doubled together so often, less one [1].
     std::function<void(const std::string&)> progress = [](const std::string&) {};
 };
 

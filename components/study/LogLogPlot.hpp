@@ -15,6 +15,7 @@ struct Curve {
 };
 
 /** A diagram with logarithmic axes, as a complete SVG image. */
-std::string logLogPlot(const std::string& title, const std::string& x_label, const std::string& y_label, const std::vector<Curve>& curves);
+std::string logLogPlot(const std::string& title, const std::string& x_label, const std::string& y_label,
+                       const std::vector<Curve>& curves);
 
 }  // namespace insonify::study

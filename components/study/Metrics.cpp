@@ -8,8 +8,8 @@
 namespace insonify::study {
 namespace {
 
-constexpr double floor_ratio = 1e-6;     ///< -60 dB of the maximum.
-constexpr double return_ratio = 0.01;    ///< -20 dB.
+constexpr double floor_ratio = 1e-6;      ///< -60 dB of the maximum.
+constexpr double return_ratio = 0.01;     ///< -20 dB.
 constexpr int shadow_neighbourhood = 50;  ///< Bins to either side whose mean is what a shadow is dark against.
 
 double percentile(std::vector<double> values, double share) {
@@ -26,10 +26,12 @@ struct Comparison {
     int first_bin;
 };
 
-template <class T> std::vector<Beam> beamsOf(std::span<const T> energies, const Layout& layout, int first_bin) {
+template <class T>
+std::vector<Beam> beamsOf(std::span<const T> energies, const Layout& layout, int first_bin) {
     std::vector<Beam> beams;
     for (int beam = 0; beam < layout.beams; ++beam) {
-        const auto row = energies.subspan(static_cast<size_t>(beam * layout.bins + first_bin), static_cast<size_t>(layout.bins - first_bin));
+        const auto row = energies.subspan(static_cast<size_t>(beam * layout.bins + first_bin),
+                                          static_cast<size_t>(layout.bins - first_bin));
         beams.emplace_back(row.begin(), row.end());
     }
     return beams;
@@ -98,7 +100,8 @@ void addLevels(const Comparison& c, Metrics& metrics) {
 
 int firstReturn(const Beam& beam) {
     const double threshold = return_ratio * *std::ranges::max_element(beam);
-    return static_cast<int>(std::ranges::find_if(beam, [&](double e) { return e > 0 && e >= threshold; }) - beam.begin());
+    return static_cast<int>(std::ranges::find_if(beam, [&](double e) { return e > 0 && e >= threshold; }) -
+                            beam.begin());
 }
 
 /** Bins between the first and the last return that are 20 dB below the mean around them. */
@@ -112,7 +115,8 @@ std::vector<bool> shadow(const Beam& beam) {
     for (auto k = first; k < last; ++k) {
         const auto low = std::max<std::ptrdiff_t>(0, k - shadow_neighbourhood);
         const auto high = std::min(static_cast<std::ptrdiff_t>(beam.size()), k + shadow_neighbourhood + 1);
-        const double mean = (sums[static_cast<size_t>(high)] - sums[static_cast<size_t>(low)]) / static_cast<double>(high - low);
+        const double mean =
+            (sums[static_cast<size_t>(high)] - sums[static_cast<size_t>(low)]) / static_cast<double>(high - low);
         dark[static_cast<size_t>(k)] = beam[static_cast<size_t>(k)] < return_ratio * mean;
     }
     return dark;
@@ -155,7 +159,8 @@ uint64_t hashOf(std::span<const float> values) {
 }  // namespace
 
 Metrics compare(std::span<const float> got, std::span<const double> reference, const Layout& layout) {
-    const int first_bin = std::clamp(static_cast<int>(std::ceil(layout.range_from / layout.bin_width - 1e-9)), 0, layout.bins - 1);
+    const int first_bin =
+        std::clamp(static_cast<int>(std::ceil(layout.range_from / layout.bin_width - 1e-9)), 0, layout.bins - 1);
     const Comparison comparison{beamsOf(got, layout, first_bin), beamsOf(reference, layout, first_bin), first_bin};
     Metrics metrics;
     addNorms(comparison, metrics);

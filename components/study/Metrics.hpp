@@ -13,13 +13,13 @@ struct Layout {
 
 /** How far energies are from their reference: physics.md 5, M1 to M6, without noise. */
 struct Metrics {
-    double rel_l2 = 0;             ///< M1: |E - reference| / |reference| over all bins [1].
-    double rel_l2_tvg = 0;         ///< M2: the same after a gain of 50 log10(r), so that far bins count as near ones [1].
-    double mean_rel_l2 = 0;        ///< M1 of each beam, and the mean over beams [1].
-    double db_rmse = 0;            ///< M3, over bins above 1e-6 of the reference's maximum that both have [dB].
-    double db_p95 = 0;             ///< M3: 95th percentile of |dB| over the same bins [dB].
-    int missing_bins = 0;          ///< M3: zero where the reference is above that floor [1].
-    int ghost_bins = 0;            ///< M3: above that floor where the reference is zero [1].
+    double rel_l2 = 0;       ///< M1: |E - reference| / |reference| over all bins [1].
+    double rel_l2_tvg = 0;   ///< M2: the same after a gain of 50 log10(r), so that far bins count as near ones [1].
+    double mean_rel_l2 = 0;  ///< M1 of each beam, and the mean over beams [1].
+    double db_rmse = 0;      ///< M3, over bins above 1e-6 of the reference's maximum that both have [dB].
+    double db_p95 = 0;       ///< M3: 95th percentile of |dB| over the same bins [dB].
+    int missing_bins = 0;    ///< M3: zero where the reference is above that floor [1].
+    int ghost_bins = 0;      ///< M3: above that floor where the reference is zero [1].
     double first_return_bins = 0;  ///< M4: 95th percentile over beams of the first return's error [bins].
     double shadow_bins = 0;        ///< M5: bins per beam that are in shadow for one and not for the other [bins].
     double energy_bias = 0;        ///< M6: sum(E) / sum(reference) - 1 [1].

@@ -21,7 +21,8 @@ constexpr double most_rays = 1e6, most_triangles = 1e5;  ///< For which kappa is
 double kappa(const sonar::SonarConfig& config, const types::Snapshot& snapshot) {
     const double rays = static_cast<double>(config.quality.rows) * config.quality.columns_per_beam * config.beams();
     const bool planar = config.bearings_deg.empty() && config.beam_geometry == sonar::BeamGeometry::Planar;
-    if (!planar || rays > most_rays || static_cast<double>(snapshot.geometry->triangleCount()) > most_triangles) return NAN;
+    if (!planar || rays > most_rays || static_cast<double>(snapshot.geometry->triangleCount()) > most_triangles)
+        return NAN;
     EmbreeCaster caster(snapshot);
     std::vector<float> unused;
     caster.render(snapshot.sonar, config, unused);
@@ -43,7 +44,8 @@ Conditions conditionsOf(const sonar::SonarConfig& config, const types::Snapshot&
     const sonar::BinGrid grid = sonar::makeBinGrid(config);
     const double nearest = std::max(grid.range_min, 0.5 * grid.bin_width);
     const auto silent = config.output == sonar::Output::Intensity ? 0.0f : -3000.0f;
-    const auto occupied = static_cast<double>(std::ranges::count_if(ping.bins, [=](float bin) { return bin != silent; }));
+    const auto occupied =
+        static_cast<double>(std::ranges::count_if(ping.bins, [=](float bin) { return bin != silent; }));
     const double pixels = static_cast<double>(config.quality.rows) * config.quality.columns_per_beam * config.beams();
     Conditions all = {{"kappa", kappa(config, snapshot)},
                       {"range_ratio", grid.range_max / nearest},
@@ -108,9 +110,13 @@ types::Snapshot lookingAt(types::GeometryPtr geometry, glm::dvec3 position, doub
     return snapshot;
 }
 
-std::shared_ptr<types::Geometry> copyOf(const types::GeometryPtr& geometry) { return std::make_shared<types::Geometry>(*geometry); }
+std::shared_ptr<types::Geometry> copyOf(const types::GeometryPtr& geometry) {
+    return std::make_shared<types::Geometry>(*geometry);
+}
 
-types::Mesh levelGround(float z, float width) { return quad({-width / 2, -width / 2, z}, {width, 0, 0}, {0, width, 0}); }
+types::Mesh levelGround(float z, float width) {
+    return quad({-width / 2, -width / 2, z}, {width, 0, 0}, {0, width, 0});
+}
 
 types::Mesh facingWall(float x, float half_width) {
     return quad({x, -half_width, -half_width}, {0, 2 * half_width, 0}, {0, 0, 2 * half_width});
@@ -146,7 +152,8 @@ double worstBeam(const Probe& heard, const sonar::SonarConfig& config, const Tru
 }
 
 Outcome within(double tolerance, double deviation, const std::string& got, const Probe& heard) {
-    return {heard.conditions, got, deviation, deviation <= tolerance && heard.isSound() ? Verdict::Pass : Verdict::Fail};
+    return {heard.conditions, got, deviation,
+            deviation <= tolerance && heard.isSound() ? Verdict::Pass : Verdict::Fail};
 }
 
 Outcome none(double deviation, const std::string& got, Conditions conditions) {

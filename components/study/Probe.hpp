@@ -18,10 +18,10 @@ struct Probe {
     Conditions conditions;  ///< Those of physics.md section 4.
     std::string device;     ///< Name of the OpenGL renderer.
 
-    double energy() const;              ///< Sum of all bins.
+    double energy() const;  ///< Sum of all bins.
     double energy(uint32_t beam) const;
     int firstReturn(uint32_t beam) const;  ///< Bin of the first echo, -1 for none.
-    bool isSound() const;               ///< All bins are finite and none is negative.
+    bool isSound() const;                  ///< All bins are finite and none is negative.
 };
 
 /** A new renderer and its first ping. */
@@ -36,7 +36,7 @@ types::Snapshot lookingAt(types::GeometryPtr geometry, glm::dvec3 position = {},
 /** A copy of a scene to change. */
 std::shared_ptr<types::Geometry> copyOf(const types::GeometryPtr& geometry);
 
-types::Mesh levelGround(float z, float width = 1000);   ///< [m]
+types::Mesh levelGround(float z, float width = 1000);     ///< [m]
 types::Mesh facingWall(float x, float half_width = 200);  ///< Square to the x axis [m].
 
 /** Relative L2 difference of all bins; infinite when b is silent and a is not. */

@@ -42,7 +42,8 @@ types::Mesh sphere(double radius, int rings) {
     for (int i = 0; i <= rings; ++i)
         for (int j = 0; j <= around; ++j) {
             const double polar = std::numbers::pi * i / rings, azimuth = 2 * std::numbers::pi * j / around;
-            positions.push_back(radius * glm::dvec3(std::sin(polar) * std::cos(azimuth), std::sin(polar) * std::sin(azimuth), std::cos(polar)));
+            positions.push_back(radius * glm::dvec3(std::sin(polar) * std::cos(azimuth),
+                                                    std::sin(polar) * std::sin(azimuth), std::cos(polar)));
         }
     const auto at = [&](int i, int j) { return static_cast<uint32_t>(i * (around + 1) + j); };
     for (int i = 0; i < rings; ++i)

@@ -26,12 +26,14 @@ using Corner = std::array<float, 3>;
 class GltfFile {
 public:
     /** `corners` is accessor 0; `primitive` and `rest` are JSON of the mesh's primitive and of further parts. */
-    GltfFile(const std::vector<Corner>& corners, const std::string& primitive, const std::string& node = "", const std::string& rest = "") {
+    GltfFile(const std::vector<Corner>& corners, const std::string& primitive, const std::string& node = "",
+             const std::string& rest = "") {
         std::string name = (std::filesystem::temp_directory_path() / "insonify_XXXXXX").string();
         if (!mkdtemp(name.data())) throw std::runtime_error("no folder for a scene in " + name);
         folder_ = name;
         const size_t bytes = corners.size() * sizeof(Corner);
-        std::ofstream(folder_ / "corners.bin", std::ios::binary).write(reinterpret_cast<const char*>(corners.data()), static_cast<std::streamsize>(bytes));
+        std::ofstream(folder_ / "corners.bin", std::ios::binary)
+            .write(reinterpret_cast<const char*>(corners.data()), static_cast<std::streamsize>(bytes));
         std::ofstream(path()) << fmt::format(
             R"({{"asset":{{"version":"2.0"}},"nodes":[{{"mesh":0{}}}],"meshes":[{{"primitives":[{{{}}}]}}],)"
             R"("accessors":[{{"bufferView":0,"componentType":5126,"type":"VEC3","count":{}}}],)"
@@ -59,13 +61,18 @@ Probe heardOf(const GltfFile& file) { return probe(fan(60, 30, 8, 12), lookingAt
 
 Outcome damagedVertices() {
     std::vector<Corner> corners = wall();
-    for (const float bad : {NAN, INFINITY, -INFINITY}) corners.insert(corners.end(), {{4, 0, 0}, {bad, 1, 0}, {4, 1, 1}});
+    for (const float bad : {NAN, INFINITY, -INFINITY})
+        corners.insert(corners.end(), {{4, 0, 0}, {bad, 1, 0}, {4, 1, 1}});
     const GltfFile good(wall(), plain_primitive), damaged(corners, plain_primitive);
     const auto notices = scene::loadScene(damaged.path())->notices;
-    const bool told = std::ranges::count_if(notices, [](const std::string& n) { return n.find("not a finite number: 3") != std::string::npos; }) == 1;
+    const bool told = std::ranges::count_if(notices, [](const std::string& n) {
+                          return n.find("not a finite number: 3") != std::string::npos;
+                      }) == 1;
     const Probe heard = heardOf(damaged);
     return within(0, told ? difference(heard.ping, heardOf(good).ping) : INFINITY,
-                  fmt::format("three triangles with NaN and inf: dropped, {}", told ? "counted in one notice; bit-identical" : "NOT reported"), heard);
+                  fmt::format("three triangles with NaN and inf: dropped, {}",
+                              told ? "counted in one notice; bit-identical" : "NOT reported"),
+                  heard);
 }
 
 Outcome longRotation() {
@@ -75,7 +82,8 @@ Outcome longRotation() {
     };
     const GltfFile unit(wall(), plain_primitive, turned(1)), longer(wall(), plain_primitive, turned(1.001));
     const Probe heard = heardOf(longer);
-    return within(1e-9, difference(heard.ping, heardOf(unit).ping), "a node's quaternion of length 1.001 is normalised", heard);
+    return within(1e-9, difference(heard.ping, heardOf(unit).ping), "a node's quaternion of length 1.001 is normalised",
+                  heard);
 }
 
 /** What is wrong with a file; empty when nothing is. */
@@ -97,11 +105,16 @@ Outcome filesOfManyKinds() {
         strip({{8, -9, 9}, {8, -9, -9}, {8, 9, 9}, {8, 9, -9}}, R"("attributes":{"POSITION":0},"mode":5)");
     const Probe heard = heardOf(list);
     wrong += difference(heardOf(strip).ping, heard.ping) > 1e-6;
-    const GltfFile packed(wall(), plain_primitive, "", R"(,"extensionsUsed":["KHR_draco_mesh_compression"],"extensionsRequired":["KHR_draco_mesh_compression"])");
+    const GltfFile packed(
+        wall(), plain_primitive, "",
+        R"(,"extensionsUsed":["KHR_draco_mesh_compression"],"extensionsRequired":["KHR_draco_mesh_compression"])");
     wrong += faultOf(packed).find("KHR_draco_mesh_compression cannot be read") == std::string::npos;
     const GltfFile beyond(wall(), R"("attributes":{"POSITION":7})");
     wrong += faultOf(beyond).empty();
-    Outcome outcome = within(0, wrong, fmt::format("an empty sea with a notice, an unindexed list as its strip, two clear errors; {} wrong", wrong), heard);
+    Outcome outcome = within(
+        0, wrong,
+        fmt::format("an empty sea with a notice, an unindexed list as its strip, two clear errors; {} wrong", wrong),
+        heard);
     return outcome;
 }
 
@@ -120,9 +133,11 @@ Outcome reflectivityBounds() {
 }  // namespace
 
 std::vector<StabilityCase> sceneFileCases() {
-    return {{9, "NaN and inf in vertices", "the triangles dropped, counted, reported once; the rest bit-identical", damagedVertices},
+    return {{9, "NaN and inf in vertices", "the triangles dropped, counted, reported once; the rest bit-identical",
+             damagedVertices},
             {18, "Node with a quaternion of length 1.001", "normalised: to 1e-9 of unit length", longRotation},
-            {20, "glTF without triangles, unindexed, of unknown extensions, damaged", "a picture or a clear error", filesOfManyKinds},
+            {20, "glTF without triangles, unindexed, of unknown extensions, damaged", "a picture or a clear error",
+             filesOfManyKinds},
             {36, "Reflectivity above 1 or negative", "refused", reflectivityBounds}};
 }
 

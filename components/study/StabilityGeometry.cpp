@@ -27,7 +27,8 @@ Outcome sounds(double tolerance, const types::GeometryPtr& changed, const std::s
 }
 
 /** Wall and ball with `change` done to the scene. */
-template <class Change> types::GeometryPtr changed(const Change& change) {
+template <class Change>
+types::GeometryPtr changed(const Change& change) {
     const auto geometry = copyOf(wallAndBall());
     change(*geometry);
     return geometry;
@@ -53,7 +54,9 @@ Outcome exactlyOnASurface() {
         heard = probe(smallFan(), lookingAt(sceneOf({facingWall(12), own})));
         worst = std::max(worst, heard.isSound() ? difference(heard.ping, alone.ping) : INFINITY);
     }
-    return within(1e-3, worst, "the sonar in a level, a leaning and a facing plane and at a corner; the wall behind as without", heard);
+    return within(1e-3, worst,
+                  "the sonar in a level, a leaning and a facing plane and at a corner; the wall behind as without",
+                  heard);
 }
 
 Outcome zeroArea() {
@@ -77,7 +80,8 @@ Outcome zeroNormals() {
 Outcome invertedWinding() {
     return sounds(0, changed([](types::Geometry& g) {
                       for (types::Mesh& mesh : g.meshes)
-                          for (size_t i = 0; i < mesh.indices.size(); i += 3) std::swap(mesh.indices[i + 1], mesh.indices[i + 2]);
+                          for (size_t i = 0; i < mesh.indices.size(); i += 3)
+                              std::swap(mesh.indices[i + 1], mesh.indices[i + 2]);
                   }),
                   "all triangles wound the other way");
 }
@@ -114,7 +118,8 @@ types::GeometryPtr placedBall(const types::Mesh& ball, const glm::dmat4& transfo
 }
 
 Outcome mirrored() {
-    return sounds(1e-5, placedBall(sphere(1.5, 48), glm::scale(glm::dmat4(1), {1, -1, 1})), "a ball of scale (1, -1, 1)");
+    return sounds(1e-5, placedBall(sphere(1.5, 48), glm::scale(glm::dmat4(1), {1, -1, 1})),
+                  "a ball of scale (1, -1, 1)");
 }
 
 Outcome stretched() {
@@ -122,9 +127,11 @@ Outcome stretched() {
     for (glm::vec3& p : egg.positions) p *= glm::vec3(0.5, -2, 1.25);
     egg.clusters[0].radius = 2.1f;
     const glm::dmat4 turn = glm::rotate(glm::dmat4(1), 0.6, glm::dvec3(1, 2, 3));
-    const Probe heard = probe(smallFan(), lookingAt(placedBall(sphere(1, 48), turn * glm::scale(glm::dmat4(1), {0.5, -2, 1.25})))),
+    const Probe heard = probe(smallFan(),
+                              lookingAt(placedBall(sphere(1, 48), turn * glm::scale(glm::dmat4(1), {0.5, -2, 1.25})))),
                 plain = probe(smallFan(), lookingAt(placedBall(egg, turn)));
-    return within(1e-5, difference(heard.ping, plain.ping), "a turned ball of scale (0.5, -2, 1.25) against a mesh of that shape", heard);
+    return within(1e-5, difference(heard.ping, plain.ping),
+                  "a turned ball of scale (0.5, -2, 1.25) against a mesh of that shape", heard);
 }
 
 /** Nothing may be heard of a scene. */
@@ -135,7 +142,8 @@ Outcome silent(const types::GeometryPtr& geometry, const std::string& got) {
 
 Outcome nothingToHear() {
     auto empty = std::make_shared<types::Geometry>();
-    for (const auto& [geometry, name] : {std::pair{types::GeometryPtr(empty), "no object"}, {sceneOf({facingWall(-3)}), "all behind"},
+    for (const auto& [geometry, name] : {std::pair{types::GeometryPtr(empty), "no object"},
+                                         {sceneOf({facingWall(-3)}), "all behind"},
                                          {sceneOf({facingWall(15.1f)}), "all beyond the range"}}) {
         const Outcome outcome = silent(geometry, name);
         if (outcome.verdict != Verdict::Pass) return outcome;
@@ -147,13 +155,15 @@ Outcome straightDown() {
     sonar::SonarConfig config = fan(40, 40, 1, 12);
     setSamples(config, 256, 64);
     const Probe heard = probe(config, lookingAt(sceneOf({levelGround(-5.05f)}), {}, 0.7, radians(90)));
-    return within(1e-3, worstBeam(heard, config, planeTruth({1, 0, 0}, 5.05)), "a level bottom below a sonar that looks straight down", heard);
+    return within(1e-3, worstBeam(heard, config, planeTruth({1, 0, 0}, 5.05)),
+                  "a level bottom below a sonar that looks straight down", heard);
 }
 
 }  // namespace
 
 std::vector<StabilityCase> geometryCases() {
-    return {{5, "Sonar inside a closed mesh", "deterministic; both sides reflect, to 1e-3 of the closed form", insideAClosedMesh},
+    return {{5, "Sonar inside a closed mesh", "deterministic; both sides reflect, to 1e-3 of the closed form",
+             insideAClosedMesh},
             {6, "Sonar exactly on a surface", "no inf; the rest is heard as without, to 1e-3", exactlyOnASurface},
             {8, "Triangles of zero area", "contribute nothing: bit-identical", zeroArea},
             {10, "Normals of zero length", "not used: bit-identical", zeroNormals},

@@ -17,7 +17,8 @@ namespace {
 using sonar::SonarConfig;
 
 bool tells(const types::Plan& plan, const std::string& words) {
-    return std::ranges::any_of(plan.notices, [&](const std::string& notice) { return notice.find(words) != std::string::npos; });
+    return std::ranges::any_of(plan.notices,
+                               [&](const std::string& notice) { return notice.find(words) != std::string::npos; });
 }
 
 constexpr double far_wall = 398.7;  ///< [m]
@@ -42,7 +43,8 @@ double trueLevel(const SonarConfig& config, const Truth& truth, int bin) {
     for (int i = 0; i < slices; ++i) {
         const double low = grid.edge(bin) + i * grid.bin_width / slices, high = low + grid.bin_width / slices;
         if (high <= far_wall) continue;
-        energy += trueEnergy(config, 0, truth, low, high) * std::exp(-beta * (0.5 * (std::max(low, far_wall) + high) - far_wall));
+        energy += trueEnergy(config, 0, truth, low, high) *
+                  std::exp(-beta * (0.5 * (std::max(low, far_wall) + high) - far_wall));
     }
     return energy > 0 ? 10 * std::log10(energy) - 10 * beta * far_wall / std::numbers::ln10 : -3000;
 }
@@ -52,7 +54,8 @@ Outcome twoMegahertz(int bins, bool in_coarse_bins) {
     const Probe heard = twoMegahertzOn(config, bins);
     const Truth truth = planeTruth({1, 0, 0}, far_wall);
     const sonar::BinGrid grid = sonar::makeBinGrid(config);
-    const int first = static_cast<int>(far_wall / grid.bin_width), last = std::min(bins, first + 1 + static_cast<int>(0.05 / grid.bin_width));
+    const int first = static_cast<int>(far_wall / grid.bin_width),
+              last = std::min(bins, first + 1 + static_cast<int>(0.05 / grid.bin_width));
     double worst = 0, lowest = 0;
     for (int bin = first; bin < last; ++bin) {
         const double level = trueLevel(config, truth, bin);
@@ -62,7 +65,9 @@ Outcome twoMegahertz(int bins, bool in_coarse_bins) {
     const double bound = in_coarse_bins ? sonar::makeAbsorption(config).db_per_m * grid.bin_width : 0.01;
     const bool told = !in_coarse_bins || tells(heard.plan, "absorption changes within a bin");
     const bool finite = std::ranges::all_of(heard.ping.bins, [](float bin) { return std::isfinite(bin); });
-    return {heard.conditions, fmt::format("levels down to {:.1f} dB in bins of {:.3g} m, off by {:.2g} dB; may be {:.2g}{}", lowest, grid.bin_width, worst, bound, in_coarse_bins && told ? ", as the plan warns" : ""),
+    return {heard.conditions,
+            fmt::format("levels down to {:.1f} dB in bins of {:.3g} m, off by {:.2g} dB; may be {:.2g}{}", lowest,
+                        grid.bin_width, worst, bound, in_coarse_bins && told ? ", as the plan warns" : ""),
             worst, finite && told && worst <= bound ? Verdict::Pass : Verdict::Fail};
 }
 
@@ -74,8 +79,12 @@ Outcome gainOf(double gain_db, double tolerance) {
     const double factor = std::pow(10, gain_db / 10), ceiling = static_cast<double>(std::numeric_limits<float>::max());
     double worst = 0;
     for (size_t i = 0; i < heard.ping.bins.size(); ++i)
-        worst = std::max(worst, off(heard.ping.bins[i], std::min(quiet.ping.bins[i] * factor, quiet.ping.bins[i] > 0 ? ceiling : 0)));
-    return within(tolerance, tells(heard.plan, "reaches its max_db") ? worst : INFINITY, fmt::format("a gain of {} dB: clamped there, told in the plan; intensities at most the largest float", gain_db), heard);
+        worst = std::max(worst, off(heard.ping.bins[i],
+                                    std::min(quiet.ping.bins[i] * factor, quiet.ping.bins[i] > 0 ? ceiling : 0)));
+    return within(
+        tolerance, tells(heard.plan, "reaches its max_db") ? worst : INFINITY,
+        fmt::format("a gain of {} dB: clamped there, told in the plan; intensities at most the largest float", gain_db),
+        heard);
 }
 
 Outcome silence() {
@@ -102,7 +111,9 @@ Outcome weakAbsorption() {
         const double r = heard.ping.binStart(static_cast<double>(i % heard.ping.bin_count) + 0.5);
         weak = std::max(weak, off(heard.ping.bins[i], plain.ping.bins[i] * std::pow(10, -2e-4 * r / 10)));
     }
-    return within(1e-6, zero > 0 ? INFINITY : std::max(tiny, weak), fmt::format("0: bit-identical to none; 1e-12 dB/m off by {:.1e}; 1e-4 dB/m off by {:.1e}", tiny, weak), heard);
+    return within(
+        1e-6, zero > 0 ? INFINITY : std::max(tiny, weak),
+        fmt::format("0: bit-identical to none; 1e-12 dB/m off by {:.1e}; 1e-4 dB/m off by {:.1e}", tiny, weak), heard);
 }
 
 /** A plate of a material before a wall. */
@@ -124,10 +135,13 @@ Outcome silentSurfaces() {
     for (uint32_t beam = 0; beam < 4; ++beam)
         for (uint32_t k = 0; k < 150; ++k) {
             const float bin = published.ping.bins[beam * 150 + k];
-            if (k == 50) worst = std::max(worst, off(bin, 6.144174e-6));
-            else if (k > 55) worst = std::max(worst, double{bin});
+            if (k == 50)
+                worst = std::max(worst, off(bin, 6.144174e-6));
+            else if (k > 55)
+                worst = std::max(worst, double{bin});
         }
-    return within(1e-4, worst, "no echo in physical, S(0) = 6.1e-6 in cerqueira2017; the wall behind is not heard", published);
+    return within(1e-4, worst, "no echo in physical, S(0) = 6.1e-6 in cerqueira2017; the wall behind is not heard",
+                  published);
 }
 
 Outcome fullReflectivity() {
@@ -139,7 +153,8 @@ Outcome fullReflectivity() {
 
 Outcome energyCreating() {
     const Probe heard = plateBeforeWall(fan(20, 20, 4, 15), -4.9f, 1);
-    return none(!tells(heard.plan, "gives back more than it gets"), "lambert_db of -4.9: a warning in the plan", heard.conditions);
+    return none(!tells(heard.plan, "gives back more than it gets"), "lambert_db of -4.9: a warning in the plan",
+                heard.conditions);
 }
 
 constexpr double plate_at = 8.05;  ///< [m]
@@ -180,14 +195,17 @@ Outcome plateBesideBottom() {
     const Truth bottom = planeTruth({0, 0, -1}, 5);
     const double plate = off(energyOf(heard, 80, 84), plateEnergy());
     const double below = off(energyOf(heard, 148, 160), 1e-8 * trueEnergy(config, 0, bottom, 14.8, 16));
-    return within(0.01, std::max(plate, below), fmt::format("plate off by {:.1e}, the bottom from 14.8 to 16 m by {:.1e}", plate, below), heard);
+    return within(0.01, std::max(plate, below),
+                  fmt::format("plate off by {:.1e}, the bottom from 14.8 to 16 m by {:.1e}", plate, below), heard);
 }
 
 }  // namespace
 
 std::vector<StabilityCase> levelCases() {
-    return {{32, "2 MHz at 400 m", "level_db to 0.01 dB of double precision at -1000 dB", [] { return twoMegahertz(65536, false); }},
-            {32, "2 MHz at 400 m in wide bins", "to the absorption of half a bin, and the plan warns", [] { return twoMegahertz(1050, true); }},
+    return {{32, "2 MHz at 400 m", "level_db to 0.01 dB of double precision at -1000 dB",
+             [] { return twoMegahertz(65536, false); }},
+            {32, "2 MHz at 400 m in wide bins", "to the absorption of half a bin, and the plan warns",
+             [] { return twoMegahertz(1050, true); }},
             {33, "TVG gain of 1e20", "clamped and reported; to 1e-6", [] { return gainOf(200, 1e-6); }},
             {33, "TVG gain of 1e100", "finite: clamped at the largest float", [] { return gainOf(1000, 1e-6); }},
             {34, "log10 of 0 in decibels", "a floor of -3000 dB, never -inf or NaN", silence},

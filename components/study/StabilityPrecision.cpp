@@ -18,13 +18,15 @@ using types::radians;
 
 /** Ground, a ball, a wall and a plate that leans. */
 types::GeometryPtr harbour(glm::dvec3 origin) {
-    return sceneOf({levelGround(-5, 400), sphere(1.5, 64), facingWall(30, 12), quad({12, -9, -3}, {1, 5, 0}, {2, 0, 4})},
-                   {origin, origin + glm::dvec3(10, 3, -2), origin, origin});
+    return sceneOf(
+        {levelGround(-5, 400), sphere(1.5, 64), facingWall(30, 12), quad({12, -9, -3}, {1, 5, 0}, {2, 0, 4})},
+        {origin, origin + glm::dvec3(10, 3, -2), origin, origin});
 }
 
 /** A plate 0.12 m to port and a wall 1999.85 m ahead to starboard. */
 Outcome tenCentimetresAndTwoKilometres() {
-    const auto geometry = sceneOf({quad({0.12f, 0.0f, -0.1f}, {0, 0.1f, 0}, {0, 0, 0.2f}), quad({1999.85f, -300, -100}, {0, 300, 0}, {0, 0, 200})});
+    const auto geometry = sceneOf({quad({0.12f, 0.0f, -0.1f}, {0, 0.1f, 0}, {0, 0, 0.2f}),
+                                   quad({1999.85f, -300, -100}, {0, 300, 0}, {0, 0, 200})});
     sonar::SonarConfig config = fan(2, 2, 2, 2000);
     config.range_min = 0.05;
     setSamples(config, 256, 16);
@@ -33,7 +35,9 @@ Outcome tenCentimetresAndTwoKilometres() {
                  near = off(heard.energy(1), trueEnergy(config, 1, planeTruth({1, 0, 0}, 0.12)));
     const bool placed = heard.firstReturn(1) == 1 && heard.firstReturn(0) == 19998;
     return within(1e-3, placed ? std::max(near, far) : INFINITY,
-                  fmt::format("first returns in bins {} and {}; energies off by {:.1e} and {:.1e}", heard.firstReturn(1), heard.firstReturn(0), near, far), heard);
+                  fmt::format("first returns in bins {} and {}; energies off by {:.1e} and {:.1e}",
+                              heard.firstReturn(1), heard.firstReturn(0), near, far),
+                  heard);
 }
 
 /** The energy that a loud plane loses to a dumb one 1e-4 r behind it, at a pitch of 40 deg. */
@@ -61,7 +65,8 @@ Outcome planesCloseTogether() {
     double worst = 0;
     for (const double distance : {0.01, 1.0, 600.0})
         for (const bool hidden_first : {false, true}) worst = std::max(worst, leak(distance, hidden_first, heard));
-    return within(1e-6, worst, "100 times louder plane hidden 1e-4 r behind, at 0.01, 1 and 600 m, drawn first or last", heard);
+    return within(1e-6, worst, "100 times louder plane hidden 1e-4 r behind, at 0.01, 1 and 600 m, drawn first or last",
+                  heard);
 }
 
 Outcome utmCoordinates() {
@@ -70,9 +75,12 @@ Outcome utmCoordinates() {
     const Probe here = probe(config, lookingAt(harbour({}), {}, 0.1, 0.15)),
                 there = probe(config, lookingAt(harbour(origin), origin, 0.1, 0.15));
     int moved = 0;
-    for (uint32_t beam = 0; beam < here.ping.beam_count; ++beam) moved += here.firstReturn(beam) != there.firstReturn(beam);
+    for (uint32_t beam = 0; beam < here.ping.beam_count; ++beam)
+        moved += here.firstReturn(beam) != there.firstReturn(beam);
     const double energy = off(there.energy(), here.energy()), bins = difference(there.ping, here.ping);
-    return within(1e-6, moved ? INFINITY : energy, fmt::format("energy off by {:.1e}, bins by {:.1e}, {} first returns moved", energy, bins, moved), there);
+    return within(1e-6, moved ? INFINITY : energy,
+                  fmt::format("energy off by {:.1e}, bins by {:.1e}, {} first returns moved", energy, bins, moved),
+                  there);
 }
 
 Outcome instancesFarApart() {
@@ -95,7 +103,8 @@ Outcome grazing(double incidence_deg) {
     double energy = 0;
     for (uint32_t k = first; k < last; ++k) energy += heard.ping.bins[k];
     const double expected = truth({radians(-5), radians(-2.5), radians(2)}, first * 0.1, last * 0.1);
-    return within(0.01, off(energy, expected), fmt::format("{:.0f} to {:.0f} m over a bottom {} m below", first * 0.1, last * 0.1, height), heard);
+    return within(0.01, off(energy, expected),
+                  fmt::format("{:.0f} to {:.0f} m over a bottom {} m below", first * 0.1, last * 0.1, height), heard);
 }
 
 /** A pixel whose centre is blanked is not heard: what of it lies beyond range_min is lost, and nothing farther. */
@@ -111,17 +120,25 @@ Outcome blankingThroughAPixel() {
     double before = 0, expected = 0, beyond = 0;
     for (uint32_t k = 516; k < 700; ++k) {
         const double got = heard.ping.bins[k], all = whole.ping.bins[k];
-        if (k >= clear) beyond = std::max(beyond, off(got, all));
-        else before += got, expected += all;
+        if (k >= clear)
+            beyond = std::max(beyond, off(got, all));
+        else
+            before += got, expected += all;
     }
-    return within(1e-6, beyond, fmt::format("a bottom 0.1 m below: {:.0f} % of the echo between 51.6 and {:.1f} m, one row wide, is heard; beyond it all", 100 * before / expected, 0.1 * clear), heard);
+    return within(1e-6, beyond,
+                  fmt::format("a bottom 0.1 m below: {:.0f} % of the echo between 51.6 and {:.1f} m, one row wide, is "
+                              "heard; beyond it all",
+                              100 * before / expected, 0.1 * clear),
+                  heard);
 }
 
 Outcome wallThroughThreeSlabs() {
     const sonar::SonarConfig config = fan(160, 20, 160, 100);
     const Probe heard = probe(config, lookingAt(sceneOf({facingWall(5, 400)})));
-    return within(1e-3, worstBeam(heard, config, planeTruth({1, 0, 0}, 5)),
-                  fmt::format("worst of {} beams in {} slabs against the closed form", config.beam_count, heard.plan.slabs), heard);
+    return within(
+        1e-3, worstBeam(heard, config, planeTruth({1, 0, 0}, 5)),
+        fmt::format("worst of {} beams in {} slabs against the closed form", config.beam_count, heard.plan.slabs),
+        heard);
 }
 
 Outcome groundThroughTheEyePlane() {
@@ -134,7 +151,8 @@ Outcome groundThroughTheEyePlane() {
 Outcome hugeSeaFloor(float width) {
     const sonar::SonarConfig config = fan(130, 40, 64, 50);
     const Probe heard = probe(config, lookingAt(sceneOf({levelGround(-5, width)}), {}, 0.3));
-    return within(0.01, worstBeam(heard, config, planeTruth({0, 0, -1}, 5)), "worst of 64 beams against the closed form", heard);
+    return within(0.01, worstBeam(heard, config, planeTruth({0, 0, -1}, 5)),
+                  "worst of 64 beams against the closed form", heard);
 }
 
 /** A strip a tenth of a pixel wide, moved through a pixel in 40 steps. */
@@ -157,7 +175,9 @@ Outcome sliver() {
     for (int i = 0; i < 1000; ++i) truth += std::pow(1 + std::pow((i + 0.5) / 1e4 - 0.05, 2), -3) * 1e-4;
     truth *= 0.01 * pixel / 100;
     heard.conditions.push_back({"aliasing", most / truth});
-    return within(0.02, off(sum, truth), fmt::format("mean of 40 shifts; single pings have 0 to {:.1f} times the energy", most / truth), heard);
+    return within(0.02, off(sum, truth),
+                  fmt::format("mean of 40 shifts; single pings have 0 to {:.1f} times the energy", most / truth),
+                  heard);
 }
 
 /** Walls that cross at the border of two slabs, each in front of the other on one side. */
@@ -172,25 +192,31 @@ Outcome wallsThatCrossAtASlabBorder() {
     const double distance = 10 * std::cos(lean);
     double worst = 0;
     for (uint32_t beam = 0; beam < 40; ++beam)  // at positive azimuths the plane is nearer whose normal leans to port
-        worst = std::max(worst, off(heard.energy(beam), trueEnergy(config, beam, planeTruth(beam < 20 ? other : one, distance))));
-    return within(1e-3, worst, fmt::format("worst of 40 beams in {} slabs against the nearer plane", heard.plan.slabs), heard);
+        worst = std::max(
+            worst, off(heard.energy(beam), trueEnergy(config, beam, planeTruth(beam < 20 ? other : one, distance))));
+    return within(1e-3, worst, fmt::format("worst of 40 beams in {} slabs against the nearer plane", heard.plan.slabs),
+                  heard);
 }
 
 }  // namespace
 
 std::vector<StabilityCase> precisionCases() {
-    return {{1, "Ranges of 0.1 m and 2 km in one scene", "both first returns in their bin, energies to 1e-3", tenCentimetresAndTwoKilometres},
-            {2, "Far over near of 1e6", "a plane 1e-4 r behind another is not heard, to 1e-6", planesCloseTogether},
-            {3, "World coordinates of 5e5 and 4.5e6 m", "energy as at the origin to 1e-6, first returns the same", utmCoordinates},
-            {4, "Instances 1e6 m apart", "each as at the origin, to 1e-6", instancesFarApart},
-            {7, "Grazing at 89.9 deg", "finite, energy to 1 % of the closed form", [] { return grazing(89.9); }},
-            {7, "Grazing at 89.99 deg", "finite, energy to 1 % of the closed form", [] { return grazing(89.99); }},
-            {13, "A wall through three slabs", "every beam to 1e-3 of the closed form: no seam", wallThroughThreeSlabs},
-            {13, "Ground that crosses the eye plane", "every beam to 1e-3 of the closed form", groundThroughTheEyePlane},
-            {14, "Sea-floor quad of 1e8 m", "every beam to 1 % of the closed form", [] { return hugeSeaFloor(1e8f); }},
-            {15, "Slivers thinner than a pixel", "right on average over shifts, to 2 %; aliasing reported", sliver},
-            {16, "Walls that cross at a slab border", "every beam to 1e-3 of the closed form", wallsThatCrossAtASlabBorder},
-            {60, "Blanking that cuts through a pixel", "nothing is lost but within one pixel of range_min, to 1e-6", blankingThroughAPixel}};
+    return {
+        {1, "Ranges of 0.1 m and 2 km in one scene", "both first returns in their bin, energies to 1e-3",
+         tenCentimetresAndTwoKilometres},
+        {2, "Far over near of 1e6", "a plane 1e-4 r behind another is not heard, to 1e-6", planesCloseTogether},
+        {3, "World coordinates of 5e5 and 4.5e6 m", "energy as at the origin to 1e-6, first returns the same",
+         utmCoordinates},
+        {4, "Instances 1e6 m apart", "each as at the origin, to 1e-6", instancesFarApart},
+        {7, "Grazing at 89.9 deg", "finite, energy to 1 % of the closed form", [] { return grazing(89.9); }},
+        {7, "Grazing at 89.99 deg", "finite, energy to 1 % of the closed form", [] { return grazing(89.99); }},
+        {13, "A wall through three slabs", "every beam to 1e-3 of the closed form: no seam", wallThroughThreeSlabs},
+        {13, "Ground that crosses the eye plane", "every beam to 1e-3 of the closed form", groundThroughTheEyePlane},
+        {14, "Sea-floor quad of 1e8 m", "every beam to 1 % of the closed form", [] { return hugeSeaFloor(1e8f); }},
+        {15, "Slivers thinner than a pixel", "right on average over shifts, to 2 %; aliasing reported", sliver},
+        {16, "Walls that cross at a slab border", "every beam to 1e-3 of the closed form", wallsThatCrossAtASlabBorder},
+        {60, "Blanking that cuts through a pixel", "nothing is lost but within one pixel of range_min, to 1e-6",
+         blankingThroughAPixel}};
 }
 
 }  // namespace insonify::study

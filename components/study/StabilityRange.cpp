@@ -19,7 +19,8 @@ using sonar::SonarConfig;
 
 /** Whether any notice of a configuration holds `words`. */
 bool warns(const SonarConfig& config, const std::string& words) {
-    return std::ranges::any_of(sonar::configNotices(config), [&](const std::string& notice) { return notice.find(words) != std::string::npos; });
+    return std::ranges::any_of(sonar::configNotices(config),
+                               [&](const std::string& notice) { return notice.find(words) != std::string::npos; });
 }
 
 /** One bin against a thousand. */
@@ -29,7 +30,8 @@ Outcome oneBin(const types::GeometryPtr& geometry, double pitch) {
     setSamples(one, 1024);
     many.bin_count = 1000;
     one.bin_count = 1;
-    const Probe in_one = probe(one, lookingAt(geometry, {}, 0, pitch)), in_many = probe(many, lookingAt(geometry, {}, 0, pitch));
+    const Probe in_one = probe(one, lookingAt(geometry, {}, 0, pitch)),
+                in_many = probe(many, lookingAt(geometry, {}, 0, pitch));
     const double deviation = off(in_one.energy(), in_many.energy());
     return within(1e-6, deviation, "the energy of one bin against the sum of 1000", in_one);
 }
@@ -37,13 +39,15 @@ Outcome oneBin(const types::GeometryPtr& geometry, double pitch) {
 Outcome twentyThousandBins() {
     SonarConfig config = fan(20, 20, 20, 2000);
     const Probe heard = probe(config, lookingAt(sceneOf({levelGround(-5, 8000)})));
-    return within(1e-3, worstBeam(heard, config, planeTruth({0, 0, -1}, 5)), "20 beams over a bottom 5 m below, to 2 km", heard);
+    return within(1e-3, worstBeam(heard, config, planeTruth({0, 0, -1}, 5)),
+                  "20 beams over a bottom 5 m below, to 2 km", heard);
 }
 
 Outcome tooManyBins() {
     SonarConfig config = fan(120, 20, 4096, 2000);
     config.bin_count = 20000;
-    return none(faultsOf(config).empty(), "4096 beams of 20,000 bins, 328 MB a ping: refused with the number that may be");
+    return none(faultsOf(config).empty(),
+                "4096 beams of 20,000 bins, 328 MB a ping: refused with the number that may be");
 }
 
 Outcome narrowBinsFarAway() {
@@ -54,7 +58,9 @@ Outcome narrowBinsFarAway() {
     const double distance = 1999.875;  // exact in float
     const Probe heard = probe(config, lookingAt(sceneOf({facingWall(static_cast<float>(distance))})));
     const int bin = static_cast<int>(distance / grid.bin_width);
-    Outcome outcome = within(0, std::abs(heard.firstReturn(0) - bin), fmt::format("bins of {:.3g} m, the narrowest at 2 km that may be; deviation in bins", grid.bin_width), heard);
+    Outcome outcome = within(
+        0, std::abs(heard.firstReturn(0) - bin),
+        fmt::format("bins of {:.3g} m, the narrowest at 2 km that may be; deviation in bins", grid.bin_width), heard);
     outcome.conditions.push_back({"ulps_per_bin", grid.bin_width / 1.2207e-4});
     return outcome;
 }
@@ -79,7 +85,8 @@ Outcome surfaceOnABinEdge() {
     return within(0, wrong, fmt::format("{} of 399 exact edges in another bin", wrong), heard);
 }
 
-template <class... Change> Outcome refused(const std::string& got, const Change&... change) {
+template <class... Change>
+Outcome refused(const std::string& got, const Change&... change) {
     int accepted = 0;
     const auto judge = [&](const auto& wrong) {
         SonarConfig config;
@@ -92,10 +99,12 @@ template <class... Change> Outcome refused(const std::string& got, const Change&
 }
 
 Outcome badRanges() {
-    return refused("range 0, -5, NaN, inf; range_min above range, equal to it, negative, NaN: each refused", [](SonarConfig& c) { c.range = 0; },
-                   [](SonarConfig& c) { c.range = -5; }, [](SonarConfig& c) { c.range = NAN; }, [](SonarConfig& c) { c.range = INFINITY; },
-                   [](SonarConfig& c) { c.range_min = 60; }, [](SonarConfig& c) { c.range_min = 50; },
-                   [](SonarConfig& c) { c.range_min = -1; }, [](SonarConfig& c) { c.range_min = NAN; });
+    return refused(
+        "range 0, -5, NaN, inf; range_min above range, equal to it, negative, NaN: each refused",
+        [](SonarConfig& c) { c.range = 0; }, [](SonarConfig& c) { c.range = -5; },
+        [](SonarConfig& c) { c.range = NAN; }, [](SonarConfig& c) { c.range = INFINITY; },
+        [](SonarConfig& c) { c.range_min = 60; }, [](SonarConfig& c) { c.range_min = 50; },
+        [](SonarConfig& c) { c.range_min = -1; }, [](SonarConfig& c) { c.range_min = NAN; });
 }
 
 Outcome noBlanking() {
@@ -107,9 +116,10 @@ Outcome noBlanking() {
 }
 
 Outcome badSpeeds() {
-    return refused("speed_of_sound 0, -1500, NaN, inf, 1e9: each refused", [](SonarConfig& c) { c.speed_of_sound = 0; },
-                   [](SonarConfig& c) { c.speed_of_sound = -1500; }, [](SonarConfig& c) { c.speed_of_sound = NAN; },
-                   [](SonarConfig& c) { c.speed_of_sound = INFINITY; }, [](SonarConfig& c) { c.speed_of_sound = 1e9; });
+    return refused(
+        "speed_of_sound 0, -1500, NaN, inf, 1e9: each refused", [](SonarConfig& c) { c.speed_of_sound = 0; },
+        [](SonarConfig& c) { c.speed_of_sound = -1500; }, [](SonarConfig& c) { c.speed_of_sound = NAN; },
+        [](SonarConfig& c) { c.speed_of_sound = INFINITY; }, [](SonarConfig& c) { c.speed_of_sound = 1e9; });
 }
 
 Outcome frequencies() {
@@ -123,7 +133,8 @@ Outcome frequencies() {
             config.absorption->law = law;
             config.output = sonar::Output::LevelDb;
             heard = probe(config, lookingAt(sceneOf({levelGround(-5)})));
-            wrong += !(heard.ping.bins[160] > -3000) || !std::ranges::all_of(heard.ping.bins, [](float bin) { return std::isfinite(bin); });
+            wrong += !(heard.ping.bins[160] > -3000) ||
+                     !std::ranges::all_of(heard.ping.bins, [](float bin) { return std::isfinite(bin); });
             wrong += !warns(config, "outside its law's validity") || !faultsOf(config).empty();
         }
     return none(wrong, "0 Hz and 10 MHz by both laws: a warning, finite levels", heard.conditions);
@@ -132,8 +143,10 @@ Outcome frequencies() {
 }  // namespace
 
 std::vector<StabilityCase> rangeCases() {
-    return {{24, "One bin, before a wall", "the energy of many bins, to 1e-6", [] { return oneBin(sceneOf({facingWall(10)}), 0); }},
-            {24, "One bin, over a grazed bottom", "the energy of many bins, to 1e-6", [] { return oneBin(sceneOf({levelGround(-5)}), 0.1); }},
+    return {{24, "One bin, before a wall", "the energy of many bins, to 1e-6",
+             [] { return oneBin(sceneOf({facingWall(10)}), 0); }},
+            {24, "One bin, over a grazed bottom", "the energy of many bins, to 1e-6",
+             [] { return oneBin(sceneOf({levelGround(-5)}), 0.1); }},
             {24, "20,000 bins", "every beam to 1e-3 of the closed form", twentyThousandBins},
             {24, "4096 beams of 20,000 bins", "refused: more than memory should hold", tooManyBins},
             {25, "Bins near the resolution of float", "first return in its bin", narrowBinsFarAway},

@@ -20,8 +20,9 @@ using types::radians;
 
 /** A room of 20 x 30 m, its bottom 4 m below the sonar, which stands off its middle. */
 types::GeometryPtr room() {
-    return sceneOf({levelGround(-4, 100), quad({12, -14, -4}, {0, 30, 0}, {0, 0, 20}), quad({-8, -14, -4}, {0, 30, 0}, {0, 0, 20}),
-                    quad({-8, 16, -4}, {20, 0, 0}, {0, 0, 20}), quad({-8, -14, -4}, {20, 0, 0}, {0, 0, 20})});
+    return sceneOf({levelGround(-4, 100), quad({12, -14, -4}, {0, 30, 0}, {0, 0, 20}),
+                    quad({-8, -14, -4}, {0, 30, 0}, {0, 0, 20}), quad({-8, 16, -4}, {20, 0, 0}, {0, 0, 20}),
+                    quad({-8, -14, -4}, {20, 0, 0}, {0, 0, 20})});
 }
 
 /** Relative L2 between beam `a` of one ping and beam `b` of another. */
@@ -47,7 +48,8 @@ Outcome wideFan(double fov_deg) {
     for (const int first : {0, 40, 100, 175, 250, 310, 350}) {  // none has a corner of the room
         const double bearing = -fov_deg / 2 + (first + 5) * width;
         const Probe few = probe(narrow, lookingAt(room(), {}, radians(bearing)));
-        for (uint32_t k = 0; k < 10; ++k) worst = std::max(worst, beamDifference(all.ping, static_cast<uint32_t>(first) + k, few.ping, k));
+        for (uint32_t k = 0; k < 10; ++k)
+            worst = std::max(worst, beamDifference(all.ping, static_cast<uint32_t>(first) + k, few.ping, k));
     }
     return within(1e-3, worst, fmt::format("70 beams of {} in {} slabs, bin by bin", beams, all.plan.slabs), all);
 }
@@ -57,12 +59,17 @@ Outcome seams(double fov_deg) {
     setSamples(config, 512);
     const Probe heard = probe(config, lookingAt(sceneOf({levelGround(-5)})));
     double worst = 0;
-    for (uint32_t k = 0; k < 360; ++k) worst = std::max(worst, beamDifference(heard.ping, k, heard.ping, (k + 1) % 360));
-    return within(1e-3, worst, fmt::format("neighbouring beams over level ground in {} slabs, the last beside the first", heard.plan.slabs), heard);
+    for (uint32_t k = 0; k < 360; ++k)
+        worst = std::max(worst, beamDifference(heard.ping, k, heard.ping, (k + 1) % 360));
+    return within(
+        1e-3, worst,
+        fmt::format("neighbouring beams over level ground in {} slabs, the last beside the first", heard.plan.slabs),
+        heard);
 }
 
 /** How many of the changes to a sound configuration are accepted. */
-template <class Config, class... Change> Outcome refused(const std::string& got, const Change&... change) {
+template <class Config, class... Change>
+Outcome refused(const std::string& got, const Change&... change) {
     int accepted = 0;
     const auto judge = [&](const auto& wrong) {
         Config config;
@@ -77,10 +84,11 @@ template <class Config, class... Change> Outcome refused(const std::string& got,
 Outcome badAngles() {
     using Config = sonar::SonarConfig;
     return refused<Config>(
-        "field_of_view_deg 0, -10, 361, NaN; beam_height_deg 0, 90, 180, NaN: each refused", [](Config& c) { c.field_of_view_deg = 0; },
-        [](Config& c) { c.field_of_view_deg = -10; }, [](Config& c) { c.field_of_view_deg = 361; }, [](Config& c) { c.field_of_view_deg = NAN; },
-        [](Config& c) { c.beam_height_deg = 0; }, [](Config& c) { c.beam_height_deg = 90; }, [](Config& c) { c.beam_height_deg = 180; },
-        [](Config& c) { c.beam_height_deg = NAN; });
+        "field_of_view_deg 0, -10, 361, NaN; beam_height_deg 0, 90, 180, NaN: each refused",
+        [](Config& c) { c.field_of_view_deg = 0; }, [](Config& c) { c.field_of_view_deg = -10; },
+        [](Config& c) { c.field_of_view_deg = 361; }, [](Config& c) { c.field_of_view_deg = NAN; },
+        [](Config& c) { c.beam_height_deg = 0; }, [](Config& c) { c.beam_height_deg = 90; },
+        [](Config& c) { c.beam_height_deg = 180; }, [](Config& c) { c.beam_height_deg = NAN; });
 }
 
 /** A fan of `beams` before a wall. */
@@ -88,7 +96,8 @@ Outcome beamsBeforeAWall(int beams, double fov_deg) {
     sonar::SonarConfig config = fan(fov_deg, 20, beams, 25);
     setSamples(config, 64, std::max(2, 64 / beams));
     const Probe heard = probe(config, lookingAt(sceneOf({facingWall(10)})));
-    return within(1e-3, worstBeam(heard, config, planeTruth({1, 0, 0}, 10)), fmt::format("worst of {} beams against the closed form", beams), heard);
+    return within(1e-3, worstBeam(heard, config, planeTruth({1, 0, 0}, 10)),
+                  fmt::format("worst of {} beams against the closed form", beams), heard);
 }
 
 Outcome moreBeamsThanColumns() {
@@ -98,7 +107,8 @@ Outcome moreBeamsThanColumns() {
     config.beam_width_deg = 1;
     setSamples(config, 256, 1);
     const Probe heard = probe(config, lookingAt(sceneOf({facingWall(10)})));
-    return within(1e-3, worstBeam(heard, config, planeTruth({1, 0, 0}, 10)), "1000 beams 1 deg wide and 0.01 deg apart, one column per beam's width: none empty", heard);
+    return within(1e-3, worstBeam(heard, config, planeTruth({1, 0, 0}, 10)),
+                  "1000 beams 1 deg wide and 0.01 deg apart, one column per beam's width: none empty", heard);
 }
 
 Outcome thinAperture() {
@@ -111,13 +121,15 @@ Outcome oneRow() {
     sonar::SonarConfig config = fan(20, 10, 20, 15);
     setSamples(config, 1, 1);
     const Probe heard = probe(config, lookingAt(sceneOf({facingWall(10)})));
-    return within(0.01, worstBeam(heard, config, planeTruth({1, 0, 0}, 10)), "10 deg on a wall by one row and one column per beam", heard);
+    return within(0.01, worstBeam(heard, config, planeTruth({1, 0, 0}, 10)),
+                  "10 deg on a wall by one row and one column per beam", heard);
 }
 
 Outcome headSteps() {
     using Config = sonar::ScanningSonarConfig;
-    Outcome outcome = refused<Config>("", [](Config& c) { c.head.step_deg = 0; }, [](Config& c) { c.head.step_deg = -1; },
-                                      [](Config& c) { c.head.step_deg = 361; }, [](Config& c) { c.head.step_deg = NAN; });
+    Outcome outcome = refused<Config>(
+        "", [](Config& c) { c.head.step_deg = 0; }, [](Config& c) { c.head.step_deg = -1; },
+        [](Config& c) { c.head.step_deg = 361; }, [](Config& c) { c.head.step_deg = NAN; });
     sonar::HeadScan scan({.left_deg = 45, .right_deg = -45, .step_deg = 0.9, .continuous = {}, .speed_deg_per_s = {}});
     double before = INFINITY;
     for (int ping = 0; ping < 1000; ++ping, scan.advance()) {
@@ -125,7 +137,9 @@ Outcome headSteps() {
         outcome.deviation += bearing == before || bearing > 45 || bearing < -45;
         before = bearing;
     }
-    return none(outcome.deviation, "steps 0, -1, 361 and NaN refused; 1000 pings over 90 deg and back: no bearing twice in a row, none outside");
+    return none(
+        outcome.deviation,
+        "steps 0, -1, 361 and NaN refused; 1000 pings over 90 deg and back: no bearing twice in a row, none outside");
 }
 
 }  // namespace
@@ -133,16 +147,20 @@ Outcome headSteps() {
 std::vector<StabilityCase> sensorCases() {
     std::vector<StabilityCase> cases;
     for (const double fov : {179.0, 180.0, 359.9, 360.0})
-        cases.push_back({21, fmt::format("Fan of {} deg", fov), "each beam as in a sonar of ten beams, to 1e-3", [fov] { return wideFan(fov); }});
+        cases.push_back({21, fmt::format("Fan of {} deg", fov), "each beam as in a sonar of ten beams, to 1e-3",
+                         [fov] { return wideFan(fov); }});
     for (const double fov : {180.0, 360.0})
-        cases.push_back({21, fmt::format("Seams of a fan of {} deg", fov), "none above 1e-3", [fov] { return seams(fov); }});
-    cases.insert(cases.end(), {{22, "Field of view 0 or negative, aperture of 90 deg and more", "refused", badAngles},
-                               {23, "One beam", "to 1e-3 of the closed form", [] { return beamsBeforeAWall(1, 20); }},
-                               {23, "4096 beams", "to 1e-3 of the closed form", [] { return beamsBeforeAWall(4096, 120); }},
-                               {23, "More beams than columns", "no beam empty: each to 1e-3 of the closed form", moreBeamsThanColumns},
-                               {30, "Vertical aperture of 0.01 deg", "to 1e-3 of the closed form", thinAperture},
-                               {30, "One image row", "to 1 % of the closed form", oneRow},
-                               {52, "Angular step 0 or above 360 deg; turns of a sector scan", "refused; no doubled ping", headSteps}});
+        cases.push_back(
+            {21, fmt::format("Seams of a fan of {} deg", fov), "none above 1e-3", [fov] { return seams(fov); }});
+    cases.insert(
+        cases.end(),
+        {{22, "Field of view 0 or negative, aperture of 90 deg and more", "refused", badAngles},
+         {23, "One beam", "to 1e-3 of the closed form", [] { return beamsBeforeAWall(1, 20); }},
+         {23, "4096 beams", "to 1e-3 of the closed form", [] { return beamsBeforeAWall(4096, 120); }},
+         {23, "More beams than columns", "no beam empty: each to 1e-3 of the closed form", moreBeamsThanColumns},
+         {30, "Vertical aperture of 0.01 deg", "to 1e-3 of the closed form", thinAperture},
+         {30, "One image row", "to 1 % of the closed form", oneRow},
+         {52, "Angular step 0 or above 360 deg; turns of a sector scan", "refused; no doubled ping", headSteps}});
     return cases;
 }
 

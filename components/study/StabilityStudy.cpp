@@ -18,8 +18,10 @@ std::string quoted(const std::string& text) {
     std::string result = "\"";
     for (const char c : text) {
         if (c == '"' || c == '\\') result += '\\';
-        if (static_cast<unsigned char>(c) < 0x20) result += fmt::format("\\u{:04x}", static_cast<int>(c));
-        else result += c;
+        if (static_cast<unsigned char>(c) < 0x20)
+            result += fmt::format("\\u{:04x}", static_cast<int>(c));
+        else
+            result += c;
     }
     return result + '"';
 }
@@ -34,9 +36,10 @@ std::string json(const StabilityRow& row) {
     std::string conditions;
     for (const auto& [name, value] : row.outcome.conditions)
         conditions += fmt::format("{}{}: {}", conditions.empty() ? "" : ", ", quoted(name), number(value));
-    return fmt::format(R"({{"case": {}, "conditions": {{{}}}, "expected": {}, "got": {}, "deviation": {}, "verdict": {}}})",
-                       quoted(title(row)), conditions, quoted(row.expected), quoted(row.outcome.got), number(row.outcome.deviation),
-                       quoted(nameOf(row.outcome.verdict)));
+    return fmt::format(
+        R"({{"case": {}, "conditions": {{{}}}, "expected": {}, "got": {}, "deviation": {}, "verdict": {}}})",
+        quoted(title(row)), conditions, quoted(row.expected), quoted(row.outcome.got), number(row.outcome.deviation),
+        quoted(nameOf(row.outcome.verdict)));
 }
 
 /** A cell of a markdown table. */
@@ -51,12 +54,14 @@ std::string markdown(const StabilityRow& row) {
     for (const auto& [name, value] : row.outcome.conditions)
         conditions += fmt::format("{}{} {:.4g}", conditions.empty() ? "" : ", ", name, value);
     const bool judged = row.outcome.verdict != Verdict::Later;
-    return fmt::format("| {} | {} | {} | {} | {} | {} |\n", cell(title(row)), cell(conditions), cell(row.expected), cell(row.outcome.got),
-                       judged ? fmt::format("{:.2g}", row.outcome.deviation) : "", nameOf(row.outcome.verdict));
+    return fmt::format("| {} | {} | {} | {} | {} | {} |\n", cell(title(row)), cell(conditions), cell(row.expected),
+                       cell(row.outcome.got), judged ? fmt::format("{:.2g}", row.outcome.deviation) : "",
+                       nameOf(row.outcome.verdict));
 }
 
 size_t count(const std::vector<StabilityRow>& rows, Verdict verdict) {
-    return static_cast<size_t>(std::ranges::count_if(rows, [=](const StabilityRow& row) { return row.outcome.verdict == verdict; }));
+    return static_cast<size_t>(
+        std::ranges::count_if(rows, [=](const StabilityRow& row) { return row.outcome.verdict == verdict; }));
 }
 
 void write(const std::filesystem::path& file, const std::string& text) {
@@ -68,16 +73,20 @@ void write(const std::filesystem::path& file, const std::string& text) {
 constexpr const char* legend =
     "Condition numbers: `kappa`, the most bins that one pixel covers; `range_ratio`, farthest range over nearest; "
     "`attenuation_db`, two-way absorption from the nearest to the farthest range; `offset_ratio`, distance from the "
-    "world's origin in bins; `strength_db`, loudest material over the mean; `samples_per_bin`, pixels per occupied bin. "
+    "world's origin in bins; `strength_db`, loudest material over the mean; `samples_per_bin`, pixels per occupied "
+    "bin. "
     "Deviations are relative unless a unit is named; `later` waits for an effect that is not built yet.\n\n";
 
 }  // namespace
 
-const char* nameOf(Verdict verdict) { return verdict == Verdict::Pass ? "pass" : verdict == Verdict::Fail ? "fail" : "later"; }
+const char* nameOf(Verdict verdict) {
+    return verdict == Verdict::Pass ? "pass" : verdict == Verdict::Fail ? "fail" : "later";
+}
 
 std::vector<StabilityCase> stabilityCases() {
     std::vector<StabilityCase> all;
-    for (const auto& group : {precisionCases, geometryCases, sceneFileCases, sensorCases, rangeCases, levelCases, sumCases, laterCases})
+    for (const auto& group :
+         {precisionCases, geometryCases, sceneFileCases, sensorCases, rangeCases, levelCases, sumCases, laterCases})
         for (StabilityCase& added : group()) all.push_back(std::move(added));
     return all;
 }
@@ -90,7 +99,8 @@ StabilityRow runCase(const StabilityCase& c) {
     }
 }
 
-std::vector<StabilityRow> studyStability(std::vector<StabilityCase> cases, const std::function<void(const StabilityRow&)>& done) {
+std::vector<StabilityRow> studyStability(std::vector<StabilityCase> cases,
+                                         const std::function<void(const StabilityRow&)>& done) {
     std::ranges::stable_sort(cases, {}, &StabilityCase::number);
     std::vector<StabilityRow> rows;
     for (const StabilityCase& c : cases) done(rows.emplace_back(runCase(c)));
@@ -98,8 +108,9 @@ std::vector<StabilityRow> studyStability(std::vector<StabilityCase> cases, const
 }
 
 void writeStability(const std::vector<StabilityRow>& rows, const std::filesystem::path& folder) {
-    std::string sheet = fmt::format("# Stiff and extreme cases\n\n{} pass, {} fail, {} later.\n\n", count(rows, Verdict::Pass),
-                                    count(rows, Verdict::Fail), count(rows, Verdict::Later));
+    std::string sheet =
+        fmt::format("# Stiff and extreme cases\n\n{} pass, {} fail, {} later.\n\n", count(rows, Verdict::Pass),
+                    count(rows, Verdict::Fail), count(rows, Verdict::Later));
     sheet += legend;
     sheet += "| case | conditions | expected | got | deviation | verdict |\n|---|---|---|---|---|---|\n";
     std::string items;

@@ -42,7 +42,8 @@ struct StabilityRow {
 /** Runs a case; one that throws has failed. */
 StabilityRow runCase(const StabilityCase& stability_case);
 /** Runs all of them in the order of their numbers; `done` hears of each. */
-std::vector<StabilityRow> studyStability(std::vector<StabilityCase> cases, const std::function<void(const StabilityRow&)>& done);
+std::vector<StabilityRow> studyStability(std::vector<StabilityCase> cases,
+                                         const std::function<void(const StabilityRow&)>& done);
 
 /** Writes `stability.md`, a sheet to read, and `stability.json`, [{case, conditions: {}, expected, got, deviation,
  *  verdict}], into a folder that exists. Throws std::runtime_error when they cannot be written. */

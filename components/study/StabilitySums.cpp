@@ -21,7 +21,8 @@ double seconds() { return std::chrono::duration<double>(std::chrono::steady_cloc
 
 /** Ground, two balls and a wall: silhouettes, grazing, and several parts in a beam. */
 types::GeometryPtr cluttered() {
-    return sceneOf({levelGround(-4), sphere(1.5, 48), sphere(0.7, 24), facingWall(18)}, {{0, 0, 0}, {9, 3, -1}, {6, -2, -2}, {0, 0, 0}});
+    return sceneOf({levelGround(-4), sphere(1.5, 48), sphere(0.7, 24), facingWall(18)},
+                   {{0, 0, 0}, {9, 3, -1}, {6, -2, -2}, {0, 0, 0}});
 }
 
 SonarConfig wideFan(sonar::Deposit where = sonar::Deposit::Auto, sonar::Model model = sonar::Model::Physical) {
@@ -36,7 +37,8 @@ Outcome manySamplesInABin() {
     config.bin_count = 1;
     setSamples(config, 4000, 2500);
     const Probe heard = probe(config, lookingAt(sceneOf({facingWall(10)})));
-    return within(1e-6, worstBeam(heard, config, planeTruth({1, 0, 0}, 10)), "1e7 pixels of a wall in one bin, against the closed form", heard);
+    return within(1e-6, worstBeam(heard, config, planeTruth({1, 0, 0}, 10)),
+                  "1e7 pixels of a wall in one bin, against the closed form", heard);
 }
 
 Outcome loudSamplesInABin() {
@@ -51,7 +53,8 @@ Outcome loudSamplesInABin() {
 }
 
 /** Pings of one kind that are not bit for bit the first. */
-template <class Kinds, class Ping> int unlike(const Kinds& kinds, const Ping& ping) {
+template <class Kinds, class Ping>
+int unlike(const Kinds& kinds, const Ping& ping) {
     int count = 0;
     for (const auto model : {sonar::Model::Physical, sonar::Model::Cerqueira2017}) {
         const auto first = ping(model, *std::begin(kinds));
@@ -63,8 +66,10 @@ template <class Kinds, class Ping> int unlike(const Kinds& kinds, const Ping& pi
 Outcome twoRuns() {
     int different = 0;
     for (const auto where : {sonar::Deposit::Cpu, sonar::Deposit::Gpu})
-        different += unlike(std::array{1, 2, 3}, [&](auto model, int) { return probe(wideFan(where, model), lookingAt(cluttered())).ping; });
-    return within(0, different, "three runs by processor and by compute shader, both models: bit-identical each", probe(wideFan(), lookingAt(cluttered())));
+        different += unlike(std::array{1, 2, 3},
+                            [&](auto model, int) { return probe(wideFan(where, model), lookingAt(cluttered())).ping; });
+    return within(0, different, "three runs by processor and by compute shader, both models: bit-identical each",
+                  probe(wideFan(), lookingAt(cluttered())));
 }
 
 Outcome anyNumberOfThreads() {
@@ -73,7 +78,8 @@ Outcome anyNumberOfThreads() {
         config.threads = threads;
         return probe(config, lookingAt(cluttered())).ping;
     });
-    return within(0, different, "1, 2, 3, 5, 8 and 16 threads, both models: bit-identical", probe(wideFan(), lookingAt(cluttered())));
+    return within(0, different, "1, 2, 3, 5, 8 and 16 threads, both models: bit-identical",
+                  probe(wideFan(), lookingAt(cluttered())));
 }
 
 /** Relative difference of the bins that two pings share, without the edges of echoes. */
@@ -124,7 +130,10 @@ Outcome resizedBetweenPings() {
     renderer.render(scene, ping);
     renderer.render(away, ping);
     stale += std::ranges::any_of(ping.bins, [](float bin) { return bin != 0; });
-    return within(0, stale, "one sample through sonars of 61 x 300 and 5 x 120 bins, and out of the scene: nothing of the ping before", probe(small, scene));
+    return within(
+        0, stale,
+        "one sample through sonars of 61 x 300 and 5 x 120 bins, and out of the scene: nothing of the ping before",
+        probe(small, scene));
 }
 
 Outcome noDevice() {
@@ -156,7 +165,9 @@ Outcome manyTriangles() {
     heard.conditions.push_back({"triangles", static_cast<double>(geometry->triangleCount())});
     heard.conditions.push_back({"seconds", taken});
     const bool right = heard.firstReturn(0) >= 89 && heard.firstReturn(0) <= 90;
-    return within(60, right ? taken : INFINITY, "500 balls in one place on one pixel; deviation is the time of set-up and ping, at most 60 s [s]", heard);
+    return within(60, right ? taken : INFINITY,
+                  "500 balls in one place on one pixel; deviation is the time of set-up and ping, at most 60 s [s]",
+                  heard);
 }
 
 Outcome largeImage() {
@@ -187,27 +198,34 @@ Outcome impossibleImage() {
 }  // namespace
 
 std::vector<StabilityCase> sumCases() {
-    return {{41, "1e7 samples in one bin", "to 1e-6 of the closed form", manySamplesInABin},
-            {42, "Order of sums", "two runs are bit-identical", twoRuns},
-            {43, "Number of threads", "bit-identical", anyNumberOfThreads},
-            {44, "Software and graphics card, processor and shader", "within 1e-4 but for the edges of echoes", devices},
-            {53, "Beams, bins and range changed between pings", "no stale data", resizedBetweenPings},
-            {54, "No such graphics device", "a clear error (software instead: case 44)", noDevice},
-            {55, "1e8 triangles on one pixel", "time-bounded", manyTriangles},
-            {55, "One triangle, 16k rows", "to 1e-4 of the closed form", largeImage},
-            {57, "An image larger than any device's", "a clear error", impossibleImage},
-            {58, "2e6 samples of +20 dB in one bin", "to 1e-6 of the closed form: no wrap of the sums", loudSamplesInABin}};
+    return {
+        {41, "1e7 samples in one bin", "to 1e-6 of the closed form", manySamplesInABin},
+        {42, "Order of sums", "two runs are bit-identical", twoRuns},
+        {43, "Number of threads", "bit-identical", anyNumberOfThreads},
+        {44, "Software and graphics card, processor and shader", "within 1e-4 but for the edges of echoes", devices},
+        {53, "Beams, bins and range changed between pings", "no stale data", resizedBetweenPings},
+        {54, "No such graphics device", "a clear error (software instead: case 44)", noDevice},
+        {55, "1e8 triangles on one pixel", "time-bounded", manyTriangles},
+        {55, "One triangle, 16k rows", "to 1e-4 of the closed form", largeImage},
+        {57, "An image larger than any device's", "a clear error", impossibleImage},
+        {58, "2e6 samples of +20 dB in one bin", "to 1e-6 of the closed form: no wrap of the sums", loudSamplesInABin}};
 }
 
 std::vector<StabilityCase> laterCases() {
     const auto waits = [](int number, const char* name, const char* expected, const char* effect) {
-        return StabilityCase{number, name, expected, [effect] { return Outcome{{}, std::string("waits for: ") + effect, 0, Verdict::Later}; }};
+        return StabilityCase{number, name, expected, [effect] {
+                                 return Outcome{{}, std::string("waits for: ") + effect, 0, Verdict::Later};
+                             }};
     };
-    return {waits(31, "Beam pattern narrower than a column", "importance sampling or an error", "beam patterns"),
-            waits(38, "Specular lobe of a mirror", "finite; level independent of resolution to 1 dB", "the specular lobe"),
-            waits(39, "+60 dB glint beside a bottom of -80 dB", "both to 1 %", "the specular lobe; until then no material is above +20 dB"),
-            waits(48, "K statistics of shape 1e-3 and 1e6", "finite with an extreme tail; exponential", "K-distributed speckle"),
-            waits(59, "Range point-spread narrower than a bin and wider than the range", "energy kept", "range point-spread")};
+    return {
+        waits(31, "Beam pattern narrower than a column", "importance sampling or an error", "beam patterns"),
+        waits(38, "Specular lobe of a mirror", "finite; level independent of resolution to 1 dB", "the specular lobe"),
+        waits(39, "+60 dB glint beside a bottom of -80 dB", "both to 1 %",
+              "the specular lobe; until then no material is above +20 dB"),
+        waits(48, "K statistics of shape 1e-3 and 1e6", "finite with an extreme tail; exponential",
+              "K-distributed speckle"),
+        waits(59, "Range point-spread narrower than a bin and wider than the range", "energy kept",
+              "range point-spread")};
 }
 
 }  // namespace insonify::study

@@ -63,8 +63,8 @@ StudyScene oneSphere() {
 
 StudyScene twoSpheres() {
     const double up = radians(10), x = 10 * std::cos(up), z = 10 * std::sin(up);
-    return {"two_spheres", "two spheres of 1 m radius at 10 m, one above the other, in one beam", sonarOf(16, 36, 1, 12),
-            snapshotOf(sceneOf({sphere(1, 256), sphere(1, 256)}, {{x, 0, z}, {x, 0, -z}})),
+    return {"two_spheres", "two spheres of 1 m radius at 10 m, one above the other, in one beam",
+            sonarOf(16, 36, 1, 12), snapshotOf(sceneOf({sphere(1, 256), sphere(1, 256)}, {{x, 0, z}, {x, 0, -z}})),
             sum({sphereTruth(1, 10), sphereTruth(1, 10)})};
 }
 
@@ -78,17 +78,23 @@ StudyScene shadowScreen() {
     const auto geometry = sceneOf({ground(), quad({15, -200, -5}, {0, 400, 0}, {0, 0, 2})});
     return {"shadow_screen", "a screen 2 m high on a flat bottom 5 m below, 15 m ahead: echo and shadow",
             sonarOf(60, 60, 32, 50), snapshotOf(geometry),
-            sum({planeTruth({0, 0, -1}, height, before), planeTruth({1, 0, 0}, ahead, screen), planeTruth({0, 0, -1}, height, behind)})};
+            sum({planeTruth({0, 0, -1}, height, before), planeTruth({1, 0, 0}, ahead, screen),
+                 planeTruth({0, 0, -1}, height, behind)})};
 }
 
 }  // namespace
 
 std::vector<StudyScene> closedFormScenes() {
-    return {flatBottom("flat_bottom", "a flat bottom 5 m below a level fan, 130 x 40 deg, from 15 m on", 15, 0, 0),
-            flatBottom("flat_bottom_edge", "the same with the bins of the aperture's edge", 0, 0, 0),
-            flatBottom("flat_bottom_pitched", "the same bottom, the sonar pitched down by 15 deg", 0, radians(15), 0),
-            flatBottom("tilted_plane", "the same bottom, pitched by 20 and rolled by 25 deg", 0, radians(20), radians(25)),
-            wallAhead(), facingDisc(), oneSphere(), twoSpheres(), shadowScreen()};
+    return {
+        flatBottom("flat_bottom", "a flat bottom 5 m below a level fan, 130 x 40 deg, from 15 m on", 15, 0, 0),
+        flatBottom("flat_bottom_edge", "the same with the bins of the aperture's edge", 0, 0, 0),
+        flatBottom("flat_bottom_pitched", "the same bottom, the sonar pitched down by 15 deg", 0, radians(15), 0),
+        flatBottom("tilted_plane", "the same bottom, pitched by 20 and rolled by 25 deg", 0, radians(20), radians(25)),
+        wallAhead(),
+        facingDisc(),
+        oneSphere(),
+        twoSpheres(),
+        shadowScreen()};
 }
 
 std::vector<double> trueEnergies(const StudyScene& scene) {
@@ -97,7 +103,10 @@ std::vector<double> trueEnergies(const StudyScene& scene) {
     std::vector<double> energies;
     for (const sonar::Beam& beam : sonar::makeBeams(scene.config))
         for (int k = 0; k < grid.bin_count; ++k)
-            energies.push_back(grid.edge(k + 1) <= grid.range_min ? 0 : scene.truth({beam.low, beam.high, half_height}, std::max(grid.edge(k), grid.range_min), grid.edge(k + 1)));
+            energies.push_back(grid.edge(k + 1) <= grid.range_min
+                                   ? 0
+                                   : scene.truth({beam.low, beam.high, half_height},
+                                                 std::max(grid.edge(k), grid.range_min), grid.edge(k + 1)));
     return energies;
 }
 

@@ -14,8 +14,8 @@ struct StudyScene {
     std::string doc;
     sonar::SonarConfig config;  ///< Intensities without gain; its quality is what a study varies.
     types::Snapshot snapshot;
-    Truth truth;                ///< Empty: the reference has to be computed.
-    double range_from = 0;      ///< Bins that begin nearer are not compared: the aperture's edge lies there [m].
+    Truth truth;            ///< Empty: the reference has to be computed.
+    double range_from = 0;  ///< Bins that begin nearer are not compared: the aperture's edge lies there [m].
 };
 
 /** The scenes with a closed form: flat_bottom, flat_bottom_edge (its aperture's edge included), flat_bottom_pitched,

@@ -15,7 +15,8 @@ constexpr std::array<std::array<double, 2>, 4> gauss = {{{0.1834346424956498, 0.
                                                          {0.7966664774136267, 0.2223810344533745},
                                                          {0.9602898564975363, 0.1012285362903763}}};
 
-template <class F> double integral(double from, double to, const F& f) {
+template <class F>
+double integral(double from, double to, const F& f) {
     const double middle = 0.5 * (from + to), half = 0.5 * (to - from);
     double total = 0;
     for (const auto& [node, weight] : gauss) total += weight * (f(middle - half * node) + f(middle + half * node));
@@ -23,7 +24,8 @@ template <class F> double integral(double from, double to, const F& f) {
 }
 
 /** Halves the stretch until that changes nothing: apertures cut corners into what is integrated. */
-template <class F> double adaptive(double from, double to, const F& f, double whole, int depth) {
+template <class F>
+double adaptive(double from, double to, const F& f, double whole, int depth) {
     constexpr double tolerance = 1e-8;
     constexpr int least_depth = 2, most_depth = 24;
     const double middle = 0.5 * (from + to), low = integral(from, middle, f), high = integral(middle, to, f);
@@ -70,7 +72,8 @@ Truth planeTruth(glm::dvec3 normal, double distance, Window window) {
             if (window) seen = both(seen, window(azimuth));
             return profileEcho(Profile(normal, distance, azimuth), distance, seen, r1, r2);
         };
-        return adaptive(beam.azimuth_low, beam.azimuth_high, per_azimuth, integral(beam.azimuth_low, beam.azimuth_high, per_azimuth), 0);
+        return adaptive(beam.azimuth_low, beam.azimuth_high, per_azimuth,
+                        integral(beam.azimuth_low, beam.azimuth_high, per_azimuth), 0);
     };
 }
 

@@ -21,8 +21,8 @@ struct Elevations {
 using Window = std::function<Elevations(double azimuth)>;
 
 /** Echo of the plane normal.p = distance (unit normal away from the sonar, sonar axes, distance above 0) of Lambert
- *  parameter 1. physics.md 1.2 (1) with cos(theta) = distance / r: over a plane the integrand depends on direction alone,
- *  and each bin is, at each azimuth, two stretches of elevation. */
+ *  parameter 1. physics.md 1.2 (1) with cos(theta) = distance / r: over a plane the integrand depends on direction
+ * alone, and each bin is, at each azimuth, two stretches of elevation. */
 Truth planeTruth(glm::dvec3 normal, double distance, Window window = {});
 
 /** The echo of a sphere wholly inside one beam: physics.md 3.5, item 4. */

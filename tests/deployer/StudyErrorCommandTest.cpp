@@ -20,13 +20,16 @@ std::vector<std::string> linesOf(const fs::path& file) {
 
 TEST(StudyErrorCommandTest, WritesTableJsonDiagramAndPage) {
     const WallFolder folder;
-    const Outcome outcome = callInsonify(folder, {"study", "error", "--scene", "flat_bottom", "--levels", "2", "--pings", "2", "--out", "report"});
+    const Outcome outcome = callInsonify(
+        folder, {"study", "error", "--scene", "flat_bottom", "--levels", "2", "--pings", "2", "--out", "report"});
     ASSERT_THAT(outcome.code, testing::AnyOf(0, 1)) << outcome.err;  // verdicts on time may fail on a busy machine
     EXPECT_THAT(outcome.out, HasSubstr("flat_bottom: slope of footprints over samples"));
     const auto lines = linesOf(folder / "report/error_time.csv");
     ASSERT_GE(lines.size(), 11u);
-    EXPECT_EQ(lines[0], "scene,method,rows,columns_per_beam,samples_per_pixel,slabs,rel_l2,rel_l2_tvg,db_rmse,db_p95,missing_bins,ghost_bins,"
-                        "first_return_bins,shadow_bins,energy_bias,ripple,kappa_max,hash,median_ms,p99_ms,cpu_ms");
+    EXPECT_EQ(lines[0],
+              "scene,method,rows,columns_per_beam,samples_per_pixel,slabs,rel_l2,rel_l2_tvg,db_rmse,db_p95,missing_"
+              "bins,ghost_bins,"
+              "first_return_bins,shadow_bins,energy_bias,ripple,kappa_max,hash,median_ms,p99_ms,cpu_ms");
     for (const char* method : {"footprint", "nearest", "nearest_jitter", "published", "embree"})
         EXPECT_THAT(lines, testing::Contains(testing::StartsWith(std::string("flat_bottom,") + method + ",64,1,1,")));
     const json report = json::parse(readFile(folder / "report/error_time.json"));
@@ -39,7 +42,8 @@ TEST(StudyErrorCommandTest, WritesTableJsonDiagramAndPage) {
 
 TEST(StudyErrorCommandTest, ADeploymentIsStudiedAgainstRays) {
     const WallFolder folder;
-    const Outcome outcome = callInsonify(folder, {"study", "error", "wall.yml", "--levels", "2", "--pings", "1", "--out", "report"});
+    const Outcome outcome =
+        callInsonify(folder, {"study", "error", "wall.yml", "--levels", "2", "--pings", "1", "--out", "report"});
     ASSERT_THAT(outcome.code, testing::AnyOf(0, 1)) << outcome.err;
     const json report = json::parse(readFile(folder / "report/error_time.json"));
     ASSERT_EQ(report["references"].size(), 1u);

@@ -41,7 +41,8 @@ std::vector<double> counted(const SonarConfig& config, double height, double abs
     const int width = config.quality.columns_per_beam * config.beam_count, rows = config.quality.rows;
     const auto beams = static_cast<size_t>(config.beam_count), bins = static_cast<size_t>(config.bin_count);
     const double fov = types::radians(config.field_of_view_deg);
-    const double scale = width / 2.0 / std::tan(fov / 2), half_height = std::tan(types::radians(config.beam_height_deg) / 2);
+    const double scale = width / 2.0 / std::tan(fov / 2),
+                 half_height = std::tan(types::radians(config.beam_height_deg) / 2);
     const auto column = [&](size_t beam) {
         const double bearing = -fov / 2 + fov * static_cast<double>(beam) / static_cast<double>(beams);
         return static_cast<int>(std::round(width / 2.0 + std::tan(bearing) * scale));
@@ -64,7 +65,8 @@ std::vector<double> counted(const SonarConfig& config, double height, double abs
 
 void expectEqual(const std::vector<float>& got, const std::vector<double>& expected) {
     ASSERT_EQ(got.size(), expected.size());
-    for (size_t i = 0; i < got.size(); ++i) EXPECT_NEAR(got[i], expected[i], 1e-6) << "beam " << i / 500 << ", bin " << i % 500;
+    for (size_t i = 0; i < got.size(); ++i)
+        EXPECT_NEAR(got[i], expected[i], 1e-6) << "beam " << i / 500 << ", bin " << i % 500;
 }
 
 }  // namespace

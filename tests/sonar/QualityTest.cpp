@@ -1,10 +1,9 @@
-#include "components/sonar/Quality.hpp"
-
 #include <gmock/gmock.h>
 
 #include <cmath>
 #include <limits>
 
+#include "components/sonar/Quality.hpp"
 #include "components/sonar/SonarTask.hpp"
 #include "tests/support/Ports.hpp"
 #include "tests/support/Scenes.hpp"

@@ -82,9 +82,8 @@ TEST(SonarConfigTest, ValuesOutOfBoundsAreRefused) {
 }
 
 TEST(SonarConfigTest, WhatIsNotBuiltYetSaysSo) {
-    for (const char* yaml :
-         {"beam_pattern: {azimuth: {weighting: hann, width_deg: 1}}", "pulse: {bandwidth_khz: 20}", "volume: {}",
-          "multipath: {}"})
+    for (const char* yaml : {"beam_pattern: {azimuth: {weighting: hann, width_deg: 1}}", "pulse: {bandwidth_khz: 20}",
+                             "volume: {}", "multipath: {}"})
         EXPECT_THAT(faultsOf<SonarConfig>(yaml), ElementsAre(HasSubstr("not built yet"))) << yaml;
 }
 

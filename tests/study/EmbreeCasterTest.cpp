@@ -1,12 +1,11 @@
 // Rays and the rasteriser are two programs for one estimate: they agree far better than either with the truth.
-#include "components/study/EmbreeCaster.hpp"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
 
 #include "components/sonar/BinGrid.hpp"
 #include "components/sonar/SonarRenderer.hpp"
+#include "components/study/EmbreeCaster.hpp"
 #include "components/study/Metrics.hpp"
 #include "components/study/StudyScene.hpp"
 

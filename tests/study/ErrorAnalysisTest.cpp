@@ -1,14 +1,15 @@
-#include "components/study/ErrorAnalysis.hpp"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
+
+#include "components/study/ErrorAnalysis.hpp"
 
 namespace insonify::study {
 namespace {
 
 /** A ladder whose error falls as samples^power from `error` on, in a time proportional to samples. */
-void addLadder(ErrorResult& result, const std::string& scene, Method method, double error, double power, int levels = 4) {
+void addLadder(ErrorResult& result, const std::string& scene, Method method, double error, double power,
+               int levels = 4) {
     for (int level = 0; level < levels; ++level) {
         Measurement m{scene, method, 64 << level, 1 << level, 1, 1, {}, 0, 0, 0, 0};
         m.metrics.rel_l2 = error * std::pow(m.samples() / 64, power);
@@ -55,7 +56,8 @@ TEST(ErrorAnalysisTest, TimesAndErrorsLieOnTheLineOrBeyondItsEnd) {
 TEST(ErrorAnalysisTest, TheParetoFrontIsWhatNothingBeats) {
     const ErrorResult result = made();
     for (const Measurement& m : result.measurements)
-        EXPECT_EQ(onParetoFront(m, result), m.method == Method::Footprint || m.rows == 64) << nameOf(m.method) << m.rows;
+        EXPECT_EQ(onParetoFront(m, result), m.method == Method::Footprint || m.rows == 64)
+            << nameOf(m.method) << m.rows;
 }
 
 TEST(ErrorAnalysisTest, AClaimThatDoesNotHoldFails) {

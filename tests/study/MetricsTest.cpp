@@ -1,8 +1,8 @@
-#include "components/study/Metrics.hpp"
-
 #include <gtest/gtest.h>
 
 #include <vector>
+
+#include "components/study/Metrics.hpp"
 
 namespace insonify::study {
 namespace {
@@ -73,7 +73,8 @@ TEST(MetricsTest, BinsNearerThanTheRangeAreNotCompared) {
     Layout from = layout;
     from.range_from = 1.5;
     EXPECT_EQ(compare(got, reference, from).rel_l2, 0);
-    EXPECT_NE(compare(got, reference, from).hash, compare(like(reference), reference, from).hash) << "the hash is of all bins";
+    EXPECT_NE(compare(got, reference, from).hash, compare(like(reference), reference, from).hash)
+        << "the hash is of all bins";
 }
 
 }  // namespace

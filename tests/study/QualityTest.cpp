@@ -23,12 +23,15 @@ double achieved(const StudyScene& scene, const sonar::Quality& quality) {
     types::Sonar ping;
     renderer.render(scene.snapshot, ping);
     const sonar::BinGrid grid = sonar::makeBinGrid(config);
-    return compare(ping.bins, trueEnergies(scene), {config.beam_count, grid.bin_count, grid.bin_width, scene.range_from}).rel_l2_tvg;
+    return compare(ping.bins, trueEnergies(scene),
+                   {config.beam_count, grid.bin_count, grid.bin_width, scene.range_from})
+        .rel_l2_tvg;
 }
 
 TEST_P(QualityTest, TheTargetIsReachedAndNotWastefully) {
     const double target = 0.02;
-    const auto ladder = sonar::tryQualities(GetParam().config, GetParam().snapshot, target, std::numeric_limits<double>::infinity());
+    const auto ladder =
+        sonar::tryQualities(GetParam().config, GetParam().snapshot, target, std::numeric_limits<double>::infinity());
     const double error = achieved(GetParam(), ladder.back());
     EXPECT_LE(ladder.back().error, target);
     EXPECT_LE(error, 2 * target) << ladder.back().rows << " x " << ladder.back().columns_per_beam;

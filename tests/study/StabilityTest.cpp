@@ -38,7 +38,8 @@ class StabilityTest : public testing::TestWithParam<StabilityCase> {};
 TEST_P(StabilityTest, DoesAsExpected) {
     const StabilityRow row = runCase(GetParam());
     EXPECT_NE(row.outcome.verdict, Verdict::Fail)
-        << row.number << ". " << row.name << "\n  expected: " << row.expected << "\n  got: " << row.outcome.got << "\n  deviation: " << row.outcome.deviation;
+        << row.number << ". " << row.name << "\n  expected: " << row.expected << "\n  got: " << row.outcome.got
+        << "\n  deviation: " << row.outcome.deviation;
     EXPECT_FALSE(row.outcome.got.empty());
 }
 
@@ -52,9 +53,14 @@ TEST(StabilityStudyTest, NoneOfThe55CasesIsLeftOut) {
 
 TEST(StabilityStudyTest, ACaseThatThrowsHasFailedAndTheSheetsSaySo) {
     const std::vector<StabilityCase> cases = {
-        {7, "a \"quoted\" | case", "calm", [] { return Outcome{{{"kappa", 2.5}}, "calm", 1e-3, Verdict::Pass}; }},
+        {7, "a \"quoted\" | case", "calm",
+         [] {
+             return Outcome{{{"kappa", 2.5}}, "calm", 1e-3, Verdict::Pass};
+         }},
         {3, "storm", "calm", []() -> Outcome { throw std::runtime_error("mast lost"); }},
-        {9, "fog", "sight", [] { return Outcome{{}, "waits for: wind", 0, Verdict::Later}; }}};
+        {9, "fog", "sight", [] {
+             return Outcome{{}, "waits for: wind", 0, Verdict::Later};
+         }}};
     Folder folder;
     const std::vector<StabilityRow> rows = studyStability(cases, [](const StabilityRow&) {});
     ASSERT_EQ(rows.size(), 3u);
@@ -72,10 +78,13 @@ TEST(StabilityStudyTest, ACaseThatThrowsHasFailedAndTheSheetsSaySo) {
 ]
 )");
     EXPECT_THAT(text("stability.md"), HasSubstr("1 pass, 1 fail, 1 later"));
-    EXPECT_THAT(text("stability.md"), HasSubstr("| 7. a \"quoted\" \\| case | kappa 2.5 | calm | calm | 0.001 | pass |"));
+    EXPECT_THAT(text("stability.md"),
+                HasSubstr("| 7. a \"quoted\" \\| case | kappa 2.5 | calm | calm | 0.001 | pass |"));
 }
 
-TEST(StabilityStudyTest, ASheetThatCannotBeWrittenIsAnError) { EXPECT_THROW(writeStability({}, "/proc/nowhere"), std::runtime_error); }
+TEST(StabilityStudyTest, ASheetThatCannotBeWrittenIsAnError) {
+    EXPECT_THROW(writeStability({}, "/proc/nowhere"), std::runtime_error);
+}
 
 }  // namespace
 }  // namespace insonify::study

@@ -30,14 +30,17 @@ TEST(TruthTest, APitchedBottomFollowsTheThinBeamForm) {
     const Truth truth = planeTruth(down, 5);
     const test::Form form = test::pitchedBottom(5, pitch, half, delta, pitch);
     for (double r = 5; r < 40; r += 0.1)
-        EXPECT_NEAR(truth({-delta / 2, delta / 2, half}, r, r + 0.1), form(r, r + 0.1), 1e-5 * form(r, r + 0.1) + 1e-12) << r;
+        EXPECT_NEAR(truth({-delta / 2, delta / 2, half}, r, r + 0.1), form(r, r + 0.1), 1e-5 * form(r, r + 0.1) + 1e-12)
+            << r;
 }
 
 TEST(TruthTest, AWallFollowsTheThinBeamForm) {
     const double half = radians(20), delta = 1e-4;
     const test::Form form = test::thinBeamOnWall(10, half, delta);
     for (double r = 10; r < 12; r += 0.1)
-        EXPECT_NEAR(planeTruth({1, 0, 0}, 10)({-delta / 2, delta / 2, half}, r, r + 0.1), form(r, r + 0.1), 1e-5 * form(r, r + 0.1) + 1e-12) << r;
+        EXPECT_NEAR(planeTruth({1, 0, 0}, 10)({-delta / 2, delta / 2, half}, r, r + 0.1), form(r, r + 0.1),
+                    1e-5 * form(r, r + 0.1) + 1e-12)
+            << r;
 }
 
 TEST(TruthTest, DiscAndSphereAreThePublishedForms) {

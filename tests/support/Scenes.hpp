@@ -15,7 +15,10 @@ inline types::Mesh meshOf(std::vector<glm::vec3> positions, std::vector<uint32_t
     mesh.positions = std::move(positions);
     mesh.indices = std::move(indices);
     glm::vec3 low = mesh.positions.front(), high = low;
-    for (const glm::vec3& p : mesh.positions) { low = glm::min(low, p); high = glm::max(high, p); }
+    for (const glm::vec3& p : mesh.positions) {
+        low = glm::min(low, p);
+        high = glm::max(high, p);
+    }
     const glm::vec3 centre = (low + high) * 0.5f;
     mesh.clusters = {{0, static_cast<uint32_t>(mesh.indices.size()), 0, centre, glm::length(high - centre)}};
     return mesh;
@@ -39,7 +42,8 @@ inline types::Mesh sphere(float radius, int rings = 128) {
     for (int i = 0; i <= rings; ++i)
         for (int j = 0; j <= around; ++j) {
             const double polar = std::numbers::pi * i / rings, azimuth = 2 * std::numbers::pi * j / around;
-            positions.push_back(radius * glm::vec3(std::sin(polar) * std::cos(azimuth), std::sin(polar) * std::sin(azimuth), std::cos(polar)));
+            positions.push_back(radius * glm::vec3(std::sin(polar) * std::cos(azimuth),
+                                                   std::sin(polar) * std::sin(azimuth), std::cos(polar)));
         }
     const auto at = [&](int i, int j) { return static_cast<uint32_t>(i * (around + 1) + j); };
     for (int i = 0; i < rings; ++i)
@@ -66,7 +70,8 @@ inline types::Mesh disc(double distance, double radius) {
 inline types::Mesh wall(float distance) { return quad({distance, -100, -100}, {0, 200, 0}, {0, 0, 200}); }
 
 /** One object for each mesh, at `positions` (or the origin), all of one material of lambert_db `mu_db`. */
-inline types::GeometryPtr sceneOf(std::vector<types::Mesh> meshes, float mu_db = 0, std::vector<glm::dvec3> positions = {}) {
+inline types::GeometryPtr sceneOf(std::vector<types::Mesh> meshes, float mu_db = 0,
+                                  std::vector<glm::dvec3> positions = {}) {
     auto geometry = std::make_shared<types::Geometry>();
     types::Material material;
     material.lambert_db = mu_db;
@@ -82,11 +87,13 @@ inline types::GeometryPtr sceneOf(std::vector<types::Mesh> meshes, float mu_db =
 }
 
 /** A sonar at `position`, turned by yaw, pitch, roll [rad] (R = Rz Ry Rx). */
-inline types::Snapshot snapshotOf(types::GeometryPtr geometry, glm::dvec3 position = {}, double yaw = 0, double pitch = 0, double roll = 0) {
+inline types::Snapshot snapshotOf(types::GeometryPtr geometry, glm::dvec3 position = {}, double yaw = 0,
+                                  double pitch = 0, double roll = 0) {
     types::Snapshot snapshot;
     snapshot.time = {1'000'000};
     snapshot.sonar.position = position;
-    snapshot.sonar.orientation = glm::angleAxis(yaw, glm::dvec3(0, 0, 1)) * glm::angleAxis(pitch, glm::dvec3(0, 1, 0)) * glm::angleAxis(roll, glm::dvec3(1, 0, 0));
+    snapshot.sonar.orientation = glm::angleAxis(yaw, glm::dvec3(0, 0, 1)) * glm::angleAxis(pitch, glm::dvec3(0, 1, 0)) *
+                                 glm::angleAxis(roll, glm::dvec3(1, 0, 0));
     snapshot.geometry = std::move(geometry);
     return snapshot;
 }

@@ -28,7 +28,8 @@ TEST(SonarTest, BinsStartAtOneWayTimeTimesSpeed) {
 }
 
 TEST(ConfigErrorTest, TellsEveryPlaceAndFault) {
-    const ConfigError error({{"a.yml", 3, 7, "tasks.sonar.range", "is -1, must be above 0"}, {"", 0, 0, "", "no tasks"}});
+    const ConfigError error(
+        {{"a.yml", 3, 7, "tasks.sonar.range", "is -1, must be above 0"}, {"", 0, 0, "", "no tasks"}});
     EXPECT_STREQ(error.what(), "a.yml:3:7: tasks.sonar.range: is -1, must be above 0\nno tasks");
 }
 
