@@ -21,7 +21,7 @@ double binEdge(uint k) { return edges[k]; }
 
 // The order of additions does not matter: words are integers, and every wrap of the low word carries once.
 void addFixed(uint cell, double amount) {
-    double quanta = floor(min(max(amount, 0.0), 1048576.0) * 1099511627776.0 + 0.5);
+    double quanta = floor(min(amount, 1048576.0) * 1099511627776.0 + 0.5);
     uint high = uint(quanta / 4294967296.0);
     uint low = uint(quanta - double(high) * 4294967296.0);
     uint before = atomicAdd(sums[cell].x, low);

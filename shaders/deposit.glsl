@@ -52,7 +52,7 @@ double trapezoidShare(Footprint cell, double t) {
 
 // `strength_range` = strength times slant range [m].
 void depositCell(Footprint cell, uint beam, double strength_range) {
-    if (!(cell.near_end > cell.far_end)) return;
+    if (!(cell.near_end > cell.far_end && strength_range >= 0.0)) return;  // neither of which NaN is
     uint bin = min(uint(1.0 / (cell.near_end * bin_width)), bin_count - 1u);
     while (bin > 0u && binEdge(bin) < cell.near_end) --bin;
     while (binEdge(bin + 1u) >= cell.near_end) ++bin;

@@ -33,7 +33,7 @@ struct Bins {
     double bin_width, attenuation;
     double binEdge(uint k) const { return edges[k]; }
     static uint64_t quanta(double amount) {  // by way of a signed number, for which there is an instruction
-        return static_cast<uint64_t>(static_cast<int64_t>(min(max(amount, 0.0), 1048576.0) * quanta_per_unit + 0.5));
+        return static_cast<uint64_t>(static_cast<int64_t>(min(amount, 1048576.0) * quanta_per_unit + 0.5));
     }
 };
 
@@ -242,7 +242,7 @@ private:
 
 }  // namespace
 
-void deposit(const SlabPart& part, uint64_t* sums) {
+INSONIFY_VECTORISED __attribute__((flatten)) void deposit(const SlabPart& part, uint64_t* sums) {
     const BinGrid& grid = part.setup.bins;
     const Bins bins{part.edges.data(), sums, static_cast<uint>(grid.bin_count), grid.bin_width, part.setup.attenuation};
     if (part.setup.published)
