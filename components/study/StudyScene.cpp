@@ -5,6 +5,7 @@
 
 #include "components/sonar/BeamFan.hpp"
 #include "components/sonar/BinGrid.hpp"
+#include "components/study/Probe.hpp"
 #include "components/study/Shapes.hpp"
 #include "types/Angle.hpp"
 
@@ -13,18 +14,6 @@ namespace {
 
 using types::radians;
 
-/** Bins of 0.1 m that are whole microseconds at 1000 m/s. */
-sonar::SonarConfig sonarOf(double fov_deg, double height_deg, int beams, double range) {
-    sonar::SonarConfig config;
-    config.speed_of_sound = 1000;
-    config.range = range;
-    config.bin_count = static_cast<int>(std::lround(range / 0.1));
-    config.beam_count = beams;
-    config.field_of_view_deg = fov_deg;
-    config.beam_height_deg = height_deg;
-    return config;
-}
-
 types::Snapshot snapshotOf(types::GeometryPtr geometry, double pitch = 0, double roll = 0) {
     types::Snapshot snapshot;
     snapshot.geometry = std::move(geometry);
@@ -32,39 +21,36 @@ types::Snapshot snapshotOf(types::GeometryPtr geometry, double pitch = 0, double
     return snapshot;
 }
 
-types::Mesh ground() { return quad({-500, -500, -5}, {1000, 0, 0}, {0, 1000, 0}); }
-types::Mesh wall(float distance) { return quad({distance, -200, -200}, {0, 400, 0}, {0, 0, 400}); }
-
 /** Down, in the axes of a sonar that is pitched down and then rolled to starboard. */
 glm::dvec3 downOf(const types::Snapshot& snapshot) {
     return glm::conjugate(snapshot.sonar.orientation) * glm::dvec3(0, 0, -1);
 }
 
 StudyScene flatBottom(const std::string& name, const std::string& doc, double range_from, double pitch, double roll) {
-    StudyScene scene{name, doc, sonarOf(130, 40, 64, 50), snapshotOf(sceneOf({ground()}), pitch, roll), {}, range_from};
+    StudyScene scene{name, doc, fan(130, 40, 64, 50), snapshotOf(sceneOf({levelGround(-5)}), pitch, roll), {}, range_from};
     scene.truth = planeTruth(downOf(scene.snapshot), 5);
     return scene;
 }
 
 StudyScene wallAhead() {
-    return {"wall", "a wall 10 m ahead, 60 x 40 deg", sonarOf(60, 40, 32, 15), snapshotOf(sceneOf({wall(10)})),
+    return {"wall", "a wall 10 m ahead, 60 x 40 deg", fan(60, 40, 32, 15), snapshotOf(sceneOf({facingWall(10)})),
             planeTruth({1, 0, 0}, 10)};
 }
 
 StudyScene facingDisc() {
-    return {"facing_disc", "a disc of 2.9 m radius, 10 m ahead, in one beam", sonarOf(40, 40, 1, 12),
+    return {"facing_disc", "a disc of 2.9 m radius, 10 m ahead, in one beam", fan(40, 40, 1, 12),
             snapshotOf(sceneOf({disc(10, 2.9, 2048)})), discTruth(10, 2.9)};
 }
 
 StudyScene oneSphere() {
-    return {"sphere", "a sphere of 1 m radius, 10 m ahead, in one beam", sonarOf(16, 16, 1, 12),
+    return {"sphere", "a sphere of 1 m radius, 10 m ahead, in one beam", fan(16, 16, 1, 12),
             snapshotOf(sceneOf({sphere(1, 256)}, {{10, 0, 0}})), sphereTruth(1, 10)};
 }
 
 StudyScene twoSpheres() {
     const double up = radians(10), x = 10 * std::cos(up), z = 10 * std::sin(up);
     return {"two_spheres", "two spheres of 1 m radius at 10 m, one above the other, in one beam",
-            sonarOf(16, 36, 1, 12), snapshotOf(sceneOf({sphere(1, 256), sphere(1, 256)}, {{x, 0, z}, {x, 0, -z}})),
+            fan(16, 36, 1, 12), snapshotOf(sceneOf({sphere(1, 256), sphere(1, 256)}, {{x, 0, z}, {x, 0, -z}})),
             sum({sphereTruth(1, 10), sphereTruth(1, 10)})};
 }
 
@@ -75,9 +61,9 @@ StudyScene shadowScreen() {
     const Window screen = [=](double azimuth) { return Elevations{elevation(azimuth, 0), elevation(azimuth, top)}; };
     const Window before = [=](double azimuth) { return Elevations{-std::numbers::pi / 2, elevation(azimuth, 0)}; };
     const Window behind = [=](double azimuth) { return Elevations{elevation(azimuth, top), std::numbers::pi / 2}; };
-    const auto geometry = sceneOf({ground(), quad({15, -200, -5}, {0, 400, 0}, {0, 0, 2})});
+    const auto geometry = sceneOf({levelGround(-5), quad({15, -200, -5}, {0, 400, 0}, {0, 0, 2})});
     return {"shadow_screen", "a screen 2 m high on a flat bottom 5 m below, 15 m ahead: echo and shadow",
-            sonarOf(60, 60, 32, 50), snapshotOf(geometry),
+            fan(60, 60, 32, 50), snapshotOf(geometry),
             sum({planeTruth({0, 0, -1}, height, before), planeTruth({1, 0, 0}, ahead, screen),
                  planeTruth({0, 0, -1}, height, behind)})};
 }

@@ -8,6 +8,7 @@
 
 #include "components/gpu/EglContext.hpp"
 #include "components/gpu/Objects.hpp"
+#include "tests/gpu/ErrorOf.hpp"
 
 namespace insonify::gpu {
 namespace {
@@ -16,17 +17,6 @@ using ::testing::AllOf;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 using ::testing::Not;
-
-/** What GlError says when `job` throws one; empty when it does not. */
-template <class Job>
-std::string errorOf(const Job& job) {
-    try {
-        job();
-    } catch (const GlError& error) {
-        return error.what();
-    }
-    return {};
-}
 
 /** As errorOf, on a thread of its own. */
 template <class Job>

@@ -1,6 +1,7 @@
 #include <gmock/gmock.h>
 
 #include "components/gpu/Program.hpp"
+#include "tests/gpu/ErrorOf.hpp"
 
 namespace insonify::gpu {
 namespace {
@@ -9,16 +10,6 @@ using ::testing::AllOf;
 using ::testing::HasSubstr;
 using ::testing::Not;
 using ::testing::StartsWith;
-
-template <class Job>
-std::string errorOf(const Job& job) {
-    try {
-        job();
-    } catch (const GlError& error) {
-        return error.what();
-    }
-    return {};
-}
 
 TEST(ProgramTest, AnUnknownShaderFileIsNamed) {
     EXPECT_THAT(errorOf([] { shaderFile("sonar.glsl"); }), HasSubstr("'sonar.glsl'"));
