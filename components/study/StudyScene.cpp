@@ -27,7 +27,8 @@ glm::dvec3 downOf(const types::Snapshot& snapshot) {
 }
 
 StudyScene flatBottom(const std::string& name, const std::string& doc, double range_from, double pitch, double roll) {
-    StudyScene scene{name, doc, fan(130, 40, 64, 50), snapshotOf(sceneOf({levelGround(-5)}), pitch, roll), {}, range_from};
+    StudyScene scene{name, doc,       fan(130, 40, 64, 50), snapshotOf(sceneOf({levelGround(-5)}), pitch, roll),
+                     {},   range_from};
     scene.truth = planeTruth(downOf(scene.snapshot), 5);
     return scene;
 }
@@ -49,8 +50,8 @@ StudyScene oneSphere() {
 
 StudyScene twoSpheres() {
     const double up = radians(10), x = 10 * std::cos(up), z = 10 * std::sin(up);
-    return {"two_spheres", "two spheres of 1 m radius at 10 m, one above the other, in one beam",
-            fan(16, 36, 1, 12), snapshotOf(sceneOf({sphere(1, 256), sphere(1, 256)}, {{x, 0, z}, {x, 0, -z}})),
+    return {"two_spheres", "two spheres of 1 m radius at 10 m, one above the other, in one beam", fan(16, 36, 1, 12),
+            snapshotOf(sceneOf({sphere(1, 256), sphere(1, 256)}, {{x, 0, z}, {x, 0, -z}})),
             sum({sphereTruth(1, 10), sphereTruth(1, 10)})};
 }
 
