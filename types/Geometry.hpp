@@ -36,8 +36,8 @@ struct Cluster {
     uint32_t first_index = 0;  ///< Into Mesh::indices; a multiple of 3 [1].
     uint32_t index_count = 0;  ///< A multiple of 3 [1].
     int material = 0;          ///< Index into Geometry::materials [1].
-    glm::vec3 centre{0};       ///< Of a sphere that holds all its triangles, in mesh coordinates [m].
-    float radius = 0;          ///< [m]
+    glm::vec3 centre{0};       ///< Of a box along the mesh's axes that holds all its triangles [m].
+    glm::vec3 half{0};         ///< Half the box's size [m].
 };
 
 /** Triangles in their own coordinates (z up, x north-like). Every index is below positions.size(); positions are

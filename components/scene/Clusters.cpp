@@ -70,15 +70,15 @@ void orderTriangles(std::span<uint32_t> indices) {
     for (uint32_t& index : indices) index = vertices[index];
 }
 
-void boundSphere(const types::Mesh& mesh, types::Cluster& cluster) {
-    const auto indices = std::span(mesh.indices).subspan(cluster.first_index, cluster.index_count);
+/** Rounded up, so that centre +- half holds every vertex. */
+void bound(const types::Mesh& mesh, types::Cluster& cluster) {
     Box box;
-    for (const uint32_t index : indices) box.add(mesh.positions[index]);
+    for (const uint32_t index : std::span(mesh.indices).subspan(cluster.first_index, cluster.index_count))
+        box.add(mesh.positions[index]);
     cluster.centre = box.low + (box.high - box.low) / 2.0f;
-    double radius = 0;
-    for (const uint32_t index : indices)
-        radius = std::max(radius, glm::distance(glm::dvec3(cluster.centre), glm::dvec3(mesh.positions[index])));
-    cluster.radius = std::nextafter(static_cast<float>(radius), std::numeric_limits<float>::infinity());
+    const glm::vec3 half = glm::max(box.high - cluster.centre, cluster.centre - box.low);
+    for (int axis = 0; axis < 3; ++axis)
+        cluster.half[axis] = std::nextafter(half[axis], std::numeric_limits<float>::infinity());
 }
 
 template <class T>
@@ -107,7 +107,7 @@ void buildClusters(types::Mesh& mesh) {
     if (mesh.indices.size() / 3 > kClusteredFrom) splitRuns(mesh);
     for (types::Cluster& cluster : mesh.clusters) {
         orderTriangles(std::span(mesh.indices).subspan(cluster.first_index, cluster.index_count));
-        boundSphere(mesh, cluster);
+        bound(mesh, cluster);
     }
     orderVertices(mesh);
 }

@@ -14,12 +14,6 @@ bool isSheared(const glm::dmat3& m) {
     return !(std::max({cosine(0, 1), cosine(0, 2), cosine(1, 2)}) < 1e-6);
 }
 
-/** Largest factor by which a matrix stretches a vector, or a little more when it shears. */
-double stretch(const glm::dmat3& m) {
-    const double x = glm::dot(m[0], m[0]), y = glm::dot(m[1], m[1]), z = glm::dot(m[2], m[2]);
-    return std::sqrt(isSheared(m) ? x + y + z : std::max({x, y, z}) * (1 + 3e-6));
-}
-
 vec4 row(const glm::dmat4& m, int i) { return vec4(glm::dvec4(m[0][i], m[1][i], m[2][i], m[3][i])); }
 
 /** Rotation and place of the sonar undone in double, so that world coordinates may be large. */
@@ -36,28 +30,27 @@ glm::dmat4 relative(const glm::dmat3& rotation, const glm::dvec3& sonar, const g
     return result;
 }
 
+/** Outward normals of the planes that bound a slab's view, all through the sonar; sonar axes, of any length. */
+std::array<glm::vec3, 5> viewOf(const Slab& slab) {
+    const double cosine = std::cos(slab.azimuth), sine = std::sin(slab.azimuth), u = slab.extent_u, v = slab.extent_v;
+    const auto turned = [&](double x, double y, double z) {
+        return glm::vec3(cosine * x - sine * y, sine * x + cosine * y, z);
+    };
+    return {turned(-u, 1, 0), turned(-u, -1, 0), turned(-v, 0, 1), turned(-v, 0, -1), turned(-1, 0, 0)};
+}
+
 }  // namespace
 
 Culler::Culler(const types::Geometry& geometry, double range_max)
     : geometry_(geometry), range_max_(static_cast<float>(range_max)) {
     for (const types::Mesh& mesh : geometry.meshes) {
-        glm::vec3 low(std::numeric_limits<float>::max()), high(-low);
-        for (const types::Cluster& cluster : mesh.clusters) {
-            low = glm::min(low, cluster.centre - cluster.radius);
-            high = glm::max(high, cluster.centre + cluster.radius);
-        }
         Box box{glm::dvec3(std::numeric_limits<double>::max()), glm::dvec3(std::numeric_limits<double>::lowest())};
         for (const glm::vec3& p : mesh.positions)
             box = {glm::min(box.low, glm::dvec3(p)), glm::max(box.high, glm::dvec3(p))};
         mesh_boxes_.push_back(box);
-        const bool empty = mesh.clusters.empty();
-        mesh_spheres_.push_back(empty ? Sphere{}
-                                      : Sphere{low * 0.5f + high * 0.5f, glm::length(high * 0.5f - low * 0.5f)});
     }
     for (const types::Object& object : geometry.objects)
         run_limit_ += geometry.meshes[static_cast<size_t>(object.mesh)].clusters.size();
-    object_spheres_.resize(geometry.objects.size());
-    scales_.resize(geometry.objects.size());
     records_.resize(geometry.objects.size());
     world_from_object_.resize(geometry.objects.size());
 }
@@ -96,26 +89,22 @@ void Culler::placeObject(size_t index, const glm::dmat4& sonar_from_object) {
     ObjectRecord& record = records_[index];
     record = {row(sonar_from_object, 0), row(sonar_from_object, 1), row(sonar_from_object, 2),       row(normals, 0),
               row(normals, 1),           row(normals, 2),           extent(index, sonar_from_object)};
-    const Sphere& mesh = mesh_spheres_[static_cast<size_t>(geometry_.objects[index].mesh)];
-    scales_[index] = static_cast<float>(stretch(linear));
-    object_spheres_[index] = {glm::vec3(sonar_from_object * glm::dvec4(mesh.centre, 1)), mesh.radius * scales_[index]};
 }
 
 void Culler::visible(const Slab& slab, std::vector<Run>& runs) const {
     runs.clear();
-    for (size_t i = 0; i < object_spheres_.size(); ++i)
-        if (sees(slab, object_spheres_[i])) addRuns(i, slab, runs);
+    const View view = viewOf(slab);
+    for (size_t i = 0; i < records_.size(); ++i) {
+        const Box& box = mesh_boxes_[static_cast<size_t>(geometry_.objects[i].mesh)];
+        const glm::vec3 centre(box.low * 0.5 + box.high * 0.5), half(box.high * 0.5 - box.low * 0.5);
+        if (sees(view, records_[i], centre, half)) addRuns(i, view, runs);
+    }
 }
 
-void Culler::addRuns(size_t object, const Slab& slab, std::vector<Run>& runs) const {
+void Culler::addRuns(size_t object, const View& view, std::vector<Run>& runs) const {
     const types::Mesh& mesh = geometry_.meshes[static_cast<size_t>(geometry_.objects[object].mesh)];
-    const ObjectRecord& record = records_[object];
     for (const types::Cluster& cluster : mesh.clusters) {
-        const vec4 centre(cluster.centre, 1);
-        const Sphere sphere{
-            {glm::dot(record.row_x, centre), glm::dot(record.row_y, centre), glm::dot(record.row_z, centre)},
-            cluster.radius * scales_[object]};
-        if (mesh.clusters.size() > 1 && !sees(slab, sphere)) continue;
+        if (mesh.clusters.size() > 1 && !sees(view, records_[object], cluster.centre, cluster.half)) continue;
         const auto id = static_cast<uint32_t>(object);
         if (!runs.empty() && runs.back().object == id && runs.back().material == cluster.material &&
             runs.back().first_index + runs.back().index_count == cluster.first_index)
@@ -125,16 +114,20 @@ void Culler::addRuns(size_t object, const Slab& slab, std::vector<Run>& runs) co
     }
 }
 
-bool Culler::sees(const Slab& slab, const Sphere& sphere) const {
-    const auto cosine = static_cast<float>(std::cos(slab.azimuth)), sine = static_cast<float>(std::sin(slab.azimuth));
-    const float x = cosine * sphere.centre.x + sine * sphere.centre.y,
-                y = cosine * sphere.centre.y - sine * sphere.centre.x;
-    const float z = sphere.centre.z;
-    const auto u = static_cast<float>(slab.extent_u), v = static_cast<float>(slab.extent_v);
-    const float margin = sphere.radius + 1e-5f * (std::abs(x) + std::abs(y) + std::abs(z));  // rounding of the centre
-    return std::abs(y) - u * x <= margin * std::sqrt(1 + u * u) &&
-           std::abs(z) - v * x <= margin * std::sqrt(1 + v * v) && x >= -margin &&
-           glm::length(sphere.centre) - margin <= range_max_;
+bool Culler::sees(const View& view, const ObjectRecord& object, glm::vec3 centre, glm::vec3 half) const {
+    const vec4 middle(centre, 1);
+    const glm::vec3 at(glm::dot(object.row_x, middle), glm::dot(object.row_y, middle), glm::dot(object.row_z, middle));
+    // How far the box reaches from its centre along a direction of the sonar's axes.
+    const auto reach = [&](const glm::vec3& along) {
+        const glm::vec3 axes =
+            along.x * glm::vec3(object.row_x) + along.y * glm::vec3(object.row_y) + along.z * glm::vec3(object.row_z);
+        return glm::dot(glm::abs(axes), half);
+    };
+    const float rounding = 1e-5f * (std::abs(at.x) + std::abs(at.y) + std::abs(at.z));
+    for (const glm::vec3& outward : view)
+        if (!(glm::dot(outward, at) - reach(outward) <= rounding * glm::length(outward))) return false;
+    const float distance = glm::length(at);
+    return !(distance > 0) || distance - reach(at / distance) - rounding <= range_max_;
 }
 
 }  // namespace insonify::sonar

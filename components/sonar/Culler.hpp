@@ -1,4 +1,5 @@
 #pragma once
+#include <array>
 #include <cstdint>
 #include <vector>
 
@@ -8,7 +9,7 @@
 
 namespace insonify::sonar {
 
-/** Chooses what of a scene is drawn: objects, and clusters of triangles in them, whose bounding spheres reach a
+/** Chooses what of a scene is drawn: objects, and clusters of triangles in them, whose boxes reach a
  *  slab's view within the range. */
 class Culler {
 public:
@@ -29,24 +30,19 @@ public:
     size_t runLimit() const { return run_limit_; }  ///< Of what `visible` gives.
 
 private:
-    struct Sphere {
-        glm::vec3 centre{0};
-        float radius = 0;
-    };
+    using View = std::array<glm::vec3, 5>;
     vec4 extent(size_t index, const glm::dmat4& sonar_from_object) const;
     void placeObject(size_t index, const glm::dmat4& sonar_from_object);
-    void addRuns(size_t object, const Slab& slab, std::vector<Run>& runs) const;
-    bool sees(const Slab& slab, const Sphere& sphere) const;
+    void addRuns(size_t object, const View& view, std::vector<Run>& runs) const;
+    /** Whether a box along an object's axes may reach into a view and the range. */
+    bool sees(const View& view, const ObjectRecord& object, glm::vec3 centre, glm::vec3 half) const;
 
     const types::Geometry& geometry_;
     float range_max_;
     struct Box {
         glm::dvec3 low{0}, high{0};
     };
-    std::vector<Sphere> mesh_spheres_;    ///< In mesh coordinates.
-    std::vector<Box> mesh_boxes_;         ///< In mesh coordinates.
-    std::vector<Sphere> object_spheres_;  ///< In the sonar frame.
-    std::vector<float> scales_;           ///< Largest stretch of each object [1].
+    std::vector<Box> mesh_boxes_;  ///< In mesh coordinates.
     std::vector<glm::dmat4> world_from_object_;
     std::vector<ObjectRecord> records_;
     size_t run_limit_ = 0;

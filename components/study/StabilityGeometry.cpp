@@ -105,7 +105,7 @@ Outcome nonManifold() {
                       wall.positions.push_back({20, 0, 0});
                       wall.positions.push_back({25, 3, 9});
                       wall.indices.insert(wall.indices.end(), {0, 2, 4, 2, 0, 5});
-                      wall.clusters[0] = {0, static_cast<uint32_t>(wall.indices.size()), 0, {16, 0, 0}, 300};
+                      wall.clusters[0] = {0, static_cast<uint32_t>(wall.indices.size()), 0, {16, 0, 0}, glm::vec3(300)};
                   }),
                   "four faces on one edge, two of them behind the wall");
 }
@@ -125,7 +125,7 @@ Outcome mirrored() {
 Outcome stretched() {
     types::Mesh egg = sphere(1, 48);
     for (glm::vec3& p : egg.positions) p *= glm::vec3(0.5, -2, 1.25);
-    egg.clusters[0].radius = 2.1f;
+    egg.clusters[0].half = glm::vec3(2.1f);
     const glm::dmat4 turn = glm::rotate(glm::dmat4(1), 0.6, glm::dvec3(1, 2, 3));
     const Probe heard = probe(smallFan(),
                               lookingAt(placedBall(sphere(1, 48), turn * glm::scale(glm::dmat4(1), {0.5, -2, 1.25})))),

@@ -56,7 +56,7 @@ TEST(ClustersTest, ALargeMeshIsSplitIntoCompactClustersOfTheSameTriangles) {
         EXPECT_LE(cluster.index_count / 3, kClusterTriangles);
         EXPECT_GE(cluster.index_count / 3, kClusterTriangles / 2);
         // a square of so many triangles has a half diagonal of sqrt(n / 4); up to twice that is compact
-        EXPECT_LT(cluster.radius, 2 * std::sqrt(cluster.index_count / 12.0));
+        EXPECT_LT(glm::length(cluster.half), 2 * std::sqrt(cluster.index_count / 12.0));
     }
 }
 

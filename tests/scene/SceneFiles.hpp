@@ -122,8 +122,8 @@ inline void expectSoundMesh(const types::Mesh& mesh, size_t material_count) {
         next += cluster.index_count;
         ASSERT_LE(next, mesh.indices.size());
         for (size_t i = cluster.first_index; i < next; ++i) {
-            const glm::dvec3 position = mesh.positions[mesh.indices[i]];
-            ASSERT_LE(glm::distance(position, glm::dvec3(cluster.centre)), cluster.radius * (1 + 1e-6));
+            const glm::vec3 away = glm::abs(mesh.positions[mesh.indices[i]] - cluster.centre);
+            ASSERT_TRUE(away.x <= cluster.half.x && away.y <= cluster.half.y && away.z <= cluster.half.z);
         }
     }
     EXPECT_EQ(next, mesh.indices.size());

@@ -33,14 +33,14 @@ glm::dmat4 randomPlace(Random& random, double reach) {
     return place;
 }
 
-/** Every triangle a cluster in a sphere as tight as can be: about the middle of its first edge, mostly the longest. */
+/** Every triangle a cluster in a box about the middle of its first edge. */
 types::Mesh triangleSoup(Random& random, int triangles) {
     types::Mesh mesh;
     for (int i = 0; i < triangles; ++i) {
         const glm::vec3 at(uniformVector(random, 1)), edge(uniformVector(random, 0.5));
         mesh.positions.insert(mesh.positions.end(), {at - edge, at + edge, at + glm::vec3(uniformVector(random, 0.4))});
-        const float radius = std::max(glm::length(edge), glm::distance(mesh.positions.back(), at));
-        mesh.clusters.push_back({static_cast<uint32_t>(3 * i), 3, 0, at, radius * 1.000001f});
+        const glm::vec3 half = glm::max(glm::abs(edge), glm::abs(mesh.positions.back() - at));
+        mesh.clusters.push_back({static_cast<uint32_t>(3 * i), 3, 0, at, half * 1.000001f});
     }
     for (uint32_t i = 0; i < mesh.positions.size(); ++i) mesh.indices.push_back(i);
     return mesh;
@@ -145,11 +145,7 @@ types::Snapshot randomSnapshot(Random& random, types::GeometryPtr geometry) {
 }
 
 /** Of 1 m, known by its own sphere. */
-types::Mesh ball() {
-    types::Mesh mesh = test::sphere(1, 8);
-    mesh.clusters[0].radius = 1;
-    return mesh;
-}
+types::Mesh ball() { return test::sphere(1, 8); }
 
 /** Runs over all slabs for one sphere of 1 m about `position`, the sonar at the origin. */
 size_t runsOfBall(glm::dvec3 position, double field_of_view_deg = 60) {

@@ -28,7 +28,8 @@ inline types::GeometryPtr wallAt(float distance) {
     types::Mesh wall;
     wall.positions = {{distance, -10, -10}, {distance, 10, -10}, {distance, 10, 10}, {distance, -10, 10}};
     wall.indices = {0, 1, 2, 0, 2, 3};
-    wall.clusters = {{.first_index = 0, .index_count = 6, .material = 0, .centre = {distance, 0, 0}, .radius = 15}};
+    wall.clusters = {
+        {.first_index = 0, .index_count = 6, .material = 0, .centre = {distance, 0, 0}, .half = {0, 15, 15}}};
     geometry.meshes.push_back(wall);
     geometry.objects.push_back({.name = "wall"});
     return std::make_shared<types::Geometry>(geometry);

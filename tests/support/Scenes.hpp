@@ -20,7 +20,7 @@ inline types::Mesh meshOf(std::vector<glm::vec3> positions, std::vector<uint32_t
         high = glm::max(high, p);
     }
     const glm::vec3 centre = (low + high) * 0.5f;
-    mesh.clusters = {{0, static_cast<uint32_t>(mesh.indices.size()), 0, centre, glm::length(high - centre)}};
+    mesh.clusters = {{0, static_cast<uint32_t>(mesh.indices.size()), 0, centre, high - centre}};
     return mesh;
 }
 
