@@ -191,7 +191,7 @@ std::shared_ptr<types::Geometry> clusteredHarbour() {
 types::GeometryPtr withoutCulling(const types::Geometry& geometry) {
     auto whole = std::make_shared<types::Geometry>(geometry);
     for (types::Mesh& mesh : whole->meshes)
-        mesh.clusters = {{0, static_cast<uint32_t>(mesh.indices.size()), 0, {0, 0, 0}, 1e6f}};
+        mesh.clusters = {{0, static_cast<uint32_t>(mesh.indices.size()), 0, {0, 0, 0}, glm::vec3(1e6f)}};
     return whole;
 }
 
