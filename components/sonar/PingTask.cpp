@@ -80,6 +80,7 @@ void PingTask::makeRenderer() {
     chosen_ = !config.quality.target_error && !config.quality.budget_ms;
     renderer_ = std::make_unique<SonarRenderer>(config, geometry_);
     plan_ = renderer_->plan();
+    culling_untold_ = true;
     aimed_.moved.reserve(geometry_->objects.size());
 }
 
@@ -119,6 +120,8 @@ void PingTask::render() {
     const auto sample = pool_.take();
     const auto start = std::chrono::steady_clock::now();
     renderer_->render(aimed_, *sample);
+    if (std::exchange(culling_untold_, false))
+        for (types::Omission& omission : renderer_->culled()) plan_->omitted.push_back(std::move(omission));
     keepBudget(std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count());
     if (!chosen_ && std::ranges::any_of(sample->bins, [](float bin) { return bin != 0; })) {
         chooseQuality();

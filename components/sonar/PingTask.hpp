@@ -69,6 +69,7 @@ private:
     double shortest_ = std::numeric_limits<double>::infinity();  ///< Time between two snapshots so far [s].
     std::unique_ptr<SonarRenderer> renderer_;
     std::optional<BudgetKeeper> keeper_;
+    bool culling_untold_ = false;      ///< Whether the plan does not say yet what the first ping's culling left out.
     bool chosen_ = false;              ///< Whether the quality is the configured one, or what was chosen for it.
     std::optional<types::Plan> plan_;  ///< Outlives the renderer, for the summary.
     types::GeometryPtr geometry_;      ///< The renderer's.

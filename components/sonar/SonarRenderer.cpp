@@ -1,5 +1,7 @@
 #include "components/sonar/SonarRenderer.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <chrono>
 #include <cmath>
@@ -196,6 +198,31 @@ void SonarRenderer::setQuality(int rows, int columns_per_beam) {
 }
 
 std::span<const SonarRenderer::Stage> SonarRenderer::stages() const { return parts_->stages; }
+std::vector<types::Omission> SonarRenderer::culled() const {
+    const types::Geometry& geometry = *parts_->geometry;
+    std::vector<bool> seen(geometry.objects.size());
+    size_t empty_slabs = 0, most_triangles = 0;
+    for (size_t i = 0; i < parts_->slabs.size(); ++i) {
+        const auto& runs = parts_->surface.picture(i).runs;
+        empty_slabs += runs.empty();
+        for (const Culler::Run& run : runs) {
+            seen[run.object] = true;
+            most_triangles += run.index_count / 3;  // of two slabs more than once
+        }
+    }
+    std::vector<types::Omission> all;
+    const auto add = [&](const char* before, size_t left_out, size_t of, const char* what) {
+        if (left_out > 0)
+            all.push_back({fmt::format("{}{} of {} {}", before, left_out, of, what),
+                           "outside the fan or the range at the first ping"});
+    };
+    add("", static_cast<size_t>(std::ranges::count(seen, false)), seen.size(), "objects");
+    const size_t triangles = geometry.triangleCount();
+    add("at least ", triangles - std::min(triangles, most_triangles), triangles, "triangles");
+    add("", empty_slabs, parts_->slabs.size(), "slabs");
+    return all;
+}
+
 const types::Plan& SonarRenderer::plan() const { return parts_->plan; }
 const std::string& SonarRenderer::device() const { return parts_->context.renderer(); }
 

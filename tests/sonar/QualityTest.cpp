@@ -122,5 +122,26 @@ TEST(QualityTaskTest, ABudgetThatIsTooSmallLeadsToTheCoarsest) {
     EXPECT_GT(task.plan()->predicted_error, 0);
 }
 
+TEST(CulledTest, ThePlanSaysWhatOfTheSceneIsNotDrawn) {
+    SonarTask task("sonar");
+    test::Writer<types::SnapshotPtr> in;
+    in.port.connectTo(task.snapshot, framework::ConnPolicy::buffer(4));
+    SonarConfig config = small();
+    config.field_of_view_deg = 180;  // three slabs
+    task.config.set(config);
+    ASSERT_TRUE(task.configure() && task.start()) << task.lastError();
+    const types::Mesh ball = test::sphere(0.5, 8);
+    const auto geometry = test::sceneOf({ball, ball, ball}, -10, {{10, 0, 0}, {-10, 0, 0}, {200, 0, 0}});
+    in.port.write(std::make_shared<types::Snapshot>(test::snapshotOf(geometry)));
+    task.update();
+    ASSERT_TRUE(task.plan()) << task.lastError();
+    std::vector<std::string> names;
+    for (const types::Omission& omission : task.plan()->omitted) names.push_back(omission.name);
+    EXPECT_THAT(names, testing::IsSupersetOf({"2 of 3 objects", "2 of 3 slabs"}));
+    const size_t each = ball.indices.size() / 3;
+    EXPECT_THAT(names, testing::Contains("at least " + std::to_string(2 * each) + " of " + std::to_string(3 * each) +
+                                         " triangles"));
+}
+
 }  // namespace
 }  // namespace insonify::sonar
