@@ -123,7 +123,7 @@ void PingTask::render() {
     if (std::exchange(culling_untold_, false))
         for (types::Omission& omission : renderer_->culled()) plan_->omitted.push_back(std::move(omission));
     keepBudget(std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count());
-    if (!chosen_ && std::ranges::any_of(sample->bins, [](float bin) { return bin != 0; })) {
+    if (!chosen_ && renderer_->heard()) {
         chooseQuality();
         renderer_->render(aimed_, *sample);
     }

@@ -62,8 +62,8 @@ struct SonarRenderer::Parts {
     void makeDeposit();
     void drawSlabs(const types::Snapshot& snapshot);
     void fillHeader(const types::Snapshot& snapshot, types::Sonar& ping) const;
-    void fillBins(std::span<const uint64_t> sums, types::Sonar& ping);
-    void fillBeam(std::span<const uint64_t> sums, size_t beam, double* scratch, types::Sonar& ping) const;
+    void fillBins(types::Sonar& ping);
+    void fillBeam(size_t beam, double* values, types::Sonar& ping) const;
     /** Seconds since the last call, put down for a stage. */
     void lap(size_t stage);
 
@@ -80,6 +80,7 @@ struct SonarRenderer::Parts {
     SurfacePass surface;
     std::unique_ptr<BinDeposit> deposit;
     double strength_scale = 1;
+    std::span<const uint64_t> sums;  ///< Of the last ping.
     std::vector<double> scratch;
     std::array<Stage, 5> stages{{{"cull", 0}, {"draw", 0}, {"read", 0}, {"deposit", 0}, {"beams", 0}}};
     std::chrono::steady_clock::time_point last;
@@ -146,8 +147,7 @@ void SonarRenderer::Parts::fillHeader(const types::Snapshot& snapshot, types::So
     ping.bins.resize(beams.size() * static_cast<size_t>(bins.bin_count));
 }
 
-void SonarRenderer::Parts::fillBeam(std::span<const uint64_t> sums, size_t beam, double* values,
-                                    types::Sonar& ping) const {
+void SonarRenderer::Parts::fillBeam(size_t beam, double* values, types::Sonar& ping) const {
     const auto count = static_cast<size_t>(bins.bin_count);
     const double pixel = slabs.front().du() * slabs.front().dv();  // solid angle of a whole pixel [sr]
     for (size_t k = 0; k < count; ++k) {
@@ -161,11 +161,11 @@ void SonarRenderer::Parts::fillBeam(std::span<const uint64_t> sums, size_t beam,
     levels.apply({values, count}, {ping.bins.data() + beam * count, count});
 }
 
-void SonarRenderer::Parts::fillBins(std::span<const uint64_t> sums, types::Sonar& ping) {
+void SonarRenderer::Parts::fillBins(types::Sonar& ping) {
     threads.run([&](int part, int parts) {
         double* values = scratch.data() + static_cast<size_t>(part) * static_cast<size_t>(bins.bin_count);
         for (auto beam = static_cast<size_t>(part); beam < beams.size(); beam += static_cast<size_t>(parts))
-            fillBeam(sums, beam, values, ping);
+            fillBeam(beam, values, ping);
     });
 }
 
@@ -180,10 +180,10 @@ void SonarRenderer::render(const types::Snapshot& snapshot, types::Sonar& ping) 
     parts_->last = std::chrono::steady_clock::now();
     parts_->drawSlabs(snapshot);
     parts_->context.check();
-    const auto sums = parts_->deposit->finish();
+    parts_->sums = parts_->deposit->finish();
     parts_->lap(3);
     parts_->fillHeader(snapshot, ping);
-    parts_->fillBins(sums, ping);
+    parts_->fillBins(ping);
     parts_->lap(4);
 }
 
@@ -193,11 +193,18 @@ void SonarRenderer::setQuality(int rows, int columns_per_beam) {
     parts_->plan.columns_per_beam = parts_->config.quality.columns_per_beam = columns_per_beam;
     parts_->slabs = makeSlabs(parts_->config, parts_->beams);
     parts_->surface.resize(parts_->slabs);
+    parts_->sums = {};
     parts_->makeDeposit();
     parts_->context.check();
 }
 
 std::span<const SonarRenderer::Stage> SonarRenderer::stages() const { return parts_->stages; }
+bool SonarRenderer::heard() const {
+    bool drawn = false;  // published counts what is not there
+    for (size_t i = 0; i < parts_->slabs.size(); ++i) drawn = drawn || !parts_->surface.picture(i).empty();
+    return drawn && std::ranges::any_of(parts_->sums, [](uint64_t sum) { return sum > 0; });
+}
+
 std::vector<types::Omission> SonarRenderer::culled() const {
     const types::Geometry& geometry = *parts_->geometry;
     std::vector<bool> seen(geometry.objects.size());

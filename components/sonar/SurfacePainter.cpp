@@ -1,6 +1,5 @@
 #include "components/sonar/SurfacePainter.hpp"
 
-#include <algorithm>
 #include <cmath>
 
 namespace insonify::sonar {
@@ -18,7 +17,6 @@ SurfacePainter::SurfacePainter(const types::Geometry& geometry, const SurfaceSce
                                const std::vector<std::string>& defines, double near_plane)
     : geometry_(geometry),
       scene_(scene),
-      with_normal_maps_(std::find(defines.begin(), defines.end(), "HAVE_NORMAL_MAP") != defines.end()),
       near_plane_(near_plane),
       program_(gpu::Program::raster("surface.vert.glsl", "surface.frag.glsl", defines)),
       objects_(geometry.objects.size() * sizeof(ObjectRecord)) {
@@ -73,7 +71,7 @@ void SurfacePainter::setUniforms(const Slab& slab) const {
 
 void SurfacePainter::drawGroups(const SlabPicture& picture) const {
     const auto map = [&](size_t i) {
-        return with_normal_maps_ ? geometry_.materials[picture.commands[i].material].normal_map : -1;
+        return scene_.withNormalMaps() ? geometry_.materials[picture.commands[i].material].normal_map : -1;
     };
     for (size_t first = 0, last = 0; first < picture.draws.size(); first = last) {
         while (last < picture.draws.size() && map(last) == map(first)) ++last;

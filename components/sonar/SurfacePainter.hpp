@@ -29,7 +29,6 @@ private:
 
     const types::Geometry& geometry_;
     const SurfaceScene& scene_;
-    bool with_normal_maps_;
     double near_plane_;
     gpu::Program program_;
     gpu::VertexArray vertices_;

@@ -17,6 +17,7 @@ public:
 
     SurfaceScene(const types::Geometry& geometry, bool with_normal_maps);
     const MeshPlace& place(int mesh) const { return places_[static_cast<size_t>(mesh)]; }
+    bool withNormalMaps() const { return with_normal_maps_; }
     /** Plane of each triangle in object axes: xyz its unit normal n, w = n.p for its points p [m]. */
     const std::vector<vec4>& planes() const { return plane_list_; }
     const std::vector<MaterialRecord>& materials() const { return material_list_; }

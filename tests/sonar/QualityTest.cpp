@@ -79,12 +79,15 @@ TEST(BudgetKeeperTest, TheLadderHasTwoEnds) {
     EXPECT_EQ(keeper.quality().columns_per_beam, 2);
 }
 
-TEST(QualityTaskTest, TheChoiceAndItsErrorAreInThePlanOnceSomethingIsHeard) {
+class QualityTaskTest : public testing::TestWithParam<Output> {};
+
+TEST_P(QualityTaskTest, TheChoiceAndItsErrorAreInThePlanOnceSomethingIsHeard) {
     SonarTask task("sonar");
     test::Writer<types::SnapshotPtr> in;
     in.port.connectTo(task.snapshot, framework::ConnPolicy::buffer(4));
     SonarConfig config = small();
     config.quality.target_error = 0.03;
+    config.output = GetParam();  // silence is a floor where bins are levels
     task.config.set(config);
     ASSERT_TRUE(task.configure() && task.start()) << task.lastError();
     const auto geometry = test::sceneOf({test::ground(-3)}, -10);
@@ -103,7 +106,10 @@ TEST(QualityTaskTest, TheChoiceAndItsErrorAreInThePlanOnceSomethingIsHeard) {
     EXPECT_LT(task.plan()->rows, QualityConfig().rows) << "a flat bottom needs few";
 }
 
-TEST(QualityTaskTest, ABudgetThatIsTooSmallLeadsToTheCoarsest) {
+INSTANTIATE_TEST_SUITE_P(Outputs, QualityTaskTest,
+                         testing::Values(Output::Intensity, Output::LevelDb, Output::ReceivedLevelDb));
+
+TEST(QualityBudgetTest, ABudgetThatIsTooSmallLeadsToTheCoarsest) {
     SonarTask task("sonar");
     test::Writer<types::SnapshotPtr> in;
     in.port.connectTo(task.snapshot, framework::ConnPolicy::buffer(4));
