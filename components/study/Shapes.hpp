@@ -1,19 +1,68 @@
 #pragma once
+// Meshes in code, for scenes with known echoes; each is one cluster.
+#include <cmath>
 #include <memory>
+#include <numbers>
 #include <vector>
 
 #include "types/Geometry.hpp"
 
 namespace insonify::study {
 
-/** A parallelogram: a corner and two edges [m]. */
-types::Mesh quad(glm::vec3 corner, glm::vec3 a, glm::vec3 b);
-/** A disc that faces -x, about (distance, 0, 0), of `segments` triangles [m]. */
-types::Mesh disc(double distance, double radius, int segments);
-/** A sphere about the origin, of `rings` times 2 `rings` quads, their corners on it [m]. */
-types::Mesh sphere(double radius, int rings);
+/** A mesh of triangles as one cluster; positions are used as they are. */
+inline types::Mesh meshOf(std::vector<glm::vec3> positions, std::vector<uint32_t> indices) {
+    types::Mesh mesh;
+    mesh.positions = std::move(positions);
+    mesh.indices = std::move(indices);
+    glm::vec3 low = mesh.positions.front(), high = low;
+    for (const glm::vec3& p : mesh.positions) {
+        low = glm::min(low, p);
+        high = glm::max(high, p);
+    }
+    const glm::vec3 centre = (low + high) * 0.5f;
+    mesh.clusters = {{0, static_cast<uint32_t>(mesh.indices.size()), 0, centre, high - centre}};
+    return mesh;
+}
 
-/** One object for each mesh, at `positions` or else the origin, of one material with 10^(lambert_db/10) = 1. */
+/** A parallelogram: a corner and two edges [m]. */
+inline types::Mesh quad(glm::vec3 corner, glm::vec3 a, glm::vec3 b) {
+    return meshOf({corner, corner + a, corner + a + b, corner + b}, {0, 1, 2, 0, 2, 3});
+}
+
+/** A sphere about the origin, of `rings` times 2 `rings` quads, their corners on it [m]. */
+inline types::Mesh sphere(double radius, int rings = 128) {
+    std::vector<glm::vec3> positions;
+    std::vector<uint32_t> indices;
+    const int around = 2 * rings;
+    for (int i = 0; i <= rings; ++i)
+        for (int j = 0; j <= around; ++j) {
+            const double polar = std::numbers::pi * i / rings, azimuth = 2 * std::numbers::pi * j / around;
+            positions.push_back(radius * glm::dvec3(std::sin(polar) * std::cos(azimuth),
+                                                    std::sin(polar) * std::sin(azimuth), std::cos(polar)));
+        }
+    const auto at = [&](int i, int j) { return static_cast<uint32_t>(i * (around + 1) + j); };
+    for (int i = 0; i < rings; ++i)
+        for (int j = 0; j < around; ++j) {
+            if (i > 0) indices.insert(indices.end(), {at(i, j), at(i + 1, j), at(i, j + 1)});
+            if (i + 1 < rings) indices.insert(indices.end(), {at(i, j + 1), at(i + 1, j), at(i + 1, j + 1)});
+        }
+    return meshOf(std::move(positions), std::move(indices));
+}
+
+/** A disc square to the x axis about (distance, 0, 0), of `segments` triangles [m]. */
+inline types::Mesh disc(double distance, double radius, uint32_t segments = 256) {
+    std::vector<glm::vec3> positions = {{distance, 0, 0}};
+    std::vector<uint32_t> indices;
+    for (uint32_t i = 0; i < segments; ++i) {
+        const double angle = 2 * std::numbers::pi * i / segments;
+        positions.push_back({distance, radius * std::cos(angle), radius * std::sin(angle)});
+        indices.insert(indices.end(), {0, 1 + i, 1 + (i + 1) % segments});
+    }
+    return meshOf(positions, indices);
+}
+
+/** One object for each mesh, at `positions` or else the origin, of one material with 10^(lambert_db/10) = 1. Large
+ * meshes are split into clusters. */
 types::GeometryPtr sceneOf(std::vector<types::Mesh> meshes, std::vector<glm::dvec3> positions = {});
 
 }  // namespace insonify::study
