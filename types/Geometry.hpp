@@ -38,6 +38,21 @@ struct Cluster {
     int material = 0;          ///< Index into Geometry::materials [1].
     glm::vec3 centre{0};       ///< Of a box along the mesh's axes that holds all its triangles [m].
     glm::vec3 half{0};         ///< Half the box's size [m].
+    glm::vec3 cone_apex{0};    ///< Of a cone from which only backs of its triangles are seen [m].
+    glm::vec3 cone_axis{0};    ///< Unit, from the apex away from there [1].
+    float cone_cutoff = 2;     ///< Cosine between the axis and the cone's side; 2: there is no such cone [1].
+};
+
+/** A part of a large mesh, with fewer triangles that stand for it where no more can be told apart. */
+struct Patch {
+    uint32_t first_cluster = 0;  ///< Into Mesh::clusters [1].
+    uint32_t cluster_count = 0;  ///< All of one material [1].
+    uint32_t next = 0;           ///< The first patch that is no part of this one; its parts come directly after it [1].
+    glm::vec3 centre{0};         ///< Of a box along the mesh's axes that holds all its triangles [m].
+    glm::vec3 half{0};           ///< Half the box's size [m].
+    uint32_t first_index = 0;    ///< Of the triangles that stand for it, into Mesh::coarse_indices [1].
+    uint32_t index_count = 0;    ///< 0: nothing stands for it [1].
+    float deviation = 0;         ///< Of any vertex of the patch from the triangles that stand for it, at most [m].
 };
 
 /** Triangles in their own coordinates (z up, x north-like). Every index is below positions.size(); positions are
@@ -49,8 +64,10 @@ struct Mesh {
         normals;  ///< Per vertex, unit; empty or as many as positions. Only used with normal maps [1].
     std::vector<glm::vec4> tangents;  ///< Per vertex, w = handedness; empty or as many as positions [1].
     std::vector<glm::vec2> uvs;  ///< Of the normal map, texture transform applied; empty or as many as positions [1].
-    std::vector<uint32_t> indices;  ///< Three a triangle.
-    std::vector<Cluster> clusters;  ///< Together they cover all indices, in order.
+    std::vector<uint32_t> indices;         ///< Three a triangle.
+    std::vector<Cluster> clusters;         ///< Together they cover all indices, in order.
+    std::vector<Patch> patches;            ///< Trees over all clusters, each patch before its parts; or none.
+    std::vector<uint32_t> coarse_indices;  ///< Of what stands for patches; three a triangle.
 };
 
 /** One placing of a mesh in the world. */

@@ -9,6 +9,10 @@
 #include <glm/geometric.hpp>
 #include <limits>
 #include <span>
+#include <utility>
+
+#include "components/scene/Cones.hpp"
+#include "components/scene/Detail.hpp"
 
 namespace insonify::scene {
 namespace {
@@ -28,57 +32,95 @@ struct Box {
     }
 };
 
-/** Halves `triangles` at the median of the longest axis until each part is small enough; appends a cluster for each. */
-void split(types::Mesh& mesh, std::span<Triangle> triangles, types::Cluster cluster,
-           std::vector<types::Cluster>& clusters) {
-    if (triangles.size() <= kClusterTriangles) {
-        cluster.index_count = static_cast<uint32_t>(3 * triangles.size());
-        clusters.push_back(cluster);
-        return;
-    }
-    const auto centroid = [&mesh](const Triangle& t) {  // times 3
-        return mesh.positions[t[0]] + mesh.positions[t[1]] + mesh.positions[t[2]];
-    };
-    Box box;
-    for (const Triangle& triangle : triangles) box.add(centroid(triangle));
-    const int axis = box.longestAxis();
-    const size_t half = triangles.size() / 2;
-    std::ranges::nth_element(
-        triangles, triangles.begin() + static_cast<std::ptrdiff_t>(half),
-        [&](const Triangle& a, const Triangle& b) { return centroid(a)[axis] < centroid(b)[axis]; });
-    split(mesh, triangles.first(half), cluster, clusters);
-    cluster.first_index += static_cast<uint32_t>(3 * half);
-    split(mesh, triangles.subspan(half), cluster, clusters);
+/** How many sizes of patches, each 4 times as large as the one before, are smaller than so many triangles. */
+int patchSizesBelow(size_t triangles) {
+    int count = 0;
+    for (size_t size = kPatchTriangles; size < triangles; size *= 4) ++count;
+    return count;
 }
+
+/** Splits a mesh in which `clusters` and `patches` are being made anew. */
+class Splitter {
+public:
+    explicit Splitter(types::Mesh& mesh) : mesh_(mesh) {}
+
+    /** One patch of `triangles`, with patches and clusters below it. */
+    void addPatch(std::span<Triangle> triangles, const types::Cluster& run) {
+        const size_t patch = mesh_.patches.size();
+        mesh_.patches.push_back({.first_cluster = static_cast<uint32_t>(mesh_.clusters.size())});
+        split(triangles, run);
+        types::Patch& done = mesh_.patches[patch];
+        done.cluster_count = static_cast<uint32_t>(mesh_.clusters.size()) - done.first_cluster;
+        done.next = static_cast<uint32_t>(mesh_.patches.size());
+    }
+
+private:
+    /** Halves `triangles` at the median of the longest axis until each part is small enough for a cluster; what is
+     *  the first to be small enough for a size of patch is one. */
+    void split(std::span<Triangle> triangles, types::Cluster cluster) {
+        if (triangles.size() <= kClusterTriangles) {
+            cluster.index_count = static_cast<uint32_t>(3 * triangles.size());
+            mesh_.clusters.push_back(cluster);
+            return;
+        }
+        const size_t half = halve(triangles);
+        for (const std::span part : {triangles.first(half), triangles.subspan(half)}) {
+            if (patchSizesBelow(part.size()) < patchSizesBelow(triangles.size()))
+                addPatch(part, cluster);
+            else
+                split(part, cluster);
+            cluster.first_index += static_cast<uint32_t>(3 * half);
+        }
+    }
+
+    size_t halve(std::span<Triangle> triangles) const {
+        const auto centroid = [this](const Triangle& t) {  // times 3
+            return mesh_.positions[t[0]] + mesh_.positions[t[1]] + mesh_.positions[t[2]];
+        };
+        Box box;
+        for (const Triangle& triangle : triangles) box.add(centroid(triangle));
+        const int axis = box.longestAxis();
+        const size_t half = triangles.size() / 2;
+        std::ranges::nth_element(
+            triangles, triangles.begin() + static_cast<std::ptrdiff_t>(half),
+            [&](const Triangle& a, const Triangle& b) { return centroid(a)[axis] < centroid(b)[axis]; });
+        return half;
+    }
+
+    types::Mesh& mesh_;
+};
 
 void splitRuns(types::Mesh& mesh) {
-    std::vector<types::Cluster> clusters;
+    const std::vector<types::Cluster> runs = std::exchange(mesh.clusters, {});
     auto* triangles = reinterpret_cast<Triangle*>(mesh.indices.data());
-    for (const types::Cluster& run : mesh.clusters)
-        split(mesh, {triangles + run.first_index / 3, run.index_count / 3}, run, clusters);
-    mesh.clusters = std::move(clusters);
+    for (const types::Cluster& run : runs) {
+        Splitter(mesh).addPatch({triangles + run.first_index / 3, run.index_count / 3}, run);
+    }
 }
 
-/** Orders the triangles of one cluster for the vertex cache; local numbers keep the cost that of the cluster. */
-void orderTriangles(std::span<uint32_t> indices) {
-    std::vector<uint32_t> vertices(indices.begin(), indices.end());
-    std::ranges::sort(vertices);
-    vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
-    for (uint32_t& index : indices)
-        index = static_cast<uint32_t>(std::ranges::lower_bound(vertices, index) - vertices.begin());
-    meshopt_optimizeVertexCache(indices.data(), indices.data(), indices.size(), vertices.size());
-    for (uint32_t& index : indices) index = vertices[index];
+/** Takes a box, rounded up, so that centre +- half holds all of it. */
+template <class Part>
+void setBox(Part& part, const Box& box) {
+    part.centre = box.low + (box.high - box.low) / 2.0f;
+    const glm::vec3 half = glm::max(box.high - part.centre, part.centre - box.low);
+    for (int axis = 0; axis < 3; ++axis)
+        part.half[axis] = std::nextafter(half[axis], std::numeric_limits<float>::infinity());
 }
 
-/** Rounded up, so that centre +- half holds every vertex. */
 void bound(const types::Mesh& mesh, types::Cluster& cluster) {
     Box box;
     for (const uint32_t index : std::span(mesh.indices).subspan(cluster.first_index, cluster.index_count))
         box.add(mesh.positions[index]);
-    cluster.centre = box.low + (box.high - box.low) / 2.0f;
-    const glm::vec3 half = glm::max(box.high - cluster.centre, cluster.centre - box.low);
-    for (int axis = 0; axis < 3; ++axis)
-        cluster.half[axis] = std::nextafter(half[axis], std::numeric_limits<float>::infinity());
+    setBox(cluster, box);
+}
+
+void bound(const types::Mesh& mesh, types::Patch& patch) {
+    Box box;
+    for (const types::Cluster& cluster : std::span(mesh.clusters).subspan(patch.first_cluster, patch.cluster_count)) {
+        box.add(cluster.centre - cluster.half);
+        box.add(cluster.centre + cluster.half);
+    }
+    setBox(patch, box);
 }
 
 template <class T>
@@ -87,6 +129,15 @@ void remap(std::vector<T>& values, const std::vector<uint32_t>& new_place, size_
     std::vector<T> placed(count);
     meshopt_remapVertexBuffer(placed.data(), values.data(), values.size(), sizeof(T), new_place.data());
     values = std::move(placed);
+}
+
+/** Makes one vertex of those in one place, which files have apart for light's normals and textures. */
+void weld(types::Mesh& mesh) {
+    std::vector<uint32_t> new_place(mesh.positions.size());
+    const size_t count = meshopt_generateVertexRemap(new_place.data(), mesh.indices.data(), mesh.indices.size(),
+                                                     mesh.positions.data(), mesh.positions.size(), sizeof(glm::vec3));
+    meshopt_remapIndexBuffer(mesh.indices.data(), mesh.indices.data(), mesh.indices.size(), new_place.data());
+    remap(mesh.positions, new_place, count);
 }
 
 /** Vertices in the order of their first use; those that no triangle uses are gone. */
@@ -103,13 +154,31 @@ void orderVertices(types::Mesh& mesh) {
 
 }  // namespace
 
+void orderTriangles(std::span<uint32_t> indices) {
+    std::vector<uint32_t> vertices(indices.begin(), indices.end());
+    std::ranges::sort(vertices);
+    vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
+    for (uint32_t& index : indices)
+        index = static_cast<uint32_t>(std::ranges::lower_bound(vertices, index) - vertices.begin());
+    meshopt_optimizeVertexCache(indices.data(), indices.data(), indices.size(), vertices.size());
+    for (uint32_t& index : indices) index = vertices[index];
+}
+
 void buildClusters(types::Mesh& mesh) {
-    if (mesh.indices.size() / 3 > kClusteredFrom) splitRuns(mesh);
+    if (mesh.indices.size() / 3 > kClusteredFrom) {
+        for (glm::vec3& position : mesh.positions) position += 0.0f;  // -0 is 0, and not another place
+        if (mesh.uvs.empty()) weld(mesh);
+        splitRuns(mesh);
+    }
     for (types::Cluster& cluster : mesh.clusters) {
         orderTriangles(std::span(mesh.indices).subspan(cluster.first_index, cluster.index_count));
         bound(mesh, cluster);
     }
     orderVertices(mesh);
+    if (mesh.patches.empty()) return;
+    for (types::Patch& patch : mesh.patches) bound(mesh, patch);
+    simplifyPatches(mesh);
+    findCones(mesh);
 }
 
 }  // namespace insonify::scene

@@ -1,4 +1,6 @@
 #pragma once
+#include <span>
+
 #include "types/Geometry.hpp"
 
 namespace insonify::scene {
@@ -7,9 +9,15 @@ namespace insonify::scene {
 constexpr size_t kClusteredFrom = 10'000;
 /** Largest cluster of such a mesh; most have half as many at least [triangles]. */
 constexpr size_t kClusterTriangles = 250;
+/** Smallest kind of patch, which has half as many at least; each larger kind has 4 times as many [triangles]. */
+constexpr size_t kPatchTriangles = 1000;
 
-/** Orders triangles and vertices for the GPU. On entry `mesh.clusters` are runs of one material; on return runs of
- *  a large mesh are split where their triangles lie apart, and each cluster has its bounding sphere. */
+/** Orders triangles and vertices for the GPU. On entry `mesh.clusters` are runs of one material; on return each has its
+ *  box, and runs of a large mesh are split where their triangles lie apart, with patches of less detail over them
+ *  and, if it is closed, cones of their backs. */
 void buildClusters(types::Mesh& mesh);
+
+/** Orders triangles that are drawn as one for the vertex cache, at a cost that is theirs and not their mesh's. */
+void orderTriangles(std::span<uint32_t> indices);
 
 }  // namespace insonify::scene

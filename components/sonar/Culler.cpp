@@ -39,10 +39,29 @@ std::array<glm::vec3, 5> viewOf(const Slab& slab) {
     return {turned(-u, 1, 0), turned(-u, -1, 0), turned(-v, 0, 1), turned(-v, 0, -1), turned(-1, 0, 0)};
 }
 
+double dot2(const glm::dvec3& v) { return glm::dot(v, v); }
+
+/** The smaller side of a pixel anywhere in a slab, at 1 m [m]. */
+double leastPixel(const Slab& slab) {
+    const double farthest = std::sqrt(1 + slab.extent_u * slab.extent_u + slab.extent_v * slab.extent_v);
+    return std::min(slab.du(), slab.dv()) / farthest;
+}
+
+/** What stands for a patch, as one draw. */
+Culler::Run coarse(const types::Mesh& mesh, const types::Patch& patch, size_t object) {
+    const types::Cluster &first = mesh.clusters[patch.first_cluster],
+                         &last = mesh.clusters[patch.first_cluster + patch.cluster_count - 1];
+    return {static_cast<uint32_t>(object), static_cast<uint32_t>(mesh.indices.size()) + patch.first_index,
+            patch.index_count, first.material, last.first_index + last.index_count - first.first_index};
+}
+
 }  // namespace
 
-Culler::Culler(const types::Geometry& geometry, double range_max)
-    : geometry_(geometry), range_max_(static_cast<float>(range_max)) {
+Culler::Culler(const types::Geometry& geometry, Reach reach, Tolerance tolerance)
+    : geometry_(geometry),
+      range_min_(static_cast<float>(reach.near)),
+      range_max_(static_cast<float>(reach.far)),
+      tolerance_(tolerance) {
     for (const types::Mesh& mesh : geometry.meshes) {
         Box box{glm::dvec3(std::numeric_limits<double>::max()), glm::dvec3(std::numeric_limits<double>::lowest())};
         for (const glm::vec3& p : mesh.positions)
@@ -52,6 +71,8 @@ Culler::Culler(const types::Geometry& geometry, double range_max)
     for (const types::Object& object : geometry.objects)
         run_limit_ += geometry.meshes[static_cast<size_t>(object.mesh)].clusters.size();
     records_.resize(geometry.objects.size());
+    scales_.resize(geometry.objects.size());
+    far_.resize(geometry.objects.size());
     world_from_object_.resize(geometry.objects.size());
 }
 
@@ -85,6 +106,12 @@ vec4 Culler::extent(size_t index, const glm::dmat4& m) const {
 
 void Culler::placeObject(size_t index, const glm::dmat4& sonar_from_object) {
     const glm::dmat3 linear(sonar_from_object);
+    scales_[index] = std::sqrt(dot2(linear[0]) + dot2(linear[1]) + dot2(linear[2]));
+    const Box& box = mesh_boxes_[static_cast<size_t>(geometry_.objects[index].mesh)];
+    const glm::dvec3 centre(sonar_from_object * glm::dvec4((box.low + box.high) / 2.0, 1));
+    const double radius = scales_[index] * glm::length(box.high - box.low) / 2;
+    far_[index] = glm::length(centre) - radius > 1.001 * range_max_;
+    if (far_[index]) return;
     const glm::dmat4 normals(glm::transpose(glm::inverse(linear)));
     ObjectRecord& record = records_[index];
     record = {row(sonar_from_object, 0), row(sonar_from_object, 1), row(sonar_from_object, 2),       row(normals, 0),
@@ -95,17 +122,50 @@ void Culler::visible(const Slab& slab, std::vector<Run>& runs) const {
     runs.clear();
     const View view = viewOf(slab);
     for (size_t i = 0; i < records_.size(); ++i) {
+        if (far_[i]) continue;
         const Box& box = mesh_boxes_[static_cast<size_t>(geometry_.objects[i].mesh)];
         const glm::vec3 centre(box.low * 0.5 + box.high * 0.5), half(box.high * 0.5 - box.low * 0.5);
-        if (sees(view, records_[i], centre, half)) addRuns(i, view, runs);
+        const float distance = nearest(view, records_[i], centre, half);
+        if (distance <= range_max_) addObject(queryOf(i, view, leastPixel(slab), distance), runs);
     }
 }
 
-void Culler::addRuns(size_t object, const View& view, std::vector<Run>& runs) const {
-    const types::Mesh& mesh = geometry_.meshes[static_cast<size_t>(geometry_.objects[object].mesh)];
-    for (const types::Cluster& cluster : mesh.clusters) {
-        if (mesh.clusters.size() > 1 && !sees(view, records_[object], cluster.centre, cluster.half)) continue;
-        const auto id = static_cast<uint32_t>(object);
+Culler::Query Culler::queryOf(size_t object, const View& view, double pixel, float distance) const {
+    Query query{object, view, pixel, {}};
+    if (!(distance > range_min_)) return query;  // of a front that is blanked the back may be heard
+    const ObjectRecord& r = records_[object];
+    // The inverse transpose has the rows that take the sonar's place into the object's axes.
+    query.before =
+        -(r.row_x.w * glm::vec3(r.normal_x) + r.row_y.w * glm::vec3(r.normal_y) + r.row_z.w * glm::vec3(r.normal_z));
+    return query;
+}
+
+void Culler::addObject(const Query& query, std::vector<Run>& runs) const {
+    const types::Mesh& mesh = geometry_.meshes[static_cast<size_t>(geometry_.objects[query.object].mesh)];
+    if (mesh.patches.empty()) return addClusters(query, mesh.clusters, runs);
+    for (size_t i = 0; i < mesh.patches.size();) {
+        const types::Patch& patch = mesh.patches[i];
+        const float distance = nearest(query.view, records_[query.object], patch.centre, patch.half);
+        const double tolerated = std::min(tolerance_.pixels * query.pixel * distance, tolerance_.metres);
+        if (!(distance <= range_max_)) {
+            i = patch.next;
+        } else if (patch.index_count > 0 && patch.deviation * scales_[query.object] < tolerated) {
+            runs.push_back(coarse(mesh, patch, query.object));
+            i = patch.next;
+        } else {
+            const std::span clusters = std::span(mesh.clusters).subspan(patch.first_cluster, patch.cluster_count);
+            if (++i == patch.next) addClusters(query, clusters, runs);
+        }
+    }
+}
+
+void Culler::addClusters(const Query& query, std::span<const types::Cluster> clusters, std::vector<Run>& runs) const {
+    for (const types::Cluster& cluster : clusters) {
+        if (clusters.size() > 1 &&
+            !(nearest(query.view, records_[query.object], cluster.centre, cluster.half) <= range_max_))
+            continue;
+        if (turnsItsBack(query, cluster)) continue;
+        const auto id = static_cast<uint32_t>(query.object);
         if (!runs.empty() && runs.back().object == id && runs.back().material == cluster.material &&
             runs.back().first_index + runs.back().index_count == cluster.first_index)
             runs.back().index_count += cluster.index_count;
@@ -114,7 +174,16 @@ void Culler::addRuns(size_t object, const View& view, std::vector<Run>& runs) co
     }
 }
 
-bool Culler::sees(const View& view, const ObjectRecord& object, glm::vec3 centre, glm::vec3 half) const {
+bool Culler::turnsItsBack(const Query& query, const types::Cluster& cluster) const {
+    if (!query.before || cluster.cone_cutoff > 1 ||
+        geometry_.materials[static_cast<size_t>(cluster.material)].double_sided)
+        return false;
+    const glm::vec3 away = cluster.cone_apex - *query.before;
+    return glm::dot(away, cluster.cone_axis) >= (cluster.cone_cutoff + 1e-4f) * glm::length(away);
+}
+
+float Culler::nearest(const View& view, const ObjectRecord& object, glm::vec3 centre, glm::vec3 half) const {
+    constexpr float never = std::numeric_limits<float>::infinity();
     const vec4 middle(centre, 1);
     const glm::vec3 at(glm::dot(object.row_x, middle), glm::dot(object.row_y, middle), glm::dot(object.row_z, middle));
     // How far the box reaches from its centre along a direction of the sonar's axes.
@@ -125,9 +194,9 @@ bool Culler::sees(const View& view, const ObjectRecord& object, glm::vec3 centre
     };
     const float rounding = 1e-5f * (std::abs(at.x) + std::abs(at.y) + std::abs(at.z));
     for (const glm::vec3& outward : view)
-        if (!(glm::dot(outward, at) - reach(outward) <= rounding * glm::length(outward))) return false;
+        if (!(glm::dot(outward, at) - reach(outward) <= rounding * glm::length(outward))) return never;
     const float distance = glm::length(at);
-    return !(distance > 0) || distance - reach(at / distance) - rounding <= range_max_;
+    return distance > 0 ? std::max(distance - reach(at / distance) - rounding, 0.0f) : 0;
 }
 
 }  // namespace insonify::sonar

@@ -1,6 +1,8 @@
 #pragma once
 #include <array>
 #include <cstdint>
+#include <optional>
+#include <span>
 #include <vector>
 
 #include "components/sonar/BeamFan.hpp"
@@ -9,18 +11,33 @@
 
 namespace insonify::sonar {
 
+/** Slant ranges that are heard [m]. */
+struct Reach {
+    double near, far;
+};
+
+/** How far from its place a surface may be drawn, where that takes fewer triangles. */
+struct Tolerance {
+    double pixels = 0;  ///< Across the line of sight, of a pixel's smaller side there; 0: all detail is drawn [1].
+    double metres = 0;  ///< At most [m].
+};
+
 /** Chooses what of a scene is drawn: objects, and clusters of triangles in them, whose boxes reach a
- *  slab's view within the range. */
+ *  slab's view within the range; of patches of which no more can be told apart, what stands for them; and of the
+ *  clusters of a closed, single-sided mesh not those that turn their backs. */
 class Culler {
 public:
-    /** One draw: a run of triangles of one object and material; first_index counts within the object's mesh. */
+    /** One draw: a run of triangles of one object and material; first_index counts within the indices of the object's
+     *  mesh, after which come its coarse_indices. */
     struct Run {
         uint32_t object, first_index, index_count;
         int material;
+        uint32_t stands_for =
+            0;  ///< Indices of the finest triangles for which these are drawn; 0: they are the finest.
     };
 
     /** `geometry` must outlive the culler. */
-    Culler(const types::Geometry& geometry, double range_max);
+    Culler(const types::Geometry& geometry, Reach reach, Tolerance tolerance = {});
 
     /** Places all objects relative to the sonar; once a ping, before `visible`. */
     void place(const types::Snapshot& snapshot);
@@ -33,18 +50,31 @@ private:
     using View = std::array<glm::vec3, 5>;
     vec4 extent(size_t index, const glm::dmat4& sonar_from_object) const;
     void placeObject(size_t index, const glm::dmat4& sonar_from_object);
-    void addRuns(size_t object, const View& view, std::vector<Run>& runs) const;
-    /** Whether a box along an object's axes may reach into a view and the range. */
-    bool sees(const View& view, const ObjectRecord& object, glm::vec3 centre, glm::vec3 half) const;
+    /** What is asked of the parts of an object. */
+    struct Query {
+        size_t object;
+        const View& view;
+        double pixel;                     ///< Smaller side of a pixel at 1 m [m].
+        std::optional<glm::vec3> before;  ///< Place of the sonar before the object's front, in its axes [m].
+    };
+    Query queryOf(size_t object, const View& view, double pixel, float distance) const;
+    void addObject(const Query& query, std::vector<Run>& runs) const;
+    void addClusters(const Query& query, std::span<const types::Cluster> clusters, std::vector<Run>& runs) const;
+    bool turnsItsBack(const Query& query, const types::Cluster& cluster) const;
+    /** Distance that a box along an object's axes has at least [m]; infinite when it is out of view or range. */
+    float nearest(const View& view, const ObjectRecord& object, glm::vec3 centre, glm::vec3 half) const;
 
     const types::Geometry& geometry_;
-    float range_max_;
+    float range_min_, range_max_;
+    Tolerance tolerance_;
     struct Box {
         glm::dvec3 low{0}, high{0};
     };
     std::vector<Box> mesh_boxes_;  ///< In mesh coordinates.
     std::vector<glm::dmat4> world_from_object_;
     std::vector<ObjectRecord> records_;
+    std::vector<double> scales_;  ///< The most by which each object may stretch lengths [1].
+    std::vector<bool> far_;       ///< Out of range: their records are not of this ping.
     size_t run_limit_ = 0;
 };
 

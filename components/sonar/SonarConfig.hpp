@@ -114,7 +114,8 @@ struct SonarConfig {
     Estimator estimator = Estimator::Footprint;  ///< Not a property. Others than the first: `physical` only.
     bool one_frustum = false;  ///< Not a property: one wide image and rounded columns, as `published`.
     int least_slabs = 1;       ///< Not a property: more images than the fan needs [1].
-    int threads = 0;           ///< Not a property: 0, as many as there are cores [1].
+    double detail = 0.5;  ///< Not a property: how far a simpler surface may be off; 0: none is drawn [pixels, bins].
+    int threads = 0;      ///< Not a property: 0, as many as there are cores [1].
     std::string device;
     Deposit deposit = Deposit::Auto;
     std::optional<types::NotBuiltYet> beam_pattern, pulse, volume, multipath;

@@ -33,6 +33,11 @@ double nearPlane(const SonarConfig& config, const Slab& slab) {
     return std::max(config.published ? 0 : config.range_min, 1e-3) / corner;
 }
 
+Tolerance toleranceOf(const SonarConfig& config, const BinGrid& bins) {
+    if (config.published) return {};
+    return {config.detail, config.detail * bins.bin_width};
+}
+
 /** Strongest Lambert parameter [1]. */
 double loudest(const types::Geometry& geometry) {
     double strongest = 0;
@@ -95,7 +100,7 @@ SonarRenderer::Parts::Parts(const SonarConfig& c, types::GeometryPtr scene)
       slabs(makeSlabs(config, beams)),
       bins(makeBinGrid(config)),
       levels(config, bins),
-      culler(*geometry, bins.range_max),
+      culler(*geometry, {config.range_min, bins.range_max}, toleranceOf(config, bins)),
       threads(config.threads),
       surface(context,
               {*geometry, slabs, defines(plan), nearPlane(config, slabs.front()), culler.runLimit(), config.published},

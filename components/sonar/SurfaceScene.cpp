@@ -10,38 +10,50 @@ namespace {
 /** A mesh as it is drawn: triangle t ends in vertex t, which no other triangle ends in. So the last vertex of a
  * triangle, the provoking one, tells which triangle it is, and gl_PrimitiveID, for which llvmpipe takes meshes apart,
  * is not needed. */
-struct Drawn {
+class Drawn {
+public:
+    explicit Drawn(const types::Mesh& mesh) : indices(mesh.indices), place_(mesh.positions.size(), nobody) {
+        const size_t finest = indices.size() / 3;
+        indices.insert(indices.end(), mesh.coarse_indices.begin(), mesh.coarse_indices.end());
+        sources.resize(indices.size() / 3);
+        number(0, finest);
+        for (const types::Patch& patch :
+             mesh.patches)  // with vertices of its own: what is drawn together lies together
+            number(finest + patch.first_index / 3, finest + (patch.first_index + patch.index_count) / 3);
+    }
+
     std::vector<uint32_t> sources;  ///< Of each drawn vertex, in the mesh.
     std::vector<uint32_t> indices;
-};
 
-constexpr uint32_t nobody = 0xffffffff;
+private:
+    static constexpr uint32_t nobody = 0xffffffff;
 
-Drawn drawn(const types::Mesh& mesh) {
-    const size_t count = mesh.indices.size() / 3;
-    Drawn result{std::vector<uint32_t>(count), mesh.indices};
-    std::vector<uint32_t> place(mesh.positions.size(), nobody);
-    for (size_t t = 0; t < count; ++t) {
-        uint32_t* corners = result.indices.data() + 3 * t;
-        uint32_t* free = std::find_if(corners, corners + 3, [&](uint32_t vertex) { return place[vertex] == nobody; });
+    void number(size_t first, size_t last) {
+        for (size_t t = first; t < last; ++t) endInOwnVertex(t);
+        for (size_t i = 3 * first; i < 3 * last; ++i)
+            indices[i] = i % 3 == 2 ? static_cast<uint32_t>(i / 3) : at(indices[i]);
+        for (size_t t = first; t < last; ++t)
+            for (size_t k = 0; k < 3; ++k) place_[sources[indices[3 * t + k]]] = nobody;
+    }
+
+    void endInOwnVertex(size_t t) {
+        uint32_t* corners = indices.data() + 3 * t;
+        uint32_t* free = std::find_if(corners, corners + 3, [&](uint32_t vertex) { return place_[vertex] == nobody; });
         std::rotate(corners, free == corners + 3 ? corners : free + 1, corners + 3);
-        result.sources[t] = corners[2];
-        if (place[corners[2]] == nobody) place[corners[2]] = static_cast<uint32_t>(t);
+        sources[t] = corners[2];
+        if (place_[corners[2]] == nobody) place_[corners[2]] = static_cast<uint32_t>(t);
     }
-    for (size_t i = 0; i < result.indices.size(); ++i) {
-        uint32_t& index = result.indices[i];
-        if (i % 3 == 2) {
-            index = static_cast<uint32_t>(i / 3);
-        } else {
-            if (place[index] == nobody) {
-                place[index] = static_cast<uint32_t>(result.sources.size());
-                result.sources.push_back(index);
-            }
-            index = place[index];
+
+    uint32_t at(uint32_t vertex) {
+        if (place_[vertex] == nobody) {
+            place_[vertex] = static_cast<uint32_t>(sources.size());
+            sources.push_back(vertex);
         }
+        return place_[vertex];
     }
-    return result;
-}
+
+    std::vector<uint32_t> place_;  ///< Where each vertex of the mesh is drawn.
+};
 
 /** One attribute of all drawn vertices; `neutral` where a mesh has none. */
 template <class T>
@@ -95,7 +107,7 @@ void SurfaceScene::uploadVertices(const types::Geometry& geometry) {
     std::vector<uint32_t> indices;
     uint32_t vertex = 0;
     for (const types::Mesh& mesh : geometry.meshes) {
-        const Drawn& added = meshes.emplace_back(drawn(mesh));
+        const Drawn& added = meshes.emplace_back(mesh);
         const auto first_index = static_cast<uint32_t>(indices.size());
         places_.push_back({vertex, first_index, first_index / 3});
         vertex += static_cast<uint32_t>(added.sources.size());
@@ -111,9 +123,10 @@ void SurfaceScene::uploadVertices(const types::Geometry& geometry) {
 
 void SurfaceScene::uploadPlanes(const types::Geometry& geometry) {
     for (const types::Mesh& mesh : geometry.meshes)
-        for (size_t i = 0; i + 2 < mesh.indices.size(); i += 3)
-            plane_list_.push_back(planeOf(mesh.positions[mesh.indices[i]], mesh.positions[mesh.indices[i + 1]],
-                                          mesh.positions[mesh.indices[i + 2]]));
+        for (const auto* indices : {&mesh.indices, &mesh.coarse_indices})
+            for (size_t i = 0; i + 2 < indices->size(); i += 3)
+                plane_list_.push_back(planeOf(mesh.positions[(*indices)[i]], mesh.positions[(*indices)[i + 1]],
+                                              mesh.positions[(*indices)[i + 2]]));
     planes_ = uploaded(plane_list_);
 }
 

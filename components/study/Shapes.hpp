@@ -29,18 +29,19 @@ inline types::Mesh quad(glm::vec3 corner, glm::vec3 a, glm::vec3 b) {
     return meshOf({corner, corner + a, corner + a + b, corner + b}, {0, 1, 2, 0, 2, 3});
 }
 
-/** A sphere about the origin, of `rings` times 2 `rings` quads, their corners on it [m]. */
+/** A sphere about the origin, of `rings` times 2 `rings` quads, their corners on it; closed [m]. */
 inline types::Mesh sphere(double radius, int rings = 128) {
     std::vector<glm::vec3> positions;
     std::vector<uint32_t> indices;
     const int around = 2 * rings;
     for (int i = 0; i <= rings; ++i)
-        for (int j = 0; j <= around; ++j) {
+        for (int j = 0; j < around; ++j) {
             const double polar = std::numbers::pi * i / rings, azimuth = 2 * std::numbers::pi * j / around;
-            positions.push_back(radius * glm::dvec3(std::sin(polar) * std::cos(azimuth),
-                                                    std::sin(polar) * std::sin(azimuth), std::cos(polar)));
+            const double aside = i == 0 || i == rings ? 0 : std::sin(polar);
+            positions.push_back(radius *
+                                glm::dvec3(aside * std::cos(azimuth), aside * std::sin(azimuth), std::cos(polar)));
         }
-    const auto at = [&](int i, int j) { return static_cast<uint32_t>(i * (around + 1) + j); };
+    const auto at = [&](int i, int j) { return static_cast<uint32_t>(i * around + j % around); };
     for (int i = 0; i < rings; ++i)
         for (int j = 0; j < around; ++j) {
             if (i > 0) indices.insert(indices.end(), {at(i, j), at(i + 1, j), at(i, j + 1)});

@@ -96,7 +96,7 @@ struct Count {
 
 /** Compares the runs of all slabs with the triangles that are in view. */
 Count compare(const SonarConfig& config, const types::Snapshot& snapshot) {
-    Culler culler(*snapshot.geometry, config.range);
+    Culler culler(*snapshot.geometry, {0, config.range});
     culler.place(snapshot);
     const glm::dmat4 sonar_from_world = glm::inverse(snapshot.sonar.worldFromBody());
     Count count;
@@ -135,6 +135,7 @@ SonarConfig fan(double field_of_view_deg) {
     config.field_of_view_deg = field_of_view_deg;
     config.beam_height_deg = 50;
     config.quality.rows = 96;
+    config.detail = 0;
     config.device = "software";
     return config;
 }
@@ -151,7 +152,7 @@ types::Mesh ball() { return test::sphere(1, 8); }
 size_t runsOfBall(glm::dvec3 position, double field_of_view_deg = 60) {
     const auto snapshot = test::snapshotOf(test::sceneOf({ball()}, 0, {position}));
     const SonarConfig config = fan(field_of_view_deg);
-    Culler culler(*snapshot.geometry, config.range);
+    Culler culler(*snapshot.geometry, {0, config.range});
     culler.place(snapshot);
     size_t count = 0;
     for (const Slab& slab : makeSlabs(config, makeBeams(config))) {
@@ -190,8 +191,10 @@ std::shared_ptr<types::Geometry> clusteredHarbour() {
 /** One cluster for each mesh, which reaches into every view. */
 types::GeometryPtr withoutCulling(const types::Geometry& geometry) {
     auto whole = std::make_shared<types::Geometry>(geometry);
-    for (types::Mesh& mesh : whole->meshes)
+    for (types::Mesh& mesh : whole->meshes) {
         mesh.clusters = {{0, static_cast<uint32_t>(mesh.indices.size()), 0, {0, 0, 0}, glm::vec3(1e6f)}};
+        mesh.patches.clear();
+    }
     return whole;
 }
 
@@ -224,6 +227,7 @@ TEST(CullerTest, NothingThatASlabSeesIsCulled) {
 TEST(CullerTest, NoTriangleOfAClusterInViewIsCulled) {
     Random random(2);
     const auto geometry = clusteredHarbour();
+    geometry->materials[0].double_sided = true;  // backs are another test's
     ASSERT_GT(geometry->meshes[0].clusters.size(), 100u);
     for (int round = 0; round < 4; ++round) {
         auto turned = std::make_shared<types::Geometry>(*geometry);
@@ -255,7 +259,7 @@ TEST(CullerTest, AnObjectAboutTheSonarIsDrawnInEverySlab) {
 
 TEST(CullerTest, AMovedObjectIsDrawnWhereItIs) {
     types::Snapshot snapshot = test::snapshotOf(test::sceneOf({ball()}, 0, {{-10, 0, 0}}));
-    Culler culler(*snapshot.geometry, 30);
+    Culler culler(*snapshot.geometry, {0, 30});
     std::vector<Culler::Run> runs;
     const Slab slab = makeSlabs(fan(60), makeBeams(fan(60))).front();
     culler.place(snapshot);
@@ -290,6 +294,88 @@ TEST(CullerTest, CullingByRangeTakesOnlyEchoesThatAPixelBeyondItWouldSmearBack) 
         EXPECT_LE(culled[i], all[i]) << i;
         EXPECT_NEAR(culled[i], all[i], 1e-5 * most) << i;
     }
+}
+
+/** Triangles drawn over all slabs of `config`, and how many are drawn in the place of others. */
+struct Drawn {
+    size_t all = 0, coarse = 0, replaced = 0;
+};
+Drawn drawnBy(const SonarConfig& config, const types::Snapshot& snapshot, Tolerance tolerance) {
+    Culler culler(*snapshot.geometry, {config.range_min, config.range}, tolerance);
+    culler.place(snapshot);
+    Drawn drawn;
+    std::vector<Culler::Run> runs;
+    for (const Slab& slab : makeSlabs(config, makeBeams(config))) {
+        culler.visible(slab, runs);
+        EXPECT_LE(runs.size(), culler.runLimit());
+        for (const Culler::Run& run : runs) {
+            drawn.all += run.index_count / 3;
+            if (run.stands_for) drawn.coarse += run.index_count / 3;
+            drawn.replaced += run.stands_for / 3;
+        }
+    }
+    return drawn;
+}
+
+TEST(CullerTest, TheBacksOfAClosedMeshAreNotDrawnAndNoBinMissesThem) {
+    const auto geometry = clusteredHarbour();
+    types::Mesh& ball = geometry->meshes[1];
+    const SonarConfig config = fan(360);
+    const types::Snapshot snapshot = test::snapshotOf(geometry);
+    const size_t fronts = drawnBy(config, snapshot, {}).all;
+    const auto without_backs = pings(config, geometry);
+
+    const auto both_sides = std::make_shared<types::Geometry>(*geometry);
+    both_sides->materials[0].double_sided = true;
+    const size_t triangles = ball.indices.size() / 3;
+    EXPECT_LT(fronts + 2 * triangles / 4, drawnBy(config, test::snapshotOf(both_sides), {}).all) << "of ball and egg";
+    EXPECT_EQ(without_backs, pings(config, both_sides));
+    EXPECT_GT(std::ranges::count_if(without_backs, [](float bin) { return bin > 0; }), 1000);
+}
+
+TEST(CullerTest, FromWithinAClosedMeshItsBackIsHeard) {
+    const auto geometry = test::sceneOf({test::sphere(5, 80)});
+    const auto clustered = std::make_shared<types::Geometry>(*geometry);
+    scene::buildClusters(clustered->meshes[0]);
+    ASSERT_LT(clustered->meshes[0].clusters[0].cone_cutoff, 1);
+    types::Sonar ping;
+    SonarRenderer(fan(60), clustered).render(test::snapshotOf(clustered), ping);
+    EXPECT_GT(*std::ranges::max_element(ping.bins), 0);
+}
+
+TEST(CullerTest, WherePixelsAreCoarseAQuarterOfTheTrianglesOrFewerStandsForAPatch) {
+    const auto geometry = clusteredHarbour();
+    const types::Snapshot snapshot = test::snapshotOf(geometry);
+    const SonarConfig config = fan(120);
+    const Drawn all = drawnBy(config, snapshot, {}), half = drawnBy(config, snapshot, {0.5, 0.05}),
+                whole = drawnBy(config, snapshot, {1, 0.1}), fine = drawnBy(config, snapshot, {1, 1e-9});
+    EXPECT_EQ(all.coarse, 0u);
+    EXPECT_EQ(fine.coarse, 0u) << "no more than so many metres";
+    EXPECT_GT(half.replaced, 2 * half.coarse);
+    EXPECT_LT(half.all, all.all);
+    EXPECT_LT(whole.all, half.all);
+}
+
+TEST(CullerTest, SimplerSurfacesChangeAPingByLessThanItsPixelsDo) {
+    const auto geometry = clusteredHarbour();
+    const auto rms = [](const std::vector<float>& a, const std::vector<float>& b) {
+        double difference = 0, norm = 0;
+        for (size_t i = 0; i < a.size(); ++i) {
+            difference += std::pow(static_cast<double>(a[i]) - b[i], 2);
+            norm += std::pow(b[i], 2);
+        }
+        return std::sqrt(difference / norm);
+    };
+    SonarConfig config = fan(120);
+    config.range = 60;
+    const auto all = pings(config, geometry);
+    config.detail = 0.5;
+    const auto simpler = pings(config, geometry);
+    config.detail = 0;
+    config.quality = {96 * 3, 6, {}, {}};
+    const auto finer = pings(config, geometry);
+    EXPECT_GT(rms(simpler, all), 0) << "nothing was simplified";
+    EXPECT_LT(rms(simpler, all), 0.5 * rms(all, finer));
 }
 
 }  // namespace insonify::sonar
