@@ -22,6 +22,13 @@ Json toJson(const std::vector<types::Omission>& omitted) {
     return list;
 }
 
+std::string qualityText(const types::Plan& plan) {
+    const std::string error =
+        plan.predicted_error >= 0 ? fmt::format(", predicted error {:.2g}", plan.predicted_error) : "";
+    return fmt::format("quality: {} rows, {} columns per beam, {} slabs{}", plan.rows, plan.columns_per_beam,
+                       plan.slabs, error);
+}
+
 Json toJson(const types::Plan& plan) {
     return {{"features", plan.features},
             {"passes", plan.passes},

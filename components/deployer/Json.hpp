@@ -12,6 +12,9 @@ using Json = nlohmann::ordered_json;
 
 Json toJson(const types::Diagnostic& diagnostic);
 Json toJson(const std::vector<types::Omission>& omitted);
+/** One line on the samples that a sonar takes. */
+std::string qualityText(const types::Plan& plan);
+
 /** `{features, passes, omitted, quality: {rows, columns_per_beam, slabs, predicted_error}, notices}`; an error that
  *  is not predicted is null. */
 Json toJson(const types::Plan& plan);

@@ -1,9 +1,14 @@
 #include "components/deployer/Pipeline.hpp"
 
 #include <set>
+#include <stdexcept>
 #include <vector>
 
+#include "components/deployer/StopSignal.hpp"
+#include "components/deployer/Tasks.hpp"
 #include "components/framework/Deployment.hpp"
+#include "components/sonar/PingTask.hpp"
+#include "types/ConfigError.hpp"
 #include "types/Sonar.hpp"
 
 namespace insonify::deployer {
@@ -47,6 +52,23 @@ DeploymentSpec pipelineOf(DeploymentSpec spec, framework::Registry& registry) {
     spec.connections.swap(connections);
     spec.lockstep = true;
     return spec;
+}
+
+SonarAt sonarAt(const std::string& file, uint64_t ping) {
+    framework::Registry registry = builtInTasks();
+    Deployment deployment(pipelineOf(DeploymentSpec::load(file), registry), registry);
+    deployment.configure();
+    const framework::RunResult result = deployment.run({.pings = ping}, stopOnSignals());
+    if (result.failed()) throw std::runtime_error(result.failures.front());
+    for (const auto& task : deployment.tasks()) {
+        auto* sonar = dynamic_cast<sonar::PingTask*>(task.get());
+        types::SnapshotPtr snapshot;
+        if (!sonar || !sonar->plan() || sonar->snapshot.read(snapshot) == framework::FlowStatus::NoData) continue;
+        SonarAt found{sonar->sonarConfig(), *snapshot};
+        found.config.quality = {sonar->plan()->rows, sonar->plan()->columns_per_beam, {}, {}};
+        return found;
+    }
+    throw types::ConfigError(file, "tasks", "has no sonar that got a snapshot: nothing to study");
 }
 
 }  // namespace insonify::deployer

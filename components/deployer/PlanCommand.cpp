@@ -18,9 +18,7 @@ using framework::Deployment;
 using framework::DeploymentSpec;
 
 void printPlan(const std::string& task, const types::Plan& plan) {
-    fmt::print("{}\n  quality: {} rows, {} columns per beam, {} slabs", task, plan.rows, plan.columns_per_beam,
-               plan.slabs);
-    fmt::print("{}\n", plan.predicted_error >= 0 ? fmt::format(", predicted error {:.2g}", plan.predicted_error) : "");
+    fmt::print("{}\n  {}\n", task, qualityText(plan));
     for (const std::string& feature : plan.features) fmt::print("  compiled: {}\n", feature);
     for (const std::string& pass : plan.passes) fmt::print("  run: {}\n", pass);
     for (const types::Omission& omission : plan.omitted)

@@ -1,4 +1,4 @@
-// insonify study error|stability
+// insonify study error|omission|stability
 #include "components/deployer/StudyCommand.hpp"
 
 #include "components/deployer/Commands.hpp"
@@ -9,6 +9,7 @@ void addStudyCommand(CLI::App& app, Action& action) {
     CLI::App* study = app.add_subcommand("study", "Measures the simulator itself");
     study->require_subcommand(1);
     addErrorStudy(*study, action);
+    addOmissionStudy(*study, action);
     addStabilityStudy(*study, action);
 }
 

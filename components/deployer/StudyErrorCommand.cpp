@@ -8,12 +8,8 @@
 
 #include "components/deployer/OutputFolder.hpp"
 #include "components/deployer/Pipeline.hpp"
-#include "components/deployer/StopSignal.hpp"
 #include "components/deployer/StudyCommand.hpp"
-#include "components/deployer/Tasks.hpp"
-#include "components/framework/Deployment.hpp"
 #include "components/sonar/BinGrid.hpp"
-#include "components/sonar/PingTask.hpp"
 #include "components/study/ErrorReport.hpp"
 
 namespace insonify::deployer {
@@ -60,22 +56,11 @@ std::string nameOf(const std::string& file) {
     return std::ranges::find(scenes, name, &study::StudyScene::name) == scenes.end() ? name : "deployment_" + name;
 }
 
-/** The first sonar of a deployment, where it is at its ping number `ping`. */
 study::StudyScene sceneOf(const std::string& file, uint64_t ping) {
-    framework::Registry registry = builtInTasks();
-    framework::Deployment deployment(pipelineOf(framework::DeploymentSpec::load(file), registry), registry);
-    deployment.configure();
-    const framework::RunResult result = deployment.run({.pings = ping}, stopOnSignals());
-    if (result.failed()) throw std::runtime_error(result.failures.front());
-    for (const auto& task : deployment.tasks()) {
-        auto* sonar = dynamic_cast<sonar::PingTask*>(task.get());
-        types::SnapshotPtr snapshot;
-        if (!sonar || sonar->snapshot.read(snapshot) == framework::FlowStatus::NoData) continue;
-        study::StudyScene scene{nameOf(file), file, plain(sonar->sonarConfig(), file), *snapshot, {}};
-        scene.snapshot.geometry = withoutNormalMaps(snapshot->geometry);
-        return scene;
-    }
-    throw types::ConfigError(file, "tasks", "has no sonar that got a snapshot: nothing to study");
+    const SonarAt sonar = sonarAt(file, ping);
+    study::StudyScene scene{nameOf(file), file, plain(sonar.config, file), sonar.snapshot, {}};
+    scene.snapshot.geometry = withoutNormalMaps(sonar.snapshot.geometry);
+    return scene;
 }
 
 std::vector<study::StudyScene> scenesOf(const Options& options) {

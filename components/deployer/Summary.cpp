@@ -43,8 +43,10 @@ Summary::Summary(const framework::Deployment& deployment, const framework::RunRe
     : pings(result.pings), wall_s(result.wall_s), losses(deployment.losses()) {
     for (const auto& task : deployment.tasks()) {
         tasks.push_back(taskSummary(*task));
-        if (const types::Plan* plan = task->plan())
+        if (const types::Plan* plan = task->plan()) {
             for (const types::Omission& omission : plan->omitted) addOnce(omitted, omission);
+            plans[task->name()] = *plan;
+        }
     }
 }
 
@@ -53,7 +55,10 @@ Json Summary::json() const {
     for (const Task& task : tasks) by_name[task.name] = taskJson(task);
     Json lost = Json::object();
     for (const auto& [connection, count] : losses) lost[connection] = count;
-    return {{"pings", pings}, {"wall_s", wall_s}, {"tasks", by_name}, {"losses", lost}, {"omitted", toJson(omitted)}};
+    Json quality = Json::object();
+    for (const auto& [task, plan] : plans) quality[task] = toJson(plan)["quality"];
+    return {{"pings", pings}, {"wall_s", wall_s},           {"tasks", by_name},
+            {"losses", lost}, {"omitted", toJson(omitted)}, {"quality", quality}};
 }
 
 std::string Summary::text() const {
@@ -65,6 +70,7 @@ std::string Summary::text() const {
         text += timesLine(task.name, task.state, task.update);
         for (const auto& [name, times] : task.stages) text += timesLine("  " + name, "", times);
     }
+    for (const auto& [task, plan] : plans) text += fmt::format("{}: {}\n", task, qualityText(plan));
     text += "lost samples\n";
     for (const auto& [connection, count] : losses) text += fmt::format("  {:6}  {}\n", count, connection);
     if (!omitted.empty()) text += "left out\n";

@@ -21,9 +21,10 @@ struct Summary {
     };
     uint64_t pings = 0;
     double wall_s = 0;
-    std::vector<Task> tasks;                 ///< In file order.
-    std::map<std::string, uint64_t> losses;  ///< By "from>to" [samples].
-    std::vector<types::Omission> omitted;    ///< Of all sonars, each once.
+    std::vector<Task> tasks;                   ///< In file order.
+    std::map<std::string, uint64_t> losses;    ///< By "from>to" [samples].
+    std::vector<types::Omission> omitted;      ///< Of all sonars, each once.
+    std::map<std::string, types::Plan> plans;  ///< Of each sonar that has sent a ping, by task.
 
     Summary(const framework::Deployment& deployment, const framework::RunResult& result);
     Json json() const;

@@ -70,8 +70,8 @@ Slab publishedFrustum(const SonarConfig& config) {
     const double half_width = types::radians(config.field_of_view_deg) / 2;
     return {0,
             half_width,
-            config.quality.columns_per_beam * config.beam_count,
-            config.quality.rows,
+            config.columnsPerBeam() * config.beam_count,
+            config.rows(),
             std::tan(half_width),
             std::tan(halfElevation(config))};
 }
@@ -125,15 +125,14 @@ std::vector<Slab> makeSlabs(const SonarConfig& config, const std::vector<Beam>& 
         high = coneAzimuth(high, half_elevation);
     }
     const int count = std::max(config.least_slabs, static_cast<int>(std::ceil((high - low) / widest_slab - 1e-9)));
-    const double columns =
-        config.quality.columns_per_beam * (high - low) / types::radians(config.beamWidthDeg()) / count;
+    const double columns = config.columnsPerBeam() * (high - low) / types::radians(config.beamWidthDeg()) / count;
     std::vector<Slab> slabs(static_cast<size_t>(count));
     for (int i = 0; i < count; ++i) {
         Slab& slab = slabs[static_cast<size_t>(i)];
         slab.half_width = (high - low) / count / 2;
         slab.azimuth = low + (2 * i + 1) * slab.half_width;
         slab.columns = std::max(1, static_cast<int>(std::ceil(columns - 1e-9)));
-        slab.rows = config.quality.rows;
+        slab.rows = config.rows();
         slab.extent_u = std::tan(slab.half_width);
         slab.extent_v = std::tan(half_elevation) / std::cos(slab.half_width);
     }

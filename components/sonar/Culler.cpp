@@ -57,11 +57,8 @@ Culler::Run coarse(const types::Mesh& mesh, const types::Patch& patch, size_t ob
 
 }  // namespace
 
-Culler::Culler(const types::Geometry& geometry, Reach reach, Tolerance tolerance)
-    : geometry_(geometry),
-      range_min_(static_cast<float>(reach.near)),
-      range_max_(static_cast<float>(reach.far)),
-      tolerance_(tolerance) {
+Culler::Culler(const types::Geometry& geometry, const CullRules& rules)
+    : geometry_(geometry), rules_(rules), range_max_(static_cast<float>(rules.range_max)) {
     for (const types::Mesh& mesh : geometry.meshes) {
         Box box{glm::dvec3(std::numeric_limits<double>::max()), glm::dvec3(std::numeric_limits<double>::lowest())};
         for (const glm::vec3& p : mesh.positions)
@@ -110,7 +107,7 @@ void Culler::placeObject(size_t index, const glm::dmat4& sonar_from_object) {
     const Box& box = mesh_boxes_[static_cast<size_t>(geometry_.objects[index].mesh)];
     const glm::dvec3 centre(sonar_from_object * glm::dvec4((box.low + box.high) / 2.0, 1));
     const double radius = scales_[index] * glm::length(box.high - box.low) / 2;
-    far_[index] = glm::length(centre) - radius > 1.001 * range_max_;
+    far_[index] = !rules_.draw_all && glm::length(centre) - radius > 1.001 * rules_.range_max;
     if (far_[index]) return;
     const glm::dmat4 normals(glm::transpose(glm::inverse(linear)));
     ObjectRecord& record = records_[index];
@@ -132,7 +129,7 @@ void Culler::visible(const Slab& slab, std::vector<Run>& runs) const {
 
 Culler::Query Culler::queryOf(size_t object, const View& view, double pixel, float distance) const {
     Query query{object, view, pixel, {}};
-    if (!(distance > range_min_)) return query;  // of a front that is blanked the back may be heard
+    if (!(distance > rules_.range_min)) return query;  // of a front that is blanked the back may be heard
     const ObjectRecord& r = records_[object];
     // The inverse transpose has the rows that take the sonar's place into the object's axes.
     query.before =
@@ -146,7 +143,7 @@ void Culler::addObject(const Query& query, std::vector<Run>& runs) const {
     for (size_t i = 0; i < mesh.patches.size();) {
         const types::Patch& patch = mesh.patches[i];
         const float distance = nearest(query.view, records_[query.object], patch.centre, patch.half);
-        const double tolerated = std::min(tolerance_.pixels * query.pixel * distance, tolerance_.metres);
+        const double tolerated = std::min(rules_.pixels * query.pixel * distance, rules_.metres);
         if (!(distance <= range_max_)) {
             i = patch.next;
         } else if (patch.index_count > 0 && patch.deviation * scales_[query.object] < tolerated) {
@@ -184,6 +181,7 @@ bool Culler::turnsItsBack(const Query& query, const types::Cluster& cluster) con
 
 float Culler::nearest(const View& view, const ObjectRecord& object, glm::vec3 centre, glm::vec3 half) const {
     constexpr float never = std::numeric_limits<float>::infinity();
+    if (rules_.draw_all) return 0;
     const vec4 middle(centre, 1);
     const glm::vec3 at(glm::dot(object.row_x, middle), glm::dot(object.row_y, middle), glm::dot(object.row_z, middle));
     // How far the box reaches from its centre along a direction of the sonar's axes.

@@ -11,15 +11,13 @@
 
 namespace insonify::sonar {
 
-/** Slant ranges that are heard [m]. */
-struct Reach {
-    double near, far;
-};
-
-/** How far from its place a surface may be drawn, where that takes fewer triangles. */
-struct Tolerance {
-    double pixels = 0;  ///< Across the line of sight, of a pixel's smaller side there; 0: all detail is drawn [1].
-    double metres = 0;  ///< At most [m].
+/** What may be left out of a picture. */
+struct CullRules {
+    double range_min, range_max;  ///< Slant ranges that are heard [m].
+    double pixels = 0;      ///< A surface may be so far from its place where that takes fewer triangles: across the
+                            ///< line of sight, of a pixel's smaller side there; 0: all detail is drawn [1],
+    double metres = 0;      ///< and at most [m].
+    bool draw_all = false;  ///< Nothing is culled.
 };
 
 /** Chooses what of a scene is drawn: objects, and clusters of triangles in them, whose boxes reach a
@@ -37,7 +35,7 @@ public:
     };
 
     /** `geometry` must outlive the culler. */
-    Culler(const types::Geometry& geometry, Reach reach, Tolerance tolerance = {});
+    Culler(const types::Geometry& geometry, const CullRules& rules);
 
     /** Places all objects relative to the sonar; once a ping, before `visible`. */
     void place(const types::Snapshot& snapshot);
@@ -65,8 +63,8 @@ private:
     float nearest(const View& view, const ObjectRecord& object, glm::vec3 centre, glm::vec3 half) const;
 
     const types::Geometry& geometry_;
-    float range_min_, range_max_;
-    Tolerance tolerance_;
+    CullRules rules_;
+    float range_max_;
     struct Box {
         glm::dvec3 low{0}, high{0};
     };

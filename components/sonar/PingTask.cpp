@@ -77,7 +77,7 @@ void PingTask::makeRenderer() {
     keeper_.reset();
     geometry_ = aimed_.geometry;
     const SonarConfig config = sonarConfig();
-    chosen_ = !config.quality.target_error && !config.quality.budget_ms;
+    chosen_ = !config.targetError() && !config.quality.budget_ms;
     renderer_ = std::make_unique<SonarRenderer>(config, geometry_);
     plan_ = renderer_->plan();
     culling_untold_ = true;
@@ -86,18 +86,17 @@ void PingTask::makeRenderer() {
 
 void PingTask::chooseQuality() {
     const SonarConfig config = sonarConfig();
-    const QualityConfig& wish = config.quality;
+    const std::optional<double> target = config.targetError(), wished_ms = config.quality.budget_ms;
     renderer_.reset();  // trials draw on this thread, too
-    const double budget = wish.budget_ms ? budget_share * *wish.budget_ms : std::numeric_limits<double>::infinity();
-    std::vector<Quality> ladder = tryQualities(config, aimed_, wish.target_error.value_or(fine_enough), budget);
+    const double budget = wished_ms ? budget_share * *wished_ms : std::numeric_limits<double>::infinity();
+    std::vector<Quality> ladder = tryQualities(config, aimed_, target.value_or(fine_enough), budget);
     renderer_ = std::make_unique<SonarRenderer>(config, geometry_);
     chosen_ = true;
-    if (wish.target_error && ladder.back().error > *wish.target_error)
-        plan_->notices.push_back(
-            fmt::format("Warning: the finest quality leaves an error of {:.2g}; the target is {:g}",
-                        ladder.back().error, *wish.target_error));
+    if (target && ladder.back().error > *target)
+        plan_->notices.push_back(fmt::format(
+            "Warning: the finest quality leaves an error of {:.2g}; the target is {:g}", ladder.back().error, *target));
     setQuality(ladder.back());
-    if (wish.budget_ms) keeper_.emplace(std::move(ladder), *wish.budget_ms);
+    if (wished_ms) keeper_.emplace(std::move(ladder), *wished_ms);
 }
 
 void PingTask::setQuality(const Quality& quality) {

@@ -176,8 +176,8 @@ std::vector<std::string> configNotices(const SonarConfig& config) {
 types::Plan makePlan(const SonarConfig& config, const types::Geometry& geometry) {
     const BinGrid grid = makeBinGrid(config);
     types::Plan plan;
-    plan.rows = config.quality.rows;
-    plan.columns_per_beam = config.quality.columns_per_beam;
+    plan.rows = config.rows();
+    plan.columns_per_beam = config.columnsPerBeam();
     plan.slabs = static_cast<int>(makeSlabs(config, makeBeams(config)).size());
     plan.predicted_error = std::numeric_limits<double>::quiet_NaN();
     plan.features = features(config, geometry);

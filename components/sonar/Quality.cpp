@@ -4,6 +4,8 @@
 #include <chrono>
 #include <cmath>
 #include <limits>
+#include <map>
+#include <utility>
 
 #include "components/sonar/BeamFan.hpp"
 #include "components/sonar/SonarRenderer.hpp"
@@ -27,10 +29,13 @@ public:
     Trial(const SonarConfig& config, const types::Snapshot& scene)
         : config_(plain(config)), scene_(scene), renderer_(config_, scene.geometry) {}
 
-    std::vector<float> bins(int rows, int columns) {
+    /** Rendered once for each quality: what one is compared with is often where the next begins. */
+    const std::vector<float>& bins(int rows, int columns) {
+        std::vector<float>& bins = rendered_[{rows, columns}];
+        if (!bins.empty()) return bins;
         renderer_.setQuality(rows, columns);
         renderer_.render(scene_, ping_);
-        return ping_.bins;
+        return bins = ping_.bins;
     }
     double ms(int rows, int columns) {
         renderer_.setQuality(rows, columns);
@@ -62,6 +67,7 @@ private:
     const types::Snapshot& scene_;
     SonarRenderer renderer_;
     types::Sonar ping_;
+    std::map<std::pair<int, int>, std::vector<float>> rendered_;
 };
 
 /** Whether a device can draw so many columns per beam. */
@@ -76,14 +82,17 @@ struct Changes {
     double error() const { return std::max(std::hypot(of_rows, of_columns), of_both); }
 };
 
-/** Rows are also tried at factors that are not powers of 2: an edge along the rows may lie as wrong at twice as many.
- * Both together, because a small thing may need more of both before it is seen at all. */
-Changes changesOf(Trial& trial, int rows, int columns) {
-    const auto here = trial.bins(rows, columns);
+/** Both together, because a small thing may need more of both before it is seen at all. What seems to be within
+ * `target_error` is also tried with rows at factors that are not powers of 2: an edge along the rows may lie as wrong
+ * at twice as many. */
+Changes changesOf(Trial& trial, int rows, int columns, double target_error) {
     const auto change = [&](double taller, int wider) {
-        return trial.change(here, trial.bins(static_cast<int>(std::lround(taller * rows)), wider * columns));
+        const int more_rows = static_cast<int>(std::lround(taller * rows));
+        return trial.change(trial.bins(rows, columns), trial.bins(more_rows, wider * columns));
     };
-    return {std::max({change(1.4, 1), change(2, 1), change(2.7, 1)}), change(1, 2), change(2, 2)};
+    Changes changes{change(2, 1), change(1, 2), change(2, 2)};
+    if (changes.error() <= target_error) changes.of_rows = std::max({changes.of_rows, change(1.4, 1), change(2.7, 1)});
+    return changes;
 }
 
 }  // namespace
@@ -94,7 +103,7 @@ std::vector<Quality> tryQualities(const SonarConfig& config, const types::Snapsh
     std::vector<Quality> ladder;
     for (int rows = least_rows, columns = 1;
          rows <= most_rows && columns <= most_columns && fits(config, 2 * columns);) {
-        const Changes changes = changesOf(trial, rows, columns);
+        const Changes changes = changesOf(trial, rows, columns, target_error);
         const Quality quality{rows, columns, changes.error(), std::isfinite(budget_ms) ? trial.ms(rows, columns) : 0};
         if (!ladder.empty() && quality.ms > budget_ms) break;
         ladder.push_back(quality);

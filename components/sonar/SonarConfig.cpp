@@ -41,7 +41,7 @@ void checkImages(const SonarConfig& config, types::Problems& problems) {
         problems.push_back(
             {"quality.columns_per_beam",
              fmt::format("is {}, which with beams of {:g} deg over {:g} deg makes images of {} columns; may be {}",
-                         config.quality.columns_per_beam, config.beamWidthDeg(), config.coverageDeg(), columns,
+                         config.columnsPerBeam(), config.beamWidthDeg(), config.coverageDeg(), columns,
                          most_image_size)});
 }
 
@@ -72,6 +72,13 @@ double SonarConfig::coverageDeg() const {
     return std::min(*last - *first + beamWidthDeg(), 360.0);
 }
 
+std::optional<double> SonarConfig::targetError() const {
+    constexpr double default_target = 0.02;
+    if (quality.target_error) return quality.target_error;
+    if (published || quality.isGiven() || quality.budget_ms) return {};
+    return default_target;
+}
+
 double SonarConfig::speedOfSound() const { return speed_of_sound.value_or(water ? leroySpeed(*water) : 1500); }
 
 void SonarConfig::check(types::Problems& problems) const {
@@ -94,10 +101,8 @@ void SonarConfig::check(types::Problems& problems) const {
 }
 
 void QualityConfig::check(types::Problems& problems) const {
-    const QualityConfig absent;
-    const bool given = rows != absent.rows || columns_per_beam != absent.columns_per_beam;
     for (const auto& [name, value] : {std::pair{"target_error", target_error}, {"budget_ms", budget_ms}})
-        if (value && (given || (target_error && budget_ms)))
+        if (value && (isGiven() || (target_error && budget_ms)))
             problems.push_back(
                 {name, "is given with another choice; give rows and columns_per_beam, or target_error, or budget_ms"});
 }

@@ -70,18 +70,21 @@ enum class Estimator {
     NearestJitter,  ///< All in the bin of a point drawn at random in it.
 };
 
-/** Samples per beam: given, or found for an error or a time on the first ping that hears anything. */
+/** Samples per beam: given, or found for an error or a time on the first ping that hears anything. Found for an error
+ * of 0.02 when nothing is given. */
 struct QualityConfig {
-    int rows = 256;
-    int columns_per_beam = 2;
+    std::optional<int> rows, columns_per_beam;
     std::optional<double> target_error, budget_ms;
+
+    bool isGiven() const { return rows || columns_per_beam; }
 
     template <class Self, class V>
     static void describe(Self& self, V& visit) {
         using types::Field;
-        visit(Field{"rows", "1", "image rows over beam_height_deg", 1, 16384}, self.rows);
-        visit(Field{"columns_per_beam", "1", "image columns per beam", 1, 256}, self.columns_per_beam);
-        visit(Field{"target_error", "1", "instead: relative L2 error of energies times r^5, 1e-4 to 1", 1e-4, 1},
+        visit(Field{"rows", "1", "image rows over beam_height_deg, else 256", 1, 16384}, self.rows);
+        visit(Field{"columns_per_beam", "1", "image columns per beam, else 2", 1, 256}, self.columns_per_beam);
+        visit(Field{"target_error", "1", "instead: relative L2 error of energies times r^5; 0.02 when no key is given",
+                    1e-4, 1},
               self.target_error);
         visit(Field{"budget_ms", "ms", "instead: time of a ping, kept by lowering the quality", 0.1, 1e5},
               self.budget_ms);
@@ -114,12 +117,18 @@ struct SonarConfig {
     Estimator estimator = Estimator::Footprint;  ///< Not a property. Others than the first: `physical` only.
     bool one_frustum = false;  ///< Not a property: one wide image and rounded columns, as `published`.
     int least_slabs = 1;       ///< Not a property: more images than the fan needs [1].
-    double detail = 0.5;  ///< Not a property: how far a simpler surface may be off; 0: none is drawn [pixels, bins].
-    int threads = 0;      ///< Not a property: 0, as many as there are cores [1].
+    double detail = 0.5;    ///< Not a property: how far a simpler surface may be off; 0: none is drawn [pixels, bins].
+    bool draw_all = false;  ///< Not a property: what is outside the fan and the range is drawn as well.
+    int threads = 0;        ///< Not a property: 0, as many as there are cores [1].
     std::string device;
     Deposit deposit = Deposit::Auto;
     std::optional<types::NotBuiltYet> beam_pattern, pulse, volume, multipath;
 
+    /** Image rows and columns per beam, until others are chosen for an error or a time [1]. */
+    int rows() const { return quality.rows.value_or(256); }
+    int columnsPerBeam() const { return quality.columns_per_beam.value_or(2); }
+    /** Error to choose the quality for, none when it is given or there is a budget. `published` has no use for one. */
+    std::optional<double> targetError() const;
     /** Beams per ping: of the table, else beam_count [1]. */
     int beams() const { return bearings_deg.empty() ? beam_count : static_cast<int>(bearings_deg.size()); }
     /** Centre of beam k [deg], 0 ahead, positive to port. */

@@ -33,9 +33,9 @@ double nearPlane(const SonarConfig& config, const Slab& slab) {
     return std::max(config.published ? 0 : config.range_min, 1e-3) / corner;
 }
 
-Tolerance toleranceOf(const SonarConfig& config, const BinGrid& bins) {
-    if (config.published) return {};
-    return {config.detail, config.detail * bins.bin_width};
+CullRules cullRules(const SonarConfig& config, const BinGrid& bins) {
+    const double detail = config.published ? 0 : config.detail;
+    return {config.range_min, bins.range_max, detail, detail * bins.bin_width, config.draw_all};
 }
 
 /** Strongest Lambert parameter [1]. */
@@ -100,7 +100,7 @@ SonarRenderer::Parts::Parts(const SonarConfig& c, types::GeometryPtr scene)
       slabs(makeSlabs(config, beams)),
       bins(makeBinGrid(config)),
       levels(config, bins),
-      culler(*geometry, {config.range_min, bins.range_max}, toleranceOf(config, bins)),
+      culler(*geometry, cullRules(config, bins)),
       threads(config.threads),
       surface(context,
               {*geometry, slabs, defines(plan), nearPlane(config, slabs.front()), culler.runLimit(), config.published},
@@ -194,8 +194,8 @@ void SonarRenderer::render(const types::Snapshot& snapshot, types::Sonar& ping) 
 
 void SonarRenderer::setQuality(int rows, int columns_per_beam) {
     parts_->context.requireThread();
-    parts_->plan.rows = parts_->config.quality.rows = rows;
-    parts_->plan.columns_per_beam = parts_->config.quality.columns_per_beam = columns_per_beam;
+    parts_->config.quality.rows = parts_->plan.rows = rows;
+    parts_->config.quality.columns_per_beam = parts_->plan.columns_per_beam = columns_per_beam;
     parts_->slabs = makeSlabs(parts_->config, parts_->beams);
     parts_->surface.resize(parts_->slabs);
     parts_->sums = {};
@@ -213,25 +213,31 @@ bool SonarRenderer::heard() const {
 std::vector<types::Omission> SonarRenderer::culled() const {
     const types::Geometry& geometry = *parts_->geometry;
     std::vector<bool> seen(geometry.objects.size());
-    size_t empty_slabs = 0, most_triangles = 0;
+    size_t empty_slabs = 0, shown = 0, coarse = 0, replaced = 0;  // of two slabs more than once
     for (size_t i = 0; i < parts_->slabs.size(); ++i) {
         const auto& runs = parts_->surface.picture(i).runs;
         empty_slabs += runs.empty();
         for (const Culler::Run& run : runs) {
             seen[run.object] = true;
-            most_triangles += run.index_count / 3;  // of two slabs more than once
+            shown += (run.stands_for ? run.stands_for : run.index_count) / 3;
+            coarse += run.stands_for ? run.index_count / 3 : 0;
+            replaced += run.stands_for / 3;
         }
     }
     std::vector<types::Omission> all;
-    const auto add = [&](const char* before, size_t left_out, size_t of, const char* what) {
-        if (left_out > 0)
-            all.push_back({fmt::format("{}{} of {} {}", before, left_out, of, what),
-                           "outside the fan or the range at the first ping"});
+    const auto add = [&](const char* before, size_t left_out, size_t of, const char* what, const char* reason) {
+        if (left_out > 0) all.push_back({fmt::format("{}{} of {} {}", before, left_out, of, what), reason});
     };
-    add("", static_cast<size_t>(std::ranges::count(seen, false)), seen.size(), "objects");
+    const char* outside = "outside the fan or the range at the first ping";
+    add("", static_cast<size_t>(std::ranges::count(seen, false)), seen.size(), "objects", outside);
     const size_t triangles = geometry.triangleCount();
-    add("at least ", triangles - std::min(triangles, most_triangles), triangles, "triangles");
-    add("", empty_slabs, parts_->slabs.size(), "slabs");
+    add("at least ", triangles - std::min(triangles, shown), triangles, "triangles",
+        "outside the fan or the range at the first ping, or on the far side of a closed mesh");
+    if (replaced > coarse)
+        all.push_back({fmt::format("detail of {} triangles", replaced),
+                       fmt::format("at the first ping {} within {:g} of a pixel and of a bin of them are drawn", coarse,
+                                   parts_->config.detail)});
+    add("", empty_slabs, parts_->slabs.size(), "slabs", outside);
     return all;
 }
 

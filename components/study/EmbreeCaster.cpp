@@ -36,8 +36,8 @@ std::vector<Image> imagesOf(const types::Pose& sonar, const sonar::SonarConfig& 
         const double half = fov / count / 2, centre = -fov / 2 + (2 * i + 1) * half;
         const auto turn = glm::angleAxis(centre, glm::dvec3(0, 0, 1));
         images.push_back({centre, std::tan(half), std::tan(config.beam_height_deg * degree / 2) / std::cos(half),
-                          (config.quality.columns_per_beam * config.beam_count + count - 1) / count,
-                          config.quality.rows, glm::mat3_cast(sonar.orientation * turn)});
+                          (config.columnsPerBeam() * config.beam_count + count - 1) / count, config.rows(),
+                          glm::mat3_cast(sonar.orientation * turn)});
     }
     return images;
 }

@@ -72,6 +72,16 @@ void addPoints(Out out, const ErrorResult& result) {
     fmt::format_to(out, "</table>\n");
 }
 
+void addPredictions(Out out, const ErrorResult& result) {
+    fmt::format_to(out,
+                   "<h2>Error as a control</h2>\n<table><tr><th>scene<th>target<th>rows<th>columns<th>predicted"
+                   "<th>error, with TVG</tr>\n");
+    for (const Prediction& p : result.predictions)
+        fmt::format_to(out, "<tr><td>{}<td>{}<td>{}<td>{}<td>{:.2g}<td>{:.2g}</tr>\n", p.scene, p.target_error, p.rows,
+                       p.columns_per_beam, p.predicted_error, p.error);
+    fmt::format_to(out, "</table>\n");
+}
+
 /** Without what JSON and HTML would have to quote. */
 std::string plain(std::string text) {
     std::erase_if(text, [](char c) {
@@ -133,6 +143,13 @@ std::string jsonOf(const ErrorResult& result) {
             orNone(timeTo(goals[0], points), "{:.6g}", "null"), orNone(timeTo(goals[1], points), "{:.6g}", "null"),
             orNone(timeTo(goals[2], points), "{:.6g}", "null"));
     });
+    fmt::format_to(out, "],\n\"predictions\": [");
+    comma = "\n";
+    for (const Prediction& p : result.predictions)
+        fmt::format_to(out,
+                       "{}{{\"scene\": \"{}\", \"target_error\": {}, \"rows\": {}, \"columns_per_beam\": {}, "
+                       "\"predicted_error\": {:.6g}, \"rel_l2_tvg\": {:.6g}}}",
+                       next(), p.scene, p.target_error, p.rows, p.columns_per_beam, p.predicted_error, p.error);
     fmt::format_to(out, "],\n\"verdicts\": [");
     comma = "\n";
     for (const Claim& v : claims(result))
@@ -183,6 +200,7 @@ std::string pageOf(const ErrorResult& result) {
                        reference.error > 0 ? fmt::format(", its own error about {:.1e}", reference.error) : "");
     }
     addTable(out, result);
+    addPredictions(out, result);
     addVerdicts(out, result);
     addPoints(out, result);
     return text + "</body></html>\n";

@@ -6,17 +6,20 @@
 #include <chrono>
 #include <cmath>
 #include <ctime>
+#include <limits>
 #include <memory>
 #include <stdexcept>
 
 #include "components/sonar/BeamFan.hpp"
 #include "components/sonar/BinGrid.hpp"
+#include "components/sonar/Quality.hpp"
 #include "components/sonar/SonarRenderer.hpp"
 #include "components/study/EmbreeCaster.hpp"
 
 namespace insonify::study {
 namespace {
 
+constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr int least_rows = 64;
 constexpr int most_levels_computed = 4;  ///< Without a closed form: the reference costs 64 times the finest point.
 constexpr int reference_refinement = 8;  ///< Of the finest point measured, in rows and columns each.
@@ -84,6 +87,7 @@ public:
             if (base_columns_ << level != 2) measure(Method::Footprint, least_rows << level, 2, slabs);
         for (const int more : {2 * slabs, 4 * slabs})
             measure(Method::Footprint, 4 * least_rows, 4 * base_columns_, more);
+        predict();
         if (!scene_.truth) result_.references.back().error = halving_ / (convergence() - 1);
     }
 
@@ -126,6 +130,19 @@ private:
         time([&](auto&) { renderer.render(scene_.snapshot, ping); }, options_.pings, energies, point);
         energies = ping.bins;
         result_.device = renderer.device();
+    }
+
+    void predict() {
+        options_.progress(scene_.name + " target_error");
+        constexpr double target = 0.02;
+        const sonar::Quality chosen = sonar::tryQualities(scene_.config, scene_.snapshot, target, infinity).back();
+        sonar::SonarConfig config = scene_.config;
+        config.quality.rows = chosen.rows;
+        config.quality.columns_per_beam = chosen.columns_per_beam;
+        types::Sonar ping;
+        sonar::SonarRenderer(config, scene_.snapshot.geometry).render(scene_.snapshot, ping);
+        result_.predictions.push_back({scene_.name, chosen.rows, chosen.columns_per_beam, target, chosen.error,
+                                       compare(ping.bins, reference_, layout_).rel_l2_tvg});
     }
 
     double kappa(const sonar::SonarConfig& config) {

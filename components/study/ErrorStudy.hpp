@@ -34,8 +34,16 @@ struct Reference {
     double error = 0;           ///< Its own relative L2 error, estimated; 0: exact to rounding.
 };
 
+/** What `quality: {target_error}` chose for a scene, and what became of it; errors are rel_l2_tvg. */
+struct Prediction {
+    std::string scene;
+    int rows, columns_per_beam;                   ///< [1]
+    double target_error, predicted_error, error;  ///< [1]
+};
+
 struct ErrorResult {
     std::vector<Measurement> measurements;
+    std::vector<Prediction> predictions;  ///< One for each scene.
     std::vector<Reference> references;
     std::string device;  ///< Name of the OpenGL renderer.
 };

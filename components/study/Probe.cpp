@@ -19,7 +19,7 @@ constexpr double most_rays = 1e6, most_triangles = 1e5;  ///< For which kappa is
 
 /** Most bins that one pixel covers; NaN where the caster does not know the beams or would take too long. */
 double kappa(const sonar::SonarConfig& config, const types::Snapshot& snapshot) {
-    const double rays = static_cast<double>(config.quality.rows) * config.quality.columns_per_beam * config.beams();
+    const double rays = static_cast<double>(config.rows()) * config.columnsPerBeam() * config.beams();
     const bool planar = config.bearings_deg.empty() && config.beam_geometry == sonar::BeamGeometry::Planar;
     if (!planar || rays > most_rays || static_cast<double>(snapshot.geometry->triangleCount()) > most_triangles)
         return NAN;
@@ -46,7 +46,7 @@ Conditions conditionsOf(const sonar::SonarConfig& config, const types::Snapshot&
     const auto silent = config.output == sonar::Output::Intensity ? 0.0f : -3000.0f;
     const auto occupied =
         static_cast<double>(std::ranges::count_if(ping.bins, [=](float bin) { return bin != silent; }));
-    const double pixels = static_cast<double>(config.quality.rows) * config.quality.columns_per_beam * config.beams();
+    const double pixels = static_cast<double>(config.rows()) * config.columnsPerBeam() * config.beams();
     Conditions all = {{"kappa", kappa(config, snapshot)},
                       {"range_ratio", grid.range_max / nearest},
                       {"attenuation_db", 2 * sonar::makeAbsorption(config).db_per_m * (grid.range_max - nearest)},

@@ -1,26 +1,12 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <glm/gtc/matrix_transform.hpp>
-#include <random>
 
-#include "components/scene/Clusters.hpp"
 #include "components/sonar/Culler.hpp"
-#include "components/sonar/SonarRenderer.hpp"
-#include "tests/support/Scenes.hpp"
+#include "tests/sonar/ClusteredHarbour.hpp"
 
 namespace insonify::sonar {
 namespace {
-
-using Random = std::mt19937_64;
-
-double uniform(Random& random, double low, double high) {
-    return std::uniform_real_distribution<double>(low, high)(random);
-}
-
-glm::dvec3 uniformVector(Random& random, double size) {
-    return {uniform(random, -size, size), uniform(random, -size, size), uniform(random, -size, size)};
-}
 
 /** Turned, placed within `reach` [m], and half of the time stretched unevenly, mirrored and sheared. */
 glm::dmat4 randomPlace(Random& random, double reach) {
@@ -43,22 +29,6 @@ types::Mesh triangleSoup(Random& random, int triangles) {
         mesh.clusters.push_back({static_cast<uint32_t>(3 * i), 3, 0, at, half * 1.000001f});
     }
     for (uint32_t i = 0; i < mesh.positions.size(); ++i) mesh.indices.push_back(i);
-    return mesh;
-}
-
-/** A rough sheet of 2 n n triangles between -1 and 1, split into clusters. */
-types::Mesh clusteredSheet(Random& random, int n) {
-    std::vector<glm::vec3> positions;
-    std::vector<uint32_t> indices;
-    for (int i = 0; i <= n; ++i)
-        for (int j = 0; j <= n; ++j) positions.push_back({2.0 * i / n - 1, 2.0 * j / n - 1, uniform(random, 0, 0.1)});
-    for (uint32_t i = 0, side = static_cast<uint32_t>(n) + 1; i + 1 < side; ++i)
-        for (uint32_t j = 0; j + 1 < side; ++j) {
-            const uint32_t a = i * side + j;
-            indices.insert(indices.end(), {a, a + side, a + 1, a + 1, a + side, a + side + 1});
-        }
-    types::Mesh mesh = test::meshOf(positions, indices);
-    scene::buildClusters(mesh);
     return mesh;
 }
 
@@ -126,20 +96,6 @@ Count compare(const SonarConfig& config, const types::Snapshot& snapshot) {
     return count;
 }
 
-SonarConfig fan(double field_of_view_deg) {
-    SonarConfig config;
-    config.speed_of_sound = 1000;
-    config.range = 30;
-    config.bin_count = 300;
-    config.beam_count = 32;
-    config.field_of_view_deg = field_of_view_deg;
-    config.beam_height_deg = 50;
-    config.quality.rows = 96;
-    config.detail = 0;
-    config.device = "software";
-    return config;
-}
-
 types::Snapshot randomSnapshot(Random& random, types::GeometryPtr geometry) {
     return test::snapshotOf(std::move(geometry), uniformVector(random, 10), uniform(random, -3, 3),
                             uniform(random, -1, 1), uniform(random, -3, 3));
@@ -161,31 +117,6 @@ size_t runsOfBall(glm::dvec3 position, double field_of_view_deg = 60) {
         count += runs.size();
     }
     return count;
-}
-
-/** The bins of three pings from different poses, one after the other. */
-std::vector<float> pings(const SonarConfig& config, const types::GeometryPtr& geometry) {
-    SonarRenderer renderer(config, geometry);
-    std::vector<float> bins;
-    for (int i = 0; i < 3; ++i) {
-        types::Sonar ping;
-        renderer.render(test::snapshotOf(geometry, {i - 1.0, 0.5 * i, 0.0}, 0.4 * i, 0.15, 0.1 * i), ping);
-        bins.insert(bins.end(), ping.bins.begin(), ping.bins.end());
-    }
-    return bins;
-}
-
-/** A floor of clusters and, in the middle, a ball of clusters. */
-std::shared_ptr<types::Geometry> clusteredHarbour() {
-    Random random(3);
-    auto geometry = std::make_shared<types::Geometry>();
-    geometry->materials.resize(1);
-    geometry->meshes = {clusteredSheet(random, 120), test::sphere(1, 80)};
-    scene::buildClusters(geometry->meshes[1]);
-    geometry->objects = {{"floor", 0, glm::scale(glm::translate(glm::dmat4(1), {0.0, 0.0, -4.0}), {50.0, 50.0, 6.0})},
-                         {"ball", 1, glm::translate(glm::dmat4(1), {9.0, 4.0, -3.0})},
-                         {"egg", 1, glm::scale(glm::translate(glm::dmat4(1), {-12.0, 5.0, -2.0}), {1.0, 3.0, -1.0})}};
-    return geometry;
 }
 
 /** One cluster for each mesh, which reaches into every view. */
@@ -294,88 +225,6 @@ TEST(CullerTest, CullingByRangeTakesOnlyEchoesThatAPixelBeyondItWouldSmearBack) 
         EXPECT_LE(culled[i], all[i]) << i;
         EXPECT_NEAR(culled[i], all[i], 1e-5 * most) << i;
     }
-}
-
-/** Triangles drawn over all slabs of `config`, and how many are drawn in the place of others. */
-struct Drawn {
-    size_t all = 0, coarse = 0, replaced = 0;
-};
-Drawn drawnBy(const SonarConfig& config, const types::Snapshot& snapshot, Tolerance tolerance) {
-    Culler culler(*snapshot.geometry, {config.range_min, config.range}, tolerance);
-    culler.place(snapshot);
-    Drawn drawn;
-    std::vector<Culler::Run> runs;
-    for (const Slab& slab : makeSlabs(config, makeBeams(config))) {
-        culler.visible(slab, runs);
-        EXPECT_LE(runs.size(), culler.runLimit());
-        for (const Culler::Run& run : runs) {
-            drawn.all += run.index_count / 3;
-            if (run.stands_for) drawn.coarse += run.index_count / 3;
-            drawn.replaced += run.stands_for / 3;
-        }
-    }
-    return drawn;
-}
-
-TEST(CullerTest, TheBacksOfAClosedMeshAreNotDrawnAndNoBinMissesThem) {
-    const auto geometry = clusteredHarbour();
-    types::Mesh& ball = geometry->meshes[1];
-    const SonarConfig config = fan(360);
-    const types::Snapshot snapshot = test::snapshotOf(geometry);
-    const size_t fronts = drawnBy(config, snapshot, {}).all;
-    const auto without_backs = pings(config, geometry);
-
-    const auto both_sides = std::make_shared<types::Geometry>(*geometry);
-    both_sides->materials[0].double_sided = true;
-    const size_t triangles = ball.indices.size() / 3;
-    EXPECT_LT(fronts + 2 * triangles / 4, drawnBy(config, test::snapshotOf(both_sides), {}).all) << "of ball and egg";
-    EXPECT_EQ(without_backs, pings(config, both_sides));
-    EXPECT_GT(std::ranges::count_if(without_backs, [](float bin) { return bin > 0; }), 1000);
-}
-
-TEST(CullerTest, FromWithinAClosedMeshItsBackIsHeard) {
-    const auto geometry = test::sceneOf({test::sphere(5, 80)});
-    const auto clustered = std::make_shared<types::Geometry>(*geometry);
-    scene::buildClusters(clustered->meshes[0]);
-    ASSERT_LT(clustered->meshes[0].clusters[0].cone_cutoff, 1);
-    types::Sonar ping;
-    SonarRenderer(fan(60), clustered).render(test::snapshotOf(clustered), ping);
-    EXPECT_GT(*std::ranges::max_element(ping.bins), 0);
-}
-
-TEST(CullerTest, WherePixelsAreCoarseAQuarterOfTheTrianglesOrFewerStandsForAPatch) {
-    const auto geometry = clusteredHarbour();
-    const types::Snapshot snapshot = test::snapshotOf(geometry);
-    const SonarConfig config = fan(120);
-    const Drawn all = drawnBy(config, snapshot, {}), half = drawnBy(config, snapshot, {0.5, 0.05}),
-                whole = drawnBy(config, snapshot, {1, 0.1}), fine = drawnBy(config, snapshot, {1, 1e-9});
-    EXPECT_EQ(all.coarse, 0u);
-    EXPECT_EQ(fine.coarse, 0u) << "no more than so many metres";
-    EXPECT_GT(half.replaced, 2 * half.coarse);
-    EXPECT_LT(half.all, all.all);
-    EXPECT_LT(whole.all, half.all);
-}
-
-TEST(CullerTest, SimplerSurfacesChangeAPingByLessThanItsPixelsDo) {
-    const auto geometry = clusteredHarbour();
-    const auto rms = [](const std::vector<float>& a, const std::vector<float>& b) {
-        double difference = 0, norm = 0;
-        for (size_t i = 0; i < a.size(); ++i) {
-            difference += std::pow(static_cast<double>(a[i]) - b[i], 2);
-            norm += std::pow(b[i], 2);
-        }
-        return std::sqrt(difference / norm);
-    };
-    SonarConfig config = fan(120);
-    config.range = 60;
-    const auto all = pings(config, geometry);
-    config.detail = 0.5;
-    const auto simpler = pings(config, geometry);
-    config.detail = 0;
-    config.quality = {96 * 3, 6, {}, {}};
-    const auto finer = pings(config, geometry);
-    EXPECT_GT(rms(simpler, all), 0) << "nothing was simplified";
-    EXPECT_LT(rms(simpler, all), 0.5 * rms(all, finer));
 }
 
 }  // namespace insonify::sonar

@@ -38,7 +38,7 @@ double sigmoid(double z) { return 1 / (1 + std::exp(-18 * (z - 2.0 / 3))); }
 
 /** Level ground `height` below the sonar, counted pixel by pixel; `absorption` in Np/m. */
 std::vector<double> counted(const SonarConfig& config, double height, double absorption = 0) {
-    const int width = config.quality.columns_per_beam * config.beam_count, rows = config.quality.rows;
+    const int width = config.columnsPerBeam() * config.beam_count, rows = config.rows();
     const auto beams = static_cast<size_t>(config.beam_count), bins = static_cast<size_t>(config.bin_count);
     const double fov = types::radians(config.field_of_view_deg);
     const double scale = width / 2.0 / std::tan(fov / 2),

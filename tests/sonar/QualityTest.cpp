@@ -99,11 +99,11 @@ TEST_P(QualityTaskTest, TheChoiceAndItsErrorAreInThePlanOnceSomethingIsHeard) {
     ping(300);
     ASSERT_TRUE(task.plan()) << task.lastError();
     EXPECT_TRUE(std::isnan(task.plan()->predicted_error)) << "nothing is in range";
-    EXPECT_EQ(task.plan()->rows, QualityConfig().rows);
+    EXPECT_EQ(task.plan()->rows, SonarConfig().rows());
     ping(0);
     EXPECT_GT(task.plan()->predicted_error, 0);
     EXPECT_LE(task.plan()->predicted_error, 0.03);
-    EXPECT_LT(task.plan()->rows, QualityConfig().rows) << "a flat bottom needs few";
+    EXPECT_LT(task.plan()->rows, SonarConfig().rows()) << "a flat bottom needs few";
 }
 
 INSTANTIATE_TEST_SUITE_P(Outputs, QualityTaskTest,

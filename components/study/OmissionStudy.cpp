@@ -1,0 +1,230 @@
+#include "components/study/OmissionStudy.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <memory>
+
+#include "components/sonar/Acoustics.hpp"
+#include "components/sonar/BinGrid.hpp"
+#include "components/sonar/SonarRenderer.hpp"
+#include "components/study/Metrics.hpp"
+
+namespace insonify::study {
+namespace {
+
+using sonar::SonarConfig;
+
+/** One way to render the ping. */
+struct Way {
+    SonarConfig config;
+    types::Snapshot snapshot;
+    int bins_in_one = 1;  ///< So many bins are added up before they are compared [1].
+};
+
+struct Rendered {
+    std::vector<float> bins;
+    std::vector<double> ms;
+};
+
+double now() {
+    return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
+
+/** Neighbouring bins added up; bins of a beam are a multiple of `in_one`. */
+std::vector<float> joined(const std::vector<float>& bins, int in_one) {
+    std::vector<float> sums(bins.size() / static_cast<size_t>(in_one));
+    for (size_t i = 0; i < bins.size(); ++i) sums[i / static_cast<size_t>(in_one)] += bins[i];
+    return sums;
+}
+
+void render(const Way& way, int pings, Rendered& to) {
+    sonar::SonarRenderer renderer(way.config, way.snapshot.geometry);
+    types::Sonar ping;
+    renderer.render(way.snapshot, ping);
+    for (int i = 0; i < pings; ++i) {
+        const double start = now();
+        renderer.render(way.snapshot, ping);
+        to.ms.push_back(now() - start);
+    }
+    to.bins = joined(ping.bins, way.bins_in_one);
+}
+
+double median(std::vector<double> values) {
+    std::ranges::nth_element(values, values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2));
+    return values[values.size() / 2];
+}
+
+/** In turns, so that a machine that grows slow is slow for both. */
+Ablation compared(const Way& without, const Way& with, int pings) {
+    constexpr int turns = 3;
+    Rendered a, b;
+    for (int turn = 0; turn < turns; ++turn) {
+        render(without, std::max(1, pings / turns), a);
+        render(with, std::max(1, pings / turns), b);
+    }
+    double difference = 0, loudest = 0;
+    for (size_t i = 0; i < a.bins.size(); ++i) {
+        difference = std::max(difference, std::abs(static_cast<double>(a.bins[i]) - b.bins[i]));
+        loudest = std::max(loudest, std::abs(static_cast<double>(b.bins[i])));
+    }
+    const std::vector<double> reference(b.bins.begin(), b.bins.end());
+    const sonar::BinGrid grid = sonar::makeBinGrid(without.config);
+    const Layout layout{without.config.beams(), grid.bin_count, grid.bin_width, 0};
+    const double rel_l2_tvg = loudest > 0 ? compare(a.bins, reference, layout).rel_l2_tvg : 0;
+    return {loudest > 0 ? difference / loudest : difference, rel_l2_tvg, median(a.ms), median(b.ms)};
+}
+
+/** A scene in which no material has a normal map, with one that none of its objects has: all are drawn flat. */
+types::GeometryPtr withFlatMap(const types::Geometry& geometry) {
+    auto mapped = std::make_shared<types::Geometry>(geometry);
+    mapped->materials.emplace_back().normal_map = static_cast<int>(mapped->normal_maps.size());
+    mapped->normal_maps.push_back({1, 1, {128, 128, 255}, true, true});
+    return mapped;
+}
+
+types::GeometryPtr changed(const types::Geometry& geometry, void (*change)(types::Material&)) {
+    auto copy = std::make_shared<types::Geometry>(geometry);
+    std::ranges::for_each(copy->materials, change);
+    return copy;
+}
+
+/** The study of one sonar's ping. */
+class Study {
+public:
+    Study(const SonarConfig& config, const types::Snapshot& snapshot, int pings,
+          const std::function<void(const std::string&)>& progress)
+        : planned_{config, snapshot}, pings_(pings), progress_(progress) {
+        planned_.config.output = sonar::Output::Intensity;  // levels hide what is faint
+        sonar::SonarRenderer renderer(planned_.config, snapshot.geometry);
+        types::Sonar ping;
+        renderer.render(snapshot, ping);
+        omitted_ = renderer.plan().omitted;
+        for (types::Omission& omission : renderer.culled()) omitted_.push_back(std::move(omission));
+    }
+
+    std::vector<OmissionRow> run() {
+        measureQuality();
+        for (const types::Omission& omission : omitted_) rows_.push_back(measured(omission));
+        measureKept();
+        return std::move(rows_);
+    }
+
+private:
+    /** What twice the rows and columns change: the bound of what depends on how fine the pixels are. */
+    void measureQuality() {
+        progress_("quality");
+        Way finer = planned_;
+        finer.config.quality.rows = 2 * planned_.config.rows();
+        finer.config.quality.columns_per_beam = 2 * planned_.config.columnsPerBeam();
+        const Ablation ablation = compared(planned_, finer, pings_);
+        quality_ = ablation.rel_l2_tvg;
+        rows_.push_back({"twice the rows and columns", "quality", ablation, {}, "", true});
+    }
+
+    OmissionRow measured(const types::Omission& omission) {
+        progress_(omission.name);
+        OmissionRow row{omission.name, omission.reason, {}, {}, "", false};
+        Way without = planned_;
+        if (omission.name == "absorption inside a bin") without.config.tvg.reset();  // a gain of its own for each bin
+        Way with = without;
+        if (putBack(omission.name, with, row)) row.measured = compared(without, with, pings_);
+        return row;
+    }
+
+    /** Puts back what has been left out; false where it cannot be. */
+    bool putBack(const std::string& name, Way& with, OmissionRow& row) const {
+        const auto is = [&](const char* part) { return name.find(part) != std::string::npos; };
+        const auto bound = [&](double value, const char* of) {
+            row.bound = value;
+            row.bound_of = of;
+            return true;
+        };
+        if (name == "absorption") {
+            with.config.absorption.emplace().db_per_m = 0;
+            return bound(0, "change: 0 dB/m");
+        }
+        if (name == "tvg" && with.config.model == sonar::Model::Physical) {
+            with.config.tvg.emplace();
+            return bound(0, "change: 0 dB");
+        }
+        if (name == "normal maps") {
+            with.snapshot.geometry = withFlatMap(*planned_.snapshot.geometry);
+            return bound(1e-6, "change: a map that bends nothing, in float");
+        }
+        if (name == "absorption inside a bin") return splitBins(with, row);
+        if (name == "further slabs") {
+            with.config.least_slabs = 2;
+            return bound(quality_, "rel_l2_tvg: what twice the rows and columns change");
+        }
+        if (is("detail of")) {
+            with.config.detail = 0;
+            return bound(quality_, "rel_l2_tvg: what twice the rows and columns change");
+        }
+        if (is(" objects") || is(" triangles") || is(" slabs")) {
+            with.config.draw_all = true;
+            return bound(1e-5, "change: pixels beyond the range that reach back into it");
+        }
+        return false;
+    }
+
+    /** Eight bins for each, added up: absorption changes from one to the next. */
+    bool splitBins(Way& with, OmissionRow& row) const {
+        constexpr int parts = 8;
+        const SonarConfig& config = planned_.config;
+        const sonar::BinGrid grid = sonar::makeBinGrid(config);
+        if (config.model != sonar::Model::Physical || parts * grid.bin_count > 65536) return false;
+        with.config.bin_count = parts * grid.bin_count;
+        with.config.range = grid.range_max;
+        with.config.range_rounding = sonar::RangeRounding::Exact;
+        with.bins_in_one = parts;
+        row.bound = std::expm1(sonar::makeAbsorption(config).intensityPerMetre() * grid.bin_width / 2);
+        row.bound_of = "change: of an echo at the edge of its bin";
+        return true;
+    }
+
+    void measureKept() {
+        const SonarConfig& config = planned_.config;
+        Way without = planned_;
+        if (config.absorption) {
+            without.config.absorption.reset();
+            keep("absorption", without);
+        }
+        if (config.tvg) {
+            without = planned_;
+            without.config.tvg.reset();
+            keep("tvg", without);
+        }
+        without = planned_;
+        without.snapshot.geometry =
+            changed(*planned_.snapshot.geometry, [](types::Material& material) { material.normal_map = -1; });
+        if (std::ranges::any_of(planned_.snapshot.geometry->materials, [](const auto& m) { return m.normal_map >= 0; }))
+            keep("normal maps", without);
+    }
+
+    void keep(const char* name, const Way& without) {
+        progress_(name);
+        rows_.push_back({name, "configured", compared(without, planned_, pings_), {}, "", true});
+    }
+
+    Way planned_;
+    int pings_;
+    const std::function<void(const std::string&)>& progress_;
+    std::vector<types::Omission> omitted_;
+    double quality_ = 0;
+    std::vector<OmissionRow> rows_;
+};
+
+}  // namespace
+
+bool OmissionRow::holds() const {
+    if (kept || !measured || !bound) return true;
+    return (bound_of.starts_with("rel_l2_tvg") ? measured->rel_l2_tvg : measured->change) <= *bound;
+}
+
+std::vector<OmissionRow> studyOmissions(const SonarConfig& config, const types::Snapshot& snapshot, int pings,
+                                        const std::function<void(const std::string&)>& progress) {
+    return Study(config, snapshot, pings, progress).run();
+}
+
+}  // namespace insonify::study
