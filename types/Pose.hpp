@@ -1,4 +1,6 @@
 #pragma once
+#include <cmath>
+#include <glm/common.hpp>
 #include <glm/gtc/quaternion.hpp>
 #include <glm/mat3x3.hpp>
 #include <glm/mat4x4.hpp>
@@ -54,5 +56,20 @@ struct Pose {
         visit(Field{"cov_angular_velocity", "rad^2/s^2", "covariance of angular velocity"}, self.cov_angular_velocity);
     }
 };
+
+/** Whether position and orientation are finite, and the quaternion has a length. */
+inline bool isUsable(const Pose& pose) {
+    const double length = glm::length(pose.orientation);
+    return std::isfinite(pose.position.x) && std::isfinite(pose.position.y) && std::isfinite(pose.position.z) &&
+           std::isfinite(length) && length > 1e-6;
+}
+
+/** Sets position and orientation to what they are between two poses, or whatever has both: position linear,
+ *  orientation by slerp the shorter way. Share 0 is `from`, 1 is `to` [1]. */
+template <class Placed>
+void interpolate(const Placed& from, const Placed& to, double share, Pose& pose) {
+    pose.position = glm::mix(from.position, to.position, share);
+    pose.orientation = glm::normalize(glm::slerp(from.orientation, to.orientation, share));
+}
 
 }  // namespace insonify::types

@@ -8,10 +8,8 @@
 #include "components/output/FanImage.hpp"
 #include "components/output/PictureFiles.hpp"
 #include "types/Image.hpp"
-#include "types/Sonar.hpp"
 
 namespace insonify::deployer {
-namespace {
 
 output::DisplayConfig displayFor(const types::Sonar& ping) {
     output::DisplayConfig display;
@@ -19,8 +17,6 @@ output::DisplayConfig displayFor(const types::Sonar& ping) {
     if (levels) display.scale = output::BinScale::Decibel;
     return display;
 }
-
-}  // namespace
 
 std::vector<std::filesystem::path> exportFans(pocolog::Reader& log, const std::string& stream,
                                               const std::filesystem::path& path) {

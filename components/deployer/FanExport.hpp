@@ -3,12 +3,17 @@
 #include <string>
 #include <vector>
 
+#include "components/output/PictureConfig.hpp"
 #include "components/pocolog/Reader.hpp"
+#include "types/Sonar.hpp"
 
 namespace insonify::deployer {
 
-/** Writes the fan picture of each ping of a stream, x_000000.png and on for `x.png`, and returns the files. Negative
- *  bins are taken for levels in dB. Throws types::ConfigError for a stream that holds no pings. */
+/** How the pings of a ping's stream are shown: negative bins are taken for levels in dB. */
+output::DisplayConfig displayFor(const types::Sonar& ping);
+
+/** Writes the fan picture of each ping of a stream, x_000000.png and on for `x.png`, and returns the files.
+ *  Throws types::ConfigError for a stream that holds no pings. */
 std::vector<std::filesystem::path> exportFans(pocolog::Reader& log, const std::string& stream,
                                               const std::filesystem::path& path);
 

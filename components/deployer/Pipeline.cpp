@@ -1,6 +1,5 @@
 #include "components/deployer/Pipeline.hpp"
 
-#include <set>
 #include <stdexcept>
 #include <vector>
 
@@ -52,6 +51,14 @@ DeploymentSpec pipelineOf(DeploymentSpec spec, framework::Registry& registry) {
     spec.connections.swap(connections);
     spec.lockstep = true;
     return spec;
+}
+
+std::set<std::string> pingTasks(const DeploymentSpec& spec, framework::Registry& registry) {
+    std::set<std::string> names;
+    const Deployment deployment(spec, registry);
+    for (const auto& task : deployment.tasks())
+        if (carriesPings(task->outputs()) || carriesPings(task->inputs())) names.insert(task->name());
+    return names;
 }
 
 SonarAt sonarAt(const std::string& file, uint64_t ping) {

@@ -1,88 +1,104 @@
-// insonify replay LOG DEPLOYMENT
+// insonify replay LOG DEPLOYMENT [--rerender [--score]]
+#include <fmt/core.h>
+#include <poll.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cstdlib>
 #include <filesystem>
 #include <memory>
-#include <set>
 
 #include "components/deployer/Commands.hpp"
+#include "components/deployer/ReplaySpec.hpp"
 #include "components/deployer/RunOptions.hpp"
-#include "components/pocolog/Reader.hpp"
+#include "components/deployer/ScoreReport.hpp"
+#include "components/deployer/StopSignal.hpp"
 
 namespace insonify::deployer {
 namespace {
 
-using framework::DeploymentSpec;
-using framework::splitPort;
+constexpr const char* rerendered_file = "rerendered.0.log";
 
-/** Tasks of the deployment that have a stream in the log. */
-std::set<std::string> loggedTasks(const pocolog::Reader& log, DeploymentSpec& spec) {
-    std::set<std::string> names;
+struct Options : RunOptions {
+    ReplayOptions replay;
+    bool score = false, step = false;
+    size_t worst = 10;
+};
+
+/** The seed that a log was recorded with; 0 when that is not known. */
+uint64_t recordedSeed(const pocolog::Reader& log) {
     for (const pocolog::Stream& stream : log.streams())
-        if (const std::string task = splitPort(stream.name).first; spec.task(task)) names.insert(task);
-    return names;
+        if (const auto seed = stream.metadata.find("insonify_seed"); seed != stream.metadata.end())
+            return std::strtoull(seed->second.c_str(), nullptr, 10);
+    return 0;
 }
 
-/** A name that no task has. */
-std::string freeName(DeploymentSpec& spec) {
-    std::string name = "replay";
-    while (spec.task(name)) name += "_";
-    return name;
+/** Scores the log against what was rendered again, and tells. Gives the exit code. */
+int tellScore(pocolog::Reader& log, const std::vector<std::string>& streams, size_t worst,
+              const std::filesystem::path& folder) {
+    pocolog::Reader rendered(folder / rerendered_file);
+    std::vector<StreamScore> scores;
+    for (const std::string& stream : streams) scores.push_back(score(log, rendered, stream));
+    write(scoreJson(scores), folder / "score.json");
+    writeScorePictures(log, rendered, scores, worst, folder);
+    fmt::print("{}", scoreTable(scores, worst));
+    if (std::ranges::any_of(scores, [](const StreamScore& score) { return !score.pings.empty(); })) return 0;
+    fmt::print(stderr, "insonify: no ping of {} could be compared with one that was rendered again\n",
+               log.path().string());
+    return 1;
 }
 
-framework::TaskSpec replayTask(const std::string& name, const std::filesystem::path& log) {
-    framework::TaskSpec task;
-    task.name = name;
-    task.type = "replay::ReplayTask";
-    task.properties = YAML::Node(YAML::NodeType::Map);
-    task.properties["file"] = std::filesystem::absolute(log).string();
-    return task;
+/** Waits for a line on stdin; at the end of stdin no longer. */
+void waitForLine(const std::atomic<bool>& stop) {
+    pollfd input{STDIN_FILENO, POLLIN, 0};
+    for (char read_last = 0; !stop && read_last != '\n';)
+        if (poll(&input, 1, 50) != 0 && read(STDIN_FILENO, &read_last, 1) != 1) return;
 }
 
-/** Connections of logged ports lead from the replay; those that a replaced task would have read, or written without
- *  a stream in the log, are left out. */
-std::vector<framework::ConnectionSpec> reconnected(const DeploymentSpec& spec, const pocolog::Reader& log,
-                                                   const std::set<std::string>& replaced, const std::string& replay) {
-    std::vector<framework::ConnectionSpec> connections;
-    for (const framework::ConnectionSpec& written : spec.connections) {
-        const bool from_log = replaced.contains(splitPort(written.from).first);
-        if (replaced.contains(splitPort(written.to).first) || (from_log && !log.find(written.from))) continue;
-        connections.push_back(written);
-        if (from_log) connections.back().from = replay + "." + written.from;
-    }
-    return connections;
-}
-
-/** The deployment with the log in the place of the tasks that it has streams of. New lists are made, since assigning
- *  a YAML node changes what other nodes see. */
-DeploymentSpec replaying(DeploymentSpec spec, const std::string& log_file) {
-    const pocolog::Reader log(log_file);
-    const std::set<std::string> replaced = loggedTasks(log, spec);
-    if (replaced.empty()) throw types::ConfigError(log_file, "", "none of its streams is of a task of " + spec.file);
-
-    const std::string name = freeName(spec);
-    std::vector<framework::TaskSpec> tasks{replayTask(name, log_file)};
-    for (const framework::TaskSpec& task : spec.tasks)
-        if (!replaced.contains(task.name)) tasks.push_back(task);
-    std::vector<framework::ConnectionSpec> connections = reconnected(spec, log, replaced, name);
-    spec.tasks.swap(tasks);
-    spec.connections.swap(connections);
-    return spec;
+int replay(Options options) {
+    pocolog::Reader log(options.replay.log);
+    framework::DeploymentSpec spec = loadSpec(options);
+    const std::vector<std::string> streams = options.score ? pingStreams(log, spec) : std::vector<std::string>{};
+    if (options.score && streams.empty())
+        throw types::ConfigError(log.path(), "", "holds no pings of a task of " + spec.file + "; nothing to score");
+    spec = replaying(std::move(spec), log, options.replay);
+    if (options.score) addLogger(spec, streams, rerendered_file);
+    if (options.replay.rerender && options.seed == 0) options.seed = recordedSeed(log);
+    if (options.step)
+        options.progress = [&stop = stopOnSignals()](const framework::Progress& progress) {
+            fmt::print(stderr, "{:.6f} s\n", progress.elapsed_s);
+            waitForLine(stop);
+        };
+    std::filesystem::path folder;
+    const int code = runDeployment(std::move(spec), options, &folder);
+    return code == 0 && options.score ? tellScore(log, streams, options.worst, folder) : code;
 }
 
 }  // namespace
 
 void addReplayCommand(CLI::App& app, Action& action) {
-    struct Options : RunOptions {
-        std::string log;
-    };
     const auto options = std::make_shared<Options>();
     CLI::App* command =
-        app.add_subcommand("replay", "Runs a deployment with a log's streams in the place of its tasks");
-    command->add_option("LOG", options->log, "a pocolog file")->required();
+        app.add_subcommand("replay", "Runs a deployment on a log's time, with its streams in the place of tasks");
+    command->add_option("LOG", options->replay.log, "a pocolog file")->required();
     command->add_option("DEPLOYMENT", options->deployment, "a YAML file")->required();
+    auto* pace = command->add_option("--pace", options->limits.pace,
+                                     "log seconds per second of the wall clock (default: as fast as it goes)");
+    pace->type_name("P")->check(refuseUnlessPositive);
+    command->add_option("--from", options->replay.from, "start S seconds after the log's first stamp")
+        ->type_name("S")
+        ->check(CLI::NonNegativeNumber);
+    auto* loop = command->add_flag("--loop", options->replay.loop, "on and on, until --pings, --duration or SIGINT");
+    command->add_flag("--step", options->step, "one instant of the log for each line on stdin")->excludes(pace);
+    auto* rerender = command->add_flag("--rerender", options->replay.rerender,
+                                       "the log's poses drive the sonars, which render anew");
+    auto* score = command->add_flag("--score", options->score, "compares what is rendered with the log's pings");
+    score->needs(rerender)->excludes(loop);
+    command->add_option("--worst", options->worst, "pings in the table and in pictures (default: 10)")
+        ->type_name("N")
+        ->needs(score);
     options->addTo(*command);
-    command->callback([options, &action] {
-        action = [options] { return runDeployment(replaying(loadSpec(*options), options->log), *options); };
-    });
+    command->callback([options, &action] { action = [options] { return replay(*options); }; });
 }
 
 }  // namespace insonify::deployer

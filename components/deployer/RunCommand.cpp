@@ -58,9 +58,29 @@ void refuseUnwritable(const std::filesystem::path& summary_file) {
         throw types::ConfigError(summary_file, "--summary", "cannot be written to");
 }
 
-void tell(const framework::Deployment& deployment, const Summary& summary, const OutputFolder& folder) {
-    for (const auto& task : deployment.tasks())
-        if (const types::Plan* plan = task->plan()) printNotices(*task, without(plan->notices, task->notices()));
+std::vector<std::string> noticesOf(const framework::TaskContext& task) {
+    std::vector<std::string> all = task.notices();
+    if (const types::Plan* plan = task.plan())
+        for (const std::string& notice : without(plan->notices, all)) all.push_back(notice);
+    return all;
+}
+
+/** Of each task, in file order. */
+using Notices = std::vector<std::vector<std::string>>;
+
+Notices noticesOf(const framework::Deployment& deployment) {
+    Notices all;
+    for (const auto& task : deployment.tasks()) all.push_back(noticesOf(*task));
+    return all;
+}
+
+/** Notices that have come up while it ran, and the summary. */
+void tell(const framework::Deployment& deployment, const Notices& told, const Summary& summary,
+          const OutputFolder& folder) {
+    for (size_t i = 0; i < told.size(); ++i) {
+        const framework::TaskContext& task = *deployment.tasks()[i];
+        printNotices(task, without(noticesOf(task), told[i]));
+    }
     fmt::print("{}files in {}\n", summary.text(), folder.path().string());
 }
 
@@ -68,26 +88,29 @@ framework::RunResult runAll(framework::Deployment& deployment, const RunOptions&
                             const std::atomic<bool>& stop) {
     if (!options.quiet)
         for (const auto& task : deployment.tasks()) printNotices(*task, task->notices());
+    if (options.progress) return deployment.run(options.limits, stop, options.progress);
     ProgressLine progress(!options.quiet);
     return deployment.run(options.limits, stop, std::ref(progress));
 }
 
 }  // namespace
 
-int runDeployment(framework::DeploymentSpec spec, const RunOptions& options) {
+int runDeployment(framework::DeploymentSpec spec, const RunOptions& options, std::filesystem::path* written_to) {
     framework::Registry registry = builtInTasks();
     framework::Deployment deployment(std::move(spec), registry, options.out, options.seed);
     OutputFolder folder(options.out, options.deployment);
     deployment.environment().output_folder = folder.path();
+    if (written_to) *written_to = folder.path();
     refuseUnwritable(options.summary);
 
     const std::atomic<bool>& stop = stopOnSignals();
     deployment.configure();
     folder.keep();
 
+    const Notices told = noticesOf(deployment);
     framework::RunResult result = runAll(deployment, options, stop);
     const Summary summary(deployment, result);
-    if (!options.quiet) tell(deployment, summary, folder);
+    if (!options.quiet) tell(deployment, told, summary, folder);
     if (!options.summary.empty()) write(summary.json(), options.summary);
     for (std::string& failure : deployment.cleanup()) result.failures.push_back(std::move(failure));
     for (const std::string& failure : result.failures) fmt::print(stderr, "insonify: {}\n", failure);

@@ -8,12 +8,6 @@
 namespace insonify::deployer {
 namespace {
 
-std::string refuseUnlessPositive(const std::string& text) {
-    double number = 0;
-    if (CLI::detail::lexical_cast(text, number) && std::isfinite(number) && number > 0) return "";
-    return text + " is no number above 0";
-}
-
 std::string refuseUnlessWhole(const std::string& text) {
     uint64_t number = 0;
     const char* end = text.data() + text.size();
@@ -22,6 +16,12 @@ std::string refuseUnlessWhole(const std::string& text) {
 }
 
 }  // namespace
+
+std::string refuseUnlessPositive(const std::string& text) {
+    double number = 0;
+    if (CLI::detail::lexical_cast(text, number) && std::isfinite(number) && number > 0) return "";
+    return text + " is no number above 0";
+}
 
 void RunOptions::addTo(CLI::App& command) {
     auto* pings = command.add_option("--pings", limits.pings, "end when every sonar has sent N pings")

@@ -1,6 +1,8 @@
 #pragma once
 #include <CLI/App.hpp>
 #include <cstdint>
+#include <filesystem>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -17,6 +19,7 @@ struct RunOptions {
     framework::RunLimits limits;
     uint64_t seed = 0;  ///< 0: tasks keep the seeds of the file.
     bool quiet = false;
+    std::function<void(const framework::Progress&)> progress;  ///< Called after each instant of a lockstep run.
 
     /** All but `deployment`. */
     void addTo(CLI::App& command);
@@ -26,7 +29,10 @@ struct RunOptions {
 framework::DeploymentSpec loadSpec(const RunOptions& options);
 
 /** Makes and runs a deployment as asked, tells how it went, and gives the exit code. Throws types::ConfigError, with
- *  every fault, before anything has started. */
-int runDeployment(framework::DeploymentSpec spec, const RunOptions& options);
+ *  every fault, before anything has started.
+ *  @param folder where its files went; null when nobody wants to know. */
+int runDeployment(framework::DeploymentSpec spec, const RunOptions& options, std::filesystem::path* folder = nullptr);
+
+std::string refuseUnlessPositive(const std::string& text);  ///< Why it is no number above 0; empty when it is.
 
 }  // namespace insonify::deployer

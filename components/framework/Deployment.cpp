@@ -50,6 +50,7 @@ Deployment::Deployment(DeploymentSpec spec, Registry& registry, std::filesystem:
     setClock();
     Wiring(*this, registry).make(seed);
     startAtFirstStamp();
+    followClock();
     for (const auto& task : tasks_)
         for (const OutputPortBase* port : task->outputs())
             if (port->typeName() == sonar_type && !hasSonar(task->inputs())) sonars_.push_back(port);
@@ -75,6 +76,12 @@ void Deployment::startAtFirstStamp() {
         if (const auto next = task->nextTime()) first = std::min(first.value_or(*next), *next);
     start_ = first.value_or(start_);
     simulated_us_ = start_.microseconds;
+}
+
+void Deployment::followClock() {
+    if (spec_.lockstep) return;
+    for (const auto& task : tasks_)
+        if (auto clock = task->clock(environment_->now)) environment_->now = std::move(clock);
 }
 
 TaskContext* Deployment::task(const std::string& name) const {
@@ -125,6 +132,7 @@ void Deployment::runLockstep(const RunLimits& limits, const std::atomic<bool>& s
     const types::Time end = limits.duration_s > 0 ? start_ + types::Time::fromSeconds(limits.duration_s)
                                                   : types::Time{std::numeric_limits<int64_t>::max()};
     while (!stop && !lockstep.idle() && lockstep.next() < end) {
+        keepPace(limits.pace, lockstep.next(), stop);
         simulated_us_ = lockstep.next().microseconds;
         lockstep.step();
         if (progress) progress(progressNow());
@@ -132,6 +140,14 @@ void Deployment::runLockstep(const RunLimits& limits, const std::atomic<bool>& s
         // With a limit a trajectory goes on holding its end; a log that has been played gives nothing more.
         if (lockstep.sourcesFinished() && (!limited || !lockstep.sourcesWrote())) return;
     }
+}
+
+void Deployment::keepPace(double pace, types::Time instant, const std::atomic<bool>& stop) const {
+    if (pace <= 0) return;
+    using Seconds = std::chrono::duration<double>;
+    const Seconds due((instant - start_).seconds() / pace);
+    for (Seconds left = due; !stop && left.count() > 0; left = due - (std::chrono::steady_clock::now() - wall_start_))
+        std::this_thread::sleep_for(std::min(left, Seconds(0.02)));
 }
 
 void Deployment::runRealtime(const RunLimits& limits, const std::atomic<bool>& stop,

@@ -25,11 +25,12 @@ struct Connection {
     std::string text() const { return from->path() + ">" + to->path(); }
 };
 
-/** When a run ends by itself; 0 stands for no limit. Without limits a lockstep run ends once its sources have finished,
- *  a realtime run with the stop flag. */
+/** When a run ends by itself, and how fast it goes; 0 stands for no limit. Without limits a lockstep run ends once its
+ * sources have finished, a realtime run with the stop flag. */
 struct RunLimits {
     uint64_t pings = 0;     ///< Every sonar has written so many.
     double duration_s = 0;  ///< On the deployment's clock [s].
+    double pace = 0;  ///< In lockstep, simulated seconds per second of the wall clock at most; 0: as fast as it goes.
 };
 
 struct Progress {
@@ -92,10 +93,14 @@ private:
     void setClock();
     /** Simulated time starts with what a source wants to play, if there is one. */
     void startAtFirstStamp();
+    /** In realtime, a source's own clock takes the place of the wall's. */
+    void followClock();
     void runLockstep(const RunLimits& limits, const std::atomic<bool>& stop,
                      const std::function<void(const Progress&)>& progress);
     void runRealtime(const RunLimits& limits, const std::atomic<bool>& stop,
                      const std::function<void(const Progress&)>& progress);
+    /** Waits until an instant is due at the pace that is wanted. */
+    void keepPace(double pace, types::Time instant, const std::atomic<bool>& stop) const;
     bool startAll(std::vector<std::string>& failures);
     void stopAll(std::vector<std::string>& failures);
     void stopOne(TaskContext& task, std::vector<std::string>& failures);

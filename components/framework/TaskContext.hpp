@@ -109,6 +109,10 @@ public:
      *  when simulated time starts (a log's first stamp). */
     virtual std::optional<types::Time> nextTime() const { return std::nullopt; }
 
+    /** In realtime, the clock that all tasks read in place of the wall's, which it may follow (a log's, at its pace);
+     *  none: this task has none of its own. Asked for once, when the connections are made. */
+    virtual std::function<types::Time()> clock(std::function<types::Time()> /*wall*/) { return {}; }
+
     Environment& environment() { return *environment_; }
     void setEnvironment(std::shared_ptr<Environment> environment) { environment_ = std::move(environment); }
     Activity& activity() { return *activity_; }

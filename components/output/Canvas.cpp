@@ -10,6 +10,12 @@
 #include "components/output/Overlay.hpp"
 
 namespace insonify::output {
+namespace {
+
+constexpr int font = cv::FONT_HERSHEY_SIMPLEX;
+constexpr double font_scale = 0.45;
+
+}  // namespace
 
 cv::Mat openCanvas(types::Image& picture, cv::Size size, types::Time time) {
     picture.time = time;
@@ -45,12 +51,10 @@ void Title::draw(cv::Mat& canvas, const types::Sonar& ping, double reference_db)
 }
 
 void Title::add(cv::Mat& canvas) {
-    constexpr int font = cv::FONT_HERSHEY_SIMPLEX;
-    constexpr double scale = 0.45;
     int baseline = 0;
-    const int width = cv::getTextSize(text_, font, scale, 1, &baseline).width;
+    const int width = cv::getTextSize(text_, font, font_scale, 1, &baseline).width;
     if (column_ + width > canvas.cols) return;
-    cv::putText(canvas, text_, {column_, FanLayout::title_height / 2 + 5}, font, scale, cv::Scalar(ink), 1,
+    cv::putText(canvas, text_, {column_, FanLayout::title_height / 2 + 5}, font, font_scale, cv::Scalar(ink), 1,
                 cv::LINE_AA);
     column_ += width + 28;
 }
@@ -62,6 +66,20 @@ void paintGround(cv::Mat& canvas, const Palette& palette, cv::Point bar) {
         const int level = 255 - 255 * row / (colour_bar_size.height - 1);
         canvas(cv::Rect(bar.x, bar.y + row, colour_bar_size.width, 1))
             .setTo(cv::Scalar(palette[static_cast<size_t>(level)]));
+    }
+}
+
+void sideBySide(const Captioned& left, const Captioned& right, types::Image& picture) {
+    const types::ImageSize size = left.picture.size;
+    cv::Mat canvas = openCanvas(picture, {size.width + right.picture.size.width, size.height}, left.picture.time);
+    int column = 0;
+    for (const Captioned& half : {left, right}) {
+        const cv::Mat pixels(half.picture.size.height, half.picture.size.width, CV_8UC3,
+                             const_cast<uint8_t*>(half.picture.image.data()), half.picture.row_size);
+        pixels.copyTo(canvas(cv::Rect(cv::Point(column, 0), pixels.size())));
+        cv::putText(canvas, half.caption, {column + 12, canvas.rows - 8}, font, font_scale, cv::Scalar(ink), 1,
+                    cv::LINE_AA);
+        column += pixels.cols;
     }
 }
 

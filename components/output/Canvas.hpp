@@ -27,4 +27,13 @@ private:
 /** Paints the ground of title and picture, and the bar of all colours with its upper left corner at `bar`. */
 void paintGround(cv::Mat& canvas, const Palette& palette, cv::Point bar);
 
+/** A picture and a line of text to go below it. */
+struct Captioned {
+    const types::Image& picture;
+    const std::string& caption;
+};
+
+/** Two BGR pictures of the same height beside each other, with the time of the left one. */
+void sideBySide(const Captioned& left, const Captioned& right, types::Image& picture);
+
 }  // namespace insonify::output

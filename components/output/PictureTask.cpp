@@ -2,31 +2,31 @@
 
 #include <chrono>
 
-#include "components/output/DiscImage.hpp"
-#include "components/output/FanImage.hpp"
-#include "components/output/WaterfallImage.hpp"
-
 namespace insonify::output {
 
 bool PictureTask::configureHook() {
-    painter_ = makePainter(*config);
+    painter_ = makePainter();
     return true;
 }
 
 bool PictureTask::startHook() {
     pings_ = 0;
-    if (config->file || config->video) writer_ = std::make_unique<PictureWriter>(PictureFiles(*config, outputPath("")));
+    const PictureConfig& config = pictureConfig();
+    if (config.file || config.video) writer_ = std::make_unique<PictureWriter>(PictureFiles(config, outputPath("")));
     return true;
 }
 
 void PictureTask::updateHook() {
     types::SonarPtr sample;
-    if (!ping.readNew(sample)) return;
-    const bool due = pings_++ % config->every == 0;
+    if (ping.readNew(sample)) take(*sample);
+}
+
+void PictureTask::take(const types::Sonar& sample) {
+    const bool due = pings_++ % pictureConfig().every == 0;
     if (due && (image.connected() || writer_))
-        show(*sample);
+        show(sample);
     else
-        painter_->skip(*sample);
+        painter_->skip(sample);
 }
 
 void PictureTask::show(const types::Sonar& sample) {
@@ -44,17 +44,5 @@ void PictureTask::stopHook() {
 }
 
 void PictureTask::cleanupHook() { painter_.reset(); }
-
-std::unique_ptr<Painter> FanImageTask::makePainter(const DisplayConfig& display) const {
-    return std::make_unique<FanImage>(display);
-}
-
-std::unique_ptr<Painter> DiscImageTask::makePainter(const DisplayConfig& display) const {
-    return std::make_unique<DiscImage>(display);
-}
-
-std::unique_ptr<Painter> WaterfallImageTask::makePainter(const DisplayConfig& display) const {
-    return std::make_unique<WaterfallImage>(display);
-}
 
 }  // namespace insonify::output

@@ -5,9 +5,12 @@
 #include "components/framework/Properties.hpp"
 #include "components/framework/SamplePool.hpp"
 #include "components/framework/TaskContext.hpp"
+#include "components/output/DiscImage.hpp"
+#include "components/output/FanImage.hpp"
 #include "components/output/Painter.hpp"
 #include "components/output/PictureConfig.hpp"
 #include "components/output/PictureWriter.hpp"
+#include "components/output/WaterfallImage.hpp"
 #include "types/Image.hpp"
 #include "types/Sonar.hpp"
 
@@ -22,19 +25,21 @@ class PictureTask : public framework::TaskContext {
 public:
     using TaskContext::TaskContext;
 
-    framework::Properties<PictureConfig> config{this};
     framework::InputPort<types::SonarPtr> ping{this, "ping", "what is shown"};
     framework::OutputPort<types::ImagePtr> image{this, "image", "picture, BGR with 8 bits a channel"};
 
 protected:
-    virtual std::unique_ptr<Painter> makePainter(const DisplayConfig& display) const = 0;
-
-private:
     bool configureHook() override;
     bool startHook() override;
     void updateHook() override;
     void stopHook() override;
     void cleanupHook() override;
+    /** Makes the picture of a ping, or lets the painter take note of it. */
+    void take(const types::Sonar& sample);
+
+private:
+    virtual const PictureConfig& pictureConfig() const = 0;
+    virtual std::unique_ptr<Painter> makePainter() = 0;
     void show(const types::Sonar& sample);
 
     std::unique_ptr<Painter> painter_;
@@ -43,31 +48,20 @@ private:
     uint64_t pings_ = 0;
 };
 
-/** Shows the pings of a forward-looking sonar as fans: see FanImage. */
-class FanImageTask final : public PictureTask {
+/** Shows pings as the Picture does, which is a Painter that needs nothing but them. */
+template <class Picture>
+class PingPictureTask final : public PictureTask {
 public:
     using PictureTask::PictureTask;
+    framework::Properties<PictureConfig> config{this};
 
 private:
-    std::unique_ptr<Painter> makePainter(const DisplayConfig& display) const override;
+    const PictureConfig& pictureConfig() const override { return *config; }
+    std::unique_ptr<Painter> makePainter() override { return std::make_unique<Picture>(*config); }
 };
 
-/** Shows the pings of a mechanically scanning sonar on a disc: see DiscImage. */
-class DiscImageTask final : public PictureTask {
-public:
-    using PictureTask::PictureTask;
-
-private:
-    std::unique_ptr<Painter> makePainter(const DisplayConfig& display) const override;
-};
-
-/** Shows range against time: see WaterfallImage. */
-class WaterfallImageTask final : public PictureTask {
-public:
-    using PictureTask::PictureTask;
-
-private:
-    std::unique_ptr<Painter> makePainter(const DisplayConfig& display) const override;
-};
+using FanImageTask = PingPictureTask<FanImage>;
+using DiscImageTask = PingPictureTask<DiscImage>;
+using WaterfallImageTask = PingPictureTask<WaterfallImage>;
 
 }  // namespace insonify::output

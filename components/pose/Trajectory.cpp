@@ -64,9 +64,7 @@ types::Pose Trajectory::at(double time) const {
     pose.orientation = from.orientation;
     if (!moving) return pose;
     const double seconds = to.time - from.time;
-    const double share = (time - from.time) / seconds;
-    pose.position = glm::mix(from.position, to.position, share);
-    pose.orientation = glm::normalize(glm::slerp(from.orientation, to.orientation, share));
+    types::interpolate(from, to, (time - from.time) / seconds, pose);
     pose.velocity = (to.position - from.position) / seconds;
     pose.angular_velocity = angularVelocity(from.orientation, to.orientation, seconds);
     return pose;

@@ -1,5 +1,7 @@
 #include "components/replay/ReplayTask.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 
 #include "components/framework/Activity.hpp"
@@ -7,12 +9,26 @@
 #include "components/pocolog/SampleTypes.hpp"
 
 namespace insonify::replay {
+namespace {
+
+template <class T>
+void moveStamps(T& sample, types::Time shift) {
+    const auto move = [shift](types::Time& time) {
+        if (!time.isNull()) time = time + shift;
+    };
+    if constexpr (pocolog::Stamped<T>) move(sample.time);
+    if constexpr (std::is_same_v<T, types::Sonar>) std::ranges::for_each(sample.timestamps, move);
+    if constexpr (std::is_same_v<T, types::Image>) move(sample.received_time);
+}
+
+}  // namespace
 
 class ReplayTask::Outlet {
 public:
     virtual ~Outlet() = default;
     virtual framework::OutputPortBase& port() = 0;
-    virtual void publish(pocolog::Reader& log, const pocolog::SampleRef& at) = 0;
+    /** @param shift by which its stamps are moved. */
+    virtual void publish(pocolog::Reader& log, const pocolog::SampleRef& at, types::Time shift) = 0;
 };
 
 template <class T>
@@ -21,13 +37,15 @@ public:
     TypedOutlet(ReplayTask* owner, const std::string& stream)
         : port_(owner, stream, "stream " + stream + " of the log") {}
     framework::OutputPortBase& port() override { return port_; }
-    void publish(pocolog::Reader& log, const pocolog::SampleRef& at) override {
+    void publish(pocolog::Reader& log, const pocolog::SampleRef& at, types::Time shift) override {
         if constexpr (std::is_same_v<T, pocolog::Carried<T>>) {
             log.read(at, sample_);
+            moveStamps(sample_, shift);
             port_.write(sample_);
         } else {
             const std::shared_ptr<T> sample = pool_.take();
             log.read(at, *sample);
+            moveStamps(*sample, shift);
             port_.write(sample);
         }
     }
@@ -59,7 +77,12 @@ framework::OutputPortBase* ReplayTask::makeOutput(const std::string& stream) {
 
 void ReplayTask::check(types::Problems& problems) const {
     try {
-        pocolog::Reader reader(inputPath(config->file));
+        const pocolog::Reader reader(inputPath(config->file));
+        const auto& samples = reader.samples();
+        const double span = samples.empty() ? 0 : (samples.back().time - samples.front().time).seconds();
+        if (config->from > span)
+            problems.push_back(
+                {"from", fmt::format("is {:g} s; the log ends {:g} s after its start", config->from, span)});
     } catch (const types::ConfigError& error) {
         for (const types::Diagnostic& fault : error.diagnostics()) problems.push_back({"file", fault.text()});
     }
@@ -81,18 +104,54 @@ std::optional<types::Time> ReplayTask::nextTime() const {
     return next_time_;
 }
 
+size_t ReplayTask::indexAt(double seconds) const {
+    const auto& samples = log_->samples();
+    if (samples.empty()) return 0;
+    const types::Time from = samples.front().time + types::Time::fromSeconds(seconds);
+    const auto late_enough = [from](const pocolog::SampleRef& at) { return at.time >= from; };
+    return static_cast<size_t>(std::ranges::find_if(samples, late_enough) - samples.begin());
+}
+
+size_t ReplayTask::withOutlet(size_t index) const {
+    const auto& samples = log_->samples();
+    while (index < samples.size() && !outlets_[samples[index].stream]) ++index;
+    return index;
+}
+
 void ReplayTask::settle() {
     const auto& samples = log_->samples();
-    while (next_ < samples.size() && !outlets_[samples[next_].stream]) ++next_;
+    next_ = withOutlet(next_);
+    if (next_ == samples.size() && config->loop && played_us_ != 0) jump(config->from);
     finished_ = next_ == samples.size();
-    if (!finished_) next_time_ = std::max(next_time_, samples[next_].time);
+    if (!finished_) next_time_ = std::max(next_time_, samples[next_].time + shift_);
 }
 
 void ReplayTask::rewind() {
-    next_ = 0;
-    next_time_ = {};
+    next_ = indexAt(config->from);
+    next_time_ = shift_ = {};
+    played_us_ = 0;
     settle();
-    first_time_ = next_time_;
+    first_us_ = next_time_.microseconds;
+}
+
+void ReplayTask::jump(double seconds) {
+    open();
+    next_ = withOutlet(indexAt(seconds));
+    finished_ = next_ == log_->samples().size();
+    if (finished_) return;
+    if (played_us_ != 0) next_time_ = types::Time{played_us_} + gap_;
+    shift_ = next_time_ - log_->samples()[next_].time;
+}
+
+std::function<types::Time()> ReplayTask::clock(std::function<types::Time()> wall) {
+    wall_ = std::move(wall);
+    return [this] { return logTime(); };
+}
+
+types::Time ReplayTask::logTime() const {
+    if (config->pace == 0) return {std::max<int64_t>(first_us_, played_us_)};
+    const double seconds = started_us_ == 0 ? 0 : (wall_() - types::Time{started_us_}).seconds();
+    return types::Time{first_us_} + types::Time::fromSeconds(config->pace * seconds);
 }
 
 bool ReplayTask::configureHook() {
@@ -105,21 +164,26 @@ bool ReplayTask::configureHook() {
 
 bool ReplayTask::startHook() {
     rewind();
-    started_ = now();
+    if (wall_) started_us_ = wall_().microseconds;
     return true;
 }
 
 types::Time ReplayTask::due() {
-    if (environment().lockstep) return now();
-    if (config->pace == 0) return next_time_;
-    return first_time_ + types::Time::fromSeconds(config->pace * (now() - started_).seconds());
+    const bool as_fast_as_it_goes = !environment().lockstep && config->pace == 0;
+    return as_fast_as_it_goes ? next_time_ : now();
+}
+
+void ReplayTask::noteInstant() {
+    const int64_t before = played_us_.exchange(next_time_.microseconds);
+    if (before != 0 && next_time_.microseconds > before) gap_ = next_time_ - types::Time{before};
 }
 
 void ReplayTask::updateHook() {
     const types::Time until = due();
     while (!finished_ && next_time_ <= until) {
+        noteInstant();
         const pocolog::SampleRef& at = log_->samples()[next_];
-        outlets_[at.stream]->publish(*log_, at);
+        outlets_[at.stream]->publish(*log_, at, shift_);
         ++next_;
         settle();
     }

@@ -1,10 +1,12 @@
 #pragma once
 #include <atomic>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "components/framework/Operation.hpp"
 #include "components/framework/Port.hpp"
 #include "components/framework/Properties.hpp"
 #include "components/framework/TaskContext.hpp"
@@ -18,7 +20,11 @@ namespace insonify::replay {
  *  Ports: an output for each connection that names a stream of the log, as in `replay.sonar.ping`; the samples are
  *  the recorded ones, stamps and all. A sample is due at its world time, or with the one before it in the file if that
  *  is later. In lockstep simulated time starts at the first sample and goes from one to the next; in realtime the task
- *  keeps `pace`, checking every millisecond unless its activity has a period.
+ *  keeps `pace`, checking every millisecond unless its activity has a period, and all tasks of the deployment read the
+ *  log's time, at that pace, in place of the wall clock.
+ *
+ *  After a jump (`loop`, `seek`) time goes on: the stamps of all samples are moved by so much that the next sample
+ * comes as long after the one before as that came after its own predecessor.
  *
  *  A log that was cut off plays up to its last whole block, with a notice; streams that nothing is connected to, or
  *  whose type is not known, are listed in notices. A sample that cannot be decoded ends in Exception. */
@@ -28,6 +34,8 @@ public:
     ~ReplayTask() override;
 
     framework::Properties<ReplayConfig> config{this};
+    framework::Operation<void(double)> seek{this, "seek", "goes on so many seconds after the log's first stamp [s]",
+                                            [this](double seconds) { jump(seconds); }};
 
     /** Throws ConfigError when the log cannot be read or has no such stream; null when its type is not known. */
     framework::OutputPortBase* makeOutput(const std::string& stream) override;
@@ -35,6 +43,7 @@ public:
     std::vector<std::string> notices() const override;
     bool finished() const override { return finished_; }
     std::optional<types::Time> nextTime() const override;
+    std::function<types::Time()> clock(std::function<types::Time()> wall) override;
 
 private:
     class Outlet;
@@ -46,6 +55,13 @@ private:
     void updateHook() override;
     void open();
     void rewind();
+    /** Goes on with the first sample so long after the log's first stamp. */
+    void jump(double seconds);
+    /** Index of the first sample so long after the log's first stamp; of the first from there on with an outlet. */
+    size_t indexAt(double seconds) const;
+    size_t withOutlet(size_t index) const;
+    void noteInstant();
+    types::Time logTime() const;
     /** Moves on to the next sample that has an outlet, at `next_` or after it. */
     void settle();
     /** World time of the log up to which samples are due now. */
@@ -55,8 +71,12 @@ private:
     std::vector<std::unique_ptr<Outlet>> outlets_;  ///< One for each stream of the log; null without a connection.
     size_t next_ = 0;                               ///< Index into the log's samples.
     types::Time next_time_;                         ///< When it is due, on the log's clock.
-    types::Time first_time_;                        ///< When the first one was.
-    types::Time started_;                           ///< On the deployment's clock.
+    types::Time shift_;                             ///< By which stamps are moved after jumps.
+    types::Time gap_{1'000'000};                    ///< Between the last two instants.
+    std::function<types::Time()> wall_;             ///< In realtime.
+    std::atomic<int64_t> started_us_{0};            ///< On the wall clock; 0: not yet.
+    std::atomic<int64_t> first_us_{0};              ///< The instant at which playing starts, on the log's clock.
+    std::atomic<int64_t> played_us_{0};             ///< The instant that is played; 0: none yet.
     std::atomic<bool> finished_{false};
 };
 

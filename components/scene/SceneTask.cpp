@@ -1,19 +1,12 @@
 #include "components/scene/SceneTask.hpp"
 
 #include <algorithm>
-#include <cmath>
 
 #include "components/framework/Activity.hpp"
 #include "components/scene/Overrides.hpp"
 
 namespace insonify::scene {
 namespace {
-
-bool isUsable(const types::Pose& pose) {
-    const double length = glm::length(pose.orientation);
-    return std::isfinite(pose.position.x) && std::isfinite(pose.position.y) && std::isfinite(pose.position.z) &&
-           std::isfinite(length) && length > 1e-6;
-}
 
 constexpr const char* kUnusable =
     ": pose dropped: position and orientation must be finite, the quaternion of unit length";

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <limits>
 #include <vector>
 
 namespace insonify::study {
@@ -51,7 +52,7 @@ struct Squares {
         reference += other.reference;
         return *this;
     }
-    double relative() const { return std::sqrt(error / reference); }
+    double relative() const { return error == 0 ? 0 : std::sqrt(error / reference); }
 };
 
 Squares squares(const Beam& got, const Beam& reference, int first_bin, double power) {
@@ -145,8 +146,46 @@ void addEnergies(const Comparison& c, Metrics& metrics) {
         ripple += std::pow(beam / truth - 1, 2);
         ++heard;
     }
-    metrics.energy_bias = got / reference - 1;
+    metrics.energy_bias = got == reference ? 0 : got / reference - 1;
     metrics.ripple = std::sqrt(ripple / std::max(1, heard));
+}
+
+double correlation(const Comparison& c) {
+    double got = 0, reference = 0, count = 0;
+    for (size_t b = 0; b < c.got.size(); ++b) {
+        got += total(c.got[b]);
+        reference += total(c.reference[b]);
+        count += static_cast<double>(c.got[b].size());
+    }
+    double got_squares = 0, reference_squares = 0, products = 0;
+    for (size_t b = 0; b < c.got.size(); ++b)
+        for (size_t k = 0; k < c.got[b].size(); ++k) {
+            const double x = c.got[b][k] - got / count, y = c.reference[b][k] - reference / count;
+            got_squares += x * x;
+            reference_squares += y * y;
+            products += x * y;
+        }
+    if (c.got == c.reference) return 1;
+    return got_squares > 0 && reference_squares > 0 ? products / std::sqrt(got_squares * reference_squares) : 0;
+}
+
+/** Levels of all bins, weakest first [dB]. */
+std::vector<double> sortedLevels(const std::vector<Beam>& beams, double floor) {
+    std::vector<double> levels;
+    for (const Beam& beam : beams)
+        for (const double e : beam) levels.push_back(10 * std::log10(std::max(e, floor)));
+    std::ranges::sort(levels);
+    return levels;
+}
+
+double levelDistance(const Comparison& c) {
+    double maximum = 0;
+    for (const Beam& beam : c.reference) maximum = std::max(maximum, *std::ranges::max_element(beam));
+    const double floor = std::max(maximum * floor_ratio, std::numeric_limits<double>::min());
+    const std::vector<double> got = sortedLevels(c.got, floor), reference = sortedLevels(c.reference, floor);
+    double sum = 0;
+    for (size_t i = 0; i < got.size(); ++i) sum += std::abs(got[i] - reference[i]);
+    return sum / static_cast<double>(got.size());
 }
 
 /** Like FNV-1a of 64 bits, but a word of 32 bits at a time. */
@@ -167,6 +206,8 @@ Metrics compare(std::span<const float> got, std::span<const double> reference, c
     addLevels(comparison, metrics);
     addShapes(comparison, metrics);
     addEnergies(comparison, metrics);
+    metrics.correlation = correlation(comparison);
+    metrics.level_distance = levelDistance(comparison);
     metrics.hash = hashOf(got);
     return metrics;
 }

@@ -46,6 +46,22 @@ TEST(DeploymentRunTest, TheSameDeploymentGivesTheSameRun) {
     EXPECT_EQ(LockstepRun(chain).notes("last"), LockstepRun(chain).notes("last"));
 }
 
+TEST(DeploymentRunTest, APaceHoldsSimulatedTimeToTheWallClock) {
+    LockstepRun run(chain, {.pace = 0.5});
+    EXPECT_GE(run.result.wall_s, 0.4) << "0.2 s of simulated time at half the pace";
+    EXPECT_EQ(run.notes("last"), LockstepRun(chain).notes("last"));
+}
+
+TEST(DeploymentRunTest, ARunThatIsToBeStoppedDoesNotWaitForItsPace) {
+    Registry registry = test::testRegistry();
+    Deployment deployment(DeploymentSpec::parse(chain, "a.yml"), registry);
+    deployment.configure();
+    std::atomic<bool> stop{false};
+    const RunResult result = deployment.run({.pace = 1e-6}, stop, [&](const Progress&) { stop = true; });
+    EXPECT_FALSE(result.failed());
+    EXPECT_LT(result.wall_s, 10) << "the second instant would be due after a day";
+}
+
 TEST(DeploymentRunTest, TimeStartsAtStartTimeAndInstantsDoNotDrift) {
     LockstepRun run(std::string("start_time: 10\n") + chain, {.duration_s = 100});
     EXPECT_EQ(run.notes("last").front(), "last:101@10000000");

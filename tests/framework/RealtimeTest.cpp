@@ -32,6 +32,33 @@ connections: [{from: source.value, to: relay.in, policy: {type: buffer, size: 10
     EXPECT_EQ(deployment.task("relay")->state(), TaskState::Stopped);
 }
 
+/** A source whose clock stands at 5 s. */
+struct Timekeeper : test::Source {
+    using Source::Source;
+    std::function<types::Time()> clock(std::function<types::Time()> wall) override {
+        return [wall] { return wall().isNull() ? types::Time{} : types::Time::fromSeconds(5); };
+    }
+};
+
+TEST(RealtimeTest, ASourcesOwnClockIsThatOfAllTasks) {
+    const char* yaml = R"(
+schedule: realtime
+tasks:
+  relay: {type: test::Relay}
+  source: {type: test::Timekeeper, activity: {period: 0.01}}
+connections: [{from: source.value, to: relay.in, policy: {type: buffer, size: 100}}]
+)";
+    Registry registry = test::testRegistry();
+    registry.add<Timekeeper>("test::Timekeeper", "always 5 s");
+    Deployment deployment(DeploymentSpec::parse(yaml, "a.yml"), registry);
+    deployment.configure();
+    std::atomic<bool> stop{false};
+    deployment.run({}, stop, [&](const Progress& progress) { stop = progress.wall_s > 0.2; });
+    const auto& notes = dynamic_cast<test::Relay&>(*deployment.task("relay")).notes;
+    ASSERT_FALSE(notes.empty());
+    for (const std::string& note : notes) EXPECT_TRUE(note.ends_with("@5000000")) << note;
+}
+
 TEST(RealtimeTest, TheStopFlagEndsARunInOrder) {
     Registry registry = test::testRegistry();
     const char* yaml = "schedule: realtime\ntasks: {source: {type: test::Source, activity: {period: 0.001}}}\n";

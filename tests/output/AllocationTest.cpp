@@ -2,7 +2,7 @@
 // of our code counts. Picture files are written by another thread.
 #include <gmock/gmock.h>
 
-#include "components/output/PictureTask.hpp"
+#include "components/output/ScanMosaicTask.hpp"
 #include "tests/output/Pings.hpp"
 #include "tests/support/Allocations.hpp"
 #include "tests/support/Ports.hpp"
@@ -17,6 +17,13 @@ types::SonarPtr pingAt(int i, uint32_t beams) {
     return std::make_shared<const types::Sonar>(ping);
 }
 
+types::Pose poseAt(int i) {
+    types::Pose pose;
+    pose.time = types::Time::fromSeconds(1 + 0.1 * i);
+    pose.position.x = 0.3 * i;
+    return pose;
+}
+
 /** Those that OpenCV's libraries did not make. */
 std::vector<std::string> ours(std::vector<std::string> places) {
     std::erase_if(places, [](const std::string& place) { return place.starts_with("libopencv_"); });
@@ -27,16 +34,19 @@ template <class Task>
 void expectNoAllocation(uint32_t beams) {
     Task task("picture");
     test::Writer<types::SonarPtr> in;
+    test::Writer<types::Pose> poses;
     test::Reader<types::ImagePtr> out;
     in.port.connectTo(task.ping, {});
+    if (auto* pose = task.input("pose")) poses.port.connectTo(*pose, {});
     task.image.connectTo(out.port, {});
-    PictureConfig config;
-    config.width = 320;
+    auto config = *task.config;
+    config.width = 640;
     task.config.set(config);
     ASSERT_TRUE(task.configure()) << task.lastError();
     ASSERT_TRUE(task.start());
     const auto cycle = [&](int i) {
         in.port.write(pingAt(i, beams));
+        poses.port.write(poseAt(i));
         task.update();
     };
     cycle(0);
@@ -45,12 +55,13 @@ void expectNoAllocation(uint32_t beams) {
                                              for (int i = 1; i < 50; ++i) cycle(i);
                                          })),
                 testing::IsEmpty());
-    EXPECT_EQ(task.image.written(), 50u);
+    EXPECT_EQ(task.image.written(), 50u) << task.lastError();
 }
 
 TEST(AllocationTest, AFanPictureAllocatesNothingOfOurs) { expectNoAllocation<FanImageTask>(60); }
 TEST(AllocationTest, AWaterfallAllocatesNothingOfOurs) { expectNoAllocation<WaterfallImageTask>(60); }
 TEST(AllocationTest, ADiscAllocatesNothingOfOurs) { expectNoAllocation<DiscImageTask>(1); }
+TEST(AllocationTest, AMosaicAllocatesNothingOfOurs) { expectNoAllocation<ScanMosaicTask>(1); }
 
 }  // namespace
 }  // namespace insonify::output

@@ -1,77 +1,13 @@
 #include <gmock/gmock.h>
 
-#include "components/framework/Activity.hpp"
-#include "components/pocolog/Writer.hpp"
-#include "components/replay/ReplayTask.hpp"
-#include "tests/support/Folder.hpp"
-#include "tests/support/Ports.hpp"
-#include "types/Sonar.hpp"
+#include "tests/replay/Bench.hpp"
 
 namespace insonify::replay {
 namespace {
 
-using framework::ConnPolicy;
 using framework::TaskState;
 using testing::ElementsAre;
 using testing::HasSubstr;
-
-types::Pose poseAt(int64_t time) {
-    types::Pose pose;
-    pose.time = {time};
-    pose.position.x = static_cast<double>(time);
-    return pose;
-}
-
-types::Sonar pingAt(int64_t time) {
-    types::Sonar ping;
-    ping.time = {time};
-    ping.bins = {static_cast<float>(time)};
-    return ping;
-}
-
-/** A log of poses at 10, 20 and 30 us and pings of the first two that arrive late, and a task that replays it. */
-struct Bench {
-    Folder folder;
-    ReplayTask task{"replay"};
-    types::Time clock;
-
-    explicit Bench(bool lockstep = true, double pace = 1) {
-        writeLog();
-        ReplayConfig config;
-        config.file = "x.0.log";
-        config.pace = pace;
-        task.config.set(config);
-        task.environment().input_folder = folder.path();
-        task.environment().lockstep = lockstep;
-        task.environment().now = [this] { return clock; };
-    }
-    void writeLog() {
-        pocolog::Writer log(folder / "x.0.log");
-        const size_t pose = log.addStream<types::Pose>("vehicle.pose");
-        const size_t ping = log.addStream<types::Sonar>("sonar.ping");
-        log.write(pose, {11}, poseAt(10));
-        log.write(pose, {21}, poseAt(20));
-        log.write(ping, {25}, pingAt(10));
-        log.write(pose, {31}, poseAt(30));
-        log.write(ping, {35}, pingAt(20));
-        log.close();
-    }
-    template <class T>
-    void connect(const std::string& stream, test::Reader<T>& reader) {
-        ASSERT_TRUE(task.makeOutput(stream)->connectTo(reader.port, ConnPolicy::buffer(100)));
-    }
-    void updateAt(int64_t time) {
-        clock = {time};
-        task.update();
-    }
-};
-
-template <class T>
-std::vector<int64_t> stampsIn(test::Reader<T>& reader) {
-    std::vector<int64_t> stamps;
-    for (T sample; reader.port.readNew(sample);) stamps.push_back(pocolog::carriedSample(sample).time.microseconds);
-    return stamps;
-}
 
 TEST(ReplayTaskTest, WhatWasLoggedComesOutInTheOrderOfTheFileWhenItsTimeHasCome) {
     Bench bench;
@@ -124,37 +60,6 @@ TEST(ReplayTaskTest, StartedAgainItPlaysFromTheStart) {
         EXPECT_THAT(stampsIn(poses), ElementsAre(10, 20, 30));
         ASSERT_TRUE(bench.task.stop());
     }
-}
-
-TEST(ReplayTaskTest, PaceScalesTheWallClock) {
-    Bench bench(false, 2);
-    test::Reader<types::Pose> poses;
-    bench.connect("vehicle.pose", poses);
-    bench.clock = {1'000'000};
-    ASSERT_TRUE(bench.task.configure());
-    ASSERT_TRUE(bench.task.start());
-    EXPECT_TRUE(bench.task.activity().settings().periodic()) << "nothing else would run it";
-    bench.updateAt(1'000'004);
-    EXPECT_THAT(stampsIn(poses), ElementsAre(10)) << "8 us of the log have gone by";
-    bench.updateAt(1'000'005);
-    EXPECT_THAT(stampsIn(poses), ElementsAre(20));
-    bench.updateAt(1'000'010);
-    EXPECT_THAT(stampsIn(poses), ElementsAre(30));
-}
-
-TEST(ReplayTaskTest, WithoutPaceEachCyclePlaysOneInstant) {
-    Bench bench(false, 0);
-    test::Reader<types::Pose> poses;
-    test::Reader<types::SonarPtr> pings;
-    bench.connect("vehicle.pose", poses);
-    bench.connect("sonar.ping", pings);
-    bench.task.configure();
-    bench.task.start();
-    bench.task.update();
-    EXPECT_THAT(stampsIn(poses), ElementsAre(10));
-    bench.task.update();
-    EXPECT_THAT(stampsIn(poses), ElementsAre(20));
-    EXPECT_THAT(stampsIn(pings), ElementsAre(10));
 }
 
 TEST(ReplayTaskTest, ALogThatWasCutOffPlaysUpToItsLastWholeBlockAndSaysSo) {

@@ -41,7 +41,7 @@ protected:
         const auto pass = pose::Trajectory::fromCsv(deploy / *file);
         for (double time = 0; time <= pass.stamps().back().time; time += 0.25) {
             poses.emplace_back();
-            scene::place(pass.at(time), scene.mount, poses.back());
+            types::place(pass.at(time), scene.mount, poses.back());
         }
         sonar = propertiesOf<SonarConfig>("sonar");
         sonar.device = "software";

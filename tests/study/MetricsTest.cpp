@@ -1,5 +1,7 @@
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <limits>
 #include <vector>
 
 #include "components/study/Metrics.hpp"
@@ -35,6 +37,35 @@ TEST(MetricsTest, TenPercentMoreIsTenPercentInEveryMeasure) {
     EXPECT_NEAR(m.db_p95, 0.414, 1e-3);
     EXPECT_NEAR(m.energy_bias, 0.1, 1e-6);
     EXPECT_NEAR(m.ripple, 0.1, 1e-6);
+}
+
+TEST(MetricsTest, CorrelationDoesNotKnowGainButKnowsPlace) {
+    std::vector<float> louder = like(reference), flat(reference.size(), 3), swapped = like(reference);
+    for (float& e : louder) e *= 2;
+    std::swap(swapped[2], swapped[6]);
+    EXPECT_EQ(compare(like(reference), reference, layout).correlation, 1);
+    EXPECT_NEAR(compare(louder, reference, layout).correlation, 1, 1e-12);
+    EXPECT_EQ(compare(flat, reference, layout).correlation, 0);
+    EXPECT_LT(compare(swapped, reference, layout).correlation, 0.7);
+}
+
+TEST(MetricsTest, DistanceOfLevelsKnowsGainButNotPlace) {
+    std::vector<float> louder = like(reference), swapped = like(reference);
+    for (float& e : louder) e *= 2;
+    std::swap(swapped[2], swapped[6]);
+    EXPECT_EQ(compare(swapped, reference, layout).level_distance, 0);
+    EXPECT_NEAR(compare(louder, reference, layout).level_distance, 10 * std::log10(2) / 2, 1e-6)
+        << "half of the bins are silent in both";
+}
+
+TEST(MetricsTest, SilenceIsComparedAsWell) {
+    const std::vector<double> silence(reference.size(), 0);
+    const Metrics same = compare(like(silence), silence, layout), other = compare(like(reference), silence, layout);
+    EXPECT_EQ(same.rel_l2, 0);
+    EXPECT_EQ(same.correlation, 1);
+    EXPECT_EQ(same.level_distance, 0);
+    EXPECT_EQ(other.rel_l2, std::numeric_limits<double>::infinity());
+    EXPECT_EQ(other.correlation, 0);
 }
 
 TEST(MetricsTest, GainMakesFarBinsCount) {

@@ -1,0 +1,110 @@
+#include "components/deployer/ReplaySpec.hpp"
+
+#include <algorithm>
+#include <filesystem>
+#include <set>
+
+#include "components/deployer/Pipeline.hpp"
+#include "components/deployer/Tasks.hpp"
+#include "types/Sonar.hpp"
+
+namespace insonify::deployer {
+namespace {
+
+using framework::ConnectionSpec;
+using framework::DeploymentSpec;
+using framework::splitPort;
+using framework::TaskSpec;
+
+/** Tasks of the deployment that have a stream in the log. */
+std::set<std::string> loggedTasks(const pocolog::Reader& log, const DeploymentSpec& spec) {
+    std::set<std::string> names;
+    for (const pocolog::Stream& stream : log.streams())
+        if (const std::string task = splitPort(stream.name).first; spec.task(task)) names.insert(task);
+    return names;
+}
+
+std::set<std::string> replacedTasks(const pocolog::Reader& log, const DeploymentSpec& spec, bool rerender) {
+    std::set<std::string> names = loggedTasks(log, spec);
+    if (rerender) {
+        framework::Registry registry = builtInTasks();
+        for (const std::string& task : pingTasks(spec, registry)) names.erase(task);
+    }
+    if (names.empty())
+        throw types::ConfigError(log.path(), "",
+                                 std::string("none of its streams is of a task of ") + spec.file +
+                                     (rerender ? " that comes before its sonars" : ""));
+    return names;
+}
+
+/** `name`, or the like of it that no task has. */
+std::string freeName(const DeploymentSpec& spec, std::string name) {
+    while (spec.task(name)) name += "_";
+    return name;
+}
+
+TaskSpec replayTask(const std::string& name, const ReplayOptions& options) {
+    TaskSpec task;
+    task.name = name;
+    task.type = "replay::ReplayTask";
+    task.properties = YAML::Node(YAML::NodeType::Map);
+    task.properties["file"] = std::filesystem::absolute(options.log).string();
+    task.properties["from"] = options.from;
+    task.properties["loop"] = options.loop;
+    return task;
+}
+
+/** Connections of logged ports lead from the replay; those that a replaced task would have read, or written without
+ *  a stream in the log, are left out. */
+std::vector<ConnectionSpec> reconnected(const DeploymentSpec& spec, const pocolog::Reader& log,
+                                        const std::set<std::string>& replaced, const std::string& replay) {
+    std::vector<ConnectionSpec> connections;
+    for (const ConnectionSpec& written : spec.connections) {
+        const bool from_log = replaced.contains(splitPort(written.from).first);
+        if (replaced.contains(splitPort(written.to).first) || (from_log && !log.find(written.from))) continue;
+        connections.push_back(written);
+        if (from_log) connections.back().from = replay + "." + written.from;
+    }
+    return connections;
+}
+
+}  // namespace
+
+DeploymentSpec replaying(DeploymentSpec spec, const pocolog::Reader& log, const ReplayOptions& options) {
+    const std::set<std::string> replaced = replacedTasks(log, spec, options.rerender);
+    const std::string name = freeName(spec, "replay");
+    // New lists are made, since assigning a YAML node changes what other nodes see.
+    std::vector<TaskSpec> tasks{replayTask(name, options)};
+    for (const TaskSpec& task : spec.tasks)
+        if (!replaced.contains(task.name)) tasks.push_back(task);
+    std::vector<ConnectionSpec> connections = reconnected(spec, log, replaced, name);
+    spec.tasks.swap(tasks);
+    spec.connections.swap(connections);
+    spec.lockstep = true;
+    return spec;
+}
+
+std::vector<std::string> pingStreams(const pocolog::Reader& log, const DeploymentSpec& spec) {
+    std::vector<std::string> names;
+    for (const pocolog::Stream& stream : log.streams())
+        if (stream.holds<types::Sonar>() && spec.task(splitPort(stream.name).first)) names.push_back(stream.name);
+    return names;
+}
+
+void addLogger(DeploymentSpec& spec, const std::vector<std::string>& ports, const std::string& file) {
+    TaskSpec task;
+    task.name = freeName(spec, "rerendered");
+    task.type = "logger::LoggerTask";
+    task.properties = YAML::Node(YAML::NodeType::Map);
+    task.properties["file"] = file;
+    spec.tasks.push_back(task);
+    for (const std::string& port : ports) {
+        ConnectionSpec connection;
+        connection.from = port;
+        connection.to = task.name + "." + port;
+        connection.policy = framework::ConnPolicy::buffer(256);
+        spec.connections.push_back(connection);
+    }
+}
+
+}  // namespace insonify::deployer

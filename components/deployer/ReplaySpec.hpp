@@ -1,0 +1,30 @@
+#pragma once
+#include <string>
+#include <vector>
+
+#include "components/framework/DeploymentSpec.hpp"
+#include "components/pocolog/Reader.hpp"
+
+namespace insonify::deployer {
+
+/** How a log is played. */
+struct ReplayOptions {
+    std::string log;        ///< File.
+    double from = 0;        ///< After its first stamp [s].
+    bool loop = false;      ///< On and on.
+    bool rerender = false;  ///< Its poses drive the sonars, which sound again; otherwise its pings are played.
+};
+
+/** The deployment, in lockstep on the log's time, with the log in the place of the tasks that it has streams of; where
+ *  it is rendered again, only of those that have nothing to do with pings. Throws types::ConfigError when that leaves
+ *  nothing to play. */
+framework::DeploymentSpec replaying(framework::DeploymentSpec spec, const pocolog::Reader& log,
+                                    const ReplayOptions& options);
+
+/** Streams of pings in the log that a task of the deployment writes. */
+std::vector<std::string> pingStreams(const pocolog::Reader& log, const framework::DeploymentSpec& spec);
+
+/** Adds a logger that writes these ports to a file. */
+void addLogger(framework::DeploymentSpec& spec, const std::vector<std::string>& ports, const std::string& file);
+
+}  // namespace insonify::deployer

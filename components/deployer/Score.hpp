@@ -1,0 +1,33 @@
+#pragma once
+#include <string>
+#include <vector>
+
+#include "components/output/PictureConfig.hpp"
+#include "components/pocolog/Reader.hpp"
+#include "components/study/Metrics.hpp"
+
+namespace insonify::deployer {
+
+/** How near a ping that was rendered again is to the recorded one. */
+struct PingScore {
+    types::Time time;
+    study::Metrics metrics;
+    double similarity = 0;  ///< SSIM of both as they are shown [1].
+    pocolog::SampleRef recorded, rendered;
+};
+
+/** A stream of pings of two logs. */
+struct StreamScore {
+    std::string stream;
+    output::DisplayConfig display;  ///< How its pings are shown, for the similarity and in pictures.
+    std::vector<PingScore> pings;   ///< Greatest relative L2 first; those of one value in order of time.
+    uint64_t not_rendered = 0;      ///< Recorded pings without one of the same time.
+    uint64_t not_recorded = 0;      ///< And the other way round.
+    uint64_t other_shape = 0;       ///< Pairs that differ in beams, bins, range or bearings.
+};
+
+/** Compares the pings of a stream, pair by pair of the same time. Bins below 0 are taken for levels in dB; NaN counts
+ *  as silence. */
+StreamScore score(pocolog::Reader& recorded, pocolog::Reader& rendered, const std::string& stream);
+
+}  // namespace insonify::deployer

@@ -1,0 +1,87 @@
+#include "components/framework/StreamAligner.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace insonify::framework {
+
+AlignedPortBase::AlignedPortBase(StreamAligner& aligner, const InputPortBase& port) : aligner_(aligner), port_(port) {
+    aligner.ports_.push_back(this);
+}
+
+bool AlignedPortBase::accepts(types::Time time) {
+    ++counts_.received;
+    if (time < std::max(last_, aligner_.done_)) return ++counts_.late, false;
+    last_ = time;
+    aligner_.newest_ = std::max(aligner_.newest_, time);
+    return true;
+}
+
+std::string AlignedPortBase::trouble() const {
+    std::string text;
+    if (counts_.late > 0)
+        text = fmt::format("{} of {} samples came too late and were dropped", counts_.late, counts_.received);
+    if (counts_.awaited > 0)
+        text +=
+            fmt::format("{}samples of others that went on without it: {}", text.empty() ? "" : "; ", counts_.awaited);
+    return text.empty() ? text : port_.name() + ": " + text;
+}
+
+void StreamAligner::clear(double timeout) {
+    timeout_ = types::Time::fromSeconds(timeout);
+    newest_ = done_ = {};
+    for (AlignedPortBase* port : ports_) {
+        port->forget();
+        port->counts_ = {};
+        port->last_ = {};
+    }
+}
+
+void StreamAligner::update() {
+    bool taken = true;
+    while (taken) {
+        taken = false;
+        for (AlignedPortBase* port : ports_) taken |= port->fill();
+        for (AlignedPortBase* port = earliest(); port && isDue(*port); port = earliest()) handOver(*port);
+    }
+}
+
+void StreamAligner::flush() {
+    update();
+    while (AlignedPortBase* port = earliest()) handOver(*port);
+}
+
+std::vector<std::string> StreamAligner::troubles() const {
+    std::vector<std::string> troubles;
+    for (const AlignedPortBase* port : ports_)
+        if (std::string trouble = port->trouble(); !trouble.empty()) troubles.push_back(std::move(trouble));
+    return troubles;
+}
+
+AlignedPortBase* StreamAligner::earliest() const {
+    AlignedPortBase* earliest = nullptr;
+    for (AlignedPortBase* port : ports_)
+        if (!port->empty() && (!earliest || port->firstTime() < earliest->firstTime())) earliest = port;
+    return earliest;
+}
+
+bool StreamAligner::isDue(const AlignedPortBase& candidate) {
+    const types::Time time = candidate.firstTime();
+    const auto holdsUp = [&](const AlignedPortBase* port) {
+        return port->empty() && port->port_.connected() && (port->counts_.received == 0 || port->last_ < time);
+    };
+    if (std::ranges::none_of(ports_, holdsUp)) return true;
+    const auto isFull = [](const AlignedPortBase* port) { return port->full(); };
+    if (newest_ - time < timeout_ && std::ranges::none_of(ports_, isFull)) return false;
+    for (AlignedPortBase* port : ports_)
+        if (holdsUp(port)) ++port->counts_.awaited;
+    return true;
+}
+
+void StreamAligner::handOver(AlignedPortBase& port) {
+    done_ = port.firstTime();
+    port.handOver();
+}
+
+}  // namespace insonify::framework

@@ -1,0 +1,84 @@
+#include "components/output/ScanMosaicTask.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <iterator>
+
+namespace insonify::output {
+
+void MosaicConfig::check(types::Problems& problems) const {
+    PictureConfig::check(problems);
+    if (width < 512) problems.push_back({"width", fmt::format("is {} px; two pictures side by side take 512", width)});
+}
+
+std::unique_ptr<Painter> ScanMosaicTask::makePainter() {
+    auto mosaic = std::make_unique<ScanMosaic>(*config);
+    mosaic_ = mosaic.get();
+    return mosaic;
+}
+
+void ScanMosaicTask::keep(const types::Pose& body) {
+    if (types::isUsable(body)) before_ = body;
+}
+
+bool ScanMosaicTask::startHook() {
+    aligner_.clear(config->timeout);
+    before_.reset();
+    laid_ = held_ = left_out_ = 0;
+    held_for_ = 0;
+    return PictureTask::startHook();
+}
+
+void ScanMosaicTask::stopHook() {
+    aligner_.flush();
+    PictureTask::stopHook();
+}
+
+void ScanMosaicTask::show(const types::Sonar& sample) {
+    std::optional<types::Pose> sonar = bodyAt(sample.time);
+    if (sonar) types::place(types::Pose(*sonar), config->mount, *sonar);
+    const bool usable = mosaic_->place(sonar);
+    ++(sonar && usable ? laid_ : left_out_);
+    describeMap(caption_);
+    mosaic_->setCaption(caption_);
+    take(sample);
+}
+
+std::optional<types::Pose> ScanMosaicTask::bodyAt(types::Time time) {
+    const types::Pose* after = poses_.next();
+    if (after && !types::isUsable(*after)) after = nullptr;
+    if (before_ && before_->time == time) return before_;
+    if (!before_ && !after) return std::nullopt;
+    if (!before_) return held(*after, time);
+    if (!after) return held(*before_, time);
+    types::Pose body = *before_;
+    interpolate(*before_, *after, (time - before_->time).seconds() / (after->time - before_->time).seconds(), body);
+    return body;
+}
+
+types::Pose ScanMosaicTask::held(const types::Pose& nearest, types::Time time) {
+    ++held_;
+    held_for_ = std::max(held_for_, std::abs((time - nearest.time).seconds()));
+    return nearest;
+}
+
+void ScanMosaicTask::describeMap(std::string& text) const {
+    text.clear();
+    const auto out = std::back_inserter(text);
+    fmt::format_to(out, "each ping at its pose, north up: {} pings", laid_);
+    if (held_ > 0) fmt::format_to(out, ", {} at a pose held for up to {:.3g} s", held_, held_for_);
+    if (left_out_ > 0) fmt::format_to(out, ", {} not shown for want of a pose that can be used", left_out_);
+}
+
+std::vector<std::string> ScanMosaicTask::notices() const {
+    std::vector<std::string> notices = aligner_.troubles();
+    if (held_ + left_out_ > 0) {
+        std::string map;
+        describeMap(map);
+        notices.push_back("Warning: " + map);
+    }
+    return notices;
+}
+
+}  // namespace insonify::output

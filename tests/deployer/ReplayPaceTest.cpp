@@ -1,0 +1,131 @@
+// How a log is played: from where, how fast, how often, step by step, and on which clock.
+#include <gmock/gmock.h>
+#include <sys/stat.h>
+
+#include <chrono>
+#include <thread>
+
+#include "components/pocolog/Reader.hpp"
+#include "tests/deployer/Wall.hpp"
+#include "types/Sonar.hpp"
+
+using namespace insonify::deployer;
+namespace pocolog = insonify::pocolog;
+using testing::HasSubstr;
+using testing::Not;
+
+namespace {
+
+/** A log of pings at 1.0, 1.1 and 1.2 s. */
+class ReplayPaceTest : public testing::Test {
+protected:
+    void SetUp() override { ASSERT_EQ(folder_.run({"--pings", "3"}).code, 0); }
+    std::vector<std::string> words(const std::vector<std::string>& more) const {
+        std::vector<std::string> all = {"replay", "out/wall.0.log", "wall.yml", "--out", "again"};
+        all.insert(all.end(), more.begin(), more.end());
+        return all;
+    }
+    void replay(const std::vector<std::string>& more) const {
+        const Outcome outcome = callInsonify(folder_, words(more));
+        ASSERT_EQ(outcome.code, 0) << outcome.err;
+    }
+    /** Of the replayed pings [ms]. */
+    std::vector<int64_t> stamps() const {
+        std::vector<int64_t> result;
+        pocolog::Reader log(folder_ / "again/wall.0.log");
+        log.forEach<insonify::types::Sonar>("replay.noise.noisy",
+                                            [&](const insonify::types::Sonar& ping, const pocolog::SampleRef& at) {
+                                                result.push_back(ping.time.microseconds / 1000);
+                                                EXPECT_EQ(at.received, ping.time) << "the logger's clock is the log's";
+                                            });
+        return result;
+    }
+    double wallSeconds() const { return json::parse(readFile(folder_ / "summary.json"))["wall_s"]; }
+
+    const WallFolder folder_;
+};
+
+/** Waits until a file says something. */
+bool says(const fs::path& file, const std::string& text) {
+    for (int i = 0; i < 1000 && readFile(file).find(text) == std::string::npos; ++i)
+        std::this_thread::sleep_for(std::chrono::milliseconds(10));
+    return readFile(file).find(text) != std::string::npos;
+}
+
+}  // namespace
+
+TEST_F(ReplayPaceTest, ItStartsSoManySecondsAfterTheLogsFirstStamp) {
+    replay({"--from", "0.1"});
+    EXPECT_THAT(stamps(), testing::ElementsAre(1100, 1200));
+}
+
+TEST_F(ReplayPaceTest, AStartBeyondTheLogsEndIsRefused) {
+    const Outcome outcome = callInsonify(folder_, words({"--from", "3"}));
+    EXPECT_EQ(outcome.code, 2);
+    EXPECT_THAT(outcome.err, HasSubstr("from: is 3 s; the log ends 0.2 s after its start"));
+}
+
+TEST_F(ReplayPaceTest, InALoopTimeGoesOnAndTheLogIsPlayedAgain) {
+    replay({"--loop", "--duration", "0.65"});
+    EXPECT_THAT(stamps(), testing::ElementsAre(1000, 1100, 1200, 1300, 1400, 1500, 1600));
+    EXPECT_EQ(python(folder_,
+                     "import subprocess, numpy\n"
+                     "for log, stream in (('out', 'noise.noisy'), ('again', 'replay.noise.noisy')):\n"
+                     "    subprocess.run(['" INSONIFY_BIN_DIR "/insonify', 'log', 'export', log + '/wall.0.log',"
+                     " '--stream', stream, '--to', log + '.npz'], stdout=subprocess.DEVNULL, check=True)\n"
+                     "a, b = numpy.load('out.npz')['bins'], numpy.load('again.npz')['bins']\n"
+                     "print((b == a[[0, 1, 2, 0, 1, 2, 0]]).all())")
+                  .out,
+              "True\n");
+}
+
+TEST_F(ReplayPaceTest, PaceHoldsItToTheWallClockAndChangesNothingElse) {
+    replay({});
+    const std::string fast = readFile(folder_ / "again/wall.0.log");
+    replay({"--pace", "0.25", "--summary", "summary.json"});
+    EXPECT_GE(wallSeconds(), 0.8) << "0.2 s at a quarter of the pace";
+    EXPECT_EQ(readFile(folder_ / "again/wall.0.log"), fast);
+}
+
+TEST_F(ReplayPaceTest, StepByStepItWaitsForALineAfterEachInstant) {
+    ASSERT_EQ(mkfifo((folder_ / "lines").c_str(), 0600), 0);
+    const Process process(
+        {"/bin/sh", "-c",
+         "exec " INSONIFY_BIN_DIR "/insonify replay out/wall.0.log wall.yml --out again --step < lines"},
+        folder_.path());
+    std::ofstream lines(folder_ / "lines");
+    ASSERT_TRUE(says(folder_ / "stderr.txt", "0.000000 s\n"));
+    std::this_thread::sleep_for(std::chrono::milliseconds(300));
+    EXPECT_THAT(readFile(folder_ / "stderr.txt"), Not(HasSubstr("0.100000 s\n")));
+    lines << std::endl;
+    ASSERT_TRUE(says(folder_ / "stderr.txt", "0.100000 s\n"));
+    EXPECT_THAT(readFile(folder_ / "stderr.txt"), Not(HasSubstr("0.200000 s\n")));
+    lines << "\n\n" << std::flush;
+    lines.close();
+    EXPECT_EQ(process.wait().code, 0);
+    EXPECT_EQ(stamps().size(), 3u);
+}
+
+TEST_F(ReplayPaceTest, ARealtimeDeploymentIsReplayedOnTheLogsTime) {
+    writeFile(folder_ / "wall.yml", replaced(wall_deployment, "schedule: lockstep", "schedule: realtime"));
+    replay({});
+    EXPECT_THAT(stamps(), testing::ElementsAre(1000, 1100, 1200));
+}
+
+TEST_F(ReplayPaceTest, ATaskOfARealtimeDeploymentThatReplaysALogGivesAllItsTime) {
+    writeFile(folder_ / "realtime.yml", R"(schedule: realtime
+tasks:
+  replay: {type: replay::ReplayTask, properties: {file: out/wall.0.log, loop: true}}
+  log: {type: logger::LoggerTask, properties: {file: again.0.log}}
+connections:
+  - {from: replay.vehicle.pose, to: log.pose, policy: {type: buffer, size: 64}}
+)");
+    const Outcome outcome = callInsonify(folder_, {"run", "realtime.yml", "--duration", "0.5", "--out", "again"});
+    ASSERT_EQ(outcome.code, 0) << outcome.err;
+    pocolog::Reader log(folder_ / "again/again.0.log");
+    EXPECT_GE(log.samples().size(), 4u);
+    for (const pocolog::SampleRef& at : log.samples()) {
+        EXPECT_GE(at.received, at.time);
+        EXPECT_LT((at.received - at.time).seconds(), 1) << "not this year's";
+    }
+}

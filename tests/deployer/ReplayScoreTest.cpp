@@ -1,0 +1,191 @@
+// A log rendered again and compared with itself.
+#include <gmock/gmock.h>
+
+#include <cmath>
+
+#include "components/pocolog/Reader.hpp"
+#include "components/pocolog/Writer.hpp"
+#include "tests/deployer/Wall.hpp"
+
+using namespace insonify::deployer;
+namespace pocolog = insonify::pocolog;
+namespace types = insonify::types;
+using testing::HasSubstr;
+
+namespace {
+
+/** out/wall.0.log of the wall's deployment, and scores against it. */
+class ReplayScoreTest : public testing::Test {
+protected:
+    void record(std::vector<std::string> more = {"--pings", "3"}) {
+        const Outcome outcome = folder_.run(std::move(more));
+        ASSERT_EQ(outcome.code, 0) << outcome.err;
+    }
+    Outcome score(const std::string& log, std::vector<std::string> more = {}) const {
+        std::vector<std::string> words = {"replay", log, "wall.yml", "--rerender", "--score", "--out", "scored"};
+        words.insert(words.end(), more.begin(), more.end());
+        return callInsonify(folder_, words);
+    }
+    /** What score.json says of each stream, by its name; there must be two. */
+    std::map<std::string, json> streams() const {
+        std::map<std::string, json> result;
+        const json score = json::parse(readFile(folder_ / "scored/score.json"));
+        for (const json& stream : score["streams"]) result[stream["stream"]] = stream;
+        EXPECT_EQ(result.size(), 2u);
+        return result;
+    }
+    void expectSame(const json& stream) const {
+        EXPECT_EQ(stream["compared"], 3);
+        for (const json& ping : stream["pings"]) {
+            for (const char* error : {"rel_l2", "rel_l2_tvg", "first_return_bins", "level_distance_db", "energy_bias"})
+                EXPECT_EQ(ping[error], 0) << error;
+            EXPECT_EQ(ping["correlation"], 1);
+            EXPECT_NEAR(ping["ssim"], 1, 1e-12);
+        }
+    }
+    /** A copy of the log whose poses from the `first` on lie 10 cm ahead. */
+    void shiftPoses(int first) const {
+        pocolog::Reader from(folder_ / "out/wall.0.log");
+        pocolog::Writer to(folder_ / "shifted.0.log");
+        std::vector<size_t> numbers;
+        for (const pocolog::Stream& stream : from.streams())
+            numbers.push_back(stream.holds<types::Pose>() ? to.addStream<types::Pose>(stream.name, stream.metadata)
+                                                          : to.addStream<types::Sonar>(stream.name, stream.metadata));
+        types::Pose pose;
+        types::Sonar ping;
+        for (const pocolog::SampleRef& at : from.samples()) {
+            if (from.streams()[at.stream].holds<types::Pose>()) {
+                from.read(at, pose);
+                if (first-- <= 0) pose.position.x += 0.1;
+                to.write(numbers[at.stream], at.received, pose);
+            } else {
+                from.read(at, ping);
+                to.write(numbers[at.stream], at.received, ping);
+            }
+        }
+        to.close();
+    }
+
+    const WallFolder folder_;
+};
+
+}  // namespace
+
+TEST_F(ReplayScoreTest, OurOwnLogScoresRelativeL2ZeroAndCorrelationOne) {
+    record();
+    const Outcome outcome = score("out/wall.0.log");
+    ASSERT_EQ(outcome.code, 0) << outcome.err;
+    EXPECT_THAT(outcome.out, HasSubstr("noise.noisy: 3 pings compared; relative L2 0 to 0, median 0\n"));
+    for (const auto& [name, stream] : streams()) expectSame(stream);
+    EXPECT_TRUE(fs::exists(folder_ / "scored/score_000005.png")) << "three pings of each stream";
+    EXPECT_FALSE(fs::exists(folder_ / "scored/score_000006.png"));
+}
+
+TEST_F(ReplayScoreTest, APoseShiftedByTenCentimetresDoesNot) {
+    record();
+    shiftPoses(0);
+    const Outcome outcome = score("shifted.0.log");
+    ASSERT_EQ(outcome.code, 0) << outcome.err;
+    for (const auto& [name, stream] : streams())
+        for (const json& ping : stream["pings"]) {
+            RecordProperty(name + "_rel_l2", ping["rel_l2"].dump());
+            EXPECT_GT(ping["rel_l2"], 0.05) << name;
+            EXPECT_LT(ping["correlation"], 0.999) << name;
+            EXPECT_LT(ping["ssim"], 0.999) << name;
+        }
+}
+
+TEST_F(ReplayScoreTest, TheWorstPingComesFirstInTableAndPictures) {
+    record();
+    shiftPoses(2);
+    const Outcome outcome = score("shifted.0.log", {"--worst", "1"});
+    ASSERT_EQ(outcome.code, 0) << outcome.err;
+    for (const auto& [name, stream] : streams()) {
+        EXPECT_NEAR(stream["pings"][0]["time"], 1.2, 1e-6);
+        EXPECT_GT(stream["pings"][0]["rel_l2"], 0.05);
+        EXPECT_EQ(stream["pings"][1]["rel_l2"], 0);
+        EXPECT_EQ(stream["pings"][2]["rel_l2"], 0);
+    }
+    EXPECT_THAT(outcome.out, HasSubstr("\n           1.2 "));
+    EXPECT_THAT(outcome.out, testing::Not(HasSubstr("\n           1.1 ")));
+    EXPECT_TRUE(fs::exists(folder_ / "scored/score_000001.png")) << "one of each stream";
+    EXPECT_FALSE(fs::exists(folder_ / "scored/score_000002.png"));
+}
+
+TEST_F(ReplayScoreTest, TheSeedIsThatOfTheLog) {
+    record({"--pings", "3", "--seed", "5"});
+    ASSERT_EQ(score("out/wall.0.log").code, 0);
+    for (const auto& [name, stream] : streams()) expectSame(stream);
+    ASSERT_EQ(score("out/wall.0.log", {"--seed", "6"}).code, 0);
+    expectSame(streams().at("sonar.ping"));
+    for (const json& ping : streams().at("noise.noisy")["pings"]) EXPECT_GT(ping["rel_l2"], 0.5);
+}
+
+TEST_F(ReplayScoreTest, AScanningSonarScoresAsWell) {
+    std::string scanning = replaced(wall_deployment, "sonar::SonarTask", "sonar::ScanningSonarTask");
+    scanning =
+        replaced(scanning, "      beam_count: 16\n", "      head: {left_deg: 30, right_deg: -30, step_deg: 10}\n");
+    scanning = replaced(scanning, "      field_of_view_deg: 60\n", "");
+    writeFile(folder_ / "wall.yml", scanning);
+    record();
+    const Outcome outcome = score("out/wall.0.log");
+    ASSERT_EQ(outcome.code, 0) << outcome.err;
+    for (const auto& [name, stream] : streams()) expectSame(stream);
+}
+
+TEST_F(ReplayScoreTest, LevelsAreComparedAsEnergies) {
+    const std::string levels =
+        replaced(wall_deployment, "      range: 20\n", "      range: 20\n      output: level_db\n");
+    writeFile(folder_ / "wall.yml",
+              replaced(levels, "properties: {seed: 7, speckle: {law: rayleigh}}", "properties: {seed: 7}"));
+    record();
+    shiftPoses(0);
+    ASSERT_EQ(score("out/wall.0.log").code, 0);
+    for (const auto& [name, stream] : streams()) {
+        expectSame(stream);
+        EXPECT_EQ(stream["display"]["scale"], "decibel");
+    }
+    ASSERT_EQ(score("shifted.0.log").code, 0);
+    for (const auto& [name, stream] : streams()) EXPECT_GT(stream["pings"][0]["rel_l2"], 0.05);
+}
+
+TEST_F(ReplayScoreTest, PingsOfAnotherShapeAreCountedAndNothingToCompareIsAFailure) {
+    record();
+    const Outcome outcome = score("out/wall.0.log", {"--set", "sonar.beam_count=32"});
+    EXPECT_EQ(outcome.code, 1);
+    EXPECT_THAT(outcome.err, HasSubstr("no ping of out/wall.0.log could be compared"));
+    EXPECT_THAT(outcome.out, HasSubstr("3 of other beams, bins or range"));
+    EXPECT_EQ(streams().at("sonar.ping")["other_shape"], 3);
+}
+
+TEST_F(ReplayScoreTest, FromTheMiddleOnTheRestIsCounted) {
+    record();
+    ASSERT_EQ(score("out/wall.0.log", {"--from", "0.1"}).code, 0);
+    EXPECT_EQ(streams().at("noise.noisy")["compared"], 2);
+    EXPECT_EQ(streams().at("noise.noisy")["not_rendered"], 1);
+    EXPECT_EQ(streams().at("noise.noisy")["pings"][0]["rel_l2"], 0);
+}
+
+TEST_F(ReplayScoreTest, WhatCannotBeScoredIsRefused) {
+    record();
+    EXPECT_EQ(callInsonify(folder_, {"replay", "out/wall.0.log", "wall.yml", "--score"}).code, 2) << "not rendered";
+    const std::string pose_only = replaced(
+        replaced(wall_deployment, "  - {from: sonar.ping, to: log.clean, policy: {type: buffer, size: 64}}\n", ""),
+        "  - {from: noise.noisy, to: log.noisy, policy: {type: buffer, size: 64}}\n", "");
+    writeFile(folder_ / "wall.yml", pose_only);
+    record();
+    const Outcome outcome = score("out/wall.0.log");
+    EXPECT_EQ(outcome.code, 2);
+    EXPECT_THAT(outcome.err, HasSubstr("holds no pings of a task of wall.yml"));
+    EXPECT_FALSE(fs::exists(folder_ / "scored"));
+}
+
+TEST_F(ReplayScoreTest, ALogWithoutPosesIsRefused) {
+    writeFile(
+        folder_ / "wall.yml",
+        replaced(wall_deployment, "  - {from: vehicle.pose, to: log.pose, policy: {type: buffer, size: 64}}\n", ""));
+    record();
+    const Outcome outcome = score("out/wall.0.log");
+    EXPECT_EQ(outcome.code, 2);
+    EXPECT_THAT(outcome.err, HasSubstr("none of its streams is of a task of wall.yml that comes before its sonars"));
+}

@@ -1,0 +1,168 @@
+#include <gmock/gmock.h>
+
+#include "components/framework/StreamAligner.hpp"
+#include "tests/support/Ports.hpp"
+#include "types/Pose.hpp"
+#include "types/Sonar.hpp"
+
+namespace insonify::framework {
+namespace {
+
+using testing::ElementsAre;
+using testing::IsEmpty;
+
+/** Reads poses and pings in the order of their time, and notes "pose 10" and "ping 10". */
+struct AligningTask : TaskContext {
+    explicit AligningTask(double timeout) : TaskContext("aligning") { aligner.clear(timeout); }
+    InputPort<types::Pose> pose{this, "pose", "any"};
+    InputPort<types::SonarPtr> ping{this, "ping", "any"};
+    StreamAligner aligner;
+    AlignedPort<types::Pose> poses{aligner, pose, [this](const types::Pose& sample) { note("pose", sample.time); }, 4};
+    AlignedPort<types::SonarPtr> pings{aligner, ping,
+                                       [this](const types::SonarPtr& sample) { note("ping", sample->time); }, 4};
+    std::vector<std::string> notes;
+
+    void note(const std::string& what, types::Time time) {
+        notes.push_back(what + " " + std::to_string(time.microseconds));
+    }
+};
+
+/** Times are in microseconds; the timeout is 100 us. */
+class StreamAlignerTest : public testing::Test {
+protected:
+    StreamAlignerTest() {
+        poses_.port.connectTo(task_.pose, ConnPolicy::buffer(100));
+        pings_.port.connectTo(task_.ping, ConnPolicy::buffer(100));
+    }
+    void writePoses(std::initializer_list<int64_t> times) {
+        for (const int64_t time : times) {
+            types::Pose pose;
+            pose.time = {time};
+            poses_.port.write(pose);
+        }
+    }
+    void writePings(std::initializer_list<int64_t> times) {
+        for (const int64_t time : times) {
+            types::Sonar ping;
+            ping.time = {time};
+            pings_.port.write(std::make_shared<const types::Sonar>(ping));
+        }
+    }
+    /** What is handed over now. */
+    std::vector<std::string> update() {
+        task_.aligner.update();
+        return std::exchange(task_.notes, {});
+    }
+
+    AligningTask task_{100e-6};
+    test::Writer<types::Pose> poses_;
+    test::Writer<types::SonarPtr> pings_;
+};
+
+TEST_F(StreamAlignerTest, SamplesComeInTheOrderOfTheirTimeWhateverTheirArrival) {
+    writePings({15, 25});
+    writePoses({10, 20, 30});
+    EXPECT_THAT(update(), ElementsAre("pose 10", "ping 15", "pose 20", "ping 25"));
+    writePings({30});
+    EXPECT_THAT(update(), ElementsAre("pose 30", "ping 30"));
+}
+
+TEST_F(StreamAlignerTest, ASampleWaitsForAPortThatMaySayMoreBeforeIt) {
+    writePings({15});
+    EXPECT_THAT(update(), IsEmpty()) << "no pose has been heard";
+    writePoses({10});
+    EXPECT_THAT(update(), ElementsAre("pose 10")) << "there may be another before 15";
+    writePoses({16});
+    EXPECT_THAT(update(), ElementsAre("ping 15"));
+    EXPECT_THAT(task_.aligner.troubles(), IsEmpty());
+}
+
+TEST_F(StreamAlignerTest, OfOneTimeThePortDeclaredFirstComesFirst) {
+    writePings({10});
+    writePoses({10});
+    EXPECT_THAT(update(), ElementsAre("pose 10", "ping 10"));
+}
+
+TEST_F(StreamAlignerTest, WhatComesNextOnAPortCanBeSeenWhileASampleBeforeItIsHandedOver) {
+    writePoses({10, 20});
+    writePings({15});
+    EXPECT_THAT(update(), ElementsAre("pose 10", "ping 15"));
+    ASSERT_NE(task_.poses.next(), nullptr);
+    EXPECT_EQ(task_.poses.next()->time, types::Time{20});
+    EXPECT_EQ(task_.pings.next(), nullptr);
+}
+
+TEST_F(StreamAlignerTest, APortThatIsSilentHoldsUpTheOthersForTheTimeoutOnly) {
+    writePoses({10});
+    writePings({20, 119});
+    EXPECT_THAT(update(), ElementsAre("pose 10"));
+    writePings({120});
+    EXPECT_THAT(update(), ElementsAre("ping 20"));
+    EXPECT_EQ(task_.poses.counts().awaited, 1u);
+    EXPECT_THAT(task_.aligner.troubles(), ElementsAre("pose: samples of others that went on without it: 1"));
+}
+
+TEST_F(StreamAlignerTest, AfterAGapThePortIsWaitedForAgain) {
+    writePings({20, 120});
+    EXPECT_THAT(update(), ElementsAre("ping 20"));
+    writePoses({115, 121});
+    EXPECT_THAT(update(), ElementsAre("pose 115", "ping 120"));
+    writePings({122});
+    EXPECT_THAT(update(), ElementsAre("pose 121"));
+    EXPECT_EQ(task_.poses.counts().awaited, 1u);
+}
+
+TEST_F(StreamAlignerTest, LateSamplesAreDroppedAndCounted) {
+    writePings({20, 120});
+    update();
+    writePoses({19, 20, 130, 125});
+    EXPECT_THAT(update(), ElementsAre("pose 20", "ping 120")) << "19 is before what has gone, 125 before 130";
+    EXPECT_EQ(task_.poses.counts().received, 4u);
+    EXPECT_EQ(task_.poses.counts().late, 2u);
+    EXPECT_THAT(
+        task_.aligner.troubles(),
+        ElementsAre("pose: 2 of 4 samples came too late and were dropped; samples of others that went on without "
+                    "it: 1"));
+}
+
+TEST_F(StreamAlignerTest, AFullPortWaitsNoLongerAndLosesNothing) {
+    writePings({1, 2, 3, 4, 5, 6});
+    EXPECT_THAT(update(), ElementsAre("ping 1", "ping 2", "ping 3"));
+    EXPECT_EQ(task_.poses.counts().awaited, 3u);
+    EXPECT_EQ(task_.pings.counts().late, 0u);
+}
+
+TEST_F(StreamAlignerTest, AnOutpacedPortIsReadBesideTheOthers) {
+    writePings({1, 3, 5, 7, 9, 11, 13, 15});
+    writePoses({2, 4, 6, 8, 10, 12, 14, 16});
+    EXPECT_EQ(update().size(), 15u);
+    EXPECT_EQ(task_.poses.counts().awaited, 0u);
+}
+
+TEST_F(StreamAlignerTest, FlushedItHandsOverAllThatWaits) {
+    writePings({15, 16});
+    writePoses({10});
+    task_.aligner.flush();
+    EXPECT_THAT(task_.notes, ElementsAre("pose 10", "ping 15", "ping 16"));
+}
+
+TEST_F(StreamAlignerTest, ClearedItStartsAnew) {
+    writePings({100});
+    update();
+    task_.aligner.clear(1);
+    writePoses({10});
+    writePings({9});
+    EXPECT_THAT(update(), ElementsAre("ping 9")) << "it remembers neither 100 nor that anything had been handed over";
+}
+
+TEST(StreamAlignerPortTest, APortThatIsNotConnectedIsNotWaitedFor) {
+    AligningTask task(1);
+    test::Writer<types::Pose> poses;
+    poses.port.connectTo(task.pose, ConnPolicy::data());
+    poses.port.write(types::Pose{});
+    task.aligner.update();
+    EXPECT_THAT(task.notes, ElementsAre("pose 0"));
+}
+
+}  // namespace
+}  // namespace insonify::framework

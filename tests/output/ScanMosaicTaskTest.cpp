@@ -1,0 +1,155 @@
+#include <gmock/gmock.h>
+
+#include "components/output/ScanMosaicTask.hpp"
+#include "tests/output/Room.hpp"
+#include "tests/support/Ports.hpp"
+
+namespace insonify::output {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+
+/** Where the task lays an echo 10 m straight ahead. */
+class ScanMosaicTaskTest : public ::testing::Test {
+protected:
+    ScanMosaicTaskTest() {
+        poses_.port.connectTo(task_.pose, framework::ConnPolicy::buffer(100));
+        pings_.port.connectTo(task_.ping, framework::ConnPolicy::buffer(100));
+        task_.image.connectTo(out_.port, framework::ConnPolicy::buffer(100));
+        MosaicConfig config;
+        config.width = 1200;
+        config.reference_db = 0;
+        config.colour_map = ColourMap::Gray;
+        config.timeout = 0.5;
+        config.mount.position = {1, 0, 0};
+        task_.config.set(config);
+    }
+    void start() {
+        ASSERT_TRUE(task_.configure());
+        ASSERT_TRUE(task_.start());
+    }
+    void givePose(double seconds, double north, double yaw_deg = 0) {
+        types::Pose pose;
+        pose.time = types::Time::fromSeconds(seconds);
+        pose.position.x = north;
+        pose.orientation = glm::angleAxis(types::radians(yaw_deg), glm::dvec3(0, 0, 1));
+        poses_.port.write(pose);
+        task_.update();
+    }
+    void givePing(double seconds) {
+        types::Sonar ping = test::withEcho(test::emptyPing(4, 1), 0, 20);
+        ping.time = types::Time::fromSeconds(seconds);
+        pings_.port.write(std::make_shared<const types::Sonar>(ping));
+        task_.update();
+    }
+    size_t pictures() {
+        size_t count = 0;
+        for (types::ImagePtr picture; out_.port.readNew(picture); ++count) last_ = picture;
+        return count;
+    }
+
+    ScanMosaicTask task_{"mosaic"};
+    test::Writer<types::Pose> poses_;
+    test::Writer<types::SonarPtr> pings_;
+    test::Reader<types::ImagePtr> out_;
+    types::ImagePtr last_;
+};
+
+TEST_F(ScanMosaicTaskTest, APingWaitsForThePoseAfterItAndIsLaidBetweenTheTwo) {
+    start();
+    givePose(1, 0, 0);
+    givePing(1.3);
+    EXPECT_EQ(pictures(), 0u);
+    givePose(2, 10, 90);
+    EXPECT_EQ(pictures(), 1u);
+    EXPECT_EQ(last_->time, types::Time::fromSeconds(1.3));
+    EXPECT_THAT(task_.notices(), IsEmpty());
+
+    // At 3 m north, turned by 27 degrees; the sonar is 1 m ahead of the body.
+    types::Pose sonar;
+    sonar.orientation = glm::angleAxis(types::radians(27), glm::dvec3(0, 0, 1));
+    sonar.position = glm::dvec3(3, 0, 0) + sonar.orientation * glm::dvec3(1, 0, 0);
+    ScanMosaic expected(*task_.config);
+    expected.place(sonar);
+    expected.setCaption("each ping at its pose, north up: 1 pings");
+    types::Sonar ping = test::withEcho(test::emptyPing(4, 1), 0, 20);
+    ping.time = last_->time;
+    types::Image picture;
+    expected.paint(ping, picture);
+    EXPECT_EQ(cv::norm(test::pixelsOf(*last_), test::pixelsOf(picture), cv::NORM_INF), 0);
+}
+
+TEST_F(ScanMosaicTaskTest, APoseOfThePingsOwnTimeIsEnough) {
+    start();
+    givePose(1, 0);
+    givePing(1);
+    EXPECT_EQ(pictures(), 1u);
+    EXPECT_THAT(task_.notices(), IsEmpty());
+}
+
+TEST_F(ScanMosaicTaskTest, APoseThatIsHeldIsCountedAndTold) {
+    start();
+    givePose(1, 0);
+    givePing(1.2);
+    givePing(1.6);
+    EXPECT_EQ(pictures(), 0u);
+    givePing(1.7);
+    EXPECT_EQ(pictures(), 1u) << "the ping of 1.2 s has waited for 0.5 s";
+    ASSERT_TRUE(task_.stop());
+    EXPECT_EQ(pictures(), 2u);
+    EXPECT_THAT(task_.notices(),
+                ElementsAre("pose: samples of others that went on without it: 1",
+                            "Warning: each ping at its pose, north up: 3 pings, 3 at a pose held for up to 0.7 s"));
+}
+
+TEST_F(ScanMosaicTaskTest, BeforeTheFirstPoseThatOneIsHeld) {
+    start();
+    givePing(0.9);
+    givePose(1, 0);
+    EXPECT_EQ(pictures(), 1u);
+    EXPECT_THAT(task_.notices(), ElementsAre(HasSubstr("1 at a pose held for up to 0.1 s")));
+}
+
+TEST_F(ScanMosaicTaskTest, APingWithoutAnyPoseOrWithOneThatIsNoneIsLeftOutAndTold) {
+    start();
+    givePing(1);
+    givePing(2);
+    givePose(3, std::nan(""));
+    givePing(3);
+    EXPECT_EQ(pictures(), 3u);
+    EXPECT_THAT(task_.notices(), testing::Contains(HasSubstr("0 pings, 3 not shown for want of a pose")));
+}
+
+TEST_F(ScanMosaicTaskTest, ALatePoseIsTold) {
+    start();
+    givePing(1);
+    givePing(2);
+    givePose(0.5, 0);
+    EXPECT_THAT(task_.notices(), testing::Contains(HasSubstr("pose: 1 of 1 samples came too late")));
+}
+
+TEST_F(ScanMosaicTaskTest, HalvesThatAreTooNarrowAreRefused) {
+    MosaicConfig config;
+    types::Problems problems;
+    config.check(problems);
+    EXPECT_THAT(problems, IsEmpty());
+    config.width = 511;
+    config.check(problems);
+    ASSERT_EQ(problems.size(), 1u);
+    EXPECT_EQ(problems[0].path, "width");
+}
+
+TEST_F(ScanMosaicTaskTest, StartedAgainItHasForgotten) {
+    start();
+    givePing(1);
+    ASSERT_TRUE(task_.stop());
+    ASSERT_TRUE(task_.start());
+    givePose(0.5, 0);
+    givePing(0.5);
+    EXPECT_THAT(task_.notices(), IsEmpty());
+}
+
+}  // namespace
+}  // namespace insonify::output

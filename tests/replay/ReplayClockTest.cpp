@@ -1,0 +1,131 @@
+#include <gmock/gmock.h>
+
+#include "tests/replay/Bench.hpp"
+
+namespace insonify::replay {
+namespace {
+
+using testing::ElementsAre;
+
+TEST(ReplayClockTest, PaceScalesTheWallClock) {
+    Bench bench(false, {.file = {}, .pace = 2});
+    test::Reader<types::Pose> poses;
+    bench.connect("vehicle.pose", poses);
+    bench.clock = {1'000'000};
+    ASSERT_TRUE(bench.task.configure());
+    ASSERT_TRUE(bench.task.start());
+    EXPECT_TRUE(bench.task.activity().settings().periodic()) << "nothing else would run it";
+    bench.updateAt(1'000'004);
+    EXPECT_THAT(stampsIn(poses), ElementsAre(10)) << "8 us of the log have gone by";
+    bench.updateAt(1'000'005);
+    EXPECT_THAT(stampsIn(poses), ElementsAre(20));
+    bench.updateAt(1'000'010);
+    EXPECT_THAT(stampsIn(poses), ElementsAre(30));
+}
+
+TEST(ReplayClockTest, WithoutPaceEachCyclePlaysOneInstant) {
+    Bench bench(false, {.file = {}, .pace = 0});
+    test::Reader<types::Pose> poses;
+    test::Reader<types::SonarPtr> pings;
+    bench.connect("vehicle.pose", poses);
+    bench.connect("sonar.ping", pings);
+    bench.task.configure();
+    bench.task.start();
+    bench.task.update();
+    EXPECT_THAT(stampsIn(poses), ElementsAre(10));
+    bench.task.update();
+    EXPECT_THAT(stampsIn(poses), ElementsAre(20));
+    EXPECT_THAT(stampsIn(pings), ElementsAre(10));
+}
+
+TEST(ReplayClockTest, InRealtimeAllTasksReadTheLogsTime) {
+    Bench bench(false, {.file = {}, .pace = 2});
+    test::Reader<types::Pose> poses;
+    bench.connect("vehicle.pose", poses);
+    bench.clock = {1'000'000};
+    ASSERT_TRUE(bench.task.configure());
+    const auto now = [&] { return bench.task.environment().now(); };
+    EXPECT_EQ(now(), types::Time{10}) << "before the start it stands at the first sample";
+    ASSERT_TRUE(bench.task.start());
+    bench.clock = {1'000'004};
+    EXPECT_EQ(now(), types::Time{18});
+}
+
+TEST(ReplayClockTest, WithoutPaceTheLogsTimeIsThatOfTheInstantThatIsPlayed) {
+    Bench bench(false, {.file = {}, .pace = 0});
+    test::Reader<types::Pose> poses;
+    bench.connect("vehicle.pose", poses);
+    bench.task.configure();
+    bench.task.start();
+    for (const int64_t time : {10, 20, 30}) {
+        bench.task.update();
+        EXPECT_EQ(bench.task.environment().now(), types::Time{time});
+    }
+}
+
+TEST(ReplayClockTest, ItStartsWhereItIsToldTo) {
+    Bench bench(true, {.file = {}, .from = 10e-6});
+    test::Reader<types::Pose> poses;
+    test::Reader<types::SonarPtr> pings;
+    bench.connect("vehicle.pose", poses);
+    bench.connect("sonar.ping", pings);
+    bench.task.configure();
+    bench.task.start();
+    EXPECT_EQ(bench.task.nextTime(), types::Time{20});
+    bench.updateAt(100);
+    EXPECT_THAT(stampsIn(poses), ElementsAre(20, 30));
+    EXPECT_THAT(stampsIn(pings), ElementsAre(10, 20)) << "in the file they come after the pose at 20";
+}
+
+TEST(ReplayClockTest, AStartBeyondTheEndIsSeenBeforeAnythingStarts) {
+    Bench bench(true, {.file = {}, .from = 1});
+    types::Problems problems;
+    bench.task.check(problems);
+    ASSERT_EQ(problems.size(), 1u);
+    EXPECT_EQ(problems[0].path, "from");
+}
+
+TEST(ReplayClockTest, InALoopStampsGoOnAndTimeNeverGoesBack) {
+    Bench bench(true, {.file = {}, .loop = true});
+    test::Reader<types::Pose> poses;
+    bench.connect("vehicle.pose", poses);
+    bench.task.configure();
+    bench.task.start();
+    std::vector<int64_t> instants;
+    for (int i = 0; i < 7; ++i) {
+        instants.push_back(bench.task.nextTime()->microseconds);
+        bench.updateAt(instants.back());
+    }
+    EXPECT_THAT(instants, ElementsAre(10, 20, 30, 40, 50, 60, 70));
+    EXPECT_FALSE(bench.task.finished());
+    std::vector<double> places;
+    std::vector<int64_t> stamps;
+    for (types::Pose pose; poses.port.readNew(pose);) {
+        places.push_back(pose.position.x);
+        stamps.push_back(pose.time.microseconds);
+    }
+    EXPECT_EQ(stamps, instants);
+    EXPECT_THAT(places, ElementsAre(10, 20, 30, 10, 20, 30, 10));
+}
+
+TEST(ReplayClockTest, SeekGoesOnElsewhereInTheLogWhileTimeGoesOn) {
+    Bench bench;
+    test::Reader<types::Pose> poses;
+    bench.connect("vehicle.pose", poses);
+    bench.task.configure();
+    bench.task.start();
+    bench.updateAt(10);
+    bench.updateAt(20);
+    bench.task.seek(0);
+    EXPECT_EQ(bench.task.nextTime(), types::Time{30});
+    bench.updateAt(30);
+    bench.task.seek(20e-6);
+    bench.updateAt(40);
+    std::vector<double> places;
+    for (types::Pose pose; poses.port.readNew(pose);) places.push_back(pose.position.x);
+    EXPECT_THAT(places, ElementsAre(10, 20, 10, 30));
+    EXPECT_TRUE(bench.task.finished());
+}
+
+}  // namespace
+}  // namespace insonify::replay
