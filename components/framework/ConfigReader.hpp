@@ -72,6 +72,14 @@ private:
 /** "did you mean range? known: range, model": for a name that is not known. */
 std::string suggestion(std::string_view wrong, const std::vector<std::string>& known);
 
+/** Names of what has a name: ports, operations. */
+template <class Named>
+std::vector<std::string> namesOf(const std::vector<Named*>& all) {
+    std::vector<std::string> names;
+    for (const Named* one : all) names.push_back(one->name());
+    return names;
+}
+
 /** The value of `key` in a map, an undefined node if there is none (YAML::Node's operator[] of a const node, but for
  *  maps with keys that are not scalars as well). */
 YAML::Node child(const YAML::Node& map, std::string_view key);

@@ -11,13 +11,6 @@
 namespace insonify::framework {
 namespace {
 
-template <class Ports>
-std::vector<std::string> namesOf(const Ports& ports) {
-    std::vector<std::string> names;
-    for (const auto* port : ports) names.push_back(port->name());
-    return names;
-}
-
 std::vector<std::string> typesOf(const Registry& registry) {
     std::vector<std::string> types;
     for (const Registry::Entry& entry : registry.list()) types.push_back(entry.type);
