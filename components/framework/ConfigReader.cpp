@@ -14,30 +14,6 @@ namespace {
 /** A scalar without quotes: in strict YAML only such a one can be a number or a truth value. */
 bool isPlain(const YAML::Node& node) { return node.IsScalar() && node.Tag() != "!"; }
 
-/** What stands there, for messages. */
-std::string shown(const YAML::Node& node) {
-    if (!node.IsDefined() || node.IsNull()) return "empty";
-    if (node.IsMap() && node.size() == 1 && node.begin()->second.IsScalar())
-        return "{" + node.begin()->first.Scalar() + ": " + node.begin()->second.Scalar() + "}";
-    if (node.IsMap()) return "a block";
-    if (node.IsSequence()) return "a list";
-    std::string text = node.Scalar().substr(0, 60);
-    for (char& c : text)
-        if (static_cast<unsigned char>(c) < ' ') c = ' ';
-    return isPlain(node) ? text : "the text \"" + text + "\"";
-}
-
-std::string withUnit(const std::string& number, const types::Field& field) {
-    const std::string unit = field.unit;
-    return unit.empty() || unit == "1" ? number : number + " " + unit;
-}
-
-std::string allowed(const types::Field& field) {
-    if (std::isinf(field.max)) return "must be at least " + withUnit(fmt::format("{}", field.min), field);
-    if (std::isinf(field.min)) return "must be at most " + withUnit(fmt::format("{}", field.max), field);
-    return "may be " + withUnit(fmt::format("{} to {}", field.min, field.max), field);
-}
-
 bool parseDouble(std::string_view text, double& value) {
     if (text.starts_with('+')) text.remove_prefix(1);
     const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
@@ -59,6 +35,30 @@ std::optional<Quantity> quantityOf(const YAML::Node& node) {
         return Quantity::parse(inner.Scalar());
     }
     return std::nullopt;
+}
+
+/** What stands there, for messages. */
+std::string shown(const YAML::Node& node) {
+    if (!node.IsDefined() || node.IsNull()) return "empty";
+    if (quantityOf(node) && node.IsMap())
+        return "{" + node.begin()->first.Scalar() + ": " + node.begin()->second.Scalar() + "}";
+    if (node.IsMap()) return "a block";
+    if (node.IsSequence()) return "a list";
+    std::string text = node.Scalar().substr(0, 60);
+    for (char& c : text)
+        if (static_cast<unsigned char>(c) < ' ') c = ' ';
+    return isPlain(node) ? text : "the text \"" + text + "\"";
+}
+
+std::string withUnit(const std::string& number, const types::Field& field) {
+    const std::string unit = field.unit;
+    return unit.empty() || unit == "1" ? number : number + " " + unit;
+}
+
+std::string allowed(const types::Field& field) {
+    if (std::isinf(field.max)) return "must be at least " + withUnit(fmt::format("{}", field.min), field);
+    if (std::isinf(field.min)) return "must be at most " + withUnit(fmt::format("{}", field.max), field);
+    return "may be " + withUnit(fmt::format("{} to {}", field.min, field.max), field);
 }
 
 std::string wantedUnit(const types::Field& field) {

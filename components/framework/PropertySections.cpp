@@ -34,7 +34,7 @@ void PropertySections::read(const std::filesystem::path& file, const std::string
             body += line + "\n";
             continue;
         }
-        if (section.line > 0 || body.find_first_not_of(" \t\r\n") != std::string::npos) take(section, body);
+        take(std::move(section), body);
         section = header(line, shown, number);
         body.assign(static_cast<size_t>(number), '\n');  // places in the section are places in the file
     }
@@ -67,6 +67,7 @@ PropertySection PropertySections::header(const std::string& line, const std::str
 void PropertySections::take(PropertySection section, const std::string& body) {
     try {
         const std::vector<YAML::Node> documents = parseYaml(body, section.file);
+        if (section.line == 0 && (documents.empty() || documents.front().IsNull())) return;  // before the first head
         if (documents.size() > 1) fault(section.file, section.line, section.name, "holds several YAML documents");
         if (!documents.empty()) section.body.reset(documents.front());
     } catch (const types::ConfigError& error) {

@@ -36,21 +36,22 @@ bool leadsBelow(const std::map<std::string, std::string>& names, const std::stri
 }
 
 std::string fullPath(const TaskSpec& task, const std::string& property) {
-    return framework::below(task.path() + ".properties", property);
+    const std::string block = task.path() + ".properties";
+    return property.empty() ? block : framework::below(block, property);
 }
 
 }  // namespace
 
 void PropertySources::apply() {
     checkTargets();
-    std::vector<Moved> moved, switches;
+    std::vector<Moved> moved;
     for (TaskSpec& task : spec_.tasks) {
         const Origin here{spec_.file, fullPath(task, "")};
         task.properties.reset(withoutAliases(task, task.properties, "", here, moved));
     }
-    move(moved, switches);
-    for (TaskSpec& task : spec_.tasks) applyFiles(task, switches);
-    for (const Moved& change : switches) turn(change);
+    move(moved);
+    for (TaskSpec& task : spec_.tasks) applyFiles(task);
+    for (const auto& [target, change] : switches_) turn(target, change.first, change.second);
 }
 
 void PropertySources::checkTargets() {
@@ -90,18 +91,21 @@ YAML::Node PropertySources::withoutAliases(const TaskSpec& task, const YAML::Nod
     return rest;
 }
 
-void PropertySources::move(std::vector<Moved>& moved, std::vector<Moved>& switches) {
+void PropertySources::move(const std::vector<Moved>& moved) {
     for (const Moved& one : moved) {
         const auto [owner, property] = splitPort(one.target);
-        if (one.is_switch)
-            switches.push_back(one);
-        else if (TaskSpec* task = spec_.task(owner))
-            lay(*task, property, one.value, one.origin);
+        bool on = false;
+        ConfigReader reader(one.origin.file);
+        if (!one.is_switch) {
+            if (TaskSpec* task = spec_.task(owner)) lay(*task, property, one.value, one.origin);
+        } else if (reader.readValue(one.value, one.origin.path, types::Field{""}, on)) {
+            switches_[one.target] = {on, one.origin};
+        }
+        spec_.faults.insert(spec_.faults.end(), reader.faults().begin(), reader.faults().end());
     }
-    moved.clear();
 }
 
-void PropertySources::applyFiles(TaskSpec& task, std::vector<Moved>& switches) {
+void PropertySources::applyFiles(TaskSpec& task) {
     if (task.property_files.files.empty()) return;
     PropertySections sections;
     const auto folder = std::filesystem::path(spec_.file).parent_path();
@@ -122,7 +126,7 @@ void PropertySources::applyFiles(TaskSpec& task, std::vector<Moved>& switches) {
         if (reader.isMap(section->body, section->name) && rest.IsMap())
             for (const auto& entry : rest) lay(task, entry.first.Scalar(), entry.second, below(there, entry.first));
         faults.insert(faults.end(), reader.faults().begin(), reader.faults().end());
-        move(moved, switches);
+        move(moved);
     }
     faults.insert(faults.end(), sections.faults().begin(), sections.faults().end());
     spec_.faults.insert(spec_.faults.end(), faults.begin(), faults.end());
@@ -162,20 +166,14 @@ YAML::Node PropertySources::laid(const YAML::Node& base, const YAML::Node& over,
     return over;
 }
 
-void PropertySources::turn(const Moved& change) {
-    const auto [owner, property] = splitPort(change.target);
+void PropertySources::turn(const std::string& target, bool on, const Origin& origin) {
+    const auto [owner, property] = splitPort(target);
     TaskSpec* const task = spec_.task(owner);
     if (!task) return;
-    ConfigReader reader(change.origin.file);
-    bool on = false;
-    if (!reader.readValue(change.value, change.origin.path, types::Field{""}, on)) {
-        spec_.faults.push_back(reader.faults().front());
-        return;
-    }
     task->properties.reset(changedAt(task->properties, property, [&](const YAML::Node& block) {
         if (!on) return YAML::Node(YAML::NodeType::Undefined);
         if (block.IsDefined()) return block;
-        return laid(block, YAML::Node(YAML::NodeType::Map), fullPath(*task, property), change.origin);
+        return laid(block, YAML::Node(YAML::NodeType::Map), fullPath(*task, property), origin);
     }));
 }
 
@@ -193,10 +191,11 @@ void PropertySources::set(TaskSpec& task, const std::string& property, const YAM
     for (const Moved& one : moved) {
         const auto [owner, path] = splitPort(one.target);
         if (one.is_switch)
-            turn(one);
+            move({one});
         else if (TaskSpec* target = spec_.task(owner))
             replace(*target, path, one.value, one.origin);
     }
+    for (const auto& [target, change] : switches_) turn(target, change.first, change.second);
 }
 
 }  // namespace insonify::framework

@@ -31,15 +31,17 @@ private:
     /** `block` without the values that have an alias, which are added to `moved`. */
     YAML::Node withoutAliases(const TaskSpec& task, const YAML::Node& block, const std::string& path,
                               const Origin& origin, std::vector<Moved>& moved);
-    void applyFiles(TaskSpec& task, std::vector<Moved>& switches);
-    void move(std::vector<Moved>& moved, std::vector<Moved>& switches);
-    void turn(const Moved& change);
+    void applyFiles(TaskSpec& task);
+    /** Lays values where they lead; of switches the last is kept, for turn(). */
+    void move(const std::vector<Moved>& moved);
+    void turn(const std::string& target, bool on, const Origin& origin);
     /** Lays `over` on the properties of `task` at `path`. */
     void lay(TaskSpec& task, const std::string& path, const YAML::Node& over, const Origin& origin);
     YAML::Node laid(const YAML::Node& base, const YAML::Node& over, const std::string& path, const Origin& origin);
     void checkTargets();
 
     DeploymentSpec& spec_;
+    std::map<std::string, std::pair<bool, Origin>> switches_;  ///< By target.
 };
 
 }  // namespace insonify::framework

@@ -68,6 +68,7 @@ bool takeNumber(std::string_view& text, double& number) {
 }  // namespace
 
 std::optional<Unit> unitOf(std::string_view name) {
+    if (name == "1") return Unit{};
     if (name == "degC") return Unit{1, 273.15, {0, 0, 0, 1, 0}};
     const size_t slash = name.find('/');
     const auto above = powered(name.substr(0, slash));

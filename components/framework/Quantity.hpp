@@ -14,7 +14,7 @@ struct Unit {
     friend bool operator==(const Unit&, const Unit&) = default;
 };
 
-/** The unit of a property: "m", "m/s", "deg", "kHz", "degC"...; none for "1", for levels (dB) and for what is not
+/** The unit of a property: "m", "m/s", "deg", "kHz", "degC", "1"...; none for levels (dB) and for what is not
  *  known. */
 std::optional<Unit> unitOf(std::string_view name);
 

@@ -20,7 +20,8 @@ protected:
     std::string properties(const std::string& yaml, const std::string& task = "t") { return text(parse(yaml), task); }
     static std::string text(const DeploymentSpec& spec, const std::string& task = "t") {
         YAML::Emitter out;
-        out.SetMapFormat(YAML::Flow).SetSeqFormat(YAML::Flow);
+        out.SetMapFormat(YAML::Flow);
+        out.SetSeqFormat(YAML::Flow);
         out << spec.task(task)->properties;
         return out.c_str();
     }
@@ -57,7 +58,7 @@ TEST_F(PropertySourcesTest, SectionsApplyInOrderOverTheDeploymentAndBlocksAreMer
     EXPECT_EQ(properties(yaml + "    property_files: {files: [one.yml], sections: [default, near]}\n"),
               "{gain: 2, range: 5, head: {left: 1, right: 9}, list: [7, 2, 3]}");
     EXPECT_EQ(properties(yaml + "    property_files: {files: [one.yml], sections: [near, default]}\n"),
-              "{gain: 2, range: 50, head: {right: 2, left: 1}, list: [1, 2, 3]}");
+              "{gain: 2, range: 50, head: {left: 1, right: 2}, list: [1, 2, 3]}");
 }
 
 TEST_F(PropertySourcesTest, WhatASectionChainsLiesBelowIt) {
@@ -142,7 +143,7 @@ TEST_F(PropertySourcesTest, FaultsOfAliasesAreToldWhereTheValueStands) {
                       "    properties: {of_nobody: 1}\n"
                       "    property_files: {files: [one.yml]}\n"),
         ElementsAre("a.yml:5:41: tasks.t.aliases.of_nobody: there is no task nobody; known: t",
-                    "a.yml:5:60: tasks.t.aliases.short: is last; must be task.property or task.port",
+                    "a.yml:5:58: tasks.t.aliases.short: is last; must be task.property or task.port",
                     "one.yml:1:8: count: is 0; may be 1 to 1000000", "one.yml:2:7: loud: is 3; may be true or false"));
 }
 

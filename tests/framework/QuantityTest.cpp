@@ -79,8 +79,8 @@ TEST(QuantityTest, AQuantityThatDoesNotFitIsNamed) {
     for (const auto& fault : reader.faults()) texts.push_back(fault.text());
     EXPECT_EQ(texts, (std::vector<std::string>{"a.yml:1:12: step_deg: is 3.m; must be in deg",
                                                "a.yml:1:24: turns: is 2.5.ceil.m; must be a finite number",
-                                               "a.yml:1:59: temperature_celsius: is {rad: 1}; must be in degC",
-                                               "a.yml:1:79: level_db: is 3.m; must be in dB",
+                                               "a.yml:1:57: temperature_celsius: is {rad: 1}; must be in degC",
+                                               "a.yml:1:77: level_db: is 3.m; must be in dB",
                                                "a.yml:1:12: step_deg: is 400 deg; may be 0 to 360 deg",
                                                "a.yml:1:35: turns: is {rad: 1}; must be a number without a unit"}));
 }
