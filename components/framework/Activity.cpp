@@ -48,11 +48,14 @@ void Activity::submit(Job& job) {
 }
 
 void Activity::release() {
-    std::lock_guard lock(mutex_);
-    free_ = true;
-    woken_ = false;
-    next_cycle_ = Clock::now();
+    {
+        std::lock_guard lock(mutex_);
+        free_ = true;
+        woken_ = false;
+        next_cycle_ = Clock::now();
+    }
     wake_.notify_one();
+    if (owner_.triggered()) trigger();  // by what came before
 }
 
 void Activity::hold() {
@@ -64,10 +67,13 @@ void Activity::hold() {
 }
 
 void Activity::trigger() {
-    std::lock_guard lock(mutex_);
     if (!free_) return;
-    woken_ = true;
-    wake_.notify_one();
+    {
+        std::lock_guard lock(mutex_);
+        if (!free_ || woken_) return;
+        woken_ = true;
+    }
+    wake_.notify_one();  // with the mutex free: the thread takes it at once
 }
 
 void Activity::loop() {

@@ -1,4 +1,5 @@
 #pragma once
+#include <atomic>
 #include <chrono>
 #include <condition_variable>
 #include <exception>
@@ -44,7 +45,7 @@ public:
         submit(job);
     }
 
-    void release();  ///< From now on the thread runs cycles by itself.
+    void release();  ///< From now on the thread runs cycles by itself; the first at once if samples wait.
     void hold();     ///< No cycle runs any more once this returns (called from another thread).
     void trigger();  ///< A new sample is there; any thread.
 
@@ -70,7 +71,8 @@ private:
     std::mutex mutex_;
     std::condition_variable wake_, served_;
     Job* first_job_ = nullptr;
-    bool free_ = false, woken_ = false, ending_ = false;
+    std::atomic<bool> free_{false};  ///< Changes under the mutex.
+    bool woken_ = false, ending_ = false;
     Clock::time_point next_cycle_;
     std::thread thread_;
 };

@@ -6,15 +6,42 @@
 #include <charconv>
 #include <numeric>
 
+#include "components/framework/Quantity.hpp"
+
 namespace insonify::framework {
 namespace {
 
 /** A scalar without quotes: in strict YAML only such a one can be a number or a truth value. */
 bool isPlain(const YAML::Node& node) { return node.IsScalar() && node.Tag() != "!"; }
 
+bool parseDouble(std::string_view text, double& value) {
+    if (text.starts_with('+')) text.remove_prefix(1);
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+    return error == std::errc() && end == text.data() + text.size();
+}
+
+/** A number with a unit, "20.deg", or a block of Rock's that is one: {rad: 0.3}, {rad: 20.deg}, {kelvin: 280}. */
+std::optional<Quantity> quantityOf(const YAML::Node& node) {
+    if (!node.IsDefined()) return std::nullopt;
+    if (node.IsScalar()) return Quantity::parse(node.Scalar());
+    static constexpr std::pair<const char*, const char*> blocks[] = {
+        {"rad", "rad"}, {"kelvin", "K"}, {"microseconds", "us"}};
+    for (const auto& [key, unit] : blocks) {
+        if (!node.IsMap() || node.size() != 1) continue;
+        const YAML::Node inner = child(node, key);
+        double number = 0;
+        if (!inner.IsDefined() || !inner.IsScalar()) continue;
+        if (parseDouble(inner.Scalar(), number) && std::isfinite(number)) return Quantity{number, *unitOf(unit)};
+        return Quantity::parse(inner.Scalar());
+    }
+    return std::nullopt;
+}
+
 /** What stands there, for messages. */
 std::string shown(const YAML::Node& node) {
     if (!node.IsDefined() || node.IsNull()) return "empty";
+    if (quantityOf(node) && node.IsMap())
+        return "{" + node.begin()->first.Scalar() + ": " + node.begin()->second.Scalar() + "}";
     if (node.IsMap()) return "a block";
     if (node.IsSequence()) return "a list";
     std::string text = node.Scalar().substr(0, 60);
@@ -34,10 +61,9 @@ std::string allowed(const types::Field& field) {
     return "may be " + withUnit(fmt::format("{} to {}", field.min, field.max), field);
 }
 
-bool parseDouble(std::string_view text, double& value) {
-    if (text.starts_with('+')) text.remove_prefix(1);
-    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-    return error == std::errc() && end == text.data() + text.size();
+std::string wantedUnit(const types::Field& field) {
+    const std::string unit = field.unit;
+    return unit.empty() || unit == "1" ? "must be a number without a unit" : "must be in " + unit;
 }
 
 size_t editDistance(std::string_view a, std::string_view b) {
@@ -91,17 +117,19 @@ YAML::Node child(const YAML::Node& map, std::string_view key) {
 }
 
 void ConfigReader::fault(const YAML::Node& node, const std::string& path, const std::string& message) {
-    const auto covers = [&](const std::string& set) {
-        return path == set || path.starts_with(set + ".") || path.starts_with(set + "[");
-    };
-    const bool is_set = std::any_of(set_paths_.begin(), set_paths_.end(), covers);
-    if (is_set || file_.empty()) {
-        faults_.push_back({is_set ? "--set" : "", 0, 0, path, message});
-        return;
+    Origin origin{file_, path, fallback_};
+    size_t longest = 0;
+    for (const auto& [covered, from] : origins_) {
+        const bool covers = path == covered || path.starts_with(covered + ".") || path.starts_with(covered + "[");
+        if (!covers || covered.size() < longest) continue;
+        longest = covered.size();
+        origin = {from.file, from.path + path.substr(covered.size()), from.mark};
     }
-    YAML::Mark mark = node.IsDefined() ? node.Mark() : fallback_;
-    if (mark.is_null()) mark = fallback_;
-    faults_.push_back({file_, mark.line + 1, mark.column + 1, path, message});
+    if (node.IsDefined() && !node.Mark().is_null()) origin.mark = node.Mark();
+    if (origin.file.empty() || origin.file == set_origin || origin.mark.is_null())
+        faults_.push_back({origin.file, 0, 0, origin.path, message});
+    else
+        faults_.push_back({origin.file, origin.mark.line + 1, origin.mark.column + 1, origin.path, message});
 }
 
 void ConfigReader::report(const YAML::Node& block, const std::string& path, const types::Problems& problems) {
@@ -142,7 +170,12 @@ void ConfigReader::refuseUnknown(const YAML::Node& map, const std::string& path,
 
 bool ConfigReader::number(const YAML::Node& node, const std::string& path, const types::Field& field, double& value) {
     double read = 0;
-    if (!isPlain(node) || !parseDouble(node.Scalar(), read) || !std::isfinite(read)) {
+    if (const auto quantity = quantityOf(node)) {
+        const auto unit = unitOf(field.unit);
+        const auto converted = unit ? quantity->in(*unit) : std::nullopt;
+        if (!converted) return fault(node, path, "is " + shown(node) + "; " + wantedUnit(field)), false;
+        read = *converted;
+    } else if (!isPlain(node) || !parseDouble(node.Scalar(), read) || !std::isfinite(read)) {
         fault(node, path, "is " + shown(node) + "; must be a finite number");
         return false;
     }
@@ -159,8 +192,8 @@ bool ConfigReader::whole(const YAML::Node& node, const std::string& path, const 
     double wide = 0;
     if (!number(node, path, field, wide)) return false;
     if (wide != std::floor(wide)) return fault(node, path, "is " + shown(node) + "; must be a whole number"), false;
-    std::string_view digits = node.Scalar();
-    negative = digits.starts_with('-');
+    std::string_view digits = quantityOf(node) ? std::string_view("0.") : node.Scalar();
+    negative = wide < 0;
     if (digits.starts_with('-') || digits.starts_with('+')) digits.remove_prefix(1);
     const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), magnitude);
     const bool exact = error == std::errc() && end == digits.data() + digits.size();

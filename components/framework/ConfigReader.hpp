@@ -21,12 +21,20 @@ namespace insonify::framework {
 template <class T>
 concept Number = std::integral<T> || std::floating_point<T>;
 
+/** Where a value was written that is not from the file at hand. */
+struct Origin {
+    std::string file;                           ///< set_origin: nowhere, it was given with `--set`.
+    std::string path;                           ///< Its path there.
+    YAML::Mark mark = YAML::Mark::null_mark();  ///< Its place there.
+};
+using Origins = std::map<std::string, Origin>;  ///< By path; what lies below is from there as well.
+inline constexpr const char* set_origin = "--set";
+
 class ConfigReader {
 public:
-    /** Faults name `file`, but for paths that begin with one of `set_paths`: these name `--set`.
-     *  Without a file faults have no place. */
-    explicit ConfigReader(std::string file, std::vector<std::string> set_paths = {})
-        : file_(std::move(file)), set_paths_(std::move(set_paths)) {}
+    /** Faults name `file`, but for paths that have an origin of their own. Without a file faults have no place. */
+    explicit ConfigReader(std::string file, Origins origins = {})
+        : file_(std::move(file)), origins_(std::move(origins)) {}
 
     const std::vector<types::Diagnostic>& faults() const { return faults_; }
     void fault(const YAML::Node& node, const std::string& path, const std::string& message);
@@ -64,13 +72,21 @@ private:
     bool readNumber(const YAML::Node& node, const std::string& path, const types::Field& field, T& value);
 
     std::string file_;
-    std::vector<std::string> set_paths_;
+    Origins origins_;
     std::vector<types::Diagnostic> faults_;
     YAML::Mark fallback_ = YAML::Mark::null_mark();
 };
 
 /** "did you mean range? known: range, model": for a name that is not known. */
 std::string suggestion(std::string_view wrong, const std::vector<std::string>& known);
+
+/** Names of what has a name: ports, operations. */
+template <class Named>
+std::vector<std::string> namesOf(const std::vector<Named*>& all) {
+    std::vector<std::string> names;
+    for (const Named* one : all) names.push_back(one->name());
+    return names;
+}
 
 /** The value of `key` in a map, an undefined node if there is none (YAML::Node's operator[] of a const node, but for
  *  maps with keys that are not scalars as well). */

@@ -6,6 +6,7 @@
 
 #include "components/framework/Activity.hpp"
 #include "components/framework/Lockstep.hpp"
+#include "components/framework/Operation.hpp"
 #include "components/framework/Wiring.hpp"
 
 namespace insonify::framework {
@@ -208,6 +209,20 @@ std::vector<std::string> Deployment::cleanup() {
         if (const Outcome outcome = task->cleanup(); !outcome) failures.push_back(task->name() + ": " + outcome.reason);
     }
     return failures;
+}
+
+std::string Deployment::call(const std::string& operation, const std::vector<std::string>& arguments) {
+    const auto [task_name, name] = splitPort(operation);
+    TaskContext* const owner = task(task_name);
+    if (!owner)
+        throw types::ConfigError("", operation,
+                                 "there is no task " + task_name + "; " + suggestion(task_name, spec_.taskNames()));
+    OperationBase* const called = owner->operation(name);
+    if (!called)
+        throw types::ConfigError(
+            "", operation,
+            task_name + " has no operation " + name + "; " + suggestion(name, namesOf(owner->operations())));
+    return called->callText(arguments);
 }
 
 std::map<std::string, uint64_t> Deployment::losses() const {

@@ -21,7 +21,7 @@ struct Connection {
     OutputPortBase* from;
     InputPortBase* to;
     ConnPolicy policy;
-    const ChannelBase* channel;
+    std::shared_ptr<const ChannelBase> channel;
     std::string text() const { return from->path() + ">" + to->path(); }
 };
 
@@ -82,6 +82,10 @@ public:
                   const std::function<void(const Progress&)>& progress = {});
     /** Returns the failures, "task: message". */
     std::vector<std::string> cleanup();
+
+    /** Calls an operation, "sonar.setRange", with arguments in YAML; gives the result as text. types::ConfigError: no
+     * such task or operation, or arguments that do not fit; a refusal is what the operation throws. */
+    std::string call(const std::string& operation, const std::vector<std::string>& arguments);
 
     /** Samples lost in each connection, by "from>to". */
     std::map<std::string, uint64_t> losses() const;

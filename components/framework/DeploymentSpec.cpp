@@ -1,10 +1,9 @@
 #include "components/framework/DeploymentSpec.hpp"
 
-#include <yaml-cpp/depthguard.h>
-
 #include <algorithm>
-#include <fstream>
-#include <sstream>
+
+#include "components/framework/PropertySources.hpp"
+#include "components/framework/YamlText.hpp"
 
 namespace insonify::framework {
 namespace {
@@ -32,11 +31,17 @@ struct ActivityKeys {
 struct TaskKeys {
     std::string type;
     ActivityKeys activity;
+    std::map<std::string, std::string> aliases, switches;
+    PropertyFiles property_files;
     YAML::Node properties{YAML::NodeType::Undefined};
     template <class Self, class V>
     static void describe(Self& self, V& visit) {
         visit(Field{"type", "", "registered type of the task"}, self.type);
         visit(Field{"activity", "", "when it runs"}, self.activity);
+        visit(Field{"aliases", "", "other names of ports and properties: where they lead"}, self.aliases);
+        visit(Field{"switches", "", "properties true and false: the block that they put in or take out"},
+              self.switches);
+        visit(Field{"property_files", "", "its configuration in Rock's files"}, self.property_files);
         visit(Field{"properties", "", "its configuration"}, self.properties);
     }
     void check(types::Problems& problems) const {
@@ -96,31 +101,8 @@ struct DocumentKeys {
     }
 };
 
-/** Bytes that cannot be part of UTF-8 text, or a NUL. */
-bool isText(std::string_view bytes) {
-    size_t following = 0;
-    for (const unsigned char c : bytes) {
-        if (c == 0 || (following > 0) != ((c & 0xC0) == 0x80)) return false;
-        if (following > 0)
-            --following;
-        else if (c >= 0xF8)
-            return false;
-        else
-            following = c >= 0xF0 ? 3 : c >= 0xE0 ? 2 : c >= 0xC0 ? 1 : 0;
-    }
-    return following == 0;
-}
-
-YAML::Node parseYaml(const std::string& text, const std::string& file) {
-    if (!isText(text)) throw types::ConfigError(file, "", "is not text; a deployment is YAML in UTF-8");
-    std::vector<YAML::Node> documents;
-    try {
-        documents = YAML::LoadAll(text);
-    } catch (const YAML::DeepRecursion& error) {
-        throw types::ConfigError({{file, error.mark.line + 1, error.mark.column + 1, "", "is nested too deeply"}});
-    } catch (const YAML::Exception& error) {
-        throw types::ConfigError({{file, error.mark.line + 1, error.mark.column + 1, "", "is not YAML: " + error.msg}});
-    }
+YAML::Node documentOf(const std::string& text, const std::string& file) {
+    const std::vector<YAML::Node> documents = parseYaml(text, file);
     if (documents.empty() || documents[0].IsNull())
         throw types::ConfigError(file, "", "is empty; a deployment needs tasks");
     if (documents.size() > 1) throw types::ConfigError(file, "", "holds several YAML documents; must be one");
@@ -137,6 +119,9 @@ void readTask(ConfigReader& reader, const YAML::Node& name, const YAML::Node& bl
     reader.read(block, task.path(), keys);
     task.type = keys.type;
     task.activity = {keys.activity.period.value_or(0), keys.activity.trigger};
+    task.aliases = keys.aliases;
+    task.switches = keys.switches;
+    task.property_files = keys.property_files;
     task.properties.reset(keys.properties);
     spec.tasks.push_back(std::move(task));
 }
@@ -150,6 +135,14 @@ void readTasks(ConfigReader& reader, const YAML::Node& tasks, DeploymentSpec& sp
             readTask(reader, entry.first, entry.second, spec);
 }
 
+/** Where "task.port" leads if the task has an alias of that name. */
+std::string withoutAlias(const std::string& path, const DeploymentSpec& spec) {
+    const auto [name, port] = splitPort(path);
+    const TaskSpec* const task = spec.task(name);
+    const auto alias = task ? task->aliases.find(port) : std::map<std::string, std::string>::const_iterator();
+    return task && alias != task->aliases.end() ? alias->second : path;
+}
+
 void readConnections(ConfigReader& reader, const YAML::Node& connections, DeploymentSpec& spec) {
     if (!connections.IsDefined() || connections.IsNull() || !reader.isSequence(connections, "connections")) return;
     for (size_t i = 0; i < connections.size(); ++i) {
@@ -157,22 +150,10 @@ void readConnections(ConfigReader& reader, const YAML::Node& connections, Deploy
         const std::string path = "connections[" + std::to_string(i) + "]";
         const YAML::Node block = connections[i];
         if (!reader.read(block, path, keys)) continue;
+        for (std::string* port : {&keys.from, &keys.to}) *port = withoutAlias(*port, spec);
         const ConnPolicy policy{keys.policy.type, keys.policy.size.value_or(1), keys.policy.init};
         spec.connections.push_back({keys.from, keys.to, policy, block, path});
     }
-}
-
-/** A copy of `block` in which the property at `path` is `value`: nodes that an anchor shares must not change together.
- */
-YAML::Node assigned(const YAML::Node& block, const std::string& path, const YAML::Node& value) {
-    const auto [key, rest] = splitPort(path);
-    const YAML::Node old = child(block, key);
-    YAML::Node changed(YAML::NodeType::Map);
-    if (block.IsDefined() && block.IsMap())
-        for (const auto& entry : block)
-            if (!entry.first.IsScalar() || entry.first.Scalar() != key) changed.force_insert(entry.first, entry.second);
-    changed.force_insert(key, rest.empty() ? value : assigned(old, rest, value));
-    return changed;
 }
 
 }  // namespace
@@ -192,21 +173,14 @@ std::pair<std::string, std::string> splitPort(const std::string& path) {
 }
 
 DeploymentSpec DeploymentSpec::load(const std::filesystem::path& file) {
-    std::error_code error;
-    if (std::filesystem::is_directory(file, error))
-        throw types::ConfigError(file.string(), "", "is a directory; must be a deployment file");
-    std::ifstream stream(file, std::ios::binary);
-    if (!stream) throw types::ConfigError(file.string(), "", "cannot be opened; must be a deployment file");
-    std::stringstream text;
-    text << stream.rdbuf();
-    return parse(text.str(), file.string());
+    return parse(readFile(file, "a deployment file"), file.string());
 }
 
 DeploymentSpec DeploymentSpec::parse(const std::string& text, const std::string& file) {
     DeploymentSpec spec;
     spec.file = file;
     spec.text = text;
-    const YAML::Node document = parseYaml(text, file);
+    const YAML::Node document = documentOf(text, file);
     ConfigReader reader(file);
     DocumentKeys keys;
     reader.read(document, "", keys);
@@ -216,6 +190,7 @@ DeploymentSpec DeploymentSpec::parse(const std::string& text, const std::string&
     readTasks(reader, keys.tasks, spec);
     readConnections(reader, keys.connections, spec);
     spec.faults = reader.faults();
+    PropertySources(spec).apply();
     return spec;
 }
 
@@ -241,8 +216,7 @@ void DeploymentSpec::set(const std::string& assignment) {
     try {
         const std::string value = assignment.substr(equals + 1);
         if (!isText(value)) return refuse("is not UTF-8 text");
-        changed->properties.reset(assigned(changed->properties, property, YAML::Load(value)));
-        set_paths.push_back(changed->path() + ".properties." + property);
+        PropertySources(*this).set(*changed, property, YAML::Load(value));
     } catch (const YAML::Exception& error) {
         refuse("is not YAML: " + error.msg);
     }

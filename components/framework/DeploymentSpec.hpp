@@ -9,10 +9,24 @@
 
 namespace insonify::framework {
 
+/** Rock's property files of a task, relative to the deployment file, and the sections to apply, in order. */
+struct PropertyFiles {
+    std::vector<std::string> files;
+    std::vector<std::string> sections{"default"};
+    template <class Self, class V>
+    static void describe(Self& self, V& visit) {
+        visit(types::Field{"files", "", "files of sections, --- name:x"}, self.files);
+        visit(types::Field{"sections", "", "those that apply, in order"}, self.sections);
+    }
+};
+
 struct TaskSpec {
     std::string name, type;
     ActivitySettings activity;
-    YAML::Node properties{YAML::NodeType::Undefined};  ///< As written; undefined when there are none.
+    std::map<std::string, std::string> aliases;   ///< "task.port" or "task.property" by another name for it.
+    std::map<std::string, std::string> switches;  ///< "task.property", a block that true puts in and false takes out.
+    PropertyFiles property_files;
+    YAML::Node properties{YAML::NodeType::Undefined};  ///< From all sources; undefined when there are none.
     YAML::Node place{YAML::NodeType::Undefined};       ///< The task's whole block, for faults.
 
     std::string path() const { return "tasks." + name; }
@@ -35,7 +49,7 @@ struct DeploymentSpec {
     std::vector<std::string> libraries;  ///< Shared objects, relative to the deployment file.
     std::vector<TaskSpec> tasks;         ///< In file order, the order of configuring.
     std::vector<ConnectionSpec> connections;
-    std::vector<std::string> set_paths;  ///< "tasks.sonar.properties.range": what set() has changed.
+    Origins origins;  ///< Of properties from elsewhere: property files, aliases, set().
     std::vector<types::Diagnostic> faults;
 
     /** Throws types::ConfigError when there is no text to be read or it is not YAML; other faults go to `faults`. */

@@ -13,12 +13,6 @@ bool readsNothing(const TaskContext& task) {
     return std::none_of(inputs.begin(), inputs.end(), [](const auto* port) { return port->connected(); });
 }
 
-bool triggered(const TaskContext& task) {
-    const auto& inputs = task.inputs();
-    return std::any_of(inputs.begin(), inputs.end(),
-                       [](const auto* port) { return port->triggers() && port->hasNew(); });
-}
-
 uint64_t samplesWritten(const TaskContext& task) {
     uint64_t written = 0;
     for (const OutputPortBase* port : task.outputs()) written += port->written();
@@ -62,7 +56,7 @@ void Lockstep::step() {
     }
     // Writers come before readers and update() empties the triggering ports, so one pass leaves all quiet.
     for (TaskContext* task : triggered_)
-        if (triggered(*task)) task->update();
+        if (task->triggered()) task->update();
 }
 
 bool Lockstep::sourcesFinished() const {

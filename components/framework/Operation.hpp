@@ -31,6 +31,10 @@ public:
     /** Calls with arguments in YAML and gives the result as text; types::ConfigError when they do not fit. */
     virtual std::string callText(const std::vector<std::string>& arguments) = 0;
 
+protected:
+    /** Throws types::ConfigError when there are not `taken`. */
+    void requireCount(const std::vector<std::string>& arguments, size_t taken) const;
+
 private:
     TaskContext* owner_;
     std::string name_, doc_;
@@ -67,12 +71,10 @@ public:
     }
 
     std::string callText(const std::vector<std::string>& texts) override {
+        requireCount(texts, sizeof...(Args));
         Arguments arguments;
         ConfigReader reader("");
-        if (texts.size() != sizeof...(Args))
-            reader.fault({}, name(), fmt::format("has {} arguments, takes {}", texts.size(), signature()));
-        else
-            parse(reader, texts, arguments, std::index_sequence_for<Args...>{});
+        parse(reader, texts, arguments, std::index_sequence_for<Args...>{});
         if (!reader.faults().empty()) throw types::ConfigError(reader.faults());
         if constexpr (std::is_void_v<R>)
             return std::apply(*this, arguments), "";

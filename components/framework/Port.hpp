@@ -3,12 +3,15 @@
 //
 //     InputPort<types::Pose>      pose{this, "pose", "the vehicle in the world"};
 //     OutputPort<types::SonarPtr> ping{this, "ping", "one ping, noiseless"};
+//
+// Ports connect and disconnect at any time, from any thread, while samples are written and read; one that goes
+// disconnects itself. A writer waits for no reader: at most for the copying of one sample.
 #include <memory>
 #include <mutex>
 #include <string>
 #include <vector>
 
-#include "components/framework/ConnPolicy.hpp"
+#include "components/framework/Channel.hpp"
 #include "components/framework/TaskContext.hpp"
 #include "types/TypeName.hpp"
 
@@ -37,21 +40,6 @@ private:
     std::string name_, doc_;
 };
 
-class OutputPortBase;
-
-/** The reading end of one connection, without its type. */
-class ChannelBase {
-public:
-    explicit ChannelBase(const OutputPortBase& source) : source_(source) {}
-    virtual ~ChannelBase() = default;
-    const OutputPortBase& source() const { return source_; }
-    /** Samples that were refused, dropped or overwritten before they were read. */
-    virtual uint64_t lost() const = 0;
-
-private:
-    const OutputPortBase& source_;
-};
-
 class InputPortBase : public PortBase {
 public:
     InputPortBase(TaskContext* owner, std::string name, std::string doc, Need need)
@@ -63,67 +51,38 @@ public:
     virtual bool hasNew() const = 0;
     /** Forgets every waiting and old sample; loss counters stay. */
     virtual void clear() = 0;
-    virtual std::vector<const ChannelBase*> channels() const = 0;
+    virtual std::vector<std::shared_ptr<const ChannelBase>> channels() const = 0;
+    /** For OutputPort, which calls this when it disconnects. */
+    virtual void drop(const OutputPortBase& source) = 0;
     /** Whether a new sample wakes the task. */
     bool triggers() const { return triggers_; }
-    uint64_t taken() const { return taken_; }  ///< Samples read since construction; for the task's thread.
     void setTriggers(bool on) { triggers_ = on; }
 
 protected:
     void signal() const;  ///< A sample has arrived: wakes the task if this port triggers.
-    uint64_t taken_ = 0;
 
 private:
     Need need_;
     bool triggers_ = true;
 };
 
-/** Where samples of one connection wait: a ring of fixed capacity. Writers are never blocked by a slow reader. */
-template <class T>
-class Channel final : public ChannelBase {
+class OutputPortBase : public PortBase {
 public:
-    Channel(const OutputPortBase& source, ConnPolicy policy)
-        : ChannelBase(source), policy_(policy), ring_(policy.type == ConnPolicy::Data ? 1 : policy.size) {}
+    OutputPortBase(TaskContext* owner, std::string name, std::string doc)
+        : PortBase(owner, std::move(name), std::move(doc)) {
+        owner->enlist(this);
+    }
+    /** False when the types differ. */
+    virtual bool connectTo(InputPortBase& reader, ConnPolicy policy) = 0;
+    /** Ends every connection with `reader`: once this returns nothing of this port reaches it any more. */
+    virtual void disconnect(InputPortBase& reader) = 0;
+    /** An input port of this port's type, for a task that takes whatever is connected to it. */
+    virtual std::unique_ptr<InputPortBase> makeReader(TaskContext* owner, const std::string& name) const = 0;
+    virtual bool connected() const = 0;
+    uint64_t written() const { return written_.load(std::memory_order_relaxed); }  ///< Samples since construction.
 
-    /** False when the sample was refused (full buffer). */
-    bool push(const T& sample) {
-        std::lock_guard lock(mutex_);
-        if (count_ == ring_.size()) {
-            ++lost_;
-            if (policy_.type == ConnPolicy::Buffer) return false;
-            first_ = (first_ + 1) % ring_.size();
-            --count_;
-        }
-        ring_[(first_ + count_++) % ring_.size()] = sample;
-        return true;
-    }
-    bool pop(T& sample) {
-        std::lock_guard lock(mutex_);
-        if (count_ == 0) return false;
-        sample = std::move(ring_[first_]);
-        first_ = (first_ + 1) % ring_.size();
-        --count_;
-        return true;
-    }
-    bool empty() const {
-        std::lock_guard lock(mutex_);
-        return count_ == 0;
-    }
-    void clear() {
-        for (T dropped; pop(dropped);) {
-        }
-    }
-    uint64_t lost() const override {
-        std::lock_guard lock(mutex_);
-        return lost_;
-    }
-
-private:
-    mutable std::mutex mutex_;
-    ConnPolicy policy_;
-    std::vector<T> ring_;
-    size_t first_ = 0, count_ = 0;
-    uint64_t lost_ = 0;
+protected:
+    std::atomic<uint64_t> written_{0};
 };
 
 template <class T>
@@ -131,13 +90,17 @@ class InputPort final : public InputPortBase {
 public:
     InputPort(TaskContext* owner, std::string name, std::string doc, Need need = Need::Required)
         : InputPortBase(owner, std::move(name), std::move(doc), need) {}
+    ~InputPort() override {
+        for (const auto& channel : channels()) channel->source().disconnect(*this);
+    }
 
     /** The next sample; with OldData `sample` becomes the last one read, unless `copy_old` is false. */
     FlowStatus read(T& sample, bool copy_old = true) {
+        std::lock_guard lock(mutex_);
         for (const auto& channel : channels_)
             if (channel->pop(last_)) {
                 has_last_ = true;
-                ++taken_;
+                owner().noteTaken();
                 sample = last_;
                 return FlowStatus::NewData;
             }
@@ -156,73 +119,96 @@ public:
     bool readNew(T& sample) { return read(sample, false) == FlowStatus::NewData; }
 
     std::string typeName() const override { return types::typeName<T>(); }
-    bool connected() const override { return !channels_.empty(); }
+    bool connected() const override {
+        std::lock_guard lock(mutex_);
+        return !channels_.empty();
+    }
     bool hasNew() const override {
+        std::lock_guard lock(mutex_);
         for (const auto& channel : channels_)
             if (!channel->empty()) return true;
         return false;
     }
     void clear() override {
+        std::lock_guard lock(mutex_);
         for (const auto& channel : channels_) channel->clear();
-        last_ = T{};
-        has_last_ = false;
+        forgetLast();
     }
-    std::vector<const ChannelBase*> channels() const override {
-        std::vector<const ChannelBase*> all;
-        for (const auto& channel : channels_) all.push_back(channel.get());
-        return all;
+    std::vector<std::shared_ptr<const ChannelBase>> channels() const override {
+        std::lock_guard lock(mutex_);
+        return {channels_.begin(), channels_.end()};
     }
-    /** For OutputPort: adds a connection. Not while the task runs. */
-    Channel<T>& connect(const OutputPortBase& source, ConnPolicy policy) {
-        return *channels_.emplace_back(std::make_unique<Channel<T>>(source, policy));
+    void drop(const OutputPortBase& source) override {
+        std::lock_guard lock(mutex_);
+        std::erase_if(channels_, [&](const auto& channel) { return &channel->source() == &source; });
+        if (channels_.empty()) forgetLast();
+    }
+
+    // For OutputPort only.
+    std::shared_ptr<Channel<T>> connect(OutputPortBase& source, ConnPolicy policy) {
+        auto channel = std::make_shared<Channel<T>>(source, policy);
+        std::lock_guard lock(mutex_);
+        return channels_.emplace_back(std::move(channel));
     }
     void push(Channel<T>& channel, const T& sample) {
-        if (channel.push(sample)) signal();
+        bool taken = false;
+        {
+            std::lock_guard lock(mutex_);
+            taken = channel.push(sample);
+        }
+        if (taken) signal();
     }
 
 private:
-    std::vector<std::unique_ptr<Channel<T>>> channels_;
+    void forgetLast() {
+        last_ = T{};
+        has_last_ = false;
+    }
+
+    mutable std::mutex mutex_;  ///< Of the channels and all in them; held for one copy of a sample.
+    std::vector<std::shared_ptr<Channel<T>>> channels_;
     T last_{};
     bool has_last_ = false;
-};
-
-class OutputPortBase : public PortBase {
-public:
-    OutputPortBase(TaskContext* owner, std::string name, std::string doc)
-        : PortBase(owner, std::move(name), std::move(doc)) {
-        owner->enlist(this);
-    }
-    /** False when the types differ. Not while either task runs. */
-    virtual bool connectTo(InputPortBase& reader, ConnPolicy policy) = 0;
-    /** An input port of this port's type, for a task that takes whatever is connected to it. */
-    virtual std::unique_ptr<InputPortBase> makeReader(TaskContext* owner, const std::string& name) const = 0;
-    virtual bool connected() const = 0;
-    uint64_t written() const { return written_.load(std::memory_order_relaxed); }  ///< Samples since construction.
-
-protected:
-    std::atomic<uint64_t> written_{0};
 };
 
 template <class T>
 class OutputPort final : public OutputPortBase {
 public:
     using OutputPortBase::OutputPortBase;
+    ~OutputPort() override {
+        for (const Reader& reader : readers_) reader.port->drop(*this);
+    }
     void write(const T& sample) {
         written_.fetch_add(1, std::memory_order_relaxed);
+        std::lock_guard lock(mutex_);
         for (const Reader& reader : readers_) reader.port->push(*reader.channel, sample);
         if (keep_last_) last_ = sample;
         has_last_ = keep_last_;
     }
+    /** From now on a reader that connects later, with `init`, gets the last sample. A connection with `init` sees to
+     *  that itself, for those after it. */
+    void keepLast() {
+        std::lock_guard lock(mutex_);
+        keep_last_ = true;
+    }
     std::string typeName() const override { return types::typeName<T>(); }
-    bool connected() const override { return !readers_.empty(); }
+    bool connected() const override {
+        std::lock_guard lock(mutex_);
+        return !readers_.empty();
+    }
     bool connectTo(InputPortBase& reader, ConnPolicy policy) override {
         auto* port = dynamic_cast<InputPort<T>*>(&reader);
         if (!port) return false;
-        Channel<T>& channel = port->connect(*this, policy);
-        readers_.push_back({port, &channel});
+        std::lock_guard lock(mutex_);
+        readers_.push_back({port, port->connect(*this, policy)});
         keep_last_ = keep_last_ || policy.init;
-        if (policy.init && has_last_) port->push(channel, last_);
+        if (policy.init && has_last_) port->push(*readers_.back().channel, last_);
         return true;
+    }
+    void disconnect(InputPortBase& reader) override {
+        std::lock_guard lock(mutex_);
+        std::erase_if(readers_, [&](const Reader& other) { return other.port == &reader; });
+        reader.drop(*this);
     }
     std::unique_ptr<InputPortBase> makeReader(TaskContext* owner, const std::string& name) const override {
         return std::make_unique<InputPort<T>>(owner, name, "samples of " + path(), Need::Optional);
@@ -231,8 +217,9 @@ public:
 private:
     struct Reader {
         InputPort<T>* port;
-        Channel<T>* channel;
+        std::shared_ptr<Channel<T>> channel;
     };
+    mutable std::mutex mutex_;  ///< Of the list; taken before that of an input port, never after.
     std::vector<Reader> readers_;
     T last_{};
     bool keep_last_ = false, has_last_ = false;

@@ -1,8 +1,11 @@
 #pragma once
+#include <functional>
+#include <memory>
 #include <string>
 #include <vector>
 
 #include "components/framework/ConfigReader.hpp"
+#include "components/framework/Operation.hpp"
 #include "components/framework/PropertyList.hpp"
 #include "components/framework/TaskContext.hpp"
 
@@ -11,7 +14,7 @@ namespace insonify::framework {
 /** The properties of a task, without their type. */
 class PropertiesBase {
 public:
-    explicit PropertiesBase(TaskContext* owner) { owner->enlist(this); }
+    explicit PropertiesBase(TaskContext* owner) : owner_(*owner) { owner->enlist(this); }
     virtual ~PropertiesBase() = default;
     PropertiesBase(const PropertiesBase&) = delete;
     PropertiesBase& operator=(const PropertiesBase&) = delete;
@@ -21,13 +24,27 @@ public:
     virtual void load(ConfigReader& reader, const YAML::Node& block, const std::string& path) = 0;
     /** Every property with its default; nested names are dotted. */
     virtual std::vector<PropertyInfo> list() const = 0;
+    /** Sets one property, of a block only what `yaml` names, in any state of the task; for the task's thread. Throws
+     *  types::ConfigError when the value does not fit, std::runtime_error when the task does not take it over: then
+     *  the old value stays. */
+    void set(const std::string& name, const std::string& yaml);
+
+protected:
+    void addSetters();
+    /** Puts the values of now back when called. */
+    virtual std::function<void()> keep() = 0;
+
+private:
+    TaskContext& owner_;
+    std::vector<std::unique_ptr<OperationBase>> setters_;
 };
 
-/** Properties as one described struct; each top-level field is a property. They change only between runs. */
+/** Properties as one described struct; each top-level field is a property, with an operation `set<Name>` (setRange,
+ *  setBin_count: as oroGen forms it). */
 template <types::Described Config>
 class Properties final : public PropertiesBase {
 public:
-    using PropertiesBase::PropertiesBase;
+    explicit Properties(TaskContext* owner) : PropertiesBase(owner) { addSetters(); }
     const Config& operator*() const { return value_; }
     const Config* operator->() const { return &value_; }
     /** From code: bounds are the caller's affair. Takes effect at the next configure. */
@@ -39,6 +56,10 @@ public:
     std::vector<PropertyInfo> list() const override { return listProperties(Config{}); }
 
 private:
+    std::function<void()> keep() override {
+        return [this, kept = value_] { value_ = kept; };
+    }
+
     Config value_;
 };
 

@@ -1,8 +1,11 @@
 #include "components/framework/TaskContext.hpp"
 
+#include <algorithm>
 #include <chrono>
 
 #include "components/framework/Activity.hpp"
+#include "components/framework/LifeCycle.hpp"
+#include "components/framework/Operation.hpp"
 #include "components/framework/Port.hpp"
 
 namespace insonify::framework {
@@ -45,12 +48,16 @@ TaskContext::TaskContext(std::string name)
     environment_->now = wallClock;
     environment_->start_time = [start = wallClock()] { return start; };
     state_port_ = std::make_unique<OutputPort<int32_t>>(this, "state", "state of the task, numbered as in Orocos");
+    state_port_->keepLast();
+    setState(TaskState::PreOperational);
+    life_cycle_ = lifeCycleOperations(*this);
 }
 
 TaskContext::~TaskContext() = default;
 
 InputPortBase* TaskContext::input(const std::string& port) { return find(inputs_, port); }
 OutputPortBase* TaskContext::output(const std::string& port) { return find(outputs_, port); }
+OperationBase* TaskContext::operation(const std::string& name) { return find(operations_, name); }
 
 std::string TaskContext::lastError() const {
     std::lock_guard lock(error_mutex_);
@@ -197,6 +204,18 @@ Outcome TaskContext::recoverNow() {
     return {};
 }
 
+Outcome TaskContext::applyProperties(const std::string& what) {
+    const std::string refused = "cannot set " + what + ": ";
+    if (transition_) return refuse(refused + name_ + " is in the middle of " + transition_);
+    if (state() < TaskState::Stopped) return {};  // the next configure takes them over
+    try {
+        if (propertiesHook()) return {};
+    } catch (...) {
+        return refuse(refused + textOf(std::current_exception()));
+    }
+    return refuse(refused + name_ + " is " + toString(state()) + "; it can when it is stopped");
+}
+
 bool TaskContext::attempt(Hook hook) {
     try {
         (this->*hook)();
@@ -226,32 +245,34 @@ void TaskContext::update() {
     });
 }
 
-uint64_t TaskContext::samplesTaken() const {
-    uint64_t taken = 0;
-    for (const InputPortBase* port : inputs_) taken += port->taken();
-    return taken;
+void TaskContext::failCycle(const char* hook, std::exception_ptr thrown) {
+    // The hook may have asked for transitions itself before it threw: what they undid is not undone again.
+    if (state() == TaskState::Exception || state() == TaskState::FatalError)
+        return setLastError(lastError() + "; then " + hook + ": " + textOf(thrown));
+    const bool configured = state() >= TaskState::Stopped;
+    transition_ = "undo a throw";
+    fail(hook, thrown, isRunning(), configured);
+    transition_ = nullptr;
+}
+
+bool TaskContext::triggered() const {
+    return std::any_of(inputs_.begin(), inputs_.end(),
+                       [](const InputPortBase* port) { return port->triggers() && port->hasNew(); });
 }
 
 bool TaskContext::cycle() {
-    if (!isRunning()) return false;
+    if (!isRunning() || transition_) return false;
     const bool running = state() == TaskState::Running;
-    const uint64_t taken = samplesTaken();
+    const uint64_t taken = taken_;
     const auto begin = std::chrono::steady_clock::now();
     try {
         running ? updateHook() : errorHook();
     } catch (...) {
-        // A hook may have stopped the task itself before it threw: then there is nothing left of start to undo.
-        const bool configured = state() >= TaskState::Stopped;
-        transition_ = "undo a throw";
-        fail(running ? "updateHook" : "errorHook", std::current_exception(), isRunning(), configured);
-        transition_ = nullptr;
+        failCycle(running ? "updateHook" : "errorHook", std::current_exception());
         return false;
     }
     cycles_.add(std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count());
-    if (!isRunning() || samplesTaken() == taken) return false;
-    for (const InputPortBase* port : inputs_)
-        if (port->triggers() && port->hasNew()) return true;
-    return false;
+    return isRunning() && taken_ != taken && triggered();
 }
 
 }  // namespace insonify::framework

@@ -78,6 +78,7 @@ public:
     Outcome recover();  ///< RunTimeError -> Running; Exception -> PreOperational.
     /** One cycle: updateHook (errorHook in RunTimeError), again until no triggering port holds a new sample. */
     void update();
+    bool triggered() const;  ///< Whether a triggering port holds a new sample.
 
     /** Text of the last throw, error() or refusal; empty if there was none. */
     std::string lastError() const;
@@ -91,6 +92,8 @@ public:
     const std::vector<OperationBase*>& operations() const { return operations_; }
     InputPortBase* input(const std::string& port);  ///< Null when there is none of that name.
     OutputPortBase* output(const std::string& port);
+    /** configure, start, stop, cleanup, recover; `set<Property>` for each property (setRange); those of the task. */
+    OperationBase* operation(const std::string& name);
 
     /** A port that exists only because a connection names it (a logger's inputs, a replay's outputs): null refuses. */
     virtual InputPortBase* makeInput(const std::string& /*port*/, OutputPortBase& /*source*/) { return nullptr; }
@@ -124,6 +127,7 @@ public:
     void enlist(OutputPortBase* port) { outputs_.push_back(port); }
     void enlist(PropertiesBase* properties) { properties_.push_back(properties); }
     void enlist(OperationBase* operation) { operations_.push_back(operation); }
+    void noteTaken() { ++taken_; }
 
 protected:
     virtual bool configureHook() { return true; }
@@ -133,6 +137,9 @@ protected:
     virtual void stopHook() {}
     virtual void cleanupHook() {}
     virtual void exceptionHook() {}
+    /** A property was set while the task is configured: takes the new values over. False or a throw refuses them, and
+     *  the old ones are back. Tasks that do not override this refuse while running, and need to configure() again. */
+    virtual bool propertiesHook() { return !isRunning(); }
 
     /** Running -> RunTimeError: recoverable trouble; from here errorHook runs instead of updateHook.
      *  The default errorHook does nothing; a task that heals itself calls recover() from it. Only while running: a hook
@@ -147,6 +154,7 @@ protected:
 
 private:
     friend class Activity;
+    friend class PropertiesBase;
     using Hook = void (TaskContext::*)();
 
     /** One pass of updateHook or errorHook; true when a triggering port still holds a sample and this pass took one. */
@@ -158,14 +166,16 @@ private:
     Outcome stopNow();
     Outcome cleanupNow();
     Outcome recoverNow();
+    /** Lets the task take changed properties over, on its thread. */
+    Outcome applyProperties(const std::string& what);
     Outcome refuse(const std::string& why);
     Outcome notAllowed(const char* allowed);
     Outcome notDone(const char* hook);
     Outcome fail(const char* hook, std::exception_ptr thrown, bool undo_start, bool undo_configure);
+    void failCycle(const char* hook, std::exception_ptr thrown);
     bool attempt(Hook hook);
     void setState(TaskState state);
     void setLastError(const std::string& text);
-    uint64_t samplesTaken() const;
 
     std::string name_;
     std::atomic<TaskState> state_{TaskState::PreOperational};
@@ -179,7 +189,9 @@ private:
     std::vector<PropertiesBase*> properties_;
     std::vector<OperationBase*> operations_;
     std::unique_ptr<OutputPort<int32_t>> state_port_;
+    std::vector<std::unique_ptr<OperationBase>> life_cycle_;
     const char* transition_ = nullptr;  // the one under way
+    uint64_t taken_ = 0;                // samples read by the task
     Statistics cycles_;
     Stages stages_;
 };

@@ -11,13 +11,6 @@
 namespace insonify::framework {
 namespace {
 
-template <class Ports>
-std::vector<std::string> namesOf(const Ports& ports) {
-    std::vector<std::string> names;
-    for (const auto* port : ports) names.push_back(port->name());
-    return names;
-}
-
 std::vector<std::string> typesOf(const Registry& registry) {
     std::vector<std::string> types;
     for (const Registry::Entry& entry : registry.list()) types.push_back(entry.type);
@@ -35,7 +28,7 @@ void Wiring::make(uint64_t seed) {
     checkTasks();
     checkLoops();
     const auto earlier = [](const auto& a, const auto& b) {
-        return std::tie(a.line, a.column) < std::tie(b.line, b.column);
+        return std::tie(a.file, a.line, a.column) < std::tie(b.file, b.line, b.column);
     };
     std::stable_sort(faults_.begin(), faults_.end(), earlier);
     if (!faults_.empty()) throw types::ConfigError(faults_);
@@ -73,7 +66,7 @@ void Wiring::loadProperties(uint64_t seed) {
     for (const auto& task : deployment_.tasks_) {
         TaskSpec& spec = *deployment_.spec_.task(task->name());
         if (seed != 0) seedTask(*task, spec, seed);
-        ConfigReader reader(deployment_.spec_.file, deployment_.spec_.set_paths);
+        ConfigReader reader(deployment_.spec_.file, deployment_.spec_.origins);
         reader.setFallback(spec.place.Mark());
         const std::string path = spec.path() + ".properties";
         for (PropertiesBase* properties : task->properties()) properties->load(reader, spec.properties, path);
@@ -86,8 +79,8 @@ void Wiring::loadProperties(uint64_t seed) {
 
 void Wiring::seedTask(const TaskContext& task, const TaskSpec& spec, uint64_t seed) {
     const std::string path = spec.path() + ".properties.seed";
-    const auto& set = deployment_.spec_.set_paths;
-    if (std::find(set.begin(), set.end(), path) != set.end()) return;
+    const auto& origins = deployment_.spec_.origins;
+    if (const auto found = origins.find(path); found != origins.end() && found->second.file == set_origin) return;
     for (const PropertiesBase* properties : task.properties())
         for (const PropertyInfo& info : properties->list())
             if (info.name == "seed")
@@ -176,7 +169,7 @@ void Wiring::checkTasks() {
         checkInputs(*task, spec);
         checkActivity(*task, spec);
         if (isFaulty(*task)) continue;
-        ConfigReader reader(deployment_.spec_.file, deployment_.spec_.set_paths);
+        ConfigReader reader(deployment_.spec_.file, deployment_.spec_.origins);
         reader.setFallback(spec.place.Mark());
         types::Problems problems;
         task->check(problems);

@@ -11,7 +11,10 @@ namespace insonify::sonar {
  *
  *  For `physical`, A_j = sum of mu cos(theta) dOmega (r_j/r)^2 over the samples of bin j, r_j being its centre, and
  *  10 log10(E_j/S0) = 10 log10 A_j - 20 log10 r_j - 2 alpha r_j + TVG(r_j). For `cerqueira2017`, A_j is the mean of
- *  S and passes through. */
+ *  S and passes through.
+ *
+ *  A `gain` g scales both for a display of 0 to 1: S times 2 g; A_j times 2 g r_j / (mu_s w dR), which at g = 0.5 is
+ * the echo of a cell of medium sand (mu_s), one beam wide (w) and one bin deep (dR), seen face on. */
 class BinLevels {
 public:
     BinLevels(const SonarConfig& config, const BinGrid& grid);
@@ -25,6 +28,7 @@ public:
 
 private:
     Output output_;
+    double ceiling_;  ///< Of intensities [1].
     double source_level_db_ = 0;
     std::vector<double> level_db_;  ///< [dB]
     std::vector<double> factor_;    ///< The same, linear [1].

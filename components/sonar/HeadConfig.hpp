@@ -28,6 +28,7 @@ struct HeadConfig {
               self.speed_deg_per_s);
     }
     void check(types::Problems& problems) const;
+    friend bool operator==(const HeadConfig&, const HeadConfig&) = default;
 };
 
 /** A sonar of one beam on a turning head. */

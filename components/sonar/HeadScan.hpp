@@ -14,6 +14,7 @@ public:
     /** Bearing of the ping at hand [deg], positive to port; in [left - 360, left] when continuous. */
     double bearingDeg() const;
     void advance();
+    const HeadConfig& config() const { return config_; }
     void restart() { ping_ = 0; }
 
 private:

@@ -44,6 +44,8 @@ protected:
     virtual void label(types::Sonar& /*sample*/) {}
 
     bool configureHook() override;
+    /** A property that is set holds from the next ping on. */
+    bool propertiesHook() override { return configureHook(); }
     void updateHook() override;
     void errorHook() override { updateHook(); }
     void stopHook() override { before_.reset(); }

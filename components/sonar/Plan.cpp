@@ -24,6 +24,7 @@ bool hasNormalMap(const types::Geometry& geometry) {
 std::vector<std::string> features(const SonarConfig& config, const types::Geometry& geometry) {
     std::vector<std::string> names = {config.model == Model::Physical ? "physical" : "cerqueira2017"};
     if (config.model == Model::Cerqueira2017 && makeAbsorption(config).db_per_m > 0) names.push_back("absorption");
+    if (config.gain) names.push_back("gain");
     if (config.published) names.push_back("published");
     if (config.beam_geometry == BeamGeometry::Conical) names.push_back("conical");
     if (hasNormalMap(geometry)) names.push_back("normal_map");
@@ -55,7 +56,7 @@ void omitAbsorption(const SonarConfig& config, const BinGrid& grid, types::Plan&
 }
 
 void omitPhysical(const SonarConfig& config, const types::Geometry& geometry, types::Plan& plan) {
-    if (!config.tvg) plan.omitted.push_back({"tvg", "not configured"});
+    if (!config.tvg) plan.omitted.push_back({"tvg", config.gain ? "gain makes up for spreading" : "not configured"});
     if (config.output != Output::ReceivedLevelDb)
         plan.omitted.push_back({"source level", "output is relative to the source"});
     const bool rough = std::ranges::any_of(geometry.materials, [](const auto& m) { return m.roughness_slope > 0; });

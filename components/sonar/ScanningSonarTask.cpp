@@ -14,6 +14,14 @@ bool ScanningSonarTask::startHook() {
     return true;
 }
 
+bool ScanningSonarTask::propertiesHook() {
+    if (scan_ && scan_->config() != config->head) {
+        scan_.emplace(config->head);
+        step_checked_ = false;
+    }
+    return PingTask::propertiesHook();
+}
+
 const char* ScanningSonarTask::aim(types::Snapshot& scene) {
     if (last_ && scene.time < *last_) return "the snapshot is older than the one before";
     if (last_ && !step_checked_) checkStep((scene.time - *last_).seconds());

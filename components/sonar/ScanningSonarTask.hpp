@@ -10,8 +10,8 @@ namespace insonify::sonar {
 /** A mechanically scanning sonar: one beam per ping, each at its own pose and bearing of the head.
  *
  *  The scan starts at `head.left_deg` with the first ping after start. A snapshot older than the one before leads to
- *  RunTimeError until time goes on. A step that `head.speed_deg_per_s` cannot make between the first two pings is an
- *  error of the configuration. */
+ *  RunTimeError until time goes on. A head that is set while it scans starts anew. A step that `head.speed_deg_per_s`
+ * cannot make between the first two pings is an error of the configuration. */
 class ScanningSonarTask final : public PingTask {
 public:
     using PingTask::PingTask;
@@ -20,6 +20,7 @@ public:
 
 protected:
     bool startHook() override;
+    bool propertiesHook() override;
     const char* aim(types::Snapshot& scene) override;
     void label(types::Sonar& sample) override;
 

@@ -84,10 +84,7 @@ double SonarConfig::speedOfSound() const { return speed_of_sound.value_or(water 
 void SonarConfig::check(types::Problems& problems) const {
     if (!bearings_deg.empty() && !beam_width_deg)
         return problems.push_back({"beam_width_deg", "is absent; bearings_deg needs the width of one beam"});
-    if (bearings_deg.empty() && beam_width_deg)
-        problems.push_back({"beam_width_deg",
-                            "stands without bearings_deg; the beams of a regular fan are field_of_view_deg / "
-                            "beam_count wide"});
+    if (bearings_deg.empty() && beam_width_deg) return checkFan(problems);
     if (bearings_deg.size() > 4096)
         problems.push_back({"bearings_deg", fmt::format("has {} beams; may have 4096", bearings_deg.size())});
     if (int64_t{beams()} * bin_count > most_bins)
@@ -98,6 +95,26 @@ void SonarConfig::check(types::Problems& problems) const {
     if (published && !bearings_deg.empty())
         problems.push_back({"bearings_deg", "is given; published: true has a regular fan"});
     checkBeam(problems);
+}
+
+SonarConfig SonarConfig::fan() const {
+    SonarConfig fan = *this;
+    if (!bearings_deg.empty() || !beam_width_deg) return fan;
+    const bool total = beam_width_convention == BeamWidthConvention::TotalFov;
+    fan.field_of_view_deg = total ? *beam_width_deg : *beam_width_deg * beam_count;
+    fan.beam_width_deg.reset();
+    return fan;
+}
+
+void SonarConfig::checkFan(types::Problems& problems) const {
+    const SonarConfig regular = fan();
+    if (field_of_view_deg != SonarConfig().field_of_view_deg)
+        return problems.push_back({"field_of_view_deg", "is given with beam_width_deg; one of the two tells the fan"});
+    if (regular.field_of_view_deg > 360)
+        return problems.push_back(
+            {"beam_width_deg", fmt::format("is {:g} deg; {} beams of it cover {:g} deg, may be 360", *beam_width_deg,
+                                           beam_count, regular.field_of_view_deg)});
+    regular.check(problems);
 }
 
 void QualityConfig::check(types::Problems& problems) const {
@@ -115,6 +132,11 @@ void SonarConfig::checkBeam(types::Problems& problems) const {
     if (model == Model::Cerqueira2017 && output != Output::Intensity)
         problems.push_back({"output", "is a level; cerqueira2017 gives means of S in [0, 1], output: intensity"});
     checkDevice(device, problems);
+    if (beam_width_deg > 120)
+        problems.push_back({"beam_width_deg", fmt::format("is {:g} deg; one beam may have 120", *beam_width_deg)});
+    if (gain && output != Output::Intensity)
+        problems.push_back({"gain", "is given with a level; it scales output: intensity"});
+    if (gain && tvg) problems.push_back({"gain", "is given with tvg; it makes up for spreading and absorption itself"});
     if (published) checkPublished(*this, problems);
     checkRangeReached(*this, problems);
     if (problems.empty()) checkImages(*this, problems);

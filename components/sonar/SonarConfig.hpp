@@ -12,6 +12,7 @@ enum class Output { Intensity, ReceivedLevelDb, LevelDb };
 enum class BeamGeometry { Planar, Conical };
 enum class RangeRounding { Sample, Exact };
 enum class Deposit { Auto, Cpu, Gpu };
+enum class BeamWidthConvention { PerBeam, TotalFov };
 enum class AbsorptionLaw { FrancoisGarrison, AinslieMccolm };
 
 /** State of the water; with it the speed of sound and absorption are computed. */
@@ -93,7 +94,8 @@ struct QualityConfig {
 };
 
 /** An imaging sonar. Beam k of a fan covers bearings [-fov/2 + k fov/N, -fov/2 + (k + 1) fov/N], positive to port;
- *  `bearings_deg` takes the place of `field_of_view_deg` and `beam_count`. */
+ *  `bearings_deg` takes the place of `field_of_view_deg` and `beam_count`; `beam_width_deg` alone that of
+ *  `field_of_view_deg`. */
 struct SonarConfig {
     Model model = Model::Physical;
     double range = 50;
@@ -103,6 +105,7 @@ struct SonarConfig {
     double field_of_view_deg = 120;
     std::vector<double> bearings_deg;
     std::optional<double> beam_width_deg;
+    BeamWidthConvention beam_width_convention = BeamWidthConvention::PerBeam;
     double beam_height_deg = 20;
     BeamGeometry beam_geometry = BeamGeometry::Planar;
     std::optional<double> speed_of_sound;
@@ -111,6 +114,7 @@ struct SonarConfig {
     std::optional<AbsorptionConfig> absorption;
     Output output = Output::Intensity;
     std::optional<TvgConfig> tvg;
+    std::optional<double> gain;
     QualityConfig quality;
     RangeRounding range_rounding = RangeRounding::Sample;
     bool published = false;
@@ -137,6 +141,8 @@ struct SonarConfig {
     double beamWidthDeg() const { return bearings_deg.empty() ? field_of_view_deg / beam_count : *beam_width_deg; }
     /** Azimuth from the outer edge of the first beam to that of the last [deg], at most 360. */
     double coverageDeg() const;
+    /** The same with a fan that is given by `beam_width_deg` given by `field_of_view_deg`. */
+    SonarConfig fan() const;
     /** Configured, or Leroy's of `water`, or 1500 [m/s]. */
     double speedOfSound() const;
 
@@ -147,12 +153,16 @@ struct SonarConfig {
         visit(Field{"field_of_view_deg", "deg", "azimuth covered, edge to edge", 0.01, 360}, self.field_of_view_deg);
         visit(Field{"bearings_deg", "deg", "instead of a regular fan: centre of each beam", -180, 180},
               self.bearings_deg);
+        visit(Field{"beam_width_convention", "", "beam_width_deg of a regular fan is one beam's, or the whole fan's"},
+              self.beam_width_convention);
         describeBeam(self, visit);
     }
     /** The properties that a scanning sonar has as well. */
     template <class Self, class V>
     static void describeBeam(Self& self, V& visit);
     void check(types::Problems& problems) const;
+    /** The faults of a fan that is given by `beam_width_deg`. */
+    void checkFan(types::Problems& problems) const;
     /** The faults that a scanning sonar can have as well. */
     void checkBeam(types::Problems& problems) const;
 };
@@ -164,7 +174,7 @@ void SonarConfig::describeBeam(Self& self, V& visit) {
     visit(Field{"range", "m", "far edge of the last bin", 0.001, 1e5}, self.range);
     visit(Field{"range_min", "m", "nearer echoes are blanked", 0, 1e5}, self.range_min);
     visit(Field{"bin_count", "1", "range bins per beam", 1, 65536}, self.bin_count);
-    visit(Field{"beam_width_deg", "deg", "opening of one beam", 0.001, 120}, self.beam_width_deg);
+    visit(Field{"beam_width_deg", "deg", "opening of one beam", 0.001, 360}, self.beam_width_deg);
     visit(Field{"beam_height_deg", "deg", "total elevation aperture", 0.001, 89.99}, self.beam_height_deg);
     visit(Field{"beam_geometry", "", "planar: az = a_k; conical: sin(az) cos(el) = sin(a_k)"}, self.beam_geometry);
     visit(Field{"speed_of_sound", "m/s", "absent: computed from water, else 1500", 1, 20000}, self.speed_of_sound);
@@ -174,6 +184,9 @@ void SonarConfig::describeBeam(Self& self, V& visit) {
     visit(Field{"absorption", "", "absent: none"}, self.absorption);
     visit(Field{"output", "", "intensity E/S0, level 10 log10(E/S0), or the level received"}, self.output);
     visit(Field{"tvg", "", "time-varied gain"}, self.tvg);
+    visit(Field{"gain", "1", "puts bins near 1: times 2 gain, at most 1; physical: relative to medium sand face on", 0,
+                1},
+          self.gain);
     visit(Field{"quality", "", "samples per beam, or what they are chosen for"}, self.quality);
     visit(Field{"range_rounding", "", "sample: bins of whole microseconds; exact: edges as asked"},
           self.range_rounding);
@@ -203,6 +216,10 @@ struct insonify::types::EnumNames<insonify::sonar::BeamGeometry> {
 template <>
 struct insonify::types::EnumNames<insonify::sonar::RangeRounding> {
     static constexpr std::string_view names[] = {"sample", "exact"};
+};
+template <>
+struct insonify::types::EnumNames<insonify::sonar::BeamWidthConvention> {
+    static constexpr std::string_view names[] = {"per_beam", "total_fov"};
 };
 template <>
 struct insonify::types::EnumNames<insonify::sonar::Deposit> {

@@ -12,7 +12,7 @@ class SonarTask final : public PingTask {
 public:
     using PingTask::PingTask;
     framework::Properties<SonarConfig> config{this};
-    SonarConfig sonarConfig() const override { return *config; }
+    SonarConfig sonarConfig() const override { return config->fan(); }
 };
 
 }  // namespace insonify::sonar

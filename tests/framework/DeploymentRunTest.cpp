@@ -244,5 +244,27 @@ TEST(DeploymentRunTest, ASeedOfTheRunReachesEveryTaskThatHasOne) {
     EXPECT_NE(seeds(7).first, seeds(7).second);
 }
 
+TEST(DeploymentRunTest, OperationsOfTasksAreCalledByName) {
+    Registry registry = test::testRegistry();
+    Deployment deployment(DeploymentSpec::parse("tasks: {s: {type: test::Source, activity: {period: 1}}}", "a.yml"),
+                          registry);
+    const auto why = [&](const char* operation, const std::vector<std::string>& arguments) -> std::string {
+        try {
+            return deployment.call(operation, arguments);
+        } catch (const std::runtime_error& error) {
+            return error.what();
+        }
+    };
+    EXPECT_EQ(why("s.setLast", {"7"}), "");
+    EXPECT_EQ(dynamic_cast<test::Source&>(*deployment.task("s")).config->last, 7);
+    EXPECT_EQ(why("s.setLast", {"0"}), "last: is 0; may be 1 to 1000000");
+    EXPECT_EQ(why("s.start", {}), "cannot start: s is PreOperational, must be Stopped");
+    EXPECT_EQ(why("s.configure", {}), "");
+    EXPECT_EQ(why("s.start", {}), "");
+    EXPECT_EQ(why("s.setLast", {"5"}), "cannot set last: s is Running; it can when it is stopped");
+    EXPECT_EQ(why("s.setLost", {"5"}).substr(0, 56), "s.setLost: s has no operation setLost; did you mean setL");
+    EXPECT_EQ(why("t.start", {}), "t.start: there is no task t; did you mean s? known: s");
+}
+
 }  // namespace
 }  // namespace insonify::framework

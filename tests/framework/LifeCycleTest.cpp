@@ -216,6 +216,31 @@ TEST(LifeCycleTest, ATaskMayStopItselfButNotWithinAnotherTransition) {
     EXPECT_EQ(reason, "cannot stop: probe is in the middle of stop");
 }
 
+TEST(LifeCycleTest, AThrowAfterAFailedStopOfItsOwnIsUndoneNoSecondTime) {
+    for (const auto& [throwing, end] : {std::pair("sU", TaskState::Exception), {"sxU", TaskState::FatalError}}) {
+        Probe task("probe");
+        bring(task, TaskState::Running);
+        task.throwing = throwing;
+        task.during = [&] {
+            if (task.hooks.back() == 'U') task.stop();
+        };
+        task.update();
+        EXPECT_EQ(task.hooks, "CSUscx");
+        EXPECT_EQ(task.state(), end);
+        EXPECT_NE(task.lastError().find("thrown in U"), std::string::npos);
+    }
+}
+
+TEST(LifeCycleTest, NoCycleRunsWithinATransition) {
+    Probe task("probe");
+    bring(task, TaskState::Running);
+    task.during = [&] {
+        if (task.hooks.back() == 's') task.update();
+    };
+    EXPECT_TRUE(task.stop());
+    EXPECT_EQ(task.hooks, "CSs");
+}
+
 TEST(LifeCycleTest, AFaultOfTheConfigurationIsKeptWhole) {
     Probe task("probe");
     task.during = [] { throw types::ConfigError("a.glb", "meshes[2]", "is no mesh"); };
@@ -232,6 +257,20 @@ TEST(LifeCycleTest, EveryChangeOfStateIsWrittenWithItsOrocosNumber) {
     std::vector<int32_t> states;
     for (int32_t state; reader.port.readNew(state);) states.push_back(state);
     EXPECT_EQ(states, (std::vector<int32_t>{4, 5, 3}));
+}
+
+TEST(LifeCycleTest, AReaderOfTheStateThatComesLaterIsToldTheLast) {
+    Probe task("probe");
+    ConnPolicy policy;
+    policy.init = true;
+    for (const TaskState expected : {TaskState::PreOperational, TaskState::Running}) {
+        bring(task, expected);
+        test::Reader<int32_t> reader;
+        ASSERT_TRUE(task.output("state")->connectTo(reader.port, policy));
+        int32_t state = -1;
+        EXPECT_TRUE(reader.port.readNew(state));
+        EXPECT_EQ(state, static_cast<int32_t>(expected));
+    }
 }
 
 }  // namespace

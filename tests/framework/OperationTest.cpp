@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include "components/framework/Operation.hpp"
+#include "components/framework/Properties.hpp"
 
 namespace insonify::framework {
 namespace {
@@ -28,13 +29,13 @@ TEST(OperationTest, RunsOnTheTasksThreadInAnyState) {
 
 TEST(OperationTest, IsListedAndCalledByTextAsYaml) {
     Motor motor("motor");
-    ASSERT_EQ(motor.operations().size(), 2u);
-    OperationBase& turn = *motor.operations()[0];
-    EXPECT_EQ(turn.name(), "turn");
+    ASSERT_NE(motor.operation("turn"), nullptr);
+    OperationBase& turn = *motor.operation("turn");
     EXPECT_EQ(turn.doc(), "angle times count");
     EXPECT_EQ(turn.signature(), "double(double, integer)");
     EXPECT_EQ(turn.callText({"0.5", "3"}), "1.5");
-    EXPECT_EQ(motor.operations()[1]->callText({}), "");
+    EXPECT_EQ(motor.operation("reset")->callText({}), "");
+    EXPECT_EQ(motor.operation("rest"), nullptr);
 }
 
 TEST(OperationTest, ArgumentsThatDoNotFitAreAllNamed) {
@@ -55,6 +56,86 @@ TEST(OperationTest, AThrowReachesTheCallerAndLeavesTheTask) {
     motor.configure();
     EXPECT_THROW(motor.turn(1, 0), std::runtime_error);
     EXPECT_EQ(motor.state(), TaskState::Stopped);
+}
+
+TEST(OperationTest, TransitionsAreOperationsThatTellWhyTheyAreRefused) {
+    Motor motor("motor");
+    const auto call = [&](const char* name) {
+        try {
+            return motor.operation(name)->callText({});
+        } catch (const std::runtime_error& error) {
+            return std::string(error.what());
+        }
+    };
+    EXPECT_EQ(call("start"), "cannot start: motor is PreOperational, must be Stopped");
+    EXPECT_EQ(call("configure"), "");
+    EXPECT_EQ(call("start"), "");
+    EXPECT_EQ(motor.state(), TaskState::Running);
+    EXPECT_EQ(call("cleanup"), "cannot cleanup: motor is Running, must be Stopped");
+    EXPECT_EQ(call("recover"), "cannot recover: motor is Running, must be RunTimeError or Exception");
+    EXPECT_EQ(call("stop"), "");
+    EXPECT_EQ(call("cleanup"), "");
+    EXPECT_EQ(motor.state(), TaskState::PreOperational);
+}
+
+struct WheelConfig {
+    double radius = 1;
+    int spoke_count = 8;
+    template <class Self, class V>
+    static void describe(Self& self, V& visit) {
+        visit(types::Field{"radius", "m", "of the rim", 0.1, 10}, self.radius);
+        visit(types::Field{"spoke_count", "1", "an even number", 2, 100}, self.spoke_count);
+    }
+    void check(types::Problems& problems) const {
+        if (spoke_count % 2) problems.push_back({"spoke_count", "is odd; must be even"});
+    }
+};
+
+/** Takes properties over while it runs, but for a radius of 7. */
+struct Wheel : TaskContext {
+    using TaskContext::TaskContext;
+    Properties<WheelConfig> config{this};
+    double taken_over = 0;
+    bool propertiesHook() override {
+        if (config->radius == 7) throw std::runtime_error("7 m does not fit");
+        taken_over = config->radius;
+        return config->radius < 9;
+    }
+};
+
+/** What a call of "task.operation" gives, or why it does not. */
+std::string called(TaskContext& task, const std::string& operation, const std::vector<std::string>& arguments) {
+    try {
+        return task.operation(operation)->callText(arguments);
+    } catch (const std::runtime_error& error) {
+        return error.what();
+    }
+}
+
+TEST(OperationTest, EveryPropertyHasASetterThatChecksItsArgument) {
+    Wheel wheel("wheel");
+    EXPECT_EQ(called(wheel, "setRadius", {"2.5"}), "");
+    EXPECT_EQ(wheel.config->radius, 2.5);
+    EXPECT_EQ(wheel.operation("setRadius")->signature(), "void(double)");
+    EXPECT_EQ(called(wheel, "setRadius", {"20"}), "radius: is 20 m; may be 0.1 to 10 m");
+    EXPECT_EQ(called(wheel, "setRadius", {"wide"}), "radius: is wide; must be a finite number");
+    EXPECT_EQ(called(wheel, "setRadius", {"["}).substr(0, 8), "radius: ");
+    EXPECT_EQ(called(wheel, "setRadius", {}), "setRadius: has 0 arguments, takes void(double)");
+    EXPECT_EQ(called(wheel, "setSpoke_count", {"7"}), "spoke_count: is odd; must be even");
+    EXPECT_EQ(wheel.config->radius, 2.5);
+    EXPECT_EQ(wheel.config->spoke_count, 8);
+}
+
+TEST(OperationTest, ARunningTaskTakesASettingOverOrKeepsTheOldOneAndSaysWhy) {
+    Wheel wheel("wheel");
+    wheel.configure();
+    wheel.start();
+    EXPECT_EQ(called(wheel, "setRadius", {"3"}), "");
+    EXPECT_EQ(wheel.taken_over, 3);
+    EXPECT_EQ(called(wheel, "setRadius", {"7"}), "cannot set radius: 7 m does not fit");
+    EXPECT_EQ(called(wheel, "setRadius", {"9.5"}), "cannot set radius: wheel is Running; it can when it is stopped");
+    EXPECT_EQ(wheel.config->radius, 3);
+    EXPECT_EQ(wheel.state(), TaskState::Running);
 }
 
 }  // namespace

@@ -77,6 +77,37 @@ TEST(PortTest, ASharedSampleIsTheSameAddressAtBothEnds) {
     EXPECT_EQ(got.get(), sent.get());
 }
 
+TEST(PortTest, ADisconnectedPortHasNoData) {
+    test::Writer<int32_t> writer;
+    test::Reader<int32_t> reader, stays;
+    writer.port.connectTo(reader.port, ConnPolicy::buffer(2));
+    writer.port.connectTo(stays.port, ConnPolicy::buffer(2));
+    writer.port.write(1);
+    writer.port.disconnect(reader.port);
+    writer.port.write(2);
+    int32_t value = 0;
+    EXPECT_EQ(reader.port.read(value), FlowStatus::NoData);
+    EXPECT_TRUE(stays.port.readNew(value));
+    EXPECT_TRUE(stays.port.readNew(value));
+    EXPECT_EQ(value, 2);
+}
+
+TEST(PortTest, APortThatGoesLeavesItsConnections) {
+    test::Writer<int32_t> writer;
+    {
+        test::Reader<int32_t> reader;
+        writer.port.connectTo(reader.port, {});
+    }
+    EXPECT_FALSE(writer.port.connected());
+    writer.port.write(1);
+    test::Reader<int32_t> reader;
+    {
+        test::Writer<int32_t> other;
+        other.port.connectTo(reader.port, {});
+    }
+    EXPECT_FALSE(reader.port.connected());
+}
+
 TEST(PortTest, PortsOfDifferentTypesDoNotConnect) {
     test::Writer<int32_t> writer;
     test::Reader<double> reader;

@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <limits>
+#include <numbers>
 
 #include "components/sonar/Acoustics.hpp"
 #include "components/sonar/BinLevels.hpp"
@@ -53,6 +54,29 @@ TEST(BinLevelsTest, GainThatMakesUpForAThousandDecibelsStaysFinite) {
     }
     // Where the gain is not clamped it makes up for spreading and absorption to the last digit.
     EXPECT_NEAR(levels(config, std::vector<double>(800, 0.01))[600], 0.01, 1e-8);
+}
+
+TEST(BinLevelsTest, AtGainOneHalfACellOfSandFaceOnIsOneAtEveryRange) {
+    SonarConfig config = sonarOf(40, 400);
+    config.beam_count = 120;  // of 1 deg
+    config.absorption.emplace().db_per_m = 0.3;
+    const double mu = std::pow(10, -1.67), width = std::numbers::pi / 180;
+    std::vector<double> sand;
+    for (int j = 0; j < 400; ++j) sand.push_back(mu * width * 0.1 / ((j + 0.5) * 0.1));  // a flat bottom is sin^2 of it
+    for (const double gain : {0.5, 0.25, 0.0}) {
+        config.gain = gain;
+        for (const float bin : levels(config, sand)) EXPECT_NEAR(bin, 2 * gain, 1e-5);
+    }
+    config.gain = 0.5;
+    for (double& strong : sand) strong *= 20;
+    for (const float bin : levels(config, sand)) EXPECT_EQ(bin, 1);
+}
+
+TEST(BinLevelsTest, ThePublishedModelIsScaledByTwiceTheGainAndClippedAtOne) {
+    SonarConfig config = sonarOf(4, 3);
+    config.model = Model::Cerqueira2017;
+    config.gain = 0.75;
+    EXPECT_EQ(levels(config, {0, 0.5, 0.9}), (std::vector<float>{0, 0.75f, 1}));
 }
 
 TEST(BinLevelsTest, HugeGainIsClamped) {

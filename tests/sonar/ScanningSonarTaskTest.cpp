@@ -120,5 +120,14 @@ TEST(RegisterTasksTest, DeploymentsKnowBothSonars) {
     EXPECT_TRUE(registry.make("sonar::ScanningSonarTask", "msis"));
 }
 
+TEST_F(ScanningSonarTaskTest, SettingTheRangeDoesNotTurnTheHeadBackButSettingTheHeadDoes) {
+    start(sector);
+    ASSERT_TRUE(pingAt(1));
+    task_.operation("setRange")->callText({"10"});
+    EXPECT_NEAR(pingAt(1)->bearings[0].deg(), 0, 1e-9);
+    task_.operation("setHead")->callText({"{left_deg: 20, right_deg: -20}"});
+    EXPECT_NEAR(pingAt(1)->bearings[0].deg(), 20, 1e-9);
+}
+
 }  // namespace
 }  // namespace insonify::sonar

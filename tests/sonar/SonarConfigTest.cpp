@@ -96,7 +96,11 @@ TEST(SonarConfigTest, ValuesThatDoNotGoTogetherAreNamed) {
     for (const Case& c :
          {Case{"{range: 10, range_min: 10}", "range_min: ", "must be below range, 10 m"},
           Case{"bearings_deg: [0, 1]", "beam_width_deg: ", "bearings_deg needs the width"},
-          Case{"beam_width_deg: 3", "beam_width_deg: ", "stands without bearings_deg"},
+          Case{"beam_width_deg: 3", "beam_width_deg: ", "256 beams of it cover 768 deg, may be 360"},
+          Case{"{beam_width_deg: 0.5, field_of_view_deg: 90}", "field_of_view_deg: ", "with beam_width_deg"},
+          Case{"{bearings_deg: [0], beam_width_deg: 130}", "beam_width_deg: ", "one beam may have 120"},
+          Case{"{gain: 0.5, tvg: {log_coefficient: 30}}", "gain: ", "with tvg"},
+          Case{"{gain: 0.5, output: level_db}", "gain: ", "output: intensity"},
           Case{"{beam_count: 4096, bin_count: 20000, range: 2000}",
                "bin_count: ", "81920000 bins in all; may be 16777216"},
           Case{"{beam_geometry: conical, field_of_view_deg: 200}", "beam_geometry: ", "at most 180 deg"},
@@ -132,6 +136,19 @@ TEST(SonarConfigTest, HeadsThatCannotTurnSoAreRefused) {
           Case{"field_of_view_deg: 120", "is not a key here"}, Case{"beam_count: 2", "is not a key here"},
           Case{"{range: 10, range_min: 20}", "must be below range"}})
         EXPECT_THAT(faultsOf<ScanningSonarConfig>(c.yaml), ElementsAre(HasSubstr(c.words))) << c.yaml;
+}
+
+TEST(SonarConfigTest, TheWidthOfABeamIsOneBeamsOrByConventionTheWholeFans) {
+    SonarConfig config;
+    config.beam_count = 60;
+    config.beam_width_deg = 1.5;
+    EXPECT_DOUBLE_EQ(config.fan().coverageDeg(), 90);
+    EXPECT_DOUBLE_EQ(config.fan().beamWidthDeg(), 1.5);
+    config.beam_width_deg = 130;
+    config.beam_width_convention = BeamWidthConvention::TotalFov;
+    EXPECT_DOUBLE_EQ(config.fan().coverageDeg(), 130);
+    EXPECT_DOUBLE_EQ(config.fan().beamWidthDeg(), 130.0 / 60);
+    EXPECT_THAT(faultsOf<SonarConfig>("{beam_width_deg: 130, beam_width_convention: total_fov}"), IsEmpty());
 }
 
 TEST(SonarConfigTest, BeamsOfAFanAreEvenAndCentredAndThoseOfATableAreAsGiven) {

@@ -107,5 +107,22 @@ TEST_F(SonarTaskTest, NoticesAreThoseOfTheConfigurationUntilTheSceneIsKnown) {
     EXPECT_THAT(task_.notices(), ::testing::Contains(::testing::HasSubstr("medium sand")));
 }
 
+TEST_F(SonarTaskTest, APropertyThatIsSetHoldsFromTheNextPingOn) {
+    const auto set = [&](const char* setter, const char* value) { task_.operation(setter)->callText({value}); };
+    start();
+    ASSERT_TRUE(pingOf(facingWall(5)));
+    set("setBin_count", "50");
+    set("setRange", "10");
+    auto ping = pingOf(facingWall(5));
+    ASSERT_TRUE(ping) << task_.lastError();
+    EXPECT_EQ(ping->bin_count, 50u);
+    EXPECT_NEAR(ping->binStart(50), 10, 0.1);
+    EXPECT_NEAR(firstEcho(*ping, 4), 5, 0.2);
+    EXPECT_THROW(set("setRange", "-1"), types::ConfigError);
+    EXPECT_THROW(set("setMultipath", "{}"), types::ConfigError);
+    EXPECT_EQ(task_.config->range, 10);
+    EXPECT_EQ(task_.state(), TaskState::Running);
+}
+
 }  // namespace
 }  // namespace insonify::sonar

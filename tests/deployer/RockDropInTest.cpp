@@ -1,0 +1,115 @@
+// deploy/rock_dropin.yml: the published simulator's ports, properties and property files, by their names.
+#include <gmock/gmock.h>
+
+#include <numeric>
+
+#include "tests/deployer/SceneRun.hpp"
+#include "types/Angle.hpp"
+
+using namespace insonify;
+using namespace insonify::deployer;
+using testing::HasSubstr;
+
+namespace {
+
+const std::string multibeam_file = "deploy/rock/imaging_sonar_simulation::MultibeamSonarTask.yml";
+
+/** A copy of deploy/, with a few beams so that a run is short. */
+class RockDropInTest : public testing::Test {
+protected:
+    RockDropInTest() {
+        fs::copy(fs::path(INSONIFY_SOURCE_DIR) / "deploy", folder_ / "deploy", fs::copy_options::recursive);
+    }
+    Outcome run(std::vector<std::string> more) const {
+        std::vector<std::string> words = {"run",   "deploy/rock_dropin.yml", "--out", "out",
+                                          "--set", "multibeam.beam_count=16"};
+        words.insert(words.end(), more.begin(), more.end());
+        return callInsonify(folder_, words);
+    }
+    /** The one ping of a run. */
+    types::Sonar ping(std::vector<std::string> more, const std::string& stream = "multibeam_noise.noisy") const {
+        more.insert(more.end(), {"--pings", "1"});
+        const Outcome outcome = run(more);
+        if (outcome.code != 0) throw std::runtime_error(outcome.err);
+        return exportedPings(folder_, "out/rock.0.log", stream).at(0);
+    }
+    void edit(const std::string& file, const std::string& what, const std::string& with) const {
+        writeFile(folder_ / file, replaced(readFile(folder_ / file), what, with));
+    }
+    TestFolder folder_;
+};
+
+double spanDeg(const types::Sonar& ping) { return ping.bearings.back().deg() - ping.bearings.front().deg(); }
+
+double sum(const types::Sonar& ping) { return std::accumulate(ping.bins.begin(), ping.bins.end(), 0.0); }
+
+}  // namespace
+
+TEST_F(RockDropInTest, ThePublishedPropertiesAndSectionsGiveTheSonarTheyDescribe) {
+    const types::Sonar ping = this->ping({});
+    EXPECT_EQ(ping.beam_count, 16u);
+    EXPECT_EQ(ping.bin_count, 500u);                      // of section harbour
+    EXPECT_NEAR(ping.binStart(ping.bin_count), 36, 0.1);  // of section harbour
+    EXPECT_NEAR(spanDeg(ping), 120 - 120.0 / 16, 1e-6);   // of section default: the whole fan
+    EXPECT_TRUE(fs::exists(folder_ / "out/multibeam_000000.png"));
+    EXPECT_TRUE(fs::exists(folder_ / "out/scanning_000000.png"));
+}
+
+TEST_F(RockDropInTest, AScanningSonarStartsAtItsLeftLimitAndTurnsByItsMotorStep) {
+    ASSERT_EQ(run({"--pings", "3"}).code, 0);
+    const auto pings = exportedPings(folder_, "out/rock.0.log", "scanning_noise.noisy");
+    ASSERT_EQ(pings.size(), 3u);
+    for (size_t i = 0; i < 3; ++i) EXPECT_NEAR(pings[i].bearings.at(0).deg(), 140 - 1.8 * static_cast<double>(i), 1e-6);
+}
+
+TEST_F(RockDropInTest, BeamWidthIsTheFansOrByConventionOneBeams) {
+    const std::string width = "multibeam.beam_width={rad: 5.deg}";
+    EXPECT_NEAR(spanDeg(ping({"--set", width})), 5 * 15.0 / 16, 1e-6);
+    EXPECT_NEAR(spanDeg(ping({"--set", width, "--set", "multibeam.beam_width_convention=per_beam"})), 75, 1e-6);
+}
+
+TEST_F(RockDropInTest, AGainOfOneHalfPutsEchoesNearOneInBothModelsAndTheyGrowWithIt) {
+    for (const std::string model : {"physical", "cerqueira2017"}) {
+        const std::vector<std::string> plain = {"--set", "multibeam.model=" + model,
+                                                "--set", "multibeam.enable_speckle_noise=false",
+                                                "--set", "multibeam.enable_attenuation=false"};
+        const auto gained = [&](const char* gain) {
+            std::vector<std::string> words = plain;
+            words.insert(words.end(), {"--set", std::string("multibeam.gain=") + gain});
+            return ping(words);
+        };
+        const types::Sonar half = gained("0.5"), tenth = gained("0.1"), none = gained("0");
+        const float strongest = *std::max_element(half.bins.begin(), half.bins.end());
+        EXPECT_GT(strongest, 0.5f) << model;
+        EXPECT_LE(strongest, 1.0f) << model;
+        EXPECT_GT(std::ranges::count_if(half.bins, [](float bin) { return bin > 0.05f; }), 100) << model;
+        EXPECT_GT(sum(half), 1.5 * sum(tenth)) << model;
+        EXPECT_EQ(sum(none), 0) << model;
+    }
+}
+
+TEST_F(RockDropInTest, SwitchesPutEffectsInAndTakeThemOut) {
+    const std::vector<std::string> published = {"--set", "multibeam.model=cerqueira2017"};
+    const auto with = [&](const char* attenuation, const char* speckle) {
+        std::vector<std::string> words = published;
+        for (const auto& [name, on] : {std::pair("attenuation", attenuation), std::pair("speckle_noise", speckle)})
+            words.insert(words.end(), {"--set", std::string("multibeam.enable_") + name + "=" + on});
+        return ping(words);
+    };
+    const types::Sonar plain = with("false", "false");
+    EXPECT_EQ(plain.bins, with("false", "false").bins);
+    EXPECT_NE(plain.bins, with("false", "true").bins);
+    EXPECT_GT(sum(plain), 1.2 * sum(with("true", "false")));
+}
+
+TEST_F(RockDropInTest, FaultsOfPropertyFilesAreToldWithTheirPlacesAllAtOnce) {
+    edit(multibeam_file, "enable_reverberation: false", "enable_reverberation: true");
+    edit(multibeam_file, "rad: 120.deg", "rad: 120.m");
+    edit(multibeam_file, "bin_count: 500", "bin_cuont: 500");
+    const Outcome outcome = run({});
+    EXPECT_EQ(outcome.code, 2);
+    for (const char* fault :
+         {":10:5: beam_width: is {rad: 120.m}; must be in deg", ":15:1: enable_reverberation: is not built yet",
+          ":25:1: bin_cuont: is not a key here; did you mean bin_count?"})
+        EXPECT_THAT(outcome.err, HasSubstr(multibeam_file + fault));
+}

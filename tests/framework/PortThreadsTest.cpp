@@ -1,0 +1,164 @@
+// Ports between threads; run with ThreadSanitizer as well (scripts/test).
+#include <gtest/gtest.h>
+
+#include <future>
+
+#include "components/framework/Activity.hpp"
+#include "tests/support/Ports.hpp"
+
+namespace insonify::framework {
+namespace {
+
+using std::chrono::milliseconds;
+
+/** Reads one sample a cycle on its own thread while it lives, and checks that they come in order. */
+class Listener : public TaskContext {
+public:
+    explicit Listener(std::string name = "listener") : TaskContext(std::move(name)) {
+        configure();
+        start();
+        activity().release();
+    }
+    ~Listener() override { quieten(); }
+    /** Nothing runs on its thread any more. */
+    void quieten() {
+        activity().hold();
+        stop();
+    }
+    InputPort<int32_t> in{this, "in", "rising numbers"};
+    std::atomic<int> samples{0}, disordered{0};
+    std::function<void()> during;
+
+private:
+    void updateHook() override {
+        int32_t value = 0;
+        if (!in.readNew(value)) return;
+        if (value <= last_) ++disordered;
+        last_ = value;
+        if (during) during();
+        ++samples;
+    }
+    int32_t last_ = 0;
+};
+
+/** Writes 1, 2, 3... as fast as it can until it goes. */
+class Chatter {
+public:
+    ~Chatter() {
+        stop_ = true;
+        thread_.join();
+    }
+    OutputPortBase& port() { return writer_.port; }
+
+private:
+    void run() {
+        for (int32_t i = 1; !stop_; ++i) writer_.port.write(i);
+    }
+    test::Writer<int32_t> writer_;
+    std::atomic<bool> stop_{false};
+    std::thread thread_{&Chatter::run, this};
+};
+
+template <class Condition>
+bool within(milliseconds time, Condition&& condition) {
+    const auto end = std::chrono::steady_clock::now() + time;
+    while (!condition() && std::chrono::steady_clock::now() < end) std::this_thread::sleep_for(milliseconds(1));
+    return condition();
+}
+
+TEST(PortThreadsTest, EverySampleOfABurstRunsATriggeredTask) {
+    test::Writer<int32_t> writer;
+    Listener listener;
+    writer.port.connectTo(listener.in, ConnPolicy::buffer(300));
+    for (int32_t i = 1; i <= 300; ++i) writer.port.write(i);
+    EXPECT_TRUE(within(milliseconds(20000), [&] { return listener.samples == 300; })) << listener.samples;
+    EXPECT_EQ(listener.disordered, 0);
+}
+
+TEST(PortThreadsTest, ASampleThatCameBeforeTheThreadWasReleasedRunsTheTask) {
+    test::Writer<int32_t> writer;
+    Listener listener;
+    listener.activity().hold();
+    writer.port.connectTo(listener.in, {});
+    writer.port.write(1);
+    EXPECT_EQ(listener.samples, 0);
+    listener.activity().release();
+    EXPECT_TRUE(within(milliseconds(20000), [&] { return listener.samples == 1; }));
+}
+
+TEST(PortThreadsTest, AReaderThatHangsInItsHookDoesNotHoldUpItsWriter) {
+    test::Writer<int32_t> writer;
+    Listener listener;
+    std::promise<void> hanging, let_go;
+    listener.during = [&, done = let_go.get_future().share(), told = false]() mutable {
+        if (!std::exchange(told, true)) hanging.set_value();
+        done.wait();
+    };
+    writer.port.connectTo(listener.in, ConnPolicy::circularBuffer(2));
+    writer.port.write(1);
+    hanging.get_future().wait();
+    for (int32_t i = 2; i <= 10001; ++i) writer.port.write(i);  // would never end if the reader were waited for
+    EXPECT_EQ(listener.samples, 0);
+    EXPECT_EQ(listener.in.channels().front()->lost(), 9998u);
+    let_go.set_value();
+    EXPECT_TRUE(within(milliseconds(20000), [&] { return listener.samples == 3; }));
+}
+
+TEST(PortThreadsTest, PortsConnectAndDisconnectUnderLoad) {
+    Listener first("first"), second("second");
+    Chatter one, two;
+    std::thread other([&] {
+        for (int i = 0; i < 200; ++i) {
+            two.port().connectTo(second.in, ConnPolicy::circularBuffer(3));
+            std::this_thread::yield();
+            two.port().disconnect(second.in);
+        }
+    });
+    for (int i = 0; i < 200; ++i) {
+        one.port().connectTo(first.in, i % 2 ? ConnPolicy::data() : ConnPolicy::buffer(5));
+        EXPECT_TRUE(first.in.connected());
+        const int before = first.samples;
+        const auto heard = [&] { return i % 20 != 0 || first.samples > before; };
+        EXPECT_TRUE(within(milliseconds(20000), heard));
+        one.port().disconnect(first.in);
+        EXPECT_FALSE(first.in.connected());
+        EXPECT_FALSE(first.in.hasNew());
+    }
+    other.join();
+    EXPECT_FALSE(one.port().connected());
+    EXPECT_GT(first.samples, 0);
+    EXPECT_EQ(first.disordered, 0);
+    EXPECT_EQ(second.disordered, 0);
+}
+
+TEST(PortThreadsTest, ATaskThatGoesWhileOthersWriteDisconnectsItself) {
+    Chatter chatter;
+    for (int i = 0; i < 50; ++i) {
+        Listener listener;
+        chatter.port().connectTo(listener.in, ConnPolicy::circularBuffer(2));
+        EXPECT_TRUE(within(milliseconds(20000), [&] { return listener.samples > 0; }));
+    }
+    EXPECT_FALSE(chatter.port().connected());
+}
+
+TEST(PortThreadsTest, TransitionsFromManyThreadsAreMadeOneAfterTheOther) {
+    Chatter chatter;
+    Listener listener;
+    chatter.port().connectTo(listener.in, {});
+    std::atomic<int> starts{0}, stops{0};
+    std::vector<std::thread> threads;
+    for (int t = 0; t < 3; ++t)
+        threads.emplace_back([&] {
+            for (int i = 0; i < 100; ++i) {
+                if (listener.stop()) ++stops;
+                if (listener.start()) ++starts;
+            }
+        });
+    for (std::thread& thread : threads) thread.join();
+    EXPECT_GT(stops, 0);
+    EXPECT_EQ(starts, stops);  // it was running before and is now
+    EXPECT_TRUE(listener.isRunning());
+}
+
+}  // namespace
+}  // namespace insonify::framework
