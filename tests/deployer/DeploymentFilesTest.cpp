@@ -45,8 +45,8 @@ INSTANTIATE_TEST_SUITE_P(All, DeploymentFilesTest, testing::ValuesIn(deployments
                          [](const auto& tested) { return tested.param; });
 
 TEST(DeploymentFilesTest, TheNamedOnesAreThere) {
-    EXPECT_THAT(deployments(), testing::IsSupersetOf(
-                                   {"gemini_720i", "harbour_fls", "harbour_msis", "harbour_msis_sector", "minimal"}));
+    EXPECT_THAT(deployments(), testing::IsSupersetOf({"gemini_720i", "harbour_fls", "harbour_msis",
+                                                      "harbour_msis_sector", "minimal", "two_vehicles"}));
 }
 
 TEST(DeploymentFilesTest, ReplayShowsWhatTheHarbourRunLeftInLatest) {
