@@ -13,7 +13,8 @@ std::string joined(const std::vector<Diagnostic>& diagnostics) {
 
 std::string Diagnostic::text() const {
     std::string place = file;
-    if (line > 0) place += ":" + std::to_string(line) + ":" + std::to_string(column);
+    if (line > 0) place += ":" + std::to_string(line);
+    if (line > 0 && column > 0) place += ":" + std::to_string(column);
     std::string result = place;
     if (!path.empty()) result += (result.empty() ? "" : ": ") + path;
     return result + (result.empty() ? "" : ": ") + message;

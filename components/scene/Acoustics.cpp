@@ -1,7 +1,12 @@
 #include "components/scene/Acoustics.hpp"
 
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <vector>
 
 namespace insonify::scene {
 namespace {
@@ -13,6 +18,52 @@ constexpr double kReflection[] = {0.936, 0.936, 0.835, 0.91, 0.93, 0.81,  0.81, 
                                   0.06,  0.37,  0.35,  0.21, 0.15, -0.02, -0.07, -0.5, -0.94, 0.39, -0.9995};
 static_assert(std::size(kSedimentLambertDb) == std::size(types::EnumNames<Sediment>::names));
 static_assert(std::size(kReflection) == std::size(types::EnumNames<Matter>::names));
+
+/** Fills a described struct from values by key; collects what is wrong. */
+class ValueReader {
+public:
+    ValueReader(const AcousticValues& values, types::Problems& problems) : values_(values), problems_(problems) {}
+
+    template <class T>
+    void operator()(const types::Field& field, std::optional<T>& value) {
+        known_.emplace_back(field.name);
+        if (const auto found = values_.find(field.name); found != values_.end()) read(field, found->second, value);
+    }
+    void refuseUnknown() {
+        for (const auto& [key, value] : values_)
+            if (std::ranges::count(known_, key) == 0)
+                problems_.push_back({key, fmt::format("is not known; may be {}", fmt::join(known_, ", "))});
+    }
+
+private:
+    void read(const types::Field& field, const AcousticValue& from, std::optional<double>& value) {
+        const auto* number = std::get_if<double>(&from);
+        if (number && *number >= field.min && *number <= field.max)
+            value = *number;
+        else
+            problems_.push_back(
+                {field.name, fmt::format("is {}; must be a number from {} to {}", text(from), field.min, field.max)});
+    }
+    template <types::NamedEnum E>
+    void read(const types::Field& field, const AcousticValue& from, std::optional<E>& value) {
+        const auto& names = types::EnumNames<E>::names;
+        const auto* name = std::get_if<std::string>(&from);
+        const auto* found = name ? std::ranges::find(names, *name) : std::end(names);
+        if (found != std::end(names))
+            value = static_cast<E>(found - names);
+        else
+            problems_.push_back({field.name, fmt::format("is {}; may be {}", text(from), fmt::join(names, ", "))});
+    }
+    static std::string text(const AcousticValue& value) {
+        if (const auto* number = std::get_if<double>(&value)) return fmt::format("{}", *number);
+        const auto* name = std::get_if<std::string>(&value);
+        return name ? fmt::format("\"{}\"", *name) : "no number and no text";
+    }
+
+    const AcousticValues& values_;
+    types::Problems& problems_;
+    std::vector<std::string> known_;
+};
 
 }  // namespace
 
@@ -37,6 +88,15 @@ void Acoustics::applyTo(types::Material& target) const {
 
 void Acoustics::check(types::Problems& problems) const {
     if (sediment && material) problems.push_back({"material", "stands beside `sediment`; give one of the two"});
+}
+
+Acoustics readAcoustics(const AcousticValues& values, types::Problems& problems) {
+    Acoustics acoustics;
+    ValueReader reader(values, problems);
+    Acoustics::describe(acoustics, reader);
+    reader.refuseUnknown();
+    acoustics.check(problems);
+    return acoustics;
 }
 
 }  // namespace insonify::scene

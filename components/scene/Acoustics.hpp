@@ -1,6 +1,8 @@
 #pragma once
+#include <map>
 #include <optional>
 #include <string>
+#include <variant>
 
 #include "types/Describe.hpp"
 #include "types/Geometry.hpp"
@@ -82,6 +84,13 @@ struct Acoustics {
         visit(Field{"reflectivity", "1", "factor of cerqueira2017", 0, 1}, self.reflectivity);
     }
 };
+
+/** What a file gives to a key: a number, a text, or neither. */
+using AcousticValue = std::variant<std::monostate, double, std::string>;
+using AcousticValues = std::map<std::string, AcousticValue>;
+
+/** Acoustics from the keys and values of a file; what is wrong with them goes to `problems`. */
+Acoustics readAcoustics(const AcousticValues& values, types::Problems& problems);
 
 }  // namespace insonify::scene
 

@@ -15,6 +15,7 @@
 #include "components/scene/GltfFile.hpp"
 #include "components/scene/GltfMaterials.hpp"
 #include "components/scene/GltfMesh.hpp"
+#include "components/scene/UniqueNames.hpp"
 #include "types/ConfigError.hpp"
 
 namespace insonify::scene {
@@ -22,13 +23,6 @@ namespace {
 
 /** Instances and nodes together may be this many. */
 constexpr size_t kMaxObjects = 1'000'000;
-
-bool isFinite(const glm::dmat4& matrix) {
-    for (int c = 0; c < 4; ++c)
-        for (int r = 0; r < 4; ++r)
-            if (!std::isfinite(matrix[c][r])) return false;
-    return true;
-}
 
 glm::dmat4 compose(glm::dvec3 translation, glm::dquat rotation, glm::dvec3 scale) {
     return glm::scale(glm::translate(glm::dmat4(1), translation) * glm::mat4_cast(rotation), scale);
@@ -45,6 +39,7 @@ public:
     Scene read() {
         walk(rootNodes());
         addNotices();
+        scene_.z_up_from_file = z_up_from_y_up;
         scene_.geometry = std::make_shared<const types::Geometry>(std::move(geometry_));
         return std::move(scene_);
     }
@@ -100,7 +95,7 @@ private:
         const tinygltf::Node& from = gltf_.model.nodes[static_cast<size_t>(visit.node)];
         Node node;
         node.parent = visit.parent;
-        node.name = uniqueName(nameOf(from, visit.node));
+        node.name = names_.add(nameOf(from, visit.node));
         node.parent_from_node = transform(from, path, node.scale);
         const glm::dmat4 world_from_node = visit.world_from_parent * node.parent_from_node;
         if (visit.parent < 0) node.parent_from_node = world_from_node;
@@ -120,12 +115,6 @@ private:
         if (node.mesh >= 0 && mesh < gltf_.model.meshes.size() && !gltf_.model.meshes[mesh].name.empty())
             return gltf_.model.meshes[mesh].name;
         return fmt::format("node_{}", index);
-    }
-
-    std::string uniqueName(const std::string& name) {
-        std::string unique = name;
-        while (!names_.insert(unique).second) unique = fmt::format("{}_{}", name, ++repeats_[name] + 1);
-        return unique;
     }
 
     glm::dmat4 transform(const tinygltf::Node& node, const std::string& path, glm::dvec3& scale) const {
@@ -166,7 +155,7 @@ private:
         const std::vector<glm::dmat4> instances =
             readInstances(instancing->second, path + ".extensions.EXT_mesh_gpu_instancing");
         for (size_t i = 0; i < instances.size(); ++i)
-            addObject(uniqueName(fmt::format("{}[{}]", name, i)), mesh, world_from_node, instances[i], path);
+            addObject(names_.add(fmt::format("{}[{}]", name, i)), mesh, world_from_node, instances[i], path);
     }
 
     void addObject(const std::string& name, int mesh, const glm::dmat4& world_from_node,
@@ -225,12 +214,9 @@ private:
     void addNotices() {
         std::vector<std::string>& notices = geometry_.notices;
         notices.insert(notices.end(), gltf_.notices.begin(), gltf_.notices.end());
-        const auto count = [&notices](size_t number, const char* what) {
-            if (number > 0) notices.push_back(fmt::format("{}: {}", what, number));
-        };
+        const auto count = [&notices](size_t number, const char* what) { addCount(number, what, notices); };
         const Omissions& omissions = meshes_.omissions();
-        count(omissions.bad_triangles, "triangles dropped for a vertex that is not a finite number");
-        count(omissions.empty_triangles, "triangles dropped for having no area");
+        omissions.dropped.addTo(notices);
         count(omissions.other_primitives, "primitives of points or lines left out, they have no surface");
         count(omissions.morphed_meshes, "meshes with morph targets loaded unmorphed");
         count(omissions.unmapped_primitives,
@@ -251,8 +237,7 @@ private:
     GltfAccessors accessors_;
     GltfMeshes meshes_;
     std::map<size_t, int> mesh_indices_;
-    std::set<std::string> names_;
-    std::map<std::string, size_t> repeats_;
+    UniqueNames names_;
     size_t flat_objects_ = 0;
     bool has_skin_ = false;
 };

@@ -1,14 +1,11 @@
 #include "components/scene/GltfMaterials.hpp"
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 #include <stb_image.h>
 
-#include <algorithm>
 #include <cmath>
 #include <map>
 #include <memory>
-#include <ranges>
 
 #include "components/scene/Acoustics.hpp"
 #include "types/ConfigError.hpp"
@@ -19,63 +16,23 @@ namespace {
 /** Larger images are refused before they are decoded [pixels a side]. */
 constexpr int kMaxImageSide = 8192;
 
-/** Fills a described struct from a JSON object; collects what is wrong. */
-class JsonReader {
-public:
-    JsonReader(const tinygltf::Value& object, types::Problems& problems) : object_(object), problems_(problems) {}
+/** The values of a JSON object by key. */
+AcousticValues valuesOf(const tinygltf::Value& object) {
+    AcousticValues values;
+    for (const std::string& key : object.Keys()) {
+        const tinygltf::Value& json = object.Get(key);
+        AcousticValue& value = values[key];
+        if (json.IsNumber()) value = json.GetNumberAsDouble();
+        if (json.IsString()) value = json.Get<std::string>();
+    }
+    return values;
+}
 
-    template <class T>
-    void operator()(const types::Field& field, std::optional<T>& value) {
-        known_.emplace_back(field.name);
-        if (!object_.Has(field.name)) return;
-        if constexpr (types::NamedEnum<T>)
-            readName(field, object_.Get(field.name), value);
-        else
-            readNumber(field, object_.Get(field.name), value);
-    }
-    void refuseUnknown() {
-        for (const std::string& key : object_.Keys())
-            if (std::ranges::count(known_, key) == 0)
-                problems_.push_back({key, fmt::format("is not known; may be {}", fmt::join(known_, ", "))});
-    }
-
-private:
-    void readNumber(const types::Field& field, const tinygltf::Value& json, std::optional<double>& value) {
-        if (json.IsNumber() && json.GetNumberAsDouble() >= field.min && json.GetNumberAsDouble() <= field.max)
-            value = json.GetNumberAsDouble();
-        else
-            problems_.push_back(
-                {field.name, fmt::format("is {}; must be a number from {} to {}", text(json), field.min, field.max)});
-    }
-    template <class E>
-    void readName(const types::Field& field, const tinygltf::Value& json, std::optional<E>& value) {
-        const auto& names = types::EnumNames<E>::names;
-        const auto* found = json.IsString() ? std::ranges::find(names, json.Get<std::string>()) : std::end(names);
-        if (found != std::end(names))
-            value = static_cast<E>(found - names);
-        else
-            problems_.push_back({field.name, fmt::format("is {}; may be {}", text(json), fmt::join(names, ", "))});
-    }
-    static std::string text(const tinygltf::Value& json) {
-        if (json.IsNumber()) return fmt::format("{}", json.GetNumberAsDouble());
-        return json.IsString() ? fmt::format("\"{}\"", json.Get<std::string>()) : "no number and no text";
-    }
-
-    const tinygltf::Value& object_;
-    types::Problems& problems_;
-    std::vector<std::string> known_;
-};
-
-void readAcoustics(const tinygltf::Value& extras, types::Material& material, types::Problems& problems) {
+void readExtras(const tinygltf::Value& extras, types::Material& material, types::Problems& problems) {
     if (!extras.IsObject() || !extras.Has("acoustics")) return;
     const tinygltf::Value& json = extras.Get("acoustics");
     if (!json.IsObject()) return problems.push_back({"", "must be an object such as {\"sediment\": \"medium_sand\"}"});
-    Acoustics acoustics;
-    JsonReader reader(json, problems);
-    Acoustics::describe(acoustics, reader);
-    reader.refuseUnknown();
-    acoustics.check(problems);
-    acoustics.applyTo(material);
+    readAcoustics(valuesOf(json), problems).applyTo(material);
 }
 
 /** Bytes of an encoded image; empty when its file was not found. */
@@ -186,7 +143,7 @@ std::vector<std::optional<NormalMapping>> readMaterials(const GltfFile& gltf, co
         material.name = from.name.empty() ? fmt::format("material_{}", index) : from.name;
         material.double_sided = from.doubleSided;
         types::Problems problems;
-        readAcoustics(from.extras, material, problems);
+        readExtras(from.extras, material, problems);
         for (const types::Problem& problem : problems)
             faults.push_back({gltf.name, 0, 0,
                               fmt::format("materials[{}].extras.acoustics{}{}", index, problem.path.empty() ? "" : ".",

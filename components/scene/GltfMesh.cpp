@@ -14,12 +14,6 @@ namespace {
 
 /** A small file may refer to the same data any number of times; this many vertices and indices end it. */
 constexpr size_t kMaxElements = 200'000'000;
-/** Coordinates beyond are taken for damage: their squares leave the range of float [m]. */
-constexpr float kMaxCoordinate = 1e15f;
-
-bool isUsable(glm::vec3 p) {
-    return std::abs(p.x) < kMaxCoordinate && std::abs(p.y) < kMaxCoordinate && std::abs(p.z) < kMaxCoordinate;
-}
 
 /** Corners of triangles from corners of a list, strip or fan; `restart` ends a strip or fan. */
 std::vector<uint32_t> triangulate(const std::vector<uint32_t>& corners, int mode, uint32_t restart) {
@@ -42,34 +36,6 @@ std::vector<uint32_t> triangulate(const std::vector<uint32_t>& corners, int mode
     return triangles;
 }
 
-/** Drops triangles that cannot be drawn, and counts them. */
-void dropUseless(Surface& surface, Omissions& omissions) {
-    size_t kept = 0;
-    for (size_t i = 0; i + 2 < surface.indices.size(); i += 3) {
-        const uint32_t* corner = &surface.indices[i];
-        const glm::vec3 a = surface.positions[corner[0]], b = surface.positions[corner[1]],
-                        c = surface.positions[corner[2]];
-        if (!isUsable(a) || !isUsable(b) || !isUsable(c)) {
-            ++omissions.bad_triangles;
-            continue;
-        }
-        const glm::dvec3 normal = glm::cross(glm::dvec3(b) - glm::dvec3(a), glm::dvec3(c) - glm::dvec3(a));
-        if (normal == glm::dvec3(0)) {
-            ++omissions.empty_triangles;
-            continue;
-        }
-        std::copy_n(corner, 3, &surface.indices[kept]);
-        kept += 3;
-    }
-    surface.indices.resize(kept);
-}
-
-/** Puts a harmless point where a vertex is damaged: no triangle uses it any more. */
-void mendUnused(Surface& surface) {
-    for (glm::vec3& position : surface.positions)
-        if (!isUsable(position)) position = glm::vec3(0);
-}
-
 glm::vec3 unitOr(glm::vec3 vector, glm::vec3 otherwise) {
     const float length = glm::length(vector);
     return std::isfinite(length) && length > 1e-12f ? vector / length : otherwise;
@@ -81,29 +47,6 @@ void normalise(Surface& surface) {
         tangent = glm::vec4(unitOr(glm::vec3(tangent), {1, 0, 0}), tangent.w < 0 ? -1.0f : 1.0f);
     for (glm::vec2& uv : surface.uvs)
         if (!std::isfinite(uv.x) || !std::isfinite(uv.y)) uv = glm::vec2(0);
-}
-
-/** `to` grows to `size` with `filler`, then takes `from`; nothing happens while both are empty. */
-template <class T>
-void appendFilled(std::vector<T>& to, const std::vector<T>& from, size_t size, T filler) {
-    if (to.empty() && from.empty()) return;
-    to.resize(size, filler);
-    to.insert(to.end(), from.begin(), from.end());
-}
-
-/** Adds a surface to a mesh as one more cluster. */
-void appendSurface(const Surface& surface, int material, types::Mesh& mesh) {
-    const size_t base = mesh.positions.size();
-    types::Cluster cluster;
-    cluster.first_index = static_cast<uint32_t>(mesh.indices.size());
-    cluster.index_count = static_cast<uint32_t>(surface.indices.size());
-    cluster.material = material;
-    mesh.clusters.push_back(cluster);
-    appendFilled(mesh.normals, surface.normals, base, glm::vec3(0, 1, 0));
-    appendFilled(mesh.tangents, surface.tangents, base, glm::vec4(1, 0, 0, 1));
-    appendFilled(mesh.uvs, surface.uvs, base, glm::vec2(0));
-    mesh.positions.insert(mesh.positions.end(), surface.positions.begin(), surface.positions.end());
-    for (const uint32_t index : surface.indices) mesh.indices.push_back(static_cast<uint32_t>(base) + index);
 }
 
 }  // namespace
@@ -195,8 +138,7 @@ void GltfMeshes::append(const tinygltf::Primitive& primitive, const std::string&
         if (index >= count && index != restart)
             fail(path + ".indices", fmt::format("hold {}; the primitive has {} vertices", index, count));
     surface.indices = triangulate(corners, mode, restart);
-    dropUseless(surface, omissions_);
-    mendUnused(surface);
+    cleanUp(surface, omissions_.dropped);
     if (surface.indices.empty()) return;
 
     int index = material(primitive, path);
@@ -223,10 +165,7 @@ types::Mesh GltfMeshes::read(size_t index) {
     const bool morphed =
         std::ranges::any_of(from.primitives, [](const auto& primitive) { return !primitive.targets.empty(); });
     if (morphed) ++omissions_.morphed_meshes;
-    const size_t count = mesh.positions.size();
-    appendFilled(mesh.normals, {}, count, glm::vec3(0, 1, 0));
-    appendFilled(mesh.tangents, {}, count, glm::vec4(1, 0, 0, 1));
-    appendFilled(mesh.uvs, {}, count, glm::vec2(0));
+    fillAttributes(mesh);
     return mesh;
 }
 

@@ -5,14 +5,14 @@
 
 #include "components/scene/GltfAccessor.hpp"
 #include "components/scene/GltfMaterials.hpp"
+#include "components/scene/Surface.hpp"
 #include "types/Geometry.hpp"
 
 namespace insonify::scene {
 
 /** What was left out of the meshes of a file. */
 struct Omissions {
-    size_t bad_triangles = 0;        ///< With a vertex that is not a finite number.
-    size_t empty_triangles = 0;      ///< Of no area.
+    DroppedTriangles dropped;
     size_t other_primitives = 0;     ///< Points and lines.
     size_t unmapped_primitives = 0;  ///< With a normal map but no texture coordinates for it.
     size_t morphed_meshes = 0;       ///< With morph targets, loaded unmorphed.

@@ -4,10 +4,12 @@
 
 #include <algorithm>
 #include <cctype>
+#include <cmath>
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
 
 #include "components/scene/Gltf.hpp"
+#include "components/scene/Sdf.hpp"
 #include "types/ConfigError.hpp"
 
 namespace insonify::scene {
@@ -29,13 +31,25 @@ glm::dmat3 withoutRotation(const glm::dmat3& matrix, glm::dvec3 scale) {
 
 }  // namespace
 
-Scene readScene(const std::filesystem::path& file) {
+std::string extensionOf(const std::filesystem::path& file) {
     std::string extension = file.extension().string();
     std::ranges::transform(extension, extension.begin(), [](unsigned char c) { return std::tolower(c); });
+    return extension;
+}
+
+Scene readScene(const std::filesystem::path& file) {
+    const std::string extension = extensionOf(file);
     if (extension == ".gltf" || extension == ".glb") return readGltf(file);
-    if (extension == ".world" || extension == ".sdf")
-        throw types::ConfigError(file.string(), "", "SDF is not built yet; use .gltf or .glb");
-    throw types::ConfigError(file.string(), "", fmt::format("has extension \"{}\"; may be .gltf or .glb", extension));
+    if (extension == ".world" || extension == ".sdf") return readSdf(file);
+    throw types::ConfigError(file.string(), "",
+                             fmt::format("has extension \"{}\"; may be .gltf, .glb, .world or .sdf", extension));
+}
+
+bool isFinite(const glm::dmat4& matrix) {
+    for (int c = 0; c < 4; ++c)
+        for (int r = 0; r < 4; ++r)
+            if (!std::isfinite(matrix[c][r])) return false;
+    return true;
 }
 
 types::GeometryPtr loadScene(const std::filesystem::path& file) { return readScene(file).geometry; }
@@ -55,7 +69,7 @@ std::vector<Part> partsOf(const Scene& scene, int node) {
     std::vector<bool> moves(scene.nodes.size());
     const auto top = static_cast<size_t>(node);
     body_from_node[top] =
-        z_up_from_y_up * glm::dmat4(withoutRotation(glm::dmat3(world_from_node), scene.nodes[top].scale));
+        scene.z_up_from_file * glm::dmat4(withoutRotation(glm::dmat3(world_from_node), scene.nodes[top].scale));
     moves[top] = true;
     for (size_t i = top + 1; i < scene.nodes.size(); ++i) {
         const Node& below = scene.nodes[i];

@@ -21,7 +21,8 @@ struct Scene {
     types::GeometryPtr geometry;
     std::vector<Node> nodes;
     std::vector<int> object_nodes;             ///< For each object of the geometry, its node.
-    std::vector<glm::dmat4> node_from_object;  ///< For each object; 1 but for instances (EXT_mesh_gpu_instancing).
+    std::vector<glm::dmat4> node_from_object;  ///< For each object; 1 but for instances and the visuals of SDF.
+    glm::dmat4 z_up_from_file{1};              ///< The turn of the file's axes to the world's.
 };
 
 /** An object that moves with a node. */
@@ -30,12 +31,19 @@ struct Part {
     glm::dmat4 body_from_object{1};  ///< Body: the node without its rotation, axes turned like the world's, scale kept.
 };
 
-/** Reads a scene: .gltf or .glb. World coordinates are z-up: (x, y, z) of the file is (x, -z, y).
+/** Reads a scene: .gltf or .glb, whose y-up is turned to z-up, (x, y, z) of the file being (x, -z, y) of the world;
+ *  .world or .sdf, which is z-up.
  *  Throws types::ConfigError for whatever is wrong with the file; what was left out is in Geometry::notices. */
 Scene readScene(const std::filesystem::path& file);
 
+/** ".glb" of "Harbour.GLB". */
+std::string extensionOf(const std::filesystem::path& file);
+
 /** The geometry of `readScene`. */
 types::GeometryPtr loadScene(const std::filesystem::path& file);
+
+/** True when each of its numbers is. */
+bool isFinite(const glm::dmat4& matrix);
 
 /** Index of the node of that name, -1 for none. */
 int findNode(const Scene& scene, const std::string& name);

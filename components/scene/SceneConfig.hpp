@@ -19,7 +19,7 @@ struct SceneConfig {
     template <class Self, class V>
     static void describe(Self& self, V& visit) {
         using types::Field;
-        visit(Field{"file", "", "scene: .gltf or .glb, relative to the deployment"}, self.file);
+        visit(Field{"file", "", "scene: .gltf, .glb, .world or .sdf, relative to the deployment"}, self.file);
         visit(Field{"mount", "", "the sonar in the body"}, self.mount);
         visit(Field{"water_surface", "m", "z of the water surface in the world; absent: none"}, self.water_surface);
         visit(Field{"materials", "", "acoustic values by name of a material or model, over those of the file"},

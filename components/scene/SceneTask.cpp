@@ -17,7 +17,8 @@ std::shared_ptr<const Scene> SceneTask::load() const {
     const std::string file = inputPath(config->file).string();
     if (!scene_ || scene_file_ != file) {
         if (config->file.empty())
-            throw types::ConfigError("", name() + ".file", "is missing; give the path of a .gltf or .glb file");
+            throw types::ConfigError("", name() + ".file",
+                                     "is missing; give the path of a .gltf, .glb, .world or .sdf file");
         scene_ = std::make_shared<const Scene>(readScene(file));
         scene_file_ = file;
     }

@@ -17,10 +17,10 @@ namespace insonify::scene {
 /** Holds a scene and says, for each pose of the vehicle, what the sonar has before it.
  *
  *  In: `pose`, body in the world (x north, y west, z up); each new one gives one `snapshot`, with its time.
- *  In: `<node>.pose` for any node of the file that a connection names: the node's place in the world, instead of its
- *  translation and rotation in the file; axes turned like the world's, scale kept, nodes below move along. The newest
- *  is taken; it does not trigger. Before the first the node is where the file has it.
- *  Out: `snapshot`, sonar in the world (body times `mount`), shared geometry, moved objects.
+ *  In: `<node>.pose` for any node of the file (in SDF any model or link, "rov", "rov::arm") that a connection names:
+ * the node's place in the world, instead of its translation and rotation in the file; axes turned like the world's,
+ * scale kept, nodes below move along. The newest is taken; it does not trigger. Before the first the node is where the
+ * file has it. Out: `snapshot`, sonar in the world (body times `mount`), shared geometry, moved objects.
  *
  *  A pose that is not finite, or whose orientation has no length, is dropped: RunTimeError until the next good one. */
 class SceneTask final : public framework::TaskContext {

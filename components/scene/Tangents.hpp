@@ -1,19 +1,7 @@
 #pragma once
-#include <glm/vec2.hpp>
-#include <glm/vec3.hpp>
-#include <glm/vec4.hpp>
-#include <vector>
+#include "components/scene/Surface.hpp"
 
 namespace insonify::scene {
-
-/** Triangles of one material, as they come from a file: three vertices each, in parallel arrays. */
-struct Surface {
-    std::vector<glm::vec3> positions;
-    std::vector<glm::vec3> normals;   ///< Empty, or unit vectors, as many as positions.
-    std::vector<glm::vec4> tangents;  ///< Empty, or unit vectors and handedness, as many as positions.
-    std::vector<glm::vec2> uvs;       ///< Empty, or as many as positions.
-    std::vector<uint32_t> indices;
-};
 
 /** Gives every triangle its own three vertices with the normal of its plane. */
 void makeFlatNormals(Surface& surface);

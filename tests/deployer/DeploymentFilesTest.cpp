@@ -45,8 +45,9 @@ INSTANTIATE_TEST_SUITE_P(All, DeploymentFilesTest, testing::ValuesIn(deployments
                          [](const auto& tested) { return tested.param; });
 
 TEST(DeploymentFilesTest, TheNamedOnesAreThere) {
-    EXPECT_THAT(deployments(), testing::IsSupersetOf({"gemini_720i", "harbour_fls", "harbour_msis",
-                                                      "harbour_msis_sector", "minimal", "rock_dropin"}));
+    EXPECT_THAT(deployments(),
+                testing::IsSupersetOf({"gemini_720i", "harbour_fls", "harbour_msis", "harbour_msis_sector", "minimal",
+                                       "rock_dropin", "tank_mosaic", "two_vehicles"}));
 }
 
 TEST(DeploymentFilesTest, ReplayShowsWhatTheHarbourRunLeftInLatest) {

@@ -67,7 +67,8 @@ TEST(IncludeRuleTest, EveryThirdPartyPackageHasOneHome) {
         {"EGL/", "gpu"},          {"GL/", "gpu"},
         {"epoxy/", "gpu"},        {"yaml-cpp/", "framework"},
         {"CLI/", "deployer"},     {"nlohmann/", "deployer"},
-        {"embree3/", "study"},
+        {"embree3/", "study"},    {"sdf/", "scene"},
+        {"assimp/", "scene"},
     };
     for (const Source& source : ourSources())
         for (const Include& include : includesOf(source))

@@ -1,0 +1,241 @@
+#include "components/scene/SdfFile.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <fstream>
+#include <iostream>
+#include <sdf/Error.hh>
+#include <sdf/Exception.hh>
+#include <sdf/ParserConfig.hh>
+#include <sdf/World.hh>
+#include <set>
+
+#include "types/ConfigError.hpp"
+
+namespace insonify::scene {
+namespace {
+
+using Faults = std::vector<types::Diagnostic>;
+
+std::string textOf(const std::filesystem::path& file) {
+    std::ifstream stream(file, std::ios::binary);
+    return {std::istreambuf_iterator<char>(stream), {}};
+}
+
+std::string withoutComments(std::string xml) {
+    for (size_t begin = 0; (begin = xml.find("<!--", begin)) != std::string::npos;)
+        xml.erase(begin, std::max(xml.find("-->", begin), begin + 4) - begin);
+    return xml;
+}
+
+/** The uris of a file's includes. */
+std::vector<std::string> includesOf(const std::filesystem::path& file) {
+    const std::string xml = withoutComments(textOf(file));
+    std::vector<std::string> uris;
+    for (size_t at = 0; (at = xml.find("<include", at)) != std::string::npos; ++at) {
+        const size_t begin = xml.find("<uri>", at), end = xml.find("</uri>", at);
+        if (end < xml.find("</include", at) && begin < end) uris.push_back(xml.substr(begin + 5, end - begin - 5));
+    }
+    return uris;
+}
+
+/** Follows the includes of the last of `open` files: libsdformat would follow a circle until its stack ends. */
+void refuseCircles(std::vector<std::filesystem::path>& open, std::set<std::filesystem::path>& done,
+                   const SdfPaths& paths) {
+    const std::filesystem::path file = open.back();
+    if (!done.insert(file).second) return;
+    for (const std::string& uri : includesOf(file)) {
+        const auto found = paths.find(uri, file);
+        std::vector<std::filesystem::path> files;
+        if (found && std::filesystem::is_regular_file(*found)) files = {*found};
+        if (found && std::filesystem::is_directory(*found))
+            for (const auto& entry : std::filesystem::directory_iterator(*found))
+                if (entry.path().extension() == ".sdf") files.push_back(entry.path());
+        for (const std::filesystem::path& included : files) {
+            open.push_back(std::filesystem::canonical(included));
+            if (std::ranges::count(open, open.back()) > 1)
+                throw types::ConfigError(file.string(), "include",
+                                         fmt::format("{} comes back to {}; a model may not "
+                                                     "include itself",
+                                                     uri, open.back().string()));
+            refuseCircles(open, done, paths);
+            open.pop_back();
+        }
+    }
+}
+
+/** Puts our search into libsdformat's global configuration, the only one that nested includes see. */
+class SearchConfig {
+public:
+    SearchConfig(const std::filesystem::path& world, const SdfPaths& paths, const std::set<std::string>& unreadable)
+        : before_(global()) {
+        if (unreadable.empty())  // these come before libsdformat's own search, the callback after it
+            for (const std::filesystem::path& folder : paths.folders()) global().AddURIPath("model://", folder);
+        global().SetFindCallback([&](const std::string& uri) {
+            const auto found = paths.find(uri, world);
+            const auto isIt = [&](const std::filesystem::path& file) {
+                return file == *found || file.parent_path() == *found;
+            };
+            return found && std::ranges::none_of(unreadable, isIt) ? found->string() : "";
+        });
+    }
+    ~SearchConfig() { global() = before_; }
+    SearchConfig(const SearchConfig&) = delete;
+    SearchConfig& operator=(const SearchConfig&) = delete;
+
+private:
+    static sdf::ParserConfig& global() { return sdf::ParserConfig::GlobalConfig(); }
+    sdf::ParserConfig before_;
+};
+
+/** On one line, with one space between words. */
+std::string joined(const std::string& text) {
+    std::istringstream words(text);
+    std::string line;
+    for (std::string word; words >> word;) line += (line.empty() ? "" : " ") + word;
+    return line;
+}
+
+/** Loads `file`, or `text` in its place where there is one. Libsdformat throws what is no std::exception, and more than
+ *  it documents: returns the reason, empty when there is none. */
+std::string load(sdf::Root& root, const std::filesystem::path& file, const std::string& text, sdf::Errors& errors) {
+    const sdf::ParserConfig& config = sdf::ParserConfig::GlobalConfig();
+    try {
+        errors = text.empty() ? root.Load(file.string(), config) : root.LoadSdfString(text, config);
+        return "";
+    } catch (const sdf::Exception& failure) {
+        return joined(failure.GetErrorStr());
+    } catch (const std::exception& failure) {
+        return failure.what();
+    } catch (...) {
+        return "an exception without a text";
+    }
+}
+
+/** The file with "__" in the place of each "::"; empty when there is none. */
+std::string withoutColons(const std::filesystem::path& file) {
+    std::string text = textOf(file);
+    size_t at = text.find("::");
+    if (at == std::string::npos) return "";
+    for (; at != std::string::npos; at = text.find("::", at)) text.replace(at, 2, "__");
+    return text;
+}
+
+std::string withoutColours(std::string line) {
+    for (size_t begin = 0; (begin = line.find('\033')) != std::string::npos;)
+        line.erase(begin, line.find('m', begin) - begin + 1);
+    return line;
+}
+
+/** "Error Code 13: [/sdf/world[...]/uri:a.world:L43]: Msg: Unable to..." or "Error [Param.cc:598]  The value..."; of
+ *  other lines, warnings among them, the message stays empty. */
+types::Diagnostic readLine(const std::string& line) {
+    types::Diagnostic fault;
+    const auto after = [&line](size_t at) {
+        return line.substr(std::min(line.find_first_not_of(' ', at), line.size()));
+    };
+    if (const size_t message = line.find("Msg: "); line.starts_with("Error Code") && message != std::string::npos) {
+        fault.message = after(message + 5);
+        const size_t begin = line.find('['), number = line.rfind(":L", message), file = line.rfind(':', number - 1);
+        if (begin > file || number == std::string::npos) return fault;
+        fault.path = line.substr(begin + 1, file - begin - 1);
+        fault.file = line.substr(file + 1, number - file - 1);
+        fault.line = std::atoi(line.c_str() + number + 2);
+    } else if (const size_t end = line.find("] "); line.starts_with("Error [") && end != std::string::npos) {
+        fault.message = after(end + 2);
+        if (const size_t number = line.find("Line number="); number != std::string::npos)
+            fault.line = std::atoi(line.c_str() + number + 12);
+    }
+    return fault;
+}
+
+/** Adds a fault that says more than those that are known: not the same again, nor that of an element around. */
+void add(const types::Diagnostic& fault, Faults& faults) {
+    const auto says = [&fault](const char* text) { return fault.message.starts_with(text); };
+    const auto tellsAll = [&](const types::Diagnostic& known) {
+        const bool is_same_place = !fault.path.empty() && known.path == fault.path && known.line == fault.line;
+        return known.text() == fault.text() || is_same_place ||
+               (says("Error reading element") && known.path.starts_with(fault.path));
+    };
+    if (says("Unable to read file:") || says("Failed to load a world")) return;
+    if (!fault.message.empty() && std::ranges::none_of(faults, tellsAll)) faults.push_back(fault);
+}
+
+/** Adds what libsdformat printed and what it returned. */
+void add(const std::string& console, const sdf::Errors& errors, Faults& faults) {
+    std::istringstream lines(console);
+    for (std::string line; std::getline(lines, line);) add(readLine(withoutColours(line)), faults);
+    for (const sdf::Error& error : errors)
+        add({error.FilePath().value_or(""), error.LineNumber().value_or(0), 0, error.XmlPath().value_or(""),
+             error.Message()},
+            faults);
+}
+
+/** Adds the files of "Unable to read file[/models/vase/model.sdf]". */
+void findUnreadable(const Faults& faults, std::set<std::string>& unreadable) {
+    constexpr std::string_view text = "Unable to read file[";
+    for (const types::Diagnostic& fault : faults)
+        if (fault.message.starts_with(text))
+            unreadable.insert(fault.message.substr(text.size(), fault.message.rfind(']') - text.size()));
+}
+
+/** Joins those without a place, which say what is wrong, to the first with one, which says where. */
+[[noreturn]] void refuse(const std::filesystem::path& file, Faults faults) {
+    if (faults.empty()) faults.push_back({"", 0, 0, "", "holds neither a world nor a model of SDF"});
+    const auto placed = std::ranges::stable_partition(faults, [](const auto& fault) { return !fault.file.empty(); });
+    std::string reasons;
+    for (const types::Diagnostic& fault : placed) reasons += (reasons.empty() ? "" : "; ") + fault.message;
+    const int line = placed.empty() ? 0 : placed.front().line;
+    faults.erase(placed.begin(), placed.end());
+    if (faults.empty())
+        faults.push_back({file.string(), line, 0, "", reasons});
+    else if (!reasons.empty())
+        faults.front().message += ": " + reasons;
+    throw types::ConfigError(std::move(faults));
+}
+
+}  // namespace
+
+std::mutex CerrCapture::mutex_;
+
+CerrCapture::CerrCapture() : lock_(mutex_), before_(std::cerr.rdbuf(text_.rdbuf())) {}
+CerrCapture::~CerrCapture() { std::cerr.rdbuf(before_); }
+
+std::string CerrCapture::take() {
+    const std::string text = text_.str();
+    text_.str("");
+    return text;
+}
+
+sdf::Root readSdfFile(const std::filesystem::path& file, const SdfPaths& paths, CerrCapture& console,
+                      std::vector<std::string>& notices) {
+    if (!std::filesystem::is_regular_file(file))
+        throw types::ConfigError(file.string(), "", "is not a file; give the path of a .world or .sdf file");
+    std::vector<std::filesystem::path> open = {std::filesystem::canonical(file)};
+    std::set<std::filesystem::path> done;
+    refuseCircles(open, done, paths);
+    std::set<std::string> unreadable;
+    std::string renamed;
+    Faults faults;
+    while (true) {
+        const SearchConfig search(file, paths, unreadable);
+        const size_t known = unreadable.size();
+        sdf::Root root;
+        sdf::Errors errors;
+        const std::string failure = load(root, file, renamed, errors);
+        if (!failure.empty()) add({"", 0, 0, "", "libsdformat gives up: " + failure}, faults);
+        add(console.take(), errors, faults);
+        findUnreadable(faults, unreadable);
+        if (failure.empty() && (root.WorldCount() > 0 || root.Model())) {
+            for (const types::Diagnostic& fault : faults)
+                notices.push_back(fault.text() + (fault.path.ends_with("/uri") ? "; left out" : ""));
+            if (!renamed.empty()) notices.push_back("names are read with \"__\" for \"::\", which libsdformat refuses");
+            return root;
+        }
+        if (unreadable.size() > known) continue;  // again without the include that costs the whole world
+        if (!renamed.empty() || (renamed = withoutColons(file)).empty()) refuse(file, std::move(faults));
+    }
+}
+
+}  // namespace insonify::scene

@@ -1,0 +1,52 @@
+#include "components/scene/SdfHeightmap.hpp"
+
+#include <fmt/format.h>
+#include <stb_image.h>
+
+#include <memory>
+#include <stdexcept>
+
+namespace insonify::scene {
+namespace {
+
+constexpr int kMaxPictureSide = 32768;  ///< Larger pictures are refused before they are decoded [pixels].
+constexpr int kMaxCorners = 2049;       ///< Along each side.
+
+/** Pixels of one side that become corners: evenly apart, with both ends. */
+std::vector<int> cornersOf(int pixels) {
+    const int count = std::min(pixels, kMaxCorners);
+    std::vector<int> corners;
+    for (int i = 0; i < count; ++i) corners.push_back(static_cast<int>(int64_t{i} * (pixels - 1) / (count - 1)));
+    return corners;
+}
+
+}  // namespace
+
+Surface readHeightmap(const std::filesystem::path& file, glm::dvec3 size) {
+    int width = 0, height = 0, channels = 0;
+    if (!stbi_info(file.c_str(), &width, &height, &channels)) throw std::runtime_error("is neither PNG nor JPEG");
+    if (width < 2 || height < 2 || width > kMaxPictureSide || height > kMaxPictureSide)
+        throw std::runtime_error(
+            fmt::format("has {} x {} pixels; may have 2 to {} a side", width, height, kMaxPictureSide));
+    const std::unique_ptr<stbi_us, decltype(&stbi_image_free)> pixels(
+        stbi_load_16(file.c_str(), &width, &height, &channels, 1), stbi_image_free);
+    if (!pixels) throw std::runtime_error(fmt::format("is damaged ({})", stbi_failure_reason()));
+
+    const std::vector<int> columns = cornersOf(width), rows = cornersOf(height);
+    Surface surface;
+    for (const int row : rows)
+        for (const int column : columns) {
+            const double value = pixels.get()[size_t(row) * size_t(width) + size_t(column)] / 65535.0;
+            surface.positions.emplace_back(
+                size * glm::dvec3(double(column) / (width - 1) - 0.5, 0.5 - double(row) / (height - 1), value));
+        }
+    const auto stride = static_cast<uint32_t>(columns.size());
+    for (uint32_t i = 0; i + 1 < rows.size(); ++i)
+        for (uint32_t j = 0; j + 1 < stride; ++j) {
+            const uint32_t a = i * stride + j, b = a + 1, c = b + stride, d = a + stride;
+            surface.indices.insert(surface.indices.end(), {a, d, c, a, c, b});
+        }
+    return surface;
+}
+
+}  // namespace insonify::scene

@@ -1,0 +1,70 @@
+#include "components/scene/SdfShapes.hpp"
+
+#include <cmath>
+#include <numbers>
+
+namespace insonify::scene {
+namespace {
+
+constexpr uint32_t kFacets = 64;
+
+/** Turns a line of (radius, z), from the bottom up, about z. */
+Surface revolve(const std::vector<glm::dvec2>& profile) {
+    Surface surface;
+    for (const glm::dvec2 point : profile)
+        for (uint32_t k = 0; k < kFacets; ++k) {
+            const double angle = 2 * std::numbers::pi * k / kFacets;
+            surface.positions.emplace_back(point.x * std::cos(angle), point.x * std::sin(angle), point.y);
+        }
+    for (uint32_t ring = 0; ring + 1 < profile.size(); ++ring)
+        for (uint32_t k = 0; k < kFacets; ++k) {
+            const uint32_t a = ring * kFacets + k, b = ring * kFacets + (k + 1) % kFacets;
+            const uint32_t c = b + kFacets, d = a + kFacets;
+            if (profile[ring].x > 0) surface.indices.insert(surface.indices.end(), {a, b, c});
+            if (profile[ring + 1].x > 0) surface.indices.insert(surface.indices.end(), {a, c, d});
+        }
+    return surface;
+}
+
+/** Half of a ball's outline about (0, z): the lower half from its pole, or the upper one to it. */
+void addQuarter(std::vector<glm::dvec2>& profile, double radius, double z, bool is_upper) {
+    constexpr uint32_t steps = kFacets / 4;
+    for (uint32_t i = 0; i <= steps; ++i) {
+        const double elevation = std::numbers::pi / 2 * (is_upper ? i : steps - i) / steps;
+        const bool is_pole = i == (is_upper ? steps : 0);
+        profile.emplace_back(is_pole ? 0 : radius * std::cos(elevation),
+                             z + (is_upper ? 1 : -1) * radius * std::sin(elevation));
+    }
+}
+
+}  // namespace
+
+Surface unitBox() {
+    Surface surface;
+    for (int i = 0; i < 8; ++i)
+        surface.positions.emplace_back(i & 1 ? 0.5f : -0.5f, i & 2 ? 0.5f : -0.5f, i & 4 ? 0.5f : -0.5f);
+    surface.indices = {0, 2, 1, 1, 2, 3, 4, 5, 6, 5, 7, 6, 0, 1, 4, 1, 5, 4,
+                       2, 6, 3, 3, 6, 7, 0, 4, 2, 2, 4, 6, 1, 3, 5, 3, 7, 5};
+    return surface;
+}
+
+Surface unitPlane() {
+    Surface surface;
+    surface.positions = {{-0.5f, -0.5f, 0}, {0.5f, -0.5f, 0}, {0.5f, 0.5f, 0}, {-0.5f, 0.5f, 0}};
+    surface.indices = {0, 1, 2, 0, 2, 3};
+    return surface;
+}
+
+Surface unitSphere() { return capsule(1, 0); }
+
+Surface unitCylinder() { return revolve({{0, -0.5}, {1, -0.5}, {1, 0.5}, {0, 0.5}}); }
+
+Surface capsule(double radius, double length) {
+    std::vector<glm::dvec2> profile;
+    addQuarter(profile, radius, -length / 2, false);
+    if (length == 0) profile.pop_back();
+    addQuarter(profile, radius, length / 2, true);
+    return revolve(profile);
+}
+
+}  // namespace insonify::scene

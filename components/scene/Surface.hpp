@@ -1,0 +1,41 @@
+#pragma once
+#include <glm/vec2.hpp>
+#include <glm/vec3.hpp>
+#include <glm/vec4.hpp>
+#include <string>
+#include <vector>
+
+#include "types/Geometry.hpp"
+
+namespace insonify::scene {
+
+/** Triangles of one material, as they come from a file: three vertices each, in parallel arrays. */
+struct Surface {
+    std::vector<glm::vec3> positions;
+    std::vector<glm::vec3> normals;   ///< Empty, or unit vectors, as many as positions.
+    std::vector<glm::vec4> tangents;  ///< Empty, or unit vectors and handedness, as many as positions.
+    std::vector<glm::vec2> uvs;       ///< Empty, or as many as positions.
+    std::vector<uint32_t> indices;
+};
+
+/** How many triangles were left out of surfaces, and why. */
+struct DroppedTriangles {
+    size_t bad = 0;    ///< With a vertex that is not a finite number.
+    size_t empty = 0;  ///< Of no area.
+
+    void addTo(std::vector<std::string>& notices) const;
+};
+
+/** Drops triangles that cannot be drawn and counts them; a damaged vertex, which none uses any more, goes to 0. */
+void cleanUp(Surface& surface, DroppedTriangles& dropped);
+
+/** Adds a surface to a mesh as one more cluster, still without bounds. */
+void appendSurface(const Surface& surface, int material, types::Mesh& mesh);
+
+/** Fills the arrays that only some surfaces of a mesh have up to the number of its positions. */
+void fillAttributes(types::Mesh& mesh);
+
+/** "<what>: <number>" where there are any. */
+void addCount(size_t number, const char* what, std::vector<std::string>& notices);
+
+}  // namespace insonify::scene

@@ -1,0 +1,108 @@
+// SDF that is wrong: a ConfigError that says where, or a scene with notices; never a crash.
+#include <random>
+
+#include "tests/scene/SdfFiles.hpp"
+
+namespace insonify::scene {
+namespace {
+
+class SdfBadInputTest : public SdfFiles {
+protected:
+    void expectFault(const std::string& fault, const std::string& part) const {
+        EXPECT_NE(fault.find(part), std::string::npos) << fault;
+        EXPECT_NE(fault.find(folder_.string()), std::string::npos) << fault;
+        EXPECT_EQ(std::ranges::count(fault, '\n'), 0) << fault;
+    }
+};
+
+TEST_F(SdfBadInputTest, WhatIsNoSdfIsNamed) {
+    std::filesystem::create_directory(folder_ / "folder.world");
+    expectFault(faultOf(folder_ / "missing.world"), "is not a file; give the path of a .world or .sdf file");
+    expectFault(faultOf(folder_ / "folder.world"), "is not a file");
+    expectFault(faultOf(write("empty.sdf", "")), "XML_ERROR_EMPTY_DOCUMENT");
+    expectFault(faultOf(write("cut.sdf", "<sdf version='1.9'>\n<world name='w'>\n<model")),
+                "cut.sdf:3: Error parsing XML");
+    expectFault(faultOf(write("page.world", "<html><body>404</body></html>")), "holds neither a world nor a model");
+    expectFault(faultOf(write("none.world", "<sdf version='1.9'/>")), "holds neither a world nor a model");
+    expectFault(faultOf(write("noise.world", bytesOf<uint64_t>({~0ull, 0x1234567890abcdef}))), "Error parsing XML");
+}
+
+TEST_F(SdfBadInputTest, AValueThatCannotBeReadIsToldWithItsLineAndReason) {
+    expectFault(faultOfWorld("<model name='m'>\n" + pose("1 2 x 0 0 0") + "<link name='l'/></model>"),
+                "case.world:3: /sdf/world[@name=\"w\"]/model[@name=\"m\"]/pose: Error reading element <pose>: Invalid");
+    expectFault(faultOfWorld("<model name='m'>" + pose("nan 0 0 0 0 0") + "<link name='l'/></model>"),
+                "must be finite");
+    expectFault(faultOfWorld("<model><link name='l'/></model>"), "Required attribute[name]");
+    expectFault(faultOfWorld("\n" + model("m", "<sphere><radius>-3</radius></sphere>")),
+                "case.world:3: m::hull::skin.radius: is -3; must not be negative");
+}
+
+TEST_F(SdfBadInputTest, EveryPoseThatCannotBeResolvedIsTold) {
+    const std::string fault = faultOfWorld(
+        "<model name='a'><pose relative_to='b'>1 0 0 0 0 0</pose><link name='l'/></model>"
+        "<model name='b'><pose relative_to='a'>1 0 0 0 0 0</pose><link name='l'/></model>");
+    EXPECT_NE(fault.find("a.pose: relative to \"b\" cannot be resolved: PoseRelativeToGraph cycle"), std::string::npos);
+    EXPECT_NE(fault.find("b.pose: relative to \"a\" cannot be resolved"), std::string::npos) << fault;
+}
+
+TEST_F(SdfBadInputTest, ABadJointCostsNoMoreThanTheJoint) {
+    const Scene scene = world("<model name='m'><link name='l'>" + visual("v", box_) +
+                              "</link><joint name='j' type='revolute'><parent>nowhere</parent><child>l</child><axis>"
+                              "<xyz>0 0 0</xyz></axis></joint></model>");
+    EXPECT_EQ(scene.geometry->objects.size(), 1u);
+    EXPECT_TRUE(hasNotice(*scene.geometry, "parent frame with name[nowhere]"));
+}
+
+TEST_F(SdfBadInputTest, AModelThatIncludesItselfIsRefused) {
+    writeModel("a", "<model name='a'><link name='l'/><include><uri>model://b</uri></include></model>");
+    writeModel("b", "<model name='b'><link name='l'/><include><uri>model://a</uri></include></model>");
+    expectFault(faultOfWorld("<include><uri>model://a</uri></include>"), "a model may not include itself");
+    writeModel("b", "<model name='b'><link name='l'/><!-- <include><uri>model://a</uri></include> --></model>");
+    EXPECT_EQ(faultOfWorld("<include><uri>model://a</uri></include>"), "");
+}
+
+TEST_F(SdfBadInputTest, DeepNestingEndsInASceneOrAnError) {
+    for (const int depth : {30, 450, 100'000}) {
+        std::string body = "<link name='l'/>";
+        std::string open, close;
+        for (int i = 0; i < depth; ++i) {
+            open += "<model name='m'><link name='l'/>";
+            close += "</model>";
+        }
+        const std::string fault = faultOfWorld(open + close);
+        EXPECT_EQ(fault.empty(), depth < 100) << depth << ": " << fault;
+    }
+}
+
+TEST_F(SdfBadInputTest, EveryTruncationAndDamageIsASceneOrAnError) {
+    writeModel("inner", model("inner", box_));
+    const std::string whole =
+        "<sdf version='1.7'><world name='w'><frame name='f'>" + pose("1 2 3 0 0 1") +
+        "</frame><include><uri>model://inner</uri>" + pose("1 0 0 0 0 0") +
+        "</include><model name='m'><pose relative_to='f'>1 0 0 0 0 0</pose><link name='l'>" +
+        visual("v", "<cylinder><radius>1</radius><length>2</length></cylinder>",
+               "<insonify:acoustics><sediment>clay</sediment></insonify:acoustics>") +
+        "</link><link name='k'/><joint name='j' type='revolute'><parent>l</parent><child>k</child>"
+        "<axis><xyz>0 0 1</xyz></axis></joint></model></world></sdf>";
+    ASSERT_EQ(faultOf(write("whole.world", whole)), "");
+    std::minstd_rand random(3);
+    size_t scenes = 0, faults = 0;
+    for (int i = 0; i < 100; ++i) {
+        std::string bytes = whole;
+        bytes[random() % bytes.size()] = static_cast<char>(random() % 96 + 32);
+        if (i % 10 == 0) bytes.resize(random() % bytes.size());
+        const auto file = write("damaged.world", bytes);
+        try {
+            expectSound(*loadScene(file));
+            ++scenes;
+        } catch (const types::ConfigError& error) {
+            EXPECT_FALSE(error.diagnostics().empty()) << bytes;
+            ++faults;
+        }
+    }
+    EXPECT_GE(scenes, 5u);
+    EXPECT_GE(faults, 5u);
+}
+
+}  // namespace
+}  // namespace insonify::scene
