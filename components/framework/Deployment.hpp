@@ -90,6 +90,7 @@ public:
 private:
     friend class Wiring;
     void setClock();
+    types::TaskRecord recordOf(TaskContext& task) const;
     /** Simulated time starts with what a source wants to play, if there is one. */
     void startAtFirstStamp();
     void runLockstep(const RunLimits& limits, const std::atomic<bool>& stop,

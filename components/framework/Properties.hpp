@@ -4,6 +4,7 @@
 
 #include "components/framework/ConfigReader.hpp"
 #include "components/framework/PropertyList.hpp"
+#include "components/framework/PropertyValues.hpp"
 #include "components/framework/TaskContext.hpp"
 
 namespace insonify::framework {
@@ -21,6 +22,8 @@ public:
     virtual void load(ConfigReader& reader, const YAML::Node& block, const std::string& path) = 0;
     /** Every property with its default; nested names are dotted. */
     virtual std::vector<PropertyInfo> list() const = 0;
+    /** The properties that are present, as a log holds them. */
+    virtual std::map<std::string, types::PropertyValue> values() const = 0;
 };
 
 /** Properties as one described struct; each top-level field is a property. They change only between runs. */
@@ -37,6 +40,7 @@ public:
         reader.read(block, path, value_);
     }
     std::vector<PropertyInfo> list() const override { return listProperties(Config{}); }
+    std::map<std::string, types::PropertyValue> values() const override { return propertyValues(value_); }
 
 private:
     Config value_;
