@@ -22,10 +22,13 @@ struct Copied {
     std::vector<std::string> lost;  ///< What could not be copied, a sentence each.
 };
 
-/** Writes the selected samples into a new log, with all that its streams declare, and its index. Samples are copied
- *  byte for byte, compressed ones decompressed (Rock's C++ reader fails on them); those of known types are decoded to
- *  see that they are whole. Gaps of the log and samples that are damaged are told. Throws ConfigError for streams that
- *  are not there and when `to` is the log itself or cannot be created, std::runtime_error on a full disk. */
-Copied copy(Reader& log, const Selection& selection, const std::filesystem::path& to);
+/** Writes the selected samples of a log, or of the files of one in order (x.0.log, x.1.log...), into a new log, with
+ * all that its streams declare, and its index. Samples are copied byte for byte, compressed ones decompressed (Rock's
+ * C++ reader fails on them); those of known types are decoded to see that they are whole. What is damaged is told, and
+ * what stands behind it looked for or not. Throws ConfigError for a file that is no log or without a stream, for
+ * streams that are nowhere and when `to` is one of the files or cannot be created, std::runtime_error on a full disk.
+ */
+Copied copy(const std::vector<std::filesystem::path>& logs, AtDamage at_damage, const Selection& selection,
+            const std::filesystem::path& to);
 
 }  // namespace insonify::pocolog

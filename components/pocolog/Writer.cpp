@@ -1,6 +1,8 @@
 #include "components/pocolog/Writer.hpp"
 
 #include <fcntl.h>
+#include <sys/file.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -31,8 +33,16 @@ void split(types::Time time, uint32_t& s, uint32_t& us) {
 Writer::Writer(std::filesystem::path path) : path_(std::move(path)) { open(); }
 
 void Writer::open() {
-    file_ = ::open(path_.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644);
+    file_ = ::open(path_.c_str(), O_WRONLY | O_CREAT | O_CLOEXEC, 0644);
     if (file_ < 0) throw types::ConfigError(path_, "", "the log cannot be written: " + reason(errno));
+    const bool taken = flock(file_, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK;
+    struct stat status {};
+    const bool is_file = fstat(file_, &status) == 0 && S_ISREG(status.st_mode);
+    if (taken || (is_file && ftruncate(file_, 0) != 0)) {
+        const std::string why = taken ? "another logger writes it" : reason(errno);
+        ::close(std::exchange(file_, -1));
+        throw types::ConfigError(path_, "", "the log cannot be written: " + why);
+    }
     std::error_code none_there;
     std::filesystem::remove(indexPath(path_), none_there);
     Prologue prologue;

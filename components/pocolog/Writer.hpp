@@ -23,19 +23,19 @@ namespace insonify::pocolog {
  *  not allocated again. */
 class Writer {
 public:
-    /** Creates the file, or empties it. Throws ConfigError when that cannot be done. */
+    /** Creates the file, or empties it. Throws ConfigError when that cannot be done or another Writer, of this process
+     * or not, has it open. */
     explicit Writer(std::filesystem::path path);
     ~Writer();  ///< Closes; trouble at that point is not reported.
     Writer(const Writer&) = delete;
     Writer& operator=(const Writer&) = delete;
 
-    /** Declares a stream "task.port" of T and returns its number. `extra` joins what Rock's tools look for. Throws
-     *  std::length_error for the 65537th stream. */
+    /** Declares a stream "task.port" of T and returns its number. `metadata` joins what Rock's tools look for, and
+     *  stands where both have a key. Throws std::length_error for the 65537th stream. */
     template <class T>
-    size_t addStream(const std::string& name, Metadata extra = {}) {
-        Metadata metadata = standardMetadata(name, cxxName<T>());
-        if constexpr (Stamped<T>) metadata["rock_timestamp_field"] = "time";
-        metadata.merge(extra);
+    size_t addStream(const std::string& name, Metadata metadata = {}) {
+        if constexpr (Stamped<T>) metadata.emplace("rock_timestamp_field", "time");
+        metadata.merge(standardMetadata(name, cxxName<T>()));
         return declare(name, typelibName<T>(), registryOf<T>(), metadata);
     }
 

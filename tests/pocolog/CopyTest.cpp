@@ -16,8 +16,7 @@ class CopyTest : public testing::Test {
 protected:
     /** Copies x.0.log into y.0.log, which must be a valid log. */
     Copied copied(const Selection& selection = {}, AtDamage at_damage = AtDamage::Stop) const {
-        Reader log(folder / "x.0.log", at_damage);
-        const Copied result = copy(log, selection, folder / "y.0.log");
+        const Copied result = copy({folder / "x.0.log"}, at_damage, selection, folder / "y.0.log");
         const Verdict verdict = check(folder / "y.0.log");
         EXPECT_FALSE(verdict.wrong) << verdict.wrong->what;
         EXPECT_EQ(verdict.samples, result.samples);
@@ -118,11 +117,25 @@ TEST_F(CopyTest, CompressedSamplesAreDecompressed) {
     EXPECT_FALSE(Reader(folder / "y.0.log").samples().at(0).compressed);
 }
 
+TEST_F(CopyTest, TheFilesOfALogBecomeOne) {
+    writeBytes(folder / "x.0.log", whole);
+    Writer next(folder / "x.1.log");
+    next.write(next.addStream<double>("new.stream"), {4}, 1.5);
+    next.write(next.addStream<types::Sonar>("sonar.ping"), {5}, smallPing(5));
+    next.close();
+    EXPECT_EQ(copy({folder / "x.0.log", folder / "x.1.log"}, AtDamage::Stop, {}, folder / "y.0.log").samples, 7u);
+    EXPECT_FALSE(check(folder / "y.0.log").wrong);
+    EXPECT_THAT(timesOf("sonar.ping"), ElementsAre(1, 2, 3, 5));
+    EXPECT_THAT(timesOf("new.stream"), ElementsAre(4));
+}
+
 TEST_F(CopyTest, ALogIsNotCopiedOntoItself) {
-    Reader log(folder / "whole.0.log");
-    EXPECT_THROW(copy(log, {}, folder / "whole.0.log"), types::ConfigError);
+    EXPECT_THROW(copy({folder / "whole.0.log"}, AtDamage::Stop, {}, folder / "whole.0.log"), types::ConfigError);
     EXPECT_EQ(bytesOf(folder / "whole.0.log"), whole);
-    EXPECT_THROW(copy(log, {.streams = {"no.such"}}, folder / "y.0.log"), types::ConfigError);
+    EXPECT_THROW(copy({folder / "whole.0.log"}, AtDamage::Stop, {.streams = {"no.such"}}, folder / "y.0.log"),
+                 types::ConfigError);
+    writeBytes(folder / "noise.0.log", std::vector<char>(100, 'x'));
+    EXPECT_THROW(copy({folder / "noise.0.log"}, AtDamage::Skip, {}, folder / "y.0.log"), types::ConfigError);
 }
 
 }  // namespace

@@ -47,7 +47,7 @@ TEST(DamageTest, ALogCutAnywhereIsReadUpToThere) {
     Folder folder;
     const std::vector<char> whole = smallLog(folder);
     size_t before = 0;
-    for (size_t size = magic.size(); size <= whole.size(); ++size) {
+    for (size_t size = magic.size(); size <= whole.size(); size += size < whole.size() - 5 ? 5 : 1) {
         writeBytes(folder / "cut.0.log", {whole.begin(), whole.begin() + static_cast<ptrdiff_t>(size)});
         const size_t now = Reader(folder / "cut.0.log").samples().size();
         EXPECT_GE(now, before);

@@ -1,10 +1,9 @@
 #include <gmock/gmock.h>
 
-#include <cstdlib>
-
 #include "components/pocolog/Export.hpp"
 #include "components/pocolog/Writer.hpp"
 #include "tests/support/Folder.hpp"
+#include "tests/support/Python.hpp"
 
 namespace insonify::pocolog {
 namespace {
@@ -34,16 +33,10 @@ std::string textOf(const std::filesystem::path& path) {
     return {bytes.begin(), bytes.end()};
 }
 
-/** Debian's python has Debian's numpy; another one in the path may have none. */
-std::string python() { return std::filesystem::exists("/usr/bin/python3") ? "/usr/bin/python3" : "python3"; }
-
 /** What python prints, with numpy as `np` and the file as `x`. */
 std::string numpySays(const std::filesystem::path& file, const std::string& expression) {
-    const std::filesystem::path answer = file.parent_path() / "answer.txt";
-    const std::string command = python() + " -c \"import numpy as np; x = np.load('" + file.string() + "'); print(" +
-                                expression + ")\" > " + answer.string() + " 2>&1";
-    const int status = std::system(command.c_str());
-    return status == 0 ? textOf(answer) : "python failed: " + textOf(answer);
+    return pythonSays("-c \"import numpy as np; x = np.load('" + file.string() + "'); print(" + expression + ")\"",
+                      file.parent_path() / "answer.txt");
 }
 
 bool numpyIsThere() { return std::system((python() + " -c 'import numpy' 2> /dev/null").c_str()) == 0; }

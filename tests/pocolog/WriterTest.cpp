@@ -98,6 +98,22 @@ TEST(WriterTest, AFolderThatIsNotThereIsAConfigurationError) {
     EXPECT_THROW(Writer("/"), types::ConfigError);
 }
 
+TEST(WriterTest, ALogThatIsBeingWrittenIsNotOverwritten) {
+    Folder folder;
+    Writer log(folder / "x.0.log");
+    log.write(log.addStream<double>("a.b"), {1}, 1.0);
+    log.flush();
+    try {
+        Writer(folder / "x.0.log");
+        FAIL() << "two writers have one file";
+    } catch (const types::ConfigError& error) {
+        EXPECT_THAT(error.what(), testing::HasSubstr("another logger writes it"));
+    }
+    EXPECT_EQ(Reader(folder / "x.0.log").samples().size(), 1u);
+    log.close();
+    EXPECT_NO_THROW(Writer(folder / "x.0.log"));
+}
+
 TEST(WriterTest, AFullDeviceIsToldWithTheSystemsReason) {
     Folder folder;
     std::filesystem::create_symlink("/dev/full", folder / "x.0.log");
