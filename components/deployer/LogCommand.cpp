@@ -76,7 +76,7 @@ int logExport(const std::string& file, const std::string& stream, const std::str
 
 struct Options {
     std::string file, stream, to, samples;
-    std::vector<std::string> streams;
+    std::vector<std::string> files, streams;
     std::optional<double> from, until;
     bool json = false;
 };
@@ -114,17 +114,14 @@ void printCopied(const pocolog::Copied& copied, const std::string& to) {
 int logCut(const Options& options) {
     const pocolog::Selection selection = selectionOf(options);
     refuseMissingFolder(options.to);
-    pocolog::Reader log(options.file);
-    printCopied(pocolog::copy(log, selection, options.to), options.to);
+    const std::vector<fs::path> files(options.files.begin(), options.files.end());
+    printCopied(pocolog::copy(files, pocolog::AtDamage::Stop, selection, options.to), options.to);
     return 0;
 }
 
 int logRepair(const Options& options) {
     refuseMissingFolder(options.to);
-    pocolog::Reader log(options.file, pocolog::AtDamage::Skip);
-    if (log.streams().empty())
-        throw types::ConfigError(options.file, "", "holds no stream: there is nothing to repair");
-    printCopied(pocolog::copy(log, {}, options.to), options.to);
+    printCopied(pocolog::copy({options.file}, pocolog::AtDamage::Skip, {}, options.to), options.to);
     return 0;
 }
 
@@ -146,12 +143,11 @@ int logCheck(const Options& options) {
     return 0;
 }
 
-/** A subcommand of `log` that reads FILE and does `work`. */
+/** A subcommand of `log` that does `work`. */
 template <class Work>
 CLI::App* add(CLI::App& log, Action& action, const std::shared_ptr<Options>& options, const char* name,
               const char* help, Work work) {
     CLI::App* command = log.add_subcommand(name, help);
-    command->add_option("FILE", options->file, "a pocolog file")->required();
     command->callback([options, &action, work] { action = [options, work] { return work(*options); }; });
     return command;
 }
@@ -171,12 +167,14 @@ void addLogCommand(CLI::App& app, Action& action) {
     out->add_option("--stream", options->stream, "task.port, as `log info` lists them")->required();
     out->add_option("--to", options->to, "FILE.npz, FILE.csv, FILE.png, or a folder for FILE.npz")->required();
 
-    CLI::App* cut = add(*log, action, options, "cut", "Copies a part of a log into a new one", logCut);
+    CLI::App* cut = add(*log, action, options, "cut", "Copies a part of a log, or its files into one", logCut);
+    cut->add_option("FILE", options->files, "a pocolog file, or those of a log in order")->required();
     cut->add_option("--to", options->to, "the new log, NAME.0.log")->required();
     cut->add_option("--from", options->from, "earliest time, as `log info` lists them [s]");
     cut->add_option("--until", options->until, "time at which the copy ends, not included [s]");
     cut->add_option("--samples", options->samples, "FIRST:LAST, numbers from 0 in the kept streams, LAST not included");
-    cut->add_option("--stream", options->streams, "task.port to keep, may be repeated; none: all");
+    cut->add_option("--stream", options->streams, "task.port to keep; may be given again; none: all")
+        ->allow_extra_args(false);
 
     CLI::App* repair = add(*log, action, options, "repair",
                            "Copies what is whole of a damaged log into a new one, and tells what was lost", logRepair);
@@ -185,6 +183,9 @@ void addLogCommand(CLI::App& app, Action& action) {
     CLI::App* check =
         add(*log, action, options, "check", "Reads a log strictly and names the first wrong byte", logCheck);
     check->add_flag("--json", options->json, "for machines");
+
+    for (CLI::App* command : {info, out, repair, check})
+        command->add_option("FILE", options->file, "a pocolog file")->required();
 }
 
 }  // namespace insonify::deployer
