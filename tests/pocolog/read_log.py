@@ -34,7 +34,8 @@ class Registry:
                 yield from self.leaves(base, offset + i * self.size(base), path + (i,))
         elif self.nodes[name].tag == "compound":
             for field in sorted(self.nodes[name], key=lambda f: int(f.get("offset"))):
-                yield from self.leaves(field.get("type"), offset + int(field.get("offset")), path + (field.get("name"),))
+                place = offset + int(field.get("offset"))
+                yield from self.leaves(field.get("type"), place, path + (field.get("name"),))
         else:
             yield offset, self.size(name), path, name
 
