@@ -8,7 +8,7 @@
 
 namespace insonify::types {
 
-/** Values are Rock's, with gaps: an enum on the log is an int32 of these values. */
+/** Values are Rock's, those that are made or shown here; others may come from a log, where an enum is an int32. */
 enum class ImageMode : int32_t { Undefined = 0, Grayscale = 1, Rgb = 2, Bgr = 4 };
 enum class ImageStatus : int32_t { Empty = 0, Valid = 1, Invalid = 2 };
 
@@ -49,6 +49,11 @@ struct Image {
     ImageMode frame_mode = ImageMode::Undefined;
     ImageStatus frame_status = ImageStatus::Empty;
 
+    /** Whether `image` holds `size` pixels of pixel_size bytes, in rows of row_size: false for JPEG and PNG. */
+    bool holdsPixels() const {
+        return row_size >= uint64_t{size.width} * pixel_size && image.size() >= uint64_t{size.height} * row_size;
+    }
+
     template <class Self, class V>
     static void describe(Self& self, V& visit) {
         visit(Field{"time", "us", "when the picture was true in the world"}, self.time);
@@ -59,7 +64,7 @@ struct Image {
         visit(Field{"data_depth", "bit", "effective bits per channel"}, self.data_depth);
         visit(Field{"pixel_size", "B", "size of a pixel"}, self.pixel_size);
         visit(Field{"row_size", "B", "size of a row"}, self.row_size);
-        visit(Field{"frame_mode", "1", "1 grey, 2 RGB, 4 BGR"}, self.frame_mode);
+        visit(Field{"frame_mode", "1", "1 grey, 2 RGB, 4 BGR, others as in Rock"}, self.frame_mode);
         visit(Field{"frame_status", "1", "0 empty, 1 valid, 2 invalid"}, self.frame_status);
     }
 };
@@ -72,7 +77,10 @@ struct EnumSymbol {
 };
 inline constexpr const char* image_mode_type = "/base/samples/frame/frame_mode_t";
 inline constexpr EnumSymbol image_mode_symbols[] = {
-    {"MODE_UNDEFINED", 0}, {"MODE_GRAYSCALE", 1}, {"MODE_RGB", 2}, {"MODE_BGR", 4}};
+    {"MODE_UNDEFINED", 0},     {"MODE_GRAYSCALE", 1},    {"MODE_RGB", 2},          {"MODE_UYVY", 3},
+    {"MODE_BGR", 4},           {"MODE_RGB32", 5},        {"RAW_MODES", 128},       {"MODE_BAYER", 128},
+    {"MODE_BAYER_RGGB", 129},  {"MODE_BAYER_GRBG", 130}, {"MODE_BAYER_BGGR", 131}, {"MODE_BAYER_GBRG", 132},
+    {"COMPRESSED_MODES", 256}, {"MODE_PJPG", 257},       {"MODE_JPEG", 258},       {"MODE_PNG", 259}};
 inline constexpr const char* image_status_type = "/base/samples/frame/frame_status_t";
 inline constexpr EnumSymbol image_status_symbols[] = {{"STATUS_EMPTY", 0}, {"STATUS_VALID", 1}, {"STATUS_INVALID", 2}};
 

@@ -2,12 +2,20 @@
 #include <string>
 #include <vector>
 
+#include "types/Describe.hpp"
+
 namespace insonify::types {
 
 /** Something that is not simulated, and the reason or bound that allows it. */
 struct Omission {
     std::string name;
     std::string reason;
+
+    template <class Self, class V>
+    static void describe(Self& self, V& visit) {
+        visit(Field{"name", "", "what is not simulated"}, self.name);
+        visit(Field{"reason", "", "reason or bound that allows it"}, self.reason);
+    }
 };
 
 /** What a sonar compiles and runs for its scene, decided once; the answer of `insonify plan`. */
@@ -20,6 +28,18 @@ struct Plan {
     int columns_per_beam = 0;          ///< [1]
     int slabs = 0;                     ///< Perspective images that make up the fan [1].
     double predicted_error = 0;        ///< rel_l2_tvg; NaN: not predicted [1].
+
+    template <class Self, class V>
+    static void describe(Self& self, V& visit) {
+        visit(Field{"features", "", "compiled into the shaders"}, self.features);
+        visit(Field{"passes", "", "run for each ping, in order"}, self.passes);
+        visit(Field{"omitted", "", "what is left out, and why"}, self.omitted);
+        visit(Field{"notices", "", "warnings and choices"}, self.notices);
+        visit(Field{"rows", "1", "image rows over the elevation aperture"}, self.rows);
+        visit(Field{"columns_per_beam", "1", "image columns"}, self.columns_per_beam);
+        visit(Field{"slabs", "1", "perspective images that make up the fan"}, self.slabs);
+        visit(Field{"predicted_error", "1", "rel_l2_tvg; NaN: not predicted"}, self.predicted_error);
+    }
 };
 
 }  // namespace insonify::types

@@ -19,18 +19,19 @@ namespace insonify::types {
 struct Pose {
     static constexpr const char* type_name = "/base/samples/RigidBodyState";
     static constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
+    static glm::dmat3 unknownMatrix() { return {glm::dvec3(unknown), glm::dvec3(unknown), glm::dvec3(unknown)}; }
 
     Time time;
     std::string source_frame;
     std::string target_frame;
     glm::dvec3 position{0};
-    glm::dmat3 cov_position{unknown};
+    glm::dmat3 cov_position = unknownMatrix();
     glm::dquat orientation{1, 0, 0, 0};
-    glm::dmat3 cov_orientation{unknown};
+    glm::dmat3 cov_orientation = unknownMatrix();
     glm::dvec3 velocity{unknown};
-    glm::dmat3 cov_velocity{unknown};
+    glm::dmat3 cov_velocity = unknownMatrix();
     glm::dvec3 angular_velocity{unknown};
-    glm::dmat3 cov_angular_velocity{unknown};
+    glm::dmat3 cov_angular_velocity = unknownMatrix();
 
     /** Homogeneous transform from body to world coordinates; `orientation` must be of unit length. */
     glm::dmat4 worldFromBody() const {

@@ -11,7 +11,9 @@ namespace insonify::types {
 /** One ping, field for field Rock's base::samples::Sonar.
  *
  *  Beam-first: the echo of beam b in bin k is bins[b * bin_count + k]. Bin k covers slant ranges
- *  [k, k + 1) * bin_duration * speed_of_sound: bin_duration is one-way time. */
+ *  [k, k + 1) * bin_duration * speed_of_sound: bin_duration is one-way time.
+ *
+ *  The functions are those of Rock's type, with its defects mended: see each. */
 struct Sonar {
     static constexpr const char* type_name = "/base/samples/Sonar";
 
@@ -26,6 +28,20 @@ struct Sonar {
     uint32_t beam_count = 0;
     std::vector<float> bins;
 
+    /** Whether the lists are as long as the counts say: bins beams * bins, bearings beams, timestamps beams or none. */
+    bool wellShaped() const;
+    /** Throws std::logic_error that tells every fault: lists of another length than the counts say; bins without a
+     *  duration or a speed of sound above 0; bearings outside (-pi, pi] (NaN is unknown, and may be). Rock's validate
+     *  tells the first length only, multiplies the counts in 32 bits, and looks at no value. */
+    void validate() const;
+    /** Bins first, as in Rock. What is new is NaN (a time stamp: null), what was there stays with its beam and bin;
+     *  Rock's resize leaves the values where they lay in memory, in other beams. */
+    void resize(uint32_t bins_per_beam, uint32_t beams, bool per_beam_timestamps = false);
+    /** Beam k looks at start + k * interval, normalised. Rock adds up the interval and the rounding with it. */
+    void setRegularBearings(Angle start, Angle interval);
+    /** When the acquisition of a beam began: its own stamp, or `time`. Throws std::out_of_range where Rock reads what
+     *  is not there. */
+    Time beamStart(size_t beam) const;
     /** Slant range at which bin k starts [m]; k = bin_count gives the far edge. */
     double binStart(double k) const { return k * bin_duration.seconds() * static_cast<double>(speed_of_sound); }
 

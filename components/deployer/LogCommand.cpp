@@ -1,12 +1,16 @@
-// insonify log info FILE, insonify log export FILE --stream S --to DIR|FILE.{npz,csv,png}
+// insonify log info|export|cut|repair|check FILE
 #include <fmt/core.h>
 
+#include <charconv>
 #include <filesystem>
 #include <memory>
+#include <optional>
 
 #include "components/deployer/Commands.hpp"
-#include "components/deployer/FanExport.hpp"
 #include "components/deployer/Json.hpp"
+#include "components/deployer/PictureExport.hpp"
+#include "components/pocolog/Check.hpp"
+#include "components/pocolog/Copy.hpp"
 #include "components/pocolog/Export.hpp"
 #include "components/pocolog/Info.hpp"
 
@@ -57,7 +61,7 @@ std::vector<fs::path> exportTo(pocolog::Reader& log, const std::string& stream, 
     }
     refuseMissingFolder(to);
     if (to.extension() == ".npz") return pocolog::exportNpz(log, stream, to);
-    if (to.extension() == ".png") return exportFans(log, stream, to);
+    if (to.extension() == ".png") return exportPictures(log, stream, to);
     if (to.extension() != ".csv") throw types::ConfigError(to, "--to", "may be a folder, or end in .npz, .csv or .png");
     pocolog::exportCsv(log, stream, to);
     return {to};
@@ -71,27 +75,117 @@ int logExport(const std::string& file, const std::string& stream, const std::str
 }
 
 struct Options {
-    std::string file, stream, to;
+    std::string file, stream, to, samples;
+    std::vector<std::string> files, streams;
+    std::optional<double> from, until;
     bool json = false;
 };
+
+/** "10:20", either number may be missing: the numbers from 10 on, without 20. */
+void readRange(const std::string& text, pocolog::Selection& selection) {
+    const auto fail = [&] {
+        throw types::ConfigError("", "--samples", "is " + text + "; it may be FIRST:LAST, either may be left out");
+    };
+    const size_t colon = text.find(':');
+    if (colon == text.npos) fail();
+    const auto number = [&](std::string_view digits, size_t& value) {
+        const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
+        if (!digits.empty() && (error != std::errc() || end != digits.data() + digits.size())) fail();
+    };
+    number(std::string_view(text).substr(0, colon), selection.first);
+    number(std::string_view(text).substr(colon + 1), selection.last);
+}
+
+pocolog::Selection selectionOf(const Options& options) {
+    pocolog::Selection selection;
+    selection.streams = {options.streams.begin(), options.streams.end()};
+    if (options.from) selection.from = types::Time::fromSeconds(*options.from);
+    if (options.until) selection.until = types::Time::fromSeconds(*options.until);
+    if (!options.samples.empty()) readRange(options.samples, selection);
+    return selection;
+}
+
+void printCopied(const pocolog::Copied& copied, const std::string& to) {
+    for (const std::string& lost : copied.lost) fmt::print(stderr, "lost: {}\n", lost);
+    fmt::print("{}: {} samples, {}\n", to, copied.samples,
+               copied.lost.empty() ? "nothing was lost" : fmt::format("lost in {} places", copied.lost.size()));
+}
+
+int logCut(const Options& options) {
+    const pocolog::Selection selection = selectionOf(options);
+    refuseMissingFolder(options.to);
+    const std::vector<fs::path> files(options.files.begin(), options.files.end());
+    printCopied(pocolog::copy(files, pocolog::AtDamage::Stop, selection, options.to), options.to);
+    return 0;
+}
+
+int logRepair(const Options& options) {
+    refuseMissingFolder(options.to);
+    printCopied(pocolog::copy({options.file}, pocolog::AtDamage::Skip, {}, options.to), options.to);
+    return 0;
+}
+
+Json verdictJson(const pocolog::Verdict& verdict) {
+    Json wrong;
+    if (verdict.wrong)
+        wrong = {
+            {"file", verdict.wrong->file.string()}, {"byte", verdict.wrong->byte}, {"message", verdict.wrong->what}};
+    return {{"valid", !verdict.wrong}, {"streams", verdict.streams}, {"samples", verdict.samples}, {"wrong", wrong}};
+}
+
+int logCheck(const Options& options) {
+    const pocolog::Verdict verdict = pocolog::check(options.file);
+    if (options.json) print(verdictJson(verdict));
+    if (const auto& wrong = verdict.wrong)
+        throw types::ConfigError(wrong->file, fmt::format("byte {}", wrong->byte), wrong->what);
+    if (!options.json)
+        fmt::print("{}: valid, {} streams, {} samples\n", options.file, verdict.streams, verdict.samples);
+    return 0;
+}
+
+/** A subcommand of `log` that does `work`. */
+template <class Work>
+CLI::App* add(CLI::App& log, Action& action, const std::shared_ptr<Options>& options, const char* name,
+              const char* help, Work work) {
+    CLI::App* command = log.add_subcommand(name, help);
+    command->callback([options, &action, work] { action = [options, work] { return work(*options); }; });
+    return command;
+}
 
 }  // namespace
 
 void addLogCommand(CLI::App& app, Action& action) {
     const auto options = std::make_shared<Options>();
-    CLI::App* log = app.add_subcommand("log", "Looks into a log")->require_subcommand(1);
+    CLI::App* log = app.add_subcommand("log", "Looks into a log, cuts and mends it")->require_subcommand(1);
 
-    CLI::App* info = log->add_subcommand("info", "Streams, types, counts, time span and rate");
-    info->add_option("FILE", options->file, "a pocolog file")->required();
+    CLI::App* info = add(*log, action, options, "info", "Streams, types, counts, time span and rate",
+                         [](const Options& asked) { return logInfo(asked.file, asked.json); });
     info->add_flag("--json", options->json, "for machines");
-    info->callback([options, &action] { action = [options] { return logInfo(options->file, options->json); }; });
 
-    CLI::App* out = log->add_subcommand("export", "Writes a stream as numpy arrays, text or fan pictures");
-    out->add_option("FILE", options->file, "a pocolog file")->required();
+    CLI::App* out = add(*log, action, options, "export", "Writes a stream as numpy arrays, text or pictures",
+                        [](const Options& asked) { return logExport(asked.file, asked.stream, asked.to); });
     out->add_option("--stream", options->stream, "task.port, as `log info` lists them")->required();
     out->add_option("--to", options->to, "FILE.npz, FILE.csv, FILE.png, or a folder for FILE.npz")->required();
-    out->callback(
-        [options, &action] { action = [options] { return logExport(options->file, options->stream, options->to); }; });
+
+    CLI::App* cut = add(*log, action, options, "cut", "Copies a part of a log, or its files into one", logCut);
+    cut->add_option("FILE", options->files, "a pocolog file, or those of a log in order")->required();
+    cut->add_option("--to", options->to, "the new log, NAME.0.log")->required();
+    cut->add_option("--from", options->from, "earliest time, as `log info` lists them [s]");
+    cut->add_option("--until", options->until, "time at which the copy ends, not included [s]");
+    cut->add_option("--samples", options->samples, "FIRST:LAST, numbers from 0 in the kept streams, LAST not included");
+    cut->add_option("--stream", options->streams, "task.port to keep; may be given again; none: all")
+        ->allow_extra_args(false);
+
+    CLI::App* repair = add(*log, action, options, "repair",
+                           "Copies what is whole of a damaged log into a new one, and tells what was lost", logRepair);
+    repair->add_option("--to", options->to, "the new log, NAME.0.log")->required();
+
+    CLI::App* check =
+        add(*log, action, options, "check", "Reads a log strictly and names the first wrong byte", logCheck);
+    check->add_flag("--json", options->json, "for machines");
+
+    for (CLI::App* command : {info, out, repair, check})
+        command->add_option("FILE", options->file, "a pocolog file")->required();
 }
 
 }  // namespace insonify::deployer

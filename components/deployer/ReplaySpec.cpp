@@ -16,11 +16,18 @@ using framework::DeploymentSpec;
 using framework::splitPort;
 using framework::TaskSpec;
 
+/** Whether what a port has written is in the stream, not the values of a property. */
+bool isOfPort(const pocolog::Stream& stream) {
+    const auto type = stream.metadata.find("rock_stream_type");
+    return type == stream.metadata.end() || type->second == "port";
+}
+
 /** Tasks of the deployment that have a stream in the log. */
 std::set<std::string> loggedTasks(const pocolog::Reader& log, const DeploymentSpec& spec) {
     std::set<std::string> names;
     for (const pocolog::Stream& stream : log.streams())
-        if (const std::string task = splitPort(stream.name).first; spec.task(task)) names.insert(task);
+        if (const std::string task = splitPort(stream.name).first; isOfPort(stream) && spec.task(task))
+            names.insert(task);
     return names;
 }
 

@@ -5,7 +5,7 @@
 #include <functional>
 #include <map>
 
-#include "components/deployer/FanExport.hpp"
+#include "components/deployer/PictureExport.hpp"
 #include "components/output/Similarity.hpp"
 
 namespace insonify::deployer {

@@ -7,6 +7,7 @@
 #include "components/framework/Activity.hpp"
 #include "components/framework/Lockstep.hpp"
 #include "components/framework/Operation.hpp"
+#include "components/framework/Properties.hpp"
 #include "components/framework/Wiring.hpp"
 
 namespace insonify::framework {
@@ -50,6 +51,11 @@ Deployment::Deployment(DeploymentSpec spec, Registry& registry, std::filesystem:
     start_ = types::Time::fromSeconds(spec_.start_time);
     setClock();
     Wiring(*this, registry).make(seed);
+    environment_->records = [this] {
+        std::vector<types::TaskRecord> records;
+        for (const auto& task : tasks_) records.push_back(recordOf(*task));
+        return records;
+    };
     startAtFirstStamp();
     followClock();
     for (const auto& task : tasks_)
@@ -69,6 +75,15 @@ void Deployment::setClock() {
             const auto since_epoch = std::chrono::system_clock::now().time_since_epoch();
             return types::Time{std::chrono::duration_cast<std::chrono::microseconds>(since_epoch).count()};
         };
+}
+
+types::TaskRecord Deployment::recordOf(TaskContext& task) const {
+    types::TaskRecord record{task.name(), spec_.task(task.name())->type, {}, ""};
+    task.activity().call([&] {
+        for (const PropertiesBase* properties : task.properties()) record.properties.merge(properties->values());
+        if (const types::Plan* plan = task.plan()) record.plan = flowYaml(*plan);
+    });
+    return record;
 }
 
 void Deployment::startAtFirstStamp() {

@@ -7,6 +7,7 @@
 #include "components/framework/ConfigReader.hpp"
 #include "components/framework/Operation.hpp"
 #include "components/framework/PropertyList.hpp"
+#include "components/framework/PropertyValues.hpp"
 #include "components/framework/TaskContext.hpp"
 
 namespace insonify::framework {
@@ -24,6 +25,8 @@ public:
     virtual void load(ConfigReader& reader, const YAML::Node& block, const std::string& path) = 0;
     /** Every property with its default; nested names are dotted. */
     virtual std::vector<PropertyInfo> list() const = 0;
+    /** The properties that are present, as a log holds them. */
+    virtual std::map<std::string, types::PropertyValue> values() const = 0;
     /** Sets one property, of a block only what `yaml` names, in any state of the task; for the task's thread. Throws
      *  types::ConfigError when the value does not fit, std::runtime_error when the task does not take it over: then
      *  the old value stays. */
@@ -54,6 +57,7 @@ public:
         reader.read(block, path, value_);
     }
     std::vector<PropertyInfo> list() const override { return listProperties(Config{}); }
+    std::map<std::string, types::PropertyValue> values() const override { return propertyValues(value_); }
 
 private:
     std::function<void()> keep() override {

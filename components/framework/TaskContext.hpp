@@ -13,6 +13,7 @@
 #include "components/framework/Statistics.hpp"
 #include "types/ConfigError.hpp"
 #include "types/Plan.hpp"
+#include "types/TaskRecord.hpp"
 #include "types/Time.hpp"
 
 namespace insonify::framework {
@@ -37,6 +38,9 @@ struct Environment {
     bool lockstep = false;
     std::string deployment_text;  ///< The YAML as read, for the log's metadata.
     uint64_t seed = 0;            ///< Of the run (`--seed`), 0 when not given.
+    /** Properties and plans of all tasks, in file order, as they are now: waits for the hook that a task is in. Empty
+     *  for a task outside of a deployment. */
+    std::function<std::vector<types::TaskRecord>()> records;
 };
 
 class Activity;

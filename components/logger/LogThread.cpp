@@ -4,8 +4,10 @@
 
 namespace insonify::logger {
 
-LogThread::LogThread(pocolog::Writer& log, size_t capacity, double flush_period)
+LogThread::LogThread(pocolog::Writer& log, Rotation& rotation, size_t capacity, double flush_period)
     : log_(log),
+      rotation_(rotation),
+      kept_before_(log.kept()),
       flush_period_(std::chrono::duration_cast<std::chrono::nanoseconds>(std::chrono::duration<double>(flush_period))),
       ring_(capacity),
       thread_(&LogThread::run, this) {}
@@ -41,7 +43,17 @@ void LogThread::finish() {
     if (!failure_.empty()) tellFailure();
 }
 
-void LogThread::tellFailure() { throw std::runtime_error(std::exchange(failure_, {})); }
+void LogThread::declare(Declare declaration) {
+    freeEntry().declaration = std::move(declaration);
+    commit();
+}
+
+void LogThread::tellFailure() {
+    const std::string why = std::exchange(failure_, {});
+    const uint64_t lost = pushed_ - (kept_ - kept_before_);
+    throw std::runtime_error(why.empty() ? "the log has failed"
+                                         : why + "; " + std::to_string(lost) + " samples did not reach it");
+}
 
 void LogThread::run() {
     try {
@@ -51,6 +63,7 @@ void LogThread::run() {
         std::lock_guard lock(mutex_);
         failed_ = true;
         failure_ = error.what();
+        kept_ = log_.kept();
         room_.notify_all();
     }
 }
@@ -77,6 +90,11 @@ void LogThread::writeAll() {
 }
 
 void LogThread::write(Entry& entry) {
+    if (const Declare declare = std::exchange(entry.declaration, nullptr)) {
+        declare(log_);
+        return;
+    }
+    rotation_.before(entry.received);
     std::visit([&](const auto& sample) { log_.write(entry.stream, entry.received, pocolog::carriedSample(sample)); },
                entry.sample);
     entry.sample = AnySample{};  // a large sample goes back to its writer's pool

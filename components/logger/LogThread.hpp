@@ -1,5 +1,6 @@
 #pragma once
 #include <condition_variable>
+#include <functional>
 #include <mutex>
 #include <string>
 #include <thread>
@@ -7,6 +8,7 @@
 #include <variant>
 #include <vector>
 
+#include "components/logger/Rotation.hpp"
 #include "components/pocolog/SampleTypes.hpp"
 #include "components/pocolog/Writer.hpp"
 
@@ -20,15 +22,19 @@ struct AnyCarried<std::tuple<T...>> {
 };
 /** Any sample that a log takes, as it travels on ports. */
 using AnySample = AnyCarried<pocolog::SampleTypes>::type;
+/** Declares a stream. */
+using Declare = std::function<size_t(pocolog::Writer&)>;
 
 /** Writes samples to a log on a thread of its own, in the order in which they were pushed, and flushes in between.
  *
  *  Between push() and the file lies a ring of fixed size. Where the file is slower than the samples for long, push()
- *  waits for room. Trouble with the file is thrown once, by the next push() or by finish(). */
+ *  waits for room. Trouble with the file is thrown once, by the next push() or by finish(), with the number of samples
+ *  that were pushed and are not in the file. */
 class LogThread {
 public:
-    /** `log` is the thread's alone until finish(). Flushes every `flush_period` [s]; `capacity` is above 0. */
-    LogThread(pocolog::Writer& log, size_t capacity, double flush_period);
+    /** `log` and `rotation` are the thread's alone until finish(). Flushes every `flush_period` [s]; `capacity` is
+     * above 0. */
+    LogThread(pocolog::Writer& log, Rotation& rotation, size_t capacity, double flush_period);
     ~LogThread();
     LogThread(const LogThread&) = delete;
     LogThread& operator=(const LogThread&) = delete;
@@ -40,8 +46,11 @@ public:
         entry.stream = stream;
         entry.received = received;
         entry.sample = std::move(sample);
+        ++pushed_;
         commit();
     }
+    /** Declares a stream before the samples that are pushed after it. Throws as push(). */
+    void declare(Declare declaration);
     /** Writes and flushes what waits, and ends the thread. Throws std::runtime_error if the file has failed and push()
      *  has not told it. */
     void finish();
@@ -51,6 +60,7 @@ private:
         size_t stream = 0;
         types::Time received;
         AnySample sample;
+        Declare declaration;  ///< Instead of a sample.
     };
     using Clock = std::chrono::steady_clock;
 
@@ -62,6 +72,9 @@ private:
     [[noreturn]] void tellFailure();
 
     pocolog::Writer& log_;
+    Rotation& rotation_;
+    const uint64_t kept_before_;  ///< Samples that were in the log when the thread began.
+    uint64_t pushed_ = 0;
     std::chrono::nanoseconds flush_period_;
     std::mutex mutex_;
     std::condition_variable work_, room_;
@@ -70,6 +83,7 @@ private:
     bool ending_ = false;
     bool failed_ = false;
     std::string failure_;  ///< Not told yet.
+    uint64_t kept_ = 0;    ///< Samples in the log when it failed.
     std::thread thread_;
 };
 

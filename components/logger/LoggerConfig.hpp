@@ -1,14 +1,33 @@
 #pragma once
+#include <charconv>
 #include <filesystem>
 #include <map>
+#include <optional>
 #include <string>
 
 #include "types/Describe.hpp"
 
 namespace insonify::logger {
 
+/** Place of a file in its sequence: 3 for x.3.log; none for x.log. */
+inline std::optional<unsigned> sequenceNumber(const std::filesystem::path& log) {
+    const std::string digits = log.stem().extension().string();
+    unsigned number = 0;
+    const auto [end, error] = std::from_chars(digits.data() + !digits.empty(), digits.data() + digits.size(), number);
+    if (error != std::errc() || end != digits.data() + digits.size()) return std::nullopt;
+    return number;
+}
+
+/** x.3.log -> x.4.log; the file must have a number. */
+inline std::filesystem::path nextInSequence(const std::filesystem::path& log) {
+    const std::string name = log.stem().stem().string();
+    return log.parent_path() / (name + "." + std::to_string(uint64_t{*sequenceNumber(log)} + 1) + ".log");
+}
+
 struct LoggerConfig {
     std::string file;
+    std::string property_file = "properties.0.log";
+    std::optional<double> max_file_size, max_file_duration;
     double flush_period = 1;
     int queue = 64;
     std::map<std::string, std::string> metadata;
@@ -17,6 +36,13 @@ struct LoggerConfig {
     static void describe(Self& self, V& visit) {
         using types::Field;
         visit(Field{"file", "", "log to write, relative to --out: NAME.0.log; an old one is replaced"}, self.file);
+        visit(Field{"property_file", "",
+                    "log of all tasks' properties, in the folder of the other, a stream for each; empty: none"},
+              self.property_file);
+        visit(Field{"max_file_size", "B", "from this size on the log goes on in NAME.1.log and so forth", 1e6, 1e15},
+              self.max_file_size);
+        visit(Field{"max_file_duration", "s", "after this time the log goes on in NAME.1.log and so forth", 0.1, 1e9},
+              self.max_file_duration);
         visit(Field{"flush_period", "s", "at most this much is lost when the process is killed", 0.001, 1},
               self.flush_period);
         visit(Field{"queue", "1", "samples that may wait for the file beyond those in the ports' buffers", 1, 65536},
@@ -24,10 +50,20 @@ struct LoggerConfig {
         visit(Field{"metadata", "", "keys and values that every stream of the log carries"}, self.metadata);
     }
     void check(types::Problems& problems) const {
-        const std::filesystem::path path(file);
-        if (path.extension() != ".log" || path.stem().empty())
+        const auto isLog = [](const std::filesystem::path& path) {
+            return path.extension() == ".log" && !path.stem().empty();
+        };
+        if (!isLog(file))
             problems.push_back(
                 {"file", "is '" + file + "'; it must be a file name that ends in .log, as in harbour.0.log"});
+        else if ((max_file_size || max_file_duration) && !sequenceNumber(file))
+            problems.push_back({"file", "is '" + file + "'; a log of several files must have a number, as in x.0.log"});
+        if (!property_file.empty() && (!isLog(property_file) || property_file.find('/') != std::string::npos))
+            problems.push_back({"property_file", "is '" + property_file +
+                                                     "'; it must be a file name that ends in .log, as in "
+                                                     "properties.0.log, or empty"});
+        if (std::filesystem::path(file).filename() == property_file)
+            problems.push_back({"property_file", "is '" + property_file + "', as `file` is; it must be another"});
     }
 };
 

@@ -1,5 +1,6 @@
 #include "components/logger/LoggerTask.hpp"
 
+#include <algorithm>
 #include <filesystem>
 #include <set>
 #include <system_error>
@@ -16,17 +17,18 @@ public:
     TypedInlet(std::unique_ptr<framework::InputPortBase> port, std::string source)
         : Inlet(std::move(source)), owned_(std::move(port)), port_(static_cast<Port&>(*owned_)) {}
     framework::InputPortBase& port() const override { return port_; }
-    void declare(pocolog::Writer& log, const pocolog::Metadata& metadata) override {
-        number_ = log.addStream<T>(stream, metadata);
+    Declare declaration(pocolog::Metadata metadata) const override {
+        return [name = stream, metadata = std::move(metadata)](pocolog::Writer& log) {
+            return log.addStream<T>(name, metadata);
+        };
     }
     void drain(LogThread& log, types::Time received) override {
-        for (pocolog::Carried<T> sample{}; port_.readNew(sample);) log.push(number_, received, std::move(sample));
+        for (pocolog::Carried<T> sample{}; port_.readNew(sample);) log.push(*number, received, std::move(sample));
     }
 
 private:
     std::unique_ptr<framework::InputPortBase> owned_;
     Port& port_;
-    size_t number_ = 0;
 };
 
 framework::InputPortBase* LoggerTask::makeInput(const std::string& port, framework::OutputPortBase& source) {
@@ -56,32 +58,71 @@ void LoggerTask::checkInlets() const {
     }
 }
 
-pocolog::Metadata LoggerTask::metadata() {
+pocolog::Metadata LoggerTask::runMetadata() {
     pocolog::Metadata metadata = config->metadata;
     metadata["insonify_deployment"] = environment().deployment_text;
     metadata["insonify_seed"] = std::to_string(environment().seed);
     return metadata;
 }
 
-bool LoggerTask::configureHook() {
-    checkInlets();
-    const std::filesystem::path path = outputPath(config->file);
+pocolog::Metadata LoggerTask::streamMetadata() {
+    pocolog::Metadata metadata = runMetadata();
+    if (!environment().records) return metadata;
+    std::string plans;
+    for (const types::TaskRecord& task : environment().records())
+        if (!task.plan.empty()) plans += (plans.empty() ? "\"" : ", \"") + task.name + "\": " + task.plan;
+    if (!plans.empty()) metadata["insonify_plan"] = "{" + plans + "}";
+    return metadata;
+}
+
+std::filesystem::path LoggerTask::makePath(const std::string& file) const {
+    const std::filesystem::path path = outputPath(file);
     std::error_code failed;
     std::filesystem::create_directories(path.parent_path(), failed);
     if (failed) throw types::ConfigError(path.parent_path(), "", "cannot be created: " + failed.message());
-    log_.emplace(path);
-    for (const auto& inlet : inlets_) inlet->declare(*log_, metadata());
+    return path;
+}
+
+bool LoggerTask::logsProperties() {
+    if (config->property_file.empty() || !environment().records) return false;
+    const auto records = environment().records();
+    const auto own =
+        std::find_if(records.begin(), records.end(), [&](const auto& task) { return task.name == name(); });
+    const auto folder = [](const types::TaskRecord& task) {
+        return std::filesystem::path(std::get<std::string>(task.properties.at("file"))).parent_path();
+    };
+    const auto first = std::find_if(records.begin(), records.end(), [&](const types::TaskRecord& task) {
+        return task.type == own->type && folder(task) == folder(*own) &&
+               task.properties.at("property_file") == own->properties.at("property_file");
+    });
+    return first == own;
+}
+
+bool LoggerTask::configureHook() {
+    checkInlets();
+    log_.emplace(makePath(config->file));
+    rotation_.emplace(*config, *log_);
+    if (logsProperties()) properties_.emplace(log_->path().parent_path() / config->property_file);
+    declared_ = 0;
+    for (const auto& inlet : inlets_) inlet->number.reset();
     return true;
 }
 
 bool LoggerTask::startHook() {
-    thread_.emplace(*log_, static_cast<size_t>(config->queue), config->flush_period);
+    if (properties_) properties_->record(environment().records(), now(), runMetadata());
+    thread_.emplace(*log_, *rotation_, static_cast<size_t>(config->queue), config->flush_period);
     return true;
 }
 
 void LoggerTask::updateHook() {
     const types::Time received = now();
-    for (const auto& inlet : inlets_) inlet->drain(*thread_, received);
+    for (const auto& inlet : inlets_) {
+        if (!inlet->number && inlet->port().hasNew()) {
+            thread_->declare(inlet->declaration(streamMetadata()));
+            inlet->number = declared_++;
+        }
+        inlet->drain(*thread_, received);
+    }
 }
 
 void LoggerTask::stopHook() {
@@ -93,8 +134,17 @@ void LoggerTask::stopHook() {
 }
 
 void LoggerTask::cleanupHook() {
-    if (log_) log_->close();
-    log_.reset();
+    struct End {
+        LoggerTask& task;
+        ~End() {
+            task.log_.reset();
+            task.properties_.reset();
+        }
+    } end{*this};
+    for (const auto& inlet : inlets_)
+        if (!inlet->number) inlet->declaration(streamMetadata())(*log_);
+    log_->close();
+    if (properties_) properties_->close();
 }
 
 }  // namespace insonify::logger

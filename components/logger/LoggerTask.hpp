@@ -9,6 +9,8 @@
 #include "components/framework/TaskContext.hpp"
 #include "components/logger/LogThread.hpp"
 #include "components/logger/LoggerConfig.hpp"
+#include "components/logger/PropertyLog.hpp"
+#include "components/logger/Rotation.hpp"
 #include "components/pocolog/Writer.hpp"
 
 namespace insonify::logger {
@@ -17,11 +19,15 @@ namespace insonify::logger {
  *
  *  Ports: an input for each connection that names one, whatever the name, of any type in pocolog/SampleTypes.hpp; give
  *  it a buffer. The stream is named after its source, `task.port`. Samples bear the time at which they were true and
- *  the time at which they reached this task. Every stream carries the deployment and its seed in its metadata.
+ *  the time at which they reached this task. Every stream carries the deployment and its seed in its metadata, and the
+ *  plans that the tasks had at its first sample, with which it is declared; streams without samples come at the end.
+ *  The properties of all tasks go into `property_file` at each start; of several loggers that name one, the first does
+ *  it.
  *
  *  The file is opened by configure (what cannot be written refuses it), written by a thread of its own, flushed every
- *  `flush_period`, and finished with its index by cleanup. A file slower than the samples makes this task wait, and
- *  then its ports' buffers count what they lose. A disk that is full or broken ends in Exception; what was flushed
+ *  `flush_period`, continued in NAME.1.log where `max_file_size` or `max_file_duration` says so, and finished with its
+ *  index by cleanup. A file slower than the samples makes this task wait, and then its ports' buffers count what they
+ *  lose. A disk that is full or broken ends in Exception, which tells how many samples are lost; what was flushed
  *  stays. */
 class LoggerTask final : public framework::TaskContext {
 public:
@@ -40,9 +46,10 @@ private:
         explicit Inlet(std::string name) : stream(std::move(name)) {}
         virtual ~Inlet() = default;
         virtual framework::InputPortBase& port() const = 0;
-        virtual void declare(pocolog::Writer& log, const pocolog::Metadata& metadata) = 0;
+        virtual Declare declaration(pocolog::Metadata metadata) const = 0;
         virtual void drain(LogThread& log, types::Time received) = 0;
-        const std::string stream;  ///< "task.port" of the source.
+        const std::string stream;      ///< "task.port" of the source.
+        std::optional<size_t> number;  ///< In the log, once it is declared.
     };
     template <class T>
     class TypedInlet;
@@ -53,11 +60,18 @@ private:
     void stopHook() override;
     void cleanupHook() override;
     void checkInlets() const;
-    pocolog::Metadata metadata();
+    std::filesystem::path makePath(const std::string& file) const;
+    /** Whether no other logger of the deployment writes the same property file and comes first. */
+    bool logsProperties();
+    pocolog::Metadata runMetadata();
+    pocolog::Metadata streamMetadata();  ///< With the plans of the moment.
 
     std::vector<std::unique_ptr<Inlet>> inlets_;
     std::optional<pocolog::Writer> log_;
+    std::optional<Rotation> rotation_;
+    std::optional<PropertyLog> properties_;
     std::optional<LogThread> thread_;
+    size_t declared_ = 0;  ///< Streams in the log.
 };
 
 }  // namespace insonify::logger

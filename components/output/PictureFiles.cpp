@@ -16,8 +16,20 @@ namespace {
 }
 
 cv::Mat pixelsOf(const types::Image& picture) {
-    return cv::Mat(picture.size.height, picture.size.width, CV_8UC3, const_cast<uint8_t*>(picture.image.data()),
-                   picture.row_size);
+    return cv::Mat(picture.size.height, picture.size.width, CV_8UC(static_cast<int>(picture.pixel_size)),
+                   const_cast<uint8_t*>(picture.image.data()), picture.row_size);
+}
+
+/** Grey or BGR, as OpenCV has it; empty for a mode that is neither, nor RGB. */
+cv::Mat shownPixels(const types::Image& picture) {
+    const bool grey = picture.frame_mode == types::ImageMode::Grayscale;
+    const bool rgb = picture.frame_mode == types::ImageMode::Rgb;
+    const bool known = grey || rgb || picture.frame_mode == types::ImageMode::Bgr;
+    if (!known || picture.pixel_size != (grey ? 1 : 3) || !picture.holdsPixels()) return {};
+    if (!rgb) return pixelsOf(picture);
+    cv::Mat turned;
+    cv::cvtColor(pixelsOf(picture), turned, cv::COLOR_RGB2BGR);
+    return turned;
 }
 
 bool isKnownVideo(const std::string& name) {
@@ -35,8 +47,10 @@ void RecordingConfig::check(types::Problems& problems) const {
 }
 
 void writePng(const std::filesystem::path& file, const types::Image& picture) {
+    const cv::Mat pixels = shownPixels(picture);
+    if (pixels.empty()) fail(file, "the picture is empty, or neither grey, RGB nor BGR of 8 bits a channel");
     std::vector<uint8_t> encoded;
-    cv::imencode(".png", pixelsOf(picture), encoded, {cv::IMWRITE_PNG_COMPRESSION, 2});
+    cv::imencode(".png", pixels, encoded, {cv::IMWRITE_PNG_COMPRESSION, 2});
     errno = 0;
     std::ofstream stream(file, std::ios::binary);
     stream.write(reinterpret_cast<const char*>(encoded.data()), static_cast<std::streamsize>(encoded.size()));

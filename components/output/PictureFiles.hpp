@@ -10,7 +10,8 @@
 
 namespace insonify::output {
 
-/** Writes a BGR picture as a PNG file. @throws std::runtime_error with the name of the file. */
+/** Writes a grey, RGB or BGR picture of 8 bits a channel as a PNG file. @throws std::runtime_error with the name of the
+ * file. */
 void writePng(const std::filesystem::path& file, const types::Image& picture);
 
 /** A video file that is opened with the second picture, when the rate is known.

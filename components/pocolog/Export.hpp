@@ -4,26 +4,22 @@
 #include <vector>
 
 #include "components/pocolog/Reader.hpp"
-#include "types/Sonar.hpp"
 
 namespace insonify::pocolog {
 
 /** Writes a stream as numpy arrays and returns the files.
  *
- *  Pings: `bins` [pings, beams, bins] float32, `bearings` [pings, beams] rad, `time` [pings] s, `bin_duration`
- *  [pings] s (one-way), `speed_of_sound` [pings] m/s. Where their shape changes a new file begins: x.0.npz, x.1.npz.
- *  Poses: `time` s, `position` [n, 3] m, `orientation` [n, 4] (w, x, y, z). Numbers: `time`, `value`.
- *  Throws ConfigError for a stream that is not there or of another type, std::runtime_error on a full disk. */
+ *  Pings, and beams and scans as pings: `bins` [pings, beams, bins] float32, `bearings` [pings, beams] rad, `time`
+ *  [pings] s, `bin_duration` [pings] s (one-way), `speed_of_sound` [pings] m/s. Pictures: `pixels` [pictures, rows,
+ *  columns, bytes of a pixel] uint8, `time` s. Where their shape changes a new file begins: x.0.npz, x.1.npz.
+ *  Poses: `time` s, `position` [n, 3] m, `orientation` [n, 4] (w, x, y, z). Numbers, texts, times [s] and angles
+ *  [rad]: `time`, `value`. Throws ConfigError for a stream that is not there or of another type, std::runtime_error on
+ *  a full disk. */
 std::vector<std::filesystem::path> exportNpz(Reader& log, const std::string& stream, const std::filesystem::path& path);
 
-/** Writes a stream as text. Pings: `time,beam,bearing,bin,value`, a line for each bin [s, 1, rad, 1, 1]. Poses:
- *  `time,x,y,z,qw,qx,qy,qz`, which a trajectory reads [s, m, 1]. Numbers: `time,value`. Throws as exportNpz. */
+/** Writes a stream as text. Pings, beams and scans: `time,beam,bearing,bin,value`, a line for each bin [s, 1, rad, 1,
+ *  1]. Poses: `time,x,y,z,qw,qx,qy,qz`, which a trajectory reads [s, m, 1]. Numbers, texts, times [s] and angles
+ *  [rad]: `time,value`. Throws as exportNpz. */
 void exportCsv(Reader& log, const std::string& stream, const std::filesystem::path& path);
-
-/** Throws ConfigError unless the ping has as many bins and bearings as it says. */
-void checkShape(const Reader& log, const std::string& stream, const types::Sonar& ping);
-
-/** Throws the ConfigError that says which types can be exported. */
-[[noreturn]] void failExport(const Reader& log, const std::string& stream);
 
 }  // namespace insonify::pocolog

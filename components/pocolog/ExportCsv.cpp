@@ -6,6 +6,7 @@
 #include <system_error>
 
 #include "components/pocolog/Export.hpp"
+#include "components/pocolog/Pings.hpp"
 #include "components/pocolog/SampleTypes.hpp"
 
 namespace insonify::pocolog {
@@ -41,29 +42,37 @@ private:
     fmt::memory_buffer text_;
 };
 
-void writePing(CsvFile& csv, const Sonar& ping, types::Time time) {
+void writePing(CsvFile& csv, const Sonar& ping) {
     for (size_t beam = 0; beam < ping.beam_count; ++beam)
         for (size_t bin = 0; bin < ping.bin_count; ++bin)
-            csv.line(time, beam, ping.bearings[beam].rad, bin, ping.bins[beam * ping.bin_count + bin]);
-}
-
-template <Numeric T>
-void writeNumbers(Reader& log, const std::string& stream, const std::filesystem::path& path) {
-    CsvFile csv(path, "time,value");
-    log.forEach<T>(stream, [&](const T& value, const SampleRef& at) {
-        if constexpr (std::is_same_v<T, bool>)
-            csv.line(at.time, value ? 1 : 0);
-        else
-            csv.line(at.time, value);
-    });
-    csv.close();
+            csv.line(ping.time, beam, ping.bearings[beam].rad, bin, ping.bins[beam * ping.bin_count + bin]);
 }
 
 void writePings(Reader& log, const std::string& stream, const std::filesystem::path& path) {
     CsvFile csv(path, "time,beam,bearing,bin,value");
-    log.forEach<Sonar>(stream, [&](const Sonar& ping, const SampleRef& at) {
-        checkShape(log, stream, ping);
-        writePing(csv, ping, sampleTime(ping, at.time));
+    Sonar ping;
+    log.forEachRef(stream, [&](const SampleRef& at) {
+        readPing(log, at, ping);
+        writePing(csv, ping);
+    });
+    csv.close();
+}
+
+/** Text in quotes, those within it doubled. */
+std::string quoted(const std::string& text) {
+    std::string result = "\"";
+    for (const char c : text) result += c == '"' ? std::string(2, c) : std::string(1, c);
+    return result + '"';
+}
+
+template <class T>
+void writeValues(Reader& log, const std::string& stream, const std::filesystem::path& path) {
+    CsvFile csv(path, "time,value");
+    log.forEach<T>(stream, [&](const T& value, const SampleRef& at) {
+        if constexpr (Text<T>)
+            csv.line(at.time, quoted(value));
+        else
+            csv.line(at.time, numberOf(value));
     });
     csv.close();
 }
@@ -81,17 +90,21 @@ void writePoses(Reader& log, const std::string& stream, const std::filesystem::p
 
 void exportCsv(Reader& log, const std::string& stream, const std::filesystem::path& path) {
     const Stream& declared = log.streams()[log.indexOf(stream)];
-    if (declared.holds<Sonar>()) return writePings(log, stream, path);
+    if (holdsPings(declared)) return writePings(log, stream, path);
     if (declared.holds<Pose>()) return writePoses(log, stream, path);
     bool done = false;
     forEachSampleType([&]<class T>(std::type_identity<T>) {
-        if constexpr (Numeric<T>)
+        if constexpr (Scalar<T> || Text<T>)
             if (declared.holds<T>()) {
-                writeNumbers<T>(log, stream, path);
+                writeValues<T>(log, stream, path);
                 done = true;
             }
     });
-    if (!done) failExport(log, stream);
+    if (!done)
+        throw types::ConfigError(log.path(), stream,
+                                 "holds " + declared.type +
+                                     "; as text can be written pings, beams and scans of sonars, poses, numbers and "
+                                     "texts (pictures: .png and .npz)");
 }
 
 }  // namespace insonify::pocolog

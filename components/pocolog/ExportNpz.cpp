@@ -2,41 +2,63 @@
 
 #include "components/pocolog/Export.hpp"
 #include "components/pocolog/NpzFile.hpp"
+#include "components/pocolog/Pings.hpp"
 #include "components/pocolog/SampleTypes.hpp"
 
 namespace insonify::pocolog {
 namespace {
 
 using Path = std::filesystem::path;
+using types::Image;
 using types::Pose;
 using types::Sonar;
 
-/** Successive pings of one shape. */
+/** Successive samples of one shape. */
 struct Run {
-    size_t beams = 0, bins = 0;
-    std::vector<SampleRef> pings;
+    std::vector<size_t> shape;
+    std::vector<SampleRef> samples;
+
+    /** Shape of all of them together. */
+    std::vector<size_t> whole() const {
+        std::vector<size_t> all = shape;
+        all.insert(all.begin(), samples.size());
+        return all;
+    }
 };
 
+std::vector<size_t> shapeOf(const Sonar& ping) { return {ping.beam_count, ping.bin_count}; }
+std::vector<size_t> shapeOf(const Image& picture) {
+    return {picture.size.height, picture.size.width, picture.pixel_size};
+}
+
+void readShaped(Reader& log, const SampleRef& at, Sonar& ping) { readPing(log, at, ping); }
+void readShaped(Reader& log, const SampleRef& at, Image& picture) {
+    log.read(at, picture);
+    if (!picture.holdsPixels())
+        throw types::ConfigError(log.path(), log.streams()[at.stream].name,
+                                 "a picture is compressed or has other numbers of pixels than it says");
+}
+
+template <class T>
 std::vector<Run> runsOfOneShape(Reader& log, const std::string& stream) {
     std::vector<Run> runs;
-    log.forEach<Sonar>(stream, [&](const Sonar& ping, const SampleRef& at) {
-        checkShape(log, stream, ping);
-        if (runs.empty() || runs.back().beams != ping.beam_count || runs.back().bins != ping.bin_count)
-            runs.push_back({ping.beam_count, ping.bin_count, {}});
-        runs.back().pings.push_back(at);
+    T sample;
+    log.forEachRef(stream, [&](const SampleRef& at) {
+        readShaped(log, at, sample);
+        if (runs.empty() || runs.back().shape != shapeOf(sample)) runs.push_back({shapeOf(sample), {}});
+        runs.back().samples.push_back(at);
     });
-    if (runs.empty()) runs.emplace_back();
+    if (runs.empty()) runs.push_back({shapeOf(T{}), {}});
     return runs;
 }
 
-void writeRun(Reader& log, const Run& run, const Path& path) {
-    const size_t count = run.pings.size();
+void writeRun(Reader& log, const Run& run, const Path& path, Sonar ping) {
+    const size_t count = run.samples.size();
     std::vector<double> bearings, time, bin_duration, speed_of_sound;
     NpzFile npz(path);
-    npz.begin("bins", numpyType<float>(), {count, run.beams, run.bins});
-    Sonar ping;
-    for (const SampleRef& at : run.pings) {
-        log.read(at, ping);
+    npz.begin("bins", numpyType<float>(), run.whole());
+    for (const SampleRef& at : run.samples) {
+        readPing(log, at, ping);
         npz.append(ping.bins.data(), ping.bins.size() * sizeof(float));
         for (const types::Angle& bearing : ping.bearings) bearings.push_back(bearing.rad);
         time.push_back(ping.time.seconds());
@@ -44,20 +66,36 @@ void writeRun(Reader& log, const Run& run, const Path& path) {
         speed_of_sound.push_back(static_cast<double>(ping.speed_of_sound));
     }
     npz.end();
-    npz.array("bearings", {count, run.beams}, bearings);
+    npz.array("bearings", {count, run.shape[0]}, bearings);
     npz.array("time", {count}, time);
     npz.array("bin_duration", {count}, bin_duration);
     npz.array("speed_of_sound", {count}, speed_of_sound);
     npz.close();
 }
 
-std::vector<Path> writePings(Reader& log, const std::string& stream, const Path& path) {
-    const std::vector<Run> runs = runsOfOneShape(log, stream);
+void writeRun(Reader& log, const Run& run, const Path& path, Image picture) {
+    std::vector<double> time;
+    NpzFile npz(path);
+    npz.begin("pixels", numpyType<uint8_t>(), run.whole());
+    for (const SampleRef& at : run.samples) {
+        log.read(at, picture);
+        for (size_t row = 0; row < picture.size.height; ++row)
+            npz.append(picture.image.data() + row * picture.row_size, size_t{picture.size.width} * picture.pixel_size);
+        time.push_back(sampleTime(picture, at.time).seconds());
+    }
+    npz.end();
+    npz.array("time", {time.size()}, time);
+    npz.close();
+}
+
+template <class T>
+std::vector<Path> writeRuns(Reader& log, const std::string& stream, const Path& path) {
+    const std::vector<Run> runs = runsOfOneShape<T>(log, stream);
     std::vector<Path> files;
     for (const Run& run : runs) {
         Path file = path;
         if (runs.size() > 1) file.replace_extension("." + std::to_string(files.size()) + path.extension().string());
-        writeRun(log, run, file);
+        writeRun(log, run, file, T{});
         files.push_back(file);
     }
     return files;
@@ -78,18 +116,40 @@ void writePoses(Reader& log, const std::string& stream, const Path& path) {
     npz.close();
 }
 
-template <Numeric T>
-void writeNumbers(Reader& log, const std::string& stream, const Path& path) {
-    using Stored = std::conditional_t<std::is_same_v<T, bool>, uint8_t, T>;
+void writeValue(NpzFile& npz, const std::vector<std::string>& texts) {
+    size_t longest = 1;
+    for (const std::string& text : texts) longest = std::max(longest, text.size());
+    npz.begin("value", "|S" + std::to_string(longest), {texts.size()});
+    for (std::string text : texts) {
+        text.resize(longest);
+        npz.append(text.data(), longest);
+    }
+    npz.end();
+}
+template <class Number>
+void writeValue(NpzFile& npz, const std::vector<Number>& numbers) {
+    npz.array("value", {numbers.size()}, numbers);
+}
+
+template <class T>
+auto valueOf(const T& sample) {
+    if constexpr (Scalar<T>)
+        return numberOf(sample);
+    else
+        return sample;
+}
+
+template <class T>
+void writeValues(Reader& log, const std::string& stream, const Path& path) {
     std::vector<double> time;
-    std::vector<Stored> value;
-    log.forEach<T>(stream, [&](const T& number, const SampleRef& at) {
+    std::vector<decltype(valueOf(T{}))> values;
+    log.forEach<T>(stream, [&](const T& sample, const SampleRef& at) {
         time.push_back(at.time.seconds());
-        value.push_back(number);
+        values.push_back(valueOf(sample));
     });
     NpzFile npz(path);
     npz.array("time", {time.size()}, time);
-    npz.array("value", {time.size()}, value);
+    writeValue(npz, values);
     npz.close();
 }
 
@@ -97,30 +157,23 @@ void writeNumbers(Reader& log, const std::string& stream, const Path& path) {
 
 std::vector<Path> exportNpz(Reader& log, const std::string& stream, const Path& path) {
     const Stream& declared = log.streams()[log.indexOf(stream)];
-    if (declared.holds<Sonar>()) return writePings(log, stream, path);
+    if (holdsPings(declared)) return writeRuns<Sonar>(log, stream, path);
+    if (declared.holds<Image>()) return writeRuns<Image>(log, stream, path);
     bool done = declared.holds<Pose>();
     if (done) writePoses(log, stream, path);
     forEachSampleType([&]<class T>(std::type_identity<T>) {
-        if constexpr (Numeric<T>)
+        if constexpr (Scalar<T> || Text<T>)
             if (declared.holds<T>()) {
-                writeNumbers<T>(log, stream, path);
+                writeValues<T>(log, stream, path);
                 done = true;
             }
     });
-    if (!done) failExport(log, stream);
+    if (!done)
+        throw types::ConfigError(log.path(), stream,
+                                 "holds " + declared.type +
+                                     "; as arrays can be written pings, beams and scans of sonars, poses, pictures, "
+                                     "numbers and texts");
     return {path};
-}
-
-void checkShape(const Reader& log, const std::string& stream, const Sonar& ping) {
-    if (ping.bins.size() != size_t{ping.beam_count} * ping.bin_count || ping.bearings.size() != ping.beam_count)
-        throw types::ConfigError(log.path(), stream, "a ping has other numbers of bins or bearings than it says");
-}
-
-void failExport(const Reader& log, const std::string& stream) {
-    throw types::ConfigError(log.path(), stream,
-                             "holds " + log.find(stream)->type +
-                                 "; what can be exported are pings (/base/samples/Sonar), poses "
-                                 "(/base/samples/RigidBodyState) and numbers");
 }
 
 }  // namespace insonify::pocolog

@@ -14,8 +14,8 @@ struct StreamIndex {
         types::Time time;
     };
     uint64_t declaration = 0;  ///< Position of the block that declares the stream [B].
-    types::Time first_received, last_received;
-    std::vector<Entry> samples;
+    types::Time first_received{}, last_received{};
+    std::vector<Entry> samples{};
 };
 
 /** `x.0.log` -> `x.0.idx`. */

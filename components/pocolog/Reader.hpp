@@ -1,5 +1,6 @@
 #pragma once
 #include <filesystem>
+#include <memory>
 #include <span>
 #include <string>
 #include <vector>
@@ -38,6 +39,18 @@ struct SampleRef {
     bool compressed = false;
 };
 
+/** A part of a file that is no log. */
+struct Gap {
+    uint64_t from = 0, to = 0;  ///< [B]
+    uint64_t byte = 0;          ///< The first that is wrong [B].
+    std::string what;           ///< What is wrong with it.
+};
+
+/** What is done where a file goes on with something that is no block: read no further, or look for the next block. */
+enum class AtDamage { Stop, Skip };
+
+class BlockFile;
+
 /** Reads a pocolog v2 file, ours or Rock's: an index in memory, samples from the file when asked for.
  *
  *      Reader log("harbour.0.log");
@@ -47,15 +60,16 @@ struct SampleRef {
  *  false and fault() says why. What is no log at all throws ConfigError, as do samples that cannot be decoded. */
 class Reader {
 public:
-    explicit Reader(std::filesystem::path path);
+    explicit Reader(std::filesystem::path path, AtDamage at_damage = AtDamage::Stop);
     ~Reader();
     Reader(const Reader&) = delete;
     Reader& operator=(const Reader&) = delete;
 
     const std::filesystem::path& path() const { return path_; }
-    uint64_t bytes() const { return bytes_; }  ///< Size of the file [B].
-    bool complete() const { return fault_.empty(); }
-    const std::string& fault() const { return fault_; }  ///< Why and where reading stopped; empty: it did not.
+    uint64_t bytes() const;  ///< Size of the file [B].
+    bool complete() const { return gaps_.empty(); }
+    std::string fault() const;                              ///< Why and where reading stopped; empty: it did not.
+    const std::vector<Gap>& gaps() const { return gaps_; }  ///< What was not read, in file order.
     const std::vector<Stream>& streams() const { return streams_; }
     const std::vector<SampleRef>& samples() const { return samples_; }  ///< Of all streams, in file order.
     const Stream* find(const std::string& name) const;                  ///< Null when there is none.
@@ -67,34 +81,39 @@ public:
     void read(const SampleRef& at, T& sample) {
         if (!streams_[at.stream].holds<T>()) failType(at, typelibName<T>());
         try {
-            unmarshal(payload(at), sample);
-        } catch (const std::runtime_error& error) {
+            unmarshal(bytesOf(at), sample);
+        } catch (const WireError& error) {
             failSample(at, error.what());
         }
     }
+    /** The bytes of one sample, decompressed; good until the next call. */
+    std::span<const char> bytesOf(const SampleRef& at);
     /** Calls `use(sample, ref)` for each sample of the stream, in order; the sample is only lent. */
     template <class T, class Use>
     void forEach(const std::string& stream, Use&& use) {
-        const size_t index = indexOf(stream);
         T sample{};
+        forEachRef(stream, [&](const SampleRef& at) {
+            read(at, sample);
+            use(std::as_const(sample), at);
+        });
+    }
+    /** Calls `use(ref)` for each sample of the stream, in order. */
+    template <class Use>
+    void forEachRef(const std::string& stream, Use&& use) const {
+        const size_t index = indexOf(stream);
         for (const SampleRef& at : samples_)
-            if (at.stream == index) {
-                read(at, sample);
-                use(std::as_const(sample), at);
-            }
+            if (at.stream == index) use(at);
     }
 
 private:
-    std::span<const char> payload(const SampleRef& at);
     [[noreturn]] void failSample(const SampleRef& at, const std::string& what) const;
     [[noreturn]] void failType(const SampleRef& at, const std::string& wanted) const;
 
     std::filesystem::path path_;
-    int file_ = -1;
-    uint64_t bytes_ = 0;
-    std::string fault_;
+    std::unique_ptr<BlockFile> file_;
     std::vector<Stream> streams_;
     std::vector<SampleRef> samples_;
+    std::vector<Gap> gaps_;
     std::vector<char> buffer_, inflated_;
 };
 

@@ -1,85 +1,49 @@
 #include "components/pocolog/Scan.hpp"
 
-#include <sys/stat.h>
-#include <unistd.h>
-
 #include <algorithm>
-#include <cerrno>
 #include <map>
-
-#include "components/pocolog/Block.hpp"
 
 namespace insonify::pocolog {
 namespace {
 
-/** Why the walk over the blocks ends before the end of the file. */
-struct Fault : std::runtime_error {
-    using std::runtime_error::runtime_error;
-};
-
 class Scanner {
 public:
-    Scanner(int file, Scan& result) : file_(file), result_(result) {}
+    Scanner(const BlockFile& file, Scan& result) : file_(file), result_(result) {}
 
-    /** Takes whole blocks until the file ends or is no log any more. */
-    void run() {
-        uint64_t position = sizeof(Prologue);
-        try {
-            while (position < result_.bytes) position = block(position);
-        } catch (const Fault& fault) {
-            result_.fault = std::string(fault.what()) + " at byte " + std::to_string(position);
-        }
+    /** Takes whole blocks until the file ends; what is none is passed over or ends the pass. */
+    void run(AtDamage at_damage) {
+        for (uint64_t position = sizeof(Prologue); position < file_.size();) try {
+                position = take(position);
+            } catch (const Fault& fault) {
+                const bool skips = at_damage == AtDamage::Skip;
+                const uint64_t next = skips ? nextBlock(position + 1) : file_.size();
+                addGap({position, next, fault.byte, fault.what()});
+                position = next;
+            }
     }
 
 private:
-    uint64_t block(uint64_t position) {
-        BlockHeader header;
-        if (!readAt(file_, position, &header, sizeof header)) throw Fault("the file ends within the header of a block");
-        const uint64_t payload = position + sizeof header;
-        if (header.type < BlockType::Stream || header.type > BlockType::Control) throw Fault("there is no block");
-        if (header.size > result_.bytes - payload) throw Fault("the file ends within a block");
-        if (header.type == BlockType::Stream) declaration(header, payload);
-        if (header.type == BlockType::Data) data(header, payload);
-        return payload + header.size;
-    }
-
-    void declaration(const BlockHeader& header, uint64_t position) {
-        if (index_.contains(header.stream)) return;  // repeated declarations are harmless
-        std::vector<char> bytes(header.size);
-        if (!readAt(file_, position, bytes.data(), bytes.size())) throw Fault("the file cannot be read");
-        Stream stream;
-        std::string metadata;
-        try {
-            Decoder decoder(bytes);
-            uint8_t kind = 0;
-            decoder.scalar(kind);
-            for (std::string* text : {&stream.name, &stream.type, &stream.registry, &metadata})
-                takeText(decoder, *text);
-        } catch (const std::runtime_error&) {
-            throw Fault("the declaration of a stream is damaged");
+    /** Takes a block and returns where the next one begins. */
+    uint64_t take(uint64_t block) {
+        const BlockHeader header = file_.header(block);
+        if (header.type == BlockType::Stream && !index_.contains(header.stream)) {  // repeated ones are harmless
+            Declaration declaration = file_.declaration(block, header);
+            index_[header.stream] = result_.streams.size();
+            result_.streams.push_back(std::move(declaration.stream));
         }
-        stream.metadata = metadataFromYaml(metadata);
-        index_[header.stream] = result_.streams.size();
-        result_.streams.push_back(std::move(stream));
+        if (header.type == BlockType::Data) sample(block, header);
+        return block + sizeof header + header.size;
     }
 
-    static void takeText(Decoder& decoder, std::string& text) {
-        uint32_t size = 0;
-        decoder.scalar(size);
-        if (size > decoder.left()) throw std::runtime_error("too long");
-        text.resize(size);
-        decoder.bytes(text.data(), size);
-    }
-
-    void data(const BlockHeader& header, uint64_t position) {
+    void sample(uint64_t block, const BlockHeader& header) {
         const auto stream = index_.find(header.stream);
-        if (stream == index_.end()) throw Fault("a sample of a stream that is not declared");
-        DataHeader data;
-        if (header.size < data_header_size || !readAt(file_, position, &data, data_header_size) ||
-            data.size != header.size - data_header_size)
-            throw Fault("the sizes of a sample do not agree");
-        result_.samples.push_back({stream->second, data.received(), data.time(), position + data_header_size, data.size,
-                                   data.compressed != 0});
+        if (stream == index_.end())
+            throw Fault(block + offsetof(BlockHeader, stream),
+                        "a sample of a stream that is not declared: " + std::to_string(header.stream));
+        const DataHeader data = file_.data(block, header);
+        const uint64_t position = block + sizeof header + data_header_size;
+        result_.samples.push_back(
+            {stream->second, data.received(), data.time(), position, data.size, data.compressed != 0});
         count(result_.streams[stream->second], data.time());
     }
 
@@ -88,7 +52,45 @@ private:
         stream.last = time;
     }
 
-    int file_;
+    void addGap(Gap gap) {
+        auto& gaps = result_.gaps;
+        if (!gaps.empty() && gaps.back().to == gap.from)
+            gaps.back().to = gap.to;
+        else
+            gaps.push_back(std::move(gap));
+    }
+
+    /** The first place from `position` on at which a block seems to stand, or the end of the file. */
+    uint64_t nextBlock(uint64_t position) const {
+        std::vector<char> window(1 << 20);
+        for (; position + sizeof(BlockHeader) <= file_.size(); position += window.size()) {
+            const size_t size = std::min<uint64_t>(window.size(), file_.size() - position);
+            if (!file_.read(position, window.data(), size)) break;
+            for (size_t i = 0; i < size; ++i)
+                if ((window[i] == 1 || window[i] == 2) && looksLikeBlock(position + i)) return position + i;
+        }
+        return file_.size();
+    }
+
+    /** A format without marks gives no certainty: sizes that agree twice, and a block or the end behind it. */
+    bool looksLikeBlock(uint64_t block) const try {
+        const BlockHeader header = file_.header(block);
+        if (header.type == BlockType::Stream)
+            file_.declaration(block, header);
+        else if (!index_.contains(header.stream) || !hasMicroseconds(file_.data(block, header)))
+            return false;
+        const uint64_t next = block + sizeof header + header.size;
+        uint8_t type = 0;
+        return !file_.read(next, &type, sizeof type) || (type >= 1 && type <= 3);
+    } catch (const Fault&) {
+        return false;
+    }
+
+    static bool hasMicroseconds(const DataHeader& data) {
+        return data.received_us < 1'000'000 && data.time_us < 1'000'000 && data.compressed <= 1;
+    }
+
+    const BlockFile& file_;
     Scan& result_;
     std::map<uint16_t, size_t> index_;  ///< From the number in the file to the place in `streams`.
 };
@@ -106,33 +108,22 @@ void checkPrologue(const Prologue& prologue, const std::filesystem::path& path) 
 
 }  // namespace
 
-bool readAt(int file, uint64_t position, void* to, size_t size) {
-    char* next = static_cast<char*>(to);
-    while (size > 0) {
-        const ssize_t got = pread(file, next, size, static_cast<off_t>(position));
-        if (got < 0 && errno == EINTR) continue;
-        if (got <= 0) return false;
-        next += got;
-        position += static_cast<uint64_t>(got);
-        size -= static_cast<size_t>(got);
-    }
-    return true;
-}
-
-Scan scan(int file, const std::filesystem::path& path) {
-    struct stat status {};
-    if (fstat(file, &status) != 0 || !S_ISREG(status.st_mode)) throw types::ConfigError(path, "", "is not a file");
+Scan scan(const BlockFile& file, const std::filesystem::path& path, AtDamage at_damage) {
     Scan result;
-    result.bytes = static_cast<uint64_t>(status.st_size);
     Prologue prologue;
-    const size_t there = std::min<size_t>(result.bytes, sizeof prologue);
-    if (there < magic.size() || !readAt(file, 0, &prologue, there))
+    const size_t there = std::min<size_t>(file.size(), sizeof prologue);
+    if (there < magic.size() || !file.read(0, &prologue, there))
         throw types::ConfigError(path, "", "is not a pocolog file: it is too short");
-    checkPrologue(prologue, path);
+    try {
+        checkPrologue(prologue, path);
+    } catch (const types::ConfigError& error) {
+        if (at_damage == AtDamage::Stop) throw;
+        result.gaps.push_back({0, there, 0, "the prologue " + error.diagnostics().front().message});
+    }
     if (there < sizeof prologue)
-        result.fault = "the file ends within its prologue";
+        result.gaps.push_back({0, there, there, "the file ends within its prologue"});
     else
-        Scanner(file, result).run();
+        Scanner(file, result).run(at_damage);
     return result;
 }
 

@@ -1,20 +1,16 @@
 #pragma once
-#include "components/pocolog/Reader.hpp"
+#include "components/pocolog/BlockFile.hpp"
 
 namespace insonify::pocolog {
 
 /** What one pass over the block headers of a file finds. */
 struct Scan {
-    uint64_t bytes = 0;  ///< Size of the file [B].
-    std::string fault;   ///< Why and where the pass ended early; empty: it did not.
     std::vector<Stream> streams;
     std::vector<SampleRef> samples;
+    std::vector<Gap> gaps;  ///< What is no log, in file order.
 };
 
-/** Reads exactly `size` bytes at `position`; false at the end of the file or on an error of the system. */
-bool readAt(int file, uint64_t position, void* to, size_t size);
-
-/** Passes over an open file. Throws ConfigError that names `path` when it is no pocolog v2 file. */
-Scan scan(int file, const std::filesystem::path& path);
+/** Passes over a file. Throws ConfigError that names `path` when it is no pocolog v2 file. */
+Scan scan(const BlockFile& file, const std::filesystem::path& path, AtDamage at_damage);
 
 }  // namespace insonify::pocolog

@@ -5,7 +5,13 @@
 namespace insonify::pocolog {
 namespace {
 
-std::string escaped(const std::string& name) {
+std::string attribute(const char* key, const std::string& value) {
+    return std::string(" ") + key + "=\"" + xmlEscaped(value) + "\"";
+}
+
+}  // namespace
+
+std::string xmlEscaped(const std::string& name) {
     std::string text;
     for (const char c : name) {
         if (c == '<')
@@ -17,12 +23,6 @@ std::string escaped(const std::string& name) {
     }
     return text;
 }
-
-std::string attribute(const char* key, const std::string& value) {
-    return std::string(" ") + key + "=\"" + escaped(value) + "\"";
-}
-
-}  // namespace
 
 bool RegistryXml::knows(const std::string& name) const {
     return std::any_of(nodes_.begin(), nodes_.end(), [&](const auto& node) { return node.first == name; });

@@ -151,6 +151,9 @@ Extent extentOf() {
         return {sizeof(T), alignof(T)};
 }
 
+/** A type's name as it stands in a registry. */
+std::string xmlEscaped(const std::string& name);
+
 /** XML nodes of a registry, each type once, what a type needs before the type. */
 class RegistryXml {
 public:

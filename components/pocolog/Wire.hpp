@@ -63,18 +63,24 @@ private:
     std::vector<char>& bytes_;
 };
 
-/** Takes from a byte buffer; throws std::runtime_error where it ends too early. */
+/** Bytes that are no value: where, counted from the first of the buffer, and why. */
+struct WireError : std::runtime_error {
+    WireError(size_t at, const std::string& what) : std::runtime_error(what), byte(at) {}
+    size_t byte;
+};
+
+/** Takes from a byte buffer; throws WireError where it ends too early. */
 class Decoder {
 public:
-    explicit Decoder(std::span<const char> data) : data_(data) {}
+    explicit Decoder(std::span<const char> data) : data_(data), size_(data.size()) {}
 
     void bytes(void* to, size_t size) {
-        if (size > data_.size()) throw std::runtime_error("ends within a value");
+        if (size > data_.size()) throw WireError(size_, "ends within a value");
         if (size > 0) std::memcpy(to, data_.data(), size);
         data_ = data_.subspan(size);
     }
     void zeros(size_t size) {
-        if (size > data_.size()) throw std::runtime_error("ends within padding");
+        if (size > data_.size()) throw WireError(size_, "ends within padding");
         data_ = data_.subspan(size);
     }
     /** Makes room for as many items as the count says. A count that cannot fit is refused before memory is taken. */
@@ -83,7 +89,8 @@ public:
         uint64_t wanted = 0;
         scalar(wanted);
         if (wanted > data_.size() / minimumSize<typename Items::value_type>())
-            throw std::runtime_error("announces " + std::to_string(wanted) + " elements, more than it holds");
+            throw WireError(taken() - sizeof wanted,
+                            "announces " + std::to_string(wanted) + " elements, more than it holds");
         items.resize(wanted);
     }
     template <class T>
@@ -100,9 +107,11 @@ public:
         bytes(items.data(), items.size() * sizeof(T));
     }
     size_t left() const { return data_.size(); }
+    size_t taken() const { return size_ - data_.size(); }
 
 private:
     std::span<const char> data_;
+    size_t size_;
 };
 
 /** Walks through a value in wire order, for an Encoder (const values) or a Decoder. */
@@ -178,12 +187,13 @@ void marshal(const T& sample, std::vector<char>& bytes) {
     Walk<Encoder>(encoder).value(sample);
 }
 
-/** Fills `sample`, whose memory is used again. Throws std::runtime_error unless `bytes` is exactly one sample. */
+/** Fills `sample`, whose memory is used again. Throws WireError unless `bytes` is exactly one sample. */
 template <class T>
 void unmarshal(std::span<const char> bytes, T& sample) {
     Decoder decoder(bytes);
     Walk<Decoder>(decoder).value(sample);
-    if (decoder.left() > 0) throw std::runtime_error("has " + std::to_string(decoder.left()) + " bytes too many");
+    if (decoder.left() > 0)
+        throw WireError(decoder.taken(), "has " + std::to_string(decoder.left()) + " bytes too many");
 }
 
 }  // namespace insonify::pocolog

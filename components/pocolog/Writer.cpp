@@ -1,6 +1,8 @@
 #include "components/pocolog/Writer.hpp"
 
 #include <fcntl.h>
+#include <sys/file.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -28,14 +30,27 @@ void split(types::Time time, uint32_t& s, uint32_t& us) {
 
 }  // namespace
 
-Writer::Writer(std::filesystem::path path) : path_(std::move(path)) {
-    file_ = open(path_.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644);
+Writer::Writer(std::filesystem::path path) : path_(std::move(path)) { open(); }
+
+void Writer::open() {
+    file_ = ::open(path_.c_str(), O_WRONLY | O_CREAT | O_CLOEXEC, 0644);
     if (file_ < 0) throw types::ConfigError(path_, "", "the log cannot be written: " + reason(errno));
+    const bool taken = flock(file_, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK;
+    struct stat status {};
+    const bool is_file = fstat(file_, &status) == 0 && S_ISREG(status.st_mode);
+    if (taken || (is_file && ftruncate(file_, 0) != 0)) {
+        const std::string why = taken ? "another logger writes it" : reason(errno);
+        ::close(std::exchange(file_, -1));
+        throw types::ConfigError(path_, "", "the log cannot be written: " + why);
+    }
     std::error_code none_there;
     std::filesystem::remove(indexPath(path_), none_there);
     Prologue prologue;
     std::copy(magic.begin(), magic.end(), prologue.magic_bytes.begin());
+    flushed_ = 0;
     put(&prologue, sizeof prologue);
+    for (Stream& stream : streams_) stream.index = {.declaration = size() + stream.declaration};
+    put(declarations_.data(), declarations_.size());
 }
 
 Writer::~Writer() {
@@ -64,14 +79,25 @@ size_t Writer::declare(const std::string& name, const std::string& type, const s
     const size_t size =
         sizeof data_stream + 4 * sizeof(uint32_t) + name.size() + type.size() + registry.size() + yaml.size();
     Stream& stream = streams_.emplace_back();
-    stream.index.declaration = flushed_ + buffer_.size();
-    BlockHeader header{.type = BlockType::Stream,
-                       .stream = static_cast<uint16_t>(streams_.size() - 1),
-                       .size = static_cast<uint32_t>(size)};
-    put(&header, sizeof header);
-    put(&data_stream, sizeof data_stream);
-    for (const std::string* text : {&name, &type, &registry, &yaml}) putText(*text);
+    stream.declaration = declarations_.size();
+    stream.index.declaration = this->size();
+    Encoder block(declarations_);
+    block.scalar(BlockHeader{.type = BlockType::Stream,
+                             .stream = static_cast<uint16_t>(streams_.size() - 1),
+                             .size = static_cast<uint32_t>(size)});
+    block.scalar(data_stream);
+    for (const std::string* text : {&name, &type, &registry, &yaml}) {
+        block.scalar(static_cast<uint32_t>(text->size()));
+        block.bytes(text->data(), text->size());
+    }
+    put(declarations_.data() + stream.declaration, declarations_.size() - stream.declaration);
     return streams_.size() - 1;
+}
+
+void Writer::write(size_t stream, types::Time received, types::Time time, std::span<const char> bytes) {
+    const size_t start = beginSample();
+    put(bytes.data(), bytes.size());
+    endSample(stream, start, received, time);
 }
 
 size_t Writer::beginSample() {
@@ -88,7 +114,7 @@ void Writer::endSample(size_t number, size_t start, types::Time received, types:
         throw std::length_error(path_.string() + ": a sample on a log may not exceed 4 GiB");
     }
     Stream& stream = streams_.at(number);
-    received = logTime(received, stream.index.last_received);
+    received = logTime(received, stream.last_received);
     time = logTime(time, stream.last_time);
     BlockHeader block{
         .type = BlockType::Data, .stream = static_cast<uint16_t>(number), .size = static_cast<uint32_t>(size)};
@@ -99,21 +125,17 @@ void Writer::endSample(size_t number, size_t start, types::Time received, types:
     std::memcpy(buffer_.data() + start + sizeof block, &data, data_header_size);
 
     if (stream.index.samples.empty()) stream.index.first_received = received;
-    stream.index.last_received = received;
+    stream.index.last_received = stream.last_received = received;
     stream.last_time = time;
     stream.index.samples.push_back({flushed_ + start, time});
+    ++taken_;
+    ++unflushed_;
     if (buffer_.size() >= flush_size) flush();
 }
 
 void Writer::put(const void* data, size_t size) {
     const char* first = static_cast<const char*>(data);
     buffer_.insert(buffer_.end(), first, first + size);
-}
-
-void Writer::putText(const std::string& text) {
-    const auto size = static_cast<uint32_t>(text.size());
-    put(&size, sizeof size);
-    put(text.data(), text.size());
 }
 
 void Writer::writeOut(const char* data, size_t size) {
@@ -130,6 +152,7 @@ void Writer::flush() {
     if (file_ < 0) return;
     writeOut(buffer_.data(), buffer_.size());
     flushed_ += buffer_.size();
+    unflushed_ = 0;
     buffer_.clear();
 }
 
@@ -148,6 +171,12 @@ void Writer::close() {
     std::vector<StreamIndex> index;
     for (Stream& stream : streams_) index.push_back(std::move(stream.index));
     writeIndex(path_, index);
+}
+
+void Writer::next(std::filesystem::path path) {
+    close();
+    path_ = std::move(path);
+    open();
 }
 
 }  // namespace insonify::pocolog

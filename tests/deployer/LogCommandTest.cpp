@@ -76,6 +76,63 @@ TEST_F(LogCommandTest, ExportsFanPictures) {
     EXPECT_TRUE(readFile(folder / "fan_000002.png").starts_with("\x89PNG"));
 }
 
+TEST_F(LogCommandTest, CutsASpanOfTimeOrNumbersOutOfALog) {
+    const auto cut = [&](std::vector<std::string> more) {
+        std::vector<std::string> words = {"log", "cut", log, "--to", "cut.0.log"};
+        words.insert(words.end(), more.begin(), more.end());
+        return callInsonify(folder, words);
+    };
+    EXPECT_EQ(cut({"--from", "1.05", "--until", "1.15"}).out, "cut.0.log: 3 samples, nothing was lost\n");
+    EXPECT_EQ(callInsonify(folder, {"log", "check", "cut.0.log"}).out, "cut.0.log: valid, 3 streams, 3 samples\n");
+    EXPECT_TRUE(fs::exists(folder / "cut.0.idx"));
+    EXPECT_EQ(cut({"--stream", "sonar.ping", "--samples", "1:"}).out, "cut.0.log: 2 samples, nothing was lost\n");
+    EXPECT_EQ(cut({"out/properties.0.log", "--stream", "sonar.ping", "--stream", "noise.seed"}).out,
+              "cut.0.log: 4 samples, nothing was lost\n")
+        << "several files, several streams";
+    EXPECT_EQ(cut({"--samples", "1"}).code, 2);
+    EXPECT_THAT(cut({"--samples", "a:b"}).err, HasSubstr("may be FIRST:LAST"));
+    EXPECT_EQ(cut({"--stream", "no.such"}).code, 2);
+    EXPECT_EQ(callInsonify(folder, {"log", "cut", log, "--to", log}).code, 2);
+    EXPECT_EQ(callInsonify(folder, {"log", "check", log}).code, 0) << "the log is as it was";
+}
+
+TEST_F(LogCommandTest, ADamagedLogIsNamedByItsFirstWrongByteAndRepaired) {
+    std::string bytes = readFile(folder / log);
+    fs::remove(folder / "out/wall.0.idx");
+    const size_t stray = bytes.size() - 4;
+    writeFile(folder / log, bytes.substr(0, stray));
+    const Outcome checked = callInsonify(folder, {"log", "check", log});
+    EXPECT_EQ(checked.code, 2);
+    EXPECT_THAT(checked.err, testing::MatchesRegex("out/wall.0.log: byte [0-9]+: the file ends within a block: it has "
+                                                   "[0-9]+ bytes, [0-9]+ are left\n"));
+    const json told = json::parse(callInsonify(folder, {"log", "check", log, "--json"}).out);
+    EXPECT_FALSE(told["valid"]);
+    EXPECT_EQ(told["samples"], 8);
+    EXPECT_EQ(told["wrong"]["file"], log);
+    EXPECT_GT(told["wrong"]["byte"], 0);
+
+    const Outcome repaired = callInsonify(folder, {"log", "repair", log, "--to", "whole.0.log"});
+    EXPECT_EQ(repaired.code, 0);
+    EXPECT_EQ(repaired.out, "whole.0.log: 8 samples, lost in 1 places\n");
+    EXPECT_THAT(repaired.err, testing::StartsWith("lost: out/wall.0.log: bytes "));
+    const json valid = json::parse(callInsonify(folder, {"log", "check", "whole.0.log", "--json"}).out);
+    EXPECT_TRUE(valid["valid"]);
+    EXPECT_TRUE(valid["wrong"].is_null());
+}
+
+TEST_F(LogCommandTest, TheLogCarriesItsPlanAndThePropertiesLieBesideIt) {
+    const std::string text = readFile(folder / log);
+    for (const char* key : {"insonify_plan: ", "insonify_deployment: ", "insonify_seed: "})
+        EXPECT_THAT(text, HasSubstr(key));
+    const json info = json::parse(callInsonify(folder, {"log", "info", "out/properties.0.log", "--json"}).out);
+    std::vector<std::string> names;
+    for (const json& stream : info["streams"]) names.push_back(stream["name"]);
+    EXPECT_THAT(names, testing::IsSupersetOf({"sonar.range", "noise.seed", "noise.speckle", "scene.file"}));
+    EXPECT_EQ(callInsonify(folder, {"log", "check", "out/properties.0.log"}).code, 0);
+    EXPECT_EQ(callInsonify(folder, {"replay", "out/properties.0.log", "wall.yml", "--out", "again"}).code, 2)
+        << "properties stand for no port";
+}
+
 TEST_F(LogCommandTest, RefusesWhatItCannotExport) {
     EXPECT_EQ(exportTo("sonar.pong", "x.npz").code, 2);
     EXPECT_THAT(exportTo("sonar.pong", "x.npz").err, HasSubstr("sonar.ping"));
@@ -84,13 +141,33 @@ TEST_F(LogCommandTest, RefusesWhatItCannotExport) {
     EXPECT_EQ(exportTo("vehicle.pose", "x.png").code, 2);
 }
 
+TEST(LogFrameTest, LoggedFramesAreExportedAsPictures) {
+    std::string text = replaced(wall_deployment, "  log:\n",
+                                "  fan: {type: output::FanImageTask, properties: {width: 256}}\n  log:\n");
+    text +=
+        "  - {from: noise.noisy, to: fan.ping}\n  - {from: fan.image, to: log.fan, policy: {type: buffer, size: 9}}\n";
+    const WallFolder folder(text);
+    ASSERT_EQ(folder.run().code, 0);
+    const auto exportTo = [&](const char* to) {
+        return callInsonify(folder, {"log", "export", "out/wall.0.log", "--stream", "fan.image", "--to", to});
+    };
+    EXPECT_EQ(exportTo("frame.png").out, "frame_000000.png\nframe_000001.png\n");
+    EXPECT_TRUE(readFile(folder / "frame_000001.png").starts_with("\x89PNG"));
+    ASSERT_EQ(exportTo("frame.npz").code, 0);
+    EXPECT_THAT(python(folder, "import numpy; print(numpy.load('frame.npz')['pixels'].shape)").out,
+                testing::MatchesRegex("\\(2, [0-9]+, 256, 3\\)\n"));
+    EXPECT_THAT(exportTo("frame.csv").err, HasSubstr("pictures: .png and .npz"));
+}
+
 TEST(LogFileTest, AFileThatIsNoLogIsRefused) {
     const TestFolder folder;
     writeFile(folder / "empty.0.log", "");
     writeFile(folder / "text.0.log", "POCOSIN, almost a log, and long enough for a prologue");
     for (const char* file : {"empty.0.log", "text.0.log", ".", "nowhere.0.log"}) {
-        const Outcome outcome = callInsonify(folder, {"log", "info", file});
-        EXPECT_EQ(outcome.code, 2) << file;
-        EXPECT_THAT(outcome.err, HasSubstr(file));
+        for (const char* command : {"info", "check"}) {
+            const Outcome outcome = callInsonify(folder, {"log", command, file});
+            EXPECT_EQ(outcome.code, 2) << command << " " << file;
+            EXPECT_THAT(outcome.err, HasSubstr(file));
+        }
     }
 }

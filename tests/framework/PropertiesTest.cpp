@@ -203,5 +203,37 @@ TEST(PropertiesTest, TheListingTellsAll) {
     EXPECT_EQ(named("materials.<name>.mean").max, 10);
 }
 
+TEST(PropertiesTest, ValuesForTheLogAreTypedAndBlocksAreTextThatIsReadBack) {
+    Task task("t");
+    Config config;
+    config.range = 0.1;
+    config.seed = 7;
+    config.loud = true;
+    config.file = "a.glb";
+    config.position = {1, -2.5, 3e-7};
+    config.bearings = {0.5, -0.5};
+    config.always = {Law::Gaussian, 0.25};
+    config.materials = {{"sand: \"wet\"\n", {Law::Rayleigh, 2}}};
+    task.config.set(config);
+    const auto values = task.config.values();
+    EXPECT_EQ(values.at("range"), types::PropertyValue(0.1));
+    EXPECT_EQ(values.at("seed"), types::PropertyValue(int64_t{7}));
+    EXPECT_EQ(values.at("loud"), types::PropertyValue(true));
+    EXPECT_EQ(values.at("file"), types::PropertyValue("a.glb"));
+    EXPECT_FALSE(values.contains("speckle"));
+    EXPECT_EQ(values.at("always"), types::PropertyValue("{\"law\": \"gaussian\", \"mean\": 0.25}"));
+
+    Config again;
+    framework::ConfigReader reader("");
+    for (const char* name : {"position", "bearings", "always", "materials"}) {
+        const YAML::Node node = YAML::Load(std::string(name) + ": " + std::get<std::string>(values.at(name)));
+        EXPECT_TRUE(reader.read(node, "", again)) << name;
+    }
+    EXPECT_EQ(again.position, config.position);
+    EXPECT_EQ(again.bearings, config.bearings);
+    EXPECT_EQ(again.always.law, Law::Gaussian);
+    EXPECT_EQ(again.materials.at("sand: \"wet\"\n").mean, 2);
+}
+
 }  // namespace
 }  // namespace insonify

@@ -68,6 +68,26 @@ TEST(LogFailureTest, AFullDiskEndsInExceptionWithTheSystemsReason) {
     EXPECT_THAT(task.lastError(), testing::HasSubstr("No space left on device"));
 }
 
+TEST(LogFailureTest, TheSamplesThatDidNotReachTheDiskAreCounted) {
+    Folder folder;
+    std::filesystem::create_symlink("/dev/full", folder / "x.0.log");
+    LoggerTask task("log");
+    task.environment().output_folder = folder.path();
+    LoggerConfig config = configFor("x.0.log");
+    config.flush_period = 1;
+    task.config.set(config);
+    test::Writer<std::string> source;
+    source.port.connectTo(*task.makeInput("in", source.port), ConnPolicy::buffer(10));
+    ASSERT_TRUE(task.configure());
+    ASSERT_TRUE(task.start());
+    for (int i = 0; i < 3; ++i) {
+        source.port.write("x");
+        task.update();
+    }
+    EXPECT_FALSE(task.stop());
+    EXPECT_THAT(task.lastError(), testing::HasSubstr("3 samples did not reach it"));
+}
+
 TEST(LogFailureTest, ADiskThatIsFullOnlyAtTheEndIsToldByStop) {
     Folder folder;
     std::filesystem::create_symlink("/dev/full", folder / "x.0.log");

@@ -20,5 +20,29 @@ TEST(LoggerConfigTest, OnlyANameThatEndsInLogIsTaken) {
         EXPECT_EQ(problemsOf(bad), 1u) << bad;
 }
 
+TEST(LoggerConfigTest, ALogOfSeveralFilesHasANumber) {
+    LoggerConfig config;
+    config.max_file_size = 1e6;
+    for (const auto& [file, count] : {std::pair{"harbour.0.log", 0u}, {"harbour.17.log", 0u}, {"harbour.log", 1u}}) {
+        config.file = file;
+        types::Problems problems;
+        config.check(problems);
+        EXPECT_EQ(problems.size(), count) << file;
+    }
+    EXPECT_EQ(nextInSequence("day/harbour.9.log"), "day/harbour.10.log");
+}
+
+TEST(LoggerConfigTest, PropertiesGoIntoAFileOfTheirOwn) {
+    LoggerConfig config;
+    config.file = "day/x.0.log";
+    for (const auto& [file, count] :
+         {std::pair{"properties.0.log", 0u}, {"", 0u}, {"x.0.log", 1u}, {"a/b.0.log", 1u}, {"properties", 1u}}) {
+        config.property_file = file;
+        types::Problems problems;
+        config.check(problems);
+        EXPECT_EQ(problems.size(), count) << file;
+    }
+}
+
 }  // namespace
 }  // namespace insonify::logger

@@ -1,10 +1,9 @@
 #include <gmock/gmock.h>
 
-#include <cstdlib>
-
 #include "components/pocolog/Export.hpp"
 #include "components/pocolog/Writer.hpp"
 #include "tests/support/Folder.hpp"
+#include "tests/support/Python.hpp"
 
 namespace insonify::pocolog {
 namespace {
@@ -34,16 +33,10 @@ std::string textOf(const std::filesystem::path& path) {
     return {bytes.begin(), bytes.end()};
 }
 
-/** Debian's python has Debian's numpy; another one in the path may have none. */
-std::string python() { return std::filesystem::exists("/usr/bin/python3") ? "/usr/bin/python3" : "python3"; }
-
 /** What python prints, with numpy as `np` and the file as `x`. */
 std::string numpySays(const std::filesystem::path& file, const std::string& expression) {
-    const std::filesystem::path answer = file.parent_path() / "answer.txt";
-    const std::string command = python() + " -c \"import numpy as np; x = np.load('" + file.string() + "'); print(" +
-                                expression + ")\" > " + answer.string() + " 2>&1";
-    const int status = std::system(command.c_str());
-    return status == 0 ? textOf(answer) : "python failed: " + textOf(answer);
+    return pythonSays("-c \"import numpy as np; x = np.load('" + file.string() + "'); print(" + expression + ")\"",
+                      file.parent_path() / "answer.txt");
 }
 
 bool numpyIsThere() { return std::system((python() + " -c 'import numpy' 2> /dev/null").c_str()) == 0; }
@@ -136,17 +129,90 @@ TEST(ExportTest, CsvOfNumbersHasTimeAndValue) {
     EXPECT_EQ(textOf(folder / "x.csv"), "time,value\n2.000000,1\n");
 }
 
+types::SonarScan scan() {
+    types::SonarScan sample;
+    sample.time = {2'000'000};
+    sample.sampling_interval = 2e-4;
+    sample.speed_of_sound = 1500;
+    sample.number_of_beams = 2;
+    sample.number_of_bins = 1;
+    sample.data = {255, 51};
+    sample.start_bearing = {0.5};
+    sample.angular_resolution = {0.25};
+    return sample;
+}
+
+/** Two rows of two RGB pixels, a byte of padding after each row. */
+types::Image picture() {
+    types::Image sample;
+    sample.time = {2'000'000};
+    sample.size = {2, 2};
+    sample.pixel_size = 3;
+    sample.row_size = 7;
+    sample.frame_mode = types::ImageMode::Rgb;
+    sample.image = {1, 2, 3, 4, 5, 6, 99, 7, 8, 9, 10, 11, 12, 99};
+    return sample;
+}
+
+TEST(ExportTest, ScansAreExportedAsPingsWhoseBearingsFall) {
+    Folder folder;
+    Writer log(folder / "x.0.log");
+    log.write(log.addStream<types::SonarScan>("micron.scan"), {1}, scan());
+    log.close();
+    Reader reader(folder / "x.0.log");
+    exportCsv(reader, "micron.scan", folder / "x.csv");
+    EXPECT_EQ(textOf(folder / "x.csv"), "time,beam,bearing,bin,value\n2.000000,0,0.5,0,1\n2.000000,1,0.25,0,0.2\n");
+    if (!numpyIsThere()) GTEST_SKIP() << "python3-numpy is not installed: the npz files are not read";
+    exportNpz(reader, "micron.scan", folder / "x.npz");
+    EXPECT_EQ(numpySays(folder / "x.npz", "x['bins'].shape, x['bearings'].tolist(), x['bin_duration'] * 1e6"),
+              "(1, 2, 1) [[0.5, 0.25]] [100.]\n");
+}
+
+TEST(ExportTest, NumpyReadsPicturesTextsTimesAndAngles) {
+    if (!numpyIsThere()) GTEST_SKIP() << "python3-numpy is not installed: the npz files are not read";
+    Folder folder;
+    Writer log(folder / "x.0.log");
+    log.write(log.addStream<types::Image>("fan.image"), {1}, picture());
+    log.write(log.addStream<std::string>("t.text"), {1}, std::string("abc"));
+    log.write(log.addStream<types::Time>("t.time"), {1}, types::Time{2'500'000});
+    log.write(log.addStream<types::Angle>("t.angle"), {1}, types::Angle{0.5});
+    log.close();
+    Reader reader(folder / "x.0.log");
+    for (const std::string stream : {"fan.image", "t.text", "t.time", "t.angle"})
+        exportNpz(reader, stream, folder / (stream + ".npz"));
+    EXPECT_EQ(numpySays(folder / "fan.image.npz", "x['pixels'].tolist(), x['pixels'].dtype, x['time']"),
+              "[[[[1, 2, 3], [4, 5, 6]], [[7, 8, 9], [10, 11, 12]]]] uint8 [2.]\n");
+    EXPECT_EQ(numpySays(folder / "t.text.npz", "x['value']"), "[b'abc']\n");
+    EXPECT_EQ(numpySays(folder / "t.time.npz", "x['value']"), "[2.5]\n");
+    EXPECT_EQ(numpySays(folder / "t.angle.npz", "x['value']"), "[0.5]\n");
+}
+
+TEST(ExportTest, CsvOfTextsQuotesThem) {
+    Folder folder;
+    Writer log(folder / "x.0.log");
+    log.write(log.addStream<std::string>("t.text"), {2'000'000}, std::string("say \"ping\",\ntwice"));
+    log.close();
+    Reader reader(folder / "x.0.log");
+    exportCsv(reader, "t.text", folder / "x.csv");
+    EXPECT_EQ(textOf(folder / "x.csv"), "time,value\n2.000000,\"say \"\"ping\"\",\ntwice\"\n");
+}
+
 TEST(ExportTest, WhatCannotBeExportedIsNamed) {
     Folder folder;
     Writer log(folder / "x.0.log");
-    log.addStream<types::Image>("fan.image");
+    types::Image compressed = picture();
+    compressed.image.resize(4);
+    log.write(log.addStream<types::Image>("fan.image"), {1}, compressed);
+    types::SonarScan torn = scan();
+    torn.data.pop_back();
+    log.write(log.addStream<types::SonarScan>("sonar.torn"), {1}, torn);
     types::Sonar broken = ping(1, 2, 3);
     broken.bins.pop_back();
     log.write(log.addStream<types::Sonar>("sonar.broken"), {1}, broken);
     log.write(log.addStream<types::Sonar>("sonar.ping"), {1}, ping(1, 2, 3));
     log.close();
     Reader reader(folder / "x.0.log");
-    for (const auto& fails : {"fan.image", "sonar.broken", "no.such"}) {
+    for (const auto& fails : {"fan.image", "sonar.broken", "sonar.torn", "no.such"}) {
         EXPECT_THROW(exportNpz(reader, fails, folder / "x.npz"), types::ConfigError) << fails;
         EXPECT_THROW(exportCsv(reader, fails, folder / "x.csv"), types::ConfigError) << fails;
     }

@@ -33,6 +33,14 @@ TEST(TypelibTest, FrameHasRocksOffsetsAndSize) {
     EXPECT_EQ(extentOf<types::Image>().size, 88u);
 }
 
+TEST(TypelibTest, ScansAndBeamsHaveRocksOffsetsAndSize) {
+    EXPECT_THAT(offsetsOf<types::SonarBeam>(), testing::ElementsAre(0, 8, 16, 24, 28, 32, 40));
+    EXPECT_EQ(extentOf<types::SonarBeam>().size, 64u);
+    EXPECT_THAT(offsetsOf<types::SonarScan>(),
+                testing::ElementsAre(0, 8, 32, 56, 58, 64, 72, 80, 88, 96, 104, 112, 113));
+    EXPECT_EQ(extentOf<types::SonarScan>().size, 120u);
+}
+
 TEST(TypelibTest, OnlyTypesWithOpaquesHaveASuffixAndOnlyOnTheLog) {
     EXPECT_EQ(typelibName<types::Pose>(), "/base/samples/RigidBodyState_m");
     EXPECT_EQ(cxxName<types::Pose>(), "/base/samples/RigidBodyState");

@@ -148,6 +148,20 @@ TEST(WireTest, APoseTakesItsFieldsAndTwoNames) {
     EXPECT_EQ(marshalled(pose).size(), 8 + (8 + 4) + 8 + 24 + 72 + 32 + 72 + 24 + 72 + 24 + 72u);
 }
 
+TEST(WireTest, ABeamIsItsScalarsWithTheirPaddingThenItsBytes) {
+    types::SonarBeam beam;
+    beam.beam = {1, 2, 3};
+    EXPECT_EQ(marshalled(beam).size(), 8 + 8 + 8 + 3 * 4 + 4 + 8 + 3u);
+    EXPECT_EQ(hex(marshalled(beam)).substr(2 * 36), "000000000300000000000000010203");
+}
+
+TEST(WireTest, AScanDropsThePaddingAfterItsFlags) {
+    types::SonarScan scan;
+    scan.data = {1, 2};
+    scan.time_beams = {{1}};
+    EXPECT_EQ(marshalled(scan).size(), 8 + (8 + 2) + (8 + 8) + 2 * 2 + 4 + 3 * 8 + 4 + 4 + 2 * 8 + 2u);
+}
+
 TEST(WireTest, AnImageIsReadBackWithItsAttributesAndItsMode) {
     types::Image sent;
     sent.time = {5};

@@ -3,6 +3,7 @@
 
 #include <csignal>
 
+#include "components/pocolog/Check.hpp"
 #include "components/pocolog/Reader.hpp"
 #include "components/pocolog/Writer.hpp"
 #include "tests/support/Folder.hpp"
@@ -97,6 +98,22 @@ TEST(WriterTest, AFolderThatIsNotThereIsAConfigurationError) {
     EXPECT_THROW(Writer("/"), types::ConfigError);
 }
 
+TEST(WriterTest, ALogThatIsBeingWrittenIsNotOverwritten) {
+    Folder folder;
+    Writer log(folder / "x.0.log");
+    log.write(log.addStream<double>("a.b"), {1}, 1.0);
+    log.flush();
+    try {
+        Writer(folder / "x.0.log");
+        FAIL() << "two writers have one file";
+    } catch (const types::ConfigError& error) {
+        EXPECT_THAT(error.what(), testing::HasSubstr("another logger writes it"));
+    }
+    EXPECT_EQ(Reader(folder / "x.0.log").samples().size(), 1u);
+    log.close();
+    EXPECT_NO_THROW(Writer(folder / "x.0.log"));
+}
+
 TEST(WriterTest, AFullDeviceIsToldWithTheSystemsReason) {
     Folder folder;
     std::filesystem::create_symlink("/dev/full", folder / "x.0.log");
@@ -139,6 +156,29 @@ TEST(WriterTest, AWriteThatFailsLeavesTheFlushedBlocksWhole) {
     EXPECT_LT(reader.samples().size(), 20u);
     reader.forEach<std::string>("a.b",
                                 [](const std::string& text, const SampleRef&) { EXPECT_EQ(text.size(), 1000u); });
+}
+
+TEST(WriterTest, AnotherFileGoesOnWithTheSameStreamsAndTimes) {
+    Folder folder;
+    Writer log(folder / "x.0.log");
+    const size_t first = log.addStream<double>("a.b");
+    const size_t second = log.addStream<int32_t>("a.c", {{"key", "value"}});
+    log.write(first, {20}, 1.0);
+    log.next(folder / "x.1.log");
+    log.write(first, {10}, 2.0);
+    log.write(second, {30}, 3);
+    EXPECT_EQ(log.kept(), 1u);
+    log.close();
+    EXPECT_EQ(log.kept(), 3u);
+    for (const char* file : {"x.0.log", "x.1.log"}) {
+        const Verdict verdict = check(folder / file);
+        EXPECT_FALSE(verdict.wrong) << file << ": " << verdict.wrong->what;
+        EXPECT_TRUE(std::filesystem::exists(indexPath(folder / file)));
+        EXPECT_EQ(Reader(folder / file).find("a.c")->metadata.at("key"), "value");
+    }
+    const Reader next(folder / "x.1.log");
+    ASSERT_EQ(next.samples().size(), 2u);
+    EXPECT_EQ(next.samples()[0].time.microseconds, 20) << "Rock joins the files of a sequence only in order of time";
 }
 
 TEST(WriterTest, NothingIsWrittenAfterTheEnd) {

@@ -4,7 +4,6 @@
 
 #include "types/Angle.hpp"
 #include "types/ConfigError.hpp"
-#include "types/Sonar.hpp"
 
 namespace insonify::types {
 namespace {
@@ -18,13 +17,6 @@ TEST(AngleTest, IsNormalisedToTheHalfOpenTurn) {
 TEST(AngleTest, UnknownStaysUnknown) {
     EXPECT_TRUE(Angle{}.isUnknown());
     EXPECT_TRUE(Angle::fromRad(Angle{}.rad).isUnknown());
-}
-
-TEST(SonarTest, BinsStartAtOneWayTimeTimesSpeed) {
-    Sonar ping;
-    ping.bin_duration = {100};
-    ping.speed_of_sound = 1500;
-    EXPECT_NEAR(ping.binStart(10), 1.5, 1e-9);
 }
 
 TEST(ConfigErrorTest, TellsEveryPlaceAndFault) {

@@ -1,0 +1,27 @@
+#pragma once
+#include <optional>
+
+#include "components/logger/LoggerConfig.hpp"
+#include "components/pocolog/Writer.hpp"
+
+namespace insonify::logger {
+
+/** Decides when a log goes on in its next file: x.0.log, x.1.log... */
+class Rotation {
+public:
+    /** Removes the files that would follow `log` from an earlier run: Rock would take them for a part of this one. */
+    Rotation(const LoggerConfig& config, pocolog::Writer& log);
+
+    /** Goes on in the next file, if this one is full or old enough, before a sample received at `now`. Throws as
+     *  Writer::next. */
+    void before(types::Time now);
+
+private:
+    bool due(types::Time now) const;
+
+    pocolog::Writer& log_;
+    std::optional<double> max_size_, max_duration_;
+    std::optional<types::Time> began_;  ///< When the file's first sample was received.
+};
+
+}  // namespace insonify::logger

@@ -1,0 +1,80 @@
+// What a log tells of the deployment that it was written in.
+#include <gmock/gmock.h>
+
+#include "components/framework/Deployment.hpp"
+#include "components/framework/Properties.hpp"
+#include "components/logger/registerTasks.hpp"
+#include "components/pocolog/Reader.hpp"
+#include "tests/support/Folder.hpp"
+#include "types/Sonar.hpp"
+
+namespace insonify::logger {
+namespace {
+
+struct PlannerConfig {
+    double range = 50;
+    std::optional<double> gain;
+    template <class Self, class V>
+    static void describe(Self& self, V& visit) {
+        visit(types::Field{"range", "m", "range"}, self.range);
+        visit(types::Field{"gain", "1", "gain"}, self.gain);
+    }
+};
+
+/** A sonar that has no plan before its first ping. */
+struct PlannerTask : framework::TaskContext {
+    using TaskContext::TaskContext;
+    framework::Properties<PlannerConfig> config{this};
+    framework::OutputPort<types::SonarPtr> ping{this, "ping", "a ping"};
+    framework::OutputPort<double> depth{this, "depth", "never written"};
+    const types::Plan* plan() const override { return plan_ ? &*plan_ : nullptr; }
+    void updateHook() override {
+        plan_ =
+            types::Plan{.features = {"HAVE_\"TVG\""}, .passes = {}, .omitted = {{"volume", "absent"}}, .notices = {}};
+        ping.write(std::make_shared<types::Sonar>());
+    }
+    std::optional<types::Plan> plan_;
+};
+
+TEST(LoggedRunTest, TheLogCarriesThePlanAndThePropertiesAreInALogBesideIt) {
+    const Folder folder;
+    framework::Registry registry;
+    logger::registerTasks(registry);
+    registry.add<PlannerTask>("test::PlannerTask", "a sonar");
+    framework::Deployment deployment(framework::DeploymentSpec::parse(R"(
+tasks:
+  sonar: {type: test::PlannerTask, activity: {period: 0.1}, properties: {range: 30}}
+  log: {type: logger::LoggerTask, properties: {file: x.0.log}}
+  second: {type: logger::LoggerTask, properties: {file: y.0.log, metadata: {vessel: Kai}}}
+connections:
+  - {from: sonar.ping, to: second.ping, policy: {type: buffer, size: 8}}
+  - {from: sonar.ping, to: log.ping, policy: {type: buffer, size: 8}}
+  - {from: sonar.depth, to: log.depth, policy: {type: buffer, size: 8}}
+)",
+                                                                      (folder / "x.yml").string()),
+                                     registry, folder.path());
+    deployment.configure();
+    const std::atomic<bool> never{false};
+    EXPECT_FALSE(deployment.run({.pings = 3}, never).failed());
+    EXPECT_THAT(deployment.cleanup(), testing::IsEmpty());
+
+    const pocolog::Reader log(folder / "x.0.log");
+    EXPECT_EQ(log.find("sonar.ping")->count, 3u);
+    EXPECT_EQ(log.find("sonar.ping")->metadata.at("insonify_plan"),
+              R"({"sonar": {"features": ["HAVE_\"TVG\""], "passes": [], "omitted": [{"name": "volume", "reason": )"
+              R"("absent"}], "notices": [], "rows": 0, "columns_per_beam": 0, "slabs": 0, "predicted_error": 0}})");
+    EXPECT_NE(log.find("sonar.depth"), nullptr) << "declared, though never written";
+
+    EXPECT_EQ(pocolog::Reader(folder / "y.0.log").find("sonar.ping")->count, 3u);
+    pocolog::Reader properties(folder / "properties.0.log");
+    EXPECT_TRUE(properties.complete()) << "two loggers, one of them writes it";
+    std::vector<double> ranges;
+    properties.forEach<double>("sonar.range",
+                               [&](double value, const pocolog::SampleRef&) { ranges.push_back(value); });
+    EXPECT_THAT(ranges, testing::ElementsAre(30));
+    EXPECT_EQ(properties.find("sonar.gain"), nullptr) << "absent";
+    EXPECT_NE(properties.find("log.file"), nullptr);
+}
+
+}  // namespace
+}  // namespace insonify::logger

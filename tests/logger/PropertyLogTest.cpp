@@ -1,0 +1,40 @@
+#include <gmock/gmock.h>
+
+#include "components/logger/PropertyLog.hpp"
+#include "components/pocolog/Check.hpp"
+#include "components/pocolog/Reader.hpp"
+#include "tests/support/Folder.hpp"
+
+namespace insonify::logger {
+namespace {
+
+TEST(PropertyLogTest, APropertyIsAStreamWithASampleForEachChange) {
+    Folder folder;
+    PropertyLog log(folder / "properties.0.log");
+    types::TaskRecord sonar{"sonar", "sonar::SonarTask", {{"range", 50.0}, {"bin_count", int64_t{500}}}, ""};
+    log.record({sonar}, {1'000'000}, {{"insonify_seed", "7"}});
+    log.record({sonar}, {2'000'000}, {});
+    sonar.properties = {{"range", 30.0}, {"bin_count", int64_t{500}}, {"tvg", "{\"max_db\": 100}"}};
+    log.record({sonar}, {3'000'000}, {});
+    log.close();
+
+    EXPECT_FALSE(pocolog::check(folder / "properties.0.log").wrong);
+    pocolog::Reader reader(folder / "properties.0.log");
+    std::vector<std::pair<double, double>> ranges;
+    reader.forEach<double>("sonar.range", [&](double value, const pocolog::SampleRef& at) {
+        ranges.emplace_back(at.time.seconds(), value);
+    });
+    EXPECT_THAT(ranges, testing::ElementsAre(testing::Pair(1, 50), testing::Pair(3, 30)));
+    EXPECT_EQ(reader.find("sonar.bin_count")->type, "/int64_t");
+    EXPECT_EQ(reader.find("sonar.bin_count")->count, 1u);
+    EXPECT_EQ(reader.find("sonar.tvg")->type, "/std/string");
+    const pocolog::Metadata& metadata = reader.find("sonar.range")->metadata;
+    EXPECT_EQ(metadata.at("rock_stream_type"), "property");
+    EXPECT_EQ(metadata.at("rock_task_name"), "sonar");
+    EXPECT_EQ(metadata.at("rock_task_object_name"), "range");
+    EXPECT_EQ(metadata.at("rock_task_model"), "sonar::SonarTask");
+    EXPECT_EQ(metadata.at("insonify_seed"), "7");
+}
+
+}  // namespace
+}  // namespace insonify::logger

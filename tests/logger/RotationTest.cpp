@@ -1,0 +1,93 @@
+// Logs of several files.
+#include <gmock/gmock.h>
+
+#include "components/logger/LoggerTask.hpp"
+#include "components/pocolog/Check.hpp"
+#include "components/pocolog/Reader.hpp"
+#include "tests/support/Folder.hpp"
+#include "tests/support/Ports.hpp"
+
+namespace insonify::logger {
+namespace {
+
+class RotationTest : public testing::Test {
+protected:
+    /** Logs texts of 100 kB, each 0.1 s after the last, into x.0.log and on. */
+    void log(LoggerConfig config, int count) {
+        config.file = "x.0.log";
+        LoggerTask task("log");
+        task.config.set(config);
+        task.environment().output_folder = folder.path();
+        types::Time now{5'000'000};
+        task.environment().now = [&] { return now; };
+        test::Writer<std::string> source("source");
+        source.port.connectTo(*task.makeInput("text", source.port), framework::ConnPolicy::buffer(8));
+        test::Writer<double> silent("silent");
+        silent.port.connectTo(*task.makeInput("silent", silent.port), framework::ConnPolicy::buffer(8));
+        ASSERT_TRUE(task.configure());
+        ASSERT_TRUE(task.start());
+        for (int i = 0; i < count; ++i) {
+            source.port.write(std::to_string(i) + std::string(100'000, ' '));
+            task.update();
+            now = now + types::Time{100'000};
+        }
+        ASSERT_TRUE(task.stop());
+        ASSERT_TRUE(task.cleanup());
+    }
+    std::filesystem::path file(int number) const { return folder / ("x." + std::to_string(number) + ".log"); }
+    /** Samples of each file, which must be valid and hold the next numbers in turn. */
+    std::vector<size_t> countsOf(int files) const {
+        std::vector<size_t> counts;
+        int expected = 0;
+        for (int number = 0; number < files; ++number) {
+            const pocolog::Verdict verdict = pocolog::check(file(number));
+            EXPECT_FALSE(verdict.wrong) << verdict.wrong->what;
+            EXPECT_TRUE(std::filesystem::exists(folder / ("x." + std::to_string(number) + ".idx")));
+            pocolog::Reader log(file(number));
+            log.forEach<std::string>("source.port", [&](const std::string& text, const pocolog::SampleRef&) {
+                EXPECT_EQ(std::stoi(text), expected++);
+            });
+            counts.push_back(log.samples().size());
+        }
+        EXPECT_FALSE(std::filesystem::exists(file(files)));
+        return counts;
+    }
+    const Folder folder;
+};
+
+TEST_F(RotationTest, AFileThatIsLargeEnoughIsFollowedByTheNext) {
+    LoggerConfig config;
+    config.max_file_size = 1e6;
+    log(config, 25);
+    EXPECT_THAT(countsOf(3), testing::ElementsAre(10, 10, 5));
+    EXPECT_LT(std::filesystem::file_size(file(0)), 1.11e6) << "the limit and one sample";
+    EXPECT_NE(pocolog::Reader(file(2)).find("silent.port"), nullptr) << "declared with the last file's end";
+}
+
+TEST_F(RotationTest, AFileThatIsOldEnoughIsFollowedByTheNext) {
+    LoggerConfig config;
+    config.max_file_duration = 1;
+    log(config, 25);
+    EXPECT_THAT(countsOf(3), testing::ElementsAre(10, 10, 5));
+}
+
+TEST_F(RotationTest, WithoutALimitThereIsOneFile) {
+    log({}, 25);
+    EXPECT_THAT(countsOf(1), testing::ElementsAre(25));
+}
+
+TEST_F(RotationTest, FilesOfALongerLogBeforeAreRemovedWithTheirIndices) {
+    LoggerConfig config;
+    config.max_file_size = 1e6;
+    log(config, 45);
+    EXPECT_TRUE(std::filesystem::exists(file(4)));
+    log(config, 15);
+    EXPECT_THAT(countsOf(2), testing::ElementsAre(10, 5));
+    for (int number = 2; number < 5; ++number) {
+        EXPECT_FALSE(std::filesystem::exists(file(number)));
+        EXPECT_FALSE(std::filesystem::exists(pocolog::indexPath(file(number))));
+    }
+}
+
+}  // namespace
+}  // namespace insonify::logger

@@ -1,0 +1,79 @@
+#pragma once
+// The two types in which Rock's older drivers log a sonar. Both are read as a ping: see toSonar.
+#include <limits>
+
+#include "types/Sonar.hpp"
+
+namespace insonify::types {
+
+/** One beam of a scanning sonar, field for field Rock's base::samples::SonarBeam. */
+struct SonarBeam {
+    static constexpr const char* type_name = "/base/samples/SonarBeam";
+    static constexpr float unknown = std::numeric_limits<float>::quiet_NaN();
+
+    Time time;
+    Angle bearing;
+    double sampling_interval = static_cast<double>(unknown);
+    float speed_of_sound = unknown;
+    float beamwidth_horizontal = unknown;
+    float beamwidth_vertical = unknown;
+    std::vector<uint8_t> beam;
+
+    template <class Self, class V>
+    static void describe(Self& self, V& visit) {
+        visit(Field{"time", "us", "when the beam was true in the world"}, self.time);
+        visit(Field{"bearing", "rad", "centre of the beam, 0 ahead, positive to port"}, self.bearing);
+        visit(Field{"sampling_interval", "s", "two-way travel time through one bin"}, self.sampling_interval);
+        visit(Field{"speed_of_sound", "m/s", "speed of sound that turns time into range"}, self.speed_of_sound);
+        visit(Field{"beamwidth_horizontal", "rad", "opening of the beam across"}, self.beamwidth_horizontal);
+        visit(Field{"beamwidth_vertical", "rad", "opening along the device's z axis"}, self.beamwidth_vertical);
+        visit(Field{"beam", "1", "echo strength of each bin, 255 is full scale"}, self.beam);
+    }
+};
+
+/** The beams of a fan from port to starboard, field for field Rock's base::samples::SonarScan. */
+struct SonarScan {
+    static constexpr const char* type_name = "/base/samples/SonarScan";
+
+    Time time;
+    std::vector<uint8_t> data;
+    std::vector<Time> time_beams;
+    uint16_t number_of_beams = 0;
+    uint16_t number_of_bins = 0;
+    Angle start_bearing;
+    Angle angular_resolution;
+    double sampling_interval = static_cast<double>(SonarBeam::unknown);
+    float speed_of_sound = SonarBeam::unknown;
+    Angle beamwidth_horizontal;
+    Angle beamwidth_vertical;
+    bool memory_layout_column = true;
+    bool polar_coordinates = true;
+
+    template <class Self, class V>
+    static void describe(Self& self, V& visit) {
+        visit(Field{"time", "us", "when the scan was true in the world"}, self.time);
+        visit(Field{"data", "1", "echo strengths, 255 is full scale"}, self.data);
+        visit(Field{"time_beams", "us", "start of each beam; 0: the beam is not set"}, self.time_beams);
+        visit(Field{"number_of_beams", "1", "beams"}, self.number_of_beams);
+        visit(Field{"number_of_bins", "1", "bins per beam"}, self.number_of_bins);
+        visit(Field{"start_bearing", "rad", "centre of the first beam, the one farthest to port"}, self.start_bearing);
+        visit(Field{"angular_resolution", "rad", "from one beam to the next, above 0"}, self.angular_resolution);
+        visit(Field{"sampling_interval", "s", "two-way travel time through one bin"}, self.sampling_interval);
+        visit(Field{"speed_of_sound", "m/s", "speed of sound that turns time into range"}, self.speed_of_sound);
+        visit(Field{"beamwidth_horizontal", "rad", "opening of one beam across the fan"}, self.beamwidth_horizontal);
+        visit(Field{"beamwidth_vertical", "rad", "opening along the device's z axis"}, self.beamwidth_vertical);
+        visit(Field{"memory_layout_column", "", "true: bin after bin, each of all beams; false: beam after beam"},
+              self.memory_layout_column);
+        visit(Field{"polar_coordinates", "", "true: beams and bins; false: a picture"}, self.polar_coordinates);
+    }
+};
+
+/** As a ping of one beam, 255 becoming 1. Throws std::logic_error for an interval that is no time. */
+Sonar toSonar(const SonarBeam& beam);
+
+/** As a ping, 255 becoming 1, beams that are not set NaN. Bearings fall from `start_bearing`, as the scan's beams
+ * stand; Rock's conversion lets them rise, and its fan is mirrored. Throws std::logic_error for a picture, for data of
+ * another size than the counts say and for an interval that is no time. */
+Sonar toSonar(const SonarScan& scan);
+
+}  // namespace insonify::types
