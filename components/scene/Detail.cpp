@@ -26,7 +26,7 @@ double distanceTo(glm::dvec3 p, const std::array<glm::vec3, 3>& corners) {
     const glm::dvec3 t[] = {corners[0], corners[1], corners[2]};  // thin triangles take more digits than float has
     const glm::dvec3 ab = t[1] - t[0], ac = t[2] - t[0], ap = p - t[0], bp = p - t[1], cp = p - t[2];
     const double d1 = glm::dot(ab, ap), d2 = glm::dot(ac, ap), d3 = glm::dot(ab, bp), d4 = glm::dot(ac, bp),
-                d5 = glm::dot(ab, cp), d6 = glm::dot(ac, cp);
+                 d5 = glm::dot(ab, cp), d6 = glm::dot(ac, cp);
     if (d1 <= 0 && d2 <= 0) return glm::length(ap);
     if (d3 >= 0 && d4 <= d3) return glm::length(bp);
     if (d6 >= 0 && d5 <= d6) return glm::length(cp);
@@ -101,7 +101,7 @@ public:
         inParallel(deviations.size(), [&](size_t i) { deviations[i] = deviation(i); });
         for (size_t i = deviations.size(); i-- > 0;) {
             float below = 0;
-            forParts(i, [&](size_t part) { below = std::max(below, mesh_.patches[part].deviation); });
+            forPartsOfParts(i, [&](size_t part) { below = std::max(below, mesh_.patches[part].deviation); });
             mesh_.patches[i].deviation = deviations[i] + below;
         }
         for (size_t i = 0; i < stand_ins_.size(); ++i) store(mesh_.patches[i], stand_ins_[i]);
@@ -111,6 +111,12 @@ private:
     template <class Job>
     void forParts(size_t patch, const Job& job) const {
         for (size_t part = patch + 1; part < mesh_.patches[patch].next; part = mesh_.patches[part].next) job(part);
+    }
+
+    /** Two levels down: what deviates there adds little to a deviation from it. */
+    template <class Job>
+    void forPartsOfParts(size_t patch, const Job& job) const {
+        forParts(patch, [&](size_t part) { forParts(part, job); });
     }
 
     /** All fine triangles of a patch. */
@@ -159,7 +165,7 @@ private:
         return result;
     }
 
-    /** Largest distance of a vertex of the next finer level from what stands for a patch. */
+    /** Largest distance of a vertex of the level but one below from what stands for a patch. */
     float deviation(size_t patch) const {
         const Surface surface(mesh_, stand_ins_[patch]);
         float largest = 0;
@@ -171,8 +177,11 @@ private:
                 if (holds(mesh_.patches[patch], mesh_.positions[vertex]))
                     largest = std::max(largest, surface.distance(mesh_.positions[vertex], largest));
         };
-        if (ranks_[patch] == 0) take(fine(mesh_.patches[patch]));
-        forParts(patch, [&](size_t part) { take(stand_ins_[part]); });
+        if (ranks_[patch] <= 1) take(fine(mesh_.patches[patch]));
+        forParts(patch, [&](size_t part) {
+            if (ranks_[patch] > 1 && ranks_[part] == 0) take(fine(mesh_.patches[part]));
+        });
+        forPartsOfParts(patch, [&](size_t part) { take(stand_ins_[part]); });
         return largest;
     }
 

@@ -115,26 +115,24 @@ void Culler::placeObject(size_t index, const glm::dmat4& sonar_from_object) {
               row(normals, 1),           row(normals, 2),           extent(index, sonar_from_object)};
 }
 
-void Culler::visible(const Slab& slab, std::vector<Run>& runs) const {
+void Culler::visible(const Slab& slab, std::vector<Run>& runs, double share) const {
     runs.clear();
+    const double pixels = share * rules_.pixels * leastPixel(slab), metres = share * rules_.metres;
     const View view = viewOf(slab);
     for (size_t i = 0; i < records_.size(); ++i) {
         if (far_[i]) continue;
         const Box& box = mesh_boxes_[static_cast<size_t>(geometry_.objects[i].mesh)];
         const glm::vec3 centre(box.low * 0.5 + box.high * 0.5), half(box.high * 0.5 - box.low * 0.5);
         const float distance = nearest(view, records_[i], centre, half);
-        if (distance <= range_max_) addObject(queryOf(i, view, leastPixel(slab), distance), runs);
+        if (distance <= range_max_) addObject({i, view, pixels, metres, before(i, distance)}, runs);
     }
 }
 
-Culler::Query Culler::queryOf(size_t object, const View& view, double pixel, float distance) const {
-    Query query{object, view, pixel, {}};
-    if (!(distance > rules_.range_min)) return query;  // of a front that is blanked the back may be heard
+std::optional<glm::vec3> Culler::before(size_t object, float distance) const {
+    if (!(distance > rules_.range_min)) return {};  // of a front that is blanked the back may be heard
     const ObjectRecord& r = records_[object];
     // The inverse transpose has the rows that take the sonar's place into the object's axes.
-    query.before =
-        -(r.row_x.w * glm::vec3(r.normal_x) + r.row_y.w * glm::vec3(r.normal_y) + r.row_z.w * glm::vec3(r.normal_z));
-    return query;
+    return -(r.row_x.w * glm::vec3(r.normal_x) + r.row_y.w * glm::vec3(r.normal_y) + r.row_z.w * glm::vec3(r.normal_z));
 }
 
 void Culler::addObject(const Query& query, std::vector<Run>& runs) const {
@@ -143,7 +141,7 @@ void Culler::addObject(const Query& query, std::vector<Run>& runs) const {
     for (size_t i = 0; i < mesh.patches.size();) {
         const types::Patch& patch = mesh.patches[i];
         const float distance = nearest(query.view, records_[query.object], patch.centre, patch.half);
-        const double tolerated = std::min(rules_.pixels * query.pixel * distance, rules_.metres);
+        const double tolerated = std::min(query.pixels * distance, query.metres);
         if (!(distance <= range_max_)) {
             i = patch.next;
         } else if (patch.index_count > 0 && patch.deviation * scales_[query.object] < tolerated) {

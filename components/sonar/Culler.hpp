@@ -39,8 +39,9 @@ public:
 
     /** Places all objects relative to the sonar; once a ping, before `visible`. */
     void place(const types::Snapshot& snapshot);
-    /** Runs that a slab may see, neighbours joined. */
-    void visible(const Slab& slab, std::vector<Run>& runs) const;
+    /** Runs that a slab may see, neighbours joined; of detail, what deviates by `share` of what the rules allow is
+     *  left out. */
+    void visible(const Slab& slab, std::vector<Run>& runs, double share = 1) const;
     const std::vector<ObjectRecord>& records() const { return records_; }
     size_t runLimit() const { return run_limit_; }  ///< Of what `visible` gives.
 
@@ -52,10 +53,10 @@ private:
     struct Query {
         size_t object;
         const View& view;
-        double pixel;                     ///< Smaller side of a pixel at 1 m [m].
+        double pixels, metres;            ///< A surface may be off by so much for each metre of range, and at most.
         std::optional<glm::vec3> before;  ///< Place of the sonar before the object's front, in its axes [m].
     };
-    Query queryOf(size_t object, const View& view, double pixel, float distance) const;
+    std::optional<glm::vec3> before(size_t object, float distance) const;
     void addObject(const Query& query, std::vector<Run>& runs) const;
     void addClusters(const Query& query, std::span<const types::Cluster> clusters, std::vector<Run>& runs) const;
     bool turnsItsBack(const Query& query, const types::Cluster& cluster) const;
