@@ -23,11 +23,16 @@ bool carriesPings(const Ports& ports) {
     return false;
 }
 
-/** Sonars and all from which they hear, directly or not. */
 std::set<std::string> upstreamOfSonars(const Deployment& deployment) {
     std::set<std::string> names;
     for (const auto& task : deployment.tasks())
         if (carriesPings(task->outputs()) && !carriesPings(task->inputs())) names.insert(task->name());
+    return upstreamOf(std::move(names), deployment);
+}
+
+}  // namespace
+
+std::set<std::string> upstreamOf(std::set<std::string> names, const Deployment& deployment) {
     for (size_t before = 0; before != names.size();) {
         before = names.size();
         for (const framework::Connection& connection : deployment.connections())
@@ -35,8 +40,6 @@ std::set<std::string> upstreamOfSonars(const Deployment& deployment) {
     }
     return names;
 }
-
-}  // namespace
 
 DeploymentSpec pipelineOf(DeploymentSpec spec, framework::Registry& registry) {
     const std::set<std::string> kept = upstreamOfSonars(Deployment(spec, registry));

@@ -2,6 +2,7 @@
 #include <set>
 #include <string>
 
+#include "components/framework/Deployment.hpp"
 #include "components/framework/DeploymentSpec.hpp"
 #include "components/framework/Registry.hpp"
 #include "components/sonar/SonarConfig.hpp"
@@ -14,6 +15,9 @@ framework::DeploymentSpec pipelineOf(framework::DeploymentSpec spec, framework::
 
 /** Tasks of the deployment that write pings or read them. */
 std::set<std::string> pingTasks(const framework::DeploymentSpec& spec, framework::Registry& registry);
+
+/** These tasks and all from which they hear, directly or not. */
+std::set<std::string> upstreamOf(std::set<std::string> names, const framework::Deployment& deployment);
 
 /** A sonar as it is configured, of the quality that it has chosen, and what it renders in one ping. */
 struct SonarAt {

@@ -4,11 +4,11 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <cstdlib>
 #include <filesystem>
 #include <memory>
 
 #include "components/deployer/Commands.hpp"
+#include "components/deployer/RecordedSettings.hpp"
 #include "components/deployer/ReplaySpec.hpp"
 #include "components/deployer/RunOptions.hpp"
 #include "components/deployer/ScoreReport.hpp"
@@ -25,12 +25,13 @@ struct Options : RunOptions {
     size_t worst = 10;
 };
 
-/** The seed that a log was recorded with; 0 when that is not known. */
-uint64_t recordedSeed(const pocolog::Reader& log) {
-    for (const pocolog::Stream& stream : log.streams())
-        if (const auto seed = stream.metadata.find("insonify_seed"); seed != stream.metadata.end())
-            return std::strtoull(seed->second.c_str(), nullptr, 10);
-    return 0;
+/** The log's own settings, below those of the user. */
+void takeSettings(const pocolog::Reader& log, Options& options) {
+    const std::vector<std::string> recorded = recordedSettings(log, loadSpec(options), options.set, options.seed);
+    if (!options.quiet)
+        for (const std::string& setting : recorded) fmt::print(stderr, "notice: as in the log: {}\n", setting);
+    options.set.insert(options.set.begin(), recorded.begin(), recorded.end());
+    if (!options.seed) options.seed = recordedSeed(log);
 }
 
 /** Scores the log against what was rendered again, and tells. Gives the exit code. */
@@ -42,6 +43,9 @@ int tellScore(pocolog::Reader& log, const std::vector<std::string>& streams, siz
     write(scoreJson(scores), folder / "score.json");
     writeScorePictures(log, rendered, scores, worst, folder);
     fmt::print("{}", scoreTable(scores, worst));
+    for (const StreamScore& score : scores)
+        if (const std::string rest = leftOut(score); !rest.empty())
+            fmt::print(stderr, "warning: {}: not all pings were compared: {}\n", score.stream, rest);
     if (std::ranges::any_of(scores, [](const StreamScore& score) { return !score.pings.empty(); })) return 0;
     fmt::print(stderr, "insonify: no ping of {} could be compared with one that was rendered again\n",
                log.path().string());
@@ -49,25 +53,42 @@ int tellScore(pocolog::Reader& log, const std::vector<std::string>& streams, siz
 }
 
 /** Waits for a line on stdin; at the end of stdin no longer. */
-void waitForLine(const std::atomic<bool>& stop) {
+std::string nextLine(const std::atomic<bool>& stop) {
+    std::string line;
     pollfd input{STDIN_FILENO, POLLIN, 0};
-    for (char read_last = 0; !stop && read_last != '\n';)
-        if (poll(&input, 1, 50) != 0 && read(STDIN_FILENO, &read_last, 1) != 1) return;
+    for (char read_last = 0; !stop && read_last != '\n';) {
+        if (poll(&input, 1, 50) == 0) continue;
+        if (read(STDIN_FILENO, &read_last, 1) != 1) break;
+        if (read_last != '\n') line += read_last;
+    }
+    return line;
+}
+
+/** Waits for a line that lets the next instant come, `seek S` that from another place; one that is refused does not. */
+void waitForStep(framework::Deployment& deployment, const std::atomic<bool>& stop) {
+    const std::string seek = "seek ";
+    for (std::string line = nextLine(stop); line.starts_with(seek); line = nextLine(stop)) try {
+            deployment.call(deployment.tasks().front()->name() + ".seek", {line.substr(seek.size())});
+            return;
+        } catch (const std::exception& error) {
+            fmt::print(stderr, "insonify: {}\n", error.what());
+        }
 }
 
 int replay(Options options) {
     pocolog::Reader log(options.replay.log);
+    if (options.replay.rerender) takeSettings(log, options);
     framework::DeploymentSpec spec = loadSpec(options);
     const std::vector<std::string> streams = options.score ? pingStreams(log, spec) : std::vector<std::string>{};
     if (options.score && streams.empty())
         throw types::ConfigError(log.path(), "", "holds no pings of a task of " + spec.file + "; nothing to score");
     spec = replaying(std::move(spec), log, options.replay);
     if (options.score) addLogger(spec, streams, rerendered_file);
-    if (options.replay.rerender && options.seed == 0) options.seed = recordedSeed(log);
     if (options.step)
-        options.progress = [&stop = stopOnSignals()](const framework::Progress& progress) {
+        options.progress = [&stop = stopOnSignals()](framework::Deployment& deployment,
+                                                     const framework::Progress& progress) {
             fmt::print(stderr, "{:.6f} s\n", progress.elapsed_s);
-            waitForLine(stop);
+            waitForStep(deployment, stop);
         };
     std::filesystem::path folder;
     const int code = runDeployment(std::move(spec), options, &folder);
@@ -89,7 +110,10 @@ void addReplayCommand(CLI::App& app, Action& action) {
         ->type_name("S")
         ->check(CLI::NonNegativeNumber);
     auto* loop = command->add_flag("--loop", options->replay.loop, "on and on, until --pings, --duration or SIGINT");
-    command->add_flag("--step", options->step, "one instant of the log for each line on stdin")->excludes(pace);
+    command
+        ->add_flag("--step", options->step,
+                   "one instant of the log for each line on stdin; a line `seek S` goes to S seconds of the log")
+        ->excludes(pace);
     auto* rerender = command->add_flag("--rerender", options->replay.rerender,
                                        "the log's poses drive the sonars, which render anew");
     auto* score = command->add_flag("--score", options->score, "compares what is rendered with the log's pings");

@@ -75,9 +75,19 @@ std::vector<ConnectionSpec> reconnected(const DeploymentSpec& spec, const pocolo
     return connections;
 }
 
+/** A head does not tell where it stood when a log's middle was recorded. */
+void refuseScansFrom(const DeploymentSpec& spec, double from) {
+    for (const TaskSpec& task : spec.tasks)
+        if (from > 0 && task.type == "sonar::ScanningSonarTask")
+            throw types::ConfigError(spec.file, task.path(),
+                                     "is a scanning sonar, whose head starts at its left limit: rendered again with "
+                                     "--from it would look elsewhere than in the log; leave --from out");
+}
+
 }  // namespace
 
 DeploymentSpec replaying(DeploymentSpec spec, const pocolog::Reader& log, const ReplayOptions& options) {
+    if (options.rerender) refuseScansFrom(spec, options.from);
     const std::set<std::string> replaced = replacedTasks(log, spec, options.rerender);
     const std::string name = freeName(spec, "replay");
     // New lists are made, since assigning a YAML node changes what other nodes see.

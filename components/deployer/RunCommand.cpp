@@ -84,11 +84,37 @@ void tell(const framework::Deployment& deployment, const Notices& told, const Su
     fmt::print("{}files in {}\n", summary.text(), folder.path().string());
 }
 
+/** Split at its commas, those within brackets left alone. */
+std::vector<std::string> argumentsIn(const std::string& text) {
+    std::vector<std::string> arguments(1);
+    int depth = 0;
+    for (const char c : text) {
+        depth += static_cast<int>(c == '[' || c == '{') - static_cast<int>(c == ']' || c == '}');
+        if (c == ',' && depth == 0)
+            arguments.emplace_back();
+        else
+            arguments.back() += c;
+    }
+    return arguments;
+}
+
+void callAll(framework::Deployment& deployment, const RunOptions& options) {
+    for (const std::string& call : options.calls) {
+        const size_t equals = call.find('=');
+        const std::string result =
+            deployment.call(call.substr(0, equals), equals == std::string::npos ? std::vector<std::string>{}
+                                                                                : argumentsIn(call.substr(equals + 1)));
+        if (!options.quiet && !result.empty()) fmt::print("{}: {}\n", call, result);
+    }
+}
+
 framework::RunResult runAll(framework::Deployment& deployment, const RunOptions& options,
                             const std::atomic<bool>& stop) {
     if (!options.quiet)
         for (const auto& task : deployment.tasks()) printNotices(*task, task->notices());
-    if (options.progress) return deployment.run(options.limits, stop, options.progress);
+    if (options.progress)
+        return deployment.run(options.limits, stop,
+                              [&](const framework::Progress& progress) { options.progress(deployment, progress); });
     ProgressLine progress(!options.quiet);
     return deployment.run(options.limits, stop, std::ref(progress));
 }
@@ -97,7 +123,7 @@ framework::RunResult runAll(framework::Deployment& deployment, const RunOptions&
 
 int runDeployment(framework::DeploymentSpec spec, const RunOptions& options, std::filesystem::path* written_to) {
     framework::Registry registry = builtInTasks();
-    framework::Deployment deployment(std::move(spec), registry, options.out, options.seed);
+    framework::Deployment deployment(std::move(spec), registry, options.out, options.seed.value_or(0));
     OutputFolder folder(options.out, options.deployment);
     deployment.environment().output_folder = folder.path();
     if (written_to) *written_to = folder.path();
@@ -106,6 +132,7 @@ int runDeployment(framework::DeploymentSpec spec, const RunOptions& options, std
     const std::atomic<bool>& stop = stopOnSignals();
     deployment.configure();
     folder.keep();
+    callAll(deployment, options);
 
     const Notices told = noticesOf(deployment);
     framework::RunResult result = runAll(deployment, options, stop);
@@ -122,6 +149,10 @@ void addRunCommand(CLI::App& app, Action& action) {
     CLI::App* command = app.add_subcommand("run", "Runs a deployment");
     command->add_option("DEPLOYMENT", options->deployment, "a YAML file")->required();
     options->addTo(*command);
+    command
+        ->add_option("--call", options->calls,
+                     "task.operation[=argument,...]: calls it once all is configured; may be repeated, called in order")
+        ->allow_extra_args(false);
     command->callback(
         [options, &action] { action = [options] { return runDeployment(loadSpec(*options), *options); }; });
 }

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -12,14 +13,16 @@ namespace insonify::deployer {
 
 /** What `run` and `replay` can be told. */
 struct RunOptions {
-    std::string deployment;        ///< File.
-    std::string out;               ///< Folder for what the run writes; empty: a fresh one.
-    std::string summary;           ///< File for the summary in JSON; empty: none.
-    std::vector<std::string> set;  ///< "task.property.path=value"
+    std::string deployment;          ///< File.
+    std::string out;                 ///< Folder for what the run writes; empty: a fresh one.
+    std::string summary;             ///< File for the summary in JSON; empty: none.
+    std::vector<std::string> set;    ///< "task.property.path=value"
+    std::vector<std::string> calls;  ///< "task.operation=argument,...", made in this order once all is configured.
     framework::RunLimits limits;
-    uint64_t seed = 0;  ///< 0: tasks keep the seeds of the file.
+    std::optional<uint64_t> seed;  ///< None or 0: tasks keep the seeds of the file.
     bool quiet = false;
-    std::function<void(const framework::Progress&)> progress;  ///< Called after each instant of a lockstep run.
+    /** Called after each instant of a lockstep run. */
+    std::function<void(framework::Deployment&, const framework::Progress&)> progress;
 
     /** All but `deployment`. */
     void addTo(CLI::App& command);

@@ -37,9 +37,7 @@ constexpr Column columns[] = {
 void addSummary(std::string& text, const StreamScore& score) {
     const auto out = std::back_inserter(text);
     fmt::format_to(out, "{}: {} pings compared", score.stream, score.pings.size());
-    if (score.not_rendered > 0) fmt::format_to(out, ", {} not rendered again", score.not_rendered);
-    if (score.not_recorded > 0) fmt::format_to(out, ", {} not in the log", score.not_recorded);
-    if (score.other_shape > 0) fmt::format_to(out, ", {} of other beams, bins or range", score.other_shape);
+    if (const std::string rest = leftOut(score); !rest.empty()) text += ", " + rest;
     if (!score.pings.empty())
         fmt::format_to(out, "; relative L2 {:.4g} to {:.4g}, median {:.4g}", score.pings.back().metrics.rel_l2,
                        score.pings.front().metrics.rel_l2, score.pings[score.pings.size() / 2].metrics.rel_l2);
@@ -95,6 +93,14 @@ void writePictures(pocolog::Reader& recorded, pocolog::Reader& rendered, const S
 }
 
 }  // namespace
+
+std::string leftOut(const StreamScore& score) {
+    std::vector<std::string> reasons;
+    if (score.not_rendered > 0) reasons.push_back(fmt::format("{} not rendered again", score.not_rendered));
+    if (score.not_recorded > 0) reasons.push_back(fmt::format("{} not in the log", score.not_recorded));
+    if (score.other_shape > 0) reasons.push_back(fmt::format("{} of other beams, bins or range", score.other_shape));
+    return fmt::format("{}", fmt::join(reasons, ", "));
+}
 
 std::string scoreTable(const std::vector<StreamScore>& streams, size_t worst) {
     std::string text;

@@ -8,6 +8,9 @@
 
 namespace insonify::deployer {
 
+/** How many pings were not compared, and why; empty: all were. */
+std::string leftOut(const StreamScore& score);
+
 /** For each stream a line on all of its pings, and a table of the worst of them. */
 std::string scoreTable(const std::vector<StreamScore>& streams, size_t worst);
 

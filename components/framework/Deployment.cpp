@@ -7,7 +7,6 @@
 #include "components/framework/Activity.hpp"
 #include "components/framework/Lockstep.hpp"
 #include "components/framework/Operation.hpp"
-#include "components/framework/Properties.hpp"
 #include "components/framework/Wiring.hpp"
 
 namespace insonify::framework {
@@ -53,9 +52,13 @@ Deployment::Deployment(DeploymentSpec spec, Registry& registry, std::filesystem:
     Wiring(*this, registry).make(seed);
     environment_->records = [this] {
         std::vector<types::TaskRecord> records;
-        for (const auto& task : tasks_) records.push_back(recordOf(*task));
+        for (const auto& task : tasks_) {
+            records.push_back(task->record());
+            records.back().type = spec_.task(task->name())->type;
+        }
         return records;
     };
+    for (const auto& task : tasks_) task->refreshRecord();
     startAtFirstStamp();
     followClock();
     for (const auto& task : tasks_)
@@ -68,22 +71,7 @@ Deployment::~Deployment() { cleanup(); }
 void Deployment::setClock() {
     simulated_us_ = start_.microseconds;
     environment_->start_time = [this] { return start_; };
-    if (spec_.lockstep)
-        environment_->now = [this] { return types::Time{simulated_us_.load()}; };
-    else
-        environment_->now = [] {
-            const auto since_epoch = std::chrono::system_clock::now().time_since_epoch();
-            return types::Time{std::chrono::duration_cast<std::chrono::microseconds>(since_epoch).count()};
-        };
-}
-
-types::TaskRecord Deployment::recordOf(TaskContext& task) const {
-    types::TaskRecord record{task.name(), spec_.task(task.name())->type, {}, ""};
-    task.activity().call([&] {
-        for (const PropertiesBase* properties : task.properties()) record.properties.merge(properties->values());
-        if (const types::Plan* plan = task.plan()) record.plan = flowYaml(*plan);
-    });
-    return record;
+    if (spec_.lockstep) environment_->now = [this] { return types::Time{simulated_us_.load()}; };
 }
 
 void Deployment::startAtFirstStamp() {

@@ -95,7 +95,6 @@ public:
 private:
     friend class Wiring;
     void setClock();
-    types::TaskRecord recordOf(TaskContext& task) const;
     /** Simulated time starts with what a source wants to play, if there is one. */
     void startAtFirstStamp();
     /** In realtime, a source's own clock takes the place of the wall's. */

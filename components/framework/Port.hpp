@@ -4,8 +4,10 @@
 //     InputPort<types::Pose>      pose{this, "pose", "the vehicle in the world"};
 //     OutputPort<types::SonarPtr> ping{this, "ping", "one ping, noiseless"};
 //
-// Ports connect and disconnect at any time, from any thread, while samples are written and read; one that goes
-// disconnects itself. A writer waits for no reader: at most for the copying of one sample.
+// Ports connect and disconnect at any time, from any thread, while samples are written and read. One that goes
+// disconnects itself, whatever the ports at its other ends do meanwhile, except that they must not go or be
+// disconnected from it at that moment; no call on the port itself may be under way or begin. A writer waits for no
+// reader: at most for the copying of one sample.
 #include <memory>
 #include <mutex>
 #include <string>
@@ -176,6 +178,7 @@ class OutputPort final : public OutputPortBase {
 public:
     using OutputPortBase::OutputPortBase;
     ~OutputPort() override {
+        std::lock_guard lock(mutex_);
         for (const Reader& reader : readers_) reader.port->drop(*this);
     }
     void write(const T& sample) {

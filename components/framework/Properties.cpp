@@ -55,6 +55,7 @@ void PropertiesBase::set(const std::string& name, const std::string& yaml) {
         putBack();
         throw std::runtime_error(outcome.reason);
     }
+    owner_.refreshRecord();
 }
 
 }  // namespace insonify::framework

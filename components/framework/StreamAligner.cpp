@@ -5,6 +5,15 @@
 #include <algorithm>
 
 namespace insonify::framework {
+namespace {
+
+/** Whether `later` is `span` or more after `time`, which it is not before; unsigned, as signed it may overflow. */
+bool outlasts(types::Time later, types::Time time, types::Time span) {
+    return static_cast<uint64_t>(later.microseconds) - static_cast<uint64_t>(time.microseconds) >=
+           static_cast<uint64_t>(span.microseconds);
+}
+
+}  // namespace
 
 AlignedPortBase::AlignedPortBase(StreamAligner& aligner, const InputPortBase& port) : aligner_(aligner), port_(port) {
     aligner.ports_.push_back(this);
@@ -30,11 +39,11 @@ std::string AlignedPortBase::trouble() const {
 
 void StreamAligner::clear(double timeout) {
     timeout_ = types::Time::fromSeconds(timeout);
-    newest_ = done_ = {};
+    newest_ = done_ = before_all;
     for (AlignedPortBase* port : ports_) {
         port->forget();
         port->counts_ = {};
-        port->last_ = {};
+        port->last_ = before_all;
     }
 }
 
@@ -73,7 +82,7 @@ bool StreamAligner::isDue(const AlignedPortBase& candidate) {
     };
     if (std::ranges::none_of(ports_, holdsUp)) return true;
     const auto isFull = [](const AlignedPortBase* port) { return port->full(); };
-    if (newest_ - time < timeout_ && std::ranges::none_of(ports_, isFull)) return false;
+    if (!outlasts(newest_, time, timeout_) && std::ranges::none_of(ports_, isFull)) return false;
     for (AlignedPortBase* port : ports_)
         if (holdsUp(port)) ++port->counts_.awaited;
     return true;

@@ -1,6 +1,7 @@
 #pragma once
 #include <cstdint>
 #include <functional>
+#include <limits>
 #include <memory>
 #include <string>
 #include <vector>
@@ -11,6 +12,9 @@
 namespace insonify::framework {
 
 class StreamAligner;
+
+/** Of a sample that has not come yet. */
+constexpr types::Time before_all{std::numeric_limits<int64_t>::min()};
 
 /** One of the ports of a StreamAligner, without its type. */
 class AlignedPortBase {
@@ -44,7 +48,7 @@ protected:
     StreamAligner& aligner_;
     const InputPortBase& port_;
     Counts counts_;
-    types::Time last_;  ///< Of the newest sample.
+    types::Time last_ = before_all;  ///< Of the newest sample.
 };
 
 /** Hands over what comes in on several ports in the order of the samples' own time, whatever the order of their
@@ -77,8 +81,8 @@ private:
 
     std::vector<AlignedPortBase*> ports_;
     types::Time timeout_;
-    types::Time newest_;  ///< Of all samples.
-    types::Time done_;    ///< Of the sample handed over last.
+    types::Time newest_ = before_all;  ///< Of all samples.
+    types::Time done_ = before_all;    ///< Of the sample handed over last.
 };
 
 template <class T>

@@ -7,14 +7,10 @@
 #include "components/framework/LifeCycle.hpp"
 #include "components/framework/Operation.hpp"
 #include "components/framework/Port.hpp"
+#include "components/framework/Properties.hpp"
 
 namespace insonify::framework {
 namespace {
-
-types::Time wallClock() {
-    const auto since_epoch = std::chrono::system_clock::now().time_since_epoch();
-    return {std::chrono::duration_cast<std::chrono::microseconds>(since_epoch).count()};
-}
 
 std::string textOf(std::exception_ptr thrown) {
     try {
@@ -35,6 +31,11 @@ auto find(const Ports& ports, const std::string& name) -> typename Ports::value_
 
 }  // namespace
 
+types::Time wallClock() {
+    const auto since_epoch = std::chrono::system_clock::now().time_since_epoch();
+    return {std::chrono::duration_cast<std::chrono::microseconds>(since_epoch).count()};
+}
+
 const char* toString(TaskState state) {
     static constexpr const char* names[] = {"Init",    "PreOperational", "FatalError",  "Exception",
                                             "Stopped", "Running",        "RunTimeError"};
@@ -45,7 +46,6 @@ TaskContext::TaskContext(std::string name)
     : name_(std::move(name)),
       environment_(std::make_shared<Environment>()),
       activity_(std::make_unique<Activity>(*this)) {
-    environment_->now = wallClock;
     environment_->start_time = [start = wallClock()] { return start; };
     state_port_ = std::make_unique<OutputPort<int32_t>>(this, "state", "state of the task, numbered as in Orocos");
     state_port_->keepLast();
@@ -67,6 +67,19 @@ std::string TaskContext::lastError() const {
 void TaskContext::setLastError(const std::string& text) {
     std::lock_guard lock(error_mutex_);
     last_error_ = text;
+}
+
+types::TaskRecord TaskContext::record() const {
+    std::lock_guard lock(record_mutex_);
+    return record_;
+}
+
+void TaskContext::refreshRecord() {
+    types::TaskRecord record{name_, "", {}, ""};
+    for (const PropertiesBase* properties : properties_) record.properties.merge(properties->values());
+    if (const types::Plan* plan = this->plan()) record.plan = flowYaml(*plan);
+    std::lock_guard lock(record_mutex_);
+    record_ = std::move(record);
 }
 
 void TaskContext::setState(TaskState state) {
@@ -155,6 +168,7 @@ Outcome TaskContext::configureNow() {
     } catch (...) {
         return fail("configureHook", std::current_exception(), false, false);
     }
+    refreshRecord();
     setState(TaskState::Stopped);
     return {};
 }

@@ -29,17 +29,19 @@ struct Outcome {
     explicit operator bool() const { return done; }
 };
 
+types::Time wallClock();
+
 /** Where a task finds and leaves files, and what time it is. Shared by all tasks of a deployment. */
 struct Environment {
-    std::filesystem::path input_folder = ".";   ///< Of the deployment file.
-    std::filesystem::path output_folder = ".";  ///< `--out`.
-    std::function<types::Time()> now;           ///< Wall clock, simulated time or log time; set by the deployment.
-    std::function<types::Time()> start_time;    ///< Of the run, on the same clock.
+    std::filesystem::path input_folder = ".";      ///< Of the deployment file.
+    std::filesystem::path output_folder = ".";     ///< `--out`.
+    std::function<types::Time()> now = wallClock;  ///< Simulated or log time instead, where the deployment says so.
+    std::function<types::Time()> start_time;       ///< Of the run, on the same clock.
     bool lockstep = false;
     std::string deployment_text;  ///< The YAML as read, for the log's metadata.
     uint64_t seed = 0;            ///< Of the run (`--seed`), 0 when not given.
-    /** Properties and plans of all tasks, in file order, as they are now: waits for the hook that a task is in. Empty
-     *  for a task outside of a deployment. */
+    /** The records of all tasks, in file order, as each has told its own last: waits for no task. Empty for a task
+     *  outside of a deployment. */
     std::function<std::vector<types::TaskRecord>()> records;
 };
 
@@ -105,7 +107,8 @@ public:
 
     /** Faults that can be seen without configuring (files that are not there...); paths as in types::Problem. */
     virtual void check(types::Problems& /*problems*/) const {}
-    /** What is compiled and run, if this task decides such a thing. Valid after the first cycle. */
+    /** What is compiled and run, if this task decides such a thing. Valid after the first cycle. Whoever overrides it
+     *  calls refreshRecord() when it has changed, before the first sample that it holds for is written. */
     virtual const types::Plan* plan() const { return nullptr; }
     /** Notices for the user (a mesh without triangles, dropped vertices). Valid after configure. */
     virtual std::vector<std::string> notices() const { return {}; }
@@ -119,6 +122,12 @@ public:
     /** In realtime, the clock that all tasks read in place of the wall's, which it may follow (a log's, at its pace);
      *  none: this task has none of its own. Asked for once, when the connections are made. */
     virtual std::function<types::Time()> clock(std::function<types::Time()> /*wall*/) { return {}; }
+
+    /** Properties and plan, for any thread; the type is the deployment's to know. */
+    types::TaskRecord record() const;
+    /** Takes what holds now over into record(): on the task's thread, or before there is one. configure() and what
+     *  sets properties do it. */
+    void refreshRecord();
 
     Environment& environment() { return *environment_; }
     void setEnvironment(std::shared_ptr<Environment> environment) { environment_ = std::move(environment); }
@@ -188,6 +197,8 @@ private:
     std::unique_ptr<types::ConfigError> config_error_;
     mutable std::mutex error_mutex_;
     std::string last_error_;
+    mutable std::mutex record_mutex_;
+    types::TaskRecord record_;
     std::vector<InputPortBase*> inputs_;
     std::vector<OutputPortBase*> outputs_;
     std::vector<PropertiesBase*> properties_;

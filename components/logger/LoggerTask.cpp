@@ -100,7 +100,9 @@ bool LoggerTask::logsProperties() {
 
 bool LoggerTask::configureHook() {
     checkInlets();
-    log_.emplace(makePath(config->file));
+    const std::filesystem::path path = makePath(config->file);
+    removeSequels(path);
+    log_.emplace(path);
     rotation_.emplace(*config, *log_);
     if (logsProperties()) properties_.emplace(log_->path().parent_path() / config->property_file);
     declared_ = 0;

@@ -1,14 +1,20 @@
 #include "components/logger/Rotation.hpp"
 
+#include <vector>
+
 namespace insonify::logger {
 
-Rotation::Rotation(const LoggerConfig& config, pocolog::Writer& log)
-    : log_(log), max_size_(config.max_file_size), max_duration_(config.max_file_duration) {
-    if (!max_size_ && !max_duration_) return;
-    std::error_code not_there;
-    for (auto old = nextInSequence(log.path()); std::filesystem::remove(old, not_there); old = nextInSequence(old))
-        std::filesystem::remove(pocolog::indexPath(old), not_there);
+void removeSequels(const std::filesystem::path& log) {
+    if (!sequenceNumber(log)) return;
+    std::vector<std::filesystem::path> sequels;
+    std::error_code failed;
+    for (auto old = nextInSequence(log); std::filesystem::exists(old, failed); old = nextInSequence(old))
+        sequels.push_back(old);
+    for (; !sequels.empty(); sequels.pop_back()) pocolog::removeLog(sequels.back());
 }
+
+Rotation::Rotation(const LoggerConfig& config, pocolog::Writer& log)
+    : log_(log), max_size_(config.max_file_size), max_duration_(config.max_file_duration) {}
 
 bool Rotation::due(types::Time now) const {
     return (max_size_ && static_cast<double>(log_.size()) >= *max_size_) ||

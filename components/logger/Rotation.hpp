@@ -6,10 +6,13 @@
 
 namespace insonify::logger {
 
+/** Removes the files that follow `log` from an earlier run: Rock would take them for a part of this one. Throws
+ *  ConfigError when another logger writes the last of them, before any is removed. */
+void removeSequels(const std::filesystem::path& log);
+
 /** Decides when a log goes on in its next file: x.0.log, x.1.log... */
 class Rotation {
 public:
-    /** Removes the files that would follow `log` from an earlier run: Rock would take them for a part of this one. */
     Rotation(const LoggerConfig& config, pocolog::Writer& log);
 
     /** Goes on in the next file, if this one is full or old enough, before a sample received at `now`. Throws as

@@ -13,6 +13,10 @@
 namespace insonify::pocolog {
 namespace {
 
+bool takes(const Selection& selection, const Stream& stream) {
+    return selection.streams.empty() || selection.streams.contains(stream.name);
+}
+
 class Copier {
 public:
     Copier(const Selection& selection, const std::filesystem::path& to) : selection_(selection), out_(to) {}
@@ -35,7 +39,7 @@ public:
 
 private:
     std::optional<size_t> numberOf(const Stream& stream) {
-        if (!selection_.streams.empty() && !selection_.streams.contains(stream.name)) return std::nullopt;
+        if (!takes(selection_, stream)) return std::nullopt;
         const auto known = numbers_.find(stream.name);
         if (known != numbers_.end()) return known->second;
         return numbers_[stream.name] = out_.declare(stream.name, stream.type, stream.registry, stream.metadata);
@@ -85,6 +89,21 @@ void refuse(const std::list<Reader>& logs, const Selection& selection, const std
     }
 }
 
+/** Streams of one name become one in the copy: they must be of one type, of the same layout. */
+void refuseOtherTypes(const std::list<Reader>& logs, const Selection& selection) {
+    std::map<std::string, const Stream*> known;
+    for (const Reader& log : logs)
+        for (const Stream& stream : log.streams()) {
+            if (!takes(selection, stream)) continue;
+            const Stream& before = *known.emplace(stream.name, &stream).first->second;
+            if (stream.type == before.type && stream.registry == before.registry) continue;
+            const char* layout = stream.type == before.type ? " of another layout" : "";
+            throw types::ConfigError(
+                log.path(), stream.name,
+                fmt::format("is {}{}; in the log before it was {}", stream.type, layout, before.type));
+        }
+}
+
 }  // namespace
 
 Copied copy(const std::vector<std::filesystem::path>& logs, AtDamage at_damage, const Selection& selection,
@@ -92,6 +111,7 @@ Copied copy(const std::vector<std::filesystem::path>& logs, AtDamage at_damage, 
     std::list<Reader> readers;
     for (const auto& log : logs) readers.emplace_back(log, at_damage);
     refuse(readers, selection, to);
+    refuseOtherTypes(readers, selection);
     Copier copier(selection, to);
     for (Reader& log : readers) copier.add(log);
     return copier.close();

@@ -26,7 +26,8 @@ struct Copied {
  * all that its streams declare, and its index. Samples are copied byte for byte, compressed ones decompressed (Rock's
  * C++ reader fails on them); those of known types are decoded to see that they are whole. What is damaged is told, and
  * what stands behind it looked for or not. Throws ConfigError for a file that is no log or without a stream, for
- * streams that are nowhere and when `to` is one of the files or cannot be created, std::runtime_error on a full disk.
+ * streams that are nowhere, when one of the same name is of another type in another file, and when `to` is one of the
+ * files or cannot be created, std::runtime_error on a full disk.
  */
 Copied copy(const std::vector<std::filesystem::path>& logs, AtDamage at_damage, const Selection& selection,
             const std::filesystem::path& to);

@@ -18,6 +18,9 @@ constexpr size_t flush_size = 1 << 20;  // [B]
 
 std::string reason(int error_number) { return std::generic_category().message(error_number); }
 
+/** Whether another open file holds the log; takes hold of it if not. */
+bool isTaken(int file) { return flock(file, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK; }
+
 /** Not before `earliest`, and within what the format can hold. */
 types::Time logTime(types::Time time, types::Time earliest) {
     return std::clamp(time, std::max(earliest, types::Time{}), latest_time);
@@ -30,12 +33,24 @@ void split(types::Time time, uint32_t& s, uint32_t& us) {
 
 }  // namespace
 
+bool removeLog(const std::filesystem::path& path) {
+    const int file = ::open(path.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC);
+    if (file < 0) return false;
+    const bool taken = isTaken(file);
+    std::error_code failed;
+    const bool removed = !taken && std::filesystem::remove(path, failed);
+    if (removed) std::filesystem::remove(indexPath(path), failed);
+    ::close(file);
+    if (taken) throw types::ConfigError(path, "", "the log cannot be removed: another logger writes it");
+    return removed;
+}
+
 Writer::Writer(std::filesystem::path path) : path_(std::move(path)) { open(); }
 
 void Writer::open() {
     file_ = ::open(path_.c_str(), O_WRONLY | O_CREAT | O_CLOEXEC, 0644);
     if (file_ < 0) throw types::ConfigError(path_, "", "the log cannot be written: " + reason(errno));
-    const bool taken = flock(file_, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK;
+    const bool taken = isTaken(file_);
     struct stat status {};
     const bool is_file = fstat(file_, &status) == 0 && S_ISREG(status.st_mode);
     if (taken || (is_file && ftruncate(file_, 0) != 0)) {

@@ -89,4 +89,8 @@ private:
     std::vector<Stream> streams_;
 };
 
+/** Removes a log and its index; false: it is not there, or cannot be. Throws ConfigError when a Writer, of this process
+ *  or not, has it open. */
+bool removeLog(const std::filesystem::path& path);
+
 }  // namespace insonify::pocolog

@@ -128,7 +128,8 @@ void ReplayTask::settle() {
 
 void ReplayTask::rewind() {
     next_ = indexAt(config->from);
-    next_time_ = shift_ = {};
+    next_time_ = shift_ = pause_ = {};
+    pace_ = config->pace;
     played_us_ = 0;
     settle();
     first_us_ = next_time_.microseconds;
@@ -139,7 +140,12 @@ void ReplayTask::jump(double seconds) {
     next_ = withOutlet(indexAt(seconds));
     finished_ = next_ == log_->samples().size();
     if (finished_) return;
-    if (played_us_ != 0) next_time_ = types::Time{played_us_} + gap_;
+    if (played_us_ != 0) {
+        const types::Time after = types::Time{played_us_} + gap_;
+        const bool waits = !environment().lockstep && pace_ > 0;
+        next_time_ = waits ? std::max(after, now()) : after;
+        pause_ = next_time_ - after;
+    }
     shift_ = next_time_ - log_->samples()[next_].time;
 }
 
@@ -149,9 +155,10 @@ std::function<types::Time()> ReplayTask::clock(std::function<types::Time()> wall
 }
 
 types::Time ReplayTask::logTime() const {
-    if (config->pace == 0) return {std::max<int64_t>(first_us_, played_us_)};
+    const double pace = pace_;
+    if (pace == 0) return {std::max<int64_t>(first_us_, played_us_)};
     const double seconds = started_us_ == 0 ? 0 : (wall_() - types::Time{started_us_}).seconds();
-    return types::Time{first_us_} + types::Time::fromSeconds(config->pace * seconds);
+    return types::Time{first_us_} + types::Time::fromSeconds(pace * seconds);
 }
 
 bool ReplayTask::configureHook() {
@@ -169,13 +176,14 @@ bool ReplayTask::startHook() {
 }
 
 types::Time ReplayTask::due() {
-    const bool as_fast_as_it_goes = !environment().lockstep && config->pace == 0;
+    const bool as_fast_as_it_goes = !environment().lockstep && pace_ == 0;
     return as_fast_as_it_goes ? next_time_ : now();
 }
 
 void ReplayTask::noteInstant() {
     const int64_t before = played_us_.exchange(next_time_.microseconds);
-    if (before != 0 && next_time_.microseconds > before) gap_ = next_time_ - types::Time{before};
+    if (before != 0 && next_time_.microseconds > before) gap_ = next_time_ - types::Time{before} - pause_;
+    pause_ = {};
 }
 
 void ReplayTask::updateHook() {

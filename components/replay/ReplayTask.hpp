@@ -24,7 +24,7 @@ namespace insonify::replay {
  *  log's time, at that pace, in place of the wall clock.
  *
  *  After a jump (`loop`, `seek`) time goes on: the stamps of all samples are moved by so much that the next sample
- * comes as long after the one before as that came after its own predecessor.
+ *  comes as long after the one before as that came after its own predecessor; in realtime not before now.
  *
  *  A log that was cut off plays up to its last whole block, with a notice; streams that nothing is connected to, or
  *  whose type is not known, are listed in notices. A sample that cannot be decoded ends in Exception. */
@@ -73,6 +73,8 @@ private:
     types::Time next_time_;                         ///< When it is due, on the log's clock.
     types::Time shift_;                             ///< By which stamps are moved after jumps.
     types::Time gap_{1'000'000};                    ///< Between the last two instants.
+    types::Time pause_;                             ///< Beyond `gap_`, before the next instant, after a late jump.
+    std::atomic<double> pace_{1};                   ///< Others read the clock, too.
     std::function<types::Time()> wall_;             ///< In realtime.
     std::atomic<int64_t> started_us_{0};            ///< On the wall clock; 0: not yet.
     std::atomic<int64_t> first_us_{0};              ///< The instant at which playing starts, on the log's clock.

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <atomic>
+#include <future>
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 #include <glm/vector_relational.hpp>
@@ -39,9 +40,9 @@ double distanceTo(glm::dvec3 p, const std::array<glm::vec3, 3>& corners) {
 }
 
 /** The triangles that stand for a patch, for distances from them. */
-class Surface {
+class StandIn {
 public:
-    Surface(const types::Mesh& mesh, const Indices& indices) {
+    StandIn(const types::Mesh& mesh, const Indices& indices) {
         for (size_t i = 0; i + 2 < indices.size(); i += 3) {
             Triangle t{};
             for (size_t k = 0; k < 3; ++k) {
@@ -75,15 +76,18 @@ bool holds(const types::Patch& patch, glm::vec3 point) {
     return glm::all(glm::lessThanEqual(glm::abs(point - patch.centre), patch.half));
 }
 
-/** Does job(0) to job(count - 1), on all cores. */
+/** Does job(0) to job(count - 1), on all cores; throws what a job has thrown. */
 template <class Job>
 void inParallel(size_t count, const Job& job) {
     std::atomic<size_t> next = 0;
     const auto work = [&] {
         for (size_t i = next++; i < count; i = next++) job(i);
     };
-    std::vector<std::jthread> helpers(std::min<size_t>(count, std::thread::hardware_concurrency()));
-    for (std::jthread& helper : helpers) helper = std::jthread(work);
+    std::vector<std::future<void>> helpers;
+    for (unsigned i = 1; i < std::thread::hardware_concurrency(); ++i)
+        helpers.push_back(std::async(std::launch::async, work));
+    work();
+    for (std::future<void>& helper : helpers) helper.get();
 }
 
 /** Finds what stands for the patches of a mesh. */
@@ -167,7 +171,7 @@ private:
 
     /** Largest distance of a vertex of the level but one below from what stands for a patch. */
     float deviation(size_t patch) const {
-        const Surface surface(mesh_, stand_ins_[patch]);
+        const StandIn stand_in(mesh_, stand_ins_[patch]);
         float largest = 0;
         const auto take = [&](std::span<const uint32_t> indices) {
             Indices vertices(indices.begin(), indices.end());
@@ -175,7 +179,7 @@ private:
             vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
             for (uint32_t vertex : vertices)
                 if (holds(mesh_.patches[patch], mesh_.positions[vertex]))
-                    largest = std::max(largest, surface.distance(mesh_.positions[vertex], largest));
+                    largest = std::max(largest, stand_in.distance(mesh_.positions[vertex], largest));
         };
         if (ranks_[patch] <= 1) take(fine(mesh_.patches[patch]));
         forParts(patch, [&](size_t part) {

@@ -5,6 +5,7 @@
 #include <assimp/scene.h>
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <assimp/Importer.hpp>
 #include <glm/gtc/type_ptr.hpp>
 #include <glm/matrix.hpp>

@@ -223,7 +223,7 @@ private:
         return scaled(placing, {plane.Size().X(), plane.Size().Y(), 1});
     }
 
-    std::vector<Placing> meshOf(const sdf::Mesh& mesh, const std::string& name, const Look& look) {
+    std::vector<Placing> meshOf(const sdf::Mesh& mesh, const std::string& name, const Look& look) try {
         const auto path = paths_.find(mesh.Uri(), mesh.FilePath());
         if (!path) return leftOut(name, mesh.Uri(), "is not found");
         std::vector<Placing> placings = meshes_.file(*path, mesh.Submesh(), look);
@@ -232,6 +232,8 @@ private:
         const glm::dmat4 scale = glm::scale(glm::dmat4(1), vectorOf(mesh.Scale()));
         for (Placing& placing : placings) placing.visual_from_object = scale * placing.visual_from_object;
         return placings;
+    } catch (const types::ConfigError& failure) {
+        return leftOut(name, mesh.Uri(), failure.diagnostics().front().message);
     }
 
     std::vector<Placing> heightmapOf(const sdf::Heightmap& map, const std::string& name, const Look& look) try {

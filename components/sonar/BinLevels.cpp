@@ -45,7 +45,8 @@ BinLevels::BinLevels(const SonarConfig& config, const BinGrid& grid)
     for (int j = 0; j < grid.bin_count; ++j) {
         const double r = grid.centre(j);
         if (config.gain) {
-            factor_[static_cast<size_t>(j)] = 2 * *config.gain / sandCell(config, grid, r);
+            factor_[static_cast<size_t>(j)] =
+                2 * *config.gain / sandCell(config, grid, r) * std::pow(10, -2 * absorption.db_per_m * r / 10);
             continue;
         }
         const double gain = config.tvg ? tvgDb(*config.tvg, r) : 0;

@@ -13,7 +13,7 @@
 namespace insonify::sonar {
 namespace {
 
-constexpr double budget_share = 0.7;  ///< Of the budget, for the qualities to choose from: later pings may take longer.
+constexpr double budget_share = 0.5;  ///< Of the budget, for the qualities to choose from: later pings may take longer.
 constexpr double fine_enough = 1e-3;  ///< Error below which time that is left is not used [1].
 
 }  // namespace
@@ -81,6 +81,7 @@ void PingTask::makeRenderer() {
     renderer_ = std::make_unique<SonarRenderer>(config, geometry_);
     plan_ = renderer_->plan();
     culling_untold_ = true;
+    plan_told_ = false;
     aimed_.moved.reserve(geometry_->objects.size());
 }
 
@@ -104,6 +105,7 @@ void PingTask::setQuality(const Quality& quality) {
     plan_->rows = quality.rows;
     plan_->columns_per_beam = quality.columns_per_beam;
     plan_->predicted_error = quality.error;
+    plan_told_ = false;
 }
 
 void PingTask::keepBudget(double ms) {
@@ -129,6 +131,7 @@ void PingTask::render() {
     label(*sample);
     for (const SonarRenderer::Stage& stage : renderer_->stages()) recordStage(stage.name, stage.seconds);
     pool_.stock(*sample);
+    if (!std::exchange(plan_told_, true)) refreshRecord();
     ping.write(sample);
 }
 

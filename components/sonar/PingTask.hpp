@@ -74,6 +74,7 @@ private:
     bool culling_untold_ = false;      ///< Whether the plan does not say yet what the first ping's culling left out.
     bool chosen_ = false;              ///< Whether the quality is the configured one, or what was chosen for it.
     std::optional<types::Plan> plan_;  ///< Outlives the renderer, for the summary.
+    bool plan_told_ = false;           ///< Whether the record has the plan as it is.
     types::GeometryPtr geometry_;      ///< The renderer's.
     types::Snapshot aimed_;
     framework::SamplePool<types::Sonar> pool_;

@@ -136,7 +136,7 @@ void SonarConfig::checkBeam(types::Problems& problems) const {
         problems.push_back({"beam_width_deg", fmt::format("is {:g} deg; one beam may have 120", *beam_width_deg)});
     if (gain && output != Output::Intensity)
         problems.push_back({"gain", "is given with a level; it scales output: intensity"});
-    if (gain && tvg) problems.push_back({"gain", "is given with tvg; it makes up for spreading and absorption itself"});
+    if (gain && tvg) problems.push_back({"gain", "is given with tvg; it makes up for spreading itself"});
     if (published) checkPublished(*this, problems);
     checkRangeReached(*this, problems);
     if (problems.empty()) checkImages(*this, problems);

@@ -1,4 +1,5 @@
 // framework_bench [FILE.json]: what ports and activities cost on this machine, beside what they may cost.
+// Exits 1 when one of them costs more, or the file cannot be written.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -205,10 +206,12 @@ void slowReader(std::vector<Result>& results) {
     results.push_back({"1 MB, write while its reader sleeps in updateHook, p99", "us", quantile(times, 0.99), 1});
 }
 
+bool isMissed(const Result& result) { return result.value > result.at_most; }
+
 /** Met, missed, or only told. */
 const char* verdict(const Result& result) {
     if (std::isnan(result.at_most)) return "";
-    return result.value <= result.at_most ? "met" : "MISSED";
+    return isMissed(result) ? "MISSED" : "met";
 }
 
 std::string json(const std::vector<Result>& results) {
@@ -239,5 +242,5 @@ int main(int count, char** words) {
         fmt::print(stderr, "framework_bench: {} cannot be written\n", words[1]);
         return 1;
     }
-    return 0;
+    return std::any_of(results.begin(), results.end(), isMissed) ? 1 : 0;
 }

@@ -106,6 +106,17 @@ TEST_F(ReplayPaceTest, StepByStepItWaitsForALineAfterEachInstant) {
     EXPECT_EQ(stamps().size(), 3u);
 }
 
+TEST_F(ReplayPaceTest, StepByStepALineSeeksToAPlaceInTheLog) {
+    const Outcome outcome = Process({"/bin/sh", "-c",
+                                     "printf '\\nseek x\\nseek 0\\n' | " INSONIFY_BIN_DIR
+                                     "/insonify replay out/wall.0.log wall.yml --out again --step"},
+                                    folder_.path())
+                                .wait();
+    ASSERT_EQ(outcome.code, 0) << outcome.err;
+    EXPECT_THAT(stamps(), testing::ElementsAre(1000, 1100, 1200, 1300, 1400));
+    EXPECT_THAT(outcome.err, HasSubstr("insonify: seek[0]"));
+}
+
 TEST_F(ReplayPaceTest, ARealtimeDeploymentIsReplayedOnTheLogsTime) {
     writeFile(folder_ / "wall.yml", replaced(wall_deployment, "schedule: lockstep", "schedule: realtime"));
     replay({});

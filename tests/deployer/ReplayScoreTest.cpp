@@ -121,6 +121,42 @@ TEST_F(ReplayScoreTest, TheSeedIsThatOfTheLog) {
     for (const json& ping : streams().at("noise.noisy")["pings"]) EXPECT_GT(ping["rel_l2"], 0.5);
 }
 
+TEST_F(ReplayScoreTest, TheSeedZeroIsThatOfTheFile) {
+    record({"--pings", "3", "--seed", "5"});
+    ASSERT_EQ(score("out/wall.0.log", {"--seed", "0"}).code, 0);
+    for (const json& ping : streams().at("noise.noisy")["pings"]) EXPECT_GT(ping["rel_l2"], 0.5);
+}
+
+TEST_F(ReplayScoreTest, TheQualityThatWasChosenIsThatOfTheLog) {
+    writeFile(folder_ / "wall.yml", replaced(wall_deployment, "      quality: {rows: 32, columns_per_beam: 2}\n", ""));
+    record({"--pings", "3", "--summary", "first.json"});
+    const auto quality = [&](const char* file) { return json::parse(readFile(folder_ / file))["quality"]["sonar"]; };
+    const json first = quality("first.json");
+    ASSERT_FALSE(first["predicted_error"].is_null()) << "it was chosen";
+    for (const char* from : {"0", "0.1"}) {
+        const Outcome outcome = score("out/wall.0.log", {"--from", from, "--summary", "again.json"});
+        ASSERT_EQ(outcome.code, 0) << outcome.err;
+        for (const auto& [name, stream] : streams()) {
+            EXPECT_GE(stream["compared"], 2) << name;
+            for (const json& ping : stream["pings"]) EXPECT_EQ(ping["rel_l2"], 0) << name;
+        }
+        const json again = quality("again.json");
+        for (const char* key : {"rows", "columns_per_beam"}) EXPECT_EQ(again[key], first[key]) << key;
+        EXPECT_TRUE(again["predicted_error"].is_null()) << "and is not chosen again";
+    }
+    ASSERT_EQ(score("out/wall.0.log", {"--set", "sonar.quality={rows: 16}", "--summary", "again.json"}).code, 0);
+    EXPECT_EQ(quality("again.json")["rows"], 16) << "the user has the last word";
+}
+
+TEST_F(ReplayScoreTest, WhatTheRunWasSetToIsTakenFromTheLogsProperties) {
+    record({"--pings", "3", "--set", "sonar.range=15", "--set", "sonar.speed_of_sound=1480", "--set",
+            "sonar.tvg={log_coefficient: 20}", "--set", "noise.seed=9"});
+    const Outcome outcome = score("out/wall.0.log");
+    ASSERT_EQ(outcome.code, 0) << outcome.err;
+    EXPECT_THAT(outcome.err, HasSubstr("as in the log: sonar.range=15\n"));
+    for (const auto& [name, stream] : streams()) expectSame(stream);
+}
+
 TEST_F(ReplayScoreTest, AScanningSonarScoresAsWell) {
     std::string scanning = replaced(wall_deployment, "sonar::SonarTask", "sonar::ScanningSonarTask");
     scanning =
@@ -131,6 +167,9 @@ TEST_F(ReplayScoreTest, AScanningSonarScoresAsWell) {
     const Outcome outcome = score("out/wall.0.log");
     ASSERT_EQ(outcome.code, 0) << outcome.err;
     for (const auto& [name, stream] : streams()) expectSame(stream);
+    const Outcome middle = score("out/wall.0.log", {"--from", "0.1"});
+    EXPECT_EQ(middle.code, 2);
+    EXPECT_THAT(middle.err, HasSubstr("tasks.sonar: is a scanning sonar, whose head starts at its left limit"));
 }
 
 TEST_F(ReplayScoreTest, LevelsAreComparedAsEnergies) {
@@ -160,7 +199,9 @@ TEST_F(ReplayScoreTest, PingsOfAnotherShapeAreCountedAndNothingToCompareIsAFailu
 
 TEST_F(ReplayScoreTest, FromTheMiddleOnTheRestIsCounted) {
     record();
-    ASSERT_EQ(score("out/wall.0.log", {"--from", "0.1"}).code, 0);
+    const Outcome outcome = score("out/wall.0.log", {"--from", "0.1"});
+    ASSERT_EQ(outcome.code, 0) << outcome.err;
+    EXPECT_THAT(outcome.err, HasSubstr("warning: noise.noisy: not all pings were compared: 1 not rendered again\n"));
     EXPECT_EQ(streams().at("noise.noisy")["compared"], 2);
     EXPECT_EQ(streams().at("noise.noisy")["not_rendered"], 1);
     EXPECT_EQ(streams().at("noise.noisy")["pings"][0]["rel_l2"], 0);

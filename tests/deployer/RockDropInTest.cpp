@@ -89,17 +89,20 @@ TEST_F(RockDropInTest, AGainOfOneHalfPutsEchoesNearOneInBothModelsAndTheyGrowWit
 }
 
 TEST_F(RockDropInTest, SwitchesPutEffectsInAndTakeThemOut) {
-    const std::vector<std::string> published = {"--set", "multibeam.model=cerqueira2017"};
+    std::string model;
     const auto with = [&](const char* attenuation, const char* speckle) {
-        std::vector<std::string> words = published;
+        std::vector<std::string> words = {"--set", "multibeam.model=" + model};
         for (const auto& [name, on] : {std::pair("attenuation", attenuation), std::pair("speckle_noise", speckle)})
             words.insert(words.end(), {"--set", std::string("multibeam.enable_") + name + "=" + on});
         return ping(words);
     };
-    const types::Sonar plain = with("false", "false");
-    EXPECT_EQ(plain.bins, with("false", "false").bins);
-    EXPECT_NE(plain.bins, with("false", "true").bins);
-    EXPECT_GT(sum(plain), 1.2 * sum(with("true", "false")));
+    for (const char* name : {"cerqueira2017", "physical"}) {
+        model = name;
+        const types::Sonar plain = with("false", "false");
+        EXPECT_EQ(plain.bins, with("false", "false").bins) << name;
+        EXPECT_NE(plain.bins, with("false", "true").bins) << name;
+        EXPECT_GT(sum(plain), 1.2 * sum(with("true", "false"))) << name;
+    }
 }
 
 TEST_F(RockDropInTest, FaultsOfPropertyFilesAreToldWithTheirPlacesAllAtOnce) {

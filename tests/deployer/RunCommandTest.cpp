@@ -80,6 +80,20 @@ TEST(RunCommandTest, SetLaysAValueOverTheFile) {
     EXPECT_EQ(python(folder, "import numpy; print(numpy.load('ping.npz')['bins'].shape)").out, "(1, 16, 7)\n");
 }
 
+TEST(RunCommandTest, OperationsAreCalledByName) {
+    const WallFolder folder;
+    const Outcome outcome = folder.run({"--pings", "1", "--call", "sonar.setRnge=8"});
+    EXPECT_EQ(outcome.code, 2) << "no such operation";
+    EXPECT_THAT(outcome.err, HasSubstr("sonar has no operation setRnge; did you mean setRange?"));
+    EXPECT_THAT(folder.run({"--call", "snar.start"}).err, HasSubstr("there is no task snar; did you mean sonar?"));
+    const Outcome refused = folder.run({"--call", "sonar.configure", "--call", "sonar.recover"});
+    EXPECT_EQ(refused.code, 1);
+    EXPECT_THAT(refused.err, HasSubstr("insonify: cannot recover: sonar is Stopped"));
+    const Outcome called = folder.run({"--pings", "1", "--call", "sonar.setRange=12", "--call", "noise.clamped"});
+    ASSERT_EQ(called.code, 0) << called.err;
+    EXPECT_THAT(called.out, HasSubstr("noise.clamped: 0\n"));
+}
+
 TEST(RunCommandTest, LockstepRunTwiceGivesTheSameLogBitForBit) {
     const WallFolder folder;
     for (const char* out : {"first", "second"})

@@ -141,6 +141,22 @@ TEST(PortThreadsTest, ATaskThatGoesWhileOthersWriteDisconnectsItself) {
     EXPECT_FALSE(chatter.port().connected());
 }
 
+TEST(PortThreadsTest, AnOutputMayGoRightAfterItsReaderWentOnAnotherThread) {
+    for (int i = 0; i < 50; ++i) {
+        auto writer = std::make_unique<test::Writer<int32_t>>();
+        auto reader = std::make_unique<test::Reader<int32_t>>();
+        writer->port.connectTo(reader->port, {});
+        std::atomic<bool> gone{false};
+        std::thread other([&] {
+            reader.reset();
+            gone.store(true, std::memory_order_relaxed);  // orders nothing: that is the port's affair
+        });
+        while (!gone.load(std::memory_order_relaxed)) std::this_thread::yield();
+        writer.reset();
+        other.join();
+    }
+}
+
 TEST(PortThreadsTest, TransitionsFromManyThreadsAreMadeOneAfterTheOther) {
     Chatter chatter;
     Listener listener;

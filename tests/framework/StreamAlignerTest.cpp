@@ -139,6 +139,18 @@ TEST_F(StreamAlignerTest, AnOutpacedPortIsReadBesideTheOthers) {
     EXPECT_EQ(task_.poses.counts().awaited, 0u);
 }
 
+TEST_F(StreamAlignerTest, TimesBelowZeroAreTimesAsAnyOther) {
+    writePings({-15, -5});
+    writePoses({-20, -10, 0});
+    EXPECT_THAT(update(), ElementsAre("pose -20", "ping -15", "pose -10", "ping -5"));
+    EXPECT_THAT(task_.aligner.troubles(), IsEmpty());
+}
+
+TEST_F(StreamAlignerTest, TimesMayBeAsFarApartAsTheyCan) {
+    writePings({-9'000'000'000'000'000'000, 9'000'000'000'000'000'000});
+    EXPECT_THAT(update(), ElementsAre("ping -9000000000000000000")) << "the timeout is long over";
+}
+
 TEST_F(StreamAlignerTest, FlushedItHandsOverAllThatWaits) {
     writePings({15, 16});
     writePoses({10});

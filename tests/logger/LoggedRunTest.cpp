@@ -1,6 +1,10 @@
 // What a log tells of the deployment that it was written in.
 #include <gmock/gmock.h>
 
+#include <atomic>
+#include <chrono>
+#include <thread>
+
 #include "components/framework/Deployment.hpp"
 #include "components/framework/Properties.hpp"
 #include "components/logger/registerTasks.hpp"
@@ -31,9 +35,23 @@ struct PlannerTask : framework::TaskContext {
     void updateHook() override {
         plan_ =
             types::Plan{.features = {"HAVE_\"TVG\""}, .passes = {}, .omitted = {{"volume", "absent"}}, .notices = {}};
+        refreshRecord();
         ping.write(std::make_shared<types::Sonar>());
     }
     std::optional<types::Plan> plan_;
+};
+
+/** Stays in its hook, once it has written, until it is let go. */
+struct LingeringTask : PlannerTask {
+    using PlannerTask::PlannerTask;
+    void updateHook() override {
+        PlannerTask::updateHook();
+        lingering = true;
+        const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(10);
+        while (!let_go && std::chrono::steady_clock::now() < end)
+            std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    }
+    std::atomic<bool> lingering{false}, let_go{false};
 };
 
 TEST(LoggedRunTest, TheLogCarriesThePlanAndThePropertiesAreInALogBesideIt) {
@@ -74,6 +92,56 @@ connections:
     EXPECT_THAT(ranges, testing::ElementsAre(30));
     EXPECT_EQ(properties.find("sonar.gain"), nullptr) << "absent";
     EXPECT_NE(properties.find("log.file"), nullptr);
+}
+
+TEST(LoggedRunTest, InRealtimeLoggersWaitNeitherForEachOtherNorForTheHookOfATask) {
+    const Folder folder;
+    framework::Registry registry;
+    logger::registerTasks(registry);
+    registry.add<LingeringTask>("test::LingeringTask", "a slow sonar");
+    framework::Deployment deployment(framework::DeploymentSpec::parse(R"(
+schedule: realtime
+tasks:
+  sonar: {type: test::LingeringTask, activity: {period: 0.01}}
+  log: {type: logger::LoggerTask, properties: {file: x.0.log}}
+  second: {type: logger::LoggerTask, properties: {file: y.0.log}}
+connections:
+  - {from: sonar.ping, to: log.ping, policy: {type: buffer, size: 64}}
+  - {from: sonar.ping, to: second.ping, policy: {type: buffer, size: 64}}
+)",
+                                                                      (folder / "x.yml").string()),
+                                     registry, folder.path());
+    deployment.configure();
+    auto& sonar = dynamic_cast<LingeringTask&>(*deployment.task("sonar"));
+    const auto hasRead = [&](const char* logger) { return !deployment.task(logger)->input("ping")->hasNew(); };
+    bool both_read = false;
+    std::atomic<bool> stop{false};
+    const auto progress = [&](const framework::Progress&) {
+        if (!sonar.lingering || both_read || !hasRead("log") || !hasRead("second")) return;
+        both_read = true;
+        sonar.let_go = stop = true;
+    };
+    EXPECT_FALSE(deployment.run({.duration_s = 5}, stop, progress).failed());
+    EXPECT_TRUE(both_read) << "while the sonar is in its first cycle";
+    EXPECT_THAT(deployment.cleanup(), testing::IsEmpty());
+    for (const char* file : {"x.0.log", "y.0.log"}) {
+        const pocolog::Reader log(folder / file);
+        EXPECT_THAT(log.find("sonar.ping")->metadata.at("insonify_plan"), testing::HasSubstr("volume"));
+    }
+}
+
+TEST(LoggedRunTest, APropertySetAtRunTimeIsInTheRecordOfItsTask) {
+    framework::Registry registry;
+    registry.add<PlannerTask>("test::PlannerTask", "a sonar");
+    framework::Deployment deployment(
+        framework::DeploymentSpec::parse("tasks: {sonar: {type: test::PlannerTask, activity: {period: 1}}}", "x.yml"),
+        registry);
+    const auto range = [&] { return deployment.environment().records().at(0).properties.at("range"); };
+    EXPECT_EQ(range(), types::PropertyValue(50.0)) << "before it is configured";
+    deployment.configure();
+    deployment.call("sonar.setRange", {"20"});
+    EXPECT_EQ(range(), types::PropertyValue(20.0));
+    EXPECT_EQ(deployment.environment().records().at(0).type, "test::PlannerTask");
 }
 
 }  // namespace

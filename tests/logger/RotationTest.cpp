@@ -89,5 +89,38 @@ TEST_F(RotationTest, FilesOfALongerLogBeforeAreRemovedWithTheirIndices) {
     }
 }
 
+TEST_F(RotationTest, FilesOfALongerLogBeforeAreRemovedWithoutALimitToo) {
+    LoggerConfig config;
+    config.max_file_size = 1e6;
+    log(config, 25);
+    log({}, 15);
+    EXPECT_THAT(countsOf(1), testing::ElementsAre(15));
+    for (int number = 1; number < 3; ++number) {
+        EXPECT_FALSE(std::filesystem::exists(file(number)));
+        EXPECT_FALSE(std::filesystem::exists(pocolog::indexPath(file(number))));
+    }
+}
+
+TEST_F(RotationTest, AFileThatAnotherLoggerWritesIsNotRemovedNorAnyBeforeIt) {
+    writeBytes(file(0), {'o', 'l', 'd'});
+    writeBytes(file(1), {'o', 'l', 'd'});
+    const pocolog::Writer other(file(2));
+    for (const std::optional<double> limit : {std::optional<double>(), std::optional<double>(1e6)}) {
+        LoggerTask task("log");
+        LoggerConfig config;
+        config.file = "x.0.log";
+        config.max_file_size = limit;
+        task.config.set(config);
+        task.environment().output_folder = folder.path();
+        EXPECT_FALSE(task.configure());
+        ASSERT_NE(task.configError(), nullptr);
+        EXPECT_THAT(task.configError()->what(), testing::HasSubstr("another logger writes it"));
+        EXPECT_THAT(task.configError()->what(), testing::HasSubstr("x.2.log"));
+    }
+    EXPECT_EQ(bytesOf(file(0)).size(), 3u);
+    EXPECT_EQ(bytesOf(file(1)).size(), 3u);
+    EXPECT_TRUE(std::filesystem::exists(file(2)));
+}
+
 }  // namespace
 }  // namespace insonify::logger

@@ -129,6 +129,33 @@ TEST_F(CopyTest, TheFilesOfALogBecomeOne) {
     EXPECT_THAT(timesOf("new.stream"), ElementsAre(4));
 }
 
+/** Two streams without samples, a.b of that type. */
+void writeStream(const std::filesystem::path& path, const std::string& type, const std::string& registry) {
+    Writer log(path);
+    log.declare("a.b", type, registry, {});
+    log.declare("c.d", "/int32_t", "<typelib/>", {});
+}
+
+TEST_F(CopyTest, StreamsOfOneNameAreNotJoinedWhenTheirTypesOrLayoutsDiffer) {
+    const auto message = [&](const std::string& type, const std::string& registry, const Selection& selection) {
+        writeStream(folder / "x.0.log", "/double", "<typelib/>");
+        writeStream(folder / "x.1.log", type, registry);
+        try {
+            copy({folder / "x.0.log", folder / "x.1.log"}, AtDamage::Stop, selection, folder / "y.0.log");
+        } catch (const types::ConfigError& error) {
+            return std::string(error.what());
+        }
+        return std::string();
+    };
+    EXPECT_THAT(message("/float", "<typelib/>", {}),
+                testing::AllOf(HasSubstr("x.1.log"), HasSubstr("a.b: is /float; in the log before it was /double")));
+    EXPECT_THAT(message("/double", "<other/>", {}),
+                HasSubstr("a.b: is /double of another layout; in the log before it was /double"));
+    EXPECT_FALSE(std::filesystem::exists(folder / "y.0.log")) << "refused before anything is written";
+    EXPECT_EQ(message("/float", "<typelib/>", {.streams = {"c.d"}}), "") << "what is not copied may differ";
+    EXPECT_EQ(message("/double", "<typelib/>", {}), "");
+}
+
 TEST_F(CopyTest, ALogIsNotCopiedOntoItself) {
     EXPECT_THROW(copy({folder / "whole.0.log"}, AtDamage::Stop, {}, folder / "whole.0.log"), types::ConfigError);
     EXPECT_EQ(bytesOf(folder / "whole.0.log"), whole);

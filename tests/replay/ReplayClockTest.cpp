@@ -127,5 +127,23 @@ TEST(ReplayClockTest, SeekGoesOnElsewhereInTheLogWhileTimeGoesOn) {
     EXPECT_TRUE(bench.task.finished());
 }
 
+TEST(ReplayClockTest, AfterAPauseASeekInRealtimeGoesOnFromNowWithoutABurst) {
+    Bench bench(false, {.file = {}, .pace = 2});
+    test::Reader<types::Pose> poses;
+    bench.connect("vehicle.pose", poses);
+    bench.clock = {1'000'000};
+    bench.task.configure();
+    bench.task.start();
+    bench.updateAt(1'000'010);
+    EXPECT_THAT(stampsIn(poses), ElementsAre(10, 20, 30));
+    bench.clock = {1'001'000};
+    bench.task.seek(0);
+    bench.updateAt(1'001'000);
+    EXPECT_THAT(stampsIn(poses), ElementsAre(2010));
+    bench.task.seek(0);
+    bench.updateAt(1'001'005);
+    EXPECT_THAT(stampsIn(poses), ElementsAre(2020)) << "the pause counts for no gap";
+}
+
 }  // namespace
 }  // namespace insonify::replay

@@ -53,6 +53,13 @@ TEST_F(SdfBadInputTest, ABadJointCostsNoMoreThanTheJoint) {
     EXPECT_TRUE(hasNotice(*scene.geometry, "parent frame with name[nowhere]"));
 }
 
+TEST_F(SdfBadInputTest, ADamagedMeshCostsNoMoreThanItsVisual) {
+    write("noise.stl", "solid of nothing");
+    const Scene scene = world(model("m", "<mesh><uri>noise.stl</uri></mesh>") + model("n", box_));
+    EXPECT_EQ(scene.geometry->objects.size(), 1u);
+    EXPECT_TRUE(hasNotice(*scene.geometry, "noise.stl"));
+}
+
 TEST_F(SdfBadInputTest, AModelThatIncludesItselfIsRefused) {
     writeModel("a", "<model name='a'><link name='l'/><include><uri>model://b</uri></include></model>");
     writeModel("b", "<model name='b'><link name='l'/><include><uri>model://a</uri></include></model>");
