@@ -59,7 +59,6 @@ TEST(BinLevelsTest, GainThatMakesUpForAThousandDecibelsStaysFinite) {
 TEST(BinLevelsTest, AtGainOneHalfACellOfSandFaceOnIsOneAtEveryRange) {
     SonarConfig config = sonarOf(40, 400);
     config.beam_count = 120;  // of 1 deg
-    config.absorption.emplace().db_per_m = 0.3;
     const double mu = std::pow(10, -1.67), width = std::numbers::pi / 180;
     std::vector<double> sand;
     for (int j = 0; j < 400; ++j) sand.push_back(mu * width * 0.1 / ((j + 0.5) * 0.1));  // a flat bottom is sin^2 of it
@@ -68,6 +67,9 @@ TEST(BinLevelsTest, AtGainOneHalfACellOfSandFaceOnIsOneAtEveryRange) {
         for (const float bin : levels(config, sand)) EXPECT_NEAR(bin, 2 * gain, 1e-5);
     }
     config.gain = 0.5;
+    config.absorption.emplace().db_per_m = 0.3;
+    EXPECT_NEAR(levels(config, sand).back(), std::pow(10, -0.06 * 39.95), 1e-6) << "absorption is not made up for";
+    config.absorption.reset();
     for (double& strong : sand) strong *= 20;
     for (const float bin : levels(config, sand)) EXPECT_EQ(bin, 1);
 }
