@@ -44,6 +44,14 @@ Texture::Texture(GLenum format, int width, int height, bool mipmapped)
     glTextureParameteri(id(), GL_TEXTURE_MAG_FILTER, GL_NEAREST);
 }
 
+Texture Texture::multisampled(GLenum format, int width, int height, int samples) {
+    Texture texture;
+    texture.name_ = Name(created([](GLuint& id) { glCreateTextures(GL_TEXTURE_2D_MULTISAMPLE, 1, &id); }),
+                         [](GLuint id) { glDeleteTextures(1, &id); });
+    glTextureStorage2DMultisample(texture.id(), samples, format, width, height, GL_TRUE);
+    return texture;
+}
+
 Framebuffer::Framebuffer(const Texture& colour, const Texture& depth)
     : name_(created([](GLuint& id) { glCreateFramebuffers(1, &id); }),
             [](GLuint id) { glDeleteFramebuffers(1, &id); }) {

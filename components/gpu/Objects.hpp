@@ -58,6 +58,8 @@ class Texture {
 public:
     Texture() = default;
     Texture(GLenum format, int width, int height, bool mipmapped = false);
+    /** With several samples a pixel, at places that are the device's. */
+    static Texture multisampled(GLenum format, int width, int height, int samples);
     GLuint id() const { return name_.id(); }
     void bind(GLuint unit) const { glBindTextureUnit(unit, id()); }
 

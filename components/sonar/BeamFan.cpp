@@ -131,8 +131,10 @@ std::vector<Slab> makeSlabs(const SonarConfig& config, const std::vector<Beam>& 
         Slab& slab = slabs[static_cast<size_t>(i)];
         slab.half_width = (high - low) / count / 2;
         slab.azimuth = low + (2 * i + 1) * slab.half_width;
-        slab.columns = std::max(1, static_cast<int>(std::ceil(columns - 1e-9)));
-        slab.rows = config.rows();
+        slab.samples = config.samples_per_pixel;
+        const int side = slab.samples == 4 ? 2 : 1;
+        slab.columns = side * std::max(1, static_cast<int>(std::ceil(columns - 1e-9)));
+        slab.rows = side * config.rows();
         slab.extent_u = std::tan(slab.half_width);
         slab.extent_v = std::tan(half_elevation) / std::cos(slab.half_width);
     }

@@ -22,6 +22,7 @@ struct Slab {
     int columns = 0, rows = 0;
     double extent_u = 0;  ///< u at the left edge: tan(half_width) [1].
     double extent_v = 0;  ///< v at the top edge [1].
+    int samples = 1;      ///< 4: two columns and rows are one pixel of the device, its samples on a rotated grid [1].
 
     double du() const { return 2 * extent_u / columns; }
     double dv() const { return 2 * extent_v / rows; }

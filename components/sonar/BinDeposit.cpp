@@ -19,7 +19,7 @@ double strengthScale(const SonarConfig& config, const BinGrid& bins, double loud
     const double ratio =
         std::max(1.5, 0.5 * bins.bin_width / std::max(bins.range_min, 1e-3));  // of a bin's middle to its ranges
     const double strongest = loudest * ratio * ratio;
-    const double pixels = static_cast<double>(config.rows()) * (config.columnsPerBeam() + 2);
+    const double pixels = static_cast<double>(config.samples_per_pixel * config.rows()) * (config.columnsPerBeam() + 2);
     return std::exp2(-std::ceil(std::max(0.0, std::log2(strongest * std::max(1 / most, pixels / most_sum)))));
 }
 

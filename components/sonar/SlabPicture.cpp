@@ -1,6 +1,44 @@
 #include "components/sonar/SlabPicture.hpp"
 
+#include <algorithm>
+#include <array>
+
 namespace insonify::sonar {
+namespace {
+
+/** Which sample lies in which quarter of a pixel, of the framebuffer that is bound: left below, right below, above. */
+std::array<GLint, 4> samplesOfQuarters() {
+    std::array<GLint, 4> samples = {-1, -1, -1, -1};
+    for (GLuint i = 0; i < 4; ++i) {
+        float at[2];
+        glGetMultisamplefv(GL_SAMPLE_POSITION, i, at);
+        samples[(at[0] > 0.5f ? 1u : 0u) + (at[1] > 0.5f ? 2u : 0u)] = static_cast<GLint>(i);
+    }
+    if (std::ranges::count(samples, -1) > 0) throw gpu::GlError("this device has no sample in some quarter of a pixel");
+    return samples;
+}
+
+}  // namespace
+
+struct SlabPicture::Multisampled {
+    Multisampled(const Slab& slab, GLenum format)
+        : columns(slab.columns / 2),
+          rows(slab.rows / 2),
+          ids(gpu::Texture::multisampled(format, columns, rows, 4)),
+          depth(gpu::Texture::multisampled(GL_DEPTH_COMPONENT32F, columns, rows, 4)),
+          target(ids, depth),
+          resolve(gpu::Program::raster("resolve.vert.glsl", "resolve.frag.glsl", {})) {
+        target.bind();
+        order = samplesOfQuarters();
+    }
+
+    int columns, rows;
+    gpu::Texture ids, depth;
+    gpu::Framebuffer target;
+    gpu::Program resolve;
+    gpu::VertexArray none;
+    std::array<GLint, 4> order;
+};
 
 SlabPicture::SlabPicture(const Slab& slab, bool with_normal_maps, size_t run_limit)
     : slab_(slab),
@@ -15,7 +53,11 @@ SlabPicture::SlabPicture(const Slab& slab, bool with_normal_maps, size_t run_lim
     commands.reserve(run_limit);
     clips.reserve(run_limit);
     draws.reserve(run_limit);
+    if (slab.samples == 4)
+        multisampled_ = std::make_unique<Multisampled>(slab, with_normal_maps ? GL_RGBA32UI : GL_RG32UI);
 }
+
+SlabPicture::~SlabPicture() = default;
 
 void SlabPicture::read(std::vector<uint32_t>& words) const {
     ids_.bind(0);  // so that what another context drew is seen here
@@ -31,6 +73,26 @@ void SlabPicture::clear() const {
     const GLuint miss[4] = {};
     glClearBufferuiv(GL_COLOR, 0, miss);
     glClear(GL_DEPTH_BUFFER_BIT);
+    if (!multisampled_) return;
+    multisampled_->target.bind();
+    glViewport(0, 0, multisampled_->columns, multisampled_->rows);
+    glClearBufferuiv(GL_COLOR, 0, miss);
+    glClear(GL_DEPTH_BUFFER_BIT);
+}
+
+void SlabPicture::resolve() const {
+    if (!multisampled_) return;
+    target_.bind();
+    glViewport(0, 0, slab_.columns, slab_.rows);
+    glDisable(GL_DEPTH_TEST);
+    multisampled_->resolve.use();
+    const auto& order = multisampled_->order;
+    glUniform4i(glGetUniformLocation(multisampled_->resolve.id(), "sample_of_quarter"), order[0], order[1], order[2],
+                order[3]);
+    multisampled_->ids.bind(0);
+    multisampled_->none.bind();
+    glDrawArrays(GL_TRIANGLES, 0, 3);
+    glEnable(GL_DEPTH_TEST);
 }
 
 void SlabPicture::upload() {

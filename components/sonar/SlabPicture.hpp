@@ -1,7 +1,9 @@
 #pragma once
+#include <memory>
 #include <vector>
 
 #include "components/gpu/Objects.hpp"
+#include "components/gpu/Program.hpp"
 #include "components/sonar/Culler.hpp"
 
 namespace insonify::sonar {
@@ -23,6 +25,7 @@ public:
 
     /** At most `run_limit` runs are drawn. */
     SlabPicture(const Slab& slab, bool with_normal_maps, size_t run_limit);
+    ~SlabPicture();
 
     const Slab& slab() const { return slab_; }
     bool empty() const { return runs.empty(); }
@@ -33,6 +36,8 @@ public:
     void bindCommands() const;
     /** Makes the picture the target and all of it a miss. */
     void clear() const;
+    /** Ends the drawing: several samples a pixel become pixels. */
+    void resolve() const;
     /** Tells the device `commands`, `clips` and `draws`. */
     void upload();
     const gpu::Buffer& deviceClips() const { return device_clips_; }
@@ -47,6 +52,8 @@ private:
     int channels_;
     gpu::Texture ids_, depth_;
     gpu::Framebuffer target_;
+    struct Multisampled;
+    std::unique_ptr<Multisampled> multisampled_;  ///< What is drawn into when a pixel has several samples.
     gpu::Buffer device_commands_, device_clips_, device_draws_;
 };
 

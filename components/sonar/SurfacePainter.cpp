@@ -46,6 +46,7 @@ void SurfacePainter::draw(SlabPicture& picture, const std::vector<ObjectRecord>&
     scene_.bindRecords();
     bindObjects();
     drawGroups(picture);
+    picture.resolve();
 }
 
 void SurfacePainter::listDraws(SlabPicture& picture, const std::vector<ObjectRecord>& placed) const {
@@ -65,7 +66,8 @@ void SurfacePainter::setUniforms(const Slab& slab) const {
     glUniform2f(uniforms_.slab_axis, static_cast<float>(std::cos(slab.azimuth)),
                 static_cast<float>(std::sin(slab.azimuth)));
     glUniform2f(uniforms_.extent, static_cast<float>(slab.extent_u), static_cast<float>(slab.extent_v));
-    glUniform2f(uniforms_.pixel_size, static_cast<float>(slab.du()), static_cast<float>(slab.dv()));
+    const double side = slab.samples == 4 ? 2 : 1;
+    glUniform2f(uniforms_.pixel_size, static_cast<float>(side * slab.du()), static_cast<float>(side * slab.dv()));
     glUniform1f(uniforms_.near_plane, static_cast<float>(near_plane_));
 }
 

@@ -98,7 +98,7 @@ double referenceError(const ErrorResult& result, const std::string& scene) {
 std::vector<Measurement> ladder(const ErrorResult& result, const std::string& scene, Method method) {
     std::vector<Measurement> points;
     for (const Measurement& m : result.measurements) {
-        if (m.scene != scene || m.method != method) continue;
+        if (m.scene != scene || m.method != method || m.samples_per_pixel != 1) continue;
         if (points.empty() ||
             (m.rows == 2 * points.back().rows && m.columns_per_beam == 2 * points.back().columns_per_beam))
             points.push_back(m);

@@ -58,6 +58,7 @@ sonar::SonarConfig configOf(const StudyScene& scene, const Measurement& point) {
     config.quality.rows = point.rows;
     config.quality.columns_per_beam = point.columns_per_beam;
     config.least_slabs = point.slabs;
+    config.samples_per_pixel = point.samples_per_pixel;
     if (point.method == Method::Nearest || point.method == Method::Published)
         config.estimator = sonar::Estimator::Nearest;
     if (point.method == Method::NearestJitter) config.estimator = sonar::Estimator::NearestJitter;
@@ -87,6 +88,8 @@ public:
             if (base_columns_ << level != 2) measure(Method::Footprint, least_rows << level, 2, slabs);
         for (const int more : {2 * slabs, 4 * slabs})
             measure(Method::Footprint, 4 * least_rows, 4 * base_columns_, more);
+        for (int level = 0; level + 1 < levels(); ++level)
+            measure(Method::Footprint, least_rows << level, base_columns_ << level, slabs, 4);
         predict();
         if (!scene_.truth) result_.references.back().error = halving_ / (convergence() - 1);
     }
@@ -110,8 +113,8 @@ private:
         return scene_.config.field_of_view_deg < 175 && columns * scene_.config.beam_count <= sonar::most_image_size;
     }
 
-    void measure(Method method, int rows, int columns, int slabs) {
-        Measurement point{scene_.name, method, rows, columns, 1, slabs, {}, 0, 0, 0, 0};
+    void measure(Method method, int rows, int columns, int slabs, int samples = 1) {
+        Measurement point{scene_.name, method, rows, columns, samples, slabs, {}, 0, 0, 0, 0};
         options_.progress(fmt::format("{} {} {} x {}", scene_.name, nameOf(method), rows, columns));
         const sonar::SonarConfig config = configOf(scene_, point);
         std::vector<float> energies;

@@ -1,0 +1,68 @@
+// Four samples a pixel: the cells of twice the rows and columns, seen at places that no row or column shares.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "components/sonar/SonarRenderer.hpp"
+#include "tests/support/Scenes.hpp"
+
+namespace insonify::sonar {
+namespace {
+
+SonarConfig sonarOf(int rows, int columns, int samples) {
+    SonarConfig config;
+    config.speed_of_sound = 1000;
+    config.range = 30;
+    config.bin_count = 300;
+    config.beam_count = 8;
+    config.field_of_view_deg = 80;
+    config.beam_height_deg = 40;
+    config.quality.rows = rows;
+    config.quality.columns_per_beam = columns;
+    config.samples_per_pixel = samples;
+    config.device = "software";
+    return config;
+}
+
+std::vector<float> binsOf(const SonarConfig& config, const types::GeometryPtr& geometry) {
+    types::Sonar ping;
+    SonarRenderer(config, geometry).render(test::snapshotOf(geometry), ping);
+    return ping.bins;
+}
+
+double energyOf(const SonarConfig& config, const types::GeometryPtr& geometry) {
+    double sum = 0;
+    for (float bin : binsOf(config, geometry)) sum += bin;
+    return sum;
+}
+
+/** A wall 10 m ahead that ends at height `top`. */
+types::GeometryPtr screen(float top) {
+    return test::sceneOf({test::quad({10, -50, -50}, {0, 100, 0}, {0, 0, 50 + top})});
+}
+
+TEST(SamplesTest, OnAPlaneTheyAreThePixelsOfTwiceTheRowsAndColumns) {
+    const auto bottom = test::sceneOf({test::ground(-5)});
+    const auto four = binsOf(sonarOf(64, 4, 4), bottom), finer = binsOf(sonarOf(128, 8, 1), bottom);
+    ASSERT_EQ(four.size(), finer.size());
+    double difference = 0, sum = 0;
+    for (size_t i = 0; i < four.size(); ++i) {
+        difference += std::abs(four[i] - finer[i]);
+        sum += finer[i];
+    }
+    EXPECT_GT(sum, 0);
+    EXPECT_LT(difference, 1e-5 * sum);
+}
+
+TEST(SamplesTest, AnEdgeAlongTheRowsIsFoundTwiceAsWell) {
+    double four = 0, finer = 0;
+    for (float top = 0.5f; top < 2.5f; top += 0.13f) {
+        const double truth = energyOf(sonarOf(2048, 4, 1), screen(top));
+        four += std::pow(energyOf(sonarOf(32, 8, 4), screen(top)) / truth - 1, 2);
+        finer += std::pow(energyOf(sonarOf(64, 16, 1), screen(top)) / truth - 1, 2);
+    }
+    EXPECT_LT(four, finer / 2) << "mean squares";
+}
+
+}  // namespace
+}  // namespace insonify::sonar
