@@ -4,8 +4,6 @@
 
 flat in uvec2 seen;
 #ifdef HAVE_NORMAL_MAP
-layout(std430, binding = COMMANDS_BINDING) readonly buffer Commands { CommandRecord commands[]; };
-layout(std430, binding = MATERIALS_BINDING) readonly buffer Materials { MaterialRecord materials[]; };
 uniform sampler2D normal_map;
 uniform bool mapped;      // the draws of this call have a normal map
 uniform vec2 extent;
@@ -13,6 +11,7 @@ uniform vec2 pixel_size;  // [u, v]
 in vec3 slab_normal;
 in vec4 slab_tangent;
 in vec2 map_uv;
+flat in float map_scale;
 
 // x: command + 1, 0 for a miss; y: triangle within the mesh; z: bits of the mapped cosine, 0 without a map
 layout(location = 0) out uvec4 surface;
@@ -30,7 +29,7 @@ void main() {
     float cosine = 0.0;
     if (mapped) {
         vec3 direction = normalize(vec3(1.0, gl_FragCoord.xy * pixel_size - extent));
-        cosine = mappedCosine(direction, materials[commands[seen.x].material].values.z);
+        cosine = mappedCosine(direction, map_scale);
     }
     surface = uvec4(seen.x + 1u, seen.y, floatBitsToUint(cosine), 0u);
 }

@@ -11,26 +11,19 @@ uniform float near_plane;  // [m]
 
 flat out uvec2 seen;  // command, triangle (SurfaceScene.cpp has each triangle end in a vertex of its number)
 #ifdef HAVE_NORMAL_MAP
-layout(std430, binding = OBJECTS_BINDING) readonly buffer Objects { ObjectRecord objects[]; };
-layout(std430, binding = COMMANDS_BINDING) readonly buffer Commands { CommandRecord commands[]; };
-uniform vec2 slab_axis;  // cosine and sine of the slab's azimuth
 layout(location = 4) in vec3 normal;
 layout(location = 5) in vec4 tangent;
 layout(location = 6) in vec2 uv;
-out vec3 slab_normal;
+layout(location = 7) in vec4 normal_x;  // rows of the matrix from object axes to the slab's, for normals; w: scale of the map
+layout(location = 8) in vec4 normal_y;
+layout(location = 9) in vec4 normal_z;
+layout(location = 10) in vec4 tangent_x;  // the same for tangents
+layout(location = 11) in vec4 tangent_y;
+layout(location = 12) in vec4 tangent_z;
+out vec3 slab_normal;  // x into the picture, y to port, z up
 out vec4 slab_tangent;
 out vec2 map_uv;
-
-// x into the picture, y to port, z up
-vec3 slabFromSonar(vec3 p) {
-    return vec3(slab_axis.x * p.x + slab_axis.y * p.y, slab_axis.x * p.y - slab_axis.y * p.x, p.z);
-}
-
-void passNormal(ObjectRecord object) {
-    slab_normal = slabFromSonar(vec3(dot(object.normal_x.xyz, normal), dot(object.normal_y.xyz, normal), dot(object.normal_z.xyz, normal)));
-    slab_tangent = vec4(slabFromSonar(vec3(dot(object.row_x.xyz, tangent.xyz), dot(object.row_y.xyz, tangent.xyz), dot(object.row_z.xyz, tangent.xyz))), tangent.w);
-    map_uv = uv;
-}
+flat out float map_scale;
 #endif
 
 void main() {
@@ -38,6 +31,9 @@ void main() {
     vec4 p = vec4(position, 1.0);
     gl_Position = vec4(dot(clip_x, p), dot(clip_y, p), near_plane, dot(clip_w, p));  // reversed, infinite depth: near / x
 #ifdef HAVE_NORMAL_MAP
-    passNormal(objects[commands[seen.x].object]);
+    slab_normal = vec3(dot(normal_x.xyz, normal), dot(normal_y.xyz, normal), dot(normal_z.xyz, normal));
+    slab_tangent = vec4(dot(tangent_x.xyz, tangent.xyz), dot(tangent_y.xyz, tangent.xyz), dot(tangent_z.xyz, tangent.xyz), tangent.w);
+    map_uv = uv;
+    map_scale = normal_x.w;
 #endif
 }

@@ -48,10 +48,12 @@ SlabPicture::SlabPicture(const Slab& slab, bool with_normal_maps, size_t run_lim
       target_(ids_, depth_),
       device_commands_(run_limit * sizeof(CommandRecord)),
       device_clips_(run_limit * sizeof(Clip)),
+      device_bends_(with_normal_maps ? run_limit * sizeof(Bend) : sizeof(Bend)),
       device_draws_(run_limit * sizeof(DrawCommand)) {
     runs.reserve(run_limit);
     commands.reserve(run_limit);
     clips.reserve(run_limit);
+    if (with_normal_maps) bends.reserve(run_limit);
     draws.reserve(run_limit);
     if (slab.samples == 4)
         multisampled_ = std::make_unique<Multisampled>(slab, with_normal_maps ? GL_RGBA32UI : GL_RG32UI);
@@ -98,6 +100,7 @@ void SlabPicture::resolve() const {
 void SlabPicture::upload() {
     device_commands_.write(commands.data(), commands.size() * sizeof(CommandRecord));
     device_clips_.write(clips.data(), clips.size() * sizeof(Clip));
+    if (!bends.empty()) device_bends_.write(bends.data(), bends.size() * sizeof(Bend));
     device_draws_.write(draws.data(), draws.size() * sizeof(DrawCommand));
     device_draws_.bind(GL_DRAW_INDIRECT_BUFFER);
 }

@@ -23,6 +23,12 @@ public:
         vec4 x, y, w;
     };
 
+    /** What a normal map needs: rows of the matrices from object axes to the slab's (x into the picture, y to port, z
+     * up) for normals, the first row's w the scale of the map, and for tangents. */
+    struct Bend {
+        vec4 normal[3], tangent[3];
+    };
+
     /** At most `run_limit` runs are drawn. */
     SlabPicture(const Slab& slab, bool with_normal_maps, size_t run_limit);
     ~SlabPicture();
@@ -38,13 +44,15 @@ public:
     void clear() const;
     /** Ends the drawing: several samples a pixel become pixels. */
     void resolve() const;
-    /** Tells the device `commands`, `clips` and `draws`. */
+    /** Tells the device `commands`, `clips`, `bends` and `draws`. */
     void upload();
     const gpu::Buffer& deviceClips() const { return device_clips_; }
+    const gpu::Buffer& deviceBends() const { return device_bends_; }
 
     std::vector<Culler::Run> runs;        ///< What there is to draw.
     std::vector<CommandRecord> commands;  ///< One for each run.
     std::vector<Clip> clips;              ///< One for each run.
+    std::vector<Bend> bends;              ///< One for each run; none without normal maps.
     std::vector<DrawCommand> draws;       ///< One for each run.
 
 private:
@@ -54,7 +62,7 @@ private:
     gpu::Framebuffer target_;
     struct Multisampled;
     std::unique_ptr<Multisampled> multisampled_;  ///< What is drawn into when a pixel has several samples.
-    gpu::Buffer device_commands_, device_clips_, device_draws_;
+    gpu::Buffer device_commands_, device_clips_, device_bends_, device_draws_;
 };
 
 }  // namespace insonify::sonar

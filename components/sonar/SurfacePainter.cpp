@@ -11,6 +11,16 @@ SlabPicture::Clip clip(const ObjectRecord& object, const Slab& slab) {
     return {vec4((cosine * y - sine * x) / slab.extent_u), vec4(z / slab.extent_v), vec4(cosine * x + sine * y)};
 }
 
+SlabPicture::Bend bend(const ObjectRecord& object, const Slab& slab, float normal_scale) {
+    const auto cosine = static_cast<float>(std::cos(slab.azimuth)), sine = static_cast<float>(std::sin(slab.azimuth));
+    SlabPicture::Bend rows{
+        {cosine * object.normal_x + sine * object.normal_y, cosine * object.normal_y - sine * object.normal_x,
+         object.normal_z},
+        {cosine * object.row_x + sine * object.row_y, cosine * object.row_y - sine * object.row_x, object.row_z}};
+    rows.normal[0].w = normal_scale;
+    return rows;
+}
+
 }  // namespace
 
 SurfacePainter::SurfacePainter(const types::Geometry& geometry, const SurfaceScene& scene,
@@ -21,7 +31,7 @@ SurfacePainter::SurfacePainter(const types::Geometry& geometry, const SurfaceSce
       program_(gpu::Program::raster("surface.vert.glsl", "surface.frag.glsl", defines)),
       objects_(geometry.objects.size() * sizeof(ObjectRecord)) {
     const auto at = [&](const char* name) { return glGetUniformLocation(program_.id(), name); };
-    uniforms_ = {at("slab_axis"), at("extent"), at("pixel_size"), at("near_plane"), at("mapped")};
+    uniforms_ = {at("extent"), at("pixel_size"), at("near_plane"), at("mapped")};
     scene_.describe(vertices_);
     glClipControl(GL_LOWER_LEFT, GL_ZERO_TO_ONE);
     glEnable(GL_DEPTH_TEST);
@@ -42,6 +52,7 @@ void SurfacePainter::draw(SlabPicture& picture, const std::vector<ObjectRecord>&
     program_.use();
     setUniforms(picture.slab());
     vertices_.instanceRows(1, picture.deviceClips(), 3);
+    if (scene_.withNormalMaps()) vertices_.instanceRows(7, picture.deviceBends(), 6);
     vertices_.bind();
     scene_.bindRecords();
     bindObjects();
@@ -52,19 +63,21 @@ void SurfacePainter::draw(SlabPicture& picture, const std::vector<ObjectRecord>&
 void SurfacePainter::listDraws(SlabPicture& picture, const std::vector<ObjectRecord>& placed) const {
     picture.commands.clear();
     picture.clips.clear();
+    picture.bends.clear();
     picture.draws.clear();
     for (const Culler::Run& run : picture.runs) {
         const SurfaceScene::MeshPlace& place = scene_.place(geometry_.objects[run.object].mesh);
         picture.draws.push_back({run.index_count, 1, place.first_index + run.first_index, place.first_vertex,
                                  static_cast<uint32_t>(picture.commands.size())});
         picture.clips.push_back(clip(placed[run.object], picture.slab()));
+        if (scene_.withNormalMaps())
+            picture.bends.push_back(bend(placed[run.object], picture.slab(),
+                                         geometry_.materials[static_cast<size_t>(run.material)].normal_scale));
         picture.commands.push_back({run.object, place.first_triangle, static_cast<uint32_t>(run.material), 0});
     }
 }
 
 void SurfacePainter::setUniforms(const Slab& slab) const {
-    glUniform2f(uniforms_.slab_axis, static_cast<float>(std::cos(slab.azimuth)),
-                static_cast<float>(std::sin(slab.azimuth)));
     glUniform2f(uniforms_.extent, static_cast<float>(slab.extent_u), static_cast<float>(slab.extent_v));
     const double side = slab.samples == 4 ? 2 : 1;
     glUniform2f(uniforms_.pixel_size, static_cast<float>(side * slab.du()), static_cast<float>(side * slab.dv()));

@@ -34,7 +34,7 @@ private:
     gpu::VertexArray vertices_;
     gpu::Buffer objects_;
     struct Uniforms {
-        GLint slab_axis, extent, pixel_size, near_plane, mapped;
+        GLint extent, pixel_size, near_plane, mapped;
     } uniforms_;
 };
 
