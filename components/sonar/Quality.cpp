@@ -15,6 +15,7 @@ namespace {
 
 constexpr int least_rows = 8, most_rows = 2048, most_columns = 256;
 constexpr int patience = 20, late_of_patience = 2, early_in_a_row = 100;
+constexpr double late_share = 0.85, early_share = 0.7;  ///< Of the budget: lowered before it is overrun.
 
 /** Energies as they are summed: a gain or a level would hide or invent errors. */
 SonarConfig plain(SonarConfig config) {
@@ -124,8 +125,10 @@ bool BudgetKeeper::moveTo(size_t at) {
 }
 
 bool BudgetKeeper::heard(double ms) {
-    late_ += ms > budget_ms_;
-    early_ = ms < budget_ms_ / 3 ? early_ + 1 : 0;
+    const bool can_rise = at_ + 1 < ladder_.size();
+    const double finer_ms = can_rise ? ms * ladder_[at_ + 1].ms / ladder_[at_].ms : budget_ms_;
+    late_ += ms > late_share * budget_ms_;
+    early_ = finer_ms < early_share * budget_ms_ ? early_ + 1 : 0;
     if (late_ >= late_of_patience) return moveTo(at_ > 0 ? at_ - 1 : 0);
     if (early_ >= early_in_a_row) return moveTo(at_ + 1);
     if (++pings_ == patience) pings_ = late_ = 0;

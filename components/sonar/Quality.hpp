@@ -20,8 +20,8 @@ struct Quality {
 std::vector<Quality> tryQualities(const SonarConfig& config, const types::Snapshot& scene, double target_error,
                                   double budget_ms);
 
-/** Keeps pings within a time by going down and up a ladder of qualities. Down when 2 of the last 20 pings were late, up
- *  when 100 in a row took less than a third of the time. */
+/** Keeps pings within a time by going down and up a ladder of qualities. Down when 2 of the last 20 pings took more
+ *  than 85 % of it, up when 100 in a row were so quick that the next quality would take less than 70 %. */
 class BudgetKeeper {
 public:
     /** `ladder`: of rising cost, not empty; begins at its last. */

@@ -48,13 +48,13 @@ TEST(TryQualitiesTest, ABudgetEndsTheLadderBeforeItIsSpent) {
     EXPECT_GT(steps[0].ms, 1e-6);
 }
 
-TEST(BudgetKeeperTest, TwoLatePingsOfTwentyLowerTheQuality) {
+TEST(BudgetKeeperTest, TwoOfTwentyPingsNearTheBudgetLowerTheQuality) {
     BudgetKeeper keeper(ladder, 10);
     EXPECT_EQ(keeper.quality().columns_per_beam, 2);
     EXPECT_FALSE(keeper.heard(11));
-    for (int i = 0; i < 30; ++i) EXPECT_FALSE(keeper.heard(9)) << "one late ping is forgotten";
-    EXPECT_FALSE(keeper.heard(11));
-    EXPECT_TRUE(keeper.heard(11));
+    for (int i = 0; i < 30; ++i) EXPECT_FALSE(keeper.heard(8)) << "one late ping is forgotten";
+    EXPECT_FALSE(keeper.heard(9));
+    EXPECT_TRUE(keeper.heard(9)) << "before the budget is overrun";
     EXPECT_EQ(keeper.quality().rows, 16);
     EXPECT_EQ(keeper.quality().columns_per_beam, 1);
 }
@@ -64,9 +64,9 @@ TEST(BudgetKeeperTest, AHundredEarlyPingsRaiseItAgain) {
     keeper.heard(11);
     keeper.heard(11);
     for (int i = 0; i < 99; ++i) EXPECT_FALSE(keeper.heard(1));
-    EXPECT_FALSE(keeper.heard(9)) << "not a hundred in a row";
-    for (int i = 0; i < 99; ++i) EXPECT_FALSE(keeper.heard(1));
-    EXPECT_TRUE(keeper.heard(1));
+    EXPECT_FALSE(keeper.heard(4)) << "the next would take 8: not a hundred in a row";
+    for (int i = 0; i < 99; ++i) EXPECT_FALSE(keeper.heard(3));
+    EXPECT_TRUE(keeper.heard(3)) << "the next takes twice as long: 6 of 10";
     EXPECT_EQ(keeper.quality().columns_per_beam, 2);
 }
 
