@@ -53,6 +53,8 @@ struct Patch {
     uint32_t first_index = 0;    ///< Of the triangles that stand for it, into Mesh::coarse_indices [1].
     uint32_t index_count = 0;    ///< 0: nothing stands for it [1].
     float deviation = 0;         ///< Of any vertex of the patch from the triangles that stand for it, at most [m].
+    glm::vec3 cone_axis{0};      ///< All its triangles' normals lie within cone_angle of this [1].
+    float cone_angle = -1;       ///< -1: unknown, or the mesh is not closed [rad].
 };
 
 /** Triangles in their own coordinates (z up, x north-like). Every index is below positions.size(); positions are

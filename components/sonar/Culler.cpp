@@ -4,6 +4,7 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
+#include <numbers>
 
 namespace insonify::sonar {
 namespace {
@@ -38,6 +39,8 @@ std::array<glm::vec3, 5> viewOf(const Slab& slab) {
     };
     return {turned(-u, 1, 0), turned(-u, -1, 0), turned(-v, 0, 1), turned(-v, 0, -1), turned(-1, 0, 0)};
 }
+
+constexpr float right_angle = 0.5f * std::numbers::pi_v<float>;
 
 double dot2(const glm::dvec3& v) { return glm::dot(v, v); }
 
@@ -142,9 +145,10 @@ void Culler::addObject(const Query& query, std::vector<Run>& runs) const {
         const types::Patch& patch = mesh.patches[i];
         const float distance = nearest(query.view, records_[query.object], patch.centre, patch.half);
         const double tolerated = std::min(query.pixels * distance, query.metres);
-        if (!(distance <= range_max_)) {
+        const Turn turn = turnOf(query, patch);
+        if (!(distance <= range_max_) || turn == Turn::Back) {
             i = patch.next;
-        } else if (patch.index_count > 0 && patch.deviation * scales_[query.object] < tolerated) {
+        } else if (patch.index_count > 0 && patch.deviation * scales_[query.object] < tolerated && turn != Turn::Limb) {
             runs.push_back(coarse(mesh, patch, query.object));
             i = patch.next;
         } else {
@@ -169,12 +173,26 @@ void Culler::addClusters(const Query& query, std::span<const types::Cluster> clu
     }
 }
 
+bool Culler::isSingleSided(const types::Cluster& cluster) const {
+    return !geometry_.materials[static_cast<size_t>(cluster.material)].double_sided;
+}
+
 bool Culler::turnsItsBack(const Query& query, const types::Cluster& cluster) const {
-    if (!query.before || cluster.cone_cutoff > 1 ||
-        geometry_.materials[static_cast<size_t>(cluster.material)].double_sided)
-        return false;
+    if (!query.before || cluster.cone_cutoff > 1 || !isSingleSided(cluster)) return false;
     const glm::vec3 away = cluster.cone_apex - *query.before;
     return glm::dot(away, cluster.cone_axis) >= (cluster.cone_cutoff + 1e-4f) * glm::length(away);
+}
+
+Culler::Turn Culler::turnOf(const Query& query, const types::Patch& patch) const {
+    if (patch.cone_angle < 0) return Turn::Front;  // nothing is known
+    if (!query.before) return Turn::Limb;
+    const glm::vec3 away = patch.centre - *query.before;
+    const float distance = glm::length(away), radius = glm::length(patch.half);
+    const float angle = distance > radius ? patch.cone_angle + std::asin(radius / distance) : right_angle;
+    const float along = glm::dot(away, patch.cone_axis);
+    if (angle >= right_angle || std::abs(along) <= std::sin(angle) * distance) return Turn::Limb;
+    const types::Mesh& mesh = geometry_.meshes[static_cast<size_t>(geometry_.objects[query.object].mesh)];
+    return along > 0 && isSingleSided(mesh.clusters[patch.first_cluster]) ? Turn::Back : Turn::Front;
 }
 
 float Culler::nearest(const View& view, const ObjectRecord& object, glm::vec3 centre, glm::vec3 half) const {

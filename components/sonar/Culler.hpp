@@ -59,6 +59,11 @@ private:
     std::optional<glm::vec3> before(size_t object, float distance) const;
     void addObject(const Query& query, std::vector<Run>& runs) const;
     void addClusters(const Query& query, std::span<const types::Cluster> clusters, std::vector<Run>& runs) const;
+    /** How the triangles of a patch of a closed mesh face the sonar: some and some not at the limb, where a surface
+     *  leans to the line of sight and a small step aside is a large one along it. */
+    enum class Turn { Front, Limb, Back };
+    Turn turnOf(const Query& query, const types::Patch& patch) const;
+    bool isSingleSided(const types::Cluster& cluster) const;
     bool turnsItsBack(const Query& query, const types::Cluster& cluster) const;
     /** Distance that a box along an object's axes has at least [m]; infinite when it is out of view or range. */
     float nearest(const View& view, const ObjectRecord& object, glm::vec3 centre, glm::vec3 half) const;

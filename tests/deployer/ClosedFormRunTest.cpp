@@ -59,7 +59,7 @@ TEST(ClosedFormRunTest, Form3ABottomUnderAPitchedBeam) {
 
 TEST(ClosedFormRunTest, Form4ASphere) {
     // Bins of 0.2 m: at the limb one pixel spans 0.1 m of range, so that narrower bins would test the silhouette.
-    const Sonar ping = loggedPing(*ball(1, 128, 10), R"({speed_of_sound: 1000, range: 12, bin_count: 60, beam_count: 1,
+    const Sonar ping = loggedPing(*ball(1, 256, 10), R"({speed_of_sound: 1000, range: 12, bin_count: 60, beam_count: 1,
         field_of_view_deg: 12, beam_height_deg: 12, quality: {rows: 512, columns_per_beam: 256}})");
     expectForm(ping, sphereEcho(1, 10), times(1.03, sphereEcho(1, 10)));
 }
@@ -106,7 +106,7 @@ TEST(CerqueiraLimitRunTest, APlaneIsTheSigmoidOfDistanceOverRange) {
 }
 
 TEST(CerqueiraLimitRunTest, ASphereIsTheSigmoidOfItsIncidence) {
-    const Sonar ping = loggedPing(*ball(1, 128, 10.03), R"({model: cerqueira2017, speed_of_sound: 1000, range: 12,
+    const Sonar ping = loggedPing(*ball(1, 256, 10.03), R"({model: cerqueira2017, speed_of_sound: 1000, range: 12,
         bin_count: 120, beam_count: 1, field_of_view_deg: 14, beam_height_deg: 14,
         quality: {rows: 512, columns_per_beam: 256}})");
     expectForm(ping, publishedSphere(1, 10.03), publishedSphere(1.02, 10.05));

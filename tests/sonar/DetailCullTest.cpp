@@ -64,12 +64,35 @@ TEST(DetailCullTest, WherePixelsAreCoarseAQuarterOfTheTrianglesOrFewerStandsForA
     const types::Snapshot snapshot = test::snapshotOf(geometry);
     const SonarConfig config = fan(120);
     const Drawn all = drawnBy(config, snapshot, 0, 0), half = drawnBy(config, snapshot, 0.5, 0.05),
-                whole = drawnBy(config, snapshot, 1, 0.1), fine = drawnBy(config, snapshot, 1, 1e-9);
+                much = drawnBy(config, snapshot, 100, 10), fine = drawnBy(config, snapshot, 1, 1e-9);
     EXPECT_EQ(all.coarse, 0u);
     EXPECT_EQ(fine.coarse, 0u) << "no more than so many metres";
     EXPECT_GT(half.replaced, 2 * half.coarse);
     EXPECT_LT(half.all, all.all);
-    EXPECT_LT(whole.all, half.all);
+    EXPECT_LT(much.all, half.all);
+}
+
+TEST(DetailCullTest, WhatStandsForAPatchOfABallFacesTheSonarLimbsAreDrawnInFull) {
+    const auto geometry = test::sceneOf({test::sphere(1, 128)}, -10, {{10, 0, 0}});
+    types::Mesh& ball = const_cast<types::Geometry&>(*geometry).meshes[0];
+    scene::buildClusters(ball);
+    const SonarConfig config = fan(40);
+    Culler culler(*geometry, {config.range_min, config.range, 10, 1});
+    culler.place(test::snapshotOf(geometry));
+    std::vector<Culler::Run> runs;
+    culler.visible(makeSlabs(config, makeBeams(config)).front(), runs);
+    size_t coarse = 0;
+    for (const Culler::Run& run : runs) {
+        if (!run.stands_for) continue;
+        for (size_t i = run.first_index - ball.indices.size();
+             i < run.first_index - ball.indices.size() + run.index_count; i += 3) {
+            const auto corner = [&](size_t k) { return ball.positions[ball.coarse_indices[i + k]]; };
+            const glm::vec3 normal = glm::cross(corner(1) - corner(0), corner(2) - corner(0));
+            EXPECT_LE(glm::dot(normal, corner(0) + glm::vec3(10, 0, 0)), 0) << "seen from -10 m on its x axis";
+            ++coarse;
+        }
+    }
+    EXPECT_GT(coarse, 100u) << "nothing was simplified";
 }
 
 TEST(DetailCullTest, SimplerSurfacesChangeAPingByLessThanItsPixelsDo) {
