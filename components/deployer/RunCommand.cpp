@@ -110,8 +110,10 @@ void callAll(framework::Deployment& deployment, const RunOptions& options) {
 
 framework::RunResult runAll(framework::Deployment& deployment, const RunOptions& options,
                             const std::atomic<bool>& stop) {
-    if (!options.quiet)
+    if (!options.quiet) {
         for (const auto& task : deployment.tasks()) printNotices(*task, task->notices());
+        deployment.onWarning([](const std::string& text) { fmt::print(stderr, "warning: {}\n", text); });
+    }
     if (options.progress)
         return deployment.run(options.limits, stop,
                               [&](const framework::Progress& progress) { options.progress(deployment, progress); });

@@ -12,7 +12,14 @@ Summary::Times timesOf(const framework::Statistics& seconds) {
 }
 
 Summary::Task taskSummary(const framework::TaskContext& task) {
-    Summary::Task summary{task.name(), framework::toString(task.state()), timesOf(task.cycles()), {}};
+    Summary::Task summary{task.name(), framework::toString(task.state()), timesOf(task.cycles()), {}, {}, {}};
+    const framework::Timing& timing = task.timing();
+    summary.jitter = timesOf(timing.jitter);
+    summary.latency = timesOf(timing.latency);
+    summary.overruns = timing.overruns;
+    summary.late = timing.late;
+    summary.errors = timing.errors;
+    summary.hangs = timing.hangs;
     for (const auto& [name, seconds] : task.stages()) summary.stages[name] = timesOf(seconds);
     return summary;
 }
@@ -24,12 +31,25 @@ void addOnce(std::vector<types::Omission>& all, const types::Omission& omission)
     if (std::none_of(all.begin(), all.end(), same)) all.push_back(omission);
 }
 
-Json taskJson(const Summary::Task& task) {
+Json timesJson(const Summary::Times& times) {
+    return {
+        {"count", times.cycles}, {"median_ms", times.median_ms}, {"p99_ms", times.p99_ms}, {"max_ms", times.max_ms}};
+}
+
+Json taskJson(const Summary::Task& task, bool realtime) {
     Json stages = Json::object();
     for (const auto& [name, times] : task.stages)
         stages[name] = {{"median_ms", times.median_ms}, {"p99_ms", times.p99_ms}};
-    return {{"state", task.state},          {"cycles", task.update.cycles}, {"median_ms", task.update.median_ms},
-            {"p99_ms", task.update.p99_ms}, {"max_ms", task.update.max_ms}, {"stages", stages}};
+    Json json = {{"state", task.state},          {"cycles", task.update.cycles}, {"median_ms", task.update.median_ms},
+                 {"p99_ms", task.update.p99_ms}, {"max_ms", task.update.max_ms}, {"stages", stages}};
+    if (!realtime) return json;
+    json["jitter"] = timesJson(task.jitter);
+    json["latency"] = timesJson(task.latency);
+    json["overruns"] = task.overruns;
+    json["late"] = task.late;
+    json["errors"] = task.errors;
+    json["hangs"] = task.hangs;
+    return json;
 }
 
 std::string timesLine(const std::string& name, const std::string& state, const Summary::Times& times) {
@@ -40,7 +60,11 @@ std::string timesLine(const std::string& name, const std::string& state, const S
 }  // namespace
 
 Summary::Summary(const framework::Deployment& deployment, const framework::RunResult& result)
-    : pings(result.pings), wall_s(result.wall_s), losses(deployment.losses()) {
+    : pings(result.pings),
+      wall_s(result.wall_s),
+      realtime(!deployment.spec().lockstep),
+      losses(deployment.losses()),
+      warnings(result.warnings) {
     for (const auto& task : deployment.tasks()) {
         tasks.push_back(taskSummary(*task));
         if (const types::Plan* plan = task->plan()) {
@@ -52,13 +76,15 @@ Summary::Summary(const framework::Deployment& deployment, const framework::RunRe
 
 Json Summary::json() const {
     Json by_name = Json::object();
-    for (const Task& task : tasks) by_name[task.name] = taskJson(task);
+    for (const Task& task : tasks) by_name[task.name] = taskJson(task, realtime);
     Json lost = Json::object();
     for (const auto& [connection, count] : losses) lost[connection] = count;
     Json quality = Json::object();
     for (const auto& [task, plan] : plans) quality[task] = toJson(plan)["quality"];
-    return {{"pings", pings}, {"wall_s", wall_s},           {"tasks", by_name},
-            {"losses", lost}, {"omitted", toJson(omitted)}, {"quality", quality}};
+    Json json = {{"pings", pings}, {"wall_s", wall_s},           {"tasks", by_name},
+                 {"losses", lost}, {"omitted", toJson(omitted)}, {"quality", quality}};
+    if (realtime) json["warnings"] = warnings;
+    return json;
 }
 
 std::string Summary::text() const {
@@ -70,11 +96,25 @@ std::string Summary::text() const {
         text += timesLine(task.name, task.state, task.update);
         for (const auto& [name, times] : task.stages) text += timesLine("  " + name, "", times);
     }
+    if (realtime) text += realtimeText();
     for (const auto& [task, plan] : plans) text += fmt::format("{}: {}\n", task, qualityText(plan));
     text += "lost samples\n";
     for (const auto& [connection, count] : losses) text += fmt::format("  {:6}  {}\n", count, connection);
     if (!omitted.empty()) text += "left out\n";
     for (const types::Omission& omission : omitted) text += fmt::format("  {}: {}\n", omission.name, omission.reason);
+    return text;
+}
+
+std::string Summary::realtimeText() const {
+    const auto times = [](const Times& t) {
+        return t.cycles == 0 ? std::string(31, ' ')
+                             : fmt::format("{:>9.3f} {:>10.3f} {:>10.3f}", t.median_ms, t.p99_ms, t.max_ms);
+    };
+    std::string text = fmt::format("  {:20} {:>8} {:>6} {:>6} {:>5} | {:31} | {:31}\n", "in time", "overruns", "late",
+                                   "errors", "hangs", "jitter median, p99, max ms", "latency median, p99, max ms");
+    for (const Task& task : tasks)
+        text += fmt::format("  {:20} {:>8} {:>6} {:>6} {:>5} | {} | {}\n", task.name, task.overruns, task.late,
+                            task.errors, task.hangs, times(task.jitter), times(task.latency));
     return text;
 }
 

@@ -18,17 +18,25 @@ struct Summary {
         std::string name, state;
         Times update;                         ///< Of updateHook.
         std::map<std::string, Times> stages;  ///< Parts of it, by name.
+        Times jitter;                         ///< In realtime: of the begin of periodic cycles.
+        Times latency;                        ///< In realtime: from a sample's stamp to its being written.
+        uint64_t overruns = 0, late = 0, errors = 0, hangs = 0;  ///< As in framework::Timing.
     };
     uint64_t pings = 0;
     double wall_s = 0;
+    bool realtime = false;
     std::vector<Task> tasks;                   ///< In file order.
     std::map<std::string, uint64_t> losses;    ///< By "from>to" [samples].
     std::vector<types::Omission> omitted;      ///< Of all sonars, each once.
     std::map<std::string, types::Plan> plans;  ///< Of each sonar that has sent a ping, by task.
+    std::vector<std::string> warnings;         ///< In realtime, as of framework::Deployment::onWarning.
 
     Summary(const framework::Deployment& deployment, const framework::RunResult& result);
     Json json() const;
     std::string text() const;
+
+private:
+    std::string realtimeText() const;
 };
 
 }  // namespace insonify::deployer

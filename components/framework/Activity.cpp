@@ -50,9 +50,10 @@ void Activity::submit(Job& job) {
 void Activity::release() {
     {
         std::lock_guard lock(mutex_);
-        free_ = true;
+        free_ = realtime_ = true;
         woken_ = false;
         next_cycle_ = Clock::now();
+        if (!settings_.periodic() && timed()) schedule();
     }
     wake_.notify_one();
     if (owner_.triggered()) trigger();  // by what came before
@@ -104,15 +105,27 @@ void Activity::serve(std::unique_lock<std::mutex>& lock) {
 
 bool Activity::due() const {
     if (!free_) return false;
-    return settings_.periodic() ? Clock::now() >= next_cycle_ : woken_;
+    return (woken_ && !settings_.periodic()) || (timed() && Clock::now() >= next_cycle_);
+}
+
+bool Activity::timed() const { return settings_.periodic() || owner_.wakeAfter() > 0; }
+
+/** Times are absolute: a late cycle does not shift the next; periods missed altogether are left out. */
+void Activity::schedule() {
+    const auto now = Clock::now();
+    if (!settings_.periodic()) {
+        next_cycle_ = now + nanoseconds(owner_.wakeAfter());
+        return;
+    }
+    const auto period = nanoseconds(settings_.period);
+    const auto missed = (now - next_cycle_) / period;
+    owner_.timing().jitter.add(std::chrono::duration<double>(now - next_cycle_).count());
+    owner_.timing().overruns += static_cast<uint64_t>(missed);
+    next_cycle_ += period * (1 + missed);
 }
 
 void Activity::runCycle(std::unique_lock<std::mutex>& lock) {
-    // Times are absolute: a late cycle does not shift the next; periods missed altogether are left out.
-    if (settings_.periodic()) {
-        const auto period = nanoseconds(settings_.period);
-        next_cycle_ += period * (1 + (Clock::now() - next_cycle_) / period);
-    }
+    if (timed()) schedule();
     woken_ = false;
     lock.unlock();
     const bool more = owner_.cycle();
@@ -121,10 +134,23 @@ void Activity::runCycle(std::unique_lock<std::mutex>& lock) {
 }
 
 void Activity::wait(std::unique_lock<std::mutex>& lock) {
-    if (free_ && settings_.periodic())
+    if (free_ && timed())
         wake_.wait_until(lock, next_cycle_);
     else
         wake_.wait(lock);
+}
+
+bool Activity::sleepUntil(types::Time time) {
+    const auto left = [&] { return std::chrono::microseconds((time - owner_.environment().now()).microseconds); };
+    constexpr std::chrono::microseconds at_most(20'000);  // the clock may be another than the wall's
+    owner_.timing().pause();
+    {
+        std::unique_lock lock(mutex_);
+        for (auto rest = left(); free_ && rest.count() > 0; rest = left())
+            wake_.wait_for(lock, std::min(rest, at_most));
+    }
+    owner_.timing().resume();
+    return free_;
 }
 
 }  // namespace insonify::framework

@@ -10,14 +10,22 @@
 #include <type_traits>
 #include <vector>
 
+#include "types/Time.hpp"
+
 namespace insonify::framework {
 
 class TaskContext;
 
-/** When a task's updateHook runs: every `period` seconds, or when a sample arrives on one of its triggering ports. */
+/** When a task's updateHook runs: every `period` seconds, or when a sample arrives on one of its triggering ports; and
+ *  on what. Of the rest, lockstep knows nothing. */
 struct ActivitySettings {
     double period = 0;                 ///< 0: triggered [s].
     std::vector<std::string> trigger;  ///< Input ports that wake the task; empty: all that are connected.
+    bool fifo = false;                 ///< SCHED_FIFO, with `priority`; else the system's default.
+    int priority = 0;                  ///< 1 to 99, the highest.
+    std::vector<uint32_t> cpus;        ///< Processors that the thread keeps to; empty: any.
+    double deadline = 0;               ///< Samples written longer after their stamp are late; 0: none is [s].
+    double watchdog = 0;               ///< A cycle that takes longer hangs; 0: as the deployment has it [s].
     bool periodic() const { return period > 0; }
 };
 
@@ -48,6 +56,12 @@ public:
     void release();  ///< From now on the thread runs cycles by itself; the first at once if samples wait.
     void hold();     ///< No cycle runs any more once this returns (called from another thread).
     void trigger();  ///< A new sample is there; any thread.
+    bool released() const { return free_; }
+    /** Whether cycles have been released before: the task runs in realtime, even if it is held for its last cycle. */
+    bool realtime() const { return realtime_; }
+    /** In a cycle, on the task's thread: waits until the task's clock shows `time`. False as soon as the task is held.
+     */
+    bool sleepUntil(types::Time time);
 
 private:
     struct Job {
@@ -63,6 +77,8 @@ private:
     void loop();
     void serve(std::unique_lock<std::mutex>& lock);
     bool due() const;
+    bool timed() const;  ///< Whether next_cycle_ counts.
+    void schedule();
     void runCycle(std::unique_lock<std::mutex>& lock);
     void wait(std::unique_lock<std::mutex>& lock);
 
@@ -72,8 +88,9 @@ private:
     std::condition_variable wake_, served_;
     Job* first_job_ = nullptr;
     std::atomic<bool> free_{false};  ///< Changes under the mutex.
+    std::atomic<bool> realtime_{false};
     bool woken_ = false, ending_ = false;
-    Clock::time_point next_cycle_;
+    Clock::time_point next_cycle_;  ///< Of a triggered task: when it runs without a sample.
     std::thread thread_;
 };
 

@@ -7,6 +7,7 @@
 #include "components/framework/Activity.hpp"
 #include "components/framework/Lockstep.hpp"
 #include "components/framework/Operation.hpp"
+#include "components/framework/RealtimeThread.hpp"
 #include "components/framework/Wiring.hpp"
 
 namespace insonify::framework {
@@ -85,7 +86,10 @@ void Deployment::startAtFirstStamp() {
 void Deployment::followClock() {
     if (spec_.lockstep) return;
     for (const auto& task : tasks_)
-        if (auto clock = task->clock(environment_->now)) environment_->now = std::move(clock);
+        if (auto clock = task->clock(environment_->now)) {
+            environment_->now = std::move(clock);
+            environment_->wall_clock = false;
+        }
 }
 
 TaskContext* Deployment::task(const std::string& name) const {
@@ -117,16 +121,50 @@ RunResult Deployment::run(const RunLimits& limits, const std::atomic<bool>& stop
                           const std::function<void(const Progress&)>& progress) {
     RunResult result;
     wall_start_ = std::chrono::steady_clock::now();
-    if (!spec_.lockstep) start_ = environment_->now();
-    if (startAll(result.failures))
-        spec_.lockstep ? runLockstep(limits, stop, progress) : runRealtime(limits, stop, progress);
-    noteBroken(result.failures);
-    stopAll(result.failures);
+    warnings_.clear();
+    if (!spec_.lockstep) prepareRealtime();
+    {
+        std::optional<Watchdog> watchdog;
+        if (!spec_.lockstep) watchdog.emplace(watchdogLimits(), [this](const std::string& text) { warn(text); });
+        if (startAll(result.failures))
+            spec_.lockstep ? runLockstep(limits, stop, progress) : runRealtime(limits, stop, progress);
+        noteBroken(result.failures);
+        stopAll(result.failures);
+    }
+    if (!spec_.lockstep && spec_.lock_memory) unlockMemory();
+    result.warnings = warnings_;
     const Progress end = progressNow();
     result.pings = end.pings;
     result.elapsed_s = end.elapsed_s;
     result.wall_s = end.wall_s;
     return result;
+}
+
+void Deployment::prepareRealtime() {
+    if (spec_.lock_memory)
+        if (const std::string refused = lockMemory(); !refused.empty()) warn(refused);
+    for (const auto& task : tasks_)
+        task->activity().call([&] {
+            for (const std::string& refused : applyToThread(task->activity().settings()))
+                warn(task->name() + ": " + refused);
+        });
+    start_ = environment_->now();
+}
+
+std::vector<Watchdog::Limit> Deployment::watchdogLimits() const {
+    std::vector<Watchdog::Limit> limits;
+    for (const auto& task : tasks_) {
+        const double own = task->activity().settings().watchdog;
+        limits.push_back({task.get(), own > 0 ? own : spec_.watchdog});
+    }
+    return limits;
+}
+
+void Deployment::warn(const std::string& text) {
+    constexpr size_t at_most = 100;
+    std::lock_guard lock(warning_mutex_);
+    if (warnings_.size() < at_most) warnings_.push_back(text);
+    if (told_) told_(text);
 }
 
 void Deployment::runLockstep(const RunLimits& limits, const std::atomic<bool>& stop,

@@ -6,6 +6,7 @@
 #include <functional>
 #include <map>
 #include <memory>
+#include <mutex>
 #include <string>
 #include <vector>
 
@@ -13,6 +14,7 @@
 #include "components/framework/Port.hpp"
 #include "components/framework/Registry.hpp"
 #include "components/framework/TaskContext.hpp"
+#include "components/framework/Watchdog.hpp"
 
 namespace insonify::framework {
 
@@ -43,6 +45,7 @@ struct RunResult {
     uint64_t pings = 0;                 ///< Written by every sonar.
     double elapsed_s = 0, wall_s = 0;   ///< As in Progress.
     std::vector<std::string> failures;  ///< "task: message"; empty: all went well.
+    std::vector<std::string> warnings;  ///< As of onWarning(), the first hundred.
     bool failed() const { return !failures.empty(); }
 };
 
@@ -82,6 +85,9 @@ public:
                   const std::function<void(const Progress&)>& progress = {});
     /** Returns the failures, "task: message". */
     std::vector<std::string> cleanup();
+    /** In realtime: what of priorities, processors and memory was not permitted, before tasks start; then tasks that
+     *  hang, are in error, or no longer. Comes on any thread, one at a time. */
+    void onWarning(std::function<void(const std::string&)> told) { told_ = std::move(told); }
 
     /** Calls an operation, "sonar.setRange", with arguments in YAML; gives the result as text. types::ConfigError: no
      * such task or operation, or arguments that do not fit; a refusal is what the operation throws. */
@@ -105,6 +111,10 @@ private:
                      const std::function<void(const Progress&)>& progress);
     /** Waits until an instant is due at the pace that is wanted. */
     void keepPace(double pace, types::Time instant, const std::atomic<bool>& stop) const;
+    /** Locks memory and sets up the tasks' threads, as far as is permitted. */
+    void prepareRealtime();
+    std::vector<Watchdog::Limit> watchdogLimits() const;
+    void warn(const std::string& text);
     bool startAll(std::vector<std::string>& failures);
     void stopAll(std::vector<std::string>& failures);
     void stopOne(TaskContext& task, std::vector<std::string>& failures);
@@ -122,6 +132,9 @@ private:
     std::atomic<int64_t> simulated_us_{0};
     types::Time start_;
     std::chrono::steady_clock::time_point wall_start_;
+    std::mutex warning_mutex_;
+    std::vector<std::string> warnings_;
+    std::function<void(const std::string&)> told_;
 };
 
 /** Which seed a task gets from `run --seed`: stable over runs, machines and versions; below 2^53. */

@@ -11,20 +11,40 @@ namespace {
 using types::Field;
 
 enum class Schedule { Lockstep, Realtime };
+enum class Scheduler { Other, Fifo };
 
 // What the keys of a deployment are, described as any other configuration.
 
 struct ActivityKeys {
     std::optional<double> period;
     std::vector<std::string> trigger;
+    Scheduler scheduler = Scheduler::Other;
+    std::optional<int> priority;
+    std::vector<uint32_t> cpus;
+    std::optional<double> deadline, watchdog;
     template <class Self, class V>
     static void describe(Self& self, V& visit) {
         visit(Field{"period", "s", "time between two cycles", 1e-6, 1e6}, self.period);
         visit(Field{"trigger", "", "input ports whose samples run a cycle"}, self.trigger);
+        visit(Field{"scheduler", "", "in realtime, the system's scheduler of the thread"}, self.scheduler);
+        visit(Field{"priority", "1", "with scheduler: fifo", 1, 99}, self.priority);
+        visit(Field{"cpus", "", "in realtime, processors that the thread keeps to", 0, 1023}, self.cpus);
+        visit(Field{"deadline", "s", "after which a sample is late, from its stamp", 1e-6, 1e6}, self.deadline);
+        visit(Field{"watchdog", "s", "in realtime, time of a cycle after which it is reported", 1e-3, 1e6},
+              self.watchdog);
     }
     void check(types::Problems& problems) const {
         if (period && !trigger.empty())
             problems.push_back({"", "has both period and trigger; a task is either periodic or triggered"});
+        if (scheduler == Scheduler::Fifo && !priority)
+            problems.push_back({"", "has no priority; scheduler: fifo needs one, from 1 to 99"});
+        if (scheduler == Scheduler::Other && priority)
+            problems.push_back({"priority", "is of no use with scheduler: other; fifo has one"});
+    }
+    ActivitySettings settings() const {
+        return {period.value_or(0),   trigger, scheduler == Scheduler::Fifo,
+                priority.value_or(0), cpus,    deadline.value_or(0),
+                watchdog.value_or(0)};
     }
 };
 
@@ -83,7 +103,8 @@ struct ConnectionKeys {
 
 struct DocumentKeys {
     Schedule schedule = Schedule::Lockstep;
-    double start_time = 1;
+    double start_time = 1, watchdog = 10;
+    bool lock_memory = false;
     std::vector<std::string> libraries;
     YAML::Node tasks{YAML::NodeType::Undefined};
     YAML::Node connections{YAML::NodeType::Undefined};
@@ -91,6 +112,9 @@ struct DocumentKeys {
     static void describe(Self& self, V& visit) {
         visit(Field{"schedule", "", "simulated time or the wall clock"}, self.schedule);
         visit(Field{"start_time", "s", "start of simulated time", 0, 4e9}, self.start_time);
+        visit(Field{"watchdog", "s", "in realtime, time of a cycle after which it is reported", 1e-3, 1e6},
+              self.watchdog);
+        visit(Field{"lock_memory", "", "in realtime, all memory stays resident"}, self.lock_memory);
         visit(Field{"libraries", "", "shared objects with more task types"}, self.libraries);
         visit(Field{"tasks", "", "by name"}, self.tasks);
         visit(Field{"connections", "", "from, to, policy"}, self.connections);
@@ -118,7 +142,7 @@ void readTask(ConfigReader& reader, const YAML::Node& name, const YAML::Node& bl
     TaskKeys keys;
     reader.read(block, task.path(), keys);
     task.type = keys.type;
-    task.activity = {keys.activity.period.value_or(0), keys.activity.trigger};
+    task.activity = keys.activity.settings();
     task.aliases = keys.aliases;
     task.switches = keys.switches;
     task.property_files = keys.property_files;
@@ -164,6 +188,11 @@ struct insonify::types::EnumNames<insonify::framework::Schedule> {
     static constexpr std::string_view names[] = {"lockstep", "realtime"};
 };
 
+template <>
+struct insonify::types::EnumNames<insonify::framework::Scheduler> {
+    static constexpr std::string_view names[] = {"other", "fifo"};
+};
+
 namespace insonify::framework {
 
 std::pair<std::string, std::string> splitPort(const std::string& path) {
@@ -186,6 +215,8 @@ DeploymentSpec DeploymentSpec::parse(const std::string& text, const std::string&
     reader.read(document, "", keys);
     spec.lockstep = keys.schedule == Schedule::Lockstep;
     spec.start_time = keys.start_time;
+    spec.watchdog = keys.watchdog;
+    spec.lock_memory = keys.lock_memory;
     spec.libraries = keys.libraries;
     readTasks(reader, keys.tasks, spec);
     readConnections(reader, keys.connections, spec);

@@ -46,6 +46,8 @@ struct DeploymentSpec {
     std::string text;  ///< The YAML as read.
     bool lockstep = true;
     double start_time = 1;               ///< Of simulated time [s].
+    double watchdog = 10;                ///< In realtime, how long a cycle may take before it is reported [s].
+    bool lock_memory = false;            ///< In realtime, all memory stays resident.
     std::vector<std::string> libraries;  ///< Shared objects, relative to the deployment file.
     std::vector<TaskSpec> tasks;         ///< In file order, the order of configuring.
     std::vector<ConnectionSpec> connections;

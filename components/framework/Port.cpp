@@ -8,4 +8,13 @@ void InputPortBase::signal() const {
     if (triggers_) owner().activity().trigger();
 }
 
+void OutputPortBase::noteWritten(types::Time stamp) const {
+    const Activity& activity = owner().activity();
+    if (!activity.released() || stamp.isNull()) return;
+    const double seconds = (owner().environment().now() - stamp).seconds();
+    const double deadline = activity.settings().deadline;
+    owner().timing().latency.add(seconds);
+    owner().timing().late += deadline > 0 && seconds > deadline ? 1 : 0;
+}
+
 }  // namespace insonify::framework

@@ -84,6 +84,9 @@ public:
     uint64_t written() const { return written_.load(std::memory_order_relaxed); }  ///< Samples since construction.
 
 protected:
+    /** A sample of this stamp has been written: the owner's latency in realtime. */
+    void noteWritten(types::Time stamp) const;
+
     std::atomic<uint64_t> written_{0};
 };
 
@@ -187,6 +190,10 @@ public:
         for (const Reader& reader : readers_) reader.port->push(*reader.channel, sample);
         if (keep_last_) last_ = sample;
         has_last_ = keep_last_;
+        if constexpr (requires { sample->time.microseconds; })
+            noteWritten(sample ? sample->time : types::Time{});
+        else if constexpr (requires { sample.time.microseconds; })
+            noteWritten(sample.time);
     }
     /** From now on a reader that connects later, with `init`, gets the last sample. A connection with `init` sees to
      *  that itself, for those after it. */

@@ -102,7 +102,9 @@ void TaskContext::recordStage(const char* name, double seconds) {
 
 void TaskContext::error(const std::string& why) {
     setLastError(why);
-    if (state() == TaskState::Running) setState(TaskState::RunTimeError);
+    if (state() != TaskState::Running) return;
+    ++timing_.errors;
+    setState(TaskState::RunTimeError);
 }
 
 // -- transitions ------------------------------------------------------------------------------------------------------
@@ -278,14 +280,15 @@ bool TaskContext::cycle() {
     if (!isRunning() || transition_) return false;
     const bool running = state() == TaskState::Running;
     const uint64_t taken = taken_;
-    const auto begin = std::chrono::steady_clock::now();
+    timing_.begin();
     try {
         running ? updateHook() : errorHook();
     } catch (...) {
+        timing_.end();
         failCycle(running ? "updateHook" : "errorHook", std::current_exception());
         return false;
     }
-    cycles_.add(std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count());
+    cycles_.add(timing_.end());
     return isRunning() && taken_ != taken && triggered();
 }
 

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "components/framework/Statistics.hpp"
+#include "components/framework/Timing.hpp"
 #include "types/ConfigError.hpp"
 #include "types/Plan.hpp"
 #include "types/TaskRecord.hpp"
@@ -38,6 +39,7 @@ struct Environment {
     std::function<types::Time()> now = wallClock;  ///< Simulated or log time instead, where the deployment says so.
     std::function<types::Time()> start_time;       ///< Of the run, on the same clock.
     bool lockstep = false;
+    bool wall_clock = true;       ///< In realtime: no task has put a clock of its own in its place.
     std::string deployment_text;  ///< The YAML as read, for the log's metadata.
     uint64_t seed = 0;            ///< Of the run (`--seed`), 0 when not given.
     /** The records of all tasks, in file order, as each has told its own last: waits for no task. Empty for a task
@@ -123,6 +125,9 @@ public:
      *  none: this task has none of its own. Asked for once, when the connections are made. */
     virtual std::function<types::Time()> clock(std::function<types::Time()> /*wall*/) { return {}; }
 
+    /** In realtime a triggered task runs a cycle also when it has run none for so long [s]; 0: it waits for samples. */
+    virtual double wakeAfter() const { return 0; }
+
     /** Properties and plan, for any thread; the type is the deployment's to know. */
     types::TaskRecord record() const;
     /** Takes what holds now over into record(): on the task's thread, or before there is one. configure() and what
@@ -130,10 +135,14 @@ public:
     void refreshRecord();
 
     Environment& environment() { return *environment_; }
+    const Environment& environment() const { return *environment_; }
     void setEnvironment(std::shared_ptr<Environment> environment) { environment_ = std::move(environment); }
     Activity& activity() { return *activity_; }
-    const Statistics& cycles() const { return cycles_; }  ///< Times of updateHook [s].
+    const Activity& activity() const { return *activity_; }
+    const Statistics& cycles() const { return cycles_; }  ///< Times of updateHook, pauses left out [s].
     const Stages& stages() const { return stages_; }      ///< Read when stopped.
+    Timing& timing() { return timing_; }
+    const Timing& timing() const { return timing_; }
 
     // For ports, properties and operations only, which enlist themselves.
     void enlist(InputPortBase* port) { inputs_.push_back(port); }
@@ -208,6 +217,7 @@ private:
     const char* transition_ = nullptr;  // the one under way
     uint64_t taken_ = 0;                // samples read by the task
     Statistics cycles_;
+    Timing timing_;
     Stages stages_;
 };
 

@@ -164,8 +164,12 @@ types::Time ReplayTask::logTime() const {
 bool ReplayTask::configureHook() {
     open();
     // Lockstep asks for nextTime(); the wall clock knows only periods.
-    if (!environment().lockstep && !activity().settings().periodic())
-        activity().configure({.period = 0.001, .trigger = {}});
+    if (!environment().lockstep && !activity().settings().periodic()) {
+        framework::ActivitySettings settings = activity().settings();
+        settings.period = 0.001;
+        settings.trigger.clear();
+        activity().configure(std::move(settings));
+    }
     return true;
 }
 

@@ -13,7 +13,7 @@ using types::Mount;
 struct SceneConfig {
     std::string file;
     Mount mount;
-    std::optional<double> water_surface;
+    std::optional<double> water_surface, pose_timeout;
     std::map<std::string, Acoustics> materials;
 
     template <class Self, class V>
@@ -22,6 +22,9 @@ struct SceneConfig {
         visit(Field{"file", "", "scene: .gltf, .glb, .world or .sdf, relative to the deployment"}, self.file);
         visit(Field{"mount", "", "the sonar in the body"}, self.mount);
         visit(Field{"water_surface", "m", "z of the water surface in the world; absent: none"}, self.water_surface);
+        visit(Field{"pose_timeout", "s",
+                    "age of the newest pose from which there is none; absent: 1 in realtime, else none", 1e-3, 1e6},
+              self.pose_timeout);
         visit(Field{"materials", "", "acoustic values by name of a material or model, over those of the file"},
               self.materials);
     }

@@ -1,6 +1,10 @@
 #include "components/scene/SceneTask.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <cmath>
+#include <limits>
 
 #include "components/framework/Activity.hpp"
 #include "components/scene/Overrides.hpp"
@@ -70,14 +74,33 @@ bool SceneTask::startHook() {
         movable.world_from_body.reset();
         if (activity().settings().trigger.empty()) movable.port->setTriggers(false);
     }
+    newest_ = now();
     return true;
+}
+
+double SceneTask::poseTimeout() const {
+    const bool on_wall = activity().realtime() && environment().wall_clock;
+    return config->pose_timeout.value_or(on_wall ? 1 : std::numeric_limits<double>::infinity());
+}
+
+/** A quarter of the timeout: so much later than it is, it is noticed at most. */
+double SceneTask::wakeAfter() const { return std::isfinite(poseTimeout()) ? poseTimeout() / 4 : 0; }
+
+std::string SceneTask::staleness() const {
+    const double age = (now() - newest_).seconds();
+    if (age <= poseTimeout()) return {};
+    return fmt::format("{}: no pose of the last {:g} s (pose_timeout)", pose.path(), poseTimeout());
 }
 
 void SceneTask::updateHook() {
     const bool movables_good = readMovables();
     types::Pose body;
-    if (!pose.readNew(body)) return movables_good ? void() : error(name() + kUnusable);
-    if (!isUsable(body)) return error(pose.path() + kUnusable);
+    const bool is_new = pose.readNew(body);
+    if (is_new && !isUsable(body)) return error(pose.path() + kUnusable);
+    if (is_new) newest_ = body.time;
+    if (const std::string stale = staleness(); !stale.empty()) return error(stale);
+    if (!is_new) return movables_good ? void() : error(name() + kUnusable);
+    if (state() == framework::TaskState::RunTimeError) recover();
     const auto sample = pool_.take();
     sample->time = body.time;
     place(body, config->mount, sample->sonar);
@@ -117,11 +140,6 @@ void SceneTask::addMoved(std::vector<types::MovedObject>& moved) {
             for (const Part& part : movable.parts)
                 if (mover_[part.object] == &movable)
                     moved.push_back({part.object, *movable.world_from_body * part.body_from_object});
-}
-
-void SceneTask::errorHook() {
-    recover();
-    updateHook();
 }
 
 void SceneTask::cleanupHook() {

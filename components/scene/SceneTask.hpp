@@ -22,7 +22,9 @@ namespace insonify::scene {
  * scale kept, nodes below move along. The newest is taken; it does not trigger. Before the first the node is where the
  * file has it. Out: `snapshot`, sonar in the world (body times `mount`), shared geometry, moved objects.
  *
- *  A pose that is not finite, or whose orientation has no length, is dropped: RunTimeError until the next good one. */
+ *  A pose that is not finite, or whose orientation has no length, is dropped: RunTimeError until the next good one. So
+ * it is when no pose comes for `pose_timeout`, by their stamps, or one comes that is as old: there is no snapshot then.
+ * In realtime on the wall clock a timeout that is not given is 1 s; otherwise there is none. */
 class SceneTask final : public framework::TaskContext {
 public:
     using TaskContext::TaskContext;
@@ -34,13 +36,18 @@ public:
     framework::InputPortBase* makeInput(const std::string& port, framework::OutputPortBase& source) override;
     void check(types::Problems& problems) const override;
     std::vector<std::string> notices() const override;
+    double wakeAfter() const override;
 
 private:
     bool configureHook() override;
     bool startHook() override;
     void updateHook() override;
-    void errorHook() override;
+    void errorHook() override { updateHook(); }
     void cleanupHook() override;
+
+    /** Why there is no pose to go by, empty when there is one. */
+    std::string staleness() const;
+    double poseTimeout() const;  ///< [s]; infinite: none.
 
     /** A node that follows a port. */
     struct Movable {
@@ -62,6 +69,7 @@ private:
     size_t part_count_ = 0;              ///< Of all movables, room for which is made before they move.
     std::vector<const Movable*> mover_;  ///< For each object, who moves it now.
     framework::SamplePool<types::Snapshot> pool_;
+    types::Time newest_;  ///< Stamp of the newest usable pose; the start before the first.
 };
 
 }  // namespace insonify::scene

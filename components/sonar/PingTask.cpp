@@ -8,6 +8,7 @@
 #include <glm/geometric.hpp>
 #include <utility>
 
+#include "components/framework/Activity.hpp"
 #include "components/sonar/Plan.hpp"
 
 namespace insonify::sonar {
@@ -65,6 +66,8 @@ void PingTask::updateHook() {
     if (!snapshot.readNew(sample)) return;
     aimed_ = *sample;
     const char* fault = aimed_.geometry ? normalisePose(aimed_.sonar) : "the snapshot has no geometry";
+    if (!fault && activity().realtime() && (aimed_.time - now()).seconds() > 1)
+        fault = "the snapshot's time is ahead of the clock by more than a second";
     if (!fault) fault = follow(aimed_);
     if (!fault) fault = aim(aimed_);
     if (fault) return error(fault);
@@ -132,7 +135,13 @@ void PingTask::render() {
     for (const SonarRenderer::Stage& stage : renderer_->stages()) recordStage(stage.name, stage.seconds);
     pool_.stock(*sample);
     if (!std::exchange(plan_told_, true)) refreshRecord();
-    ping.write(sample);
+    if (listen(sample->time)) ping.write(sample);
+}
+
+bool PingTask::listen(types::Time since) {
+    if (!activity().realtime()) return true;
+    const types::Time heard{since.microseconds + static_cast<int64_t>(std::ceil(echoTime() * 1e6))};
+    return activity().sleepUntil(heard);
 }
 
 }  // namespace insonify::sonar

@@ -74,6 +74,26 @@ TEST(DeploymentSpecTest, AllFaultsOfAFileAreToldInOneGo) {
             "a.yml:17:67: connections[6].policy.size: is 0; may be 1 to 1000000"));
 }
 
+TEST(DeploymentSpecTest, SchedulersPrioritiesAndProcessorsAreChecked) {
+    const char* yaml =
+        "watchdog: 0\n"
+        "lock_memory: maybe\n"
+        "tasks:\n"
+        "  a: {type: test::Source, activity: {period: 1, scheduler: rr, cpus: [-1], deadline: 0}}\n"
+        "  b: {type: test::Source, activity: {period: 1, scheduler: fifo}}\n"
+        "  c: {type: test::Source, activity: {period: 1, priority: 5}}\n"
+        "  d: {type: test::Source, activity: {period: 1, scheduler: fifo, priority: 100, cpus: [1, 2000]}}\n";
+    EXPECT_THAT(
+        faultsOf(yaml),
+        UnorderedElementsAre(
+            "a.yml:1:11: watchdog: is 0 s; may be 0.001 to 1000000 s", HasSubstr("a.yml:2:14: lock_memory: is maybe"),
+            "a.yml:4:60: tasks.a.activity.scheduler: is rr; may be other, fifo",
+            HasSubstr("tasks.a.activity.cpus[0]: is -1"), HasSubstr("tasks.a.activity.deadline: is 0 s"),
+            HasSubstr("tasks.b.activity: has no priority; scheduler: fifo needs one, from 1 to 99"),
+            HasSubstr("tasks.c.activity.priority: is of no use with scheduler: other"),
+            HasSubstr("tasks.d.activity.priority: is 100"), HasSubstr("tasks.d.activity.cpus[1]: is 2000")));
+}
+
 TEST(DeploymentSpecTest, APortThatIsNotThereIsNamedWithThoseThatAre) {
     EXPECT_THAT(
         faultsOf("tasks:\n"

@@ -1,0 +1,45 @@
+#pragma once
+#include <atomic>
+#include <chrono>
+#include <cstdint>
+
+#include "components/framework/Statistics.hpp"
+
+namespace insonify::framework {
+
+/** How a task keeps its times. Written on the task's thread and read when it has stopped, but for what is atomic. */
+class Timing {
+public:
+    using Clock = std::chrono::steady_clock;
+
+    Statistics jitter;      ///< From the instant at which a cycle of a periodic task was due to its begin [s].
+    Statistics latency;     ///< From a sample's stamp to its being written, of all outputs whose samples have one [s].
+    uint64_t overruns = 0;  ///< Periods that were left out, because cycles before them took too long.
+    uint64_t late = 0;      ///< Samples that were written after the activity's deadline.
+    uint64_t errors = 0;    ///< How often it went from Running to RunTimeError.
+    std::atomic<uint64_t> hangs{0};  ///< Cycles that the watchdog has reported.
+
+    void begin();  ///< A cycle begins.
+    double end();  ///< It has ended; its duration without pauses [s].
+    void pause();  ///< Within a cycle: what follows is waiting, not work.
+    void resume() { since_ = ticks(); }
+    /** Since when it has been at work without a pause; 0: it is not. Any thread. */
+    std::chrono::nanoseconds workingSince() const { return std::chrono::nanoseconds(since_.load()); }
+    static int64_t ticks() { return std::chrono::nanoseconds(Clock::now().time_since_epoch()).count(); }
+
+private:
+    std::atomic<int64_t> since_{0};
+    int64_t worked_ = 0;  ///< In this cycle, before its last pause [ns].
+};
+
+inline void Timing::begin() {
+    worked_ = 0;
+    resume();
+}
+inline void Timing::pause() { worked_ += ticks() - since_.exchange(0); }
+inline double Timing::end() {
+    pause();
+    return static_cast<double>(worked_) * 1e-9;
+}
+
+}  // namespace insonify::framework

@@ -1,0 +1,40 @@
+# What `cmake --install` puts in a prefix besides the command and the libraries, and what `cpack -G DEB` packs.
+include(CMakePackageConfigHelpers)
+set(documents ${CMAKE_INSTALL_DATAROOTDIR}/doc/insonify)
+set(package_folder ${CMAKE_INSTALL_LIBDIR}/cmake/Insonify)
+install(EXPORT InsonifyTargets NAMESPACE Insonify:: DESTINATION ${package_folder} COMPONENT development)
+configure_package_config_file(scripts/package/InsonifyConfig.cmake.in ${PROJECT_BINARY_DIR}/InsonifyConfig.cmake
+  INSTALL_DESTINATION ${package_folder})
+write_basic_package_version_file(${PROJECT_BINARY_DIR}/InsonifyConfigVersion.cmake COMPATIBILITY SameMinorVersion)
+install(FILES ${PROJECT_BINARY_DIR}/InsonifyConfig.cmake ${PROJECT_BINARY_DIR}/InsonifyConfigVersion.cmake
+  DESTINATION ${package_folder} COMPONENT development)
+
+# Of the shaders, which are in the command, only the one that a header includes.
+install(FILES shaders/interface.glsl DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/insonify/shaders COMPONENT development)
+install(DIRECTORY deploy DESTINATION ${CMAKE_INSTALL_DATADIR}/insonify COMPONENT runtime PATTERN pictures EXCLUDE)
+install(FILES README.md CHANGELOG.md DESTINATION ${documents} COMPONENT runtime)
+install(FILES LICENSE DESTINATION ${documents} RENAME copyright COMPONENT runtime)
+
+# Two packages: insonify, the command with its examples, and insonify-dev.
+set(CPACK_GENERATOR DEB)
+set(CPACK_PACKAGE_NAME insonify)
+set(CPACK_PACKAGE_CONTACT "The Insonify developers")
+set(CPACK_COMPONENTS_ALL runtime development)
+set(CPACK_DEB_COMPONENT_INSTALL ON)
+set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
+set(CPACK_DEBIAN_PACKAGE_SECTION science)
+set(CPACK_STRIP_FILES ON)
+set(CPACK_DEBIAN_RUNTIME_PACKAGE_NAME insonify)
+set(CPACK_DEBIAN_RUNTIME_DESCRIPTION "Imaging sonar from a 3-D scene, in real time
+ The insonify command and deployments as examples.")
+set(CPACK_DEBIAN_RUNTIME_PACKAGE_SHLIBDEPS ON)
+set(CPACK_DEBIAN_RUNTIME_PACKAGE_DEPENDS "libegl1, libegl-mesa0, libgl1-mesa-dri")  # opened while running
+set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_NAME insonify-dev)
+set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SECTION libdevel)
+set(CPACK_DEBIAN_DEVELOPMENT_DESCRIPTION "Headers and libraries of Insonify, to write components with
+ find_package(Insonify) gives the framework and the library of each component.")
+set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS
+  "insonify (= ${PROJECT_VERSION}), libfmt-dev, libglm-dev, libyaml-cpp-dev")
+set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SUGGESTS
+  "libassimp-dev, libembree-dev, libepoxy-dev, libmeshoptimizer-dev, libopencv-dev, libsdformat-dev, libstb-dev, libtinygltf-dev, zlib1g-dev")
+include(CPack)

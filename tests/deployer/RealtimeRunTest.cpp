@@ -1,0 +1,66 @@
+// schedule: realtime, as a user sees it.
+#include <gmock/gmock.h>
+
+#include "tests/deployer/Wall.hpp"
+
+using namespace insonify::deployer;
+using testing::Contains;
+using testing::HasSubstr;
+
+namespace {
+
+const std::string realtime = replaced(wall_deployment, "schedule: lockstep", "schedule: realtime");
+
+}  // namespace
+
+TEST(RealtimeRunTest, TheSummaryTellsWhatWasKeptAndMissed) {
+    const WallFolder folder(replaced(realtime, "{trigger: [snapshot]}", "{trigger: [snapshot], deadline: 0.001}"));
+    const Outcome outcome = folder.run({"--pings", "4", "--summary", "summary.json"});
+    ASSERT_EQ(outcome.code, 0) << outcome.err;
+    const json summary = json::parse(readFile(folder / "summary.json"));
+    const json& vehicle = summary["tasks"]["vehicle"];
+    EXPECT_EQ(vehicle["jitter"]["count"], vehicle["cycles"]);
+    EXPECT_GE(vehicle["overruns"], 0);
+    const json& sonar = summary["tasks"]["sonar"];
+    // No ping before 2 x 20 m / 1500 m/s; so all of them miss a deadline of 1 ms.
+    EXPECT_GE(sonar["latency"]["median_ms"], 0.99 * 2 * 20 / 1500 * 1e3);
+    EXPECT_GE(sonar["latency"]["max_ms"], sonar["latency"]["p99_ms"]);
+    EXPECT_GE(sonar["latency"]["count"], 4);
+    EXPECT_EQ(sonar["late"], sonar["latency"]["count"]);
+    EXPECT_EQ(sonar["errors"], 0);
+    EXPECT_EQ(sonar["hangs"], 0);
+    EXPECT_TRUE(summary["warnings"].is_array());
+    EXPECT_THAT(outcome.out, HasSubstr("jitter median, p99, max ms"));
+    EXPECT_THAT(outcome.out, HasSubstr("latency median, p99, max ms"));
+}
+
+TEST(RealtimeRunTest, ALockstepSummaryHasNoneOfIt) {
+    const WallFolder folder;
+    const Outcome outcome = folder.run({"--pings", "1", "--summary", "summary.json"});
+    ASSERT_EQ(outcome.code, 0) << outcome.err;
+    EXPECT_THAT(outcome.out, testing::Not(HasSubstr("jitter")));
+    EXPECT_FALSE(json::parse(readFile(folder / "summary.json"))["tasks"]["sonar"].contains("overruns"));
+}
+
+TEST(RealtimeRunTest, StalePosesAreToldAndPingsGoOnWithNewOnes) {
+    // A pose each second; after 0.2 s of none there is an error, until the next.
+    std::string yaml = replaced(realtime, "period: 0.1", "period: 1");
+    yaml = replaced(yaml, "file: wall.gltf", "file: wall.gltf, pose_timeout: 0.2");
+    const WallFolder folder(yaml);
+    const Outcome outcome = folder.run({"--pings", "3", "--summary", "summary.json"});
+    const json summary = json::parse(readFile(folder / "summary.json"));
+    EXPECT_GE(summary["tasks"]["scene"]["errors"], 2);
+    EXPECT_GE(summary["pings"], 3);
+    EXPECT_THAT(summary["warnings"].get<std::vector<std::string>>(),
+                Contains("scene: RunTimeError: scene.pose: no pose of the last 0.2 s (pose_timeout)"));
+    EXPECT_THAT(outcome.err, HasSubstr("warning: scene: has recovered"));
+}
+
+TEST(RealtimeRunTest, PosesThatAreMissingAtTheEndAreAFailure) {
+    std::string yaml = replaced(realtime, "period: 0.1", "period: 1000");
+    yaml = replaced(yaml, "file: wall.gltf", "file: wall.gltf, pose_timeout: 0.2");
+    const WallFolder folder(yaml);
+    const Outcome outcome = folder.run({"--duration", "1"});
+    EXPECT_EQ(outcome.code, 1);
+    EXPECT_THAT(outcome.err, HasSubstr("insonify: scene: scene.pose: no pose of the last 0.2 s"));
+}

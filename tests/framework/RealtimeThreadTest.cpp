@@ -1,0 +1,131 @@
+// Schedulers, processors and locked memory: had where the system permits them, a warning where it does not.
+#include <gmock/gmock.h>
+#include <sched.h>
+
+#include <fstream>
+#include <thread>
+
+#include "components/framework/Activity.hpp"
+#include "components/framework/RealtimeThread.hpp"
+#include "tests/framework/Tasks.hpp"
+
+namespace insonify::framework {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+
+/** What a thread runs on. */
+struct Thread {
+    int policy = -1, priority = -1;
+    std::vector<uint32_t> cpus;
+    static Thread here() {
+        Thread thread;
+        sched_param parameters{};
+        pthread_getschedparam(pthread_self(), &thread.policy, &parameters);
+        thread.priority = parameters.sched_priority;
+        cpu_set_t set;
+        pthread_getaffinity_np(pthread_self(), sizeof set, &set);
+        for (uint32_t cpu = 0; cpu < CPU_SETSIZE; ++cpu)
+            if (CPU_ISSET(cpu, &set)) thread.cpus.push_back(cpu);
+        return thread;
+    }
+};
+
+/** Notes what its cycles run on, and a thread that they start. */
+struct Noting : TaskContext {
+    using TaskContext::TaskContext;
+    Thread own, started;
+    std::atomic<bool> noted{false};
+    void updateHook() override {
+        own = Thread::here();
+        std::thread([this] { started = Thread::here(); }).join();
+        noted = true;
+    }
+};
+
+bool fifoIsPermitted() {
+    bool permitted = false;
+    ActivitySettings settings;
+    settings.fifo = true;
+    settings.priority = 7;
+    std::thread([&] { permitted = applyToThread(settings).empty(); }).join();
+    return permitted;
+}
+
+/** Runs a task with this activity, and what stands before the tasks. */
+RunResult run(const std::string& head, const std::string& activity, Thread& own, Thread& started) {
+    Registry registry;
+    registry.add<Noting>("test::Noting", "notes");
+    const std::string yaml = "schedule: realtime\n" + head +
+                             "tasks: {note: {type: test::Noting, activity: {period: 0.01" + activity + "}}}\n";
+    Deployment deployment(DeploymentSpec::parse(yaml, "a.yml"), registry);
+    deployment.configure();
+    auto& task = dynamic_cast<Noting&>(*deployment.task("note"));
+    std::atomic<bool> stop{false};
+    RunResult result = deployment.run({}, stop, [&](const Progress&) { stop = task.noted.load(); });
+    own = task.own;
+    started = task.started;
+    return result;
+}
+
+TEST(RealtimeThreadTest, ATaskAndItsThreadsRunAsTheDeploymentSaysWherePermitted) {
+    const bool permitted = fifoIsPermitted();
+    Thread own, started;
+    const RunResult result = run("", ", scheduler: fifo, priority: 7", own, started);
+    EXPECT_EQ(own.policy, permitted ? SCHED_FIFO : SCHED_OTHER);
+    EXPECT_EQ(started.policy, own.policy);
+    EXPECT_EQ(own.priority, permitted ? 7 : 0);
+    if (permitted)
+        EXPECT_THAT(result.warnings, IsEmpty());
+    else
+        EXPECT_THAT(result.warnings, ElementsAre(HasSubstr("note: no SCHED_FIFO: priority 7 is not permitted")));
+    EXPECT_FALSE(result.failed());
+}
+
+TEST(RealtimeThreadTest, ATaskAndItsThreadsKeepToTheirProcessors) {
+    const uint32_t last = Thread::here().cpus.back();
+    Thread own, started;
+    const RunResult result = run("", ", cpus: [" + std::to_string(last) + "]", own, started);
+    EXPECT_THAT(result.warnings, IsEmpty());
+    EXPECT_THAT(own.cpus, ElementsAre(last));
+    EXPECT_THAT(started.cpus, ElementsAre(last));
+}
+
+TEST(RealtimeThreadTest, ProcessorsThatAreNotThereAreAWarning) {
+    Thread own, started;
+    const RunResult result = run("", ", cpus: [1022, 1023]", own, started);
+    EXPECT_THAT(result.warnings, ElementsAre(HasSubstr("note: does not keep to the CPUs 1022, 1023: there are none")));
+    EXPECT_EQ(own.cpus, Thread::here().cpus);
+    EXPECT_FALSE(result.failed());
+}
+
+/** Of this process [kB]. */
+int lockedMemory() {
+    std::ifstream status("/proc/self/status");
+    for (std::string line; std::getline(status, line);)
+        if (line.starts_with("VmLck:")) return std::stoi(line.substr(6));
+    return -1;
+}
+
+TEST(RealtimeThreadTest, MemoryIsLockedOrItIsSaidWhyNot) {
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+    GTEST_SKIP() << "sanitizers leave out the locking";
+#endif
+    const std::string refused = lockMemory();
+    const int locked = lockedMemory();
+    unlockMemory();
+    EXPECT_EQ(lockedMemory(), 0);
+    EXPECT_EQ(locked > 0, refused.empty()) << refused;
+    Thread own, started;
+    const RunResult result = run("lock_memory: true\n", "", own, started);
+    if (refused.empty())
+        EXPECT_THAT(result.warnings, IsEmpty());
+    else
+        EXPECT_THAT(result.warnings, ElementsAre(HasSubstr("memory is not locked")));
+    EXPECT_EQ(lockedMemory(), 0);
+}
+
+}  // namespace
+}  // namespace insonify::framework

@@ -1,0 +1,90 @@
+#include <gmock/gmock.h>
+
+#include <thread>
+
+#include "components/framework/Activity.hpp"
+#include "tests/framework/Tasks.hpp"
+
+namespace insonify::framework {
+namespace {
+
+using testing::ElementsAre;
+using testing::MatchesRegex;
+
+/** What the warnings of the deployment have told so far; here the tasks of these tests wait for it. */
+struct Told {
+    std::mutex mutex;
+    std::vector<std::string> texts;
+    void add(const std::string& text) {
+        std::lock_guard lock(mutex);
+        texts.push_back(text);
+    }
+    size_t count() {
+        std::lock_guard lock(mutex);
+        return texts.size();
+    }
+};
+Told* told = nullptr;
+
+/** Its first cycle comes back once it has been reported. */
+struct Hanging : TaskContext {
+    using TaskContext::TaskContext;
+    void updateHook() override {
+        while (told->count() == 0) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    }
+};
+
+/** In error until that has been reported. */
+struct Ill : TaskContext {
+    using TaskContext::TaskContext;
+    void updateHook() override {
+        if (told->count() == 0) error("has a cold");
+    }
+    void errorHook() override {
+        if (told->count() > 0) recover();
+    }
+};
+
+/** Runs one task until there were two warnings. */
+struct WatchdogTest : testing::Test {
+    WatchdogTest() { told = &told_; }
+    RunResult run(const std::string& yaml) {
+        Registry registry;
+        registry.add<Hanging>("test::Hanging", "hangs");
+        registry.add<Ill>("test::Ill", "errs");
+        deployment_ =
+            std::make_unique<Deployment>(DeploymentSpec::parse("schedule: realtime\n" + yaml, "a.yml"), registry);
+        deployment_->configure();
+        deployment_->onWarning([this](const std::string& text) { told_.add(text); });
+        std::atomic<bool> stop{false};
+        return deployment_->run({}, stop, [&](const Progress&) { stop = told_.count() >= 2; });
+    }
+    Told told_;
+    std::unique_ptr<Deployment> deployment_;
+};
+
+TEST_F(WatchdogTest, ACycleThatHangsIsReportedOnceAndWhenItIsBack) {
+    const RunResult result = run("tasks: {slug: {type: test::Hanging, activity: {period: 0.01, watchdog: 0.3}}}\n");
+    EXPECT_EQ(result.failures, std::vector<std::string>{});
+    ASSERT_GE(result.warnings.size(), 2u);
+    EXPECT_EQ(result.warnings[0], "slug: hangs: a cycle has not come back for 0.3 s");
+    EXPECT_THAT(result.warnings[1], MatchesRegex("slug: is back after 0\\.[3-9].* s|slug: is back after [1-9].* s"));
+    EXPECT_EQ(result.warnings, told_.texts);
+    EXPECT_GE(deployment_->task("slug")->timing().hangs, 1u);
+}
+
+TEST_F(WatchdogTest, TheDeploymentsWatchdogIsThatOfATaskWithoutItsOwn) {
+    const RunResult result = run("watchdog: 0.2\ntasks: {slug: {type: test::Hanging, activity: {period: 0.01}}}\n");
+    ASSERT_GE(result.warnings.size(), 1u);
+    EXPECT_EQ(result.warnings[0], "slug: hangs: a cycle has not come back for 0.2 s");
+}
+
+TEST_F(WatchdogTest, ATaskInErrorIsReportedOnceAndWhenItHasRecovered) {
+    const RunResult result = run("tasks: {patient: {type: test::Ill, activity: {period: 0.001}}}\n");
+    EXPECT_THAT(result.warnings, ElementsAre("patient: RunTimeError: has a cold", "patient: has recovered"));
+    EXPECT_EQ(deployment_->task("patient")->timing().errors, 1u);
+    EXPECT_FALSE(result.failed());
+}
+
+}  // namespace
+}  // namespace insonify::framework

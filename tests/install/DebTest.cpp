@@ -1,0 +1,43 @@
+// The Debian packages that `cpack -G DEB` makes.
+#include <gmock/gmock.h>
+
+#include "tests/install/Outside.hpp"
+
+using namespace insonify::deployer;
+using testing::HasSubstr;
+
+namespace {
+
+/** insonify_*.deb or insonify-dev_*.deb in the folder `packages`. */
+std::string package(const TestFolder& folder, const std::string& name) {
+    for (const auto& entry : fs::directory_iterator(folder / "packages"))
+        if (entry.path().filename().string().starts_with(name + "_")) return entry.path();
+    throw std::runtime_error("no package " + name);
+}
+
+}  // namespace
+
+TEST(DebTest, ThePackagesUnpackToACommandThatRunsAndAProjectThatBuilds) {
+    const WallFolder folder;
+    for (const char* tool : {"dpkg-deb", "dpkg-shlibdeps"})
+        if (call(folder, {tool, "--version"}).code != 0) GTEST_SKIP() << "there is no " << tool << " on this system";
+    const Outcome packed = call(folder, {INSONIFY_CPACK, "-G", "DEB", "--config",
+                                         std::string(INSONIFY_BINARY_DIR) + "/CPackConfig.cmake", "-B", "packages"});
+    ASSERT_EQ(packed.code, 0) << packed.out << packed.err;
+    for (const char* name : {"insonify", "insonify-dev"})
+        ASSERT_EQ(call(folder, {"dpkg-deb", "-x", package(folder, name), "root"}).code, 0);
+
+    const std::string depends = call(folder, {"dpkg-deb", "-f", package(folder, "insonify"), "Depends"}).out;
+    for (const char* needed : {"libc6 (>=", "libyaml-cpp", "libepoxy0", "libopencv-core", "libegl1", "libgl1-mesa-dri"})
+        EXPECT_THAT(depends, HasSubstr(needed));
+    EXPECT_THAT(call(folder, {"dpkg-deb", "-f", package(folder, "insonify-dev"), "Depends"}).out,
+                HasSubstr("insonify (="));
+
+    const Outcome ran =
+        call(folder, {folder / "root/usr/bin/insonify", "run", "wall.yml", "--pings", "1", "--out", "out"});
+    EXPECT_EQ(ran.code, 0) << ran.err;
+    writeFile(folder / "CMakeLists.txt", readmeCode("Use it from a project of your own", "cmake"));
+    writeFile(folder / "mean_echo.cpp", readmeCode("A component of your own", "cpp"));
+    const Outcome built = buildOutside(folder, folder / "root/usr");
+    EXPECT_EQ(built.code, 0) << built.out << built.err;
+}

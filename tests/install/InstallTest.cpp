@@ -1,0 +1,92 @@
+// What `cmake --install` puts in a prefix works there, without sources and build.
+#include <gmock/gmock.h>
+
+#include "tests/install/Outside.hpp"
+
+using namespace insonify::deployer;
+using testing::HasSubstr;
+
+namespace {
+
+const std::string with_the_component = replaced(
+    wall_deployment +
+        "  - {from: sonar.ping, to: mean.ping}\n"
+        "  - {from: mean.mean, to: log.mean, policy: {type: buffer, size: 64}}\n",
+    "tasks:\n",
+    "libraries: [build/mean_echo.so]\ntasks:\n  mean: {type: example::MeanEchoTask, properties: {beyond: 2}}\n");
+
+}  // namespace
+
+TEST(InstallTest, AProjectOutsideBuildsAComponentThatTheInstalledCommandRuns) {
+    const WallFolder folder(with_the_component);
+    install(folder);
+    writeFile(folder / "CMakeLists.txt", readmeCode("Use it from a project of your own", "cmake"));
+    writeFile(folder / "mean_echo.cpp", readmeCode("A component of your own", "cpp"));
+    const Outcome built = buildOutside(folder, folder / "prefix");
+    ASSERT_EQ(built.code, 0) << built.out << built.err;
+
+    const std::string insonify = folder / "prefix/bin/insonify";
+    const Outcome ran = call(folder, {insonify, "run", "wall.yml", "--pings", "2", "--out", "out"});
+    ASSERT_EQ(ran.code, 0) << ran.err;
+    ASSERT_EQ(
+        call(folder, {insonify, "log", "export", "out/wall.0.log", "--stream", "mean.mean", "--to", "mean.csv"}).code,
+        0);
+    // The wall is at 10 m and all bins but those of the wall are 0, so the mean is between 0 and 1.
+    std::istringstream rows(readFile(folder / "mean.csv"));
+    std::string row;
+    std::getline(rows, row);
+    EXPECT_EQ(row, "time,value");
+    int count = 0;
+    for (; std::getline(rows, row); ++count) {
+        const double mean = std::stod(row.substr(row.find(',') + 1));
+        EXPECT_GT(mean, 0) << row;
+        EXPECT_LT(mean, 1) << row;
+    }
+    EXPECT_EQ(count, 2);
+
+    // The command's own reader refuses what the component's property may not be.
+    const Outcome refused = call(folder, {insonify, "run", "wall.yml", "--set", "mean.beyond=-1"});
+    EXPECT_EQ(refused.code, 2);
+    EXPECT_THAT(refused.err, HasSubstr("tasks.mean.properties.beyond"));
+}
+
+TEST(InstallTest, TheExamplesRunFromThePrefix) {
+    const TestFolder folder;
+    install(folder);
+    const std::string insonify = folder / "prefix/bin/insonify";
+    const Outcome ran =
+        call(folder, {insonify, "run", folder / "prefix/share/insonify/deploy/minimal.yml", "--out", "out"});
+    EXPECT_EQ(ran.code, 0) << ran.err;
+    EXPECT_TRUE(fs::exists(folder / "out/fan_000000.png"));
+    EXPECT_THAT(call(folder, {"ldd", insonify}).out, testing::Not(HasSubstr(INSONIFY_BINARY_DIR)));
+}
+
+TEST(InstallTest, EachComponentsLibraryIsFoundWithWhatItIsBuiltOn) {
+    const TestFolder folder;
+    install(folder);
+    std::string project = "cmake_minimum_required(VERSION 3.22)\nproject(Outside CXX)\nset(all";
+    for (const auto& library : fs::directory_iterator(folder / "prefix/include/insonify/components"))
+        project += " " + library.path().filename().string();
+    project += R"()
+find_package(Insonify 0.1 REQUIRED COMPONENTS ${all})
+foreach(component types ${all})
+  add_executable(use_${component} main.cpp)
+  target_link_libraries(use_${component} Insonify::${component})
+endforeach()
+)";
+    writeFile(folder / "CMakeLists.txt", project);
+    writeFile(folder / "main.cpp", "int main() {}\n");
+    const Outcome built = buildOutside(folder, folder / "prefix");
+    EXPECT_EQ(built.code, 0) << built.out << built.err;
+}
+
+TEST(InstallTest, AComponentThatIsNotThereIsRefusedByItsName) {
+    const TestFolder folder;
+    install(folder);
+    writeFile(folder / "CMakeLists.txt",
+              "cmake_minimum_required(VERSION 3.22)\nproject(Outside CXX)\n"
+              "find_package(Insonify REQUIRED COMPONENTS sonar radar)\n");
+    const Outcome outcome = buildOutside(folder, folder / "prefix");
+    EXPECT_NE(outcome.code, 0);
+    EXPECT_THAT(outcome.err, HasSubstr("has no component radar"));
+}

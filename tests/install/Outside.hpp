@@ -1,0 +1,35 @@
+#pragma once
+// An installed Insonify, and projects outside of it.
+#include <gtest/gtest.h>
+
+#include "tests/deployer/Wall.hpp"
+
+namespace insonify::deployer {
+
+/** The first block of code in this language in the README, from the heading on. */
+inline std::string readmeCode(const std::string& heading, const std::string& language) {
+    const std::string readme = readFile(fs::path(INSONIFY_SOURCE_DIR) / "README.md"), fence = "```" + language + "\n";
+    const size_t start = readme.find(fence, readme.find("\n## " + heading + "\n")) + fence.size();
+    return readme.substr(start, readme.find("```", start) - start);
+}
+
+inline Outcome call(const TestFolder& folder, std::vector<std::string> words) {
+    return Process(std::move(words), folder.path()).wait();
+}
+
+/** `cmake --install` into a prefix in the folder. */
+inline void install(const TestFolder& folder) {
+    const Outcome outcome =
+        call(folder, {INSONIFY_CMAKE, "--install", INSONIFY_BINARY_DIR, "--prefix", folder / "prefix"});
+    ASSERT_EQ(outcome.code, 0) << outcome.err;
+}
+
+/** Configures the project in the folder with nothing but the prefix, and builds it in its folder `build`. */
+inline Outcome buildOutside(const TestFolder& folder, const std::string& prefix) {
+    const Outcome configured =
+        call(folder, {INSONIFY_CMAKE, "-S", ".", "-B", "build", "-DCMAKE_PREFIX_PATH=" + prefix});
+    if (configured.code != 0) return configured;
+    return call(folder, {INSONIFY_CMAKE, "--build", "build"});
+}
+
+}  // namespace insonify::deployer

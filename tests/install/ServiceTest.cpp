@@ -1,0 +1,57 @@
+// deploy/insonify.service, as systemd reads it.
+#include <gmock/gmock.h>
+
+#include <map>
+
+#include "tests/install/Outside.hpp"
+
+using namespace insonify::deployer;
+
+namespace {
+
+const fs::path unit = fs::path(INSONIFY_SOURCE_DIR) / "deploy/insonify.service";
+
+std::map<std::string, std::string> settingsOf(const std::string& text) {
+    std::map<std::string, std::string> settings;
+    std::istringstream lines(text);
+    std::string section;
+    for (std::string line; std::getline(lines, line);) {
+        if (line.empty() || line[0] == '#') continue;
+        const size_t equals = line.find('=');
+        if (line[0] == '[')
+            section = line;
+        else if (equals == std::string::npos || section.empty())
+            throw std::runtime_error("is no setting: " + line);
+        else
+            settings[section + line.substr(0, equals)] = line.substr(equals + 1);
+    }
+    return settings;
+}
+
+}  // namespace
+
+TEST(ServiceTest, StopsWithSigintComesBackAfterAFailureAndMayUseRealtime) {
+    const auto settings = settingsOf(readFile(unit));
+    const std::map<std::string, std::string> expected = {
+        {"[Service]KillSignal", "SIGINT"},          {"[Service]Restart", "on-failure"},
+        {"[Service]RestartPreventExitStatus", "2"}, {"[Service]LimitRTPRIO", "80"},
+        {"[Service]LimitMEMLOCK", "infinity"},      {"[Service]CPUAffinity", "0 1"},
+        {"[Install]WantedBy", "multi-user.target"}};
+    EXPECT_THAT(settings, testing::IsSupersetOf(expected));
+    EXPECT_TRUE(settings.at("[Service]ExecStart").starts_with("/usr/bin/insonify run "));
+}
+
+TEST(ServiceTest, SystemdFindsNoFaultInIt) {
+    const TestFolder folder;
+    if (call(folder, {"systemd-analyze", "--version"}).code != 0) GTEST_SKIP() << "there is no systemd-analyze here";
+    // The command has to be there; here it is not in /usr/bin.
+    std::string text = readFile(unit);
+    text = replaced(text, "ExecStart=/usr/bin/insonify", "ExecStart=" INSONIFY_BIN_DIR "/insonify");
+    writeFile(folder / "insonify.service",
+              replaced(text, "file:///usr/share/doc/insonify/README.md", "https://example.org"));
+    const Outcome outcome = call(folder, {"systemd-analyze", "verify", "--man=no", folder / "insonify.service"});
+    EXPECT_EQ(outcome.code, 0) << outcome.err;
+    EXPECT_EQ(outcome.err, "");
+    writeFile(folder / "insonify.service", replaced(text, "KillSignal=SIGINT", "KillSignal=SIGNONE"));
+    EXPECT_NE(call(folder, {"systemd-analyze", "verify", "--man=no", folder / "insonify.service"}).err, "");
+}

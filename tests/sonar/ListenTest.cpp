@@ -1,0 +1,88 @@
+// In realtime a ping comes no earlier than its last echo could.
+#include <gtest/gtest.h>
+
+#include <thread>
+
+#include "components/framework/Activity.hpp"
+#include "components/sonar/SonarTask.hpp"
+#include "tests/sonar/WallScene.hpp"
+#include "tests/support/Ports.hpp"
+
+namespace insonify::sonar {
+namespace {
+
+/** A sonar on its own thread, and the wall clock. */
+class ListenTest : public ::testing::Test {
+protected:
+    void start(double range) {
+        SonarConfig config = smallSonar();
+        config.range = range;
+        in_.port.connectTo(task_.snapshot, {});
+        task_.ping.connectTo(out_.port, {});
+        task_.config.set(config);
+        ASSERT_TRUE(task_.configure()) << task_.lastError();
+        ASSERT_TRUE(task_.start()) << task_.lastError();
+        task_.activity().release();
+    }
+    /** A snapshot of the moment, moved by so many seconds; its stamp. */
+    types::Time send(double ahead = 0) {
+        types::Snapshot snapshot = facingWall(5);
+        snapshot.time = framework::wallClock() + types::Time::fromSeconds(ahead);
+        in_.port.write(std::make_shared<types::Snapshot>(snapshot));
+        return snapshot.time;
+    }
+    /** The next ping, waited for. */
+    types::SonarPtr receive() {
+        types::SonarPtr ping;
+        for (int i = 0; i < 60000 && !out_.port.readNew(ping); ++i)
+            std::this_thread::sleep_for(std::chrono::milliseconds(1));
+        return ping;
+    }
+
+    SonarTask task_{"sonar"};
+    test::Writer<types::SnapshotPtr> in_;
+    test::Reader<types::SonarPtr> out_;
+};
+
+TEST_F(ListenTest, APingIsWrittenAfterSoundsWayToTheRangeAndBack) {
+    start(150);  // 0.2 s, longer than this picture takes
+    for (int i = 0; i < 3; ++i) {
+        const types::Time sent = send();
+        const types::SonarPtr ping = receive();
+        const types::Time received = framework::wallClock();
+        ASSERT_TRUE(ping) << task_.lastError();
+        EXPECT_EQ(ping->time, sent);
+        EXPECT_GE((received - sent).seconds(), 2 * 150 / 1500.0);
+    }
+    task_.activity().hold();
+    EXPECT_EQ(task_.timing().latency.count(), 3u);
+    EXPECT_GE(task_.timing().latency.quantile(0), 0.198);  // within 1 %
+}
+
+TEST_F(ListenTest, AStopDoesNotWaitForTheLastEchoAndWritesNoPing) {
+    start(75000);  // 100 s
+    send();
+    while (task_.stages().empty() && task_.timing().workingSince().count() == 0)
+        std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    const types::Time asked = framework::wallClock();
+    task_.activity().hold();
+    EXPECT_LT((framework::wallClock() - asked).seconds(), 50);
+    types::SonarPtr ping;
+    EXPECT_FALSE(out_.port.readNew(ping));
+    EXPECT_EQ(task_.ping.written(), 0u);
+}
+
+TEST_F(ListenTest, ASnapshotFromTheFutureIsRefused) {
+    start(15);
+    send(3600);
+    for (int i = 0; i < 60000 && task_.state() != framework::TaskState::RunTimeError; ++i)
+        std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    EXPECT_EQ(task_.state(), framework::TaskState::RunTimeError);
+    EXPECT_NE(task_.lastError().find("ahead of the clock"), std::string::npos);
+    send();
+    EXPECT_TRUE(receive());
+    EXPECT_EQ(task_.state(), framework::TaskState::Running);
+}
+
+}  // namespace
+}  // namespace insonify::sonar
