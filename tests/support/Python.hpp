@@ -7,8 +7,18 @@
 
 namespace insonify {
 
-/** Debian's python has Debian's numpy; another one in the path may have none. */
-inline std::string python() { return std::filesystem::exists("/usr/bin/python3") ? "/usr/bin/python3" : "python3"; }
+/** That of scripts/setup has all that the tests use; Debian's python has Debian's numpy; another one in the path may
+ *  have none. */
+inline std::string python() {
+    for (const char* candidate : {INSONIFY_SOURCE_DIR "/build/venv/bin/python3", "/usr/bin/python3"})
+        if (std::filesystem::exists(candidate)) return candidate;
+    return "python3";
+}
+
+/** Whether python can import these modules: "rosbags, mcap". */
+inline bool pythonHas(const std::string& modules) {
+    return std::system((python() + " -c 'import " + modules + "' 2> /dev/null").c_str()) == 0;
+}
 
 /** What python prints when called with these arguments, or that it failed and why; `answer` is written on the way. */
 inline std::string pythonSays(const std::string& arguments, const std::filesystem::path& answer) {

@@ -1,0 +1,158 @@
+#pragma once
+// How a message stands on the wire: XCDR1, little endian, after four bytes that say so (00 01 00 00).
+//
+// Every number is aligned to its size, counted from the end of those four bytes. A string is a u32 length that counts a
+// final NUL, and the characters; a sequence is a u32 count and the elements; a fixed array is the elements alone.
+#include <bit>
+#include <cstdint>
+#include <cstring>
+#include <span>
+#include <stdexcept>
+
+#include "components/ros/Traits.hpp"
+
+namespace insonify::ros {
+
+static_assert(std::endian::native == std::endian::little, "numbers are copied in host order");
+
+/** Bytes that are no message: where, counted from the first of the buffer, and why. */
+struct CdrError : std::runtime_error {
+    CdrError(size_t at, const std::string& what)
+        : std::runtime_error("byte " + std::to_string(at) + ": " + what), byte(at) {}
+    size_t byte;
+};
+
+/** Elements that stand on the wire as they stand in memory. */
+template <class T>
+concept Block = Primitive<T> && !std::is_same_v<T, bool>;
+
+/** The fewest bytes that a T takes on the wire [B]. */
+template <class T>
+size_t minimumSize() {
+    if constexpr (Message<T>) {
+        size_t sum = 0;
+        T value{};
+        auto add = [&]<class F>(const types::Field&, F&) { sum += minimumSize<F>(); };
+        T::describe(value, add);
+        return sum;
+    } else if constexpr (Array<T>)
+        return std::tuple_size_v<T> * minimumSize<typename T::value_type>();
+    else if constexpr (Primitive<T>)
+        return sizeof(T);
+    else
+        return sizeof(uint32_t);
+}
+
+/** Appends a message to a buffer. */
+class CdrWriter {
+public:
+    explicit CdrWriter(std::vector<char>& bytes) : bytes_(bytes) {
+        constexpr char little_endian[] = {0, 1, 0, 0};
+        bytes_.insert(bytes_.end(), little_endian, little_endian + sizeof little_endian);
+        start_ = bytes_.size();
+    }
+
+    template <class T>
+    void value(const T& item) {
+        if constexpr (Message<T>) {
+            auto visit = [&](const types::Field&, const auto& field) { value(field); };
+            T::describe(item, visit);
+        } else if constexpr (std::is_same_v<T, std::string>) {
+            value(static_cast<uint32_t>(item.size() + 1));
+            raw(item.c_str(), item.size() + 1);
+        } else if constexpr (Sequence<T>) {
+            value(static_cast<uint32_t>(item.size()));
+            elements(item);
+        } else if constexpr (Array<T>)
+            elements(item);
+        else {
+            align(sizeof(T));
+            raw(&item, sizeof(T));
+        }
+    }
+
+private:
+    template <class Items>
+    void elements(const Items& items) {
+        using Item = typename Items::value_type;
+        if constexpr (Block<Item>) {
+            if (items.empty()) return;
+            align(sizeof(Item));
+            raw(items.data(), items.size() * sizeof(Item));
+        } else
+            for (const Item& item : items) value(item);
+    }
+    void align(size_t size) { bytes_.resize(bytes_.size() + (start_ - bytes_.size()) % size); }
+    void raw(const void* data, size_t size) {
+        const char* first = static_cast<const char*>(data);
+        bytes_.insert(bytes_.end(), first, first + size);
+    }
+
+    std::vector<char>& bytes_;
+    size_t start_;  ///< From which alignment counts.
+};
+
+/** Takes a message from a buffer; throws CdrError where the bytes are none. No count is believed beyond the bytes. */
+class CdrReader {
+public:
+    explicit CdrReader(std::span<const char> bytes);
+
+    template <class T>
+    void value(T& item) {
+        if constexpr (Message<T>) {
+            auto visit = [&](const types::Field&, auto& field) { value(field); };
+            T::describe(item, visit);
+        } else if constexpr (std::is_same_v<T, std::string>)
+            text(item);
+        else if constexpr (std::is_same_v<T, bool>)
+            item = truth();
+        else if constexpr (Sequence<T>) {
+            item.resize(count(minimumSize<typename T::value_type>()));
+            elements(item);
+        } else if constexpr (Array<T>)
+            elements(item);
+        else {
+            align(sizeof(T));
+            raw(&item, sizeof(T));
+        }
+    }
+
+    /** Throws if more is left than padding to a multiple of four bytes, which some writers append. */
+    void finish() const;
+
+private:
+    template <class Items>
+    void elements(Items& items) {
+        using Item = typename Items::value_type;
+        if constexpr (Block<Item>) {
+            if (items.empty()) return;
+            align(sizeof(Item));
+            raw(items.data(), items.size() * sizeof(Item));
+        } else
+            for (Item& item : items) value(item);
+    }
+    void align(size_t size);
+    void raw(void* to, size_t size);
+    void text(std::string& item);
+    bool truth();
+    uint32_t count(size_t minimum_size);
+
+    std::span<const char> bytes_;
+    size_t at_ = 4;
+};
+
+/** Appends the message's bytes to `bytes`. */
+template <Message T>
+void encode(const T& message, std::vector<char>& bytes) {
+    CdrWriter(bytes).value(message);
+}
+
+/** Fills `message`, whose memory is used again. Throws CdrError unless `bytes` is exactly one message. */
+template <Message T>
+void decode(std::span<const char> bytes, T& message) {
+    CdrReader reader(bytes);
+    reader.value(message);
+    reader.finish();
+}
+
+}  // namespace insonify::ros

@@ -1,0 +1,95 @@
+#include "components/ros/Echoes.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+
+#include "components/ros/FromSonar.hpp"
+
+namespace insonify::ros {
+
+namespace {
+
+constexpr double nothing_db = -3000;
+
+double levelOf(double bin, BinScale scale) {
+    if (scale == BinScale::Decibel) return std::isnan(bin) ? nothing_db : bin;
+    return bin > 0 ? 10 * std::log10(bin) : nothing_db;
+}
+
+float binAt(double level_db, BinScale scale) {
+    return static_cast<float>(scale == BinScale::Decibel ? level_db : std::pow(10, level_db / 10));
+}
+
+/** Calls `put(place, bin)` for each bin of the ping, places rising. */
+template <class Put>
+void inOrder(const types::Sonar& ping, ImageOrder order, Put&& put) {
+    if (order == ImageOrder::BeamMajor) {
+        for (size_t i = 0; i < ping.bins.size(); ++i) put(i, ping.bins[i]);
+        return;
+    }
+    size_t place = 0;
+    for (uint32_t bin = 0; bin < ping.bin_count; ++bin)
+        for (size_t beam = 0; beam < ping.beam_count; ++beam) put(place++, ping.bins[beam * ping.bin_count + bin]);
+}
+
+/** Levels of eight bits, of linear or logarithmic bins. */
+class EightBits {
+public:
+    EightBits(const types::Sonar& ping, const SonarOptions& options)
+        : scale_(options.scale), reference_(referenceDb(ping, options)), per_db_(255 / options.dynamic_range_db) {}
+
+    uint8_t operator()(float bin) const {
+        const double level = levelOf(static_cast<double>(bin), scale_);
+        if (level <= nothing_db) return 0;
+        return static_cast<uint8_t>(std::lround(std::clamp(255 + (level - reference_) * per_db_, 0.0, 255.0)));
+    }
+
+private:
+    BinScale scale_;
+    double reference_, per_db_;
+};
+
+}  // namespace
+
+double referenceDb(const types::Sonar& ping, const SonarOptions& options) {
+    if (options.reference_db) return *options.reference_db;
+    float strongest = -std::numeric_limits<float>::infinity();
+    for (const float bin : ping.bins) strongest = bin > strongest ? bin : strongest;  // false for NaN
+    return std::clamp(levelOf(static_cast<double>(strongest), options.scale), nothing_db, -nothing_db);
+}
+
+Vector3 directionOf(double bearing_rad, SensorFrame frame) {
+    const double ahead = std::cos(bearing_rad), port = std::sin(bearing_rad);
+    return frame == SensorFrame::ZForward ? Vector3{0, -port, ahead} : Vector3{ahead, port, 0};
+}
+
+ReturnRule::ReturnRule(const types::Sonar& ping, const SonarOptions& options) : ping_(ping) {
+    least_ = binAt(referenceDb(ping, options) + options.threshold_db, options.scale);
+    if (options.scale == BinScale::Linear) least_ = std::max(least_, std::numeric_limits<float>::denorm_min());
+}
+
+std::optional<uint32_t> ReturnRule::firstOf(uint32_t beam) const {
+    const float* bins = ping_.bins.data() + size_t{beam} * ping_.bin_count;
+    const float* first = std::find_if(bins, bins + ping_.bin_count, [&](float bin) { return isReturn(bin); });
+    if (first == bins + ping_.bin_count) return std::nullopt;
+    return static_cast<uint32_t>(first - bins);
+}
+
+void fillImage(const types::Sonar& ping, const SonarOptions& options, SonarImageData& image) {
+    image.beam_count = ping.beam_count;
+    if (options.dtype == ImageType::Uint8) {
+        image.dtype = SonarImageData::uint8;
+        image.data.resize(ping.bins.size());
+        inOrder(ping, options.order,
+                [&, level = EightBits(ping, options)](size_t place, float bin) { image.data[place] = level(bin); });
+    } else {
+        image.dtype = SonarImageData::float32;
+        image.data.resize(ping.bins.size() * sizeof(float));
+        inOrder(ping, options.order, [&](size_t place, float bin) {
+            std::memcpy(image.data.data() + place * sizeof bin, &bin, sizeof bin);
+        });
+    }
+}
+
+}  // namespace insonify::ros

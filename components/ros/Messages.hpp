@@ -1,0 +1,25 @@
+#pragma once
+// All messages, in one place.
+#include <tuple>
+#include <type_traits>
+
+#include "components/ros/GeometryMessages.hpp"
+#include "components/ros/SensorMessages.hpp"
+#include "components/ros/SonarMessages.hpp"
+
+namespace insonify::ros {
+
+using MessageTypes =
+    std::tuple<Time, Header, Clock, Vector3, Point, Quaternion, Pose, PoseStamped, PoseWithCovariance, Twist,
+               TwistWithCovariance, Odometry, Image, LaserScan, PointField, PointCloud2, PingInfo, SonarImageData,
+               ProjectedSonarImage, RawSonarImage, DetectionFlag, SonarRanges>;
+
+/** Calls `use(std::type_identity<T>{})` for each message. */
+template <class Use>
+void forEachMessage(Use&& use) {
+    [&]<class... T>(std::type_identity<std::tuple<T...>>) {
+        (use(std::type_identity<T>{}), ...);
+    }(std::type_identity<MessageTypes>{});
+}
+
+}  // namespace insonify::ros

@@ -1,0 +1,82 @@
+#pragma once
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "types/Describe.hpp"
+
+namespace insonify::ros {
+
+/** Which neighbour of an echo follows it in an image: the same bin of the next beam (sonar_image_proc and the drivers
+ *  have it so), or the next bin of the same beam (as the text of marine_acoustic_msgs has it). */
+enum class ImageOrder { RangeMajor, BeamMajor };
+
+/** Numbers of an image: levels in eight bits, or the bins as they are. */
+enum class ImageType { Uint8, Float32 };
+
+/** Axes of what a sonar measures: z ahead, x up, y to starboard (marine_acoustic_msgs), or x ahead, y to port, z up
+ * (Rock, REP 103). */
+enum class SensorFrame { ZForward, XForward };
+
+/** What the bins of a ping hold: linear intensities, or levels in dB. */
+enum class BinScale { Linear, Decibel };
+
+/** Axes of poses. Ours are Rock's: world x north, y west, z up; body x forward, y left, z up. */
+enum class WorldFrame {
+    AsIs,  ///< Rock's.
+    Enu,   ///< World x east, y north, z up; body as in Rock (REP 103).
+    Ned    ///< World x north, y east, z down; body x forward, y right, z down.
+};
+
+/** How a ping becomes messages. A level is 10 log10 of a bin [dB]. */
+struct SonarOptions {
+    ImageOrder order = ImageOrder::RangeMajor;
+    ImageType dtype = ImageType::Uint8;
+    SensorFrame frame = SensorFrame::ZForward;
+    BinScale scale = BinScale::Linear;
+    double dynamic_range_db = 60;
+    std::optional<double> reference_db;
+    double threshold_db = -20;
+    double frequency_khz = 0;
+    std::string frame_id = "sonar";
+
+    template <class Self, class V>
+    static void describe(Self& self, V& visit) {
+        using types::Field;
+        visit(Field{"order", "", "of an image's echoes: all beams of a bin together, or all bins of a beam"},
+              self.order);
+        visit(Field{"dtype", "", "of an image's echoes: uint8 levels, or the bins as float32"}, self.dtype);
+        visit(Field{"frame", "", "axes of directions and points: z ahead and x up, or x ahead and z up"}, self.frame);
+        visit(Field{"scale", "", "what the bins hold: linear intensities, or decibel"}, self.scale);
+        visit(Field{"dynamic_range_db", "dB", "uint8: 0 lies so far below the reference, which is 255", 1, 300},
+              self.dynamic_range_db);
+        visit(Field{"reference_db", "dB", "level of the strongest echo; absent: that of each ping", -3000, 3000},
+              self.reference_db);
+        visit(Field{"threshold_db", "dB", "what is a return, relative to the reference", -300, 0}, self.threshold_db);
+        visit(Field{"frequency_khz", "kHz", "of the device; 0: unknown", 0, 1e5}, self.frequency_khz);
+        visit(Field{"frame_id", "", "name of the sonar's frame"}, self.frame_id);
+    }
+};
+
+}  // namespace insonify::ros
+
+template <>
+struct insonify::types::EnumNames<insonify::ros::ImageOrder> {
+    static constexpr std::string_view names[] = {"range_major", "beam_major"};
+};
+template <>
+struct insonify::types::EnumNames<insonify::ros::ImageType> {
+    static constexpr std::string_view names[] = {"uint8", "float32"};
+};
+template <>
+struct insonify::types::EnumNames<insonify::ros::SensorFrame> {
+    static constexpr std::string_view names[] = {"z_forward", "x_forward"};
+};
+template <>
+struct insonify::types::EnumNames<insonify::ros::BinScale> {
+    static constexpr std::string_view names[] = {"linear", "decibel"};
+};
+template <>
+struct insonify::types::EnumNames<insonify::ros::WorldFrame> {
+    static constexpr std::string_view names[] = {"as_is", "enu", "ned"};
+};

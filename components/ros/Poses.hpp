@@ -1,0 +1,21 @@
+#pragma once
+#include "components/ros/GeometryMessages.hpp"
+#include "components/ros/Options.hpp"
+#include "types/Pose.hpp"
+
+namespace insonify::ros {
+
+/** Rock's pose in the axes of ROS. Names of frames are kept: target_frame is header.frame_id.
+ *
+ *  Odometry gives velocities and their covariances in the body; Rock has the velocity in the world, and the covariance
+ *  of the orientation in the body, where Odometry has it in the world. What is unknown (NaN) becomes 0, with -1 in its
+ *  covariance, as in sensor_msgs/Imu; an unknown covariance becomes zeros.
+ *  All throw std::out_of_range for a time that ROS cannot hold. */
+void convert(const types::Pose& pose, WorldFrame frame, PoseStamped& message);
+void convert(const types::Pose& pose, WorldFrame frame, Odometry& message);
+
+/** The reverse. What the message does not tell is unknown. */
+void convert(const PoseStamped& message, WorldFrame frame, types::Pose& pose);
+void convert(const Odometry& message, WorldFrame frame, types::Pose& pose);
+
+}  // namespace insonify::ros

@@ -1,0 +1,80 @@
+#pragma once
+// The text of a message's definition, as MCAP's schema encoding "ros2msg" has it, from the description of the message.
+#include <string>
+#include <vector>
+
+#include "components/ros/Traits.hpp"
+
+namespace insonify::ros {
+
+/** "std_msgs/Header" of "std_msgs/msg/Header". */
+std::string shortName(const std::string& type_name);
+
+template <class T>
+std::string fieldType() {
+    if constexpr (Message<T>)
+        return shortName(T::type_name);
+    else if constexpr (Sequence<T>)
+        return fieldType<typename T::value_type>() + "[]";
+    else if constexpr (Array<T>)
+        return fieldType<typename T::value_type>() + "[" + std::to_string(std::tuple_size_v<T>) + "]";
+    else if constexpr (std::is_same_v<T, std::string>)
+        return "string";
+    else if constexpr (std::is_same_v<T, bool>)
+        return "bool";
+    else if constexpr (std::is_floating_point_v<T>)
+        return sizeof(T) == 8 ? "float64" : "float32";
+    else
+        return (std::is_signed_v<T> ? "int" : "uint") + std::to_string(8 * sizeof(T));
+}
+
+/** The lines of one message: its constants, then its fields. */
+template <Message T>
+std::string definitionOf() {
+    std::string text;
+    if constexpr (requires { T::constants; }) text = T::constants;
+    T value{};
+    auto line = [&]<class F>(const types::Field& field, F&) { text += fieldType<F>() + " " + field.name + "\n"; };
+    T::describe(value, line);
+    return text;
+}
+
+/** Definitions that others need, each once, in the order in which they are met. */
+class Definitions {
+public:
+    template <class T>
+    void addPartsOf() {
+        if constexpr (Sequence<T> || Array<T>)
+            addIfMessage<typename T::value_type>();
+        else if constexpr (Message<T>) {
+            T value{};
+            auto add = [&]<class F>(const types::Field&, F&) { addIfMessage<F>(); };
+            T::describe(value, add);
+        }
+    }
+    /** With a separator and a line `MSG: pkg/Type` before each. */
+    const std::string& text() const { return text_; }
+
+private:
+    template <class T>
+    void addIfMessage() {
+        if constexpr (!Message<T>)
+            addPartsOf<T>();
+        else if (add(T::type_name, definitionOf<T>()))
+            addPartsOf<T>();
+    }
+    bool add(const std::string& type_name, const std::string& definition);
+
+    std::vector<std::string> known_;
+    std::string text_;
+};
+
+/** The whole schema of a message: its own definition, and those of all messages in it. */
+template <Message T>
+std::string schemaOf() {
+    Definitions parts;
+    parts.addPartsOf<T>();
+    return definitionOf<T>() + parts.text();
+}
+
+}  // namespace insonify::ros

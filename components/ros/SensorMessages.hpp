@@ -1,0 +1,106 @@
+#pragma once
+// ROS 2 messages of sensor_msgs, field for field: see GeometryMessages.hpp.
+#include <vector>
+
+#include "components/ros/GeometryMessages.hpp"
+
+namespace insonify::ros {
+
+struct Image {
+    static constexpr const char* type_name = "sensor_msgs/msg/Image";
+    static constexpr const char* type_hash = "RIHS01_d31d41a9a4c4bc8eae9be757b0beed306564f7526c88ea6a4588fb9582527d47";
+    Header header;
+    uint32_t height = 0, width = 0;
+    std::string encoding;
+    uint8_t is_bigendian = 0;
+    uint32_t step = 0;
+    std::vector<uint8_t> data;
+
+    friend bool operator==(const Image&, const Image&) = default;
+    template <class Self, class V>
+    static void describe(Self& self, V& visit) {
+        visit(Field{"header"}, self.header);
+        visit(Field{"height", "1", "rows"}, self.height);
+        visit(Field{"width", "1", "pixels in a row"}, self.width);
+        visit(Field{"encoding", "", "mono8, mono16, rgb8, bgr8"}, self.encoding);
+        visit(Field{"is_bigendian"}, self.is_bigendian);
+        visit(Field{"step", "B", "size of a row"}, self.step);
+        visit(Field{"data", "1", "rows from top to bottom"}, self.data);
+    }
+};
+
+struct LaserScan {
+    static constexpr const char* type_name = "sensor_msgs/msg/LaserScan";
+    static constexpr const char* type_hash = "RIHS01_64c191398013af96509d518dac71d5164f9382553fce5c1f8cca5be7924bd828";
+    Header header;
+    float angle_min = 0, angle_max = 0, angle_increment = 0;
+    float time_increment = 0, scan_time = 0;
+    float range_min = 0, range_max = 0;
+    std::vector<float> ranges;
+    std::vector<float> intensities;
+
+    friend bool operator==(const LaserScan&, const LaserScan&) = default;
+    template <class Self, class V>
+    static void describe(Self& self, V& visit) {
+        visit(Field{"header"}, self.header);
+        visit(Field{"angle_min", "rad", "of the first ray, positive to port"}, self.angle_min);
+        visit(Field{"angle_max", "rad", "of the last ray"}, self.angle_max);
+        visit(Field{"angle_increment", "rad"}, self.angle_increment);
+        visit(Field{"time_increment", "s", "from one ray to the next"}, self.time_increment);
+        visit(Field{"scan_time", "s", "from one scan to the next"}, self.scan_time);
+        visit(Field{"range_min", "m"}, self.range_min);
+        visit(Field{"range_max", "m"}, self.range_max);
+        visit(Field{"ranges", "m", "infinity: no return"}, self.ranges);
+        visit(Field{"intensities", "1"}, self.intensities);
+    }
+};
+
+struct PointField {
+    static constexpr const char* type_name = "sensor_msgs/msg/PointField";
+    static constexpr const char* type_hash = "RIHS01_5c6a4750728c2bcfbbf7037225b20b02d4429634732146b742dee1726637ef01";
+    static constexpr const char* constants =
+        "uint8 INT8=1\nuint8 UINT8=2\nuint8 INT16=3\nuint8 UINT16=4\nuint8 INT32=5\nuint8 UINT32=6\nuint8 FLOAT32=7\n"
+        "uint8 FLOAT64=8\n";
+    static constexpr uint8_t float32 = 7;
+    std::string name;
+    uint32_t offset = 0;
+    uint8_t datatype = 0;
+    uint32_t count = 0;
+
+    friend bool operator==(const PointField&, const PointField&) = default;
+    template <class Self, class V>
+    static void describe(Self& self, V& visit) {
+        visit(Field{"name"}, self.name);
+        visit(Field{"offset", "B", "from the start of a point"}, self.offset);
+        visit(Field{"datatype", "1", "one of the constants"}, self.datatype);
+        visit(Field{"count", "1", "elements"}, self.count);
+    }
+};
+
+struct PointCloud2 {
+    static constexpr const char* type_name = "sensor_msgs/msg/PointCloud2";
+    static constexpr const char* type_hash = "RIHS01_9198cabf7da3796ae6fe19c4cb3bdd3525492988c70522628af5daa124bae2b5";
+    Header header;
+    uint32_t height = 1, width = 0;
+    std::vector<PointField> fields;
+    bool is_bigendian = false;
+    uint32_t point_step = 0, row_step = 0;
+    std::vector<uint8_t> data;
+    bool is_dense = true;
+
+    friend bool operator==(const PointCloud2&, const PointCloud2&) = default;
+    template <class Self, class V>
+    static void describe(Self& self, V& visit) {
+        visit(Field{"header"}, self.header);
+        visit(Field{"height", "1", "1: the points have no order"}, self.height);
+        visit(Field{"width", "1", "points in a row"}, self.width);
+        visit(Field{"fields", "", "what a point holds"}, self.fields);
+        visit(Field{"is_bigendian"}, self.is_bigendian);
+        visit(Field{"point_step", "B"}, self.point_step);
+        visit(Field{"row_step", "B"}, self.row_step);
+        visit(Field{"data"}, self.data);
+        visit(Field{"is_dense", "", "no point is invalid"}, self.is_dense);
+    }
+};
+
+}  // namespace insonify::ros

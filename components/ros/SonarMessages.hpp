@@ -1,0 +1,141 @@
+#pragma once
+// ROS 2 messages of marine_acoustic_msgs 2, field for field: see GeometryMessages.hpp.
+#include <vector>
+
+#include "components/ros/GeometryMessages.hpp"
+
+namespace insonify::ros {
+
+/** Lists may be empty (unknown) or hold one value (the same for all beams). */
+struct PingInfo {
+    static constexpr const char* type_name = "marine_acoustic_msgs/msg/PingInfo";
+    static constexpr const char* type_hash = "RIHS01_6158894db5c1e6738766228704e9b198001f58cf62b02aef41e04ae6a4f50989";
+    float frequency = 0;
+    float sound_speed = 0;
+    std::vector<float> tx_beamwidths;
+    std::vector<float> rx_beamwidths;
+
+    friend bool operator==(const PingInfo&, const PingInfo&) = default;
+    template <class Self, class V>
+    static void describe(Self& self, V& visit) {
+        visit(Field{"frequency", "Hz", "0: unknown"}, self.frequency);
+        visit(Field{"sound_speed", "m/s"}, self.sound_speed);
+        visit(Field{"tx_beamwidths", "rad", "across the plane of the fan, -3 dB"}, self.tx_beamwidths);
+        visit(Field{"rx_beamwidths", "rad", "in the plane of the fan, -3 dB"}, self.rx_beamwidths);
+    }
+};
+
+struct SonarImageData {
+    static constexpr const char* type_name = "marine_acoustic_msgs/msg/SonarImageData";
+    static constexpr const char* type_hash = "RIHS01_50fb28a428282c0c372a897399651836892fa13d8d56cb67bfeffac8803e58f7";
+    static constexpr const char* constants =
+        "uint32 DTYPE_UINT8=0\nuint32 DTYPE_INT8=1\nuint32 DTYPE_UINT16=2\nuint32 DTYPE_INT16=3\nuint32 "
+        "DTYPE_UINT32=4\n"
+        "uint32 DTYPE_INT32=5\nuint32 DTYPE_UINT64=6\nuint32 DTYPE_INT64=7\nuint32 DTYPE_FLOAT32=8\n"
+        "uint32 DTYPE_FLOAT64=9\n";
+    static constexpr uint32_t uint8 = 0, uint16 = 2, uint32 = 4, float32 = 8, float64 = 9;
+    bool is_bigendian = false;
+    uint32_t dtype = uint8;
+    uint32_t beam_count = 0;
+    std::vector<uint8_t> data;
+
+    friend bool operator==(const SonarImageData&, const SonarImageData&) = default;
+    template <class Self, class V>
+    static void describe(Self& self, V& visit) {
+        visit(Field{"is_bigendian"}, self.is_bigendian);
+        visit(Field{"dtype", "1", "one of the constants"}, self.dtype);
+        visit(Field{"beam_count", "1", "beams"}, self.beam_count);
+        visit(Field{"data"}, self.data);
+    }
+};
+
+/** stamp is the time of transmission. */
+struct ProjectedSonarImage {
+    static constexpr const char* type_name = "marine_acoustic_msgs/msg/ProjectedSonarImage";
+    static constexpr const char* type_hash = "RIHS01_e9d0b934ee8332c9f79e04c361de0793c165b2dee14f2c0d25c3227cd50d46f1";
+    Header header;
+    PingInfo ping_info;
+    std::vector<Vector3> beam_directions;
+    std::vector<float> ranges;
+    SonarImageData image;
+
+    friend bool operator==(const ProjectedSonarImage&, const ProjectedSonarImage&) = default;
+    template <class Self, class V>
+    static void describe(Self& self, V& visit) {
+        visit(Field{"header"}, self.header);
+        visit(Field{"ping_info"}, self.ping_info);
+        visit(Field{"beam_directions", "1", "unit vectors"}, self.beam_directions);
+        visit(Field{"ranges", "m", "centres of the bins"}, self.ranges);
+        visit(Field{"image"}, self.image);
+    }
+};
+
+/** Sample i lies at (i + sample0) * sound_speed / (2 * sample_rate). */
+struct RawSonarImage {
+    static constexpr const char* type_name = "marine_acoustic_msgs/msg/RawSonarImage";
+    static constexpr const char* type_hash = "RIHS01_668954b8ea9854ec5c25c3ebdbdd9d53452169c7e1e365cad5baf0dc56ac9607";
+    Header header;
+    PingInfo ping_info;
+    float sample_rate = 0;
+    uint32_t samples_per_beam = 0;
+    uint32_t sample0 = 0;
+    std::vector<float> tx_delays;
+    std::vector<float> tx_angles;
+    std::vector<float> rx_angles;
+    SonarImageData image;
+
+    friend bool operator==(const RawSonarImage&, const RawSonarImage&) = default;
+    template <class Self, class V>
+    static void describe(Self& self, V& visit) {
+        visit(Field{"header"}, self.header);
+        visit(Field{"ping_info"}, self.ping_info);
+        visit(Field{"sample_rate", "Hz"}, self.sample_rate);
+        visit(Field{"samples_per_beam", "1"}, self.samples_per_beam);
+        visit(Field{"sample0", "1", "number of the first sample"}, self.sample0);
+        visit(Field{"tx_delays", "s", "of each beam"}, self.tx_delays);
+        visit(Field{"tx_angles", "rad", "of each beam"}, self.tx_angles);
+        visit(Field{"rx_angles", "rad", "of each beam"}, self.rx_angles);
+        visit(Field{"image"}, self.image);
+    }
+};
+
+struct DetectionFlag {
+    static constexpr const char* type_name = "marine_acoustic_msgs/msg/DetectionFlag";
+    static constexpr const char* type_hash = "RIHS01_233c78cf2cc8722d8372348d0bf5c3e34839baa3010f884a73e1d2ae35b9005c";
+    static constexpr const char* constants =
+        "uint8 DETECT_OK=0\nuint8 DETECT_BAD_SONAR=1\nuint8 DETECT_BAD_FILTER=2\nuint8 DETECT_BAD_USER=4\n";
+    static constexpr uint8_t ok = 0, bad_filter = 2;
+    uint8_t flag = ok;
+
+    friend bool operator==(const DetectionFlag&, const DetectionFlag&) = default;
+    template <class Self, class V>
+    static void describe(Self& self, V& visit) {
+        visit(Field{"flag", "1", "0: good"}, self.flag);
+    }
+};
+
+struct SonarRanges {
+    static constexpr const char* type_name = "marine_acoustic_msgs/msg/SonarRanges";
+    static constexpr const char* type_hash = "RIHS01_f440f02f1adc9535848643a389997562f2672f1a74214c17970e1cf2a832343c";
+    Header header;
+    PingInfo ping_info;
+    std::vector<DetectionFlag> flags;
+    std::vector<float> transmit_delays;
+    std::vector<float> intensities;
+    std::vector<Vector3> beam_unit_vec;
+    std::vector<float> ranges;
+
+    friend bool operator==(const SonarRanges&, const SonarRanges&) = default;
+    template <class Self, class V>
+    static void describe(Self& self, V& visit) {
+        visit(Field{"header"}, self.header);
+        visit(Field{"ping_info"}, self.ping_info);
+        visit(Field{"flags"}, self.flags);
+        visit(Field{"transmit_delays", "s"}, self.transmit_delays);
+        visit(Field{"intensities", "1"}, self.intensities);
+        visit(Field{"beam_unit_vec", "1"}, self.beam_unit_vec);
+        visit(Field{"ranges", "m"}, self.ranges);
+    }
+};
+
+}  // namespace insonify::ros

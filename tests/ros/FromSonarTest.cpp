@@ -1,0 +1,154 @@
+#include <gmock/gmock.h>
+
+#include <cmath>
+#include <cstring>
+
+#include "components/ros/FromSonar.hpp"
+#include "tests/ros/Samples.hpp"
+
+namespace insonify::ros {
+namespace {
+
+using testing::ElementsAre;
+using testing::FloatEq;
+using testing::FloatNear;
+using testing::IsNan;
+
+template <class Message>
+Message messageOf(const types::Sonar& ping, const SonarOptions& options = {}) {
+    Message message;
+    convert(ping, options, message);
+    return message;
+}
+
+std::vector<float> floatsOf(const std::vector<uint8_t>& bytes) {
+    std::vector<float> numbers(bytes.size() / sizeof(float));
+    std::memcpy(numbers.data(), bytes.data(), bytes.size());
+    return numbers;
+}
+
+std::string faultOf(const types::Sonar& ping) {
+    try {
+        messageOf<LaserScan>(ping);
+        return "";
+    } catch (const std::exception& error) {
+        return error.what();
+    }
+}
+
+TEST(FromSonarTest, AnImageTellsTheTimeTheWatersSpeedAndTheWidths) {
+    SonarOptions options;
+    options.frequency_khz = 750;
+    const auto image = messageOf<ProjectedSonarImage>(smallPing(), options);
+    EXPECT_EQ(image.header, (Header{{1'700'000'000, 123'456'000}, "sonar"}));
+    EXPECT_EQ(image.ping_info, (PingInfo{750e3f, 1500, {0.35f}, {0.03f}}));
+    EXPECT_THAT(image.ranges, ElementsAre(FloatEq(0.375f), FloatEq(1.125f), FloatEq(1.875f)));
+}
+
+TEST(FromSonarTest, DirectionsHaveZAheadAndYToStarboardOrXAheadAndYToPort) {
+    SonarOptions options;
+    const auto z_forward = messageOf<ProjectedSonarImage>(smallPing(), options).beam_directions;
+    EXPECT_THAT(z_forward,
+                ElementsAre(Vector3{0, -std::sin(0.5), std::cos(0.5)}, Vector3{0, std::sin(0.25), std::cos(0.25)}));
+    options.frame = SensorFrame::XForward;
+    EXPECT_EQ(messageOf<ProjectedSonarImage>(smallPing(), options).beam_directions[0],
+              (Vector3{std::cos(0.5), std::sin(0.5), 0}));
+}
+
+TEST(FromSonarTest, EightBitsAreDecibelsBelowTheStrongestEcho) {
+    // levels 0, 9.5, 20 and -17, none, 30 dB; 30 dB is 255 and -30 dB is 0: 4.25 a dB
+    EXPECT_THAT(messageOf<ProjectedSonarImage>(smallPing()).image.data, ElementsAre(128, 55, 168, 0, 213, 255));
+}
+
+TEST(FromSonarTest, AFixedReferenceClipsWhatIsAboveIt) {
+    SonarOptions options;
+    options.order = ImageOrder::BeamMajor;
+    options.reference_db = 10;
+    options.dynamic_range_db = 20;
+    EXPECT_THAT(messageOf<ProjectedSonarImage>(smallPing(), options).image.data, ElementsAre(128, 249, 255, 0, 0, 255));
+    options.scale = BinScale::Decibel;  // then the bins themselves are the levels
+    EXPECT_THAT(messageOf<ProjectedSonarImage>(smallPing(), options).image.data,
+                ElementsAre(140, 242, 255, 128, 0, 255));
+}
+
+TEST(FromSonarTest, APingWithoutEchoIsBlack) {
+    types::Sonar ping = smallPing();
+    ping.bins.assign(6, 0);
+    EXPECT_THAT(messageOf<ProjectedSonarImage>(ping).image.data, testing::Each(0));
+    EXPECT_EQ(messageOf<PointCloud2>(ping).width, 0u);
+}
+
+TEST(FromSonarTest, FloatsAreTheBinsUnchangedInBothOrders) {
+    SonarOptions options;
+    options.dtype = ImageType::Float32;
+    EXPECT_THAT(floatsOf(messageOf<ProjectedSonarImage>(smallPing(), options).image.data),
+                ElementsAre(1, 0.02f, 9, IsNan(), 100, 1000));
+    options.order = ImageOrder::BeamMajor;
+    const auto image = messageOf<ProjectedSonarImage>(smallPing(), options).image;
+    EXPECT_THAT(floatsOf(image.data), ElementsAre(1, 9, 100, 0.02f, IsNan(), 1000));
+    EXPECT_EQ(image.dtype, SonarImageData::float32);
+    EXPECT_EQ(image.beam_count, 2u);
+}
+
+TEST(FromSonarTest, ARawImageHasTheRateThatGivesTheBinsTheirWidth) {
+    types::Sonar ping = smallPing();
+    ping.timestamps = {ping.time, ping.time + types::Time{250}};
+    const auto raw = messageOf<RawSonarImage>(ping);
+    EXPECT_FLOAT_EQ(1500 / (2 * raw.sample_rate), 0.75f);
+    EXPECT_EQ(raw.samples_per_beam, 3u);
+    EXPECT_THAT(raw.tx_delays, ElementsAre(0, FloatEq(250e-6f)));
+    EXPECT_THAT(raw.rx_angles, ElementsAre(0.5f, -0.25f));
+    EXPECT_THAT(raw.image.data, ElementsAre(128, 55, 168, 0, 213, 255));
+}
+
+TEST(FromSonarTest, RangesAreTheFirstBinsAboveTheThreshold) {
+    types::Sonar ping = smallPing();
+    ping.bins = {1.5f, 10, 100, 0.01f, 0.02f, 0.5f};  // 20 dB below the strongest: 1
+    const auto ranges = messageOf<SonarRanges>(ping);
+    EXPECT_THAT(ranges.ranges, ElementsAre(FloatEq(0.375f), IsNan()));
+    EXPECT_THAT(ranges.flags, ElementsAre(DetectionFlag{0}, DetectionFlag{2}));
+    EXPECT_THAT(ranges.intensities, ElementsAre(1.5f, 0));
+}
+
+TEST(FromSonarTest, ACloudHoldsEveryBinAboveTheThreshold) {
+    SonarOptions options;
+    options.frame = SensorFrame::XForward;
+    const auto cloud = messageOf<PointCloud2>(smallPing(), options);  // 100 and 1000 are
+    ASSERT_EQ(cloud.width, 2u);
+    EXPECT_EQ(cloud.point_step, 16u);
+    EXPECT_EQ(cloud.fields[3], (PointField{"intensity", 12, PointField::float32, 1}));
+    const auto near = [](double value) { return FloatNear(static_cast<float>(value), 1e-6f); };
+    EXPECT_THAT(floatsOf(cloud.data),
+                ElementsAre(near(1.875 * std::cos(0.5)), near(1.875 * std::sin(0.5)), 0, 100,
+                            near(1.875 * std::cos(0.25)), near(-1.875 * std::sin(0.25)), 0, 1000));
+}
+
+TEST(FromSonarTest, AScanHasItsRaysWhereTheBeamsAre) {
+    SonarOptions options;
+    options.threshold_db = -45;  // -15 dB: all but 0.02 and NaN
+    const auto scan = messageOf<LaserScan>(smallPing(), options);
+    EXPECT_FLOAT_EQ(scan.angle_min, 0.5f);
+    EXPECT_FLOAT_EQ(scan.angle_increment, -0.75f);
+    EXPECT_FLOAT_EQ(scan.angle_max, -0.25f);
+    EXPECT_THAT(scan.ranges, ElementsAre(FloatEq(0.375f), FloatEq(1.875f)));
+    EXPECT_FLOAT_EQ(scan.range_max, 2.25f);
+    types::Sonar silent = smallPing();
+    silent.bins.assign(6, 0);
+    EXPECT_THAT(messageOf<LaserScan>(silent, options).ranges, testing::Each(std::numeric_limits<float>::infinity()));
+}
+
+TEST(FromSonarTest, WhatCannotBeHeldIsRefused) {
+    types::Sonar ping = smallPing();
+    ping.bins.pop_back();
+    EXPECT_EQ(faultOf(ping), "the lists of the ping are not as long as its counts say");
+    ping = smallPing();
+    ping.resize(3, 3);
+    ping.bearings[2] = {-0.5};
+    EXPECT_EQ(faultOf(ping), "the beams do not stand at equal angles from one another, as a LaserScan's do");
+    ping = smallPing();
+    ping.time = types::Time::fromSeconds(3e9);
+    EXPECT_EQ(faultOf(ping), "ROS holds no time of 3000000000 s: from -2147483648 s to 2147483647 s");
+}
+
+}  // namespace
+}  // namespace insonify::ros

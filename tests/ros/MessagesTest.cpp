@@ -1,0 +1,85 @@
+// What the messages say of themselves, and their bytes, against the Python package rosbags.
+#include <gmock/gmock.h>
+
+#include <fstream>
+
+#include "components/ros/Cdr.hpp"
+#include "components/ros/FromSonar.hpp"
+#include "components/ros/Messages.hpp"
+#include "components/ros/Poses.hpp"
+#include "components/ros/Schema.hpp"
+#include "tests/ros/Samples.hpp"
+#include "tests/support/Folder.hpp"
+#include "tests/support/Python.hpp"
+
+namespace insonify::ros {
+namespace {
+
+/** Writes N.msg with the schema, N.cdr with a message, and a line "N type hash" for the list. */
+class Corpus {
+public:
+    explicit Corpus(std::filesystem::path folder) : folder_(std::move(folder)), list_(folder_ / "list") {}
+
+    template <class T>
+    void add(const T& message) {
+        const std::string number = std::to_string(count_++);
+        std::vector<char> bytes;
+        encode(message, bytes);
+        std::ofstream(folder_ / (number + ".msg")) << schemaOf<T>();
+        std::ofstream(folder_ / (number + ".cdr")).write(bytes.data(), static_cast<int64_t>(bytes.size()));
+        list_ << number << ' ' << T::type_name << ' ' << T::type_hash << std::endl;
+    }
+
+private:
+    std::filesystem::path folder_;
+    std::ofstream list_;
+    int count_ = 0;
+};
+
+TEST(MessagesTest, ASchemaIsTheMessageAndAllThatIsInIt) {
+    const std::string line = "\n" + std::string(80, '=') + "\nMSG: ";
+    EXPECT_EQ(schemaOf<PoseStamped>(), "std_msgs/Header header\ngeometry_msgs/Pose pose" + line +
+                                           "std_msgs/Header\nbuiltin_interfaces/Time stamp\nstring frame_id" + line +
+                                           "builtin_interfaces/Time\nint32 sec\nuint32 nanosec" + line +
+                                           "geometry_msgs/Pose\ngeometry_msgs/Point position\n"
+                                           "geometry_msgs/Quaternion orientation" +
+                                           line + "geometry_msgs/Point\nfloat64 x\nfloat64 y\nfloat64 z" + line +
+                                           "geometry_msgs/Quaternion\nfloat64 x\nfloat64 y\nfloat64 z\nfloat64 w\n");
+    EXPECT_EQ(schemaOf<DetectionFlag>(), std::string(DetectionFlag::constants) + "uint8 flag\n");
+    EXPECT_THAT(schemaOf<Odometry>(), testing::HasSubstr("float64[36] covariance\n"));
+    EXPECT_THAT(schemaOf<SonarRanges>(), testing::HasSubstr("geometry_msgs/Vector3[] beam_unit_vec\n"));
+}
+
+TEST(MessagesTest, RosbagsComputesTheSameHashesAndReadsTheSameValues) {
+    if (!pythonHas("rosbags"))
+        GTEST_SKIP() << "SKIPPED: the Python package rosbags is missing; scripts/setup installs it";
+    const Folder folder;
+    Corpus corpus(folder.path());
+    forEachMessage([&]<class T>(std::type_identity<T>) { corpus.add(T{}); });
+    const auto add = [&]<class T>(T message) {
+        convert(smallPing(), {}, message);
+        corpus.add(message);
+    };
+    add(ProjectedSonarImage{});
+    add(RawSonarImage{});
+    add(SonarRanges{});
+    add(PointCloud2{});
+    add(LaserScan{});
+    Odometry odometry;
+    convert(smallPose(), WorldFrame::Enu, odometry);
+    corpus.add(odometry);
+    const std::string answer = pythonSays(INSONIFY_SOURCE_DIR "/tests/ros/read_messages.py " + folder.path().string(),
+                                          folder.path() / "answer");
+    EXPECT_THAT(answer, testing::StartsWith("28 messages as announced\n"));
+    EXPECT_THAT(answer,
+                testing::HasSubstr("ProjectedSonarImage 1700000000.123456000 sonar 1500.0 [0.375, 1.125, 1.875] "
+                                   "-0.479426 [128, 55, 168, 0, 213, 255]\n"));
+    EXPECT_THAT(answer, testing::HasSubstr("RawSonarImage 1000.0 3 [0.5, -0.25]\n"));
+    EXPECT_THAT(answer, testing::HasSubstr("SonarRanges [1.875, 1.875] [0, 0] [100.0, 1000.0]\n"));
+    EXPECT_THAT(answer, testing::HasSubstr("PointCloud2 2 16 ['x', 'y', 'z', 'intensity']\n"));
+    EXPECT_THAT(answer, testing::HasSubstr("LaserScan 0.5 -0.75 [1.875, 1.875]\n"));
+    EXPECT_THAT(answer, testing::HasSubstr("Odometry world body [-2.0, 3.0, -5.0] [1.5, -0.5, -0.25] 2.0\n"));
+}
+
+}  // namespace
+}  // namespace insonify::ros
