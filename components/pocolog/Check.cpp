@@ -9,6 +9,7 @@
 #include "components/pocolog/BlockFile.hpp"
 #include "components/pocolog/Index.hpp"
 #include "components/pocolog/Inflate.hpp"
+#include "components/pocolog/Metadata.hpp"
 #include "components/pocolog/SampleCheck.hpp"
 
 namespace insonify::pocolog {
@@ -109,18 +110,9 @@ private:
 
     /** Rock's C++ reader ends the process on anything but a flat map. */
     static void metadata(const Declaration& found) {
-        std::string_view yaml = found.yaml;
-        while (!yaml.empty()) {
-            const std::string_view line = yaml.substr(0, yaml.find('\n'));
-            const bool flat = line.empty() || line.starts_with("---") || line.starts_with('#') || line == "{}" ||
-                              (line.find(": ") != line.npos && line.front() != ' ' && line.front() != '-');
-            const auto at = static_cast<uint64_t>(yaml.data() - found.yaml.data());
-            if (!flat)
-                throw Fault(
-                    found.yaml_at + at,
-                    fmt::format("the metadata of {} must be a flat map, a `key: value` a line", found.stream.name));
-            yaml.remove_prefix(std::min(yaml.size(), line.size() + 1));
-        }
+        if (const std::optional<size_t> at = findNotFlat(found.yaml))
+            throw Fault(found.yaml_at + *at,
+                        fmt::format("the metadata of {} must be a flat map of scalars", found.stream.name));
     }
 
     void sample(uint64_t block, const BlockHeader& header) {

@@ -55,6 +55,36 @@ std::string scalar(std::string_view text) {
     return std::string(text);
 }
 
+/** How the value of the last key may go on over indented lines. */
+enum class Open { No, Plain, Quoted, Block };
+
+Open openAfter(std::string_view value) {
+    if (value.empty()) return Open::No;
+    if (value.front() == '|' || value.front() == '>') return Open::Block;
+    if (value.front() != '"' && value.front() != '\'') return Open::Plain;
+    return value.size() > 1 && value.back() == value.front() ? Open::No : Open::Quoted;
+}
+
+bool goesOn(Open& open, std::string_view text) {
+    if (open == Open::Quoted && (text.ends_with('"') || text.ends_with('\''))) {
+        open = Open::No;
+        return true;
+    }
+    return open == Open::Quoted || open == Open::Block || (open == Open::Plain && text.find(": ") == text.npos);
+}
+
+/** One line; what it leaves open. */
+bool isFlat(std::string_view line, Open& open) {
+    const std::string_view text = trimmed(line);
+    if (text.empty() || line.starts_with('#') || line.starts_with("---") || text == "{}" || text == "...") return true;
+    if (line.front() == ' ' || line.front() == '\t') return goesOn(open, text);
+    const size_t colon = text.ends_with(':') ? text.size() - 1 : text.find(": ");
+    if (colon == text.npos || line.starts_with("- ")) return false;
+    const std::string_view value = trimmed(text.substr(colon + 1));
+    open = openAfter(value);
+    return !value.starts_with('{') && !value.starts_with('[');
+}
+
 }  // namespace
 
 std::string toYaml(const Metadata& metadata) {
@@ -72,6 +102,16 @@ Metadata metadataFromYaml(std::string_view yaml) {
         if (colon != line.npos) metadata[scalar(line.substr(0, colon))] = scalar(line.substr(colon + 1));
     }
     return metadata;
+}
+
+std::optional<size_t> findNotFlat(std::string_view yaml) {
+    Open open = Open::No;
+    for (size_t at = 0; at < yaml.size();) {
+        const std::string_view line = yaml.substr(at, yaml.find('\n', at) - at);
+        if (!isFlat(line, open)) return at;
+        at += line.size() + 1;
+    }
+    return {};
 }
 
 }  // namespace insonify::pocolog

@@ -28,5 +28,19 @@ TEST(MetadataTest, WhatIsNoMapIsPassedOver) {
     EXPECT_TRUE(metadataFromYaml("- a\n- \"\\x\n").empty());
 }
 
+TEST(MetadataTest, ScalarsMayGoOnOverIndentedLinesMapsAndListsMayNot) {
+    for (const char* flat : {"", "--- {}\n", "---\na: b\n...\n", "a:\nb: c\n", "a: long\n  folded\nb: c",
+                             "a: |\n  x: y\n  - z\n", "a: \"long\n  x: folded\"\nb: 'c'\n", "# why\na: x: y\n"})
+        EXPECT_EQ(findNotFlat(flat), std::nullopt) << flat;
+    EXPECT_EQ(findNotFlat("a: b\n- c\n"), 5u);
+    EXPECT_EQ(findNotFlat("a:\n  b: c\n"), 3u);
+    EXPECT_EQ(findNotFlat("a:\n- b\n"), 3u);
+    EXPECT_EQ(findNotFlat("a: b\n  c: d\n"), 5u);
+    EXPECT_EQ(findNotFlat("a: \"b\"\n c: d\n"), 7u);
+    EXPECT_EQ(findNotFlat("x: y\na: {b: c}\n"), 5u);
+    EXPECT_EQ(findNotFlat("a: [1, 2]\n"), 0u);
+    EXPECT_EQ(findNotFlat("nonsense\n"), 0u);
+}
+
 }  // namespace
 }  // namespace insonify::pocolog
