@@ -53,7 +53,8 @@ void Activity::release() {
         free_ = realtime_ = true;
         woken_ = false;
         next_cycle_ = Clock::now();
-        if (!settings_.periodic() && timed()) schedule();
+        wake_after_ = nanoseconds(owner_.wakeAfter());  // asked for here: the owner may go while the thread waits
+        if (!settings_.periodic()) next_cycle_ += wake_after_;
     }
     wake_.notify_one();
     if (owner_.triggered()) trigger();  // by what came before
@@ -108,13 +109,13 @@ bool Activity::due() const {
     return (woken_ && !settings_.periodic()) || (timed() && Clock::now() >= next_cycle_);
 }
 
-bool Activity::timed() const { return settings_.periodic() || owner_.wakeAfter() > 0; }
+bool Activity::timed() const { return settings_.periodic() || wake_after_.count() > 0; }
 
 /** Times are absolute: a late cycle does not shift the next; periods missed altogether are left out. */
 void Activity::schedule() {
     const auto now = Clock::now();
     if (!settings_.periodic()) {
-        next_cycle_ = now + nanoseconds(owner_.wakeAfter());
+        next_cycle_ = now + wake_after_;
         return;
     }
     const auto period = nanoseconds(settings_.period);

@@ -56,7 +56,6 @@ public:
     void release();  ///< From now on the thread runs cycles by itself; the first at once if samples wait.
     void hold();     ///< No cycle runs any more once this returns (called from another thread).
     void trigger();  ///< A new sample is there; any thread.
-    bool released() const { return free_; }
     /** Whether cycles have been released before: the task runs in realtime, even if it is held for its last cycle. */
     bool realtime() const { return realtime_; }
     /** In a cycle, on the task's thread: waits until the task's clock shows `time`. False as soon as the task is held.
@@ -90,6 +89,7 @@ private:
     std::atomic<bool> free_{false};  ///< Changes under the mutex.
     std::atomic<bool> realtime_{false};
     bool woken_ = false, ending_ = false;
+    std::chrono::nanoseconds wake_after_{0};
     Clock::time_point next_cycle_;  ///< Of a triggered task: when it runs without a sample.
     std::thread thread_;
 };

@@ -10,7 +10,7 @@ void InputPortBase::signal() const {
 
 void OutputPortBase::noteWritten(types::Time stamp) const {
     const Activity& activity = owner().activity();
-    if (!activity.released() || stamp.isNull()) return;
+    if (!activity.realtime() || stamp.isNull()) return;
     const double seconds = (owner().environment().now() - stamp).seconds();
     const double deadline = activity.settings().deadline;
     owner().timing().latency.add(seconds);

@@ -125,7 +125,8 @@ public:
      *  none: this task has none of its own. Asked for once, when the connections are made. */
     virtual std::function<types::Time()> clock(std::function<types::Time()> /*wall*/) { return {}; }
 
-    /** In realtime a triggered task runs a cycle also when it has run none for so long [s]; 0: it waits for samples. */
+    /** In realtime a triggered task runs a cycle also when it has run none for so long [s]; 0: it waits for samples.
+     *  Asked for once, when it has started. */
     virtual double wakeAfter() const { return 0; }
 
     /** Properties and plan, for any thread; the type is the deployment's to know. */
