@@ -69,7 +69,8 @@ struct Matcher {
         if (decoder || schema.name != By::Message::type_name || wanted != pocolog::cxxName<Sample>()) return;
         decoder = std::make_unique<TypedDecoder<By>>(configOf(channel.metadata));
         stream.type = pocolog::typelibName<Sample>();
-        stream.registry = pocolog::registryOf<Sample>();
+        static const std::string registry = pocolog::registryOf<Sample>();
+        stream.registry = registry;
     }
     void run() {
         if (channel.encoding != "cdr") return;
