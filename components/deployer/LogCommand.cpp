@@ -3,12 +3,15 @@
 
 #include <charconv>
 #include <filesystem>
+#include <map>
 #include <memory>
 #include <optional>
 
 #include "components/deployer/Commands.hpp"
 #include "components/deployer/Json.hpp"
 #include "components/deployer/PictureExport.hpp"
+#include "components/mcap/Export.hpp"
+#include "components/mcap/LogSource.hpp"
 #include "components/pocolog/Check.hpp"
 #include "components/pocolog/Copy.hpp"
 #include "components/pocolog/Export.hpp"
@@ -40,9 +43,9 @@ void printTable(const std::string& file, const pocolog::LogInfo& info) {
 }
 
 int logInfo(const std::string& file, bool json) {
-    const pocolog::Reader log(file);
-    if (!log.complete()) fmt::print(stderr, "notice: {}: {}\n", file, log.fault());
-    const pocolog::LogInfo info = pocolog::info(log);
+    const auto log = mcap::openLog(file);
+    if (!log->complete()) fmt::print(stderr, "notice: {}: {}\n", file, log->fault());
+    const pocolog::LogInfo info = pocolog::info(*log);
     json ? print(infoJson(info)) : printTable(file, info);
     return 0;
 }
@@ -62,24 +65,34 @@ std::vector<fs::path> exportTo(pocolog::Reader& log, const std::string& stream, 
     refuseMissingFolder(to);
     if (to.extension() == ".npz") return pocolog::exportNpz(log, stream, to);
     if (to.extension() == ".png") return exportPictures(log, stream, to);
-    if (to.extension() != ".csv") throw types::ConfigError(to, "--to", "may be a folder, or end in .npz, .csv or .png");
+    if (to.extension() != ".csv")
+        throw types::ConfigError(to, "--to", "may be a folder, or end in .npz, .csv, .png or .mcap");
     pocolog::exportCsv(log, stream, to);
     return {to};
-}
-
-int logExport(const std::string& file, const std::string& stream, const std::string& to) {
-    pocolog::Reader log(file);
-    if (!log.complete()) fmt::print(stderr, "notice: {}: {}\n", file, log.fault());
-    for (const fs::path& written : exportTo(log, stream, to)) fmt::print("{}\n", written.string());
-    return 0;
 }
 
 struct Options {
     std::string file, stream, to, samples;
     std::vector<std::string> files, streams;
     std::optional<double> from, until;
+    mcap::McapConfig mcap;
     bool json = false;
 };
+
+int logExport(const Options& options) {
+    const auto log = mcap::openLog(options.file);
+    if (!log->complete()) fmt::print(stderr, "notice: {}: {}\n", options.file, log->fault());
+    if (mcap::isMcap(options.to)) {
+        refuseMissingFolder(options.to);
+        const size_t samples = mcap::exportLog(*log, options.stream, options.to, options.mcap);
+        fmt::print("{}: {} messages\n", options.to, samples);
+        return 0;
+    }
+    if (options.stream.empty())
+        throw types::ConfigError("", "--stream", "is missing; only an MCAP file takes all streams");
+    for (const fs::path& written : exportTo(*log, options.stream, options.to)) fmt::print("{}\n", written.string());
+    return 0;
+}
 
 /** "10:20", either number may be missing: the numbers from 10 on, without 20. */
 void readRange(const std::string& text, pocolog::Selection& selection) {
@@ -134,13 +147,27 @@ Json verdictJson(const pocolog::Verdict& verdict) {
 }
 
 int logCheck(const Options& options) {
-    const pocolog::Verdict verdict = pocolog::check(options.file);
+    const pocolog::Verdict verdict = mcap::checkLog(options.file);
     if (options.json) print(verdictJson(verdict));
     if (const auto& wrong = verdict.wrong)
         throw types::ConfigError(wrong->file, fmt::format("byte {}", wrong->byte), wrong->what);
     if (!options.json)
         fmt::print("{}: valid, {} streams, {} samples\n", options.file, verdict.streams, verdict.samples);
     return 0;
+}
+
+/** How messages of an MCAP file look, by the names of the logger's properties. */
+template <class E>
+void addEnum(CLI::App& command, const char* name, const char* help, E& value) {
+    std::map<std::string, E> names;
+    for (size_t i = 0; i < std::size(types::EnumNames<E>::names); ++i)
+        names[std::string(types::EnumNames<E>::names[i])] = static_cast<E>(i);
+    command.add_option(name, value, help)->transform(CLI::CheckedTransformer(names));
+}
+
+void addMcapOptions(CLI::App& command, mcap::McapConfig& config) {
+    addEnum(command, "--dtype", "of echoes in an MCAP file (default: float32)", config.dtype);
+    addEnum(command, "--world-frame", "of poses in an MCAP file (default: as_is)", config.world_frame);
 }
 
 /** A subcommand of `log` that does `work`. */
@@ -162,10 +189,12 @@ void addLogCommand(CLI::App& app, Action& action) {
                          [](const Options& asked) { return logInfo(asked.file, asked.json); });
     info->add_flag("--json", options->json, "for machines");
 
-    CLI::App* out = add(*log, action, options, "export", "Writes a stream as numpy arrays, text or pictures",
-                        [](const Options& asked) { return logExport(asked.file, asked.stream, asked.to); });
-    out->add_option("--stream", options->stream, "task.port, as `log info` lists them")->required();
-    out->add_option("--to", options->to, "FILE.npz, FILE.csv, FILE.png, or a folder for FILE.npz")->required();
+    CLI::App* out = add(*log, action, options, "export",
+                        "Writes a stream as numpy arrays, text or pictures, or the log as ROS 2 messages", logExport);
+    out->add_option("--stream", options->stream, "task.port, as `log info` lists them; none: all, to an MCAP file");
+    out->add_option("--to", options->to, "FILE.npz, FILE.csv, FILE.png, FILE.mcap, or a folder for FILE.npz")
+        ->required();
+    addMcapOptions(*out, options->mcap);
 
     CLI::App* cut = add(*log, action, options, "cut", "Copies a part of a log, or its files into one", logCut);
     cut->add_option("FILE", options->files, "a pocolog file, or those of a log in order")->required();
@@ -185,7 +214,8 @@ void addLogCommand(CLI::App& app, Action& action) {
     check->add_flag("--json", options->json, "for machines");
 
     for (CLI::App* command : {info, out, repair, check})
-        command->add_option("FILE", options->file, "a pocolog file")->required();
+        command->add_option("FILE", options->file, command == repair ? "a pocolog file" : "a pocolog or MCAP file")
+            ->required();
 }
 
 }  // namespace insonify::deployer

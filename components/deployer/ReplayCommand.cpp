@@ -13,6 +13,7 @@
 #include "components/deployer/RunOptions.hpp"
 #include "components/deployer/ScoreReport.hpp"
 #include "components/deployer/StopSignal.hpp"
+#include "components/mcap/LogSource.hpp"
 
 namespace insonify::deployer {
 namespace {
@@ -76,7 +77,8 @@ void waitForStep(framework::Deployment& deployment, const std::atomic<bool>& sto
 }
 
 int replay(Options options) {
-    pocolog::Reader log(options.replay.log);
+    const auto opened = mcap::openLog(options.replay.log);
+    pocolog::Reader& log = *opened;
     if (options.replay.rerender) takeSettings(log, options);
     framework::DeploymentSpec spec = loadSpec(options);
     const std::vector<std::string> streams = options.score ? pingStreams(log, spec) : std::vector<std::string>{};
@@ -101,7 +103,7 @@ void addReplayCommand(CLI::App& app, Action& action) {
     const auto options = std::make_shared<Options>();
     CLI::App* command =
         app.add_subcommand("replay", "Runs a deployment on a log's time, with its streams in the place of tasks");
-    command->add_option("LOG", options->replay.log, "a pocolog file")->required();
+    command->add_option("LOG", options->replay.log, "a pocolog or MCAP file")->required();
     command->add_option("DEPLOYMENT", options->deployment, "a YAML file")->required();
     auto* pace = command->add_option("--pace", options->limits.pace,
                                      "log seconds per second of the wall clock (default: as fast as it goes)");

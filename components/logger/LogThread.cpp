@@ -4,7 +4,7 @@
 
 namespace insonify::logger {
 
-LogThread::LogThread(pocolog::Writer& log, Rotation& rotation, size_t capacity, double flush_period)
+LogThread::LogThread(LogFile& log, Rotation& rotation, size_t capacity, double flush_period)
     : log_(log),
       rotation_(rotation),
       kept_before_(log.kept()),
@@ -95,8 +95,7 @@ void LogThread::write(Entry& entry) {
         return;
     }
     rotation_.before(entry.received);
-    std::visit([&](const auto& sample) { log_.write(entry.stream, entry.received, pocolog::carriedSample(sample)); },
-               entry.sample);
+    log_.write(entry.stream, entry.received, entry.sample);
     entry.sample = AnySample{};  // a large sample goes back to its writer's pool
 }
 

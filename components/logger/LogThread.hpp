@@ -4,26 +4,15 @@
 #include <mutex>
 #include <string>
 #include <thread>
-#include <type_traits>
-#include <variant>
 #include <vector>
 
+#include "components/logger/LogFile.hpp"
 #include "components/logger/Rotation.hpp"
-#include "components/pocolog/SampleTypes.hpp"
-#include "components/pocolog/Writer.hpp"
 
 namespace insonify::logger {
 
-template <class Types>
-struct AnyCarried;
-template <class... T>
-struct AnyCarried<std::tuple<T...>> {
-    using type = std::variant<pocolog::Carried<T>...>;
-};
-/** Any sample that a log takes, as it travels on ports. */
-using AnySample = AnyCarried<pocolog::SampleTypes>::type;
 /** Declares a stream. */
-using Declare = std::function<size_t(pocolog::Writer&)>;
+using Declare = std::function<size_t(LogFile&)>;
 
 /** Writes samples to a log on a thread of its own, in the order in which they were pushed, and flushes in between.
  *
@@ -34,7 +23,7 @@ class LogThread {
 public:
     /** `log` and `rotation` are the thread's alone until finish(). Flushes every `flush_period` [s]; `capacity` is
      * above 0. */
-    LogThread(pocolog::Writer& log, Rotation& rotation, size_t capacity, double flush_period);
+    LogThread(LogFile& log, Rotation& rotation, size_t capacity, double flush_period);
     ~LogThread();
     LogThread(const LogThread&) = delete;
     LogThread& operator=(const LogThread&) = delete;
@@ -71,7 +60,7 @@ private:
     void write(Entry& entry);
     [[noreturn]] void tellFailure();
 
-    pocolog::Writer& log_;
+    LogFile& log_;
     Rotation& rotation_;
     const uint64_t kept_before_;  ///< Samples that were in the log when the thread began.
     uint64_t pushed_ = 0;

@@ -5,6 +5,7 @@
 #include <optional>
 #include <string>
 
+#include "components/mcap/Config.hpp"
 #include "types/Describe.hpp"
 
 namespace insonify::logger {
@@ -18,10 +19,11 @@ inline std::optional<unsigned> sequenceNumber(const std::filesystem::path& log) 
     return number;
 }
 
-/** x.3.log -> x.4.log; the file must have a number. */
+/** x.3.log -> x.4.log, x.3.mcap -> x.4.mcap; the file must have a number. */
 inline std::filesystem::path nextInSequence(const std::filesystem::path& log) {
     const std::string name = log.stem().stem().string();
-    return log.parent_path() / (name + "." + std::to_string(uint64_t{*sequenceNumber(log)} + 1) + ".log");
+    return log.parent_path() /
+           (name + "." + std::to_string(uint64_t{*sequenceNumber(log)} + 1) + log.extension().string());
 }
 
 struct LoggerConfig {
@@ -31,11 +33,15 @@ struct LoggerConfig {
     double flush_period = 1;
     int queue = 64;
     std::map<std::string, std::string> metadata;
+    mcap::McapConfig mcap;
 
     template <class Self, class V>
     static void describe(Self& self, V& visit) {
         using types::Field;
-        visit(Field{"file", "", "log to write, relative to --out: NAME.0.log; an old one is replaced"}, self.file);
+        visit(Field{"file", "",
+                    "log to write, relative to --out: NAME.0.log, or NAME.0.mcap for ROS 2 messages; an old one is "
+                    "replaced"},
+              self.file);
         visit(Field{"property_file", "",
                     "log of all tasks' properties, in the folder of the other, a stream for each; empty: none"},
               self.property_file);
@@ -48,14 +54,16 @@ struct LoggerConfig {
         visit(Field{"queue", "1", "samples that may wait for the file beyond those in the ports' buffers", 1, 65536},
               self.queue);
         visit(Field{"metadata", "", "keys and values that every stream of the log carries"}, self.metadata);
+        visit(Field{"mcap", "", "how samples become ROS 2 messages; of a log that ends in .mcap"}, self.mcap);
     }
     void check(types::Problems& problems) const {
         const auto isLog = [](const std::filesystem::path& path) {
             return path.extension() == ".log" && !path.stem().empty();
         };
-        if (!isLog(file))
+        const std::filesystem::path path = file;
+        if (!isLog(path) && (path.extension() != ".mcap" || path.stem().empty()))
             problems.push_back(
-                {"file", "is '" + file + "'; it must be a file name that ends in .log, as in harbour.0.log"});
+                {"file", "is '" + file + "'; it must be a file name that ends in .log or .mcap, as in harbour.0.log"});
         else if ((max_file_size || max_file_duration) && !sequenceNumber(file))
             problems.push_back({"file", "is '" + file + "'; a log of several files must have a number, as in x.0.log"});
         if (!property_file.empty() && (!isLog(property_file) || property_file.find('/') != std::string::npos))

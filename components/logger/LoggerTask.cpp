@@ -18,8 +18,8 @@ public:
         : Inlet(std::move(source)), owned_(std::move(port)), port_(static_cast<Port&>(*owned_)) {}
     framework::InputPortBase& port() const override { return port_; }
     Declare declaration(pocolog::Metadata metadata) const override {
-        return [name = stream, metadata = std::move(metadata)](pocolog::Writer& log) {
-            return log.addStream<T>(name, metadata);
+        return [name = stream, metadata = std::move(metadata)](LogFile& log) {
+            return log.addStream(AnySample(pocolog::Carried<T>{}).index(), name, metadata);
         };
     }
     void drain(LogThread& log, types::Time received) override {
@@ -102,7 +102,7 @@ bool LoggerTask::configureHook() {
     checkInlets();
     const std::filesystem::path path = makePath(config->file);
     removeSequels(path);
-    log_.emplace(path);
+    log_ = createLog(path, config->mcap);
     rotation_.emplace(*config, *log_);
     if (logsProperties()) properties_.emplace(log_->path().parent_path() / config->property_file);
     declared_ = 0;

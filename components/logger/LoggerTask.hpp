@@ -11,11 +11,11 @@
 #include "components/logger/LoggerConfig.hpp"
 #include "components/logger/PropertyLog.hpp"
 #include "components/logger/Rotation.hpp"
-#include "components/pocolog/Writer.hpp"
 
 namespace insonify::logger {
 
-/** Writes what it is connected to into a pocolog file that Rock's tools open.
+/** Writes what it is connected to into a pocolog file that Rock's tools open, or, when its name ends in .mcap, as
+ *  ROS 2 messages into an MCAP file, with metadata.yaml beside it for `ros2 bag`: see mcap/SampleWriter.hpp.
  *
  *  Ports: an input for each connection that names one, whatever the name, of any type in pocolog/SampleTypes.hpp; give
  *  it a buffer. The stream is named after its source, `task.port`. Samples bear the time at which they were true and
@@ -67,7 +67,7 @@ private:
     pocolog::Metadata streamMetadata();  ///< With the plans of the moment.
 
     std::vector<std::unique_ptr<Inlet>> inlets_;
-    std::optional<pocolog::Writer> log_;
+    std::unique_ptr<LogFile> log_;
     std::optional<Rotation> rotation_;
     std::optional<PropertyLog> properties_;
     std::optional<LogThread> thread_;

@@ -2,6 +2,8 @@
 
 #include <vector>
 
+#include "components/pocolog/OutputFile.hpp"
+
 namespace insonify::logger {
 
 void removeSequels(const std::filesystem::path& log) {
@@ -13,7 +15,7 @@ void removeSequels(const std::filesystem::path& log) {
     for (; !sequels.empty(); sequels.pop_back()) pocolog::removeLog(sequels.back());
 }
 
-Rotation::Rotation(const LoggerConfig& config, pocolog::Writer& log)
+Rotation::Rotation(const LoggerConfig& config, LogFile& log)
     : log_(log), max_size_(config.max_file_size), max_duration_(config.max_file_duration) {}
 
 bool Rotation::due(types::Time now) const {

@@ -1,8 +1,8 @@
 #pragma once
 #include <optional>
 
+#include "components/logger/LogFile.hpp"
 #include "components/logger/LoggerConfig.hpp"
-#include "components/pocolog/Writer.hpp"
 
 namespace insonify::logger {
 
@@ -13,16 +13,16 @@ void removeSequels(const std::filesystem::path& log);
 /** Decides when a log goes on in its next file: x.0.log, x.1.log... */
 class Rotation {
 public:
-    Rotation(const LoggerConfig& config, pocolog::Writer& log);
+    Rotation(const LoggerConfig& config, LogFile& log);
 
     /** Goes on in the next file, if this one is full or old enough, before a sample received at `now`. Throws as
-     *  Writer::next. */
+     *  LogFile::next. */
     void before(types::Time now);
 
 private:
     bool due(types::Time now) const;
 
-    pocolog::Writer& log_;
+    LogFile& log_;
     std::optional<double> max_size_, max_duration_;
     std::optional<types::Time> began_;  ///< When the file's first sample was received.
 };

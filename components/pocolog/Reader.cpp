@@ -14,9 +14,16 @@ Reader::Reader(std::filesystem::path path, AtDamage at_damage)
     gaps_ = std::move(found.gaps);
 }
 
+Reader::Reader(std::filesystem::path path, std::unique_ptr<Source> source)
+    : path_(std::move(path)),
+      source_(std::move(source)),
+      streams_(std::move(source_->streams)),
+      samples_(std::move(source_->samples)),
+      gaps_(std::move(source_->gaps)) {}
+
 Reader::~Reader() = default;
 
-uint64_t Reader::bytes() const { return file_->size(); }
+uint64_t Reader::bytes() const { return source_ ? source_->bytes : file_->size(); }
 
 std::string Reader::fault() const {
     return gaps_.empty() ? "" : gaps_.front().what + " at byte " + std::to_string(gaps_.front().from);
@@ -35,6 +42,12 @@ size_t Reader::indexOf(const std::string& name) const {
 }
 
 std::span<const char> Reader::bytesOf(const SampleRef& at) {
+    if (source_) try {
+            source_->read(at, buffer_);
+            return buffer_;
+        } catch (const std::runtime_error& error) {
+            failSample(at, error.what());
+        }
     buffer_.resize(at.size);
     if (!file_->read(at.position, buffer_.data(), at.size)) failSample(at, "cannot be read any more");
     if (!at.compressed) return buffer_;

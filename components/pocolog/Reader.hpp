@@ -37,6 +37,7 @@ struct SampleRef {
     uint64_t position = 0;  ///< Of its bytes in the file [B].
     uint32_t size = 0;      ///< Of its bytes in the file [B].
     bool compressed = false;
+    uint32_t offset = 0;  ///< In what is compressed there, where many samples are so together [B].
 };
 
 /** A part of a file that is no log. */
@@ -51,6 +52,19 @@ enum class AtDamage { Stop, Skip };
 
 class BlockFile;
 
+/** A log in another format, read as if it were a pocolog file. */
+struct Source {
+    virtual ~Source() = default;
+    /** Fills `to` with the bytes of one sample as typelib marshals them. Throws std::runtime_error where the file holds
+     *  no such sample. */
+    virtual void read(const SampleRef& at, std::vector<char>& to) = 0;
+
+    uint64_t bytes = 0;  ///< Size of the file [B].
+    std::vector<Stream> streams;
+    std::vector<SampleRef> samples;
+    std::vector<Gap> gaps;
+};
+
 /** Reads a pocolog v2 file, ours or Rock's: an index in memory, samples from the file when asked for.
  *
  *      Reader log("harbour.0.log");
@@ -61,6 +75,7 @@ class BlockFile;
 class Reader {
 public:
     explicit Reader(std::filesystem::path path, AtDamage at_damage = AtDamage::Stop);
+    Reader(std::filesystem::path path, std::unique_ptr<Source> source);
     ~Reader();
     Reader(const Reader&) = delete;
     Reader& operator=(const Reader&) = delete;
@@ -110,7 +125,8 @@ private:
     [[noreturn]] void failType(const SampleRef& at, const std::string& wanted) const;
 
     std::filesystem::path path_;
-    std::unique_ptr<BlockFile> file_;
+    std::unique_ptr<BlockFile> file_;  ///< Or:
+    std::unique_ptr<Source> source_;
     std::vector<Stream> streams_;
     std::vector<SampleRef> samples_;
     std::vector<Gap> gaps_;

@@ -1,25 +1,12 @@
 #include "components/pocolog/Writer.hpp"
 
-#include <fcntl.h>
-#include <sys/file.h>
-#include <sys/stat.h>
-#include <unistd.h>
-
 #include <algorithm>
-#include <cerrno>
 #include <system_error>
-
-#include "types/ConfigError.hpp"
 
 namespace insonify::pocolog {
 namespace {
 
 constexpr size_t flush_size = 1 << 20;  // [B]
-
-std::string reason(int error_number) { return std::generic_category().message(error_number); }
-
-/** Whether another open file holds the log; takes hold of it if not. */
-bool isTaken(int file) { return flock(file, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK; }
 
 /** Not before `earliest`, and within what the format can hold. */
 types::Time logTime(types::Time time, types::Time earliest) {
@@ -33,36 +20,15 @@ void split(types::Time time, uint32_t& s, uint32_t& us) {
 
 }  // namespace
 
-bool removeLog(const std::filesystem::path& path) {
-    const int file = ::open(path.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC);
-    if (file < 0) return false;
-    const bool taken = isTaken(file);
-    std::error_code failed;
-    const bool removed = !taken && std::filesystem::remove(path, failed);
-    if (removed) std::filesystem::remove(indexPath(path), failed);
-    ::close(file);
-    if (taken) throw types::ConfigError(path, "", "the log cannot be removed: another logger writes it");
-    return removed;
-}
-
 Writer::Writer(std::filesystem::path path) : path_(std::move(path)) { open(); }
 
 void Writer::open() {
-    file_ = ::open(path_.c_str(), O_WRONLY | O_CREAT | O_CLOEXEC, 0644);
-    if (file_ < 0) throw types::ConfigError(path_, "", "the log cannot be written: " + reason(errno));
-    const bool taken = isTaken(file_);
-    struct stat status {};
-    const bool is_file = fstat(file_, &status) == 0 && S_ISREG(status.st_mode);
-    if (taken || (is_file && ftruncate(file_, 0) != 0)) {
-        const std::string why = taken ? "another logger writes it" : reason(errno);
-        ::close(std::exchange(file_, -1));
-        throw types::ConfigError(path_, "", "the log cannot be written: " + why);
-    }
+    file_.emplace(path_);
+    flushed_ = 0;
     std::error_code none_there;
     std::filesystem::remove(indexPath(path_), none_there);
     Prologue prologue;
     std::copy(magic.begin(), magic.end(), prologue.magic_bytes.begin());
-    flushed_ = 0;
     put(&prologue, sizeof prologue);
     for (Stream& stream : streams_) stream.index = {.declaration = size() + stream.declaration};
     put(declarations_.data(), declarations_.size());
@@ -116,7 +82,7 @@ void Writer::write(size_t stream, types::Time received, types::Time time, std::s
 }
 
 size_t Writer::beginSample() {
-    if (file_ < 0) throw std::runtime_error(path_.string() + ": the log is closed");
+    if (!isOpen()) throw std::runtime_error(path_.string() + ": the log is closed");
     const size_t start = buffer_.size();
     buffer_.resize(start + sizeof(BlockHeader) + data_header_size);
     return start;
@@ -153,36 +119,18 @@ void Writer::put(const void* data, size_t size) {
     buffer_.insert(buffer_.end(), first, first + size);
 }
 
-void Writer::writeOut(const char* data, size_t size) {
-    while (size > 0) {
-        const ssize_t written = ::write(file_, data, size);
-        if (written < 0 && errno == EINTR) continue;
-        if (written < 0) fail(errno);
-        data += written;
-        size -= static_cast<size_t>(written);
-    }
-}
-
 void Writer::flush() {
-    if (file_ < 0) return;
-    writeOut(buffer_.data(), buffer_.size());
-    flushed_ += buffer_.size();
+    if (!isOpen()) return;
+    file_->append(buffer_.data(), buffer_.size());
+    flushed_ = file_->size();
     unflushed_ = 0;
     buffer_.clear();
 }
 
-void Writer::fail(int error_number) {
-    // Half a block at the end would stop Rock's Ruby reader: back to the last whole one. A device cannot be cut.
-    [[maybe_unused]] const int cut = ftruncate(file_, static_cast<off_t>(flushed_));
-    ::close(std::exchange(file_, -1));
-    throw std::runtime_error(path_.string() + ": the log cannot be written: " + reason(error_number));
-}
-
 void Writer::close() {
-    if (file_ < 0) return;
+    if (!isOpen()) return;
     flush();
-    if (::close(std::exchange(file_, -1)) != 0)
-        throw std::runtime_error(path_.string() + ": the log cannot be written: " + reason(errno));
+    file_->close();
     std::vector<StreamIndex> index;
     for (Stream& stream : streams_) index.push_back(std::move(stream.index));
     writeIndex(path_, index);

@@ -1,11 +1,13 @@
 #pragma once
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "components/pocolog/Block.hpp"
 #include "components/pocolog/Index.hpp"
 #include "components/pocolog/Metadata.hpp"
+#include "components/pocolog/OutputFile.hpp"
 #include "components/pocolog/SampleTypes.hpp"
 #include "components/pocolog/Wire.hpp"
 
@@ -74,23 +76,18 @@ private:
 
     static Metadata standardMetadata(const std::string& name, const std::string& cxx_type);
     void open();
+    bool isOpen() const { return file_ && file_->isOpen(); }  ///< Not after a failure.
     size_t beginSample();
     void endSample(size_t stream, size_t start, types::Time received, types::Time time);
     void put(const void* data, size_t size);
-    void writeOut(const char* data, size_t size);
-    [[noreturn]] void fail(int error_number);
 
     std::filesystem::path path_;
-    int file_ = -1;
+    std::optional<OutputFile> file_;
     std::vector<char> buffer_;  ///< Whole blocks that are not in the file yet.
     uint64_t flushed_ = 0;      ///< Size of the file [B].
     uint64_t taken_ = 0, unflushed_ = 0;
     std::vector<char> declarations_;  ///< The blocks that declare all streams, for the next file.
     std::vector<Stream> streams_;
 };
-
-/** Removes a log and its index; false: it is not there, or cannot be. Throws ConfigError when a Writer, of this process
- *  or not, has it open. */
-bool removeLog(const std::filesystem::path& path);
 
 }  // namespace insonify::pocolog

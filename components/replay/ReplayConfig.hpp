@@ -14,7 +14,7 @@ struct ReplayConfig {
     template <class Self, class V>
     static void describe(Self& self, V& visit) {
         using types::Field;
-        visit(Field{"file", "", "pocolog file, relative to the deployment"}, self.file);
+        visit(Field{"file", "", "pocolog or MCAP file, relative to the deployment"}, self.file);
         visit(Field{"pace", "1",
                     "recorded seconds per second of the wall clock; 0: one instant of the log each cycle; without "
                     "effect in lockstep, where simulated time follows the log",

@@ -6,6 +6,7 @@
 
 #include "components/framework/Activity.hpp"
 #include "components/framework/SamplePool.hpp"
+#include "components/mcap/LogSource.hpp"
 #include "components/pocolog/SampleTypes.hpp"
 
 namespace insonify::replay {
@@ -61,7 +62,7 @@ ReplayTask::~ReplayTask() = default;
 
 void ReplayTask::open() {
     if (log_) return;
-    log_.emplace(inputPath(config->file));
+    log_ = mcap::openLog(inputPath(config->file));
     outlets_.resize(log_->streams().size());
 }
 
@@ -77,8 +78,8 @@ framework::OutputPortBase* ReplayTask::makeOutput(const std::string& stream) {
 
 void ReplayTask::check(types::Problems& problems) const {
     try {
-        const pocolog::Reader reader(inputPath(config->file));
-        const auto& samples = reader.samples();
+        const auto log = mcap::openLog(inputPath(config->file));
+        const auto& samples = log->samples();
         const double span = samples.empty() ? 0 : (samples.back().time - samples.front().time).seconds();
         if (config->from > span)
             problems.push_back(

@@ -32,7 +32,8 @@ std::set<std::string> neighboursOf(const Source& source) {
     if (source.isTaskHalf()) allowed.insert("framework");
     if (folder == "study") allowed.insert({"sonar", "scene"});
     if (folder == "sonar") allowed.insert({"gpu", "shaders"});
-    if (folder == "logger" || folder == "replay") allowed.insert("pocolog");
+    if (folder == "logger" || folder == "replay") allowed.insert({"pocolog", "mcap"});
+    if (folder == "mcap") allowed.insert({"pocolog", "ros"});
     return allowed;
 }
 
@@ -68,7 +69,8 @@ TEST(IncludeRuleTest, EveryThirdPartyPackageHasOneHome) {
         {"epoxy/", "gpu"},        {"yaml-cpp/", "framework"},
         {"CLI/", "deployer"},     {"nlohmann/", "deployer"},
         {"embree3/", "study"},    {"sdf/", "scene"},
-        {"assimp/", "scene"},
+        {"assimp/", "scene"},     {"lz4frame.h", "mcap"},
+        {"zstd.h", "mcap"},
     };
     for (const Source& source : ourSources())
         for (const Include& include : includesOf(source))
@@ -88,7 +90,9 @@ TEST(IncludeRuleTest, TheRuleRefusesWhatItShould) {
     EXPECT_FALSE(allowed("components/study/ErrorStudy.cpp", "components/sonar/SonarTask.hpp"));
     EXPECT_TRUE(allowed("components/study/ErrorStudy.cpp", "components/sonar/SonarRenderer.hpp"));
     EXPECT_TRUE(allowed("components/noise/NoiseTask.cpp", "components/noise/Speckle.hpp"));
+    EXPECT_FALSE(allowed("components/ros/Cdr.hpp", "components/mcap/Writer.hpp"));
     EXPECT_TRUE(allowed("components/logger/LoggerTask.cpp", "components/pocolog/Writer.hpp"));
+    EXPECT_TRUE(allowed("components/mcap/SampleWriter.cpp", "components/ros/Cdr.hpp"));
     EXPECT_TRUE(allowed("components/sonar/SonarRenderer.cpp", "components/gpu/Context.hpp"));
     EXPECT_TRUE(allowed("components/deployer/main.cpp", "components/noise/registerTasks.hpp"));
 }

@@ -1,0 +1,162 @@
+// The logger with a file that ends in .mcap.
+#include <gmock/gmock.h>
+#include <sys/resource.h>
+
+#include <csignal>
+
+#include "components/logger/LoggerTask.hpp"
+#include "components/mcap/LogSource.hpp"
+#include "tests/support/Allocations.hpp"
+#include "tests/support/Folder.hpp"
+#include "tests/support/Ports.hpp"
+
+namespace insonify::logger {
+namespace {
+
+using framework::ConnPolicy;
+
+types::SonarPtr pingAt(int64_t time) {
+    types::Sonar ping;
+    ping.time = {time};
+    ping.bin_duration = {100};
+    ping.resize(200, 8);
+    ping.bins.assign(1600, 0.5f);
+    return std::make_shared<const types::Sonar>(ping);
+}
+
+class McapLogTest : public testing::Test {
+protected:
+    McapLogTest() {
+        config.file = "x.0.mcap";
+        task.environment().output_folder = folder.path();
+        task.environment().now = [] { return types::Time{5'000'000}; };
+        sonar.port.connectTo(*task.makeInput("ping", sonar.port), ConnPolicy::buffer(8));
+        vehicle.port.connectTo(*task.makeInput("pose", vehicle.port), ConnPolicy::buffer(8));
+    }
+    void start() {
+        task.config.set(config);
+        ASSERT_TRUE(task.configure());
+        ASSERT_TRUE(task.start());
+    }
+    void cycle(const types::SonarPtr& ping) {
+        sonar.port.write(ping);
+        vehicle.port.write(types::Pose{});
+        task.update();
+    }
+    void finish() {
+        ASSERT_TRUE(task.stop());
+        ASSERT_TRUE(task.cleanup());
+    }
+
+    const Folder folder;
+    LoggerConfig config;
+    LoggerTask task{"log"};
+    test::Writer<types::SonarPtr> sonar{"sonar"};
+    test::Writer<types::Pose> vehicle{"vehicle"};
+};
+
+TEST_F(McapLogTest, TheSameStreamsAndMetadataAsInAPocologFile) {
+    task.environment().deployment_text = "tasks: {}\n";
+    task.environment().seed = 9;
+    start();
+    cycle(pingAt(3'000'000));
+    cycle(pingAt(4'000'000));
+    finish();
+    EXPECT_FALSE(mcap::checkLog(folder / "x.0.mcap").wrong);
+    const auto log = mcap::openLog(folder / "x.0.mcap");
+    ASSERT_EQ(log->samples().size(), 4u);
+    const pocolog::Stream* const stream = log->find("sonar.port");
+    ASSERT_NE(stream, nullptr);
+    EXPECT_TRUE(stream->holds<types::Sonar>());
+    EXPECT_EQ(stream->metadata.at("insonify_deployment"), "tasks: {}\n");
+    EXPECT_EQ(stream->metadata.at("insonify_seed"), "9");
+    EXPECT_EQ(log->samples()[0].time.microseconds, 3'000'000);
+    EXPECT_EQ(log->samples()[0].received.microseconds, 5'000'000);
+    log->forEach<types::Sonar>("sonar.port", [&](const types::Sonar& ping, const pocolog::SampleRef&) {
+        EXPECT_EQ(ping.bins, std::vector<float>(1600, 0.5f));
+    });
+}
+
+TEST_F(McapLogTest, TheTasksThreadAllocatesNothingOnceItRuns) {
+    start();
+    const auto ping = pingAt(1);
+    cycle(ping);
+    EXPECT_THAT(test::allocationsOn(task,
+                                    [&] {
+                                        for (int i = 0; i < 200; ++i) cycle(ping);
+                                    }),
+                testing::IsEmpty());
+    finish();
+    EXPECT_EQ(mcap::openLog(folder / "x.0.mcap")->samples().size(), 402u);
+}
+
+TEST_F(McapLogTest, ALogGoesOnInTheNextFileWithoutLoss) {
+    config.max_file_size = 1e6;
+    start();
+    for (int i = 1; i <= 400; ++i) cycle(pingAt(i));
+    finish();
+    size_t samples = 0;
+    for (const char* file : {"x.0.mcap", "x.1.mcap", "x.2.mcap"}) {
+        EXPECT_FALSE(mcap::checkLog(folder / file).wrong) << file;
+        samples += mcap::openLog(folder / file)->samples().size();
+    }
+    EXPECT_EQ(samples, 800u);
+}
+
+/** Logs texts into a file that may not exceed 50000 bytes; exits 0 when the task tells of samples that it has lost. */
+[[noreturn]] void fillLimitedDisk(const std::filesystem::path& folder) {
+    const rlimit limit{50000, 50000};
+    setrlimit(RLIMIT_FSIZE, &limit);
+    std::signal(SIGXFSZ, SIG_IGN);
+    LoggerTask task("log");
+    task.environment().output_folder = folder;
+    LoggerConfig config;
+    config.file = "x.0.mcap";
+    config.flush_period = 0.001;
+    task.config.set(config);
+    test::Writer<std::string> source;
+    source.port.connectTo(*task.makeInput("in", source.port), ConnPolicy::buffer(10));
+    task.configure();
+    task.start();
+    for (int i = 0; i < 5000 && task.state() == framework::TaskState::Running; ++i) {
+        source.port.write(std::string(1000, 'x'));
+        task.update();
+        std::this_thread::sleep_for(std::chrono::microseconds(200));
+    }
+    const bool told = task.lastError().find("did not reach it") != std::string::npos;
+    std::_Exit(task.state() == framework::TaskState::Exception && told ? 0 : 1);
+}
+
+TEST(McapLogFailureTest, WhatWasFlushedBeforeTheDiskWasFullIsKeptWhole) {
+    const Folder folder;
+    EXPECT_EXIT(fillLimitedDisk(folder.path()), testing::ExitedWithCode(0), "");
+    const auto log = mcap::openLog(folder / "x.0.mcap");
+    EXPECT_FALSE(log->complete());
+    EXPECT_GT(log->samples().size(), 5u);
+    log->forEach<std::string>(
+        "writer.port", [](const std::string& text, const pocolog::SampleRef&) { EXPECT_EQ(text.size(), 1000u); });
+}
+
+TEST_F(McapLogTest, PingsMayBecomeEightBits) {
+    config.mcap.dtype = ros::ImageType::Uint8;
+    start();
+    cycle(pingAt(1));
+    finish();
+    mcap::openLog(folder / "x.0.mcap")
+        ->forEach<types::Sonar>("sonar.port", [&](const types::Sonar& ping, const pocolog::SampleRef&) {
+            EXPECT_EQ(ping.bins, std::vector<float>(1600, 1));
+        });
+}
+
+TEST_F(McapLogTest, TheNameOfTheFileIsJudged) {
+    for (const auto& [file, right] :
+         {std::pair{"x.mcap", true}, {"a/x.0.mcap", true}, {".mcap", false}, {"x.bag", false}}) {
+        config.file = file;
+        types::Problems problems;
+        config.check(problems);
+        EXPECT_EQ(problems.empty(), right) << file;
+    }
+}
+
+}  // namespace
+}  // namespace insonify::logger
