@@ -78,8 +78,11 @@ void TaskContext::refreshRecord() {
     types::TaskRecord record{name_, "", {}, ""};
     for (const PropertiesBase* properties : properties_) record.properties.merge(properties->values());
     if (const types::Plan* plan = this->plan()) record.plan = flowYaml(*plan);
-    std::lock_guard lock(record_mutex_);
-    record_ = std::move(record);
+    {
+        std::lock_guard lock(record_mutex_);
+        record_ = std::move(record);
+    }
+    ++*environment_->record_changes;
 }
 
 void TaskContext::setState(TaskState state) {

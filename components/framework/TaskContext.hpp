@@ -45,6 +45,8 @@ struct Environment {
     /** The records of all tasks, in file order, as each has told its own last: waits for no task. Empty for a task
      *  outside of a deployment. */
     std::function<std::vector<types::TaskRecord>()> records;
+    /** How often tasks have told their records anew: so that nobody asks for them in vain. */
+    std::shared_ptr<std::atomic<uint64_t>> record_changes = std::make_shared<std::atomic<uint64_t>>(0);
 };
 
 class Activity;

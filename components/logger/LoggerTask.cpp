@@ -111,13 +111,22 @@ bool LoggerTask::configureHook() {
 }
 
 bool LoggerTask::startHook() {
-    if (properties_) properties_->record(environment().records(), now(), runMetadata());
+    recorded_changes_ = 0;
+    recordProperties();
     thread_.emplace(*log_, *rotation_, static_cast<size_t>(config->queue), config->flush_period);
     return true;
 }
 
+void LoggerTask::recordProperties() {
+    const uint64_t changes = *environment().record_changes;
+    if (!properties_ || changes == recorded_changes_) return;
+    recorded_changes_ = changes;
+    properties_->record(environment().records(), now(), runMetadata());
+}
+
 void LoggerTask::updateHook() {
     const types::Time received = now();
+    recordProperties();
     for (const auto& inlet : inlets_) {
         if (!inlet->number && inlet->port().hasNew()) {
             thread_->declare(inlet->declaration(streamMetadata()));
@@ -133,6 +142,7 @@ void LoggerTask::stopHook() {
         ~End() { thread.reset(); }
     } end{thread_};
     if (thread_) thread_->finish();
+    recordProperties();
 }
 
 void LoggerTask::cleanupHook() {

@@ -63,6 +63,7 @@ private:
     std::filesystem::path makePath(const std::string& file) const;
     /** Whether no other logger of the deployment writes the same property file and comes first. */
     bool logsProperties();
+    void recordProperties();  ///< What of all tasks' properties has changed since the last time.
     pocolog::Metadata runMetadata();
     pocolog::Metadata streamMetadata();  ///< With the plans of the moment.
 
@@ -70,6 +71,7 @@ private:
     std::unique_ptr<LogFile> log_;
     std::optional<Rotation> rotation_;
     std::optional<PropertyLog> properties_;
+    uint64_t recorded_changes_ = 0;  ///< Of the tasks' records, with the last record of properties.
     std::optional<LogThread> thread_;
     size_t declared_ = 0;  ///< Streams in the log.
 };

@@ -94,6 +94,43 @@ connections:
     EXPECT_NE(properties.find("log.file"), nullptr);
 }
 
+/** Sets its range anew with its third ping. */
+struct ChangingTask : PlannerTask {
+    using PlannerTask::PlannerTask;
+    bool propertiesHook() override { return true; }
+    void updateHook() override {
+        if (++pings == 3) static_cast<framework::PropertiesBase&>(config).set("range", "12");
+        PlannerTask::updateHook();
+    }
+    int pings = 0;
+};
+
+TEST(LoggedRunTest, APropertyThatChangesDuringTheRunHasASampleForEachChange) {
+    const Folder folder;
+    framework::Registry registry;
+    logger::registerTasks(registry);
+    registry.add<ChangingTask>("test::ChangingTask", "a sonar");
+    framework::Deployment deployment(framework::DeploymentSpec::parse(R"(
+tasks:
+  sonar: {type: test::ChangingTask, activity: {period: 0.5}}
+  log: {type: logger::LoggerTask, properties: {file: x.0.log}}
+connections:
+  - {from: sonar.ping, to: log.ping, policy: {type: buffer, size: 8}}
+)",
+                                                                      (folder / "x.yml").string()),
+                                     registry, folder.path());
+    deployment.configure();
+    const std::atomic<bool> never{false};
+    EXPECT_FALSE(deployment.run({.pings = 5}, never).failed());
+    EXPECT_THAT(deployment.cleanup(), testing::IsEmpty());
+    std::vector<std::pair<double, double>> ranges;
+    pocolog::Reader(folder / "properties.0.log")
+        .forEach<double>("sonar.range", [&](double value, const pocolog::SampleRef& at) {
+            ranges.emplace_back(at.time.seconds(), value);
+        });
+    EXPECT_THAT(ranges, testing::ElementsAre(testing::Pair(1, 50), testing::Pair(2, 12)));
+}
+
 TEST(LoggedRunTest, InRealtimeLoggersWaitNeitherForEachOtherNorForTheHookOfATask) {
     const Folder folder;
     framework::Registry registry;
