@@ -1,5 +1,6 @@
 #include "components/mcap/Contents.hpp"
 
+#include <algorithm>
 #include <limits>
 
 #include "types/ConfigError.hpp"
@@ -231,7 +232,8 @@ void File::read(const MessageRef& at, std::vector<char>& to) {
         recordsOf(info, chunk.content.subspan(info.records_at - chunk.start - record_header_size), records_);
         unpacked_ = at.position;
     }
-    std::memcpy(to.data(), records_.data() + at.offset, at.size);
+    if (at.offset + uint64_t{at.size} > records_.size()) throw Fault(at.position, "the chunk has changed");
+    std::copy_n(records_.begin() + at.offset, at.size, to.begin());
 }
 
 }  // namespace insonify::mcap

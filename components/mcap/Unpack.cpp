@@ -33,6 +33,7 @@ size_t unlz4(std::span<const char> from, std::span<char> to) {
 }  // namespace
 
 uint32_t checksum(std::span<const char> bytes, uint32_t before) {
+    if (bytes.empty()) return before;  // zlib would begin anew
     return static_cast<uint32_t>(crc32_z(before, reinterpret_cast<const Bytef*>(bytes.data()), bytes.size()));
 }
 
