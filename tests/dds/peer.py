@@ -90,6 +90,7 @@ def odometry(topic, count, hertz, fault=""):
     ready()
     while not writer.get_matched_subscriptions() or (short and not short.get_matched_subscriptions()):
         time.sleep(0.01)
+    time.sleep(0.5)  # the other side may not know us yet
     for i in range(int(count)):
         sample = messages.Odometry()
         now = time.time()
