@@ -1,5 +1,8 @@
 #include "components/deployer/Tasks.hpp"
 
+#ifdef INSONIFY_DDS
+#include "components/dds/registerTasks.hpp"
+#endif
 #include "components/logger/registerTasks.hpp"
 #include "components/noise/registerTasks.hpp"
 #include "components/output/registerTasks.hpp"
@@ -19,6 +22,9 @@ framework::Registry builtInTasks() {
     output::registerTasks(registry);
     logger::registerTasks(registry);
     replay::registerTasks(registry);
+#ifdef INSONIFY_DDS
+    dds::registerTasks(registry);
+#endif
     return registry;
 }
 

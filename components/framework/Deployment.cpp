@@ -48,6 +48,7 @@ Deployment::Deployment(DeploymentSpec spec, Registry& registry, std::filesystem:
     environment_->lockstep = spec_.lockstep;
     environment_->deployment_text = spec_.text;
     environment_->seed = seed;
+    environment_->warn = [this](const std::string& text) { warn(text); };
     start_ = types::Time::fromSeconds(spec_.start_time);
     setClock();
     Wiring(*this, registry).make(seed);

@@ -97,6 +97,10 @@ std::filesystem::path TaskContext::outputPath(const std::string& file) const {
     return environment_->output_folder / file;
 }
 
+void TaskContext::warn(const std::string& text) {
+    if (environment_->warn) environment_->warn(name_ + ": " + text);
+}
+
 void TaskContext::recordStage(const char* name, double seconds) {
     auto stage = stages_.find(std::string_view(name));
     if (stage == stages_.end()) stage = stages_.emplace(name, Statistics{}).first;

@@ -39,9 +39,10 @@ struct Environment {
     std::function<types::Time()> now = wallClock;  ///< Simulated or log time instead, where the deployment says so.
     std::function<types::Time()> start_time;       ///< Of the run, on the same clock.
     bool lockstep = false;
-    bool wall_clock = true;       ///< In realtime: no task has put a clock of its own in its place.
-    std::string deployment_text;  ///< The YAML as read, for the log's metadata.
-    uint64_t seed = 0;            ///< Of the run (`--seed`), 0 when not given.
+    bool wall_clock = true;                        ///< In realtime: no task has put a clock of its own in its place.
+    std::string deployment_text;                   ///< The YAML as read, for the log's metadata.
+    uint64_t seed = 0;                             ///< Of the run (`--seed`), 0 when not given.
+    std::function<void(const std::string&)> warn;  ///< Tells the user at once; empty outside of a deployment.
     /** The records of all tasks, in file order, as each has told its own last: waits for no task. Empty for a task
      *  outside of a deployment. */
     std::function<std::vector<types::TaskRecord>()> records;
@@ -170,6 +171,8 @@ protected:
      *  The default errorHook does nothing; a task that heals itself calls recover() from it. Only while running: a hook
      *  of another transition keeps the text for its refusal, and throws where it cannot refuse. */
     void error(const std::string& why);
+    /** Tells the user now, "name: text", and in the run's summary; from any thread. For what recurs, seldom. */
+    void warn(const std::string& text);
     /** Time of one named stage of this cycle [s]; names must be string literals met in the first cycle. */
     void recordStage(const char* name, double seconds);
 

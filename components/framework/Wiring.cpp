@@ -200,7 +200,7 @@ void Wiring::checkActivity(TaskContext& task, const TaskSpec& spec) {
     const auto meant = [&](const ConnectionSpec& c) { return splitPort(c.to).first == task.name(); };
     const auto& inputs = task.inputs();
     const auto& connections = deployment_.spec_.connections;
-    if (!child(place, "period").IsDefined() && !spec.activity.periodic() && !task.nextTime() &&
+    if (!child(place, "period").IsDefined() && !spec.activity.periodic() && !task.nextTime() && task.wakeAfter() <= 0 &&
         std::none_of(inputs.begin(), inputs.end(), runs) && std::none_of(connections.begin(), connections.end(), meant))
         fault(spec.place, spec.path(), "has nothing that would run it; give it activity: {period: seconds}");
     task.activity().configure(spec.activity);

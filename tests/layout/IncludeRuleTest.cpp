@@ -33,6 +33,7 @@ std::set<std::string> neighboursOf(const Source& source) {
     if (folder == "study") allowed.insert({"sonar", "scene"});
     if (folder == "sonar") allowed.insert({"gpu", "shaders"});
     if (folder == "logger" || folder == "replay") allowed.insert({"pocolog", "mcap"});
+    if (folder == "dds") allowed.insert("ros");
     if (folder == "mcap") allowed.insert({"pocolog", "ros"});
     return allowed;
 }
@@ -70,7 +71,7 @@ TEST(IncludeRuleTest, EveryThirdPartyPackageHasOneHome) {
         {"CLI/", "deployer"},     {"nlohmann/", "deployer"},
         {"embree3/", "study"},    {"sdf/", "scene"},
         {"assimp/", "scene"},     {"lz4frame.h", "mcap"},
-        {"zstd.h", "mcap"},
+        {"zstd.h", "mcap"},       {"dds/", "dds"},
     };
     for (const Source& source : ourSources())
         for (const Include& include : includesOf(source))
@@ -93,6 +94,8 @@ TEST(IncludeRuleTest, TheRuleRefusesWhatItShould) {
     EXPECT_FALSE(allowed("components/ros/Cdr.hpp", "components/mcap/Writer.hpp"));
     EXPECT_TRUE(allowed("components/logger/LoggerTask.cpp", "components/pocolog/Writer.hpp"));
     EXPECT_TRUE(allowed("components/mcap/SampleWriter.cpp", "components/ros/Cdr.hpp"));
+    EXPECT_FALSE(allowed("components/dds/Node.cpp", "components/framework/Port.hpp"));
+    EXPECT_TRUE(allowed("components/dds/Node.cpp", "components/ros/Cdr.hpp"));
     EXPECT_TRUE(allowed("components/sonar/SonarRenderer.cpp", "components/gpu/Context.hpp"));
     EXPECT_TRUE(allowed("components/deployer/main.cpp", "components/noise/registerTasks.hpp"));
 }

@@ -1,0 +1,60 @@
+#pragma once
+// What ROS 2 nodes tell each other of themselves: rmw_dds_common, field for field. See ros/GeometryMessages.hpp.
+#include <array>
+#include <string>
+#include <vector>
+
+#include "types/Describe.hpp"
+
+namespace insonify::dds {
+
+using types::Field;
+
+/** 16 bytes from ROS 2 Iron on, 24 in Humble and before. */
+template <size_t size>
+struct Gid {
+    static constexpr const char* type_name = "rmw_dds_common/msg/Gid";
+    static constexpr const char* type_hash = "";
+    std::array<uint8_t, size> data{};
+
+    friend bool operator==(const Gid&, const Gid&) = default;
+    template <class Self, class V>
+    static void describe(Self& self, V& visit) {
+        visit(Field{"data"}, self.data);
+    }
+};
+
+template <size_t gid_size>
+struct NodeEntitiesInfo {
+    static constexpr const char* type_name = "rmw_dds_common/msg/NodeEntitiesInfo";
+    static constexpr const char* type_hash = "";
+    std::string node_namespace, node_name;
+    std::vector<Gid<gid_size>> reader_gid_seq, writer_gid_seq;
+
+    friend bool operator==(const NodeEntitiesInfo&, const NodeEntitiesInfo&) = default;
+    template <class Self, class V>
+    static void describe(Self& self, V& visit) {
+        visit(Field{"node_namespace"}, self.node_namespace);
+        visit(Field{"node_name"}, self.node_name);
+        visit(Field{"reader_gid_seq"}, self.reader_gid_seq);
+        visit(Field{"writer_gid_seq"}, self.writer_gid_seq);
+    }
+};
+
+template <size_t gid_size>
+struct ParticipantEntitiesInfo {
+    static constexpr const char* type_name = "rmw_dds_common/msg/ParticipantEntitiesInfo";
+    static constexpr const char* type_hash =
+        gid_size == 16 ? "RIHS01_91a0593bacdcc50ea9bdcf849a938b128412cc1ea821245c663bcd26f83c295e" : "";
+    Gid<gid_size> gid;
+    std::vector<NodeEntitiesInfo<gid_size>> node_entities_info_seq;
+
+    friend bool operator==(const ParticipantEntitiesInfo&, const ParticipantEntitiesInfo&) = default;
+    template <class Self, class V>
+    static void describe(Self& self, V& visit) {
+        visit(Field{"gid"}, self.gid);
+        visit(Field{"node_entities_info_seq"}, self.node_entities_info_seq);
+    }
+};
+
+}  // namespace insonify::dds

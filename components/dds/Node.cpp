@@ -1,0 +1,114 @@
+#include "components/dds/Node.hpp"
+
+#include <dds/dds.h>
+#include <dds/ddsi/ddsi_sertype.h>
+
+#include <algorithm>
+#include <cctype>
+#include <cstring>
+
+#include "components/dds/DiscoveryMessages.hpp"
+#include "components/dds/RawType.hpp"
+#include "components/dds/Writer.hpp"
+#include "components/ros/Cdr.hpp"
+#include "types/ConfigError.hpp"
+
+namespace insonify::dds {
+namespace {
+
+Guid guidOf(int32_t entity) {
+    dds_guid_t found{};
+    dds_get_guid(entity, &found);
+    Guid guid{};
+    static_assert(sizeof found == sizeof guid);
+    std::memcpy(guid.data(), &found, sizeof guid);
+    return guid;
+}
+
+template <size_t size>
+Gid<size> gidOf(const Guid& guid) {
+    Gid<size> gid;
+    std::copy(guid.begin(), guid.end(), gid.data.begin());
+    return gid;
+}
+
+template <size_t size>
+std::vector<Gid<size>> gidsOf(const std::vector<Guid>& guids) {
+    std::vector<Gid<size>> gids;
+    for (const Guid& guid : guids) gids.push_back(gidOf<size>(guid));
+    return gids;
+}
+
+bool isWord(std::string_view word) {
+    const auto fits = [](unsigned char c) { return std::isalnum(c) || c == '_'; };
+    return !word.empty() && !std::isdigit(static_cast<unsigned char>(word[0])) && std::ranges::all_of(word, fits);
+}
+
+}  // namespace
+
+std::string ddsTopic(const std::string& ros_topic) {
+    return ros_topic.starts_with('/') ? "rt" + ros_topic : "rt/" + ros_topic;
+}
+
+std::string ddsType(std::string_view ros_type) {
+    const size_t end = ros_type.find('/'), begin = ros_type.rfind('/') + 1;
+    return std::string(ros_type.substr(0, end)) + "::msg::dds_::" + std::string(ros_type.substr(begin)) + "_";
+}
+
+std::string faultOfTopic(const std::string& name) {
+    std::string_view rest(name);
+    if (rest.starts_with('/')) rest.remove_prefix(1);
+    for (size_t slash = rest.find('/'); slash != rest.npos && isWord(rest.substr(0, slash)); slash = rest.find('/'))
+        rest.remove_prefix(slash + 1);
+    if (isWord(rest)) return "";
+    return "is \"" + name + "\"; must be words of letters, digits and _, none beginning with a digit, as /auv/sonar";
+}
+
+std::string faultOfNode(const std::string& name) {
+    if (isWord(name) && name.size() <= 255) return "";
+    return "is \"" + name + "\"; must be one word of letters, digits and _, not beginning with a digit";
+}
+
+Node::Node(uint32_t domain, std::string name, size_t gid_size)
+    : name_(std::move(name)), gid_size_(gid_size), domain_(Domain::join(domain)) {
+    dds_qos_t* qos = dds_create_qos();
+    constexpr std::string_view enclave = "enclave=/;";  // without it ROS 2 takes this for no node of its own
+    dds_qset_userdata(qos, enclave.data(), enclave.size());
+    const dds_entity_t made = dds_create_participant(domain, qos, nullptr);
+    dds_delete_qos(qos);
+    if (made <= 0)
+        throw types::ConfigError("", "domain",
+                                 "DDS domain " + std::to_string(domain) + " has no room: " + dds_strretcode(made));
+    participant_ = Entity(made);
+}
+
+Node::~Node() = default;
+
+Entity Node::makeTopic(const std::string& dds_topic, const std::string& dds_type) const {
+    ddsi_sertype* type = makeRawType(dds_type);
+    const dds_entity_t topic =
+        dds_create_topic_sertype(participant(), dds_topic.c_str(), &type, nullptr, nullptr, nullptr);
+    if (topic > 0) return Entity(topic);
+    ddsi_sertype_unref(type);
+    throw types::ConfigError("", "topics", "topic " + dds_topic + " cannot be made: " + dds_strretcode(topic));
+}
+
+void Node::addWriter(int32_t writer) { writers_.push_back(guidOf(writer)); }
+void Node::addReader(int32_t reader) { readers_.push_back(guidOf(reader)); }
+
+void Node::announce() { gid_size_ == 16 ? announceWith<16>() : announceWith<24>(); }
+
+template <size_t gid_size>
+void Node::announceWith() {
+    using Info = ParticipantEntitiesInfo<gid_size>;
+    const Quality quality{.reliability = Reliability::Reliable, .depth = 1, .transient_local = true};
+    const Info info{gidOf<gid_size>(guidOf(participant())),
+                    {{"/", name_, gidsOf<gid_size>(readers_), gidsOf<gid_size>(writers_)}}};
+    Bytes bytes;
+    ros::encode(info, bytes);
+    if (!discovery_)
+        discovery_ = std::make_unique<Writer>(*this, "ros_discovery_info", Info::type_name, Info::type_hash, quality);
+    if (!discovery_->write(bytes)) throw std::runtime_error("the node cannot be announced: " + discovery_->failure());
+}
+
+}  // namespace insonify::dds

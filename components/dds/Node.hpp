@@ -1,0 +1,60 @@
+#pragma once
+#include <array>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "components/dds/Domain.hpp"
+
+namespace insonify::dds {
+
+/** As in ROS 2. A best-effort writer is not heard by reliable readers, which ROS 2 makes by default. */
+enum class Reliability { Reliable, BestEffort };
+
+struct Quality {
+    Reliability reliability = Reliability::Reliable;
+    int depth = 5;  ///< Samples that are kept for readers that are behind, or for who takes them.
+    bool transient_local = false;
+};
+
+/** "rt/auv/sonar" of "/auv/sonar" or "auv/sonar". */
+std::string ddsTopic(const std::string& ros_topic);
+/** "sensor_msgs::msg::dds_::Image_" of "sensor_msgs/msg/Image". */
+std::string ddsType(std::string_view ros_type);
+/** What is wrong with a ROS name of a topic or node, or nothing. */
+std::string faultOfTopic(const std::string& name);
+std::string faultOfNode(const std::string& name);
+
+class Writer;
+using Guid = std::array<uint8_t, 16>;
+
+/** A ROS 2 node: a participant of a domain that tells others its name and what it reads and writes. */
+class Node {
+public:
+    /** `gid_size` is 16, or 24 for Humble and before [B]. Throws types::ConfigError where the domain cannot be joined.
+     */
+    Node(uint32_t domain, std::string name, size_t gid_size);
+    ~Node();
+
+    int32_t participant() const { return participant_.handle(); }
+    /** A topic of that DDS name and type; several may be asked for. Throws types::ConfigError. */
+    Entity makeTopic(const std::string& dds_topic, const std::string& dds_type) const;
+
+    void addWriter(int32_t writer);
+    void addReader(int32_t reader);
+    /** Tells the node and what has been added to it on `ros_discovery_info`. */
+    void announce();
+
+private:
+    template <size_t gid_size>
+    void announceWith();
+
+    std::string name_;
+    size_t gid_size_;
+    std::shared_ptr<Domain> domain_;
+    Entity participant_;
+    std::unique_ptr<Writer> discovery_;
+    std::vector<Guid> writers_, readers_;
+};
+
+}  // namespace insonify::dds

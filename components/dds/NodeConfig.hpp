@@ -1,0 +1,46 @@
+#pragma once
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "components/dds/Node.hpp"
+#include "components/ros/Options.hpp"
+#include "types/Describe.hpp"
+
+namespace insonify::dds {
+
+/** How a task stands in the ROS 2 graph. */
+struct NodeConfig {
+    std::string node_name;
+    std::optional<uint32_t> domain;
+    ros::WorldFrame world_frame = ros::WorldFrame::Enu;
+    int gid_size = 16;
+
+    template <class Self, class V>
+    static void describe(Self& self, V& visit) {
+        using types::Field;
+        visit(Field{"domain", "1", "DDS domain; absent: ROS_DOMAIN_ID, or 0", 0, highest_domain}, self.domain);
+        visit(Field{"node_name", "", "name of the ROS 2 node; empty: the task's"}, self.node_name);
+        visit(Field{"world_frame", "",
+                    "axes of poses on the wire: ours (x north, y west, z up), x east, y north, z up, or x north, y "
+                    "east, z down"},
+              self.world_frame);
+        visit(Field{"gid_size", "B", "of identifiers in ros_discovery_info: 16, or 24 for ROS 2 Humble and before", 16,
+                    24},
+              self.gid_size);
+    }
+    void check(types::Problems& problems) const {
+        if (gid_size != 16 && gid_size != 24)
+            problems.push_back({"gid_size", "is " + std::to_string(gid_size) + "; must be 16 or 24"});
+        if (const std::string fault = node_name.empty() ? "" : faultOfNode(node_name); !fault.empty())
+            problems.push_back({"node_name", fault});
+    }
+    std::string nameOr(const std::string& task) const { return node_name.empty() ? task : node_name; }
+};
+
+}  // namespace insonify::dds
+
+template <>
+struct insonify::types::EnumNames<insonify::dds::Reliability> {
+    static constexpr std::string_view names[] = {"reliable", "best_effort"};
+};

@@ -1,0 +1,138 @@
+#include "components/dds/RawType.hpp"
+
+#include <dds/ddsi/ddsi_serdata.h>
+#include <dds/ddsi/ddsi_sertype.h>
+#include <dds/ddsi/q_radmin.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <cstring>
+#include <memory>
+
+namespace insonify::dds {
+namespace {
+
+/** One sample on its way, shared by Cyclone's caches. */
+struct Serdata : ddsi_serdata {
+    Serdata(const ddsi_sertype* of, ddsi_serdata_kind sort, size_t length)
+        : bytes(new char[length + 3]), size(static_cast<uint32_t>(length)) {
+        ddsi_serdata_init(this, of, sort);
+    }
+    std::unique_ptr<char[]> bytes;  ///< Not set to zero beforehand; 3 more than `size`: the wire reads whole words.
+    uint32_t size;
+};
+
+const Serdata& own(const ddsi_serdata* data) { return *static_cast<const Serdata*>(data); }
+
+Serdata* copyOf(const ddsi_sertype* type, ddsi_serdata_kind kind, const char* bytes, size_t size) {
+    auto* data = new Serdata(type, kind, (size + 3) / 4 * 4);  // the wire wants whole words
+    std::memcpy(data->bytes.get(), bytes, size);
+    std::memset(data->bytes.get() + size, 0, data->size - size);
+    return data;
+}
+
+ddsi_serdata* fromFragments(const ddsi_sertype* type, ddsi_serdata_kind kind, const nn_rdata* chain, size_t size) {
+    auto data = std::make_unique<Serdata>(type, kind, size);
+    uint32_t filled = 0;
+    for (; chain; chain = chain->nextfrag) {
+        if (chain->maxp1 <= filled || chain->min > filled || chain->maxp1 > size) continue;
+        const auto* payload = NN_RMSG_PAYLOADOFF(chain->rmsg, NN_RDATA_PAYLOAD_OFF(chain));
+        std::memcpy(data->bytes.get() + filled, payload + (filled - chain->min), chain->maxp1 - filled);
+        filled = chain->maxp1;
+    }
+    return filled == size ? data.release() : nullptr;
+}
+
+ddsi_serdata* fromPieces(const ddsi_sertype* type, ddsi_serdata_kind kind, ddsrt_msg_iovlen_t count,
+                         const ddsrt_iovec_t* pieces, size_t size) {
+    auto* data = new Serdata(type, kind, size);
+    size_t filled = 0;
+    for (ddsrt_msg_iovlen_t i = 0; i < count && filled < size; ++i) {
+        const size_t part = std::min<size_t>(pieces[i].iov_len, size - filled);
+        std::memcpy(data->bytes.get() + filled, pieces[i].iov_base, part);
+        filled += part;
+    }
+    return data;
+}
+
+ddsi_serdata* fromSample(const ddsi_sertype* type, ddsi_serdata_kind kind, const void* sample) {
+    const Bytes& bytes = *static_cast<const Bytes*>(sample);
+    return copyOf(type, kind, bytes.data(), kind == SDK_DATA ? bytes.size() : 0);
+}
+
+bool toSample(const ddsi_serdata* data, void* sample, void**, void*) {
+    static_cast<Bytes*>(sample)->assign(own(data).bytes.get(), own(data).bytes.get() + own(data).size);
+    return true;
+}
+
+void copyOut(const ddsi_serdata* data, size_t offset, size_t size, void* to) {
+    std::memcpy(to, own(data).bytes.get() + offset, size);
+}
+
+ddsi_serdata* refer(const ddsi_serdata* data, size_t offset, size_t size, ddsrt_iovec_t* piece) {
+    piece->iov_base = own(data).bytes.get() + offset;
+    piece->iov_len = size;
+    return ddsi_serdata_ref(data);
+}
+
+// Where there is no key, all samples are of one instance, which has no content.
+ddsi_serdata* untyped(const ddsi_sertype* type) { return copyOf(type, SDK_KEY, nullptr, 0); }
+
+const ddsi_serdata_ops data_operations = {
+    .eqkey = [](const ddsi_serdata*, const ddsi_serdata*) { return true; },
+    .get_size = [](const ddsi_serdata* data) { return own(data).size; },
+    .from_ser = fromFragments,
+    .from_ser_iov = fromPieces,
+    .from_keyhash = [](const ddsi_sertype* type, const ddsi_keyhash*) { return untyped(type); },
+    .from_sample = fromSample,
+    .to_ser = copyOut,
+    .to_ser_ref = refer,
+    .to_ser_unref = [](ddsi_serdata* data, const ddsrt_iovec_t*) { ddsi_serdata_unref(data); },
+    .to_sample = toSample,
+    .to_untyped = [](const ddsi_serdata* data) { return untyped(data->type); },
+    .untyped_to_sample =
+        [](const ddsi_sertype*, const ddsi_serdata*, void* sample, void**, void*) {
+            static_cast<Bytes*>(sample)->clear();
+            return true;
+        },
+    .free = [](ddsi_serdata* data) { delete static_cast<Serdata*>(data); },
+    .print = [](const ddsi_sertype*, const ddsi_serdata*, char* text, size_t size) -> size_t {
+        if (size > 0) text[0] = 0;
+        return 0;
+    },
+    .get_keyhash = [](const ddsi_serdata*, ddsi_keyhash* hash, bool) { *hash = {}; },
+    .get_sample_size = nullptr,  // shared memory is not used
+    .from_iox_buffer = nullptr,
+};
+
+// Samples are the caller's vectors; Cyclone is never asked to lend its own.
+const ddsi_sertype_ops type_operations = {
+    .version = ddsi_sertype_v0,
+    .arg = nullptr,
+    .free =
+        [](ddsi_sertype* type) {
+            ddsi_sertype_fini(type);
+            delete type;
+        },
+    .zero_samples = [](const ddsi_sertype*, void*, size_t) {},
+    .realloc_samples = [](void**, const ddsi_sertype*, void*, size_t, size_t) { std::abort(); },
+    .free_samples = [](const ddsi_sertype*, void**, size_t, dds_free_op_t) {},
+    .equal = [](const ddsi_sertype*, const ddsi_sertype*) { return true; },
+    .hash = [](const ddsi_sertype*) { return uint32_t{0}; },
+    .type_id = nullptr,
+    .type_map = nullptr,
+    .type_info = nullptr,
+    .derive_sertype = nullptr,
+    .get_serialized_size = nullptr,
+    .serialize_into = nullptr,
+};
+
+}  // namespace
+
+ddsi_sertype* makeRawType(const std::string& type_name) {
+    auto type = std::make_unique<ddsi_sertype>();
+    ddsi_sertype_init(type.get(), type_name.c_str(), &type_operations, &data_operations, true);
+    return type.release();
+}
+
+}  // namespace insonify::dds

@@ -1,0 +1,31 @@
+#pragma once
+#include <functional>
+#include <memory>
+#include <string>
+
+#include "components/dds/Node.hpp"
+#include "components/dds/RawType.hpp"
+
+namespace insonify::dds {
+
+/** Takes the messages of one topic. */
+class Reader {
+public:
+    /** `arrived` is called on a thread of Cyclone's, which it must not hold up; it may be empty. The node is to outlive
+     *  this. Throws types::ConfigError. */
+    Reader(Node& node, const std::string& dds_topic, const std::string& ros_type, const std::string& type_hash,
+           const Quality& quality, std::function<void()> arrived);
+    ~Reader();
+
+    /** The next message; its memory is used again. False: there is none. `sender` is one number for each writer. */
+    bool take(Bytes& message, uint64_t& sender);
+    /** Whether a sender is still there. */
+    bool hears(uint64_t sender) const;
+    int32_t handle() const { return entity_.handle(); }
+
+private:
+    std::unique_ptr<std::function<void()>> arrived_;
+    Entity topic_, entity_;
+};
+
+}  // namespace insonify::dds

@@ -1,0 +1,61 @@
+#pragma once
+#include <set>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "components/dds/NodeConfig.hpp"
+
+namespace insonify::dds {
+
+/** What is read. */
+enum class PoseType { Odometry, PoseStamped };
+
+/** One topic's messages as one port's samples. */
+struct TopicIn {
+    std::string topic, port = "pose";
+    PoseType type = PoseType::Odometry;
+
+    template <class Self, class V>
+    static void describe(Self& self, V& visit) {
+        using types::Field;
+        visit(Field{"topic", "", "as in ROS: /auv/odometry"}, self.topic);
+        visit(Field{"port", "", "output port that connections lead from"}, self.port);
+        visit(Field{"type", "", "of ROS's message"}, self.type);
+    }
+};
+
+struct SubscriberConfig {
+    NodeConfig node;
+    std::vector<TopicIn> topics;
+    Reliability reliability = Reliability::BestEffort;
+    int depth = 1;
+
+    template <class Self, class V>
+    static void describe(Self& self, V& visit) {
+        using types::Field;
+        visit(Field{"topics", "", "what is read"}, self.topics);
+        visit(Field{"reliability", "", "reliable hears no best-effort writers"}, self.reliability);
+        visit(Field{"depth", "1", "messages that wait to be taken; 1: the newest wins", 1, 1000}, self.depth);
+        NodeConfig::describe(self.node, visit);
+    }
+    void check(types::Problems& problems) const {
+        node.check(problems);
+        if (topics.empty()) problems.push_back({"topics", "is empty; must hold a topic"});
+        std::set<std::string> ports;
+        for (size_t i = 0; i < topics.size(); ++i) {
+            const std::string path = "topics[" + std::to_string(i) + "].";
+            if (const std::string fault = faultOfTopic(topics[i].topic); !fault.empty())
+                problems.push_back({path + "topic", fault});
+            if (!ports.insert(topics[i].port).second)
+                problems.push_back({path + "port", "is " + topics[i].port + " a second time"});
+        }
+    }
+};
+
+}  // namespace insonify::dds
+
+template <>
+struct insonify::types::EnumNames<insonify::dds::PoseType> {
+    static constexpr std::string_view names[] = {"nav_msgs/Odometry", "geometry_msgs/PoseStamped"};
+};

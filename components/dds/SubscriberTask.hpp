@@ -1,0 +1,57 @@
+#pragma once
+#include <chrono>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "components/dds/Node.hpp"
+#include "components/dds/Subscription.hpp"
+#include "components/framework/Port.hpp"
+#include "components/framework/Properties.hpp"
+#include "components/framework/TaskContext.hpp"
+
+namespace insonify::dds {
+
+/** Reads poses that ROS 2 nodes send; for `schedule: realtime`.
+ *
+ *  Ports: an output for each of `topics`: body in the world, Rock's axes (x north, y west, z up), whatever
+ *  `world_frame` they come in. A message that arrives wakes the task; with a period, it takes what has come by then.
+ *  With `depth: 1` the newest wins, else all are handed on in order as long as the task keeps up.
+ *
+ *  A message that is none, a pose that is not finite or a stamp that goes back is dropped and counted: a warning tells
+ *  it at the first and then every ten seconds at most, and a notice tells the sum at the end. Refused in lockstep,
+ * whose time does not wait for messages. */
+class SubscriberTask final : public framework::TaskContext {
+public:
+    using TaskContext::TaskContext;
+
+    framework::Properties<SubscriberConfig> config{this};
+
+    framework::OutputPortBase* makeOutput(const std::string& port) override;
+    void check(types::Problems& problems) const override;
+    std::vector<std::string> notices() const override;
+    /** A message wakes it as well; this only says that something does. */
+    double wakeAfter() const override { return 1; }
+
+private:
+    struct Outlet {
+        std::unique_ptr<framework::OutputPort<types::Pose>> port;
+        std::unique_ptr<Subscription> subscription;
+    };
+    using Clock = std::chrono::steady_clock;
+
+    bool configureHook() override;
+    bool startHook() override;
+    void updateHook() override;
+    void cleanupHook() override;
+    void tellDrops();
+
+    std::vector<Outlet> outlets_;
+    std::optional<Node> node_;
+    std::vector<std::string> drops_;  ///< Of subscriptions that are gone.
+    uint64_t told_ = 0;               ///< Drops that a warning has told.
+    Clock::time_point told_at_;
+};
+
+}  // namespace insonify::dds

@@ -1,0 +1,65 @@
+#include "components/dds/Subscription.hpp"
+
+#include "components/ros/Cdr.hpp"
+#include "components/ros/Poses.hpp"
+
+namespace insonify::dds {
+namespace {
+
+Reader readerOf(Node& node, const SubscriberConfig& config, const TopicIn& topic, std::function<void()> arrived) {
+    const char* type = topic.type == PoseType::Odometry ? ros::Odometry::type_name : ros::PoseStamped::type_name;
+    const char* hash = topic.type == PoseType::Odometry ? ros::Odometry::type_hash : ros::PoseStamped::type_hash;
+    return {node, ddsTopic(topic.topic), type, hash, {config.reliability, config.depth}, std::move(arrived)};
+}
+
+}  // namespace
+
+Subscription::Subscription(Node& node, const SubscriberConfig& config, const TopicIn& topic,
+                           std::function<void()> arrived)
+    : topic_(topic.topic),
+      type_(topic.type),
+      world_frame_(config.node.world_frame),
+      reader_(readerOf(node, config, topic, std::move(arrived))) {
+    node.addReader(reader_.handle());
+}
+
+void Subscription::decode(types::Pose& pose) {
+    if (type_ == PoseType::Odometry) {
+        ros::decode(std::span<const char>(bytes_), odometry_);
+        ros::convert(odometry_, world_frame_, pose);
+    } else {
+        ros::decode(std::span<const char>(bytes_), stamped_);
+        ros::convert(stamped_, world_frame_, pose);
+    }
+}
+
+std::string Subscription::faultOf(const types::Pose& pose) {
+    if (!types::isUsable(pose)) return "position and orientation are not finite, or the orientation has no length";
+    const bool sender_lives = sender_ == newest_sender_ || reader_.hears(newest_sender_);
+    if (pose.time < newest_ && sender_lives) return "the stamp lies before that of the pose before";
+    return "";
+}
+
+bool Subscription::take(types::Time now, types::Pose& pose) {
+    while (reader_.take(bytes_, sender_)) {
+        std::string fault;
+        try {
+            decode(pose);
+            if (pose.time == types::Time{}) pose.time = now;
+            fault = faultOf(pose);
+        } catch (const ros::CdrError& error) {
+            fault = std::string("no message of its type: ") + error.what();
+        }
+        if (fault.empty()) {
+            newest_ = pose.time;
+            newest_sender_ = sender_;
+            pose.orientation = glm::normalize(pose.orientation);
+            return true;
+        }
+        last_drop_ = topic_ + ": " + fault;
+        ++dropped_[last_drop_];
+    }
+    return false;
+}
+
+}  // namespace insonify::dds

@@ -1,0 +1,73 @@
+#include <gmock/gmock.h>
+
+#include "components/dds/Domain.hpp"
+#include "components/dds/Node.hpp"
+#include "tests/dds/Loopback.hpp"
+#include "types/ConfigError.hpp"
+
+using namespace insonify;
+using namespace insonify::dds;
+using testing::HasSubstr;
+
+namespace {
+
+class DomainTest : public Loopback {};
+
+std::string errorOf(const std::function<void()>& work) {
+    try {
+        work();
+    } catch (const types::ConfigError& error) {
+        return error.what();
+    }
+    return "";
+}
+
+}  // namespace
+
+TEST_F(DomainTest, NamesAreThoseOfRos) {
+    EXPECT_EQ(ddsTopic("/auv/sonar"), "rt/auv/sonar");
+    EXPECT_EQ(ddsTopic("clock"), "rt/clock");
+    EXPECT_EQ(ddsType("sensor_msgs/msg/Image"), "sensor_msgs::msg::dds_::Image_");
+}
+
+TEST_F(DomainTest, NamesThatRosRefusesAreRefused) {
+    for (const char* good : {"/auv/sonar", "sonar", "/a_1/B2"}) EXPECT_EQ(faultOfTopic(good), "") << good;
+    for (const char* bad : {"", "/", "//a", "/a/", "/1a", "/a b", "/a-b", "/a//b", "~/a"})
+        EXPECT_THAT(faultOfTopic(bad), HasSubstr("must be words of letters")) << bad;
+    EXPECT_EQ(faultOfNode("sonar_1"), "");
+    for (const char* bad : {"", "a/b", "1a", "a b"}) EXPECT_NE(faultOfNode(bad), "") << bad;
+}
+
+TEST_F(DomainTest, TheDomainIsTheOneGivenOrThatOfTheEnvironment) {
+    setenv("ROS_DOMAIN_ID", "17", 1);
+    EXPECT_EQ(domainId(3), 3u);
+    EXPECT_EQ(domainId({}), 17u);
+    unsetenv("ROS_DOMAIN_ID");
+    EXPECT_EQ(domainId({}), 0u);
+    for (const char* bad : {"x", "-1", "233", "1 ", "99999999999999"}) {
+        setenv("ROS_DOMAIN_ID", bad, 1);
+        EXPECT_THAT(errorOf([] { domainId({}); }), HasSubstr("ROS_DOMAIN_ID is " + std::string(bad))) << bad;
+    }
+}
+
+TEST_F(DomainTest, TasksShareADomain) {
+    const auto one = Domain::join(21), other = Domain::join(21);
+    EXPECT_EQ(one, other);
+    EXPECT_NE(one, Domain::join(22));
+}
+
+TEST_F(DomainTest, ADomainThatCannotBeJoinedIsOneErrorThatTellsWhy) {
+    setenv("CYCLONEDDS_URI",
+           "<CycloneDDS><Domain><General><Interfaces><NetworkInterface name=\"nothere0\"/></Interfaces></General>"
+           "</Domain></CycloneDDS>",
+           1);
+    const std::string text = errorOf([] { Domain::join(23); });
+    EXPECT_THAT(text, HasSubstr("DDS domain 23 cannot be joined"));
+    EXPECT_THAT(text, HasSubstr("nothere0"));
+    setenv("CYCLONEDDS_URI", "<CycloneDDS><Domain><Nonsense/></Domain></CycloneDDS>", 1);
+    EXPECT_THAT(errorOf([] { Domain::join(23); }), HasSubstr("Nonsense"));
+}
+
+TEST_F(DomainTest, ADomainCanBeLeftAndJoinedAgain) {
+    for (int i = 0; i < 3; ++i) EXPECT_GT(Node(24, "again", 16).participant(), 0);
+}

@@ -1,0 +1,149 @@
+// A ROS 2 peer by another version of Cyclone: PyPI's.
+#include <gmock/gmock.h>
+
+#include "tests/dds/Ends.hpp"
+
+using namespace insonify;
+using namespace insonify::dds;
+using nlohmann::json;
+using testing::HasSubstr;
+
+namespace {
+
+class PeerTest : public WithPeer {};
+
+/** 1 MB of float32, as scripts/bench has it. */
+TopicOut floats(const std::string& topic) {
+    TopicOut made = topicOut("in", topic, MessageType::ProjectedSonarImage);
+    made.sonar.dtype = ros::ImageType::Float32;
+    return made;
+}
+
+/** Sends pings at a rate; how many, and how long the slowest took [s]. */
+template <class Send>
+double sendAll(int count, double hertz, Send&& send) {
+    double slowest = 0;
+    auto due = std::chrono::steady_clock::now();
+    for (int i = 0; i < count; ++i) {
+        std::this_thread::sleep_until(due);
+        due += std::chrono::microseconds(static_cast<int64_t>(1e6 / hertz));
+        const auto start = std::chrono::steady_clock::now();
+        send();
+        slowest = std::max(slowest, std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
+    }
+    return slowest;
+}
+
+}  // namespace
+
+TEST_F(PeerTest, HearsEveryPingOfAMegabyteAtFortyHertz) {
+    Publishing<types::SonarPtr> publishing({floats("/auv/sonar")});
+    Peer peer("listen ProjectedSonarImage /auv/sonar 8");
+    ASSERT_TRUE(peer.ready());
+    std::this_thread::sleep_for(std::chrono::milliseconds(700));  // until both know each other
+    constexpr int count = 200;                                    // 5 s
+    auto ping = std::make_shared<types::Sonar>(*pingOf(256, 1000));
+    sendAll(count, 40, [&] {
+        ping->time = framework::wallClock();
+        publishing.send(ping);
+    });
+    const json found = peer.result();
+    EXPECT_EQ(found["count"], count);
+    EXPECT_EQ(found["first"]["image"]["data"]["size"], 256 * 1000 * 4);
+    EXPECT_EQ(found["first"]["image"]["beam_count"], 256);
+    EXPECT_EQ(found["first"]["header"]["frame_id"], "sonar");
+    EXPECT_LT(found["median_ms"], 100);
+    std::cout << "1 MB at 40 Hz: median " << found["median_ms"] << " ms, p99 " << found["p99_ms"] << " ms\n";
+    EXPECT_THAT(publishing.task.notices(), testing::IsEmpty());
+}
+
+TEST_F(PeerTest, SendsPosesOfWhichNoneIsLost) {
+    Subscribing subscribing("/auv/odometry", PoseType::Odometry, [](SubscriberConfig& config) {
+        config.reliability = Reliability::Reliable;
+        config.depth = 100;
+    });
+    Peer peer("odometry /auv/odometry 200 40");
+    ASSERT_TRUE(peer.ready());
+    std::vector<double> latencies;  // [ms]
+    for (int i = 0; i < 200; ++i) {
+        const auto pose = subscribing.next();
+        ASSERT_TRUE(pose) << i;
+        latencies.push_back((framework::wallClock() - pose->time).seconds() * 1e3);
+        EXPECT_EQ(pose->position, glm::dvec3(2, -i, -3));  // from east, north, up
+        EXPECT_NEAR(pose->velocity.y, -1.5, 1e-12);
+        EXPECT_EQ(pose->target_frame, "map");
+    }
+    std::ranges::sort(latencies);
+    std::cout << "Odometry at 40 Hz: median " << latencies[100] << " ms, p99 " << latencies[198] << " ms\n";
+    EXPECT_LT(latencies[100], 100);
+}
+
+TEST_F(PeerTest, SeesTheNodeItsWritersTheirTypesAndHashes) {
+    Publishing<types::SonarPtr> publishing(
+        {topicOut("in", "/auv/sonar", MessageType::ProjectedSonarImage), topicOut("in", "/clock", MessageType::Clock)},
+        [](PublisherConfig& config) { config.node.node_name = "insonify"; });
+    Peer peer("node 2");
+    const json found = peer.result();
+    ASSERT_EQ(found["infos"].size(), 1u) << found;
+    const json& node = found["infos"][0]["node_entities_info_seq"][0];
+    EXPECT_EQ(node["node_name"], "insonify");
+    EXPECT_EQ(node["node_namespace"], "/");
+    EXPECT_EQ(node["writer_gid_seq"].size(), 2u);
+    EXPECT_EQ(node["reader_gid_seq"].size(), 0u);
+    const json& writer = found["writers"]["rt/auv/sonar"];
+    EXPECT_EQ(writer["type"], "marine_acoustic_msgs::msg::dds_::ProjectedSonarImage_");
+    EXPECT_EQ(writer["user_data"], "typehash=RIHS01_e9d0b934ee8332c9f79e04c361de0793c165b2dee14f2c0d25c3227cd50d46f1;");
+    EXPECT_EQ(writer["key"], node["writer_gid_seq"][0]["data"]);
+    EXPECT_EQ(found["writers"]["rt/clock"]["type"], "rosgraph_msgs::msg::dds_::Clock_");
+}
+
+TEST_F(PeerTest, ReadsEveryTypeThatIsSent) {
+    const std::pair<const char*, MessageType> types[] = {{"RawSonarImage", MessageType::RawSonarImage},
+                                                         {"SonarRanges", MessageType::SonarRanges},
+                                                         {"PointCloud2", MessageType::PointCloud2},
+                                                         {"LaserScan", MessageType::LaserScan},
+                                                         {"Clock", MessageType::Clock}};
+    std::vector<TopicOut> topics;
+    std::vector<std::unique_ptr<Peer>> peers;
+    for (const auto& [name, type] : types) topics.push_back(topicOut("in", std::string("/") + name, type));
+    Publishing<types::SonarPtr> publishing(topics);
+    for (const auto& [name, type] : types)
+        peers.push_back(std::make_unique<Peer>(std::string("listen ") + name + " /" + name + " 4"));
+    const types::SonarPtr ping = pingOf(16, 50);
+    sendAll(40, 20, [&] { publishing.send(ping); });
+    const json raw = peers[0]->result(), ranges = peers[1]->result(), points = peers[2]->result(),
+               scan = peers[3]->result(), clock = peers[4]->result();
+    EXPECT_EQ(raw["first"]["samples_per_beam"], 50);
+    EXPECT_EQ(ranges["first"]["ranges"].size(), 16u);
+    EXPECT_EQ(points["first"]["fields"].size(), 4u);
+    EXPECT_EQ(scan["first"]["ranges"].size(), 16u);
+    EXPECT_EQ(clock["first"]["clock"]["sec"], ping->time.microseconds / 1'000'000);
+}
+
+class SpoiltPoses : public PeerTest, public testing::WithParamInterface<std::pair<const char*, const char*>> {};
+
+TEST_P(SpoiltPoses, OfAPeerAreDroppedAndTheRunGoesOn) {
+    Subscribing subscribing("/auv/odometry", PoseType::Odometry, [](SubscriberConfig& config) {
+        config.reliability = Reliability::Reliable;
+        config.depth = 100;
+    });
+    Peer peer(std::string("odometry /auv/odometry 40 100 ") + GetParam().first);
+    peer.result();
+    subscribing.task.activity().hold();
+    subscribing.task.update();
+    int good = 0;
+    for (types::Pose pose; subscribing.reader.port.readNew(pose); ++good)
+        EXPECT_EQ(std::abs(int(pose.position.y)) % 2, 0);
+    EXPECT_EQ(good, 20);
+    EXPECT_TRUE(subscribing.task.isRunning()) << subscribing.task.lastError();
+    const auto notices = subscribing.task.notices();
+    ASSERT_EQ(notices.size(), 1u) << testing::PrintToString(notices);
+    EXPECT_THAT(notices[0],
+                testing::AllOf(HasSubstr("20 messages dropped: /auv/odometry: "), HasSubstr(GetParam().second)));
+}
+
+INSTANTIATE_TEST_SUITE_P(PeerTest, SpoiltPoses,
+                         testing::Values(std::pair("nan", "not finite"), std::pair("zero", "no length"),
+                                         std::pair("back", "the stamp lies before"),
+                                         std::pair("bytes", "no message of its type")),
+                         [](const auto& tested) { return std::string(tested.param.first); });

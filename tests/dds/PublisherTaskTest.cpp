@@ -1,0 +1,134 @@
+#include <gmock/gmock.h>
+
+#include "components/dds/PublisherTask.hpp"
+#include "components/dds/Reader.hpp"
+#include "components/ros/Cdr.hpp"
+#include "components/ros/FromSonar.hpp"
+#include "components/ros/Times.hpp"
+#include "tests/dds/Ends.hpp"
+
+using namespace insonify;
+using namespace insonify::dds;
+using testing::HasSubstr;
+
+namespace {
+
+class PublisherTaskTest : public Loopback {
+protected:
+    Node node{domainId({}), "listener", 16};
+
+    /** The message that `send` brings on a topic, or a failure. */
+    template <class Message>
+    Message heard(const std::string& topic, const std::function<void()>& send) {
+        Reader reader(node, ddsTopic(topic), Message::type_name, "", {}, {});
+        Bytes bytes;
+        uint64_t sender = 0;
+        Message message;
+        const bool came = becomes([&] { return send(), reader.take(bytes, sender); });
+        EXPECT_TRUE(came);
+        if (came) ros::decode(std::span<const char>(bytes), message);
+        return message;
+    }
+};
+
+std::string textOf(const types::Problems& problems) {
+    std::string text;
+    for (const types::Problem& problem : problems) text += problem.path + " " + problem.message + "\n";
+    return text;
+}
+
+}  // namespace
+
+TEST_F(PublisherTaskTest, APingBecomesAllMessagesThatItCanBe) {
+    using enum MessageType;
+    Publishing<types::SonarPtr> publishing(
+        {topicOut("in", "/image", ProjectedSonarImage), topicOut("in", "/raw", RawSonarImage),
+         topicOut("in", "/ranges", SonarRanges), topicOut("in", "/points", PointCloud2),
+         topicOut("in", "/scan", LaserScan), topicOut("in", "/clock", Clock)});
+    const types::SonarPtr ping = pingOf(16, 50);
+    const auto send = [&] { publishing.send(ping); };
+    const auto image = heard<ros::ProjectedSonarImage>("/image", send);
+    EXPECT_EQ(image.image.beam_count, 16u);
+    EXPECT_EQ(image.ranges.size(), 50u);
+    EXPECT_EQ(image.image.data.size(), 16u * 50);  // uint8
+    EXPECT_EQ(image.header.frame_id, "sonar");
+    EXPECT_EQ(ros::fromRos(image.header.stamp), ping->time);
+    ros::ProjectedSonarImage expected;
+    ros::SonarOptions options;
+    ros::convert(*ping, options, expected);
+    EXPECT_EQ(image, expected);
+    EXPECT_EQ(heard<ros::RawSonarImage>("/raw", send).samples_per_beam, 50u);
+    EXPECT_EQ(heard<ros::SonarRanges>("/ranges", send).ranges.size(), 16u);
+    EXPECT_GT(heard<ros::PointCloud2>("/points", send).width, 0u);
+    EXPECT_EQ(heard<ros::LaserScan>("/scan", send).ranges.size(), 16u);
+    EXPECT_EQ(ros::fromRos(heard<ros::Clock>("/clock", send).clock), ping->time);
+}
+
+TEST_F(PublisherTaskTest, APoseIsTurnedIntoTheWorldFrameAndNamesItsFrames) {
+    types::Pose pose;
+    pose.time = framework::wallClock();
+    pose.position = {3, 2, 1};  // north, west, up
+    for (const auto& [frame, expected] :
+         {std::pair{ros::WorldFrame::Enu, ros::Point{-2, 3, 1}}, std::pair{ros::WorldFrame::Ned, ros::Point{3, -2, -1}},
+          std::pair{ros::WorldFrame::AsIs, ros::Point{3, 2, 1}}}) {
+        Publishing<types::Pose> publishing({topicOut("in", "/odometry", MessageType::Odometry)},
+                                           [&](PublisherConfig& config) { config.node.world_frame = frame; });
+        const auto message = heard<ros::Odometry>("/odometry", [&] { publishing.send(pose); });
+        EXPECT_EQ(message.pose.pose.position, expected);
+        EXPECT_EQ(message.header.frame_id, "map");
+        EXPECT_EQ(message.child_frame_id, "base_link");
+    }
+}
+
+TEST_F(PublisherTaskTest, APictureBecomesAnImage) {
+    auto picture = std::make_shared<types::Image>();
+    picture->size = {4, 2};
+    picture->pixel_size = 3;
+    picture->row_size = 12;
+    picture->frame_mode = types::ImageMode::Bgr;
+    picture->frame_status = types::ImageStatus::Valid;
+    picture->image.assign(24, 9);
+    Publishing<types::ImagePtr> publishing({topicOut("in", "/fan", MessageType::Image)});
+    const auto message = heard<ros::Image>("/fan", [&] { publishing.send(picture); });
+    EXPECT_EQ(message.encoding, "bgr8");
+    EXPECT_EQ(message.data, picture->image);
+}
+
+TEST_F(PublisherTaskTest, NothingIsMadeForATopicThatNobodyReads) {
+    Publishing<types::SonarPtr> publishing({topicOut("in", "/nobody", MessageType::LaserScan)});
+    auto crooked = std::make_shared<types::Sonar>(*pingOf(4, 4));
+    crooked->bearings[1] = types::Angle{0.1234};  // of which no LaserScan can be made
+    publishing.send(crooked);
+    EXPECT_TRUE(publishing.task.isRunning()) << publishing.task.lastError();
+    Reader reader(node, ddsTopic("/nobody"), ros::LaserScan::type_name, "", {}, {});
+    EXPECT_TRUE(becomes([&] { return publishing.send(crooked), !publishing.task.isRunning(); }));
+    EXPECT_THAT(publishing.task.lastError(), HasSubstr("/nobody: "));
+}
+
+TEST_F(PublisherTaskTest, PortsAndTypesThatDoNotFitAreToldBeforeItRuns) {
+    PublisherTask task("publisher");
+    PublisherConfig config;
+    config.topics = {topicOut("ping", "/a", MessageType::Odometry), topicOut("none", "/b", MessageType::Image)};
+    task.config.set(config);
+    test::Writer<types::SonarPtr> sonar;
+    test::Writer<double> number;
+    EXPECT_THROW(task.makeInput("other", sonar.port), types::ConfigError);
+    EXPECT_THROW(task.makeInput("ping", number.port), types::ConfigError);
+    ASSERT_NE(task.makeInput("ping", sonar.port), nullptr);
+    types::Problems problems;
+    task.check(problems);
+    EXPECT_THAT(textOf(problems), HasSubstr("topics[0].type is nav_msgs/Odometry; "));
+    EXPECT_THAT(textOf(problems), HasSubstr("can be marine_acoustic_msgs/ProjectedSonarImage, "));
+    EXPECT_THAT(textOf(problems), HasSubstr("topics[1].port is none; no connection leads to publisher.none"));
+}
+
+TEST_F(PublisherTaskTest, NamesThatRosRefusesAreTold) {
+    PublisherConfig config;
+    config.node.node_name = "a b";
+    config.node.gid_size = 20;
+    config.topics = {topicOut("", "/a", MessageType::Image), topicOut("x", "/a", MessageType::Image),
+                     topicOut("x", "a-b", MessageType::Image)};
+    types::Problems problems;
+    config.check(problems);
+    EXPECT_EQ(problems.size(), 5u) << textOf(problems);
+}

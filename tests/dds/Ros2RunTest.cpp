@@ -1,0 +1,112 @@
+// deploy/ros2_fls.yml and what is wrong with others, as a user sees it.
+#include <gmock/gmock.h>
+
+#include "components/dds/Reader.hpp"
+#include "components/ros/Cdr.hpp"
+#include "components/ros/SonarMessages.hpp"
+#include "tests/dds/Loopback.hpp"
+
+using namespace insonify;
+using namespace insonify::dds;
+using namespace insonify::deployer;
+using testing::HasSubstr;
+
+namespace {
+
+class Ros2RunTest : public Loopback {
+protected:
+    TestFolder folder;
+    const std::string fls = INSONIFY_SOURCE_DIR "/deploy/ros2_fls.yml";
+
+    Outcome check(const std::string& yaml) {
+        writeFile(folder / "x.yml", yaml);
+        return callInsonify(folder, {"check", "x.yml"});
+    }
+};
+
+/** A vehicle that tells where it is, twenty times a second. */
+const std::string vehicle =
+    "schedule: realtime\ntasks:\n"
+    "  vehicle: {type: pose::TrajectoryTask, activity: {period: 0.05}, properties: {file: " INSONIFY_SOURCE_DIR
+    "/deploy/scenes/harbour_pass.csv}}\n"
+    "  ros: {type: dds::PublisherTask, properties: {topics: [{port: pose, topic: /auv/odometry, type: "
+    "nav_msgs/Odometry}]}}\n"
+    "connections:\n  - {from: vehicle.pose, to: ros.pose, policy: {type: buffer, size: 8}}\n";
+
+std::string replaced(std::string text, const std::string& from, const std::string& to) {
+    return text.replace(text.find(from), from.size(), to);
+}
+
+}  // namespace
+
+TEST_F(Ros2RunTest, PosesOfAVehicleBecomePingsOfTheSonar) {
+    TestFolder elsewhere;
+    writeFile(elsewhere / "vehicle.yml", vehicle);
+    const Process poses(insonifyWords({"run", "vehicle.yml", "--out", "out"}), elsewhere.path());
+    const Process sonar(insonifyWords({"run", fls, "--out", "out", "--pings", "40", "--summary", "summary.json"}),
+                        folder.path());
+    Node node(domainId({}), "listener", 16);
+    Reader reader(node, "rt/auv/sonar", ros::ProjectedSonarImage::type_name, "", {}, {});
+    ros::ProjectedSonarImage message;
+    Bytes bytes;
+    uint64_t sender = 0;
+    const bool heard = becomes([&] { return reader.take(bytes, sender); }, 30);
+    poses.signal(heard ? 0 : SIGINT);
+    ASSERT_TRUE(heard);
+    ros::decode(std::span<const char>(bytes), message);
+    EXPECT_EQ(message.image.beam_count, 256u);
+    EXPECT_EQ(message.image.data.size(), 256u * 500);
+    EXPECT_GT(std::ranges::count_if(message.image.data, [](uint8_t level) { return level > 0; }), 1000);
+    const Outcome outcome = sonar.wait();
+    poses.signal(SIGINT);
+    EXPECT_EQ(poses.wait().code, 0);
+    ASSERT_EQ(outcome.code, 0) << outcome.err;
+    EXPECT_GE(json::parse(readFile(folder / "summary.json"))["pings"], 40);
+}
+
+TEST_F(Ros2RunTest, WithoutPosesItWaitsAndSaysSo) {
+    Process waiting(insonifyWords({"run", fls, "--out", "out"}), folder.path());
+    EXPECT_TRUE(becomes(
+        [&] { return readFile(folder / "stderr.txt").find("no pose of the last 1 s") != std::string::npos; }, 30))
+        << readFile(folder / "stderr.txt");
+    waiting.signal(SIGINT);
+    EXPECT_EQ(waiting.wait().code, 1);  // as any realtime run that ends without poses
+}
+
+TEST_F(Ros2RunTest, TheDeploymentIsValid) { EXPECT_EQ(callInsonify(folder, {"check", fls}).code, 0); }
+
+TEST_F(Ros2RunTest, FaultsAreToldWithTheirPlace) {
+    Outcome outcome = check(replaced(vehicle, "type: nav_msgs/Odometry", "type: nav_msgs/Odometri"));
+    EXPECT_EQ(outcome.code, 2);
+    EXPECT_THAT(outcome.err, HasSubstr("x.yml:4:"));
+    EXPECT_THAT(outcome.err, HasSubstr("tasks.ros.properties.topics[0].type: is nav_msgs/Odometri"));
+    outcome = check(replaced(vehicle, "topic: /auv/odometry", "topic: /auv odometry"));
+    EXPECT_THAT(outcome.err, HasSubstr("topics[0].topic: is \"/auv odometry\"; must be words of letters"));
+    outcome = check(replaced(vehicle, "{port: pose,", "{port: pose, colour: red,"));
+    EXPECT_THAT(outcome.err, HasSubstr("topics[0].colour"));
+    outcome = check(replaced(vehicle, "nav_msgs/Odometry", "sensor_msgs/Image"));
+    EXPECT_THAT(
+        outcome.err,
+        HasSubstr("topics[0].type: is sensor_msgs/Image; /base/samples/RigidBodyState can be nav_msgs/Odometry"));
+    outcome = check(replaced(vehicle, "to: ros.pose", "to: ros.other"));
+    EXPECT_THAT(outcome.err, HasSubstr("no topic of ros is for port other"));
+}
+
+TEST_F(Ros2RunTest, LockstepDoesNotReadPoses) {
+    const Outcome outcome = check(
+        replaced(replaced(readFile(fls), "realtime", "lockstep"), "scenes/", INSONIFY_SOURCE_DIR "/deploy/scenes/"));
+    EXPECT_EQ(outcome.code, 2);
+    EXPECT_THAT(outcome.err, HasSubstr("tasks.poses.properties: messages come on the wall clock's time"));
+}
+
+TEST_F(Ros2RunTest, ADomainThatCannotBeJoinedIsOneError) {
+    writeFile(folder / "x.yml", vehicle);
+    setenv("CYCLONEDDS_URI",
+           "<CycloneDDS><Domain><General><Interfaces><NetworkInterface "
+           "name=\"nothere0\"/></Interfaces></General></Domain></CycloneDDS>",
+           1);
+    const Outcome outcome = callInsonify(folder, {"run", "x.yml", "--out", "out"});
+    EXPECT_EQ(outcome.code, 2);
+    EXPECT_THAT(outcome.err, HasSubstr("cannot be joined"));
+    EXPECT_EQ(std::ranges::count(outcome.err, '\n'), 1) << outcome.err;
+}

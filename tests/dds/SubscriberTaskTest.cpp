@@ -1,0 +1,105 @@
+#include <gmock/gmock.h>
+
+#include "components/dds/SubscriberTask.hpp"
+#include "tests/dds/Ends.hpp"
+
+using namespace insonify;
+using namespace insonify::dds;
+
+namespace {
+
+class SubscriberTaskTest : public Loopback {};
+
+types::Pose somewhere(double x) {
+    types::Pose pose;
+    pose.time = framework::wallClock();
+    pose.position = {x, 2, -3};
+    pose.orientation = glm::normalize(glm::dquat(0.9, 0.1, -0.2, 0.3));
+    pose.velocity = {0.5, 0.25, -0.125};
+    pose.angular_velocity = {0.01, 0.02, 0.03};
+    return pose;
+}
+
+/** Until both have found each other. */
+void meet(Publishing<types::Pose>& publishing, Subscribing& subscribing, const types::Pose& pose) {
+    types::Pose came;
+    ASSERT_TRUE(becomes([&] { return publishing.send(pose), subscribing.reader.port.readNew(came); }));
+    subscribing.reader.port.clear();
+}
+
+}  // namespace
+
+TEST_F(SubscriberTaskTest, APoseComesBackAsItWentInAnyFrame) {
+    for (const auto frame : {ros::WorldFrame::AsIs, ros::WorldFrame::Enu, ros::WorldFrame::Ned})
+        for (const auto type : {PoseType::Odometry, PoseType::PoseStamped}) {
+            const bool whole = type == PoseType::Odometry;
+            Publishing<types::Pose> publishing(
+                {topicOut("in", "/there", whole ? MessageType::Odometry : MessageType::PoseStamped)},
+                [&](PublisherConfig& config) { config.node.world_frame = frame; });
+            Subscribing subscribing("/there", type, [&](SubscriberConfig& config) { config.node.world_frame = frame; });
+            const types::Pose sent = somewhere(1);
+            publishing.send(sent);
+            std::optional<types::Pose> came;
+            ASSERT_TRUE(becomes([&] {
+                publishing.send(sent);
+                came.emplace();
+                return subscribing.reader.port.readNew(*came);
+            }));
+            EXPECT_EQ(came->time, sent.time);
+            EXPECT_LT(glm::distance(came->position, sent.position), 1e-12);
+            EXPECT_GT(std::abs(glm::dot(came->orientation, sent.orientation)), 1 - 1e-12);
+            EXPECT_EQ(came->target_frame, "map");
+            if (!whole) continue;
+            EXPECT_LT(glm::distance(came->velocity, sent.velocity), 1e-12);
+            EXPECT_LT(glm::distance(came->angular_velocity, sent.angular_velocity), 1e-12);
+            EXPECT_EQ(came->source_frame, "base_link");
+        }
+}
+
+TEST_F(SubscriberTaskTest, AMessageWakesTheTaskAtOnce) {
+    Publishing<types::Pose> publishing({topicOut("in", "/there", MessageType::Odometry)});
+    Subscribing subscribing("/there");
+    meet(publishing, subscribing, somewhere(0));
+    std::vector<double> waits;  // [s]; it would be up to 1 s if only the clock woke it
+    for (int i = 1; i <= 50; ++i) {
+        const auto start = std::chrono::steady_clock::now();
+        publishing.send(somewhere(i));
+        ASSERT_TRUE(subscribing.next());
+        waits.push_back(std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
+    }
+    std::ranges::sort(waits);
+    EXPECT_LT(waits[25], 0.05);
+}
+
+TEST_F(SubscriberTaskTest, WithADepthOfOneTheNewestWins) {
+    Publishing<types::Pose> publishing({topicOut("in", "/there", MessageType::Odometry)});
+    Subscribing newest("/there"), all("/there", PoseType::Odometry, [](SubscriberConfig&config) { config.depth = 5; });
+    meet(publishing, newest, somewhere(0));
+    meet(publishing, all, somewhere(0));
+    newest.task.activity().hold();
+    all.task.activity().hold();
+    newest.task.update();
+    all.task.update();
+    newest.reader.port.clear();
+    all.reader.port.clear();
+    for (int i = 1; i <= 5; ++i) publishing.send(somewhere(i));
+    newest.task.update();
+    all.task.update();
+    types::Pose pose;
+    ASSERT_TRUE(newest.reader.port.readNew(pose));
+    EXPECT_EQ(pose.position.x, 5);
+    EXPECT_FALSE(newest.reader.port.readNew(pose));
+    for (int i = 1; i <= 5; ++i) {
+        ASSERT_TRUE(all.reader.port.readNew(pose));
+        EXPECT_EQ(pose.position.x, i);
+    }
+}
+
+TEST_F(SubscriberTaskTest, LockstepIsRefusedWithAReason) {
+    SubscriberTask task("subscriber");
+    task.environment().lockstep = true;
+    types::Problems problems;
+    task.check(problems);
+    ASSERT_FALSE(problems.empty());
+    EXPECT_THAT(problems[0].message, testing::HasSubstr("set schedule: realtime"));
+}

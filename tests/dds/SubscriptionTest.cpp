@@ -1,0 +1,134 @@
+// What a subscription refuses.
+#include <gmock/gmock.h>
+
+#include "components/dds/Subscription.hpp"
+#include "components/dds/Writer.hpp"
+#include "components/ros/Cdr.hpp"
+#include "components/ros/Times.hpp"
+#include "tests/dds/Ends.hpp"
+
+using namespace insonify;
+using namespace insonify::dds;
+
+namespace {
+
+constexpr types::Time arrival{77'000'000};
+
+struct SubscriptionTest : Loopback {
+    Node node{domainId({}), "judge", 16};
+    SubscriberConfig config = [] {
+        SubscriberConfig made;
+        made.depth = 100;
+        made.reliability = Reliability::Reliable;
+        made.node.world_frame = ros::WorldFrame::AsIs;
+        return made;
+    }();
+    TopicIn topic = [] {
+        TopicIn made;
+        made.topic = "/judged";
+        return made;
+    }();
+    Subscription subscription{node, config, topic, {}};
+    std::optional<Writer> writer = newWriter();
+    types::Pose pose;
+
+    std::optional<Writer> newWriter() {
+        std::optional<Writer> made(std::in_place, node, "rt/judged", ros::Odometry::type_name, "", Quality{});
+        EXPECT_TRUE(becomes([&] { return made->hasReaders(); }));
+        return made;
+    }
+    void send(const ros::Odometry& message) {
+        Bytes bytes;
+        ros::encode(message, bytes);
+        ASSERT_TRUE(writer->write(bytes));
+    }
+    bool take() { return subscription.take(arrival, pose); }
+    static ros::Odometry at(int32_t second, double x) {
+        ros::Odometry message;
+        message.header.stamp = {second, 0};
+        message.pose.pose.position.x = x;
+        return message;
+    }
+    uint64_t drops() const {
+        uint64_t sum = 0;
+        for (const auto& [reason, count] : subscription.dropped()) sum += count;
+        return sum;
+    }
+};
+
+}  // namespace
+
+TEST_F(SubscriptionTest, GoodPosesComeInOrder) {
+    for (int i = 1; i < 4; ++i) send(at(i, i));
+    for (int i = 1; i < 4; ++i) {
+        ASSERT_TRUE(take());
+        EXPECT_EQ(pose.position.x, i);
+    }
+    EXPECT_FALSE(take());
+    EXPECT_EQ(drops(), 0u);
+}
+
+TEST_F(SubscriptionTest, BytesThatAreNoMessageAreDroppedAndCounted) {
+    Bytes whole;
+    ros::encode(at(1, 1), whole);
+    for (const size_t size : {0u, 3u, 4u, 8u, 100u, unsigned(whole.size()) - 8}) {
+        const Bytes cut(whole.begin(), whole.begin() + static_cast<ptrdiff_t>(size));
+        writer->write(cut);
+    }
+    Bytes strange = whole;
+    strange[1] = 9;  // an encoding that is not read
+    writer->write(strange);
+    writer->write(whole);
+    ASSERT_TRUE(take());
+    EXPECT_EQ(pose.position.x, 1);
+    EXPECT_GE(drops(), 6u);
+    EXPECT_THAT(subscription.lastDrop(), testing::HasSubstr("/judged: no message of its type: byte 0: encoding 9"));
+}
+
+TEST_F(SubscriptionTest, PosesThatAreNotFiniteAreDropped) {
+    ros::Odometry bad = at(1, std::numeric_limits<double>::quiet_NaN());
+    send(bad);
+    bad = at(1, std::numeric_limits<double>::infinity());
+    send(bad);
+    bad = at(1, 0);
+    bad.pose.pose.orientation = {0, 0, 0, 0};
+    send(bad);
+    bad.pose.pose.orientation = {0, 0, 0, std::numeric_limits<double>::quiet_NaN()};
+    send(bad);
+    send(at(2, 5));
+    ASSERT_TRUE(take());
+    EXPECT_EQ(pose.position.x, 5);
+    EXPECT_EQ(drops(), 4u);
+    EXPECT_THAT(subscription.lastDrop(), testing::HasSubstr("not finite"));
+}
+
+TEST_F(SubscriptionTest, StampsThatGoBackAreDroppedUntilTheirSenderIsGone) {
+    send(at(10, 1));
+    send(at(9, 2));
+    send(at(10, 3));  // as old is not back
+    ASSERT_TRUE(take());
+    ASSERT_TRUE(take());
+    EXPECT_EQ(pose.position.x, 3);
+    EXPECT_FALSE(take());
+    EXPECT_EQ(drops(), 1u);
+    writer.reset();
+    writer = newWriter();  // a simulator that starts again
+    send(at(1, 4));
+    ASSERT_TRUE(becomes([&] { return take(); }));
+    EXPECT_EQ(pose.position.x, 4);
+    EXPECT_EQ(drops(), 1u);
+}
+
+TEST_F(SubscriptionTest, AMessageWithoutAStampBearsItsArrival) {
+    send(at(0, 1));
+    ASSERT_TRUE(take());
+    EXPECT_EQ(pose.time, arrival);
+}
+
+TEST_F(SubscriptionTest, OrientationsAreOfUnitLength) {
+    ros::Odometry message = at(1, 1);
+    message.pose.pose.orientation = {0, 0, 3, 4};
+    send(message);
+    ASSERT_TRUE(take());
+    EXPECT_DOUBLE_EQ(glm::length(pose.orientation), 1);
+}
