@@ -7,6 +7,9 @@
 #include "components/replay/registerTasks.hpp"
 #include "components/scene/registerTasks.hpp"
 #include "components/sonar/registerTasks.hpp"
+#ifdef INSONIFY_VIEWER
+#include "components/viewer/registerTasks.hpp"
+#endif
 
 namespace insonify::deployer {
 
@@ -19,6 +22,9 @@ framework::Registry builtInTasks() {
     output::registerTasks(registry);
     logger::registerTasks(registry);
     replay::registerTasks(registry);
+#ifdef INSONIFY_VIEWER
+    viewer::registerTasks(registry);
+#endif
     return registry;
 }
 
