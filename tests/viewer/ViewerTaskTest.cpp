@@ -5,6 +5,7 @@
 #include "components/viewer/registerTasks.hpp"
 #include "tests/viewer/Bench.hpp"
 #include "tests/viewer/Client.hpp"
+#include "tests/viewer/Running.hpp"
 
 namespace insonify::viewer {
 namespace {
@@ -102,58 +103,6 @@ TEST(ViewerTaskTest, AllKindsOfSamplesAreTaken) {
 }
 
 // -- in a deployment --------------------------------------------------------------------------------------------------
-
-struct LevelConfig {
-    double level = 1;
-    template <class Self, class V>
-    static void describe(Self& self, V& visit) {
-        visit(types::Field{"level", "1", "of the echo", 0, 100}, self.level);
-    }
-};
-
-class LevelTask final : public framework::TaskContext {
-public:
-    using TaskContext::TaskContext;
-    framework::Properties<LevelConfig> config{this};
-    framework::OutputPort<types::SonarPtr> ping{this, "ping", "of that level"};
-
-private:
-    bool propertiesHook() override { return true; }
-    void updateHook() override { ping.write(blockPing(now().microseconds)); }
-};
-
-/** A lockstep deployment that runs on a thread of its own, slowly. */
-class Running {
-public:
-    Running() : deployment_(spec(), registry_) {
-        deployment_.configure();
-        thread_ = std::thread([this] { deployment_.run({.pace = 1}, stop_); });
-    }
-    ~Running() {
-        stop_ = true;
-        thread_.join();
-    }
-    framework::Deployment& deployment() { return deployment_; }
-    uint16_t port() const { return dynamic_cast<ViewerTask&>(*deployment_.task("viewer")).port(); }
-
-private:
-    framework::DeploymentSpec spec() {
-        registry_.add<LevelTask>("test::LevelTask", "");
-        registerTasks(registry_);
-        return framework::DeploymentSpec::parse(R"(
-tasks:
-  source: {type: test::LevelTask, activity: {period: 0.01}}
-  viewer: {type: viewer::ViewerTask, properties: {port: 0}}
-connections:
-  - {from: source.ping, to: viewer.ping, policy: {type: buffer, size: 8}}
-)",
-                                                "test.yml");
-    }
-    framework::Registry registry_;
-    framework::Deployment deployment_;
-    std::atomic<bool> stop_{false};
-    std::thread thread_;
-};
 
 /** Says it and gives the answer to it. */
 nlohmann::json answerTo(Client& client, const std::string& request) {

@@ -19,7 +19,7 @@ out vec4 colour;
 const vec3 nothing = vec3(.027, .035, .043);
 void main() {
   vec2 p = (gl_FragCoord.xy - origin) / scale;
-  float range = polar ? p.y : length(p), bearing = polar ? -p.x : atan(-p.x, p.y);
+  float range = polar ? p.y : length(p), bearing = polar ? -p.x : atan(p.x == 0. ? -1e-6 : -p.x, p.y);  // some devices have no atan(0, y)
   float share = (bearing - bearings.x) / (bearings.y - bearings.x);
   int bin = int(floor(range / bins.y));
   colour = vec4(nothing, 1);

@@ -3,7 +3,7 @@ import {palette} from './colours.js';
 
 const tints = {sand: 0xb09a6c, mud: 0x7d7058, clay: 0x8a7460, gravel: 0x8f877a, stone: 0x85817a, rock: 0x7a756d, concrete: 0x9da1a2,
                steel: 0x86684e, rubber: 0x34373a, wood: 0x7c5c3c};
-const deep = 0x0b2733, fog_density = 0.02, most_path = 20000;
+const deep = 0x0b2733, fog_density = 0.014, most_path = 20000;
 
 const fan_vertex = `varying vec2 at; void main() { at = uv; gl_Position = projectionMatrix * modelViewMatrix * vec4(position, 1.); }`;
 const fan_fragment = `uniform sampler2D levels, colours; uniform vec2 brightness; varying vec2 at;
@@ -41,8 +41,8 @@ export class World {
     this.objects = new Map();
     this.moved = [];
     this.azimuth = 2.6;   // of the camera around the sonar [rad]
-    this.elevation = 0.5;
-    this.distance = 16;
+    this.elevation = 0.62;
+    this.distance = 24;
     this.dirty = true;
     this.steer();
   }
