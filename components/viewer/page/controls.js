@@ -10,6 +10,7 @@ export class Controls {
     this.control = control;
     this.loggers = tasks.filter((task) => task.properties.some((property) => property.name === 'record')).map((task) => task.name);
     this.seekers = tasks.filter((task) => task.operations.includes('seek void(double)')).map((task) => task.name);
+    this.replays = tasks.filter((task) => task.operations.includes('pause void(bool)')).map((task) => task.name);
     this.built = false;
   }
   button(text, ask, title) {
@@ -22,6 +23,10 @@ export class Controls {
     this.pause = this.button('pause', () => this.link.ask({pause: !this.paused}), 'simulated time stands still');
     this.step = this.button('step', () => this.link.ask({step: true}), 'one instant more');
     const parts = [this.said, ...this.records.values(), ...(status.lockstep ? [this.pause, this.step] : [])];
+    for (const name of status.lockstep ? [] : this.replays)
+      parts.push(this.button(`pause ${name}`, () => this.link.call(`${name}.pause`, true), 'the log\'s time stands still'),
+                 this.button('go on', () => this.link.call(`${name}.pause`, false), 'the log\'s time goes on'),
+                 this.button('step', () => this.link.call(`${name}.step`), 'one instant of the log'));
     for (const name of this.seekers) {
       const seconds = element('input', {type: 'text', size: 5, value: '0', title: 'seconds of the log'});
       parts.push(' ', seconds, this.button('seek', () => this.link.call(`${name}.seek`, seconds.value), `${name} goes there`));
