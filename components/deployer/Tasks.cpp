@@ -10,6 +10,9 @@
 #include "components/replay/registerTasks.hpp"
 #include "components/scene/registerTasks.hpp"
 #include "components/sonar/registerTasks.hpp"
+#ifdef INSONIFY_VIEWER
+#include "components/viewer/registerTasks.hpp"
+#endif
 
 namespace insonify::deployer {
 
@@ -24,6 +27,9 @@ framework::Registry builtInTasks() {
     replay::registerTasks(registry);
 #ifdef INSONIFY_DDS
     dds::registerTasks(registry);
+#endif
+#ifdef INSONIFY_VIEWER
+    viewer::registerTasks(registry);
 #endif
     return registry;
 }

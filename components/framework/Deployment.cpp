@@ -49,6 +49,7 @@ Deployment::Deployment(DeploymentSpec spec, Registry& registry, std::filesystem:
     environment_->deployment_text = spec_.text;
     environment_->seed = seed;
     environment_->warn = [this](const std::string& text) { warn(text); };
+    environment_->deployment = this;
     start_ = types::Time::fromSeconds(spec_.start_time);
     setClock();
     Wiring(*this, registry).make(seed);
@@ -122,6 +123,7 @@ RunResult Deployment::run(const RunLimits& limits, const std::atomic<bool>& stop
                           const std::function<void(const Progress&)>& progress) {
     RunResult result;
     wall_start_ = std::chrono::steady_clock::now();
+    stood_still_ = {};
     warnings_.clear();
     if (!spec_.lockstep) prepareRealtime();
     {
@@ -175,6 +177,7 @@ void Deployment::runLockstep(const RunLimits& limits, const std::atomic<bool>& s
     const types::Time end = limits.duration_s > 0 ? start_ + types::Time::fromSeconds(limits.duration_s)
                                                   : types::Time{std::numeric_limits<int64_t>::max()};
     while (!stop && !lockstep.idle() && lockstep.next() < end) {
+        standStill(stop);
         keepPace(limits.pace, lockstep.next(), stop);
         simulated_us_ = lockstep.next().microseconds;
         lockstep.step();
@@ -189,7 +192,8 @@ void Deployment::keepPace(double pace, types::Time instant, const std::atomic<bo
     if (pace <= 0) return;
     using Seconds = std::chrono::duration<double>;
     const Seconds due((instant - start_).seconds() / pace);
-    for (Seconds left = due; !stop && left.count() > 0; left = due - (std::chrono::steady_clock::now() - wall_start_))
+    for (Seconds left = due; !stop && left.count() > 0;
+         left = due - (std::chrono::steady_clock::now() - wall_start_ - stood_still_))
         std::this_thread::sleep_for(std::min(left, Seconds(0.02)));
 }
 

@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "components/framework/DeploymentControl.hpp"
 #include "components/framework/DeploymentSpec.hpp"
 #include "components/framework/Port.hpp"
 #include "components/framework/Registry.hpp"
@@ -61,12 +62,12 @@ struct RunResult {
  *  In lockstep, simulated time goes from one instant at which a periodic task is due to the next. At each, the due
  *  tasks run in file order, then triggered tasks, writers before readers. What a buffer carries backwards in that
  *  order (a loop) arrives at the next instant. In realtime each task runs on its own thread and the wall clock. */
-class Deployment {
+class Deployment final : public DeploymentControl {
 public:
     /** Makes and checks; nothing is configured. Throws types::ConfigError with every fault, those of `spec` first.
      *  A `seed` that is not 0 gives each task that has a property of that name a hash of it and the task's name. */
     Deployment(DeploymentSpec spec, Registry& registry, std::filesystem::path output_folder = ".", uint64_t seed = 0);
-    ~Deployment();
+    ~Deployment() override;
     Deployment(const Deployment&) = delete;
     Deployment& operator=(const Deployment&) = delete;
 
@@ -89,9 +90,11 @@ public:
      *  hang, are in error, or no longer. Comes on any thread, one at a time. */
     void onWarning(std::function<void(const std::string&)> told) { told_ = std::move(told); }
 
-    /** Calls an operation, "sonar.setRange", with arguments in YAML; gives the result as text. types::ConfigError: no
-     * such task or operation, or arguments that do not fit; a refusal is what the operation throws. */
-    std::string call(const std::string& operation, const std::vector<std::string>& arguments);
+    std::string call(const std::string& operation, const std::vector<std::string>& arguments) override;
+    types::DeploymentStatus status() const override;
+    std::vector<types::TaskInterface> interfaces() const override;
+    void pause(bool on) override;
+    void step() override;
 
     /** Samples lost in each connection, by "from>to". */
     std::map<std::string, uint64_t> losses() const;
@@ -113,6 +116,8 @@ private:
     void keepPace(double pace, types::Time instant, const std::atomic<bool>& stop) const;
     /** Locks memory and sets up the tasks' threads, as far as is permitted. */
     void prepareRealtime();
+    /** While paused, until a step is asked for. */
+    void standStill(const std::atomic<bool>& stop);
     std::vector<Watchdog::Limit> watchdogLimits() const;
     void warn(const std::string& text);
     bool startAll(std::vector<std::string>& failures);
@@ -132,6 +137,9 @@ private:
     std::atomic<int64_t> simulated_us_{0};
     types::Time start_;
     std::chrono::steady_clock::time_point wall_start_;
+    std::chrono::steady_clock::duration stood_still_{};  ///< In this run.
+    std::atomic<bool> paused_{false};
+    std::atomic<uint64_t> steps_{0};  ///< To be made while paused.
     std::mutex warning_mutex_;
     std::vector<std::string> warnings_;
     std::function<void(const std::string&)> told_;

@@ -13,7 +13,7 @@ void OutputPortBase::noteWritten(types::Time stamp) const {
     if (!activity.realtime() || stamp.isNull()) return;
     const double seconds = (owner().environment().now() - stamp).seconds();
     const double deadline = activity.settings().deadline;
-    owner().timing().latency.add(seconds);
+    owner().timing().noteLatency(seconds);
     owner().timing().late += deadline > 0 && seconds > deadline ? 1 : 0;
 }
 

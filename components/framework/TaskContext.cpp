@@ -77,9 +77,11 @@ types::TaskRecord TaskContext::record() const {
 void TaskContext::refreshRecord() {
     types::TaskRecord record{name_, "", {}, ""};
     for (const PropertiesBase* properties : properties_) record.properties.merge(properties->values());
-    if (const types::Plan* plan = this->plan()) record.plan = flowYaml(*plan);
+    const types::Plan* const made = plan();
+    if (made) record.plan = flowYaml(*made);
     {
         std::lock_guard lock(record_mutex_);
+        recorded_plan_ = made ? std::optional(*made) : std::nullopt;
         record_ = std::move(record);
     }
     ++*environment_->record_changes;

@@ -32,6 +32,8 @@ struct Outcome {
 
 types::Time wallClock();
 
+class DeploymentControl;
+
 /** Where a task finds and leaves files, and what time it is. Shared by all tasks of a deployment. */
 struct Environment {
     std::filesystem::path input_folder = ".";      ///< Of the deployment file.
@@ -48,6 +50,7 @@ struct Environment {
     std::function<std::vector<types::TaskRecord>()> records;
     /** How often tasks have told their records anew: so that nobody asks for them in vain. */
     std::shared_ptr<std::atomic<uint64_t>> record_changes = std::make_shared<std::atomic<uint64_t>>(0);
+    DeploymentControl* deployment = nullptr;  ///< Null for a task outside of a deployment.
 };
 
 class Activity;
@@ -134,6 +137,11 @@ public:
 
     /** Properties and plan, for any thread; the type is the deployment's to know. */
     types::TaskRecord record() const;
+    /** The plan of record(). */
+    std::optional<types::Plan> recordedPlan() const {
+        std::lock_guard lock(record_mutex_);
+        return recorded_plan_;
+    }
     /** Takes what holds now over into record(): on the task's thread, or before there is one. configure() and what
      *  sets properties do it. */
     void refreshRecord();
@@ -214,6 +222,7 @@ private:
     std::string last_error_;
     mutable std::mutex record_mutex_;
     types::TaskRecord record_;
+    std::optional<types::Plan> recorded_plan_;
     std::vector<InputPortBase*> inputs_;
     std::vector<OutputPortBase*> outputs_;
     std::vector<PropertiesBase*> properties_;

@@ -23,12 +23,20 @@ public:
     double end();  ///< It has ended; its duration without pauses [s].
     void pause();  ///< Within a cycle: what follows is waiting, not work.
     void resume() { since_ = ticks(); }
+    void noteLatency(double seconds) {
+        latency.add(seconds);
+        last_latency_ = seconds;
+    }
+    double lastLatency() const { return last_latency_; }                    ///< Any thread [s].
+    double lastCycle() const { return static_cast<double>(last_) * 1e-9; }  ///< Its duration; any thread [s].
     /** Since when it has been at work without a pause; 0: it is not. Any thread. */
     std::chrono::nanoseconds workingSince() const { return std::chrono::nanoseconds(since_.load()); }
     static int64_t ticks() { return std::chrono::nanoseconds(Clock::now().time_since_epoch()).count(); }
 
 private:
     std::atomic<int64_t> since_{0};
+    std::atomic<double> last_latency_{0};
+    std::atomic<int64_t> last_{0};
     int64_t worked_ = 0;  ///< In this cycle, before its last pause [ns].
 };
 
@@ -39,6 +47,7 @@ inline void Timing::begin() {
 inline void Timing::pause() { worked_ += ticks() - since_.exchange(0); }
 inline double Timing::end() {
     pause();
+    last_ = worked_;
     return static_cast<double>(worked_) * 1e-9;
 }
 

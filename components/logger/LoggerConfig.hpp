@@ -32,6 +32,7 @@ struct LoggerConfig {
     std::optional<double> max_file_size, max_file_duration;
     double flush_period = 1;
     int queue = 64;
+    bool record = true;
     std::map<std::string, std::string> metadata;
     mcap::McapConfig mcap;
 
@@ -53,6 +54,8 @@ struct LoggerConfig {
               self.flush_period);
         visit(Field{"queue", "1", "samples that may wait for the file beyond those in the ports' buffers", 1, 65536},
               self.queue);
+        visit(Field{"record", "", "false: samples are passed over until it is true again; may be set while running"},
+              self.record);
         visit(Field{"metadata", "", "keys and values that every stream of the log carries"}, self.metadata);
         visit(Field{"mcap", "", "how samples become ROS 2 messages; of a log that ends in .mcap"}, self.mcap);
     }

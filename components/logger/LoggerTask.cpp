@@ -105,10 +105,19 @@ bool LoggerTask::configureHook() {
     log_ = createLog(path, config->mcap);
     rotation_.emplace(*config, *log_);
     if (logsProperties()) properties_.emplace(log_->path().parent_path() / config->property_file);
+    configured_ = fixedValues();
     declared_ = 0;
     for (const auto& inlet : inlets_) inlet->number.reset();
     return true;
 }
+
+std::map<std::string, types::PropertyValue> LoggerTask::fixedValues() const {
+    auto values = config.values();
+    values.erase("record");
+    return values;
+}
+
+bool LoggerTask::propertiesHook() { return !isRunning() || fixedValues() == configured_; }
 
 bool LoggerTask::startHook() {
     recorded_changes_ = 0;
@@ -128,6 +137,10 @@ void LoggerTask::updateHook() {
     const types::Time received = now();
     recordProperties();
     for (const auto& inlet : inlets_) {
+        if (!config->record) {
+            inlet->port().clear();
+            continue;
+        }
         if (!inlet->number && inlet->port().hasNew()) {
             thread_->declare(inlet->declaration(streamMetadata()));
             inlet->number = declared_++;

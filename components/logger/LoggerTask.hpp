@@ -1,4 +1,5 @@
 #pragma once
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -55,11 +56,14 @@ private:
     class TypedInlet;
 
     bool configureHook() override;
+    bool propertiesHook() override;
     bool startHook() override;
     void updateHook() override;
     void stopHook() override;
     void cleanupHook() override;
     void checkInlets() const;
+    /** The values of all properties but `record`. */
+    std::map<std::string, types::PropertyValue> fixedValues() const;
     std::filesystem::path makePath(const std::string& file) const;
     /** Whether no other logger of the deployment writes the same property file and comes first. */
     bool logsProperties();
@@ -73,6 +77,7 @@ private:
     std::optional<PropertyLog> properties_;
     uint64_t recorded_changes_ = 0;  ///< Of the tasks' records, with the last record of properties.
     std::optional<LogThread> thread_;
+    std::map<std::string, types::PropertyValue> configured_;  ///< With these values.
     size_t declared_ = 0;  ///< Streams in the log.
 };
 

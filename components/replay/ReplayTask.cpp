@@ -158,7 +158,9 @@ std::function<types::Time()> ReplayTask::clock(std::function<types::Time()> wall
 types::Time ReplayTask::logTime() const {
     const double pace = pace_;
     if (pace == 0) return {std::max<int64_t>(first_us_, played_us_)};
-    const double seconds = started_us_ == 0 ? 0 : (wall_() - types::Time{started_us_}).seconds();
+    std::lock_guard lock(clock_mutex_);
+    const types::Time wall = paused_us_ != 0 ? types::Time{paused_us_} : wall_();
+    const double seconds = started_us_ == 0 ? 0 : (wall - types::Time{started_us_}).seconds();
     return types::Time{first_us_} + types::Time::fromSeconds(pace * seconds);
 }
 
@@ -176,7 +178,9 @@ bool ReplayTask::configureHook() {
 
 bool ReplayTask::startHook() {
     rewind();
+    std::lock_guard lock(clock_mutex_);
     if (wall_) started_us_ = wall_().microseconds;
+    paused_us_ = 0;
     return true;
 }
 
@@ -191,8 +195,34 @@ void ReplayTask::noteInstant() {
     pause_ = {};
 }
 
+void ReplayTask::standStill(bool on) {
+    if (!wall_ || !isRunning())
+        throw std::runtime_error(
+            "the log's time can be paused while the replay runs in realtime; in lockstep the deployment's can");
+    std::lock_guard lock(clock_mutex_);
+    if (on == (paused_us_ != 0)) return;
+    const int64_t wall = wall_().microseconds;
+    if (!on) started_us_ += wall - paused_us_;
+    paused_us_ = on ? wall : 0;
+}
+
+void ReplayTask::playNext() {
+    if (paused_us_ == 0) throw std::runtime_error("the replay is not paused");
+    if (finished_) return;
+    if (pace_ > 0) {
+        std::lock_guard lock(clock_mutex_);
+        const double seconds = (next_time_ - types::Time{first_us_}).seconds() / pace_;
+        started_us_ = paused_us_ - types::Time::fromSeconds(seconds).microseconds;
+    }
+    play(next_time_);
+}
+
 void ReplayTask::updateHook() {
-    const types::Time until = due();
+    const bool stands_still = paused_us_ != 0 && pace_ == 0;
+    if (!stands_still) play(due());
+}
+
+void ReplayTask::play(types::Time until) {
     while (!finished_ && next_time_ <= until) {
         noteInstant();
         const pocolog::SampleRef& at = log_->samples()[next_];

@@ -2,6 +2,7 @@
 #include <atomic>
 #include <functional>
 #include <memory>
+#include <mutex>
 #include <optional>
 #include <string>
 #include <vector>
@@ -23,6 +24,8 @@ namespace insonify::replay {
  *  keeps `pace`, checking every millisecond unless its activity has a period, and all tasks of the deployment read the
  *  log's time, at that pace, in place of the wall clock.
  *
+ *  In realtime the log's time can be paused and stepped; in lockstep the deployment's is.
+ *
  *  After a jump (`loop`, `seek`) time goes on: the stamps of all samples are moved by so much that the next sample
  *  comes as long after the one before as that came after its own predecessor; in realtime not before now.
  *
@@ -36,6 +39,11 @@ public:
     framework::Properties<ReplayConfig> config{this};
     framework::Operation<void(double)> seek{this, "seek", "goes on so many seconds after the log's first stamp [s]",
                                             [this](double seconds) { jump(seconds); }};
+    framework::Operation<void(bool)> pause{this, "pause",
+                                           "in realtime: true lets the log's time stand still, false go on",
+                                           [this](bool on) { standStill(on); }};
+    framework::Operation<void()> step{this, "step", "while paused: plays the next instant of the log",
+                                      [this] { playNext(); }};
 
     /** Throws ConfigError when the log cannot be read or has no such stream; null when its type is not known. */
     framework::OutputPortBase* makeOutput(const std::string& stream) override;
@@ -61,6 +69,10 @@ private:
     size_t indexAt(double seconds) const;
     size_t withOutlet(size_t index) const;
     void noteInstant();
+    void standStill(bool on);
+    void playNext();
+    /** What is due until then. */
+    void play(types::Time until);
     types::Time logTime() const;
     /** Moves on to the next sample that has an outlet, at `next_` or after it. */
     void settle();
@@ -76,7 +88,9 @@ private:
     types::Time pause_;                             ///< Beyond `gap_`, before the next instant, after a late jump.
     std::atomic<double> pace_{1};                   ///< Others read the clock, too.
     std::function<types::Time()> wall_;             ///< In realtime.
-    std::atomic<int64_t> started_us_{0};            ///< On the wall clock; 0: not yet.
+    mutable std::mutex clock_mutex_;                ///< Of the next two, which others read through the clock.
+    int64_t started_us_ = 0;                        ///< On the wall clock, pauses left out; 0: not yet.
+    int64_t paused_us_ = 0;                         ///< Since when the log's time stands still; 0: it does not.
     std::atomic<int64_t> first_us_{0};              ///< The instant at which playing starts, on the log's clock.
     std::atomic<int64_t> played_us_{0};             ///< The instant that is played; 0: none yet.
     std::atomic<bool> finished_{false};

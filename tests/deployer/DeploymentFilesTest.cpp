@@ -35,7 +35,9 @@ TEST_P(DeploymentFilesTest, RunsForTwoPings) {
     ASSERT_EQ(outcome.code, 0) << outcome.err;
     const json summary = json::parse(readFile(folder / "summary.json"));
     EXPECT_GE(summary["pings"], 2);
-    for (const auto& [connection, lost] : summary["losses"].items()) EXPECT_EQ(lost, 0) << connection;
+    const bool lockstep = readFile(deploy / (GetParam() + ".yml")).find("schedule: realtime") == std::string::npos;
+    for (const auto& [connection, lost] : summary["losses"].items())  // in realtime the newest sample wins
+        EXPECT_TRUE(lost == 0 || !lockstep) << connection << ": " << lost;
 }
 
 TEST_P(DeploymentFilesTest, IsValid) {

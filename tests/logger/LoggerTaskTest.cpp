@@ -1,5 +1,6 @@
 #include <gmock/gmock.h>
 
+#include "components/framework/Operation.hpp"
 #include "components/logger/LoggerTask.hpp"
 #include "components/pocolog/Reader.hpp"
 #include "tests/support/Folder.hpp"
@@ -195,6 +196,26 @@ TEST(LoggerTaskTest, OneStreamCannotBeLoggedTwiceNorTwoStreamsOnOnePort) {
 
 TEST(LoggerTaskTest, ALoggerWithoutConnectionsSaysSo) {
     EXPECT_THAT(Bench().task.notices(), testing::ElementsAre(testing::HasSubstr("nothing is connected")));
+}
+
+TEST(LoggerTaskTest, RecordingStopsAndGoesOnWhileItRunsAndNothingElseChanges) {
+    Bench bench;
+    Source<types::SonarPtr> sonar(bench.task, "sonar");
+    ASSERT_TRUE(bench.task.configure());
+    ASSERT_TRUE(bench.task.start());
+    const auto set = [&](const char* setter, const char* value) { bench.task.operation(setter)->callText({value}); };
+    for (const char* record : {"true", "false", "true"}) {
+        set("setRecord", record);
+        sonar.write(ping(record == std::string("true") ? 1'000'000 : 2'000'000));
+        bench.task.update();
+    }
+    EXPECT_THROW(set("setQueue", "5"), std::runtime_error);
+    EXPECT_EQ(bench.task.config->queue, 64);
+    bench.finish();
+
+    pocolog::Reader log(bench.path());
+    ASSERT_EQ(log.samples().size(), 2u);
+    for (const pocolog::SampleRef& at : log.samples()) EXPECT_EQ(at.time.microseconds, 1'000'000);
 }
 
 }  // namespace

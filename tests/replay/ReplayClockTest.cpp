@@ -145,5 +145,38 @@ TEST(ReplayClockTest, AfterAPauseASeekInRealtimeGoesOnFromNowWithoutABurst) {
     EXPECT_THAT(stampsIn(poses), ElementsAre(2020)) << "the pause counts for no gap";
 }
 
+TEST(ReplayClockTest, WhilePausedTheLogsTimeStandsStillAndGoesOnStepByStep) {
+    for (const double pace : {0.0, 2.0}) {
+        Bench bench(false, {.file = {}, .pace = pace});
+        test::Reader<types::Pose> poses;
+        bench.connect("vehicle.pose", poses);
+        bench.clock = {1'000'000};
+        bench.task.configure();
+        EXPECT_THROW(bench.task.pause(true), std::runtime_error) << "it does not run yet";
+        bench.task.start();
+        EXPECT_THROW(bench.task.step(), std::runtime_error) << "it is not paused";
+        bench.task.update();
+        EXPECT_THAT(stampsIn(poses), ElementsAre(10));
+        bench.task.pause(true);
+        bench.updateAt(1'500'000);
+        EXPECT_THAT(stampsIn(poses), ElementsAre());
+        bench.task.step();
+        EXPECT_THAT(stampsIn(poses), ElementsAre(20));
+        EXPECT_EQ(bench.task.environment().now(), types::Time{20});
+        bench.updateAt(2'000'000);
+        EXPECT_THAT(stampsIn(poses), ElementsAre()) << "one step, one instant";
+        bench.task.pause(false);
+        bench.updateAt(2'000'005);
+        EXPECT_THAT(stampsIn(poses), ElementsAre(30));
+    }
+}
+
+TEST(ReplayClockTest, InLockstepTheLogCannotBePaused) {
+    Bench bench;
+    bench.task.configure();
+    bench.task.start();
+    EXPECT_THROW(bench.task.pause(true), std::runtime_error);
+}
+
 }  // namespace
 }  // namespace insonify::replay

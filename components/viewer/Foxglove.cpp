@@ -1,0 +1,70 @@
+#include "components/viewer/Foxglove.hpp"
+
+#include <cstring>
+#include <nlohmann/json.hpp>
+
+namespace insonify::viewer {
+namespace {
+
+using Json = nlohmann::json;
+
+/** A whole number of 32 bits. */
+bool isId(const Json& value) { return value.is_number_unsigned() && value.get<uint64_t>() <= UINT32_MAX; }
+
+}  // namespace
+
+std::string serverInfo() {
+    return Json{{"op", "serverInfo"},
+                {"name", "Insonify"},
+                {"capabilities", Json::array()},
+                {"supportedEncodings", {"cdr"}},
+                {"metadata", Json::object()}}
+        .dump();
+}
+
+std::string advertise(const std::vector<FoxgloveChannel>& channels) {
+    Json list = Json::array();
+    for (const FoxgloveChannel& channel : channels)
+        list.push_back({{"id", list.size()},
+                        {"topic", channel.topic},
+                        {"encoding", "cdr"},
+                        {"schemaName", channel.schema_name},
+                        {"schema", channel.schema},
+                        {"schemaEncoding", "ros2msg"}});
+    return Json{{"op", "advertise"}, {"channels", list}}.dump();
+}
+
+std::string complaintText(const std::string& message) {
+    return Json{{"op", "status"}, {"level", 2}, {"message", message}}.dump(-1, ' ', false,
+                                                                           Json::error_handler_t::replace);
+}
+
+std::string messageHead(uint32_t subscription, uint64_t nanoseconds) {
+    std::string head(13, '\1');
+    std::memcpy(head.data() + 1, &subscription, sizeof subscription);
+    std::memcpy(head.data() + 5, &nanoseconds, sizeof nanoseconds);
+    return head;
+}
+
+std::string Subscriptions::take(std::string_view text) {
+    const Json said = Json::parse(text, nullptr, false);
+    if (!said.is_object() || !said.contains("op") || !said["op"].is_string()) return "is no JSON object with an op";
+    if (said["op"] == "unsubscribe") {
+        for (const Json& id : said.value("subscriptionIds", Json::array()))
+            if (isId(id)) channel_of_.erase(id.get<uint32_t>());
+        return "";
+    }
+    if (said["op"] != "subscribe") return "";
+    for (const Json& one : said.value("subscriptions", Json::array())) {
+        if (!one.is_object() || !isId(one.value("id", Json())) || !isId(one.value("channelId", Json())))
+            return "a subscription has an id and a channelId, whole numbers";
+        const auto channel = one["channelId"].get<uint32_t>();
+        if (channel >= channels_)
+            return "there is no channel " + std::to_string(channel) + "; there are " + std::to_string(channels_);
+        if (channel_of_.size() >= most) return "has " + std::to_string(most) + " subscriptions, which are the most";
+        channel_of_[one["id"].get<uint32_t>()] = channel;
+    }
+    return "";
+}
+
+}  // namespace insonify::viewer

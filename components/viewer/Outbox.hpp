@@ -1,0 +1,55 @@
+#pragma once
+#include <deque>
+#include <optional>
+#include <utility>
+
+#include "components/viewer/Frame.hpp"
+
+namespace insonify::viewer {
+
+/** What waits to be sent to one client, who may be slow or not read at all. Of each stream only the newest frame waits;
+ *  what it takes the place of is counted. Not for several threads. */
+class Outbox {
+public:
+    static constexpr size_t most_replies = 64;
+
+    /** A frame of a stream, in the place of an older one that still waits. */
+    void put(uint32_t stream, Frame frame) {
+        for (auto& [key, waiting] : streams_)
+            if (key == stream) {
+                ++dropped_;
+                waiting = std::move(frame);
+                return;
+            }
+        streams_.emplace_back(stream, std::move(frame));
+    }
+    /** A frame that must arrive; goes before those of streams. False: too many wait, the client is to be given up. */
+    bool post(Frame frame) {
+        if (replies_.size() == most_replies) return false;
+        replies_.push_back(std::move(frame));
+        return true;
+    }
+    /** The next to send: replies, then the stream that has waited longest. */
+    std::optional<Frame> next() {
+        if (!replies_.empty()) {
+            Frame frame = std::move(replies_.front());
+            replies_.pop_front();
+            return frame;
+        }
+        if (streams_.empty()) return std::nullopt;
+        Frame frame = std::move(streams_.front().second);
+        streams_.pop_front();
+        return frame;
+    }
+    void forget(uint32_t stream) {
+        std::erase_if(streams_, [stream](const auto& waiting) { return waiting.first == stream; });
+    }
+    uint64_t dropped() const { return dropped_; }  ///< Frames [1].
+
+private:
+    std::deque<Frame> replies_;
+    std::deque<std::pair<uint32_t, Frame>> streams_;
+    uint64_t dropped_ = 0;
+};
+
+}  // namespace insonify::viewer

@@ -1,0 +1,78 @@
+#include "components/viewer/PingPicture.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <cstring>
+#include <nlohmann/json.hpp>
+
+namespace insonify::viewer {
+namespace {
+
+constexpr float nothing_db = -10000;
+
+nlohmann::json bearingsOf(const types::Sonar& ping) {
+    nlohmann::json bearings = nlohmann::json::array();
+    for (const types::Angle& bearing : ping.bearings) bearings.push_back(bearing.isUnknown() ? 0.0 : bearing.rad);
+    return bearings;
+}
+
+/** NaN has no place in JSON. */
+double orZero(double value) { return std::isfinite(value) ? value : 0; }
+
+/** The middle of the floats that begin with these bits. */
+float levelOf(uint32_t bits) {
+    const float value = std::bit_cast<float>(bits << 16 | 0x8000);
+    return value > 0 && std::isfinite(value) ? 10 * std::log10(value) : nothing_db;
+}
+
+}  // namespace
+
+std::string pageMessage(uint32_t kind, std::string json, const std::string& data) {
+    json.resize((json.size() + 3) / 4 * 4, ' ');
+    const uint32_t head[] = {kind, static_cast<uint32_t>(json.size())};
+    std::string message(sizeof head, '\0');
+    std::memcpy(message.data(), head, sizeof head);
+    return message + json + data;
+}
+
+PingPicture::PingPicture(ros::BinScale scale) : scale_(scale), levels_(std::make_unique<std::array<float, 65536>>()) {
+    for (uint32_t bits = 0; bits < levels_->size(); ++bits) (*levels_)[bits] = levelOf(bits);
+}
+
+float PingPicture::decibels(float bin) const {
+    if (scale_ == ros::BinScale::Linear) return (*levels_)[std::bit_cast<uint32_t>(bin) >> 16];
+    return std::isfinite(bin) ? bin : nothing_db;
+}
+
+std::string PingPicture::encode(const types::Sonar& ping, const PictureNote& note) const {
+    const uint32_t pool = (ping.bin_count + most_bins - 1) / most_bins;
+    const uint32_t bins = pool > 0 ? (ping.bin_count + pool - 1) / pool : 0;
+    std::vector<float> levels(size_t{bins} * ping.beam_count, nothing_db);
+    for (uint32_t beam = 0; beam < ping.beam_count; ++beam)
+        for (uint32_t bin = 0; bin < ping.bin_count; ++bin) {
+            float& level = levels[size_t{beam} * bins + bin / pool];
+            level = std::max(level, decibels(ping.bins[size_t{beam} * ping.bin_count + bin]));
+        }
+    float top = nothing_db;
+    for (const float level : levels) top = std::max(top, level);
+    std::string data(levels.size(), '\0');
+    for (size_t i = 0; i < levels.size(); ++i)
+        data[i] = static_cast<char>(std::max(0.0f, std::round(255 - (top - levels[i]) / float{step_db})));
+    if (top == nothing_db) data.assign(data.size(), '\0');
+    const nlohmann::json json = {{"source", note.source},
+                                 {"time_us", ping.time.microseconds},
+                                 {"count", note.count},
+                                 {"latency_s", orZero(note.latency_s)},
+                                 {"beams", ping.beam_count},
+                                 {"bins", bins},
+                                 {"bin_m", orZero(ping.binStart(pool))},
+                                 {"top_db", top == nothing_db ? 0 : top},
+                                 {"step_db", step_db},
+                                 {"beam_width", orZero(ping.beam_width.rad)},
+                                 {"beam_height", orZero(ping.beam_height.rad)},
+                                 {"bearings", bearingsOf(ping)}};
+    return pageMessage(ping_kind, json.dump(), data);
+}
+
+}  // namespace insonify::viewer

@@ -1,0 +1,43 @@
+#pragma once
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <string>
+
+#include "components/ros/Options.hpp"
+#include "types/Sonar.hpp"
+
+namespace insonify::viewer {
+
+/** What a page is told beside the picture. */
+struct PictureNote {
+    std::string source;    ///< "noise.noisy"
+    double latency_s = 0;  ///< Since the ping's stamp, on the deployment's clock [s].
+    uint64_t count = 0;    ///< Pings of this source so far [1].
+};
+
+/** A binary message for pages: u32 kind, u32 size of the JSON, JSON padded to a multiple of 4, data; little endian. */
+std::string pageMessage(uint32_t kind, std::string json, const std::string& data);
+
+inline constexpr uint32_t ping_kind = 1, scene_kind = 2;
+
+/** Pings as messages for pages: a level of 8 bits for each beam and bin, beam-first.
+ *
+ *  255 stands for `top_db`, at or little above the strongest echo; each step below is `step_db`; 0 is no echo, or one
+ *  below all steps. Of more than 4096 bins several become one, which has the strongest of their echoes. */
+class PingPicture {
+public:
+    static constexpr double step_db = 0.4;
+    static constexpr uint32_t most_bins = 4096;
+
+    explicit PingPicture(ros::BinScale scale);
+    /** The ping must be well shaped. */
+    std::string encode(const types::Sonar& ping, const PictureNote& note) const;
+
+private:
+    float decibels(float bin) const;
+    ros::BinScale scale_;
+    std::unique_ptr<std::array<float, 65536>> levels_;  ///< By the first 16 bits of a float, to 0.02 dB [dB].
+};
+
+}  // namespace insonify::viewer

@@ -1,0 +1,181 @@
+#include "components/viewer/Publisher.hpp"
+
+#include <algorithm>
+#include <chrono>
+
+#include "components/viewer/Page.hpp"
+#include "components/viewer/SceneMesh.hpp"
+
+namespace insonify::viewer {
+namespace {
+
+constexpr size_t most_requests = 64;
+constexpr auto status_period = std::chrono::milliseconds(500);
+constexpr uint32_t status_stream = 0, scene_stream = 1, first_source_stream = 2;
+
+ServerOptions optionsOf(const ViewerConfig& config, const std::vector<Source>& sources) {
+    ServerOptions options{config.address,      static_cast<uint16_t>(config.port),
+                          config.token,        static_cast<size_t>(config.clients),
+                          config.idle_timeout, {}};
+    for (const Source& source : sources) options.channels.push_back(channelOf(source.name, source.kind));
+    return options;
+}
+
+}  // namespace
+
+Publisher::Publisher(const ViewerConfig& config, std::vector<Source> sources, Access access)
+    : config_(config),
+      sources_(std::move(sources)),
+      access_(std::move(access)),
+      picture_(config.messages.scale),
+      messages_(config.messages),
+      slots_(sources_.size()),
+      interfaces_(bytesOf(interfacesText(access_.interfaces(), config.control))),
+      server_(optionsOf(config_, sources_), *this),
+      publishing_(&Publisher::publishAll, this),
+      answering_(&Publisher::answerAll, this) {}
+
+Publisher::~Publisher() {
+    {
+        std::lock_guard lock(mutex_);
+        ending_ = true;
+    }
+    fresh_.notify_all();
+    asked_.notify_all();
+    publishing_.join();
+    answering_.join();
+}
+
+void Publisher::offer(size_t source, AnySample sample, double latency_s) {
+    {
+        std::lock_guard lock(mutex_);
+        Slot& slot = slots_[source];
+        slot.sample = std::move(sample);
+        slot.latency_s = latency_s;
+        slot.fresh = true;
+        ++slot.count;
+    }
+    fresh_.notify_one();
+}
+
+std::string Publisher::takeTrouble() {
+    std::lock_guard lock(mutex_);
+    return std::exchange(trouble_, {});
+}
+
+std::optional<PageFile> Publisher::file(std::string_view path) { return pageFile(path); }
+
+std::vector<Frame> Publisher::greeting() {
+    std::lock_guard lock(mutex_);
+    for (Slot& slot : slots_) slot.fresh = slot.count > 0;  // the newcomer has seen none
+    fresh_.notify_one();
+    std::vector<Frame> frames{{"", interfaces_, true}};
+    if (scene_) frames.push_back({"", scene_, false});
+    return frames;
+}
+
+void Publisher::request(uint64_t client, std::string text) {
+    std::lock_guard lock(mutex_);
+    if (requests_.size() < most_requests)
+        requests_.push_back({client, std::move(text)});
+    else
+        server_.reply(client, refusalText(0, "too many requests wait; try again later"));
+    asked_.notify_one();
+}
+
+// -- samples ----------------------------------------------------------------------------------------------------------
+
+void Publisher::publishAll() {
+    auto next_status = std::chrono::steady_clock::now();
+    std::unique_lock lock(mutex_);
+    while (!ending_) {
+        const auto isFresh = [](const Slot& slot) { return slot.fresh; };
+        fresh_.wait_until(lock, next_status, [&] { return ending_ || std::ranges::any_of(slots_, isFresh); });
+        for (size_t i = 0; i < slots_.size() && !ending_; ++i) {
+            if (!std::exchange(slots_[i].fresh, false)) continue;
+            const Slot slot = slots_[i];
+            lock.unlock();
+            publish(i, slot);
+            lock.lock();
+        }
+        if (ending_ || std::chrono::steady_clock::now() < next_status) continue;
+        lock.unlock();
+        showStatus();
+        next_status = std::chrono::steady_clock::now() + status_period;
+        lock.lock();
+    }
+}
+
+void Publisher::publish(size_t source, const Slot& slot) try {
+    const auto channel = static_cast<uint32_t>(source);
+    if (server_.hasPages()) showOnPages(source, slot);
+    if (server_.hasSubscribers(channel))
+        server_.toFoxglove(channel, nanosecondsOf(slot.sample), messages_.encode(slot.sample));
+} catch (const std::exception& error) {
+    std::lock_guard lock(mutex_);
+    trouble_ = sources_[source].name + ": cannot be shown: " + error.what();
+}
+
+void Publisher::showOnPages(size_t source, const Slot& slot) {
+    const uint32_t stream = first_source_stream + static_cast<uint32_t>(source);
+    const std::string& name = sources_[source].name;
+    if (const auto* ping = std::get_if<types::SonarPtr>(&slot.sample))
+        server_.toPages(stream, {"", bytesOf(picture_.encode(**ping, {name, slot.latency_s, slot.count})), false});
+    else if (const auto* pose = std::get_if<types::Pose>(&slot.sample))
+        server_.toPages(stream, {"", bytesOf(poseText(*pose, name)), true});
+    else if (const auto* snapshot = std::get_if<types::SnapshotPtr>(&slot.sample)) {
+        showScene((*snapshot)->geometry);
+        server_.toPages(stream, {"", bytesOf(snapshotText(**snapshot, name)), true});
+    }
+}
+
+void Publisher::showScene(const types::GeometryPtr& geometry) {
+    if (!geometry || geometry == geometry_) return;
+    geometry_ = geometry;
+    const Bytes scene = bytesOf(sceneMessage(*geometry, static_cast<size_t>(config_.max_triangles)));
+    server_.toPages(scene_stream, {"", scene, false});
+    std::lock_guard lock(mutex_);
+    scene_ = scene;
+}
+
+void Publisher::showStatus() {
+    if (!server_.hasPages()) return;
+    server_.toPages(status_stream, {"", bytesOf(statusText(access_.status(), server_.counts())), true});
+}
+
+// -- requests ---------------------------------------------------------------------------------------------------------
+
+void Publisher::answerAll() {
+    std::unique_lock lock(mutex_);
+    while (true) {
+        asked_.wait(lock, [&] { return ending_ || !requests_.empty(); });
+        if (ending_) return;
+        const Asked asked = std::move(requests_.front());
+        requests_.pop_front();
+        lock.unlock();
+        server_.reply(asked.client, answer(asked.text));
+        lock.lock();
+    }
+}
+
+std::string Publisher::answer(const std::string& text) const {
+    Request request;
+    try {
+        request = readRequest(text);
+        return answerText(request.id, carryOut(request));
+    } catch (const std::exception& error) {
+        return refusalText(request.id, error.what());
+    }
+}
+
+std::string Publisher::carryOut(const Request& request) const {
+    if (!config_.control) throw std::runtime_error("this viewer only shows (control: false)");
+    switch (request.kind) {
+        case Request::Kind::Call: return access_.call(request.operation, request.arguments);
+        case Request::Kind::Pause: access_.pause(request.on); break;
+        case Request::Kind::Step: access_.step(); break;
+    }
+    return "";
+}
+
+}  // namespace insonify::viewer

@@ -1,0 +1,92 @@
+#pragma once
+#include <condition_variable>
+#include <deque>
+#include <functional>
+#include <memory>
+#include <mutex>
+#include <string>
+#include <thread>
+#include <variant>
+#include <vector>
+
+#include "components/viewer/Messages.hpp"
+#include "components/viewer/PingPicture.hpp"
+#include "components/viewer/Server.hpp"
+#include "components/viewer/StatusText.hpp"
+#include "components/viewer/ViewerConfig.hpp"
+
+namespace insonify::viewer {
+
+/** What pages see of a deployment and do to it; each is called on a thread of the publisher. */
+struct Access {
+    std::function<types::DeploymentStatus()> status;
+    std::function<std::vector<types::TaskInterface>()> interfaces;
+    std::function<std::string(const std::string&, const std::vector<std::string>&)> call;
+    std::function<void(bool)> pause;
+    std::function<void()> step;
+};
+
+struct Source {
+    std::string name;  ///< "noise.noisy"
+    SampleKind kind;
+};
+
+/** Sends the newest sample of each source to those who look, and does what pages ask for.
+ *
+ *  Three threads: the server's; one that makes messages of samples, which nobody waits for; one on which pages'
+ * requests are carried out, since these wait for tasks. */
+class Publisher final : private ServerHandler {
+public:
+    /** Throws std::runtime_error where the port cannot be had. */
+    Publisher(const ViewerConfig& config, std::vector<Source> sources, Access access);
+    ~Publisher() override;
+
+    /** The newest sample of a source; waits for nobody. `latency_s`: since its stamp [s]. */
+    void offer(size_t source, AnySample sample, double latency_s);
+    uint16_t port() const { return server_.port(); }
+    ServerCounts counts() const { return server_.counts(); }
+    /** What could not be made a message of since this was asked last, and why; empty: nothing. */
+    std::string takeTrouble();
+
+private:
+    struct Slot {
+        AnySample sample;
+        double latency_s = 0;
+        uint64_t count = 0;
+        bool fresh = false;
+    };
+    struct Asked {
+        uint64_t client;
+        std::string text;
+    };
+
+    std::optional<PageFile> file(std::string_view path) override;
+    std::vector<Frame> greeting() override;
+    void request(uint64_t client, std::string text) override;
+    void publishAll();
+    void publish(size_t source, const Slot& slot);
+    void showOnPages(size_t source, const Slot& slot);
+    void showScene(const types::GeometryPtr& geometry);
+    void showStatus();
+    void answerAll();
+    std::string answer(const std::string& text) const;
+    std::string carryOut(const Request& request) const;
+
+    const ViewerConfig config_;
+    const std::vector<Source> sources_;
+    const Access access_;
+    const PingPicture picture_;
+    Messages messages_;
+    std::mutex mutex_;
+    std::condition_variable fresh_, asked_;
+    std::vector<Slot> slots_;
+    std::deque<Asked> requests_;
+    std::string trouble_;
+    types::GeometryPtr geometry_;  ///< Of `scene_`; the publishing thread's.
+    Bytes scene_, interfaces_;     ///< For pages that come later.
+    bool ending_ = false;
+    Server server_;
+    std::thread publishing_, answering_;
+};
+
+}  // namespace insonify::viewer

@@ -1,0 +1,145 @@
+#include "components/viewer/SceneMesh.hpp"
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+#include <numeric>
+
+#include "components/viewer/PingPicture.hpp"
+
+namespace insonify::viewer {
+namespace {
+
+using Json = nlohmann::json;
+
+/** Vertices and triangles of a mesh as they are sent. */
+struct Part {
+    std::vector<float> positions;
+    std::vector<uint32_t> indices;
+    int material = 0;
+};
+
+template <class T>
+void append(std::string& data, const std::vector<T>& values) {
+    data.append(reinterpret_cast<const char*>(values.data()), values.size() * sizeof(T));
+}
+
+/** Indices of all triangles, or of what stands for the outermost patches. */
+std::vector<uint32_t> indicesOf(const types::Mesh& mesh, bool coarse) {
+    if (!coarse || mesh.patches.empty()) return mesh.indices;
+    std::vector<uint32_t> indices;
+    const auto take = [&](const std::vector<uint32_t>& from, uint32_t first, uint32_t count) {
+        indices.insert(indices.end(), from.begin() + first, from.begin() + first + count);
+    };
+    for (size_t i = 0; i < mesh.patches.size(); i = mesh.patches[i].next) {
+        const types::Patch& patch = mesh.patches[i];
+        if (patch.index_count > 0)
+            take(mesh.coarse_indices, patch.first_index, patch.index_count);
+        else
+            for (uint32_t k = 0; k < patch.cluster_count; ++k) {
+                const types::Cluster& cluster = mesh.clusters[patch.first_cluster + k];
+                take(mesh.indices, cluster.first_index, cluster.index_count);
+            }
+    }
+    return indices;
+}
+
+/** Only the vertices that are used. */
+Part partOf(const types::Mesh& mesh, bool coarse) {
+    Part part;
+    part.material = mesh.clusters.empty() ? 0 : mesh.clusters.front().material;
+    std::vector<uint32_t> number(mesh.positions.size(), UINT32_MAX);
+    for (const uint32_t index : indicesOf(mesh, coarse)) {
+        if (number[index] == UINT32_MAX) {
+            number[index] = static_cast<uint32_t>(part.positions.size() / 3);
+            const glm::vec3& p = mesh.positions[index];
+            part.positions.insert(part.positions.end(), {p.x, p.y, p.z});
+        }
+        part.indices.push_back(number[index]);
+    }
+    return part;
+}
+
+Json matrixOf(const glm::dmat4& m) {
+    Json columns = Json::array();
+    for (int c = 0; c < 4; ++c)
+        for (int r = 0; r < 4; ++r) columns.push_back(m[c][r]);
+    return columns;
+}
+
+/** Objects, those of the most triangles first, as many as may be drawn; their numbers in ascending order. */
+std::vector<size_t> shownObjects(const types::Geometry& geometry, const std::vector<Part>& parts, size_t most) {
+    std::vector<size_t> order(geometry.objects.size()), shown;
+    std::iota(order.begin(), order.end(), size_t{0});
+    const auto triangles = [&](size_t object) {
+        return parts[static_cast<size_t>(geometry.objects[object].mesh)].indices.size() / 3;
+    };
+    std::ranges::stable_sort(order, [&](size_t a, size_t b) { return triangles(a) > triangles(b); });
+    size_t sum = 0;
+    for (const size_t object : order)
+        if (sum + triangles(object) <= most) {
+            sum += triangles(object);
+            shown.push_back(object);
+        }
+    std::ranges::sort(shown);
+    return shown;
+}
+
+Json positionOf(const glm::dvec3& p) { return {p.x, p.y, p.z}; }
+Json orientationOf(const glm::dquat& q) { return {q.x, q.y, q.z, q.w}; }
+
+}  // namespace
+
+std::string sceneMessage(const types::Geometry& geometry, size_t max_triangles) {
+    const bool coarse = geometry.triangleCount() > max_triangles;
+    std::vector<Part> parts;
+    for (const types::Mesh& mesh : geometry.meshes) parts.push_back(partOf(mesh, coarse));
+    Json meshes = Json::array(), objects = Json::array(), materials = Json::array();
+    std::string data;
+    for (const Part& part : parts) {
+        meshes.push_back(
+            {{"positions", {{"offset", data.size()}, {"count", part.positions.size()}}},
+             {"indices",
+              {{"offset", data.size() + part.positions.size() * sizeof(float)}, {"count", part.indices.size()}}},
+             {"material", part.material}});
+        append(data, part.positions);
+        append(data, part.indices);
+    }
+    const std::vector<size_t> shown = shownObjects(geometry, parts, max_triangles);
+    for (const size_t i : shown) {
+        const types::Object& object = geometry.objects[i];
+        objects.push_back({{"object", i},
+                           {"name", object.name},
+                           {"mesh", object.mesh},
+                           {"matrix", matrixOf(object.world_from_object)}});
+    }
+    for (const types::Material& material : geometry.materials) materials.push_back(material.name);
+    const Json json = {{"meshes", meshes},       {"objects", objects},
+                       {"materials", materials}, {"triangles", geometry.triangleCount()},
+                       {"coarse", coarse},       {"left_out", geometry.objects.size() - shown.size()}};
+    return pageMessage(scene_kind, json.dump(-1, ' ', false, Json::error_handler_t::replace), data);
+}
+
+std::string snapshotText(const types::Snapshot& snapshot, const std::string& source) {
+    Json moved = Json::array();
+    for (const types::MovedObject& object : snapshot.moved)
+        moved.push_back({{"object", object.object}, {"matrix", matrixOf(object.world_from_object)}});
+    Json json = {{"type", "snapshot"},
+                 {"source", source},
+                 {"time_us", snapshot.time.microseconds},
+                 {"position", positionOf(snapshot.sonar.position)},
+                 {"orientation", orientationOf(snapshot.sonar.orientation)},
+                 {"moved", moved}};
+    if (snapshot.water_surface) json["water_surface"] = *snapshot.water_surface;
+    return json.dump();
+}
+
+std::string poseText(const types::Pose& pose, const std::string& source) {
+    return Json{{"type", "pose"},
+                {"source", source},
+                {"time_us", pose.time.microseconds},
+                {"position", positionOf(pose.position)},
+                {"orientation", orientationOf(pose.orientation)}}
+        .dump(-1, ' ', false, Json::error_handler_t::replace);
+}
+
+}  // namespace insonify::viewer

@@ -1,0 +1,165 @@
+#include "components/viewer/Server.hpp"
+
+#include <map>
+#include <mutex>
+#include <thread>
+
+#include "components/viewer/Session.hpp"
+
+namespace insonify::viewer {
+namespace {
+
+constexpr size_t spare_connections = 32;  // for requests of files, beyond those of clients [1]
+/** Streams for Foxglove in the map of what waits: their channel, beyond all of pages. */
+constexpr uint64_t foxglove_keys = uint64_t{1} << 32;
+
+}  // namespace
+
+/** The server's thread, and what it shares with others. */
+class Server::Core final : public Hub {
+public:
+    Core(ServerOptions asked, ServerHandler& answers)
+        : Hub(std::move(asked), answers), subscribers_(options.channels.size()) {
+        listen();
+        accept();
+        thread_ = std::thread([this] { io_.run(); });
+    }
+    ~Core() override;
+
+    void listen();
+    void accept();
+    void take(tcp::socket socket);
+    /** Runs `work` on the server's thread. */
+    template <class Work>
+    void post(Work&& work) {
+        asio::post(io_, std::forward<Work>(work));
+    }
+    void publish(uint64_t key, Frame frame, uint64_t nanoseconds);
+    void deliver();
+    void leave(uint64_t session) override;
+    void recount() override;
+
+    struct Waiting {
+        Frame frame;
+        uint64_t nanoseconds;
+    };
+
+    asio::io_context io_{1};
+    tcp::acceptor acceptor_{io_};
+    asio::steady_timer retry_{io_};
+    std::map<uint64_t, std::shared_ptr<Session>> sessions_;
+    uint64_t next_session_ = 1;
+    uint16_t port_ = 0;
+    std::atomic<bool> has_pages_{false};
+    std::vector<std::atomic<bool>> subscribers_;
+    std::mutex mutex_;
+    std::map<uint64_t, Waiting> waiting_;  ///< Published and not delivered, the newest of each stream.
+    std::thread thread_;
+};
+
+Server::Core::~Core() {
+    post([this] {
+        acceptor_.close();
+        retry_.cancel();
+        for (const auto& [id, session] : std::exchange(sessions_, {})) session->close();
+        io_.stop();
+    });
+    thread_.join();
+}
+
+void Server::Core::listen() try {
+    const tcp::endpoint endpoint(asio::ip::make_address(options.address), options.port);
+    acceptor_.open(endpoint.protocol());
+    acceptor_.set_option(tcp::acceptor::reuse_address(true));
+    acceptor_.bind(endpoint);
+    acceptor_.listen();
+    port_ = acceptor_.local_endpoint().port();
+} catch (const boost::system::system_error& error) {
+    throw std::runtime_error("is " + std::to_string(options.port) + ", which cannot be had on " + options.address +
+                             ": " + error.code().message() + "; take another, or 0 for any that is free");
+}
+
+void Server::Core::accept() {
+    acceptor_.async_accept([this](const Error& error, tcp::socket socket) {
+        if (!acceptor_.is_open()) return;
+        if (!error) take(std::move(socket));
+        if (!error) return accept();
+        retry_.expires_after(std::chrono::milliseconds(50));  // no descriptors left, for example
+        retry_.async_wait([this](const Error& cancelled) {
+            if (!cancelled) accept();
+        });
+    });
+}
+
+void Server::Core::take(tcp::socket socket) {
+    if (sessions_.size() >= options.clients + spare_connections) {
+        ++refused;
+        return;
+    }
+    const uint64_t id = next_session_++;
+    const auto session = std::make_shared<Session>(std::move(socket), *this, id);
+    sessions_[id] = session;
+    session->readRequest();
+}
+
+void Server::Core::publish(uint64_t key, Frame frame, uint64_t nanoseconds) {
+    std::lock_guard lock(mutex_);
+    const bool idle = waiting_.empty();
+    waiting_[key] = {std::move(frame), nanoseconds};
+    if (idle) post([this] { deliver(); });
+}
+
+void Server::Core::deliver() {
+    std::map<uint64_t, Waiting> published;
+    {
+        std::lock_guard lock(mutex_);
+        published.swap(waiting_);
+    }
+    const auto sessions = sessions_;  // sending may end one
+    for (const auto& [key, item] : published)
+        for (const auto& [id, session] : sessions) {
+            if (key < foxglove_keys && session->kind() == Kind::Page)
+                session->put(static_cast<uint32_t>(key), item.frame);
+            if (key < foxglove_keys || session->kind() != Kind::Foxglove) continue;
+            for (const auto& [subscription, channel] : session->subscriptions().all())
+                if (channel == key - foxglove_keys)
+                    session->put(subscription, {messageHead(subscription, item.nanoseconds), item.frame.body, false});
+        }
+}
+
+void Server::Core::leave(uint64_t session) {
+    if (sessions_.erase(session) > 0) recount();
+}
+
+void Server::Core::recount() {
+    uint64_t pages = 0, others = 0;
+    std::vector<bool> wanted(subscribers_.size());
+    for (const auto& [id, session] : sessions_) {
+        pages += session->kind() == Kind::Page ? 1 : 0;
+        others += session->kind() == Kind::Foxglove ? 1 : 0;
+        for (const auto& [subscription, channel] : session->subscriptions().all()) wanted[channel] = true;
+    }
+    clients = pages + others;
+    has_pages_ = pages > 0;
+    for (size_t i = 0; i < wanted.size(); ++i) subscribers_[i] = wanted[i];
+}
+
+Server::Server(ServerOptions options, ServerHandler& handler)
+    : core_(std::make_unique<Core>(std::move(options), handler)) {}
+Server::~Server() = default;
+uint16_t Server::port() const { return core_->port_; }
+bool Server::hasPages() const { return core_->has_pages_; }
+bool Server::hasSubscribers(uint32_t channel) const { return core_->subscribers_[channel]; }
+void Server::toPages(uint32_t stream, Frame frame) { core_->publish(stream, std::move(frame), 0); }
+void Server::toFoxglove(uint32_t channel, uint64_t nanoseconds, Bytes message) {
+    core_->publish(foxglove_keys + channel, {"", std::move(message), false}, nanoseconds);
+}
+void Server::reply(uint64_t client, std::string text) {
+    core_->post([core = core_.get(), client, frame = Frame{"", bytesOf(std::move(text)), true}] {
+        if (const auto session = core->sessions_.find(client); session != core->sessions_.end())
+            session->second->post(frame);
+    });
+}
+ServerCounts Server::counts() const { return {core_->clients, core_->refused, core_->dropped}; }
+
+}  // namespace insonify::viewer

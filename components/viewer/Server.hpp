@@ -1,0 +1,74 @@
+#pragma once
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "components/viewer/Foxglove.hpp"
+#include "components/viewer/Frame.hpp"
+
+namespace insonify::viewer {
+
+inline constexpr const char* page_protocol = "insonify.view.v1";
+
+struct PageFile {
+    std::string_view type, content;  ///< MIME type, text.
+};
+
+/** What a server asks of who owns it; called on the server's thread. */
+class ServerHandler {
+public:
+    virtual ~ServerHandler() = default;
+    virtual std::optional<PageFile> file(std::string_view path) = 0;
+    /** What a page gets first. */
+    virtual std::vector<Frame> greeting() = 0;
+    /** A page has sent this; the answer is given to Server::reply(). */
+    virtual void request(uint64_t client, std::string text) = 0;
+};
+
+struct ServerOptions {
+    std::string address = "127.0.0.1";
+    uint16_t port = 0;
+    std::string token;         ///< Empty: none is asked for.
+    size_t clients = 16;       ///< Pages and Foxglove clients together [1].
+    double idle_timeout = 30;  ///< [s]
+    std::vector<FoxgloveChannel> channels;
+};
+
+struct ServerCounts {
+    uint64_t clients = 0;  ///< Connected now.
+    uint64_t refused = 0;  ///< Connections, since the start: too many, or a wrong token.
+    uint64_t dropped = 0;  ///< Frames that clients were too slow for.
+};
+
+/** One TCP port for the page, for the data that pages show (protocol `insonify.view.v1`) and for Foxglove.
+ *
+ *  A thread of its own does all; every function is for any thread and waits for no client. What is published faster
+ *  than it is sent is dropped, the oldest first; see Outbox. A client that sends what is not WebSocket, or a message of
+ *  more than 64 KiB, is closed. Without a token only pages from this server itself may connect as pages, under a
+ *  numeric address or as localhost: no other web site can. */
+class Server {
+public:
+    /** Throws std::runtime_error where the port cannot be had. `handler` outlives this. */
+    Server(ServerOptions options, ServerHandler& handler);
+    ~Server();
+    Server(const Server&) = delete;
+    Server& operator=(const Server&) = delete;
+
+    uint16_t port() const;  ///< That was asked for, or was free.
+    bool hasPages() const;
+    bool hasSubscribers(uint32_t channel) const;
+    void toPages(uint32_t stream, Frame frame);
+    void toFoxglove(uint32_t channel, uint64_t nanoseconds, Bytes message);
+    void reply(uint64_t client, std::string text);
+    ServerCounts counts() const;
+
+    class Core;
+
+private:
+    std::unique_ptr<Core> core_;
+};
+
+}  // namespace insonify::viewer

@@ -1,0 +1,233 @@
+#pragma once
+// One connection of a server. For Server.cpp alone: it takes long to compile.
+#include <atomic>
+#include <boost/asio.hpp>
+#include <boost/beast.hpp>
+#include <memory>
+#include <optional>
+#include <utility>
+
+#include "components/viewer/Admission.hpp"
+#include "components/viewer/Outbox.hpp"
+#include "components/viewer/Server.hpp"
+
+namespace insonify::viewer {
+
+namespace asio = boost::asio;
+namespace beast = boost::beast;
+namespace http = beast::http;
+namespace websocket = beast::websocket;
+using asio::ip::tcp;
+using Request = http::request<http::string_body>;
+using Response = http::response<http::string_body>;
+using Error = boost::system::error_code;
+
+constexpr size_t largest_message = 64 << 10;  // from a client [B]
+constexpr size_t largest_header = 8 << 10;    // of a request [B]
+constexpr auto request_timeout = std::chrono::seconds(10);
+
+inline std::string textOf(beast::string_view view) { return {view.data(), view.size()}; }
+
+inline Admission::Request admissionOf(const Request& request) {
+    return {textOf(request.target()), textOf(request[http::field::host]), textOf(request[http::field::origin]),
+            textOf(request[http::field::authorization])};
+}
+
+inline Response responseTo(const Request& request, unsigned status, std::string_view type, std::string_view body) {
+    Response response(http::int_to_status(status), request.version());
+    response.set(http::field::content_type, beast::string_view(type.data(), type.size()));
+    response.set(http::field::cache_control, "no-cache");
+    response.set(http::field::x_frame_options, "DENY");
+    response.keep_alive(false);
+    response.body() = body;
+    response.prepare_payload();
+    if (request.method() == http::verb::head) response.body().clear();
+    return response;
+}
+
+/** What all connections of a server share. */
+struct Hub {
+    Hub(ServerOptions asked, ServerHandler& answers)
+        : options(std::move(asked)), handler(answers), admission{options.token} {}
+    virtual ~Hub() = default;
+    virtual void leave(uint64_t session) = 0;
+    virtual void recount() = 0;  ///< Who is connected, and subscribed to what.
+
+    const ServerOptions options;
+    ServerHandler& handler;
+    const Admission admission;
+    std::atomic<uint64_t> clients{0}, refused{0}, dropped{0};
+};
+
+enum class Kind { None, Page, Foxglove };
+/** One connection: a request, which is answered or becomes a WebSocket. */
+class Session : public std::enable_shared_from_this<Session> {
+public:
+    Session(tcp::socket socket, Hub& hub, uint64_t id);
+    Kind kind() const { return open_ ? kind_ : Kind::None; }
+    const Subscriptions& subscriptions() const { return subscriptions_; }
+    void readRequest();
+    void put(uint32_t stream, Frame frame);
+    void post(Frame frame);
+    void close();
+
+private:
+    using Bound = std::shared_ptr<Session>;
+
+    beast::tcp_stream& stream() { return ws_.next_layer(); }
+    void answer();
+    void respond(Response response);
+    void upgrade();
+    void greet();
+    void readMessage();
+    void taken(std::string text);
+    void send();
+    void leave();
+
+    Hub& hub_;
+    const uint64_t id_;
+    websocket::stream<beast::tcp_stream> ws_;
+    beast::flat_buffer buffer_{largest_message + largest_header};
+    std::optional<http::request_parser<http::string_body>> parser_;
+    std::optional<Response> response_;
+    Subscriptions subscriptions_;
+    Kind kind_ = Kind::None;
+    Outbox outbox_;
+    Frame sending_;
+    uint64_t told_dropped_ = 0;
+    bool open_ = false, writing_ = false;
+};
+
+inline Session::Session(tcp::socket socket, Hub& hub, uint64_t id)
+    : hub_(hub), id_(id), ws_(std::move(socket)), subscriptions_(hub.options.channels.size()) {
+    Error ignored;
+    stream().socket().set_option(tcp::no_delay(true), ignored);
+}
+
+inline void Session::readRequest() {
+    parser_.emplace();
+    parser_->header_limit(largest_header);
+    parser_->body_limit(0);
+    stream().expires_after(request_timeout);
+    http::async_read(stream(), buffer_, *parser_, [self = shared_from_this()](const Error& error, size_t) {
+        error ? self->leave() : self->answer();
+    });
+}
+
+inline void Session::answer() {
+    const Request& request = parser_->get();
+    const Admission::Request asked = admissionOf(request);
+    const bool wants_socket = websocket::is_upgrade(request);
+    const std::string offered = textOf(request[http::field::sec_websocket_protocol]);
+    const bool foxglove = offered.find(foxglove_protocol) != std::string::npos;
+    kind_ = foxglove ? Kind::Foxglove : offered.find(page_protocol) != std::string::npos ? Kind::Page : Kind::None;
+    const std::string path = asked.target.substr(0, asked.target.find('?'));
+    const auto refuse = [&](const Admission::Refusal& refusal) {
+        hub_.refused += refusal.status == 401 || refusal.status == 403 || refusal.status == 503 ? 1 : 0;
+        respond(responseTo(request, refusal.status, "text/plain", refusal.reason + "\n"));
+    };
+    if (const auto refusal = hub_.admission.judge(asked, path == "/" || wants_socket, wants_socket && !foxglove))
+        return refuse(*refusal);
+    if (wants_socket) {
+        if (kind_ == Kind::None)
+            return refuse({400, std::string("the subprotocol must be ") + foxglove_protocol + " or " + page_protocol});
+        if (hub_.clients >= hub_.options.clients) return refuse({503, "there are as many clients as may be"});
+        return upgrade();
+    }
+    if (request.method() != http::verb::get && request.method() != http::verb::head)
+        return refuse({405, "only GET and HEAD are served"});
+    const auto file = hub_.handler.file(path);
+    if (!file) return refuse({404, "there is no such file"});
+    respond(responseTo(request, 200, file->type, file->content));
+}
+
+inline void Session::respond(Response response) {
+    response_.emplace(std::move(response));
+    stream().expires_after(request_timeout);
+    http::async_write(stream(), *response_, [self = shared_from_this()](const Error& error, size_t) {
+        Error ignored;
+        if (!error) self->stream().socket().shutdown(tcp::socket::shutdown_send, ignored);
+        self->leave();
+    });
+}
+
+inline void Session::upgrade() {
+    stream().expires_never();
+    const auto idle =
+        std::chrono::duration_cast<std::chrono::milliseconds>(std::chrono::duration<double>(hub_.options.idle_timeout));
+    ws_.set_option(websocket::stream_base::timeout{request_timeout, idle, true});
+    const char* const protocol = kind_ == Kind::Foxglove ? foxglove_protocol : page_protocol;
+    ws_.set_option(websocket::stream_base::decorator([protocol](websocket::response_type& response) {
+        response.set(http::field::sec_websocket_protocol, protocol);
+    }));
+    ws_.read_message_max(largest_message);
+    ws_.auto_fragment(false);
+    ws_.async_accept(parser_->get(),
+                     [self = shared_from_this()](const Error& error) { error ? self->leave() : self->greet(); });
+}
+
+inline void Session::greet() {
+    open_ = true;
+    buffer_.consume(buffer_.size());
+    hub_.recount();
+    if (kind_ == Kind::Foxglove) {
+        post({"", bytesOf(serverInfo()), true});
+        post({"", bytesOf(advertise(hub_.options.channels)), true});
+    } else {
+        for (Frame& frame : hub_.handler.greeting()) post(std::move(frame));
+    }
+    readMessage();
+}
+
+inline void Session::readMessage() {
+    ws_.async_read(buffer_, [self = shared_from_this()](const Error& error, size_t) {
+        if (error) return self->leave();
+        self->taken(beast::buffers_to_string(self->buffer_.data()));
+        self->buffer_.consume(self->buffer_.size());
+        self->readMessage();
+    });
+}
+
+inline void Session::taken(std::string text) {
+    if (kind_ == Kind::Page) return hub_.handler.request(id_, std::move(text));
+    if (!ws_.got_text()) return;
+    if (const std::string wrong = subscriptions_.take(text); !wrong.empty())
+        post({"", bytesOf(complaintText("the message " + wrong)), true});
+    hub_.recount();
+}
+
+inline void Session::put(uint32_t stream, Frame frame) {
+    outbox_.put(stream, std::move(frame));
+    hub_.dropped += outbox_.dropped() - std::exchange(told_dropped_, outbox_.dropped());
+    send();
+}
+
+inline void Session::post(Frame frame) { outbox_.post(std::move(frame)) ? send() : close(); }
+
+inline void Session::send() {
+    if (writing_ || !open_) return;
+    auto next = outbox_.next();
+    if (!next) return;
+    sending_ = std::move(*next);
+    writing_ = true;
+    ws_.text(sending_.text);
+    const std::array<asio::const_buffer, 2> buffers{asio::buffer(sending_.head), asio::buffer(*sending_.body)};
+    ws_.async_write(buffers, [self = shared_from_this()](const Error& error, size_t) {
+        self->writing_ = false;
+        self->sending_ = {};
+        error ? self->leave() : self->send();
+    });
+}
+
+inline void Session::close() {
+    open_ = false;
+    Error ignored;
+    stream().socket().close(ignored);
+}
+
+inline void Session::leave() {
+    close();
+    hub_.leave(id_);
+}
+
+}  // namespace insonify::viewer

@@ -1,0 +1,109 @@
+#include "components/viewer/StatusText.hpp"
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <stdexcept>
+
+namespace insonify::viewer {
+namespace {
+
+using Json = nlohmann::json;
+
+/** Text that is not UTF-8 is shown as well as it can be. */
+std::string dump(const Json& json) { return json.dump(-1, ' ', false, Json::error_handler_t::replace); }
+
+Json numberOrNull(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
+
+Json valueOf(const types::PropertyValue& value) {
+    return std::visit([](const auto& held) { return Json(held); }, value);
+}
+
+Json planOf(const types::Plan& plan) {
+    Json omitted = Json::array();
+    for (const types::Omission& omission : plan.omitted)
+        omitted.push_back({{"name", omission.name}, {"reason", omission.reason}});
+    return {{"features", plan.features}, {"passes", plan.passes},
+            {"omitted", omitted},        {"notices", plan.notices},
+            {"rows", plan.rows},         {"columns_per_beam", plan.columns_per_beam},
+            {"slabs", plan.slabs},       {"predicted_error", numberOrNull(plan.predicted_error)}};
+}
+
+Json taskOf(const types::TaskStatus& task) {
+    Json properties = Json::object(), outputs = Json::array();
+    for (const auto& [name, value] : task.record.properties) properties[name] = valueOf(value);
+    for (const types::PortStatus& port : task.outputs)
+        outputs.push_back({{"name", port.name}, {"type", port.type}, {"written", port.written}});
+    Json json = {{"name", task.record.name}, {"type", task.record.type}, {"state", task.state},
+                 {"error", task.error},      {"cycle_s", task.cycle_s},  {"latency_s", numberOrNull(task.latency_s)},
+                 {"outputs", outputs},       {"properties", properties}};
+    if (task.plan) json["plan"] = planOf(*task.plan);
+    return json;
+}
+
+}  // namespace
+
+std::string statusText(const types::DeploymentStatus& status, const ServerCounts& counts) {
+    Json tasks = Json::array(), connections = Json::array();
+    for (const types::TaskStatus& task : status.tasks) tasks.push_back(taskOf(task));
+    for (const types::ConnectionStatus& one : status.connections)
+        connections.push_back({{"from", one.from}, {"to", one.to}, {"policy", one.policy}, {"lost", one.lost}});
+    return dump({{"type", "status"},
+                 {"now_us", status.now.microseconds},
+                 {"lockstep", status.lockstep},
+                 {"paused", status.paused},
+                 {"tasks", tasks},
+                 {"connections", connections},
+                 {"clients", counts.clients},
+                 {"refused", counts.refused},
+                 {"dropped", counts.dropped}});
+}
+
+std::string interfacesText(const std::vector<types::TaskInterface>& interfaces, bool control) {
+    Json tasks = Json::array();
+    for (const types::TaskInterface& task : interfaces) {
+        Json properties = Json::array();
+        for (const types::PropertyNote& note : task.properties)
+            properties.push_back({{"name", note.name},
+                                  {"type", note.type},
+                                  {"unit", note.unit},
+                                  {"doc", note.doc},
+                                  {"min", numberOrNull(note.min)},
+                                  {"max", numberOrNull(note.max)}});
+        tasks.push_back({{"name", task.name}, {"properties", properties}, {"operations", task.operations}});
+    }
+    return dump({{"type", "interfaces"}, {"control", control}, {"tasks", tasks}});
+}
+
+Request readRequest(const std::string& text) {
+    const Json said = Json::parse(text, nullptr, false);
+    if (!said.is_object()) throw std::invalid_argument("is no JSON object");
+    Request request;
+    const Json id = said.value("id", Json(0));
+    if (!id.is_number_unsigned()) throw std::invalid_argument("id is no whole number");
+    request.id = id.get<uint64_t>();
+    if (said.contains("pause") && said["pause"].is_boolean()) {
+        request.kind = Request::Kind::Pause;
+        request.on = said["pause"].get<bool>();
+    } else if (said.contains("step")) {
+        request.kind = Request::Kind::Step;
+    } else if (said.contains("call") && said["call"].is_string()) {
+        request.operation = said["call"].get<std::string>();
+        for (const Json& argument : said.value("arguments", Json::array())) {
+            if (!argument.is_string()) throw std::invalid_argument("an argument is no text");
+            request.arguments.push_back(argument.get<std::string>());
+        }
+    } else {
+        throw std::invalid_argument("has none of call, pause (true, false) and step");
+    }
+    return request;
+}
+
+std::string answerText(uint64_t id, const std::string& result) {
+    return dump({{"type", "answer"}, {"id", id}, {"result", result}});
+}
+
+std::string refusalText(uint64_t id, const std::string& why) {
+    return dump({{"type", "answer"}, {"id", id}, {"refused", why}});
+}
+
+}  // namespace insonify::viewer

@@ -1,0 +1,61 @@
+#pragma once
+#include <arpa/inet.h>
+
+#include <string>
+
+#include "components/ros/Options.hpp"
+#include "types/Describe.hpp"
+
+namespace insonify::viewer {
+
+struct ViewerConfig {
+    int port = 8765;
+    std::string address = "127.0.0.1";
+    std::string token;
+    int clients = 16;
+    double idle_timeout = 30;
+    bool control = true;
+    int max_triangles = 500000;
+    ros::SonarOptions messages;
+
+    template <class Self, class V>
+    static void describe(Self& self, V& visit) {
+        using types::Field;
+        visit(
+            Field{"port", "1", "TCP port of the page and of Foxglove; 0: any that is free, told in a notice", 0, 65535},
+            self.port);
+        visit(
+            Field{"address", "", "numeric address to listen on; one that is not of this host's loopback needs a token"},
+            self.address);
+        visit(Field{"token", "", "what a client must give: http://address:port/?token=...; empty: none"}, self.token);
+        visit(Field{"clients", "1", "that may be connected at once; others are refused", 1, 1000}, self.clients);
+        visit(Field{"idle_timeout", "s", "a client that has not answered for so long is given up", 1, 3600},
+              self.idle_timeout);
+        visit(Field{"control", "", "whether pages may set properties, call operations and pause; else they only show"},
+              self.control);
+        visit(Field{"max_triangles", "1",
+                    "of the scene in the page; beyond, large meshes are coarse, small ones left out", 1000, 1e8},
+              self.max_triangles);
+        visit(Field{"messages", "", "how pings become messages for Foxglove; `scale` holds for the page, too"},
+              self.messages);
+    }
+
+    bool isLocal() const {
+        in_addr v4{};
+        return address == "::1" || (inet_pton(AF_INET, address.c_str(), &v4) == 1 && ntohl(v4.s_addr) >> 24 == 127);
+    }
+    bool isNumeric() const {
+        in6_addr any{};
+        return inet_pton(AF_INET, address.c_str(), &any) == 1 || inet_pton(AF_INET6, address.c_str(), &any) == 1;
+    }
+    void check(types::Problems& problems) const {
+        if (!isNumeric())
+            problems.push_back(
+                {"address", "is '" + address + "'; it must be a numeric address, as 127.0.0.1, 0.0.0.0 or ::1"});
+        else if (!isLocal() && token.empty())
+            problems.push_back({"token", "is missing; it must be there where address is " + address +
+                                             ", which other machines can reach"});
+    }
+};
+
+}  // namespace insonify::viewer

@@ -1,0 +1,144 @@
+#include "components/viewer/ViewerTask.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+
+#include "components/framework/DeploymentControl.hpp"
+#include "types/ConfigError.hpp"
+
+namespace insonify::viewer {
+
+/** One input. */
+class ViewerTask::Inlet {
+public:
+    explicit Inlet(Source of) : source(std::move(of)) {}
+    virtual ~Inlet() = default;
+    virtual framework::InputPortBase& port() const = 0;
+    /** Hands the newest over; gives what is wrong with one, or nothing. */
+    virtual std::string drain(Publisher& publisher, size_t number, types::Time now) = 0;
+    const Source source;
+};
+
+namespace {
+
+std::string faultOf(const types::Pose&) { return ""; }
+template <class T>
+std::string faultOf(const std::shared_ptr<const T>& sample) {
+    if (!sample) return "is null";
+    if constexpr (std::is_same_v<T, types::Sonar>)
+        if (!sample->wellShaped()) return "has lists that are not as long as its counts say";
+    return "";
+}
+
+types::Time stampOf(const types::Pose& pose) { return pose.time; }
+template <class T>
+types::Time stampOf(const std::shared_ptr<const T>& sample) {
+    return sample->time;
+}
+
+}  // namespace
+
+template <class T>
+class ViewerTask::TypedInlet final : public Inlet {
+public:
+    using Port = framework::InputPort<T>;
+
+    TypedInlet(std::unique_ptr<framework::InputPortBase> port, Source of)
+        : Inlet(std::move(of)), owned_(std::move(port)), port_(static_cast<Port&>(*owned_)) {}
+    framework::InputPortBase& port() const override { return port_; }
+    std::string drain(Publisher& publisher, size_t number, types::Time now) override {
+        std::string fault;
+        for (T sample{}; port_.readNew(sample);) {
+            const std::string wrong = faultOf(sample);
+            if (wrong.empty())
+                publisher.offer(number, std::move(sample), (now - stampOf(sample)).seconds());
+            else
+                fault = port_.path() + ": a sample " + wrong + "; it is not shown";
+        }
+        return fault;
+    }
+
+private:
+    std::unique_ptr<framework::InputPortBase> owned_;
+    Port& port_;
+};
+
+ViewerTask::ViewerTask(std::string name) : TaskContext(std::move(name)) {}
+ViewerTask::~ViewerTask() = default;
+
+framework::InputPortBase* ViewerTask::makeInput(const std::string& port, framework::OutputPortBase& source) {
+    const size_t before = inlets_.size();
+    const auto take = [&]<class T>(std::type_identity<T>, SampleKind kind) {
+        if (dynamic_cast<framework::OutputPort<T>*>(&source))
+            inlets_.push_back(
+                std::make_unique<TypedInlet<T>>(source.makeReader(this, port), Source{source.path(), kind}));
+    };
+    take(std::type_identity<types::SonarPtr>{}, SampleKind::Ping);
+    take(std::type_identity<types::Pose>{}, SampleKind::Pose);
+    take(std::type_identity<types::ImagePtr>{}, SampleKind::Image);
+    take(std::type_identity<types::SnapshotPtr>{}, SampleKind::Snapshot);
+    if (inlets_.size() == before)
+        throw types::ConfigError("", "",
+                                 source.path() + " is " + source.typeName() +
+                                     ", which a viewer cannot show; it shows pings, poses, pictures and snapshots");
+    return &inlets_.back()->port();
+}
+
+std::vector<std::string> ViewerTask::notices() const {
+    if (!publisher_) return {};
+    const bool v6 = config->address.find(':') != std::string::npos;
+    const std::string host = v6 ? "[" + config->address + "]" : config->address;
+    return {fmt::format("open http://{}:{}/{}", host, port(), config->token.empty() ? "" : "?token=...")};
+}
+
+void ViewerTask::refuseOwn(const std::string& operation) const {
+    static constexpr std::array life_cycle{".configure", ".start", ".stop", ".cleanup", ".recover"};
+    if (operation.starts_with(name() + ".")) throw std::runtime_error("the viewer does not steer itself");
+    if (std::ranges::any_of(life_cycle, [&](const char* ending) { return operation.ends_with(ending); }))
+        throw std::runtime_error("states of tasks are the deployment's to change");
+}
+
+Access ViewerTask::access() {
+    framework::DeploymentControl* const deployment = environment().deployment;
+    if (!deployment) {
+        const auto refuse = [] { throw std::runtime_error("there is no deployment around this viewer"); };
+        return {[] { return types::DeploymentStatus{}; }, [] { return std::vector<types::TaskInterface>{}; },
+                [refuse](const std::string&, const std::vector<std::string>&) { return refuse(), std::string(); },
+                [refuse](bool) { refuse(); }, [refuse] { refuse(); }};
+    }
+    return {[deployment] { return deployment->status(); }, [deployment] { return deployment->interfaces(); },
+            [this, deployment](const std::string& operation, const std::vector<std::string>& arguments) {
+                refuseOwn(operation);
+                return deployment->call(operation, arguments);
+            },
+            [deployment](bool on) { deployment->pause(on); }, [deployment] { deployment->step(); }};
+}
+
+bool ViewerTask::configureHook() {
+    std::vector<Source> sources;
+    for (const auto& inlet : inlets_) sources.push_back(inlet->source);
+    try {
+        publisher_ = std::make_unique<Publisher>(*config, std::move(sources), access());
+    } catch (const std::runtime_error& error) {
+        throw types::ConfigError("", name() + ".port", error.what());
+    }
+    return true;
+}
+
+void ViewerTask::updateHook() {
+    std::string fault = publisher_->takeTrouble();
+    for (size_t i = 0; i < inlets_.size(); ++i)
+        if (std::string wrong = inlets_[i]->drain(*publisher_, i, now()); !wrong.empty()) fault = std::move(wrong);
+    if (!fault.empty()) error(fault);
+}
+
+void ViewerTask::errorHook() {
+    recover();
+    updateHook();
+}
+
+void ViewerTask::cleanupHook() { publisher_.reset(); }
+
+}  // namespace insonify::viewer

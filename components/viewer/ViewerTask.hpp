@@ -1,0 +1,55 @@
+#pragma once
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "components/framework/Port.hpp"
+#include "components/framework/Properties.hpp"
+#include "components/framework/TaskContext.hpp"
+#include "components/viewer/Publisher.hpp"
+#include "components/viewer/ViewerConfig.hpp"
+
+namespace insonify::viewer {
+
+/** Shows a deployment while it runs: a page at http://address:port/, and the same samples for Foxglove on that port.
+ *
+ *  Ports: an input for each connection that names one, whatever the name: pings, poses, pictures and snapshots. The
+ * page shows pings as a fan, the scene and the sonar's place from snapshots, the vehicle's path from poses, the tasks,
+ * what connections lost and what is left out; where `control` allows it sets properties, calls operations and, in
+ *  lockstep, pauses. Foxglove gets a channel for each input.
+ *
+ *  configure opens the port; one that is taken refuses it. Cycles only hand over the newest samples: no client delays
+ *  them, and what a client is too slow for is dropped and counted. A ping whose lists are not as long as its counts
+ *  say, or what no message can hold, is left out and makes the task RunTimeError until the next sample. */
+class ViewerTask final : public framework::TaskContext {
+public:
+    explicit ViewerTask(std::string name);
+    ~ViewerTask() override;
+
+    framework::Properties<ViewerConfig> config{this};
+
+    /** Throws ConfigError for a type that cannot be shown. */
+    framework::InputPortBase* makeInput(const std::string& port, framework::OutputPortBase& source) override;
+    /** Where the page is. */
+    std::vector<std::string> notices() const override;
+    /** Where it listens, 0 when it does not. */
+    uint16_t port() const { return publisher_ ? publisher_->port() : 0; }
+    ServerCounts counts() const { return publisher_ ? publisher_->counts() : ServerCounts{}; }
+
+private:
+    class Inlet;
+    template <class T>
+    class TypedInlet;
+
+    bool configureHook() override;
+    void updateHook() override;
+    void errorHook() override;
+    void cleanupHook() override;
+    Access access();
+    void refuseOwn(const std::string& operation) const;
+
+    std::vector<std::unique_ptr<Inlet>> inlets_;
+    std::unique_ptr<Publisher> publisher_;
+};
+
+}  // namespace insonify::viewer

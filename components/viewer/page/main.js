@@ -1,0 +1,136 @@
+// What comes over the link, to where it is shown.
+import {names} from './colours.js';
+import {Controls} from './controls.js';
+import {Fan} from './fan.js';
+import {showGraph} from './graph.js';
+import {Link} from './link.js';
+import {Scan, pingOf, strongLevel} from './ping.js';
+import {Properties, Rates, element, showPlan, showTasks} from './tables.js';
+import {World, loadThree} from './world.js';
+
+const byId = (id) => document.getElementById(id);
+const fan = new Fan(byId('fan'), byId('overlay'));
+const rates = new Rates(), scans = new Map(), arrivals = [];
+let world = null, scene = null, snapshot = null, reference = null, missed = 0, last_count = null, shown = 0, needs_drawing = false;
+
+const link = new Link(take, (open) => {
+  byId('link').className = open ? 'lamp' : 'lamp off';
+  byId('link').textContent = open ? 'connected' : 'no connection';
+  last_count = null;
+});
+const properties = new Properties(link), controls = new Controls(link, byId('controls'));
+
+const show = {
+  interfaces(message) {
+    properties.setInterfaces(message);
+    controls.setInterfaces(message);
+  },
+  status(status) {
+    rates.update(status);
+    showTasks(status, rates);
+    showGraph(byId('graph'), status, rates);
+    showPlan(status);
+    properties.update(status);
+    controls.update(status);
+  },
+  snapshot(message) {
+    snapshot = message;
+    world?.showSnapshot(message);
+    byId('pose_text').textContent = 'sonar ' + message.position.map((x) => x.toFixed(2)).join('  ') + ' m';
+  },
+  pose(message) { world?.showPose(message); },
+};
+
+function take(message) {
+  if (message.type) return show[message.type]?.(message);
+  if (message.kind === 1) return takePing(pingOf(message));
+  scene = message;
+  if (world) byId('scene_text').textContent = world.showScene(scene);
+}
+
+function takePing(ping) {
+  const chooser = byId('source');
+  if (![...chooser.options].some((option) => option.value === ping.source)) chooser.append(element('option', {}, ping.source));
+  if (chooser.value !== ping.source) return;
+  if (ping.beams === 1) {
+    if (!scans.has(ping.source)) scans.set(ping.source, new Scan());
+    ping = scans.get(ping.source).add(ping);
+  }
+  const strong = strongLevel(ping);
+  reference = reference === null || Math.abs(strong - reference) > 30 ? strong : reference + 0.1 * (strong - reference);
+  tell(ping);
+  display(ping);
+}
+
+function tell(ping) {
+  const now = performance.now();
+  arrivals.push(now);
+  while (arrivals[0] < now - 2000) arrivals.shift();
+  if (last_count !== null && ping.count > last_count) missed += ping.count - last_count - 1;
+  last_count = ping.count;
+  byId('time').textContent = `${(ping.time_us * 1e-6).toFixed(2)} s`;
+  if (ping.time_us > 1e15) byId('time').textContent = new Date(ping.time_us / 1e3).toISOString().slice(11, 22);
+  byId('rate').textContent = arrivals.length > 1 ? ((arrivals.length - 1) * 1e3 / (now - arrivals[0])).toFixed(1) : '-';
+  byId('latency').textContent = `${(ping.latency_s * 1e3).toFixed(1)} ms`;
+  byId('missed').textContent = missed;
+}
+
+function display(ping) {
+  const top = reference - Number(byId('gain').value);
+  fan.span_db = Number(byId('span').value);
+  fan.show(ping, top);
+  world?.showPing(ping, top, fan.span_db, byId('map').value);
+  needs_drawing = true;
+  ++shown;
+}
+
+function settingsChanged() {
+  byId('gain_db').textContent = `${byId('gain').value} dB`;
+  byId('span_db').textContent = `${byId('span').value} dB`;
+  fan.rings = byId('rings').checked;
+  fan.setColours(byId('map').value);
+  if (fan.ping) display(fan.ping);
+}
+
+for (const name of names) byId('map').append(element('option', {}, name));
+for (const id of ['map', 'gain', 'span', 'rings']) byId(id).oninput = settingsChanged;
+byId('source').onchange = () => { reference = null; last_count = null; };
+byId('shape').onclick = () => {
+  fan.polar = !fan.polar;
+  byId('shape').textContent = fan.polar ? 'polar' : 'fan';
+  needs_drawing = true;
+};
+byId('fan').onpointermove = ({offsetX, offsetY}) => {
+  fan.cursor = [offsetX * devicePixelRatio, fan.canvas.height - offsetY * devicePixelRatio];
+  needs_drawing = true;
+};
+byId('fan').onpointerleave = () => { fan.cursor = null; needs_drawing = true; };
+addEventListener('resize', () => { needs_drawing = true; });
+settingsChanged();
+
+/** The scene is drawn no oftener than leaves three quarters of the time to the fan. */
+let next_view = 0;
+function frame(now) {
+  if (needs_drawing) fan.draw();
+  needs_drawing = false;
+  byId('cursor').textContent = fan.cursorText();
+  if (world && now >= next_view) {
+    const begin = performance.now();
+    world.draw();
+    next_view = now + 4 * (performance.now() - begin);
+  }
+  requestAnimationFrame(frame);
+}
+requestAnimationFrame(frame);
+
+loadThree().then((THREE) => {
+  world = new World(THREE, byId('view'));
+  if (scene) byId('scene_text').textContent = world.showScene(scene);
+  if (snapshot) world.showSnapshot(snapshot);
+}).catch((error) => {
+  byId('no_view').hidden = false;
+  byId('no_view').textContent = `The 3-D view is not there: ${error.message}. It needs three.js, which is built into the viewer where Debian's libjs-three is installed.`;
+});
+
+/** For tests and for the curious. */
+self.insonify = {fan, link, shown: () => shown, world: () => world, status: () => properties.status};

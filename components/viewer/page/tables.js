@@ -1,0 +1,114 @@
+// Tasks, connections, plan and properties as tables; what can be changed is changed here.
+
+export function element(name, attributes = {}, ...children) {
+  const made = document.createElement(name);
+  for (const [key, value] of Object.entries(attributes))
+    key in made ? made[key] = value : made.setAttribute(key, value);
+  made.append(...children);
+  return made;
+}
+const cell = (text, kind = '') => element('td', {className: kind}, text);
+const byId = (id) => document.getElementById(id);
+const milliseconds = (s) => s === null ? '-' : (s * 1e3).toFixed(s < 0.01 ? 2 : 1);
+
+/** Samples a second of each port, from one status to the next. */
+export class Rates {
+  update(status) {
+    const now = performance.now() / 1e3, counts = new Map();
+    for (const task of status.tasks)
+      for (const port of task.outputs) counts.set(`${task.name}.${port.name}`, port.written);
+    if (!this.since || now - this.since > 0.9) {
+      this.rates = new Map([...counts].map(([port, n]) => [port, this.counts ? (n - (this.counts.get(port) ?? n)) / (now - this.since) : 0]));
+      this.counts = counts;
+      this.since = now;
+    }
+  }
+  of(port) { return this.rates?.get(port) ?? 0; }
+  /** Of the task's busiest port but `state`. */
+  ofTask(task) { return Math.max(0, ...task.outputs.filter((port) => port.name !== 'state').map((port) => this.of(`${task.name}.${port.name}`))); }
+}
+
+export function showTasks(status, rates) {
+  const rows = status.tasks.map((task) => element('tr', {title: task.type},
+      cell(task.name), cell(task.state, task.state), cell(milliseconds(task.cycle_s), 'n'),
+      cell(status.lockstep || !task.latency_s ? '-' : milliseconds(task.latency_s), 'n'), cell(rates.ofTask(task).toFixed(1), 'n'), cell(task.error, 'refused')));
+  const head = element('tr', {}, ...[['task'], ['state'], ['cycle ms', 'n'], ['latency ms', 'n'], ['samples/s', 'n'], ['']].map(
+      ([text, kind]) => element('th', {className: kind ?? ''}, text)));
+  byId('tasks').replaceChildren(head, ...rows);
+}
+
+export function showPlan(status) {
+  const parts = [];
+  for (const task of status.tasks) {
+    if (!task.plan) continue;
+    const plan = task.plan, list = element('dl');
+    for (const {name, reason} of plan.omitted) list.append(element('dt', {}, name), element('dd', {}, reason));
+    const quality = `${plan.rows} rows, ${plan.columns_per_beam} columns per beam, ${plan.slabs} slabs` +
+        (plan.predicted_error === null ? '' : `, predicted error ${plan.predicted_error.toPrecision(2)}`);
+    parts.push(element('h3', {}, task.name), element('div', {}, quality),
+               element('div', {className: 'dim'}, 'compiled: ' + (plan.features.join(', ') || 'nothing beyond the minimum')),
+               element('div', {className: 'dim'}, 'run: ' + plan.passes.join(', ')));
+    if (plan.omitted.length) parts.push(element('h3', {}, 'left out'), list);
+    for (const notice of plan.notices) parts.push(element('div', {className: 'RunTimeError'}, notice));
+  }
+  const lost = status.connections.filter((one) => one.lost);
+  parts.push(element('h3', {}, 'lost samples'));
+  for (const one of lost) parts.push(element('div', {className: 'refused'}, `${one.lost}  ${one.from} > ${one.to} (${one.policy})`));
+  if (!lost.length) parts.push(element('div', {className: 'dim'}, 'none'));
+  byId('plan').replaceChildren(...parts);
+}
+
+const setter = (name) => 'set' + name[0].toUpperCase() + name.slice(1);
+
+/** An input that fits the property's type. */
+function inputFor(property) {
+  if (property.type === 'bool') return element('input', {type: 'checkbox'});
+  if (property.type.includes('|') && !property.type.includes(' '))
+    return element('select', {}, ...property.type.split('|').map((name) => element('option', {}, name)));
+  return element('input', {type: 'text', spellcheck: false});
+}
+function put(input, value) {
+  if (document.activeElement === input) return;
+  if (input.type === 'checkbox') input.checked = value === true;
+  else input.value = value === undefined ? '' : typeof value === 'number' ? +value.toPrecision(9) : value;
+}
+
+/** The properties of one task, each with what its last change was refused for. */
+export class Properties {
+  constructor(link) {
+    this.link = link;
+    byId('task').onchange = () => this.build();
+  }
+  setInterfaces({tasks, control}) {
+    this.control = control;
+    const chosen = byId('task').value;
+    this.tasks = new Map(tasks.filter((task) => task.properties.length).map((task) => [task.name, task]));
+    byId('task').replaceChildren(...[...this.tasks.keys()].map((name) => element('option', {}, name)));
+    const sonar = tasks.find((task) => task.properties.some((property) => property.name === 'bin_count'));
+    byId('task').value = this.tasks.has(chosen) ? chosen : sonar?.name ?? this.tasks.keys().next().value;
+    this.build();
+  }
+  build() {
+    const task = this.tasks.get(byId('task').value);
+    this.inputs = new Map();
+    byId('properties').replaceChildren(...(task?.properties ?? []).map((property) => this.row(task.name, property)));
+    if (this.status) this.update(this.status);
+  }
+  row(task, property) {
+    const input = inputFor(property), said = element('span', {className: 'refused'});
+    const bounds = property.min === null && property.max === null ? '' : ` (${property.min ?? '-inf'} to ${property.max ?? 'inf'})`;
+    input.disabled = !this.control;
+    input.onchange = async () => {
+      const answer = await this.link.call(`${task}.${setter(property.name)}`, input.type === 'checkbox' ? input.checked : input.value);
+      said.textContent = answer.refused ?? '';
+    };
+    input.onkeydown = (event) => event.key === 'Enter' && input.blur();
+    this.inputs.set(property.name, input);
+    return element('tr', {title: property.doc + bounds}, cell(property.name), element('td', {}, input, said), cell(property.unit === '1' ? '' : property.unit, 'dim'));
+  }
+  update(status) {
+    this.status = status;
+    const values = status.tasks.find((task) => task.name === byId('task').value)?.properties ?? {};
+    for (const [name, input] of this.inputs ?? []) put(input, values[name]);
+  }
+}

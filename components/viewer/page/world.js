@@ -1,0 +1,217 @@
+// The scene, the sonar's fan in it, the water and the vehicle's path, in three dimensions; z is up.
+import {palette} from './colours.js';
+
+const tints = {sand: 0xb09a6c, mud: 0x7d7058, clay: 0x8a7460, gravel: 0x8f877a, stone: 0x85817a, rock: 0x7a756d, concrete: 0x9da1a2,
+               steel: 0x86684e, rubber: 0x34373a, wood: 0x7c5c3c};
+const deep = 0x0b2733, fog_density = 0.014, most_path = 20000;
+
+const fan_vertex = `varying vec2 at; void main() { at = uv; gl_Position = projectionMatrix * modelViewMatrix * vec4(position, 1.); }`;
+const fan_fragment = `uniform sampler2D levels, colours; uniform vec2 brightness; varying vec2 at;
+void main() {
+  float level = texture2D(levels, at).r;
+  float bright = level == 0. ? 0. : clamp(brightness.x + level * 255. * brightness.y, 0., 1.);
+  gl_FragColor = vec4(texture2D(colours, vec2((bright * 255. + .5) / 256., .5)).rgb, .12 + .83 * bright);
+}`;
+
+/** three.js, which may not have come with the viewer. */
+export async function loadThree() {
+  await import('./three.min.js');
+  return self.THREE;
+}
+
+export class World {
+  constructor(THREE, canvas) {
+    this.THREE = THREE;
+    this.canvas = canvas;
+    const context = canvas.getContext('webgl2', {antialias: true});
+    this.renderer = new THREE.WebGLRenderer({canvas, context});
+    this.scene = new THREE.Scene();
+    this.scene.background = new THREE.Color(deep);
+    this.scene.fog = new THREE.FogExp2(deep, fog_density);
+    this.camera = new THREE.PerspectiveCamera(55, 1, 0.1, 2000);
+    this.camera.up.set(0, 0, 1);
+    const sun = new THREE.DirectionalLight(0xdff2f5, 0.55);
+    sun.position.set(0.4, 0.5, 1);
+    this.scene.add(new THREE.HemisphereLight(0xbfe3ea, 0x24323a, 0.75), sun);
+    this.content = new THREE.Group();
+    this.sonar = new THREE.Group();
+    this.vehicle = this.makeVehicle();
+    this.path = this.makePath();
+    this.scene.add(this.content, this.sonar, this.vehicle, this.path);
+    this.objects = new Map();
+    this.moved = [];
+    this.azimuth = 2.6;   // of the camera around the sonar [rad]
+    this.elevation = 0.62;
+    this.distance = 24;
+    this.dirty = true;
+    this.steer();
+  }
+
+  /** Drag turns, the wheel goes nearer or farther. */
+  steer() {
+    this.canvas.addEventListener('pointerdown', (event) => this.canvas.setPointerCapture(event.pointerId));
+    this.canvas.addEventListener('pointermove', (event) => {
+      if (!event.buttons) return;
+      this.azimuth -= event.movementX * 0.006;
+      this.elevation = Math.max(-1.4, Math.min(1.5, this.elevation + event.movementY * 0.006));
+      this.dirty = true;
+    });
+    this.canvas.addEventListener('wheel', (event) => {
+      event.preventDefault();
+      this.distance = Math.max(1, Math.min(500, this.distance * Math.exp(event.deltaY * 0.001)));
+      this.dirty = true;
+    }, {passive: false});
+  }
+
+  makeVehicle() {
+    const {THREE} = this, body = new THREE.CylinderGeometry(0.16, 0.16, 1, 16), nose = new THREE.ConeGeometry(0.16, 0.3, 16);
+    for (const geometry of [body, nose]) geometry.rotateZ(-Math.PI / 2);
+    nose.translate(0.65, 0, 0);
+    const material = new THREE.MeshPhongMaterial({color: 0xf2c230}), group = new THREE.Group();
+    group.add(new THREE.Mesh(body, material), new THREE.Mesh(nose, material));
+    group.visible = false;
+    return group;
+  }
+  makePath() {
+    const {THREE} = this, geometry = new THREE.BufferGeometry();
+    this.places = new THREE.BufferAttribute(new Float32Array(3 * most_path), 3);
+    geometry.setAttribute('position', this.places);
+    geometry.setDrawRange(0, this.path_count = 0);
+    const line = new THREE.Line(geometry, new THREE.LineBasicMaterial({color: 0xf2c230, fog: false}));
+    line.frustumCulled = false;
+    return line;
+  }
+
+  /** The scene's meshes: a message of kind 2. */
+  showScene({json, buffer, start}) {
+    const {THREE} = this;
+    this.content.traverse((node) => node.geometry?.dispose());
+    this.content.remove(...this.content.children);
+    this.objects.clear();
+    const materials = json.materials.map((name) => new THREE.MeshPhongMaterial(
+        {color: tints[name.toLowerCase()] ?? 0x8d9498, flatShading: true, shininess: 4, side: THREE.DoubleSide}));
+    const meshes = json.meshes.map((mesh) => {
+      const geometry = new THREE.BufferGeometry();
+      geometry.setAttribute('position', new THREE.BufferAttribute(new Float32Array(buffer, start + mesh.positions.offset, mesh.positions.count), 3));
+      geometry.setIndex(new THREE.BufferAttribute(new Uint32Array(buffer, start + mesh.indices.offset, mesh.indices.count), 1));
+      return {geometry, material: materials[mesh.material]};
+    });
+    for (const object of json.objects) {
+      const mesh = new THREE.Mesh(meshes[object.mesh].geometry, meshes[object.mesh].material);
+      mesh.matrixAutoUpdate = false;
+      mesh.matrix.fromArray(object.matrix);
+      this.objects.set(object.object, {mesh, home: object.matrix});
+      this.content.add(mesh);
+    }
+    this.dirty = true;
+    return `${json.triangles.toLocaleString()} triangles, ${json.objects.length} objects` +
+        (json.coarse ? `, coarse; ${json.left_out} small objects not shown` : '');
+  }
+
+  showSnapshot(json) {
+    this.sonar.position.fromArray(json.position);
+    this.sonar.quaternion.fromArray(json.orientation);
+    for (const number of this.moved) this.objects.get(number)?.mesh.matrix.fromArray(this.objects.get(number).home);
+    for (const {object, matrix} of json.moved) this.objects.get(object)?.mesh.matrix.fromArray(matrix);
+    this.moved = json.moved.map((one) => one.object);
+    if (json.water_surface !== undefined) this.showWater(json.water_surface);
+    this.dirty = true;
+  }
+  showWater(z) {
+    const {THREE} = this;
+    if (!this.water) {
+      this.water = new THREE.Mesh(new THREE.PlaneBufferGeometry(600, 600), new THREE.MeshBasicMaterial(
+          {color: 0x6fc3d6, transparent: true, opacity: 0.16, side: THREE.DoubleSide, depthWrite: false}));
+      this.grid = new THREE.GridHelper(600, 60, 0x9fdbe6, 0x9fdbe6);
+      this.grid.rotation.x = Math.PI / 2;
+      Object.assign(this.grid.material, {transparent: true, opacity: 0.14, depthWrite: false});
+      this.scene.add(this.water, this.grid);
+    }
+    for (const node of [this.water, this.grid]) node.position.set(0, 0, z);
+  }
+
+  showPose(json) {
+    this.vehicle.visible = true;
+    this.vehicle.position.fromArray(json.position);
+    this.vehicle.quaternion.fromArray(json.orientation);
+    if (this.path_count === most_path) {
+      this.places.array.copyWithin(0, 3 * most_path / 2);
+      this.path_count = most_path / 2;
+    }
+    this.places.array.set(json.position, 3 * this.path_count++);
+    this.places.needsUpdate = true;
+    this.path.geometry.setDrawRange(0, this.path_count);
+    this.dirty = true;
+  }
+
+  /** The ping as it lies in the world, level 0 of the display as faint as it may be seen. */
+  showPing(ping, top_db, span_db, map) {
+    const {THREE} = this, key = [ping.beams, ping.bins, ping.bin_m, ping.edges[0], ping.beam_height].join();
+    if (this.fan_key !== key) this.makeFan(ping, key);
+    if (this.map !== map) {
+      this.map = map;
+      this.uniforms.colours.value = new THREE.DataTexture(palette(map), 256, 1, THREE.RGBAFormat);
+      this.uniforms.colours.value.needsUpdate = true;
+    }
+    this.levels.image.data = ping.data;
+    this.levels.needsUpdate = true;
+    this.uniforms.brightness.value.set((ping.top_db - 255 * ping.step_db - top_db) / span_db + 1, ping.step_db / span_db);
+    this.dirty = true;
+  }
+  makeFan(ping, key) {
+    const {THREE} = this, far = ping.bins * ping.bin_m, positions = [], uvs = [], indices = [];
+    this.fan_key = key;
+    this.sonar.remove(...this.sonar.children);
+    ping.edges.forEach((edge, i) => {
+      for (const r of [0.02 * far, far]) positions.push(r * Math.cos(edge), r * Math.sin(edge), 0);
+      for (const u of [0.02, 1]) uvs.push(u, i / ping.beams);
+      if (i > 0) indices.push(2 * i - 2, 2 * i - 1, 2 * i + 1, 2 * i - 2, 2 * i + 1, 2 * i);
+    });
+    const geometry = new THREE.BufferGeometry();
+    geometry.setAttribute('position', new THREE.Float32BufferAttribute(positions, 3));
+    geometry.setAttribute('uv', new THREE.Float32BufferAttribute(uvs, 2));
+    geometry.setIndex(indices);
+    this.levels = new THREE.DataTexture(ping.data, ping.bins, ping.beams, THREE.LuminanceFormat);
+    this.uniforms = {levels: {value: this.levels}, colours: {value: null}, brightness: {value: new THREE.Vector2()}};
+    this.map = null;
+    const material = new THREE.ShaderMaterial({uniforms: this.uniforms, vertexShader: fan_vertex, fragmentShader: fan_fragment,
+                                               transparent: true, side: THREE.DoubleSide, depthWrite: false});
+    const fan = new THREE.Mesh(geometry, material);
+    fan.frustumCulled = false;
+    this.sonar.add(fan, this.makeFrame(ping, far));
+  }
+  /** Edges of the water that the fan hears. */
+  makeFrame(ping, far) {
+    const {THREE} = this, points = [], half = ping.beam_height / 2, n = ping.edges.length - 1;
+    const at = (edge, up) => [far * Math.cos(up) * Math.cos(edge), far * Math.cos(up) * Math.sin(edge), far * Math.sin(up)];
+    for (const up of [-half, half]) {
+      for (let k = 0; k < 48; ++k)
+        for (const share of [k, k + 1]) points.push(...at(ping.edges[Math.round(n * share / 48)], up));
+      for (const edge of [ping.edges[0], ping.edges[n]]) points.push(0, 0, 0, ...at(edge, up));
+    }
+    const geometry = new THREE.BufferGeometry();
+    geometry.setAttribute('position', new THREE.Float32BufferAttribute(points, 3));
+    const lines = new THREE.LineSegments(geometry, new THREE.LineBasicMaterial({color: 0xf2b04a, transparent: true, opacity: 0.4}));
+    lines.frustumCulled = false;
+    return lines;
+  }
+
+  draw() {
+    const {clientWidth: w, clientHeight: h} = this.canvas, {THREE} = this;
+    if (this.canvas.width !== Math.round(w * devicePixelRatio) || this.canvas.height !== Math.round(h * devicePixelRatio)) {
+      this.renderer.setPixelRatio(devicePixelRatio);
+      this.renderer.setSize(w, h, false);
+      this.camera.aspect = w / h;
+      this.camera.updateProjectionMatrix();
+      this.dirty = true;
+    }
+    if (!this.dirty || !w || !h) return;
+    this.dirty = false;
+    const heading = new THREE.Vector3(1, 0, 0).applyQuaternion(this.sonar.quaternion);
+    const target = this.sonar.position.clone().addScaledVector(heading, this.distance * 0.45);
+    const c = Math.cos(this.elevation) * this.distance, turn = this.azimuth + Math.atan2(heading.y, heading.x);
+    this.camera.position.set(target.x + c * Math.cos(turn), target.y + c * Math.sin(turn), target.z + this.distance * Math.sin(this.elevation));
+    this.camera.lookAt(target);
+    this.renderer.render(this.scene, this.camera);
+  }
+}

@@ -1,0 +1,77 @@
+#pragma once
+// A headless Chromium, driven by browse.py.
+#include <fcntl.h>
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <cstdio>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <string>
+
+namespace insonify::viewer {
+
+inline const char* const chromium = "/usr/bin/chromium";
+
+/** A python that has websockets: that of scripts/setup, or Debian's; empty: there is none. */
+inline std::string pythonWithWebsockets() {
+    for (const std::string candidate : {INSONIFY_SOURCE_DIR "/build/venv/bin/python3", "/usr/bin/python3"})
+        if (std::filesystem::exists(candidate) &&
+            std::system((candidate + " -c 'import websockets' 2> /dev/null").c_str()) == 0)
+            return candidate;
+    return "";
+}
+
+class Browser {
+public:
+    explicit Browser(const std::string& url) {
+        int to[2], from[2];
+        if (pipe2(to, O_CLOEXEC) != 0 || pipe2(from, O_CLOEXEC) != 0) throw std::runtime_error("no pipe");
+        const std::string python = pythonWithWebsockets(), script = INSONIFY_SOURCE_DIR "/tests/viewer/browse.py";
+        pid_ = fork();
+        if (pid_ == 0) {
+            dup2(to[0], STDIN_FILENO);
+            dup2(from[1], STDOUT_FILENO);
+            execl(python.c_str(), "python3", script.c_str(), chromium, url.c_str(), nullptr);
+            _exit(127);
+        }
+        close(to[0]);
+        close(from[1]);
+        asks_ = fdopen(to[1], "w");
+        answers_ = fdopen(from[0], "r");
+    }
+    ~Browser() {
+        fclose(asks_);
+        waitpid(pid_, nullptr, 0);
+        fclose(answers_);
+    }
+    Browser(const Browser&) = delete;
+    Browser& operator=(const Browser&) = delete;
+
+    /** The value of an expression; a fault of the test when it throws. */
+    nlohmann::json value(const std::string& expression) { return ask({{"eval", expression}}); }
+    /** Waits until it is true. */
+    bool becomes(const std::string& expression, double seconds = 15) {
+        return ask({{"until", expression}, {"seconds", seconds}}) == true;
+    }
+
+private:
+    nlohmann::json ask(const nlohmann::json& question) {
+        fprintf(asks_, "%s\n", question.dump().c_str());
+        fflush(asks_);
+        char* line = nullptr;
+        size_t size = 0;
+        const ssize_t got = getline(&line, &size, answers_);
+        const auto answer = got > 0 ? nlohmann::json::parse(line, nullptr, false) : nlohmann::json();
+        free(line);
+        if (answer.is_object() && answer.contains("value")) return answer["value"];
+        ADD_FAILURE() << question << ": " << answer;
+        return nullptr;
+    }
+
+    pid_t pid_ = -1;
+    FILE *asks_ = nullptr, *answers_ = nullptr;
+};
+
+}  // namespace insonify::viewer

@@ -1,0 +1,102 @@
+#pragma once
+// HTTP and WebSocket over a plain socket, so that wrong bytes can be sent as well.
+#include <arpa/inet.h>
+#include <gtest/gtest.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include <cstring>
+#include <optional>
+#include <string>
+#include <utility>
+
+namespace insonify::viewer {
+
+class Client {
+public:
+    explicit Client(uint16_t port) : socket_(socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0)) {
+        const timeval patience{10, 0};
+        setsockopt(socket_, SOL_SOCKET, SO_RCVTIMEO, &patience, sizeof patience);
+        sockaddr_in address{};
+        address.sin_family = AF_INET;
+        address.sin_port = htons(port);
+        address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+        connected_ = connect(socket_, reinterpret_cast<sockaddr*>(&address), sizeof address) == 0;
+    }
+    ~Client() { close(socket_); }
+    Client(Client&& other) noexcept
+        : socket_(std::exchange(other.socket_, -1)),
+          connected_(other.connected_),
+          received_(std::move(other.received_)) {}
+
+    bool connected() const { return connected_; }
+    bool send(const std::string& bytes) {
+        return ::send(socket_, bytes.data(), bytes.size(), MSG_NOSIGNAL) == static_cast<ssize_t>(bytes.size());
+    }
+    /** Asks for `target`; gives all that is answered until the connection is closed. */
+    std::string get(const std::string& target, const std::string& more = "") {
+        send("GET " + target + " HTTP/1.1\r\nHost: localhost\r\n" + more + "\r\n");
+        while (receive()) {
+        }
+        return std::move(received_);
+    }
+    /** Becomes a WebSocket; gives the first line of the answer. */
+    std::string upgrade(const std::string& protocol, const std::string& target = "/", const std::string& more = "") {
+        send("GET " + target + " HTTP/1.1\r\nHost: localhost\r\nUpgrade: websocket\r\nConnection: Upgrade\r\n" +
+             "Sec-WebSocket-Version: 13\r\nSec-WebSocket-Key: dGhlIHNhbXBsZSBub25jZQ==\r\nSec-WebSocket-Protocol: " +
+             protocol + "\r\n" + more + "\r\n");
+        while (received_.find("\r\n\r\n") == std::string::npos)
+            if (!receive()) break;
+        const size_t end = received_.find("\r\n\r\n");
+        head_ = received_.substr(0, end);
+        received_.erase(0, end == std::string::npos ? end : end + 4);
+        return head_.substr(0, head_.find("\r\n"));
+    }
+    const std::string& head() const { return head_; }  ///< Of the answer to upgrade().
+    /** A text message of less than 64 KiB. */
+    void say(const std::string& text) {
+        std::string frame = {'\x81', static_cast<char>(0xfe), static_cast<char>(text.size() >> 8),
+                             static_cast<char>(text.size())};
+        frame += std::string(4, '\0');  // a mask that changes nothing
+        send(frame + text);
+    }
+    /** The payload of the next message; none when the connection was closed or a close frame came. */
+    std::optional<std::string> hear() {
+        while (true) {
+            if (!fill(2)) return std::nullopt;
+            const auto byte = [&](size_t i) { return static_cast<unsigned char>(received_[i]); };
+            const unsigned code = byte(0) & 15;
+            size_t size = byte(1) & 127, head = 2;
+            const size_t more = size == 126 ? 2 : size == 127 ? 8 : 0;
+            if (!fill(2 + more)) return std::nullopt;
+            if (more > 0) size = 0;
+            for (size_t i = 0; i < more; ++i) size = size << 8 | byte(head++);
+            if (code == 8) close_code_ = fill(head + 2) && size >= 2 ? byte(head) << 8 | byte(head + 1) : 1005;
+            if (code == 8 || !fill(head + size)) return std::nullopt;
+            const std::string payload = received_.substr(head, size);
+            received_.erase(0, head + size);
+            if (code == 1 || code == 2) return payload;
+        }
+    }
+    int closeCode() const { return close_code_; }  ///< 0: no close frame came.
+
+private:
+    bool receive() {
+        char bytes[65536];
+        const ssize_t got = recv(socket_, bytes, sizeof bytes, 0);
+        if (got > 0) received_.append(bytes, static_cast<size_t>(got));
+        return got > 0;
+    }
+    bool fill(size_t size) {
+        while (received_.size() < size)
+            if (!receive()) return false;
+        return true;
+    }
+
+    int socket_;
+    bool connected_ = false;
+    int close_code_ = 0;
+    std::string received_, head_;
+};
+
+}  // namespace insonify::viewer

@@ -1,0 +1,202 @@
+// What clients get, and what they cannot do, over a plain socket.
+#include <gmock/gmock.h>
+
+#include <cstring>
+
+#include "components/ros/Cdr.hpp"
+#include "components/ros/SonarMessages.hpp"
+#include "tests/viewer/Bench.hpp"
+#include "tests/viewer/Client.hpp"
+
+namespace insonify::viewer {
+namespace {
+
+using nlohmann::json;
+using testing::HasSubstr;
+using testing::StartsWith;
+
+template <class T>
+T at(const std::string& bytes, size_t place) {
+    T value;
+    std::memcpy(&value, bytes.data() + place, sizeof value);
+    return value;
+}
+
+/** A page that has got its first message. */
+Client page(uint16_t port) {
+    Client client(port);
+    EXPECT_THAT(client.upgrade(page_protocol), HasSubstr("101"));
+    EXPECT_EQ(json::parse(client.hear().value_or("{}"))["type"], "interfaces");
+    return client;
+}
+
+/** The next ping that a page gets: its JSON. */
+json nextPing(Client& client) {
+    while (const auto message = client.hear())
+        if (message->size() > 8 && at<uint32_t>(*message, 0) == ping_kind)
+            return json::parse(message->substr(8, at<uint32_t>(*message, 4)));
+    return nullptr;
+}
+
+TEST(ClientTest, ThePageAndItsFilesAreServed) {
+    Bench bench;
+    bench.start();
+    EXPECT_THAT(Client(bench.port()).get("/"),
+                testing::AllOf(StartsWith("HTTP/1.1 200"), HasSubstr("<title>Insonify")));
+    EXPECT_THAT(Client(bench.port()).get("/fan.js?x"),
+                testing::AllOf(HasSubstr("text/javascript"), HasSubstr("class Fan")));
+    EXPECT_THAT(Client(bench.port()).get("/../etc/passwd"), StartsWith("HTTP/1.1 404"));
+    Client post(bench.port());
+    post.send("POST / HTTP/1.1\r\nHost: localhost\r\nContent-Length: 0\r\n\r\n");
+    EXPECT_THAT(post.get("/"), StartsWith("HTTP/1.1 405"));
+}
+
+TEST(ClientTest, FoxgloveGetsItsChannelAndThePingAsACdrMessage) {
+    Bench bench;
+    bench.start();
+    Client client(bench.port());
+    EXPECT_THAT(client.upgrade(foxglove_protocol), HasSubstr("101"));
+    EXPECT_THAT(client.head(), HasSubstr("Sec-WebSocket-Protocol: foxglove.websocket.v1"));
+    EXPECT_EQ(json::parse(*client.hear())["op"], "serverInfo");
+    const json channel = json::parse(*client.hear())["channels"][0];
+    EXPECT_EQ(channel["topic"], "/sonar/port");
+    EXPECT_EQ(channel["schemaName"], "marine_acoustic_msgs/ProjectedSonarImage");
+    client.say(R"({"op":"subscribe","subscriptions":[{"id":5,"channelId":99}]})");
+    EXPECT_THAT(*client.hear(), HasSubstr("no channel 99"));
+    client.say(R"({"op":"subscribe","subscriptions":[{"id":5,"channelId":0}]})");
+    client.say("is the subscription taken?");
+    EXPECT_THAT(*client.hear(), HasSubstr("no JSON object"));
+    bench.show(blockPing());
+
+    const std::string message = *client.hear();
+    EXPECT_EQ(message[0], 1);
+    EXPECT_EQ(at<uint32_t>(message, 1), 5u);
+    EXPECT_EQ(at<uint64_t>(message, 5), 3'000'000'000u);
+    ros::ProjectedSonarImage image;
+    ros::decode(std::span(message).subspan(13), image);
+    EXPECT_EQ(image.image.beam_count, 32u);
+    EXPECT_EQ(image.image.data[size_t{45} * 32 + 15], 255);
+    EXPECT_EQ(image.image.data[size_t{45} * 32 + 25], 0);
+}
+
+TEST(ClientTest, APageGetsTheLastPingWhenItComesAndEachAfterwards) {
+    Bench bench;
+    bench.start();
+    bench.show(blockPing(1'000'000));
+    Client client = page(bench.port());
+    const json first = nextPing(client);
+    EXPECT_EQ(first["time_us"], 1'000'000);
+    EXPECT_EQ(first["source"], "sonar.port");
+    EXPECT_EQ(first["latency_s"], 2.5);
+    bench.show(blockPing(2'000'000));
+    EXPECT_EQ(nextPing(client)["time_us"], 2'000'000);
+}
+
+TEST(ClientTest, AWrongTokenIsRefusedWith401) {
+    ViewerConfig config;
+    config.token = "open sesame";
+    Bench bench(config);
+    bench.start();
+    EXPECT_THAT(Client(bench.port()).get("/"), StartsWith("HTTP/1.1 401"));
+    EXPECT_THAT(Client(bench.port()).get("/?token=open%20sesame"), StartsWith("HTTP/1.1 200"));
+    for (const char* protocol : {page_protocol, foxglove_protocol}) {
+        EXPECT_THAT(Client(bench.port()).upgrade(protocol, "/?token=open"), HasSubstr("401")) << protocol;
+        EXPECT_THAT(Client(bench.port()).upgrade(protocol, "/?token=open%20sesame"), HasSubstr("101")) << protocol;
+    }
+    EXPECT_EQ(bench.viewer.counts().refused, 3u);
+}
+
+TEST(ClientTest, OtherWebSitesCannotSteer) {
+    Bench bench;
+    bench.start();
+    EXPECT_THAT(Client(bench.port()).upgrade(page_protocol, "/", "Origin: http://evil.example\r\n"), HasSubstr("403"));
+    EXPECT_THAT(Client(bench.port()).upgrade(page_protocol, "/", "Origin: http://localhost\r\n"), HasSubstr("101"));
+    EXPECT_THAT(Client(bench.port()).upgrade("other.protocol"), HasSubstr("400"));
+}
+
+TEST(ClientTest, GarbageClosesThatClientOnly) {
+    Bench bench;
+    bench.start();
+    Client good = page(bench.port());
+    Client no_http(bench.port()), bad_frames = page(bench.port());
+    no_http.send(std::string(2000, '\xee') + "\r\n\r\n");
+    EXPECT_THAT(no_http.get("/"), testing::Not(StartsWith("HTTP/1.1 200")));
+    bad_frames.send(std::string(500, '\xff'));
+    while (bad_frames.hear()) {
+    }
+    EXPECT_EQ(bad_frames.closeCode(), 1002);
+    EXPECT_TRUE(comesTrue([&] { return bench.viewer.counts().clients == 1; }));
+    bench.show(blockPing());
+    EXPECT_EQ(nextPing(good)["count"], 1);
+}
+
+TEST(ClientTest, AMessageOfAGigabyteIsRefusedWhenItIsAnnounced) {
+    Bench bench;
+    bench.start();
+    Client client = page(bench.port());
+    client.send(std::string("\x82\xff\0\0\0\0\x40\0\0\0abcd", 14));  // binary, masked, 2^30 bytes
+    while (client.hear()) {
+    }
+    EXPECT_EQ(client.closeCode(), 1009);
+}
+
+TEST(ClientTest, MoreClientsThanMayBeAreRefused) {
+    ViewerConfig config;
+    config.clients = 2;
+    Bench bench(config);
+    bench.start();
+    const Client first = page(bench.port()), second = page(bench.port());
+    EXPECT_THAT(Client(bench.port()).upgrade(page_protocol), HasSubstr("503"));
+    EXPECT_THAT(Client(bench.port()).get("/"), StartsWith("HTTP/1.1 200")) << "files need no place";
+}
+
+TEST(ClientTest, ThousandsOfConnectionsStallNobody) {
+    Bench bench;
+    bench.start();
+    Client good = page(bench.port());
+    int connected = 0;
+    std::vector<Client> idle;
+    for (int i = 0; i < 10000; ++i) {
+        Client client(bench.port());
+        connected += client.connected() ? 1 : 0;
+        if (i < 200) idle.push_back(std::move(client));  // those that are open at once and say nothing
+    }
+    EXPECT_GT(connected, 9900);
+    bench.show(blockPing(7'000'000));
+    EXPECT_EQ(nextPing(good)["time_us"], 7'000'000);
+    EXPECT_GT(bench.viewer.counts().refused, 0u);
+}
+
+TEST(ClientTest, AClientThatNeverReadsDelaysNoCycleAndLosesTheOldest) {
+    Bench bench;
+    bench.start();
+    const Client deaf = page(bench.port());
+    Client good = page(bench.port());
+    const auto ping = blockPing(3'000'000, 256, 2000);
+    int64_t longest_us = 0;
+    for (int i = 0; i < 300; ++i) {
+        const auto sample = std::make_shared<types::Sonar>(*ping);
+        sample->time = {i + 1};
+        const auto begin = std::chrono::steady_clock::now();
+        bench.show(sample);
+        const auto took = std::chrono::steady_clock::now() - begin;
+        longest_us = std::max<int64_t>(longest_us, std::chrono::duration_cast<std::chrono::microseconds>(took).count());
+        EXPECT_EQ(nextPing(good)["time_us"], i + 1);
+    }
+    RecordProperty("longest_cycle_us", std::to_string(longest_us));
+    EXPECT_LT(longest_us, 100'000);
+    EXPECT_GT(bench.viewer.counts().dropped, 200u) << "of 300 pings of 512 kB a socket holds few";
+}
+
+TEST(ClientTest, AClientThatDoesNotAnswerIsGivenUp) {
+    ViewerConfig config;
+    config.idle_timeout = 1;
+    Bench bench(config);
+    bench.start();
+    const Client silent = page(bench.port());
+    EXPECT_EQ(bench.viewer.counts().clients, 1u);
+    EXPECT_TRUE(comesTrue([&] { return bench.viewer.counts().clients == 0; }));
+}
+
+}  // namespace
+}  // namespace insonify::viewer

@@ -1,0 +1,67 @@
+#include <gmock/gmock.h>
+
+#include <nlohmann/json.hpp>
+
+#include "components/viewer/Foxglove.hpp"
+
+namespace insonify::viewer {
+namespace {
+
+using nlohmann::json;
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::Pair;
+
+TEST(FoxgloveTest, ChannelsAreAdvertisedWithTheirSchemas) {
+    const json said = json::parse(advertise({{"/a/b", "pkg/Type", "int32 x\n"}, {"/c", "pkg/Other", ""}}));
+    EXPECT_EQ(said["op"], "advertise");
+    EXPECT_EQ(said["channels"][1]["id"], 1);
+    EXPECT_EQ(said["channels"][0], (json{{"id", 0},
+                                         {"topic", "/a/b"},
+                                         {"encoding", "cdr"},
+                                         {"schemaName", "pkg/Type"},
+                                         {"schema", "int32 x\n"},
+                                         {"schemaEncoding", "ros2msg"}}));
+}
+
+TEST(FoxgloveTest, AMessageBeginsWithItsSubscriptionAndTime) {
+    EXPECT_EQ(messageHead(0x04030201, 0x0807060504030201), std::string("\1\1\2\3\4\1\2\3\4\5\6\7\x8", 13));
+}
+
+TEST(FoxgloveTest, SubscriptionsComeAndGo) {
+    Subscriptions subscriptions(2);
+    EXPECT_EQ(
+        subscriptions.take(R"({"op":"subscribe","subscriptions":[{"id":7,"channelId":1},{"id":8,"channelId":0}]})"),
+        "");
+    EXPECT_THAT(subscriptions.all(), ElementsAre(Pair(7, 1), Pair(8, 0)));
+    EXPECT_EQ(subscriptions.take(R"({"op":"unsubscribe","subscriptionIds":[7, 99]})"), "");
+    EXPECT_THAT(subscriptions.all(), ElementsAre(Pair(8, 0)));
+    EXPECT_EQ(subscriptions.take(R"({"op":"getParameters"})"), "") << "of the protocol, but not for this server";
+}
+
+TEST(FoxgloveTest, WhatIsWrongIsToldAndChangesNothing) {
+    Subscriptions subscriptions(2);
+    for (const char* text : {"", "{", "[]", "{}", R"({"op":1})", "\xff\xfe"})
+        EXPECT_THAT(subscriptions.take(text), HasSubstr("no JSON object with an op")) << text;
+    for (const char* one :
+         {"1", "{}", R"({"id":-1,"channelId":0})", R"({"id":1,"channelId":"0"})", R"({"id":5000000000,"channelId":0})"})
+        EXPECT_THAT(subscriptions.take(std::string(R"({"op":"subscribe","subscriptions":[)") + one + "]}"),
+                    HasSubstr("an id and a channelId"))
+            << one;
+    EXPECT_THAT(subscriptions.take(R"({"op":"subscribe","subscriptions":[{"id":1,"channelId":2}]})"),
+                HasSubstr("no channel 2; there are 2"));
+    EXPECT_TRUE(subscriptions.all().empty());
+}
+
+TEST(FoxgloveTest, SubscriptionsOfOneClientAreLimited) {
+    Subscriptions subscriptions(1);
+    std::string wrong;
+    for (int i = 0; i < 300 && wrong.empty(); ++i)
+        wrong = subscriptions.take(R"({"op":"subscribe","subscriptions":[{"id":)" + std::to_string(i) +
+                                   R"(,"channelId":0}]})");
+    EXPECT_THAT(wrong, HasSubstr("256 subscriptions"));
+    EXPECT_EQ(subscriptions.all().size(), 256u);
+}
+
+}  // namespace
+}  // namespace insonify::viewer

@@ -1,0 +1,42 @@
+#include <gtest/gtest.h>
+
+#include "components/viewer/Outbox.hpp"
+
+namespace insonify::viewer {
+namespace {
+
+Frame frame(const char* text) { return {"", bytesOf(text), true}; }
+std::string textOf(const std::optional<Frame>& frame) { return frame ? *frame->body : "nothing"; }
+
+TEST(OutboxTest, OfAStreamOnlyTheNewestFrameWaitsAndTheOthersAreCounted) {
+    Outbox outbox;
+    outbox.put(1, frame("old"));
+    outbox.put(2, frame("other"));
+    outbox.put(1, frame("newer"));
+    outbox.put(1, frame("newest"));
+    EXPECT_EQ(textOf(outbox.next()), "newest");
+    EXPECT_EQ(textOf(outbox.next()), "other");
+    EXPECT_EQ(textOf(outbox.next()), "nothing");
+    EXPECT_EQ(outbox.dropped(), 2u);
+}
+
+TEST(OutboxTest, ABusyStreamDoesNotHoldBackAnother) {
+    Outbox outbox;
+    outbox.put(1, frame("busy"));
+    outbox.put(2, frame("rare"));
+    EXPECT_EQ(textOf(outbox.next()), "busy");
+    outbox.put(1, frame("busy again"));
+    EXPECT_EQ(textOf(outbox.next()), "rare");
+}
+
+TEST(OutboxTest, RepliesGoFirstAndTooManyAreRefused) {
+    Outbox outbox;
+    outbox.put(1, frame("stream"));
+    for (size_t i = 0; i < Outbox::most_replies; ++i) EXPECT_TRUE(outbox.post(frame("reply")));
+    EXPECT_FALSE(outbox.post(frame("one too many")));
+    EXPECT_EQ(textOf(outbox.next()), "reply");
+    EXPECT_TRUE(outbox.post(frame("now there is room")));
+}
+
+}  // namespace
+}  // namespace insonify::viewer

@@ -1,0 +1,99 @@
+#include <gtest/gtest.h>
+
+#include <cstring>
+#include <nlohmann/json.hpp>
+
+#include "components/viewer/PingPicture.hpp"
+#include "components/viewer/SceneMesh.hpp"
+
+namespace insonify::viewer {
+namespace {
+
+struct Message {
+    nlohmann::json json;
+    std::string data;
+    template <class T>
+    std::vector<T> list(const nlohmann::json& accessor) const {
+        std::vector<T> values(accessor["count"].get<size_t>());
+        std::memcpy(values.data(), data.data() + accessor["offset"].get<size_t>(), values.size() * sizeof(T));
+        return values;
+    }
+};
+
+Message takenApart(const std::string& bytes) {
+    uint32_t head[2];
+    std::memcpy(head, bytes.data(), sizeof head);
+    EXPECT_EQ(head[0], scene_kind);
+    return {nlohmann::json::parse(bytes.substr(8, head[1])), bytes.substr(8 + head[1])};
+}
+
+/** A strip of triangles, and a vertex that none uses. */
+types::Mesh strip(uint32_t triangles) {
+    types::Mesh mesh;
+    mesh.positions.push_back({99, 99, 99});
+    for (uint32_t i = 0; i < triangles + 2; ++i) mesh.positions.push_back({float(i), float(i % 2), 0});
+    for (uint32_t i = 1; i <= triangles; ++i) mesh.indices.insert(mesh.indices.end(), {i, i + 1, i + 2});
+    types::Cluster cluster;
+    cluster.index_count = 3 * triangles;
+    mesh.clusters = {cluster};
+    return mesh;
+}
+
+types::Geometry scene(uint32_t large, uint32_t small) {
+    types::Geometry geometry;
+    geometry.meshes = {strip(large), strip(small)};
+    geometry.materials.resize(1);
+    geometry.materials[0].name = "sand";
+    geometry.objects = {{"small", 1, glm::dmat4(1)}, {"large", 0, glm::dmat4(2)}, {"other", 1, glm::dmat4(1)}};
+    return geometry;
+}
+
+TEST(SceneMeshTest, MeshesAreSentWithTheVerticesThatTheyUse) {
+    const Message message = takenApart(sceneMessage(scene(4, 1), 1000));
+    const auto& mesh = message.json["meshes"][1];
+    EXPECT_EQ(message.list<float>(mesh["positions"]), (std::vector<float>{0, 0, 0, 1, 1, 0, 2, 0, 0}));
+    EXPECT_EQ(message.list<uint32_t>(mesh["indices"]), (std::vector<uint32_t>{0, 1, 2}));
+    EXPECT_EQ(message.json["objects"].size(), 3u);
+    EXPECT_EQ(message.json["objects"][1]["matrix"][0], 2);
+    EXPECT_EQ(message.json["materials"][0], "sand");
+    EXPECT_EQ(message.json["coarse"], false);
+    EXPECT_EQ(message.json["left_out"], 0);
+}
+
+TEST(SceneMeshTest, OfTooManyTrianglesTheSmallestObjectsAreLeftOutAndCounted) {
+    const Message message = takenApart(sceneMessage(scene(100, 10), 115));
+    EXPECT_EQ(message.json["triangles"], 120);
+    EXPECT_EQ(message.json["left_out"], 1);
+    EXPECT_EQ(message.json["objects"][0]["name"], "small");
+    EXPECT_EQ(message.json["objects"][1]["name"], "large");
+}
+
+TEST(SceneMeshTest, LargeMeshesAreWhatStandsForThem) {
+    types::Geometry geometry = scene(100, 10);
+    types::Mesh& mesh = geometry.meshes[0];
+    types::Patch patch;
+    patch.cluster_count = 1;
+    patch.next = 1;
+    patch.index_count = 3;
+    mesh.patches = {patch};
+    mesh.coarse_indices = {1, 50, 100};
+    const Message message = takenApart(sceneMessage(geometry, 50));
+    EXPECT_EQ(message.json["coarse"], true);
+    EXPECT_EQ(message.json["meshes"][0]["indices"]["count"], 3);
+    EXPECT_EQ(message.json["left_out"], 0);
+}
+
+TEST(SceneMeshTest, ASnapshotTellsWhereThingsAre) {
+    types::Snapshot snapshot;
+    snapshot.sonar.position = {1, 2, 3};
+    snapshot.moved = {{7, glm::dmat4(1)}};
+    snapshot.water_surface = -1;
+    const auto json = nlohmann::json::parse(snapshotText(snapshot, "scene.snapshot"));
+    EXPECT_EQ(json["position"], nlohmann::json::parse("[1, 2, 3]"));
+    EXPECT_EQ(json["orientation"], nlohmann::json::parse("[0, 0, 0, 1]"));
+    EXPECT_EQ(json["moved"][0]["object"], 7);
+    EXPECT_EQ(json["water_surface"], -1);
+}
+
+}  // namespace
+}  // namespace insonify::viewer

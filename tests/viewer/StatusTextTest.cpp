@@ -1,0 +1,64 @@
+#include <gmock/gmock.h>
+
+#include <limits>
+#include <nlohmann/json.hpp>
+
+#include "components/viewer/StatusText.hpp"
+
+namespace insonify::viewer {
+namespace {
+
+using nlohmann::json;
+
+TEST(StatusTextTest, AStatusHoldsTasksPlansAndLosses) {
+    types::DeploymentStatus status;
+    status.lockstep = true;
+    types::TaskStatus task;
+    task.record = {"sonar", "sonar::SonarTask", {{"range", 50.5}, {"model", std::string("physical")}}, ""};
+    task.state = "Running";
+    task.plan.emplace();
+    task.plan->omitted = {{"multipath", "not configured"}};
+    task.plan->predicted_error = std::numeric_limits<double>::quiet_NaN();
+    status.tasks = {task};
+    status.connections = {{"a.b", "c.d", "buffer", 3}};
+    const json text = json::parse(statusText(status, {2, 1, 5}));
+    EXPECT_EQ(text["tasks"][0]["properties"]["range"], 50.5);
+    EXPECT_EQ(text["tasks"][0]["plan"]["omitted"][0]["reason"], "not configured");
+    EXPECT_TRUE(text["tasks"][0]["plan"]["predicted_error"].is_null());
+    EXPECT_EQ(text["connections"][0]["lost"], 3);
+    EXPECT_EQ(text["clients"], 2);
+    EXPECT_EQ(text["dropped"], 5);
+}
+
+TEST(StatusTextTest, TextThatIsNotUtf8DoesNotStopIt) {
+    types::DeploymentStatus status;
+    status.tasks.emplace_back();
+    status.tasks.back().error = "bad \xff byte";
+    EXPECT_NO_THROW((void)json::parse(statusText(status, {})));
+}
+
+TEST(StatusTextTest, BoundsThatAreNoneAreNull) {
+    const double infinite = std::numeric_limits<double>::infinity();
+    const json text = json::parse(
+        interfacesText({{"sonar", {{"range", "double", "m", "far edge", 0, infinite}}, {"start void()"}}}, true));
+    EXPECT_EQ(text["tasks"][0]["properties"][0]["min"], 0);
+    EXPECT_TRUE(text["tasks"][0]["properties"][0]["max"].is_null());
+}
+
+TEST(StatusTextTest, RequestsAreRead) {
+    const Request call = readRequest(R"({"id":3,"call":"sonar.setRange","arguments":["30"]})");
+    EXPECT_EQ(call.id, 3u);
+    EXPECT_EQ(call.operation, "sonar.setRange");
+    EXPECT_EQ(call.arguments, std::vector<std::string>{"30"});
+    EXPECT_TRUE(readRequest(R"({"pause":true})").on);
+    EXPECT_EQ(readRequest(R"({"step":true})").kind, Request::Kind::Step);
+}
+
+TEST(StatusTextTest, WhatIsNoRequestIsRefused) {
+    for (const char* text : {"", "[]", "{}", "{\"id\":-1,\"step\":true}", R"({"call":1})", R"({"pause":1})",
+                             R"({"call":"a.b","arguments":[1]})", "\xff"})
+        EXPECT_THROW(readRequest(text), std::invalid_argument) << text;
+}
+
+}  // namespace
+}  // namespace insonify::viewer

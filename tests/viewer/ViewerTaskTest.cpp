@@ -1,0 +1,157 @@
+#include <gmock/gmock.h>
+
+#include "components/framework/Deployment.hpp"
+#include "components/viewer/ViewerTask.hpp"
+#include "components/viewer/registerTasks.hpp"
+#include "tests/viewer/Bench.hpp"
+#include "tests/viewer/Client.hpp"
+#include "tests/viewer/Running.hpp"
+
+namespace insonify::viewer {
+namespace {
+
+using testing::HasSubstr;
+
+std::string problemsOf(const ViewerConfig& config) {
+    types::Problems problems;
+    config.check(problems);
+    std::string all;
+    for (const types::Problem& problem : problems) all += problem.path + ": " + problem.message + "\n";
+    return all;
+}
+
+ViewerConfig at(const std::string& address, const std::string& token = "") {
+    ViewerConfig config;
+    config.address = address;
+    config.token = token;
+    return config;
+}
+
+TEST(ViewerTaskTest, AnAddressThatOthersReachNeedsAToken) {
+    for (const char* local : {"127.0.0.1", "127.1.2.3", "::1"}) EXPECT_EQ(problemsOf(at(local)), "") << local;
+    for (const char* open : {"0.0.0.0", "192.168.0.1", "::"}) {
+        EXPECT_THAT(problemsOf(at(open)), HasSubstr("token: is missing")) << open;
+        EXPECT_EQ(problemsOf(at(open, "secret")), "") << open;
+    }
+    EXPECT_THAT(problemsOf(at("localhost", "secret")),
+                HasSubstr("address: is 'localhost'; it must be a numeric address"));
+}
+
+TEST(ViewerTaskTest, APortThatIsTakenIsOneClearFault) {
+    Bench first;
+    first.start();
+    ViewerTask second("second");
+    ViewerConfig config;
+    config.port = first.port();
+    second.config.set(config);
+    EXPECT_FALSE(second.configure());
+    ASSERT_NE(second.configError(), nullptr);
+    EXPECT_THAT(second.configError()->what(),
+                testing::AllOf(HasSubstr("second.port: is " + std::to_string(first.port())),
+                               HasSubstr("Address already in use"), HasSubstr("0 for any that is free")));
+}
+
+TEST(ViewerTaskTest, TheNoticeTellsThePortThatWasFree) {
+    Bench bench;
+    EXPECT_TRUE(bench.viewer.notices().empty());
+    bench.start();
+    EXPECT_THAT(bench.viewer.notices(),
+                testing::ElementsAre("open http://127.0.0.1:" + std::to_string(bench.port()) + "/"));
+    const uint16_t port = bench.port();
+    ASSERT_TRUE(bench.viewer.stop());
+    ASSERT_TRUE(bench.viewer.cleanup());
+    EXPECT_FALSE(Client(port).connected());
+}
+
+TEST(ViewerTaskTest, WhatItCannotShowIsRefusedByName) {
+    ViewerTask viewer("viewer");
+    test::Writer<double> number("depth");
+    try {
+        viewer.makeInput("x", number.port);
+        FAIL();
+    } catch (const types::ConfigError& error) {
+        EXPECT_THAT(error.what(), HasSubstr("depth.port is /double, which a viewer cannot show"));
+    }
+}
+
+TEST(ViewerTaskTest, APingOfTheWrongShapeIsAnErrorUntilTheNext) {
+    Bench bench;
+    bench.start();
+    const auto bad = blockPing();
+    bad->bins.pop_back();
+    bench.show(bad);
+    EXPECT_EQ(bench.viewer.state(), framework::TaskState::RunTimeError);
+    EXPECT_THAT(bench.viewer.lastError(), HasSubstr("lists that are not as long as its counts say"));
+    bench.show(blockPing());
+    EXPECT_EQ(bench.viewer.state(), framework::TaskState::Running);
+}
+
+TEST(ViewerTaskTest, AllKindsOfSamplesAreTaken) {
+    Bench bench;
+    Feed<types::Pose> pose(bench.viewer, "vehicle");
+    Feed<types::ImagePtr> image(bench.viewer, "fan");
+    Feed<types::SnapshotPtr> scene(bench.viewer, "scene");
+    bench.start();
+    Client client(bench.port());
+    EXPECT_THAT(client.upgrade(foxglove_protocol), HasSubstr("101"));
+    ASSERT_TRUE(client.hear());
+    const auto channels = nlohmann::json::parse(*client.hear())["channels"];
+    ASSERT_EQ(channels.size(), 4u);
+    EXPECT_EQ(channels[1]["schemaName"], "geometry_msgs/PoseStamped");
+    EXPECT_EQ(channels[2]["schemaName"], "sensor_msgs/Image");
+    EXPECT_EQ(channels[3]["topic"], "/scene/port");
+}
+
+// -- in a deployment --------------------------------------------------------------------------------------------------
+
+/** Says it and gives the answer to it. */
+nlohmann::json answerTo(Client& client, const std::string& request) {
+    client.say(request);
+    while (const auto message = client.hear()) {
+        const auto json = nlohmann::json::parse(*message, nullptr, false);
+        if (json.is_object() && json["type"] == "answer") return json;
+    }
+    return nullptr;
+}
+
+TEST(ViewerTaskTest, APageSetsPropertiesButNoStates) {
+    Running running;
+    Client client(running.port());
+    ASSERT_THAT(client.upgrade(page_protocol), HasSubstr("101"));
+    const auto done = answerTo(client, R"({"id":4,"call":"source.setLevel","arguments":["7.5"]})");
+    EXPECT_EQ(done["id"], 4);
+    EXPECT_EQ(done["result"], "");
+    EXPECT_EQ(std::get<double>(running.deployment().task("source")->record().properties.at("level")), 7.5);
+    const auto refused = [&](const std::string& call, const std::string& argument) {
+        return answerTo(client, R"({"call":")" + call + R"(","arguments":[")" + argument + "\"]}")["refused"]
+            .get<std::string>();
+    };
+    EXPECT_THAT(refused("source.setLevel", "700"), HasSubstr("level: is 700"));
+    EXPECT_THAT(refused("source.setLevl", "7"), HasSubstr("no operation setLevl"));
+    EXPECT_THAT(refused("sauce.setLevel", "7"), HasSubstr("no task sauce"));
+    EXPECT_THAT(refused("source.stop", ""), HasSubstr("states of tasks"));
+    EXPECT_THAT(refused("viewer.setPort", "1"), HasSubstr("does not steer itself"));
+    EXPECT_THAT(answerTo(client, "nonsense")["refused"], "is no JSON object");
+}
+
+TEST(ViewerTaskTest, APagePausesALockstepRunAndStepsIt) {
+    Running running;
+    Client client(running.port());
+    ASSERT_THAT(client.upgrade(page_protocol), HasSubstr("101"));
+    EXPECT_THAT(answerTo(client, R"({"id":1,"step":true})")["refused"], "cannot step: the deployment is not paused");
+    EXPECT_EQ(answerTo(client, R"({"id":2,"pause":true})")["result"], "");
+    const auto time = [&] { return running.deployment().status().now.microseconds; };
+    std::this_thread::sleep_for(std::chrono::milliseconds(50));
+    const int64_t paused = time();
+    std::this_thread::sleep_for(std::chrono::milliseconds(100));
+    EXPECT_EQ(time(), paused);
+    EXPECT_EQ(answerTo(client, R"({"id":3,"step":true})")["result"], "");
+    EXPECT_TRUE(comesTrue([&] { return time() > paused; }));
+    std::this_thread::sleep_for(std::chrono::milliseconds(50));
+    EXPECT_EQ(time(), paused + 10'000);
+    EXPECT_EQ(answerTo(client, R"({"id":4,"pause":false})")["result"], "");
+    EXPECT_TRUE(comesTrue([&] { return time() > paused + 50'000; }));
+}
+
+}  // namespace
+}  // namespace insonify::viewer

@@ -1,0 +1,113 @@
+"""A headless Chromium that does what is asked: python3 browse.py CHROMIUM URL
+
+Reads lines of JSON and answers each with one: {"eval": EXPRESSION} gives its value, {"until": EXPRESSION, "seconds": S}
+waits until it is true, {"screenshot": FILE} writes a PNG. An expression that throws gives {"error": TEXT}.
+"""
+
+import asyncio
+import base64
+import json
+import pathlib
+import re
+import subprocess
+import sys
+import tempfile
+import time
+import urllib.request
+
+import websockets
+
+FLAGS = [
+    "--headless=new",
+    "--no-sandbox",
+    "--no-first-run",
+    "--disable-extensions",
+    "--disable-background-networking",
+    "--disable-dev-shm-usage",
+    "--use-gl=angle",
+    "--use-angle=swiftshader",
+    "--enable-unsafe-swiftshader",
+    "--ignore-gpu-blocklist",
+    "--window-size=1600,900",
+    "--hide-scrollbars",
+    "--remote-debugging-port=0",
+]
+
+
+def start(chromium, profile):
+    """The browser, and the address of its only page for tools."""
+    browser = subprocess.Popen(
+        [chromium, *FLAGS, f"--user-data-dir={profile}", "about:blank"], stderr=subprocess.PIPE, text=True
+    )
+    for line in browser.stderr:
+        found = re.search(r"ws://([^/]+)/", line)
+        if found:
+            break
+    else:
+        raise SystemExit("browser did not start")
+    for _ in range(100):
+        pages = json.load(urllib.request.urlopen(f"http://{found[1]}/json/list"))
+        if pages:
+            return browser, pages[0]["webSocketDebuggerUrl"]
+        time.sleep(0.05)
+    raise SystemExit("browser has no page")
+
+
+class Page:
+    def __init__(self, socket):
+        self.socket = socket
+        self.last_id = 0
+
+    async def send(self, method, **parameters):
+        self.last_id += 1
+        await self.socket.send(json.dumps({"id": self.last_id, "method": method, "params": parameters}))
+        while True:
+            message = json.loads(await self.socket.recv())
+            if message.get("id") == self.last_id:
+                return message.get("result", message)
+
+    async def evaluate(self, expression):
+        answer = await self.send("Runtime.evaluate", expression=expression, returnByValue=True, awaitPromise=True)
+        if "exceptionDetails" in answer:
+            return {"error": answer["exceptionDetails"].get("exception", {}).get("description", "unknown")}
+        return {"value": answer["result"].get("value")}
+
+    async def until(self, expression, seconds):
+        end = time.monotonic() + seconds
+        while True:
+            answer = await self.evaluate(expression)
+            if answer.get("value"):
+                return answer
+            if time.monotonic() > end:
+                return {"error": f"not true after {seconds} s: {answer}"}
+            await asyncio.sleep(0.05)
+
+    async def screenshot(self, file):
+        png = await self.send("Page.captureScreenshot", format="png")
+        pathlib.Path(file).write_bytes(base64.b64decode(png["data"]))
+        return {"value": True}
+
+
+async def serve(address, url):
+    async with websockets.connect(address, max_size=None) as socket:
+        page = Page(socket)
+        await page.send("Page.enable")
+        await page.send("Page.navigate", url=url)
+        while line := await asyncio.to_thread(sys.stdin.readline):
+            asked = json.loads(line)
+            if "eval" in asked:
+                answer = await page.evaluate(asked["eval"])
+            elif "until" in asked:
+                answer = await page.until(asked["until"], asked["seconds"])
+            else:
+                answer = await page.screenshot(asked["screenshot"])
+            print(json.dumps(answer), flush=True)
+
+
+with tempfile.TemporaryDirectory(ignore_cleanup_errors=True) as profile:
+    browser, address = start(sys.argv[1], profile)
+    try:
+        asyncio.run(serve(address, sys.argv[2]))
+    finally:
+        browser.terminate()
+        browser.wait()

@@ -1,0 +1,55 @@
+#pragma once
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "types/Plan.hpp"
+#include "types/TaskRecord.hpp"
+#include "types/Time.hpp"
+
+namespace insonify::types {
+
+/** What is known of a property besides its value. */
+struct PropertyNote {
+    std::string name;  ///< Of the whole property; blocks are one.
+    std::string type, unit, doc;
+    double min = 0, max = 0;  ///< Inclusive; infinite when unbounded.
+};
+
+struct PortStatus {
+    std::string name, type;
+    uint64_t written = 0;  ///< Samples [1].
+};
+
+struct TaskStatus {
+    TaskRecord record;         ///< Name, type, values of properties.
+    std::string state, error;  ///< Text of the last error; empty: there was none.
+    double cycle_s = 0;        ///< How long the last cycle worked [s].
+    double latency_s = 0;      ///< From the stamp of the last sample written to its being written, realtime only [s].
+    std::optional<Plan> plan;  ///< As the task told it last.
+    std::vector<PortStatus> outputs;
+};
+
+struct ConnectionStatus {
+    std::string from, to;  ///< "task.port"
+    std::string policy;    ///< "data", "buffer", "circular_buffer"
+    uint64_t lost = 0;     ///< Samples [1].
+};
+
+/** A deployment at one moment of its run. */
+struct DeploymentStatus {
+    Time now;  ///< On the deployment's clock.
+    bool lockstep = false, paused = false;
+    std::vector<TaskStatus> tasks;  ///< In file order.
+    std::vector<ConnectionStatus> connections;
+};
+
+/** What can be called and set in a task; it does not change while the deployment lives. */
+struct TaskInterface {
+    std::string name;
+    std::vector<PropertyNote> properties;
+    std::vector<std::string> operations;  ///< "seek": "void(double)" is "seek void(double)".
+};
+
+}  // namespace insonify::types
