@@ -4,25 +4,14 @@
 
 #include <charconv>
 #include <cstdlib>
-#include <map>
 #include <mutex>
 #include <string>
 
+#include "components/dds/Qos.hpp"
 #include "types/ConfigError.hpp"
 
 namespace insonify::dds {
 namespace {
-
-// A writer waits for its readers' acknowledgements once so much is unacknowledged; with 500 kB, the default, a reader
-// that hangs would hold up every ping. What is kept is bounded by the writers' depth.
-constexpr const char* own_settings =
-    "<CycloneDDS><Domain Id=\"any\"><Internal><Watermarks><WhcHigh>1GB</WhcHigh><WhcHighInit>1GB</WhcHighInit>"
-    "</Watermarks></Internal></Domain></CycloneDDS>";
-
-std::string settings() {
-    const char* users = std::getenv("CYCLONEDDS_URI");
-    return own_settings + (users && *users ? std::string(",") + users : "");
-}
 
 /** While it lives, what Cyclone logs is kept here and not printed. One at a time. */
 class Complaints {
@@ -53,25 +42,17 @@ Entity::~Entity() {
     if (handle_ > 0) dds_delete(handle_);
 }
 
-std::shared_ptr<Domain> Domain::join(uint32_t id) {
-    static std::mutex mutex;
-    static std::map<uint32_t, std::weak_ptr<Domain>> joined;
-    std::lock_guard lock(mutex);
-    std::shared_ptr<Domain> domain = joined[id].lock();
-    if (!domain) joined[id] = domain = std::shared_ptr<Domain>(new Domain(id));
-    return domain;
-}
-
-Domain::Domain(uint32_t id) : id_(id) {
+Entity joinDomain(uint32_t id, std::string_view user_data) {
+    static std::mutex one_at_a_time;
+    std::lock_guard lock(one_at_a_time);
     const Complaints complaints;
-    const dds_entity_t made = dds_create_domain(id, settings().c_str());
-    const dds_entity_t tried = made > 0 ? dds_create_participant(id, nullptr, nullptr) : made;
-    if (made > 0) entity_ = Entity(made);
-    if (tried <= 0)
-        throw types::ConfigError("", "domain",
-                                 "DDS domain " + std::to_string(id) + " cannot be joined: " + dds_strretcode(tried) +
-                                     complaints.text() + "; see CYCLONEDDS_URI and ROS_DOMAIN_ID");
-    dds_delete(tried);
+    const Qos qos(dds_create_qos());
+    dds_qset_userdata(qos.get(), user_data.data(), user_data.size());
+    const dds_entity_t joined = dds_create_participant(id, qos.get(), nullptr);
+    if (joined > 0) return Entity(joined);
+    throw types::ConfigError("", "domain",
+                             "DDS domain " + std::to_string(id) + " cannot be joined: " + dds_strretcode(joined) +
+                                 complaints.text() + "; see CYCLONEDDS_URI and ROS_DOMAIN_ID");
 }
 
 uint32_t domainId(std::optional<uint32_t> given) {

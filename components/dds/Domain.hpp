@@ -1,7 +1,7 @@
 #pragma once
 #include <cstdint>
-#include <memory>
 #include <optional>
+#include <string_view>
 #include <utility>
 
 namespace insonify::dds {
@@ -20,21 +20,10 @@ private:
     int32_t handle_ = 0;
 };
 
-/** A DDS domain that this process is in, one for all its tasks. */
-class Domain {
-public:
-    /** Joins the domain, or shares it. Its settings are ours and, over them, those of CYCLONEDDS_URI. Throws
-     *  types::ConfigError with Cyclone's words where that cannot be: no such network interface, a fault in the
-     *  settings, no port free. */
-    static std::shared_ptr<Domain> join(uint32_t id);
-    uint32_t id() const { return id_; }
-
-private:
-    explicit Domain(uint32_t id);
-
-    uint32_t id_;
-    Entity entity_;
-};
+/** A participant of a DDS domain, with the settings of CYCLONEDDS_URI; `user_data` is what it tells of itself. Throws
+ *  types::ConfigError with Cyclone's words where the domain cannot be joined: no such network interface, a fault in the
+ *  settings, no port free. */
+Entity joinDomain(uint32_t id, std::string_view user_data);
 
 /** `given`, else ROS_DOMAIN_ID, else 0. Throws types::ConfigError for a ROS_DOMAIN_ID that is no number up to 232. */
 uint32_t domainId(std::optional<uint32_t> given);

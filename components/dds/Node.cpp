@@ -69,19 +69,9 @@ std::string faultOfNode(const std::string& name) {
     return "is \"" + name + "\"; must be one word of letters, digits and _, not beginning with a digit";
 }
 
+// Without an enclave ROS 2 takes a participant for none of its own.
 Node::Node(uint32_t domain, std::string name, size_t gid_size)
-    : name_(std::move(name)), gid_size_(gid_size), domain_(Domain::join(domain)) {
-    dds_qos_t* qos = dds_create_qos();
-    constexpr std::string_view enclave = "enclave=/;";  // without it ROS 2 takes this for no node of its own
-    dds_qset_userdata(qos, enclave.data(), enclave.size());
-    const dds_entity_t made = dds_create_participant(domain, qos, nullptr);
-    dds_delete_qos(qos);
-    if (made <= 0)
-        throw types::ConfigError("", "domain",
-                                 "DDS domain " + std::to_string(domain) + " has no room: " + dds_strretcode(made));
-    participant_ = Entity(made);
-}
-
+    : name_(std::move(name)), gid_size_(gid_size), participant_(joinDomain(domain, "enclave=/;")) {}
 Node::~Node() = default;
 
 Entity Node::makeTopic(const std::string& dds_topic, const std::string& dds_type) const {

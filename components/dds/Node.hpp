@@ -1,5 +1,6 @@
 #pragma once
 #include <array>
+#include <memory>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -51,7 +52,6 @@ private:
 
     std::string name_;
     size_t gid_size_;
-    std::shared_ptr<Domain> domain_;
     Entity participant_;
     std::unique_ptr<Writer> discovery_;
     std::vector<Guid> writers_, readers_;

@@ -53,8 +53,8 @@ private:
     void updateHook() override;
     void cleanupHook() override;
 
-    std::vector<std::unique_ptr<Inlet>> inlets_;
     std::optional<Node> node_;
+    std::vector<std::unique_ptr<Inlet>> inlets_;
 };
 
 }  // namespace insonify::dds

@@ -13,8 +13,8 @@ struct DeleteQos {
 };
 using Qos = std::unique_ptr<dds_qos_t, DeleteQos>;
 
-/** For a writer or reader as ROS 2 makes it; `type_hash` as "RIHS01_...", or empty. A writer that is full does not
- *  wait. */
+/** For a writer or reader as ROS 2 makes it; `type_hash` as "RIHS01_...", or empty. As it
+ *  keeps the last samples only, a writer waits for no reader. */
 inline Qos makeQos(const Quality& quality, const std::string& type_hash) {
     Qos qos(dds_create_qos());
     const bool reliable = quality.reliability == Reliability::Reliable;

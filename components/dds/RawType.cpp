@@ -8,31 +8,75 @@
 #include <cstdlib>
 #include <cstring>
 #include <memory>
+#include <mutex>
 
 namespace insonify::dds {
 namespace {
 
 /** One sample on its way, shared by Cyclone's caches. */
 struct Serdata : ddsi_serdata {
-    Serdata(const ddsi_sertype* of, ddsi_serdata_kind sort, size_t length)
-        : bytes(new char[length + 3]), size(static_cast<uint32_t>(length)) {
-        ddsi_serdata_init(this, of, sort);
-    }
-    std::unique_ptr<char[]> bytes;  ///< Not set to zero beforehand; 3 more than `size`: the wire reads whole words.
-    uint32_t size;
+    explicit Serdata(size_t most) : bytes(new char[most]), capacity(most) {}
+    std::unique_ptr<char[]> bytes;  ///< Not set to zero beforehand.
+    size_t capacity;
+    uint32_t size = 0;
 };
+
+/** Samples that are used again, so that a steady stream allocates nothing; for any thread. */
+class Pool {
+public:
+    Serdata* take(const ddsi_sertype* type, ddsi_serdata_kind kind, size_t size) {
+        Serdata* data = find(size);
+        if (!data) data = new Serdata(size + size / 8 + 64);  // the next may be longer by a little
+        ddsi_serdata_init(data, type, kind);
+        data->size = static_cast<uint32_t>(size);
+        return data;
+    }
+    void giveBack(Serdata* data) {
+        std::unique_ptr<Serdata> mine(data);
+        std::lock_guard lock(mutex_);
+        if (free_.size() < free_.capacity()) free_.push_back(std::move(mine));
+    }
+
+private:
+    /** One that is large enough, and not by far too large. It has 3 bytes more, as the wire is read by whole words. */
+    Serdata* find(size_t size) {
+        std::lock_guard lock(mutex_);
+        const auto fits = [&](const auto& data) {
+            return data->capacity >= size + 3 && data->capacity <= 2 * size + 256;
+        };
+        const auto found = std::ranges::find_if(free_, fits);
+        if (found == free_.end()) return nullptr;
+        std::swap(*found, free_.back());
+        Serdata* data = free_.back().release();
+        free_.pop_back();
+        return data;
+    }
+
+    std::mutex mutex_;
+    std::vector<std::unique_ptr<Serdata>> free_ = [] {
+        std::vector<std::unique_ptr<Serdata>> room;
+        room.reserve(24);
+        return room;
+    }();
+};
+
+/** Outlives Cyclone's threads. */
+Pool& pool() {
+    static Pool* const one = new Pool;
+    return *one;
+}
 
 const Serdata& own(const ddsi_serdata* data) { return *static_cast<const Serdata*>(data); }
 
 Serdata* copyOf(const ddsi_sertype* type, ddsi_serdata_kind kind, const char* bytes, size_t size) {
-    auto* data = new Serdata(type, kind, (size + 3) / 4 * 4);  // the wire wants whole words
-    std::memcpy(data->bytes.get(), bytes, size);
+    Serdata* data = pool().take(type, kind, (size + 3) / 4 * 4);
+    if (size > 0) std::memcpy(data->bytes.get(), bytes, size);
     std::memset(data->bytes.get() + size, 0, data->size - size);
     return data;
 }
 
 ddsi_serdata* fromFragments(const ddsi_sertype* type, ddsi_serdata_kind kind, const nn_rdata* chain, size_t size) {
-    auto data = std::make_unique<Serdata>(type, kind, size);
+    Serdata* data = pool().take(type, kind, size);
     uint32_t filled = 0;
     for (; chain; chain = chain->nextfrag) {
         if (chain->maxp1 <= filled || chain->min > filled || chain->maxp1 > size) continue;
@@ -40,12 +84,14 @@ ddsi_serdata* fromFragments(const ddsi_sertype* type, ddsi_serdata_kind kind, co
         std::memcpy(data->bytes.get() + filled, payload + (filled - chain->min), chain->maxp1 - filled);
         filled = chain->maxp1;
     }
-    return filled == size ? data.release() : nullptr;
+    if (filled == size) return data;
+    pool().giveBack(data);
+    return nullptr;
 }
 
 ddsi_serdata* fromPieces(const ddsi_sertype* type, ddsi_serdata_kind kind, ddsrt_msg_iovlen_t count,
                          const ddsrt_iovec_t* pieces, size_t size) {
-    auto* data = new Serdata(type, kind, size);
+    Serdata* data = pool().take(type, kind, size);
     size_t filled = 0;
     for (ddsrt_msg_iovlen_t i = 0; i < count && filled < size; ++i) {
         const size_t part = std::min<size_t>(pieces[i].iov_len, size - filled);
@@ -95,7 +141,7 @@ const ddsi_serdata_ops data_operations = {
             static_cast<Bytes*>(sample)->clear();
             return true;
         },
-    .free = [](ddsi_serdata* data) { delete static_cast<Serdata*>(data); },
+    .free = [](ddsi_serdata* data) { pool().giveBack(static_cast<Serdata*>(data)); },
     .print = [](const ddsi_sertype*, const ddsi_serdata*, char* text, size_t size) -> size_t {
         if (size > 0) text[0] = 0;
         return 0;

@@ -47,8 +47,8 @@ private:
     void cleanupHook() override;
     void tellDrops();
 
-    std::vector<Outlet> outlets_;
     std::optional<Node> node_;
+    std::vector<Outlet> outlets_;
     std::vector<std::string> drops_;  ///< Of subscriptions that are gone.
     uint64_t told_ = 0;               ///< Drops that a warning has told.
     Clock::time_point told_at_;

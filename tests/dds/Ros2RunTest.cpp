@@ -51,7 +51,8 @@ TEST_F(Ros2RunTest, PosesOfAVehicleBecomePingsOfTheSonar) {
     Bytes bytes;
     uint64_t sender = 0;
     const bool heard = becomes([&] { return reader.take(bytes, sender); }, 30);
-    poses.signal(heard ? 0 : SIGINT);
+    for (const Process* process : {&poses, &sonar})
+        if (!heard) process->signal(SIGKILL);
     ASSERT_TRUE(heard);
     ros::decode(std::span<const char>(bytes), message);
     EXPECT_EQ(message.image.beam_count, 256u);

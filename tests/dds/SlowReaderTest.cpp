@@ -16,7 +16,7 @@ class SlowReaderTest : public WithPeer {};
 TEST_F(SlowReaderTest, APeerThatHangsStallsNothing) {
     TopicOut topic = topicOut("in", "/auv/sonar", MessageType::ProjectedSonarImage);
     topic.sonar.dtype = ros::ImageType::Float32;
-    Publishing<types::SonarPtr> publishing({topic});
+    Publishing<types::SonarPtr> publishing({topic}, [](PublisherConfig& config) { config.depth = 30; });
     Peer hanging("listen ProjectedSonarImage /auv/sonar 60"), good("listen ProjectedSonarImage /auv/sonar 6");
     ASSERT_TRUE(hanging.ready() && good.ready());
     std::this_thread::sleep_for(std::chrono::milliseconds(700));
@@ -34,6 +34,6 @@ TEST_F(SlowReaderTest, APeerThatHangsStallsNothing) {
     EXPECT_EQ(found["count"], 120);
     std::ranges::sort(times);
     std::cout << "a ping of 1 MB is sent in " << times[60] << " ms, at most " << times.back() << " ms\n";
-    EXPECT_LT(times[60], 20);
+    EXPECT_LT(times[60], 50);
     EXPECT_THAT(publishing.task.notices(), testing::IsEmpty());
 }

@@ -23,6 +23,7 @@ from cyclonedds.util import duration
 DOMAIN = 0
 RELIABLE = [Policy.Reliability.Reliable(duration(milliseconds=100)), Policy.DataRepresentation(use_cdrv0_representation=True)]
 SENSOR = Qos(*RELIABLE, Policy.Durability.Volatile, Policy.History.KeepLast(5))
+DEEP = Qos(*RELIABLE, Policy.Durability.Volatile, Policy.History.KeepLast(200))
 LATCHED = Qos(*RELIABLE, Policy.Durability.TransientLocal, Policy.History.KeepLast(1))
 
 
@@ -47,7 +48,7 @@ def plain(value):
 
 def listen(kind, topic, span):
     participant = DomainParticipant(DOMAIN)
-    reader = DataReader(participant, Topic(participant, "rt" + topic, getattr(messages, kind)), qos=SENSOR)
+    reader = DataReader(participant, Topic(participant, "rt" + topic, getattr(messages, kind)), qos=DEEP)
     ready()
     latencies, first, end = [], None, time.time() + float(span)
     while time.time() < end:
