@@ -63,7 +63,6 @@ std::string TaskContext::lastError() const {
     std::lock_guard lock(error_mutex_);
     return last_error_;
 }
-
 void TaskContext::setLastError(const std::string& text) {
     std::lock_guard lock(error_mutex_);
     last_error_ = text;
@@ -102,7 +101,6 @@ std::filesystem::path TaskContext::outputPath(const std::string& file) const {
 void TaskContext::warn(const std::string& text) {
     if (environment_->warn) environment_->warn(name_ + ": " + text);
 }
-
 void TaskContext::recordStage(const char* name, double seconds) {
     auto stage = stages_.find(std::string_view(name));
     if (stage == stages_.end()) stage = stages_.emplace(name, Statistics{}).first;

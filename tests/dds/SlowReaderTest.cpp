@@ -16,8 +16,8 @@ class SlowReaderTest : public WithPeer {};
 TEST_F(SlowReaderTest, APeerThatHangsStallsNothing) {
     TopicOut topic = topicOut("in", "/auv/sonar", MessageType::ProjectedSonarImage);
     topic.sonar.dtype = ros::ImageType::Float32;
-    Publishing<types::SonarPtr> publishing({topic}, [](PublisherConfig& config) { config.depth = 30; });
-    Peer hanging("listen ProjectedSonarImage /auv/sonar 60"), good("listen ProjectedSonarImage /auv/sonar 6");
+    Publishing<types::SonarPtr> publishing({topic}, [](PublisherConfig& config) { config.depth = 200; });
+    Peer hanging("listen ProjectedSonarImage /auv/sonar 120"), good("listen ProjectedSonarImage /auv/sonar 90 120");
     ASSERT_TRUE(hanging.ready() && good.ready());
     std::this_thread::sleep_for(std::chrono::milliseconds(700));
     auto ping = std::make_shared<types::Sonar>(*pingOf(256, 1000));

@@ -1,6 +1,6 @@
 """Another ROS 2 peer, by PyPI's cyclonedds. What it found goes to stdout as JSON; `ready` before that, once it is there.
 
-    peer.py listen TYPE TOPIC SECONDS           counts messages and their latency [ms]; keeps the first
+    peer.py listen TYPE TOPIC SECONDS [COUNT]   counts messages, until that many came, and their latency [ms]; keeps the first
     peer.py node SECONDS                        nodes, and writers with their types and hashes
     peer.py odometry TOPIC COUNT HERTZ [FAULT]  sends poses along x; FAULT nan, back, zero or bytes spoils every second
 """
@@ -20,7 +20,7 @@ from cyclonedds.sub import DataReader
 from cyclonedds.topic import Topic
 from cyclonedds.util import duration
 
-DOMAIN = 0
+DOMAIN, START = 0, time.time()
 RELIABLE = [Policy.Reliability.Reliable(duration(milliseconds=100)), Policy.DataRepresentation(use_cdrv0_representation=True)]
 SENSOR = Qos(*RELIABLE, Policy.Durability.Volatile, Policy.History.KeepLast(5))
 DEEP = Qos(*RELIABLE, Policy.Durability.Volatile, Policy.History.KeepLast(200))
@@ -46,12 +46,14 @@ def plain(value):
     return value if value == value else None
 
 
-def listen(kind, topic, span):
+def listen(kind, topic, span, count=10**9):
     participant = DomainParticipant(DOMAIN)
     reader = DataReader(participant, Topic(participant, "rt" + topic, getattr(messages, kind)), qos=DEEP)
+    while not reader.get_matched_publications() and time.time() < START + 20:
+        time.sleep(0.01)
     ready()
     latencies, first, end = [], None, time.time() + float(span)
-    while time.time() < end:
+    while time.time() < end and len(latencies) < int(count):
         for sample in reader.take(N=10):
             stamp = sample.clock if kind == "Clock" else sample.header.stamp
             latencies.append(1e3 * (time.time() - seconds(stamp)))
