@@ -78,7 +78,7 @@ Request readRequest(const std::string& text) {
     const Json said = Json::parse(text, nullptr, false);
     if (!said.is_object()) throw std::invalid_argument("is no JSON object");
     Request request;
-    const Json id = said.value("id", Json(0));
+    const Json id = said.value("id", Json(0u));
     if (!id.is_number_unsigned()) throw std::invalid_argument("id is no whole number");
     request.id = id.get<uint64_t>();
     if (said.contains("pause") && said["pause"].is_boolean()) {
