@@ -1,5 +1,6 @@
 #include "components/viewer/StatusText.hpp"
 
+#include <chrono>
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <stdexcept>
@@ -49,6 +50,7 @@ std::string statusText(const types::DeploymentStatus& status, const ServerCounts
         connections.push_back({{"from", one.from}, {"to", one.to}, {"policy", one.policy}, {"lost", one.lost}});
     return dump({{"type", "status"},
                  {"now_us", status.now.microseconds},
+                 {"sent_s", std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count()},
                  {"lockstep", status.lockstep},
                  {"paused", status.paused},
                  {"tasks", tasks},
