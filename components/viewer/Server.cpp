@@ -1,5 +1,7 @@
 #include "components/viewer/Server.hpp"
 
+#include <fcntl.h>
+
 #include <map>
 #include <mutex>
 #include <thread>
@@ -67,9 +69,17 @@ Server::Core::~Core() {
     thread_.join();
 }
 
+namespace {
+
+/** Programs that this one starts are not to hold its connections. */
+void keepFromChildren(int descriptor) { fcntl(descriptor, F_SETFD, FD_CLOEXEC); }
+
+}  // namespace
+
 void Server::Core::listen() try {
     const tcp::endpoint endpoint(asio::ip::make_address(options.address), options.port);
     acceptor_.open(endpoint.protocol());
+    keepFromChildren(acceptor_.native_handle());
     acceptor_.set_option(tcp::acceptor::reuse_address(true));
     acceptor_.bind(endpoint);
     acceptor_.listen();
@@ -96,6 +106,7 @@ void Server::Core::take(tcp::socket socket) {
         ++refused;
         return;
     }
+    keepFromChildren(socket.native_handle());
     const uint64_t id = next_session_++;
     const auto session = std::make_shared<Session>(std::move(socket), *this, id);
     sessions_[id] = session;

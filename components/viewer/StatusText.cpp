@@ -1,5 +1,6 @@
 #include "components/viewer/StatusText.hpp"
 
+#include <chrono>
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <stdexcept>
@@ -49,6 +50,7 @@ std::string statusText(const types::DeploymentStatus& status, const ServerCounts
         connections.push_back({{"from", one.from}, {"to", one.to}, {"policy", one.policy}, {"lost", one.lost}});
     return dump({{"type", "status"},
                  {"now_us", status.now.microseconds},
+                 {"sent_s", std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count()},
                  {"lockstep", status.lockstep},
                  {"paused", status.paused},
                  {"tasks", tasks},
@@ -78,7 +80,7 @@ Request readRequest(const std::string& text) {
     const Json said = Json::parse(text, nullptr, false);
     if (!said.is_object()) throw std::invalid_argument("is no JSON object");
     Request request;
-    const Json id = said.value("id", Json(0));
+    const Json id = said.value("id", Json(0u));
     if (!id.is_number_unsigned()) throw std::invalid_argument("id is no whole number");
     request.id = id.get<uint64_t>();
     if (said.contains("pause") && said["pause"].is_boolean()) {

@@ -55,8 +55,11 @@ public:
     const std::string& head() const { return head_; }  ///< Of the answer to upgrade().
     /** A text message of less than 64 KiB. */
     void say(const std::string& text) {
-        std::string frame = {'\x81', static_cast<char>(0xfe), static_cast<char>(text.size() >> 8),
-                             static_cast<char>(text.size())};
+        std::string frame = "\x81";
+        if (text.size() < 126)
+            frame += static_cast<char>(0x80 | text.size());
+        else
+            frame += {static_cast<char>(0xfe), static_cast<char>(text.size() >> 8), static_cast<char>(text.size())};
         frame += std::string(4, '\0');  // a mask that changes nothing
         send(frame + text);
     }
@@ -78,6 +81,7 @@ public:
             if (code == 1 || code == 2) return payload;
         }
     }
+    std::string heard() { return hear().value_or("nothing"); }
     int closeCode() const { return close_code_; }  ///< 0: no close frame came.
 
 private:

@@ -57,18 +57,19 @@ TEST(ClientTest, FoxgloveGetsItsChannelAndThePingAsACdrMessage) {
     Client client(bench.port());
     EXPECT_THAT(client.upgrade(foxglove_protocol), HasSubstr("101"));
     EXPECT_THAT(client.head(), HasSubstr("Sec-WebSocket-Protocol: foxglove.websocket.v1"));
-    EXPECT_EQ(json::parse(*client.hear())["op"], "serverInfo");
-    const json channel = json::parse(*client.hear())["channels"][0];
+    EXPECT_EQ(json::parse(client.heard())["op"], "serverInfo");
+    const json channel = json::parse(client.heard())["channels"][0];
     EXPECT_EQ(channel["topic"], "/sonar/port");
     EXPECT_EQ(channel["schemaName"], "marine_acoustic_msgs/ProjectedSonarImage");
     client.say(R"({"op":"subscribe","subscriptions":[{"id":5,"channelId":99}]})");
-    EXPECT_THAT(*client.hear(), HasSubstr("no channel 99"));
+    EXPECT_THAT(client.heard(), HasSubstr("no channel 99"));
     client.say(R"({"op":"subscribe","subscriptions":[{"id":5,"channelId":0}]})");
     client.say("is the subscription taken?");
-    EXPECT_THAT(*client.hear(), HasSubstr("no JSON object"));
+    EXPECT_THAT(client.heard(), HasSubstr("no JSON object"));
     bench.show(blockPing());
 
-    const std::string message = *client.hear();
+    const std::string message = client.heard();
+    ASSERT_GT(message.size(), 13u);
     EXPECT_EQ(message[0], 1);
     EXPECT_EQ(at<uint32_t>(message, 1), 5u);
     EXPECT_EQ(at<uint64_t>(message, 5), 3'000'000'000u);
@@ -118,13 +119,15 @@ TEST(ClientTest, GarbageClosesThatClientOnly) {
     Bench bench;
     bench.start();
     Client good = page(bench.port());
-    Client no_http(bench.port()), bad_frames = page(bench.port());
-    no_http.send(std::string(2000, '\xee') + "\r\n\r\n");
-    EXPECT_THAT(no_http.get("/"), testing::Not(StartsWith("HTTP/1.1 200")));
-    bad_frames.send(std::string(500, '\xff'));
-    while (bad_frames.hear()) {
+    {
+        Client no_http(bench.port()), bad_frames = page(bench.port());
+        no_http.send(std::string(2000, '\xee') + "\r\n\r\n");
+        EXPECT_THAT(no_http.get("/"), testing::Not(StartsWith("HTTP/1.1 200")));
+        bad_frames.send(std::string(500, '\xff'));
+        while (bad_frames.hear()) {
+        }
+        EXPECT_EQ(bad_frames.closeCode(), 1002);
     }
-    EXPECT_EQ(bad_frames.closeCode(), 1002);
     EXPECT_TRUE(comesTrue([&] { return bench.viewer.counts().clients == 1; }));
     bench.show(blockPing());
     EXPECT_EQ(nextPing(good)["count"], 1);
@@ -173,18 +176,18 @@ TEST(ClientTest, AClientThatNeverReadsDelaysNoCycleAndLosesTheOldest) {
     const Client deaf = page(bench.port());
     Client good = page(bench.port());
     const auto ping = blockPing(3'000'000, 256, 2000);
-    int64_t longest_us = 0;
+    framework::Statistics cycles;
     for (int i = 0; i < 300; ++i) {
         const auto sample = std::make_shared<types::Sonar>(*ping);
         sample->time = {i + 1};
         const auto begin = std::chrono::steady_clock::now();
         bench.show(sample);
-        const auto took = std::chrono::steady_clock::now() - begin;
-        longest_us = std::max<int64_t>(longest_us, std::chrono::duration_cast<std::chrono::microseconds>(took).count());
+        cycles.add(std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count());
         EXPECT_EQ(nextPing(good)["time_us"], i + 1);
     }
-    RecordProperty("longest_cycle_us", std::to_string(longest_us));
-    EXPECT_LT(longest_us, 100'000);
+    RecordProperty("median_cycle_ms", std::to_string(cycles.median() * 1e3));
+    EXPECT_LT(cycles.median(), 0.005);
+    EXPECT_LT(cycles.max(), 2) << "on a machine that does other things as well; one that waits for a client waits on";
     EXPECT_GT(bench.viewer.counts().dropped, 200u) << "of 300 pings of 512 kB a socket holds few";
 }
 

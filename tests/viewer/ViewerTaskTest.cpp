@@ -95,7 +95,7 @@ TEST(ViewerTaskTest, AllKindsOfSamplesAreTaken) {
     Client client(bench.port());
     EXPECT_THAT(client.upgrade(foxglove_protocol), HasSubstr("101"));
     ASSERT_TRUE(client.hear());
-    const auto channels = nlohmann::json::parse(*client.hear())["channels"];
+    const auto channels = nlohmann::json::parse(client.heard())["channels"];
     ASSERT_EQ(channels.size(), 4u);
     EXPECT_EQ(channels[1]["schemaName"], "geometry_msgs/PoseStamped");
     EXPECT_EQ(channels[2]["schemaName"], "sensor_msgs/Image");
@@ -138,9 +138,10 @@ TEST(ViewerTaskTest, APagePausesALockstepRunAndStepsIt) {
     Running running;
     Client client(running.port());
     ASSERT_THAT(client.upgrade(page_protocol), HasSubstr("101"));
+    const auto time = [&] { return running.deployment().status().now.microseconds; };
+    ASSERT_TRUE(comesTrue([&] { return time() > 1'000'000; }));
     EXPECT_THAT(answerTo(client, R"({"id":1,"step":true})")["refused"], "cannot step: the deployment is not paused");
     EXPECT_EQ(answerTo(client, R"({"id":2,"pause":true})")["result"], "");
-    const auto time = [&] { return running.deployment().status().now.microseconds; };
     std::this_thread::sleep_for(std::chrono::milliseconds(50));
     const int64_t paused = time();
     std::this_thread::sleep_for(std::chrono::milliseconds(100));

@@ -108,7 +108,7 @@ byId('fan').onpointerleave = () => { fan.cursor = null; needs_drawing = true; };
 addEventListener('resize', () => { needs_drawing = true; });
 settingsChanged();
 
-/** The scene is drawn no oftener than leaves three quarters of the time to the fan. */
+/** The scene is drawn no oftener than leaves most of the time to the fan, but once a second at least. */
 let next_view = 0;
 function frame(now) {
   if (needs_drawing) fan.draw();
@@ -117,7 +117,7 @@ function frame(now) {
   if (world && now >= next_view) {
     const begin = performance.now();
     world.draw();
-    next_view = now + 4 * (performance.now() - begin);
+    next_view = now + Math.min(1000, 4 * (performance.now() - begin));
   }
   requestAnimationFrame(frame);
 }

@@ -14,7 +14,7 @@ const milliseconds = (s) => s === null ? '-' : (s * 1e3).toFixed(s < 0.01 ? 2 : 
 /** Samples a second of each port, from one status to the next. */
 export class Rates {
   update(status) {
-    const now = performance.now() / 1e3, counts = new Map();
+    const now = status.sent_s, counts = new Map();
     for (const task of status.tasks)
       for (const port of task.outputs) counts.set(`${task.name}.${port.name}`, port.written);
     if (!this.since || now - this.since > 0.9) {

@@ -40,7 +40,7 @@ export class World {
     this.scene.add(this.content, this.sonar, this.vehicle, this.path);
     this.objects = new Map();
     this.moved = [];
-    this.azimuth = 2.6;   // of the camera around the sonar [rad]
+    this.azimuth = -2.55;   // of the camera around the sonar [rad]
     this.elevation = 0.62;
     this.distance = 24;
     this.dirty = true;

@@ -1,0 +1,79 @@
+// What a deployment tells of itself and lets others do while it runs: this test is a program with threads.
+#include <gtest/gtest.h>
+
+#include <thread>
+
+#include "tests/framework/Tasks.hpp"
+
+namespace insonify::framework {
+namespace {
+
+const char* pair = R"(
+tasks:
+  source: {type: test::Source, activity: {period: 0.001}}
+  relay: {type: test::Relay, activity: {trigger: [in]}}
+connections:
+  - {from: source.value, to: relay.in, policy: {type: buffer, size: 4}}
+)";
+
+TEST(DeploymentControlTest, ItTellsTasksPortsAndConnections) {
+    Registry registry = test::testRegistry();
+    Deployment deployment(DeploymentSpec::parse(pair, "a.yml"), registry);
+    deployment.configure();
+    const std::atomic<bool> never{false};
+    ASSERT_FALSE(deployment.run({}, never).failed());
+    DeploymentControl* const control = deployment.task("relay")->environment().deployment;
+    ASSERT_EQ(control, &deployment);
+    const types::DeploymentStatus status = control->status();
+    EXPECT_TRUE(status.lockstep);
+    ASSERT_EQ(status.tasks.size(), 2u);
+    EXPECT_EQ(status.tasks[0].record.name, "source");
+    EXPECT_EQ(status.tasks[0].record.type, "test::Source");
+    EXPECT_EQ(status.tasks[0].state, "Stopped");
+    EXPECT_GT(status.tasks[0].cycle_s, 0);
+    const auto value = std::ranges::find(status.tasks[0].outputs, "value", &types::PortStatus::name);
+    ASSERT_NE(value, status.tasks[0].outputs.end());
+    EXPECT_GT(value->written, 0u);
+    ASSERT_EQ(status.connections.size(), 1u);
+    EXPECT_EQ(status.connections[0].to, "relay.in");
+    EXPECT_EQ(status.connections[0].policy, "buffer");
+    EXPECT_EQ(status.connections[0].lost, 0u);
+    const auto interfaces = control->interfaces();
+    EXPECT_EQ(interfaces[0].name, "source");
+    EXPECT_NE(std::ranges::find(interfaces[0].operations, "stop void()"), interfaces[0].operations.end());
+}
+
+TEST(DeploymentControlTest, InRealtimeNothingPausesTheWallClock) {
+    Registry registry = test::testRegistry();
+    Deployment deployment(DeploymentSpec::parse(std::string("schedule: realtime\n") + pair, "a.yml"), registry);
+    EXPECT_THROW(deployment.pause(true), std::runtime_error);
+    EXPECT_THROW(deployment.step(), std::runtime_error);
+}
+
+TEST(DeploymentControlTest, APausedRunStandsStillGoesStepByStepAndCanBeStopped) {
+    Registry registry = test::testRegistry();
+    Deployment deployment(DeploymentSpec::parse(pair, "a.yml"), registry);
+    deployment.configure();
+    deployment.pause(true);
+    std::atomic<bool> stop{false};
+    std::atomic<int> instants{0};
+    std::thread running([&] { deployment.run({.duration_s = 100}, stop, [&](const Progress&) { ++instants; }); });
+    const auto become = [&](int expected) {
+        for (int i = 0; i < 2000 && instants != expected; ++i)
+            std::this_thread::sleep_for(std::chrono::milliseconds(2));
+        std::this_thread::sleep_for(std::chrono::milliseconds(20));
+        return instants == expected;
+    };
+    EXPECT_TRUE(become(0));
+    deployment.step();
+    EXPECT_TRUE(become(1));
+    deployment.step();
+    deployment.step();
+    EXPECT_TRUE(become(3));
+    EXPECT_GE(deployment.status().tasks.size(), 2u) << "told while it runs";
+    stop = true;
+    running.join();
+}
+
+}  // namespace
+}  // namespace insonify::framework
