@@ -13,7 +13,7 @@ using types::Mount;
 struct SceneConfig {
     std::string file;
     Mount mount;
-    std::optional<double> water_surface, pose_timeout;
+    std::optional<double> water_surface, pose_timeout, extrapolate;
     std::map<std::string, Acoustics> materials;
 
     template <class Self, class V>
@@ -25,6 +25,11 @@ struct SceneConfig {
         visit(Field{"pose_timeout", "s",
                     "age of the newest pose from which there is none; absent: 1 in realtime, else none", 1e-3, 1e6},
               self.pose_timeout);
+        visit(Field{"extrapolate", "s",
+                    "how far a pose is carried on by its velocities to the time at which it is used, at most; absent: "
+                    "it is used as it is",
+                    1e-3, 10},
+              self.extrapolate);
         visit(Field{"materials", "", "acoustic values by name of a material or model, over those of the file"},
               self.materials);
     }

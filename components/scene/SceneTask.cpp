@@ -15,6 +15,19 @@ namespace {
 constexpr const char* kUnusable =
     ": pose dropped: position and orientation must be finite, the quaternion of unit length";
 
+/** A pose as its velocities have it at `time`, but at most `most` seconds on; as it is where they are not known. */
+types::Pose carriedOn(types::Pose pose, types::Time time, double most) {
+    const double seconds = std::clamp((time - pose.time).seconds(), 0.0, most);
+    const double turn = glm::length(pose.angular_velocity) * seconds;
+    if (!std::isfinite(glm::length(pose.velocity)) || !std::isfinite(turn)) return pose;
+    pose.time.microseconds += std::llround(seconds * 1e6);
+    pose.position += pose.velocity * seconds;
+    if (turn > 0)
+        pose.orientation =
+            glm::normalize(pose.orientation) * glm::angleAxis(turn, glm::normalize(pose.angular_velocity));
+    return pose;
+}
+
 }  // namespace
 
 std::shared_ptr<const Scene> SceneTask::load() const {
@@ -101,6 +114,7 @@ void SceneTask::updateHook() {
     if (const std::string stale = staleness(); !stale.empty()) return error(stale);
     if (!is_new) return movables_good ? void() : error(name() + kUnusable);
     if (state() == framework::TaskState::RunTimeError) recover();
+    if (config->extrapolate) body = carriedOn(body, now(), *config->extrapolate);
     const auto sample = pool_.take();
     sample->time = body.time;
     place(body, config->mount, sample->sonar);

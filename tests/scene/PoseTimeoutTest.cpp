@@ -1,6 +1,8 @@
 // Stale and missing poses: RunTimeError until poses are back, never a snapshot of an old place.
 #include <gmock/gmock.h>
 
+#include <numbers>
+
 #include "components/framework/Activity.hpp"
 #include "components/scene/SceneTask.hpp"
 #include "tests/scene/SceneFiles.hpp"
@@ -82,6 +84,33 @@ TEST_F(PoseTimeoutTest, WithoutATimeoutThereIsNoneOutsideOfRealtime) {
     EXPECT_TRUE(cycle(1000, 10));
     EXPECT_EQ(task_.timing().errors, 0u);
     EXPECT_EQ(task_.wakeAfter(), 0);
+}
+
+TEST_F(PoseTimeoutTest, APoseIsCarriedOnByItsVelocitiesOnlyWhereAskedAndSoFar) {
+    types::Pose pose;
+    pose.time = types::Time::fromSeconds(10);
+    pose.velocity = {2, 0, 0};
+    pose.angular_velocity = {0, 0, std::numbers::pi / 2};  // a quarter turn a second
+    const auto at = [&](double now, std::optional<double> most) {
+        task_.stop();
+        config_.extrapolate = most;
+        start({});
+        now_ = types::Time::fromSeconds(now);
+        vehicle_.port.write(pose);
+        task_.update();
+        types::SnapshotPtr snapshot;
+        EXPECT_TRUE(out_.port.readNew(snapshot));
+        return snapshot->sonar;
+    };
+    EXPECT_EQ(at(10.5, {}).position, glm::dvec3(0));
+    EXPECT_EQ(at(10.5, {}).time.seconds(), 10);
+    EXPECT_EQ(at(10.5, 1).position, glm::dvec3(1, 0, 0));
+    EXPECT_EQ(at(10.5, 1).time.seconds(), 10.5);
+    EXPECT_NEAR(glm::degrees(glm::angle(at(10.5, 1).orientation)), 45, 1e-9);
+    EXPECT_EQ(at(19, 1).position, glm::dvec3(2, 0, 0)) << "at most a second";
+    EXPECT_EQ(at(9, 1).position, glm::dvec3(0)) << "never back";
+    pose.angular_velocity = glm::dvec3(types::Pose::unknown);
+    EXPECT_EQ(at(10.5, 1).position, glm::dvec3(0)) << "a rate is unknown";
 }
 
 }  // namespace
