@@ -68,11 +68,6 @@ void TaskContext::setLastError(const std::string& text) {
     last_error_ = text;
 }
 
-types::TaskRecord TaskContext::record() const {
-    std::lock_guard lock(record_mutex_);
-    return record_;
-}
-
 void TaskContext::refreshRecord() {
     types::TaskRecord record{name_, "", {}, ""};
     for (const PropertiesBase* properties : properties_) record.properties.merge(properties->values());

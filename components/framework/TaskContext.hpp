@@ -136,7 +136,10 @@ public:
     virtual double wakeAfter() const { return 0; }
 
     /** Properties and plan, for any thread; the type is the deployment's to know. */
-    types::TaskRecord record() const;
+    types::TaskRecord record() const {
+        std::lock_guard lock(record_mutex_);
+        return record_;
+    }
     /** The plan of record(). */
     std::optional<types::Plan> recordedPlan() const {
         std::lock_guard lock(record_mutex_);

@@ -78,7 +78,7 @@ private:
     uint64_t recorded_changes_ = 0;  ///< Of the tasks' records, with the last record of properties.
     std::optional<LogThread> thread_;
     std::map<std::string, types::PropertyValue> configured_;  ///< With these values.
-    size_t declared_ = 0;  ///< Streams in the log.
+    size_t declared_ = 0;                                     ///< Streams in the log.
 };
 
 }  // namespace insonify::logger
