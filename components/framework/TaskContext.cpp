@@ -52,7 +52,6 @@ TaskContext::TaskContext(std::string name)
     setState(TaskState::PreOperational);
     life_cycle_ = lifeCycleOperations(*this);
 }
-
 TaskContext::~TaskContext() = default;
 
 InputPortBase* TaskContext::input(const std::string& port) { return find(inputs_, port); }
@@ -72,7 +71,6 @@ types::TaskRecord TaskContext::record() const {
     std::lock_guard lock(record_mutex_);
     return record_;
 }
-
 void TaskContext::refreshRecord() {
     types::TaskRecord record{name_, "", {}, ""};
     for (const PropertiesBase* properties : properties_) record.properties.merge(properties->values());
