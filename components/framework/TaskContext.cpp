@@ -52,7 +52,6 @@ TaskContext::TaskContext(std::string name)
     setState(TaskState::PreOperational);
     life_cycle_ = lifeCycleOperations(*this);
 }
-
 TaskContext::~TaskContext() = default;
 
 InputPortBase* TaskContext::input(const std::string& port) { return find(inputs_, port); }

@@ -65,6 +65,18 @@ TEST_F(Ros2RunTest, PosesOfAVehicleBecomePingsOfTheSonar) {
     EXPECT_GE(json::parse(readFile(folder / "summary.json"))["pings"], 40);
 }
 
+TEST_F(Ros2RunTest, PosesThatAreDroppedAreToldAtOnceAndAtTheEnd) {
+    if (!Peer::available())
+        GTEST_SKIP() << "PyPI's cyclonedds is not in " << python() << ": scripts/setup puts it there";
+    const Process sonar(insonifyWords({"run", fls, "--out", "out", "--pings", "10"}), folder.path());
+    const Peer peer("odometry /auv/odometry 1000 20 nan");
+    const Outcome outcome = sonar.wait();
+    EXPECT_EQ(outcome.code, 0) << outcome.err;
+    const std::string why = "/auv/odometry: position and orientation are not finite";
+    EXPECT_THAT(outcome.err, HasSubstr("warning: poses: 1 messages dropped; the last: " + why));
+    EXPECT_THAT(outcome.out + outcome.err, HasSubstr("messages dropped: " + why));
+}
+
 TEST_F(Ros2RunTest, WithoutPosesItWaitsAndSaysSo) {
     Process waiting(insonifyWords({"run", fls, "--out", "out"}), folder.path());
     EXPECT_TRUE(becomes(

@@ -55,6 +55,8 @@ def listen(kind, topic, span, count=10**9):
     latencies, first, end = [], None, time.time() + float(span)
     while time.time() < end and len(latencies) < int(count):
         for sample in reader.take(N=10):
+            if not isinstance(sample, getattr(messages, kind)):
+                continue  # the sender has gone
             stamp = sample.clock if kind == "Clock" else sample.header.stamp
             latencies.append(1e3 * (time.time() - seconds(stamp)))
             first = first or sample
