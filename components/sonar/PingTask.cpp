@@ -99,6 +99,9 @@ void PingTask::chooseQuality() {
     if (target && ladder.back().error > *target)
         plan_->notices.push_back(fmt::format(
             "Warning: the finest quality leaves an error of {:.2g}; the target is {:g}", ladder.back().error, *target));
+    if (wished_ms && ladder.front().ms > *wished_ms)
+        plan_->notices.push_back(fmt::format("Warning: the coarsest quality takes {:.3g} ms; the budget is {:g} ms",
+                                             ladder.front().ms, *wished_ms));
     setQuality(ladder.back());
     if (wished_ms) keeper_.emplace(std::move(ladder), *wished_ms);
 }

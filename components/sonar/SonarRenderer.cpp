@@ -35,7 +35,7 @@ double nearPlane(const SonarConfig& config, const Slab& slab) {
 
 CullRules cullRules(const SonarConfig& config, const BinGrid& bins) {
     const double detail = config.published ? 0 : config.detail;
-    return {config.range_min, bins.range_max, detail, detail * bins.bin_width, config.draw_all};
+    return {config.range_min, bins.range_max, detail, 0.5 * bins.bin_width, config.draw_all};
 }
 
 /** Strongest Lambert parameter [1]. */
@@ -235,8 +235,8 @@ std::vector<types::Omission> SonarRenderer::culled() const {
         "outside the fan or the range at the first ping, or on the far side of a closed mesh");
     if (replaced > coarse)
         all.push_back({fmt::format("detail of {} triangles", replaced),
-                       fmt::format("at the first ping {} within {:g} of a pixel and of a bin of them are drawn", coarse,
-                                   parts_->config.detail)});
+                       fmt::format("at the first ping {} within {:g} of a pixel and half a bin of them are drawn",
+                                   coarse, parts_->config.detail)});
     add("", empty_slabs, parts_->slabs.size(), "slabs", outside);
     return all;
 }

@@ -126,6 +126,7 @@ TEST(QualityBudgetTest, ABudgetThatIsTooSmallLeadsToTheCoarsest) {
     ASSERT_TRUE(task.plan()) << task.lastError();
     EXPECT_EQ(task.plan()->rows, 8);
     EXPECT_GT(task.plan()->predicted_error, 0);
+    EXPECT_THAT(task.notices(), testing::Contains(testing::HasSubstr("the coarsest quality takes")));
 }
 
 TEST(CulledTest, ThePlanSaysWhatOfTheSceneIsNotDrawn) {
