@@ -46,7 +46,7 @@ TEST_F(TrajectoryTaskTest, TimesCountFromTheStartOfTheRun) {
 
 TEST_F(TrajectoryTaskTest, ItHasFinishedWithTheLastPoseThatLiesOnTheTrajectory) {
     task_.config.set({.file = {}, .waypoints = {{.time = 0}, {.time = 1}}});
-    task_.activity().configure({.period = 0.3, .trigger = {}});
+    task_.activity().configure({.period = 0.3, .trigger = {}, .cpus = {}});
     ASSERT_TRUE(task_.configure());
     ASSERT_TRUE(task_.start());
     poseAt(1.6);
@@ -60,7 +60,7 @@ TEST_F(TrajectoryTaskTest, ItHasFinishedWithTheLastPoseThatLiesOnTheTrajectory) 
 
 TEST_F(TrajectoryTaskTest, APeriodThatDividesTheTrajectoryReachesItsLastStamp) {
     task_.config.set({.file = {}, .waypoints = {{.time = 0}, {.time = 1}}});
-    task_.activity().configure({.period = 1.0 / 3, .trigger = {}});
+    task_.activity().configure({.period = 1.0 / 3, .trigger = {}, .cpus = {}});
     ASSERT_TRUE(task_.configure());
     ASSERT_TRUE(task_.start());
     poseAt(1 + 2.0 / 3);
