@@ -7,6 +7,8 @@
 namespace insonify::dds {
 namespace {
 
+constexpr int most_at_once = 1000;  ///< Messages of a topic in one cycle: then others have their turn.
+
 const TopicIn* topicOf(const SubscriberConfig& config, const std::string& port) {
     const auto found = std::ranges::find(config.topics, port, &TopicIn::port);
     return found == config.topics.end() ? nullptr : &*found;
@@ -45,6 +47,7 @@ std::vector<std::string> SubscriberTask::notices() const {
 
 bool SubscriberTask::configureHook() {
     drops_.clear();
+    told_ = 0;
     node_.emplace(domainId(config->node.domain), config->node.nameOr(name()),
                   static_cast<size_t>(config->node.gid_size));
     for (Outlet& outlet : outlets_)
@@ -57,15 +60,17 @@ bool SubscriberTask::configureHook() {
 bool SubscriberTask::startHook() {
     types::Pose stale;
     for (Outlet& outlet : outlets_)
-        while (outlet.subscription->take(now(), stale)) {
-        }
+        for (int i = 0; i < most_at_once && outlet.subscription->take(now(), stale);) ++i;
     return true;
 }
 
 void SubscriberTask::updateHook() {
     types::Pose pose;
-    for (Outlet& outlet : outlets_)
-        while (outlet.subscription->take(now(), pose)) outlet.port->write(pose);
+    for (Outlet& outlet : outlets_) {
+        int taken = 0;
+        for (; taken < most_at_once && outlet.subscription->take(now(), pose); ++taken) outlet.port->write(pose);
+        if (taken == most_at_once) activity().trigger();
+    }
     tellDrops();
 }
 
@@ -77,7 +82,7 @@ void SubscriberTask::tellDrops() {
             count += dropped;
             last = outlet.subscription.get();
         }
-    if (count == told_ || (told_ > 0 && Clock::now() < told_at_ + std::chrono::seconds(10))) return;
+    if (count <= told_ || (told_ > 0 && Clock::now() < told_at_ + std::chrono::seconds(10))) return;
     warn(std::to_string(count) + " messages dropped; the last: " + last->lastDrop());
     told_ = count;
     told_at_ = Clock::now();

@@ -6,6 +6,10 @@
 namespace insonify::dds {
 namespace {
 
+constexpr int most_drops = 64;  ///< In one take: who sends nonsense without end holds up nobody.
+constexpr int64_t most_ahead =
+    1'000'000;  ///< Of the clock, for a stamp [us]; a sonar refuses snapshots beyond it, too.
+
 Reader readerOf(Node& node, const SubscriberConfig& config, const TopicIn& topic, std::function<void()> arrived) {
     const char* type = topic.type == PoseType::Odometry ? ros::Odometry::type_name : ros::PoseStamped::type_name;
     const char* hash = topic.type == PoseType::Odometry ? ros::Odometry::type_hash : ros::PoseStamped::type_hash;
@@ -33,22 +37,24 @@ void Subscription::decode(types::Pose& pose) {
     }
 }
 
-std::string Subscription::faultOf(const types::Pose& pose) {
+std::string Subscription::faultOf(types::Time now, const types::Pose& pose) {
     if (!types::isUsable(pose)) return "position and orientation are not finite, or the orientation has no length";
+    if ((pose.time - now).microseconds > most_ahead) return "the stamp lies more than a second ahead of the clock";
     const bool sender_lives = sender_ == newest_sender_ || reader_.hears(newest_sender_);
     if (pose.time < newest_ && sender_lives) return "the stamp lies before that of the pose before";
     return "";
 }
 
 bool Subscription::take(types::Time now, types::Pose& pose) {
-    while (reader_.take(bytes_, sender_)) {
-        std::string fault;
+    for (int drops = 0; drops < most_drops && reader_.take(bytes_, sender_); ++drops) {
+        std::string fault, detail;
         try {
             decode(pose);
             if (pose.time == types::Time{}) pose.time = now;
-            fault = faultOf(pose);
+            fault = faultOf(now, pose);
         } catch (const ros::CdrError& error) {
-            fault = std::string("no message of its type: ") + error.what();
+            fault = "no message of its type";
+            detail = std::string(": ") + error.what();  // the sender's to choose: no reason of its own
         }
         if (fault.empty()) {
             newest_ = pose.time;
@@ -56,8 +62,8 @@ bool Subscription::take(types::Time now, types::Pose& pose) {
             pose.orientation = glm::normalize(pose.orientation);
             return true;
         }
-        last_drop_ = topic_ + ": " + fault;
-        ++dropped_[last_drop_];
+        last_drop_ = topic_ + ": " + fault + detail;
+        ++dropped_[topic_ + ": " + fault];
     }
     return false;
 }

@@ -18,8 +18,9 @@ public:
     Subscription(Node& node, const SubscriberConfig& config, const TopicIn& topic, std::function<void()> arrived);
 
     /** The next good pose, in Rock's axes, its orientation of unit length; stamped `now` where the message has no
-     *  stamp. False: there is none. Dropped are: bytes that are no such message, poses that are not finite or without
-     *  an orientation, and stamps before that of the pose before, until its sender is gone. */
+     *  stamp. False: there is none, or 64 before it had to be dropped. Dropped are: bytes that are no such message,
+     *  poses that are not finite or without an orientation, and stamps more than a second ahead of `now` or before that
+     *  of the pose before, until its sender is gone. */
     bool take(types::Time now, types::Pose& pose);
 
     /** How many messages were dropped for each reason: "/auv/odometry: not finite". */
@@ -30,7 +31,7 @@ public:
 private:
     void decode(types::Pose& pose);
     /** Empty for a pose that can be used. */
-    std::string faultOf(const types::Pose& pose);
+    std::string faultOf(types::Time now, const types::Pose& pose);
 
     std::string topic_;
     PoseType type_;

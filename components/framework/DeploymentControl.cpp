@@ -69,7 +69,8 @@ void Deployment::step() {
 void Deployment::standStill(const std::atomic<bool>& stop) {
     const auto since = std::chrono::steady_clock::now();
     while (paused_ && steps_ == 0 && !stop) std::this_thread::sleep_for(std::chrono::milliseconds(5));
-    if (paused_ && steps_ > 0) --steps_;
+    for (uint64_t steps = steps_; paused_ && steps > 0 && !steps_.compare_exchange_weak(steps, steps - 1);) {
+    }
     stood_still_ += std::chrono::steady_clock::now() - since;
 }
 

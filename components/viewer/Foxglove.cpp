@@ -3,6 +3,8 @@
 #include <cstring>
 #include <nlohmann/json.hpp>
 
+#include "components/viewer/ReadJson.hpp"
+
 namespace insonify::viewer {
 namespace {
 
@@ -47,7 +49,7 @@ std::string messageHead(uint32_t subscription, uint64_t nanoseconds) {
 }
 
 std::string Subscriptions::take(std::string_view text) {
-    const Json said = Json::parse(text, nullptr, false);
+    const Json said = readJson(text);
     if (!said.is_object() || !said.contains("op") || !said["op"].is_string()) return "is no JSON object with an op";
     if (said["op"] == "unsubscribe") {
         for (const Json& id : said.value("subscriptionIds", Json::array()))

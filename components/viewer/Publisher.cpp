@@ -133,14 +133,19 @@ void Publisher::showScene(const types::GeometryPtr& geometry) {
     if (!geometry || geometry == geometry_) return;
     geometry_ = geometry;
     const Bytes scene = bytesOf(sceneMessage(*geometry, static_cast<size_t>(config_.max_triangles)));
+    {
+        std::lock_guard lock(mutex_);
+        scene_ = scene;  // first, so that who comes now gets it twice rather than not at all
+    }
     server_.toPages(scene_stream, {"", scene, false});
-    std::lock_guard lock(mutex_);
-    scene_ = scene;
 }
 
-void Publisher::showStatus() {
+void Publisher::showStatus() try {
     if (!server_.hasPages()) return;
     server_.toPages(status_stream, {"", bytesOf(statusText(access_.status(), server_.counts())), true});
+} catch (const std::exception& error) {
+    std::lock_guard lock(mutex_);
+    trouble_ = std::string("the state of the tasks cannot be shown: ") + error.what();
 }
 
 // -- requests ---------------------------------------------------------------------------------------------------------

@@ -24,10 +24,11 @@ public:
         : Hub(std::move(asked), answers), subscribers_(options.channels.size()) {
         listen();
         accept();
-        thread_ = std::thread([this] { io_.run(); });
+        thread_ = std::thread(&Core::serve, this);
     }
     ~Core() override;
 
+    void serve();
     void listen();
     void accept();
     void take(tcp::socket socket);
@@ -58,6 +59,16 @@ public:
     std::map<uint64_t, Waiting> waiting_;  ///< Published and not delivered, the newest of each stream.
     std::thread thread_;
 };
+
+/** What a handler throws ends what it was about, and not the program. */
+void Server::Core::serve() {
+    for (bool done = false; !done;) try {
+            io_.run();
+            done = true;
+        } catch (const std::exception&) {
+            ++refused;
+        }
+}
 
 Server::Core::~Core() {
     post([this] {
@@ -92,8 +103,10 @@ void Server::Core::listen() try {
 void Server::Core::accept() {
     acceptor_.async_accept([this](const Error& error, tcp::socket socket) {
         if (!acceptor_.is_open()) return;
-        if (!error) take(std::move(socket));
-        if (!error) return accept();
+        if (!error) {
+            accept();
+            return take(std::move(socket));
+        }
         retry_.expires_after(std::chrono::milliseconds(50));  // no descriptors left, for example
         retry_.async_wait([this](const Error& cancelled) {
             if (!cancelled) accept();

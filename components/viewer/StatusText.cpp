@@ -5,6 +5,8 @@
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 
+#include "components/viewer/ReadJson.hpp"
+
 namespace insonify::viewer {
 namespace {
 
@@ -77,7 +79,7 @@ std::string interfacesText(const std::vector<types::TaskInterface>& interfaces, 
 }
 
 Request readRequest(const std::string& text) {
-    const Json said = Json::parse(text, nullptr, false);
+    const Json said = readJson(text);
     if (!said.is_object()) throw std::invalid_argument("is no JSON object");
     Request request;
     const Json id = said.value("id", Json(0u));

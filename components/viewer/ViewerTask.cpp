@@ -52,8 +52,9 @@ public:
         std::string fault;
         for (T sample{}; port_.readNew(sample);) {
             const std::string wrong = faultOf(sample);
+            const double latency = wrong.empty() ? (now - stampOf(sample)).seconds() : 0;
             if (wrong.empty())
-                publisher.offer(number, std::move(sample), (now - stampOf(sample)).seconds());
+                publisher.offer(number, std::move(sample), latency);
             else
                 fault = port_.path() + ": a sample " + wrong + "; it is not shown";
         }

@@ -37,8 +37,8 @@ TEST_F(PeerTest, HearsEveryPingOfAMegabyteAtFortyHertz) {
                                            [](PublisherConfig& config) { config.depth = 200; });  // a busy machine
     Peer peer("listen ProjectedSonarImage /auv/sonar 90 200");
     ASSERT_TRUE(peer.ready());
-    std::this_thread::sleep_for(std::chrono::milliseconds(700));  // until both know each other
-    constexpr int count = 200;                                    // 5 s
+    std::this_thread::sleep_for(std::chrono::seconds(3));  // until both know each other
+    constexpr int count = 200;                             // 5 s
     auto ping = std::make_shared<types::Sonar>(*pingOf(256, 1000));
     sendAll(count, 40, [&] {
         ping->time = framework::wallClock();

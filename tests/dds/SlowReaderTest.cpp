@@ -19,7 +19,7 @@ TEST_F(SlowReaderTest, APeerThatHangsStallsNothing) {
     Publishing<types::SonarPtr> publishing({topic}, [](PublisherConfig& config) { config.depth = 200; });
     Peer hanging("listen ProjectedSonarImage /auv/sonar 120"), good("listen ProjectedSonarImage /auv/sonar 90 120");
     ASSERT_TRUE(hanging.ready() && good.ready());
-    std::this_thread::sleep_for(std::chrono::milliseconds(700));
+    std::this_thread::sleep_for(std::chrono::seconds(3));
     auto ping = std::make_shared<types::Sonar>(*pingOf(256, 1000));
     std::vector<double> times;  // [ms]
     for (int i = 0; i < 120; ++i) {

@@ -119,6 +119,23 @@ TEST_F(SubscriptionTest, StampsThatGoBackAreDroppedUntilTheirSenderIsGone) {
     EXPECT_EQ(drops(), 1u);
 }
 
+TEST_F(SubscriptionTest, AStampFarAheadOfTheClockIsDroppedAndSilencesNobody) {
+    const auto clock = static_cast<int32_t>(arrival.seconds());
+    send(at(clock + 1000, 1));
+    send(at(clock, 2));
+    ASSERT_TRUE(take());
+    EXPECT_EQ(pose.position.x, 2);
+    EXPECT_EQ(drops(), 1u);
+    EXPECT_THAT(subscription.lastDrop(), testing::HasSubstr("ahead of the clock"));
+}
+
+TEST_F(SubscriptionTest, DifferentNonsenseIsOneReason) {
+    for (char size = 1; size < 40; ++size) writer->write(Bytes(static_cast<size_t>(size), size));
+    send(at(1, 1));
+    ASSERT_TRUE(take());
+    EXPECT_EQ(subscription.dropped().size(), 1u);
+}
+
 TEST_F(SubscriptionTest, AMessageWithoutAStampBearsItsArrival) {
     send(at(0, 1));
     ASSERT_TRUE(take());

@@ -54,6 +54,12 @@ TEST(StatusTextTest, RequestsAreRead) {
     EXPECT_EQ(readRequest(R"({"step":true})").kind, Request::Kind::Step);
 }
 
+TEST(StatusTextTest, ARequestThatIsNestedDeeplyIsRefusedLikeAnother) {
+    const std::string open(30'000, '['), close(30'000, ']');
+    EXPECT_THROW(readRequest(R"({"call":"a.b","arguments":)" + open + close + "}"), std::invalid_argument);
+    EXPECT_THROW(readRequest(R"({"id":)" + open + close + R"(,"step":true})"), std::invalid_argument);
+}
+
 TEST(StatusTextTest, WhatIsNoRequestIsRefused) {
     for (const char* text : {"", "[]", "{}", "{\"id\":-1,\"step\":true}", R"({"call":1})", R"({"pause":1})",
                              R"({"call":"a.b","arguments":[1]})", "\xff"})
