@@ -130,7 +130,11 @@ TEST_F(SubscriptionTest, AStampFarAheadOfTheClockIsDroppedAndSilencesNobody) {
 }
 
 TEST_F(SubscriptionTest, DifferentNonsenseIsOneReason) {
-    for (char size = 1; size < 40; ++size) writer->write(Bytes(static_cast<size_t>(size), size));
+    for (size_t size = 1; size < 40; ++size) {
+        Bytes bytes;
+        bytes.resize(size, static_cast<char>(size));
+        writer->write(bytes);
+    }
     send(at(1, 1));
     ASSERT_TRUE(take());
     EXPECT_EQ(subscription.dropped().size(), 1u);
