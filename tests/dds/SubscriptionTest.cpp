@@ -130,9 +130,9 @@ TEST_F(SubscriptionTest, AStampFarAheadOfTheClockIsDroppedAndSilencesNobody) {
 }
 
 TEST_F(SubscriptionTest, DifferentNonsenseIsOneReason) {
+    const std::string nonsense(40, 'x');
     for (size_t size = 1; size < 40; ++size) {
-        Bytes bytes;
-        bytes.resize(size, static_cast<char>(size));
+        const Bytes bytes(nonsense.begin(), nonsense.begin() + static_cast<ptrdiff_t>(size));
         writer->write(bytes);
     }
     send(at(1, 1));
