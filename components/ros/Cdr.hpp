@@ -47,8 +47,8 @@ size_t minimumSize() {
 class CdrWriter {
 public:
     explicit CdrWriter(std::vector<char>& bytes) : bytes_(bytes) {
-        constexpr char little_endian[] = {0, 1, 0, 0};
-        bytes_.insert(bytes_.end(), little_endian, little_endian + sizeof little_endian);
+        bytes_.resize(bytes_.size() + 4);  // 0 1 0 0: little endian
+        bytes_[bytes_.size() - 3] = 1;
         start_ = bytes_.size();
     }
 
