@@ -1,7 +1,6 @@
 // One vertex: from object axes to one slab's image. Whatever is the same for a draw comes as attributes of its one
 // instance: llvmpipe reads those once, and buffers once for each vertex.
 #extension GL_ARB_shader_draw_parameters : require
-#include "interface.glsl"
 layout(location = 0) in vec3 position;
 layout(location = 1) in vec4 clip_x;  // rows of the matrix from object axes to the image: u, v, and depth along its axis
 layout(location = 2) in vec4 clip_y;

@@ -48,14 +48,11 @@ void SurfacePainter::draw(SlabPicture& picture, const std::vector<ObjectRecord>&
     if (picture.empty()) return;
     listDraws(picture, placed);
     picture.upload();
-    picture.bindCommands();
     program_.use();
     setUniforms(picture.slab());
     vertices_.instanceRows(1, picture.deviceClips(), 3);
     if (scene_.withNormalMaps()) vertices_.instanceRows(7, picture.deviceBends(), 6);
     vertices_.bind();
-    scene_.bindRecords();
-    bindObjects();
     drawGroups(picture);
     picture.resolve();
 }

@@ -24,7 +24,7 @@ TEST_F(PythonTest, McapAndRosbagsReadWhatWeWrite) {
     smallFile(folder_ / "x.0.mcap");
     EXPECT_EQ(
         says("read_mcap.py", (folder_ / "x.0.mcap").string()),
-        "profile ros2, library insonify, 5 messages, 1 chunks\n"
+        "profile ros2, by insonify, 5 messages, 1 chunks\n"
         "metadata insonify {'insonify_deployment': 'tasks:\\n  a: \"b\"\\n', 'insonify_seed': '7'}\n"
         "/sonar/ping marine_acoustic_msgs/msg/ProjectedSonarImage 10000001000 1000 [1.0, 4.0, 2.0, 5.0, 3.0, nan]\n"
         "/sonar/ping marine_acoustic_msgs/msg/ProjectedSonarImage 10000002000 2000 [1.0, 4.0, 2.0, 5.0, 3.0, nan]\n"

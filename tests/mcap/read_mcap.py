@@ -26,7 +26,7 @@ with open(path, "rb") as file:
     reader = make_reader(file, validate_crcs=True, decoder_factories=[DecoderFactory()])
     header, summary = reader.get_header(), reader.get_summary()
     count, chunks = summary.statistics.message_count, summary.statistics.chunk_count
-    print(f"profile {header.profile}, library {header.library}, {count} messages, {chunks} chunks")
+    print(f"profile {header.profile}, by {header.library}, {count} messages, {chunks} chunks")
     for record in reader.iter_metadata():
         print("metadata", record.name, dict(sorted(record.metadata.items())))
     decoded = list(reader.iter_decoded_messages())
