@@ -1,6 +1,8 @@
 #include "components/ros/Echoes.hpp"
 
 #include <algorithm>
+#include <array>
+#include <bit>
 #include <cmath>
 #include <cstring>
 
@@ -33,21 +35,46 @@ void inOrder(const types::Sonar& ping, ImageOrder order, Put&& put) {
         for (size_t beam = 0; beam < ping.beam_count; ++beam) put(place++, ping.bins[beam * ping.bin_count + bin]);
 }
 
-/** Levels of eight bits, of linear or logarithmic bins. */
+/** Levels of eight bits, 255 + (level - reference) * per_db rounded. Linear bins are not given a logarithm each: the
+ *  least bin of every level is, and the first 16 bits of a float tell where among these to begin. */
 class EightBits {
 public:
     EightBits(const types::Sonar& ping, const SonarOptions& options)
-        : scale_(options.scale), reference_(referenceDb(ping, options)), per_db_(255 / options.dynamic_range_db) {}
+        : scale_(options.scale), reference_(referenceDb(ping, options)), per_db_(255 / options.dynamic_range_db) {
+        if (scale_ == BinScale::Decibel) return;
+        for (size_t level = 1; level < 256; ++level)
+            least_[level] = binAt(reference_ + (static_cast<double>(level) - 255.5) / per_db_, scale_);
+        first_ = cellOf(least_[1]);
+        last_ = cellOf(least_[255]);
+        uint8_t level = 0;
+        for (uint32_t cell = first_; cell <= last_; ++cell)
+            begin_[cell] = level = above(level, std::bit_cast<float>(cell << 16));
+    }
 
     uint8_t operator()(float bin) const {
+        if (scale_ == BinScale::Decibel) return ofDecibels(bin);
+        if (!(bin > 0) || cellOf(bin) < first_) return 0;
+        return above(begin_[std::min(cellOf(bin), last_)], bin);
+    }
+
+private:
+    static uint32_t cellOf(float bin) { return std::bit_cast<uint32_t>(bin) >> 16; }
+    /** The level of a bin that has this level at least. */
+    uint8_t above(uint8_t level, float bin) const {
+        while (level < 255 && bin >= least_[level + 1u]) ++level;
+        return level;
+    }
+    uint8_t ofDecibels(float bin) const {
         const double level = levelOf(static_cast<double>(bin), scale_);
         if (level <= nothing_db) return 0;
         return static_cast<uint8_t>(std::lround(std::clamp(255 + (level - reference_) * per_db_, 0.0, 255.0)));
     }
 
-private:
     BinScale scale_;
     double reference_, per_db_;
+    std::array<float, 256> least_{};    ///< Bin of each level; rising.
+    uint32_t first_ = 0, last_ = 0;     ///< Cells of positive floats that have several levels: 16 bits [1].
+    std::array<uint8_t, 32768> begin_;  ///< Level of the least float in each of these cells.
 };
 
 }  // namespace

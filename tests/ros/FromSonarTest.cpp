@@ -2,6 +2,8 @@
 
 #include <cmath>
 #include <cstring>
+#include <limits>
+#include <random>
 
 #include "components/ros/FromSonar.hpp"
 #include "tests/ros/Samples.hpp"
@@ -71,6 +73,26 @@ TEST(FromSonarTest, AFixedReferenceClipsWhatIsAboveIt) {
                 ElementsAre(140, 242, 255, 128, 0, 255));
 }
 
+TEST(FromSonarTest, EightBitsAreTheRoundedLevelOfEveryBin) {
+    types::Sonar ping;
+    ping.resize(20000, 1);
+    std::mt19937 random(1);
+    std::uniform_real_distribution<float> exponent(-37, 38);
+    for (float& bin : ping.bins) bin = std::pow(10.0f, exponent(random));
+    ping.bins.front() = std::numeric_limits<float>::infinity();
+    for (const auto& [reference, range] :
+         {std::pair{0.0, 60.0}, {-120.0, 300.0}, {35.5, 1.0}, {-3000.0, 60.0}, {3000.0, 90.0}}) {
+        SonarOptions options;
+        options.reference_db = reference;
+        options.dynamic_range_db = range;
+        const auto levels = messageOf<ProjectedSonarImage>(ping, options).image.data;
+        for (size_t i = 0; i < ping.bins.size(); ++i) {
+            const double exact = 255 + (10 * std::log10(static_cast<double>(ping.bins[i])) - reference) * 255 / range;
+            ASSERT_NEAR(levels[i], std::clamp(exact, 0.0, 255.0), 0.5 + 1e-4) << ping.bins[i] << " over " << reference;
+        }
+    }
+}
+
 TEST(FromSonarTest, APingWithoutEchoIsBlack) {
     types::Sonar ping = smallPing();
     ping.bins.assign(6, 0);
@@ -97,7 +119,7 @@ TEST(FromSonarTest, ARawImageHasTheRateThatGivesTheBinsTheirWidth) {
     EXPECT_FLOAT_EQ(1500 / (2 * raw.sample_rate), 0.75f);
     EXPECT_EQ(raw.samples_per_beam, 3u);
     EXPECT_THAT(raw.tx_delays, ElementsAre(0, FloatEq(250e-6f)));
-    EXPECT_THAT(raw.rx_angles, ElementsAre(0.5f, -0.25f));
+    EXPECT_THAT(raw.rx_angles, ElementsAre(-0.5f, 0.25f));  // to starboard
     EXPECT_THAT(raw.image.data, ElementsAre(128, 55, 168, 0, 213, 255));
 }
 
