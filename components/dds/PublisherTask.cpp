@@ -14,6 +14,11 @@ template <class T>
 const T& contentOf(const std::shared_ptr<const T>& sample) {
     return *sample;
 }
+bool isNull(const types::Pose&) { return false; }
+template <class T>
+bool isNull(const std::shared_ptr<const T>& sample) {
+    return !sample;
+}
 
 }  // namespace
 
@@ -27,6 +32,7 @@ public:
     framework::InputPortBase& port() const override { return port_; }
     std::string messages() const override { return messagesOf<Sample>(); }
     void open(Node& node, const PublisherConfig& config) override {
+        publications_.clear();  // of a configure that failed
         for (const TopicOut& topic : config.topics)
             if (topic.port == port_.name())
                 publications_.push_back(std::make_unique<Publication<Sample>>(node, config, topic));
@@ -35,6 +41,7 @@ public:
     bool send() override {
         Carried sample{};
         if (!port_.readNew(sample)) return false;
+        if (isNull(sample)) throw std::invalid_argument(port_.path() + ": a sample is null");
         for (const auto& publication : publications_) publication->publish(contentOf(sample));
         return true;
     }

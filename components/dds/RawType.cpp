@@ -9,6 +9,7 @@
 #include <cstring>
 #include <memory>
 #include <mutex>
+#include <new>
 
 namespace insonify::dds {
 namespace {
@@ -24,12 +25,15 @@ struct Serdata : ddsi_serdata {
 /** Samples that are used again, so that a steady stream allocates nothing; for any thread. */
 class Pool {
 public:
-    Serdata* take(const ddsi_sertype* type, ddsi_serdata_kind kind, size_t size) {
+    /** Null without memory: no exception may cross Cyclone, which drops such a sample. */
+    Serdata* take(const ddsi_sertype* type, ddsi_serdata_kind kind, size_t size) noexcept try {
         Serdata* data = find(size);
         if (!data) data = new Serdata(size + size / 8 + 64);  // the next may be longer by a little
         ddsi_serdata_init(data, type, kind);
         data->size = static_cast<uint32_t>(size);
         return data;
+    } catch (const std::bad_alloc&) {
+        return nullptr;
     }
     void giveBack(Serdata* data) {
         std::unique_ptr<Serdata> mine(data);
@@ -70,6 +74,7 @@ const Serdata& own(const ddsi_serdata* data) { return *static_cast<const Serdata
 
 Serdata* copyOf(const ddsi_sertype* type, ddsi_serdata_kind kind, const char* bytes, size_t size) {
     Serdata* data = pool().take(type, kind, (size + 3) / 4 * 4);
+    if (!data) return nullptr;
     if (size > 0) std::memcpy(data->bytes.get(), bytes, size);
     std::memset(data->bytes.get() + size, 0, data->size - size);
     return data;
@@ -77,6 +82,7 @@ Serdata* copyOf(const ddsi_sertype* type, ddsi_serdata_kind kind, const char* by
 
 ddsi_serdata* fromFragments(const ddsi_sertype* type, ddsi_serdata_kind kind, const nn_rdata* chain, size_t size) {
     Serdata* data = pool().take(type, kind, size);
+    if (!data) return nullptr;
     uint32_t filled = 0;
     for (; chain; chain = chain->nextfrag) {
         if (chain->maxp1 <= filled || chain->min > filled || chain->maxp1 > size) continue;
@@ -92,6 +98,7 @@ ddsi_serdata* fromFragments(const ddsi_sertype* type, ddsi_serdata_kind kind, co
 ddsi_serdata* fromPieces(const ddsi_sertype* type, ddsi_serdata_kind kind, ddsrt_msg_iovlen_t count,
                          const ddsrt_iovec_t* pieces, size_t size) {
     Serdata* data = pool().take(type, kind, size);
+    if (!data) return nullptr;
     size_t filled = 0;
     for (ddsrt_msg_iovlen_t i = 0; i < count && filled < size; ++i) {
         const size_t part = std::min<size_t>(pieces[i].iov_len, size - filled);
@@ -106,9 +113,11 @@ ddsi_serdata* fromSample(const ddsi_sertype* type, ddsi_serdata_kind kind, const
     return copyOf(type, kind, bytes.data(), kind == SDK_DATA ? bytes.size() : 0);
 }
 
-bool toSample(const ddsi_serdata* data, void* sample, void**, void*) {
+bool toSample(const ddsi_serdata* data, void* sample, void**, void*) noexcept try {
     static_cast<Bytes*>(sample)->assign(own(data).bytes.get(), own(data).bytes.get() + own(data).size);
     return true;
+} catch (const std::bad_alloc&) {
+    return false;
 }
 
 void copyOut(const ddsi_serdata* data, size_t offset, size_t size, void* to) {

@@ -6,9 +6,9 @@
 namespace insonify::dds {
 namespace {
 
-constexpr int most_drops = 64;  ///< In one take: who sends nonsense without end holds up nobody.
-constexpr int64_t most_ahead =
-    1'000'000;  ///< Of the clock, for a stamp [us]; a sonar refuses snapshots beyond it, too.
+constexpr int most_drops = 64;                ///< In one take: who sends nonsense without end holds up nobody.
+constexpr types::Time most_ahead{1'000'000};  ///< Of the clock, for a stamp; a sonar refuses snapshots beyond it, too.
+constexpr types::Time most_silence{1'000'000};  ///< After which a sender's clock may have been set back.
 
 Reader readerOf(Node& node, const SubscriberConfig& config, const TopicIn& topic, std::function<void()> arrived) {
     const char* type = topic.type == PoseType::Odometry ? ros::Odometry::type_name : ros::PoseStamped::type_name;
@@ -39,10 +39,10 @@ void Subscription::decode(types::Pose& pose) {
 
 std::string Subscription::faultOf(types::Time now, const types::Pose& pose) {
     if (!types::isUsable(pose)) return "position and orientation are not finite, or the orientation has no length";
-    if ((pose.time - now).microseconds > most_ahead) return "the stamp lies more than a second ahead of the clock";
+    if (pose.time - now > most_ahead) return "the stamp lies more than a second ahead of the clock";
+    if (pose.time >= newest_ || now - newest_came_ > most_silence) return "";
     const bool sender_lives = sender_ == newest_sender_ || reader_.hears(newest_sender_);
-    if (pose.time < newest_ && sender_lives) return "the stamp lies before that of the pose before";
-    return "";
+    return sender_lives ? "the stamp lies before that of the pose before" : "";
 }
 
 bool Subscription::take(types::Time now, types::Pose& pose) {
@@ -58,6 +58,7 @@ bool Subscription::take(types::Time now, types::Pose& pose) {
         }
         if (fault.empty()) {
             newest_ = pose.time;
+            newest_came_ = now;
             newest_sender_ = sender_;
             pose.orientation = glm::normalize(pose.orientation);
             return true;

@@ -20,7 +20,8 @@ public:
     /** The next good pose, in Rock's axes, its orientation of unit length; stamped `now` where the message has no
      *  stamp. False: there is none, or 64 before it had to be dropped. Dropped are: bytes that are no such message,
      *  poses that are not finite or without an orientation, and stamps more than a second ahead of `now` or before that
-     *  of the pose before, until its sender is gone. */
+     *  of the pose before, until its sender is gone or nothing good came for a second: a bag that is played in a loop
+     *  and a simulator that was reset begin anew. */
     bool take(types::Time now, types::Pose& pose);
 
     /** How many messages were dropped for each reason: "/auv/odometry: not finite". */
@@ -40,7 +41,7 @@ private:
     ros::Odometry odometry_;
     ros::PoseStamped stamped_;
     uint64_t sender_ = 0, newest_sender_ = 0;
-    types::Time newest_;
+    types::Time newest_, newest_came_;
     std::map<std::string, uint64_t> dropped_;
     std::string last_drop_;
     Reader reader_;

@@ -88,7 +88,7 @@ void convert(const types::Sonar& ping, const SonarOptions& options, RawSonarImag
     message.tx_angles.assign(ping.beam_count, 0);
     message.rx_angles.resize(ping.beam_count);
     for (size_t beam = 0; beam < ping.beam_count; ++beam)
-        message.rx_angles[beam] = static_cast<float>(ping.bearings[beam].rad);
+        message.rx_angles[beam] = static_cast<float>(-ping.bearings[beam].rad);  // ours are positive to port
     fillImage(ping, options, message.image);
 }
 

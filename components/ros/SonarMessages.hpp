@@ -94,7 +94,7 @@ struct RawSonarImage {
         visit(Field{"sample0", "1", "number of the first sample"}, self.sample0);
         visit(Field{"tx_delays", "s", "of each beam"}, self.tx_delays);
         visit(Field{"tx_angles", "rad", "of each beam"}, self.tx_angles);
-        visit(Field{"rx_angles", "rad", "of each beam"}, self.rx_angles);
+        visit(Field{"rx_angles", "rad", "of each beam, positive to starboard as in SonarDetections"}, self.rx_angles);
         visit(Field{"image"}, self.image);
     }
 };

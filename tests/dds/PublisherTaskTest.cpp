@@ -105,6 +105,13 @@ TEST_F(PublisherTaskTest, NothingIsMadeForATopicThatNobodyReads) {
     EXPECT_THAT(publishing.task.lastError(), HasSubstr("/nobody: "));
 }
 
+TEST_F(PublisherTaskTest, ASampleThatIsNullIsAnErrorOfTheTask) {
+    Publishing<types::SonarPtr> publishing({topicOut("in", "/image", MessageType::ProjectedSonarImage)});
+    publishing.send(nullptr);
+    EXPECT_FALSE(publishing.task.isRunning());
+    EXPECT_THAT(publishing.task.lastError(), HasSubstr("a sample is null"));
+}
+
 TEST_F(PublisherTaskTest, PortsAndTypesThatDoNotFitAreToldBeforeItRuns) {
     PublisherTask task("publisher");
     PublisherConfig config;

@@ -119,6 +119,25 @@ TEST_F(SubscriptionTest, StampsThatGoBackAreDroppedUntilTheirSenderIsGone) {
     EXPECT_EQ(drops(), 1u);
 }
 
+TEST_F(SubscriptionTest, AClockThatWasSetBackIsBelievedAfterASecond) {
+    const auto take_at = [&](double later) {
+        return subscription.take(arrival + types::Time::fromSeconds(later), pose);
+    };
+    send(at(10, 1));
+    send(at(2, 2));
+    send(at(3, 3));
+    send(at(4, 4));
+    ASSERT_TRUE(take_at(0));
+    EXPECT_FALSE(take_at(0.5));
+    EXPECT_EQ(drops(), 3u);
+    send(at(5, 5));
+    send(at(6, 6));
+    ASSERT_TRUE(take_at(1.5));
+    EXPECT_EQ(pose.position.x, 5);
+    ASSERT_TRUE(take_at(1.5));
+    EXPECT_EQ(drops(), 3u);
+}
+
 TEST_F(SubscriptionTest, AStampFarAheadOfTheClockIsDroppedAndSilencesNobody) {
     const auto clock = static_cast<int32_t>(arrival.seconds());
     send(at(clock + 1000, 1));

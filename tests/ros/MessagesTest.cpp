@@ -74,7 +74,7 @@ TEST(MessagesTest, RosbagsComputesTheSameHashesAndReadsTheSameValues) {
     EXPECT_THAT(answer,
                 testing::HasSubstr("ProjectedSonarImage 1700000000.123456000 sonar 1500.0 [0.375, 1.125, 1.875] "
                                    "-0.479426 [128, 55, 168, 0, 213, 255]\n"));
-    EXPECT_THAT(answer, testing::HasSubstr("RawSonarImage 1000.0 3 [0.5, -0.25]\n"));
+    EXPECT_THAT(answer, testing::HasSubstr("RawSonarImage 1000.0 3 [-0.5, 0.25]\n"));
     EXPECT_THAT(answer, testing::HasSubstr("SonarRanges [1.875, 1.875] [0, 0] [100.0, 1000.0]\n"));
     EXPECT_THAT(answer, testing::HasSubstr("PointCloud2 2 16 ['x', 'y', 'z', 'intensity']\n"));
     EXPECT_THAT(answer, testing::HasSubstr("LaserScan 0.5 -0.75 [1.875, 1.875]\n"));
