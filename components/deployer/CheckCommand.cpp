@@ -40,6 +40,7 @@ Json connectionJson(const framework::Connection& connection) {
 
 Json validJson(const framework::Deployment& deployment) {
     Json json = {{"valid", true}, {"errors", Json::array()}, {"tasks", Json::array()}, {"connections", Json::array()}};
+    json["warnings"] = deployment.spec().unused();
     for (const auto& task : deployment.spec().tasks) json["tasks"].push_back(taskJson(task));
     for (const auto& connection : deployment.connections()) json["connections"].push_back(connectionJson(connection));
     return json;
@@ -60,6 +61,7 @@ void printGraph(framework::Deployment& deployment) {
     const framework::DeploymentSpec& spec = deployment.spec();
     fmt::print("{}: valid, {}, {} tasks, {} connections\n", spec.file, spec.lockstep ? "lockstep" : "realtime",
                deployment.tasks().size(), deployment.connections().size());
+    for (const std::string& line : spec.unused()) fmt::print("warning: {}\n", line);
     for (const framework::TaskContext* task : deployment.order()) {
         const framework::TaskSpec written = *framework::DeploymentSpec(spec).task(task->name());
         fmt::print("{} ({}, {})\n", written.name, written.type, activityText(written.activity));

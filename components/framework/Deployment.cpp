@@ -125,6 +125,7 @@ RunResult Deployment::run(const RunLimits& limits, const std::atomic<bool>& stop
     wall_start_ = std::chrono::steady_clock::now();
     stood_still_ = {};
     warnings_.clear();
+    for (const std::string& line : spec_.unused()) warn(line);
     if (!spec_.lockstep) prepareRealtime();
     {
         std::optional<Watchdog> watchdog;

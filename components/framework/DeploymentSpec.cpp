@@ -180,6 +180,14 @@ void readConnections(ConfigReader& reader, const YAML::Node& connections, Deploy
     }
 }
 
+/** Keys that are given, "scheduler, cpus"; a pair of each key and whether it is. */
+std::string given(std::initializer_list<std::pair<const char*, bool>> keys) {
+    std::string names;
+    for (const auto& [key, is_given] : keys)
+        if (is_given) names += (names.empty() ? "" : ", ") + std::string(key);
+    return names;
+}
+
 }  // namespace
 }  // namespace insonify::framework
 
@@ -235,6 +243,27 @@ std::vector<std::string> DeploymentSpec::taskNames() const {
     std::vector<std::string> names;
     for (const TaskSpec& task : tasks) names.push_back(task.name);
     return names;
+}
+
+std::vector<std::string> DeploymentSpec::unused() const {
+    static const DeploymentSpec usual;
+    std::vector<std::string> lines;
+    const auto note = [&](const std::string& whose, const std::string& keys) {
+        if (!keys.empty()) lines.push_back(whose + "not used in " + (lockstep ? "lockstep: " : "realtime: ") + keys);
+    };
+    if (!lockstep) {
+        note("", given({{"start_time", start_time != usual.start_time}}));
+        return lines;
+    }
+    note("", given({{"watchdog", watchdog != usual.watchdog}, {"lock_memory", lock_memory}}));
+    for (const TaskSpec& task : tasks) {
+        const ActivitySettings& a = task.activity;
+        note(task.name + ": ", given({{"scheduler", a.fifo},
+                                      {"cpus", !a.cpus.empty()},
+                                      {"deadline", a.deadline > 0},
+                                      {"watchdog", a.watchdog > 0}}));
+    }
+    return lines;
 }
 
 void DeploymentSpec::set(const std::string& assignment) {

@@ -61,6 +61,8 @@ struct DeploymentSpec {
     TaskSpec* task(const std::string& name);  ///< Null when there is none.
     const TaskSpec* task(const std::string& name) const { return const_cast<DeploymentSpec*>(this)->task(name); }
     std::vector<std::string> taskNames() const;
+    /** What is written but its schedule leaves out, a line for each task and for the whole; empty: nothing. */
+    std::vector<std::string> unused() const;
     /** `task.property.path=value`, the value in YAML: a layer over the file. Faults go to `faults`. */
     void set(const std::string& assignment);
 };

@@ -16,6 +16,7 @@ namespace {
 
 constexpr double budget_share = 0.5;  ///< Of the budget, for the qualities to choose from: later pings may take longer.
 constexpr double fine_enough = 1e-3;  ///< Error below which time that is left is not used [1].
+constexpr size_t most_notices = 100;  ///< Runs may last for days.
 
 }  // namespace
 
@@ -117,6 +118,7 @@ void PingTask::setQuality(const Quality& quality) {
 void PingTask::keepBudget(double ms) {
     if (!keeper_ || !keeper_->heard(ms)) return;
     setQuality(keeper_->quality());
+    if (plan_->notices.size() >= most_notices) return;
     plan_->notices.push_back(fmt::format("from {:.3f} s on {} rows, {} columns per beam, to keep to {:g} ms",
                                          aimed_.time.seconds(), plan_->rows, plan_->columns_per_beam,
                                          *sonarConfig().quality.budget_ms));

@@ -19,12 +19,26 @@ TEST(CheckCommandTest, JsonTellsTasksAndConnections) {
     const json told = json::parse(callInsonify(folder, {"check", "wall.yml", "--json"}).out);
     EXPECT_TRUE(told["valid"]);
     EXPECT_EQ(told["errors"], json::array());
+    EXPECT_EQ(told["warnings"], json::array());
     EXPECT_EQ(told["tasks"].size(), 5u);
     EXPECT_EQ(told["tasks"][2]["name"], "sonar");
     EXPECT_EQ(told["tasks"][2]["type"], "sonar::SonarTask");
     EXPECT_EQ(told["connections"][4]["from"], "noise.noisy");
     EXPECT_EQ(told["connections"][4]["to"], "log.noisy");
     EXPECT_EQ(told["connections"][4]["policy"]["size"], 64);
+}
+
+TEST(CheckCommandTest, WhatTheScheduleLeavesOutIsAWarning) {
+    const std::string text =
+        replaced(wall_deployment, "type: sonar::SonarTask",
+                 "type: sonar::SonarTask\n    activity: {scheduler: fifo, priority: 5, deadline: 0.1}");
+    const WallFolder folder("lock_memory: true\n" + text);
+    const Outcome outcome = callInsonify(folder, {"check", "wall.yml"});
+    EXPECT_EQ(outcome.code, 0) << outcome.err;
+    EXPECT_THAT(outcome.out, HasSubstr("warning: not used in lockstep: lock_memory\n"));
+    EXPECT_THAT(outcome.out, HasSubstr("warning: sonar: not used in lockstep: scheduler, deadline\n"));
+    const Outcome run = callInsonify(folder, {"run", "wall.yml", "--pings", "1"});
+    EXPECT_THAT(run.err, HasSubstr("warning: sonar: not used in lockstep: scheduler, deadline\n"));
 }
 
 TEST(CheckCommandTest, JsonTellsEveryErrorWithItsPlace) {
