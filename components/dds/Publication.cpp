@@ -1,5 +1,8 @@
 #include "components/dds/Publication.hpp"
 
+#include <optional>
+#include <stdexcept>
+
 #include "components/ros/Cdr.hpp"
 #include "components/ros/FromSonar.hpp"
 #include "components/ros/Pictures.hpp"
@@ -12,7 +15,7 @@ namespace {
 
 struct Options {
     ros::WorldFrame world_frame;
-    std::string world_frame_id, child_frame_id;
+    std::optional<std::string> world_frame_id, child_frame_id;  ///< In place of those that a pose names.
     ros::SonarOptions sonar;
 };
 
@@ -23,6 +26,12 @@ Options optionsOf(const PublisherConfig& config, const TopicOut& topic) {
     else
         options.world_frame_id = topic.sonar.frame_id;
     return options;
+}
+
+/** What is given, or what the pose says, or what is usual. */
+void name(std::string& frame, const std::optional<std::string>& given, const char* usual) {
+    if (given) frame = *given;
+    if (frame.empty()) frame = usual;
 }
 
 template <class Message>
@@ -39,9 +48,9 @@ template <class Message>
 auto fill(const types::Pose& pose, const Options& options, Message& message)
     -> decltype(ros::convert(pose, options.world_frame, message)) {
     ros::convert(pose, options.world_frame, message);
-    if (message.header.frame_id.empty()) message.header.frame_id = options.world_frame_id;
+    name(message.header.frame_id, options.world_frame_id, "map");
     if constexpr (requires { message.child_frame_id; })
-        if (message.child_frame_id.empty()) message.child_frame_id = options.child_frame_id;
+        name(message.child_frame_id, options.child_frame_id, "base_link");
 }
 
 template <class Sample>
@@ -82,20 +91,25 @@ Writer writerOf(Node& node, const PublisherConfig& config, const TopicOut& topic
 }  // namespace
 
 template <class Sample>
+bool canBe(MessageType type) {
+    return encoderOf<Sample>(type, {}) != nullptr;
+}
+
+template <class Sample>
 std::string messagesOf() {
     std::string all;
     constexpr const auto& names = types::EnumNames<MessageType>::names;
     for (size_t i = 0; i < std::size(names); ++i)
-        if (encoderOf<Sample>(static_cast<MessageType>(i), {}))
-            all += (all.empty() ? "" : ", ") + std::string(names[i]);
+        if (canBe<Sample>(static_cast<MessageType>(i))) all += (all.empty() ? "" : ", ") + std::string(names[i]);
     return all;
 }
 
 template <class Sample>
-Publication<Sample>::Publication(Node& node, const PublisherConfig& config, const TopicOut& topic)
+Publication<Sample>::Publication(Node& node, const PublisherConfig& config, const TopicOut& topic, Drops& drops)
     : topic_(topic.topic),
       encode_(encoderOf<Sample>(topic.type, optionsOf(config, topic))),
-      writer_(writerOf(node, config, topic)) {
+      writer_(writerOf(node, config, topic)),
+      drops_(drops) {
     node.addWriter(writer_.handle());
     if (encode_) return;
     const std::string type(types::EnumNames<MessageType>::names[static_cast<size_t>(topic.type)]);
@@ -105,25 +119,25 @@ Publication<Sample>::Publication(Node& node, const PublisherConfig& config, cons
 }
 
 template <class Sample>
-void Publication<Sample>::publish(const Sample& sample) {
-    if (!writer_.hasReaders()) return;
+bool Publication<Sample>::publish(const Sample& sample) {
+    if (!writer_.hasReaders()) return false;
     try {
         encode_(sample, bytes_);
     } catch (const std::logic_error& error) {
-        throw std::invalid_argument(topic_ + ": " + error.what());
+        drops_.add(topic_ + ": " + error.what());
+        return false;
     }
-    if (!writer_.write(bytes_)) ++lost_;
-}
-
-template <class Sample>
-std::string Publication<Sample>::losses() const {
-    if (lost_ == 0) return "";
-    return std::to_string(lost_) + " messages on " + topic_ + " could not be sent: " + writer_.failure();
+    if (writer_.write(bytes_)) return true;
+    drops_.add(topic_ + ": " + writer_.failure());
+    return false;
 }
 
 template class Publication<types::Sonar>;
 template class Publication<types::Pose>;
 template class Publication<types::Image>;
+template bool canBe<types::Sonar>(MessageType);
+template bool canBe<types::Pose>(MessageType);
+template bool canBe<types::Image>(MessageType);
 template std::string messagesOf<types::Sonar>();
 template std::string messagesOf<types::Pose>();
 template std::string messagesOf<types::Image>();

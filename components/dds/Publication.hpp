@@ -2,6 +2,7 @@
 #include <functional>
 #include <string>
 
+#include "components/dds/Drops.hpp"
 #include "components/dds/PublisherConfig.hpp"
 #include "components/dds/Writer.hpp"
 #include "types/Image.hpp"
@@ -14,24 +15,24 @@ namespace insonify::dds {
 template <class Sample>
 class Publication {
 public:
-    /** Throws types::ConfigError for a message that cannot be made of a Sample, and as Writer. */
-    Publication(Node& node, const PublisherConfig& config, const TopicOut& topic);
+    /** What is not sent is counted in `drops`, which outlives this. Throws types::ConfigError for a message that cannot
+     *  be made of a Sample, and as Writer. */
+    Publication(Node& node, const PublisherConfig& config, const TopicOut& topic, Drops& drops);
 
-    /** Makes no message for a topic that nobody reads. Throws std::invalid_argument for a sample that the message
-     *  cannot hold (see ros/FromSonar.hpp), std::out_of_range for such a time. */
-    void publish(const Sample& sample);
-    bool hasReaders() const { return writer_.hasReaders(); }
-    /** How many messages could not be sent, and why; empty: none. */
-    std::string losses() const;
+    /** Makes no message for a topic that nobody reads. A sample that the message cannot hold (see ros/FromSonar.hpp) is
+     *  dropped. Whether it was sent. */
+    bool publish(const Sample& sample);
 
 private:
     std::string topic_;
     std::function<void(const Sample&, Bytes&)> encode_;
     Writer writer_;
     Bytes bytes_;
-    uint64_t lost_ = 0;
+    Drops& drops_;
 };
 
+template <class Sample>
+bool canBe(MessageType type);
 /** Types of messages that a Sample can be, as in YAML: "nav_msgs/Odometry, ...". */
 template <class Sample>
 std::string messagesOf();

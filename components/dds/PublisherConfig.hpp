@@ -1,4 +1,7 @@
 #pragma once
+#include <array>
+#include <map>
+#include <optional>
 #include <set>
 #include <string>
 #include <vector>
@@ -19,7 +22,7 @@ inline ros::SonarOptions withoutFrame() {
 struct TopicOut {
     std::string port, topic;
     MessageType type = MessageType::ProjectedSonarImage;
-    std::string child_frame_id = "base_link";
+    std::optional<std::string> child_frame_id;
     ros::SonarOptions sonar = withoutFrame();
 
     template <class Self, class V>
@@ -28,14 +31,27 @@ struct TopicOut {
         visit(Field{"port", "", "input port that a connection leads to"}, self.port);
         visit(Field{"topic", "", "as in ROS: /auv/sonar"}, self.topic);
         visit(Field{"type", "", "of ROS's message"}, self.type);
-        visit(Field{"child_frame_id", "", "the body of an Odometry whose pose names none"}, self.child_frame_id);
+        visit(Field{"child_frame_id", "", "the body of an Odometry; absent: what its pose names, or base_link"},
+              self.child_frame_id);
         ros::SonarOptions::describe(self.sonar, visit);
     }
 };
 
+/** How the axes of a ping's message lie; none: it has none, or is of a pose. */
+inline std::optional<ros::SensorFrame> axesOf(const TopicOut& topic) {
+    switch (topic.type) {
+        case MessageType::ProjectedSonarImage:
+        case MessageType::SonarRanges: return topic.sonar.frame;
+        case MessageType::PointCloud2:
+        case MessageType::LaserScan: return ros::SensorFrame::XForward;
+        default: return std::nullopt;
+    }
+}
+
 struct PublisherConfig {
     std::vector<TopicOut> topics;
-    std::string frame_id = "sonar", world_frame_id = "map";
+    std::string frame_id = "sonar";
+    std::optional<std::string> world_frame_id;
     Reliability reliability = Reliability::Reliable;
     int depth = 5;
     NodeConfig node;
@@ -45,11 +61,28 @@ struct PublisherConfig {
         using types::Field;
         visit(Field{"topics", "", "what is sent; a port may have several"}, self.topics);
         visit(Field{"frame_id", "", "of pings and pictures; a topic may have its own"}, self.frame_id);
-        visit(Field{"world_frame_id", "", "of poses that name none; a topic may have its own"}, self.world_frame_id);
+        visit(Field{"world_frame_id", "", "of poses; a topic may have its own; absent: what they name, or map"},
+              self.world_frame_id);
         visit(Field{"reliability", "", "best_effort is not heard by readers that ask for reliable ones"},
               self.reliability);
         visit(Field{"depth", "1", "messages kept for readers that are behind", 1, 1000}, self.depth);
         NodeConfig::describe(self.node, visit);
+    }
+    /** Frames that messages with different axes share: no transform fits both. */
+    std::vector<std::string> sharedFrames() const {
+        std::map<std::string, std::array<std::string, 2>> by_frame;  // topics with x ahead, with z ahead
+        for (const TopicOut& topic : topics)
+            if (const auto axes = axesOf(topic)) {
+                std::string& topics_so = by_frame[topic.sonar.frame_id.empty() ? frame_id : topic.sonar.frame_id]
+                                                 [*axes == ros::SensorFrame::ZForward];
+                topics_so += (topics_so.empty() ? "" : ", ") + topic.topic;
+            }
+        std::vector<std::string> shared;
+        for (const auto& [frame, kinds] : by_frame)
+            if (!kinds[0].empty() && !kinds[1].empty())
+                shared.push_back("frame_id " + frame + " has x ahead on " + kinds[0] + " and z ahead on " + kinds[1] +
+                                 ": give one of them another, for transforms");
+        return shared;
     }
     void check(types::Problems& problems) const {
         node.check(problems);

@@ -4,20 +4,17 @@
 #include <chrono>
 
 #include "components/dds/Publication.hpp"
+#include "components/framework/Latency.hpp"
 #include "types/ConfigError.hpp"
 
 namespace insonify::dds {
 namespace {
 
-const types::Pose& contentOf(const types::Pose& pose) { return pose; }
+/** What travels; null for a sample that is. */
+const types::Pose* contentOf(const types::Pose& pose) { return &pose; }
 template <class T>
-const T& contentOf(const std::shared_ptr<const T>& sample) {
-    return *sample;
-}
-bool isNull(const types::Pose&) { return false; }
-template <class T>
-bool isNull(const std::shared_ptr<const T>& sample) {
-    return !sample;
+const T* contentOf(const std::shared_ptr<const T>& sample) {
+    return sample.get();
 }
 
 }  // namespace
@@ -25,29 +22,27 @@ bool isNull(const std::shared_ptr<const T>& sample) {
 template <class Carried>
 class PublisherTask::TypedInlet final : public Inlet {
 public:
-    using Sample = std::remove_cvref_t<decltype(contentOf(std::declval<Carried>()))>;
+    using Sample = std::remove_cvref_t<decltype(*contentOf(std::declval<Carried>()))>;
 
     explicit TypedInlet(std::unique_ptr<framework::InputPortBase> port)
         : owned_(std::move(port)), port_(static_cast<framework::InputPort<Carried>&>(*owned_)) {}
     framework::InputPortBase& port() const override { return port_; }
+    bool canBe(MessageType type) const override { return dds::canBe<Sample>(type); }
     std::string messages() const override { return messagesOf<Sample>(); }
-    void open(Node& node, const PublisherConfig& config) override {
-        publications_.clear();  // of a configure that failed
+    void open(Node& node, const PublisherConfig& config, Drops& drops) override {
         for (const TopicOut& topic : config.topics)
             if (topic.port == port_.name())
-                publications_.push_back(std::make_unique<Publication<Sample>>(node, config, topic));
+                publications_.push_back(std::make_unique<Publication<Sample>>(node, config, topic, drops));
     }
     void close() override { publications_.clear(); }
-    bool send() override {
+    bool send(PublisherTask& task) override {
         Carried sample{};
         if (!port_.readNew(sample)) return false;
-        if (isNull(sample)) throw std::invalid_argument(port_.path() + ": a sample is null");
-        for (const auto& publication : publications_) publication->publish(contentOf(sample));
-        return true;
-    }
-    void addLosses(std::vector<std::string>& notices) const override {
+        const Sample* const content = contentOf(sample);
+        if (!content) return task.drops_.add(port_.path() + ": a sample is null"), true;
         for (const auto& publication : publications_)
-            if (std::string losses = publication->losses(); !losses.empty()) notices.push_back(std::move(losses));
+            if (publication->publish(*content)) framework::noteLatency(task, content->time);
+        return true;
     }
 
 private:
@@ -86,22 +81,24 @@ void PublisherTask::check(types::Problems& problems) const {
             continue;
         }
         const std::string type(types::EnumNames<MessageType>::names[static_cast<size_t>(topic.type)]);
-        const std::string able = (*inlet)->messages();
-        if (able.find(type) == std::string::npos)
-            problems.push_back({path + "type", "is " + type + "; " + (*inlet)->port().typeName() + " can be " + able});
+        if (!(*inlet)->canBe(topic.type))
+            problems.push_back(
+                {path + "type", "is " + type + "; " + (*inlet)->port().typeName() + " can be " + (*inlet)->messages()});
     }
 }
 
 std::vector<std::string> PublisherTask::notices() const {
-    std::vector<std::string> notices;
-    for (const auto& inlet : inlets_) inlet->addLosses(notices);
+    std::vector<std::string> notices = config->sharedFrames();
+    std::ranges::move(drops_.notices(), std::back_inserter(notices));
     return notices;
 }
 
 bool PublisherTask::configureHook() {
+    cleanupHook();  // what a configure that failed has left
+    drops_ = {};
     node_.emplace(domainId(config->node.domain), config->node.nameOr(name()),
                   static_cast<size_t>(config->node.gid_size));
-    for (const auto& inlet : inlets_) inlet->open(*node_, *config);
+    for (const auto& inlet : inlets_) inlet->open(*node_, *config, drops_);
     node_->announce();
     return true;
 }
@@ -109,8 +106,9 @@ bool PublisherTask::configureHook() {
 void PublisherTask::updateHook() {
     using Clock = std::chrono::steady_clock;
     for (const auto& inlet : inlets_)
-        for (auto start = Clock::now(); inlet->send(); start = Clock::now())
+        for (auto start = Clock::now(); inlet->send(*this); start = Clock::now())
             recordStage("send", std::chrono::duration<double>(Clock::now() - start).count());
+    if (const std::string told = drops_.untold(); !told.empty()) warn(told);
 }
 
 void PublisherTask::cleanupHook() {

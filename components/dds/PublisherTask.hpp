@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "components/dds/Drops.hpp"
 #include "components/dds/Node.hpp"
 #include "components/dds/PublisherConfig.hpp"
 #include "components/framework/Port.hpp"
@@ -19,8 +20,9 @@ namespace insonify::dds {
  *  that nobody reads costs nothing. Poses are turned into `world_frame`.
  *
  *  Configure joins the domain and announces the node. Sending waits for no reader: one that is more than `depth`
- *  messages behind misses some. What cannot be sent at all is counted, and told at the end. A sample that its message
- *  cannot hold ends in Exception. Stages: `send`, of all topics of a sample. */
+ *  messages behind misses some. What cannot be sent, or what its message cannot hold, is dropped and counted: a warning
+ *  tells it at the first and then every ten seconds at most, and a notice tells the sum at the end. Stages: `send`, of
+ *  all topics of a sample. Latency is that of a sample's last topic, from its stamp until DDS has it. */
 class PublisherTask final : public framework::TaskContext {
 public:
     using TaskContext::TaskContext;
@@ -38,11 +40,11 @@ private:
     public:
         virtual ~Inlet() = default;
         virtual framework::InputPortBase& port() const = 0;
-        virtual std::string messages() const = 0;  ///< That can be made of its samples.
-        virtual void open(Node& node, const PublisherConfig& config) = 0;
+        virtual bool canBe(MessageType type) const = 0;  ///< Whether such a message can be made of its samples.
+        virtual std::string messages() const = 0;        ///< All that can.
+        virtual void open(Node& node, const PublisherConfig& config, Drops& drops) = 0;
         virtual void close() = 0;
-        virtual bool send() = 0;  ///< Whether there was a sample.
-        virtual void addLosses(std::vector<std::string>& notices) const = 0;
+        virtual bool send(PublisherTask& task) = 0;  ///< Whether there was a sample.
     };
     template <class Carried>
     class TypedInlet;
@@ -53,6 +55,7 @@ private:
     void updateHook() override;
     void cleanupHook() override;
 
+    Drops drops_;
     std::optional<Node> node_;
     std::vector<std::unique_ptr<Inlet>> inlets_;
 };

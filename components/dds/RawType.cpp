@@ -22,6 +22,21 @@ struct Serdata : ddsi_serdata {
     uint32_t size = 0;
 };
 
+/** What is known of a type beyond Cyclone's part. */
+struct RawType : ddsi_sertype {
+    size_t largest = 0;  ///< Message from the network that is taken [B].
+    std::shared_ptr<std::atomic<uint64_t>> refused;
+};
+
+const RawType& own(const ddsi_sertype* type) { return *static_cast<const RawType*>(type); }
+
+/** Whether a message is small enough; counts those that are not. */
+bool isTaken(const ddsi_sertype* type, size_t size) {
+    if (size <= own(type).largest) return true;
+    if (own(type).refused) ++*own(type).refused;
+    return false;
+}
+
 /** Samples that are used again, so that a steady stream allocates nothing; for any thread. */
 class Pool {
 public:
@@ -81,6 +96,7 @@ Serdata* copyOf(const ddsi_sertype* type, ddsi_serdata_kind kind, const char* by
 }
 
 ddsi_serdata* fromFragments(const ddsi_sertype* type, ddsi_serdata_kind kind, const nn_rdata* chain, size_t size) {
+    if (!isTaken(type, size)) return nullptr;
     Serdata* data = pool().take(type, kind, size);
     if (!data) return nullptr;
     uint32_t filled = 0;
@@ -97,6 +113,7 @@ ddsi_serdata* fromFragments(const ddsi_sertype* type, ddsi_serdata_kind kind, co
 
 ddsi_serdata* fromPieces(const ddsi_sertype* type, ddsi_serdata_kind kind, ddsrt_msg_iovlen_t count,
                          const ddsrt_iovec_t* pieces, size_t size) {
+    if (!isTaken(type, size)) return nullptr;
     Serdata* data = pool().take(type, kind, size);
     if (!data) return nullptr;
     size_t filled = 0;
@@ -105,7 +122,7 @@ ddsi_serdata* fromPieces(const ddsi_sertype* type, ddsi_serdata_kind kind, ddsrt
         std::memcpy(data->bytes.get() + filled, pieces[i].iov_base, part);
         filled += part;
     }
-    return data;
+    return filled == size ? data : (pool().giveBack(data), nullptr);
 }
 
 ddsi_serdata* fromSample(const ddsi_sertype* type, ddsi_serdata_kind kind, const void* sample) {
@@ -167,12 +184,12 @@ const ddsi_sertype_ops type_operations = {
     .free =
         [](ddsi_sertype* type) {
             ddsi_sertype_fini(type);
-            delete type;
+            delete static_cast<RawType*>(type);
         },
     .zero_samples = [](const ddsi_sertype*, void*, size_t) {},
     .realloc_samples = [](void**, const ddsi_sertype*, void*, size_t, size_t) { std::abort(); },
     .free_samples = [](const ddsi_sertype*, void**, size_t, dds_free_op_t) {},
-    .equal = [](const ddsi_sertype*, const ddsi_sertype*) { return true; },
+    .equal = [](const ddsi_sertype* a, const ddsi_sertype* b) { return own(a).refused == own(b).refused; },
     .hash = [](const ddsi_sertype*) { return uint32_t{0}; },
     .type_id = nullptr,
     .type_map = nullptr,
@@ -184,9 +201,12 @@ const ddsi_sertype_ops type_operations = {
 
 }  // namespace
 
-ddsi_sertype* makeRawType(const std::string& type_name) {
-    auto type = std::make_unique<ddsi_sertype>();
+ddsi_sertype* makeRawType(const std::string& type_name, size_t largest,
+                          std::shared_ptr<std::atomic<uint64_t>> refused) {
+    auto type = std::make_unique<RawType>();
     ddsi_sertype_init(type.get(), type_name.c_str(), &type_operations, &data_operations, true);
+    type->largest = largest;
+    type->refused = std::move(refused);
     return type.release();
 }
 

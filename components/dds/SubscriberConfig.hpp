@@ -11,10 +11,14 @@ namespace insonify::dds {
 /** What is read. */
 enum class PoseType { Odometry, PoseStamped };
 
+/** Where a pose has its time from. */
+enum class StampFrom { Message, Arrival };
+
 /** One topic's messages as one port's samples. */
 struct TopicIn {
     std::string topic, port = "pose";
     PoseType type = PoseType::Odometry;
+    StampFrom stamp = StampFrom::Message;
 
     template <class Self, class V>
     static void describe(Self& self, V& visit) {
@@ -22,6 +26,10 @@ struct TopicIn {
         visit(Field{"topic", "", "as in ROS: /auv/odometry"}, self.topic);
         visit(Field{"port", "", "output port that connections lead from"}, self.port);
         visit(Field{"type", "", "of ROS's message"}, self.type);
+        visit(Field{"stamp", "",
+                    "time of a pose: its message's, or that of its arrival, for a sender whose clock is not ours (a "
+                    "simulator's, a bag's)"},
+              self.stamp);
     }
 };
 
@@ -58,4 +66,8 @@ struct SubscriberConfig {
 template <>
 struct insonify::types::EnumNames<insonify::dds::PoseType> {
     static constexpr std::string_view names[] = {"nav_msgs/Odometry", "geometry_msgs/PoseStamped"};
+};
+template <>
+struct insonify::types::EnumNames<insonify::dds::StampFrom> {
+    static constexpr std::string_view names[] = {"message", "arrival"};
 };

@@ -36,23 +36,16 @@ void SubscriberTask::check(types::Problems& problems) const {
     }
 }
 
-std::vector<std::string> SubscriberTask::notices() const {
-    std::vector<std::string> notices = drops_;
-    for (const Outlet& outlet : outlets_)
-        if (outlet.subscription)
-            for (const auto& [reason, count] : outlet.subscription->dropped())
-                notices.push_back(std::to_string(count) + " messages dropped: " + reason);
-    return notices;
-}
+std::vector<std::string> SubscriberTask::notices() const { return drops_.notices(); }
 
 bool SubscriberTask::configureHook() {
-    drops_.clear();
-    told_ = 0;
+    drops_ = {};
+    for (Outlet& outlet : outlets_) outlet.subscription.reset();  // of a configure that failed
     node_.emplace(domainId(config->node.domain), config->node.nameOr(name()),
                   static_cast<size_t>(config->node.gid_size));
     for (Outlet& outlet : outlets_)
         outlet.subscription = std::make_unique<Subscription>(*node_, *config, *topicOf(*config, outlet.port->name()),
-                                                             [this] { activity().trigger(); });
+                                                             drops_, [this] { activity().trigger(); });
     node_->announce();
     return true;
 }
@@ -69,27 +62,12 @@ void SubscriberTask::updateHook() {
     for (Outlet& outlet : outlets_) {
         int taken = 0;
         for (; taken < most_at_once && outlet.subscription->take(now(), pose); ++taken) outlet.port->write(pose);
-        if (taken == most_at_once) activity().trigger();
+        if (taken == most_at_once || outlet.subscription->more()) activity().trigger();
     }
-    tellDrops();
-}
-
-void SubscriberTask::tellDrops() {
-    uint64_t count = 0;
-    const Subscription* last = nullptr;
-    for (const Outlet& outlet : outlets_)
-        for (const auto& [reason, dropped] : outlet.subscription->dropped()) {
-            count += dropped;
-            last = outlet.subscription.get();
-        }
-    if (count <= told_ || (told_ > 0 && Clock::now() < told_at_ + std::chrono::seconds(10))) return;
-    warn(std::to_string(count) + " messages dropped; the last: " + last->lastDrop());
-    told_ = count;
-    told_at_ = Clock::now();
+    if (const std::string told = drops_.untold(); !told.empty()) warn(told);
 }
 
 void SubscriberTask::cleanupHook() {
-    drops_ = notices();
     for (Outlet& outlet : outlets_) outlet.subscription.reset();
     node_.reset();
 }

@@ -1,5 +1,4 @@
 #pragma once
-#include <chrono>
 #include <memory>
 #include <optional>
 #include <string>
@@ -39,19 +38,15 @@ private:
         std::unique_ptr<framework::OutputPort<types::Pose>> port;
         std::unique_ptr<Subscription> subscription;
     };
-    using Clock = std::chrono::steady_clock;
 
     bool configureHook() override;
     bool startHook() override;
     void updateHook() override;
     void cleanupHook() override;
-    void tellDrops();
 
     std::optional<Node> node_;
     std::vector<Outlet> outlets_;
-    std::vector<std::string> drops_;  ///< Of subscriptions that are gone.
-    uint64_t told_ = 0;               ///< Drops that a warning has told.
-    Clock::time_point told_at_;
+    Drops drops_;
 };
 
 }  // namespace insonify::dds

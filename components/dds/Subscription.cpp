@@ -1,5 +1,7 @@
 #include "components/dds/Subscription.hpp"
 
+#include <utility>
+
 #include "components/ros/Cdr.hpp"
 #include "components/ros/Poses.hpp"
 
@@ -7,22 +9,26 @@ namespace insonify::dds {
 namespace {
 
 constexpr int most_drops = 64;                ///< In one take: who sends nonsense without end holds up nobody.
+constexpr size_t largest = 64 << 10;          ///< Of a message: 712 bytes and two names [B].
 constexpr types::Time most_ahead{1'000'000};  ///< Of the clock, for a stamp; a sonar refuses snapshots beyond it, too.
 constexpr types::Time most_silence{1'000'000};  ///< After which a sender's clock may have been set back.
 
 Reader readerOf(Node& node, const SubscriberConfig& config, const TopicIn& topic, std::function<void()> arrived) {
     const char* type = topic.type == PoseType::Odometry ? ros::Odometry::type_name : ros::PoseStamped::type_name;
     const char* hash = topic.type == PoseType::Odometry ? ros::Odometry::type_hash : ros::PoseStamped::type_hash;
-    return {node, ddsTopic(topic.topic), type, hash, {config.reliability, config.depth}, std::move(arrived)};
+    const Quality quality{.reliability = config.reliability, .depth = config.depth};
+    return {node, ddsTopic(topic.topic), type, hash, quality, std::move(arrived), largest};
 }
 
 }  // namespace
 
-Subscription::Subscription(Node& node, const SubscriberConfig& config, const TopicIn& topic,
+Subscription::Subscription(Node& node, const SubscriberConfig& config, const TopicIn& topic, Drops& drops,
                            std::function<void()> arrived)
     : topic_(topic.topic),
       type_(topic.type),
       world_frame_(config.node.world_frame),
+      stamped_on_arrival_(topic.stamp == StampFrom::Arrival),
+      drops_(drops),
       reader_(readerOf(node, config, topic, std::move(arrived))) {
     node.addReader(reader_.handle());
 }
@@ -46,15 +52,19 @@ std::string Subscription::faultOf(types::Time now, const types::Pose& pose) {
 }
 
 bool Subscription::take(types::Time now, types::Pose& pose) {
-    for (int drops = 0; drops < most_drops && reader_.take(bytes_, sender_); ++drops) {
+    if (const uint64_t refused = reader_.refused(); refused > too_large_)
+        drops_.add(topic_ + ": larger than any message of its type", "", refused - std::exchange(too_large_, refused));
+    more_ = false;
+    for (int drops = 0; drops < most_drops; ++drops) {
+        if (!reader_.take(bytes_, sender_)) return false;
         std::string fault, detail;
         try {
             decode(pose);
-            if (pose.time == types::Time{}) pose.time = now;
+            if (stamped_on_arrival_ || pose.time == types::Time{}) pose.time = now;
             fault = faultOf(now, pose);
         } catch (const ros::CdrError& error) {
             fault = "no message of its type";
-            detail = std::string(": ") + error.what();  // the sender's to choose: no reason of its own
+            detail = std::string(": ") + error.what();
         }
         if (fault.empty()) {
             newest_ = pose.time;
@@ -63,9 +73,9 @@ bool Subscription::take(types::Time now, types::Pose& pose) {
             pose.orientation = glm::normalize(pose.orientation);
             return true;
         }
-        last_drop_ = topic_ + ": " + fault + detail;
-        ++dropped_[topic_ + ": " + fault];
+        drops_.add(topic_ + ": " + fault, detail);
     }
+    more_ = true;
     return false;
 }
 

@@ -1,9 +1,9 @@
 #pragma once
 #include <functional>
-#include <map>
 #include <string>
 #include <vector>
 
+#include "components/dds/Drops.hpp"
 #include "components/dds/Reader.hpp"
 #include "components/dds/SubscriberConfig.hpp"
 #include "components/ros/GeometryMessages.hpp"
@@ -14,20 +14,20 @@ namespace insonify::dds {
 /** The poses of one topic, those that can be used. */
 class Subscription {
 public:
-    /** `arrived` as in Reader. */
-    Subscription(Node& node, const SubscriberConfig& config, const TopicIn& topic, std::function<void()> arrived);
+    /** `arrived` as in Reader; what is dropped is counted in `drops`, which outlives this. */
+    Subscription(Node& node, const SubscriberConfig& config, const TopicIn& topic, Drops& drops,
+                 std::function<void()> arrived);
 
     /** The next good pose, in Rock's axes, its orientation of unit length; stamped `now` where the message has no
-     *  stamp. False: there is none, or 64 before it had to be dropped. Dropped are: bytes that are no such message,
-     *  poses that are not finite or without an orientation, and stamps more than a second ahead of `now` or before that
-     *  of the pose before, until its sender is gone or nothing good came for a second: a bag that is played in a loop
-     *  and a simulator that was reset begin anew. */
+     *  stamp, or by the topic's choice. False: there is none, or 64 before it had to be dropped: then more() tells.
+     *  Dropped are: bytes that are no such message or are more than any is (64 KiB), poses that are not finite or
+     * without an orientation, and stamps more than a second ahead of `now` or before that of the pose before, until its
+     * sender is gone or nothing good came for a second: a bag that is played in a loop and a simulator that was reset
+     * begin anew. */
     bool take(types::Time now, types::Pose& pose);
 
-    /** How many messages were dropped for each reason: "/auv/odometry: not finite". */
-    const std::map<std::string, uint64_t>& dropped() const { return dropped_; }
-    /** The reason of the last message that was dropped. */
-    const std::string& lastDrop() const { return last_drop_; }
+    /** Whether take() gave up before it had looked at all. */
+    bool more() const { return more_; }
 
 private:
     void decode(types::Pose& pose);
@@ -42,8 +42,9 @@ private:
     ros::PoseStamped stamped_;
     uint64_t sender_ = 0, newest_sender_ = 0;
     types::Time newest_, newest_came_;
-    std::map<std::string, uint64_t> dropped_;
-    std::string last_drop_;
+    bool stamped_on_arrival_, more_ = false;
+    uint64_t too_large_ = 0;
+    Drops& drops_;
     Reader reader_;
 };
 

@@ -142,13 +142,20 @@ void Activity::wait(std::unique_lock<std::mutex>& lock) {
 }
 
 bool Activity::sleepUntil(types::Time time) {
-    const auto left = [&] { return std::chrono::microseconds((time - owner_.environment().now()).microseconds); };
-    constexpr std::chrono::microseconds at_most(20'000);  // the clock may be another than the wall's
+    const Environment& environment = owner_.environment();
+    const auto left = [&] { return std::chrono::microseconds((time - environment.now()).microseconds); };
     owner_.timing().pause();
     {
         std::unique_lock lock(mutex_);
-        for (auto rest = left(); free_ && rest.count() > 0; rest = left())
-            wake_.wait_for(lock, std::min(rest, at_most));
+        if (environment.wall_clock) {  // which may be set while this waits
+            const auto end = Clock::now() + left();
+            while (free_ && wake_.wait_until(lock, end) == std::cv_status::no_timeout) {
+            }
+        } else {
+            constexpr std::chrono::microseconds at_most(20'000);  // another clock may stand still, or go faster
+            for (auto rest = left(); free_ && rest.count() > 0; rest = left())
+                wake_.wait_for(lock, std::min(rest, at_most));
+        }
     }
     owner_.timing().resume();
     return free_;

@@ -6,7 +6,6 @@
 
 #include "components/framework/Activity.hpp"
 #include "components/framework/Lockstep.hpp"
-#include "components/framework/Operation.hpp"
 #include "components/framework/RealtimeThread.hpp"
 #include "components/framework/Wiring.hpp"
 
@@ -177,11 +176,21 @@ void Deployment::runLockstep(const RunLimits& limits, const std::atomic<bool>& s
     const bool limited = limits.pings > 0 || limits.duration_s > 0;
     const types::Time end = limits.duration_s > 0 ? start_ + types::Time::fromSeconds(limits.duration_s)
                                                   : types::Time{std::numeric_limits<int64_t>::max()};
-    while (!stop && !lockstep.idle() && lockstep.next() < end) {
+    const auto next = [&] {
+        const auto held = betweenInstants();
+        return lockstep.next();
+    };
+    for (types::Time instant = next(); !stop && instant < end; instant = next()) {
         standStill(stop);
-        keepPace(limits.pace, lockstep.next(), stop);
-        simulated_us_ = lockstep.next().microseconds;
-        lockstep.step();
+        keepPace(limits.pace, instant, stop);
+        while (callers_ > 0 && !stop) std::this_thread::sleep_for(std::chrono::microseconds(100));
+        {
+            const auto held = betweenInstants();
+            const types::Time due = lockstep.next();  // another, where a log was sought in meanwhile
+            if (due >= end) return;
+            simulated_us_ = due.microseconds;
+            lockstep.step();
+        }
         if (progress) progress(progressNow());
         if (broken(limits) || reached(limits)) return;
         // With a limit a trajectory goes on holding its end; a log that has been played gives nothing more.
@@ -256,20 +265,6 @@ std::vector<std::string> Deployment::cleanup() {
         if (const Outcome outcome = task->cleanup(); !outcome) failures.push_back(task->name() + ": " + outcome.reason);
     }
     return failures;
-}
-
-std::string Deployment::call(const std::string& operation, const std::vector<std::string>& arguments) {
-    const auto [task_name, name] = splitPort(operation);
-    TaskContext* const owner = task(task_name);
-    if (!owner)
-        throw types::ConfigError("", operation,
-                                 "there is no task " + task_name + "; " + suggestion(task_name, spec_.taskNames()));
-    OperationBase* const called = owner->operation(name);
-    if (!called)
-        throw types::ConfigError(
-            "", operation,
-            task_name + " has no operation " + name + "; " + suggestion(name, namesOf(owner->operations())));
-    return called->callText(arguments);
 }
 
 std::map<std::string, uint64_t> Deployment::losses() const {

@@ -118,6 +118,8 @@ private:
     void prepareRealtime();
     /** While paused, until a step is asked for. */
     void standStill(const std::atomic<bool>& stop);
+    /** What is held while an instant is under way, and by who calls operations in between; empty in realtime. */
+    std::unique_lock<std::mutex> betweenInstants();
     std::vector<Watchdog::Limit> watchdogLimits() const;
     void warn(const std::string& text);
     bool startAll(std::vector<std::string>& failures);
@@ -140,6 +142,8 @@ private:
     std::chrono::steady_clock::duration stood_still_{};  ///< In this run.
     std::atomic<bool> paused_{false};
     std::atomic<uint64_t> steps_{0};  ///< To be made while paused.
+    std::mutex instant_mutex_;
+    std::atomic<unsigned> callers_{0};  ///< That wait for the end of an instant.
     std::mutex warning_mutex_;
     std::vector<std::string> warnings_;
     std::function<void(const std::string&)> told_;

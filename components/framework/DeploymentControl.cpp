@@ -54,6 +54,29 @@ std::vector<types::TaskInterface> Deployment::interfaces() const {
     return interfaces;
 }
 
+std::string Deployment::call(const std::string& operation, const std::vector<std::string>& arguments) {
+    const auto [task_name, name] = splitPort(operation);
+    TaskContext* const owner = task(task_name);
+    if (!owner)
+        throw types::ConfigError("", operation,
+                                 "there is no task " + task_name + "; " + suggestion(task_name, spec_.taskNames()));
+    OperationBase* const called = owner->operation(name);
+    if (!called)
+        throw types::ConfigError(
+            "", operation,
+            task_name + " has no operation " + name + "; " + suggestion(name, namesOf(owner->operations())));
+    const auto held = betweenInstants();
+    return called->callText(arguments);
+}
+
+std::unique_lock<std::mutex> Deployment::betweenInstants() {
+    if (!spec_.lockstep) return {};
+    ++callers_;
+    std::unique_lock lock(instant_mutex_);
+    --callers_;
+    return lock;
+}
+
 void Deployment::pause(bool on) {
     if (!spec_.lockstep)
         throw std::runtime_error("cannot pause: the deployment runs in realtime; in lockstep, time can stand still");

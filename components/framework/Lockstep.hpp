@@ -15,8 +15,7 @@ public:
     Lockstep(const std::vector<std::unique_ptr<TaskContext>>& tasks, const std::vector<TaskContext*>& order,
              types::Time start);
 
-    bool idle() const { return next() == never; }  ///< No task is due any more.
-    types::Time next() const;                      ///< The next instant at which a task is due.
+    types::Time next() const;  ///< The next instant at which a task is due; the largest time: none is any more.
     /** Runs the due tasks in file order, then triggered ones until no sample triggers any. */
     void step();
     /** Every source, a task that runs by the clock and reads nothing, has nothing more to say. */

@@ -93,7 +93,9 @@ Vector3 directionOf(double bearing_rad, SensorFrame frame) {
 
 ReturnRule::ReturnRule(const types::Sonar& ping, const SonarOptions& options) : ping_(ping) {
     least_ = binAt(referenceDb(ping, options) + options.threshold_db, options.scale);
-    if (options.scale == BinScale::Linear) least_ = std::max(least_, std::numeric_limits<float>::denorm_min());
+    const float least_echo = options.scale == BinScale::Linear ? std::numeric_limits<float>::denorm_min()
+                                                               : std::nextafter(static_cast<float>(nothing_db), 0.0f);
+    least_ = std::max(least_, least_echo);
 }
 
 std::optional<uint32_t> ReturnRule::firstOf(uint32_t beam) const {

@@ -118,7 +118,7 @@ void convert(const types::Sonar& ping, const SonarOptions& options, PointCloud2&
     const ReturnRule rule(ping, options);
     for (uint32_t beam = 0; beam < ping.beam_count; ++beam) {
         if (ping.bearings[beam].isUnknown()) continue;
-        const Vector3 direction = directionOf(ping.bearings[beam].rad, options.frame);
+        const Vector3 direction = directionOf(ping.bearings[beam].rad, SensorFrame::XForward);
         for (uint32_t bin = 0; bin < ping.bin_count; ++bin)
             if (const float echo = ping.bins[size_t{beam} * ping.bin_count + bin]; rule.isReturn(echo))
                 addPoint(direction, binCentre(ping, bin), echo, message.data);

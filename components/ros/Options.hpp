@@ -46,7 +46,10 @@ struct SonarOptions {
         visit(Field{"order", "", "of an image's echoes: all beams of a bin together, or all bins of a beam"},
               self.order);
         visit(Field{"dtype", "", "of an image's echoes: uint8 levels, or the bins as float32"}, self.dtype);
-        visit(Field{"frame", "", "axes of directions and points: z ahead and x up, or x ahead and z up"}, self.frame);
+        visit(Field{"frame", "",
+                    "axes of directions in marine_acoustic_msgs: z ahead and x up, or x ahead and z up as in all of "
+                    "sensor_msgs"},
+              self.frame);
         visit(Field{"scale", "", "what the bins hold: linear intensities, or decibel"}, self.scale);
         visit(Field{"dynamic_range_db", "dB", "uint8: 0 lies so far below the reference, which is 255", 1, 300},
               self.dynamic_range_db);

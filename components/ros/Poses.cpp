@@ -100,7 +100,7 @@ void convert(const types::Pose& pose, WorldFrame frame, Odometry& message) {
     const Axes axes{frame};
     fillPose(pose, axes, message.header, message.pose.pose);
     message.child_frame_id = pose.source_frame;
-    const glm::dquat rock_from_body = pose.orientation, body_from_rock = glm::inverse(rock_from_body);
+    const glm::dquat rock_from_body = glm::normalize(pose.orientation), body_from_rock = glm::inverse(rock_from_body);
     const auto body = [&](glm::dvec3 v) { return axes.body(v); };
     const auto world = [&](glm::dvec3 v) { return axes.worldFromRock(v); };
     const auto to_body = [&](glm::dvec3 v) { return axes.body(body_from_rock * v); };
@@ -123,7 +123,7 @@ void convert(const Odometry& message, WorldFrame frame, types::Pose& pose) {
     const Axes axes{frame};
     readPose(message.header, message.pose.pose, axes, pose);
     pose.source_frame = message.child_frame_id;
-    const glm::dquat rock_from_body = pose.orientation, body_from_rock = glm::inverse(rock_from_body);
+    const glm::dquat rock_from_body = glm::normalize(pose.orientation), body_from_rock = glm::inverse(rock_from_body);
     const auto body = [&](glm::dvec3 v) { return axes.body(v); };
     const auto from_body = [&](glm::dvec3 v) { return rock_from_body * axes.body(v); };
     const auto from_world = [&](glm::dvec3 v) { return body_from_rock * axes.rockFromWorld(v); };

@@ -23,13 +23,16 @@ struct SceneConfig {
         visit(Field{"mount", "", "the sonar in the body"}, self.mount);
         visit(Field{"water_surface", "m", "z of the water surface in the world; absent: none"}, self.water_surface);
         visit(Field{"pose_timeout", "s",
-                    "age of the newest pose from which there is none; absent: 1 in realtime, else none", 1e-3, 1e6},
+                    "age of the newest pose, of the body and of each node that has a connection, from which there is "
+                    "none; absent: 1 in realtime, else none",
+                    1e-3, 1e6},
               self.pose_timeout);
-        visit(Field{"extrapolate", "s",
-                    "how far a pose is carried on by its velocities to the time at which it is used, at most; absent: "
-                    "it is used as it is",
-                    1e-3, 10},
-              self.extrapolate);
+        visit(
+            Field{"extrapolate", "s",
+                  "how far a sonar carries its pose on by its velocities to the time of its ping, at most; absent: it "
+                  "is used as it is",
+                  1e-3, 10},
+            self.extrapolate);
         visit(Field{"materials", "", "acoustic values by name of a material or model, over those of the file"},
               self.materials);
     }

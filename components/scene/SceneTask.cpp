@@ -15,17 +15,11 @@ namespace {
 constexpr const char* kUnusable =
     ": pose dropped: position and orientation must be finite, the quaternion of unit length";
 
-/** A pose as its velocities have it at `time`, but at most `most` seconds on; as it is where they are not known. */
-types::Pose carriedOn(types::Pose pose, types::Time time, double most) {
-    const double seconds = std::clamp((time - pose.time).seconds(), 0.0, most);
-    const double turn = glm::length(pose.angular_velocity) * seconds;
-    if (!std::isfinite(glm::length(pose.velocity)) || !std::isfinite(turn)) return pose;
-    pose.time.microseconds += std::llround(seconds * 1e6);
-    pose.position += pose.velocity * seconds;
-    if (turn > 0)
-        pose.orientation =
-            glm::normalize(pose.orientation) * glm::angleAxis(turn, glm::normalize(pose.angular_velocity));
-    return pose;
+/** The sonar's velocities, of those of the body that carries it. */
+void moveAlong(const types::Pose& body, const Mount& mount, types::Pose& sonar) {
+    const glm::dvec3& turn = body.angular_velocity;
+    sonar.velocity = body.velocity + glm::normalize(body.orientation) * glm::cross(turn, mount.position);
+    sonar.angular_velocity = glm::inverse(mount.orientation()) * turn;
 }
 
 }  // namespace
@@ -53,7 +47,7 @@ framework::InputPortBase* SceneTask::makeInput(const std::string& port, framewor
     }
     const std::string doc = "place of " + node + " in the world";
     auto made = std::make_unique<framework::InputPort<types::Pose>>(this, port, doc, framework::Need::Optional);
-    return movables_.emplace_back(Movable{std::move(made), node, -1, {}, {}}).port.get();
+    return movables_.emplace_back(Movable{std::move(made), node, -1, {}, {}, {}}).port.get();
 }
 
 void SceneTask::check(types::Problems& problems) const try {
@@ -85,6 +79,7 @@ bool SceneTask::configureHook() {
 bool SceneTask::startHook() {
     for (Movable& movable : movables_) {
         movable.world_from_body.reset();
+        movable.newest = now();
         if (activity().settings().trigger.empty()) movable.port->setTriggers(false);
     }
     newest_ = now();
@@ -99,25 +94,41 @@ double SceneTask::poseTimeout() const {
 /** A quarter of the timeout: so much later than it is, it is noticed at most. */
 double SceneTask::wakeAfter() const { return std::isfinite(poseTimeout()) ? poseTimeout() / 4 : 0; }
 
+/** Stale as well: a stamp far ahead, as after the clock was set back. */
 std::string SceneTask::staleness() const {
-    const double age = (now() - newest_).seconds();
-    if (age <= poseTimeout()) return {};
-    return fmt::format("{}: no pose of the last {:g} s (pose_timeout)", pose.path(), poseTimeout());
+    const auto stale = [this](types::Time newest) {
+        const double age = (now() - newest).seconds();
+        return age > poseTimeout() || -age > std::max(1.0, poseTimeout());
+    };
+    const auto text = [this](const auto& port) {
+        return fmt::format("{}: no pose of the last {:g} s (pose_timeout)", port.path(), poseTimeout());
+    };
+    if (stale(newest_)) return text(pose);
+    for (const Movable& movable : movables_)
+        if (movable.port->connected() && stale(movable.newest)) return text(*movable.port);
+    return {};
+}
+
+/** In realtime the newest wins, whatever the connection keeps. */
+bool SceneTask::takeNext(framework::InputPort<types::Pose>& port, types::Pose& taken) {
+    if (activity().realtime()) return port.readNewest(taken, false) == framework::FlowStatus::NewData;
+    return port.readNew(taken);
 }
 
 void SceneTask::updateHook() {
     const bool movables_good = readMovables();
     types::Pose body;
-    const bool is_new = pose.readNew(body);
+    const bool is_new = takeNext(pose, body);
     if (is_new && !isUsable(body)) return error(pose.path() + kUnusable);
     if (is_new) newest_ = body.time;
     if (const std::string stale = staleness(); !stale.empty()) return error(stale);
     if (!is_new) return movables_good ? void() : error(name() + kUnusable);
     if (state() == framework::TaskState::RunTimeError) recover();
-    if (config->extrapolate) body = carriedOn(body, now(), *config->extrapolate);
     const auto sample = pool_.take();
     sample->time = body.time;
     place(body, config->mount, sample->sonar);
+    sample->carry_on = config->extrapolate.value_or(0);
+    if (config->extrapolate) moveAlong(body, config->mount, sample->sonar);
     sample->geometry = geometry_;
     sample->water_surface = config->water_surface;
     addMoved(sample->moved);
@@ -134,6 +145,7 @@ bool SceneTask::readMovables() {
         if (movable.port->readNewest(sample, false) != framework::FlowStatus::NewData) continue;
         if (isUsable(sample)) {
             sample.orientation = glm::normalize(sample.orientation);
+            movable.newest = sample.time;
             movable.world_from_body = sample.worldFromBody();
         } else {
             good = false;

@@ -48,6 +48,7 @@ private:
     /** Why there is no pose to go by, empty when there is one. */
     std::string staleness() const;
     double poseTimeout() const;  ///< [s]; infinite: none.
+    bool takeNext(framework::InputPort<types::Pose>& port, types::Pose& taken);
 
     /** A node that follows a port. */
     struct Movable {
@@ -56,6 +57,7 @@ private:
         int node = -1;  ///< Index into Scene::nodes.
         std::vector<Part> parts;
         std::optional<glm::dmat4> world_from_body;  ///< None before its first pose.
+        types::Time newest;                         ///< Stamp of that pose; the start before the first.
     };
 
     std::shared_ptr<const Scene> load() const;

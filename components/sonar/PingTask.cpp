@@ -10,6 +10,7 @@
 
 #include "components/framework/Activity.hpp"
 #include "components/sonar/Plan.hpp"
+#include "types/CarriedOn.hpp"
 
 namespace insonify::sonar {
 namespace {
@@ -62,10 +63,23 @@ const char* PingTask::follow(const types::Snapshot& scene) {
     return too_fast ? "the sonar moves faster than a tenth of the speed of sound" : nullptr;
 }
 
-void PingTask::updateHook() {
+bool PingTask::takeNext() {
     types::SnapshotPtr sample;
-    if (!snapshot.readNew(sample)) return;
+    const bool realtime = activity().realtime();
+    const bool is_new =
+        realtime ? snapshot.readNewest(sample, false) == framework::FlowStatus::NewData : snapshot.readNew(sample);
+    if (!is_new) return false;
+    begun_ = now();
     aimed_ = *sample;
+    if (realtime && aimed_.carry_on > 0) {
+        aimed_.sonar = types::carriedOn(aimed_.sonar, begun_, aimed_.carry_on);
+        aimed_.time = aimed_.sonar.time;
+    }
+    return true;
+}
+
+void PingTask::updateHook() {
+    if (!takeNext()) return;
     const char* fault = aimed_.geometry ? normalisePose(aimed_.sonar) : "the snapshot has no geometry";
     if (!fault && activity().realtime() && (aimed_.time - now()).seconds() > 1)
         fault = "the snapshot's time is ahead of the clock by more than a second";
@@ -140,12 +154,13 @@ void PingTask::render() {
     for (const SonarRenderer::Stage& stage : renderer_->stages()) recordStage(stage.name, stage.seconds);
     pool_.stock(*sample);
     if (!std::exchange(plan_told_, true)) refreshRecord();
-    if (listen(sample->time)) ping.write(sample);
+    if (listen()) ping.write(sample);
 }
 
-bool PingTask::listen(types::Time since) {
+bool PingTask::listen() {
     if (!activity().realtime()) return true;
-    const types::Time heard{since.microseconds + static_cast<int64_t>(std::ceil(echoTime() * 1e6))};
+    const types::Time heard{std::max(aimed_.time, begun_).microseconds +
+                            static_cast<int64_t>(std::ceil(echoTime() * 1e6))};
     return activity().sleepUntil(heard);
 }
 

@@ -19,12 +19,13 @@ namespace insonify::sonar {
  *  The renderer is made at the first snapshot, when the geometry is known, and again when the geometry changes. A
  *  snapshot that cannot be rendered (a pose that is not finite, a quaternion of no length, no geometry, a place that
  *  only more than a tenth of the speed of sound reaches) leads to RunTimeError, from which the next good one recovers.
- *  In realtime a ping is written once the last echo of its range has come back, 2 range / c after its snapshot's time
- * on the deployment's clock, never earlier; one whose listening is cut off by the stop is not written. A snapshot whose
- * time is a second ahead of that clock is refused like the others. A quaternion that is not of unit length is
- * normalised. Pings closer in time than sound's way to the range and back are rendered, each by itself, and told of in
- * the notices. With a target or a budget the quality is chosen on the first ping that hears anything, which takes long;
- * a budget may change it later. */
+ *  In realtime the newest snapshot counts, and a ping is written once the last echo of its range has come back:
+ * 2 range / c after its snapshot's time on the deployment's clock, and after the task took it, whichever is later.
+ * Pings thus never overlap. One whose listening is cut off by the stop is not written. A snapshot whose time is a
+ * second ahead of that clock is refused like the others. A quaternion that is not of unit length is normalised. Pings
+ * closer in time than sound's way to the range and back are rendered, each by itself, and told of in the notices. With
+ * a target or a budget the quality is chosen on the first ping that hears anything, which takes long; a budget may
+ * change it later. */
 class PingTask : public framework::TaskContext {
 public:
     using TaskContext::TaskContext;
@@ -64,8 +65,10 @@ private:
     const char* follow(const types::Snapshot& scene);
     double echoTime() const { return 2 * grid_.range_max / grid_.speed_of_sound; }  ///< To the range and back [s].
     void render();
+    /** The next snapshot; in realtime the newest, its sonar where it is by now, as far as it may be carried on. */
+    bool takeNext();
     /** In realtime, until the last echo of this ping's range is back; false: the task is to stop. */
-    bool listen(types::Time since);
+    bool listen();
     void makeRenderer();
     void chooseQuality();
     void setQuality(const Quality& quality);
@@ -82,6 +85,7 @@ private:
     bool plan_told_ = false;           ///< Whether the record has the plan as it is.
     types::GeometryPtr geometry_;      ///< The renderer's.
     types::Snapshot aimed_;
+    types::Time begun_;  ///< When it was taken.
     framework::SamplePool<types::Sonar> pool_;
 };
 

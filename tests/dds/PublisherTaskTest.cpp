@@ -99,17 +99,56 @@ TEST_F(PublisherTaskTest, NothingIsMadeForATopicThatNobodyReads) {
     auto crooked = std::make_shared<types::Sonar>(*pingOf(4, 4));
     crooked->bearings[1] = types::Angle{0.1234};  // of which no LaserScan can be made
     publishing.send(crooked);
-    EXPECT_TRUE(publishing.task.isRunning()) << publishing.task.lastError();
-    Reader reader(node, ddsTopic("/nobody"), ros::LaserScan::type_name, "", {}, {});
-    EXPECT_TRUE(becomes([&] { return publishing.send(crooked), !publishing.task.isRunning(); }));
-    EXPECT_THAT(publishing.task.lastError(), HasSubstr("/nobody: "));
+    EXPECT_THAT(publishing.task.notices(), testing::IsEmpty());
 }
 
-TEST_F(PublisherTaskTest, ASampleThatIsNullIsAnErrorOfTheTask) {
-    Publishing<types::SonarPtr> publishing({topicOut("in", "/image", MessageType::ProjectedSonarImage)});
+TEST_F(PublisherTaskTest, WhatAMessageCannotHoldIsACountedDropAndTheRunGoesOn) {
+    Publishing<types::SonarPtr> publishing(
+        {topicOut("in", "/scan", MessageType::LaserScan), topicOut("in", "/image", MessageType::ProjectedSonarImage)});
+    std::vector<std::string> told;
+    publishing.task.environment().warn = [&](const std::string& text) { told.push_back(text); };
+    auto crooked = std::make_shared<types::Sonar>(*pingOf(4, 4));
+    crooked->bearings[1] = types::Angle{0.1234};
+    Reader reader(node, ddsTopic("/scan"), ros::LaserScan::type_name, "", {}, {});
+    ASSERT_TRUE(becomes([&] { return publishing.send(crooked), !publishing.task.notices().empty(); }));
+    publishing.send(crooked);
     publishing.send(nullptr);
-    EXPECT_FALSE(publishing.task.isRunning());
-    EXPECT_THAT(publishing.task.lastError(), HasSubstr("a sample is null"));
+    EXPECT_EQ(publishing.task.state(), framework::TaskState::Running);
+    ASSERT_EQ(told.size(), 1u);
+    EXPECT_THAT(told[0], HasSubstr("publisher: 1 messages dropped; the last: /scan: the beams do not stand at equal"));
+    EXPECT_THAT(publishing.task.notices(),
+                testing::UnorderedElementsAre(HasSubstr("2 messages dropped: /scan: the beams"),
+                                              HasSubstr("1 messages dropped: publisher.in: a sample is null")));
+    EXPECT_EQ(heard<ros::RawSonarImage>("/image", [&] { publishing.send(crooked); }).image.beam_count, 4u);
+}
+
+TEST_F(PublisherTaskTest, FramesThatAreGivenTakeThePlaceOfThoseThatAPoseNames) {
+    types::Pose pose;
+    pose.time = framework::wallClock();
+    pose.target_frame = "world";
+    pose.source_frame = "body";
+    TopicOut plain = topicOut("in", "/plain", MessageType::Odometry),
+             named = topicOut("in", "/named", MessageType::Odometry);
+    named.child_frame_id = "auv";
+    named.sonar.frame_id = "odom";
+    Publishing<types::Pose> publishing({plain, named});
+    const auto send = [&] { publishing.send(pose); };
+    EXPECT_EQ(heard<ros::Odometry>("/plain", send).header.frame_id, "world");
+    EXPECT_EQ(heard<ros::Odometry>("/plain", send).child_frame_id, "body");
+    EXPECT_EQ(heard<ros::Odometry>("/named", send).header.frame_id, "odom");
+    EXPECT_EQ(heard<ros::Odometry>("/named", send).child_frame_id, "auv");
+    Publishing<types::Pose> mapped({topicOut("in", "/mapped", MessageType::PoseStamped)},
+                                   [](PublisherConfig& config) { config.world_frame_id = "map"; });
+    EXPECT_EQ(heard<ros::PoseStamped>("/mapped", [&] { mapped.send(pose); }).header.frame_id, "map");
+}
+
+TEST_F(PublisherTaskTest, AFrameWithTwoKindsOfAxesIsToldOf) {
+    const TopicOut image = topicOut("in", "/image", MessageType::ProjectedSonarImage);
+    TopicOut scan = topicOut("in", "/scan", MessageType::LaserScan);
+    EXPECT_THAT(Publishing<types::SonarPtr>({image, scan}).task.notices(),
+                testing::ElementsAre(HasSubstr("frame_id sonar has x ahead on /scan and z ahead on /image")));
+    scan.sonar.frame_id = "sonar_x";
+    EXPECT_THAT(Publishing<types::SonarPtr>({image, scan}).task.notices(), testing::IsEmpty());
 }
 
 TEST_F(PublisherTaskTest, PortsAndTypesThatDoNotFitAreToldBeforeItRuns) {

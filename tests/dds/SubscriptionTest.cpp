@@ -28,7 +28,8 @@ struct SubscriptionTest : Loopback {
         made.topic = "/judged";
         return made;
     }();
-    Subscription subscription{node, config, topic, {}};
+    Drops dropped;
+    Subscription subscription{node, config, topic, dropped, {}};
     std::optional<Writer> writer = newWriter();
     types::Pose pose;
 
@@ -49,11 +50,7 @@ struct SubscriptionTest : Loopback {
         message.pose.pose.position.x = x;
         return message;
     }
-    uint64_t drops() const {
-        uint64_t sum = 0;
-        for (const auto& [reason, count] : subscription.dropped()) sum += count;
-        return sum;
-    }
+    uint64_t drops() const { return dropped.count(); }
 };
 
 }  // namespace
@@ -82,7 +79,7 @@ TEST_F(SubscriptionTest, BytesThatAreNoMessageAreDroppedAndCounted) {
     ASSERT_TRUE(take());
     EXPECT_EQ(pose.position.x, 1);
     EXPECT_GE(drops(), 6u);
-    EXPECT_THAT(subscription.lastDrop(), testing::HasSubstr("/judged: no message of its type: byte 0: encoding 9"));
+    EXPECT_THAT(dropped.last(), testing::HasSubstr("/judged: no message of its type: byte 0: encoding 9"));
 }
 
 TEST_F(SubscriptionTest, PosesThatAreNotFiniteAreDropped) {
@@ -99,7 +96,7 @@ TEST_F(SubscriptionTest, PosesThatAreNotFiniteAreDropped) {
     ASSERT_TRUE(take());
     EXPECT_EQ(pose.position.x, 5);
     EXPECT_EQ(drops(), 4u);
-    EXPECT_THAT(subscription.lastDrop(), testing::HasSubstr("not finite"));
+    EXPECT_THAT(dropped.last(), testing::HasSubstr("not finite"));
 }
 
 TEST_F(SubscriptionTest, StampsThatGoBackAreDroppedUntilTheirSenderIsGone) {
@@ -145,7 +142,36 @@ TEST_F(SubscriptionTest, AStampFarAheadOfTheClockIsDroppedAndSilencesNobody) {
     ASSERT_TRUE(take());
     EXPECT_EQ(pose.position.x, 2);
     EXPECT_EQ(drops(), 1u);
-    EXPECT_THAT(subscription.lastDrop(), testing::HasSubstr("ahead of the clock"));
+    EXPECT_THAT(dropped.last(), testing::HasSubstr("ahead of the clock"));
+}
+
+TEST_F(SubscriptionTest, AMessageFarTooLargeIsNotTakenFromTheNetwork) {
+    writer->write(Bytes(3 << 20, 'x'));
+    writer->write(Bytes((64 << 10) + 4, 'x'));
+    send(at(1, 1));
+    ASSERT_TRUE(becomes([&] { return take(); }));
+    EXPECT_EQ(pose.position.x, 1);
+    EXPECT_FALSE(take());
+    EXPECT_EQ(drops(), 2u);
+    EXPECT_THAT(dropped.last(), testing::HasSubstr("/judged: larger than any message of its type"));
+}
+
+TEST_F(SubscriptionTest, AfterAFloodOfNonsenseItTellsThatThereIsMore) {
+    for (int i = 0; i < 90; ++i) writer->write(Bytes(10, 'x'));
+    send(at(1, 1));
+    EXPECT_FALSE(take());
+    EXPECT_TRUE(subscription.more());
+    EXPECT_TRUE(take());
+    EXPECT_EQ(drops(), 90u);
+}
+
+TEST_F(SubscriptionTest, APoseMayBearTheTimeOfItsArrival) {
+    TopicIn strange = topic;
+    strange.stamp = StampFrom::Arrival;
+    Subscription other(node, config, strange, dropped, {});
+    send(at(1, 1));
+    ASSERT_TRUE(becomes([&] { return other.take(arrival, pose); }) || (send(at(2, 2)), other.take(arrival, pose)));
+    EXPECT_EQ(pose.time, arrival);
 }
 
 TEST_F(SubscriptionTest, DifferentNonsenseIsOneReason) {
@@ -156,7 +182,7 @@ TEST_F(SubscriptionTest, DifferentNonsenseIsOneReason) {
     }
     send(at(1, 1));
     ASSERT_TRUE(take());
-    EXPECT_EQ(subscription.dropped().size(), 1u);
+    EXPECT_EQ(dropped.byReason().size(), 1u);
 }
 
 TEST_F(SubscriptionTest, AMessageWithoutAStampBearsItsArrival) {
@@ -167,8 +193,10 @@ TEST_F(SubscriptionTest, AMessageWithoutAStampBearsItsArrival) {
 
 TEST_F(SubscriptionTest, OrientationsAreOfUnitLength) {
     ros::Odometry message = at(1, 1);
-    message.pose.pose.orientation = {0, 0, 3, 4};
+    message.pose.pose.orientation = {0, 0, 3, 3};  // a quarter turn
+    message.twist.twist.linear.x = 2;
     send(message);
     ASSERT_TRUE(take());
     EXPECT_DOUBLE_EQ(glm::length(pose.orientation), 1);
+    EXPECT_NEAR(glm::distance(pose.velocity, glm::dvec3(0, 2, 0)), 0, 1e-12);
 }

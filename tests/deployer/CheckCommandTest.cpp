@@ -29,9 +29,8 @@ TEST(CheckCommandTest, JsonTellsTasksAndConnections) {
 }
 
 TEST(CheckCommandTest, WhatTheScheduleLeavesOutIsAWarning) {
-    const std::string text =
-        replaced(wall_deployment, "type: sonar::SonarTask",
-                 "type: sonar::SonarTask\n    activity: {scheduler: fifo, priority: 5, deadline: 0.1}");
+    const std::string text = replaced(wall_deployment, "{trigger: [snapshot]}",
+                                      "{trigger: [snapshot], scheduler: fifo, priority: 5, deadline: 0.1}");
     const WallFolder folder("lock_memory: true\n" + text);
     const Outcome outcome = callInsonify(folder, {"check", "wall.yml"});
     EXPECT_EQ(outcome.code, 0) << outcome.err;

@@ -98,6 +98,12 @@ TEST(FromSonarTest, APingWithoutEchoIsBlack) {
     ping.bins.assign(6, 0);
     EXPECT_THAT(messageOf<ProjectedSonarImage>(ping).image.data, testing::Each(0));
     EXPECT_EQ(messageOf<PointCloud2>(ping).width, 0u);
+    ping.bins.assign(6, -3000);  // no echo, in decibels
+    SonarOptions options;
+    options.scale = BinScale::Decibel;
+    EXPECT_THAT(messageOf<ProjectedSonarImage>(ping, options).image.data, testing::Each(0));
+    EXPECT_EQ(messageOf<PointCloud2>(ping, options).width, 0u);
+    EXPECT_THAT(messageOf<SonarRanges>(ping, options).ranges, testing::Each(IsNan()));
 }
 
 TEST(FromSonarTest, FloatsAreTheBinsUnchangedInBothOrders) {
@@ -133,9 +139,7 @@ TEST(FromSonarTest, RangesAreTheFirstBinsAboveTheThreshold) {
 }
 
 TEST(FromSonarTest, ACloudHoldsEveryBinAboveTheThreshold) {
-    SonarOptions options;
-    options.frame = SensorFrame::XForward;
-    const auto cloud = messageOf<PointCloud2>(smallPing(), options);  // 100 and 1000 are
+    const auto cloud = messageOf<PointCloud2>(smallPing());  // 100 and 1000 are; x ahead, whatever `frame` is
     ASSERT_EQ(cloud.width, 2u);
     EXPECT_EQ(cloud.point_step, 16u);
     EXPECT_EQ(cloud.fields[3], (PointField{"intensity", 12, PointField::float32, 1}));

@@ -7,6 +7,7 @@
 #include "components/scene/SceneTask.hpp"
 #include "tests/scene/SceneFiles.hpp"
 #include "tests/support/Ports.hpp"
+#include "types/CarriedOn.hpp"
 
 namespace insonify::scene {
 namespace {
@@ -86,24 +87,39 @@ TEST_F(PoseTimeoutTest, WithoutATimeoutThereIsNoneOutsideOfRealtime) {
     EXPECT_EQ(task_.wakeAfter(), 0);
 }
 
-TEST_F(PoseTimeoutTest, APoseIsCarriedOnByItsVelocitiesOnlyWhereAskedAndSoFar) {
+TEST_F(PoseTimeoutTest, TheSonarMovesWithTheBodyAndMayBeCarriedOnWhereAsked) {
     types::Pose pose;
     pose.time = types::Time::fromSeconds(10);
     pose.velocity = {2, 0, 0};
-    pose.angular_velocity = {0, 0, std::numbers::pi / 2};  // a quarter turn a second
-    const auto at = [&](double now, std::optional<double> most) {
-        task_.stop();
+    pose.angular_velocity = {0, 0, 0.5};
+    const auto snapshot_of = [&](std::optional<double> most) {
         config_.extrapolate = most;
+        config_.mount.position = {1, 0, 0};
+        config_.mount.pitch_deg = 90;  // looks down: its x is the body's -z
+        task_.stop();
         start({});
-        now_ = types::Time::fromSeconds(now);
         vehicle_.port.write(pose);
         task_.update();
         types::SnapshotPtr snapshot;
         EXPECT_TRUE(out_.port.readNew(snapshot));
-        return snapshot->sonar;
+        return *snapshot;
     };
-    EXPECT_EQ(at(10.5, {}).position, glm::dvec3(0));
-    EXPECT_EQ(at(10.5, {}).time.seconds(), 10);
+    EXPECT_EQ(snapshot_of({}).carry_on, 0);
+    const types::Snapshot moving = snapshot_of(0.3);
+    EXPECT_EQ(moving.carry_on, 0.3);
+    EXPECT_EQ(moving.time, pose.time);
+    EXPECT_NEAR(glm::distance(moving.sonar.velocity, glm::dvec3(2, 0.5, 0)), 0, 1e-12);
+    EXPECT_NEAR(glm::distance(moving.sonar.angular_velocity, glm::dvec3(-0.5, 0, 0)), 0, 1e-12);
+}
+
+TEST(CarriedOnTest, APoseGoesOnByItsVelocitiesAsFarAsItMay) {
+    types::Pose pose;
+    pose.time = types::Time::fromSeconds(10);
+    pose.velocity = {2, 0, 0};
+    pose.angular_velocity = {0, 0, std::numbers::pi / 2};  // a quarter turn a second
+    const auto at = [&](double now, double most) {
+        return types::carriedOn(pose, types::Time::fromSeconds(now), most);
+    };
     EXPECT_EQ(at(10.5, 1).position, glm::dvec3(1, 0, 0));
     EXPECT_EQ(at(10.5, 1).time.seconds(), 10.5);
     EXPECT_NEAR(glm::degrees(glm::angle(at(10.5, 1).orientation)), 45, 1e-9);
@@ -111,6 +127,38 @@ TEST_F(PoseTimeoutTest, APoseIsCarriedOnByItsVelocitiesOnlyWhereAskedAndSoFar) {
     EXPECT_EQ(at(9, 1).position, glm::dvec3(0)) << "never back";
     pose.angular_velocity = glm::dvec3(types::Pose::unknown);
     EXPECT_EQ(at(10.5, 1).position, glm::dvec3(0)) << "a rate is unknown";
+}
+
+TEST_F(PoseTimeoutTest, AStampFarAheadIsStaleAsWell) {
+    start(0.5);
+    EXPECT_TRUE(cycle(10.1, 10.1));
+    EXPECT_FALSE(cycle(5)) << "the clock was set back";
+    EXPECT_EQ(task_.state(), TaskState::RunTimeError);
+    EXPECT_TRUE(cycle(5.1, 5.1));
+    EXPECT_EQ(task_.state(), TaskState::Running);
+}
+
+/** A node that another vehicle's pose moves. */
+TEST_F(PoseTimeoutTest, ANodeWhosePosesStayAwayIsAnErrorToo) {
+    config_.file =
+        write("buoy.gltf", gltf(R"("scenes":[{"nodes":[0]}],"nodes":[{"name":"buoy"}],)" + buffers("    "))).string();
+    task_.config.set(config_);
+    test::Writer<types::Pose> other("other");
+    framework::InputPortBase* const port = task_.makeInput("buoy.pose", other.port);
+    ASSERT_NE(port, nullptr);
+    other.port.connectTo(*port, framework::ConnPolicy::data());
+    start(0.5);
+    types::Pose still;
+    still.time = types::Time::fromSeconds(10);
+    other.port.write(still);
+    EXPECT_TRUE(cycle(10.4, 10.4));
+    EXPECT_FALSE(cycle(10.6, 10.6));
+    EXPECT_EQ(task_.state(), TaskState::RunTimeError);
+    EXPECT_THAT(task_.lastError(), HasSubstr("scene.buoy.pose: no pose of the last 0.5 s"));
+    still.time = types::Time::fromSeconds(10.7);
+    other.port.write(still);
+    EXPECT_TRUE(cycle(10.7, 10.7));
+    EXPECT_EQ(task_.state(), TaskState::Running);
 }
 
 }  // namespace

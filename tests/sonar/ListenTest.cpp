@@ -59,6 +59,47 @@ TEST_F(ListenTest, APingIsWrittenAfterSoundsWayToTheRangeAndBack) {
     EXPECT_GE(task_.timing().latency.quantile(0), 0.198);  // within 1 %
 }
 
+TEST_F(ListenTest, APoseThatIsOldShortensNoListening) {
+    start(150);
+    const types::Time taken = framework::wallClock(), sent = send(-0.5);
+    const types::SonarPtr ping = receive();
+    ASSERT_TRUE(ping) << task_.lastError();
+    EXPECT_EQ(ping->time, sent);
+    EXPECT_GE((framework::wallClock() - taken).seconds(), 2 * 150 / 1500.0);
+}
+
+TEST_F(ListenTest, PingsDoNotOverlapAndTheNewestSnapshotCounts) {
+    start(150);
+    send();
+    types::Time last;
+    for (int i = 0; i < 10; ++i) {  // over 0.1 s: all while it listens
+        std::this_thread::sleep_for(std::chrono::milliseconds(10));
+        last = send();
+    }
+    ASSERT_TRUE(receive());
+    const types::Time first_heard = framework::wallClock();
+    const types::SonarPtr second = receive();
+    ASSERT_TRUE(second);
+    EXPECT_EQ(second->time, last);
+    EXPECT_GE((framework::wallClock() - first_heard).seconds(), 0.9 * 2 * 150 / 1500.0);
+}
+
+TEST_F(ListenTest, ASonarIsCarriedOnToTheTimeOfItsPingWhereItMayBe) {
+    start(15);
+    types::Snapshot snapshot = facingWall(5);
+    snapshot.time = snapshot.sonar.time = framework::wallClock() + types::Time::fromSeconds(-0.4);
+    snapshot.sonar.velocity = {0, 0, 2};
+    snapshot.sonar.angular_velocity = {0, 0, 0};
+    snapshot.carry_on = 1;
+    in_.port.write(std::make_shared<types::Snapshot>(snapshot));
+    const types::SonarPtr ping = receive();
+    ASSERT_TRUE(ping) << task_.lastError();
+    EXPECT_GE((ping->time - snapshot.time).seconds(), 0.4);
+    snapshot.carry_on = 0;
+    in_.port.write(std::make_shared<types::Snapshot>(snapshot));
+    EXPECT_EQ(receive()->time, snapshot.time);
+}
+
 TEST_F(ListenTest, AStopDoesNotWaitForTheLastEchoAndWritesNoPing) {
     start(75000);  // 100 s
     send();
