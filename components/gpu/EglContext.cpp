@@ -153,6 +153,25 @@ void EglContext::requireThread() const {
         throw GlError("another OpenGL context has been current on this thread since: use one at a time on a thread");
 }
 
+namespace {
+
+std::shared_mutex& software() {
+    static std::shared_mutex of_all_contexts;
+    return of_all_contexts;
+}
+
+}  // namespace
+
+std::shared_lock<std::shared_mutex> EglContext::drawing() const {
+    return software_ ? std::shared_lock(software()) : std::shared_lock<std::shared_mutex>();
+}
+
+std::unique_lock<std::shared_mutex> EglContext::transferring() const {
+    return software_ ? making() : std::unique_lock<std::shared_mutex>();
+}
+
+std::unique_lock<std::shared_mutex> EglContext::making() { return std::unique_lock(software()); }
+
 void EglContext::check() {
     requireThread();
     if (robust_ && glGetGraphicsResetStatus() != GL_NO_ERROR)

@@ -1,4 +1,6 @@
 #pragma once
+#include <mutex>
+#include <shared_mutex>
 #include <stdexcept>
 #include <string>
 #include <thread>
@@ -35,6 +37,15 @@ public:
     void requireThread() const;
     /** Throws GlError with the first error that GL has reported since the last call, or when the context is lost. */
     void check();
+
+    /** Held while something is drawn, side by side with other contexts; and while data goes to the device or comes from
+     *  it, or objects are made or destroyed: then nothing may be drawn in any context of this process. Mesa's software
+     *  renderer (22.3) looks, at each transfer, through what all of them are drawing, without a lock, and crashes. Both
+     *  are empty on a graphics card. Not to be held twice by a thread. */
+    [[nodiscard]] std::shared_lock<std::shared_mutex> drawing() const;
+    [[nodiscard]] std::unique_lock<std::shared_mutex> transferring() const;
+    /** The same before there is a context, which may be one of the software renderer. */
+    [[nodiscard]] static std::unique_lock<std::shared_mutex> making();
 
     const std::string& renderer() const { return renderer_; }  ///< "llvmpipe (LLVM 15.0.6, 256 bits)".
     bool isSoftware() const { return software_; }

@@ -42,12 +42,13 @@ public:
     virtual ~BinDeposit() = default;
     /** Forgets what an earlier ping left that came to no end. */
     virtual void begin() = 0;
-    /** Takes the picture of a slab. Call once a ping for each slab that is drawn. */
+    /** Takes the picture of a slab. Call once a ping for each slab that is drawn, under EglContext::transferring(). */
     virtual void take(size_t slab, const SurfacePass& surface) = 0;
     /** Sums over all slabs taken since the last call, [beam][bin][channel] in quanta; valid until the next take. */
     virtual std::span<const uint64_t> finish() = 0;
 };
 
-std::unique_ptr<BinDeposit> makeGpuDeposit(const DepositSetup& setup);
+/** The context outlives it. */
+std::unique_ptr<BinDeposit> makeGpuDeposit(const DepositSetup& setup, const gpu::EglContext& context);
 
 }  // namespace insonify::sonar

@@ -1,36 +1,47 @@
 #include <cmath>
 #include <string>
 
+#include "components/gpu/EglContext.hpp"
 #include "components/gpu/Program.hpp"
 #include "components/sonar/BinDeposit.hpp"
 
 namespace insonify::sonar {
 namespace {
 
+/** Tells the device a list, which has its whole room already, and binds it. */
+template <class T>
+void give(const std::vector<T>& items, gpu::Buffer& buffer, GLuint binding) {
+    if (buffer.bytes() < items.capacity() * sizeof(T)) buffer = gpu::Buffer(items.capacity() * sizeof(T));
+    if (!items.empty()) buffer.write(items.data(), items.size() * sizeof(T));
+    buffer.bindBase(GL_SHADER_STORAGE_BUFFER, binding);
+}
+
 /** The deposit as a compute shader: pictures stay on the device, only the sums come back. */
 class GpuDeposit final : public BinDeposit {
 public:
-    explicit GpuDeposit(const DepositSetup& setup);
+    GpuDeposit(const DepositSetup& setup, const gpu::EglContext& context);
     void begin() override { cleared_ = false; }
     void take(size_t slab, const SurfacePass& surface) override;
     std::span<const uint64_t> finish() override;
 
 private:
     struct SlabShares {
-        gpu::Buffer starts, shares;
+        gpu::Buffer starts, shares, commands;
     };
     void setUniforms(const Slab& slab, bool shares_per_row) const;
     GLint uniform(const char* name) const { return glGetUniformLocation(program_.id(), name); }
 
     DepositSetup setup_;
+    const gpu::EglContext& context_;
     gpu::Program program_;
-    gpu::Buffer edges_, device_sums_;
+    gpu::Buffer edges_, objects_, device_sums_;
     std::vector<SlabShares> shares_;
     std::vector<uint64_t> sums_;
     bool cleared_ = false;
 };
 
-GpuDeposit::GpuDeposit(const DepositSetup& setup) : setup_(setup), sums_(setup.sumCount()) {
+GpuDeposit::GpuDeposit(const DepositSetup& setup, const gpu::EglContext& context)
+    : setup_(setup), context_(context), sums_(setup.sumCount()) {
     std::vector<std::string> defines;
     if (setup.model == Model::Cerqueira2017) defines.push_back("HAVE_CERQUEIRA2017");
     if (setup.published) defines.push_back("HAVE_PUBLISHED");
@@ -41,7 +52,7 @@ GpuDeposit::GpuDeposit(const DepositSetup& setup) : setup_(setup), sums_(setup.s
     edges_ = gpu::Buffer::of(std::span(edges));
     device_sums_ = gpu::Buffer(sums_.size() * sizeof(uint64_t));
     for (const ColumnShares& slab : setup.shares)
-        shares_.push_back({gpu::Buffer::of(std::span(slab.starts)), gpu::Buffer::of(std::span(slab.shares))});
+        shares_.push_back({gpu::Buffer::of(std::span(slab.starts)), gpu::Buffer::of(std::span(slab.shares)), {}});
 }
 
 void GpuDeposit::setUniforms(const Slab& slab, bool shares_per_row) const {
@@ -58,6 +69,8 @@ void GpuDeposit::setUniforms(const Slab& slab, bool shares_per_row) const {
 
 void GpuDeposit::take(size_t slab, const SurfacePass& surface) {
     if (!std::exchange(cleared_, true)) device_sums_.clear();
+    give(surface.objects(), objects_, OBJECTS_BINDING);
+    give(surface.picture(slab).commands, shares_[slab].commands, COMMANDS_BINDING);
     program_.use();
     setUniforms(setup_.slabs[slab], setup_.shares[slab].per_row);
     surface.bindResults(slab);
@@ -71,6 +84,7 @@ void GpuDeposit::take(size_t slab, const SurfacePass& surface) {
 }
 
 std::span<const uint64_t> GpuDeposit::finish() {
+    const auto alone = context_.transferring();
     if (!std::exchange(cleared_, false)) device_sums_.clear();  // no slab held anything
     glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
     device_sums_.read(sums_.data(), sums_.size() * sizeof(uint64_t));
@@ -79,6 +93,8 @@ std::span<const uint64_t> GpuDeposit::finish() {
 
 }  // namespace
 
-std::unique_ptr<BinDeposit> makeGpuDeposit(const DepositSetup& setup) { return std::make_unique<GpuDeposit>(setup); }
+std::unique_ptr<BinDeposit> makeGpuDeposit(const DepositSetup& setup, const gpu::EglContext& context) {
+    return std::make_unique<GpuDeposit>(setup, context);
+}
 
 }  // namespace insonify::sonar

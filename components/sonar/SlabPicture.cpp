@@ -46,7 +46,6 @@ SlabPicture::SlabPicture(const Slab& slab, bool with_normal_maps, size_t run_lim
       ids_(with_normal_maps ? GL_RGBA32UI : GL_RG32UI, slab.columns, slab.rows),
       depth_(GL_DEPTH_COMPONENT32F, slab.columns, slab.rows),
       target_(ids_, depth_),
-      device_commands_(run_limit * sizeof(CommandRecord)),
       device_clips_(run_limit * sizeof(Clip)),
       device_bends_(with_normal_maps ? run_limit * sizeof(Bend) : sizeof(Bend)),
       device_draws_(run_limit * sizeof(DrawCommand)) {
@@ -66,8 +65,6 @@ void SlabPicture::read(std::vector<uint32_t>& words) const {
     glGetTextureImage(ids_.id(), 0, channels_ == 4 ? GL_RGBA_INTEGER : GL_RG_INTEGER, GL_UNSIGNED_INT,
                       static_cast<GLsizei>(words.size() * sizeof(uint32_t)), words.data());
 }
-
-void SlabPicture::bindCommands() const { device_commands_.bindBase(GL_SHADER_STORAGE_BUFFER, COMMANDS_BINDING); }
 
 void SlabPicture::clear() const {
     target_.bind();
@@ -97,12 +94,10 @@ void SlabPicture::resolve() const {
     glEnable(GL_DEPTH_TEST);
 }
 
-void SlabPicture::upload() {
-    device_commands_.write(commands.data(), commands.size() * sizeof(CommandRecord));
+void SlabPicture::upload(bool with_draws) {
     device_clips_.write(clips.data(), clips.size() * sizeof(Clip));
     if (!bends.empty()) device_bends_.write(bends.data(), bends.size() * sizeof(Bend));
-    device_draws_.write(draws.data(), draws.size() * sizeof(DrawCommand));
-    device_draws_.bind(GL_DRAW_INDIRECT_BUFFER);
+    if (with_draws) device_draws_.write(draws.data(), draws.size() * sizeof(DrawCommand));
 }
 
 }  // namespace insonify::sonar

@@ -39,13 +39,13 @@ public:
     /** The picture: channels() words a pixel, row by row from below; `words` has its size already. */
     void read(std::vector<uint32_t>& words) const;
     void bindTexture(GLuint unit) const { ids_.bind(unit); }
-    void bindCommands() const;
     /** Makes the picture the target and all of it a miss. */
     void clear() const;
     /** Ends the drawing: several samples a pixel become pixels. */
     void resolve() const;
-    /** Tells the device `commands`, `clips`, `bends` and `draws`. */
-    void upload();
+    /** Tells the device `clips`, `bends` and, where they are drawn from there, `draws`. */
+    void upload(bool with_draws);
+    const gpu::Buffer& deviceDraws() const { return device_draws_; }
     const gpu::Buffer& deviceClips() const { return device_clips_; }
     const gpu::Buffer& deviceBends() const { return device_bends_; }
 
@@ -62,7 +62,7 @@ private:
     gpu::Framebuffer target_;
     struct Multisampled;
     std::unique_ptr<Multisampled> multisampled_;  ///< What is drawn into when a pixel has several samples.
-    gpu::Buffer device_commands_, device_clips_, device_bends_, device_draws_;
+    gpu::Buffer device_clips_, device_bends_, device_draws_;
 };
 
 }  // namespace insonify::sonar

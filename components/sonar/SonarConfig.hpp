@@ -122,8 +122,8 @@ struct SonarConfig {
     bool one_frustum = false;   ///< Not a property: one wide image and rounded columns, as `published`.
     int samples_per_pixel = 1;  ///< Not a property: 1, or 4 on a rotated grid, for edges along the rows [1].
     int least_slabs = 1;        ///< Not a property: more images than the fan needs [1].
-    double detail = 0.75;  ///< Not a property: how far a simpler surface, off by half a bin at most, may be off; 0:
-                           ///< none is drawn [pixels].
+    double detail = 0.75;   ///< Not a property: how far a simpler surface, off by half a bin at most, may be off; 0:
+                            ///< none is drawn [pixels].
     bool draw_all = false;  ///< Not a property: what is outside the fan and the range is drawn as well.
     int threads = 0;        ///< Not a property: 0, as many as there are cores [1].
     std::string device;

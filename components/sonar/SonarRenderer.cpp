@@ -117,7 +117,7 @@ void SonarRenderer::Parts::makeDeposit() {
     if (on_cpu)
         deposit = std::make_unique<CpuDeposit>(std::move(setup), surface, threads);
     else
-        deposit = makeGpuDeposit(setup);
+        deposit = makeGpuDeposit(setup, context);
 }
 
 void SonarRenderer::Parts::lap(size_t stage) {
@@ -133,8 +133,11 @@ void SonarRenderer::Parts::drawSlabs(const types::Snapshot& snapshot) {
     lap(0);
     surface.draw();
     lap(1);
-    for (size_t i = 0; i < slabs.size(); ++i)
-        if (surface.draws(i)) deposit->take(i, surface);
+    {
+        const auto alone = context.transferring();
+        for (size_t i = 0; i < slabs.size(); ++i)
+            if (surface.draws(i)) deposit->take(i, surface);
+    }
     lap(2);
 }
 
@@ -174,10 +177,15 @@ void SonarRenderer::Parts::fillBins(types::Sonar& ping) {
     });
 }
 
-SonarRenderer::SonarRenderer(const SonarConfig& config, types::GeometryPtr geometry)
-    : parts_(std::make_unique<Parts>(config, std::move(geometry))) {}
+SonarRenderer::SonarRenderer(const SonarConfig& config, types::GeometryPtr geometry) {
+    const auto alone = gpu::EglContext::making();
+    parts_ = std::make_unique<Parts>(config, std::move(geometry));
+}
 
-SonarRenderer::~SonarRenderer() = default;
+SonarRenderer::~SonarRenderer() {
+    const auto alone = gpu::EglContext::making();
+    parts_.reset();
+}
 
 void SonarRenderer::render(const types::Snapshot& snapshot, types::Sonar& ping) {
     parts_->context.requireThread();
@@ -197,6 +205,7 @@ void SonarRenderer::setQuality(int rows, int columns_per_beam) {
     parts_->config.quality.rows = parts_->plan.rows = rows;
     parts_->config.quality.columns_per_beam = parts_->plan.columns_per_beam = columns_per_beam;
     parts_->slabs = makeSlabs(parts_->config, parts_->beams);
+    const auto alone = parts_->context.transferring();
     parts_->surface.resize(parts_->slabs);
     parts_->sums = {};
     parts_->makeDeposit();

@@ -24,12 +24,12 @@ SlabPicture::Bend bend(const ObjectRecord& object, const Slab& slab, float norma
 }  // namespace
 
 SurfacePainter::SurfacePainter(const types::Geometry& geometry, const SurfaceScene& scene,
-                               const std::vector<std::string>& defines, double near_plane)
+                               const std::vector<std::string>& defines, double near_plane, bool software)
     : geometry_(geometry),
       scene_(scene),
       near_plane_(near_plane),
-      program_(gpu::Program::raster("surface.vert.glsl", "surface.frag.glsl", defines)),
-      objects_(geometry.objects.size() * sizeof(ObjectRecord)) {
+      software_(software),
+      program_(gpu::Program::raster("surface.vert.glsl", "surface.frag.glsl", defines)) {
     const auto at = [&](const char* name) { return glGetUniformLocation(program_.id(), name); };
     uniforms_ = {at("extent"), at("pixel_size"), at("near_plane"), at("mapped")};
     scene_.describe(vertices_);
@@ -39,15 +39,9 @@ SurfacePainter::SurfacePainter(const types::Geometry& geometry, const SurfaceSce
     glClearDepth(0);
 }
 
-void SurfacePainter::place(const std::vector<ObjectRecord>& records) {
-    if (!records.empty()) objects_.write(records.data(), records.size() * sizeof(ObjectRecord));
-}
-
-void SurfacePainter::draw(SlabPicture& picture, const std::vector<ObjectRecord>& placed) const {
+void SurfacePainter::draw(const SlabPicture& picture) const {
     picture.clear();
     if (picture.empty()) return;
-    listDraws(picture, placed);
-    picture.upload();
     program_.use();
     setUniforms(picture.slab());
     vertices_.instanceRows(1, picture.deviceClips(), 3);
@@ -57,7 +51,7 @@ void SurfacePainter::draw(SlabPicture& picture, const std::vector<ObjectRecord>&
     picture.resolve();
 }
 
-void SurfacePainter::listDraws(SlabPicture& picture, const std::vector<ObjectRecord>& placed) const {
+void SurfacePainter::list(SlabPicture& picture, const std::vector<ObjectRecord>& placed) const {
     picture.commands.clear();
     picture.clips.clear();
     picture.bends.clear();
@@ -89,9 +83,25 @@ void SurfacePainter::drawGroups(const SlabPicture& picture) const {
         while (last < picture.draws.size() && map(last) == map(first)) ++last;
         scene_.bindNormalMap(map(first));
         glUniform1i(uniforms_.mapped, map(first) >= 0);
-        const auto offset = reinterpret_cast<const void*>(first * sizeof(SlabPicture::DrawCommand));
-        glMultiDrawElementsIndirect(GL_TRIANGLES, GL_UNSIGNED_INT, offset, static_cast<GLsizei>(last - first),
-                                    sizeof(SlabPicture::DrawCommand));
+        drawRuns(picture, first, last);
+    }
+}
+
+/** Runs [first, last). Mesa's software renderer would take indirect commands one by one all the same, but look for each
+ *  through what all contexts draw: see EglContext::drawing(). */
+void SurfacePainter::drawRuns(const SlabPicture& picture, size_t first, size_t last) const {
+    const auto offset = [](size_t bytes) { return reinterpret_cast<const void*>(bytes); };
+    if (!software_) {
+        picture.deviceDraws().bind(GL_DRAW_INDIRECT_BUFFER);
+        glMultiDrawElementsIndirect(GL_TRIANGLES, GL_UNSIGNED_INT, offset(first * sizeof(SlabPicture::DrawCommand)),
+                                    static_cast<GLsizei>(last - first), sizeof(SlabPicture::DrawCommand));
+        return;
+    }
+    for (size_t i = first; i < last; ++i) {
+        const SlabPicture::DrawCommand& run = picture.draws[i];
+        glDrawElementsInstancedBaseVertexBaseInstance(GL_TRIANGLES, static_cast<GLsizei>(run.count), GL_UNSIGNED_INT,
+                                                      offset(run.first_index * sizeof(uint32_t)), 1,
+                                                      static_cast<GLint>(run.base_vertex), run.base_instance);
     }
 }
 

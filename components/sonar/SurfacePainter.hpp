@@ -14,25 +14,26 @@ public:
     /** `defines` as the plan's features; nothing nearer than `near_plane` [m] along a slab's axis is drawn. `geometry`
      *  and `scene` must outlive the painter; the scene may have been made in another context of the device. */
     SurfacePainter(const types::Geometry& geometry, const SurfaceScene& scene, const std::vector<std::string>& defines,
-                   double near_plane);
+                   double near_plane, bool software);
 
-    /** Where all objects are; once a ping. */
-    void place(const std::vector<ObjectRecord>& records);
-    /** Draws the runs of a picture, of objects `placed` so; everything else in it is a miss. */
-    void draw(SlabPicture& picture, const std::vector<ObjectRecord>& placed) const;
-    void bindObjects() const { objects_.bindBase(GL_SHADER_STORAGE_BUFFER, OBJECTS_BINDING); }
+    /** Lists how the runs of a picture are drawn, of objects `placed` so; the device knows nothing of it yet. */
+    void list(SlabPicture& picture, const std::vector<ObjectRecord>& placed) const;
+    /** Tells the device what is listed. */
+    void upload(SlabPicture& picture) const { picture.upload(!software_); }
+    /** Draws what is listed and uploaded; everything else in the picture is a miss. */
+    void draw(const SlabPicture& picture) const;
 
 private:
-    void listDraws(SlabPicture& picture, const std::vector<ObjectRecord>& placed) const;
     void setUniforms(const Slab& slab) const;
     void drawGroups(const SlabPicture& picture) const;
+    void drawRuns(const SlabPicture& picture, size_t first, size_t last) const;
 
     const types::Geometry& geometry_;
     const SurfaceScene& scene_;
     double near_plane_;
+    bool software_;
     gpu::Program program_;
     gpu::VertexArray vertices_;
-    gpu::Buffer objects_;
     struct Uniforms {
         GLint extent, pixel_size, near_plane, mapped;
     } uniforms_;

@@ -58,7 +58,7 @@ void SurfacePass::onEachPart(const Job& job) {
 
 void SurfacePass::makePart(size_t part) {
     if (part > 0) parts_[part].own.emplace(gpu::EglContext::Sharing{context_});
-    parts_[part].painter.emplace(setup_.geometry, scene_, setup_.defines, setup_.near_plane);
+    parts_[part].painter.emplace(setup_.geometry, scene_, setup_.defines, setup_.near_plane, context_.isSoftware());
     makePictures(part);
 }
 
@@ -79,12 +79,21 @@ void SurfacePass::cull(const Culler& culler) {
     }
 }
 
+template <class Use>
+void SurfacePass::onDrawn(size_t part, const Use& use) {
+    for (size_t slab = part; slab < pictures_.size(); slab += parts_.size())
+        if (draws(slab)) use(*parts_[part].painter, *pictures_[slab]);
+}
+
 void SurfacePass::draw() {
     onEachPart([this](size_t part) {
-        SurfacePainter& painter = *parts_[part].painter;
-        painter.place(*placed_);
-        for (size_t slab = part; slab < pictures_.size(); slab += parts_.size())
-            if (draws(slab)) painter.draw(*pictures_[slab], *placed_);
+        onDrawn(part, [this](const SurfacePainter& painter, SlabPicture& picture) { painter.list(picture, *placed_); });
+        const auto alone = context_.transferring();
+        onDrawn(part, [](const SurfacePainter& painter, SlabPicture& picture) { painter.upload(picture); });
+    });
+    onEachPart([this](size_t part) {
+        const auto together = context_.drawing();
+        onDrawn(part, [](const SurfacePainter& painter, const SlabPicture& picture) { painter.draw(picture); });
         glFinish();
         if (parts_[part].own) parts_[part].own->check();
     });
@@ -92,9 +101,7 @@ void SurfacePass::draw() {
 
 void SurfacePass::bindResults(size_t slab) const {
     pictures_[slab]->bindTexture(0);
-    pictures_[slab]->bindCommands();
     scene_.bindRecords();
-    parts_.front().painter->bindObjects();
 }
 
 }  // namespace insonify::sonar

@@ -32,13 +32,14 @@ public:
     void cull(const Culler& culler);
     /** Whether a slab's picture is drawn. */
     bool draws(size_t slab) const { return setup_.empty_too || !pictures_[slab]->empty(); }
-    /** Draws the slabs; returns when the pictures are there. Throws GlError. */
+    /** Draws the slabs; returns when the pictures are there. Throws GlError. All other functions but objects() and
+     *  draws() want EglContext::transferring(); this one does that itself. */
     void draw();
 
     const SlabPicture& picture(size_t slab) const { return *pictures_[slab]; }
     const SurfaceScene& scene() const { return scene_; }
     const std::vector<ObjectRecord>& objects() const { return *placed_; }
-    /** Binds a picture (unit 0), its commands, objects, planes and materials, for a compute shader. */
+    /** Binds a picture (unit 0), planes and materials, for a compute shader. */
     void bindResults(size_t slab) const;
 
 private:
@@ -52,6 +53,8 @@ private:
     void makePictures(size_t part);
     template <class Job>
     void onEachPart(const Job& job);
+    template <class Use>
+    void onDrawn(size_t part, const Use& use);
 
     Setup setup_;
     gpu::EglContext& context_;

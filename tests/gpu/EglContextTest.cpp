@@ -1,6 +1,8 @@
 #include <epoxy/gl.h>
 #include <gmock/gmock.h>
 
+#include <atomic>
+#include <chrono>
 #include <cstdlib>
 #include <memory>
 #include <thread>
@@ -152,6 +154,27 @@ TEST(EglContextTest, UnrelatedContextsShareNothing) {
     }).join();
     EXPECT_TRUE(glIsBuffer(buffer.id()));
     EXPECT_FALSE(known);
+}
+
+TEST(EglContextTest, TheSoftwareRendererDrawsSideBySideAndTransfersAlone) {
+    const EglContext context("software");
+    auto drawing = context.drawing();
+    std::atomic<bool> drawn = false, transferred = false;
+    std::thread beside([&] {
+        const auto another = context.drawing();
+        drawn = true;
+    });
+    beside.join();
+    EXPECT_TRUE(drawn);
+    std::thread alone([&] {
+        const auto transfer = context.transferring();
+        transferred = true;
+    });
+    std::this_thread::sleep_for(std::chrono::milliseconds(50));
+    EXPECT_FALSE(transferred);
+    drawing.unlock();
+    alone.join();
+    EXPECT_TRUE(transferred);
 }
 
 }  // namespace

@@ -2,6 +2,7 @@
 #include <gmock/gmock.h>
 
 #include <algorithm>
+#include <atomic>
 #include <numeric>
 #include <thread>
 
@@ -47,6 +48,27 @@ double difference(const std::vector<float>& a, const std::vector<float>& b) {
 types::Mesh wall() { return test::quad({10, -50, -50}, {0, 100, 0}, {0, 0, 100}); }
 
 }  // namespace
+
+TEST(SonarRendererTest, SonarsSideBySideHearWhatEachHearsAlone) {
+    const auto snapshot = test::snapshotOf(test::surfaces());
+    const std::vector<float> alone = binsOf(snapshot);
+    ASSERT_GT(energy(alone), 0);
+    std::atomic<int> differing = 0;
+    std::vector<std::thread> sonars;
+    for (int i = 0; i < 3; ++i)
+        sonars.emplace_back([&] {
+            for (int made = 0; made < 4; ++made) {
+                SonarRenderer renderer(fan(), snapshot.geometry);
+                types::Sonar ping;
+                for (int k = 0; k < 40; ++k) {
+                    renderer.render(snapshot, ping);
+                    differing += ping.bins == alone ? 0 : 1;
+                }
+            }
+        });
+    for (std::thread& sonar : sonars) sonar.join();
+    EXPECT_EQ(differing, 0);
+}
 
 TEST(SonarRendererTest, AnotherThreadIsRefused) {
     const auto snapshot = test::snapshotOf(test::surfaces());
