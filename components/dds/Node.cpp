@@ -39,6 +39,8 @@ std::vector<Gid<size>> gidsOf(const std::vector<Guid>& guids) {
     return gids;
 }
 
+constexpr size_t longest_topic = 255;  ///< With "rt/", as in ROS 2.
+
 bool isWord(std::string_view word) {
     const auto fits = [](unsigned char c) { return std::isalnum(c) || c == '_'; };
     return !word.empty() && !std::isdigit(static_cast<unsigned char>(word[0])) && std::ranges::all_of(word, fits);
@@ -60,6 +62,9 @@ std::string faultOfTopic(const std::string& name) {
     if (rest.starts_with('/')) rest.remove_prefix(1);
     for (size_t slash = rest.find('/'); slash != rest.npos && isWord(rest.substr(0, slash)); slash = rest.find('/'))
         rest.remove_prefix(slash + 1);
+    if (ddsTopic(name).size() > longest_topic)
+        return "has " + std::to_string(name.size()) + " characters; at most " + std::to_string(longest_topic - 3) +
+               " are a topic's name";
     if (isWord(rest)) return "";
     return "is \"" + name + "\"; must be words of letters, digits and _, none beginning with a digit, as /auv/sonar";
 }

@@ -44,7 +44,8 @@ struct SubscriberConfig {
         using types::Field;
         visit(Field{"topics", "", "what is read"}, self.topics);
         visit(Field{"reliability", "", "reliable hears no best-effort writers"}, self.reliability);
-        visit(Field{"depth", "1", "messages that wait to be taken; 1: the newest wins", 1, 1000}, self.depth);
+        visit(Field{"depth", "1", "messages that wait to be taken; 1: only the newest is handed on", 1, 1000},
+              self.depth);
         NodeConfig::describe(self.node, visit);
     }
     void check(types::Problems& problems) const {

@@ -61,7 +61,9 @@ void SubscriberTask::updateHook() {
     types::Pose pose;
     for (Outlet& outlet : outlets_) {
         int taken = 0;
-        for (; taken < most_at_once && outlet.subscription->take(now(), pose); ++taken) outlet.port->write(pose);
+        for (; taken < most_at_once && outlet.subscription->take(now(), pose); ++taken)
+            if (config->depth > 1) outlet.port->write(pose);
+        if (taken > 0 && config->depth == 1) outlet.port->write(pose);
         if (taken == most_at_once || outlet.subscription->more()) activity().trigger();
     }
     if (const std::string told = drops_.untold(); !told.empty()) warn(told);

@@ -1,5 +1,6 @@
 #include "components/dds/Subscription.hpp"
 
+#include <algorithm>
 #include <utility>
 
 #include "components/ros/Cdr.hpp"
@@ -8,15 +9,16 @@
 namespace insonify::dds {
 namespace {
 
-constexpr int most_drops = 64;                ///< In one take: who sends nonsense without end holds up nobody.
-constexpr size_t largest = 64 << 10;          ///< Of a message: 712 bytes and two names [B].
+constexpr int least_depth = 64;       ///< So that nonsense does not push a good message out before either is looked at.
+constexpr int most_drops = 64;        ///< In one take: who sends nonsense without end holds up nobody.
+constexpr size_t largest = 64 << 10;  ///< Of a message: 712 bytes and two names [B].
 constexpr types::Time most_ahead{1'000'000};  ///< Of the clock, for a stamp; a sonar refuses snapshots beyond it, too.
 constexpr types::Time most_silence{1'000'000};  ///< After which a sender's clock may have been set back.
 
 Reader readerOf(Node& node, const SubscriberConfig& config, const TopicIn& topic, std::function<void()> arrived) {
     const char* type = topic.type == PoseType::Odometry ? ros::Odometry::type_name : ros::PoseStamped::type_name;
     const char* hash = topic.type == PoseType::Odometry ? ros::Odometry::type_hash : ros::PoseStamped::type_hash;
-    const Quality quality{.reliability = config.reliability, .depth = config.depth};
+    const Quality quality{.reliability = config.reliability, .depth = std::max(config.depth, least_depth)};
     return {node, ddsTopic(topic.topic), type, hash, quality, std::move(arrived), largest};
 }
 
@@ -59,18 +61,19 @@ bool Subscription::take(types::Time now, types::Pose& pose) {
         if (!reader_.take(bytes_, sender_)) return false;
         std::string fault, detail;
         try {
-            decode(pose);
-            if (stamped_on_arrival_ || pose.time == types::Time{}) pose.time = now;
-            fault = faultOf(now, pose);
+            decode(read_);
+            if (stamped_on_arrival_ || read_.time == types::Time{}) read_.time = now;
+            fault = faultOf(now, read_);
         } catch (const ros::CdrError& error) {
             fault = "no message of its type";
             detail = std::string(": ") + error.what();
         }
         if (fault.empty()) {
-            newest_ = pose.time;
+            newest_ = read_.time;
             newest_came_ = now;
             newest_sender_ = sender_;
-            pose.orientation = glm::normalize(pose.orientation);
+            read_.orientation = glm::normalize(read_.orientation);
+            std::swap(pose, read_);
             return true;
         }
         drops_.add(topic_ + ": " + fault, detail);

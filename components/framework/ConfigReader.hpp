@@ -13,6 +13,7 @@
 #include <string_view>
 #include <vector>
 
+#include "components/framework/YamlText.hpp"
 #include "types/ConfigError.hpp"
 #include "types/Describe.hpp"
 
@@ -211,9 +212,9 @@ bool ConfigReader::readValue(const YAML::Node& node, const std::string& path, co
 template <class T>
 bool ConfigReader::readText(const std::string& yaml, const std::string& path, T& value) {
     try {
-        return readValue(YAML::Load(yaml), path, types::Field{path.c_str()}, value);
-    } catch (const YAML::Exception& error) {
-        fault(YAML::Node(YAML::NodeType::Undefined), path, error.msg);
+        return readValue(parseValue(yaml), path, types::Field{path.c_str()}, value);
+    } catch (const types::ConfigError& error) {
+        fault(YAML::Node(YAML::NodeType::Undefined), path, error.diagnostics().front().message);
         return false;
     }
 }

@@ -28,6 +28,14 @@ bool holdsSamples(const TaskContext& task) {
     return std::any_of(inputs.begin(), inputs.end(), [](const auto* port) { return port->hasNew(); });
 }
 
+/** Tells what a task found wrong with its properties at the place where they stand. */
+void reportOf(const TaskSpec& spec, const types::Diagnostic& fault, ConfigReader& reader) {
+    const bool names_task = fault.path.starts_with(spec.name + ".");
+    const std::string path = names_task ? fault.path.substr(spec.name.size() + 1) : fault.path;
+    const bool has_properties = spec.properties.IsDefined();
+    reader.report(has_properties ? spec.properties : spec.place, spec.path() + ".properties", {{path, fault.message}});
+}
+
 }  // namespace
 
 uint64_t seedOf(uint64_t seed, const std::string& task) {
@@ -100,19 +108,20 @@ TaskContext* Deployment::task(const std::string& name) const {
 }
 
 void Deployment::configure() {
-    std::vector<types::Diagnostic> faults;
+    ConfigReader reader(spec_.file);
+    std::vector<types::Diagnostic> elsewhere;
     for (const auto& task : tasks_) {
         const Outcome outcome = task->configure();
         if (outcome) continue;
-        if (const types::ConfigError* error = task->configError()) {
-            faults.insert(faults.end(), error->diagnostics().begin(), error->diagnostics().end());
-            continue;
-        }
         const TaskSpec& spec = *spec_.task(task->name());
-        ConfigReader reader(spec_.file);
-        reader.fault(spec.place, spec.path(), outcome.reason);
-        faults.push_back(reader.faults().front());
+        if (!task->configError())
+            reader.fault(spec.place, spec.path(), outcome.reason);
+        else
+            for (const types::Diagnostic& fault : task->configError()->diagnostics())
+                fault.file.empty() ? reportOf(spec, fault, reader) : elsewhere.push_back(fault);
     }
+    std::vector<types::Diagnostic> faults = reader.faults();
+    faults.insert(faults.end(), elsewhere.begin(), elsewhere.end());
     if (faults.empty()) return;
     cleanup();
     throw types::ConfigError(faults);

@@ -274,11 +274,9 @@ void DeploymentSpec::set(const std::string& assignment) {
     TaskSpec* changed = task(name);
     if (!changed) return refuse("there is no task " + name + "; " + suggestion(name, taskNames()));
     try {
-        const std::string value = assignment.substr(equals + 1);
-        if (!isText(value)) return refuse("is not UTF-8 text");
-        PropertySources(*this).set(*changed, property, YAML::Load(value));
-    } catch (const YAML::Exception& error) {
-        refuse("is not YAML: " + error.msg);
+        PropertySources(*this).set(*changed, property, parseValue(assignment.substr(equals + 1)));
+    } catch (const types::ConfigError& error) {
+        refuse(error.diagnostics().front().message);
     }
 }
 

@@ -200,8 +200,12 @@ void Wiring::checkActivity(TaskContext& task, const TaskSpec& spec) {
     const auto meant = [&](const ConnectionSpec& c) { return splitPort(c.to).first == task.name(); };
     const auto& inputs = task.inputs();
     const auto& connections = deployment_.spec_.connections;
-    if (!child(place, "period").IsDefined() && !spec.activity.periodic() && !task.nextTime() && task.wakeAfter() <= 0 &&
-        std::none_of(inputs.begin(), inputs.end(), runs) && std::none_of(connections.begin(), connections.end(), meant))
+    const bool is_misread = std::ranges::any_of(deployment_.spec_.faults, [&](const types::Diagnostic& fault) {
+        return fault.path.starts_with(spec.path() + ".activity");
+    });
+    if (!is_misread && !child(place, "period").IsDefined() && !spec.activity.periodic() && !task.nextTime() &&
+        task.wakeAfter() <= 0 && std::none_of(inputs.begin(), inputs.end(), runs) &&
+        std::none_of(connections.begin(), connections.end(), meant))
         fault(spec.place, spec.path(), "has nothing that would run it; give it activity: {period: seconds}");
     task.activity().configure(spec.activity);
 }

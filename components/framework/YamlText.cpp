@@ -45,4 +45,15 @@ std::vector<YAML::Node> parseYaml(const std::string& text, const std::string& fi
     }
 }
 
+YAML::Node parseValue(const std::string& text) {
+    const auto refuse = [](const std::string& why) { return types::ConfigError("", "", why); };
+    try {
+        const std::vector<YAML::Node> documents = parseYaml(text, "");
+        if (documents.size() > 1) throw refuse("holds several YAML documents; must be one value");
+        return documents.empty() ? YAML::Node() : documents[0];
+    } catch (const types::ConfigError& error) {
+        throw refuse(error.diagnostics().front().message);
+    }
+}
+
 }  // namespace insonify::framework

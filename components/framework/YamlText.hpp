@@ -15,5 +15,8 @@ bool isText(std::string_view bytes);
 
 /** The documents of a text in YAML; types::ConfigError with the place in `file` when it is not. */
 std::vector<YAML::Node> parseYaml(const std::string& text, const std::string& file);
+/** One value that stands by itself, as on a command line; types::ConfigError without a place when it is none, or
+ *  several. Empty text is null. */
+YAML::Node parseValue(const std::string& text);
 
 }  // namespace insonify::framework

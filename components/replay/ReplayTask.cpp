@@ -22,6 +22,13 @@ void moveStamps(T& sample, types::Time shift) {
     if constexpr (std::is_same_v<T, types::Image>) move(sample.received_time);
 }
 
+/** From the first sample to the latest [s]. */
+double spanOf(const pocolog::Reader& log) {
+    const auto& samples = log.samples();
+    if (samples.empty()) return 0;
+    return (std::ranges::max(samples, {}, &pocolog::SampleRef::time).time - samples.front().time).seconds();
+}
+
 }  // namespace
 
 class ReplayTask::Outlet {
@@ -78,9 +85,7 @@ framework::OutputPortBase* ReplayTask::makeOutput(const std::string& stream) {
 
 void ReplayTask::check(types::Problems& problems) const {
     try {
-        const auto log = mcap::openLog(inputPath(config->file));
-        const auto& samples = log->samples();
-        const double span = samples.empty() ? 0 : (samples.back().time - samples.front().time).seconds();
+        const double span = spanOf(*mcap::openLog(inputPath(config->file)));
         if (config->from > span)
             problems.push_back(
                 {"from", fmt::format("is {:g} s; the log ends {:g} s after its start", config->from, span)});
@@ -136,8 +141,15 @@ void ReplayTask::rewind() {
     first_us_ = next_time_.microseconds;
 }
 
-void ReplayTask::jump(double seconds) {
+void ReplayTask::goOnAt(double seconds) {
     open();
+    const double span = spanOf(*log_);
+    if (!(seconds >= 0 && seconds <= span + 0.5e-6))  // stamps are whole microseconds
+        throw std::runtime_error(fmt::format("{:g} s is outside of the log, which is {:g} s long", seconds, span));
+    jump(seconds);
+}
+
+void ReplayTask::jump(double seconds) {
     next_ = withOutlet(indexAt(seconds));
     finished_ = next_ == log_->samples().size();
     if (finished_) return;

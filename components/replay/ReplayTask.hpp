@@ -37,8 +37,9 @@ public:
     ~ReplayTask() override;
 
     framework::Properties<ReplayConfig> config{this};
-    framework::Operation<void(double)> seek{this, "seek", "goes on so many seconds after the log's first stamp [s]",
-                                            [this](double seconds) { jump(seconds); }};
+    framework::Operation<void(double)> seek{this, "seek",
+                                            "goes on so many seconds after the log's first stamp, within the log [s]",
+                                            [this](double seconds) { goOnAt(seconds); }};
     framework::Operation<void(bool)> pause{this, "pause",
                                            "in realtime: true lets the log's time stand still, false go on",
                                            [this](bool on) { standStill(on); }};
@@ -64,6 +65,8 @@ private:
     void open();
     void rewind();
     /** Goes on with the first sample so long after the log's first stamp. */
+    /** Refuses what is outside of the log. */
+    void goOnAt(double seconds);
     void jump(double seconds);
     /** Index of the first sample so long after the log's first stamp; of the first from there on with an outlet. */
     size_t indexAt(double seconds) const;

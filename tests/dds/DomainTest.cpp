@@ -1,7 +1,12 @@
 #include <gmock/gmock.h>
 
+#include "components/dds/DiscoveryMessages.hpp"
 #include "components/dds/Domain.hpp"
 #include "components/dds/Node.hpp"
+#include "components/dds/Reader.hpp"
+#include "components/dds/Writer.hpp"
+#include "components/ros/Cdr.hpp"
+#include "components/ros/GeometryMessages.hpp"
 #include "tests/dds/Loopback.hpp"
 #include "types/ConfigError.hpp"
 
@@ -34,6 +39,9 @@ TEST_F(DomainTest, NamesThatRosRefusesAreRefused) {
     for (const char* good : {"/auv/sonar", "sonar", "/a_1/B2"}) EXPECT_EQ(faultOfTopic(good), "") << good;
     for (const char* bad : {"", "/", "//a", "/a/", "/1a", "/a b", "/a-b", "/a//b", "~/a"})
         EXPECT_THAT(faultOfTopic(bad), HasSubstr("must be words of letters")) << bad;
+    EXPECT_EQ(faultOfTopic(std::string(252, 'a')), "");
+    EXPECT_THAT(faultOfTopic(std::string(253, 'a')), HasSubstr("has 253 characters; at most 252"));
+    EXPECT_THAT(faultOfTopic("/" + std::string(70'000, 'a')), HasSubstr("at most 252"));
     EXPECT_EQ(faultOfNode("sonar_1"), "");
     for (const char* bad : {"", "a/b", "1a", "a b"}) EXPECT_NE(faultOfNode(bad), "") << bad;
 }
@@ -64,4 +72,25 @@ TEST_F(DomainTest, ADomainThatCannotBeJoinedIsOneErrorThatTellsWhy) {
 
 TEST_F(DomainTest, ADomainCanBeLeftAndJoinedAgain) {
     for (int i = 0; i < 3; ++i) EXPECT_GT(joinDomain(24, "").handle(), 0);
+}
+
+TEST_F(DomainTest, ANodeIsAnnouncedWithIdentifiersOfSixteenOrTwentyFourBytes) {
+    using Info = ParticipantEntitiesInfo<24>;
+    Node listener(domainId({}), "listener", 16), humble(domainId({}), "humble", 24);
+    const Quality latched{.reliability = Reliability::Reliable, .depth = 1, .transient_local = true};
+    Reader reader(listener, "ros_discovery_info", Info::type_name, "", latched, {});
+    const Writer writer(humble, "rt/topic", ros::PoseStamped::type_name, "", Quality{});
+    humble.addWriter(writer.handle());
+    humble.announce();
+    Bytes bytes;
+    uint64_t sender = 0;
+    ASSERT_TRUE(becomes([&] { return reader.take(bytes, sender); }));
+    Info info;
+    ros::decode(std::span<const char>(bytes), info);
+    ASSERT_EQ(info.node_entities_info_seq.size(), 1u);
+    EXPECT_EQ(info.node_entities_info_seq[0].node_name, "humble");
+    ASSERT_EQ(info.node_entities_info_seq[0].writer_gid_seq.size(), 1u);
+    const auto& gid = info.node_entities_info_seq[0].writer_gid_seq[0].data;
+    EXPECT_TRUE(std::all_of(gid.begin() + 16, gid.end(), [](uint8_t byte) { return byte == 0; }));
+    EXPECT_TRUE(std::any_of(gid.begin(), gid.begin() + 16, [](uint8_t byte) { return byte != 0; }));
 }

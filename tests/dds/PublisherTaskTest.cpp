@@ -104,7 +104,7 @@ TEST_F(PublisherTaskTest, NothingIsMadeForATopicThatNobodyReads) {
 
 TEST_F(PublisherTaskTest, WhatAMessageCannotHoldIsACountedDropAndTheRunGoesOn) {
     Publishing<types::SonarPtr> publishing(
-        {topicOut("in", "/scan", MessageType::LaserScan), topicOut("in", "/image", MessageType::ProjectedSonarImage)});
+        {topicOut("in", "/scan", MessageType::LaserScan), topicOut("in", "/image", MessageType::RawSonarImage)});
     std::vector<std::string> told;
     publishing.task.environment().warn = [&](const std::string& text) { told.push_back(text); };
     auto crooked = std::make_shared<types::Sonar>(*pingOf(4, 4));

@@ -95,6 +95,22 @@ TEST_F(SubscriberTaskTest, WithADepthOfOneTheNewestWins) {
     }
 }
 
+TEST_F(SubscriberTaskTest, NonsenseThatComesAfterAGoodPoseDoesNotPushItOut) {
+    Publishing<types::Pose> publishing({topicOut("in", "/there", MessageType::Odometry)});
+    Subscribing subscribing("/there");
+    meet(publishing, subscribing, somewhere(0));
+    subscribing.task.activity().hold();
+    subscribing.task.update();
+    subscribing.reader.port.clear();
+    publishing.send(somewhere(7));
+    types::Pose lost = somewhere(8);
+    lost.position.x = std::numeric_limits<double>::quiet_NaN();
+    for (int i = 0; i < 50; ++i) publishing.send(lost);
+    types::Pose pose;
+    ASSERT_TRUE(becomes([&] { return subscribing.task.update(), subscribing.reader.port.readNew(pose); }));
+    EXPECT_EQ(pose.position.x, 7);
+}
+
 TEST_F(SubscriberTaskTest, LockstepIsRefusedWithAReason) {
     SubscriberTask task("subscriber");
     task.environment().lockstep = true;

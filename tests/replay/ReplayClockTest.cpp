@@ -127,6 +127,18 @@ TEST(ReplayClockTest, SeekGoesOnElsewhereInTheLogWhileTimeGoesOn) {
     EXPECT_TRUE(bench.task.finished());
 }
 
+TEST(ReplayClockTest, ASeekOutsideOfTheLogIsRefused) {
+    Bench bench;
+    test::Reader<types::Pose> poses;
+    bench.connect("vehicle.pose", poses);
+    bench.task.configure();
+    bench.task.start();
+    bench.updateAt(10);
+    for (const double place : {-1.0, 22e-6, 1e300, std::numeric_limits<double>::quiet_NaN()})
+        EXPECT_THROW(bench.task.seek(place), std::runtime_error) << place;
+    EXPECT_EQ(bench.task.nextTime(), types::Time{20}) << "it goes on where it was";
+}
+
 TEST(ReplayClockTest, AfterAPauseASeekInRealtimeGoesOnFromNowWithoutABurst) {
     Bench bench(false, {.file = {}, .pace = 2});
     test::Reader<types::Pose> poses;
