@@ -79,9 +79,8 @@ Node::Node(uint32_t domain, std::string name, size_t gid_size)
     : name_(std::move(name)), gid_size_(gid_size), participant_(joinDomain(domain, "enclave=/;")) {}
 Node::~Node() = default;
 
-Entity Node::makeTopic(const std::string& dds_topic, const std::string& dds_type, size_t largest,
-                       std::shared_ptr<std::atomic<uint64_t>> refused) const {
-    ddsi_sertype* type = makeRawType(dds_type, largest, std::move(refused));
+Entity Node::makeTopic(const std::string& dds_topic, const std::string& dds_type, size_t largest) const {
+    ddsi_sertype* type = makeRawType(dds_type, largest);
     const dds_entity_t topic =
         dds_create_topic_sertype(participant(), dds_topic.c_str(), &type, nullptr, nullptr, nullptr);
     if (topic > 0) return Entity(topic);

@@ -41,8 +41,7 @@ public:
     int32_t participant() const { return participant_.handle(); }
     /** A topic of that DDS name and type; several may be asked for. The rest is as in makeRawType(). Throws
      *  types::ConfigError. */
-    Entity makeTopic(const std::string& dds_topic, const std::string& dds_type, size_t largest = any_size,
-                     std::shared_ptr<std::atomic<uint64_t>> refused = {}) const;
+    Entity makeTopic(const std::string& dds_topic, const std::string& dds_type, size_t largest = any_size) const;
 
     void addWriter(int32_t writer);
     void addReader(int32_t reader);

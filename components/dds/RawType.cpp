@@ -25,17 +25,9 @@ struct Serdata : ddsi_serdata {
 /** What is known of a type beyond Cyclone's part. */
 struct RawType : ddsi_sertype {
     size_t largest = 0;  ///< Message from the network that is taken [B].
-    std::shared_ptr<std::atomic<uint64_t>> refused;
 };
 
 const RawType& own(const ddsi_sertype* type) { return *static_cast<const RawType*>(type); }
-
-/** Whether a message is small enough; counts those that are not. */
-bool isTaken(const ddsi_sertype* type, size_t size) {
-    if (size <= own(type).largest) return true;
-    if (own(type).refused) ++*own(type).refused;
-    return false;
-}
 
 /** Samples that are used again, so that a steady stream allocates nothing; for any thread. */
 class Pool {
@@ -96,7 +88,7 @@ Serdata* copyOf(const ddsi_sertype* type, ddsi_serdata_kind kind, const char* by
 }
 
 ddsi_serdata* fromFragments(const ddsi_sertype* type, ddsi_serdata_kind kind, const nn_rdata* chain, size_t size) {
-    if (!isTaken(type, size)) return nullptr;
+    if (size > own(type).largest) return copyOf(type, kind, nullptr, 0);
     Serdata* data = pool().take(type, kind, size);
     if (!data) return nullptr;
     uint32_t filled = 0;
@@ -113,7 +105,7 @@ ddsi_serdata* fromFragments(const ddsi_sertype* type, ddsi_serdata_kind kind, co
 
 ddsi_serdata* fromPieces(const ddsi_sertype* type, ddsi_serdata_kind kind, ddsrt_msg_iovlen_t count,
                          const ddsrt_iovec_t* pieces, size_t size) {
-    if (!isTaken(type, size)) return nullptr;
+    if (size > own(type).largest) return copyOf(type, kind, nullptr, 0);
     Serdata* data = pool().take(type, kind, size);
     if (!data) return nullptr;
     size_t filled = 0;
@@ -189,7 +181,7 @@ const ddsi_sertype_ops type_operations = {
     .zero_samples = [](const ddsi_sertype*, void*, size_t) {},
     .realloc_samples = [](void**, const ddsi_sertype*, void*, size_t, size_t) { std::abort(); },
     .free_samples = [](const ddsi_sertype*, void**, size_t, dds_free_op_t) {},
-    .equal = [](const ddsi_sertype* a, const ddsi_sertype* b) { return own(a).refused == own(b).refused; },
+    .equal = [](const ddsi_sertype* a, const ddsi_sertype* b) { return own(a).largest == own(b).largest; },
     .hash = [](const ddsi_sertype*) { return uint32_t{0}; },
     .type_id = nullptr,
     .type_map = nullptr,
@@ -201,12 +193,10 @@ const ddsi_sertype_ops type_operations = {
 
 }  // namespace
 
-ddsi_sertype* makeRawType(const std::string& type_name, size_t largest,
-                          std::shared_ptr<std::atomic<uint64_t>> refused) {
+ddsi_sertype* makeRawType(const std::string& type_name, size_t largest) {
     auto type = std::make_unique<RawType>();
     ddsi_sertype_init(type.get(), type_name.c_str(), &type_operations, &data_operations, true);
     type->largest = largest;
-    type->refused = std::move(refused);
     return type.release();
 }
 

@@ -1,8 +1,5 @@
 #pragma once
-#include <atomic>
-#include <cstdint>
 #include <limits>
-#include <memory>
 #include <string>
 #include <vector>
 
@@ -19,8 +16,8 @@ inline constexpr size_t any_size = std::numeric_limits<size_t>::max();
  *
  *  It has no key and tells the network nothing of its members, so peers match it by its name alone, as ROS 2 does: a
  *  peer of a newer Cyclone that asks an 0.10 process for the members crashes it. Bytes that come from the network are
- *  handed on as they are; who takes them checks them. Messages of more than `largest` bytes are not taken from it, and
- *  counted in `refused`, where it is given. */
-ddsi_sertype* makeRawType(const std::string& type_name, size_t largest, std::shared_ptr<std::atomic<uint64_t>> refused);
+ *  handed on as they are, but for messages of more than `largest` bytes, which are empty then; who takes them checks
+ *  them. */
+ddsi_sertype* makeRawType(const std::string& type_name, size_t largest = any_size);
 
 }  // namespace insonify::dds

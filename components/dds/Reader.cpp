@@ -10,7 +10,7 @@ namespace insonify::dds {
 Reader::Reader(Node& node, const std::string& dds_topic, const std::string& ros_type, const std::string& type_hash,
                const Quality& quality, std::function<void()> arrived, size_t largest)
     : arrived_(std::make_unique<std::function<void()>>(std::move(arrived))),
-      topic_(node.makeTopic(dds_topic, ddsType(ros_type), largest, refused_)) {
+      topic_(node.makeTopic(dds_topic, ddsType(ros_type), largest)) {
     dds_listener_t* listener = dds_create_listener(arrived_.get());
     const auto tell = [](dds_entity_t, void* called) { (*static_cast<std::function<void()>*>(called))(); };
     if (*arrived_) dds_lset_data_available(listener, tell);

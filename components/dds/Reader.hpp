@@ -12,7 +12,7 @@ namespace insonify::dds {
 class Reader {
 public:
     /** `arrived` is called on a thread of Cyclone's, which it must not hold up; it may be empty. Messages of more than
-     *  `largest` bytes are refused. The node is to outlive this. Throws types::ConfigError. */
+     *  `largest` bytes come empty. The node is to outlive this. Throws types::ConfigError. */
     Reader(Node& node, const std::string& dds_topic, const std::string& ros_type, const std::string& type_hash,
            const Quality& quality, std::function<void()> arrived, size_t largest = any_size);
     ~Reader();
@@ -21,13 +21,10 @@ public:
     bool take(Bytes& message, uint64_t& sender);
     /** Whether a sender is still there. */
     bool hears(uint64_t sender) const;
-    /** How many messages were too large. */
-    uint64_t refused() const { return *refused_; }
     int32_t handle() const { return entity_.handle(); }
 
 private:
     std::unique_ptr<std::function<void()>> arrived_;
-    std::shared_ptr<std::atomic<uint64_t>> refused_ = std::make_shared<std::atomic<uint64_t>>(0);
     Entity topic_, entity_;
 };
 

@@ -54,8 +54,6 @@ std::string Subscription::faultOf(types::Time now, const types::Pose& pose) {
 }
 
 bool Subscription::take(types::Time now, types::Pose& pose) {
-    if (const uint64_t refused = reader_.refused(); refused > too_large_)
-        drops_.add(topic_ + ": larger than any message of its type", "", refused - std::exchange(too_large_, refused));
     more_ = false;
     for (int drops = 0; drops < most_drops; ++drops) {
         if (!reader_.take(bytes_, sender_)) return false;
@@ -65,7 +63,7 @@ bool Subscription::take(types::Time now, types::Pose& pose) {
             if (stamped_on_arrival_ || read_.time == types::Time{}) read_.time = now;
             fault = faultOf(now, read_);
         } catch (const ros::CdrError& error) {
-            fault = "no message of its type";
+            fault = bytes_.empty() ? "empty, or larger than any message of its type" : "no message of its type";
             detail = std::string(": ") + error.what();
         }
         if (fault.empty()) {

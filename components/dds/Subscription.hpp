@@ -44,7 +44,6 @@ private:
     uint64_t sender_ = 0, newest_sender_ = 0;
     types::Time newest_, newest_came_;
     bool stamped_on_arrival_, more_ = false;
-    uint64_t too_large_ = 0;
     Drops& drops_;
     Reader reader_;
 };
