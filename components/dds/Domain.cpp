@@ -16,7 +16,7 @@ namespace {
 /** While it lives, what Cyclone logs is kept here and not printed. One at a time. */
 class Complaints {
 public:
-    Complaints() { dds_set_log_sink(&Complaints::keep, &logged_); }
+    Complaints() { dds_set_log_sink(&Complaints::keep, this); }
     ~Complaints() { dds_set_log_sink(nullptr, nullptr); }
     std::string text() const {
         const size_t last = logged_.find_last_not_of(" \n");
@@ -24,10 +24,14 @@ public:
     }
 
 private:
-    static void keep(void* text, const dds_log_data_t* data) {
-        if (data->priority & (DDS_LC_ERROR | DDS_LC_WARNING | DDS_LC_FATAL | DDS_LC_CONFIG))
-            static_cast<std::string*>(text)->append(data->message, data->size);
+    /** On any thread: those of other participants log here as well. */
+    static void keep(void* to, const dds_log_data_t* data) {
+        if (!(data->priority & (DDS_LC_ERROR | DDS_LC_WARNING | DDS_LC_FATAL | DDS_LC_CONFIG))) return;
+        auto& complaints = *static_cast<Complaints*>(to);
+        std::lock_guard lock(complaints.mutex_);
+        complaints.logged_.append(data->message, data->size);
     }
+    std::mutex mutex_;
     std::string logged_;
 };
 
