@@ -1,6 +1,10 @@
 // A ROS 2 peer by another version of Cyclone: PyPI's.
 #include <gmock/gmock.h>
 
+#include "components/dds/Reader.hpp"
+#include "components/ros/Cdr.hpp"
+#include "components/ros/Messages.hpp"
+#include "components/ros/Times.hpp"
 #include "tests/dds/Ends.hpp"
 
 using namespace insonify;
@@ -52,6 +56,28 @@ TEST_F(PeerTest, HearsEveryPingOfAMegabyteAtFortyHertz) {
     EXPECT_GT(found["median_ms"], 0);  // how long depends on what else the machine does
     std::cout << "1 MB at 40 Hz: median " << found["median_ms"] << " ms, p99 " << found["p99_ms"] << " ms\n";
     EXPECT_THAT(publishing.task.notices(), testing::IsEmpty());
+}
+
+TEST_F(PeerTest, SendsImagesOfAMegabyteAtFortyHertzOfWhichNoneIsLost) {
+    using Image = ros::ProjectedSonarImage;
+    Node node(domainId({}), "listener", 16);
+    Reader reader(node, ddsTopic("/peer/sonar"), Image::type_name, Image::type_hash, Quality{.depth = 200}, {});
+    Peer peer("image /peer/sonar 200 40");
+    ASSERT_TRUE(peer.ready());
+    std::vector<double> latencies;  // [ms]
+    Bytes bytes;
+    uint64_t sender = 0;
+    Image image;
+    for (int i = 0; i < 200; ++i) {
+        ASSERT_TRUE(becomes([&] { return reader.take(bytes, sender); })) << i;
+        ros::decode(std::span<const char>(bytes), image);
+        latencies.push_back((framework::wallClock() - ros::fromRos(image.header.stamp)).seconds() * 1e3);
+        ASSERT_EQ(image.image.data.size(), 1'024'000u);
+        ASSERT_EQ(image.ranges.size(), 1000u);
+    }
+    std::ranges::sort(latencies);
+    std::cout << "1 MB from the peer at 40 Hz: median " << latencies[100] << " ms, p99 " << latencies[198] << " ms\n";
+    EXPECT_EQ(peer.result()["count"], 200);
 }
 
 TEST_F(PeerTest, SendsPosesOfWhichNoneIsLost) {

@@ -2,6 +2,7 @@
 
     peer.py listen TYPE TOPIC SECONDS [COUNT]   counts messages, until that many came, and their latency [ms]; keeps the first
     peer.py node SECONDS                        nodes, and writers with their types and hashes
+    peer.py image TOPIC COUNT HERTZ               sends images of 1 MB, 256 beams x 1000 ranges of float32
     peer.py odometry TOPIC COUNT HERTZ [FAULT]  sends poses along x; FAULT nan, back, zero or bytes spoils every second
 """
 import dataclasses
@@ -81,6 +82,32 @@ def node(span):
     return {"infos": infos, "writers": found}
 
 
+def stamped_now(header):
+    now = time.time()
+    header.stamp = messages.Time(int(now), int(now % 1 * 1e9))
+
+
+def image(topic, count, hertz):
+    participant = DomainParticipant(DOMAIN)
+    kind = messages.ProjectedSonarImage
+    writer = DataWriter(participant, Topic(participant, "rt" + topic, kind), qos=DEEP)
+    sample = kind(messages.Header(messages.Time(0, 0), "sonar"), messages.PingInfo(750e3, 1500.0, [0.3], [0.01]),
+                  [messages.Vector3(0.0, 0.0, 1.0)] * 256, [0.01 * k for k in range(1000)],
+                  messages.SonarImageData(False, 8, 256, bytes(1_024_000)))
+    ready()
+    while not writer.get_matched_subscriptions():
+        time.sleep(0.01)
+    time.sleep(0.5)  # the other side may not know us yet
+    due = time.time()
+    for _ in range(int(count)):
+        due += 1 / float(hertz)
+        time.sleep(max(0, due - time.time()))
+        stamped_now(sample.header)
+        writer.write(sample)
+    time.sleep(1)
+    return {"count": int(count)}
+
+
 @dataclasses.dataclass
 class Short(IdlStruct, typename="nav_msgs::msg::dds_::Odometry_"):
     only: float64 = 1.0
@@ -117,4 +144,4 @@ def odometry(topic, count, hertz, fault=""):
 
 if __name__ == "__main__":
     DOMAIN = int(__import__("os").environ.get("ROS_DOMAIN_ID", "0"))
-    print(json.dumps({"listen": listen, "node": node, "odometry": odometry}[sys.argv[1]](*sys.argv[2:])))
+    print(json.dumps({"listen": listen, "node": node, "image": image, "odometry": odometry}[sys.argv[1]](*sys.argv[2:])))
