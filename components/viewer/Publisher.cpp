@@ -9,7 +9,6 @@
 namespace insonify::viewer {
 namespace {
 
-constexpr size_t most_requests = 64;
 constexpr auto status_period = std::chrono::milliseconds(500);
 constexpr uint32_t status_stream = 0, scene_stream = 1, first_source_stream = 2;
 
@@ -30,10 +29,10 @@ Publisher::Publisher(const ViewerConfig& config, std::vector<Source> sources, Ac
       picture_(config.messages.scale),
       messages_(config.messages),
       slots_(sources_.size()),
-      interfaces_(bytesOf(interfacesText(access_.interfaces(), config.control))),
+      tasks_(access_.interfaces()),
+      interfaces_(bytesOf(interfacesText(tasks_, config.control))),
       server_(optionsOf(config_, sources_), *this),
-      publishing_(&Publisher::publishAll, this),
-      answering_(&Publisher::answerAll, this) {}
+      publishing_(&Publisher::publishAll, this) {}
 
 Publisher::~Publisher() {
     {
@@ -41,9 +40,8 @@ Publisher::~Publisher() {
         ending_ = true;
     }
     fresh_.notify_all();
-    asked_.notify_all();
     publishing_.join();
-    answering_.join();
+    lanes_.end();  // they answer through the server
 }
 
 void Publisher::offer(size_t source, AnySample sample, double latency_s) {
@@ -72,15 +70,6 @@ std::vector<Frame> Publisher::greeting() {
     std::vector<Frame> frames{{"", interfaces_, true}};
     if (scene_) frames.push_back({"", scene_, false});
     return frames;
-}
-
-void Publisher::request(uint64_t client, std::string text) {
-    std::lock_guard lock(mutex_);
-    if (requests_.size() < most_requests)
-        requests_.push_back({client, std::move(text)});
-    else
-        server_.reply(client, refusalText(0, "too many requests wait; try again later"));
-    asked_.notify_one();
 }
 
 // -- samples ----------------------------------------------------------------------------------------------------------
@@ -150,27 +139,27 @@ void Publisher::showStatus() try {
 
 // -- requests ---------------------------------------------------------------------------------------------------------
 
-void Publisher::answerAll() {
-    std::unique_lock lock(mutex_);
-    while (true) {
-        asked_.wait(lock, [&] { return ending_ || !requests_.empty(); });
-        if (ending_) return;
-        const Asked asked = std::move(requests_.front());
-        requests_.pop_front();
-        lock.unlock();
-        server_.reply(asked.client, answer(asked.text));
-        lock.lock();
-    }
-}
-
-std::string Publisher::answer(const std::string& text) const {
+void Publisher::request(uint64_t client, std::string text) {
     Request request;
     try {
-        request = readRequest(text);
-        return answerText(request.id, carryOut(request));
+        readRequest(text, request);
     } catch (const std::exception& error) {
-        return refusalText(request.id, error.what());
+        return server_.reply(client, refusalText(request.id, error.what()));
     }
+    if (!lanes_.run(laneOf(request), [this, client, request] { server_.reply(client, answer(request)); }))
+        server_.reply(client, refusalText(request.id, "too many requests wait; try again later"));
+}
+
+/** The task that is called; empty: none that there is. */
+std::string Publisher::laneOf(const Request& request) const {
+    const std::string task = request.operation.substr(0, request.operation.find('.'));
+    return std::ranges::find(tasks_, task, &types::TaskInterface::name) == tasks_.end() ? "" : task;
+}
+
+std::string Publisher::answer(const Request& request) const try {
+    return answerText(request.id, carryOut(request));
+} catch (const std::exception& error) {
+    return refusalText(request.id, error.what());
 }
 
 std::string Publisher::carryOut(const Request& request) const {

@@ -1,6 +1,5 @@
 #pragma once
 #include <condition_variable>
-#include <deque>
 #include <functional>
 #include <memory>
 #include <mutex>
@@ -9,6 +8,7 @@
 #include <variant>
 #include <vector>
 
+#include "components/viewer/Lanes.hpp"
 #include "components/viewer/Messages.hpp"
 #include "components/viewer/PingPicture.hpp"
 #include "components/viewer/Server.hpp"
@@ -33,8 +33,8 @@ struct Source {
 
 /** Sends the newest sample of each source to those who look, and does what pages ask for.
  *
- *  Three threads: the server's; one that makes messages of samples, which nobody waits for; one on which pages'
- * requests are carried out, since these wait for tasks. */
+ *  Threads: the server's; one that makes messages of samples, which nobody waits for; and one for each task that pages
+ *  have asked something of, since such requests wait for the task. */
 class Publisher final : private ServerHandler {
 public:
     /** Throws std::runtime_error where the port cannot be had. */
@@ -55,10 +55,6 @@ private:
         uint64_t count = 0;
         bool fresh = false;
     };
-    struct Asked {
-        uint64_t client;
-        std::string text;
-    };
 
     std::optional<PageFile> file(std::string_view path) override;
     std::vector<Frame> greeting() override;
@@ -68,8 +64,8 @@ private:
     void showOnPages(size_t source, const Slot& slot);
     void showScene(const types::GeometryPtr& geometry);
     void showStatus();
-    void answerAll();
-    std::string answer(const std::string& text) const;
+    std::string laneOf(const Request& request) const;
+    std::string answer(const Request& request) const;
     std::string carryOut(const Request& request) const;
 
     const ViewerConfig config_;
@@ -78,15 +74,17 @@ private:
     const PingPicture picture_;
     Messages messages_;
     std::mutex mutex_;
-    std::condition_variable fresh_, asked_;
+    std::condition_variable fresh_;
     std::vector<Slot> slots_;
-    std::deque<Asked> requests_;
     std::string trouble_;
     types::GeometryPtr geometry_;  ///< Of `scene_`; the publishing thread's.
-    Bytes scene_, interfaces_;     ///< For pages that come later.
+    Bytes scene_;                  ///< For pages that come later, as interfaces_.
+    const std::vector<types::TaskInterface> tasks_;
+    const Bytes interfaces_;
     bool ending_ = false;
+    Lanes lanes_;  ///< Of requests, by task.
     Server server_;
-    std::thread publishing_, answering_;
+    std::thread publishing_;
 };
 
 }  // namespace insonify::viewer

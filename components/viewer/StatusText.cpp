@@ -78,10 +78,9 @@ std::string interfacesText(const std::vector<types::TaskInterface>& interfaces, 
     return dump({{"type", "interfaces"}, {"control", control}, {"tasks", tasks}});
 }
 
-Request readRequest(const std::string& text) {
+void readRequest(const std::string& text, Request& request) {
     const Json said = readJson(text);
     if (!said.is_object()) throw std::invalid_argument("is no JSON object");
-    Request request;
     const Json id = said.value("id", Json(0u));
     if (!id.is_number_unsigned()) throw std::invalid_argument("id is no whole number");
     request.id = id.get<uint64_t>();
@@ -92,14 +91,15 @@ Request readRequest(const std::string& text) {
         request.kind = Request::Kind::Step;
     } else if (said.contains("call") && said["call"].is_string()) {
         request.operation = said["call"].get<std::string>();
-        for (const Json& argument : said.value("arguments", Json::array())) {
+        const Json arguments = said.value("arguments", Json::array());
+        if (!arguments.is_array()) throw std::invalid_argument("arguments are no list");
+        for (const Json& argument : arguments) {
             if (!argument.is_string()) throw std::invalid_argument("an argument is no text");
             request.arguments.push_back(argument.get<std::string>());
         }
     } else {
         throw std::invalid_argument("has none of call, pause (true, false) and step");
     }
-    return request;
 }
 
 std::string answerText(uint64_t id, const std::string& result) {

@@ -10,6 +10,12 @@ namespace {
 
 using nlohmann::json;
 
+Request readRequest(const std::string& text) {
+    Request request;
+    viewer::readRequest(text, request);
+    return request;
+}
+
 TEST(StatusTextTest, AStatusHoldsTasksPlansAndLosses) {
     types::DeploymentStatus status;
     status.lockstep = true;
@@ -62,8 +68,15 @@ TEST(StatusTextTest, ARequestThatIsNestedDeeplyIsRefusedLikeAnother) {
 
 TEST(StatusTextTest, WhatIsNoRequestIsRefused) {
     for (const char* text : {"", "[]", "{}", "{\"id\":-1,\"step\":true}", R"({"call":1})", R"({"pause":1})",
-                             R"({"call":"a.b","arguments":[1]})", "\xff"})
+                             R"({"call":"a.b","arguments":[1]})", R"({"call":"a.b","arguments":"5"})",
+                             R"({"call":"a.b","arguments":{"x":"5"}})", R"({"call":"a.b","arguments":null})", "\xff"})
         EXPECT_THROW(readRequest(text), std::invalid_argument) << text;
+}
+
+TEST(StatusTextTest, ARefusalOfARequestCarriesItsId) {
+    Request request;
+    EXPECT_THROW(viewer::readRequest(R"({"id":7,"call":"a.b","arguments":"5"})", request), std::invalid_argument);
+    EXPECT_EQ(request.id, 7u);
 }
 
 }  // namespace
