@@ -48,12 +48,25 @@ void Publisher::offer(size_t source, AnySample sample, double latency_s) {
     {
         std::lock_guard lock(mutex_);
         Slot& slot = slots_[source];
+        if (slot.shown != slot.count) skipped_ += audience(source);
         slot.sample = std::move(sample);
         slot.latency_s = latency_s;
         slot.fresh = true;
         ++slot.count;
     }
     fresh_.notify_one();
+}
+
+/** How many clients a sample goes to. */
+uint64_t Publisher::audience(size_t source) const {
+    const bool on_pages = sources_[source].kind != SampleKind::Image;
+    return server_.subscribers(static_cast<uint32_t>(source)) + (on_pages ? server_.pages() : 0);
+}
+
+ServerCounts Publisher::counts() const {
+    ServerCounts counts = server_.counts();
+    counts.dropped += skipped_;
+    return counts;
 }
 
 std::string Publisher::takeTrouble() {
@@ -82,6 +95,7 @@ void Publisher::publishAll() {
         fresh_.wait_until(lock, next_status, [&] { return ending_ || std::ranges::any_of(slots_, isFresh); });
         for (size_t i = 0; i < slots_.size() && !ending_; ++i) {
             if (!std::exchange(slots_[i].fresh, false)) continue;
+            slots_[i].shown = slots_[i].count;
             const Slot slot = slots_[i];
             lock.unlock();
             publish(i, slot);
@@ -89,6 +103,7 @@ void Publisher::publishAll() {
         }
         if (ending_ || std::chrono::steady_clock::now() < next_status) continue;
         lock.unlock();
+        if (const std::string warning = server_.takeWarning(); !warning.empty()) access_.warn(warning);
         showStatus();
         next_status = std::chrono::steady_clock::now() + status_period;
         lock.lock();
@@ -97,8 +112,8 @@ void Publisher::publishAll() {
 
 void Publisher::publish(size_t source, const Slot& slot) try {
     const auto channel = static_cast<uint32_t>(source);
-    if (server_.hasPages()) showOnPages(source, slot);
-    if (server_.hasSubscribers(channel))
+    if (server_.pages() > 0) showOnPages(source, slot);
+    if (server_.subscribers(channel) > 0)
         server_.toFoxglove(channel, nanosecondsOf(slot.sample), messages_.encode(slot.sample));
 } catch (const std::exception& error) {
     std::lock_guard lock(mutex_);
@@ -130,8 +145,8 @@ void Publisher::showScene(const types::GeometryPtr& geometry) {
 }
 
 void Publisher::showStatus() try {
-    if (!server_.hasPages()) return;
-    server_.toPages(status_stream, {"", bytesOf(statusText(access_.status(), server_.counts())), true});
+    if (server_.pages() == 0) return;
+    server_.toPages(status_stream, {"", bytesOf(statusText(access_.status(), counts())), true});
 } catch (const std::exception& error) {
     std::lock_guard lock(mutex_);
     trouble_ = std::string("the state of the tasks cannot be shown: ") + error.what();

@@ -1,4 +1,5 @@
 #pragma once
+#include <atomic>
 #include <condition_variable>
 #include <functional>
 #include <memory>
@@ -24,6 +25,7 @@ struct Access {
     std::function<std::string(const std::string&, const std::vector<std::string>&)> call;
     std::function<void(bool)> pause;
     std::function<void()> step;
+    std::function<void(const std::string&)> warn;
 };
 
 struct Source {
@@ -44,7 +46,7 @@ public:
     /** The newest sample of a source; waits for nobody. `latency_s`: since its stamp [s]. */
     void offer(size_t source, AnySample sample, double latency_s);
     uint16_t port() const { return server_.port(); }
-    ServerCounts counts() const { return server_.counts(); }
+    ServerCounts counts() const;
     /** What could not be made a message of since this was asked last, and why; empty: nothing. */
     std::string takeTrouble();
 
@@ -52,13 +54,14 @@ private:
     struct Slot {
         AnySample sample;
         double latency_s = 0;
-        uint64_t count = 0;
+        uint64_t count = 0, shown = 0;  ///< Samples so far; as of the last that was shown.
         bool fresh = false;
     };
 
     std::optional<PageFile> file(std::string_view path) override;
     std::vector<Frame> greeting() override;
     void request(uint64_t client, std::string text) override;
+    uint64_t audience(size_t source) const;
     void publishAll();
     void publish(size_t source, const Slot& slot);
     void showOnPages(size_t source, const Slot& slot);
@@ -82,6 +85,7 @@ private:
     const std::vector<types::TaskInterface> tasks_;
     const Bytes interfaces_;
     bool ending_ = false;
+    std::atomic<uint64_t> skipped_{0};
     Lanes lanes_;  ///< Of requests, by task.
     Server server_;
     std::thread publishing_;

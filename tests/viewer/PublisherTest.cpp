@@ -39,7 +39,7 @@ struct Blocked {
             return operation;
         };
         const auto tasks = [] { return std::vector<types::TaskInterface>{{"deaf", {}, {}}, {"lively", {}, {}}}; };
-        return {[] { return types::DeploymentStatus{}; }, tasks, call, [](bool) {}, [] {}};
+        return {[] { return types::DeploymentStatus{}; }, tasks, call, [](bool) {}, [] {}, [](const std::string&) {}};
     }
 };
 
