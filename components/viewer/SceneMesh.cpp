@@ -93,6 +93,11 @@ std::string sceneMessage(const types::Geometry& geometry, size_t max_triangles) 
     const bool coarse = geometry.triangleCount() > max_triangles;
     std::vector<Part> parts;
     for (const types::Mesh& mesh : geometry.meshes) parts.push_back(partOf(mesh, coarse));
+    const std::vector<size_t> shown = shownObjects(geometry, parts, max_triangles);
+    std::vector<bool> used(parts.size());
+    for (const size_t i : shown) used[static_cast<size_t>(geometry.objects[i].mesh)] = true;
+    for (size_t i = 0; i < parts.size(); ++i)
+        if (!used[i]) parts[i] = {};  // keeps its number
     Json meshes = Json::array(), objects = Json::array(), materials = Json::array();
     std::string data;
     for (const Part& part : parts) {
@@ -104,7 +109,6 @@ std::string sceneMessage(const types::Geometry& geometry, size_t max_triangles) 
         append(data, part.positions);
         append(data, part.indices);
     }
-    const std::vector<size_t> shown = shownObjects(geometry, parts, max_triangles);
     for (const size_t i : shown) {
         const types::Object& object = geometry.objects[i];
         objects.push_back({{"object", i},

@@ -68,6 +68,19 @@ TEST(SceneMeshTest, OfTooManyTrianglesTheSmallestObjectsAreLeftOutAndCounted) {
     EXPECT_EQ(message.json["objects"][1]["name"], "large");
 }
 
+TEST(SceneMeshTest, WhatIsLeftOutIsNotSent) {
+    types::Geometry geometry = scene(500, 10);
+    for (int i = 0; i < 50; ++i) {
+        geometry.meshes.push_back(strip(400));
+        geometry.objects.push_back({"too many", static_cast<int>(geometry.meshes.size()) - 1, glm::dmat4(1)});
+    }
+    const Message message = takenApart(sceneMessage(geometry, 520));
+    EXPECT_EQ(message.json["left_out"], 50);
+    EXPECT_EQ(message.json["meshes"].size(), 52u) << "objects have the numbers of their meshes";
+    EXPECT_EQ(message.json["meshes"][2]["indices"]["count"], 0);
+    EXPECT_EQ(message.data.size(), size_t{(502 + 12) * 3 * 4 + (500 + 10) * 3 * 4});
+}
+
 TEST(SceneMeshTest, LargeMeshesAreWhatStandsForThem) {
     types::Geometry geometry = scene(100, 10);
     types::Mesh& mesh = geometry.meshes[0];
