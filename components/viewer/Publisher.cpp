@@ -27,7 +27,7 @@ Publisher::Publisher(const ViewerConfig& config, std::vector<Source> sources, Ac
       sources_(std::move(sources)),
       access_(std::move(access)),
       picture_(config.messages.scale),
-      messages_(config.messages),
+      messages_(config.messages, config.world_frame),
       slots_(sources_.size()),
       tasks_(access_.interfaces()),
       interfaces_(bytesOf(interfacesText(tasks_, config.control))),
