@@ -54,7 +54,8 @@ struct ServerCounts {
  *  than it is sent is dropped, the oldest first; see Outbox. A client that sends what is not WebSocket, or a message of
  *  more than 64 KiB, is closed, and before it is one answered with 400, 413 or 431. When too many are connected, those
  *  that have asked for nothing yet make room. Without a token only pages from this server itself may connect as pages,
- * under a numeric address or as localhost: no other web site can. */
+ *  under a numeric address or as localhost, and as Foxglove clients besides those only Foxglove's own and programs: no
+ *  other web site can. */
 class Server {
 public:
     /** Throws std::runtime_error where the port cannot be had. `handler` outlives this. */

@@ -148,8 +148,9 @@ inline void Session::answer() {
     const bool foxglove = offered.find(foxglove_protocol) != std::string::npos;
     kind_ = foxglove ? Kind::Foxglove : offered.find(page_protocol) != std::string::npos ? Kind::Page : Kind::None;
     const std::string path = asked.target.substr(0, asked.target.find('?'));
-    if (const auto refusal = hub_.admission.judge(asked, path == "/" || wants_socket, wants_socket && !foxglove))
-        return refuse(*refusal);
+    using enum Admission::Use;
+    const Admission::Use use = !wants_socket ? (path == "/" ? Page : File) : foxglove ? Read : Steer;
+    if (const auto refusal = hub_.admission.judge(asked, use)) return refuse(*refusal);
     if (wants_socket) {
         if (kind_ == Kind::None)
             return refuse({400, std::string("the subprotocol must be ") + foxglove_protocol + " or " + page_protocol});

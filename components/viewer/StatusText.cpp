@@ -21,6 +21,13 @@ Json valueOf(const types::PropertyValue& value) {
     return std::visit([](const auto& held) { return Json(held); }, value);
 }
 
+/** Clients may be shown to others: what lets them in is not. */
+Json shown(const std::string& name, const types::PropertyValue& value) {
+    const auto* text = std::get_if<std::string>(&value);
+    const bool is_secret = name == "token" || name.ends_with(".token");
+    return is_secret && text && !text->empty() ? Json("...") : valueOf(value);
+}
+
 Json planOf(const types::Plan& plan) {
     Json omitted = Json::array();
     for (const types::Omission& omission : plan.omitted)
@@ -33,7 +40,7 @@ Json planOf(const types::Plan& plan) {
 
 Json taskOf(const types::TaskStatus& task) {
     Json properties = Json::object(), outputs = Json::array();
-    for (const auto& [name, value] : task.record.properties) properties[name] = valueOf(value);
+    for (const auto& [name, value] : task.record.properties) properties[name] = shown(name, value);
     for (const types::PortStatus& port : task.outputs)
         outputs.push_back({{"name", port.name}, {"type", port.type}, {"written", port.written}});
     Json json = {{"name", task.record.name}, {"type", task.record.type}, {"state", task.state},

@@ -108,11 +108,15 @@ TEST(ClientTest, AWrongTokenIsRefusedWith401) {
     EXPECT_EQ(bench.viewer.counts().refused, 3u);
 }
 
-TEST(ClientTest, OtherWebSitesCannotSteer) {
+TEST(ClientTest, OtherWebSitesCanNeitherSteerNorRead) {
     Bench bench;
     bench.start();
     EXPECT_THAT(Client(bench.port()).upgrade(page_protocol, "/", "Origin: http://evil.example\r\n"), HasSubstr("403"));
     EXPECT_THAT(Client(bench.port()).upgrade(page_protocol, "/", "Origin: http://localhost\r\n"), HasSubstr("101"));
+    EXPECT_THAT(Client(bench.port()).upgrade(foxglove_protocol, "/", "Origin: http://evil.example\r\n"),
+                HasSubstr("403"));
+    EXPECT_THAT(Client(bench.port()).upgrade(foxglove_protocol, "/", "Origin: https://app.foxglove.dev\r\n"),
+                HasSubstr("101"));
     EXPECT_THAT(Client(bench.port()).upgrade("other.protocol"), HasSubstr("400"));
 }
 
@@ -232,7 +236,8 @@ TEST(ClientTest, AClientThatNeverReadsDelaysNoCycleAndLosesTheOldest) {
     }
     RecordProperty("median_cycle_ms", std::to_string(cycles.median() * 1e3));
     EXPECT_LT(cycles.median(), 0.005);
-    EXPECT_LT(cycles.max(), 2) << "on a machine that does other things as well; one that waits for a client waits on";
+    EXPECT_LT(cycles.quantile(0.95), 0.1) << "on a machine that does other things as well";
+    EXPECT_LT(cycles.max(), 2) << "one that waits for a client waits on";
     EXPECT_GT(bench.viewer.counts().dropped, 200u) << "of 300 pings of 512 kB a socket holds few";
 }
 

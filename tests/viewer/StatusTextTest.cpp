@@ -36,6 +36,15 @@ TEST(StatusTextTest, AStatusHoldsTasksPlansAndLosses) {
     EXPECT_EQ(text["dropped"], 5);
 }
 
+TEST(StatusTextTest, ATokenIsNotShown) {
+    types::DeploymentStatus status;
+    status.tasks.emplace_back();
+    status.tasks.back().record = {
+        "viewer", "viewer::ViewerTask", {{"token", std::string("sesame")}, {"address", std::string("0.0.0.0")}}, ""};
+    EXPECT_EQ(statusText(status, {}).find("sesame"), std::string::npos);
+    EXPECT_EQ(json::parse(statusText(status, {}))["tasks"][0]["properties"]["token"], "...");
+}
+
 TEST(StatusTextTest, TextThatIsNotUtf8DoesNotStopIt) {
     types::DeploymentStatus status;
     status.tasks.emplace_back();
