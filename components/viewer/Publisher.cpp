@@ -10,7 +10,7 @@ namespace insonify::viewer {
 namespace {
 
 constexpr auto status_period = std::chrono::milliseconds(500);
-constexpr uint32_t status_stream = 0, scene_stream = 1, first_source_stream = 2;
+constexpr uint32_t status_stream = 0, first_source_stream = 1;
 
 ServerOptions optionsOf(const ViewerConfig& config, const std::vector<Source>& sources) {
     ServerOptions options{config.address,      static_cast<uint16_t>(config.port),
@@ -81,7 +81,7 @@ std::vector<Frame> Publisher::greeting() {
     for (Slot& slot : slots_) slot.fresh = slot.count > 0;  // the newcomer has seen none
     fresh_.notify_one();
     std::vector<Frame> frames{{"", interfaces_, true}};
-    if (scene_) frames.push_back({"", scene_, false});
+    for (const auto& [source, scene] : scenes_) frames.push_back({"", scene, false});
     return frames;
 }
 
@@ -128,20 +128,21 @@ void Publisher::showOnPages(size_t source, const Slot& slot) {
     else if (const auto* pose = std::get_if<types::Pose>(&slot.sample))
         server_.toPages(stream, {"", bytesOf(poseText(*pose, name)), true});
     else if (const auto* snapshot = std::get_if<types::SnapshotPtr>(&slot.sample)) {
-        showScene((*snapshot)->geometry);
+        showScene(source, (*snapshot)->geometry);
         server_.toPages(stream, {"", bytesOf(snapshotText(**snapshot, name)), true});
     }
 }
 
-void Publisher::showScene(const types::GeometryPtr& geometry) {
-    if (!geometry || geometry == geometry_) return;
-    geometry_ = geometry;
-    const Bytes scene = bytesOf(sceneMessage(*geometry, static_cast<size_t>(config_.max_triangles)));
+void Publisher::showScene(size_t source, const types::GeometryPtr& geometry) {
+    if (!geometry || geometry == geometries_[source]) return;
+    geometries_[source] = geometry;
+    const auto most = static_cast<size_t>(config_.max_triangles);
+    const Bytes scene = bytesOf(sceneMessage(*geometry, most, sources_[source].name));
     {
         std::lock_guard lock(mutex_);
-        scene_ = scene;  // first, so that who comes now gets it twice rather than not at all
+        scenes_[source] = scene;  // first, so that who comes now gets it twice rather than not at all
     }
-    server_.toPages(scene_stream, {"", scene, false});
+    server_.toPages(first_source_stream + static_cast<uint32_t>(sources_.size() + source), {"", scene, false});
 }
 
 void Publisher::showStatus() try {

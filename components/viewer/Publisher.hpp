@@ -2,6 +2,7 @@
 #include <atomic>
 #include <condition_variable>
 #include <functional>
+#include <map>
 #include <memory>
 #include <mutex>
 #include <string>
@@ -65,7 +66,7 @@ private:
     void publishAll();
     void publish(size_t source, const Slot& slot);
     void showOnPages(size_t source, const Slot& slot);
-    void showScene(const types::GeometryPtr& geometry);
+    void showScene(size_t source, const types::GeometryPtr& geometry);
     void showStatus();
     std::string laneOf(const Request& request) const;
     std::string answer(const Request& request) const;
@@ -80,8 +81,8 @@ private:
     std::condition_variable fresh_;
     std::vector<Slot> slots_;
     std::string trouble_;
-    types::GeometryPtr geometry_;  ///< Of `scene_`; the publishing thread's.
-    Bytes scene_;                  ///< For pages that come later, as interfaces_.
+    std::map<size_t, types::GeometryPtr> geometries_;  ///< Of `scenes_`; the publishing thread's.
+    std::map<size_t, Bytes> scenes_;                   ///< By source, for pages that come later, as interfaces_.
     const std::vector<types::TaskInterface> tasks_;
     const Bytes interfaces_;
     bool ending_ = false;

@@ -89,7 +89,7 @@ Json orientationOf(const glm::dquat& q) { return {q.x, q.y, q.z, q.w}; }
 
 }  // namespace
 
-std::string sceneMessage(const types::Geometry& geometry, size_t max_triangles) {
+std::string sceneMessage(const types::Geometry& geometry, size_t max_triangles, const std::string& source) {
     const bool coarse = geometry.triangleCount() > max_triangles;
     std::vector<Part> parts;
     for (const types::Mesh& mesh : geometry.meshes) parts.push_back(partOf(mesh, coarse));
@@ -117,9 +117,13 @@ std::string sceneMessage(const types::Geometry& geometry, size_t max_triangles) 
                            {"matrix", matrixOf(object.world_from_object)}});
     }
     for (const types::Material& material : geometry.materials) materials.push_back(material.name);
-    const Json json = {{"meshes", meshes},       {"objects", objects},
-                       {"materials", materials}, {"triangles", geometry.triangleCount()},
-                       {"coarse", coarse},       {"left_out", geometry.objects.size() - shown.size()}};
+    const Json json = {{"source", source},
+                       {"meshes", meshes},
+                       {"objects", objects},
+                       {"materials", materials},
+                       {"triangles", geometry.triangleCount()},
+                       {"coarse", coarse},
+                       {"left_out", geometry.objects.size() - shown.size()}};
     return pageMessage(scene_kind, json.dump(-1, ' ', false, Json::error_handler_t::replace), data);
 }
 
