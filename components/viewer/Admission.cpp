@@ -30,6 +30,13 @@ bool same(const std::string& a, const std::string& b) {
     return difference == 0;
 }
 
+/** Of a web page, but Foxglove's. Pages that hide theirs say "null"; programs made of pages have schemes of their own.
+ */
+bool isForeignSite(std::string_view origin) {
+    if (origin == "https://app.foxglove.dev" || origin == "https://studio.foxglove.dev") return false;
+    return origin == "null" || origin.starts_with("http://") || origin.starts_with("https://");
+}
+
 }  // namespace
 
 std::string tokenIn(std::string_view target) {
@@ -53,18 +60,19 @@ bool isOwnName(std::string_view host) {
     return name == "localhost" || inet_pton(AF_INET, name.c_str(), &any) == 1;
 }
 
-std::optional<Admission::Refusal> Admission::judge(const Request& request, bool secret, bool steers) const {
+std::optional<Admission::Refusal> Admission::judge(const Request& request, Use use) const {
     if (!token.empty()) {
         const std::string bearer = "Bearer ";
         const std::string given = request.authorization.starts_with(bearer)
                                       ? request.authorization.substr(bearer.size())
                                       : tokenIn(request.target);
-        if (!secret || same(given, token)) return std::nullopt;
+        if (use == Use::File || same(given, token)) return std::nullopt;
         return Refusal{401, "a token is needed: http://address:port/?token=..."};
     }
     if (!isOwnName(request.host))
         return Refusal{403, "the host must be localhost or a numeric address, unless a token is set"};
-    if (steers && !request.origin.empty() && request.origin != "http://" + request.host)
+    const bool is_own = request.origin.empty() || request.origin == "http://" + request.host;
+    if ((use == Use::Steer && !is_own) || (use == Use::Read && !is_own && isForeignSite(request.origin)))
         return Refusal{403, "pages of other origins may not connect, unless a token is set"};
     return std::nullopt;
 }

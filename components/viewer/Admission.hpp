@@ -19,9 +19,13 @@ struct Admission {
         std::string reason;
     };
 
-    /** @param secret the request needs the token, where there is one.
-     *  @param steers it may change things: without a token it must come from a page of ours. */
-    std::optional<Refusal> judge(const Request& request, bool secret, bool steers) const;
+    enum class Use {
+        File,  ///< Holds no secret: for everybody.
+        Page,  ///< Needs the token, where there is one, as what follows.
+        Read,  ///< A socket that only reads: without a token not from web pages but ours and Foxglove's own.
+        Steer  ///< A socket that may change things: without a token from no page but ours.
+    };
+    std::optional<Refusal> judge(const Request& request, Use use) const;
 };
 
 /** The value of `token` in a target's query, with its escapes undone; empty when there is none. */

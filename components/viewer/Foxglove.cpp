@@ -13,6 +13,12 @@ using Json = nlohmann::json;
 /** A whole number of 32 bits. */
 bool isId(const Json& value) { return value.is_number_unsigned() && value.get<uint64_t>() <= UINT32_MAX; }
 
+/** Empty when there is none, or something else. */
+Json listIn(const Json& said, const char* key) {
+    Json list = said.value(key, Json());
+    return list.is_array() ? list : Json::array();
+}
+
 }  // namespace
 
 std::string serverInfo() {
@@ -52,20 +58,28 @@ std::string Subscriptions::take(std::string_view text) {
     const Json said = readJson(text);
     if (!said.is_object() || !said.contains("op") || !said["op"].is_string()) return "is no JSON object with an op";
     if (said["op"] == "unsubscribe") {
-        for (const Json& id : said.value("subscriptionIds", Json::array()))
+        for (const Json& id : listIn(said, "subscriptionIds"))
             if (isId(id)) channel_of_.erase(id.get<uint32_t>());
         return "";
     }
     if (said["op"] != "subscribe") return "";
-    for (const Json& one : said.value("subscriptions", Json::array())) {
+    for (const Json& one : listIn(said, "subscriptions")) {
         if (!one.is_object() || !isId(one.value("id", Json())) || !isId(one.value("channelId", Json())))
             return "a subscription has an id and a channelId, whole numbers";
-        const auto channel = one["channelId"].get<uint32_t>();
-        if (channel >= channels_)
-            return "there is no channel " + std::to_string(channel) + "; there are " + std::to_string(channels_);
-        if (channel_of_.size() >= most) return "has " + std::to_string(most) + " subscriptions, which are the most";
-        channel_of_[one["id"].get<uint32_t>()] = channel;
+        if (std::string wrong = add(one["id"].get<uint32_t>(), one["channelId"].get<uint32_t>()); !wrong.empty())
+            return wrong;
     }
+    return "";
+}
+
+std::string Subscriptions::add(uint32_t id, uint32_t channel) {
+    if (channel >= channels_)
+        return "there is no channel " + std::to_string(channel) + "; there are " + std::to_string(channels_);
+    for (const auto& [other, subscribed] : channel_of_)
+        if (subscribed == channel && other != id)
+            return "channel " + std::to_string(channel) + " has subscription " + std::to_string(other) +
+                   " already; a client has one for each channel";
+    channel_of_[id] = channel;
     return "";
 }
 

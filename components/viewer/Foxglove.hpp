@@ -25,7 +25,7 @@ std::string complaintText(const std::string& message);
 /** 0x01, subscription, time, all little endian: goes before the message. */
 std::string messageHead(uint32_t subscription, uint64_t nanoseconds);
 
-/** Which subscription of a client is for which channel. */
+/** Which subscription of a client is for which channel: one for each channel at most. */
 class Subscriptions {
 public:
     explicit Subscriptions(size_t channels) : channels_(channels) {}
@@ -35,7 +35,7 @@ public:
     const std::map<uint32_t, uint32_t>& all() const { return channel_of_; }  ///< Channel by subscription.
 
 private:
-    static constexpr size_t most = 256;
+    std::string add(uint32_t id, uint32_t channel);
 
     size_t channels_;
     std::map<uint32_t, uint32_t> channel_of_;

@@ -52,7 +52,7 @@ Bytes Messages::encode(const AnySample& sample) const {
     }
     const auto* snapshot = std::get_if<types::SnapshotPtr>(&sample);
     ros::PoseStamped message;
-    ros::convert(snapshot ? (*snapshot)->sonar : std::get<types::Pose>(sample), ros::WorldFrame::AsIs, message);
+    ros::convert(snapshot ? (*snapshot)->sonar : std::get<types::Pose>(sample), world_, message);
     return cdr(message);
 }
 

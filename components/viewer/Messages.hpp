@@ -23,12 +23,13 @@ FoxgloveChannel channelOf(const std::string& source, SampleKind kind);
 /** Samples as ROS 2 messages. */
 class Messages {
 public:
-    explicit Messages(ros::SonarOptions options) : options_(std::move(options)) {}
+    Messages(ros::SonarOptions options, ros::WorldFrame world) : options_(std::move(options)), world_(world) {}
     /** CDR. Throws std::invalid_argument and std::out_of_range for what ROS cannot hold. */
     Bytes encode(const AnySample& sample) const;
 
 private:
     ros::SonarOptions options_;
+    ros::WorldFrame world_;
 };
 
 /** Its stamp [ns]; 0 for one before the epoch. */

@@ -58,7 +58,8 @@ std::string PingPicture::encode(const types::Sonar& ping, const PictureNote& not
     for (const float level : levels) top = std::max(top, level);
     std::string data(levels.size(), '\0');
     for (size_t i = 0; i < levels.size(); ++i)
-        data[i] = static_cast<char>(std::max(0.0f, std::round(255 - (top - levels[i]) / float{step_db})));
+        data[i] = static_cast<char>(
+            static_cast<uint8_t>(std::max(0.0f, std::round(255 - (top - levels[i]) / float{step_db}))));
     if (top == nothing_db) data.assign(data.size(), '\0');
     const nlohmann::json json = {{"source", note.source},
                                  {"time_us", ping.time.microseconds},

@@ -9,9 +9,8 @@
 namespace insonify::viewer {
 namespace {
 
-constexpr size_t most_requests = 64;
 constexpr auto status_period = std::chrono::milliseconds(500);
-constexpr uint32_t status_stream = 0, scene_stream = 1, first_source_stream = 2;
+constexpr uint32_t status_stream = 0, first_source_stream = 1;
 
 ServerOptions optionsOf(const ViewerConfig& config, const std::vector<Source>& sources) {
     ServerOptions options{config.address,      static_cast<uint16_t>(config.port),
@@ -28,12 +27,12 @@ Publisher::Publisher(const ViewerConfig& config, std::vector<Source> sources, Ac
       sources_(std::move(sources)),
       access_(std::move(access)),
       picture_(config.messages.scale),
-      messages_(config.messages),
+      messages_(config.messages, config.world_frame),
       slots_(sources_.size()),
-      interfaces_(bytesOf(interfacesText(access_.interfaces(), config.control))),
+      tasks_(access_.interfaces()),
+      interfaces_(bytesOf(interfacesText(tasks_, config.control))),
       server_(optionsOf(config_, sources_), *this),
-      publishing_(&Publisher::publishAll, this),
-      answering_(&Publisher::answerAll, this) {}
+      publishing_(&Publisher::publishAll, this) {}
 
 Publisher::~Publisher() {
     {
@@ -41,21 +40,33 @@ Publisher::~Publisher() {
         ending_ = true;
     }
     fresh_.notify_all();
-    asked_.notify_all();
     publishing_.join();
-    answering_.join();
+    lanes_.end();  // they answer through the server
 }
 
 void Publisher::offer(size_t source, AnySample sample, double latency_s) {
     {
         std::lock_guard lock(mutex_);
         Slot& slot = slots_[source];
+        if (slot.shown != slot.count) skipped_ += audience(source);
         slot.sample = std::move(sample);
         slot.latency_s = latency_s;
         slot.fresh = true;
         ++slot.count;
     }
     fresh_.notify_one();
+}
+
+/** How many clients a sample goes to. */
+uint64_t Publisher::audience(size_t source) const {
+    const bool on_pages = sources_[source].kind != SampleKind::Image;
+    return server_.subscribers(static_cast<uint32_t>(source)) + (on_pages ? server_.pages() : 0);
+}
+
+ServerCounts Publisher::counts() const {
+    ServerCounts counts = server_.counts();
+    counts.dropped += skipped_;
+    return counts;
 }
 
 std::string Publisher::takeTrouble() {
@@ -70,17 +81,8 @@ std::vector<Frame> Publisher::greeting() {
     for (Slot& slot : slots_) slot.fresh = slot.count > 0;  // the newcomer has seen none
     fresh_.notify_one();
     std::vector<Frame> frames{{"", interfaces_, true}};
-    if (scene_) frames.push_back({"", scene_, false});
+    for (const auto& [source, scene] : scenes_) frames.push_back({"", scene, false});
     return frames;
-}
-
-void Publisher::request(uint64_t client, std::string text) {
-    std::lock_guard lock(mutex_);
-    if (requests_.size() < most_requests)
-        requests_.push_back({client, std::move(text)});
-    else
-        server_.reply(client, refusalText(0, "too many requests wait; try again later"));
-    asked_.notify_one();
 }
 
 // -- samples ----------------------------------------------------------------------------------------------------------
@@ -93,6 +95,7 @@ void Publisher::publishAll() {
         fresh_.wait_until(lock, next_status, [&] { return ending_ || std::ranges::any_of(slots_, isFresh); });
         for (size_t i = 0; i < slots_.size() && !ending_; ++i) {
             if (!std::exchange(slots_[i].fresh, false)) continue;
+            slots_[i].shown = slots_[i].count;
             const Slot slot = slots_[i];
             lock.unlock();
             publish(i, slot);
@@ -100,6 +103,7 @@ void Publisher::publishAll() {
         }
         if (ending_ || std::chrono::steady_clock::now() < next_status) continue;
         lock.unlock();
+        if (const std::string warning = server_.takeWarning(); !warning.empty()) access_.warn(warning);
         showStatus();
         next_status = std::chrono::steady_clock::now() + status_period;
         lock.lock();
@@ -108,8 +112,8 @@ void Publisher::publishAll() {
 
 void Publisher::publish(size_t source, const Slot& slot) try {
     const auto channel = static_cast<uint32_t>(source);
-    if (server_.hasPages()) showOnPages(source, slot);
-    if (server_.hasSubscribers(channel))
+    if (server_.pages() > 0) showOnPages(source, slot);
+    if (server_.subscribers(channel) > 0)
         server_.toFoxglove(channel, nanosecondsOf(slot.sample), messages_.encode(slot.sample));
 } catch (const std::exception& error) {
     std::lock_guard lock(mutex_);
@@ -124,25 +128,26 @@ void Publisher::showOnPages(size_t source, const Slot& slot) {
     else if (const auto* pose = std::get_if<types::Pose>(&slot.sample))
         server_.toPages(stream, {"", bytesOf(poseText(*pose, name)), true});
     else if (const auto* snapshot = std::get_if<types::SnapshotPtr>(&slot.sample)) {
-        showScene((*snapshot)->geometry);
+        showScene(source, (*snapshot)->geometry);
         server_.toPages(stream, {"", bytesOf(snapshotText(**snapshot, name)), true});
     }
 }
 
-void Publisher::showScene(const types::GeometryPtr& geometry) {
-    if (!geometry || geometry == geometry_) return;
-    geometry_ = geometry;
-    const Bytes scene = bytesOf(sceneMessage(*geometry, static_cast<size_t>(config_.max_triangles)));
+void Publisher::showScene(size_t source, const types::GeometryPtr& geometry) {
+    if (!geometry || geometry == geometries_[source]) return;
+    geometries_[source] = geometry;
+    const auto most = static_cast<size_t>(config_.max_triangles);
+    const Bytes scene = bytesOf(sceneMessage(*geometry, most, sources_[source].name));
     {
         std::lock_guard lock(mutex_);
-        scene_ = scene;  // first, so that who comes now gets it twice rather than not at all
+        scenes_[source] = scene;  // first, so that who comes now gets it twice rather than not at all
     }
-    server_.toPages(scene_stream, {"", scene, false});
+    server_.toPages(first_source_stream + static_cast<uint32_t>(sources_.size() + source), {"", scene, false});
 }
 
 void Publisher::showStatus() try {
-    if (!server_.hasPages()) return;
-    server_.toPages(status_stream, {"", bytesOf(statusText(access_.status(), server_.counts())), true});
+    if (server_.pages() == 0) return;
+    server_.toPages(status_stream, {"", bytesOf(statusText(access_.status(), counts())), true});
 } catch (const std::exception& error) {
     std::lock_guard lock(mutex_);
     trouble_ = std::string("the state of the tasks cannot be shown: ") + error.what();
@@ -150,27 +155,27 @@ void Publisher::showStatus() try {
 
 // -- requests ---------------------------------------------------------------------------------------------------------
 
-void Publisher::answerAll() {
-    std::unique_lock lock(mutex_);
-    while (true) {
-        asked_.wait(lock, [&] { return ending_ || !requests_.empty(); });
-        if (ending_) return;
-        const Asked asked = std::move(requests_.front());
-        requests_.pop_front();
-        lock.unlock();
-        server_.reply(asked.client, answer(asked.text));
-        lock.lock();
-    }
-}
-
-std::string Publisher::answer(const std::string& text) const {
+void Publisher::request(uint64_t client, std::string text) {
     Request request;
     try {
-        request = readRequest(text);
-        return answerText(request.id, carryOut(request));
+        readRequest(text, request);
     } catch (const std::exception& error) {
-        return refusalText(request.id, error.what());
+        return server_.reply(client, refusalText(request.id, error.what()));
     }
+    if (!lanes_.run(laneOf(request), [this, client, request] { server_.reply(client, answer(request)); }))
+        server_.reply(client, refusalText(request.id, "too many requests wait; try again later"));
+}
+
+/** The task that is called; empty: none that there is. */
+std::string Publisher::laneOf(const Request& request) const {
+    const std::string task = request.operation.substr(0, request.operation.find('.'));
+    return std::ranges::find(tasks_, task, &types::TaskInterface::name) == tasks_.end() ? "" : task;
+}
+
+std::string Publisher::answer(const Request& request) const try {
+    return answerText(request.id, carryOut(request));
+} catch (const std::exception& error) {
+    return refusalText(request.id, error.what());
 }
 
 std::string Publisher::carryOut(const Request& request) const {

@@ -1,7 +1,8 @@
 #pragma once
+#include <atomic>
 #include <condition_variable>
-#include <deque>
 #include <functional>
+#include <map>
 #include <memory>
 #include <mutex>
 #include <string>
@@ -9,6 +10,7 @@
 #include <variant>
 #include <vector>
 
+#include "components/viewer/Lanes.hpp"
 #include "components/viewer/Messages.hpp"
 #include "components/viewer/PingPicture.hpp"
 #include "components/viewer/Server.hpp"
@@ -24,6 +26,7 @@ struct Access {
     std::function<std::string(const std::string&, const std::vector<std::string>&)> call;
     std::function<void(bool)> pause;
     std::function<void()> step;
+    std::function<void(const std::string&)> warn;
 };
 
 struct Source {
@@ -33,8 +36,8 @@ struct Source {
 
 /** Sends the newest sample of each source to those who look, and does what pages ask for.
  *
- *  Three threads: the server's; one that makes messages of samples, which nobody waits for; one on which pages'
- * requests are carried out, since these wait for tasks. */
+ *  Threads: the server's; one that makes messages of samples, which nobody waits for; and one for each task that pages
+ *  have asked something of, since such requests wait for the task. */
 class Publisher final : private ServerHandler {
 public:
     /** Throws std::runtime_error where the port cannot be had. */
@@ -44,7 +47,7 @@ public:
     /** The newest sample of a source; waits for nobody. `latency_s`: since its stamp [s]. */
     void offer(size_t source, AnySample sample, double latency_s);
     uint16_t port() const { return server_.port(); }
-    ServerCounts counts() const { return server_.counts(); }
+    ServerCounts counts() const;
     /** What could not be made a message of since this was asked last, and why; empty: nothing. */
     std::string takeTrouble();
 
@@ -52,24 +55,21 @@ private:
     struct Slot {
         AnySample sample;
         double latency_s = 0;
-        uint64_t count = 0;
+        uint64_t count = 0, shown = 0;  ///< Samples so far; as of the last that was shown.
         bool fresh = false;
-    };
-    struct Asked {
-        uint64_t client;
-        std::string text;
     };
 
     std::optional<PageFile> file(std::string_view path) override;
     std::vector<Frame> greeting() override;
     void request(uint64_t client, std::string text) override;
+    uint64_t audience(size_t source) const;
     void publishAll();
     void publish(size_t source, const Slot& slot);
     void showOnPages(size_t source, const Slot& slot);
-    void showScene(const types::GeometryPtr& geometry);
+    void showScene(size_t source, const types::GeometryPtr& geometry);
     void showStatus();
-    void answerAll();
-    std::string answer(const std::string& text) const;
+    std::string laneOf(const Request& request) const;
+    std::string answer(const Request& request) const;
     std::string carryOut(const Request& request) const;
 
     const ViewerConfig config_;
@@ -78,15 +78,18 @@ private:
     const PingPicture picture_;
     Messages messages_;
     std::mutex mutex_;
-    std::condition_variable fresh_, asked_;
+    std::condition_variable fresh_;
     std::vector<Slot> slots_;
-    std::deque<Asked> requests_;
     std::string trouble_;
-    types::GeometryPtr geometry_;  ///< Of `scene_`; the publishing thread's.
-    Bytes scene_, interfaces_;     ///< For pages that come later.
+    std::map<size_t, types::GeometryPtr> geometries_;  ///< Of `scenes_`; the publishing thread's.
+    std::map<size_t, Bytes> scenes_;                   ///< By source, for pages that come later, as interfaces_.
+    const std::vector<types::TaskInterface> tasks_;
+    const Bytes interfaces_;
     bool ending_ = false;
+    std::atomic<uint64_t> skipped_{0};
+    Lanes lanes_;  ///< Of requests, by task.
     Server server_;
-    std::thread publishing_, answering_;
+    std::thread publishing_;
 };
 
 }  // namespace insonify::viewer

@@ -89,10 +89,15 @@ Json orientationOf(const glm::dquat& q) { return {q.x, q.y, q.z, q.w}; }
 
 }  // namespace
 
-std::string sceneMessage(const types::Geometry& geometry, size_t max_triangles) {
+std::string sceneMessage(const types::Geometry& geometry, size_t max_triangles, const std::string& source) {
     const bool coarse = geometry.triangleCount() > max_triangles;
     std::vector<Part> parts;
     for (const types::Mesh& mesh : geometry.meshes) parts.push_back(partOf(mesh, coarse));
+    const std::vector<size_t> shown = shownObjects(geometry, parts, max_triangles);
+    std::vector<bool> used(parts.size());
+    for (const size_t i : shown) used[static_cast<size_t>(geometry.objects[i].mesh)] = true;
+    for (size_t i = 0; i < parts.size(); ++i)
+        if (!used[i]) parts[i] = {};  // keeps its number
     Json meshes = Json::array(), objects = Json::array(), materials = Json::array();
     std::string data;
     for (const Part& part : parts) {
@@ -104,7 +109,6 @@ std::string sceneMessage(const types::Geometry& geometry, size_t max_triangles) 
         append(data, part.positions);
         append(data, part.indices);
     }
-    const std::vector<size_t> shown = shownObjects(geometry, parts, max_triangles);
     for (const size_t i : shown) {
         const types::Object& object = geometry.objects[i];
         objects.push_back({{"object", i},
@@ -113,9 +117,13 @@ std::string sceneMessage(const types::Geometry& geometry, size_t max_triangles) 
                            {"matrix", matrixOf(object.world_from_object)}});
     }
     for (const types::Material& material : geometry.materials) materials.push_back(material.name);
-    const Json json = {{"meshes", meshes},       {"objects", objects},
-                       {"materials", materials}, {"triangles", geometry.triangleCount()},
-                       {"coarse", coarse},       {"left_out", geometry.objects.size() - shown.size()}};
+    const Json json = {{"source", source},
+                       {"meshes", meshes},
+                       {"objects", objects},
+                       {"materials", materials},
+                       {"triangles", geometry.triangleCount()},
+                       {"coarse", coarse},
+                       {"left_out", geometry.objects.size() - shown.size()}};
     return pageMessage(scene_kind, json.dump(-1, ' ', false, Json::error_handler_t::replace), data);
 }
 

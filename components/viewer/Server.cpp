@@ -2,6 +2,8 @@
 
 #include <fcntl.h>
 
+#include <algorithm>
+#include <atomic>
 #include <map>
 #include <mutex>
 #include <thread>
@@ -20,6 +22,11 @@ constexpr uint64_t foxglove_keys = uint64_t{1} << 32;
 /** The server's thread, and what it shares with others. */
 class Server::Core final : public Hub {
 public:
+    struct Waiting {
+        Frame frame;
+        uint64_t nanoseconds;
+    };
+
     Core(ServerOptions asked, ServerHandler& answers)
         : Hub(std::move(asked), answers), subscribers_(options.channels.size()) {
         listen();
@@ -32,6 +39,7 @@ public:
     void listen();
     void accept();
     void take(tcp::socket socket);
+    bool makeRoom();
     /** Runs `work` on the server's thread. */
     template <class Work>
     void post(Work&& work) {
@@ -39,13 +47,9 @@ public:
     }
     void publish(uint64_t key, Frame frame, uint64_t nanoseconds);
     void deliver();
+    static void give(Session& session, uint64_t key, const Waiting& item);
     void leave(uint64_t session) override;
     void recount() override;
-
-    struct Waiting {
-        Frame frame;
-        uint64_t nanoseconds;
-    };
 
     asio::io_context io_{1};
     tcp::acceptor acceptor_{io_};
@@ -53,20 +57,20 @@ public:
     std::map<uint64_t, std::shared_ptr<Session>> sessions_;
     uint64_t next_session_ = 1;
     uint16_t port_ = 0;
-    std::atomic<bool> has_pages_{false};
-    std::vector<std::atomic<bool>> subscribers_;
+    std::atomic<uint64_t> pages_{0};
+    std::vector<std::atomic<uint64_t>> subscribers_;  ///< By channel.
     std::mutex mutex_;
     std::map<uint64_t, Waiting> waiting_;  ///< Published and not delivered, the newest of each stream.
     std::thread thread_;
 };
 
-/** What a handler throws ends what it was about, and not the program. */
+/** What no session threw ends neither one nor the program. */
 void Server::Core::serve() {
     for (bool done = false; !done;) try {
             io_.run();
             done = true;
-        } catch (const std::exception&) {
-            ++refused;
+        } catch (const std::exception& error) {
+            refused.add(std::string("a fault of this server: ") + error.what());
         }
 }
 
@@ -115,10 +119,8 @@ void Server::Core::accept() {
 }
 
 void Server::Core::take(tcp::socket socket) {
-    if (sessions_.size() >= options.clients + spare_connections) {
-        ++refused;
-        return;
-    }
+    if (sessions_.size() >= options.clients + spare_connections && !makeRoom())
+        return refused.add("too many connections");
     keepFromChildren(socket.native_handle());
     const uint64_t id = next_session_++;
     const auto session = std::make_shared<Session>(std::move(socket), *this, id);
@@ -126,9 +128,22 @@ void Server::Core::take(tcp::socket socket) {
     session->readRequest();
 }
 
+/** Ends the oldest connection that has asked for nothing yet, or else the oldest that is no client. */
+bool Server::Core::makeRoom() {
+    auto oldest = std::ranges::find_if(sessions_, [](const auto& one) { return !one.second->hasAsked(); });
+    if (oldest == sessions_.end())
+        oldest = std::ranges::find_if(sessions_, [](const auto& one) { return one.second->kind() == Kind::None; });
+    if (oldest == sessions_.end()) return false;
+    refused.add("too many connections: the oldest without a request, or with its answer not read, was closed");
+    oldest->second->close();
+    sessions_.erase(oldest);
+    return true;
+}
+
 void Server::Core::publish(uint64_t key, Frame frame, uint64_t nanoseconds) {
     std::lock_guard lock(mutex_);
     const bool idle = waiting_.empty();
+    if (waiting_.contains(key)) dropped += key < foxglove_keys ? pages_ : subscribers_[key - foxglove_keys];
     waiting_[key] = {std::move(frame), nanoseconds};
     if (idle) post([this] { deliver(); });
 }
@@ -141,14 +156,15 @@ void Server::Core::deliver() {
     }
     const auto sessions = sessions_;  // sending may end one
     for (const auto& [key, item] : published)
-        for (const auto& [id, session] : sessions) {
-            if (key < foxglove_keys && session->kind() == Kind::Page)
-                session->put(static_cast<uint32_t>(key), item.frame);
-            if (key < foxglove_keys || session->kind() != Kind::Foxglove) continue;
-            for (const auto& [subscription, channel] : session->subscriptions().all())
-                if (channel == key - foxglove_keys)
-                    session->put(subscription, {messageHead(subscription, item.nanoseconds), item.frame.body, false});
-        }
+        for (const auto& [id, session] : sessions) session->attempt([&] { give(*session, key, item); });
+}
+
+void Server::Core::give(Session& session, uint64_t key, const Waiting& item) {
+    if (key < foxglove_keys && session.kind() == Kind::Page) session.put(static_cast<uint32_t>(key), item.frame);
+    if (key < foxglove_keys || session.kind() != Kind::Foxglove) return;
+    for (const auto& [subscription, channel] : session.subscriptions().all())
+        if (channel == key - foxglove_keys)
+            session.put(subscription, {messageHead(subscription, item.nanoseconds), item.frame.body, false});
 }
 
 void Server::Core::leave(uint64_t session) {
@@ -157,14 +173,14 @@ void Server::Core::leave(uint64_t session) {
 
 void Server::Core::recount() {
     uint64_t pages = 0, others = 0;
-    std::vector<bool> wanted(subscribers_.size());
+    std::vector<uint64_t> wanted(subscribers_.size());
     for (const auto& [id, session] : sessions_) {
         pages += session->kind() == Kind::Page ? 1 : 0;
         others += session->kind() == Kind::Foxglove ? 1 : 0;
-        for (const auto& [subscription, channel] : session->subscriptions().all()) wanted[channel] = true;
+        for (const auto& [subscription, channel] : session->subscriptions().all()) ++wanted[channel];
     }
     clients = pages + others;
-    has_pages_ = pages > 0;
+    pages_ = pages;
     for (size_t i = 0; i < wanted.size(); ++i) subscribers_[i] = wanted[i];
 }
 
@@ -172,18 +188,21 @@ Server::Server(ServerOptions options, ServerHandler& handler)
     : core_(std::make_unique<Core>(std::move(options), handler)) {}
 Server::~Server() = default;
 uint16_t Server::port() const { return core_->port_; }
-bool Server::hasPages() const { return core_->has_pages_; }
-bool Server::hasSubscribers(uint32_t channel) const { return core_->subscribers_[channel]; }
+uint64_t Server::pages() const { return core_->pages_; }
+uint64_t Server::subscribers(uint32_t channel) const { return core_->subscribers_[channel]; }
 void Server::toPages(uint32_t stream, Frame frame) { core_->publish(stream, std::move(frame), 0); }
 void Server::toFoxglove(uint32_t channel, uint64_t nanoseconds, Bytes message) {
     core_->publish(foxglove_keys + channel, {"", std::move(message), false}, nanoseconds);
 }
 void Server::reply(uint64_t client, std::string text) {
     core_->post([core = core_.get(), client, frame = Frame{"", bytesOf(std::move(text)), true}] {
-        if (const auto session = core->sessions_.find(client); session != core->sessions_.end())
-            session->second->post(frame);
+        const auto found = core->sessions_.find(client);
+        if (found == core->sessions_.end()) return;
+        const auto session = found->second;  // sending may end it
+        session->attempt([&] { session->post(frame); });
     });
 }
-ServerCounts Server::counts() const { return {core_->clients, core_->refused, core_->dropped}; }
+ServerCounts Server::counts() const { return {core_->clients, core_->refused.count(), core_->dropped}; }
+std::string Server::takeWarning() { return core_->refused.untold(); }
 
 }  // namespace insonify::viewer

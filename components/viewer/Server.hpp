@@ -39,16 +39,23 @@ struct ServerOptions {
 
 struct ServerCounts {
     uint64_t clients = 0;  ///< Connected now.
-    uint64_t refused = 0;  ///< Connections, since the start: too many, or a wrong token.
-    uint64_t dropped = 0;  ///< Frames that clients were too slow for.
+    /** Connections, since the start, that were turned away or closed for what they did: too many; a wrong token, origin
+     *  or host; no HTTP, no whole request within 5 s, a body or too large a header; no or another WebSocket, a message
+     *  that is too large, answers that are not read. Not those that close, or that are only silent. */
+    uint64_t refused = 0;
+    /** Frames, for each client who would have had them, that a newer one of their stream took the place of: because the
+     *  client was too slow, or samples came faster than they could be made messages of. */
+    uint64_t dropped = 0;
 };
 
 /** One TCP port for the page, for the data that pages show (protocol `insonify.view.v1`) and for Foxglove.
  *
  *  A thread of its own does all; every function is for any thread and waits for no client. What is published faster
  *  than it is sent is dropped, the oldest first; see Outbox. A client that sends what is not WebSocket, or a message of
- *  more than 64 KiB, is closed. Without a token only pages from this server itself may connect as pages, under a
- *  numeric address or as localhost: no other web site can. */
+ *  more than 64 KiB, is closed, and before it is one answered with 400, 413 or 431. When too many are connected, those
+ *  that have asked for nothing yet make room. Without a token only pages from this server itself may connect as pages,
+ *  under a numeric address or as localhost, and as Foxglove clients besides those only Foxglove's own and programs: no
+ *  other web site can. */
 class Server {
 public:
     /** Throws std::runtime_error where the port cannot be had. `handler` outlives this. */
@@ -57,13 +64,15 @@ public:
     Server(const Server&) = delete;
     Server& operator=(const Server&) = delete;
 
-    uint16_t port() const;  ///< That was asked for, or was free.
-    bool hasPages() const;
-    bool hasSubscribers(uint32_t channel) const;
+    uint16_t port() const;   ///< That was asked for, or was free.
+    uint64_t pages() const;  ///< That are connected.
+    uint64_t subscribers(uint32_t channel) const;
     void toPages(uint32_t stream, Frame frame);
     void toFoxglove(uint32_t channel, uint64_t nanoseconds, Bytes message);
     void reply(uint64_t client, std::string text);
     ServerCounts counts() const;
+    /** See Refusals::untold(). */
+    std::string takeWarning();
 
     class Core;
 

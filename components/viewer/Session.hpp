@@ -1,15 +1,13 @@
 #pragma once
 // One connection of a server. For Server.cpp alone: it takes long to compile.
-#include <atomic>
 #include <boost/asio.hpp>
 #include <boost/beast.hpp>
 #include <memory>
 #include <optional>
 #include <utility>
 
-#include "components/viewer/Admission.hpp"
+#include "components/viewer/Hub.hpp"
 #include "components/viewer/Outbox.hpp"
-#include "components/viewer/Server.hpp"
 
 namespace insonify::viewer {
 
@@ -24,7 +22,9 @@ using Error = boost::system::error_code;
 
 constexpr size_t largest_message = 64 << 10;  // from a client [B]
 constexpr size_t largest_header = 8 << 10;    // of a request [B]
-constexpr auto request_timeout = std::chrono::seconds(10);
+constexpr size_t largest_rest = 256 << 10;    // of a refused request, that is read so that the answer arrives [B]
+constexpr auto request_timeout = std::chrono::seconds(5), response_timeout = std::chrono::seconds(10),
+               rest_timeout = std::chrono::seconds(1);
 
 inline std::string textOf(beast::string_view view) { return {view.data(), view.size()}; }
 
@@ -45,39 +45,38 @@ inline Response responseTo(const Request& request, unsigned status, std::string_
     return response;
 }
 
-/** What all connections of a server share. */
-struct Hub {
-    Hub(ServerOptions asked, ServerHandler& answers)
-        : options(std::move(asked)), handler(answers), admission{options.token} {}
-    virtual ~Hub() = default;
-    virtual void leave(uint64_t session) = 0;
-    virtual void recount() = 0;  ///< Who is connected, and subscribed to what.
-
-    const ServerOptions options;
-    ServerHandler& handler;
-    const Admission admission;
-    std::atomic<uint64_t> clients{0}, refused{0}, dropped{0};
-};
-
 enum class Kind { None, Page, Foxglove };
 /** One connection: a request, which is answered or becomes a WebSocket. */
 class Session : public std::enable_shared_from_this<Session> {
 public:
     Session(tcp::socket socket, Hub& hub, uint64_t id);
     Kind kind() const { return open_ ? kind_ : Kind::None; }
+    bool hasAsked() const { return asked_; }  ///< Its request is there.
     const Subscriptions& subscriptions() const { return subscriptions_; }
     void readRequest();
     void put(uint32_t stream, Frame frame);
     void post(Frame frame);
     void close();
+    /** What `work` throws closes this session, and nothing else. */
+    template <class Work>
+    void attempt(Work&& work);
 
 private:
-    using Bound = std::shared_ptr<Session>;
-
     beast::tcp_stream& stream() { return ws_.next_layer(); }
+    /** What Asio calls when something is done. */
+    template <class Work>
+    auto handler(Work work) {
+        return [self = shared_from_this(), work](const Error& error, size_t = 0) {
+            self->attempt([&] { work(*self, error); });
+        };
+    }
     void answer();
+    void answerFault(const Error& error);
+    void refuse(const Admission::Refusal& refusal);
     void respond(Response response);
+    void readRest();
     void upgrade();
+    void countFault(const Error& error);
     void greet();
     void readMessage();
     void taken(std::string text);
@@ -95,7 +94,8 @@ private:
     Outbox outbox_;
     Frame sending_;
     uint64_t told_dropped_ = 0;
-    bool open_ = false, writing_ = false;
+    size_t rest_ = 0;  ///< Read after the answer [B].
+    bool asked_ = false, open_ = false, writing_ = false;
 };
 
 inline Session::Session(tcp::socket socket, Hub& hub, uint64_t id)
@@ -104,17 +104,43 @@ inline Session::Session(tcp::socket socket, Hub& hub, uint64_t id)
     stream().socket().set_option(tcp::no_delay(true), ignored);
 }
 
+template <class Work>
+void Session::attempt(Work&& work) try {
+    work();
+} catch (const std::exception& thrown) {
+    hub_.refused.add(std::string("a fault of this server: ") + thrown.what());
+    leave();
+}
+
 inline void Session::readRequest() {
     parser_.emplace();
     parser_->header_limit(largest_header);
     parser_->body_limit(0);
     stream().expires_after(request_timeout);
-    http::async_read(stream(), buffer_, *parser_, [self = shared_from_this()](const Error& error, size_t) {
-        error ? self->leave() : self->answer();
-    });
+    http::async_read(stream(), buffer_, *parser_, handler([](Session& self, const Error& error) {
+                         error ? self.answerFault(error) : self.answer();
+                     }));
+}
+
+/** The request cannot be read. */
+inline void Session::answerFault(const Error& error) {
+    asked_ = true;
+    if (error == beast::error::timeout) hub_.refused.add("no whole request came within 5 s");
+    const bool is_gone = error == http::error::end_of_stream || error == http::error::partial_message;
+    if (is_gone || error.category() != http::make_error_code(http::error::end_of_stream).category()) return leave();
+    const bool header = error == http::error::header_limit || error == http::error::buffer_overflow;
+    refuse({error == http::error::body_limit ? 413u : header ? 431u : 400u, "the request: " + error.message()});
+}
+
+/** Files that are not there and methods are no refusals of a connection. */
+inline void Session::refuse(const Admission::Refusal& refusal) {
+    if (refusal.status != 404 && refusal.status != 405)
+        hub_.refused.add(std::to_string(refusal.status) + ", " + refusal.reason);
+    respond(responseTo(parser_->get(), refusal.status, "text/plain", refusal.reason + "\n"));
 }
 
 inline void Session::answer() {
+    asked_ = true;
     const Request& request = parser_->get();
     const Admission::Request asked = admissionOf(request);
     const bool wants_socket = websocket::is_upgrade(request);
@@ -122,12 +148,9 @@ inline void Session::answer() {
     const bool foxglove = offered.find(foxglove_protocol) != std::string::npos;
     kind_ = foxglove ? Kind::Foxglove : offered.find(page_protocol) != std::string::npos ? Kind::Page : Kind::None;
     const std::string path = asked.target.substr(0, asked.target.find('?'));
-    const auto refuse = [&](const Admission::Refusal& refusal) {
-        hub_.refused += refusal.status == 401 || refusal.status == 403 || refusal.status == 503 ? 1 : 0;
-        respond(responseTo(request, refusal.status, "text/plain", refusal.reason + "\n"));
-    };
-    if (const auto refusal = hub_.admission.judge(asked, path == "/" || wants_socket, wants_socket && !foxglove))
-        return refuse(*refusal);
+    using enum Admission::Use;
+    const Admission::Use use = !wants_socket ? (path == "/" ? Page : File) : foxglove ? Read : Steer;
+    if (const auto refusal = hub_.admission.judge(asked, use)) return refuse(*refusal);
     if (wants_socket) {
         if (kind_ == Kind::None)
             return refuse({400, std::string("the subprotocol must be ") + foxglove_protocol + " or " + page_protocol});
@@ -143,12 +166,24 @@ inline void Session::answer() {
 
 inline void Session::respond(Response response) {
     response_.emplace(std::move(response));
-    stream().expires_after(request_timeout);
-    http::async_write(stream(), *response_, [self = shared_from_this()](const Error& error, size_t) {
-        Error ignored;
-        if (!error) self->stream().socket().shutdown(tcp::socket::shutdown_send, ignored);
-        self->leave();
-    });
+    stream().expires_after(response_timeout);
+    http::async_write(stream(), *response_, handler([](Session& self, const Error& error) {
+                          if (error) return self.leave();
+                          Error ignored;
+                          self.stream().socket().shutdown(tcp::socket::shutdown_send, ignored);
+                          self.stream().expires_after(rest_timeout);
+                          self.readRest();
+                      }));
+}
+
+/** Until the client closes: who closes with bytes unread takes the answer away from the other. */
+inline void Session::readRest() {
+    buffer_.clear();
+    stream().async_read_some(buffer_.prepare(largest_header),
+                             [self = shared_from_this()](const Error& error, size_t size) {
+                                 self->rest_ += size;
+                                 error || self->rest_ > largest_rest ? self->leave() : self->readRest();
+                             });
 }
 
 inline void Session::upgrade() {
@@ -162,8 +197,17 @@ inline void Session::upgrade() {
     }));
     ws_.read_message_max(largest_message);
     ws_.auto_fragment(false);
-    ws_.async_accept(parser_->get(),
-                     [self = shared_from_this()](const Error& error) { error ? self->leave() : self->greet(); });
+    ws_.async_accept(parser_->get(), handler([](Session& self, const Error& error) {
+                         if (!error) return self.greet();
+                         self.countFault(error);
+                         self.leave();
+                     }));
+}
+
+/** Of a client that speaks no WebSocket, or sends too much; not of one that is gone. */
+inline void Session::countFault(const Error& error) {
+    const bool is_fault = error.category() == websocket::make_error_code(websocket::error::closed).category();
+    if (is_fault && error != websocket::error::closed) hub_.refused.add("WebSocket: " + error.message());
 }
 
 inline void Session::greet() {
@@ -180,19 +224,25 @@ inline void Session::greet() {
 }
 
 inline void Session::readMessage() {
-    ws_.async_read(buffer_, [self = shared_from_this()](const Error& error, size_t) {
-        if (error) return self->leave();
-        self->taken(beast::buffers_to_string(self->buffer_.data()));
-        self->buffer_.consume(self->buffer_.size());
-        self->readMessage();
-    });
+    ws_.async_read(buffer_, handler([](Session& self, const Error& error) {
+                       if (error) {
+                           self.countFault(error);
+                           return self.leave();
+                       }
+                       self.taken(beast::buffers_to_string(self.buffer_.data()));
+                       self.buffer_.consume(self.buffer_.size());
+                       self.readMessage();
+                   }));
 }
 
 inline void Session::taken(std::string text) {
     if (kind_ == Kind::Page) return hub_.handler.request(id_, std::move(text));
     if (!ws_.got_text()) return;
+    const auto before = subscriptions_.all();
     if (const std::string wrong = subscriptions_.take(text); !wrong.empty())
         post({"", bytesOf(complaintText("the message " + wrong)), true});
+    for (const auto& [subscription, channel] : before)
+        if (!subscriptions_.all().contains(subscription)) outbox_.forget(subscription);
     hub_.recount();
 }
 
@@ -202,7 +252,11 @@ inline void Session::put(uint32_t stream, Frame frame) {
     send();
 }
 
-inline void Session::post(Frame frame) { outbox_.post(std::move(frame)) ? send() : close(); }
+inline void Session::post(Frame frame) {
+    if (outbox_.post(std::move(frame))) return send();
+    hub_.refused.add("answers are not read");
+    close();
+}
 
 inline void Session::send() {
     if (writing_ || !open_) return;
@@ -212,11 +266,11 @@ inline void Session::send() {
     writing_ = true;
     ws_.text(sending_.text);
     const std::array<asio::const_buffer, 2> buffers{asio::buffer(sending_.head), asio::buffer(*sending_.body)};
-    ws_.async_write(buffers, [self = shared_from_this()](const Error& error, size_t) {
-        self->writing_ = false;
-        self->sending_ = {};
-        error ? self->leave() : self->send();
-    });
+    ws_.async_write(buffers, handler([](Session& self, const Error& error) {
+                        self.writing_ = false;
+                        self.sending_ = {};
+                        error ? self.leave() : self.send();
+                    }));
 }
 
 inline void Session::close() {

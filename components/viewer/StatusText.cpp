@@ -21,6 +21,13 @@ Json valueOf(const types::PropertyValue& value) {
     return std::visit([](const auto& held) { return Json(held); }, value);
 }
 
+/** Clients may be shown to others: what lets them in is not. */
+Json shown(const std::string& name, const types::PropertyValue& value) {
+    const auto* text = std::get_if<std::string>(&value);
+    const bool is_secret = name == "token" || name.ends_with(".token");
+    return is_secret && text && !text->empty() ? Json("...") : valueOf(value);
+}
+
 Json planOf(const types::Plan& plan) {
     Json omitted = Json::array();
     for (const types::Omission& omission : plan.omitted)
@@ -33,7 +40,7 @@ Json planOf(const types::Plan& plan) {
 
 Json taskOf(const types::TaskStatus& task) {
     Json properties = Json::object(), outputs = Json::array();
-    for (const auto& [name, value] : task.record.properties) properties[name] = valueOf(value);
+    for (const auto& [name, value] : task.record.properties) properties[name] = shown(name, value);
     for (const types::PortStatus& port : task.outputs)
         outputs.push_back({{"name", port.name}, {"type", port.type}, {"written", port.written}});
     Json json = {{"name", task.record.name}, {"type", task.record.type}, {"state", task.state},
@@ -78,10 +85,9 @@ std::string interfacesText(const std::vector<types::TaskInterface>& interfaces, 
     return dump({{"type", "interfaces"}, {"control", control}, {"tasks", tasks}});
 }
 
-Request readRequest(const std::string& text) {
+void readRequest(const std::string& text, Request& request) {
     const Json said = readJson(text);
     if (!said.is_object()) throw std::invalid_argument("is no JSON object");
-    Request request;
     const Json id = said.value("id", Json(0u));
     if (!id.is_number_unsigned()) throw std::invalid_argument("id is no whole number");
     request.id = id.get<uint64_t>();
@@ -92,14 +98,15 @@ Request readRequest(const std::string& text) {
         request.kind = Request::Kind::Step;
     } else if (said.contains("call") && said["call"].is_string()) {
         request.operation = said["call"].get<std::string>();
-        for (const Json& argument : said.value("arguments", Json::array())) {
+        const Json arguments = said.value("arguments", Json::array());
+        if (!arguments.is_array()) throw std::invalid_argument("arguments are no list");
+        for (const Json& argument : arguments) {
             if (!argument.is_string()) throw std::invalid_argument("an argument is no text");
             request.arguments.push_back(argument.get<std::string>());
         }
     } else {
         throw std::invalid_argument("has none of call, pause (true, false) and step");
     }
-    return request;
 }
 
 std::string answerText(uint64_t id, const std::string& result) {

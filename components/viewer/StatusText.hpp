@@ -19,8 +19,8 @@ struct Request {
     std::vector<std::string> arguments;  ///< In YAML.
     bool on = false;                     ///< Pause.
 };
-/** Throws std::invalid_argument with what is wrong with the text. */
-Request readRequest(const std::string& text);
+/** Throws std::invalid_argument with what is wrong with the text; what was read before, as the id, is in `request`. */
+void readRequest(const std::string& text, Request& request);
 
 std::string answerText(uint64_t id, const std::string& result);
 std::string refusalText(uint64_t id, const std::string& why);

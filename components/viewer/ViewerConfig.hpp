@@ -16,6 +16,7 @@ struct ViewerConfig {
     double idle_timeout = 30;
     bool control = true;
     int max_triangles = 500000;
+    ros::WorldFrame world_frame = ros::WorldFrame::Enu;
     ros::SonarOptions messages;
 
     template <class Self, class V>
@@ -36,6 +37,10 @@ struct ViewerConfig {
         visit(Field{"max_triangles", "1",
                     "of the scene in the page; beyond, large meshes are coarse, small ones left out", 1000, 1e8},
               self.max_triangles);
+        visit(Field{"world_frame", "",
+                    "axes of poses for Foxglove: ours (x north, y west, z up), x east, y north, z up, or x north, y "
+                    "east, z down"},
+              self.world_frame);
         visit(Field{"messages", "", "how pings become messages for Foxglove; `scale` holds for the page, too"},
               self.messages);
     }

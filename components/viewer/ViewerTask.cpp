@@ -91,7 +91,12 @@ std::vector<std::string> ViewerTask::notices() const {
     if (!publisher_) return {};
     const bool v6 = config->address.find(':') != std::string::npos;
     const std::string host = v6 ? "[" + config->address + "]" : config->address;
-    return {fmt::format("open http://{}:{}/{}", host, port(), config->token.empty() ? "" : "?token=...")};
+    std::vector<std::string> notices{
+        fmt::format("open http://{}:{}/{}", host, port(), config->token.empty() ? "" : "?token=...")};
+    const ServerCounts so_far = counts();
+    if (so_far.refused > 0) notices.push_back(fmt::format("{} connections refused", so_far.refused));
+    if (so_far.dropped > 0) notices.push_back(fmt::format("{} frames not sent, for newer ones", so_far.dropped));
+    return notices;
 }
 
 void ViewerTask::refuseOwn(const std::string& operation) const {
@@ -102,19 +107,26 @@ void ViewerTask::refuseOwn(const std::string& operation) const {
 }
 
 Access ViewerTask::access() {
+    const auto tell = [this](const std::string& text) { warn(text); };
     framework::DeploymentControl* const deployment = environment().deployment;
     if (!deployment) {
         const auto refuse = [] { throw std::runtime_error("there is no deployment around this viewer"); };
-        return {[] { return types::DeploymentStatus{}; }, [] { return std::vector<types::TaskInterface>{}; },
+        return {[] { return types::DeploymentStatus{}; },
+                [] { return std::vector<types::TaskInterface>{}; },
                 [refuse](const std::string&, const std::vector<std::string>&) { return refuse(), std::string(); },
-                [refuse](bool) { refuse(); }, [refuse] { refuse(); }};
+                [refuse](bool) { refuse(); },
+                [refuse] { refuse(); },
+                tell};
     }
-    return {[deployment] { return deployment->status(); }, [deployment] { return deployment->interfaces(); },
+    return {[deployment] { return deployment->status(); },
+            [deployment] { return deployment->interfaces(); },
             [this, deployment](const std::string& operation, const std::vector<std::string>& arguments) {
                 refuseOwn(operation);
                 return deployment->call(operation, arguments);
             },
-            [deployment](bool on) { deployment->pause(on); }, [deployment] { deployment->step(); }};
+            [deployment](bool on) { deployment->pause(on); },
+            [deployment] { deployment->step(); },
+            tell};
 }
 
 bool ViewerTask::configureHook() {

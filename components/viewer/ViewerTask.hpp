@@ -19,7 +19,8 @@ namespace insonify::viewer {
  *  lockstep, pauses. Foxglove gets a channel for each input.
  *
  *  configure opens the port; one that is taken refuses it. Cycles only hand over the newest samples: no client delays
- *  them, and what a client is too slow for is dropped and counted. A ping whose lists are not as long as its counts
+ *  them, and what a client is too slow for is dropped and counted. Connections that are refused are counted, and warned
+ *  of every ten seconds at most. A ping whose lists are not as long as its counts
  *  say, or what no message can hold, is left out and makes the task RunTimeError until the next sample. */
 class ViewerTask final : public framework::TaskContext {
 public:
@@ -30,7 +31,7 @@ public:
 
     /** Throws ConfigError for a type that cannot be shown. */
     framework::InputPortBase* makeInput(const std::string& port, framework::OutputPortBase& source) override;
-    /** Where the page is. */
+    /** Where the page is; connections refused and frames dropped so far, see ServerCounts. */
     std::vector<std::string> notices() const override;
     /** Where it listens, 0 when it does not. */
     uint16_t port() const { return publisher_ ? publisher_->port() : 0; }

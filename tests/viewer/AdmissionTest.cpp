@@ -5,8 +5,10 @@
 namespace insonify::viewer {
 namespace {
 
-unsigned judged(const std::string& token, const Admission::Request& request, bool secret = true, bool steers = true) {
-    const auto refusal = Admission{token}.judge(request, secret, steers);
+using Use = Admission::Use;
+
+unsigned judged(const std::string& token, const Admission::Request& request, Use use = Use::Steer) {
+    const auto refusal = Admission{token}.judge(request, use);
     return refusal ? refusal->status : 200;
 }
 
@@ -17,7 +19,7 @@ TEST(AdmissionTest, ATokenComesInTheQueryOrAsABearer) {
     EXPECT_EQ(judged("ab", {"/?token=", "127.0.0.1", "", ""}), 401u);
     EXPECT_EQ(judged("ab", {"/?token=abc", "127.0.0.1", "", ""}), 401u);
     EXPECT_EQ(judged("ab", {"/", "127.0.0.1", "", ""}), 401u);
-    EXPECT_EQ(judged("ab", {"/fan.js", "127.0.0.1", "", ""}, false, false), 200u)
+    EXPECT_EQ(judged("ab", {"/fan.js", "127.0.0.1", "", ""}, Use::File), 200u)
         << "files of the page hold nothing secret";
 }
 
@@ -26,10 +28,24 @@ TEST(AdmissionTest, WithoutATokenOnlyPagesOfThisServerSteer) {
     EXPECT_EQ(judged("", {"/", "[::1]:8765", "http://[::1]:8765", ""}), 200u);
     EXPECT_EQ(judged("", {"/", "127.0.0.1:8765", "", ""}), 200u) << "a program, no browser";
     EXPECT_EQ(judged("", {"/", "127.0.0.1:8765", "http://evil.example", ""}), 403u);
-    EXPECT_EQ(judged("", {"/", "127.0.0.1:8765", "http://evil.example", ""}, true, false), 200u)
-        << "Foxglove only reads";
     EXPECT_EQ(judged("", {"/", "evil.example:8765", "http://evil.example:8765", ""}), 403u)
         << "a name that leads here today";
+}
+
+TEST(AdmissionTest, WithoutATokenNoOtherWebSiteReadsButFoxgloves) {
+    const auto reads = [](const std::string& origin) {
+        return judged("", {"/", "127.0.0.1:8765", origin, ""}, Use::Read);
+    };
+    for (const char* origin :
+         {"", "http://127.0.0.1:8765", "https://app.foxglove.dev", "https://studio.foxglove.dev", "file://"})
+        EXPECT_EQ(reads(origin), 200u) << origin;
+    for (const char* origin :
+         {"http://evil.example", "https://evil.example", "null", "https://app.foxglove.dev.evil.example",
+          "http://app.foxglove.dev", "http://127.0.0.1:8766"})
+        EXPECT_EQ(reads(origin), 403u) << origin;
+    EXPECT_EQ(judged("", {"/", "127.0.0.1:8765", "https://app.foxglove.dev", ""}, Use::Steer), 403u);
+    EXPECT_EQ(judged("ab", {"/?token=ab", "127.0.0.1:8765", "https://evil.example", ""}, Use::Read), 200u)
+        << "who has the token may";
 }
 
 }  // namespace

@@ -25,7 +25,8 @@ inline std::string pythonWithWebsockets() {
 
 class Browser {
 public:
-    explicit Browser(const std::string& url) {
+    /** @param first a script that runs before those of the page. */
+    explicit Browser(const std::string& url, const std::string& first = "") {
         int to[2], from[2];
         if (pipe2(to, O_CLOEXEC) != 0 || pipe2(from, O_CLOEXEC) != 0) throw std::runtime_error("no pipe");
         const std::string python = pythonWithWebsockets(), script = INSONIFY_SOURCE_DIR "/tests/viewer/browse.py";
@@ -33,7 +34,7 @@ public:
         if (pid_ == 0) {
             dup2(to[0], STDIN_FILENO);
             dup2(from[1], STDOUT_FILENO);
-            execl(python.c_str(), "python3", script.c_str(), chromium, url.c_str(), nullptr);
+            execl(python.c_str(), "python3", script.c_str(), chromium, url.c_str(), first.c_str(), nullptr);
             _exit(127);
         }
         close(to[0]);
@@ -55,6 +56,10 @@ public:
     bool becomes(const std::string& expression, double seconds = 15) {
         return ask({{"until", expression}, {"seconds", seconds}}) == true;
     }
+    /** Into what has the focus; then Enter. */
+    void type(const std::string& text) { ask({{"type", text}}); }
+    /** Moves the mouse there, in pixels from the upper left corner of the page. */
+    void point(double x, double y) { ask({{"point", {x, y}}}); }
 
 private:
     nlohmann::json ask(const nlohmann::json& question) {

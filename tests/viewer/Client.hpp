@@ -36,6 +36,10 @@ public:
     /** Asks for `target`; gives all that is answered until the connection is closed. */
     std::string get(const std::string& target, const std::string& more = "") {
         send("GET " + target + " HTTP/1.1\r\nHost: localhost\r\n" + more + "\r\n");
+        return rest();
+    }
+    /** All that comes until the connection is closed. */
+    std::string rest() {
         while (receive()) {
         }
         return std::move(received_);

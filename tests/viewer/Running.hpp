@@ -11,9 +11,11 @@ namespace insonify::viewer {
 
 struct LevelConfig {
     double level = 1;
+    bool record = false;
     template <class Self, class V>
     static void describe(Self& self, V& visit) {
         visit(types::Field{"level", "1", "of the echo", 0, 100}, self.level);
+        visit(types::Field{"record", "", "what a logger calls so"}, self.record);
     }
 };
 
@@ -30,6 +32,64 @@ private:
         for (float& bin : sample->bins) bin *= static_cast<float>(config->level);
         ping.write(sample);
     }
+};
+
+struct WaterConfig {
+    bool water = true;
+    template <class Self, class V>
+    static void describe(Self& self, V& visit) {
+        visit(types::Field{"water", "", "whether snapshots have a surface"}, self.water);
+    }
+};
+
+/** Sand 5 m below the surface and a stone on it, and a vehicle that goes north over it. */
+class WorldTask final : public framework::TaskContext {
+public:
+    using TaskContext::TaskContext;
+    framework::Properties<WaterConfig> config{this};
+    framework::OutputPort<types::SnapshotPtr> snapshot{this, "snapshot", "of the scene"};
+    framework::OutputPort<types::Pose> pose{this, "pose", "two each time"};
+
+    const types::Plan* plan() const override { return &plan_; }
+
+private:
+    bool propertiesHook() override { return true; }
+    static types::Mesh square(float half) {
+        types::Mesh mesh;
+        mesh.positions = {{-half, -half, 0}, {half, -half, 0}, {half, half, 0}, {-half, half, 0}};
+        mesh.indices = {0, 1, 2, 0, 2, 3};
+        types::Cluster cluster;
+        cluster.index_count = 6;
+        mesh.clusters = {cluster};
+        return mesh;
+    }
+    static types::GeometryPtr scene() {
+        auto geometry = std::make_shared<types::Geometry>();
+        geometry->meshes = {square(30), square(2)};
+        geometry->materials.resize(1);
+        geometry->materials[0].name = "sand";
+        geometry->objects = {{"ground", 0, glm::dmat4(1)}, {"stone", 1, glm::dmat4(1)}};
+        geometry->objects[0].world_from_object[3] = {0, 0, -5, 1};
+        geometry->objects[1].world_from_object[3] = {8, 1, -4, 1};
+        return geometry;
+    }
+    void updateHook() override {
+        types::Pose here;
+        here.time = now();
+        here.position = {2 * now().seconds(), 0, -2};
+        here.orientation = glm::dquat(1, 0, 0, 0);
+        auto sample = std::make_shared<types::Snapshot>();
+        sample->time = now();
+        sample->sonar = here;
+        sample->geometry = geometry_;
+        if (config->water) sample->water_surface = 0;
+        snapshot.write(sample);
+        pose.write(here);
+        pose.write(here);
+    }
+
+    const types::GeometryPtr geometry_ = scene();
+    const types::Plan plan_{{"cones"}, {"draw", "sum"}, {{"multipath", "not asked for"}}, {"a notice"}, 64, 2, 1, 0.01};
 };
 
 /** A lockstep deployment that runs on a thread of its own, slowly. */
@@ -50,13 +110,17 @@ public:
 private:
     framework::DeploymentSpec spec(uint16_t port) {
         registry_.add<LevelTask>("test::LevelTask", "");
+        registry_.add<WorldTask>("test::WorldTask", "");
         registerTasks(registry_);
         auto spec = framework::DeploymentSpec::parse(R"(
 tasks:
   source: {type: test::LevelTask, activity: {period: 0.01}}
+  world:  {type: test::WorldTask, activity: {period: 0.02}}
   viewer: {type: viewer::ViewerTask, properties: {}}
 connections:
-  - {from: source.ping, to: viewer.ping, policy: {type: buffer, size: 8}}
+  - {from: source.ping,    to: viewer.ping,  policy: {type: buffer, size: 8}}
+  - {from: world.snapshot, to: viewer.scene, policy: {type: buffer, size: 8}}
+  - {from: world.pose,     to: viewer.pose,  policy: {type: buffer, size: 1}}
 )",
                                                      "test.yml");
         spec.set("viewer.port=" + std::to_string(port));

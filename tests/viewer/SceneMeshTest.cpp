@@ -49,10 +49,11 @@ types::Geometry scene(uint32_t large, uint32_t small) {
 }
 
 TEST(SceneMeshTest, MeshesAreSentWithTheVerticesThatTheyUse) {
-    const Message message = takenApart(sceneMessage(scene(4, 1), 1000));
+    const Message message = takenApart(sceneMessage(scene(4, 1), 1000, "scene.snapshot"));
     const auto& mesh = message.json["meshes"][1];
     EXPECT_EQ(message.list<float>(mesh["positions"]), (std::vector<float>{0, 0, 0, 1, 1, 0, 2, 0, 0}));
     EXPECT_EQ(message.list<uint32_t>(mesh["indices"]), (std::vector<uint32_t>{0, 1, 2}));
+    EXPECT_EQ(message.json["source"], "scene.snapshot");
     EXPECT_EQ(message.json["objects"].size(), 3u);
     EXPECT_EQ(message.json["objects"][1]["matrix"][0], 2);
     EXPECT_EQ(message.json["materials"][0], "sand");
@@ -61,11 +62,24 @@ TEST(SceneMeshTest, MeshesAreSentWithTheVerticesThatTheyUse) {
 }
 
 TEST(SceneMeshTest, OfTooManyTrianglesTheSmallestObjectsAreLeftOutAndCounted) {
-    const Message message = takenApart(sceneMessage(scene(100, 10), 115));
+    const Message message = takenApart(sceneMessage(scene(100, 10), 115, "scene.snapshot"));
     EXPECT_EQ(message.json["triangles"], 120);
     EXPECT_EQ(message.json["left_out"], 1);
     EXPECT_EQ(message.json["objects"][0]["name"], "small");
     EXPECT_EQ(message.json["objects"][1]["name"], "large");
+}
+
+TEST(SceneMeshTest, WhatIsLeftOutIsNotSent) {
+    types::Geometry geometry = scene(500, 10);
+    for (int i = 0; i < 50; ++i) {
+        geometry.meshes.push_back(strip(400));
+        geometry.objects.push_back({"too many", static_cast<int>(geometry.meshes.size()) - 1, glm::dmat4(1)});
+    }
+    const Message message = takenApart(sceneMessage(geometry, 520, "scene.snapshot"));
+    EXPECT_EQ(message.json["left_out"], 50);
+    EXPECT_EQ(message.json["meshes"].size(), 52u) << "objects have the numbers of their meshes";
+    EXPECT_EQ(message.json["meshes"][2]["indices"]["count"], 0);
+    EXPECT_EQ(message.data.size(), size_t{(502 + 12) * 3 * 4 + (500 + 10) * 3 * 4});
 }
 
 TEST(SceneMeshTest, LargeMeshesAreWhatStandsForThem) {
@@ -77,7 +91,7 @@ TEST(SceneMeshTest, LargeMeshesAreWhatStandsForThem) {
     patch.index_count = 3;
     mesh.patches = {patch};
     mesh.coarse_indices = {1, 50, 100};
-    const Message message = takenApart(sceneMessage(geometry, 50));
+    const Message message = takenApart(sceneMessage(geometry, 50, "scene.snapshot"));
     EXPECT_EQ(message.json["coarse"], true);
     EXPECT_EQ(message.json["meshes"][0]["indices"]["count"], 3);
     EXPECT_EQ(message.json["left_out"], 0);

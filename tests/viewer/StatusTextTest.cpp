@@ -10,6 +10,12 @@ namespace {
 
 using nlohmann::json;
 
+Request readRequest(const std::string& text) {
+    Request request;
+    viewer::readRequest(text, request);
+    return request;
+}
+
 TEST(StatusTextTest, AStatusHoldsTasksPlansAndLosses) {
     types::DeploymentStatus status;
     status.lockstep = true;
@@ -28,6 +34,15 @@ TEST(StatusTextTest, AStatusHoldsTasksPlansAndLosses) {
     EXPECT_EQ(text["connections"][0]["lost"], 3);
     EXPECT_EQ(text["clients"], 2);
     EXPECT_EQ(text["dropped"], 5);
+}
+
+TEST(StatusTextTest, ATokenIsNotShown) {
+    types::DeploymentStatus status;
+    status.tasks.emplace_back();
+    status.tasks.back().record = {
+        "viewer", "viewer::ViewerTask", {{"token", std::string("sesame")}, {"address", std::string("0.0.0.0")}}, ""};
+    EXPECT_EQ(statusText(status, {}).find("sesame"), std::string::npos);
+    EXPECT_EQ(json::parse(statusText(status, {}))["tasks"][0]["properties"]["token"], "...");
 }
 
 TEST(StatusTextTest, TextThatIsNotUtf8DoesNotStopIt) {
@@ -62,8 +77,15 @@ TEST(StatusTextTest, ARequestThatIsNestedDeeplyIsRefusedLikeAnother) {
 
 TEST(StatusTextTest, WhatIsNoRequestIsRefused) {
     for (const char* text : {"", "[]", "{}", "{\"id\":-1,\"step\":true}", R"({"call":1})", R"({"pause":1})",
-                             R"({"call":"a.b","arguments":[1]})", "\xff"})
+                             R"({"call":"a.b","arguments":[1]})", R"({"call":"a.b","arguments":"5"})",
+                             R"({"call":"a.b","arguments":{"x":"5"}})", R"({"call":"a.b","arguments":null})", "\xff"})
         EXPECT_THROW(readRequest(text), std::invalid_argument) << text;
+}
+
+TEST(StatusTextTest, ARefusalOfARequestCarriesItsId) {
+    Request request;
+    EXPECT_THROW(viewer::readRequest(R"({"id":7,"call":"a.b","arguments":"5"})", request), std::invalid_argument);
+    EXPECT_EQ(request.id, 7u);
 }
 
 }  // namespace

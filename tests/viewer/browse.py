@@ -1,7 +1,8 @@
-"""A headless Chromium that does what is asked: python3 browse.py CHROMIUM URL
+"""A headless Chromium that does what is asked: python3 browse.py CHROMIUM URL [SCRIPT]
 
 Reads lines of JSON and answers each with one: {"eval": EXPRESSION} gives its value, {"until": EXPRESSION, "seconds": S}
-waits until it is true, {"screenshot": FILE} writes a PNG. An expression that throws gives {"error": TEXT}.
+waits until it is true, {"screenshot": FILE} writes a PNG, {"type": TEXT} types it and Enter, {"point": [X, Y]} moves
+the mouse. An expression that throws gives {"error": TEXT}. SCRIPT runs before those of the page.
 """
 
 import asyncio
@@ -77,7 +78,7 @@ class Page:
         while True:
             answer = await self.evaluate(expression)
             if answer.get("value"):
-                return answer
+                return {"value": True}
             if time.monotonic() > end:
                 return {"error": f"not true after {seconds} s: {answer}"}
             await asyncio.sleep(0.05)
@@ -88,10 +89,22 @@ class Page:
         return {"value": True}
 
 
-async def serve(address, url):
+    async def type(self, text):
+        await self.send("Input.insertText", text=text)
+        for kind in ("rawKeyDown", "keyUp"):
+            await self.send("Input.dispatchKeyEvent", type=kind, key="Enter", code="Enter", windowsVirtualKeyCode=13)
+        return {"value": True}
+
+    async def point(self, x, y):
+        await self.send("Input.dispatchMouseEvent", type="mouseMoved", x=x, y=y)
+        return {"value": True}
+
+
+async def serve(address, url, script):
     async with websockets.connect(address, max_size=None) as socket:
         page = Page(socket)
         await page.send("Page.enable")
+        await page.send("Page.addScriptToEvaluateOnNewDocument", source=script)
         await page.send("Page.navigate", url=url)
         while line := await asyncio.to_thread(sys.stdin.readline):
             asked = json.loads(line)
@@ -99,6 +112,10 @@ async def serve(address, url):
                 answer = await page.evaluate(asked["eval"])
             elif "until" in asked:
                 answer = await page.until(asked["until"], asked["seconds"])
+            elif "type" in asked:
+                answer = await page.type(asked["type"])
+            elif "point" in asked:
+                answer = await page.point(*asked["point"])
             else:
                 answer = await page.screenshot(asked["screenshot"])
             print(json.dumps(answer), flush=True)
@@ -107,7 +124,7 @@ async def serve(address, url):
 with tempfile.TemporaryDirectory(ignore_cleanup_errors=True) as profile:
     browser, address = start(sys.argv[1], profile)
     try:
-        asyncio.run(serve(address, sys.argv[2]))
+        asyncio.run(serve(address, sys.argv[2], sys.argv[3] if len(sys.argv) > 3 else ""))
     finally:
         browser.terminate()
         browser.wait()

@@ -64,7 +64,7 @@ export class Fan {
     this.span_db = 45;
     this.top_db = 0;
     const gl = this.gl = canvas.getContext('webgl2', {antialias: false, preserveDrawingBuffer: true});
-    if (!gl) throw new Error('this browser has no WebGL 2');
+    if (!gl) return;  // rings, cursor and levels are there nonetheless
     this.program = programOf(gl);
     gl.useProgram(this.program);
     gl.pixelStorei(gl.UNPACK_ALIGNMENT, 1);
@@ -76,9 +76,9 @@ export class Fan {
 
   setColours(name) {
     const gl = this.gl;
-    this.colours = palette(name);
+    if (!gl) return;
     gl.activeTexture(gl.TEXTURE2);
-    gl.texImage2D(gl.TEXTURE_2D, 0, gl.RGBA, 256, 1, 0, gl.RGBA, gl.UNSIGNED_BYTE, this.colours);
+    gl.texImage2D(gl.TEXTURE_2D, 0, gl.RGBA, 256, 1, 0, gl.RGBA, gl.UNSIGNED_BYTE, palette(name));
   }
 
   /** @param top_db the level of the brightest colour. */
@@ -86,8 +86,10 @@ export class Fan {
     const gl = this.gl, old = this.ping;
     this.ping = ping;
     this.top_db = top_db;
-    gl.activeTexture(gl.TEXTURE0);
-    gl.texImage2D(gl.TEXTURE_2D, 0, gl.R8, ping.bins, ping.beams, 0, gl.RED, gl.UNSIGNED_BYTE, ping.data);
+    if (gl) {
+      gl.activeTexture(gl.TEXTURE0);
+      gl.texImage2D(gl.TEXTURE_2D, 0, gl.R8, ping.bins, ping.beams, 0, gl.RED, gl.UNSIGNED_BYTE, ping.data);
+    }
     if (!old || old.beams !== ping.beams || old.edges[0] !== ping.edges[0] || old.edges[1] !== ping.edges[1]) this.setBeams(ping);
   }
 
@@ -95,6 +97,7 @@ export class Fan {
     const gl = this.gl, ends = [ping.edges[0], ping.edges[ping.edges.length - 1]];
     this.low = Math.min(...ends);
     this.high = Math.max(...ends);
+    if (!gl) return;
     const table = new Float32Array(table_size);
     for (let i = 0; i < table_size; ++i) table[i] = 1 + beamAt(ping, this.low + (this.high - this.low) * (i + 0.5) / table_size);
     gl.activeTexture(gl.TEXTURE1);
@@ -139,6 +142,11 @@ export class Fan {
   draw() {
     this.fit();
     if (!this.ping || !this.canvas.width) return;
+    if (this.gl) this.drawPicture();
+    this.drawOverlay();
+  }
+
+  drawPicture() {
     const gl = this.gl, ping = this.ping, {scale, origin} = this.place();
     gl.viewport(0, 0, this.canvas.width, this.canvas.height);
     gl.uniform2f(this.at('origin'), ...origin);
@@ -148,7 +156,6 @@ export class Fan {
     gl.uniform2f(this.at('brightness'), (ping.top_db - 255 * ping.step_db - this.top_db) / this.span_db + 1, ping.step_db / this.span_db);
     gl.uniform1i(this.at('polar'), this.polar);
     gl.drawArrays(gl.TRIANGLES, 0, 3);
-    this.drawOverlay();
   }
 
   drawOverlay() {

@@ -6,7 +6,8 @@ const svg = (name, attributes, text) => {
   if (text !== undefined) made.textContent = text;
   return made;
 };
-const owner = (port) => port.slice(0, port.indexOf('.'));
+/** The task of a port. */
+export const owner = (port) => port.slice(0, port.indexOf('.'));
 const lamp = {Running: '#58b368', RunTimeError: '#e0b13c', Exception: '#e4574c', FatalError: '#e4574c'};
 
 /** How many connections lie before each task, at most; loops count once. */

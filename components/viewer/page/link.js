@@ -1,6 +1,8 @@
 // The connection to the viewer: opens it, opens it again when it breaks, and takes its messages apart.
 
 const protocol = 'insonify.view.v1';
+/** How long nothing may come, until the first status (a scene may be large) and after it [ms]. */
+const first_patience = 30000, patience = 5000;
 
 /** A binary message: u32 kind, u32 size of the JSON, JSON, data. */
 export function takeApart(buffer) {
@@ -20,28 +22,41 @@ export class Link {
     this.opened = 0;
     this.delay = 250;
     this.open();
+    setInterval(() => this.watch(), 500);
   }
 
   open() {
-    this.socket = new WebSocket(`ws://${location.host}/${location.search}`, protocol);
-    this.socket.binaryType = 'arraybuffer';
-    this.socket.onopen = () => {
+    const socket = this.socket = new WebSocket(`ws://${location.host}/${location.search}`, protocol);
+    socket.binaryType = 'arraybuffer';
+    this.heard_at = performance.now();
+    this.patience = first_patience;
+    socket.onopen = () => {
       this.delay = 250;
       ++this.opened;
       this.changed(true);
     };
-    this.socket.onmessage = (event) => this.take(event.data);
-    this.socket.onclose = () => {
-      this.changed(false);
-      for (const done of this.waiting.values()) done({refused: 'the connection broke'});
-      this.waiting.clear();
-      setTimeout(() => this.open(), this.delay);
-      this.delay = Math.min(this.delay * 1.5, 3000);
-    };
+    socket.onmessage = (event) => this.take(event.data);
+    socket.onclose = () => this.again();
+  }
+  /** The other end may be gone without a word: then closing would wait long for its answer. */
+  watch() {
+    if (performance.now() - this.heard_at < this.patience || this.socket.onclose === null) return;
+    this.socket.close();
+    this.again();
+  }
+  again() {
+    this.socket.onclose = this.socket.onmessage = this.socket.onopen = null;
+    this.changed(false);
+    for (const done of this.waiting.values()) done({refused: 'the connection broke'});
+    this.waiting.clear();
+    setTimeout(() => this.open(), this.delay);
+    this.delay = Math.min(this.delay * 1.5, 3000);
   }
 
   take(data) {
     const message = typeof data === 'string' ? JSON.parse(data) : takeApart(data);
+    this.heard_at = performance.now();
+    if (message.type === 'status') this.patience = patience;
     if (message.type !== 'answer') return this.heard(message);
     this.waiting.get(message.id)?.(message);
     this.waiting.delete(message.id);

@@ -4,14 +4,15 @@ import {Controls} from './controls.js';
 import {Fan} from './fan.js';
 import {showGraph} from './graph.js';
 import {Link} from './link.js';
+import {Places} from './places.js';
 import {Scan, pingOf, strongLevel} from './ping.js';
 import {Properties, Rates, element, showPlan, showTasks} from './tables.js';
 import {World, loadThree} from './world.js';
 
 const byId = (id) => document.getElementById(id);
 const fan = new Fan(byId('fan'), byId('overlay'));
-const rates = new Rates(), scans = new Map(), arrivals = [];
-let world = null, scene = null, snapshot = null, reference = null, missed = 0, last_count = null, shown = 0, needs_drawing = false;
+const rates = new Rates(), scans = new Map(), arrivals = [], scenes = new Map(), places = new Places();
+let world = null, scene = null, snapshot = null, placed = '', reference = null, missed = 0, last_count = null, shown = 0, needs_drawing = false;
 
 const link = new Link(take, (open) => {
   byId('link').className = open ? 'lamp' : 'lamp off';
@@ -34,9 +35,8 @@ const show = {
     controls.update(status);
   },
   snapshot(message) {
-    snapshot = message;
-    world?.showSnapshot(message);
-    byId('pose_text').textContent = 'sonar ' + message.position.map((x) => x.toFixed(2)).join('  ') + ' m';
+    places.add(message);
+    place();
   },
   pose(message) { world?.showPose(message); },
 };
@@ -44,8 +44,28 @@ const show = {
 function take(message) {
   if (message.type) return show[message.type]?.(message);
   if (message.kind === 1) return takePing(pingOf(message));
-  scene = message;
-  if (world) byId('scene_text').textContent = world.showScene(scene);
+  scenes.set(message.json.source, message);
+  showScene();
+}
+
+/** The scene of the snapshot that is shown. */
+function showScene() {
+  const wanted = scenes.get(snapshot?.source) ?? scenes.values().next().value;
+  if (!world || !wanted || scene === wanted) return;
+  scene = wanted;
+  byId('scene_text').textContent = world.showScene(scene);
+}
+
+/** Everything is where it was when the ping was made; a snapshot may come after its ping. */
+function place() {
+  const {ping} = fan, key = ping && `${ping.source} ${ping.time_us}`;
+  const found = ping ? places.of(ping, properties.status?.connections ?? []) : places.newest();
+  if (!found || found === snapshot || (key && key === placed)) return;
+  snapshot = found;
+  placed = found.time_us === ping?.time_us ? key : '';
+  showScene();
+  world?.showSnapshot(snapshot);
+  byId('pose_text').textContent = 'sonar ' + snapshot.position.map((x) => x.toFixed(2)).join('  ') + ' m';
 }
 
 function takePing(ping) {
@@ -79,6 +99,7 @@ function display(ping) {
   const top = reference - Number(byId('gain').value);
   fan.span_db = Number(byId('span').value);
   fan.show(ping, top);
+  place();
   world?.showPing(ping, top, fan.span_db, byId('map').value);
   needs_drawing = true;
   ++shown;
@@ -92,6 +113,10 @@ function settingsChanged() {
   if (fan.ping) display(fan.ping);
 }
 
+if (!fan.gl) {
+  byId('no_fan').hidden = false;
+  byId('no_fan').textContent = 'The picture is not there: this browser has no WebGL 2.';
+}
 for (const name of names) byId('map').append(element('option', {}, name));
 for (const id of ['map', 'gain', 'span', 'rings']) byId(id).oninput = settingsChanged;
 byId('source').onchange = () => { reference = null; last_count = null; };
@@ -125,12 +150,14 @@ requestAnimationFrame(frame);
 
 loadThree().then((THREE) => {
   world = new World(THREE, byId('view'));
-  if (scene) byId('scene_text').textContent = world.showScene(scene);
+  showScene();
   if (snapshot) world.showSnapshot(snapshot);
+  if (fan.ping) display(fan.ping);
 }).catch((error) => {
+  world = null;
   byId('no_view').hidden = false;
   byId('no_view').textContent = `The 3-D view is not there: ${error.message}. It needs three.js, which is built into the viewer where Debian's libjs-three is installed.`;
 });
 
 /** For tests and for the curious. */
-self.insonify = {fan, link, shown: () => shown, world: () => world, status: () => properties.status};
+self.insonify = {fan, link, shown: () => shown, world: () => world, snapshot: () => snapshot, status: () => properties.status};

@@ -1,9 +1,10 @@
-// The scene, the sonar's fan in it, the water and the vehicle's path, in three dimensions; z is up.
+// The scene, the sonar's fan in it, the water and the vehicles' paths, in three dimensions; z is up.
 import {palette} from './colours.js';
+import {Vehicle} from './vehicle.js';
 
 const tints = {sand: 0xb09a6c, mud: 0x7d7058, clay: 0x8a7460, gravel: 0x8f877a, stone: 0x85817a, rock: 0x7a756d, concrete: 0x9da1a2,
                steel: 0x86684e, rubber: 0x34373a, wood: 0x7c5c3c};
-const deep = 0x0b2733, fog_density = 0.014, most_path = 20000;
+const deep = 0x0b2733, fog_density = 0.014;
 
 const fan_vertex = `varying vec2 at; void main() { at = uv; gl_Position = projectionMatrix * modelViewMatrix * vec4(position, 1.); }`;
 const fan_fragment = `uniform sampler2D levels, colours; uniform vec2 brightness; varying vec2 at;
@@ -19,11 +20,21 @@ export async function loadThree() {
   return self.THREE;
 }
 
+/** Takes all out of a group, and off the graphics device. */
+function empty(group) {
+  group.traverse((node) => {
+    node.geometry?.dispose();
+    node.material?.dispose();
+  });
+  group.remove(...group.children);
+}
+
 export class World {
   constructor(THREE, canvas) {
     this.THREE = THREE;
     this.canvas = canvas;
     const context = canvas.getContext('webgl2', {antialias: true});
+    if (!context) throw new Error('this browser has no WebGL 2');
     this.renderer = new THREE.WebGLRenderer({canvas, context});
     this.scene = new THREE.Scene();
     this.scene.background = new THREE.Color(deep);
@@ -35,9 +46,8 @@ export class World {
     this.scene.add(new THREE.HemisphereLight(0xbfe3ea, 0x24323a, 0.75), sun);
     this.content = new THREE.Group();
     this.sonar = new THREE.Group();
-    this.vehicle = this.makeVehicle();
-    this.path = this.makePath();
-    this.scene.add(this.content, this.sonar, this.vehicle, this.path);
+    this.scene.add(this.content, this.sonar);
+    this.vehicles = new Map();  // by source
     this.objects = new Map();
     this.moved = [];
     this.azimuth = -2.55;   // of the camera around the sonar [rad]
@@ -63,30 +73,10 @@ export class World {
     }, {passive: false});
   }
 
-  makeVehicle() {
-    const {THREE} = this, body = new THREE.CylinderGeometry(0.16, 0.16, 1, 16), nose = new THREE.ConeGeometry(0.16, 0.3, 16);
-    for (const geometry of [body, nose]) geometry.rotateZ(-Math.PI / 2);
-    nose.translate(0.65, 0, 0);
-    const material = new THREE.MeshPhongMaterial({color: 0xf2c230}), group = new THREE.Group();
-    group.add(new THREE.Mesh(body, material), new THREE.Mesh(nose, material));
-    group.visible = false;
-    return group;
-  }
-  makePath() {
-    const {THREE} = this, geometry = new THREE.BufferGeometry();
-    this.places = new THREE.BufferAttribute(new Float32Array(3 * most_path), 3);
-    geometry.setAttribute('position', this.places);
-    geometry.setDrawRange(0, this.path_count = 0);
-    const line = new THREE.Line(geometry, new THREE.LineBasicMaterial({color: 0xf2c230, fog: false}));
-    line.frustumCulled = false;
-    return line;
-  }
-
   /** The scene's meshes: a message of kind 2. */
   showScene({json, buffer, start}) {
     const {THREE} = this;
-    this.content.traverse((node) => node.geometry?.dispose());
-    this.content.remove(...this.content.children);
+    empty(this.content);
     this.objects.clear();
     const materials = json.materials.map((name) => new THREE.MeshPhongMaterial(
         {color: tints[name.toLowerCase()] ?? 0x8d9498, flatShading: true, shininess: 4, side: THREE.DoubleSide}));
@@ -114,12 +104,13 @@ export class World {
     for (const number of this.moved) this.objects.get(number)?.mesh.matrix.fromArray(this.objects.get(number).home);
     for (const {object, matrix} of json.moved) this.objects.get(object)?.mesh.matrix.fromArray(matrix);
     this.moved = json.moved.map((one) => one.object);
-    if (json.water_surface !== undefined) this.showWater(json.water_surface);
+    this.showWater(json.water_surface);
     this.dirty = true;
   }
+  /** @param z undefined: there is none. */
   showWater(z) {
     const {THREE} = this;
-    if (!this.water) {
+    if (!this.water && z !== undefined) {
       this.water = new THREE.Mesh(new THREE.PlaneBufferGeometry(600, 600), new THREE.MeshBasicMaterial(
           {color: 0x6fc3d6, transparent: true, opacity: 0.16, side: THREE.DoubleSide, depthWrite: false}));
       this.grid = new THREE.GridHelper(600, 60, 0x9fdbe6, 0x9fdbe6);
@@ -127,20 +118,18 @@ export class World {
       Object.assign(this.grid.material, {transparent: true, opacity: 0.14, depthWrite: false});
       this.scene.add(this.water, this.grid);
     }
-    for (const node of [this.water, this.grid]) node.position.set(0, 0, z);
+    for (const node of this.water ? [this.water, this.grid] : []) {
+      node.visible = z !== undefined;
+      node.position.z = z ?? 0;
+    }
   }
 
   showPose(json) {
-    this.vehicle.visible = true;
-    this.vehicle.position.fromArray(json.position);
-    this.vehicle.quaternion.fromArray(json.orientation);
-    if (this.path_count === most_path) {
-      this.places.array.copyWithin(0, 3 * most_path / 2);
-      this.path_count = most_path / 2;
+    if (!this.vehicles.has(json.source)) {
+      this.vehicles.set(json.source, new Vehicle(this.THREE, this.vehicles.size));
+      this.scene.add(this.vehicles.get(json.source).group);
     }
-    this.places.array.set(json.position, 3 * this.path_count++);
-    this.places.needsUpdate = true;
-    this.path.geometry.setDrawRange(0, this.path_count);
+    this.vehicles.get(json.source).moveTo(json);
     this.dirty = true;
   }
 
@@ -150,6 +139,7 @@ export class World {
     if (this.fan_key !== key) this.makeFan(ping, key);
     if (this.map !== map) {
       this.map = map;
+      this.uniforms.colours.value?.dispose();
       this.uniforms.colours.value = new THREE.DataTexture(palette(map), 256, 1, THREE.RGBAFormat);
       this.uniforms.colours.value.needsUpdate = true;
     }
@@ -161,7 +151,9 @@ export class World {
   makeFan(ping, key) {
     const {THREE} = this, far = ping.bins * ping.bin_m, positions = [], uvs = [], indices = [];
     this.fan_key = key;
-    this.sonar.remove(...this.sonar.children);
+    empty(this.sonar);
+    this.levels?.dispose();
+    this.uniforms?.colours.value?.dispose();
     ping.edges.forEach((edge, i) => {
       for (const r of [0.02 * far, far]) positions.push(r * Math.cos(edge), r * Math.sin(edge), 0);
       for (const u of [0.02, 1]) uvs.push(u, i / ping.beams);

@@ -1,0 +1,73 @@
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <future>
+#include <thread>
+
+#include "components/viewer/Lanes.hpp"
+
+namespace insonify::viewer {
+namespace {
+
+bool comes(const std::future<void>& done) {
+    return done.wait_for(std::chrono::seconds(10)) == std::future_status::ready;
+}
+
+TEST(LanesTest, ABlockedLaneHoldsUpNoOther) {
+    std::promise<void> release, begun, other;
+    Lanes lanes;
+    ASSERT_TRUE(lanes.run("blocked", [&] {
+        begun.set_value();
+        release.get_future().wait();
+    }));
+    ASSERT_TRUE(comes(begun.get_future()));
+    ASSERT_TRUE(lanes.run("other", [&] { other.set_value(); }));
+    EXPECT_TRUE(comes(other.get_future()));
+    release.set_value();
+}
+
+TEST(LanesTest, ALaneKeepsTheOrder) {
+    std::string order;
+    std::promise<void> last;
+    Lanes lanes;
+    for (const char c : {'a', 'b', 'c'}) ASSERT_TRUE(lanes.run("", [&order, c] { order += c; }));
+    ASSERT_TRUE(lanes.run("", [&] { last.set_value(); }));
+    ASSERT_TRUE(comes(last.get_future()));
+    EXPECT_EQ(order, "abc");
+}
+
+TEST(LanesTest, TooManyThatWaitInALaneAreRefusedAndOthersAreNot) {
+    std::promise<void> release, begun;
+    Lanes lanes;
+    ASSERT_TRUE(lanes.run("full", [&] {
+        begun.set_value();
+        release.get_future().wait();
+    }));
+    ASSERT_TRUE(comes(begun.get_future()));
+    for (size_t i = 0; i < Lanes::most_waiting; ++i) EXPECT_TRUE(lanes.run("full", [] {}));
+    EXPECT_FALSE(lanes.run("full", [] {}));
+    EXPECT_TRUE(lanes.run("empty", [] {}));
+    release.set_value();
+}
+
+TEST(LanesTest, TheEndWaitsForWhatHasBegunAndBeginsNothingMore) {
+    std::promise<void> release, begun;
+    std::atomic<bool> done{false}, more{false};
+    Lanes lanes;
+    lanes.run("", [&] {
+        begun.set_value();
+        release.get_future().wait();
+        done = true;
+    });
+    lanes.run("", [&] { more = true; });
+    ASSERT_TRUE(comes(begun.get_future()));
+    auto ended = std::async(std::launch::async, [&] { lanes.end(); });
+    while (lanes.run("probe", [] {})) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    release.set_value();
+    ASSERT_TRUE(comes(ended));
+    EXPECT_TRUE(done);
+    EXPECT_FALSE(more);
+}
+
+}  // namespace
+}  // namespace insonify::viewer

@@ -1,0 +1,73 @@
+#include <gmock/gmock.h>
+
+#include <future>
+#include <nlohmann/json.hpp>
+
+#include "components/viewer/Publisher.hpp"
+#include "tests/viewer/Client.hpp"
+
+namespace insonify::viewer {
+namespace {
+
+/** The next answer, whatever else comes. */
+nlohmann::json answer(Client& client) {
+    while (const auto message = client.hear()) {
+        const auto json = nlohmann::json::parse(*message, nullptr, false);
+        if (json.is_object() && json["type"] == "answer") return json;
+    }
+    return nullptr;
+}
+
+std::string call(uint64_t id, const std::string& operation) {
+    return nlohmann::json{{"id", id}, {"call", operation}}.dump();
+}
+
+/** Of tasks of which one does not answer until it is let go. */
+struct Blocked {
+    std::promise<void> release;
+    std::shared_future<void> released{release.get_future()};
+    Publisher publisher{config(), {}, access()};
+
+    static ViewerConfig config() {
+        ViewerConfig config;
+        config.port = 0;
+        return config;
+    }
+    Access access() {
+        const auto call = [this](const std::string& operation, const std::vector<std::string>&) {
+            if (operation == "deaf.ask") released.wait();
+            return operation;
+        };
+        const auto tasks = [] { return std::vector<types::TaskInterface>{{"deaf", {}, {}}, {"lively", {}, {}}}; };
+        return {[] { return types::DeploymentStatus{}; }, tasks, call, [](bool) {}, [] {}, [](const std::string&) {}};
+    }
+};
+
+TEST(PublisherTest, ATaskThatDoesNotAnswerHoldsUpNoOther) {
+    Blocked blocked;
+    Client client(blocked.publisher.port());
+    ASSERT_THAT(client.upgrade(page_protocol), testing::HasSubstr("101"));
+    client.say(call(1, "deaf.ask"));
+    client.say(call(2, "lively.ask"));
+    EXPECT_EQ(answer(client)["id"], 2);
+    client.say(R"({"id":3,"pause":false})");
+    EXPECT_EQ(answer(client)["id"], 3);
+    client.say(call(4, "unknown.ask"));
+    EXPECT_EQ(answer(client)["id"], 4);
+    blocked.release.set_value();
+    EXPECT_EQ(answer(client)["result"], "deaf.ask");
+}
+
+TEST(PublisherTest, OneRequestTooManyIsRefusedByItsId) {
+    Blocked blocked;
+    Client client(blocked.publisher.port());
+    ASSERT_THAT(client.upgrade(page_protocol), testing::HasSubstr("101"));
+    for (uint64_t id = 1; id <= Lanes::most_waiting + 2; ++id) client.say(call(id, "deaf.ask"));
+    const auto refused = answer(client);
+    EXPECT_GT(refused["id"], Lanes::most_waiting);
+    EXPECT_THAT(refused["refused"], testing::HasSubstr("too many requests wait"));
+    blocked.release.set_value();
+}
+
+}  // namespace
+}  // namespace insonify::viewer
