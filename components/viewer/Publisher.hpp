@@ -40,7 +40,7 @@ struct Source {
  *  have asked something of, since such requests wait for the task. */
 class Publisher final : private ServerHandler {
 public:
-    /** Throws std::runtime_error where the port cannot be had. */
+    /** Throws ListenError where the port cannot be had. */
     Publisher(const ViewerConfig& config, std::vector<Source> sources, Access access);
     ~Publisher() override;
 

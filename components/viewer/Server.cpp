@@ -100,8 +100,11 @@ void Server::Core::listen() try {
     acceptor_.listen();
     port_ = acceptor_.local_endpoint().port();
 } catch (const boost::system::system_error& error) {
-    throw std::runtime_error("is " + std::to_string(options.port) + ", which cannot be had on " + options.address +
-                             ": " + error.code().message() + "; take another, or 0 for any that is free");
+    if (error.code() == asio::error::address_in_use || error.code() == asio::error::access_denied)
+        throw ListenError("port", "is " + std::to_string(options.port) + ", which cannot be had on " + options.address +
+                                      ": " + error.code().message() + "; take another, or 0 for any that is free");
+    throw ListenError("address", "is " + options.address + ", on which nothing can listen: " + error.code().message() +
+                                     "; it must be an address of this machine, as 127.0.0.1 or 0.0.0.0");
 }
 
 void Server::Core::accept() {

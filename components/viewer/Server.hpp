@@ -2,6 +2,7 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <stdexcept>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -37,6 +38,12 @@ struct ServerOptions {
     std::vector<FoxgloveChannel> channels;
 };
 
+/** No connection can come. */
+struct ListenError : std::runtime_error {
+    ListenError(const char* culprit, const std::string& what) : std::runtime_error(what), property(culprit) {}
+    const char* property;  ///< What is to be changed: "port" or "address".
+};
+
 struct ServerCounts {
     uint64_t clients = 0;  ///< Connected now.
     /** Connections, since the start, that were turned away or closed for what they did: too many; a wrong token, origin
@@ -58,7 +65,7 @@ struct ServerCounts {
  *  other web site can. */
 class Server {
 public:
-    /** Throws std::runtime_error where the port cannot be had. `handler` outlives this. */
+    /** Throws ListenError where the port cannot be had. `handler` outlives this. */
     Server(ServerOptions options, ServerHandler& handler);
     ~Server();
     Server(const Server&) = delete;

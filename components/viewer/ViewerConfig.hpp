@@ -11,7 +11,7 @@ namespace insonify::viewer {
 struct ViewerConfig {
     int port = 8765;
     std::string address = "127.0.0.1";
-    std::string token;
+    std::string token, token_file;
     int clients = 16;
     double idle_timeout = 30;
     bool control = true;
@@ -29,6 +29,9 @@ struct ViewerConfig {
             Field{"address", "", "numeric address to listen on; one that is not of this host's loopback needs a token"},
             self.address);
         visit(Field{"token", "", "what a client must give: http://address:port/?token=...; empty: none"}, self.token);
+        visit(Field{"token_file", "",
+                    "a file whose first line is the token, relative to the deployment; the token is then in no log"},
+              self.token_file);
         visit(Field{"clients", "1", "that may be connected at once; others are refused", 1, 1000}, self.clients);
         visit(Field{"idle_timeout", "s", "a client that has not answered for so long is given up", 1, 3600},
               self.idle_timeout);
@@ -57,9 +60,11 @@ struct ViewerConfig {
         if (!isNumeric())
             problems.push_back(
                 {"address", "is '" + address + "'; it must be a numeric address, as 127.0.0.1, 0.0.0.0 or ::1"});
-        else if (!isLocal() && token.empty())
+        else if (!isLocal() && token.empty() && token_file.empty())
             problems.push_back({"token", "is missing; it must be there where address is " + address +
                                              ", which other machines can reach"});
+        if (!token.empty() && !token_file.empty())
+            problems.push_back({"token_file", "is of no use beside token; one of them may be there"});
     }
 };
 

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <array>
+#include <filesystem>
+#include <fstream>
 
 #include "components/framework/DeploymentControl.hpp"
 #include "types/ConfigError.hpp"
@@ -91,8 +93,8 @@ std::vector<std::string> ViewerTask::notices() const {
     if (!publisher_) return {};
     const bool v6 = config->address.find(':') != std::string::npos;
     const std::string host = v6 ? "[" + config->address + "]" : config->address;
-    std::vector<std::string> notices{
-        fmt::format("open http://{}:{}/{}", host, port(), config->token.empty() ? "" : "?token=...")};
+    std::vector<std::string> notices{fmt::format(
+        "open http://{}:{}/{}", host, port(), config->token.empty() && config->token_file.empty() ? "" : "?token=...")};
     const ServerCounts so_far = counts();
     if (so_far.refused > 0) notices.push_back(fmt::format("{} connections refused", so_far.refused));
     if (so_far.dropped > 0) notices.push_back(fmt::format("{} frames not sent, for newer ones", so_far.dropped));
@@ -132,12 +134,24 @@ Access ViewerTask::access() {
 bool ViewerTask::configureHook() {
     std::vector<Source> sources;
     for (const auto& inlet : inlets_) sources.push_back(inlet->source);
+    ViewerConfig whole = *config;
+    if (!whole.token_file.empty()) whole.token = readToken();
     try {
-        publisher_ = std::make_unique<Publisher>(*config, std::move(sources), access());
-    } catch (const std::runtime_error& error) {
-        throw types::ConfigError("", name() + ".port", error.what());
+        publisher_ = std::make_unique<Publisher>(whole, std::move(sources), access());
+    } catch (const ListenError& error) {
+        throw types::ConfigError("", name() + "." + error.property, error.what());
     }
     return true;
+}
+
+std::string ViewerTask::readToken() const {
+    const std::filesystem::path file = inputPath(config->token_file);
+    std::string token;
+    std::getline(std::ifstream(file), token);
+    if (token.ends_with('\r')) token.pop_back();
+    if (!token.empty()) return token;
+    throw types::ConfigError("", name() + ".token_file",
+                             "is " + file.string() + ", which has no token in its first line, or cannot be read");
 }
 
 void ViewerTask::updateHook() {

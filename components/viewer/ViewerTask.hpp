@@ -47,6 +47,8 @@ private:
     void errorHook() override;
     void cleanupHook() override;
     Access access();
+    /** The first line of the token's file; types::ConfigError where there is none. */
+    std::string readToken() const;
     void refuseOwn(const std::string& operation) const;
 
     std::vector<std::unique_ptr<Inlet>> inlets_;

@@ -1,8 +1,11 @@
 #include <gmock/gmock.h>
 
+#include <fstream>
+
 #include "components/framework/Deployment.hpp"
 #include "components/viewer/ViewerTask.hpp"
 #include "components/viewer/registerTasks.hpp"
+#include "tests/support/Folder.hpp"
 #include "tests/viewer/Bench.hpp"
 #include "tests/viewer/Client.hpp"
 #include "tests/viewer/Running.hpp"
@@ -49,6 +52,44 @@ TEST(ViewerTaskTest, APortThatIsTakenIsOneClearFault) {
     EXPECT_THAT(second.configError()->what(),
                 testing::AllOf(HasSubstr("second.port: is " + std::to_string(first.port())),
                                HasSubstr("Address already in use"), HasSubstr("0 for any that is free")));
+}
+
+TEST(ViewerTaskTest, AnAddressOfAnotherMachineIsOneClearFault) {
+    ViewerTask viewer("viewer");
+    viewer.config.set(at("203.0.113.7", "secret"));  // of an example
+    EXPECT_FALSE(viewer.configure());
+    ASSERT_NE(viewer.configError(), nullptr);
+    EXPECT_THAT(viewer.configError()->what(), HasSubstr("viewer.address: is 203.0.113.7, on which nothing can listen"));
+}
+
+TEST(ViewerTaskTest, ATokenMayStandInAFileOfItsOwn) {
+    const Folder folder;
+    Bench bench;
+    bench.viewer.environment().input_folder = folder.path();
+    ViewerConfig config;
+    config.token_file = "token.txt";
+    EXPECT_EQ(problemsOf([&] {
+                  auto open = config;
+                  open.address = "0.0.0.0";
+                  return open;
+              }()),
+              "");
+    EXPECT_THAT(problemsOf([&] {
+                    auto both = config;
+                    both.token = "x";
+                    return both;
+                }()),
+                HasSubstr("token_file: is of no use"));
+    config.port = 0;
+    bench.viewer.config.set(config);
+    EXPECT_FALSE(bench.viewer.configure());
+    EXPECT_THAT(bench.viewer.configError()->what(), HasSubstr("viewer.token_file: is "));
+    std::ofstream(folder / "token.txt") << "open sesame\n";
+    ASSERT_TRUE(bench.viewer.recover());
+    ASSERT_TRUE(bench.viewer.configure()) << bench.viewer.lastError();
+    ASSERT_TRUE(bench.viewer.start());
+    EXPECT_THAT(Client(bench.port()).get("/?token=open%20sesame"), testing::StartsWith("HTTP/1.1 200"));
+    EXPECT_THAT(Client(bench.port()).get("/"), testing::StartsWith("HTTP/1.1 401"));
 }
 
 TEST(ViewerTaskTest, TheNoticeTellsThePortThatWasFree) {
