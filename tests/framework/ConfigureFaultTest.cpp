@@ -1,0 +1,44 @@
+// What a task finds wrong only when it is configured.
+#include <gtest/gtest.h>
+
+#include "components/framework/Deployment.hpp"
+#include "components/framework/Properties.hpp"
+
+namespace insonify::framework {
+namespace {
+
+/** Finds only when it is configured that its port is taken. */
+struct Listener : TaskContext {
+    using TaskContext::TaskContext;
+    struct Config {
+        double port = 1;
+        template <class Self, class V>
+        static void describe(Self& self, V& visit) {
+            visit(types::Field{"port", "1", "to listen on"}, self.port);
+        }
+    };
+    Properties<Config> config{this};
+    bool configureHook() override { throw types::ConfigError("", name() + ".port", "is taken"); }
+};
+
+TEST(ConfigureFaultTest, WhatConfiguringFindsIsToldWhereThePropertyStands) {
+    Registry registry;
+    registry.add(
+        {"test::Listener", "listens", [](const std::string& name) { return std::make_unique<Listener>(name); }});
+    const char* yaml =
+        "tasks:\n"
+        "  a: {type: test::Listener, activity: {period: 1}, properties: {port: 7}}\n"
+        "  b: {type: test::Listener, activity: {period: 1}}\n";
+    Deployment deployment(DeploymentSpec::parse(yaml, "a.yml"), registry);
+    try {
+        deployment.configure();
+        FAIL();
+    } catch (const types::ConfigError& error) {
+        ASSERT_EQ(error.diagnostics().size(), 2u);
+        EXPECT_EQ(error.diagnostics()[0].text(), "a.yml:2:71: tasks.a.properties.port: is taken");
+        EXPECT_EQ(error.diagnostics()[1].text(), "a.yml:3:6: tasks.b.properties.port: is taken");
+    }
+}
+
+}  // namespace
+}  // namespace insonify::framework
