@@ -41,13 +41,13 @@ protected:
     }
 };
 
-/** A peer by another Cyclone, see peer.py. It is stopped at the end. */
+/** A peer by another DDS, which says when it is ready, then what it found. It is stopped at the end. */
 class Peer {
 public:
-    /** "listen PoseStamped /pose 2" */
-    explicit Peer(std::string command) {
-        std::vector<std::string> words = {python(), INSONIFY_SOURCE_DIR "/tests/dds/peer.py"};
-        for (std::istringstream text(command); text >> command;) words.push_back(command);
+    /** Of peer.py: "listen PoseStamped /pose 2" */
+    explicit Peer(const std::string& command) : Peer(wordsOf(command)) {}
+    /** A program and its arguments. */
+    explicit Peer(std::vector<std::string> words) {
         process_.emplace(std::move(words), folder_.path());
         ready_ = becomes([&] { return deployer::readFile(folder_ / "stdout.txt").starts_with("ready"); }, 30);
     }
@@ -71,6 +71,12 @@ public:
     }
 
 private:
+    static std::vector<std::string> wordsOf(std::string command) {
+        std::vector<std::string> words = {python(), INSONIFY_SOURCE_DIR "/tests/dds/peer.py"};
+        for (std::istringstream text(command); text >> command;) words.push_back(command);
+        return words;
+    }
+
     deployer::TestFolder folder_;
     std::optional<deployer::Process> process_;
     bool ready_ = false;

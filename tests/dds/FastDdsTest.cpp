@@ -1,0 +1,67 @@
+// A ROS 2 peer by Fast DDS, which ROS 2 uses by default; its binary is built where Debian's libfastrtps-dev is.
+#include <gmock/gmock.h>
+
+#include <filesystem>
+#include <fstream>
+
+#include "components/ros/Cdr.hpp"
+#include "components/ros/GeometryMessages.hpp"
+#include "components/ros/Times.hpp"
+#include "tests/dds/Ends.hpp"
+
+using namespace insonify;
+using namespace insonify::dds;
+using nlohmann::json;
+
+namespace {
+
+const std::string program = INSONIFY_BIN_DIR "/dds_fast_peer";
+
+class FastDdsTest : public Loopback {
+protected:
+    void SetUp() override {
+        if (!std::filesystem::exists(program)) GTEST_SKIP() << program << " is not built: it needs libfastrtps-dev";
+    }
+};
+
+}  // namespace
+
+TEST_F(FastDdsTest, HearsEveryPingOf128KilobytesAtFortyHertz) {
+    Publishing<types::SonarPtr> publishing({topicOut("in", "/auv/sonar", MessageType::ProjectedSonarImage)});
+    Peer peer({program, "listen", "marine_acoustic_msgs::msg::dds_::ProjectedSonarImage_", "/auv/sonar", "60", "200"});
+    ASSERT_TRUE(peer.ready());
+    std::this_thread::sleep_for(std::chrono::seconds(1));  // until we know it as well
+    const types::SonarPtr ping = pingOf(256, 500);
+    for (int i = 0; i < 200; ++i) {
+        publishing.send(ping);
+        std::this_thread::sleep_for(std::chrono::milliseconds(25));
+    }
+    const json found = peer.result();
+    EXPECT_EQ(found["count"], 200);
+    EXPECT_GT(found["size"], 256 * 500);
+    EXPECT_THAT(publishing.task.notices(), testing::IsEmpty());
+}
+
+TEST_F(FastDdsTest, SendsPosesOfWhichNoneIsLost) {
+    ros::Odometry message;
+    message.header = {ros::toRos(framework::wallClock()), "map"};
+    message.pose.pose.position = {1, 2, 3};
+    Bytes bytes;
+    ros::encode(message, bytes);
+    const deployer::TestFolder folder;
+    std::ofstream(folder / "odometry.cdr", std::ios::binary).write(bytes.data(), std::ssize(bytes));
+    Subscribing subscribing("/auv/odometry", PoseType::Odometry, [](SubscriberConfig& config) {
+        config.reliability = Reliability::Reliable;
+        config.depth = 100;
+        config.topics[0].stamp = StampFrom::Arrival;
+    });
+    Peer peer({program, "send", "nav_msgs::msg::dds_::Odometry_", "/auv/odometry", (folder / "odometry.cdr").string(),
+               "100"});
+    ASSERT_TRUE(peer.ready());
+    for (int i = 0; i < 100; ++i) {
+        const auto pose = subscribing.next();
+        ASSERT_TRUE(pose) << i;
+        EXPECT_EQ(pose->position, glm::dvec3(2, -1, 3));  // of east, north, up
+    }
+    EXPECT_THAT(subscribing.task.notices(), testing::IsEmpty());
+}
