@@ -124,7 +124,7 @@ int send(DomainParticipant& participant, Topic* topic, Bytes bytes, int count) {
 }  // namespace
 
 int main(int count, char** words) {
-    if (count != 6) return std::cerr << "dds_fast_peer: see the head of tests/dds/FastPeer.cpp\n", 2;
+    if (count != 6) return std::cerr << "dds_fast_peer: see the head of tests/support/FastPeer.cpp\n", 2;
     DomainParticipant* const participant = join();
     const TypeSupport type(new Raw(words[2]));
     type.register_type(participant);
