@@ -23,8 +23,10 @@ namespace insonify::scene {
  * file has it. Out: `snapshot`, sonar in the world (body times `mount`), shared geometry, moved objects.
  *
  *  A pose that is not finite, or whose orientation has no length, is dropped: RunTimeError until the next good one. So
- * it is when no pose comes for `pose_timeout`, by their stamps, or one comes that is as old: there is no snapshot then.
- * In realtime on the wall clock a timeout that is not given is 1 s; otherwise there is none. */
+ * it is when no pose of the body, or of a node that a connection names, comes for `pose_timeout`, by their stamps, or
+ * one comes that is as old or far ahead of the clock: there is no snapshot then. In realtime on the wall clock a
+ * timeout that is not given is 1 s; otherwise there is none. With `extrapolate` the snapshot has the sonar's
+ * velocities, by which the sonar's task carries it on to its ping. */
 class SceneTask final : public framework::TaskContext {
 public:
     using TaskContext::TaskContext;
