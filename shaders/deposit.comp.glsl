@@ -42,6 +42,8 @@ void addToBin(uint beam, uint bin, double amount, double weight) {
 #include "jitter.glsl"
 #include "surface.glsl"
 #include "footprint.glsl"
+#define real double
+#include "trapezoid.glsl"
 #include "deposit.glsl"
 
 dvec3 slabFromSonar(dvec3 p) {

@@ -3,6 +3,7 @@
 #include <epoxy/egl.h>
 #include <epoxy/gl.h>
 
+#include <algorithm>
 #include <charconv>
 #include <cstdlib>
 #include <utility>
@@ -108,6 +109,18 @@ EglContext::EglContext(const std::string& device) {
 
 void EglContext::requireDevice(const std::string& device) {
     if (const std::string name = chosen(device); !isWord(name)) indexOf(name, devices().size());
+}
+
+bool EglContext::isAskedFor(const std::string& device) {
+    const char* variable = std::getenv("INSONIFY_EGL_DEVICE");
+    return !device.empty() || (variable && *variable);
+}
+
+bool EglContext::hasCard() {
+    static const bool has = std::ranges::any_of(devices(), [](EGLDeviceEXT device) {
+        return !isSoftwareDevice(device) && deviceDisplay(device) != EGL_NO_DISPLAY;
+    });
+    return has;
 }
 
 EglContext::EglContext(Sharing with) {

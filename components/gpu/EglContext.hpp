@@ -22,6 +22,10 @@ public:
     explicit EglContext(const std::string& device = {});
     /** Throws GlError when EGL lists no such device; makes no context. */
     static void requireDevice(const std::string& device);
+    /** Whether `device` or the environment names one, be it "auto". */
+    static bool isAskedFor(const std::string& device);
+    /** Whether EGL has a graphics card that can be used; looked for once. */
+    static bool hasCard();
     struct Sharing {
         const EglContext& other;
     };

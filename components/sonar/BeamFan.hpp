@@ -15,6 +15,9 @@ struct Beam {
 /** The beams of a configuration, in ascending bearing: a regular fan, or the explicit table. */
 std::vector<Beam> makeBeams(const SonarConfig& config);
 
+/** Azimuth at which a cone of bearing `bearing` meets elevation `elevation`; clamped to +-90 deg [rad]. */
+double coneAzimuth(double bearing, double elevation);
+
 /** One perspective image of the fan. u = tan(azimuth - centre), growing to port; v = tan(elevation) / cos(...). */
 struct Slab {
     double azimuth = 0;     ///< Of the image's centre in the sonar frame [rad].

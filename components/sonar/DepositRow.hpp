@@ -13,6 +13,9 @@ struct PlacedRun {
     uint32_t first_triangle;                                  ///< Of the mesh, among all planes [1].
 };
 
+/** `cosine`, `sine`: of the azimuth of the slab's axis, from the sonar's. */
+PlacedRun placedRun(const ObjectRecord& object, double strength, uint32_t first_triangle, double cosine, double sine);
+
 /** A slab's picture and what its numbers mean, copied when taken. */
 struct TakenPicture {
     std::vector<uint32_t> words;

@@ -81,6 +81,12 @@ vec4 planeOf(glm::dvec3 a, glm::dvec3 b, glm::dvec3 c) {
     return vec4(glm::vec3(normal), static_cast<float>(glm::dot(normal, a)));
 }
 
+void addPlanes(const types::Mesh& mesh, const std::vector<uint32_t>& indices, std::vector<vec4>& planes) {
+    for (size_t i = 0; i + 2 < indices.size(); i += 3)
+        planes.push_back(
+            planeOf(mesh.positions[indices[i]], mesh.positions[indices[i + 1]], mesh.positions[indices[i + 2]]));
+}
+
 gpu::Texture uploadedMap(int width, int height, const uint8_t* rgb, bool repeat_u, bool repeat_v) {
     gpu::Texture texture(GL_RGB8, width, height, true);
     glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
@@ -93,6 +99,12 @@ gpu::Texture uploadedMap(int width, int height, const uint8_t* rgb, bool repeat_
 }
 
 }  // namespace
+
+std::vector<vec4> planesOf(const types::Geometry& geometry) {
+    std::vector<vec4> planes;
+    for (const types::Mesh& mesh : geometry.meshes) addPlanes(mesh, mesh.indices, planes);
+    return planes;
+}
 
 SurfaceScene::SurfaceScene(const types::Geometry& geometry, bool with_normal_maps)
     : with_normal_maps_(with_normal_maps) {
@@ -123,10 +135,7 @@ void SurfaceScene::uploadVertices(const types::Geometry& geometry) {
 
 void SurfaceScene::uploadPlanes(const types::Geometry& geometry) {
     for (const types::Mesh& mesh : geometry.meshes)
-        for (const auto* indices : {&mesh.indices, &mesh.coarse_indices})
-            for (size_t i = 0; i + 2 < indices->size(); i += 3)
-                plane_list_.push_back(planeOf(mesh.positions[(*indices)[i]], mesh.positions[(*indices)[i + 1]],
-                                              mesh.positions[(*indices)[i + 2]]));
+        for (const auto* indices : {&mesh.indices, &mesh.coarse_indices}) addPlanes(mesh, *indices, plane_list_);
     planes_ = uploaded(plane_list_);
 }
 

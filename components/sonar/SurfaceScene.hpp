@@ -7,6 +7,10 @@
 
 namespace insonify::sonar {
 
+/** Planes of all meshes' triangles, mesh after mesh, without those that stand for patches: as SurfaceScene::planes().
+ */
+std::vector<vec4> planesOf(const types::Geometry& geometry);
+
 /** A geometry on the device: all meshes behind one another, a plane for each triangle, materials, normal maps. */
 class SurfaceScene {
 public:
