@@ -6,6 +6,17 @@
 
 namespace insonify::sonar {
 
+glm::dvec3 AngularView::direction(int column, int row) const {
+    const size_t middle = at(column) + 1;
+    const Direction& up = elevations[static_cast<size_t>(2 * row + 1)];
+    Direction around = azimuths[middle];
+    if (conical) {
+        const double azimuth = coneAzimuth(bearings[middle], std::atan2(up.sine, up.cosine));
+        around = {std::cos(azimuth), std::sin(azimuth)};
+    }
+    return {up.cosine * around.cosine, up.cosine * around.sine, up.sine};
+}
+
 AngularView makeAngularView(const SonarConfig& config, const std::vector<Beam>& beams) {
     AngularView view;
     view.beams = static_cast<int>(beams.size());

@@ -1,4 +1,5 @@
 #pragma once
+#include <glm/vec3.hpp>
 #include <vector>
 
 #include "components/sonar/BeamFan.hpp"
@@ -29,6 +30,8 @@ struct AngularView {
     int columns() const { return static_cast<int>(beam_of.size()); }
     /** Of a column's lower edge, in `bearings` and `azimuths`; its middle and upper edge follow. */
     size_t at(int column) const { return static_cast<size_t>(2 * column + beam_of[static_cast<size_t>(column)]); }
+    /** Unit, sonar axes, of the middle of a cell [1]. */
+    glm::dvec3 direction(int column, int row) const;
     /** Solid angle of one cell of the first beam at elevation 0 [sr]. */
     double cell() const { return column_width * row_height; }
 };

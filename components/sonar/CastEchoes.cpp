@@ -80,6 +80,7 @@ private:
     Culler culler_;
     RayVisibility visibility_;
     std::vector<vec4> planes_;
+    NormalMapping normal_maps_;
     std::vector<PlacedRun> runs_;  ///< Of the visibility's commands, in this ping.
     ThreadPool threads_;
     std::vector<Worker> workers_;
@@ -94,11 +95,12 @@ CastEchoes::CastEchoes(const SonarConfig& config, types::GeometryPtr geometry)
     : config_(config),
       geometry_(std::move(geometry)),
       beams_(makeBeams(config)),
-      rules_(makeEchoRules(config)),
+      rules_(makeEchoRules(config, *geometry_)),
       levels_(config, rules_.bins),
       culler_(*geometry_, {0, rules_.bins.range_max, 0, 0, true}),
       visibility_(*geometry_),
       planes_(planesOf(*geometry_)),
+      normal_maps_(*geometry_),
       threads_(config.threads),
       workers_(static_cast<size_t>(threads_.size())) {
     runs_.reserve(visibility_.commands().size());
@@ -158,16 +160,10 @@ TileRays CastEchoes::raysOf(const CastTile& tile, int end_column) const {
     for (int i = 0; i < tile_samples; ++i) {
         const int column = tile.first_column + shape_.at[i].columns, row = tile.first_row + shape_.at[i].rows;
         rays.active |= static_cast<uint32_t>(column < end_column && row < view.rows) << i;
-        const size_t middle = view.at(std::min(column, end_column - 1)) + 1;
-        const AngularView::Direction& up = view.elevations[static_cast<size_t>(2 * std::min(row, view.rows - 1) + 1)];
-        AngularView::Direction around = view.azimuths[middle];
-        if (view.conical) {
-            const double azimuth = coneAzimuth(view.bearings[middle], std::atan2(up.sine, up.cosine));
-            around = {std::cos(azimuth), std::sin(azimuth)};
-        }
-        rays.x[i] = static_cast<float>(up.cosine * around.cosine);
-        rays.y[i] = static_cast<float>(up.cosine * around.sine);
-        rays.z[i] = static_cast<float>(up.sine);
+        const glm::vec3 ray(view.direction(std::min(column, end_column - 1), std::min(row, view.rows - 1)));
+        rays.x[i] = ray.x;
+        rays.y[i] = ray.y;
+        rays.z[i] = ray.z;
     }
     return rays;
 }
@@ -214,7 +210,8 @@ void CastEchoes::workOn(const Part& part, Worker& worker, types::Sonar& ping) {
     const std::span<const CastTile> tiles = cast(part, worker);
     worker.lap(DrawStage);
     std::fill(worker.sums.begin(), worker.sums.end(), 0);
-    deposit(rules_, shape_, {runs_, planes_}, tiles, part.first_beam, worker.sums.data());
+    deposit(rules_, shape_, {visibility_.commands(), runs_, culler_.records(), planes_, normal_maps_}, tiles,
+            part.first_beam, worker.sums.data());
     worker.lap(DepositStage);
     const auto count = static_cast<size_t>(rules_.bins.bin_count);
     if (gather(part, worker))

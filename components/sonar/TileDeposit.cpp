@@ -4,6 +4,7 @@
 #include <bit>
 #include <cmath>
 #include <cstring>
+#include <glm/geometric.hpp>
 
 #include "components/sonar/Acoustics.hpp"
 #include "components/sonar/Estimators.hpp"
@@ -21,6 +22,7 @@ struct Cells {
     double width[stretch], height[stretch], lean[stretch];  ///< [rad], [rad], dazimuth / delevation of its sides [1].
     double size[stretch];                                   ///< Solid angle, in cells at elevation 0 [1].
     double strength[stretch];                               ///< Of the material [1].
+    double mapped[stretch];                                 ///< Cosine of a bent normal; 0: it is the plane's [1].
     double near_limit[stretch], far_limit[stretch];         ///< Inverse ranges of the object [1/m].
     int beam[stretch];
 };
@@ -66,7 +68,8 @@ INSONIFY_VECTORISED void cover(const Cells& cells, int count, double near_edge, 
         covered.far_end[i] = cell.far_end;
         covered.nearest[i] = cell.nearest;
         covered.size[i] = cell.size;
-        covered.strength_range[i] = cells.strength[i] * perpendicular;  // strength cos(theta) r
+        const double cosine_range = cells.mapped[i] > 0.0 && echo ? cells.mapped[i] / inverse_range : perpendicular;
+        covered.strength_range[i] = cells.strength[i] * cosine_range;
     }
 }
 
@@ -117,7 +120,7 @@ struct MeanEstimator : CerqueiraBins {
 };
 
 /** Makes cells of tiles, a stretch at a time. */
-template <class Estimator>
+template <class Estimator, bool normal_maps>
 class CellDeposit {
 public:
     CellDeposit(const EchoRules& rules, const TileShape& shape, const PlacedScene& scene, int first_beam,
@@ -171,7 +174,26 @@ private:
         cells_.near_limit[i] = run.near_limit;
         cells_.far_limit[i] = run.far_limit;
         aim(tile, sample, merged);
+        if (normal_maps) cells_.mapped[i] = mappedCosine(tile, sample, merged);
         if (++count_ == stretch) finish();
+    }
+
+    /** Of the middle of the cell that aim() has just put down; 0 where its material has no map. */
+    double mappedCosine(const CastTile& tile, int sample, int merged) const {
+        const CommandRecord& command = scene_.commands[tile.hits.command[sample]];
+        if (!scene_.normal_maps.isMapped(static_cast<int>(command.material))) return 0;
+        const int i = count_;
+        float u = 0, v = 0;
+        for (int k = sample; k < sample + merged; ++k) u += tile.hits.u[k], v += tile.hits.v[k];
+        const auto per_sample = 1 / static_cast<float>(merged);
+        const glm::dvec3 ray(cells_.cos_el[i] * cells_.cos_az[i], cells_.cos_el[i] * cells_.sin_az[i],
+                             cells_.sin_el[i]);
+        const glm::dvec3 normal(cells_.normal_x[i], cells_.normal_y[i], cells_.normal_z[i]);
+        const double range = std::abs(cells_.distance[i]) / std::max(std::abs(glm::dot(normal, ray)), 1e-6);
+        return static_cast<double>(scene_.normal_maps.cosine(
+            scene_.objects[command.object],
+            {command.object, tile.hits.triangle[sample], static_cast<int>(command.material), u * per_sample,
+             v * per_sample, glm::vec3(ray), static_cast<float>(range * std::max(cells_.width[i], cells_.height[i]))}));
     }
 
     /** Direction, extent and solid angle of a cell of `merged` samples. */
@@ -214,10 +236,10 @@ private:
     Covered covered_{};
 };
 
-template <class Estimator>
+template <bool normal_maps, class Estimator>
 void depositWith(const EchoRules& rules, const TileShape& shape, const PlacedScene& scene,
                  std::span<const CastTile> tiles, int first_beam, Estimator estimator) {
-    CellDeposit cells(rules, shape, scene, first_beam, estimator);
+    CellDeposit<Estimator, normal_maps> cells(rules, shape, scene, first_beam, estimator);
     for (const CastTile& tile : tiles) cells.add(tile);
     cells.finish();
 }
@@ -239,8 +261,9 @@ TileShape::TileShape(int beam_columns, int columns) {
     most_merged = together * all.rows;
 }
 
-EchoRules makeEchoRules(const SonarConfig& config) {
+EchoRules makeEchoRules(const SonarConfig& config, const types::Geometry& geometry) {
     EchoRules rules;
+    rules.normal_maps = std::ranges::any_of(geometry.materials, [](const auto& m) { return m.normal_map >= 0; });
     rules.bins = makeBinGrid(config);
     rules.model = config.model;
     if (config.model == Model::Cerqueira2017) rules.attenuation = makeAbsorption(config).amplitudeNepersPerMetre();
@@ -266,10 +289,16 @@ INSONIFY_VECTORISED __attribute__((flatten)) void deposit(const EchoRules& rules
                                                           int first_beam, uint64_t* sums) {
     const Bins bins{rules.edges.data(), sums, static_cast<uint>(rules.bins.bin_count), rules.bins.bin_width,
                     rules.attenuation};
+    const auto with = [&](auto estimator) {
+        if (rules.normal_maps)
+            depositWith<true>(rules, shape, scene, tiles, first_beam, estimator);
+        else
+            depositWith<false>(rules, shape, scene, tiles, first_beam, estimator);
+    };
     if (rules.model == Model::Cerqueira2017)
-        depositWith(rules, shape, scene, tiles, first_beam, MeanEstimator{{bins}});
+        with(MeanEstimator{{bins}});
     else
-        depositWith(rules, shape, scene, tiles, first_beam, EnergyEstimator{{bins}, rules.middles.data()});
+        with(EnergyEstimator{{bins}, rules.middles.data()});
 }
 
 }  // namespace insonify::sonar

@@ -6,6 +6,7 @@
 #include "components/sonar/BinGrid.hpp"
 #include "components/sonar/DepositRow.hpp"
 #include "components/sonar/Interface.hpp"
+#include "components/sonar/NormalMapping.hpp"
 #include "components/sonar/RayVisibility.hpp"
 
 namespace insonify::sonar {
@@ -30,6 +31,7 @@ struct EchoRules {
     AngularView view;
     BinGrid bins;
     Model model = Model::Physical;
+    bool normal_maps = false;     ///< Whether any material has one.
     double attenuation = 0;       ///< Amplitude, one way, in `cerqueira2017` [Np/m].
     double strength_scale = 1;    ///< strengthScale.
     int most_merged = 1;          ///< Samples of one triangle that may become one cell, a power of 2 [1].
@@ -40,17 +42,20 @@ struct EchoRules {
     size_t sumCount() const { return (static_cast<size_t>(bins.bin_count) + 8) * channels(); }
 };
 
-EchoRules makeEchoRules(const SonarConfig& config);
+EchoRules makeEchoRules(const SonarConfig& config, const types::Geometry& geometry);
 
 /** Samples of one triangle that may become one cell: so that its ranges stay within a twentieth of a bin of the
  * plane's.
  */
 int mostMerged(const AngularView& view, const BinGrid& bins);
 
-/** What hits' numbers mean in this ping: each command's triangles turned into sonar axes, and all planes. */
+/** What hits' numbers mean in this ping: commands, each with its triangles turned into sonar axes, and all planes. */
 struct PlacedScene {
+    std::span<const CommandRecord> commands;
     std::span<const PlacedRun> runs;
+    std::span<const ObjectRecord> objects;
     const std::vector<vec4>& planes;
+    const NormalMapping& normal_maps;
 };
 
 /** A tile that has been cast: where it lies in the view and what it met. */
