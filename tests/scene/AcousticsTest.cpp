@@ -23,6 +23,48 @@ TEST(AcousticsTest, MatterHasTheReflectionOfTheTable) {
     EXPECT_NEAR(lambertDb(Matter::Granite), -9.23 - 1.83, 0.01);
 }
 
+TEST(AcousticsTest, ReflectionIsThatOfTypicalImpedancesAgainstSeaWater) {
+    struct Case {
+        Matter matter;
+        double softest, hardest;  ///< Specific impedance [MRayl].
+    };
+    const auto against_water = [](double z) { return (z - 1.5375) / (z + 1.5375); };  // 1025 kg/m^3 x 1500 m/s
+    for (const Case& c : {Case{Matter::Steel, 46.3, 46.3},
+                          {Matter::CarbonSteel, 46.3, 46.3},
+                          {Matter::Aluminium, 17.1, 17.1},
+                          {Matter::CastIron, 33, 33},
+                          {Matter::Bronze, 40, 40},
+                          {Matter::Granite, 14, 14.6},
+                          {Matter::Basalt, 14, 14.6},
+                          {Matter::Concrete, 7, 10},
+                          {Matter::Limestone, 7.2, 7.2},
+                          {Matter::Gravel, 3.6, 3.6},
+                          {Matter::Sand, 3.1, 3.3},
+                          {Matter::Mud, 1.7, 1.8},
+                          {Matter::Pvc, 3.33, 3.33},
+                          {Matter::Acrylic, 3.22, 3.22},
+                          {Matter::Hdpe, 2.34, 2.34},
+                          {Matter::Neoprene, 2.1, 2.1},
+                          {Matter::NaturalRubber, 1.47, 1.47},
+                          {Matter::WaterloggedWood, 1.05, 1.7},
+                          {Matter::DryWood, 0.05, 0.5},
+                          {Matter::ClosedCellFoam, 0.05, 0.5},
+                          {Matter::Ice, 3.5, 3.5},
+                          {Matter::Air, 0.0004, 0.0004}}) {
+        const auto name = types::EnumNames<Matter>::names[static_cast<size_t>(c.matter)];
+        EXPECT_GE(reflection(c.matter), against_water(c.softest) - 0.01) << name;
+        EXPECT_LE(reflection(c.matter), against_water(c.hardest) + 0.01) << name;
+    }
+}
+
+TEST(AcousticsTest, ALambertSphereOfMatterHasTheTargetStrengthOfItsReflection) {
+    // Its echo is the integral of mu cos^2 over the half that is seen, 2 pi a^2 mu / 3; that of a rigid one a^2 / 4.
+    for (const Matter matter : {Matter::Steel, Matter::Concrete, Matter::Air}) {
+        const double echo = 2 * M_PI / 3 * std::pow(10, lambertDb(matter) / 10);
+        EXPECT_NEAR(echo, std::pow(reflection(matter), 2) / 4, 1e-3 * echo);
+    }
+}
+
 TEST(AcousticsTest, NoSurfaceOfTheTablesCreatesEnergy) {
     const double most = 10 * std::log10(1 / M_PI) + 0.03;  // mu <= 1/pi; the table clips rough rock to -5 dB
     for (size_t i = 0; i < std::size(types::EnumNames<Matter>::names); ++i) EXPECT_LT(lambertDb(Matter(i)), most);
