@@ -15,6 +15,38 @@ TEST(AcousticsTest, SedimentsHaveTheLambertParametersOfTheTable) {
     EXPECT_DOUBLE_EQ(lambertDb(Sediment::Mackenzie), -27);
 }
 
+TEST(AcousticsTest, LambertsLawFollowsTheReportsSeabeds) {
+    struct Case {
+        Sediment sediment;
+        double strength[5];  ///< By the model of APL-UW TR 9407 at 100 kHz and 1528 m/s, computed apart from here [dB].
+    };
+    constexpr double grazing_deg[] = {10, 20, 30, 45, 60};
+    for (const Case& c : {Case{Sediment::Rock, {-17.0, -12.0, -9.5, -7.8, -7.2}},
+                          {Sediment::Cobble, {-21.3, -16.2, -13.8, -12.4, -11.8}},
+                          {Sediment::SandyGravel, {-24.2, -19.3, -17.5, -16.4, -15.5}},
+                          {Sediment::CoarseSand, {-27.2, -21.8, -20.1, -18.9, -17.1}},
+                          {Sediment::MediumSand, {-29.8, -24.2, -22.6, -21.3, -19.5}},
+                          {Sediment::FineSand, {-33.5, -27.2, -24.6, -23.6, -22.0}},
+                          {Sediment::MuddySand, {-34.7, -27.4, -25.2, -24.1, -22.9}},
+                          {Sediment::VeryFineSand, {-34.0, -27.0, -25.6, -24.5, -23.5}},
+                          {Sediment::CoarseSilt, {-31.9, -27.8, -26.4, -25.0, -24.1}},
+                          {Sediment::SandySilt, {-31.8, -28.4, -26.7, -25.2, -24.3}},
+                          {Sediment::MediumSilt, {-35.6, -31.7, -29.9, -28.3, -27.3}},
+                          {Sediment::FineSilt, {-35.8, -31.8, -29.9, -28.3, -27.4}},
+                          {Sediment::VeryFineSilt, {-36.0, -31.9, -30.0, -28.4, -27.4}},
+                          {Sediment::Clay, {-36.4, -32.0, -30.1, -28.4, -27.4}}}) {
+        double sum = 0, squares = 0;
+        for (size_t i = 0; i < 5; ++i) {
+            const double lambert = lambertDb(c.sediment) + 20 * std::log10(std::sin(grazing_deg[i] * M_PI / 180));
+            sum += (lambert - c.strength[i]) / 5;
+            squares += std::pow(lambert - c.strength[i], 2) / 5;
+        }
+        const auto name = types::EnumNames<Sediment>::names[static_cast<size_t>(c.sediment)];
+        EXPECT_NEAR(sum, 0, 0.5) << name;
+        EXPECT_LT(std::sqrt(squares), 2.5) << name;
+    }
+}
+
 TEST(AcousticsTest, MatterHasTheReflectionOfTheTable) {
     EXPECT_DOUBLE_EQ(reflection(Matter::Steel), 0.936);
     EXPECT_DOUBLE_EQ(reflection(Matter::CarbonSteel), 0.936);
