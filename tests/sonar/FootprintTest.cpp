@@ -111,7 +111,8 @@ struct AngularCell {
         const double box_a = abs(std::cos(e) * aside / plane.distance) * da,
                      box_e = abs((std::cos(e) * n[2] - std::sin(e) * along) / plane.distance) * de;
         const double wide = max(box_a, box_e), narrow = max(min(box_a, box_e), 1e-12 * wide);
-        const double reach = (wide + narrow) / 2, nearest = 1 / plane.distance, size = (std::sin(e + de / 2) - std::sin(e - de / 2)) / de;
+        const double reach = (wide + narrow) / 2, nearest = 1 / plane.distance;
+        const double size = (std::sin(e + de / 2) - std::sin(e - de / 2)) / de;
         bins.depositCell({g, g, wide, narrow, 1 / wide, 0.5 / (wide * narrow), min(g + reach, nearest),
                           max(g - reach, bins.binEdge(Bins::bin_count)), nearest, size},
                          0, plane.distance);
