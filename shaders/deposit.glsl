@@ -23,7 +23,7 @@ void depositPart(uint beam, uint bin, double share, double above, double below, 
 }
 
 #ifdef HAVE_PUBLISHED
-// cerqueira2017 to the letter (physics.md 2, items 1, 3, 4): each pixel counts once, in the bin of its centre; what meets
+// cerqueira2017 to the letter (ACOUSTICS.md 8.2, items 3, 4): each pixel counts once, in the bin of its centre; what meets
 // nothing in range counts in bin 0 with a cosine of 0.
 void depositCell(Footprint cell, uint beam, double strength_range) {
     double range = cell.pixel > 0.0 ? 1.0 / cell.pixel : 0.0;

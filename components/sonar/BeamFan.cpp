@@ -60,7 +60,7 @@ void addRow(const SonarConfig& config, const std::vector<Beam>& beams, const Sla
     }
 }
 
-/** One image of the whole fan, its top and bottom edges straight (physics.md 2, item 2). */
+/** One image of the whole fan, its top and bottom edges straight (ACOUSTICS.md 8.2, item 1). */
 Slab publishedFrustum(const SonarConfig& config) {
     const double half_width = types::radians(config.field_of_view_deg) / 2;
     return {0,

@@ -36,7 +36,7 @@ struct Slab {
 /** Rows or columns that an image may have: what every OpenGL 4.5 device can draw [1]. */
 constexpr int most_image_size = 16384;
 
-/** As few slabs of at most 60 deg as cover the beams (physics.md 3.1); cones reach wider than their bearing. One with
+/** As few slabs of at most 60 deg as cover the beams (ACOUSTICS.md 5.3); cones reach wider than their bearing. One with
  *  `published`. */
 std::vector<Slab> makeSlabs(const SonarConfig& config, const std::vector<Beam>& beams);
 

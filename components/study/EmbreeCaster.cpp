@@ -50,7 +50,7 @@ struct Hit {
 
 double squareAbove(double x) { return x > 0 ? x * x : 0; }
 
-/** physics.md 3.2: share of a trapezoid (box a times box b, about 0) below t. */
+/** ACOUSTICS.md 4.3: share of a trapezoid (box a times box b, about 0) below t. */
 double below(double t, double a, double b) {
     if (std::min(a, b) < 1e-6 * std::max(a, b)) return std::clamp(t / std::max(a, b) + 0.5, 0.0, 1.0);
     return (squareAbove(t + (a + b) / 2) - squareAbove(t + (a - b) / 2) - squareAbove(t - (a - b) / 2) +

@@ -22,7 +22,7 @@ public:
      */
     void render(const types::Pose& sonar, const sonar::SonarConfig& config, std::vector<float>& energies);
 
-    /** Of the last ping: bins that the longest cell covered, kappa of physics.md 3.2 [1]. */
+    /** Of the last ping: bins that the longest cell covered, kappa of ACOUSTICS.md 4.5 [1]. */
     double kappaMax() const { return kappa_max_; }
 
 private:

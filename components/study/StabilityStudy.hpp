@@ -22,7 +22,7 @@ struct Outcome {
     Verdict verdict = Verdict::Later;
 };
 
-/** A stiff or extreme case of physics.md section 4, or one found since (numbers from 56 on). */
+/** A stiff or extreme case of ACOUSTICS.md 11. */
 struct StabilityCase {
     int number;
     std::string name, expected;

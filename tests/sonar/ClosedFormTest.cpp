@@ -1,4 +1,4 @@
-// Pings of scenes whose echo is known in closed form (physics.md 3.5), drawn through OpenGL. Every form stands beside
+// Pings of scenes whose echo is known in closed form (ACOUSTICS.md 9), drawn through OpenGL. Every form stands beside
 // a deliberately wrong one, which must fail by the same measure.
 #include "components/sonar/SonarRenderer.hpp"
 #include "tests/support/ClosedForms.hpp"

@@ -1,4 +1,4 @@
-// Threads and extreme scenes (physics.md 4).
+// Threads and extreme scenes (ACOUSTICS.md 11).
 #include <gmock/gmock.h>
 
 #include <algorithm>
