@@ -34,8 +34,7 @@ double nearPlane(const SonarConfig& config, const Slab& slab) {
 }
 
 CullRules cullRules(const SonarConfig& config, const BinGrid& bins) {
-    const double detail = config.published ? 0 : config.detail;
-    return {config.range_min, bins.range_max, detail, 0.5 * bins.bin_width, config.draw_all};
+    return {config.range_min, bins.range_max, config.draw_all};
 }
 
 /** Strongest Lambert parameter [1]. */
@@ -222,15 +221,13 @@ bool SonarRenderer::heard() const {
 std::vector<types::Omission> SonarRenderer::culled() const {
     const types::Geometry& geometry = *parts_->geometry;
     std::vector<bool> seen(geometry.objects.size());
-    size_t empty_slabs = 0, shown = 0, coarse = 0, replaced = 0;  // of two slabs more than once
+    size_t empty_slabs = 0, shown = 0;  // of two slabs more than once
     for (size_t i = 0; i < parts_->slabs.size(); ++i) {
         const auto& runs = parts_->surface.picture(i).runs;
         empty_slabs += runs.empty();
         for (const Culler::Run& run : runs) {
             seen[run.object] = true;
-            shown += (run.stands_for ? run.stands_for : run.index_count) / 3;
-            coarse += run.stands_for ? run.index_count / 3 : 0;
-            replaced += run.stands_for / 3;
+            shown += run.index_count / 3;
         }
     }
     std::vector<types::Omission> all;
@@ -242,10 +239,6 @@ std::vector<types::Omission> SonarRenderer::culled() const {
     const size_t triangles = geometry.triangleCount();
     add("at least ", triangles - std::min(triangles, shown), triangles, "triangles",
         "outside the fan or the range at the first ping, or on the far side of a closed mesh");
-    if (replaced > coarse)
-        all.push_back({fmt::format("detail of {} triangles", replaced),
-                       fmt::format("at the first ping {} within {:g} of a pixel and half a bin of them are drawn",
-                                   coarse, parts_->config.detail)});
     add("", empty_slabs, parts_->slabs.size(), "slabs", outside);
     return all;
 }

@@ -5,9 +5,6 @@
 namespace insonify::sonar {
 namespace {
 
-/** So many in view are drawn fast enough for more detail than must be [1]. */
-constexpr size_t few_triangles = 40'000;
-
 bool hasNormalMaps(const SurfacePass::Setup& setup) { return std::ranges::count(setup.defines, "HAVE_NORMAL_MAP") > 0; }
 
 /** How many contexts are worth their memory. */
@@ -69,14 +66,7 @@ void SurfacePass::makePictures(size_t part) {
 
 void SurfacePass::cull(const Culler& culler) {
     placed_ = &culler.records();
-    for (double share : {0.25, 0.5, 1.0}) {
-        size_t triangles = 0;
-        for (auto& picture : pictures_) {
-            culler.visible(picture->slab(), picture->runs, share);
-            for (const Culler::Run& run : picture->runs) triangles += run.index_count / 3;
-        }
-        if (triangles <= few_triangles) return;
-    }
+    for (auto& picture : pictures_) culler.visible(picture->slab(), picture->runs);
 }
 
 template <class Use>

@@ -28,7 +28,7 @@ public:
     /** Other pictures of the same slabs: as many, in more or fewer pixels. */
     void resize(const std::vector<Slab>& slabs);
 
-    /** Lists what each slab sees of what the culler has placed, with as little detail as a speedy picture takes. */
+    /** Lists what each slab sees of what the culler has placed. */
     void cull(const Culler& culler);
     /** Whether a slab's picture is drawn. */
     bool draws(size_t slab) const { return setup_.empty_too || !pictures_[slab]->empty(); }

@@ -13,13 +13,10 @@ namespace {
 class Drawn {
 public:
     explicit Drawn(const types::Mesh& mesh) : indices(mesh.indices), place_(mesh.positions.size(), nobody) {
-        const size_t finest = indices.size() / 3;
-        indices.insert(indices.end(), mesh.coarse_indices.begin(), mesh.coarse_indices.end());
         sources.resize(indices.size() / 3);
-        number(0, finest);
-        for (const types::Patch& patch :
-             mesh.patches)  // with vertices of its own: what is drawn together lies together
-            number(finest + patch.first_index / 3, finest + (patch.first_index + patch.index_count) / 3);
+        for (size_t t = 0; t < sources.size(); ++t) endInOwnVertex(t);
+        for (size_t i = 0; i < indices.size(); ++i)
+            indices[i] = i % 3 == 2 ? static_cast<uint32_t>(i / 3) : at(indices[i]);
     }
 
     std::vector<uint32_t> sources;  ///< Of each drawn vertex, in the mesh.
@@ -27,14 +24,6 @@ public:
 
 private:
     static constexpr uint32_t nobody = 0xffffffff;
-
-    void number(size_t first, size_t last) {
-        for (size_t t = first; t < last; ++t) endInOwnVertex(t);
-        for (size_t i = 3 * first; i < 3 * last; ++i)
-            indices[i] = i % 3 == 2 ? static_cast<uint32_t>(i / 3) : at(indices[i]);
-        for (size_t t = first; t < last; ++t)
-            for (size_t k = 0; k < 3; ++k) place_[sources[indices[3 * t + k]]] = nobody;
-    }
 
     void endInOwnVertex(size_t t) {
         uint32_t* corners = indices.data() + 3 * t;
@@ -97,7 +86,7 @@ gpu::Texture uploadedMap(int width, int height, const uint8_t* rgb, bool repeat_
 SurfaceScene::SurfaceScene(const types::Geometry& geometry, bool with_normal_maps)
     : with_normal_maps_(with_normal_maps) {
     uploadVertices(geometry);
-    uploadPlanes(geometry);
+    listPlanes(geometry);
     uploadMaterials(geometry);
     if (with_normal_maps) uploadNormalMaps(geometry);
 }
@@ -121,13 +110,11 @@ void SurfaceScene::uploadVertices(const types::Geometry& geometry) {
     uvs_ = uploaded(joined(geometry, meshes, &types::Mesh::uvs, glm::vec2(0)));
 }
 
-void SurfaceScene::uploadPlanes(const types::Geometry& geometry) {
+void SurfaceScene::listPlanes(const types::Geometry& geometry) {
     for (const types::Mesh& mesh : geometry.meshes)
-        for (const auto* indices : {&mesh.indices, &mesh.coarse_indices})
-            for (size_t i = 0; i + 2 < indices->size(); i += 3)
-                plane_list_.push_back(planeOf(mesh.positions[(*indices)[i]], mesh.positions[(*indices)[i + 1]],
-                                              mesh.positions[(*indices)[i + 2]]));
-    planes_ = uploaded(plane_list_);
+        for (size_t i = 0; i + 2 < mesh.indices.size(); i += 3)
+            plane_list_.push_back(planeOf(mesh.positions[mesh.indices[i]], mesh.positions[mesh.indices[i + 1]],
+                                          mesh.positions[mesh.indices[i + 2]]));
 }
 
 void SurfaceScene::uploadMaterials(const types::Geometry& geometry) {
@@ -157,6 +144,7 @@ void SurfaceScene::describe(const gpu::VertexArray& vertices) const {
 }
 
 void SurfaceScene::bindRecords() const {
+    if (planes_.bytes() == 0) planes_ = uploaded(plane_list_);
     planes_.bindBase(GL_SHADER_STORAGE_BUFFER, PLANES_BINDING);
     materials_.bindBase(GL_SHADER_STORAGE_BUFFER, MATERIALS_BINDING);
 }

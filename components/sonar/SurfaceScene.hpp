@@ -23,14 +23,14 @@ public:
     const std::vector<MaterialRecord>& materials() const { return material_list_; }
     /** Attributes and indices of a context's vertex array. */
     void describe(const gpu::VertexArray& vertices) const;
-    /** Binds planes and materials. */
+    /** Binds planes, which the device is told when they are first bound, and materials. */
     void bindRecords() const;
     /** Binds the normal map of a material; the flat map when it has none. */
     void bindNormalMap(int map) const;
 
 private:
     void uploadVertices(const types::Geometry& geometry);
-    void uploadPlanes(const types::Geometry& geometry);
+    void listPlanes(const types::Geometry& geometry);
     void uploadMaterials(const types::Geometry& geometry);
     void uploadNormalMaps(const types::Geometry& geometry);
 
@@ -38,7 +38,8 @@ private:
     std::vector<MeshPlace> places_;
     std::vector<vec4> plane_list_;
     std::vector<MaterialRecord> material_list_;
-    gpu::Buffer positions_, normals_, tangents_, uvs_, indices_, planes_, materials_;
+    gpu::Buffer positions_, normals_, tangents_, uvs_, indices_, materials_;
+    mutable gpu::Buffer planes_;             ///< Empty until a deposit on the device asks for them.
     std::vector<gpu::Texture> normal_maps_;  ///< The last one is flat.
 };
 
