@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "components/gpu/ReadBack.hpp"
+
 namespace insonify::sonar {
 namespace {
 
@@ -21,7 +23,7 @@ SurfacePass::SurfacePass(gpu::EglContext& context, Setup setup, ThreadPool& thre
       scene_(setup_.geometry, hasNormalMaps(setup_)),
       parts_(partCount(context, setup_, threads)),
       pictures_(setup_.slabs.size()) {
-    glFinish();  // the other contexts must find the scene's buffers filled
+    gpu::Fence::here().wait();  // the other contexts must find the scene's buffers filled
     try {
         onEachPart([this](size_t part) { makePart(part); });
     } catch (...) {
@@ -84,12 +86,13 @@ void SurfacePass::draw() {
     onEachPart([this](size_t part) {
         const auto together = context_.drawing();
         onDrawn(part, [](const SurfacePainter& painter, const SlabPicture& picture) { painter.draw(picture); });
-        glFinish();
+        if (context_.isSoftware()) gpu::Fence::here().wait();  // for other contexts; a card's own takes its turn
         if (parts_[part].own) parts_[part].own->check();
     });
 }
 
 void SurfacePass::bindResults(size_t slab) const {
+    context_.requireStorage(scene_.planes().size() * sizeof(vec4), "the planes of all triangles");
     pictures_[slab]->bindTexture(0);
     scene_.bindRecords();
 }

@@ -32,8 +32,9 @@ public:
     void cull(const Culler& culler);
     /** Whether a slab's picture is drawn. */
     bool draws(size_t slab) const { return setup_.empty_too || !pictures_[slab]->empty(); }
-    /** Draws the slabs; returns when the pictures are there. Throws GlError. All other functions but objects() and
-     *  draws() want EglContext::transferring(); this one does that itself. */
+    /** Draws the slabs. A graphics card may still be at it when this returns; what its context is asked for then comes
+     *  after. Throws GlError. All other functions but objects() and draws() want EglContext::transferring(); this one
+     *  does that itself. */
     void draw();
 
     const SlabPicture& picture(size_t slab) const { return *pictures_[slab]; }
