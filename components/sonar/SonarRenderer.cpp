@@ -104,6 +104,8 @@ SonarRenderer::Parts::Parts(const SonarConfig& c, types::GeometryPtr scene)
       surface(context,
               {*geometry, slabs, defines(plan), nearPlane(config, slabs.front()), culler.runLimit(), config.published},
               threads) {
+    plan.device = fmt::format("{}, OpenGL {}", context.renderer(), context.driver());
+    if (const std::string notice = context.fallback(); !notice.empty()) plan.notices.push_back(notice);
     makeDeposit();
     scratch.resize(static_cast<size_t>(threads.size()) * static_cast<size_t>(bins.bin_count));
     context.check();
