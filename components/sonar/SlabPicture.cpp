@@ -27,7 +27,8 @@ struct SlabPicture::Multisampled {
           ids(gpu::Texture::multisampled(format, columns, rows, 4)),
           depth(gpu::Texture::multisampled(GL_DEPTH_COMPONENT32F, columns, rows, 4)),
           target(ids, depth),
-          resolve(gpu::Program::raster("resolve.vert.glsl", "resolve.frag.glsl", {})) {
+          resolve(gpu::Program::raster("resolve.vert.glsl", "resolve.frag.glsl", {})),
+          sample_of_quarter(glGetUniformLocation(resolve.id(), "sample_of_quarter")) {
         target.bind();
         order = samplesOfQuarters();
     }
@@ -36,6 +37,7 @@ struct SlabPicture::Multisampled {
     gpu::Texture ids, depth;
     gpu::Framebuffer target;
     gpu::Program resolve;
+    GLint sample_of_quarter;
     gpu::VertexArray none;
     std::array<GLint, 4> order;
 };
@@ -86,8 +88,7 @@ void SlabPicture::resolve() const {
     glDisable(GL_DEPTH_TEST);
     multisampled_->resolve.use();
     const auto& order = multisampled_->order;
-    glUniform4i(glGetUniformLocation(multisampled_->resolve.id(), "sample_of_quarter"), order[0], order[1], order[2],
-                order[3]);
+    glUniform4i(multisampled_->sample_of_quarter, order[0], order[1], order[2], order[3]);
     multisampled_->ids.bind(0);
     multisampled_->none.bind();
     glDrawArrays(GL_TRIANGLES, 0, 3);
