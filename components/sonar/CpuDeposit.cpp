@@ -25,10 +25,8 @@ PlacedRun placed(const ObjectRecord& object, double strength, uint32_t first_tri
         run.normal_x[i] = cosine * x + sine * y;
         run.normal_y[i] = cosine * y - sine * x;
         run.normal_z[i] = object.normal_z[i];
+        run.eye[i] = double{object.eye[i]} + double{object.eye_rest[i]};
     }
-    run.origin[0] = cosine * object.row_x.w + sine * object.row_y.w;
-    run.origin[1] = cosine * object.row_y.w - sine * object.row_x.w;
-    run.origin[2] = object.row_z.w;
     return run;
 }
 

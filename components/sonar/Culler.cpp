@@ -95,10 +95,19 @@ void Culler::placeObject(size_t index, const glm::dmat4& sonar_from_object) {
     const double radius = scale * glm::length(box.high - box.low) / 2;
     far_[index] = !rules_.draw_all && glm::length(centre) - radius > 1.001 * rules_.range_max;
     if (far_[index]) return;
-    const glm::dmat4 normals(glm::transpose(glm::inverse(linear)));
+    const glm::dmat3 inverse = glm::inverse(linear);
+    const glm::dmat4 normals(glm::transpose(inverse));
+    const glm::dvec4 eye(-(inverse * glm::dvec3(sonar_from_object[3])), 0);
     ObjectRecord& record = records_[index];
-    record = {row(sonar_from_object, 0), row(sonar_from_object, 1), row(sonar_from_object, 2),       row(normals, 0),
-              row(normals, 1),           row(normals, 2),           extent(index, sonar_from_object)};
+    record = {row(sonar_from_object, 0),
+              row(sonar_from_object, 1),
+              row(sonar_from_object, 2),
+              row(normals, 0),
+              row(normals, 1),
+              row(normals, 2),
+              extent(index, sonar_from_object),
+              vec4(eye),
+              vec4(eye - glm::dvec4(vec4(eye)))};
 }
 
 void Culler::visible(const Slab& slab, std::vector<Run>& runs) const {
@@ -115,9 +124,7 @@ void Culler::visible(const Slab& slab, std::vector<Run>& runs) const {
 
 std::optional<glm::vec3> Culler::before(size_t object, float distance) const {
     if (!(distance > rules_.range_min)) return {};  // of a front that is blanked the back may be heard
-    const ObjectRecord& r = records_[object];
-    // The inverse transpose has the rows that take the sonar's place into the object's axes.
-    return -(r.row_x.w * glm::vec3(r.normal_x) + r.row_y.w * glm::vec3(r.normal_y) + r.row_z.w * glm::vec3(r.normal_z));
+    return glm::vec3(records_[object].eye);
 }
 
 void Culler::addObject(const Query& query, std::vector<Run>& runs) const {

@@ -92,7 +92,7 @@ void SurfacePass::draw() {
 }
 
 void SurfacePass::bindResults(size_t slab) const {
-    context_.requireStorage(scene_.planes().size() * sizeof(vec4), "the planes of all triangles");
+    context_.requireStorage(scene_.planes().size() * sizeof(PlaneRecord), "the planes of all triangles");
     pictures_[slab]->bindTexture(0);
     scene_.bindRecords();
 }

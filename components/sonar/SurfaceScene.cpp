@@ -61,13 +61,15 @@ gpu::Buffer uploaded(const std::vector<T>& items) {
     return gpu::Buffer::of(std::span(items));
 }
 
-/** A triangle's plane in object axes: xyz its unit normal n, w = n.p for its points p [m]. */
-vec4 planeOf(glm::dvec3 a, glm::dvec3 b, glm::dvec3 c) {
-    const glm::dvec3 across = glm::cross(b - a, c - a);
-    const double length = glm::length(across);
-    if (!(length > 0)) return vec4(0);
-    const glm::dvec3 normal = across / length;
-    return vec4(glm::vec3(normal), static_cast<float>(glm::dot(normal, a)));
+/** Of what has no area: no normal, which is no echo. The point is that of the plane which is nearest to the origin
+ * within the triangle's reach: even of a huge triangle it is close to what is seen, if that is close to the origin. */
+PlaneRecord planeOf(glm::dvec3 a, glm::dvec3 b, glm::dvec3 c) {
+    const glm::dvec3 across = glm::cross(b - a, c - a), middle = (a + b + c) / 3.0;
+    if (!(glm::length(across) > 0)) return {vec4(0), vec4(0)};
+    const glm::dvec3 normal = glm::normalize(across), way = normal * glm::dot(normal, middle) - middle;
+    const double reach = glm::distance(middle, a), length = glm::length(way);
+    const glm::vec3 point(length > reach ? middle + way * (reach / length) : middle + way);
+    return {vec4(glm::vec3(normal), static_cast<float>(glm::dot(normal, a - glm::dvec3(point)))), vec4(point, 0)};
 }
 
 gpu::Texture uploadedMap(int width, int height, const uint8_t* rgb, bool repeat_u, bool repeat_v) {

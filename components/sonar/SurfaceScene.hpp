@@ -18,8 +18,8 @@ public:
     SurfaceScene(const types::Geometry& geometry, bool with_normal_maps);
     const MeshPlace& place(int mesh) const { return places_[static_cast<size_t>(mesh)]; }
     bool withNormalMaps() const { return with_normal_maps_; }
-    /** Plane of each triangle in object axes: xyz its unit normal n, w = n.p for its points p [m]. */
-    const std::vector<vec4>& planes() const { return plane_list_; }
+    /** Of each triangle. */
+    const std::vector<PlaneRecord>& planes() const { return plane_list_; }
     const std::vector<MaterialRecord>& materials() const { return material_list_; }
     /** Attributes and indices of a context's vertex array. */
     void describe(const gpu::VertexArray& vertices) const;
@@ -36,7 +36,7 @@ private:
 
     bool with_normal_maps_;
     std::vector<MeshPlace> places_;
-    std::vector<vec4> plane_list_;
+    std::vector<PlaneRecord> plane_list_;
     std::vector<MaterialRecord> material_list_;
     gpu::Buffer positions_, normals_, tangents_, uvs_, indices_, materials_;
     mutable gpu::Buffer planes_;             ///< Empty until a deposit on the device asks for them.
