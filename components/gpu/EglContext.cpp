@@ -193,8 +193,7 @@ std::string EglContext::fallback() const {
     const std::string card = cardOfSystem();
     if (card.empty()) return "drawn in software by " + renderer_ + ": there is no graphics card";
     return "Warning: drawn in software by " + renderer_ + ": the system has a graphics card (" + card +
-           "), but EGL lists none that gives OpenGL 4.5; install its driver's EGL (NVIDIA: libnvidia-egl, in a "
-           "container "
+           "), but EGL gives no OpenGL 4.5 on it; install its driver's EGL (NVIDIA: libegl-nvidia0, in a container "
            "NVIDIA_DRIVER_CAPABILITIES=graphics), or set device: software";
 }
 
@@ -202,7 +201,7 @@ void EglContext::requireStorage(size_t bytes, const char* what) const {
     if (bytes > static_cast<size_t>(most_storage_))
         throw GlError(std::string(what) + " take " + std::to_string(bytes >> 20) + " MiB; shaders of " + renderer_ +
                       " read at most " + std::to_string(most_storage_ >> 20) +
-                      " MiB in one buffer: use deposit: cpu, or a scene of fewer triangles");
+                      " MiB in one buffer: set deposit: cpu, or take fewer triangles or bins");
 }
 
 namespace {

@@ -22,8 +22,7 @@ class Programs;
  *  "software" (Mesa llvmpipe), a number (position in EGL's device list), "auto" (the first graphics card that
  *  gives a context, else software); empty: the environment variable INSONIFY_EGL_DEVICE, else "auto".
  *
- *  Debug builds, and any with INSONIFY_GL_DEBUG=1, have GL tell at once what it refuses, with its words;
- * INSONIFY_GL_DEBUG=0 keeps it from that. */
+ *  With INSONIFY_GL_DEBUG=1, and in debug builds unless it is 0, GL tells at once and in words what it refuses. */
 class EglContext {
 public:
     explicit EglContext(const std::string& device = {});

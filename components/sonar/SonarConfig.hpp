@@ -93,8 +93,8 @@ struct QualityConfig {
     void check(types::Problems& problems) const;
 };
 
-/** What simplified meshes may cost. None are drawn: of fewer triangles that keep within the default on a rough floor
- *  there are hardly fewer, so that every bound holds as it is. */
+/** What simplified meshes may cost. A bound, not a wish: all meshes are drawn in full, for on rough floors those that
+ *  keep to the default are hardly simpler (README.md, What is left out). */
 struct DetailConfig {
     double error = 0.005;
 
