@@ -57,13 +57,14 @@ void SurfacePass::onEachPart(const Job& job) {
 
 void SurfacePass::makePart(size_t part) {
     if (part > 0) parts_[part].own.emplace(gpu::EglContext::Sharing{context_});
-    parts_[part].painter.emplace(setup_.geometry, scene_, setup_.defines, setup_.near_plane, context_.isSoftware());
+    parts_[part].painter.emplace(setup_.geometry, scene_, setup_.defines, setup_.near_plane, contextOf(part));
     makePictures(part);
 }
 
 void SurfacePass::makePictures(size_t part) {
     for (size_t slab = part; slab < pictures_.size(); slab += parts_.size())
-        pictures_[slab] = std::make_unique<SlabPicture>(setup_.slabs[slab], hasNormalMaps(setup_), setup_.run_limit);
+        pictures_[slab] =
+            std::make_unique<SlabPicture>(setup_.slabs[slab], hasNormalMaps(setup_), setup_.run_limit, contextOf(part));
 }
 
 void SurfacePass::cull(const Culler& culler) {

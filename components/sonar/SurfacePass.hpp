@@ -49,6 +49,7 @@ private:
         std::optional<gpu::EglContext> own;  ///< Of all threads but the first, which has the renderer's.
         std::optional<SurfacePainter> painter;
     };
+    gpu::EglContext& contextOf(size_t part) { return parts_[part].own ? *parts_[part].own : context_; }
     void release();
     void makePart(size_t part);
     void makePictures(size_t part);
