@@ -52,6 +52,6 @@ public:
 };
 
 /** The context outlives it. */
-std::unique_ptr<BinDeposit> makeGpuDeposit(const DepositSetup& setup, const gpu::EglContext& context);
+std::unique_ptr<BinDeposit> makeGpuDeposit(const DepositSetup& setup, gpu::EglContext& context);
 
 }  // namespace insonify::sonar

@@ -79,7 +79,7 @@ private:
     BinLevels levels_;
     Culler culler_;
     RayVisibility visibility_;
-    std::vector<vec4> planes_;
+    std::vector<PlaneRecord> planes_;
     NormalMapping normal_maps_;
     std::vector<PlacedRun> runs_;  ///< Of the visibility's commands, in this ping.
     ThreadPool threads_;
@@ -97,7 +97,7 @@ CastEchoes::CastEchoes(const SonarConfig& config, types::GeometryPtr geometry)
       beams_(makeBeams(config)),
       rules_(makeEchoRules(config, *geometry_)),
       levels_(config, rules_.bins),
-      culler_(*geometry_, {0, rules_.bins.range_max, 0, 0, true}),
+      culler_(*geometry_, {0, rules_.bins.range_max, true}),
       visibility_(*geometry_),
       planes_(planesOf(*geometry_)),
       normal_maps_(*geometry_),

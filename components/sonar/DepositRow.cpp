@@ -74,13 +74,14 @@ void miss(Pixels& pixels, int i) {
     pixels.near_limit[i] = pixels.far_limit[i] = 0;
 }
 
-void hit(const PlacedRun& run, const vec4& plane, double mapped, Pixels& pixels, int i) {
-    const auto turned = [&](const double* row) { return row[0] * plane.x + row[1] * plane.y + row[2] * plane.z; };
+void hit(const PlacedRun& run, const PlaneRecord& plane, double mapped, Pixels& pixels, int i) {
+    const vec4 &n = plane.normal, &p = plane.point;
+    const auto turned = [&](const double* row) { return row[0] * n.x + row[1] * n.y + row[2] * n.z; };
     const double x = turned(run.normal_x), y = turned(run.normal_y), z = turned(run.normal_z);
     pixels.normal_x[i] = x;
     pixels.normal_y[i] = y;
     pixels.normal_z[i] = z;
-    pixels.distance[i] = x * run.origin[0] + y * run.origin[1] + z * run.origin[2] + plane.w;
+    pixels.distance[i] = n.x * (p.x - run.eye[0]) + n.y * (p.y - run.eye[1]) + n.z * (p.z - run.eye[2]) + n.w;
     pixels.mapped[i] = mapped;
     pixels.strength[i] = run.strength;
     pixels.near_limit[i] = run.near_limit;
@@ -196,10 +197,8 @@ PlacedRun placedRun(const ObjectRecord& object, double strength, uint32_t first_
         run.normal_x[i] = cosine * x + sine * y;
         run.normal_y[i] = cosine * y - sine * x;
         run.normal_z[i] = object.normal_z[i];
+        run.eye[i] = double{object.eye[i]} + double{object.eye_rest[i]};
     }
-    run.origin[0] = cosine * object.row_x.w + sine * object.row_y.w;
-    run.origin[1] = cosine * object.row_y.w - sine * object.row_x.w;
-    run.origin[2] = object.row_z.w;
     return run;
 }
 

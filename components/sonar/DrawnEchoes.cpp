@@ -33,8 +33,7 @@ double nearPlane(const SonarConfig& config, const Slab& slab) {
 }
 
 CullRules cullRules(const SonarConfig& config, const BinGrid& bins) {
-    const double detail = config.published ? 0 : config.detail;
-    return {config.range_min, bins.range_max, detail, 0.5 * bins.bin_width, config.draw_all};
+    return {config.range_min, bins.range_max, config.draw_all};
 }
 
 DepositSetup depositSetup(const SonarConfig& config, const std::vector<Beam>& beams, const std::vector<Slab>& slabs,
@@ -59,7 +58,8 @@ public:
     void render(const types::Snapshot& snapshot, types::Sonar& ping, Stages& stages) override;
     bool heard() const override;
     std::vector<types::Omission> culled() const override;
-    const std::string& device() const override { return context_.renderer(); }
+    const std::string& device() const override { return device_; }
+    std::string notice() const override { return context_.fallback(); }
 
 private:
     void makeDeposit();
@@ -72,6 +72,7 @@ private:
     SonarConfig config_;
     types::GeometryPtr geometry_;
     gpu::EglContext context_;
+    std::string device_;
     std::vector<Beam> beams_;
     std::vector<Slab> slabs_;
     BinGrid bins_;
@@ -90,6 +91,7 @@ DrawnEchoes::DrawnEchoes(const SonarConfig& config, types::GeometryPtr geometry,
     : config_(config),
       geometry_(std::move(geometry)),
       context_(config_.device),
+      device_(fmt::format("{}, OpenGL {}", context_.renderer(), context_.driver())),
       beams_(makeBeams(config_)),
       slabs_(makeSlabs(config_, beams_)),
       bins_(makeBinGrid(config_)),
@@ -192,15 +194,13 @@ bool DrawnEchoes::heard() const {
 std::vector<types::Omission> DrawnEchoes::culled() const {
     const types::Geometry& geometry = *geometry_;
     std::vector<bool> seen(geometry.objects.size());
-    size_t empty_slabs = 0, shown = 0, coarse = 0, replaced = 0;  // of two slabs more than once
+    size_t empty_slabs = 0, shown = 0;  // of two slabs more than once
     for (size_t i = 0; i < slabs_.size(); ++i) {
         const auto& runs = surface_.picture(i).runs;
         empty_slabs += runs.empty();
         for (const Culler::Run& run : runs) {
             seen[run.object] = true;
-            shown += (run.stands_for ? run.stands_for : run.index_count) / 3;
-            coarse += run.stands_for ? run.index_count / 3 : 0;
-            replaced += run.stands_for / 3;
+            shown += run.index_count / 3;
         }
     }
     std::vector<types::Omission> all;
@@ -212,10 +212,6 @@ std::vector<types::Omission> DrawnEchoes::culled() const {
     const size_t triangles = geometry.triangleCount();
     add("at least ", triangles - std::min(triangles, shown), triangles, "triangles",
         "outside the fan or the range at the first ping, or on the far side of a closed mesh");
-    if (replaced > coarse)
-        all.push_back({fmt::format("detail of {} triangles", replaced),
-                       fmt::format("at the first ping {} within {:g} of a pixel and half a bin of them are drawn",
-                                   coarse, config_.detail)});
     add("", empty_slabs, slabs_.size(), "slabs", outside);
     return all;
 }

@@ -29,8 +29,10 @@ public:
     virtual bool heard() const = 0;
     /** What of the scene the last ping left out. */
     virtual std::vector<types::Omission> culled() const = 0;
-    /** What renders: an OpenGL renderer, or the processor. */
+    /** What renders: an OpenGL renderer and its driver, or the processor. */
     virtual const std::string& device() const = 0;
+    /** What a user should know of the device; empty: nothing. */
+    virtual std::string notice() const { return {}; }
 };
 
 }  // namespace insonify::sonar

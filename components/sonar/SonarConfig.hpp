@@ -94,6 +94,20 @@ struct QualityConfig {
     void check(types::Problems& problems) const;
 };
 
+/** What simplified meshes may cost. A bound, not a wish: all meshes are drawn in full, for on rough floors those that
+ *  keep to the default are hardly simpler (README.md, What is left out). */
+struct DetailConfig {
+    double error = 0.005;
+
+    template <class Self, class V>
+    static void describe(Self& self, V& visit) {
+        visit(types::Field{"error", "1",
+                           "largest rel_l2_tvg that simplified meshes may add; all are drawn in full, which adds 0", 0,
+                           1},
+              self.error);
+    }
+};
+
 /** An imaging sonar. Beam k of a fan covers bearings [-fov/2 + k fov/N, -fov/2 + (k + 1) fov/N], positive to port;
  *  `bearings_deg` takes the place of `field_of_view_deg` and `beam_count`; `beam_width_deg` alone that of
  *  `field_of_view_deg`. */
@@ -123,10 +137,9 @@ struct SonarConfig {
     bool one_frustum = false;   ///< Not a property: one wide image and rounded columns, as `published`.
     int samples_per_pixel = 1;  ///< Not a property: 1, or 4 on a rotated grid, for edges along the rows [1].
     int least_slabs = 1;        ///< Not a property: more images than the fan needs [1].
-    double detail = 0.75;   ///< Not a property: how far a simpler surface, off by half a bin at most, may be off; 0:
-                            ///< none is drawn [pixels].
-    bool draw_all = false;  ///< Not a property: what is outside the fan and the range is drawn as well.
-    int threads = 0;        ///< Not a property: 0, as many as there are cores [1].
+    int threads = 0;            ///< Not a property: 0, as many as there are cores [1].
+    DetailConfig detail;
+    bool draw_all = false;
     Visibility visibility = Visibility::Auto;
     std::string device;
     Deposit deposit = Deposit::Auto;
@@ -207,6 +220,8 @@ void SonarConfig::describeBeam(Self& self, V& visit) {
           self.visibility);
     visit(Field{"device", "", "EGL device to draw on; absent: INSONIFY_EGL_DEVICE, else the first"}, self.device);
     visit(Field{"deposit", "", "where samples are summed into bins"}, self.deposit);
+    visit(Field{"detail", "", "what simplified meshes may add to the error"}, self.detail);
+    visit(Field{"draw_all", "", "draws what is outside the fan and the range as well, to compare"}, self.draw_all);
     visit(Field{"beam_pattern", "", "directivity (not built yet)"}, self.beam_pattern);
     visit(Field{"pulse", "", "range point-spread (not built yet)"}, self.pulse);
     visit(Field{"volume", "", "volume reverberation (not built yet)"}, self.volume);

@@ -28,12 +28,14 @@ struct SonarRenderer::Parts {
 SonarRenderer::Parts::Parts(const SonarConfig& sonar, types::GeometryPtr scene)
     : config(sonar), plan(makePlan(config, *scene)), beams(makeBeams(config)), bins(makeBinGrid(config)) {
     drawn = !config.castsRays();
-    if (!drawn) {
+    if (drawn) {
+        const auto alone = gpu::EglContext::making();
+        echoes = makeDrawnEchoes(config, std::move(scene), plan);
+    } else {
         echoes = makeCastEchoes(config, std::move(scene));
-        return;
     }
-    const auto alone = gpu::EglContext::making();
-    echoes = makeDrawnEchoes(config, std::move(scene), plan);
+    plan.device = echoes->device();
+    if (const std::string notice = echoes->notice(); !notice.empty()) plan.notices.push_back(notice);
 }
 
 SonarRenderer::Parts::~Parts() {

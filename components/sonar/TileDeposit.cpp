@@ -161,15 +161,16 @@ private:
 
     void addCell(const CastTile& tile, int sample, int merged) {
         const PlacedRun& run = scene_.runs[tile.hits.command[sample]];
-        const vec4& plane = scene_.planes[run.first_triangle + tile.hits.triangle[sample]];
-        const double p_x = plane.x, p_y = plane.y, p_z = plane.z;
-        const auto turned = [&](const double* row) { return row[0] * p_x + row[1] * p_y + row[2] * p_z; };
+        const PlaneRecord& plane = scene_.planes[run.first_triangle + tile.hits.triangle[sample]];
+        const glm::dvec3 n(plane.normal), p(plane.point);
+        const auto turned = [&](const double* row) { return row[0] * n.x + row[1] * n.y + row[2] * n.z; };
         const double x = turned(run.normal_x), y = turned(run.normal_y), z = turned(run.normal_z);
         const int i = count_;
         cells_.normal_x[i] = x;
         cells_.normal_y[i] = y;
         cells_.normal_z[i] = z;
-        cells_.distance[i] = x * run.origin[0] + y * run.origin[1] + z * run.origin[2] + static_cast<double>(plane.w);
+        cells_.distance[i] = n.x * (p.x - run.eye[0]) + n.y * (p.y - run.eye[1]) + n.z * (p.z - run.eye[2]) +
+                             static_cast<double>(plane.normal.w);
         cells_.strength[i] = run.strength;
         cells_.near_limit[i] = run.near_limit;
         cells_.far_limit[i] = run.far_limit;

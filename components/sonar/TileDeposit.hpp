@@ -54,7 +54,7 @@ struct PlacedScene {
     std::span<const CommandRecord> commands;
     std::span<const PlacedRun> runs;
     std::span<const ObjectRecord> objects;
-    const std::vector<vec4>& planes;
+    const std::vector<PlaneRecord>& planes;
     const NormalMapping& normal_maps;
 };
 

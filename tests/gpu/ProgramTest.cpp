@@ -54,6 +54,18 @@ TEST(ProgramTest, WhatTheShadersHaveCompilesInEveryCombination) {
     EXPECT_NO_THROW(context.check());
 }
 
+TEST(ProgramTest, AContextCompilesEachTextOnce) {
+    EglContext context("software");
+    Programs& programs = context.programs();
+    const Program& first = programs.compute("deposit.comp.glsl", {});
+    EXPECT_EQ(&programs.compute("deposit.comp.glsl", {}), &first);
+    EXPECT_NE(&programs.compute("deposit.comp.glsl", {"HAVE_CERQUEIRA2017"}), &first);
+    EXPECT_EQ(&programs.raster("surface.vert.glsl", "surface.frag.glsl", {}),
+              &programs.raster("surface.vert.glsl", "surface.frag.glsl", {}));
+    EXPECT_EQ(programs.count(), 3u);
+    EXPECT_NO_THROW(context.check());
+}
+
 TEST(ProgramTest, AMistakeInAShaderComesWithItsFileAndTheCompilersWords) {
     EglContext context("software");
     EXPECT_THAT(errorOf([] { Program::compute("deposit.comp.glsl", {"image_size no_such_thing +"}); }),

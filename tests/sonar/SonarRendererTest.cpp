@@ -131,6 +131,26 @@ TEST(SonarRendererTest, FarFromTheOriginOfTheWorldEchoesAreTheSame) {
     EXPECT_LT(difference(binsOf(test::snapshotOf(there, offset, 0.1, 0.1)), bins), 1e-6);
 }
 
+TEST(SonarRendererTest, FarFromTheOriginOfATileEchoesAreTheSame) {
+    const glm::vec3 offset(4096, -3072, 512);  // vertices stay exact
+    types::Mesh here = test::quad({4, -16, -6}, {40, 0, 9}, {0, 32, 5}), there = here;
+    for (glm::vec3& p : there.positions) p += offset;
+    SonarConfig config;
+    config.range = 30;
+    config.bin_count = 6000;  // of 5 mm
+    config.beam_count = 16;
+    config.field_of_view_deg = 40;
+    config.range_rounding = RangeRounding::Exact;
+    config.device = "software";
+    const auto bins = [&](const types::Mesh& mesh, const glm::dvec3& sonar) {
+        const auto scene = test::sceneOf({mesh});
+        types::Sonar ping;
+        SonarRenderer(config, scene).render(test::snapshotOf(scene, sonar, 0.3, 0.2), ping);
+        return ping.bins;
+    };
+    EXPECT_LT(difference(bins(there, offset), bins(here, {})), 1e-5);
+}
+
 TEST(SonarRendererTest, ASeaFloorOfTwoHugeTrianglesIsASeaFloor) {
     const auto small = binsOf(test::snapshotOf(test::sceneOf({test::ground(-5, 1000)}), {}, 0, 0.2));
     EXPECT_LT(difference(binsOf(test::snapshotOf(test::sceneOf({test::ground(-5, 1e8f)}), {}, 0, 0.2)), small), 0.01);

@@ -28,7 +28,6 @@ Pair both(const StudyScene& scene, int rows, int columns) {
     sonar::SonarConfig config = scene.config;
     config.quality.rows = rows;
     config.quality.columns_per_beam = columns;
-    config.detail = 0;  // the same triangles
     Pair pair;
     EmbreeCaster caster(scene.snapshot);
     caster.render(scene.snapshot.sonar, config, pair.rays);
