@@ -134,7 +134,7 @@ void Culler::visible(const Slab& slab, std::vector<Run>& runs, double share) con
 }
 
 std::optional<glm::vec3> Culler::before(size_t object, float distance) const {
-    if (!(distance > rules_.range_min)) return {};  // of a front that is blanked the back may be heard
+    if (!(distance > rules_.range_min)) return {};  // of a front that is not drawn the back may be seen
     const ObjectRecord& r = records_[object];
     // The inverse transpose has the rows that take the sonar's place into the object's axes.
     return -(r.row_x.w * glm::vec3(r.normal_x) + r.row_y.w * glm::vec3(r.normal_y) + r.row_z.w * glm::vec3(r.normal_z));

@@ -13,7 +13,7 @@ namespace insonify::sonar {
 
 /** What may be left out of a picture. */
 struct CullRules {
-    double range_min, range_max;  ///< Slant ranges that are heard [m].
+    double range_min, range_max;  ///< Slant ranges that are drawn [m].
     double pixels = 0;      ///< A surface may be so far from its place where that takes fewer triangles: across the
                             ///< line of sight, of a pixel's smaller side there; 0: all detail is drawn [1],
     double metres = 0;      ///< and at most [m].

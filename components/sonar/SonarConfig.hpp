@@ -174,7 +174,7 @@ void SonarConfig::describeBeam(Self& self, V& visit) {
     using types::Field;
     visit(Field{"model", "", "active sonar equation, or the published mean of S(n.d)"}, self.model);
     visit(Field{"range", "m", "far edge of the last bin", 0.001, 1e5}, self.range);
-    visit(Field{"range_min", "m", "nearer echoes are blanked", 0, 1e5}, self.range_min);
+    visit(Field{"range_min", "m", "nearer echoes are blanked; what is there casts its shadow", 0, 1e5}, self.range_min);
     visit(Field{"bin_count", "1", "range bins per beam", 1, 65536}, self.bin_count);
     visit(Field{"beam_width_deg", "deg", "opening of one beam", 0.001, 360}, self.beam_width_deg);
     visit(Field{"beam_height_deg", "deg", "total elevation aperture", 0.001, 89.99}, self.beam_height_deg);

@@ -27,15 +27,18 @@ std::vector<std::string> defines(const types::Plan& plan) {
     return result;
 }
 
-/** Distance of the image plane before which nothing is drawn: under the blanking even in the picture's corners. */
-double nearPlane(const SonarConfig& config, const Slab& slab) {
+/** Slant range before which nothing is drawn [m]. What is nearer than the blanking is: it casts its shadow. */
+constexpr double nearest_drawn = 1e-3;
+
+/** Distance of the image plane that is nowhere farther than `nearest_drawn`, even in the picture's corners. */
+double nearPlane(const Slab& slab) {
     const double corner = std::sqrt(1 + slab.extent_u * slab.extent_u + slab.extent_v * slab.extent_v);
-    return std::max(config.published ? 0 : config.range_min, 1e-3) / corner;
+    return nearest_drawn / corner;
 }
 
 CullRules cullRules(const SonarConfig& config, const BinGrid& bins) {
     const double detail = config.published ? 0 : config.detail;
-    return {config.range_min, bins.range_max, detail, 0.5 * bins.bin_width, config.draw_all};
+    return {nearest_drawn, bins.range_max, detail, 0.5 * bins.bin_width, config.draw_all};
 }
 
 /** Strongest Lambert parameter [1]. */
@@ -103,7 +106,7 @@ SonarRenderer::Parts::Parts(const SonarConfig& c, types::GeometryPtr scene)
       culler(*geometry, cullRules(config, bins)),
       threads(config.threads),
       surface(context,
-              {*geometry, slabs, defines(plan), nearPlane(config, slabs.front()), culler.runLimit(), config.published},
+              {*geometry, slabs, defines(plan), nearPlane(slabs.front()), culler.runLimit(), config.published},
               threads) {
     makeDeposit();
     scratch.resize(static_cast<size_t>(threads.size()) * static_cast<size_t>(bins.bin_count));

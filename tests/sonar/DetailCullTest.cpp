@@ -15,7 +15,7 @@ struct Drawn {
     size_t all = 0, coarse = 0, replaced = 0;
 };
 Drawn drawnBy(const SonarConfig& config, const types::Snapshot& snapshot, double pixels, double metres) {
-    Culler culler(*snapshot.geometry, {config.range_min, config.range, pixels, metres});
+    Culler culler(*snapshot.geometry, {0, config.range, pixels, metres});
     culler.place(snapshot);
     Drawn drawn;
     std::vector<Culler::Run> runs;
@@ -77,7 +77,7 @@ TEST(DetailCullTest, WhatStandsForAPatchOfABallFacesTheSonarLimbsAreDrawnInFull)
     types::Mesh& ball = const_cast<types::Geometry&>(*geometry).meshes[0];
     scene::buildClusters(ball);
     const SonarConfig config = fan(40);
-    Culler culler(*geometry, {config.range_min, config.range, 10, 1});
+    Culler culler(*geometry, {0, config.range, 10, 1});
     culler.place(test::snapshotOf(geometry));
     std::vector<Culler::Run> runs;
     culler.visible(makeSlabs(config, makeBeams(config)).front(), runs);
