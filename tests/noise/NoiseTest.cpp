@@ -23,15 +23,32 @@ types::Sonar pingOf(uint32_t beams, uint32_t bins, float value = 1, int64_t time
 
 types::Sonar noisyOf(const NoiseConfig& config, const types::Sonar& clean) {
     types::Sonar noisy;
-    addNoise(config, clean, noisy);
+    Noise(config).add(clean, noisy);
     return noisy;
 }
 
-NoiseConfig rayleigh(uint64_t seed = 1) { return {.seed = seed, .speckle = SpeckleConfig{}, .additive = {}}; }
-NoiseConfig gaussian(double mean, double deviation) {
-    return {.seed = 1, .speckle = SpeckleConfig{SpeckleLaw::Gaussian, mean, deviation}, .additive = {}};
+NoiseConfig withSpeckle(const SpeckleConfig& speckle, uint64_t seed = 1) {
+    NoiseConfig config;
+    config.seed = seed;
+    config.speckle = speckle;
+    return config;
 }
-NoiseConfig background(double level_db) { return {.seed = 1, .speckle = {}, .additive = AdditiveConfig{level_db}}; }
+
+NoiseConfig rayleigh(uint64_t seed = 1) { return withSpeckle({}, seed); }
+NoiseConfig gaussian(double mean, double deviation) {
+    return withSpeckle({.law = SpeckleLaw::Gaussian, .mean = mean, .deviation = deviation});
+}
+NoiseConfig gammaOf(double looks) { return withSpeckle({.law = SpeckleLaw::Gamma, .looks = looks}); }
+NoiseConfig kOf(double shape) { return withSpeckle({.law = SpeckleLaw::K, .shape = shape}); }
+NoiseConfig background(double level_db) {
+    NoiseConfig config;
+    config.additive = AdditiveConfig{level_db};
+    return config;
+}
+NoiseConfig withSea(NoiseConfig config, double level_db) {
+    config.ambient.emplace().level_db = level_db;
+    return config;
+}
 
 double meanOf(const std::vector<float>& values) {
     double sum = 0;
@@ -122,6 +139,77 @@ TEST(NoiseTest, TheGaussianFactorFollowsTheNormalLaw) {
     EXPECT_LT(chiSquare20(all), chi_limit);
 }
 
+/** Of the mean of `looks` exponential variates: Erlang's law. */
+double gammaCdf(double x, int looks) {
+    double term = 1, sum = 1;
+    for (int k = 1; k < looks; ++k) sum += term *= looks * x / k;
+    return 1 - std::exp(-looks * x) * sum;
+}
+
+/** Of an exponential variate of gamma distributed mean: 1 - 2/Gamma(nu) (nu x)^(nu/2) K_nu(2 sqrt(nu x)). */
+double kCdf(double x, double shape) {
+    if (!(x > 0)) return 0;
+    return 1 - 2 * std::exp(shape / 2 * std::log(shape * x) - std::lgamma(shape)) *
+                   std::cyl_bessel_k(shape, 2 * std::sqrt(shape * x));
+}
+
+constexpr double ks_one_percent = 1.628;
+
+TEST(NoiseTest, GammaSpeckleIsTheMeanOfItsLooks) {
+    for (const int looks : {1, 2, 4, 16, 100}) {
+        const types::Sonar noisy = noisyOf(gammaOf(looks), pingOf(256, 500));
+        EXPECT_NEAR(meanOf(noisy.bins), 1, 4 / std::sqrt(128000.0 * looks)) << looks;
+        EXPECT_NEAR(varianceOf(noisy.bins) * looks, 1, 4 * std::sqrt((2 + 6.0 / looks) / 128000)) << looks;
+        const auto all = shares(noisy.bins, [&](double x) { return gammaCdf(x, looks); });
+        EXPECT_LT(kolmogorovSmirnov(all), ks_one_percent) << looks;
+        EXPECT_LT(chiSquare20(all), chi_limit) << looks;
+    }
+}
+
+TEST(NoiseTest, KSpeckleIsAnExponentialOfGammaDistributedMean) {
+    for (const double shape : {0.3, 1.0, 2.5, 20.0}) {
+        const types::Sonar noisy = noisyOf(kOf(shape), pingOf(256, 500));
+        const double second = 2 * (1 + 1 / shape);  // moments of a product are products of moments
+        const double fourth = 24 * (1 + 1 / shape) * (1 + 2 / shape) * (1 + 3 / shape);
+        double square = 0;
+        for (const float value : noisy.bins) square += double{value} * value / 128000;
+        EXPECT_NEAR(meanOf(noisy.bins), 1, 4 * std::sqrt((second - 1) / 128000)) << shape;
+        EXPECT_NEAR(square, second, 4 * std::sqrt((fourth - second * second) / 128000)) << shape;
+        const auto all = shares(noisy.bins, [&](double x) { return kCdf(x, shape); });
+        EXPECT_LT(kolmogorovSmirnov(all), ks_one_percent) << shape;
+        EXPECT_LT(chiSquare20(all), chi_limit) << shape;
+    }
+}
+
+TEST(NoiseTest, TheOtherLawsAreHeldToOnePercentToo) {
+    const auto distance = [](const NoiseConfig& config, auto cdf) {
+        return kolmogorovSmirnov(shares(noisyOf(config, pingOf(256, 500)).bins, cdf));
+    };
+    EXPECT_LT(distance(rayleigh(), exponentialCdf), ks_one_percent);
+    EXPECT_LT(distance(gaussian(10, 1), [](double x) { return normalCdf(x - 10); }), ks_one_percent);
+    EXPECT_GT(distance(gammaOf(2), exponentialCdf), 10 * ks_one_percent);
+    EXPECT_GT(distance(kOf(2), exponentialCdf), 10 * ks_one_percent);
+}
+
+TEST(NoiseTest, TheSeaIsHeardAsAnExponentialIntensityAtEveryRange) {
+    for (const NoiseConfig& config : {withSea({}, -20), withSea(gammaOf(4), -20), withSea(rayleigh(), -20)}) {
+        const types::Sonar noisy = noisyOf(config, pingOf(256, 500, 0));
+        EXPECT_NEAR(meanOf(noisy.bins), 0.01, 4 * 0.01 / std::sqrt(128000.0));
+        const auto all = shares(noisy.bins, [](double x) { return exponentialCdf(x / 0.01); });
+        EXPECT_LT(kolmogorovSmirnov(all), ks_one_percent);
+        EXPECT_LT(chiSquare20(all), chi_limit);
+    }
+}
+
+TEST(NoiseTest, EchoAndSeaAddAsFieldsWhereTheSpeckleIsOne) {
+    const types::Sonar noisy = noisyOf(withSea(rayleigh(), 0), pingOf(256, 500, 2));
+    const auto all = shares(noisy.bins, [](double x) { return exponentialCdf(x / 3); });
+    EXPECT_LT(kolmogorovSmirnov(all), ks_one_percent);
+    const types::Sonar looks = noisyOf(withSea(gammaOf(16), 0), pingOf(256, 500, 2));
+    EXPECT_NEAR(meanOf(looks.bins), 3, 0.02);
+    EXPECT_NEAR(varianceOf(looks.bins), 4.0 / 16 + 1, 0.03) << "an echo of 16 looks, and a noise of one";
+}
+
 TEST(NoiseTest, AdditiveNoiseIsExponentialWithTheMeanOfItsLevel) {
     const types::Sonar noisy = noisyOf(background(-20), pingOf(256, 500, 0));
     EXPECT_NEAR(meanOf(noisy.bins), 0.01, 4 * 0.01 / std::sqrt(128000.0));
@@ -163,7 +251,7 @@ TEST(NoiseTest, ABinsNoiseDoesNotDependOnTheNumberOfBeamsOrBins) {
 
 TEST(NoiseTest, AFactorThatWouldBeNegativeIsClampedAndCounted) {
     types::Sonar noisy;
-    const uint64_t clamped = addNoise(gaussian(0.4, 10), pingOf(100, 100), noisy);
+    const uint64_t clamped = Noise(gaussian(0.4, 10)).add(pingOf(100, 100), noisy);
     EXPECT_NEAR(static_cast<double>(clamped) / 10000, normalCdf(-0.04), 0.02);
     EXPECT_GE(*std::min_element(noisy.bins.begin(), noisy.bins.end()), 0);
     EXPECT_EQ(clamped, static_cast<uint64_t>(std::count(noisy.bins.begin(), noisy.bins.end(), 0.0f)));
@@ -172,14 +260,15 @@ TEST(NoiseTest, AFactorThatWouldBeNegativeIsClampedAndCounted) {
 TEST(NoiseTest, NeutralValuesGiveThePingItself) {
     types::Sonar clean = pingOf(4, 300);
     for (size_t i = 0; i < clean.bins.size(); ++i) clean.bins[i] = static_cast<float>(i) * 0.37f;
-    for (const NoiseConfig& neutral : {NoiseConfig{}, gaussian(1, 0), background(-3000)})
+    for (const NoiseConfig& neutral : {NoiseConfig{}, gaussian(1, 0), background(-3000), withSea({}, -3000)})
         EXPECT_EQ(noisyOf(neutral, clean).bins, clean.bins);
 }
 
 TEST(NoiseTest, UnknownBinsStayUnknownAndEmptyOnesEmpty) {
     types::Sonar clean = pingOf(1, 10, 0);
     clean.bins[3] = std::numeric_limits<float>::quiet_NaN();
-    for (const NoiseConfig& config : {rayleigh(), gaussian(0.4, 0.15), background(-20)})
+    for (const NoiseConfig& config :
+         {rayleigh(), gammaOf(4), kOf(2), gaussian(0.4, 0.15), background(-20), withSea({}, -20)})
         EXPECT_TRUE(std::isnan(noisyOf(config, clean).bins[3]));
     EXPECT_EQ(noisyOf(rayleigh(), clean).bins[2], 0);
 }
