@@ -23,7 +23,8 @@ struct SpeckleConfig {
         using types::Field;
         visit(Field{"law", "",
                     "rayleigh: exponential factor on intensity; gamma: mean of several; k: exponential of gamma "
-                    "distributed mean; gaussian: normal factor, clamped at 0"},
+                    "distributed mean (Jakeman and Pusey 1976); gaussian: normal factor, clamped at 0 (Cerqueira et "
+                    "al. 2017)"},
               self.law);
         visit(Field{"looks", "1", "of law gamma: how many exponential factors are averaged", 1, 1e4}, self.looks);
         visit(Field{"shape", "1", "of law k: 1 to 20 on sea floors, rayleigh above", 1e-3, 1e6}, self.shape);
@@ -79,7 +80,8 @@ struct NoiseConfig {
         using types::Field;
         visit(Field{"seed", "1", "of the random numbers: the same seed and ping times give the same noise"}, self.seed);
         visit(Field{"speckle", "", "multiplicative noise; absent: none"}, self.speckle);
-        visit(Field{"ambient", "", "noise of the sea, the same at every range before any gain; absent: none"},
+        visit(Field{"ambient", "",
+                    "noise of the sea (Coates 1990), the same at every range before any gain; absent: none"},
               self.ambient);
         visit(Field{"additive", "", "exponentially distributed background, for model cerqueira2017; absent: none"},
               self.additive);

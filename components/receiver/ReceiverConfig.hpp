@@ -87,7 +87,7 @@ struct ReceiverConfig {
     template <class Self, class V>
     static void describe(Self& self, V& visit) {
         using types::Field;
-        visit(Field{"tvg", "", "time-varied gain; absent: none"}, self.tvg);
+        visit(Field{"tvg", "", "time-varied gain: log_coefficient log10(r) + 2 db_per_m r; absent: none"}, self.tvg);
         visit(Field{"gain_db", "dB", "gain at every range", -1000, 1000}, self.gain_db);
         visit(Field{"blanking", "", "silences what is near, and unveils nothing behind it; absent: none"},
               self.blanking);
