@@ -105,8 +105,7 @@ SonarRenderer::Parts::Parts(const SonarConfig& c, types::GeometryPtr scene)
       levels(config, bins),
       culler(*geometry, cullRules(config, bins)),
       threads(config.threads),
-      surface(context,
-              {*geometry, slabs, defines(plan), nearPlane(slabs.front()), culler.runLimit(), config.published},
+      surface(context, {*geometry, slabs, defines(plan), nearPlane(slabs.front()), culler.runLimit(), config.published},
               threads) {
     makeDeposit();
     scratch.resize(static_cast<size_t>(threads.size()) * static_cast<size_t>(bins.bin_count));

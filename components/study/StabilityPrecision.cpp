@@ -209,8 +209,7 @@ std::vector<StabilityCase> precisionCases() {
         {14, "Sea-floor quad of 1e8 m", "every beam to 1 % of the closed form", [] { return hugeSeaFloor(1e8f); }},
         {15, "Slivers thinner than a pixel", "right on average over shifts, to 2 %; aliasing reported", sliver},
         {16, "Walls that cross at a slab border", "every beam to 1e-3 of the closed form", wallsThatCrossAtASlabBorder},
-        {60, "Blanking that cuts through a pixel", "nothing beyond range_min is lost, to 1e-6",
-         blankingThroughAPixel}};
+        {60, "Blanking that cuts through a pixel", "nothing beyond range_min is lost, to 1e-6", blankingThroughAPixel}};
 }
 
 }  // namespace insonify::study
