@@ -48,6 +48,12 @@ struct NotBuiltYet {
     static void describe(Self&, V&) {}
 };
 
+/** The value of a key that is another task's now: whatever a file gives it is refused with the doc of its field. */
+struct MovedTo {
+    template <class Self, class V>
+    static void describe(Self&, V&) {}
+};
+
 /** A fault in a configuration: `path` is below the described struct ("tvg.max_db"), `message` what it is and may be. */
 struct Problem {
     std::string path;

@@ -5,6 +5,8 @@
 #include <stdexcept>
 #include <string>
 
+#include "types/VectorMath.hpp"
+
 namespace insonify::types {
 namespace {
 
@@ -14,11 +16,36 @@ bool isNormalised(Angle angle) {
     return angle.isUnknown() || (angle.rad > -std::numbers::pi && angle.rad <= std::numbers::pi);
 }
 
+INSONIFY_VECTOR_CLONES
+bool anyBelowZero(const float* values, size_t count) {
+    int below = 0;
+    for (size_t i = 0; i < count; ++i) below |= values[i] < 0;
+    return below != 0;
+}
+
 }  // namespace
 
 bool Sonar::wellShaped() const {
     return bins.size() == uint64_t{beam_count} * bin_count && bearings.size() == beam_count &&
            (timestamps.empty() || timestamps.size() == beam_count);
+}
+
+const char* Sonar::notIntensities() const {
+    if (bins.size() != uint64_t{beam_count} * bin_count) return "there are more or fewer bins than the counts say";
+    return anyBelowZero(bins.data(), bins.size()) ? "bins are below 0, as decibels are: no intensities" : nullptr;
+}
+
+void Sonar::copyHeader(const Sonar& other) {
+    time = other.time;
+    timestamps = other.timestamps;
+    bin_duration = other.bin_duration;
+    beam_width = other.beam_width;
+    beam_height = other.beam_height;
+    bearings = other.bearings;
+    speed_of_sound = other.speed_of_sound;
+    bin_count = other.bin_count;
+    beam_count = other.beam_count;
+    bins.resize(other.bins.size());
 }
 
 void Sonar::validate() const {

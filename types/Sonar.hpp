@@ -34,6 +34,11 @@ struct Sonar {
      *  duration or a speed of sound above 0; bearings outside (-pi, pi] (NaN is unknown, and may be). Rock's validate
      *  tells the first length only, multiplies the counts in 32 bits, and looks at no value. */
     void validate() const;
+    /** Why the bins cannot be linear intensities, null when they can: more or fewer than the counts say, or below 0,
+     *  which decibels are. */
+    const char* notIntensities() const;
+    /** Takes everything of `other` but its bins, for which it makes room; allocates nothing when it had this shape. */
+    void copyHeader(const Sonar& other);
     /** Bins first, as in Rock. What is new is NaN (a time stamp: null), what was there stays with its beam and bin;
      *  Rock's resize leaves the values where they lay in memory, in other beams. */
     void resize(uint32_t bins_per_beam, uint32_t beams, bool per_beam_timestamps = false);
@@ -60,5 +65,9 @@ struct Sonar {
     }
 };
 using SonarPtr = std::shared_ptr<const Sonar>;
+
+// What the bins of pings on a port are, where one must not take the place of the other.
+inline constexpr const char* reaching_receiver = "intensities that reach a receiver";
+inline constexpr const char* left_receiver = "what a receiver has amplified";
 
 }  // namespace insonify::types

@@ -105,7 +105,7 @@ types::Sonar ones(int64_t microseconds, uint32_t beams, uint32_t bins) {
 
 types::Sonar noisy(const noise::NoiseConfig& config, const types::Sonar& clean, uint64_t* clamped = nullptr) {
     types::Sonar result;
-    const uint64_t count = noise::addNoise(config, clean, result);
+    const uint64_t count = noise::Noise(config).add(clean, result);
     if (clamped) *clamped = count;
     return result;
 }
@@ -170,6 +170,28 @@ Outcome seeds() {
             wrong ? Verdict::Fail : Verdict::Pass};
 }
 
+Outcome extremeShapes() {
+    noise::NoiseConfig config;
+    const auto drawn = [&](double shape) {
+        config.speckle = {.law = noise::SpeckleLaw::K, .shape = shape};
+        return noisy(config, ones(7, 64, 1000)).bins;
+    };
+    const std::vector<float> patchy = drawn(1e-3);
+    std::vector<float> even = drawn(1e6);
+    const bool finite = std::ranges::all_of(patchy, [](float bin) { return bin >= 0 && std::isfinite(bin); });
+    const float largest = std::ranges::max(patchy);
+    std::ranges::sort(even);
+    double distance = 0;
+    const auto count = static_cast<double>(even.size());
+    for (size_t i = 0; i < even.size(); ++i)
+        distance = std::max(distance, std::abs(-std::expm1(-double{even[i]}) - (static_cast<double>(i) + 0.5) / count));
+    const double bound = 1.63 / std::sqrt(count);
+    return study::none(!finite + !(largest > 100) + !(distance < bound),
+                       fmt::format("shape 1e-3: finite, the largest of 64,000 is {:.0f} times the mean; 1e6: off the "
+                                   "exponential law by {:.1e} (bound {:.1e})",
+                                   largest, distance, bound));
+}
+
 Outcome timeGoesBackwards() {
     Bench<sonar::ScanningSonarTask> bench(scanner());
     int wrong = !bench.ping(10);
@@ -222,6 +244,7 @@ std::vector<StabilityCase> taskStabilityCases() {
             {45, "Speckle of deviation 10", "no negative intensity; the clamped are counted", wideSpeckle},
             {46, "Exponential variate of u = 0", "excluded by construction: finite", exponentialEnds},
             {47, "Seeds 0 and 2^64 - 1", "identical again; beams uncorrelated, below 4 / sqrt(n)", seeds},
+            {48, "K statistics of shape 1e-3 and 1e6", "finite with an extreme tail; exponential", extremeShapes},
             {49, "Time that goes backwards, stands still or leaps", "refused; taken; taken", timeGoesBackwards},
             {49, "Trajectories whose times do not increase", "refused; never extrapolated", trajectoryTimes},
             {50, "Pings closer than sound's way to the range and back", "taken, and told as ambiguous", shortInterval},

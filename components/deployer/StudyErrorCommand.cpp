@@ -23,7 +23,7 @@ struct Options {
     bool quiet = false;
 };
 
-/** What a study can take away without changing where echoes come from: gain, absorption, model, shading maps. */
+/** What a study can take away without changing where echoes come from: absorption, model, shading maps. */
 sonar::SonarConfig plain(sonar::SonarConfig config, const std::string& file) {
     if (!config.bearings_deg.empty() || config.beam_geometry != sonar::BeamGeometry::Planar)
         throw types::ConfigError(
@@ -35,9 +35,7 @@ sonar::SonarConfig plain(sonar::SonarConfig config, const std::string& file) {
     config.range_rounding = sonar::RangeRounding::Exact;
     config.model = sonar::Model::Physical;
     config.published = false;
-    config.output = sonar::Output::Intensity;
     config.absorption.reset();
-    config.tvg.reset();
     return config;
 }
 

@@ -7,6 +7,7 @@
 #include "components/noise/registerTasks.hpp"
 #include "components/output/registerTasks.hpp"
 #include "components/pose/registerTasks.hpp"
+#include "components/receiver/registerTasks.hpp"
 #include "components/replay/registerTasks.hpp"
 #include "components/scene/registerTasks.hpp"
 #include "components/sonar/registerTasks.hpp"
@@ -22,6 +23,7 @@ framework::Registry builtInTasks() {
     scene::registerTasks(registry);
     sonar::registerTasks(registry);
     noise::registerTasks(registry);
+    receiver::registerTasks(registry);
     output::registerTasks(registry);
     logger::registerTasks(registry);
     replay::registerTasks(registry);

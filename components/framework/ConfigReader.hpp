@@ -176,6 +176,8 @@ bool ConfigReader::readValue(const YAML::Node& node, const std::string& path, co
         return text(node, path, value);
     } else if constexpr (std::same_as<T, types::NotBuiltYet>) {
         return fault(node, path, "is not built yet"), false;
+    } else if constexpr (std::same_as<T, types::MovedTo>) {
+        return fault(node, path, field.doc), false;
     } else if constexpr (std::same_as<T, glm::dvec3>) {
         return vector3(node, path, field, value);
     } else if constexpr (types::NamedEnum<T>) {

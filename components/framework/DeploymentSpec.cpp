@@ -51,7 +51,7 @@ struct ActivityKeys {
 struct TaskKeys {
     std::string type;
     ActivityKeys activity;
-    std::map<std::string, std::string> aliases, switches;
+    std::map<std::string, std::string> aliases, copies, switches;
     PropertyFiles property_files;
     YAML::Node properties{YAML::NodeType::Undefined};
     template <class Self, class V>
@@ -59,6 +59,7 @@ struct TaskKeys {
         visit(Field{"type", "", "registered type of the task"}, self.type);
         visit(Field{"activity", "", "when it runs"}, self.activity);
         visit(Field{"aliases", "", "other names of ports and properties: where they lead"}, self.aliases);
+        visit(Field{"copies", "", "properties whose value another one takes as well: where that is"}, self.copies);
         visit(Field{"switches", "", "properties true and false: the block that they put in or take out"},
               self.switches);
         visit(Field{"property_files", "", "its configuration in Rock's files"}, self.property_files);
@@ -144,6 +145,7 @@ void readTask(ConfigReader& reader, const YAML::Node& name, const YAML::Node& bl
     task.type = keys.type;
     task.activity = keys.activity.settings();
     task.aliases = keys.aliases;
+    task.copies = keys.copies;
     task.switches = keys.switches;
     task.property_files = keys.property_files;
     task.properties.reset(keys.properties);

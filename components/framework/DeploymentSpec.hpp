@@ -24,6 +24,7 @@ struct TaskSpec {
     std::string name, type;
     ActivitySettings activity;
     std::map<std::string, std::string> aliases;   ///< "task.port" or "task.property" by another name for it.
+    std::map<std::string, std::string> copies;    ///< "task.property" that takes the value of one of this task as well.
     std::map<std::string, std::string> switches;  ///< "task.property", a block that true puts in and false takes out.
     PropertyFiles property_files;
     YAML::Node properties{YAML::NodeType::Undefined};  ///< From all sources; undefined when there are none.

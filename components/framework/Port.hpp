@@ -26,26 +26,28 @@ enum class Need { Required, Optional };
 /** What is known of a port without its type. */
 class PortBase {
 public:
-    PortBase(TaskContext* owner, std::string name, std::string doc)
-        : owner_(owner), name_(std::move(name)), doc_(std::move(doc)) {}
+    PortBase(TaskContext* owner, std::string name, std::string doc, std::string content)
+        : owner_(owner), name_(std::move(name)), doc_(std::move(doc)), content_(std::move(content)) {}
     virtual ~PortBase() = default;
     PortBase(const PortBase&) = delete;
     PortBase& operator=(const PortBase&) = delete;
     TaskContext& owner() const { return *owner_; }
     const std::string& name() const { return name_; }
     const std::string& doc() const { return doc_; }
+    /** What its samples are, in words, where not all of their type are the same; empty: any. */
+    const std::string& content() const { return content_; }
     std::string path() const { return owner_->name() + "." + name_; }
     virtual std::string typeName() const = 0;
 
 private:
     TaskContext* owner_;
-    std::string name_, doc_;
+    std::string name_, doc_, content_;
 };
 
 class InputPortBase : public PortBase {
 public:
-    InputPortBase(TaskContext* owner, std::string name, std::string doc, Need need)
-        : PortBase(owner, std::move(name), std::move(doc)), need_(need) {
+    InputPortBase(TaskContext* owner, std::string name, std::string doc, Need need, std::string content)
+        : PortBase(owner, std::move(name), std::move(doc), std::move(content)), need_(need) {
         owner->enlist(this);
     }
     Need need() const { return need_; }
@@ -70,8 +72,8 @@ private:
 
 class OutputPortBase : public PortBase {
 public:
-    OutputPortBase(TaskContext* owner, std::string name, std::string doc)
-        : PortBase(owner, std::move(name), std::move(doc)) {
+    OutputPortBase(TaskContext* owner, std::string name, std::string doc, std::string content = "")
+        : PortBase(owner, std::move(name), std::move(doc), std::move(content)) {
         owner->enlist(this);
     }
     /** False when the types differ. */
@@ -93,8 +95,9 @@ protected:
 template <class T>
 class InputPort final : public InputPortBase {
 public:
-    InputPort(TaskContext* owner, std::string name, std::string doc, Need need = Need::Required)
-        : InputPortBase(owner, std::move(name), std::move(doc), need) {}
+    InputPort(TaskContext* owner, std::string name, std::string doc, Need need = Need::Required,
+              std::string content = "")
+        : InputPortBase(owner, std::move(name), std::move(doc), need, std::move(content)) {}
     ~InputPort() override {
         for (const auto& channel : channels()) channel->source().disconnect(*this);
     }

@@ -81,10 +81,12 @@ template <types::Described T>
 void listFields(const std::string& prefix, const T& defaults, std::vector<PropertyInfo>& list) {
     FieldVisitor visitor{[&](const types::Field& field, const auto& member) {
         using Member = std::remove_cvref_t<decltype(member)>;
-        const std::string name = below(prefix, field.name);
-        list.push_back(
-            {name, configTypeName<Member>(), field.unit, configText(member), field.min, field.max, field.doc});
-        listInner(name, member, list);
+        if constexpr (!std::same_as<Member, std::optional<types::MovedTo>>) {
+            const std::string name = below(prefix, field.name);
+            list.push_back(
+                {name, configTypeName<Member>(), field.unit, configText(member), field.min, field.max, field.doc});
+            listInner(name, member, list);
+        }
     }};
     T::describe(defaults, visitor);
 }

@@ -57,7 +57,8 @@ void PropertySources::apply() {
 void PropertySources::checkTargets() {
     ConfigReader reader(spec_.file);
     for (const TaskSpec& task : spec_.tasks)
-        for (const auto& [key, names] : {std::pair("aliases", &task.aliases), std::pair("switches", &task.switches)})
+        for (const auto& [key, names] : {std::pair("aliases", &task.aliases), std::pair("copies", &task.copies),
+                                         std::pair("switches", &task.switches)})
             for (const auto& [name, target] : *names) {
                 const auto [owner, rest] = splitPort(target);
                 const YAML::Node place = child(child(task.place, key), name);
@@ -73,10 +74,13 @@ void PropertySources::checkTargets() {
 
 YAML::Node PropertySources::withoutAliases(const TaskSpec& task, const YAML::Node& block, const std::string& path,
                                            const Origin& origin, std::vector<Moved>& moved) {
-    if ((task.aliases.empty() && task.switches.empty()) || !block.IsDefined() || !block.IsMap()) return block;
+    const bool has_none = task.aliases.empty() && task.copies.empty() && task.switches.empty();
+    if (has_none || !block.IsDefined() || !block.IsMap()) return block;
     YAML::Node rest(YAML::NodeType::Map);
     for (const auto& entry : block) {
         const std::string name = entry.first.IsScalar() ? framework::below(path, entry.first.Scalar()) : "";
+        if (const auto copy = task.copies.find(name); copy != task.copies.end())
+            moved.push_back({copy->second, entry.second, below(origin, entry.first), false});
         if (const auto alias = task.aliases.find(name); alias != task.aliases.end()) {
             moved.push_back({alias->second, entry.second, below(origin, entry.first), false});
         } else if (const auto change = task.switches.find(name); change != task.switches.end()) {

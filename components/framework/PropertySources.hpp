@@ -9,9 +9,10 @@
 namespace insonify::framework {
 
 /** Puts the properties of a deployment's tasks together: what stands in the deployment, over it the sections of
- * property files, over that `--set`; of two values for one property the later counts, blocks are merged, lists element
- * by element. A property with an alias goes to where the alias leads, with the place where it was written; one of
- *  `switches` puts an empty block in there, or takes the block out, once all else is in its place. */
+ *  property files, over that `--set`; of two values for one property the later counts, blocks are merged, lists element
+ *  by element. A property with an alias goes to where the alias leads, with the place where it was written; one of
+ *  `copies` stays as well; one of `switches` puts an empty block in there, or takes the block out, once all else is in
+ *  its place. */
 class PropertySources {
 public:
     explicit PropertySources(DeploymentSpec& spec) : spec_(spec) {}
@@ -28,7 +29,7 @@ private:
         Origin origin;
         bool is_switch;
     };
-    /** `block` without the values that have an alias, which are added to `moved`. */
+    /** `block` without the values that have an alias; these, and those that are copied, are added to `moved`. */
     YAML::Node withoutAliases(const TaskSpec& task, const YAML::Node& block, const std::string& path,
                               const Origin& origin, std::vector<Moved>& moved);
     void applyFiles(TaskSpec& task);

@@ -109,6 +109,10 @@ void Wiring::connectOne(const ConnectionSpec& connection) {
     if (!to) return;
     if (&from->owner() == &to->owner())
         return fault(connection.place, connection.path, "connects " + from->owner().name() + " with itself");
+    if (!from->content().empty() && !to->content().empty() && from->content() != to->content())
+        return fault(connection.place, connection.path,
+                     fmt::format("{} gives {}, {} takes {}; the one cannot be the other", from->path(), from->content(),
+                                 to->path(), to->content()));
     if (!from->connectTo(*to, connection.policy))
         return fault(connection.place, connection.path,
                      fmt::format("{} is {}, {} is {}; types must be equal", from->path(), from->typeName(), to->path(),

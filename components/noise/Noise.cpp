@@ -2,15 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string>
 
+#include "components/noise/Ambient.hpp"
 #include "components/noise/Random.hpp"
-
-// The AVX2 version uses no fused multiply-add, so both give the same bits.
-#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__) && !defined(__SANITIZE_ADDRESS__)
-#define INSONIFY_VECTOR_CLONES __attribute__((target_clones("avx2", "default")))
-#else
-#define INSONIFY_VECTOR_CLONES
-#endif
+#include "types/VectorMath.hpp"
 
 namespace insonify::noise {
 namespace {
@@ -23,8 +19,8 @@ constexpr size_t chunk_bins = 4 * lanes;
 using Words = std::array<uint32_t, chunk_bins>;
 using Variates = std::array<float, chunk_bins>;
 
-/** Independent sets of variates for one bin: a bit of the counter's beam word. */
-enum class Stream : uint32_t { Speckle = 0, Additive = 0x80000000 };
+/** Independent sets of variates for one bin: bits of the counter's beam word. */
+enum class Stream : uint32_t { Speckle = 0, Additive = 0x80000000, Ambient = 0x40000000, Texture = 0xC0000000 };
 
 /** What, with bin and stream, makes the counter and the key. */
 struct BeamKey {
@@ -61,63 +57,17 @@ void drawNormals(const BeamKey& key, Stream stream, size_t chunk, Variates& vari
         }
 }
 
-/** One run of bins, at most a chunk long. */
-struct Run {
-    const BeamKey& key;
-    size_t chunk;
-    const float* clean;
-    float* noisy;
-    size_t size;
-};
-
-void applyRayleigh(const Run& run) {
-    Variates factor;
-    drawExponentials(run.key, Stream::Speckle, run.chunk, factor);
-    for (size_t i = 0; i < run.size; ++i) run.noisy[i] = run.clean[i] * factor[i];
+/** Gamma variates in place of exponential ones. */
+INSONIFY_VECTOR_CLONES
+void turnToGamma(const float* values, Variates& variates) {
+    for (float& variate : variates) variate = GammaTable::variate(values, variate);
 }
 
-uint64_t applyGaussian(const SpeckleConfig& config, const Run& run) {
-    const float mean = static_cast<float>(config.mean), deviation = static_cast<float>(config.deviation);
-    Variates normal;
-    drawNormals(run.key, Stream::Speckle, run.chunk, normal);
-    uint32_t clamped = 0;
-    for (size_t i = 0; i < run.size; ++i) {
-        const float factor = mean + deviation * normal[i];
-        clamped += factor < 0;
-        run.noisy[i] = run.clean[i] * (factor > 0 ? factor : 0.0f);
-    }
-    return clamped;
-}
-
-void addExponential(float level, const Run& run) {
-    Variates noise;
-    drawExponentials(run.key, Stream::Additive, run.chunk, noise);
-    for (size_t i = 0; i < run.size; ++i) run.noisy[i] += level * noise[i];
-}
-
-uint64_t addNoise(const NoiseConfig& config, float level, const Run& run) {
-    uint64_t clamped = 0;
-    if (!config.speckle)
-        std::copy_n(run.clean, run.size, run.noisy);
-    else if (config.speckle->law == SpeckleLaw::Rayleigh)
-        applyRayleigh(run);
-    else
-        clamped = applyGaussian(*config.speckle, run);
-    if (config.additive) addExponential(level, run);
-    return clamped;
-}
-
-void copyAllButBins(const types::Sonar& from, types::Sonar& to) {
-    to.time = from.time;
-    to.timestamps = from.timestamps;
-    to.bin_duration = from.bin_duration;
-    to.beam_width = from.beam_width;
-    to.beam_height = from.beam_height;
-    to.bearings = from.bearings;
-    to.speed_of_sound = from.speed_of_sound;
-    to.bin_count = from.bin_count;
-    to.beam_count = from.beam_count;
-    to.bins.resize(from.bins.size());
+/** out = (in texture + mean) factor */
+INSONIFY_VECTOR_CLONES
+void multiplyFields(const float* in, const Variates& texture, float mean, const Variates& factor, float* out,
+                    size_t size) {
+    for (size_t i = 0; i < size; ++i) out[i] = (in[i] * texture[i] + mean) * factor[i];
 }
 
 constexpr uint32_t low(uint64_t word) { return static_cast<uint32_t>(word); }
@@ -125,17 +75,92 @@ constexpr uint32_t high(uint64_t word) { return static_cast<uint32_t>(word >> 32
 
 }  // namespace
 
-uint64_t addNoise(const NoiseConfig& config, const types::Sonar& clean, types::Sonar& noisy) {
-    copyAllButBins(clean, noisy);
-    const float level = config.additive ? static_cast<float>(std::pow(10.0, config.additive->level_db / 10)) : 0.0f;
+void SpeckleConfig::check(types::Problems& problems) const {
+    const auto judge = [&](const char* name, const std::optional<double>& value, bool needed, const char* owner) {
+        if (needed && !value) problems.push_back({name, std::string("is absent; law: ") + owner + " needs it"});
+        if (!needed && value) problems.push_back({name, std::string("is given; it belongs to law: ") + owner});
+    };
+    judge("looks", looks, law == SpeckleLaw::Gamma, "gamma");
+    judge("shape", shape, law == SpeckleLaw::K, "k");
+}
+
+/** One run of bins, at most a chunk long. */
+struct Noise::Run {
+    const BeamKey& key;
+    size_t chunk;
+    const float* clean;
+    float* noisy;
+    size_t size;
+
+    void multiplyBy(const Variates& factor, float mean) const {
+        for (size_t i = 0; i < size; ++i) noisy[i] = (clean[i] + mean) * factor[i];
+    }
+    uint64_t multiplyByNormals(const SpeckleConfig& speckle) const {
+        const float mean = static_cast<float>(speckle.mean), deviation = static_cast<float>(speckle.deviation);
+        Variates normal;
+        drawNormals(key, Stream::Speckle, chunk, normal);
+        uint32_t clamped = 0;
+        for (size_t i = 0; i < size; ++i) {
+            const float factor = mean + deviation * normal[i];
+            clamped += factor < 0;
+            noisy[i] = clean[i] * (factor > 0 ? factor : 0.0f);
+        }
+        return clamped;
+    }
+    void addExponentials(Stream stream, float level) const {
+        Variates noise;
+        drawExponentials(key, stream, chunk, noise);
+        for (size_t i = 0; i < size; ++i) noisy[i] += level * noise[i];
+    }
+};
+
+Noise::Noise(const NoiseConfig& config) : config_(config) {
+    if (config.speckle && config.speckle->law == SpeckleLaw::Gamma) gamma_.emplace(config.speckle->looks.value_or(1));
+    if (config.speckle && config.speckle->law == SpeckleLaw::K) gamma_.emplace(config.speckle->shape.value_or(1));
+    if (config.ambient) ambient_ = static_cast<float>(std::min(ambientIntensity(*config.ambient), 1e30));
+    if (config.additive) additive_ = static_cast<float>(std::pow(10.0, config.additive->level_db / 10));
+}
+
+uint64_t Noise::multiply(const Run& run) const {
+    if (config_.speckle->law == SpeckleLaw::Gaussian) return run.multiplyByNormals(*config_.speckle);
+    Variates factor, texture;
+    drawExponentials(run.key, Stream::Speckle, run.chunk, factor);
+    if (config_.speckle->law == SpeckleLaw::K) {
+        drawExponentials(run.key, Stream::Texture, run.chunk, texture);
+        turnToGamma(gamma_->values(), texture);
+        multiplyFields(run.clean, texture, ambient_, factor, run.noisy, run.size);
+    } else if (config_.speckle->law == SpeckleLaw::Gamma) {
+        turnToGamma(gamma_->values(), factor);
+        run.multiplyBy(factor, 0);
+    } else {
+        run.multiplyBy(factor, ambient_);
+    }
+    return 0;
+}
+
+uint64_t Noise::addTo(const Run& run) const {
+    uint64_t clamped = 0;
+    if (config_.speckle)
+        clamped = multiply(run);
+    else
+        std::copy_n(run.clean, run.size, run.noisy);
+    const bool has_ambient =
+        config_.speckle && (config_.speckle->law == SpeckleLaw::Rayleigh || config_.speckle->law == SpeckleLaw::K);
+    if (config_.ambient && !has_ambient) run.addExponentials(Stream::Ambient, ambient_);
+    if (config_.additive) run.addExponentials(Stream::Additive, additive_);
+    return clamped;
+}
+
+uint64_t Noise::add(const types::Sonar& clean, types::Sonar& noisy) const {
+    noisy.copyHeader(clean);
     const uint64_t ping = static_cast<uint64_t>(clean.time.microseconds);
     uint64_t clamped = 0;
     for (uint32_t beam = 0; beam < clean.beam_count; ++beam) {
-        const BeamKey key{{low(config.seed), high(config.seed)}, beam, low(ping), high(ping)};
+        const BeamKey key{{low(config_.seed), high(config_.seed)}, beam, low(ping), high(ping)};
         for (size_t bin = 0; bin < clean.bin_count; bin += chunk_bins) {
             const size_t offset = size_t{beam} * clean.bin_count + bin;
             const size_t size = std::min<size_t>(chunk_bins, clean.bin_count - bin);
-            clamped += addNoise(config, level, {key, bin / chunk_bins, &clean.bins[offset], &noisy.bins[offset], size});
+            clamped += addTo({key, bin / chunk_bins, &clean.bins[offset], &noisy.bins[offset], size});
         }
     }
     return clamped;

@@ -1,17 +1,37 @@
 #pragma once
 #include <cstdint>
+#include <optional>
 
+#include "components/noise/GammaTable.hpp"
 #include "components/noise/NoiseConfig.hpp"
 #include "types/Sonar.hpp"
 
 namespace insonify::noise {
 
-/** Gives `noisy` everything of `clean` and its bins with noise: first the speckle factor, then the additive part.
+/** Puts noise on the intensities of pings, as it reaches the receiver.
+ *
+ *  Speckle multiplies. The noise of the sea is added: with `rayleigh` and `k` as fields, which is one exponential
+ *  variate about the sum of both means; with the other laws as an intensity of its own, exponentially distributed.
  *
  *  The variate of a bin depends on (seed, ping, beam, bin) alone, where the ping is known by its time in microseconds:
- *  a replayed log gets the noise of the run that it came from. Bins are taken as linear intensities; NaN stays NaN,
- *  and nothing that was not negative becomes negative. Allocates nothing once `noisy` has held a ping of this shape.
- *  @return how many gaussian factors were below 0 and clamped. */
-uint64_t addNoise(const NoiseConfig& config, const types::Sonar& clean, types::Sonar& noisy);
+ *  a replayed log gets the noise of the run that it came from. */
+class Noise {
+public:
+    explicit Noise(const NoiseConfig& config);
+
+    /** Gives `noisy` everything of `clean` and its bins with noise. NaN stays NaN, and nothing that was not negative
+     *  becomes negative. Allocates nothing once `noisy` has held a ping of this shape.
+     *  @return how many gaussian factors were below 0 and clamped. */
+    uint64_t add(const types::Sonar& clean, types::Sonar& noisy) const;
+
+private:
+    struct Run;
+    uint64_t addTo(const Run& run) const;
+    uint64_t multiply(const Run& run) const;
+
+    NoiseConfig config_;
+    std::optional<GammaTable> gamma_;   ///< Of laws gamma and k.
+    float ambient_ = 0, additive_ = 0;  ///< Mean intensities [1].
+};
 
 }  // namespace insonify::noise

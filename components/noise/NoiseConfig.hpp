@@ -7,23 +7,53 @@
 
 namespace insonify::noise {
 
-/** Rayleigh: a factor of unit mean, exponentially distributed, on intensity: many scatterers in every bin.
- *  Gaussian: the factor N(mean, deviation), clamped at 0, of Cerqueira et al. 2017. */
-enum class SpeckleLaw { Rayleigh, Gaussian };
+/** Of the factor on intensity. Rayleigh: exponential of unit mean, of many scatterers in every bin. Gamma: the mean of
+ *  `looks` of them. K: an exponential whose mean is gamma distributed of `shape`, of few or patchy scatterers.
+ * Gaussian: N(mean, deviation), clamped at 0, of Cerqueira et al. 2017. */
+enum class SpeckleLaw { Rayleigh, Gamma, K, Gaussian };
 
 struct SpeckleConfig {
     SpeckleLaw law = SpeckleLaw::Rayleigh;
+    std::optional<double> looks = {}, shape = {};
     double mean = 0.4;
     double deviation = 0.15;
 
     template <class Self, class V>
     static void describe(Self& self, V& visit) {
         using types::Field;
-        visit(Field{"law", "", "rayleigh: exponential factor on intensity; gaussian: normal factor, clamped at 0"},
+        visit(Field{"law", "",
+                    "rayleigh: exponential factor on intensity; gamma: mean of several; k: exponential of gamma "
+                    "distributed mean (Jakeman and Pusey 1976); gaussian: normal factor, clamped at 0 (Cerqueira et "
+                    "al. 2017)"},
               self.law);
+        visit(Field{"looks", "1", "of law gamma: how many exponential factors are averaged", 1, 1e4}, self.looks);
+        visit(Field{"shape", "1", "of law k: 1 to 20 on sea floors, rayleigh above", 1e-3, 1e6}, self.shape);
         visit(Field{"mean", "1", "of the gaussian factor", 0, 1e6}, self.mean);
         visit(Field{"deviation", "1", "standard deviation of the gaussian factor", 0, 1e6}, self.deviation);
     }
+    void check(types::Problems& problems) const;
+};
+
+/** Noise of the sea at the receiver: its mean intensity in a bin, or what it is computed from. */
+struct AmbientConfig {
+    std::optional<double> level_db, wind_m_s, bandwidth_khz, source_level_db;
+    double directivity_index_db = 0;
+    double frequency_khz = 750;
+    double shipping = 0.5;
+
+    template <class Self, class V>
+    static void describe(Self& self, V& visit) {
+        using types::Field;
+        visit(Field{"level_db", "dB", "mean intensity in a bin, relative to the source", -3000, 300}, self.level_db);
+        visit(Field{"wind_m_s", "m/s", "instead: speed of the wind, for Coates' formula", 0, 100}, self.wind_m_s);
+        visit(Field{"directivity_index_db", "dB", "of the receiver: how much less noise it hears", 0, 100},
+              self.directivity_index_db);
+        visit(Field{"bandwidth_khz", "kHz", "of the receiver", 1e-3, 1e4}, self.bandwidth_khz);
+        visit(Field{"source_level_db", "dB re 1 uPa m", "of the sonar", -300, 400}, self.source_level_db);
+        visit(Field{"frequency_khz", "kHz", "of the sonar", 1e-3, 1e4}, self.frequency_khz);
+        visit(Field{"shipping", "1", "activity of ships, which are heard below 1 kHz", 0, 1}, self.shipping);
+    }
+    void check(types::Problems& problems) const;
 };
 
 struct AdditiveConfig {
@@ -40,14 +70,21 @@ struct AdditiveConfig {
 struct NoiseConfig {
     uint64_t seed = 1;
     std::optional<SpeckleConfig> speckle;
+    std::optional<AmbientConfig> ambient;
     std::optional<AdditiveConfig> additive;
+
+    bool isNone() const { return !speckle && !ambient && !additive; }
 
     template <class Self, class V>
     static void describe(Self& self, V& visit) {
         using types::Field;
         visit(Field{"seed", "1", "of the random numbers: the same seed and ping times give the same noise"}, self.seed);
         visit(Field{"speckle", "", "multiplicative noise; absent: none"}, self.speckle);
-        visit(Field{"additive", "", "exponentially distributed background; absent: none"}, self.additive);
+        visit(Field{"ambient", "",
+                    "noise of the sea (Coates 1990), the same at every range before any gain; absent: none"},
+              self.ambient);
+        visit(Field{"additive", "", "exponentially distributed background, for model cerqueira2017; absent: none"},
+              self.additive);
     }
 };
 
@@ -55,5 +92,5 @@ struct NoiseConfig {
 
 template <>
 struct insonify::types::EnumNames<insonify::noise::SpeckleLaw> {
-    static constexpr std::string_view names[] = {"rayleigh", "gaussian"};
+    static constexpr std::string_view names[] = {"rayleigh", "gamma", "k", "gaussian"};
 };

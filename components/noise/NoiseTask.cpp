@@ -1,8 +1,11 @@
 #include "components/noise/NoiseTask.hpp"
 
-#include "components/noise/Noise.hpp"
-
 namespace insonify::noise {
+
+bool NoiseTask::configureHook() {
+    noise_.emplace(*config);
+    return true;
+}
 
 bool NoiseTask::startHook() {
     clamped_ = 0;
@@ -11,13 +14,17 @@ bool NoiseTask::startHook() {
 
 void NoiseTask::updateHook() {
     types::SonarPtr ping;
-    if (clean.readNew(ping)) noisy.write(withNoise(ping));
+    if (!clean.readNew(ping)) return;
+    if (const char* fault = ping->notIntensities())
+        return error(std::string("clean: ") + fault + "; connect a sonar's ping here, and a receiver after the noise");
+    if (state() == framework::TaskState::RunTimeError) recover();
+    noisy.write(withNoise(ping));
 }
 
 types::SonarPtr NoiseTask::withNoise(const types::SonarPtr& ping) {
-    if (!config->speckle && !config->additive) return ping;
+    if (config->isNone()) return ping;
     const auto result = pool_.take();
-    clamped_ += addNoise(*config, *ping, *result);
+    clamped_ += noise_->add(*ping, *result);
     pool_.stock(*result);
     return result;
 }

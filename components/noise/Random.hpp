@@ -1,11 +1,12 @@
 #pragma once
 // Counter-based random numbers: no state, any element at any time, in any order. Everything here is written for loops
-// over lanes that the compiler turns into vector code: no branches, no library calls.
+// over lanes that the compiler turns into vector code.
 #include <array>
-#include <bit>
 #include <cmath>
 #include <cstdint>
 #include <numbers>
+
+#include "types/VectorMath.hpp"
 
 namespace insonify::noise {
 
@@ -26,16 +27,6 @@ inline Counter philox(Counter counter, Key key) {
     return counter;
 }
 
-/** ln(1 + x) for x in [sqrt(1/2) - 1, sqrt(2) - 1], within 1e-7 relative (minimax polynomial of Cephes' logf). */
-inline float log1pSmall(float x) {
-    constexpr float coefficients[] = {-1.1514610310e-1f, 1.1676998740e-1f, -1.2420140846e-1f, 1.4249322787e-1f,
-                                      -1.6668057665e-1f, 2.0000714765e-1f, -2.4999993993e-1f, 3.3333331174e-1f};
-    float sum = 7.0376836292e-2f;
-    for (const float coefficient : coefficients) sum = sum * x + coefficient;
-    const float square = x * x;
-    return x + (x * square * sum - 0.5f * square);
-}
-
 /** -ln(u) for u = (bits + 0.5) / 2^32: exponentially distributed of unit mean, in [1.2e-10, 22.9], within 1e-6
  * relative. */
 inline float exponential(uint32_t bits) {
@@ -43,13 +34,11 @@ inline float exponential(uint32_t bits) {
     const float above = -(static_cast<float>(~bits) + 0.5f) * 0x1p-32f;
     // Below it, split into 2^exponent and a mantissa in [sqrt(1/2), sqrt(2)).
     const float u = (static_cast<float>(bits) + 0.5f) * 0x1p-32f;
-    const int32_t split = std::bit_cast<int32_t>(u) - 0x3F3504F3;
-    const int32_t exponent = split >> 23;
-    const float mantissa = std::bit_cast<float>((split & 0x007FFFFF) + 0x3F3504F3);
+    const types::PowersOfTwo parts = types::split(u);
     const bool near_one = bits >= half_root;
-    const float x = near_one ? above : mantissa - 1.0f;
-    const float powers = near_one ? 0.0f : static_cast<float>(exponent);
-    return -(log1pSmall(x) + powers * 0.69314718f);
+    const float x = near_one ? above : parts.rest;
+    const float powers = near_one ? 0.0f : static_cast<float>(parts.powers);
+    return -(types::log1pSmall(x) + powers * 0.69314718f);
 }
 
 struct Normals {

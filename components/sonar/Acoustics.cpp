@@ -104,10 +104,4 @@ Absorption makeAbsorption(const SonarConfig& config) {
     return {law(absorption.frequency_khz.value(), config.water.value())};
 }
 
-double unclampedTvgDb(const TvgConfig& tvg, double r) {
-    return tvg.log_coefficient * std::log10(r) + 2 * tvg.db_per_m * r;
-}
-
-double tvgDb(const TvgConfig& tvg, double r) { return std::min(unclampedTvgDb(tvg, r), tvg.max_db); }
-
 }  // namespace insonify::sonar

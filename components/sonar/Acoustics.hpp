@@ -32,9 +32,4 @@ struct Absorption {
 /** The configured absorption; none when the block is absent. A law needs `water`. */
 Absorption makeAbsorption(const SonarConfig& config);
 
-/** Gain at slant range r [m] before the clamp [dB]. */
-double unclampedTvgDb(const TvgConfig& tvg, double r);
-/** Gain at slant range r [m], at most max_db [dB]. */
-double tvgDb(const TvgConfig& tvg, double r);
-
 }  // namespace insonify::sonar

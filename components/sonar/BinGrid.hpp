@@ -10,7 +10,7 @@ struct BinGrid {
     int bin_count = 0;            ///< [1]
     int64_t bin_duration_us = 0;  ///< One-way travel time through a bin, as the sample carries it [us].
     double bin_width = 0;         ///< Exact [m].
-    double range_min = 0;         ///< Nearer echoes are blanked [m].
+    double range_min = 0;         ///< Nearer echoes are blanked; what is there casts its shadow [m].
     double range_max = 0;         ///< Far edge of the last bin that can receive an echo [m].
     double speed_of_sound = 0;    ///< Exactly representable in the sample's float [m/s].
 

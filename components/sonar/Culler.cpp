@@ -123,7 +123,7 @@ void Culler::visible(const Slab& slab, std::vector<Run>& runs) const {
 }
 
 std::optional<glm::vec3> Culler::before(size_t object, float distance) const {
-    if (!(distance > rules_.range_min)) return {};  // of a front that is blanked the back may be heard
+    if (!(distance > rules_.range_min)) return {};  // of a front that is not drawn the back may be seen
     return glm::vec3(records_[object].eye);
 }
 

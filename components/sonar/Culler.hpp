@@ -13,7 +13,7 @@ namespace insonify::sonar {
 
 /** What may be left out of a picture. */
 struct CullRules {
-    double range_min, range_max;  ///< Slant ranges that are heard [m].
+    double range_min, range_max;  ///< Slant ranges that are drawn [m].
     bool draw_all = false;        ///< Nothing is culled.
 };
 

@@ -26,14 +26,17 @@ std::vector<std::string> defines(const types::Plan& plan) {
     return result;
 }
 
-/** Distance of the image plane before which nothing is drawn: under the blanking even in the picture's corners. */
-double nearPlane(const SonarConfig& config, const Slab& slab) {
+/** Slant range before which nothing is drawn [m]. What is nearer than the blanking is: it casts its shadow. */
+constexpr double nearest_drawn = 1e-3;
+
+/** Distance of the image plane that is nowhere farther than `nearest_drawn`, even in the picture's corners. */
+double nearPlane(const Slab& slab) {
     const double corner = std::sqrt(1 + slab.extent_u * slab.extent_u + slab.extent_v * slab.extent_v);
-    return std::max(config.published ? 0 : config.range_min, 1e-3) / corner;
+    return nearest_drawn / corner;
 }
 
 CullRules cullRules(const SonarConfig& config, const BinGrid& bins) {
-    return {config.range_min, bins.range_max, config.draw_all};
+    return {nearest_drawn, bins.range_max, config.draw_all};
 }
 
 DepositSetup depositSetup(const SonarConfig& config, const std::vector<Beam>& beams, const std::vector<Slab>& slabs,
@@ -99,7 +102,7 @@ DrawnEchoes::DrawnEchoes(const SonarConfig& config, types::GeometryPtr geometry,
       culler_(*geometry_, cullRules(config_, bins_)),
       threads_(config_.threads),
       surface_(context_,
-               {*geometry_, slabs_, defines(plan), nearPlane(config_, slabs_.front()), culler_.runLimit(),
+               {*geometry_, slabs_, defines(plan), nearPlane(slabs_.front()), culler_.runLimit(),
                 config_.published},
                threads_) {
     makeDeposit();

@@ -24,7 +24,6 @@ bool hasNormalMap(const types::Geometry& geometry) {
 std::vector<std::string> features(const SonarConfig& config, const types::Geometry& geometry) {
     std::vector<std::string> names = {config.model == Model::Physical ? "physical" : "cerqueira2017"};
     if (config.model == Model::Cerqueira2017 && makeAbsorption(config).db_per_m > 0) names.push_back("absorption");
-    if (config.gain) names.push_back("gain");
     if (config.published) names.push_back("published");
     if (config.beam_geometry == BeamGeometry::Conical) names.push_back("conical");
     if (hasNormalMap(geometry)) names.push_back("normal_map");
@@ -55,10 +54,7 @@ void omitAbsorption(const SonarConfig& config, const BinGrid& grid, types::Plan&
                         decibels));
 }
 
-void omitPhysical(const SonarConfig& config, const types::Geometry& geometry, types::Plan& plan) {
-    if (!config.tvg) plan.omitted.push_back({"tvg", config.gain ? "gain makes up for spreading" : "not configured"});
-    if (config.output != Output::ReceivedLevelDb)
-        plan.omitted.push_back({"source level", "output is relative to the source"});
+void omitPhysical(const types::Geometry& geometry, types::Plan& plan) {
     const bool rough = std::ranges::any_of(geometry.materials, [](const auto& m) { return m.roughness_slope > 0; });
     plan.omitted.push_back({"specular lobe", rough ? "not built yet; lambert_db stands for all of the backscatter"
                                                    : "no material has a roughness_slope"});
@@ -68,7 +64,6 @@ void omitPublished(const SonarConfig& config, types::Plan& plan) {
     const std::string reason = "cerqueira2017: bins are means of S(n.d)";
     plan.omitted.push_back({"spreading", reason});
     plan.omitted.push_back({"backscatter by material", reason + "; reflectivity scales n.d"});
-    if (config.tvg) plan.omitted.push_back({"tvg", reason + " in [0, 1]"});
     if (!config.published) return;
     plan.omitted.push_back({"range footprints", "published: one bin per pixel"});
     plan.omitted.push_back({"elevation mask", "published: the image's edge, nearer than the aperture away from ahead"});
@@ -133,14 +128,6 @@ void noteWater(const SonarConfig& config, const BinGrid& grid, std::vector<std::
                         speed_gradient, bent.offset, grid.range_max));
 }
 
-void noteGain(const SonarConfig& config, const BinGrid& grid, std::vector<std::string>& notices) {
-    if (!config.tvg || config.model == Model::Cerqueira2017) return;
-    for (int j = 0; j < grid.bin_count; ++j)
-        if (unclampedTvgDb(*config.tvg, grid.centre(j)) > config.tvg->max_db)
-            return notices.push_back(fmt::format("tvg reaches its max_db of {:g} dB at {:.4g} m and stays there",
-                                                 config.tvg->max_db, grid.centre(j)));
-}
-
 /** Names in quotes, at most five of them. */
 std::string listed(const std::vector<std::string>& names) {
     std::string text;
@@ -170,7 +157,6 @@ std::vector<std::string> configNotices(const SonarConfig& config) {
     std::vector<std::string> notices;
     noteRange(config, grid, notices);
     noteWater(config, grid, notices);
-    noteGain(config, grid, notices);
     return notices;
 }
 
@@ -187,7 +173,7 @@ types::Plan makePlan(const SonarConfig& config, const types::Geometry& geometry)
 
     omitAbsorption(config, grid, plan);
     if (config.model == Model::Physical)
-        omitPhysical(config, geometry, plan);
+        omitPhysical(geometry, plan);
     else
         omitPublished(config, plan);
     omitEffects(config, grid, plan);

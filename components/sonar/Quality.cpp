@@ -17,18 +17,11 @@ constexpr int least_rows = 8, most_rows = 2048, most_columns = 256;
 constexpr int patience = 20, late_of_patience = 2, early_in_a_row = 100;
 constexpr double late_share = 0.85, early_share = 0.7;  ///< Of the budget: lowered before it is overrun.
 
-/** Energies as they are summed: a gain or a level would hide or invent errors. */
-SonarConfig plain(SonarConfig config) {
-    config.output = Output::Intensity;
-    config.tvg.reset();
-    return config;
-}
-
 /** Renders one scene at any quality. */
 class Trial {
 public:
     Trial(const SonarConfig& config, const types::Snapshot& scene)
-        : config_(plain(config)), scene_(scene), renderer_(config_, scene.geometry) {}
+        : config_(config), scene_(scene), renderer_(config_, scene.geometry) {}
 
     /** Rendered once for each quality: what one is compared with is often where the next begins. */
     const std::vector<float>& bins(int rows, int columns) {

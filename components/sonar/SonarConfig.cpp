@@ -150,14 +150,9 @@ void SonarConfig::checkBeam(types::Problems& problems) const {
         problems.push_back({"range_min", fmt::format("is {} m; must be below range, {} m", range_min, range)});
     if (absorption && absorption->frequency_khz && !water)
         problems.push_back({"absorption.frequency_khz", "is given without water; a law needs the water block"});
-    if (model == Model::Cerqueira2017 && output != Output::Intensity)
-        problems.push_back({"output", "is a level; cerqueira2017 gives means of S in [0, 1], output: intensity"});
     checkDevice(device, problems);
     if (beam_width_deg > 120)
         problems.push_back({"beam_width_deg", fmt::format("is {:g} deg; one beam may have 120", *beam_width_deg)});
-    if (gain && output != Output::Intensity)
-        problems.push_back({"gain", "is given with a level; it scales output: intensity"});
-    if (gain && tvg) problems.push_back({"gain", "is given with tvg; it makes up for spreading itself"});
     if (published) checkPublished(*this, problems);
     checkRangeReached(*this, problems);
     checkVisibility(*this, problems);

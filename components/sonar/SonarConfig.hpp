@@ -8,7 +8,6 @@
 namespace insonify::sonar {
 
 enum class Model { Physical, Cerqueira2017 };
-enum class Output { Intensity, ReceivedLevelDb, LevelDb };
 enum class BeamGeometry { Planar, Conical };
 enum class RangeRounding { Sample, Exact };
 enum class Deposit { Auto, Cpu, Gpu };
@@ -47,22 +46,6 @@ struct AbsorptionConfig {
         visit(Field{"frequency_khz", "kHz", "frequency for the law", 0, 1e5}, self.frequency_khz);
     }
     void check(types::Problems& problems) const;
-};
-
-/** Time-varied gain: log_coefficient log10(r) + 2 db_per_m r [dB], at most max_db; r in metres. */
-struct TvgConfig {
-    double log_coefficient = 0;
-    double db_per_m = 0;
-    double max_db = 100;
-
-    template <class Self, class V>
-    static void describe(Self& self, V& visit) {
-        using types::Field;
-        visit(Field{"log_coefficient", "dB", "gain per decade of range", 0, 1000}, self.log_coefficient);
-        visit(Field{"db_per_m", "dB/m", "one-way absorption made up for, twice per metre of range", 0, 1000},
-              self.db_per_m);
-        visit(Field{"max_db", "dB", "the gain is clamped here", -1000, 1000}, self.max_db);
-    }
 };
 
 /** How a pixel's echo finds its bins. All but the first are for comparison, in studies of the error. */
@@ -125,11 +108,7 @@ struct SonarConfig {
     BeamGeometry beam_geometry = BeamGeometry::Planar;
     std::optional<double> speed_of_sound;
     std::optional<WaterConfig> water;
-    double source_level_db = 0;
     std::optional<AbsorptionConfig> absorption;
-    Output output = Output::Intensity;
-    std::optional<TvgConfig> tvg;
-    std::optional<double> gain;
     QualityConfig quality;
     RangeRounding range_rounding = RangeRounding::Sample;
     bool published = false;
@@ -144,6 +123,7 @@ struct SonarConfig {
     std::string device;
     Deposit deposit = Deposit::Auto;
     std::optional<types::NotBuiltYet> beam_pattern, pulse, volume, multipath;
+    std::optional<types::MovedTo> tvg, gain, output, source_level_db;
 
     /** Image rows and columns per beam, until others are chosen for an error or a time [1]. */
     int rows() const { return quality.rows.value_or(256); }
@@ -196,21 +176,14 @@ void SonarConfig::describeBeam(Self& self, V& visit) {
     using types::Field;
     visit(Field{"model", "", "active sonar equation, or the published mean of S(n.d)"}, self.model);
     visit(Field{"range", "m", "far edge of the last bin", 0.001, 1e5}, self.range);
-    visit(Field{"range_min", "m", "nearer echoes are blanked", 0, 1e5}, self.range_min);
+    visit(Field{"range_min", "m", "nearer echoes are blanked; what is there casts its shadow", 0, 1e5}, self.range_min);
     visit(Field{"bin_count", "1", "range bins per beam", 1, 65536}, self.bin_count);
     visit(Field{"beam_width_deg", "deg", "opening of one beam", 0.001, 360}, self.beam_width_deg);
     visit(Field{"beam_height_deg", "deg", "total elevation aperture", 0.001, 180}, self.beam_height_deg);
     visit(Field{"beam_geometry", "", "planar: az = a_k; conical: sin(az) cos(el) = sin(a_k)"}, self.beam_geometry);
     visit(Field{"speed_of_sound", "m/s", "absent: computed from water, else 1500", 1, 20000}, self.speed_of_sound);
     visit(Field{"water", "", "state of the water"}, self.water);
-    visit(Field{"source_level_db", "dB re 1 uPa m", "used by output received_level_db", -300, 400},
-          self.source_level_db);
     visit(Field{"absorption", "", "absent: none"}, self.absorption);
-    visit(Field{"output", "", "intensity E/S0, level 10 log10(E/S0), or the level received"}, self.output);
-    visit(Field{"tvg", "", "time-varied gain"}, self.tvg);
-    visit(Field{"gain", "1", "puts bins near 1: times 2 gain, at most 1; physical: relative to medium sand face on", 0,
-                1},
-          self.gain);
     visit(Field{"quality", "", "samples per beam, or what they are chosen for"}, self.quality);
     visit(Field{"range_rounding", "", "sample: bins of whole microseconds; exact: edges as asked"},
           self.range_rounding);
@@ -226,6 +199,20 @@ void SonarConfig::describeBeam(Self& self, V& visit) {
     visit(Field{"pulse", "", "range point-spread (not built yet)"}, self.pulse);
     visit(Field{"volume", "", "volume reverberation (not built yet)"}, self.volume);
     visit(Field{"multipath", "", "second bounce (not built yet)"}, self.multipath);
+    visit(Field{"tvg", "",
+                "has moved: a sonar gives intensities; tvg belongs to a receiver::ReceiverTask after the noise"},
+          self.tvg);
+    visit(Field{"gain", "",
+                "has moved: a sonar gives intensities; gain_db belongs to a receiver::ReceiverTask after the "
+                "noise, and so does Rock's gain, as brightness: {gain}"},
+          self.gain);
+    visit(Field{"output", "",
+                "has moved: a sonar gives intensities; output belongs to a receiver::ReceiverTask after the noise"},
+          self.output);
+    visit(Field{"source_level_db", "",
+                "has moved: a sonar gives intensities relative to its source; source_level_db belongs to a "
+                "receiver::ReceiverTask after the noise, for output: received_level_db"},
+          self.source_level_db);
 }
 
 }  // namespace insonify::sonar
@@ -233,10 +220,6 @@ void SonarConfig::describeBeam(Self& self, V& visit) {
 template <>
 struct insonify::types::EnumNames<insonify::sonar::Model> {
     static constexpr std::string_view names[] = {"physical", "cerqueira2017"};
-};
-template <>
-struct insonify::types::EnumNames<insonify::sonar::Output> {
-    static constexpr std::string_view names[] = {"intensity", "received_level_db", "level_db"};
 };
 template <>
 struct insonify::types::EnumNames<insonify::sonar::BeamGeometry> {

@@ -34,7 +34,7 @@ public:
     /** Where the time of the last ping went. */
     std::span<const Stage> stages() const;
     const types::Plan& plan() const;
-    /** Whether the last ping has any echo; its bins do not say so where they are levels. */
+    /** Whether the last ping has any echo. */
     bool heard() const;
     /** What of the scene the last ping did not draw: objects, triangles, slabs; only those of which there is one. */
     std::vector<types::Omission> culled() const;

@@ -10,7 +10,7 @@ namespace insonify::study {
 /** The same physics by casting rays on the processor (Embree), all cores: an independent program, and the answer to
  *  "why not just cast rays". Shares no code with the renderer, but its estimate: energies converge to the truth at the
  *  same rate; rays find triangles in float, everything after is in
- *  double. `physical` without gain, absorption, normal maps and `published`; planar beams of a regular fan. */
+ *  double. `physical` without absorption, normal maps and `published`; planar beams of a regular fan. */
 class EmbreeCaster {
 public:
     /** Builds the tree of all triangles as they lie in the snapshot. */

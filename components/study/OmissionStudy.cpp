@@ -95,7 +95,6 @@ public:
     Study(const SonarConfig& config, const types::Snapshot& snapshot, int pings,
           const std::function<void(const std::string&)>& progress)
         : planned_{config, snapshot}, pings_(pings), progress_(progress) {
-        planned_.config.output = sonar::Output::Intensity;  // levels hide what is faint
         sonar::SonarRenderer renderer(planned_.config, snapshot.geometry);
         types::Sonar ping;
         renderer.render(snapshot, ping);
@@ -125,10 +124,8 @@ private:
     OmissionRow measured(const types::Omission& omission) {
         progress_(omission.name);
         OmissionRow row{omission.name, omission.reason, {}, {}, "", false};
-        Way without = planned_;
-        if (omission.name == "absorption inside a bin") without.config.tvg.reset();  // a gain of its own for each bin
-        Way with = without;
-        if (putBack(omission.name, with, row)) row.measured = compared(without, with, pings_);
+        Way with = planned_;
+        if (putBack(omission.name, with, row)) row.measured = compared(planned_, with, pings_);
         return row;
     }
 
@@ -143,10 +140,6 @@ private:
         if (name == "absorption") {
             with.config.absorption.emplace().db_per_m = 0;
             return bound(0, "change: 0 dB/m");
-        }
-        if (name == "tvg" && with.config.model == sonar::Model::Physical) {
-            with.config.tvg.emplace();
-            return bound(0, "change: 0 dB");
         }
         if (name == "normal maps") {
             with.snapshot.geometry = withFlatMap(*planned_.snapshot.geometry);
@@ -185,11 +178,6 @@ private:
         if (config.absorption) {
             without.config.absorption.reset();
             keep("absorption", without);
-        }
-        if (config.tvg) {
-            without = planned_;
-            without.config.tvg.reset();
-            keep("tvg", without);
         }
         without = planned_;
         without.snapshot.geometry =

@@ -43,9 +43,7 @@ double strengthSpan(const types::Geometry& geometry) {
 Conditions conditionsOf(const sonar::SonarConfig& config, const types::Snapshot& snapshot, const types::Sonar& ping) {
     const sonar::BinGrid grid = sonar::makeBinGrid(config);
     const double nearest = std::max(grid.range_min, 0.5 * grid.bin_width);
-    const auto silent = config.output == sonar::Output::Intensity ? 0.0f : -3000.0f;
-    const auto occupied =
-        static_cast<double>(std::ranges::count_if(ping.bins, [=](float bin) { return bin != silent; }));
+    const auto occupied = static_cast<double>(std::ranges::count_if(ping.bins, [](float bin) { return bin != 0; }));
     const double pixels = static_cast<double>(config.rows()) * config.columnsPerBeam() * config.beams();
     Conditions all = {{"kappa", kappa(config, snapshot)},
                       {"range_ratio", grid.range_max / nearest},

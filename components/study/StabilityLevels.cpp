@@ -3,8 +3,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 
+#include "components/receiver/Receiver.hpp"
 #include "components/sonar/Acoustics.hpp"
 #include "components/sonar/BinGrid.hpp"
 #include "components/study/Probe.hpp"
@@ -16,22 +18,34 @@ namespace {
 
 using sonar::SonarConfig;
 
-bool tells(const types::Plan& plan, const std::string& words) {
-    return std::ranges::any_of(plan.notices,
+bool tells(const std::vector<std::string>& notices, const std::string& words) {
+    return std::ranges::any_of(notices,
                                [&](const std::string& notice) { return notice.find(words) != std::string::npos; });
 }
 
-constexpr double far_wall = 398.7;  ///< [m]
+constexpr double far_wall = 98.6993;  ///< [m]
 
-/** A wall 398.7 m ahead at 2 MHz, in levels. */
-Probe twoMegahertzOn(SonarConfig& config, int bins) {
+/** A wall ahead at 2 MHz. */
+Probe twoMegahertzOn(SonarConfig& config, double wall, int bins) {
     config.bin_count = bins;
     config.range_rounding = sonar::RangeRounding::Exact;
-    config.output = sonar::Output::LevelDb;
     config.water = {.temperature_celsius = 10, .salinity_psu = 35, .depth = 10, .ph = 8.1};
     config.absorption.emplace().frequency_khz = 2000;
     setSamples(config, 1024, 64);
-    return probe(config, lookingAt(sceneOf({facingWall(0)}, {{far_wall, 0, 0}})));
+    return probe(config, lookingAt(sceneOf({facingWall(0)}, {{wall, 0, 0}})));
+}
+
+/** What a receiver makes of a ping. */
+types::Sonar received(receiver::Receiver receiver, const types::Sonar& intensities) {
+    types::Sonar ping;
+    receiver.receive(intensities, ping);
+    return ping;
+}
+
+receiver::ReceiverConfig inLevels() {
+    receiver::ReceiverConfig config;
+    config.output = receiver::Output::LevelDb;
+    return config;
 }
 
 /** Level of the wall in a bin in double precision, its absorption integrated in slices; -3000 dB for no echo. */
@@ -50,49 +64,63 @@ double trueLevel(const SonarConfig& config, const Truth& truth, int bin) {
 }
 
 Outcome twoMegahertz(int bins, bool in_coarse_bins) {
-    SonarConfig config = fan(1, 2, 1, 420);
-    const Probe heard = twoMegahertzOn(config, bins);
+    SonarConfig config = fan(1, 2, 1, 105);
+    const Probe heard = twoMegahertzOn(config, far_wall, bins);
+    const types::Sonar levels = received(receiver::Receiver(inLevels()), heard.ping);
     const Truth truth = planeTruth({1, 0, 0}, far_wall);
     const sonar::BinGrid grid = sonar::makeBinGrid(config);
     const int first = static_cast<int>(far_wall / grid.bin_width),
-              last = std::min(bins, first + 1 + static_cast<int>(0.05 / grid.bin_width));
+              last = std::min(bins, first + 1 + static_cast<int>(1.25e-4 * far_wall / grid.bin_width));
     double worst = 0, lowest = 0;
     for (int bin = first; bin < last; ++bin) {
         const double level = trueLevel(config, truth, bin);
         lowest = std::min(lowest, level);
-        worst = std::max(worst, std::abs(heard.ping.bins[static_cast<size_t>(bin)] - level));
+        worst = std::max(worst, std::abs(levels.bins[static_cast<size_t>(bin)] - level));
     }
     const double bound = in_coarse_bins ? sonar::makeAbsorption(config).db_per_m * grid.bin_width : 0.01;
-    const bool told = !in_coarse_bins || tells(heard.plan, "absorption changes within a bin");
-    const bool finite = std::ranges::all_of(heard.ping.bins, [](float bin) { return std::isfinite(bin); });
+    const bool told = !in_coarse_bins || tells(heard.plan.notices, "absorption changes within a bin");
     return {heard.conditions,
             fmt::format("levels down to {:.1f} dB in bins of {:.3g} m, off by {:.2g} dB; may be {:.2g}{}", lowest,
                         grid.bin_width, worst, bound, in_coarse_bins && told ? ", as the plan warns" : ""),
-            worst, finite && told && worst <= bound ? Verdict::Pass : Verdict::Fail};
+            worst, heard.isSound() && told && worst <= bound ? Verdict::Pass : Verdict::Fail};
+}
+
+/** Less than a float can hold is silence, whatever gain it gets. */
+Outcome belowAnyFloat() {
+    SonarConfig config = fan(1, 2, 1, 420);
+    const Probe heard = twoMegahertzOn(config, 398.7, 4200);
+    receiver::ReceiverConfig loud;
+    loud.tvg = {.log_coefficient = 0, .db_per_m = 1000, .max_db = 1000};
+    const types::Sonar ping = received(receiver::Receiver(loud), heard.ping);
+    const auto wrong = std::ranges::count_if(ping.bins, [](float bin) { return bin != 0; });
+    return none(static_cast<double>(wrong), "a wall of -1000 dB is 0 in every bin, with 1000 dB of gain as well",
+                heard.conditions);
 }
 
 Outcome gainOf(double gain_db, double tolerance) {
-    SonarConfig plain = fan(60, 40, 8, 20), loud = plain;
-    loud.tvg = {.log_coefficient = 1000, .db_per_m = 1000, .max_db = gain_db};
-    const auto scene = lookingAt(sceneOf({levelGround(-5)}));
-    const Probe heard = probe(loud, scene), quiet = probe(plain, scene);
+    receiver::ReceiverConfig config;
+    config.tvg = {.log_coefficient = 1000, .db_per_m = 1000, .max_db = gain_db};
+    const Probe heard = probe(fan(60, 40, 8, 20), lookingAt(sceneOf({levelGround(-5)})));
+    receiver::Receiver receiver(config);
+    types::Sonar ping;
+    receiver.receive(heard.ping, ping);
     const double factor = std::pow(10, gain_db / 10), ceiling = static_cast<double>(std::numeric_limits<float>::max());
     double worst = 0;
-    for (size_t i = 0; i < heard.ping.bins.size(); ++i)
-        worst = std::max(worst, off(heard.ping.bins[i],
-                                    std::min(quiet.ping.bins[i] * factor, quiet.ping.bins[i] > 0 ? ceiling : 0)));
+    for (size_t i = 0; i < ping.bins.size(); ++i)
+        worst = std::max(
+            worst, off(ping.bins[i], std::min(heard.ping.bins[i] * factor, heard.ping.bins[i] > 0 ? ceiling : 0)));
     return within(
-        tolerance, tells(heard.plan, "reaches its max_db") ? worst : INFINITY,
-        fmt::format("a gain of {} dB: clamped there, told in the plan; intensities at most the largest float", gain_db),
+        tolerance, tells(receiver.notices(), "reaches its max_db") ? worst : INFINITY,
+        fmt::format("a gain of {} dB: clamped there, which is told; intensities at most the largest float", gain_db),
         heard);
 }
 
 Outcome silence() {
-    SonarConfig config = fan(60, 40, 8, 20);
-    config.output = sonar::Output::LevelDb;
+    receiver::ReceiverConfig config = inLevels();
     config.tvg = {.log_coefficient = 50, .db_per_m = 1, .max_db = 100};
-    const Probe heard = probe(config, lookingAt(std::make_shared<types::Geometry>()));
-    const double deviation = std::ranges::count_if(heard.ping.bins, [](float bin) { return bin != -3000.0f; });
+    const Probe heard = probe(fan(60, 40, 8, 20), lookingAt(std::make_shared<types::Geometry>()));
+    const types::Sonar levels = received(receiver::Receiver(config), heard.ping);
+    const double deviation = std::ranges::count_if(levels.bins, [](float bin) { return bin != -3000.0f; });
     return none(deviation, "level_db of no echo is -3000 dB in every bin", heard.conditions);
 }
 
@@ -153,7 +181,7 @@ Outcome fullReflectivity() {
 
 Outcome energyCreating() {
     const Probe heard = plateBeforeWall(fan(20, 20, 4, 15), -4.9f, 1);
-    return none(!tells(heard.plan, "gives back more than it gets"), "lambert_db of -4.9: a warning in the plan",
+    return none(!tells(heard.plan.notices, "gives back more than it gets"), "lambert_db of -4.9: a warning in the plan",
                 heard.conditions);
 }
 
@@ -202,10 +230,11 @@ Outcome plateBesideBottom() {
 }  // namespace
 
 std::vector<StabilityCase> levelCases() {
-    return {{32, "2 MHz at 400 m", "level_db to 0.01 dB of double precision at -1000 dB",
+    return {{32, "2 MHz at 99 m", "level_db to 0.01 dB of double precision at -350 dB",
              [] { return twoMegahertz(65536, false); }},
-            {32, "2 MHz at 400 m in wide bins", "to the absorption of half a bin, and the plan warns",
-             [] { return twoMegahertz(1050, true); }},
+            {32, "2 MHz at 99 m in wide bins", "to the absorption of half a bin, and the plan warns",
+             [] { return twoMegahertz(262, true); }},
+            {32, "2 MHz at 400 m", "silence: -1000 dB is less than any float", belowAnyFloat},
             {33, "TVG gain of 1e20", "clamped and reported; to 1e-6", [] { return gainOf(200, 1e-6); }},
             {33, "TVG gain of 1e100", "finite: clamped at the largest float", [] { return gainOf(1000, 1e-6); }},
             {34, "log10 of 0 in decibels", "a floor of -3000 dB, never -inf or NaN", silence},

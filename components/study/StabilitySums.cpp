@@ -222,8 +222,6 @@ std::vector<StabilityCase> laterCases() {
         waits(38, "Specular lobe of a mirror", "finite; level independent of resolution to 1 dB", "the specular lobe"),
         waits(39, "+60 dB glint beside a bottom of -80 dB", "both to 1 %",
               "the specular lobe; until then no material is above +20 dB"),
-        waits(48, "K statistics of shape 1e-3 and 1e6", "finite with an extreme tail; exponential",
-              "K-distributed speckle"),
         waits(59, "Range point-spread narrower than a bin and wider than the range", "energy kept",
               "range point-spread")};
 }

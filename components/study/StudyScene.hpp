@@ -12,7 +12,7 @@ namespace insonify::study {
 struct StudyScene {
     std::string name;
     std::string doc;
-    sonar::SonarConfig config;  ///< Intensities without gain; its quality is what a study varies.
+    sonar::SonarConfig config;  ///< Its quality is what a study varies.
     types::Snapshot snapshot;
     Truth truth;            ///< Empty: the reference has to be computed.
     double range_from = 0;  ///< Bins that begin nearer are not compared: the aperture's edge lies there [m].

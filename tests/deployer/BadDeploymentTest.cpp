@@ -20,6 +20,14 @@ BadDeployment edited(const char* name, const char* what, const char* with, std::
     return {name, replaced(wall_deployment, what, with), std::move(messages)};
 }
 
+/** A receiver between the sonar and the noise. */
+std::string receiverBeforeNoise() {
+    const std::string more =
+        replaced(wall_deployment, "  noise:\n", "  receiver: {type: receiver::ReceiverTask}\n  noise:\n");
+    return replaced(more, "{from: sonar.ping, to: noise.clean}",
+                    "{from: sonar.ping, to: receiver.intensity}\n  - {from: receiver.ping, to: noise.clean}");
+}
+
 const BadDeployment cases[] = {
     {"Empty", "", {"wall.yml"}},
     edited("YamlSyntax", "tasks:\n", "tasks: [\n", {"wall.yml:"}),
@@ -40,6 +48,12 @@ const BadDeployment cases[] = {
     edited("KeyGivenTwice", "range: 20", "range: 20\n      range: 30", {"wall.yml:17:", "range"}),
     edited("ReservedKey", "range: 20", "range: 20\n      multipath: {}",
            {"wall.yml:17:", "multipath", "not built yet"}),
+    edited("KeyOfTheReceiver", "range: 20", "range: 20\n      tvg: {log_coefficient: 40}",
+           {"wall.yml:17:12: tasks.sonar.properties.tvg: has moved", "receiver::ReceiverTask after the noise"}),
+    {"ReceiverBeforeTheNoise",
+     receiverBeforeNoise(),
+     {"wall.yml:34:5: connections[3]: receiver.ping gives what a receiver has amplified, noise.clean takes intensities "
+      "that reach a receiver"}},
     edited("TrajectoryFileMissing",
            "waypoints: [{time: 0, position: [0, 0, 0], roll_deg: 0, pitch_deg: 0, yaw_deg: 0}]", "file: nowhere.csv",
            {"nowhere.csv"}),

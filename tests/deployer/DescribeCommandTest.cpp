@@ -20,7 +20,8 @@ TEST(DescribeCommandTest, ListsEveryTask) {
     const Outcome outcome = callInsonify(folder, {"describe"});
     EXPECT_EQ(outcome.code, 0);
     for (const char* type : {"pose::TrajectoryTask", "scene::SceneTask", "sonar::SonarTask", "sonar::ScanningSonarTask",
-                             "noise::NoiseTask", "output::FanImageTask", "logger::LoggerTask", "replay::ReplayTask"})
+                             "noise::NoiseTask", "receiver::ReceiverTask", "output::FanImageTask", "logger::LoggerTask",
+                             "replay::ReplayTask"})
         EXPECT_THAT(outcome.out, HasSubstr(type));
 }
 

@@ -150,7 +150,7 @@ TEST_F(ReplayScoreTest, TheQualityThatWasChosenIsThatOfTheLog) {
 
 TEST_F(ReplayScoreTest, WhatTheRunWasSetToIsTakenFromTheLogsProperties) {
     record({"--pings", "3", "--set", "sonar.range=15", "--set", "sonar.speed_of_sound=1480", "--set",
-            "sonar.tvg={log_coefficient: 20}", "--set", "noise.seed=9"});
+            "sonar.absorption={db_per_m: 0.1}", "--set", "noise.seed=9"});
     const Outcome outcome = score("out/wall.0.log");
     ASSERT_EQ(outcome.code, 0) << outcome.err;
     EXPECT_THAT(outcome.err, HasSubstr("as in the log: sonar.range=15\n"));
@@ -173,16 +173,18 @@ TEST_F(ReplayScoreTest, AScanningSonarScoresAsWell) {
 }
 
 TEST_F(ReplayScoreTest, LevelsAreComparedAsEnergies) {
-    const std::string levels =
-        replaced(wall_deployment, "      range: 20\n", "      range: 20\n      output: level_db\n");
-    writeFile(folder_ / "wall.yml",
-              replaced(levels, "properties: {seed: 7, speckle: {law: rayleigh}}", "properties: {seed: 7}"));
+    std::string levels = replaced(wall_deployment, "properties: {seed: 7, speckle: {law: rayleigh}}",
+                                  "properties: {seed: 7}\n"
+                                  "  receiver: {type: receiver::ReceiverTask, properties: {output: level_db}}");
+    levels = replaced(levels, "{from: noise.noisy, to: log.noisy,",
+                      "{from: noise.noisy, to: receiver.intensity}\n  - {from: receiver.ping, to: log.level,");
+    writeFile(folder_ / "wall.yml", levels);
     record();
     shiftPoses(0);
     ASSERT_EQ(score("out/wall.0.log").code, 0);
     for (const auto& [name, stream] : streams()) {
         expectSame(stream);
-        EXPECT_EQ(stream["display"]["scale"], "decibel");
+        EXPECT_EQ(stream["display"]["scale"], name == "receiver.ping" ? "decibel" : "linear") << name;
     }
     ASSERT_EQ(score("shifted.0.log").code, 0);
     for (const auto& [name, stream] : streams()) EXPECT_GT(stream["pings"][0]["rel_l2"], 0.05);

@@ -27,7 +27,7 @@ protected:
         return callInsonify(folder_, words);
     }
     /** The one ping of a run. */
-    types::Sonar ping(std::vector<std::string> more, const std::string& stream = "multibeam_noise.noisy") const {
+    types::Sonar ping(std::vector<std::string> more, const std::string& stream = "multibeam_receiver.ping") const {
         more.insert(more.end(), {"--pings", "1"});
         const Outcome outcome = run(more);
         if (outcome.code != 0) throw std::runtime_error(outcome.err);
@@ -57,7 +57,7 @@ TEST_F(RockDropInTest, ThePublishedPropertiesAndSectionsGiveTheSonarTheyDescribe
 
 TEST_F(RockDropInTest, AScanningSonarStartsAtItsLeftLimitAndTurnsByItsMotorStep) {
     ASSERT_EQ(run({"--pings", "3"}).code, 0);
-    const auto pings = exportedPings(folder_, "out/rock.0.log", "scanning_noise.noisy");
+    const auto pings = exportedPings(folder_, "out/rock.0.log", "scanning_receiver.ping");
     ASSERT_EQ(pings.size(), 3u);
     for (size_t i = 0; i < 3; ++i) EXPECT_NEAR(pings[i].bearings.at(0).deg(), 140 - 1.8 * static_cast<double>(i), 1e-6);
 }
@@ -85,6 +85,18 @@ TEST_F(RockDropInTest, AGainOfOneHalfPutsEchoesNearOneInBothModelsAndTheyGrowWit
         EXPECT_GT(std::ranges::count_if(half.bins, [](float bin) { return bin > 0.05f; }), 100) << model;
         EXPECT_GT(sum(half), 1.5 * sum(tenth)) << model;
         EXPECT_EQ(sum(none), 0) << model;
+    }
+}
+
+TEST_F(RockDropInTest, TheGainOfThePublishedModelIsTwiceItTimesTheMeanAndAtMostOne) {
+    const auto with = [&](const char* gain) {
+        return ping({"--set", "multibeam.model=cerqueira2017", "--set", "multibeam.enable_speckle_noise=false", "--set",
+                     std::string("multibeam.gain=") + gain});
+    };
+    const types::Sonar plain = with("0.5"), bright = with("1"), dim = with("0.05");
+    for (size_t i = 0; i < plain.bins.size(); ++i) {
+        EXPECT_FLOAT_EQ(bright.bins[i], std::min(2 * plain.bins[i], 1.0f));
+        EXPECT_FLOAT_EQ(dim.bins[i], 0.1f * plain.bins[i]);
     }
 }
 

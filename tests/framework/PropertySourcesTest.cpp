@@ -113,6 +113,25 @@ TEST_F(PropertySourcesTest, APropertyFileThatIsNotOneIsNamedWithItsPlace) {
                 ElementsAre("twice.yml:3:1: a: is a section that stands here twice; once is allowed"));
 }
 
+TEST_F(PropertySourcesTest, ACopyStaysAndGoesToAPropertyOfAnyTaskAsWell) {
+    write("one.yml", "model: fine\n");
+    const std::string yaml = head +
+                             "    copies: {model: other.display.model}\n    properties: {model: coarse, last: 3}\n" +
+                             "  other: {type: test::Source, activity: {period: 1}, properties: {display: {gain: 1}}}\n";
+    EXPECT_EQ(properties(yaml), "{model: coarse, last: 3}");
+    EXPECT_EQ(properties(yaml, "other"), "{display: {gain: 1, model: coarse}}");
+    DeploymentSpec spec = parse(yaml);
+    spec.set("t.model=fine");
+    EXPECT_EQ(text(spec), "{last: 3, model: fine}");
+    EXPECT_EQ(text(spec, "other"), "{display: {gain: 1, model: fine}}");
+    const std::string read = head + "    copies: {model: other.model}\n    property_files: {files: [one.yml]}\n" +
+                             "  other: {type: test::Source, activity: {period: 1}}\n";
+    EXPECT_EQ(properties(read), "{model: fine}");
+    EXPECT_EQ(properties(read, "other"), "{model: fine}");
+    EXPECT_THAT(faults(head + "    copies: {last: nobody.x}\n"),
+                ElementsAre("a.yml:5:20: tasks.t.copies.last: there is no task nobody; known: t"));
+}
+
 TEST_F(PropertySourcesTest, AnAliasLeadsToAPropertyOfAnyTask) {
     write("one.yml", "beam_width: {rad: 20.deg}\nwater: {kelvin: 280, salt: 35}\n");
     const std::string yaml =

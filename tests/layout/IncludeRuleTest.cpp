@@ -30,7 +30,7 @@ std::set<std::string> neighboursOf(const Source& source) {
     const std::string folder = source.folder();
     std::set<std::string> allowed;
     if (source.isTaskHalf()) allowed.insert("framework");
-    if (folder == "study") allowed.insert({"sonar", "scene"});
+    if (folder == "study") allowed.insert({"sonar", "receiver", "scene"});
     if (folder == "sonar") allowed.insert({"gpu", "shaders"});
     if (folder == "logger" || folder == "replay") allowed.insert({"pocolog", "mcap"});
     if (folder == "dds") allowed.insert("ros");

@@ -19,7 +19,7 @@ types::SonarPtr pingAt(int64_t time) {
 }
 
 TEST(AllocationTest, NoiseAllocatesNothingAfterTheFirstPings) {
-    for (const SpeckleLaw law : {SpeckleLaw::Rayleigh, SpeckleLaw::Gaussian}) {
+    for (const SpeckleLaw law : {SpeckleLaw::Rayleigh, SpeckleLaw::Gamma, SpeckleLaw::K, SpeckleLaw::Gaussian}) {
         NoiseTask task("noise");
         test::Writer<types::SonarPtr> in;
         test::Reader<types::SonarPtr> out;
@@ -28,6 +28,7 @@ TEST(AllocationTest, NoiseAllocatesNothingAfterTheFirstPings) {
         NoiseConfig config;
         config.speckle.emplace().law = law;
         config.additive.emplace();
+        config.ambient.emplace().level_db = -60;
         task.config.set(config);
         ASSERT_TRUE(task.configure());
         ASSERT_TRUE(task.start());

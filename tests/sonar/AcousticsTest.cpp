@@ -121,13 +121,5 @@ TEST(AcousticsTest, SpeedIsConfiguredOrOfTheWaterOrTheDefault) {
     EXPECT_EQ(config.speedOfSound(), 1480);
 }
 
-TEST(AcousticsTest, TvgFollowsRangeUpToItsClamp) {
-    const TvgConfig tvg{.log_coefficient = 40, .db_per_m = 0.5, .max_db = 100};
-    EXPECT_DOUBLE_EQ(tvgDb(tvg, 1), 1);
-    EXPECT_DOUBLE_EQ(tvgDb(tvg, 10), 50);
-    EXPECT_DOUBLE_EQ(tvgDb(tvg, 100), 100);
-    EXPECT_DOUBLE_EQ(unclampedTvgDb(tvg, 100), 180);
-}
-
 }  // namespace
 }  // namespace insonify::sonar

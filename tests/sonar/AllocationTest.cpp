@@ -83,8 +83,6 @@ TEST(AllocationTest, NorWithEveryEffectThereIs) {
     SonarConfig config = fan();
     config.water.emplace();
     config.absorption.emplace().frequency_khz = 700;
-    config.tvg.emplace().log_coefficient = 40;
-    config.output = Output::ReceivedLevelDb;
     config.beam_geometry = BeamGeometry::Conical;
     expectNoAllocation<SonarTask>(config);
 }

@@ -90,8 +90,8 @@ Bins times(Bins bins, float factor) {
 
 TEST(OmissionTest, NoEffectIsLeftOutThatIsNotTestedHere) {
     const std::set<std::string> tested = {
-        "absorption", "absorption inside a bin", "tvg", "source level", "specular lobe", "spreading",
-        "backscatter by material", "further slabs", "refraction", "motion within a ping", "normal maps",
+        "absorption", "absorption inside a bin", "specular lobe", "spreading", "backscatter by material",
+        "further slabs", "refraction", "motion within a ping", "normal maps",
         // of `published`, in PublishedTest.cpp:
         "range footprints", "elevation mask", "shared columns", "near blanking",
         // without values yet; SonarConfig refuses them:
@@ -100,7 +100,6 @@ TEST(OmissionTest, NoEffectIsLeftOutThatIsNotTestedHere) {
     absorbing.absorption.emplace().db_per_m = 0.1;
     absorbing.field_of_view_deg = 50;
     published.published = true;
-    published.tvg.emplace();
     for (const SonarConfig& config : {plainSonar(), plainSonar(Model::Cerqueira2017), absorbing, published})
         for (const types::Omission& omission : makePlan(config, *unmapped()).omitted)
             EXPECT_TRUE(tested.contains(omission.name)) << omission.name;
@@ -131,26 +130,6 @@ TEST(OmissionTest, AbsorptionInsideABinIsWithinTheStatedBound) {
     }
 }
 
-TEST(OmissionTest, NoTvgIsATvgWithoutGain) {
-    SonarConfig with = plainSonar();
-    with.tvg.emplace();
-    EXPECT_EQ(binsOf(with), binsOf(plainSonar()));
-    with.tvg->log_coefficient = 30;
-    EXPECT_NE(binsOf(with), binsOf(plainSonar()));
-}
-
-TEST(OmissionTest, TheSourceLevelActsOnReceivedLevelsOnly) {
-    SonarConfig loud = plainSonar(), level = plainSonar(), received = plainSonar();
-    loud.source_level_db = 200;
-    EXPECT_EQ(binsOf(loud), binsOf(plainSonar()));
-    level.output = Output::LevelDb;
-    received.output = Output::ReceivedLevelDb;
-    const Bins relative = binsOf(level);
-    EXPECT_EQ(binsOf(received), relative) << "of a source of 0 dB";
-    received.source_level_db = 200;
-    EXPECT_NE(binsOf(received), relative);
-}
-
 TEST(OmissionTest, ASmoothMaterialHasNoLobeWhateverItReflects) {
     const auto shiny = changed([](types::Geometry& g) { g.materials[0].reflection = 0.9f; });
     EXPECT_EQ(binsOf(plainSonar(), shiny), binsOf(plainSonar()));
@@ -174,13 +153,10 @@ TEST(OmissionTest, TheModelOfCerqueiraKnowsNoSpreading) {
     }
 }
 
-TEST(OmissionTest, TheModelOfCerqueiraKnowsNeitherBackscatterNorTvg) {
+TEST(OmissionTest, TheModelOfCerqueiraKnowsNoBackscatter) {
     const Bins bins = binsOf(plainSonar(Model::Cerqueira2017));
     const auto hard = changed([](types::Geometry& g) { g.materials[0].lambert_db = -3; });
     EXPECT_EQ(binsOf(plainSonar(Model::Cerqueira2017), hard), bins);
-    SonarConfig gained = plainSonar(Model::Cerqueira2017);
-    gained.tvg = {.log_coefficient = 40, .db_per_m = 0.5, .max_db = 100};
-    EXPECT_EQ(binsOf(gained), bins);
     EXPECT_NE(binsOf(plainSonar(), hard), binsOf(plainSonar())) << "physical does";
 }
 

@@ -46,8 +46,8 @@ TEST(PlanTest, ThePlainPhysicalSonarCompilesNothingElseAndTellsWhy) {
     EXPECT_EQ(plan.rows, 256);
     EXPECT_EQ(plan.columns_per_beam, 2);
     EXPECT_EQ(plan.slabs, 2);
-    for (const char* effect : {"absorption", "tvg", "azimuth beam pattern", "elevation beam pattern",
-                               "range point-spread", "volume reverberation", "multipath"})
+    for (const char* effect : {"absorption", "azimuth beam pattern", "elevation beam pattern", "range point-spread",
+                               "volume reverberation", "multipath"})
         EXPECT_EQ(reason(plan, effect), "not configured") << effect;
     EXPECT_EQ(reason(plan, "normal maps"), "no material has one");
     EXPECT_EQ(reason(plan, "specular lobe"), "no material has a roughness_slope");
@@ -63,8 +63,6 @@ TEST(PlanTest, WhatASceneOrConfigurationHasIsNotLeftOut) {
     for (const Case& c :
          {Case{"normal maps", "normal_map", [](SonarConfig&, types::Material&m) { m.normal_map = 0; }},
           Case{"absorption", nullptr, [](SonarConfig&s, types::Material&) { s.absorption.emplace().db_per_m = 0.1; }},
-          Case{"tvg", nullptr, [](SonarConfig&s, types::Material&) { s.tvg.emplace(); }},
-          Case{"source level", nullptr, [](SonarConfig&s, types::Material&) { s.output = Output::ReceivedLevelDb; }},
           Case{"spreading", "physical", [](SonarConfig&, types::Material&) {}},
           Case{"further slabs", nullptr, [](SonarConfig&s, types::Material&) { s.field_of_view_deg = 61; }},
           Case{"refraction", nullptr,
@@ -83,11 +81,10 @@ TEST(PlanTest, WhatASceneOrConfigurationHasIsNotLeftOut) {
 TEST(PlanTest, ThePublishedModelLeavesThePhysicsOut) {
     SonarConfig config = quietSonar();
     config.model = Model::Cerqueira2017;
-    config.tvg.emplace();
     config.absorption.emplace().db_per_m = 0.2;
     const types::Plan plan = makePlan(config, sceneOf({sand()}));
     EXPECT_THAT(plan.features, ElementsAre("cerqueira2017", "absorption"));
-    for (const char* effect : {"spreading", "backscatter by material", "tvg"})
+    for (const char* effect : {"spreading", "backscatter by material"})
         EXPECT_THAT(reason(plan, effect), HasSubstr("means of S(n.d)")) << effect;
     config.absorption->db_per_m = 0;
     EXPECT_THAT(makePlan(config, sceneOf({sand()})).features, ElementsAre("cerqueira2017"));
@@ -152,10 +149,8 @@ TEST(PlanTest, NoticesOfTheConfiguration) {
                    s.absorption.emplace().frequency_khz = 10000;
                }},
           Case{"rays are straight", [](SonarConfig& s) { s.range = 3000, s.beam_height_deg = 5; }},
-          Case{"smaller than the 0.00012 m between neighbouring float ranges",
-               [](SonarConfig& s) { s.range = 2000, s.bin_count = 20000000, s.range_rounding = RangeRounding::Exact; }},
-          Case{"tvg reaches its max_db of 20 dB at", [](SonarConfig& s) {
-                   s.tvg.emplace(TvgConfig{20, 0, 20});
+          Case{"smaller than the 0.00012 m between neighbouring float ranges", [](SonarConfig& s) {
+                   s.range = 2000, s.bin_count = 20000000, s.range_rounding = RangeRounding::Exact;
                }}}) {
         SonarConfig config = quietSonar();
         c.change(config);

@@ -79,15 +79,12 @@ TEST(BudgetKeeperTest, TheLadderHasTwoEnds) {
     EXPECT_EQ(keeper.quality().columns_per_beam, 2);
 }
 
-class QualityTaskTest : public testing::TestWithParam<Output> {};
-
-TEST_P(QualityTaskTest, TheChoiceAndItsErrorAreInThePlanOnceSomethingIsHeard) {
+TEST(QualityTaskTest, TheChoiceAndItsErrorAreInThePlanOnceSomethingIsHeard) {
     SonarTask task("sonar");
     test::Writer<types::SnapshotPtr> in;
     in.port.connectTo(task.snapshot, framework::ConnPolicy::buffer(4));
     SonarConfig config = small();
     config.quality.target_error = 0.03;
-    config.output = GetParam();  // silence is a floor where bins are levels
     task.config.set(config);
     ASSERT_TRUE(task.configure() && task.start()) << task.lastError();
     const auto geometry = test::sceneOf({test::ground(-3)}, -10);
@@ -105,9 +102,6 @@ TEST_P(QualityTaskTest, TheChoiceAndItsErrorAreInThePlanOnceSomethingIsHeard) {
     EXPECT_LE(task.plan()->predicted_error, 0.03);
     EXPECT_LT(task.plan()->rows, SonarConfig().rows()) << "a flat bottom needs few";
 }
-
-INSTANTIATE_TEST_SUITE_P(Outputs, QualityTaskTest,
-                         testing::Values(Output::Intensity, Output::LevelDb, Output::ReceivedLevelDb));
 
 TEST(QualityBudgetTest, ABudgetThatIsTooSmallLeadsToTheCoarsest) {
     SonarTask task("sonar");

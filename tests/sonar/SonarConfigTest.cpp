@@ -34,10 +34,7 @@ TEST(SonarConfigTest, EveryKeyOfTheContractIsAccepted) {
         beam_geometry: conical
         speed_of_sound: 1480
         water: {temperature_celsius: 12, salinity_psu: 35, depth: 8, ph: 8.1}
-        source_level_db: 210
         absorption: {law: ainslie_mccolm, frequency_khz: 750}
-        output: received_level_db
-        tvg: {log_coefficient: 50, db_per_m: 0.4, max_db: 100}
         quality: {rows: 512, columns_per_beam: 4}
         range_rounding: exact
         device: software
@@ -83,8 +80,7 @@ TEST(SonarConfigTest, ValuesOutOfBoundsAreRefused) {
                              "quality: {rows: 0}",
                              "{bearings_deg: [0, 200], beam_width_deg: 1}",
                              "beam_count: 2.5",
-                             "model: magic",
-                             "output: volts"})
+                             "model: magic"})
         EXPECT_EQ(faultsOf<SonarConfig>(yaml).size(), 1u) << yaml;
 }
 
@@ -92,6 +88,17 @@ TEST(SonarConfigTest, WhatIsNotBuiltYetSaysSo) {
     for (const char* yaml : {"beam_pattern: {azimuth: {weighting: hann, width_deg: 1}}", "pulse: {bandwidth_khz: 20}",
                              "volume: {}", "multipath: {}"})
         EXPECT_THAT(faultsOf<SonarConfig>(yaml), ElementsAre(HasSubstr("not built yet"))) << yaml;
+}
+
+TEST(SonarConfigTest, WhatAReceiverDoesIsToldToBeThere) {
+    for (const char* yaml :
+         {"tvg: {log_coefficient: 40}", "gain: 0.5", "output: level_db", "output: intensity", "source_level_db: 210"}) {
+        const std::string key = std::string(yaml).substr(0, std::string(yaml).find(':'));
+        EXPECT_THAT(faultsOf<SonarConfig>(yaml),
+                    ElementsAre(AllOf(HasSubstr(key + ": has moved"), HasSubstr("receiver::ReceiverTask"))))
+            << yaml;
+        EXPECT_EQ(faultsOf<ScanningSonarConfig>(yaml).size(), 1u) << yaml;
+    }
 }
 
 TEST(SonarConfigTest, ValuesThatDoNotGoTogetherAreNamed) {
@@ -106,15 +113,12 @@ TEST(SonarConfigTest, ValuesThatDoNotGoTogetherAreNamed) {
           Case{"beam_width_deg: 3", "beam_width_deg: ", "256 beams of it cover 768 deg, may be 360"},
           Case{"{beam_width_deg: 0.5, field_of_view_deg: 90}", "field_of_view_deg: ", "with beam_width_deg"},
           Case{"{bearings_deg: [0], beam_width_deg: 130}", "beam_width_deg: ", "one beam may have 120"},
-          Case{"{gain: 0.5, tvg: {log_coefficient: 30}}", "gain: ", "with tvg"},
-          Case{"{gain: 0.5, output: level_db}", "gain: ", "output: intensity"},
           Case{"{beam_count: 4096, bin_count: 20000, range: 2000}",
                "bin_count: ", "81920000 bins in all; may be 16777216"},
           Case{"{beam_geometry: conical, field_of_view_deg: 200}", "beam_geometry: ", "at most 180 deg"},
           Case{"absorption: {frequency_khz: 700}", "absorption.frequency_khz: ", "needs the water block"},
           Case{"absorption: {}", "absorption: ", "give db_per_m, or frequency_khz"},
           Case{"absorption: {db_per_m: 1, frequency_khz: 700}", "absorption.db_per_m: ", "give one of the two"},
-          Case{"{model: cerqueira2017, output: level_db}", "output: ", "output: intensity"},
           Case{"quality: {rows: 64, target_error: 0.1}", "quality.target_error: ", "with another choice"},
           Case{"quality: {columns_per_beam: 4, budget_ms: 10}", "quality.budget_ms: ", "with another choice"},
           Case{"published: true", "published: ", "only with model: cerqueira2017"},

@@ -95,6 +95,29 @@ TEST(SonarRendererTest, NothingInViewIsSilence) {
         << "nearer than range_min";
 }
 
+TEST(SonarRendererTest, WhatIsNearerThanTheBlankingIsSilentAndCastsItsShadow) {
+    const types::Mesh plate = test::quad({0.5, -1, -1}, {0, 2, 0}, {0, 0, 2});
+    const types::Mesh target = test::quad({5, -20, -20}, {0, 40, 0}, {0, 0, 40});
+    const auto heard = [](const types::GeometryPtr& geometry, double range_min) {
+        SonarConfig config = fan();
+        config.range_min = range_min;
+        SonarRenderer renderer(config, geometry);
+        types::Sonar ping;
+        renderer.render(test::snapshotOf(geometry), ping);
+        double near = 0, far = 0;  // of 2 m: all of the plate that is in view is within 0.9 m
+        for (size_t i = 0; i < ping.bins.size(); ++i) (i % 400 < 20 ? near : far) += ping.bins[i];
+        return std::pair(near, far);
+    };
+    const types::GeometryPtr both = test::sceneOf({plate, target}), alone = test::sceneOf({target});
+    for (const double range_min : {0.45, 0.55, 1.9}) {
+        const auto [near, far] = heard(both, range_min);
+        EXPECT_EQ(far, 0) << "the plate hides the wall, blanked from " << range_min;
+        EXPECT_EQ(near > 0, range_min < 1.9) << range_min;
+        EXPECT_GT(heard(alone, range_min).second, 0);
+    }
+    EXPECT_GT(heard(both, 0.45).first, heard(both, 0.55).first);
+}
+
 TEST(SonarRendererTest, ASonarOnASurfaceOrInsideABodyHearsFiniteEchoes) {
     const auto ball = test::sceneOf({test::sphere(5, 32)});
     for (double x : {0.0, 4.0, 4.99, 5.0, 5.01})

@@ -259,7 +259,7 @@ TEST(VisibilityTest, ATallImageIsRefusedAndRaysTakeIt) {
 TEST(VisibilityTest, WhatIsNearerThanTheBlankingIsSilentAndCastsItsShadow) {
     const auto snapshot = test::snapshotOf(test::sceneOf(
         {test::quad({0.5, -2, -2}, {0, 4, 0}, {0, 0, 4}), test::quad({5, -9, -9}, {0, 18, 0}, {0, 0, 18})}));
-    for (Visibility visibility : {Visibility::Cpu}) {
+    for (Visibility visibility : {Visibility::Cpu, Visibility::Gl}) {
         SonarConfig config = fan(visibility);
         config.field_of_view_deg = 40;
         config.range_min = 0.45;

@@ -1,0 +1,41 @@
+#include "components/noise/Ambient.hpp"
+
+#include <cmath>
+#include <string>
+#include <utility>
+
+namespace insonify::noise {
+namespace {
+
+double powerOf(double decibels) { return std::pow(10.0, decibels / 10); }
+
+}  // namespace
+
+void AmbientConfig::check(types::Problems& problems) const {
+    const std::pair<const char*, const std::optional<double>&> computed[] = {
+        {"wind_m_s", wind_m_s}, {"bandwidth_khz", bandwidth_khz}, {"source_level_db", source_level_db}};
+    if (!level_db && !wind_m_s && !bandwidth_khz && !source_level_db)
+        return problems.push_back({"", "has no value; give level_db, or wind_m_s, bandwidth_khz and source_level_db"});
+    for (const auto& [name, value] : computed) {
+        if (level_db && value) problems.push_back({name, "stands beside level_db; give one of the two"});
+        if (!level_db && !value) problems.push_back({"", std::string("has no ") + name + "; without level_db it must"});
+    }
+}
+
+double coatesSpectrumDb(double frequency_khz, double wind_m_s, double shipping) {
+    const double f = std::log10(frequency_khz);
+    const double turbulence = 17 - 30 * f;
+    const double ships = 40 + 20 * (shipping - 0.5) + 26 * f - 60 * std::log10(frequency_khz + 0.03);
+    const double wind = 50 + 7.5 * std::sqrt(wind_m_s) + 20 * f - 40 * std::log10(frequency_khz + 0.4);
+    const double thermal = -15 + 20 * f;
+    return 10 * std::log10(powerOf(turbulence) + powerOf(ships) + powerOf(wind) + powerOf(thermal));
+}
+
+double ambientIntensity(const AmbientConfig& ambient) {
+    if (ambient.level_db) return powerOf(*ambient.level_db);
+    const double spectrum = coatesSpectrumDb(ambient.frequency_khz, *ambient.wind_m_s, ambient.shipping);
+    return powerOf(spectrum + 10 * std::log10(1e3 * *ambient.bandwidth_khz) - ambient.directivity_index_db -
+                   *ambient.source_level_db);
+}
+
+}  // namespace insonify::noise

@@ -1,0 +1,169 @@
+#include "components/receiver/Receiver.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "types/Geometry.hpp"
+#include "types/VectorMath.hpp"
+
+namespace insonify::receiver {
+namespace {
+
+constexpr float floor_db = -3000;
+constexpr double nearest = 1e-3;  ///< Gain is that of this range where bins are nearer [m].
+
+INSONIFY_VECTOR_CLONES
+void amplify(const float* __restrict in, const double* __restrict factor, double ceiling, float* __restrict out,
+             size_t count) {
+    for (size_t i = 0; i < count; ++i) {
+        const double x = static_cast<double>(in[i]) * factor[i];
+        out[i] = static_cast<float>(x > ceiling ? ceiling : x);
+    }
+}
+
+INSONIFY_VECTOR_CLONES
+void takeRoots(float* values, size_t count) {
+    for (size_t i = 0; i < count; ++i) values[i] = std::sqrt(values[i]);
+}
+
+INSONIFY_VECTOR_CLONES
+void takeLevels(const float* __restrict in, const float* __restrict offset_db, float* __restrict out, size_t count) {
+    for (size_t i = 0; i < count; ++i) {
+        const float level = types::decibels(in[i]) + offset_db[i];
+        const float heard = level < floor_db ? floor_db : level;
+        out[i] = in[i] > 0 ? heard : in[i] == 0 ? floor_db : in[i];
+    }
+}
+
+/** The nearest whole numbers from 0 to `most`; of NaN 0. */
+INSONIFY_VECTOR_CLONES
+void quantise(float* values, float per_unit, float zero, float most, size_t count) {
+    for (size_t i = 0; i < count; ++i) {
+        const float x = (values[i] - zero) * per_unit;
+        const float above = x > 0 ? x : 0.0f;
+        const float code = above < most ? above : most;
+        values[i] = static_cast<float>(static_cast<int32_t>(code + 0.5f));
+    }
+}
+
+double powerOf(double decibels) { return std::pow(10.0, decibels / 10); }
+
+/** What the echo of a cell of medium sand, face on, is short of 1: the level of mu w dR / r^3 [dB]. */
+double sandLevelDb(const types::Sonar& ping, double r) {
+    const double cell = ping.beam_width.rad * (ping.binStart(1) - ping.binStart(0));
+    return types::Material{}.lambert_db + 10 * std::log10(cell) - 30 * std::log10(r);
+}
+
+}  // namespace
+
+void CodeConfig::check(types::Problems& problems) const {
+    if (bits != 8 && bits != 16) problems.push_back({"bits", fmt::format("is {}; must be 8 or 16", bits)});
+}
+
+void ReceiverConfig::check(types::Problems& problems) const {
+    if (!brightness) return;
+    if (tvg) problems.push_back({"brightness", "is given with tvg; it makes up for spreading itself"});
+    if (output != Output::Intensity)
+        problems.push_back({"brightness", "is given with another output; it scales output: intensity"});
+}
+
+double unclampedTvgDb(const TvgConfig& tvg, double r) {
+    return tvg.log_coefficient * std::log10(r) + 2 * tvg.db_per_m * r;
+}
+
+double tvgDb(const TvgConfig& tvg, double r) { return std::min(unclampedTvgDb(tvg, r), tvg.max_db); }
+
+std::optional<double> clampRange(const TvgConfig& tvg, double range_max) {
+    double below = nearest, above = std::min(range_max, 1e6);
+    if (!(unclampedTvgDb(tvg, above) > tvg.max_db)) return {};
+    for (int i = 0; i < 100; ++i) {
+        const double middle = (below + above) / 2;
+        (unclampedTvgDb(tvg, middle) > tvg.max_db ? above : below) = middle;
+    }
+    return above;
+}
+
+Receiver::Receiver(const ReceiverConfig& config) : config_(config), code_(config.code.value_or(CodeConfig{})) {}
+
+bool Receiver::isLevel() const {
+    return config_.output == Output::LevelDb || config_.output == Output::ReceivedLevelDb ||
+           (config_.output == Output::Code && code_.law == CodeLaw::Log);
+}
+
+bool Receiver::isNeutral() const {
+    return config_.output == Output::Intensity && config_.gain_db == 0 && !config_.tvg && !config_.blanking &&
+           !config_.brightness;
+}
+
+double Receiver::gainDb(const types::Sonar& ping, double r) const {
+    double gain = config_.gain_db + (config_.tvg ? tvgDb(*config_.tvg, r) : 0);
+    if (config_.output == Output::ReceivedLevelDb) gain += config_.source_level_db;
+    if (config_.output == Output::Code) gain -= code_.full_scale_db;
+    if (config_.brightness) {
+        gain += 10 * std::log10(2 * config_.brightness->gain);
+        if (config_.brightness->model == Model::Physical) gain -= sandLevelDb(ping, r);
+    }
+    return gain;
+}
+
+void Receiver::makeTables(const types::Sonar& ping) {
+    const Axis axis{ping.bin_count, ping.bin_duration.microseconds, ping.speed_of_sound, ping.beam_width.rad};
+    if (axis == axis_) return;
+    axis_ = axis;
+    range_max_ = ping.binStart(ping.bin_count);
+    factor_.resize(ping.bin_count);
+    offset_db_.resize(ping.bin_count);
+    silent_ = 0;
+    for (uint32_t k = 0; k < ping.bin_count; ++k) {
+        const double gain = gainDb(ping, std::max(nearest, ping.binStart(k + 0.5)));
+        factor_[k] = std::min(powerOf(gain), 1e300);
+        offset_db_[k] = static_cast<float>(gain);
+        if (config_.blanking && ping.binStart(k) < config_.blanking->range_min * (1 - 1e-9)) silent_ = k + 1;
+    }
+}
+
+void Receiver::encode(float* received) const {
+    const auto most = static_cast<float>((1 << code_.bits) - 1);
+    const auto range_db = static_cast<float>(code_.dynamic_range_db);
+    if (isLevel())
+        quantise(received, most / range_db, -range_db, most, axis_.bin_count);
+    else
+        quantise(received, most, 0, most, axis_.bin_count);
+}
+
+void Receiver::receiveBeam(const float* intensities, float* received) const {
+    constexpr double largest = static_cast<double>(std::numeric_limits<float>::max());
+    const size_t count = axis_.bin_count;
+    if (isLevel())
+        takeLevels(intensities, offset_db_.data(), received, count);
+    else
+        amplify(intensities, factor_.data(), config_.brightness ? 1 : largest, received, count);
+    std::fill_n(received, silent_, isLevel() ? floor_db : 0.0f);
+    const bool is_root =
+        config_.output == Output::Code ? code_.law == CodeLaw::Sqrt : config_.output == Output::Amplitude;
+    if (is_root) takeRoots(received, count);
+    if (config_.output == Output::Code) encode(received);
+}
+
+void Receiver::receive(const types::Sonar& intensities, types::Sonar& received) {
+    makeTables(intensities);
+    received.copyHeader(intensities);
+    const size_t count = axis_.bin_count;
+    for (size_t beam = 0; beam < intensities.beam_count; ++beam)
+        receiveBeam(intensities.bins.data() + beam * count, received.bins.data() + beam * count);
+}
+
+std::vector<std::string> Receiver::notices() const {
+    std::vector<std::string> all;
+    if (const auto r = config_.tvg ? clampRange(*config_.tvg, range_max_) : std::nullopt)
+        all.push_back(
+            fmt::format("tvg reaches its max_db of {:g} dB at {:.4g} m and stays there", config_.tvg->max_db, *r));
+    if (config_.code && config_.output != Output::Code)
+        all.push_back("code is configured, and used by output: code alone");
+    return all;
+}
+
+}  // namespace insonify::receiver

@@ -1,0 +1,63 @@
+#pragma once
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "components/receiver/ReceiverConfig.hpp"
+#include "types/Sonar.hpp"
+
+namespace insonify::receiver {
+
+/** Gain at slant range r [m] before the clamp [dB]. */
+double unclampedTvgDb(const TvgConfig& tvg, double r);
+/** Gain at slant range r [m], at most max_db [dB]. */
+double tvgDb(const TvgConfig& tvg, double r);
+/** Slant range at which the gain reaches max_db, none when it does not up to `range_max` [m]. */
+std::optional<double> clampRange(const TvgConfig& tvg, double range_max);
+
+/** Makes of the intensities that reach a receiver what it gives out: time-varied gain, gain, blanking, and a law.
+ *
+ *  The gain of a bin is that of its middle, on the range axis of the ping. Intensities and amplitudes have a ceiling of
+ *  the largest float, levels a floor of -3000 dB, codes both their ends; no echo is 0, or the floor. NaN stays NaN, but
+ *  in codes, where it is 0.
+ *
+ *      Receiver receiver(config);
+ *      receiver.receive(intensities, ping); */
+class Receiver {
+public:
+    explicit Receiver(const ReceiverConfig& config);
+
+    /** Gives `received` everything of `intensities`, and the bins that the receiver makes of its bins. Allocates
+     *  nothing when both had these shapes before. */
+    void receive(const types::Sonar& intensities, types::Sonar& received);
+    /** Whether every ping comes out as it came in. */
+    bool isNeutral() const;
+    /** What a user should know: where the gain is clamped, what is configured without use. */
+    std::vector<std::string> notices() const;
+
+private:
+    /** Of a ping: what the tables depend on. */
+    struct Axis {
+        uint32_t bin_count = 0;
+        int64_t bin_duration_us = 0;
+        float speed_of_sound = 0;
+        double beam_width = 0;  ///< [rad]
+        bool operator==(const Axis&) const = default;
+    };
+    void makeTables(const types::Sonar& ping);
+    double gainDb(const types::Sonar& ping, double r) const;
+    bool isLevel() const;
+    void receiveBeam(const float* intensities, float* received) const;
+    void encode(float* received) const;
+
+    ReceiverConfig config_;
+    CodeConfig code_;
+    Axis axis_;
+    size_t silent_ = 0;             ///< Bins of a beam, from the first on.
+    double range_max_ = 0;          ///< Of the last ping [m].
+    std::vector<double> factor_;    ///< Of each bin [1],
+    std::vector<float> offset_db_;  ///< or for levels [dB].
+};
+
+}  // namespace insonify::receiver

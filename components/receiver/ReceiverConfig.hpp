@@ -1,0 +1,119 @@
+#pragma once
+#include <optional>
+#include <string_view>
+
+#include "types/Describe.hpp"
+
+namespace insonify::receiver {
+
+/** What the bins of a ping become. */
+enum class Output { Intensity, Amplitude, LevelDb, ReceivedLevelDb, Code };
+enum class CodeLaw { Linear, Sqrt, Log };
+/** What the sonar's bins are. */
+enum class Model { Physical, Cerqueira2017 };
+
+/** Time-varied gain: log_coefficient log10(r) + 2 db_per_m r [dB], at most max_db; r in metres. */
+struct TvgConfig {
+    double log_coefficient = 0;
+    double db_per_m = 0;
+    double max_db = 100;
+
+    template <class Self, class V>
+    static void describe(Self& self, V& visit) {
+        using types::Field;
+        visit(Field{"log_coefficient", "dB", "gain per decade of range", 0, 1000}, self.log_coefficient);
+        visit(Field{"db_per_m", "dB/m", "one-way absorption made up for, twice per metre of range", 0, 1000},
+              self.db_per_m);
+        visit(Field{"max_db", "dB", "the gain is clamped here", -1000, 1000}, self.max_db);
+    }
+};
+
+struct BlankingConfig {
+    double range_min = 0;
+
+    template <class Self, class V>
+    static void describe(Self& self, V& visit) {
+        visit(types::Field{"range_min", "m", "bins that begin nearer are silent", 0, 1e5}, self.range_min);
+    }
+};
+
+/** Whole numbers from 0 to 2^bits - 1, as an instrument sends them. */
+struct CodeConfig {
+    int bits = 8;
+    CodeLaw law = CodeLaw::Log;
+    double full_scale_db = 0;
+    double dynamic_range_db = 60;
+
+    template <class Self, class V>
+    static void describe(Self& self, V& visit) {
+        using types::Field;
+        visit(Field{"bits", "1", "8 or 16", 8, 16}, self.bits);
+        visit(Field{"law", "", "the code goes as intensity, as its root, or as its level"}, self.law);
+        visit(Field{"full_scale_db", "dB", "level, all gain included, of the largest code", -1000, 1000},
+              self.full_scale_db);
+        visit(Field{"dynamic_range_db", "dB", "law log: below full_scale_db, the level of code 0", 0.1, 3000},
+              self.dynamic_range_db);
+    }
+    void check(types::Problems& problems) const;
+};
+
+/** The brightness of the simulator of Rock, from 0 to 1: bins between 0 and 1 for a display, whatever the range.
+ *  `cerqueira2017`: the bin times 2 gain. `physical`: E/S0 times 2 gain r^3 / (mu w dR), in which mu is that of medium
+ *  sand, w the width of a beam [rad] and dR of a bin [m]: at 0.5 a cell of such sand, seen face on, is 1. */
+struct BrightnessConfig {
+    double gain = 0.5;
+    Model model = Model::Physical;
+
+    template <class Self, class V>
+    static void describe(Self& self, V& visit) {
+        using types::Field;
+        visit(Field{"gain", "1", "bins are twice this times what they are relative to medium sand face on, at most 1",
+                    0, 1},
+              self.gain);
+        visit(Field{"model", "", "the sonar's"}, self.model);
+    }
+};
+
+/** What a receiver does: a block that is absent is not done. */
+struct ReceiverConfig {
+    std::optional<TvgConfig> tvg;
+    double gain_db = 0;
+    std::optional<BlankingConfig> blanking;
+    Output output = Output::Intensity;
+    double source_level_db = 0;
+    std::optional<CodeConfig> code;
+    std::optional<BrightnessConfig> brightness;
+
+    template <class Self, class V>
+    static void describe(Self& self, V& visit) {
+        using types::Field;
+        visit(Field{"tvg", "", "time-varied gain: log_coefficient log10(r) + 2 db_per_m r; absent: none"}, self.tvg);
+        visit(Field{"gain_db", "dB", "gain at every range", -1000, 1000}, self.gain_db);
+        visit(Field{"blanking", "", "silences what is near, and unveils nothing behind it; absent: none"},
+              self.blanking);
+        visit(Field{"output", "",
+                    "intensity; amplitude, its root; level_db, 10 log10 of it; received_level_db, the same plus "
+                    "source_level_db; code, whole numbers by `code`"},
+              self.output);
+        visit(Field{"source_level_db", "dB re 1 uPa m", "used by output received_level_db", -300, 400},
+              self.source_level_db);
+        visit(Field{"code", "", "used by output code"}, self.code);
+        visit(Field{"brightness", "", "in place of tvg, bins for a display; absent: none"}, self.brightness);
+    }
+    void check(types::Problems& problems) const;
+};
+
+}  // namespace insonify::receiver
+
+template <>
+struct insonify::types::EnumNames<insonify::receiver::Output> {
+    static constexpr std::string_view names[] = {"intensity", "amplitude", "level_db", "received_level_db", "code"};
+};
+template <>
+struct insonify::types::EnumNames<insonify::receiver::CodeLaw> {
+    static constexpr std::string_view names[] = {"linear", "sqrt", "log"};
+};
+template <>
+struct insonify::types::EnumNames<insonify::receiver::Model> {
+    static constexpr std::string_view names[] = {"physical", "cerqueira2017"};
+};

@@ -1,0 +1,42 @@
+#pragma once
+#include <optional>
+
+#include "components/framework/Port.hpp"
+#include "components/framework/Properties.hpp"
+#include "components/framework/SamplePool.hpp"
+#include "components/framework/TaskContext.hpp"
+#include "components/receiver/Receiver.hpp"
+#include "types/Sonar.hpp"
+
+namespace insonify::receiver {
+
+/** A sonar's receiver: amplifies what reaches it, echoes and noise alike, and gives it out by a law: one ping out for
+ *  each ping in, with its time unchanged.
+ *
+ *  It comes after the noise. A ping whose bins are below 0, and so no intensities, leads to RunTimeError, from which
+ *  the next good one recovers. With nothing to do the ping itself is passed on, not a copy. Properties that are set
+ *  hold from the next ping on. */
+class ReceiverTask final : public framework::TaskContext {
+public:
+    using TaskContext::TaskContext;
+
+    framework::Properties<ReceiverConfig> config{this};
+    framework::InputPort<types::SonarPtr> intensity{this, "intensity", "linear intensities, with their noise",
+                                                    framework::Need::Required, types::reaching_receiver};
+    framework::OutputPort<types::SonarPtr> ping{this, "ping", "the same ping as the receiver gives it out",
+                                                types::left_receiver};
+
+    std::vector<std::string> notices() const override;
+
+private:
+    bool configureHook() override;
+    bool propertiesHook() override { return configureHook(); }
+    void updateHook() override;
+    void errorHook() override { updateHook(); }
+    types::SonarPtr received(const types::SonarPtr& sample);
+
+    std::optional<Receiver> receiver_;
+    framework::SamplePool<types::Sonar> pool_;
+};
+
+}  // namespace insonify::receiver

@@ -1,0 +1,236 @@
+#include <gmock/gmock.h>
+
+#include <cmath>
+#include <limits>
+
+#include "components/receiver/Receiver.hpp"
+#include "tests/receiver/Pings.hpp"
+#include "types/Geometry.hpp"
+#include "types/VectorMath.hpp"
+
+namespace insonify::receiver {
+namespace {
+
+using testing::Each;
+
+constexpr float nan = std::numeric_limits<float>::quiet_NaN();
+constexpr float largest = std::numeric_limits<float>::max();
+
+types::Sonar received(const ReceiverConfig& config, const types::Sonar& intensities) {
+    types::Sonar ping;
+    Receiver(config).receive(intensities, ping);
+    return ping;
+}
+
+/** One beam of these intensities. */
+types::Sonar beamOf(const std::vector<float>& bins) {
+    types::Sonar ping = pingOf(1, static_cast<uint32_t>(bins.size()));
+    ping.bins = bins;
+    return ping;
+}
+
+ReceiverConfig giving(Output output) {
+    ReceiverConfig config;
+    config.output = output;
+    return config;
+}
+
+ReceiverConfig coding(const CodeConfig& code) {
+    ReceiverConfig config = giving(Output::Code);
+    config.code = code;
+    return config;
+}
+
+std::vector<std::string> faultsOf(const ReceiverConfig& config) {
+    types::Problems problems;
+    config.check(problems);
+    std::vector<std::string> texts;
+    for (const types::Problem& problem : problems) texts.push_back(problem.path + ": " + problem.message);
+    return texts;
+}
+
+TEST(ReceiverTest, NeutralValuesGiveTheSameBins) {
+    types::Sonar ping = pingOf(3, 200);
+    for (size_t i = 0; i < ping.bins.size(); ++i) ping.bins[i] = static_cast<float>(i) * 1.37e-9f;
+    ReceiverConfig neutral;
+    neutral.tvg.emplace();
+    neutral.blanking.emplace();
+    EXPECT_EQ(received(neutral, ping).bins, ping.bins);
+    EXPECT_TRUE(Receiver({}).isNeutral());
+    EXPECT_FALSE(Receiver(neutral).isNeutral());
+}
+
+TEST(ReceiverTest, TheGainOfABinIsThatOfItsMiddle) {
+    ReceiverConfig config;
+    config.tvg = TvgConfig{.log_coefficient = 40, .db_per_m = 0.5, .max_db = 70};
+    config.gain_db = 3;
+    const types::Sonar ping = received(config, pingOf(2, 400, 1e-6f));
+    for (size_t k = 0; k < 400; ++k) {
+        const double r = 0.1 * (static_cast<double>(k) + 0.5);
+        const double gain = std::min(40 * std::log10(r) + r, 70.0) + 3;
+        EXPECT_NEAR(ping.bins[400 + k] / (1e-6 * std::pow(10, gain / 10)), 1, 1e-6) << r;
+    }
+}
+
+TEST(ReceiverTest, TheGainIsClampedWhereItReachesItsMost) {
+    const TvgConfig tvg{.log_coefficient = 40, .db_per_m = 0.5, .max_db = 100};
+    EXPECT_DOUBLE_EQ(tvgDb(tvg, 1), 1);
+    EXPECT_DOUBLE_EQ(tvgDb(tvg, 10), 50);
+    EXPECT_DOUBLE_EQ(tvgDb(tvg, 100), 100);
+    EXPECT_DOUBLE_EQ(unclampedTvgDb(tvg, 100), 180);
+    EXPECT_NEAR(unclampedTvgDb(tvg, *clampRange(tvg, 50)), 100, 1e-9);
+    EXPECT_FALSE(clampRange(tvg, 20));
+}
+
+TEST(ReceiverTest, NothingOverflowsAndNoEchoStaysNone) {
+    ReceiverConfig config;
+    config.tvg = TvgConfig{.log_coefficient = 0, .db_per_m = 1000, .max_db = 1000};
+    const auto bins = received(config, beamOf({0, 1e-30f, 1, nan, std::numeric_limits<float>::infinity()})).bins;
+    EXPECT_EQ(bins[0], 0);
+    EXPECT_EQ(bins[2], largest);
+    EXPECT_TRUE(std::isnan(bins[3])) << "unknown stays unknown";
+    EXPECT_EQ(bins[4], largest);
+    EXPECT_TRUE(std::isfinite(bins[1]));
+}
+
+TEST(ReceiverTest, WhatIsNearerThanTheBlankingIsSilentInEveryOutput) {
+    for (const auto& [output, silence] : {std::pair(Output::Intensity, 0.0f),
+                                          {Output::Amplitude, 0.0f},
+                                          {Output::LevelDb, -3000.0f},
+                                          {Output::Code, 0.0f}}) {
+        ReceiverConfig config = giving(output);
+        config.blanking = BlankingConfig{0.35};
+        types::Sonar ping = pingOf(2, 10);
+        ping.bins[1] = nan;
+        const auto bins = received(config, ping).bins;
+        for (size_t k = 0; k < 4; ++k) EXPECT_EQ(bins[k], silence) << "the bin of 0.3 to 0.4 m begins before";
+        for (size_t k = 4; k < 10; ++k) EXPECT_NE(bins[10 + k], silence);
+        config.blanking->range_min = 0.3;
+        EXPECT_NE(received(config, ping).bins[3], silence) << "a bin that begins there is heard";
+    }
+}
+
+TEST(ReceiverTest, AmplitudeIsTheRootOfIntensity) {
+    EXPECT_EQ(received(giving(Output::Amplitude), beamOf({0, 4, 0.25f})).bins, (std::vector<float>{0, 2, 0.5f}));
+}
+
+TEST(ReceiverTest, LevelsAreDecibelsOverTheWholeRangeOfAFloat) {
+    const std::vector<float> intensities = {0, 1, 1e-10f, 3e38f, 1e-38f, 1e-44f, 0.70710678f, 1.41421356f, 0.99999994f};
+    const auto levels = received(giving(Output::LevelDb), beamOf(intensities)).bins;
+    EXPECT_EQ(levels[0], -3000);
+    EXPECT_EQ(levels[1], 0);
+    for (size_t i = 1; i < intensities.size(); ++i)
+        EXPECT_NEAR(levels[i], 10 * std::log10(static_cast<double>(intensities[i])), 4e-5) << intensities[i];
+    ReceiverConfig config = giving(Output::LevelDb);
+    config.source_level_db = 210;
+    EXPECT_EQ(received(config, beamOf(intensities)).bins, levels) << "relative to the source";
+    config.output = Output::ReceivedLevelDb;
+    EXPECT_NEAR(received(config, beamOf(intensities)).bins[2], 110, 1e-4);
+    EXPECT_TRUE(std::isnan(received(config, beamOf({nan})).bins[0]));
+}
+
+TEST(ReceiverTest, TheVectorisedLogarithmIsRightToTheLastDigitsOfALevel) {
+    double worst = 0;
+    for (float x = 1.2e-38f; x < 3e38f; x *= 1.00173f)
+        worst = std::max(worst, std::abs(types::decibels(x) - 10 * std::log10(static_cast<double>(x))));
+    EXPECT_LT(worst, 4e-5);
+}
+
+TEST(ReceiverTest, CodesFollowTheirLawBetweenTheirEnds) {
+    const std::vector<float> intensities = {0, 0.25f, 1, 4, nan, 3e-3f};
+    EXPECT_EQ(received(coding({.bits = 8, .law = CodeLaw::Linear}), beamOf(intensities)).bins,
+              (std::vector<float>{0, 64, 255, 255, 0, 1}));
+    EXPECT_EQ(received(coding({.bits = 8, .law = CodeLaw::Sqrt}), beamOf(intensities)).bins,
+              (std::vector<float>{0, 128, 255, 255, 0, 14}));
+    EXPECT_EQ(received(coding({.bits = 8, .law = CodeLaw::Log, .dynamic_range_db = 60}), beamOf(intensities)).bins,
+              (std::vector<float>{0, 229, 255, 255, 0, 148}));
+    EXPECT_EQ(received(coding({.bits = 16, .law = CodeLaw::Log, .dynamic_range_db = 60}), beamOf(intensities)).bins,
+              (std::vector<float>{0, 58959, 65535, 65535, 0, 37979}));
+}
+
+TEST(ReceiverTest, FullScaleIsTheLevelOfTheLargestCodeWithAllGain) {
+    for (const CodeLaw law : {CodeLaw::Linear, CodeLaw::Sqrt, CodeLaw::Log}) {
+        ReceiverConfig config = coding({.law = law, .full_scale_db = -20});
+        config.gain_db = 10;
+        const auto bins = received(config, beamOf({0.001f, 0.0009f})).bins;
+        EXPECT_EQ(bins[0], 255);
+        EXPECT_LT(bins[1], 255);
+    }
+}
+
+TEST(ReceiverTest, WhatMakesNoSenseIsRefusedAndWhatHasNoUseTold) {
+    ReceiverConfig config = coding({.bits = 12});
+    types::Problems problems;
+    config.code->check(problems);
+    ASSERT_EQ(problems.size(), 1u);
+    EXPECT_EQ(problems[0].message, "is 12; must be 8 or 16");
+    config = giving(Output::LevelDb);
+    config.brightness.emplace();
+    config.tvg.emplace();
+    EXPECT_THAT(faultsOf(config),
+                testing::ElementsAre("brightness: is given with tvg; it makes up for spreading itself",
+                                     "brightness: is given with another output; it scales output: intensity"));
+    config = {};
+    config.code.emplace();
+    EXPECT_THAT(Receiver(config).notices(), testing::ElementsAre("code is configured, and used by output: code alone"));
+}
+
+TEST(ReceiverTest, ABrightnessOfOneHalfShowsACellOfMediumSandFaceOnAsOneAtEveryRange) {
+    ReceiverConfig config;
+    types::Sonar sand = pingOf(1, 300);
+    for (size_t k = 0; k < 300; ++k) {
+        const double r = 0.1 * (static_cast<double>(k) + 0.5);
+        const double cell = types::radians(2) * 0.1 / r;  // [sr]
+        sand.bins[k] = static_cast<float>(std::pow(10, types::Material{}.lambert_db / 10.0) * cell / (r * r));
+    }
+    for (const double gain : {0.5, 0.25, 0.0}) {
+        config.brightness = BrightnessConfig{gain, Model::Physical};
+        for (const float bin : received(config, sand).bins) EXPECT_NEAR(bin, 2 * gain, 1e-5);
+    }
+    config.brightness->gain = 0.75;
+    EXPECT_THAT(received(config, sand).bins, Each(1)) << "brighter than the display";
+}
+
+TEST(ReceiverTest, ABrightnessOfPublishedPingsIsTwiceTheGainAndAtMostOne) {
+    ReceiverConfig config;
+    config.brightness = BrightnessConfig{0.75, Model::Cerqueira2017};
+    const auto bins = received(config, beamOf({0, 0.1f, 0.6f, 0.9f})).bins;
+    EXPECT_EQ(bins[0], 0);
+    EXPECT_NEAR(bins[1], 0.15, 1e-7);
+    EXPECT_NEAR(bins[2], 0.9, 1e-7);
+    EXPECT_EQ(bins[3], 1);
+}
+
+TEST(ReceiverTest, APingOfAnotherShapeOrRangeHasItsOwnGain) {
+    ReceiverConfig config;
+    config.tvg = TvgConfig{.log_coefficient = 20, .db_per_m = 0, .max_db = 100};
+    Receiver receiver(config);
+    types::Sonar ping, first = pingOf(2, 100), longer = pingOf(1, 50);
+    longer.bin_duration.microseconds = 1000;
+    receiver.receive(first, ping);
+    const std::vector<float> before = ping.bins;
+    receiver.receive(longer, ping);
+    EXPECT_EQ(ping.bins, received(config, longer).bins);
+    receiver.receive(first, ping);
+    EXPECT_EQ(ping.bins, before);
+}
+
+TEST(ReceiverTest, EverythingButTheBinsIsKept) {
+    types::Sonar ping = pingOf(2, 3);
+    ping.timestamps = {{1}, {2}};
+    ping.beam_height = types::Angle{0.2};
+    ping.bearings = {types::Angle{0.3}, types::Angle{-0.3}};
+    const types::Sonar out = received(giving(Output::LevelDb), ping);
+    EXPECT_EQ(out.time, ping.time);
+    EXPECT_EQ(out.timestamps, ping.timestamps);
+    EXPECT_EQ(out.bin_duration, ping.bin_duration);
+    EXPECT_EQ(out.beam_width.rad, ping.beam_width.rad);
+    EXPECT_EQ(out.beam_height.rad, 0.2);
+    EXPECT_EQ(out.bearings[1].rad, -0.3);
+    EXPECT_EQ(out.speed_of_sound, 1000);
+    EXPECT_EQ(out.bin_count, 3u);
+    EXPECT_EQ(out.beam_count, 2u);
+}
+
+}  // namespace
+}  // namespace insonify::receiver
