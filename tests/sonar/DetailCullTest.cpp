@@ -111,7 +111,8 @@ TEST(DetailCullTest, SimplerSurfacesChangeAPingByLessThanItsPixelsDo) {
     config.detail = 0.5;
     const auto simpler = pings(config, geometry);
     config.detail = 0;
-    config.quality = {96 * 3, 6, {}, {}};
+    config.quality.rows = 96 * 3;
+    config.quality.columns_per_beam = 6;
     const auto finer = pings(config, geometry);
     EXPECT_GT(rms(simpler, all), 0) << "nothing was simplified";
     EXPECT_LT(rms(simpler, all), 0.5 * rms(all, finer));

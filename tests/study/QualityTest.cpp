@@ -1,8 +1,6 @@
-// What `quality: {target_error: x}` chooses, against the truth: at most twice the target, and not far below it.
+// What a target error chooses, against the truth: at most twice the target, and not far below it. The scenes are none
+// that the estimate's factors were found on.
 #include <gtest/gtest.h>
-
-#include <cmath>
-#include <limits>
 
 #include "components/sonar/BinGrid.hpp"
 #include "components/sonar/Quality.hpp"
@@ -30,12 +28,15 @@ double achieved(const StudyScene& scene, const sonar::Quality& quality) {
 
 TEST_P(QualityTest, TheTargetIsReachedAndNotWastefully) {
     const double target = 0.02;
-    const auto ladder =
-        sonar::tryQualities(GetParam().config, GetParam().snapshot, target, std::numeric_limits<double>::infinity());
-    const double error = achieved(GetParam(), ladder.back());
-    EXPECT_LE(ladder.back().error, target);
-    EXPECT_LE(error, 2 * target) << ladder.back().rows << " x " << ladder.back().columns_per_beam;
-    EXPECT_GE(error, target / 10) << ladder.back().rows << " x " << ladder.back().columns_per_beam;
+    sonar::SonarConfig config = GetParam().config;
+    config.quality.target_error = target;
+    const sonar::Quality chosen = sonar::chooseQuality(config, GetParam().snapshot);
+    const double error = achieved(GetParam(), chosen);
+    std::printf("%d x %d predicted %.4f, error %.4f\n", chosen.rows, chosen.columns_per_beam, chosen.error, error);
+    EXPECT_LE(chosen.error, target);
+    EXPECT_LE(error, 2 * target) << chosen.rows << " x " << chosen.columns_per_beam;
+    const bool is_coarsest = chosen == sonar::Quality();
+    EXPECT_TRUE(is_coarsest || error >= target / 10) << chosen.rows << " x " << chosen.columns_per_beam;
 }
 
 INSTANTIATE_TEST_SUITE_P(Scenes, QualityTest, testing::ValuesIn(closedFormScenes()),
