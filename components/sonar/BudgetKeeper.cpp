@@ -40,4 +40,12 @@ bool BudgetKeeper::heard(double ms, double samples) {
     return moveTo(samples * room);
 }
 
+double PeriodMeter::period() const {
+    if (count_ == 0) return 0;
+    std::array<double, 16> seconds = seconds_;
+    const auto count = static_cast<std::ptrdiff_t>(std::min(count_, seconds.size()));
+    std::nth_element(seconds.begin(), seconds.begin() + count / 4, seconds.begin() + count);
+    return seconds[static_cast<size_t>(count / 4)];
+}
+
 }  // namespace insonify::sonar

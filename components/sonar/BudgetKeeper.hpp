@@ -1,5 +1,6 @@
 #pragma once
 #include <array>
+#include <cstddef>
 #include <limits>
 
 namespace insonify::sonar {
@@ -31,6 +32,18 @@ private:
     int pings_ = 0;                       ///< Since the limit was moved [1].
     int since_fall_ = -1;                 ///< Pings since the last fall; -1: none yet [1].
     int patience_ = 4;
+};
+
+/** The period of pings from the times between them: the lower quartile of the last 16, which neither a ping that was
+ *  left out changes, nor two poses at once. */
+class PeriodMeter {
+public:
+    void heard(double seconds) { seconds_[count_++ % seconds_.size()] = seconds; }
+    double period() const;  ///< 0 before the first time [s].
+
+private:
+    std::array<double, 16> seconds_{};
+    size_t count_ = 0;
 };
 
 }  // namespace insonify::sonar

@@ -16,15 +16,6 @@
 namespace insonify::sonar {
 namespace {
 
-/** The lower quartile of times between pings: a ping that was dropped, or two poses at once, do not tell the period. */
-double period(std::array<double, 16> seconds, size_t count) {
-    if (count == 0) return 0;
-    const auto last = seconds.begin() + static_cast<std::ptrdiff_t>(count),
-               at = seconds.begin() + (last - seconds.begin()) / 4;
-    std::nth_element(seconds.begin(), at, last);
-    return *at;
-}
-
 /** A quality to begin with, until something is heard, where none is given. */
 SonarConfig begun(SonarConfig config) {
     if (!config.choosesQuality()) return config;
@@ -67,7 +58,7 @@ bool PingTask::configureHook() {
     plan_.reset();
     grid_ = makeBinGrid(sonarConfig());
     shortest_ = std::numeric_limits<double>::infinity();
-    gap_count_ = 0;
+    period_ = {};
     return true;
 }
 
@@ -76,7 +67,7 @@ const char* PingTask::follow(const types::Snapshot& scene) {
     const double seconds = before ? (scene.time - before->time).seconds() : 0;
     if (!(seconds > 0)) return nullptr;
     shortest_ = std::min(shortest_, seconds);
-    gaps_[gap_count_++ % gaps_.size()] = seconds;
+    period_.heard(seconds);
     const bool too_fast = glm::distance(scene.sonar.position, before->position) > 0.1 * grid_.speed_of_sound * seconds;
     return too_fast ? "the sonar moves faster than a tenth of the speed of sound" : nullptr;
 }
@@ -123,7 +114,7 @@ void PingTask::makeRenderer() {
 
 void PingTask::followQuality(types::Sonar& sample, double ms) {
     if (!quality_) return;
-    const double period_ms = activity().realtime() ? 1e3 * period(gaps_, std::min(gap_count_, gaps_.size())) : 0;
+    const double period_ms = activity().realtime() ? 1e3 * period_.period() : 0;
     const bool changed = quality_->follow(*renderer_, aimed_, sample, ms, period_ms);
     std::ranges::move(quality_->takeNotices(), std::back_inserter(plan_->notices));
     if (!changed) return;

@@ -1,5 +1,4 @@
 #pragma once
-#include <array>
 #include <limits>
 #include <memory>
 #include <optional>
@@ -79,8 +78,7 @@ private:
     BinGrid grid_;
     std::optional<Mark> before_;
     double shortest_ = std::numeric_limits<double>::infinity();  ///< Time between two snapshots so far [s].
-    std::array<double, 16> gaps_{};                              ///< The last of these times [s].
-    size_t gap_count_ = 0;                                       ///< How many there have been [1].
+    PeriodMeter period_;
     std::unique_ptr<SonarRenderer> renderer_;
     std::optional<QualityKeeper> quality_;  ///< None where the quality is given.
     bool culling_untold_ = false;      ///< Whether the plan does not say yet what the first ping's culling left out.

@@ -81,6 +81,7 @@ double ErrorEstimator::changeBy(SonarRenderer& renderer, const types::Snapshot& 
                                 int rows, int columns_per_beam) {
     renderer.setQuality(rows, columns_per_beam);
     renderer.render(scene, coarse_);
+    rendered_ += Quality{rows, columns_per_beam}.samples();
     return change(coarse_.bins, ping.bins);
 }
 

@@ -60,6 +60,9 @@ public:
     double error(SonarRenderer& renderer, const types::Snapshot& scene, const types::Sonar& ping,
                  const Quality& quality);
 
+    /** Samples per beam of all that has been rendered to tell errors [1]. */
+    double rendered() const { return rendered_; }
+
 private:
     double change(const std::vector<float>& coarse, const std::vector<float>& fine) const;
     double changeBy(SonarRenderer& renderer, const types::Snapshot& scene, const types::Sonar& ping, int rows,
@@ -67,6 +70,7 @@ private:
 
     std::vector<double> weights_;  ///< Of the squares of a beam's bins [1].
     types::Sonar coarse_;
+    double rendered_ = 0;
 };
 
 /** Climbs from `start`, at which `ping` has been rendered, until the estimated error is at most `target` or

@@ -11,9 +11,11 @@ namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr double watched_share = 0.2618034;  ///< Of all pings; irrational, so that a head is watched at all bearings.
+constexpr double first_turn_share = 0.5;     ///< The same while a head sees what it has not seen before.
 constexpr int rarely = 16;                   ///< Of the pings to watch, where the time is up without it.
 constexpr double off_target = 1.2, off_prediction = 1.5, well_within = 0.5, worth_lowering = 0.7, near_limit = 0.8;
-constexpr int least_turn = 64, settled = 20, most_notices = 20;
+constexpr double overhead = 0.15, pings_to_choose = 10;  ///< What estimates may cost in all [1 of the pings, pings].
+constexpr int least_pings = 64, settled = 20, most_notices = 20;
 constexpr double worth_telling = 1.2, too_far_from_model = 4;
 
 }  // namespace
@@ -22,7 +24,7 @@ QualityKeeper::QualityKeeper(const SonarConfig& config, int turn)
     : config_(config),
       beams_(config.beams()),
       target_(config.targetError().value_or(0)),
-      turn_(std::max(turn, least_turn)),
+      turn_(turn),
       ladder_(config),
       estimator_(config) {
     if (config.quality.budget_ms) budget_.emplace(*config.quality.budget_ms, Quality().samples() * beams_);
@@ -38,6 +40,7 @@ bool QualityKeeper::follow(SonarRenderer& renderer, const types::Snapshot& scene
     if (!renderer.heard()) return false;
     ++pings_;
     ++since_change_;
+    heard_samples_ += model_.at.samples();
     if (!std::exchange(chosen_, true)) {
         choose(renderer, scene, ping);
         return true;
@@ -67,8 +70,10 @@ void QualityKeeper::moveTo(SonarRenderer& renderer, const Quality& quality) {
 
 bool QualityKeeper::isDue() {
     const auto watched = [](int64_t pings, double share) { return std::floor(static_cast<double>(pings) * share); };
+    if (estimator_.rendered() > overhead * heard_samples_ + pings_to_choose * model_.at.samples()) return false;
     const bool no_time = budget_ && model_.at.samples() > near_limit * budget_->limit() / beams_;
-    const double share = no_time ? watched_share / rarely : watched_share;
+    const bool is_first_turn = turn_ > 1 && pings_ <= turn_;
+    const double share = no_time ? watched_share / rarely : is_first_turn ? first_turn_share : watched_share;
     return watched(pings_, share) != watched(pings_ - 1, share);
 }
 
@@ -79,7 +84,7 @@ bool QualityKeeper::watch(SonarRenderer& renderer, const types::Snapshot& scene,
         choose(renderer, scene, ping);
         return true;
     }
-    return since_change_ >= turn_ && lower(renderer, scene, ping);
+    return since_change_ >= std::max(turn_, least_pings) && lower(renderer, scene, ping);
 }
 
 bool QualityKeeper::lower(SonarRenderer& renderer, const types::Snapshot& scene, types::Sonar& ping) {

@@ -10,7 +10,8 @@
 namespace insonify::sonar {
 
 /** Chooses a sonar's quality on the first ping that hears anything, and goes on looking after it: about every fourth
- *  ping its error is estimated, for 8 % of the time in all. Where that is more than 1.2 times the target and 1.5 times
+ *  ping its error is estimated (every second in the first turn of a head), for 8 % of the samples, with all that is
+ *  rendered to choose again at most 15 % and ten pings. Where that is more than 1.2 times the target and 1.5 times
  *  what was predicted, the quality is chosen again on this very ping, rows and columns only ever raised; where a whole
  *  turn of the head, and 64 pings at least, never had more than half the target, it is lowered. All from the pings
  *  alone, so that a run can be repeated bit for bit; with a budget also from the times that they take. */
@@ -50,7 +51,8 @@ private:
     std::optional<BudgetKeeper> budget_;
     ErrorModel model_;  ///< At the quality that holds.
     bool chosen_ = false, missed_ = false, late_told_ = false;
-    int64_t pings_ = 0;     ///< That heard anything [1].
+    int64_t pings_ = 0;         ///< That heard anything [1].
+    double heard_samples_ = 0;  ///< Per beam of all of these [1].
     int since_change_ = 0;  ///< Pings that heard anything since the quality changed, or since it was last judged [1].
     double worst_ = 0;      ///< Largest error estimated of them [1].
     double modelled_ = 0;   ///< Samples per beam at which the error was last estimated in two parts [1].
