@@ -104,21 +104,20 @@ double ErrorEstimator::error(SonarRenderer& renderer, const types::Snapshot& sce
 }
 
 ErrorModel climb(ErrorEstimator& estimator, const QualityLadder& ladder, SonarRenderer& renderer,
-                 const types::Snapshot& scene, const Quality& start, double target, double most_samples,
-                 types::Sonar& ping) {
+                 const types::Snapshot& scene, const Quality& start, const QualityGoal& goal, types::Sonar& ping) {
     const auto goTo = [&](const Quality& next) {
         renderer.setQuality(next.rows, next.columns_per_beam);
         renderer.render(scene, ping);
         return estimator.model(renderer, scene, ping, next);
     };
     ErrorModel model = estimator.model(renderer, scene, ping, start);
-    while (model.error() > target) {
-        const double samples = std::min(most_samples, step_of_samples * model.at.samples());
-        const Quality finer = ladder.choose(model, aim_share * target, samples, model.at);
-        const Quality other = ladder.choose(model, aim_share * target, samples);
+    while (model.error() > goal.target) {
+        const double samples = std::min(goal.most_samples, step_of_samples * model.at.samples());
+        const Quality finer = ladder.choose(model, aim_share * goal.target, samples, model.at);
+        const Quality other = ladder.choose(model, aim_share * goal.target, samples);
         if (!(finer == model.at))
             model = goTo(finer);
-        else if (other.error < worth_a_trade * model.error())
+        else if (goal.trades && other.error < worth_a_trade * model.error())
             return goTo(other);
         else
             break;
@@ -134,9 +133,8 @@ Quality chooseQuality(const SonarConfig& config, const types::Snapshot& scene) {
     const Quality start;
     renderer.setQuality(start.rows, start.columns_per_beam);
     renderer.render(scene, ping);
-    return climb(estimator, QualityLadder(config), renderer, scene, start, config.targetError().value_or(0),
-                 config.mostSamples().value_or(infinity) / config.beams(), ping)
-        .at;
+    const QualityGoal goal{config.targetError().value_or(0), config.mostSamples().value_or(infinity) / config.beams()};
+    return climb(estimator, QualityLadder(config), renderer, scene, start, goal, ping).at;
 }
 
 }  // namespace insonify::sonar

@@ -73,14 +73,19 @@ private:
     double rendered_ = 0;
 };
 
-/** Climbs from `start`, at which `ping` has been rendered, until the estimated error is at most `target` or
- *  `most_samples` per beam are reached: each step is found from the estimate of the one before and takes at most four
- *  times its samples, so that all steps together take about three pings' time of the last. `ping` is rendered again
- *  where the quality is another one, and the renderer left at it. Rows and columns are not lowered, except for each
- *  other where no more samples are allowed. */
+/** What a quality is chosen for. */
+struct QualityGoal {
+    double target = 0;                                              ///< Error [1].
+    double most_samples = std::numeric_limits<double>::infinity();  ///< Per beam [1].
+    bool trades = true;  ///< Whether rows may go for columns, and columns for rows, where no more samples are allowed.
+};
+
+/** Climbs from `start`, at which `ping` has been rendered, until the estimated error is at most the target or the most
+ *  samples are reached: each step is found from the estimate of the one before and takes at most four times its
+ *  samples, so that all steps together take about three pings' time of the last. `ping` is rendered again where the
+ *  quality is another one, and the renderer left at it. Rows and columns are not lowered, except for each other. */
 ErrorModel climb(ErrorEstimator& estimator, const QualityLadder& ladder, SonarRenderer& renderer,
-                 const types::Snapshot& scene, const Quality& start, double target, double most_samples,
-                 types::Sonar& ping);
+                 const types::Snapshot& scene, const Quality& start, const QualityGoal& goal, types::Sonar& ping);
 
 /** The error that is aimed at when more than the target was found, or less is enough [1 of the target]. */
 constexpr double aim_share = 0.8;

@@ -53,7 +53,8 @@ bool QualityKeeper::follow(SonarRenderer& renderer, const types::Snapshot& scene
 
 void QualityKeeper::choose(SonarRenderer& renderer, const types::Snapshot& scene, types::Sonar& ping) {
     const Quality before = model_.at;
-    model_ = climb(estimator_, ladder_, renderer, scene, before, target_, mostSamples(), ping);
+    const bool is_first = pings_ == 1, sees_all = turn_ == 1;
+    model_ = climb(estimator_, ladder_, renderer, scene, before, {target_, mostSamples(), is_first || sees_all}, ping);
     const Quality enough = ladder_.choose(model_, aim_share * target_, mostSamples(), before);
     if (enough.samples() <= worth_lowering * model_.at.samples()) moveTo(renderer, enough);
     modelled_ = model_.at.samples();

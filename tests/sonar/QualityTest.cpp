@@ -68,7 +68,7 @@ TEST(ClimbTest, ItTakesLessThanTenPingsTimeAndLeavesThePingAtItsQuality) {
     renderer.setQuality(64, 2);
     renderer.render(outwards(scene), ping);
     const ErrorModel model =
-        climb(estimator, QualityLadder(config), renderer, outwards(scene), Quality(), 0.03, forever, ping);
+        climb(estimator, QualityLadder(config), renderer, outwards(scene), Quality(), {0.03}, ping);
     EXPECT_LE(model.error(), 0.03);
     EXPECT_GT(model.at.samples(), 8 * Quality().samples());
     EXPECT_LT(estimator.rendered(), 10 * model.at.samples()) << "samples of all trials";

@@ -1,4 +1,5 @@
 // What a target error chooses, against the truth: at most twice the target, and not far below it.
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -74,7 +75,7 @@ std::vector<StudyScene> unseenScenes() {
         scenes.push_back({"floor " + std::to_string(seed),
                           "",
                           config,
-                          test::snapshotOf(floor, {0, 0, 0.2 * (seed % 5)}, seed, 0.05 * (seed % 4)),
+                          test::snapshotOf(floor, {0, 0, 0.2 * (seed % 5)}, seed, 0.05 + 0.05 * (seed % 4)),
                           {},
                           0});
     }
@@ -91,6 +92,7 @@ std::vector<StudyScene> unseenScenes() {
 
 TEST(UnseenQualityTest, ThePredictionHoldsWithinAFactorOfTwo) {
     int within = 0, all = 0;
+    std::string told;
     for (StudyScene scene : unseenScenes())
         for (const int most : {20'000, 400'000}) {
             scene.config.quality = {};
@@ -101,9 +103,11 @@ TEST(UnseenQualityTest, ThePredictionHoldsWithinAFactorOfTwo) {
             const bool holds = error <= 2 * std::max(chosen.error, 0.05);
             const bool waste = chosen.error > 0.05 && error < chosen.error / 3;
             within += holds && !waste;
+            told += fmt::format("{}: {} x {}, predicted {:.3f}, {:.3f}\n", scene.name, chosen.rows,
+                                chosen.columns_per_beam, chosen.error, error);
             ++all;
         }
-    EXPECT_GE(within, 0.95 * all);
+    EXPECT_GE(within, 0.95 * all) << told;
 }
 
 }  // namespace
