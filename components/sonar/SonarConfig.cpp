@@ -132,7 +132,7 @@ void QualityConfig::check(types::Problems& problems) const {
     };
     refuse("target_error", target_error.has_value(), budget_ms.has_value());
     refuse("max_samples", max_samples.has_value(), budget_ms.has_value());
-    refuse("budget_ms", budget_ms.has_value(), target_error || max_samples);
+    refuse("budget_ms", budget_ms.has_value(), false);
 }
 
 void SonarConfig::checkBeam(types::Problems& problems) const {

@@ -71,7 +71,7 @@ TEST(ClimbTest, ItTakesLessThanTenPingsTimeAndLeavesThePingAtItsQuality) {
         climb(estimator, QualityLadder(config), renderer, outwards(scene), Quality(), {0.03}, ping);
     EXPECT_LE(model.error(), 0.03);
     EXPECT_GT(model.at.samples(), 8 * Quality().samples());
-    EXPECT_LT(estimator.rendered(), 10 * model.at.samples()) << "samples of all trials";
+    EXPECT_LT(2 * estimator.rendered(), 10 * model.at.samples()) << "trials cost more than the pings they judge";
     types::Sonar same;
     renderer.render(outwards(scene), same);
     EXPECT_EQ(ping.bins, same.bins);
