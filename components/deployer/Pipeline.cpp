@@ -75,7 +75,9 @@ SonarAt sonarAt(const std::string& file, uint64_t ping) {
         types::SnapshotPtr snapshot;
         if (!sonar || !sonar->plan() || sonar->snapshot.read(snapshot) == framework::FlowStatus::NoData) continue;
         SonarAt found{sonar->sonarConfig(), *snapshot};
-        found.config.quality = {sonar->plan()->rows, sonar->plan()->columns_per_beam, {}, {}};
+        found.config.quality = {};
+        found.config.quality.rows = sonar->plan()->rows;
+        found.config.quality.columns_per_beam = sonar->plan()->columns_per_beam;
         return found;
     }
     throw types::ConfigError(file, "tasks", "has no sonar that got a snapshot: nothing to study");

@@ -40,6 +40,11 @@ double HeadScan::bearingDeg() const {
 
 void HeadScan::advance() { ++ping_; }
 
+int HeadScan::pingsPerTurn() const {
+    return static_cast<int>(config_.turnsOn() ? std::ceil(360 / config_.step_deg - 1e-9)
+                                              : static_cast<double>(2 * steps_));
+}
+
 double stepDuration(const HeadConfig& config) {
     return config.speed_deg_per_s ? config.step_deg / *config.speed_deg_per_s : 0;
 }

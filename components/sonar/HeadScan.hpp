@@ -14,6 +14,8 @@ public:
     /** Bearing of the ping at hand [deg], positive to port; in [left - 360, left] when continuous. */
     double bearingDeg() const;
     void advance();
+    /** Until it looks where it looked before, in the same direction of turn [1]. */
+    int pingsPerTurn() const;
     const HeadConfig& config() const { return config_; }
     void restart() { ping_ = 0; }
 

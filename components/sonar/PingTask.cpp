@@ -6,6 +6,7 @@
 #include <chrono>
 #include <cmath>
 #include <glm/geometric.hpp>
+#include <iterator>
 #include <utility>
 
 #include "components/framework/Activity.hpp"
@@ -15,9 +16,15 @@
 namespace insonify::sonar {
 namespace {
 
-constexpr double budget_share = 0.5;  ///< Of the budget, for the qualities to choose from: later pings may take longer.
-constexpr double fine_enough = 1e-3;  ///< Error below which time that is left is not used [1].
-constexpr size_t most_notices = 100;  ///< Runs may last for days.
+/** A quality to begin with, until something is heard, where none is given. */
+SonarConfig begun(SonarConfig config) {
+    if (!config.choosesQuality()) return config;
+    const Quality coarsest;
+    config.quality = {};
+    config.quality.rows = coarsest.rows;
+    config.quality.columns_per_beam = coarsest.columns_per_beam;
+    return config;
+}
 
 }  // namespace
 
@@ -51,6 +58,7 @@ bool PingTask::configureHook() {
     plan_.reset();
     grid_ = makeBinGrid(sonarConfig());
     shortest_ = std::numeric_limits<double>::infinity();
+    period_ = {};
     return true;
 }
 
@@ -59,6 +67,7 @@ const char* PingTask::follow(const types::Snapshot& scene) {
     const double seconds = before ? (scene.time - before->time).seconds() : 0;
     if (!(seconds > 0)) return nullptr;
     shortest_ = std::min(shortest_, seconds);
+    period_.heard(seconds);
     const bool too_fast = glm::distance(scene.sonar.position, before->position) > 0.1 * grid_.speed_of_sound * seconds;
     return too_fast ? "the sonar moves faster than a tenth of the speed of sound" : nullptr;
 }
@@ -92,50 +101,27 @@ void PingTask::updateHook() {
 
 void PingTask::makeRenderer() {
     renderer_.reset();
-    keeper_.reset();
+    quality_.reset();
     geometry_ = aimed_.geometry;
     const SonarConfig config = sonarConfig();
-    chosen_ = !config.targetError() && !config.quality.budget_ms;
-    renderer_ = std::make_unique<SonarRenderer>(config, geometry_);
+    renderer_ = std::make_unique<SonarRenderer>(begun(config), geometry_);
+    if (config.choosesQuality()) quality_.emplace(config, pingsPerTurn());
     plan_ = renderer_->plan();
     culling_untold_ = true;
     plan_told_ = false;
     aimed_.moved.reserve(geometry_->objects.size());
 }
 
-void PingTask::chooseQuality() {
-    const SonarConfig config = sonarConfig();
-    const std::optional<double> target = config.targetError(), wished_ms = config.quality.budget_ms;
-    renderer_.reset();  // trials draw on this thread, too
-    const double budget = wished_ms ? budget_share * *wished_ms : std::numeric_limits<double>::infinity();
-    std::vector<Quality> ladder = tryQualities(config, aimed_, target.value_or(fine_enough), budget);
-    renderer_ = std::make_unique<SonarRenderer>(config, geometry_);
-    chosen_ = true;
-    if (target && ladder.back().error > *target)
-        plan_->notices.push_back(fmt::format(
-            "Warning: the finest quality leaves an error of {:.2g}; the target is {:g}", ladder.back().error, *target));
-    if (wished_ms && ladder.front().ms > *wished_ms)
-        plan_->notices.push_back(fmt::format("Warning: the coarsest quality takes {:.3g} ms; the budget is {:g} ms",
-                                             ladder.front().ms, *wished_ms));
-    setQuality(ladder.back());
-    if (wished_ms) keeper_.emplace(std::move(ladder), *wished_ms);
-}
-
-void PingTask::setQuality(const Quality& quality) {
-    renderer_->setQuality(quality.rows, quality.columns_per_beam);
-    plan_->rows = quality.rows;
-    plan_->columns_per_beam = quality.columns_per_beam;
-    plan_->predicted_error = quality.error;
+void PingTask::followQuality(types::Sonar& sample, double ms) {
+    if (!quality_) return;
+    const double period_ms = activity().realtime() ? 1e3 * period_.period() : 0;
+    const bool changed = quality_->follow(*renderer_, aimed_, sample, ms, period_ms);
+    std::ranges::move(quality_->takeNotices(), std::back_inserter(plan_->notices));
+    if (!changed) return;
+    plan_->rows = quality_->quality().rows;
+    plan_->columns_per_beam = quality_->quality().columns_per_beam;
+    plan_->predicted_error = quality_->quality().error;
     plan_told_ = false;
-}
-
-void PingTask::keepBudget(double ms) {
-    if (!keeper_ || !keeper_->heard(ms)) return;
-    setQuality(keeper_->quality());
-    if (plan_->notices.size() >= most_notices) return;
-    plan_->notices.push_back(fmt::format("from {:.3f} s on {} rows, {} columns per beam, to keep to {:g} ms",
-                                         aimed_.time.seconds(), plan_->rows, plan_->columns_per_beam,
-                                         *sonarConfig().quality.budget_ms));
 }
 
 void PingTask::render() {
@@ -143,15 +129,12 @@ void PingTask::render() {
     const auto sample = pool_.take();
     const auto start = std::chrono::steady_clock::now();
     renderer_->render(aimed_, *sample);
+    const std::chrono::duration<double, std::milli> took = std::chrono::steady_clock::now() - start;
+    for (const Stage& stage : renderer_->stages()) recordStage(stage.name, stage.seconds);
     if (std::exchange(culling_untold_, false))
         for (types::Omission& omission : renderer_->culled()) plan_->omitted.push_back(std::move(omission));
-    keepBudget(std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count());
-    if (!chosen_ && renderer_->heard()) {
-        chooseQuality();
-        renderer_->render(aimed_, *sample);
-    }
+    followQuality(*sample, took.count());
     label(*sample);
-    for (const Stage& stage : renderer_->stages()) recordStage(stage.name, stage.seconds);
     pool_.stock(*sample);
     if (!std::exchange(plan_told_, true)) refreshRecord();
     if (listen()) ping.write(sample);

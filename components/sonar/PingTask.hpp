@@ -7,7 +7,7 @@
 #include "components/framework/SamplePool.hpp"
 #include "components/framework/TaskContext.hpp"
 #include "components/sonar/BinGrid.hpp"
-#include "components/sonar/Quality.hpp"
+#include "components/sonar/QualityKeeper.hpp"
 #include "components/sonar/SonarRenderer.hpp"
 #include "types/Snapshot.hpp"
 #include "types/Sonar.hpp"
@@ -23,9 +23,9 @@ namespace insonify::sonar {
  * 2 range / c after its snapshot's time on the deployment's clock, and after the task took it, whichever is later.
  * Pings thus never overlap. One whose listening is cut off by the stop is not written. A snapshot whose time is a
  * second ahead of that clock is refused like the others. A quaternion that is not of unit length is normalised. Pings
- * closer in time than sound's way to the range and back are rendered, each by itself, and told of in the notices. With
- * a target or a budget the quality is chosen on the first ping that hears anything, which takes long; a budget may
- * change it later. */
+ * closer in time than sound's way to the range and back are rendered, each by itself, and told of in the notices. The
+ * quality is given, or a QualityKeeper chooses and keeps it; in realtime the period of the pings is its budget where
+ * nothing is said, as their stamps tell it. */
 class PingTask : public framework::TaskContext {
 public:
     using TaskContext::TaskContext;
@@ -46,6 +46,8 @@ protected:
     virtual const char* aim(types::Snapshot& /*scene*/) { return nullptr; }
     /** Last changes to a ping before it is written. */
     virtual void label(types::Sonar& /*sample*/) {}
+    /** Pings in which a turning head comes round [1]. */
+    virtual int pingsPerTurn() const { return 1; }
 
     bool configureHook() override;
     /** A property that is set holds from the next ping on. */
@@ -70,17 +72,16 @@ private:
     /** In realtime, until the last echo of this ping's range is back; false: the task is to stop. */
     bool listen();
     void makeRenderer();
-    void chooseQuality();
-    void setQuality(const Quality& quality);
-    void keepBudget(double ms);
+    /** Looks after the quality once a ping has been rendered, in `ms`; may render it again. */
+    void followQuality(types::Sonar& sample, double ms);
 
     BinGrid grid_;
     std::optional<Mark> before_;
     double shortest_ = std::numeric_limits<double>::infinity();  ///< Time between two snapshots so far [s].
+    PeriodMeter period_;
     std::unique_ptr<SonarRenderer> renderer_;
-    std::optional<BudgetKeeper> keeper_;
+    std::optional<QualityKeeper> quality_;  ///< None where the quality is given.
     bool culling_untold_ = false;      ///< Whether the plan does not say yet what the first ping's culling left out.
-    bool chosen_ = false;              ///< Whether the quality is the configured one, or what was chosen for it.
     std::optional<types::Plan> plan_;  ///< Outlives the renderer, for the summary.
     bool plan_told_ = false;           ///< Whether the record has the plan as it is.
     types::GeometryPtr geometry_;      ///< The renderer's.

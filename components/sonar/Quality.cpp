@@ -1,68 +1,15 @@
 #include "components/sonar/Quality.hpp"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
-#include <limits>
-#include <map>
-#include <utility>
 
 #include "components/sonar/BeamFan.hpp"
-#include "components/sonar/SonarRenderer.hpp"
 
 namespace insonify::sonar {
 namespace {
 
-constexpr int least_rows = 8, most_rows = 2048, most_columns = 256;
-constexpr int patience = 20, late_of_patience = 2, early_in_a_row = 100;
-constexpr double late_share = 0.85, early_share = 0.7;  ///< Of the budget: lowered before it is overrun.
-
-/** Renders one scene at any quality. */
-class Trial {
-public:
-    Trial(const SonarConfig& config, const types::Snapshot& scene)
-        : config_(config), scene_(scene), renderer_(config_, scene.geometry) {}
-
-    /** Rendered once for each quality: what one is compared with is often where the next begins. */
-    const std::vector<float>& bins(int rows, int columns) {
-        std::vector<float>& bins = rendered_[{rows, columns}];
-        if (!bins.empty()) return bins;
-        renderer_.setQuality(rows, columns);
-        renderer_.render(scene_, ping_);
-        return bins = ping_.bins;
-    }
-    double ms(int rows, int columns) {
-        renderer_.setQuality(rows, columns);
-        double least = std::numeric_limits<double>::infinity();
-        for (int i = 0; i < 4; ++i) {
-            const auto start = std::chrono::steady_clock::now();
-            renderer_.render(scene_, ping_);
-            least = std::min(
-                least, std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count());
-        }
-        return least;
-    }
-    /** Relative L2 of `coarse` against `fine`; 0 when nothing is heard. */
-    double change(const std::vector<float>& coarse, const std::vector<float>& fine) const {
-        double error = 0, norm = 0;
-        const auto count = static_cast<size_t>(config_.bin_count);
-        for (size_t i = 0; i < fine.size(); ++i) {
-            const double range = static_cast<double>(i % count) + 0.5;
-            const double weight =
-                config_.model == Model::Physical ? std::pow(range / static_cast<double>(count), 5) : 1;
-            error += std::pow(weight * (static_cast<double>(coarse[i]) - fine[i]), 2);
-            norm += std::pow(weight * fine[i], 2);
-        }
-        return norm > 0 ? std::sqrt(error / norm) : 0;
-    }
-
-private:
-    SonarConfig config_;
-    const types::Snapshot& scene_;
-    SonarRenderer renderer_;
-    types::Sonar ping_;
-    std::map<std::pair<int, int>, std::vector<float>> rendered_;
-};
+constexpr int most_rows = 2048, most_columns = 256, rungs_per_doubling = 8;
+constexpr double step_of_samples = 4, worth_a_trade = 0.85;
 
 /** Whether a device can draw so many columns per beam. */
 bool fits(SonarConfig config, int columns) {
@@ -70,62 +17,124 @@ bool fits(SonarConfig config, int columns) {
     return makeSlabs(config, makeBeams(config)).front().columns <= most_image_size;
 }
 
-/** What more rows, columns, or both change. */
-struct Changes {
-    double of_rows, of_columns, of_both;
-    double error() const { return std::max(std::hypot(of_rows, of_columns), of_both); }
-};
+/** Error of the finer of two pings whose samples differ in spacing by `ratio` < 1, from how much they differ. */
+double shareOfFiner(double ratio) { return 1 / std::sqrt(1 + 1 / (ratio * ratio)); }
 
-/** Both together, because a small thing may need more of both before it is seen at all. What seems to be within
- * `target_error` is also tried with rows at factors that are not powers of 2: an edge along the rows may lie as wrong
- * at twice as many. */
-Changes changesOf(Trial& trial, int rows, int columns, double target_error) {
-    const auto change = [&](double taller, int wider) {
-        const int more_rows = static_cast<int>(std::lround(taller * rows));
-        return trial.change(trial.bins(rows, columns), trial.bins(more_rows, wider * columns));
-    };
-    Changes changes{change(2, 1), change(1, 2), change(2, 2)};
-    if (changes.error() <= target_error) changes.of_rows = std::max({changes.of_rows, change(1.4, 1), change(2.7, 1)});
-    return changes;
+int fewerRows(int rows) { return std::max(1, static_cast<int>(std::lround(0.6 * rows))); }
+int fewerColumns(int columns) { return std::max(1, (columns + 1) / 2); }
+
+double rowShare(const Quality& q) { return shareOfFiner(static_cast<double>(fewerRows(q.rows)) / q.rows); }
+double columnShare(const Quality& q) {
+    return shareOfFiner(static_cast<double>(fewerColumns(q.columns_per_beam)) / q.columns_per_beam);
 }
 
 }  // namespace
 
-std::vector<Quality> tryQualities(const SonarConfig& config, const types::Snapshot& scene, double target_error,
-                                  double budget_ms) {
-    Trial trial(config, scene);
-    std::vector<Quality> ladder;
-    for (int rows = least_rows, columns = 1;
-         rows <= most_rows && columns <= most_columns && fits(config, 2 * columns);) {
-        const Changes changes = changesOf(trial, rows, columns, target_error);
-        const Quality quality{rows, columns, changes.error(), std::isfinite(budget_ms) ? trial.ms(rows, columns) : 0};
-        if (!ladder.empty() && quality.ms > budget_ms) break;
-        ladder.push_back(quality);
-        if (quality.error <= target_error) break;
-        (changes.of_rows >= changes.of_columns ? rows : columns) *= 2;
+double ErrorModel::error(int rows, int columns_per_beam) const {
+    return std::hypot(of_rows * at.rows / rows, of_columns * at.columns_per_beam / columns_per_beam);
+}
+
+QualityLadder::QualityLadder(const SonarConfig& config) {
+    const Quality least;
+    for (int i = 0; rows_.empty() || rows_.back() < most_rows; ++i)
+        rows_.push_back(
+            static_cast<int>(std::lround(least.rows * std::exp2(i / static_cast<double>(rungs_per_doubling)))));
+    for (int columns = least.columns_per_beam; columns <= most_columns; columns *= 2)
+        for (const int each : {columns, columns + columns / 2})
+            if (each <= most_columns && (columns_.empty() || fits(config, each))) columns_.push_back(each);
+}
+
+Quality QualityLadder::choose(const ErrorModel& model, double target, double most_samples, const Quality& least) const {
+    Quality best = least;
+    best.error = model.error(least.rows, least.columns_per_beam);
+    const auto better = [&](const Quality& quality) {
+        if (best.error > target) return quality.error < best.error;
+        return quality.error <= target && quality.samples() < best.samples();
+    };
+    for (const int columns : columns_)
+        for (const int rows : rows_) {
+            const Quality quality{rows, columns, model.error(rows, columns)};
+            if (rows < least.rows || columns < least.columns_per_beam || quality.samples() > most_samples) continue;
+            if (better(quality)) best = quality;
+        }
+    return best;
+}
+
+ErrorEstimator::ErrorEstimator(const SonarConfig& config) {
+    const double count = config.bin_count;
+    for (int i = 0; i < config.bin_count; ++i)
+        weights_.push_back(config.model == Model::Physical ? std::pow((i + 0.5) / count, 10) : 1);
+}
+
+double ErrorEstimator::change(const std::vector<float>& coarse, const std::vector<float>& fine) const {
+    double error = 0, norm = 0;
+    for (size_t beam = 0; beam < fine.size(); beam += weights_.size())
+        for (size_t i = 0; i < weights_.size(); ++i) {
+            const double value = fine[beam + i], difference = value - coarse[beam + i];
+            error += weights_[i] * difference * difference;
+            norm += weights_[i] * value * value;
+        }
+    return norm > 0 ? std::sqrt(error / norm) : 0;
+}
+
+double ErrorEstimator::changeBy(SonarRenderer& renderer, const types::Snapshot& scene, const types::Sonar& ping,
+                                int rows, int columns_per_beam) {
+    renderer.setQuality(rows, columns_per_beam);
+    renderer.render(scene, coarse_);
+    rendered_ += Quality{rows, columns_per_beam}.samples();
+    return change(coarse_.bins, ping.bins);
+}
+
+ErrorModel ErrorEstimator::model(SonarRenderer& renderer, const types::Snapshot& scene, const types::Sonar& ping,
+                                 const Quality& quality) {
+    const auto& [rows, columns, unused] = quality;
+    ErrorModel model{quality, rowShare(quality) * changeBy(renderer, scene, ping, fewerRows(rows), columns),
+                     columnShare(quality) * changeBy(renderer, scene, ping, rows, fewerColumns(columns))};
+    model.at.error = model.error();
+    renderer.setQuality(rows, columns);
+    return model;
+}
+
+double ErrorEstimator::error(SonarRenderer& renderer, const types::Snapshot& scene, const types::Sonar& ping,
+                             const Quality& quality) {
+    const auto& [rows, columns, unused] = quality;
+    const double changed = changeBy(renderer, scene, ping, fewerRows(rows), fewerColumns(columns));
+    renderer.setQuality(rows, columns);
+    return std::max(rowShare(quality), columnShare(quality)) * changed;
+}
+
+ErrorModel climb(ErrorEstimator& estimator, const QualityLadder& ladder, SonarRenderer& renderer,
+                 const types::Snapshot& scene, const Quality& start, const QualityGoal& goal, types::Sonar& ping) {
+    const auto goTo = [&](const Quality& next) {
+        renderer.setQuality(next.rows, next.columns_per_beam);
+        renderer.render(scene, ping);
+        return estimator.model(renderer, scene, ping, next);
+    };
+    ErrorModel model = estimator.model(renderer, scene, ping, start);
+    while (model.error() > goal.target) {
+        const double samples = std::min(goal.most_samples, step_of_samples * model.at.samples());
+        const Quality finer = ladder.choose(model, aim_share * goal.target, samples, model.at);
+        const Quality other = ladder.choose(model, aim_share * goal.target, samples);
+        if (!(finer == model.at))
+            model = goTo(finer);
+        else if (goal.trades && other.error < worth_a_trade * model.error())
+            return goTo(other);
+        else
+            break;
     }
-    return ladder;
+    return model;
 }
 
-BudgetKeeper::BudgetKeeper(std::vector<Quality> ladder, double budget_ms)
-    : ladder_(std::move(ladder)), budget_ms_(budget_ms), at_(ladder_.size() - 1) {}
-
-bool BudgetKeeper::moveTo(size_t at) {
-    pings_ = late_ = early_ = 0;
-    if (at >= ladder_.size() || at == at_) return false;
-    at_ = at;
-    return true;
-}
-
-bool BudgetKeeper::heard(double ms) {
-    const bool can_rise = at_ + 1 < ladder_.size();
-    const double finer_ms = can_rise ? ms * ladder_[at_ + 1].ms / ladder_[at_].ms : budget_ms_;
-    late_ += ms > late_share * budget_ms_;
-    early_ = finer_ms < early_share * budget_ms_ ? early_ + 1 : 0;
-    if (late_ >= late_of_patience) return moveTo(at_ > 0 ? at_ - 1 : 0);
-    if (early_ >= early_in_a_row) return moveTo(at_ + 1);
-    if (++pings_ == patience) pings_ = late_ = 0;
-    return false;
+Quality chooseQuality(const SonarConfig& config, const types::Snapshot& scene) {
+    constexpr double infinity = std::numeric_limits<double>::infinity();
+    SonarRenderer renderer(config, scene.geometry);
+    ErrorEstimator estimator(config);
+    types::Sonar ping;
+    const Quality start;
+    renderer.setQuality(start.rows, start.columns_per_beam);
+    renderer.render(scene, ping);
+    const QualityGoal goal{config.targetError().value_or(0), config.mostSamples().value_or(infinity) / config.beams()};
+    return climb(estimator, QualityLadder(config), renderer, scene, start, goal, ping).at;
 }
 
 }  // namespace insonify::sonar

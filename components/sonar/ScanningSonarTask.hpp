@@ -23,6 +23,7 @@ protected:
     bool propertiesHook() override;
     const char* aim(types::Snapshot& scene) override;
     void label(types::Sonar& sample) override;
+    int pingsPerTurn() const override { return scan_->pingsPerTurn(); }
 
 private:
     void checkStep(double period) const;

@@ -88,7 +88,7 @@ double SonarConfig::coverageDeg() const {
 }
 
 std::optional<double> SonarConfig::targetError() const {
-    constexpr double default_target = 0.02;
+    constexpr double default_target = 0.05;
     if (quality.target_error) return quality.target_error;
     if (published || quality.isGiven() || quality.budget_ms) return {};
     return default_target;
@@ -98,6 +98,13 @@ bool SonarConfig::castsRays() const {
     if (visibility != Visibility::Auto) return visibility == Visibility::Cpu;
     if (!haveRays() || needsImages() || deposit == Deposit::Gpu) return false;
     return !gpu::EglContext::isAskedFor(device) && !gpu::EglContext::hasCard();
+}
+
+std::optional<double> SonarConfig::mostSamples() const {
+    constexpr double default_most = 400'000;
+    if (quality.max_samples) return *quality.max_samples;
+    if (quality.target_error || !targetError()) return {};
+    return default_most;
 }
 
 double SonarConfig::speedOfSound() const { return speed_of_sound.value_or(water ? leroySpeed(*water) : 1500); }
@@ -139,10 +146,14 @@ void SonarConfig::checkFan(types::Problems& problems) const {
 }
 
 void QualityConfig::check(types::Problems& problems) const {
-    for (const auto& [name, value] : {std::pair{"target_error", target_error}, {"budget_ms", budget_ms}})
-        if (value && (isGiven() || (target_error && budget_ms)))
-            problems.push_back(
-                {name, "is given with another choice; give rows and columns_per_beam, or target_error, or budget_ms"});
+    const char* const choices =
+        "is given with another choice; give rows and columns_per_beam, or target_error and max_samples, or budget_ms";
+    const auto refuse = [&](const char* name, bool given, bool other) {
+        if (given && (isGiven() || other)) problems.push_back({name, choices});
+    };
+    refuse("target_error", target_error.has_value(), budget_ms.has_value());
+    refuse("max_samples", max_samples.has_value(), budget_ms.has_value());
+    refuse("budget_ms", budget_ms.has_value(), false);
 }
 
 void SonarConfig::checkBeam(types::Problems& problems) const {

@@ -55,11 +55,12 @@ enum class Estimator {
     NearestJitter,  ///< All in the bin of a point drawn at random in it.
 };
 
-/** Samples per beam: given, or found for an error or a time on the first ping that hears anything. Found for an error
- * of 0.02 when nothing is given. */
+/** Samples per beam: given, or found for an error or a time from the pings. Found for an error of 0.05 with at most
+ *  400,000 samples a ping when nothing is given. */
 struct QualityConfig {
     std::optional<int> rows, columns_per_beam;
     std::optional<double> target_error, budget_ms;
+    std::optional<int> max_samples;
 
     bool isGiven() const { return rows || columns_per_beam; }
 
@@ -68,11 +69,12 @@ struct QualityConfig {
         using types::Field;
         visit(Field{"rows", "1", "image rows over beam_height_deg, else 256", 1, 16384}, self.rows);
         visit(Field{"columns_per_beam", "1", "image columns per beam, else 2", 1, 4096}, self.columns_per_beam);
-        visit(Field{"target_error", "1", "instead: relative L2 error of energies times r^5; 0.02 when no key is given",
-                    1e-4, 1},
+        visit(Field{"target_error", "1", "instead: relative L2 error of energies times r^5; else 0.05", 1e-4, 1},
               self.target_error);
-        visit(Field{"budget_ms", "ms", "instead: time of a ping, kept by lowering the quality", 0.1, 1e5},
-              self.budget_ms);
+        visit(Field{"max_samples", "1",
+                    "of a ping, for a target_error; absent: 400000, with a target_error as many as it takes", 1, 1e9},
+              self.max_samples);
+        visit(Field{"budget_ms", "ms", "instead: time of a ping, used and kept", 0.1, 1e5}, self.budget_ms);
     }
     void check(types::Problems& problems) const;
 };
@@ -130,6 +132,10 @@ struct SonarConfig {
     int columnsPerBeam() const { return quality.columns_per_beam.value_or(2); }
     /** Error to choose the quality for, none when it is given or there is a budget. `published` has no use for one. */
     std::optional<double> targetError() const;
+    /** Samples that a ping may have for its target, none when it may have as many as it takes [1]. */
+    std::optional<double> mostSamples() const;
+    /** Whether the quality is found from the pings, rather than given. */
+    bool choosesQuality() const { return targetError() || quality.budget_ms; }
     /** Beams per ping: of the table, else beam_count [1]. */
     int beams() const { return bearings_deg.empty() ? beam_count : static_cast<int>(bearings_deg.size()); }
     /** Centre of beam k [deg], 0 ahead, positive to port. */

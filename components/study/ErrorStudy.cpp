@@ -6,7 +6,6 @@
 #include <chrono>
 #include <cmath>
 #include <ctime>
-#include <limits>
 #include <memory>
 #include <stdexcept>
 
@@ -19,7 +18,6 @@
 namespace insonify::study {
 namespace {
 
-constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr int least_rows = 64;
 constexpr int most_levels_computed = 4;  ///< Without a closed form: the reference costs 64 times the finest point.
 constexpr int reference_refinement = 8;  ///< Of the finest point measured, in rows and columns each.
@@ -138,8 +136,11 @@ private:
     void predict() {
         options_.progress(scene_.name + " target_error");
         constexpr double target = 0.02;
-        const sonar::Quality chosen = sonar::tryQualities(scene_.config, scene_.snapshot, target, infinity).back();
         sonar::SonarConfig config = scene_.config;
+        config.quality = {};
+        config.quality.target_error = target;
+        const sonar::Quality chosen = sonar::chooseQuality(config, scene_.snapshot);
+        config.quality = {};
         config.quality.rows = chosen.rows;
         config.quality.columns_per_beam = chosen.columns_per_beam;
         types::Sonar ping;

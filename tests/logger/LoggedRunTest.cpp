@@ -34,7 +34,7 @@ struct PlannerTask : framework::TaskContext {
     const types::Plan* plan() const override { return plan_ ? &*plan_ : nullptr; }
     void updateHook() override {
         plan_ =
-            types::Plan{.features = {"HAVE_\"TVG\""}, .passes = {}, .omitted = {{"volume", "absent"}}, .notices = {}};
+            types::Plan{.features = {"HAVE_\"TVG\""}, .passes = {}, .omitted = {{"volume", "absent"}}, .notices = {}, .device = {}};
         refreshRecord();
         ping.write(std::make_shared<types::Sonar>());
     }

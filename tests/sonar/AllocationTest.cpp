@@ -38,6 +38,27 @@ std::vector<types::SnapshotPtr> turning() {
     return snapshots;
 }
 
+/** Pings of `count` equal snapshots, after as many for the quality to settle, during which the task allocates. */
+int pingsThatAllocate(const SonarConfig& config, int count) {
+    SonarTask task("sonar");
+    test::Writer<types::SnapshotPtr> in;
+    test::Reader<types::SonarPtr> out;
+    in.port.connectTo(task.snapshot, framework::ConnPolicy::buffer(4));
+    task.ping.connectTo(out.port, framework::ConnPolicy::data());
+    task.config.set(config);
+    if (!task.configure() || !task.start()) return count;
+    const types::SnapshotPtr snapshot = turning().back();
+    int allocating = 0;
+    for (int i = 0; i < 2 * count; ++i) {
+        const auto allocations = test::allocationsOn(task, [&] {
+            in.port.write(snapshot);
+            task.update();
+        });
+        allocating += i >= count && !allocations.empty();
+    }
+    return allocating;
+}
+
 template <class Task, class Config>
 void expectNoAllocation(const Config& config) {
     Task task("sonar");
@@ -85,6 +106,14 @@ TEST(AllocationTest, NorWithEveryEffectThereIs) {
     config.absorption.emplace().frequency_khz = 700;
     config.beam_geometry = BeamGeometry::Conical;
     expectNoAllocation<SonarTask>(config);
+}
+
+TEST(AllocationTest, AQualityThatIsLookedAfterAllocatesOnlyInThePingsThatAreWatched) {
+    SonarConfig config = fan();
+    config.quality = {};
+    const int allocating = pingsThatAllocate(config, 40);
+    EXPECT_GE(allocating, 9) << "about every fourth is rendered coarser as well";
+    EXPECT_LE(allocating, 12);
 }
 
 TEST(AllocationTest, NorInThePublishedModel) {

@@ -1,143 +1,286 @@
 #include <gmock/gmock.h>
 
 #include <cmath>
-#include <limits>
 
 #include "components/sonar/Quality.hpp"
+#include "components/sonar/QualityKeeper.hpp"
+#include "components/sonar/ScanningSonarTask.hpp"
 #include "components/sonar/SonarTask.hpp"
 #include "tests/support/Ports.hpp"
+#include "tests/support/RoughFloor.hpp"
 #include "tests/support/Scenes.hpp"
 
 namespace insonify::sonar {
 namespace {
+
+using testing::AllOf;
+using testing::Contains;
+using testing::HasSubstr;
 
 constexpr double forever = std::numeric_limits<double>::infinity();
 
 SonarConfig small() {
     SonarConfig config;
     config.range = 30;
-    config.bin_count = 300;
+    config.bin_count = 150;
     config.beam_count = 16;
     config.field_of_view_deg = 60;
     config.device = "software";
     return config;
 }
 
-const std::vector<Quality> ladder = {{8, 1, 0.3, 1}, {16, 1, 0.1, 2}, {16, 2, 0.05, 4}};
-
-TEST(TryQualitiesTest, EachStepDoublesRowsOrColumnsAndTheLastReachesTheTarget) {
-    const auto geometry = test::sceneOf({test::ground(-3), test::sphere(1, 32)}, -10, {{0, 0, 0}, {12, 2, -2}});
-    const auto steps = tryQualities(small(), test::snapshotOf(geometry), 0.03, forever);
-    ASSERT_GT(steps.size(), 2u);
-    for (size_t i = 1; i < steps.size(); ++i)
-        EXPECT_EQ(steps[i].rows * steps[i].columns_per_beam, 2 * steps[i - 1].rows * steps[i - 1].columns_per_beam);
-    EXPECT_LE(steps.back().error, 0.03);
-    EXPECT_GT(steps[steps.size() - 2].error, 0.03);
+types::GeometryPtr floorAndWall() {
+    return test::sceneOf({test::roughFloor(-3, 80, 128, 0.3, 4), test::wall(-4)}, -10);
 }
 
-TEST(TryQualitiesTest, AnEmptySeaIsWithoutErrorAtOnce) {
-    const auto steps = tryQualities(small(), test::snapshotOf(test::sceneOf({test::ground(500)})), 0.03, forever);
-    ASSERT_EQ(steps.size(), 1u);
-    EXPECT_EQ(steps[0].error, 0);
+/** Towards the open floor, or the wall behind. */
+types::Snapshot outwards(const types::GeometryPtr& scene) { return test::snapshotOf(scene, {}, 0, 0.14); }
+types::Snapshot toTheWall(const types::GeometryPtr& scene) { return test::snapshotOf(scene, {}, 3.14159, 0.14); }
+
+TEST(QualityLadderTest, TheCheapestThatReachesTheTargetElseTheFinestWithinTheCap) {
+    const QualityLadder ladder(small());
+    const ErrorModel model{{64, 2}, 0.3, 0.1};
+    const Quality enough = ladder.choose(model, 0.1, forever);
+    EXPECT_LE(enough.error, 0.1);
+    EXPECT_GT(enough.rows, 64);
+    EXPECT_EQ(enough.error, model.error(enough.rows, enough.columns_per_beam));
+    EXPECT_LE(ladder.choose(model, 0.1, 0.9 * enough.samples()).samples(), 0.9 * enough.samples());
+    EXPECT_GT(ladder.choose(model, 0.1, 0.9 * enough.samples()).error, 0.1);
+    EXPECT_EQ(ladder.choose(model, 1, forever), Quality()) << "64 x 2 will do";
+    EXPECT_EQ(ladder.choose(model, 0, 1), Quality()) << "never less than 64 x 2";
+    EXPECT_EQ(ladder.choose(model, 0, 10 * 128 * 3, {64, 20}).columns_per_beam, 24) << "never less than the least";
 }
 
-TEST(TryQualitiesTest, ABudgetEndsTheLadderBeforeItIsSpent) {
-    const auto geometry = test::sceneOf({test::ground(-3)}, -10);
-    const auto steps = tryQualities(small(), test::snapshotOf(geometry), 0, 1e-6);
-    ASSERT_EQ(steps.size(), 1u) << "the coarsest, which there must be";
-    EXPECT_GT(steps[0].ms, 1e-6);
+TEST(QualityLadderTest, ABudgetFindsRungsThatAreNoFurtherApartThanATenth) {
+    const QualityLadder ladder(small());
+    const ErrorModel model{{64, 2}, 0.3, 0.1};
+    for (double samples = 128; samples < 3e4; samples *= 1.05)
+        EXPECT_GE(ladder.choose(model, 0, samples).samples(), samples / 1.12) << samples;
 }
 
-TEST(BudgetKeeperTest, TwoOfTwentyPingsNearTheBudgetLowerTheQuality) {
-    BudgetKeeper keeper(ladder, 10);
-    EXPECT_EQ(keeper.quality().columns_per_beam, 2);
-    EXPECT_FALSE(keeper.heard(11));
-    for (int i = 0; i < 30; ++i) EXPECT_FALSE(keeper.heard(8)) << "one late ping is forgotten";
-    EXPECT_FALSE(keeper.heard(9));
-    EXPECT_TRUE(keeper.heard(9)) << "before the budget is overrun";
-    EXPECT_EQ(keeper.quality().rows, 16);
-    EXPECT_EQ(keeper.quality().columns_per_beam, 1);
-}
-
-TEST(BudgetKeeperTest, AHundredEarlyPingsRaiseItAgain) {
-    BudgetKeeper keeper(ladder, 10);
-    keeper.heard(11);
-    keeper.heard(11);
-    for (int i = 0; i < 99; ++i) EXPECT_FALSE(keeper.heard(1));
-    EXPECT_FALSE(keeper.heard(4)) << "the next would take 8: not a hundred in a row";
-    for (int i = 0; i < 99; ++i) EXPECT_FALSE(keeper.heard(3));
-    EXPECT_TRUE(keeper.heard(3)) << "the next takes twice as long: 6 of 10";
-    EXPECT_EQ(keeper.quality().columns_per_beam, 2);
-}
-
-TEST(BudgetKeeperTest, TheLadderHasTwoEnds) {
-    BudgetKeeper keeper(ladder, 10);
-    for (int i = 0; i < 50; ++i) keeper.heard(11);
-    EXPECT_EQ(keeper.quality().rows, 8);
-    EXPECT_FALSE(keeper.heard(11) || keeper.heard(11));
-    for (int i = 0; i < 500; ++i) keeper.heard(0.1);
-    EXPECT_EQ(keeper.quality().columns_per_beam, 2);
-}
-
-TEST(QualityTaskTest, TheChoiceAndItsErrorAreInThePlanOnceSomethingIsHeard) {
-    SonarTask task("sonar");
-    test::Writer<types::SnapshotPtr> in;
-    in.port.connectTo(task.snapshot, framework::ConnPolicy::buffer(4));
+TEST(ClimbTest, ItTakesLessThanTenPingsTimeAndLeavesThePingAtItsQuality) {
+    const auto scene = floorAndWall();
     SonarConfig config = small();
     config.quality.target_error = 0.03;
-    task.config.set(config);
-    ASSERT_TRUE(task.configure() && task.start()) << task.lastError();
-    const auto geometry = test::sceneOf({test::ground(-3)}, -10);
-    const auto ping = [&](double height) {
-        auto snapshot = test::snapshotOf(geometry, {0, 0, height});
-        in.port.write(std::make_shared<types::Snapshot>(snapshot));
-        task.update();
-    };
-    ping(300);
-    ASSERT_TRUE(task.plan()) << task.lastError();
-    EXPECT_TRUE(std::isnan(task.plan()->predicted_error)) << "nothing is in range";
-    EXPECT_EQ(task.plan()->rows, SonarConfig().rows());
-    ping(0);
-    EXPECT_GT(task.plan()->predicted_error, 0);
-    EXPECT_LE(task.plan()->predicted_error, 0.03);
-    EXPECT_LT(task.plan()->rows, SonarConfig().rows()) << "a flat bottom needs few";
+    SonarRenderer renderer(config, scene);
+    ErrorEstimator estimator(config);
+    types::Sonar ping;
+    renderer.setQuality(64, 2);
+    renderer.render(outwards(scene), ping);
+    const ErrorModel model =
+        climb(estimator, QualityLadder(config), renderer, outwards(scene), Quality(), {0.03}, ping);
+    EXPECT_LE(model.error(), 0.03);
+    EXPECT_GT(model.at.samples(), 8 * Quality().samples());
+    EXPECT_LT(2 * estimator.rendered(), 10 * model.at.samples()) << "trials cost more than the pings they judge";
+    types::Sonar same;
+    renderer.render(outwards(scene), same);
+    EXPECT_EQ(ping.bins, same.bins);
 }
 
-TEST(QualityBudgetTest, ABudgetThatIsTooSmallLeadsToTheCoarsest) {
-    SonarTask task("sonar");
-    test::Writer<types::SnapshotPtr> in;
-    in.port.connectTo(task.snapshot, framework::ConnPolicy::buffer(4));
+TEST(ClimbTest, AnEmptySeaIsWithoutErrorAtOnce) {
+    const auto scene = test::sceneOf({test::ground(500)});
+    SonarConfig config = small();
+    EXPECT_EQ(chooseQuality(config, test::snapshotOf(scene)), Quality());
+    EXPECT_EQ(chooseQuality(config, test::snapshotOf(scene)).error, 0);
+}
+
+/** A task that gets a snapshot at a time. */
+template <class Task>
+class Fed {
+public:
+    template <class Config>
+    explicit Fed(const Config& config) {
+        in_.port.connectTo(task.snapshot, framework::ConnPolicy::buffer(4));
+        task.ping.connectTo(out_.port, framework::ConnPolicy::buffer(4));
+        task.config.set(config);
+        if (!task.configure() || !task.start()) throw std::runtime_error(task.lastError());
+    }
+    types::SonarPtr ping(types::Snapshot snapshot) {
+        snapshot.time = types::Time::fromSeconds(0.1 * ++count_);
+        in_.port.write(std::make_shared<types::Snapshot>(snapshot));
+        task.update();
+        types::SonarPtr ping;
+        out_.port.readNew(ping);
+        return ping;
+    }
+    Quality quality() const { return {task.plan()->rows, task.plan()->columns_per_beam, task.plan()->predicted_error}; }
+    /** Those that tell of a quality. */
+    std::vector<std::string> notices() const {
+        std::vector<std::string> all = task.notices();
+        std::erase_if(all, [](const std::string& notice) { return notice.find("quality") == std::string::npos; });
+        return all;
+    }
+
+    Task task{"sonar"};
+
+private:
+    test::Writer<types::SnapshotPtr> in_;
+    test::Reader<types::SonarPtr> out_;
+    int count_ = 0;
+};
+
+TEST(QualityTaskTest, TheChoiceItsErrorAndItsCostAreToldOnceSomethingIsHeard) {
+    const auto scene = floorAndWall();
+    Fed<SonarTask> sonar(small());
+    sonar.ping(test::snapshotOf(scene, {}, 0, -1.2));
+    EXPECT_TRUE(std::isnan(sonar.quality().error)) << "it looks at the sky";
+    EXPECT_EQ(sonar.quality(), Quality());
+    EXPECT_THAT(sonar.notices(), testing::IsEmpty());
+    sonar.ping(outwards(scene));
+    EXPECT_LE(sonar.quality().error, 0.05) << "the target where nothing is said";
+    EXPECT_GT(sonar.quality().samples(), Quality().samples());
+    const std::string samples = std::to_string(static_cast<int>(16 * sonar.quality().samples()));
+    EXPECT_THAT(sonar.notices(), testing::ElementsAre(AllOf(HasSubstr(samples + " samples a ping, predicted error 0.0"),
+                                                            HasSubstr("target 0.05"))));
+}
+
+TEST(QualityTaskTest, TheMostSamplesAreKeptAndAMissedTargetIsToldOnceWithItsNumber) {
+    const auto scene = floorAndWall();
+    SonarConfig config = small();
+    config.quality.max_samples = 16 * 64 * 4;
+    Fed<SonarTask> sonar(config);
+    for (int i = 0; i < 30; ++i) sonar.ping(outwards(scene));
+    EXPECT_LE(16 * sonar.quality().samples(), 16 * 64 * 4);
+    EXPECT_GT(sonar.quality().error, 0.05);
+    EXPECT_THAT(sonar.notices(), testing::ElementsAre(AllOf(HasSubstr("Warning: quality"), HasSubstr("predicted error"),
+                                                            HasSubstr("misses the target of 0.05: max_samples 4096"))));
+}
+
+TEST(QualityTaskTest, ATargetAloneTakesAsManySamplesAsItNeeds) {
+    const auto scene = floorAndWall();
+    SonarConfig config = small();
+    config.quality.target_error = 0.01;
+    Fed<SonarTask> sonar(config);
+    sonar.ping(outwards(scene));
+    EXPECT_LE(sonar.quality().error, 0.01);
+    EXPECT_FALSE(config.mostSamples());
+    EXPECT_EQ(small().mostSamples(), 400'000);
+}
+
+TEST(QualityTaskTest, ItIsChosenAgainWhenTheSceneThatIsHeardHasChangedAndLoweredLater) {
+    const auto scene = floorAndWall();
+    Fed<SonarTask> sonar(small());
+    sonar.ping(toTheWall(scene));
+    EXPECT_EQ(sonar.quality(), Quality());
+    for (int i = 0; i < 4; ++i) sonar.ping(outwards(scene));
+    const Quality outside = sonar.quality();
+    EXPECT_GT(outside.samples(), 4 * Quality().samples()) << "within four pings";
+    EXPECT_LE(outside.error, 0.05);
+    EXPECT_THAT(sonar.notices(), Contains(AllOf(HasSubstr("from 0."), HasSubstr(" s on quality: "))));
+    for (int i = 0; i < 60; ++i) sonar.ping(toTheWall(scene));
+    EXPECT_EQ(sonar.quality(), outside) << "not yet";
+    for (int i = 0; i < 12; ++i) sonar.ping(toTheWall(scene));
+    EXPECT_EQ(sonar.quality(), Quality());
+}
+
+TEST(QualityTaskTest, ARunThatIsRepeatedHasTheSamePingsBitForBit) {
+    const auto scene = floorAndWall();
+    const auto run = [&] {
+        Fed<SonarTask> sonar(small());
+        std::vector<std::vector<float>> pings;
+        for (int i = 0; i < 24; ++i)
+            pings.push_back(sonar.ping(test::snapshotOf(scene, {}, 3.14 - 0.13 * i, 0.14))->bins);
+        return std::pair(pings, sonar.notices());
+    };
+    EXPECT_EQ(run(), run());
+}
+
+TEST(QualityTaskTest, AHeadLowersItOnlyAfterAWholeTurn) {
+    const auto scene = floorAndWall();
+    ScanningSonarConfig config;
+    config.sonar = small();
+    config.sonar.beam_width_deg = 3;
+    config.sonar.field_of_view_deg = SonarConfig().field_of_view_deg;
+    config.head.step_deg = 3;  // 120 pings a turn
+    Fed<ScanningSonarTask> sonar(config);
+    std::vector<Quality> qualities;
+    for (int i = 0; i < 240; ++i) {
+        sonar.ping(test::snapshotOf(scene, {}, 0, 0.14));
+        qualities.push_back(sonar.quality());
+    }
+    EXPECT_GT(qualities[119].samples(), Quality().samples()) << "the floor was heard";
+    for (size_t i = 1; i < qualities.size(); ++i)
+        EXPECT_GE(qualities[i].samples(), qualities[i - 1].samples())
+            << "at every turn it hears the floor again: " << i;
+}
+
+TEST(QualityTaskTest, ASlowMachineLeadsToTheCoarsestThatIsChosenAndIsTold) {
+    const auto scene = test::sceneOf({test::ground(-3)}, -10);
     SonarConfig config = small();
     config.quality.budget_ms = 0.1;  // less than the first context switch
     config.bin_count = 20000;
-    task.config.set(config);
-    ASSERT_TRUE(task.configure() && task.start()) << task.lastError();
-    const auto geometry = test::sceneOf({test::ground(-3)}, -10);
-    for (int i = 0; i < 3; ++i) {
-        in.port.write(std::make_shared<types::Snapshot>(test::snapshotOf(geometry)));
-        task.update();
+    Fed<SonarTask> sonar(config);
+    for (int i = 0; i < 4; ++i) sonar.ping(test::snapshotOf(scene));
+    EXPECT_EQ(sonar.quality(), Quality());
+    EXPECT_THAT(sonar.notices(), Contains(HasSubstr("Warning: the coarsest quality that is chosen takes")));
+}
+
+/** A keeper that is told the times of a machine on which a sample takes so long [ms]. */
+struct Kept {
+    explicit Kept(const SonarConfig& with) : config(with), renderer(config, scene), keeper(config, 1) {
+        renderer.setQuality(64, 2);
     }
-    ASSERT_TRUE(task.plan()) << task.lastError();
-    EXPECT_EQ(task.plan()->rows, 8);
-    EXPECT_GT(task.plan()->predicted_error, 0);
-    EXPECT_THAT(task.notices(), testing::Contains(testing::HasSubstr("the coarsest quality takes")));
+    void pings(int count, double ms_per_sample, double period_ms = 0) {
+        for (int i = 0; i < count; ++i) {
+            renderer.render(outwards(scene), ping);
+            ms = 16 * keeper.quality().samples() * ms_per_sample;
+            keeper.follow(renderer, outwards(scene), ping, ms, period_ms);
+        }
+    }
+
+    types::GeometryPtr scene = floorAndWall();
+    SonarConfig config;
+    SonarRenderer renderer;
+    QualityKeeper keeper;
+    types::Sonar ping;
+    double ms = 0;  ///< Of the last ping.
+};
+
+TEST(QualityKeeperTest, ABudgetIsUsedAndKept) {
+    SonarConfig config = small();
+    config.quality.budget_ms = 20;
+    Kept kept(config);
+    kept.pings(80, 4e-4);
+    EXPECT_GE(kept.ms, 16);
+    EXPECT_LE(kept.ms, 20);
+    kept.pings(8, 12e-4);
+    EXPECT_LE(kept.ms, 20);
+    kept.pings(60, 4e-4);
+    EXPECT_GE(kept.ms, 16);
+    EXPECT_THAT(kept.keeper.takeNotices(), Contains(HasSubstr("20 ms are used and kept")));
+}
+
+TEST(QualityKeeperTest, ThePeriodIsTheBudgetWhereNothingIsSaid) {
+    Kept kept(small());
+    kept.pings(10, 1e-4, 1000);
+    const double enough = kept.keeper.quality().samples();
+    EXPECT_LE(kept.keeper.quality().error, 0.05);
+    kept.pings(60, 1e-4, 0.6 * kept.ms);
+    EXPECT_LT(kept.keeper.quality().samples(), 0.6 * enough);
+    EXPECT_GT(kept.keeper.quality().error, 0.05);
+    EXPECT_THAT(kept.keeper.takeNotices(), Contains(AllOf(HasSubstr("Warning"), HasSubstr("ms allow no more"))));
+    kept.pings(60, 1e-4, 1000);
+    EXPECT_GE(kept.keeper.quality().samples(), 0.9 * enough);
+}
+
+TEST(QualityKeeperTest, NorIsItABudgetWhereATargetIsSaid) {
+    SonarConfig config = small();
+    config.quality.target_error = 0.05;
+    Kept kept(config);
+    kept.pings(30, 1, 1);
+    EXPECT_LE(kept.keeper.quality().error, 0.05);
 }
 
 TEST(CulledTest, ThePlanSaysWhatOfTheSceneIsNotDrawn) {
-    SonarTask task("sonar");
-    test::Writer<types::SnapshotPtr> in;
-    in.port.connectTo(task.snapshot, framework::ConnPolicy::buffer(4));
     SonarConfig config = small();
     config.field_of_view_deg = 180;  // three slabs
-    task.config.set(config);
-    ASSERT_TRUE(task.configure() && task.start()) << task.lastError();
+    Fed<SonarTask> sonar(config);
     const types::Mesh ball = test::sphere(0.5, 8);
     const auto geometry = test::sceneOf({ball, ball, ball}, -10, {{10, 0, 0}, {-10, 0, 0}, {200, 0, 0}});
-    in.port.write(std::make_shared<types::Snapshot>(test::snapshotOf(geometry)));
-    task.update();
-    ASSERT_TRUE(task.plan()) << task.lastError();
+    sonar.ping(test::snapshotOf(geometry));
+    ASSERT_TRUE(sonar.task.plan()) << sonar.task.lastError();
     std::vector<std::string> names;
-    for (const types::Omission& omission : task.plan()->omitted) names.push_back(omission.name);
+    for (const types::Omission& omission : sonar.task.plan()->omitted) names.push_back(omission.name);
     EXPECT_THAT(names, testing::IsSupersetOf({"2 of 3 objects", "2 of 3 slabs"}));
     const size_t each = ball.indices.size() / 3;
     EXPECT_THAT(names, testing::Contains("at least " + std::to_string(2 * each) + " of " + std::to_string(3 * each) +

@@ -78,6 +78,8 @@ TEST(SonarConfigTest, ValuesOutOfBoundsAreRefused) {
                              "speed_of_sound: .nan",
                              "water: {salinity_psu: -1}",
                              "quality: {rows: 0}",
+                             "quality: {columns_per_beam: 4097}",
+                             "quality: {max_samples: 0}",
                              "{bearings_deg: [0, 200], beam_width_deg: 1}",
                              "beam_count: 2.5",
                              "model: magic"})
@@ -121,11 +123,33 @@ TEST(SonarConfigTest, ValuesThatDoNotGoTogetherAreNamed) {
           Case{"absorption: {db_per_m: 1, frequency_khz: 700}", "absorption.db_per_m: ", "give one of the two"},
           Case{"quality: {rows: 64, target_error: 0.1}", "quality.target_error: ", "with another choice"},
           Case{"quality: {columns_per_beam: 4, budget_ms: 10}", "quality.budget_ms: ", "with another choice"},
+          Case{"quality: {max_samples: 1000, budget_ms: 10}", "quality.max_samples: ", "with another choice"},
+          Case{"quality: {rows: 64, max_samples: 1000}", "quality.max_samples: ", "with another choice"},
           Case{"published: true", "published: ", "only with model: cerqueira2017"},
           Case{"{model: cerqueira2017, published: true, bin_count: 1}", "bin_count: ", "at least 2"},
           Case{"{model: cerqueira2017, published: true, field_of_view_deg: 180}", "published: ", "less than 180"},
           Case{"{range: 1, bin_count: 1000}", "range: ", "1000 bins of whole microseconds reach 1.5 m"}})
         EXPECT_THAT(faultsOf<SonarConfig>(c.yaml), ElementsAre(AllOf(HasSubstr(c.path), HasSubstr(c.words)))) << c.yaml;
+}
+
+TEST(SonarConfigTest, WhatIsNotSaidOfTheQualityIsAnErrorOfFivePerCentWithACapOfSamples) {
+    SonarConfig config;
+    EXPECT_EQ(config.targetError(), 0.05);
+    EXPECT_EQ(config.mostSamples(), 400'000);
+    config.quality.max_samples = 1000;
+    EXPECT_EQ(config.targetError(), 0.05);
+    EXPECT_EQ(config.mostSamples(), 1000);
+    config.quality = {};
+    config.quality.target_error = 0.1;
+    EXPECT_FALSE(config.mostSamples()) << "a target alone";
+    config.quality = {};
+    config.quality.rows = 8;
+    EXPECT_FALSE(config.choosesQuality() || config.mostSamples());
+    EXPECT_EQ(config.rows(), 8) << "a user may say less than what is chosen";
+}
+
+TEST(SonarConfigTest, OneWideBeamMayHaveThousandsOfColumns) {
+    EXPECT_THAT(faultsOf<ScanningSonarConfig>("{beam_width_deg: 60, quality: {columns_per_beam: 4096}}"), IsEmpty());
 }
 
 TEST(SonarConfigTest, ExactRangesNeedNoWholeMicroseconds) {

@@ -16,7 +16,8 @@ inline SonarConfig smallSonar() {
     config.beam_count = 8;
     config.bin_count = 100;
     config.field_of_view_deg = 80;
-    config.quality = {.rows = 64, .columns_per_beam = 4, .target_error = {}, .budget_ms = {}};
+    config.quality.rows = 64;
+    config.quality.columns_per_beam = 4;
     config.device = "software";
     return config;
 }
