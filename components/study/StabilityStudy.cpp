@@ -79,9 +79,7 @@ constexpr const char* legend =
 
 }  // namespace
 
-bool isJudged(const Outcome& outcome) {
-    return outcome.verdict == Verdict::Pass || outcome.verdict == Verdict::Fail;
-}
+bool isJudged(const Outcome& outcome) { return outcome.verdict == Verdict::Pass || outcome.verdict == Verdict::Fail; }
 
 const char* nameOf(Verdict verdict) {
     switch (verdict) {

@@ -99,7 +99,8 @@ Probe planesBy(const char* device, sonar::Deposit where) {
 }
 
 Outcome processorAndShader() {
-    const Probe reference = planesBy("software", sonar::Deposit::Cpu), shader = planesBy("software", sonar::Deposit::Gpu);
+    const Probe reference = planesBy("software", sonar::Deposit::Cpu),
+                shader = planesBy("software", sonar::Deposit::Gpu);
     return within(1e-4, innerDifference(shader.ping, reference.ping), "both on " + shader.device, shader);
 }
 
@@ -107,8 +108,8 @@ Outcome softwareAndCard() {
     const Probe reference = planesBy("software", sonar::Deposit::Cpu);
     const Probe processor = planesBy("auto", sonar::Deposit::Cpu), shader = planesBy("auto", sonar::Deposit::Gpu);
     if (shader.device == reference.device) return {{}, "not run: one device, " + shader.device, 0, Verdict::NotRun};
-    const double worst = std::max(innerDifference(processor.ping, reference.ping),
-                                  innerDifference(shader.ping, reference.ping));
+    const double worst =
+        std::max(innerDifference(processor.ping, reference.ping), innerDifference(shader.ping, reference.ping));
     return within(1e-4, worst, "processor and shader on " + shader.device + " against " + reference.device, shader);
 }
 

@@ -13,7 +13,7 @@
 namespace insonify::study {
 namespace {
 
-class QualityTest : public testing::TestWithParam<StudyScene> {};
+class QualityTest : public testing::TestWithParam<SceneMaker> {};
 
 double achieved(const StudyScene& scene, const sonar::Quality& quality) {
     sonar::SonarConfig config = scene.config;
@@ -30,16 +30,17 @@ double achieved(const StudyScene& scene, const sonar::Quality& quality) {
 
 TEST_P(QualityTest, TheTargetIsReachedAndNotWastefully) {
     const double target = 0.02;
+    const StudyScene scene = GetParam().make();
     const auto ladder =
-        sonar::tryQualities(GetParam().config, GetParam().snapshot, target, std::numeric_limits<double>::infinity());
-    const double error = achieved(GetParam(), ladder.back());
+        sonar::tryQualities(scene.config, scene.snapshot, target, std::numeric_limits<double>::infinity());
+    const double error = achieved(scene, ladder.back());
     EXPECT_LE(ladder.back().error, target);
     EXPECT_LE(error, 2 * target) << ladder.back().rows << " x " << ladder.back().columns_per_beam;
     EXPECT_GE(error, target / 10) << ladder.back().rows << " x " << ladder.back().columns_per_beam;
 }
 
 INSTANTIATE_TEST_SUITE_P(Scenes, QualityTest, testing::ValuesIn(closedFormScenes()),
-                         [](const auto& scene) { return scene.param.name; });
+                         [](const auto& scene) { return std::string(scene.param.name); });
 
 }  // namespace
 }  // namespace insonify::study

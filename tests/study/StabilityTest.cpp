@@ -59,7 +59,8 @@ TEST(StabilityStudyTest, ACaseThatThrowsHasFailedAndTheSheetsSaySo) {
              return Outcome{{{"kappa", 2.5}}, "calm", 1e-3, Verdict::Pass};
          }},
         {3, "storm", "calm", []() -> Outcome { throw std::runtime_error("mast lost"); }},
-        {9, "fog", "sight", [] {
+        {9, "fog", "sight",
+         [] {
              return Outcome{{}, "waits for: wind", 0, Verdict::Later};
          }},
         {8, "ice", "sight", [] {
@@ -83,8 +84,7 @@ TEST(StabilityStudyTest, ACaseThatThrowsHasFailedAndTheSheetsSaySo) {
 ]
 )");
     EXPECT_THAT(text("stability.md"), HasSubstr("1 pass, 1 fail, 1 not run, 1 later"));
-    EXPECT_THAT(text("stability.md"),
-                HasSubstr("| 8. ice |  | sight | not run: no ice |  | not run |"));
+    EXPECT_THAT(text("stability.md"), HasSubstr("| 8. ice |  | sight | not run: no ice |  | not run |"));
     EXPECT_THAT(text("stability.md"),
                 HasSubstr("| 7. a \"quoted\" \\| case | kappa 2.5 | calm | calm | 0.001 | pass |"));
 }
