@@ -91,7 +91,9 @@ void addPredictions(Out out, const ErrorResult& result) {
     for (const Prediction& p : result.predictions)
         fmt::format_to(out, "<tr><td>{}<td>{}<td>{}<td>{}<td>{:.2g}<td>{:.2g}</tr>\n", p.scene, p.target_error, p.rows,
                        p.columns_per_beam, p.predicted_error, p.error);
-    fmt::format_to(out, "</table>\n");
+    fmt::format_to(out,
+                   "</table>\n<p>What a prediction makes of the change between two qualities was set by looking at the "
+                   "scenes with a closed form: the others are its test.</p>\n");
 }
 
 /** Without what JSON and HTML would have to quote. */
