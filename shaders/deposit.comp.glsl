@@ -4,7 +4,7 @@ layout(local_size_x = 8, local_size_y = 8) in;
 layout(binding = 0) uniform usampler2D picture;
 layout(std430, binding = OBJECTS_BINDING) readonly buffer Objects { ObjectRecord objects[]; };
 layout(std430, binding = COMMANDS_BINDING) readonly buffer Commands { CommandRecord commands[]; };
-layout(std430, binding = PLANES_BINDING) readonly buffer Planes { vec4 planes[]; };
+layout(std430, binding = PLANES_BINDING) readonly buffer Planes { PlaneRecord planes[]; };
 layout(std430, binding = MATERIALS_BINDING) readonly buffer Materials { MaterialRecord materials[]; };
 layout(std430, binding = SHARES_BINDING) readonly buffer Shares { ShareRecord shares[]; };
 layout(std430, binding = SHARE_STARTS_BINDING) readonly buffer ShareStarts { uint share_starts[]; };
@@ -42,6 +42,8 @@ void addToBin(uint beam, uint bin, double amount, double weight) {
 #include "jitter.glsl"
 #include "surface.glsl"
 #include "footprint.glsl"
+#define real double
+#include "trapezoid.glsl"
 #include "deposit.glsl"
 
 dvec3 slabFromSonar(dvec3 p) {
@@ -50,9 +52,10 @@ dvec3 slabFromSonar(dvec3 p) {
 
 Surface surfaceOf(CommandRecord command, uint triangle, dvec2 uv) {
     ObjectRecord object = objects[command.object];
-    dvec4 plane = dvec4(planes[command.first_triangle + triangle]);
-    dvec3 normal = dvec3(dot(dvec3(object.normal_x.xyz), plane.xyz), dot(dvec3(object.normal_y.xyz), plane.xyz), dot(dvec3(object.normal_z.xyz), plane.xyz));
-    double distance = dot(normal, dvec3(object.row_x.w, object.row_y.w, object.row_z.w)) + plane.w;
+    PlaneRecord plane = planes[command.first_triangle + triangle];
+    dvec3 across = dvec3(plane.normal.xyz);
+    dvec3 normal = dvec3(dot(dvec3(object.normal_x.xyz), across), dot(dvec3(object.normal_y.xyz), across), dot(dvec3(object.normal_z.xyz), across));
+    double distance = dot(across, dvec3(plane.point.xyz) - (dvec3(object.eye.xyz) + dvec3(object.eye_rest.xyz))) + double(plane.normal.w);
     normal = slabFromSonar(normal);
     return surfaceAt(normal.x, normal.y, normal.z, distance, uv.x, uv.y);
 }

@@ -11,20 +11,19 @@ double cerqueiraEcho(double x) { return 1.0 / (1.0 + double(exp(float(12.0 - 18.
 // part's energy times the square of the bin's central range; for cerqueira2017 it is S weighted by the part's size `weight`.
 // Both are relative to one whole pixel.
 void depositPart(uint beam, uint bin, double share, double above, double below, double strength_range) {
-    double inverse_range = 0.5 * (above + below);
 #ifdef HAVE_CERQUEIRA2017
+    double inverse_range = 0.5 * (above + below);
     double cosine = min(strength_range * inverse_range, 1.0);
     double echo = cerqueiraEcho(cosine * double(exp(float(-2.0 * attenuation / inverse_range))));
     addToBin(beam, bin, share * echo, share);
 #else
-    // On a plane cos(theta) goes as 1/r, so the density over inverse range goes as its cube: here its mean over the part.
-    double centre = (double(bin) + 0.5) * bin_width, cube = 0.5 * inverse_range * (above * above + below * below);
-    addToBin(beam, bin, strength_range * share * centre * centre * cube, 0.0);
+    double centre = (double(bin) + 0.5) * bin_width;
+    addToBin(beam, bin, strength_range * share * centre * centre * meanCube(above, below), 0.0);
 #endif
 }
 
 #ifdef HAVE_PUBLISHED
-// cerqueira2017 to the letter (physics.md 2, items 1, 3, 4): each pixel counts once, in the bin of its centre; what meets
+// cerqueira2017 to the letter (ACOUSTICS.md 8.2, items 3, 4): each pixel counts once, in the bin of its centre; what meets
 // nothing in range counts in bin 0 with a cosine of 0.
 void depositCell(Footprint cell, uint beam, double strength_range) {
     double range = cell.pixel > 0.0 ? 1.0 / cell.pixel : 0.0;
@@ -42,14 +41,6 @@ void depositCell(Footprint cell, uint beam, double strength_range) {
     addToBin(beam, bin, strength_range * cell.size * cell.pixel * relative * relative, 0.0);
 }
 #else
-// Share of the trapezoid between its centre and centre + t, signed as t.
-double trapezoidShare(Footprint cell, double t) {
-    double outer = 0.5 * (cell.wide + cell.narrow), inner = 0.5 * (cell.wide - cell.narrow);
-    double within = min(max(t, -outer), outer);
-    double corner = within - min(max(within, -inner), inner);
-    return within * cell.per_wide - corner * abs(corner) * cell.steepness;
-}
-
 // `strength_range` = strength times slant range [m].
 void depositCell(Footprint cell, uint beam, double strength_range) {
     if (!(cell.near_end > cell.far_end && strength_range >= 0.0)) return;  // neither of which NaN is

@@ -12,10 +12,28 @@ struct Footprint {
     double size;                 // solid angle relative to a whole pixel at the picture's centre [1]
 };
 
+// The trapezoid about `centre` that a cell covers: box `along` times box `across`. No part goes beyond `nearest`, the
+// plane's nearest point, nor beyond [far_limit, near_limit], the inverse ranges of what the plane belongs to (a facet seen
+// edge-on is steep, not long), nor beyond [far_edge, near_edge], those of the bins. A `size` of 0 is no echo.
+Footprint trapezoidFootprint(double inverse_range, double centre, double along, double across, double nearest, double near_limit,
+                             double far_limit, double near_edge, double far_edge, double size) {
+    Footprint cell;
+    cell.pixel = inverse_range;
+    cell.centre = min(centre, nearest);
+    cell.wide = max(max(along, across), 1e-12 * inverse_range + 1e-300);
+    cell.narrow = max(min(along, across), 1e-12 * cell.wide);
+    cell.per_wide = 1.0 / cell.wide;
+    cell.steepness = 0.5 * cell.per_wide / cell.narrow;
+    double half_length = 0.5 * (cell.wide + cell.narrow);
+    cell.near_end = size > 0.0 ? min(min(cell.centre + half_length, nearest), min(near_limit, near_edge)) : 0.0;
+    cell.nearest = nearest;
+    cell.far_end = max(max(cell.centre - half_length, far_limit), far_edge);
+    cell.size = size;
+    return cell;
+}
+
 // The share of pixel (u, v), bounded by curves of constant elevation and clipped at the aperture; shares are described
-// in interface.glsl. `slope`: of the inverse range over u and v; `per_pixel`: 1 / (du dv). No part goes beyond `nearest`,
-// that of the plane, nor beyond [far_limit, near_limit], the inverse ranges of the object (a facet seen edge-on is steep,
-// not long), nor beyond [far_edge, near_edge], those of the bins.
+// in interface.glsl. `slope`: of the inverse range over u and v; `per_pixel`: 1 / (du dv).
 Footprint cellFootprint(double u, double v, double middle, double width, double limit, double shear, double dv,
                         double inverse_range, double slope_u, double slope_v, double nearest, double near_limit, double far_limit,
                         double near_edge, double far_edge, double per_pixel) {
@@ -29,17 +47,6 @@ Footprint cellFootprint(double u, double v, double middle, double width, double 
     double along = abs(slope_u + slope_v * lean) * width;
     double across = abs(slope_v) * height;
     double q2 = 1.0 + middle * middle + centre_v * centre_v;
-    Footprint cell;
-    cell.pixel = inverse_range;
-    cell.centre = min(inverse_range + slope_u * aside + slope_v * (centre_v - v), nearest);
-    cell.wide = max(max(along, across), 1e-12 * inverse_range + 1e-300);
-    cell.narrow = max(min(along, across), 1e-12 * cell.wide);
-    cell.per_wide = 1.0 / cell.wide;
-    cell.steepness = 0.5 * cell.per_wide / cell.narrow;
-    double half_length = 0.5 * (cell.wide + cell.narrow);
-    cell.near_end = height > 0.0 ? min(min(cell.centre + half_length, nearest), min(near_limit, near_edge)) : 0.0;
-    cell.nearest = nearest;
-    cell.far_end = max(max(cell.centre - half_length, far_limit), far_edge);
-    cell.size = width * height / (q2 * sqrt(q2)) * per_pixel;
-    return cell;
+    return trapezoidFootprint(inverse_range, inverse_range + slope_u * aside + slope_v * (centre_v - v), along, across, nearest,
+                              near_limit, far_limit, near_edge, far_edge, width * height / (q2 * sqrt(q2)) * per_pixel);
 }

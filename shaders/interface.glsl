@@ -14,6 +14,13 @@ struct ObjectRecord {
     vec4 row_x, row_y, row_z;           // xyz: matrix row [1], w: translation [m]
     vec4 normal_x, normal_y, normal_z;  // xyz: row of the inverse transpose [1]
     vec4 extent;                        // x, y: the object lies within these inverse ranges, y below x [1/m]
+    vec4 eye, eye_rest;                 // xyz: the sum of the two is the sonar's place in object axes [m]
+};
+
+// A triangle's plane, in object axes: as exact as the triangle is small, wherever the object's origin lies.
+struct PlaneRecord {
+    vec4 normal;  // xyz: unit normal [1]; w: what is to be added to distances of `point` along it [m]
+    vec4 point;   // xyz: close to the triangle, on the plane but for the rounding that w makes up for [m]
 };
 
 // One draw of a run of triangles.

@@ -8,7 +8,7 @@ struct Surface {
 };
 
 // Plane normal.p = distance in slab axes (x into the picture, y to port, z up); the normal may have any length and sign.
-// Slopes: physics.md 3.2 (4), divided by -range^2. Closer to edge-on than 1e-4 rad there is no echo, but still a shadow.
+// Slopes: ACOUSTICS.md 4.2. Closer to edge-on than 1e-4 rad there is no echo, but still a shadow.
 Surface surfaceAt(double normal_x, double normal_y, double normal_z, double distance, double u, double v) {
     double q2 = 1.0 + u * u + v * v;
     double facing = normal_x + normal_y * u + normal_z * v;

@@ -43,18 +43,13 @@ struct Cluster {
     float cone_cutoff = 2;     ///< Cosine between the axis and the cone's side; 2: there is no such cone [1].
 };
 
-/** A part of a large mesh, with fewer triangles that stand for it where no more can be told apart. */
+/** A part of a large mesh, so that what is out of view is found out for many clusters at once. */
 struct Patch {
     uint32_t first_cluster = 0;  ///< Into Mesh::clusters [1].
     uint32_t cluster_count = 0;  ///< All of one material [1].
     uint32_t next = 0;           ///< The first patch that is no part of this one; its parts come directly after it [1].
     glm::vec3 centre{0};         ///< Of a box along the mesh's axes that holds all its triangles [m].
     glm::vec3 half{0};           ///< Half the box's size [m].
-    uint32_t first_index = 0;    ///< Of the triangles that stand for it, into Mesh::coarse_indices [1].
-    uint32_t index_count = 0;    ///< 0: nothing stands for it [1].
-    float deviation = 0;         ///< Of any vertex of the patch from the triangles that stand for it, at most [m].
-    glm::vec3 cone_axis{0};      ///< All its triangles' normals lie within cone_angle of this [1].
-    float cone_angle = -1;       ///< -1: unknown, or the mesh is not closed [rad].
 };
 
 /** Triangles in their own coordinates (z up, x north-like). Every index is below positions.size(); positions are
@@ -69,7 +64,7 @@ struct Mesh {
     std::vector<uint32_t> indices;         ///< Three a triangle.
     std::vector<Cluster> clusters;         ///< Together they cover all indices, in order.
     std::vector<Patch> patches;            ///< Trees over all clusters, each patch before its parts; or none.
-    std::vector<uint32_t> coarse_indices;  ///< Of what stands for patches; three a triangle.
+    std::vector<uint32_t> coarse_indices;  ///< A large mesh in few triangles, to look at; never what a sonar hears.
 };
 
 /** One placing of a mesh in the world. */

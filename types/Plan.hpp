@@ -28,6 +28,7 @@ struct Plan {
     int columns_per_beam = 0;          ///< [1]
     int slabs = 0;                     ///< Perspective images that make up the fan [1].
     double predicted_error = 0;        ///< rel_l2_tvg; NaN: not predicted [1].
+    std::string device;                ///< What draws, with its driver; empty: not known before the first ping.
 
     template <class Self, class V>
     static void describe(Self& self, V& visit) {
@@ -39,6 +40,7 @@ struct Plan {
         visit(Field{"columns_per_beam", "1", "image columns"}, self.columns_per_beam);
         visit(Field{"slabs", "1", "perspective images that make up the fan"}, self.slabs);
         visit(Field{"predicted_error", "1", "rel_l2_tvg; NaN: not predicted"}, self.predicted_error);
+        visit(Field{"device", "", "what draws, with its driver"}, self.device);
     }
 };
 

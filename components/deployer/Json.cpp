@@ -25,8 +25,9 @@ Json toJson(const std::vector<types::Omission>& omitted) {
 std::string qualityText(const types::Plan& plan) {
     const std::string error =
         plan.predicted_error >= 0 ? fmt::format(", predicted error {:.2g}", plan.predicted_error) : "";
-    return fmt::format("quality: {} rows, {} columns per beam, {} slabs{}", plan.rows, plan.columns_per_beam,
-                       plan.slabs, error);
+    const std::string device = plan.device.empty() ? "" : fmt::format(", on {}", plan.device);
+    return fmt::format("quality: {} rows, {} columns per beam, {} slabs{}{}", plan.rows, plan.columns_per_beam,
+                       plan.slabs, error, device);
 }
 
 Json toJson(const types::Plan& plan) {
@@ -38,6 +39,7 @@ Json toJson(const types::Plan& plan) {
               {"columns_per_beam", plan.columns_per_beam},
               {"slabs", plan.slabs},
               {"predicted_error", plan.predicted_error}}},
+            {"device", plan.device},
             {"notices", plan.notices}};
 }
 

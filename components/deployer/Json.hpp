@@ -15,8 +15,8 @@ Json toJson(const std::vector<types::Omission>& omitted);
 /** One line on the samples that a sonar takes. */
 std::string qualityText(const types::Plan& plan);
 
-/** `{features, passes, omitted, quality: {rows, columns_per_beam, slabs, predicted_error}, notices}`; an error that
- *  is not predicted is null. */
+/** `{features, passes, omitted, quality: {rows, columns_per_beam, slabs, predicted_error}, device, notices}`; an error
+ * that is not predicted is null. */
 Json toJson(const types::Plan& plan);
 
 std::string text(const Json& json);  ///< Indented; text that is no UTF-8 is mended, NaN and infinities are null.

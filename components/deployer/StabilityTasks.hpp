@@ -5,7 +5,7 @@
 
 namespace insonify::deployer {
 
-/** Cases of physics.md section 4 that only whole tasks, noise or trajectories show: 18, 45 to 47, 49 to 51. */
+/** Cases of ACOUSTICS.md 11 that only whole tasks, noise or trajectories show: 18, 45 to 47, 49 to 51. */
 std::vector<study::StabilityCase> taskStabilityCases();
 
 }  // namespace insonify::deployer

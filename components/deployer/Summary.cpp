@@ -79,10 +79,14 @@ Json Summary::json() const {
     for (const Task& task : tasks) by_name[task.name] = taskJson(task, realtime);
     Json lost = Json::object();
     for (const auto& [connection, count] : losses) lost[connection] = count;
-    Json quality = Json::object();
-    for (const auto& [task, plan] : plans) quality[task] = toJson(plan)["quality"];
-    Json json = {{"pings", pings}, {"wall_s", wall_s},           {"tasks", by_name},
-                 {"losses", lost}, {"omitted", toJson(omitted)}, {"quality", quality}};
+    Json quality = Json::object(), devices = Json::object();
+    for (const auto& [task, plan] : plans) {
+        quality[task] = toJson(plan)["quality"];
+        devices[task] = plan.device;
+    }
+    Json json = {{"pings", pings},    {"wall_s", wall_s},           {"tasks", by_name},
+                 {"losses", lost},    {"omitted", toJson(omitted)}, {"quality", quality},
+                 {"devices", devices}};
     if (realtime) json["warnings"] = warnings;
     return json;
 }

@@ -3,10 +3,15 @@
 #include <epoxy/egl.h>
 #include <epoxy/gl.h>
 
+#include <algorithm>
 #include <charconv>
 #include <cstdlib>
+#include <filesystem>
+#include <functional>
 #include <utility>
 #include <vector>
+
+#include "components/gpu/Program.hpp"
 
 namespace insonify::gpu {
 namespace {
@@ -79,20 +84,44 @@ size_t indexOf(const std::string& device, size_t count) {
     return index;
 }
 
+/** A display that is initialised when it is its turn: to initialise one may wake a card and load its driver. */
+using Candidate = std::function<EGLDisplay()>;
+
 /** The displays that a choice of device allows, best first. */
-std::vector<EGLDisplay> candidates(const std::string& device) {
-    std::vector<EGLDisplay> displays;
+std::vector<Candidate> candidates(const std::string& device) {
+    std::vector<Candidate> displays;
     const auto all = devices();
-    if (isWord(device)) {
-        for (bool software : {false, true})
-            for (EGLDeviceEXT candidate : all)
-                if (isSoftwareDevice(candidate) == software && (software || device == "auto"))
-                    displays.push_back(deviceDisplay(candidate));
-        displays.push_back(surfacelessDisplay());
+    const auto add = [&](EGLDeviceEXT one) { displays.push_back([one] { return deviceDisplay(one); }); };
+    if (!isWord(device)) {
+        add(all[indexOf(device, all.size())]);
         return displays;
     }
-    return {deviceDisplay(all[indexOf(device, all.size())])};
+    for (bool software : {false, true})
+        for (EGLDeviceEXT candidate : all)
+            if (isSoftwareDevice(candidate) == software && (software || device == "auto")) add(candidate);
+    displays.push_back(surfacelessDisplay);
+    return displays;
 }
+
+/** Whether GL is asked to tell at once what it refuses, which keeps drivers from working ahead. */
+bool wantsDebug() {
+    const char* variable = std::getenv("INSONIFY_GL_DEBUG");
+    if (variable && *variable) return std::string(variable) != "0";
+#ifdef NDEBUG
+    return false;
+#else
+    return true;
+#endif
+}
+
+/** The graphics card of which the system tells; empty when it has none. */
+std::string cardOfSystem() {
+    for (const char* device : {"/dev/nvidiactl", "/dev/dri/renderD128"})
+        if (std::error_code none; std::filesystem::exists(device, none)) return device;
+    return {};
+}
+
+std::string textOf(GLenum name) { return reinterpret_cast<const char*>(glGetString(name)); }
 
 void GLAPIENTRY remember(GLenum, GLenum type, GLuint, GLenum, GLsizei, const GLchar* message, const void* first) {
     auto& text = *static_cast<std::string*>(const_cast<void*>(first));
@@ -101,8 +130,8 @@ void GLAPIENTRY remember(GLenum, GLenum type, GLuint, GLenum, GLsizei, const GLc
 
 }  // namespace
 
-EglContext::EglContext(const std::string& device) {
-    create(chosen(device));
+EglContext::EglContext(const std::string& device) : wanted_(chosen(device)) {
+    create(wanted_);
     watch();
 }
 
@@ -110,7 +139,19 @@ void EglContext::requireDevice(const std::string& device) {
     if (const std::string name = chosen(device); !isWord(name)) indexOf(name, devices().size());
 }
 
-EglContext::EglContext(Sharing with) {
+bool EglContext::isAskedFor(const std::string& device) {
+    const char* variable = std::getenv("INSONIFY_EGL_DEVICE");
+    return !device.empty() || (variable && *variable);
+}
+
+bool EglContext::hasCard() {
+    static const bool has = std::ranges::any_of(devices(), [](EGLDeviceEXT device) {
+        return !isSoftwareDevice(device) && deviceDisplay(device) != EGL_NO_DISPLAY;
+    });
+    return has;
+}
+
+EglContext::EglContext(Sharing with) : wanted_(with.other.wanted_) {
     const EglContext& other = with.other;
     if (!createOn(other.display_, other.robust_, other.context_))
         throw GlError("no second OpenGL context beside that of " + other.renderer_);
@@ -118,14 +159,17 @@ EglContext::EglContext(Sharing with) {
 }
 
 EglContext::~EglContext() {
+    programs_.reset();
     if (std::this_thread::get_id() == thread_) eglMakeCurrent(display_, nullptr, nullptr, nullptr);
     eglDestroyContext(display_, context_);  // the display is shared by all contexts of this process and stays
 }
 
 void EglContext::create(const std::string& device) {
-    for (EGLDisplay display : candidates(device))
+    for (const Candidate& candidate : candidates(device)) {
+        const EGLDisplay display = candidate();
         for (bool robust : {true, false})
             if (display != EGL_NO_DISPLAY && createOn(display, robust, EGL_NO_CONTEXT)) return;
+    }
     throw GlError("no OpenGL 4.5 core context from EGL device '" + device + "': " + hint);
 }
 
@@ -137,8 +181,12 @@ bool EglContext::createOn(void* display, bool robust, void* shared) {
 }
 
 void EglContext::watch() {
-    renderer_ = reinterpret_cast<const char*>(glGetString(GL_RENDERER));
+    renderer_ = textOf(GL_RENDERER);
+    driver_ = textOf(GL_VERSION);
     software_ = renderer_.find("llvmpipe") != std::string::npos || renderer_.find("softpipe") != std::string::npos;
+    glGetInteger64v(GL_MAX_SHADER_STORAGE_BLOCK_SIZE, &most_storage_);
+    programs_ = std::make_unique<Programs>();
+    if (!wantsDebug()) return;
     glEnable(GL_DEBUG_OUTPUT);
     glEnable(GL_DEBUG_OUTPUT_SYNCHRONOUS);
     glDebugMessageControl(GL_DONT_CARE, GL_DONT_CARE, GL_DONT_CARE, 0, nullptr, GL_FALSE);
@@ -151,6 +199,22 @@ void EglContext::requireThread() const {
         throw GlError("the OpenGL context was made on another thread: make, use and destroy it on one task's thread");
     if (eglGetCurrentContext() != context_)
         throw GlError("another OpenGL context has been current on this thread since: use one at a time on a thread");
+}
+
+std::string EglContext::fallback() const {
+    if (!software_ || wanted_ != "auto") return {};
+    const std::string card = cardOfSystem();
+    if (card.empty()) return "drawn in software by " + renderer_ + ": there is no graphics card";
+    return "Warning: drawn in software by " + renderer_ + ": the system has a graphics card (" + card +
+           "), but EGL gives no OpenGL 4.5 on it; install its driver's EGL (NVIDIA: libegl-nvidia0, in a container "
+           "NVIDIA_DRIVER_CAPABILITIES=graphics), or set device: software";
+}
+
+void EglContext::requireStorage(size_t bytes, const char* what) const {
+    if (bytes > static_cast<size_t>(most_storage_))
+        throw GlError(std::string(what) + " take " + std::to_string(bytes >> 20) + " MiB; shaders of " + renderer_ +
+                      " read at most " + std::to_string(most_storage_ >> 20) +
+                      " MiB in one buffer: set deposit: cpu, or take fewer triangles or bins");
 }
 
 namespace {
@@ -177,7 +241,7 @@ void EglContext::check() {
     if (robust_ && glGetGraphicsResetStatus() != GL_NO_ERROR)
         throw GlError("the OpenGL context was lost (" + renderer_ + "): restart the task; " + hint);
     if (const GLenum code = glGetError(); code != GL_NO_ERROR && error_.empty())
-        error_ = "error " + std::to_string(code);
+        error_ = "error " + std::to_string(code) + "; INSONIFY_GL_DEBUG=1 makes it tell where and why";
     if (!error_.empty()) throw GlError("OpenGL: " + std::exchange(error_, {}));
 }
 

@@ -1,4 +1,6 @@
 #pragma once
+#include <cstdint>
+#include <memory>
 #include <mutex>
 #include <shared_mutex>
 #include <stdexcept>
@@ -12,16 +14,24 @@ struct GlError : std::runtime_error {
     using std::runtime_error::runtime_error;
 };
 
+class Programs;
+
 /** A headless OpenGL 4.5 core context, current on the thread that made it and usable only there.
  *
  *  Needs no X server: devices by EGL_EXT_platform_device, else Mesa's surfaceless platform. `device` chooses:
  *  "software" (Mesa llvmpipe), a number (position in EGL's device list), "auto" (the first graphics card that
- *  gives a context, else software); empty: the environment variable INSONIFY_EGL_DEVICE, else "auto". */
+ *  gives a context, else software); empty: the environment variable INSONIFY_EGL_DEVICE, else "auto".
+ *
+ *  With INSONIFY_GL_DEBUG=1, and in debug builds unless it is 0, GL tells at once and in words what it refuses. */
 class EglContext {
 public:
     explicit EglContext(const std::string& device = {});
     /** Throws GlError when EGL lists no such device; makes no context. */
     static void requireDevice(const std::string& device);
+    /** Whether `device` or the environment names one, be it "auto". */
+    static bool isAskedFor(const std::string& device);
+    /** Whether EGL has a graphics card that can be used; looked for once. */
+    static bool hasCard();
     struct Sharing {
         const EglContext& other;
     };
@@ -37,6 +47,8 @@ public:
     void requireThread() const;
     /** Throws GlError with the first error that GL has reported since the last call, or when the context is lost. */
     void check();
+    /** Throws GlError when no buffer of so many bytes can be given to a shader; `what` is in the plural. */
+    void requireStorage(size_t bytes, const char* what) const;
 
     /** Held while something is drawn, side by side with other contexts; and while data goes to the device or comes from
      *  it, or objects are made or destroyed: then nothing may be drawn in any context of this process. Mesa's software
@@ -48,7 +60,13 @@ public:
     [[nodiscard]] static std::unique_lock<std::shared_mutex> making();
 
     const std::string& renderer() const { return renderer_; }  ///< "llvmpipe (LLVM 15.0.6, 256 bits)".
+    const std::string& driver() const { return driver_; }      ///< "4.5 (Core Profile) Mesa 22.3.6".
     bool isSoftware() const { return software_; }
+    /** Why it is drawn in software though nobody asked for that, a sentence that may begin with "Warning: "; empty when
+     * it is not. */
+    std::string fallback() const;
+    /** The programs of this context. */
+    Programs& programs() { return *programs_; }
 
 private:
     void create(const std::string& device);
@@ -58,8 +76,10 @@ private:
     void* display_ = nullptr;
     void* context_ = nullptr;
     std::thread::id thread_ = std::this_thread::get_id();
-    std::string renderer_;
+    std::string wanted_, renderer_, driver_;
     std::string error_;
+    int64_t most_storage_ = 0;  ///< Bytes that a shader may have in one buffer.
+    std::unique_ptr<Programs> programs_;
     bool software_ = false;
     bool robust_ = false;
 };

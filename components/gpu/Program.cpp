@@ -71,4 +71,18 @@ Program Program::compute(std::string_view file, const std::vector<std::string>& 
     return Program({compiled(GL_COMPUTE_SHADER, file, defines)});
 }
 
+const Program& Programs::raster(std::string_view vertex, std::string_view fragment,
+                                const std::vector<std::string>& defines) {
+    const std::string text = shaderSource(vertex, defines) + shaderSource(fragment, defines);
+    const auto found = made_.find(text);
+    return found != made_.end() ? found->second
+                                : made_.emplace(text, Program::raster(vertex, fragment, defines)).first->second;
+}
+
+const Program& Programs::compute(std::string_view file, const std::vector<std::string>& defines) {
+    const std::string text = shaderSource(file, defines);
+    const auto found = made_.find(text);
+    return found != made_.end() ? found->second : made_.emplace(text, Program::compute(file, defines)).first->second;
+}
+
 }  // namespace insonify::gpu

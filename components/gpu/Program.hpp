@@ -1,5 +1,6 @@
 #pragma once
 #include <initializer_list>
+#include <map>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -27,6 +28,17 @@ public:
 private:
     explicit Program(std::initializer_list<GLuint> shaders);
     Name name_;
+};
+
+/** Programs of one context that are compiled once and kept: whoever asks for the same text again gets the same one. */
+class Programs {
+public:
+    const Program& raster(std::string_view vertex, std::string_view fragment, const std::vector<std::string>& defines);
+    const Program& compute(std::string_view file, const std::vector<std::string>& defines);
+    size_t count() const { return made_.size(); }
+
+private:
+    std::map<std::string, Program, std::less<>> made_;  ///< By their final text.
 };
 
 }  // namespace insonify::gpu

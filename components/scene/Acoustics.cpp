@@ -11,13 +11,75 @@
 namespace insonify::scene {
 namespace {
 
-// In the order of the enums.
-constexpr double kSedimentLambertDb[] = {-5.0,  -3.7,  -8.1,  -11.7, -14.2, -16.7, -19.3, -20.0,
-                                         -20.0, -20.2, -20.4, -23.7, -23.7, -23.7, -23.7, -27.0};
-constexpr double kReflection[] = {0.936, 0.936, 0.835, 0.91, 0.93, 0.81,  0.81,  0.69, 0.65,  0.40, 0.355,
-                                  0.06,  0.37,  0.35,  0.21, 0.15, -0.02, -0.07, -0.5, -0.94, 0.39, -0.9995};
-static_assert(std::size(kSedimentLambertDb) == std::size(types::EnumNames<Sediment>::names));
-static_assert(std::size(kReflection) == std::size(types::EnumNames<Matter>::names));
+/** A seabed of ACOUSTICS.md 3.2. */
+struct SeabedRow {
+    Sediment sediment;
+    double lambert_db;  ///< Lambert parameter, 10 log10(mu) [dB].
+};
+constexpr SeabedRow seabeds[] = {
+    // Fitted to APL-UW TR 9407 at 100 kHz, but for rough rock, which is held below 1/pi.
+    {Sediment::RoughRock, -5.0},
+    {Sediment::Rock, -3.7},
+    {Sediment::Cobble, -8.1},
+    {Sediment::SandyGravel, -11.7},
+    {Sediment::CoarseSand, -14.2},
+    {Sediment::MediumSand, -16.7},
+    {Sediment::FineSand, -19.3},
+    {Sediment::MuddySand, -20.0},
+    {Sediment::VeryFineSand, -20.0},
+    {Sediment::CoarseSilt, -20.2},
+    {Sediment::SandySilt, -20.4},
+    {Sediment::MediumSilt, -23.7},
+    {Sediment::FineSilt, -23.7},
+    {Sediment::VeryFineSilt, -23.7},
+    {Sediment::Clay, -23.7},
+    // Measured in deep water at 530 and 1030 Hz: Mackenzie 1961.
+    {Sediment::Mackenzie, -27.0},
+};
+
+/** Matter of ACOUSTICS.md 3.3. */
+struct MatterRow {
+    Matter matter;
+    double reflection;  ///< R of the sound pressure at normal incidence, from typical impedances; signed [1].
+};
+constexpr MatterRow matters[] = {
+    {Matter::Steel, 0.936},
+    {Matter::CarbonSteel, 0.936},
+    {Matter::Aluminium, 0.835},
+    {Matter::CastIron, 0.91},
+    {Matter::Bronze, 0.93},
+    {Matter::Granite, 0.81},
+    {Matter::Basalt, 0.81},
+    {Matter::Concrete, 0.69},
+    {Matter::Limestone, 0.65},
+    {Matter::Gravel, 0.40},
+    {Matter::Sand, 0.355},
+    {Matter::Mud, 0.06},
+    {Matter::Pvc, 0.37},
+    {Matter::Acrylic, 0.35},
+    {Matter::Hdpe, 0.21},
+    {Matter::Neoprene, 0.15},
+    {Matter::NaturalRubber, -0.02},
+    {Matter::WaterloggedWood, -0.07},
+    {Matter::DryWood, -0.5},
+    {Matter::ClosedCellFoam, -0.94},
+    {Matter::Ice, 0.39},
+    {Matter::Air, -0.9995},
+};
+
+/** Whether there is a row for each name of an enum, in its order. */
+template <class E, class Rows>
+constexpr bool isInOrder(const Rows& rows, E std::remove_extent_t<Rows>::*key) {
+    size_t next = 0;
+    for (const auto& row : rows)
+        if (row.*key != static_cast<E>(next++)) return false;
+    return next == std::size(types::EnumNames<E>::names);
+}
+static_assert(isInOrder(seabeds, &SeabedRow::sediment));
+static_assert(isInOrder(matters, &MatterRow::matter));
+
+/** Lambert parameter with which a rigid sphere of radius a has its target strength of a^2 / 4: 3 / (8 pi) [dB]. */
+constexpr double convex_body_db = -9.23;
 
 /** Fills a described struct from values by key; collects what is wrong. */
 class ValueReader {
@@ -67,11 +129,11 @@ private:
 
 }  // namespace
 
-double lambertDb(Sediment sediment) { return kSedimentLambertDb[static_cast<size_t>(sediment)]; }
+double lambertDb(Sediment sediment) { return seabeds[static_cast<size_t>(sediment)].lambert_db; }
 
-double reflection(Matter matter) { return kReflection[static_cast<size_t>(matter)]; }
+double reflection(Matter matter) { return matters[static_cast<size_t>(matter)].reflection; }
 
-double lambertDb(Matter matter) { return -9.23 + 20 * std::log10(std::abs(reflection(matter))); }
+double lambertDb(Matter matter) { return convex_body_db + 20 * std::log10(std::abs(reflection(matter))); }
 
 void Acoustics::applyTo(types::Material& target) const {
     if (sediment) target.lambert_db = static_cast<float>(lambertDb(*sediment));

@@ -9,7 +9,7 @@
 
 namespace insonify::scene {
 
-/** Seabeds with a Lambert parameter fitted to APL-UW TR 9407 at 100 kHz (physics.md 1.8). */
+/** Seabeds with a Lambert parameter fitted to APL-UW TR 9407 at 100 kHz (ACOUSTICS.md 3.2). */
 enum class Sediment {
     RoughRock,
     Rock,
@@ -29,7 +29,7 @@ enum class Sediment {
     Mackenzie
 };
 
-/** Matter with a typical pressure reflection coefficient at normal incidence (physics.md 1.9). */
+/** Matter with a typical pressure reflection coefficient at normal incidence (ACOUSTICS.md 3.3). */
 enum class Matter {
     Steel,
     CarbonSteel,
@@ -57,7 +57,8 @@ enum class Matter {
 
 double lambertDb(Sediment sediment);  ///< [dB]
 double reflection(Matter matter);     ///< Signed pressure reflection coefficient [1].
-/** Lambert parameter that gives a convex body of this reflection its target strength: -9.23 + 20 log10|R| [dB]. */
+/** Lambert parameter that gives a convex body of this reflection its target strength: -9.23 + 20 log10|R| [dB],
+ *  ACOUSTICS.md 3.3. */
 double lambertDb(Matter matter);
 
 /** The acoustic values that a file or a property gives to a material. What is absent stays as it was.

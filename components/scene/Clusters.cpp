@@ -12,7 +12,7 @@
 #include <utility>
 
 #include "components/scene/Cones.hpp"
-#include "components/scene/Detail.hpp"
+#include "components/scene/Outline.hpp"
 
 namespace insonify::scene {
 namespace {
@@ -140,6 +140,17 @@ void weld(types::Mesh& mesh) {
     remap(mesh.positions, new_place, count);
 }
 
+/** Orders triangles that are drawn as one for the vertex cache, at a cost that is theirs and not their mesh's. */
+void orderTriangles(std::span<uint32_t> indices) {
+    std::vector<uint32_t> vertices(indices.begin(), indices.end());
+    std::ranges::sort(vertices);
+    vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
+    for (uint32_t& index : indices)
+        index = static_cast<uint32_t>(std::ranges::lower_bound(vertices, index) - vertices.begin());
+    meshopt_optimizeVertexCache(indices.data(), indices.data(), indices.size(), vertices.size());
+    for (uint32_t& index : indices) index = vertices[index];
+}
+
 /** Vertices in the order of their first use; those that no triangle uses are gone. */
 void orderVertices(types::Mesh& mesh) {
     std::vector<uint32_t> new_place(mesh.positions.size());
@@ -154,16 +165,6 @@ void orderVertices(types::Mesh& mesh) {
 
 }  // namespace
 
-void orderTriangles(std::span<uint32_t> indices) {
-    std::vector<uint32_t> vertices(indices.begin(), indices.end());
-    std::ranges::sort(vertices);
-    vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
-    for (uint32_t& index : indices)
-        index = static_cast<uint32_t>(std::ranges::lower_bound(vertices, index) - vertices.begin());
-    meshopt_optimizeVertexCache(indices.data(), indices.data(), indices.size(), vertices.size());
-    for (uint32_t& index : indices) index = vertices[index];
-}
-
 void buildClusters(types::Mesh& mesh) {
     if (mesh.indices.size() / 3 > kClusteredFrom) {
         for (glm::vec3& position : mesh.positions) position += 0.0f;  // -0 is 0, and not another place
@@ -177,7 +178,7 @@ void buildClusters(types::Mesh& mesh) {
     orderVertices(mesh);
     if (mesh.patches.empty()) return;
     for (types::Patch& patch : mesh.patches) bound(mesh, patch);
-    simplifyPatches(mesh);
+    findOutline(mesh);
     findCones(mesh);
 }
 

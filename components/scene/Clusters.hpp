@@ -1,5 +1,5 @@
 #pragma once
-#include <span>
+#include <cstddef>
 
 #include "types/Geometry.hpp"
 
@@ -13,11 +13,8 @@ constexpr size_t kClusterTriangles = 250;
 constexpr size_t kPatchTriangles = 1000;
 
 /** Orders triangles and vertices for the GPU. On entry `mesh.clusters` are runs of one material; on return each has its
- *  box, and runs of a large mesh are split where their triangles lie apart, with patches of less detail over them
- *  and, if it is closed, cones of their backs. */
+ *  box, and runs of a large mesh are split where their triangles lie apart, with patches over them, an outline of
+ *  few triangles and, if it is closed, cones of their backs. */
 void buildClusters(types::Mesh& mesh);
-
-/** Orders triangles that are drawn as one for the vertex cache, at a cost that is theirs and not their mesh's. */
-void orderTriangles(std::span<uint32_t> indices);
 
 }  // namespace insonify::scene

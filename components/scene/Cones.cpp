@@ -3,10 +3,8 @@
 #include <meshoptimizer.h>
 
 #include <algorithm>
-#include <cmath>
 #include <glm/geometric.hpp>
 #include <numeric>
-#include <span>
 
 namespace insonify::scene {
 namespace {
@@ -58,30 +56,6 @@ bool isClosed(const types::Mesh& mesh) {
     return isWatertight(indices) && std::ranges::none_of(volumes(mesh, indices), [](double v) { return v < 0; });
 }
 
-/** Unit normals of triangles; of those that have one. */
-void addNormals(const types::Mesh& mesh, std::span<const uint32_t> indices, std::vector<glm::dvec3>& normals) {
-    for (size_t i = 0; i + 2 < indices.size(); i += 3) {
-        const glm::dvec3 a(mesh.positions[indices[i]]), b(mesh.positions[indices[i + 1]]),
-            c(mesh.positions[indices[i + 2]]), across = glm::cross(b - a, c - a);
-        const double length = glm::length(across);
-        if (length > 0) normals.push_back(across / length);
-    }
-}
-
-/** Of the normals of a patch's triangles, and of those that stand for them. */
-void findCone(const types::Mesh& mesh, types::Patch& patch) {
-    std::vector<glm::dvec3> normals;
-    for (const types::Cluster& cluster : std::span(mesh.clusters).subspan(patch.first_cluster, patch.cluster_count))
-        addNormals(mesh, std::span(mesh.indices).subspan(cluster.first_index, cluster.index_count), normals);
-    addNormals(mesh, std::span(mesh.coarse_indices).subspan(patch.first_index, patch.index_count), normals);
-    const glm::dvec3 sum = std::accumulate(normals.begin(), normals.end(), glm::dvec3(0));
-    if (!(glm::length(sum) > 0)) return;
-    patch.cone_axis = glm::normalize(sum);
-    double least = 1;
-    for (const glm::dvec3& normal : normals) least = std::min(least, glm::dot(normal, glm::dvec3(patch.cone_axis)));
-    patch.cone_angle = static_cast<float>(std::acos(std::max(-1.0, least)));
-}
-
 }  // namespace
 
 void findCones(types::Mesh& mesh) {
@@ -94,7 +68,6 @@ void findCones(types::Mesh& mesh) {
         cluster.cone_axis = {bounds.cone_axis[0], bounds.cone_axis[1], bounds.cone_axis[2]};
         cluster.cone_cutoff = bounds.cone_cutoff;
     }
-    for (types::Patch& patch : mesh.patches) findCone(mesh, patch);
 }
 
 }  // namespace insonify::scene

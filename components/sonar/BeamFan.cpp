@@ -14,11 +14,6 @@ constexpr double widest_slab = types::radians(60);
 
 double halfElevation(const SonarConfig& config) { return types::radians(config.beam_height_deg) / 2; }
 
-/** Azimuth at which a cone of bearing `bearing` meets elevation `elevation`; clamped to +-90 deg. */
-double coneAzimuth(double bearing, double elevation) {
-    return std::asin(std::clamp(std::sin(bearing) / std::cos(elevation), -1.0, 1.0));
-}
-
 /** u at which the bearing `bearing` crosses the image row v: a vertical line for planes, a hyperbola for cones. */
 double boundary(const SonarConfig& config, const Slab& slab, double bearing, double v) {
     double azimuth = bearing;
@@ -65,7 +60,7 @@ void addRow(const SonarConfig& config, const std::vector<Beam>& beams, const Sla
     }
 }
 
-/** One image of the whole fan, its top and bottom edges straight (physics.md 2, item 2). */
+/** One image of the whole fan, its top and bottom edges straight (ACOUSTICS.md 8.2, item 1). */
 Slab publishedFrustum(const SonarConfig& config) {
     const double half_width = types::radians(config.field_of_view_deg) / 2;
     return {0,
@@ -95,6 +90,10 @@ ColumnShares roundedShares(const std::vector<Beam>& beams, const Slab& slab) {
 }
 
 }  // namespace
+
+double coneAzimuth(double bearing, double elevation) {
+    return std::asin(std::clamp(std::sin(bearing) / std::cos(elevation), -1.0, 1.0));
+}
 
 std::vector<Beam> makeBeams(const SonarConfig& config) {
     std::vector<Beam> beams;

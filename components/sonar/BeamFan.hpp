@@ -15,6 +15,9 @@ struct Beam {
 /** The beams of a configuration, in ascending bearing: a regular fan, or the explicit table. */
 std::vector<Beam> makeBeams(const SonarConfig& config);
 
+/** Azimuth at which a cone of bearing `bearing` meets elevation `elevation`; clamped to +-90 deg [rad]. */
+double coneAzimuth(double bearing, double elevation);
+
 /** One perspective image of the fan. u = tan(azimuth - centre), growing to port; v = tan(elevation) / cos(...). */
 struct Slab {
     double azimuth = 0;     ///< Of the image's centre in the sonar frame [rad].
@@ -33,7 +36,7 @@ struct Slab {
 /** Rows or columns that an image may have: what every OpenGL 4.5 device can draw [1]. */
 constexpr int most_image_size = 16384;
 
-/** As few slabs of at most 60 deg as cover the beams (physics.md 3.1); cones reach wider than their bearing. One with
+/** As few slabs of at most 60 deg as cover the beams (ACOUSTICS.md 5.3); cones reach wider than their bearing. One with
  *  `published`. */
 std::vector<Slab> makeSlabs(const SonarConfig& config, const std::vector<Beam>& beams);
 

@@ -13,6 +13,13 @@ std::vector<double> inverseEdges(const BinGrid& bins) {
     return edges;
 }
 
+double loudest(const types::Geometry& geometry) {
+    double strongest = 0;
+    for (const types::Material& material : geometry.materials)
+        strongest = std::max(strongest, std::pow(10.0, material.lambert_db / 10.0));
+    return strongest;
+}
+
 double strengthScale(const SonarConfig& config, const BinGrid& bins, double loudest) {
     constexpr double most = 1048576, most_sum = 8 * most;  // of one deposit, and of a bin: half of 64 bits
     if (config.model != Model::Physical) return 1;         // S and its weights are at most 1

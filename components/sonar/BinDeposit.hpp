@@ -32,6 +32,9 @@ std::vector<double> inverseEdges(const BinGrid& bins);
 /** Sums are counted in quanta of 2^-40 of a whole pixel of unit strength: exact, so the order of summation is free. */
 constexpr double quanta_per_unit = 1099511627776.0;
 
+/** Strongest Lambert parameter of a geometry's materials [1]. */
+double loudest(const types::Geometry& geometry);
+
 /** The power of 2, at most 1, by which strengths of up to `loudest` must be scaled so that no sum of quanta overflows:
  *  1 but for materials, images or bins that are extreme together. */
 double strengthScale(const SonarConfig& config, const BinGrid& bins, double loudest);
@@ -49,6 +52,6 @@ public:
 };
 
 /** The context outlives it. */
-std::unique_ptr<BinDeposit> makeGpuDeposit(const DepositSetup& setup, const gpu::EglContext& context);
+std::unique_ptr<BinDeposit> makeGpuDeposit(const DepositSetup& setup, gpu::EglContext& context);
 
 }  // namespace insonify::sonar

@@ -18,20 +18,6 @@ std::array<int, 2> touched(const ColumnShares& shares, uint first, uint last) {
     return range;
 }
 
-PlacedRun placed(const ObjectRecord& object, double strength, uint32_t first_triangle, double cosine, double sine) {
-    PlacedRun run{{}, {}, {}, {}, object.extent.x, object.extent.y, strength, first_triangle};
-    for (int i = 0; i < 3; ++i) {
-        const double x = object.normal_x[i], y = object.normal_y[i];
-        run.normal_x[i] = cosine * x + sine * y;
-        run.normal_y[i] = cosine * y - sine * x;
-        run.normal_z[i] = object.normal_z[i];
-    }
-    run.origin[0] = cosine * object.row_x.w + sine * object.row_y.w;
-    run.origin[1] = cosine * object.row_y.w - sine * object.row_x.w;
-    run.origin[2] = object.row_z.w;
-    return run;
-}
-
 }  // namespace
 
 CpuDeposit::CpuDeposit(DepositSetup setup, const SurfacePass& surface, ThreadPool& threads)
@@ -66,9 +52,9 @@ void CpuDeposit::take(size_t slab, const SurfacePass& surface) {
     const int value = setup_.model == Model::Cerqueira2017 ? 1 : 0;
     for (const CommandRecord& command : surface.picture(slab).commands)
         picture.runs.push_back(
-            placed(surface.objects()[command.object],
-                   surface.scene().materials()[command.material].values[value] * setup_.strength_scale,
-                   command.first_triangle, cosine, sine));
+            placedRun(surface.objects()[command.object],
+                      surface.scene().materials()[command.material].values[value] * setup_.strength_scale,
+                      command.first_triangle, cosine, sine));
 }
 
 std::span<const uint64_t> CpuDeposit::finish() {

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
-#include <numbers>
+#include <limits>
 
 namespace insonify::sonar {
 namespace {
@@ -40,25 +40,7 @@ std::array<glm::vec3, 5> viewOf(const Slab& slab) {
     return {turned(-u, 1, 0), turned(-u, -1, 0), turned(-v, 0, 1), turned(-v, 0, -1), turned(-1, 0, 0)};
 }
 
-/** Of what a surface may be off, for closed meshes: bodies, whose round sides show it before floors do [1]. */
-constexpr double closed_share = 2.0 / 3;
-constexpr float right_angle = 0.5f * std::numbers::pi_v<float>;
-
 double dot2(const glm::dvec3& v) { return glm::dot(v, v); }
-
-/** The smaller side of a pixel anywhere in a slab, at 1 m [m]. */
-double leastPixel(const Slab& slab) {
-    const double farthest = std::sqrt(1 + slab.extent_u * slab.extent_u + slab.extent_v * slab.extent_v);
-    return std::min(slab.du(), slab.dv()) / farthest;
-}
-
-/** What stands for a patch, as one draw. */
-Culler::Run coarse(const types::Mesh& mesh, const types::Patch& patch, size_t object) {
-    const types::Cluster &first = mesh.clusters[patch.first_cluster],
-                         &last = mesh.clusters[patch.first_cluster + patch.cluster_count - 1];
-    return {static_cast<uint32_t>(object), static_cast<uint32_t>(mesh.indices.size()) + patch.first_index,
-            patch.index_count, first.material, last.first_index + last.index_count - first.first_index};
-}
 
 }  // namespace
 
@@ -73,7 +55,6 @@ Culler::Culler(const types::Geometry& geometry, const CullRules& rules)
     for (const types::Object& object : geometry.objects)
         run_limit_ += geometry.meshes[static_cast<size_t>(object.mesh)].clusters.size();
     records_.resize(geometry.objects.size());
-    scales_.resize(geometry.objects.size());
     far_.resize(geometry.objects.size());
     world_from_object_.resize(geometry.objects.size());
 }
@@ -108,36 +89,42 @@ vec4 Culler::extent(size_t index, const glm::dmat4& m) const {
 
 void Culler::placeObject(size_t index, const glm::dmat4& sonar_from_object) {
     const glm::dmat3 linear(sonar_from_object);
-    scales_[index] = std::sqrt(dot2(linear[0]) + dot2(linear[1]) + dot2(linear[2]));
+    const double scale = std::sqrt(dot2(linear[0]) + dot2(linear[1]) + dot2(linear[2]));  // at most
     const Box& box = mesh_boxes_[static_cast<size_t>(geometry_.objects[index].mesh)];
     const glm::dvec3 centre(sonar_from_object * glm::dvec4((box.low + box.high) / 2.0, 1));
-    const double radius = scales_[index] * glm::length(box.high - box.low) / 2;
+    const double radius = scale * glm::length(box.high - box.low) / 2;
     far_[index] = !rules_.draw_all && glm::length(centre) - radius > 1.001 * rules_.range_max;
     if (far_[index]) return;
-    const glm::dmat4 normals(glm::transpose(glm::inverse(linear)));
+    const glm::dmat3 inverse = glm::inverse(linear);
+    const glm::dmat4 normals(glm::transpose(inverse));
+    const glm::dvec4 eye(-(inverse * glm::dvec3(sonar_from_object[3])), 0);
     ObjectRecord& record = records_[index];
-    record = {row(sonar_from_object, 0), row(sonar_from_object, 1), row(sonar_from_object, 2),       row(normals, 0),
-              row(normals, 1),           row(normals, 2),           extent(index, sonar_from_object)};
+    record = {row(sonar_from_object, 0),
+              row(sonar_from_object, 1),
+              row(sonar_from_object, 2),
+              row(normals, 0),
+              row(normals, 1),
+              row(normals, 2),
+              extent(index, sonar_from_object),
+              vec4(eye),
+              vec4(eye - glm::dvec4(vec4(eye)))};
 }
 
-void Culler::visible(const Slab& slab, std::vector<Run>& runs, double share) const {
+void Culler::visible(const Slab& slab, std::vector<Run>& runs) const {
     runs.clear();
-    const double pixels = share * rules_.pixels * leastPixel(slab), metres = share * rules_.metres;
     const View view = viewOf(slab);
     for (size_t i = 0; i < records_.size(); ++i) {
         if (far_[i]) continue;
         const Box& box = mesh_boxes_[static_cast<size_t>(geometry_.objects[i].mesh)];
         const glm::vec3 centre(box.low * 0.5 + box.high * 0.5), half(box.high * 0.5 - box.low * 0.5);
         const float distance = nearest(view, records_[i], centre, half);
-        if (distance <= range_max_) addObject({i, view, pixels, metres, before(i, distance)}, runs);
+        if (distance <= range_max_) addObject({i, view, before(i, distance)}, runs);
     }
 }
 
 std::optional<glm::vec3> Culler::before(size_t object, float distance) const {
     if (!(distance > rules_.range_min)) return {};  // of a front that is blanked the back may be heard
-    const ObjectRecord& r = records_[object];
-    // The inverse transpose has the rows that take the sonar's place into the object's axes.
-    return -(r.row_x.w * glm::vec3(r.normal_x) + r.row_y.w * glm::vec3(r.normal_y) + r.row_z.w * glm::vec3(r.normal_z));
+    return glm::vec3(records_[object].eye);
 }
 
 void Culler::addObject(const Query& query, std::vector<Run>& runs) const {
@@ -145,19 +132,12 @@ void Culler::addObject(const Query& query, std::vector<Run>& runs) const {
     if (mesh.patches.empty()) return addClusters(query, mesh.clusters, runs);
     for (size_t i = 0; i < mesh.patches.size();) {
         const types::Patch& patch = mesh.patches[i];
-        const float distance = nearest(query.view, records_[query.object], patch.centre, patch.half);
-        const double share = patch.cone_angle < 0 ? 1 : closed_share;
-        const double tolerated = share * std::min(query.pixels * distance, query.metres);
-        const Turn turn = turnOf(query, patch);
-        if (!(distance <= range_max_) || turn == Turn::Back) {
+        if (!(nearest(query.view, records_[query.object], patch.centre, patch.half) <= range_max_)) {
             i = patch.next;
-        } else if (patch.index_count > 0 && patch.deviation * scales_[query.object] < tolerated && turn != Turn::Limb) {
-            runs.push_back(coarse(mesh, patch, query.object));
-            i = patch.next;
-        } else {
-            const std::span clusters = std::span(mesh.clusters).subspan(patch.first_cluster, patch.cluster_count);
-            if (++i == patch.next) addClusters(query, clusters, runs);
+            continue;
         }
+        const std::span clusters = std::span(mesh.clusters).subspan(patch.first_cluster, patch.cluster_count);
+        if (++i == patch.next) addClusters(query, clusters, runs);
     }
 }
 
@@ -184,18 +164,6 @@ bool Culler::turnsItsBack(const Query& query, const types::Cluster& cluster) con
     if (!query.before || cluster.cone_cutoff > 1 || !isSingleSided(cluster)) return false;
     const glm::vec3 away = cluster.cone_apex - *query.before;
     return glm::dot(away, cluster.cone_axis) >= (cluster.cone_cutoff + 1e-4f) * glm::length(away);
-}
-
-Culler::Turn Culler::turnOf(const Query& query, const types::Patch& patch) const {
-    if (patch.cone_angle < 0) return Turn::Front;  // nothing is known
-    if (!query.before) return Turn::Limb;
-    const glm::vec3 away = patch.centre - *query.before;
-    const float distance = glm::length(away), radius = glm::length(patch.half);
-    const float angle = distance > radius ? patch.cone_angle + std::asin(radius / distance) : right_angle;
-    const float along = glm::dot(away, patch.cone_axis);
-    if (angle >= right_angle || std::abs(along) <= std::sin(angle) * distance) return Turn::Limb;
-    const types::Mesh& mesh = geometry_.meshes[static_cast<size_t>(geometry_.objects[query.object].mesh)];
-    return along > 0 && isSingleSided(mesh.clusters[patch.first_cluster]) ? Turn::Back : Turn::Front;
 }
 
 float Culler::nearest(const View& view, const ObjectRecord& object, glm::vec3 centre, glm::vec3 half) const {

@@ -4,66 +4,13 @@
 #include <bit>
 #include <cmath>
 
-// The arithmetic of a stretch of pixels is done in plain loops over arrays, which the compiler turns into vector
-// instructions; twice, for processors with and without AVX2. No products are fused: both give the same bits.
-#if defined(__x86_64__) && !defined(__SANITIZE_ADDRESS__)
-#define INSONIFY_VECTORISED __attribute__((target_clones("avx2", "default")))
-#else
-#define INSONIFY_VECTORISED
-#endif
+#include "components/sonar/Estimators.hpp"
 
 namespace insonify::sonar {
 namespace {
 
-using std::abs, std::exp, std::sqrt;
-// By value, so that they become instructions and not branches that nobody can predict.
-inline double min(double a, double b) { return a < b ? a : b; }
-inline double max(double a, double b) { return a > b ? a : b; }
-inline uint min(uint a, uint b) { return a < b ? a : b; }
-#include "shaders/footprint.glsl"
 #include "shaders/jitter.glsl"
 #include "shaders/surface.glsl"
-
-/** Where the shared code of shaders/deposit.glsl finds its bins; HAVE_CERQUEIRA2017 chooses the model at compile time.
- */
-struct Bins {
-    const double* edges;
-    uint64_t* sums;
-    uint bin_count;
-    double bin_width, attenuation;
-    double binEdge(uint k) const { return edges[k]; }
-    static uint64_t quanta(double amount) {  // by way of a signed number, for which there is an instruction
-        return static_cast<uint64_t>(static_cast<int64_t>(min(amount, 1048576.0) * quanta_per_unit + 0.5));
-    }
-};
-
-struct PhysicalBins : Bins {
-    void addToBin(uint beam, uint bin, double amount, double) const { sums[beam * bin_count + bin] += quanta(amount); }
-#include "shaders/deposit.glsl"
-};
-
-struct NearestBins : PhysicalBins {
-#define HAVE_NEAREST
-#include "shaders/deposit.glsl"
-#undef HAVE_NEAREST
-};
-
-struct CerqueiraBins : Bins {
-    void addToBin(uint beam, uint bin, double amount, double weight) const {
-        uint64_t* cell = sums + 2 * static_cast<size_t>(beam * bin_count + bin);
-        cell[0] += quanta(amount);
-        cell[1] += quanta(weight);
-    }
-#define HAVE_CERQUEIRA2017
-#include "shaders/deposit.glsl"
-};
-
-struct PublishedBins : CerqueiraBins {
-#define HAVE_PUBLISHED
-#include "shaders/deposit.glsl"
-#undef HAVE_PUBLISHED
-#undef HAVE_CERQUEIRA2017
-};
 
 constexpr int stretch = 64;  ///< Pixels at a time: their numbers stay in the nearest cache.
 
@@ -127,13 +74,14 @@ void miss(Pixels& pixels, int i) {
     pixels.near_limit[i] = pixels.far_limit[i] = 0;
 }
 
-void hit(const PlacedRun& run, const vec4& plane, double mapped, Pixels& pixels, int i) {
-    const auto turned = [&](const double* row) { return row[0] * plane.x + row[1] * plane.y + row[2] * plane.z; };
+void hit(const PlacedRun& run, const PlaneRecord& plane, double mapped, Pixels& pixels, int i) {
+    const vec4 &n = plane.normal, &p = plane.point;
+    const auto turned = [&](const double* row) { return row[0] * n.x + row[1] * n.y + row[2] * n.z; };
     const double x = turned(run.normal_x), y = turned(run.normal_y), z = turned(run.normal_z);
     pixels.normal_x[i] = x;
     pixels.normal_y[i] = y;
     pixels.normal_z[i] = z;
-    pixels.distance[i] = x * run.origin[0] + y * run.origin[1] + z * run.origin[2] + plane.w;
+    pixels.distance[i] = n.x * (p.x - run.eye[0]) + n.y * (p.y - run.eye[1]) + n.z * (p.z - run.eye[2]) + n.w;
     pixels.mapped[i] = mapped;
     pixels.strength[i] = run.strength;
     pixels.near_limit[i] = run.near_limit;
@@ -241,6 +189,18 @@ private:
 };
 
 }  // namespace
+
+PlacedRun placedRun(const ObjectRecord& object, double strength, uint32_t first_triangle, double cosine, double sine) {
+    PlacedRun run{{}, {}, {}, {}, object.extent.x, object.extent.y, strength, first_triangle};
+    for (int i = 0; i < 3; ++i) {
+        const double x = object.normal_x[i], y = object.normal_y[i];
+        run.normal_x[i] = cosine * x + sine * y;
+        run.normal_y[i] = cosine * y - sine * x;
+        run.normal_z[i] = object.normal_z[i];
+        run.eye[i] = double{object.eye[i]} + double{object.eye_rest[i]};
+    }
+    return run;
+}
 
 INSONIFY_VECTORISED __attribute__((flatten)) void deposit(const SlabPart& part, uint64_t* sums) {
     const BinGrid& grid = part.setup.bins;

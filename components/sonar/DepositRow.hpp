@@ -7,11 +7,15 @@ namespace insonify::sonar {
 
 /** How the triangles of one draw are turned from object axes into those of a slab. */
 struct PlacedRun {
-    double normal_x[3], normal_y[3], normal_z[3], origin[3];  ///< Rows of the normals' matrix; origin, slab axes [m].
-    double near_limit, far_limit;                             ///< Inverse ranges of the object [1/m].
-    double strength;                                          ///< Of the material at normal incidence [1].
-    uint32_t first_triangle;                                  ///< Of the mesh, among all planes [1].
+    double normal_x[3], normal_y[3], normal_z[3];  ///< Rows of the normals' matrix [1].
+    double eye[3];                                 ///< The sonar's place in object axes [m].
+    double near_limit, far_limit;                  ///< Inverse ranges of the object [1/m].
+    double strength;                               ///< Of the material at normal incidence [1].
+    uint32_t first_triangle;                       ///< Of the mesh, among all planes [1].
 };
+
+/** `cosine`, `sine`: of the azimuth of the slab's axis, from the sonar's. */
+PlacedRun placedRun(const ObjectRecord& object, double strength, uint32_t first_triangle, double cosine, double sine);
 
 /** A slab's picture and what its numbers mean, copied when taken. */
 struct TakenPicture {
@@ -27,7 +31,7 @@ struct SlabPart {
     const Slab& slab;
     const ColumnShares& shares;
     const TakenPicture& picture;
-    const std::vector<vec4>& planes;
+    const std::vector<PlaneRecord>& planes;
     const std::vector<double>& edges;  ///< inverseEdges.
     uint32_t first, last;              ///< Beams [1].
     std::array<int, 2> columns;        ///< From, to: those that these beams touch [1].

@@ -3,24 +3,25 @@
 
 #include "components/gpu/EglContext.hpp"
 #include "components/gpu/Program.hpp"
+#include "components/gpu/ReadBack.hpp"
 #include "components/sonar/BinDeposit.hpp"
 
 namespace insonify::sonar {
 namespace {
 
-/** Tells the device a list, which has its whole room already, and binds it. */
+/** Tells the device a list, which has its whole room already. */
 template <class T>
-void give(const std::vector<T>& items, gpu::Buffer& buffer, GLuint binding) {
+void give(const std::vector<T>& items, gpu::Buffer& buffer) {
     if (buffer.bytes() < items.capacity() * sizeof(T)) buffer = gpu::Buffer(items.capacity() * sizeof(T));
     if (!items.empty()) buffer.write(items.data(), items.size() * sizeof(T));
-    buffer.bindBase(GL_SHADER_STORAGE_BUFFER, binding);
 }
 
-/** The deposit as a compute shader: pictures stay on the device, only the sums come back. */
+/** The deposit as a compute shader: pictures stay on the device, only the sums come back. All slabs are drawn and
+ *  summed before anybody waits. */
 class GpuDeposit final : public BinDeposit {
 public:
-    GpuDeposit(const DepositSetup& setup, const gpu::EglContext& context);
-    void begin() override { cleared_ = false; }
+    GpuDeposit(const DepositSetup& setup, gpu::EglContext& context);
+    void begin() override { begun_ = false; }
     void take(size_t slab, const SurfacePass& surface) override;
     std::span<const uint64_t> finish() override;
 
@@ -29,48 +30,66 @@ private:
         gpu::Buffer starts, shares, commands;
     };
     void setUniforms(const Slab& slab, bool shares_per_row) const;
-    GLint uniform(const char* name) const { return glGetUniformLocation(program_.id(), name); }
+    struct Uniforms {
+        GLint image_size, shares_per_row, bin_count, bin_width, attenuation, strength_scale, slab_axis, extent,
+            pixel_size;
+    };
 
     DepositSetup setup_;
     const gpu::EglContext& context_;
-    gpu::Program program_;
+    const gpu::Program& program_;
+    Uniforms uniforms_;
     gpu::Buffer edges_, objects_, device_sums_;
     std::vector<SlabShares> shares_;
-    std::vector<uint64_t> sums_;
-    bool cleared_ = false;
+    gpu::ReadBack sums_;
+    bool begun_ = false;  ///< The sums are cleared and the objects told, for the ping that is under way.
 };
 
-GpuDeposit::GpuDeposit(const DepositSetup& setup, const gpu::EglContext& context)
-    : setup_(setup), context_(context), sums_(setup.sumCount()) {
-    std::vector<std::string> defines;
-    if (setup.model == Model::Cerqueira2017) defines.push_back("HAVE_CERQUEIRA2017");
-    if (setup.published) defines.push_back("HAVE_PUBLISHED");
-    if (setup.estimator != Estimator::Footprint) defines.push_back("HAVE_NEAREST");
-    if (setup.estimator == Estimator::NearestJitter) defines.push_back("HAVE_JITTER");
-    program_ = gpu::Program::compute("deposit.comp.glsl", defines);
+std::vector<std::string> defines(const DepositSetup& setup) {
+    std::vector<std::string> names;
+    if (setup.model == Model::Cerqueira2017) names.push_back("HAVE_CERQUEIRA2017");
+    if (setup.published) names.push_back("HAVE_PUBLISHED");
+    if (setup.estimator != Estimator::Footprint) names.push_back("HAVE_NEAREST");
+    if (setup.estimator == Estimator::NearestJitter) names.push_back("HAVE_JITTER");
+    return names;
+}
+
+GpuDeposit::GpuDeposit(const DepositSetup& setup, gpu::EglContext& context)
+    : setup_(setup),
+      context_(context),
+      program_(context.programs().compute("deposit.comp.glsl", defines(setup))),
+      sums_(setup.sumCount() * sizeof(uint64_t)) {
+    const auto at = [this](const char* name) { return glGetUniformLocation(program_.id(), name); };
+    uniforms_ = {at("image_size"),     at("shares_per_row"), at("bin_count"), at("bin_width"), at("attenuation"),
+                 at("strength_scale"), at("slab_axis"),      at("extent"),    at("pixel_size")};
+    context.requireStorage(setup.sumCount() * sizeof(uint64_t), "the sums of all bins");
     const auto edges = inverseEdges(setup.bins);
     edges_ = gpu::Buffer::of(std::span(edges));
-    device_sums_ = gpu::Buffer(sums_.size() * sizeof(uint64_t));
+    device_sums_ = gpu::Buffer(setup.sumCount() * sizeof(uint64_t));
     for (const ColumnShares& slab : setup.shares)
         shares_.push_back({gpu::Buffer::of(std::span(slab.starts)), gpu::Buffer::of(std::span(slab.shares)), {}});
 }
 
 void GpuDeposit::setUniforms(const Slab& slab, bool shares_per_row) const {
-    glUniform2i(uniform("image_size"), slab.columns, slab.rows);
-    glUniform1i(uniform("shares_per_row"), shares_per_row);
-    glUniform1ui(uniform("bin_count"), static_cast<GLuint>(setup_.bins.bin_count));
-    glUniform1d(uniform("bin_width"), setup_.bins.bin_width);
-    glUniform1d(uniform("attenuation"), setup_.attenuation);
-    glUniform1d(uniform("strength_scale"), setup_.strength_scale);
-    glUniform2d(uniform("slab_axis"), std::cos(slab.azimuth), std::sin(slab.azimuth));
-    glUniform2d(uniform("extent"), slab.extent_u, slab.extent_v);
-    glUniform2d(uniform("pixel_size"), slab.du(), slab.dv());
+    glUniform2i(uniforms_.image_size, slab.columns, slab.rows);
+    glUniform1i(uniforms_.shares_per_row, shares_per_row);
+    glUniform1ui(uniforms_.bin_count, static_cast<GLuint>(setup_.bins.bin_count));
+    glUniform1d(uniforms_.bin_width, setup_.bins.bin_width);
+    glUniform1d(uniforms_.attenuation, setup_.attenuation);
+    glUniform1d(uniforms_.strength_scale, setup_.strength_scale);
+    glUniform2d(uniforms_.slab_axis, std::cos(slab.azimuth), std::sin(slab.azimuth));
+    glUniform2d(uniforms_.extent, slab.extent_u, slab.extent_v);
+    glUniform2d(uniforms_.pixel_size, slab.du(), slab.dv());
 }
 
 void GpuDeposit::take(size_t slab, const SurfacePass& surface) {
-    if (!std::exchange(cleared_, true)) device_sums_.clear();
-    give(surface.objects(), objects_, OBJECTS_BINDING);
-    give(surface.picture(slab).commands, shares_[slab].commands, COMMANDS_BINDING);
+    if (!std::exchange(begun_, true)) {
+        device_sums_.clear();
+        give(surface.objects(), objects_);
+    }
+    objects_.bindBase(GL_SHADER_STORAGE_BUFFER, OBJECTS_BINDING);
+    give(surface.picture(slab).commands, shares_[slab].commands);
+    shares_[slab].commands.bindBase(GL_SHADER_STORAGE_BUFFER, COMMANDS_BINDING);
     program_.use();
     setUniforms(setup_.slabs[slab], setup_.shares[slab].per_row);
     surface.bindResults(slab);
@@ -85,15 +104,14 @@ void GpuDeposit::take(size_t slab, const SurfacePass& surface) {
 
 std::span<const uint64_t> GpuDeposit::finish() {
     const auto alone = context_.transferring();
-    if (!std::exchange(cleared_, false)) device_sums_.clear();  // no slab held anything
-    glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
-    device_sums_.read(sums_.data(), sums_.size() * sizeof(uint64_t));
-    return sums_;
+    if (!std::exchange(begun_, false)) device_sums_.clear();  // no slab held anything
+    sums_.ask(device_sums_);
+    return {static_cast<const uint64_t*>(sums_.wait()), setup_.sumCount()};
 }
 
 }  // namespace
 
-std::unique_ptr<BinDeposit> makeGpuDeposit(const DepositSetup& setup, const gpu::EglContext& context) {
+std::unique_ptr<BinDeposit> makeGpuDeposit(const DepositSetup& setup, gpu::EglContext& context) {
     return std::make_unique<GpuDeposit>(setup, context);
 }
 

@@ -151,7 +151,7 @@ void PingTask::render() {
         renderer_->render(aimed_, *sample);
     }
     label(*sample);
-    for (const SonarRenderer::Stage& stage : renderer_->stages()) recordStage(stage.name, stage.seconds);
+    for (const Stage& stage : renderer_->stages()) recordStage(stage.name, stage.seconds);
     pool_.stock(*sample);
     if (!std::exchange(plan_told_, true)) refreshRecord();
     if (listen()) ping.write(sample);

@@ -21,13 +21,14 @@ std::array<GLint, 4> samplesOfQuarters() {
 }  // namespace
 
 struct SlabPicture::Multisampled {
-    Multisampled(const Slab& slab, GLenum format)
+    Multisampled(const Slab& slab, GLenum format, gpu::EglContext& context)
         : columns(slab.columns / 2),
           rows(slab.rows / 2),
           ids(gpu::Texture::multisampled(format, columns, rows, 4)),
           depth(gpu::Texture::multisampled(GL_DEPTH_COMPONENT32F, columns, rows, 4)),
           target(ids, depth),
-          resolve(gpu::Program::raster("resolve.vert.glsl", "resolve.frag.glsl", {})) {
+          resolve(context.programs().raster("resolve.vert.glsl", "resolve.frag.glsl", {})),
+          sample_of_quarter(glGetUniformLocation(resolve.id(), "sample_of_quarter")) {
         target.bind();
         order = samplesOfQuarters();
     }
@@ -35,12 +36,13 @@ struct SlabPicture::Multisampled {
     int columns, rows;
     gpu::Texture ids, depth;
     gpu::Framebuffer target;
-    gpu::Program resolve;
+    const gpu::Program& resolve;
+    GLint sample_of_quarter;
     gpu::VertexArray none;
     std::array<GLint, 4> order;
 };
 
-SlabPicture::SlabPicture(const Slab& slab, bool with_normal_maps, size_t run_limit)
+SlabPicture::SlabPicture(const Slab& slab, bool with_normal_maps, size_t run_limit, gpu::EglContext& context)
     : slab_(slab),
       channels_(with_normal_maps ? 4 : 2),
       ids_(with_normal_maps ? GL_RGBA32UI : GL_RG32UI, slab.columns, slab.rows),
@@ -55,7 +57,7 @@ SlabPicture::SlabPicture(const Slab& slab, bool with_normal_maps, size_t run_lim
     if (with_normal_maps) bends.reserve(run_limit);
     draws.reserve(run_limit);
     if (slab.samples == 4)
-        multisampled_ = std::make_unique<Multisampled>(slab, with_normal_maps ? GL_RGBA32UI : GL_RG32UI);
+        multisampled_ = std::make_unique<Multisampled>(slab, with_normal_maps ? GL_RGBA32UI : GL_RG32UI, context);
 }
 
 SlabPicture::~SlabPicture() = default;
@@ -86,8 +88,7 @@ void SlabPicture::resolve() const {
     glDisable(GL_DEPTH_TEST);
     multisampled_->resolve.use();
     const auto& order = multisampled_->order;
-    glUniform4i(glGetUniformLocation(multisampled_->resolve.id(), "sample_of_quarter"), order[0], order[1], order[2],
-                order[3]);
+    glUniform4i(multisampled_->sample_of_quarter, order[0], order[1], order[2], order[3]);
     multisampled_->ids.bind(0);
     multisampled_->none.bind();
     glDrawArrays(GL_TRIANGLES, 0, 3);

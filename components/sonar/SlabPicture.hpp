@@ -29,8 +29,8 @@ public:
         vec4 normal[3], tangent[3];
     };
 
-    /** At most `run_limit` runs are drawn. */
-    SlabPicture(const Slab& slab, bool with_normal_maps, size_t run_limit);
+    /** At most `run_limit` runs are drawn. `context` is current and outlives the picture. */
+    SlabPicture(const Slab& slab, bool with_normal_maps, size_t run_limit, gpu::EglContext& context);
     ~SlabPicture();
 
     const Slab& slab() const { return slab_; }

@@ -9,10 +9,12 @@
 #include "components/sonar/Acoustics.hpp"
 #include "components/sonar/BeamFan.hpp"
 #include "components/sonar/BinGrid.hpp"
+#include "components/sonar/CastEchoes.hpp"
 
 namespace insonify::sonar {
 namespace {
 
+constexpr double tallest_image_deg = 150;
 constexpr int64_t most_bins = int64_t{1} << 24;  // sums of 16 bytes: 256 MiB
 
 void checkPublished(const SonarConfig& config, types::Problems& problems) {
@@ -35,7 +37,20 @@ void checkRangeReached(const SonarConfig& config, types::Problems& problems) {
                                   config.range, config.bin_count, grid.range_max)});
 }
 
+void checkVisibility(const SonarConfig& config, types::Problems& problems) {
+    if (config.visibility != Visibility::Cpu) return;
+    if (!haveRays()) problems.push_back({"visibility", "is cpu; this build has no rays (Embree), may be auto or gl"});
+    if (config.published)
+        problems.push_back({"visibility", "is cpu with published: true, which is an image; may be gl"});
+    if (config.deposit == Deposit::Gpu)
+        problems.push_back({"deposit", "is gpu with visibility: cpu; may be auto or cpu"});
+}
+
 void checkImages(const SonarConfig& config, types::Problems& problems) {
+    if (config.beam_height_deg > tallest_image_deg)
+        return problems.push_back(
+            {"beam_height_deg", fmt::format("is {:g} deg; an image shows {:g}, rays (visibility: cpu) 180",
+                                            config.beam_height_deg, tallest_image_deg)});
     const int columns = makeSlabs(config, makeBeams(config)).front().columns;
     if (columns > most_image_size)
         problems.push_back(
@@ -77,6 +92,12 @@ std::optional<double> SonarConfig::targetError() const {
     if (quality.target_error) return quality.target_error;
     if (published || quality.isGiven() || quality.budget_ms) return {};
     return default_target;
+}
+
+bool SonarConfig::castsRays() const {
+    if (visibility != Visibility::Auto) return visibility == Visibility::Cpu;
+    if (!haveRays() || needsImages() || deposit == Deposit::Gpu) return false;
+    return !gpu::EglContext::isAskedFor(device) && !gpu::EglContext::hasCard();
 }
 
 double SonarConfig::speedOfSound() const { return speed_of_sound.value_or(water ? leroySpeed(*water) : 1500); }
@@ -139,7 +160,8 @@ void SonarConfig::checkBeam(types::Problems& problems) const {
     if (gain && tvg) problems.push_back({"gain", "is given with tvg; it makes up for spreading itself"});
     if (published) checkPublished(*this, problems);
     checkRangeReached(*this, problems);
-    if (problems.empty()) checkImages(*this, problems);
+    checkVisibility(*this, problems);
+    if (problems.empty() && !castsRays()) checkImages(*this, problems);
 }
 
 }  // namespace insonify::sonar

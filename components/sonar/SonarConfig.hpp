@@ -12,6 +12,7 @@ enum class Output { Intensity, ReceivedLevelDb, LevelDb };
 enum class BeamGeometry { Planar, Conical };
 enum class RangeRounding { Sample, Exact };
 enum class Deposit { Auto, Cpu, Gpu };
+enum class Visibility { Auto, Gl, Cpu };
 enum class BeamWidthConvention { PerBeam, TotalFov };
 enum class AbsorptionLaw { FrancoisGarrison, AinslieMccolm };
 
@@ -83,7 +84,7 @@ struct QualityConfig {
     static void describe(Self& self, V& visit) {
         using types::Field;
         visit(Field{"rows", "1", "image rows over beam_height_deg, else 256", 1, 16384}, self.rows);
-        visit(Field{"columns_per_beam", "1", "image columns per beam, else 2", 1, 256}, self.columns_per_beam);
+        visit(Field{"columns_per_beam", "1", "image columns per beam, else 2", 1, 4096}, self.columns_per_beam);
         visit(Field{"target_error", "1", "instead: relative L2 error of energies times r^5; 0.02 when no key is given",
                     1e-4, 1},
               self.target_error);
@@ -91,6 +92,20 @@ struct QualityConfig {
               self.budget_ms);
     }
     void check(types::Problems& problems) const;
+};
+
+/** What simplified meshes may cost. A bound, not a wish: all meshes are drawn in full, for on rough floors those that
+ *  keep to the default are hardly simpler (README.md, What is left out). */
+struct DetailConfig {
+    double error = 0.005;
+
+    template <class Self, class V>
+    static void describe(Self& self, V& visit) {
+        visit(types::Field{"error", "1",
+                           "largest rel_l2_tvg that simplified meshes may add; all are drawn in full, which adds 0", 0,
+                           1},
+              self.error);
+    }
 };
 
 /** An imaging sonar. Beam k of a fan covers bearings [-fov/2 + k fov/N, -fov/2 + (k + 1) fov/N], positive to port;
@@ -122,10 +137,10 @@ struct SonarConfig {
     bool one_frustum = false;   ///< Not a property: one wide image and rounded columns, as `published`.
     int samples_per_pixel = 1;  ///< Not a property: 1, or 4 on a rotated grid, for edges along the rows [1].
     int least_slabs = 1;        ///< Not a property: more images than the fan needs [1].
-    double detail = 0.75;   ///< Not a property: how far a simpler surface, off by half a bin at most, may be off; 0:
-                            ///< none is drawn [pixels].
-    bool draw_all = false;  ///< Not a property: what is outside the fan and the range is drawn as well.
-    int threads = 0;        ///< Not a property: 0, as many as there are cores [1].
+    int threads = 0;            ///< Not a property: 0, as many as there are cores [1].
+    DetailConfig detail;
+    bool draw_all = false;
+    Visibility visibility = Visibility::Auto;
     std::string device;
     Deposit deposit = Deposit::Auto;
     std::optional<types::NotBuiltYet> beam_pattern, pulse, volume, multipath;
@@ -145,6 +160,13 @@ struct SonarConfig {
     double coverageDeg() const;
     /** The same with a fan that is given by `beam_width_deg` given by `field_of_view_deg`. */
     SonarConfig fan() const;
+    /** Whether only an image shows what is asked for: the published simulator's, or another way to sample one. */
+    bool needsImages() const {
+        return published || one_frustum || samples_per_pixel > 1 || estimator != Estimator::Footprint;
+    }
+    /** Whether triangles are found by rays on the processor, else by drawing. Looks for a graphics card where nothing
+     *  else decides. */
+    bool castsRays() const;
     /** Configured, or Leroy's of `water`, or 1500 [m/s]. */
     double speedOfSound() const;
 
@@ -177,7 +199,7 @@ void SonarConfig::describeBeam(Self& self, V& visit) {
     visit(Field{"range_min", "m", "nearer echoes are blanked", 0, 1e5}, self.range_min);
     visit(Field{"bin_count", "1", "range bins per beam", 1, 65536}, self.bin_count);
     visit(Field{"beam_width_deg", "deg", "opening of one beam", 0.001, 360}, self.beam_width_deg);
-    visit(Field{"beam_height_deg", "deg", "total elevation aperture", 0.001, 89.99}, self.beam_height_deg);
+    visit(Field{"beam_height_deg", "deg", "total elevation aperture", 0.001, 180}, self.beam_height_deg);
     visit(Field{"beam_geometry", "", "planar: az = a_k; conical: sin(az) cos(el) = sin(a_k)"}, self.beam_geometry);
     visit(Field{"speed_of_sound", "m/s", "absent: computed from water, else 1500", 1, 20000}, self.speed_of_sound);
     visit(Field{"water", "", "state of the water"}, self.water);
@@ -193,8 +215,13 @@ void SonarConfig::describeBeam(Self& self, V& visit) {
     visit(Field{"range_rounding", "", "sample: bins of whole microseconds; exact: edges as asked"},
           self.range_rounding);
     visit(Field{"published", "", "cerqueira2017 to the letter, for comparison"}, self.published);
+    visit(Field{"visibility", "",
+                "cpu: rays on the processor; gl: drawn; auto: gl where a card is or a device is asked for"},
+          self.visibility);
     visit(Field{"device", "", "EGL device to draw on; absent: INSONIFY_EGL_DEVICE, else the first"}, self.device);
     visit(Field{"deposit", "", "where samples are summed into bins"}, self.deposit);
+    visit(Field{"detail", "", "what simplified meshes may add to the error"}, self.detail);
+    visit(Field{"draw_all", "", "draws what is outside the fan and the range as well, to compare"}, self.draw_all);
     visit(Field{"beam_pattern", "", "directivity (not built yet)"}, self.beam_pattern);
     visit(Field{"pulse", "", "range point-spread (not built yet)"}, self.pulse);
     visit(Field{"volume", "", "volume reverberation (not built yet)"}, self.volume);
@@ -226,6 +253,10 @@ struct insonify::types::EnumNames<insonify::sonar::BeamWidthConvention> {
 template <>
 struct insonify::types::EnumNames<insonify::sonar::Deposit> {
     static constexpr std::string_view names[] = {"auto", "cpu", "gpu"};
+};
+template <>
+struct insonify::types::EnumNames<insonify::sonar::Visibility> {
+    static constexpr std::string_view names[] = {"auto", "gl", "cpu"};
 };
 template <>
 struct insonify::types::EnumNames<insonify::sonar::AbsorptionLaw> {

@@ -4,6 +4,7 @@
 #include <span>
 #include <vector>
 
+#include "components/sonar/EchoRenderer.hpp"
 #include "components/sonar/SonarConfig.hpp"
 #include "types/Plan.hpp"
 #include "types/Snapshot.hpp"
@@ -30,11 +31,7 @@ public:
     /** Renders from now on with so many image rows and columns per beam [1]; allocates. */
     void setQuality(int rows, int columns_per_beam);
 
-    struct Stage {
-        const char* name;
-        double seconds;
-    };
-    /** Where the time of the last ping went: cull, draw, read, deposit, beams. */
+    /** Where the time of the last ping went. */
     std::span<const Stage> stages() const;
     const types::Plan& plan() const;
     /** Whether the last ping has any echo; its bins do not say so where they are levels. */

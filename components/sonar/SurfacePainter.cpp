@@ -24,12 +24,12 @@ SlabPicture::Bend bend(const ObjectRecord& object, const Slab& slab, float norma
 }  // namespace
 
 SurfacePainter::SurfacePainter(const types::Geometry& geometry, const SurfaceScene& scene,
-                               const std::vector<std::string>& defines, double near_plane, bool software)
+                               const std::vector<std::string>& defines, double near_plane, gpu::EglContext& context)
     : geometry_(geometry),
       scene_(scene),
       near_plane_(near_plane),
-      software_(software),
-      program_(gpu::Program::raster("surface.vert.glsl", "surface.frag.glsl", defines)) {
+      software_(context.isSoftware()),
+      program_(context.programs().raster("surface.vert.glsl", "surface.frag.glsl", defines)) {
     const auto at = [&](const char* name) { return glGetUniformLocation(program_.id(), name); };
     uniforms_ = {at("extent"), at("pixel_size"), at("near_plane"), at("mapped")};
     scene_.describe(vertices_);

@@ -11,10 +11,10 @@ namespace insonify::sonar {
 /** Draws slabs in the context in which it was made. */
 class SurfacePainter {
 public:
-    /** `defines` as the plan's features; nothing nearer than `near_plane` [m] along a slab's axis is drawn. `geometry`
-     *  and `scene` must outlive the painter; the scene may have been made in another context of the device. */
+    /** `defines` as the plan's features; nothing nearer than `near_plane` [m] along a slab's axis is drawn. `geometry`,
+     *  `scene` and `context`, which is current, must outlive the painter; the scene may be another context's. */
     SurfacePainter(const types::Geometry& geometry, const SurfaceScene& scene, const std::vector<std::string>& defines,
-                   double near_plane, bool software);
+                   double near_plane, gpu::EglContext& context);
 
     /** Lists how the runs of a picture are drawn, of objects `placed` so; the device knows nothing of it yet. */
     void list(SlabPicture& picture, const std::vector<ObjectRecord>& placed) const;
@@ -32,7 +32,7 @@ private:
     const SurfaceScene& scene_;
     double near_plane_;
     bool software_;
-    gpu::Program program_;
+    const gpu::Program& program_;
     gpu::VertexArray vertices_;
     struct Uniforms {
         GLint extent, pixel_size, near_plane, mapped;

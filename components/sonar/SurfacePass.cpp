@@ -2,11 +2,10 @@
 
 #include <algorithm>
 
+#include "components/gpu/ReadBack.hpp"
+
 namespace insonify::sonar {
 namespace {
-
-/** So many in view are drawn fast enough for more detail than must be [1]. */
-constexpr size_t few_triangles = 40'000;
 
 bool hasNormalMaps(const SurfacePass::Setup& setup) { return std::ranges::count(setup.defines, "HAVE_NORMAL_MAP") > 0; }
 
@@ -24,7 +23,7 @@ SurfacePass::SurfacePass(gpu::EglContext& context, Setup setup, ThreadPool& thre
       scene_(setup_.geometry, hasNormalMaps(setup_)),
       parts_(partCount(context, setup_, threads)),
       pictures_(setup_.slabs.size()) {
-    glFinish();  // the other contexts must find the scene's buffers filled
+    gpu::Fence::here().wait();  // the other contexts must find the scene's buffers filled
     try {
         onEachPart([this](size_t part) { makePart(part); });
     } catch (...) {
@@ -58,25 +57,19 @@ void SurfacePass::onEachPart(const Job& job) {
 
 void SurfacePass::makePart(size_t part) {
     if (part > 0) parts_[part].own.emplace(gpu::EglContext::Sharing{context_});
-    parts_[part].painter.emplace(setup_.geometry, scene_, setup_.defines, setup_.near_plane, context_.isSoftware());
+    parts_[part].painter.emplace(setup_.geometry, scene_, setup_.defines, setup_.near_plane, contextOf(part));
     makePictures(part);
 }
 
 void SurfacePass::makePictures(size_t part) {
     for (size_t slab = part; slab < pictures_.size(); slab += parts_.size())
-        pictures_[slab] = std::make_unique<SlabPicture>(setup_.slabs[slab], hasNormalMaps(setup_), setup_.run_limit);
+        pictures_[slab] =
+            std::make_unique<SlabPicture>(setup_.slabs[slab], hasNormalMaps(setup_), setup_.run_limit, contextOf(part));
 }
 
 void SurfacePass::cull(const Culler& culler) {
     placed_ = &culler.records();
-    for (double share : {0.25, 0.5, 1.0}) {
-        size_t triangles = 0;
-        for (auto& picture : pictures_) {
-            culler.visible(picture->slab(), picture->runs, share);
-            for (const Culler::Run& run : picture->runs) triangles += run.index_count / 3;
-        }
-        if (triangles <= few_triangles) return;
-    }
+    for (auto& picture : pictures_) culler.visible(picture->slab(), picture->runs);
 }
 
 template <class Use>
@@ -94,12 +87,13 @@ void SurfacePass::draw() {
     onEachPart([this](size_t part) {
         const auto together = context_.drawing();
         onDrawn(part, [](const SurfacePainter& painter, const SlabPicture& picture) { painter.draw(picture); });
-        glFinish();
+        if (context_.isSoftware()) gpu::Fence::here().wait();  // for other contexts; a card's own takes its turn
         if (parts_[part].own) parts_[part].own->check();
     });
 }
 
 void SurfacePass::bindResults(size_t slab) const {
+    context_.requireStorage(scene_.planes().size() * sizeof(PlaneRecord), "the planes of all triangles");
     pictures_[slab]->bindTexture(0);
     scene_.bindRecords();
 }

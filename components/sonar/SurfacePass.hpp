@@ -28,12 +28,13 @@ public:
     /** Other pictures of the same slabs: as many, in more or fewer pixels. */
     void resize(const std::vector<Slab>& slabs);
 
-    /** Lists what each slab sees of what the culler has placed, with as little detail as a speedy picture takes. */
+    /** Lists what each slab sees of what the culler has placed. */
     void cull(const Culler& culler);
     /** Whether a slab's picture is drawn. */
     bool draws(size_t slab) const { return setup_.empty_too || !pictures_[slab]->empty(); }
-    /** Draws the slabs; returns when the pictures are there. Throws GlError. All other functions but objects() and
-     *  draws() want EglContext::transferring(); this one does that itself. */
+    /** Draws the slabs. A graphics card may still be at it when this returns; what its context is asked for then comes
+     *  after. Throws GlError. All other functions but objects() and draws() want EglContext::transferring(); this one
+     *  does that itself. */
     void draw();
 
     const SlabPicture& picture(size_t slab) const { return *pictures_[slab]; }
@@ -48,6 +49,7 @@ private:
         std::optional<gpu::EglContext> own;  ///< Of all threads but the first, which has the renderer's.
         std::optional<SurfacePainter> painter;
     };
+    gpu::EglContext& contextOf(size_t part) { return parts_[part].own ? *parts_[part].own : context_; }
     void release();
     void makePart(size_t part);
     void makePictures(size_t part);

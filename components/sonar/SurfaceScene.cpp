@@ -13,13 +13,10 @@ namespace {
 class Drawn {
 public:
     explicit Drawn(const types::Mesh& mesh) : indices(mesh.indices), place_(mesh.positions.size(), nobody) {
-        const size_t finest = indices.size() / 3;
-        indices.insert(indices.end(), mesh.coarse_indices.begin(), mesh.coarse_indices.end());
         sources.resize(indices.size() / 3);
-        number(0, finest);
-        for (const types::Patch& patch :
-             mesh.patches)  // with vertices of its own: what is drawn together lies together
-            number(finest + patch.first_index / 3, finest + (patch.first_index + patch.index_count) / 3);
+        for (size_t t = 0; t < sources.size(); ++t) endInOwnVertex(t);
+        for (size_t i = 0; i < indices.size(); ++i)
+            indices[i] = i % 3 == 2 ? static_cast<uint32_t>(i / 3) : at(indices[i]);
     }
 
     std::vector<uint32_t> sources;  ///< Of each drawn vertex, in the mesh.
@@ -27,14 +24,6 @@ public:
 
 private:
     static constexpr uint32_t nobody = 0xffffffff;
-
-    void number(size_t first, size_t last) {
-        for (size_t t = first; t < last; ++t) endInOwnVertex(t);
-        for (size_t i = 3 * first; i < 3 * last; ++i)
-            indices[i] = i % 3 == 2 ? static_cast<uint32_t>(i / 3) : at(indices[i]);
-        for (size_t t = first; t < last; ++t)
-            for (size_t k = 0; k < 3; ++k) place_[sources[indices[3 * t + k]]] = nobody;
-    }
 
     void endInOwnVertex(size_t t) {
         uint32_t* corners = indices.data() + 3 * t;
@@ -72,13 +61,15 @@ gpu::Buffer uploaded(const std::vector<T>& items) {
     return gpu::Buffer::of(std::span(items));
 }
 
-/** A triangle's plane in object axes: xyz its unit normal n, w = n.p for its points p [m]. */
-vec4 planeOf(glm::dvec3 a, glm::dvec3 b, glm::dvec3 c) {
-    const glm::dvec3 across = glm::cross(b - a, c - a);
-    const double length = glm::length(across);
-    if (!(length > 0)) return vec4(0);
-    const glm::dvec3 normal = across / length;
-    return vec4(glm::vec3(normal), static_cast<float>(glm::dot(normal, a)));
+/** Of what has no area: no normal, which is no echo. The point is that of the plane which is nearest to the origin
+ * within the triangle's reach: even of a huge triangle it is close to what is seen, if that is close to the origin. */
+PlaneRecord planeOf(glm::dvec3 a, glm::dvec3 b, glm::dvec3 c) {
+    const glm::dvec3 across = glm::cross(b - a, c - a), middle = (a + b + c) / 3.0;
+    if (!(glm::length(across) > 0)) return {vec4(0), vec4(0)};
+    const glm::dvec3 normal = glm::normalize(across), way = normal * glm::dot(normal, middle) - middle;
+    const double reach = glm::distance(middle, a), length = glm::length(way);
+    const glm::vec3 point(length > reach ? middle + way * (reach / length) : middle + way);
+    return {vec4(glm::vec3(normal), static_cast<float>(glm::dot(normal, a - glm::dvec3(point)))), vec4(point, 0)};
 }
 
 gpu::Texture uploadedMap(int width, int height, const uint8_t* rgb, bool repeat_u, bool repeat_v) {
@@ -94,10 +85,18 @@ gpu::Texture uploadedMap(int width, int height, const uint8_t* rgb, bool repeat_
 
 }  // namespace
 
+std::vector<PlaneRecord> planesOf(const types::Geometry& geometry) {
+    std::vector<PlaneRecord> planes;
+    for (const types::Mesh& mesh : geometry.meshes)
+        for (size_t i = 0; i + 2 < mesh.indices.size(); i += 3)
+            planes.push_back(planeOf(mesh.positions[mesh.indices[i]], mesh.positions[mesh.indices[i + 1]],
+                                     mesh.positions[mesh.indices[i + 2]]));
+    return planes;
+}
+
 SurfaceScene::SurfaceScene(const types::Geometry& geometry, bool with_normal_maps)
-    : with_normal_maps_(with_normal_maps) {
+    : with_normal_maps_(with_normal_maps), plane_list_(planesOf(geometry)) {
     uploadVertices(geometry);
-    uploadPlanes(geometry);
     uploadMaterials(geometry);
     if (with_normal_maps) uploadNormalMaps(geometry);
 }
@@ -119,15 +118,6 @@ void SurfaceScene::uploadVertices(const types::Geometry& geometry) {
     normals_ = uploaded(joined(geometry, meshes, &types::Mesh::normals, glm::vec3(0, 0, 1)));
     tangents_ = uploaded(joined(geometry, meshes, &types::Mesh::tangents, glm::vec4(1, 0, 0, 1)));
     uvs_ = uploaded(joined(geometry, meshes, &types::Mesh::uvs, glm::vec2(0)));
-}
-
-void SurfaceScene::uploadPlanes(const types::Geometry& geometry) {
-    for (const types::Mesh& mesh : geometry.meshes)
-        for (const auto* indices : {&mesh.indices, &mesh.coarse_indices})
-            for (size_t i = 0; i + 2 < indices->size(); i += 3)
-                plane_list_.push_back(planeOf(mesh.positions[(*indices)[i]], mesh.positions[(*indices)[i + 1]],
-                                              mesh.positions[(*indices)[i + 2]]));
-    planes_ = uploaded(plane_list_);
 }
 
 void SurfaceScene::uploadMaterials(const types::Geometry& geometry) {
@@ -157,6 +147,7 @@ void SurfaceScene::describe(const gpu::VertexArray& vertices) const {
 }
 
 void SurfaceScene::bindRecords() const {
+    if (planes_.bytes() == 0) planes_ = uploaded(plane_list_);
     planes_.bindBase(GL_SHADER_STORAGE_BUFFER, PLANES_BINDING);
     materials_.bindBase(GL_SHADER_STORAGE_BUFFER, MATERIALS_BINDING);
 }

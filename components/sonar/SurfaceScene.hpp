@@ -7,6 +7,10 @@
 
 namespace insonify::sonar {
 
+/** Planes of all meshes' triangles, mesh after mesh, without those that stand for patches: as SurfaceScene::planes().
+ */
+std::vector<PlaneRecord> planesOf(const types::Geometry& geometry);
+
 /** A geometry on the device: all meshes behind one another, a plane for each triangle, materials, normal maps. */
 class SurfaceScene {
 public:
@@ -18,27 +22,27 @@ public:
     SurfaceScene(const types::Geometry& geometry, bool with_normal_maps);
     const MeshPlace& place(int mesh) const { return places_[static_cast<size_t>(mesh)]; }
     bool withNormalMaps() const { return with_normal_maps_; }
-    /** Plane of each triangle in object axes: xyz its unit normal n, w = n.p for its points p [m]. */
-    const std::vector<vec4>& planes() const { return plane_list_; }
+    /** Of each triangle. */
+    const std::vector<PlaneRecord>& planes() const { return plane_list_; }
     const std::vector<MaterialRecord>& materials() const { return material_list_; }
     /** Attributes and indices of a context's vertex array. */
     void describe(const gpu::VertexArray& vertices) const;
-    /** Binds planes and materials. */
+    /** Binds planes, which the device is told when they are first bound, and materials. */
     void bindRecords() const;
     /** Binds the normal map of a material; the flat map when it has none. */
     void bindNormalMap(int map) const;
 
 private:
     void uploadVertices(const types::Geometry& geometry);
-    void uploadPlanes(const types::Geometry& geometry);
     void uploadMaterials(const types::Geometry& geometry);
     void uploadNormalMaps(const types::Geometry& geometry);
 
     bool with_normal_maps_;
     std::vector<MeshPlace> places_;
-    std::vector<vec4> plane_list_;
+    std::vector<PlaneRecord> plane_list_;
     std::vector<MaterialRecord> material_list_;
-    gpu::Buffer positions_, normals_, tangents_, uvs_, indices_, planes_, materials_;
+    gpu::Buffer positions_, normals_, tangents_, uvs_, indices_, materials_;
+    mutable gpu::Buffer planes_;             ///< Empty until a deposit on the device asks for them.
     std::vector<gpu::Texture> normal_maps_;  ///< The last one is flat.
 };
 

@@ -29,7 +29,7 @@ public:
     /** Casts the rays of a ping and does nothing with them; how many met something [1]. */
     size_t castOnly(const types::Pose& sonar);
 
-    /** Of the last ping: bins that the longest cell covered, kappa of physics.md 3.2 [1]. */
+    /** Of the last ping: bins that the longest cell covered, kappa of ACOUSTICS.md 4.5 [1]. */
     double kappaMax() const;
 
 private:

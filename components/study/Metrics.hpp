@@ -11,9 +11,9 @@ struct Layout {
     double range_from;  ///< Bins that begin nearer are not compared [m].
 };
 
-/** How far energies are from their reference: physics.md 5, M1 to M6, without noise. Levels of M7 are taken above 1e-6
- *  of the reference's maximum, what is below counts as that. Relative errors to a silent reference are 0 for silence
- * and infinite for anything else. */
+/** How far energies are from their reference: ACOUSTICS.md 10, M1 to M6, without noise. Levels of M7 are taken above
+ *  1e-6 of the reference's maximum, what is below counts as that. Relative errors to a silent reference are 0 for
+ *  silence and infinite for anything else. */
 struct Metrics {
     double rel_l2 = 0;       ///< M1: |E - reference| / |reference| over all bins [1].
     double rel_l2_tvg = 0;   ///< M2: the same after a gain of 50 log10(r), so that far bins count as near ones [1].

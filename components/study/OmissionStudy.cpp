@@ -157,10 +157,6 @@ private:
             with.config.least_slabs = 2;
             return bound(quality_, "rel_l2_tvg: what twice the rows and columns change");
         }
-        if (is("detail of")) {
-            with.config.detail = 0;
-            return bound(quality_, "rel_l2_tvg: what twice the rows and columns change");
-        }
         if (is(" objects") || is(" triangles") || is(" slabs")) {
             with.config.draw_all = true;
             return bound(1e-5, "change: pixels beyond the range that reach back into it");

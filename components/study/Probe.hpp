@@ -15,7 +15,7 @@ namespace insonify::study {
 struct Probe {
     types::Sonar ping;
     types::Plan plan;
-    Conditions conditions;  ///< Those of physics.md section 4.
+    Conditions conditions;  ///< Those of ACOUSTICS.md 11.
     std::string device;     ///< Name of the OpenGL renderer.
 
     double energy() const;  ///< Sum of all bins.

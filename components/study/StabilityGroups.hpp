@@ -1,5 +1,5 @@
 #pragma once
-// The groups of physics.md section 4, a file each.
+// The groups of ACOUSTICS.md 11, a file each.
 #include <vector>
 
 #include "components/study/StabilityStudy.hpp"

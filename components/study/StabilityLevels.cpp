@@ -169,7 +169,7 @@ std::shared_ptr<types::Geometry> plateOverBottom() {
     return geometry;
 }
 
-/** Echo of the plate: physics.md 3.5, item 5, the wide window. */
+/** Echo of the plate: ACOUSTICS.md 9.5, the wide window. */
 double plateEnergy() {
     constexpr int cells = 200;
     double sum = 0;

@@ -25,7 +25,7 @@ struct Outcome {
 /** Whether it was run and has a deviation. */
 bool isJudged(const Outcome& outcome);
 
-/** A stiff or extreme case of physics.md section 4, or one found since (numbers from 56 on). */
+/** A stiff or extreme case of ACOUSTICS.md 11. */
 struct StabilityCase {
     int number;
     std::string name, expected;

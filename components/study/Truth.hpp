@@ -21,14 +21,14 @@ struct Elevations {
 using Window = std::function<Elevations(double azimuth)>;
 
 /** Echo of the plane normal.p = distance (unit normal away from the sonar, sonar axes, distance above 0) of Lambert
- *  parameter 1. physics.md 1.2 (1) with cos(theta) = distance / r: over a plane the integrand depends on direction
+ *  parameter 1. ACOUSTICS.md 9.6, with cos(theta) = distance / r: over a plane the integrand depends on direction
  * alone, and each bin is, at each azimuth, two stretches of elevation. */
 Truth planeTruth(glm::dvec3 normal, double distance, Window window = {});
 
-/** The echo of a sphere wholly inside one beam: physics.md 3.5, item 4. */
+/** The echo of a sphere wholly inside one beam: ACOUSTICS.md 9.4. */
 Truth sphereTruth(double radius, double centre);
 
-/** A disc of a radius that faces the sonar, wholly inside one beam: physics.md 3.5, items 1 and 5. */
+/** A disc of a radius that faces the sonar, wholly inside one beam: ACOUSTICS.md 9.5. */
 Truth discTruth(double distance, double radius);
 
 /** Echoes that do not hide one another. */

@@ -23,32 +23,12 @@ void append(std::string& data, const std::vector<T>& values) {
     data.append(reinterpret_cast<const char*>(values.data()), values.size() * sizeof(T));
 }
 
-/** Indices of all triangles, or of what stands for the outermost patches. */
-std::vector<uint32_t> indicesOf(const types::Mesh& mesh, bool coarse) {
-    if (!coarse || mesh.patches.empty()) return mesh.indices;
-    std::vector<uint32_t> indices;
-    const auto take = [&](const std::vector<uint32_t>& from, uint32_t first, uint32_t count) {
-        indices.insert(indices.end(), from.begin() + first, from.begin() + first + count);
-    };
-    for (size_t i = 0; i < mesh.patches.size(); i = mesh.patches[i].next) {
-        const types::Patch& patch = mesh.patches[i];
-        if (patch.index_count > 0)
-            take(mesh.coarse_indices, patch.first_index, patch.index_count);
-        else
-            for (uint32_t k = 0; k < patch.cluster_count; ++k) {
-                const types::Cluster& cluster = mesh.clusters[patch.first_cluster + k];
-                take(mesh.indices, cluster.first_index, cluster.index_count);
-            }
-    }
-    return indices;
-}
-
 /** Only the vertices that are used. */
 Part partOf(const types::Mesh& mesh, bool coarse) {
     Part part;
     part.material = mesh.clusters.empty() ? 0 : mesh.clusters.front().material;
     std::vector<uint32_t> number(mesh.positions.size(), UINT32_MAX);
-    for (const uint32_t index : indicesOf(mesh, coarse)) {
+    for (const uint32_t index : coarse && !mesh.coarse_indices.empty() ? mesh.coarse_indices : mesh.indices) {
         if (number[index] == UINT32_MAX) {
             number[index] = static_cast<uint32_t>(part.positions.size() / 3);
             const glm::vec3& p = mesh.positions[index];

@@ -8,7 +8,7 @@ namespace insonify::viewer {
 
 /** A scene as a message for pages (see pageMessage): JSON of meshes, objects and materials; then the positions (three
  *  floats a vertex) and indices (u32) of all meshes, as glTF's buffers have them. In a scene of more than
- *  `max_triangles` large meshes are what stands for them from afar, and then the objects of the fewest triangles are
+ *  `max_triangles` large meshes are their outlines, and then the objects of the fewest triangles are
  *  left out, which the JSON counts; meshes of none that is left are empty. */
 std::string sceneMessage(const types::Geometry& geometry, size_t max_triangles, const std::string& source);
 

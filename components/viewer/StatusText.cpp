@@ -35,7 +35,8 @@ Json planOf(const types::Plan& plan) {
     return {{"features", plan.features}, {"passes", plan.passes},
             {"omitted", omitted},        {"notices", plan.notices},
             {"rows", plan.rows},         {"columns_per_beam", plan.columns_per_beam},
-            {"slabs", plan.slabs},       {"predicted_error", numberOrNull(plan.predicted_error)}};
+            {"slabs", plan.slabs},       {"predicted_error", numberOrNull(plan.predicted_error)},
+            {"device", plan.device}};
 }
 
 Json taskOf(const types::TaskStatus& task) {

@@ -1,4 +1,4 @@
-// The closed forms of physics.md 3.5 as a user meets them: a glTF scene and a deployment go through `insonify run`, and
+// The closed forms of ACOUSTICS.md 9 as a user meets them: a glTF scene and a deployment go through `insonify run`, and
 // what is checked are the numbers that `insonify log export` wrote. Every form stands beside a deliberately wrong one,
 // which must fail by the same measure. Bins are whole microseconds at 1000 m/s: 0.1 m is 100 us.
 #include "tests/deployer/SceneRun.hpp"

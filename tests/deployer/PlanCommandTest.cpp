@@ -21,6 +21,7 @@ TEST(PlanCommandTest, JsonTellsWhatIsRunAndWhatIsLeftOut) {
     EXPECT_EQ(plan["quality"]["columns_per_beam"], 2);
     EXPECT_GE(plan["quality"]["slabs"], 1);
     EXPECT_TRUE(plan["quality"].contains("predicted_error"));
+    EXPECT_NE(plan["device"], "");
 }
 
 TEST(PlanCommandTest, TheTextNamesEachOmissionWithItsReason) {

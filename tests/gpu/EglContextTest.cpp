@@ -28,23 +28,31 @@ std::string errorElsewhere(const Job& job) {
     return text;
 }
 
-/** INSONIFY_EGL_DEVICE for the length of a test. */
-class DeviceVariable {
+/** A variable of the environment for the length of a test. */
+class Variable {
 public:
-    explicit DeviceVariable(const char* value) {
+    Variable(const char* name, const char* value) : name_(name) {
         if (const char* before = std::getenv(name)) before_ = std::make_unique<std::string>(before);
         setenv(name, value, 1);
     }
-    ~DeviceVariable() {
+    ~Variable() {
         if (before_)
-            setenv(name, before_->c_str(), 1);
+            setenv(name_, before_->c_str(), 1);
         else
-            unsetenv(name);
+            unsetenv(name_);
     }
 
 private:
-    static constexpr const char* name = "INSONIFY_EGL_DEVICE";
+    const char* name_;
     std::unique_ptr<std::string> before_;
+};
+
+struct DeviceVariable : Variable {
+    explicit DeviceVariable(const char* value) : Variable("INSONIFY_EGL_DEVICE", value) {}
+};
+
+struct DebugVariable : Variable {
+    explicit DebugVariable(const char* value) : Variable("INSONIFY_GL_DEBUG", value) {}
 };
 
 TEST(EglContextTest, TheSoftwareDeviceIsLlvmpipeWithOpenGl45) {
@@ -106,14 +114,46 @@ TEST(EglContextTest, AContextWhosePlaceALaterOneTookIsRefused) {
     EXPECT_THAT(errorOf([&] { first.check(); }), HasSubstr("one at a time"));
 }
 
-TEST(EglContextTest, AMistakeIsThrownOnceByTheNextCheck) {
+TEST(EglContextTest, WithTheVariableAMistakeIsThrownOnceByTheNextCheckInGlsWords) {
+    const DebugVariable debug("1");
     EglContext context("software");
     glEnable(GL_TEXTURE_2D);  // not in the core profile
     EXPECT_THAT(errorOf([&] { context.check(); }), AllOf(HasSubstr("OpenGL: "), HasSubstr("glEnable")));
     EXPECT_EQ(errorOf([&] { context.check(); }), "");
 }
 
+TEST(EglContextTest, WithoutItTheMistakeIsThrownWithItsNumberAndHowToLearnMore) {
+    const DebugVariable debug("0");
+    EglContext context("software");
+    glEnable(GL_TEXTURE_2D);
+    EXPECT_THAT(errorOf([&] { context.check(); }),
+                AllOf(HasSubstr("OpenGL: error 1280"), HasSubstr("INSONIFY_GL_DEBUG=1")));
+    EXPECT_EQ(errorOf([&] { context.check(); }), "");
+}
+
+TEST(EglContextTest, ItsDriverIsNamed) { EXPECT_THAT(EglContext("software").driver(), HasSubstr("Mesa")); }
+
+TEST(EglContextTest, ThatItDrawsInSoftwareIsToldWhereNobodyAskedForIt) {
+    EXPECT_EQ(EglContext("software").fallback(), "");
+    const DeviceVariable variable("auto");
+    const EglContext context;
+    const std::string expected = context.isSoftware() ? "drawn in software by llvmpipe" : "";
+    EXPECT_THAT(context.fallback(), HasSubstr(expected));
+    EXPECT_EQ(context.fallback().empty(), expected.empty());
+}
+
+TEST(EglContextTest, ABufferTooLargeForAShaderIsRefusedInWords) {
+    const EglContext context("software");
+    GLint64 most = 0;
+    glGetInteger64v(GL_MAX_SHADER_STORAGE_BLOCK_SIZE, &most);
+    const auto bytes = static_cast<size_t>(most);
+    EXPECT_EQ(errorOf([&] { context.requireStorage(bytes, "the planes"); }), "");
+    EXPECT_THAT(errorOf([&] { context.requireStorage(bytes + 1, "the planes"); }),
+                AllOf(HasSubstr("the planes take " + std::to_string(bytes >> 20) + " MiB"), HasSubstr("deposit: cpu")));
+}
+
 TEST(EglContextTest, OfTwoMistakesTheFirstIsTold) {
+    const DebugVariable debug("1");
     EglContext context("software");
     glEnable(GL_TEXTURE_2D);
     glBindFramebuffer(GL_FRAMEBUFFER, 4711);

@@ -26,7 +26,7 @@ TEST(ProgramTest, IncludesAreReplacedByTheirFiles) {
     ASSERT_THAT(std::string(shaderFile("deposit.comp.glsl")), HasSubstr("#include \"interface.glsl\""));
     const std::string source = shaderSource("deposit.comp.glsl", {});
     EXPECT_THAT(source, Not(HasSubstr("#include")));
-    for (const char* file : {"interface.glsl", "surface.glsl", "footprint.glsl", "deposit.glsl"})
+    for (const char* file : {"interface.glsl", "surface.glsl", "footprint.glsl", "trapezoid.glsl", "deposit.glsl"})
         EXPECT_THAT(source, HasSubstr(std::string(shaderFile(file)))) << file;
 }
 
@@ -51,6 +51,18 @@ TEST(ProgramTest, WhatTheShadersHaveCompilesInEveryCombination) {
         glGetIntegerv(GL_CURRENT_PROGRAM, &used);
         EXPECT_EQ(static_cast<GLuint>(used), program.id());
     }
+    EXPECT_NO_THROW(context.check());
+}
+
+TEST(ProgramTest, AContextCompilesEachTextOnce) {
+    EglContext context("software");
+    Programs& programs = context.programs();
+    const Program& first = programs.compute("deposit.comp.glsl", {});
+    EXPECT_EQ(&programs.compute("deposit.comp.glsl", {}), &first);
+    EXPECT_NE(&programs.compute("deposit.comp.glsl", {"HAVE_CERQUEIRA2017"}), &first);
+    EXPECT_EQ(&programs.raster("surface.vert.glsl", "surface.frag.glsl", {}),
+              &programs.raster("surface.vert.glsl", "surface.frag.glsl", {}));
+    EXPECT_EQ(programs.count(), 3u);
     EXPECT_NO_THROW(context.check());
 }
 

@@ -80,7 +80,8 @@ connections:
     EXPECT_EQ(log.find("sonar.ping")->count, 3u);
     EXPECT_EQ(log.find("sonar.ping")->metadata.at("insonify_plan"),
               R"({"sonar": {"features": ["HAVE_\"TVG\""], "passes": [], "omitted": [{"name": "volume", "reason": )"
-              R"("absent"}], "notices": [], "rows": 0, "columns_per_beam": 0, "slabs": 0, "predicted_error": 0}})");
+              R"("absent"}], "notices": [], "rows": 0, "columns_per_beam": 0, "slabs": 0, "predicted_error": 0, )"
+              R"("device": ""}})");
     EXPECT_NE(log.find("sonar.depth"), nullptr) << "declared, though never written";
 
     EXPECT_EQ(pocolog::Reader(folder / "y.0.log").find("sonar.ping")->count, 3u);

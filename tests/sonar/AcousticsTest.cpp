@@ -9,8 +9,23 @@ namespace {
 
 WaterConfig water(double celsius, double psu, double depth, double ph = 8) { return {celsius, psu, depth, ph}; }
 
-TEST(AcousticsTest, MackenzieMeetsItsPublishedCheckValue) {
+TEST(AcousticsTest, MackenzieMeetsItsPublishedCheckValues) {
     EXPECT_NEAR(mackenzieSpeed(water(25, 35, 1000)), 1550.744, 1e-3);
+    EXPECT_NEAR(mackenzieSpeed(water(40, 40, 10000)), 1718.774, 1e-3);
+}
+
+TEST(AcousticsTest, LeroyAndMedwinAreNearUnescosEquation) {
+    // Chen and Millero's equation (Fofonoff and Millard 1983) at the surface, computed apart from here to 0.01 m/s.
+    struct Case {
+        double celsius, psu, speed;
+    };
+    for (const Case& c : {Case{0, 35, 1449.14}, Case{10, 35, 1489.82}, Case{20, 35, 1521.46}, Case{30, 35, 1545.59},
+                          Case{10, 25, 1477.68}, Case{20, 25, 1510.31}, Case{10, 40, 1495.93}, Case{30, 40, 1550.81}}) {
+        EXPECT_NEAR(leroySpeed(water(c.celsius, c.psu, 0)), c.speed, 0.15) << c.celsius << ' ' << c.psu;
+        EXPECT_NEAR(medwinSpeed(water(c.celsius, c.psu, 0)), c.speed, 0.3) << c.celsius << ' ' << c.psu;
+    }
+    for (const Case& c : {Case{0, 5, 1409.16}, Case{10, 5, 1453.45}, Case{20, 5, 1488.04}, Case{30, 5, 1514.46}})
+        EXPECT_NEAR(leroySpeed(water(c.celsius, c.psu, 0)), c.speed, 0.15) << c.celsius << ' ' << c.psu;
 }
 
 TEST(AcousticsTest, SoundSpeedLawsAgreeInSeaWater) {

@@ -46,7 +46,6 @@ inline SonarConfig fan(double field_of_view_deg) {
     config.field_of_view_deg = field_of_view_deg;
     config.beam_height_deg = 50;
     config.quality.rows = 96;
-    config.detail = 0;
     config.device = "software";
     return config;
 }

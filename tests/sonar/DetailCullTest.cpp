@@ -1,4 +1,5 @@
-// What of large meshes is not drawn though it is in view: backs, and detail that no pixel can show.
+// What of large meshes is not drawn though it is in view: backs; and that all other detail is.
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -6,29 +7,77 @@
 
 #include "components/sonar/Culler.hpp"
 #include "tests/sonar/ClusteredHarbour.hpp"
+#include "tests/support/FractalFloor.hpp"
+#include "types/Angle.hpp"
 
 namespace insonify::sonar {
 namespace {
 
-/** Triangles drawn over all slabs of `config`, and how many are drawn in the place of others. */
-struct Drawn {
-    size_t all = 0, coarse = 0, replaced = 0;
-};
-Drawn drawnBy(const SonarConfig& config, const types::Snapshot& snapshot, double pixels, double metres) {
-    Culler culler(*snapshot.geometry, {config.range_min, config.range, pixels, metres});
+/** Triangles drawn over all slabs of `config`. */
+size_t drawnBy(const SonarConfig& config, const types::Snapshot& snapshot) {
+    Culler culler(*snapshot.geometry, {config.range_min, config.range});
     culler.place(snapshot);
-    Drawn drawn;
+    size_t drawn = 0;
     std::vector<Culler::Run> runs;
     for (const Slab& slab : makeSlabs(config, makeBeams(config))) {
         culler.visible(slab, runs);
         EXPECT_LE(runs.size(), culler.runLimit());
-        for (const Culler::Run& run : runs) {
-            drawn.all += run.index_count / 3;
-            if (run.stands_for) drawn.coarse += run.index_count / 3;
-            drawn.replaced += run.stands_for / 3;
-        }
+        for (const Culler::Run& run : runs) drawn += run.index_count / 3;
     }
     return drawn;
+}
+
+/** rel_l2_tvg: relative L2 of energies times the fifth power of their range. */
+double relativeError(const types::Sonar& got, const types::Sonar& reference) {
+    double error = 0, norm = 0;
+    for (size_t i = 0; i < reference.bins.size(); ++i) {
+        const double range = static_cast<double>(i % reference.bin_count) + 0.5, weight = std::pow(range, 5);
+        error += std::pow(weight * (double{got.bins[i]} - reference.bins[i]), 2);
+        norm += std::pow(weight * reference.bins[i], 2);
+    }
+    return std::sqrt(error / norm);
+}
+
+/** The same floor of 524,288 triangles as one large mesh, as 64 that are not split, and as its outline. */
+struct Floors {
+    static constexpr uint32_t cells = 512, tile = 64;
+    types::GeometryPtr one, tiles, outline;
+
+    Floors() {
+        const test::FractalFloor floor(7, cells, 60, 20);
+        types::Mesh whole = floor.part(0, 0, cells);
+        scene::buildClusters(whole);
+        one = test::sceneOf({whole}, -16.7f);
+        std::vector<types::Mesh> parts;
+        for (uint32_t i = 0; i < cells; i += tile)
+            for (uint32_t j = 0; j < cells; j += tile) {
+                parts.push_back(floor.part(i, j, tile));
+                scene::buildClusters(parts.back());
+            }
+        tiles = test::sceneOf(std::move(parts), -16.7f);
+        outline = test::sceneOf({test::meshOf(whole.positions, whole.coarse_indices)}, -16.7f);
+    }
+};
+
+/** Where a sonar is over the floor, and how far it hears. */
+struct Look {
+    glm::dvec3 position;
+    double yaw, pitch_deg, range;
+};
+
+types::Sonar heardOf(const types::GeometryPtr& geometry, const Look& look) {
+    SonarConfig config;
+    config.speed_of_sound = 1000;
+    config.beam_count = 128;
+    config.field_of_view_deg = 90;
+    config.bin_count = 400;
+    config.range = look.range;
+    config.quality = {256, 2, {}, {}};
+    config.device = "software";
+    types::Sonar ping;
+    SonarRenderer(config, geometry)
+        .render(test::snapshotOf(geometry, look.position, look.yaw, types::radians(look.pitch_deg)), ping);
+    return ping;
 }
 
 }  // namespace
@@ -38,13 +87,13 @@ TEST(DetailCullTest, TheBacksOfAClosedMeshAreNotDrawnAndNoBinMissesThem) {
     types::Mesh& ball = geometry->meshes[1];
     const SonarConfig config = fan(360);
     const types::Snapshot snapshot = test::snapshotOf(geometry);
-    const size_t fronts = drawnBy(config, snapshot, 0, 0).all;
+    const size_t fronts = drawnBy(config, snapshot);
     const auto without_backs = pings(config, geometry);
 
     const auto both_sides = std::make_shared<types::Geometry>(*geometry);
     both_sides->materials[0].double_sided = true;
     const size_t triangles = ball.indices.size() / 3;
-    EXPECT_LT(fronts + 2 * triangles / 4, drawnBy(config, test::snapshotOf(both_sides), 0, 0).all) << "of ball and egg";
+    EXPECT_LT(fronts + 2 * triangles / 4, drawnBy(config, test::snapshotOf(both_sides))) << "of ball and egg";
     EXPECT_EQ(without_backs, pings(config, both_sides));
     EXPECT_GT(std::ranges::count_if(without_backs, [](float bin) { return bin > 0; }), 1000);
 }
@@ -59,62 +108,32 @@ TEST(DetailCullTest, FromWithinAClosedMeshItsBackIsHeard) {
     EXPECT_GT(*std::ranges::max_element(ping.bins), 0);
 }
 
-TEST(DetailCullTest, WherePixelsAreCoarseAQuarterOfTheTrianglesOrFewerStandsForAPatch) {
-    const auto geometry = clusteredHarbour();
-    const types::Snapshot snapshot = test::snapshotOf(geometry);
-    const SonarConfig config = fan(120);
-    const Drawn all = drawnBy(config, snapshot, 0, 0), half = drawnBy(config, snapshot, 0.5, 0.05),
-                much = drawnBy(config, snapshot, 100, 10), fine = drawnBy(config, snapshot, 1, 1e-9);
-    EXPECT_EQ(all.coarse, 0u);
-    EXPECT_EQ(fine.coarse, 0u) << "no more than so many metres";
-    EXPECT_GT(half.replaced, 2 * half.coarse);
-    EXPECT_LT(half.all, all.all);
-    EXPECT_LT(much.all, half.all);
-}
-
-TEST(DetailCullTest, WhatStandsForAPatchOfABallFacesTheSonarLimbsAreDrawnInFull) {
-    const auto geometry = test::sceneOf({test::sphere(1, 128)}, -10, {{10, 0, 0}});
-    types::Mesh& ball = const_cast<types::Geometry&>(*geometry).meshes[0];
-    scene::buildClusters(ball);
-    const SonarConfig config = fan(40);
-    Culler culler(*geometry, {config.range_min, config.range, 10, 1});
-    culler.place(test::snapshotOf(geometry));
-    std::vector<Culler::Run> runs;
-    culler.visible(makeSlabs(config, makeBeams(config)).front(), runs);
-    size_t coarse = 0;
-    for (const Culler::Run& run : runs) {
-        if (!run.stands_for) continue;
-        for (size_t i = run.first_index - ball.indices.size();
-             i < run.first_index - ball.indices.size() + run.index_count; i += 3) {
-            const auto corner = [&](size_t k) { return ball.positions[ball.coarse_indices[i + k]]; };
-            const glm::vec3 normal = glm::cross(corner(1) - corner(0), corner(2) - corner(0));
-            EXPECT_LE(glm::dot(normal, corner(0) + glm::vec3(10, 0, 0)), 0) << "seen from -10 m on its x axis";
-            ++coarse;
-        }
+TEST(DetailCullTest, ARoughFloorIsHeardTheSameInOneMeshAsInManySmallOnes) {
+    const Floors floors;
+    ASSERT_FALSE(floors.one->meshes[0].patches.empty());
+    ASSERT_TRUE(floors.tiles->meshes[0].patches.empty());
+    for (const Look& look : {Look{{0, 0, 3}, 0, 8, 40}, Look{{0, 0, 3}, 0, 8, 15}, Look{{0, 0, 8}, 0.3, 25, 40},
+                             Look{{10, 5, 1.5}, -0.4, 2, 30}}) {
+        const types::Sonar one = heardOf(floors.one, look), tiles = heardOf(floors.tiles, look);
+        const double error = relativeError(one, tiles);
+        RecordProperty(fmt::format("rel_l2_tvg {:g} m above, to {:g} m", look.position.z, look.range),
+                       fmt::format("{:.5f}", error));
+        EXPECT_LT(error, 0.005) << look.position.z << " m above, to " << look.range << " m";
+        EXPECT_GT(relativeError(heardOf(floors.outline, look), tiles), 0.05) << "fewer triangles are another floor";
     }
-    EXPECT_GT(coarse, 100u) << "nothing was simplified";
 }
 
-TEST(DetailCullTest, SimplerSurfacesChangeAPingByLessThanItsPixelsDo) {
+TEST(DetailCullTest, WithDrawAllTheWholeSceneIsDrawnAndHeardTheSame) {
     const auto geometry = clusteredHarbour();
-    const auto rms = [](const std::vector<float>& a, const std::vector<float>& b) {
-        double difference = 0, norm = 0;
-        for (size_t i = 0; i < a.size(); ++i) {
-            difference += std::pow(static_cast<double>(a[i]) - b[i], 2);
-            norm += std::pow(b[i], 2);
-        }
-        return std::sqrt(difference / norm);
-    };
-    SonarConfig config = fan(120);
-    config.range = 60;
-    const auto all = pings(config, geometry);
-    config.detail = 0.5;
-    const auto simpler = pings(config, geometry);
-    config.detail = 0;
-    config.quality = {96 * 3, 6, {}, {}};
-    const auto finer = pings(config, geometry);
-    EXPECT_GT(rms(simpler, all), 0) << "nothing was simplified";
-    EXPECT_LT(rms(simpler, all), 0.5 * rms(all, finer));
+    SonarConfig config = fan(100);
+    config.range = 120;  // holds all of the scene
+    const auto culled = pings(config, geometry);
+    config.draw_all = true;
+    EXPECT_EQ(culled, pings(config, geometry));
+    SonarRenderer renderer(config, geometry);
+    types::Sonar ping;
+    renderer.render(test::snapshotOf(geometry), ping);
+    EXPECT_TRUE(renderer.culled().empty());
 }
 
 }  // namespace insonify::sonar

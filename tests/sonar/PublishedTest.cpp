@@ -1,5 +1,5 @@
 // `cerqueira2017` with `published: true` against a count of pixels written down from the description of the published
-// simulator (physics.md 2, items 1 to 4).
+// simulator (ACOUSTICS.md 8.2).
 #include <gtest/gtest.h>
 
 #include <cmath>

@@ -41,7 +41,9 @@ TEST(SonarConfigTest, EveryKeyOfTheContractIsAccepted) {
         quality: {rows: 512, columns_per_beam: 4}
         range_rounding: exact
         device: software
-        deposit: cpu)"),
+        deposit: cpu
+        detail: {error: 0}
+        draw_all: true)"),
                 IsEmpty());
     EXPECT_THAT(faultsOf<SonarConfig>("{model: cerqueira2017, published: true, absorption: {db_per_m: 0.2}}"),
                 IsEmpty());
@@ -56,6 +58,8 @@ TEST(SonarConfigTest, ValuesOutOfBoundsAreRefused) {
                              "range: -5",
                              "range: .nan",
                              "range_min: -1",
+                             "detail: {error: -0.1}",
+                             "detail: {error: 1.1}",
                              "quality: {target_error: 0}",
                              "quality: {target_error: 2}",
                              "quality: {budget_ms: 0}",
@@ -66,8 +70,11 @@ TEST(SonarConfigTest, ValuesOutOfBoundsAreRefused) {
                              "field_of_view_deg: -10",
                              "field_of_view_deg: 361",
                              "beam_height_deg: 0",
-                             "beam_height_deg: 90",
-                             "beam_height_deg: 180",
+                             "beam_height_deg: 181",
+                             "{visibility: gl, beam_height_deg: 160}",
+                             "{visibility: cpu, model: cerqueira2017, published: true}",
+                             "{visibility: cpu, deposit: gpu}",
+                             "visibility: sonar",
                              "speed_of_sound: 0",
                              "speed_of_sound: -1500",
                              "speed_of_sound: 1.0e+9",

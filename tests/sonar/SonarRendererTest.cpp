@@ -1,4 +1,4 @@
-// Threads and extreme scenes (physics.md 4).
+// Threads and extreme scenes (ACOUSTICS.md 11).
 #include <gmock/gmock.h>
 
 #include <algorithm>
@@ -129,6 +129,26 @@ TEST(SonarRendererTest, FarFromTheOriginOfTheWorldEchoesAreTheSame) {
     for (types::Object& object : there->objects) object.world_from_object[3] += glm::dvec4(offset, 0);
     const auto bins = binsOf(test::snapshotOf(here, {0, 0, 0}, 0.1, 0.1));
     EXPECT_LT(difference(binsOf(test::snapshotOf(there, offset, 0.1, 0.1)), bins), 1e-6);
+}
+
+TEST(SonarRendererTest, FarFromTheOriginOfATileEchoesAreTheSame) {
+    const glm::vec3 offset(4096, -3072, 512);  // vertices stay exact
+    types::Mesh here = test::quad({4, -16, -6}, {40, 0, 9}, {0, 32, 5}), there = here;
+    for (glm::vec3& p : there.positions) p += offset;
+    SonarConfig config;
+    config.range = 30;
+    config.bin_count = 6000;  // of 5 mm
+    config.beam_count = 16;
+    config.field_of_view_deg = 40;
+    config.range_rounding = RangeRounding::Exact;
+    config.device = "software";
+    const auto bins = [&](const types::Mesh& mesh, const glm::dvec3& sonar) {
+        const auto scene = test::sceneOf({mesh});
+        types::Sonar ping;
+        SonarRenderer(config, scene).render(test::snapshotOf(scene, sonar, 0.3, 0.2), ping);
+        return ping.bins;
+    };
+    EXPECT_LT(difference(bins(there, offset), bins(here, {})), 1e-5);
 }
 
 TEST(SonarRendererTest, ASeaFloorOfTwoHugeTrianglesIsASeaFloor) {

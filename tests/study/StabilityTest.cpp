@@ -1,7 +1,9 @@
 // Every stiff and extreme case of the stability study: none may fail.
 #include <gmock/gmock.h>
 
+#include <fstream>
 #include <set>
+#include <string>
 
 #include "components/deployer/StabilityTasks.hpp"
 #include "components/study/StabilityStudy.hpp"
@@ -50,6 +52,19 @@ TEST(StabilityStudyTest, NoneOfThe55CasesIsLeftOut) {
     std::set<int> numbers;
     for (const StabilityCase& c : allCases()) numbers.insert(c.number);
     for (int number = 1; number <= 55; ++number) EXPECT_TRUE(numbers.contains(number)) << number;
+}
+
+TEST(StabilityStudyTest, TheReferenceListsTheCasesThatThereAre) {
+    std::set<int> numbers, listed;
+    for (const StabilityCase& c : allCases()) numbers.insert(c.number);
+    std::ifstream page(INSONIFY_SOURCE_DIR "/components/sonar/ACOUSTICS.md");
+    bool inside = false;
+    for (std::string line; std::getline(page, line);) {
+        if (line.starts_with("## ")) inside = line.starts_with("## 11 ");
+        if (inside && line.starts_with("| ") && line.size() > 2 && std::isdigit(static_cast<unsigned char>(line[2])))
+            listed.insert(std::stoi(line.substr(2)));
+    }
+    EXPECT_EQ(listed, numbers);
 }
 
 TEST(StabilityStudyTest, ACaseThatThrowsHasFailedAndTheSheetsSaySo) {

@@ -1,4 +1,4 @@
-// The study's exact echoes against the closed forms of physics.md 3.5.
+// The study's exact echoes against the closed forms of ACOUSTICS.md 9.
 #include <gtest/gtest.h>
 
 #include "components/study/StudyScene.hpp"

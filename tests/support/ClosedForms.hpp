@@ -1,5 +1,5 @@
 #pragma once
-// Echoes that are known in closed form (physics.md 3.5, with S0 = 1), and how far a ping is from one.
+// Echoes that are known in closed form (ACOUSTICS.md 9, with S0 = 1), and how far a ping is from one.
 #include <gtest/gtest.h>
 
 #include <algorithm>

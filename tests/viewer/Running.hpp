@@ -89,7 +89,8 @@ private:
     }
 
     const types::GeometryPtr geometry_ = scene();
-    const types::Plan plan_{{"cones"}, {"draw", "sum"}, {{"multipath", "not asked for"}}, {"a notice"}, 64, 2, 1, 0.01};
+    const types::Plan plan_{{"cones"}, {"draw", "sum"}, {{"multipath", "not asked for"}}, {"a notice"}, 64, 2, 1,
+                            0.01,      "llvmpipe"};
 };
 
 /** A lockstep deployment that runs on a thread of its own, slowly. */

@@ -82,15 +82,9 @@ TEST(SceneMeshTest, WhatIsLeftOutIsNotSent) {
     EXPECT_EQ(message.data.size(), size_t{(502 + 12) * 3 * 4 + (500 + 10) * 3 * 4});
 }
 
-TEST(SceneMeshTest, LargeMeshesAreWhatStandsForThem) {
+TEST(SceneMeshTest, LargeMeshesAreTheirOutlines) {
     types::Geometry geometry = scene(100, 10);
-    types::Mesh& mesh = geometry.meshes[0];
-    types::Patch patch;
-    patch.cluster_count = 1;
-    patch.next = 1;
-    patch.index_count = 3;
-    mesh.patches = {patch};
-    mesh.coarse_indices = {1, 50, 100};
+    geometry.meshes[0].coarse_indices = {1, 50, 100};
     const Message message = takenApart(sceneMessage(geometry, 50, "scene.snapshot"));
     EXPECT_EQ(message.json["coarse"], true);
     EXPECT_EQ(message.json["meshes"][0]["indices"]["count"], 3);

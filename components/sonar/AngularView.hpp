@@ -1,0 +1,41 @@
+#pragma once
+#include <glm/vec3.hpp>
+#include <vector>
+
+#include "components/sonar/BeamFan.hpp"
+
+namespace insonify::sonar {
+
+/** How rays sample a fan: cells in azimuth and elevation of the sonar frame, in as many columns for each beam, none of
+ *  which belongs to two. Up to 180 deg of elevation. With conical beams, the columns of a row follow its cones. */
+struct AngularView {
+    /** An angle. */
+    struct Direction {
+        double cosine, sine;
+    };
+
+    int beams = 0;
+    int beam_columns = 0;  ///< Of each beam [1].
+    int rows = 0;          ///< From below upwards [1].
+    bool conical = false;
+    double column_width = 0;   ///< Of the first beam's columns, in bearing [rad].
+    double row_height = 0;     ///< [rad]
+    std::vector<int> beam_of;  ///< Of each column, beam after beam [1].
+    /** At the lower edge, the middle and the upper edge of each row: row i has 2 i, 2 i + 1 and 2 i + 2. */
+    std::vector<Direction> elevations;
+    /** The same of each beam's columns, from at(column) on: bearings [rad]. */
+    std::vector<double> bearings;
+    std::vector<Direction> azimuths;  ///< Of the bearings, those of planar beams.
+
+    int columns() const { return static_cast<int>(beam_of.size()); }
+    /** Of a column's lower edge, in `bearings` and `azimuths`; its middle and upper edge follow. */
+    size_t at(int column) const { return static_cast<size_t>(2 * column + beam_of[static_cast<size_t>(column)]); }
+    /** Unit, sonar axes, of the middle of a cell [1]. */
+    glm::dvec3 direction(int column, int row) const;
+    /** Solid angle of one cell of the first beam at elevation 0 [sr]. */
+    double cell() const { return column_width * row_height; }
+};
+
+AngularView makeAngularView(const SonarConfig& config, const std::vector<Beam>& beams);
+
+}  // namespace insonify::sonar

@@ -1,0 +1,262 @@
+#include "components/sonar/CastEchoes.hpp"
+
+#include <algorithm>
+#include <atomic>
+#include <chrono>
+#include <cmath>
+#include <mutex>
+
+#include "components/sonar/Acoustics.hpp"
+#include "components/sonar/BinDeposit.hpp"
+#include "components/sonar/BinLevels.hpp"
+#include "components/sonar/Culler.hpp"
+#include "components/sonar/SurfaceScene.hpp"
+#include "components/sonar/ThreadPool.hpp"
+#include "components/sonar/TileDeposit.hpp"
+
+namespace insonify::sonar {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+/** Samples of a part: few enough to stay in a thread's cache, and to share out one beam of very many [1]. */
+constexpr int part_samples = 8192;
+
+/** What one thread takes at a time: some rows of neighbouring beams, enough of these to fill a tile's columns. */
+struct Part {
+    int first_beam, beams, first_row, rows;
+    size_t strip;
+};
+
+/** All parts of the same beams. */
+struct Strip {
+    int parts = 0;
+    std::atomic<int> left = 0;
+    std::vector<uint64_t> sums;  ///< Of several parts.
+    std::mutex mutex;
+};
+
+class CastEchoes final : public EchoRenderer {
+public:
+    CastEchoes(const SonarConfig& config, types::GeometryPtr geometry);
+    void setQuality(int rows, int columns_per_beam) override;
+    void render(const types::Snapshot& snapshot, types::Sonar& ping, Stages& stages) override;
+    bool heard() const override { return heard_; }
+    std::vector<types::Omission> culled() const override { return {}; }
+    const std::string& device() const override { return device_; }
+
+private:
+    /** What one thread works with. */
+    struct Worker {
+        std::vector<CastTile> tiles;
+        std::vector<uint64_t> sums;
+        std::vector<double> values;
+        Stages stages{};
+        Clock::time_point last;
+        bool heard = false;
+
+        void lap(StageOf stage) {
+            const Clock::time_point now = Clock::now();
+            stages[stage].seconds += std::chrono::duration<double>(now - last).count();
+            last = now;
+        }
+    };
+    void shareOut();
+    void place(const types::Snapshot& snapshot);
+    void work(Worker& worker, types::Sonar& ping);
+    void workOn(const Part& part, Worker& worker, types::Sonar& ping);
+    std::span<const CastTile> cast(const Part& part, Worker& worker) const;
+    TileRays raysOf(const CastTile& tile, int end_column) const;
+    /** Adds a part's sums to its strip's; whether they are complete now, and in the worker. */
+    bool gather(const Part& part, Worker& worker);
+    void fillBeam(const uint64_t* sums, std::span<float> bins, Worker& worker) const;
+
+    SonarConfig config_;
+    types::GeometryPtr geometry_;
+    std::vector<Beam> beams_;
+    EchoRules rules_;
+    TileShape shape_{1, 1};
+    BinLevels levels_;
+    Culler culler_;
+    RayVisibility visibility_;
+    std::vector<PlaneRecord> planes_;
+    NormalMapping normal_maps_;
+    std::vector<PlacedRun> runs_;  ///< Of the visibility's commands, in this ping.
+    ThreadPool threads_;
+    std::vector<Worker> workers_;
+    std::vector<Part> parts_;
+    std::vector<Strip> strips_;
+    std::atomic<size_t> next_ = 0;
+    std::string device_ = "rays on the processor";
+    bool heard_ = false;
+};
+
+CastEchoes::CastEchoes(const SonarConfig& config, types::GeometryPtr geometry)
+    : config_(config),
+      geometry_(std::move(geometry)),
+      beams_(makeBeams(config)),
+      rules_(makeEchoRules(config, *geometry_)),
+      levels_(config, rules_.bins),
+      culler_(*geometry_, {0, rules_.bins.range_max, true}),
+      visibility_(*geometry_),
+      planes_(planesOf(*geometry_)),
+      normal_maps_(*geometry_),
+      threads_(config.threads),
+      workers_(static_cast<size_t>(threads_.size())) {
+    runs_.reserve(visibility_.commands().size());
+    for (Worker& worker : workers_) worker.values.resize(static_cast<size_t>(rules_.bins.bin_count));
+    setQuality(config_.rows(), config_.columnsPerBeam());
+}
+
+void CastEchoes::setQuality(int rows, int columns_per_beam) {
+    config_.quality.rows = rows;
+    config_.quality.columns_per_beam = columns_per_beam;
+    rules_.view = makeAngularView(config_, beams_);
+    rules_.strength_scale = strengthScale(config_, rules_.bins, loudest(*geometry_));
+    rules_.most_merged = mostMerged(rules_.view, rules_.bins);
+    shareOut();
+}
+
+void CastEchoes::shareOut() {
+    const int beam_columns = rules_.view.beam_columns, beams = rules_.view.beams;
+    const int together = std::min(beams, (3 + beam_columns) / beam_columns);
+    shape_ = TileShape(beam_columns, together * beam_columns);
+    const int wanted = std::max(1, part_samples / (together * beam_columns)), up = shape_.all.rows;
+    const int rows = std::min((wanted + up - 1) / up * up, (rules_.view.rows + up - 1) / up * up);
+    parts_.clear();
+    strips_ = std::vector<Strip>(static_cast<size_t>((beams + together - 1) / together));
+    for (size_t strip = 0; strip < strips_.size(); ++strip) {
+        const int first = static_cast<int>(strip) * together;
+        for (int row = 0; row < rules_.view.rows; row += rows, ++strips_[strip].parts)
+            parts_.push_back(
+                {first, std::min(together, beams - first), row, std::min(rows, rules_.view.rows - row), strip});
+        if (strips_[strip].parts > 1) strips_[strip].sums.resize(static_cast<size_t>(together) * rules_.sumCount());
+    }
+    const int across = (together * beam_columns + shape_.all.columns - 1) / shape_.all.columns;
+    for (Worker& worker : workers_) {
+        worker.tiles.resize(static_cast<size_t>(across * (rows / up)));
+        worker.sums.resize(static_cast<size_t>(together) * rules_.sumCount());
+    }
+}
+
+void CastEchoes::place(const types::Snapshot& snapshot) {
+    culler_.place(snapshot);
+    visibility_.place(snapshot);
+    runs_.clear();
+    for (const CommandRecord& command : visibility_.commands()) {
+        const types::Material& material = geometry_->materials[command.material];
+        const double strength = rules_.model == Model::Cerqueira2017
+                                    ? static_cast<double>(material.reflectivity)
+                                    : static_cast<double>(std::pow(10.0f, material.lambert_db / 10));
+        runs_.push_back(placedRun(culler_.records()[command.object], strength * rules_.strength_scale,
+                                  command.first_triangle, 1, 0));
+    }
+}
+
+TileRays CastEchoes::raysOf(const CastTile& tile, int end_column) const {
+    const AngularView& view = rules_.view;
+    TileRays rays;
+    rays.active = 0;
+    for (int i = 0; i < tile_samples; ++i) {
+        const int column = tile.first_column + shape_.at[i].columns, row = tile.first_row + shape_.at[i].rows;
+        rays.active |= static_cast<uint32_t>(column < end_column && row < view.rows) << i;
+        const glm::vec3 ray(view.direction(std::min(column, end_column - 1), std::min(row, view.rows - 1)));
+        rays.x[i] = ray.x;
+        rays.y[i] = ray.y;
+        rays.z[i] = ray.z;
+    }
+    return rays;
+}
+
+std::span<const CastTile> CastEchoes::cast(const Part& part, Worker& worker) const {
+    const int begin = part.first_beam * rules_.view.beam_columns, end = begin + part.beams * rules_.view.beam_columns;
+    size_t count = 0;
+    for (int column = begin; column < end; column += shape_.all.columns)
+        for (int row = part.first_row; row < part.first_row + part.rows; row += shape_.all.rows) {
+            CastTile& tile = worker.tiles[count++];
+            tile.first_column = column;
+            tile.first_row = row;
+            visibility_.cast(raysOf(tile, end), tile.hits);
+        }
+    return {worker.tiles.data(), count};
+}
+
+bool CastEchoes::gather(const Part& part, Worker& worker) {
+    Strip& strip = strips_[part.strip];
+    if (strip.parts == 1) return true;
+    const std::lock_guard alone(strip.mutex);
+    for (size_t i = 0; i < strip.sums.size(); ++i) strip.sums[i] += worker.sums[i];
+    if (--strip.left > 0) return false;
+    std::copy(strip.sums.begin(), strip.sums.end(), worker.sums.begin());
+    return true;
+}
+
+void CastEchoes::fillBeam(const uint64_t* sums, std::span<float> bins, Worker& worker) const {
+    const double quantum = rules_.view.cell() / (quanta_per_unit * rules_.strength_scale);
+    uint64_t any = 0;
+    for (size_t k = 0; k < bins.size(); ++k) {
+        if (rules_.model == Model::Physical)
+            worker.values[k] = static_cast<double>(sums[k]) * quantum;
+        else
+            worker.values[k] =
+                sums[2 * k + 1] ? static_cast<double>(sums[2 * k]) / static_cast<double>(sums[2 * k + 1]) : 0;
+        any |= sums[k * rules_.channels()];
+    }
+    worker.heard = worker.heard || any;
+    levels_.apply(worker.values, bins);
+}
+
+void CastEchoes::workOn(const Part& part, Worker& worker, types::Sonar& ping) {
+    const std::span<const CastTile> tiles = cast(part, worker);
+    worker.lap(DrawStage);
+    std::fill(worker.sums.begin(), worker.sums.end(), 0);
+    deposit(rules_, shape_, {visibility_.commands(), runs_, culler_.records(), planes_, normal_maps_}, tiles,
+            part.first_beam, worker.sums.data());
+    worker.lap(DepositStage);
+    const auto count = static_cast<size_t>(rules_.bins.bin_count);
+    if (gather(part, worker))
+        for (int beam = 0; beam < part.beams; ++beam)
+            fillBeam(worker.sums.data() + static_cast<size_t>(beam) * rules_.sumCount(),
+                     {ping.bins.data() + static_cast<size_t>(part.first_beam + beam) * count, count}, worker);
+    worker.lap(BeamStage);
+}
+
+void CastEchoes::work(Worker& worker, types::Sonar& ping) {
+    worker.heard = false;
+    for (Stage& stage : worker.stages) stage.seconds = 0;
+    worker.last = Clock::now();
+    for (size_t i = next_++; i < parts_.size(); i = next_++) workOn(parts_[i], worker, ping);
+}
+
+void CastEchoes::render(const types::Snapshot& snapshot, types::Sonar& ping, Stages& stages) {
+    Worker& own = workers_.front();
+    own.last = Clock::now();
+    place(snapshot);
+    stages[CullStage].seconds += std::chrono::duration<double>(Clock::now() - own.last).count();
+    next_ = 0;
+    for (Strip& strip : strips_) {
+        strip.left = strip.parts;
+        std::fill(strip.sums.begin(), strip.sums.end(), 0);
+    }
+    const bool alone = parts_.size() == 1;
+    if (alone)
+        work(own, ping);
+    else
+        threads_.run([&](int part, int) { work(workers_[static_cast<size_t>(part)], ping); });
+    heard_ = false;
+    for (const Worker& worker : std::span(workers_).first(alone ? 1 : workers_.size())) {
+        for (size_t i = 0; i < stages.size(); ++i)
+            stages[i].seconds += worker.stages[i].seconds / static_cast<double>(alone ? 1 : workers_.size());
+        heard_ = heard_ || worker.heard;
+    }
+}
+
+}  // namespace
+
+bool haveRays() { return true; }
+
+std::unique_ptr<EchoRenderer> makeCastEchoes(const SonarConfig& config, types::GeometryPtr geometry) {
+    return std::make_unique<CastEchoes>(config, std::move(geometry));
+}
+
+}  // namespace insonify::sonar

@@ -1,0 +1,342 @@
+#include "components/sonar/RayVisibility.hpp"
+
+#include <embree3/rtcore.h>
+
+#include <algorithm>
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <glm/gtc/quaternion.hpp>
+#include <glm/matrix.hpp>
+#include <limits>
+#include <stdexcept>
+#include <string>
+
+namespace insonify::sonar {
+namespace {
+
+/** From here on the tree is built anew about the sonar: float has 0.06 mm there [m]. */
+constexpr double farthest_from_origin = 1000;
+/** Triangles that are copied to where they stand, once for each object; of larger scenes, meshes that stand in several
+ *  places are instances of one tree, through which rays take longer [1]. */
+constexpr size_t most_copied = 4'000'000;
+
+void requireNoError(RTCDevice device) {
+    if (const RTCError error = rtcGetDeviceError(device); error != RTC_ERROR_NONE)
+        throw std::runtime_error("Embree cannot build the scene: error " + std::to_string(error));
+}
+
+/** A run of triangles of one material. */
+struct MaterialRun {
+    uint32_t first_index, index_count;
+    int material;
+};
+
+std::vector<MaterialRun> materialRuns(const types::Mesh& mesh) {
+    std::vector<MaterialRun> runs;
+    for (const types::Cluster& cluster : mesh.clusters) {
+        if (!runs.empty() && runs.back().material == cluster.material)
+            runs.back().index_count += cluster.index_count;
+        else
+            runs.push_back({cluster.first_index, cluster.index_count, cluster.material});
+    }
+    return runs;
+}
+
+/** The three rows of a matrix that takes directions and places from one frame to another. */
+struct Rows {
+    glm::vec3 x, y, z;
+
+    explicit Rows(const glm::mat3& m)
+        : x(m[0][0], m[1][0], m[2][0]), y(m[0][1], m[1][1], m[2][1]), z(m[0][2], m[1][2], m[2][2]) {}
+};
+
+void aim(const Rows& turn, glm::vec3 from, const TileRays& rays, RTCRayHit16& all) {
+    for (int i = 0; i < tile_samples; ++i) {
+        const float x = rays.x[i], y = rays.y[i], z = rays.z[i];
+        all.ray.org_x[i] = from.x;
+        all.ray.org_y[i] = from.y;
+        all.ray.org_z[i] = from.z;
+        all.ray.dir_x[i] = turn.x.x * x + turn.x.y * y + turn.x.z * z;
+        all.ray.dir_y[i] = turn.y.x * x + turn.y.y * y + turn.y.z * z;
+        all.ray.dir_z[i] = turn.z.x * x + turn.z.y * y + turn.z.z * z;
+        all.hit.geomID[i] = RTC_INVALID_GEOMETRY_ID;
+        all.hit.instID[0][i] = RTC_INVALID_GEOMETRY_ID;
+    }
+}
+
+}  // namespace
+
+/** Embree's trees, and what the numbers of their hits mean. */
+struct RayVisibility::Trees {
+    /** What a geometry of a tree is. */
+    struct Part {
+        uint32_t command, first_triangle;
+    };
+    /** A mesh in its own axes: a geometry for each run of one material. */
+    struct MeshTree {
+        RTCScene scene = nullptr;
+        std::vector<glm::vec3> positions;
+        std::vector<Part> parts;  ///< Commands counted from the object's first.
+    };
+
+    RTCDevice device = rtcNewDevice(nullptr);
+    RTCScene still = nullptr;
+    std::vector<Part> parts;                        ///< Of each geometry of `still` that is no instance.
+    std::vector<const MeshTree*> instanced;         ///< Of each geometry of `still` that is one, else null,
+    std::vector<uint32_t> instance_command;         ///< and the first command of its object.
+    std::vector<std::vector<glm::vec3>> positions;  ///< Of what is copied into `still`.
+    std::vector<MeshTree> meshes;                   ///< Built where they are wanted.
+
+    explicit Trees(size_t mesh_count) : meshes(mesh_count) { requireNoError(device); }
+    ~Trees() {
+        for (MeshTree& mesh : meshes)
+            if (mesh.scene) rtcReleaseScene(mesh.scene);
+        if (still) rtcReleaseScene(still);
+        rtcReleaseDevice(device);
+    }
+    Trees(const Trees&) = delete;
+
+    const MeshTree& treeOf(const types::Geometry& geometry, int mesh);
+    void copy(const types::Mesh& mesh, const glm::dmat4& place, uint32_t command);
+    void instance(const MeshTree& mesh, const glm::dmat4& place, uint32_t command);
+    RTCScene newScene() const;
+    void addRun(RTCScene scene, const types::Mesh& mesh, const MaterialRun& run,
+                const std::vector<glm::vec3>& at) const;
+    /** The command and triangle of a hit in `still`. */
+    Part meaning(uint32_t geometry, uint32_t instance) const {
+        if (instance == RTC_INVALID_GEOMETRY_ID) return parts[geometry];
+        const Part& part = instanced[instance]->parts[geometry];
+        return {instance_command[instance] + part.command, part.first_triangle};
+    }
+};
+
+/** An object that moves. */
+struct RayVisibility::Mover {
+    uint32_t object, first_command;
+    const Trees::MeshTree* mesh;
+    glm::vec3 low, high;          ///< Box in its own axes [m].
+    bool placed = false;          ///< Whether rays can meet it.
+    glm::mat3 from_sonar{1};      ///< Directions in sonar axes to its own.
+    glm::vec3 place{0};           ///< Of the sonar in its axes [m].
+    glm::vec3 towards{0};         ///< Unit, from the sonar to the middle of a ball about it, sonar axes.
+    float cosine = -1, sine = 0;  ///< Of the angle under which the ball's half is seen; -1: the sonar is inside.
+
+    void placeAt(const glm::dmat4& sonar_from_object);
+    bool mayMeet(const TileRays& rays) const;
+};
+
+RTCScene RayVisibility::Trees::newScene() const {
+    RTCScene scene = rtcNewScene(device);
+    rtcSetSceneFlags(scene, RTC_SCENE_FLAG_ROBUST);
+    return scene;
+}
+
+void RayVisibility::Trees::addRun(RTCScene scene, const types::Mesh& mesh, const MaterialRun& run,
+                                  const std::vector<glm::vec3>& at) const {
+    RTCGeometry triangles = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
+    rtcSetSharedGeometryBuffer(triangles, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, at.data(), 0, sizeof(glm::vec3),
+                               at.size() - 1);
+    rtcSetSharedGeometryBuffer(triangles, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, mesh.indices.data(),
+                               run.first_index * sizeof(uint32_t), 3 * sizeof(uint32_t), run.index_count / 3);
+    rtcCommitGeometry(triangles);
+    rtcAttachGeometry(scene, triangles);
+    rtcReleaseGeometry(triangles);
+}
+
+const RayVisibility::Trees::MeshTree& RayVisibility::Trees::treeOf(const types::Geometry& geometry, int index) {
+    MeshTree& tree = meshes[static_cast<size_t>(index)];
+    if (tree.scene) return tree;
+    const types::Mesh& mesh = geometry.meshes[static_cast<size_t>(index)];
+    tree.positions = mesh.positions;
+    tree.positions.emplace_back();  // Embree reads 16 bytes at each position
+    tree.scene = newScene();
+    for (const MaterialRun& run : materialRuns(mesh)) {
+        addRun(tree.scene, mesh, run, tree.positions);
+        tree.parts.push_back({static_cast<uint32_t>(tree.parts.size()), run.first_index / 3});
+    }
+    rtcCommitScene(tree.scene);
+    return tree;
+}
+
+void RayVisibility::Trees::copy(const types::Mesh& mesh, const glm::dmat4& place, uint32_t command) {
+    std::vector<glm::vec3>& placed = positions.emplace_back();
+    placed.reserve(mesh.positions.size() + 1);
+    for (const glm::vec3& p : mesh.positions) placed.emplace_back(place * glm::dvec4(p, 1));
+    placed.emplace_back();
+    for (const MaterialRun& run : materialRuns(mesh)) {
+        addRun(still, mesh, run, placed);
+        parts.push_back({command++, run.first_index / 3});
+    }
+    instanced.resize(parts.size());
+    instance_command.resize(parts.size());
+}
+
+void RayVisibility::Trees::instance(const MeshTree& mesh, const glm::dmat4& place, uint32_t command) {
+    const glm::mat4 matrix(place);
+    RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_INSTANCE);
+    rtcSetGeometryInstancedScene(geometry, mesh.scene);
+    rtcSetGeometryTransform(geometry, 0, RTC_FORMAT_FLOAT4X4_COLUMN_MAJOR, &matrix);
+    rtcCommitGeometry(geometry);
+    rtcAttachGeometry(still, geometry);
+    rtcReleaseGeometry(geometry);
+    parts.emplace_back();
+    instanced.push_back(&mesh);
+    instance_command.push_back(command);
+}
+
+void RayVisibility::Mover::placeAt(const glm::dmat4& sonar_from_object) {
+    const glm::dmat3 linear(sonar_from_object);
+    const double volume = glm::determinant(linear);
+    placed = std::isfinite(volume) && volume != 0 && !mesh->parts.empty();
+    if (!placed) return;
+    const glm::dmat3 inverse = glm::inverse(linear);
+    from_sonar = glm::mat3(inverse);
+    place = glm::vec3(-(inverse * glm::dvec3(sonar_from_object[3])));
+    const glm::dvec3 half = 0.5 * (glm::dvec3(high) - glm::dvec3(low));
+    const glm::dvec3 middle(sonar_from_object * glm::dvec4(0.5 * (glm::dvec3(high) + glm::dvec3(low)), 1));
+    const double radius = std::abs(half.x) * glm::length(linear[0]) + std::abs(half.y) * glm::length(linear[1]) +
+                          std::abs(half.z) * glm::length(linear[2]);
+    const double distance = glm::length(middle), share = 1.001 * radius / distance;
+    cosine = -1;
+    if (!(share < 1)) return;
+    towards = glm::vec3(middle / distance);
+    sine = static_cast<float>(share);
+    cosine = static_cast<float>(std::sqrt(1 - share * share));
+}
+
+/** Whether the cone about a tile's rays touches that about the ball. */
+bool RayVisibility::Mover::mayMeet(const TileRays& rays) const {
+    if (!placed) return false;
+    if (cosine < 0) return true;
+    const auto ray = [&](int i) { return glm::normalize(glm::vec3(rays.x[i], rays.y[i], rays.z[i])); };
+    const glm::vec3 axis = glm::normalize(ray(0) + ray(tile_samples - 1));
+    float narrowest = 1;
+    for (int i = 0; i < tile_samples; ++i) narrowest = std::min(narrowest, glm::dot(axis, ray(i)));
+    const float half = std::clamp(narrowest - 1e-6f, -1.0f, 1.0f), half_sine = std::sqrt(1 - half * half);
+    return glm::dot(axis, towards) >= half * cosine - half_sine * sine || half * sine + half_sine * cosine < 0;
+}
+
+RayVisibility::RayVisibility(const types::Geometry& geometry)
+    : geometry_(geometry), moves_(geometry.objects.size()), trees_(std::make_unique<Trees>(geometry.meshes.size())) {
+    listCommands();
+}
+
+RayVisibility::~RayVisibility() = default;
+
+void RayVisibility::listCommands() {
+    uint32_t planes = 0;
+    std::vector<uint32_t> first_plane;
+    for (const types::Mesh& mesh : geometry_.meshes) {
+        first_plane.push_back(planes);
+        planes += static_cast<uint32_t>(mesh.indices.size() / 3);
+    }
+    for (size_t i = 0; i < geometry_.objects.size(); ++i) {
+        first_command_.push_back(static_cast<uint32_t>(commands_.size()));
+        const auto mesh = static_cast<size_t>(geometry_.objects[i].mesh);
+        for (const MaterialRun& run : materialRuns(geometry_.meshes[mesh]))
+            commands_.push_back({static_cast<uint32_t>(i), first_plane[mesh], static_cast<uint32_t>(run.material), 0});
+    }
+}
+
+bool RayVisibility::hasNewMover(const types::Snapshot& snapshot) const {
+    return std::ranges::any_of(snapshot.moved, [this](const auto& moved) { return !moves_[moved.object]; });
+}
+
+void RayVisibility::place(const types::Snapshot& snapshot) {
+    const bool too_far = !(glm::distance(snapshot.sonar.position, origin_) <= farthest_from_origin);
+    if (!trees_->still || too_far || hasNewMover(snapshot)) build(snapshot);
+    world_from_sonar_ = glm::mat3(glm::mat3_cast(snapshot.sonar.orientation));
+    place_ = glm::vec3(snapshot.sonar.position - origin_);
+    placeMovers(snapshot);
+}
+
+void RayVisibility::build(const types::Snapshot& snapshot) {
+    for (const types::MovedObject& moved : snapshot.moved) moves_[moved.object] = true;
+    origin_ = snapshot.sonar.position;
+    if (trees_->still) rtcReleaseScene(trees_->still);
+    trees_->still = trees_->newScene();
+    trees_->parts.clear();
+    trees_->instanced.clear();
+    trees_->instance_command.clear();
+    trees_->positions.clear();
+    trees_->positions.reserve(geometry_.objects.size());
+    movers_.clear();
+    std::vector<size_t> uses(geometry_.meshes.size());
+    for (const types::Object& object : geometry_.objects) ++uses[static_cast<size_t>(object.mesh)];
+    const bool copied = geometry_.triangleCount() <= most_copied;
+    for (size_t i = 0; i < geometry_.objects.size(); ++i) {
+        const types::Object& object = geometry_.objects[i];
+        const types::Mesh& mesh = geometry_.meshes[static_cast<size_t>(object.mesh)];
+        if (mesh.indices.empty()) continue;
+        glm::dmat4 place = object.world_from_object;
+        place[3] -= glm::dvec4(origin_, 0);
+        if (moves_[i]) {
+            Mover mover{static_cast<uint32_t>(i), first_command_[i], &trees_->treeOf(geometry_, object.mesh), {}, {}};
+            mover.low = mover.high = mesh.positions.front();
+            for (const glm::vec3& p : mesh.positions)
+                mover.low = glm::min(mover.low, p), mover.high = glm::max(mover.high, p);
+            movers_.push_back(mover);
+        } else if (copied || uses[static_cast<size_t>(object.mesh)] == 1) {
+            trees_->copy(mesh, place, first_command_[i]);
+        } else {
+            trees_->instance(trees_->treeOf(geometry_, object.mesh), place, first_command_[i]);
+        }
+    }
+    rtcCommitScene(trees_->still);
+    requireNoError(trees_->device);
+}
+
+void RayVisibility::placeMovers(const types::Snapshot& snapshot) {
+    if (movers_.empty()) return;
+    const glm::dmat3 sonar_from_world = glm::transpose(glm::mat3_cast(snapshot.sonar.orientation));
+    for (Mover& mover : movers_) {
+        const auto moved = std::ranges::find(snapshot.moved, mover.object, &types::MovedObject::object);
+        const glm::dmat4& world_from_object = moved == snapshot.moved.end()
+                                                  ? geometry_.objects[mover.object].world_from_object
+                                                  : moved->world_from_object;
+        glm::dmat4 place(sonar_from_world * glm::dmat3(world_from_object));
+        place[3] = glm::dvec4(sonar_from_world * (glm::dvec3(world_from_object[3]) - snapshot.sonar.position), 1);
+        mover.placeAt(place);
+    }
+}
+
+void RayVisibility::cast(const TileRays& rays, TileHits& hits) const {
+    RTCRayHit16 all;
+    alignas(64) int valid[tile_samples];
+    for (int i = 0; i < tile_samples; ++i) {
+        valid[i] = (rays.active >> i & 1) ? -1 : 0;
+        all.ray.tnear[i] = static_cast<float>(nearest);
+        all.ray.tfar[i] = std::numeric_limits<float>::infinity();
+        all.ray.time[i] = 0;
+        all.ray.mask[i] = 0xffffffff;
+        all.ray.flags[i] = 0;
+    }
+    RTCIntersectContext context;
+    rtcInitIntersectContext(&context);
+    context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
+    aim(Rows(world_from_sonar_), place_, rays, all);
+    rtcIntersect16(valid, trees_->still, &context, &all);
+    const auto take = [&](const auto& meaning) {
+        for (int i = 0; i < tile_samples; ++i) {
+            if (all.hit.geomID[i] == RTC_INVALID_GEOMETRY_ID || !valid[i]) continue;
+            const Trees::Part part = meaning(all.hit.geomID[i], all.hit.instID[0][i]);
+            hits.command[i] = part.command;
+            hits.triangle[i] = part.first_triangle + all.hit.primID[i];
+            hits.u[i] = all.hit.u[i];
+            hits.v[i] = all.hit.v[i];
+        }
+    };
+    std::fill_n(hits.command, tile_samples, TileHits::nothing);
+    take([this](uint32_t geometry, uint32_t instance) { return trees_->meaning(geometry, instance); });
+    for (const Mover& mover : movers_) {
+        if (!mover.mayMeet(rays)) continue;
+        aim(Rows(mover.from_sonar), mover.place, rays, all);
+        rtcIntersect16(valid, mover.mesh->scene, &context, &all);
+        take([&](uint32_t geometry, uint32_t) {
+            const Trees::Part& part = mover.mesh->parts[geometry];
+            return Trees::Part{mover.first_command + part.command, part.first_triangle};
+        });
+    }
+}
+
+}  // namespace insonify::sonar

@@ -1,0 +1,69 @@
+#pragma once
+#include <array>
+#include <memory>
+#include <vector>
+
+#include "components/sonar/Interface.hpp"
+#include "types/Snapshot.hpp"
+
+namespace insonify::sonar {
+
+/** Rays that are cast together: neighbours, so that most of them take the same way through the tree. */
+constexpr int tile_samples = 16;
+
+/** Directions of a tile's rays in sonar axes, of any length above 0 [1]; `active`: bit i is set where ray i is cast. */
+struct TileRays {
+    alignas(64) float x[tile_samples], y[tile_samples], z[tile_samples];
+    uint32_t active = 0xffff;
+};
+
+/** What the rays of a tile have met first. */
+struct TileHits {
+    static constexpr uint32_t nothing = 0xffffffff;
+
+    alignas(64) uint32_t command[tile_samples];  ///< Index into RayVisibility::commands(), or `nothing`.
+    uint32_t triangle[tile_samples];             ///< Within the mesh of the command's object [1].
+    float u[tile_samples], v[tile_samples];  ///< Barycentric coordinates of the triangle's second and third corner [1].
+};
+
+/** Which triangle is seen in which direction, by rays on the processor (Embree). What does not move is one tree about
+ * an origin near the sonar, so that world coordinates may be large; each object that moves has a tree of its own, which
+ * is re-placed each ping and never built again. Surfaces nearer than `nearest` are not seen. */
+class RayVisibility {
+public:
+    static constexpr double nearest = 1e-3;  ///< [m]
+
+    /** The geometry must outlive it. Throws std::runtime_error where Embree refuses it. */
+    explicit RayVisibility(const types::Geometry& geometry);
+    ~RayVisibility();
+
+    /** Places the sonar and what moves, once a ping. Builds the tree anew when an object moves that never did before,
+     * or when the sonar has gone far from the tree's origin; allocates only then. */
+    void place(const types::Snapshot& snapshot);
+
+    /** Casts a tile from the place of the sonar; several threads may do so at a time. */
+    void cast(const TileRays& rays, TileHits& hits) const;
+
+    /** What hits mean: one command for each object and run of one material. */
+    const std::vector<CommandRecord>& commands() const { return commands_; }
+
+private:
+    struct Trees;
+    struct Mover;
+    void listCommands();
+    bool hasNewMover(const types::Snapshot& snapshot) const;
+    void build(const types::Snapshot& snapshot);
+    void placeMovers(const types::Snapshot& snapshot);
+
+    const types::Geometry& geometry_;
+    std::vector<CommandRecord> commands_;
+    std::vector<uint32_t> first_command_;  ///< Of each object.
+    std::vector<bool> moves_;              ///< Whether an object has ever moved.
+    std::unique_ptr<Trees> trees_;
+    std::vector<Mover> movers_;
+    glm::dvec3 origin_{0};        ///< Of the tree of what does not move, in the world [m].
+    glm::mat3 world_from_sonar_;  ///< [1]
+    glm::vec3 place_{0};          ///< Of the sonar about the origin [m].
+};
+
+}  // namespace insonify::sonar

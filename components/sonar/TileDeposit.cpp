@@ -1,0 +1,305 @@
+#include "components/sonar/TileDeposit.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <cstring>
+#include <glm/geometric.hpp>
+
+#include "components/sonar/Acoustics.hpp"
+#include "components/sonar/Estimators.hpp"
+
+namespace insonify::sonar {
+namespace {
+
+constexpr int stretch = 64;  ///< Cells at a time: their numbers stay in the nearest cache.
+constexpr int bins_at_once = 4;
+
+/** Cells, each the part of a triangle's plane that neighbouring samples see; sonar axes. */
+struct Cells {
+    double normal_x[stretch], normal_y[stretch], normal_z[stretch], distance[stretch];  ///< Planes, of any length [m].
+    double cos_az[stretch], sin_az[stretch], cos_el[stretch], sin_el[stretch];  ///< Direction of the cell's middle.
+    double width[stretch], height[stretch], lean[stretch];  ///< [rad], [rad], dazimuth / delevation of its sides [1].
+    double size[stretch];                                   ///< Solid angle, in cells at elevation 0 [1].
+    double strength[stretch];                               ///< Of the material [1].
+    double mapped[stretch];                                 ///< Cosine of a bent normal; 0: it is the plane's [1].
+    double near_limit[stretch], far_limit[stretch];         ///< Inverse ranges of the object [1/m].
+    int beam[stretch];
+};
+
+/** What cells cover, and strength times slant range [m]. */
+struct Covered {
+    double pixel[stretch], centre[stretch], wide[stretch], narrow[stretch], per_wide[stretch], steepness[stretch],
+        near_end[stretch], far_end[stretch], nearest[stretch], size[stretch], strength_range[stretch];
+
+    Footprint footprint(int i) const {
+        return {pixel[i],     centre[i],   wide[i],    narrow[i],  per_wide[i],
+                steepness[i], near_end[i], far_end[i], nearest[i], size[i]};
+    }
+};
+
+/** The trapezoid of inverse ranges that a cell covers of a plane n.p = D: n.d / D is linear in azimuth and elevation
+ * but for the curvature of sine and cosine. Closer to edge-on than 1e-4 rad there is no echo, but still a shadow. */
+INSONIFY_VECTORISED void cover(const Cells& cells, int count, double near_edge, double far_edge,
+                               Covered& __restrict covered) {
+    for (int i = 0; i < count; ++i) {
+        const double n_x = cells.normal_x[i], n_y = cells.normal_y[i], n_z = cells.normal_z[i];
+        const double normal = sqrt(n_x * n_x + n_y * n_y + n_z * n_z), distance = cells.distance[i];
+        const double ahead = n_x * cells.cos_az[i] + n_y * cells.sin_az[i];
+        const double aside = n_y * cells.cos_az[i] - n_x * cells.sin_az[i];
+        const double facing = ahead * cells.cos_el[i] + n_z * cells.sin_el[i];
+        const bool echo = abs(facing) > 1e-4 * normal && distance * facing > 0.0;
+        const double per_distance = echo ? 1.0 / distance : 0.0;
+        const double inverse_range = facing * per_distance;
+        const double slope_a = aside * cells.cos_el[i] * per_distance;
+        const double slope_e = (n_z * cells.cos_el[i] - ahead * cells.sin_el[i]) * per_distance;
+        const double perpendicular = echo ? abs(distance) / normal : 0.0;
+        const Footprint cell = trapezoidFootprint(inverse_range, inverse_range, abs(slope_a) * cells.width[i],
+                                                  abs(slope_e + slope_a * cells.lean[i]) * cells.height[i],
+                                                  echo ? 1.0 / perpendicular : 0.0, cells.near_limit[i],
+                                                  cells.far_limit[i], near_edge, far_edge, echo ? cells.size[i] : 0.0);
+        covered.pixel[i] = cell.pixel;
+        covered.centre[i] = cell.centre;
+        covered.wide[i] = cell.wide;
+        covered.narrow[i] = cell.narrow;
+        covered.per_wide[i] = cell.per_wide;
+        covered.steepness[i] = cell.steepness;
+        covered.near_end[i] = cell.near_end;
+        covered.far_end[i] = cell.far_end;
+        covered.nearest[i] = cell.nearest;
+        covered.size[i] = cell.size;
+        const double cosine_range = cells.mapped[i] > 0.0 && echo ? cells.mapped[i] / inverse_range : perpendicular;
+        covered.strength_range[i] = cells.strength[i] * cosine_range;
+    }
+}
+
+/** Several numbers at a time. */
+using Lanes = double __attribute__((vector_size(bins_at_once * sizeof(double))));
+using LaneBits = int64_t __attribute__((vector_size(bins_at_once * sizeof(int64_t))));
+
+inline Lanes min(Lanes a, double b) { return a < b ? a : Lanes{} + b; }
+inline Lanes max(Lanes a, double b) { return a > b ? a : Lanes{} + b; }
+inline Lanes abs(Lanes a) { return a < 0.0 ? -a : a; }
+inline Lanes load(const double* from) {
+    Lanes lanes;
+    std::memcpy(&lanes, from, sizeof lanes);
+    return lanes;
+}
+
+/** Energies: PhysicalBins' depositCell, several bins at once. */
+struct EnergyEstimator : PhysicalBins {
+    const double* middles;  ///< Ranges of the bins' middles [m].
+
+    void add(const Footprint& cell, double strength_range) {
+        if (!(cell.near_end > cell.far_end && strength_range >= 0.0)) return;
+        uint bin = min(uint(1.0 / (cell.near_end * bin_width)), bin_count - 1u);
+        while (bin > 0u && edges[bin] < cell.near_end) --bin;
+        while (edges[bin + 1u] >= cell.near_end) ++bin;
+        for (; edges[bin] > cell.far_end; bin += bins_at_once) addBins(cell, strength_range * cell.size, bin);
+    }
+
+private:
+    using real = Lanes;
+#include "shaders/trapezoid.glsl"
+
+    void addBins(const Footprint& cell, double energy, uint first) {
+        const Lanes above = max(min(load(edges + first), cell.near_end), cell.far_end);
+        const Lanes below = max(min(load(edges + first + 1), cell.near_end), cell.far_end);
+        const Lanes to_above = trapezoidShare(cell, above - cell.centre);
+        const Lanes share =
+            (above < cell.nearest ? to_above : Lanes{} + 0.5) - trapezoidShare(cell, below - cell.centre);
+        const Lanes middle = load(middles + first);
+        const Lanes amounts = energy * share * middle * middle * meanCube(above, below);
+        for (int i = 0; i < bins_at_once; ++i) sums[first + i] += quanta(amounts[i]);
+    }
+};
+
+/** Means of S, weighted by size. */
+struct MeanEstimator : CerqueiraBins {
+    void add(const Footprint& cell, double strength_range) { depositCell(cell, 0, strength_range); }
+};
+
+/** Makes cells of tiles, a stretch at a time. */
+template <class Estimator, bool normal_maps>
+class CellDeposit {
+public:
+    CellDeposit(const EchoRules& rules, const TileShape& shape, const PlacedScene& scene, int first_beam,
+                Estimator estimator)
+        : rules_(rules),
+          shape_(shape),
+          scene_(scene),
+          first_beam_(first_beam),
+          estimator_(estimator),
+          sums_(estimator.sums) {}
+
+    void add(const CastTile& tile) {
+        for (int i = 0; i < tile_samples;) {
+            const int merged = tile.hits.command[i] == TileHits::nothing ? 1 : sameFrom(tile.hits, i);
+            if (tile.hits.command[i] != TileHits::nothing) addCell(tile, i, merged);
+            i += merged;
+        }
+    }
+    void finish() {
+        cover(cells_, count_, rules_.edges.front(), rules_.edges[static_cast<size_t>(rules_.bins.bin_count)], covered_);
+        for (int i = 0; i < count_; ++i) {
+            estimator_.sums = sums_ + static_cast<size_t>(cells_.beam[i] - first_beam_) * rules_.sumCount();
+            estimator_.add(covered_.footprint(i), covered_.strength_range[i]);
+        }
+        count_ = 0;
+    }
+
+private:
+    /** Samples from i on that are a rectangle of one triangle in one beam. */
+    int sameFrom(const TileHits& hits, int i) const {
+        const auto alignment = static_cast<uint32_t>(i == 0 ? tile_samples : i & -i);
+        const int most = std::min({static_cast<int>(alignment), rules_.most_merged, shape_.most_merged});
+        int run = 1;
+        while (run < most && hits.triangle[i + run] == hits.triangle[i] && hits.command[i + run] == hits.command[i])
+            ++run;
+        return static_cast<int>(std::bit_floor(static_cast<uint32_t>(run)));
+    }
+
+    void addCell(const CastTile& tile, int sample, int merged) {
+        const PlacedRun& run = scene_.runs[tile.hits.command[sample]];
+        const PlaneRecord& plane = scene_.planes[run.first_triangle + tile.hits.triangle[sample]];
+        const glm::dvec3 n(plane.normal), p(plane.point);
+        const auto turned = [&](const double* row) { return row[0] * n.x + row[1] * n.y + row[2] * n.z; };
+        const double x = turned(run.normal_x), y = turned(run.normal_y), z = turned(run.normal_z);
+        const int i = count_;
+        cells_.normal_x[i] = x;
+        cells_.normal_y[i] = y;
+        cells_.normal_z[i] = z;
+        cells_.distance[i] = n.x * (p.x - run.eye[0]) + n.y * (p.y - run.eye[1]) + n.z * (p.z - run.eye[2]) +
+                             static_cast<double>(plane.normal.w);
+        cells_.strength[i] = run.strength;
+        cells_.near_limit[i] = run.near_limit;
+        cells_.far_limit[i] = run.far_limit;
+        aim(tile, sample, merged);
+        if (normal_maps) cells_.mapped[i] = mappedCosine(tile, sample, merged);
+        if (++count_ == stretch) finish();
+    }
+
+    /** Of the middle of the cell that aim() has just put down; 0 where its material has no map. */
+    double mappedCosine(const CastTile& tile, int sample, int merged) const {
+        const CommandRecord& command = scene_.commands[tile.hits.command[sample]];
+        if (!scene_.normal_maps.isMapped(static_cast<int>(command.material))) return 0;
+        const int i = count_;
+        float u = 0, v = 0;
+        for (int k = sample; k < sample + merged; ++k) u += tile.hits.u[k], v += tile.hits.v[k];
+        const auto per_sample = 1 / static_cast<float>(merged);
+        const glm::dvec3 ray(cells_.cos_el[i] * cells_.cos_az[i], cells_.cos_el[i] * cells_.sin_az[i],
+                             cells_.sin_el[i]);
+        const glm::dvec3 normal(cells_.normal_x[i], cells_.normal_y[i], cells_.normal_z[i]);
+        const double range = std::abs(cells_.distance[i]) / std::max(std::abs(glm::dot(normal, ray)), 1e-6);
+        return static_cast<double>(scene_.normal_maps.cosine(
+            scene_.objects[command.object],
+            {command.object, tile.hits.triangle[sample], static_cast<int>(command.material), u * per_sample,
+             v * per_sample, glm::vec3(ray), static_cast<float>(range * std::max(cells_.width[i], cells_.height[i]))}));
+    }
+
+    /** Direction, extent and solid angle of a cell of `merged` samples. */
+    void aim(const CastTile& tile, int sample, int merged) {
+        const AngularView& view = rules_.view;
+        const int column = tile.first_column + shape_.at[sample].columns, i = count_;
+        const size_t left = view.at(column), low = 2 * static_cast<size_t>(tile.first_row + shape_.at[sample].rows);
+        const auto across = static_cast<size_t>(shape_.size[merged].columns);
+        const auto up = static_cast<size_t>(shape_.size[merged].rows);
+        cells_.beam[i] = view.beam_of[static_cast<size_t>(column)];
+        const AngularView::Direction& elevation = view.elevations[low + up];
+        cells_.cos_el[i] = elevation.cosine;
+        cells_.sin_el[i] = elevation.sine;
+        cells_.height[i] = static_cast<double>(up) * view.row_height;
+        if (view.conical) {
+            const double at = std::atan2(elevation.sine, elevation.cosine);
+            const double azimuth = coneAzimuth(view.bearings[left + across], at);
+            cells_.cos_az[i] = std::cos(azimuth);
+            cells_.sin_az[i] = std::sin(azimuth);
+            cells_.width[i] = coneAzimuth(view.bearings[left + 2 * across], at) - coneAzimuth(view.bearings[left], at);
+            cells_.lean[i] = std::abs(azimuth) < 1.5 ? std::tan(azimuth) * elevation.sine / elevation.cosine : 0;
+        } else {
+            cells_.cos_az[i] = view.azimuths[left + across].cosine;
+            cells_.sin_az[i] = view.azimuths[left + across].sine;
+            cells_.width[i] = view.bearings[left + 2 * across] - view.bearings[left];
+            cells_.lean[i] = 0;
+        }
+        cells_.size[i] =
+            cells_.width[i] * (view.elevations[low + 2 * up].sine - view.elevations[low].sine) / view.cell();
+    }
+
+    const EchoRules& rules_;
+    const TileShape& shape_;
+    const PlacedScene& scene_;
+    int first_beam_;
+    Estimator estimator_;
+    uint64_t* sums_;
+    int count_ = 0;
+    Cells cells_{};
+    Covered covered_{};
+};
+
+template <bool normal_maps, class Estimator>
+void depositWith(const EchoRules& rules, const TileShape& shape, const PlacedScene& scene,
+                 std::span<const CastTile> tiles, int first_beam, Estimator estimator) {
+    CellDeposit<Estimator, normal_maps> cells(rules, shape, scene, first_beam, estimator);
+    for (const CastTile& tile : tiles) cells.add(tile);
+    cells.finish();
+}
+
+}  // namespace
+
+TileShape::TileShape(int beam_columns, int columns) {
+    const int wide = columns >= 4 ? 4 : columns >= 2 ? 2 : 1;
+    const int together = std::min(wide, beam_columns % 4 == 0 ? 4 : beam_columns % 2 == 0 ? 2 : 1);
+    for (int count = 1; count < tile_samples; count *= 2) {
+        // First the columns of one beam and rows by turns, then the other rows, then the other columns.
+        const int across = size[count].columns, up = size[count].rows;
+        const bool widens = across < together ? across <= up : up * wide >= tile_samples;
+        size[2 * count] = {widens ? 2 * across : across, widens ? up : 2 * up};
+        for (int i = 0; i < count; ++i)
+            at[count + i] = {at[i].columns + (widens ? across : 0), at[i].rows + (widens ? 0 : up)};
+    }
+    all = size[tile_samples];
+    most_merged = together * all.rows;
+}
+
+EchoRules makeEchoRules(const SonarConfig& config, const types::Geometry& geometry) {
+    EchoRules rules;
+    rules.normal_maps = std::ranges::any_of(geometry.materials, [](const auto& m) { return m.normal_map >= 0; });
+    rules.bins = makeBinGrid(config);
+    rules.model = config.model;
+    if (config.model == Model::Cerqueira2017) rules.attenuation = makeAbsorption(config).amplitudeNepersPerMetre();
+    rules.edges = inverseEdges(rules.bins);
+    for (int k = 0; k < rules.bins.bin_count; ++k) rules.middles.push_back(rules.bins.centre(k));
+    rules.edges.resize(rules.edges.size() + bins_at_once);
+    rules.middles.resize(rules.middles.size() + bins_at_once);
+    return rules;
+}
+
+int mostMerged(const AngularView& view, const BinGrid& bins) {
+    // Over an angle d, 1/r of a plane n.p = D leaves the straight line between its ends by d d / (8 D) at most: so much
+    // is a twentieth of a bin at the far edge, on planes that graze at 15 deg.
+    const double angle = std::sqrt(8 * 0.05 * bins.bin_width / bins.range_max / 4);
+    const double cell = std::max(view.column_width, view.row_height);
+    int most = 1;
+    while (most < tile_samples && cell * 2 * std::sqrt(most) <= angle) most *= 4;
+    return most;
+}
+
+INSONIFY_VECTORISED __attribute__((flatten)) void deposit(const EchoRules& rules, const TileShape& shape,
+                                                          const PlacedScene& scene, std::span<const CastTile> tiles,
+                                                          int first_beam, uint64_t* sums) {
+    const Bins bins{rules.edges.data(), sums, static_cast<uint>(rules.bins.bin_count), rules.bins.bin_width,
+                    rules.attenuation};
+    const auto with = [&](auto estimator) {
+        if (rules.normal_maps)
+            depositWith<true>(rules, shape, scene, tiles, first_beam, estimator);
+        else
+            depositWith<false>(rules, shape, scene, tiles, first_beam, estimator);
+    };
+    if (rules.model == Model::Cerqueira2017)
+        with(MeanEstimator{{bins}});
+    else
+        with(EnergyEstimator{{bins}, rules.middles.data()});
+}
+
+}  // namespace insonify::sonar

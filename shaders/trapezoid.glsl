@@ -1,0 +1,12 @@
+// Shared by C++ and GLSL: what of a footprint lies where. `real` is a double, or several at a time.
+
+// Share of the trapezoid between its centre and centre + t, signed as t.
+real trapezoidShare(Footprint cell, real t) {
+    double outer = 0.5 * (cell.wide + cell.narrow), inner = 0.5 * (cell.wide - cell.narrow);
+    real within = min(max(t, -outer), outer);
+    real corner = within - min(max(within, -inner), inner);
+    return within * cell.per_wide - corner * abs(corner) * cell.steepness;
+}
+
+// On a plane cos(theta) goes as 1/r, so the density over inverse range goes as its cube: here its mean over a part.
+real meanCube(real above, real below) { return 0.5 * (0.5 * (above + below)) * (above * above + below * below); }

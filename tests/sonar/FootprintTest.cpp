@@ -1,0 +1,194 @@
+// A cell's echo in its bins against the same cell cut into many points, each of which counts once: ACOUSTICS.md 4.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <vector>
+
+#include "components/sonar/Interface.hpp"
+
+namespace insonify::sonar {
+namespace {
+
+using std::abs, std::exp, std::sqrt;
+inline double min(double a, double b) { return a < b ? a : b; }
+inline double max(double a, double b) { return a > b ? a : b; }
+inline uint min(uint a, uint b) { return a < b ? a : b; }
+#include "shaders/footprint.glsl"
+using real = double;
+#include "shaders/trapezoid.glsl"
+#include "shaders/surface.glsl"
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+
+/** 600 bins of 0.1 m, which take what the deposit's shared code gives them. */
+struct Bins {
+    static constexpr uint bin_count = 600;
+    static constexpr double bin_width = 0.1, attenuation = 0;
+    std::vector<double> sums = std::vector<double>(bin_count);
+
+    double binEdge(uint k) const { return k == 0 ? 1e3 : 1 / (k * bin_width); }
+    void addToBin(uint, uint bin, double amount, double) { sums[bin] += amount; }
+    /** A point of solid angle `share` at range r on a plane of unit Lambert parameter, `distance` away. */
+    void addPoint(double r, double distance, double share) {
+        const auto bin = static_cast<uint>(r / bin_width);
+        const double relative = (bin + 0.5) * bin_width / r;
+        if (bin < bin_count) sums[bin] += distance / r * share * relative * relative;
+    }
+    double energy() const {
+        double sum = 0;
+        for (const double e : sums) sum += e;
+        return sum;
+    }
+    int occupied() const { return static_cast<int>(std::ranges::count_if(sums, [](double e) { return e > 0; })); }
+#include "shaders/deposit.glsl"
+};
+
+double relativeL2(const Bins& got, const Bins& expected) {
+    double error = 0, norm = 0;
+    for (uint k = 0; k < Bins::bin_count; ++k) {
+        error += (got.sums[k] - expected.sums[k]) * (got.sums[k] - expected.sums[k]);
+        norm += expected.sums[k] * expected.sums[k];
+    }
+    return sqrt(error / norm);
+}
+
+/** Plane n.p = distance, n of unit length. */
+struct Plane {
+    std::array<double, 3> n;
+    double distance;
+
+    Plane(double azimuth, double elevation, double d)
+        : n{std::cos(elevation) * std::cos(azimuth), std::cos(elevation) * std::sin(azimuth), std::sin(elevation)},
+          distance(d) {}
+    double inverseRange(double x, double y, double z) const {
+        return (n[0] * x + n[1] * y + n[2] * z) / (distance * sqrt(x * x + y * y + z * z));
+    }
+    Surface at(double u, double v) const { return surfaceAt(n[0], n[1], n[2], distance, u, v); }
+};
+
+const Plane bottom(0, -std::numbers::pi / 2, 3), slope(0.4, -1.2, 3), wall(0.3, 0.2, 10);
+
+constexpr int parts = 1000;  ///< Of a cell, each way.
+
+/** Middles of `parts` equal parts of [from, to]. */
+double part(double from, double to, int i) { return from + (to - from) * (i + 0.5) / parts; }
+
+/** A cell of the picture: the middle of its pixel, of which it is the columns [from, to], and the aperture's edge. */
+struct PictureCell {
+    double u, v, from, to, size, limit = infinity;
+    bool upright = false;  ///< Not sheared: wrong.
+
+    void deposit(const Plane& plane, Bins& bins) const {
+        const Surface s = plane.at(u, v);
+        bins.depositCell(cellFootprint(u, v, (from + to) / 2, to - from, limit, upright ? 0 : u / (1 + u * u), size,
+                                       s.inverse_range, s.slope_u, s.slope_v, s.nearest, infinity, 0, bins.binEdge(0),
+                                       bins.binEdge(Bins::bin_count), 1 / (size * size)),
+                         0, s.cosine * s.range);
+    }
+    /** Point by point between curves of constant elevation. */
+    void cut(const Plane& plane, Bins& bins) const {
+        for (int i = 0; i < parts; ++i)
+            for (int j = 0; j < parts; ++j) {
+                const double at = part(from, to, i), lean = sqrt((1 + at * at) / (1 + u * u));
+                const double height = part(v - size / 2, v + size / 2, j) * lean, q2 = 1 + at * at + height * height;
+                const double share = (to - from) * lean / (size * parts * parts * q2 * sqrt(q2));
+                if (abs(height) > limit) continue;
+                bins.addPoint(1 / plane.inverseRange(1, at, height), plane.distance, share);
+            }
+    }
+};
+
+/** A cell da x de about (a, e), its solid angle relative to one at elevation 0. */
+struct AngularCell {
+    double a, e, da, de;
+
+    void deposit(const Plane& plane, Bins& bins) const {
+        const auto& n = plane.n;
+        const double along = n[0] * std::cos(a) + n[1] * std::sin(a), aside = n[1] * std::cos(a) - n[0] * std::sin(a);
+        const double g = (std::cos(e) * along + std::sin(e) * n[2]) / plane.distance;
+        const double box_a = abs(std::cos(e) * aside / plane.distance) * da,
+                     box_e = abs((std::cos(e) * n[2] - std::sin(e) * along) / plane.distance) * de;
+        const double wide = max(box_a, box_e), narrow = max(min(box_a, box_e), 1e-12 * wide);
+        const double reach = (wide + narrow) / 2, nearest = 1 / plane.distance;
+        const double size = (std::sin(e + de / 2) - std::sin(e - de / 2)) / de;
+        bins.depositCell({g, g, wide, narrow, 1 / wide, 0.5 / (wide * narrow), min(g + reach, nearest),
+                          max(g - reach, bins.binEdge(Bins::bin_count)), nearest, size},
+                         0, plane.distance);
+    }
+    void cut(const Plane& plane, Bins& bins) const {
+        for (int i = 0; i < parts; ++i)
+            for (int j = 0; j < parts; ++j) {
+                const double at = part(a - da / 2, a + da / 2, i), up = part(e - de / 2, e + de / 2, j);
+                const double level = std::cos(up);
+                const double g = plane.inverseRange(level * std::cos(at), level * std::sin(at), std::sin(up));
+                bins.addPoint(1 / g, plane.distance, level / (parts * parts));
+            }
+    }
+};
+
+/** Expects the deposit to follow the cut: bins to `in_bins` (relative L2), their sum to `in_all`. */
+template <class Cell>
+void expectFollows(const Cell& cell, const Plane& plane, double in_bins, double in_all) {
+    Bins got, expected;
+    cell.deposit(plane, got);
+    cell.cut(plane, expected);
+    EXPECT_GT(expected.occupied(), 0);
+    EXPECT_LT(relativeL2(got, expected), in_bins) << expected.occupied() << " bins";
+    EXPECT_NEAR(got.energy() / expected.energy(), 1, in_all);
+}
+
+TEST(FootprintTest, SlopesAreThoseOfTheInverseRangeOverThePicture) {
+    constexpr double step = 1e-6;
+    for (const Plane& plane : {bottom, slope, wall})
+        for (const auto& [u, v] : {std::pair{0.0, -0.15}, {0.5, -0.3}, {-0.4, -0.5}}) {
+            const Surface s = plane.at(u, v);
+            const auto inverse = [&](double x, double y) { return plane.inverseRange(1, x, y); };
+            EXPECT_NEAR(s.inverse_range, inverse(u, v), 1e-12);
+            EXPECT_NEAR(s.range * s.inverse_range, 1, 1e-12);
+            EXPECT_NEAR(s.cosine, plane.distance * inverse(u, v), 1e-12);
+            EXPECT_NEAR(s.nearest, 1 / plane.distance, 1e-12);
+            EXPECT_NEAR(s.slope_u, (inverse(u + step, v) - inverse(u - step, v)) / (2 * step), 1e-9);
+            EXPECT_NEAR(s.slope_v, (inverse(u, v + step) - inverse(u, v - step)) / (2 * step), 1e-9);
+        }
+    EXPECT_EQ(bottom.at(0, 0.1).inverse_range, 0) << "behind";
+    EXPECT_EQ(bottom.at(0, -0.99e-4).inverse_range, 0) << "edge-on";
+}
+
+TEST(FootprintTest, ACellOfThePictureCoversTheBinsThatItsPointsDo) {
+    expectFollows(PictureCell{0.3, -0.12, 0.298, 0.302, 0.004}, bottom, 0.005, 5e-4);
+    expectFollows(PictureCell{0.3, -0.12, 0.298, 0.302, 0.004}, slope, 0.005, 5e-4);
+    expectFollows(PictureCell{0.3, -0.12, 0.301, 0.302, 0.004}, slope, 0.005, 5e-4);
+    expectFollows(PictureCell{0.5, 0.5, 0.48, 0.52, 0.04}, wall, 0.05, 3e-3);
+    PictureCell wide{0.3, -0.12, 0.25, 0.35, 0.004};
+    expectFollows(wide, bottom, 0.01, 2e-3);
+    wide.upright = true;
+    Bins got, expected;
+    wide.deposit(bottom, got);
+    wide.cut(bottom, expected);
+    EXPECT_GT(relativeL2(got, expected), 0.1) << "an upright cell covers others";
+}
+
+TEST(FootprintTest, ACellIsClippedAtTheAperture) {
+    PictureCell cell{0.3, -0.12, 0.298, 0.302, 0.004};
+    Bins whole, clipped;
+    cell.deposit(bottom, whole);
+    cell.limit = 0.119;
+    cell.deposit(bottom, clipped);
+    EXPECT_NEAR(clipped.energy() / whole.energy(), 0.25, 0.01) << "a quarter is above v = -0.119";
+    expectFollows(cell, bottom, 0.02, 1e-2);
+}
+
+TEST(FootprintTest, ACellOfAzimuthAndElevationCoversTheBinsThatItsPointsDo) {
+    expectFollows(AngularCell{0.3, -0.12, 0.004, 0.004}, bottom, 0.005, 5e-4);
+    expectFollows(AngularCell{0.3, -0.12, 0.004, 0.004}, slope, 0.005, 5e-4);
+    expectFollows(AngularCell{-0.2, -0.4, 0.02, 0.005}, slope, 0.01, 5e-4);
+    expectFollows(AngularCell{0.5, 0.5, 0.04, 0.04}, wall, 0.05, 5e-4);
+    expectFollows(AngularCell{0.3, -1.5, 0.04, 0.01}, bottom, 0.01, 5e-4);  // nearly straight down
+}
+
+}  // namespace
+}  // namespace insonify::sonar

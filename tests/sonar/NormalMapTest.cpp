@@ -1,0 +1,56 @@
+// Maps whose normals all lean by one angle, on a wall that is looked at squarely: its echo goes with the cosine, its
+// range stays (ACOUSTICS.md 3.4).
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "components/sonar/SonarRenderer.hpp"
+#include "tests/support/Surfaces.hpp"
+#include "types/Angle.hpp"
+
+namespace insonify::sonar {
+namespace {
+
+/** A wall 20 m ahead whose normals lean to port. */
+types::GeometryPtr wallWithNormalsAt(double lean) {
+    auto geometry = std::make_shared<types::Geometry>(*test::sceneOf({test::mappedWall()}));
+    geometry->objects[0].world_from_object =
+        glm::scale(glm::translate(glm::dmat4(1), {20, 0, 0}), glm::dvec3(1, 5, 5));
+    const auto channel = [](double x) { return static_cast<uint8_t>(std::lround((x + 1) / 2 * 255)); };
+    geometry->normal_maps = {{1, 1, {channel(std::sin(lean)), channel(0), channel(std::cos(lean))}, true, true}};
+    geometry->materials[0].normal_map = 0;
+    return geometry;
+}
+
+std::vector<float> echoOf(const types::GeometryPtr& geometry) {
+    SonarConfig config;
+    config.speed_of_sound = 1000;
+    config.range = 25;
+    config.bin_count = 250;
+    config.beam_count = 1;
+    config.field_of_view_deg = 2;
+    config.beam_height_deg = 2;
+    config.device = "software";
+    SonarRenderer renderer(config, geometry);
+    types::Sonar ping;
+    renderer.render(test::snapshotOf(geometry), ping);
+    return ping.bins;
+}
+
+}  // namespace
+
+TEST(NormalMapTest, AnEchoGoesWithTheCosineOfTheBentNormal) {
+    const std::vector<float> plain = echoOf(wallWithNormalsAt(0));
+    ASSERT_GT(plain[200], 0);
+    for (const double degrees : {20.0, 45.0, 70.0, -45.0}) {
+        const std::vector<float> bent = echoOf(wallWithNormalsAt(types::radians(degrees)));
+        EXPECT_NEAR(bent[200] / plain[200], std::cos(types::radians(degrees)), 0.01) << degrees;
+        for (size_t k = 0; k < bent.size(); ++k) EXPECT_EQ(bent[k] > 0, plain[k] > 0) << k;
+    }
+}
+
+TEST(NormalMapTest, ASurfaceThatAMapTurnsAwayIsAlmostSilent) {
+    EXPECT_LT(echoOf(wallWithNormalsAt(types::radians(120)))[200], 1e-5 * echoOf(wallWithNormalsAt(0))[200]);
+}
+
+}  // namespace insonify::sonar

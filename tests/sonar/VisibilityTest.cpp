@@ -1,0 +1,274 @@
+// Rays on the processor: they meet what is drawn, and their pings are those of the closed forms.
+#include <gmock/gmock.h>
+
+#include <algorithm>
+#include <glm/gtc/matrix_transform.hpp>
+#include <numeric>
+
+#include "components/gpu/EglContext.hpp"
+#include "components/sonar/Culler.hpp"
+#include "components/sonar/RayVisibility.hpp"
+#include "components/sonar/SonarRenderer.hpp"
+#include "components/sonar/SurfacePass.hpp"
+#include "tests/support/ClosedForms.hpp"
+#include "tests/support/Surfaces.hpp"
+#include "types/Angle.hpp"
+
+namespace insonify::sonar {
+namespace {
+
+using types::radians;
+
+SonarConfig fan(Visibility visibility) {
+    SonarConfig config;
+    config.visibility = visibility;
+    if (visibility == Visibility::Gl) config.device = "software";
+    config.speed_of_sound = 1000;
+    config.range = 40;
+    config.bin_count = 400;
+    config.beam_count = 50;
+    config.field_of_view_deg = 100;
+    config.beam_height_deg = 50;
+    config.quality.rows = 256;
+    config.quality.columns_per_beam = 8;
+    return config;
+}
+
+types::Sonar pingOf(const SonarConfig& config, const types::Snapshot& snapshot) {
+    SonarRenderer renderer(config, snapshot.geometry);
+    types::Sonar ping;
+    renderer.render(snapshot, ping);
+    return ping;
+}
+
+/** An object and one of its triangles; no object: nothing. */
+using Seen = std::pair<uint32_t, uint32_t>;
+constexpr Seen nothing{0xffffffff, 0};
+
+/** What each pixel of the slabs shows, drawn. */
+std::vector<Seen> drawn(const types::Snapshot& snapshot, const std::vector<Slab>& slabs) {
+    gpu::EglContext context("software");
+    Culler culler(*snapshot.geometry, {.range_min = 0, .range_max = 1e4, .draw_all = true});
+    ThreadPool threads(1);
+    SurfacePass surface(context, {*snapshot.geometry, slabs, {}, 1e-3, culler.runLimit(), true}, threads);
+    culler.place(snapshot);
+    surface.cull(culler);
+    surface.draw();
+    std::vector<Seen> seen;
+    for (size_t i = 0; i < slabs.size(); ++i) {
+        std::vector<uint32_t> words(2 * static_cast<size_t>(slabs[i].columns * slabs[i].rows));
+        surface.picture(i).read(words);
+        for (size_t pixel = 0; pixel < words.size(); pixel += 2)
+            seen.push_back(words[pixel] == 0
+                               ? nothing
+                               : Seen{surface.picture(i).commands[words[pixel] - 1].object, words[pixel + 1]});
+    }
+    return seen;
+}
+
+/** What rays through the same pixels' middles meet. */
+std::vector<Seen> met(const types::Snapshot& snapshot, const std::vector<Slab>& slabs) {
+    RayVisibility visibility(*snapshot.geometry);
+    visibility.place(snapshot);
+    std::vector<Seen> seen;
+    for (const Slab& slab : slabs)
+        for (int first = 0; first < slab.rows * slab.columns; first += tile_samples) {
+            TileRays rays;
+            TileHits hits;
+            for (int i = 0; i < tile_samples; ++i) {
+                const double u = slab.u((first + i) % slab.columns + 0.5), v = slab.v((first + i) / slab.columns + 0.5);
+                const double cosine = std::cos(slab.azimuth), sine = std::sin(slab.azimuth);
+                rays.x[i] = static_cast<float>(cosine - sine * u);
+                rays.y[i] = static_cast<float>(sine + cosine * u);
+                rays.z[i] = static_cast<float>(v);
+            }
+            visibility.cast(rays, hits);
+            for (int i = 0; i < tile_samples && first + i < slab.rows * slab.columns; ++i)
+                seen.push_back(hits.command[i] == TileHits::nothing
+                                   ? nothing
+                                   : Seen{visibility.commands()[hits.command[i]].object, hits.triangle[i]});
+        }
+    return seen;
+}
+
+/** Without normal maps, which the two look up in different ways, and with a thick plate: one that is seen edge-on in a
+ *  pixel or two sounds as its samples happen to lie. */
+std::shared_ptr<types::Geometry> plainSurfaces() {
+    auto geometry = test::surfaces();
+    geometry->materials[1].normal_map = -1;
+    geometry->objects[3].world_from_object = glm::scale(geometry->objects[3].world_from_object, {1.0, 50.0, 1.0});
+    return geometry;
+}
+
+types::Snapshot movedScene() {
+    types::Snapshot snapshot = test::snapshotOf(plainSurfaces(), {0, 0, 0}, 0.1, 0.15, 0.05);
+    snapshot.moved = {{1, glm::translate(glm::dmat4(1), {8, -2, -1})},
+                      {2, glm::scale(glm::rotate(glm::translate(glm::dmat4(1), {10, 4, 0}), 1.0, glm::dvec3(1, 1, 0)),
+                                     {1.0, -2.0, 0.5})}};
+    return snapshot;
+}
+
+/** The scene far from the origin of the world, as in UTM coordinates. */
+types::Snapshot farScene() {
+    const glm::dvec3 away(463'000, 5'937'000, 0);
+    auto geometry = plainSurfaces();
+    for (types::Object& object : geometry->objects) object.world_from_object[3] += glm::dvec4(away, 0);
+    return test::snapshotOf(geometry, away, 0.1, 0.15, 0.05);
+}
+
+struct Scene {
+    const char* name;
+    types::Snapshot snapshot;
+};
+std::vector<Scene> scenes() {
+    return {{"open, closed, mirrored, scaled, several of one mesh",
+             test::snapshotOf(plainSurfaces(), {0, 0, 0}, 0.1, 0.15, 0.05)},
+            {"behind", test::snapshotOf(plainSurfaces(), {0, 0, 0}, 2.3, 0.05, 0)},
+            {"moved", movedScene()},
+            {"far", farScene()}};
+}
+
+/** Relative L2 of their difference. */
+double difference(const types::Sonar& a, const types::Sonar& b) {
+    double error = 0;
+    for (size_t i = 0; i < a.bins.size(); ++i) error += std::pow(double{a.bins[i]} - b.bins[i], 2);
+    return std::sqrt(error / std::inner_product(b.bins.begin(), b.bins.end(), b.bins.begin(), 0.0));
+}
+
+}  // namespace
+
+TEST(VisibilityTest, RaysMeetTheTrianglesThatAreDrawn) {
+    const SonarConfig config = fan(Visibility::Gl);
+    const std::vector<Slab> slabs = makeSlabs(config, makeBeams(config));
+    for (const Scene& scene : scenes()) {
+        const std::vector<Seen> pixels = drawn(scene.snapshot, slabs), rays = met(scene.snapshot, slabs);
+        ASSERT_EQ(pixels.size(), rays.size());
+        size_t differ = 0, something = 0;
+        for (size_t i = 0; i < pixels.size(); ++i) {
+            differ += pixels[i] != rays[i];
+            something += pixels[i] != nothing;
+        }
+        EXPECT_GT(something, pixels.size() / 10) << scene.name;
+        EXPECT_LE(static_cast<double>(differ), 0.001 * static_cast<double>(pixels.size())) << scene.name;
+    }
+}
+
+TEST(VisibilityTest, PingsAreThoseThatAreDrawnUpToTheSampling) {
+    for (const Scene& scene : scenes())
+        for (Model model : {Model::Physical, Model::Cerqueira2017})
+            for (BeamGeometry beams : {BeamGeometry::Planar, BeamGeometry::Conical}) {
+                SonarConfig gl = fan(Visibility::Gl), cpu = fan(Visibility::Cpu);
+                gl.quality.rows = cpu.quality.rows = 512;
+                gl.model = cpu.model = model;
+                gl.beam_geometry = cpu.beam_geometry = beams;
+                // In a mean, bins that few samples touch count like any other.
+                EXPECT_LT(difference(pingOf(cpu, scene.snapshot), pingOf(gl, scene.snapshot)),
+                          model == Model::Physical ? 0.03 : 0.13)
+                    << scene.name << (model == Model::Physical ? ", physical" : ", cerqueira2017")
+                    << (beams == BeamGeometry::Planar ? ", planar" : ", conical");
+            }
+    SonarConfig other = fan(Visibility::Cpu);
+    other.beam_height_deg = 40;
+    EXPECT_GT(difference(pingOf(other, scenes()[0].snapshot), pingOf(fan(Visibility::Gl), scenes()[0].snapshot)), 0.03);
+}
+
+TEST(VisibilityTest, NormalMapsBendBothAlike) {
+    const auto snapshot = test::snapshotOf(test::surfaces(), {10, 0, -2});
+    SonarConfig gl = fan(Visibility::Gl), cpu = fan(Visibility::Cpu);
+    const types::Sonar drawn_ping = pingOf(gl, snapshot), cast_ping = pingOf(cpu, snapshot);
+    const types::Sonar flat = pingOf(cpu, test::snapshotOf(plainSurfaces(), {10, 0, -2}));
+    EXPECT_LT(difference(cast_ping, drawn_ping), 0.03);
+    EXPECT_GT(difference(flat, drawn_ping), 0.06);
+}
+
+TEST(VisibilityTest, TheSameBytesForAnyNumberOfThreads) {
+    for (int columns : {1, 2, 3, 8, 512}) {  // the last: beams that several threads share
+        SonarConfig config = fan(Visibility::Cpu);
+        config.quality.columns_per_beam = columns;
+        config.beam_count = columns == 512 ? 2 : 50;
+        config.threads = 1;
+        const std::vector<float> alone = pingOf(config, movedScene()).bins;
+        EXPECT_GT(std::accumulate(alone.begin(), alone.end(), 0.0), 0);
+        for (int threads : {2, 5}) {
+            config.threads = threads;
+            EXPECT_EQ(pingOf(config, movedScene()).bins, alone) << threads << " threads, " << columns << " columns";
+        }
+    }
+}
+
+TEST(VisibilityTest, AnObjectMovesFromPingToPing) {
+    const types::Snapshot still = test::snapshotOf(plainSurfaces(), {0, 0, 0}, 0.1, 0.15, 0.05), moved = movedScene();
+    SonarRenderer renderer(fan(Visibility::Cpu), still.geometry);
+    types::Snapshot later = moved;
+    later.geometry = still.geometry;
+    types::Sonar before, after, again;
+    renderer.render(still, before);
+    renderer.render(later, after);
+    renderer.render(still, again);
+    EXPECT_EQ(after.bins, pingOf(fan(Visibility::Cpu), moved).bins);
+    EXPECT_LT(difference(again, before), 1e-6) << "at its place again, by a tree of its own";
+    EXPECT_GT(difference(after, before), 0.05);
+}
+
+TEST(VisibilityTest, ManyPlacingsOfLargeMeshesAreInstancesThatSoundTheSame) {
+    // 70 balls of 65,000 triangles are more than are copied.
+    auto geometry = std::make_shared<types::Geometry>();
+    geometry->materials.resize(1);
+    geometry->meshes = {test::sphere(0.4f, 180), test::ground(-3)};
+    for (int i = 0; i < 70; ++i)
+        geometry->objects.push_back({"ball " + std::to_string(i), 0,
+                                     glm::translate(glm::dmat4(1), {6 + 2.0 * (i % 7), 1.5 * (i / 7) - 7, -1})});
+    geometry->objects.push_back({"ground", 1, glm::dmat4(1)});
+    ASSERT_GT(geometry->triangleCount(), 4'000'000u);
+    const auto snapshot = test::snapshotOf(geometry, {0, 0, 0}, 0, 0.15);
+    EXPECT_LT(difference(pingOf(fan(Visibility::Cpu), snapshot), pingOf(fan(Visibility::Gl), snapshot)), 0.03);
+}
+
+TEST(VisibilityTest, AnApertureOf120And170DegOfElevationFollowsTheClosedForm) {
+    // One wide beam straight down on a flat bottom, as an altimeter has it: a plane that faces the sonar.
+    for (double height_deg : {120.0, 170.0, 180.0}) {
+        SonarConfig config = fan(Visibility::Cpu);
+        config.beam_count = 1;
+        config.field_of_view_deg = 1;
+        config.beam_height_deg = height_deg;
+        config.quality.rows = 1024;
+        config.quality.columns_per_beam = 8;
+        config.range = 30;
+        config.bin_count = 300;
+        const auto down = test::snapshotOf(test::sceneOf({test::ground(-5)}), {}, 0, radians(90));
+        const double half = radians(height_deg / 2), delta = radians(1);
+        test::expectForm(pingOf(config, down), test::thinBeamOnWall(5, half, delta),
+                         test::thinBeamOnFadingWall(5, half, delta));
+    }
+}
+
+TEST(VisibilityTest, ATallImageIsRefusedAndRaysTakeIt) {
+    SonarConfig config = fan(Visibility::Gl);
+    config.beam_height_deg = 170;
+    types::Problems problems;
+    config.check(problems);
+    ASSERT_EQ(problems.size(), 1u);
+    EXPECT_THAT(problems[0].message, testing::HasSubstr("rays (visibility: cpu) 180"));
+    problems.clear();
+    config.visibility = Visibility::Cpu;
+    config.device.clear();
+    config.check(problems);
+    EXPECT_THAT(problems, testing::IsEmpty());
+}
+
+TEST(VisibilityTest, WhatIsNearerThanTheBlankingIsSilentAndCastsItsShadow) {
+    const auto snapshot = test::snapshotOf(test::sceneOf(
+        {test::quad({0.5, -2, -2}, {0, 4, 0}, {0, 0, 4}), test::quad({5, -9, -9}, {0, 18, 0}, {0, 0, 18})}));
+    for (Visibility visibility : {Visibility::Cpu}) {
+        SonarConfig config = fan(visibility);
+        config.field_of_view_deg = 40;
+        config.range_min = 0.45;
+        const types::Sonar heard = pingOf(config, snapshot);
+        EXPECT_GT(*std::max_element(heard.bins.begin(), heard.bins.end()), 0);
+        config.range_min = 1.5;
+        const types::Sonar blanked = pingOf(config, snapshot);
+        EXPECT_THAT(blanked.bins, testing::Each(0.0f)) << "the plate hides the wall";
+    }
+}
+
+}  // namespace insonify::sonar
