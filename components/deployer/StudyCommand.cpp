@@ -10,6 +10,7 @@ void addStudyCommand(CLI::App& app, Action& action) {
     study->require_subcommand(1);
     addErrorStudy(*study, action);
     addOmissionStudy(*study, action);
+    addRaysStudy(*study, action);
     addStabilityStudy(*study, action);
 }
 

@@ -24,9 +24,10 @@ void makeFolder(const std::filesystem::path& folder) {
 
 void printRow(const StabilityRow& row) {
     const study::Outcome& outcome = row.outcome;
-    fmt::print("{:>3}  {:<5}  {:>8}  {}\n", row.number, nameOf(outcome.verdict),
-               outcome.verdict == Verdict::Later ? "" : fmt::format("{:.1e}", outcome.deviation), row.name);
+    fmt::print("{:>3}  {:<7}  {:>8}  {}\n", row.number, nameOf(outcome.verdict),
+               study::isJudged(outcome) ? fmt::format("{:.1e}", outcome.deviation) : "", row.name);
     if (outcome.verdict == Verdict::Fail) fmt::print("     expected: {}\n     got: {}\n", row.expected, outcome.got);
+    if (outcome.verdict == Verdict::NotRun) fmt::print("     {}\n", outcome.got);
     std::fflush(stdout);
 }
 
@@ -34,15 +35,12 @@ int studyStability(const std::filesystem::path& folder) {
     makeFolder(folder);
     std::vector<study::StabilityCase> cases = study::stabilityCases();
     for (study::StabilityCase& added : taskStabilityCases()) cases.push_back(std::move(added));
-    fmt::print("case  verdict  deviation\n");
+    fmt::print("case  verdict    deviation\n");
     const std::vector<StabilityRow> rows = study::studyStability(std::move(cases), printRow);
     study::writeStability(rows, folder);
-    const auto count = [&](Verdict verdict) {
-        return std::ranges::count_if(rows, [=](const StabilityRow& row) { return row.outcome.verdict == verdict; });
-    };
-    fmt::print("{} pass, {} fail, {} later; {} and stability.json\n", count(Verdict::Pass), count(Verdict::Fail),
-               count(Verdict::Later), (folder / "stability.md").string());
-    return count(Verdict::Fail) > 0 ? 1 : 0;
+    fmt::print("{}; {} and stability.json\n", study::tally(rows), (folder / "stability.md").string());
+    const auto failed = [](const StabilityRow& row) { return row.outcome.verdict == Verdict::Fail; };
+    return std::ranges::any_of(rows, failed) ? 1 : 0;
 }
 
 }  // namespace

@@ -1,268 +1,261 @@
 #include "components/study/EmbreeCaster.hpp"
 
-#include <embree3/rtcore.h>
-
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <glm/gtc/quaternion.hpp>
-#include <limits>
-#include <numbers>
-#include <stdexcept>
-#include <string>
-#include <thread>
+
+#include "components/sonar/BeamFan.hpp"
+#include "components/sonar/BinGrid.hpp"
+#include "components/study/RayTree.hpp"
+#include "components/study/Workers.hpp"
+#include "types/Angle.hpp"
 
 namespace insonify::study {
 namespace {
 
-constexpr double degree = std::numbers::pi / 180;
-constexpr int packet = 8;
+constexpr int tile = 4;  ///< Rays of a packet across, and up.
+static_assert(tile * tile == RayTree::packet);
 
-/** A perspective image of part of the fan: u = tan(azimuth - centre), v = tan(elevation) sqrt(1 + u u). */
-struct Image {
-    double centre, half_u, half_v;
-    int columns, rows;
-    glm::dmat3 world_from_image;
-    double du() const { return 2 * half_u / columns; }
-    double dv() const { return 2 * half_v / rows; }
+/** An angle, as a direction needs it. */
+struct Angle {
+    double cosine, sine;
+    explicit Angle(double radians = 0) : cosine(std::cos(radians)), sine(std::sin(radians)) {}
 };
 
-std::vector<Image> imagesOf(const types::Pose& sonar, const sonar::SonarConfig& config) {
-    const double fov = config.field_of_view_deg * degree;
-    const int count = std::max(config.least_slabs, static_cast<int>(std::ceil(config.field_of_view_deg / 60 - 1e-9)));
-    std::vector<Image> images;
-    for (int i = 0; i < count; ++i) {
-        const double half = fov / count / 2, centre = -fov / 2 + (2 * i + 1) * half;
-        const auto turn = glm::angleAxis(centre, glm::dvec3(0, 0, 1));
-        images.push_back({centre, std::tan(half), std::tan(config.beam_height_deg * degree / 2) / std::cos(half),
-                          (config.columnsPerBeam() * config.beam_count + count - 1) / count, config.rows(),
-                          glm::mat3_cast(sonar.orientation * turn)});
+/** A column or row of cells: its middle and its edges. */
+struct Strip {
+    Angle middle, low, high;
+    double
+        size;  ///< Of a column [rad]; of a row, between the sines of its edges. A cell's solid angle is their product.
+};
+
+Strip column(double low, double high) { return {Angle((low + high) / 2), Angle(low), Angle(high), high - low}; }
+Strip row(double low, double high) {
+    return {Angle((low + high) / 2), Angle(low), Angle(high), std::sin(high) - std::sin(low)};
+}
+
+/** How the inverse ranges of a patch of plane are distributed that fills a cell: over a parallelogram of which they are
+ *  a linear function, a trapezoid that bends where the corners are. */
+class Spread {
+public:
+    explicit Spread(std::array<double, 4> corners) : w_(corners) {
+        std::ranges::sort(w_);
+        height_ = 2 / (w_[3] - w_[0] + w_[2] - w_[1]);
     }
-    return images;
-}
+    double least() const { return w_[0]; }
+    double most() const { return w_[3]; }
+    /** All of it is as good as one number. */
+    bool isPoint() const { return w_[3] - w_[0] <= 1e-12 * w_[3]; }
+    /** Share below w. */
+    double below(double w) const {
+        if (w <= w_[0]) return 0;
+        if (w >= w_[3]) return 1;
+        if (w < w_[1]) return height_ * (w - w_[0]) * (w - w_[0]) / (2 * (w_[1] - w_[0]));
+        if (w > w_[2]) return 1 - height_ * (w_[3] - w) * (w_[3] - w) / (2 * (w_[3] - w_[2]));
+        return height_ * ((w_[1] - w_[0]) / 2 + w - w_[1]);
+    }
 
-/** What a ray has met: the plane n.p = distance about the sonar, in image axes (n of any length), and its material. */
-struct Hit {
-    glm::dvec3 normal;
-    double distance, mu;
+private:
+    std::array<double, 4> w_;  ///< Ascending [1/m].
+    double height_;
 };
-
-double squareAbove(double x) { return x > 0 ? x * x : 0; }
-
-/** ACOUSTICS.md 4.3: share of a trapezoid (box a times box b, about 0) below t. */
-double below(double t, double a, double b) {
-    if (std::min(a, b) < 1e-6 * std::max(a, b)) return std::clamp(t / std::max(a, b) + 0.5, 0.0, 1.0);
-    return (squareAbove(t + (a + b) / 2) - squareAbove(t + (a - b) / 2) - squareAbove(t - (a - b) / 2) +
-            squareAbove(t - (a + b) / 2)) /
-           (2 * a * b);
-}
 
 }  // namespace
 
-struct EmbreeCaster::Tree {
-    RTCDevice device = rtcNewDevice(nullptr);
-    RTCScene scene = rtcNewScene(device);
-    glm::dvec3 origin;                                 ///< Of the tree, in the world.
-    std::vector<std::array<glm::dvec3, 3>> triangles;  ///< About the origin.
-    std::vector<float> mu;                             ///< Of each triangle.
+struct EmbreeCaster::Fan {
+    explicit Fan(const types::Snapshot& scene) : tree(scene) {}
 
-    ~Tree() {
-        rtcReleaseScene(scene);
-        rtcReleaseDevice(device);
-    }
-    void add(const types::Geometry& geometry, const types::Object& object, const glm::dmat4& world_from_object);
-    void commit();
+    RayTree tree;
+    Workers workers;
+    std::vector<Strip> columns, rows;  ///< Those of all beams, of low bearing first; from below.
+    int columns_per_beam = 0, beams = 0;
+    int stripes = 1;  ///< Of rows that a thread of its own may take: more than 1 where beams are few.
+    size_t bins = 0;
+    double bin_width = 0, nearest = 0, farthest = 0;  ///< [m]; 1 / the nearest and farthest range heard [1/m].
+    std::vector<double> inverse_edges;                ///< 1 / far edge of each bin [1/m].
+    std::vector<double> sums;                         ///< [stripe][beam][bin]
+    std::vector<double> longest;                      ///< Of each part, bins that a cell covered.
+    std::vector<size_t> met;                          ///< Of each part, rays that met something.
+    double kappa_max = 0;
+
+    int groups() const { return (beams + tile - 1) / tile; }
+    int parts() const { return groups() * stripes; }
 };
-
-void EmbreeCaster::Tree::add(const types::Geometry& geometry, const types::Object& object,
-                             const glm::dmat4& world_from_object) {
-    glm::dmat4 place = world_from_object;
-    place[3] -= glm::dvec4(origin, 0);
-    const types::Mesh& mesh = geometry.meshes[static_cast<size_t>(object.mesh)];
-    for (const types::Cluster& cluster : mesh.clusters) {
-        const double strength = std::pow(10, geometry.materials[static_cast<size_t>(cluster.material)].lambert_db / 10);
-        for (uint32_t i = cluster.first_index; i < cluster.first_index + cluster.index_count; i += 3) {
-            auto& triangle = triangles.emplace_back();
-            for (uint32_t corner = 0; corner < 3; ++corner)
-                triangle[corner] = glm::dvec3(place * glm::dvec4(mesh.positions[mesh.indices[i + corner]], 1));
-            mu.push_back(static_cast<float>(strength));
-        }
-    }
-}
-
-void EmbreeCaster::Tree::commit() {
-    RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
-    const size_t count = triangles.size();
-    auto* vertices = static_cast<float*>(
-        rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, 3 * sizeof(float), 3 * count));
-    auto* indices = static_cast<uint32_t*>(
-        rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, 3 * sizeof(uint32_t), count));
-    if (count > 0 && (!vertices || !indices)) throw std::runtime_error("Embree has no memory for the scene");
-    for (size_t i = 0; i < 3 * count; ++i) {
-        const glm::dvec3& p = triangles[i / 3][i % 3];
-        for (int axis = 0; axis < 3; ++axis) vertices[3 * i + static_cast<size_t>(axis)] = static_cast<float>(p[axis]);
-        indices[i] = static_cast<uint32_t>(i);
-    }
-    rtcCommitGeometry(geometry);
-    rtcAttachGeometry(scene, geometry);
-    rtcReleaseGeometry(geometry);
-    rtcSetSceneFlags(scene, RTC_SCENE_FLAG_ROBUST);
-    rtcCommitScene(scene);
-    if (const RTCError error = rtcGetDeviceError(device); error != RTC_ERROR_NONE)
-        throw std::runtime_error("Embree cannot build the scene: error " + std::to_string(error));
-}
 
 namespace {
 
-/** One thread's part of a ping: every so many columns of each image, into sums of its own. */
-template <class Tree>
-class Caster {
+/** One thread's work on a ping: the rows of a stripe for four beams. */
+template <class Fan>
+class Part {
 public:
-    Caster(const Tree& tree, const types::Pose& sonar, const sonar::SonarConfig& config)
-        : tree_(tree),
-          config_(config),
-          from_(sonar.position - tree.origin),
-          bins_(static_cast<size_t>(config.bin_count)),
-          bin_width_(config.range / config.bin_count),
-          sums_(bins_ * static_cast<size_t>(config.beam_count)) {}
+    Part(Fan& fan, const types::Pose& sonar, int number)
+        : fan_(fan),
+          number_(static_cast<size_t>(number)),
+          world_from_sonar_(glm::mat3_cast(sonar.orientation)),
+          sonar_from_world_(glm::transpose(world_from_sonar_)),
+          from_(sonar.position - fan.tree.origin()),
+          group_(number / fan.stripes),
+          stripe_(number % fan.stripes),
+          first_column_(group_ * tile * fan.columns_per_beam),
+          end_column_(std::min(first_column_ + tile * fan.columns_per_beam, static_cast<int>(fan.columns.size()))) {}
 
-    void castColumn(const Image& image, int column) {
-        u_ = (column + 0.5) * image.du() - image.half_u;
-        for (int row = 0; row < image.rows; row += packet) castPacket(image, row, std::min(packet, image.rows - row));
+    /** Calls with column, row and triangle for each ray that meets something. */
+    template <class Met>
+    void cast(const Met& met) {
+        const auto rows = static_cast<int>(fan_.rows.size());
+        const int tiles = (rows + tile - 1) / tile;
+        const int first = tile * (tiles * stripe_ / fan_.stripes), end = tile * (tiles * (stripe_ + 1) / fan_.stripes);
+        for (int column = first_column_; column < end_column_; column += tile)
+            for (int row = first; row < std::min(end, rows); row += tile)
+                castTile(column, row, std::min(tile, end_column_ - column), std::min(tile, rows - row), met);
     }
-    const std::vector<double>& sums() const { return sums_; }
-    double kappaMax() const { return kappa_max_; }
+
+    void clear() {
+        const size_t last = std::min<size_t>((static_cast<size_t>(group_) + 1) * tile, static_cast<size_t>(fan_.beams));
+        std::fill(beam(static_cast<size_t>(group_) * tile), beam(last), 0.0);
+        fan_.longest[number_] = 0;
+    }
+
+    void deposit(int column, int row, uint32_t triangle) {
+        const RayTree::Triangle& plane = fan_.tree[triangle];
+        const Strip &across = fan_.columns[static_cast<size_t>(column)], &up = fan_.rows[static_cast<size_t>(row)];
+        const glm::dvec3 n = sonar_from_world_ * plane.normal;
+        const double distance = plane.distance - glm::dot(plane.normal, from_);
+        const auto inverseRange = [&](const Angle& azimuth, const Angle& elevation) {
+            return ((n.x * azimuth.cosine + n.y * azimuth.sine) * elevation.cosine + n.z * elevation.sine) / distance;
+        };
+        const double middle = inverseRange(across.middle, up.middle);
+        if (!(middle > 0) || !std::isfinite(middle))
+            return;  // edge-on, or the float's triangle is not quite this plane
+        const double cosine =
+            plane.mapped ? mapped(triangle, across.middle, up.middle, middle) : middle * std::abs(distance);
+        const Spread spread({inverseRange(across.low, up.low), inverseRange(across.low, up.high),
+                             inverseRange(across.high, up.low), inverseRange(across.high, up.high)});
+        share(spread, across.size * up.size * plane.mu * cosine / middle,
+              beam(static_cast<size_t>(column / fan_.columns_per_beam)));
+    }
 
 private:
-    void castPacket(const Image& image, int first_row, int count) {
-        alignas(32) int valid[packet];
-        alignas(32) RTCRayHit8 rays;
-        for (int i = 0; i < packet; ++i) {
-            valid[i] = i < count ? -1 : 0;
-            const double v = (first_row + i + 0.5) * image.dv() - image.half_v;
-            const glm::dvec3 d = glm::normalize(image.world_from_image * glm::dvec3(1, u_, v));
-            rays.ray.org_x[i] = static_cast<float>(from_.x), rays.ray.org_y[i] = static_cast<float>(from_.y),
-            rays.ray.org_z[i] = static_cast<float>(from_.z);
-            rays.ray.dir_x[i] = static_cast<float>(d.x), rays.ray.dir_y[i] = static_cast<float>(d.y),
-            rays.ray.dir_z[i] = static_cast<float>(d.z);
-            rays.ray.tnear[i] = static_cast<float>(config_.range_min);
-            rays.ray.tfar[i] = std::numeric_limits<float>::infinity();
-            rays.ray.mask[i] = 0xffffffffu;
-            rays.ray.time[i] = 0, rays.ray.flags[i] = 0;
-            rays.hit.geomID[i] = RTC_INVALID_GEOMETRY_ID;
+    template <class Met>
+    void castTile(int column, int row, int across, int up, const Met& met) {
+        RayTree::Rays rays;
+        for (int i = 0; i < RayTree::packet; ++i)  // beyond the edge: the last one again
+            rays.set(i, directionOf(fan_.columns[static_cast<size_t>(column + std::min(i % tile, across - 1))].middle,
+                                    fan_.rows[static_cast<size_t>(row + std::min(i / tile, up - 1))].middle));
+        RayTree::Found found;
+        fan_.tree.cast(from_, rays, found);
+        for (int j = 0; j < up; ++j)
+            for (int i = 0; i < across; ++i)
+                if (const uint32_t triangle = found[static_cast<size_t>(tile * j + i)]; triangle != RayTree::none)
+                    met(column + i, row + j, triangle);
+    }
+
+    glm::dvec3 directionOf(const Angle& azimuth, const Angle& elevation) const {
+        return elevation.cosine * (azimuth.cosine * world_from_sonar_[0] + azimuth.sine * world_from_sonar_[1]) +
+               elevation.sine * world_from_sonar_[2];
+    }
+
+    double mapped(uint32_t triangle, const Angle& azimuth, const Angle& elevation, double inverse_range) const {
+        const glm::dvec3 direction = directionOf(azimuth, elevation);
+        return fan_.tree.mappedCosine(triangle, from_ + direction / inverse_range, direction);
+    }
+
+    double* beam(size_t beam) {
+        return fan_.sums.data() + (static_cast<size_t>(stripe_) * static_cast<size_t>(fan_.beams) + beam) * fan_.bins;
+    }
+
+    /** Over inverse range energy goes as its cube; `amount` is energy over that. */
+    void share(const Spread& spread, double amount, double* bins) {
+        const double near = std::min(spread.most(), fan_.nearest), far = std::max(spread.least(), fan_.farthest);
+        if (near < far || !(near > 0)) return;
+        auto bin = static_cast<size_t>(1 / (near * fan_.bin_width));
+        if (bin >= fan_.bins) return;
+        if (spread.isPoint()) {
+            bins[bin] += amount * near * near * near;
+            return;
         }
-        RTCIntersectContext context;
-        rtcInitIntersectContext(&context);
-        context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
-        rtcIntersect8(valid, tree_.scene, &context, &rays);
-        for (int i = 0; i < count; ++i)
-            if (rays.hit.geomID[i] != RTC_INVALID_GEOMETRY_ID)
-                depositPixel(image, (first_row + i + 0.5) * image.dv() - image.half_v,
-                             hitOf(image, rays.hit.primID[i]));
-    }
-
-    Hit hitOf(const Image& image, uint32_t triangle) const {
-        const auto& [a, b, c] = tree_.triangles[triangle];
-        const glm::dvec3 normal = glm::cross(b - a, c - a);
-        return {glm::transpose(image.world_from_image) * normal, glm::dot(normal, a - from_), tree_.mu[triangle]};
-    }
-
-    /** Shares the pixel out to the beams that its column touches. */
-    void depositPixel(const Image& image, double v, const Hit& hit) {
-        const double low = u_ - image.du() / 2, high = u_ + image.du() / 2;
-        const double fov = config_.field_of_view_deg * degree, width = fov / config_.beam_count;
-        const auto beamAt = [&](double u) { return static_cast<int>((image.centre + std::atan(u) + fov / 2) / width); };
-        const double half = std::atan(image.half_u);
-        const auto edge = [&](int beam) {
-            return std::tan(std::clamp(beam * width - fov / 2 - image.centre, -half, half));
-        };
-        const int last = std::min(beamAt(high), config_.beam_count - 1);
-        for (int beam = std::max(0, beamAt(low)); beam <= last; ++beam) {
-            const double from = std::max(low, edge(beam)), to = std::min(high, edge(beam + 1));
-            if (to > from) depositCell(image, (from + to) / 2, to - from, v, hit, beam);
-        }
-    }
-
-    /** The part of the pixel about (middle, v), between curves of constant elevation, cut off at the aperture. */
-    void depositCell(const Image& image, double middle, double width, double v, const Hit& hit, int beam) {
-        const glm::dvec3 q(1, u_, v);
-        const double length = glm::length(q), facing = glm::dot(hit.normal, q), square = length * length;
-        const double cosine = std::abs(facing) / (length * glm::length(hit.normal)),
-                     inverse = facing / (hit.distance * length);
-        if (!(cosine > 1e-4) || !(inverse > 0)) return;
-        const double slope_u = inverse * (hit.normal.y / facing - u_ / square),
-                     slope_v = inverse * (hit.normal.z / facing - v / square);
-        const double lean = v * u_ / (1 + u_ * u_), moved = v + lean * (middle - u_);
-        const double edge = std::tan(config_.beam_height_deg * degree / 2) * std::sqrt(1 + middle * middle);
-        const double top = std::min(moved + image.dv() / 2, edge), bottom = std::max(moved - image.dv() / 2, -edge);
-        if (!(top > bottom)) return;
-        const double centre_v = (top + bottom) / 2;
-        const double along = std::abs(slope_u + slope_v * lean) * width, across = std::abs(slope_v) * (top - bottom);
-        const double centre = inverse + slope_u * (middle - u_) + slope_v * (centre_v - v);
-        const double solid_angle = width * (top - bottom) * std::pow(1 + middle * middle + centre_v * centre_v, -1.5);
-        spread(beam, centre, std::max(along, 1e-12 * inverse), across, solid_angle * hit.mu * cosine / inverse);
-    }
-
-    /** Energy goes as 1/r^3 over inverse range; `amount` is energy times r^3. */
-    void spread(int beam, double centre, double a, double b, double amount) {
-        const double near = std::min(centre + (a + b) / 2, 1 / config_.range_min),
-                     far = std::max(centre - (a + b) / 2, 1 / config_.range);
-        if (!(near > far)) return;
-        kappa_max_ = std::max(kappa_max_, (1 / far - 1 / near) / bin_width_);
-        double* bins = sums_.data() + static_cast<size_t>(beam) * bins_;
-        double above = near, share_above = below(near - centre, a, b);
-        for (auto bin = static_cast<size_t>(1 / (near * bin_width_)); above > far && bin < bins_; ++bin) {
-            const double edge = std::max(1 / (static_cast<double>(bin + 1) * bin_width_), far);
-            const double share = below(edge - centre, a, b), middle = (above + edge) / 2;
-            if (edge < above) bins[bin] += amount * (share_above - share) * middle * middle * middle;
-            above = edge, share_above = share;
+        fan_.longest[number_] = std::max(fan_.longest[number_], (1 / far - 1 / near) / fan_.bin_width);
+        double above = near, share_above = spread.below(near);
+        for (; above > far && bin < fan_.bins; ++bin) {
+            const double edge = std::max(fan_.inverse_edges[bin], far);
+            if (!(edge < above)) continue;
+            const double share_edge = spread.below(edge), middle = (above + edge) / 2;
+            bins[bin] += amount * (share_above - share_edge) * middle * middle * middle;
+            above = edge, share_above = share_edge;
         }
     }
 
-    const Tree& tree_;
-    const sonar::SonarConfig& config_;
+    Fan& fan_;
+    size_t number_;
+    glm::dmat3 world_from_sonar_, sonar_from_world_;
     glm::dvec3 from_;
-    size_t bins_;
-    double bin_width_;
-    std::vector<double> sums_;
-    double u_ = 0, kappa_max_ = 0;
+    int group_, stripe_, first_column_, end_column_;
 };
 
 }  // namespace
 
-EmbreeCaster::EmbreeCaster(const types::Snapshot& scene) : tree_(std::make_unique<Tree>()) {
-    tree_->origin = scene.sonar.position;
-    std::vector<glm::dmat4> places;
-    for (const types::Object& object : scene.geometry->objects) places.push_back(object.world_from_object);
-    for (const types::MovedObject& moved : scene.moved) places[moved.object] = moved.world_from_object;
-    for (size_t i = 0; i < places.size(); ++i) tree_->add(*scene.geometry, scene.geometry->objects[i], places[i]);
-    tree_->commit();
-}
+EmbreeCaster::EmbreeCaster(const types::Snapshot& scene) : fan_(std::make_unique<Fan>(scene)) {}
 
 EmbreeCaster::~EmbreeCaster() = default;
 
-void EmbreeCaster::render(const types::Pose& sonar, const sonar::SonarConfig& config, std::vector<float>& energies) {
-    const std::vector<Image> images = imagesOf(sonar, config);
-    const auto threads = static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
-    std::vector<Caster<Tree>> casters(static_cast<size_t>(threads), Caster<Tree>(*tree_, sonar, config));
-    {
-        std::vector<std::jthread> running;
-        for (int t = 0; t < threads; ++t)
-            running.emplace_back([&, t] {
-                for (const Image& image : images)
-                    for (int column = t; column < image.columns; column += threads)
-                        casters[static_cast<size_t>(t)].castColumn(image, column);
-            });
-    }
-    energies.assign(casters.front().sums().size(), 0);
-    kappa_max_ = 0;
-    for (size_t i = 0; i < energies.size(); ++i) {
+void EmbreeCaster::prepare(const sonar::SonarConfig& config) {
+    const sonar::BinGrid grid = sonar::makeBinGrid(config);
+    Fan& fan = *fan_;
+    fan.columns.clear();
+    fan.rows.clear();
+    fan.columns_per_beam = config.columnsPerBeam();
+    for (const sonar::Beam& beam : sonar::makeBeams(config))
+        for (int i = 0; i < fan.columns_per_beam; ++i) {
+            const double width = (beam.high - beam.low) / fan.columns_per_beam;
+            fan.columns.push_back(column(beam.low + i * width, beam.low + (i + 1) * width));
+        }
+    const double half = types::radians(config.beam_height_deg) / 2, height = 2 * half / config.rows();
+    for (int i = 0; i < config.rows(); ++i) fan.rows.push_back(row(i * height - half, (i + 1) * height - half));
+    fan.beams = config.beams();
+    fan.stripes = fan.groups() >= 4 * fan.workers.size() ? 1 : 4 * fan.workers.size();
+    fan.bins = static_cast<size_t>(grid.bin_count);
+    fan.bin_width = grid.bin_width;
+    fan.nearest = grid.range_min > 0 ? 1 / grid.range_min : 1e12;
+    fan.farthest = 1 / grid.range_max;
+    fan.inverse_edges.clear();
+    for (int k = 0; k < grid.bin_count; ++k) fan.inverse_edges.push_back(1 / grid.edge(k + 1));
+    fan.sums.assign(static_cast<size_t>(fan.stripes) * static_cast<size_t>(fan.beams) * fan.bins, 0);
+    fan.longest.assign(static_cast<size_t>(fan.parts()), 0);
+    fan.met.assign(static_cast<size_t>(fan.parts()), 0);
+}
+
+void EmbreeCaster::render(const types::Pose& sonar, std::vector<float>& energies) {
+    Fan& fan = *fan_;
+    const auto work = [&](int number) {
+        Part<Fan> part(fan, sonar, number);
+        part.clear();
+        part.cast([&](int column, int row, uint32_t triangle) { part.deposit(column, row, triangle); });
+    };
+    fan.workers.forEach(fan.parts(), work);
+    const size_t all = fan.bins * static_cast<size_t>(fan.beams);
+    energies.resize(all);
+    for (size_t i = 0; i < all; ++i) {
         double sum = 0;
-        for (const auto& caster : casters) sum += caster.sums()[i];
+        for (size_t at = i; at < fan.sums.size(); at += all) sum += fan.sums[at];
         energies[i] = static_cast<float>(sum);
     }
-    for (const auto& caster : casters) kappa_max_ = std::max(kappa_max_, caster.kappaMax());
+    fan.kappa_max = fan.longest.empty() ? 0 : *std::ranges::max_element(fan.longest);
 }
+
+size_t EmbreeCaster::castOnly(const types::Pose& sonar) {
+    Fan& fan = *fan_;
+    fan.workers.forEach(fan.parts(), [&](int number) {
+        size_t met = 0;
+        Part<Fan>(fan, sonar, number).cast([&](int, int, uint32_t) { ++met; });
+        fan.met[static_cast<size_t>(number)] = met;
+    });
+    size_t sum = 0;
+    for (const size_t met : fan.met) sum += met;
+    return sum;
+}
+
+double EmbreeCaster::kappaMax() const { return fan_->kappa_max; }
 
 }  // namespace insonify::study

@@ -8,27 +8,33 @@
 namespace insonify::study {
 
 /** The same physics by casting rays on the processor (Embree), all cores: an independent program, and the answer to
- *  "why not just cast rays". Shares no code with the renderer, but its estimate: energies converge to the truth at the
- *  same rate; rays find triangles in float, everything after is in
- *  double. `physical` without absorption, normal maps and `published`; planar beams of a regular fan. */
+ *  "why not just cast rays". Its samples are cells of equal azimuth and elevation, four by four to a packet; what a
+ *  cell's patch of plane returns goes to the ranges between those of the cell's own four corners, each met exactly. As
+ *  quick as rays get: threads are kept between pings, angles are tabulated, a ping allocates nothing.
+ *  `physical` without absorption and `published`; planar beams; normal maps without mipmaps. What is nearer than
+ *  `range_min` hides what lies behind it. */
 class EmbreeCaster {
 public:
-    /** Builds the tree of all triangles as they lie in the snapshot. */
+    /** Builds the tree of all triangles as they lie in the snapshot. Throws std::runtime_error when Embree cannot. */
     explicit EmbreeCaster(const types::Snapshot& scene);
     ~EmbreeCaster();
 
-    /** Energies E/S0 of one ping from `sonar`, [beam][bin], with one ray for each cell of a grid of
-     *  config.quality.rows over the aperture and columns_per_beam for each beam, spread over the ranges that it covers.
-     */
-    void render(const types::Pose& sonar, const sonar::SonarConfig& config, std::vector<float>& energies);
+    /** Makes the tables of a configuration: one ray for each of config.quality.rows over the aperture and
+     *  columns_per_beam for each beam. */
+    void prepare(const sonar::SonarConfig& config);
+
+    /** Energies E/S0 of one ping from `sonar`, [beam][bin], with the configuration prepared last. */
+    void render(const types::Pose& sonar, std::vector<float>& energies);
+
+    /** Casts the rays of a ping and does nothing with them; how many met something [1]. */
+    size_t castOnly(const types::Pose& sonar);
 
     /** Of the last ping: bins that the longest cell covered, kappa of ACOUSTICS.md 4.5 [1]. */
-    double kappaMax() const { return kappa_max_; }
+    double kappaMax() const;
 
 private:
-    struct Tree;
-    std::unique_ptr<Tree> tree_;
-    double kappa_max_ = 0;
+    struct Fan;
+    std::unique_ptr<Fan> fan_;
 };
 
 }  // namespace insonify::study

@@ -22,7 +22,13 @@ const Measurement* find(const ErrorResult& result, const std::string& scene, Met
     return found == result.measurements.end() ? nullptr : &*found;
 }
 
-constexpr double farthest_extension = 30;  ///< Beyond the finest point, of its time [1].
+constexpr double farthest_extension = 30;  ///< Times the finest point's: farther is called "never" [1].
+
+/** Says so when one of two times that are compared is no measured one. */
+std::string marked(const ReachTime& a, const ReachTime& b) {
+    const auto is = [&](ReachTime::Kind kind) { return a.kind == kind || b.kind == kind; };
+    return is(ReachTime::Kind::Extrapolated) ? " (extrapolated)" : is(ReachTime::Kind::AtMost) ? " (a bound)" : "";
+}
 
 double onLine(double x, double x1, double y1, double x2, double y2) {
     return std::exp(std::log(y1) +
@@ -40,8 +46,8 @@ void judgeFlatBottom(const ErrorResult& result, std::vector<Claim>& all) {
     if (footprint.empty() || nearest.empty()) return;
     const auto slow = timeTo(0.01, nearest), fast = timeTo(0.01, footprint);
     if (slow && fast)
-        all.push_back(
-            {"flat bottom, error of 1 %: time of nearest bin over that of footprints", *slow / *fast, 30, false});
+        all.push_back({"flat bottom, error of 1 %: time of nearest bin over that of footprints" + marked(*slow, *fast),
+                       slow->ms / fast->ms, 30, false});
     const double ms = std::min(nearest.back().median_ms, footprint.back().median_ms);
     all.push_back({fmt::format("flat bottom, {:.3g} ms: error of nearest bin over that of footprints", ms),
                    *errorAt(ms, nearest) / *errorAt(ms, footprint), 20, false});
@@ -66,29 +72,32 @@ void judgeComputed(const ErrorResult& result, std::vector<Claim>& all) {
         double smallest = std::numeric_limits<double>::infinity();
         for (const Measurement& m : result.measurements)
             if (m.scene == reference.scene) smallest = std::min(smallest, m.metrics.rel_l2);
-        all.push_back({fmt::format("{}: smallest error over that of the reference", reference.scene),
-                       smallest / reference.error, 10, false});
+        all.push_back({fmt::format("{}: smallest error over that of the reference ({:.2g} rays)", reference.scene,
+                                   reference.rays),
+                       smallest / reference.error, reference_margin, false, false});
         const auto traced = ladder(result, reference.scene, Method::Embree);
         const auto rays = timeTo(0.01, traced),
                    drawn = timeTo(0.01, ladder(result, reference.scene, Method::Footprint));
-        const bool only_bound = !traced.empty() && traced.front().metrics.rel_l2 <= 0.01;
-        if (rays && drawn && !only_bound)
-            all.push_back(
-                {fmt::format("{}, error of 1 %: time of rays (Embree) over that of footprints", reference.scene),
-                 *rays / *drawn, 1, false});
+        if (!rays || !drawn || rays->kind == ReachTime::Kind::AtMost) continue;
+        const bool settled = reference.error * reference_margin <= 0.01 && marked(*rays, *drawn).empty();
+        all.push_back({fmt::format("{}, error of 1 %: time of rays (Embree) over that of footprints{}", reference.scene,
+                                   marked(*rays, *drawn)),
+                       rays->ms / drawn->ms, 1, false, settled});
     }
 }
 
-/** Scenes with a closed form alone: there the error is known. The coarsest that is chosen may be better than need be.
- */
+/** Of scenes with a closed form the coarsest that is chosen may be better than need be. */
 void judgePredictions(const ErrorResult& result, std::vector<Claim>& all) {
     for (const Prediction& p : result.predictions) {
-        if (referenceError(result, p.scene) > 0) continue;
+        const auto reference = std::ranges::find(result.references, p.scene, &Reference::scene);
+        if (reference == result.references.end()) continue;
+        const bool settled = reference->error_tvg * reference_margin <= p.target_error;
         const std::string text = fmt::format("{}, target_error {}: error over target, {} rows, {} columns per beam",
                                              p.scene, p.target_error, p.rows, p.columns_per_beam);
-        all.push_back({text, p.error / p.target_error, 2, true});
+        all.push_back({text, p.error / p.target_error, 2, true, settled});
         const bool is_coarsest = sonar::Quality{p.rows, p.columns_per_beam} == sonar::Quality();
-        if (!is_coarsest) all.push_back({text, p.error / p.target_error, 0.1, false});
+        if (reference->rays == 0 && !is_coarsest)
+            all.push_back({text, p.error / p.target_error, 0.1, false});  // no waste either
     }
 }
 
@@ -103,8 +112,8 @@ std::vector<Measurement> ladder(const ErrorResult& result, const std::string& sc
     std::vector<Measurement> points;
     for (const Measurement& m : result.measurements) {
         if (m.scene != scene || m.method != method || m.samples_per_pixel != 1) continue;
-        if (points.empty() ||
-            (m.rows == 2 * points.back().rows && m.columns_per_beam == 2 * points.back().columns_per_beam))
+        if (points.empty() || (m.slabs == points.back().slabs && m.rows == 2 * points.back().rows &&
+                               m.columns_per_beam == 2 * points.back().columns_per_beam))
             points.push_back(m);
     }
     return points;
@@ -121,16 +130,35 @@ std::optional<double> slope(const std::vector<Measurement>& points, double refer
     return (n * xy - x * y) / (n * xx - x * x);
 }
 
-std::optional<double> timeTo(double error, const std::vector<Measurement>& points) {
+const char* nameOf(ReachTime::Kind kind) {
+    switch (kind) {
+        case ReachTime::Kind::Interpolated: return "interpolated";
+        case ReachTime::Kind::AtMost: return "at_most";
+        case ReachTime::Kind::Extrapolated: return "extrapolated";
+    }
+    return "";
+}
+
+std::string ReachTime::text() const {
+    switch (kind) {
+        case Kind::Interpolated: return fmt::format("{:.3g}", ms);
+        case Kind::AtMost: return fmt::format("at most {:.3g}", ms);
+        case Kind::Extrapolated: return fmt::format("{:.3g} (extrapolated, {:.2g} x the finest)", ms, beyond);
+    }
+    return "";
+}
+
+std::optional<ReachTime> timeTo(double error, const std::vector<Measurement>& points) {
     if (points.empty()) return std::nullopt;
-    if (points.front().metrics.rel_l2 <= error) return points.front().median_ms;
+    if (points.front().metrics.rel_l2 <= error) return ReachTime{points.front().median_ms, ReachTime::Kind::AtMost};
     for (size_t i = 1; i < points.size(); ++i) {
         const Measurement &coarse = points[i - 1], &fine = points[i];
         if (fine.metrics.rel_l2 > error && i + 1 < points.size()) continue;
         if (fine.metrics.rel_l2 >= coarse.metrics.rel_l2) return std::nullopt;
         const double ms = onLine(error, coarse.metrics.rel_l2, coarse.median_ms, fine.metrics.rel_l2, fine.median_ms);
         if (!(ms < farthest_extension * fine.median_ms)) return std::nullopt;
-        return ms;
+        if (fine.metrics.rel_l2 > error) return ReachTime{ms, ReachTime::Kind::Extrapolated, ms / fine.median_ms};
+        return ReachTime{ms, ReachTime::Kind::Interpolated};
     }
     return std::nullopt;
 }

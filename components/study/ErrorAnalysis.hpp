@@ -1,5 +1,6 @@
 #pragma once
 #include <optional>
+#include <string>
 
 #include "components/study/ErrorStudy.hpp"
 
@@ -15,10 +16,26 @@ std::vector<Measurement> ladder(const ErrorResult& result, const std::string& sc
  * of the reference; nothing with fewer than two of them. */
 std::optional<double> slope(const std::vector<Measurement>& points, double reference_error);
 
-/** Time to reach an error [ms], from the line through the two points about it on logarithmic scales. Coarsest point
- * good enough: its time, an upper bound. Finest point not good enough: extended from the last two, nothing when they
- * hardly fall: further than 30 times the finest point's time. */
-std::optional<double> timeTo(double error, const std::vector<Measurement>& points);
+/** A time that was not measured, but found from those that were. */
+struct ReachTime {
+    enum class Kind {
+        Interpolated,  ///< Between two points.
+        AtMost,        ///< The coarsest point's: it is good enough.
+        Extrapolated,  ///< On the line through the last two points, beyond the finest.
+    };
+    double ms;
+    Kind kind;
+    double beyond = 1;  ///< Extrapolated: over the finest point's time [1].
+
+    /** "24", "at most 3.1", "103 (extrapolated, 4.2 x the finest)". */
+    std::string text() const;
+};
+/** "interpolated", "at_most", "extrapolated". */
+const char* nameOf(ReachTime::Kind kind);
+
+/** Time to reach an error, from the line through the two points about it on logarithmic scales. Finest point not good
+ * enough: extended from the last two, nothing when they hardly fall: further than 30 times the finest point's time. */
+std::optional<ReachTime> timeTo(double error, const std::vector<Measurement>& points);
 
 /** Error that is reached in a time, likewise; the nearest point's beyond the ends. */
 std::optional<double> errorAt(double ms, const std::vector<Measurement>& points);
@@ -26,15 +43,19 @@ std::optional<double> errorAt(double ms, const std::vector<Measurement>& points)
 /** Whether no other point of the scene is both faster and more accurate. */
 bool onParetoFront(const Measurement& point, const ErrorResult& result);
 
-/** A claim, what came out, and whether it holds. */
+/** A claim, what came out, and whether it holds. Bounds are what is promised, set before anything is measured. */
 struct Claim {
     std::string text;
     double measured, bound;
-    bool at_most;  ///< The bound is an upper one, else a lower one.
+    bool at_most;         ///< The bound is an upper one, else a lower one.
+    bool settled = true;  ///< False: it is about the study itself, or its reference is too coarse to tell.
     bool holds() const { return at_most ? measured <= bound : measured >= bound; }
+    bool fails() const { return settled && !holds(); }
+    /** "pass", "FAIL", or "open": does not hold, but that is the study's limit and says nothing about the scene. */
+    const char* verdict() const { return holds() ? "pass" : fails() ? "FAIL" : "open"; }
 };
 
-/** Every claim that the scenes at hand can settle. */
+/** Every claim that the scenes at hand have something to say about. */
 std::vector<Claim> claims(const ErrorResult& result);
 
 }  // namespace insonify::study

@@ -7,7 +7,8 @@ namespace insonify::study {
 
 /** `error_time.csv`: one line for each point. */
 std::string csvOf(const ErrorResult& result);
-/** `error_time.json`: points, references, slopes, times to 10, 1 and 0.1 %, verdicts, device. */
+/** `error_time.json`: points, references, slopes, times to 10, 1 and 0.1 % and how they were found, verdicts, device.
+ */
 std::string jsonOf(const ErrorResult& result);
 /** One diagram of a scene, rel_l2 over median time. */
 std::string diagramOf(const ErrorResult& result, const std::string& scene);

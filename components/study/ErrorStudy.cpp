@@ -14,13 +14,13 @@
 #include "components/sonar/Quality.hpp"
 #include "components/sonar/SonarRenderer.hpp"
 #include "components/study/EmbreeCaster.hpp"
+#include "components/study/PointCaster.hpp"
 
 namespace insonify::study {
 namespace {
 
 constexpr int least_rows = 64;
-constexpr int most_levels_computed = 4;  ///< Without a closed form: the reference costs 64 times the finest point.
-constexpr int reference_refinement = 8;  ///< Of the finest point measured, in rows and columns each.
+constexpr int most_levels_computed = 4;  ///< Without a closed form: the reference has to be finer still.
 
 double wallMs() {
     return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now().time_since_epoch()).count();
@@ -64,7 +64,7 @@ sonar::SonarConfig configOf(const StudyScene& scene, const Measurement& point) {
     return config;
 }
 
-/** One scene under study: its reference, and what measures a point of it. */
+/** One scene under study: what measures a point of it, and its reference. */
 class SceneStudy {
 public:
     SceneStudy(const StudyScene& scene, const ErrorOptions& options, ErrorResult& result)
@@ -72,10 +72,37 @@ public:
         const sonar::BinGrid grid = sonar::makeBinGrid(scene.config);
         layout_ = {scene.config.beam_count, grid.bin_count, grid.bin_width, scene.range_from};
         base_columns_ = std::max(1, least_rows / scene.config.beam_count);
-        makeReference();
     }
 
     void run() {
+        makeReference();
+        measureAll();
+        predict();
+        if (!scene_.truth) refineReference();
+        for (const Heard& heard : heard_) {
+            result_.measurements.push_back(heard.point);
+            result_.measurements.back().metrics = compare(heard.energies, energies_, layout_);
+        }
+        prediction_.error = compare(predicted_, energies_, layout_).rel_l2_tvg;
+        result_.predictions.push_back(prediction_);
+        result_.references.push_back(reference_);
+    }
+
+private:
+    struct Heard {
+        Measurement point;
+        std::vector<float> energies;
+    };
+
+    int levels() const { return scene_.truth ? options_.levels : std::min(options_.levels, most_levels_computed); }
+
+    /** Whether one perspective image can hold the fan, at all levels. */
+    bool fitsOneFrustum() const {
+        const int64_t columns = int64_t{base_columns_} << (levels() - 1);
+        return scene_.config.field_of_view_deg < 175 && columns * scene_.config.beam_count <= sonar::most_image_size;
+    }
+
+    void measureAll() {
         const int slabs = static_cast<int>(sonar::makeSlabs(scene_.config, sonar::makeBeams(scene_.config)).size());
         for (const Method method : methods)
             if (method != Method::Published || fitsOneFrustum())
@@ -88,48 +115,28 @@ public:
             measure(Method::Footprint, 4 * least_rows, 4 * base_columns_, more);
         for (int level = 0; level + 1 < levels(); ++level)
             measure(Method::Footprint, least_rows << level, base_columns_ << level, slabs, 4);
-        predict();
-        if (!scene_.truth) result_.references.back().error = halving_ / (convergence() - 1);
-    }
-
-private:
-    int levels() const { return scene_.truth ? options_.levels : std::min(options_.levels, most_levels_computed); }
-
-    /** What doubling rows and columns divides the error of rays by, where it divides least. */
-    double convergence() const {
-        std::vector<double> errors;
-        for (const Measurement& m : result_.measurements)
-            if (m.scene == scene_.name && m.method == Method::Embree) errors.push_back(m.metrics.rel_l2);
-        double least = 4;  // of smooth surfaces
-        for (size_t i = 1; i < errors.size(); ++i) least = std::min(least, errors[i - 1] / errors[i]);
-        return std::max(least, 1.5);
-    }
-
-    /** Whether one perspective image can hold the fan, at all levels. */
-    bool fitsOneFrustum() const {
-        const int64_t columns = int64_t{base_columns_} << (levels() - 1);
-        return scene_.config.field_of_view_deg < 175 && columns * scene_.config.beam_count <= sonar::most_image_size;
     }
 
     void measure(Method method, int rows, int columns, int slabs, int samples = 1) {
-        Measurement point{scene_.name, method, rows, columns, samples, slabs, {}, 0, 0, 0, 0};
+        Heard heard{{scene_.name, method, rows, columns, samples, slabs, {}, 0, 0, 0, 0}, {}};
         options_.progress(fmt::format("{} {} {} x {}", scene_.name, nameOf(method), rows, columns));
-        const sonar::SonarConfig config = configOf(scene_, point);
-        std::vector<float> energies;
-        if (method == Method::Embree)
-            time([&](auto& e) { caster_.render(scene_.snapshot.sonar, config, e); }, options_.pings, energies, point);
-        else
-            timeRenderer(config, energies, point);
-        if (method != Method::Published) point.kappa_max = kappa(config);
-        point.metrics = compare(energies, reference_, layout_);
-        result_.measurements.push_back(point);
+        const sonar::SonarConfig config = configOf(scene_, heard.point);
+        if (method == Method::Embree) {
+            caster_.prepare(config);
+            const auto ping = [&](auto& energies) { caster_.render(scene_.snapshot.sonar, energies); };
+            time(ping, options_.pings, heard.energies, heard.point);
+        } else {
+            timeRenderer(config, heard);
+        }
+        if (method != Method::Published) heard.point.kappa_max = kappa(config);
+        heard_.push_back(std::move(heard));
     }
 
-    void timeRenderer(const sonar::SonarConfig& config, std::vector<float>& energies, Measurement& point) {
+    void timeRenderer(const sonar::SonarConfig& config, Heard& heard) {
         sonar::SonarRenderer renderer(config, scene_.snapshot.geometry);
         types::Sonar ping;
-        time([&](auto&) { renderer.render(scene_.snapshot, ping); }, options_.pings, energies, point);
-        energies = ping.bins;
+        time([&](auto&) { renderer.render(scene_.snapshot, ping); }, options_.pings, heard.energies, heard.point);
+        heard.energies = ping.bins;
         result_.device = renderer.device();
     }
 
@@ -145,53 +152,77 @@ private:
         config.quality.columns_per_beam = chosen.columns_per_beam;
         types::Sonar ping;
         sonar::SonarRenderer(config, scene_.snapshot.geometry).render(scene_.snapshot, ping);
-        result_.predictions.push_back({scene_.name, chosen.rows, chosen.columns_per_beam, target, chosen.error,
-                                       compare(ping.bins, reference_, layout_).rel_l2_tvg});
+        predicted_ = ping.bins;
+        prediction_ = {scene_.name, chosen.rows, chosen.columns_per_beam, target, chosen.error, 0};
     }
 
     double kappa(const sonar::SonarConfig& config) {
         std::vector<float> unused;
-        caster_.render(scene_.snapshot.sonar, config, unused);
+        caster_.prepare(config);
+        caster_.render(scene_.snapshot.sonar, unused);
         return caster_.kappaMax();
     }
 
+    /** Of a scene without a closed form a coarse one, which tells whether there is anything to hear. */
     void makeReference() {
+        reference_ = {scene_.name, "closed form", 0, 0, 0};
         if (scene_.truth) {
-            reference_ = trueEnergies(scene_);
-            result_.references.push_back({scene_.name, "closed form", 0});
+            energies_ = trueEnergies(scene_);
             return;
         }
-        const int finest = reference_refinement << (levels() - 1);
-        const std::vector<float> half = cast(finest / 2), whole = cast(finest);
-        reference_.assign(whole.begin(), whole.end());
-        if (std::ranges::none_of(reference_, [](double energy) { return energy > 0; }))
+        points_.emplace(scene_.snapshot);
+        castReference(1);
+        if (std::ranges::none_of(energies_, [](double energy) { return energy > 0; }))
             throw std::runtime_error(scene_.name +
                                      ": the sonar hears nothing in this ping; choose another one with --ping");
-        halving_ = compare(half, reference_, layout_).rel_l2;
-        result_.references.push_back({scene_.name,
-                                      fmt::format("the same estimate by rays (Embree), {} rows, {} columns per beam",
-                                                  least_rows * finest, base_columns_ * finest),
-                                      0});
     }
 
-    std::vector<float> cast(int refinement) {
-        options_.progress(fmt::format("{} reference, {} rows", scene_.name, least_rows * refinement));
-        sonar::SonarConfig config = scene_.config;
-        config.quality.rows = least_rows * refinement;
-        config.quality.columns_per_beam = base_columns_ * refinement;
-        std::vector<float> energies;
-        caster_.render(scene_.snapshot.sonar, config, energies);
-        return energies;
+    void refineReference() {
+        int refinement = 1;
+        while (reference_.error * reference_margin > smallestError() && 4 * reference_.rays <= options_.reference_rays)
+            castReference(refinement *= 2);  // 4 times the rays at most
+    }
+
+    double smallestError() const {
+        double smallest = infinity;
+        for (const Heard& heard : heard_)
+            smallest = std::min(smallest, compare(heard.energies, energies_, layout_).rel_l2);
+        return smallest;
+    }
+
+    /** The mean of two halves; each is as far from it as it may be from the truth. */
+    void castReference(int refinement) {
+        const int up = least_rows / 4 * refinement, across = std::max(1, base_columns_ / 4) * refinement;
+        double rays = 0;
+        const auto half = [&](uint64_t seed) {
+            options_.progress(fmt::format("{} reference, {} x {} tiles", scene_.name, up, across));
+            auto energies = points_->render(scene_.snapshot.sonar, scene_.config, up, across, seed);
+            rays += points_->rays();
+            return energies;
+        };
+        energies_ = half(2 * static_cast<uint64_t>(refinement));
+        const std::vector<float> first(energies_.begin(), energies_.end());
+        const std::vector<double> second = half(2 * static_cast<uint64_t>(refinement) + 1);
+        for (size_t i = 0; i < second.size(); ++i) energies_[i] = (energies_[i] + second[i]) / 2;
+        const Metrics apart = compare(first, energies_, layout_);
+        reference_ = {
+            scene_.name,
+            fmt::format("brute force by points, two halves of {} x {} tiles a beam, {:.2g} rays", up, across, rays),
+            apart.rel_l2, apart.rel_l2_tvg, rays};
     }
 
     const StudyScene& scene_;
     const ErrorOptions& options_;
     ErrorResult& result_;
     EmbreeCaster caster_;
+    std::optional<PointCaster> points_;
     Layout layout_{};
     int base_columns_ = 1;
-    std::vector<double> reference_;
-    double halving_ = 0;  ///< What half the rows and columns change of a computed reference [1].
+    std::vector<Heard> heard_;
+    Prediction prediction_{};
+    std::vector<float> predicted_;
+    Reference reference_;
+    std::vector<double> energies_;  ///< Of the reference.
 };
 
 }  // namespace

@@ -28,10 +28,15 @@ struct Measurement {
     double samples() const { return static_cast<double>(rows) * columns_per_beam * samples_per_pixel; }  ///< Per beam.
 };
 
+/** What a reference is to be finer by than any point that is compared with it [1]. */
+constexpr double reference_margin = 10;
+
 /** Where the reference of a scene comes from. */
 struct Reference {
     std::string scene, source;  ///< "closed form", or how it was computed.
-    double error = 0;           ///< Its own relative L2 error, estimated; 0: exact to rounding.
+    double error = 0;           ///< Its own rel_l2, estimated from two independent halves; 0: exact to rounding.
+    double error_tvg = 0;       ///< Its own rel_l2_tvg, likewise.
+    double rays = 0;            ///< Cast for it; 0: none [1].
 };
 
 /** What `quality: {target_error}` chose for a scene, and what became of it; errors are rel_l2_tvg. */
@@ -50,12 +55,14 @@ struct ErrorResult {
 
 struct ErrorOptions {
     int pings = 30;  ///< Timed for each point, after a warm-up [1].
-    int levels = 5;  ///< Rows and columns are doubled together so often, less one [1].
+    int levels = 5;  ///< Rows and columns are doubled together so often, less one; at most 4 without a closed form [1].
+    double reference_rays = 2e9;  ///< At most for the finest reference of a scene without a closed form [1].
     std::function<void(const std::string&)> progress = [](const std::string&) {};
 };
 
 /** Measures all methods on all scenes: rows and columns doubled together from 64 rows on; footprints also with rows
- *  alone (2 columns per beam) and with more slabs. A scene without truth gets a reference from the ray caster. */
+ *  alone (2 columns per beam) and with more slabs. A scene without truth gets a reference by brute force (PointCaster):
+ *  two independent halves, made finer until their mean is ten times finer than every point, or the rays are used up. */
 ErrorResult studyError(const std::vector<StudyScene>& scenes, const ErrorOptions& options);
 
 }  // namespace insonify::study

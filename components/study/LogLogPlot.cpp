@@ -69,6 +69,12 @@ void drawCurve(Out out, const Axis& x, const Axis& y, const Curve& curve) {
     }
 }
 
+void drawLevel(Out out, double y, const std::string& name) {
+    fmt::format_to(out, "<line x1='{0}' y1='{2:.1f}' x2='{1}' y2='{2:.1f}' stroke='#667' stroke-dasharray='6 4'/>\n",
+                   left, width - right, y);
+    fmt::format_to(out, "<text x='{}' y='{:.1f}' fill='#667'>{}</text>\n", left + 6, y - 5, name);
+}
+
 void drawLegend(Out out, const std::vector<Curve>& curves) {
     double at = top + 10;
     for (const Curve& curve : curves) {
@@ -85,10 +91,11 @@ void drawLegend(Out out, const std::vector<Curve>& curves) {
 }  // namespace
 
 std::string logLogPlot(const std::string& title, const std::string& x_label, const std::string& y_label,
-                       const std::vector<Curve>& curves) {
+                       const std::vector<Curve>& curves, const std::vector<Level>& levels) {
     Axis x(left, width - right), y(height - bottom, top);
     for (const Curve& curve : curves)
         for (const auto& point : curve.points) x.include(point.x), y.include(point.y);
+    for (const Level& level : levels) y.include(level.y);
     std::string svg;
     Out out(svg);
     fmt::format_to(out,
@@ -99,6 +106,7 @@ std::string logLogPlot(const std::string& title, const std::string& x_label, con
                    "<rect width='100%' height='100%' fill='white'/>\n<text x='{}' y='24' font-size='15'>{}</text>\n",
                    left, title);
     drawGrid(out, x, y);
+    for (const Level& level : levels) drawLevel(out, y.at(level.y), level.name);
     for (const Curve& curve : curves) drawCurve(out, x, y, curve);
     drawLegend(out, curves);
     fmt::format_to(out, "<text x='{}' y='{}' text-anchor='middle'>{}</text>\n", (left + width - right) / 2, height - 18,

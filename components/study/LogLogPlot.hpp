@@ -14,8 +14,14 @@ struct Curve {
     std::vector<Point> points;
 };
 
+/** A value that all points are seen against: a dashed line across. */
+struct Level {
+    std::string name;
+    double y;
+};
+
 /** A diagram with logarithmic axes, as a complete SVG image. */
 std::string logLogPlot(const std::string& title, const std::string& x_label, const std::string& y_label,
-                       const std::vector<Curve>& curves);
+                       const std::vector<Curve>& curves, const std::vector<Level>& levels = {});
 
 }  // namespace insonify::study

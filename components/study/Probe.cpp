@@ -25,7 +25,8 @@ double kappa(const sonar::SonarConfig& config, const types::Snapshot& snapshot) 
         return NAN;
     EmbreeCaster caster(snapshot);
     std::vector<float> unused;
-    caster.render(snapshot.sonar, config, unused);
+    caster.prepare(config);
+    caster.render(snapshot.sonar, unused);
     return caster.kappaMax();
 }
 

@@ -53,9 +53,8 @@ std::string markdown(const StabilityRow& row) {
     std::string conditions;
     for (const auto& [name, value] : row.outcome.conditions)
         conditions += fmt::format("{}{} {:.4g}", conditions.empty() ? "" : ", ", name, value);
-    const bool judged = row.outcome.verdict != Verdict::Later;
     return fmt::format("| {} | {} | {} | {} | {} | {} |\n", cell(title(row)), cell(conditions), cell(row.expected),
-                       cell(row.outcome.got), judged ? fmt::format("{:.2g}", row.outcome.deviation) : "",
+                       cell(row.outcome.got), isJudged(row.outcome) ? fmt::format("{:.2g}", row.outcome.deviation) : "",
                        nameOf(row.outcome.verdict));
 }
 
@@ -75,12 +74,21 @@ constexpr const char* legend =
     "`attenuation_db`, two-way absorption from the nearest to the farthest range; `offset_ratio`, distance from the "
     "world's origin in bins; `strength_db`, loudest material over the mean; `samples_per_bin`, pixels per occupied "
     "bin. "
-    "Deviations are relative unless a unit is named; `later` waits for an effect that is not built yet.\n\n";
+    "Deviations are relative unless a unit is named; `not run` needs what this machine lacks; `later` waits for an "
+    "effect that is not built yet.\n\n";
 
 }  // namespace
 
+bool isJudged(const Outcome& outcome) { return outcome.verdict == Verdict::Pass || outcome.verdict == Verdict::Fail; }
+
 const char* nameOf(Verdict verdict) {
-    return verdict == Verdict::Pass ? "pass" : verdict == Verdict::Fail ? "fail" : "later";
+    switch (verdict) {
+        case Verdict::Pass: return "pass";
+        case Verdict::Fail: return "fail";
+        case Verdict::NotRun: return "not run";
+        case Verdict::Later: return "later";
+    }
+    return "";
 }
 
 std::vector<StabilityCase> stabilityCases() {
@@ -107,10 +115,13 @@ std::vector<StabilityRow> studyStability(std::vector<StabilityCase> cases,
     return rows;
 }
 
+std::string tally(const std::vector<StabilityRow>& rows) {
+    return fmt::format("{} pass, {} fail, {} not run, {} later", count(rows, Verdict::Pass), count(rows, Verdict::Fail),
+                       count(rows, Verdict::NotRun), count(rows, Verdict::Later));
+}
+
 void writeStability(const std::vector<StabilityRow>& rows, const std::filesystem::path& folder) {
-    std::string sheet =
-        fmt::format("# Stiff and extreme cases\n\n{} pass, {} fail, {} later.\n\n", count(rows, Verdict::Pass),
-                    count(rows, Verdict::Fail), count(rows, Verdict::Later));
+    std::string sheet = fmt::format("# Stiff and extreme cases\n\n{}.\n\n", tally(rows));
     sheet += legend;
     sheet += "| case | conditions | expected | got | deviation | verdict |\n|---|---|---|---|---|---|\n";
     std::string items;

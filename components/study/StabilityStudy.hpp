@@ -7,8 +7,8 @@
 
 namespace insonify::study {
 
-enum class Verdict { Pass, Fail, Later };
-/** "pass", "fail", "later": the effect that it needs is not built yet. */
+enum class Verdict { Pass, Fail, NotRun, Later };
+/** "pass"; "fail"; "not run": this machine lacks what it needs; "later": the effect that it needs is not built yet. */
 const char* nameOf(Verdict verdict);
 
 /** Condition numbers of a case, by name. */
@@ -21,6 +21,9 @@ struct Outcome {
     double deviation = 0;  ///< From what is expected, relative unless `got` names a unit [1].
     Verdict verdict = Verdict::Later;
 };
+
+/** Whether it was run and has a deviation. */
+bool isJudged(const Outcome& outcome);
 
 /** A stiff or extreme case of ACOUSTICS.md 11. */
 struct StabilityCase {
@@ -44,6 +47,9 @@ StabilityRow runCase(const StabilityCase& stability_case);
 /** Runs all of them in the order of their numbers; `done` hears of each. */
 std::vector<StabilityRow> studyStability(std::vector<StabilityCase> cases,
                                          const std::function<void(const StabilityRow&)>& done);
+
+/** "78 pass, 0 fail, 1 not run, 5 later". */
+std::string tally(const std::vector<StabilityRow>& rows);
 
 /** Writes `stability.md`, a sheet to read, and `stability.json`, [{case, conditions: {}, expected, got, deviation,
  *  verdict}], into a folder that exists. Throws std::runtime_error when they cannot be written. */

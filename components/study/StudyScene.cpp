@@ -71,17 +71,31 @@ StudyScene shadowScreen() {
 
 }  // namespace
 
-std::vector<StudyScene> closedFormScenes() {
-    return {
-        flatBottom("flat_bottom", "a flat bottom 5 m below a level fan, 130 x 40 deg, from 15 m on", 15, 0, 0),
-        flatBottom("flat_bottom_edge", "the same with the bins of the aperture's edge", 0, 0, 0),
-        flatBottom("flat_bottom_pitched", "the same bottom, the sonar pitched down by 15 deg", 0, radians(15), 0),
-        flatBottom("tilted_plane", "the same bottom, pitched by 20 and rolled by 25 deg", 0, radians(20), radians(25)),
-        wallAhead(),
-        facingDisc(),
-        oneSphere(),
-        twoSpheres(),
-        shadowScreen()};
+const std::vector<SceneMaker>& closedFormScenes() {
+    static const std::vector<SceneMaker> scenes = {
+        {"flat_bottom",
+         [] {
+             return flatBottom("flat_bottom", "a flat bottom 5 m below a level fan, 130 x 40 deg, from 15 m on", 15, 0,
+                               0);
+         }},
+        {"flat_bottom_edge",
+         [] { return flatBottom("flat_bottom_edge", "the same with the bins of the aperture's edge", 0, 0, 0); }},
+        {"flat_bottom_pitched",
+         [] {
+             return flatBottom("flat_bottom_pitched", "the same bottom, the sonar pitched down by 15 deg", 0,
+                               radians(15), 0);
+         }},
+        {"tilted_plane",
+         [] {
+             return flatBottom("tilted_plane", "the same bottom, pitched by 20 and rolled by 25 deg", 0, radians(20),
+                               radians(25));
+         }},
+        {"wall", wallAhead},
+        {"facing_disc", facingDisc},
+        {"sphere", oneSphere},
+        {"two_spheres", twoSpheres},
+        {"shadow_screen", shadowScreen}};
+    return scenes;
 }
 
 std::vector<double> trueEnergies(const StudyScene& scene) {

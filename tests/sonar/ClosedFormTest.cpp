@@ -79,6 +79,32 @@ TEST(ClosedFormTest, SphereFollowsItsRangeDensity) {
                test::times(1.03, test::sphereEcho(1, 10)));
 }
 
+TEST(ClosedFormTest, AtTheLimbOfASphereBinsAreRightToTheirPixels) {
+    // The last pixel before the limb is 4 mm wide and spans sqrt(2 * 1 m * 4 mm), 0.09 m of range, on a sphere of 1 m:
+    // there a bin of 0.025 m is a matter of single pixels, each drawn as the plane of its triangle.
+    const double limb = std::sqrt(99.0), pixel = 0.09;
+    const auto snapshot = test::snapshotOf(test::sceneOf({test::sphere(1, 512)}, 0, {{10, 0, 0}}));
+    const types::Sonar ping = pingOf(sonarOf(12, 12, 1, 0.025, 480), snapshot);
+    const test::Form form = test::sphereEcho(1, 10);
+    double at_limb = 0, right_at_limb = 0, beyond = 0, all = 0;
+    for (uint32_t k = 364; k < ping.bin_count; ++k) {  // from 9.1 m on: nearer, facets of the ball fill single bins
+        const double near = ping.binStart(k), far = ping.binStart(k + 1), got = ping.bins[k], right = form(near, far);
+        all += right;
+        if (far < limb - pixel) {
+            EXPECT_NEAR(got, right, 0.01 * right) << near;
+            continue;
+        }
+        at_limb += got, right_at_limb += right;
+        if (near > limb) beyond += got;
+        if (far < limb) {
+            EXPECT_NEAR(got, right, 0.25 * right) << near;
+        }
+    }
+    EXPECT_NEAR(at_limb, right_at_limb, 0.03 * right_at_limb) << "what single bins lack, their neighbours have";
+    EXPECT_LT(beyond, 1e-4 * all) << "planes of triangles go on beyond the limb";
+    EXPECT_GT(std::abs(at_limb - form(limb - 1.15 * pixel, limb)), 0.03 * right_at_limb) << "a wrong limb would show";
+}
+
 TEST(ClosedFormTest, WallAheadFollowsTheThinVerticalBeamForm) {
     const double distance = 10, half = radians(20), delta = radians(1);
     expectForm(pingOf(sonarOf(1, 40, 1, 0.1, 150), test::snapshotOf(test::sceneOf({test::wall(10)}))),

@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "components/study/ErrorAnalysis.hpp"
@@ -43,11 +44,14 @@ TEST(ErrorAnalysisTest, TheSlopeIsThatOfTheLine) {
 TEST(ErrorAnalysisTest, TimesAndErrorsLieOnTheLineOrBeyondItsEnd) {
     const auto points = ladder(made(), "flat_bottom", Method::Nearest);
     const double ms = std::pow(0.1 / 0.4, 1 / -0.8);
-    EXPECT_NEAR(*timeTo(0.1, points), ms, 1e-9 * ms);
+    EXPECT_NEAR(timeTo(0.1, points)->ms, ms, 1e-9 * ms);
+    EXPECT_EQ(timeTo(0.1, points)->kind, ReachTime::Kind::Interpolated);
     EXPECT_NEAR(*errorAt(ms, points), 0.1, 1e-9);
-    EXPECT_NEAR(*timeTo(0.004, points), std::pow(0.01, 1 / -0.8), 1e-6) << "beyond the finest point";
+    EXPECT_NEAR(timeTo(0.004, points)->ms, std::pow(0.01, 1 / -0.8), 1e-6) << "beyond the finest point";
+    EXPECT_EQ(timeTo(0.004, points)->kind, ReachTime::Kind::Extrapolated);
+    EXPECT_EQ(timeTo(0.004, points)->text(), "316 (extrapolated, 4.9 x the finest)");
     EXPECT_FALSE(timeTo(1e-4, points)) << "too far beyond it";
-    EXPECT_EQ(*timeTo(0.5, points), 1) << "the coarsest point is good enough";
+    EXPECT_EQ(timeTo(0.5, points)->text(), "at most 1") << "the coarsest point is good enough";
     ErrorResult flat;
     addLadder(flat, "x", Method::Published, 0.4, 0);
     EXPECT_FALSE(timeTo(0.1, ladder(flat, "x", Method::Published))) << "it never gets there";
@@ -71,6 +75,30 @@ TEST(ErrorAnalysisTest, AClaimThatDoesNotHoldFails) {
     for (Measurement& m : result.measurements)
         if (m.method == Method::Footprint) m.metrics.rel_l2 = 0.3 * std::pow(m.samples() / 64, -0.5);
     EXPECT_EQ(failures(), 3) << "time at equal error, error at equal time, slope";
+}
+
+TEST(ErrorAnalysisTest, AClaimOnTimesThatWereNotMeasuredSaysSo) {
+    ErrorResult result = made();
+    for (Measurement& m : result.measurements)
+        if (m.method == Method::Nearest) m.metrics.rel_l2 *= 4;  // 1 % lies beyond its finest point
+    const auto all = claims(result);
+    EXPECT_TRUE(std::ranges::any_of(all, [](const Claim& c) { return c.text.ends_with("footprints (extrapolated)"); }));
+}
+
+TEST(ErrorAnalysisTest, AReferenceTooCoarseToTellLeavesClaimsOpen) {
+    ErrorResult result;
+    result.references = {{"reef", "brute force", 0.004, 0.004, 1e6}};
+    addLadder(result, "reef", Method::Footprint, 0.03, -1, 1);
+    result.predictions = {{"reef", 64, 2, 0.02, 0.015, 0.06}};
+    const auto all = claims(result);
+    ASSERT_EQ(all.size(), 2u) << "7.5 times finer, 3 times the target";
+    for (const Claim& claim : all) {
+        EXPECT_FALSE(claim.holds()) << claim.text;
+        EXPECT_FALSE(claim.fails()) << claim.text;
+        EXPECT_STREQ(claim.verdict(), "open");
+    }
+    result.references[0].error_tvg = 0.001;
+    EXPECT_STREQ(claims(result)[1].verdict(), "FAIL") << "now it can tell";
 }
 
 }  // namespace

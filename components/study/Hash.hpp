@@ -1,0 +1,23 @@
+#pragma once
+#include <cstdint>
+
+namespace insonify::study {
+
+/** Mixes the bits of a word: the finaliser of SplitMix64 (Steele, Lea and Flood, "Fast splittable pseudorandom number
+ *  generators", 2014). */
+inline uint64_t mixedBits(uint64_t x) {
+    x = (x ^ x >> 30) * 0xbf58476d1ce4e5b9u;
+    x = (x ^ x >> 27) * 0x94d049bb133111ebu;
+    return x ^ x >> 31;
+}
+
+/** The random word of a place (a, b) in a stream: the same whenever and wherever it is asked for. */
+inline uint64_t hashed(uint64_t seed, uint64_t a, uint64_t b) {
+    constexpr uint64_t golden = 0x9e3779b97f4a7c15u;
+    return mixedBits(mixedBits(mixedBits(seed + golden) + a * golden + 1) + b * golden);
+}
+
+/** 32 random bits as a number in (0, 1), never an end. */
+inline double unit(uint64_t bits32) { return (static_cast<double>(bits32) + 0.5) * 0x1p-32; }
+
+}  // namespace insonify::study

@@ -1,0 +1,36 @@
+#pragma once
+#include <cstdint>
+#include <vector>
+
+#include "components/sonar/SonarConfig.hpp"
+#include "components/study/RayTree.hpp"
+#include "components/study/Workers.hpp"
+
+namespace insonify::study {
+
+/** The active sonar equation by brute force, for scenes without a closed form: points drawn at random, the energy of
+ *  each to the bin of its own range, in double. With the renderer it has only the equation in common, E = sum of
+ *  mu cos(theta) / r^2 dOmega: no footprint, no image, no slope.
+ *
+ *  A beam is parted into tiles, a little at random. 16 rays look at each, four of them at its corners; where all meet
+ *  the same triangle, the tile is filled with points of that triangle's plane, else it is parted into 16 and these are
+ *  looked at in turn, twice over; what still shows more than one triangle then is the sum of rays drawn in it. */
+class PointCaster {
+public:
+    explicit PointCaster(const types::Snapshot& scene) : tree_(scene) {}
+
+    /** Energies E/S0 of one ping from `sonar`, [beam][bin]: of `up` times `across` tiles in each beam. Another seed
+     *  draws other rays; the same gives the same sums on any number of threads. `config` as for EmbreeCaster. */
+    std::vector<double> render(const types::Pose& sonar, const sonar::SonarConfig& config, int up, int across,
+                               uint64_t seed);
+
+    /** Cast in the last ping [1]. */
+    double rays() const { return rays_; }
+
+private:
+    RayTree tree_;
+    Workers workers_;
+    double rays_ = 0;
+};
+
+}  // namespace insonify::study

@@ -1,0 +1,74 @@
+#pragma once
+#include <array>
+#include <cstdint>
+#include <glm/mat3x3.hpp>
+#include <glm/mat4x4.hpp>
+#include <glm/vec3.hpp>
+#include <memory>
+#include <vector>
+
+#include "types/Snapshot.hpp"
+
+namespace insonify::study {
+
+/** All triangles of a snapshot as they lie there, and which of them a ray meets first. Embree finds it in float, about
+ *  the sonar's place in that snapshot; whatever else is known of a triangle is in double. No levels of detail. */
+class RayTree {
+public:
+    static constexpr int packet = 16;
+    static constexpr uint32_t none = ~0u;  ///< Instead of a triangle: a miss.
+
+    struct Triangle {
+        glm::dvec3 normal;  ///< Unit, axes of the world; 0 where its corners lie on a line [1].
+        double distance;    ///< normal.p of its points p about the origin [m].
+        double mu;          ///< Its Lambert parameter [1].
+        bool mapped;        ///< Its material has a normal map.
+    };
+    /** Directions in the axes of the world, of any length. */
+    struct Rays {
+        alignas(64) float x[packet], y[packet], z[packet];
+        void set(int i, const glm::dvec3& direction);
+    };
+    using Found = std::array<uint32_t, packet>;
+
+    /** Throws std::runtime_error when Embree cannot build it. */
+    explicit RayTree(const types::Snapshot& scene);
+    ~RayTree();
+    RayTree(const RayTree&) = delete;
+    RayTree& operator=(const RayTree&) = delete;
+
+    /** The first triangle on each ray from a point about the origin. Rays of one packet should lie close together. */
+    void cast(glm::dvec3 from, const Rays& rays, Found& found) const;
+
+    const glm::dvec3& origin() const { return origin_; }  ///< In the world [m].
+    const Triangle& operator[](uint32_t triangle) const { return triangles_[triangle]; }
+
+    /** Cosine between a unit direction and the mapped normal at a point of a mapped triangle (about the origin), as
+     * glTF has it: normal, tangent and uv of the corners by the point's weights, the map bilinear without mipmaps; at
+     * least 1e-6, either side. */
+    double mappedCosine(uint32_t triangle, glm::dvec3 point, glm::dvec3 direction) const;
+
+private:
+    struct Embree;
+    /** Where a triangle comes from. */
+    struct Source {
+        uint32_t object, first_index;
+        int material;
+    };
+    struct Place {
+        glm::dmat4 origin_from_object;
+        glm::dmat3 normals;
+    };
+    void add(uint32_t object, std::vector<glm::dvec3>& corners);
+    /** About the origin [m]. */
+    std::array<glm::dvec3, 3> cornersOf(const Source& source) const;
+
+    types::GeometryPtr geometry_;
+    glm::dvec3 origin_;
+    std::vector<Place> places_;  ///< Of each object.
+    std::vector<Triangle> triangles_;
+    std::vector<Source> sources_;  ///< Of each triangle.
+    std::unique_ptr<Embree> embree_;
+};
+
+}  // namespace insonify::study

@@ -1,0 +1,75 @@
+// Scenes without a closed form, small: their reference is brute force, and tells how good it is.
+#include <gmock/gmock.h>
+
+#include <algorithm>
+
+#include "components/study/ErrorAnalysis.hpp"
+#include "components/study/ErrorReport.hpp"
+#include "components/study/ErrorStudy.hpp"
+
+namespace insonify::study {
+namespace {
+
+ErrorOptions quick(double rays) {
+    ErrorOptions options;
+    options.pings = 1;
+    options.levels = 2;
+    options.reference_rays = rays;
+    return options;
+}
+
+StudyScene smallRoughFloor() {
+    StudyScene scene = roughFloor(64);
+    scene.config.beam_count = 4;
+    scene.config.field_of_view_deg = 4;
+    scene.config.bin_count = 100;
+    return scene;
+}
+
+const Reference& onlyReference(const ErrorResult& result) {
+    EXPECT_EQ(result.references.size(), 1u);
+    return result.references.front();
+}
+
+TEST(ErrorStudyTest, AReferenceIsMadeFinerUntilItIsTenTimesFinerThanEveryPoint) {
+    const ErrorResult result = studyError({smallRoughFloor()}, quick(1e9));
+    EXPECT_THAT(onlyReference(result).source, testing::HasSubstr("brute force"));
+    EXPECT_GT(onlyReference(result).error, 0);
+    for (const Measurement& m : result.measurements)
+        EXPECT_GE(m.metrics.rel_l2, reference_margin * onlyReference(result).error) << nameOf(m.method) << m.rows;
+}
+
+TEST(ErrorStudyTest, AReferenceThatRunsOutOfRaysSaysSoAndDoesNotFail) {
+    StudyScene plane = closedFormScenes().front().make();  // footprints are too good on planes for few points to tell
+    plane.name = "plane";
+    plane.truth = nullptr;
+    const ErrorResult result = studyError({plane}, quick(1));
+    const auto all = claims(result);
+    const auto open = std::ranges::find(all, std::string("open"), &Claim::verdict);
+    ASSERT_NE(open, all.end());
+    EXPECT_THAT(open->text, testing::HasSubstr("plane: smallest error over that of the reference"));
+    EXPECT_THAT(pageOf(result), testing::HasSubstr("<td>open"));
+}
+
+TEST(ErrorStudyTest, RaysAndPicturesAgreeOnFloors) {
+    for (StudyScene scene : {smallRoughFloor(), benchFloor(40)}) {
+        scene.config.beam_count = 4;
+        scene.config.field_of_view_deg = 8;
+        const ErrorResult result = studyError({scene}, quick(4e6));
+        for (const Method method : {Method::Footprint, Method::Embree}) {
+            const auto points = ladder(result, scene.name, method);
+            ASSERT_EQ(points.size(), 2u);
+            EXPECT_LT(points[1].metrics.rel_l2, 0.15) << scene.name << " " << nameOf(method);
+            EXPECT_LT(points[1].metrics.rel_l2, points[0].metrics.rel_l2) << scene.name << " " << nameOf(method);
+        }
+    }
+}
+
+TEST(ErrorStudyTest, ASceneThatIsSilentIsRefused) {
+    StudyScene scene = smallRoughFloor();
+    scene.snapshot.sonar.position.z = 1000;
+    EXPECT_THROW(studyError({scene}, quick(1e5)), std::runtime_error);
+}
+
+}  // namespace
+}  // namespace insonify::study

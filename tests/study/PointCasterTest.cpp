@@ -1,0 +1,107 @@
+// Brute force is the reference of scenes without a closed form: here it is held against those that have one.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numeric>
+#include <stdexcept>
+
+#include "components/sonar/BinGrid.hpp"
+#include "components/sonar/SonarRenderer.hpp"
+#include "components/study/Metrics.hpp"
+#include "components/study/PointCaster.hpp"
+#include "components/study/Probe.hpp"
+#include "components/study/Shapes.hpp"
+#include "components/study/StudyScene.hpp"
+#include "types/Angle.hpp"
+
+namespace insonify::study {
+namespace {
+
+using types::radians;
+
+struct Errors {
+    double true_error, estimated;
+};
+
+/** Of the mean of two halves: against the truth, and as the halves tell it. */
+Errors errorsOf(const StudyScene& scene, int up, int across) {
+    PointCaster caster(scene.snapshot);
+    std::vector<double> mean = caster.render(scene.snapshot.sonar, scene.config, up, across, 1);
+    const std::vector<double> second = caster.render(scene.snapshot.sonar, scene.config, up, across, 2);
+    const std::vector<float> half(mean.begin(), mean.end());
+    for (size_t i = 0; i < mean.size(); ++i) mean[i] = (mean[i] + second[i]) / 2;
+    const sonar::BinGrid grid = sonar::makeBinGrid(scene.config);
+    const Layout layout{scene.config.beam_count, grid.bin_count, grid.bin_width, scene.range_from};
+    return {compare(std::vector<float>(mean.begin(), mean.end()), trueEnergies(scene), layout).rel_l2,
+            compare(half, mean, layout).rel_l2};
+}
+
+StudyScene sceneNamed(const std::string& name) {
+    for (const SceneMaker& scene : closedFormScenes())
+        if (scene.name == name) return scene.make();
+    throw std::invalid_argument(name);
+}
+
+class PointCasterTest : public testing::TestWithParam<const char*> {};
+
+TEST_P(PointCasterTest, ItsErrorIsWhatItsHalvesTellAndFallsWithRays) {
+    const StudyScene scene = sceneNamed(GetParam());
+    const int across = std::max(1, 8 / scene.config.beam_count);
+    const Errors coarse = errorsOf(scene, 8, across), fine = errorsOf(scene, 32, 4 * across);
+    EXPECT_LT(fine.estimated, coarse.estimated / 3) << "16 times the tiles: 8 with independent tiles, 4 without";
+    const double facets = 1.5e-3;  // of the ball, which stands for a round one
+    EXPECT_LT(fine.true_error, 1.3 * fine.estimated + facets);
+    EXPECT_GT(fine.true_error, 0.7 * fine.estimated);
+    EXPECT_LT(fine.true_error, 0.01);
+    RecordProperty("estimated", std::to_string(fine.estimated));
+    RecordProperty("true_error", std::to_string(fine.true_error));
+}
+
+INSTANTIATE_TEST_SUITE_P(Scenes, PointCasterTest,
+                         testing::Values("flat_bottom_edge", "tilted_plane", "wall", "sphere", "shadow_screen"),
+                         [](const auto& scene) { return std::string(scene.param); });
+
+TEST(PointCasterTest, EqualSeedsGiveEqualSumsAndOthersOthers) {
+    const StudyScene scene = sceneNamed("shadow_screen");
+    const auto sums = [&](uint64_t seed) {
+        return PointCaster(scene.snapshot).render(scene.snapshot.sonar, scene.config, 50, 3, seed);
+    };
+    EXPECT_EQ(sums(1), sums(1));
+    EXPECT_NE(sums(1), sums(2));
+}
+
+/** A wall 10 m ahead whose map says everywhere that its normal leans. */
+types::GeometryPtr leaningWall(glm::ivec3 rgb) {
+    const auto geometry = copyOf(sceneOf({facingWall(10, 20)}));
+    types::Mesh& mesh = geometry->meshes[0];
+    mesh.normals.assign(4, {-1, 0, 0});
+    mesh.tangents.assign(4, {0, -1, 0, 1});  // so that the bitangent is up
+    mesh.uvs = {{0, 0}, {1, 0}, {1, 1}, {0, 1}};
+    geometry->normal_maps.push_back(
+        {1, 1, {static_cast<uint8_t>(rgb.r), static_cast<uint8_t>(rgb.g), static_cast<uint8_t>(rgb.b)}});
+    geometry->materials[0].normal_map = 0;
+    return geometry;
+}
+
+TEST(PointCasterTest, ANormalMapBendsTheCosineAlone) {
+    const glm::ivec3 rgb(190, 160, 230);
+    sonar::SonarConfig config = fan(20, 20, 1, 15);
+    setSamples(config, 256, 256);
+    const types::Snapshot scene = lookingAt(leaningWall(rgb));
+    const std::vector<double> sums = PointCaster(scene).render(scene.sonar, config, 64, 64, 1);
+    const glm::dvec3 told = glm::dvec3(rgb) * (2.0 / 255) - 1.0;
+    const glm::dvec3 bent = glm::normalize(glm::dvec3(-told.z, -told.x, told.y));
+    double expected = 0;
+    for (int i = 0; i < 400; ++i)
+        for (int j = 0; j < 400; ++j) {
+            const double azimuth = radians(20) * ((i + 0.5) / 400 - 0.5), up = radians(20) * ((j + 0.5) / 400 - 0.5);
+            const glm::dvec3 d(std::cos(up) * std::cos(azimuth), std::cos(up) * std::sin(azimuth), std::sin(up));
+            expected += -glm::dot(bent, d) * d.x * d.x / 100 * std::cos(up) * std::pow(radians(20) / 400, 2);
+        }
+    EXPECT_NEAR(std::accumulate(sums.begin(), sums.end(), 0.0), expected, 1e-3 * expected);
+    const Probe drawn = probe(config, scene);
+    EXPECT_NEAR(drawn.energy(), expected, 1e-3 * expected) << "and so it is drawn";
+}
+
+}  // namespace
+}  // namespace insonify::study
