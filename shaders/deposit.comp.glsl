@@ -12,7 +12,6 @@ layout(std430, binding = EDGES_BINDING) readonly buffer Edges { double edges[]; 
 layout(std430, binding = SUMS_BINDING) buffer Sums { uvec2 sums[]; };  // low and high word
 
 uniform ivec2 image_size;
-uniform bool shares_per_row;
 uniform uint bin_count;
 uniform double bin_width, attenuation, strength_scale;
 uniform dvec2 extent, pixel_size, slab_axis;
@@ -83,11 +82,18 @@ void main() {
         ray += pixel_size * dvec2(jitter(pixel.x, pixel.y, 0u), jitter(pixel.x, pixel.y, 1u));
 #endif
         surface = surfaceOf(command, texel.y, ray);
-        strength = strengthOf(command.material) * (texel.z == 0u ? surface.cosine : double(uintBitsToFloat(texel.z)));
+        double cosine = surface.cosine;
+#ifdef HAVE_NORMAL_MAP
+        if (texel.z != 0u) cosine = double(uintBitsToFloat(texel.z));
+#endif
+        strength = strengthOf(command.material) * cosine;
         reach = dvec2(objects[command.object].extent.xy);
     }
     double per_pixel = 1.0 / (pixel_size.x * pixel_size.y);
-    uint at = uint((shares_per_row ? pixel.y * image_size.x : 0) + pixel.x);
+    uint at = uint(pixel.x);
+#ifdef HAVE_CONICAL
+    at += uint(pixel.y * image_size.x);  // the boundaries of beams bend from row to row
+#endif
     for (uint i = share_starts[at]; i < share_starts[at + 1u]; ++i) {
         ShareRecord share = shares[i];
         Footprint cell = cellFootprint(uv.x, uv.y, share.middle, share.width, share.limit, share.shear, pixel_size.y,

@@ -67,6 +67,7 @@ public:
     std::string fallback() const;
     /** The programs of this context. */
     Programs& programs() { return *programs_; }
+    const Programs& programs() const { return *programs_; }
 
 private:
     void create(const std::string& device);

@@ -1,5 +1,7 @@
 #include "components/gpu/Program.hpp"
 
+#include <algorithm>
+
 namespace insonify::gpu {
 namespace {
 
@@ -83,6 +85,13 @@ const Program& Programs::compute(std::string_view file, const std::vector<std::s
     const std::string text = shaderSource(file, defines);
     const auto found = made_.find(text);
     return found != made_.end() ? found->second : made_.emplace(text, Program::compute(file, defines)).first->second;
+}
+
+bool Programs::compiledWith(const std::string& define) const {
+    return std::ranges::any_of(made_, [&](const auto& made) {
+        const auto has = [&](const std::string& words) { return made.first.find(words) != std::string::npos; };
+        return has("#define " + define + "\n") && (has("#ifdef " + define + "\n") || has("defined(" + define + ")"));
+    });
 }
 
 }  // namespace insonify::gpu

@@ -6,6 +6,7 @@
 
 #include "components/sonar/BeamFan.hpp"
 #include "components/sonar/BinGrid.hpp"
+#include "components/sonar/RenderPlan.hpp"
 #include "components/sonar/SurfacePass.hpp"
 
 namespace insonify::sonar {
@@ -17,12 +18,10 @@ struct DepositSetup {
     uint32_t beam_count = 0;
     BinGrid bins;
     double attenuation = 0;  ///< Amplitude, one way, in `cerqueira2017` [Np/m].
-    Model model = Model::Physical;
-    bool published = false;  ///< `cerqueira2017` to the letter.
-    Estimator estimator = Estimator::Footprint;
+    Features features;
     double strength_scale = 1;  ///< Strengths are deposited times this: strengthScale.
 
-    size_t channels() const { return model == Model::Cerqueira2017 ? 2 : 1; }
+    size_t channels() const { return features.has(Feature::Cerqueira2017) ? 2 : 1; }
     size_t sumCount() const { return beam_count * static_cast<size_t>(bins.bin_count) * channels(); }
 };
 
@@ -49,6 +48,8 @@ public:
     virtual void take(size_t slab, const SurfacePass& surface) = 0;
     /** Sums over all slabs taken since the last call, [beam][bin][channel] in quanta; valid until the next take. */
     virtual std::span<const uint64_t> finish() = 0;
+    /** What is compiled into it. */
+    virtual Features compiled() const = 0;
 };
 
 /** The context outlives it. */

@@ -38,11 +38,12 @@ struct Strip {
 
 class CastEchoes final : public EchoRenderer {
 public:
-    CastEchoes(const SonarConfig& config, types::GeometryPtr geometry);
-    void setQuality(int rows, int columns_per_beam) override;
+    CastEchoes(const RenderPlan& plan, types::GeometryPtr geometry);
+    void takeQuality() override;
     void render(const types::Snapshot& snapshot, types::Sonar& ping, Stages& stages) override;
     bool heard() const override { return heard_; }
-    std::vector<types::Omission> culled() const override { return {}; }
+    std::vector<LeftOut> culled() const override { return {}; }
+    Features compiled() const override { return compiledFor(rules_); }
     const std::string& device() const override { return device_; }
 
 private:
@@ -71,9 +72,8 @@ private:
     bool gather(const Part& part, Worker& worker);
     void fillBeam(const uint64_t* sums, std::span<float> bins, Worker& worker) const;
 
-    SonarConfig config_;
+    const RenderPlan& plan_;
     types::GeometryPtr geometry_;
-    std::vector<Beam> beams_;
     EchoRules rules_;
     TileShape shape_{1, 1};
     BinLevels levels_;
@@ -91,28 +91,25 @@ private:
     bool heard_ = false;
 };
 
-CastEchoes::CastEchoes(const SonarConfig& config, types::GeometryPtr geometry)
-    : config_(config),
+CastEchoes::CastEchoes(const RenderPlan& plan, types::GeometryPtr geometry)
+    : plan_(plan),
       geometry_(std::move(geometry)),
-      beams_(makeBeams(config)),
-      rules_(makeEchoRules(config, *geometry_)),
-      levels_(config, rules_.bins),
+      rules_(makeEchoRules(plan)),
+      levels_(plan.config, plan.grid),
       culler_(*geometry_, {0, rules_.bins.range_max, true}),
       visibility_(*geometry_),
       planes_(planesOf(*geometry_)),
       normal_maps_(*geometry_),
-      threads_(config.threads),
+      threads_(plan.config.threads),
       workers_(static_cast<size_t>(threads_.size())) {
     runs_.reserve(visibility_.commands().size());
     for (Worker& worker : workers_) worker.values.resize(static_cast<size_t>(rules_.bins.bin_count));
-    setQuality(config_.rows(), config_.columnsPerBeam());
+    takeQuality();
 }
 
-void CastEchoes::setQuality(int rows, int columns_per_beam) {
-    config_.quality.rows = rows;
-    config_.quality.columns_per_beam = columns_per_beam;
-    rules_.view = makeAngularView(config_, beams_);
-    rules_.strength_scale = strengthScale(config_, rules_.bins, loudest(*geometry_));
+void CastEchoes::takeQuality() {
+    rules_.view = makeAngularView(plan_.config, plan_.beams);
+    rules_.strength_scale = strengthScale(plan_.config, rules_.bins, loudest(*geometry_));
     rules_.most_merged = mostMerged(rules_.view, rules_.bins);
     shareOut();
 }
@@ -145,7 +142,7 @@ void CastEchoes::place(const types::Snapshot& snapshot) {
     runs_.clear();
     for (const CommandRecord& command : visibility_.commands()) {
         const types::Material& material = geometry_->materials[command.material];
-        const double strength = rules_.model == Model::Cerqueira2017
+        const double strength = rules_.features.has(Feature::Cerqueira2017)
                                     ? static_cast<double>(material.reflectivity)
                                     : static_cast<double>(std::pow(10.0f, material.lambert_db / 10));
         runs_.push_back(placedRun(culler_.records()[command.object], strength * rules_.strength_scale,
@@ -195,7 +192,7 @@ void CastEchoes::fillBeam(const uint64_t* sums, std::span<float> bins, Worker& w
     const double quantum = rules_.view.cell() / (quanta_per_unit * rules_.strength_scale);
     uint64_t any = 0;
     for (size_t k = 0; k < bins.size(); ++k) {
-        if (rules_.model == Model::Physical)
+        if (rules_.features.has(Feature::Physical))
             worker.values[k] = static_cast<double>(sums[k]) * quantum;
         else
             worker.values[k] =
@@ -255,8 +252,8 @@ void CastEchoes::render(const types::Snapshot& snapshot, types::Sonar& ping, Sta
 
 bool haveRays() { return true; }
 
-std::unique_ptr<EchoRenderer> makeCastEchoes(const SonarConfig& config, types::GeometryPtr geometry) {
-    return std::make_unique<CastEchoes>(config, std::move(geometry));
+std::unique_ptr<EchoRenderer> makeCastEchoes(const RenderPlan& plan, types::GeometryPtr geometry) {
+    return std::make_unique<CastEchoes>(plan, std::move(geometry));
 }
 
 }  // namespace insonify::sonar

@@ -2,7 +2,6 @@
 #include <memory>
 
 #include "components/sonar/EchoRenderer.hpp"
-#include "components/sonar/SonarConfig.hpp"
 #include "types/Geometry.hpp"
 
 namespace insonify::sonar {
@@ -13,6 +12,6 @@ bool haveRays();
 /** Pings by rays on the processor, without OpenGL. Beams are shared out to the threads as these come free; a beam's
  * rays are cast, deposited and turned into bins by one thread, while they are in its cache. Throws std::runtime_error
  * where the build has none, or Embree refuses the scene. */
-std::unique_ptr<EchoRenderer> makeCastEchoes(const SonarConfig& config, types::GeometryPtr geometry);
+std::unique_ptr<EchoRenderer> makeCastEchoes(const RenderPlan& plan, types::GeometryPtr geometry);
 
 }  // namespace insonify::sonar

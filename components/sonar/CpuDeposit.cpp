@@ -49,7 +49,7 @@ void CpuDeposit::take(size_t slab, const SurfacePass& surface) {
     picture.taken = true;
     picture.runs.clear();
     const double cosine = std::cos(setup_.slabs[slab].azimuth), sine = std::sin(setup_.slabs[slab].azimuth);
-    const int value = setup_.model == Model::Cerqueira2017 ? 1 : 0;
+    const int value = setup_.features.has(Feature::Cerqueira2017) ? 1 : 0;
     for (const CommandRecord& command : surface.picture(slab).commands)
         picture.runs.push_back(
             placedRun(surface.objects()[command.object],
@@ -60,6 +60,11 @@ void CpuDeposit::take(size_t slab, const SurfacePass& surface) {
 std::span<const uint64_t> CpuDeposit::finish() {
     threads_.run([this](int part, int) { depositPart(static_cast<size_t>(part)); });
     return sums_;
+}
+
+Features CpuDeposit::compiled() const {
+    return compiledFor(
+        {setup_, setup_.slabs.front(), setup_.shares.front(), pictures_.front(), planes_, edges_, 0, 0, {}});
 }
 
 void CpuDeposit::depositPart(size_t part) {

@@ -12,6 +12,7 @@ public:
     void begin() override;
     void take(size_t slab, const SurfacePass& surface) override;
     std::span<const uint64_t> finish() override;
+    Features compiled() const override;
 
 private:
     void depositPart(size_t part);

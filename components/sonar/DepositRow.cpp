@@ -108,8 +108,8 @@ bool look(const SlabPart& part, int row, int first, int count, Pixels& pixels) {
 }
 
 /** Where each pixel is looked at: its centre, or a point at random in it. */
+template <bool jittered>
 void aim(const SlabPart& part, int row, int first, int count, Pixels& pixels) {
-    const bool jittered = part.setup.estimator == Estimator::NearestJitter;
     for (int i = 0; i < count; ++i) {
         pixels.ray_u[i] = pixels.u[i] = part.slab.u(first + i + 0.5);
         pixels.ray_v[i] = part.slab.v(row + 0.5);
@@ -147,10 +147,16 @@ INSONIFY_VECTORISED void cover(const Shared& shared, int count, const Reach& rea
 }
 
 /** The part row by row, a stretch of pixels and then of shares at a time. */
-template <class Model>
+template <class Estimator, bool conical>
 class PartDeposit {
 public:
-    PartDeposit(const SlabPart& part, Model bins)
+    static constexpr Features features() {
+        Features all = Estimator::features;
+        if (conical) all.add(Feature::Conical);
+        return all;
+    }
+
+    PartDeposit(const SlabPart& part, Estimator bins)
         : part_(part), bins_(bins), per_pixel_(1 / (part.slab.du() * part.slab.dv())) {}
 
     void run() {
@@ -161,10 +167,11 @@ public:
 
 private:
     void pixels(int row, int first, int count) {
-        if (!look(part_, row, first, count, pixels_) && !part_.setup.published) return;
-        aim(part_, row, first, count, pixels_);
+        if (!look(part_, row, first, count, pixels_) && !Estimator::features.has(Feature::Published)) return;
+        aim<Estimator::features.has(Feature::Jitter)>(part_, row, first, count, pixels_);
         meet(pixels_, count);
-        const size_t at = part_.shares.cell(row, first, part_.slab.columns);
+        const size_t at = static_cast<size_t>(conical ? row : 0) * static_cast<size_t>(part_.slab.columns) +
+                          static_cast<size_t>(first);
         const uint end = part_.shares.starts[at + static_cast<size_t>(count)];
         for (uint i = part_.shares.starts[at]; i < end; i += stretch)
             shares(i, static_cast<int>(std::min<uint>(stretch, end - i)), static_cast<uint>(first),
@@ -181,12 +188,33 @@ private:
     }
 
     const SlabPart& part_;
-    Model bins_;
+    Estimator bins_;
     double per_pixel_;  ///< 1 / solid angle of a whole pixel at the picture's centre [1/sr].
     Pixels pixels_;
     Shared shared_;
     Cells cells_;
 };
+
+/** Calls use(PartDeposit) with the one that has the features of a plan. */
+template <bool conical, class Use>
+void withEstimator(const SlabPart& part, const Bins& bins, const Use& use) {
+    const Features& wanted = part.setup.features;
+    const bool absorbs = wanted.has(Feature::Absorption);
+    if (wanted.has(Feature::Published) && absorbs)
+        use(PartDeposit<AbsorbingPublishedBins, conical>(part, {{bins}}));
+    else if (wanted.has(Feature::Published))
+        use(PartDeposit<PublishedBins, conical>(part, {{bins}}));
+    else if (wanted.has(Feature::Cerqueira2017) && absorbs)
+        use(PartDeposit<AbsorbingBins, conical>(part, {{bins}}));
+    else if (wanted.has(Feature::Cerqueira2017))
+        use(PartDeposit<CerqueiraBins, conical>(part, {{bins}}));
+    else if (wanted.has(Feature::Jitter))
+        use(PartDeposit<JitteredBins, conical>(part, {{{bins}}}));
+    else if (wanted.has(Feature::Nearest))
+        use(PartDeposit<NearestBins, conical>(part, {{bins}}));
+    else
+        use(PartDeposit<PhysicalBins, conical>(part, {{bins}}));
+}
 
 }  // namespace
 
@@ -205,14 +233,21 @@ PlacedRun placedRun(const ObjectRecord& object, double strength, uint32_t first_
 INSONIFY_VECTORISED __attribute__((flatten)) void deposit(const SlabPart& part, uint64_t* sums) {
     const BinGrid& grid = part.setup.bins;
     const Bins bins{part.edges.data(), sums, static_cast<uint>(grid.bin_count), grid.bin_width, part.setup.attenuation};
-    if (part.setup.published)
-        PartDeposit(part, PublishedBins{{bins}}).run();
-    else if (part.setup.model == Model::Cerqueira2017)
-        PartDeposit(part, CerqueiraBins{bins}).run();
-    else if (part.setup.estimator != Estimator::Footprint)
-        PartDeposit(part, NearestBins{{bins}}).run();
+    const auto run = [](auto parts) { parts.run(); };
+    if (part.setup.features.has(Feature::Conical))
+        withEstimator<true>(part, bins, run);
     else
-        PartDeposit(part, PhysicalBins{bins}).run();
+        withEstimator<false>(part, bins, run);
+}
+
+Features compiledFor(const SlabPart& part) {
+    Features compiled;
+    const auto note = [&](const auto& parts) { compiled = parts.features(); };
+    if (part.setup.features.has(Feature::Conical))
+        withEstimator<true>(part, {}, note);
+    else
+        withEstimator<false>(part, {}, note);
+    return compiled;
 }
 
 }  // namespace insonify::sonar

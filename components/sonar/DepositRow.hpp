@@ -40,4 +40,7 @@ struct SlabPart {
 /** Adds the part's echoes to `sums`, [beam][bin][channel]. */
 void deposit(const SlabPart& part, uint64_t* sums);
 
+/** What is compiled into the deposit that takes a part. */
+Features compiledFor(const SlabPart& part);
+
 }  // namespace insonify::sonar

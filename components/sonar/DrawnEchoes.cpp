@@ -16,16 +16,6 @@
 namespace insonify::sonar {
 namespace {
 
-std::vector<std::string> defines(const types::Plan& plan) {
-    std::vector<std::string> result;
-    for (std::string feature : plan.features) {
-        std::transform(feature.begin(), feature.end(), feature.begin(),
-                       [](unsigned char c) { return static_cast<char>(std::toupper(c)); });
-        result.push_back("HAVE_" + feature);
-    }
-    return result;
-}
-
 /** Slant range before which nothing is drawn [m]. What is nearer than the blanking is: it casts its shadow. */
 constexpr double nearest_drawn = 1e-3;
 
@@ -39,28 +29,26 @@ CullRules cullRules(const SonarConfig& config, const BinGrid& bins) {
     return {nearest_drawn, bins.range_max, config.draw_all};
 }
 
-DepositSetup depositSetup(const SonarConfig& config, const std::vector<Beam>& beams, const std::vector<Slab>& slabs,
-                          const BinGrid& bins) {
+DepositSetup depositSetup(const RenderPlan& plan) {
     DepositSetup setup;
-    setup.slabs = slabs;
-    for (const Slab& slab : slabs) setup.shares.push_back(makeShares(config, beams, slab));
-    setup.beam_count = static_cast<uint32_t>(beams.size());
-    setup.bins = bins;
-    setup.attenuation = config.model == Model::Cerqueira2017 ? makeAbsorption(config).amplitudeNepersPerMetre() : 0;
-    setup.model = config.model;
-    setup.published = config.published && config.model == Model::Cerqueira2017;
-    setup.estimator = config.estimator;
+    setup.slabs = plan.slabs;
+    for (const Slab& slab : plan.slabs) setup.shares.push_back(makeShares(plan.config, plan.beams, slab));
+    setup.beam_count = static_cast<uint32_t>(plan.beams.size());
+    setup.bins = plan.grid;
+    setup.attenuation = makeAbsorption(plan.config).amplitudeNepersPerMetre();
+    setup.features = plan.features;
     return setup;
 }
 
 class DrawnEchoes final : public EchoRenderer {
 public:
-    DrawnEchoes(const SonarConfig& config, types::GeometryPtr geometry, const types::Plan& plan);
+    DrawnEchoes(const RenderPlan& plan, types::GeometryPtr geometry);
     ~DrawnEchoes() override;
-    void setQuality(int rows, int columns_per_beam) override;
+    void takeQuality() override;
     void render(const types::Snapshot& snapshot, types::Sonar& ping, Stages& stages) override;
     bool heard() const override;
-    std::vector<types::Omission> culled() const override;
+    std::vector<LeftOut> culled() const override;
+    Features compiled() const override;
     const std::string& device() const override { return device_; }
     std::string notice() const override { return context_.fallback(); }
 
@@ -72,13 +60,10 @@ private:
     /** Seconds since the last call, put down for a stage. */
     void lap(Stage& stage);
 
-    SonarConfig config_;
+    const RenderPlan& plan_;
     types::GeometryPtr geometry_;
     gpu::EglContext context_;
     std::string device_;
-    std::vector<Beam> beams_;
-    std::vector<Slab> slabs_;
-    BinGrid bins_;
     BinLevels levels_;
     Culler culler_;
     ThreadPool threads_;
@@ -90,32 +75,30 @@ private:
     std::chrono::steady_clock::time_point last_;
 };
 
-DrawnEchoes::DrawnEchoes(const SonarConfig& config, types::GeometryPtr geometry, const types::Plan& plan)
-    : config_(config),
+DrawnEchoes::DrawnEchoes(const RenderPlan& plan, types::GeometryPtr geometry)
+    : plan_(plan),
       geometry_(std::move(geometry)),
-      context_(config_.device),
+      context_(plan.config.device),
       device_(fmt::format("{}, OpenGL {}", context_.renderer(), context_.driver())),
-      beams_(makeBeams(config_)),
-      slabs_(makeSlabs(config_, beams_)),
-      bins_(makeBinGrid(config_)),
-      levels_(config_, bins_),
-      culler_(*geometry_, cullRules(config_, bins_)),
-      threads_(config_.threads),
+      levels_(plan.config, plan.grid),
+      culler_(*geometry_, cullRules(plan.config, plan.grid)),
+      threads_(plan.config.threads),
       surface_(context_,
-               {*geometry_, slabs_, defines(plan), nearPlane(slabs_.front()), culler_.runLimit(),
-                config_.published},
+               {*geometry_, plan.slabs, plan.features.defines(), nearPlane(plan.slabs.front()), culler_.runLimit(),
+                plan_.config.published},
                threads_) {
     makeDeposit();
-    scratch_.resize(static_cast<size_t>(threads_.size()) * static_cast<size_t>(bins_.bin_count));
+    scratch_.resize(static_cast<size_t>(threads_.size()) * static_cast<size_t>(plan_.grid.bin_count));
     context_.check();
 }
 
 DrawnEchoes::~DrawnEchoes() = default;
 
 void DrawnEchoes::makeDeposit() {
-    DepositSetup setup = depositSetup(config_, beams_, slabs_, bins_);
-    setup.strength_scale = strength_scale_ = strengthScale(config_, bins_, loudest(*geometry_));
-    const bool on_cpu = config_.deposit == Deposit::Cpu || (config_.deposit == Deposit::Auto && context_.isSoftware());
+    DepositSetup setup = depositSetup(plan_);
+    setup.strength_scale = strength_scale_ = strengthScale(plan_.config, plan_.grid, loudest(*geometry_));
+    const bool on_cpu =
+        plan_.config.deposit == Deposit::Cpu || (plan_.config.deposit == Deposit::Auto && context_.isSoftware());
     if (on_cpu)
         deposit_ = std::make_unique<CpuDeposit>(std::move(setup), surface_, threads_);
     else
@@ -137,18 +120,18 @@ void DrawnEchoes::drawSlabs(const types::Snapshot& snapshot, Stages& stages) {
     lap(stages[DrawStage]);
     {
         const auto alone = context_.transferring();
-        for (size_t i = 0; i < slabs_.size(); ++i)
+        for (size_t i = 0; i < plan_.slabs.size(); ++i)
             if (surface_.draws(i)) deposit_->take(i, surface_);
     }
     lap(stages[ReadStage]);
 }
 
 void DrawnEchoes::fillBeam(size_t beam, double* values, types::Sonar& ping) const {
-    const auto count = static_cast<size_t>(bins_.bin_count);
-    const double pixel = slabs_.front().du() * slabs_.front().dv();  // solid angle of a whole pixel [sr]
+    const auto count = static_cast<size_t>(plan_.grid.bin_count);
+    const double pixel = plan_.slabs.front().du() * plan_.slabs.front().dv();  // solid angle of a whole pixel [sr]
     for (size_t k = 0; k < count; ++k) {
         const size_t at = beam * count + k;
-        if (config_.model == Model::Physical)
+        if (plan_.features.has(Feature::Physical))
             values[k] = static_cast<double>(sums_[at]) * (pixel / (quanta_per_unit * strength_scale_));
         else
             values[k] =
@@ -159,8 +142,8 @@ void DrawnEchoes::fillBeam(size_t beam, double* values, types::Sonar& ping) cons
 
 void DrawnEchoes::fillBins(types::Sonar& ping) {
     threads_.run([&](int part, int parts) {
-        double* values = scratch_.data() + static_cast<size_t>(part) * static_cast<size_t>(bins_.bin_count);
-        for (auto beam = static_cast<size_t>(part); beam < beams_.size(); beam += static_cast<size_t>(parts))
+        double* values = scratch_.data() + static_cast<size_t>(part) * static_cast<size_t>(plan_.grid.bin_count);
+        for (auto beam = static_cast<size_t>(part); beam < plan_.beams.size(); beam += static_cast<size_t>(parts))
             fillBeam(beam, values, ping);
     });
 }
@@ -176,13 +159,10 @@ void DrawnEchoes::render(const types::Snapshot& snapshot, types::Sonar& ping, St
     lap(stages[BeamStage]);
 }
 
-void DrawnEchoes::setQuality(int rows, int columns_per_beam) {
+void DrawnEchoes::takeQuality() {
     context_.requireThread();
-    config_.quality.rows = rows;
-    config_.quality.columns_per_beam = columns_per_beam;
-    slabs_ = makeSlabs(config_, beams_);
     const auto alone = context_.transferring();
-    surface_.resize(slabs_);
+    surface_.resize(plan_.slabs);
     sums_ = {};
     makeDeposit();
     context_.check();
@@ -190,15 +170,23 @@ void DrawnEchoes::setQuality(int rows, int columns_per_beam) {
 
 bool DrawnEchoes::heard() const {
     bool drawn = false;  // published counts what is not there
-    for (size_t i = 0; i < slabs_.size(); ++i) drawn = drawn || !surface_.picture(i).empty();
+    for (size_t i = 0; i < plan_.slabs.size(); ++i) drawn = drawn || !surface_.picture(i).empty();
     return drawn && std::ranges::any_of(sums_, [](uint64_t sum) { return sum > 0; });
 }
 
-std::vector<types::Omission> DrawnEchoes::culled() const {
-    const types::Geometry& geometry = *geometry_;
-    std::vector<bool> seen(geometry.objects.size());
+Features DrawnEchoes::compiled() const {
+    Features all = deposit_->compiled();
+    for (int i = 0; i < feature_count; ++i) {
+        const auto feature = static_cast<Feature>(i);
+        if (context_.programs().compiledWith(Features{feature}.defines().front())) all.add(feature);
+    }
+    return all;
+}
+
+std::vector<LeftOut> DrawnEchoes::culled() const {
+    std::vector<bool> seen(geometry_->objects.size());
     size_t empty_slabs = 0, shown = 0;  // of two slabs more than once
-    for (size_t i = 0; i < slabs_.size(); ++i) {
+    for (size_t i = 0; i < plan_.slabs.size(); ++i) {
         const auto& runs = surface_.picture(i).runs;
         empty_slabs += runs.empty();
         for (const Culler::Run& run : runs) {
@@ -206,24 +194,22 @@ std::vector<types::Omission> DrawnEchoes::culled() const {
             shown += run.index_count / 3;
         }
     }
-    std::vector<types::Omission> all;
-    const auto add = [&](const char* before, size_t left_out, size_t of, const char* what, const char* reason) {
-        if (left_out > 0) all.push_back({fmt::format("{}{} of {} {}", before, left_out, of, what), reason});
+    const size_t triangles = geometry_->triangleCount();
+    std::vector<LeftOut> all;
+    const auto add = [&](Effect effect, size_t left_out, size_t of) {
+        if (left_out > 0)
+            all.push_back({effect, Reason::OutOfView, static_cast<double>(left_out), static_cast<double>(of)});
     };
-    const char* outside = "outside the fan or the range at the first ping";
-    add("", static_cast<size_t>(std::ranges::count(seen, false)), seen.size(), "objects", outside);
-    const size_t triangles = geometry.triangleCount();
-    add("at least ", triangles - std::min(triangles, shown), triangles, "triangles",
-        "outside the fan or the range at the first ping, or on the far side of a closed mesh");
-    add("", empty_slabs, slabs_.size(), "slabs", outside);
+    add(Effect::Objects, static_cast<size_t>(std::ranges::count(seen, false)), seen.size());
+    add(Effect::Triangles, triangles - std::min(triangles, shown), triangles);
+    add(Effect::Slabs, empty_slabs, plan_.slabs.size());
     return all;
 }
 
 }  // namespace
 
-std::unique_ptr<EchoRenderer> makeDrawnEchoes(const SonarConfig& config, types::GeometryPtr geometry,
-                                              const types::Plan& plan) {
-    return std::make_unique<DrawnEchoes>(config, std::move(geometry), plan);
+std::unique_ptr<EchoRenderer> makeDrawnEchoes(const RenderPlan& plan, types::GeometryPtr geometry) {
+    return std::make_unique<DrawnEchoes>(plan, std::move(geometry));
 }
 
 }  // namespace insonify::sonar

@@ -2,14 +2,12 @@
 #include <memory>
 
 #include "components/sonar/EchoRenderer.hpp"
-#include "components/sonar/SonarConfig.hpp"
 #include "types/Geometry.hpp"
 
 namespace insonify::sonar {
 
-/** Pings drawn by OpenGL, by what the plan says. Make it, use it and destroy it on one thread, under
+/** Pings drawn by OpenGL. Make it, use it and destroy it on one thread, under
  *  EglContext::making(). Throws gpu::GlError when there is no OpenGL 4.5 context, or when it is lost. */
-std::unique_ptr<EchoRenderer> makeDrawnEchoes(const SonarConfig& config, types::GeometryPtr geometry,
-                                              const types::Plan& plan);
+std::unique_ptr<EchoRenderer> makeDrawnEchoes(const RenderPlan& plan, types::GeometryPtr geometry);
 
 }  // namespace insonify::sonar

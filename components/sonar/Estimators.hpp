@@ -42,33 +42,57 @@ struct Bins {
     }
 };
 
-struct PhysicalBins : Bins {
+struct EnergyBins : Bins {
     void addToBin(uint beam, uint bin, double amount, double) const { sums[beam * bin_count + bin] += quanta(amount); }
+};
+
+#define HAVE_PHYSICAL
+struct PhysicalBins : EnergyBins {
+    static constexpr Features features{Feature::Physical};
 #include "shaders/deposit.glsl"
 };
 
-struct NearestBins : PhysicalBins {
 #define HAVE_NEAREST
+struct NearestBins : EnergyBins {
+    static constexpr Features features{Feature::Physical, Feature::Nearest};
 #include "shaders/deposit.glsl"
-#undef HAVE_NEAREST
 };
+struct JitteredBins : NearestBins {
+    static constexpr Features features{Feature::Physical, Feature::Nearest, Feature::Jitter};
+};
+#undef HAVE_NEAREST
+#undef HAVE_PHYSICAL
 
-struct CerqueiraBins : Bins {
+struct MeanBins : Bins {
     void addToBin(uint beam, uint bin, double amount, double weight) const {
         uint64_t* cell = sums + 2 * static_cast<size_t>(beam * bin_count + bin);
         cell[0] += quanta(amount);
         cell[1] += quanta(weight);
     }
-#define HAVE_CERQUEIRA2017
-#include "shaders/deposit.glsl"
 };
 
-struct PublishedBins : CerqueiraBins {
-#define HAVE_PUBLISHED
+#define HAVE_CERQUEIRA2017
+struct CerqueiraBins : MeanBins {
+    static constexpr Features features{Feature::Cerqueira2017};
 #include "shaders/deposit.glsl"
-#undef HAVE_PUBLISHED
-#undef HAVE_CERQUEIRA2017
 };
+#define HAVE_PUBLISHED
+struct PublishedBins : MeanBins {
+    static constexpr Features features{Feature::Cerqueira2017, Feature::Published};
+#include "shaders/deposit.glsl"
+};
+#define HAVE_ABSORPTION
+struct AbsorbingPublishedBins : MeanBins {
+    static constexpr Features features{Feature::Cerqueira2017, Feature::Published, Feature::Absorption};
+#include "shaders/deposit.glsl"
+};
+#undef HAVE_PUBLISHED
+struct AbsorbingBins : MeanBins {
+    static constexpr Features features{Feature::Cerqueira2017, Feature::Absorption};
+#include "shaders/deposit.glsl"
+};
+#undef HAVE_ABSORPTION
+#undef HAVE_CERQUEIRA2017
 
 }  // namespace
 }  // namespace insonify::sonar

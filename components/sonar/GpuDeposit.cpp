@@ -24,15 +24,15 @@ public:
     void begin() override { begun_ = false; }
     void take(size_t slab, const SurfacePass& surface) override;
     std::span<const uint64_t> finish() override;
+    Features compiled() const override { return {}; }  // its program is in the context's list
 
 private:
     struct SlabShares {
         gpu::Buffer starts, shares, commands;
     };
-    void setUniforms(const Slab& slab, bool shares_per_row) const;
+    void setUniforms(const Slab& slab) const;
     struct Uniforms {
-        GLint image_size, shares_per_row, bin_count, bin_width, attenuation, strength_scale, slab_axis, extent,
-            pixel_size;
+        GLint image_size, bin_count, bin_width, attenuation, strength_scale, slab_axis, extent, pixel_size;
     };
 
     DepositSetup setup_;
@@ -45,23 +45,14 @@ private:
     bool begun_ = false;  ///< The sums are cleared and the objects told, for the ping that is under way.
 };
 
-std::vector<std::string> defines(const DepositSetup& setup) {
-    std::vector<std::string> names;
-    if (setup.model == Model::Cerqueira2017) names.push_back("HAVE_CERQUEIRA2017");
-    if (setup.published) names.push_back("HAVE_PUBLISHED");
-    if (setup.estimator != Estimator::Footprint) names.push_back("HAVE_NEAREST");
-    if (setup.estimator == Estimator::NearestJitter) names.push_back("HAVE_JITTER");
-    return names;
-}
-
 GpuDeposit::GpuDeposit(const DepositSetup& setup, gpu::EglContext& context)
     : setup_(setup),
       context_(context),
-      program_(context.programs().compute("deposit.comp.glsl", defines(setup))),
+      program_(context.programs().compute("deposit.comp.glsl", setup.features.defines())),
       sums_(setup.sumCount() * sizeof(uint64_t)) {
     const auto at = [this](const char* name) { return glGetUniformLocation(program_.id(), name); };
-    uniforms_ = {at("image_size"),     at("shares_per_row"), at("bin_count"), at("bin_width"), at("attenuation"),
-                 at("strength_scale"), at("slab_axis"),      at("extent"),    at("pixel_size")};
+    uniforms_ = {at("image_size"),     at("bin_count"), at("bin_width"), at("attenuation"),
+                 at("strength_scale"), at("slab_axis"), at("extent"),    at("pixel_size")};
     context.requireStorage(setup.sumCount() * sizeof(uint64_t), "the sums of all bins");
     const auto edges = inverseEdges(setup.bins);
     edges_ = gpu::Buffer::of(std::span(edges));
@@ -70,9 +61,8 @@ GpuDeposit::GpuDeposit(const DepositSetup& setup, gpu::EglContext& context)
         shares_.push_back({gpu::Buffer::of(std::span(slab.starts)), gpu::Buffer::of(std::span(slab.shares)), {}});
 }
 
-void GpuDeposit::setUniforms(const Slab& slab, bool shares_per_row) const {
+void GpuDeposit::setUniforms(const Slab& slab) const {
     glUniform2i(uniforms_.image_size, slab.columns, slab.rows);
-    glUniform1i(uniforms_.shares_per_row, shares_per_row);
     glUniform1ui(uniforms_.bin_count, static_cast<GLuint>(setup_.bins.bin_count));
     glUniform1d(uniforms_.bin_width, setup_.bins.bin_width);
     glUniform1d(uniforms_.attenuation, setup_.attenuation);
@@ -91,7 +81,7 @@ void GpuDeposit::take(size_t slab, const SurfacePass& surface) {
     give(surface.picture(slab).commands, shares_[slab].commands);
     shares_[slab].commands.bindBase(GL_SHADER_STORAGE_BUFFER, COMMANDS_BINDING);
     program_.use();
-    setUniforms(setup_.slabs[slab], setup_.shares[slab].per_row);
+    setUniforms(setup_.slabs[slab]);
     surface.bindResults(slab);
     shares_[slab].shares.bindBase(GL_SHADER_STORAGE_BUFFER, SHARES_BINDING);
     shares_[slab].starts.bindBase(GL_SHADER_STORAGE_BUFFER, SHARE_STARTS_BINDING);

@@ -10,7 +10,7 @@
 #include <utility>
 
 #include "components/framework/Activity.hpp"
-#include "components/sonar/Plan.hpp"
+#include "components/sonar/PlanReport.hpp"
 #include "types/CarriedOn.hpp"
 
 namespace insonify::sonar {
@@ -132,7 +132,7 @@ void PingTask::render() {
     const std::chrono::duration<double, std::milli> took = std::chrono::steady_clock::now() - start;
     for (const Stage& stage : renderer_->stages()) recordStage(stage.name, stage.seconds);
     if (std::exchange(culling_untold_, false))
-        for (types::Omission& omission : renderer_->culled()) plan_->omitted.push_back(std::move(omission));
+        for (const LeftOut& what : renderer_->culled()) plan_->omitted.push_back(describe(what, grid_));
     followQuality(*sample, took.count());
     label(*sample);
     pool_.stock(*sample);

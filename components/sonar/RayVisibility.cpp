@@ -1,15 +1,13 @@
 #include "components/sonar/RayVisibility.hpp"
 
-#include <embree3/rtcore.h>
-
 #include <algorithm>
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <glm/gtc/quaternion.hpp>
 #include <glm/matrix.hpp>
 #include <limits>
-#include <stdexcept>
-#include <string>
+
+#include "components/sonar/SceneTrees.hpp"
 
 namespace insonify::sonar {
 namespace {
@@ -19,28 +17,6 @@ constexpr double farthest_from_origin = 1000;
 /** Triangles that are copied to where they stand, once for each object; of larger scenes, meshes that stand in several
  *  places are instances of one tree, through which rays take longer [1]. */
 constexpr size_t most_copied = 4'000'000;
-
-void requireNoError(RTCDevice device) {
-    if (const RTCError error = rtcGetDeviceError(device); error != RTC_ERROR_NONE)
-        throw std::runtime_error("Embree cannot build the scene: error " + std::to_string(error));
-}
-
-/** A run of triangles of one material. */
-struct MaterialRun {
-    uint32_t first_index, index_count;
-    int material;
-};
-
-std::vector<MaterialRun> materialRuns(const types::Mesh& mesh) {
-    std::vector<MaterialRun> runs;
-    for (const types::Cluster& cluster : mesh.clusters) {
-        if (!runs.empty() && runs.back().material == cluster.material)
-            runs.back().index_count += cluster.index_count;
-        else
-            runs.push_back({cluster.first_index, cluster.index_count, cluster.material});
-    }
-    return runs;
-}
 
 /** The three rows of a matrix that takes directions and places from one frame to another. */
 struct Rows {
@@ -66,54 +42,10 @@ void aim(const Rows& turn, glm::vec3 from, const TileRays& rays, RTCRayHit16& al
 
 }  // namespace
 
-/** Embree's trees, and what the numbers of their hits mean. */
-struct RayVisibility::Trees {
-    /** What a geometry of a tree is. */
-    struct Part {
-        uint32_t command, first_triangle;
-    };
-    /** A mesh in its own axes: a geometry for each run of one material. */
-    struct MeshTree {
-        RTCScene scene = nullptr;
-        std::vector<glm::vec3> positions;
-        std::vector<Part> parts;  ///< Commands counted from the object's first.
-    };
-
-    RTCDevice device = rtcNewDevice(nullptr);
-    RTCScene still = nullptr;
-    std::vector<Part> parts;                        ///< Of each geometry of `still` that is no instance.
-    std::vector<const MeshTree*> instanced;         ///< Of each geometry of `still` that is one, else null,
-    std::vector<uint32_t> instance_command;         ///< and the first command of its object.
-    std::vector<std::vector<glm::vec3>> positions;  ///< Of what is copied into `still`.
-    std::vector<MeshTree> meshes;                   ///< Built where they are wanted.
-
-    explicit Trees(size_t mesh_count) : meshes(mesh_count) { requireNoError(device); }
-    ~Trees() {
-        for (MeshTree& mesh : meshes)
-            if (mesh.scene) rtcReleaseScene(mesh.scene);
-        if (still) rtcReleaseScene(still);
-        rtcReleaseDevice(device);
-    }
-    Trees(const Trees&) = delete;
-
-    const MeshTree& treeOf(const types::Geometry& geometry, int mesh);
-    void copy(const types::Mesh& mesh, const glm::dmat4& place, uint32_t command);
-    void instance(const MeshTree& mesh, const glm::dmat4& place, uint32_t command);
-    RTCScene newScene() const;
-    void addRun(RTCScene scene, const types::Mesh& mesh, const MaterialRun& run,
-                const std::vector<glm::vec3>& at) const;
-    /** The command and triangle of a hit in `still`. */
-    Part meaning(uint32_t geometry, uint32_t instance) const {
-        if (instance == RTC_INVALID_GEOMETRY_ID) return parts[geometry];
-        const Part& part = instanced[instance]->parts[geometry];
-        return {instance_command[instance] + part.command, part.first_triangle};
-    }
-};
-
 /** An object that moves. */
 struct RayVisibility::Mover {
     uint32_t object, first_command;
-    const Trees::MeshTree* mesh;
+    const SceneTrees::MeshTree* mesh;
     glm::vec3 low, high;          ///< Box in its own axes [m].
     bool placed = false;          ///< Whether rays can meet it.
     glm::mat3 from_sonar{1};      ///< Directions in sonar axes to its own.
@@ -124,65 +56,6 @@ struct RayVisibility::Mover {
     void placeAt(const glm::dmat4& sonar_from_object);
     bool mayMeet(const TileRays& rays) const;
 };
-
-RTCScene RayVisibility::Trees::newScene() const {
-    RTCScene scene = rtcNewScene(device);
-    rtcSetSceneFlags(scene, RTC_SCENE_FLAG_ROBUST);
-    return scene;
-}
-
-void RayVisibility::Trees::addRun(RTCScene scene, const types::Mesh& mesh, const MaterialRun& run,
-                                  const std::vector<glm::vec3>& at) const {
-    RTCGeometry triangles = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
-    rtcSetSharedGeometryBuffer(triangles, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, at.data(), 0, sizeof(glm::vec3),
-                               at.size() - 1);
-    rtcSetSharedGeometryBuffer(triangles, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, mesh.indices.data(),
-                               run.first_index * sizeof(uint32_t), 3 * sizeof(uint32_t), run.index_count / 3);
-    rtcCommitGeometry(triangles);
-    rtcAttachGeometry(scene, triangles);
-    rtcReleaseGeometry(triangles);
-}
-
-const RayVisibility::Trees::MeshTree& RayVisibility::Trees::treeOf(const types::Geometry& geometry, int index) {
-    MeshTree& tree = meshes[static_cast<size_t>(index)];
-    if (tree.scene) return tree;
-    const types::Mesh& mesh = geometry.meshes[static_cast<size_t>(index)];
-    tree.positions = mesh.positions;
-    tree.positions.emplace_back();  // Embree reads 16 bytes at each position
-    tree.scene = newScene();
-    for (const MaterialRun& run : materialRuns(mesh)) {
-        addRun(tree.scene, mesh, run, tree.positions);
-        tree.parts.push_back({static_cast<uint32_t>(tree.parts.size()), run.first_index / 3});
-    }
-    rtcCommitScene(tree.scene);
-    return tree;
-}
-
-void RayVisibility::Trees::copy(const types::Mesh& mesh, const glm::dmat4& place, uint32_t command) {
-    std::vector<glm::vec3>& placed = positions.emplace_back();
-    placed.reserve(mesh.positions.size() + 1);
-    for (const glm::vec3& p : mesh.positions) placed.emplace_back(place * glm::dvec4(p, 1));
-    placed.emplace_back();
-    for (const MaterialRun& run : materialRuns(mesh)) {
-        addRun(still, mesh, run, placed);
-        parts.push_back({command++, run.first_index / 3});
-    }
-    instanced.resize(parts.size());
-    instance_command.resize(parts.size());
-}
-
-void RayVisibility::Trees::instance(const MeshTree& mesh, const glm::dmat4& place, uint32_t command) {
-    const glm::mat4 matrix(place);
-    RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_INSTANCE);
-    rtcSetGeometryInstancedScene(geometry, mesh.scene);
-    rtcSetGeometryTransform(geometry, 0, RTC_FORMAT_FLOAT4X4_COLUMN_MAJOR, &matrix);
-    rtcCommitGeometry(geometry);
-    rtcAttachGeometry(still, geometry);
-    rtcReleaseGeometry(geometry);
-    parts.emplace_back();
-    instanced.push_back(&mesh);
-    instance_command.push_back(command);
-}
 
 void RayVisibility::Mover::placeAt(const glm::dmat4& sonar_from_object) {
     const glm::dmat3 linear(sonar_from_object);
@@ -217,7 +90,7 @@ bool RayVisibility::Mover::mayMeet(const TileRays& rays) const {
 }
 
 RayVisibility::RayVisibility(const types::Geometry& geometry)
-    : geometry_(geometry), moves_(geometry.objects.size()), trees_(std::make_unique<Trees>(geometry.meshes.size())) {
+    : geometry_(geometry), moves_(geometry.objects.size()), trees_(std::make_unique<SceneTrees>(geometry)) {
     listCommands();
 }
 
@@ -244,7 +117,7 @@ bool RayVisibility::hasNewMover(const types::Snapshot& snapshot) const {
 
 void RayVisibility::place(const types::Snapshot& snapshot) {
     const bool too_far = !(glm::distance(snapshot.sonar.position, origin_) <= farthest_from_origin);
-    if (!trees_->still || too_far || hasNewMover(snapshot)) build(snapshot);
+    if (!trees_->still() || too_far || hasNewMover(snapshot)) build(snapshot);
     world_from_sonar_ = glm::mat3(glm::mat3_cast(snapshot.sonar.orientation));
     place_ = glm::vec3(snapshot.sonar.position - origin_);
     placeMovers(snapshot);
@@ -253,13 +126,7 @@ void RayVisibility::place(const types::Snapshot& snapshot) {
 void RayVisibility::build(const types::Snapshot& snapshot) {
     for (const types::MovedObject& moved : snapshot.moved) moves_[moved.object] = true;
     origin_ = snapshot.sonar.position;
-    if (trees_->still) rtcReleaseScene(trees_->still);
-    trees_->still = trees_->newScene();
-    trees_->parts.clear();
-    trees_->instanced.clear();
-    trees_->instance_command.clear();
-    trees_->positions.clear();
-    trees_->positions.reserve(geometry_.objects.size());
+    trees_->clear();
     movers_.clear();
     std::vector<size_t> uses(geometry_.meshes.size());
     for (const types::Object& object : geometry_.objects) ++uses[static_cast<size_t>(object.mesh)];
@@ -271,19 +138,18 @@ void RayVisibility::build(const types::Snapshot& snapshot) {
         glm::dmat4 place = object.world_from_object;
         place[3] -= glm::dvec4(origin_, 0);
         if (moves_[i]) {
-            Mover mover{static_cast<uint32_t>(i), first_command_[i], &trees_->treeOf(geometry_, object.mesh), {}, {}};
+            Mover mover{static_cast<uint32_t>(i), first_command_[i], &trees_->treeOf(object.mesh), {}, {}};
             mover.low = mover.high = mesh.positions.front();
             for (const glm::vec3& p : mesh.positions)
                 mover.low = glm::min(mover.low, p), mover.high = glm::max(mover.high, p);
             movers_.push_back(mover);
         } else if (copied || uses[static_cast<size_t>(object.mesh)] == 1) {
-            trees_->copy(mesh, place, first_command_[i]);
+            trees_->copy(object.mesh, place, first_command_[i]);
         } else {
-            trees_->instance(trees_->treeOf(geometry_, object.mesh), place, first_command_[i]);
+            trees_->instance(object.mesh, place, first_command_[i]);
         }
     }
-    rtcCommitScene(trees_->still);
-    requireNoError(trees_->device);
+    trees_->commit();
 }
 
 void RayVisibility::placeMovers(const types::Snapshot& snapshot) {
@@ -315,11 +181,11 @@ void RayVisibility::cast(const TileRays& rays, TileHits& hits) const {
     rtcInitIntersectContext(&context);
     context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
     aim(Rows(world_from_sonar_), place_, rays, all);
-    rtcIntersect16(valid, trees_->still, &context, &all);
+    rtcIntersect16(valid, trees_->still(), &context, &all);
     const auto take = [&](const auto& meaning) {
         for (int i = 0; i < tile_samples; ++i) {
             if (all.hit.geomID[i] == RTC_INVALID_GEOMETRY_ID || !valid[i]) continue;
-            const Trees::Part part = meaning(all.hit.geomID[i], all.hit.instID[0][i]);
+            const SceneTrees::Part part = meaning(all.hit.geomID[i], all.hit.instID[0][i]);
             hits.command[i] = part.command;
             hits.triangle[i] = part.first_triangle + all.hit.primID[i];
             hits.u[i] = all.hit.u[i];
@@ -333,8 +199,8 @@ void RayVisibility::cast(const TileRays& rays, TileHits& hits) const {
         aim(Rows(mover.from_sonar), mover.place, rays, all);
         rtcIntersect16(valid, mover.mesh->scene, &context, &all);
         take([&](uint32_t geometry, uint32_t) {
-            const Trees::Part& part = mover.mesh->parts[geometry];
-            return Trees::Part{mover.first_command + part.command, part.first_triangle};
+            const SceneTrees::Part& part = mover.mesh->parts[geometry];
+            return SceneTrees::Part{mover.first_command + part.command, part.first_triangle};
         });
     }
 }

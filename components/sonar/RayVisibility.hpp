@@ -3,13 +3,13 @@
 #include <memory>
 #include <vector>
 
+#include "components/sonar/EchoRules.hpp"
 #include "components/sonar/Interface.hpp"
 #include "types/Snapshot.hpp"
 
 namespace insonify::sonar {
 
-/** Rays that are cast together: neighbours, so that most of them take the same way through the tree. */
-constexpr int tile_samples = 16;
+class SceneTrees;
 
 /** Directions of a tile's rays in sonar axes, of any length above 0 [1]; `active`: bit i is set where ray i is cast. */
 struct TileRays {
@@ -48,7 +48,6 @@ public:
     const std::vector<CommandRecord>& commands() const { return commands_; }
 
 private:
-    struct Trees;
     struct Mover;
     void listCommands();
     bool hasNewMover(const types::Snapshot& snapshot) const;
@@ -59,7 +58,7 @@ private:
     std::vector<CommandRecord> commands_;
     std::vector<uint32_t> first_command_;  ///< Of each object.
     std::vector<bool> moves_;              ///< Whether an object has ever moved.
-    std::unique_ptr<Trees> trees_;
+    std::unique_ptr<SceneTrees> trees_;
     std::vector<Mover> movers_;
     glm::dvec3 origin_{0};        ///< Of the tree of what does not move, in the world [m].
     glm::mat3 world_from_sonar_;  ///< [1]

@@ -33,11 +33,15 @@ public:
 
     /** Where the time of the last ping went. */
     std::span<const Stage> stages() const;
+    const RenderPlan& renderPlan() const;
+    /** The same in words, with the device. */
     const types::Plan& plan() const;
+    /** What is compiled into what renders. */
+    Features compiled() const;
     /** Whether the last ping has any echo. */
     bool heard() const;
     /** What of the scene the last ping did not draw: objects, triangles, slabs; only those of which there is one. */
-    std::vector<types::Omission> culled() const;
+    std::vector<LeftOut> culled() const;
     const std::string& device() const;  ///< Name of the OpenGL renderer in use.
 
 private:

@@ -6,14 +6,12 @@
 #include <cstring>
 #include <glm/geometric.hpp>
 
-#include "components/sonar/Acoustics.hpp"
 #include "components/sonar/Estimators.hpp"
 
 namespace insonify::sonar {
 namespace {
 
 constexpr int stretch = 64;  ///< Cells at a time: their numbers stay in the nearest cache.
-constexpr int bins_at_once = 4;
 
 /** Cells, each the part of a triangle's plane that neighbouring samples see; sonar axes. */
 struct Cells {
@@ -115,14 +113,22 @@ private:
 };
 
 /** Means of S, weighted by size. */
-struct MeanEstimator : CerqueiraBins {
-    void add(const Footprint& cell, double strength_range) { depositCell(cell, 0, strength_range); }
+template <class MeanOfS>
+struct MeanEstimator : MeanOfS {
+    void add(const Footprint& cell, double strength_range) { this->depositCell(cell, 0, strength_range); }
 };
 
 /** Makes cells of tiles, a stretch at a time. */
-template <class Estimator, bool normal_maps>
+template <class Estimator, bool conical, bool normal_maps>
 class CellDeposit {
 public:
+    static constexpr Features features() {
+        Features all = Estimator::features;
+        if (conical) all.add(Feature::Conical);
+        if (normal_maps) all.add(Feature::NormalMap);
+        return all;
+    }
+
     CellDeposit(const EchoRules& rules, const TileShape& shape, const PlacedScene& scene, int first_beam,
                 Estimator estimator)
         : rules_(rules),
@@ -209,7 +215,7 @@ private:
         cells_.cos_el[i] = elevation.cosine;
         cells_.sin_el[i] = elevation.sine;
         cells_.height[i] = static_cast<double>(up) * view.row_height;
-        if (view.conical) {
+        if (conical) {
             const double at = std::atan2(elevation.sine, elevation.cosine);
             const double azimuth = coneAzimuth(view.bearings[left + across], at);
             cells_.cos_az[i] = std::cos(azimuth);
@@ -237,69 +243,51 @@ private:
     Covered covered_{};
 };
 
-template <bool normal_maps, class Estimator>
-void depositWith(const EchoRules& rules, const TileShape& shape, const PlacedScene& scene,
-                 std::span<const CastTile> tiles, int first_beam, Estimator estimator) {
-    CellDeposit<Estimator, normal_maps> cells(rules, shape, scene, first_beam, estimator);
-    for (const CastTile& tile : tiles) cells.add(tile);
-    cells.finish();
+/** Calls use(CellDeposit's type, estimator) with those that have the features of a plan. */
+template <bool conical, bool normal_maps, class Use>
+void withEstimator(const EchoRules& rules, const Bins& bins, const Use& use) {
+    const auto with = [&]<class Estimator>(const Estimator& estimator) {
+        use.template operator()<CellDeposit<Estimator, conical, normal_maps>>(estimator);
+    };
+    if (!rules.features.has(Feature::Cerqueira2017))
+        with(EnergyEstimator{{{bins}}, rules.middles.data()});
+    else if (rules.features.has(Feature::Absorption))
+        with(MeanEstimator<AbsorbingBins>{{{bins}}});
+    else
+        with(MeanEstimator<CerqueiraBins>{{{bins}}});
+}
+
+template <class Use>
+void withCells(const EchoRules& rules, const Bins& bins, const Use& use) {
+    const bool conical = rules.features.has(Feature::Conical), mapped = rules.features.has(Feature::NormalMap);
+    if (conical && mapped)
+        withEstimator<true, true>(rules, bins, use);
+    else if (conical)
+        withEstimator<true, false>(rules, bins, use);
+    else if (mapped)
+        withEstimator<false, true>(rules, bins, use);
+    else
+        withEstimator<false, false>(rules, bins, use);
 }
 
 }  // namespace
 
-TileShape::TileShape(int beam_columns, int columns) {
-    const int wide = columns >= 4 ? 4 : columns >= 2 ? 2 : 1;
-    const int together = std::min(wide, beam_columns % 4 == 0 ? 4 : beam_columns % 2 == 0 ? 2 : 1);
-    for (int count = 1; count < tile_samples; count *= 2) {
-        // First the columns of one beam and rows by turns, then the other rows, then the other columns.
-        const int across = size[count].columns, up = size[count].rows;
-        const bool widens = across < together ? across <= up : up * wide >= tile_samples;
-        size[2 * count] = {widens ? 2 * across : across, widens ? up : 2 * up};
-        for (int i = 0; i < count; ++i)
-            at[count + i] = {at[i].columns + (widens ? across : 0), at[i].rows + (widens ? 0 : up)};
-    }
-    all = size[tile_samples];
-    most_merged = together * all.rows;
-}
-
-EchoRules makeEchoRules(const SonarConfig& config, const types::Geometry& geometry) {
-    EchoRules rules;
-    rules.normal_maps = std::ranges::any_of(geometry.materials, [](const auto& m) { return m.normal_map >= 0; });
-    rules.bins = makeBinGrid(config);
-    rules.model = config.model;
-    if (config.model == Model::Cerqueira2017) rules.attenuation = makeAbsorption(config).amplitudeNepersPerMetre();
-    rules.edges = inverseEdges(rules.bins);
-    for (int k = 0; k < rules.bins.bin_count; ++k) rules.middles.push_back(rules.bins.centre(k));
-    rules.edges.resize(rules.edges.size() + bins_at_once);
-    rules.middles.resize(rules.middles.size() + bins_at_once);
-    return rules;
-}
-
-int mostMerged(const AngularView& view, const BinGrid& bins) {
-    // Over an angle d, 1/r of a plane n.p = D leaves the straight line between its ends by d d / (8 D) at most: so much
-    // is a twentieth of a bin at the far edge, on planes that graze at 15 deg.
-    const double angle = std::sqrt(8 * 0.05 * bins.bin_width / bins.range_max / 4);
-    const double cell = std::max(view.column_width, view.row_height);
-    int most = 1;
-    while (most < tile_samples && cell * 2 * std::sqrt(most) <= angle) most *= 4;
-    return most;
-}
-
 INSONIFY_VECTORISED __attribute__((flatten)) void deposit(const EchoRules& rules, const TileShape& shape,
                                                           const PlacedScene& scene, std::span<const CastTile> tiles,
                                                           int first_beam, uint64_t* sums) {
-    const Bins bins{rules.edges.data(), sums, static_cast<uint>(rules.bins.bin_count), rules.bins.bin_width,
-                    rules.attenuation};
-    const auto with = [&](auto estimator) {
-        if (rules.normal_maps)
-            depositWith<true>(rules, shape, scene, tiles, first_beam, estimator);
-        else
-            depositWith<false>(rules, shape, scene, tiles, first_beam, estimator);
-    };
-    if (rules.model == Model::Cerqueira2017)
-        with(MeanEstimator{{bins}});
-    else
-        with(EnergyEstimator{{bins}, rules.middles.data()});
+    const Bins all{rules.edges.data(), sums, static_cast<uint>(rules.bins.bin_count), rules.bins.bin_width,
+                   rules.attenuation};
+    withCells(rules, all, [&]<class Deposit>(const auto& estimator) {
+        Deposit cells(rules, shape, scene, first_beam, estimator);
+        for (const CastTile& tile : tiles) cells.add(tile);
+        cells.finish();
+    });
+}
+
+Features compiledFor(const EchoRules& rules) {
+    Features compiled;
+    withCells(rules, {}, [&]<class Deposit>(const auto&) { compiled = Deposit::features(); });
+    return compiled;
 }
 
 }  // namespace insonify::sonar

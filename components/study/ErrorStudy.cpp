@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <limits>
 #include <ctime>
 #include <memory>
 #include <stdexcept>
@@ -184,7 +185,7 @@ private:
     }
 
     double smallestError() const {
-        double smallest = infinity;
+        double smallest = std::numeric_limits<double>::infinity();
         for (const Heard& heard : heard_)
             smallest = std::min(smallest, compare(heard.energies, energies_, layout_).rel_l2);
         return smallest;

@@ -3,10 +3,12 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <iterator>
 #include <memory>
 
 #include "components/sonar/Acoustics.hpp"
 #include "components/sonar/BinGrid.hpp"
+#include "components/sonar/PlanReport.hpp"
 #include "components/sonar/SonarRenderer.hpp"
 #include "components/study/Metrics.hpp"
 
@@ -98,13 +100,13 @@ public:
         sonar::SonarRenderer renderer(planned_.config, snapshot.geometry);
         types::Sonar ping;
         renderer.render(snapshot, ping);
-        omitted_ = renderer.plan().omitted;
-        for (types::Omission& omission : renderer.culled()) omitted_.push_back(std::move(omission));
+        left_out_ = renderer.renderPlan().left_out;
+        std::ranges::copy(renderer.culled(), std::back_inserter(left_out_));
     }
 
     std::vector<OmissionRow> run() {
         measureQuality();
-        for (const types::Omission& omission : omitted_) rows_.push_back(measured(omission));
+        for (const sonar::LeftOut& what : left_out_) rows_.push_back(measured(what));
         measureKept();
         return std::move(rows_);
     }
@@ -121,40 +123,40 @@ private:
         rows_.push_back({"twice the rows and columns", "quality", ablation, {}, "", true});
     }
 
-    OmissionRow measured(const types::Omission& omission) {
-        progress_(omission.name);
-        OmissionRow row{omission.name, omission.reason, {}, {}, "", false};
+    OmissionRow measured(const sonar::LeftOut& what) {
+        const types::Omission words = sonar::describe(what, sonar::makeBinGrid(planned_.config));
+        progress_(words.name);
+        OmissionRow row{words.name, words.reason, {}, {}, "", false};
         Way with = planned_;
-        if (putBack(omission.name, with, row)) row.measured = compared(planned_, with, pings_);
+        if (putBack(what.effect, with, row)) row.measured = compared(planned_, with, pings_);
         return row;
     }
 
     /** Puts back what has been left out; false where it cannot be. */
-    bool putBack(const std::string& name, Way& with, OmissionRow& row) const {
-        const auto is = [&](const char* part) { return name.find(part) != std::string::npos; };
+    bool putBack(sonar::Effect effect, Way& with, OmissionRow& row) const {
         const auto bound = [&](double value, const char* of) {
             row.bound = value;
             row.bound_of = of;
             return true;
         };
-        if (name == "absorption") {
-            with.config.absorption.emplace().db_per_m = 0;
-            return bound(0, "change: 0 dB/m");
+        switch (effect) {
+            case sonar::Effect::Absorption:
+                with.config.absorption.emplace().db_per_m = 0;
+                return bound(0, "change: 0 dB/m");
+            case sonar::Effect::NormalMaps:
+                with.snapshot.geometry = withFlatMap(*planned_.snapshot.geometry);
+                return bound(1e-6, "change: a map that bends nothing, in float");
+            case sonar::Effect::AbsorptionInBin: return splitBins(with, row);
+            case sonar::Effect::FurtherSlabs:
+                with.config.least_slabs = 2;
+                return bound(quality_, "rel_l2_tvg: what twice the rows and columns change");
+            case sonar::Effect::Objects:
+            case sonar::Effect::Triangles:
+            case sonar::Effect::Slabs:
+                with.config.draw_all = true;
+                return bound(1e-5, "change: pixels beyond the range that reach back into it");
+            default: return false;
         }
-        if (name == "normal maps") {
-            with.snapshot.geometry = withFlatMap(*planned_.snapshot.geometry);
-            return bound(1e-6, "change: a map that bends nothing, in float");
-        }
-        if (name == "absorption inside a bin") return splitBins(with, row);
-        if (name == "further slabs") {
-            with.config.least_slabs = 2;
-            return bound(quality_, "rel_l2_tvg: what twice the rows and columns change");
-        }
-        if (is(" objects") || is(" triangles") || is(" slabs")) {
-            with.config.draw_all = true;
-            return bound(1e-5, "change: pixels beyond the range that reach back into it");
-        }
-        return false;
     }
 
     /** Eight bins for each, added up: absorption changes from one to the next. */
@@ -194,7 +196,7 @@ private:
     Way planned_;
     int pings_;
     const std::function<void(const std::string&)>& progress_;
-    std::vector<types::Omission> omitted_;
+    std::vector<sonar::LeftOut> left_out_;
     double quality_ = 0;
     std::vector<OmissionRow> rows_;
 };

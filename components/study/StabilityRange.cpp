@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "components/sonar/BinGrid.hpp"
-#include "components/sonar/Plan.hpp"
+#include "components/sonar/PlanReport.hpp"
 #include "components/sonar/SonarRenderer.hpp"
 #include "components/study/Bounds.hpp"
 #include "components/study/Probe.hpp"

@@ -187,8 +187,9 @@ TEST(CitationTest, TheRulesRefuseWhatTheyShould) {
     EXPECT_THAT(missingFiles(code, {page}), ElementsAre("notes/nowhere" + md));
     EXPECT_THAT(missingSections(code, sectionsOf({"", {"## 1 Sound", "### 1.1 Speed", "Text 99.1", "## 7 Noise"}})),
                 ElementsAre("99.1", ""));
-    const auto tests = testsIn("`tests/layout/CitationTest.cpp`: `CitationTest.LinksOfEveryPageLeadSomewhere`, "
-                               "`CitationTest.Nothing`, not CitationTest.Quoted");
+    const auto tests = testsIn(
+        "`tests/layout/CitationTest.cpp`: `CitationTest.LinksOfEveryPageLeadSomewhere`, "
+        "`CitationTest.Nothing`, not CitationTest.Quoted");
     ASSERT_EQ(tests.size(), 2u);
     EXPECT_TRUE(tests[0].exists());
     EXPECT_FALSE(tests[1].exists());

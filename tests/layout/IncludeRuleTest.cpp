@@ -71,9 +71,10 @@ TEST(IncludeRuleTest, EveryThirdPartyPackageHasItsHomes) {
         {"epoxy/", "gpu"},        {"yaml-cpp/", "framework"},
         {"CLI/", "deployer"},     {"nlohmann/", "deployer"},
         {"nlohmann/", "viewer"},  {"boost/", "viewer"},
-        {"embree3/", "study"},    {"sdf/", "scene"},
-        {"assimp/", "scene"},     {"lz4frame.h", "mcap"},
-        {"zstd.h", "mcap"},       {"dds/", "dds"},
+        {"embree3/", "study"},    {"embree3/", "sonar"},
+        {"sdf/", "scene"},        {"assimp/", "scene"},
+        {"lz4frame.h", "mcap"},   {"zstd.h", "mcap"},
+        {"dds/", "dds"},
     };
     const auto livesIn = [&](const std::string& prefix, const std::string& folder) {
         const auto [first, last] = homes.equal_range(prefix);

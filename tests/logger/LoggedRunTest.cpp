@@ -33,8 +33,8 @@ struct PlannerTask : framework::TaskContext {
     framework::OutputPort<double> depth{this, "depth", "never written"};
     const types::Plan* plan() const override { return plan_ ? &*plan_ : nullptr; }
     void updateHook() override {
-        plan_ =
-            types::Plan{.features = {"HAVE_\"TVG\""}, .passes = {}, .omitted = {{"volume", "absent"}}, .notices = {}, .device = {}};
+        plan_ = types::Plan{
+            .features = {"HAVE_\"TVG\""}, .passes = {}, .omitted = {{"volume", "absent"}}, .notices = {}, .device = {}};
         refreshRecord();
         ping.write(std::make_shared<types::Sonar>());
     }

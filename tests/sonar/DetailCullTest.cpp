@@ -72,7 +72,8 @@ types::Sonar heardOf(const types::GeometryPtr& geometry, const Look& look) {
     config.field_of_view_deg = 90;
     config.bin_count = 400;
     config.range = look.range;
-    config.quality = {256, 2, {}, {}};
+    config.quality.rows = 256;
+    config.quality.columns_per_beam = 2;
     config.device = "software";
     types::Sonar ping;
     SonarRenderer(config, geometry)

@@ -19,8 +19,8 @@ inline double max(double a, double b) { return a > b ? a : b; }
 inline uint min(uint a, uint b) { return a < b ? a : b; }
 #include "shaders/footprint.glsl"
 using real = double;
-#include "shaders/trapezoid.glsl"
 #include "shaders/surface.glsl"
+#include "shaders/trapezoid.glsl"
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
@@ -43,8 +43,12 @@ struct Bins {
         for (const double e : sums) sum += e;
         return sum;
     }
-    int occupied() const { return static_cast<int>(std::ranges::count_if(sums, [](double e) { return e > 0; })); }
+    int occupied() const {
+        return static_cast<int>(std::ranges::count_if(sums, [](double e) { return e > 0; }));
+    }
+#define HAVE_PHYSICAL
 #include "shaders/deposit.glsl"
+#undef HAVE_PHYSICAL
 };
 
 double relativeL2(const Bins& got, const Bins& expected) {

@@ -14,8 +14,7 @@ namespace {
 /** A wall 20 m ahead whose normals lean to port. */
 types::GeometryPtr wallWithNormalsAt(double lean) {
     auto geometry = std::make_shared<types::Geometry>(*test::sceneOf({test::mappedWall()}));
-    geometry->objects[0].world_from_object =
-        glm::scale(glm::translate(glm::dmat4(1), {20, 0, 0}), glm::dvec3(1, 5, 5));
+    geometry->objects[0].world_from_object = glm::scale(glm::translate(glm::dmat4(1), {20, 0, 0}), glm::dvec3(1, 5, 5));
     const auto channel = [](double x) { return static_cast<uint8_t>(std::lround((x + 1) / 2 * 255)); };
     geometry->normal_maps = {{1, 1, {channel(std::sin(lean)), channel(0), channel(std::cos(lean))}, true, true}};
     geometry->materials[0].normal_map = 0;

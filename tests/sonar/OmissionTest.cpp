@@ -4,12 +4,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <regex>
+#include <optional>
 #include <set>
 
 #include "components/sonar/Acoustics.hpp"
 #include "components/sonar/BinGrid.hpp"
-#include "components/sonar/Plan.hpp"
+#include "components/sonar/PlanReport.hpp"
 #include "components/sonar/SonarRenderer.hpp"
 #include "tests/support/Surfaces.hpp"
 #include "types/Angle.hpp"
@@ -55,20 +55,11 @@ types::GeometryPtr unmapped() {
     return changed([](types::Geometry& g) { g.materials[1].normal_map = -1; });
 }
 
-/** The reason for which `name` is left out; empty when it is not. */
-std::string reason(const SonarConfig& config, const std::string& name) {
-    const types::Plan plan = makePlan(config, *unmapped());
-    const auto found = std::ranges::find(plan.omitted, name, &types::Omission::name);
-    return found == plan.omitted.end() ? "" : found->reason;
-}
-
-/** The numbers in a text. */
-std::vector<double> numbersIn(const std::string& text) {
-    static const std::regex number(R"(\d+(\.\d+)?(e[-+]?\d+)?)");
-    std::vector<double> values;
-    for (std::sregex_iterator it(text.begin(), text.end(), number); it != std::sregex_iterator(); ++it)
-        values.push_back(std::stod(it->str()));
-    return values;
+/** The numbers with which an effect is left out; none when it is not. */
+std::optional<LeftOut> leftOut(const SonarConfig& config, Effect effect) {
+    const RenderPlan plan = makeRenderPlan(config, *unmapped());
+    const LeftOut* found = plan.leftOut(effect);
+    return found ? std::optional(*found) : std::nullopt;
 }
 
 /** Relative L2 of their difference. */
@@ -89,20 +80,21 @@ Bins times(Bins bins, float factor) {
 }  // namespace
 
 TEST(OmissionTest, NoEffectIsLeftOutThatIsNotTestedHere) {
-    const std::set<std::string> tested = {
-        "absorption", "absorption inside a bin", "specular lobe", "spreading", "backscatter by material",
-        "further slabs", "refraction", "motion within a ping", "normal maps",
+    const std::set<Effect> tested = {
+        Effect::Absorption, Effect::AbsorptionInBin, Effect::SpecularLobe, Effect::Spreading,
+        Effect::BackscatterByMaterial, Effect::FurtherSlabs, Effect::Refraction, Effect::MotionInPing,
+        Effect::NormalMaps,
         // of `published`, in PublishedTest.cpp:
-        "range footprints", "elevation mask", "shared columns", "near blanking",
+        Effect::RangeFootprints, Effect::ElevationMask, Effect::SharedColumns, Effect::NearBlanking,
         // without values yet; SonarConfig refuses them:
-        "azimuth beam pattern", "elevation beam pattern", "range point-spread", "volume reverberation", "multipath"};
+        Effect::AzimuthPattern, Effect::ElevationPattern, Effect::RangePointSpread, Effect::Volume, Effect::Multipath};
     SonarConfig absorbing = plainSonar(), published = plainSonar(Model::Cerqueira2017);
     absorbing.absorption.emplace().db_per_m = 0.1;
     absorbing.field_of_view_deg = 50;
     published.published = true;
     for (const SonarConfig& config : {plainSonar(), plainSonar(Model::Cerqueira2017), absorbing, published})
-        for (const types::Omission& omission : makePlan(config, *unmapped()).omitted)
-            EXPECT_TRUE(tested.contains(omission.name)) << omission.name;
+        for (const LeftOut& what : makeRenderPlan(config, *unmapped()).left_out)
+            EXPECT_TRUE(tested.contains(what.effect)) << describe(what, {}).name;
 }
 
 TEST(OmissionTest, NoAbsorptionIsAbsorptionOfZero) {
@@ -119,7 +111,7 @@ TEST(OmissionTest, AbsorptionInsideABinIsWithinTheStatedBound) {
     SonarConfig coarse = plainSonar();
     coarse.absorption.emplace().db_per_m = 1;
     const double bound = makeAbsorption(coarse).intensityPerMetre() * 0.1 / 2;
-    EXPECT_NEAR(numbersIn(reason(coarse, "absorption inside a bin")).at(1), bound, 0.05 * bound) << "beta dR/2 = ...";
+    EXPECT_NEAR(leftOut(coarse, Effect::AbsorptionInBin)->value, bound, 1e-12 * bound);
     SonarConfig fine = coarse;
     fine.bin_count = 4000;
     const Bins whole = binsOf(coarse), tenths = binsOf(fine);
@@ -189,8 +181,8 @@ TEST(OmissionTest, OneSlabShowsWhatSeveralDo) {
     one.quality.rows = two.quality.rows = 512;
     one.field_of_view_deg = one.beam_count = 60;
     two.field_of_view_deg = two.beam_count = 62;
-    EXPECT_THAT(reason(one, "further slabs"), HasSubstr("60 deg"));
-    EXPECT_EQ(reason(two, "further slabs"), "");
+    EXPECT_EQ(leftOut(one, Effect::FurtherSlabs)->value, 60);
+    EXPECT_FALSE(leftOut(two, Effect::FurtherSlabs));
     const auto floor = test::sceneOf({test::ground(-5)});
     const Bins narrow = binsOf(one, floor), wide = binsOf(two, floor);
     EXPECT_LT(difference(narrow, {wide.begin() + 400, wide.end() - 400}), 1e-3) << "beams 1 to 60 of 62";
@@ -208,26 +200,71 @@ TEST(OmissionTest, AheadConesAreNearlyPlanes) {
     EXPECT_NE(cone, flat);
 }
 
-TEST(OmissionTest, RefractionIsLeftOutByTheNumbersInItsReason) {
-    const auto numbers =
-        numbersIn(reason(plainSonar(), "refraction"));  // gradient, 1 (of 1/s), offset, range, tolerated
-    ASSERT_EQ(numbers.size(), 5u);
-    EXPECT_NEAR(numbers[2], numbers[0] * 40 * 40 / (2 * 1000), 0.05 * numbers[2]);
-    EXPECT_EQ(numbers[3], 40);
-    EXPECT_NEAR(numbers[4], 0.1 * 40 * types::radians(40), 0.05 * numbers[4]) << "a tenth of the aperture's height";
-    EXPECT_LT(numbers[2], numbers[4]);
+TEST(OmissionTest, RefractionIsLeftOutByItsNumbers) {
+    const auto refraction = leftOut(plainSonar(), Effect::Refraction);
+    ASSERT_TRUE(refraction);
+    EXPECT_DOUBLE_EQ(refraction->value, 0.1 * 40 * 40 / (2 * 1000)) << "a gradient of 0.1 1/s";
+    EXPECT_DOUBLE_EQ(refraction->bound, 0.1 * 40 * types::radians(40)) << "a tenth of the aperture's height";
+    EXPECT_LT(refraction->value, refraction->bound);
     SonarConfig far = plainSonar();
     far.range = 4000;
     far.beam_height_deg = 2;
-    EXPECT_EQ(reason(far, "refraction"), "");
+    EXPECT_FALSE(leftOut(far, Effect::Refraction));
     EXPECT_THAT(configNotices(far), testing::Contains(HasSubstr("rays are straight")));
 }
 
-TEST(OmissionTest, MotionWithinAPingIsLeftOutBelowTheSpeedInItsReason) {
-    const auto numbers = numbersIn(reason(plainSonar(), "motion within a ping"));
-    ASSERT_FALSE(numbers.empty());
+TEST(OmissionTest, MotionWithinAPingIsLeftOutBelowASpeed) {
+    const auto motion = leftOut(plainSonar(), Effect::MotionInPing);
+    ASSERT_TRUE(motion);
     const double travel_time = 2 * 40 / 1000.0;  // [s]
-    EXPECT_NEAR(numbers[0] * travel_time, 0.1 / 2, 0.05 * 0.1 / 2) << "half a bin [m]";
+    EXPECT_DOUBLE_EQ(motion->value * travel_time, 0.1 / 2) << "half a bin [m]";
+}
+
+/** Sonars that want each feature there is, by each way to render. */
+std::vector<SonarConfig> sonarsOfAllFeatures() {
+    std::vector<SonarConfig> all;
+    for (Model model : {Model::Physical, Model::Cerqueira2017})
+        for (BeamGeometry beams : {BeamGeometry::Planar, BeamGeometry::Conical})
+            for (Visibility visibility : {Visibility::Gl, Visibility::Cpu})
+                for (Deposit deposit : {Deposit::Cpu, Deposit::Gpu}) {
+                    if (visibility == Visibility::Cpu && deposit == Deposit::Gpu) continue;
+                    SonarConfig& config = all.emplace_back(plainSonar(model));
+                    config.visibility = visibility;
+                    config.deposit = deposit;
+                    config.beam_geometry = beams;
+                    if (deposit == Deposit::Cpu) config.absorption.emplace().db_per_m = 0.1;
+                }
+    for (Deposit deposit : {Deposit::Cpu, Deposit::Gpu}) {
+        for (Estimator estimator : {Estimator::Nearest, Estimator::NearestJitter}) {
+            all.push_back(plainSonar());
+            all.back().estimator = estimator;
+            all.back().deposit = deposit;
+        }
+        all.push_back(plainSonar(Model::Cerqueira2017));
+        all.back().published = true;
+        all.back().deposit = deposit;
+    }
+    return all;
+}
+
+TEST(OmissionTest, WhatIsCompiledAndRunIsWhatThePlanSays) {
+    Features seen;
+    for (const SonarConfig& config : sonarsOfAllFeatures())
+        for (const types::GeometryPtr& geometry : {types::GeometryPtr(test::surfaces()), unmapped()}) {
+            SonarRenderer renderer(config, geometry);
+            types::Sonar ping;
+            renderer.render(test::snapshotOf(geometry, {}, 0.1, 0.15), ping);
+            const RenderPlan& plan = renderer.renderPlan();
+            EXPECT_THAT(renderer.compiled().names(), testing::ElementsAreArray(plan.features.names()));
+            for (int i = 0; i < feature_count; ++i)
+                if (plan.features.has(static_cast<Feature>(i))) seen.add(static_cast<Feature>(i));
+            const bool drew = std::ranges::count(plan.passes, Pass::Surface) == 1;
+            EXPECT_NE(drew, plan.casts_rays);
+            EXPECT_EQ(renderer.device().find("rays") == std::string::npos, drew);
+            for (StageOf stage : {CullStage, DrawStage, DepositStage, BeamStage})
+                EXPECT_GT(renderer.stages()[stage].seconds, 0) << stage;
+        }
+    EXPECT_EQ(seen.names().size(), static_cast<size_t>(feature_count)) << "each feature has been asked for";
 }
 
 }  // namespace insonify::sonar

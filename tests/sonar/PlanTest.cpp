@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "components/sonar/Plan.hpp"
+#include "components/sonar/PlanReport.hpp"
 
 namespace insonify::sonar {
 namespace {
@@ -25,6 +25,10 @@ types::Geometry sceneOf(std::vector<types::Material> materials) {
     return geometry;
 }
 
+types::Plan makePlan(const SonarConfig& config, const types::Geometry& geometry) {
+    return report(makeRenderPlan(config, geometry), geometry);
+}
+
 /** The reason for which the plan leaves `name` out; empty when it does not. */
 std::string reason(const types::Plan& plan, const std::string& name) {
     const auto found = std::ranges::find(plan.omitted, name, &types::Omission::name);
@@ -35,6 +39,7 @@ std::string reason(const types::Plan& plan, const std::string& name) {
 SonarConfig quietSonar() {
     SonarConfig config;
     config.range = 75;
+    config.visibility = Visibility::Gl;
     return config;
 }
 

@@ -1,0 +1,116 @@
+#include "components/sonar/RenderPlan.hpp"
+
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+
+#include "components/sonar/Acoustics.hpp"
+#include "types/Angle.hpp"
+
+namespace insonify::sonar {
+namespace {
+
+bool hasNormalMap(const types::Geometry& geometry) {
+    return std::ranges::any_of(geometry.materials, [](const auto& material) { return material.normal_map >= 0; });
+}
+
+Features featuresOf(const SonarConfig& config, const types::Geometry& geometry) {
+    Features features{config.model == Model::Physical ? Feature::Physical : Feature::Cerqueira2017};
+    if (config.model == Model::Cerqueira2017 && makeAbsorption(config).db_per_m > 0) features.add(Feature::Absorption);
+    if (config.published && config.model == Model::Cerqueira2017) features.add(Feature::Published);
+    if (config.beam_geometry == BeamGeometry::Conical) features.add(Feature::Conical);
+    if (hasNormalMap(geometry)) features.add(Feature::NormalMap);
+    if (config.estimator != Estimator::Footprint) features.add(Feature::Nearest);
+    if (config.estimator == Estimator::NearestJitter) features.add(Feature::Jitter);
+    return features;
+}
+
+void omitAbsorption(RenderPlan& plan) {
+    if (!plan.config.absorption) return plan.left_out.push_back({Effect::Absorption, Reason::NotConfigured});
+    if (plan.config.model == Model::Cerqueira2017) return;
+    const double residual = makeAbsorption(plan.config).intensityPerMetre() * plan.grid.bin_width / 2;
+    const Reason reason = residual < 1e-3 ? Reason::BelowBound : Reason::Approximated;
+    plan.left_out.push_back({Effect::AbsorptionInBin, reason, residual, 1e-3});
+}
+
+void omitPhysical(const types::Geometry& geometry, RenderPlan& plan) {
+    const bool rough = std::ranges::any_of(geometry.materials, [](const auto& m) { return m.roughness_slope > 0; });
+    plan.left_out.push_back({Effect::SpecularLobe, rough ? Reason::NotBuiltYet : Reason::NoMaterialHasOne});
+}
+
+void omitMeans(RenderPlan& plan) {
+    plan.left_out.push_back({Effect::Spreading, Reason::MeansOfS});
+    plan.left_out.push_back({Effect::BackscatterByMaterial, Reason::MeansOfS});
+    if (!plan.features.has(Feature::Published)) return;
+    for (Effect effect : {Effect::RangeFootprints, Effect::ElevationMask, Effect::SharedColumns, Effect::NearBlanking})
+        plan.left_out.push_back({effect, Reason::Published});
+}
+
+void omitEffects(const types::Geometry& geometry, RenderPlan& plan) {
+    for (Effect effect : {Effect::AzimuthPattern, Effect::ElevationPattern, Effect::RangePointSpread, Effect::Volume,
+                          Effect::Multipath})
+        plan.left_out.push_back({effect, Reason::NotConfigured});
+    if (plan.slabs.size() == 1)
+        plan.left_out.push_back({Effect::FurtherSlabs, Reason::OneImage, plan.config.coverageDeg()});
+    const Bending bent = bending(plan.config, plan.grid);
+    if (bent.offset < bent.tolerated)
+        plan.left_out.push_back({Effect::Refraction, Reason::BelowBound, bent.offset, bent.tolerated});
+    plan.left_out.push_back({Effect::MotionInPing, Reason::Approximated,
+                             plan.grid.bin_width * plan.grid.speed_of_sound / (4 * plan.grid.range_max)});
+    if (!hasNormalMap(geometry)) plan.left_out.push_back({Effect::NormalMaps, Reason::NoMaterialHasOne});
+}
+
+}  // namespace
+
+std::vector<std::string> Features::names() const {
+    std::vector<std::string> all;
+    for (int i = 0; i < feature_count; ++i)
+        if (has(static_cast<Feature>(i))) all.emplace_back(types::EnumNames<Feature>::names[i]);
+    return all;
+}
+
+std::vector<std::string> Features::defines() const {
+    std::vector<std::string> all = names();
+    for (std::string& name : all) {
+        std::ranges::transform(name, name.begin(), [](unsigned char c) { return static_cast<char>(std::toupper(c)); });
+        name.insert(0, "HAVE_");
+    }
+    return all;
+}
+
+void RenderPlan::setQuality(int rows, int columns_per_beam) {
+    config.quality.rows = rows;
+    config.quality.columns_per_beam = columns_per_beam;
+    if (!casts_rays) slabs = makeSlabs(config, beams);
+}
+
+const LeftOut* RenderPlan::leftOut(Effect effect) const {
+    const auto found = std::ranges::find(left_out, effect, &LeftOut::effect);
+    return found == left_out.end() ? nullptr : &*found;
+}
+
+Bending bending(const SonarConfig& config, const BinGrid& grid) {
+    const double r = grid.range_max;
+    return {speed_gradient * r * r / (2 * grid.speed_of_sound),
+            std::max(grid.bin_width, 0.1 * r * types::radians(config.beam_height_deg))};
+}
+
+RenderPlan makeRenderPlan(const SonarConfig& config, const types::Geometry& geometry) {
+    RenderPlan plan;
+    plan.config = config;
+    plan.casts_rays = config.castsRays();
+    plan.features = featuresOf(config, geometry);
+    plan.passes = {Pass::Cull, plan.casts_rays ? Pass::Rays : Pass::Surface, Pass::Deposit, Pass::Beams};
+    plan.grid = makeBinGrid(config);
+    plan.beams = makeBeams(config);
+    plan.setQuality(config.rows(), config.columnsPerBeam());
+    omitAbsorption(plan);
+    if (config.model == Model::Physical)
+        omitPhysical(geometry, plan);
+    else
+        omitMeans(plan);
+    omitEffects(geometry, plan);
+    return plan;
+}
+
+}  // namespace insonify::sonar

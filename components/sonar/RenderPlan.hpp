@@ -1,0 +1,125 @@
+#pragma once
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "components/sonar/BeamFan.hpp"
+#include "components/sonar/BinGrid.hpp"
+#include "components/sonar/SonarConfig.hpp"
+#include "types/Geometry.hpp"
+
+namespace insonify::sonar {
+
+/** What is compiled into the estimators where it is wanted: `#ifdef HAVE_<NAME>` in the shaders and in what the
+ * processor compiles of them. */
+enum class Feature { Physical, Cerqueira2017, Absorption, Published, Conical, NormalMap, Nearest, Jitter };
+constexpr int feature_count = 8;
+
+/** A set of features. */
+class Features {
+public:
+    constexpr Features() = default;
+    constexpr Features(std::initializer_list<Feature> features) {
+        for (Feature feature : features) add(feature);
+    }
+    constexpr void add(Feature feature) { bits_ |= 1u << static_cast<unsigned>(feature); }
+    constexpr bool has(Feature feature) const { return bits_ >> static_cast<unsigned>(feature) & 1u; }
+    constexpr bool operator==(const Features&) const = default;
+    /** "physical", "normal_map"... */
+    std::vector<std::string> names() const;
+    /** "HAVE_PHYSICAL", "HAVE_NORMAL_MAP"..., for the shaders. */
+    std::vector<std::string> defines() const;
+
+private:
+    unsigned bits_ = 0;
+};
+
+/** Work for each ping, in this order. */
+enum class Pass { Cull, Surface, Rays, Deposit, Beams };
+
+/** What may be left out of a ping. */
+enum class Effect {
+    Absorption,
+    AbsorptionInBin,
+    SpecularLobe,
+    Spreading,
+    BackscatterByMaterial,
+    RangeFootprints,
+    ElevationMask,
+    SharedColumns,
+    NearBlanking,
+    AzimuthPattern,
+    ElevationPattern,
+    RangePointSpread,
+    Volume,
+    Multipath,
+    FurtherSlabs,
+    Refraction,
+    MotionInPing,
+    NormalMaps,
+    Objects,
+    Triangles,
+    Slabs
+};
+
+/** Why something is left out. */
+enum class Reason {
+    NotConfigured,
+    NotBuiltYet,
+    NoMaterialHasOne,
+    MeansOfS,      ///< Bins of `cerqueira2017` are means of S(n.d).
+    Published,     ///< The published simulator has none.
+    BelowBound,    ///< `value` is below `bound`.
+    Approximated,  ///< `value` is what it amounts to.
+    OneImage,      ///< One image shows the whole fan.
+    OutOfView      ///< `value` of `bound` at the first ping.
+};
+
+/** Something that is left out, with the numbers that allow it. */
+struct LeftOut {
+    Effect effect;
+    Reason reason;
+    double value = std::numeric_limits<double>::quiet_NaN();  ///< In the effect's unit, which the report tells.
+    double bound = std::numeric_limits<double>::quiet_NaN();
+};
+
+/** What is compiled and run for a sonar and a scene, decided once, without OpenGL: the renderer, both deposits, the
+ *  studies and what a user is told all read it. */
+struct RenderPlan {
+    SonarConfig config;  ///< With the quality that is in force.
+    bool casts_rays = false;
+    Features features;
+    std::vector<Pass> passes;
+    BinGrid grid;
+    std::vector<Beam> beams;
+    std::vector<Slab> slabs;  ///< Images of the fan; none with rays.
+    std::vector<LeftOut> left_out;
+
+    /** Other rows and columns per beam [1], and the images that go with them. */
+    void setQuality(int rows, int columns_per_beam);
+    /** What is left out of an effect, null where it is not. */
+    const LeftOut* leftOut(Effect effect) const;
+};
+
+RenderPlan makeRenderPlan(const SonarConfig& config, const types::Geometry& geometry);
+
+/** Gradient of the speed of sound with depth that refraction is judged by, a strong thermocline [1/s]. */
+constexpr double speed_gradient = 0.1;
+
+/** How far a ray is bent at the far edge by speed_gradient, and what of it can be ignored [m] (ACOUSTICS.md 12). */
+struct Bending {
+    double offset, tolerated;
+};
+Bending bending(const SonarConfig& config, const BinGrid& grid);
+
+}  // namespace insonify::sonar
+
+template <>
+struct insonify::types::EnumNames<insonify::sonar::Feature> {
+    static constexpr std::string_view names[] = {"physical", "cerqueira2017", "absorption", "published",
+                                                 "conical",  "normal_map",    "nearest",    "jitter"};
+};
+template <>
+struct insonify::types::EnumNames<insonify::sonar::Pass> {
+    static constexpr std::string_view names[] = {"cull", "surface", "rays", "deposit", "beams"};
+};
