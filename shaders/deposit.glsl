@@ -5,15 +5,13 @@
 //     uint bin_count; double bin_width [m], attenuation (amplitude, one way, cerqueira2017) [Np/m]
 
 #ifdef HAVE_CERQUEIRA2017
-// Absorption over the range there and back.
-#ifdef HAVE_ABSORPTION
-double transmitted(double range) { return double(exp(float(-2.0 * attenuation * range))); }
-#else
-double transmitted(double) { return 1.0; }
+// S of cerqueira2017; x = reflectivity cos(theta), attenuated.
+double cerqueiraEcho(double x) { return 1.0 / (1.0 + double(exp(float(12.0 - 18.0 * x)))); }
 #endif
 
-// S of cerqueira2017 at x = reflectivity cos(theta), which absorption lessens first.
-double cerqueiraEcho(double x, double range) { return 1.0 / (1.0 + double(exp(float(12.0 - 18.0 * (x * transmitted(range)))))); }
+#ifdef HAVE_ABSORPTION
+// What absorption leaves of a cosine, there and back.
+double attenuated(double cosine, double range) { return cosine * double(exp(float(-2.0 * attenuation * range))); }
 #endif
 
 // What the includer's addToBin is told of the part of a cell between two inverse ranges: `amount` is, for `physical`, the
@@ -22,7 +20,11 @@ double cerqueiraEcho(double x, double range) { return 1.0 / (1.0 + double(exp(fl
 void depositPart(uint beam, uint bin, double share, double above, double below, double strength_range) {
 #ifdef HAVE_CERQUEIRA2017
     double inverse_range = 0.5 * (above + below);
-    addToBin(beam, bin, share * cerqueiraEcho(min(strength_range * inverse_range, 1.0), 1.0 / inverse_range), share);
+    double cosine = min(strength_range * inverse_range, 1.0);
+#ifdef HAVE_ABSORPTION
+    cosine = attenuated(cosine, 1.0 / inverse_range);
+#endif
+    addToBin(beam, bin, share * cerqueiraEcho(cosine), share);
 #endif
 #ifdef HAVE_PHYSICAL
     double centre = (double(bin) + 0.5) * bin_width;
@@ -38,7 +40,10 @@ void depositCell(Footprint cell, uint beam, double strength_range) {
     bool heard = range > 0.0 && range <= double(bin_count - 1u) * bin_width;
     uint bin = heard ? uint(range / bin_width) : 0u;
     double cosine = heard ? min(strength_range * cell.pixel, 1.0) : 0.0;
-    addToBin(beam, bin, cerqueiraEcho(cosine, range), 1.0);
+#ifdef HAVE_ABSORPTION
+    cosine = attenuated(cosine, range);
+#endif
+    addToBin(beam, bin, cerqueiraEcho(cosine), 1.0);
 }
 #elif defined(HAVE_NEAREST)
 // All of a cell in one bin, that of a point in its pixel.

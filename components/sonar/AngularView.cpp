@@ -1,5 +1,6 @@
 #include "components/sonar/AngularView.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include "types/Angle.hpp"
@@ -8,14 +9,35 @@ namespace insonify::sonar {
 
 glm::dvec3 AngularView::direction(int column, int row) const {
     const size_t middle = at(column) + 1;
-    const Direction& up = elevations[static_cast<size_t>(2 * row + 1)];
+    const Elevation& up = elevations[static_cast<size_t>(2 * row + 1)];
     Direction around = azimuths[middle];
     if (conical) {
-        const double azimuth = coneAzimuth(bearings[middle], std::atan2(up.sine, up.cosine));
+        const double azimuth = coneAzimuth(bearings[middle], up.angle);
         around = {std::cos(azimuth), std::sin(azimuth)};
     }
     return {up.cosine * around.cosine, up.cosine * around.sine, up.sine};
 }
+
+namespace {
+
+/** Rows as those of an image, equal in tan(elevation), which has more of them where a floor is far; equal in elevation
+ *  where that would leave too few to the middle. */
+std::vector<AngularView::Elevation> elevationsOf(const SonarConfig& config, int rows) {
+    constexpr double tallest_image = types::radians(120);
+    const double half = types::radians(config.beam_height_deg) / 2;
+    const auto edge = [&](int row) {
+        const double share = 2.0 * row / rows - 1;
+        return 2 * half <= tallest_image ? std::atan(std::tan(half) * share) : half * share;
+    };
+    std::vector<AngularView::Elevation> all;
+    for (int step = 0; step <= 2 * rows; ++step) {
+        const double angle = step % 2 == 0 ? edge(step / 2) : 0.5 * (edge(step / 2) + edge(step / 2 + 1));
+        all.push_back({std::cos(angle), std::sin(angle), angle});
+    }
+    return all;
+}
+
+}  // namespace
 
 AngularView makeAngularView(const SonarConfig& config, const std::vector<Beam>& beams) {
     AngularView view;
@@ -24,12 +46,10 @@ AngularView makeAngularView(const SonarConfig& config, const std::vector<Beam>& 
     view.rows = config.rows();
     view.conical = config.beam_geometry == BeamGeometry::Conical;
     view.column_width = (beams.front().high - beams.front().low) / view.beam_columns;
-    const double height = types::radians(config.beam_height_deg);
-    view.row_height = height / view.rows;
-    for (int half = 0; half <= 2 * view.rows; ++half) {
-        const double elevation = height * (0.5 * half / view.rows - 0.5);
-        view.elevations.push_back({std::cos(elevation), std::sin(elevation)});
-    }
+    view.elevations = elevationsOf(config, view.rows);
+    view.row_height = 0;
+    for (size_t row = 0; row < static_cast<size_t>(view.rows); ++row)
+        view.row_height = std::max(view.row_height, view.height(row, 1));
     for (const Beam& beam : beams)
         for (int half = 0; half <= 2 * view.beam_columns; ++half) {
             const double bearing = beam.low + (beam.high - beam.low) * (0.5 * half / view.beam_columns);

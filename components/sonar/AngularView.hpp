@@ -14,15 +14,19 @@ struct AngularView {
         double cosine, sine;
     };
 
+    struct Elevation : Direction {
+        double angle;  ///< [rad]
+    };
+
     int beams = 0;
     int beam_columns = 0;  ///< Of each beam [1].
     int rows = 0;          ///< From below upwards [1].
     bool conical = false;
     double column_width = 0;   ///< Of the first beam's columns, in bearing [rad].
-    double row_height = 0;     ///< [rad]
+    double row_height = 0;     ///< Of the tallest row [rad].
     std::vector<int> beam_of;  ///< Of each column, beam after beam [1].
     /** At the lower edge, the middle and the upper edge of each row: row i has 2 i, 2 i + 1 and 2 i + 2. */
-    std::vector<Direction> elevations;
+    std::vector<Elevation> elevations;
     /** The same of each beam's columns, from at(column) on: bearings [rad]. */
     std::vector<double> bearings;
     std::vector<Direction> azimuths;  ///< Of the bearings, those of planar beams.
@@ -32,6 +36,10 @@ struct AngularView {
     size_t at(int column) const { return static_cast<size_t>(2 * column + beam_of[static_cast<size_t>(column)]); }
     /** Unit, sonar axes, of the middle of a cell [1]. */
     glm::dvec3 direction(int column, int row) const;
+    /** Of `count` rows from `row` on [rad]. */
+    double height(size_t row, size_t count) const {
+        return elevations[2 * (row + count)].angle - elevations[2 * row].angle;
+    }
     /** Solid angle of one cell of the first beam at elevation 0 [sr]. */
     double cell() const { return column_width * row_height; }
 };

@@ -44,7 +44,7 @@ struct EchoRules {
 /** Without the view, which goes with the quality. */
 EchoRules makeEchoRules(const RenderPlan& plan);
 
-/** Samples of one triangle that may become one cell: so that its ranges stay within a twentieth of a bin of the
+/** Samples of one triangle that may become one cell: so that its ranges stay within a fiftieth of a bin of the
  * plane's.
  */
 int mostMerged(const AngularView& view, const BinGrid& bins);

@@ -49,10 +49,14 @@ INSONIFY_VECTORISED void cover(const Cells& cells, int count, double near_edge, 
         const bool echo = abs(facing) > 1e-4 * normal && distance * facing > 0.0;
         const double per_distance = echo ? 1.0 / distance : 0.0;
         const double inverse_range = facing * per_distance;
+        // 1/r is a sinusoid of either angle, so its mean over the cell is a little less than at its middle.
+        const double sag = (cells.width[i] * cells.width[i] * ahead * cells.cos_el[i] * per_distance +
+                            cells.height[i] * cells.height[i] * inverse_range) *
+                           (1.0 / 24.0);
         const double slope_a = aside * cells.cos_el[i] * per_distance;
         const double slope_e = (n_z * cells.cos_el[i] - ahead * cells.sin_el[i]) * per_distance;
         const double perpendicular = echo ? abs(distance) / normal : 0.0;
-        const Footprint cell = trapezoidFootprint(inverse_range, inverse_range, abs(slope_a) * cells.width[i],
+        const Footprint cell = trapezoidFootprint(inverse_range, inverse_range - sag, abs(slope_a) * cells.width[i],
                                                   abs(slope_e + slope_a * cells.lean[i]) * cells.height[i],
                                                   echo ? 1.0 / perpendicular : 0.0, cells.near_limit[i],
                                                   cells.far_limit[i], near_edge, far_edge, echo ? cells.size[i] : 0.0);
@@ -211,12 +215,12 @@ private:
         const auto across = static_cast<size_t>(shape_.size[merged].columns);
         const auto up = static_cast<size_t>(shape_.size[merged].rows);
         cells_.beam[i] = view.beam_of[static_cast<size_t>(column)];
-        const AngularView::Direction& elevation = view.elevations[low + up];
+        const AngularView::Elevation& elevation = view.elevations[low + up];
         cells_.cos_el[i] = elevation.cosine;
         cells_.sin_el[i] = elevation.sine;
-        cells_.height[i] = static_cast<double>(up) * view.row_height;
+        cells_.height[i] = view.height(low / 2, up);
         if (conical) {
-            const double at = std::atan2(elevation.sine, elevation.cosine);
+            const double at = elevation.angle;
             const double azimuth = coneAzimuth(view.bearings[left + across], at);
             cells_.cos_az[i] = std::cos(azimuth);
             cells_.sin_az[i] = std::sin(azimuth);

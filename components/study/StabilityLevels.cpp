@@ -217,7 +217,7 @@ double energyOf(const Probe& heard, uint32_t first, uint32_t last) {
 
 Outcome plateBesideBottom() {
     SonarConfig config = fan(40, 40, 1, 16);
-    setSamples(config, 256, 64);
+    setSamples(config, 512, 512);  // the plate ends within a cell
     const Probe heard = probe(config, lookingAt(plateOverBottom()));
     // The bottom from the aperture's edge on is seen below the plate, but where the plate hides it.
     const Truth bottom = planeTruth({0, 0, -1}, 5);

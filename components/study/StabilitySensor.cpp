@@ -41,8 +41,8 @@ Outcome wideFan(double fov_deg) {
     const int beams = 360;
     const double width = fov_deg / beams;
     sonar::SonarConfig wide = fan(fov_deg, 40, beams, 25), narrow = fan(10 * width, 40, 10, 25);
-    setSamples(wide, 2048, 4);
-    setSamples(narrow, 2048, 4);
+    setSamples(wide, 2048, 8);
+    setSamples(narrow, 2048, 8);
     const Probe all = probe(wide, lookingAt(room()));
     double worst = 0;
     for (const int first : {0, 40, 100, 175, 250, 310, 350}) {  // none has a corner of the room
@@ -84,11 +84,11 @@ Outcome refused(const std::string& got, const Change&... change) {
 Outcome badAngles() {
     using Config = sonar::SonarConfig;
     return refused<Config>(
-        "field_of_view_deg 0, -10, 361, NaN; beam_height_deg 0, 90, 180, NaN: each refused",
+        "field_of_view_deg 0, -10, 361, NaN; beam_height_deg 0, -10, 181, NaN: each refused",
         [](Config& c) { c.field_of_view_deg = 0; }, [](Config& c) { c.field_of_view_deg = -10; },
         [](Config& c) { c.field_of_view_deg = 361; }, [](Config& c) { c.field_of_view_deg = NAN; },
-        [](Config& c) { c.beam_height_deg = 0; }, [](Config& c) { c.beam_height_deg = 90; },
-        [](Config& c) { c.beam_height_deg = 180; }, [](Config& c) { c.beam_height_deg = NAN; });
+        [](Config& c) { c.beam_height_deg = 0; }, [](Config& c) { c.beam_height_deg = -10; },
+        [](Config& c) { c.beam_height_deg = 181; }, [](Config& c) { c.beam_height_deg = NAN; });
 }
 
 /** A fan of `beams` before a wall. */
@@ -154,7 +154,7 @@ std::vector<StabilityCase> sensorCases() {
             {21, fmt::format("Seams of a fan of {} deg", fov), "none above 1e-3", [fov] { return seams(fov); }});
     cases.insert(
         cases.end(),
-        {{22, "Field of view 0 or negative, aperture of 90 deg and more", "refused", badAngles},
+        {{22, "Field of view 0 or negative, aperture beyond 180 deg", "refused", badAngles},
          {23, "One beam", "to 1e-3 of the closed form", [] { return beamsBeforeAWall(1, 20); }},
          {23, "4096 beams", "to 1e-3 of the closed form", [] { return beamsBeforeAWall(4096, 120); }},
          {23, "More beams than columns", "no beam empty: each to 1e-3 of the closed form", moreBeamsThanColumns},

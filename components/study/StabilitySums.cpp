@@ -185,6 +185,7 @@ Outcome largeImage() {
 Outcome impossibleImage() {
     SonarConfig config = fan(120, 20, 4096, 12);
     setSamples(config, 16384, 256);
+    config.visibility = sonar::Visibility::Gl;
     std::string message;
     try {
         probe(config, lookingAt(sceneOf({facingWall(10)})));

@@ -23,10 +23,17 @@ Outcome runWith(const WallFolder& folder, std::vector<std::string> variables, st
 
 TEST(DeviceTest, WithoutAnyOpenGlTheMessageSaysWhatToInstallAndSet) {
     const WallFolder folder;
-    const Outcome outcome = runWith(folder, {"__EGL_VENDOR_LIBRARY_FILENAMES=/nonexistent"});
+    const Outcome outcome =
+        runWith(folder, {"__EGL_VENDOR_LIBRARY_FILENAMES=/nonexistent"}, {"--set", "sonar.visibility=gl"});
     EXPECT_EQ(outcome.code, 1);
     EXPECT_THAT(outcome.err, AllOf(HasSubstr("sonar: "), HasSubstr("no OpenGL 4.5 core context"), HasSubstr("install"),
                                    HasSubstr("libegl-mesa0"), HasSubstr("INSONIFY_EGL_DEVICE")));
+}
+
+TEST(DeviceTest, WithoutAnyOpenGlRaysNeedNone) {
+    const WallFolder folder;
+    const Outcome outcome = runWith(folder, {"__EGL_VENDOR_LIBRARY_FILENAMES=/nonexistent"});
+    EXPECT_EQ(outcome.code, 0) << outcome.err;
 }
 
 TEST(DeviceTest, AnUnknownDeviceIsNamedWithWhatItMayBe) {

@@ -44,7 +44,11 @@ TEST(ProgramTest, WhatTheShadersHaveCompilesInEveryCombination) {
     using Defines = std::vector<std::string>;
     for (const Defines& defines : {Defines{}, Defines{"HAVE_NORMAL_MAP"}})
         EXPECT_GT(Program::raster("surface.vert.glsl", "surface.frag.glsl", defines).id(), 0u);
-    for (const Defines& defines : {Defines{}, Defines{"HAVE_CERQUEIRA2017"}}) {
+    for (const Defines& defines :
+         {Defines{"HAVE_PHYSICAL"}, Defines{"HAVE_PHYSICAL", "HAVE_CONICAL", "HAVE_NORMAL_MAP"},
+          Defines{"HAVE_PHYSICAL", "HAVE_NEAREST", "HAVE_JITTER"}, Defines{"HAVE_CERQUEIRA2017"},
+          Defines{"HAVE_CERQUEIRA2017", "HAVE_ABSORPTION"},
+          Defines{"HAVE_CERQUEIRA2017", "HAVE_ABSORPTION", "HAVE_PUBLISHED"}}) {
         const Program program = Program::compute("deposit.comp.glsl", defines);
         program.use();
         GLint used = 0;

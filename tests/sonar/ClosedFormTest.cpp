@@ -128,9 +128,7 @@ TEST(ClosedFormTest, ShadowBehindAScreenEndsWhereTheTopRayMeetsTheBottom) {
     // A screen of height h stands on the bottom at horizontal distance R; the sonar is at height H.
     const double height = 5, screen = 2, ground_range = 15;
     const auto geometry = test::sceneOf({test::ground(-5), test::quad({15, -50, -5}, {0, 100, 0}, {0, 0, 2})});
-    SonarConfig config = sonarOf(1, 60, 1, 0.1, 400);
-    config.quality.rows = 1024;  // the echo of a row reaches half a row into the shadow
-    const auto ping = pingOf(config, test::snapshotOf(geometry));
+    const auto ping = pingOf(sonarOf(1, 60, 1, 0.1, 400), test::snapshotOf(geometry));
     const auto first_dark = static_cast<size_t>(std::hypot(ground_range, height) / 0.1) + 2;
     size_t end = first_dark;
     while (end < 400 && ping.bins[end] == 0) ++end;
