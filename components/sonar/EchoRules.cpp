@@ -37,7 +37,7 @@ EchoRules makeEchoRules(const RenderPlan& plan) {
 
 int mostMerged(const AngularView& view, const BinGrid& bins) {
     // Over an angle d, 1/r of a plane n.p = D leaves the straight line between its ends by d d / (8 D) at most: so much
-    // is a twentieth of a bin at the far edge, on planes that graze at 15 deg.
+    // is a twentieth of a bin at the far edge, on planes that graze at 15 deg (ACOUSTICS.md 4.4).
     const double angle = std::sqrt(8 * 0.05 * bins.bin_width / bins.range_max / 4);
     const double cell = std::max(view.column_width, view.row_height);
     int most = 1;

@@ -44,8 +44,8 @@ struct EchoRules {
 /** Without the view, which goes with the quality. */
 EchoRules makeEchoRules(const RenderPlan& plan);
 
-/** Samples of one triangle that may become one cell: so that its ranges stay within a twentieth of a bin of the
- * plane's.
+/** Samples of one triangle that may become one cell: 1, 4 or 16, so that the cell's ranges stay within a twentieth of a
+ *  bin of the plane's (ACOUSTICS.md 4.4).
  */
 int mostMerged(const AngularView& view, const BinGrid& bins);
 

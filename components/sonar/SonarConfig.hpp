@@ -127,7 +127,7 @@ struct SonarConfig {
     std::optional<types::NotBuiltYet> beam_pattern, pulse, volume, multipath;
     std::optional<types::MovedTo> tvg, gain, output, source_level_db;
 
-    /** Image rows and columns per beam, until others are chosen for an error or a time [1]. */
+    /** Rows of samples and columns per beam, until others are chosen for an error or a time [1]. */
     int rows() const { return quality.rows.value_or(256); }
     int columnsPerBeam() const { return quality.columns_per_beam.value_or(2); }
     /** Error to choose the quality for, none when it is given or there is a budget. `published` has no use for one. */
