@@ -32,15 +32,15 @@ struct Plan {
 
     template <class Self, class V>
     static void describe(Self& self, V& visit) {
-        visit(Field{"features", "", "compiled into the shaders"}, self.features);
+        visit(Field{"features", "", "compiled into what renders"}, self.features);
         visit(Field{"passes", "", "run for each ping, in order"}, self.passes);
         visit(Field{"omitted", "", "what is left out, and why"}, self.omitted);
         visit(Field{"notices", "", "warnings and choices"}, self.notices);
-        visit(Field{"rows", "1", "image rows over the elevation aperture"}, self.rows);
-        visit(Field{"columns_per_beam", "1", "image columns"}, self.columns_per_beam);
-        visit(Field{"slabs", "1", "perspective images that make up the fan"}, self.slabs);
+        visit(Field{"rows", "1", "rows of samples over the elevation aperture"}, self.rows);
+        visit(Field{"columns_per_beam", "1", "columns of samples"}, self.columns_per_beam);
+        visit(Field{"slabs", "1", "perspective images that make up the fan; 0: rays"}, self.slabs);
         visit(Field{"predicted_error", "1", "rel_l2_tvg; NaN: not predicted"}, self.predicted_error);
-        visit(Field{"device", "", "what draws, with its driver"}, self.device);
+        visit(Field{"device", "", "what renders, with its driver"}, self.device);
     }
 };
 
