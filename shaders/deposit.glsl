@@ -1,5 +1,5 @@
 // Shared by C++ and GLSL: one cell's echo, spread over the bins that its footprint covers.
-// The includer defines, before this file:
+// The includer has footprint.glsl and trapezoid.glsl before this file, and defines:
 //     double binEdge(uint k);                      1 / range of edge k [1/m]; edge 0 is the near blanking, edge n the far end
 //     void addToBin(uint beam, uint bin, double amount, double weight);
 //     uint bin_count; double bin_width [m], attenuation (amplitude, one way, cerqueira2017) [Np/m]

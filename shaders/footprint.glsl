@@ -1,5 +1,5 @@
-// Shared by C++ and GLSL, so that both deposits do the same arithmetic: which inverse ranges a cell of the picture covers.
-// Over a plane 1/r is linear in the picture but for the slow |q|, so a cell covers a trapezoid of inverse ranges
+// Shared by C++ and GLSL, so that all deposits do the same arithmetic: which inverse ranges a cell covers, of a picture or of
+// rays. Over a plane 1/r is nearly linear in either (ACOUSTICS.md 4), so a cell covers a trapezoid of inverse ranges
 // (box times box), exact to second order even where one pixel spans hundreds of bins.
 
 // A cell's trapezoid, in inverse range [1/m]: widths of its two boxes, and what of it is in reach.

@@ -20,27 +20,27 @@ struct Omission {
 
 /** What a sonar compiles and runs for its scene, decided once; the answer of `insonify plan`. */
 struct Plan {
-    std::vector<std::string> features;  ///< Compiled into the shaders.
+    std::vector<std::string> features;  ///< Compiled into what renders.
     std::vector<std::string> passes;    ///< Run for each ping, in order.
     std::vector<Omission> omitted;
     std::vector<std::string> notices;  ///< Warnings and choices that a user should know of, a sentence each.
-    int rows = 0;                      ///< Image rows over the elevation aperture [1].
+    int rows = 0;                      ///< Of samples, over the elevation aperture [1].
     int columns_per_beam = 0;          ///< [1]
-    int slabs = 0;                     ///< Perspective images that make up the fan [1].
+    int slabs = 0;                     ///< Perspective images that make up the fan; 0: rays [1].
     double predicted_error = 0;        ///< rel_l2_tvg; NaN: not predicted [1].
-    std::string device;                ///< What draws, with its driver; empty: not known before the first ping.
+    std::string device;                ///< What renders, with its driver; empty: not known before the first ping.
 
     template <class Self, class V>
     static void describe(Self& self, V& visit) {
-        visit(Field{"features", "", "compiled into the shaders"}, self.features);
+        visit(Field{"features", "", "compiled into what renders"}, self.features);
         visit(Field{"passes", "", "run for each ping, in order"}, self.passes);
         visit(Field{"omitted", "", "what is left out, and why"}, self.omitted);
         visit(Field{"notices", "", "warnings and choices"}, self.notices);
-        visit(Field{"rows", "1", "image rows over the elevation aperture"}, self.rows);
-        visit(Field{"columns_per_beam", "1", "image columns"}, self.columns_per_beam);
-        visit(Field{"slabs", "1", "perspective images that make up the fan"}, self.slabs);
+        visit(Field{"rows", "1", "rows of samples over the elevation aperture"}, self.rows);
+        visit(Field{"columns_per_beam", "1", "columns of samples"}, self.columns_per_beam);
+        visit(Field{"slabs", "1", "perspective images that make up the fan; 0: rays"}, self.slabs);
         visit(Field{"predicted_error", "1", "rel_l2_tvg; NaN: not predicted"}, self.predicted_error);
-        visit(Field{"device", "", "what draws, with its driver"}, self.device);
+        visit(Field{"device", "", "what renders, with its driver"}, self.device);
     }
 };
 

@@ -110,7 +110,8 @@ double Receiver::gainDb(const types::Sonar& ping, double r) const {
 }
 
 void Receiver::makeTables(const types::Sonar& ping) {
-    const Axis axis{ping.bin_count, ping.bin_duration.microseconds, ping.speed_of_sound, ping.beam_width.rad};
+    const Axis axis{ping.bin_count, ping.bin_duration.microseconds, ping.speed_of_sound,
+                    std::isnan(ping.beam_width.rad) ? -1 : ping.beam_width.rad};  // an unknown one is itself
     if (axis == axis_) return;
     axis_ = axis;
     range_max_ = ping.binStart(ping.bin_count);

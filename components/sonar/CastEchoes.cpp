@@ -31,7 +31,7 @@ struct Part {
 /** All parts of the same beams. */
 struct Strip {
     int parts = 0;
-    std::atomic<int> left = 0;
+    int left = 0;                ///< Parts that are not gathered yet in this ping.
     std::vector<uint64_t> sums;  ///< Of several parts.
     std::mutex mutex;
 };
@@ -219,8 +219,6 @@ void CastEchoes::workOn(const Part& part, Worker& worker, types::Sonar& ping) {
 }
 
 void CastEchoes::work(Worker& worker, types::Sonar& ping) {
-    worker.heard = false;
-    for (Stage& stage : worker.stages) stage.seconds = 0;
     worker.last = Clock::now();
     for (size_t i = next_++; i < parts_.size(); i = next_++) workOn(parts_[i], worker, ping);
 }
@@ -231,6 +229,10 @@ void CastEchoes::render(const types::Snapshot& snapshot, types::Sonar& ping, Sta
     place(snapshot);
     stages[CullStage].seconds += std::chrono::duration<double>(Clock::now() - own.last).count();
     next_ = 0;
+    for (Worker& worker : workers_) {
+        worker.heard = false;
+        for (Stage& stage : worker.stages) stage.seconds = 0;
+    }
     for (Strip& strip : strips_) {
         strip.left = strip.parts;
         std::fill(strip.sums.begin(), strip.sums.end(), 0);
@@ -239,9 +241,9 @@ void CastEchoes::render(const types::Snapshot& snapshot, types::Sonar& ping, Sta
     if (alone)
         work(own, ping);
     else
-        threads_.run([&](int part, int) { work(workers_[static_cast<size_t>(part)], ping); });
+        threads_.share([&](int part, int) { work(workers_[static_cast<size_t>(part)], ping); });
     heard_ = false;
-    for (const Worker& worker : std::span(workers_).first(alone ? 1 : workers_.size())) {
+    for (const Worker& worker : workers_) {
         for (size_t i = 0; i < stages.size(); ++i)
             stages[i].seconds += worker.stages[i].seconds / static_cast<double>(alone ? 1 : workers_.size());
         heard_ = heard_ || worker.heard;

@@ -36,9 +36,9 @@ EchoRules makeEchoRules(const RenderPlan& plan) {
 }
 
 int mostMerged(const AngularView& view, const BinGrid& bins) {
-    // Over an angle d, 1/r of a plane n.p = D leaves the straight line between its ends by d d / (8 D) at most: so much is
-    // a fiftieth of a bin at the far edge, on planes that graze at 15 deg. Energies are off by d d / 24 of themselves,
-    // however long the bins are.
+    // Over an angle d, 1/r of a plane n.p = D leaves the straight line between its ends by d d / (8 D) at most: so much
+    // is a fiftieth of a bin at the far edge, on planes that graze at 15 deg. Energies are off by d d / 24 of
+    // themselves, however long the bins are.
     constexpr double widest = 0.0085;  // [rad]
     const double angle = std::min(widest, std::sqrt(8 * 0.02 * bins.bin_width / bins.range_max / 4));
     const double cell = std::max(view.column_width, view.row_height);

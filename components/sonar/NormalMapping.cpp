@@ -17,6 +17,7 @@ struct Neighbours {
     float share;
 };
 Neighbours neighbours(float coordinate, int size, bool repeats) {
+    if (!(std::abs(coordinate) < 1e6f)) coordinate = 0;  // NaN and what is as good as lost
     const auto texels = static_cast<float>(size);
     if (repeats) coordinate -= std::floor(coordinate);
     const float at = coordinate * texels - 0.5f, low = std::floor(at);
@@ -98,7 +99,7 @@ float NormalMapping::cosine(const ObjectRecord& placed, const Place& place) cons
     const float facing = -glm::dot(n, place.direction);
     const float covered =
         place.extent / std::max(std::abs(facing), 0.01f) * texelsPerMetre(placed, mesh, corners, map.levels.front());
-    glm::vec3 bent = texel(map, between(mesh.uvs), std::log2(std::max(covered, 1.0f)));
+    glm::vec3 bent = texel(map, between(mesh.uvs), covered > 1 ? std::log2(covered) : 0.0f);
     bent.x *= material.normal_scale;
     bent.y *= material.normal_scale;
     const glm::vec3 normal = glm::normalize(t * bent.x + glm::cross(n, t) * (along.w * bent.y) + n * bent.z);

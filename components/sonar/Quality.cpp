@@ -14,6 +14,7 @@ constexpr double step_of_samples = 4, worth_a_trade = 0.85;
 /** Whether a device can draw so many columns per beam. */
 bool fits(SonarConfig config, int columns) {
     config.quality.columns_per_beam = columns;
+    if (config.castsRays()) return true;
     return makeSlabs(config, makeBeams(config)).front().columns <= most_image_size;
 }
 

@@ -2,17 +2,9 @@
 
 #include <stdexcept>
 #include <string>
+#include <utility>
 
 namespace insonify::sonar {
-namespace {
-
-void requireNoError(RTCDevice device) {
-    if (const RTCError error = rtcGetDeviceError(device); error != RTC_ERROR_NONE)
-        throw std::runtime_error("Embree cannot build the scene: error " + std::to_string(error));
-}
-
-}  // namespace
-
 std::vector<MaterialRun> materialRuns(const types::Mesh& mesh) {
     std::vector<MaterialRun> runs;
     for (const types::Cluster& cluster : mesh.clusters) {
@@ -25,8 +17,8 @@ std::vector<MaterialRun> materialRuns(const types::Mesh& mesh) {
 }
 
 SceneTrees::SceneTrees(const types::Geometry& geometry)
-    : geometry_(geometry), device_(rtcNewDevice(nullptr)), meshes_(geometry.meshes.size()) {
-    requireNoError(device_);
+    : geometry_(geometry), device_(rtcNewDevice("threads=1")), meshes_(geometry.meshes.size()) {
+    if (!device_) throw std::runtime_error("Embree has no device on this processor");
 }
 
 SceneTrees::~SceneTrees() {
@@ -53,7 +45,10 @@ void SceneTrees::clear() {
 
 void SceneTrees::commit() {
     rtcCommitScene(still_);
-    requireNoError(device_);
+    const RTCError error = rtcGetDeviceError(device_);
+    if (error == RTC_ERROR_NONE) return;
+    rtcReleaseScene(std::exchange(still_, nullptr));
+    throw std::runtime_error("Embree cannot build the scene: error " + std::to_string(error));
 }
 
 void SceneTrees::addRun(RTCScene scene, const types::Mesh& mesh, const MaterialRun& run,

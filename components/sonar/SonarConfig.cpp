@@ -15,6 +15,7 @@ namespace insonify::sonar {
 namespace {
 
 constexpr double tallest_image_deg = 150;
+constexpr int64_t most_ray_columns = int64_t{1} << 22;
 constexpr int64_t most_bins = int64_t{1} << 24;  // sums of 16 bytes: 256 MiB
 
 void checkPublished(const SonarConfig& config, types::Problems& problems) {
@@ -46,12 +47,37 @@ void checkVisibility(const SonarConfig& config, types::Problems& problems) {
         problems.push_back({"deposit", "is gpu with visibility: cpu; may be auto or cpu"});
 }
 
+int imageColumns(const SonarConfig& config) { return makeSlabs(config, makeBeams(config)).front().columns; }
+
+bool fitsImages(const SonarConfig& config) {
+    return config.beam_height_deg <= tallest_image_deg && imageColumns(config) <= most_image_size;
+}
+
+void checkRays(const SonarConfig& config, types::Problems& problems) {
+    const int64_t columns = int64_t{config.beams()} * config.columnsPerBeam();
+    if (columns > most_ray_columns)
+        problems.push_back({"quality.columns_per_beam",
+                            fmt::format("is {}, with {} beams {} columns; may be {}", config.columnsPerBeam(),
+                                        config.beams(), columns, most_ray_columns)});
+}
+
+/** A straight array hears nothing behind abeam that it does not hear ahead. */
+void checkCones(const SonarConfig& config, types::Problems& problems) {
+    for (int k = 0; k < config.beams(); ++k)
+        if (std::abs(config.bearingDeg(k)) + config.beamWidthDeg() / 2 > 90 * (1 + 1e-9))
+            return problems.push_back(
+                {"beam_geometry",
+                 fmt::format("is conical, with a beam of {:g} deg about {:g} deg; a straight array sees "
+                             "-90 to 90 deg",
+                             config.beamWidthDeg(), config.bearingDeg(k))});
+}
+
 void checkImages(const SonarConfig& config, types::Problems& problems) {
     if (config.beam_height_deg > tallest_image_deg)
         return problems.push_back(
             {"beam_height_deg", fmt::format("is {:g} deg; an image shows {:g}, rays (visibility: cpu) 180",
                                             config.beam_height_deg, tallest_image_deg)});
-    const int columns = makeSlabs(config, makeBeams(config)).front().columns;
+    const int columns = imageColumns(config);
     if (columns > most_image_size)
         problems.push_back(
             {"quality.columns_per_beam",
@@ -97,6 +123,7 @@ std::optional<double> SonarConfig::targetError() const {
 bool SonarConfig::castsRays() const {
     if (visibility != Visibility::Auto) return visibility == Visibility::Cpu;
     if (!haveRays() || needsImages() || deposit == Deposit::Gpu) return false;
+    if (!fitsImages(*this)) return true;
     return !gpu::EglContext::isAskedFor(device) && !gpu::EglContext::hasCard();
 }
 
@@ -120,6 +147,8 @@ void SonarConfig::check(types::Problems& problems) const {
                                                      beams(), int64_t{beams()} * bin_count, most_bins)});
     if (beam_geometry == BeamGeometry::Conical && coverageDeg() > 180)
         problems.push_back({"beam_geometry", "is conical; a straight array sees at most 180 deg of azimuth"});
+    else if (beam_geometry == BeamGeometry::Conical)
+        checkCones(*this, problems);
     if (published && !bearings_deg.empty())
         problems.push_back({"bearings_deg", "is given; published: true has a regular fan"});
     checkBeam(problems);
@@ -161,13 +190,15 @@ void SonarConfig::checkBeam(types::Problems& problems) const {
         problems.push_back({"range_min", fmt::format("is {} m; must be below range, {} m", range_min, range)});
     if (absorption && absorption->frequency_khz && !water)
         problems.push_back({"absorption.frequency_khz", "is given without water; a law needs the water block"});
-    checkDevice(device, problems);
     if (beam_width_deg > 120)
         problems.push_back({"beam_width_deg", fmt::format("is {:g} deg; one beam may have 120", *beam_width_deg)});
     if (published) checkPublished(*this, problems);
     checkRangeReached(*this, problems);
     checkVisibility(*this, problems);
-    if (problems.empty() && !castsRays()) checkImages(*this, problems);
+    if (!problems.empty()) return;
+    if (castsRays()) return checkRays(*this, problems);
+    checkDevice(device, problems);
+    checkImages(*this, problems);
 }
 
 }  // namespace insonify::sonar

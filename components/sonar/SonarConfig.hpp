@@ -67,8 +67,8 @@ struct QualityConfig {
     template <class Self, class V>
     static void describe(Self& self, V& visit) {
         using types::Field;
-        visit(Field{"rows", "1", "image rows over beam_height_deg, else 256", 1, 16384}, self.rows);
-        visit(Field{"columns_per_beam", "1", "image columns per beam, else 2", 1, 4096}, self.columns_per_beam);
+        visit(Field{"rows", "1", "rows of samples over beam_height_deg, else 256", 1, 16384}, self.rows);
+        visit(Field{"columns_per_beam", "1", "columns of samples per beam, else 2", 1, 4096}, self.columns_per_beam);
         visit(Field{"target_error", "1", "instead: relative L2 error of energies times r^5; else 0.05", 1e-4, 1},
               self.target_error);
         visit(Field{"max_samples", "1",
@@ -127,7 +127,7 @@ struct SonarConfig {
     std::optional<types::NotBuiltYet> beam_pattern, pulse, volume, multipath;
     std::optional<types::MovedTo> tvg, gain, output, source_level_db;
 
-    /** Image rows and columns per beam, until others are chosen for an error or a time [1]. */
+    /** Rows of samples and columns per beam, until others are chosen for an error or a time [1]. */
     int rows() const { return quality.rows.value_or(256); }
     int columnsPerBeam() const { return quality.columns_per_beam.value_or(2); }
     /** Error to choose the quality for, none when it is given or there is a budget. `published` has no use for one. */
@@ -185,7 +185,8 @@ void SonarConfig::describeBeam(Self& self, V& visit) {
     visit(Field{"range_min", "m", "nearer echoes are blanked; what is there casts its shadow", 0, 1e5}, self.range_min);
     visit(Field{"bin_count", "1", "range bins per beam", 1, 65536}, self.bin_count);
     visit(Field{"beam_width_deg", "deg", "opening of one beam", 0.001, 360}, self.beam_width_deg);
-    visit(Field{"beam_height_deg", "deg", "total elevation aperture", 0.001, 180}, self.beam_height_deg);
+    visit(Field{"beam_height_deg", "deg", "total elevation aperture; drawn, at most 150", 0.001, 180},
+          self.beam_height_deg);
     visit(Field{"beam_geometry", "", "planar: az = a_k; conical: sin(az) cos(el) = sin(a_k)"}, self.beam_geometry);
     visit(Field{"speed_of_sound", "m/s", "absent: computed from water, else 1500", 1, 20000}, self.speed_of_sound);
     visit(Field{"water", "", "state of the water"}, self.water);
@@ -195,12 +196,14 @@ void SonarConfig::describeBeam(Self& self, V& visit) {
           self.range_rounding);
     visit(Field{"published", "", "cerqueira2017 to the letter, for comparison"}, self.published);
     visit(Field{"visibility", "",
-                "cpu: rays on the processor; gl: drawn; auto: gl where a card is or a device is asked for"},
+                "cpu: rays on the processor; gl: drawn; auto: gl where a card is or device, deposit or published ask "
+                "for it"},
           self.visibility);
     visit(Field{"device", "", "EGL device to draw on; absent: INSONIFY_EGL_DEVICE, else the first"}, self.device);
     visit(Field{"deposit", "", "where samples are summed into bins"}, self.deposit);
     visit(Field{"detail", "", "what simplified meshes may add to the error"}, self.detail);
-    visit(Field{"draw_all", "", "draws what is outside the fan and the range as well, to compare"}, self.draw_all);
+    visit(Field{"draw_all", "", "draws what is outside the fan and the range as well, to compare; rays meet it anyway"},
+          self.draw_all);
     visit(Field{"beam_pattern", "", "directivity (not built yet)"}, self.beam_pattern);
     visit(Field{"pulse", "", "range point-spread (not built yet)"}, self.pulse);
     visit(Field{"volume", "", "volume reverberation (not built yet)"}, self.volume);

@@ -12,13 +12,13 @@
 
 namespace insonify::sonar {
 
-/** Renders what a sonar hears of a geometry, noiseless. Make it, use it and destroy it on one thread, and destroy it
- * before another one is made there.
+/** Renders what a sonar hears of a geometry, noiseless, by rays or by drawing. Make it, use it and destroy it on one
+ *  thread; one that draws is to be destroyed before another one is made there.
  *
  *      SonarRenderer renderer(config, geometry);
  *      renderer.render(snapshot, ping);    // ping.bins[beam * bin_count + bin]
  *
- *  Throws gpu::GlError when there is no OpenGL 4.5 context, or when it is lost. */
+ *  Throws gpu::GlError where it draws without OpenGL 4.5 or loses it, std::runtime_error where Embree refuses. */
 class SonarRenderer {
 public:
     SonarRenderer(const SonarConfig& config, types::GeometryPtr geometry);
@@ -28,7 +28,7 @@ public:
      *  allocates nothing when `ping` has been filled by this renderer before. */
     void render(const types::Snapshot& snapshot, types::Sonar& ping);
 
-    /** Renders from now on with so many image rows and columns per beam [1]; allocates. */
+    /** Renders from now on with so many rows of samples and columns per beam [1]; allocates. */
     void setQuality(int rows, int columns_per_beam);
 
     /** Where the time of the last ping went. */
@@ -40,9 +40,9 @@ public:
     Features compiled() const;
     /** Whether the last ping has any echo. */
     bool heard() const;
-    /** What of the scene the last ping did not draw: objects, triangles, slabs; only those of which there is one. */
+    /** What of the scene the last ping did not draw: objects, triangles, slabs; nothing with rays. */
     std::vector<LeftOut> culled() const;
-    const std::string& device() const;  ///< Name of the OpenGL renderer in use.
+    const std::string& device() const;  ///< What renders, with its driver.
 
 private:
     struct Parts;

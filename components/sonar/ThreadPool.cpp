@@ -25,10 +25,15 @@ void ThreadPool::start(Call call, const void* context) {
         std::lock_guard lock(mutex_);
         call_ = call;
         context_ = context;
-        busy_ = static_cast<int>(workers_.size());
+        busy_ = waking_ = static_cast<int>(workers_.size());
         ++round_;
     }
     started_.notify_all();
+}
+
+void ThreadPool::dismiss() {
+    std::lock_guard lock(mutex_);
+    busy_ -= std::exchange(waking_, 0);
 }
 
 std::exception_ptr ThreadPool::wait() {
@@ -43,6 +48,8 @@ void ThreadPool::work(int part) {
         started_.wait(lock, [&] { return quit_ || round_ != seen; });
         if (quit_) return;
         seen = round_;
+        if (waking_ == 0) continue;
+        --waking_;
         lock.unlock();
         const std::exception_ptr fault = caught([&] { call_(context_, part, size()); });
         lock.lock();

@@ -27,6 +27,17 @@ public:
         if (fault || other) std::rethrow_exception(fault ? fault : other);
     }
 
+    /** Calls job(part, size()) on the caller and on those workers that begin before the caller is done, each with a
+     *  number of its own: for jobs that whoever is there shares out. Nobody is waited for that has not begun. */
+    template <class Job>
+    void share(const Job& job) {
+        start([](const void* context, int part, int parts) { (*static_cast<const Job*>(context))(part, parts); }, &job);
+        std::exception_ptr fault = caught([&] { job(0, size()); });
+        dismiss();
+        std::exception_ptr other = wait();
+        if (fault || other) std::rethrow_exception(fault ? fault : other);
+    }
+
 private:
     using Call = void (*)(const void*, int, int);
     template <class Work>
@@ -40,6 +51,8 @@ private:
     }
     void start(Call call, const void* context);
     std::exception_ptr wait();
+    /** Lets those go that have not begun. */
+    void dismiss();
     void work(int part);
 
     std::vector<std::thread> workers_;
@@ -48,7 +61,7 @@ private:
     Call call_ = nullptr;
     const void* context_ = nullptr;
     uint64_t round_ = 0;
-    int busy_ = 0;
+    int busy_ = 0, waking_ = 0;  ///< Workers that are not done; of them, those that have not begun.
     std::exception_ptr fault_;
     bool quit_ = false;
 };

@@ -25,7 +25,7 @@ struct CastTile {
 };
 
 /** Adds the echoes of tiles to the sums of beams, [beam - first_beam][bin][channel] in quanta, EchoRules::sumCount()
- *  numbers for each. Neighbouring samples of one triangle in one beam are one cell. Allocates nothing. */
+ *  numbers for each. Neighbouring samples of one triangle in one beam may be one cell. Allocates nothing. */
 void deposit(const EchoRules& rules, const TileShape& shape, const PlacedScene& scene, std::span<const CastTile> tiles,
              int first_beam, uint64_t* sums);
 

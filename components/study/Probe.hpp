@@ -29,7 +29,7 @@ Probe probe(const sonar::SonarConfig& config, const types::Snapshot& snapshot);
 
 /** A fan with bins of 0.1 m at 1000 m/s: whole microseconds. */
 sonar::SonarConfig fan(double fov_deg, double height_deg, int beams, double range);
-/** Sets the samples of a beam: image rows, and columns per beam. */
+/** Sets the samples of a beam: rows, and columns per beam. */
 void setSamples(sonar::SonarConfig& config, int rows, int columns_per_beam = 2);
 /** A sonar that looks ahead along x, turned by yaw and then pitched down [rad]. */
 types::Snapshot lookingAt(types::GeometryPtr geometry, glm::dvec3 position = {}, double yaw = 0, double pitch = 0);

@@ -94,6 +94,13 @@ SonarConfig fan() {
 
 TEST(AllocationTest, AForwardLookingSonarAllocatesNothingAfterItsFirstPings) { expectNoAllocation<SonarTask>(fan()); }
 
+TEST(AllocationTest, NorByRays) {
+    SonarConfig config = fan();
+    config.device.clear();
+    config.visibility = Visibility::Cpu;
+    expectNoAllocation<SonarTask>(config);
+}
+
 TEST(AllocationTest, NorDoesItWithTheDepositOnTheGraphicsDevice) {
     SonarConfig config = fan();
     config.deposit = Deposit::Gpu;

@@ -112,7 +112,7 @@ TEST(PlanTest, AbsorptionWithinABinIsBounded) {
     SonarConfig config = quietSonar();
     config.absorption.emplace().db_per_m = 0.02;  // beta = 0.00921 1/m, bins of 0.15 m
     types::Plan plan = makePlan(config, sceneOf({sand()}));
-    EXPECT_EQ(reason(plan, "absorption inside a bin"), "beta dR/2 = 6.9e-04 < 1e-3");
+    EXPECT_EQ(reason(plan, "absorption inside a bin"), "beta dR/2 = 6.9e-04 < 1e-03");
     EXPECT_THAT(plan.notices, IsEmpty());
     config.absorption->db_per_m = 0.2;
     plan = makePlan(config, sceneOf({sand()}));

@@ -71,6 +71,8 @@ TEST(SonarConfigTest, ValuesOutOfBoundsAreRefused) {
                              "{visibility: gl, beam_height_deg: 160}",
                              "{visibility: cpu, model: cerqueira2017, published: true}",
                              "{visibility: cpu, deposit: gpu}",
+                             "{beam_geometry: conical, bearings_deg: [0, 100], beam_width_deg: 2}",
+                             "{visibility: cpu, beam_count: 4096, quality: {columns_per_beam: 4096}}",
                              "visibility: sonar",
                              "speed_of_sound: 0",
                              "speed_of_sound: -1500",
