@@ -1,0 +1,78 @@
+"""Fans and a scanning beam before the scenes of scripts/make_bench_scene.py."""
+import subprocess
+
+from benchmarks.common import BENCH, ROOT
+from benchmarks.table import measure
+
+QUALITY = "quality: {rows: 256, columns_per_beam: 2}, "
+FAN = "beam_height_deg: 20, field_of_view_deg: 120, range: 30"
+SONARS = {
+    "FLS 256 x 500": f"{{type: sonar::SonarTask, properties: {{{QUALITY}beam_count: 256, bin_count: 500, {FAN}}}}}",
+    "FLS 512 x 1000": f"{{type: sonar::SonarTask, properties: {{{QUALITY}beam_count: 512, bin_count: 1000, {FAN}}}}}",
+    "MSIS beam, 500 bins": f"{{type: sonar::ScanningSonarTask, properties: {{{QUALITY}range: 30, bin_count: 500, "
+                           "beam_width_deg: 3, beam_height_deg: 35, head: {left_deg: 45, right_deg: -45}}}",
+}
+# Name of a scene: options of make_bench_scene.py.
+SCENES = {"80 k": ["--cells", "200"], "1 M in view": ["--cells", "1500", "--in-view"]}
+GROWTH = {"10 k": "71", "100 k": "224", "1 M": "707", "10 M": "2236"}
+
+
+def scene(options):
+    file = BENCH / ("bench" + "".join(options).replace("--", "_") + ".glb")
+    if not file.exists():
+        subprocess.run(["/usr/bin/python3", ROOT / "scripts/make_bench_scene.py", file, *options], check=True)
+    return file
+
+
+def seen(sonar, visibility):
+    return sonar.replace("properties: {", f"properties: {{visibility: {visibility}, ", 1)
+
+
+def unsaid(sonar):
+    """The sonar without a word on its quality."""
+    return sonar.replace(QUALITY, "")
+
+
+def deployment(sonar, file, schedule="lockstep", period=0.1):
+    return f"""schedule: {schedule}
+tasks:
+  vehicle:
+    type: pose::TrajectoryTask
+    activity: {{period: {period}}}
+    properties: {{waypoints: [{{time: 0, position: [0, 0, 0], roll_deg: 0, pitch_deg: 0, yaw_deg: 0}}]}}
+  scene: {{type: scene::SceneTask, properties: {{file: {file}, mount: {{position: [0, 0, 0], pitch_deg: 10}}}}}}
+  sonar: {sonar}
+  noise: {{type: noise::NoiseTask, properties: {{speckle: {{law: rayleigh}}}}}}
+  receiver: {{type: receiver::ReceiverTask, properties: {{tvg: {{log_coefficient: 40, db_per_m: 0.2, max_db: 110}}}}}}
+connections:
+  - {{from: vehicle.pose, to: scene.pose}}
+  - {{from: scene.snapshot, to: sonar.snapshot}}
+  - {{from: sonar.ping, to: noise.clean}}
+  - {{from: noise.noisy, to: receiver.intensity}}
+"""
+
+
+def measure_seen(found, name, sonar, file, options, beside_rays=True):
+    """Adds a result for each visibility."""
+    for visibility in options.visibility:
+        text = deployment(seen(sonar, visibility), file)
+        found[f"{name}, {visibility}"] = measure(text, options.pings, beside_rays)
+
+
+def measure_pings(options):
+    """Each sonar before each scene, and the fan of 256 beams where nothing is said on quality."""
+    found = {}
+    for name, scene_options in SCENES.items():
+        for sonar, text in SONARS.items():
+            measure_seen(found, f"{sonar}, {name}", text, scene(scene_options), options)
+    fan = unsaid(SONARS["FLS 256 x 500"])
+    measure_seen(found, "FLS 256 x 500, 80 k, quality unsaid", fan, scene(SCENES["80 k"]), options)
+    return found
+
+
+def measure_growth(options):
+    """The same floor of more and more triangles, half of it in view."""
+    found = {}
+    for name, count in GROWTH.items():
+        measure_seen(found, f"{name} triangles", SONARS["FLS 256 x 500"], scene(["--cells", count]), options, False)
+    return found

@@ -1,0 +1,39 @@
+"""Programs of tests/bench: the framework's ports and the logger."""
+import json
+import subprocess
+import tempfile
+
+from benchmarks.common import BENCH, ROOT, fail
+
+
+def measure_ports(_options):
+    file = BENCH / "framework.json"
+    file.unlink(missing_ok=True)
+    subprocess.run([ROOT / "build/bin/framework_bench", file], stdout=subprocess.DEVNULL)  # 1: a bound is missed
+    return json.loads(file.read_text())
+
+
+def show_ports(rows):
+    for row in rows:
+        bound = "" if row["at_most"] is None else f"  at most {row['at_most']:g}"
+        if row["at_most"] is not None and row["value"] > row["at_most"]:
+            bound += "  MISSED"
+        print(f"{row['name']:60}{row['value']:12.4g} {row['unit']}{bound}")
+
+
+def measure_logger(options):
+    """What logger_bench tells of pings of 512 x 1000 floats, 40 a second."""
+    with tempfile.TemporaryDirectory(dir=BENCH) as folder:
+        command = [ROOT / "build/bin/logger_bench", str(options.log_seconds), folder]
+        done = subprocess.run(command, stdout=subprocess.PIPE, text=True)
+    if not done.stdout:
+        fail("logger_bench", done.returncode)
+    return json.loads(done.stdout)
+
+
+def show_logger(logger):
+    print(f"logger, 512 x 1000 floats at 40 Hz: {logger['pings']} pings written, {logger['in_log']} in the log, "
+          f"{logger['lost']} lost, {logger['megabytes_per_s']:.1f} MB/s")
+    for name, unit in [("write_us", "us"), ("interval_ms", "ms")]:
+        times = logger[name]
+        print(f"  {name.split('_')[0]:9}{times['median']:9.3f} {unit}, p99 {times['p99']:.3f}, max {times['max']:.3f}")
