@@ -4,6 +4,7 @@
 
 #include <csignal>
 
+#include "components/logger/LogThread.hpp"
 #include "components/logger/LoggerTask.hpp"
 #include "components/pocolog/Reader.hpp"
 #include "tests/support/Folder.hpp"
@@ -71,21 +72,15 @@ TEST(LogFailureTest, AFullDiskEndsInExceptionWithTheSystemsReason) {
 TEST(LogFailureTest, TheSamplesThatDidNotReachTheDiskAreCounted) {
     Folder folder;
     std::filesystem::create_symlink("/dev/full", folder / "x.0.log");
-    LoggerTask task("log");
-    task.environment().output_folder = folder.path();
-    LoggerConfig config = configFor("x.0.log");
-    config.flush_period = 1;
-    task.config.set(config);
-    test::Writer<std::string> source;
-    source.port.connectTo(*task.makeInput("in", source.port), ConnPolicy::buffer(10));
-    ASSERT_TRUE(task.configure());
-    ASSERT_TRUE(task.start());
-    for (int i = 0; i < 3; ++i) {
-        source.port.write("x");
-        task.update();
-    }
-    EXPECT_FALSE(task.stop());
-    EXPECT_THAT(task.lastError(), testing::HasSubstr("3 samples did not reach it"));
+    const std::unique_ptr<LogFile> log = createLog(folder / "x.0.log", {});
+    Rotation rotation(configFor("x.0.log"), *log);
+    const double never = 3600;
+    LogThread thread(*log, rotation, 10, never);
+    const AnySample text = std::string("x");
+    thread.declare([&](LogFile& file) { return file.addStream(text.index(), "texts", {}); });
+    for (int i = 0; i < 3; ++i) thread.push(0, {}, text);
+    EXPECT_THAT([&] { thread.finish(); },
+                testing::ThrowsMessage<std::runtime_error>(testing::HasSubstr("3 samples did not reach it")));
 }
 
 TEST(LogFailureTest, ADiskThatIsFullOnlyAtTheEndIsToldByStop) {
