@@ -25,27 +25,15 @@ namespace {
 using framework::Deployment;
 using framework::splitPort;
 
-/** Of the first stream that has it; empty: none has. */
-std::string metadataOf(const pocolog::Reader& log, const std::string& key) {
-    for (const pocolog::Stream& stream : log.streams())
-        if (const auto found = stream.metadata.find(key); found != stream.metadata.end()) return found->second;
-    return {};
-}
-
-bool ofOneRun(const pocolog::Reader& a, const pocolog::Reader& b) {
-    const auto same = [&](const char* key) { return metadataOf(a, key) == metadataOf(b, key); };
-    return same("insonify_deployment") && same("insonify_seed");
-}
-
 /** What a log tells of the quality of a sonar. */
 struct Recorded {
     int rows = 0, columns_per_beam = 0;
     bool chosen = false;  ///< Not given; with neither, the placeholder before the first ping that hears anything.
 };
 
-std::optional<Recorded> recordedQuality(const pocolog::Reader& log, const std::string& sonar) {
+std::optional<Recorded> recordedQuality(const log::Reader& log, const std::string& sonar) {
     std::optional<Recorded> quality;
-    for (const pocolog::Stream& stream : log.streams()) {
+    for (const log::Stream& stream : log.streams()) {
         const auto plans = stream.metadata.find("insonify_plan");
         if (plans == stream.metadata.end()) continue;
         try {
@@ -68,11 +56,11 @@ std::string textOf(const types::PropertyValue& value) {
     return is_block ? *text : Json(*text).dump();
 }
 
-std::optional<types::PropertyValue> lastValue(pocolog::Reader& log, const pocolog::Stream& stream) {
+std::optional<types::PropertyValue> lastValue(log::Reader& log, const log::Stream& stream) {
     std::optional<types::PropertyValue> value;
     const auto read = [&]<class T>(std::type_identity<T>) {
         if (stream.holds<T>())
-            log.forEach<T>(stream.name, [&](const T& sample, const pocolog::SampleRef&) { value.emplace(sample); });
+            log.forEach<T>(stream.name, [&](const T& sample, const log::SampleRef&) { value.emplace(sample); });
     };
     read(std::type_identity<bool>{});
     read(std::type_identity<int64_t>{});
@@ -101,7 +89,7 @@ struct Settings {
     std::vector<std::string> assignments;
     std::set<std::string> settled;  ///< "task.property" to which nothing is to be added.
 
-    void addQualities(const Deployment& deployment, const pocolog::Reader& log, const std::set<std::string>& tasks) {
+    void addQualities(const Deployment& deployment, const log::Reader& log, const std::set<std::string>& tasks) {
         for (const auto& task : deployment.tasks()) {
             const auto* const sonar = dynamic_cast<const sonar::PingTask*>(task.get());
             const std::string property = task->name() + ".quality";
@@ -117,13 +105,13 @@ struct Settings {
             if (recorded->chosen) settled.insert(property);
         }
     }
-    void addProperties(Deployment& deployment, const pocolog::Reader& log, const std::set<std::string>& tasks) {
-        const std::filesystem::path file = log.path().parent_path() / "properties.0.log";
-        if (!std::filesystem::exists(file)) return;
-        pocolog::Reader properties(file);
-        if (!ofOneRun(log, properties)) return;
+    void addProperties(Deployment& deployment, const log::Reader& log, const std::set<std::string>& tasks) {
+        const auto file = propertyLogOf(log);
+        if (!file) return;
+        const auto opened = log::openLog(*file);
+        log::Reader& properties = *opened;
         const auto present = propertiesOf(deployment, tasks);
-        for (const pocolog::Stream& stream : properties.streams()) {
+        for (const log::Stream& stream : properties.streams()) {
             if (!tasks.contains(splitPort(stream.name).first) || settled.contains(stream.name)) continue;
             const auto value = lastValue(properties, stream);
             const auto now = present.find(stream.name);
@@ -135,13 +123,13 @@ struct Settings {
 
 }  // namespace
 
-std::optional<uint64_t> recordedSeed(const pocolog::Reader& log) {
-    const std::string seed = metadataOf(log, "insonify_seed");
+std::optional<uint64_t> recordedSeed(const log::Reader& log) {
+    const std::string seed = log.metadatum("insonify_seed");
     if (seed.empty()) return {};
     return std::strtoull(seed.c_str(), nullptr, 10);
 }
 
-std::vector<std::string> recordedSettings(const pocolog::Reader& log, const framework::DeploymentSpec& spec,
+std::vector<std::string> recordedSettings(const log::Reader& log, const framework::DeploymentSpec& spec,
                                           const std::vector<std::string>& set, std::optional<uint64_t> seed) {
     framework::Registry registry = builtInTasks();
     Deployment deployment(spec, registry, ".", seed ? *seed : recordedSeed(log).value_or(0));

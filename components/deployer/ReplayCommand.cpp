@@ -13,7 +13,7 @@
 #include "components/deployer/RunOptions.hpp"
 #include "components/deployer/ScoreReport.hpp"
 #include "components/deployer/StopSignal.hpp"
-#include "components/mcap/LogSource.hpp"
+#include "components/log/Reader.hpp"
 
 namespace insonify::deployer {
 namespace {
@@ -27,7 +27,7 @@ struct Options : RunOptions {
 };
 
 /** The log's own settings, below those of the user. */
-void takeSettings(const pocolog::Reader& log, Options& options) {
+void takeSettings(const log::Reader& log, Options& options) {
     const std::vector<std::string> recorded = recordedSettings(log, loadSpec(options), options.set, options.seed);
     if (!options.quiet)
         for (const std::string& setting : recorded) fmt::print(stderr, "notice: as in the log: {}\n", setting);
@@ -36,9 +36,10 @@ void takeSettings(const pocolog::Reader& log, Options& options) {
 }
 
 /** Scores the log against what was rendered again, and tells. Gives the exit code. */
-int tellScore(pocolog::Reader& log, const std::vector<std::string>& streams, size_t worst,
+int tellScore(log::Reader& log, const std::vector<std::string>& streams, size_t worst,
               const std::filesystem::path& folder) {
-    pocolog::Reader rendered(folder / rerendered_file);
+    const auto again = log::openLog(folder / rerendered_file);
+    log::Reader& rendered = *again;
     std::vector<StreamScore> scores;
     for (const std::string& stream : streams) scores.push_back(score(log, rendered, stream));
     write(scoreJson(scores), folder / "score.json");
@@ -77,8 +78,8 @@ void waitForStep(framework::Deployment& deployment, const std::atomic<bool>& sto
 }
 
 int replay(Options options) {
-    const auto opened = mcap::openLog(options.replay.log);
-    pocolog::Reader& log = *opened;
+    const auto opened = log::openLog(options.replay.log);
+    log::Reader& log = *opened;
     if (options.replay.rerender) takeSettings(log, options);
     framework::DeploymentSpec spec = loadSpec(options);
     const std::vector<std::string> streams = options.score ? pingStreams(log, spec) : std::vector<std::string>{};

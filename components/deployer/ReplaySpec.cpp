@@ -17,21 +17,21 @@ using framework::splitPort;
 using framework::TaskSpec;
 
 /** Whether what a port has written is in the stream, not the values of a property. */
-bool isOfPort(const pocolog::Stream& stream) {
+bool isOfPort(const log::Stream& stream) {
     const auto type = stream.metadata.find("rock_stream_type");
     return type == stream.metadata.end() || type->second == "port";
 }
 
 /** Tasks of the deployment that have a stream in the log. */
-std::set<std::string> loggedTasks(const pocolog::Reader& log, const DeploymentSpec& spec) {
+std::set<std::string> loggedTasks(const log::Reader& log, const DeploymentSpec& spec) {
     std::set<std::string> names;
-    for (const pocolog::Stream& stream : log.streams())
+    for (const log::Stream& stream : log.streams())
         if (const std::string task = splitPort(stream.name).first; isOfPort(stream) && spec.task(task))
             names.insert(task);
     return names;
 }
 
-std::set<std::string> replacedTasks(const pocolog::Reader& log, const DeploymentSpec& spec, bool rerender) {
+std::set<std::string> replacedTasks(const log::Reader& log, const DeploymentSpec& spec, bool rerender) {
     std::set<std::string> names = loggedTasks(log, spec);
     if (rerender) {
         framework::Registry registry = builtInTasks();
@@ -63,7 +63,7 @@ TaskSpec replayTask(const std::string& name, const ReplayOptions& options) {
 
 /** Connections of logged ports lead from the replay; those that a replaced task would have read, or written without
  *  a stream in the log, are left out. */
-std::vector<ConnectionSpec> reconnected(const DeploymentSpec& spec, const pocolog::Reader& log,
+std::vector<ConnectionSpec> reconnected(const DeploymentSpec& spec, const log::Reader& log,
                                         const std::set<std::string>& replaced, const std::string& replay) {
     std::vector<ConnectionSpec> connections;
     for (const ConnectionSpec& written : spec.connections) {
@@ -86,7 +86,7 @@ void refuseScansFrom(const DeploymentSpec& spec, double from) {
 
 }  // namespace
 
-DeploymentSpec replaying(DeploymentSpec spec, const pocolog::Reader& log, const ReplayOptions& options) {
+DeploymentSpec replaying(DeploymentSpec spec, const log::Reader& log, const ReplayOptions& options) {
     if (options.rerender) refuseScansFrom(spec, options.from);
     const std::set<std::string> replaced = replacedTasks(log, spec, options.rerender);
     const std::string name = freeName(spec, "replay");
@@ -101,9 +101,9 @@ DeploymentSpec replaying(DeploymentSpec spec, const pocolog::Reader& log, const 
     return spec;
 }
 
-std::vector<std::string> pingStreams(const pocolog::Reader& log, const DeploymentSpec& spec) {
+std::vector<std::string> pingStreams(const log::Reader& log, const DeploymentSpec& spec) {
     std::vector<std::string> names;
-    for (const pocolog::Stream& stream : log.streams())
+    for (const log::Stream& stream : log.streams())
         if (stream.holds<types::Sonar>() && spec.task(splitPort(stream.name).first)) names.push_back(stream.name);
     return names;
 }

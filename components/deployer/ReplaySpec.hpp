@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "components/framework/DeploymentSpec.hpp"
-#include "components/pocolog/Reader.hpp"
+#include "components/log/Reader.hpp"
 
 namespace insonify::deployer {
 
@@ -18,11 +18,11 @@ struct ReplayOptions {
 /** The deployment, in lockstep on the log's time, with the log in the place of the tasks that it has streams of; where
  *  it is rendered again, only of those that have nothing to do with pings. Throws types::ConfigError when that leaves
  *  nothing to play. */
-framework::DeploymentSpec replaying(framework::DeploymentSpec spec, const pocolog::Reader& log,
+framework::DeploymentSpec replaying(framework::DeploymentSpec spec, const log::Reader& log,
                                     const ReplayOptions& options);
 
 /** Streams of pings in the log that a task of the deployment writes. */
-std::vector<std::string> pingStreams(const pocolog::Reader& log, const framework::DeploymentSpec& spec);
+std::vector<std::string> pingStreams(const log::Reader& log, const framework::DeploymentSpec& spec);
 
 /** Adds a logger that writes these ports to a file. */
 void addLogger(framework::DeploymentSpec& spec, const std::vector<std::string>& ports, const std::string& file);

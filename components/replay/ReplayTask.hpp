@@ -11,7 +11,7 @@
 #include "components/framework/Port.hpp"
 #include "components/framework/Properties.hpp"
 #include "components/framework/TaskContext.hpp"
-#include "components/pocolog/Reader.hpp"
+#include "components/log/Reader.hpp"
 #include "components/replay/ReplayConfig.hpp"
 
 namespace insonify::replay {
@@ -82,7 +82,7 @@ private:
     /** World time of the log up to which samples are due now. */
     types::Time due();
 
-    std::unique_ptr<pocolog::Reader> log_;
+    std::unique_ptr<log::Reader> log_;
     std::vector<std::unique_ptr<Outlet>> outlets_;  ///< One for each stream of the log; null without a connection.
     size_t next_ = 0;                               ///< Index into the log's samples.
     types::Time next_time_;                         ///< When it is due, on the log's clock.

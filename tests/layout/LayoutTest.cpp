@@ -31,8 +31,10 @@ TEST(LayoutTest, TheTopLevelHoldsOnlyWhatTheDesignNames) {
 TEST(LayoutTest, AComponentsFolderIsItsNamespace) {
     for (const Source& source : sourcesIn("components", {".hpp", ".cpp"})) {
         if (source.stem() == "main") continue;
+        std::string space = std::filesystem::path(source.path.substr(11)).parent_path().generic_string();
+        for (size_t at = space.find('/'); at != std::string::npos; at = space.find('/')) space.replace(at, 1, "::");
         const auto opensIt = [&](const std::string& line) {
-            return line.find("namespace insonify::" + source.folder()) != std::string::npos;
+            return line.find("namespace insonify::" + space) != std::string::npos;
         };
         EXPECT_TRUE(std::ranges::any_of(source.lines, opensIt)) << source.path;
     }

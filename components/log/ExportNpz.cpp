@@ -1,0 +1,179 @@
+#include <algorithm>
+
+#include "components/log/Export.hpp"
+#include "components/log/NpzFile.hpp"
+#include "components/log/Reader.hpp"
+#include "components/log/TypeNames.hpp"
+
+namespace insonify::log {
+namespace {
+
+using Path = std::filesystem::path;
+using types::Image;
+using types::Pose;
+using types::Sonar;
+
+/** Successive samples of one shape. */
+struct Run {
+    std::vector<size_t> shape;
+    std::vector<SampleRef> samples;
+
+    /** Shape of all of them together. */
+    std::vector<size_t> whole() const {
+        std::vector<size_t> all = shape;
+        all.insert(all.begin(), samples.size());
+        return all;
+    }
+};
+
+std::vector<size_t> shapeOf(const Sonar& ping) { return {ping.beam_count, ping.bin_count}; }
+std::vector<size_t> shapeOf(const Image& picture) {
+    return {picture.size.height, picture.size.width, picture.pixel_size};
+}
+
+void readShaped(Reader& log, const SampleRef& at, Sonar& ping) { readPing(log, at, ping); }
+void readShaped(Reader& log, const SampleRef& at, Image& picture) {
+    log.read(at, picture);
+    if (!picture.holdsPixels())
+        throw types::ConfigError(log.path(), log.streams()[at.stream].name,
+                                 "a picture is compressed or has other numbers of pixels than it says");
+}
+
+template <class T>
+std::vector<Run> runsOfOneShape(Reader& log, const std::string& stream) {
+    std::vector<Run> runs;
+    T sample;
+    log.forEachRef(stream, [&](const SampleRef& at) {
+        readShaped(log, at, sample);
+        if (runs.empty() || runs.back().shape != shapeOf(sample)) runs.push_back({shapeOf(sample), {}});
+        runs.back().samples.push_back(at);
+    });
+    if (runs.empty()) runs.push_back({shapeOf(T{}), {}});
+    return runs;
+}
+
+void writeRun(Reader& log, const Run& run, const Path& path, Sonar ping) {
+    const size_t count = run.samples.size();
+    std::vector<double> bearings, time, bin_duration, speed_of_sound;
+    NpzFile npz(path);
+    npz.begin("bins", numpyType<float>(), run.whole());
+    for (const SampleRef& at : run.samples) {
+        readPing(log, at, ping);
+        npz.append(ping.bins.data(), ping.bins.size() * sizeof(float));
+        for (const types::Angle& bearing : ping.bearings) bearings.push_back(bearing.rad);
+        time.push_back(ping.time.seconds());
+        bin_duration.push_back(ping.bin_duration.seconds());
+        speed_of_sound.push_back(static_cast<double>(ping.speed_of_sound));
+    }
+    npz.end();
+    npz.array("bearings", {count, run.shape[0]}, bearings);
+    npz.array("time", {count}, time);
+    npz.array("bin_duration", {count}, bin_duration);
+    npz.array("speed_of_sound", {count}, speed_of_sound);
+    npz.close();
+}
+
+void writeRun(Reader& log, const Run& run, const Path& path, Image picture) {
+    std::vector<double> time;
+    NpzFile npz(path);
+    npz.begin("pixels", numpyType<uint8_t>(), run.whole());
+    for (const SampleRef& at : run.samples) {
+        log.read(at, picture);
+        for (size_t row = 0; row < picture.size.height; ++row)
+            npz.append(picture.image.data() + row * picture.row_size, size_t{picture.size.width} * picture.pixel_size);
+        time.push_back(sampleTime(picture, at.time).seconds());
+    }
+    npz.end();
+    npz.array("time", {time.size()}, time);
+    npz.close();
+}
+
+template <class T>
+std::vector<Path> writeRuns(Reader& log, const std::string& stream, const Path& path) {
+    const std::vector<Run> runs = runsOfOneShape<T>(log, stream);
+    std::vector<Path> files;
+    for (const Run& run : runs) {
+        Path file = path;
+        if (runs.size() > 1) file.replace_extension("." + std::to_string(files.size()) + path.extension().string());
+        writeRun(log, run, file, T{});
+        files.push_back(file);
+    }
+    return files;
+}
+
+void writePoses(Reader& log, const std::string& stream, const Path& path) {
+    std::vector<double> time, position, orientation;
+    log.forEach<Pose>(stream, [&](const Pose& pose, const SampleRef& at) {
+        const auto& [p, q] = std::tie(pose.position, pose.orientation);
+        time.push_back(sampleTime(pose, at.time).seconds());
+        position.insert(position.end(), {p.x, p.y, p.z});
+        orientation.insert(orientation.end(), {q.w, q.x, q.y, q.z});
+    });
+    NpzFile npz(path);
+    npz.array("time", {time.size()}, time);
+    npz.array("position", {time.size(), 3}, position);
+    npz.array("orientation", {time.size(), 4}, orientation);
+    npz.close();
+}
+
+void writeValue(NpzFile& npz, const std::vector<std::string>& texts) {
+    size_t longest = 1;
+    for (const std::string& text : texts) longest = std::max(longest, text.size());
+    npz.begin("value", "|S" + std::to_string(longest), {texts.size()});
+    for (std::string text : texts) {
+        text.resize(longest);
+        npz.append(text.data(), longest);
+    }
+    npz.end();
+}
+template <class Number>
+void writeValue(NpzFile& npz, const std::vector<Number>& numbers) {
+    npz.array("value", {numbers.size()}, numbers);
+}
+
+template <class T>
+auto valueOf(const T& sample) {
+    if constexpr (types::Scalar<T>)
+        return types::numberOf(sample);
+    else
+        return sample;
+}
+
+template <class T>
+void writeValues(Reader& log, const std::string& stream, const Path& path) {
+    std::vector<double> time;
+    std::vector<decltype(valueOf(T{}))> values;
+    log.forEach<T>(stream, [&](const T& sample, const SampleRef& at) {
+        time.push_back(at.time.seconds());
+        values.push_back(valueOf(sample));
+    });
+    NpzFile npz(path);
+    npz.array("time", {time.size()}, time);
+    writeValue(npz, values);
+    npz.close();
+}
+
+}  // namespace
+
+std::vector<Path> exportNpz(Reader& log, const std::string& stream, const Path& path) {
+    const Stream& declared = log.streams()[log.indexOf(stream)];
+    if (holdsPings(declared)) return writeRuns<Sonar>(log, stream, path);
+    if (declared.holds<Image>()) return writeRuns<Image>(log, stream, path);
+    bool done = declared.holds<Pose>();
+    if (done) writePoses(log, stream, path);
+    types::forEachSampleType([&]<class T>(std::type_identity<T>) {
+        if constexpr (types::Scalar<T> || Text<T>)
+            if (declared.holds<T>()) {
+                writeValues<T>(log, stream, path);
+                done = true;
+            }
+    });
+    if (!done)
+        throw types::ConfigError(log.path(), stream,
+                                 "holds " + declared.type +
+                                     "; as arrays can be written pings, beams and scans of sonars, poses, pictures, "
+                                     "numbers and texts");
+    return {path};
+}
+
+}  // namespace insonify::log
