@@ -1,6 +1,7 @@
 #pragma once
 // Every type of sample that travels, is logged, exported, replayed, sent and shown, declared in this one place. A new
 // one takes a line in SampleTypes; components/log/README.md has the recipe.
+#include <array>
 #include <concepts>
 #include <memory>
 #include <string>
@@ -104,6 +105,27 @@ void moveStamps(T& sample, Time shift) {
     if constexpr (Stamped<T>) move(sample.time);
     if constexpr (requires { sample.forEachStamp(move); }) sample.forEachStamp(move);
 }
+
+/** What of a T goes into tables, beside its time: specialise with `forEach(sample, visit)`, which calls
+ *  `visit(array, columns, numbers)` for each array. */
+template <class T>
+struct Columns;
+template <>
+struct Columns<Pose> {
+    template <class Visit>
+    static void forEach(const Pose& pose, Visit&& visit) {
+        const auto& [p, q] = std::tie(pose.position, pose.orientation);
+        visit("position", std::array{"x", "y", "z"}, std::array{p.x, p.y, p.z});
+        visit("orientation", std::array{"qw", "qx", "qy", "qz"}, std::array{q.w, q.x, q.y, q.z});
+    }
+};
+struct AnyColumns {
+    void operator()(const char*, const auto&, const auto&) const {}
+};
+template <class T>
+concept Tabular = requires(const T& sample) {
+    Columns<T>::forEach(sample, AnyColumns{});
+};
 
 /** What of a sample contradicts itself, after "a sample"; null: nothing. Types tell it by `diagnostic()`. */
 template <class T>

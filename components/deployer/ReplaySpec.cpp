@@ -44,6 +44,20 @@ std::set<std::string> replacedTasks(const log::Reader& log, const DeploymentSpec
     return names;
 }
 
+/** Tasks of the deployment in whose place the log's poses of each ping drive a sonar. */
+void drivePings(DeploymentSpec& spec, const log::Reader& log, const std::string& replay) {
+    for (TaskSpec& task : spec.tasks) {
+        const std::string stream = poseStreamOf(log, task.name);
+        if (stream.empty() || !task.type.starts_with("sonar::")) continue;
+        ConnectionSpec connection;
+        connection.from = replay + "." + stream;
+        connection.to = task.name + ".given_pose";
+        connection.policy = framework::ConnPolicy::buffer(256);
+        spec.connections.push_back(connection);
+        task.activity.trigger = {"given_pose"};
+    }
+}
+
 /** `name`, or the like of it that no task has. */
 std::string freeName(const DeploymentSpec& spec, std::string name) {
     while (spec.task(name)) name += "_";
@@ -88,7 +102,8 @@ void refuseScansFrom(const DeploymentSpec& spec, double from) {
 
 DeploymentSpec replaying(DeploymentSpec spec, const log::Reader& log, const ReplayOptions& options) {
     if (options.rerender) refuseScansFrom(spec, options.from);
-    const std::set<std::string> replaced = replacedTasks(log, spec, options.rerender);
+    std::set<std::string> replaced = replacedTasks(log, spec, options.rerender);
+    if (!options.outside) replaced.merge(outsideTasks(spec));
     const std::string name = freeName(spec, "replay");
     // New lists are made, since assigning a YAML node changes what other nodes see.
     std::vector<TaskSpec> tasks{replayTask(name, options)};
@@ -97,8 +112,25 @@ DeploymentSpec replaying(DeploymentSpec spec, const log::Reader& log, const Repl
     std::vector<ConnectionSpec> connections = reconnected(spec, log, replaced, name);
     spec.tasks.swap(tasks);
     spec.connections.swap(connections);
+    if (options.rerender) drivePings(spec, log, name);
     spec.lockstep = true;
     return spec;
+}
+
+std::set<std::string> outsideTasks(const DeploymentSpec& spec) {
+    framework::Registry registry = builtInTasks();
+    for (const std::string& library : spec.libraries)
+        registry.loadLibrary(std::filesystem::path(spec.file).parent_path() / library);
+    std::set<std::string> names;
+    for (const TaskSpec& task : spec.tasks)
+        if (const auto made = registry.make(task.type, task.name); made && made->reachesOutside())
+            names.insert(task.name);
+    return names;
+}
+
+std::string poseStreamOf(const log::Reader& log, const std::string& sonar) {
+    const log::Stream* const stream = log.find(sonar + ".pose");
+    return stream && isOfPort(*stream) && stream->holds<types::Pose>() && stream->count > 0 ? stream->name : "";
 }
 
 std::vector<std::string> pingStreams(const log::Reader& log, const DeploymentSpec& spec) {

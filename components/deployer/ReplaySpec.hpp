@@ -1,4 +1,5 @@
 #pragma once
+#include <set>
 #include <string>
 #include <vector>
 
@@ -13,11 +14,19 @@ struct ReplayOptions {
     double from = 0;        ///< After its first stamp [s].
     bool loop = false;      ///< On and on.
     bool rerender = false;  ///< Its poses drive the sonars, which sound again; otherwise its pings are played.
+    bool outside = false;   ///< With the tasks that talk to others than their deployment.
 };
 
+/** Tasks that talk to others than their deployment. */
+std::set<std::string> outsideTasks(const framework::DeploymentSpec& spec);
+
+/** The stream that drives a sonar whose pings are rendered again: where each of them was rendered; empty: the log has
+ * no such stream. */
+std::string poseStreamOf(const log::Reader& log, const std::string& sonar);
+
 /** The deployment, in lockstep on the log's time, with the log in the place of the tasks that it has streams of; where
- *  it is rendered again, only of those that have nothing to do with pings. Throws types::ConfigError when that leaves
- *  nothing to play. */
+ *  it is rendered again, only of those that have nothing to do with pings, and each sonar pings where the log says that
+ *  it did, if it does. Throws types::ConfigError when that leaves nothing to play. */
 framework::DeploymentSpec replaying(framework::DeploymentSpec spec, const log::Reader& log,
                                     const ReplayOptions& options);
 

@@ -24,7 +24,6 @@ struct Column {
 };
 
 constexpr Column columns[] = {
-    {"time", "time [s]", [](const PingScore& ping) { return ping.time.seconds(); }},
     {"rel_l2", "relative L2", [](const PingScore& ping) { return ping.metrics.rel_l2; }},
     {"rel_l2_tvg", "with TVG", [](const PingScore& ping) { return ping.metrics.rel_l2_tvg; }},
     {"correlation", "correlation", [](const PingScore& ping) { return ping.metrics.correlation; }},
@@ -107,9 +106,11 @@ std::string scoreTable(const std::vector<StreamScore>& streams, size_t worst) {
     for (const StreamScore& score : streams) {
         addSummary(text, score);
         if (score.pings.empty()) continue;
+        text += fmt::format("{:>26}", "time");
         for (const Column& column : columns) text += fmt::format("{:>14}", column.heading);
         text += "\n";
         for (const PingScore& ping : score.pings | std::views::take(worst)) {
+            text += fmt::format("{:>26}", log::readable(ping.time));
             for (const Column& column : columns) text += fmt::format("{:>14.6g}", column.value(ping));
             text += "\n";
         }
@@ -122,7 +123,7 @@ Json scoreJson(const std::vector<StreamScore>& streams) {
     for (const StreamScore& score : streams) {
         Json pings = Json::array();
         for (const PingScore& ping : score.pings) {
-            Json values;
+            Json values{{"time", ping.time.seconds()}};
             for (const Column& column : columns) values[column.key] = column.value(ping);
             pings.push_back(std::move(values));
         }

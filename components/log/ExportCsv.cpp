@@ -1,9 +1,11 @@
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <cerrno>
 #include <fstream>
 #include <iterator>
 #include <system_error>
+#include <vector>
 
 #include "components/log/Export.hpp"
 #include "components/log/Reader.hpp"
@@ -12,13 +14,12 @@
 namespace insonify::log {
 namespace {
 
-using types::Pose;
 using types::Sonar;
 
 /** A text file that gathers lines; close() throws std::runtime_error when not all of them arrived. */
 class CsvFile {
 public:
-    CsvFile(const std::filesystem::path& path, const char* header) : path_(path), file_(path) {
+    CsvFile(const std::filesystem::path& path, const std::string& header) : path_(path), file_(path) {
         if (!file_) throw types::ConfigError(path, "", "cannot be written: " + std::generic_category().message(errno));
         file_ << header << '\n';
     }
@@ -77,11 +78,20 @@ void writeValues(Reader& log, const std::string& stream, const std::filesystem::
     csv.close();
 }
 
-void writePoses(Reader& log, const std::string& stream, const std::filesystem::path& path) {
-    CsvFile csv(path, "time,x,y,z,qw,qx,qy,qz");
-    log.forEach<Pose>(stream, [&](const Pose& pose, const SampleRef& at) {
-        const auto& [p, q] = std::tie(pose.position, pose.orientation);
-        csv.line(sampleTime(pose, at.time), p.x, p.y, p.z, q.w, q.x, q.y, q.z);
+template <class T>
+void writeRows(Reader& log, const std::string& stream, const std::filesystem::path& path) {
+    std::string header = "time";
+    types::Columns<T>::forEach(T{}, [&](const char*, const auto& names, const auto&) {
+        for (const char* name : names) header += std::string(",") + name;
+    });
+    CsvFile csv(path, header);
+    std::vector<double> row;
+    log.forEach<T>(stream, [&](const T& sample, const SampleRef& at) {
+        row.clear();
+        types::Columns<T>::forEach(sample, [&](const char*, const auto&, const auto& numbers) {
+            row.insert(row.end(), numbers.begin(), numbers.end());
+        });
+        csv.line(sampleTime(sample, at.time), fmt::format("{}", fmt::join(row, ",")));
     });
     csv.close();
 }
@@ -91,14 +101,16 @@ void writePoses(Reader& log, const std::string& stream, const std::filesystem::p
 void exportCsv(Reader& log, const std::string& stream, const std::filesystem::path& path) {
     const Stream& declared = log.streams()[log.indexOf(stream)];
     if (holdsPings(declared)) return writePings(log, stream, path);
-    if (declared.holds<Pose>()) return writePoses(log, stream, path);
     bool done = false;
     types::forEachSampleType([&]<class T>(std::type_identity<T>) {
-        if constexpr (types::Scalar<T> || Text<T>)
-            if (declared.holds<T>()) {
-                writeValues<T>(log, stream, path);
-                done = true;
-            }
+        if (!declared.holds<T>()) return;
+        if constexpr (types::Tabular<T>)
+            writeRows<T>(log, stream, path);
+        else if constexpr (types::Scalar<T> || Text<T>)
+            writeValues<T>(log, stream, path);
+        else
+            return;
+        done = true;
     });
     if (!done)
         throw types::ConfigError(log.path(), stream,

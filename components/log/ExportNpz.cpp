@@ -10,7 +10,6 @@ namespace {
 
 using Path = std::filesystem::path;
 using types::Image;
-using types::Pose;
 using types::Sonar;
 
 /** Successive samples of one shape. */
@@ -101,18 +100,24 @@ std::vector<Path> writeRuns(Reader& log, const std::string& stream, const Path& 
     return files;
 }
 
-void writePoses(Reader& log, const std::string& stream, const Path& path) {
-    std::vector<double> time, position, orientation;
-    log.forEach<Pose>(stream, [&](const Pose& pose, const SampleRef& at) {
-        const auto& [p, q] = std::tie(pose.position, pose.orientation);
-        time.push_back(sampleTime(pose, at.time).seconds());
-        position.insert(position.end(), {p.x, p.y, p.z});
-        orientation.insert(orientation.end(), {q.w, q.x, q.y, q.z});
+template <class T>
+void writeRows(Reader& log, const std::string& stream, const Path& path) {
+    std::vector<double> time;
+    std::vector<std::vector<double>> arrays;
+    log.forEach<T>(stream, [&](const T& sample, const SampleRef& at) {
+        time.push_back(sampleTime(sample, at.time).seconds());
+        types::Columns<T>::forEach(sample, [&, i = size_t{0}](const char*, const auto&, const auto& numbers) mutable {
+            if (i == arrays.size()) arrays.emplace_back();
+            arrays[i].insert(arrays[i].end(), numbers.begin(), numbers.end());
+            ++i;
+        });
     });
     NpzFile npz(path);
     npz.array("time", {time.size()}, time);
-    npz.array("position", {time.size(), 3}, position);
-    npz.array("orientation", {time.size(), 4}, orientation);
+    types::Columns<T>::forEach(T{}, [&, i = size_t{0}](const char* name, const auto& names, const auto&) mutable {
+        arrays.resize(std::max(arrays.size(), i + 1));
+        npz.array(name, {time.size(), names.size()}, arrays[i++]);
+    });
     npz.close();
 }
 
@@ -159,14 +164,16 @@ std::vector<Path> exportNpz(Reader& log, const std::string& stream, const Path& 
     const Stream& declared = log.streams()[log.indexOf(stream)];
     if (holdsPings(declared)) return writeRuns<Sonar>(log, stream, path);
     if (declared.holds<Image>()) return writeRuns<Image>(log, stream, path);
-    bool done = declared.holds<Pose>();
-    if (done) writePoses(log, stream, path);
+    bool done = false;
     types::forEachSampleType([&]<class T>(std::type_identity<T>) {
-        if constexpr (types::Scalar<T> || Text<T>)
-            if (declared.holds<T>()) {
-                writeValues<T>(log, stream, path);
-                done = true;
-            }
+        if (!declared.holds<T>()) return;
+        if constexpr (types::Tabular<T>)
+            writeRows<T>(log, stream, path);
+        else if constexpr (types::Scalar<T> || Text<T>)
+            writeValues<T>(log, stream, path);
+        else
+            return;
+        done = true;
     });
     if (!done)
         throw types::ConfigError(log.path(), stream,

@@ -24,7 +24,8 @@ bool isNumber(const std::string& text, double& value) {
 /** A date in UTC, 'T' or a blank before the time of day, which may have a fraction and end in Z. */
 bool isDate(std::string text, types::Time& time) {
     if (text.ends_with('Z')) text.pop_back();
-    if (text.size() > 10 && text[10] == 'T') text[10] = ' ';
+    if (text.size() < std::size("2026-11-22 12:55:44") - 1) return false;
+    if (text[10] == 'T') text[10] = ' ';
     std::istringstream stream(text);
     std::tm date{};
     stream >> std::get_time(&date, "%Y-%m-%d %H:%M:%S");

@@ -100,6 +100,15 @@ std::optional<types::Time> ReplayTask::nextTime() const {
     return next_time_;
 }
 
+std::optional<types::Time> ReplayTask::nextStamp(const std::string& stream) const {
+    if (!log_) return {};
+    const auto& samples = log_->samples();
+    const size_t wanted = stream.empty() ? 0 : log_->indexOf(stream);
+    for (size_t i = next_; i < samples.size(); ++i)
+        if (stream.empty() || samples[i].stream == wanted) return samples[i].time;
+    return {};
+}
+
 size_t ReplayTask::indexAt(double seconds) const {
     const auto& samples = log_->samples();
     if (samples.empty()) return 0;
@@ -131,7 +140,7 @@ void ReplayTask::rewind() {
     first_us_ = next_time_.microseconds;
 }
 
-void ReplayTask::goOnAt(double seconds) {
+void ReplayTask::seekTo(double seconds) {
     open();
     const double span = spanOf(*log_);
     if (!(seconds >= 0 && seconds <= span + 0.5e-6))  // stamps are whole microseconds
@@ -197,7 +206,7 @@ void ReplayTask::noteInstant() {
     pause_ = {};
 }
 
-void ReplayTask::standStill(bool on) {
+void ReplayTask::setPaused(bool on) {
     if (!wall_ || !isRunning())
         throw std::runtime_error(
             "the log's time can be paused while the replay runs in realtime; in lockstep the deployment's can");

@@ -70,8 +70,11 @@ auto toMessage(const types::Sonar& ping, const MessageOptions& options, Message&
     convert(ping, options, message);
 }
 template <class Beams, class Message>
-requires(std::is_same_v<Beams, types::SonarBeam> || std::is_same_v<Beams, types::SonarScan>) &&
-    (!std::is_same_v<Message, Clock>)void toMessage(const Beams& beams, const MessageOptions& options,
+requires (std::is_same_v<Beams, types::SonarBeam> || std::is_same_v<Beams, types::SonarScan>) &&
+         requires(const types::Sonar& ping, const MessageOptions& options, Message& message) {
+             convert(ping, options, message);
+         }
+void toMessage(const Beams& beams, const MessageOptions& options,
                                                     Message& message) {
     toMessage(toSonar(beams), options, message);
 }

@@ -27,7 +27,7 @@ protected:
 }  // namespace
 
 TEST_F(FastDdsTest, HearsEveryPingOf128KilobytesAtFortyHertz) {
-    Publishing<types::SonarPtr> publishing({topicOut("in", "/auv/sonar", MessageType::ProjectedSonarImage)});
+    Publishing<types::SonarPtr> publishing({topicOut("in", "/auv/sonar", message_type<ros::ProjectedSonarImage>)});
     Peer peer({program, "listen", "marine_acoustic_msgs::msg::dds_::ProjectedSonarImage_", "/auv/sonar", "60", "200"});
     ASSERT_TRUE(peer.ready());
     std::this_thread::sleep_for(std::chrono::seconds(1));  // until we know it as well

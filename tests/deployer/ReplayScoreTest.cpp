@@ -106,8 +106,8 @@ TEST_F(ReplayScoreTest, TheWorstPingComesFirstInTableAndPictures) {
         EXPECT_EQ(stream["pings"][1]["rel_l2"], 0);
         EXPECT_EQ(stream["pings"][2]["rel_l2"], 0);
     }
-    EXPECT_THAT(outcome.out, HasSubstr("\n           1.2 "));
-    EXPECT_THAT(outcome.out, testing::Not(HasSubstr("\n           1.1 ")));
+    EXPECT_THAT(outcome.out, HasSubstr("\n                1.200000 s "));
+    EXPECT_THAT(outcome.out, testing::Not(HasSubstr("\n                1.100000 s ")));
     EXPECT_TRUE(fs::exists(folder_ / "scored/score_000001.png")) << "one of each stream";
     EXPECT_FALSE(fs::exists(folder_ / "scored/score_000002.png"));
 }

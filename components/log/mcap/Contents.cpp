@@ -46,7 +46,7 @@ private:
             channel(reader);
         else if (op == Op::Message)
             message(reader, chunk);
-        else if (chunk || op < Op::Header || op == Op::Header)
+        else if (chunk || op < Op::Header || (op == Op::Header && takes_ == Takes::Strictly))
             throw FormatError(at - record_header_size,
                               "a record of kind " + std::to_string(static_cast<int>(op)) + " may not stand here");
     }
@@ -230,6 +230,9 @@ void File::readWhatIsWhole(Contents& found) {
     bool ended = false;
     for (uint64_t at = magic.size(); at < size() && !(ended && hasMagic(at));) try {
             const Record next = record(at);
+            if (next.op < Op::Header || next.op > Op::DataEnd)
+                throw FormatError(at,
+                                  "a record of kind " + std::to_string(static_cast<int>(next.op)) + " is not known");
             ended = ended || next.op == Op::Footer;
             collector.take(next);
             at = next.end();

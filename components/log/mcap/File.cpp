@@ -63,9 +63,11 @@ std::optional<std::pair<Op, uint64_t>> File::header(uint64_t at) const {
 }
 
 bool File::looksLikeRecord(uint64_t at) const {
-    if (at == size()) return true;
+    if (at == size() || hasMagic(at)) return true;
     const auto found = header(at);
-    return (found && (found->second == size() || header(found->second) || hasMagic(found->second))) || hasMagic(at);
+    Op next{};
+    return found && (!file_.read(found->second, &next, sizeof next) || (next >= Op::Header && next <= Op::DataEnd) ||
+                     hasMagic(found->second));
 }
 
 uint64_t File::nextRecord(uint64_t position) const {

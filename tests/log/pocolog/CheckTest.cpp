@@ -88,7 +88,6 @@ TEST_F(CheckTest, NamesWhatIsWrongInADeclaration) {
     EXPECT_THAT(wrongIn(with(whole, byteOf("<typelib>"), '[')).message, HasSubstr("must be typelib's XML"));
     const uint64_t metadata = byteOf("rock_cxx_type_name");
     EXPECT_EQ(wrongIn(with(whole, metadata, ' ')).byte, byteOf("rock_orocos_type_name")) << "where indentation ends";
-    EXPECT_EQ(wrongIn(with(whole, metadata, '-')).byte, metadata + 2) << "a list";
 }
 
 TEST_F(CheckTest, TimesThatRunBackwardsAreWrong) {
