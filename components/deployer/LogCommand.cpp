@@ -32,11 +32,10 @@ Json infoJson(const log::Reader& log) {
 
 void printTable(const log::Reader& log) {
     fmt::print("{}: {} bytes, {}\n", log.path().string(), log.bytes(), log.complete() ? "complete" : "cut off");
-    fmt::print("  {:24} {:32} {:>8} {:>12} {:>12} {:>9}\n", "stream", "type", "samples", "first s", "last s",
-               "rate Hz");
+    fmt::print("  {:24} {:32} {:>8} {:>26} {:>26} {:>9}\n", "stream", "type", "samples", "first", "last", "rate Hz");
     for (const log::Stream& s : log.streams())
-        fmt::print("  {:24} {:32} {:>8} {:>12.3f} {:>12.3f} {:>9.2f}\n", s.name, s.type, s.count, s.first.seconds(),
-                   s.last.seconds(), s.rate());
+        fmt::print("  {:24} {:32} {:>8} {:>26} {:>26} {:>9.2f}\n", s.name, s.type, s.count, log::readable(s.first),
+                   log::readable(s.last), s.rate());
 }
 
 /** A log, and a notice where it cannot be read to its end. */
