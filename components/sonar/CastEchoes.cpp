@@ -1,6 +1,7 @@
 #include "components/sonar/CastEchoes.hpp"
 
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <chrono>
 #include <cmath>
@@ -50,6 +51,7 @@ private:
     /** What one thread works with. */
     struct Worker {
         std::vector<CastTile> tiles;
+        std::vector<TileHits> hits;  ///< Of each tile.
         std::vector<uint64_t> sums;
         std::vector<double> values;
         Stages stages{};
@@ -131,7 +133,8 @@ void CastEchoes::shareOut() {
     }
     const int across = (together * beam_columns + shape_.all.columns - 1) / shape_.all.columns;
     for (Worker& worker : workers_) {
-        worker.tiles.resize(static_cast<size_t>(across * (rows / up)));
+        worker.hits.resize(static_cast<size_t>(across * (rows / up)));
+        worker.tiles.resize(worker.hits.size());
         worker.sums.resize(static_cast<size_t>(together) * rules_.sumCount());
     }
 }
@@ -167,14 +170,21 @@ TileRays CastEchoes::raysOf(const CastTile& tile, int end_column) const {
 
 std::span<const CastTile> CastEchoes::cast(const Part& part, Worker& worker) const {
     const int begin = part.first_beam * rules_.view.beam_columns, end = begin + part.beams * rules_.view.beam_columns;
-    size_t count = 0;
+    std::array<TileRays, RayVisibility::tiles_at_once> rays;
+    size_t count = 0, waiting = 0;
+    const auto castWaiting = [&] {
+        visibility_.cast({rays.data(), waiting}, {&worker.hits[count - waiting], waiting});
+        waiting = 0;
+    };
     for (int column = begin; column < end; column += shape_.all.columns)
         for (int row = part.first_row; row < part.first_row + part.rows; row += shape_.all.rows) {
-            CastTile& tile = worker.tiles[count++];
-            tile.first_column = column;
-            tile.first_row = row;
-            visibility_.cast(raysOf(tile, end), tile.hits);
+            CastTile& tile = worker.tiles[count];
+            tile = {column, row, &worker.hits[count]};
+            ++count;
+            rays[waiting++] = raysOf(tile, end);
+            if (waiting == rays.size()) castWaiting();
         }
+    if (waiting > 0) castWaiting();
     return {worker.tiles.data(), count};
 }
 

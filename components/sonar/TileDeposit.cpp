@@ -144,8 +144,9 @@ public:
 
     void add(const CastTile& tile) {
         for (int i = 0; i < tile_samples;) {
-            const int merged = tile.hits.command[i] == TileHits::nothing ? 1 : sameFrom(tile.hits, i);
-            if (tile.hits.command[i] != TileHits::nothing) addCell(tile, i, merged);
+            const bool met = tile.hits->command[i] != TileHits::nothing;
+            const int merged = met ? sameFrom(*tile.hits, i) : 1;
+            if (met) addCell(tile, i, merged);
             i += merged;
         }
     }
@@ -170,8 +171,8 @@ private:
     }
 
     void addCell(const CastTile& tile, int sample, int merged) {
-        const PlacedRun& run = scene_.runs[tile.hits.command[sample]];
-        const PlaneRecord& plane = scene_.planes[run.first_triangle + tile.hits.triangle[sample]];
+        const PlacedRun& run = scene_.runs[tile.hits->command[sample]];
+        const PlaneRecord& plane = scene_.planes[run.first_triangle + tile.hits->triangle[sample]];
         const glm::dvec3 n(plane.normal), p(plane.point);
         const auto turned = [&](const double* row) { return row[0] * n.x + row[1] * n.y + row[2] * n.z; };
         const double x = turned(run.normal_x), y = turned(run.normal_y), z = turned(run.normal_z);
@@ -191,11 +192,11 @@ private:
 
     /** Of the middle of the cell that aim() has just put down; 0 where its material has no map. */
     double mappedCosine(const CastTile& tile, int sample, int merged) const {
-        const CommandRecord& command = scene_.commands[tile.hits.command[sample]];
+        const CommandRecord& command = scene_.commands[tile.hits->command[sample]];
         if (!scene_.normal_maps.isMapped(static_cast<int>(command.material))) return 0;
         const int i = count_;
         float u = 0, v = 0;
-        for (int k = sample; k < sample + merged; ++k) u += tile.hits.u[k], v += tile.hits.v[k];
+        for (int k = sample; k < sample + merged; ++k) u += tile.hits->u[k], v += tile.hits->v[k];
         const auto per_sample = 1 / static_cast<float>(merged);
         const glm::dvec3 ray(cells_.cos_el[i] * cells_.cos_az[i], cells_.cos_el[i] * cells_.sin_az[i],
                              cells_.sin_el[i]);
@@ -203,7 +204,7 @@ private:
         const double range = std::abs(cells_.distance[i]) / std::max(std::abs(glm::dot(normal, ray)), 1e-6);
         return static_cast<double>(scene_.normal_maps.cosine(
             scene_.objects[command.object],
-            {command.object, tile.hits.triangle[sample], static_cast<int>(command.material), u * per_sample,
+            {command.object, tile.hits->triangle[sample], static_cast<int>(command.material), u * per_sample,
              v * per_sample, glm::vec3(ray), static_cast<float>(range * std::max(cells_.width[i], cells_.height[i]))}));
     }
 

@@ -21,7 +21,7 @@ struct PlacedScene {
 /** A tile that has been cast: where it lies in the view and what it met. */
 struct CastTile {
     int first_column, first_row;
-    TileHits hits;
+    const TileHits* hits;
 };
 
 /** Adds the echoes of tiles to the sums of beams, [beam - first_beam][bin][channel] in quanta, EchoRules::sumCount()
