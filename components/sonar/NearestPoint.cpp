@@ -6,10 +6,13 @@
 #include <glm/matrix.hpp>
 #include <limits>
 #include <span>
+#include <utility>
 
 namespace insonify::sonar {
 namespace {
 
+/** Corners up to which a mesh is not searched by its clusters [1]. */
+constexpr size_t most_corners = 4096;
 /** Triangles that are looked at one by one; of what is left the box is taken [1]. */
 constexpr uint32_t most_triangles = 4096;
 
@@ -58,13 +61,24 @@ public:
           linear_(glm::dmat3(sonar_from_mesh)),
           eye_(-(glm::inverse(glm::dmat3(sonar_from_mesh)) * glm::dvec3(sonar_from_mesh[3]))) {}
 
-    double nearestCorner() const {
-        float nearest2 = std::numeric_limits<float>::infinity();
+    /** Of a mesh of few corners: the triangles none of whose corners is about as near as the nearest are left out. No
+     *  point of a triangle is farther from all its corners than its longest edge over the root of 3. */
+    double nearestByCorners(double longest_edge, std::vector<float>& corners2) {
+        corners2.clear();
         for (const glm::vec3& p : mesh_.positions) {
             const glm::vec3 at = fromSonar(p);
-            nearest2 = std::min(nearest2, glm::dot(at, at));
+            corners2.push_back(glm::dot(at, at));
         }
-        return std::sqrt(static_cast<double>(nearest2));
+        const double scale2 = static_cast<double>(glm::dot(linear_[0], linear_[0]) + glm::dot(linear_[1], linear_[1]) +
+                                                  glm::dot(linear_[2], linear_[2]));
+        const auto within2 = static_cast<float>(longest_edge * longest_edge * scale2 / 3);
+        const float limit2 = 1.00001f * (*std::ranges::min_element(corners2) + within2);
+        for (uint32_t i = 0; i < mesh_.indices.size(); i += 3) {
+            const uint32_t* corner = &mesh_.indices[i];
+            if (std::min({corners2[corner[0]], corners2[corner[1]], corners2[corner[2]]}) <= limit2) look(i);
+        }
+        lookAtWaiting();
+        return std::isfinite(found_) ? static_cast<double>(found_) : 0;
     }
 
     double nearest() {
@@ -118,22 +132,31 @@ private:
     }
 
     void look(const types::Cluster& cluster) {
-        for (uint32_t i = 0; i < cluster.index_count; i += 3 * at_once) {
-            Corners corners;
-            for (uint32_t k = 0; k < 3 * at_once; ++k) {  // beyond the end: the last triangle again
-                const uint32_t index = cluster.first_index + std::min(i + k, cluster.index_count - 3 + k % 3);
-                const glm::vec3 p = fromSonar(mesh_.positions[mesh_.indices[index]]);
-                corners.x[k % 3][k / 3] = p.x, corners.y[k % 3][k / 3] = p.y, corners.z[k % 3][k / 3] = p.z;
-            }
-            float distance2[at_once];
-            nearest2(corners, distance2);
-            found_ = std::min(found_, std::sqrt(*std::ranges::min_element(distance2)));
+        for (uint32_t i = 0; i < cluster.index_count; i += 3) look(cluster.first_index + i);
+        lookAtWaiting();
+    }
+
+    /** At a triangle, when as many wait as are looked at together. */
+    void look(uint32_t first_index) {
+        for (uint32_t k = 0; k < 3; ++k) {
+            const glm::vec3 p = fromSonar(mesh_.positions[mesh_.indices[first_index + k]]);
+            corners_.x[k][waiting_] = p.x, corners_.y[k][waiting_] = p.y, corners_.z[k][waiting_] = p.z;
         }
+        if (++waiting_ == at_once) lookAtWaiting();
+    }
+
+    void lookAtWaiting() {
+        float distance2[at_once];
+        nearest2(corners_, distance2);
+        const uint32_t count = std::exchange(waiting_, 0);
+        for (uint32_t i = 0; i < count; ++i) found_ = std::min(found_, std::sqrt(distance2[i]));
     }
 
     const types::Mesh& mesh_;
     glm::mat3 linear_;
     glm::dvec3 eye_;  ///< The sonar in the mesh's axes [m].
+    Corners corners_{};
+    uint32_t waiting_ = 0;
     float found_ = std::numeric_limits<float>::infinity();
 };
 
@@ -150,18 +173,10 @@ double longestEdge(const types::Mesh& mesh) {
 }
 
 double nearestDistance(const types::Mesh& mesh, double longest_edge, const glm::dmat4& sonar_from_mesh,
-                       double tolerance) {
+                       std::vector<float>& scratch) {
     Search search(mesh, sonar_from_mesh);
-    if (mesh.patches.empty()) {
-        // No point of a triangle is farther from all its corners than its longest edge over the root of 3.
-        const glm::dmat3 linear(sonar_from_mesh);
-        const double scale2 =
-            glm::dot(linear[0], linear[0]) + glm::dot(linear[1], linear[1]) + glm::dot(linear[2], linear[2]);
-        const double corner = search.nearestCorner();
-        const double at_least = std::sqrt(std::max(corner * corner - longest_edge * longest_edge * scale2 / 3, 0.0));
-        if (corner - at_least <= tolerance) return at_least;
-    }
-    return search.nearest();
+    const bool few = mesh.positions.size() <= most_corners && !mesh.positions.empty();
+    return few ? search.nearestByCorners(longest_edge, scratch) : search.nearest();
 }
 
 }  // namespace insonify::sonar

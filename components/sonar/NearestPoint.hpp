@@ -1,5 +1,6 @@
 #pragma once
 #include <glm/mat4x4.hpp>
+#include <vector>
 
 #include "types/Geometry.hpp"
 
@@ -8,10 +9,10 @@ namespace insonify::sonar {
 /** Of all triangles of a mesh, in its own coordinates [m]. */
 double longestEdge(const types::Mesh& mesh);
 
-/** Distance from the sonar to the nearest point of a mesh that stands where `sonar_from_mesh` says, or up to
- * `tolerance` less [m]; of a mesh that has very many triangles about as near as each other, that of the nearest box of
- * triangles. 0 where it has no triangles. */
+/** Distance from the sonar to the nearest point of a mesh that stands where `sonar_from_mesh` says [m]; of a mesh that
+ * has very many triangles about as near as each other, that of the nearest box of triangles. 0 where it has no
+ * triangles. Allocates in `scratch` alone. */
 double nearestDistance(const types::Mesh& mesh, double longest_edge, const glm::dmat4& sonar_from_mesh,
-                       double tolerance);
+                       std::vector<float>& scratch);
 
 }  // namespace insonify::sonar

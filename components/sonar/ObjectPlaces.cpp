@@ -36,7 +36,7 @@ Reach reachOf(const RenderPlan& plan) {
     const double half_elevation = types::radians(plan.config.beam_height_deg) / 2;
     double half_azimuth = std::max(std::abs(plan.beams.front().low), std::abs(plan.beams.back().high));
     if (plan.features.has(Feature::Conical)) half_azimuth = coneAzimuth(half_azimuth, half_elevation);
-    return {plan.grid.range_max, half_azimuth, half_elevation, plan.grid.bin_width / 16};
+    return {plan.grid.range_max, half_azimuth, half_elevation};
 }
 
 ObjectPlaces::ObjectPlaces(const types::Geometry& geometry, const Reach& reach, bool all)
@@ -49,6 +49,7 @@ ObjectPlaces::ObjectPlaces(const types::Geometry& geometry, const Reach& reach, 
         longest_edges_.push_back(longestEdge(mesh));
     }
     records_.resize(geometry.objects.size());
+    scratch_.reserve(4096);
     far_.resize(geometry.objects.size());
     world_from_object_.resize(geometry.objects.size());
 }
@@ -73,7 +74,7 @@ bool ObjectPlaces::reaches(const glm::dvec3& centre, double radius) const {
     return outward <= radius;
 }
 
-vec4 ObjectPlaces::extent(size_t index, const glm::dmat4& m, bool in_view) const {
+vec4 ObjectPlaces::extent(size_t index, const glm::dmat4& m, bool in_view) {
     double farthest = 0;
     for (int corner = 0; corner < 8; ++corner) {
         const glm::dvec4 p(corner & 1 ? box(index).high.x : box(index).low.x,
@@ -82,8 +83,7 @@ vec4 ObjectPlaces::extent(size_t index, const glm::dmat4& m, bool in_view) const
         farthest = std::max(farthest, glm::length(glm::dvec3(m * p)));
     }
     const size_t mesh = meshOf(index);
-    const double nearest =
-        in_view ? nearestDistance(geometry_.meshes[mesh], longest_edges_[mesh], m, reach_.tolerance) : 0;
+    const double nearest = in_view ? nearestDistance(geometry_.meshes[mesh], longest_edges_[mesh], m, scratch_) : 0;
     const double slack = 1e-5;  // of the float that carries it
     return vec4(nearest > 1e-6 ? (1 + slack) / nearest : 1e6, farthest > 0 ? (1 - slack) / farthest : 0, 0, 0);
 }

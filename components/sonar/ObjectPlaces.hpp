@@ -14,7 +14,6 @@ struct Reach {
     double range_max = std::numeric_limits<double>::infinity();  ///< [m]
     double half_azimuth = std::numbers::pi;                      ///< [rad]
     double half_elevation = std::numbers::pi / 2;                ///< [rad]
-    double tolerance = 0;                                        ///< Of ranges [m].
 };
 Reach reachOf(const RenderPlan& plan);
 
@@ -39,7 +38,7 @@ public:
 private:
     size_t meshOf(size_t object) const { return static_cast<size_t>(geometry_.objects[object].mesh); }
     void placeObject(size_t index, const glm::dmat4& sonar_from_object);
-    vec4 extent(size_t index, const glm::dmat4& sonar_from_object, bool in_view) const;
+    vec4 extent(size_t index, const glm::dmat4& sonar_from_object, bool in_view);
     /** Whether any of a ball may be heard. */
     bool reaches(const glm::dvec3& centre, double radius) const;
 
@@ -51,6 +50,7 @@ private:
     std::vector<glm::dmat4> world_from_object_;
     std::vector<ObjectRecord> records_;
     std::vector<bool> far_;
+    std::vector<float> scratch_;
 };
 
 }  // namespace insonify::sonar
