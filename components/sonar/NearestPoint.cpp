@@ -8,6 +8,8 @@
 #include <span>
 #include <utility>
 
+#include "types/VectorMath.hpp"
+
 namespace insonify::sonar {
 namespace {
 
@@ -33,7 +35,7 @@ inline float toEdge(float px, float py, float pz, float dx, float dy, float dz) 
 
 /** Square of the distance to each triangle: to its plane where the foot of the perpendicular lies within it, else to
  *  the nearest of its edges. */
-void nearest2(const Corners& c, float (&distance2)[at_once]) {
+INSONIFY_VECTOR_CLONES void nearest2(const Corners& c, float (&distance2)[at_once]) {
     for (uint32_t i = 0; i < at_once; ++i) {
         const float ax = c.x[0][i], ay = c.y[0][i], az = c.z[0][i], bx = c.x[1][i], by = c.y[1][i], bz = c.z[1][i],
                     cx = c.x[2][i], cy = c.y[2][i], cz = c.z[2][i];
