@@ -4,6 +4,7 @@
 #include <thread>
 
 #include "tests/framework/Tasks.hpp"
+#include "tests/support/Waiting.hpp"
 
 namespace insonify::framework {
 namespace {
@@ -59,9 +60,8 @@ TEST(DeploymentControlTest, APausedRunStandsStillGoesStepByStepAndCanBeStopped) 
     std::atomic<int> instants{0};
     std::thread running([&] { deployment.run({.duration_s = 100}, stop, [&](const Progress&) { ++instants; }); });
     const auto become = [&](int expected) {
-        for (int i = 0; i < 2000 && instants != expected; ++i)
-            std::this_thread::sleep_for(std::chrono::milliseconds(2));
-        std::this_thread::sleep_for(std::chrono::milliseconds(20));
+        test::comesTrue([&] { return instants == expected; });
+        std::this_thread::sleep_for(std::chrono::milliseconds(20));  // one too many would come now
         return instants == expected;
     };
     EXPECT_TRUE(become(0));
