@@ -10,6 +10,8 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
+#include "tests/support/Waiting.hpp"
+
 namespace insonify::viewer {
 
 inline const char* const chromium = "/usr/bin/chromium";
@@ -53,8 +55,8 @@ public:
     /** The value of an expression; a fault of the test when it throws. */
     nlohmann::json value(const std::string& expression) { return ask({{"eval", expression}}); }
     /** Waits until it is true. */
-    bool becomes(const std::string& expression, double seconds = 15) {
-        return ask({{"until", expression}, {"seconds", seconds}}) == true;
+    bool becomes(const std::string& expression) {
+        return ask({{"until", expression}, {"seconds", test::patience.count()}}) == true;
     }
     /** Into what has the focus; then Enter. */
     void type(const std::string& text) { ask({{"type", text}}); }
