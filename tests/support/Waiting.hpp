@@ -1,5 +1,6 @@
 #pragma once
 // Waiting for what other threads and processes do, so that no verdict depends on how fast or how evenly a machine runs.
+#include <atomic>
 #include <chrono>
 #include <thread>
 
@@ -17,6 +18,13 @@ bool comesTrue(Condition&& condition) {
         if (std::chrono::steady_clock::now() > end) return false;
         std::this_thread::sleep_for(std::chrono::milliseconds(1));
     }
+    return true;
+}
+
+/** Whether a count that another thread raises reaches `whole` without standing still for longer than patience. */
+inline bool reaches(const std::atomic<int>& count, int whole) {
+    while (count < whole)
+        if (!comesTrue([&, before = count.load()] { return count > before; })) return false;
     return true;
 }
 

@@ -36,7 +36,7 @@ public:
         if (pid_ == 0) {
             dup2(to[0], STDIN_FILENO);
             dup2(from[1], STDOUT_FILENO);
-            execl(python.c_str(), "python3", script.c_str(), chromium, url.c_str(), first.c_str(), nullptr);
+            execl(python.c_str(), python.c_str(), script.c_str(), chromium, url.c_str(), first.c_str(), nullptr);
             _exit(127);
         }
         close(to[0]);

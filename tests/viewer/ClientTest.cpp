@@ -237,8 +237,7 @@ TEST(ClientTest, AClientThatNeverReadsDelaysNoCycleAndLosesTheOldest) {
             EXPECT_EQ(nextPing(good)["time_us"], shown + 1);
         }
     });
-    bool goes_on = true;
-    while (goes_on && shown < 300) goes_on = comesTrue([&, before = shown.load()] { return shown > before; });
+    const bool goes_on = test::reaches(shown, 300);
     EXPECT_TRUE(goes_on) << "ping " << shown << " waits for a client that never reads";
     if (!goes_on) deaf.reset();
     all.get();
