@@ -61,6 +61,12 @@ void rethrow(const Assimp::Importer& importer) {
     if (text.find(' ') == std::string::npos || text.find("::") != std::string::npos) throw std::logic_error(text);
 }
 
+/** Assimp cites what it cannot read, which may be the rest of the file. */
+std::string shortened(const std::string& text) {
+    constexpr size_t most = 160;
+    return text.size() <= most ? text : text.substr(0, most) + "...";
+}
+
 /** Assimp's own sentences are passed on; what the standard library throws says nothing of the file. */
 [[noreturn]] void refuse(const Assimp::Importer& importer) {
     try {
@@ -73,7 +79,7 @@ void rethrow(const Assimp::Importer& importer) {
     } catch (...) {
         throw std::runtime_error("a number, a count or an index in it is not what its format allows");
     }
-    throw std::runtime_error(importer.GetErrorString());
+    throw std::runtime_error(shortened(importer.GetErrorString()));
 }
 
 }  // namespace
