@@ -22,7 +22,8 @@ protected:
     /** What is wrong with a mesh file; empty where it was read, and then it must be sound. */
     std::string faultOfMesh(const std::filesystem::path& file) const {
         try {
-            expectSound(*readMeshFile(file));
+            const types::GeometryPtr geometry = readMeshFile(file);
+            for (const types::Mesh& mesh : geometry->meshes) expectSoundMesh(mesh, geometry->materials.size());
             return "";
         } catch (const types::ConfigError& error) {
             EXPECT_TRUE(std::string(error.what()).starts_with(file.string() + ": ")) << error.what();
