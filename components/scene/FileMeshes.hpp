@@ -33,6 +33,9 @@ struct MeshReply {
     FileMeshes meshes;
 };
 
+/** File descriptor to which that program writes its reply. */
+inline constexpr int mesh_reply_descriptor = 3;
+
 /** Writes a reply as bytes of this machine's order, the large arrays without another copy; false where not all of them
  *  could be written. */
 bool writeReply(const MeshReply& reply, std::FILE* file);

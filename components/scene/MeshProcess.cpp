@@ -19,7 +19,6 @@
 namespace insonify::scene {
 namespace {
 
-constexpr int kReply = 3;
 constexpr const char* kRemedy = "; open the model in its own program and export it again, best as .glb";
 
 [[noreturn]] void refuse(const std::filesystem::path& file, const std::string& message) {
@@ -89,8 +88,8 @@ class SpawnSettings {
 public:
     explicit SpawnSettings(int reply) {
         posix_spawn_file_actions_init(&actions_);
-        posix_spawn_file_actions_adddup2(&actions_, reply, kReply);
-        posix_spawn_file_actions_addclosefrom_np(&actions_, kReply + 1);
+        posix_spawn_file_actions_adddup2(&actions_, reply, mesh_reply_descriptor);
+        posix_spawn_file_actions_addclosefrom_np(&actions_, mesh_reply_descriptor + 1);
         for (const int standard : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO})
             posix_spawn_file_actions_addopen(&actions_, standard, "/dev/null", O_RDWR, 0);
         posix_spawnattr_init(&attributes_);

@@ -17,8 +17,6 @@ using namespace insonify::scene;
 
 namespace {
 
-constexpr int kReply = 3;
-
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
 constexpr bool kLimitsMemory = false;  // a sanitizer takes address space without end
 #else
@@ -54,7 +52,7 @@ MeshReply read(const char* file, bool is_y_up) try {
 }  // namespace
 
 int main(int argc, char** argv) {
-    std::FILE* reply = argc == 6 ? fdopen(kReply, "wb") : nullptr;
+    std::FILE* reply = argc == 6 ? fdopen(mesh_reply_descriptor, "wb") : nullptr;
     if (!reply) {
         std::fputs("insonify-read-mesh: reads mesh files for insonify, which starts it\n", stderr);
         return 2;
