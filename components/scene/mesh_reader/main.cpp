@@ -15,10 +15,15 @@
 
 using namespace insonify::scene;
 
+#ifdef __SANITIZE_ADDRESS__
+/** The sanitizer takes address space without end, so that it has to limit memory itself. */
+extern "C" const char* __asan_default_options() { return "max_allocation_size_mb=1024:hard_rss_limit_mb=2048"; }
+#endif
+
 namespace {
 
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-constexpr bool kLimitsMemory = false;  // a sanitizer takes address space without end
+#ifdef __SANITIZE_ADDRESS__
+constexpr bool kLimitsMemory = false;
 #else
 constexpr bool kLimitsMemory = true;
 #endif
