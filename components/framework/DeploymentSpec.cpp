@@ -275,6 +275,7 @@ void DeploymentSpec::set(const std::string& assignment) {
     if (equals == std::string::npos || property.empty()) return refuse("must be task.property=value");
     TaskSpec* changed = task(name);
     if (!changed) return refuse("there is no task " + name + "; " + suggestion(name, taskNames()));
+    if (equals + 1 == assignment.size()) return refuse("has no value; null takes the property out");
     try {
         PropertySources(*this).set(*changed, property, parseValue(assignment.substr(equals + 1)));
     } catch (const types::ConfigError& error) {

@@ -3,6 +3,7 @@
 
 #include <limits>
 
+#include "components/framework/DeploymentSpec.hpp"
 #include "components/framework/Properties.hpp"
 
 namespace insonify {
@@ -116,6 +117,52 @@ always: {mean: 2}
     EXPECT_EQ(config.materials.at("rock").mean, 0.2);
     EXPECT_EQ(config.always.mean, 2);
     EXPECT_EQ(config.always.law, Law::Rayleigh);
+}
+
+/** What a deployment's properties, one `--set` and a live setter each make of a value, and both of them after it. */
+TEST(PropertiesTest, SettingFromOutsideAndLiveMeanTheSame) {
+    const std::string written =
+        "{range: 20, speckle: {law: gaussian, mean: 2}, gain: 3, bearings: [1, 2], materials: {a: {mean: 3}, b: {mean: "
+        "4}}, always: {law: gaussian, mean: 7}}";
+    const std::pair<const char*, const char*> settings[] = {
+        {"range", "30"},
+        {"range", "null"},
+        {"gain", "null"},
+        {"speckle", "{mean: 5}"},
+        {"speckle", "{mean: null}"},
+        {"speckle", "{}"},
+        {"speckle", "null"},
+        {"bearings", "[9]"},
+        {"materials", "{a: {law: gaussian}, b: null, c: {mean: 6}}"},
+        {"always", "{law: null}"},
+        {"always", "null"}};
+    for (const auto& [name, value] : settings) {
+        const std::string setting = std::string(name) + "=" + value;
+        Task live("t"), set("t");
+        ASSERT_THAT(faultsOf(live, written), testing::IsEmpty());
+        static_cast<framework::PropertiesBase&>(live.config).set(name, value);
+        framework::DeploymentSpec spec =
+            framework::DeploymentSpec::parse("tasks: {t: {type: t, properties: " + written + "}}", "a.yml");
+        spec.set("t." + setting);
+        framework::ConfigReader reader("a.yml");
+        set.config.load(reader, spec.task("t")->properties, "");
+        EXPECT_TRUE(spec.faults.empty() && reader.faults().empty()) << setting;
+        EXPECT_EQ(live.config.values(), set.config.values()) << setting;
+    }
+}
+
+TEST(PropertiesTest, NullTakesOutAndWhatABlockDoesNotNameStays) {
+    Task task("t");
+    ASSERT_THAT(faultsOf(task, "{range: 20, speckle: {law: gaussian, mean: 2}, gain: 3}"), testing::IsEmpty());
+    framework::PropertiesBase& properties = task.config;
+    properties.set("speckle", "{mean: 5}");
+    EXPECT_EQ(task.config->speckle->law, Law::Gaussian);
+    EXPECT_EQ(task.config->speckle->mean, 5);
+    properties.set("speckle", "null");
+    properties.set("gain", "null");
+    properties.set("range", "null");
+    EXPECT_FALSE(task.config->speckle || task.config->gain);
+    EXPECT_EQ(task.config->range, 50);
 }
 
 TEST(PropertiesTest, EveryFaultIsReportedAtItsPlaceInOneGo) {
