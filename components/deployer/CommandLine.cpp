@@ -45,13 +45,18 @@ int runCommandLine(int argc, char** argv) {
     app.set_version_flag("--version", INSONIFY_VERSION);
     app.require_subcommand(1);
     Action action;
+    addInitCommand(app, action);
     addRunCommand(app, action);
     addCheckCommand(app, action);
     addPlanCommand(app, action);
     addDescribeCommand(app, action);
+    addSceneCommand(app, action);
+    addSchemaCommand(app, action);
     addLogCommand(app, action);
     addReplayCommand(app, action);
     addStudyCommand(app, action);
+    addCompletionCommand(app, action);
+    addManCommand(app, action);
 
     const int code = guarded(app, action, argc, argv);
     if (flushed()) return code;

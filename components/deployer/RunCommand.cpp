@@ -7,6 +7,7 @@
 #include <memory>
 
 #include "components/deployer/Commands.hpp"
+#include "components/deployer/DeploymentFile.hpp"
 #include "components/deployer/OutputFolder.hpp"
 #include "components/deployer/RunOptions.hpp"
 #include "components/deployer/StopSignal.hpp"
@@ -149,14 +150,18 @@ int runDeployment(framework::DeploymentSpec spec, const RunOptions& options, std
 void addRunCommand(CLI::App& app, Action& action) {
     const auto options = std::make_shared<RunOptions>();
     CLI::App* command = app.add_subcommand("run", "Runs a deployment");
-    command->add_option("DEPLOYMENT", options->deployment, "a YAML file")->required();
+    command->add_option("DEPLOYMENT", options->deployment, "a YAML file, or a folder with one deployment")->required();
     options->addTo(*command);
     command
         ->add_option("--call", options->calls,
                      "task.operation[=argument,...]: calls it once all is configured; may be repeated, called in order")
         ->allow_extra_args(false);
-    command->callback(
-        [options, &action] { action = [options] { return runDeployment(loadSpec(*options), *options); }; });
+    command->callback([options, &action] {
+        action = [options] {
+            options->deployment = deploymentIn(options->deployment);
+            return runDeployment(loadSpec(*options), *options);
+        };
+    });
 }
 
 }  // namespace insonify::deployer

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "components/framework/DeploymentKeys.hpp"
 #include "components/framework/PropertySources.hpp"
 #include "components/framework/YamlText.hpp"
 
@@ -204,6 +205,10 @@ struct insonify::types::EnumNames<insonify::framework::Scheduler> {
 };
 
 namespace insonify::framework {
+
+DeploymentKeys deploymentKeys() {
+    return {listProperties(DocumentKeys{}), listProperties(TaskKeys{}), listProperties(ConnectionKeys{})};
+}
 
 std::pair<std::string, std::string> splitPort(const std::string& path) {
     const size_t dot = path.find('.');
