@@ -39,7 +39,9 @@ std::string didYouMean(std::string_view wrong, const std::vector<std::string>& k
     size_t least = std::numeric_limits<size_t>::max();
     std::vector<std::string> nearest, holding;
     for (const std::string& name : known) {
-        const size_t distance = editDistance(meant, lower(name));
+        const std::string last =
+            lower(name).substr(name.rfind(':') + 1);  // of sonar::SonarTask; all, where there is none
+        const size_t distance = std::min(editDistance(meant, lower(name)), editDistance(meant, last));
         if (distance < least) nearest = {name};
         least = std::min(least, distance);
         if (meant.size() >= 3 && lower(name).find(meant) != std::string::npos) holding.push_back(name);

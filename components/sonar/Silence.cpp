@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <glm/common.hpp>
 #include <glm/geometric.hpp>
 #include <glm/gtc/quaternion.hpp>
 
@@ -13,7 +14,11 @@
 namespace insonify::sonar {
 namespace {
 
-std::string text(const glm::dvec3& v) { return fmt::format("[{:.4g}, {:.4g}, {:.4g}]", v.x, v.y, v.z); }
+/** Without digits of rounding. */
+std::string text(const glm::dvec3& v) {
+    const glm::dvec3 rounded = glm::round(v * 1e6) / 1e6 + 0.0;
+    return fmt::format("[{:.6g}, {:.6g}, {:.6g}]", rounded.x, rounded.y, rounded.z);
+}
 
 double degrees(double radians) { return radians / types::radians(1); }
 
@@ -35,8 +40,8 @@ std::string hindranceText(const SonarConfig& config, const Reach& reach, const g
         return fmt::format("{:.4g} deg {} the sonar's plane, where the aperture reaches {:g} deg to either side",
                            std::abs(elevation), elevation < 0 ? "below" : "above", config.beam_height_deg / 2);
     if (std::abs(bearing) > reach.covered_deg / 2)
-        return fmt::format("at bearing {:.4g} deg, where the fan covers {:g} deg to either side", bearing,
-                           reach.covered_deg / 2);
+        return fmt::format("at a bearing of {:.4g} deg to {}, where the fan covers {:g} deg to either side",
+                           std::abs(bearing), bearing > 0 ? "port" : "starboard", reach.covered_deg / 2);
     return "";
 }
 

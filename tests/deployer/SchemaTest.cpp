@@ -22,8 +22,8 @@ protected:
     }
     /** What the validator finds wrong, a line each. */
     std::string faultsOf(std::vector<std::string> files) {
-        files.insert(files.begin(), {"/usr/bin/python3", fs::path(INSONIFY_SOURCE_DIR) / "tests/deployer/check_schema.py",
-                                     "schema.json"});
+        files.insert(files.begin(), {"/usr/bin/python3",
+                                     fs::path(INSONIFY_SOURCE_DIR) / "tests/deployer/check_schema.py", "schema.json"});
         const Outcome outcome = Process(files, folder_.path()).wait();
         EXPECT_EQ(outcome.code, 0) << outcome.err;
         return outcome.out;
@@ -87,7 +87,8 @@ TEST_F(SchemaTest, EveryTaskAndPropertyIsThereWithDocumentationUnitBoundsDefault
     for (const json& task : tasks) {
         const std::string type = task["type"];
         ASSERT_TRUE(schema_["$defs"].contains(type)) << type;
-        for (const json& described : json::parse(callInsonify(folder_, {"describe", type, "--json"}).out)["properties"]) {
+        for (const json& described :
+             json::parse(callInsonify(folder_, {"describe", type, "--json"}).out)["properties"]) {
             const std::string name = described["name"];
             if (name.find_first_of(".[") != std::string::npos) continue;
             EXPECT_THAT(property(type, name).value("description", ""), HasSubstr(described["doc"].get<std::string>()));
@@ -105,7 +106,9 @@ TEST_F(SchemaTest, EveryTaskAndPropertyIsThereWithDocumentationUnitBoundsDefault
 }
 
 TEST_F(SchemaTest, OtherNamesAndLibrariesOpenWhatIsBehindThem) {
-    EXPECT_EQ(faultsWith("    type: sonar::SonarTask\n", "    type: sonar::SonarTask\n    aliases: {reach: sonar.range}\n"), "");
+    EXPECT_EQ(
+        faultsWith("    type: sonar::SonarTask\n", "    type: sonar::SonarTask\n    aliases: {reach: sonar.range}\n"),
+        "");
     EXPECT_EQ(faultsWith("range: 20", "range: 20\n      reach: 30").find("reach") == std::string::npos, false);
     EXPECT_EQ(faultsWith("schedule: lockstep", "libraries: [mine.so]\nschedule: lockstep"), "");
     writeFile(folder_ / "other.yml", replaced(replaced(wall_deployment, "noise::NoiseTask", "my::Task"),
