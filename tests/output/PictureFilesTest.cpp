@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include <opencv2/imgcodecs.hpp>
+#include <opencv2/videoio.hpp>
 
 #include "components/output/FanImage.hpp"
 #include "components/output/PictureFiles.hpp"

@@ -82,7 +82,7 @@ std::vector<Seen> met(const types::Snapshot& snapshot, const std::vector<Slab>& 
                 rays.y[i] = static_cast<float>(sine + cosine * u);
                 rays.z[i] = static_cast<float>(v);
             }
-            visibility.cast(rays, hits);
+            visibility.cast({&rays, 1}, {&hits, 1});
             for (int i = 0; i < tile_samples && first + i < slab.rows * slab.columns; ++i)
                 seen.push_back(hits.command[i] == TileHits::nothing
                                    ? nothing
