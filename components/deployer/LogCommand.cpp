@@ -60,7 +60,7 @@ void printMetadata(const pocolog::Reader& log) {
         fmt::print("\n{}\n{}\n", stream.name, text(meaningOf(log, stream)));
         for (const auto& [key, value] : stream.metadata)
             if (told.emplace(key, value).second)
-                fmt::print(value.find('\n') == value.npos ? "{}: {}\n" : "{}:\n{}\n", key, value);
+                fmt::print("{}:{}{}\n", key, value.find('\n') == value.npos ? " " : "\n", value);
     }
 }
 
