@@ -191,7 +191,8 @@ TEST(PropertiesTest, EveryFaultIsReportedAtItsPlaceInOneGo) {
             "a.yml:4:7: p.seed: is -1; must be a whole number from 0 to 18446744073709551615",
             "a.yml:5:9: p.offset: is 9223372036854775808; must be a whole number from -9223372036854775808 to "
             "9223372036854775807",
-            "a.yml:6:7: p.loud: is yes; write true; may be true or false", "a.yml:7:7: p.file: is a list; must be a text",
+            "a.yml:6:7: p.loud: is yes; write true; may be true or false",
+            "a.yml:7:7: p.file: is a list; must be a text",
             "a.yml:8:11: p.position: is a list; must be a list of three numbers [x, y, z]",
             "a.yml:9:16: p.speckle.law: is poisson; may be rayleigh, gaussian",
             "a.yml:9:31: p.speckle.mean: is .nan; must be a finite number",
