@@ -6,16 +6,19 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <set>
 
 #include "components/deployer/Commands.hpp"
 #include "components/deployer/Json.hpp"
 #include "components/deployer/PictureExport.hpp"
+#include "components/deployer/StreamMeaning.hpp"
 #include "components/mcap/Export.hpp"
 #include "components/mcap/LogSource.hpp"
 #include "components/pocolog/Check.hpp"
 #include "components/pocolog/Copy.hpp"
 #include "components/pocolog/Export.hpp"
 #include "components/pocolog/Info.hpp"
+#include "components/pocolog/Pings.hpp"
 
 namespace insonify::deployer {
 namespace fs = std::filesystem;
@@ -42,11 +45,37 @@ void printTable(const std::string& file, const pocolog::LogInfo& info) {
                    s.rate_hz);
 }
 
-int logInfo(const std::string& file, bool json) {
+/** What each stream carries: the deployment, the seed and the plan, which the streams of a run share, and what its
+ *  numbers mean. */
+Json metadataJson(const pocolog::Reader& log) {
+    Json all = Json::object();
+    for (const pocolog::Stream& stream : log.streams())
+        all[stream.name] = {{"metadata", stream.metadata}, {"meaning", meaningOf(log, stream)}};
+    return all;
+}
+
+void printMetadata(const pocolog::Reader& log) {
+    std::set<std::pair<std::string, std::string>> told;  // once for all streams that have the same
+    for (const pocolog::Stream& stream : log.streams()) {
+        fmt::print("\n{}\n{}\n", stream.name, text(meaningOf(log, stream)));
+        for (const auto& [key, value] : stream.metadata)
+            if (told.emplace(key, value).second)
+                fmt::print("{}:{}{}\n", key, value.find('\n') == value.npos ? " " : "\n", value);
+    }
+}
+
+int logInfo(const std::string& file, bool json, bool metadata) {
     const auto log = mcap::openLog(file);
     if (!log->complete()) fmt::print(stderr, "notice: {}: {}\n", file, log->fault());
     const pocolog::LogInfo info = pocolog::info(*log);
-    json ? print(infoJson(info)) : printTable(file, info);
+    if (!json) {
+        printTable(file, info);
+        if (metadata) printMetadata(*log);
+        return 0;
+    }
+    Json all = infoJson(info);
+    if (metadata) all["metadata"] = metadataJson(*log);
+    print(all);
     return 0;
 }
 
@@ -55,18 +84,31 @@ void refuseMissingFolder(const fs::path& to) {
     if (!fs::is_directory(folder)) throw types::ConfigError(folder, "--to", "is no folder");
 }
 
+/** Pings as text are some ten times as large as they are in the log, and slow to read. */
+void noteSize(const pocolog::Reader& log, const std::string& stream, const fs::path& to) {
+    constexpr double line = 40, told_from = 1e8;  // [B]
+    if (!pocolog::holdsPings(log.streams()[log.indexOf(stream)])) return;
+    double bins = 0;
+    log.forEachRef(stream, [&](const pocolog::SampleRef& at) { bins += at.size / static_cast<double>(sizeof(float)); });
+    if (bins * line > told_from)
+        fmt::print(stderr,
+                   "notice: {} gets a line for each bin, some {:.0f} million, {:.1f} GB; an .npz takes {:.2g} GB\n",
+                   to.string(), bins / 1e6, bins * line / 1e9, bins * sizeof(float) / 1e9);
+}
+
 /** The files that were written. */
 std::vector<fs::path> exportTo(pocolog::Reader& log, const std::string& stream, const fs::path& to) {
-    log.indexOf(stream);
+    const std::string meta = text(meaningOf(log, log.streams()[log.indexOf(stream)]));
     if (!to.has_extension() || fs::is_directory(to)) {
         fs::create_directories(to);
-        return pocolog::exportNpz(log, stream, to / (stream + ".npz"));
+        return pocolog::exportNpz(log, stream, to / (stream + ".npz"), meta);
     }
     refuseMissingFolder(to);
-    if (to.extension() == ".npz") return pocolog::exportNpz(log, stream, to);
+    if (to.extension() == ".npz") return pocolog::exportNpz(log, stream, to, meta);
     if (to.extension() == ".png") return exportPictures(log, stream, to);
     if (to.extension() != ".csv")
         throw types::ConfigError(to, "--to", "may be a folder, or end in .npz, .csv, .png or .mcap");
+    noteSize(log, stream, to);
     pocolog::exportCsv(log, stream, to);
     return {to};
 }
@@ -76,7 +118,7 @@ struct Options {
     std::vector<std::string> files, streams;
     std::optional<double> from, until;
     mcap::McapConfig mcap;
-    bool json = false;
+    bool json = false, metadata = false;
 };
 
 int logExport(const Options& options) {
@@ -186,8 +228,9 @@ void addLogCommand(CLI::App& app, Action& action) {
     CLI::App* log = app.add_subcommand("log", "Looks into a log, cuts and mends it")->require_subcommand(1);
 
     CLI::App* info = add(*log, action, options, "info", "Streams, types, counts, time span and rate",
-                         [](const Options& asked) { return logInfo(asked.file, asked.json); });
+                         [](const Options& asked) { return logInfo(asked.file, asked.json, asked.metadata); });
     info->add_flag("--json", options->json, "for machines");
+    info->add_flag("--metadata", options->metadata, "deployment, seed and plan, and what the numbers mean, with units");
 
     CLI::App* out = add(*log, action, options, "export",
                         "Writes a stream as numpy arrays, text or pictures, or the log as ROS 2 messages", logExport);

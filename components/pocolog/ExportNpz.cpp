@@ -52,10 +52,10 @@ std::vector<Run> runsOfOneShape(Reader& log, const std::string& stream) {
     return runs;
 }
 
-void writeRun(Reader& log, const Run& run, const Path& path, Sonar ping) {
+void writeRun(Reader& log, const Run& run, NpzFile& npz, Sonar ping) {
     const size_t count = run.samples.size();
     std::vector<double> bearings, time, bin_duration, speed_of_sound;
-    NpzFile npz(path);
+    std::vector<float> range;
     npz.begin("bins", numpyType<float>(), run.whole());
     for (const SampleRef& at : run.samples) {
         readPing(log, at, ping);
@@ -64,18 +64,18 @@ void writeRun(Reader& log, const Run& run, const Path& path, Sonar ping) {
         time.push_back(ping.time.seconds());
         bin_duration.push_back(ping.bin_duration.seconds());
         speed_of_sound.push_back(static_cast<double>(ping.speed_of_sound));
+        for (uint32_t k = 0; k < ping.bin_count; ++k) range.push_back(static_cast<float>(ping.binStart(k + 0.5)));
     }
     npz.end();
     npz.array("bearings", {count, run.shape[0]}, bearings);
     npz.array("time", {count}, time);
     npz.array("bin_duration", {count}, bin_duration);
     npz.array("speed_of_sound", {count}, speed_of_sound);
-    npz.close();
+    npz.array("range_m", {count, run.shape[1]}, range);
 }
 
-void writeRun(Reader& log, const Run& run, const Path& path, Image picture) {
+void writeRun(Reader& log, const Run& run, NpzFile& npz, Image picture) {
     std::vector<double> time;
-    NpzFile npz(path);
     npz.begin("pixels", numpyType<uint8_t>(), run.whole());
     for (const SampleRef& at : run.samples) {
         log.read(at, picture);
@@ -85,23 +85,33 @@ void writeRun(Reader& log, const Run& run, const Path& path, Image picture) {
     }
     npz.end();
     npz.array("time", {time.size()}, time);
-    npz.close();
+}
+
+/** One text; nothing when it is empty. */
+void writeMeta(NpzFile& npz, const std::string& meta) {
+    if (meta.empty()) return;
+    npz.begin("meta", "|S" + std::to_string(meta.size()), {});
+    npz.append(meta.data(), meta.size());
+    npz.end();
 }
 
 template <class T>
-std::vector<Path> writeRuns(Reader& log, const std::string& stream, const Path& path) {
+std::vector<Path> writeRuns(Reader& log, const std::string& stream, const Path& path, const std::string& meta) {
     const std::vector<Run> runs = runsOfOneShape<T>(log, stream);
     std::vector<Path> files;
     for (const Run& run : runs) {
         Path file = path;
         if (runs.size() > 1) file.replace_extension("." + std::to_string(files.size()) + path.extension().string());
-        writeRun(log, run, file, T{});
+        NpzFile npz(file);
+        writeRun(log, run, npz, T{});
+        writeMeta(npz, meta);
+        npz.close();
         files.push_back(file);
     }
     return files;
 }
 
-void writePoses(Reader& log, const std::string& stream, const Path& path) {
+void writePoses(Reader& log, const std::string& stream, const Path& path, const std::string& meta) {
     std::vector<double> time, position, orientation;
     log.forEach<Pose>(stream, [&](const Pose& pose, const SampleRef& at) {
         const auto& [p, q] = std::tie(pose.position, pose.orientation);
@@ -113,6 +123,7 @@ void writePoses(Reader& log, const std::string& stream, const Path& path) {
     npz.array("time", {time.size()}, time);
     npz.array("position", {time.size(), 3}, position);
     npz.array("orientation", {time.size(), 4}, orientation);
+    writeMeta(npz, meta);
     npz.close();
 }
 
@@ -140,7 +151,7 @@ auto valueOf(const T& sample) {
 }
 
 template <class T>
-void writeValues(Reader& log, const std::string& stream, const Path& path) {
+void writeValues(Reader& log, const std::string& stream, const Path& path, const std::string& meta) {
     std::vector<double> time;
     std::vector<decltype(valueOf(T{}))> values;
     log.forEach<T>(stream, [&](const T& sample, const SampleRef& at) {
@@ -150,21 +161,22 @@ void writeValues(Reader& log, const std::string& stream, const Path& path) {
     NpzFile npz(path);
     npz.array("time", {time.size()}, time);
     writeValue(npz, values);
+    writeMeta(npz, meta);
     npz.close();
 }
 
 }  // namespace
 
-std::vector<Path> exportNpz(Reader& log, const std::string& stream, const Path& path) {
+std::vector<Path> exportNpz(Reader& log, const std::string& stream, const Path& path, const std::string& meta) {
     const Stream& declared = log.streams()[log.indexOf(stream)];
-    if (holdsPings(declared)) return writeRuns<Sonar>(log, stream, path);
-    if (declared.holds<Image>()) return writeRuns<Image>(log, stream, path);
+    if (holdsPings(declared)) return writeRuns<Sonar>(log, stream, path, meta);
+    if (declared.holds<Image>()) return writeRuns<Image>(log, stream, path, meta);
     bool done = declared.holds<Pose>();
-    if (done) writePoses(log, stream, path);
+    if (done) writePoses(log, stream, path, meta);
     forEachSampleType([&]<class T>(std::type_identity<T>) {
         if constexpr (Scalar<T> || Text<T>)
             if (declared.holds<T>()) {
-                writeValues<T>(log, stream, path);
+                writeValues<T>(log, stream, path, meta);
                 done = true;
             }
     });

@@ -37,7 +37,7 @@ std::string glb(const std::string& json, const std::string& binary) {
 
 TEST_F(BadInputTest, AFileThatIsMissingOrAFolderOrEmptyOrOfAnotherKindIsNamed) {
     std::filesystem::create_directory(folder_ / "folder.glb");
-    expectFault(folder_ / "missing.glb", "does not exist; give the path of a .gltf or .glb");
+    expectFault(folder_ / "missing.glb", "must be a scene, which may be .gltf, .glb, .world or .sdf");
     expectFault(folder_ / "folder.glb", "is not a file");
     expectFault(write("empty.glb", ""), "is empty");
     expectFault(write("cube.obj", "v 0 0 0"), "has extension \".obj\"; may be .gltf, .glb, .world or .sdf");

@@ -17,7 +17,7 @@ protected:
 
 TEST_F(SdfBadInputTest, WhatIsNoSdfIsNamed) {
     std::filesystem::create_directory(folder_ / "folder.world");
-    expectFault(faultOf(folder_ / "missing.world"), "is not a file; give the path of a .world or .sdf file");
+    expectFault(faultOf(folder_ / "missing.world"), "does not exist; looked for at ");
     expectFault(faultOf(folder_ / "folder.world"), "is not a file");
     expectFault(faultOf(write("empty.sdf", "")), "is no XML: it is empty");
     expectFault(faultOf(write("cut.sdf", "<sdf version='1.9'>\n<world name='w'>\n<model")),

@@ -100,7 +100,9 @@ TEST_F(SdfVisualsTest, AWrongAcousticTagIsToldWithItsLine) {
     EXPECT_NE(fault.find("case.world:4: a::l::v.insonify:acoustics.sediment: is \"sandd\"; may be rough_rock, "),
               std::string::npos)
         << fault;
-    EXPECT_NE(fault.find("insonify:acoustics.lamber_db: is not known; may be sediment, "), std::string::npos) << fault;
+    EXPECT_NE(fault.find("insonify:acoustics.lamber_db: is not known; did you mean lambert_db? may be sediment, "),
+              std::string::npos)
+        << fault;
 }
 
 TEST_F(SdfVisualsTest, MaterialsAreOverriddenByScriptNameAndByModel) {

@@ -125,6 +125,23 @@ TEST_F(PageTest, APropertyIsSetWhereItStands) {
     EXPECT_TRUE(becomes(row + ".querySelector('input').value === '10'")) << "it shows what holds";
 }
 
+TEST_F(PageTest, ABlockIsSetToWhatIsWrittenThereSoThatRowsMayBecomeABudget) {
+    put("task", "source");
+    const std::string row =
+        "[...document.querySelectorAll('#properties tr')].find((one) => one.cells[0].textContent === 'quality')";
+    value(row + ".querySelector('input').focus()");
+    value(row + ".querySelector('input').select()");
+    browser->type("{budget_ms: 20}");
+    EXPECT_TRUE(becomes("insonify.status().tasks[0].properties.quality === '{\"budget_ms\": 20}'"));
+    EXPECT_EQ(value(row + ".querySelector('.refused').textContent"), "");
+}
+
+TEST_F(PageTest, BearingsAreSignedAsInPicturesAndTheRangeIsTold) {
+    EXPECT_THAT(readAt(6.75, -8), HasSubstr("-8"));
+    EXPECT_THAT(readAt(6.75, -8), HasSubstr("stbd"));
+    EXPECT_EQ(text("reach"), "15.0 m, 32 x 100, 150 mm");
+}
+
 TEST_F(PageTest, TheButtonsRecordPauseAndStep) {
     ASSERT_TRUE(becomes("document.querySelectorAll('#controls button').length === 3"));
     click("● source");
