@@ -12,7 +12,7 @@ layout(std430, binding = EDGES_BINDING) readonly buffer Edges { double edges[]; 
 layout(std430, binding = SUMS_BINDING) buffer Sums { uvec2 sums[]; };  // low and high word
 
 uniform ivec2 image_size;
-uniform uint bin_count;
+uniform uint bin_count, beam_stride;
 uniform double bin_width, attenuation, strength_scale;
 uniform dvec2 extent, pixel_size, slab_axis;
 
@@ -30,10 +30,10 @@ void addFixed(uint cell, double amount) {
 
 void addToBin(uint beam, uint bin, double amount, double weight) {
 #ifdef HAVE_CERQUEIRA2017
-    uint cell = 2u * (beam * bin_count + bin);
+    uint cell = 2u * (beam * beam_stride + bin);
     addFixed(cell + 1u, weight);
 #else
-    uint cell = beam * bin_count + bin;
+    uint cell = beam * beam_stride + bin;
 #endif
     addFixed(cell, amount);
 }

@@ -14,21 +14,19 @@ double cerqueiraEcho(double x) { return 1.0 / (1.0 + double(exp(float(12.0 - 18.
 double attenuated(double cosine, double range) { return cosine * double(exp(float(-2.0 * attenuation * range))); }
 #endif
 
-// What the includer's addToBin is told of the part of a cell between two inverse ranges: `amount` is, for `physical`, the
-// part's energy times the square of the bin's central range; for cerqueira2017 it is S weighted by the part's size `weight`.
-// Both are relative to one whole pixel.
-void depositPart(uint beam, uint bin, double share, double above, double below, double strength_range) {
+// What the includer's addToBin is told of the part of a cell between two inverse ranges: `amount` is, for `physical`,
+// partEnergy; for cerqueira2017 it is S weighted by the part's size `weight`.
+void depositPart(Footprint cell, uint beam, uint bin, double share, double above, double below, double strength_range) {
 #ifdef HAVE_CERQUEIRA2017
     double inverse_range = 0.5 * (above + below);
     double cosine = min(strength_range * inverse_range, 1.0);
 #ifdef HAVE_ABSORPTION
     cosine = attenuated(cosine, 1.0 / inverse_range);
 #endif
-    addToBin(beam, bin, share * cerqueiraEcho(cosine), share);
+    addToBin(beam, bin, cell.size * share * cerqueiraEcho(cosine), cell.size * share);
 #endif
 #ifdef HAVE_PHYSICAL
-    double centre = (double(bin) + 0.5) * bin_width;
-    addToBin(beam, bin, strength_range * share * centre * centre * meanCube(above, below), 0.0);
+    addToBin(beam, bin, partEnergy(cell, strength_range, share, (double(bin) + 0.5) * bin_width, above, below), 0.0);
 #endif
 }
 
@@ -66,7 +64,7 @@ void depositCell(Footprint cell, uint beam, double strength_range) {
     for (; above > cell.far_end; ++bin) {
         double below = max(binEdge(bin + 1u), cell.far_end);
         double share_below = trapezoidShare(cell, below - cell.centre);
-        depositPart(beam, bin, cell.size * (share_above - share_below), above, below, strength_range);
+        depositPart(cell, beam, bin, share_above - share_below, above, below, strength_range);
         above = below;
         share_above = share_below;
     }

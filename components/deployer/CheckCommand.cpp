@@ -4,6 +4,7 @@
 #include <memory>
 
 #include "components/deployer/Commands.hpp"
+#include "components/deployer/DeploymentFile.hpp"
 #include "components/deployer/Json.hpp"
 #include "components/deployer/Tasks.hpp"
 #include "components/framework/Deployment.hpp"
@@ -96,9 +97,10 @@ void addCheckCommand(CLI::App& app, Action& action) {
     };
     const auto options = std::make_shared<Options>();
     CLI::App* command = app.add_subcommand("check", "Validates a deployment and prints its graph");
-    command->add_option("DEPLOYMENT", options->deployment, "a YAML file")->required();
+    command->add_option("DEPLOYMENT", options->deployment, "a YAML file, or a folder with one deployment")->required();
     command->add_flag("--json", options->json, "for machines");
-    command->callback([options, &action] { action = [options] { return check(options->deployment, options->json); }; });
+    command->callback(
+        [options, &action] { action = [options] { return check(deploymentIn(options->deployment), options->json); }; });
 }
 
 }  // namespace insonify::deployer

@@ -14,8 +14,13 @@ void addRunCommand(CLI::App& app, Action& action);
 void addCheckCommand(CLI::App& app, Action& action);
 void addPlanCommand(CLI::App& app, Action& action);
 void addDescribeCommand(CLI::App& app, Action& action);
+void addInitCommand(CLI::App& app, Action& action);
 void addLogCommand(CLI::App& app, Action& action);
 void addReplayCommand(CLI::App& app, Action& action);
 void addStudyCommand(CLI::App& app, Action& action);
+void addSceneCommand(CLI::App& app, Action& action);
+void addSchemaCommand(CLI::App& app, Action& action);
+void addCompletionCommand(CLI::App& app, Action& action);
+void addManCommand(CLI::App& app, Action& action);
 
 }  // namespace insonify::deployer

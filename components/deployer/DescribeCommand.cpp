@@ -7,6 +7,7 @@
 
 #include "components/deployer/Commands.hpp"
 #include "components/deployer/Json.hpp"
+#include "components/deployer/SceneReport.hpp"
 #include "components/deployer/Tasks.hpp"
 #include "components/framework/Operation.hpp"
 #include "components/framework/Port.hpp"
@@ -128,6 +129,7 @@ int listMaterials(bool json) {
 }
 
 int describe(const std::string& type, bool json) {
+    if (isSceneName(type)) return showScene(type, json);
     const framework::Registry registry = builtInTasks();
     if (type.empty()) return listTasks(registry, json);
     if (type == "materials") return listMaterials(json);
@@ -139,7 +141,7 @@ int describe(const std::string& type, bool json) {
     }
     std::vector<std::string> known{"materials"};
     for (const auto& entry : registry.list()) known.push_back(entry.type);
-    throw types::ConfigError("", type, "is no task type; known: " + fmt::format("{}", fmt::join(known, ", ")));
+    throw types::ConfigError("", type, "is no task type; " + framework::suggestion(type, known));
 }
 
 }  // namespace
@@ -151,7 +153,7 @@ void addDescribeCommand(CLI::App& app, Action& action) {
     };
     const auto options = std::make_shared<Options>();
     CLI::App* command = app.add_subcommand("describe", "Lists the tasks; or a task's ports, properties and operations");
-    command->add_option("TYPE", options->type, "a task type, or `materials` for the names of materials");
+    command->add_option("TYPE", options->type, "a task type, `materials` for the names of materials, or a scene file");
     command->add_flag("--json", options->json, "for machines");
     command->callback([options, &action] { action = [options] { return describe(options->type, options->json); }; });
 }

@@ -1,15 +1,18 @@
 // insonify log info|export|cut|repair|check FILE
 #include <fmt/core.h>
 
+#include <algorithm>
 #include <charconv>
 #include <filesystem>
 #include <map>
 #include <memory>
 #include <optional>
+#include <set>
 
 #include "components/deployer/Commands.hpp"
 #include "components/deployer/Json.hpp"
 #include "components/deployer/PictureExport.hpp"
+#include "components/deployer/StreamMeaning.hpp"
 #include "components/log/Check.hpp"
 #include "components/log/Copy.hpp"
 #include "components/log/Export.hpp"
@@ -45,9 +48,35 @@ std::unique_ptr<log::Reader> opened(const std::string& file) {
     return log;
 }
 
-int logInfo(const std::string& file, bool json) {
+/** What each stream carries: the deployment, the seed and the plan, which the streams of a run share, and what its
+ *  numbers mean. */
+Json metadataJson(const log::Reader& log) {
+    Json all = Json::object();
+    for (const log::Stream& stream : log.streams())
+        all[stream.name] = {{"metadata", stream.metadata}, {"meaning", meaningOf(log, stream)}};
+    return all;
+}
+
+void printMetadata(const log::Reader& log) {
+    std::set<std::pair<std::string, std::string>> told;  // once for all streams that have the same
+    for (const log::Stream& stream : log.streams()) {
+        fmt::print("\n{}\n{}\n", stream.name, text(meaningOf(log, stream)));
+        for (const auto& [key, value] : stream.metadata)
+            if (told.emplace(key, value).second)
+                fmt::print("{}:{}{}\n", key, value.find('\n') == value.npos ? " " : "\n", value);
+    }
+}
+
+int logInfo(const std::string& file, bool json, bool metadata) {
     const auto log = opened(file);
-    json ? print(infoJson(*log)) : printTable(*log);
+    if (!json) {
+        printTable(*log);
+        if (metadata) printMetadata(*log);
+        return 0;
+    }
+    Json all = infoJson(*log);
+    if (metadata) all["metadata"] = metadataJson(*log);
+    print(all);
     return 0;
 }
 
@@ -56,18 +85,34 @@ void refuseMissingFolder(const fs::path& to) {
     if (!fs::is_directory(folder)) throw types::ConfigError(folder, "--to", "is no folder");
 }
 
+/** Pings as text are some ten times as large as they are in the log, and slow to read. */
+void noteSize(log::Reader& log, const std::string& stream, const fs::path& to) {
+    constexpr double line = 40, told_from = 1e8;  // [B]
+    const size_t index = log.indexOf(stream);
+    const log::Stream& pings = log.streams()[index];
+    if (!log::holdsPings(pings) || pings.count == 0) return;
+    types::Sonar ping;
+    readPing(log, *std::ranges::find(log.samples(), index, &log::SampleRef::stream), ping);
+    const double bins = static_cast<double>(ping.bins.size()) * static_cast<double>(pings.count);
+    if (bins * line > told_from)
+        fmt::print(stderr,
+                   "notice: {} gets a line for each bin, some {:.0f} million, {:.1f} GB; an .npz takes {:.2g} GB\n",
+                   to.string(), bins / 1e6, bins * line / 1e9, bins * sizeof(float) / 1e9);
+}
+
 /** The files that were written. */
 std::vector<fs::path> exportTo(log::Reader& log, const std::string& stream, const fs::path& to) {
-    log.indexOf(stream);
+    const std::string meta = text(meaningOf(log, log.streams()[log.indexOf(stream)]));
     if (!to.has_extension() || fs::is_directory(to)) {
         fs::create_directories(to);
-        return log::exportNpz(log, stream, to / (stream + ".npz"));
+        return log::exportNpz(log, stream, to / (stream + ".npz"), meta);
     }
     refuseMissingFolder(to);
-    if (to.extension() == ".npz") return log::exportNpz(log, stream, to);
+    if (to.extension() == ".npz") return log::exportNpz(log, stream, to, meta);
     if (to.extension() == ".png") return exportPictures(log, stream, to);
     if (to.extension() != ".csv")
         throw types::ConfigError(to, "--to", "may be a folder, or end in .npz, .csv, .png or .mcap");
+    noteSize(log, stream, to);
     log::exportCsv(log, stream, to);
     return {to};
 }
@@ -77,7 +122,7 @@ struct Options {
     std::vector<std::string> files, streams;
     std::string from, until;
     log::McapConfig mcap;
-    bool json = false;
+    bool json = false, metadata = false;
 };
 
 void tellLost(const log::Copied& copied) {
@@ -195,8 +240,9 @@ void addLogCommand(CLI::App& app, Action& action) {
     CLI::App* log = app.add_subcommand("log", "Looks into a log, cuts and mends it")->require_subcommand(1);
 
     CLI::App* info = add(*log, action, options, "info", "Streams, types, counts, time span and rate",
-                         [](const Options& asked) { return logInfo(asked.file, asked.json); });
+                         [](const Options& asked) { return logInfo(asked.file, asked.json, asked.metadata); });
     info->add_flag("--json", options->json, "for machines");
+    info->add_flag("--metadata", options->metadata, "deployment, seed and plan, and what the numbers mean, with units");
 
     CLI::App* out = add(*log, action, options, "export",
                         "Writes a stream as numpy arrays, text or pictures, or the log as ROS 2 messages", logExport);

@@ -3,6 +3,7 @@
 #include <stdexcept>
 #include <vector>
 
+#include "components/deployer/DeploymentFile.hpp"
 #include "components/deployer/StopSignal.hpp"
 #include "components/deployer/Tasks.hpp"
 #include "components/framework/Deployment.hpp"
@@ -66,7 +67,7 @@ std::set<std::string> pingTasks(const DeploymentSpec& spec, framework::Registry&
 
 SonarAt sonarAt(const std::string& file, uint64_t ping) {
     framework::Registry registry = builtInTasks();
-    Deployment deployment(pipelineOf(DeploymentSpec::load(file), registry), registry);
+    Deployment deployment(pipelineOf(DeploymentSpec::load(deploymentIn(file)), registry), registry);
     deployment.configure();
     const framework::RunResult result = deployment.run({.pings = ping}, stopOnSignals());
     if (result.failed()) throw std::runtime_error(result.failures.front());

@@ -5,6 +5,7 @@
 #include <stdexcept>
 
 #include "components/deployer/Commands.hpp"
+#include "components/deployer/DeploymentFile.hpp"
 #include "components/deployer/Json.hpp"
 #include "components/deployer/Pipeline.hpp"
 #include "components/deployer/StopSignal.hpp"
@@ -63,10 +64,11 @@ void addPlanCommand(CLI::App& app, Action& action) {
     };
     const auto options = std::make_shared<Options>();
     CLI::App* command = app.add_subcommand("plan", "Tells what is compiled and run, what is left out, and why");
-    command->add_option("DEPLOYMENT", options->deployment, "a YAML file")->required();
+    command->add_option("DEPLOYMENT", options->deployment, "a YAML file, or a folder with one deployment")->required();
     command->add_flag("--json", options->json, "for machines");
-    command->callback(
-        [options, &action] { action = [options] { return showPlan(options->deployment, options->json); }; });
+    command->callback([options, &action] {
+        action = [options] { return showPlan(deploymentIn(options->deployment), options->json); };
+    });
 }
 
 }  // namespace insonify::deployer

@@ -7,37 +7,51 @@
 #include <memory>
 
 #include "components/deployer/Commands.hpp"
+#include "components/deployer/DeploymentFile.hpp"
 #include "components/deployer/OutputFolder.hpp"
+#include "components/deployer/ProgressLine.hpp"
 #include "components/deployer/RunOptions.hpp"
 #include "components/deployer/StopSignal.hpp"
 #include "components/deployer/Summary.hpp"
 #include "components/deployer/Tasks.hpp"
+#include "components/pose/TrajectoryTask.hpp"
 #include "types/ConfigError.hpp"
 
 namespace insonify::deployer {
 namespace {
 
-/** One line on a terminal, ten times a second, wiped at the end; nothing elsewhere. */
-class ProgressLine {
-public:
-    explicit ProgressLine(bool wanted) : shown_(wanted && isatty(STDERR_FILENO)) {}
-    ~ProgressLine() {
-        if (shown_) fmt::print(stderr, "\r\033[K");
-    }
-    ProgressLine(const ProgressLine&) = delete;
-    ProgressLine& operator=(const ProgressLine&) = delete;
+/** How long a run in lockstep will be by its trajectories, where nothing else ends it; 0: not known [s]. */
+double trajectoryLength(const framework::Deployment& deployment) {
+    double longest = 0;
+    for (const auto& task : deployment.tasks())
+        if (const auto* trajectory = dynamic_cast<const pose::TrajectoryTask*>(task.get()))
+            longest = std::max(longest, trajectory->duration());
+    return deployment.spec().lockstep ? longest : 0;
+}
 
+/** Tells on a terminal how far a run is, of how much, and what time is left. */
+class RunProgress {
+public:
+    RunProgress(const framework::Deployment& deployment, const RunOptions& options)
+        : line_(!options.quiet), pings_(options.limits.pings), seconds_(options.limits.duration_s) {
+        if (pings_ == 0 && seconds_ == 0) seconds_ = trajectoryLength(deployment);
+    }
     void operator()(const framework::Progress& progress) {
-        if (!shown_ || progress.wall_s < next_s_) return;
-        next_s_ = progress.wall_s + 0.1;
-        fmt::print(stderr, "\r\033[K{} pings, {:.1f} per second, {:.1f} s simulated", progress.pings,
-                   static_cast<double>(progress.pings) / progress.wall_s, progress.elapsed_s);
-        std::fflush(stderr);
+        const double done = static_cast<double>(progress.pings);
+        const double share = pings_ > 0     ? done / static_cast<double>(pings_)
+                             : seconds_ > 0 ? progress.elapsed_s / seconds_
+                                            : 0;
+        line_.show(
+            progress.wall_s,
+            fmt::format("{}{} pings, {:.1f} per second, {:.1f}{} s simulated{}", progress.pings,
+                        pings_ > 0 ? fmt::format(" of {}", pings_) : "", done / progress.wall_s, progress.elapsed_s,
+                        seconds_ > 0 ? fmt::format(" of {:.1f}", seconds_) : "", timeLeft(share, progress.wall_s)));
     }
 
 private:
-    bool shown_;
-    double next_s_ = 0.1;
+    ProgressLine line_;
+    uint64_t pings_;
+    double seconds_;
 };
 
 std::vector<std::string> without(std::vector<std::string> notices, const std::vector<std::string>& told) {
@@ -117,7 +131,7 @@ framework::RunResult runAll(framework::Deployment& deployment, const RunOptions&
     if (options.progress)
         return deployment.run(options.limits, stop,
                               [&](const framework::Progress& progress) { options.progress(deployment, progress); });
-    ProgressLine progress(!options.quiet);
+    RunProgress progress(deployment, options);
     return deployment.run(options.limits, stop, std::ref(progress));
 }
 
@@ -149,14 +163,18 @@ int runDeployment(framework::DeploymentSpec spec, const RunOptions& options, std
 void addRunCommand(CLI::App& app, Action& action) {
     const auto options = std::make_shared<RunOptions>();
     CLI::App* command = app.add_subcommand("run", "Runs a deployment");
-    command->add_option("DEPLOYMENT", options->deployment, "a YAML file")->required();
+    command->add_option("DEPLOYMENT", options->deployment, "a YAML file, or a folder with one deployment")->required();
     options->addTo(*command);
     command
         ->add_option("--call", options->calls,
                      "task.operation[=argument,...]: calls it once all is configured; may be repeated, called in order")
         ->allow_extra_args(false);
-    command->callback(
-        [options, &action] { action = [options] { return runDeployment(loadSpec(*options), *options); }; });
+    command->callback([options, &action] {
+        action = [options] {
+            options->deployment = deploymentIn(options->deployment);
+            return runDeployment(loadSpec(*options), *options);
+        };
+    });
 }
 
 }  // namespace insonify::deployer

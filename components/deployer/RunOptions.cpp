@@ -5,6 +5,8 @@
 #include <charconv>
 #include <cmath>
 
+#include "components/deployer/DeploymentFile.hpp"
+
 namespace insonify::deployer {
 namespace {
 
@@ -42,7 +44,7 @@ void RunOptions::addTo(CLI::App& command) {
 }
 
 framework::DeploymentSpec loadSpec(const RunOptions& options) {
-    framework::DeploymentSpec spec = framework::DeploymentSpec::load(options.deployment);
+    framework::DeploymentSpec spec = framework::DeploymentSpec::load(deploymentIn(options.deployment));
     for (const std::string& assignment : options.set) spec.set(assignment);
     return spec;
 }

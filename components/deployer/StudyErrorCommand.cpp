@@ -1,13 +1,14 @@
 // insonify study error [DEPLOYMENT]
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <cctype>
+#include <functional>
 #include <memory>
 
 #include "components/deployer/OutputFolder.hpp"
 #include "components/deployer/Pipeline.hpp"
+#include "components/deployer/ProgressLine.hpp"
 #include "components/deployer/StudyCommand.hpp"
 #include "components/sonar/BinGrid.hpp"
 #include "components/study/ErrorReport.hpp"
@@ -79,12 +80,12 @@ std::vector<study::StudyScene> scenesOf(const Options& options) {
 int studyError(Options options) {
     const std::vector<study::StudyScene> scenes = scenesOf(options);
     OutputFolder folder(options.out, "study_error");
-    if (!options.quiet && isatty(STDERR_FILENO))
-        options.study.progress = [](const std::string& at) { fmt::print(stderr, "\r\033[K{}", at); };
+    StudyProgress progress(!options.quiet);
+    options.study.progress = std::ref(progress);
     const study::ErrorResult result = study::studyError(scenes, options.study);
     folder.keep();
     study::writeReport(result, folder.path());
-    if (!options.quiet && isatty(STDERR_FILENO)) fmt::print(stderr, "\r\033[K");
+    progress.end();
 
     bool all = true, open = false;
     for (const study::Claim& claim : study::claims(result)) {

@@ -1,15 +1,16 @@
 // insonify study omission DEPLOYMENT
 #include <fmt/core.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <fstream>
+#include <functional>
 #include <memory>
 #include <stdexcept>
 
 #include "components/deployer/Json.hpp"
 #include "components/deployer/OutputFolder.hpp"
 #include "components/deployer/Pipeline.hpp"
+#include "components/deployer/ProgressLine.hpp"
 #include "components/deployer/StudyCommand.hpp"
 #include "components/study/OmissionStudy.hpp"
 
@@ -67,12 +68,10 @@ std::string sheet(const std::string& deployment, const std::vector<OmissionRow>&
 int studyOmission(const Options& options) {
     const SonarAt sonar = sonarAt(options.deployment, options.ping);
     OutputFolder folder(options.out, "study_omission");
-    const bool tells = !options.quiet && isatty(STDERR_FILENO);
+    StudyProgress progress(!options.quiet);
     const std::vector<OmissionRow> rows =
-        study::studyOmissions(sonar.config, sonar.snapshot, options.pings, [&](const std::string& at) {
-            if (tells) fmt::print(stderr, "\r\033[K{}", at);
-        });
-    if (tells) fmt::print(stderr, "\r\033[K");
+        study::studyOmissions(sonar.config, sonar.snapshot, options.pings, std::ref(progress));
+    progress.end();
     folder.keep();
     const std::string text = sheet(options.deployment, rows);
     std::ofstream file(folder.path() / "omission.md");

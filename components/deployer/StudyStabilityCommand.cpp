@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <memory>
 
+#include "components/deployer/ProgressLine.hpp"
 #include "components/deployer/StabilityTasks.hpp"
 #include "components/deployer/StudyCommand.hpp"
 #include "types/ConfigError.hpp"
@@ -36,7 +37,13 @@ int studyStability(const std::filesystem::path& folder) {
     std::vector<study::StabilityCase> cases = study::stabilityCases();
     for (study::StabilityCase& added : taskStabilityCases()) cases.push_back(std::move(added));
     fmt::print("case  verdict    deviation\n");
-    const std::vector<StabilityRow> rows = study::studyStability(std::move(cases), printRow);
+    StudyProgress progress(true, cases.size());
+    const std::vector<StabilityRow> rows = study::studyStability(std::move(cases), [&](const StabilityRow& row) {
+        progress.end();
+        printRow(row);
+        progress("case");
+    });
+    progress.end();
     study::writeStability(rows, folder);
     fmt::print("{}; {} and stability.json\n", study::tally(rows), (folder / "stability.md").string());
     const auto failed = [](const StabilityRow& row) { return row.outcome.verdict == Verdict::Fail; };

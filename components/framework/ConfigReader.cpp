@@ -4,9 +4,9 @@
 
 #include <algorithm>
 #include <charconv>
-#include <numeric>
 
 #include "components/framework/Quantity.hpp"
+#include "types/DidYouMean.hpp"
 
 namespace insonify::framework {
 namespace {
@@ -66,18 +66,42 @@ std::string wantedUnit(const types::Field& field) {
     return unit.empty() || unit == "1" ? "must be a number without a unit" : "must be in " + unit;
 }
 
-size_t editDistance(std::string_view a, std::string_view b) {
-    std::vector<size_t> row(b.size() + 1);
-    std::iota(row.begin(), row.end(), size_t{0});
-    for (size_t i = 0; i < a.size(); ++i) {
-        size_t diagonal = row[0]++;
-        for (size_t j = 0; j < b.size(); ++j) {
-            const size_t changed = diagonal + (a[i] != b[j]);
-            diagonal = row[j + 1];
-            row[j + 1] = std::min({changed, row[j] + 1, diagonal + 1});
-        }
-    }
-    return row.back();
+/** "write true. " for what other languages, and YAML 1.1, take for a truth value. */
+std::string truthHint(const YAML::Node& node) {
+    static const std::vector<std::string> yes{"yes", "on", "1", "True", "TRUE", "y"};
+    static const std::vector<std::string> no{"no", "off", "0", "False", "FALSE", "n"};
+    const auto is = [&](const auto& words) { return node.IsScalar() && std::ranges::count(words, node.Scalar()) > 0; };
+    return is(yes) ? "write true; " : is(no) ? "write false; " : "";
+}
+
+/** "20.m" of 20 and "m", "3.m.s^-1" of 3 and "m/s"; empty where a quantity cannot be written. */
+std::string quantityText(const std::string& number, std::string unit) {
+    if (const size_t slash = unit.find('/'); slash != std::string::npos)
+        unit = unit.substr(0, slash) + "." + unit.substr(slash + 1) + "^-1";
+    return Quantity::parse(number + "." + unit) ? number + "." + unit : "";
+}
+
+bool areDigits(std::string_view text) {
+    return !text.empty() && std::ranges::all_of(text, [](unsigned char c) { return std::isdigit(c); });
+}
+
+/** "write 20 or 20.m; " for a number with its unit, or a comma, as people write it: "20 m", "20m", "20,5". */
+std::string unitHint(const YAML::Node& node, const types::Field& field) {
+    if (!node.IsDefined() || !node.IsScalar()) return "";
+    const std::string& text = node.Scalar();
+    double read = 0;
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), read);
+    if (error != std::errc() || !std::isfinite(read)) return "";
+    const std::string number(text.data(), end);
+    std::string unit(end, text.data() + text.size());
+    if (unit.starts_with(',') && areDigits(unit.substr(1))) return "write " + number + "." + unit.substr(1) + "; ";
+    unit.erase(0, unit.find_first_not_of(" \t"));
+    if (unit == field.unit && quantityText(number, unit).empty()) return "write " + number + "; ";
+    const auto written = unitOf(unit), wanted = unitOf(field.unit);
+    const auto converted = written && wanted ? Quantity{read, *written, 0}.in(*wanted) : std::nullopt;
+    if (!converted) return "";
+    const std::string quantity = quantityText(number, unit);
+    return fmt::format("write {:.12g}{}; ", *converted, quantity.empty() ? "" : " or " + quantity);
 }
 
 /** The node that a path such as "tvg.max_db" or "waypoints[2].time" leads to, or the last on the way that exists. */
@@ -102,11 +126,7 @@ YAML::Node nodeAt(const YAML::Node& block, std::string_view path) {
 
 std::string suggestion(std::string_view wrong, const std::vector<std::string>& known) {
     if (known.empty()) return "there are none";
-    const auto distance = [&](const std::string& name) { return editDistance(wrong, name); };
-    const auto nearest = std::min_element(known.begin(), known.end(),
-                                          [&](const auto& a, const auto& b) { return distance(a) < distance(b); });
-    const bool close = distance(*nearest) <= std::max<size_t>(1, wrong.size() / 3);
-    return (close ? "did you mean " + *nearest + "? " : "") + fmt::format("known: {}", fmt::join(known, ", "));
+    return types::didYouMean(wrong, known) + fmt::format("known: {}", fmt::join(known, ", "));
 }
 
 YAML::Node child(const YAML::Node& map, std::string_view key) {
@@ -176,7 +196,7 @@ bool ConfigReader::number(const YAML::Node& node, const std::string& path, const
         if (!converted) return fault(node, path, "is " + shown(node) + "; " + wantedUnit(field)), false;
         read = *converted;
     } else if (!isPlain(node) || !parseDouble(node.Scalar(), read) || !std::isfinite(read)) {
-        fault(node, path, "is " + shown(node) + "; must be a finite number");
+        fault(node, path, "is " + shown(node) + "; " + unitHint(node, field) + "must be a finite number");
         return false;
     }
     if (read < field.min || read > field.max) {
@@ -209,7 +229,9 @@ bool ConfigReader::oneOf(const YAML::Node& node, const std::string& path, const 
                          size_t& index) {
     for (index = 0; index < count; ++index)
         if (node.IsScalar() && node.Scalar() == names[index]) return true;
-    fault(node, path, "is " + shown(node) + "; may be " + fmt::format("{}", fmt::join(names, names + count, ", ")));
+    const std::string hint = node.IsScalar() ? types::didYouMean(node.Scalar(), {names, names + count}) : "";
+    fault(node, path,
+          "is " + shown(node) + "; " + hint + fmt::format("may be {}", fmt::join(names, names + count, ", ")));
     return false;
 }
 
@@ -224,7 +246,7 @@ bool ConfigReader::boolean(const YAML::Node& node, const std::string& path, bool
     if (good)
         value = node.Scalar() == "true";
     else
-        fault(node, path, "is " + shown(node) + "; may be true or false");
+        fault(node, path, "is " + shown(node) + "; " + truthHint(node) + "may be true or false");
     return good;
 }
 

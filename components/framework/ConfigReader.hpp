@@ -39,6 +39,9 @@ public:
 
     const std::vector<types::Diagnostic>& faults() const { return faults_; }
     void fault(const YAML::Node& node, const std::string& path, const std::string& message);
+    /** From now on null stands for what is not there: it takes an optional out, and gives any other value its default;
+     *  maps of names are merged as well. */
+    void takeOutByNull() { null_takes_out_ = true; }
     /** Where faults of nodes that do not exist are reported: the block that lacks them. */
     void setFallback(const YAML::Mark& mark) { fallback_ = mark; }
 
@@ -72,6 +75,7 @@ private:
     template <Number T>
     bool readNumber(const YAML::Node& node, const std::string& path, const types::Field& field, T& value);
 
+    bool null_takes_out_ = false;
     std::string file_;
     Origins origins_;
     std::vector<types::Diagnostic> faults_;
@@ -143,6 +147,17 @@ inline std::string below(const std::string& path, const std::string& name) {
     return path.empty() ? name : path + "." + name;
 }
 
+/** Gives a member of `whole` the value that it has in a fresh one. */
+template <types::Described T, class Member>
+void giveDefault(const T&, const types::Field& field, Member& member) {
+    const T fresh{};
+    FieldVisitor visitor{[&](const types::Field& other, const auto& value) {
+        if constexpr (std::same_as<std::remove_cvref_t<decltype(value)>, Member>)
+            if (std::string_view(other.name) == field.name) member = value;
+    }};
+    T::describe(fresh, visitor);
+}
+
 template <types::Described T>
 bool ConfigReader::read(const YAML::Node& node, const std::string& path, T& value) {
     const size_t before = faults_.size();
@@ -150,7 +165,10 @@ bool ConfigReader::read(const YAML::Node& node, const std::string& path, T& valu
     std::vector<std::string> known;
     FieldVisitor visitor{[&](const types::Field& field, auto& member) {
         known.push_back(field.name);
-        if (const YAML::Node entry = child(node, field.name); entry.IsDefined())
+        const YAML::Node entry = child(node, field.name);
+        if (entry.IsDefined() && entry.IsNull() && null_takes_out_)
+            giveDefault(value, field, member);
+        else if (entry.IsDefined())
             readValue(entry, below(path, field.name), field, member);
     }};
     T::describe(value, visitor);
@@ -201,10 +219,15 @@ bool ConfigReader::readValue(const YAML::Node& node, const std::string& path, co
         return good;
     } else if constexpr (NamedMap<T>) {
         if (!isMap(node, path)) return false;
-        value.clear();
+        if (!null_takes_out_) value.clear();
         bool good = true;
-        for (const auto& entry : node)
-            good &= readValue(entry.second, below(path, entry.first.Scalar()), field, value[entry.first.Scalar()]);
+        for (const auto& entry : node) {
+            const std::string& key = entry.first.Scalar();
+            if (null_takes_out_ && entry.second.IsNull())
+                value.erase(key);
+            else
+                good &= readValue(entry.second, below(path, key), field, value[key]);
+        }
         return good;
     } else {
         return read(node, path, value);

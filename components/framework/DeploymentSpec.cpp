@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "components/framework/DeploymentKeys.hpp"
 #include "components/framework/PropertySources.hpp"
 #include "components/framework/YamlText.hpp"
 
@@ -205,6 +206,10 @@ struct insonify::types::EnumNames<insonify::framework::Scheduler> {
 
 namespace insonify::framework {
 
+DeploymentKeys deploymentKeys() {
+    return {listProperties(DocumentKeys{}), listProperties(TaskKeys{}), listProperties(ConnectionKeys{})};
+}
+
 std::pair<std::string, std::string> splitPort(const std::string& path) {
     const size_t dot = path.find('.');
     if (dot == std::string::npos) return {path, ""};
@@ -275,6 +280,7 @@ void DeploymentSpec::set(const std::string& assignment) {
     if (equals == std::string::npos || property.empty()) return refuse("must be task.property=value");
     TaskSpec* changed = task(name);
     if (!changed) return refuse("there is no task " + name + "; " + suggestion(name, taskNames()));
+    if (equals + 1 == assignment.size()) return refuse("has no value; null takes the property out");
     try {
         PropertySources(*this).set(*changed, property, parseValue(assignment.substr(equals + 1)));
     } catch (const types::ConfigError& error) {

@@ -64,7 +64,8 @@ struct DeploymentSpec {
     std::vector<std::string> taskNames() const;
     /** What is written but its schedule leaves out, a line for each task and for the whole; empty: nothing. */
     std::vector<std::string> unused() const;
-    /** `task.property.path=value`, the value in YAML: a layer over the file. Faults go to `faults`. */
+    /** `task.property.path=value`, the value in YAML: a layer over the file. Of a block only what it names is changed;
+     *  null takes a property out. Faults go to `faults`. */
     void set(const std::string& assignment);
 };
 

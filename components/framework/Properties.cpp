@@ -41,6 +41,7 @@ void PropertiesBase::addSetters() {
 
 void PropertiesBase::set(const std::string& name, const std::string& yaml) {
     ConfigReader reader("");
+    reader.takeOutByNull();
     YAML::Node value;
     reader.readText(yaml, name, value);
     YAML::Node block(YAML::NodeType::Map);

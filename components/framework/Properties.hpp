@@ -27,7 +27,8 @@ public:
     virtual std::vector<PropertyInfo> list() const = 0;
     /** The properties that are present, as a log holds them. */
     virtual std::map<std::string, types::PropertyValue> values() const = 0;
-    /** Sets one property, of a block only what `yaml` names, in any state of the task; for the task's thread. Throws
+    /** Sets one property, of a block only what `yaml` names, in any state of the task; null takes it out, or gives it
+     *  its default. For the task's thread. Throws
      *  types::ConfigError when the value does not fit, std::runtime_error when the task does not take it over: then
      *  the old value stays. */
     void set(const std::string& name, const std::string& yaml);

@@ -181,10 +181,26 @@ void PropertySources::turn(const std::string& target, bool on, const Origin& ori
     }));
 }
 
+YAML::Node PropertySources::set(const YAML::Node& base, const YAML::Node& over, const std::string& path,
+                                const Origin& origin) {
+    const bool merges = over.IsMap() && base.IsDefined() && base.IsMap();
+    if (!merges) spec_.origins[path] = origin;
+    if (over.IsNull()) return YAML::Node(YAML::NodeType::Undefined);
+    if (!over.IsMap()) return over;
+    YAML::Node merged = merges ? base : YAML::Node(YAML::NodeType::Map);
+    for (const auto& entry : over) {
+        const std::string& key = entry.first.Scalar();
+        const YAML::Node value = set(child(merged, key), entry.second, framework::below(path, key), origin);
+        merged.reset(with(merged, key, value));
+    }
+    return merged;
+}
+
 void PropertySources::set(TaskSpec& task, const std::string& property, const YAML::Node& value) {
     const auto replace = [&](TaskSpec& owner, const std::string& path, const YAML::Node& by, const Origin& origin) {
-        owner.properties.reset(changedAt(owner.properties, path, [&](const YAML::Node&) { return by; }));
-        spec_.origins[fullPath(owner, path)] = origin;
+        owner.properties.reset(changedAt(owner.properties, path, [&](const YAML::Node& base) {
+            return set(base, by, fullPath(owner, path), origin);
+        }));
     };
     const Origin origin{set_origin, fullPath(task, "")};
     const YAML::Node block = changedAt(YAML::Node(), property, [&](const YAML::Node&) { return value; });

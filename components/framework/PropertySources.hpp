@@ -18,7 +18,8 @@ public:
     explicit PropertySources(DeploymentSpec& spec) : spec_(spec) {}
     /** Of the deployment and its property files. */
     void apply();
-    /** Of `--set`: takes the place of what is there. */
+    /** Of `--set`, as a live setter has it: blocks are merged, all else takes the place of what is there, null takes it
+     *  out. */
     void set(TaskSpec& task, const std::string& property, const YAML::Node& value);
 
 private:
@@ -39,6 +40,8 @@ private:
     /** Lays `over` on the properties of `task` at `path`. */
     void lay(TaskSpec& task, const std::string& path, const YAML::Node& over, const Origin& origin);
     YAML::Node laid(const YAML::Node& base, const YAML::Node& over, const std::string& path, const Origin& origin);
+    /** What becomes of `base` with `over` set. */
+    YAML::Node set(const YAML::Node& base, const YAML::Node& over, const std::string& path, const Origin& origin);
     void checkTargets();
 
     DeploymentSpec& spec_;

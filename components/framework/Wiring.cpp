@@ -31,13 +31,24 @@ void Wiring::make(uint64_t seed) {
         return std::tie(a.file, a.line, a.column) < std::tie(b.file, b.line, b.column);
     };
     std::stable_sort(faults_.begin(), faults_.end(), earlier);
+    std::stable_sort(consequences_.begin(), consequences_.end(), earlier);
+    faults_.insert(faults_.end(), consequences_.begin(), consequences_.end());
     if (!faults_.empty()) throw types::ConfigError(faults_);
 }
 
-void Wiring::fault(const YAML::Node& place, const std::string& path, const std::string& message) {
+types::Diagnostic Wiring::diagnostic(const YAML::Node& place, const std::string& path,
+                                     const std::string& message) const {
     ConfigReader reader(deployment_.spec_.file);
     reader.fault(place, path, message);
-    faults_.push_back(reader.faults().front());
+    return reader.faults().front();
+}
+
+void Wiring::fault(const YAML::Node& place, const std::string& path, const std::string& message) {
+    faults_.push_back(diagnostic(place, path, message));
+}
+
+void Wiring::consequence(const YAML::Node& place, const std::string& path, const std::string& message) {
+    consequences_.push_back(diagnostic(place, path, message));
 }
 
 void Wiring::loadLibraries() {
@@ -190,8 +201,8 @@ void Wiring::checkInputs(const TaskContext& task, const TaskSpec& spec) {
     };
     for (const InputPortBase* port : task.inputs())
         if (port->need() == Need::Required && !port->connected() && !meant(*port))
-            fault(spec.place, spec.path(),
-                  fmt::format("input port {} ({}) is not connected; it must be", port->name(), port->typeName()));
+            consequence(spec.place, spec.path(),
+                        fmt::format("input port {} ({}) is not connected; it must be", port->name(), port->typeName()));
 }
 
 void Wiring::checkActivity(TaskContext& task, const TaskSpec& spec) {
@@ -210,7 +221,7 @@ void Wiring::checkActivity(TaskContext& task, const TaskSpec& spec) {
     if (!is_misread && !child(place, "period").IsDefined() && !spec.activity.periodic() && !task.nextTime() &&
         task.wakeAfter() <= 0 && std::none_of(inputs.begin(), inputs.end(), runs) &&
         std::none_of(connections.begin(), connections.end(), meant))
-        fault(spec.place, spec.path(), "has nothing that would run it; give it activity: {period: seconds}");
+        consequence(spec.place, spec.path(), "has nothing that would run it; give it activity: {period: seconds}");
     task.activity().configure(spec.activity);
 }
 

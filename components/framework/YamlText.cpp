@@ -2,9 +2,11 @@
 
 #include <yaml-cpp/depthguard.h>
 
+#include <algorithm>
 #include <fstream>
 #include <sstream>
 
+#include "components/framework/YamlDocuments.hpp"
 #include "types/ConfigError.hpp"
 
 namespace insonify::framework {
@@ -34,14 +36,79 @@ bool isText(std::string_view bytes) {
     return following == 0;
 }
 
+namespace {
+
+std::vector<std::string> linesOf(const std::string& text) {
+    std::vector<std::string> lines;
+    std::string line;
+    for (std::istringstream stream(text); std::getline(stream, line);) lines.push_back(line);
+    return lines;
+}
+
+size_t indentOf(const std::string& line) { return std::min(line.find_first_not_of(' '), line.size()); }
+
+bool isBlank(const std::string& line) {
+    const size_t first = line.find_first_not_of(" \t\r");
+    return first == std::string::npos || line[first] == '#';
+}
+
+bool isIndentedByTab(const std::string& line) {
+    const size_t tab = line.find('\t');
+    return !isBlank(line) && tab != std::string::npos && tab < line.find_first_not_of(" \t");
+}
+
+/** Where lines begin that are above this one and open still: the indents that it may have, smallest first. */
+std::vector<size_t> openIndents(const std::vector<std::string>& lines, size_t line) {
+    std::vector<size_t> indents;
+    for (size_t i = line; i-- > 0;)
+        if (!isBlank(lines[i]) && (indents.empty() || indentOf(lines[i]) < indents.front()))
+            indents.insert(indents.begin(), indentOf(lines[i]));
+    return indents;
+}
+
+/** Whether the line above this one ends as a key does that has a block below it. */
+bool opensBlock(const std::vector<std::string>& lines, size_t line) {
+    while (line-- > 0)
+        if (!isBlank(lines[line])) return lines[line].find_last_not_of(" \t\r") == lines[line].rfind(':');
+    return false;
+}
+
+/** What is wrong with the indent of a line, of which YAML's own words tell nothing; empty when nothing is. */
+std::string indentFault(const std::vector<std::string>& lines, size_t line) {
+    if (line >= lines.size() || isBlank(lines[line])) return "";
+    if (isIndentedByTab(lines[line])) return "is indented with a tab; indent with spaces";
+    const std::vector<size_t> open = openIndents(lines, line);
+    const size_t indent = indentOf(lines[line]);
+    if (open.empty() || std::ranges::count(open, indent) > 0) return "";
+    if (indent > open.back() && opensBlock(lines, line)) return "";
+    std::string may_be;
+    for (const size_t each : open) may_be += (may_be.empty() ? "" : " or ") + std::to_string(each);
+    return "is indented by " + std::to_string(indent) + " spaces; as the lines above are, it may be by " + may_be;
+}
+
+/** YAML's words for what is wrong, in ours where they tell little. */
+std::string yamlFault(const std::string& text, const YAML::Exception& error) {
+    if (error.msg.find("map flow") != std::string::npos) return "is not YAML: a { has no } to close it";
+    if (error.msg.find("sequence flow") != std::string::npos) return "is not YAML: a [ has no ] to close it";
+    const std::string indent =
+        error.mark.line < 0 ? "" : indentFault(linesOf(text), static_cast<size_t>(error.mark.line));
+    if (!indent.empty()) return indent;
+    if (error.msg == "illegal map value")
+        return "is not YAML: has a colon where there can be no key; a text with \": \" in it is put in quotes";
+    return "is not YAML: " + error.msg;
+}
+
+}  // namespace
+
 std::vector<YAML::Node> parseYaml(const std::string& text, const std::string& file) {
     if (!isText(text)) throw types::ConfigError(file, "", "is not text; must be YAML in UTF-8");
     try {
+        checkDocuments(text);
         return YAML::LoadAll(text);
     } catch (const YAML::DeepRecursion& error) {
         throw types::ConfigError({{file, error.mark.line + 1, error.mark.column + 1, "", "is nested too deeply"}});
     } catch (const YAML::Exception& error) {
-        throw types::ConfigError({{file, error.mark.line + 1, error.mark.column + 1, "", "is not YAML: " + error.msg}});
+        throw types::ConfigError({{file, error.mark.line + 1, error.mark.column + 1, "", yamlFault(text, error)}});
     }
 }
 

@@ -51,10 +51,10 @@ std::vector<Run> runsOfOneShape(Reader& log, const std::string& stream) {
     return runs;
 }
 
-void writeRun(Reader& log, const Run& run, const Path& path, Sonar ping) {
+void writeRun(Reader& log, const Run& run, NpzFile& npz, Sonar ping) {
     const size_t count = run.samples.size();
     std::vector<double> bearings, time, bin_duration, speed_of_sound;
-    NpzFile npz(path);
+    std::vector<float> range;
     npz.begin("bins", numpyType<float>(), run.whole());
     for (const SampleRef& at : run.samples) {
         readPing(log, at, ping);
@@ -63,18 +63,18 @@ void writeRun(Reader& log, const Run& run, const Path& path, Sonar ping) {
         time.push_back(ping.time.seconds());
         bin_duration.push_back(ping.bin_duration.seconds());
         speed_of_sound.push_back(static_cast<double>(ping.speed_of_sound));
+        for (uint32_t k = 0; k < ping.bin_count; ++k) range.push_back(static_cast<float>(ping.binStart(k + 0.5)));
     }
     npz.end();
     npz.array("bearings", {count, run.shape[0]}, bearings);
     npz.array("time", {count}, time);
     npz.array("bin_duration", {count}, bin_duration);
     npz.array("speed_of_sound", {count}, speed_of_sound);
-    npz.close();
+    npz.array("range_m", {count, run.shape[1]}, range);
 }
 
-void writeRun(Reader& log, const Run& run, const Path& path, Image picture) {
+void writeRun(Reader& log, const Run& run, NpzFile& npz, Image picture) {
     std::vector<double> time;
-    NpzFile npz(path);
     npz.begin("pixels", numpyType<uint8_t>(), run.whole());
     for (const SampleRef& at : run.samples) {
         log.read(at, picture);
@@ -84,24 +84,34 @@ void writeRun(Reader& log, const Run& run, const Path& path, Image picture) {
     }
     npz.end();
     npz.array("time", {time.size()}, time);
-    npz.close();
+}
+
+/** One text; nothing when it is empty. */
+void writeMeta(NpzFile& npz, const std::string& meta) {
+    if (meta.empty()) return;
+    npz.begin("meta", "|S" + std::to_string(meta.size()), {});
+    npz.append(meta.data(), meta.size());
+    npz.end();
 }
 
 template <class T>
-std::vector<Path> writeRuns(Reader& log, const std::string& stream, const Path& path) {
+std::vector<Path> writeRuns(Reader& log, const std::string& stream, const Path& path, const std::string& meta) {
     const std::vector<Run> runs = runsOfOneShape<T>(log, stream);
     std::vector<Path> files;
     for (const Run& run : runs) {
         Path file = path;
         if (runs.size() > 1) file.replace_extension("." + std::to_string(files.size()) + path.extension().string());
-        writeRun(log, run, file, T{});
+        NpzFile npz(file);
+        writeRun(log, run, npz, T{});
+        writeMeta(npz, meta);
+        npz.close();
         files.push_back(file);
     }
     return files;
 }
 
 template <class T>
-void writeRows(Reader& log, const std::string& stream, const Path& path) {
+void writeRows(Reader& log, const std::string& stream, const Path& path, const std::string& meta) {
     std::vector<double> time;
     std::vector<std::vector<double>> arrays;
     log.forEach<T>(stream, [&](const T& sample, const SampleRef& at) {
@@ -118,6 +128,7 @@ void writeRows(Reader& log, const std::string& stream, const Path& path) {
         arrays.resize(std::max(arrays.size(), i + 1));
         npz.array(name, {time.size(), names.size()}, arrays[i++]);
     });
+    writeMeta(npz, meta);
     npz.close();
 }
 
@@ -145,7 +156,7 @@ auto valueOf(const T& sample) {
 }
 
 template <class T>
-void writeValues(Reader& log, const std::string& stream, const Path& path) {
+void writeValues(Reader& log, const std::string& stream, const Path& path, const std::string& meta) {
     std::vector<double> time;
     std::vector<decltype(valueOf(T{}))> values;
     log.forEach<T>(stream, [&](const T& sample, const SampleRef& at) {
@@ -155,22 +166,23 @@ void writeValues(Reader& log, const std::string& stream, const Path& path) {
     NpzFile npz(path);
     npz.array("time", {time.size()}, time);
     writeValue(npz, values);
+    writeMeta(npz, meta);
     npz.close();
 }
 
 }  // namespace
 
-std::vector<Path> exportNpz(Reader& log, const std::string& stream, const Path& path) {
+std::vector<Path> exportNpz(Reader& log, const std::string& stream, const Path& path, const std::string& meta) {
     const Stream& declared = log.streams()[log.indexOf(stream)];
-    if (holdsPings(declared)) return writeRuns<Sonar>(log, stream, path);
-    if (declared.holds<Image>()) return writeRuns<Image>(log, stream, path);
+    if (holdsPings(declared)) return writeRuns<Sonar>(log, stream, path, meta);
+    if (declared.holds<Image>()) return writeRuns<Image>(log, stream, path, meta);
     bool done = false;
     types::forEachSampleType([&]<class T>(std::type_identity<T>) {
         if (!declared.holds<T>()) return;
         if constexpr (types::Tabular<T>)
-            writeRows<T>(log, stream, path);
+            writeRows<T>(log, stream, path, meta);
         else if constexpr (types::Scalar<T> || Text<T>)
-            writeValues<T>(log, stream, path);
+            writeValues<T>(log, stream, path, meta);
         else
             return;
         done = true;

@@ -52,9 +52,9 @@ bool InputFile::read(uint64_t position, void* to, size_t size) const {
 OutputFile::OutputFile(std::filesystem::path path) : path_(std::move(path)) {
     file_ = ::open(path_.c_str(), O_WRONLY | O_CREAT | O_CLOEXEC, 0644);
     if (file_ < 0) throw types::ConfigError(path_, "", "the log cannot be written: " + reason(errno));
-    const bool taken = isTaken(file_);
     struct stat status {};
     const bool is_file = fstat(file_, &status) == 0 && S_ISREG(status.st_mode);
+    const bool taken = is_file && isTaken(file_);  // a device, as /dev/null, is there for everyone
     if (taken || (is_file && ftruncate(file_, 0) != 0)) {
         const std::string why = taken ? "another logger writes it" : reason(errno);
         ::close(std::exchange(file_, -1));

@@ -1,11 +1,11 @@
 #include "components/output/PictureFiles.hpp"
 
-#include <algorithm>
+#include <png.h>
+
 #include <cerrno>
+#include <cstdio>
 #include <cstring>
-#include <fstream>
-#include <opencv2/imgcodecs.hpp>
-#include <opencv2/imgproc.hpp>
+#include <memory>
 #include <stdexcept>
 
 namespace insonify::output {
@@ -15,21 +15,14 @@ namespace {
     throw std::runtime_error("cannot write " + file.string() + ": " + reason);
 }
 
-cv::Mat pixelsOf(const types::Image& picture) {
-    return cv::Mat(picture.size.height, picture.size.width, CV_8UC(static_cast<int>(picture.pixel_size)),
-                   const_cast<uint8_t*>(picture.image.data()), picture.row_size);
-}
-
-/** Grey or BGR, as OpenCV has it; empty for a mode that is neither, nor RGB. */
-cv::Mat shownPixels(const types::Image& picture) {
+/** Throws where a picture's mode is not known, or its pixels are not as it says. */
+png_uint_32 pngFormat(const std::filesystem::path& file, const types::Image& picture) {
     const bool grey = picture.frame_mode == types::ImageMode::Grayscale;
     const bool rgb = picture.frame_mode == types::ImageMode::Rgb;
     const bool known = grey || rgb || picture.frame_mode == types::ImageMode::Bgr;
-    if (!known || picture.pixel_size != (grey ? 1 : 3) || !picture.holdsPixels()) return {};
-    if (!rgb) return pixelsOf(picture);
-    cv::Mat turned;
-    cv::cvtColor(pixelsOf(picture), turned, cv::COLOR_RGB2BGR);
-    return turned;
+    if (!known || picture.pixel_size != (grey ? 1 : 3) || !picture.holdsPixels() || picture.image.empty())
+        fail(file, "the picture is empty, or neither grey, RGB nor BGR of 8 bits a channel");
+    return grey ? PNG_FORMAT_GRAY : rgb ? PNG_FORMAT_RGB : PNG_FORMAT_BGR;
 }
 
 bool isKnownVideo(const std::string& name) {
@@ -47,49 +40,18 @@ void RecordingConfig::check(types::Problems& problems) const {
 }
 
 void writePng(const std::filesystem::path& file, const types::Image& picture) {
-    const cv::Mat pixels = shownPixels(picture);
-    if (pixels.empty()) fail(file, "the picture is empty, or neither grey, RGB nor BGR of 8 bits a channel");
-    std::vector<uint8_t> encoded;
-    cv::imencode(".png", pixels, encoded, {cv::IMWRITE_PNG_COMPRESSION, 2});
+    png_image png{};
+    png.version = PNG_IMAGE_VERSION;
+    png.width = picture.size.width;
+    png.height = picture.size.height;
+    png.format = pngFormat(file, picture);
+    png.flags = PNG_IMAGE_FLAG_FAST;
     errno = 0;
-    std::ofstream stream(file, std::ios::binary);
-    stream.write(reinterpret_cast<const char*>(encoded.data()), static_cast<std::streamsize>(encoded.size()));
-    stream.close();
+    const std::unique_ptr<std::FILE, decltype(&std::fclose)> stream(std::fopen(file.c_str(), "wb"), &std::fclose);
     if (!stream) fail(file, std::strerror(errno));
-}
-
-void VideoFile::write(const types::Image& picture) {
-    const cv::Mat pixels = pixelsOf(picture);
-    if (first_.empty()) {
-        first_ = pixels.clone();
-        first_time_ = picture.time;
-        return;
-    }
-    if (!writer_.isOpened()) {
-        const double seconds = (picture.time - first_time_).seconds();
-        open(std::clamp(seconds > 0 ? 1 / seconds : 10.0, 1.0, 60.0));
-    }
-    cv::resize(pixels, scaled_, first_.size());
-    writer_.write(scaled_);
-}
-
-void VideoFile::open(double rate) {
-    const bool avi = file_.extension() == ".avi";
-    const int codec = avi ? cv::VideoWriter::fourcc('M', 'J', 'P', 'G') : cv::VideoWriter::fourcc('m', 'p', '4', 'v');
-    if (!writer_.open(file_.string(), avi ? cv::CAP_OPENCV_MJPEG : cv::CAP_FFMPEG, codec, rate_.value_or(rate),
-                      first_.size()))
-        fail(file_, "no such folder, no room, or no encoder");
-    writer_.write(first_);
-}
-
-void VideoFile::close() {
-    if (first_.empty()) return;
-    if (!writer_.isOpened()) open(10);
-    writer_.release();
-    std::error_code ignored;
-    const auto size = std::filesystem::file_size(file_, ignored);
-    if (ignored || size == 0) fail(file_, "nothing was written");
-    first_.release();
+    const auto row_size = static_cast<png_int_32>(picture.row_size);
+    if (!png_image_write_to_stdio(&png, stream.get(), 0, picture.image.data(), row_size, nullptr))
+        fail(file, errno ? std::strerror(errno) : png.message);
 }
 
 PictureFiles::PictureFiles(const RecordingConfig& config, const std::filesystem::path& folder) : folder_(folder) {

@@ -23,6 +23,8 @@ public:
 
     void check(types::Problems& problems) const override;
     bool finished() const override { return finished_; }
+    /** Time of the last stamp; 0 before it is configured [s]. */
+    double duration() const { return trajectory_ ? trajectory_->stamps().back().time : 0; }
 
 private:
     bool configureHook() override;

@@ -8,6 +8,8 @@
 #include <iterator>
 #include <vector>
 
+#include "types/DidYouMean.hpp"
+
 namespace insonify::scene {
 namespace {
 
@@ -43,27 +45,13 @@ struct MatterRow {
     double reflection;  ///< R of the sound pressure at normal incidence, from typical impedances; signed [1].
 };
 constexpr MatterRow matters[] = {
-    {Matter::Steel, 0.936},
-    {Matter::CarbonSteel, 0.936},
-    {Matter::Aluminium, 0.835},
-    {Matter::CastIron, 0.91},
-    {Matter::Bronze, 0.93},
-    {Matter::Granite, 0.81},
-    {Matter::Basalt, 0.81},
-    {Matter::Concrete, 0.69},
-    {Matter::Limestone, 0.65},
-    {Matter::Gravel, 0.40},
-    {Matter::Sand, 0.355},
-    {Matter::Mud, 0.06},
-    {Matter::Pvc, 0.37},
-    {Matter::Acrylic, 0.35},
-    {Matter::Hdpe, 0.21},
-    {Matter::Neoprene, 0.15},
-    {Matter::NaturalRubber, -0.02},
-    {Matter::WaterloggedWood, -0.07},
-    {Matter::DryWood, -0.5},
-    {Matter::ClosedCellFoam, -0.94},
-    {Matter::Ice, 0.39},
+    {Matter::Steel, 0.936},   {Matter::CarbonSteel, 0.936},    {Matter::Aluminium, 0.835},
+    {Matter::CastIron, 0.91}, {Matter::Bronze, 0.93},          {Matter::Granite, 0.81},
+    {Matter::Basalt, 0.81},   {Matter::Concrete, 0.69},        {Matter::Limestone, 0.65},
+    {Matter::Gravel, 0.40},   {Matter::Sand, 0.355},           {Matter::Mud, 0.06},
+    {Matter::Pvc, 0.37},      {Matter::Acrylic, 0.35},         {Matter::Hdpe, 0.21},
+    {Matter::Neoprene, 0.15}, {Matter::NaturalRubber, -0.02},  {Matter::WaterloggedWood, -0.07},
+    {Matter::DryWood, -0.5},  {Matter::ClosedCellFoam, -0.94}, {Matter::Ice, 0.39},
     {Matter::Air, -0.9995},
 };
 
@@ -94,7 +82,8 @@ public:
     void refuseUnknown() {
         for (const auto& [key, value] : values_)
             if (std::ranges::count(known_, key) == 0)
-                problems_.push_back({key, fmt::format("is not known; may be {}", fmt::join(known_, ", "))});
+                problems_.push_back({key, fmt::format("is not known; {}may be {}", types::didYouMean(key, known_),
+                                                      fmt::join(known_, ", "))});
     }
 
 private:
@@ -114,7 +103,12 @@ private:
         if (found != std::end(names))
             value = static_cast<E>(found - names);
         else
-            problems_.push_back({field.name, fmt::format("is {}; may be {}", text(from), fmt::join(names, ", "))});
+            problems_.push_back(
+                {field.name, fmt::format("is {}; {}may be {}", text(from), near(name, names), fmt::join(names, ", "))});
+    }
+    template <class Names>
+    static std::string near(const std::string* name, const Names& names) {
+        return name ? types::didYouMean(*name, {std::begin(names), std::end(names)}) : "";
     }
     static std::string text(const AcousticValue& value) {
         if (const auto* number = std::get_if<double>(&value)) return fmt::format("{}", *number);

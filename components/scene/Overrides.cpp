@@ -5,6 +5,8 @@
 
 #include <set>
 
+#include "types/DidYouMean.hpp"
+
 namespace insonify::scene {
 namespace {
 
@@ -42,7 +44,8 @@ types::Problem unknown(const Scene& scene, const std::string& name) {
     for (const Node& node : scene.nodes) names.insert(node.name);
     constexpr size_t shown = 50;
     const auto last = names.size() <= shown ? names.end() : std::next(names.begin(), shown);
-    return {"materials." + name, fmt::format("is neither a material nor a model of the scene; may be {}{}",
+    const std::string near = types::didYouMean(name, {names.begin(), names.end()});
+    return {"materials." + name, fmt::format("is neither a material nor a model of the scene; {}may be {}{}", near,
                                              fmt::join(names.begin(), last, ", "), last == names.end() ? "" : ", ...")};
 }
 

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cctype>
 #include <cmath>
 #include <glm/geometric.hpp>
@@ -11,6 +12,7 @@
 #include "components/scene/Gltf.hpp"
 #include "components/scene/Sdf.hpp"
 #include "types/ConfigError.hpp"
+#include "types/DidYouMean.hpp"
 
 namespace insonify::scene {
 namespace {
@@ -29,6 +31,30 @@ glm::dmat3 withoutRotation(const glm::dmat3& matrix, glm::dvec3 scale) {
     return glm::transpose(rotation) * matrix;
 }
 
+/** Names of scenes in a folder. */
+std::vector<std::string> scenesIn(const std::filesystem::path& folder) {
+    std::vector<std::string> names;
+    std::error_code unreadable;
+    for (const auto& entry : std::filesystem::directory_iterator(folder, unreadable)) {
+        const std::string extension = extensionOf(entry.path());
+        if (std::ranges::count(std::array{".gltf", ".glb", ".world", ".sdf"}, extension) > 0)
+            names.push_back(entry.path().filename().string());
+    }
+    std::ranges::sort(names);
+    return names;
+}
+
+void refuseMissing(const std::filesystem::path& file) {
+    std::error_code error;
+    if (std::filesystem::exists(file, error)) return;
+    const std::filesystem::path place = std::filesystem::absolute(file, error).lexically_normal();
+    const std::string near = types::didYouMean(file.filename().string(), scenesIn(place.parent_path()));
+    throw types::ConfigError(
+        file.string(), "",
+        fmt::format("does not exist; {}looked for at {}; must be a scene, which may be .gltf, .glb, .world or .sdf",
+                    near, place.string()));
+}
+
 }  // namespace
 
 std::string extensionOf(const std::filesystem::path& file) {
@@ -38,6 +64,7 @@ std::string extensionOf(const std::filesystem::path& file) {
 }
 
 Scene readScene(const std::filesystem::path& file) {
+    refuseMissing(file);
     const std::string extension = extensionOf(file);
     if (extension == ".gltf" || extension == ".glb") return readGltf(file);
     if (extension == ".world" || extension == ".sdf") return readSdf(file);

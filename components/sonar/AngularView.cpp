@@ -7,15 +7,9 @@
 
 namespace insonify::sonar {
 
-glm::dvec3 AngularView::direction(int column, int row) const {
-    const size_t middle = at(column) + 1;
-    const Elevation& up = elevations[static_cast<size_t>(2 * row + 1)];
-    Direction around = azimuths[middle];
-    if (conical) {
-        const double azimuth = coneAzimuth(bearings[middle], up.angle);
-        around = {std::cos(azimuth), std::sin(azimuth)};
-    }
-    return {up.cosine * around.cosine, up.cosine * around.sine, up.sine};
+AngularView::Direction AngularView::azimuthOf(double bearing, const Elevation& up) {
+    const double azimuth = coneAzimuth(bearing, up.angle);
+    return {std::cos(azimuth), std::sin(azimuth)};
 }
 
 namespace {

@@ -35,7 +35,14 @@ struct AngularView {
     /** Of a column's lower edge, in `bearings` and `azimuths`; its middle and upper edge follow. */
     size_t at(int column) const { return static_cast<size_t>(2 * column + beam_of[static_cast<size_t>(column)]); }
     /** Unit, sonar axes, of the middle of a cell [1]. */
-    glm::dvec3 direction(int column, int row) const;
+    glm::dvec3 direction(int column, int row) const {
+        const size_t middle = at(column) + 1;
+        const Elevation& up = elevations[static_cast<size_t>(2 * row + 1)];
+        const Direction around = conical ? azimuthOf(bearings[middle], up) : azimuths[middle];
+        return {up.cosine * around.cosine, up.cosine * around.sine, up.sine};
+    }
+    /** Where a cone of that bearing meets an elevation. */
+    static Direction azimuthOf(double bearing, const Elevation& up);
     /** Of `count` rows from `row` on [rad]. */
     double height(size_t row, size_t count) const {
         return elevations[2 * (row + count)].angle - elevations[2 * row].angle;

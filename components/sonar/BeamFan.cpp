@@ -62,7 +62,7 @@ void addRow(const SonarConfig& config, const std::vector<Beam>& beams, const Sla
 
 /** One image of the whole fan, its top and bottom edges straight (ACOUSTICS.md 8.2, item 1). */
 Slab publishedFrustum(const SonarConfig& config) {
-    const double half_width = types::radians(config.field_of_view_deg) / 2;
+    const double half_width = types::radians(config.fieldOfViewDeg()) / 2;
     return {0,
             half_width,
             config.columnsPerBeam() * config.beam_count,
@@ -105,7 +105,7 @@ std::vector<Beam> makeBeams(const SonarConfig& config) {
         }
         return beams;
     }
-    const double fov = types::radians(config.field_of_view_deg), width = fov / config.beam_count;
+    const double fov = types::radians(config.fieldOfViewDeg()), width = fov / config.beam_count;
     for (int k = 0; k < config.beam_count; ++k)
         beams.push_back({-fov / 2 + (k + 0.5) * width, -fov / 2 + k * width, -fov / 2 + (k + 1) * width});
     return beams;

@@ -1,33 +1,36 @@
 #include "components/sonar/BinLevels.hpp"
 
-#include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "components/sonar/Acoustics.hpp"
 
 namespace insonify::sonar {
-namespace {
-
-constexpr double largest = static_cast<double>(std::numeric_limits<float>::max());
-
-}  // namespace
 
 BinLevels::BinLevels(const SonarConfig& config, const BinGrid& grid)
-    : level_db_(static_cast<size_t>(grid.bin_count)), factor_(level_db_.size(), 1.0) {
+    : factor_(static_cast<size_t>(grid.bin_count), 1.0) {
     if (config.model == Model::Cerqueira2017) return;
     const Absorption absorption = makeAbsorption(config);
     for (int j = 0; j < grid.bin_count; ++j) {
         const double r = grid.centre(j);
-        const double level = -20 * std::log10(r) - 2 * absorption.db_per_m * r;
-        level_db_[static_cast<size_t>(j)] = level;
-        factor_[static_cast<size_t>(j)] = std::pow(10, level / 10);
+        factor_[static_cast<size_t>(j)] = std::pow(10, (-20 * std::log10(r) - 2 * absorption.db_per_m * r) / 10);
     }
 }
 
-void BinLevels::apply(std::span<const double> accumulated, std::span<float> bins) const {
-    for (size_t j = 0; j < bins.size(); ++j)
-        bins[j] = accumulated[j] > 0 ? static_cast<float>(std::min(accumulated[j] * factor_[j], largest)) : 0.0f;
+bool BinLevels::fill(const EchoRules& rules, const uint64_t* sums, double solid_angle, std::span<float> bins) const {
+    const double quantum = solid_angle / (quanta_per_unit * rules.strength_scale);
+    const bool physical = rules.features.has(Feature::Physical);
+    uint64_t any = 0;
+    for (size_t j = 0; j < bins.size(); ++j) {
+        const uint64_t sum = sums[j * rules.channels()];
+        any |= sum;
+        if (physical) {
+            bins[j] = intensity(j, static_cast<double>(sum) * quantum);
+        } else {
+            const uint64_t weight = sums[2 * j + 1];
+            bins[j] = intensity(j, weight ? static_cast<double>(sum) / static_cast<double>(weight) : 0);
+        }
+    }
+    return any != 0;
 }
 
 }  // namespace insonify::sonar

@@ -1,9 +1,10 @@
 #pragma once
+#include <algorithm>
+#include <limits>
 #include <span>
 #include <vector>
 
-#include "components/sonar/BinGrid.hpp"
-#include "components/sonar/SonarConfig.hpp"
+#include "components/sonar/EchoRules.hpp"
 
 namespace insonify::sonar {
 
@@ -16,16 +17,19 @@ class BinLevels {
 public:
     BinLevels(const SonarConfig& config, const BinGrid& grid);
 
-    /** One beam: bin_count accumulated values in, as many intensities out, at most the largest float; a value that is
-     *  not positive is no echo. Allocates nothing. */
-    void apply(std::span<const double> accumulated, std::span<float> bins) const;
+    /** Intensity of bin j [1/m^2, of the source's at 1 m], at most the largest float; an A_j that is not positive is no
+     * echo. */
+    float intensity(size_t j, double accumulated) const {
+        constexpr double largest = static_cast<double>(std::numeric_limits<float>::max());
+        return accumulated > 0 ? static_cast<float>(std::min(accumulated * factor_[j], largest)) : 0.0f;
+    }
 
-    /** Spreading and absorption of bin j [dB]. */
-    double levelDb(int j) const { return level_db_[static_cast<size_t>(j)]; }
+    /** One beam's bins from its sums in quanta, EchoRules::sumCount() of them, of cells of `solid_angle` [sr]. Returns
+     * whether there is any echo. Allocates nothing. */
+    bool fill(const EchoRules& rules, const uint64_t* sums, double solid_angle, std::span<float> bins) const;
 
 private:
-    std::vector<double> level_db_;  ///< [dB]
-    std::vector<double> factor_;    ///< The same, linear [1].
+    std::vector<double> factor_;  ///< Spreading and absorption of each bin [1].
 };
 
 }  // namespace insonify::sonar

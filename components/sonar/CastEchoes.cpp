@@ -1,15 +1,15 @@
 #include "components/sonar/CastEchoes.hpp"
 
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <chrono>
 #include <cmath>
 #include <mutex>
 
 #include "components/sonar/Acoustics.hpp"
-#include "components/sonar/BinDeposit.hpp"
 #include "components/sonar/BinLevels.hpp"
-#include "components/sonar/Culler.hpp"
+#include "components/sonar/ObjectPlaces.hpp"
 #include "components/sonar/SurfaceScene.hpp"
 #include "components/sonar/ThreadPool.hpp"
 #include "components/sonar/TileDeposit.hpp"
@@ -43,15 +43,15 @@ public:
     void render(const types::Snapshot& snapshot, types::Sonar& ping, Stages& stages) override;
     bool heard() const override { return heard_; }
     std::vector<LeftOut> culled() const override { return {}; }
-    Features compiled() const override { return compiledFor(rules_); }
+    Features compiled() const override { return compiledForRays(plan_.features); }
     const std::string& device() const override { return device_; }
 
 private:
     /** What one thread works with. */
     struct Worker {
         std::vector<CastTile> tiles;
+        std::vector<TileHits> hits;  ///< Of each tile.
         std::vector<uint64_t> sums;
-        std::vector<double> values;
         Stages stages{};
         Clock::time_point last;
         bool heard = false;
@@ -70,14 +70,13 @@ private:
     TileRays raysOf(const CastTile& tile, int end_column) const;
     /** Adds a part's sums to its strip's; whether they are complete now, and in the worker. */
     bool gather(const Part& part, Worker& worker);
-    void fillBeam(const uint64_t* sums, std::span<float> bins, Worker& worker) const;
 
     const RenderPlan& plan_;
     types::GeometryPtr geometry_;
     EchoRules rules_;
-    TileShape shape_{1, 1};
+    CastView view_;
     BinLevels levels_;
-    Culler culler_;
+    ObjectPlaces places_;
     RayVisibility visibility_;
     std::vector<PlaneRecord> planes_;
     NormalMapping normal_maps_;
@@ -94,50 +93,49 @@ private:
 CastEchoes::CastEchoes(const RenderPlan& plan, types::GeometryPtr geometry)
     : plan_(plan),
       geometry_(std::move(geometry)),
-      rules_(makeEchoRules(plan)),
+      rules_(makeEchoRules(plan, *geometry_)),
       levels_(plan.config, plan.grid),
-      culler_(*geometry_, {0, rules_.bins.range_max, true}),
+      places_(*geometry_, reachOf(plan), true),
       visibility_(*geometry_),
       planes_(planesOf(*geometry_)),
       normal_maps_(*geometry_),
       threads_(plan.config.threads),
       workers_(static_cast<size_t>(threads_.size())) {
     runs_.reserve(visibility_.commands().size());
-    for (Worker& worker : workers_) worker.values.resize(static_cast<size_t>(rules_.bins.bin_count));
     takeQuality();
 }
 
 void CastEchoes::takeQuality() {
-    rules_.view = makeAngularView(plan_.config, plan_.beams);
-    rules_.strength_scale = strengthScale(plan_.config, rules_.bins, loudest(*geometry_));
-    rules_.most_merged = mostMerged(rules_.view, rules_.bins);
+    rules_ = makeEchoRules(plan_, *geometry_);
+    view_.cells = makeAngularView(plan_.config, plan_.beams);
     shareOut();
 }
 
 void CastEchoes::shareOut() {
-    const int beam_columns = rules_.view.beam_columns, beams = rules_.view.beams;
+    const int beam_columns = view_.cells.beam_columns, beams = view_.cells.beams;
     const int together = std::min(beams, (3 + beam_columns) / beam_columns);
-    shape_ = TileShape(beam_columns, together * beam_columns);
-    const int wanted = std::max(1, part_samples / (together * beam_columns)), up = shape_.all.rows;
-    const int rows = std::min((wanted + up - 1) / up * up, (rules_.view.rows + up - 1) / up * up);
+    view_.shape = TileShape(view_.cells, rules_.bins, together);
+    const int wanted = std::max(1, part_samples / (together * beam_columns)), up = view_.shape.all.rows;
+    const int rows = std::min((wanted + up - 1) / up * up, (view_.cells.rows + up - 1) / up * up);
     parts_.clear();
     strips_ = std::vector<Strip>(static_cast<size_t>((beams + together - 1) / together));
     for (size_t strip = 0; strip < strips_.size(); ++strip) {
         const int first = static_cast<int>(strip) * together;
-        for (int row = 0; row < rules_.view.rows; row += rows, ++strips_[strip].parts)
+        for (int row = 0; row < view_.cells.rows; row += rows, ++strips_[strip].parts)
             parts_.push_back(
-                {first, std::min(together, beams - first), row, std::min(rows, rules_.view.rows - row), strip});
+                {first, std::min(together, beams - first), row, std::min(rows, view_.cells.rows - row), strip});
         if (strips_[strip].parts > 1) strips_[strip].sums.resize(static_cast<size_t>(together) * rules_.sumCount());
     }
-    const int across = (together * beam_columns + shape_.all.columns - 1) / shape_.all.columns;
+    const int across = (together * beam_columns + view_.shape.all.columns - 1) / view_.shape.all.columns;
     for (Worker& worker : workers_) {
-        worker.tiles.resize(static_cast<size_t>(across * (rows / up)));
+        worker.hits.resize(static_cast<size_t>(across * (rows / up)));
+        worker.tiles.resize(worker.hits.size());
         worker.sums.resize(static_cast<size_t>(together) * rules_.sumCount());
     }
 }
 
 void CastEchoes::place(const types::Snapshot& snapshot) {
-    culler_.place(snapshot);
+    places_.place(snapshot);
     visibility_.place(snapshot);
     runs_.clear();
     for (const CommandRecord& command : visibility_.commands()) {
@@ -145,17 +143,17 @@ void CastEchoes::place(const types::Snapshot& snapshot) {
         const double strength = rules_.features.has(Feature::Cerqueira2017)
                                     ? static_cast<double>(material.reflectivity)
                                     : static_cast<double>(std::pow(10.0f, material.lambert_db / 10));
-        runs_.push_back(placedRun(culler_.records()[command.object], strength * rules_.strength_scale,
+        runs_.push_back(placedRun(places_.records()[command.object], strength * rules_.strength_scale,
                                   command.first_triangle, 1, 0));
     }
 }
 
 TileRays CastEchoes::raysOf(const CastTile& tile, int end_column) const {
-    const AngularView& view = rules_.view;
+    const AngularView& view = view_.cells;
     TileRays rays;
     rays.active = 0;
     for (int i = 0; i < tile_samples; ++i) {
-        const int column = tile.first_column + shape_.at[i].columns, row = tile.first_row + shape_.at[i].rows;
+        const int column = tile.first_column + view_.shape.at[i].columns, row = tile.first_row + view_.shape.at[i].rows;
         rays.active |= static_cast<uint32_t>(column < end_column && row < view.rows) << i;
         const glm::vec3 ray(view.direction(std::min(column, end_column - 1), std::min(row, view.rows - 1)));
         rays.x[i] = ray.x;
@@ -166,15 +164,22 @@ TileRays CastEchoes::raysOf(const CastTile& tile, int end_column) const {
 }
 
 std::span<const CastTile> CastEchoes::cast(const Part& part, Worker& worker) const {
-    const int begin = part.first_beam * rules_.view.beam_columns, end = begin + part.beams * rules_.view.beam_columns;
-    size_t count = 0;
-    for (int column = begin; column < end; column += shape_.all.columns)
-        for (int row = part.first_row; row < part.first_row + part.rows; row += shape_.all.rows) {
-            CastTile& tile = worker.tiles[count++];
-            tile.first_column = column;
-            tile.first_row = row;
-            visibility_.cast(raysOf(tile, end), tile.hits);
+    const int begin = part.first_beam * view_.cells.beam_columns, end = begin + part.beams * view_.cells.beam_columns;
+    std::array<TileRays, RayVisibility::tiles_at_once> rays;
+    size_t count = 0, waiting = 0;
+    const auto castWaiting = [&] {
+        visibility_.cast({rays.data(), waiting}, {&worker.hits[count - waiting], waiting});
+        waiting = 0;
+    };
+    for (int column = begin; column < end; column += view_.shape.all.columns)
+        for (int row = part.first_row; row < part.first_row + part.rows; row += view_.shape.all.rows) {
+            CastTile& tile = worker.tiles[count];
+            tile = {column, row, &worker.hits[count]};
+            ++count;
+            rays[waiting++] = raysOf(tile, end);
+            if (waiting == rays.size()) castWaiting();
         }
+    if (waiting > 0) castWaiting();
     return {worker.tiles.data(), count};
 }
 
@@ -188,33 +193,19 @@ bool CastEchoes::gather(const Part& part, Worker& worker) {
     return true;
 }
 
-void CastEchoes::fillBeam(const uint64_t* sums, std::span<float> bins, Worker& worker) const {
-    const double quantum = rules_.view.cell() / (quanta_per_unit * rules_.strength_scale);
-    uint64_t any = 0;
-    for (size_t k = 0; k < bins.size(); ++k) {
-        if (rules_.features.has(Feature::Physical))
-            worker.values[k] = static_cast<double>(sums[k]) * quantum;
-        else
-            worker.values[k] =
-                sums[2 * k + 1] ? static_cast<double>(sums[2 * k]) / static_cast<double>(sums[2 * k + 1]) : 0;
-        any |= sums[k * rules_.channels()];
-    }
-    worker.heard = worker.heard || any;
-    levels_.apply(worker.values, bins);
-}
-
 void CastEchoes::workOn(const Part& part, Worker& worker, types::Sonar& ping) {
     const std::span<const CastTile> tiles = cast(part, worker);
     worker.lap(DrawStage);
     std::fill(worker.sums.begin(), worker.sums.end(), 0);
-    deposit(rules_, shape_, {visibility_.commands(), runs_, culler_.records(), planes_, normal_maps_}, tiles,
+    deposit(rules_, view_, {visibility_.commands(), runs_, places_.records(), planes_, normal_maps_}, tiles,
             part.first_beam, worker.sums.data());
     worker.lap(DepositStage);
     const auto count = static_cast<size_t>(rules_.bins.bin_count);
     if (gather(part, worker))
         for (int beam = 0; beam < part.beams; ++beam)
-            fillBeam(worker.sums.data() + static_cast<size_t>(beam) * rules_.sumCount(),
-                     {ping.bins.data() + static_cast<size_t>(part.first_beam + beam) * count, count}, worker);
+            worker.heard |=
+                levels_.fill(rules_, &worker.sums[static_cast<size_t>(beam) * rules_.sumCount()], view_.cells.cell(),
+                             {&ping.bins[static_cast<size_t>(part.first_beam + beam) * count], count});
     worker.lap(BeamStage);
 }
 

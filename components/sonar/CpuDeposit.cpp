@@ -23,7 +23,6 @@ std::array<int, 2> touched(const ColumnShares& shares, uint first, uint last) {
 CpuDeposit::CpuDeposit(DepositSetup setup, const SurfacePass& surface, ThreadPool& threads)
     : setup_(std::move(setup)),
       threads_(threads),
-      edges_(inverseEdges(setup_.bins)),
       planes_(surface.scene().planes()),
       columns_(static_cast<size_t>(threads.size())),
       pictures_(setup_.slabs.size()),
@@ -49,11 +48,11 @@ void CpuDeposit::take(size_t slab, const SurfacePass& surface) {
     picture.taken = true;
     picture.runs.clear();
     const double cosine = std::cos(setup_.slabs[slab].azimuth), sine = std::sin(setup_.slabs[slab].azimuth);
-    const int value = setup_.features.has(Feature::Cerqueira2017) ? 1 : 0;
+    const int value = setup_.rules.features.has(Feature::Cerqueira2017) ? 1 : 0;
     for (const CommandRecord& command : surface.picture(slab).commands)
         picture.runs.push_back(
             placedRun(surface.objects()[command.object],
-                      surface.scene().materials()[command.material].values[value] * setup_.strength_scale,
+                      surface.scene().materials()[command.material].values[value] * setup_.rules.strength_scale,
                       command.first_triangle, cosine, sine));
 }
 
@@ -62,19 +61,16 @@ std::span<const uint64_t> CpuDeposit::finish() {
     return sums_;
 }
 
-Features CpuDeposit::compiled() const {
-    return compiledFor(
-        {setup_, setup_.slabs.front(), setup_.shares.front(), pictures_.front(), planes_, edges_, 0, 0, {}});
-}
+Features CpuDeposit::compiled() const { return compiledForPictures(setup_.rules.features); }
 
 void CpuDeposit::depositPart(size_t part) {
     const uint first = firstBeam(part), last = firstBeam(part + 1);
-    const size_t stride = static_cast<size_t>(setup_.bins.bin_count) * setup_.channels();
+    const size_t stride = setup_.rules.sumCount();
     std::fill(sums_.begin() + static_cast<ptrdiff_t>(first * stride),
               sums_.begin() + static_cast<ptrdiff_t>(last * stride), 0);
     for (size_t i = 0; i < pictures_.size(); ++i)
         if (pictures_[i].taken)
-            deposit({setup_, setup_.slabs[i], setup_.shares[i], pictures_[i], planes_, edges_, first, last,
+            deposit({setup_.rules, setup_.slabs[i], setup_.shares[i], pictures_[i], planes_, first, last,
                      columns_[part][i]},
                     sums_.data());
 }

@@ -21,7 +21,6 @@ private:
 
     DepositSetup setup_;
     ThreadPool& threads_;
-    std::vector<double> edges_;
     const std::vector<PlaneRecord>& planes_;
     std::vector<std::vector<std::array<int, 2>>> columns_;  ///< Of each thread and slab: from, to.
     std::vector<TakenPicture> pictures_;

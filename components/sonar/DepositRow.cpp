@@ -120,7 +120,7 @@ void aim(const SlabPart& part, int row, int first, int count, Pixels& pixels) {
     }
 }
 
-INSONIFY_VECTORISED void meet(Pixels& pixels, int count) {
+INSONIFY_VECTOR_CLONES void meet(Pixels& pixels, int count) {
     for (int i = 0; i < count; ++i) {
         const Surface surface = surfaceAt(pixels.normal_x[i], pixels.normal_y[i], pixels.normal_z[i],
                                           pixels.distance[i], pixels.ray_u[i], pixels.ray_v[i]);
@@ -138,7 +138,7 @@ struct Reach {
     double v, dv, near_edge, far_edge, per_pixel;
 };
 
-INSONIFY_VECTORISED void cover(const Shared& shared, int count, const Reach& reach, Cells& __restrict cells) {
+INSONIFY_VECTOR_CLONES void cover(const Shared& shared, int count, const Reach& reach, Cells& __restrict cells) {
     for (int i = 0; i < count; ++i)
         cells.set(i, cellFootprint(shared.u[i], reach.v, shared.middle[i], shared.width[i], shared.limit[i],
                                    shared.shear[i], reach.dv, shared.inverse_range[i], shared.slope_u[i],
@@ -156,8 +156,8 @@ public:
         return all;
     }
 
-    PartDeposit(const SlabPart& part, Estimator bins)
-        : part_(part), bins_(bins), per_pixel_(1 / (part.slab.du() * part.slab.dv())) {}
+    PartDeposit(const SlabPart& part, uint64_t* sums)
+        : part_(part), bins_(part.rules, sums), per_pixel_(1 / (part.slab.du() * part.slab.dv())) {}
 
     void run() {
         for (int row = 0; row < part_.slab.rows; ++row)
@@ -181,7 +181,8 @@ private:
     void shares(uint first_share, int count, uint first_column, double v) {
         const ShareRecord* shares = part_.shares.shares.data() + first_share;
         for (int i = 0; i < count; ++i) shared_.set(i, shares[i], pixels_, shares[i].column - first_column);
-        cover(shared_, count, {v, part_.slab.dv(), part_.edges.front(), part_.edges.back(), per_pixel_}, cells_);
+        cover(shared_, count,
+              {v, part_.slab.dv(), part_.rules.edges.front(), bins_.binEdge(bins_.bin_count), per_pixel_}, cells_);
         for (int i = 0; i < count; ++i)
             if (shares[i].beam >= part_.first && shares[i].beam < part_.last)
                 bins_.depositCell(cells_.get(i), shares[i].beam, shared_.strength_range[i]);
@@ -195,25 +196,15 @@ private:
     Cells cells_;
 };
 
-/** Calls use(PartDeposit) with the one that has the features of a plan. */
-template <bool conical, class Use>
-void withEstimator(const SlabPart& part, const Bins& bins, const Use& use) {
-    const Features& wanted = part.setup.features;
-    const bool absorbs = wanted.has(Feature::Absorption);
-    if (wanted.has(Feature::Published) && absorbs)
-        use(PartDeposit<AbsorbingPublishedBins, conical>(part, {{bins}}));
-    else if (wanted.has(Feature::Published))
-        use(PartDeposit<PublishedBins, conical>(part, {{bins}}));
-    else if (wanted.has(Feature::Cerqueira2017) && absorbs)
-        use(PartDeposit<AbsorbingBins, conical>(part, {{bins}}));
-    else if (wanted.has(Feature::Cerqueira2017))
-        use(PartDeposit<CerqueiraBins, conical>(part, {{bins}}));
-    else if (wanted.has(Feature::Jitter))
-        use(PartDeposit<JitteredBins, conical>(part, {{{bins}}}));
-    else if (wanted.has(Feature::Nearest))
-        use(PartDeposit<NearestBins, conical>(part, {{bins}}));
-    else
-        use(PartDeposit<PhysicalBins, conical>(part, {{bins}}));
+/** Calls use.operator()<Deposit>() with the PartDeposit that has the features of a plan. */
+template <class Use>
+void withParts(const Features& features, const Use& use) {
+    withEstimator<Features{}>(features, [&]<class Estimator>() {
+        if (features.has(Feature::Conical))
+            use.template operator()<PartDeposit<Estimator, true>>();
+        else
+            use.template operator()<PartDeposit<Estimator, false>>();
+    });
 }
 
 }  // namespace
@@ -230,23 +221,13 @@ PlacedRun placedRun(const ObjectRecord& object, double strength, uint32_t first_
     return run;
 }
 
-INSONIFY_VECTORISED __attribute__((flatten)) void deposit(const SlabPart& part, uint64_t* sums) {
-    const BinGrid& grid = part.setup.bins;
-    const Bins bins{part.edges.data(), sums, static_cast<uint>(grid.bin_count), grid.bin_width, part.setup.attenuation};
-    const auto run = [](auto parts) { parts.run(); };
-    if (part.setup.features.has(Feature::Conical))
-        withEstimator<true>(part, bins, run);
-    else
-        withEstimator<false>(part, bins, run);
+INSONIFY_VECTOR_CLONES __attribute__((flatten)) void deposit(const SlabPart& part, uint64_t* sums) {
+    withParts(part.rules.features, [&]<class Deposit>() { Deposit(part, sums).run(); });
 }
 
-Features compiledFor(const SlabPart& part) {
+Features compiledForPictures(const Features& wanted) {
     Features compiled;
-    const auto note = [&](const auto& parts) { compiled = parts.features(); };
-    if (part.setup.features.has(Feature::Conical))
-        withEstimator<true>(part, {}, note);
-    else
-        withEstimator<false>(part, {}, note);
+    withParts(wanted, [&]<class Deposit>() { compiled = Deposit::features(); });
     return compiled;
 }
 

@@ -27,20 +27,19 @@ struct TakenPicture {
 
 /** What one thread deposits of one slab: the beams [first, last). */
 struct SlabPart {
-    const DepositSetup& setup;
+    const EchoRules& rules;
     const Slab& slab;
     const ColumnShares& shares;
     const TakenPicture& picture;
     const std::vector<PlaneRecord>& planes;
-    const std::vector<double>& edges;  ///< inverseEdges.
-    uint32_t first, last;              ///< Beams [1].
-    std::array<int, 2> columns;        ///< From, to: those that these beams touch [1].
+    uint32_t first, last;        ///< Beams [1].
+    std::array<int, 2> columns;  ///< From, to: those that these beams touch [1].
 };
 
-/** Adds the part's echoes to `sums`, [beam][bin][channel]. */
+/** Adds the part's echoes to `sums`, EchoRules::sumCount() for each beam. */
 void deposit(const SlabPart& part, uint64_t* sums);
 
-/** What is compiled into the deposit that takes a part. */
-Features compiledFor(const SlabPart& part);
+/** What is compiled into the deposit of pictures that has these features. */
+Features compiledForPictures(const Features& wanted);
 
 }  // namespace insonify::sonar

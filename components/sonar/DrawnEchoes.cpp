@@ -7,7 +7,6 @@
 #include <cmath>
 
 #include "components/gpu/EglContext.hpp"
-#include "components/sonar/Acoustics.hpp"
 #include "components/sonar/BinLevels.hpp"
 #include "components/sonar/CpuDeposit.hpp"
 #include "components/sonar/SurfacePass.hpp"
@@ -25,18 +24,12 @@ double nearPlane(const Slab& slab) {
     return nearest_drawn / corner;
 }
 
-CullRules cullRules(const SonarConfig& config, const BinGrid& bins) {
-    return {nearest_drawn, bins.range_max, config.draw_all};
-}
-
-DepositSetup depositSetup(const RenderPlan& plan) {
+DepositSetup depositSetup(const RenderPlan& plan, const types::Geometry& geometry) {
     DepositSetup setup;
+    setup.rules = makeEchoRules(plan, geometry);
     setup.slabs = plan.slabs;
     for (const Slab& slab : plan.slabs) setup.shares.push_back(makeShares(plan.config, plan.beams, slab));
     setup.beam_count = static_cast<uint32_t>(plan.beams.size());
-    setup.bins = plan.grid;
-    setup.attenuation = makeAbsorption(plan.config).amplitudeNepersPerMetre();
-    setup.features = plan.features;
     return setup;
 }
 
@@ -56,7 +49,6 @@ private:
     void makeDeposit();
     void drawSlabs(const types::Snapshot& snapshot, Stages& stages);
     void fillBins(types::Sonar& ping);
-    void fillBeam(size_t beam, double* values, types::Sonar& ping) const;
     /** Seconds since the last call, put down for a stage. */
     void lap(Stage& stage);
 
@@ -69,9 +61,8 @@ private:
     ThreadPool threads_;
     SurfacePass surface_;
     std::unique_ptr<BinDeposit> deposit_;
-    double strength_scale_ = 1;
+    EchoRules rules_;
     std::span<const uint64_t> sums_;  ///< Of the last ping.
-    std::vector<double> scratch_;
     std::chrono::steady_clock::time_point last_;
 };
 
@@ -81,22 +72,21 @@ DrawnEchoes::DrawnEchoes(const RenderPlan& plan, types::GeometryPtr geometry)
       context_(plan.config.device),
       device_(fmt::format("{}, OpenGL {}", context_.renderer(), context_.driver())),
       levels_(plan.config, plan.grid),
-      culler_(*geometry_, cullRules(plan.config, plan.grid)),
+      culler_(*geometry_, {nearest_drawn, reachOf(plan), plan.config.draw_all}),
       threads_(plan.config.threads),
       surface_(context_,
                {*geometry_, plan.slabs, plan.features.defines(), nearPlane(plan.slabs.front()), culler_.runLimit(),
                 plan_.config.published},
                threads_) {
     makeDeposit();
-    scratch_.resize(static_cast<size_t>(threads_.size()) * static_cast<size_t>(plan_.grid.bin_count));
     context_.check();
 }
 
 DrawnEchoes::~DrawnEchoes() = default;
 
 void DrawnEchoes::makeDeposit() {
-    DepositSetup setup = depositSetup(plan_);
-    setup.strength_scale = strength_scale_ = strengthScale(plan_.config, plan_.grid, loudest(*geometry_));
+    DepositSetup setup = depositSetup(plan_, *geometry_);
+    rules_ = setup.rules;
     const bool on_cpu =
         plan_.config.deposit == Deposit::Cpu || (plan_.config.deposit == Deposit::Auto && context_.isSoftware());
     if (on_cpu)
@@ -126,25 +116,12 @@ void DrawnEchoes::drawSlabs(const types::Snapshot& snapshot, Stages& stages) {
     lap(stages[ReadStage]);
 }
 
-void DrawnEchoes::fillBeam(size_t beam, double* values, types::Sonar& ping) const {
+void DrawnEchoes::fillBins(types::Sonar& ping) {
     const auto count = static_cast<size_t>(plan_.grid.bin_count);
     const double pixel = plan_.slabs.front().du() * plan_.slabs.front().dv();  // solid angle of a whole pixel [sr]
-    for (size_t k = 0; k < count; ++k) {
-        const size_t at = beam * count + k;
-        if (plan_.features.has(Feature::Physical))
-            values[k] = static_cast<double>(sums_[at]) * (pixel / (quanta_per_unit * strength_scale_));
-        else
-            values[k] =
-                sums_[2 * at + 1] ? static_cast<double>(sums_[2 * at]) / static_cast<double>(sums_[2 * at + 1]) : 0;
-    }
-    levels_.apply({values, count}, {ping.bins.data() + beam * count, count});
-}
-
-void DrawnEchoes::fillBins(types::Sonar& ping) {
     threads_.run([&](int part, int parts) {
-        double* values = scratch_.data() + static_cast<size_t>(part) * static_cast<size_t>(plan_.grid.bin_count);
         for (auto beam = static_cast<size_t>(part); beam < plan_.beams.size(); beam += static_cast<size_t>(parts))
-            fillBeam(beam, values, ping);
+            levels_.fill(rules_, &sums_[beam * rules_.sumCount()], pixel, {&ping.bins[beam * count], count});
     });
 }
 

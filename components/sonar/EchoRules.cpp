@@ -2,49 +2,43 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "components/sonar/Acoustics.hpp"
-#include "components/sonar/BinDeposit.hpp"
 
 namespace insonify::sonar {
 
-TileShape::TileShape(int beam_columns, int columns) {
-    const int wide = columns >= 4 ? 4 : columns >= 2 ? 2 : 1;
-    const int together = std::min(wide, beam_columns % 4 == 0 ? 4 : beam_columns % 2 == 0 ? 2 : 1);
-    for (int count = 1; count < tile_samples; count *= 2) {
-        // First the columns of one beam and rows by turns, then the other rows, then the other columns.
-        const int across = size[count].columns, up = size[count].rows;
-        const bool widens = across < together ? across <= up : up * wide >= tile_samples;
-        size[2 * count] = {widens ? 2 * across : across, widens ? up : 2 * up};
-        for (int i = 0; i < count; ++i)
-            at[count + i] = {at[i].columns + (widens ? across : 0), at[i].rows + (widens ? 0 : up)};
-    }
-    all = size[tile_samples];
-    most_merged = together * all.rows;
-}
-
-EchoRules makeEchoRules(const RenderPlan& plan) {
+EchoRules makeEchoRules(const RenderPlan& plan, const types::Geometry& geometry) {
+    const BinGrid& bins = plan.grid;
     EchoRules rules;
     rules.features = plan.features;
-    rules.bins = plan.grid;
+    rules.bins = bins;
     rules.attenuation = makeAbsorption(plan.config).amplitudeNepersPerMetre();
-    rules.edges = inverseEdges(rules.bins);
-    for (int k = 0; k < rules.bins.bin_count; ++k) rules.middles.push_back(rules.bins.centre(k));
+    rules.strength_scale = strengthScale(plan.config, bins, loudest(geometry));
+    const double nearest = bins.range_min > 0 ? 1 / bins.range_min : std::numeric_limits<double>::max();
+    for (int k = 0; k <= bins.bin_count; ++k)
+        rules.edges.push_back(k == 0 ? nearest : std::min(nearest, 1 / bins.edge(k)));
+    for (int k = 0; k < bins.bin_count; ++k) rules.middles.push_back(bins.centre(k));
     rules.edges.resize(rules.edges.size() + bins_at_once);
     rules.middles.resize(rules.middles.size() + bins_at_once);
     return rules;
 }
 
-int mostMerged(const AngularView& view, const BinGrid& bins) {
-    // Over an angle d, 1/r of a plane n.p = D leaves the straight line between its ends by d d / (8 D) at most: so much
-    // is a fiftieth of a bin at the far edge, on planes that graze at 15 deg. Energies are off by d d / 24 of
-    // themselves, however long the bins are.
-    constexpr double widest = 0.0085;  // [rad]
-    const double angle = std::min(widest, std::sqrt(8 * 0.02 * bins.bin_width / bins.range_max / 4));
-    const double cell = std::max(view.column_width, view.row_height);
-    int most = 1;
-    while (most < tile_samples && cell * 2 * std::sqrt(most) <= angle) most *= 4;
-    return most;
+double loudest(const types::Geometry& geometry) {
+    double strongest = 0;
+    for (const types::Material& material : geometry.materials)
+        strongest = std::max(strongest, std::pow(10.0, material.lambert_db / 10.0));
+    return strongest;
+}
+
+double strengthScale(const SonarConfig& config, const BinGrid& bins, double loudest) {
+    constexpr double most = 1048576, most_sum = 8 * most;  // of one deposit, and of a bin: half of 64 bits
+    if (config.model != Model::Physical) return 1;         // S and its weights are at most 1
+    const double ratio =
+        std::max(1.5, 0.5 * bins.bin_width / std::max(bins.range_min, 1e-3));  // of a bin's middle to its ranges
+    const double strongest = loudest * ratio * ratio;
+    const double pixels = static_cast<double>(config.samples_per_pixel * config.rows()) * (config.columnsPerBeam() + 2);
+    return std::exp2(-std::ceil(std::max(0.0, std::log2(strongest * std::max(1 / most, pixels / most_sum)))));
 }
 
 }  // namespace insonify::sonar

@@ -1,52 +1,41 @@
 #pragma once
+#include <cstdint>
 #include <vector>
 
-#include "components/sonar/AngularView.hpp"
 #include "components/sonar/RenderPlan.hpp"
 
 namespace insonify::sonar {
 
-/** Rays that are cast together: neighbours, so that most of them take the same way through the tree. */
-constexpr int tile_samples = 16;
-/** Bins that are filled together; lists of bins end in as many more. */
+/** Bins that the processor fills together; lists of bins end in as many more. */
 constexpr int bins_at_once = 4;
 
-/** How the samples of a tile lie: as the bits of their numbers say, so that those that share all but the last bits are
- * a rectangle. 4 x 4, but narrower where the whole view is. */
-struct TileShape {
-    struct Extent {
-        int columns, rows;
-    };
-    /** `beam_columns`: of each beam; `columns`: of a run of beams that begins where a tile does. */
-    TileShape(int beam_columns, int columns);
+/** Sums are counted in quanta of 2^-40 of a whole cell of unit strength: exact, so the order of summation is free. */
+constexpr double quanta_per_unit = 1099511627776.0;
 
-    Extent all{};                                  ///< Of the tile.
-    Extent at[tile_samples] = {};                  ///< Of each sample from the tile's first.
-    Extent size[tile_samples + 1] = {{}, {1, 1}};  ///< Of so many samples, a power of 2.
-    int most_merged = 1;                           ///< Samples that are surely of one beam, a power of 2 [1].
-};
-
-/** What the echo of any ping needs to know, fixed for the life of a renderer but for its quality. */
+/** What the arithmetic of an echo reads, the same for rays and pictures, on the processor and on a card. */
 struct EchoRules {
-    AngularView view;
-    BinGrid bins;
     Features features;
+    BinGrid bins;
     double attenuation = 0;       ///< Amplitude, one way, in `cerqueira2017` [Np/m].
-    double strength_scale = 1;    ///< strengthScale.
-    int most_merged = 1;          ///< Samples of one triangle that may become one cell, a power of 2 [1].
-    std::vector<double> edges;    ///< inverseEdges, and a few of 0.
-    std::vector<double> middles;  ///< Slant ranges of the bins' middles, and a few of 0 [m].
+    double strength_scale = 1;    ///< Strengths are deposited times this: strengthScale.
+    std::vector<double> edges;    ///< Inverse ranges of the bins' edges from the near blanking on, then 0 [1/m].
+    std::vector<double> middles;  ///< Slant ranges of the bins' middles, then 0 [m].
 
     size_t channels() const { return features.has(Feature::Cerqueira2017) ? 2 : 1; }
-    size_t sumCount() const { return (static_cast<size_t>(bins.bin_count) + bins_at_once) * channels(); }
+    /** Bins from one beam's first to the next one's. */
+    size_t beamStride() const { return static_cast<size_t>(bins.bin_count) + bins_at_once; }
+    /** Numbers of a beam: [bin][channel]. */
+    size_t sumCount() const { return beamStride() * channels(); }
 };
 
-/** Without the view, which goes with the quality. */
-EchoRules makeEchoRules(const RenderPlan& plan);
+/** Rules for the plan's quality. */
+EchoRules makeEchoRules(const RenderPlan& plan, const types::Geometry& geometry);
 
-/** Samples of one triangle that may become one cell: so that its ranges stay within a fiftieth of a bin of the
- * plane's.
- */
-int mostMerged(const AngularView& view, const BinGrid& bins);
+/** Strongest Lambert parameter of a geometry's materials [1]. */
+double loudest(const types::Geometry& geometry);
+
+/** The power of 2, at most 1, by which strengths of up to `loudest` must be scaled so that no sum of quanta overflows:
+ *  1 but for materials, images or bins that are extreme together. */
+double strengthScale(const SonarConfig& config, const BinGrid& bins, double loudest);
 
 }  // namespace insonify::sonar

@@ -3,16 +3,13 @@
 // by what deposits on the processor alone: the compiler flags that keep products unfused are those files'.
 #include <cmath>
 #include <cstdint>
+#include <cstring>
+#include <tuple>
+#include <type_traits>
 
-#include "components/sonar/BinDeposit.hpp"
-
-// The arithmetic of many cells is done in plain loops over arrays, which the compiler turns into vector instructions;
-// once for each kind of processor. No products are fused: all give the same bits.
-#if defined(__x86_64__) && !defined(__SANITIZE_ADDRESS__)
-#define INSONIFY_VECTORISED __attribute__((target_clones("avx512f", "avx2", "default")))
-#else
-#define INSONIFY_VECTORISED
-#endif
+#include "components/sonar/EchoRules.hpp"
+#include "components/sonar/Interface.hpp"
+#include "types/VectorMath.hpp"
 
 namespace insonify::sonar {
 namespace {
@@ -29,12 +26,21 @@ using real = double;
 #include "shaders/trapezoid.glsl"
 #pragma GCC diagnostic pop
 
-/** Where the shared code of shaders/deposit.glsl finds its bins; HAVE_CERQUEIRA2017 chooses the model at compile time.
+/** Where the shared code of shaders/deposit.glsl finds its bins; HAVE_<FEATURE> chooses at compile time what it does.
  */
 struct Bins {
-    const double* edges;
+    explicit Bins(const EchoRules& rules, uint64_t* all_sums = nullptr)
+        : edges(rules.edges.data()),
+          middles(rules.middles.data()),
+          sums(all_sums),
+          bin_count(static_cast<uint>(rules.bins.bin_count)),
+          beam_stride(static_cast<uint>(rules.beamStride())),
+          bin_width(rules.bins.bin_width),
+          attenuation(rules.attenuation) {}
+
+    const double *edges, *middles;
     uint64_t* sums;
-    uint bin_count;
+    uint bin_count, beam_stride;
     double bin_width, attenuation;
     double binEdge(uint k) const { return edges[k]; }
     static uint64_t quanta(double amount) {  // by way of a signed number, for which there is an instruction
@@ -42,30 +48,68 @@ struct Bins {
     }
 };
 
-struct EnergyBins : Bins {
-    void addToBin(uint beam, uint bin, double amount, double) const { sums[beam * bin_count + bin] += quanta(amount); }
+/** Several numbers at a time. */
+using Lanes = double __attribute__((vector_size(bins_at_once * sizeof(double))));
+
+inline Lanes min(Lanes a, double b) { return a < b ? a : Lanes{} + b; }
+inline Lanes max(Lanes a, double b) { return a > b ? a : Lanes{} + b; }
+inline Lanes abs(Lanes a) { return a < 0.0 ? -a : a; }
+inline Lanes load(const double* from) {
+    Lanes lanes;
+    std::memcpy(&lanes, from, sizeof lanes);
+    return lanes;
+}
+
+/** Energies of footprints: what deposit.glsl does with HAVE_PHYSICAL, several bins at once. */
+struct PhysicalBins : Bins {
+    static constexpr Features features{Feature::Physical};
+    using Bins::Bins;
+
+    void depositCell(const Footprint& cell, uint beam, double strength_range) {
+        if (!(cell.near_end > cell.far_end && strength_range >= 0.0)) return;
+        uint bin = min(uint(1.0 / (cell.near_end * bin_width)), bin_count - 1u);
+        while (bin > 0u && edges[bin] < cell.near_end) --bin;
+        while (edges[bin + 1u] >= cell.near_end) ++bin;
+        uint64_t* of_beam = sums + static_cast<size_t>(beam) * beam_stride;
+        for (; edges[bin] > cell.far_end; bin += bins_at_once) addBins(cell, strength_range, bin, of_beam);
+    }
+
+private:
+    using real = Lanes;
+#include "shaders/trapezoid.glsl"
+
+    void addBins(const Footprint& cell, double strength_range, uint first, uint64_t* of_beam) {
+        const Lanes above = max(min(load(edges + first), cell.near_end), cell.far_end);
+        const Lanes below = max(min(load(edges + first + 1), cell.near_end), cell.far_end);
+        const Lanes to_above = trapezoidShare(cell, above - cell.centre);
+        const Lanes share =
+            (above < cell.nearest ? to_above : Lanes{} + 0.5) - trapezoidShare(cell, below - cell.centre);
+        const Lanes amounts = partEnergy(cell, strength_range, share, load(middles + first), above, below);
+        for (int i = 0; i < bins_at_once; ++i) of_beam[first + i] += quanta(amounts[i]);
+    }
 };
 
 #define HAVE_PHYSICAL
-struct PhysicalBins : EnergyBins {
-    static constexpr Features features{Feature::Physical};
-#include "shaders/deposit.glsl"
-};
-
 #define HAVE_NEAREST
-struct NearestBins : EnergyBins {
+struct NearestBins : Bins {
     static constexpr Features features{Feature::Physical, Feature::Nearest};
+    using Bins::Bins;
+    void addToBin(uint beam, uint bin, double amount, double) const {
+        sums[static_cast<size_t>(beam) * beam_stride + bin] += quanta(amount);
+    }
 #include "shaders/deposit.glsl"
 };
 struct JitteredBins : NearestBins {
     static constexpr Features features{Feature::Physical, Feature::Nearest, Feature::Jitter};
+    using NearestBins::NearestBins;
 };
 #undef HAVE_NEAREST
 #undef HAVE_PHYSICAL
 
 struct MeanBins : Bins {
+    using Bins::Bins;
     void addToBin(uint beam, uint bin, double amount, double weight) const {
-        uint64_t* cell = sums + 2 * static_cast<size_t>(beam * bin_count + bin);
+        uint64_t* cell = sums + 2 * (static_cast<size_t>(beam) * beam_stride + bin);
         cell[0] += quanta(amount);
         cell[1] += quanta(weight);
     }
@@ -74,25 +118,53 @@ struct MeanBins : Bins {
 #define HAVE_CERQUEIRA2017
 struct CerqueiraBins : MeanBins {
     static constexpr Features features{Feature::Cerqueira2017};
+    using MeanBins::MeanBins;
 #include "shaders/deposit.glsl"
 };
 #define HAVE_PUBLISHED
 struct PublishedBins : MeanBins {
     static constexpr Features features{Feature::Cerqueira2017, Feature::Published};
+    using MeanBins::MeanBins;
 #include "shaders/deposit.glsl"
 };
 #define HAVE_ABSORPTION
 struct AbsorbingPublishedBins : MeanBins {
     static constexpr Features features{Feature::Cerqueira2017, Feature::Published, Feature::Absorption};
+    using MeanBins::MeanBins;
 #include "shaders/deposit.glsl"
 };
 #undef HAVE_PUBLISHED
 struct AbsorbingBins : MeanBins {
     static constexpr Features features{Feature::Cerqueira2017, Feature::Absorption};
+    using MeanBins::MeanBins;
 #include "shaders/deposit.glsl"
 };
 #undef HAVE_ABSORPTION
 #undef HAVE_CERQUEIRA2017
+
+using AllEstimators = std::tuple<PhysicalBins, NearestBins, JitteredBins, CerqueiraBins, AbsorbingBins, PublishedBins,
+                                 AbsorbingPublishedBins>;
+
+/** Features that any of some estimators has. */
+template <class... Estimator>
+constexpr Features featuresOfAny(std::type_identity<std::tuple<Estimator...>>) {
+    return (Features{} | ... | Estimator::features);
+}
+
+/** Calls use.operator()<Estimator>() with the one that has the features of a plan, among those without `unwanted`
+ *  features. */
+template <Features unwanted, class Use>
+void withEstimator(const Features& features, const Use& use) {
+    constexpr std::type_identity<AllEstimators> all;
+    const Features wanted = features & featuresOfAny(all);
+    [&]<class... Estimator>(std::type_identity<std::tuple<Estimator...>>) {
+        const auto offer = [&]<class Offered>() {
+            if constexpr ((Offered::features & unwanted) == Features{})
+                if (Offered::features == wanted) use.template operator()<Offered>();
+        };
+        (offer.template operator()<Estimator>(), ...);
+    }(all);
+}
 
 }  // namespace
 }  // namespace insonify::sonar

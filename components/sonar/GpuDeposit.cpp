@@ -32,7 +32,7 @@ private:
     };
     void setUniforms(const Slab& slab) const;
     struct Uniforms {
-        GLint image_size, bin_count, bin_width, attenuation, strength_scale, slab_axis, extent, pixel_size;
+        GLint image_size, bin_count, beam_stride, bin_width, attenuation, strength_scale, slab_axis, extent, pixel_size;
     };
 
     DepositSetup setup_;
@@ -48,14 +48,13 @@ private:
 GpuDeposit::GpuDeposit(const DepositSetup& setup, gpu::EglContext& context)
     : setup_(setup),
       context_(context),
-      program_(context.programs().compute("deposit.comp.glsl", setup.features.defines())),
+      program_(context.programs().compute("deposit.comp.glsl", setup.rules.features.defines())),
       sums_(setup.sumCount() * sizeof(uint64_t)) {
     const auto at = [this](const char* name) { return glGetUniformLocation(program_.id(), name); };
-    uniforms_ = {at("image_size"),     at("bin_count"), at("bin_width"), at("attenuation"),
-                 at("strength_scale"), at("slab_axis"), at("extent"),    at("pixel_size")};
+    uniforms_ = {at("image_size"),     at("bin_count"), at("beam_stride"), at("bin_width"), at("attenuation"),
+                 at("strength_scale"), at("slab_axis"), at("extent"),      at("pixel_size")};
     context.requireStorage(setup.sumCount() * sizeof(uint64_t), "the sums of all bins");
-    const auto edges = inverseEdges(setup.bins);
-    edges_ = gpu::Buffer::of(std::span(edges));
+    edges_ = gpu::Buffer::of(std::span(setup.rules.edges));
     device_sums_ = gpu::Buffer(setup.sumCount() * sizeof(uint64_t));
     for (const ColumnShares& slab : setup.shares)
         shares_.push_back({gpu::Buffer::of(std::span(slab.starts)), gpu::Buffer::of(std::span(slab.shares)), {}});
@@ -63,10 +62,11 @@ GpuDeposit::GpuDeposit(const DepositSetup& setup, gpu::EglContext& context)
 
 void GpuDeposit::setUniforms(const Slab& slab) const {
     glUniform2i(uniforms_.image_size, slab.columns, slab.rows);
-    glUniform1ui(uniforms_.bin_count, static_cast<GLuint>(setup_.bins.bin_count));
-    glUniform1d(uniforms_.bin_width, setup_.bins.bin_width);
-    glUniform1d(uniforms_.attenuation, setup_.attenuation);
-    glUniform1d(uniforms_.strength_scale, setup_.strength_scale);
+    glUniform1ui(uniforms_.bin_count, static_cast<GLuint>(setup_.rules.bins.bin_count));
+    glUniform1ui(uniforms_.beam_stride, static_cast<GLuint>(setup_.rules.beamStride()));
+    glUniform1d(uniforms_.bin_width, setup_.rules.bins.bin_width);
+    glUniform1d(uniforms_.attenuation, setup_.rules.attenuation);
+    glUniform1d(uniforms_.strength_scale, setup_.rules.strength_scale);
     glUniform2d(uniforms_.slab_axis, std::cos(slab.azimuth), std::sin(slab.azimuth));
     glUniform2d(uniforms_.extent, slab.extent_u, slab.extent_v);
     glUniform2d(uniforms_.pixel_size, slab.du(), slab.dv());

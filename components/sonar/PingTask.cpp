@@ -11,6 +11,7 @@
 
 #include "components/framework/Activity.hpp"
 #include "components/sonar/PlanReport.hpp"
+#include "components/sonar/Silence.hpp"
 #include "types/CarriedOn.hpp"
 
 namespace insonify::sonar {
@@ -59,6 +60,7 @@ bool PingTask::configureHook() {
     grid_ = makeBinGrid(sonarConfig());
     shortest_ = std::numeric_limits<double>::infinity();
     period_ = {};
+    silent_ = 0;
     return true;
 }
 
@@ -138,6 +140,15 @@ void PingTask::followQuality(types::Sonar& sample, double ms) {
     plan_told_ = false;
 }
 
+void PingTask::followSilence() {
+    if (silent_ < 0) return;
+    silent_ = renderer_->heard() ? -1 : silent_ + 1;
+    if (silent_ != pingsPerTurn()) return;
+    const double covered_deg = silent_ > 1 ? 360 : sonarConfig().coverageDeg();  // a head has looked all round
+    warn(silenceText(sonarConfig(), {grid_.range_max, covered_deg}, aimed_));
+    silent_ = -1;
+}
+
 void PingTask::render() {
     if (!renderer_ || geometry_ != aimed_.geometry) makeRenderer();
     const auto sample = pool_.take();
@@ -148,6 +159,7 @@ void PingTask::render() {
     if (std::exchange(culling_untold_, false))
         for (const LeftOut& what : renderer_->culled()) plan_->omitted.push_back(describe(what, grid_));
     followQuality(*sample, took.count());
+    followSilence();
     label(*sample);
     pool_.stock(*sample);
     if (!std::exchange(plan_told_, true)) refreshRecord();

@@ -98,12 +98,12 @@ void noteRange(const SonarConfig& config, const BinGrid& grid, std::vector<std::
     const double off = grid.range_max / read - grid.range_max / grid.bin_width;
     if (config.range_rounding == RangeRounding::Exact && std::abs(off) > 1e-6)
         notices.push_back(
-            fmt::format("Warning: bin_duration is {} us in whole microseconds; a reader of it is off by "
+            fmt::format("Warning: bin_duration, one way, is {} us in whole microseconds; a reader of it is off by "
                         "{:.3g} bins at the far edge",
                         grid.bin_duration_us, std::abs(off)));
     const double longer = grid.range_max / config.range - 1;
     if (std::abs(longer) > 1e-9)
-        notices.push_back(fmt::format("{}range reached is {:.6g} m, {:.2g} % more than {:g} m: bins last {} us",
+        notices.push_back(fmt::format("{}range reached is {:.6g} m, {:.2g} % more than {:g} m: bins last {} us one way",
                                       longer > 0.01 ? "Warning: " : "", grid.range_max, 100 * longer, config.range,
                                       grid.bin_duration_us));
     const float far = static_cast<float>(grid.range_max);

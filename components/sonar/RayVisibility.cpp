@@ -26,6 +26,7 @@ struct Rows {
         : x(m[0][0], m[1][0], m[2][0]), y(m[0][1], m[1][1], m[2][1]), z(m[0][2], m[1][2], m[2][2]) {}
 };
 
+/** Aims the rays that are active; what they have met before stays. */
 void aim(const Rows& turn, glm::vec3 from, const TileRays& rays, RTCRayHit16& all) {
     for (int i = 0; i < tile_samples; ++i) {
         const float x = rays.x[i], y = rays.y[i], z = rays.z[i];
@@ -37,6 +38,39 @@ void aim(const Rows& turn, glm::vec3 from, const TileRays& rays, RTCRayHit16& al
         all.ray.dir_z[i] = turn.z.x * x + turn.z.y * y + turn.z.z * z;
         all.hit.geomID[i] = RTC_INVALID_GEOMETRY_ID;
         all.hit.instID[0][i] = RTC_INVALID_GEOMETRY_ID;
+    }
+}
+
+/** Lets rays that are active reach all that lies beyond `nearest` [m]; the others end before they begin. */
+void extend(const TileRays& rays, float nearest, RTCRayHit16& all) {
+    constexpr float infinity = std::numeric_limits<float>::infinity();
+    for (int i = 0; i < tile_samples; ++i) {
+        const bool active = rays.active >> i & 1;
+        all.ray.tnear[i] = active ? nearest : infinity;
+        all.ray.tfar[i] = active ? infinity : -infinity;
+        all.ray.time[i] = 0;
+        all.ray.mask[i] = 0xffffffff;
+        all.ray.flags[i] = 0;
+    }
+}
+
+RTCIntersectContext coherentRays() {
+    RTCIntersectContext context;
+    rtcInitIntersectContext(&context);
+    context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
+    return context;
+}
+
+/** Writes down what rays have met now; `meaning` of a geometry and an instance is a SceneTrees::Part. */
+template <class Meaning>
+void take(const RTCRayHit16& all, TileHits& hits, const Meaning& meaning) {
+    for (int i = 0; i < tile_samples; ++i) {
+        if (all.hit.geomID[i] == RTC_INVALID_GEOMETRY_ID) continue;
+        const SceneTrees::Part part = meaning(all.hit.geomID[i], all.hit.instID[0][i]);
+        hits.command[i] = part.command;
+        hits.triangle[i] = part.first_triangle + all.hit.primID[i];
+        hits.u[i] = all.hit.u[i];
+        hits.v[i] = all.hit.v[i];
     }
 }
 
@@ -166,39 +200,33 @@ void RayVisibility::placeMovers(const types::Snapshot& snapshot) {
     }
 }
 
-void RayVisibility::cast(const TileRays& rays, TileHits& hits) const {
-    RTCRayHit16 all;
-    alignas(64) int valid[tile_samples];
-    for (int i = 0; i < tile_samples; ++i) {
-        valid[i] = (rays.active >> i & 1) ? -1 : 0;
-        all.ray.tnear[i] = static_cast<float>(nearest);
-        all.ray.tfar[i] = std::numeric_limits<float>::infinity();
-        all.ray.time[i] = 0;
-        all.ray.mask[i] = 0xffffffff;
-        all.ray.flags[i] = 0;
+void RayVisibility::cast(std::span<const TileRays> rays, std::span<TileHits> hits) const {
+    std::array<RTCRayHit16, tiles_at_once> all;
+    const Rows world(world_from_sonar_);
+    for (size_t i = 0; i < rays.size(); ++i) {
+        extend(rays[i], static_cast<float>(nearest), all[i]);
+        aim(world, place_, rays[i], all[i]);
     }
-    RTCIntersectContext context;
-    rtcInitIntersectContext(&context);
-    context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
-    aim(Rows(world_from_sonar_), place_, rays, all);
-    rtcIntersect16(valid, trees_->still(), &context, &all);
-    const auto take = [&](const auto& meaning) {
-        for (int i = 0; i < tile_samples; ++i) {
-            if (all.hit.geomID[i] == RTC_INVALID_GEOMETRY_ID || !valid[i]) continue;
-            const SceneTrees::Part part = meaning(all.hit.geomID[i], all.hit.instID[0][i]);
-            hits.command[i] = part.command;
-            hits.triangle[i] = part.first_triangle + all.hit.primID[i];
-            hits.u[i] = all.hit.u[i];
-            hits.v[i] = all.hit.v[i];
-        }
-    };
-    std::fill_n(hits.command, tile_samples, TileHits::nothing);
-    take([this](uint32_t geometry, uint32_t instance) { return trees_->meaning(geometry, instance); });
+    RTCIntersectContext context = coherentRays();
+    rtcIntersectNM(trees_->still(), &context, reinterpret_cast<RTCRayHitN*>(all.data()), tile_samples,
+                   static_cast<unsigned>(rays.size()), sizeof(RTCRayHit16));
+    for (size_t i = 0; i < rays.size(); ++i) {
+        std::fill_n(hits[i].command, tile_samples, TileHits::nothing);
+        take(all[i], hits[i],
+             [this](uint32_t geometry, uint32_t instance) { return trees_->meaning(geometry, instance); });
+        castAtMovers(rays[i], all[i], hits[i]);
+    }
+}
+
+void RayVisibility::castAtMovers(const TileRays& rays, RTCRayHit16& all, TileHits& hits) const {
+    alignas(64) int valid[tile_samples];
+    for (int i = 0; i < tile_samples; ++i) valid[i] = (rays.active >> i & 1) ? -1 : 0;
+    RTCIntersectContext context = coherentRays();
     for (const Mover& mover : movers_) {
         if (!mover.mayMeet(rays)) continue;
         aim(Rows(mover.from_sonar), mover.place, rays, all);
         rtcIntersect16(valid, mover.mesh->scene, &context, &all);
-        take([&](uint32_t geometry, uint32_t) {
+        take(all, hits, [&](uint32_t geometry, uint32_t) {
             const SceneTrees::Part& part = mover.mesh->parts[geometry];
             return SceneTrees::Part{mover.first_command + part.command, part.first_triangle};
         });

@@ -1,11 +1,14 @@
 #pragma once
 #include <array>
 #include <memory>
+#include <span>
 #include <vector>
 
-#include "components/sonar/EchoRules.hpp"
 #include "components/sonar/Interface.hpp"
+#include "components/sonar/TileShape.hpp"
 #include "types/Snapshot.hpp"
+
+struct RTCRayHit16;
 
 namespace insonify::sonar {
 
@@ -31,7 +34,8 @@ struct TileHits {
  * is re-placed each ping and never built again. Surfaces nearer than `nearest` are not seen. */
 class RayVisibility {
 public:
-    static constexpr double nearest = 1e-3;  ///< [m]
+    static constexpr double nearest = 1e-3;     ///< [m]
+    static constexpr size_t tiles_at_once = 4;  ///< They go through the tree together, which takes less time [1].
 
     /** The geometry must outlive it. Throws std::runtime_error where Embree refuses it. */
     explicit RayVisibility(const types::Geometry& geometry);
@@ -41,8 +45,9 @@ public:
      * or when the sonar has gone far from the tree's origin; allocates only then. */
     void place(const types::Snapshot& snapshot);
 
-    /** Casts a tile from the place of the sonar; several threads may do so at a time. */
-    void cast(const TileRays& rays, TileHits& hits) const;
+    /** Casts tiles from the place of the sonar, at most `tiles_at_once`, which should lie side by side: hits[i] is what
+     * rays[i] meet. Several threads may do so at a time. */
+    void cast(std::span<const TileRays> rays, std::span<TileHits> hits) const;
 
     /** What hits mean: one command for each object and run of one material. */
     const std::vector<CommandRecord>& commands() const { return commands_; }
@@ -53,6 +58,7 @@ private:
     bool hasNewMover(const types::Snapshot& snapshot) const;
     void build(const types::Snapshot& snapshot);
     void placeMovers(const types::Snapshot& snapshot);
+    void castAtMovers(const TileRays& rays, RTCRayHit16& all, TileHits& hits) const;
 
     const types::Geometry& geometry_;
     std::vector<CommandRecord> commands_;

@@ -25,13 +25,17 @@ public:
     constexpr void add(Feature feature) { bits_ |= 1u << static_cast<unsigned>(feature); }
     constexpr bool has(Feature feature) const { return bits_ >> static_cast<unsigned>(feature) & 1u; }
     constexpr bool operator==(const Features&) const = default;
+    constexpr Features operator&(Features other) const { return Features(bits_ & other.bits_); }
+    constexpr Features operator|(Features other) const { return Features(bits_ | other.bits_); }
     /** "physical", "normal_map"... */
     std::vector<std::string> names() const;
     /** "HAVE_PHYSICAL", "HAVE_NORMAL_MAP"..., for the shaders. */
     std::vector<std::string> defines() const;
 
+    unsigned bits_ = 0;  ///< Public so that a set can be a template's parameter.
+
 private:
-    unsigned bits_ = 0;
+    constexpr explicit Features(unsigned bits) : bits_(bits) {}
 };
 
 /** Work for each ping, in this order. */

@@ -103,12 +103,12 @@ void AbsorptionConfig::check(types::Problems& problems) const {
 }
 
 double SonarConfig::bearingDeg(int k) const {
-    return bearings_deg.empty() ? field_of_view_deg * ((k + 0.5) / beam_count - 0.5)
+    return bearings_deg.empty() ? fieldOfViewDeg() * ((k + 0.5) / beam_count - 0.5)
                                 : bearings_deg[static_cast<size_t>(k)];
 }
 
 double SonarConfig::coverageDeg() const {
-    if (bearings_deg.empty()) return field_of_view_deg;
+    if (bearings_deg.empty()) return fieldOfViewDeg();
     const auto [first, last] = std::minmax_element(bearings_deg.begin(), bearings_deg.end());
     return std::min(*last - *first + beamWidthDeg(), 360.0);
 }
@@ -157,6 +157,10 @@ void SonarConfig::check(types::Problems& problems) const {
 SonarConfig SonarConfig::fan() const {
     SonarConfig fan = *this;
     if (!bearings_deg.empty() || !beam_width_deg) return fan;
+    if (field_of_view_deg) {
+        for (int k = 0; k < beam_count; ++k) fan.bearings_deg.push_back(bearingDeg(k));
+        return fan;
+    }
     const bool total = beam_width_convention == BeamWidthConvention::TotalFov;
     fan.field_of_view_deg = total ? *beam_width_deg : *beam_width_deg * beam_count;
     fan.beam_width_deg.reset();
@@ -164,13 +168,19 @@ SonarConfig SonarConfig::fan() const {
 }
 
 void SonarConfig::checkFan(types::Problems& problems) const {
-    const SonarConfig regular = fan();
-    if (field_of_view_deg != SonarConfig().field_of_view_deg)
-        return problems.push_back({"field_of_view_deg", "is given with beam_width_deg; one of the two tells the fan"});
-    if (regular.field_of_view_deg > 360)
+    if (field_of_view_deg && beam_width_convention == BeamWidthConvention::TotalFov)
+        return problems.push_back({"field_of_view_deg",
+                                   "is given with beam_width_deg and beam_width_convention: total_fov; one of "
+                                   "the two tells the fan"});
+    if (field_of_view_deg && published)
         return problems.push_back(
-            {"beam_width_deg", fmt::format("is {:g} deg; {} beams of it cover {:g} deg, may be 360", *beam_width_deg,
-                                           beam_count, regular.field_of_view_deg)});
+            {"beam_width_deg", "is given with field_of_view_deg; published: true has beams as wide as their spacing"});
+    const SonarConfig regular = fan();
+    if (regular.fieldOfViewDeg() > 360)
+        return problems.push_back(
+            {"beam_width_deg", fmt::format("is {:g} deg; {} beams of it cover {:g} deg, may be 360; give "
+                                           "field_of_view_deg as well for beams that overlap",
+                                           *beam_width_deg, beam_count, regular.fieldOfViewDeg())});
     regular.check(problems);
 }
 

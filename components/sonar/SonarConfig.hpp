@@ -95,14 +95,14 @@ struct DetailConfig {
 
 /** An imaging sonar. Beam k of a fan covers bearings [-fov/2 + k fov/N, -fov/2 + (k + 1) fov/N], positive to port;
  *  `bearings_deg` takes the place of `field_of_view_deg` and `beam_count`; `beam_width_deg` alone that of
- *  `field_of_view_deg`. */
+ *  `field_of_view_deg`; with both, each beam is as wide as it says, and beams may overlap. */
 struct SonarConfig {
     Model model = Model::Physical;
     double range = 50;
     double range_min = 0.1;
     int beam_count = 256;
     int bin_count = 500;
-    double field_of_view_deg = 120;
+    std::optional<double> field_of_view_deg;
     std::vector<double> bearings_deg;
     std::optional<double> beam_width_deg;
     BeamWidthConvention beam_width_convention = BeamWidthConvention::PerBeam;
@@ -138,13 +138,16 @@ struct SonarConfig {
     bool choosesQuality() const { return targetError() || quality.budget_ms; }
     /** Beams per ping: of the table, else beam_count [1]. */
     int beams() const { return bearings_deg.empty() ? beam_count : static_cast<int>(bearings_deg.size()); }
+    /** Azimuth of a regular fan, from edge to edge: as given, else 120 [deg]. */
+    double fieldOfViewDeg() const { return field_of_view_deg.value_or(120); }
     /** Centre of beam k [deg], 0 ahead, positive to port. */
     double bearingDeg(int k) const;
     /** Opening of one beam across the fan [deg]. */
-    double beamWidthDeg() const { return bearings_deg.empty() ? field_of_view_deg / beam_count : *beam_width_deg; }
+    double beamWidthDeg() const { return bearings_deg.empty() ? fieldOfViewDeg() / beam_count : *beam_width_deg; }
     /** Azimuth from the outer edge of the first beam to that of the last [deg], at most 360. */
     double coverageDeg() const;
-    /** The same with a fan that is given by `beam_width_deg` given by `field_of_view_deg`. */
+    /** The same with a fan that is given by `beam_width_deg` given by `field_of_view_deg`, or by `bearings_deg` where
+     * both are. */
     SonarConfig fan() const;
     /** Whether only an image shows what is asked for: the published simulator's, or another way to sample one. */
     bool needsImages() const {
@@ -160,7 +163,11 @@ struct SonarConfig {
     static void describe(Self& self, V& visit) {
         using types::Field;
         visit(Field{"beam_count", "1", "beams per ping", 1, 4096}, self.beam_count);
-        visit(Field{"field_of_view_deg", "deg", "azimuth covered, edge to edge", 0.01, 360}, self.field_of_view_deg);
+        visit(Field{"field_of_view_deg", "deg",
+                    "azimuth covered, edge to edge; absent: 120, or beam_count beams of beam_width_deg; with "
+                    "beam_width_deg beams may be wider than their spacing",
+                    0.01, 360},
+              self.field_of_view_deg);
         visit(Field{"bearings_deg", "deg", "instead of a regular fan: centre of each beam", -180, 180},
               self.bearings_deg);
         visit(Field{"beam_width_convention", "", "beam_width_deg of a regular fan is one beam's, or the whole fan's"},

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
-#include <cstring>
 #include <glm/geometric.hpp>
 
 #include "components/sonar/Estimators.hpp"
@@ -38,8 +37,8 @@ struct Covered {
 
 /** The trapezoid of inverse ranges that a cell covers of a plane n.p = D: n.d / D is linear in azimuth and elevation
  * but for the curvature of sine and cosine. Closer to edge-on than 1e-4 rad there is no echo, but still a shadow. */
-INSONIFY_VECTORISED void cover(const Cells& cells, int count, double near_edge, double far_edge,
-                               Covered& __restrict covered) {
+INSONIFY_VECTOR_CLONES void cover(const Cells& cells, int count, double near_edge, double far_edge,
+                                  Covered& __restrict covered) {
     for (int i = 0; i < count; ++i) {
         const double n_x = cells.normal_x[i], n_y = cells.normal_y[i], n_z = cells.normal_z[i];
         const double normal = sqrt(n_x * n_x + n_y * n_y + n_z * n_z), distance = cells.distance[i];
@@ -75,53 +74,6 @@ INSONIFY_VECTORISED void cover(const Cells& cells, int count, double near_edge, 
     }
 }
 
-/** Several numbers at a time. */
-using Lanes = double __attribute__((vector_size(bins_at_once * sizeof(double))));
-using LaneBits = int64_t __attribute__((vector_size(bins_at_once * sizeof(int64_t))));
-
-inline Lanes min(Lanes a, double b) { return a < b ? a : Lanes{} + b; }
-inline Lanes max(Lanes a, double b) { return a > b ? a : Lanes{} + b; }
-inline Lanes abs(Lanes a) { return a < 0.0 ? -a : a; }
-inline Lanes load(const double* from) {
-    Lanes lanes;
-    std::memcpy(&lanes, from, sizeof lanes);
-    return lanes;
-}
-
-/** Energies: PhysicalBins' depositCell, several bins at once. */
-struct EnergyEstimator : PhysicalBins {
-    const double* middles;  ///< Ranges of the bins' middles [m].
-
-    void add(const Footprint& cell, double strength_range) {
-        if (!(cell.near_end > cell.far_end && strength_range >= 0.0)) return;
-        uint bin = min(uint(1.0 / (cell.near_end * bin_width)), bin_count - 1u);
-        while (bin > 0u && edges[bin] < cell.near_end) --bin;
-        while (edges[bin + 1u] >= cell.near_end) ++bin;
-        for (; edges[bin] > cell.far_end; bin += bins_at_once) addBins(cell, strength_range * cell.size, bin);
-    }
-
-private:
-    using real = Lanes;
-#include "shaders/trapezoid.glsl"
-
-    void addBins(const Footprint& cell, double energy, uint first) {
-        const Lanes above = max(min(load(edges + first), cell.near_end), cell.far_end);
-        const Lanes below = max(min(load(edges + first + 1), cell.near_end), cell.far_end);
-        const Lanes to_above = trapezoidShare(cell, above - cell.centre);
-        const Lanes share =
-            (above < cell.nearest ? to_above : Lanes{} + 0.5) - trapezoidShare(cell, below - cell.centre);
-        const Lanes middle = load(middles + first);
-        const Lanes amounts = energy * share * middle * middle * meanCube(above, below);
-        for (int i = 0; i < bins_at_once; ++i) sums[first + i] += quanta(amounts[i]);
-    }
-};
-
-/** Means of S, weighted by size. */
-template <class MeanOfS>
-struct MeanEstimator : MeanOfS {
-    void add(const Footprint& cell, double strength_range) { this->depositCell(cell, 0, strength_range); }
-};
-
 /** Makes cells of tiles, a stretch at a time. */
 template <class Estimator, bool conical, bool normal_maps>
 class CellDeposit {
@@ -133,28 +85,27 @@ public:
         return all;
     }
 
-    CellDeposit(const EchoRules& rules, const TileShape& shape, const PlacedScene& scene, int first_beam,
-                Estimator estimator)
+    CellDeposit(const EchoRules& rules, const CastView& view, const PlacedScene& scene, int first_beam, uint64_t* sums)
         : rules_(rules),
-          shape_(shape),
+          view_(view.cells),
+          shape_(view.shape),
           scene_(scene),
           first_beam_(first_beam),
-          estimator_(estimator),
-          sums_(estimator.sums) {}
+          estimator_(rules, sums) {}
 
     void add(const CastTile& tile) {
         for (int i = 0; i < tile_samples;) {
-            const int merged = tile.hits.command[i] == TileHits::nothing ? 1 : sameFrom(tile.hits, i);
-            if (tile.hits.command[i] != TileHits::nothing) addCell(tile, i, merged);
+            const bool met = tile.hits->command[i] != TileHits::nothing;
+            const int merged = met ? sameFrom(*tile.hits, i) : 1;
+            if (met) addCell(tile, i, merged);
             i += merged;
         }
     }
     void finish() {
         cover(cells_, count_, rules_.edges.front(), rules_.edges[static_cast<size_t>(rules_.bins.bin_count)], covered_);
-        for (int i = 0; i < count_; ++i) {
-            estimator_.sums = sums_ + static_cast<size_t>(cells_.beam[i] - first_beam_) * rules_.sumCount();
-            estimator_.add(covered_.footprint(i), covered_.strength_range[i]);
-        }
+        for (int i = 0; i < count_; ++i)
+            estimator_.depositCell(covered_.footprint(i), static_cast<uint>(cells_.beam[i] - first_beam_),
+                                   covered_.strength_range[i]);
         count_ = 0;
     }
 
@@ -162,7 +113,7 @@ private:
     /** Samples from i on that are a rectangle of one triangle in one beam. */
     int sameFrom(const TileHits& hits, int i) const {
         const auto alignment = static_cast<uint32_t>(i == 0 ? tile_samples : i & -i);
-        const int most = std::min({static_cast<int>(alignment), rules_.most_merged, shape_.most_merged});
+        const int most = std::min(static_cast<int>(alignment), shape_.most_merged);
         int run = 1;
         while (run < most && hits.triangle[i + run] == hits.triangle[i] && hits.command[i + run] == hits.command[i])
             ++run;
@@ -170,8 +121,8 @@ private:
     }
 
     void addCell(const CastTile& tile, int sample, int merged) {
-        const PlacedRun& run = scene_.runs[tile.hits.command[sample]];
-        const PlaneRecord& plane = scene_.planes[run.first_triangle + tile.hits.triangle[sample]];
+        const PlacedRun& run = scene_.runs[tile.hits->command[sample]];
+        const PlaneRecord& plane = scene_.planes[run.first_triangle + tile.hits->triangle[sample]];
         const glm::dvec3 n(plane.normal), p(plane.point);
         const auto turned = [&](const double* row) { return row[0] * n.x + row[1] * n.y + row[2] * n.z; };
         const double x = turned(run.normal_x), y = turned(run.normal_y), z = turned(run.normal_z);
@@ -191,11 +142,11 @@ private:
 
     /** Of the middle of the cell that aim() has just put down; 0 where its material has no map. */
     double mappedCosine(const CastTile& tile, int sample, int merged) const {
-        const CommandRecord& command = scene_.commands[tile.hits.command[sample]];
+        const CommandRecord& command = scene_.commands[tile.hits->command[sample]];
         if (!scene_.normal_maps.isMapped(static_cast<int>(command.material))) return 0;
         const int i = count_;
         float u = 0, v = 0;
-        for (int k = sample; k < sample + merged; ++k) u += tile.hits.u[k], v += tile.hits.v[k];
+        for (int k = sample; k < sample + merged; ++k) u += tile.hits->u[k], v += tile.hits->v[k];
         const auto per_sample = 1 / static_cast<float>(merged);
         const glm::dvec3 ray(cells_.cos_el[i] * cells_.cos_az[i], cells_.cos_el[i] * cells_.sin_az[i],
                              cells_.sin_el[i]);
@@ -203,13 +154,13 @@ private:
         const double range = std::abs(cells_.distance[i]) / std::max(std::abs(glm::dot(normal, ray)), 1e-6);
         return static_cast<double>(scene_.normal_maps.cosine(
             scene_.objects[command.object],
-            {command.object, tile.hits.triangle[sample], static_cast<int>(command.material), u * per_sample,
+            {command.object, tile.hits->triangle[sample], static_cast<int>(command.material), u * per_sample,
              v * per_sample, glm::vec3(ray), static_cast<float>(range * std::max(cells_.width[i], cells_.height[i]))}));
     }
 
     /** Direction, extent and solid angle of a cell of `merged` samples. */
     void aim(const CastTile& tile, int sample, int merged) {
-        const AngularView& view = rules_.view;
+        const AngularView& view = view_;
         const int column = tile.first_column + shape_.at[sample].columns, i = count_;
         const size_t left = view.at(column), low = 2 * static_cast<size_t>(tile.first_row + shape_.at[sample].rows);
         const auto across = static_cast<size_t>(shape_.size[merged].columns);
@@ -237,60 +188,47 @@ private:
     }
 
     const EchoRules& rules_;
+    const AngularView& view_;
     const TileShape& shape_;
     const PlacedScene& scene_;
     int first_beam_;
     Estimator estimator_;
-    uint64_t* sums_;
     int count_ = 0;
     Cells cells_{};
     Covered covered_{};
 };
 
-/** Calls use(CellDeposit's type, estimator) with those that have the features of a plan. */
-template <bool conical, bool normal_maps, class Use>
-void withEstimator(const EchoRules& rules, const Bins& bins, const Use& use) {
-    const auto with = [&]<class Estimator>(const Estimator& estimator) {
-        use.template operator()<CellDeposit<Estimator, conical, normal_maps>>(estimator);
-    };
-    if (!rules.features.has(Feature::Cerqueira2017))
-        with(EnergyEstimator{{{bins}}, rules.middles.data()});
-    else if (rules.features.has(Feature::Absorption))
-        with(MeanEstimator<AbsorbingBins>{{{bins}}});
-    else
-        with(MeanEstimator<CerqueiraBins>{{{bins}}});
-}
-
+/** Calls use.operator()<Deposit>() with the CellDeposit that has the features of a plan. */
 template <class Use>
-void withCells(const EchoRules& rules, const Bins& bins, const Use& use) {
-    const bool conical = rules.features.has(Feature::Conical), mapped = rules.features.has(Feature::NormalMap);
-    if (conical && mapped)
-        withEstimator<true, true>(rules, bins, use);
-    else if (conical)
-        withEstimator<true, false>(rules, bins, use);
-    else if (mapped)
-        withEstimator<false, true>(rules, bins, use);
-    else
-        withEstimator<false, false>(rules, bins, use);
+void withCells(const Features& features, const Use& use) {
+    withEstimator<Features{Feature::Published, Feature::Nearest}>(features, [&]<class Estimator>() {
+        const bool conical = features.has(Feature::Conical), mapped = features.has(Feature::NormalMap);
+        if (conical && mapped)
+            use.template operator()<CellDeposit<Estimator, true, true>>();
+        else if (conical)
+            use.template operator()<CellDeposit<Estimator, true, false>>();
+        else if (mapped)
+            use.template operator()<CellDeposit<Estimator, false, true>>();
+        else
+            use.template operator()<CellDeposit<Estimator, false, false>>();
+    });
 }
 
 }  // namespace
 
-INSONIFY_VECTORISED __attribute__((flatten)) void deposit(const EchoRules& rules, const TileShape& shape,
-                                                          const PlacedScene& scene, std::span<const CastTile> tiles,
-                                                          int first_beam, uint64_t* sums) {
-    const Bins all{rules.edges.data(), sums, static_cast<uint>(rules.bins.bin_count), rules.bins.bin_width,
-                   rules.attenuation};
-    withCells(rules, all, [&]<class Deposit>(const auto& estimator) {
-        Deposit cells(rules, shape, scene, first_beam, estimator);
+INSONIFY_VECTOR_CLONES __attribute__((flatten)) void deposit(const EchoRules& rules, const CastView& view,
+                                                             const PlacedScene& scene, std::span<const CastTile> tiles,
+                                                             int first_beam, uint64_t* sums) {
+    withCells(rules.features, [&]<class Deposit>() {
+        Deposit cells(rules, view, scene, first_beam, sums);
         for (const CastTile& tile : tiles) cells.add(tile);
         cells.finish();
     });
 }
 
-Features compiledFor(const EchoRules& rules) {
+Features compiledForRays(const Features& wanted) {
     Features compiled;
-    withCells(rules, {}, [&]<class Deposit>(const auto&) { compiled = Deposit::features(); });
+    withCells(wanted, [&]<class Deposit>() { compiled = Deposit::features(); });
     return compiled;
 }
 

@@ -18,18 +18,24 @@ struct PlacedScene {
     const NormalMapping& normal_maps;
 };
 
+/** How samples lie. */
+struct CastView {
+    AngularView cells;
+    TileShape shape;
+};
+
 /** A tile that has been cast: where it lies in the view and what it met. */
 struct CastTile {
     int first_column, first_row;
-    TileHits hits;
+    const TileHits* hits;
 };
 
 /** Adds the echoes of tiles to the sums of beams, [beam - first_beam][bin][channel] in quanta, EchoRules::sumCount()
  *  numbers for each. Neighbouring samples of one triangle in one beam may be one cell. Allocates nothing. */
-void deposit(const EchoRules& rules, const TileShape& shape, const PlacedScene& scene, std::span<const CastTile> tiles,
+void deposit(const EchoRules& rules, const CastView& view, const PlacedScene& scene, std::span<const CastTile> tiles,
              int first_beam, uint64_t* sums);
 
-/** What is compiled into the deposit that takes these rules. */
-Features compiledFor(const EchoRules& rules);
+/** What is compiled into the deposit of rays that has these features. */
+Features compiledForRays(const Features& wanted);
 
 }  // namespace insonify::sonar

@@ -17,6 +17,7 @@ namespace {
 
 constexpr int tile = 4;  ///< Rays of a packet across, and up.
 static_assert(tile * tile == RayTree::packet);
+constexpr int tiles_up = static_cast<int>(RayTree::packets_at_once);  ///< Tiles that are cast together.
 
 /** An angle, as a direction needs it. */
 struct Angle {
@@ -108,8 +109,8 @@ public:
         const int tiles = (rows + tile - 1) / tile;
         const int first = tile * (tiles * stripe_ / fan_.stripes), end = tile * (tiles * (stripe_ + 1) / fan_.stripes);
         for (int column = first_column_; column < end_column_; column += tile)
-            for (int row = first; row < std::min(end, rows); row += tile)
-                castTile(column, row, std::min(tile, end_column_ - column), std::min(tile, rows - row), met);
+            for (int row = first; row < std::min(end, rows); row += tiles_up * tile)
+                castTiles(column, row, std::min(end, rows), met);
     }
 
     void clear() {
@@ -138,18 +139,27 @@ public:
     }
 
 private:
+    /** One above the other, up to a row. */
     template <class Met>
-    void castTile(int column, int row, int across, int up, const Met& met) {
-        RayTree::Rays rays;
-        for (int i = 0; i < RayTree::packet; ++i)  // beyond the edge: the last one again
-            rays.set(i, directionOf(fan_.columns[static_cast<size_t>(column + std::min(i % tile, across - 1))].middle,
-                                    fan_.rows[static_cast<size_t>(row + std::min(i / tile, up - 1))].middle));
-        RayTree::Found found;
-        fan_.tree.cast(from_, rays, found);
+    void castTiles(int column, int first_row, int end_row, const Met& met) {
+        std::array<RayTree::Rays, RayTree::packets_at_once> rays;
+        std::array<RayTree::Found, RayTree::packets_at_once> found;
+        const int across = std::min(tile, end_column_ - column), up = std::min(tiles_up * tile, end_row - first_row);
+        const auto count = static_cast<size_t>((up + tile - 1) / tile);
+        for (size_t k = 0; k < count; ++k)
+            for (int i = 0; i < RayTree::packet; ++i) {  // beyond the edge: the last one again
+                const int aside = std::min(i % tile, across - 1), above = static_cast<int>(k) * tile + i / tile;
+                rays[k].set(i, directionOf(fan_.columns[static_cast<size_t>(column + aside)].middle,
+                                           fan_.rows[static_cast<size_t>(first_row + std::min(above, up - 1))].middle));
+            }
+        fan_.tree.cast(from_, {rays.data(), count}, {found.data(), count});
         for (int j = 0; j < up; ++j)
-            for (int i = 0; i < across; ++i)
-                if (const uint32_t triangle = found[static_cast<size_t>(tile * j + i)]; triangle != RayTree::none)
-                    met(column + i, row + j, triangle);
+            for (int i = 0; i < across; ++i) {
+                const RayTree::Found& in_tile = found[static_cast<size_t>(j / tile)];
+                if (const uint32_t triangle = in_tile[static_cast<size_t>(tile * (j % tile) + i)];
+                    triangle != RayTree::none)
+                    met(column + i, first_row + j, triangle);
+            }
     }
 
     glm::dvec3 directionOf(const Angle& azimuth, const Angle& elevation) const {

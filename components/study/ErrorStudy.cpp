@@ -100,7 +100,7 @@ private:
     /** Whether one perspective image can hold the fan, at all levels. */
     bool fitsOneFrustum() const {
         const int64_t columns = int64_t{base_columns_} << (levels() - 1);
-        return scene_.config.field_of_view_deg < 175 && columns * scene_.config.beam_count <= sonar::most_image_size;
+        return scene_.config.fieldOfViewDeg() < 175 && columns * scene_.config.beam_count <= sonar::most_image_size;
     }
 
     void measureAll() {

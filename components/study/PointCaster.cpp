@@ -99,7 +99,7 @@ private:
         RayTree::Rays rays;
         for (int i = 0; i < RayTree::packet; ++i) rays.set(i, world_from_sonar_ * directions[static_cast<size_t>(i)]);
         RayTree::Found found;
-        tree_.cast(from_, rays, found);
+        tree_.cast(from_, {&rays, 1}, {&found, 1});
         rays_ += RayTree::packet;
         return found;
     }

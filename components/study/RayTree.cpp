@@ -3,6 +3,7 @@
 #include <embree3/rtcore.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
@@ -131,23 +132,27 @@ std::array<glm::dvec3, 3> RayTree::cornersOf(const Source& source) const {
     return corners;
 }
 
-void RayTree::cast(glm::dvec3 from, const Rays& rays, Found& found) const {
-    alignas(64) static constexpr int all[packet] = {-1, -1, -1, -1, -1, -1, -1, -1, -1, -1, -1, -1, -1, -1, -1, -1};
-    alignas(64) RTCRayHit16 hit;
-    for (int i = 0; i < packet; ++i) {
-        hit.ray.org_x[i] = static_cast<float>(from.x), hit.ray.org_y[i] = static_cast<float>(from.y),
-        hit.ray.org_z[i] = static_cast<float>(from.z);
-        hit.ray.dir_x[i] = rays.x[i], hit.ray.dir_y[i] = rays.y[i], hit.ray.dir_z[i] = rays.z[i];
-        hit.ray.tnear[i] = 0, hit.ray.tfar[i] = std::numeric_limits<float>::infinity();
-        hit.ray.mask[i] = ~0u, hit.ray.time[i] = 0, hit.ray.flags[i] = 0;
-        hit.hit.geomID[i] = RTC_INVALID_GEOMETRY_ID;
+void RayTree::cast(glm::dvec3 from, std::span<const Rays> rays, std::span<Found> found) const {
+    std::array<RTCRayHit16, packets_at_once> hits;
+    for (size_t k = 0; k < rays.size(); ++k) {
+        RTCRayHit16& hit = hits[k];
+        for (int i = 0; i < packet; ++i) {
+            hit.ray.org_x[i] = static_cast<float>(from.x), hit.ray.org_y[i] = static_cast<float>(from.y),
+            hit.ray.org_z[i] = static_cast<float>(from.z);
+            hit.ray.dir_x[i] = rays[k].x[i], hit.ray.dir_y[i] = rays[k].y[i], hit.ray.dir_z[i] = rays[k].z[i];
+            hit.ray.tnear[i] = 0, hit.ray.tfar[i] = std::numeric_limits<float>::infinity();
+            hit.ray.mask[i] = ~0u, hit.ray.time[i] = 0, hit.ray.flags[i] = 0;
+            hit.hit.geomID[i] = RTC_INVALID_GEOMETRY_ID;
+        }
     }
     RTCIntersectContext context;
     rtcInitIntersectContext(&context);
     context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
-    rtcIntersect16(all, embree_->scene, &context, &hit);
-    for (size_t i = 0; i < packet; ++i)
-        found[i] = hit.hit.geomID[i] == RTC_INVALID_GEOMETRY_ID ? none : hit.hit.primID[i];
+    rtcIntersectNM(embree_->scene, &context, reinterpret_cast<RTCRayHitN*>(hits.data()), packet,
+                   static_cast<unsigned>(rays.size()), sizeof(RTCRayHit16));
+    for (size_t k = 0; k < rays.size(); ++k)
+        for (size_t i = 0; i < packet; ++i)
+            found[k][i] = hits[k].hit.geomID[i] == RTC_INVALID_GEOMETRY_ID ? none : hits[k].hit.primID[i];
 }
 
 double RayTree::mappedCosine(uint32_t triangle, glm::dvec3 point, glm::dvec3 direction) const {

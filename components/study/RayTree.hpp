@@ -5,6 +5,7 @@
 #include <glm/mat4x4.hpp>
 #include <glm/vec3.hpp>
 #include <memory>
+#include <span>
 #include <vector>
 
 #include "types/Snapshot.hpp"
@@ -16,6 +17,7 @@ namespace insonify::study {
 class RayTree {
 public:
     static constexpr int packet = 16;
+    static constexpr size_t packets_at_once = 4;
     static constexpr uint32_t none = ~0u;  ///< Instead of a triangle: a miss.
 
     struct Triangle {
@@ -37,8 +39,9 @@ public:
     RayTree(const RayTree&) = delete;
     RayTree& operator=(const RayTree&) = delete;
 
-    /** The first triangle on each ray from a point about the origin. Rays of one packet should lie close together. */
-    void cast(glm::dvec3 from, const Rays& rays, Found& found) const;
+    /** The first triangle on each ray from a point about the origin, of at most `packets_at_once` packets. All rays of
+     * a call should lie close together. */
+    void cast(glm::dvec3 from, std::span<const Rays> rays, std::span<Found> found) const;
 
     const glm::dvec3& origin() const { return origin_; }  ///< In the world [m].
     const Triangle& operator[](uint32_t triangle) const { return triangles_[triangle]; }

@@ -146,6 +146,13 @@ TEST(DeploymentSpecTest, ATextThatIsNoDeploymentIsRefused) {
     EXPECT_THAT(faultsOf("tasks: 3\nconnections: 4\nlibraries: {}\n"), testing::SizeIs(3));
 }
 
+TEST(DeploymentSpecTest, WhatCannotBeginAValueIsRefusedNotReadWithoutEnd) {
+    for (const char* text : {",", "]", "}", ", 2.5, \"x\"]\nc: {d: .nan}\n", "--- a\n---\n,", "- a\n--- ]\n"})
+        EXPECT_THAT(faultsOf(text), ElementsAre(HasSubstr("a.yml:"))) << text;
+    EXPECT_THAT(faultsOf("tasks: {source: {type: test::Source}}\n", {"source.last=,"}),
+                testing::Contains(HasSubstr("this cannot begin a value")));
+}
+
 TEST(DeploymentSpecTest, DeepNestingIsRefusedNotFatal) {
     for (const char* bracket : {"[", "{", "[a: ", "- ", "? "}) {
         std::string yaml = "tasks: ";
@@ -192,12 +199,13 @@ TEST(DeploymentSpecTest, ASettingReachesIntoBlocks) {
 TEST(DeploymentSpecTest, ASettingThatDoesNotFitIsNamed) {
     EXPECT_THAT(
         faultsOf("tasks: {s: {type: test::Source, activity: {period: 1}}}",
-                 {"s.last=many", "s.lost=1", "t.last=1", "s.last", "s=1", "s.seed=["}),
+                 {"s.last=many", "s.lost=1", "t.last=1", "s.last", "s=1", "s.seed=[", "s.last="}),
         UnorderedElementsAre("--set: tasks.s.properties.last: is many; must be a finite number",
                              HasSubstr("--set: tasks.s.properties.lost: is not a key here; did you mean last?"),
                              HasSubstr("--set: t.last=1: there is no task t; did you mean s?"),
                              "--set: s.last: must be task.property=value", "--set: s=1: must be task.property=value",
-                             HasSubstr("--set: s.seed=[: is not YAML")));
+                             HasSubstr("--set: s.seed=[: is not YAML"),
+                             "--set: s.last=: has no value; null takes the property out"));
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 
 #include <limits>
 
+#include "components/framework/DeploymentSpec.hpp"
 #include "components/framework/Properties.hpp"
 
 namespace insonify {
@@ -118,6 +119,52 @@ always: {mean: 2}
     EXPECT_EQ(config.always.law, Law::Rayleigh);
 }
 
+/** What a deployment's properties, one `--set` and a live setter each make of a value, and both of them after it. */
+TEST(PropertiesTest, SettingFromOutsideAndLiveMeanTheSame) {
+    const std::string written =
+        "{range: 20, speckle: {law: gaussian, mean: 2}, gain: 3, bearings: [1, 2], materials: {a: {mean: 3}, b: {mean: "
+        "4}}, always: {law: gaussian, mean: 7}}";
+    const std::pair<const char*, const char*> settings[] = {
+        {"range", "30"},
+        {"range", "null"},
+        {"gain", "null"},
+        {"speckle", "{mean: 5}"},
+        {"speckle", "{mean: null}"},
+        {"speckle", "{}"},
+        {"speckle", "null"},
+        {"bearings", "[9]"},
+        {"materials", "{a: {law: gaussian}, b: null, c: {mean: 6}}"},
+        {"always", "{law: null}"},
+        {"always", "null"}};
+    for (const auto& [name, value] : settings) {
+        const std::string setting = std::string(name) + "=" + value;
+        Task live("t"), set("t");
+        ASSERT_THAT(faultsOf(live, written), testing::IsEmpty());
+        static_cast<framework::PropertiesBase&>(live.config).set(name, value);
+        framework::DeploymentSpec spec =
+            framework::DeploymentSpec::parse("tasks: {t: {type: t, properties: " + written + "}}", "a.yml");
+        spec.set("t." + setting);
+        framework::ConfigReader reader("a.yml");
+        set.config.load(reader, spec.task("t")->properties, "");
+        EXPECT_TRUE(spec.faults.empty() && reader.faults().empty()) << setting;
+        EXPECT_EQ(live.config.values(), set.config.values()) << setting;
+    }
+}
+
+TEST(PropertiesTest, NullTakesOutAndWhatABlockDoesNotNameStays) {
+    Task task("t");
+    ASSERT_THAT(faultsOf(task, "{range: 20, speckle: {law: gaussian, mean: 2}, gain: 3}"), testing::IsEmpty());
+    framework::PropertiesBase& properties = task.config;
+    properties.set("speckle", "{mean: 5}");
+    EXPECT_EQ(task.config->speckle->law, Law::Gaussian);
+    EXPECT_EQ(task.config->speckle->mean, 5);
+    properties.set("speckle", "null");
+    properties.set("gain", "null");
+    properties.set("range", "null");
+    EXPECT_FALSE(task.config->speckle || task.config->gain);
+    EXPECT_EQ(task.config->range, 50);
+}
+
 TEST(PropertiesTest, EveryFaultIsReportedAtItsPlaceInOneGo) {
     Task task("t");
     const char* yaml =
@@ -144,7 +191,8 @@ TEST(PropertiesTest, EveryFaultIsReportedAtItsPlaceInOneGo) {
             "a.yml:4:7: p.seed: is -1; must be a whole number from 0 to 18446744073709551615",
             "a.yml:5:9: p.offset: is 9223372036854775808; must be a whole number from -9223372036854775808 to "
             "9223372036854775807",
-            "a.yml:6:7: p.loud: is yes; may be true or false", "a.yml:7:7: p.file: is a list; must be a text",
+            "a.yml:6:7: p.loud: is yes; write true; may be true or false",
+            "a.yml:7:7: p.file: is a list; must be a text",
             "a.yml:8:11: p.position: is a list; must be a list of three numbers [x, y, z]",
             "a.yml:9:16: p.speckle.law: is poisson; may be rayleigh, gaussian",
             "a.yml:9:31: p.speckle.mean: is .nan; must be a finite number",

@@ -61,6 +61,18 @@ TEST(InstallTest, TheExamplesRunFromThePrefix) {
     EXPECT_THAT(call(folder, {"ldd", insonify}).out, testing::Not(HasSubstr(INSONIFY_BINARY_DIR)));
 }
 
+TEST(InstallTest, AFirstDeploymentIsMadeAndRunsAndTheManualPageIsThere) {
+    const TestFolder folder;
+    install(folder);
+    const std::string insonify = folder / "prefix/bin/insonify";
+    const Outcome made = call(folder, {insonify, "init", "dive", "--sonar", "micron"});
+    ASSERT_EQ(made.code, 0) << made.err;
+    const Outcome ran = call(folder, {insonify, "run", "dive", "--pings", "2", "--out", "out"});
+    EXPECT_EQ(ran.code, 0) << ran.err;
+    EXPECT_TRUE(fs::exists(folder / "out/micron.0.log"));
+    EXPECT_EQ(readFile(folder / "prefix/share/man/man1/insonify.1"), call(folder, {insonify, "man"}).out);
+}
+
 TEST(InstallTest, EachComponentsLibraryIsFoundWithWhatItIsBuiltOn) {
     const TestFolder folder;
     install(folder);

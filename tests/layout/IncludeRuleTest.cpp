@@ -88,8 +88,9 @@ TEST(IncludeRuleTest, EveryThirdPartyPackageHasItsHomes) {
         {"nlohmann/", "deployer"}, {"nlohmann/", "viewer"},
         {"boost/", "viewer"},      {"embree3/", "study"},
         {"embree3/", "sonar"},     {"sdf/", "scene"},
-        {"assimp/", "scene"},      {"lz4frame.h", "log"},
-        {"zstd.h", "log"},         {"dds/", "dds"},
+        {"assimp/", "scene"},      {"tinyxml2.h", "scene"},
+        {"lz4frame.h", "log"},     {"zstd.h", "log"},
+        {"dds/", "dds"},           {"png.h", "output"},
     };
     const auto livesIn = [&](const std::string& prefix, const std::string& folder) {
         const auto [first, last] = homes.equal_range(prefix);

@@ -37,7 +37,7 @@ std::string glb(const std::string& json, const std::string& binary) {
 
 TEST_F(BadInputTest, AFileThatIsMissingOrAFolderOrEmptyOrOfAnotherKindIsNamed) {
     std::filesystem::create_directory(folder_ / "folder.glb");
-    expectFault(folder_ / "missing.glb", "does not exist; give the path of a .gltf or .glb");
+    expectFault(folder_ / "missing.glb", "must be a scene, which may be .gltf, .glb, .world or .sdf");
     expectFault(folder_ / "folder.glb", "is not a file");
     expectFault(write("empty.glb", ""), "is empty");
     expectFault(write("cube.obj", "v 0 0 0"), "has extension \".obj\"; may be .gltf, .glb, .world or .sdf");
@@ -196,6 +196,8 @@ TEST_F(BadInputTest, DamagedBytesGiveAnErrorOrASoundScene) {
                 ++scenes;
             } catch (const types::ConfigError& error) {
                 EXPECT_NE(std::string(error.what()), "");
+                for (const char* raw : {"std::", "stoi", "_M_", "basic_string", "json.exception"})
+                    EXPECT_EQ(std::string(error.what()).find(raw), std::string::npos) << error.what();
             }
         }
     EXPECT_GT(scenes, 0u);  // not every byte matters

@@ -73,7 +73,8 @@ TEST_F(GltfMaterialsTest, WrongAcousticsSayWhatTheyMayBe) {
     expect(R"({"lambert_db":"loud"})", "lambert_db: is \"loud\"; must be a number from -200 to 20");
     expect(R"({"reflection":1.5})", "reflection: is 1.5; must be a number from -1 to 1");
     expect(R"({"reflectivity":-0.1})", "reflectivity");
-    expect(R"({"lamberd_db":-3})", "lamberd_db: is not known; may be sediment, material, lambert_db");
+    expect(R"({"lamberd_db":-3})",
+           "lamberd_db: is not known; did you mean lambert_db? may be sediment, material, lambert_db");
     expect(R"({"sediment":"clay","material":"steel"})", "give one of the two");
     expect(R"([1])", "must be an object");
 }

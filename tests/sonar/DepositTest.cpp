@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <numeric>
 
 #include "components/sonar/SonarRenderer.hpp"
@@ -50,6 +51,34 @@ protected:
 
 double sum(const types::Sonar& ping) { return std::accumulate(ping.bins.begin(), ping.bins.end(), 0.0); }
 
+void expectAgreement(const types::Sonar& cpu, const types::Sonar& gpu) {
+    const double floor = 1e-6 * *std::ranges::max_element(cpu.bins);
+    size_t compared = 0;
+    for (size_t i = 0; i < cpu.bins.size(); ++i) {
+        const double a = cpu.bins[i], b = gpu.bins[i];
+        if (std::max(a, b) <= floor) continue;
+        EXPECT_LE(std::abs(a - b), 1e-5 * std::max(a, b))
+            << "beam " << i / cpu.bin_count << ", bin " << i % cpu.bin_count;
+        ++compared;
+    }
+    EXPECT_GT(compared, 3000u);
+}
+
+types::Sonar difference(types::Sonar a, const types::Sonar& b) {
+    for (size_t i = 0; i < a.bins.size(); ++i) a.bins[i] = std::abs(a.bins[i] - b.bins[i]);
+    return a;
+}
+
+/** The same with the places of its objects, and of the sonar, as large as in UTM coordinates. */
+types::Snapshot asInUtm(types::Snapshot snapshot) {
+    const glm::dvec3 offset(500'000, 4'500'000, -100);
+    auto geometry = std::make_shared<types::Geometry>(*snapshot.geometry);
+    for (types::Object& object : geometry->objects) object.world_from_object[3] += glm::dvec4(offset, 0);
+    snapshot.geometry = geometry;
+    snapshot.sonar.position += offset;
+    return snapshot;
+}
+
 /** Energy in 2000 bins over that in one of the same length. */
 double manyOverOne(SonarConfig config, const types::Snapshot& snapshot) {
     config.bin_count = 2000;
@@ -61,17 +90,16 @@ double manyOverOne(SonarConfig config, const types::Snapshot& snapshot) {
 }  // namespace
 
 TEST_P(DepositTest, TheProcessorAndTheComputeShaderAgree) {
-    const auto cpu = pingOf(with(Deposit::Cpu), hardScene()), gpu = pingOf(with(Deposit::Gpu), hardScene());
-    const double floor = 1e-6 * *std::ranges::max_element(cpu.bins);
-    size_t compared = 0;
-    for (size_t i = 0; i < cpu.bins.size(); ++i) {
-        const double a = cpu.bins[i], b = gpu.bins[i];
-        if (std::max(a, b) <= floor) continue;
-        EXPECT_LE(std::abs(a - b), 1e-5 * std::max(a, b))
-            << "beam " << i / cpu.bin_count << ", bin " << i % cpu.bin_count;
-        ++compared;
-    }
-    EXPECT_GT(compared, 3000u);
+    expectAgreement(pingOf(with(Deposit::Cpu), hardScene()), pingOf(with(Deposit::Gpu), hardScene()));
+}
+
+TEST_P(DepositTest, TheyAgreeFarFromTheOriginOfTheWorld) {
+    const types::Snapshot far = asInUtm(hardScene());
+    const auto gpu = pingOf(with(Deposit::Gpu), far);
+    expectAgreement(pingOf(with(Deposit::Cpu), far), gpu);
+    types::Snapshot aside = far;
+    aside.sonar.position.x += 0.01;
+    EXPECT_GT(sum(difference(gpu, pingOf(with(Deposit::Cpu), aside))), 1e-3 * sum(gpu)) << "a centimetre is seen";
 }
 
 TEST_P(DepositTest, EachIsBitForBitItselfAgainAndInANewRenderer) {

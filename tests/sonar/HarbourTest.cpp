@@ -51,7 +51,7 @@ protected:
     static bool inView(const glm::dvec3& p) {
         const double range = glm::length(p);
         return range > 0.5 && range < sonar.range &&
-               std::abs(std::atan2(p.y, p.x)) < types::radians(sonar.field_of_view_deg / 2) &&
+               std::abs(std::atan2(p.y, p.x)) < types::radians(sonar.fieldOfViewDeg() / 2) &&
                std::abs(std::asin(p.z / range)) < types::radians(sonar.beam_height_deg / 2);
     }
     static types::Snapshot snapshotAt(size_t pose) {

@@ -40,7 +40,7 @@ double sigmoid(double z) { return 1 / (1 + std::exp(-18 * (z - 2.0 / 3))); }
 std::vector<double> counted(const SonarConfig& config, double height, double absorption = 0) {
     const int width = config.columnsPerBeam() * config.beam_count, rows = config.rows();
     const auto beams = static_cast<size_t>(config.beam_count), bins = static_cast<size_t>(config.bin_count);
-    const double fov = types::radians(config.field_of_view_deg);
+    const double fov = types::radians(config.fieldOfViewDeg());
     const double scale = width / 2.0 / std::tan(fov / 2),
                  half_height = std::tan(types::radians(config.beam_height_deg) / 2);
     const auto column = [&](size_t beam) {

@@ -115,7 +115,10 @@ TEST(SonarConfigTest, ValuesThatDoNotGoTogetherAreNamed) {
          {Case{"{range: 10, range_min: 10}", "range_min: ", "must be below range, 10 m"},
           Case{"bearings_deg: [0, 1]", "beam_width_deg: ", "bearings_deg needs the width"},
           Case{"beam_width_deg: 3", "beam_width_deg: ", "256 beams of it cover 768 deg, may be 360"},
-          Case{"{beam_width_deg: 0.5, field_of_view_deg: 90}", "field_of_view_deg: ", "with beam_width_deg"},
+          Case{"{beam_width_deg: 90, beam_width_convention: total_fov, field_of_view_deg: 90}",
+               "field_of_view_deg: ", "one of the two tells the fan"},
+          Case{"{beam_width_deg: 1, field_of_view_deg: 90, model: cerqueira2017, published: true}",
+               "beam_width_deg: ", "as wide as their spacing"},
           Case{"{bearings_deg: [0], beam_width_deg: 130}", "beam_width_deg: ", "one beam may have 120"},
           Case{"{beam_count: 4096, bin_count: 20000, range: 2000}",
                "bin_count: ", "81920000 bins in all; may be 16777216"},
@@ -186,6 +189,23 @@ TEST(SonarConfigTest, TheWidthOfABeamIsOneBeamsOrByConventionTheWholeFans) {
     EXPECT_DOUBLE_EQ(config.fan().coverageDeg(), 130);
     EXPECT_DOUBLE_EQ(config.fan().beamWidthDeg(), 130.0 / 60);
     EXPECT_THAT(faultsOf<SonarConfig>("{beam_width_deg: 130, beam_width_convention: total_fov}"), IsEmpty());
+}
+
+TEST(SonarConfigTest, BeamsOfAFanMayBeWiderThanTheirSpacing) {
+    for (const char* fov : {"130", "120"}) {  // the default as well, where it is written
+        const std::string yaml = "{beam_count: 512, field_of_view_deg: " + std::string(fov) + ", beam_width_deg: 1}";
+        EXPECT_THAT(faultsOf<SonarConfig>(yaml.c_str()), IsEmpty()) << yaml;
+    }
+    SonarConfig config;
+    config.beam_count = 512;
+    config.field_of_view_deg = 130;
+    config.beam_width_deg = 1;
+    const SonarConfig fan = config.fan();
+    EXPECT_EQ(fan.beams(), 512);
+    EXPECT_DOUBLE_EQ(fan.beamWidthDeg(), 1);
+    EXPECT_DOUBLE_EQ(fan.bearingDeg(0), -65 + 130.0 / 1024);
+    EXPECT_DOUBLE_EQ(fan.bearingDeg(511), 65 - 130.0 / 1024);
+    EXPECT_NEAR(fan.coverageDeg(), 130 - 130.0 / 512 + 1, 1e-9);
 }
 
 TEST(SonarConfigTest, BeamsOfAFanAreEvenAndCentredAndThoseOfATableAreAsGiven) {

@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <limits>
+#include <numeric>
 
 #include "components/sonar/SonarTask.hpp"
 #include "tests/sonar/WallScene.hpp"
@@ -52,6 +53,31 @@ TEST_F(SonarTaskTest, APingCarriesTheTimeOfItsSnapshotAndTheGridOfItsBins) {
     ASSERT_TRUE(task_.plan());
     EXPECT_THAT(task_.plan()->features, ::testing::Contains("physical"));
     EXPECT_EQ(task_.stages().count("draw"), 1u);
+}
+
+/** Beams of 10 deg that are as wide as their spacing, and the same bearings with beams of 20 deg: each hears what it
+ *  heard and half of both neighbours. */
+TEST_F(SonarTaskTest, ABeamThatIsWiderThanItsSpacingHearsWhatItsNeighboursHear) {
+    const auto energies = [&](std::optional<double> width) {
+        SonarConfig config = smallSonar();
+        config.beam_width_deg = width;
+        config.quality.columns_per_beam = width ? 32 : 16;
+        task_.stop();
+        task_.cleanup();
+        start(config);
+        const auto ping = pingOf(facingWall(5));
+        EXPECT_EQ(ping->beam_count, 8u);
+        EXPECT_NEAR(ping->bearings[3].deg(), -5, 1e-9);
+        EXPECT_NEAR(ping->beam_width.deg(), width.value_or(10), 1e-6);
+        std::vector<double> sums;
+        for (uint32_t beam = 0; beam < 8; ++beam)
+            sums.push_back(
+                std::accumulate(ping->bins.begin() + beam * 100, ping->bins.begin() + (beam + 1) * 100, 0.0));
+        return sums;
+    };
+    const std::vector<double> narrow = energies({}), wide = energies(20);
+    for (size_t k = 2; k < 6; ++k)
+        EXPECT_NEAR(wide[k] / (narrow[k] + narrow[k - 1] / 2 + narrow[k + 1] / 2), 1, 0.05) << k;
 }
 
 TEST_F(SonarTaskTest, APoseThatCannotBeUsedIsARunTimeErrorUntilTheNextGoodOne) {

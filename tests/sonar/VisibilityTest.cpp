@@ -48,7 +48,7 @@ constexpr Seen nothing{0xffffffff, 0};
 /** What each pixel of the slabs shows, drawn. */
 std::vector<Seen> drawn(const types::Snapshot& snapshot, const std::vector<Slab>& slabs) {
     gpu::EglContext context("software");
-    Culler culler(*snapshot.geometry, {.range_min = 0, .range_max = 1e4, .draw_all = true});
+    Culler culler(*snapshot.geometry, {.range_min = 0, .reach = {1e4}, .draw_all = true});
     ThreadPool threads(1);
     SurfacePass surface(context, {*snapshot.geometry, slabs, {}, 1e-3, culler.runLimit(), true}, threads);
     culler.place(snapshot);
@@ -82,7 +82,7 @@ std::vector<Seen> met(const types::Snapshot& snapshot, const std::vector<Slab>& 
                 rays.y[i] = static_cast<float>(sine + cosine * u);
                 rays.z[i] = static_cast<float>(v);
             }
-            visibility.cast(rays, hits);
+            visibility.cast({&rays, 1}, {&hits, 1});
             for (int i = 0; i < tile_samples && first + i < slab.rows * slab.columns; ++i)
                 seen.push_back(hits.command[i] == TileHits::nothing
                                    ? nothing

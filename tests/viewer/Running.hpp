@@ -1,6 +1,7 @@
 #pragma once
 // A deployment with a viewer, while it runs.
 #include <atomic>
+#include <optional>
 #include <thread>
 
 #include "components/framework/Deployment.hpp"
@@ -9,13 +10,28 @@
 
 namespace insonify::viewer {
 
+/** Rows, or a budget instead. */
+struct QualityConfig {
+    std::optional<double> rows, budget_ms;
+    template <class Self, class V>
+    static void describe(Self& self, V& visit) {
+        visit(types::Field{"rows", "1", "of samples", 1, 1000}, self.rows);
+        visit(types::Field{"budget_ms", "ms", "instead", 1, 1000}, self.budget_ms);
+    }
+    void check(types::Problems& problems) const {
+        if (rows && budget_ms) problems.push_back({"rows", "stands beside budget_ms"});
+    }
+};
+
 struct LevelConfig {
     double level = 1;
     bool record = false;
+    QualityConfig quality{256, {}};
     template <class Self, class V>
     static void describe(Self& self, V& visit) {
         visit(types::Field{"level", "1", "of the echo", 0, 100}, self.level);
         visit(types::Field{"record", "", "what a logger calls so"}, self.record);
+        visit(types::Field{"quality", "", "rows or a budget"}, self.quality);
     }
 };
 
@@ -117,7 +133,7 @@ private:
 tasks:
   source: {type: test::LevelTask, activity: {period: 0.01}}
   world:  {type: test::WorldTask, activity: {period: 0.02}}
-  viewer: {type: viewer::ViewerTask, properties: {}}
+  viewer: {type: viewer::ViewerTask, properties: {idle_timeout: 3600}}
 connections:
   - {from: source.ping,    to: viewer.ping,  policy: {type: buffer, size: 8}}
   - {from: world.snapshot, to: viewer.scene, policy: {type: buffer, size: 8}}

@@ -193,7 +193,7 @@ export class Fan {
     const turn = (this.high - this.low) * degrees > 200 ? 45 : 15;
     for (let d = Math.ceil(this.low * degrees / turn) * turn; d <= this.high * degrees; d += turn) {
       line([[far * 0.985, d / degrees], [far, d / degrees]]);
-      label(`${Math.abs(d)}°`, far, d / degrees, this.polar ? 0 : -14 * Math.sin(d / degrees), this.polar ? -6 : -8 * Math.cos(d / degrees) + 3);
+      label(`${d}°`, far, d / degrees, this.polar ? 0 : -14 * Math.sin(d / degrees), this.polar ? -6 : -8 * Math.cos(d / degrees) + 3);
     }
   }
 
@@ -208,13 +208,13 @@ export class Fan {
     context.stroke();
   }
 
-  /** Range, bearing and level under the cursor, in words. */
+  /** Range, bearing (positive to port, as in pictures) and level under the cursor, in words. */
   cursorText() {
     if (!this.cursor || !this.ping) return '';
     const {range, bearing} = this.placeAt(...this.cursor), level = levelAt(this.ping, range, bearing);
     if (level === null) return '';
     const side = Math.abs(bearing) < 5e-4 ? '' : bearing > 0 ? ' port' : ' stbd';
-    return `${range.toFixed(2)} m   ${Math.abs(bearing * degrees).toFixed(1)}°${side}   ` +
+    return `${range.toFixed(2)} m   ${(bearing * degrees).toFixed(1)}°${side}   ` +
         (level === -Infinity ? 'no echo' : `${level.toFixed(1)} dB`);
   }
 }

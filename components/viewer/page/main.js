@@ -17,6 +17,7 @@ let world = null, scene = null, snapshot = null, placed = '', reference = null, 
 const link = new Link(take, (open) => {
   byId('link').className = open ? 'lamp' : 'lamp off';
   byId('link').textContent = open ? 'connected' : 'no connection';
+  byId('link').title = `Foxglove: open connection, Foxglove WebSocket, ws://${location.host}`;
   last_count = null;
 });
 const properties = new Properties(link), controls = new Controls(link, byId('controls'));
@@ -90,6 +91,7 @@ function tell(ping) {
   last_count = ping.count;
   byId('time').textContent = `${(ping.time_us * 1e-6).toFixed(2)} s`;
   if (ping.time_us > 1e15) byId('time').textContent = new Date(ping.time_us / 1e3).toISOString().slice(11, 22);
+  byId('reach').textContent = `${(ping.bins * ping.bin_m).toFixed(1)} m, ${ping.beams} x ${ping.bins}, ${(ping.bin_m * 1e3).toFixed(0)} mm`;
   byId('rate').textContent = arrivals.length > 1 ? ((arrivals.length - 1) * 1e3 / (now - arrivals[0])).toFixed(1) : '-';
   byId('latency').textContent = `${(ping.latency_s * 1e3).toFixed(1)} ms`;
   byId('missed').textContent = missed;

@@ -73,6 +73,26 @@ function put(input, value) {
   else input.value = value === undefined ? '' : typeof value === 'number' ? +value.toPrecision(9) : value;
 }
 
+/** Names of the keys of a block in flow YAML, without those of blocks within it. */
+function keysOf(block) {
+  let outer = block.slice(1, -1), before;
+  do {
+    before = outer;
+    outer = outer.replace(/\{[^{}]*\}|\[[^\[\]]*\]/g, '');
+  } while (outer !== before);
+  return [...outer.matchAll(/(?:^|,)\s*"?(\w+)"?\s*:/g)].map((found) => found[1]);
+}
+
+/** What to set where a property was `before` and is to be `after`: setting merges blocks, so that keys which are gone
+ *  are taken out by null, and so is all of what has been emptied. */
+export function settingOf(type, before, after) {
+  const text = after.trim(), isBlock = (one) => /^\{.*\}$/s.test(one);
+  if (!text) return type.includes('text') ? after : 'null';
+  if (!type.startsWith('block') || !isBlock(text) || !isBlock(before ?? '')) return after;
+  const kept = keysOf(text), gone = keysOf(before).filter((key) => !kept.includes(key)).map((key) => `${key}: null`);
+  return `{${[text.slice(1, -1).trim(), ...gone].filter((part) => part).join(', ')}}`;
+}
+
 /** The properties of one task, each with what its last change was refused for. */
 export class Properties {
   constructor(link) {
@@ -99,16 +119,18 @@ export class Properties {
     const bounds = property.min === null && property.max === null ? '' : ` (${property.min ?? '-inf'} to ${property.max ?? 'inf'})`;
     input.disabled = !this.control;
     input.onchange = async () => {
-      const answer = await this.link.call(`${task}.${setter(property.name)}`, input.type === 'checkbox' ? input.checked : input.value);
+      const answer = await this.link.call(`${task}.${setter(property.name)}`, input.type === 'checkbox' ? input.checked : settingOf(property.type, this.values()[property.name], input.value));
       said.textContent = answer.refused ?? '';
     };
     input.onkeydown = (event) => event.key === 'Enter' && input.blur();
     this.inputs.set(property.name, input);
     return element('tr', {title: property.doc + bounds}, cell(property.name), element('td', {}, input, said), cell(property.unit === '1' ? '' : property.unit, 'dim'));
   }
+  /** Of the task that is shown. */
+  values() { return this.status?.tasks.find((task) => task.name === byId('task').value)?.properties ?? {}; }
   update(status) {
     this.status = status;
-    const values = status.tasks.find((task) => task.name === byId('task').value)?.properties ?? {};
+    const values = this.values();
     for (const [name, input] of this.inputs ?? []) put(input, values[name]);
   }
 }

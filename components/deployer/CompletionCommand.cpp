@@ -1,0 +1,134 @@
+// insonify completion bash|zsh, and insonify man: both from the commands as they are.
+#include <fmt/core.h>
+#include <fmt/ranges.h>
+
+#include <memory>
+
+#include "components/deployer/Commands.hpp"
+#include "components/deployer/Starter.hpp"
+#include "components/deployer/Tasks.hpp"
+
+namespace insonify::deployer {
+namespace {
+
+std::vector<std::string> subcommands(const CLI::App& app) {
+    std::vector<std::string> names;
+    for (const CLI::App* command : app.get_subcommands([](const CLI::App*) { return true; }))
+        if (!command->get_group().empty()) names.push_back(command->get_name());
+    return names;
+}
+
+std::vector<std::string> flags(const CLI::App& app) {
+    std::vector<std::string> names;
+    for (const CLI::Option* option : app.get_options())
+        for (const std::string& name : option->get_lnames()) names.push_back("--" + name);
+    return names;
+}
+
+/** Words that may follow a command besides files. */
+std::vector<std::string> wordsAfter(const std::string& command) {
+    std::vector<std::string> words;
+    if (command == " describe") {
+        words.emplace_back("materials");
+        const framework::Registry registry = builtInTasks();
+        for (const auto& entry : registry.list()) words.push_back(entry.type);
+    }
+    if (command == " init")
+        for (const SonarPreset& preset : sonarPresets()) words.emplace_back(preset.name);
+    if (command == " completion") words = {"bash", "zsh"};
+    return words;
+}
+
+/** One case of the script for a command, and those of its subcommands. `path`: "", " log", " log info". */
+std::string cases(const CLI::App& app, const std::string& path) {
+    std::vector<std::string> words = subcommands(app);
+    for (const auto& more : {flags(app), wordsAfter(path)}) words.insert(words.end(), more.begin(), more.end());
+    std::string text = fmt::format("        \"{}\") words=\"{}\" ;;\n", path, fmt::join(words, " "));
+    for (const std::string& name : subcommands(app)) text += cases(*app.get_subcommand(name), path + " " + name);
+    return text;
+}
+
+/** The command so far is the words that are subcommands; files complete where a command takes no subcommand. */
+std::string bashCompletion(const CLI::App& app) {
+    return R"(_insonify() {
+    local word path="" words="" current="${COMP_WORDS[COMP_CWORD]}"
+    for word in "${COMP_WORDS[@]:1:COMP_CWORD-1}"; do
+        case "$path $word" in
+)" +
+           [&] {
+               std::string paths;
+               for (const std::string& name : subcommands(app)) {
+                   paths += fmt::format("            \" {}\"", name);
+                   for (const std::string& inner : subcommands(*app.get_subcommand(name)))
+                       paths += fmt::format("|\" {} {}\"", name, inner);
+                   paths += ") path+=\" $word\" ;;\n";
+               }
+               return paths;
+           }() +
+           R"(        esac
+    done
+    case "$path" in
+)" + cases(app, "") +
+           R"(    esac
+    # Task types hold colons, at which readline splits words.
+    COMPREPLY=($(compgen -W "$words" -- "$current"))
+    [[ $current == -* || -z $path ]] || COMPREPLY+=($(compgen -f -- "$current"))
+}
+complete -o filenames -F _insonify insonify
+)";
+}
+
+int printCompletion(const CLI::App& app, const std::string& shell) {
+    if (shell == "zsh") fmt::print("autoload -U +X bashcompinit && bashcompinit\n");
+    fmt::print("{}", bashCompletion(app));
+    return 0;
+}
+
+std::string escaped(const std::string& text) {
+    std::string safe;
+    for (const char c : text) safe += c == '-' || c == '\\' ? std::string("\\") + c : std::string(1, c);
+    return safe.starts_with('.') || safe.starts_with('\'') ? "\\&" + safe : safe;
+}
+
+void printManCommand(const CLI::App& app, const std::string& path) {
+    fmt::print(".SS {}\n{}\n", escaped(path), escaped(app.get_description()));
+    for (const CLI::Option* option : app.get_options()) {
+        if (option->get_name() == "--help") continue;
+        const std::string type =
+            option->get_type_size() == 0 || option->get_positional() ? "" : " " + option->get_type_name();
+        const std::string name = option->get_positional() ? option->get_name(true) : option->get_name(false, true);
+        fmt::print(".TP\n.B {}{}\n{}\n", escaped(name), escaped(type), escaped(option->get_description()));
+    }
+    for (const std::string& name : subcommands(app)) printManCommand(*app.get_subcommand(name), path + " " + name);
+}
+
+int printMan(const CLI::App& app) {
+    fmt::print(".TH INSONIFY 1 \"\" \"Insonify {}\" \"User Commands\"\n.SH NAME\ninsonify \\- {}\n", INSONIFY_VERSION,
+               escaped(app.get_description()));
+    fmt::print(".SH SYNOPSIS\n.B insonify\n.I COMMAND\n[options]\n.SH COMMANDS\n");
+    for (const std::string& name : subcommands(app)) printManCommand(*app.get_subcommand(name), name);
+    fmt::print(
+        ".SH EXIT STATUS\n0: done. 1: failed while running. 2: wrong usage, file or configuration.\n"
+        ".SH ENVIRONMENT\n.TP\n.B INSONIFY_EGL_DEVICE\nThe device that draws: a number, software or auto.\n"
+        ".TP\n.B INSONIFY_MODEL_PATH, GAZEBO_MODEL_PATH, SDF_PATH\nFolders in which the models of a world are looked "
+        "for.\n");
+    return 0;
+}
+
+}  // namespace
+
+void addCompletionCommand(CLI::App& app, Action& action) {
+    const auto shell = std::make_shared<std::string>();
+    CLI::App* command = app.add_subcommand("completion", "Prints a script by which a shell completes this command");
+    command->add_option("SHELL", *shell, "bash or zsh: source <(insonify completion bash)")
+        ->required()
+        ->check(CLI::IsMember({"bash", "zsh"}));
+    command->callback([&app, shell, &action] { action = [&app, shell] { return printCompletion(app, *shell); }; });
+}
+
+void addManCommand(CLI::App& app, Action& action) {
+    CLI::App* command = app.add_subcommand("man", "Prints the manual page")->group("");
+    command->callback([&app, &action] { action = [&app] { return printMan(app); }; });
+}
+
+}  // namespace insonify::deployer

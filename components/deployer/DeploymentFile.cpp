@@ -1,0 +1,42 @@
+#include "components/deployer/DeploymentFile.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <vector>
+
+#include "types/ConfigError.hpp"
+
+namespace insonify::deployer {
+namespace fs = std::filesystem;
+namespace {
+
+bool isDeployment(const fs::path& file) {
+    if (file.extension() != ".yml" && file.extension() != ".yaml") return false;
+    std::ifstream stream(file);
+    for (std::string line; std::getline(stream, line);)
+        if (line.starts_with("tasks:")) return true;
+    return false;
+}
+
+}  // namespace
+
+std::string deploymentIn(const std::string& path) {
+    std::error_code unreadable;
+    if (!fs::is_directory(path, unreadable)) return path;
+    std::vector<std::string> found;
+    for (const auto& entry : fs::directory_iterator(path, unreadable))
+        if (isDeployment(entry.path())) found.push_back(entry.path().string());
+    std::ranges::sort(found);
+    if (found.size() == 1) return found.front();
+    if (found.empty())
+        throw types::ConfigError(path, "",
+                                 "is a folder without a deployment, a .yml file with tasks; `insonify init` makes one");
+    throw types::ConfigError(path, "",
+                             fmt::format("is a folder of several deployments; name one of {}", fmt::join(found, ", ")));
+}
+
+}  // namespace insonify::deployer

@@ -1,0 +1,75 @@
+// insonify init DIR [--sonar NAME]
+#include <fmt/core.h>
+
+#include <filesystem>
+#include <fstream>
+#include <memory>
+
+#include "components/deployer/Commands.hpp"
+#include "components/deployer/Starter.hpp"
+#include "types/ConfigError.hpp"
+
+namespace insonify::deployer {
+namespace fs = std::filesystem;
+namespace {
+
+struct NewFile {
+    fs::path path;
+    std::string_view bytes;
+};
+
+/** A fault for each file that is there already: nothing is overwritten. */
+void refuseOverwriting(const std::vector<NewFile>& files) {
+    std::vector<types::Diagnostic> faults;
+    for (const NewFile& file : files)
+        if (fs::symlink_status(file.path).type() != fs::file_type::not_found)
+            faults.push_back(
+                {file.path.string(), 0, 0, "", "is there already; init overwrites nothing, name another folder"});
+    if (!faults.empty()) throw types::ConfigError(std::move(faults));
+}
+
+void write(const NewFile& file) {
+    std::ofstream stream(file.path, std::ios::binary);
+    stream << file.bytes;
+    if (!stream.flush()) throw types::ConfigError(file.path.string(), "", "cannot be written");
+}
+
+int init(const fs::path& folder, const std::string& sonar) {
+    const SonarPreset& preset = sonarPreset(sonar);
+    const std::string deployment = starterDeployment(preset);
+    std::vector<NewFile> files{{folder / (std::string(preset.name) + ".yml"), deployment}};
+    for (const StarterFile& file : starterFiles()) files.push_back({folder / file.name, file.bytes});
+    refuseOverwriting(files);
+    std::error_code trouble;
+    fs::create_directories(folder, trouble);
+    if (!fs::is_directory(folder))
+        throw types::ConfigError(folder.string(), "", "is no folder and cannot be made: " + trouble.message());
+    for (const NewFile& file : files) write(file);
+    fs::permissions(folder / "make_scene.py", fs::perms::owner_exec | fs::perms::group_exec | fs::perms::others_exec,
+                    fs::perm_options::add, trouble);
+    for (const NewFile& file : files) fmt::print("{}\n", file.path.string());
+    fmt::print("next: insonify run {}\n", folder.string());
+    return 0;
+}
+
+std::string presetNames() {
+    std::string names;
+    for (const SonarPreset& preset : sonarPresets()) names += (names.empty() ? "" : ", ") + std::string(preset.name);
+    return names;
+}
+
+}  // namespace
+
+void addInitCommand(CLI::App& app, Action& action) {
+    struct Options {
+        std::string folder, sonar = sonarPresets().front().name;
+    };
+    const auto options = std::make_shared<Options>();
+    CLI::App* command =
+        app.add_subcommand("init", "Makes a folder with a first deployment, its scene and trajectories");
+    command->add_option("DIR", options->folder, "a folder, made if it is not there")->required();
+    command->add_option("--sonar", options->sonar, "one of " + presetNames())->type_name("NAME")->capture_default_str();
+    command->callback([options, &action] { action = [options] { return init(options->folder, options->sonar); }; });
+}
+
+}  // namespace insonify::deployer

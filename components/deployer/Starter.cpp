@@ -1,0 +1,80 @@
+#include "components/deployer/Starter.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <sstream>
+
+#include "components/sonar/Acoustics.hpp"
+
+// The files travel in the command itself, so that an installed one needs no path to them.
+#define INSONIFY_EMBED(symbol, file)                                                                     \
+    __asm__(".pushsection .rodata\n.balign 16\n" #symbol "_begin:\n.incbin \"" INSONIFY_STARTER "/" file \
+            "\"\n" #symbol "_end:\n.byte 0\n.popsection\n");                                             \
+    extern "C" const char symbol##_begin[], symbol##_end[];
+
+INSONIFY_EMBED(insonify_starter_scene, "scene.glb")
+INSONIFY_EMBED(insonify_starter_script, "make_scene.py")
+INSONIFY_EMBED(insonify_starter_pass, "pass.csv")
+INSONIFY_EMBED(insonify_starter_hover, "hover.csv")
+INSONIFY_EMBED(insonify_starter_fan, "fan.yml")
+INSONIFY_EMBED(insonify_starter_scanning, "scanning.yml")
+
+namespace insonify::deployer {
+namespace {
+
+std::string_view between(const char* begin, const char* end) { return {begin, static_cast<size_t>(end - begin)}; }
+
+/** Comments behind values begin in one column, where there is room. */
+std::string aligned(const std::string& text) {
+    constexpr size_t column = 44;
+    std::string all, line;
+    for (std::istringstream lines(text); std::getline(lines, line);) {
+        const size_t hash = line.find("  # ");
+        if (hash != std::string::npos && line.find_first_not_of(' ') < hash && hash + 2 < column)
+            line.insert(hash, column - hash - 2, ' ');
+        all += line + "\n";
+    }
+    return all;
+}
+
+std::string absorptionBlock(const SonarPreset& preset, double db_per_m) {
+    constexpr double highest_khz = 1000;  // of Francois and Garrison's law
+    if (preset.frequency_khz > highest_khz)
+        return fmt::format("{{db_per_m: {:.2f}}}  # one way; laws of absorption are for up to {:g} kHz", db_per_m,
+                           highest_khz);
+    return fmt::format("{{law: francois_garrison, frequency_khz: {:g}}}", preset.frequency_khz);
+}
+
+}  // namespace
+
+std::string starterDeployment(const SonarPreset& preset) {
+    const sonar::WaterConfig water{.temperature_celsius = 12, .salinity_psu = 35, .depth = 8, .ph = 8.1};
+    const double db_per_m = sonar::francoisGarrison(preset.frequency_khz, water);
+    const std::string_view text = preset.isFan()
+                                      ? between(insonify_starter_fan_begin, insonify_starter_fan_end)
+                                      : between(insonify_starter_scanning_begin, insonify_starter_scanning_end);
+    using fmt::arg;
+    return aligned(fmt::format(
+        fmt::runtime(text), arg("name", preset.name), arg("title", preset.title), arg("source", preset.source),
+        arg("summary", preset.summary), arg("frequency", preset.frequency_khz), arg("range", preset.range),
+        arg("range_min", preset.range_min), arg("range_max", preset.range_max), arg("bins", preset.bin_count),
+        arg("bin_us", preset.bin_us), arg("width", preset.beam_width_deg), arg("height", preset.beam_height_deg),
+        arg("period", preset.period_s), arg("columns", preset.columns_per_beam), arg("beams", preset.beam_count),
+        arg("fov", preset.field_of_view_deg), arg("spacing", preset.field_of_view_deg / preset.beam_count),
+        arg("pitch", preset.pitch_deg), arg("step", preset.step_deg), arg("speed", preset.step_deg / preset.period_s),
+        arg("turn", preset.isFan() ? 0 : static_cast<int>(90 / preset.step_deg)),
+        arg("absorption", fmt::format("{:.2f}", db_per_m)),
+        arg("absorption_block", absorptionBlock(preset, db_per_m))));
+}
+
+const std::vector<StarterFile>& starterFiles() {
+    static const std::vector<StarterFile> files{
+        {"scene.glb", between(insonify_starter_scene_begin, insonify_starter_scene_end)},
+        {"make_scene.py", between(insonify_starter_script_begin, insonify_starter_script_end)},
+        {"pass.csv", between(insonify_starter_pass_begin, insonify_starter_pass_end)},
+        {"hover.csv", between(insonify_starter_hover_begin, insonify_starter_hover_end)}};
+    return files;
+}
+
+}  // namespace insonify::deployer

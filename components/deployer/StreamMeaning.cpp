@@ -1,0 +1,131 @@
+#include "components/deployer/StreamMeaning.hpp"
+
+#include <optional>
+#include <set>
+
+#include "components/framework/DeploymentSpec.hpp"
+#include "components/log/Reader.hpp"
+#include "types/Pose.hpp"
+
+namespace insonify::deployer {
+namespace {
+
+using framework::child;
+using framework::DeploymentSpec;
+using framework::TaskSpec;
+
+constexpr const char* quaternion_order = "w, x, y, z";
+
+/** Numbers, truth values, texts, lists and blocks of YAML as such; null for what is not there. */
+Json jsonOf(const YAML::Node& node) {
+    if (!node.IsDefined() || node.IsNull()) return nullptr;
+    if (node.IsMap()) {
+        Json block = Json::object();
+        for (const auto& entry : node) block[entry.first.Scalar()] = jsonOf(entry.second);
+        return block;
+    }
+    if (node.IsSequence()) {
+        Json list = Json::array();
+        for (const auto& element : node) list.push_back(jsonOf(element));
+        return list;
+    }
+    const Json value = Json::parse(node.Scalar(), nullptr, false);
+    return value.is_number() || value.is_boolean() ? value : Json(node.Scalar());
+}
+
+/** The nearest task of a type from which another one hears, itself included; null when there is none. */
+const TaskSpec* upstream(const DeploymentSpec& spec, const std::string& from, const std::set<std::string>& types) {
+    std::vector<std::string> waiting{from};
+    for (size_t i = 0; i < waiting.size(); ++i) {
+        const TaskSpec* task = spec.task(waiting[i]);
+        if (task && types.contains(task->type)) return task;
+        for (const framework::ConnectionSpec& connection : spec.connections) {
+            const std::string writer = framework::splitPort(connection.from).first;
+            if (framework::splitPort(connection.to).first == waiting[i] && std::ranges::count(waiting, writer) == 0)
+                waiting.push_back(writer);
+        }
+    }
+    return nullptr;
+}
+
+/** A property as written, by its path. */
+Json property(const TaskSpec* task, std::initializer_list<const char*> path) {
+    if (!task) return nullptr;
+    YAML::Node node = task->properties;
+    for (const char* key : path) node.reset(child(node, key));
+    return jsonOf(node);
+}
+
+Json orElse(const Json& value, const char* otherwise) { return value.is_null() ? Json(otherwise) : value; }
+
+std::string binsOf(const std::string& model, const std::string& output, bool amplified) {
+    const std::string gain = amplified ? ", times the receiver's gain" : "";
+    const std::string intensity =
+        model == "physical" ? "received intensity of the bin relative to that of the source at 1 m, linear" + gain
+                            : "mean of S(n.d) over what the bin shows, 0 to 1" + gain;
+    if (output == "intensity") return intensity;
+    if (output == "amplitude") return "root of: " + intensity;
+    if (output == "level_db") return "10 log10 of: " + intensity;
+    if (output == "received_level_db") return "dB re 1 uPa: source level plus 10 log10 of: " + intensity;
+    return "whole numbers by `code`, of: " + intensity;
+}
+
+Json pingMeaning(const DeploymentSpec& spec, const std::string& task) {
+    const TaskSpec* sonar = upstream(spec, task, {"sonar::SonarTask", "sonar::ScanningSonarTask"});
+    const TaskSpec* receiver = upstream(spec, task, {"receiver::ReceiverTask"});
+    const TaskSpec* noise = upstream(spec, task, {"noise::NoiseTask"});
+    const TaskSpec* scene = upstream(spec, task, {"scene::SceneTask"});
+    const std::string model = orElse(property(sonar, {"model"}), "physical"),
+                      output = orElse(property(receiver, {"output"}), "intensity");
+    return {{"bins", binsOf(model, output, receiver != nullptr)},
+            {"output", output},
+            {"model", model},
+            {"reference", model == "physical" ? Json("intensity of the source at 1 m") : Json(nullptr)},
+            {"tvg", property(receiver, {"tvg"})},
+            {"gain_db", property(receiver, {"gain_db"})},
+            {"code", property(receiver, {"code"})},
+            {"noise", noise ? jsonOf(noise->properties) : Json(nullptr)},
+            {"frequency_khz", property(sonar, {"absorption", "frequency_khz"})},
+            {"absorption", property(sonar, {"absorption"})},
+            {"range_m", "slant range of the middle of each bin, [pings, bins]"},
+            {"bin_duration",
+             "one-way travel time through one bin [s], as Rock has it: bin k covers slant ranges "
+             "[k, k + 1) * bin_duration * speed_of_sound"},
+            {"frame", "sonar: x ahead, y to port, z up; bearings from ahead, positive to port [rad]"},
+            {"mount", property(scene, {"mount"})},
+            {"quaternion_order", quaternion_order}};
+}
+
+Json poseMeaning() {
+    return {{"position", "in the world, x north, y west, z up [m]"},
+            {"orientation", "world_from_body, unit quaternion; body: x forward, y left, z up"},
+            {"quaternion_order", quaternion_order}};
+}
+
+std::string metadataOf(const log::Stream& stream, const char* key) {
+    const auto found = stream.metadata.find(key);
+    return found == stream.metadata.end() ? "" : found->second;
+}
+
+/** The deployment that wrote the stream; an empty one where it is not known or cannot be read. */
+DeploymentSpec deploymentOf(const log::Stream& stream, const std::string& file) try {
+    return DeploymentSpec::parse(metadataOf(stream, "insonify_deployment"), file);
+} catch (const types::ConfigError&) {
+    return {};
+}
+
+}  // namespace
+
+Json meaningOf(const log::Reader& log, const log::Stream& stream) {
+    Json meaning = {{"stream", stream.name}};
+    if (log::holdsPings(stream))
+        meaning.update(pingMeaning(deploymentOf(stream, log.path().string()), framework::splitPort(stream.name).first));
+    else if (stream.holds<types::Pose>())
+        meaning.update(poseMeaning());
+    else
+        meaning["type"] = stream.type;
+    if (const std::string seed = metadataOf(stream, "insonify_seed"); !seed.empty()) meaning["seed"] = seed;
+    return meaning;
+}
+
+}  // namespace insonify::deployer

@@ -1,0 +1,26 @@
+#include "components/output/video/OpenVideo.hpp"
+
+#include <opencv2/videoio.hpp>
+
+namespace insonify::output {
+namespace {
+
+class OpenCvVideo final : public VideoEncoder {
+public:
+    explicit OpenCvVideo(cv::VideoWriter writer) : writer_(std::move(writer)) {}
+    void write(const cv::Mat& picture) override { writer_.write(picture); }
+
+private:
+    cv::VideoWriter writer_;
+};
+
+}  // namespace
+
+VideoEncoder* insonify_open_video(const char* file, double rate, int width, int height) {
+    const bool avi = std::filesystem::path(file).extension() == ".avi";
+    const int codec = avi ? cv::VideoWriter::fourcc('M', 'J', 'P', 'G') : cv::VideoWriter::fourcc('m', 'p', '4', 'v');
+    cv::VideoWriter writer(file, avi ? cv::CAP_OPENCV_MJPEG : cv::CAP_FFMPEG, codec, rate, cv::Size(width, height));
+    return writer.isOpened() ? new OpenCvVideo(std::move(writer)) : nullptr;
+}
+
+}  // namespace insonify::output

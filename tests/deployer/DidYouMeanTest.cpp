@@ -1,0 +1,108 @@
+// What a typing mistake in a deployment or on the command line is answered with.
+#include <gmock/gmock.h>
+
+#include "tests/deployer/Wall.hpp"
+
+using namespace insonify::deployer;
+using testing::HasSubstr;
+using testing::Not;
+
+namespace {
+
+/** What `check` says of the wall's deployment with another text in the place of one that is there. */
+std::string faultsWith(const std::string& from, const std::string& to) {
+    const WallFolder folder(replaced(wall_deployment, from, to));
+    const Outcome outcome = callInsonify(folder, {"check", "wall.yml"});
+    EXPECT_EQ(outcome.code, 2) << to;
+    return outcome.err;
+}
+
+struct Case {
+    const char *from, *to, *words;
+};
+
+void expectWords(std::initializer_list<Case> cases) {
+    for (const Case& c : cases) EXPECT_THAT(faultsWith(c.from, c.to), HasSubstr(c.words)) << c.to;
+}
+
+}  // namespace
+
+TEST(DidYouMeanTest, NamesOfTasksPortsPropertiesEnumsAndMaterials) {
+    expectWords({
+        {"sonar::SonarTask", "sonar::SonarTsk", "did you mean sonar::SonarTask?"},
+        {"sonar::SonarTask", "SonarTask", "did you mean sonar::SonarTask?"},
+        {"{from: sonar.ping, to: noise.clean}", "{from: sonra.ping, to: noise.clean}", "did you mean sonar?"},
+        {"{from: sonar.ping, to: noise.clean}", "{from: sonar.png, to: noise.clean}", "did you mean ping?"},
+        {"{from: sonar.ping, to: noise.clean}", "{from: sonar.ping, to: noise.claen}", "did you mean clean?"},
+        {"beam_count: 16", "beam_cuont: 16", "did you mean beam_count?"},
+        {"beam_count: 16", "Beam_Count: 16", "did you mean beam_count?"},
+        {"law: rayleigh", "law: raleigh", "did you mean rayleigh?"},
+        {"file: wall.gltf", "file: wall.gltf, materials: {walls: {lambert_db: -10}}", "did you mean wall?"},
+        {"file: wall.gltf", "file: wall.gltf, materials: {wall: {sediment: medum_sand}}", "did you mean medium_sand?"},
+        {"file: wall.gltf", "file: wall.gltf, materials: {wall: {lamber_db: -10}}", "did you mean lambert_db?"},
+        {"schedule: lockstep", "schedule: lock_step", "did you mean lockstep?"},
+    });
+}
+
+TEST(DidYouMeanTest, ANumberWithItsUnitIsShownAsItIsToBeWritten) {
+    expectWords({
+        {"range: 20", "range: 20 m", "is 20 m; write 20 or 20.m; must be a finite number"},
+        {"range: 20", "range: 20m", "write 20 or 20.m;"},
+        {"range: 20", "range: 2000 cm", "write 20 or 2000.cm;"},
+        {"range: 20", "range: 20,5", "write 20.5;"},
+        {"speckle: {law: rayleigh}}", "speckle: {law: rayleigh}", "a { has no } to close it"},
+        {"beam_height_deg: 10", "beam_height_deg: 10 deg", "write 10 or 10.deg;"},
+        {"beam_height_deg: 10", "beam_height_deg: 10\n      speed_of_sound: 1500 m/s", "write 1500 or 1500.m.s^-1;"},
+        {"beam_height_deg: 10", "beam_height_deg: 10\n      absorption: {db_per_m: 0.2 dB/m}", "write 0.2;"},
+        {"beam_height_deg: 10", "beam_height_deg: 10\n      published: yes", "write true;"},
+    });
+    EXPECT_THAT(faultsWith("range: 20", "range: 20 deg"), Not(HasSubstr("write")));
+    EXPECT_THAT(faultsWith("range: 20", "range: far"), Not(HasSubstr("write")));
+}
+
+TEST(DidYouMeanTest, ATabAndAWrongIndentAreNamedAsSuch) {
+    expectWords({
+        {"      range: 20", "\trange: 20", "is indented with a tab; indent with spaces"},
+        {"      range: 20", "     \trange: 20", "is indented with a tab; indent with spaces"},
+        {"      range: 20", "      range: 20\n     range_min: 1",
+         "is indented by 5 spaces; as the lines above are, it may be by 0 or 2 or 4 or 6"},
+        {"      range: 20", "      range: 20\n        range_min: 1", "is indented by 8 spaces; as the lines above are"},
+    });
+}
+
+TEST(DidYouMeanTest, TheCauseComesBeforeItsConsequences) {
+    // A task of another name: connections lead to one that is not there, and its own port has no connection.
+    const std::string faults = faultsWith("  noise:\n", "  nose:\n");
+    const size_t cause = faults.find("did you mean nose?"), consequence = faults.find("input port clean");
+    ASSERT_NE(cause, std::string::npos) << faults;
+    ASSERT_NE(consequence, std::string::npos) << faults;
+    EXPECT_LT(cause, consequence);
+}
+
+TEST(DidYouMeanTest, AMissingSceneIsToldWhereItWasLookedForAndWhatCanBeRead) {
+    const WallFolder folder(replaced(wall_deployment, "wall.gltf", "wal.gltf"));
+    const std::string faults = callInsonify(folder, {"check", "wall.yml"}).err;
+    EXPECT_THAT(faults, HasSubstr("wall.yml:11:24: tasks.scene.properties.file: "));
+    EXPECT_THAT(faults, HasSubstr("did you mean wall.gltf?"));
+    EXPECT_THAT(faults, HasSubstr("looked for at " + (folder / "wal.gltf").string()));
+    EXPECT_THAT(faults, HasSubstr(".gltf, .glb, .world or .sdf"));
+}
+
+TEST(DidYouMeanTest, CommandsOptionsAndTypesOnTheCommandLine) {
+    const WallFolder folder;
+    const std::pair<std::vector<std::string>, const char*> cases[] = {
+        {{"rnu", "wall.yml"}, "did you mean run?"},
+        {{"log", "inof", "x.log"}, "did you mean info?"},
+        {{"run", "wall.yml", "--ping", "2"}, "did you mean --pings?"},
+        {{"run", "wall.yml", "--ouy=x"}, "did you mean --out?"},
+        {{"describe", "sonar::SonarTsk"}, "did you mean sonar::SonarTask?"},
+        {{"describe", "SonarTask"}, "did you mean sonar::SonarTask?"},
+        {{"init", "x", "--sonar", "gemini"}, "did you mean gemini_720is?"},
+        {{"run", "wall.yml", "--set", "sonra.range=3"}, "did you mean sonar?"},
+        {{"run", "wall.yml", "--set", "sonar.rnage=3"}, "did you mean range?"}};
+    for (const auto& [words, answer] : cases) {
+        const Outcome outcome = callInsonify(folder, words);
+        EXPECT_EQ(outcome.code, 2) << answer;
+        EXPECT_THAT(outcome.err, HasSubstr(answer));
+    }
+}

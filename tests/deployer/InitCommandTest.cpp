@@ -1,0 +1,111 @@
+#include <gmock/gmock.h>
+
+#include "components/deployer/Starter.hpp"
+#include "tests/deployer/Command.hpp"
+
+using namespace insonify::deployer;
+using testing::HasSubstr;
+
+namespace {
+
+/** One ping of what `init` made for this sonar: how many of its bins hold something before the noise. */
+size_t binsHeard(const TestFolder& folder, const std::string& sonar) {
+    const Outcome made = callInsonify(folder, {"init", sonar, "--sonar", sonar});
+    EXPECT_EQ(made.code, 0) << made.err;
+    const Outcome ran =
+        callInsonify(folder, {"run", sonar, "--pings", "1", "--out", sonar + "/out", "--set", "noise.ambient=null"});
+    EXPECT_EQ(ran.code, 0) << ran.err;
+    const std::string log = sonar + "/out/" + sonar + ".0.log";
+    const Outcome exported =
+        callInsonify(folder, {"log", "export", log, "--stream", "receiver.ping", "--to", sonar + ".npz"});
+    EXPECT_EQ(exported.code, 0) << exported.err;
+    const Outcome counted =
+        python(folder, "import numpy; b = numpy.load('" + sonar + ".npz')['bins']; print((b > 0).sum())");
+    EXPECT_EQ(counted.code, 0) << counted.err;
+    return std::stoul(counted.out);
+}
+
+class InitPresetTest : public testing::TestWithParam<std::string> {};
+
+std::vector<std::string> presetNames() {
+    std::vector<std::string> names;
+    for (const SonarPreset& preset : sonarPresets()) names.emplace_back(preset.name);
+    return names;
+}
+
+}  // namespace
+
+TEST_P(InitPresetTest, IsValidRunsAtOnceAndHearsTheScene) {
+    const TestFolder folder;
+    EXPECT_GT(binsHeard(folder, GetParam()), 100u);
+    const Outcome checked = callInsonify(folder, {"check", GetParam()});
+    EXPECT_EQ(checked.code, 0) << checked.err;
+    EXPECT_THAT(checked.out, testing::Not(HasSubstr("warning")));
+}
+
+TEST_P(InitPresetTest, BinsOfWholeMicrosecondsReachTheRangeThatIsAskedFor) {
+    const TestFolder folder;
+    ASSERT_EQ(callInsonify(folder, {"init", ".", "--sonar", GetParam()}).code, 0);
+    const Outcome ran = callInsonify(folder, {"run", ".", "--pings", "1", "--out", "out"});
+    EXPECT_THAT(ran.err, testing::Not(HasSubstr("arning"))) << ran.err;
+    for (const SonarPreset& preset : sonarPresets()) {
+        if (preset.name != GetParam()) continue;
+        EXPECT_THAT(ran.err, HasSubstr("bins last " + std::to_string(preset.bin_us) + " us"));
+        EXPECT_LE(preset.range, preset.range_max);
+        EXPECT_THAT(readFile(folder / (GetParam() + ".yml")), HasSubstr(preset.source));
+    }
+}
+
+INSTANTIATE_TEST_SUITE_P(Every, InitPresetTest, testing::ValuesIn(presetNames()),
+                         [](const auto& preset) { return preset.param; });
+
+TEST(InitCommandTest, NothingIsOverwritten) {
+    const TestFolder folder;
+    ASSERT_EQ(callInsonify(folder, {"init", "dive"}).code, 0);
+    const std::string before = readFile(folder / "dive/oculus_m750d.yml");
+    writeFile(folder / "dive/pass.csv", "mine");
+    for (const char* sonar : {"oculus_m750d", "micron"}) {
+        const Outcome again = callInsonify(folder, {"init", "dive", "--sonar", sonar});
+        EXPECT_EQ(again.code, 2);
+        EXPECT_THAT(again.err, HasSubstr("dive/pass.csv: is there already"));
+    }
+    EXPECT_EQ(readFile(folder / "dive/pass.csv"), "mine");
+    EXPECT_EQ(readFile(folder / "dive/oculus_m750d.yml"), before);
+    EXPECT_FALSE(fs::exists(folder / "dive/micron.yml"));
+}
+
+TEST(InitCommandTest, TheScriptMakesTheSceneAndTrajectoriesThatStandBesideIt) {
+    const TestFolder folder;
+    ASSERT_EQ(callInsonify(folder, {"init", "dive"}).code, 0);
+    std::vector<std::string> before;
+    for (const char* name : {"scene.glb", "pass.csv", "hover.csv"}) {
+        before.push_back(readFile(folder / "dive" / name));
+        fs::remove(folder / "dive" / name);
+    }
+    const Outcome made = Process({"/usr/bin/python3", "-I", "-S", "dive/make_scene.py"}, folder.path()).wait();
+    ASSERT_EQ(made.code, 0) << made.err;
+    EXPECT_TRUE(readFile(folder / "dive/scene.glb") == before[0]);
+    EXPECT_EQ(readFile(folder / "dive/pass.csv"), before[1]);
+    EXPECT_EQ(readFile(folder / "dive/hover.csv"), before[2]);
+}
+
+TEST(InitCommandTest, ASonarThatIsNotKnownIsToldWithTheNearestOne) {
+    const TestFolder folder;
+    const Outcome outcome = callInsonify(folder, {"init", "dive", "--sonar", "oculus_m750"});
+    EXPECT_EQ(outcome.code, 2);
+    EXPECT_THAT(outcome.err, HasSubstr("did you mean oculus_m750d?"));
+    EXPECT_FALSE(fs::exists(folder / "dive"));
+}
+
+TEST(InitCommandTest, AFolderStandsForItsOneDeployment) {
+    const TestFolder folder;
+    const Outcome none = callInsonify(folder, {"run", "."});
+    EXPECT_EQ(none.code, 2);
+    EXPECT_THAT(none.err, HasSubstr("insonify init"));
+    ASSERT_EQ(callInsonify(folder, {"init", "."}).code, 0);
+    EXPECT_EQ(callInsonify(folder, {"check", "."}).code, 0);
+    fs::copy(folder / "oculus_m750d.yml", folder / "mine.yml");
+    const Outcome two = callInsonify(folder, {"run", "."});
+    EXPECT_EQ(two.code, 2);
+    EXPECT_THAT(two.err, HasSubstr("name one of ./mine.yml, ./oculus_m750d.yml"));
+}

@@ -1,0 +1,84 @@
+// What a log and what is exported from it tell of their numbers.
+#include <gmock/gmock.h>
+
+#include "tests/deployer/Wall.hpp"
+
+using namespace insonify::deployer;
+using testing::AllOf;
+using testing::HasSubstr;
+using testing::Not;
+
+namespace {
+
+/** A log of the wall in out/wall.0.log: noiseless pings, pings with speckle, pings of a receiver with a TVG. */
+class LogMeaningTest : public testing::Test {
+protected:
+    LogMeaningTest()
+        : folder_(replaced(replaced(replaced(wall_deployment, "  log:\n",
+                                             "  receiver: {type: receiver::ReceiverTask, properties: {tvg: "
+                                             "{log_coefficient: 40}, output: level_db}}\n  log:\n"),
+                                    "  - {from: noise.noisy,",
+                                    "  - {from: noise.noisy, to: receiver.intensity}\n  - {from: receiver.ping, to: "
+                                    "log.amplified, policy: {type: buffer, size: 64}}\n  - {from: noise.noisy,"),
+                           "properties: {file: wall.gltf}", "properties: {file: wall.gltf, mount: {pitch_deg: 3}}")) {
+        const Outcome ran = folder_.run({"--pings", "2", "--seed", "5"});
+        EXPECT_EQ(ran.code, 0) << ran.err;
+    }
+    /** What a python program says of x.npz, exported from this stream. */
+    std::string exported(const std::string& stream, const std::string& program) {
+        const Outcome written =
+            callInsonify(folder_, {"log", "export", "out/wall.0.log", "--stream", stream, "--to", "x.npz"});
+        EXPECT_EQ(written.code, 0) << written.err;
+        const Outcome said = python(
+            folder_, "import json, numpy\nd = numpy.load('x.npz')\nmeta = json.loads(d['meta'].item())\n" + program);
+        EXPECT_EQ(said.code, 0) << said.err;
+        return said.out;
+    }
+
+    WallFolder folder_;
+};
+
+}  // namespace
+
+TEST_F(LogMeaningTest, ArraysTellTheRangeOfEachBin) {
+    EXPECT_EQ(exported("sonar.ping", R"(
+width = d['bin_duration'] * d['speed_of_sound']
+ranges = (numpy.arange(50) + 0.5) * width[:, None]
+print(d['range_m'].shape, numpy.allclose(d['range_m'], ranges, rtol=1e-6)))"),
+              "(2, 50) True\n");
+}
+
+TEST_F(LogMeaningTest, ArraysTellWhatTheirNumbersMean) {
+    EXPECT_EQ(
+        exported("receiver.ping", "print(meta['output'], meta['tvg'], meta['model'], meta['mount'], meta['seed'])"),
+        "level_db {'log_coefficient': 40} physical {'pitch_deg': 3} 5\n");
+    EXPECT_EQ(exported("receiver.ping", "print(meta['noise']['speckle']['law'], meta['quaternion_order'])"),
+              "rayleigh w, x, y, z\n");
+    EXPECT_THAT(exported("receiver.ping", "print(meta['bins'])"), HasSubstr("10 log10 of: received intensity"));
+    EXPECT_THAT(exported("receiver.ping", "print(meta['bin_duration'])"), HasSubstr("one-way"));
+    EXPECT_THAT(exported("receiver.ping", "print(meta['frame'])"), HasSubstr("positive to port"));
+    EXPECT_EQ(exported("sonar.ping", "print(meta['output'], meta['tvg'], meta['noise'])"), "intensity None None\n");
+    EXPECT_EQ(exported("vehicle.pose", "print(meta['quaternion_order'])"), "w, x, y, z\n");
+}
+
+TEST_F(LogMeaningTest, InfoShowsDeploymentSeedPlanAndUnits) {
+    const std::string plain = callInsonify(folder_, {"log", "info", "out/wall.0.log"}).out;
+    EXPECT_THAT(plain, Not(HasSubstr("schedule: lockstep")));
+    const std::string words = callInsonify(folder_, {"log", "info", "out/wall.0.log", "--metadata"}).out;
+    EXPECT_THAT(words, AllOf(HasSubstr("schedule: lockstep"), HasSubstr("insonify_seed: 5"), HasSubstr("insonify_plan"),
+                             HasSubstr("columns_per_beam"), HasSubstr("[rad]")));
+    EXPECT_EQ(words.find("schedule: lockstep"), words.rfind("schedule: lockstep"));
+    const json info = json::parse(callInsonify(folder_, {"log", "info", "out/wall.0.log", "--metadata", "--json"}).out);
+    EXPECT_EQ(info["metadata"]["receiver.ping"]["meaning"]["output"], "level_db");
+    EXPECT_EQ(info["metadata"]["receiver.ping"]["metadata"]["insonify_seed"], "5");
+}
+
+TEST_F(LogMeaningTest, TextOfManyBinsIsAnnouncedWithItsSize) {
+    const std::vector<std::string> words = {"log",        "export", "out/wall.0.log", "--stream",
+                                            "sonar.ping", "--to",   "x.csv"};
+    EXPECT_EQ(callInsonify(folder_, words).err, "");
+    ASSERT_EQ(folder_.run({"--pings", "60", "--set", "sonar.bin_count=3000"}).code, 0);
+    const Outcome large = callInsonify(folder_, words);
+    EXPECT_EQ(large.code, 0);
+    EXPECT_THAT(large.err, HasSubstr("notice: x.csv gets a line for each bin, some 3 million, 0.1 GB"));
+}

@@ -1,0 +1,35 @@
+#include <gmock/gmock.h>
+
+#include "components/deployer/ProgressLine.hpp"
+#include "tests/deployer/Wall.hpp"
+
+using namespace insonify::deployer;
+using testing::AllOf;
+using testing::HasSubstr;
+using testing::Not;
+
+TEST(ProgressLineTest, TheTimeLeftFollowsFromTheShareThatIsDone) {
+    EXPECT_EQ(timeLeft(0.25, 10), ", 25 % done, 30 s left");
+    EXPECT_EQ(timeLeft(0.5, 300), ", 50 % done, 5 min 00 s left");
+    EXPECT_EQ(timeLeft(0.001, 10), ", 0 % done, 2 h 46 min left");
+    for (const double share : {0.0, -1.0, 1.0, 1.5, std::nan("")}) EXPECT_EQ(timeLeft(share, 10), "") << share;
+}
+
+/** In realtime, so that it takes the second whatever the machine. */
+TEST(ProgressLineTest, ARunOnATerminalTellsTheTotalAndTheTimeLeftAndElsewhereNothing) {
+    const WallFolder folder(replaced(wall_deployment, "schedule: lockstep", "schedule: realtime"));
+    const std::string program = R"(
+import pty, sys
+with open('seen.txt', 'wb') as seen:
+    def read(descriptor):
+        import os
+        data = os.read(descriptor, 1024)
+        seen.write(data)
+        return data
+    sys.exit(pty.spawn([')" + std::string(INSONIFY_BIN_DIR) +
+                                R"(/insonify', 'run', 'wall.yml', '--duration', '1', '--out', 'out'], read) >> 8))";
+    const Outcome outcome = python(folder, program);
+    EXPECT_EQ(outcome.code, 0) << outcome.err;
+    EXPECT_THAT(readFile(folder / "seen.txt"), AllOf(HasSubstr(" of 1.0 s simulated"), HasSubstr(" % done, 1 s left")));
+    EXPECT_THAT(folder.run({"--pings", "2"}).err, Not(HasSubstr("done")));
+}

@@ -1,0 +1,95 @@
+#include <gmock/gmock.h>
+
+#include "tests/deployer/Wall.hpp"
+
+using namespace insonify::deployer;
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+using testing::Not;
+
+namespace {
+
+json sceneOf(const TestFolder& folder, const std::string& file) {
+    const Outcome outcome = callInsonify(folder, {"scene", file, "--json"});
+    EXPECT_EQ(outcome.code, 0) << outcome.err;
+    return json::parse(outcome.out);
+}
+
+/** A floor of 40 x 30 m at height -2, with a step to -1 in its middle; its file has z up, or y up as glTF wants it. */
+std::string floorGltf(bool z_up) {
+    const std::vector<float> up{-20, -15, -2, 20, -15, -2, 20, 15, -2, -20, 15, -2,
+                                -1,  -1,  -1, 1,  -1,  -1, 1,  1,  -1, -1,  1,  -1};
+    std::vector<float> positions = up;
+    for (size_t i = 0; !z_up && i < up.size(); i += 3) {
+        positions[i + 1] = up[i + 2];
+        positions[i + 2] = -up[i + 1];
+    }
+    return gltfOf(positions, {0, 1, 2, 0, 2, 3, 4, 5, 6, 4, 6, 7});
+}
+
+}  // namespace
+
+TEST(SceneCommandTest, ASceneIsToldByBoxTrianglesMaterialsAndObjects) {
+    const TestFolder folder;
+    const json scene = sceneOf(folder, fs::path(INSONIFY_SOURCE_DIR) / "deploy/scenes/wall.glb");
+    EXPECT_THAT(scene["bounds"]["min"], ElementsAre(10, -20, -3));
+    EXPECT_THAT(scene["bounds"]["max"], ElementsAre(11, 20, 3));
+    EXPECT_EQ(scene["objects"].size(), 1u);
+    EXPECT_EQ(scene["objects"][0]["name"], "wall");
+    EXPECT_EQ(scene["objects"][0]["triangles"], scene["triangles"]);
+    const json& material = scene["materials"].at(0);
+    EXPECT_EQ(material["name"], "concrete");
+    EXPECT_EQ(material["source"], "file");
+    EXPECT_NEAR(material["reflection"], 0.66, 0.1);
+    EXPECT_NEAR(material["area_m2"], 2 * (40 * 6 + 40 + 6), 1e-3);
+    EXPECT_THAT(scene["warnings"], IsEmpty());
+    const Outcome words = callInsonify(folder, {"scene", fs::path(INSONIFY_SOURCE_DIR) / "deploy/scenes/wall.glb"});
+    EXPECT_THAT(words.out, HasSubstr("from [10, -20, -3] to [11, 20, 3] m"));
+    EXPECT_THAT(words.out, HasSubstr("concrete"));
+}
+
+TEST(SceneCommandTest, AFileWithZUpIsSuspectedToLieOnItsSideAndOneWithYUpIsNot) {
+    const TestFolder folder;
+    writeFile(folder / "z_up.gltf", floorGltf(true));
+    writeFile(folder / "y_up.gltf", floorGltf(false));
+    EXPECT_THAT(callInsonify(folder, {"scene", "z_up.gltf"}).out, HasSubstr("may lie on its side"));
+    EXPECT_THAT(callInsonify(folder, {"scene", "y_up.gltf"}).out, Not(HasSubstr("on its side")));
+    EXPECT_THAT(sceneOf(folder, "y_up.gltf")["bounds"]["max"], ElementsAre(20, 15, -1));
+}
+
+TEST(SceneCommandTest, TheDeliveredScenesDoNotLieOnTheirSides) {
+    const TestFolder folder;
+    for (const char* name : {"harbour.glb", "tank.glb", "two_vehicles.world", "wall.glb"})
+        for (const json& warning : sceneOf(folder, fs::path(INSONIFY_SOURCE_DIR) / "deploy/scenes" / name)["warnings"])
+            EXPECT_THAT(warning.get<std::string>(), Not(HasSubstr("on its side"))) << name;
+}
+
+TEST(SceneCommandTest, AMaterialWithoutAcousticsIsToldWithTheValueThatItGets) {
+    const WallFolder folder;
+    const json scene = sceneOf(folder, "wall.gltf");
+    EXPECT_EQ(scene["materials"].at(0)["source"], "default");
+    EXPECT_NEAR(scene["materials"].at(0)["lambert_db"], -16.7, 1e-3);
+    EXPECT_THAT(scene["warnings"].at(0).get<std::string>(), HasSubstr("sound like medium sand"));
+    EXPECT_THAT(callInsonify(folder, {"describe", "wall.gltf"}).out, HasSubstr("medium sand"));
+}
+
+TEST(SceneCommandTest, WhatIsLeftOutIsListed) {
+    const TestFolder folder;
+    writeFile(folder / "walls.sdf", R"(<sdf version="1.7"><model name="m"><link name="l"><visual name="v"><geometry>
+        <mesh><uri>model://nowhere/wall.dae</uri></mesh></geometry></visual></link></model></sdf>)");
+    const json scene = sceneOf(folder, "walls.sdf");
+    ASSERT_FALSE(scene["not_understood"].empty());
+    EXPECT_THAT(scene["not_understood"].at(0).get<std::string>(), HasSubstr("nowhere/wall.dae"));
+    EXPECT_TRUE(scene["bounds"].is_null());
+    EXPECT_THAT(scene["axes"].get<std::string>(), HasSubstr("z up"));
+}
+
+TEST(SceneCommandTest, WhatIsNoSceneIsAnErrorThatNamesTheFormats) {
+    const TestFolder folder;
+    writeFile(folder / "wall.blend", "BLENDER");
+    const Outcome wrong = callInsonify(folder, {"scene", "wall.blend"});
+    EXPECT_EQ(wrong.code, 2);
+    EXPECT_THAT(wrong.err, HasSubstr("may be .gltf, .glb, .world or .sdf"));
+    EXPECT_EQ(callInsonify(folder, {"scene", "nowhere.glb"}).code, 2);
+}

@@ -1,0 +1,56 @@
+// What a run says whose sonar hears nothing.
+#include <gmock/gmock.h>
+
+#include "tests/deployer/Wall.hpp"
+
+using namespace insonify::deployer;
+using testing::AllOf;
+using testing::HasSubstr;
+using testing::Not;
+
+namespace {
+
+std::string told(const std::vector<std::string>& settings) {
+    const WallFolder folder;
+    std::vector<std::string> words = {"--pings", "3"};
+    for (const std::string& setting : settings) words.insert(words.end(), {"--set", setting});
+    const Outcome outcome = folder.run(words);
+    EXPECT_EQ(outcome.code, 0) << outcome.err;
+    return outcome.err;
+}
+
+size_t count(const std::string& text, const std::string& part) {
+    size_t times = 0;
+    for (size_t at = text.find(part); at != std::string::npos; at = text.find(part, at + 1)) ++times;
+    return times;
+}
+
+}  // namespace
+
+TEST(SilentRunTest, ItIsToldOnceWhereTheSonarIsWhichWayItLooksAndWhereTheSceneLies) {
+    const std::string text = told({"sonar.range=5"});
+    EXPECT_EQ(count(text, "warning: sonar: hears nothing"), 1u) << text;
+    EXPECT_THAT(text, AllOf(HasSubstr("The sonar is at [0, 0, 0] and looks towards [1, 0, 0]"),
+                            HasSubstr("the scene lies from [10, -20, -20] to [10, 20, 20]"),
+                            HasSubstr("its nearest point 10 m away at [10, 0, 0] of wall: beyond the range of 5")));
+}
+
+TEST(SilentRunTest, WhatKeepsItFromHearingTheNearestPointIsNamed) {
+    EXPECT_THAT(told({"scene.mount={yaw_deg: 180}"}), HasSubstr("at a bearing of 180 deg to "));
+    EXPECT_THAT(told({"scene.mount={pitch_deg: 85}"}),
+                AllOf(HasSubstr("85 deg down"), HasSubstr("85 deg above the sonar's plane")));
+    EXPECT_THAT(told({"sonar.range_min=19"}), HasSubstr("nearer than range_min, 19 m"));
+}
+
+TEST(SilentRunTest, ARunThatHearsSomethingSaysNothing) { EXPECT_THAT(told({}), Not(HasSubstr("hears nothing"))); }
+
+TEST(SilentRunTest, AHeadIsGivenAWholeTurnToHearSomething) {
+    const std::string scanning = replaced(replaced(wall_deployment, "sonar::SonarTask", "sonar::ScanningSonarTask"),
+                                          "      beam_count: 16\n      bin_count: 50\n      field_of_view_deg: 60\n    "
+                                          "  beam_height_deg: 10\n      quality: {rows: 32, columns_per_beam: 2}\n",
+                                          "      head: {step_deg: 36}\n");
+    const WallFolder hears(scanning), deaf(replaced(scanning, "range: 20", "range: 5"));
+    EXPECT_THAT(hears.run({"--pings", "10"}).err, Not(HasSubstr("hears nothing")));
+    EXPECT_THAT(deaf.run({"--pings", "9"}).err, Not(HasSubstr("hears nothing")));
+    EXPECT_THAT(deaf.run({"--pings", "10"}).err, HasSubstr("hears nothing"));
+}

@@ -1,0 +1,57 @@
+#include <gtest/gtest.h>
+
+#include "components/log/Check.hpp"
+#include "components/log/Copy.hpp"
+#include "tests/support/Fuzz.hpp"
+#include "types/ConfigError.hpp"
+
+namespace insonify::fuzz {
+namespace {
+
+/** Calls, and lets pass what a reader of logs may throw. */
+template <class Call>
+void allowed(Call call) try {
+    call();
+} catch (const types::ConfigError& error) {
+    expectOurWords(error.what());
+}
+
+void readAll(const Input& input) {
+    allowed([&] { log::check(input.file()); });
+    allowed([&] {
+        const auto log = log::openLog(input.file());
+        for (const log::SampleRef& at : log->samples())
+            allowed([&] {
+                EXPECT_LE(log->bytesOf(at).size(), size_t{1} << 30);
+                log->verify(at);
+            });
+    });
+}
+
+void readAndRepair(const Input& input) {
+    readAll(input);
+    allowed([&] {
+        const auto folder = input.file().parent_path() / "repaired";
+        std::filesystem::create_directory(folder);
+        const auto to = folder / input.file().filename();
+        log::copyLog({input.file()}, to, {log::AtDamage::Skip});
+        EXPECT_TRUE(log::openLog(to)->complete());
+    });
+}
+
+TEST(LogFuzzTest, EveryPocologFileIsReadAsFarAsItIsOne) {
+    push({"pocolog",
+          "damaged.0.log",
+          {"POCOSIM", "/base/samples/Sonar", "<typelib>", "</typelib>", "insonify_seed: 7\n"},
+          readAndRepair});
+}
+
+TEST(LogFuzzTest, EveryMcapFileIsReadAsFarAsItIsOne) {
+    push({"mcap",
+          "damaged.0.mcap",
+          {"\x89MCAP0\r\n", "lz4", "zstd", "cdr", "ros2msg", "sensor_msgs/msg/Image", "nav_msgs/msg/Odometry"},
+          readAndRepair});
+}
+
+}  // namespace
+}  // namespace insonify::fuzz

@@ -1,0 +1,54 @@
+#include "types/DidYouMean.hpp"
+
+#include <algorithm>
+#include <cctype>
+#include <limits>
+
+namespace insonify::types {
+namespace {
+
+std::string lower(std::string_view text) {
+    std::string small(text);
+    std::ranges::transform(small, small.begin(), [](unsigned char c) { return std::tolower(c); });
+    return small;
+}
+
+/** Letters missing, added, changed or swapped with a neighbour (Damerau 1964, restricted to one edit a place). */
+size_t editDistance(std::string_view a, std::string_view b) {
+    std::vector<size_t> two(b.size() + 1), one(b.size() + 1), row(b.size() + 1);
+    for (size_t j = 0; j <= b.size(); ++j) one[j] = j;
+    for (size_t i = 1; i <= a.size(); ++i) {
+        row[0] = i;
+        for (size_t j = 1; j <= b.size(); ++j) {
+            row[j] = std::min({one[j] + 1, row[j - 1] + 1, one[j - 1] + (a[i - 1] != b[j - 1])});
+            if (i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1])
+                row[j] = std::min(row[j], two[j - 2] + 1);
+        }
+        two.swap(one);
+        one.swap(row);
+    }
+    return one.back();
+}
+
+}  // namespace
+
+std::string didYouMean(std::string_view wrong, const std::vector<std::string>& known) {
+    constexpr size_t longest = 200;  // beyond which nobody has mistyped a name
+    if (wrong.size() > longest) return "";
+    const std::string meant = lower(wrong);
+    size_t least = std::numeric_limits<size_t>::max();
+    std::vector<std::string> nearest, holding;
+    for (const std::string& name : known) {
+        const std::string last =
+            lower(name).substr(name.rfind(':') + 1);  // of sonar::SonarTask; all, where there is none
+        const size_t distance = std::min(editDistance(meant, lower(name)), editDistance(meant, last));
+        if (distance < least) nearest = {name};
+        least = std::min(least, distance);
+        if (meant.size() >= 3 && lower(name).find(meant) != std::string::npos) holding.push_back(name);
+    }
+    if (!nearest.empty() && least <= std::max<size_t>(1, wrong.size() / 3))
+        return "did you mean " + nearest.front() + "? ";
+    return holding.size() == 1 ? "did you mean " + holding.front() + "? " : "";
+}
+
+}  // namespace insonify::types
