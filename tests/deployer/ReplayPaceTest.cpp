@@ -10,7 +10,7 @@
 #include "types/Sonar.hpp"
 
 using namespace insonify::deployer;
-namespace log = insonify::log;
+using namespace insonify;
 using testing::HasSubstr;
 using testing::Not;
 

@@ -8,7 +8,7 @@
 #include "tests/deployer/Wall.hpp"
 
 using namespace insonify::deployer;
-namespace log = insonify::log;
+using namespace insonify;
 namespace types = insonify::types;
 using testing::HasSubstr;
 
