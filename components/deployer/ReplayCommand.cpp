@@ -100,8 +100,10 @@ void followLog(Options& options, std::vector<RecordedProperty> changed) {
     const auto live = std::make_shared<LiveSettings>(std::move(changed));
     std::function<void(framework::Deployment&, const framework::Progress&)> step;
     if (options.step)
-        step = [&stop = stopOnSignals()](framework::Deployment& deployment, const framework::Progress&) {
-            fmt::print(stderr, "{}\n", log::readable(deployment.environment().now()));
+        step = [&stop = stopOnSignals()](framework::Deployment& deployment, const framework::Progress& progress) {
+            const std::string now = log::readable(deployment.environment().now());
+            const bool is_date = !now.ends_with(" s");
+            fmt::print(stderr, "{:.6f} s{}\n", progress.elapsed_s, is_date ? ", " + now : "");
             waitForStep(deployment, stop);
         };
     if (!options.step && live->empty()) return;

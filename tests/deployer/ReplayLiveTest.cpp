@@ -121,7 +121,8 @@ TEST_F(ReplayLiveTest, CutAndRepairKeepThePropertiesWithTheirLog) {
         const Outcome outcome = call({"log", command, "out/wall.0.log", "--to", to + "/y.0.log"});
         ASSERT_EQ(outcome.code, 0) << outcome.err;
         EXPECT_THAT(outcome.err, HasSubstr("notice: " + to + "/properties.0.log is kept with it"));
-        EXPECT_EQ(readFile(folder_ / to / "properties.0.log"), readFile(folder_ / "out/properties.0.log"));
+        const auto kept = log::openLog(folder_ / to / "properties.0.log");
+        EXPECT_EQ(kept->samples().size(), log::openLog(folder_ / "out/properties.0.log")->samples().size());
         EXPECT_THAT(score(to + "/y.0.log").err, HasSubstr("as in the log: sonar.range=15\n"));
         expectAllSame(3);
     }
