@@ -40,11 +40,12 @@ std::string textOf(const types::Problems& problems) {
 }  // namespace
 
 TEST_F(PublisherTaskTest, APingBecomesAllMessagesThatItCanBe) {
-    using enum MessageType;
-    Publishing<types::SonarPtr> publishing(
-        {topicOut("in", "/image", ProjectedSonarImage), topicOut("in", "/raw", RawSonarImage),
-         topicOut("in", "/ranges", SonarRanges), topicOut("in", "/points", PointCloud2),
-         topicOut("in", "/scan", LaserScan), topicOut("in", "/clock", Clock)});
+    Publishing<types::SonarPtr> publishing({topicOut("in", "/image", message_type<ros::ProjectedSonarImage>),
+                                            topicOut("in", "/raw", message_type<ros::RawSonarImage>),
+                                            topicOut("in", "/ranges", message_type<ros::SonarRanges>),
+                                            topicOut("in", "/points", message_type<ros::PointCloud2>),
+                                            topicOut("in", "/scan", message_type<ros::LaserScan>),
+                                            topicOut("in", "/clock", message_type<ros::Clock>)});
     const types::SonarPtr ping = pingOf(16, 50);
     const auto send = [&] { publishing.send(ping); };
     const auto image = heard<ros::ProjectedSonarImage>("/image", send);
