@@ -65,9 +65,10 @@ bool canBe(MessageType type) {
 template <class Sample>
 std::string messagesOf() {
     std::string all;
-    constexpr const auto& names = types::EnumNames<MessageType>::names;
-    for (size_t i = 0; i < std::size(names); ++i)
-        if (canBe<Sample>(static_cast<MessageType>(i))) all += (all.empty() ? "" : ", ") + std::string(names[i]);
+    ros::forEachMessageOf<Sample>([&]<class Message>(std::type_identity<Message>) {
+        const auto name = types::EnumNames<MessageType>::names[static_cast<size_t>(message_type<Message>)];
+        all += (all.empty() ? "" : ", ") + std::string(name);
+    });
     return all;
 }
 

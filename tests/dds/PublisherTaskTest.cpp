@@ -152,6 +152,11 @@ TEST_F(PublisherTaskTest, AFrameWithTwoKindsOfAxesIsToldOf) {
     EXPECT_THAT(Publishing<types::SonarPtr>({image, scan}).task.notices(), testing::IsEmpty());
 }
 
+/** What no sample is. */
+struct Unknown {
+    static constexpr const char* type_name = "/unknown";
+};
+
 TEST_F(PublisherTaskTest, PortsAndTypesThatDoNotFitAreToldBeforeItRuns) {
     PublisherTask task("publisher");
     PublisherConfig config;
@@ -159,9 +164,9 @@ TEST_F(PublisherTaskTest, PortsAndTypesThatDoNotFitAreToldBeforeItRuns) {
                      topicOut("none", "/b", message_type<ros::Image>)};
     task.config.set(config);
     test::Writer<types::SonarPtr> sonar;
-    test::Writer<double> number;
+    test::Writer<std::shared_ptr<const Unknown>> unknown;
     EXPECT_THROW(task.makeInput("other", sonar.port), types::ConfigError);
-    EXPECT_THROW(task.makeInput("ping", number.port), types::ConfigError);
+    EXPECT_THROW(task.makeInput("ping", unknown.port), types::ConfigError);
     ASSERT_NE(task.makeInput("ping", sonar.port), nullptr);
     types::Problems problems;
     task.check(problems);
