@@ -15,6 +15,7 @@
 #include "components/deployer/ScoreReport.hpp"
 #include "components/deployer/StopSignal.hpp"
 #include "components/log/Reader.hpp"
+#include "types/Reason.hpp"
 
 namespace insonify::deployer {
 namespace {
