@@ -10,6 +10,7 @@
 #include "components/deployer/Commands.hpp"
 #include "types/ConfigError.hpp"
 #include "types/DidYouMean.hpp"
+#include "types/Reason.hpp"
 
 namespace insonify::deployer {
 namespace {
@@ -61,7 +62,7 @@ int guarded(CLI::App& app, Action& action, int argc, char** argv) {
         for (const types::Diagnostic& diagnostic : error.diagnostics()) fmt::print(stderr, "{}\n", diagnostic.text());
         return wrong;
     } catch (const std::exception& error) {
-        fmt::print(stderr, "insonify: {}\n", error.what());
+        fmt::print(stderr, "insonify: {}\n", types::reasonOf(error));
         return failed;
     }
 }

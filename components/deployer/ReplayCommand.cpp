@@ -72,7 +72,7 @@ void waitForStep(framework::Deployment& deployment, const std::atomic<bool>& sto
             deployment.call(deployment.tasks().front()->name() + ".seek", {line.substr(seek.size())});
             return;
         } catch (const std::exception& error) {
-            fmt::print(stderr, "insonify: {}\n", error.what());
+            fmt::print(stderr, "insonify: {}\n", types::reasonOf(error));
         }
 }
 

@@ -195,6 +195,7 @@ void Deployment::runLockstep(const RunLimits& limits, const std::atomic<bool>& s
         while (callers_ > 0 && !stop) std::this_thread::sleep_for(std::chrono::microseconds(100));
         {
             const auto held = betweenInstants();
+            if (!takeStep()) continue;                // paused meanwhile
             const types::Time due = lockstep.next();  // another, where a log was sought in meanwhile
             if (due >= end) return;
             simulated_us_ = due.microseconds;
@@ -211,7 +212,7 @@ void Deployment::keepPace(double pace, types::Time instant, const std::atomic<bo
     if (pace <= 0) return;
     using Seconds = std::chrono::duration<double>;
     const Seconds due((instant - start_).seconds() / pace);
-    for (Seconds left = due; !stop && left.count() > 0;
+    for (Seconds left = due; !stop && !standsStill() && left.count() > 0;
          left = due - (std::chrono::steady_clock::now() - wall_start_ - stood_still_))
         std::this_thread::sleep_for(std::min(left, Seconds(0.02)));
 }

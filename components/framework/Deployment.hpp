@@ -112,10 +112,13 @@ private:
                      const std::function<void(const Progress&)>& progress);
     void runRealtime(const RunLimits& limits, const std::atomic<bool>& stop,
                      const std::function<void(const Progress&)>& progress);
-    /** Waits until an instant is due at the pace that is wanted. */
+    /** Waits until an instant is due at the pace that is wanted, or time stands still. */
     void keepPace(double pace, types::Time instant, const std::atomic<bool>& stop) const;
     /** Locks memory and sets up the tasks' threads, as far as is permitted. */
     void prepareRealtime();
+    bool standsStill() const { return paused_ && steps_ == 0; }
+    /** Whether an instant may begin; while paused, one of those that were asked for. Between instants. */
+    bool takeStep();
     /** While paused, until a step is asked for. */
     void standStill(const std::atomic<bool>& stop);
     /** What is held while an instant is under way, and by who calls operations in between; empty in realtime. */

@@ -80,6 +80,7 @@ std::unique_lock<std::mutex> Deployment::betweenInstants() {
 void Deployment::pause(bool on) {
     if (!spec_.lockstep)
         throw std::runtime_error("cannot pause: the deployment runs in realtime; in lockstep, time can stand still");
+    const auto held = betweenInstants();
     steps_ = 0;
     paused_ = on;
 }
@@ -89,11 +90,15 @@ void Deployment::step() {
     ++steps_;
 }
 
+bool Deployment::takeStep() {
+    if (standsStill()) return false;
+    if (paused_) --steps_;
+    return true;
+}
+
 void Deployment::standStill(const std::atomic<bool>& stop) {
     const auto since = std::chrono::steady_clock::now();
-    while (paused_ && steps_ == 0 && !stop) std::this_thread::sleep_for(std::chrono::milliseconds(5));
-    for (uint64_t steps = steps_; paused_ && steps > 0 && !steps_.compare_exchange_weak(steps, steps - 1);) {
-    }
+    while (standsStill() && !stop) std::this_thread::sleep_for(std::chrono::milliseconds(5));
     stood_still_ += std::chrono::steady_clock::now() - since;
 }
 

@@ -19,7 +19,8 @@ public:
     /** Calls an operation, "sonar.setRange", with arguments in YAML; gives the result as text. types::ConfigError: no
      *  such task or operation, or arguments that do not fit; a refusal is what the operation throws. */
     virtual std::string call(const std::string& operation, const std::vector<std::string>& arguments) = 0;
-    /** In lockstep: simulated time stands still, or goes on. Throws std::runtime_error in realtime. */
+    /** In lockstep: simulated time stands still once this returns, or goes on. Throws std::runtime_error in realtime.
+     */
     virtual void pause(bool on) = 0;
     /** While it stands still: one instant more. Throws std::runtime_error when it does not stand still. */
     virtual void step() = 0;

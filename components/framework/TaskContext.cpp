@@ -8,6 +8,7 @@
 #include "components/framework/Operation.hpp"
 #include "components/framework/Port.hpp"
 #include "components/framework/Properties.hpp"
+#include "types/Reason.hpp"
 
 namespace insonify::framework {
 namespace {
@@ -16,7 +17,7 @@ std::string textOf(std::exception_ptr thrown) {
     try {
         std::rethrow_exception(thrown);
     } catch (const std::exception& error) {
-        return error.what();
+        return types::reasonOf(error);
     } catch (...) {
         return "an exception that is not a std::exception";
     }

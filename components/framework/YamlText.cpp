@@ -6,6 +6,7 @@
 #include <fstream>
 #include <sstream>
 
+#include "components/framework/YamlDocuments.hpp"
 #include "types/ConfigError.hpp"
 
 namespace insonify::framework {
@@ -102,6 +103,7 @@ std::string yamlFault(const std::string& text, const YAML::Exception& error) {
 std::vector<YAML::Node> parseYaml(const std::string& text, const std::string& file) {
     if (!isText(text)) throw types::ConfigError(file, "", "is not text; must be YAML in UTF-8");
     try {
+        checkDocuments(text);
         return YAML::LoadAll(text);
     } catch (const YAML::DeepRecursion& error) {
         throw types::ConfigError({{file, error.mark.line + 1, error.mark.column + 1, "", "is nested too deeply"}});

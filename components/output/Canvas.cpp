@@ -62,6 +62,7 @@ void Title::add(cv::Mat& canvas) {
 void paintGround(cv::Mat& canvas, const Palette& palette, cv::Point bar) {
     canvas.setTo(background);
     canvas.rowRange(0, FanLayout::title_height).setTo(title_ground);
+    if (!fitsColourBar(canvas.size(), bar)) return;
     for (int row = 0; row < colour_bar_size.height; ++row) {
         const int level = 255 - 255 * row / (colour_bar_size.height - 1);
         canvas(cv::Rect(bar.x, bar.y + row, colour_bar_size.width, 1))

@@ -24,7 +24,8 @@ private:
     int column_ = 0;
 };
 
-/** Paints the ground of title and picture, and the bar of all colours with its upper left corner at `bar`. */
+/** Paints the ground of title and picture, and the bar of all colours with its upper left corner at `bar`, where there
+ * is room for it. */
 void paintGround(cv::Mat& canvas, const Palette& palette, cv::Point bar);
 
 /** A picture and a line of text to go below it. */

@@ -119,7 +119,13 @@ Overlay fanOverlay(const FanLayout& layout) {
     return overlay;
 }
 
+bool fitsColourBar(cv::Size picture, cv::Point at) {
+    const cv::Rect bar(at, colour_bar_size);
+    return (bar & cv::Rect({}, picture)) == bar;
+}
+
 void addColourBar(Overlay& overlay, cv::Point at, double dynamic_range_db) {
+    if (!fitsColourBar(overlay.size(), at)) return;
     const double step = roundStep(dynamic_range_db / 4.5);
     for (double below = 0; below < dynamic_range_db * (1 + 1e-9); below += step) {
         const double y = at.y + below / dynamic_range_db * (colour_bar_size.height - 1);

@@ -21,6 +21,7 @@ public:
     /** To be called once everything is drawn. */
     void finish();
     void blend(cv::Mat& picture) const;
+    cv::Size size() const { return cover_.size(); }
 
 private:
     struct Touch {
@@ -34,9 +35,13 @@ private:
 /** Range rings labelled in metres and spokes labelled in degrees, positive to port. */
 Overlay fanOverlay(const FanLayout& layout);
 
-/** A bar of all colours with levels relative to the brightest, at `at` (its upper left corner). */
-void addColourBar(Overlay& overlay, cv::Point at, double dynamic_range_db);
 inline const cv::Size colour_bar_size{12, 128};
+
+/** Whether a picture of this size has room for the bar of all colours with its upper left corner at `at`. */
+bool fitsColourBar(cv::Size picture, cv::Point at);
+
+/** The levels of the bar of all colours at `at`, relative to the brightest; nothing where the bar does not fit. */
+void addColourBar(Overlay& overlay, cv::Point at, double dynamic_range_db);
 
 /** A round step (1, 2 or 5 times a power of ten) not below `least`. */
 double roundStep(double least);

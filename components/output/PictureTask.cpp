@@ -1,6 +1,9 @@
 #include "components/output/PictureTask.hpp"
 
+#include <fmt/format.h>
+
 #include <chrono>
+#include <stdexcept>
 
 namespace insonify::output {
 
@@ -32,11 +35,19 @@ void PictureTask::take(const types::Sonar& sample) {
 void PictureTask::show(const types::Sonar& sample) {
     const auto begin = std::chrono::steady_clock::now();
     const auto picture = pool_.take();
-    painter_->paint(sample, *picture);
+    paint(sample, *picture);
     recordStage("paint", std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count());
     pool_.stock(*picture);
     image.write(picture);
     if (writer_) writer_->write(picture);
+}
+
+void PictureTask::paint(const types::Sonar& sample, types::Image& picture) try {
+    painter_->paint(sample, picture);
+} catch (const cv::Exception& failure) {
+    throw std::runtime_error(fmt::format(
+        "cannot draw {} beams x {} bins to {:g} m in a picture {} pixels wide; try another `width` (OpenCV: {})",
+        sample.beam_count, sample.bin_count, sample.binStart(sample.bin_count), pictureConfig().width, failure.err));
 }
 
 void PictureTask::stopHook() {

@@ -41,6 +41,7 @@ private:
     virtual const PictureConfig& pictureConfig() const = 0;
     virtual std::unique_ptr<Painter> makePainter() = 0;
     void show(const types::Sonar& sample);
+    void paint(const types::Sonar& sample, types::Image& picture);
 
     std::unique_ptr<Painter> painter_;
     std::unique_ptr<PictureWriter> writer_;

@@ -26,9 +26,9 @@ bool isTaken(int file) { return flock(file, LOCK_EX | LOCK_NB) != 0 && errno == 
 OutputFile::OutputFile(std::filesystem::path path) : path_(std::move(path)) {
     file_ = ::open(path_.c_str(), O_WRONLY | O_CREAT | O_CLOEXEC, 0644);
     if (file_ < 0) throw types::ConfigError(path_, "", "the log cannot be written: " + reason(errno));
-    const bool taken = isTaken(file_);
     struct stat status {};
     const bool is_file = fstat(file_, &status) == 0 && S_ISREG(status.st_mode);
+    const bool taken = is_file && isTaken(file_);  // a device, as /dev/null, is there for everyone
     if (taken || (is_file && ftruncate(file_, 0) != 0)) {
         const std::string why = taken ? "another logger writes it" : reason(errno);
         ::close(std::exchange(file_, -1));

@@ -8,6 +8,7 @@
 #include <string_view>
 
 #include "types/ConfigError.hpp"
+#include "types/Reason.hpp"
 
 namespace insonify::scene {
 namespace {
@@ -152,14 +153,16 @@ bool parse(GltfFile& gltf, const std::string& bytes, std::string folder, std::st
                                              reinterpret_cast<const unsigned char*>(bytes.data()), size, folder)
                : loader.LoadASCIIFromString(&gltf.model, &errors, &warnings, bytes.data(), size, folder);
 } catch (const std::exception& failure) {
-    errors += failure.what();
+    errors += types::reasonOf(failure);
     return false;
 }
 
-/** First line of tinygltf's errors, which may be silent about what it refuses. */
+/** First line of tinygltf's errors, which may be silent about what it refuses; without the kind of exception that its
+ *  parser of JSON puts before them. */
 std::string reason(const std::string& errors) {
-    const size_t begin = errors.find_first_not_of(" \n");
+    size_t begin = errors.find_first_not_of(" \n");
     if (begin == std::string::npos) return "a required property is missing or of the wrong type";
+    if (errors.compare(begin, 6, "[json.") == 0) begin = std::min(errors.find("] ", begin), errors.size() - 2) + 2;
     return errors.substr(begin, errors.find('\n', begin) - begin);
 }
 

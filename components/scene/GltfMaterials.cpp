@@ -8,6 +8,7 @@
 #include <memory>
 
 #include "components/scene/Acoustics.hpp"
+#include "components/scene/PictureFormat.hpp"
 #include "types/ConfigError.hpp"
 
 namespace insonify::scene {
@@ -48,7 +49,8 @@ types::NormalMap decode(std::pair<const uint8_t*, const uint8_t*> bytes) {
     const auto size = static_cast<int>(end - begin);
     types::NormalMap map;
     int channels = 0;
-    if (!stbi_info_from_memory(begin, size, &map.width, &map.height, &channels))
+    const bool is_known = isPngOrJpeg({reinterpret_cast<const char*>(begin), static_cast<size_t>(size)});
+    if (!is_known || !stbi_info_from_memory(begin, size, &map.width, &map.height, &channels))
         throw std::runtime_error("its image is neither PNG nor JPEG");
     if (map.width > kMaxImageSide || map.height > kMaxImageSide)
         throw std::runtime_error(fmt::format("its image has {} x {} pixels; may have up to {} a side", map.width,

@@ -11,7 +11,9 @@
 #include <sdf/World.hh>
 #include <set>
 
+#include "components/scene/SdfIncludes.hpp"
 #include "types/ConfigError.hpp"
+#include "types/Reason.hpp"
 
 namespace insonify::scene {
 namespace {
@@ -21,48 +23,6 @@ using Faults = std::vector<types::Diagnostic>;
 std::string textOf(const std::filesystem::path& file) {
     std::ifstream stream(file, std::ios::binary);
     return {std::istreambuf_iterator<char>(stream), {}};
-}
-
-std::string withoutComments(std::string xml) {
-    for (size_t begin = 0; (begin = xml.find("<!--", begin)) != std::string::npos;)
-        xml.erase(begin, std::max(xml.find("-->", begin), begin + 4) - begin);
-    return xml;
-}
-
-/** The uris of a file's includes. */
-std::vector<std::string> includesOf(const std::filesystem::path& file) {
-    const std::string xml = withoutComments(textOf(file));
-    std::vector<std::string> uris;
-    for (size_t at = 0; (at = xml.find("<include", at)) != std::string::npos; ++at) {
-        const size_t begin = xml.find("<uri>", at), end = xml.find("</uri>", at);
-        if (end < xml.find("</include", at) && begin < end) uris.push_back(xml.substr(begin + 5, end - begin - 5));
-    }
-    return uris;
-}
-
-/** Follows the includes of the last of `open` files: libsdformat would follow a circle until its stack ends. */
-void refuseCircles(std::vector<std::filesystem::path>& open, std::set<std::filesystem::path>& done,
-                   const SdfPaths& paths) {
-    const std::filesystem::path file = open.back();
-    if (!done.insert(file).second) return;
-    for (const std::string& uri : includesOf(file)) {
-        const auto found = paths.find(uri, file);
-        std::vector<std::filesystem::path> files;
-        if (found && std::filesystem::is_regular_file(*found)) files = {*found};
-        if (found && std::filesystem::is_directory(*found))
-            for (const auto& entry : std::filesystem::directory_iterator(*found))
-                if (entry.path().extension() == ".sdf") files.push_back(entry.path());
-        for (const std::filesystem::path& included : files) {
-            open.push_back(std::filesystem::canonical(included));
-            if (std::ranges::count(open, open.back()) > 1)
-                throw types::ConfigError(file.string(), "include",
-                                         fmt::format("{} comes back to {}; a model may not "
-                                                     "include itself",
-                                                     uri, open.back().string()));
-            refuseCircles(open, done, paths);
-            open.pop_back();
-        }
-    }
 }
 
 /** Puts our search into libsdformat's global configuration, the only one that nested includes see. */
@@ -107,9 +67,9 @@ std::string load(sdf::Root& root, const std::filesystem::path& file, const std::
     } catch (const sdf::Exception& failure) {
         return joined(failure.GetErrorStr());
     } catch (const std::exception& failure) {
-        return failure.what();
+        return types::reasonOf(failure);
     } catch (...) {
-        return "an exception without a text";
+        return "no reason is given";
     }
 }
 
@@ -120,6 +80,26 @@ std::string withoutColons(const std::filesystem::path& file) {
     if (at == std::string::npos) return "";
     for (; at != std::string::npos; at = text.find("::", at)) text.replace(at, 2, "__");
     return text;
+}
+
+/** "Error parsing XML in file [...]: Error=XML_ERROR_PARSING_TEXT ... XMLElement name=pose" in plain words. */
+std::string plain(const std::string& message) {
+    if (!message.starts_with("Error parsing XML")) return message;
+    const auto wordAfter = [&message](const std::string& key) {
+        const size_t at = message.find(key);
+        if (at == std::string::npos) return std::string();
+        return message.substr(at + key.size(), message.find_first_of(" \n", at + key.size()) - at - key.size());
+    };
+    const std::string error = wordAfter("Error=XML_ERROR_"), element = wordAfter("XMLElement name=");
+    std::string what = "something in it is neither an element nor text";
+    if (error == "EMPTY_DOCUMENT") what = "it is empty";
+    if (error == "MISMATCHED_ELEMENT") what = "an element is not closed, or by another's tag";
+    if (error == "PARSING_ELEMENT") what = "a tag is not finished";
+    if (error == "PARSING_ATTRIBUTE") what = "an attribute is not of the form name=\"value\"";
+    if (error == "PARSING_TEXT") what = "a text is not followed by a tag";
+    if (error == "PARSING_COMMENT") what = "a comment is not closed";
+    if (error == "ELEMENT_DEPTH_EXCEEDED") what = "its elements are nested too deep";
+    return "is no XML: " + what + (element.empty() ? "" : " (<" + element + ">)");
 }
 
 std::string withoutColours(std::string line) {
@@ -151,7 +131,8 @@ types::Diagnostic readLine(const std::string& line) {
 }
 
 /** Adds a fault that says more than those that are known: not the same again, nor that of an element around. */
-void add(const types::Diagnostic& fault, Faults& faults) {
+void add(types::Diagnostic fault, Faults& faults) {
+    fault.message = plain(fault.message);
     const auto says = [&fault](const char* text) { return fault.message.starts_with(text); };
     const auto tellsAll = [&](const types::Diagnostic& known) {
         const bool is_same_place = !fault.path.empty() && known.path == fault.path && known.line == fault.line;
@@ -212,9 +193,7 @@ sdf::Root readSdfFile(const std::filesystem::path& file, const SdfPaths& paths, 
                       std::vector<std::string>& notices) {
     if (!std::filesystem::is_regular_file(file))
         throw types::ConfigError(file.string(), "", "is not a file; give the path of a .world or .sdf file");
-    std::vector<std::filesystem::path> open = {std::filesystem::canonical(file)};
-    std::set<std::filesystem::path> done;
-    refuseCircles(open, done, paths);
+    checkIncludes(file, paths);
     std::set<std::string> unreadable;
     std::string renamed;
     Faults faults;
@@ -224,7 +203,7 @@ sdf::Root readSdfFile(const std::filesystem::path& file, const SdfPaths& paths, 
         sdf::Root root;
         sdf::Errors errors;
         const std::string failure = load(root, file, renamed, errors);
-        if (!failure.empty()) add({"", 0, 0, "", "libsdformat gives up: " + failure}, faults);
+        if (!failure.empty()) add({"", 0, 0, "", "cannot be read as SDF: " + failure}, faults);
         add(console.take(), errors, faults);
         findUnreadable(faults, unreadable);
         if (failure.empty() && (root.WorldCount() > 0 || root.Model())) {

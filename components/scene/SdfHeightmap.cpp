@@ -3,8 +3,12 @@
 #include <fmt/format.h>
 #include <stb_image.h>
 
+#include <fstream>
 #include <memory>
 #include <stdexcept>
+#include <string>
+
+#include "components/scene/PictureFormat.hpp"
 
 namespace insonify::scene {
 namespace {
@@ -20,11 +24,18 @@ std::vector<int> cornersOf(int pixels) {
     return corners;
 }
 
+bool isRead(const std::filesystem::path& file) {
+    std::string begin(picture_mark_size, '\0');
+    std::ifstream(file, std::ios::binary).read(begin.data(), picture_mark_size);
+    return isPngOrJpeg(begin) || begin.starts_with("P5");
+}
+
 }  // namespace
 
 Surface readHeightmap(const std::filesystem::path& file, glm::dvec3 size) {
     int width = 0, height = 0, channels = 0;
-    if (!stbi_info(file.c_str(), &width, &height, &channels)) throw std::runtime_error("is neither PNG nor JPEG");
+    if (!isRead(file) || !stbi_info(file.c_str(), &width, &height, &channels))
+        throw std::runtime_error("is neither PNG nor JPEG nor PGM");
     if (width < 2 || height < 2 || width > kMaxPictureSide || height > kMaxPictureSide)
         throw std::runtime_error(
             fmt::format("has {} x {} pixels; may have 2 to {} a side", width, height, kMaxPictureSide));

@@ -31,15 +31,24 @@ int SdfMeshes::add(Surface surface, const std::string& name, const Look& look) {
 
 const std::vector<Placing>& SdfMeshes::file(const std::filesystem::path& path, const std::string& submesh,
                                             const Look& look) {
-    types::GeometryPtr& read = files_[path.string()];
-    if (!read) {
-        read = readMeshFile(path);
-        for (const std::string& notice : read->notices)
-            geometry_.notices.push_back(fmt::format("{}: {}", path.string(), notice));
-    }
+    const types::GeometryPtr& read = readOnce(path);
     const auto [known, is_new] = placings_.try_emplace({path.string(), submesh, look});
     if (is_new) known->second = merge(*read, submesh, look);
     return known->second;
+}
+
+const types::GeometryPtr& SdfMeshes::readOnce(const std::filesystem::path& path) {
+    const auto [known, is_new] = files_.try_emplace(path.string());
+    FileRead& read = known->second;
+    if (is_new) try {
+            read.geometry = readMeshFile(path);
+            for (const std::string& notice : read.geometry->notices)
+                geometry_.notices.push_back(fmt::format("{}: {}", path.string(), notice));
+        } catch (const types::ConfigError& failure) {
+            read.failure = failure;
+        }
+    if (read.failure) throw types::ConfigError(*read.failure);
+    return read.geometry;
 }
 
 std::vector<Placing> SdfMeshes::merge(const types::Geometry& from, const std::string& submesh, const Look& look) {

@@ -2,12 +2,14 @@
 #include <compare>
 #include <filesystem>
 #include <map>
+#include <optional>
 #include <string>
 #include <tuple>
 #include <vector>
 
 #include "components/scene/Acoustics.hpp"
 #include "components/scene/Surface.hpp"
+#include "types/ConfigError.hpp"
 #include "types/Geometry.hpp"
 
 namespace insonify::scene {
@@ -45,6 +47,13 @@ public:
     std::vector<Placing> centred(std::vector<Placing> placings) const;
 
 private:
+    /** What a mesh file gave: one that cannot be read is not tried again for each visual. */
+    struct FileRead {
+        types::GeometryPtr geometry;
+        std::optional<types::ConfigError> failure;
+    };
+
+    const types::GeometryPtr& readOnce(const std::filesystem::path& path);
     int add(Surface surface, const std::string& name, const Look& look);
     int material(types::Material material, const Look& look);
     std::vector<Placing> merge(const types::Geometry& from, const std::string& submesh, const Look& look);
@@ -53,7 +62,7 @@ private:
     types::Geometry& geometry_;
     std::map<Look, int> materials_;  ///< Of shapes.
     std::map<std::pair<std::string, Look>, int> shapes_;
-    std::map<std::string, types::GeometryPtr> files_;
+    std::map<std::string, FileRead> files_;
     std::map<std::tuple<std::string, std::string, Look>, std::vector<Placing>> placings_;
 };
 

@@ -9,7 +9,7 @@
 
 #include "components/sonar/Acoustics.hpp"
 #include "components/sonar/BinLevels.hpp"
-#include "components/sonar/Culler.hpp"
+#include "components/sonar/ObjectPlaces.hpp"
 #include "components/sonar/SurfaceScene.hpp"
 #include "components/sonar/ThreadPool.hpp"
 #include "components/sonar/TileDeposit.hpp"
@@ -76,7 +76,7 @@ private:
     EchoRules rules_;
     CastView view_;
     BinLevels levels_;
-    Culler culler_;
+    ObjectPlaces places_;
     RayVisibility visibility_;
     std::vector<PlaneRecord> planes_;
     NormalMapping normal_maps_;
@@ -95,7 +95,7 @@ CastEchoes::CastEchoes(const RenderPlan& plan, types::GeometryPtr geometry)
       geometry_(std::move(geometry)),
       rules_(makeEchoRules(plan, *geometry_)),
       levels_(plan.config, plan.grid),
-      culler_(*geometry_, {0, rules_.bins.range_max, true}),
+      places_(*geometry_, reachOf(plan), true),
       visibility_(*geometry_),
       planes_(planesOf(*geometry_)),
       normal_maps_(*geometry_),
@@ -135,7 +135,7 @@ void CastEchoes::shareOut() {
 }
 
 void CastEchoes::place(const types::Snapshot& snapshot) {
-    culler_.place(snapshot);
+    places_.place(snapshot);
     visibility_.place(snapshot);
     runs_.clear();
     for (const CommandRecord& command : visibility_.commands()) {
@@ -143,7 +143,7 @@ void CastEchoes::place(const types::Snapshot& snapshot) {
         const double strength = rules_.features.has(Feature::Cerqueira2017)
                                     ? static_cast<double>(material.reflectivity)
                                     : static_cast<double>(std::pow(10.0f, material.lambert_db / 10));
-        runs_.push_back(placedRun(culler_.records()[command.object], strength * rules_.strength_scale,
+        runs_.push_back(placedRun(places_.records()[command.object], strength * rules_.strength_scale,
                                   command.first_triangle, 1, 0));
     }
 }
@@ -197,7 +197,7 @@ void CastEchoes::workOn(const Part& part, Worker& worker, types::Sonar& ping) {
     const std::span<const CastTile> tiles = cast(part, worker);
     worker.lap(DrawStage);
     std::fill(worker.sums.begin(), worker.sums.end(), 0);
-    deposit(rules_, view_, {visibility_.commands(), runs_, culler_.records(), planes_, normal_maps_}, tiles,
+    deposit(rules_, view_, {visibility_.commands(), runs_, places_.records(), planes_, normal_maps_}, tiles,
             part.first_beam, worker.sums.data());
     worker.lap(DepositStage);
     const auto count = static_cast<size_t>(rules_.bins.bin_count);

@@ -6,15 +6,15 @@
 #include <vector>
 
 #include "components/sonar/BeamFan.hpp"
-#include "components/sonar/Interface.hpp"
-#include "types/Snapshot.hpp"
+#include "components/sonar/ObjectPlaces.hpp"
 
 namespace insonify::sonar {
 
 /** What may be left out of a picture. */
 struct CullRules {
-    double range_min, range_max;  ///< Slant ranges that are drawn [m].
-    bool draw_all = false;        ///< Nothing is culled.
+    double range_min;       ///< Slant range from which on is drawn [m].
+    Reach reach;            ///< Beyond it nothing is.
+    bool draw_all = false;  ///< Nothing is culled.
 };
 
 /** Chooses what of a scene is drawn: objects, and clusters of triangles in them, whose boxes reach a slab's view within
@@ -33,16 +33,14 @@ public:
     Culler(const types::Geometry& geometry, const CullRules& rules);
 
     /** Places all objects relative to the sonar; once a ping, before `visible`. */
-    void place(const types::Snapshot& snapshot);
+    void place(const types::Snapshot& snapshot) { places_.place(snapshot); }
     /** Runs that a slab may see, neighbours joined. */
     void visible(const Slab& slab, std::vector<Run>& runs) const;
-    const std::vector<ObjectRecord>& records() const { return records_; }
+    const std::vector<ObjectRecord>& records() const { return places_.records(); }
     size_t runLimit() const { return run_limit_; }  ///< Of what `visible` gives.
 
 private:
     using View = std::array<glm::vec3, 5>;
-    vec4 extent(size_t index, const glm::dmat4& sonar_from_object) const;
-    void placeObject(size_t index, const glm::dmat4& sonar_from_object);
     /** What is asked of the parts of an object. */
     struct Query {
         size_t object;
@@ -59,14 +57,8 @@ private:
 
     const types::Geometry& geometry_;
     CullRules rules_;
+    ObjectPlaces places_;
     float range_max_;
-    struct Box {
-        glm::dvec3 low{0}, high{0};
-    };
-    std::vector<Box> mesh_boxes_;  ///< In mesh coordinates.
-    std::vector<glm::dmat4> world_from_object_;
-    std::vector<ObjectRecord> records_;
-    std::vector<bool> far_;  ///< Out of range: their records are not of this ping.
     size_t run_limit_ = 0;
 };
 

@@ -120,7 +120,7 @@ void aim(const SlabPart& part, int row, int first, int count, Pixels& pixels) {
     }
 }
 
-INSONIFY_VECTORISED void meet(Pixels& pixels, int count) {
+INSONIFY_VECTOR_CLONES void meet(Pixels& pixels, int count) {
     for (int i = 0; i < count; ++i) {
         const Surface surface = surfaceAt(pixels.normal_x[i], pixels.normal_y[i], pixels.normal_z[i],
                                           pixels.distance[i], pixels.ray_u[i], pixels.ray_v[i]);
@@ -138,7 +138,7 @@ struct Reach {
     double v, dv, near_edge, far_edge, per_pixel;
 };
 
-INSONIFY_VECTORISED void cover(const Shared& shared, int count, const Reach& reach, Cells& __restrict cells) {
+INSONIFY_VECTOR_CLONES void cover(const Shared& shared, int count, const Reach& reach, Cells& __restrict cells) {
     for (int i = 0; i < count; ++i)
         cells.set(i, cellFootprint(shared.u[i], reach.v, shared.middle[i], shared.width[i], shared.limit[i],
                                    shared.shear[i], reach.dv, shared.inverse_range[i], shared.slope_u[i],
@@ -221,7 +221,7 @@ PlacedRun placedRun(const ObjectRecord& object, double strength, uint32_t first_
     return run;
 }
 
-INSONIFY_VECTORISED __attribute__((flatten)) void deposit(const SlabPart& part, uint64_t* sums) {
+INSONIFY_VECTOR_CLONES __attribute__((flatten)) void deposit(const SlabPart& part, uint64_t* sums) {
     withParts(part.rules.features, [&]<class Deposit>() { Deposit(part, sums).run(); });
 }
 

@@ -24,10 +24,6 @@ double nearPlane(const Slab& slab) {
     return nearest_drawn / corner;
 }
 
-CullRules cullRules(const SonarConfig& config, const BinGrid& bins) {
-    return {nearest_drawn, bins.range_max, config.draw_all};
-}
-
 DepositSetup depositSetup(const RenderPlan& plan, const types::Geometry& geometry) {
     DepositSetup setup;
     setup.rules = makeEchoRules(plan, geometry);
@@ -76,7 +72,7 @@ DrawnEchoes::DrawnEchoes(const RenderPlan& plan, types::GeometryPtr geometry)
       context_(plan.config.device),
       device_(fmt::format("{}, OpenGL {}", context_.renderer(), context_.driver())),
       levels_(plan.config, plan.grid),
-      culler_(*geometry_, cullRules(plan.config, plan.grid)),
+      culler_(*geometry_, {nearest_drawn, reachOf(plan), plan.config.draw_all}),
       threads_(plan.config.threads),
       surface_(context_,
                {*geometry_, plan.slabs, plan.features.defines(), nearPlane(plan.slabs.front()), culler_.runLimit(),

@@ -9,14 +9,7 @@
 
 #include "components/sonar/EchoRules.hpp"
 #include "components/sonar/Interface.hpp"
-
-// The arithmetic of many cells is done in plain loops over arrays, which the compiler turns into vector instructions;
-// once for each kind of processor. No products are fused: all give the same bits.
-#if defined(__x86_64__) && !defined(__SANITIZE_ADDRESS__)
-#define INSONIFY_VECTORISED __attribute__((target_clones("avx512f", "avx2", "default")))
-#else
-#define INSONIFY_VECTORISED
-#endif
+#include "types/VectorMath.hpp"
 
 namespace insonify::sonar {
 namespace {

@@ -37,8 +37,8 @@ struct Covered {
 
 /** The trapezoid of inverse ranges that a cell covers of a plane n.p = D: n.d / D is linear in azimuth and elevation
  * but for the curvature of sine and cosine. Closer to edge-on than 1e-4 rad there is no echo, but still a shadow. */
-INSONIFY_VECTORISED void cover(const Cells& cells, int count, double near_edge, double far_edge,
-                               Covered& __restrict covered) {
+INSONIFY_VECTOR_CLONES void cover(const Cells& cells, int count, double near_edge, double far_edge,
+                                  Covered& __restrict covered) {
     for (int i = 0; i < count; ++i) {
         const double n_x = cells.normal_x[i], n_y = cells.normal_y[i], n_z = cells.normal_z[i];
         const double normal = sqrt(n_x * n_x + n_y * n_y + n_z * n_z), distance = cells.distance[i];
@@ -216,9 +216,9 @@ void withCells(const Features& features, const Use& use) {
 
 }  // namespace
 
-INSONIFY_VECTORISED __attribute__((flatten)) void deposit(const EchoRules& rules, const CastView& view,
-                                                          const PlacedScene& scene, std::span<const CastTile> tiles,
-                                                          int first_beam, uint64_t* sums) {
+INSONIFY_VECTOR_CLONES __attribute__((flatten)) void deposit(const EchoRules& rules, const CastView& view,
+                                                             const PlacedScene& scene, std::span<const CastTile> tiles,
+                                                             int first_beam, uint64_t* sums) {
     withCells(rules.features, [&]<class Deposit>() {
         Deposit cells(rules, view, scene, first_beam, sums);
         for (const CastTile& tile : tiles) cells.add(tile);

@@ -32,7 +32,7 @@ TEST_F(AllocationTest, NothingIsAllocatedAfterTheFirstPings) {
                 while (reader->take(bytes, sender)) ++taken;
         }
     };
-    ASSERT_TRUE(becomes([&] { return sendAll(1), taken > 12; }));
+    ASSERT_TRUE(comesTrue([&] { return sendAll(1), taken > 12; }));
     EXPECT_THAT(test::allocationsOn(publishing.task, [&] { sendAll(50); }), testing::IsEmpty());
     EXPECT_GE(taken, 150u);
 }

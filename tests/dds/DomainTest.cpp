@@ -63,15 +63,15 @@ TEST_F(DomainTest, ADomainThatCannotBeJoinedIsOneErrorThatTellsWhy) {
            "<CycloneDDS><Domain><General><Interfaces><NetworkInterface name=\"nothere0\"/></Interfaces></General>"
            "</Domain></CycloneDDS>",
            1);
-    const std::string text = errorOf([] { joinDomain(23, ""); });
-    EXPECT_THAT(text, HasSubstr("DDS domain 23 cannot be joined"));
+    const std::string text = errorOf([] { joinDomain(domainId({}), ""); });
+    EXPECT_THAT(text, HasSubstr("DDS domain " + std::to_string(domainId({})) + " cannot be joined"));
     EXPECT_THAT(text, HasSubstr("nothere0"));
     setenv("CYCLONEDDS_URI", "<CycloneDDS><Domain><Nonsense/></Domain></CycloneDDS>", 1);
-    EXPECT_THAT(errorOf([] { joinDomain(23, ""); }), HasSubstr("Nonsense"));
+    EXPECT_THAT(errorOf([] { joinDomain(domainId({}), ""); }), HasSubstr("Nonsense"));
 }
 
 TEST_F(DomainTest, ADomainCanBeLeftAndJoinedAgain) {
-    for (int i = 0; i < 3; ++i) EXPECT_GT(joinDomain(24, "").handle(), 0);
+    for (int i = 0; i < 3; ++i) EXPECT_GT(joinDomain(domainId({}), "").handle(), 0);
 }
 
 TEST_F(DomainTest, ANodeIsAnnouncedWithIdentifiersOfSixteenOrTwentyFourBytes) {
@@ -84,7 +84,7 @@ TEST_F(DomainTest, ANodeIsAnnouncedWithIdentifiersOfSixteenOrTwentyFourBytes) {
     humble.announce();
     Bytes bytes;
     uint64_t sender = 0;
-    ASSERT_TRUE(becomes([&] { return reader.take(bytes, sender); }));
+    ASSERT_TRUE(comesTrue([&] { return reader.take(bytes, sender); }));
     Info info;
     ros::decode(std::span<const char>(bytes), info);
     ASSERT_EQ(info.node_entities_info_seq.size(), 1u);

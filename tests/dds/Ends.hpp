@@ -43,9 +43,10 @@ struct Publishing {
 };
 
 /** A subscriber with one port, which the test reads; works by itself once released. */
-struct Subscribing {
-    explicit Subscribing(const std::string& topic, PoseType type = PoseType::Odometry,
-                         const std::function<void(SubscriberConfig&)>& change = {}) {
+template <class Task>
+struct SubscribingBy {
+    explicit SubscribingBy(const std::string& topic, PoseType type = PoseType::Odometry,
+                           const std::function<void(SubscriberConfig&)>& change = {}) {
         SubscriberConfig config;
         config.topics.resize(1);
         config.topics[0].topic = topic;
@@ -59,17 +60,25 @@ struct Subscribing {
         EXPECT_TRUE(task.start());
         task.activity().release();
     }
-    ~Subscribing() { task.activity().hold(); }
-    /** The next pose, or none within 10 s. */
+    ~SubscribingBy() { task.activity().hold(); }
+    /** The next pose, waited for. */
     std::optional<types::Pose> next() {
         types::Pose pose;
-        if (!becomes([&] { return reader.port.readNew(pose); })) return std::nullopt;
+        if (!comesTrue([&] { return reader.port.readNew(pose); })) return std::nullopt;
+        return pose;
+    }
+    /** The first pose of a peer after its greetings, which lie at the origin. */
+    std::optional<types::Pose> firstOf(const Peer& peer) {
+        auto pose = next();
+        if (pose) peer.begin();
+        while (pose && pose->position == glm::dvec3(0)) pose = next();
         return pose;
     }
 
     test::Reader<types::Pose> reader;
-    SubscriberTask task{"subscriber"};
+    Task task{"subscriber"};
 };
+using Subscribing = SubscribingBy<SubscriberTask>;
 
 /** A fan of noise, stamped now. */
 inline types::SonarPtr pingOf(uint32_t beams, uint32_t bins) {
@@ -82,6 +91,13 @@ inline types::SonarPtr pingOf(uint32_t beams, uint32_t bins) {
     ping->beam_height = types::Angle{0.3};
     ping->setRegularBearings(types::Angle{-0.5}, types::Angle{1.0 / beams});
     for (size_t i = 0; i < ping->bins.size(); ++i) ping->bins[i] = static_cast<float>(1 + i % 97) / 97.0f;
+    return ping;
+}
+
+/** What a peer that listens answers with "met", and does not count: it has no stamp. */
+inline types::SonarPtr greeting() {
+    auto ping = std::make_shared<types::Sonar>(*pingOf(4, 4));
+    ping->time = {};
     return ping;
 }
 

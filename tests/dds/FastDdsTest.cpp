@@ -27,10 +27,10 @@ protected:
 }  // namespace
 
 TEST_F(FastDdsTest, HearsEveryPingOf128KilobytesAtFortyHertz) {
-    Publishing<types::SonarPtr> publishing({topicOut("in", "/auv/sonar", MessageType::ProjectedSonarImage)});
-    Peer peer({program, "listen", "marine_acoustic_msgs::msg::dds_::ProjectedSonarImage_", "/auv/sonar", "60", "200"});
-    ASSERT_TRUE(peer.ready());
-    std::this_thread::sleep_for(std::chrono::seconds(1));  // until we know it as well
+    Publishing<types::SonarPtr> publishing({topicOut("in", "/auv/sonar", MessageType::ProjectedSonarImage)},
+                                           [](PublisherConfig& config) { config.depth = 200; });  // a busy machine
+    Peer peer({program, "listen", "marine_acoustic_msgs::msg::dds_::ProjectedSonarImage_", "/auv/sonar", "240", "200"});
+    ASSERT_TRUE(peer.meets([&] { publishing.send(greeting()); }));
     const types::SonarPtr ping = pingOf(256, 500);
     for (int i = 0; i < 200; ++i) {
         publishing.send(ping);
@@ -45,21 +45,23 @@ TEST_F(FastDdsTest, HearsEveryPingOf128KilobytesAtFortyHertz) {
 TEST_F(FastDdsTest, SendsPosesOfWhichNoneIsLost) {
     ros::Odometry message;
     message.header = {ros::toRos(framework::wallClock()), "map"};
-    message.pose.pose.position = {1, 2, 3};
-    Bytes bytes;
-    ros::encode(message, bytes);
     const deployer::TestFolder folder;
-    std::ofstream(folder / "odometry.cdr", std::ios::binary).write(bytes.data(), std::ssize(bytes));
+    const auto write = [&](const char* file, const ros::Point& place) {
+        message.pose.pose.position = place;
+        Bytes bytes;
+        ros::encode(message, bytes);
+        std::ofstream(folder / file, std::ios::binary).write(bytes.data(), std::ssize(bytes));
+        return (folder / file).string();
+    };
+    const std::string greeting = write("greeting.cdr", {0, 0, 0}), odometry = write("odometry.cdr", {1, 2, 3});
     Subscribing subscribing("/auv/odometry", PoseType::Odometry, [](SubscriberConfig& config) {
         config.reliability = Reliability::Reliable;
-        config.depth = 100;
+        config.depth = 200;
         config.topics[0].stamp = StampFrom::Arrival;
     });
-    Peer peer({program, "send", "nav_msgs::msg::dds_::Odometry_", "/auv/odometry", (folder / "odometry.cdr").string(),
-               "100"});
-    ASSERT_TRUE(peer.ready());
+    Peer peer({program, "send", "nav_msgs::msg::dds_::Odometry_", "/auv/odometry", greeting, odometry, "100"});
     for (int i = 0; i < 100; ++i) {
-        const auto pose = subscribing.next();
+        const auto pose = i == 0 ? subscribing.firstOf(peer) : subscribing.next();
         ASSERT_TRUE(pose) << i;
         EXPECT_EQ(pose->position, glm::dvec3(2, -1, 3));  // of east, north, up
     }

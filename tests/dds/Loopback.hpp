@@ -2,32 +2,56 @@
 // A DDS domain of the test's own on the loopback interface, and other peers on it.
 #include <gtest/gtest.h>
 #include <signal.h>
+#include <sys/socket.h>
+#include <sys/un.h>
+#include <unistd.h>
 
-#include <chrono>
+#include <cstddef>
 #include <cstdlib>
 #include <optional>
 #include <random>
 #include <string>
-#include <thread>
 
 #include "tests/deployer/Command.hpp"
 #include "tests/support/Python.hpp"
+#include "tests/support/Waiting.hpp"
 
 namespace insonify::dds {
 
-/** Waits until it holds, 10 s at most. */
-template <class Condition>
-bool becomes(Condition&& condition, double seconds = 10) {
-    const auto end = std::chrono::steady_clock::now() + std::chrono::duration<double>(seconds);
-    while (!condition())
-        if (std::chrono::steady_clock::now() > end)
-            return false;
-        else
-            std::this_thread::sleep_for(std::chrono::milliseconds(1));
-    return true;
-}
+using test::comesTrue;
 
-/** Tests in a domain of a random number, where `lo` has no multicast. */
+/** A DDS domain that no other test is in, in this network, while this lives. Its ports lie below those that the system
+ *  hands out. */
+class OwnDomain {
+public:
+    OwnDomain() {
+        std::random_device random;
+        do number_ = 20 + static_cast<int>(random() % 80);
+        while (!isFree());
+    }
+    ~OwnDomain() { close(socket_); }
+    OwnDomain(const OwnDomain&) = delete;
+    OwnDomain& operator=(const OwnDomain&) = delete;
+    int number() const { return number_; }
+
+private:
+    /** Takes hold of a name that stands for the domain, without a file. */
+    bool isFree() {
+        socket_ = socket(AF_UNIX, SOCK_DGRAM | SOCK_CLOEXEC, 0);
+        const std::string name = "insonify-test-domain-" + std::to_string(number_);
+        sockaddr_un address{};
+        address.sun_family = AF_UNIX;
+        name.copy(address.sun_path + 1, name.size());
+        const auto size = static_cast<socklen_t>(offsetof(sockaddr_un, sun_path) + 1 + name.size());
+        if (bind(socket_, reinterpret_cast<sockaddr*>(&address), size) == 0) return true;
+        close(socket_);
+        return false;
+    }
+
+    int number_ = 0, socket_ = -1;
+};
+
+/** Tests in a domain of their own, where `lo` has no multicast. */
 class Loopback : public testing::Test {
 protected:
     Loopback() {
@@ -37,8 +61,11 @@ protected:
             "<MaxAutoParticipantIndex>40</MaxAutoParticipantIndex><Peers><Peer address=\"127.0.0.1\"/></Peers>"
             "</Discovery></Domain></CycloneDDS>";
         setenv("CYCLONEDDS_URI", settings, 1);
-        setenv("ROS_DOMAIN_ID", std::to_string(std::random_device()() % 200 + 20).c_str(), 1);
+        setenv("ROS_DOMAIN_ID", std::to_string(domain_.number()).c_str(), 1);
     }
+
+private:
+    const OwnDomain domain_;
 };
 
 /** A peer by another DDS, which says when it is ready, then what it found. It is stopped at the end. */
@@ -49,7 +76,7 @@ public:
     /** A program and its arguments. */
     explicit Peer(std::vector<std::string> words) {
         process_.emplace(std::move(words), folder_.path());
-        ready_ = becomes([&] { return deployer::readFile(folder_ / "stdout.txt").starts_with("ready"); }, 30);
+        ready_ = comesTrue([&] { return hasSaid("ready"); });
     }
     ~Peer() {
         if (!process_) return;
@@ -59,6 +86,15 @@ public:
     /** Whether PyPI's cyclonedds is here. */
     static bool available() { return pythonHas("cyclonedds"); }
     bool ready() const { return ready_; }
+    /** Sends greetings until a listener has heard one: it then hears all that is sent. */
+    template <class Greet>
+    bool meets(Greet&& greet) const {
+        return comesTrue([&] { return greet(), hasSaid("met"); });
+    }
+    /** The first greeting of a sender has come: it may begin. */
+    void begin() const { signal(SIGUSR1); }
+    /** Whether it has found what it looked for. */
+    bool hasEnded() const { return hasSaid("{"); }
     void signal(int number) const { process_->signal(number); }
     /** What it found; null, with a failure, if it ended otherwise. */
     nlohmann::json result() {
@@ -71,6 +107,9 @@ public:
     }
 
 private:
+    bool hasSaid(const std::string& text) const {
+        return deployer::readFile(folder_ / "stdout.txt").find(text) != std::string::npos;
+    }
     static std::vector<std::string> wordsOf(std::string command) {
         std::vector<std::string> words = {python(), INSONIFY_SOURCE_DIR "/tests/dds/peer.py"};
         for (std::istringstream text(command); text >> command;) words.push_back(command);

@@ -24,7 +24,7 @@ protected:
         Bytes bytes;
         uint64_t sender = 0;
         Message message;
-        const bool came = becomes([&] { return send(), reader.take(bytes, sender); });
+        const bool came = comesTrue([&] { return send(), reader.take(bytes, sender); });
         EXPECT_TRUE(came);
         if (came) ros::decode(std::span<const char>(bytes), message);
         return message;
@@ -110,7 +110,7 @@ TEST_F(PublisherTaskTest, WhatAMessageCannotHoldIsACountedDropAndTheRunGoesOn) {
     auto crooked = std::make_shared<types::Sonar>(*pingOf(4, 4));
     crooked->bearings[1] = types::Angle{0.1234};
     Reader reader(node, ddsTopic("/scan"), ros::LaserScan::type_name, "", {}, {});
-    ASSERT_TRUE(becomes([&] { return publishing.send(crooked), !publishing.task.notices().empty(); }));
+    ASSERT_TRUE(comesTrue([&] { return publishing.send(crooked), !publishing.task.notices().empty(); }));
     publishing.send(crooked);
     publishing.send(nullptr);
     EXPECT_EQ(publishing.task.state(), framework::TaskState::Running);

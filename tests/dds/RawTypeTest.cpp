@@ -24,7 +24,7 @@ protected:
     Bytes sent(size_t size) {
         Bytes bytes(size);
         std::iota(bytes.begin(), bytes.end(), char{7});
-        EXPECT_TRUE(becomes([&] { return writer.hasReaders(); }));
+        EXPECT_TRUE(comesTrue([&] { return writer.hasReaders(); }));
         EXPECT_TRUE(writer.write(bytes)) << writer.failure();
         return bytes;
     }
@@ -36,7 +36,7 @@ TEST_F(RawTypeTest, BytesOfAnySizeComeBackPaddedToWholeWords) {
     for (const size_t size : {4u, 5u, 7u, 8u, 1000u, 100'001u, 3'000'000u}) {
         Bytes bytes = sent(size), received;
         uint64_t sender = 0;
-        ASSERT_TRUE(becomes([&] { return reader.take(received, sender); })) << size;
+        ASSERT_TRUE(comesTrue([&] { return reader.take(received, sender); })) << size;
         bytes.resize((size + 3) / 4 * 4);
         EXPECT_EQ(received, bytes);
         EXPECT_TRUE(reader.hears(sender));
@@ -57,7 +57,7 @@ TEST_F(RawTypeTest, AReaderOfAnotherTypeHearsNothing) {
     sent(8);
     Bytes received;
     uint64_t sender = 0;
-    ASSERT_TRUE(becomes([&] { return reader.take(received, sender); }));
+    ASSERT_TRUE(comesTrue([&] { return reader.take(received, sender); }));
     EXPECT_FALSE(other.take(received, sender));
 }
 
@@ -65,5 +65,5 @@ TEST_F(RawTypeTest, AListenerIsToldOfWhatArrives) {
     std::atomic<int> told = 0;
     Reader listening(node, "rt/bytes", "test_msgs/msg/Bytes", "", {}, [&] { ++told; });
     sent(8);
-    EXPECT_TRUE(becomes([&] { return told == 1; }));
+    EXPECT_TRUE(comesTrue([&] { return told == 1; }));
 }

@@ -24,6 +24,9 @@ protected:
     }
 };
 
+/** Of the harbour's task: a machine that stalls is not to look like a vehicle that has gone. */
+const std::string patience = "scene.pose_timeout=60";
+
 /** A vehicle that tells where it is, twenty times a second. */
 const std::string vehicle =
     "schedule: realtime\ntasks:\n"
@@ -43,14 +46,15 @@ TEST_F(Ros2RunTest, PosesOfAVehicleBecomePingsOfTheSonar) {
     TestFolder elsewhere;
     writeFile(elsewhere / "vehicle.yml", vehicle);
     const Process poses(insonifyWords({"run", "vehicle.yml", "--out", "out"}), elsewhere.path());
-    const Process sonar(insonifyWords({"run", fls, "--out", "out", "--pings", "40", "--summary", "summary.json"}),
-                        folder.path());
+    const Process sonar(
+        insonifyWords({"run", fls, "--out", "out", "--pings", "40", "--summary", "summary.json", "--set", patience}),
+        folder.path());
     Node node(domainId({}), "listener", 16);
     Reader reader(node, "rt/auv/sonar", ros::ProjectedSonarImage::type_name, "", {}, {});
     ros::ProjectedSonarImage message;
     Bytes bytes;
     uint64_t sender = 0;
-    const bool heard = becomes([&] { return reader.take(bytes, sender); }, 30);
+    const bool heard = comesTrue([&] { return reader.take(bytes, sender); });
     for (const Process* process : {&poses, &sonar})
         if (!heard) process->signal(SIGKILL);
     ASSERT_TRUE(heard);
@@ -68,20 +72,20 @@ TEST_F(Ros2RunTest, PosesOfAVehicleBecomePingsOfTheSonar) {
 TEST_F(Ros2RunTest, PosesThatAreDroppedAreToldAtOnceAndAtTheEnd) {
     if (!Peer::available())
         GTEST_SKIP() << "PyPI's cyclonedds is not in " << python() << ": scripts/setup puts it there";
-    const Process sonar(insonifyWords({"run", fls, "--out", "out", "--pings", "10"}), folder.path());
-    const Peer peer("odometry /auv/odometry 1000 20 nan");
+    const Process sonar(insonifyWords({"run", fls, "--out", "out", "--pings", "10", "--set", patience}), folder.path());
+    const Peer peer("odometry /auv/odometry 100000 20 nan");
     const Outcome outcome = sonar.wait();
     EXPECT_EQ(outcome.code, 0) << outcome.err;
     const std::string why = "/auv/odometry: position and orientation are not finite";
-    EXPECT_THAT(outcome.err, HasSubstr("warning: poses: 1 messages dropped; the last: " + why));
+    EXPECT_THAT(outcome.err, testing::ContainsRegex("warning: poses: [0-9]+ messages dropped; the last: " + why));
     EXPECT_THAT(outcome.out + outcome.err, HasSubstr("messages dropped: " + why));
 }
 
 TEST_F(Ros2RunTest, WithoutPosesItWaitsAndSaysSo) {
     Process waiting(insonifyWords({"run", fls, "--out", "out"}), folder.path());
-    EXPECT_TRUE(becomes(
-        [&] { return readFile(folder / "stderr.txt").find("no pose of the last 1 s") != std::string::npos; }, 30))
-        << readFile(folder / "stderr.txt");
+    EXPECT_TRUE(comesTrue([&] {
+        return readFile(folder / "stderr.txt").find("no pose of the last 1 s") != std::string::npos;
+    })) << readFile(folder / "stderr.txt");
     waiting.signal(SIGINT);
     EXPECT_EQ(waiting.wait().code, 1);  // as any realtime run that ends without poses
 }

@@ -35,7 +35,7 @@ struct SubscriptionTest : Loopback {
 
     std::optional<Writer> newWriter() {
         std::optional<Writer> made(std::in_place, node, "rt/judged", ros::Odometry::type_name, "", Quality{});
-        EXPECT_TRUE(becomes([&] { return made->hasReaders(); }));
+        EXPECT_TRUE(comesTrue([&] { return made->hasReaders(); }));
         return made;
     }
     void send(const ros::Odometry& message) {
@@ -111,7 +111,7 @@ TEST_F(SubscriptionTest, StampsThatGoBackAreDroppedUntilTheirSenderIsGone) {
     writer.reset();
     writer = newWriter();  // a simulator that starts again
     send(at(1, 4));
-    ASSERT_TRUE(becomes([&] { return take(); }));
+    ASSERT_TRUE(comesTrue([&] { return take(); }));
     EXPECT_EQ(pose.position.x, 4);
     EXPECT_EQ(drops(), 1u);
 }
@@ -149,7 +149,7 @@ TEST_F(SubscriptionTest, AMessageFarTooLargeIsNotTakenFromTheNetwork) {
     writer->write(Bytes(3 << 20, 'x'));
     writer->write(Bytes((64 << 10) + 4, 'x'));
     send(at(1, 1));
-    ASSERT_TRUE(becomes([&] { return take(); }));
+    ASSERT_TRUE(comesTrue([&] { return take(); }));
     EXPECT_EQ(pose.position.x, 1);
     EXPECT_FALSE(take());
     EXPECT_EQ(drops(), 2u);
@@ -170,7 +170,7 @@ TEST_F(SubscriptionTest, APoseMayBearTheTimeOfItsArrival) {
     strange.stamp = StampFrom::Arrival;
     Subscription other(node, config, strange, dropped, {});
     send(at(1, 1));
-    ASSERT_TRUE(becomes([&] { return other.take(arrival, pose); }) || (send(at(2, 2)), other.take(arrival, pose)));
+    ASSERT_TRUE(comesTrue([&] { return other.take(arrival, pose); }) || (send(at(2, 2)), other.take(arrival, pose)));
     EXPECT_EQ(pose.time, arrival);
 }
 

@@ -1,12 +1,16 @@
 """Another ROS 2 peer, by PyPI's cyclonedds. What it found goes to stdout as JSON; `ready` before that, once it is there.
 
     peer.py listen TYPE TOPIC SECONDS [COUNT]   counts messages, until that many came, and their latency [ms]; keeps the first
-    peer.py node SECONDS                        nodes, and writers with their types and hashes
-    peer.py image TOPIC COUNT HERTZ               sends images of 1 MB, 256 beams x 1000 ranges of float32
+    peer.py node SECONDS WRITERS                nodes, and writers with their types and hashes, once a node has so many
+    peer.py image TOPIC COUNT HERTZ             sends images of 1 MB, 256 beams x 1000 ranges of float32
     peer.py odometry TOPIC COUNT HERTZ [FAULT]  sends poses along x; FAULT nan, back, zero or bytes spoils every second
+
+Who listens says `met` at the first image without a stamp, and does not count those. With --greet, who sends sends such an
+image, or poses at the origin, until SIGUSR1: none of what follows is lost because one side did not know the other yet.
 """
 import dataclasses
 import json
+import signal
 import struct
 import sys
 import time
@@ -16,15 +20,15 @@ from cyclonedds.builtin import BuiltinDataReader, BuiltinTopicDcpsPublication
 from cyclonedds.core import Policy, Qos
 from cyclonedds.domain import DomainParticipant
 from cyclonedds.idl import IdlStruct
-from cyclonedds.idl.types import float64
+from cyclonedds.idl.types import array, uint8
 from cyclonedds.pub import DataWriter
 from cyclonedds.sub import DataReader
 from cyclonedds.topic import Topic
 from cyclonedds.util import duration
 
-DOMAIN, START = 0, time.time()
-RELIABLE = [Policy.Reliability.Reliable(duration(milliseconds=100)), Policy.DataRepresentation(use_cdrv0_representation=True)]
-SENSOR = Qos(*RELIABLE, Policy.Durability.Volatile, Policy.History.KeepLast(5))
+DOMAIN, START, BEGUN = 0, time.time(), []
+signal.signal(signal.SIGUSR1, lambda *_: BEGUN.append(True))
+RELIABLE = [Policy.Reliability.Reliable(duration(seconds=60)), Policy.DataRepresentation(use_cdrv0_representation=True)]
 DEEP = Qos(*RELIABLE, Policy.Durability.Volatile, Policy.History.KeepLast(200))
 LATCHED = Qos(*RELIABLE, Policy.Durability.TransientLocal, Policy.History.KeepLast(1))
 
@@ -35,6 +39,17 @@ def ready():
 
 def seconds(stamp):
     return stamp.sec + stamp.nanosec * 1e-9
+
+
+def greet(writer, sample):
+    """Once there is a reader: until it has heard one, or for a while in which it comes to know us."""
+    while not writer.get_matched_subscriptions():
+        time.sleep(0.01)
+    if "--greet" not in sys.argv:
+        time.sleep(0.5)
+    while "--greet" in sys.argv and not BEGUN:
+        writer.write(sample)
+        time.sleep(0.02)
 
 
 def plain(value):
@@ -51,35 +66,50 @@ def plain(value):
 def listen(kind, topic, span, count=10**9):
     participant = DomainParticipant(DOMAIN)
     reader = DataReader(participant, Topic(participant, "rt" + topic, getattr(messages, kind)), qos=DEEP)
-    while not reader.get_matched_publications() and time.time() < START + 20:
+    while not reader.get_matched_publications() and time.time() < START + 60:
         time.sleep(0.01)
     ready()
-    latencies, first, end = [], None, time.time() + float(span)
+    latencies, first, met, end = [], None, False, time.time() + float(span)
     while time.time() < end and len(latencies) < int(count):
         for sample in reader.take(N=10):
             if not isinstance(sample, getattr(messages, kind)):
                 continue  # the sender has gone
             stamp = sample.clock if kind == "Clock" else sample.header.stamp
-            latencies.append(1e3 * (time.time() - seconds(stamp)))
-            first = first or sample
+            if seconds(stamp) > 0:
+                latencies.append(1e3 * (time.time() - seconds(stamp)))
+                first = first or sample
+            elif not met:
+                met = True
+                print("met", flush=True)
         time.sleep(0.0005)
     latencies.sort()
     at = (lambda share: latencies[int(share * (len(latencies) - 1))]) if latencies else (lambda share: None)
     return {"count": len(latencies), "median_ms": at(0.5), "p99_ms": at(0.99), "first": plain(first)}
 
 
-def node(span):
+def writers_of(info):
+    """Of a node's announcement: the keys of its writers."""
+    return [gid["data"] for node in info["node_entities_info_seq"] for gid in node["writer_gid_seq"]]
+
+
+def node(span, count):
     participant = DomainParticipant(DOMAIN)
     reader = DataReader(participant, Topic(participant, "ros_discovery_info", messages.ParticipantEntitiesInfo), qos=LATCHED)
     writers = BuiltinDataReader(participant, BuiltinTopicDcpsPublication)
     ready()
-    time.sleep(float(span))
-    infos = [plain(info) for info in reader.take(N=100)]
-    found = {}
-    for writer in writers.take(N=100):
-        data = [p for p in writer.qos if isinstance(p, Policy.Userdata)]
-        found[writer.topic_name] = {"type": writer.type_name, "user_data": data[0].data.decode() if data else "",
-                                    "key": list(writer.key.bytes)}
+    infos, found, end = [], {}, time.time() + float(span)
+
+    def complete():
+        keys = [writer["key"] for writer in found.values()]
+        return any(len(writers_of(info)) == int(count) and all(key in keys for key in writers_of(info)) for info in infos)
+
+    while time.time() < end and not complete():
+        infos += [plain(info) for info in reader.take(N=100) if isinstance(info, messages.ParticipantEntitiesInfo)]
+        for writer in writers.take(N=100):
+            data = [p for p in writer.qos if isinstance(p, Policy.Userdata)]
+            found[writer.topic_name] = {"type": writer.type_name, "user_data": data[0].data.decode() if data else "",
+                                        "key": list(writer.key.bytes)}
+        time.sleep(0.01)
     return {"infos": infos, "writers": found}
 
 
@@ -96,9 +126,7 @@ def image(topic, count, hertz):
                   [messages.Vector3(0.0, 0.0, 1.0)] * 256, [0.01 * k for k in range(1000)],
                   messages.SonarImageData(False, 8, 256, bytes(1_024_000)))
     ready()
-    while not writer.get_matched_subscriptions():
-        time.sleep(0.01)
-    time.sleep(0.5)  # the other side may not know us yet
+    greet(writer, sample)
     stamped_now(sample.header)
     wire = bytearray(sample.serialize(use_version_2=False))  # takes Python longer than a period: once, then the stamp
     sample.serialize = lambda **_: bytes(wire)
@@ -109,44 +137,54 @@ def image(topic, count, hertz):
         now = time.time()
         struct.pack_into("<iI", wire, 4, int(now), int(now % 1 * 1e9))
         writer.write(sample)
-    time.sleep(1)
+    writer.wait_for_acks(duration(seconds=60))
     return {"count": int(count)}
 
 
+def pose_at(now, *place):
+    sample = messages.Odometry()
+    sample.header.stamp = messages.Time(int(now), int(now % 1 * 1e9))
+    sample.header.frame_id, sample.child_frame_id = "map", "base_link"
+    sample.pose.pose.position = messages.Point(*place)
+    sample.twist.twist.linear.x = 1.5
+    return sample
+
+
+def bytes_of(sample):
+    return sample.serialize(use_version_2=False)[4:]
+
+
 @dataclasses.dataclass
-class Short(IdlStruct, typename="nav_msgs::msg::dds_::Odometry_"):
-    only: float64 = 1.0
+class Octets(IdlStruct, typename="nav_msgs::msg::dds_::Odometry_"):
+    """Bytes that may or may not be a pose: which frames it names decides on their number."""
+    all: array[uint8, len(bytes_of(pose_at(0, 0.0, 0.0, 0.0)))]
 
 
 def odometry(topic, count, hertz, fault=""):
     participant = DomainParticipant(DOMAIN)
-    name = "rt" + topic
-    writer = DataWriter(participant, Topic(participant, name, messages.Odometry), qos=SENSOR)
-    other = DomainParticipant(DOMAIN)
-    short = DataWriter(other, Topic(other, name, Short), qos=SENSOR) if fault == "bytes" else None
+    kind, as_sent = (Octets, lambda pose: Octets(bytes_of(pose))) if fault == "bytes" else (messages.Odometry, lambda pose: pose)
+    writer = DataWriter(participant, Topic(participant, "rt" + topic, kind), qos=DEEP)
     ready()
-    while not writer.get_matched_subscriptions() or (short and not short.get_matched_subscriptions()):
-        time.sleep(0.01)
-    time.sleep(0.5)  # the other side may not know us yet
+    greet(writer, as_sent(pose_at(time.time(), 0.0, 0.0, 0.0)))
     for i in range(int(count)):
-        sample = messages.Odometry()
         now = time.time()
         spoilt = bool(fault) and i % 2 == 1
         now -= 5 if spoilt and fault == "back" else 0
-        sample.header.stamp = messages.Time(int(now), int(now % 1 * 1e9))
-        sample.header.frame_id, sample.child_frame_id = "map", "base_link"
-        sample.pose.pose.position = messages.Point(float(i), 2.0, -3.0)
-        sample.twist.twist.linear.x = 1.5
+        sample = pose_at(now, float(i), 2.0, -3.0)
         if spoilt and fault == "nan":
             sample.pose.pose.position.x = float("nan")
         if spoilt and fault == "zero":
             sample.pose.pose.orientation.w = 0.0
-        short.write(Short()) if spoilt and short else writer.write(sample)
+        sent = as_sent(sample)
+        if spoilt and fault == "bytes":
+            sent.all = sent.all[:8] + b"\xff" * 4 + sent.all[12:]  # a name of 4 GB
+        writer.write(sent)
         time.sleep(1 / float(hertz))
-    time.sleep(0.5)
+    writer.wait_for_acks(duration(seconds=60))
     return {"count": int(count)}
 
 
 if __name__ == "__main__":
     DOMAIN = int(__import__("os").environ.get("ROS_DOMAIN_ID", "0"))
-    print(json.dumps({"listen": listen, "node": node, "image": image, "odometry": odometry}[sys.argv[1]](*sys.argv[2:])))
+    work, *words = (word for word in sys.argv[1:] if word != "--greet")
+    print(json.dumps({"listen": listen, "node": node, "image": image, "odometry": odometry}[work](*words)))

@@ -12,6 +12,8 @@
 #include <string>
 #include <vector>
 
+#include "tests/support/Waiting.hpp"
+
 namespace insonify::deployer {
 
 namespace fs = std::filesystem;
@@ -88,6 +90,11 @@ inline std::vector<std::string> insonifyWords(std::vector<std::string> arguments
 
 inline Outcome callInsonify(const TestFolder& folder, std::vector<std::string> arguments) {
     return Process(insonifyWords(std::move(arguments)), folder.path()).wait();
+}
+
+/** Waits until a program has said something on its error output. */
+inline bool says(const TestFolder& folder, const std::string& text) {
+    return test::comesTrue([&] { return readFile(folder / "stderr.txt").find(text) != std::string::npos; });
 }
 
 /** Runs a program in Debian's Python, which has numpy; what it prints is the answer. */

@@ -31,11 +31,14 @@ class DeploymentFilesTest : public testing::TestWithParam<std::string> {};
 
 TEST_P(DeploymentFilesTest, RunsForTwoPings) {
     const TestFolder folder;
-    const Outcome outcome = callInsonify(folder, runOf(GetParam(), {"--pings", "2", "--summary", "summary.json"}));
+    const bool lockstep = readFile(deploy / (GetParam() + ".yml")).find("schedule: realtime") == std::string::npos;
+    std::vector<std::string> more = {"--pings", "2", "--summary", "summary.json"};
+    if (!lockstep)  // a machine that stalls is not to look like a vehicle that has gone
+        more.insert(more.end(), {"--set", "scene.pose_timeout=60"});
+    const Outcome outcome = callInsonify(folder, runOf(GetParam(), more));
     ASSERT_EQ(outcome.code, 0) << outcome.err;
     const json summary = json::parse(readFile(folder / "summary.json"));
     EXPECT_GE(summary["pings"], 2);
-    const bool lockstep = readFile(deploy / (GetParam() + ".yml")).find("schedule: realtime") == std::string::npos;
     for (const auto& [connection, lost] : summary["losses"].items())  // in realtime the newest sample wins
         EXPECT_TRUE(lost == 0 || !lockstep) << connection << ": " << lost;
 }

@@ -1,6 +1,9 @@
 // schedule: realtime, as a user sees it.
 #include <gmock/gmock.h>
 
+#include <csignal>
+
+#include "tests/deployer/Growing.hpp"
 #include "tests/deployer/Wall.hpp"
 
 using namespace insonify::deployer;
@@ -9,12 +12,23 @@ using testing::HasSubstr;
 
 namespace {
 
-const std::string realtime = replaced(wall_deployment, "schedule: lockstep", "schedule: realtime");
+/** Without a pose for 0.2 s there is an error, until the next; they come so many seconds apart. */
+std::string withPosesEach(const std::string& seconds) {
+    const std::string text = replaced(realtimeWall(), "period: 0.1", "period: " + seconds);
+    return replaced(text, "pose_timeout: 60", "pose_timeout: 0.2");
+}
+
+size_t countIn(const std::string& text, const std::string& what) {
+    size_t count = 0;
+    for (size_t at = text.find(what); at != std::string::npos; at = text.find(what, at + 1)) ++count;
+    return count;
+}
 
 }  // namespace
 
 TEST(RealtimeRunTest, TheSummaryTellsWhatWasKeptAndMissed) {
-    const WallFolder folder(replaced(realtime, "{trigger: [snapshot]}", "{trigger: [snapshot], deadline: 0.001}"));
+    const WallFolder folder(
+        replaced(realtimeWall(), "{trigger: [snapshot]}", "{trigger: [snapshot], deadline: 0.001}"));
     const Outcome outcome = folder.run({"--pings", "4", "--summary", "summary.json"});
     ASSERT_EQ(outcome.code, 0) << outcome.err;
     const json summary = json::parse(readFile(folder / "summary.json"));
@@ -43,11 +57,15 @@ TEST(RealtimeRunTest, ALockstepSummaryHasNoneOfIt) {
 }
 
 TEST(RealtimeRunTest, StalePosesAreToldAndPingsGoOnWithNewOnes) {
-    // A pose each second; after 0.2 s of none there is an error, until the next.
-    std::string yaml = replaced(realtime, "period: 0.1", "period: 1");
-    yaml = replaced(yaml, "file: wall.gltf", "file: wall.gltf, pose_timeout: 0.2");
-    const WallFolder folder(yaml);
-    const Outcome outcome = folder.run({"--pings", "3", "--summary", "summary.json"});
+    const WallFolder folder(withPosesEach("1"));
+    const Process process(insonifyWords({"run", "wall.yml", "--out", "out", "--summary", "summary.json"}),
+                          folder.path());
+    EXPECT_TRUE(insonify::test::comesTrue([&] {
+        return countIn(readFile(folder / "stderr.txt"), "scene: has recovered") >= 2 &&
+               flushedSamples(folder / "out/wall.0.log", "sonar.ping") >= 3;
+    }));
+    process.signal(SIGINT);
+    const Outcome outcome = process.wait();
     const json summary = json::parse(readFile(folder / "summary.json"));
     EXPECT_GE(summary["tasks"]["scene"]["errors"], 2);
     EXPECT_GE(summary["pings"], 3);
@@ -57,10 +75,11 @@ TEST(RealtimeRunTest, StalePosesAreToldAndPingsGoOnWithNewOnes) {
 }
 
 TEST(RealtimeRunTest, PosesThatAreMissingAtTheEndAreAFailure) {
-    std::string yaml = replaced(realtime, "period: 0.1", "period: 1000");
-    yaml = replaced(yaml, "file: wall.gltf", "file: wall.gltf, pose_timeout: 0.2");
-    const WallFolder folder(yaml);
-    const Outcome outcome = folder.run({"--duration", "1"});
+    const WallFolder folder(withPosesEach("1000"));
+    const Process process(insonifyWords({"run", "wall.yml", "--out", "out"}), folder.path());
+    EXPECT_TRUE(says(folder, "warning: scene: RunTimeError"));
+    process.signal(SIGINT);
+    const Outcome outcome = process.wait();
     EXPECT_EQ(outcome.code, 1);
     EXPECT_THAT(outcome.err, HasSubstr("insonify: scene: scene.pose: no pose of the last 0.2 s"));
 }

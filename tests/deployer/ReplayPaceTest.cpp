@@ -3,9 +3,11 @@
 #include <sys/stat.h>
 
 #include <chrono>
+#include <csignal>
 #include <thread>
 
 #include "components/pocolog/Reader.hpp"
+#include "tests/deployer/Growing.hpp"
 #include "tests/deployer/Wall.hpp"
 #include "types/Sonar.hpp"
 
@@ -44,13 +46,6 @@ protected:
 
     const WallFolder folder_;
 };
-
-/** Waits until a file says something. */
-bool says(const fs::path& file, const std::string& text) {
-    for (int i = 0; i < 1000 && readFile(file).find(text) == std::string::npos; ++i)
-        std::this_thread::sleep_for(std::chrono::milliseconds(10));
-    return readFile(file).find(text) != std::string::npos;
-}
 
 }  // namespace
 
@@ -94,11 +89,11 @@ TEST_F(ReplayPaceTest, StepByStepItWaitsForALineAfterEachInstant) {
          "exec " INSONIFY_BIN_DIR "/insonify replay out/wall.0.log wall.yml --out again --step < lines"},
         folder_.path());
     std::ofstream lines(folder_ / "lines");
-    ASSERT_TRUE(says(folder_ / "stderr.txt", "0.000000 s\n"));
+    ASSERT_TRUE(says(folder_, "0.000000 s\n"));
     std::this_thread::sleep_for(std::chrono::milliseconds(300));
     EXPECT_THAT(readFile(folder_ / "stderr.txt"), Not(HasSubstr("0.100000 s\n")));
     lines << std::endl;
-    ASSERT_TRUE(says(folder_ / "stderr.txt", "0.100000 s\n"));
+    ASSERT_TRUE(says(folder_, "0.100000 s\n"));
     EXPECT_THAT(readFile(folder_ / "stderr.txt"), Not(HasSubstr("0.200000 s\n")));
     lines << "\n\n" << std::flush;
     lines.close();
@@ -131,12 +126,15 @@ tasks:
 connections:
   - {from: replay.vehicle.pose, to: log.pose, policy: {type: buffer, size: 64}}
 )");
-    const Outcome outcome = callInsonify(folder_, {"run", "realtime.yml", "--duration", "0.5", "--out", "again"});
+    const Process process(insonifyWords({"run", "realtime.yml", "--out", "again"}), folder_.path());
+    EXPECT_TRUE(insonify::test::comesTrue(
+        [&] { return flushedSamples(folder_ / "again/again.0.log", "replay.vehicle.pose") >= 4; }));
+    process.signal(SIGINT);
+    const Outcome outcome = process.wait();
     ASSERT_EQ(outcome.code, 0) << outcome.err;
     pocolog::Reader log(folder_ / "again/again.0.log");
-    EXPECT_GE(log.samples().size(), 4u);
     for (const pocolog::SampleRef& at : log.samples()) {
         EXPECT_GE(at.received, at.time);
-        EXPECT_LT((at.received - at.time).seconds(), 1) << "not this year's";
+        EXPECT_LT((at.received - at.time).seconds(), 3600) << "not this year's";
     }
 }

@@ -1,8 +1,8 @@
 #include <gmock/gmock.h>
 
-#include <chrono>
-#include <thread>
+#include <csignal>
 
+#include "tests/deployer/Growing.hpp"
 #include "tests/deployer/Wall.hpp"
 
 using namespace insonify::deployer;
@@ -18,8 +18,6 @@ json logInfo(const TestFolder& folder, const std::string& log) {
 size_t samplesIn(const TestFolder& folder, const std::string& log) {
     return logInfo(folder, log)["streams"][0]["count"];
 }
-
-std::string realtime() { return replaced(wall_deployment, "schedule: lockstep", "schedule: realtime"); }
 
 }  // namespace
 
@@ -123,11 +121,10 @@ print(same('sonar.ping'), same('noise.noisy')))");
 class SignalTest : public testing::TestWithParam<int> {};
 
 TEST_P(SignalTest, StopsCleanlyAndClosesTheLog) {
-    const WallFolder folder(realtime());
+    const WallFolder folder(realtimeWall());
     const Process process(insonifyWords({"run", "wall.yml", "--out", "out"}), folder.path());
-    for (int i = 0; i < 100 && !fs::exists(folder / "out/wall.0.log"); ++i)
-        std::this_thread::sleep_for(std::chrono::milliseconds(100));
-    std::this_thread::sleep_for(std::chrono::milliseconds(700));
+    EXPECT_TRUE(
+        insonify::test::comesTrue([&] { return flushedSamples(folder / "out/wall.0.log", "sonar.ping") >= 2; }));
     process.signal(GetParam());
     const Outcome outcome = process.wait();
     EXPECT_EQ(outcome.code, 0) << outcome.err;
@@ -141,7 +138,7 @@ INSTANTIATE_TEST_SUITE_P(Both, SignalTest, testing::Values(SIGINT, SIGTERM),
                          [](const auto& tested) { return tested.param == SIGINT ? "Interrupt" : "Terminate"; });
 
 TEST(RunCommandTest, ARealtimeRunEndsAfterItsPings) {
-    const WallFolder folder(realtime());
+    const WallFolder folder(realtimeWall());
     ASSERT_EQ(folder.run({"--pings", "3"}).code, 0);
     EXPECT_GE(samplesIn(folder, "out/wall.0.log"), 3u);
 }

@@ -95,6 +95,13 @@ inline std::string replaced(std::string text, const std::string& what, const std
     return text.replace(at, what.size(), with);
 }
 
+/** The same on the wall clock. A machine that stalls is not to look like a vehicle that has gone, nor like a hook that
+ *  hangs. */
+inline std::string realtimeWall() {
+    const std::string text = replaced(wall_deployment, "schedule: lockstep", "schedule: realtime\nwatchdog: 1000000");
+    return replaced(text, "{file: wall.gltf}", "{file: wall.gltf, pose_timeout: 60}");
+}
+
 /** A folder with wall.yml and wall.gltf. */
 class WallFolder : public TestFolder {
 public:

@@ -4,6 +4,7 @@
 #include <thread>
 
 #include "tests/framework/Tasks.hpp"
+#include "tests/support/Waiting.hpp"
 
 namespace insonify::framework {
 namespace {
@@ -50,6 +51,26 @@ TEST(DeploymentControlTest, InRealtimeNothingPausesTheWallClock) {
     EXPECT_THROW(deployment.step(), std::runtime_error);
 }
 
+TEST(DeploymentControlTest, TimeStandsStillOnceAPauseHasReturned) {
+    Registry registry = test::testRegistry();
+    Deployment deployment(DeploymentSpec::parse(pair, "a.yml"), registry);
+    deployment.configure();
+    std::atomic<bool> stop{false};
+    std::thread running([&] { deployment.run({.duration_s = 100, .pace = 0.05}, stop); });  // an instant in 20 ms
+    const auto now = [&] { return deployment.status().now.microseconds; };
+    for (int i = 0; i < 5; ++i) {
+        const int64_t before = now();
+        ASSERT_TRUE(test::comesTrue([&] { return now() > before; }));
+        deployment.pause(true);
+        const int64_t paused = now();
+        std::this_thread::sleep_for(std::chrono::milliseconds(50));
+        EXPECT_EQ(now(), paused) << "nor is the instant made for which it waited";
+        deployment.pause(false);
+    }
+    stop = true;
+    running.join();
+}
+
 TEST(DeploymentControlTest, APausedRunStandsStillGoesStepByStepAndCanBeStopped) {
     Registry registry = test::testRegistry();
     Deployment deployment(DeploymentSpec::parse(pair, "a.yml"), registry);
@@ -59,9 +80,8 @@ TEST(DeploymentControlTest, APausedRunStandsStillGoesStepByStepAndCanBeStopped) 
     std::atomic<int> instants{0};
     std::thread running([&] { deployment.run({.duration_s = 100}, stop, [&](const Progress&) { ++instants; }); });
     const auto become = [&](int expected) {
-        for (int i = 0; i < 2000 && instants != expected; ++i)
-            std::this_thread::sleep_for(std::chrono::milliseconds(2));
-        std::this_thread::sleep_for(std::chrono::milliseconds(20));
+        test::comesTrue([&] { return instants == expected; });
+        std::this_thread::sleep_for(std::chrono::milliseconds(20));  // one too many would come now
         return instants == expected;
     };
     EXPECT_TRUE(become(0));

@@ -59,7 +59,7 @@ TEST(DeploymentRunTest, ARunThatIsToBeStoppedDoesNotWaitForItsPace) {
     std::atomic<bool> stop{false};
     const RunResult result = deployment.run({.pace = 1e-6}, stop, [&](const Progress&) { stop = true; });
     EXPECT_FALSE(result.failed());
-    EXPECT_LT(result.wall_s, 10) << "the second instant would be due after a day";
+    EXPECT_LT(result.wall_s, 3600) << "the second instant would be due after a day";
 }
 
 TEST(DeploymentRunTest, TimeStartsAtStartTimeAndInstantsDoNotDrift) {

@@ -146,6 +146,13 @@ TEST(DeploymentSpecTest, ATextThatIsNoDeploymentIsRefused) {
     EXPECT_THAT(faultsOf("tasks: 3\nconnections: 4\nlibraries: {}\n"), testing::SizeIs(3));
 }
 
+TEST(DeploymentSpecTest, WhatCannotBeginAValueIsRefusedNotReadWithoutEnd) {
+    for (const char* text : {",", "]", "}", ", 2.5, \"x\"]\nc: {d: .nan}\n", "--- a\n---\n,", "- a\n--- ]\n"})
+        EXPECT_THAT(faultsOf(text), ElementsAre(HasSubstr("a.yml:"))) << text;
+    EXPECT_THAT(faultsOf("tasks: {source: {type: test::Source}}\n", {"source.last=,"}),
+                testing::Contains(HasSubstr("this cannot begin a value")));
+}
+
 TEST(DeploymentSpecTest, DeepNestingIsRefusedNotFatal) {
     for (const char* bracket : {"[", "{", "[a: ", "- ", "? "}) {
         std::string yaml = "tasks: ";

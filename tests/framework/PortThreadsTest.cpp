@@ -5,11 +5,12 @@
 
 #include "components/framework/Activity.hpp"
 #include "tests/support/Ports.hpp"
+#include "tests/support/Waiting.hpp"
 
 namespace insonify::framework {
 namespace {
 
-using std::chrono::milliseconds;
+using test::comesTrue;
 
 /** Reads one sample a cycle on its own thread while it lives, and checks that they come in order. */
 class Listener : public TaskContext {
@@ -59,19 +60,12 @@ private:
     std::thread thread_{&Chatter::run, this};
 };
 
-template <class Condition>
-bool within(milliseconds time, Condition&& condition) {
-    const auto end = std::chrono::steady_clock::now() + time;
-    while (!condition() && std::chrono::steady_clock::now() < end) std::this_thread::sleep_for(milliseconds(1));
-    return condition();
-}
-
 TEST(PortThreadsTest, EverySampleOfABurstRunsATriggeredTask) {
     test::Writer<int32_t> writer;
     Listener listener;
     writer.port.connectTo(listener.in, ConnPolicy::buffer(300));
     for (int32_t i = 1; i <= 300; ++i) writer.port.write(i);
-    EXPECT_TRUE(within(milliseconds(20000), [&] { return listener.samples == 300; })) << listener.samples;
+    EXPECT_TRUE(comesTrue([&] { return listener.samples == 300; })) << listener.samples;
     EXPECT_EQ(listener.disordered, 0);
 }
 
@@ -83,7 +77,7 @@ TEST(PortThreadsTest, ASampleThatCameBeforeTheThreadWasReleasedRunsTheTask) {
     writer.port.write(1);
     EXPECT_EQ(listener.samples, 0);
     listener.activity().release();
-    EXPECT_TRUE(within(milliseconds(20000), [&] { return listener.samples == 1; }));
+    EXPECT_TRUE(comesTrue([&] { return listener.samples == 1; }));
 }
 
 TEST(PortThreadsTest, AReaderThatHangsInItsHookDoesNotHoldUpItsWriter) {
@@ -101,7 +95,7 @@ TEST(PortThreadsTest, AReaderThatHangsInItsHookDoesNotHoldUpItsWriter) {
     EXPECT_EQ(listener.samples, 0);
     EXPECT_EQ(listener.in.channels().front()->lost(), 9998u);
     let_go.set_value();
-    EXPECT_TRUE(within(milliseconds(20000), [&] { return listener.samples == 3; }));
+    EXPECT_TRUE(comesTrue([&] { return listener.samples == 3; }));
 }
 
 TEST(PortThreadsTest, PortsConnectAndDisconnectUnderLoad) {
@@ -119,7 +113,7 @@ TEST(PortThreadsTest, PortsConnectAndDisconnectUnderLoad) {
         EXPECT_TRUE(first.in.connected());
         const int before = first.samples;
         const auto heard = [&] { return i % 20 != 0 || first.samples > before; };
-        EXPECT_TRUE(within(milliseconds(20000), heard));
+        EXPECT_TRUE(comesTrue(heard));
         one.port().disconnect(first.in);
         EXPECT_FALSE(first.in.connected());
         EXPECT_FALSE(first.in.hasNew());
@@ -136,7 +130,7 @@ TEST(PortThreadsTest, ATaskThatGoesWhileOthersWriteDisconnectsItself) {
     for (int i = 0; i < 50; ++i) {
         Listener listener;
         chatter.port().connectTo(listener.in, ConnPolicy::circularBuffer(2));
-        EXPECT_TRUE(within(milliseconds(20000), [&] { return listener.samples > 0; }));
+        EXPECT_TRUE(comesTrue([&] { return listener.samples > 0; }));
     }
     EXPECT_FALSE(chatter.port().connected());
 }

@@ -54,11 +54,12 @@ bool fifoIsPermitted() {
     return permitted;
 }
 
-/** Runs a task with this activity, and what stands before the tasks. */
+/** Runs a task with this activity, and what stands before the tasks; without a watchdog, which would warn of a machine
+ *  that stalls. */
 RunResult run(const std::string& head, const std::string& activity, Thread& own, Thread& started) {
     Registry registry;
     registry.add<Noting>("test::Noting", "notes");
-    const std::string yaml = "schedule: realtime\n" + head +
+    const std::string yaml = "schedule: realtime\nwatchdog: 1000000\n" + head +
                              "tasks: {note: {type: test::Noting, activity: {period: 0.01" + activity + "}}}\n";
     Deployment deployment(DeploymentSpec::parse(yaml, "a.yml"), registry);
     deployment.configure();

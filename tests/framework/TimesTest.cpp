@@ -5,6 +5,7 @@
 
 #include "components/framework/Activity.hpp"
 #include "tests/framework/Tasks.hpp"
+#include "tests/support/Waiting.hpp"
 #include "types/Pose.hpp"
 
 namespace insonify::framework {
@@ -15,7 +16,11 @@ using std::chrono::milliseconds;
 /** A cycle takes longer than two periods of 10 ms. */
 struct Slow : TaskContext {
     using TaskContext::TaskContext;
-    void updateHook() override { std::this_thread::sleep_for(milliseconds(25)); }
+    std::atomic<int> cycles_begun{0};
+    void updateHook() override {
+        ++cycles_begun;
+        std::this_thread::sleep_for(milliseconds(25));
+    }
 };
 
 /** Writes poses that are 5 ms old. */
@@ -29,13 +34,13 @@ struct OldPoses : TaskContext {
     }
 };
 
-/** Sleeps in its cycles: 30 ms, then an hour. */
+/** Sleeps in its cycles: 30 ms in each of the first ten, then an hour. */
 struct Sleeper : TaskContext {
     using TaskContext::TaskContext;
     std::vector<bool> slept;
     std::atomic<int> cycles_begun{0};
     void updateHook() override {
-        const types::Time until = now() + types::Time{cycles_begun++ == 0 ? 30'000 : 3'600'000'000};
+        const types::Time until = now() + types::Time{cycles_begun++ < 10 ? 30'000 : 3'600'000'000};
         slept.push_back(activity().sleepUntil(until) && now() >= until);
     }
 };
@@ -76,10 +81,10 @@ struct Realtime {
 
 TEST(TimesTest, PeriodsLeftOutAreCountedAndTheNextCycleKeepsToTheGrid) {
     Realtime run("tasks: {slow: {type: test::Slow, activity: {period: 0.01}}}\n",
-                 [](Deployment&, double wall_s) { return wall_s > 0.3; });
+                 [](Deployment& made, double) { return dynamic_cast<Slow&>(*made.task("slow")).cycles_begun >= 10; });
     const Timing& timing = run["slow"].timing();
     const uint64_t cycles = run["slow"].cycles().count();
-    ASSERT_GE(cycles, 2u);
+    ASSERT_GE(cycles, 10u);
     EXPECT_EQ(timing.jitter.count(), cycles);
     // A cycle of 25 ms leaves out one period of 10 ms at least, and is 5 ms late at least for the one it serves.
     EXPECT_GE(timing.overruns, cycles - 1);
@@ -106,12 +111,15 @@ TEST(TimesTest, LatencyIsFromTheStampToTheWriteAndLateIsBeyondTheDeadline) {
 
 TEST(TimesTest, ASleepIsNoWorkAndEndsWhenTheTaskIsHeld) {
     Realtime run("tasks: {sleeper: {type: test::Sleeper, activity: {period: 0.001}}}\n", [](Deployment& made, double) {
-        return dynamic_cast<Sleeper&>(*made.task("sleeper")).cycles_begun == 2;
+        return dynamic_cast<Sleeper&>(*made.task("sleeper")).cycles_begun == 11;
     });
     auto& sleeper = dynamic_cast<Sleeper&>(run["sleeper"]);
-    EXPECT_EQ(sleeper.slept, (std::vector<bool>{true, false}));
-    EXPECT_LT(run.result.wall_s, 600);
-    EXPECT_LT(sleeper.cycles().quantile(0), 0.03);
+    std::vector<bool> expected(11, true);
+    expected.back() = false;
+    EXPECT_EQ(sleeper.slept, expected);
+    EXPECT_LT(run.result.wall_s, 3600);
+    EXPECT_LT(sleeper.cycles().quantile(0), 0.03)
+        << "the machine may stall in some cycles, not in each beside its sleep";
 }
 
 TEST(TimesTest, ATriggeredTaskMayAskToBeWokenWithoutASample) {
@@ -124,7 +132,7 @@ TEST(TimesTest, ATriggeredTaskMayAskToBeWokenWithoutASample) {
     EXPECT_GT(dynamic_cast<Waiting&>(run["waiting"]).woken, 5);
 }
 
-/** Reads ports, slower than anyone writes. */
+/** Does not come back from its first sample until all is over. */
 struct Dawdler : TaskContext {
     using TaskContext::TaskContext;
     InputPort<double> in{this, "in", "of the source"};
@@ -134,11 +142,11 @@ struct Dawdler : TaskContext {
         double sample = 0;
         if (!in.readNew(sample)) return;
         ++taken;
-        for (int i = 0; i < 100 && !over; ++i) std::this_thread::sleep_for(milliseconds(10));
+        while (!over) std::this_thread::sleep_for(milliseconds(1));
     }
 };
 
-TEST(TimesTest, ASubscriberThatTakesASecondPerSampleDelaysNobody) {
+TEST(TimesTest, ASubscriberThatDoesNotComeBackDelaysNobody) {
     const char* yaml = R"(schedule: realtime
 tasks:
   source: {type: test::Source, activity: {period: 0.002}}
@@ -153,17 +161,19 @@ connections:
   - {from: relay.out, to: rolling.in, policy: {type: circular_buffer, size: 2}}
 )";
     Registry types = registry();
-    types.add<Dawdler>("test::Dawdler", "a second each");
+    types.add<Dawdler>("test::Dawdler", "hangs");
     Deployment deployment(DeploymentSpec::parse(yaml, "a.yml"), types);
     deployment.configure();
     Dawdler::over = false;
-    std::atomic<bool> stop{false};
-    const RunResult result =
-        deployment.run({}, stop, [&](const Progress& now) { stop = Dawdler::over = now.wall_s > 0.7; });
-    EXPECT_FALSE(result.failed());
-    // Had one of them held up its writer, there would have been one cycle in this time, or two.
     TaskContext& source = *deployment.task("source");
-    EXPECT_GE(source.cycles().count(), 10u);
+    constexpr double patience_s = std::chrono::duration<double>(test::patience).count();
+    std::atomic<bool> stop{false};
+    const RunResult result = deployment.run({}, stop, [&](const Progress& now) {
+        stop = Dawdler::over = source.output("value")->written() >= 100 || now.wall_s > patience_s;
+    });
+    EXPECT_FALSE(result.failed());
+    // Had one of them held up its writer, there would have been a few cycles until the end.
+    EXPECT_GE(source.cycles().count(), 100u);
     EXPECT_EQ(deployment.task("relay")->cycles().count(), source.cycles().count());
     const auto losses = deployment.losses();
     for (const char* task : {"newest", "buffered"}) {

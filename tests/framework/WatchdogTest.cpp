@@ -80,7 +80,7 @@ TEST_F(WatchdogTest, TheDeploymentsWatchdogIsThatOfATaskWithoutItsOwn) {
 }
 
 TEST_F(WatchdogTest, ATaskInErrorIsReportedOnceAndWhenItHasRecovered) {
-    const RunResult result = run("tasks: {patient: {type: test::Ill, activity: {period: 0.001}}}\n");
+    const RunResult result = run("watchdog: 1000000\ntasks: {patient: {type: test::Ill, activity: {period: 0.001}}}\n");
     EXPECT_THAT(result.warnings, ElementsAre("patient: RunTimeError: has a cold", "patient: has recovered"));
     EXPECT_EQ(deployment_->task("patient")->timing().errors, 1u);
     EXPECT_FALSE(result.failed());

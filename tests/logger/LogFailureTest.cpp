@@ -98,14 +98,17 @@ TEST(LogFailureTest, ADiskThatIsFullOnlyAtTheEndIsToldByStop) {
     EXPECT_THAT(task.lastError(), testing::HasSubstr("No space left on device"));
 }
 
-/** Logs into a file that may not exceed 50000 bytes; exits 0 when the task ends in Exception. */
+/** Logs into a file that may not exceed 50000 bytes; exits 0 when the task ends in Exception. With a queue of one
+ * sample the file is flushed every few samples, however the threads take turns. */
 [[noreturn]] void fillLimitedDisk(const std::filesystem::path& folder) {
     const rlimit limit{50000, 50000};
     setrlimit(RLIMIT_FSIZE, &limit);
     std::signal(SIGXFSZ, SIG_IGN);
     LoggerTask task("log");
     task.environment().output_folder = folder;
-    task.config.set(configFor("x.0.log"));
+    LoggerConfig config = configFor("x.0.log");
+    config.queue = 1;
+    task.config.set(config);
     test::Writer<std::string> source;
     source.port.connectTo(*task.makeInput("in", source.port), ConnPolicy::buffer(10));
     task.configure();

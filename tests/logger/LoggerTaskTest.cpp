@@ -5,6 +5,7 @@
 #include "components/pocolog/Reader.hpp"
 #include "tests/support/Folder.hpp"
 #include "tests/support/Ports.hpp"
+#include "tests/support/Waiting.hpp"
 #include "types/Snapshot.hpp"
 
 namespace insonify::logger {
@@ -138,8 +139,7 @@ TEST(LoggerTaskTest, WhatWasLoggedIsInTheFileWithinTheFlushPeriod) {
         const bool has_prologue = std::filesystem::file_size(bench.path()) >= 16;
         return has_prologue && pocolog::Reader(bench.path()).samples().size() == 1;
     };
-    for (int tries = 0; !logged() && tries < 500; ++tries) std::this_thread::sleep_for(std::chrono::milliseconds(10));
-    EXPECT_TRUE(logged()) << "while the task is still running";
+    EXPECT_TRUE(test::comesTrue(logged)) << "while the task is still running";
     bench.finish();
 }
 

@@ -2,7 +2,9 @@
 #include <gmock/gmock.h>
 #include <sys/resource.h>
 
+#include <algorithm>
 #include <csignal>
+#include <random>
 
 #include "components/logger/LoggerTask.hpp"
 #include "components/mcap/LogSource.hpp"
@@ -106,7 +108,15 @@ TEST_F(McapLogTest, ALogGoesOnInTheNextFileWithoutLoss) {
     EXPECT_EQ(samples, 800u);
 }
 
-/** Logs texts into a file that may not exceed 50000 bytes; exits 0 when the task tells of samples that it has lost. */
+/** 1000 bytes that cannot be compressed. */
+std::string noise(std::minstd_rand& random) {
+    std::string text(1000, '\0');
+    std::ranges::generate(text, [&] { return static_cast<char>(random() >> 8); });
+    return text;
+}
+
+/** Logs texts into a file that may not exceed 50000 bytes; exits 0 when the task tells of samples that it has lost.
+ * With a queue of one sample the file is flushed every few samples, however the threads take turns. */
 [[noreturn]] void fillLimitedDisk(const std::filesystem::path& folder) {
     const rlimit limit{50000, 50000};
     setrlimit(RLIMIT_FSIZE, &limit);
@@ -116,13 +126,15 @@ TEST_F(McapLogTest, ALogGoesOnInTheNextFileWithoutLoss) {
     LoggerConfig config;
     config.file = "x.0.mcap";
     config.flush_period = 0.001;
+    config.queue = 1;
     task.config.set(config);
     test::Writer<std::string> source;
     source.port.connectTo(*task.makeInput("in", source.port), ConnPolicy::buffer(10));
     task.configure();
     task.start();
+    std::minstd_rand random(1);
     for (int i = 0; i < 5000 && task.state() == framework::TaskState::Running; ++i) {
-        source.port.write(std::string(1000, 'x'));
+        source.port.write(noise(random));
         task.update();
         std::this_thread::sleep_for(std::chrono::microseconds(200));
     }

@@ -27,24 +27,24 @@ RecordingConfig recording(std::optional<std::string> file, std::optional<std::st
 }
 
 TEST(PictureFilesTest, PngFilesHoldThePicturesPixels) {
-    const test::TestFolder folder;
-    PictureFiles files(recording("deep/er/fan_%03d.png"), folder.path);
+    const Folder folder;
+    PictureFiles files(recording("deep/er/fan_%03d.png"), folder.path());
     files.write(fanPicture());
     files.write(fanPicture());
     for (const char* name : {"deep/er/fan_000.png", "deep/er/fan_001.png"}) {
-        const cv::Mat read = cv::imread((folder.path / name).string());
+        const cv::Mat read = cv::imread((folder.path() / name).string());
         ASSERT_FALSE(read.empty()) << name;
         EXPECT_EQ(cv::norm(read, test::pixelsOf(fanPicture()), cv::NORM_INF), 0);
     }
 }
 
 TEST(PictureFilesTest, AVideoHasEveryPictureAndTheRateOfThePings) {
-    const test::TestFolder folder;
+    const Folder folder;
     for (const char* name : {"fan.avi", "fan.mp4"}) {
-        PictureFiles files(recording({}, name), folder.path);
+        PictureFiles files(recording({}, name), folder.path());
         for (int i = 0; i < 12; ++i) files.write(fanPicture(1 + 0.125 * i));
         files.close();
-        cv::VideoCapture video((folder.path / name).string());
+        cv::VideoCapture video((folder.path() / name).string());
         ASSERT_TRUE(video.isOpened()) << name;
         EXPECT_NEAR(video.get(cv::CAP_PROP_FPS), 8, 0.01);
         cv::Mat frame, last;
@@ -59,12 +59,12 @@ TEST(PictureFilesTest, AVideoHasEveryPictureAndTheRateOfThePings) {
 }
 
 TEST(PictureFilesTest, AVideoOfOnePictureIsAVideo) {
-    const test::TestFolder folder;
-    PictureFiles files(recording({}, "fan.avi"), folder.path);
+    const Folder folder;
+    PictureFiles files(recording({}, "fan.avi"), folder.path());
     files.write(fanPicture());
     files.close();
     cv::Mat frame;
-    EXPECT_TRUE(cv::VideoCapture((folder.path / "fan.avi").string()).read(frame));
+    EXPECT_TRUE(cv::VideoCapture((folder.path() / "fan.avi").string()).read(frame));
 }
 
 TEST(PictureFilesTest, AFileThatCannotBeWrittenIsNamed) {
@@ -78,20 +78,20 @@ TEST(PictureFilesTest, AFileThatCannotBeWrittenIsNamed) {
 }
 
 TEST(PictureWriterTest, EverythingThatWasGivenIsWrittenBeforeTheEnd) {
-    const test::TestFolder folder;
+    const Folder folder;
     const auto picture = std::make_shared<const types::Image>(fanPicture());
-    PictureWriter writer(PictureFiles(recording("%d.png"), folder.path));
+    PictureWriter writer(PictureFiles(recording("%d.png"), folder.path()));
     for (int i = 0; i < 20; ++i) writer.write(picture);
     writer.close();
-    EXPECT_TRUE(std::filesystem::exists(folder.path / "19.png"));
+    EXPECT_TRUE(std::filesystem::exists(folder.path() / "19.png"));
     EXPECT_EQ(picture.use_count(), 1);
 }
 
 TEST(PictureWriterTest, TroubleReachesTheGiver) {
-    const test::TestFolder folder;
-    std::filesystem::create_directories(folder.path / "0.png");  // in the way of the first file
+    const Folder folder;
+    std::filesystem::create_directories(folder.path() / "0.png");  // in the way of the first file
     const auto picture = std::make_shared<const types::Image>(fanPicture());
-    PictureWriter writer(PictureFiles(recording("%d.png"), folder.path));
+    PictureWriter writer(PictureFiles(recording("%d.png"), folder.path()));
     EXPECT_THROW(
         {
             writer.write(picture);

@@ -11,7 +11,7 @@ class PictureTaskTest : public ::testing::Test {
 protected:
     PictureTaskTest() {
         auto environment = std::make_shared<framework::Environment>(task_.environment());
-        environment->output_folder = folder_.path;
+        environment->output_folder = folder_.path();
         task_.setEnvironment(environment);
         in_.port.connectTo(task_.ping, {});
         config_.width = 320;
@@ -29,11 +29,11 @@ protected:
     }
     size_t filesWritten() const {
         size_t count = 0;
-        for ([[maybe_unused]] const auto& entry : std::filesystem::directory_iterator(folder_.path)) ++count;
+        for ([[maybe_unused]] const auto& entry : std::filesystem::directory_iterator(folder_.path())) ++count;
         return count;
     }
 
-    test::TestFolder folder_;
+    Folder folder_;
     FanImageTask task_{"fan"};
     test::Writer<types::SonarPtr> in_;
     test::Reader<types::ImagePtr> out_;
@@ -65,12 +65,12 @@ TEST_F(PictureTaskTest, EveryThirdPingGetsAFile) {
     for (int64_t time = 1; time <= 7; ++time) give(time);
     ASSERT_TRUE(task_.stop());
     EXPECT_EQ(filesWritten(), 3u);
-    EXPECT_TRUE(std::filesystem::exists(folder_.path / "fan_000002.png"));
+    EXPECT_TRUE(std::filesystem::exists(folder_.path() / "fan_000002.png"));
 }
 
 TEST_F(PictureTaskTest, AFileThatCannotBeWrittenEndsInException) {
     config_.file = "%d.png";
-    std::filesystem::create_directories(folder_.path / "0.png");
+    std::filesystem::create_directories(folder_.path() / "0.png");
     start();
     give(1);
     EXPECT_FALSE(task_.stop());

@@ -2,10 +2,10 @@
 // Pings and pictures for the tests of what is shown.
 #include <gtest/gtest.h>
 
-#include <filesystem>
 #include <opencv2/core.hpp>
 #include <string>
 
+#include "tests/support/Folder.hpp"
 #include "types/Angle.hpp"
 #include "types/Image.hpp"
 #include "types/Sonar.hpp"
@@ -49,19 +49,5 @@ inline cv::Point2d centreOfDifference(const cv::Mat& a, const cv::Mat& b) {
         }
     return moment / sum;
 }
-
-/** A folder of its own for the running test, gone at its end. */
-class TestFolder {
-public:
-    TestFolder() {
-        const auto* test = ::testing::UnitTest::GetInstance()->current_test_info();
-        path = std::filesystem::temp_directory_path() /
-               (std::string("insonify_") + test->test_suite_name() + test->name());
-        std::filesystem::remove_all(path);
-        std::filesystem::create_directories(path);
-    }
-    ~TestFolder() { std::filesystem::remove_all(path); }
-    std::filesystem::path path;
-};
 
 }  // namespace insonify::test

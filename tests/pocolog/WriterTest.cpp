@@ -114,6 +114,13 @@ TEST(WriterTest, ALogThatIsBeingWrittenIsNotOverwritten) {
     EXPECT_NO_THROW(Writer(folder / "x.0.log"));
 }
 
+TEST(WriterTest, ADeviceIsThereForEveryone) {
+    Folder folder;
+    for (const char* file : {"x.0.log", "y.0.log"}) std::filesystem::create_symlink("/dev/null", folder / file);
+    const Writer one(folder / "x.0.log");
+    EXPECT_NO_THROW(Writer(folder / "y.0.log"));
+}
+
 TEST(WriterTest, AFullDeviceIsToldWithTheSystemsReason) {
     Folder folder;
     std::filesystem::create_symlink("/dev/full", folder / "x.0.log");

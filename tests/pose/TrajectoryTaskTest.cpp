@@ -6,6 +6,7 @@
 
 #include "components/framework/Activity.hpp"
 #include "components/pose/TrajectoryTask.hpp"
+#include "tests/support/Folder.hpp"
 #include "tests/support/Ports.hpp"
 
 namespace insonify::pose {
@@ -18,7 +19,7 @@ protected:
         auto environment = std::make_shared<framework::Environment>();
         environment->now = [this] { return time_; };
         environment->start_time = [] { return types::Time::fromSeconds(1); };
-        environment->input_folder = std::filesystem::temp_directory_path();
+        environment->input_folder = folder_.path();
         task_.setEnvironment(environment);
         task_.pose.connectTo(out_.port, {});
     }
@@ -30,6 +31,7 @@ protected:
         return pose;
     }
 
+    const Folder folder_;
     types::Time time_;
     TrajectoryTask task_{"vehicle"};
     test::Reader<types::Pose> out_;
@@ -79,13 +81,11 @@ TEST_F(TrajectoryTaskTest, AFixedPoseHasFinishedAfterOnePose) {
 }
 
 TEST_F(TrajectoryTaskTest, AFileIsFoundBesideTheDeployment) {
-    const auto file = std::filesystem::temp_directory_path() / "insonify_trajectory_task.csv";
-    std::ofstream(file) << "time,x,y,z,qw,qx,qy,qz\n0,7,8,9,1,0,0,0\n";
-    task_.config.set({.file = "insonify_trajectory_task.csv", .waypoints = {}});
+    std::ofstream(folder_ / "trajectory.csv") << "time,x,y,z,qw,qx,qy,qz\n0,7,8,9,1,0,0,0\n";
+    task_.config.set({.file = "trajectory.csv", .waypoints = {}});
     ASSERT_TRUE(task_.configure());
     ASSERT_TRUE(task_.start());
     EXPECT_EQ(poseAt(1).position, glm::dvec3(7, 8, 9));
-    std::filesystem::remove(file);
 }
 
 TEST_F(TrajectoryTaskTest, AFileThatIsNotThereIsSeenBeforeAndRefusedByConfigure) {

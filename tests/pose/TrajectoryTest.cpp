@@ -8,6 +8,7 @@
 #include <numbers>
 
 #include "components/pose/Trajectory.hpp"
+#include "tests/support/Folder.hpp"
 #include "types/ConfigError.hpp"
 
 namespace insonify::pose {
@@ -18,13 +19,13 @@ using ::testing::HasSubstr;
 /** A file of the given text, gone at the end of the test. */
 class TextFile {
 public:
-    explicit TextFile(const std::string& text) {
-        const auto* test = ::testing::UnitTest::GetInstance()->current_test_info();
-        path = std::filesystem::temp_directory_path() / (std::string(test->name()) + ".csv");
-        std::ofstream(path, std::ios::binary) << text;
-    }
-    ~TextFile() { std::filesystem::remove(path); }
-    std::filesystem::path path;
+    explicit TextFile(const std::string& text) { std::ofstream(path, std::ios::binary) << text; }
+
+private:
+    const Folder folder_;
+
+public:
+    const std::filesystem::path path = folder_ / "trajectory.csv";
 };
 
 std::vector<types::Diagnostic> faultsOf(const std::string& text) {

@@ -196,6 +196,8 @@ TEST_F(BadInputTest, DamagedBytesGiveAnErrorOrASoundScene) {
                 ++scenes;
             } catch (const types::ConfigError& error) {
                 EXPECT_NE(std::string(error.what()), "");
+                for (const char* raw : {"std::", "stoi", "_M_", "basic_string", "json.exception"})
+                    EXPECT_EQ(std::string(error.what()).find(raw), std::string::npos) << error.what();
             }
         }
     EXPECT_GT(scenes, 0u);  // not every byte matters

@@ -2,6 +2,7 @@
 #include <map>
 
 #include "components/scene/MeshFile.hpp"
+#include "tests/scene/Dae.hpp"
 #include "tests/scene/SdfFiles.hpp"
 
 namespace insonify::scene {
@@ -11,20 +12,11 @@ class MeshFileTest : public SdfFiles {
 protected:
     /** A rectangle from (0, 0, 0) to (1, 2, 3) of the file, twice: node "near" and, 10 along x, node "far". */
     std::filesystem::path writeDae(const std::string& unit, const std::string& up_axis) const {
-        return write("part.dae", R"(<?xml version="1.0"?>
-<COLLADA xmlns="http://www.collada.org/2005/11/COLLADASchema" version="1.4.1">
-<asset><unit name="u" meter=")" + unit +
-                                     R"("/><up_axis>)" + up_axis + R"(</up_axis></asset>
-<library_geometries><geometry id="g" name="plate"><mesh>
-<source id="p"><float_array id="pa" count="12">0 0 0 1 0 0 1 2 3 0 2 3</float_array><technique_common>
-<accessor source="#pa" count="4" stride="3"><param name="X" type="float"/><param name="Y" type="float"/>
-<param name="Z" type="float"/></accessor></technique_common></source>
-<vertices id="v"><input semantic="POSITION" source="#p"/></vertices>
-<triangles count="2"><input semantic="VERTEX" source="#v" offset="0"/><p>0 1 2 0 2 3</p></triangles>
-</mesh></geometry></library_geometries>
-<library_visual_scenes><visual_scene id="s"><node id="near" name="near"><instance_geometry url="#g"/></node>
-<node id="far" name="far"><translate>10 0 0</translate><instance_geometry url="#g"/></node></visual_scene>
-</library_visual_scenes><scene><instance_visual_scene url="#s"/></scene></COLLADA>)");
+        Dae dae;
+        dae.unit = unit;
+        dae.up_axis = up_axis;
+        dae.nodes += R"(<node id="far" name="far"><translate>10 0 0</translate><instance_geometry url="#g"/></node>)";
+        return write("part.dae", dae.text());
     }
     types::GeometryPtr mesh(const std::string& elements) const {
         return world(model("m", "<mesh>" + elements + "</mesh>")).geometry;

@@ -1,7 +1,6 @@
 #pragma once
 // Small glTF files made inside a test, and what must hold for every scene that was loaded.
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <cmath>
@@ -14,6 +13,7 @@
 #include <vector>
 
 #include "components/scene/Scene.hpp"
+#include "tests/support/Folder.hpp"
 #include "types/ConfigError.hpp"
 
 namespace insonify::scene {
@@ -46,14 +46,6 @@ inline std::string buffers(const std::string& bytes) {
 /** A folder of its own for each test. */
 class SceneFiles : public ::testing::Test {
 protected:
-    SceneFiles()
-        : folder_(std::filesystem::temp_directory_path() /
-                  ("insonify_scene_" + std::to_string(getpid()) + "_" +
-                   ::testing::UnitTest::GetInstance()->current_test_info()->name())) {
-        std::filesystem::create_directories(folder_);
-    }
-    ~SceneFiles() override { std::filesystem::remove_all(folder_); }
-
     std::filesystem::path write(const std::string& name, const std::string& bytes) const {
         std::ofstream(folder_ / name, std::ios::binary) << bytes;
         return folder_ / name;
@@ -72,7 +64,8 @@ protected:
     }
     std::string faultOfGltf(const std::string& rest) const { return faultOf(write("case.gltf", gltf(rest))); }
 
-    std::filesystem::path folder_;
+    const Folder owned_;
+    const std::filesystem::path folder_ = owned_.path();
 };
 
 inline std::vector<glm::dvec3> worldCorners(const types::Geometry& geometry, const types::Object& object) {

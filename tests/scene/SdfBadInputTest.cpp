@@ -19,12 +19,12 @@ TEST_F(SdfBadInputTest, WhatIsNoSdfIsNamed) {
     std::filesystem::create_directory(folder_ / "folder.world");
     expectFault(faultOf(folder_ / "missing.world"), "does not exist; looked for at ");
     expectFault(faultOf(folder_ / "folder.world"), "is not a file");
-    expectFault(faultOf(write("empty.sdf", "")), "XML_ERROR_EMPTY_DOCUMENT");
+    expectFault(faultOf(write("empty.sdf", "")), "is no XML: it is empty");
     expectFault(faultOf(write("cut.sdf", "<sdf version='1.9'>\n<world name='w'>\n<model")),
-                "cut.sdf:3: Error parsing XML");
+                "cut.sdf:3: is no XML: a tag is not finished (<model>)");
     expectFault(faultOf(write("page.world", "<html><body>404</body></html>")), "holds neither a world nor a model");
     expectFault(faultOf(write("none.world", "<sdf version='1.9'/>")), "holds neither a world nor a model");
-    expectFault(faultOf(write("noise.world", bytesOf<uint64_t>({~0ull, 0x1234567890abcdef}))), "Error parsing XML");
+    expectFault(faultOf(write("noise.world", bytesOf<uint64_t>({~0ull, 0x1234567890abcdef}))), "is no XML: ");
 }
 
 TEST_F(SdfBadInputTest, AValueThatCannotBeReadIsToldWithItsLineAndReason) {
@@ -68,6 +68,47 @@ TEST_F(SdfBadInputTest, AModelThatIncludesItselfIsRefused) {
     EXPECT_EQ(faultOfWorld("<include><uri>model://a</uri></include>"), "");
 }
 
+TEST_F(SdfBadInputTest, CommentsCostNextToNothing) {
+    std::string comments;
+    for (int i = 0; i < 200'000; ++i)
+        comments += "<!-- a comment that is as long as those of people who explain much -->\n";
+    EXPECT_EQ(faultOfWorld(comments + model("m", box_)), "");
+}
+
+TEST_F(SdfBadInputTest, WhatAFileMayCostInTimeIsBounded) {
+    std::string models, links, attributes;
+    for (int i = 0; i < 15'000; ++i) {
+        const std::string number = std::to_string(i);
+        models += model("m" + number, box_);
+        links += "<link name='l" + number + "'/>";
+        attributes += " a" + number + "='1'";
+    }
+    const std::string part = "would take minutes to read: with what it includes it may hold up to 100000 elements";
+    expectFault(faultOfWorld(models), part);
+    expectFault(faultOfWorld("<model name='m'>" + links + "</model>"), part);
+    expectFault(faultOfWorld("<model name='m'" + attributes + "><link name='l'/></model>"), part);
+}
+
+TEST_F(SdfBadInputTest, ModelsThatIncludeEachOtherTwiceAreBoundedAsWell) {
+    const auto including = [](const std::string& name, int times) {
+        std::string includes;
+        for (int i = 0; i < times; ++i)
+            includes += "<include><uri>model://" + name + "</uri><name>n" + std::to_string(i) + "</name></include>";
+        return includes;
+    };
+    writeModel("m0", model("m0", box_));
+    for (int i = 1; i <= 40; ++i)
+        writeModel("m" + std::to_string(i),
+                   "<model name='m'><link name='l'/>" + including("m" + std::to_string(i - 1), 2) + "</model>");
+    EXPECT_EQ(faultOfWorld(including("m2", 2)), "");
+    expectFault(faultOfWorld(including("m40", 1)), "would take minutes to read");
+    writeModel("m0", "<model name='m'><link name='l'/>" + including("m99", 1) + "</model>");
+    for (int i = 41; i <= 99; ++i)
+        writeModel("m" + std::to_string(i),
+                   "<model name='m'><link name='l'/>" + including("m" + std::to_string(i + 1), 1) + "</model>");
+    expectFault(faultOfWorld(including("m41", 1)), "models include each other 51 deep; may be up to 50");
+}
+
 TEST_F(SdfBadInputTest, DeepNestingEndsInASceneOrAnError) {
     for (const int depth : {30, 450, 100'000}) {
         std::string body = "<link name='l'/>";
@@ -104,6 +145,8 @@ TEST_F(SdfBadInputTest, EveryTruncationAndDamageIsASceneOrAnError) {
             ++scenes;
         } catch (const types::ConfigError& error) {
             EXPECT_FALSE(error.diagnostics().empty()) << bytes;
+            for (const char* raw : {"std::", "stoi", "_M_", "basic_string", "XML_ERROR", "libsdformat"})
+                EXPECT_EQ(std::string(error.what()).find(raw), std::string::npos) << error.what();
             ++faults;
         }
     }

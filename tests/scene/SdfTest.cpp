@@ -131,7 +131,7 @@ TEST_F(SdfTest, NamesWithColonsThatLibsdformatRefusesAreReadWithUnderscores) {
                                 "<xyz>0 0 1</xyz></axis></joint></model>",
                             "1.4");
     EXPECT_EQ(parentOf(old, "m::x__k"), "m::x__l");
-    EXPECT_TRUE(hasNotice(*old.geometry, "libsdformat gives up: SDF ASSERTION Error: <xyz>'s attribute"));
+    EXPECT_TRUE(hasNotice(*old.geometry, "cannot be read as SDF: SDF ASSERTION Error: <xyz>'s attribute"));
 }
 
 TEST_F(SdfTest, AModelAloneIsASceneAndFindsItsOwnFiles) {

@@ -145,14 +145,18 @@ TEST_F(SdfVisualsTest, AHeightmapOfManyPixelsIsReadInSteps) {
 
 TEST_F(SdfVisualsTest, AVisualThatCannotBeDrawnIsANotice) {
     write("words.png", "no picture");
+    write("animation.png",
+          std::string("GIF89a\2\0\2\0\0\0\0,\0\0\0\0\2\0\2\0\0\2\2\x84Q\0;", 27));  // stb_image would read it
     const Scene scene =
         world("<model name='m'><link name='l'>" + visual("a", "<mesh><uri>model://gone.dae</uri></mesh>") +
               visual("b", "<heightmap><uri>words.png</uri></heightmap>") +
+              visual("f", "<heightmap><uri>animation.png</uri></heightmap>") +
               visual("c", "<heightmap><uri>gone.png</uri></heightmap>") + visual("d", "<box><size>1 0 1</size></box>") +
               visual("e", "<empty/>") + "</link></model>");
     EXPECT_TRUE(scene.geometry->objects.empty());
     for (const char* part : {"visual m::l::a is left out: model://gone.dae is not found",
                              "visual m::l::b is left out: words.png is neither PNG nor JPEG",
+                             "visual m::l::f is left out: animation.png is neither PNG nor JPEG",
                              "visual m::l::c is left out: gone.png is not found",
                              "visuals left out, their size is zero in some direction or not finite: 1",
                              "visual m::l::e is left out: its geometry is not one of those", "an empty sea"})

@@ -66,7 +66,7 @@ struct Count {
 
 /** Compares the runs of all slabs with the triangles that are in view. */
 Count compare(const SonarConfig& config, const types::Snapshot& snapshot) {
-    Culler culler(*snapshot.geometry, {0, config.range});
+    Culler culler(*snapshot.geometry, {0, {config.range}});
     culler.place(snapshot);
     const glm::dmat4 sonar_from_world = glm::inverse(snapshot.sonar.worldFromBody());
     Count count;
@@ -108,7 +108,7 @@ types::Mesh ball() { return test::sphere(1, 8); }
 size_t runsOfBall(glm::dvec3 position, double field_of_view_deg = 60) {
     const auto snapshot = test::snapshotOf(test::sceneOf({ball()}, 0, {position}));
     const SonarConfig config = fan(field_of_view_deg);
-    Culler culler(*snapshot.geometry, {0, config.range});
+    Culler culler(*snapshot.geometry, {0, {config.range}});
     culler.place(snapshot);
     size_t count = 0;
     for (const Slab& slab : makeSlabs(config, makeBeams(config))) {
@@ -190,7 +190,7 @@ TEST(CullerTest, AnObjectAboutTheSonarIsDrawnInEverySlab) {
 
 TEST(CullerTest, AMovedObjectIsDrawnWhereItIs) {
     types::Snapshot snapshot = test::snapshotOf(test::sceneOf({ball()}, 0, {{-10, 0, 0}}));
-    Culler culler(*snapshot.geometry, {0, 30});
+    Culler culler(*snapshot.geometry, {0, {30}});
     std::vector<Culler::Run> runs;
     const Slab slab = makeSlabs(fan(60), makeBeams(fan(60))).front();
     culler.place(snapshot);

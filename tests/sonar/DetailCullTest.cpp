@@ -15,7 +15,7 @@ namespace {
 
 /** Triangles drawn over all slabs of `config`. */
 size_t drawnBy(const SonarConfig& config, const types::Snapshot& snapshot) {
-    Culler culler(*snapshot.geometry, {0, config.range});
+    Culler culler(*snapshot.geometry, {0, {config.range}});
     culler.place(snapshot);
     size_t drawn = 0;
     std::vector<Culler::Run> runs;

@@ -7,6 +7,7 @@
 #include "components/sonar/SonarTask.hpp"
 #include "tests/sonar/WallScene.hpp"
 #include "tests/support/Ports.hpp"
+#include "tests/support/Waiting.hpp"
 
 namespace insonify::sonar {
 namespace {
@@ -24,24 +25,30 @@ protected:
         ASSERT_TRUE(task_.start()) << task_.lastError();
         task_.activity().release();
     }
+    /** From now on the task's clock stands wherever the test sets it. */
+    void setClock(types::Time time) {
+        clock_ = time.microseconds;
+        task_.environment().now = [this] { return types::Time{clock_.load()}; };
+        task_.environment().wall_clock = false;
+    }
     /** A snapshot of the moment, moved by so many seconds; its stamp. */
     types::Time send(double ahead = 0) {
         types::Snapshot snapshot = facingWall(5);
-        snapshot.time = framework::wallClock() + types::Time::fromSeconds(ahead);
+        snapshot.time = task_.environment().now() + types::Time::fromSeconds(ahead);
         in_.port.write(std::make_shared<types::Snapshot>(snapshot));
         return snapshot.time;
     }
     /** The next ping, waited for. */
     types::SonarPtr receive() {
         types::SonarPtr ping;
-        for (int i = 0; i < 60000 && !out_.port.readNew(ping); ++i)
-            std::this_thread::sleep_for(std::chrono::milliseconds(1));
+        test::comesTrue([&] { return out_.port.readNew(ping); });
         return ping;
     }
 
     SonarTask task_{"sonar"};
     test::Writer<types::SnapshotPtr> in_;
     test::Reader<types::SonarPtr> out_;
+    std::atomic<int64_t> clock_{0};
 };
 
 TEST_F(ListenTest, APingIsWrittenAfterSoundsWayToTheRangeAndBack) {
@@ -69,19 +76,24 @@ TEST_F(ListenTest, APoseThatIsOldShortensNoListening) {
 }
 
 TEST_F(ListenTest, PingsDoNotOverlapAndTheNewestSnapshotCounts) {
+    setClock({10'000'000});
     start(150);
-    send();
+    const types::Time first_sent = send();
+    ASSERT_TRUE(test::comesTrue([&] { return !task_.snapshot.hasNew(); }));
     types::Time last;
-    for (int i = 0; i < 10; ++i) {  // over 0.1 s: all while it listens
-        std::this_thread::sleep_for(std::chrono::milliseconds(10));
+    for (int i = 0; i < 10; ++i) {  // all while it listens
+        clock_ += 10'000;
         last = send();
     }
-    ASSERT_TRUE(receive());
-    const types::Time first_heard = framework::wallClock();
-    const types::SonarPtr second = receive();
-    ASSERT_TRUE(second);
-    EXPECT_EQ(second->time, last);
-    EXPECT_GE((framework::wallClock() - first_heard).seconds(), 0.9 * 2 * 150 / 1500.0);
+    for (const auto& [sent, heard] : {std::pair(first_sent, 10'200'000), {last, 10'400'000}}) {
+        types::SonarPtr ping;
+        ASSERT_TRUE(test::comesTrue([&] {
+            clock_ += 1000;
+            return out_.port.readNew(ping);
+        }));
+        EXPECT_EQ(ping->time, sent);
+        EXPECT_GE(clock_, heard);
+    }
 }
 
 TEST_F(ListenTest, ASonarIsCarriedOnToTheTimeOfItsPingWhereItMayBe) {
@@ -116,9 +128,7 @@ TEST_F(ListenTest, AStopDoesNotWaitForTheLastEchoAndWritesNoPing) {
 TEST_F(ListenTest, ASnapshotFromTheFutureIsRefused) {
     start(15);
     send(3600);
-    for (int i = 0; i < 60000 && task_.state() != framework::TaskState::RunTimeError; ++i)
-        std::this_thread::sleep_for(std::chrono::milliseconds(1));
-    EXPECT_EQ(task_.state(), framework::TaskState::RunTimeError);
+    EXPECT_TRUE(test::comesTrue([&] { return task_.state() == framework::TaskState::RunTimeError; }));
     EXPECT_NE(task_.lastError().find("ahead of the clock"), std::string::npos);
     send();
     EXPECT_TRUE(receive());

@@ -48,7 +48,7 @@ constexpr Seen nothing{0xffffffff, 0};
 /** What each pixel of the slabs shows, drawn. */
 std::vector<Seen> drawn(const types::Snapshot& snapshot, const std::vector<Slab>& slabs) {
     gpu::EglContext context("software");
-    Culler culler(*snapshot.geometry, {.range_min = 0, .range_max = 1e4, .draw_all = true});
+    Culler culler(*snapshot.geometry, {.range_min = 0, .reach = {1e4}, .draw_all = true});
     ThreadPool threads(1);
     SurfacePass surface(context, {*snapshot.geometry, slabs, {}, 1e-3, culler.runLimit(), true}, threads);
     culler.place(snapshot);

@@ -1,10 +1,15 @@
 // A ROS 2 peer by Fast DDS, ROS 2's default, over the loopback interface in the domain of ROS_DOMAIN_ID:
 //
-//     dds_fast_peer listen TYPE TOPIC SECONDS COUNT   "ready" once it hears a writer, then how many came, and their
-//     size dds_fast_peer send TYPE TOPIC FILE COUNT        the bytes of FILE, 40 times a second
+//     dds_fast_peer listen TYPE TOPIC SECONDS COUNT         "ready" once it knows a writer, "met" at the first message
+//                                                           without a stamp; then how many came with one, and their
+//                                                           size
+//     dds_fast_peer send TYPE TOPIC GREETING FILE COUNT     the bytes of GREETING until SIGUSR1, then those of FILE, 40
+//                                                           times a second
 #include <fastdds/rtps/transport/UDPv4TransportDescriptor.h>
 
+#include <algorithm>
 #include <chrono>
+#include <csignal>
 #include <cstdlib>
 #include <cstring>
 #include <fastdds/dds/domain/DomainParticipant.hpp>
@@ -20,6 +25,7 @@
 #include <iterator>
 #include <string>
 #include <thread>
+#include <utility>
 #include <vector>
 
 namespace {
@@ -58,6 +64,19 @@ public:
     bool getKey(void*, InstanceHandle_t*, bool) override { return false; }
 };
 
+volatile std::sig_atomic_t begun = 0;
+
+Bytes bytesOf(const char* path) {
+    std::ifstream file(path, std::ios::binary);
+    return {std::istreambuf_iterator<char>(file), {}};
+}
+
+/** Of the header that the message begins with, after four bytes on its encoding. */
+bool hasStamp(const Bytes& message) {
+    return message.size() >= 12 &&
+           std::any_of(message.begin() + 4, message.begin() + 12, [](char c) { return c != 0; });
+}
+
 DomainParticipant* join() {
     DomainParticipantQos qos;
     const auto udp = std::make_shared<eprosima::fastdds::rtps::UDPv4TransportDescriptor>();
@@ -75,7 +94,7 @@ DomainParticipant* join() {
 int listen(DomainParticipant& participant, Topic* topic, double seconds, size_t count) {
     DataReaderQos qos = DATAREADER_QOS_DEFAULT;
     qos.reliability().kind = RELIABLE_RELIABILITY_QOS;
-    qos.history().depth = 50;
+    qos.history().depth = 200;
     DataReader* const reader = participant.create_subscriber(SUBSCRIBER_QOS_DEFAULT)->create_datareader(topic, qos);
     SubscriptionMatchedStatus matched;
     const auto end = Clock::now() + std::chrono::duration<double>(seconds);
@@ -87,36 +106,35 @@ int listen(DomainParticipant& participant, Topic* topic, double seconds, size_t 
     Bytes bytes;
     SampleInfo info;
     size_t heard = 0, size = 0;
+    bool met = false;
     while (Clock::now() < end && heard < count) {
-        if (reader->take_next_sample(&bytes, &info) == ReturnCode_t::RETCODE_OK && info.valid_data) {
+        if (reader->take_next_sample(&bytes, &info) != ReturnCode_t::RETCODE_OK || !info.valid_data) {
+            std::this_thread::sleep_for(std::chrono::microseconds(200));
+        } else if (hasStamp(bytes)) {
             ++heard;
             size = bytes.size();
-        } else {
-            std::this_thread::sleep_for(std::chrono::microseconds(200));
+        } else if (!std::exchange(met, true)) {
+            std::cout << "met" << std::endl;
         }
     }
     std::cout << "{\"count\": " << heard << ", \"size\": " << size << "}" << std::endl;
     return 0;
 }
 
-int send(DomainParticipant& participant, Topic* topic, Bytes bytes, int count) {
+int send(DomainParticipant& participant, Topic* topic, Bytes greeting, Bytes bytes, int count) {
     DataWriterQos qos = DATAWRITER_QOS_DEFAULT;
     qos.reliability().kind = RELIABLE_RELIABILITY_QOS;
-    qos.history().depth = 50;
+    qos.history().depth = 200;
     qos.endpoint().history_memory_policy = eprosima::fastrtps::rtps::PREALLOCATED_WITH_REALLOC_MEMORY_MODE;
     DataWriter* const writer = participant.create_publisher(PUBLISHER_QOS_DEFAULT)->create_datawriter(topic, qos);
-    std::cout << "ready" << std::endl;
-    PublicationMatchedStatus matched;
-    for (int i = 0; i < 4000 && matched.current_count == 0; ++i) {
-        writer->get_publication_matched_status(matched);
-        std::this_thread::sleep_for(std::chrono::milliseconds(5));
-    }
-    std::this_thread::sleep_for(std::chrono::milliseconds(500));  // the other side may not know us yet
-    for (int i = 0; i < count; ++i) {
-        writer->write(&bytes);
+    const auto write = [&](Bytes& message) {
+        writer->write(&message);
         std::this_thread::sleep_for(std::chrono::milliseconds(25));
-    }
-    std::this_thread::sleep_for(std::chrono::seconds(1));
+    };
+    std::cout << "ready" << std::endl;
+    while (!begun) write(greeting);
+    for (int i = 0; i < count; ++i) write(bytes);
+    writer->wait_for_acknowledgments({60, 0});
     std::cout << "{\"count\": " << count << "}" << std::endl;
     return 0;
 }
@@ -124,13 +142,15 @@ int send(DomainParticipant& participant, Topic* topic, Bytes bytes, int count) {
 }  // namespace
 
 int main(int count, char** words) {
-    if (count != 6) return std::cerr << "dds_fast_peer: see the head of tests/support/FastPeer.cpp\n", 2;
+    const bool sends = count == 7 && words[1] == std::string("send");
+    if (!sends && (count != 6 || words[1] != std::string("listen")))
+        return std::cerr << "dds_fast_peer: see the head of tests/support/FastPeer.cpp\n", 2;
+    std::signal(SIGUSR1, [](int) { begun = 1; });
     DomainParticipant* const participant = join();
     const TypeSupport type(new Raw(words[2]));
     type.register_type(participant);
     Topic* const topic = participant->create_topic("rt" + std::string(words[3]), words[2], TOPIC_QOS_DEFAULT);
-    const int rounds = std::atoi(words[5]);
-    if (std::string(words[1]) == "listen") return listen(*participant, topic, std::atof(words[4]), size_t(rounds));
-    std::ifstream file(words[4], std::ios::binary);
-    return send(*participant, topic, {std::istreambuf_iterator<char>(file), {}}, rounds);
+    const int rounds = std::atoi(words[count - 1]);
+    if (!sends) return listen(*participant, topic, std::atof(words[4]), size_t(rounds));
+    return send(*participant, topic, bytesOf(words[4]), bytesOf(words[5]), rounds);
 }

@@ -3,13 +3,15 @@
 #include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>
-#include <thread>
 
 #include "components/framework/Activity.hpp"
 #include "components/viewer/ViewerTask.hpp"
 #include "tests/support/Ports.hpp"
+#include "tests/support/Waiting.hpp"
 
 namespace insonify::viewer {
+
+using test::comesTrue;
 
 /** 1 in bins 40 to 49 of beams 10 to 19, of 32 beams over 90 degrees and 100 bins of 0.15 m; 0 elsewhere. */
 inline std::shared_ptr<types::Sonar> blockPing(int64_t time = 3'000'000, uint32_t beams = 32, uint32_t bins = 100) {
@@ -38,7 +40,13 @@ struct Bench {
     ViewerTask viewer{"viewer"};
     Feed<types::SonarPtr> sonar{viewer, "sonar"};
 
-    explicit Bench(ViewerConfig config = {}) {
+    /** One that gives up no client: those of these tests do not answer when they are asked whether they live. */
+    static ViewerConfig patient() {
+        ViewerConfig config;
+        config.idle_timeout = 3600;
+        return config;
+    }
+    explicit Bench(ViewerConfig config = patient()) {
         config.port = 0;
         viewer.config.set(std::move(config));
         viewer.environment().now = [] { return types::Time{3'500'000}; };
@@ -53,16 +61,5 @@ struct Bench {
     }
     uint16_t port() const { return viewer.port(); }
 };
-
-/** Waits up to ten seconds until it is so. */
-template <class Condition>
-bool comesTrue(Condition&& condition) {
-    const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(10);
-    while (!condition()) {
-        if (std::chrono::steady_clock::now() > end) return false;
-        std::this_thread::sleep_for(std::chrono::milliseconds(5));
-    }
-    return true;
-}
 
 }  // namespace insonify::viewer

@@ -10,6 +10,8 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
+#include "tests/support/Waiting.hpp"
+
 namespace insonify::viewer {
 
 inline const char* const chromium = "/usr/bin/chromium";
@@ -34,7 +36,7 @@ public:
         if (pid_ == 0) {
             dup2(to[0], STDIN_FILENO);
             dup2(from[1], STDOUT_FILENO);
-            execl(python.c_str(), "python3", script.c_str(), chromium, url.c_str(), first.c_str(), nullptr);
+            execl(python.c_str(), python.c_str(), script.c_str(), chromium, url.c_str(), first.c_str(), nullptr);
             _exit(127);
         }
         close(to[0]);
@@ -53,8 +55,8 @@ public:
     /** The value of an expression; a fault of the test when it throws. */
     nlohmann::json value(const std::string& expression) { return ask({{"eval", expression}}); }
     /** Waits until it is true. */
-    bool becomes(const std::string& expression, double seconds = 15) {
-        return ask({{"until", expression}, {"seconds", seconds}}) == true;
+    bool becomes(const std::string& expression) {
+        return ask({{"until", expression}, {"seconds", test::patience.count()}}) == true;
     }
     /** Into what has the focus; then Enter. */
     void type(const std::string& text) { ask({{"type", text}}); }

@@ -5,17 +5,36 @@
 #include <sys/socket.h>
 #include <unistd.h>
 
+#include <cerrno>
 #include <cstring>
 #include <optional>
+#include <random>
 #include <string>
 #include <utility>
 
+#include "tests/support/Waiting.hpp"
+
 namespace insonify::viewer {
+
+/** A port that is free now and is given to nobody by chance: it lies below those that the system hands out. */
+inline uint16_t quietPort() {
+    std::random_device random;
+    while (true) {
+        sockaddr_in address{};
+        address.sin_family = AF_INET;
+        address.sin_port = htons(static_cast<uint16_t>(10'000 + random() % 20'000));
+        address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+        const int tried = socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0);
+        const bool is_free = bind(tried, reinterpret_cast<sockaddr*>(&address), sizeof address) == 0;
+        close(tried);
+        if (is_free) return ntohs(address.sin_port);
+    }
+}
 
 class Client {
 public:
     explicit Client(uint16_t port) : socket_(socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0)) {
-        const timeval patience{10, 0};
+        const timeval patience{test::patience.count(), 0};
         setsockopt(socket_, SOL_SOCKET, SO_RCVTIMEO, &patience, sizeof patience);
         sockaddr_in address{};
         address.sin_family = AF_INET;
@@ -91,7 +110,9 @@ public:
 private:
     bool receive() {
         char bytes[65536];
-        const ssize_t got = recv(socket_, bytes, sizeof bytes, 0);
+        ssize_t got = 0;
+        do got = recv(socket_, bytes, sizeof bytes, 0);
+        while (got < 0 && errno == EINTR);  // this process stood still
         if (got > 0) received_.append(bytes, static_cast<size_t>(got));
         return got > 0;
     }

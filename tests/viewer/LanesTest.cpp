@@ -5,13 +5,12 @@
 #include <thread>
 
 #include "components/viewer/Lanes.hpp"
+#include "tests/support/Waiting.hpp"
 
 namespace insonify::viewer {
 namespace {
 
-bool comes(const std::future<void>& done) {
-    return done.wait_for(std::chrono::seconds(10)) == std::future_status::ready;
-}
+bool comes(const std::future<void>& done) { return done.wait_for(test::patience) == std::future_status::ready; }
 
 TEST(LanesTest, ABlockedLaneHoldsUpNoOther) {
     std::promise<void> release, begun, other;

@@ -4,6 +4,7 @@
 #include <optional>
 
 #include "tests/viewer/Browser.hpp"
+#include "tests/viewer/Client.hpp"
 #include "tests/viewer/Running.hpp"
 
 namespace insonify::viewer {
@@ -22,10 +23,10 @@ protected:
         if (pythonWithWebsockets().empty()) GTEST_SKIP() << "NOT TESTED: no python has websockets";
         open();
     }
-    void open(const std::string& first = "") {
+    void open(const std::string& first = "", uint16_t port = 0) {
         browser.reset();
         running.reset();
-        running.emplace();
+        running.emplace(port);
         browser.emplace("http://127.0.0.1:" + std::to_string(running->port()) + "/", first);
         ASSERT_TRUE(browser->becomes("self.insonify && insonify.shown() > 3 && insonify.status()"));
     }
@@ -151,7 +152,6 @@ TEST_F(PageTest, TheButtonsRecordPauseAndStep) {
 
     click("pause");
     ASSERT_TRUE(becomes("insonify.status().paused"));
-    ASSERT_TRUE(becomes("self.before === insonify.status().now_us || (self.before = insonify.status().now_us, false)"));
     const int64_t paused = running->deployment().status().now.microseconds;
     click("step");
     EXPECT_TRUE(becomes("insonify.status().now_us === " + std::to_string(paused + 10'000)));
@@ -220,7 +220,6 @@ TEST_F(PageTest, TheFanIsWhereItsPingWasMade) {
     if (!hasThree()) GTEST_SKIP() << "NOT TESTED: no three.js was built in";
     ASSERT_TRUE(becomes("insonify.world() && insonify.snapshot()"));
     running->deployment().pause(true);
-    std::this_thread::sleep_for(std::chrono::milliseconds(300));  // the instant under way ends
     const auto now = [&] { return running->deployment().status().now.microseconds; };
     for (int i = 0; i < 2; ++i) {  // an instant with a snapshot, one without
         const int64_t before = now();
@@ -245,20 +244,25 @@ TEST_F(PageTest, EachVehicleHasAPathOfItsOwnThatEndsWhereTimeGoesBack) {
 }
 
 TEST_F(PageTest, ABrokenConnectionComesBack) {
-    const uint16_t port = running->port();
-    EXPECT_EQ(text("link"), "connected");
+    const uint16_t port = quietPort();
+    open("", port);
+    // A machine that stalls is not to look like a connection that says nothing.
+    value("Object.defineProperty(insonify.link, 'patience', {get: () => 1e9, set: () => {}})");
+    ASSERT_TRUE(becomes("document.getElementById('link').textContent === 'connected'"));
+    const int opened = value("insonify.link.opened");
     running.reset();
     ASSERT_TRUE(becomes("document.getElementById('link').textContent === 'no connection'"));
     running.emplace(port);
     ASSERT_TRUE(becomes("document.getElementById('link').textContent === 'connected'"));
     const auto shown = value("insonify.shown()");
     EXPECT_TRUE(becomes("insonify.shown() > " + shown.dump()));
-    EXPECT_EQ(value("insonify.link.opened"), 2);
+    EXPECT_EQ(value("insonify.link.opened"), opened + 1);
 }
 
 TEST_F(PageTest, AConnectionThatSaysNothingIsOpenedAgain) {
+    const int opened = value("insonify.link.opened");
     value("insonify.link.socket.onmessage = () => {}");
-    EXPECT_TRUE(becomes("insonify.link.opened === 2"));
+    EXPECT_TRUE(becomes("insonify.link.opened > " + std::to_string(opened)));
     EXPECT_TRUE(becomes("document.getElementById('link').textContent === 'connected'"));
 }
 

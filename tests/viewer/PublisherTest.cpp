@@ -31,6 +31,7 @@ struct Blocked {
     static ViewerConfig config() {
         ViewerConfig config;
         config.port = 0;
+        config.idle_timeout = 3600;
         return config;
     }
     Access access() {

@@ -133,7 +133,7 @@ private:
 tasks:
   source: {type: test::LevelTask, activity: {period: 0.01}}
   world:  {type: test::WorldTask, activity: {period: 0.02}}
-  viewer: {type: viewer::ViewerTask, properties: {}}
+  viewer: {type: viewer::ViewerTask, properties: {idle_timeout: 3600}}
 connections:
   - {from: source.ping,    to: viewer.ping,  policy: {type: buffer, size: 8}}
   - {from: world.snapshot, to: viewer.scene, policy: {type: buffer, size: 8}}

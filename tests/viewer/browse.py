@@ -13,6 +13,7 @@ import re
 import subprocess
 import sys
 import tempfile
+import threading
 import time
 import urllib.request
 
@@ -46,7 +47,9 @@ def start(chromium, profile):
             break
     else:
         raise SystemExit("browser did not start")
-    for _ in range(100):
+    threading.Thread(target=lambda: [None for _ in browser.stderr], daemon=True).start()  # or it fills and holds up
+    end = time.monotonic() + 60
+    while time.monotonic() < end:
         pages = json.load(urllib.request.urlopen(f"http://{found[1]}/json/list"))
         if pages:
             return browser, pages[0]["webSocketDebuggerUrl"]
@@ -101,7 +104,7 @@ class Page:
 
 
 async def serve(address, url, script):
-    async with websockets.connect(address, max_size=None) as socket:
+    async with websockets.connect(address, max_size=None, open_timeout=60, ping_interval=None) as socket:
         page = Page(socket)
         await page.send("Page.enable")
         await page.send("Page.addScriptToEvaluateOnNewDocument", source=script)

@@ -1,0 +1,114 @@
+#include "components/sonar/ObjectPlaces.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <glm/gtc/quaternion.hpp>
+#include <glm/matrix.hpp>
+
+#include "components/sonar/NearestPoint.hpp"
+#include "types/Angle.hpp"
+
+namespace insonify::sonar {
+namespace {
+
+vec4 row(const glm::dmat4& m, int i) { return vec4(glm::dvec4(m[0][i], m[1][i], m[2][i], m[3][i])); }
+
+/** Rotation and place of the sonar undone in double, so that world coordinates may be large. */
+glm::dmat4 sonarFromWorld(const types::Pose& sonar) {
+    glm::dmat4 inverse = glm::transpose(glm::mat4_cast(sonar.orientation));
+    inverse[3] = glm::dvec4(-(glm::dmat3(inverse) * sonar.position), 1);
+    return inverse;
+}
+
+/** `sonar_from_world` * `world_from_object`, subtracting the two origins before anything is rotated. */
+glm::dmat4 relative(const glm::dmat3& rotation, const glm::dvec3& sonar, const glm::dmat4& world_from_object) {
+    glm::dmat4 result(rotation * glm::dmat3(world_from_object));
+    result[3] = glm::dvec4(rotation * (glm::dvec3(world_from_object[3]) - sonar), 1);
+    return result;
+}
+
+double dot2(const glm::dvec3& v) { return glm::dot(v, v); }
+
+}  // namespace
+
+Reach reachOf(const RenderPlan& plan) {
+    const double half_elevation = types::radians(plan.config.beam_height_deg) / 2;
+    double half_azimuth = std::max(std::abs(plan.beams.front().low), std::abs(plan.beams.back().high));
+    if (plan.features.has(Feature::Conical)) half_azimuth = coneAzimuth(half_azimuth, half_elevation);
+    return {plan.grid.range_max, half_azimuth, half_elevation};
+}
+
+ObjectPlaces::ObjectPlaces(const types::Geometry& geometry, const Reach& reach, bool all)
+    : geometry_(geometry), reach_(reach), all_(all) {
+    for (const types::Mesh& mesh : geometry.meshes) {
+        Box box{glm::dvec3(std::numeric_limits<double>::max()), glm::dvec3(std::numeric_limits<double>::lowest())};
+        for (const glm::vec3& p : mesh.positions)
+            box = {glm::min(box.low, glm::dvec3(p)), glm::max(box.high, glm::dvec3(p))};
+        mesh_boxes_.push_back(box);
+        longest_edges_.push_back(longestEdge(mesh));
+    }
+    records_.resize(geometry.objects.size());
+    scratch_.reserve(4096);
+    far_.resize(geometry.objects.size());
+    world_from_object_.resize(geometry.objects.size());
+}
+
+void ObjectPlaces::place(const types::Snapshot& snapshot) {
+    for (size_t i = 0; i < geometry_.objects.size(); ++i)
+        world_from_object_[i] = geometry_.objects[i].world_from_object;
+    for (const types::MovedObject& moved : snapshot.moved) world_from_object_[moved.object] = moved.world_from_object;
+    const glm::dmat3 rotation(sonarFromWorld(snapshot.sonar));
+    for (size_t i = 0; i < world_from_object_.size(); ++i)
+        placeObject(i, relative(rotation, snapshot.sonar.position, world_from_object_[i]));
+}
+
+bool ObjectPlaces::reaches(const glm::dvec3& centre, double radius) const {
+    const double distance = glm::length(centre);
+    if (!(distance > radius)) return true;
+    if (distance - radius > reach_.range_max) return false;
+    if (std::abs(std::asin(centre.z / distance)) > reach_.half_elevation + std::asin(radius / distance)) return false;
+    if (reach_.half_azimuth >= std::numbers::pi / 2) return true;
+    const double outward =
+        std::abs(centre.y) * std::cos(reach_.half_azimuth) - centre.x * std::sin(reach_.half_azimuth);
+    return outward <= radius;
+}
+
+vec4 ObjectPlaces::extent(size_t index, const glm::dmat4& m, bool in_view) {
+    double farthest = 0;
+    for (int corner = 0; corner < 8; ++corner) {
+        const glm::dvec4 p(corner & 1 ? box(index).high.x : box(index).low.x,
+                           corner & 2 ? box(index).high.y : box(index).low.y,
+                           corner & 4 ? box(index).high.z : box(index).low.z, 1);
+        farthest = std::max(farthest, glm::length(glm::dvec3(m * p)));
+    }
+    const size_t mesh = meshOf(index);
+    const double nearest = in_view ? nearestDistance(geometry_.meshes[mesh], longest_edges_[mesh], m, scratch_) : 0;
+    const double slack = 1e-5;  // of the float that carries it
+    return vec4(nearest > 1e-6 ? (1 + slack) / nearest : 1e6, farthest > 0 ? (1 - slack) / farthest : 0, 0, 0);
+}
+
+void ObjectPlaces::placeObject(size_t index, const glm::dmat4& sonar_from_object) {
+    const glm::dmat3 linear(sonar_from_object);
+    const double scale = std::sqrt(dot2(linear[0]) + dot2(linear[1]) + dot2(linear[2]));  // at most
+    const Box& box = this->box(index);
+    const glm::dvec3 centre(sonar_from_object * glm::dvec4((box.low + box.high) / 2.0, 1));
+    const double radius = scale * glm::length(box.high - box.low) / 2;
+    far_[index] = !all_ && glm::length(centre) - radius > 1.001 * reach_.range_max;
+    if (far_[index]) return;
+    const glm::dmat3 inverse = glm::inverse(linear);
+    const glm::dmat4 normals(glm::transpose(inverse));
+    const glm::dvec4 eye(-(inverse * glm::dvec3(sonar_from_object[3])), 0);
+    ObjectRecord& record = records_[index];
+    record = {row(sonar_from_object, 0),
+              row(sonar_from_object, 1),
+              row(sonar_from_object, 2),
+              row(normals, 0),
+              row(normals, 1),
+              row(normals, 2),
+              extent(index, sonar_from_object, reaches(centre, radius)),
+              vec4(eye),
+              vec4(eye - glm::dvec4(vec4(eye)))};
+}
+
+}  // namespace insonify::sonar

@@ -1,0 +1,56 @@
+#pragma once
+#include <limits>
+#include <numbers>
+#include <vector>
+
+#include "components/sonar/Interface.hpp"
+#include "components/sonar/RenderPlan.hpp"
+#include "types/Snapshot.hpp"
+
+namespace insonify::sonar {
+
+/** What of space a sonar hears, ahead of it and to as much on either side. */
+struct Reach {
+    double range_max = std::numeric_limits<double>::infinity();  ///< [m]
+    double half_azimuth = std::numbers::pi;                      ///< [rad]
+    double half_elevation = std::numbers::pi / 2;                ///< [rad]
+};
+Reach reachOf(const RenderPlan& plan);
+
+/** Where the objects of a scene stand about the sonar in this ping. */
+class ObjectPlaces {
+public:
+    struct Box {
+        glm::dvec3 low{0}, high{0};
+    };
+
+    /** `geometry` must outlive it. `all`: what is out of range is placed as well. */
+    ObjectPlaces(const types::Geometry& geometry, const Reach& reach, bool all);
+
+    /** Once a ping. */
+    void place(const types::Snapshot& snapshot);
+    const std::vector<ObjectRecord>& records() const { return records_; }
+    /** Out of range and not placed: its record is not of this ping. */
+    bool isFar(size_t object) const { return far_[object]; }
+    /** Of an object's mesh, in its coordinates. */
+    const Box& box(size_t object) const { return mesh_boxes_[meshOf(object)]; }
+
+private:
+    size_t meshOf(size_t object) const { return static_cast<size_t>(geometry_.objects[object].mesh); }
+    void placeObject(size_t index, const glm::dmat4& sonar_from_object);
+    vec4 extent(size_t index, const glm::dmat4& sonar_from_object, bool in_view);
+    /** Whether any of a ball may be heard. */
+    bool reaches(const glm::dvec3& centre, double radius) const;
+
+    const types::Geometry& geometry_;
+    Reach reach_;
+    bool all_;
+    std::vector<Box> mesh_boxes_;
+    std::vector<double> longest_edges_;  ///< Of each mesh [m].
+    std::vector<glm::dmat4> world_from_object_;
+    std::vector<ObjectRecord> records_;
+    std::vector<bool> far_;
+    std::vector<float> scratch_;
+};
+
+}  // namespace insonify::sonar

@@ -1,0 +1,21 @@
+#pragma once
+// A log that is being written.
+#include <filesystem>
+#include <string>
+
+#include "components/pocolog/Reader.hpp"
+
+namespace insonify::deployer {
+
+/** Samples of a stream that can be read by now; 0 for a file that is not there yet. */
+inline uint64_t flushedSamples(const std::filesystem::path& log, const std::string& stream) {
+    constexpr uintmax_t prologue = 16;  // [B]
+    std::error_code absent;
+    const uintmax_t size = std::filesystem::file_size(log, absent);
+    if (absent || size < prologue) return 0;
+    const pocolog::Reader reader(log);
+    const pocolog::Stream* const found = reader.find(stream);
+    return found ? found->count : 0;
+}
+
+}  // namespace insonify::deployer

@@ -1,0 +1,45 @@
+#include "components/scene/Scene.hpp"
+#include "tests/scene/SceneFiles.hpp"
+#include "tests/support/Fuzz.hpp"
+
+namespace insonify::fuzz {
+namespace {
+
+void read(const Input& input) try {
+    scene::expectSound(*scene::loadScene(input.file()));
+} catch (const types::ConfigError& error) {
+    expectOurWords(error.what());
+}
+
+const std::vector<std::string> words = {"\"nodes\":[",
+                                        "\"mesh\":0",
+                                        "\"children\":[0]",
+                                        "\"extras\":{\"acoustics\":{}}",
+                                        "\"sparse\":{",
+                                        "\"extensions\":{",
+                                        "\"KHR_texture_transform\":{",
+                                        "\"EXT_mesh_gpu_instancing\":{\"attributes\":{",
+                                        "\"byteStride\":",
+                                        "\"byteOffset\":",
+                                        "\"count\":",
+                                        "\"componentType\":5121",
+                                        "\"type\":\"VEC3\"",
+                                        "\"mode\":5",
+                                        "\"matrix\":[",
+                                        "{",
+                                        "}",
+                                        "[",
+                                        "]",
+                                        ",",
+                                        "null",
+                                        "\"uri\":\"data:;base64,",
+                                        "\\u0000",
+                                        "\"name\":\"",
+                                        "true"};
+
+TEST(GltfFuzzTest, EveryTextIsASoundSceneOrAnError) { push({"gltf", "scene.gltf", words, read}); }
+
+TEST(GltfFuzzTest, EveryBinaryIsASoundSceneOrAnError) { push({"glb", "scene.glb", words, read}); }
+
+}  // namespace
+}  // namespace insonify::fuzz

@@ -1,0 +1,52 @@
+#include "components/scene/FileMeshes.hpp"
+#include "components/scene/MeshFile.hpp"
+#include "tests/scene/SceneFiles.hpp"
+#include "tests/support/Fuzz.hpp"
+
+namespace insonify::fuzz {
+namespace {
+
+void read(const Input& input) try {
+    const types::GeometryPtr geometry = scene::readMeshFile(input.file());
+    for (const types::Mesh& mesh : geometry->meshes) scene::expectSoundMesh(mesh, geometry->materials.size());
+} catch (const types::ConfigError& error) {
+    expectOurWords(error.what());
+}
+
+TEST(MeshFuzzTest, EveryDaeIsAMeshOrAnError) {
+    push({"dae",
+          "part.dae",
+          {"<node id=\"a\" name=\"a\">", "<instance_node url=\"#a\"/>", "<instance_geometry url=\"#g\"/>",
+           "<vcount>0 3</vcount>", "<p>0 1 2</p>", "stride=\"", "count=\"", "offset=\"", "set=\"", "</node>",
+           "<polylist count=\"1\">", "#v", ",", " "},
+          read});
+}
+
+TEST(MeshFuzzTest, EveryObjIsAMeshOrAnError) {
+    push({"obj",
+          "part.obj",
+          {"v 0 0 0\n", "f 1 2 3\n", "f 1//1 2//1 -1//1\n", "vn 0 0 1\n", "vt 0 0\n", "o a\n", "usemtl b\n",
+           "mtllib part.mtl\n", "\\\n", "l 1 2\n", "cstype bezier\n"},
+          read});
+}
+
+TEST(MeshFuzzTest, EveryStlIsAMeshOrAnError) {
+    push({"stl",
+          "part.stl",
+          {"solid a\n", "facet normal 0 0 1\n", "outer loop\n", "vertex 0 0 0\n", "endloop\n", "endfacet\n",
+           "endsolid\n"},
+          read});
+}
+
+/** What the process that reads mesh files answers, as if that were an enemy. */
+void parse(const Input& input) try {
+    const scene::MeshReply reply = scene::parseReply(std::as_bytes(input.span()));
+    for (const auto& part : reply.meshes.parts)
+        for (const uint32_t index : part.surface.indices) ASSERT_LT(index, part.surface.positions.size());
+} catch (const std::runtime_error&) {
+}
+
+TEST(MeshFuzzTest, EveryAnswerIsMeshesOrAnError) { push({"mesh_reply", "reply", {"insonify meshes 1\n"}, parse}); }
+
+}  // namespace
+}  // namespace insonify::fuzz

@@ -1,0 +1,28 @@
+#include <gtest/gtest.h>
+
+#include "components/framework/PropertySections.hpp"
+#include "tests/support/Fuzz.hpp"
+
+namespace insonify::fuzz {
+namespace {
+
+void read(const Input& input) {
+    framework::PropertySections sections;
+    sections.read(input.file(), "properties.yml");
+    sections.read(input.file(), "again.yml");
+    const std::vector<std::string> names = sections.names();
+    for (const framework::PropertySection* section : sections.inOrder(names))
+        EXPECT_TRUE(!section->name.empty() || !sections.faults().empty());
+    for (const types::Diagnostic& fault : sections.faults()) expectOurWords(fault.message);
+}
+
+TEST(PropertyFileFuzzTest, EveryTextIsSectionsOrFaults) {
+    push({"property_file",
+          "properties.yml",
+          {"--- name:", "--- name:default\n", " merge:false", " chain:", "chain:a,b\n", "<%= 1 %>", "\n", ": ", "[",
+           "{", "&a ", "*a", "- ", "\t", "# "},
+          read});
+}
+
+}  // namespace
+}  // namespace insonify::fuzz

@@ -1,0 +1,42 @@
+// What comes by DDS: CDR, which peers may fill with anything.
+#include <gtest/gtest.h>
+
+#include "components/ros/Cdr.hpp"
+#include "components/ros/Messages.hpp"
+#include "components/ros/Poses.hpp"
+#include "components/ros/ToSonar.hpp"
+#include "tests/support/Fuzz.hpp"
+
+namespace insonify::fuzz {
+namespace {
+
+template <class Message, class Sample, class... Layout>
+void read(const Input& input, const Layout&... layout) try {
+    Message message;
+    ros::decode(input.span(), message);
+    Sample sample;
+    ros::convert(message, layout..., sample);
+    std::vector<char> again(input.span().begin(), input.span().end());
+    again.clear();
+    ros::encode(message, again);
+    Message second;
+    ros::decode(std::span<const char>(again), second);
+} catch (const ros::CdrError& error) {
+    expectOurWords(error.what());
+} catch (const std::invalid_argument& error) {
+    expectOurWords(error.what());
+}
+
+void readAll(const Input& input) {
+    read<ros::Odometry, types::Pose>(input, ros::WorldFrame::Enu);
+    read<ros::PoseStamped, types::Pose>(input, ros::WorldFrame::Ned);
+    for (const auto order : {ros::ImageOrder::RangeMajor, ros::ImageOrder::BeamMajor})
+        read<ros::ProjectedSonarImage, types::Sonar>(input, ros::ImageLayout{order, ros::SensorFrame::ZForward});
+}
+
+TEST(RosFuzzTest, EveryMessageIsASampleOrAnError) {
+    push({"ros", "message", {std::string("\0\1\0\0", 4), "base_link", std::string("\1\0\0\0", 4)}, readAll});
+}
+
+}  // namespace
+}  // namespace insonify::fuzz

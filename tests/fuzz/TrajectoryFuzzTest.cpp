@@ -1,0 +1,26 @@
+#include <gtest/gtest.h>
+
+#include "components/pose/Trajectory.hpp"
+#include "tests/support/Fuzz.hpp"
+#include "types/ConfigError.hpp"
+
+namespace insonify::fuzz {
+namespace {
+
+void read(const Input& input) try {
+    const auto trajectory = pose::Trajectory::fromCsv(input.file());
+    for (const double time : {-1e9, 0.0, 0.7, 1e9}) EXPECT_TRUE(types::isUsable(trajectory.at(time))) << time;
+} catch (const types::ConfigError& error) {
+    expectOurWords(error.what());
+}
+
+TEST(TrajectoryFuzzTest, EveryTextIsATrajectoryOrAnError) {
+    push({"trajectory",
+          "trajectory.csv",
+          {"time,x,y,z,qw,qx,qy,qz\n", ",", "\n", "\r\n", " ", "1e-308", "0x10", "1,2,3,4,1,0,0,0\n", "\"", "-0",
+           "\xef\xbb\xbf"},
+          read});
+}
+
+}  // namespace
+}  // namespace insonify::fuzz

@@ -1,0 +1,38 @@
+#include <gtest/gtest.h>
+
+#include "components/viewer/Admission.hpp"
+#include "components/viewer/Foxglove.hpp"
+#include "components/viewer/StatusText.hpp"
+#include "tests/support/Fuzz.hpp"
+
+namespace insonify::fuzz {
+namespace {
+
+void ask(const Input& input) {
+    static viewer::Subscriptions subscriptions(3);
+    subscriptions.take(input.bytes());
+    EXPECT_LE(subscriptions.all().size(), 3u);
+    viewer::Request request;
+    try {
+        viewer::readRequest(input.bytes(), request);
+    } catch (const std::invalid_argument& error) {
+        expectOurWords(viewer::refusalText(request.id, error.what()));
+    }
+    const bool is_told =
+        viewer::tokenIn(input.bytes()) == "secret" || input.bytes().find("secret") != std::string::npos;
+    const viewer::Admission admission{"secret"};
+    for (const auto use : {viewer::Admission::Use::Page, viewer::Admission::Use::Read, viewer::Admission::Use::Steer})
+        EXPECT_TRUE(is_told || admission.judge({input.bytes(), input.bytes(), input.bytes(), input.bytes()}, use));
+}
+
+TEST(ViewerFuzzTest, EveryMessageIsAnsweredOrRefused) {
+    push({"viewer",
+          "message",
+          {"\"op\":\"subscribe\"", "\"op\":\"unsubscribe\"", "\"subscriptions\":[",
+           "\"id\":", "\"channelId\":", "\"call\":", "\"arguments\":[", "\"pause\":true", "\"step\":", "{", "}", "[",
+           "]", ",", "%41", "/?token=", "Bearer ", "\\ud800"},
+          ask});
+}
+
+}  // namespace
+}  // namespace insonify::fuzz

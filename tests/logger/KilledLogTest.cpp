@@ -1,0 +1,132 @@
+// A process that is killed while it logs loses what it had not flushed, and nothing else.
+#include <gtest/gtest.h>
+#include <signal.h>
+#include <sys/mman.h>
+#include <sys/prctl.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <atomic>
+#include <chrono>
+#include <random>
+#include <thread>
+
+#include "components/logger/LogThread.hpp"
+#include "components/mcap/LogSource.hpp"
+#include "tests/support/Folder.hpp"
+
+namespace insonify::logger {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+constexpr double flush_period = 0.003;  // [s]
+constexpr size_t queue = 16;
+
+/** What the process that logs tells, in memory that outlives it. */
+struct Told {
+    std::atomic<uint64_t> flushed = 0;    ///< Samples that flush() has returned for.
+    std::atomic<uint64_t> pushed = 0;     ///< Samples that push() has begun with.
+    std::atomic<uint64_t> most_late = 0;  ///< Samples written in one go after a flush was due.
+};
+
+/** A log that notes when its samples are flushed. */
+class WatchedLog final : public LogFile {
+public:
+    WatchedLog(std::unique_ptr<LogFile> log, Told& told) : log_(std::move(log)), told_(told) {}
+
+    size_t addStream(size_t type, const std::string& name, const pocolog::Metadata& metadata) override {
+        return log_->addStream(type, name, metadata);
+    }
+    void write(size_t stream, types::Time received, const AnySample& sample) override {
+        if (Clock::now() > due_) told_.most_late = std::max<uint64_t>(told_.most_late, ++late_);
+        log_->write(stream, received, sample);
+    }
+    void flush() override {
+        log_->flush();
+        told_.flushed = log_->kept();
+        due_ = Clock::now() + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(flush_period));
+        late_ = 0;
+    }
+    void close() override { log_->close(); }
+    void next(std::filesystem::path path) override { log_->next(std::move(path)); }
+    const std::filesystem::path& path() const override { return log_->path(); }
+    uint64_t size() const override { return log_->size(); }
+    uint64_t kept() const override { return log_->kept(); }
+
+private:
+    std::unique_ptr<LogFile> log_;
+    Told& told_;
+    Clock::time_point due_ = Clock::time_point::max();
+    uint64_t late_ = 0;
+};
+
+std::string textOf(uint64_t number) {
+    return std::to_string(number) + std::string(number * 7919 % 3000, static_cast<char>('a' + number % 26));
+}
+
+/** Logs numbered texts until it is killed. */
+[[noreturn]] void logUntilKilled(const std::filesystem::path& path, Told& told) {
+    prctl(PR_SET_PDEATHSIG, SIGKILL);
+    WatchedLog log(createLog(path, {}), told);
+    LoggerConfig config;
+    config.file = path.filename();
+    Rotation rotation(config, log);
+    LogThread thread(log, rotation, queue, flush_period);
+    const AnySample text = std::string();
+    thread.declare([&](LogFile& file) { return file.addStream(text.index(), "task.texts", {}); });
+    for (uint64_t number = 0;; ++number) {
+        told.pushed = number + 1;
+        thread.push(0, {static_cast<int64_t>(number + 1)}, AnySample(textOf(number)));
+    }
+}
+
+/** Kills the process at a time that has nothing to do with what it is about, once it has flushed `least` samples. */
+void killWhileLogging(const std::filesystem::path& path, uint64_t least, std::chrono::microseconds later, Told& told) {
+    const pid_t process = fork();
+    if (process == 0) logUntilKilled(path, told);
+    int status = 0;
+    while (told.flushed < least) {
+        ASSERT_EQ(waitpid(process, &status, WNOHANG), 0) << "it ended by itself";
+        std::this_thread::sleep_for(std::chrono::microseconds(200));
+    }
+    std::this_thread::sleep_for(later);
+    kill(process, SIGKILL);
+    ASSERT_EQ(waitpid(process, &status, 0), process);
+    EXPECT_TRUE(WIFSIGNALED(status) && WTERMSIG(status) == SIGKILL) << status;
+}
+
+/** Samples in the log, which must be the first that were pushed, each whole. */
+uint64_t samplesIn(const std::filesystem::path& path) {
+    const auto log = mcap::openLog(path);
+    uint64_t number = 0;
+    log->forEach<std::string>("task.texts", [&](const std::string& text, const pocolog::SampleRef&) {
+        EXPECT_EQ(text, textOf(number)) << number;
+        ++number;
+    });
+    return number;
+}
+
+TEST(KilledLogTest, FiftyKillsAtAnyTimeLoseWhatWasNotFlushedAndNothingElse) {
+    void* shared = mmap(nullptr, sizeof(Told), PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
+    ASSERT_NE(shared, MAP_FAILED);
+    std::minstd_rand random(9);
+    for (int round = 0; round < 50; ++round) {
+        SCOPED_TRACE(round);
+        const Folder folder;
+        const auto path = folder / (round % 2 == 0 ? "x.0.log" : "x.0.mcap");
+        Told& told = *new (shared) Told;
+        killWhileLogging(path, 1 + random() % 200, std::chrono::microseconds(random() % 8000), told);
+        const uint64_t kept = samplesIn(path);
+        EXPECT_GE(kept, told.flushed);
+        EXPECT_LE(kept, told.pushed);
+        // With a flush each `flush_period`, which may be a second at most, and one sample more while one is due, what
+        // was written since the last one is what is lost, and what still waits in the queue.
+        EXPECT_LE(told.most_late, 1u);
+    }
+    munmap(shared, sizeof(Told));
+}
+
+}  // namespace
+}  // namespace insonify::logger

@@ -1,0 +1,124 @@
+// Nothing of an object is nearer than its nearest point, and no echo of it is.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <glm/gtc/matrix_transform.hpp>
+
+#include "components/scene/Clusters.hpp"
+#include "components/sonar/NearestPoint.hpp"
+#include "components/sonar/SonarRenderer.hpp"
+#include "tests/sonar/ClusteredHarbour.hpp"
+#include "tests/support/Scenes.hpp"
+
+namespace insonify::sonar {
+namespace {
+
+/** The least distance to many points of the triangles, in double. */
+double sampledDistance(const types::Mesh& mesh, const glm::dmat4& place) {
+    constexpr int steps = 40;
+    double nearest = 1e9;
+    for (size_t i = 0; i < mesh.indices.size(); i += 3) {
+        const auto corner = [&](size_t k) {
+            return glm::dvec3(place * glm::dvec4(mesh.positions[mesh.indices[i + k]], 1));
+        };
+        const glm::dvec3 a = corner(0), b = corner(1), c = corner(2);
+        for (int s = 0; s <= steps; ++s)
+            for (int t = 0; s + t <= steps; ++t)
+                nearest = std::min(nearest, glm::length(a + (b - a) * (1.0 * s / steps) + (c - a) * (1.0 * t / steps)));
+    }
+    return nearest;
+}
+
+double distance(const types::Mesh& mesh, const glm::dmat4& place) {
+    std::vector<float> scratch;
+    return nearestDistance(mesh, longestEdge(mesh), place, scratch);
+}
+
+types::Mesh randomMesh(Random& random, int triangles) {
+    std::vector<glm::vec3> positions;
+    std::vector<uint32_t> indices;
+    for (int i = 0; i < triangles; ++i) {
+        const glm::vec3 at(uniformVector(random, 1));
+        for (int k = 0; k < 3; ++k) {
+            indices.push_back(static_cast<uint32_t>(positions.size()));
+            positions.push_back(at + glm::vec3(uniformVector(random, 0.3)));
+        }
+    }
+    return test::meshOf(positions, indices);
+}
+
+/** A ball of 40 rings, 5 m away, whose box has a corner 1.1 m nearer than it is. */
+types::Snapshot ballAcrossItsBox() {
+    const glm::dvec3 place = 5.0 * glm::normalize(glm::dvec3(1, 1, 1));
+    const auto scene = test::sceneOf({test::sphere(1.5f, 40)}, 0, {place});
+    return test::snapshotOf(scene, {}, std::atan2(1.0, 1.0), -std::asin(1 / std::sqrt(3.0)));
+}
+
+/** Range at which the first bin with any echo ends [m]. */
+double firstEcho(Visibility visibility) {
+    SonarConfig config;
+    config.visibility = visibility;
+    config.device = "software";
+    config.speed_of_sound = 1000;
+    config.range = 10;
+    config.bin_count = 500;
+    config.beam_count = 32;
+    config.field_of_view_deg = 60;
+    config.beam_height_deg = 60;
+    config.quality.rows = 32;
+    config.quality.columns_per_beam = 1;
+    const types::Snapshot snapshot = ballAcrossItsBox();
+    SonarRenderer renderer(config, snapshot.geometry);
+    types::Sonar ping;
+    renderer.render(snapshot, ping);
+    size_t first = ping.bin_count;
+    for (size_t i = 0; i < ping.bins.size(); ++i)
+        if (ping.bins[i] > 0) first = std::min(first, i % ping.bin_count);
+    return makeBinGrid(config).edge(static_cast<int>(first) + 1);
+}
+
+}  // namespace
+
+TEST(NearestPointTest, IsThatOfManyPointsOfTheTriangles) {
+    Random random(3);
+    for (int i = 0; i < 40; ++i) {
+        const types::Mesh mesh = randomMesh(random, 60);
+        glm::dmat4 place = glm::scale(glm::rotate(glm::dmat4(1), 0.1 * i, {1, 2, 3}), {1.0, -0.7, 1.4});
+        place[3] = glm::dvec4(uniformVector(random, 4), 1);
+        const double expected = sampledDistance(mesh, place);
+        EXPECT_LE(distance(mesh, place), expected + 1e-5);
+        EXPECT_GE(distance(mesh, place), expected - 0.02) << "between the points";
+    }
+}
+
+TEST(NearestPointTest, OfAMeshOfManyClustersIsThatOfAll) {
+    types::Mesh ball = test::sphere(1.5f, 200);
+    const types::Mesh whole = test::sphere(1.5f, 40);
+    scene::buildClusters(ball);
+    ASSERT_FALSE(ball.patches.empty());
+    for (const glm::dvec3 at : {glm::dvec3(5, 0, 0), {0.9, 0.4, 0}, {-2, 3, 1}, {0, 0, 1.6}}) {
+        const glm::dmat4 place = glm::translate(glm::dmat4(1), at);
+        const double expected = std::abs(glm::length(at) - 1.5);
+        EXPECT_NEAR(distance(ball, place), expected, 5e-3);
+        EXPECT_NEAR(distance(whole, place), expected, 5e-3);
+    }
+}
+
+TEST(NearestPointTest, OfVeryManyTrianglesAboutAsNearItIsALowerBound) {
+    types::Mesh ball = test::sphere(1.5f, 200);
+    scene::buildClusters(ball);
+    const double got = distance(ball, glm::translate(glm::dmat4(1), {0.01, 0, 0}));
+    EXPECT_LE(got, 1.49 + 1e-5);
+    EXPECT_GT(got, 1.2);
+}
+
+TEST(NearestPointTest, NoEchoComesFromBeforeAnObject) {
+    const double nearest = 3.5, bin = 0.02;
+    for (Visibility visibility : {Visibility::Cpu, Visibility::Gl}) {
+        EXPECT_GE(firstEcho(visibility), nearest - bin);
+        EXPECT_LE(firstEcho(visibility), nearest + 3 * bin);
+    }
+}
+
+}  // namespace insonify::sonar

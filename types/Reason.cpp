@@ -1,0 +1,32 @@
+#include "types/Reason.hpp"
+
+#include <new>
+#include <stdexcept>
+#include <string_view>
+
+namespace insonify::types {
+namespace {
+
+/** Its texts begin with the function that throws: "stoi", "map::at", "basic_string::substr: __pos (which is 9) > ...".
+ */
+bool isOfStandardLibrary(std::string_view text) {
+    const std::string_view first = text.substr(0, text.find_first_of(" :"));
+    const std::string_view rest = text.substr(first.size());
+    const bool is_conversion = rest.empty() && first.starts_with("sto") && first.size() <= 6;
+    const bool is_container =
+        rest.starts_with("::") && (first == "std" || first == "vector" || first == "deque" || first == "array" ||
+                                   first == "bitset" || first == "optional" || first.ends_with("map") ||
+                                   first.ends_with("Map_base") || first.starts_with("basic_string"));
+    return is_conversion || is_container || text.starts_with("cannot create std::");
+}
+
+}  // namespace
+
+std::string reasonOf(const std::exception& failure) {
+    if (dynamic_cast<const std::bad_alloc*>(&failure)) return "there is not memory enough for it";
+    if (!isOfStandardLibrary(failure.what())) return failure.what();
+    if (dynamic_cast<const std::length_error*>(&failure)) return "there is not memory enough for it";
+    return "a number, a count or an index in it is out of its bounds";
+}
+
+}  // namespace insonify::types
