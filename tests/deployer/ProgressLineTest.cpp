@@ -47,5 +47,5 @@ def read(descriptor):
 pty.spawn([')" + std::string(INSONIFY_BIN_DIR) +
                                 R"(/insonify', 'study', 'stability', '--out', '.'], read)
 print(b'cases, 1 of ' in seen, b' so far, ' in seen, b' left' in seen))";
-    EXPECT_EQ(python(folder, program).out, "True True True\n");
+    EXPECT_TRUE(python(folder, program).out.ends_with("True True True\n"));
 }
