@@ -14,6 +14,7 @@
 #include "components/deployer/ScoreReport.hpp"
 #include "components/deployer/StopSignal.hpp"
 #include "components/mcap/LogSource.hpp"
+#include "types/Reason.hpp"
 
 namespace insonify::deployer {
 namespace {
