@@ -24,10 +24,9 @@ void ProgressLine::show(double wall_s, const std::string& text) {
 StudyProgress::StudyProgress(bool wanted, size_t total) : shown_(wanted && isatty(STDERR_FILENO)), total_(total) {}
 
 void StudyProgress::operator()(const std::string& at) {
-    ++done_;
     if (!shown_) return;
     const double wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
-    const std::string count = total_ > 0 ? fmt::format(" {} of {}", done_, total_) : "";
+    const std::string count = total_ > 0 ? fmt::format(", {} of {} done", done_, total_) : "";
     const double share = total_ > 0 ? static_cast<double>(done_) / static_cast<double>(total_) : 0;
     fmt::print(stderr, "\r\033[K{}{}, {} so far{}", at, count, durationText(wall_s), timeLeft(share, wall_s));
     std::fflush(stderr);

@@ -21,13 +21,14 @@ private:
     double next_s_ = 0.1;
 };
 
-/** What a study is at and for how long, and of how many steps: each call is one more. */
+/** What a study is at and for how long, how many of its steps are done, and what time is left. */
 class StudyProgress {
 public:
     /** @param total steps; 0: not known */
     explicit StudyProgress(bool wanted, size_t total = 0);
     void operator()(const std::string& at);
-    void end();  ///< Wipes the line.
+    void advance() { ++done_; }  ///< One more step is done.
+    void end();                  ///< Wipes the line.
 
 private:
     bool shown_;

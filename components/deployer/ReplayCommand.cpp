@@ -16,6 +16,7 @@
 #include "components/deployer/StopSignal.hpp"
 #include "components/log/Reader.hpp"
 #include "types/Reason.hpp"
+#include "types/Reason.hpp"
 
 namespace insonify::deployer {
 namespace {

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cctype>
-#include <functional>
 #include <memory>
 
 #include "components/deployer/OutputFolder.hpp"
@@ -80,8 +79,12 @@ std::vector<study::StudyScene> scenesOf(const Options& options) {
 int studyError(Options options) {
     const std::vector<study::StudyScene> scenes = scenesOf(options);
     OutputFolder folder(options.out, "study_error");
-    StudyProgress progress(!options.quiet);
-    options.study.progress = std::ref(progress);
+    StudyProgress progress(!options.quiet, scenes.size());
+    size_t scene = 0;
+    options.study.progress = [&](const std::string& at) {
+        for (; !at.starts_with(scenes[scene].name + " ") && scene + 1 < scenes.size(); ++scene) progress.advance();
+        progress(at + ", scenes");
+    };
     const study::ErrorResult result = study::studyError(scenes, options.study);
     folder.keep();
     study::writeReport(result, folder.path());

@@ -41,7 +41,8 @@ int studyStability(const std::filesystem::path& folder) {
     const std::vector<StabilityRow> rows = study::studyStability(std::move(cases), [&](const StabilityRow& row) {
         progress.end();
         printRow(row);
-        progress("case");
+        progress.advance();
+        progress("cases");
     });
     progress.end();
     study::writeStability(rows, folder);

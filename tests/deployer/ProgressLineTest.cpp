@@ -33,3 +33,19 @@ with open('seen.txt', 'wb') as seen:
     EXPECT_THAT(readFile(folder / "seen.txt"), AllOf(HasSubstr(" of 1.0 s simulated"), HasSubstr(" % done, 1 s left")));
     EXPECT_THAT(folder.run({"--pings", "2"}).err, Not(HasSubstr("done")));
 }
+
+TEST(ProgressLineTest, AStudyOnATerminalTellsHowManyOfItsCasesAreDone) {
+    const TestFolder folder;
+    const std::string program = R"(
+import os, pty
+seen = b''
+def read(descriptor):
+    global seen
+    data = os.read(descriptor, 1024)
+    seen += data
+    return data
+pty.spawn([')" + std::string(INSONIFY_BIN_DIR) +
+                                R"(/insonify', 'study', 'stability', '--out', '.'], read)
+print(b'cases, 1 of ' in seen, b' so far, ' in seen, b' left' in seen))";
+    EXPECT_TRUE(python(folder, program).out.ends_with("True True True\n"));
+}

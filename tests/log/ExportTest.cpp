@@ -53,7 +53,7 @@ TEST(ExportTest, NumpyReadsPings) {
     pocolog::Reader reader(folder / "x.0.log");
     EXPECT_THAT(exportNpz(reader, "sonar.ping", folder / "x.npz"), testing::ElementsAre(folder / "x.npz"));
     EXPECT_EQ(numpySays(folder / "x.npz", "sorted(x.files)"),
-              "['bearings', 'bin_duration', 'bins', 'speed_of_sound', 'time']\n");
+              "['bearings', 'bin_duration', 'bins', 'range_m', 'speed_of_sound', 'time']\n");
     EXPECT_EQ(numpySays(folder / "x.npz", "x['bins'].shape, x['bins'].dtype, x['bins'][1, 1, 2]"),
               "(2, 2, 3) float32 5.25\n");
     EXPECT_EQ(numpySays(folder / "x.npz", "x['bearings'].tolist(), x['time'].tolist(), x['time'].dtype"),
