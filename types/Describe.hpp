@@ -7,6 +7,7 @@
 //             visit(Field{"range", "m", "slant range", 0, 500}, self.range);
 //         }
 //     };
+#include <cstdint>
 #include <limits>
 #include <string>
 #include <string_view>
@@ -41,6 +42,14 @@ template <class E>
 concept NamedEnum = requires {
     EnumNames<E>::names;
 };
+
+/** Rock's name of an enum and its symbols, for one that samples hold: specialise with `name` and `symbols[]`. */
+struct EnumSymbol {
+    const char* symbol;
+    int32_t value;
+};
+template <class E>
+struct EnumTable;
 
 /** The value of a key that is reserved: whatever a file gives it is refused with "is not built yet". */
 struct NotBuiltYet {

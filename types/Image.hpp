@@ -37,6 +37,7 @@ struct ImageSize {
 /** A picture, field for field Rock's base::samples::frame::Frame. Rows from top to bottom, row_size bytes each. */
 struct Image {
     static constexpr const char* type_name = "/base/samples/frame/Frame";
+    static constexpr bool shared = true;
 
     Time time;
     Time received_time;
@@ -54,6 +55,10 @@ struct Image {
         return row_size >= uint64_t{size.width} * pixel_size && image.size() >= uint64_t{size.height} * row_size;
     }
 
+    template <class Visit>
+    void forEachStamp(Visit&& visit) {
+        visit(received_time);
+    }
     template <class Self, class V>
     static void describe(Self& self, V& visit) {
         visit(Field{"time", "us", "when the picture was true in the world"}, self.time);
@@ -70,18 +75,20 @@ struct Image {
 };
 using ImagePtr = std::shared_ptr<const Image>;
 
-/** Typelib names and symbols of the two enums, as the log's registry lists them. */
-struct EnumSymbol {
-    const char* symbol;
-    int32_t value;
+/** Name and symbols of each enum, as the log's registry lists them. */
+template <>
+struct EnumTable<ImageMode> {
+    static constexpr const char* name = "/base/samples/frame/frame_mode_t";
+    static constexpr EnumSymbol symbols[] = {
+        {"MODE_UNDEFINED", 0},     {"MODE_GRAYSCALE", 1},    {"MODE_RGB", 2},          {"MODE_UYVY", 3},
+        {"MODE_BGR", 4},           {"MODE_RGB32", 5},        {"RAW_MODES", 128},       {"MODE_BAYER", 128},
+        {"MODE_BAYER_RGGB", 129},  {"MODE_BAYER_GRBG", 130}, {"MODE_BAYER_BGGR", 131}, {"MODE_BAYER_GBRG", 132},
+        {"COMPRESSED_MODES", 256}, {"MODE_PJPG", 257},       {"MODE_JPEG", 258},       {"MODE_PNG", 259}};
 };
-inline constexpr const char* image_mode_type = "/base/samples/frame/frame_mode_t";
-inline constexpr EnumSymbol image_mode_symbols[] = {
-    {"MODE_UNDEFINED", 0},     {"MODE_GRAYSCALE", 1},    {"MODE_RGB", 2},          {"MODE_UYVY", 3},
-    {"MODE_BGR", 4},           {"MODE_RGB32", 5},        {"RAW_MODES", 128},       {"MODE_BAYER", 128},
-    {"MODE_BAYER_RGGB", 129},  {"MODE_BAYER_GRBG", 130}, {"MODE_BAYER_BGGR", 131}, {"MODE_BAYER_GBRG", 132},
-    {"COMPRESSED_MODES", 256}, {"MODE_PJPG", 257},       {"MODE_JPEG", 258},       {"MODE_PNG", 259}};
-inline constexpr const char* image_status_type = "/base/samples/frame/frame_status_t";
-inline constexpr EnumSymbol image_status_symbols[] = {{"STATUS_EMPTY", 0}, {"STATUS_VALID", 1}, {"STATUS_INVALID", 2}};
+template <>
+struct EnumTable<ImageStatus> {
+    static constexpr const char* name = "/base/samples/frame/frame_status_t";
+    static constexpr EnumSymbol symbols[] = {{"STATUS_EMPTY", 0}, {"STATUS_VALID", 1}, {"STATUS_INVALID", 2}};
+};
 
 }  // namespace insonify::types

@@ -16,6 +16,7 @@ namespace insonify::types {
  *  The functions are those of Rock's type, with its defects mended: see each. */
 struct Sonar {
     static constexpr const char* type_name = "/base/samples/Sonar";
+    static constexpr bool shared = true;  ///< Travels by reference, see Carried.
 
     Time time;
     std::vector<Time> timestamps;
@@ -30,6 +31,10 @@ struct Sonar {
 
     /** Whether the lists are as long as the counts say: bins beams * bins, bearings beams, timestamps beams or none. */
     bool wellShaped() const;
+    /** What is wrong with the lists, after "a sample"; null: nothing. */
+    const char* diagnostic() const {
+        return wellShaped() ? nullptr : "has other numbers of bins or bearings than it says";
+    }
     /** Throws std::logic_error that tells every fault: lists of another length than the counts say; bins without a
      *  duration or a speed of sound above 0; bearings outside (-pi, pi] (NaN is unknown, and may be). Rock's validate
      *  tells the first length only, multiplies the counts in 32 bits, and looks at no value. */
@@ -50,6 +55,11 @@ struct Sonar {
     /** Slant range at which bin k starts [m]; k = bin_count gives the far edge. */
     double binStart(double k) const { return k * bin_duration.seconds() * static_cast<double>(speed_of_sound); }
 
+    /** Of the stamps besides `time`. */
+    template <class Visit>
+    void forEachStamp(Visit&& visit) {
+        for (Time& stamp : timestamps) visit(stamp);
+    }
     template <class Self, class V>
     static void describe(Self& self, V& visit) {
         visit(Field{"time", "us", "when the ping was true in the world"}, self.time);

@@ -9,6 +9,7 @@ namespace insonify::types {
 /** One beam of a scanning sonar, field for field Rock's base::samples::SonarBeam. */
 struct SonarBeam {
     static constexpr const char* type_name = "/base/samples/SonarBeam";
+    static constexpr bool shared = true;
     static constexpr float unknown = std::numeric_limits<float>::quiet_NaN();
 
     Time time;
@@ -34,6 +35,7 @@ struct SonarBeam {
 /** The beams of a fan from port to starboard, field for field Rock's base::samples::SonarScan. */
 struct SonarScan {
     static constexpr const char* type_name = "/base/samples/SonarScan";
+    static constexpr bool shared = true;
 
     Time time;
     std::vector<uint8_t> data;
@@ -49,6 +51,10 @@ struct SonarScan {
     bool memory_layout_column = true;
     bool polar_coordinates = true;
 
+    template <class Visit>
+    void forEachStamp(Visit&& visit) {
+        for (Time& stamp : time_beams) visit(stamp);
+    }
     template <class Self, class V>
     static void describe(Self& self, V& visit) {
         visit(Field{"time", "us", "when the scan was true in the world"}, self.time);

@@ -1,52 +1,82 @@
 #pragma once
+#include <array>
 #include <string_view>
+#include <tuple>
 #include <type_traits>
 
-#include "components/ros/Messages.hpp"
+#include "components/ros/Samples.hpp"
 
 namespace insonify::dds {
 
-/** What is sent. */
-enum class MessageType {
-    ProjectedSonarImage,
-    RawSonarImage,
-    SonarRanges,
-    PointCloud2,
-    LaserScan,
-    Image,
-    Odometry,
-    PoseStamped,
-    Clock
+/** A list with those of another that it does not have. */
+template <class List, class More>
+struct Joined;
+template <class... Listed>
+struct Joined<std::tuple<Listed...>, std::tuple<>> {
+    using type = std::tuple<Listed...>;
 };
+template <class... Listed, class First, class... Rest>
+struct Joined<std::tuple<Listed...>, std::tuple<First, Rest...>> {
+    static constexpr bool known = (std::is_same_v<Listed, First> || ...);
+    using Next = std::conditional_t<known, std::tuple<Listed...>, std::tuple<Listed..., First>>;
+    using type = typename Joined<Next, std::tuple<Rest...>>::type;
+};
+template <class List, class Samples>
+struct MessagesOfAll {
+    using type = List;
+};
+template <class List, class First, class... Rest>
+struct MessagesOfAll<List, std::tuple<First, Rest...>> {
+    using Next = typename Joined<List, typename ros::MessagesOf<First>::type>::type;
+    using type = typename MessagesOfAll<Next, std::tuple<Rest...>>::type;
+};
+/** All messages that a sample can be, see ros/Samples.hpp. */
+using SentMessages = MessagesOfAll<std::tuple<>, types::SampleTypes>::type;
+inline constexpr size_t message_count = std::tuple_size_v<SentMessages>;
+
+/** What is sent: a place in SentMessages. */
+enum class MessageType : size_t {};
 
 /** Calls `use(std::type_identity<Message>{})` for the message of that type. */
-template <class Use>
+template <size_t i = 0, class Use>
 decltype(auto) withMessage(MessageType type, Use&& use) {
-    switch (type) {
-        case MessageType::ProjectedSonarImage: return use(std::type_identity<ros::ProjectedSonarImage>{});
-        case MessageType::RawSonarImage: return use(std::type_identity<ros::RawSonarImage>{});
-        case MessageType::SonarRanges: return use(std::type_identity<ros::SonarRanges>{});
-        case MessageType::PointCloud2: return use(std::type_identity<ros::PointCloud2>{});
-        case MessageType::LaserScan: return use(std::type_identity<ros::LaserScan>{});
-        case MessageType::Image: return use(std::type_identity<ros::Image>{});
-        case MessageType::Odometry: return use(std::type_identity<ros::Odometry>{});
-        case MessageType::PoseStamped: return use(std::type_identity<ros::PoseStamped>{});
-        case MessageType::Clock: break;
-    }
-    return use(std::type_identity<ros::Clock>{});
+    if constexpr (i + 1 < message_count)
+        if (static_cast<size_t>(type) != i) return withMessage<i + 1>(type, use);
+    return use(std::type_identity<std::tuple_element_t<i, SentMessages>>{});
 }
+
+template <class Message, size_t i = 0>
+constexpr MessageType placeOf() {
+    if constexpr (std::is_same_v<Message, std::tuple_element_t<i, SentMessages>>)
+        return MessageType{i};
+    else
+        return placeOf<Message, i + 1>();
+}
+template <class Message>
+inline constexpr MessageType message_type = placeOf<Message>();
+
+/** "nav_msgs/Odometry" of "nav_msgs/msg/Odometry". */
+template <class Message>
+struct ShortName {
+    static constexpr std::string_view whole{Message::type_name}, infix{"msg/"};
+    static constexpr std::array<char, whole.size() - infix.size()> text = [] {
+        std::array<char, whole.size() - infix.size()> kept{};
+        const size_t cut = whole.find(infix);
+        for (size_t i = 0; i < kept.size(); ++i) kept[i] = whole[i < cut ? i : i + infix.size()];
+        return kept;
+    }();
+};
+template <class Messages>
+struct ShortNames;
+template <class... Message>
+struct ShortNames<std::tuple<Message...>> {
+    static constexpr std::array<std::string_view, sizeof...(Message)> names{
+        std::string_view(ShortName<Message>::text.data(), ShortName<Message>::text.size())...};
+};
 
 }  // namespace insonify::dds
 
 template <>
 struct insonify::types::EnumNames<insonify::dds::MessageType> {
-    static constexpr std::string_view names[] = {"marine_acoustic_msgs/ProjectedSonarImage",
-                                                 "marine_acoustic_msgs/RawSonarImage",
-                                                 "marine_acoustic_msgs/SonarRanges",
-                                                 "sensor_msgs/PointCloud2",
-                                                 "sensor_msgs/LaserScan",
-                                                 "sensor_msgs/Image",
-                                                 "nav_msgs/Odometry",
-                                                 "geometry_msgs/PoseStamped",
-                                                 "rosgraph_msgs/Clock"};
+    static constexpr auto names = insonify::dds::ShortNames<insonify::dds::SentMessages>::names;
 };

@@ -1,40 +1,120 @@
 #pragma once
 #include <functional>
+#include <optional>
 #include <string>
 
 #include "components/dds/Drops.hpp"
 #include "components/dds/PublisherConfig.hpp"
 #include "components/dds/Writer.hpp"
-#include "types/Image.hpp"
-#include "types/Pose.hpp"
-#include "types/Sonar.hpp"
+#include "components/ros/Cdr.hpp"
+#include "components/ros/Samples.hpp"
+#include "types/ConfigError.hpp"
 
 namespace insonify::dds {
 
-/** Sends samples as the messages of one topic. `Sample` is types::Sonar, Pose or Image. */
+/** How samples become the messages of one topic. */
+struct TopicOptions {
+    ros::MessageOptions messages;
+    std::optional<std::string> world_frame_id, child_frame_id;  ///< In place of those that a pose names.
+};
+TopicOptions optionsOf(const PublisherConfig& config, const TopicOut& topic);
+
+/** What is given, or what the pose says, or what is usual. */
+void nameFrame(std::string& frame, const std::optional<std::string>& given, const char* usual);
+
+/** Whether a T can be a message. */
+template <class T, class Message>
+concept Fills = requires(const T& sample, const ros::MessageOptions& options, Message& message) {
+    ros::toMessage(sample, options, message);
+};
+
+template <class T, class Message>
+void fill(const T& sample, const TopicOptions& options, Message& message) {
+    ros::toMessage(sample, options.messages, message);
+    if constexpr (std::is_same_v<T, types::Pose> && requires { message.header; }) {
+        nameFrame(message.header.frame_id, options.world_frame_id, "map");
+        if constexpr (requires { message.child_frame_id; })
+            nameFrame(message.child_frame_id, options.child_frame_id, "base_link");
+    }
+}
+
+template <class Sample>
+using Encode = std::function<void(const Sample&, Bytes&)>;
+
+/** None where the message cannot be made of a Sample. */
+template <class Sample>
+Encode<Sample> encoderOf(MessageType type, const TopicOptions& options) {
+    return withMessage(type, [&]<class Message>(std::type_identity<Message>) -> Encode<Sample> {
+        if constexpr (Fills<Sample, Message>)
+            return [options, message = Message{}](const Sample& sample, Bytes& bytes) mutable {
+                fill(sample, options, message);
+                bytes.clear();
+                ros::encode(message, bytes);
+            };
+        else
+            return {};
+    });
+}
+
+template <class Sample>
+bool canBe(MessageType type) {
+    return encoderOf<Sample>(type, {}) != nullptr;
+}
+
+/** Types of messages that a Sample can be, as in YAML: "nav_msgs/Odometry, ...". */
+template <class Sample>
+std::string messagesOf() {
+    std::string all;
+    ros::forEachMessageOf<Sample>([&]<class Message>(std::type_identity<Message>) {
+        const auto name = types::EnumNames<MessageType>::names[static_cast<size_t>(message_type<Message>)];
+        all += (all.empty() ? "" : ", ") + std::string(name);
+    });
+    return all;
+}
+
+/** The end of a topic that sends. */
+Writer writerOf(Node& node, const PublisherConfig& config, const TopicOut& topic);
+
+/** Sends samples as the messages of one topic. */
 template <class Sample>
 class Publication {
 public:
     /** What is not sent is counted in `drops`, which outlives this. Throws types::ConfigError for a message that cannot
      *  be made of a Sample, and as Writer. */
-    Publication(Node& node, const PublisherConfig& config, const TopicOut& topic, Drops& drops);
+    Publication(Node& node, const PublisherConfig& config, const TopicOut& topic, Drops& drops)
+        : topic_(topic.topic),
+          encode_(encoderOf<Sample>(topic.type, optionsOf(config, topic))),
+          writer_(writerOf(node, config, topic)),
+          drops_(drops) {
+        node.addWriter(writer_.handle());
+        if (encode_) return;
+        const std::string type(types::EnumNames<MessageType>::names[static_cast<size_t>(topic.type)]);
+        throw types::ConfigError(
+            "", "topics",
+            type + " cannot be made of what comes on port " + topic.port + "; that can be " + messagesOf<Sample>());
+    }
 
-    /** Makes no message for a topic that nobody reads. A sample that the message cannot hold (see ros/FromSonar.hpp) is
+    /** Makes no message for a topic that nobody reads. A sample that the message cannot hold (see ros/Samples.hpp) is
      *  dropped. Whether it was sent. */
-    bool publish(const Sample& sample);
+    bool publish(const Sample& sample) {
+        if (!writer_.hasReaders()) return false;
+        try {
+            encode_(sample, bytes_);
+        } catch (const std::logic_error& error) {
+            drops_.add(topic_ + ": " + error.what());
+            return false;
+        }
+        if (writer_.write(bytes_)) return true;
+        drops_.add(topic_ + ": " + writer_.failure());
+        return false;
+    }
 
 private:
     std::string topic_;
-    std::function<void(const Sample&, Bytes&)> encode_;
+    Encode<Sample> encode_;
     Writer writer_;
     Bytes bytes_;
     Drops& drops_;
 };
-
-template <class Sample>
-bool canBe(MessageType type);
-/** Types of messages that a Sample can be, as in YAML: "nav_msgs/Odometry, ...". */
-template <class Sample>
-std::string messagesOf();
 
 }  // namespace insonify::dds

@@ -21,7 +21,7 @@ inline ros::SonarOptions withoutFrame() {
 /** One port's samples as one topic's messages. */
 struct TopicOut {
     std::string port, topic;
-    MessageType type = MessageType::ProjectedSonarImage;
+    MessageType type = message_type<ros::ProjectedSonarImage>;
     std::optional<std::string> child_frame_id;
     ros::SonarOptions sonar = withoutFrame();
 
@@ -39,13 +39,12 @@ struct TopicOut {
 
 /** How the axes of a ping's message lie; none: it has none, or is of a pose. */
 inline std::optional<ros::SensorFrame> axesOf(const TopicOut& topic) {
-    switch (topic.type) {
-        case MessageType::ProjectedSonarImage:
-        case MessageType::SonarRanges: return topic.sonar.frame;
-        case MessageType::PointCloud2:
-        case MessageType::LaserScan: return ros::SensorFrame::XForward;
-        default: return std::nullopt;
-    }
+    const auto is = [&]<class Message>(std::type_identity<Message>) { return topic.type == message_type<Message>; };
+    if (is(std::type_identity<ros::ProjectedSonarImage>{}) || is(std::type_identity<ros::SonarRanges>{}))
+        return topic.sonar.frame;
+    if (is(std::type_identity<ros::PointCloud2>{}) || is(std::type_identity<ros::LaserScan>{}))
+        return ros::SensorFrame::XForward;
+    return std::nullopt;
 }
 
 struct PublisherConfig {

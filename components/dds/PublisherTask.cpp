@@ -10,19 +10,16 @@
 namespace insonify::dds {
 namespace {
 
-/** What travels; null for a sample that is. */
-const types::Pose* contentOf(const types::Pose& pose) { return &pose; }
-template <class T>
-const T* contentOf(const std::shared_ptr<const T>& sample) {
-    return sample.get();
+void tellLatency(framework::TaskContext& task, const auto& sample) {
+    if constexpr (requires { sample.time; }) framework::noteLatency(task, sample.time);
 }
 
 }  // namespace
 
-template <class Carried>
+template <class Sample>
 class PublisherTask::TypedInlet final : public Inlet {
 public:
-    using Sample = std::remove_cvref_t<decltype(*contentOf(std::declval<Carried>()))>;
+    using Carried = types::Carried<Sample>;
 
     explicit TypedInlet(std::unique_ptr<framework::InputPortBase> port)
         : owned_(std::move(port)), port_(static_cast<framework::InputPort<Carried>&>(*owned_)) {}
@@ -38,10 +35,10 @@ public:
     bool send(PublisherTask& task) override {
         Carried sample{};
         if (!port_.readNew(sample)) return false;
-        const Sample* const content = contentOf(sample);
+        const Sample* const content = types::carriedSample(sample);
         if (!content) return task.drops_.add(port_.path() + ": a sample is null"), true;
         for (const auto& publication : publications_)
-            if (publication->publish(*content)) framework::noteLatency(task, content->time);
+            if (publication->publish(*content)) tellLatency(task, *content);
         return true;
     }
 
@@ -51,22 +48,18 @@ private:
     std::vector<std::unique_ptr<Publication<Sample>>> publications_;
 };
 
-template <class Carried>
-bool PublisherTask::addInlet(const std::string& port, framework::OutputPortBase& source) {
-    if (!dynamic_cast<framework::OutputPort<Carried>*>(&source)) return false;
-    inlets_.push_back(std::make_unique<TypedInlet<Carried>>(source.makeReader(this, port)));
-    return true;
-}
-
 framework::InputPortBase* PublisherTask::makeInput(const std::string& port, framework::OutputPortBase& source) {
     if (std::ranges::none_of(config->topics, [&](const TopicOut& topic) { return topic.port == port; }))
         throw types::ConfigError("", "", "no topic of " + name() + " is for port " + port);
-    if (addInlet<types::SonarPtr>(port, source) || addInlet<types::Pose>(port, source) ||
-        addInlet<types::ImagePtr>(port, source))
-        return &inlets_.back()->port();
-    throw types::ConfigError(
-        "", "",
-        source.path() + " is " + source.typeName() + ", of which no message is made; pings, poses and pictures are");
+    const size_t before = inlets_.size();
+    types::forEachSampleType([&]<class T>(std::type_identity<T>) {
+        if (dynamic_cast<framework::OutputPort<types::Carried<T>>*>(&source))
+            inlets_.push_back(std::make_unique<TypedInlet<T>>(source.makeReader(this, port)));
+    });
+    if (inlets_.size() > before) return &inlets_.back()->port();
+    throw types::ConfigError("", "",
+                             source.path() + " is " + source.typeName() +
+                                 ", of which no message is made; pings, poses, pictures, numbers and texts are");
 }
 
 void PublisherTask::check(types::Problems& problems) const {

@@ -15,9 +15,9 @@ namespace insonify::dds {
 
 /** Sends samples as ROS 2 messages.
  *
- *  Ports: an input for each connection that names one that `topics` knows: pings (types::SonarPtr), poses
- *  (types::Pose) and pictures (types::ImagePtr); their topics may be of the types that such a sample can be. A topic
- *  that nobody reads costs nothing. Poses are turned into `world_frame`.
+ *  Ports: an input for each connection that names one that `topics` knows, of any type in types/Samples.hpp; their
+ * topics may be of the types that such a sample can be. A topic that nobody reads costs nothing. Poses are turned into
+ * `world_frame`.
  *
  *  Configure joins the domain and announces the node. Sending waits for no reader: one that is more than `depth`
  *  messages behind misses some. What cannot be sent, or what its message cannot hold, is dropped and counted: a warning
@@ -33,6 +33,7 @@ public:
     framework::InputPortBase* makeInput(const std::string& port, framework::OutputPortBase& source) override;
     void check(types::Problems& problems) const override;
     std::vector<std::string> notices() const override;
+    bool reachesOutside() const override { return true; }
 
 private:
     /** One input and its topics. */
@@ -46,10 +47,8 @@ private:
         virtual void close() = 0;
         virtual bool send(PublisherTask& task) = 0;  ///< Whether there was a sample.
     };
-    template <class Carried>
+    template <class Sample>
     class TypedInlet;
-    template <class Carried>
-    bool addInlet(const std::string& port, framework::OutputPortBase& source);
 
     bool configureHook() override;
     void updateHook() override;

@@ -30,6 +30,7 @@ public:
     framework::OutputPortBase* makeOutput(const std::string& port) override;
     void check(types::Problems& problems) const override;
     std::vector<std::string> notices() const override;
+    bool reachesOutside() const override { return true; }
     /** A message wakes it as well; this only says that something does. */
     double wakeAfter() const override { return 1; }
 

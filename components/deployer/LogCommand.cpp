@@ -1,6 +1,7 @@
 // insonify log info|export|cut|repair|check FILE
 #include <fmt/core.h>
 
+#include <algorithm>
 #include <charconv>
 #include <filesystem>
 #include <map>
@@ -12,51 +13,53 @@
 #include "components/deployer/Json.hpp"
 #include "components/deployer/PictureExport.hpp"
 #include "components/deployer/StreamMeaning.hpp"
-#include "components/mcap/Export.hpp"
-#include "components/mcap/LogSource.hpp"
-#include "components/pocolog/Check.hpp"
-#include "components/pocolog/Copy.hpp"
-#include "components/pocolog/Export.hpp"
-#include "components/pocolog/Info.hpp"
-#include "components/pocolog/Pings.hpp"
+#include "components/log/Check.hpp"
+#include "components/log/Copy.hpp"
+#include "components/log/Export.hpp"
 
 namespace insonify::deployer {
 namespace fs = std::filesystem;
 namespace {
 
-Json infoJson(const pocolog::LogInfo& info) {
+Json infoJson(const log::Reader& log) {
     Json streams = Json::array();
-    for (const pocolog::StreamInfo& stream : info.streams)
+    for (const log::Stream& stream : log.streams())
         streams.push_back({{"name", stream.name},
                            {"type", stream.type},
                            {"count", stream.count},
-                           {"first_s", stream.first_s},
-                           {"last_s", stream.last_s},
-                           {"rate_hz", stream.rate_hz}});
-    return {{"bytes", info.bytes}, {"complete", info.complete}, {"streams", streams}};
+                           {"first_s", stream.first.seconds()},
+                           {"last_s", stream.last.seconds()},
+                           {"rate_hz", stream.rate()}});
+    return {{"bytes", log.bytes()}, {"complete", log.complete()}, {"streams", streams}};
 }
 
-void printTable(const std::string& file, const pocolog::LogInfo& info) {
-    fmt::print("{}: {} bytes, {}\n", file, info.bytes, info.complete ? "complete" : "cut off");
-    fmt::print("  {:24} {:32} {:>8} {:>12} {:>12} {:>9}\n", "stream", "type", "samples", "first s", "last s",
-               "rate Hz");
-    for (const pocolog::StreamInfo& s : info.streams)
-        fmt::print("  {:24} {:32} {:>8} {:>12.3f} {:>12.3f} {:>9.2f}\n", s.name, s.type, s.count, s.first_s, s.last_s,
-                   s.rate_hz);
+void printTable(const log::Reader& log) {
+    fmt::print("{}: {} bytes, {}\n", log.path().string(), log.bytes(), log.complete() ? "complete" : "cut off");
+    fmt::print("  {:24} {:32} {:>8} {:>26} {:>26} {:>9}\n", "stream", "type", "samples", "first", "last", "rate Hz");
+    for (const log::Stream& s : log.streams())
+        fmt::print("  {:24} {:32} {:>8} {:>26} {:>26} {:>9.2f}\n", s.name, s.type, s.count, log::readable(s.first),
+                   log::readable(s.last), s.rate());
+}
+
+/** A log, and a notice where it cannot be read to its end. */
+std::unique_ptr<log::Reader> opened(const std::string& file) {
+    auto log = log::openLog(file);
+    if (!log->complete()) fmt::print(stderr, "notice: {}: {}\n", file, log->diagnostic());
+    return log;
 }
 
 /** What each stream carries: the deployment, the seed and the plan, which the streams of a run share, and what its
  *  numbers mean. */
-Json metadataJson(const pocolog::Reader& log) {
+Json metadataJson(const log::Reader& log) {
     Json all = Json::object();
-    for (const pocolog::Stream& stream : log.streams())
+    for (const log::Stream& stream : log.streams())
         all[stream.name] = {{"metadata", stream.metadata}, {"meaning", meaningOf(log, stream)}};
     return all;
 }
 
-void printMetadata(const pocolog::Reader& log) {
+void printMetadata(const log::Reader& log) {
     std::set<std::pair<std::string, std::string>> told;  // once for all streams that have the same
-    for (const pocolog::Stream& stream : log.streams()) {
+    for (const log::Stream& stream : log.streams()) {
         fmt::print("\n{}\n{}\n", stream.name, text(meaningOf(log, stream)));
         for (const auto& [key, value] : stream.metadata)
             if (told.emplace(key, value).second)
@@ -65,15 +68,13 @@ void printMetadata(const pocolog::Reader& log) {
 }
 
 int logInfo(const std::string& file, bool json, bool metadata) {
-    const auto log = mcap::openLog(file);
-    if (!log->complete()) fmt::print(stderr, "notice: {}: {}\n", file, log->fault());
-    const pocolog::LogInfo info = pocolog::info(*log);
+    const auto log = opened(file);
     if (!json) {
-        printTable(file, info);
+        printTable(*log);
         if (metadata) printMetadata(*log);
         return 0;
     }
-    Json all = infoJson(info);
+    Json all = infoJson(*log);
     if (metadata) all["metadata"] = metadataJson(*log);
     print(all);
     return 0;
@@ -85,11 +86,14 @@ void refuseMissingFolder(const fs::path& to) {
 }
 
 /** Pings as text are some ten times as large as they are in the log, and slow to read. */
-void noteSize(const pocolog::Reader& log, const std::string& stream, const fs::path& to) {
+void noteSize(log::Reader& log, const std::string& stream, const fs::path& to) {
     constexpr double line = 40, told_from = 1e8;  // [B]
-    if (!pocolog::holdsPings(log.streams()[log.indexOf(stream)])) return;
-    double bins = 0;
-    log.forEachRef(stream, [&](const pocolog::SampleRef& at) { bins += at.size / static_cast<double>(sizeof(float)); });
+    const size_t index = log.indexOf(stream);
+    const log::Stream& pings = log.streams()[index];
+    if (!log::holdsPings(pings) || pings.count == 0) return;
+    types::Sonar ping;
+    readPing(log, *std::ranges::find(log.samples(), index, &log::SampleRef::stream), ping);
+    const double bins = static_cast<double>(ping.bins.size()) * static_cast<double>(pings.count);
     if (bins * line > told_from)
         fmt::print(stderr,
                    "notice: {} gets a line for each bin, some {:.0f} million, {:.1f} GB; an .npz takes {:.2g} GB\n",
@@ -97,39 +101,47 @@ void noteSize(const pocolog::Reader& log, const std::string& stream, const fs::p
 }
 
 /** The files that were written. */
-std::vector<fs::path> exportTo(pocolog::Reader& log, const std::string& stream, const fs::path& to) {
+std::vector<fs::path> exportTo(log::Reader& log, const std::string& stream, const fs::path& to) {
     const std::string meta = text(meaningOf(log, log.streams()[log.indexOf(stream)]));
     if (!to.has_extension() || fs::is_directory(to)) {
         fs::create_directories(to);
-        return pocolog::exportNpz(log, stream, to / (stream + ".npz"), meta);
+        return log::exportNpz(log, stream, to / (stream + ".npz"), meta);
     }
     refuseMissingFolder(to);
-    if (to.extension() == ".npz") return pocolog::exportNpz(log, stream, to, meta);
+    if (to.extension() == ".npz") return log::exportNpz(log, stream, to, meta);
     if (to.extension() == ".png") return exportPictures(log, stream, to);
     if (to.extension() != ".csv")
         throw types::ConfigError(to, "--to", "may be a folder, or end in .npz, .csv, .png or .mcap");
     noteSize(log, stream, to);
-    pocolog::exportCsv(log, stream, to);
+    log::exportCsv(log, stream, to);
     return {to};
 }
 
 struct Options {
     std::string file, stream, to, samples;
     std::vector<std::string> files, streams;
-    std::optional<double> from, until;
-    mcap::McapConfig mcap;
+    std::string from, until;
+    log::McapConfig mcap;
     bool json = false, metadata = false;
 };
 
+void tellLost(const log::Copied& copied) {
+    for (const std::string& lost : copied.lost) fmt::print(stderr, "lost: {}\n", lost);
+}
+
+int exportMessages(const Options& options) {
+    refuseMissingFolder(options.to);
+    log::Selection selection;
+    if (!options.stream.empty()) selection.streams.insert(options.stream);
+    const log::Copied copied = log::copyLog({options.file}, options.to, {.selection = selection, .anew = options.mcap});
+    tellLost(copied);
+    fmt::print("{}: {} messages\n", options.to, copied.samples);
+    return 0;
+}
+
 int logExport(const Options& options) {
-    const auto log = mcap::openLog(options.file);
-    if (!log->complete()) fmt::print(stderr, "notice: {}: {}\n", options.file, log->fault());
-    if (mcap::isMcap(options.to)) {
-        refuseMissingFolder(options.to);
-        const size_t samples = mcap::exportLog(*log, options.stream, options.to, options.mcap);
-        fmt::print("{}: {} messages\n", options.to, samples);
-        return 0;
-    }
+    if (log::isMcap(options.to)) return exportMessages(options);
+    const auto log = opened(options.file);
     if (options.stream.empty())
         throw types::ConfigError("", "--stream", "is missing; only an MCAP file takes all streams");
     for (const fs::path& written : exportTo(*log, options.stream, options.to)) fmt::print("{}\n", written.string());
@@ -137,7 +149,7 @@ int logExport(const Options& options) {
 }
 
 /** "10:20", either number may be missing: the numbers from 10 on, without 20. */
-void readRange(const std::string& text, pocolog::Selection& selection) {
+void readRange(const std::string& text, log::Selection& selection) {
     const auto fail = [&] {
         throw types::ConfigError("", "--samples", "is " + text + "; it may be FIRST:LAST, either may be left out");
     };
@@ -151,48 +163,48 @@ void readRange(const std::string& text, pocolog::Selection& selection) {
     number(std::string_view(text).substr(colon + 1), selection.last);
 }
 
-pocolog::Selection selectionOf(const Options& options) {
-    pocolog::Selection selection;
+log::Selection selectionOf(const Options& options) {
+    log::Selection selection;
     selection.streams = {options.streams.begin(), options.streams.end()};
-    if (options.from) selection.from = types::Time::fromSeconds(*options.from);
-    if (options.until) selection.until = types::Time::fromSeconds(*options.until);
+    if (!options.from.empty()) selection.from = log::readTime(options.from, "--from");
+    if (!options.until.empty()) selection.until = log::readTime(options.until, "--until");
     if (!options.samples.empty()) readRange(options.samples, selection);
     return selection;
 }
 
-void printCopied(const pocolog::Copied& copied, const std::string& to) {
-    for (const std::string& lost : copied.lost) fmt::print(stderr, "lost: {}\n", lost);
+/** Copies into `--to`, and tells. */
+int copyTo(const std::string& to, const std::vector<fs::path>& files, const log::CopyOptions& options) {
+    refuseMissingFolder(to);
+    const log::Copied copied = log::copyLog(files, to, options);
+    tellLost(copied);
+    if (const std::string notice = log::copyProperties(files.front(), to); !notice.empty())
+        fmt::print(stderr, "notice: {}\n", notice);
     fmt::print("{}: {} samples, {}\n", to, copied.samples,
                copied.lost.empty() ? "nothing was lost" : fmt::format("lost in {} places", copied.lost.size()));
+    return 0;
 }
 
 int logCut(const Options& options) {
-    const pocolog::Selection selection = selectionOf(options);
-    refuseMissingFolder(options.to);
-    const std::vector<fs::path> files(options.files.begin(), options.files.end());
-    printCopied(pocolog::copy(files, pocolog::AtDamage::Stop, selection, options.to), options.to);
-    return 0;
+    return copyTo(options.to, {options.files.begin(), options.files.end()}, {.selection = selectionOf(options)});
 }
 
 int logRepair(const Options& options) {
-    refuseMissingFolder(options.to);
-    printCopied(pocolog::copy({options.file}, pocolog::AtDamage::Skip, {}, options.to), options.to);
-    return 0;
+    return copyTo(options.to, {fs::path(options.file)}, {.at_damage = log::AtDamage::Skip});
 }
 
-Json verdictJson(const pocolog::Verdict& verdict) {
+Json verdictJson(const log::Verdict& verdict) {
     Json wrong;
-    if (verdict.wrong)
-        wrong = {
-            {"file", verdict.wrong->file.string()}, {"byte", verdict.wrong->byte}, {"message", verdict.wrong->what}};
-    return {{"valid", !verdict.wrong}, {"streams", verdict.streams}, {"samples", verdict.samples}, {"wrong", wrong}};
+    if (const auto& found = verdict.diagnostic)
+        wrong = {{"file", found->file.string()}, {"byte", found->byte}, {"message", found->message}};
+    return {
+        {"valid", !verdict.diagnostic}, {"streams", verdict.streams}, {"samples", verdict.samples}, {"wrong", wrong}};
 }
 
 int logCheck(const Options& options) {
-    const pocolog::Verdict verdict = mcap::checkLog(options.file);
+    const log::Verdict verdict = log::check(options.file);
     if (options.json) print(verdictJson(verdict));
-    if (const auto& wrong = verdict.wrong)
-        throw types::ConfigError(wrong->file, fmt::format("byte {}", wrong->byte), wrong->what);
+    if (const auto& found = verdict.diagnostic)
+        throw types::ConfigError(found->file, fmt::format("byte {}", found->byte), found->message);
     if (!options.json)
         fmt::print("{}: valid, {} streams, {} samples\n", options.file, verdict.streams, verdict.samples);
     return 0;
@@ -207,7 +219,7 @@ void addEnum(CLI::App& command, const char* name, const char* help, E& value) {
     command.add_option(name, value, help)->transform(CLI::CheckedTransformer(names));
 }
 
-void addMcapOptions(CLI::App& command, mcap::McapConfig& config) {
+void addMcapOptions(CLI::App& command, log::McapConfig& config) {
     addEnum(command, "--dtype", "of echoes in an MCAP file (default: float32)", config.dtype);
     addEnum(command, "--world-frame", "of poses in an MCAP file (default: as_is)", config.world_frame);
 }
@@ -240,25 +252,25 @@ void addLogCommand(CLI::App& app, Action& action) {
     addMcapOptions(*out, options->mcap);
 
     CLI::App* cut = add(*log, action, options, "cut", "Copies a part of a log, or its files into one", logCut);
-    cut->add_option("FILE", options->files, "a pocolog file, or those of a log in order")->required();
-    cut->add_option("--to", options->to, "the new log, NAME.0.log")->required();
-    cut->add_option("--from", options->from, "earliest time, as `log info` lists them [s]");
-    cut->add_option("--until", options->until, "time at which the copy ends, not included [s]");
+    cut->add_option("FILE", options->files, "a pocolog or MCAP file, or those of a log in order")->required();
+    cut->add_option("--to", options->to, "the new log, NAME.0.log or NAME.0.mcap")->required();
+    cut->add_option("--from", options->from,
+                    "earliest time: [s], as `log info` lists them, or a date, as in 2026-11-22T12:55:44Z");
+    cut->add_option("--until", options->until, "time at which the copy ends, not included");
     cut->add_option("--samples", options->samples, "FIRST:LAST, numbers from 0 in the kept streams, LAST not included");
     cut->add_option("--stream", options->streams, "task.port to keep; may be given again; none: all")
         ->allow_extra_args(false);
 
     CLI::App* repair = add(*log, action, options, "repair",
                            "Copies what is whole of a damaged log into a new one, and tells what was lost", logRepair);
-    repair->add_option("--to", options->to, "the new log, NAME.0.log")->required();
+    repair->add_option("--to", options->to, "the new log, NAME.0.log or NAME.0.mcap")->required();
 
     CLI::App* check =
         add(*log, action, options, "check", "Reads a log strictly and names the first wrong byte", logCheck);
     check->add_flag("--json", options->json, "for machines");
 
     for (CLI::App* command : {info, out, repair, check})
-        command->add_option("FILE", options->file, command == repair ? "a pocolog file" : "a pocolog or MCAP file")
-            ->required();
+        command->add_option("FILE", options->file, "a pocolog or MCAP file")->required();
 }
 
 }  // namespace insonify::deployer

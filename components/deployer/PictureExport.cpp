@@ -5,9 +5,9 @@
 #include <algorithm>
 #include <optional>
 
+#include "components/log/Reader.hpp"
 #include "components/output/FanImage.hpp"
 #include "components/output/PictureFiles.hpp"
-#include "components/pocolog/Pings.hpp"
 #include "types/Image.hpp"
 
 namespace insonify::deployer {
@@ -24,13 +24,13 @@ namespace {
 /** Turns the samples of one stream into pictures. */
 class Pictures {
 public:
-    Pictures(pocolog::Reader& log, const pocolog::Stream& stream) : log_(log), logged_(stream.holds<types::Image>()) {
+    Pictures(log::Reader& log, const log::Stream& stream) : log_(log), logged_(stream.holds<types::Image>()) {
         if (!logged_ && !holdsPings(stream))
             throw types::ConfigError(
                 log.path(), stream.name,
                 fmt::format("holds {}; pictures are made of pings, beams, scans and frames", stream.type));
     }
-    const types::Image& of(const pocolog::SampleRef& at) {
+    const types::Image& of(const log::SampleRef& at) {
         if (logged_)
             log_.read(at, picture_);
         else
@@ -39,13 +39,13 @@ public:
     }
 
 private:
-    void paint(const pocolog::SampleRef& at) {
+    void paint(const log::SampleRef& at) {
         readPing(log_, at, ping_);
         if (!fan_) fan_.emplace(displayFor(ping_));
         fan_->paint(ping_, picture_);
     }
 
-    pocolog::Reader& log_;
+    log::Reader& log_;
     const bool logged_;  ///< They are pictures already.
     std::optional<output::FanImage> fan_;
     types::Sonar ping_;
@@ -54,11 +54,11 @@ private:
 
 }  // namespace
 
-std::vector<std::filesystem::path> exportPictures(pocolog::Reader& log, const std::string& stream,
+std::vector<std::filesystem::path> exportPictures(log::Reader& log, const std::string& stream,
                                                   const std::filesystem::path& path) {
     Pictures pictures(log, log.streams()[log.indexOf(stream)]);
     std::vector<std::filesystem::path> files;
-    log.forEachRef(stream, [&](const pocolog::SampleRef& at) {
+    log.forEachRef(stream, [&](const log::SampleRef& at) {
         const types::Image& picture = pictures.of(at);
         files.push_back(path.parent_path() / fmt::format("{}_{:06}.png", path.stem().string(), files.size()));
         output::writePng(files.back(), picture);

@@ -3,11 +3,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cctype>
 #include <cstdlib>
 #include <filesystem>
 #include <map>
 #include <set>
 #include <type_traits>
+#include <utility>
 #include <variant>
 
 #include "components/deployer/Json.hpp"
@@ -16,6 +18,7 @@
 #include "components/deployer/Tasks.hpp"
 #include "components/framework/Deployment.hpp"
 #include "components/framework/YamlText.hpp"
+#include "components/replay/ReplayTask.hpp"
 #include "components/sonar/PingTask.hpp"
 #include "types/TaskRecord.hpp"
 
@@ -25,27 +28,15 @@ namespace {
 using framework::Deployment;
 using framework::splitPort;
 
-/** Of the first stream that has it; empty: none has. */
-std::string metadataOf(const pocolog::Reader& log, const std::string& key) {
-    for (const pocolog::Stream& stream : log.streams())
-        if (const auto found = stream.metadata.find(key); found != stream.metadata.end()) return found->second;
-    return {};
-}
-
-bool ofOneRun(const pocolog::Reader& a, const pocolog::Reader& b) {
-    const auto same = [&](const char* key) { return metadataOf(a, key) == metadataOf(b, key); };
-    return same("insonify_deployment") && same("insonify_seed");
-}
-
 /** What a log tells of the quality of a sonar. */
 struct Recorded {
     int rows = 0, columns_per_beam = 0;
     bool chosen = false;  ///< Not given; with neither, the placeholder before the first ping that hears anything.
 };
 
-std::optional<Recorded> recordedQuality(const pocolog::Reader& log, const std::string& sonar) {
+std::optional<Recorded> recordedQuality(const log::Reader& log, const std::string& sonar) {
     std::optional<Recorded> quality;
-    for (const pocolog::Stream& stream : log.streams()) {
+    for (const log::Stream& stream : log.streams()) {
         const auto plans = stream.metadata.find("insonify_plan");
         if (plans == stream.metadata.end()) continue;
         try {
@@ -68,17 +59,52 @@ std::string textOf(const types::PropertyValue& value) {
     return is_block ? *text : Json(*text).dump();
 }
 
-std::optional<types::PropertyValue> lastValue(pocolog::Reader& log, const pocolog::Stream& stream) {
-    std::optional<types::PropertyValue> value;
+/** The values that a property had, and when the logger came to know of each. */
+using Values = std::vector<std::pair<types::Time, types::PropertyValue>>;
+
+Values valuesOf(log::Reader& log, const log::Stream& stream) {
+    Values values;
     const auto read = [&]<class T>(std::type_identity<T>) {
         if (stream.holds<T>())
-            log.forEach<T>(stream.name, [&](const T& sample, const pocolog::SampleRef&) { value.emplace(sample); });
+            log.forEach<T>(stream.name, [&](const T& sample, const log::SampleRef& at) {
+                values.emplace_back(at.received, sample);
+            });
     };
     read(std::type_identity<bool>{});
     read(std::type_identity<int64_t>{});
     read(std::type_identity<double>{});
     read(std::type_identity<std::string>{});
-    return value;
+    return values;
+}
+
+/** Pings of a stream, by which a moment of the logger becomes one of the world. */
+struct Pings {
+    std::string driver;
+    std::vector<log::SampleRef> samples;
+
+    Pings(const log::Reader& log, const std::string& stream) : driver(poseStreamOf(log, splitPort(stream).first)) {
+        log.forEachRef(stream, [&](const log::SampleRef& at) { samples.push_back(at); });
+    }
+    /** Stamp of the first ping that came with or after what the logger learnt then; none came. */
+    std::optional<types::Time> firstFrom(types::Time received) const {
+        const auto first = std::ranges::lower_bound(samples, received, {}, &log::SampleRef::received);
+        return first == samples.end() ? std::nullopt : std::optional(first->time);
+    }
+};
+
+/** What became of a property, for pings after `start`. */
+RecordedProperty historyOf(const std::string& property, const Values& values, const Pings& pings, types::Time start) {
+    RecordedProperty found{
+        splitPort(property).first, splitPort(property).second, textOf(values.front().second), pings.driver, {}};
+    for (const auto& [received, value] : values) {
+        const auto from = pings.firstFrom(received);
+        if (!from) break;
+        if (*from <= start)
+            found.start = textOf(value);
+        else
+            found.changes.push_back({*from, textOf(value)});
+    }
+    return found;
 }
 
 /** Properties of the tasks as they are, by "task.property". */
@@ -97,11 +123,10 @@ bool names(const std::vector<std::string>& set, const std::string& property) {
 }
 
 /** Collects what differs. */
-struct Settings {
-    std::vector<std::string> assignments;
+struct Settings : RecordedSettings {
     std::set<std::string> settled;  ///< "task.property" to which nothing is to be added.
 
-    void addQualities(const Deployment& deployment, const pocolog::Reader& log, const std::set<std::string>& tasks) {
+    void addQualities(const Deployment& deployment, const log::Reader& log, const std::set<std::string>& tasks) {
         for (const auto& task : deployment.tasks()) {
             const auto* const sonar = dynamic_cast<const sonar::PingTask*>(task.get());
             const std::string property = task->name() + ".quality";
@@ -117,37 +142,59 @@ struct Settings {
             if (recorded->chosen) settled.insert(property);
         }
     }
-    void addProperties(Deployment& deployment, const pocolog::Reader& log, const std::set<std::string>& tasks) {
-        const std::filesystem::path file = log.path().parent_path() / "properties.0.log";
-        if (!std::filesystem::exists(file)) return;
-        pocolog::Reader properties(file);
-        if (!ofOneRun(log, properties)) return;
+    void addProperties(Deployment& deployment, const log::Reader& log, const std::map<std::string, Pings>& pings,
+                       const std::set<std::string>& tasks, double from) {
+        const auto file = propertyLogOf(log);
+        if (!file) {
+            if (!log.metadatum("insonify_deployment").empty())
+                notice =
+                    log.path().string() +
+                    " has no properties.0.log of its run beside it: what was set by --set or while it ran is not known";
+            return;
+        }
+        const auto properties = log::openLog(*file);
         const auto present = propertiesOf(deployment, tasks);
-        for (const pocolog::Stream& stream : properties.streams()) {
-            if (!tasks.contains(splitPort(stream.name).first) || settled.contains(stream.name)) continue;
-            const auto value = lastValue(properties, stream);
+        for (const log::Stream& stream : properties->streams()) {
+            const auto of_task = pings.find(splitPort(stream.name).first);
+            const Values values = valuesOf(*properties, stream);
+            if (of_task == pings.end() || settled.contains(stream.name) || values.empty()) continue;
+            const auto& samples = of_task->second.samples;
+            const types::Time begin = log.samples().front().time + types::Time::fromSeconds(from);
+            const types::Time start = samples.empty() ? begin : std::max(begin, samples.front().time);
+            const RecordedProperty history = historyOf(stream.name, values, of_task->second, start);
             const auto now = present.find(stream.name);
-            if (value && (now == present.end() || now->second != *value))
-                assignments.push_back(stream.name + "=" + textOf(*value));
+            if (now == present.end() || textOf(now->second) != history.start)
+                assignments.push_back(stream.name + "=" + history.start);
+            if (!history.changes.empty()) changed.push_back(history);
         }
     }
 };
 
+/** Of each task from which pings of the log come, those of the first stream that it has to do with. */
+std::map<std::string, Pings> pingsByTask(const log::Reader& log, const framework::DeploymentSpec& spec,
+                                         const Deployment& deployment) {
+    std::map<std::string, Pings> pings;
+    for (const std::string& stream : pingStreams(log, spec))
+        for (const std::string& task : upstreamOf({splitPort(stream).first}, deployment))
+            if (!pings.contains(task)) pings.emplace(task, Pings(log, stream));
+    return pings;
+}
+
 }  // namespace
 
-std::optional<uint64_t> recordedSeed(const pocolog::Reader& log) {
-    const std::string seed = metadataOf(log, "insonify_seed");
+std::optional<uint64_t> recordedSeed(const log::Reader& log) {
+    const std::string seed = log.metadatum("insonify_seed");
     if (seed.empty()) return {};
     return std::strtoull(seed.c_str(), nullptr, 10);
 }
 
-std::vector<std::string> recordedSettings(const pocolog::Reader& log, const framework::DeploymentSpec& spec,
-                                          const std::vector<std::string>& set, std::optional<uint64_t> seed) {
+RecordedSettings recordedSettings(const log::Reader& log, const framework::DeploymentSpec& spec,
+                                  const std::vector<std::string>& set, std::optional<uint64_t> seed, double from) {
     framework::Registry registry = builtInTasks();
     Deployment deployment(spec, registry, ".", seed ? *seed : recordedSeed(log).value_or(0));
+    const std::map<std::string, Pings> pings = pingsByTask(log, spec, deployment);
     std::set<std::string> tasks;
-    for (const std::string& stream : pingStreams(log, spec)) tasks.insert(splitPort(stream).first);
-    tasks = upstreamOf(std::move(tasks), deployment);
+    for (const auto& entry : pings) tasks.insert(entry.first);
 
     Settings settings;
     for (const std::string& task : tasks) {
@@ -155,8 +202,25 @@ std::vector<std::string> recordedSettings(const pocolog::Reader& log, const fram
         if (seed) settings.settled.insert(task + ".seed");
     }
     settings.addQualities(deployment, log, tasks);
-    settings.addProperties(deployment, log, tasks);
-    return settings.assignments;
+    settings.addProperties(deployment, log, pings, tasks, from);
+    std::erase_if(settings.changed, [&](const RecordedProperty& p) { return names(set, p.task + "." + p.name); });
+    return settings;
+}
+
+void LiveSettings::follow(Deployment& deployment) {
+    const auto* const replay = dynamic_cast<const replay::ReplayTask*>(deployment.tasks().front().get());
+    for (size_t i = 0; replay && i < changed_.size(); ++i) {
+        const RecordedProperty& property = changed_[i];
+        const auto next = replay->nextStamp(property.driver);
+        if (!next) continue;
+        const auto later = std::ranges::upper_bound(property.changes, *next, {}, &RecordedProperty::Change::from);
+        const auto holding = static_cast<size_t>(later - property.changes.begin());
+        if (std::exchange(applied_[i], holding) == holding) continue;
+        std::string setter = property.task + ".set" + property.name;
+        char& first = setter[property.task.size() + 4];
+        first = static_cast<char>(std::toupper(static_cast<unsigned char>(first)));
+        deployment.call(setter, {holding == 0 ? property.start : property.changes[holding - 1].value});
+    }
 }
 
 }  // namespace insonify::deployer

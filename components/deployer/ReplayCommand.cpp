@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <functional>
 #include <memory>
 
 #include "components/deployer/Commands.hpp"
@@ -13,7 +14,8 @@
 #include "components/deployer/RunOptions.hpp"
 #include "components/deployer/ScoreReport.hpp"
 #include "components/deployer/StopSignal.hpp"
-#include "components/mcap/LogSource.hpp"
+#include "components/log/Reader.hpp"
+#include "types/Reason.hpp"
 #include "types/Reason.hpp"
 
 namespace insonify::deployer {
@@ -27,19 +29,37 @@ struct Options : RunOptions {
     size_t worst = 10;
 };
 
-/** The log's own settings, below those of the user. */
-void takeSettings(const pocolog::Reader& log, Options& options) {
-    const std::vector<std::string> recorded = recordedSettings(log, loadSpec(options), options.set, options.seed);
-    if (!options.quiet)
-        for (const std::string& setting : recorded) fmt::print(stderr, "notice: as in the log: {}\n", setting);
-    options.set.insert(options.set.begin(), recorded.begin(), recorded.end());
+void notice(const Options& options, const std::string& text) {
+    if (!options.quiet && !text.empty()) fmt::print(stderr, "notice: {}\n", text);
+}
+
+/** The log's own settings, below those of the user; gives what changed while it was recorded. */
+std::vector<RecordedProperty> takeSettings(const log::Reader& log, Options& options) {
+    RecordedSettings recorded =
+        recordedSettings(log, loadSpec(options), options.set, options.seed, options.replay.from);
+    notice(options, recorded.notice);
+    for (const std::string& setting : recorded.assignments) notice(options, "as in the log: " + setting);
+    for (const RecordedProperty& property : recorded.changed)
+        for (const RecordedProperty::Change& change : property.changes)
+            notice(options, fmt::format("as in the log, from {} on: {}.{}={}", log::readable(change.from),
+                                        property.task, property.name, change.value));
+    options.set.insert(options.set.begin(), recorded.assignments.begin(), recorded.assignments.end());
     if (!options.seed) options.seed = recordedSeed(log);
+    return std::move(recorded.changed);
+}
+
+/** Which tasks do not run, since others would hear them. */
+void tellLeftOut(const framework::DeploymentSpec& spec, const Options& options) {
+    if (options.replay.outside) return;
+    for (const std::string& task : outsideTasks(spec))
+        notice(options, task + " is left out, since it talks to others; --outside lets it run");
 }
 
 /** Scores the log against what was rendered again, and tells. Gives the exit code. */
-int tellScore(pocolog::Reader& log, const std::vector<std::string>& streams, size_t worst,
+int tellScore(log::Reader& log, const std::vector<std::string>& streams, size_t worst,
               const std::filesystem::path& folder) {
-    pocolog::Reader rendered(folder / rerendered_file);
+    const auto again = log::openLog(folder / rerendered_file);
+    log::Reader& rendered = *again;
     std::vector<StreamScore> scores;
     for (const std::string& stream : streams) scores.push_back(score(log, rendered, stream));
     write(scoreJson(scores), folder / "score.json");
@@ -77,22 +97,37 @@ void waitForStep(framework::Deployment& deployment, const std::atomic<bool>& sto
         }
 }
 
+/** What is done between two instants: properties follow the log, and `--step` waits. */
+void followLog(Options& options, std::vector<RecordedProperty> changed) {
+    const auto live = std::make_shared<LiveSettings>(std::move(changed));
+    std::function<void(framework::Deployment&, const framework::Progress&)> step;
+    if (options.step)
+        step = [&stop = stopOnSignals()](framework::Deployment& deployment, const framework::Progress& progress) {
+            const std::string now = log::readable(deployment.environment().now());
+            const bool is_date = !now.ends_with(" s");
+            fmt::print(stderr, "{:.6f} s{}\n", progress.elapsed_s, is_date ? ", " + now : "");
+            waitForStep(deployment, stop);
+        };
+    if (!options.step && live->empty()) return;
+    options.progress = [live, step](framework::Deployment& deployment, const framework::Progress& progress) {
+        if (step) step(deployment, progress);
+        live->follow(deployment);
+    };
+}
+
 int replay(Options options) {
-    const auto opened = mcap::openLog(options.replay.log);
-    pocolog::Reader& log = *opened;
-    if (options.replay.rerender) takeSettings(log, options);
+    const auto opened = log::openLog(options.replay.log);
+    log::Reader& log = *opened;
+    std::vector<RecordedProperty> changed;
+    if (options.replay.rerender) changed = takeSettings(log, options);
     framework::DeploymentSpec spec = loadSpec(options);
+    tellLeftOut(spec, options);
     const std::vector<std::string> streams = options.score ? pingStreams(log, spec) : std::vector<std::string>{};
     if (options.score && streams.empty())
         throw types::ConfigError(log.path(), "", "holds no pings of a task of " + spec.file + "; nothing to score");
     spec = replaying(std::move(spec), log, options.replay);
     if (options.score) addLogger(spec, streams, rerendered_file);
-    if (options.step)
-        options.progress = [&stop = stopOnSignals()](framework::Deployment& deployment,
-                                                     const framework::Progress& progress) {
-            fmt::print(stderr, "{:.6f} s\n", progress.elapsed_s);
-            waitForStep(deployment, stop);
-        };
+    followLog(options, std::move(changed));
     std::filesystem::path folder;
     const int code = runDeployment(std::move(spec), options, &folder);
     return code == 0 && options.score ? tellScore(log, streams, options.worst, folder) : code;
@@ -119,6 +154,8 @@ void addReplayCommand(CLI::App& app, Action& action) {
         ->excludes(pace);
     auto* rerender = command->add_flag("--rerender", options->replay.rerender,
                                        "the log's poses drive the sonars, which render anew");
+    command->add_flag("--outside", options->replay.outside,
+                      "runs the tasks that talk to others (DDS, viewer, devices), too; else they are left out");
     auto* score = command->add_flag("--score", options->score, "compares what is rendered with the log's pings");
     score->needs(rerender)->excludes(loop);
     command->add_option("--worst", options->worst, "pings in the table and in pictures (default: 10)")

@@ -17,21 +17,21 @@ using framework::splitPort;
 using framework::TaskSpec;
 
 /** Whether what a port has written is in the stream, not the values of a property. */
-bool isOfPort(const pocolog::Stream& stream) {
+bool isOfPort(const log::Stream& stream) {
     const auto type = stream.metadata.find("rock_stream_type");
     return type == stream.metadata.end() || type->second == "port";
 }
 
 /** Tasks of the deployment that have a stream in the log. */
-std::set<std::string> loggedTasks(const pocolog::Reader& log, const DeploymentSpec& spec) {
+std::set<std::string> loggedTasks(const log::Reader& log, const DeploymentSpec& spec) {
     std::set<std::string> names;
-    for (const pocolog::Stream& stream : log.streams())
+    for (const log::Stream& stream : log.streams())
         if (const std::string task = splitPort(stream.name).first; isOfPort(stream) && spec.task(task))
             names.insert(task);
     return names;
 }
 
-std::set<std::string> replacedTasks(const pocolog::Reader& log, const DeploymentSpec& spec, bool rerender) {
+std::set<std::string> replacedTasks(const log::Reader& log, const DeploymentSpec& spec, bool rerender) {
     std::set<std::string> names = loggedTasks(log, spec);
     if (rerender) {
         framework::Registry registry = builtInTasks();
@@ -42,6 +42,20 @@ std::set<std::string> replacedTasks(const pocolog::Reader& log, const Deployment
                                  std::string("none of its streams is of a task of ") + spec.file +
                                      (rerender ? " that comes before its sonars" : ""));
     return names;
+}
+
+/** Tasks of the deployment in whose place the log's poses of each ping drive a sonar. */
+void drivePings(DeploymentSpec& spec, const log::Reader& log, const std::string& replay) {
+    for (TaskSpec& task : spec.tasks) {
+        const std::string stream = poseStreamOf(log, task.name);
+        if (stream.empty() || !task.type.starts_with("sonar::")) continue;
+        ConnectionSpec connection;
+        connection.from = replay + "." + stream;
+        connection.to = task.name + ".given_pose";
+        connection.policy = framework::ConnPolicy::buffer(256);
+        spec.connections.push_back(connection);
+        task.activity.trigger = {"given_pose"};
+    }
 }
 
 /** `name`, or the like of it that no task has. */
@@ -63,7 +77,7 @@ TaskSpec replayTask(const std::string& name, const ReplayOptions& options) {
 
 /** Connections of logged ports lead from the replay; those that a replaced task would have read, or written without
  *  a stream in the log, are left out. */
-std::vector<ConnectionSpec> reconnected(const DeploymentSpec& spec, const pocolog::Reader& log,
+std::vector<ConnectionSpec> reconnected(const DeploymentSpec& spec, const log::Reader& log,
                                         const std::set<std::string>& replaced, const std::string& replay) {
     std::vector<ConnectionSpec> connections;
     for (const ConnectionSpec& written : spec.connections) {
@@ -86,9 +100,10 @@ void refuseScansFrom(const DeploymentSpec& spec, double from) {
 
 }  // namespace
 
-DeploymentSpec replaying(DeploymentSpec spec, const pocolog::Reader& log, const ReplayOptions& options) {
+DeploymentSpec replaying(DeploymentSpec spec, const log::Reader& log, const ReplayOptions& options) {
     if (options.rerender) refuseScansFrom(spec, options.from);
-    const std::set<std::string> replaced = replacedTasks(log, spec, options.rerender);
+    std::set<std::string> replaced = replacedTasks(log, spec, options.rerender);
+    if (!options.outside) replaced.merge(outsideTasks(spec));
     const std::string name = freeName(spec, "replay");
     // New lists are made, since assigning a YAML node changes what other nodes see.
     std::vector<TaskSpec> tasks{replayTask(name, options)};
@@ -97,13 +112,30 @@ DeploymentSpec replaying(DeploymentSpec spec, const pocolog::Reader& log, const 
     std::vector<ConnectionSpec> connections = reconnected(spec, log, replaced, name);
     spec.tasks.swap(tasks);
     spec.connections.swap(connections);
+    if (options.rerender) drivePings(spec, log, name);
     spec.lockstep = true;
     return spec;
 }
 
-std::vector<std::string> pingStreams(const pocolog::Reader& log, const DeploymentSpec& spec) {
+std::set<std::string> outsideTasks(const DeploymentSpec& spec) {
+    framework::Registry registry = builtInTasks();
+    for (const std::string& library : spec.libraries)
+        registry.loadLibrary(std::filesystem::path(spec.file).parent_path() / library);
+    std::set<std::string> names;
+    for (const TaskSpec& task : spec.tasks)
+        if (const auto made = registry.make(task.type, task.name); made && made->reachesOutside())
+            names.insert(task.name);
+    return names;
+}
+
+std::string poseStreamOf(const log::Reader& log, const std::string& sonar) {
+    const log::Stream* const stream = log.find(sonar + ".pose");
+    return stream && isOfPort(*stream) && stream->holds<types::Pose>() && stream->count > 0 ? stream->name : "";
+}
+
+std::vector<std::string> pingStreams(const log::Reader& log, const DeploymentSpec& spec) {
     std::vector<std::string> names;
-    for (const pocolog::Stream& stream : log.streams())
+    for (const log::Stream& stream : log.streams())
         if (stream.holds<types::Sonar>() && spec.task(splitPort(stream.name).first)) names.push_back(stream.name);
     return names;
 }

@@ -1,9 +1,10 @@
 #pragma once
+#include <set>
 #include <string>
 #include <vector>
 
 #include "components/framework/DeploymentSpec.hpp"
-#include "components/pocolog/Reader.hpp"
+#include "components/log/Reader.hpp"
 
 namespace insonify::deployer {
 
@@ -13,16 +14,24 @@ struct ReplayOptions {
     double from = 0;        ///< After its first stamp [s].
     bool loop = false;      ///< On and on.
     bool rerender = false;  ///< Its poses drive the sonars, which sound again; otherwise its pings are played.
+    bool outside = false;   ///< With the tasks that talk to others than their deployment.
 };
 
+/** Tasks that talk to others than their deployment. */
+std::set<std::string> outsideTasks(const framework::DeploymentSpec& spec);
+
+/** The stream that drives a sonar whose pings are rendered again: where each of them was rendered; empty: the log has
+ * no such stream. */
+std::string poseStreamOf(const log::Reader& log, const std::string& sonar);
+
 /** The deployment, in lockstep on the log's time, with the log in the place of the tasks that it has streams of; where
- *  it is rendered again, only of those that have nothing to do with pings. Throws types::ConfigError when that leaves
- *  nothing to play. */
-framework::DeploymentSpec replaying(framework::DeploymentSpec spec, const pocolog::Reader& log,
+ *  it is rendered again, only of those that have nothing to do with pings, and each sonar pings where the log says that
+ *  it did, if it does. Throws types::ConfigError when that leaves nothing to play. */
+framework::DeploymentSpec replaying(framework::DeploymentSpec spec, const log::Reader& log,
                                     const ReplayOptions& options);
 
 /** Streams of pings in the log that a task of the deployment writes. */
-std::vector<std::string> pingStreams(const pocolog::Reader& log, const framework::DeploymentSpec& spec);
+std::vector<std::string> pingStreams(const log::Reader& log, const framework::DeploymentSpec& spec);
 
 /** Adds a logger that writes these ports to a file. */
 void addLogger(framework::DeploymentSpec& spec, const std::vector<std::string>& ports, const std::string& file);

@@ -31,10 +31,10 @@ std::vector<float> energies(const types::Sonar& ping, output::BinScale scale) {
 }
 
 /** Samples of a stream by their time; of several of one time the first. */
-std::map<types::Time, pocolog::SampleRef> byTime(const pocolog::Reader& log, const std::string& stream) {
-    std::map<types::Time, pocolog::SampleRef> samples;
+std::map<types::Time, log::SampleRef> byTime(const log::Reader& log, const std::string& stream) {
+    std::map<types::Time, log::SampleRef> samples;
     const size_t index = log.indexOf(stream);
-    for (const pocolog::SampleRef& at : log.samples())
+    for (const log::SampleRef& at : log.samples())
         if (at.stream == index) samples.emplace(at.time, at);
     return samples;
 }
@@ -53,7 +53,7 @@ PingScore scoreOf(const types::Sonar& recorded, const types::Sonar& rendered, co
 
 }  // namespace
 
-StreamScore score(pocolog::Reader& recorded, pocolog::Reader& rendered, const std::string& stream) {
+StreamScore score(log::Reader& recorded, log::Reader& rendered, const std::string& stream) {
     StreamScore result;
     result.stream = stream;
     auto others = byTime(rendered, stream);

@@ -2,8 +2,8 @@
 #include <string>
 #include <vector>
 
+#include "components/log/Reader.hpp"
 #include "components/output/PictureConfig.hpp"
-#include "components/pocolog/Reader.hpp"
 #include "components/study/Metrics.hpp"
 
 namespace insonify::deployer {
@@ -13,7 +13,7 @@ struct PingScore {
     types::Time time;
     study::Metrics metrics;
     double similarity = 0;  ///< SSIM of both as they are shown [1].
-    pocolog::SampleRef recorded, rendered;
+    log::SampleRef recorded, rendered;
 };
 
 /** A stream of pings of two logs. */
@@ -28,6 +28,6 @@ struct StreamScore {
 
 /** Compares the pings of a stream, pair by pair of the same time. Bins below 0 are taken for levels in dB; NaN counts
  *  as silence. */
-StreamScore score(pocolog::Reader& recorded, pocolog::Reader& rendered, const std::string& stream);
+StreamScore score(log::Reader& recorded, log::Reader& rendered, const std::string& stream);
 
 }  // namespace insonify::deployer

@@ -24,7 +24,6 @@ struct Column {
 };
 
 constexpr Column columns[] = {
-    {"time", "time [s]", [](const PingScore& ping) { return ping.time.seconds(); }},
     {"rel_l2", "relative L2", [](const PingScore& ping) { return ping.metrics.rel_l2; }},
     {"rel_l2_tvg", "with TVG", [](const PingScore& ping) { return ping.metrics.rel_l2_tvg; }},
     {"correlation", "correlation", [](const PingScore& ping) { return ping.metrics.correlation; }},
@@ -47,28 +46,28 @@ void addSummary(std::string& text, const StreamScore& score) {
 /** Draws the pings of one log as they come. */
 class Screen {
 public:
-    Screen(pocolog::Reader& log, const types::Sonar& first, const output::DisplayConfig& display) : log_(log) {
+    Screen(log::Reader& log, const types::Sonar& first, const output::DisplayConfig& display) : log_(log) {
         if (first.beam_count == 1)
             painter_ = std::make_unique<output::DiscImage>(display);
         else
             painter_ = std::make_unique<output::FanImage>(display);
     }
-    void show(const pocolog::SampleRef& at, bool wanted) {
+    void show(const log::SampleRef& at, bool wanted) {
         log_.read(at, ping_);
         wanted ? painter_->paint(ping_, picture_) : painter_->skip(ping_);
     }
     const types::Image& picture() const { return picture_; }
 
 private:
-    pocolog::Reader& log_;
+    log::Reader& log_;
     std::unique_ptr<output::Painter> painter_;
     types::Sonar ping_;
     types::Image picture_;
 };
 
 /** Writes those of a stream; `first` is the number of the first picture. */
-void writePictures(pocolog::Reader& recorded, pocolog::Reader& rendered, const StreamScore& score, size_t worst,
-                   size_t first, const std::filesystem::path& folder) {
+void writePictures(log::Reader& recorded, log::Reader& rendered, const StreamScore& score, size_t worst, size_t first,
+                   const std::filesystem::path& folder) {
     types::Sonar ping;
     recorded.read(score.pings.front().recorded, ping);
     output::DisplayConfig display = score.display;
@@ -107,9 +106,11 @@ std::string scoreTable(const std::vector<StreamScore>& streams, size_t worst) {
     for (const StreamScore& score : streams) {
         addSummary(text, score);
         if (score.pings.empty()) continue;
+        text += fmt::format("{:>26}", "time");
         for (const Column& column : columns) text += fmt::format("{:>14}", column.heading);
         text += "\n";
         for (const PingScore& ping : score.pings | std::views::take(worst)) {
+            text += fmt::format("{:>26}", log::readable(ping.time));
             for (const Column& column : columns) text += fmt::format("{:>14.6g}", column.value(ping));
             text += "\n";
         }
@@ -122,7 +123,7 @@ Json scoreJson(const std::vector<StreamScore>& streams) {
     for (const StreamScore& score : streams) {
         Json pings = Json::array();
         for (const PingScore& ping : score.pings) {
-            Json values;
+            Json values{{"time", ping.time.seconds()}};
             for (const Column& column : columns) values[column.key] = column.value(ping);
             pings.push_back(std::move(values));
         }
@@ -140,7 +141,7 @@ Json scoreJson(const std::vector<StreamScore>& streams) {
     return {{"streams", std::move(all)}};
 }
 
-void writeScorePictures(pocolog::Reader& recorded, pocolog::Reader& rendered, const std::vector<StreamScore>& streams,
+void writeScorePictures(log::Reader& recorded, log::Reader& rendered, const std::vector<StreamScore>& streams,
                         size_t worst, const std::filesystem::path& folder) {
     size_t first = 0;
     for (const StreamScore& score : streams) {

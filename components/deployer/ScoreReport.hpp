@@ -21,7 +21,7 @@ Json scoreJson(const std::vector<StreamScore>& streams);
 
 /** Writes pictures of the worst pings, recorded and rendered side by side on the same scale, worst first:
  *  score_000000.png and on, on through the streams. A ping of one beam is shown on the disc of its scan. */
-void writeScorePictures(pocolog::Reader& recorded, pocolog::Reader& rendered, const std::vector<StreamScore>& streams,
+void writeScorePictures(log::Reader& recorded, log::Reader& rendered, const std::vector<StreamScore>& streams,
                         size_t worst, const std::filesystem::path& folder);
 
 }  // namespace insonify::deployer

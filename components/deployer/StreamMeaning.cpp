@@ -4,7 +4,7 @@
 #include <set>
 
 #include "components/framework/DeploymentSpec.hpp"
-#include "components/pocolog/Pings.hpp"
+#include "components/log/Reader.hpp"
 #include "types/Pose.hpp"
 
 namespace insonify::deployer {
@@ -102,13 +102,13 @@ Json poseMeaning() {
             {"quaternion_order", quaternion_order}};
 }
 
-std::string metadataOf(const pocolog::Stream& stream, const char* key) {
+std::string metadataOf(const log::Stream& stream, const char* key) {
     const auto found = stream.metadata.find(key);
     return found == stream.metadata.end() ? "" : found->second;
 }
 
 /** The deployment that wrote the stream; an empty one where it is not known or cannot be read. */
-DeploymentSpec deploymentOf(const pocolog::Stream& stream, const std::string& file) try {
+DeploymentSpec deploymentOf(const log::Stream& stream, const std::string& file) try {
     return DeploymentSpec::parse(metadataOf(stream, "insonify_deployment"), file);
 } catch (const types::ConfigError&) {
     return {};
@@ -116,9 +116,9 @@ DeploymentSpec deploymentOf(const pocolog::Stream& stream, const std::string& fi
 
 }  // namespace
 
-Json meaningOf(const pocolog::Reader& log, const pocolog::Stream& stream) {
+Json meaningOf(const log::Reader& log, const log::Stream& stream) {
     Json meaning = {{"stream", stream.name}};
-    if (pocolog::holdsPings(stream))
+    if (log::holdsPings(stream))
         meaning.update(pingMeaning(deploymentOf(stream, log.path().string()), framework::splitPort(stream.name).first));
     else if (stream.holds<types::Pose>())
         meaning.update(poseMeaning());

@@ -131,6 +131,9 @@ public:
      *  none: this task has none of its own. Asked for once, when the connections are made. */
     virtual std::function<types::Time()> clock(std::function<types::Time()> /*wall*/) { return {}; }
 
+    /** Whether it talks to others than its deployment, over a network or to a device: a replay leaves it out. */
+    virtual bool reachesOutside() const { return false; }
+
     /** In realtime a triggered task runs a cycle also when it has run none for so long [s]; 0: it waits for samples.
      *  Asked for once, when it has started. */
     virtual double wakeAfter() const { return 0; }

@@ -4,7 +4,7 @@
 
 namespace insonify::logger {
 
-LogThread::LogThread(LogFile& log, Rotation& rotation, size_t capacity, double flush_period)
+LogThread::LogThread(log::Writer& log, Rotation& rotation, size_t capacity, double flush_period)
     : log_(log),
       rotation_(rotation),
       kept_before_(log.kept()),
@@ -95,8 +95,11 @@ void LogThread::write(Entry& entry) {
         return;
     }
     rotation_.before(entry.received);
-    log_.write(entry.stream, entry.received, entry.sample);
-    entry.sample = AnySample{};  // a large sample goes back to its writer's pool
+    const auto write = [&](const auto& sample) {
+        log_.write(entry.stream, entry.received, *types::carriedSample(sample));
+    };
+    std::visit(write, entry.sample);
+    entry.sample = types::AnySample{};  // a large sample goes back to its writer's pool
 }
 
 }  // namespace insonify::logger

@@ -6,13 +6,13 @@
 #include <thread>
 #include <vector>
 
-#include "components/logger/LogFile.hpp"
+#include "components/log/Writer.hpp"
 #include "components/logger/Rotation.hpp"
 
 namespace insonify::logger {
 
 /** Declares a stream. */
-using Declare = std::function<size_t(LogFile&)>;
+using Declare = std::function<size_t(log::Writer&)>;
 
 /** Writes samples to a log on a thread of its own, in the order in which they were pushed, and flushes in between.
  *
@@ -23,7 +23,7 @@ class LogThread {
 public:
     /** `log` and `rotation` are the thread's alone until finish(). Flushes every `flush_period` [s]; `capacity` is
      * above 0. */
-    LogThread(LogFile& log, Rotation& rotation, size_t capacity, double flush_period);
+    LogThread(log::Writer& log, Rotation& rotation, size_t capacity, double flush_period);
     ~LogThread();
     LogThread(const LogThread&) = delete;
     LogThread& operator=(const LogThread&) = delete;
@@ -48,7 +48,7 @@ private:
     struct Entry {
         size_t stream = 0;
         types::Time received;
-        AnySample sample;
+        types::AnySample sample;
         Declare declaration;  ///< Instead of a sample.
     };
     using Clock = std::chrono::steady_clock;
@@ -60,7 +60,7 @@ private:
     void write(Entry& entry);
     [[noreturn]] void tellFailure();
 
-    LogFile& log_;
+    log::Writer& log_;
     Rotation& rotation_;
     const uint64_t kept_before_;  ///< Samples that were in the log when the thread began.
     uint64_t pushed_ = 0;

@@ -5,7 +5,7 @@
 #include <optional>
 #include <string>
 
-#include "components/mcap/Config.hpp"
+#include "components/log/Writer.hpp"
 #include "types/Describe.hpp"
 
 namespace insonify::logger {
@@ -34,7 +34,7 @@ struct LoggerConfig {
     int queue = 64;
     bool record = true;
     std::map<std::string, std::string> metadata;
-    mcap::McapConfig mcap;
+    log::McapConfig mcap;
 
     template <class Self, class V>
     static void describe(Self& self, V& visit) {

@@ -12,18 +12,18 @@ namespace insonify::logger {
 template <class T>
 class LoggerTask::TypedInlet final : public Inlet {
 public:
-    using Port = framework::InputPort<pocolog::Carried<T>>;
+    using Port = framework::InputPort<types::Carried<T>>;
 
     TypedInlet(std::unique_ptr<framework::InputPortBase> port, std::string source)
         : Inlet(std::move(source)), owned_(std::move(port)), port_(static_cast<Port&>(*owned_)) {}
     framework::InputPortBase& port() const override { return port_; }
-    Declare declaration(pocolog::Metadata metadata) const override {
-        return [name = stream, metadata = std::move(metadata)](LogFile& log) {
-            return log.addStream(AnySample(pocolog::Carried<T>{}).index(), name, metadata);
+    Declare declaration(log::Metadata metadata) const override {
+        return [name = stream, metadata = std::move(metadata)](log::Writer& log) {
+            return log.addStream<T>(name, metadata);
         };
     }
     void drain(LogThread& log, types::Time received) override {
-        for (pocolog::Carried<T> sample{}; port_.readNew(sample);) log.push(*number, received, std::move(sample));
+        for (types::Carried<T> sample{}; port_.readNew(sample);) log.push(*number, received, std::move(sample));
     }
 
 private:
@@ -33,8 +33,8 @@ private:
 
 framework::InputPortBase* LoggerTask::makeInput(const std::string& port, framework::OutputPortBase& source) {
     const size_t before = inlets_.size();
-    pocolog::forEachSampleType([&]<class T>(std::type_identity<T>) {
-        if (dynamic_cast<framework::OutputPort<pocolog::Carried<T>>*>(&source))
+    types::forEachSampleType([&]<class T>(std::type_identity<T>) {
+        if (dynamic_cast<framework::OutputPort<types::Carried<T>>*>(&source))
             inlets_.push_back(std::make_unique<TypedInlet<T>>(source.makeReader(this, port), source.path()));
     });
     if (inlets_.size() == before)
@@ -58,15 +58,15 @@ void LoggerTask::checkInlets() const {
     }
 }
 
-pocolog::Metadata LoggerTask::runMetadata() {
-    pocolog::Metadata metadata = config->metadata;
+log::Metadata LoggerTask::runMetadata() {
+    log::Metadata metadata = config->metadata;
     metadata["insonify_deployment"] = environment().deployment_text;
     metadata["insonify_seed"] = std::to_string(environment().seed);
     return metadata;
 }
 
-pocolog::Metadata LoggerTask::streamMetadata() {
-    pocolog::Metadata metadata = runMetadata();
+log::Metadata LoggerTask::streamMetadata() {
+    log::Metadata metadata = runMetadata();
     if (!environment().records) return metadata;
     std::string plans;
     for (const types::TaskRecord& task : environment().records())
@@ -102,7 +102,7 @@ bool LoggerTask::configureHook() {
     checkInlets();
     const std::filesystem::path path = makePath(config->file);
     removeSequels(path);
-    log_ = createLog(path, config->mcap);
+    log_ = log::createLog(path, config->mcap);
     rotation_.emplace(*config, *log_);
     if (logsProperties()) properties_.emplace(log_->path().parent_path() / config->property_file);
     configured_ = fixedValues();

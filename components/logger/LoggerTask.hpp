@@ -16,9 +16,9 @@
 namespace insonify::logger {
 
 /** Writes what it is connected to into a pocolog file that Rock's tools open, or, when its name ends in .mcap, as
- *  ROS 2 messages into an MCAP file, with metadata.yaml beside it for `ros2 bag`: see mcap/SampleWriter.hpp.
+ *  ROS 2 messages into an MCAP file, with metadata.yaml beside it for `ros2 bag`: see log/mcap/SampleWriter.hpp.
  *
- *  Ports: an input for each connection that names one, whatever the name, of any type in pocolog/SampleTypes.hpp; give
+ *  Ports: an input for each connection that names one, whatever the name, of any type in types/Samples.hpp; give
  *  it a buffer. The stream is named after its source, `task.port`. Samples bear the time at which they were true and
  *  the time at which they reached this task. Every stream carries the deployment and its seed in its metadata, and the
  *  plans that the tasks had at its first sample, with which it is declared; streams without samples come at the end.
@@ -47,7 +47,7 @@ private:
         explicit Inlet(std::string name) : stream(std::move(name)) {}
         virtual ~Inlet() = default;
         virtual framework::InputPortBase& port() const = 0;
-        virtual Declare declaration(pocolog::Metadata metadata) const = 0;
+        virtual Declare declaration(log::Metadata metadata) const = 0;
         virtual void drain(LogThread& log, types::Time received) = 0;
         const std::string stream;      ///< "task.port" of the source.
         std::optional<size_t> number;  ///< In the log, once it is declared.
@@ -68,11 +68,11 @@ private:
     /** Whether no other logger of the deployment writes the same property file and comes first. */
     bool logsProperties();
     void recordProperties();  ///< What of all tasks' properties has changed since the last time.
-    pocolog::Metadata runMetadata();
-    pocolog::Metadata streamMetadata();  ///< With the plans of the moment.
+    log::Metadata runMetadata();
+    log::Metadata streamMetadata();  ///< With the plans of the moment.
 
     std::vector<std::unique_ptr<Inlet>> inlets_;
-    std::unique_ptr<LogFile> log_;
+    std::unique_ptr<log::Writer> log_;
     std::optional<Rotation> rotation_;
     std::optional<PropertyLog> properties_;
     uint64_t recorded_changes_ = 0;  ///< Of the tasks' records, with the last record of properties.

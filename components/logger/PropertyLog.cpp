@@ -2,8 +2,7 @@
 
 namespace insonify::logger {
 
-void PropertyLog::record(const std::vector<types::TaskRecord>& tasks, types::Time now,
-                         const pocolog::Metadata& metadata) {
+void PropertyLog::record(const std::vector<types::TaskRecord>& tasks, types::Time now, const log::Metadata& metadata) {
     for (const types::TaskRecord& task : tasks)
         for (const auto& [name, value] : task.properties) {
             const std::string stream = task.name + "." + name;
@@ -13,17 +12,17 @@ void PropertyLog::record(const std::vector<types::TaskRecord>& tasks, types::Tim
                 [&]<class T>(const T& held) {
                     size_t number = before == written_.end() ? 0 : before->second.stream;
                     if (before == written_.end()) {
-                        pocolog::Metadata all = metadata;
+                        log::Metadata all = metadata;
                         all["rock_stream_type"] = "property";
                         all["rock_task_model"] = task.type;
-                        number = log_.addStream<T>(stream, all);
+                        number = log_->addStream<T>(stream, all);
                     }
-                    log_.write(number, now, held);
+                    log_->write(number, now, held);
                     written_[stream] = {number, value};
                 },
                 value);
         }
-    log_.flush();
+    log_->flush();
 }
 
 }  // namespace insonify::logger

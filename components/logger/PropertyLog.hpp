@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "components/pocolog/Writer.hpp"
+#include "components/log/Writer.hpp"
 #include "types/TaskRecord.hpp"
 
 namespace insonify::logger {
@@ -13,11 +13,11 @@ namespace insonify::logger {
 class PropertyLog {
 public:
     /** Throws ConfigError when the file cannot be created. */
-    explicit PropertyLog(std::filesystem::path path) : log_(std::move(path)) {}
+    explicit PropertyLog(const std::filesystem::path& path) : log_(log::createLog(path)) {}
 
     /** Throws std::runtime_error when the file cannot be written. */
-    void record(const std::vector<types::TaskRecord>& tasks, types::Time now, const pocolog::Metadata& metadata);
-    void close() { log_.close(); }
+    void record(const std::vector<types::TaskRecord>& tasks, types::Time now, const log::Metadata& metadata);
+    void close() { log_->close(); }
 
 private:
     struct Written {
@@ -25,7 +25,7 @@ private:
         types::PropertyValue value;
     };
 
-    pocolog::Writer log_;
+    std::unique_ptr<log::Writer> log_;
     std::map<std::string, Written> written_;  ///< By stream.
 };
 

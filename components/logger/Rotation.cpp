@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "components/pocolog/OutputFile.hpp"
+#include "components/log/Files.hpp"
 
 namespace insonify::logger {
 
@@ -12,10 +12,10 @@ void removeSequels(const std::filesystem::path& log) {
     std::error_code failed;
     for (auto old = nextInSequence(log); std::filesystem::exists(old, failed); old = nextInSequence(old))
         sequels.push_back(old);
-    for (; !sequels.empty(); sequels.pop_back()) pocolog::removeLog(sequels.back());
+    for (; !sequels.empty(); sequels.pop_back()) log::removeLog(sequels.back());
 }
 
-Rotation::Rotation(const LoggerConfig& config, LogFile& log)
+Rotation::Rotation(const LoggerConfig& config, log::Writer& log)
     : log_(log), max_size_(config.max_file_size), max_duration_(config.max_file_duration) {}
 
 bool Rotation::due(types::Time now) const {

@@ -1,7 +1,7 @@
 #pragma once
 #include <optional>
 
-#include "components/logger/LogFile.hpp"
+#include "components/log/Writer.hpp"
 #include "components/logger/LoggerConfig.hpp"
 
 namespace insonify::logger {
@@ -13,16 +13,16 @@ void removeSequels(const std::filesystem::path& log);
 /** Decides when a log goes on in its next file: x.0.log, x.1.log... */
 class Rotation {
 public:
-    Rotation(const LoggerConfig& config, LogFile& log);
+    Rotation(const LoggerConfig& config, log::Writer& log);
 
     /** Goes on in the next file, if this one is full or old enough, before a sample received at `now`. Throws as
-     *  LogFile::next. */
+     *  log::Writer::next. */
     void before(types::Time now);
 
 private:
     bool due(types::Time now) const;
 
-    LogFile& log_;
+    log::Writer& log_;
     std::optional<double> max_size_, max_duration_;
     std::optional<types::Time> began_;  ///< When the file's first sample was received.
 };

@@ -6,27 +6,16 @@
 
 #include "components/framework/Activity.hpp"
 #include "components/framework/SamplePool.hpp"
-#include "components/mcap/LogSource.hpp"
-#include "components/pocolog/SampleTypes.hpp"
+#include "components/log/Reader.hpp"
 
 namespace insonify::replay {
 namespace {
 
-template <class T>
-void moveStamps(T& sample, types::Time shift) {
-    const auto move = [shift](types::Time& time) {
-        if (!time.isNull()) time = time + shift;
-    };
-    if constexpr (pocolog::Stamped<T>) move(sample.time);
-    if constexpr (std::is_same_v<T, types::Sonar>) std::ranges::for_each(sample.timestamps, move);
-    if constexpr (std::is_same_v<T, types::Image>) move(sample.received_time);
-}
-
 /** From the first sample to the latest [s]. */
-double spanOf(const pocolog::Reader& log) {
+double spanOf(const log::Reader& log) {
     const auto& samples = log.samples();
     if (samples.empty()) return 0;
-    return (std::ranges::max(samples, {}, &pocolog::SampleRef::time).time - samples.front().time).seconds();
+    return (std::ranges::max(samples, {}, &log::SampleRef::time).time - samples.front().time).seconds();
 }
 
 }  // namespace
@@ -36,7 +25,7 @@ public:
     virtual ~Outlet() = default;
     virtual framework::OutputPortBase& port() = 0;
     /** @param shift by which its stamps are moved. */
-    virtual void publish(pocolog::Reader& log, const pocolog::SampleRef& at, types::Time shift) = 0;
+    virtual void publish(log::Reader& log, const log::SampleRef& at, types::Time shift) = 0;
 };
 
 template <class T>
@@ -45,8 +34,8 @@ public:
     TypedOutlet(ReplayTask* owner, const std::string& stream)
         : port_(owner, stream, "stream " + stream + " of the log") {}
     framework::OutputPortBase& port() override { return port_; }
-    void publish(pocolog::Reader& log, const pocolog::SampleRef& at, types::Time shift) override {
-        if constexpr (std::is_same_v<T, pocolog::Carried<T>>) {
+    void publish(log::Reader& log, const log::SampleRef& at, types::Time shift) override {
+        if constexpr (std::is_same_v<T, types::Carried<T>>) {
             log.read(at, sample_);
             moveStamps(sample_, shift);
             port_.write(sample_);
@@ -59,7 +48,7 @@ public:
     }
 
 private:
-    framework::OutputPort<pocolog::Carried<T>> port_;
+    framework::OutputPort<types::Carried<T>> port_;
     framework::SamplePool<T> pool_;  ///< For what travels by reference.
     T sample_{};                     ///< For what travels by value.
 };
@@ -69,14 +58,14 @@ ReplayTask::~ReplayTask() = default;
 
 void ReplayTask::open() {
     if (log_) return;
-    log_ = mcap::openLog(inputPath(config->file));
+    log_ = log::openLog(inputPath(config->file));
     outlets_.resize(log_->streams().size());
 }
 
 framework::OutputPortBase* ReplayTask::makeOutput(const std::string& stream) {
     open();
     const size_t index = log_->indexOf(stream);
-    pocolog::forEachSampleType([&]<class T>(std::type_identity<T>) {
+    types::forEachSampleType([&]<class T>(std::type_identity<T>) {
         if (log_->streams()[index].holds<T>()) outlets_[index] = std::make_unique<TypedOutlet<T>>(this, stream);
     });
     rewind();
@@ -85,21 +74,22 @@ framework::OutputPortBase* ReplayTask::makeOutput(const std::string& stream) {
 
 void ReplayTask::check(types::Problems& problems) const {
     try {
-        const double span = spanOf(*mcap::openLog(inputPath(config->file)));
+        const double span = spanOf(*log::openLog(inputPath(config->file)));
         if (config->from > span)
             problems.push_back(
                 {"from", fmt::format("is {:g} s; the log ends {:g} s after its start", config->from, span)});
     } catch (const types::ConfigError& error) {
-        for (const types::Diagnostic& fault : error.diagnostics()) problems.push_back({"file", fault.text()});
+        for (const types::Diagnostic& diagnostic : error.diagnostics()) problems.push_back({"file", diagnostic.text()});
     }
 }
 
 std::vector<std::string> ReplayTask::notices() const {
     if (!log_) return {};
     std::vector<std::string> notices;
-    if (!log_->complete()) notices.push_back(log_->path().string() + ": " + log_->fault() + "; played up to there");
+    if (!log_->complete())
+        notices.push_back(log_->path().string() + ": " + log_->diagnostic() + "; played up to there");
     for (size_t i = 0; i < outlets_.size(); ++i) {
-        const pocolog::Stream& stream = log_->streams()[i];
+        const log::Stream& stream = log_->streams()[i];
         if (!outlets_[i]) notices.push_back("stream " + stream.name + " (" + stream.type + ") is not replayed");
     }
     return notices;
@@ -110,11 +100,20 @@ std::optional<types::Time> ReplayTask::nextTime() const {
     return next_time_;
 }
 
+std::optional<types::Time> ReplayTask::nextStamp(const std::string& stream) const {
+    if (!log_) return {};
+    const auto& samples = log_->samples();
+    const size_t wanted = stream.empty() ? 0 : log_->indexOf(stream);
+    for (size_t i = next_; i < samples.size(); ++i)
+        if (stream.empty() || samples[i].stream == wanted) return samples[i].time;
+    return {};
+}
+
 size_t ReplayTask::indexAt(double seconds) const {
     const auto& samples = log_->samples();
     if (samples.empty()) return 0;
     const types::Time from = samples.front().time + types::Time::fromSeconds(seconds);
-    const auto late_enough = [from](const pocolog::SampleRef& at) { return at.time >= from; };
+    const auto late_enough = [from](const log::SampleRef& at) { return at.time >= from; };
     return static_cast<size_t>(std::ranges::find_if(samples, late_enough) - samples.begin());
 }
 
@@ -141,7 +140,7 @@ void ReplayTask::rewind() {
     first_us_ = next_time_.microseconds;
 }
 
-void ReplayTask::goOnAt(double seconds) {
+void ReplayTask::seekTo(double seconds) {
     open();
     const double span = spanOf(*log_);
     if (!(seconds >= 0 && seconds <= span + 0.5e-6))  // stamps are whole microseconds
@@ -207,7 +206,7 @@ void ReplayTask::noteInstant() {
     pause_ = {};
 }
 
-void ReplayTask::standStill(bool on) {
+void ReplayTask::setPaused(bool on) {
     if (!wall_ || !isRunning())
         throw std::runtime_error(
             "the log's time can be paused while the replay runs in realtime; in lockstep the deployment's can");
@@ -237,7 +236,7 @@ void ReplayTask::updateHook() {
 void ReplayTask::play(types::Time until) {
     while (!finished_ && next_time_ <= until) {
         noteInstant();
-        const pocolog::SampleRef& at = log_->samples()[next_];
+        const log::SampleRef& at = log_->samples()[next_];
         outlets_[at.stream]->publish(*log_, at, shift_);
         ++next_;
         settle();

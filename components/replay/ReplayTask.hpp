@@ -11,7 +11,7 @@
 #include "components/framework/Port.hpp"
 #include "components/framework/Properties.hpp"
 #include "components/framework/TaskContext.hpp"
-#include "components/pocolog/Reader.hpp"
+#include "components/log/Reader.hpp"
 #include "components/replay/ReplayConfig.hpp"
 
 namespace insonify::replay {
@@ -39,10 +39,10 @@ public:
     framework::Properties<ReplayConfig> config{this};
     framework::Operation<void(double)> seek{this, "seek",
                                             "goes on so many seconds after the log's first stamp, within the log [s]",
-                                            [this](double seconds) { goOnAt(seconds); }};
+                                            [this](double seconds) { seekTo(seconds); }};
     framework::Operation<void(bool)> pause{this, "pause",
                                            "in realtime: true lets the log's time stand still, false go on",
-                                           [this](bool on) { standStill(on); }};
+                                           [this](bool on) { setPaused(on); }};
     framework::Operation<void()> step{this, "step", "while paused: plays the next instant of the log",
                                       [this] { playNext(); }};
 
@@ -52,6 +52,8 @@ public:
     std::vector<std::string> notices() const override;
     bool finished() const override { return finished_; }
     std::optional<types::Time> nextTime() const override;
+    /** World time in the log of the next sample, of all or of one stream; none: there is no more. Between instants. */
+    std::optional<types::Time> nextStamp(const std::string& stream = "") const;
     std::function<types::Time()> clock(std::function<types::Time()> wall) override;
 
 private:
@@ -64,15 +66,14 @@ private:
     void updateHook() override;
     void open();
     void rewind();
-    /** Goes on with the first sample so long after the log's first stamp. */
-    /** Refuses what is outside of the log. */
-    void goOnAt(double seconds);
+    /** Goes on so long after the log's first stamp; refuses what is outside of the log. */
+    void seekTo(double seconds);
     void jump(double seconds);
     /** Index of the first sample so long after the log's first stamp; of the first from there on with an outlet. */
     size_t indexAt(double seconds) const;
     size_t withOutlet(size_t index) const;
     void noteInstant();
-    void standStill(bool on);
+    void setPaused(bool on);
     void playNext();
     /** What is due until then. */
     void play(types::Time until);
@@ -82,7 +83,7 @@ private:
     /** World time of the log up to which samples are due now. */
     types::Time due();
 
-    std::unique_ptr<pocolog::Reader> log_;
+    std::unique_ptr<log::Reader> log_;
     std::vector<std::unique_ptr<Outlet>> outlets_;  ///< One for each stream of the log; null without a connection.
     size_t next_ = 0;                               ///< Index into the log's samples.
     types::Time next_time_;                         ///< When it is due, on the log's clock.

@@ -61,6 +61,17 @@ struct SonarOptions {
     }
 };
 
+/** How samples become messages and are read back. */
+struct MessageOptions : SonarOptions {
+    WorldFrame world_frame = WorldFrame::AsIs;
+
+    template <class Self, class V>
+    static void describe(Self& self, V& visit) {
+        SonarOptions::describe(self, visit);
+        visit(types::Field{"world_frame", "", "axes of poses: Rock's as they are, ENU or NED"}, self.world_frame);
+    }
+};
+
 }  // namespace insonify::ros
 
 template <>

@@ -74,7 +74,20 @@ const char* PingTask::follow(const types::Snapshot& scene) {
     return too_fast ? "the sonar moves faster than a tenth of the speed of sound" : nullptr;
 }
 
+bool PingTask::takeGiven() {
+    types::SnapshotPtr sample;
+    types::Pose given;
+    if (!given_pose.readNew(given) || snapshot.readNewest(sample) == framework::FlowStatus::NoData) return false;
+    begun_ = now();
+    aimed_ = *sample;
+    aimed_.sonar = given;
+    aimed_.time = given.time;
+    used_ = std::move(given);
+    return true;
+}
+
 bool PingTask::takeNext() {
+    if (given_pose.connected()) return takeGiven();
     types::SnapshotPtr sample;
     const bool realtime = activity().realtime();
     const bool is_new =
@@ -86,6 +99,7 @@ bool PingTask::takeNext() {
         aimed_.sonar = types::carriedOn(aimed_.sonar, begun_, aimed_.carry_on);
         aimed_.time = aimed_.sonar.time;
     }
+    used_ = aimed_.sonar;
     return true;
 }
 
@@ -149,7 +163,9 @@ void PingTask::render() {
     label(*sample);
     pool_.stock(*sample);
     if (!std::exchange(plan_told_, true)) refreshRecord();
-    if (listen()) ping.write(sample);
+    if (!listen()) return;
+    if (pose.connected()) pose.write(used_);
+    ping.write(sample);
 }
 
 bool PingTask::listen() {

@@ -25,7 +25,10 @@ namespace insonify::sonar {
  * second ahead of that clock is refused like the others. A quaternion that is not of unit length is normalised. Pings
  * closer in time than sound's way to the range and back are rendered, each by itself, and told of in the notices. The
  * quality is given, or a QualityKeeper chooses and keeps it; in realtime the period of the pings is its budget where
- * nothing is said, as their stamps tell it. */
+ * nothing is said, as their stamps tell it.
+ *
+ *  `pose` tells where each ping was rendered, carried on as it was; with `given_pose` connected there is a ping for
+ * each of these poses, in the newest snapshot's scene, so that what `pose` has told renders the same pings again. */
 class PingTask : public framework::TaskContext {
 public:
     using TaskContext::TaskContext;
@@ -33,7 +36,12 @@ public:
     ~PingTask() override;
 
     framework::InputPort<types::SnapshotPtr> snapshot{this, "snapshot", "sonar pose and scene at one instant"};
+    framework::InputPort<types::Pose> given_pose{
+        this, "given_pose",
+        "drives the task in place of snapshots: the sonar in the world for each ping, as `pose` told it",
+        framework::Need::Optional};
     framework::OutputPort<types::SonarPtr> ping{this, "ping", "one ping, noiseless, at the time of its snapshot"};
+    framework::OutputPort<types::Pose> pose{this, "pose", "the sonar in the world as each ping had it, at its time"};
 
     const types::Plan* plan() const override { return plan_ ? &*plan_ : nullptr; }
     std::vector<std::string> notices() const override;
@@ -67,6 +75,8 @@ private:
     const char* follow(const types::Snapshot& scene);
     double echoTime() const { return 2 * grid_.range_max / grid_.speed_of_sound; }  ///< To the range and back [s].
     void render();
+    /** The next of `given_pose`, in the newest snapshot's scene. */
+    bool takeGiven();
     /** The next snapshot; in realtime the newest, its sonar where it is by now, as far as it may be carried on. */
     bool takeNext();
     /** In realtime, until the last echo of this ping's range is back; false: the task is to stop. */
@@ -89,6 +99,7 @@ private:
     bool plan_told_ = false;           ///< Whether the record has the plan as it is.
     types::GeometryPtr geometry_;      ///< The renderer's.
     types::Snapshot aimed_;
+    types::Pose used_;   ///< The sonar in `aimed_`, as it came.
     types::Time begun_;  ///< When it was taken.
     framework::SamplePool<types::Sonar> pool_;
 };

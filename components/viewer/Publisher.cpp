@@ -16,8 +16,13 @@ ServerOptions optionsOf(const ViewerConfig& config, const std::vector<Source>& s
     ServerOptions options{config.address,      static_cast<uint16_t>(config.port),
                           config.token,        static_cast<size_t>(config.clients),
                           config.idle_timeout, {}};
-    for (const Source& source : sources) options.channels.push_back(channelOf(source.name, source.kind));
+    for (const Source& source : sources) options.channels.push_back(source.channel);
     return options;
+}
+
+/** 0 for a time before the epoch. */
+uint64_t nanosecondsOf(types::Time stamp) {
+    return static_cast<uint64_t>(std::max<int64_t>(0, stamp.microseconds)) * 1000;
 }
 
 }  // namespace
@@ -44,13 +49,15 @@ Publisher::~Publisher() {
     lanes_.end();  // they answer through the server
 }
 
-void Publisher::offer(size_t source, AnySample sample, double latency_s) {
+void Publisher::offer(size_t source, AnySample sample, types::Time now) {
+    const types::Time stamp = stampOf(sample, now);
     {
         std::lock_guard lock(mutex_);
         Slot& slot = slots_[source];
         if (slot.shown != slot.count) skipped_ += audience(source);
         slot.sample = std::move(sample);
-        slot.latency_s = latency_s;
+        slot.stamp = stamp;
+        slot.latency_s = (now - stamp).seconds();
         slot.fresh = true;
         ++slot.count;
     }
@@ -59,8 +66,7 @@ void Publisher::offer(size_t source, AnySample sample, double latency_s) {
 
 /** How many clients a sample goes to. */
 uint64_t Publisher::audience(size_t source) const {
-    const bool on_pages = sources_[source].kind != SampleKind::Image;
-    return server_.subscribers(static_cast<uint32_t>(source)) + (on_pages ? server_.pages() : 0);
+    return server_.subscribers(static_cast<uint32_t>(source)) + (sources_[source].on_pages ? server_.pages() : 0);
 }
 
 ServerCounts Publisher::counts() const {
@@ -114,7 +120,7 @@ void Publisher::publish(size_t source, const Slot& slot) try {
     const auto channel = static_cast<uint32_t>(source);
     if (server_.pages() > 0) showOnPages(source, slot);
     if (server_.subscribers(channel) > 0)
-        server_.toFoxglove(channel, nanosecondsOf(slot.sample), messages_.encode(slot.sample));
+        server_.toFoxglove(channel, nanosecondsOf(slot.stamp), messages_.encode(slot.sample));
 } catch (const std::exception& error) {
     std::lock_guard lock(mutex_);
     trouble_ = sources_[source].name + ": cannot be shown: " + error.what();

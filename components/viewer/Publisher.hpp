@@ -31,7 +31,8 @@ struct Access {
 
 struct Source {
     std::string name;  ///< "noise.noisy"
-    SampleKind kind;
+    FoxgloveChannel channel;
+    bool on_pages = false;  ///< Whether pages show it, too.
 };
 
 /** Sends the newest sample of each source to those who look, and does what pages ask for.
@@ -44,8 +45,8 @@ public:
     Publisher(const ViewerConfig& config, std::vector<Source> sources, Access access);
     ~Publisher() override;
 
-    /** The newest sample of a source; waits for nobody. `latency_s`: since its stamp [s]. */
-    void offer(size_t source, AnySample sample, double latency_s);
+    /** The newest sample of a source; waits for nobody. `now`: on the deployment's clock. */
+    void offer(size_t source, AnySample sample, types::Time now);
     uint16_t port() const { return server_.port(); }
     ServerCounts counts() const;
     /** What could not be made a message of since this was asked last, and why; empty: nothing. */
@@ -54,7 +55,8 @@ public:
 private:
     struct Slot {
         AnySample sample;
-        double latency_s = 0;
+        types::Time stamp;
+        double latency_s = 0;           ///< Since its stamp [s].
         uint64_t count = 0, shown = 0;  ///< Samples so far; as of the last that was shown.
         bool fresh = false;
     };

@@ -25,19 +25,11 @@ public:
 
 namespace {
 
-std::string faultOf(const types::Pose&) { return ""; }
+/** What is wrong with what came; empty: nothing. */
 template <class T>
-std::string faultOf(const std::shared_ptr<const T>& sample) {
-    if (!sample) return "is null";
-    if constexpr (std::is_same_v<T, types::Sonar>)
-        if (!sample->wellShaped()) return "has lists that are not as long as its counts say";
-    return "";
-}
-
-types::Time stampOf(const types::Pose& pose) { return pose.time; }
-template <class T>
-types::Time stampOf(const std::shared_ptr<const T>& sample) {
-    return sample->time;
+std::string diagnosticOf(const T* sample) {
+    const char* const what = sample ? types::diagnosticOf(*sample) : "is null";
+    return what ? what : "";
 }
 
 }  // namespace
@@ -51,16 +43,15 @@ public:
         : Inlet(std::move(of)), owned_(std::move(port)), port_(static_cast<Port&>(*owned_)) {}
     framework::InputPortBase& port() const override { return port_; }
     std::string drain(Publisher& publisher, size_t number, types::Time now) override {
-        std::string fault;
+        std::string told;
         for (T sample{}; port_.readNew(sample);) {
-            const std::string wrong = faultOf(sample);
-            const double latency = wrong.empty() ? (now - stampOf(sample)).seconds() : 0;
-            if (wrong.empty())
-                publisher.offer(number, std::move(sample), latency);
+            const std::string diagnostic = diagnosticOf(types::carriedSample(sample));
+            if (diagnostic.empty())
+                publisher.offer(number, std::move(sample), now);
             else
-                fault = port_.path() + ": a sample " + wrong + "; it is not shown";
+                told = port_.path() + ": a sample " + diagnostic + "; it is not shown";
         }
-        return fault;
+        return told;
     }
 
 private:
@@ -73,19 +64,18 @@ ViewerTask::~ViewerTask() = default;
 
 framework::InputPortBase* ViewerTask::makeInput(const std::string& port, framework::OutputPortBase& source) {
     const size_t before = inlets_.size();
-    const auto take = [&]<class T>(std::type_identity<T>, SampleKind kind) {
-        if (dynamic_cast<framework::OutputPort<T>*>(&source))
-            inlets_.push_back(
-                std::make_unique<TypedInlet<T>>(source.makeReader(this, port), Source{source.path(), kind}));
+    const auto take = [&]<class T, class Carried>(std::type_identity<T>, std::type_identity<Carried>) {
+        if (dynamic_cast<framework::OutputPort<Carried>*>(&source))
+            inlets_.push_back(std::make_unique<TypedInlet<Carried>>(
+                source.makeReader(this, port), Source{source.path(), channelOf<T>(source.path()), on_pages<T>}));
     };
-    take(std::type_identity<types::SonarPtr>{}, SampleKind::Ping);
-    take(std::type_identity<types::Pose>{}, SampleKind::Pose);
-    take(std::type_identity<types::ImagePtr>{}, SampleKind::Image);
-    take(std::type_identity<types::SnapshotPtr>{}, SampleKind::Snapshot);
+    types::forEachSampleType(
+        [&]<class T>(std::type_identity<T> type) { take(type, std::type_identity<types::Carried<T>>{}); });
+    take(std::type_identity<types::Snapshot>{}, std::type_identity<types::SnapshotPtr>{});
     if (inlets_.size() == before)
         throw types::ConfigError("", "",
                                  source.path() + " is " + source.typeName() +
-                                     ", which a viewer cannot show; it shows pings, poses, pictures and snapshots");
+                                     ", which a viewer cannot show; it shows what a log can hold, and snapshots");
     return &inlets_.back()->port();
 }
 

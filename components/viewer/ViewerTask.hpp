@@ -13,10 +13,10 @@ namespace insonify::viewer {
 
 /** Shows a deployment while it runs: a page at http://address:port/, and the same samples for Foxglove on that port.
  *
- *  Ports: an input for each connection that names one, whatever the name: pings, poses, pictures and snapshots. The
- * page shows pings as a fan, the scene and the sonar's place from snapshots, the vehicle's path from poses, the tasks,
- * what connections lost and what is left out; where `control` allows it sets properties, calls operations and, in
- *  lockstep, pauses. Foxglove gets a channel for each input.
+ *  Ports: an input for each connection that names one, whatever the name, of any type in types/Samples.hpp, and
+ * snapshots. The page shows pings as a fan, the scene and the sonar's place from snapshots, the vehicle's path from
+ * poses, the tasks, what connections lost and what is left out; where `control` allows it sets properties, calls
+ * operations and, in lockstep, pauses. Foxglove gets a channel for each input.
  *
  *  configure opens the port; one that is taken refuses it. Cycles only hand over the newest samples: no client delays
  *  them, and what a client is too slow for is dropped and counted. Connections that are refused are counted, and warned
@@ -33,6 +33,7 @@ public:
     framework::InputPortBase* makeInput(const std::string& port, framework::OutputPortBase& source) override;
     /** Where the page is; connections refused and frames dropped so far, see ServerCounts. */
     std::vector<std::string> notices() const override;
+    bool reachesOutside() const override { return true; }
     /** Where it listens, 0 when it does not. */
     uint16_t port() const { return publisher_ ? publisher_->port() : 0; }
     ServerCounts counts() const { return publisher_ ? publisher_->counts() : ServerCounts{}; }

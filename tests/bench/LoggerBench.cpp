@@ -9,7 +9,7 @@
 #include "components/framework/Deployment.hpp"
 #include "components/framework/SamplePool.hpp"
 #include "components/logger/registerTasks.hpp"
-#include "components/pocolog/Reader.hpp"
+#include "components/log/pocolog/Reader.hpp"
 #include "types/Sonar.hpp"
 
 namespace insonify {
@@ -73,7 +73,7 @@ connections:
     deployment.cleanup();
 
     const auto log = folder / "bench.0.log";
-    const size_t in_log = pocolog::Reader(log).samples().size();
+    const size_t in_log = log::pocolog::Reader(log).samples().size();
     const uint64_t lost = deployment.losses().begin()->second;
     const framework::TaskContext& sonar = *deployment.task("sonar");
     fmt::print(R"({{"pings": {}, "expected": {:.0f}, "in_log": {}, "lost": {}, "megabytes_per_s": {:.1f}, )"

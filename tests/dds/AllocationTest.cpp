@@ -10,10 +10,9 @@ namespace {
 class AllocationTest : public Loopback {};
 
 TEST_F(AllocationTest, NothingIsAllocatedAfterTheFirstPings) {
-    using enum MessageType;
-    Publishing<types::SonarPtr> publishing({topicOut("in", "/image", ProjectedSonarImage),
-                                            topicOut("in", "/scan", LaserScan),
-                                            topicOut("in", "/points", PointCloud2)});
+    Publishing<types::SonarPtr> publishing({topicOut("in", "/image", message_type<ros::ProjectedSonarImage>),
+                                            topicOut("in", "/scan", message_type<ros::LaserScan>),
+                                            topicOut("in", "/points", message_type<ros::PointCloud2>)});
     Node node(domainId({}), "listener", 16);
     std::vector<std::unique_ptr<Reader>> readers;
     for (const auto& [topic, type] :

@@ -27,7 +27,7 @@ protected:
 }  // namespace
 
 TEST_F(FastDdsTest, HearsEveryPingOf128KilobytesAtFortyHertz) {
-    Publishing<types::SonarPtr> publishing({topicOut("in", "/auv/sonar", MessageType::ProjectedSonarImage)},
+    Publishing<types::SonarPtr> publishing({topicOut("in", "/auv/sonar", message_type<ros::ProjectedSonarImage>)},
                                            [](PublisherConfig& config) { config.depth = 200; });  // a busy machine
     Peer peer({program, "listen", "marine_acoustic_msgs::msg::dds_::ProjectedSonarImage_", "/auv/sonar", "240", "200"});
     ASSERT_TRUE(peer.meets([&] { publishing.send(greeting()); }));

@@ -18,7 +18,7 @@ class PeerTest : public WithPeer {};
 
 /** 1 MB of float32, as scripts/bench has it. */
 TopicOut floats(const std::string& topic) {
-    TopicOut made = topicOut("in", topic, MessageType::ProjectedSonarImage);
+    TopicOut made = topicOut("in", topic, message_type<ros::ProjectedSonarImage>);
     made.sonar.dtype = ros::ImageType::Float32;
     return made;
 }
@@ -106,9 +106,9 @@ TEST_F(PeerTest, SendsPosesOfWhichNoneIsLost) {
 }
 
 TEST_F(PeerTest, SeesTheNodeItsWritersTheirTypesAndHashes) {
-    Publishing<types::SonarPtr> publishing(
-        {topicOut("in", "/auv/sonar", MessageType::ProjectedSonarImage), topicOut("in", "/clock", MessageType::Clock)},
-        [](PublisherConfig& config) { config.node.node_name = "insonify"; });
+    Publishing<types::SonarPtr> publishing({topicOut("in", "/auv/sonar", message_type<ros::ProjectedSonarImage>),
+                                            topicOut("in", "/clock", message_type<ros::Clock>)},
+                                           [](PublisherConfig& config) { config.node.node_name = "insonify"; });
     Peer peer("node 60 2");
     const json found = peer.result();
     ASSERT_EQ(found["infos"].size(), 1u) << found;
@@ -126,11 +126,11 @@ TEST_F(PeerTest, SeesTheNodeItsWritersTheirTypesAndHashes) {
 }
 
 TEST_F(PeerTest, ReadsEveryTypeThatIsSent) {
-    const std::pair<const char*, MessageType> types[] = {{"RawSonarImage", MessageType::RawSonarImage},
-                                                         {"SonarRanges", MessageType::SonarRanges},
-                                                         {"PointCloud2", MessageType::PointCloud2},
-                                                         {"LaserScan", MessageType::LaserScan},
-                                                         {"Clock", MessageType::Clock}};
+    const std::pair<const char*, MessageType> types[] = {{"RawSonarImage", message_type<ros::RawSonarImage>},
+                                                         {"SonarRanges", message_type<ros::SonarRanges>},
+                                                         {"PointCloud2", message_type<ros::PointCloud2>},
+                                                         {"LaserScan", message_type<ros::LaserScan>},
+                                                         {"Clock", message_type<ros::Clock>}};
     std::vector<TopicOut> topics;
     std::vector<std::unique_ptr<Peer>> peers;
     for (const auto& [name, type] : types) topics.push_back(topicOut("in", std::string("/") + name, type));

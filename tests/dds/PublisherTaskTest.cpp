@@ -40,11 +40,12 @@ std::string textOf(const types::Problems& problems) {
 }  // namespace
 
 TEST_F(PublisherTaskTest, APingBecomesAllMessagesThatItCanBe) {
-    using enum MessageType;
-    Publishing<types::SonarPtr> publishing(
-        {topicOut("in", "/image", ProjectedSonarImage), topicOut("in", "/raw", RawSonarImage),
-         topicOut("in", "/ranges", SonarRanges), topicOut("in", "/points", PointCloud2),
-         topicOut("in", "/scan", LaserScan), topicOut("in", "/clock", Clock)});
+    Publishing<types::SonarPtr> publishing({topicOut("in", "/image", message_type<ros::ProjectedSonarImage>),
+                                            topicOut("in", "/raw", message_type<ros::RawSonarImage>),
+                                            topicOut("in", "/ranges", message_type<ros::SonarRanges>),
+                                            topicOut("in", "/points", message_type<ros::PointCloud2>),
+                                            topicOut("in", "/scan", message_type<ros::LaserScan>),
+                                            topicOut("in", "/clock", message_type<ros::Clock>)});
     const types::SonarPtr ping = pingOf(16, 50);
     const auto send = [&] { publishing.send(ping); };
     const auto image = heard<ros::ProjectedSonarImage>("/image", send);
@@ -71,7 +72,7 @@ TEST_F(PublisherTaskTest, APoseIsTurnedIntoTheWorldFrameAndNamesItsFrames) {
     for (const auto& [frame, expected] :
          {std::pair{ros::WorldFrame::Enu, ros::Point{-2, 3, 1}}, std::pair{ros::WorldFrame::Ned, ros::Point{3, -2, -1}},
           std::pair{ros::WorldFrame::AsIs, ros::Point{3, 2, 1}}}) {
-        Publishing<types::Pose> publishing({topicOut("in", "/odometry", MessageType::Odometry)},
+        Publishing<types::Pose> publishing({topicOut("in", "/odometry", message_type<ros::Odometry>)},
                                            [&](PublisherConfig& config) { config.node.world_frame = frame; });
         const auto message = heard<ros::Odometry>("/odometry", [&] { publishing.send(pose); });
         EXPECT_EQ(message.pose.pose.position, expected);
@@ -88,14 +89,14 @@ TEST_F(PublisherTaskTest, APictureBecomesAnImage) {
     picture->frame_mode = types::ImageMode::Bgr;
     picture->frame_status = types::ImageStatus::Valid;
     picture->image.assign(24, 9);
-    Publishing<types::ImagePtr> publishing({topicOut("in", "/fan", MessageType::Image)});
+    Publishing<types::ImagePtr> publishing({topicOut("in", "/fan", message_type<ros::Image>)});
     const auto message = heard<ros::Image>("/fan", [&] { publishing.send(picture); });
     EXPECT_EQ(message.encoding, "bgr8");
     EXPECT_EQ(message.data, picture->image);
 }
 
 TEST_F(PublisherTaskTest, NothingIsMadeForATopicThatNobodyReads) {
-    Publishing<types::SonarPtr> publishing({topicOut("in", "/nobody", MessageType::LaserScan)});
+    Publishing<types::SonarPtr> publishing({topicOut("in", "/nobody", message_type<ros::LaserScan>)});
     auto crooked = std::make_shared<types::Sonar>(*pingOf(4, 4));
     crooked->bearings[1] = types::Angle{0.1234};  // of which no LaserScan can be made
     publishing.send(crooked);
@@ -103,8 +104,8 @@ TEST_F(PublisherTaskTest, NothingIsMadeForATopicThatNobodyReads) {
 }
 
 TEST_F(PublisherTaskTest, WhatAMessageCannotHoldIsACountedDropAndTheRunGoesOn) {
-    Publishing<types::SonarPtr> publishing(
-        {topicOut("in", "/scan", MessageType::LaserScan), topicOut("in", "/image", MessageType::RawSonarImage)});
+    Publishing<types::SonarPtr> publishing({topicOut("in", "/scan", message_type<ros::LaserScan>),
+                                            topicOut("in", "/image", message_type<ros::RawSonarImage>)});
     std::vector<std::string> told;
     publishing.task.environment().warn = [&](const std::string& text) { told.push_back(text); };
     auto crooked = std::make_shared<types::Sonar>(*pingOf(4, 4));
@@ -127,8 +128,8 @@ TEST_F(PublisherTaskTest, FramesThatAreGivenTakeThePlaceOfThoseThatAPoseNames) {
     pose.time = framework::wallClock();
     pose.target_frame = "world";
     pose.source_frame = "body";
-    TopicOut plain = topicOut("in", "/plain", MessageType::Odometry),
-             named = topicOut("in", "/named", MessageType::Odometry);
+    TopicOut plain = topicOut("in", "/plain", message_type<ros::Odometry>),
+             named = topicOut("in", "/named", message_type<ros::Odometry>);
     named.child_frame_id = "auv";
     named.sonar.frame_id = "odom";
     Publishing<types::Pose> publishing({plain, named});
@@ -137,29 +138,35 @@ TEST_F(PublisherTaskTest, FramesThatAreGivenTakeThePlaceOfThoseThatAPoseNames) {
     EXPECT_EQ(heard<ros::Odometry>("/plain", send).child_frame_id, "body");
     EXPECT_EQ(heard<ros::Odometry>("/named", send).header.frame_id, "odom");
     EXPECT_EQ(heard<ros::Odometry>("/named", send).child_frame_id, "auv");
-    Publishing<types::Pose> mapped({topicOut("in", "/mapped", MessageType::PoseStamped)},
+    Publishing<types::Pose> mapped({topicOut("in", "/mapped", message_type<ros::PoseStamped>)},
                                    [](PublisherConfig& config) { config.world_frame_id = "map"; });
     EXPECT_EQ(heard<ros::PoseStamped>("/mapped", [&] { mapped.send(pose); }).header.frame_id, "map");
 }
 
 TEST_F(PublisherTaskTest, AFrameWithTwoKindsOfAxesIsToldOf) {
-    const TopicOut image = topicOut("in", "/image", MessageType::ProjectedSonarImage);
-    TopicOut scan = topicOut("in", "/scan", MessageType::LaserScan);
+    const TopicOut image = topicOut("in", "/image", message_type<ros::ProjectedSonarImage>);
+    TopicOut scan = topicOut("in", "/scan", message_type<ros::LaserScan>);
     EXPECT_THAT(Publishing<types::SonarPtr>({image, scan}).task.notices(),
                 testing::ElementsAre(HasSubstr("frame_id sonar has x ahead on /scan and z ahead on /image")));
     scan.sonar.frame_id = "sonar_x";
     EXPECT_THAT(Publishing<types::SonarPtr>({image, scan}).task.notices(), testing::IsEmpty());
 }
 
+/** What no sample is. */
+struct Unknown {
+    static constexpr const char* type_name = "/unknown";
+};
+
 TEST_F(PublisherTaskTest, PortsAndTypesThatDoNotFitAreToldBeforeItRuns) {
     PublisherTask task("publisher");
     PublisherConfig config;
-    config.topics = {topicOut("ping", "/a", MessageType::Odometry), topicOut("none", "/b", MessageType::Image)};
+    config.topics = {topicOut("ping", "/a", message_type<ros::Odometry>),
+                     topicOut("none", "/b", message_type<ros::Image>)};
     task.config.set(config);
     test::Writer<types::SonarPtr> sonar;
-    test::Writer<double> number;
+    test::Writer<std::shared_ptr<const Unknown>> unknown;
     EXPECT_THROW(task.makeInput("other", sonar.port), types::ConfigError);
-    EXPECT_THROW(task.makeInput("ping", number.port), types::ConfigError);
+    EXPECT_THROW(task.makeInput("ping", unknown.port), types::ConfigError);
     ASSERT_NE(task.makeInput("ping", sonar.port), nullptr);
     types::Problems problems;
     task.check(problems);
@@ -172,8 +179,8 @@ TEST_F(PublisherTaskTest, NamesThatRosRefusesAreTold) {
     PublisherConfig config;
     config.node.node_name = "a b";
     config.node.gid_size = 20;
-    config.topics = {topicOut("", "/a", MessageType::Image), topicOut("x", "/a", MessageType::Image),
-                     topicOut("x", "a-b", MessageType::Image)};
+    config.topics = {topicOut("", "/a", message_type<ros::Image>), topicOut("x", "/a", message_type<ros::Image>),
+                     topicOut("x", "a-b", message_type<ros::Image>)};
     types::Problems problems;
     config.check(problems);
     EXPECT_EQ(problems.size(), 5u) << textOf(problems);

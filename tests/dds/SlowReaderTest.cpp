@@ -16,7 +16,7 @@ class SlowReaderTest : public WithPeer {};
 }  // namespace
 
 TEST_F(SlowReaderTest, APeerThatHangsStallsNothing) {
-    TopicOut topic = topicOut("in", "/auv/sonar", MessageType::ProjectedSonarImage);
+    TopicOut topic = topicOut("in", "/auv/sonar", message_type<ros::ProjectedSonarImage>);
     topic.sonar.dtype = ros::ImageType::Float32;
     Publishing<types::SonarPtr> publishing({topic}, [](PublisherConfig& config) { config.depth = 200; });
     Peer hanging("listen ProjectedSonarImage /auv/sonar 240"), good("listen ProjectedSonarImage /auv/sonar 240 120");

@@ -41,7 +41,7 @@ TEST_F(SubscriberTaskTest, APoseComesBackAsItWentInAnyFrame) {
         for (const auto type : {PoseType::Odometry, PoseType::PoseStamped}) {
             const bool whole = type == PoseType::Odometry;
             Publishing<types::Pose> publishing(
-                {topicOut("in", "/there", whole ? MessageType::Odometry : MessageType::PoseStamped)},
+                {topicOut("in", "/there", whole ? message_type<ros::Odometry> : message_type<ros::PoseStamped>)},
                 [&](PublisherConfig& config) { config.node.world_frame = frame; });
             Subscribing subscribing("/there", type, [&](SubscriberConfig& config) { config.node.world_frame = frame; });
             const types::Pose sent = somewhere(1);
@@ -64,7 +64,7 @@ TEST_F(SubscriberTaskTest, APoseComesBackAsItWentInAnyFrame) {
 }
 
 TEST_F(SubscriberTaskTest, AMessageWakesTheTaskAtOnce) {
-    Publishing<types::Pose> publishing({topicOut("in", "/there", MessageType::Odometry)});
+    Publishing<types::Pose> publishing({topicOut("in", "/there", message_type<ros::Odometry>)});
     SubscribingBy<SoundSleeper> subscribing("/there");
     meet(publishing, subscribing, somewhere(0));
     for (int i = 1; i <= 50; ++i) {
@@ -76,7 +76,7 @@ TEST_F(SubscriberTaskTest, AMessageWakesTheTaskAtOnce) {
 }
 
 TEST_F(SubscriberTaskTest, WithADepthOfOneTheNewestWins) {
-    Publishing<types::Pose> publishing({topicOut("in", "/there", MessageType::Odometry)});
+    Publishing<types::Pose> publishing({topicOut("in", "/there", message_type<ros::Odometry>)});
     Subscribing newest("/there"), all("/there", PoseType::Odometry, [](SubscriberConfig&config) { config.depth = 5; });
     meet(publishing, newest, somewhere(0));
     meet(publishing, all, somewhere(0));
@@ -100,7 +100,7 @@ TEST_F(SubscriberTaskTest, WithADepthOfOneTheNewestWins) {
 }
 
 TEST_F(SubscriberTaskTest, NonsenseThatComesAfterAGoodPoseDoesNotPushItOut) {
-    Publishing<types::Pose> publishing({topicOut("in", "/there", MessageType::Odometry)});
+    Publishing<types::Pose> publishing({topicOut("in", "/there", message_type<ros::Odometry>)});
     Subscribing subscribing("/there");
     meet(publishing, subscribing, somewhere(0));
     subscribing.task.activity().hold();

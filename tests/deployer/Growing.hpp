@@ -3,7 +3,7 @@
 #include <filesystem>
 #include <string>
 
-#include "components/pocolog/Reader.hpp"
+#include "components/log/pocolog/Reader.hpp"
 
 namespace insonify::deployer {
 
@@ -13,8 +13,8 @@ inline uint64_t flushedSamples(const std::filesystem::path& log, const std::stri
     std::error_code absent;
     const uintmax_t size = std::filesystem::file_size(log, absent);
     if (absent || size < prologue) return 0;
-    const pocolog::Reader reader(log);
-    const pocolog::Stream* const found = reader.find(stream);
+    const log::pocolog::Reader reader(log);
+    const log::Stream* const found = reader.find(stream);
     return found ? found->count : 0;
 }
 

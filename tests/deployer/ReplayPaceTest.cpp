@@ -6,13 +6,13 @@
 #include <csignal>
 #include <thread>
 
-#include "components/pocolog/Reader.hpp"
+#include "components/log/pocolog/Reader.hpp"
 #include "tests/deployer/Growing.hpp"
 #include "tests/deployer/Wall.hpp"
 #include "types/Sonar.hpp"
 
 using namespace insonify::deployer;
-namespace pocolog = insonify::pocolog;
+using namespace insonify;
 using testing::HasSubstr;
 using testing::Not;
 
@@ -34,9 +34,9 @@ protected:
     /** Of the replayed pings [ms]. */
     std::vector<int64_t> stamps() const {
         std::vector<int64_t> result;
-        pocolog::Reader log(folder_ / "again/wall.0.log");
+        log::pocolog::Reader log(folder_ / "again/wall.0.log");
         log.forEach<insonify::types::Sonar>("replay.noise.noisy",
-                                            [&](const insonify::types::Sonar& ping, const pocolog::SampleRef& at) {
+                                            [&](const insonify::types::Sonar& ping, const log::SampleRef& at) {
                                                 result.push_back(ping.time.microseconds / 1000);
                                                 EXPECT_EQ(at.received, ping.time) << "the logger's clock is the log's";
                                             });
@@ -132,8 +132,8 @@ connections:
     process.signal(SIGINT);
     const Outcome outcome = process.wait();
     ASSERT_EQ(outcome.code, 0) << outcome.err;
-    pocolog::Reader log(folder_ / "again/again.0.log");
-    for (const pocolog::SampleRef& at : log.samples()) {
+    log::pocolog::Reader log(folder_ / "again/again.0.log");
+    for (const log::SampleRef& at : log.samples()) {
         EXPECT_GE(at.received, at.time);
         EXPECT_LT((at.received - at.time).seconds(), 3600) << "not this year's";
     }

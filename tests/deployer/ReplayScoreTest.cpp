@@ -3,12 +3,12 @@
 
 #include <cmath>
 
-#include "components/pocolog/Reader.hpp"
-#include "components/pocolog/Writer.hpp"
+#include "components/log/pocolog/Reader.hpp"
+#include "components/log/pocolog/Writer.hpp"
 #include "tests/deployer/Wall.hpp"
 
 using namespace insonify::deployer;
-namespace pocolog = insonify::pocolog;
+using namespace insonify;
 namespace types = insonify::types;
 using testing::HasSubstr;
 
@@ -45,15 +45,15 @@ protected:
     }
     /** A copy of the log whose poses from the `first` on lie 10 cm ahead. */
     void shiftPoses(int first) const {
-        pocolog::Reader from(folder_ / "out/wall.0.log");
-        pocolog::Writer to(folder_ / "shifted.0.log");
+        log::pocolog::Reader from(folder_ / "out/wall.0.log");
+        log::pocolog::Writer to(folder_ / "shifted.0.log");
         std::vector<size_t> numbers;
-        for (const pocolog::Stream& stream : from.streams())
+        for (const log::Stream& stream : from.streams())
             numbers.push_back(stream.holds<types::Pose>() ? to.addStream<types::Pose>(stream.name, stream.metadata)
                                                           : to.addStream<types::Sonar>(stream.name, stream.metadata));
         types::Pose pose;
         types::Sonar ping;
-        for (const pocolog::SampleRef& at : from.samples()) {
+        for (const log::SampleRef& at : from.samples()) {
             if (from.streams()[at.stream].holds<types::Pose>()) {
                 from.read(at, pose);
                 if (first-- <= 0) pose.position.x += 0.1;
@@ -106,8 +106,8 @@ TEST_F(ReplayScoreTest, TheWorstPingComesFirstInTableAndPictures) {
         EXPECT_EQ(stream["pings"][1]["rel_l2"], 0);
         EXPECT_EQ(stream["pings"][2]["rel_l2"], 0);
     }
-    EXPECT_THAT(outcome.out, HasSubstr("\n           1.2 "));
-    EXPECT_THAT(outcome.out, testing::Not(HasSubstr("\n           1.1 ")));
+    EXPECT_THAT(outcome.out, HasSubstr("\n                1.200000 s "));
+    EXPECT_THAT(outcome.out, testing::Not(HasSubstr("\n                1.100000 s ")));
     EXPECT_TRUE(fs::exists(folder_ / "scored/score_000001.png")) << "one of each stream";
     EXPECT_FALSE(fs::exists(folder_ / "scored/score_000002.png"));
 }

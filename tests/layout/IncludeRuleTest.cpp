@@ -32,14 +32,29 @@ std::set<std::string> neighboursOf(const Source& source) {
     if (source.isTaskHalf()) allowed.insert("framework");
     if (folder == "study") allowed.insert({"sonar", "receiver", "scene"});
     if (folder == "sonar") allowed.insert({"gpu", "shaders"});
-    if (folder == "logger" || folder == "replay") allowed.insert({"pocolog", "mcap"});
+    if (folder == "logger" || folder == "replay") allowed.insert("log");
     if (folder == "dds") allowed.insert("ros");
-    if (folder == "mcap") allowed.insert({"pocolog", "ros"});
+    if (folder == "log") allowed.insert("ros");
     if (folder == "viewer") allowed.insert("ros");
     return allowed;
 }
 
+/** "pocolog" for components/log/pocolog/...: a format that a log can have; empty for what all share. */
+std::string backEndOf(const Source& source) {
+    const std::string log = "components/log/";
+    const size_t end = source.path.find('/', log.size());
+    return source.path.starts_with(log) && end != std::string::npos ? source.path.substr(log.size(), end - log.size())
+                                                                    : "";
+}
+
+/** A log's formats stand behind what all share: nobody outside names one, and none names the other. */
+bool reachesBehindTheLog(const Source& source, const Source& target) {
+    const std::string own = backEndOf(source), wanted = backEndOf(target);
+    return !wanted.empty() && (source.folder() != "log" || (!own.empty() && own != wanted));
+}
+
 bool mayInclude(const Source& source, const Source& target) {
+    if (reachesBehindTheLog(source, target)) return false;
     const std::string from = source.folder(), to = target.folder();
     if (from == "deployer") return true;
     if (from == to) return from == "framework" || source.isTaskHalf() || !target.isTaskHalf();
@@ -65,17 +80,17 @@ TEST(IncludeRuleTest, ComponentsMeetInTypesOnly) {
 
 TEST(IncludeRuleTest, EveryThirdPartyPackageHasItsHomes) {
     const std::multimap<std::string, std::string> homes = {
-        {"tiny_gltf.h", "scene"}, {"meshoptimizer.h", "scene"},
-        {"stb", "scene"},         {"opencv2/", "output"},
-        {"EGL/", "gpu"},          {"GL/", "gpu"},
-        {"epoxy/", "gpu"},        {"yaml-cpp/", "framework"},
-        {"CLI/", "deployer"},     {"nlohmann/", "deployer"},
-        {"nlohmann/", "viewer"},  {"boost/", "viewer"},
-        {"embree3/", "study"},    {"embree3/", "sonar"},
-        {"sdf/", "scene"},        {"assimp/", "scene"},
-        {"tinyxml2.h", "scene"},  {"lz4frame.h", "mcap"},
-        {"zstd.h", "mcap"},       {"dds/", "dds"},
-        {"png.h", "output"},
+        {"tiny_gltf.h", "scene"},  {"meshoptimizer.h", "scene"},
+        {"stb", "scene"},          {"opencv2/", "output"},
+        {"EGL/", "gpu"},           {"GL/", "gpu"},
+        {"epoxy/", "gpu"},         {"yaml-cpp/", "framework"},
+        {"yaml-cpp/", "log"},      {"CLI/", "deployer"},
+        {"nlohmann/", "deployer"}, {"nlohmann/", "viewer"},
+        {"boost/", "viewer"},      {"embree3/", "study"},
+        {"embree3/", "sonar"},     {"sdf/", "scene"},
+        {"assimp/", "scene"},      {"tinyxml2.h", "scene"},
+        {"lz4frame.h", "log"},     {"zstd.h", "log"},
+        {"dds/", "dds"},           {"png.h", "output"},
     };
     const auto livesIn = [&](const std::string& prefix, const std::string& folder) {
         const auto [first, last] = homes.equal_range(prefix);
@@ -95,15 +110,20 @@ TEST(IncludeRuleTest, TheRuleRefusesWhatItShould) {
     EXPECT_FALSE(allowed("components/noise/Speckle.cpp", "components/noise/NoiseTask.hpp"));
     EXPECT_FALSE(allowed("types/Sonar.hpp", "components/gpu/Context.hpp"));
     EXPECT_FALSE(allowed("components/gpu/Context.hpp", "types/Sonar.hpp"));
-    EXPECT_FALSE(allowed("components/noise/NoiseTask.cpp", "components/pocolog/Reader.hpp"));
+    EXPECT_FALSE(allowed("components/noise/NoiseTask.cpp", "components/log/Reader.hpp"));
     EXPECT_FALSE(allowed("components/study/ErrorStudy.cpp", "components/sonar/SonarTask.hpp"));
     EXPECT_TRUE(allowed("components/study/ErrorStudy.cpp", "components/sonar/SonarRenderer.hpp"));
     EXPECT_TRUE(allowed("components/noise/NoiseTask.cpp", "components/noise/Speckle.hpp"));
-    EXPECT_FALSE(allowed("components/ros/Cdr.hpp", "components/mcap/Writer.hpp"));
+    EXPECT_FALSE(allowed("components/ros/Cdr.hpp", "components/log/Writer.hpp"));
+    EXPECT_FALSE(allowed("components/logger/LoggerTask.cpp", "components/log/pocolog/Writer.hpp"));
+    EXPECT_FALSE(allowed("components/deployer/LogCommand.cpp", "components/log/mcap/Reader.hpp"));
+    EXPECT_FALSE(allowed("components/log/mcap/Reader.cpp", "components/log/pocolog/Wire.hpp"));
+    EXPECT_TRUE(allowed("components/log/Reader.cpp", "components/log/pocolog/Reader.hpp"));
+    EXPECT_TRUE(allowed("components/log/pocolog/Reader.cpp", "components/log/Reader.hpp"));
     EXPECT_FALSE(allowed("components/viewer/Server.cpp", "components/framework/Port.hpp"));
     EXPECT_TRUE(allowed("components/viewer/Messages.cpp", "components/ros/Cdr.hpp"));
-    EXPECT_TRUE(allowed("components/logger/LoggerTask.cpp", "components/pocolog/Writer.hpp"));
-    EXPECT_TRUE(allowed("components/mcap/SampleWriter.cpp", "components/ros/Cdr.hpp"));
+    EXPECT_TRUE(allowed("components/logger/LoggerTask.cpp", "components/log/Writer.hpp"));
+    EXPECT_TRUE(allowed("components/log/mcap/SampleWriter.cpp", "components/ros/Cdr.hpp"));
     EXPECT_FALSE(allowed("components/dds/Node.cpp", "components/framework/Port.hpp"));
     EXPECT_TRUE(allowed("components/dds/Node.cpp", "components/ros/Cdr.hpp"));
     EXPECT_TRUE(allowed("components/sonar/SonarRenderer.cpp", "components/gpu/Context.hpp"));

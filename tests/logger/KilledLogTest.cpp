@@ -12,8 +12,8 @@
 #include <random>
 #include <thread>
 
+#include "components/log/Reader.hpp"
 #include "components/logger/LogThread.hpp"
-#include "components/mcap/LogSource.hpp"
 #include "tests/support/Folder.hpp"
 
 namespace insonify::logger {
@@ -32,17 +32,19 @@ struct Told {
 };
 
 /** A log that notes when its samples are flushed. */
-class WatchedLog final : public LogFile {
+class WatchedLog final : public log::Writer {
 public:
-    WatchedLog(std::unique_ptr<LogFile> log, Told& told) : log_(std::move(log)), told_(told) {}
+    WatchedLog(std::unique_ptr<log::Writer> log, Told& told) : log_(std::move(log)), told_(told) {}
 
-    size_t addStream(size_t type, const std::string& name, const pocolog::Metadata& metadata) override {
-        return log_->addStream(type, name, metadata);
+    size_t add(size_t sample, const std::string& name, const log::Metadata& metadata) override {
+        return log_->add(sample, name, metadata);
     }
-    void write(size_t stream, types::Time received, const AnySample& sample) override {
+    void put(size_t stream, types::Time received, types::Time time, types::SampleView sample) override {
         if (Clock::now() > due_) told_.most_late = std::max<uint64_t>(told_.most_late, ++late_);
-        log_->write(stream, received, sample);
+        log_->put(stream, received, time, sample);
     }
+    size_t addLike(const log::Reader& log, size_t stream) override { return log_->addLike(log, stream); }
+    void copy(size_t stream, log::Reader& log, const log::SampleRef& at) override { log_->copy(stream, log, at); }
     void flush() override {
         log_->flush();
         told_.flushed = log_->kept();
@@ -56,7 +58,7 @@ public:
     uint64_t kept() const override { return log_->kept(); }
 
 private:
-    std::unique_ptr<LogFile> log_;
+    std::unique_ptr<log::Writer> log_;
     Told& told_;
     Clock::time_point due_ = Clock::time_point::max();
     uint64_t late_ = 0;
@@ -69,16 +71,16 @@ std::string textOf(uint64_t number) {
 /** Logs numbered texts until it is killed. */
 [[noreturn]] void logUntilKilled(const std::filesystem::path& path, Told& told) {
     prctl(PR_SET_PDEATHSIG, SIGKILL);
-    WatchedLog log(createLog(path, {}), told);
+    WatchedLog log(log::createLog(path), told);
     LoggerConfig config;
     config.file = path.filename();
     Rotation rotation(config, log);
     LogThread thread(log, rotation, queue, flush_period);
-    const AnySample text = std::string();
-    thread.declare([&](LogFile& file) { return file.addStream(text.index(), "task.texts", {}); });
+    const types::AnySample text = std::string();
+    thread.declare([&](log::Writer& file) { return file.add(text.index(), "task.texts", {}); });
     for (uint64_t number = 0;; ++number) {
         told.pushed = number + 1;
-        thread.push(0, {static_cast<int64_t>(number + 1)}, AnySample(textOf(number)));
+        thread.push(0, {static_cast<int64_t>(number + 1)}, types::AnySample(textOf(number)));
     }
 }
 
@@ -99,9 +101,9 @@ void killWhileLogging(const std::filesystem::path& path, uint64_t least, std::ch
 
 /** Samples in the log, which must be the first that were pushed, each whole. */
 uint64_t samplesIn(const std::filesystem::path& path) {
-    const auto log = mcap::openLog(path);
+    const auto log = log::openLog(path);
     uint64_t number = 0;
-    log->forEach<std::string>("task.texts", [&](const std::string& text, const pocolog::SampleRef&) {
+    log->forEach<std::string>("task.texts", [&](const std::string& text, const log::SampleRef&) {
         EXPECT_EQ(text, textOf(number)) << number;
         ++number;
     });

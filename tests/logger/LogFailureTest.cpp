@@ -4,9 +4,9 @@
 
 #include <csignal>
 
+#include "components/log/pocolog/Reader.hpp"
 #include "components/logger/LogThread.hpp"
 #include "components/logger/LoggerTask.hpp"
-#include "components/pocolog/Reader.hpp"
 #include "tests/support/Folder.hpp"
 #include "tests/support/Ports.hpp"
 
@@ -72,12 +72,12 @@ TEST(LogFailureTest, AFullDiskEndsInExceptionWithTheSystemsReason) {
 TEST(LogFailureTest, TheSamplesThatDidNotReachTheDiskAreCounted) {
     Folder folder;
     std::filesystem::create_symlink("/dev/full", folder / "x.0.log");
-    const std::unique_ptr<LogFile> log = createLog(folder / "x.0.log", {});
+    const auto log = log::createLog(folder / "x.0.log");
     Rotation rotation(configFor("x.0.log"), *log);
     const double never = 3600;
     LogThread thread(*log, rotation, 10, never);
-    const AnySample text = std::string("x");
-    thread.declare([&](LogFile& file) { return file.addStream(text.index(), "texts", {}); });
+    const types::AnySample text = std::string("x");
+    thread.declare([&](log::Writer& file) { return file.add(text.index(), "texts", {}); });
     for (int i = 0; i < 3; ++i) thread.push(0, {}, text);
     EXPECT_THAT([&] { thread.finish(); },
                 testing::ThrowsMessage<std::runtime_error>(testing::HasSubstr("3 samples did not reach it")));
@@ -120,11 +120,11 @@ TEST(LogFailureTest, ADiskThatIsFullOnlyAtTheEndIsToldByStop) {
 TEST(LogFailureTest, WhatWasFlushedBeforeTheDiskWasFullIsKeptWhole) {
     Folder folder;
     EXPECT_EXIT(fillLimitedDisk(folder.path()), testing::ExitedWithCode(0), "");
-    pocolog::Reader log(folder / "x.0.log");
-    EXPECT_TRUE(log.complete()) << log.fault();
+    log::pocolog::Reader log(folder / "x.0.log");
+    EXPECT_TRUE(log.complete()) << log.diagnostic();
     EXPECT_GT(log.samples().size(), 5u);
     log.forEach<std::string>("writer.port",
-                             [](const std::string& text, const pocolog::SampleRef&) { EXPECT_EQ(text.size(), 1000u); });
+                             [](const std::string& text, const log::SampleRef&) { EXPECT_EQ(text.size(), 1000u); });
 }
 
 }  // namespace

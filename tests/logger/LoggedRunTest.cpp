@@ -7,8 +7,8 @@
 
 #include "components/framework/Deployment.hpp"
 #include "components/framework/Properties.hpp"
+#include "components/log/pocolog/Reader.hpp"
 #include "components/logger/registerTasks.hpp"
-#include "components/pocolog/Reader.hpp"
 #include "tests/support/Folder.hpp"
 #include "tests/support/Waiting.hpp"
 #include "types/Sonar.hpp"
@@ -75,7 +75,7 @@ connections:
     EXPECT_FALSE(deployment.run({.pings = 3}, never).failed());
     EXPECT_THAT(deployment.cleanup(), testing::IsEmpty());
 
-    const pocolog::Reader log(folder / "x.0.log");
+    const log::pocolog::Reader log(folder / "x.0.log");
     EXPECT_EQ(log.find("sonar.ping")->count, 3u);
     EXPECT_EQ(log.find("sonar.ping")->metadata.at("insonify_plan"),
               R"({"sonar": {"features": ["HAVE_\"TVG\""], "passes": [], "omitted": [{"name": "volume", "reason": )"
@@ -83,12 +83,11 @@ connections:
               R"("device": ""}})");
     EXPECT_NE(log.find("sonar.depth"), nullptr) << "declared, though never written";
 
-    EXPECT_EQ(pocolog::Reader(folder / "y.0.log").find("sonar.ping")->count, 3u);
-    pocolog::Reader properties(folder / "properties.0.log");
+    EXPECT_EQ(log::pocolog::Reader(folder / "y.0.log").find("sonar.ping")->count, 3u);
+    log::pocolog::Reader properties(folder / "properties.0.log");
     EXPECT_TRUE(properties.complete()) << "two loggers, one of them writes it";
     std::vector<double> ranges;
-    properties.forEach<double>("sonar.range",
-                               [&](double value, const pocolog::SampleRef&) { ranges.push_back(value); });
+    properties.forEach<double>("sonar.range", [&](double value, const log::SampleRef&) { ranges.push_back(value); });
     EXPECT_THAT(ranges, testing::ElementsAre(30));
     EXPECT_EQ(properties.find("sonar.gain"), nullptr) << "absent";
     EXPECT_NE(properties.find("log.file"), nullptr);
@@ -124,8 +123,8 @@ connections:
     EXPECT_FALSE(deployment.run({.pings = 5}, never).failed());
     EXPECT_THAT(deployment.cleanup(), testing::IsEmpty());
     std::vector<std::pair<double, double>> ranges;
-    pocolog::Reader(folder / "properties.0.log")
-        .forEach<double>("sonar.range", [&](double value, const pocolog::SampleRef& at) {
+    log::pocolog::Reader(folder / "properties.0.log")
+        .forEach<double>("sonar.range", [&](double value, const log::SampleRef& at) {
             ranges.emplace_back(at.time.seconds(), value);
         });
     EXPECT_THAT(ranges, testing::ElementsAre(testing::Pair(1, 50), testing::Pair(2, 12)));
@@ -162,7 +161,7 @@ connections:
     EXPECT_TRUE(both_read) << "while the sonar is in its first cycle";
     EXPECT_THAT(deployment.cleanup(), testing::IsEmpty());
     for (const char* file : {"x.0.log", "y.0.log"}) {
-        const pocolog::Reader log(folder / file);
+        const log::pocolog::Reader log(folder / file);
         EXPECT_THAT(log.find("sonar.ping")->metadata.at("insonify_plan"), testing::HasSubstr("volume"));
     }
 }

@@ -1,8 +1,9 @@
 #include <gmock/gmock.h>
 
 #include "components/framework/Operation.hpp"
+#include "components/log/TypeNames.hpp"
+#include "components/log/pocolog/Reader.hpp"
 #include "components/logger/LoggerTask.hpp"
-#include "components/pocolog/Reader.hpp"
 #include "tests/support/Folder.hpp"
 #include "tests/support/Ports.hpp"
 #include "tests/support/Waiting.hpp"
@@ -61,7 +62,7 @@ TEST(LoggerTaskTest, EverySampleIsLoggedUnderItsSourcesNameWithBothTimes) {
     bench.task.update();
     bench.finish();
 
-    pocolog::Reader log(bench.path());
+    log::pocolog::Reader log(bench.path());
     EXPECT_TRUE(log.complete());
     EXPECT_EQ(log.find("sonar.port")->type, "/base/samples/Sonar");
     EXPECT_EQ(log.find("vehicle.port")->type, "/base/samples/RigidBodyState_m");
@@ -75,9 +76,9 @@ TEST(LoggerTaskTest, EverySampleIsLoggedUnderItsSourcesNameWithBothTimes) {
 
 TEST(LoggerTaskTest, EveryTypeOfTheListCanBeLogged) {
     Bench bench;
-    pocolog::forEachSampleType([&]<class T>(std::type_identity<T>) {
-        test::Writer<pocolog::Carried<T>> writer("source");
-        EXPECT_NE(bench.task.makeInput("in", writer.port), nullptr) << pocolog::typelibName<T>();
+    types::forEachSampleType([&]<class T>(std::type_identity<T>) {
+        test::Writer<types::Carried<T>> writer("source");
+        EXPECT_NE(bench.task.makeInput("in", writer.port), nullptr) << log::typelibName<T>();
     });
 }
 
@@ -102,8 +103,8 @@ TEST(LoggerTaskTest, TheLogCarriesTheDeploymentItsSeedAndWhatTheUserAdds) {
     Source<double> source(bench.task, "depth");
     ASSERT_TRUE(bench.task.configure());
     ASSERT_TRUE(bench.task.cleanup());
-    const pocolog::Reader log(bench.path());
-    const pocolog::Metadata& metadata = log.streams().at(0).metadata;
+    const log::pocolog::Reader log(bench.path());
+    const log::Metadata& metadata = log.streams().at(0).metadata;
     EXPECT_EQ(metadata.at("insonify_deployment"), "tasks:\n  a: {type: \"b\"}\n");
     EXPECT_EQ(metadata.at("insonify_seed"), "7");
     EXPECT_EQ(metadata.at("vessel"), "Kai");
@@ -120,9 +121,8 @@ TEST(LoggerTaskTest, AFileSlowerThanTheSamplesLosesNone) {
     bench.task.update();
     bench.finish();
     int32_t expected = 0;
-    pocolog::Reader log(bench.path());
-    log.forEach<int32_t>("counter.port",
-                         [&](int32_t value, const pocolog::SampleRef&) { EXPECT_EQ(value, expected++); });
+    log::pocolog::Reader log(bench.path());
+    log.forEach<int32_t>("counter.port", [&](int32_t value, const log::SampleRef&) { EXPECT_EQ(value, expected++); });
     EXPECT_EQ(expected, 2000);
 }
 
@@ -137,7 +137,7 @@ TEST(LoggerTaskTest, WhatWasLoggedIsInTheFileWithinTheFlushPeriod) {
     bench.task.update();
     const auto logged = [&] {
         const bool has_prologue = std::filesystem::file_size(bench.path()) >= 16;
-        return has_prologue && pocolog::Reader(bench.path()).samples().size() == 1;
+        return has_prologue && log::pocolog::Reader(bench.path()).samples().size() == 1;
     };
     EXPECT_TRUE(test::comesTrue(logged)) << "while the task is still running";
     bench.finish();
@@ -173,7 +173,7 @@ TEST(LoggerTaskTest, StoppedAndStartedAgainItGoesOnInTheSameFile) {
         ASSERT_TRUE(bench.task.stop());
     }
     ASSERT_TRUE(bench.task.cleanup());
-    EXPECT_EQ(pocolog::Reader(bench.path()).samples().size(), 2u);
+    EXPECT_EQ(log::pocolog::Reader(bench.path()).samples().size(), 2u);
 }
 
 TEST(LoggerTaskTest, OneStreamCannotBeLoggedTwiceNorTwoStreamsOnOnePort) {
@@ -213,9 +213,9 @@ TEST(LoggerTaskTest, RecordingStopsAndGoesOnWhileItRunsAndNothingElseChanges) {
     EXPECT_EQ(bench.task.config->queue, 64);
     bench.finish();
 
-    pocolog::Reader log(bench.path());
+    log::pocolog::Reader log(bench.path());
     ASSERT_EQ(log.samples().size(), 2u);
-    for (const pocolog::SampleRef& at : log.samples()) EXPECT_EQ(at.time.microseconds, 1'000'000);
+    for (const log::SampleRef& at : log.samples()) EXPECT_EQ(at.time.microseconds, 1'000'000);
 }
 
 }  // namespace

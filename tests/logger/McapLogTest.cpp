@@ -6,8 +6,9 @@
 #include <csignal>
 #include <random>
 
+#include "components/log/Check.hpp"
+#include "components/log/Reader.hpp"
 #include "components/logger/LoggerTask.hpp"
-#include "components/mcap/LogSource.hpp"
 #include "tests/support/Allocations.hpp"
 #include "tests/support/Folder.hpp"
 #include "tests/support/Ports.hpp"
@@ -64,17 +65,17 @@ TEST_F(McapLogTest, TheSameStreamsAndMetadataAsInAPocologFile) {
     cycle(pingAt(3'000'000));
     cycle(pingAt(4'000'000));
     finish();
-    EXPECT_FALSE(mcap::checkLog(folder / "x.0.mcap").wrong);
-    const auto log = mcap::openLog(folder / "x.0.mcap");
+    EXPECT_FALSE(log::check(folder / "x.0.mcap").diagnostic);
+    const auto log = log::openLog(folder / "x.0.mcap");
     ASSERT_EQ(log->samples().size(), 4u);
-    const pocolog::Stream* const stream = log->find("sonar.port");
+    const log::Stream* const stream = log->find("sonar.port");
     ASSERT_NE(stream, nullptr);
     EXPECT_TRUE(stream->holds<types::Sonar>());
     EXPECT_EQ(stream->metadata.at("insonify_deployment"), "tasks: {}\n");
     EXPECT_EQ(stream->metadata.at("insonify_seed"), "9");
     EXPECT_EQ(log->samples()[0].time.microseconds, 3'000'000);
     EXPECT_EQ(log->samples()[0].received.microseconds, 5'000'000);
-    log->forEach<types::Sonar>("sonar.port", [&](const types::Sonar& ping, const pocolog::SampleRef&) {
+    log->forEach<types::Sonar>("sonar.port", [&](const types::Sonar& ping, const log::SampleRef&) {
         EXPECT_EQ(ping.bins, std::vector<float>(1600, 0.5f));
     });
 }
@@ -89,7 +90,7 @@ TEST_F(McapLogTest, TheTasksThreadAllocatesNothingOnceItRuns) {
                                     }),
                 testing::IsEmpty());
     finish();
-    EXPECT_EQ(mcap::openLog(folder / "x.0.mcap")->samples().size(), 402u);
+    EXPECT_EQ(log::openLog(folder / "x.0.mcap")->samples().size(), 402u);
 }
 
 TEST_F(McapLogTest, ALogGoesOnInTheNextFileWithoutLoss) {
@@ -101,8 +102,8 @@ TEST_F(McapLogTest, ALogGoesOnInTheNextFileWithoutLoss) {
     int files = 0;
     for (std::filesystem::path file = folder / "x.0.mcap"; std::filesystem::exists(file);
          file = folder / ("x." + std::to_string(++files) + ".mcap")) {
-        EXPECT_FALSE(mcap::checkLog(file).wrong) << file;
-        samples += mcap::openLog(file)->samples().size();
+        EXPECT_FALSE(log::check(file).diagnostic) << file;
+        samples += log::openLog(file)->samples().size();
     }
     EXPECT_GE(files, 3);
     EXPECT_EQ(samples, 800u);
@@ -145,11 +146,11 @@ std::string noise(std::minstd_rand& random) {
 TEST(McapLogFailureTest, WhatWasFlushedBeforeTheDiskWasFullIsKeptWhole) {
     const Folder folder;
     EXPECT_EXIT(fillLimitedDisk(folder.path()), testing::ExitedWithCode(0), "");
-    const auto log = mcap::openLog(folder / "x.0.mcap");
+    const auto log = log::openLog(folder / "x.0.mcap");
     EXPECT_FALSE(log->complete());
     EXPECT_GT(log->samples().size(), 5u);
-    log->forEach<std::string>(
-        "writer.port", [](const std::string& text, const pocolog::SampleRef&) { EXPECT_EQ(text.size(), 1000u); });
+    log->forEach<std::string>("writer.port",
+                              [](const std::string& text, const log::SampleRef&) { EXPECT_EQ(text.size(), 1000u); });
 }
 
 TEST_F(McapLogTest, PingsMayBecomeEightBits) {
@@ -157,8 +158,8 @@ TEST_F(McapLogTest, PingsMayBecomeEightBits) {
     start();
     cycle(pingAt(1));
     finish();
-    mcap::openLog(folder / "x.0.mcap")
-        ->forEach<types::Sonar>("sonar.port", [&](const types::Sonar& ping, const pocolog::SampleRef&) {
+    log::openLog(folder / "x.0.mcap")
+        ->forEach<types::Sonar>("sonar.port", [&](const types::Sonar& ping, const log::SampleRef&) {
             EXPECT_EQ(ping.bins, std::vector<float>(1600, 1));
         });
 }

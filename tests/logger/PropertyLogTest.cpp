@@ -1,8 +1,8 @@
 #include <gmock/gmock.h>
 
+#include "components/log/Check.hpp"
+#include "components/log/pocolog/Reader.hpp"
 #include "components/logger/PropertyLog.hpp"
-#include "components/pocolog/Check.hpp"
-#include "components/pocolog/Reader.hpp"
 #include "tests/support/Folder.hpp"
 
 namespace insonify::logger {
@@ -18,17 +18,16 @@ TEST(PropertyLogTest, APropertyIsAStreamWithASampleForEachChange) {
     log.record({sonar}, {3'000'000}, {});
     log.close();
 
-    EXPECT_FALSE(pocolog::check(folder / "properties.0.log").wrong);
-    pocolog::Reader reader(folder / "properties.0.log");
+    EXPECT_FALSE(log::check(folder / "properties.0.log").diagnostic);
+    log::pocolog::Reader reader(folder / "properties.0.log");
     std::vector<std::pair<double, double>> ranges;
-    reader.forEach<double>("sonar.range", [&](double value, const pocolog::SampleRef& at) {
-        ranges.emplace_back(at.time.seconds(), value);
-    });
+    reader.forEach<double>(
+        "sonar.range", [&](double value, const log::SampleRef& at) { ranges.emplace_back(at.time.seconds(), value); });
     EXPECT_THAT(ranges, testing::ElementsAre(testing::Pair(1, 50), testing::Pair(3, 30)));
     EXPECT_EQ(reader.find("sonar.bin_count")->type, "/int64_t");
     EXPECT_EQ(reader.find("sonar.bin_count")->count, 1u);
     EXPECT_EQ(reader.find("sonar.tvg")->type, "/std/string");
-    const pocolog::Metadata& metadata = reader.find("sonar.range")->metadata;
+    const log::Metadata& metadata = reader.find("sonar.range")->metadata;
     EXPECT_EQ(metadata.at("rock_stream_type"), "property");
     EXPECT_EQ(metadata.at("rock_task_name"), "sonar");
     EXPECT_EQ(metadata.at("rock_task_object_name"), "range");

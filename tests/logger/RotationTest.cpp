@@ -1,9 +1,11 @@
 // Logs of several files.
 #include <gmock/gmock.h>
 
+#include "components/log/Check.hpp"
+#include "components/log/pocolog/Index.hpp"
+#include "components/log/pocolog/Reader.hpp"
+#include "components/log/pocolog/Writer.hpp"
 #include "components/logger/LoggerTask.hpp"
-#include "components/pocolog/Check.hpp"
-#include "components/pocolog/Reader.hpp"
 #include "tests/support/Folder.hpp"
 #include "tests/support/Ports.hpp"
 
@@ -40,11 +42,11 @@ protected:
         std::vector<size_t> counts;
         int expected = 0;
         for (int number = 0; number < files; ++number) {
-            const pocolog::Verdict verdict = pocolog::check(file(number));
-            EXPECT_FALSE(verdict.wrong) << verdict.wrong->what;
+            const log::Verdict verdict = log::check(file(number));
+            EXPECT_FALSE(verdict.diagnostic) << verdict.diagnostic->message;
             EXPECT_TRUE(std::filesystem::exists(folder / ("x." + std::to_string(number) + ".idx")));
-            pocolog::Reader log(file(number));
-            log.forEach<std::string>("source.port", [&](const std::string& text, const pocolog::SampleRef&) {
+            log::pocolog::Reader log(file(number));
+            log.forEach<std::string>("source.port", [&](const std::string& text, const log::SampleRef&) {
                 EXPECT_EQ(std::stoi(text), expected++);
             });
             counts.push_back(log.samples().size());
@@ -61,7 +63,7 @@ TEST_F(RotationTest, AFileThatIsLargeEnoughIsFollowedByTheNext) {
     log(config, 25);
     EXPECT_THAT(countsOf(3), testing::ElementsAre(10, 10, 5));
     EXPECT_LT(std::filesystem::file_size(file(0)), 1.11e6) << "the limit and one sample";
-    EXPECT_NE(pocolog::Reader(file(2)).find("silent.port"), nullptr) << "declared with the last file's end";
+    EXPECT_NE(log::pocolog::Reader(file(2)).find("silent.port"), nullptr) << "declared with the last file's end";
 }
 
 TEST_F(RotationTest, AFileThatIsOldEnoughIsFollowedByTheNext) {
@@ -85,7 +87,7 @@ TEST_F(RotationTest, FilesOfALongerLogBeforeAreRemovedWithTheirIndices) {
     EXPECT_THAT(countsOf(2), testing::ElementsAre(10, 5));
     for (int number = 2; number < 5; ++number) {
         EXPECT_FALSE(std::filesystem::exists(file(number)));
-        EXPECT_FALSE(std::filesystem::exists(pocolog::indexPath(file(number))));
+        EXPECT_FALSE(std::filesystem::exists(log::pocolog::indexPath(file(number))));
     }
 }
 
@@ -97,14 +99,14 @@ TEST_F(RotationTest, FilesOfALongerLogBeforeAreRemovedWithoutALimitToo) {
     EXPECT_THAT(countsOf(1), testing::ElementsAre(15));
     for (int number = 1; number < 3; ++number) {
         EXPECT_FALSE(std::filesystem::exists(file(number)));
-        EXPECT_FALSE(std::filesystem::exists(pocolog::indexPath(file(number))));
+        EXPECT_FALSE(std::filesystem::exists(log::pocolog::indexPath(file(number))));
     }
 }
 
 TEST_F(RotationTest, AFileThatAnotherLoggerWritesIsNotRemovedNorAnyBeforeIt) {
     writeBytes(file(0), {'o', 'l', 'd'});
     writeBytes(file(1), {'o', 'l', 'd'});
-    const pocolog::Writer other(file(2));
+    const log::pocolog::Writer other(file(2));
     for (const std::optional<double> limit : {std::optional<double>(), std::optional<double>(1e6)}) {
         LoggerTask task("log");
         LoggerConfig config;

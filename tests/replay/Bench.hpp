@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "components/framework/Activity.hpp"
-#include "components/pocolog/Writer.hpp"
+#include "components/log/pocolog/Writer.hpp"
 #include "components/replay/ReplayTask.hpp"
 #include "tests/support/Folder.hpp"
 #include "tests/support/Ports.hpp"
@@ -41,7 +41,7 @@ struct Bench {
         if (!lockstep) task.environment().now = task.clock(task.environment().now);
     }
     void writeLog() {
-        pocolog::Writer log(folder / "x.0.log");
+        log::pocolog::Writer log(folder / "x.0.log");
         const size_t pose = log.addStream<types::Pose>("vehicle.pose");
         const size_t ping = log.addStream<types::Sonar>("sonar.ping");
         log.write(pose, {11}, poseAt(10));
@@ -64,7 +64,7 @@ struct Bench {
 template <class T>
 std::vector<int64_t> stampsIn(test::Reader<T>& reader) {
     std::vector<int64_t> stamps;
-    for (T sample; reader.port.readNew(sample);) stamps.push_back(pocolog::carriedSample(sample).time.microseconds);
+    for (T sample; reader.port.readNew(sample);) stamps.push_back(types::carriedSample(sample)->time.microseconds);
     return stamps;
 }
 

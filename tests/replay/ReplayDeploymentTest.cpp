@@ -2,9 +2,9 @@
 #include <gmock/gmock.h>
 
 #include "components/framework/Deployment.hpp"
+#include "components/log/pocolog/Reader.hpp"
+#include "components/log/pocolog/Writer.hpp"
 #include "components/logger/registerTasks.hpp"
-#include "components/pocolog/Reader.hpp"
-#include "components/pocolog/Writer.hpp"
 #include "components/replay/registerTasks.hpp"
 #include "tests/support/Folder.hpp"
 
@@ -15,7 +15,7 @@ const std::atomic<bool> never{false};
 
 /** Poses each 0.1 s from 100 s on, and a ping for each, a little later in the file. */
 void writeLog(const std::filesystem::path& path) {
-    pocolog::Writer log(path);
+    log::pocolog::Writer log(path);
     const size_t vehicle = log.addStream<types::Pose>("vehicle.pose");
     const size_t sonar = log.addStream<types::Sonar>("sonar.ping");
     for (int i = 0; i < 20; ++i) {
@@ -56,15 +56,15 @@ TEST(ReplayDeploymentTest, AReplayedLogIsTheSameLogAgainAndTheRunEndsWithIt) {
     const framework::RunResult result = runIn(folder, again);
     EXPECT_FALSE(result.failed());
     EXPECT_NEAR(result.elapsed_s, 1.9, 1e-9);
-    pocolog::Reader first(folder / "a.0.log"), second(folder / "b.0.log");
+    log::pocolog::Reader first(folder / "a.0.log"), second(folder / "b.0.log");
     ASSERT_EQ(second.samples().size(), 40u);
     for (size_t i = 0; i < 40; ++i) EXPECT_EQ(second.samples()[i].time, first.samples()[i].time);
     int count = 0;
-    second.forEach<types::Sonar>("replay.sonar.ping", [&](const types::Sonar& ping, const pocolog::SampleRef& at) {
+    second.forEach<types::Sonar>("replay.sonar.ping", [&](const types::Sonar& ping, const log::SampleRef& at) {
         EXPECT_EQ(ping.bins, std::vector<float>{static_cast<float>(count++)});
         EXPECT_EQ(at.received, ping.time) << "simulated time is the log's time";
     });
-    second.forEach<types::Pose>("replay.vehicle.pose", [&](const types::Pose& pose, const pocolog::SampleRef& at) {
+    second.forEach<types::Pose>("replay.vehicle.pose", [&](const types::Pose& pose, const log::SampleRef& at) {
         EXPECT_EQ(at.received, pose.time);
     });
 }

@@ -1,5 +1,6 @@
 #include <gmock/gmock.h>
 
+#include "components/log/pocolog/Reader.hpp"
 #include "tests/replay/Bench.hpp"
 
 namespace insonify::replay {
@@ -111,7 +112,7 @@ TEST(ReplayTaskTest, AFileThatIsNoLogIsSeenBeforeAnythingStarts) {
 TEST(ReplayTaskTest, ASampleThatCannotBeDecodedEndsInException) {
     Bench bench;
     std::vector<char> bytes = bytesOf(bench.folder / "x.0.log");
-    const uint64_t position = pocolog::Reader(bench.folder / "x.0.log").samples().front().position;
+    const uint64_t position = log::pocolog::Reader(bench.folder / "x.0.log").samples().front().position;
     bytes[position + 15] = '\x7f';  // top byte of the length of a name
     writeBytes(bench.folder / "x.0.log", bytes);
     test::Reader<types::Pose> poses;

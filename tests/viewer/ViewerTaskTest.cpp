@@ -104,14 +104,19 @@ TEST(ViewerTaskTest, TheNoticeTellsThePortThatWasFree) {
     EXPECT_FALSE(Client(port).connected());
 }
 
+/** What no sample is. */
+struct Unknown {
+    static constexpr const char* type_name = "/unknown";
+};
+
 TEST(ViewerTaskTest, WhatItCannotShowIsRefusedByName) {
     ViewerTask viewer("viewer");
-    test::Writer<double> number("depth");
+    test::Writer<std::shared_ptr<const Unknown>> source("depth");
     try {
-        viewer.makeInput("x", number.port);
+        viewer.makeInput("x", source.port);
         FAIL();
     } catch (const types::ConfigError& error) {
-        EXPECT_THAT(error.what(), HasSubstr("depth.port is /double, which a viewer cannot show"));
+        EXPECT_THAT(error.what(), HasSubstr("depth.port is /unknown, which a viewer cannot show"));
     }
 }
 
@@ -122,7 +127,7 @@ TEST(ViewerTaskTest, APingOfTheWrongShapeIsAnErrorUntilTheNext) {
     bad->bins.pop_back();
     bench.show(bad);
     EXPECT_EQ(bench.viewer.state(), framework::TaskState::RunTimeError);
-    EXPECT_THAT(bench.viewer.lastError(), HasSubstr("lists that are not as long as its counts say"));
+    EXPECT_THAT(bench.viewer.lastError(), HasSubstr("has other numbers of bins or bearings than it says"));
     bench.show(blockPing());
     EXPECT_EQ(bench.viewer.state(), framework::TaskState::Running);
 }

@@ -1,0 +1,143 @@
+#include "components/log/Copy.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <map>
+
+namespace insonify::log {
+namespace {
+
+using Readers = std::vector<std::unique_ptr<Reader>>;
+
+bool takes(const Selection& selection, const Stream& stream) {
+    return selection.streams.empty() || selection.streams.contains(stream.name);
+}
+
+class Copier {
+public:
+    Copier(const CopyOptions& options, const std::filesystem::path& to)
+        : selection_(options.selection),
+          anew_(options.anew.has_value()),
+          out_(createLog(to, options.anew.value_or(McapConfig{}))) {}
+
+    /** Takes what is wanted of a log; its streams join those of the same names. */
+    void add(Reader& log) {
+        for (const Gap& gap : log.gaps())
+            lose(fmt::format("{}: bytes {} to {} ({} in all): {}", log.path().string(), gap.from, gap.to,
+                             gap.to - gap.from, gap.what));
+        std::vector<std::optional<size_t>> numbers;
+        for (size_t i = 0; i < log.streams().size(); ++i) numbers.push_back(numberOf(log, i));
+        for (const SampleRef& at : log.samples())
+            if (numbers[at.stream] && wanted(at)) take(log, at, *numbers[at.stream]);
+    }
+
+    Copied close() {
+        out_->close();
+        return std::move(copied_);
+    }
+
+private:
+    std::optional<size_t> numberOf(const Reader& log, size_t index) {
+        const Stream& stream = log.streams()[index];
+        if (!takes(selection_, stream)) return {};
+        const auto known = numbers_.find(stream.name);
+        if (known != numbers_.end()) return known->second;
+        try {
+            const bool as_it_is = !anew_ || !stream.sample;
+            const size_t number =
+                as_it_is ? out_->addLike(log, index) : out_->add(*stream.sample, stream.name, stream.metadata);
+            return numbers_[stream.name] = number;
+        } catch (const types::ConfigError& error) {
+            if (!selection_.streams.empty()) throw;
+            lose(error.what());
+            return numbers_[stream.name] = {};
+        }
+    }
+
+    bool wanted(const SampleRef& at) {
+        const size_t place = place_++;
+        return place >= selection_.first && place < selection_.last && at.time >= selection_.from &&
+               at.time < selection_.until;
+    }
+
+    void take(Reader& log, const SampleRef& at, size_t number) {
+        try {
+            log.verify(at);
+        } catch (const types::ConfigError& error) {
+            return lose(error.what());
+        }
+        if (anew_ && log.streams()[at.stream].sample)
+            out_->put(number, at.received, at.time, log.sampleAt(at));
+        else
+            out_->copy(number, log, at);
+        ++copied_.samples;
+    }
+
+    void lose(std::string what) { copied_.lost.push_back(std::move(what)); }
+
+    const Selection& selection_;
+    const bool anew_;
+    std::unique_ptr<Writer> out_;
+    std::map<std::string, std::optional<size_t>> numbers_;  ///< Of the streams in the new log; none: it takes it not.
+    size_t place_ = 0;                                      ///< Samples seen of these streams.
+    Copied copied_;
+};
+
+void refuse(const Readers& logs, const Selection& selection, const std::filesystem::path& to) {
+    for (const std::string& name : selection.streams)
+        if (std::ranges::none_of(logs, [&](const auto& log) { return log->find(name); }))
+            logs.front()->indexOf(name);  // throws, with the names that there are
+    for (const auto& log : logs) {
+        if (log->streams().empty()) throw types::ConfigError(log->path(), "", "holds no stream");
+        std::error_code not_there;
+        if (std::filesystem::equivalent(log->path(), to, not_there))
+            throw types::ConfigError(to, "", "is the log itself: the copy must be another file");
+    }
+}
+
+/** Streams of one name become one in the copy: they must be of one type, of the same layout. */
+void refuseOtherTypes(const Readers& logs, const Selection& selection) {
+    struct Known {
+        std::string type, layout;
+    };
+    std::map<std::string, Known> known;
+    for (const auto& log : logs)
+        for (size_t i = 0; i < log->streams().size(); ++i) {
+            const Stream& stream = log->streams()[i];
+            if (!takes(selection, stream)) continue;
+            const Known& before = known.try_emplace(stream.name, Known{stream.type, log->layout(i)}).first->second;
+            if (stream.type == before.type && log->layout(i) == before.layout) continue;
+            const char* layout = stream.type == before.type ? " of another layout" : "";
+            throw types::ConfigError(
+                log->path(), stream.name,
+                fmt::format("is {}{}; in the log before it was {}", stream.type, layout, before.type));
+        }
+}
+
+}  // namespace
+
+Copied copyLog(const std::vector<std::filesystem::path>& logs, const std::filesystem::path& to,
+               const CopyOptions& options) {
+    Readers readers;
+    for (const auto& log : logs) readers.push_back(openLog(log, options.at_damage));
+    refuse(readers, options.selection, to);
+    refuseOtherTypes(readers, options.selection);
+    Copier copier(options, to);
+    for (const auto& log : readers) copier.add(*log);
+    return copier.close();
+}
+
+std::string copyProperties(const std::filesystem::path& log, const std::filesystem::path& to) {
+    const auto source = openLog(log, AtDamage::Skip), cut = openLog(to);
+    const auto properties = propertyLogOf(*source);
+    if (!properties || propertyLogOf(*cut)) return "";
+    const std::filesystem::path copied = to.parent_path() / properties->filename();
+    if (std::filesystem::exists(copied))
+        return fmt::format("{} is of another run: {} is not kept with {}; give that a folder of its own",
+                           copied.string(), properties->string(), to.string());
+    copyLog({*properties}, copied, {.at_damage = AtDamage::Skip});
+    return fmt::format("{} is kept with it", copied.string());
+}
+
+}  // namespace insonify::log

@@ -1,0 +1,122 @@
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <cerrno>
+#include <fstream>
+#include <iterator>
+#include <system_error>
+#include <vector>
+
+#include "components/log/Export.hpp"
+#include "components/log/Reader.hpp"
+#include "components/log/TypeNames.hpp"
+
+namespace insonify::log {
+namespace {
+
+using types::Sonar;
+
+/** A text file that gathers lines; close() throws std::runtime_error when not all of them arrived. */
+class CsvFile {
+public:
+    CsvFile(const std::filesystem::path& path, const std::string& header) : path_(path), file_(path) {
+        if (!file_) throw types::ConfigError(path, "", "cannot be written: " + std::generic_category().message(errno));
+        file_ << header << '\n';
+    }
+    /** A line of numbers, each as short as it can be read back exactly; times with six decimals. */
+    template <class... Values>
+    void line(types::Time time, const Values&... values) {
+        text_.clear();
+        fmt::format_to(std::back_inserter(text_), "{:.6f}", time.seconds());
+        (fmt::format_to(std::back_inserter(text_), ",{}", values), ...);
+        text_.push_back('\n');
+        file_.write(text_.data(), static_cast<std::streamsize>(text_.size()));
+    }
+    void close() {
+        file_.close();
+        if (!file_) throw std::runtime_error(path_.string() + ": cannot be written: the disk may be full");
+    }
+
+private:
+    std::filesystem::path path_;
+    std::ofstream file_;
+    fmt::memory_buffer text_;
+};
+
+void writePing(CsvFile& csv, const Sonar& ping) {
+    for (size_t beam = 0; beam < ping.beam_count; ++beam)
+        for (size_t bin = 0; bin < ping.bin_count; ++bin)
+            csv.line(ping.time, beam, ping.bearings[beam].rad, bin, ping.bins[beam * ping.bin_count + bin]);
+}
+
+void writePings(Reader& log, const std::string& stream, const std::filesystem::path& path) {
+    CsvFile csv(path, "time,beam,bearing,bin,value");
+    Sonar ping;
+    log.forEachRef(stream, [&](const SampleRef& at) {
+        readPing(log, at, ping);
+        writePing(csv, ping);
+    });
+    csv.close();
+}
+
+/** Text in quotes, those within it doubled. */
+std::string quoted(const std::string& text) {
+    std::string result = "\"";
+    for (const char c : text) result += c == '"' ? std::string(2, c) : std::string(1, c);
+    return result + '"';
+}
+
+template <class T>
+void writeValues(Reader& log, const std::string& stream, const std::filesystem::path& path) {
+    CsvFile csv(path, "time,value");
+    log.forEach<T>(stream, [&](const T& value, const SampleRef& at) {
+        if constexpr (Text<T>)
+            csv.line(at.time, quoted(value));
+        else
+            csv.line(at.time, types::numberOf(value));
+    });
+    csv.close();
+}
+
+template <class T>
+void writeRows(Reader& log, const std::string& stream, const std::filesystem::path& path) {
+    std::string header = "time";
+    types::Columns<T>::forEach(T{}, [&](const char*, const auto& names, const auto&) {
+        for (const char* name : names) header += std::string(",") + name;
+    });
+    CsvFile csv(path, header);
+    std::vector<double> row;
+    log.forEach<T>(stream, [&](const T& sample, const SampleRef& at) {
+        row.clear();
+        types::Columns<T>::forEach(sample, [&](const char*, const auto&, const auto& numbers) {
+            row.insert(row.end(), numbers.begin(), numbers.end());
+        });
+        csv.line(sampleTime(sample, at.time), fmt::format("{}", fmt::join(row, ",")));
+    });
+    csv.close();
+}
+
+}  // namespace
+
+void exportCsv(Reader& log, const std::string& stream, const std::filesystem::path& path) {
+    const Stream& declared = log.streams()[log.indexOf(stream)];
+    if (holdsPings(declared)) return writePings(log, stream, path);
+    bool done = false;
+    types::forEachSampleType([&]<class T>(std::type_identity<T>) {
+        if (!declared.holds<T>()) return;
+        if constexpr (types::Tabular<T>)
+            writeRows<T>(log, stream, path);
+        else if constexpr (types::Scalar<T> || Text<T>)
+            writeValues<T>(log, stream, path);
+        else
+            return;
+        done = true;
+    });
+    if (!done)
+        throw types::ConfigError(log.path(), stream,
+                                 "holds " + declared.type +
+                                     "; as text can be written pings, beams and scans of sonars, poses, numbers and "
+                                     "texts (pictures: .png and .npz)");
+}
+
+}  // namespace insonify::log

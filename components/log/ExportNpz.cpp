@@ -1,0 +1,198 @@
+#include <algorithm>
+
+#include "components/log/Export.hpp"
+#include "components/log/NpzFile.hpp"
+#include "components/log/Reader.hpp"
+#include "components/log/TypeNames.hpp"
+
+namespace insonify::log {
+namespace {
+
+using Path = std::filesystem::path;
+using types::Image;
+using types::Sonar;
+
+/** Successive samples of one shape. */
+struct Run {
+    std::vector<size_t> shape;
+    std::vector<SampleRef> samples;
+
+    /** Shape of all of them together. */
+    std::vector<size_t> whole() const {
+        std::vector<size_t> all = shape;
+        all.insert(all.begin(), samples.size());
+        return all;
+    }
+};
+
+std::vector<size_t> shapeOf(const Sonar& ping) { return {ping.beam_count, ping.bin_count}; }
+std::vector<size_t> shapeOf(const Image& picture) {
+    return {picture.size.height, picture.size.width, picture.pixel_size};
+}
+
+void readShaped(Reader& log, const SampleRef& at, Sonar& ping) { readPing(log, at, ping); }
+void readShaped(Reader& log, const SampleRef& at, Image& picture) {
+    log.read(at, picture);
+    if (!picture.holdsPixels())
+        throw types::ConfigError(log.path(), log.streams()[at.stream].name,
+                                 "a picture is compressed or has other numbers of pixels than it says");
+}
+
+template <class T>
+std::vector<Run> runsOfOneShape(Reader& log, const std::string& stream) {
+    std::vector<Run> runs;
+    T sample;
+    log.forEachRef(stream, [&](const SampleRef& at) {
+        readShaped(log, at, sample);
+        if (runs.empty() || runs.back().shape != shapeOf(sample)) runs.push_back({shapeOf(sample), {}});
+        runs.back().samples.push_back(at);
+    });
+    if (runs.empty()) runs.push_back({shapeOf(T{}), {}});
+    return runs;
+}
+
+void writeRun(Reader& log, const Run& run, NpzFile& npz, Sonar ping) {
+    const size_t count = run.samples.size();
+    std::vector<double> bearings, time, bin_duration, speed_of_sound;
+    std::vector<float> range;
+    npz.begin("bins", numpyType<float>(), run.whole());
+    for (const SampleRef& at : run.samples) {
+        readPing(log, at, ping);
+        npz.append(ping.bins.data(), ping.bins.size() * sizeof(float));
+        for (const types::Angle& bearing : ping.bearings) bearings.push_back(bearing.rad);
+        time.push_back(ping.time.seconds());
+        bin_duration.push_back(ping.bin_duration.seconds());
+        speed_of_sound.push_back(static_cast<double>(ping.speed_of_sound));
+        for (uint32_t k = 0; k < ping.bin_count; ++k) range.push_back(static_cast<float>(ping.binStart(k + 0.5)));
+    }
+    npz.end();
+    npz.array("bearings", {count, run.shape[0]}, bearings);
+    npz.array("time", {count}, time);
+    npz.array("bin_duration", {count}, bin_duration);
+    npz.array("speed_of_sound", {count}, speed_of_sound);
+    npz.array("range_m", {count, run.shape[1]}, range);
+}
+
+void writeRun(Reader& log, const Run& run, NpzFile& npz, Image picture) {
+    std::vector<double> time;
+    npz.begin("pixels", numpyType<uint8_t>(), run.whole());
+    for (const SampleRef& at : run.samples) {
+        log.read(at, picture);
+        for (size_t row = 0; row < picture.size.height; ++row)
+            npz.append(picture.image.data() + row * picture.row_size, size_t{picture.size.width} * picture.pixel_size);
+        time.push_back(sampleTime(picture, at.time).seconds());
+    }
+    npz.end();
+    npz.array("time", {time.size()}, time);
+}
+
+/** One text; nothing when it is empty. */
+void writeMeta(NpzFile& npz, const std::string& meta) {
+    if (meta.empty()) return;
+    npz.begin("meta", "|S" + std::to_string(meta.size()), {});
+    npz.append(meta.data(), meta.size());
+    npz.end();
+}
+
+template <class T>
+std::vector<Path> writeRuns(Reader& log, const std::string& stream, const Path& path, const std::string& meta) {
+    const std::vector<Run> runs = runsOfOneShape<T>(log, stream);
+    std::vector<Path> files;
+    for (const Run& run : runs) {
+        Path file = path;
+        if (runs.size() > 1) file.replace_extension("." + std::to_string(files.size()) + path.extension().string());
+        NpzFile npz(file);
+        writeRun(log, run, npz, T{});
+        writeMeta(npz, meta);
+        npz.close();
+        files.push_back(file);
+    }
+    return files;
+}
+
+template <class T>
+void writeRows(Reader& log, const std::string& stream, const Path& path, const std::string& meta) {
+    std::vector<double> time;
+    std::vector<std::vector<double>> arrays;
+    log.forEach<T>(stream, [&](const T& sample, const SampleRef& at) {
+        time.push_back(sampleTime(sample, at.time).seconds());
+        types::Columns<T>::forEach(sample, [&, i = size_t{0}](const char*, const auto&, const auto& numbers) mutable {
+            if (i == arrays.size()) arrays.emplace_back();
+            arrays[i].insert(arrays[i].end(), numbers.begin(), numbers.end());
+            ++i;
+        });
+    });
+    NpzFile npz(path);
+    npz.array("time", {time.size()}, time);
+    types::Columns<T>::forEach(T{}, [&, i = size_t{0}](const char* name, const auto& names, const auto&) mutable {
+        arrays.resize(std::max(arrays.size(), i + 1));
+        npz.array(name, {time.size(), names.size()}, arrays[i++]);
+    });
+    writeMeta(npz, meta);
+    npz.close();
+}
+
+void writeValue(NpzFile& npz, const std::vector<std::string>& texts) {
+    size_t longest = 1;
+    for (const std::string& text : texts) longest = std::max(longest, text.size());
+    npz.begin("value", "|S" + std::to_string(longest), {texts.size()});
+    for (std::string text : texts) {
+        text.resize(longest);
+        npz.append(text.data(), longest);
+    }
+    npz.end();
+}
+template <class Number>
+void writeValue(NpzFile& npz, const std::vector<Number>& numbers) {
+    npz.array("value", {numbers.size()}, numbers);
+}
+
+template <class T>
+auto valueOf(const T& sample) {
+    if constexpr (types::Scalar<T>)
+        return types::numberOf(sample);
+    else
+        return sample;
+}
+
+template <class T>
+void writeValues(Reader& log, const std::string& stream, const Path& path, const std::string& meta) {
+    std::vector<double> time;
+    std::vector<decltype(valueOf(T{}))> values;
+    log.forEach<T>(stream, [&](const T& sample, const SampleRef& at) {
+        time.push_back(at.time.seconds());
+        values.push_back(valueOf(sample));
+    });
+    NpzFile npz(path);
+    npz.array("time", {time.size()}, time);
+    writeValue(npz, values);
+    writeMeta(npz, meta);
+    npz.close();
+}
+
+}  // namespace
+
+std::vector<Path> exportNpz(Reader& log, const std::string& stream, const Path& path, const std::string& meta) {
+    const Stream& declared = log.streams()[log.indexOf(stream)];
+    if (holdsPings(declared)) return writeRuns<Sonar>(log, stream, path, meta);
+    if (declared.holds<Image>()) return writeRuns<Image>(log, stream, path, meta);
+    bool done = false;
+    types::forEachSampleType([&]<class T>(std::type_identity<T>) {
+        if (!declared.holds<T>()) return;
+        if constexpr (types::Tabular<T>)
+            writeRows<T>(log, stream, path, meta);
+        else if constexpr (types::Scalar<T> || Text<T>)
+            writeValues<T>(log, stream, path, meta);
+        else
+            return;
+        done = true;
+    });
+    if (!done)
+        throw types::ConfigError(log.path(), stream,
+                                 "holds " + declared.type +
+                                     "; as arrays can be written pings, beams and scans of sonars, poses, pictures, "
+                                     "numbers and texts");
+    return {path};
+}
+
+}  // namespace insonify::log

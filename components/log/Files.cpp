@@ -1,0 +1,108 @@
+#include "components/log/Files.hpp"
+
+#include <fcntl.h>
+#include <sys/file.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <stdexcept>
+#include <system_error>
+#include <utility>
+
+#include "components/log/pocolog/Index.hpp"
+#include "types/ConfigError.hpp"
+
+namespace insonify::log {
+namespace {
+
+std::string reason(int error_number) { return std::generic_category().message(error_number); }
+
+/** Whether another open file holds the log; takes hold of it if not. */
+bool isTaken(int file) { return flock(file, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK; }
+
+}  // namespace
+
+InputFile::InputFile(const std::filesystem::path& path) {
+    file_ = open(path.c_str(), O_RDONLY | O_CLOEXEC);
+    if (file_ < 0) throw types::ConfigError(path, "", "cannot be read: " + std::generic_category().message(errno));
+    struct stat status {};
+    if (fstat(file_, &status) != 0 || !S_ISREG(status.st_mode)) {
+        ::close(file_);
+        throw types::ConfigError(path, "", "is not a file");
+    }
+    size_ = static_cast<uint64_t>(status.st_size);
+}
+
+InputFile::~InputFile() { ::close(file_); }
+
+bool InputFile::read(uint64_t position, void* to, size_t size) const {
+    char* next = static_cast<char*>(to);
+    while (size > 0) {
+        const ssize_t got = pread(file_, next, size, static_cast<off_t>(position));
+        if (got < 0 && errno == EINTR) continue;
+        if (got <= 0) return false;
+        next += got;
+        position += static_cast<uint64_t>(got);
+        size -= static_cast<size_t>(got);
+    }
+    return true;
+}
+
+OutputFile::OutputFile(std::filesystem::path path) : path_(std::move(path)) {
+    file_ = ::open(path_.c_str(), O_WRONLY | O_CREAT | O_CLOEXEC, 0644);
+    if (file_ < 0) throw types::ConfigError(path_, "", "the log cannot be written: " + reason(errno));
+    struct stat status {};
+    const bool is_file = fstat(file_, &status) == 0 && S_ISREG(status.st_mode);
+    const bool taken = is_file && isTaken(file_);  // a device, as /dev/null, is there for everyone
+    if (taken || (is_file && ftruncate(file_, 0) != 0)) {
+        const std::string why = taken ? "another logger writes it" : reason(errno);
+        ::close(std::exchange(file_, -1));
+        throw types::ConfigError(path_, "", "the log cannot be written: " + why);
+    }
+}
+
+OutputFile::OutputFile(OutputFile&& other) noexcept
+    : path_(std::move(other.path_)), file_(std::exchange(other.file_, -1)), size_(other.size_) {}
+
+OutputFile::~OutputFile() {
+    if (file_ >= 0) ::close(file_);
+}
+
+void OutputFile::append(const char* data, size_t size) {
+    const uint64_t whole = size_ + size;
+    while (size > 0) {
+        const ssize_t written = ::write(file_, data, size);
+        if (written < 0 && errno == EINTR) continue;
+        if (written < 0) fail(errno);
+        data += written;
+        size -= static_cast<size_t>(written);
+    }
+    size_ = whole;
+}
+
+void OutputFile::fail(int error_number) {
+    // Half a block at the end would stop Rock's Ruby reader: back to the last whole one. A device cannot be cut.
+    [[maybe_unused]] const int cut = ftruncate(file_, static_cast<off_t>(size_));
+    ::close(std::exchange(file_, -1));
+    throw std::runtime_error(path_.string() + ": the log cannot be written: " + reason(error_number));
+}
+
+void OutputFile::close() {
+    if (::close(std::exchange(file_, -1)) != 0)
+        throw std::runtime_error(path_.string() + ": the log cannot be written: " + reason(errno));
+}
+
+bool removeLog(const std::filesystem::path& path) {
+    const int file = ::open(path.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC);
+    if (file < 0) return false;
+    const bool taken = isTaken(file);
+    std::error_code failed;
+    const bool removed = !taken && std::filesystem::remove(path, failed);
+    if (removed) std::filesystem::remove(pocolog::indexPath(path), failed);
+    ::close(file);
+    if (taken) throw types::ConfigError(path, "", "the log cannot be removed: another logger writes it");
+    return removed;
+}
+
+}  // namespace insonify::log

@@ -1,0 +1,50 @@
+#pragma once
+#include <cstdint>
+#include <filesystem>
+#include <fstream>
+#include <string>
+#include <type_traits>
+#include <vector>
+
+namespace insonify::log {
+
+/** Numpy's name of a little-endian number: "<f4". */
+template <class T>
+std::string numpyType() {
+    const char* kind = std::is_floating_point_v<T> ? "<f" : std::is_signed_v<T> ? "<i" : "<u";
+    return kind + std::to_string(sizeof(T));
+}
+
+/** Writes a numpy `.npz`: a zip file of uncompressed arrays, with 64-bit sizes throughout.
+ *  Trouble while writing is told by close(), which throws std::runtime_error. */
+class NpzFile {
+public:
+    /** Throws ConfigError when the file cannot be created. */
+    explicit NpzFile(const std::filesystem::path& path);
+
+    /** Starts an array in C order, whose elements follow by append(). */
+    void begin(const std::string& name, const std::string& type, const std::vector<size_t>& shape);
+    void append(const void* data, size_t size);
+    void end();
+    template <class T>
+    void array(const std::string& name, const std::vector<size_t>& shape, const std::vector<T>& values) {
+        begin(name, numpyType<T>(), shape);
+        append(values.data(), values.size() * sizeof(T));
+        end();
+    }
+    void close();
+
+private:
+    struct Entry {
+        std::string name;
+        uint64_t position = 0;  ///< Of its local header in the file [B].
+        uint64_t size = 0;      ///< [B]
+        uint32_t crc = 0;
+    };
+
+    std::filesystem::path path_;
+    std::ofstream file_;
+    std::vector<Entry> entries_;
+};
+
+}  // namespace insonify::log

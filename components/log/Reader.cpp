@@ -1,0 +1,138 @@
+#include "components/log/Reader.hpp"
+
+#include <algorithm>
+
+#include "components/log/TypeNames.hpp"
+#include "components/log/mcap/Reader.hpp"
+#include "components/log/pocolog/Reader.hpp"
+
+namespace insonify::log {
+
+std::string Reader::diagnostic() const {
+    return gaps_.empty() ? "" : gaps_.front().what + " at byte " + std::to_string(gaps_.front().from);
+}
+
+const Stream* Reader::find(const std::string& name) const {
+    const auto found = std::ranges::find(streams_, name, &Stream::name);
+    return found == streams_.end() ? nullptr : &*found;
+}
+
+size_t Reader::indexOf(const std::string& name) const {
+    if (const Stream* stream = find(name)) return static_cast<size_t>(stream - streams_.data());
+    std::string names;
+    for (const Stream& stream : streams_) names += (names.empty() ? "" : ", ") + stream.name;
+    throw types::ConfigError(path_, name, "there is no such stream; there are: " + (names.empty() ? "none" : names));
+}
+
+std::string Reader::metadatum(const std::string& key) const {
+    const auto has = [&](const Stream& stream) { return stream.metadata.contains(key); };
+    const auto found = std::ranges::find_if(streams_, has);
+    return found == streams_.end() ? "" : found->metadatum(key);
+}
+
+void Reader::readInto(const SampleRef& at, types::SampleRoom room) try {
+    decode(at, room);
+} catch (const types::ConfigError&) {
+    throw;
+} catch (const std::runtime_error& error) {
+    failSample(at, error.what());
+} catch (const std::logic_error& error) {
+    failSample(at, error.what());
+}
+
+types::SampleView Reader::sampleAt(const SampleRef& at) {
+    const std::optional<size_t> sample = streams_[at.stream].sample;
+    if (!sample) failSample(at, "is of a type that is not read");
+    if (!room_) room_ = std::make_unique<types::SampleTypes>();
+    const types::SampleRoom room = roomFor(*sample, *room_);
+    readInto(at, room);
+    return std::visit([](auto* held) { return types::SampleView(held); }, room);
+}
+
+void Reader::verify(const SampleRef& at) {
+    if (!streams_[at.stream].sample) return;
+    if (const char* diagnostic = diagnosticOf(sampleAt(at))) failSample(at, diagnostic);
+}
+
+void Reader::addSample(size_t number, types::Time received, types::Time time, uint64_t position) {
+    Stream& stream = streams_[number];
+    if (stream.count++ == 0) stream.first = time;
+    stream.last = time;
+    samples_.push_back({number, received, time, position, samples_.size()});
+}
+
+void Reader::failSample(const SampleRef& at, const std::string& what) const {
+    throw types::ConfigError(path_, streams_[at.stream].name,
+                             "the sample at byte " + std::to_string(at.position) + " " + what);
+}
+
+void Reader::failType(const SampleRef& at, size_t wanted) const {
+    const Stream& stream = streams_[at.stream];
+    std::string name;
+    types::forEachSampleType([&]<class T>(std::type_identity<T>) {
+        if (types::sampleIndex<T>() == wanted) name = typelibName<T>();
+    });
+    throw types::ConfigError(path_, stream.name, "holds " + stream.type + ", not " + name);
+}
+
+types::SampleRoom roomFor(size_t sample, types::SampleTypes& samples) {
+    types::SampleRoom room;
+    types::forEachSampleType([&]<class T>(std::type_identity<T>) {
+        if (types::sampleIndex<T>() == sample) room = &std::get<T>(samples);
+    });
+    return room;
+}
+
+const char* diagnosticOf(types::SampleView sample) {
+    return std::visit([](const auto* held) { return types::diagnosticOf(*held); }, sample);
+}
+
+bool isMcap(const std::filesystem::path& path) { return path.extension() == ".mcap"; }
+
+std::unique_ptr<Reader> openLog(const std::filesystem::path& path, AtDamage at_damage) {
+    if (isMcap(path)) return std::make_unique<mcap::Reader>(path, at_damage);
+    return std::make_unique<pocolog::Reader>(path, at_damage);
+}
+
+std::optional<std::filesystem::path> propertyLogOf(const Reader& log) {
+    const std::filesystem::path path = log.path().parent_path() / "properties.0.log";
+    if (path == log.path() || !std::filesystem::is_regular_file(path)) return {};
+    const auto properties = openLog(path);
+    const auto same = [&](const char* key) { return log.metadatum(key) == properties->metadatum(key); };
+    if (!same("insonify_deployment") || !same("insonify_seed")) return {};
+    return path;
+}
+
+namespace {
+
+template <class T>
+types::Sonar converted(Reader& log, const SampleRef& at) {
+    T sample;
+    log.read(at, sample);
+    try {
+        return toSonar(sample);
+    } catch (const std::logic_error& error) {
+        throw types::ConfigError(log.path(), log.streams()[at.stream].name, std::string("a sample ") + error.what());
+    }
+}
+
+}  // namespace
+
+bool holdsPings(const Stream& stream) {
+    return stream.holds<types::Sonar>() || stream.holds<types::SonarBeam>() || stream.holds<types::SonarScan>();
+}
+
+void readPing(Reader& log, const SampleRef& at, types::Sonar& ping) {
+    const Stream& stream = log.streams()[at.stream];
+    if (stream.holds<types::SonarBeam>())
+        ping = converted<types::SonarBeam>(log, at);
+    else if (stream.holds<types::SonarScan>())
+        ping = converted<types::SonarScan>(log, at);
+    else
+        log.read(at, ping);
+    if (!ping.wellShaped())
+        throw types::ConfigError(log.path(), stream.name, "a ping has other numbers of bins or bearings than it says");
+    ping.time = sampleTime(ping, at.time);
+}
+
+}  // namespace insonify::log

@@ -1,0 +1,64 @@
+#pragma once
+#include <filesystem>
+#include <memory>
+#include <string>
+
+#include "components/log/Reader.hpp"
+#include "components/log/Stream.hpp"
+#include "components/ros/Options.hpp"
+
+namespace insonify::log {
+
+/** A log of either format that is being written.
+ *
+ *      const auto log = createLog("harbour.0.log");
+ *      const size_t ping = log->addStream<types::Sonar>("sonar.ping");
+ *      log->write(ping, received, sample);
+ *
+ *  Samples gather in memory and go to the file with flush(), close(), or when some megabytes have come together. A
+ * write that fails throws std::runtime_error with the system's reason and leaves what was flushed before, whole; after
+ * it the writer takes nothing more, and kept() tells how much that is. For one thread. */
+class Writer {
+public:
+    virtual ~Writer() = default;
+
+    /** Declares a stream "task.port" of T and returns its number. Throws std::length_error for the 65537th stream. */
+    template <class T>
+    size_t addStream(const std::string& name, const Metadata& metadata = {}) {
+        return add(types::sampleIndex<T>(), name, metadata);
+    }
+    /** The same for the type at a place of types::SampleTypes. */
+    virtual size_t add(size_t sample, const std::string& name, const Metadata& metadata) = 0;
+    /** Adds a sample, received at this moment. Throws std::runtime_error for one that the format cannot hold. */
+    template <class T>
+    void write(size_t stream, types::Time received, const T& sample) {
+        put(stream, received, received, types::SampleView(&sample));
+    }
+    /** @param time when it was true, of one that bears no stamp. */
+    virtual void put(size_t stream, types::Time received, types::Time time, types::SampleView sample) = 0;
+
+    /** Declares a stream as another log does: with all that it declares there where both are of one format, else for
+     *  its samples' type. Throws ConfigError for a type that the format cannot hold. */
+    virtual size_t addLike(const Reader& log, size_t stream) = 0;
+    /** Adds a sample of such a stream: byte for byte where both logs are of one format, else what it says. */
+    virtual void copy(size_t stream, Reader& log, const SampleRef& at) = 0;
+
+    virtual void flush() = 0;  ///< Hands all samples to the system: they survive the end of this process.
+    virtual void close() = 0;  ///< Flushes, ends the file. Nothing may be written after it.
+    /** Closes and goes on in another file, with the same streams. Throws as createLog and close(). */
+    virtual void next(std::filesystem::path path) = 0;
+    virtual const std::filesystem::path& path() const = 0;
+    virtual uint64_t size() const = 0;  ///< Of the file, with what is not flushed [B].
+    virtual uint64_t kept() const = 0;  ///< Samples that were flushed, in all files [1].
+};
+
+/** How samples become messages in an MCAP file. The defaults lose nothing of what a ping holds in its bins. */
+struct McapConfig : ros::MessageOptions {
+    McapConfig() { dtype = ros::ImageType::Float32; }
+};
+
+/** Creates a log, or empties it; the format follows from the name, *.mcap or pocolog. Throws ConfigError when that
+ * cannot be done or another Writer, of this process or not, has it open. */
+std::unique_ptr<Writer> createLog(const std::filesystem::path& path, const McapConfig& mcap = {});
+
+}  // namespace insonify::log

@@ -1,0 +1,106 @@
+#pragma once
+#include <filesystem>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "components/log/Files.hpp"
+#include "components/log/mcap/Records.hpp"
+
+namespace insonify::log::mcap {
+
+/** What messages of a type look like. */
+struct Schema {
+    std::string name, encoding, text;
+    friend auto operator<=>(const Schema&, const Schema&) = default;
+};
+
+/** A stream of messages. */
+struct Channel {
+    uint16_t schema = 0;
+    std::string topic, encoding;
+    Texts metadata;
+};
+
+/** What one file holds. */
+struct FileSummary {
+    std::filesystem::path path;
+    uint64_t messages = 0;
+    uint64_t first_ns = 0, last_ns = 0;  ///< Earliest and latest log time [ns].
+    std::vector<uint64_t> counts;        ///< Of each channel, from the first on.
+};
+
+/** Writes an MCAP file of the profile "ros2": chunks that are not compressed, with checksums and indices.
+ *
+ *  Messages gather in memory and go to the file in chunks of four megabytes, or with flush(). A file that is cut off
+ *  anywhere keeps its whole chunks readable. A write that fails throws std::runtime_error with the system's reason and
+ *  leaves what was written before; after it the writer takes nothing more. For one thread. */
+class ChunkWriter {
+public:
+    /** Throws ConfigError as OutputFile. */
+    explicit ChunkWriter(std::filesystem::path path);
+    ~ChunkWriter();  ///< Closes; a failure at that point is not told.
+
+    /** Give the numbers by which they are named from then on, from 1 and from 0. Throw std::length_error for the
+     *  65536th. */
+    uint16_t addSchema(Schema schema);
+    uint16_t addChannel(Channel channel);
+    /** Adds a message; times since 1970 [ns]. Throws std::runtime_error when the file is closed. */
+    void write(uint16_t channel, uint64_t log_ns, uint64_t publish_ns, std::span<const char> bytes);
+    void addMetadata(const std::string& name, const Texts& texts);
+
+    void flush();  ///< Ends the chunk: its messages survive the end of this process.
+    void close();  ///< Flushes, writes the summary. Nothing may be written after it.
+    /** Closes and goes on in another file, with the same schemas, channels and metadata. */
+    void next(std::filesystem::path path);
+
+    const std::filesystem::path& path() const { return summary_.path; }
+    uint64_t size() const { return file_->size() + chunk_.size(); }  ///< With what is not flushed [B].
+    uint64_t kept() const { return kept_; }                          ///< Messages in all files [1].
+    const FileSummary& summary() const { return summary_; }          ///< Of the present file.
+    const std::vector<Schema>& schemas() const { return schemas_; }  ///< The first is number 1.
+    const std::vector<Channel>& channels() const { return channels_; }
+
+private:
+    struct IndexEntry {
+        uint64_t time_ns, offset;
+    };
+    struct ChunkIndex {
+        uint64_t first_ns, last_ns, start, length, size;  ///< Place, length and size of the records [B].
+        std::vector<std::pair<uint16_t, uint64_t>> indices;
+        uint64_t indices_length;
+    };
+    struct MetadataIndex {
+        uint64_t start, length;
+        std::string name;
+    };
+
+    bool isOpen() const { return file_ && file_->isOpen(); }
+    void open();
+    void openChunk();
+    void closeChunk(ChunkIndex& index);
+    void append(const std::vector<char>& bytes);
+    void putSchema(RecordWriter& out, size_t number) const;
+    void putChannel(RecordWriter& out, size_t number) const;
+    void putMetadata(const std::string& name, const Texts& texts);
+    void putStatistics(RecordWriter& out) const;
+    void putChunkIndex(RecordWriter& out, const ChunkIndex& index) const;
+    std::vector<char> summaryBytes() const;
+
+    std::optional<OutputFile> file_;
+    FileSummary summary_;
+    uint32_t crc_ = 0;  ///< Of all that is in the file.
+    uint64_t kept_ = 0;
+    std::vector<Schema> schemas_;
+    std::vector<Channel> channels_;
+    std::vector<std::pair<std::string, Texts>> metadata_;
+    std::vector<MetadataIndex> metadata_index_;
+    std::vector<ChunkIndex> chunks_;
+
+    std::vector<char> chunk_;  ///< Room for its header, then its records.
+    uint64_t chunk_first_ns_ = 0, chunk_last_ns_ = 0, chunk_messages_ = 0;
+    std::vector<std::vector<IndexEntry>> index_;  ///< Of the chunk's messages, for each channel.
+};
+
+}  // namespace insonify::log::mcap

@@ -1,0 +1,131 @@
+#include "components/log/mcap/Reader.hpp"
+
+#include <algorithm>
+
+#include "components/log/TypeNames.hpp"
+#include "components/ros/Cdr.hpp"
+#include "components/ros/Samples.hpp"
+
+namespace insonify::log::mcap {
+namespace {
+
+std::string valueOr(const Texts& texts, const char* key, const std::string& otherwise) {
+    const auto found = texts.find(key);
+    return found == texts.end() ? otherwise : found->second;
+}
+
+template <class E>
+void readEnum(const Texts& texts, const char* key, E& value) {
+    const auto& names = types::EnumNames<E>::names;
+    const auto found = std::ranges::find(names, valueOr(texts, key, ""));
+    if (found != std::end(names)) value = static_cast<E>(found - std::begin(names));
+}
+
+ros::MessageOptions optionsOf(const Texts& metadata) {
+    ros::MessageOptions options;
+    options.world_frame = ros::WorldFrame::Enu;
+    readEnum(metadata, "insonify_order", options.order);
+    readEnum(metadata, "insonify_frame", options.frame);
+    readEnum(metadata, "insonify_world_frame", options.world_frame);
+    return options;
+}
+
+std::string streamName(const Channel& channel) {
+    std::string name = channel.topic.substr(channel.topic.starts_with('/'));
+    std::ranges::replace(name, '/', '.');
+    return valueOr(channel.metadata, "insonify_stream", name);
+}
+
+types::Time timeOf(uint64_t ns) { return {static_cast<int64_t>(ns / 1000)}; }
+
+}  // namespace
+
+/** Reads messages of one channel as samples. */
+class Reader::Decoder {
+public:
+    virtual ~Decoder() = default;
+    /** Throws std::exception for what is no such message. */
+    virtual void decode(std::span<const char> bytes, types::SampleRoom room) = 0;
+};
+
+template <class T, class Message>
+class Reader::TypedDecoder final : public Decoder {
+public:
+    explicit TypedDecoder(const ros::MessageOptions& options) : options_(options) {}
+    void decode(std::span<const char> bytes, types::SampleRoom room) override {
+        ros::decode(bytes, message_);
+        ros::toSample(message_, options_, *std::get<T*>(room));
+    }
+
+private:
+    ros::MessageOptions options_;
+    Message message_;
+};
+
+Reader::Reader(const std::filesystem::path& path, AtDamage at_damage)
+    : log::Reader(path), file_(path), contents_(file_.contents(at_damage)) {
+    gaps_ = contents_.gaps;
+    std::map<uint16_t, size_t> numbers;
+    for (const auto& [number, channel] : contents_.channels) {
+        numbers[number] = streams_.size();
+        channels_.push_back(number);
+        addStream(channel, contents_);
+    }
+    for (const MessageRef& message : contents_.messages)
+        addSample(numbers.at(message.channel), timeOf(message.log_ns), timeOf(message.publish_ns), message.position);
+}
+
+Reader::~Reader() = default;
+
+void Reader::addStream(const Channel& channel, const Contents& contents) {
+    const auto schema = contents.schemas.find(channel.schema);
+    Stream& stream = streams_.emplace_back();
+    stream.name = streamName(channel);
+    stream.type = schema == contents.schemas.end() ? channel.encoding : schema->second.name;
+    for (const Contents::Metadata& metadata : contents.metadata)
+        if (metadata.name == "insonify" && metadata.channels_before < streams_.size()) stream.metadata = metadata.texts;
+    decoders_.push_back(decoderFor(stream, channel, schema == contents.schemas.end() ? "" : schema->second.name));
+}
+
+std::unique_ptr<Reader::Decoder> Reader::decoderFor(Stream& stream, const Channel& channel,
+                                                    const std::string& schema) const {
+    std::unique_ptr<Decoder> decoder;
+    const bool named = channel.metadata.contains("insonify_type");
+    const auto offer = [&]<class T, class Message>(std::type_identity<T>, std::type_identity<Message>) {
+        if (decoder || schema != Message::type_name) return;
+        if (named ? channel.metadata.at("insonify_type") != cxxName<T>() : ros::only_by_name<T>) return;
+        decoder = std::make_unique<TypedDecoder<T, Message>>(optionsOf(channel.metadata));
+        stream.type = typelibName<T>();
+        stream.sample = types::sampleIndex<T>();
+    };
+    if (channel.encoding != "cdr") return decoder;
+    types::forEachSampleType([&]<class T>(std::type_identity<T> sample) {
+        ros::forEachMessageOf<T>([&]<class Message>(std::type_identity<Message> message) {
+            if constexpr (ros::ReadFrom<T, Message>) offer(sample, message);
+        });
+    });
+    return decoder;
+}
+
+const Schema* Reader::schema(size_t stream) const {
+    const auto found = contents_.schemas.find(channel(stream).schema);
+    return found == contents_.schemas.end() ? nullptr : &found->second;
+}
+
+const std::string& Reader::layout(size_t stream) const {
+    static const std::string none;
+    return schema(stream) ? schema(stream)->text : none;
+}
+
+const Channel& Reader::channel(size_t stream) const { return contents_.channels.at(channels_[stream]); }
+
+std::span<const char> Reader::bytesOf(const SampleRef& at) try {
+    file_.read(message(at), bytes_);
+    return bytes_;
+} catch (const FormatError& error) {
+    failSample(at, error.what());
+}
+
+void Reader::decode(const SampleRef& at, types::SampleRoom room) { decoders_[at.stream]->decode(bytesOf(at), room); }
+
+}  // namespace insonify::log::mcap

@@ -1,0 +1,52 @@
+#pragma once
+#include <map>
+#include <memory>
+
+#include "components/log/Writer.hpp"
+#include "components/log/mcap/Bag.hpp"
+#include "components/log/mcap/ChunkWriter.hpp"
+#include "components/ros/Samples.hpp"
+
+namespace insonify::log::mcap {
+
+/** Writes samples into an MCAP file as ROS 2 messages, with metadata.yaml beside it for `ros2 bag`.
+ *
+ *  Stream "task.port" is topic /task/port. Metadata of the streams go into records named "insonify", each time they
+ *  change. Log time is when a sample was received, publish time when it was true. */
+class SampleWriter final : public log::Writer {
+public:
+    /** Throws as createLog, and ConfigError when the folder holds the metadata.yaml of another bag. */
+    SampleWriter(std::filesystem::path path, const McapConfig& config);
+    ~SampleWriter() override;  ///< Closes; a failure at that point is not told.
+
+    size_t add(size_t sample, const std::string& name, const Metadata& metadata) override;
+    /** Throws std::runtime_error for a sample that cannot be told as a message: a compressed picture, a time after
+     *  2038. */
+    void put(size_t stream, types::Time received, types::Time time, types::SampleView sample) override;
+    size_t addLike(const log::Reader& log, size_t stream) override;
+    void copy(size_t stream, log::Reader& log, const SampleRef& at) override;
+
+    void flush() override { out_.flush(); }
+    void close() override;
+    void next(std::filesystem::path path) override;
+
+    const std::filesystem::path& path() const override { return out_.path(); }
+    uint64_t size() const override { return out_.size(); }
+    uint64_t kept() const override { return out_.kept(); }
+
+private:
+    /** @param metadata of the stream. */
+    size_t declare(const Schema* schema, Channel channel, const Metadata& metadata);
+    [[noreturn]] void fail(size_t stream, const std::string& why) const;
+
+    McapConfig config_;
+    Bag bag_;
+    ChunkWriter out_;
+    bool closed_ = false;
+    std::map<Schema, uint16_t> schemas_;
+    Metadata metadata_;           ///< As last written.
+    ros::MessageTypes messages_;  ///< Room to convert into.
+    std::vector<char> bytes_;
+};
+
+}  // namespace insonify::log::mcap

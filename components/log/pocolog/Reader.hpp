@@ -1,0 +1,45 @@
+#pragma once
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "components/log/Reader.hpp"
+#include "components/log/pocolog/BlockFile.hpp"
+
+namespace insonify::log::pocolog {
+
+/** Reads a pocolog v2 file, ours or Rock's. Streams of a type that is not known are listed. */
+class Reader final : public log::Reader {
+public:
+    /** Throws ConfigError when it cannot be read or is no such file. */
+    explicit Reader(const std::filesystem::path& path, AtDamage at_damage = AtDamage::Stop);
+
+    uint64_t bytes() const override { return file_.size(); }
+    std::span<const char> bytesOf(const SampleRef& at) override;
+    const std::string& layout(size_t stream) const override { return registries_[stream]; }
+    /** Its metadata as written. */
+    const std::string& yaml(size_t stream) const { return yamls_[stream]; }
+    bool isCompressed(const SampleRef& at) const { return stored_[at.number].compressed; }
+
+private:
+    struct Stored {
+        uint32_t size;  ///< In the file [B].
+        bool compressed;
+    };
+
+    void decode(const SampleRef& at, types::SampleRoom room) override;
+
+    BlockFile file_;
+    std::vector<std::string> registries_, yamls_;
+    std::vector<Stored> stored_;  ///< Of each sample.
+    std::vector<char> buffer_, inflated_;
+};
+
+/** Place in types::SampleTypes of the type that typelib or Rock's C++ calls so; none: it is not known. */
+std::optional<size_t> sampleOf(const std::string& type);
+
+/** Fills a sample with its bytes as typelib marshals them. Throws FormatError for what is none. */
+void decode(std::span<const char> bytes, types::SampleRoom room);
+
+}  // namespace insonify::log::pocolog

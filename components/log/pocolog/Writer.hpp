@@ -1,0 +1,75 @@
+#pragma once
+#include <filesystem>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "components/log/Files.hpp"
+#include "components/log/Writer.hpp"
+#include "components/log/pocolog/Block.hpp"
+#include "components/log/pocolog/Index.hpp"
+
+namespace insonify::log::pocolog {
+
+/** Writes a pocolog v2 file that Rock's readers open, and its index at the end. Blocks go to the file whole, when a
+ *  megabyte has come together. Used again, its memory is not allocated again. */
+class Writer final : public log::Writer {
+public:
+    /** Creates the file, or empties it. Throws as createLog. */
+    explicit Writer(std::filesystem::path path);
+    ~Writer() override;  ///< Closes; a failure at that point is not told.
+    Writer(const Writer&) = delete;
+    Writer& operator=(const Writer&) = delete;
+
+    using log::Writer::write;
+    /** `metadata` joins what Rock's tools look for, and stands where both have a key. */
+    size_t add(size_t sample, const std::string& name, const Metadata& metadata) override;
+    /** Declares a stream of a type that this program need not know. Throws as addStream(). */
+    size_t declare(const std::string& name, const std::string& type, const std::string& registry,
+                   const Metadata& metadata);
+    /** The same with metadata as they are written, in YAML. */
+    size_t declareRaw(const std::string& name, const std::string& type, const std::string& registry,
+                      const std::string& yaml);
+
+    /** Times before 1970 or after 2106 are moved to those years in the block's header, and one that runs backwards to
+     *  that of the stream's sample before it: readers search by them. The stamp in the sample is written as it is.
+     *  Throws std::length_error above 4 GiB. */
+    void put(size_t stream, types::Time received, types::Time time, types::SampleView sample) override;
+    /** The same for a sample that is bytes already. */
+    void write(size_t stream, types::Time received, types::Time time, std::span<const char> bytes);
+    size_t addLike(const log::Reader& log, size_t stream) override;
+    void copy(size_t stream, log::Reader& log, const SampleRef& at) override;
+
+    void flush() override;
+    void close() override;  ///< Writes the index, too.
+    void next(std::filesystem::path path) override;
+
+    const std::filesystem::path& path() const override { return path_; }
+    uint64_t size() const override { return flushed_ + buffer_.size(); }
+    uint64_t kept() const override { return taken_ - unflushed_; }
+
+private:
+    struct Written {
+        StreamIndex index;
+        size_t declaration = 0;                ///< Position within `declarations_` [B].
+        types::Time last_received, last_time;  ///< In this file or the one before.
+    };
+
+    static Metadata standardMetadata(const std::string& name, const std::string& cxx_type);
+    void open();
+    bool isOpen() const { return file_ && file_->isOpen(); }  ///< Not after a failure.
+    size_t beginSample();
+    void endSample(size_t stream, size_t start, types::Time received, types::Time time);
+    void append(const void* data, size_t size);
+
+    std::filesystem::path path_;
+    std::optional<OutputFile> file_;
+    std::vector<char> buffer_;  ///< Whole blocks that are not in the file yet.
+    uint64_t flushed_ = 0;      ///< Size of the file [B].
+    uint64_t taken_ = 0, unflushed_ = 0;
+    std::vector<char> declarations_;  ///< The blocks that declare all streams, for the next file.
+    std::vector<Written> streams_;
+};
+
+}  // namespace insonify::log::pocolog

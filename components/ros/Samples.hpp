@@ -1,0 +1,130 @@
+#pragma once
+// Which messages a sample can be, and back: MCAP files, DDS and the viewer's channels read it here.
+#include <tuple>
+#include <type_traits>
+
+#include "components/ros/FromSonar.hpp"
+#include "components/ros/Messages.hpp"
+#include "components/ros/Options.hpp"
+#include "components/ros/Pictures.hpp"
+#include "components/ros/Poses.hpp"
+#include "components/ros/Times.hpp"
+#include "components/ros/ToSonar.hpp"
+#include "types/Samples.hpp"
+
+namespace insonify::ros {
+
+/** `type`: the messages that a T can be, the first of them the one in logs; `read_as`: what that is read back as. */
+template <class T>
+struct MessagesOf;
+template <class T, class... Message>
+struct Messages {
+    using type = std::tuple<Message...>;
+    using read_as = T;
+};
+template <>
+struct MessagesOf<types::Sonar>
+    : Messages<types::Sonar, ProjectedSonarImage, RawSonarImage, SonarRanges, PointCloud2, LaserScan, Clock> {};
+/** Rock's older sonar samples are pings as messages. */
+template <>
+struct MessagesOf<types::SonarBeam> : MessagesOf<types::Sonar> {};
+template <>
+struct MessagesOf<types::SonarScan> : MessagesOf<types::Sonar> {};
+template <>
+struct MessagesOf<types::Pose> : Messages<types::Pose, Odometry, PoseStamped, Clock> {};
+template <>
+struct MessagesOf<types::Image> : Messages<types::Image, Image, Clock> {};
+template <>
+struct MessagesOf<types::Time> : Messages<types::Time, Time> {};
+template <>
+struct MessagesOf<types::Angle> : Messages<types::Angle, Float64> {};
+template <>
+struct MessagesOf<double> : Messages<double, Float64> {};
+template <>
+struct MessagesOf<float> : Messages<float, Float32> {};
+template <>
+struct MessagesOf<int32_t> : Messages<int32_t, Int32> {};
+template <>
+struct MessagesOf<int64_t> : Messages<int64_t, Int64> {};
+template <>
+struct MessagesOf<bool> : Messages<bool, Bool> {};
+template <>
+struct MessagesOf<std::string> : Messages<std::string, String> {};
+
+template <class T>
+using LoggedMessage = std::tuple_element_t<0, typename MessagesOf<T>::type>;
+
+/** Calls `use(std::type_identity<Message>{})` for each message that a T can be. */
+template <class T, class Use>
+void forEachMessageOf(Use&& use) {
+    [&]<class... Message>(std::type_identity<std::tuple<Message...>>) {
+        (use(std::type_identity<Message>{}), ...);
+    }(std::type_identity<typename MessagesOf<T>::type>{});
+}
+
+// A sample as a message. std::invalid_argument and std::out_of_range tell what the message cannot hold.
+
+template <class Message>
+auto toMessage(const types::Sonar& ping, const MessageOptions& options, Message& message)
+    -> decltype(convert(ping, options, message)) {
+    convert(ping, options, message);
+}
+template <class Beams, class Message>
+requires (std::is_same_v<Beams, types::SonarBeam> || std::is_same_v<Beams, types::SonarScan>) &&
+         requires(const types::Sonar& ping, const MessageOptions& options, Message& message) {
+             convert(ping, options, message);
+         }
+void toMessage(const Beams& beams, const MessageOptions& options,
+                                                    Message& message) {
+    toMessage(toSonar(beams), options, message);
+}
+template <class Message>
+auto toMessage(const types::Pose& pose, const MessageOptions& options, Message& message)
+    -> decltype(convert(pose, options.world_frame, message)) {
+    convert(pose, options.world_frame, message);
+}
+inline void toMessage(const types::Image& picture, const MessageOptions& options, Image& message) {
+    convert(picture, options.frame_id, message);
+}
+template <types::Stamped T>
+void toMessage(const T& sample, const MessageOptions&, Clock& message) {
+    message = toClock(sample.time);
+}
+inline void toMessage(types::Time time, const MessageOptions&, Time& message) { message = toRos(time); }
+inline void toMessage(types::Angle angle, const MessageOptions&, Float64& message) { message.data = angle.rad; }
+template <class T, class Message>
+auto toMessage(const T& value, const MessageOptions&, Message& message)
+    -> std::enable_if_t<std::is_same_v<T, decltype(message.data)>> {
+    message.data = value;
+}
+
+// And back, for messages that tell all of it. Throw std::invalid_argument for one that is no such sample.
+
+inline void toSample(const ProjectedSonarImage& message, const MessageOptions& options, types::Sonar& ping) {
+    convert(message, {options.order, options.frame}, ping);
+}
+template <class Message>
+auto toSample(const Message& message, const MessageOptions& options, types::Pose& pose)
+    -> decltype(convert(message, options.world_frame, pose)) {
+    convert(message, options.world_frame, pose);
+}
+inline void toSample(const Image& message, const MessageOptions&, types::Image& picture) { convert(message, picture); }
+inline void toSample(const Time& message, const MessageOptions&, types::Time& time) { time = fromRos(message); }
+inline void toSample(const Float64& message, const MessageOptions&, types::Angle& angle) { angle = {message.data}; }
+template <class T, class Message>
+auto toSample(const Message& message, const MessageOptions&, T& value)
+    -> std::enable_if_t<std::is_same_v<T, std::remove_cvref_t<decltype(message.data)>>> {
+    value = message.data;
+}
+
+/** Whether a T can be read from a message. */
+template <class T, class Message>
+concept ReadFrom = requires(const Message& message, const MessageOptions& options, T& sample) {
+    toSample(message, options, sample);
+};
+
+/** A message that says nothing of its kind is never taken for these: it is a plain number. */
+template <class T>
+constexpr bool only_by_name = std::is_same_v<T, types::Angle>;
+
+}  // namespace insonify::ros

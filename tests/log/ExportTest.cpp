@@ -1,0 +1,227 @@
+#include <gmock/gmock.h>
+
+#include "components/log/Export.hpp"
+#include "components/log/pocolog/Reader.hpp"
+#include "components/log/pocolog/Writer.hpp"
+#include "tests/support/Folder.hpp"
+#include "tests/support/Python.hpp"
+
+namespace insonify::log {
+namespace {
+
+types::Sonar ping(int64_t time, uint32_t beams, uint32_t bins) {
+    types::Sonar sample;
+    sample.time = {time};
+    sample.bin_duration = {67};
+    sample.speed_of_sound = 1480;
+    sample.beam_count = beams;
+    sample.bin_count = bins;
+    for (uint32_t beam = 0; beam < beams; ++beam) sample.bearings.push_back({0.5 - beam});
+    for (uint32_t i = 0; i < beams * bins; ++i) sample.bins.push_back(static_cast<float>(i) + 0.25f);
+    return sample;
+}
+
+types::Pose pose() {
+    types::Pose sample;
+    sample.time = {1'500'000};
+    sample.position = {1, 2, -3.5};
+    sample.orientation = {0.5, 0.5, -0.5, 0.5};
+    return sample;
+}
+
+std::string textOf(const std::filesystem::path& path) {
+    const std::vector<char> bytes = bytesOf(path);
+    return {bytes.begin(), bytes.end()};
+}
+
+/** What python prints, with numpy as `np` and the file as `x`. */
+std::string numpySays(const std::filesystem::path& file, const std::string& expression) {
+    return pythonSays("-c \"import numpy as np; x = np.load('" + file.string() + "'); print(" + expression + ")\"",
+                      file.parent_path() / "answer.txt");
+}
+
+bool numpyIsThere() { return std::system((python() + " -c 'import numpy' 2> /dev/null").c_str()) == 0; }
+
+TEST(ExportTest, NumpyReadsPings) {
+    if (!numpyIsThere()) GTEST_SKIP() << "python3-numpy is not installed: the npz files are not read";
+    Folder folder;
+    pocolog::Writer log(folder / "x.0.log");
+    const size_t stream = log.addStream<types::Sonar>("sonar.ping");
+    log.write(stream, {1}, ping(1'000'000, 2, 3));
+    log.write(stream, {2}, ping(1'500'000, 2, 3));
+    log.close();
+    pocolog::Reader reader(folder / "x.0.log");
+    EXPECT_THAT(exportNpz(reader, "sonar.ping", folder / "x.npz"), testing::ElementsAre(folder / "x.npz"));
+    EXPECT_EQ(numpySays(folder / "x.npz", "sorted(x.files)"),
+              "['bearings', 'bin_duration', 'bins', 'range_m', 'speed_of_sound', 'time']\n");
+    EXPECT_EQ(numpySays(folder / "x.npz", "x['bins'].shape, x['bins'].dtype, x['bins'][1, 1, 2]"),
+              "(2, 2, 3) float32 5.25\n");
+    EXPECT_EQ(numpySays(folder / "x.npz", "x['bearings'].tolist(), x['time'].tolist(), x['time'].dtype"),
+              "[[0.5, -0.5], [0.5, -0.5]] [1.0, 1.5] float64\n");
+    EXPECT_EQ(numpySays(folder / "x.npz", "x['bin_duration'][0] * 1e6, x['speed_of_sound'][1]"), "67.0 1480.0\n");
+}
+
+TEST(ExportTest, NumpyReadsPosesAndNumbers) {
+    if (!numpyIsThere()) GTEST_SKIP() << "python3-numpy is not installed: the npz files are not read";
+    Folder folder;
+    pocolog::Writer log(folder / "x.0.log");
+    log.write(log.addStream<types::Pose>("vehicle.pose"), {1}, pose());
+    log.write(log.addStream<int32_t>("t.state"), {2'000'000}, 5);
+    log.addStream<bool>("t.never");
+    log.close();
+    pocolog::Reader reader(folder / "x.0.log");
+    exportNpz(reader, "vehicle.pose", folder / "pose.npz");
+    exportNpz(reader, "t.state", folder / "state.npz");
+    exportNpz(reader, "t.never", folder / "never.npz");
+    EXPECT_EQ(numpySays(folder / "pose.npz", "x['time'], x['position'], x['orientation']"),
+              "[1.5] [[ 1.   2.  -3.5]] [[ 0.5  0.5 -0.5  0.5]]\n");
+    EXPECT_EQ(numpySays(folder / "state.npz", "x['time'], x['value'], x['value'].dtype"), "[2.] [5] int32\n");
+    EXPECT_EQ(numpySays(folder / "never.npz", "x['value'].shape"), "(0,)\n");
+}
+
+TEST(ExportTest, PingsOfAnotherShapeBeginANewFile) {
+    Folder folder;
+    pocolog::Writer log(folder / "x.0.log");
+    const size_t stream = log.addStream<types::Sonar>("sonar.ping");
+    log.write(stream, {1}, ping(1, 2, 3));
+    log.write(stream, {2}, ping(2, 2, 3));
+    log.write(stream, {3}, ping(3, 4, 3));
+    log.close();
+    pocolog::Reader reader(folder / "x.0.log");
+    EXPECT_THAT(exportNpz(reader, "sonar.ping", folder / "x.npz"),
+                testing::ElementsAre(folder / "x.0.npz", folder / "x.1.npz"));
+    if (!numpyIsThere()) GTEST_SKIP() << "python3-numpy is not installed: the npz files are not read";
+    EXPECT_EQ(numpySays(folder / "x.0.npz", "x['bins'].shape"), "(2, 2, 3)\n");
+    EXPECT_EQ(numpySays(folder / "x.1.npz", "x['bins'].shape"), "(1, 4, 3)\n");
+}
+
+TEST(ExportTest, CsvOfPingsHasALineForEachBin) {
+    Folder folder;
+    pocolog::Writer log(folder / "x.0.log");
+    log.write(log.addStream<types::Sonar>("sonar.ping"), {1}, ping(1'500'000, 2, 2));
+    log.close();
+    pocolog::Reader reader(folder / "x.0.log");
+    exportCsv(reader, "sonar.ping", folder / "x.csv");
+    EXPECT_EQ(textOf(folder / "x.csv"),
+              "time,beam,bearing,bin,value\n"
+              "1.500000,0,0.5,0,0.25\n"
+              "1.500000,0,0.5,1,1.25\n"
+              "1.500000,1,-0.5,0,2.25\n"
+              "1.500000,1,-0.5,1,3.25\n");
+}
+
+TEST(ExportTest, CsvOfPosesIsATrajectory) {
+    Folder folder;
+    pocolog::Writer log(folder / "x.0.log");
+    log.write(log.addStream<types::Pose>("vehicle.pose"), {1}, pose());
+    log.close();
+    pocolog::Reader reader(folder / "x.0.log");
+    exportCsv(reader, "vehicle.pose", folder / "x.csv");
+    EXPECT_EQ(textOf(folder / "x.csv"), "time,x,y,z,qw,qx,qy,qz\n1.500000,1,2,-3.5,0.5,0.5,-0.5,0.5\n");
+}
+
+TEST(ExportTest, CsvOfNumbersHasTimeAndValue) {
+    Folder folder;
+    pocolog::Writer log(folder / "x.0.log");
+    log.write(log.addStream<bool>("t.on"), {2'000'000}, true);
+    log.close();
+    pocolog::Reader reader(folder / "x.0.log");
+    exportCsv(reader, "t.on", folder / "x.csv");
+    EXPECT_EQ(textOf(folder / "x.csv"), "time,value\n2.000000,1\n");
+}
+
+types::SonarScan scan() {
+    types::SonarScan sample;
+    sample.time = {2'000'000};
+    sample.sampling_interval = 2e-4;
+    sample.speed_of_sound = 1500;
+    sample.number_of_beams = 2;
+    sample.number_of_bins = 1;
+    sample.data = {255, 51};
+    sample.start_bearing = {0.5};
+    sample.angular_resolution = {0.25};
+    return sample;
+}
+
+/** Two rows of two RGB pixels, a byte of padding after each row. */
+types::Image picture() {
+    types::Image sample;
+    sample.time = {2'000'000};
+    sample.size = {2, 2};
+    sample.pixel_size = 3;
+    sample.row_size = 7;
+    sample.frame_mode = types::ImageMode::Rgb;
+    sample.image = {1, 2, 3, 4, 5, 6, 99, 7, 8, 9, 10, 11, 12, 99};
+    return sample;
+}
+
+TEST(ExportTest, ScansAreExportedAsPingsWhoseBearingsFall) {
+    Folder folder;
+    pocolog::Writer log(folder / "x.0.log");
+    log.write(log.addStream<types::SonarScan>("micron.scan"), {1}, scan());
+    log.close();
+    pocolog::Reader reader(folder / "x.0.log");
+    exportCsv(reader, "micron.scan", folder / "x.csv");
+    EXPECT_EQ(textOf(folder / "x.csv"), "time,beam,bearing,bin,value\n2.000000,0,0.5,0,1\n2.000000,1,0.25,0,0.2\n");
+    if (!numpyIsThere()) GTEST_SKIP() << "python3-numpy is not installed: the npz files are not read";
+    exportNpz(reader, "micron.scan", folder / "x.npz");
+    EXPECT_EQ(numpySays(folder / "x.npz", "x['bins'].shape, x['bearings'].tolist(), x['bin_duration'] * 1e6"),
+              "(1, 2, 1) [[0.5, 0.25]] [100.]\n");
+}
+
+TEST(ExportTest, NumpyReadsPicturesTextsTimesAndAngles) {
+    if (!numpyIsThere()) GTEST_SKIP() << "python3-numpy is not installed: the npz files are not read";
+    Folder folder;
+    pocolog::Writer log(folder / "x.0.log");
+    log.write(log.addStream<types::Image>("fan.image"), {1}, picture());
+    log.write(log.addStream<std::string>("t.text"), {1}, std::string("abc"));
+    log.write(log.addStream<types::Time>("t.time"), {1}, types::Time{2'500'000});
+    log.write(log.addStream<types::Angle>("t.angle"), {1}, types::Angle{0.5});
+    log.close();
+    pocolog::Reader reader(folder / "x.0.log");
+    for (const std::string stream : {"fan.image", "t.text", "t.time", "t.angle"})
+        exportNpz(reader, stream, folder / (stream + ".npz"));
+    EXPECT_EQ(numpySays(folder / "fan.image.npz", "x['pixels'].tolist(), x['pixels'].dtype, x['time']"),
+              "[[[[1, 2, 3], [4, 5, 6]], [[7, 8, 9], [10, 11, 12]]]] uint8 [2.]\n");
+    EXPECT_EQ(numpySays(folder / "t.text.npz", "x['value']"), "[b'abc']\n");
+    EXPECT_EQ(numpySays(folder / "t.time.npz", "x['value']"), "[2.5]\n");
+    EXPECT_EQ(numpySays(folder / "t.angle.npz", "x['value']"), "[0.5]\n");
+}
+
+TEST(ExportTest, CsvOfTextsQuotesThem) {
+    Folder folder;
+    pocolog::Writer log(folder / "x.0.log");
+    log.write(log.addStream<std::string>("t.text"), {2'000'000}, std::string("say \"ping\",\ntwice"));
+    log.close();
+    pocolog::Reader reader(folder / "x.0.log");
+    exportCsv(reader, "t.text", folder / "x.csv");
+    EXPECT_EQ(textOf(folder / "x.csv"), "time,value\n2.000000,\"say \"\"ping\"\",\ntwice\"\n");
+}
+
+TEST(ExportTest, WhatCannotBeExportedIsNamed) {
+    Folder folder;
+    pocolog::Writer log(folder / "x.0.log");
+    types::Image compressed = picture();
+    compressed.image.resize(4);
+    log.write(log.addStream<types::Image>("fan.image"), {1}, compressed);
+    types::SonarScan torn = scan();
+    torn.data.pop_back();
+    log.write(log.addStream<types::SonarScan>("sonar.torn"), {1}, torn);
+    types::Sonar broken = ping(1, 2, 3);
+    broken.bins.pop_back();
+    log.write(log.addStream<types::Sonar>("sonar.broken"), {1}, broken);
+    log.write(log.addStream<types::Sonar>("sonar.ping"), {1}, ping(1, 2, 3));
+    log.close();
+    pocolog::Reader reader(folder / "x.0.log");
+    for (const auto& fails : {"fan.image", "sonar.broken", "sonar.torn", "no.such"}) {
+        EXPECT_THROW(exportNpz(reader, fails, folder / "x.npz"), types::ConfigError) << fails;
+        EXPECT_THROW(exportCsv(reader, fails, folder / "x.csv"), types::ConfigError) << fails;
+    }
+    EXPECT_THROW(exportNpz(reader, "sonar.ping", "/nonexistent/x.npz"), types::ConfigError);
+    EXPECT_THROW(exportCsv(reader, "sonar.ping", "/nonexistent/x.csv"), types::ConfigError);
+    EXPECT_THROW(exportNpz(reader, "sonar.ping", "/dev/full"), std::runtime_error);
+    EXPECT_THROW(exportCsv(reader, "sonar.ping", "/dev/full"), std::runtime_error);
+}
+
+}  // namespace
+}  // namespace insonify::log

@@ -1,0 +1,184 @@
+#include <gmock/gmock.h>
+
+#include <sstream>
+
+#include "components/log/mcap/SampleWriter.hpp"
+#include "tests/log/mcap/SmallFile.hpp"
+#include "types/Image.hpp"
+
+namespace insonify::log::mcap {
+namespace {
+
+template <class T>
+std::vector<T> samplesOf(log::Reader& log, const std::string& stream) {
+    std::vector<T> samples;
+    log.forEach<T>(stream, [&](const T& sample, const SampleRef&) { samples.push_back(sample); });
+    return samples;
+}
+
+void expectSame(const types::Sonar& a, const types::Sonar& b) {
+    EXPECT_EQ(a.time, b.time);
+    EXPECT_EQ(a.bin_duration, b.bin_duration);
+    EXPECT_EQ(a.speed_of_sound, b.speed_of_sound);
+    ASSERT_EQ(a.bins.size(), b.bins.size());
+    EXPECT_EQ(std::memcmp(a.bins.data(), b.bins.data(), a.bins.size() * sizeof(float)), 0);
+    for (size_t i = 0; i < a.bearings.size(); ++i) EXPECT_NEAR(a.bearings[i].rad, b.bearings[i].rad, 1e-15);
+    EXPECT_FLOAT_EQ(static_cast<float>(a.beam_width.rad), static_cast<float>(b.beam_width.rad));
+    EXPECT_EQ(a.beam_height.isUnknown(), b.beam_height.isUnknown());
+}
+
+TEST(SampleWriterTest, PingsAndPosesComeBackAsTheyWere) {
+    const Folder folder;
+    smallFile(folder / "x.0.mcap");
+    const auto log = openLog(folder / "x.0.mcap");
+    EXPECT_TRUE(log->complete()) << log->diagnostic();
+    ASSERT_EQ(log->streams().size(), 2u);
+    EXPECT_EQ(log->streams()[0].name, "sonar.ping");
+    EXPECT_EQ(log->streams()[1].type, "/base/samples/RigidBodyState_m");
+    EXPECT_EQ(log->streams()[0].metadata.at("insonify_deployment"), "tasks:\n  a: \"b\"\n");
+    ASSERT_EQ(log->samples().size(), 5u);
+    EXPECT_EQ(log->samples()[0].time.microseconds, 1);
+    EXPECT_EQ(log->samples()[0].received.microseconds, 10'000'001);
+    const auto pings = samplesOf<types::Sonar>(*log, "sonar.ping");
+    for (int64_t i = 1; i <= 3; ++i) expectSame(pings.at(static_cast<size_t>(i - 1)), smallPing(i));
+    const auto poses = samplesOf<types::Pose>(*log, "vehicle.pose");
+    EXPECT_EQ(poses.at(1).time.microseconds, 2);
+    EXPECT_EQ(poses[1].position, smallPose(2).position);
+    EXPECT_EQ(poses[1].orientation, smallPose(2).orientation);
+    EXPECT_EQ(poses[1].target_frame, "world");
+    EXPECT_TRUE(std::isnan(poses[1].velocity.x));
+}
+
+TEST(SampleWriterTest, OtherOrdersAndAxesAreReadAsTheyWereWritten) {
+    const Folder folder;
+    McapConfig config;
+    config.order = ros::ImageOrder::BeamMajor;
+    config.frame = ros::SensorFrame::XForward;
+    config.world_frame = ros::WorldFrame::Ned;
+    smallFile(folder / "x.mcap", config);
+    const auto log = openLog(folder / "x.mcap");
+    expectSame(samplesOf<types::Sonar>(*log, "sonar.ping").at(0), smallPing(1));
+    EXPECT_EQ(samplesOf<types::Pose>(*log, "vehicle.pose").at(0).orientation, smallPose(1).orientation);
+}
+
+TEST(SampleWriterTest, EveryTypeOfALogHasItsMessage) {
+    const Folder folder;
+    {
+        SampleWriter log(folder / "x.mcap", {});
+        const auto add = [&]<class T>(const std::string& name, const T& sample) {
+            log.write(log.addStream<T>(name, {}), {5}, sample);
+        };
+        add("a.double", 0.25);
+        add("a.float", 0.5f);
+        add("a.int", int32_t{-3});
+        add("a.long", int64_t{-4});
+        add("a.bool", true);
+        add("a.text", std::string("word"));
+        add("a.angle", types::Angle{0.75});
+        add("a.time", types::Time{1'500'000});
+        types::Image image;
+        image.time = {4};
+        image.size = {2, 1};
+        image.pixel_size = 3;
+        image.row_size = 6;
+        image.frame_mode = types::ImageMode::Bgr;
+        image.image = {1, 2, 3, 4, 5, 6};
+        add("a.image", image);
+        types::SonarBeam beam;
+        beam.time = {4};
+        beam.bearing = {0.1};
+        beam.sampling_interval = 1e-4;
+        beam.speed_of_sound = 1500;
+        beam.beam = {0, 255};
+        add("a.beam", beam);
+    }
+    const auto log = openLog(folder / "x.mcap");
+    EXPECT_EQ(samplesOf<double>(*log, "a.double"), std::vector{0.25});
+    EXPECT_EQ(samplesOf<float>(*log, "a.float"), std::vector{0.5f});
+    EXPECT_EQ(samplesOf<int32_t>(*log, "a.int"), std::vector{-3});
+    EXPECT_EQ(samplesOf<int64_t>(*log, "a.long"), std::vector{int64_t{-4}});
+    EXPECT_EQ(samplesOf<bool>(*log, "a.bool"), std::vector{true});
+    EXPECT_EQ(samplesOf<std::string>(*log, "a.text"), std::vector<std::string>{"word"});
+    EXPECT_EQ(samplesOf<types::Angle>(*log, "a.angle").at(0).rad, 0.75);
+    EXPECT_EQ(samplesOf<types::Time>(*log, "a.time").at(0).microseconds, 1'500'000);
+    EXPECT_EQ(samplesOf<types::Image>(*log, "a.image").at(0).image, (std::vector<uint8_t>{1, 2, 3, 4, 5, 6}));
+    EXPECT_EQ(samplesOf<types::Sonar>(*log, "a.beam").at(0).bins, (std::vector<float>{0, 1}));
+    EXPECT_FALSE(check(folder / "x.mcap").diagnostic);
+}
+
+TEST(SampleWriterTest, WhatNoMessageTellsIsAnError) {
+    const Folder folder;
+    SampleWriter log(folder / "x.mcap", {});
+    const size_t stream = log.addStream<types::Image>("fan.image", {});
+    types::Image jpeg;
+    jpeg.frame_mode = types::ImageMode{258};
+    try {
+        log.write(stream, {1}, jpeg);
+        FAIL();
+    } catch (const std::runtime_error& error) {
+        EXPECT_THAT(error.what(), testing::EndsWith("x.mcap: a sample of fan.image cannot be written as a message: a "
+                                                    "picture of mode 258 with 0 bytes a pixel is not known: mono8, "
+                                                    "mono16, rgb8 and bgr8 are"));
+    }
+}
+
+TEST(SampleWriterTest, ALogOfSeveralFilesIsOneBagAndEachFileStandsAlone) {
+    const Folder folder;
+    {
+        SampleWriter log(folder / "x.0.mcap", {});
+        const size_t ping = log.addStream<types::Sonar>("sonar.ping", {{"insonify_seed", "7"}});
+        log.write(ping, {1'000'001}, smallPing(1));
+        log.next(folder / "x.1.mcap");
+        log.write(ping, {3'000'000}, smallPing(2));
+        log.write(ping, {2'000'000}, smallPing(3));
+        EXPECT_EQ(log.kept(), 1u);
+    }
+    for (const auto& [file, count] : {std::pair{"x.0.mcap", 1u}, std::pair{"x.1.mcap", 2u}}) {
+        EXPECT_FALSE(check(folder / file).diagnostic) << file;
+        const auto log = openLog(folder / file);
+        EXPECT_EQ(log->samples().size(), count);
+        EXPECT_EQ(log->streams().at(0).metadata.at("insonify_seed"), "7");
+    }
+    const std::vector<char> bytes = bytesOf(folder / "metadata.yaml");
+    const std::string bag(bytes.begin(), bytes.end());
+    EXPECT_THAT(bag, testing::HasSubstr("    - \"x.0.mcap\"\n    - \"x.1.mcap\"\n"));
+    EXPECT_THAT(bag, testing::HasSubstr("  duration:\n    nanoseconds: 1999999000\n"));
+    EXPECT_THAT(bag, testing::HasSubstr("nanoseconds_since_epoch: 1000001000\n  message_count: 3\n"));
+    EXPECT_THAT(bag, testing::HasSubstr("name: \"/sonar/ping\"\n        type: marine_acoustic_msgs/msg/"));
+}
+
+TEST(SampleWriterTest, TheMetadataOfAnotherBagIsNotOverwritten) {
+    const Folder folder;
+    smallFile(folder / "x.0.mcap");
+    smallFile(folder / "x.0.mcap");  // the same again
+    try {
+        smallFile(folder / "y.0.mcap");
+        FAIL();
+    } catch (const types::ConfigError& error) {
+        EXPECT_THAT(error.what(), testing::HasSubstr("describes another bag, of \"x.0.mcap\"; give \"y.0.mcap\" a "
+                                                     "folder of its own, as in bag/y.0.mcap"));
+    }
+}
+
+TEST(SampleWriterTest, MoreThanAChunkComesBackWhole) {
+    const Folder folder;
+    const std::string text(1 << 20, 'x');
+    {
+        SampleWriter log(folder / "x.mcap", {});
+        const size_t stream = log.addStream<std::string>("a.text", {});
+        for (int64_t i = 0; i < 10; ++i) log.write(stream, {i}, text);
+        EXPECT_GT(log.kept(), 3u);
+    }
+    const auto log = openLog(folder / "x.mcap");
+    EXPECT_EQ(samplesOf<std::string>(*log, "a.text"), std::vector(10, text));
+    EXPECT_FALSE(check(folder / "x.mcap").diagnostic);
+}
+
+TEST(SampleWriterTest, AFullDiskIsTold) {
+    const Folder folder;
+    std::filesystem::create_symlink("/dev/full", folder / "x.mcap");
+    EXPECT_THROW(SampleWriter(folder / "x.mcap", {}), std::runtime_error);
+}
+
+}  // namespace
+}  // namespace insonify::log::mcap

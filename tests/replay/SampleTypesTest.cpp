@@ -1,0 +1,196 @@
+// Every type of types::SampleTypes, through a log of each format, from one to the other, through the exports and
+// replayed.
+#include <gmock/gmock.h>
+
+#include "components/log/Check.hpp"
+#include "components/log/Copy.hpp"
+#include "components/log/Export.hpp"
+#include "components/log/TypeNames.hpp"
+#include "components/log/pocolog/Wire.hpp"
+#include "components/replay/ReplayTask.hpp"
+#include "components/ros/Samples.hpp"
+#include "tests/support/Folder.hpp"
+#include "tests/support/Ports.hpp"
+
+namespace insonify::replay {
+namespace {
+
+using log::typelibName;
+
+types::Sonar made(std::type_identity<types::Sonar>) {
+    types::Sonar ping;
+    ping.time = {1'500'000};
+    ping.bin_duration = {400};
+    ping.bearings = {{0.5}, {0.0}};
+    ping.speed_of_sound = 1500;
+    ping.beam_width = {0.25};
+    ping.beam_height = {0.5};
+    ping.beam_count = 2;
+    ping.bin_count = 3;
+    ping.bins = {1, 0.5f, 0.25f, 0, 3, 4};
+    return ping;
+}
+types::SonarBeam made(std::type_identity<types::SonarBeam>) {
+    types::SonarBeam beam;
+    beam.time = {1'500'000};
+    beam.bearing = {0.5};
+    beam.sampling_interval = 1e-4;
+    beam.speed_of_sound = 1500;
+    beam.beamwidth_horizontal = 0.25f;
+    beam.beamwidth_vertical = 0.5f;
+    beam.beam = {0, 51, 255};
+    return beam;
+}
+types::SonarScan made(std::type_identity<types::SonarScan>) {
+    types::SonarScan scan;
+    scan.time = {1'500'000};
+    scan.number_of_beams = 1;
+    scan.number_of_bins = 3;
+    scan.data = {0, 51, 255};
+    scan.start_bearing = {0.5};
+    scan.angular_resolution = {0.25};
+    scan.sampling_interval = 1e-4;
+    scan.speed_of_sound = 1500;
+    scan.beamwidth_horizontal = {0.25};
+    scan.beamwidth_vertical = {0.5};
+    return scan;
+}
+types::Pose made(std::type_identity<types::Pose>) {
+    types::Pose pose;
+    pose.time = {1'500'000};
+    pose.source_frame = "body";
+    pose.target_frame = "world";
+    pose.position = {1, -2, 3};
+    pose.orientation = {0.5, -0.5, 0.5, 0.5};
+    return pose;
+}
+types::Image made(std::type_identity<types::Image>) {
+    types::Image picture;
+    picture.time = picture.received_time = {1'500'000};
+    picture.size = {2, 1};
+    picture.pixel_size = 3;
+    picture.row_size = 6;
+    picture.frame_mode = types::ImageMode::Bgr;
+    picture.frame_status = types::ImageStatus::Valid;
+    picture.image = {1, 2, 3, 4, 5, 6};
+    return picture;
+}
+types::Time made(std::type_identity<types::Time>) { return {1'234'567}; }
+types::Angle made(std::type_identity<types::Angle>) { return {0.75}; }
+std::string made(std::type_identity<std::string>) { return "a \"word\"\n"; }
+template <class T>
+requires std::is_arithmetic_v<T> T made(std::type_identity<T>) { return static_cast<T>(-3); }
+
+template <class T>
+std::vector<char> marshalled(const T& sample) {
+    std::vector<char> bytes;
+    log::pocolog::marshal(sample, bytes);
+    return bytes;
+}
+
+constexpr const char* stream = "task.port";
+
+/** The one sample of a log, which must be valid. */
+template <class T>
+T readOnly(const std::filesystem::path& path) {
+    const log::Verdict verdict = log::check(path);
+    EXPECT_FALSE(verdict.diagnostic) << verdict.diagnostic->message;
+    const auto log = log::openLog(path);
+    T sample{};
+    log->read(log->samples().at(0), sample);
+    EXPECT_EQ(log->samples()[0].received.microseconds, 2'000'000);
+    return sample;
+}
+
+/** What a task that replays the log writes. */
+template <class T>
+T replayed(const Folder& folder, const std::string& file) {
+    ReplayTask task("replay");
+    ReplayConfig config;
+    config.file = file;
+    task.config.set(config);
+    task.environment().input_folder = folder.path();
+    task.environment().lockstep = true;
+    task.environment().now = [] { return types::Time{3'000'000}; };
+    test::Reader<types::Carried<T>> reader;
+    EXPECT_TRUE(task.makeOutput(stream)->connectTo(reader.port, framework::ConnPolicy::buffer(2)));
+    EXPECT_TRUE(task.configure() && task.start());
+    task.update();
+    types::Carried<T> sample{};
+    EXPECT_TRUE(reader.port.readNew(sample));
+    return *types::carriedSample(sample);
+}
+
+template <class T>
+class SampleTypesTest : public testing::Test {
+protected:
+    /** What MCAP files give back: Rock's older sonar samples become pings. */
+    using Read = typename ros::MessagesOf<T>::read_as;
+    static Read asRead(const T& sample) {
+        if constexpr (std::is_same_v<T, Read>)
+            return sample;
+        else
+            return toSonar(sample);
+    }
+    void write(const std::string& file) const {
+        const auto log = log::createLog(folder / file);
+        log->write(log->template addStream<T>(stream), {2'000'000}, sample);
+        log->close();
+    }
+    const Folder folder;
+    const T sample = made(std::type_identity<T>{});
+};
+
+template <class Types>
+struct Listed;
+template <class... T>
+struct Listed<std::tuple<T...>> {
+    using type = testing::Types<T...>;
+};
+struct Names {
+    template <class T>
+    static std::string GetName(int) {
+        const std::string name = typelibName<T>();
+        return name.substr(name.rfind('/') + 1);
+    }
+};
+TYPED_TEST_SUITE(SampleTypesTest, Listed<types::SampleTypes>::type, Names);
+
+TYPED_TEST(SampleTypesTest, ComesBackFromPocologAndIsReplayedUnchanged) {
+    this->write("x.0.log");
+    EXPECT_EQ(marshalled(readOnly<TypeParam>(this->folder / "x.0.log")), marshalled(this->sample));
+    EXPECT_EQ(marshalled(replayed<TypeParam>(this->folder, "x.0.log")), marshalled(this->sample));
+}
+
+TYPED_TEST(SampleTypesTest, ComesBackFromMcapAndIsReplayedUnchanged) {
+    this->write("x.0.mcap");
+    const auto expected = marshalled(this->asRead(this->sample));
+    EXPECT_EQ(marshalled(readOnly<typename TestFixture::Read>(this->folder / "x.0.mcap")), expected);
+    EXPECT_EQ(marshalled(replayed<typename TestFixture::Read>(this->folder, "x.0.mcap")), expected);
+}
+
+TYPED_TEST(SampleTypesTest, IsCopiedFromEachFormatToTheOther) {
+    this->write("x.0.log");
+    const auto expected = marshalled(this->asRead(this->sample));
+    EXPECT_EQ(log::copyLog({this->folder / "x.0.log"}, this->folder / "y.0.mcap").samples, 1u);
+    EXPECT_EQ(marshalled(readOnly<typename TestFixture::Read>(this->folder / "y.0.mcap")), expected);
+    EXPECT_EQ(log::copyLog({this->folder / "y.0.mcap"}, this->folder / "z.0.log").samples, 1u);
+    EXPECT_EQ(marshalled(readOnly<typename TestFixture::Read>(this->folder / "z.0.log")), expected);
+}
+
+TYPED_TEST(SampleTypesTest, IsExportedTheSameFromEachFormat) {
+    for (const char* file : {"x.0.log", "x.0.mcap"}) this->write(file);
+    const auto exported = [&](const char* file, const std::string& to) {
+        const auto log = log::openLog(this->folder / file);
+        EXPECT_EQ(log::exportNpz(*log, stream, this->folder / (to + ".npz")).size(), 1u);
+        if (!std::is_same_v<TypeParam, types::Image>) log::exportCsv(*log, stream, this->folder / (to + ".csv"));
+    };
+    exported("x.0.log", "a");
+    exported("x.0.mcap", "b");
+    EXPECT_EQ(bytesOf(this->folder / "a.npz"), bytesOf(this->folder / "b.npz"));
+    if (std::is_same_v<TypeParam, types::Image>) return;
+    EXPECT_EQ(bytesOf(this->folder / "a.csv"), bytesOf(this->folder / "b.csv"));
+}
+
+}  // namespace
+}  // namespace insonify::replay

@@ -1,0 +1,139 @@
+#pragma once
+// Every type of sample that travels, is logged, exported, replayed, sent and shown, declared in this one place. A new
+// one takes a line in SampleTypes; components/log/README.md has the recipe.
+#include <array>
+#include <concepts>
+#include <memory>
+#include <string>
+#include <tuple>
+#include <type_traits>
+#include <variant>
+
+#include "types/Angle.hpp"
+#include "types/Image.hpp"
+#include "types/Pose.hpp"
+#include "types/Sonar.hpp"
+#include "types/SonarScan.hpp"
+
+namespace insonify::types {
+
+using SampleTypes = std::tuple<Sonar, SonarBeam, SonarScan, Pose, Image, Time, Angle, double, float, int32_t, int64_t,
+                               bool, std::string>;
+
+/** What travels on a port for a T: samples that say so (`shared`), by reference, the others as they are. */
+template <class T>
+concept Shared = requires {
+    requires T::shared;
+};
+template <class T>
+using Carried = std::conditional_t<Shared<T>, std::shared_ptr<const T>, T>;
+
+/** The sample itself, whichever way it travels; null when there is none. */
+template <class T>
+const T* carriedSample(const T& sample) {
+    return &sample;
+}
+template <class T>
+const T* carriedSample(const std::shared_ptr<const T>& sample) {
+    return sample.get();
+}
+
+template <class Types>
+struct Variants;
+template <class... T>
+struct Variants<std::tuple<T...>> {
+    using Carried = std::variant<types::Carried<T>...>;
+    using View = std::variant<const T*...>;
+    using Room = std::variant<T*...>;
+};
+/** Any sample: as it travels, to be read from, to be filled. Alternatives stand in the order of SampleTypes. */
+using AnySample = Variants<SampleTypes>::Carried;
+using SampleView = Variants<SampleTypes>::View;
+using SampleRoom = Variants<SampleTypes>::Room;
+
+/** Place of T in SampleTypes. */
+template <class T>
+constexpr size_t sampleIndex() {
+    return SampleView(std::in_place_type<const T*>, nullptr).index();
+}
+
+/** Calls `use(std::type_identity<T>{})` for each type of the list. */
+template <class Use>
+void forEachSampleType(Use&& use) {
+    [&]<class... T>(std::type_identity<std::tuple<T...>>) {
+        (use(std::type_identity<T>{}), ...);
+    }(std::type_identity<SampleTypes>{});
+}
+
+/** A sample of one number: numbers, truth values, times [s] and angles [rad]. */
+template <class T>
+concept Scalar = std::is_arithmetic_v<T> || std::is_same_v<T, Time> || std::is_same_v<T, Angle>;
+
+/** Its number, a truth value as 0 or 1. */
+template <Scalar T>
+auto numberOf(const T& value) {
+    if constexpr (std::is_same_v<T, Time>)
+        return value.seconds();
+    else if constexpr (std::is_same_v<T, Angle>)
+        return value.rad;
+    else if constexpr (std::is_same_v<T, bool>)
+        return static_cast<uint8_t>(value);
+    else
+        return value;
+}
+
+template <class T>
+concept Stamped = requires(const T& sample) {
+    { sample.time } -> std::convertible_to<Time>;
+};
+
+/** When the sample was true in the world; `otherwise` for one without a stamp or with a null one. */
+template <class T>
+Time sampleTime(const T& sample, Time otherwise) {
+    if constexpr (Stamped<T>)
+        return sample.time.isNull() ? otherwise : sample.time;
+    else
+        return otherwise;
+}
+
+/** Moves the stamps of a sample that are not null: `time`, and those that its `forEachStamp` tells. */
+template <class T>
+void moveStamps(T& sample, Time shift) {
+    const auto move = [shift](Time& time) {
+        if (!time.isNull()) time = time + shift;
+    };
+    if constexpr (Stamped<T>) move(sample.time);
+    if constexpr (requires { sample.forEachStamp(move); }) sample.forEachStamp(move);
+}
+
+/** What of a T goes into tables, beside its time: specialise with `forEach(sample, visit)`, which calls
+ *  `visit(array, columns, numbers)` for each array. */
+template <class T>
+struct Columns;
+template <>
+struct Columns<Pose> {
+    template <class Visit>
+    static void forEach(const Pose& pose, Visit&& visit) {
+        const auto& [p, q] = std::tie(pose.position, pose.orientation);
+        visit("position", std::array{"x", "y", "z"}, std::array{p.x, p.y, p.z});
+        visit("orientation", std::array{"qw", "qx", "qy", "qz"}, std::array{q.w, q.x, q.y, q.z});
+    }
+};
+struct AnyColumns {
+    void operator()(const char*, const auto&, const auto&) const {}
+};
+template <class T>
+concept Tabular = requires(const T& sample) {
+    Columns<T>::forEach(sample, AnyColumns{});
+};
+
+/** What of a sample contradicts itself, after "a sample"; null: nothing. Types tell it by `diagnostic()`. */
+template <class T>
+const char* diagnosticOf(const T& sample) {
+    if constexpr (requires { sample.diagnostic(); })
+        return sample.diagnostic();
+    else
+        return nullptr;
+}
+
+}  // namespace insonify::types
