@@ -69,7 +69,8 @@ TEST_F(SubscriberTaskTest, AMessageWakesTheTaskAtOnce) {
     meet(publishing, subscribing, somewhere(0));
     for (int i = 1; i <= 50; ++i) {
         publishing.send(somewhere(i));
-        const auto pose = subscribing.next();
+        auto pose = subscribing.next();
+        while (pose && pose->position.x == 0) pose = subscribing.next();  // of their meeting
         ASSERT_TRUE(pose);
         EXPECT_EQ(pose->position.x, i);
     }
