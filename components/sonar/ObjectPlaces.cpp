@@ -83,7 +83,9 @@ vec4 ObjectPlaces::extent(size_t index, const glm::dmat4& m, bool in_view) {
         farthest = std::max(farthest, glm::length(glm::dvec3(m * p)));
     }
     const size_t mesh = meshOf(index);
-    const double nearest = in_view ? nearestDistance(geometry_.meshes[mesh], longest_edges_[mesh], m, scratch_) : 0;
+    const double rounding = 1e-6 * farthest;  // of the floats that the nearest point is found in, at most
+    const double nearest =
+        in_view ? nearestDistance(geometry_.meshes[mesh], longest_edges_[mesh], m, scratch_) - rounding : 0;
     const double slack = 1e-5;  // of the float that carries it
     return vec4(nearest > 1e-6 ? (1 + slack) / nearest : 1e6, farthest > 0 ? (1 - slack) / farthest : 0, 0, 0);
 }

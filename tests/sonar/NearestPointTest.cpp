@@ -7,6 +7,7 @@
 
 #include "components/scene/Clusters.hpp"
 #include "components/sonar/NearestPoint.hpp"
+#include "components/sonar/ObjectPlaces.hpp"
 #include "components/sonar/SonarRenderer.hpp"
 #include "tests/sonar/ClusteredHarbour.hpp"
 #include "tests/support/Scenes.hpp"
@@ -111,6 +112,17 @@ TEST(NearestPointTest, OfVeryManyTrianglesAboutAsNearItIsALowerBound) {
     const double got = distance(ball, glm::translate(glm::dmat4(1), {0.01, 0, 0}));
     EXPECT_LE(got, 1.49 + 1e-5);
     EXPECT_GT(got, 1.2);
+}
+
+TEST(NearestPointTest, ALargeFloorIsNeverTakenToBeFartherThanItIs) {
+    const auto scene = test::sceneOf({test::ground(-1, 20'000)});
+    ObjectPlaces places(*scene, {}, true);
+    for (int i = 0; i < 300; ++i) {
+        const double above = 0.5 + 0.01 * i;
+        places.place(test::snapshotOf(scene, {7.3 * i, -3.1 * i, above - 1}, 0.02 * i, 0.003 * i, 0.001 * i));
+        EXPECT_GE(double{places.records()[0].extent.x}, 1 / above) << above << " m above";
+        EXPECT_LE(double{places.records()[0].extent.x}, 1 / (above - 0.03)) << above << " m above";
+    }
 }
 
 TEST(NearestPointTest, NoEchoComesFromBeforeAnObject) {
