@@ -9,6 +9,8 @@ namespace {
  *  that stand out. */
 constexpr double near_widths = 10;
 
+}  // namespace
+
 Beamformer beamformerOf(const RenderPlan& plan) {
     const Directivity& directivity = *plan.directivity;
     return {plan.beams,
@@ -17,8 +19,6 @@ Beamformer beamformerOf(const RenderPlan& plan) {
             {[&](double azimuth, double bearing) { return directivity.azimuth(azimuth, bearing); },
              near_widths * directivity.halfPowerAzimuth(), directivity.floor()}};
 }
-
-}  // namespace
 
 EchoGrid::EchoGrid(const RenderPlan& plan, int threads)
     : bin_count_(static_cast<size_t>(plan.grid.bin_count)), beam_count_(plan.beams.size()) {

@@ -48,6 +48,8 @@ public:
 
     /** The sonar to render, as configured. */
     virtual SonarConfig sonarConfig() const = 0;
+    /** The same, its files found from where the deployment is. */
+    SonarConfig locatedConfig() const;
 
 protected:
     /** Last changes to a snapshot with a valid pose before it is rendered; a reason refuses it. */
@@ -66,8 +68,6 @@ protected:
     void cleanupHook() override { renderer_.reset(); }
 
 private:
-    /** sonarConfig() with its files relative to the deployment. */
-    SonarConfig locatedConfig() const;
     /** Time and place of a snapshot. */
     struct Mark {
         types::Time time;

@@ -1,0 +1,173 @@
+// insonify beam DEPLOYMENT
+#include <fmt/core.h>
+
+#include <cmath>
+#include <fstream>
+#include <memory>
+
+#include "components/deployer/Commands.hpp"
+#include "components/deployer/DeploymentFile.hpp"
+#include "components/deployer/Json.hpp"
+#include "components/deployer/Tasks.hpp"
+#include "components/framework/Deployment.hpp"
+#include "components/sonar/EchoGrid.hpp"
+#include "components/sonar/PingTask.hpp"
+#include "types/Angle.hpp"
+
+namespace insonify::deployer {
+namespace {
+
+using types::degrees, types::radians;
+
+/** Two-way levels along one axis, and what a data sheet tells of them. */
+struct Cut {
+    std::vector<double> angle_deg, level_db;
+    acoustics::CutShape shape;
+
+    void add(double angle, double power) {
+        if (!(power > 0)) return;
+        angle_deg.push_back(degrees(angle));
+        level_db.push_back(10 * std::log10(power));
+    }
+};
+
+/** Of a beam or an aperture that is a box. */
+Cut boxOf(double low, double high) {
+    Cut cut;
+    cut.add(low, 1);
+    cut.add(high, 1);
+    cut.shape = {high - low, (high - low) / 2, {}};
+    return cut;
+}
+
+/** Of the beam that looks most nearly ahead, at the azimuth cells, as they are weighed. */
+Cut azimuthCut(const sonar::RenderPlan& plan) {
+    const auto nearer = [](const sonar::Beam& a, const sonar::Beam& b) {
+        return std::abs(a.centre) < std::abs(b.centre);
+    };
+    const auto ahead = std::min_element(plan.beams.begin(), plan.beams.end(), nearer);
+    if (!plan.has(sonar::Pass::Beamform)) return boxOf(ahead->low - ahead->centre, ahead->high - ahead->centre);
+    const std::vector<double> weights =
+        sonar::beamformerOf(plan).weights(static_cast<size_t>(ahead - plan.beams.begin()));
+    Cut cut;
+    for (size_t c = 0; c < weights.size(); ++c) cut.add(plan.cells[c].centre - ahead->centre, weights[c]);
+    const double axis = plan.directivity->azimuth(ahead->centre, ahead->centre);
+    cut.shape = acoustics::shapeOf(
+        [&](double angle) { return plan.directivity->azimuth(ahead->centre + angle, ahead->centre) / axis; });
+    return cut;
+}
+
+/** By which the rows of samples are weighed. */
+Cut elevationCut(const sonar::RenderPlan& plan) {
+    const double half = radians(plan.sampled.beam_height_deg) / 2;
+    if (!plan.directivity || !plan.directivity->hasElevation()) return boxOf(-half, half);
+    constexpr int steps = 2000;
+    Cut cut;
+    for (int i = 0; i <= steps; ++i) {
+        const double angle = half * (2.0 * i / steps - 1);
+        cut.add(angle, plan.directivity->elevation(angle));
+    }
+    const double axis = plan.directivity->elevation(0);
+    cut.shape = acoustics::shapeOf([&](double angle) { return plan.directivity->elevation(angle) / axis; });
+    return cut;
+}
+
+Json toJson(const Cut& cut) {
+    const auto orNull = [](const std::optional<double>& value) { return value ? Json(*value) : Json(); };
+    Json first_null = cut.shape.first_null ? Json(degrees(*cut.shape.first_null)) : Json();
+    return {{"angle_deg", cut.angle_deg},
+            {"level_db", cut.level_db},
+            {"width_3db_deg", degrees(cut.shape.width_3db)},
+            {"first_null_deg", first_null},
+            {"peak_sidelobe_db", orNull(cut.shape.peak_sidelobe_db)}};
+}
+
+void printCut(const char* name, const Cut& cut) {
+    const auto shown = [](const std::optional<double>& value, const char* unit) {
+        return value ? fmt::format("{:.3f} {}", *value, unit) : std::string("none");
+    };
+    std::optional<double> first_null;
+    if (cut.shape.first_null) first_null = degrees(*cut.shape.first_null);
+    fmt::print("{}, two way: {:.3f} deg at -3 dB, first null {}, highest sidelobe {}\n", name,
+               degrees(cut.shape.width_3db), shown(first_null, "deg"), shown(cut.shape.peak_sidelobe_db, "dB"));
+}
+
+/** One cut as an SVG drawing of 720 x 300 from `top` on: angles to both sides, levels down to -80 dB. */
+std::string drawn(const char* name, const Cut& cut, int top) {
+    constexpr double left = 60, width = 640, height = 240, floor_db = -80;
+    const double reach = std::max(std::abs(cut.angle_deg.front()), std::abs(cut.angle_deg.back()));
+    std::string text =
+        fmt::format("<g transform=\"translate({},{})\" fill=\"none\" stroke=\"#bbb\">\n", left, top + 30);
+    for (int level = 0; level >= -80; level -= 20) {
+        const double y = height * level / floor_db;
+        text += fmt::format("<path d=\"M0 {0}H{1}\"/><text x=\"-8\" y=\"{2}\" text-anchor=\"end\">{3} dB</text>\n", y,
+                            width, y + 4, level);
+    }
+    for (int i = -4; i <= 4; ++i) {
+        const double x = width * (0.5 + i / 8.0);
+        text += fmt::format("<path d=\"M{0} 0V{1}\"/><text x=\"{0}\" y=\"{2}\" text-anchor=\"middle\">{3:.3g}</text>\n",
+                            x, height, height + 16, reach * i / 4.0);
+    }
+    text += "<path stroke=\"#06c\" d=\"";
+    for (size_t i = 0; i < cut.angle_deg.size(); ++i)
+        text += fmt::format("{}{:.2f} {:.2f}", i ? "L" : "M", width * (0.5 + cut.angle_deg[i] / reach / 2),
+                            height * std::max(cut.level_db[i], floor_db) / floor_db);
+    return text +
+           fmt::format("\"/><text x=\"{}\" y=\"-10\" text-anchor=\"middle\">{} [deg]</text></g>\n", width / 2, name);
+}
+
+void writeDrawing(const std::string& file, const Cut& azimuth, const Cut& elevation) {
+    std::ofstream out(file);
+    out << "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 720 620\">\n"
+           "<style>text{font:12px sans-serif;fill:#222;stroke:none}</style><rect width=\"720\" height=\"620\" "
+           "fill=\"#fff\"/>\n"
+        << drawn("azimuth", azimuth, 0) << drawn("elevation", elevation, 310) << "</svg>\n";
+    if (!out.flush()) throw types::ConfigError(file, "--to", "cannot be written");
+}
+
+struct BeamOptions {
+    std::string deployment, task, drawing;
+    bool json = false;
+};
+
+const sonar::PingTask& sonarOf(const framework::Deployment& deployment, const BeamOptions& options) {
+    std::string names;
+    for (const auto& task : deployment.tasks()) {
+        const auto* sonar = dynamic_cast<const sonar::PingTask*>(task.get());
+        if (sonar && (options.task.empty() || options.task == task->name())) return *sonar;
+        if (sonar) names += (names.empty() ? "" : ", ") + task->name();
+    }
+    const std::string has = names.empty() ? "there is none" : "may be " + names;
+    throw types::ConfigError(options.deployment, "--task", fmt::format("is {}, no sonar; {}", options.task, has));
+}
+
+int showBeam(const BeamOptions& options) {
+    framework::Registry registry = builtInTasks();
+    const std::string file = deploymentIn(options.deployment);
+    const framework::Deployment deployment(framework::DeploymentSpec::load(file), registry);
+    const sonar::RenderPlan plan =
+        sonar::makeRenderPlan(sonarOf(deployment, options).locatedConfig(), types::Geometry{});
+    const Cut azimuth = azimuthCut(plan), elevation = elevationCut(plan);
+    if (!options.drawing.empty()) writeDrawing(options.drawing, azimuth, elevation);
+    if (options.json) {
+        print(Json{{"azimuth", toJson(azimuth)}, {"elevation", toJson(elevation)}});
+    } else {
+        printCut("azimuth", azimuth);
+        printCut("elevation", elevation);
+    }
+    return 0;
+}
+
+}  // namespace
+
+void addBeamCommand(CLI::App& app, Action& action) {
+    const auto options = std::make_shared<BeamOptions>();
+    CLI::App* command = app.add_subcommand("beam", "Shows a sonar's beam, two way, as its echoes are weighed");
+    command->add_option("DEPLOYMENT", options->deployment, "a YAML file, or a folder with one deployment")->required();
+    command->add_option("--task", options->task, "the sonar; absent: the first");
+    auto* json = command->add_flag("--json", options->json, "for machines");
+    command->add_option("--to", options->drawing, "an SVG drawing of both cuts")->excludes(json);
+    command->callback([options, &action] { action = [options] { return showBeam(*options); }; });
+}
+
+}  // namespace insonify::deployer

@@ -1,0 +1,186 @@
+// Pings of sonars with beam patterns and pulses, against closed forms and the properties of apertures (ACOUSTICS.md 14,
+// 15).
+#include <gmock/gmock.h>
+
+#include <numbers>
+#include <numeric>
+
+#include "components/sonar/SonarRenderer.hpp"
+#include "tests/support/ClosedForms.hpp"
+#include "tests/support/Scenes.hpp"
+#include "types/Angle.hpp"
+
+namespace insonify::sonar {
+namespace {
+
+using acoustics::Weighting;
+using test::expectForm;
+using types::radians;
+
+types::Sonar pingOf(const SonarConfig& config, const types::Snapshot& snapshot) {
+    SonarRenderer renderer(config, snapshot.geometry);
+    types::Sonar ping;
+    renderer.render(snapshot, ping);
+    return ping;
+}
+
+acoustics::BeamLaw lawOf(Weighting weighting, double width_deg) {
+    acoustics::BeamLaw law;
+    law.weighting = weighting;
+    law.width_deg = width_deg;
+    return law;
+}
+
+SonarConfig sonarOf(double fov_deg, int beams, double bin, int bins) {
+    SonarConfig config;
+    config.speed_of_sound = 1000;  // bins of whole microseconds
+    config.range = bin * bins;
+    config.bin_count = bins;
+    config.beam_count = beams;
+    config.field_of_view_deg = fov_deg;
+    config.quality.rows = 512;
+    config.quality.columns_per_beam = 2;
+    return config;
+}
+
+/** The ways in which echoes are found and summed. */
+std::vector<SonarConfig> everyWay(const SonarConfig& config) {
+    std::vector<SonarConfig> all(3, config);
+    all[0].visibility = Visibility::Cpu;
+    all[1].visibility = all[2].visibility = Visibility::Gl;
+    all[1].deposit = Deposit::Cpu;
+    all[2].deposit = Deposit::Gpu;
+    for (SonarConfig& each : all) each.device = each.visibility == Visibility::Gl ? "software" : "";
+    return all;
+}
+
+/** A flat bottom under a level fan: of what comes from an elevation, a share. */
+test::Form weightedBottom(double height, double delta, const std::function<double(double)>& share) {
+    return [=](double r1, double r2) {
+        const auto density = [=](double r) {
+            return r > height ? height * height * delta * std::pow(r, -5) * share(-std::asin(height / r)) : 0.0;
+        };
+        return test::integral(r1, r2, density);
+    };
+}
+
+TEST(BeamPatternTest, ABottomIsHeardByThePatternInElevation) {
+    SonarConfig config = sonarOf(60, 16, 0.1, 300);
+    config.beam_pattern.emplace().transmit.elevation = lawOf(Weighting::Gaussian, 30);
+    config.beam_pattern->receive.elevation = lawOf(Weighting::Uniform, 40);
+    config.beam_pattern->floor_db = -40;
+    const acoustics::BeamPattern sent(*config.beam_pattern->transmit.elevation),
+        heard(*config.beam_pattern->receive.elevation);
+    const auto snapshot = test::snapshotOf(test::sceneOf({test::ground(-5)}));
+    const double delta = radians(60.0 / 16);
+    for (const SonarConfig& way : everyWay(config))
+        expectForm(pingOf(way, snapshot),
+                   weightedBottom(5, delta, [&](double e) { return sent.power(e) * heard.power(e); }),
+                   weightedBottom(5, delta, [&](double e) { return sent.power(e); }));
+}
+
+TEST(BeamPatternTest, ABottomIsHeardByThePatternsWholeWidthInAzimuth) {
+    SonarConfig config = sonarOf(60, 30, 0.1, 200);
+    config.beam_height_deg = 40;
+    config.beam_pattern.emplace().receive.azimuth = lawOf(Weighting::Hann, 3);
+    config.beam_pattern->floor_db = -90;
+    const acoustics::BeamPattern heard(*config.beam_pattern->receive.azimuth);
+    double delta = 0;
+    for (double azimuth = -std::numbers::pi / 2; azimuth < std::numbers::pi / 2; azimuth += 1e-5)
+        delta += 1e-5 * heard.power(azimuth);
+    const auto snapshot = test::snapshotOf(test::sceneOf({test::ground(-5)}));
+    for (const SonarConfig& way : everyWay(config))
+        expectForm(pingOf(way, snapshot), test::flatBottom(5, radians(20), delta),
+                   test::flatBottom(5, radians(20), radians(2)));
+}
+
+TEST(BeamPatternTest, APatternThatIsOneAllOverChangesNoBit) {
+    SonarConfig config = sonarOf(60, 16, 0.1, 300);
+    const auto snapshot = test::snapshotOf(test::sceneOf({test::ground(-5), test::wall(20)}), {}, 0.1, 0.2);
+    const types::Sonar plain = pingOf(config, snapshot);
+    acoustics::PulseConfig pulse;
+    pulse.duration_us = 200;  // a bin of 0.1 m at 1000 m/s
+    config.pulse = pulse;
+    EXPECT_EQ(pingOf(config, snapshot).bins, plain.bins);
+    config.pulse->duration_us = 600;
+    EXPECT_NE(pingOf(config, snapshot).bins, plain.bins);
+}
+
+/** What a fan of close beams hears of a small disc straight ahead. */
+struct Cut {
+    double width_deg, first_null_deg, sidelobe_db;
+};
+
+Cut cutOf(const acoustics::BeamLaw& law) {
+    SonarConfig config = sonarOf(24, 601, 0.5, 24);
+    config.beam_height_deg = 2;
+    config.quality.rows = 64;
+    config.beam_pattern.emplace().receive.azimuth = law;
+    const types::Sonar ping = pingOf(config, test::snapshotOf(test::sceneOf({test::disc(10.25f, 0.01f)}, -10)));
+    std::vector<double> level;
+    for (size_t beam = 0; beam < ping.beam_count; ++beam) {
+        const auto first = ping.bins.begin() + static_cast<long>(beam * ping.bin_count);
+        level.push_back(std::accumulate(first, first + ping.bin_count, 0.0));
+    }
+    const double step = 24.0 / 601, top = level[300];
+    size_t k = 300;
+    while (level[k] > 0.5 * top) ++k;
+    Cut cut{};
+    cut.width_deg = 2 * step * (static_cast<double>(k - 300) - (0.5 * top - level[k]) / (level[k - 1] - level[k]));
+    while (level[k + 1] < level[k]) ++k;
+    cut.first_null_deg = step * static_cast<double>(k - 300);
+    cut.sidelobe_db = 10 * std::log10(*std::max_element(level.begin() + static_cast<long>(k), level.end()) / top);
+    return cut;
+}
+
+TEST(BeamPatternTest, ATargetSweptAcrossABeamShowsTheTableOfWeightings) {
+    struct Row {
+        Weighting weighting;
+        double sidelobe_db;
+        int nbar;
+        double width, first_null, peak_db;  // in wavelengths per aperture, and below the axis
+    };
+    for (const Row& row :
+         {Row{Weighting::Uniform, 0, 0, 0.8859, 1.00, -13.26}, Row{Weighting::Cosine, 0, 0, 1.189, 1.50, -23.0},
+          Row{Weighting::Hann, 0, 0, 1.4406, 2.00, -31.5}, Row{Weighting::Hamming, 0, 0, 1.303, 2.00, -42.7},
+          Row{Weighting::Taylor, -25, 4, 1.057, 1.35, -25.4}, Row{Weighting::Taylor, -30, 4, 1.125, 1.51, -30.3},
+          Row{Weighting::Taylor, -35, 5, 1.188, 1.67, -35.2}}) {
+        acoustics::BeamLaw law = lawOf(row.weighting, 3);
+        if (row.nbar > 0) law.sidelobe_db = row.sidelobe_db, law.nbar = row.nbar;
+        const Cut cut = cutOf(law);
+        EXPECT_NEAR(cut.width_deg, 3, 0.03) << row.peak_db;
+        EXPECT_NEAR(cut.first_null_deg, 3 * row.first_null / row.width, 0.02 * 3 * row.first_null / row.width)
+            << row.peak_db;
+        EXPECT_NEAR(cut.sidelobe_db, row.peak_db, 0.3);
+    }
+}
+
+TEST(BeamPatternTest, AStrongTargetsSidelobesStandAsAnArcAcrossTheFan) {
+    SonarConfig config = sonarOf(90, 90, 0.2, 100);
+    config.beam_pattern.emplace().receive.azimuth = lawOf(Weighting::Uniform, 1);
+    const types::Sonar ping = pingOf(config, test::snapshotOf(test::sceneOf({test::disc(10.1f, 0.1f)})));
+    for (size_t beam = 0; beam < ping.beam_count; ++beam) {
+        const auto first = ping.bins.begin() + static_cast<long>(beam * ping.bin_count);
+        EXPECT_GT(first[50], 0) << beam;
+        EXPECT_EQ(first[40], 0) << beam;
+        EXPECT_EQ(first[60], 0) << beam;
+    }
+}
+
+TEST(BeamPatternTest, AChirpShowsAnEchoAsWideAsItsBandwidthSaysAndWhereItIs) {
+    SonarConfig config = sonarOf(10, 1, 0.01, 1200);
+    config.pulse.emplace().bandwidth_khz = 5;  // c / 2B = 0.1 m
+    const types::Sonar ping = pingOf(config, test::snapshotOf(test::sceneOf({test::disc(6.005f, 0.02f)})));
+    const auto top = std::max_element(ping.bins.begin(), ping.bins.end()) - ping.bins.begin();
+    EXPECT_NEAR((static_cast<double>(top) + 0.5) * 0.01, 6.005, 0.01);
+    long k = top;
+    while (ping.bins[static_cast<size_t>(k)] > 0.5f * ping.bins[static_cast<size_t>(top)]) ++k;
+    EXPECT_NEAR(2 * (static_cast<double>(k - top) - 0.5) * 0.01, 0.0886, 0.012);
+    float sidelobe = 0;
+    for (size_t j = static_cast<size_t>(top) + 10; j < ping.bins.size(); ++j)
+        sidelobe = std::max(sidelobe, ping.bins[j]);
+    EXPECT_NEAR(10 * std::log10(sidelobe / ping.bins[static_cast<size_t>(top)]), -13.3, 0.3);
+}
+
+}  // namespace
+}  // namespace insonify::sonar
