@@ -88,20 +88,20 @@ Side sideOf(const std::function<double(double)>& power) {
 
 }  // namespace
 
-void BeamLaw::check(types::Problems& problems) const {
+void BeamLaw::check(types::Diagnostics& diagnostics) const {
     const Weighting chosen = weightingOf(*this);
     const int given = (width_deg ? 1 : 0) + (aperture_m ? 1 : 0) + (file.empty() ? 0 : 1);
-    if (given == 0) problems.push_back({"", "has no width; give width_deg, aperture_m or file"});
-    if (given > 1) problems.push_back({"", "has several widths; give one of width_deg, aperture_m and file"});
+    if (given == 0) diagnostics.push_back({"", "has no width; give width_deg, aperture_m or file"});
+    if (given > 1) diagnostics.push_back({"", "has several widths; give one of width_deg, aperture_m and file"});
     if (!file.empty() && (weighting || sidelobe_db || nbar))
-        problems.push_back({"file", "stands beside a weighting; give one of the two"});
+        diagnostics.push_back({"file", "stands beside a weighting; give one of the two"});
     if (chosen == Weighting::Gaussian && aperture_m)
-        problems.push_back({"aperture_m", "is given for a gaussian, which has no edge; give width_deg"});
+        diagnostics.push_back({"aperture_m", "is given for a gaussian, which has no edge; give width_deg"});
     const bool has_depth = chosen == Weighting::Taylor || chosen == Weighting::Dolph;
-    if (sidelobe_db && !has_depth) problems.push_back({"sidelobe_db", "is given; only taylor and dolph take one"});
+    if (sidelobe_db && !has_depth) diagnostics.push_back({"sidelobe_db", "is given; only taylor and dolph take one"});
     if (sidelobe_db && std::abs(*sidelobe_db) < 13.3)
-        problems.push_back({"sidelobe_db", "is nearer to 0 than -13.3, which a uniform aperture has"});
-    if (nbar && chosen != Weighting::Taylor) problems.push_back({"nbar", "is given; only taylor takes it"});
+        diagnostics.push_back({"sidelobe_db", "is nearer to 0 than -13.3, which a uniform aperture has"});
+    if (nbar && chosen != Weighting::Taylor) diagnostics.push_back({"nbar", "is given; only taylor takes it"});
 }
 
 BeamPattern::BeamPattern(const BeamLaw& law, std::optional<double> wavelength) : taper_(taperOf(law, 64)) {

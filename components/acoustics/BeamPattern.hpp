@@ -30,7 +30,7 @@ struct BeamLaw {
         visit(Field{"nbar", "1", "of taylor: how many sidelobes are as high; else 4", 2, 100}, self.nbar);
         visit(Field{"file", "", "instead: CSV file with angle_deg,level_db"}, self.file);
     }
-    void check(types::Problems& problems) const;
+    void check(types::Diagnostics& diagnostics) const;
 };
 
 /** A power pattern about its axis, one way, 1 on the axis: ACOUSTICS.md 14.2. */

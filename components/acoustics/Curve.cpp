@@ -14,7 +14,7 @@
 namespace insonify::acoustics {
 namespace {
 
-constexpr size_t most_faults = 100;
+constexpr size_t max_faults = 100;
 
 std::string_view trimmed(std::string_view text) {
     const size_t first = text.find_first_not_of(" \t\r");
@@ -28,7 +28,7 @@ public:
 
     Curve read(std::string_view text) {
         if (text.starts_with("\xEF\xBB\xBF")) text.remove_prefix(3);
-        while (!text.empty() && faults_.size() < most_faults) {
+        while (!text.empty() && faults_.size() < max_faults) {
             const size_t end = std::min(text.find('\n'), text.size());
             ++line_number_;
             readLine(text.substr(0, end));
@@ -79,13 +79,13 @@ private:
     }
 
     void fault(int column, std::string path, std::string message) {
-        faults_.push_back({file_, line_number_, column, std::move(path), std::move(message)});
+        faults_.push_back({std::move(path), std::move(message), file_, line_number_, column});
     }
 
     std::string file_;
     Column columns_[2];
     Curve curve_;
-    std::vector<types::Diagnostic> faults_;
+    types::Diagnostics faults_;
     int line_number_ = 0;
     bool has_header_ = false;
 };

@@ -22,12 +22,12 @@ Weighting weightingOf(PulseWindow window) {
 
 }  // namespace
 
-void PulseConfig::check(types::Problems& problems) const {
+void PulseConfig::check(types::Diagnostics& diagnostics) const {
     if (bandwidth_khz && duration_us)
-        problems.push_back({"duration_us", "stands beside bandwidth_khz; give one of the two"});
+        diagnostics.push_back({"duration_us", "stands beside bandwidth_khz; give one of the two"});
     if (!bandwidth_khz && !duration_us)
-        problems.push_back({"", "has no value; give bandwidth_khz of a chirp, or duration_us of a tone"});
-    if (window && !bandwidth_khz) problems.push_back({"window", "is given without bandwidth_khz; a tone has none"});
+        diagnostics.push_back({"", "has no value; give bandwidth_khz of a chirp, or duration_us of a tone"});
+    if (window && !bandwidth_khz) diagnostics.push_back({"window", "is given without bandwidth_khz; a tone has none"});
 }
 
 Pulse::Pulse(const PulseConfig& config, double speed_of_sound) {

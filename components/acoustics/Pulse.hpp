@@ -22,7 +22,7 @@ struct PulseConfig {
               self.window);
         visit(Field{"duration_us", "us", "instead: of a tone", 0.1, 1e7}, self.duration_us);
     }
-    void check(types::Problems& problems) const;
+    void check(types::Diagnostics& diagnostics) const;
 };
 
 /** What one echo leaves in range, two way, as intensity: h(0) = 1, centred on the echo. ACOUSTICS.md 15. */

@@ -214,9 +214,9 @@ TEST_F(BeamPatternTest, FaultsOfATableHaveFileLineAndColumn) {
 
 TEST_F(BeamPatternTest, ALawHasOneWidthAndOnlyWhatItsWeightingTakes) {
     const auto faultsOf = [](const BeamLaw& law) {
-        types::Problems problems;
-        law.check(problems);
-        return problems;
+        types::Diagnostics diagnostics;
+        law.check(diagnostics);
+        return diagnostics;
     };
     EXPECT_EQ(faultsOf({}).size(), 1u);
     BeamLaw law;

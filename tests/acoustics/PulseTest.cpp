@@ -91,9 +91,9 @@ TEST(PulseTest, ExtentReachesAsFarAsTheFloorSays) {
 
 TEST(PulseTest, IsGivenByABandOrADuration) {
     const auto faultsOf = [](const PulseConfig& config) {
-        types::Problems problems;
-        config.check(problems);
-        return problems;
+        types::Diagnostics diagnostics;
+        config.check(diagnostics);
+        return diagnostics;
     };
     PulseConfig config;
     EXPECT_EQ(faultsOf(config).size(), 1u);
