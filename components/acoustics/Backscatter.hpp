@@ -16,7 +16,7 @@ struct Slopes {
 };
 
 /** Two terms for objects: Lambert's law, and the lobe of geometric optics about the normal [m^2 at 1 m for each m^2]:
- *  mu cos^2(theta) + |R|^2 sec^4(theta) / (4 pi s^2) exp(-tan^2(theta) / s^2). ACOUSTICS.md 16.2. */
+ *  mu cos^2(theta) + |R|^2 sec^4(theta) / (4 pi s^2) exp(-tan^2(theta) / s^2). ACOUSTICS.md 3.6. */
 double objectSection(double lambert_db, double reflection, double mean_square_slope, double cos_incidence);
 
 }  // namespace insonify::acoustics

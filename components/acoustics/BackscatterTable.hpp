@@ -8,7 +8,7 @@
 namespace insonify::acoustics {
 
 /** A law of backscatter as what an echo needs of it: sigma_b / cos(theta) over cos(theta), with straight lines between
- *  256 entries; nearer than 0.001 deg to grazing that of 0.001 deg. ACOUSTICS.md 16.4. */
+ *  256 entries; nearer than 0.001 deg to grazing that of 0.001 deg. ACOUSTICS.md 3.8. */
 class BackscatterTable {
 public:
     static constexpr int entries = 256;

@@ -45,7 +45,7 @@ double slopeOf(double alpha, double roughness, double wave_number) {
     return std::sqrt(square);
 }
 
-/** What the printed equations 36 to 40 lack against the report's own table 3, 3.6 dB: ACOUSTICS.md 16.1. */
+/** What the printed equations 36 to 40 lack against the report's own table 3, 3.6 dB: ACOUSTICS.md 3.5. */
 double kirchhoffLevel(double alpha) { return std::pow(2, 2 * (1 - alpha) / alpha); }
 
 }  // namespace

@@ -8,7 +8,7 @@ namespace insonify::acoustics {
 
 /** Backscattering cross section of a seabed after APL-UW TR 9407 (1994), section IV.C: its rough interface (Kirchhoff's
  *  approximation near the vertical, composite roughness below, or an empirical law where it is very rough) and its
- *  volume. 10 to 100 kHz; about 3 dB for sands that are known well, 10 dB for rock. ACOUSTICS.md 16.1. */
+ *  volume. 10 to 100 kHz; about 3 dB for sands that are known well, 10 dB for rock. ACOUSTICS.md 3.5. */
 class SeabedBackscatter {
 public:
     /** At a frequency [kHz], in water of a speed of sound [m/s]. */
@@ -17,7 +17,7 @@ public:
     /** sigma_b at a grazing angle [rad], m^2 at 1 m for each m^2; below 0.001 deg that of 0.001 deg [1]. */
     double crossSection(double grazing) const;
 
-    /** Its parts, of which crossSection() is the sum: 1 is `roughInterface`, 2 `volume` [1]. */
+    /** The two parts that crossSection() is the sum of [1]. */
     double roughInterface(double grazing) const;
     double volume(double grazing) const;
     /** What `roughInterface` is put together from [1]. */
