@@ -14,7 +14,7 @@
 namespace insonify::acoustics {
 namespace {
 
-constexpr size_t max_faults = 100;
+constexpr size_t max_diagnostics = 100;
 
 std::string_view trimmed(std::string_view text) {
     const size_t first = text.find_first_not_of(" \t\r");
@@ -28,17 +28,17 @@ public:
 
     Curve read(std::string_view text) {
         if (text.starts_with("\xEF\xBB\xBF")) text.remove_prefix(3);
-        while (!text.empty() && faults_.size() < max_faults) {
+        while (!text.empty() && diagnostics_.size() < max_diagnostics) {
             const size_t end = std::min(text.find('\n'), text.size());
             ++line_number_;
             readLine(text.substr(0, end));
             text.remove_prefix(std::min(end + 1, text.size()));
         }
         if (!has_header_)
-            fault(1, "", "is empty; it must start with the header " + header());
-        else if (curve_.x.size() < 2 && faults_.empty())
-            fault(1, "", fmt::format("has {} points; it needs at least two", curve_.x.size()));
-        if (!faults_.empty()) throw types::ConfigError(std::move(faults_));
+            report(1, "", "is empty; it must start with the header " + header());
+        else if (curve_.x.size() < 2 && diagnostics_.empty())
+            report(1, "", fmt::format("has {} points; it needs at least two", curve_.x.size()));
+        if (!diagnostics_.empty()) throw types::ConfigError(std::move(diagnostics_));
         return std::move(curve_);
     }
 
@@ -50,19 +50,19 @@ private:
         if (has_header_) return readPoint(line);
         has_header_ = true;
         if (trimmed(line) != header())
-            fault(1, "", fmt::format("is '{}'; the header must be {}", trimmed(line).substr(0, 80), header()));
+            report(1, "", fmt::format("is '{}'; the header must be {}", trimmed(line).substr(0, 80), header()));
     }
 
     void readPoint(std::string_view line) {
         const size_t comma = line.find(',');
         if (comma == line.npos || line.find(',', comma + 1) != line.npos)
-            return fault(1, "", fmt::format("is '{}'; a line has 2 fields", trimmed(line).substr(0, 80)));
+            return report(1, "", fmt::format("is '{}'; a line has 2 fields", trimmed(line).substr(0, 80)));
         double x = 0, y = 0;
         const bool has_x = readNumber(line.substr(0, comma), 1, columns_[0], x);
         const bool has_y = readNumber(line.substr(comma + 1), static_cast<int>(comma) + 2, columns_[1], y);
         if (!has_x || !has_y) return;
         if (!curve_.x.empty() && !(x > curve_.x.back()))
-            return fault(1, columns_[0].name, "is not above that of the line before; it must increase");
+            return report(1, columns_[0].name, "is not above that of the line before; it must increase");
         curve_.x.push_back(x);
         curve_.y.push_back(y);
     }
@@ -72,20 +72,20 @@ private:
         const auto [stop, code] = std::from_chars(text.data(), text.data() + text.size(), value);
         const bool is_number = code == std::errc() && stop == text.data() + text.size();
         if (is_number && value >= expected.min && value <= expected.max) return true;
-        fault(column, expected.name,
-              fmt::format("is '{}'; it must be a number from {:g} to {:g}", text.substr(0, 40), expected.min,
-                          expected.max));
+        report(column, expected.name,
+               fmt::format("is '{}'; it must be a number from {:g} to {:g}", text.substr(0, 40), expected.min,
+                           expected.max));
         return false;
     }
 
-    void fault(int column, std::string path, std::string message) {
-        faults_.push_back({std::move(path), std::move(message), file_, line_number_, column});
+    void report(int column, std::string path, std::string message) {
+        diagnostics_.push_back({std::move(path), std::move(message), file_, line_number_, column});
     }
 
     std::string file_;
     Column columns_[2];
     Curve curve_;
-    types::Diagnostics faults_;
+    types::Diagnostics diagnostics_;
     int line_number_ = 0;
     bool has_header_ = false;
 };

@@ -54,6 +54,8 @@ std::string boundedWords(const LeftOut& what, const BinGrid& grid) {
     if (what.effect == Effect::Refraction)
         return fmt::format("a gradient of {} 1/s bends by {:.2g} m at {:.4g} m < {:.2g} m", speed_gradient, what.value,
                            grid.range_max, what.bound);
+    if (what.effect == Effect::RangePointSpread)
+        return fmt::format("the pulse resolves {:.2g} m, under half a bin, {:.2g} m", what.value, what.bound);
     return fmt::format("beta dR/2 = {:.1e} < {:.0e}", what.value, what.bound);
 }
 
