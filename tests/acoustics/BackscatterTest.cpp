@@ -53,6 +53,33 @@ TEST(BackscatterTest, TheLobeGivesASphereItsTargetStrengthWhateverItsSlope) {
     }
 }
 
+/** Echo of an ellipsoid of semi-axes a, b, c, seen along a, whose surface scatters by a law of the cosine [m^2]. */
+template <class F>
+double ellipsoidSection(double a, double b, double c, const F& section) {
+    constexpr int rings = 4000, cells = 200;
+    double sum = 0;
+    for (int i = 0; i < rings; ++i)
+        for (int j = 0; j < cells; ++j) {
+            const double u = (i + 0.5) / rings * pi / 2, v = (j + 0.5) / cells * 2 * pi;
+            // The normal times the area of a cell of (a cos u, b sin u cos v, c sin u sin v).
+            const double x = b * c * std::sin(u) * std::cos(u), y = a * c * std::sin(u) * std::sin(u) * std::cos(v),
+                         z = a * b * std::sin(u) * std::sin(u) * std::sin(v);
+            const double area = std::sqrt(x * x + y * y + z * z);
+            sum += area * section(x / area);
+        }
+    return sum * (pi / 2 / rings) * (2 * pi / cells);
+}
+
+TEST(BackscatterTest, TheLobeGivesAnEllipsoidItsTargetStrength) {
+    const double slope = 0.05, heard = ellipsoidSection(2, 0.7, 0.4, [&](double cosine) {
+                                   return objectSection(-300, 1, slope * slope, cosine);
+                               });
+    const double urick = std::pow(0.7 * 0.4 / (2 * 2), 2);
+    EXPECT_NEAR(10 * std::log10(heard / urick), 0, 0.05);
+    // That of a sphere as large as it is long would be another.
+    EXPECT_GT(10 * std::log10(1 / urick), 20);
+}
+
 TEST(BackscatterTest, TheLobeOfASmoothPlateIsItsTargetStrengthAtNormalIncidence) {
     const double wavelength = 0.002, area = 0.04;
     const Slopes smooth{0, 0, wavelength, area};
