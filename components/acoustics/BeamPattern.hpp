@@ -33,7 +33,7 @@ struct BeamLaw {
     void check(types::Diagnostics& diagnostics) const;
 };
 
-/** A power pattern about its axis, one way, 1 on the axis: ACOUSTICS.md 14.2. */
+/** A power pattern about its axis, one way, 1 on the axis: ACOUSTICS.md 5.9. */
 class BeamPattern {
 public:
     /** `wavelength` [m] is asked for by an aperture.

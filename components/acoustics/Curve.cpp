@@ -85,7 +85,7 @@ private:
     std::string file_;
     Column columns_[2];
     Curve curve_;
-    std::vector<types::Diagnostic> diagnostics_;
+    types::Diagnostics diagnostics_;
     int line_number_ = 0;
     bool has_header_ = false;
 };

@@ -25,7 +25,7 @@ struct PulseConfig {
     void check(types::Diagnostics& diagnostics) const;
 };
 
-/** What one echo leaves in range, two way, as intensity: h(0) = 1, centred on the echo. ACOUSTICS.md 15. */
+/** What one echo leaves in range, two way, as intensity: h(0) = 1, centred on the echo. ACOUSTICS.md 5.10. */
 class Pulse {
 public:
     /** At a speed of sound [m/s]. */

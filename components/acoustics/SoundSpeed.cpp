@@ -54,7 +54,7 @@ double power(double x, int n) {
     return product;
 }
 
-/** Validity that a law states: degC, psu, m or the unit of its pressure. */
+/** Validity that a law states; a pressure as the depth that has it [m]. */
 struct Range {
     SoundSpeedLaw law;
     double celsius_min, celsius_max, psu_min, psu_max, depth_max;

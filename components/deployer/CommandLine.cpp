@@ -85,6 +85,7 @@ int runCommandLine(int argc, char** argv) {
     addSceneCommand(app, action);
     addBeamCommand(app, action);
     addWaterCommand(app, action);
+    addBackscatterCommand(app, action);
     addSchemaCommand(app, action);
     addLogCommand(app, action);
     addReplayCommand(app, action);

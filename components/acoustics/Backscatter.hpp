@@ -1,0 +1,22 @@
+#pragma once
+
+namespace insonify::acoustics {
+
+/** Lambert's law: mu cos^2(theta), mu = 10^(lambert_db / 10) [m^2 at 1 m for each m^2]. ACOUSTICS.md 3.1. */
+double lambertSection(double lambert_db, double cos_incidence);
+
+/** What makes the lobe of a surface as wide as it is: rms slopes [1], all of facets that are steeper than the wave. */
+struct Slopes {
+    double roughness = 0;                  ///< Of the micro-relief.
+    double mesh = 0;                       ///< From a facet of a mesh to the next.
+    double wavelength = 0, cell_area = 1;  ///< [m], [m^2]: a smooth cell of this area spreads as lambda^2 / (4 pi A).
+
+    /** s^2, of all three [1]. */
+    double meanSquare() const;
+};
+
+/** Two terms for objects: Lambert's law, and the lobe of geometric optics about the normal [m^2 at 1 m for each m^2]:
+ *  mu cos^2(theta) + |R|^2 sec^4(theta) / (4 pi s^2) exp(-tan^2(theta) / s^2). ACOUSTICS.md 3.6. */
+double objectSection(double lambert_db, double reflection, double mean_square_slope, double cos_incidence);
+
+}  // namespace insonify::acoustics

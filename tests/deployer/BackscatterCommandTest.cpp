@@ -1,0 +1,99 @@
+#include <gmock/gmock.h>
+
+#include <cmath>
+
+#include "tests/deployer/Command.hpp"
+
+using namespace insonify::deployer;
+using ::testing::AllOf;
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+
+namespace {
+
+json backscatterOf(std::vector<std::string> options) {
+    const TestFolder folder;
+    options.insert(options.begin(), "backscatter");
+    options.push_back("--json");
+    const Outcome outcome = callInsonify(folder, options);
+    EXPECT_EQ(outcome.code, 0) << outcome.err;
+    return json::parse(outcome.out);
+}
+
+TEST(BackscatterCommandTest, ASeabedHasTheStrengthsOfTheReport) {
+    const json sand = backscatterOf({"--sediment", "medium_sand", "--frequency-khz", "30", "--sound-speed", "1528",
+                                     "--grazing-deg", "10", "--grazing-deg", "90"});
+    EXPECT_EQ(sand["name"], "medium_sand");
+    EXPECT_EQ(sand["law"], "apl_uw_tr_9407");
+    EXPECT_NEAR(sand["parameters"]["density_ratio"], 1.845, 1e-3);
+    EXPECT_NEAR(sand["parameters"]["grain_size_phi"], 1.5, 1e-12);
+    EXPECT_THAT(sand["grazing_deg"], ElementsAre(10, 90));
+    EXPECT_NEAR(sand["strength_db"][0], -35.4, 0.6);  // APL-UW TR 9407, table 3
+    EXPECT_NEAR(sand["strength_db"][1], -3.1, 0.6);
+    EXPECT_THAT(sand["warnings"], IsEmpty());
+    const json grains = backscatterOf({"--grain-size-phi", "1.5", "--frequency-khz", "30", "--sound-speed", "1528",
+                                       "--grazing-deg", "10", "--grazing-deg", "90"});
+    EXPECT_EQ(grains["strength_db"], sand["strength_db"]);
+}
+
+TEST(BackscatterCommandTest, EveryNameOfASedimentHasAStrength) {
+    for (const char* name : {"rough_rock", "rock", "cobble", "sandy_gravel", "coarse_sand", "medium_sand", "fine_sand",
+                             "muddy_sand", "very_fine_sand", "coarse_silt", "sandy_silt", "silt", "medium_silt",
+                             "fine_silt", "very_fine_silt", "clay", "mackenzie"}) {
+        const json seabed = backscatterOf({"--sediment", name, "--frequency-khz", "100"});
+        EXPECT_EQ(seabed["strength_db"].size(), seabed["grazing_deg"].size()) << name;
+        EXPECT_GT(seabed["grazing_deg"].size(), 10u) << name;
+        for (const json& strength : seabed["strength_db"]) EXPECT_TRUE(strength.is_number()) << name;
+    }
+}
+
+TEST(BackscatterCommandTest, LambertAndMaterialsFollowTheCosine) {
+    const json lambert = backscatterOf({"--lambert-db", "-20", "--frequency-khz", "700", "--grazing-deg", "30"});
+    EXPECT_EQ(lambert["law"], "lambert");
+    EXPECT_NEAR(lambert["strength_db"][0], -26.02, 0.01);
+    const json steel = backscatterOf({"--material", "steel", "--frequency-khz", "700", "--grazing-deg", "90"});
+    EXPECT_EQ(steel["name"], "steel");
+    EXPECT_NEAR(steel["parameters"]["reflection"], 0.936, 1e-9);
+    EXPECT_NEAR(steel["strength_db"][0], -9.23 + 20 * std::log10(0.936), 1e-6);
+}
+
+TEST(BackscatterCommandTest, AboveAHundredKilohertzAWarningNamesTheRange) {
+    const json sand = backscatterOf({"--sediment", "fine_sand", "--frequency-khz", "750", "--grazing-deg", "0"});
+    ASSERT_EQ(sand["warnings"].size(), 1u);
+    EXPECT_THAT(sand["warnings"][0].get<std::string>(), HasSubstr("750 kHz (10 to 100)"));
+    EXPECT_TRUE(sand["strength_db"][0].is_number());
+    const json coarse = backscatterOf({"--grain-size-phi", "-5", "--frequency-khz", "50"});
+    EXPECT_THAT(coarse["warnings"][0].get<std::string>(), HasSubstr("-5 phi (-1 to 9)"));
+    const TestFolder folder;
+    EXPECT_THAT(callInsonify(folder, {"backscatter", "--sediment", "clay", "--frequency-khz", "750"}).out,
+                AllOf(HasSubstr("clay, by law apl_uw_tr_9407"), HasSubstr("grazing [deg]"),
+                      HasSubstr("warning: apl_uw_tr_9407 is extrapolated: 750 kHz (10 to 100)")));
+}
+
+TEST(BackscatterCommandTest, RefusesUnknownNamesAndWhatIsNoAngle) {
+    const TestFolder folder;
+    struct Case {
+        std::vector<std::string> options;
+        const char* words;
+    };
+    for (const Case& c :
+         {Case{{"--sediment", "medium_snad", "--frequency-khz", "50"}, "did you mean medium_sand?"},
+          Case{{"--material", "stel", "--frequency-khz", "50"}, "did you mean steel?"},
+          Case{{"--frequency-khz", "50"}, "names 0 scatterers"},
+          Case{{"--sediment", "clay", "--lambert-db", "-20", "--frequency-khz", "50"}, "names 2 scatterers"},
+          Case{{"--sediment", "clay"}, "--frequency-khz"},
+          Case{{"--sediment", "clay", "--frequency-khz", "nan"}, "--frequency-khz: is nan"},
+          Case{{"--sediment", "clay", "--frequency-khz", "0"}, "--frequency-khz: is 0"},
+          Case{{"--sediment", "clay", "--frequency-khz", "50", "--grazing-deg", "91"}, "--grazing-deg: is 91"},
+          Case{{"--sediment", "clay", "--frequency-khz", "50", "--sound-speed", "0"}, "--sound-speed: is 0"},
+          Case{{"--grain-size-phi", "inf", "--frequency-khz", "50"}, "--grain-size-phi: is inf"}}) {
+        std::vector<std::string> words{"backscatter"};
+        words.insert(words.end(), c.options.begin(), c.options.end());
+        const Outcome outcome = callInsonify(folder, words);
+        EXPECT_EQ(outcome.code, 2) << c.words;
+        EXPECT_THAT(outcome.err, HasSubstr(c.words));
+    }
+}
+
+}  // namespace
