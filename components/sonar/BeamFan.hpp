@@ -36,6 +36,9 @@ struct ViewFrustum {
 /** Rows or columns that an image may have: what every OpenGL 4.5 device can draw [1]. */
 constexpr int max_image_size = 16384;
 
+/** Elevation that an image may show [deg]. */
+constexpr double tallest_image_deg = 150;
+
 /** As few frusta of at most 60 deg as cover the beams (ACOUSTICS.md 5.3); cones reach wider than their bearing. One
  * with `published`. */
 std::vector<ViewFrustum> makeFrusta(const SonarConfig& config, const std::vector<Beam>& beams);

@@ -95,7 +95,9 @@ SonarConfig sampledConfig(const SonarConfig& config) {
     if (!config.beam_pattern) return config;
     const Directivity directivity(config);
     SonarConfig sampled = config;
-    if (directivity.hasElevation()) sampled.beam_height_deg = types::degrees(2 * directivity.elevationReach());
+    if (directivity.hasElevation())
+        sampled.beam_height_deg =
+            std::min(types::degrees(2 * directivity.elevationReach()), config.castsRays() ? 180 : tallest_image_deg);
     if (!directivity.hasAzimuth()) return sampled;
     const std::vector<Beam> beams = makeBeams(config);
     const auto [low, high] = directivity.azimuthSpan(beams);

@@ -14,7 +14,6 @@
 namespace insonify::sonar {
 namespace {
 
-constexpr double tallest_image_deg = 150;
 constexpr int64_t max_ray_columns = int64_t{1} << 22;
 constexpr int64_t max_bins = int64_t{1} << 24;  // sums of 16 bytes: 256 MiB
 

@@ -67,8 +67,8 @@ test::Form weightedBottom(double height, double delta, const std::function<doubl
 TEST(BeamPatternTest, ABottomIsHeardByThePatternInElevation) {
     SonarConfig config = sonarOf(60, 16, 0.1, 300);
     config.beam_pattern.emplace().transmit.elevation = lawOf(Weighting::Gaussian, 30);
-    config.beam_pattern->receive.elevation = lawOf(Weighting::Uniform, 40);
-    config.beam_pattern->floor_db = -40;
+    config.beam_pattern->receive.elevation = lawOf(Weighting::Gaussian, 40);
+    config.beam_pattern->floor_db = -80;
     const acoustics::BeamPattern sent(*config.beam_pattern->transmit.elevation),
         heard(*config.beam_pattern->receive.elevation);
     const auto snapshot = test::snapshotOf(test::sceneOf({test::ground(-5)}));
@@ -168,7 +168,9 @@ TEST(BeamPatternTest, AStrongTargetsSidelobesStandAsAnArcAcrossTheFan) {
 }
 
 TEST(BeamPatternTest, AChirpShowsAnEchoAsWideAsItsBandwidthSaysAndWhereItIs) {
-    SonarConfig config = sonarOf(10, 1, 0.01, 1200);
+    SonarConfig config = sonarOf(2, 1, 0.01, 1200);
+    config.beam_height_deg = 2;
+    config.quality.columns_per_beam = 64;
     config.pulse.emplace().bandwidth_khz = 5;  // c / 2B = 0.1 m
     const types::Sonar ping = pingOf(config, test::snapshotOf(test::sceneOf({test::disc(6.005f, 0.02f)})));
     const auto top = std::max_element(ping.bins.begin(), ping.bins.end()) - ping.bins.begin();

@@ -89,9 +89,24 @@ TEST(SonarConfigTest, ValuesOutOfBoundsAreRefused) {
 }
 
 TEST(SonarConfigTest, WhatIsNotBuiltYetSaysSo) {
-    for (const char* yaml : {"beam_pattern: {azimuth: {weighting: hann, width_deg: 1}}", "pulse: {bandwidth_khz: 20}",
-                             "volume: {}", "multipath: {}"})
+    for (const char* yaml : {"volume: {}", "multipath: {}"})
         EXPECT_THAT(faultsOf<SonarConfig>(yaml), ElementsAre(HasSubstr("not built yet"))) << yaml;
+}
+
+TEST(SonarConfigTest, BeamsAndPulsesNeedWhatTheyAreMadeOf) {
+    const auto fault = [](const char* yaml, const char* text) {
+        EXPECT_THAT(faultsOf<SonarConfig>(yaml), ElementsAre(HasSubstr(text))) << yaml;
+    };
+    fault("beam_pattern: {}", "beam_pattern: has no law");
+    fault("beam_pattern: {receive: {azimuth: {weighting: hann}}}", "receive.azimuth: has no width");
+    fault("beam_pattern: {receive: {azimuth: {aperture_m: 0.1}}}",
+          "beam_pattern.receive.azimuth.aperture_m: is given without frequency_khz");
+    fault("{model: cerqueira2017, beam_pattern: {receive: {azimuth: {width_deg: 1}}}}", "it belongs to physical");
+    fault("pulse: {}", "pulse: has no value");
+    fault("pulse: {bandwidth_khz: 20, duration_us: 20}", "give one of the two");
+    fault("{model: cerqueira2017, pulse: {bandwidth_khz: 20}}", "it belongs to physical");
+    EXPECT_THAT(faultsOf<SonarConfig>("{frequency_khz: 700, beam_pattern: {receive: {azimuth: {aperture_m: 0.1}}}}"),
+                testing::IsEmpty());
 }
 
 TEST(SonarConfigTest, WhatAReceiverDoesIsToldToBeThere) {
