@@ -7,6 +7,10 @@
 #include "components/sonar/Culler.hpp"
 #include "components/sonar/SurfaceScene.hpp"
 
+namespace insonify::gpu {
+class EglContext;
+}
+
 namespace insonify::sonar {
 
 /** Rows of the matrix from object axes to the image: u and v times depth over their extents, depth along the axis. */
