@@ -16,7 +16,8 @@ struct DepositSetup {
     std::vector<ViewFrustum> frusta;
     std::vector<ColumnShares> shares;  ///< One for each frustum.
     uint32_t beam_count = 0;
-    size_t slots = 1;  ///< Pings that may be under way.
+    size_t slots = 1;         ///< Pings that may be under way.
+    bool group_sums = false;  ///< On a device: work groups sum in memory of their own first.
 
     size_t sumCount() const { return beam_count * rules.sumCount(); }
 };

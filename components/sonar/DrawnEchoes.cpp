@@ -24,9 +24,8 @@ double nearPlane(const ViewFrustum& frustum) {
     return nearest_drawn / corner;
 }
 
-DepositSetup depositSetup(const RenderPlan& plan, const types::Geometry& geometry, size_t slots) {
+DepositSetup depositSetup(const RenderPlan& plan, const types::Geometry& geometry) {
     DepositSetup setup;
-    setup.slots = slots;
     setup.rules = makeEchoRules(plan, geometry);
     setup.frusta = plan.frusta;
     for (const ViewFrustum& frustum : plan.frusta) setup.shares.push_back(makeShares(plan.config, plan.beams, frustum));
@@ -50,7 +49,7 @@ public:
 
 private:
     bool depositsOnProcessor() const;
-    SurfacePass::Setup surfaceSetup(DrawOptions::CullOn cull_on) const;
+    SurfacePass::Setup surfaceSetup() const;
     void makeDeposit();
     /** Asks for the sums of what is drawn. */
     void take(size_t slot);
@@ -63,6 +62,7 @@ private:
     const RenderPlan& plan_;
     types::GeometryPtr geometry_;
     gpu::EglContext context_;
+    DrawOptions options_;
     size_t slots_;
     size_t begun_ = 0, ended_ = 0;  ///< Pings; ping n has slot n modulo slots_.
     std::string device_;
@@ -80,6 +80,7 @@ DrawnEchoes::DrawnEchoes(const RenderPlan& plan, types::GeometryPtr geometry, co
     : plan_(plan),
       geometry_(std::move(geometry)),
       context_(plan.config.device),
+      options_(options),
       slots_(options.ring > 0        ? options.ring
              : context_.isSoftware() ? 1
                                      : 3),
@@ -87,7 +88,7 @@ DrawnEchoes::DrawnEchoes(const RenderPlan& plan, types::GeometryPtr geometry, co
       levels_(plan.config, plan.grid),
       culler_(*geometry_, {nearest_drawn, reachOf(plan), plan.config.draw_all}),
       threads_(plan.config.threads),
-      surface_(context_, surfaceSetup(options.cull_on), culler_, threads_) {
+      surface_(context_, surfaceSetup(), culler_, threads_) {
     makeDeposit();
     context_.check();
 }
@@ -98,20 +99,24 @@ bool DrawnEchoes::depositsOnProcessor() const {
     return plan_.config.deposit == Deposit::Cpu || (plan_.config.deposit == Deposit::Auto && context_.isSoftware());
 }
 
-SurfacePass::Setup DrawnEchoes::surfaceSetup(DrawOptions::CullOn cull_on) const {
-    const bool on_device = cull_on == DrawOptions::CullOn::Auto ? !context_.isSoftware() && !depositsOnProcessor()
-                                                                : cull_on == DrawOptions::CullOn::Device;
+SurfacePass::Setup DrawnEchoes::surfaceSetup() const {
+    using CullOn = DrawOptions::CullOn;
+    const CullOn best = !context_.isSoftware() && !depositsOnProcessor() ? CullOn::Device : CullOn::Processor;
+    const CullOn chosen = options_.cull_on == CullOn::Auto ? best : options_.cull_on;
     return {.geometry = *geometry_,
             .frusta = plan_.frusta,
             .defines = plan_.features.defines(),
             .near_plane = nearPlane(plan_.frusta.front()),
             .empty_too = plan_.config.published,
             .slots = slots_,
-            .cull_on_device = on_device};
+            .cull_on_device = chosen == CullOn::Device};
 }
 
 void DrawnEchoes::makeDeposit() {
-    DepositSetup setup = depositSetup(plan_, *geometry_, slots_);
+    using SumIn = DrawOptions::SumIn;
+    DepositSetup setup = depositSetup(plan_, *geometry_);
+    setup.slots = slots_;
+    setup.group_sums = options_.sum_in == SumIn::Auto ? !context_.isSoftware() : options_.sum_in == SumIn::Groups;
     rules_ = setup.rules;
     if (depositsOnProcessor())
         deposit_ = std::make_unique<CpuDeposit>(std::move(setup), surface_, context_, threads_);
@@ -137,7 +142,7 @@ void DrawnEchoes::take(size_t slot) {
 void DrawnEchoes::fillBins(types::Sonar& ping) {
     const auto count = static_cast<size_t>(plan_.grid.bin_count);
     const double pixel = plan_.frusta.front().du() * plan_.frusta.front().dv();  // solid angle of a whole pixel [sr]
-    threads_.range([&](int part, int parts) {
+    threads_.run([&](int part, int parts) {
         for (auto beam = static_cast<size_t>(part); beam < plan_.beams.size(); beam += static_cast<size_t>(parts))
             levels_.fill(rules_, &sums_[beam * rules_.sumCount()], pixel, {&ping.bins[beam * count], count});
     });

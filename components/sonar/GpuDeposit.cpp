@@ -38,10 +38,14 @@ private:
     std::vector<gpu::ReadBack> sums_;  ///< Of each slot.
 };
 
+std::vector<std::string> definesOf(const DepositSetup& setup) {
+    std::vector<std::string> defines = setup.rules.features.defines();
+    if (setup.group_sums) defines.emplace_back("HAVE_GROUP_SUMS");
+    return defines;
+}
+
 GpuDeposit::GpuDeposit(const DepositSetup& setup, gpu::EglContext& context)
-    : setup_(setup),
-      context_(context),
-      program_(context.programs().compute("deposit.comp.glsl", setup.rules.features.defines())) {
+    : setup_(setup), context_(context), program_(context.programs().compute("deposit.comp.glsl", definesOf(setup))) {
     const auto at = [this](const char* name) { return glGetUniformLocation(program_.id(), name); };
     uniforms_ = {at("image_size"),     at("bin_count"), at("beam_stride"), at("bin_width"), at("attenuation"),
                  at("strength_scale"), at("slab_axis"), at("extent"),      at("pixel_size")};
