@@ -16,6 +16,13 @@ uniform uint bin_count, beam_stride;
 uniform double bin_width, attenuation, strength_scale;
 uniform dvec2 extent, pixel_size, frustum_axis;
 
+#ifdef HAVE_ELEVATION_PATTERN
+layout(std430, binding = ELEVATION_BINDING) readonly buffer Elevation { double elevation_powers[]; };
+uniform double elevation_reach;
+double elevationPower(uint i) { return elevation_powers[i]; }
+#include "elevation.glsl"
+#endif
+
 double binEdge(uint k) { return edges[k]; }
 
 #ifdef HAVE_CERQUEIRA2017
@@ -142,6 +149,9 @@ Seen seenAt(ivec2 pixel, dvec2 uv) {
     if (texel.z != 0u) cosine = double(uintBitsToFloat(texel.z));
 #endif
     seen.strength = strengthOf(command.material) * cosine;
+#ifdef HAVE_ELEVATION_PATTERN
+    seen.strength *= elevationWeight(uv.x, uv.y);
+#endif
     seen.reach = dvec2(objects[command.object].extent.xy);
     return seen;
 }

@@ -71,7 +71,11 @@ void CpuDeposit::waitForPictures(size_t slot) {
             picture.pixels = static_cast<const uint32_t*>(picture.words.wait());
 }
 
-Features CpuDeposit::compiled() const { return compiledForPictures(setup_.rules.features); }
+Features CpuDeposit::compiled() const {
+    Features all = compiledForPictures(setup_.rules.features);
+    if (!setup_.rules.elevation_powers.empty()) all.add(Feature::ElevationPattern);
+    return all;
+}
 
 void CpuDeposit::depositPart(size_t slot, size_t part) {
     const uint first = firstBeam(part), last = firstBeam(part + 1);
