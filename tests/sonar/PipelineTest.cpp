@@ -202,7 +202,8 @@ TEST(DeviceCullTest, WhereNothingIsInViewNothingIsHeard) {
     config.deposit = Deposit::Gpu;
     const auto behind = test::snapshotOf(test::sceneOf({test::sphere(1, 8)}, 0, {{-10, 0, 0}}));
     SonarRenderer renderer(config, behind.geometry, {.cull_on = CullOn::Device});
-    EXPECT_EQ(*std::ranges::max_element(rendered(renderer, behind).bins), 0);
+    const types::Sonar ping = rendered(renderer, behind);
+    EXPECT_EQ(*std::ranges::max_element(ping.bins), 0);
     EXPECT_FALSE(renderer.hasEchoes());
 }
 
