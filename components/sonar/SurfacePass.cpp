@@ -86,7 +86,7 @@ void SurfacePass::cull(size_t slot) {
 }
 
 void SurfacePass::draw(size_t slot) {
-    if (parts_.size() > 1) {  // the other contexts draw into what this one may still read of the last ping
+    if (parts_.size() > 1 && setup_.slots > 1) {  // other contexts draw into what this one may still read
         const auto alone = context_.transferring();
         gpu::Fence::here().wait();
     }
