@@ -19,7 +19,7 @@ public:
         return {&clips_, &normal_transforms_, &device_commands_, &draws_, groups_, {}};
     }
     std::span<const CommandRecord> commands(size_t, size_t) const override { return commands_; }
-    void end(size_t slot) override;
+    void ask(size_t slot) override;
     bool empty(size_t slot) const override;
     Shown shown(size_t slot) const override;
 
@@ -151,7 +151,7 @@ void DeviceLists::prepare(size_t slot, size_t frustum, const ViewFrustum& view) 
     glMemoryBarrier(GL_COMMAND_BARRIER_BIT | GL_VERTEX_ATTRIB_ARRAY_BARRIER_BIT | GL_SHADER_STORAGE_BARRIER_BIT);
 }
 
-void DeviceLists::end(size_t slot) {
+void DeviceLists::ask(size_t slot) {
     if (!std::exchange(begun_, false)) shown_.clear();  // no frustum was drawn
     asked_[slot].ask(shown_);
 }

@@ -79,8 +79,8 @@ public:
     virtual Draws draws(size_t slot, size_t frustum) const = 0;
     /** What the draws of a frustum are of, of the ping that was listed last. */
     virtual std::span<const CommandRecord> commands(size_t slot, size_t frustum) const = 0;
-    /** All frusta have been drawn. */
-    virtual void end(size_t) {}
+    /** Asks the device for what has been shown; all frusta are drawn. */
+    virtual void ask(size_t) {}
 
     /** Once the ping is collected and before its slot is used again. */
     virtual bool empty(size_t slot) const = 0;

@@ -140,6 +140,7 @@ void DrawnEchoes::take(size_t slot) {
     for (size_t i = 0; i < plan_.frusta.size(); ++i)
         if (surface_.draws(slot, i)) deposit_->take(slot, i, surface_);
     deposit_->ask(slot);
+    surface_.ask(slot);
     glFlush();  // or a device would begin when its sums are waited for
 }
 

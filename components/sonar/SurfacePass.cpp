@@ -106,7 +106,6 @@ void SurfacePass::drawPart(size_t slot, size_t part) {
         lists_->prepare(slot, frustum, setup_.frusta[frustum]);
         parts_[part].painter->draw(*pictures_[frustum], lists_->draws(slot, frustum));
     }
-    if (part == 0) lists_->end(slot);
 }
 
 void SurfacePass::bindResults(size_t slot, size_t frustum) const {

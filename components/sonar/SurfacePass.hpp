@@ -39,6 +39,9 @@ public:
      *  EglContext::transferring(); this one does that itself. */
     void draw(size_t slot);
 
+    /** Asks for what has been shown, once all is drawn. */
+    void ask(size_t slot) { lists_->ask(slot); }
+
     const VisibilityBuffer& picture(size_t frustum) const { return *pictures_[frustum]; }
     const SurfaceScene& scene() const { return scene_; }
     const DrawLists& lists() const { return *lists_; }
