@@ -25,24 +25,77 @@ double elevationPower(uint i) { return elevation_powers[i]; }
 
 double binEdge(uint k) { return edges[k]; }
 
-// The order of additions does not matter: words are integers, and every wrap of the low word carries once.
-void addFixed(uint cell, double amount) {
+#ifdef HAVE_CERQUEIRA2017
+const uint channels = 2u;
+#else
+const uint channels = 1u;
+#endif
+
+uint cellOf(uint beam, uint bin, uint channel) { return channels * (beam * beam_stride + bin) + channel; }
+
+// Low and high word of an amount in quanta.
+uvec2 quantaOf(double amount) {
     double quanta = floor(min(amount, 1048576.0) * 1099511627776.0 + 0.5);
     uint high = uint(quanta / 4294967296.0);
-    uint low = uint(quanta - double(high) * 4294967296.0);
-    uint before = atomicAdd(sums[cell].x, low);
-    high += uint(before + low < before);
+    return uvec2(uint(quanta - double(high) * 4294967296.0), high);
+}
+
+// The order of additions does not matter: words are integers, and every wrap of the low word carries once.
+void addToMemory(uint cell, uvec2 quanta) {
+    uint before = atomicAdd(sums[cell].x, quanta.x);
+    uint high = quanta.y + uint(before + quanta.x < before);
     if (high != 0u) atomicAdd(sums[cell].y, high);
 }
 
-void addToBin(uint beam, uint bin, double amount, double weight) {
-#ifdef HAVE_CERQUEIRA2017
-    uint cell = 2u * (beam * beam_stride + bin);
-    addFixed(cell + 1u, weight);
+#ifdef HAVE_GROUP_SUMS
+// The pixels of a group lie in few beams and, as a rule, in a narrow span of bins. What lies there is summed in the group's
+// own memory, and each of its sums is brought out once.
+const uint group_beams = 8u, group_bins = 32u, group_cells = group_beams * group_bins * channels;
+shared uint first_beam, first_bin;
+shared uint group_low[group_cells], group_high[group_cells];
+
+void add(uint beam, uint bin, uint channel, double amount) {
+    uvec2 quanta = quantaOf(amount);
+    uint row = beam - first_beam, column = bin - first_bin;  // of what comes before these, far beyond the span
+    if (row >= group_beams || column >= group_bins) {
+        addToMemory(cellOf(beam, bin, channel), quanta);
+        return;
+    }
+    uint cell = channels * (row * group_bins + column) + channel;
+    uint before = atomicAdd(group_low[cell], quanta.x);
+    uint high = quanta.y + uint(before + quanta.x < before);
+    if (high != 0u) atomicAdd(group_high[cell], high);
+}
+
+// Called by all of a group, each with the first beam and bin of its echo; bin_count: it has none.
+void beginGroup(uint beam, uint bin) {
+    for (uint i = gl_LocalInvocationIndex; i < group_cells; i += 64u) group_low[i] = group_high[i] = 0u;
+    if (gl_LocalInvocationIndex == 0u) first_beam = first_bin = 0xffffffffu;
+    barrier();
+    if (bin < bin_count) {
+        atomicMin(first_beam, beam);
+        atomicMin(first_bin, bin);
+    }
+    barrier();
+}
+
+void endGroup() {
+    barrier();
+    for (uint i = gl_LocalInvocationIndex; i < group_cells; i += 64u) {
+        uint beam = first_beam + i / (channels * group_bins), bin = first_bin + i / channels % group_bins;
+        uvec2 quanta = uvec2(group_low[i], group_high[i]);
+        if (quanta != uvec2(0u)) addToMemory(cellOf(beam, bin, i % channels), quanta);
+    }
+}
 #else
-    uint cell = beam * beam_stride + bin;
+void add(uint beam, uint bin, uint channel, double amount) { addToMemory(cellOf(beam, bin, channel), quantaOf(amount)); }
 #endif
-    addFixed(cell, amount);
+
+void addToBin(uint beam, uint bin, double amount, double weight) {
+    add(beam, bin, 0u, amount);
+#ifdef HAVE_CERQUEIRA2017
+    add(beam, bin, 1u, weight);
+#endif
 }
 
 #include "jitter.glsl"
@@ -74,41 +127,81 @@ double strengthOf(uint material) {
 #endif
 }
 
-void main() {
-    ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
-    if (any(greaterThanEqual(pixel, image_size))) return;
+// What a pixel shows: its triangle's plane, and strength and reach of that.
+struct Seen {
+    Surface surface;
+    double strength;
+    dvec2 reach;  // inverse ranges of the object [1/m]
+};
+
+Seen seenAt(ivec2 pixel, dvec2 uv) {
+    Seen seen = Seen(Surface(0.0, 0.0, 0.0, 0.0, 0.0, 0.0), 0.0, dvec2(0.0));
     uvec4 texel = texelFetch(picture, pixel, 0);
-    dvec2 uv = (dvec2(pixel) + 0.5) * pixel_size - extent;
-    Surface surface = Surface(0.0, 0.0, 0.0, 0.0, 0.0, 0.0);
-    double strength = 0.0;
-    dvec2 reach = dvec2(0.0);  // inverse ranges of the object
-    if (texel.x != 0u) {
-        CommandRecord command = commands[texel.x - 1u];
-        dvec2 ray = uv;
+    if (texel.x == 0u) return seen;
+    CommandRecord command = commands[texel.x - 1u];
+    dvec2 ray = uv;
 #ifdef HAVE_JITTER
-        ray += pixel_size * dvec2(jitter(pixel.x, pixel.y, 0u), jitter(pixel.x, pixel.y, 1u));
+    ray += pixel_size * dvec2(jitter(pixel.x, pixel.y, 0u), jitter(pixel.x, pixel.y, 1u));
 #endif
-        surface = surfaceOf(command, texel.y, ray);
-        double cosine = surface.cosine;
+    seen.surface = surfaceOf(command, texel.y, ray);
+    double cosine = seen.surface.cosine;
 #ifdef HAVE_NORMAL_MAP
-        if (texel.z != 0u) cosine = double(uintBitsToFloat(texel.z));
+    if (texel.z != 0u) cosine = double(uintBitsToFloat(texel.z));
 #endif
-        strength = strengthOf(command.material) * cosine;
+    seen.strength = strengthOf(command.material) * cosine;
 #ifdef HAVE_ELEVATION_PATTERN
-        strength *= elevationWeight(uv.x, uv.y);
+    seen.strength *= elevationWeight(uv.x, uv.y);
 #endif
-        reach = dvec2(objects[command.object].extent.xy);
-    }
-    double per_pixel = 1.0 / (pixel_size.x * pixel_size.y);
-    uint at = uint(pixel.x);
+    seen.reach = dvec2(objects[command.object].extent.xy);
+    return seen;
+}
+
+// Where in share_starts a pixel's shares begin and end.
+uint sharesOf(ivec2 pixel) {
 #ifdef HAVE_CONICAL
-    at += uint(pixel.y * image_size.x);  // the boundaries of beams bend from row to row
+    return uint(pixel.x + pixel.y * image_size.x);  // the boundaries of beams bend from row to row
+#else
+    return uint(pixel.x);
 #endif
+}
+
+void depositPixel(ivec2 pixel, dvec2 uv, Seen seen) {
+    double per_pixel = 1.0 / (pixel_size.x * pixel_size.y);
+    Surface surface = seen.surface;
+    uint at = sharesOf(pixel);
     for (uint i = share_starts[at]; i < share_starts[at + 1u]; ++i) {
         ShareRecord share = shares[i];
         Footprint cell = cellFootprint(uv.x, uv.y, share.middle, share.width, share.limit, share.shear, pixel_size.y,
-                                       surface.inverse_range, surface.slope_u, surface.slope_v, surface.nearest, reach.x, reach.y,
-                                       binEdge(0u), binEdge(bin_count), per_pixel);
-        depositCell(cell, share.beam, strength * surface.range);
+                                       surface.inverse_range, surface.slope_u, surface.slope_v, surface.nearest, seen.reach.x,
+                                       seen.reach.y, binEdge(0u), binEdge(bin_count), per_pixel);
+        depositCell(cell, share.beam, seen.strength * surface.range);
     }
+}
+
+#ifdef HAVE_GROUP_SUMS
+// The bin that a pixel's echo begins in, nearly; bin_count: there is none.
+uint firstBin(Surface surface) {
+    double depth = 0.5 * (abs(surface.slope_u) * pixel_size.x + abs(surface.slope_v) * pixel_size.y);
+    double near_end = min(surface.inverse_range + depth, surface.nearest);
+    return near_end > 0.0 ? uint(min(1.0 / (near_end * bin_width), double(bin_count))) : bin_count;
+}
+#endif
+
+void main() {
+    ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
+    bool inside = all(lessThan(pixel, image_size));
+#ifndef HAVE_GROUP_SUMS
+    if (!inside) return;
+#endif
+    dvec2 uv = (dvec2(pixel) + 0.5) * pixel_size - extent;
+    Seen seen = seenAt(min(pixel, image_size - 1), uv);
+#ifdef HAVE_GROUP_SUMS
+    uint at = sharesOf(min(pixel, image_size - 1)), share = share_starts[at];
+    bool heard = inside && share < share_starts[at + 1u];
+    beginGroup(heard ? shares[share].beam : 0u, heard ? firstBin(seen.surface) : bin_count);
+    if (inside) depositPixel(pixel, uv, seen);
+    endGroup();
+#else
+    depositPixel(pixel, uv, seen);
+#endif
 }

@@ -13,6 +13,20 @@
 // Steps of the table of an elevation pattern.
 #define ELEVATION_STEPS 4096
 
+// Of the culling of clusters, beside OBJECTS_BINDING.
+#define CLUSTERS_BINDING 1
+#define VIEWED_BINDING 2
+#define DRAWS_BINDING 3
+#define CLIPS_BINDING 4
+#define NORMAL_TRANSFORMS_BINDING 5
+#define SHOWN_BINDING 6
+
+// What a frustum has of an object; of one whose front is in view, clusters may be left out that turn their backs.
+#define NOT_IN_VIEW 0u
+#define IN_VIEW 1u
+#define FRONT_IN_VIEW 2u
+#define DRAWN_WHOLE 3u
+
 // One placing of a mesh, relative to the sonar: rows of the matrix from object to sonar axes, and of its inverse transpose.
 struct ObjectRecord {
     vec4 row_x, row_y, row_z;           // xyz: matrix row [1], w: translation [m]
@@ -43,4 +57,19 @@ struct ShareRecord {
     double limit;          // the aperture ends at v = +-limit there [1]
     double shear;          // u / (1 + u u) at the column's middle: curves of constant elevation lean by v * shear [1]
     uint beam, column;
+};
+
+// A run of triangles of one object that is drawn or culled as one; object axes.
+struct ClusterRecord {
+    vec4 centre, half_size;    // xyz: of its box [m]; centre.w: scale of the normal map [1]
+    vec4 cone_apex, cone_axis;  // xyz: of the cone from which only backs are seen [m, 1]; cone_axis.w: cosine of its side, 2: no such cone
+    uint object, index_count, first_index, first_vertex;  // among all meshes
+};
+
+// How a frustum sees an object.
+struct ViewedObject {
+    vec4 clip_x, clip_y, clip_w;           // rows of the matrix from object axes to the image: u, v, and depth along its axis
+    vec4 normal_x, normal_y, normal_z;     // xyz: rows of the matrix from object axes to the frustum's, for normals
+    vec4 tangent_x, tangent_y, tangent_z;  // the same for tangents
+    uint in_view, unused_x, unused_y, unused_z;
 };

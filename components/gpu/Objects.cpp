@@ -34,6 +34,12 @@ void Buffer::read(void* data, size_t bytes, size_t offset) const {
 
 void Buffer::clear() { glClearNamedBufferData(id(), GL_R32UI, GL_RED_INTEGER, GL_UNSIGNED_INT, nullptr); }
 
+void* Buffer::map(GLbitfield access) const {
+    void* bytes = glMapNamedBufferRange(id(), 0, static_cast<GLsizeiptr>(bytes_), access);
+    if (!bytes) throw GlError("this device shares no memory of " + std::to_string(bytes_) + " bytes");
+    return bytes;
+}
+
 Texture::Texture(GLenum format, int width, int height, bool mipmapped)
     : name_(created([](GLuint& id) { glCreateTextures(GL_TEXTURE_2D, 1, &id); }),
             [](GLuint id) { glDeleteTextures(1, &id); }) {

@@ -30,6 +30,9 @@ private:
     Delete destroy_ = nullptr;
 };
 
+/** How a buffer is made and mapped that processor and device see at the same time, as long as it lives. */
+constexpr GLbitfield mapped_for_good = GL_MAP_PERSISTENT_BIT | GL_MAP_COHERENT_BIT;
+
 /** Memory on the device. */
 class Buffer {
 public:
@@ -45,6 +48,8 @@ public:
     void write(const void* data, size_t bytes, size_t offset = 0);
     void read(void* data, size_t bytes, size_t offset = 0) const;
     void clear();  ///< All bytes zero.
+    /** All of it, seen by the processor; `access` as it was made with. Throws GlError when the device shares none. */
+    void* map(GLbitfield access) const;
     void bind(GLenum target) const { glBindBuffer(target, id()); }
     void bindBase(GLenum target, GLuint index) const { glBindBufferBase(target, index, id()); }
 

@@ -11,26 +11,27 @@ void Fence::wait() const {
     if (state == GL_WAIT_FAILED) throw GlError("the device did not end its work; was the context lost?");
 }
 
-ReadBack::ReadBack(size_t bytes) : bytes_(bytes) {
-    constexpr GLbitfield shared = GL_MAP_READ_BIT | GL_MAP_PERSISTENT_BIT | GL_MAP_COHERENT_BIT;
-    for (Place& place : places_) {
-        place.buffer = Buffer(bytes, nullptr, shared | GL_CLIENT_STORAGE_BIT);
-        place.mapped =
-            glMapNamedBufferRange(place.buffer.id(), 0, static_cast<GLsizeiptr>(place.buffer.bytes()), shared);
-        if (!place.mapped) throw GlError("this device shares no memory of " + std::to_string(bytes) + " bytes");
-    }
+ReadBack::ReadBack(size_t bytes)
+    : bytes_(bytes), buffer_(bytes, nullptr, GL_MAP_READ_BIT | mapped_for_good | GL_CLIENT_STORAGE_BIT) {
+    mapped_ = buffer_.map(GL_MAP_READ_BIT | mapped_for_good);
 }
 
 void ReadBack::ask(const Buffer& from) {
-    at_ = 1 - at_;
     glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT | GL_CLIENT_MAPPED_BUFFER_BARRIER_BIT);
-    glCopyNamedBufferSubData(from.id(), places_[at_].buffer.id(), 0, 0, static_cast<GLsizeiptr>(bytes_));
+    glCopyNamedBufferSubData(from.id(), buffer_.id(), 0, 0, static_cast<GLsizeiptr>(bytes_));
+    asked_ = Fence::here();
+}
+
+void ReadBack::ask(const Texture& from, GLenum format) {
+    buffer_.bind(GL_PIXEL_PACK_BUFFER);
+    glGetTextureImage(from.id(), 0, format, GL_UNSIGNED_INT, static_cast<GLsizei>(bytes_), nullptr);
+    glBindBuffer(GL_PIXEL_PACK_BUFFER, 0);
     asked_ = Fence::here();
 }
 
 const void* ReadBack::wait() const {
     asked_.wait();
-    return places_[at_].mapped;
+    return mapped_;
 }
 
 }  // namespace insonify::gpu

@@ -1,5 +1,4 @@
 #pragma once
-#include <array>
 #include <cstddef>
 
 #include "components/gpu/Objects.hpp"
@@ -32,24 +31,23 @@ private:
 };
 
 /** What comes back from the device, in memory that both see: a read is asked for like a draw, and nobody waits before
- *  the bytes are wanted. Two reads may be under way: what the last one gave stays while the next is on its way. */
+ *  the bytes are wanted. One read at a time; of several that are under way, each has a ReadBack of its own. */
 class ReadBack {
 public:
     ReadBack() = default;
     explicit ReadBack(size_t bytes);
+    size_t bytes() const { return bytes_; }
     /** Asks for the first bytes of `from`, once all that was asked for before is done. */
     void ask(const Buffer& from);
-    /** Waits for what was asked for last; valid until the next but one is asked for. */
+    /** The same of the picture in a texture, row by row from below; `format` as GL_RG_INTEGER, of 32-bit words. */
+    void ask(const Texture& from, GLenum format);
+    /** Waits for what was asked for last; valid until the next is asked for. */
     const void* wait() const;
 
 private:
-    struct Place {
-        Buffer buffer;
-        const void* mapped = nullptr;
-    };
     size_t bytes_ = 0;
-    std::array<Place, 2> places_;
-    size_t at_ = 0;
+    Buffer buffer_;
+    const void* mapped_ = nullptr;
     Fence asked_;
 };
 

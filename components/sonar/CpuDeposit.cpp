@@ -20,45 +20,55 @@ std::array<int, 2> touched(const ColumnShares& shares, uint first, uint last) {
 
 }  // namespace
 
-CpuDeposit::CpuDeposit(DepositSetup setup, const SurfacePass& surface, ThreadPool& threads)
+CpuDeposit::CpuDeposit(DepositSetup setup, const SurfacePass& surface, const gpu::EglContext& context,
+                       ThreadPool& threads)
     : setup_(std::move(setup)),
+      context_(context),
       threads_(threads),
       planes_(surface.scene().planes()),
       columns_(static_cast<size_t>(threads.size())),
-      pictures_(setup_.frusta.size()),
+      pictures_(setup_.slots * setup_.frusta.size()),
       sums_(setup_.sumCount()) {
     for (size_t i = 0; i < pictures_.size(); ++i) {
-        pictures_[i].channels = static_cast<size_t>(surface.picture(i).channels());
-        pictures_[i].words.resize(pictures_[i].channels * static_cast<size_t>(setup_.frusta[i].columns) *
-                                  static_cast<size_t>(setup_.frusta[i].rows));
-        pictures_[i].ranges.reserve(surface.picture(i).commands.capacity());
+        const VisibilityBuffer& drawn = surface.picture(i % setup_.frusta.size());
+        pictures_[i].channels = static_cast<size_t>(drawn.channels());
+        pictures_[i].words = gpu::ReadBack(drawn.bytes());
+        pictures_[i].ranges.reserve(surface.lists().drawLimit());
     }
     for (size_t part = 0; part < columns_.size(); ++part)
         for (const ColumnShares& shares : setup_.shares)
             columns_[part].push_back(touched(shares, firstBeam(part), firstBeam(part + 1)));
 }
 
-void CpuDeposit::begin() {
-    for (TakenPicture& picture : pictures_) picture.taken = false;
+void CpuDeposit::begin(size_t slot) {
+    for (size_t i = 0; i < setup_.frusta.size(); ++i) picture(slot, i).taken = false;
 }
 
-void CpuDeposit::take(size_t frustum, const SurfacePass& surface) {
-    TakenPicture& picture = pictures_[frustum];
+void CpuDeposit::take(size_t slot, size_t frustum, const SurfacePass& surface) {
+    TakenPicture& picture = this->picture(slot, frustum);
     surface.picture(frustum).read(picture.words);
     picture.taken = true;
     picture.ranges.clear();
     const double cosine = std::cos(setup_.frusta[frustum].azimuth), sine = std::sin(setup_.frusta[frustum].azimuth);
     const int value = setup_.rules.features.has(Feature::Cerqueira2017) ? 1 : 0;
-    for (const CommandRecord& command : surface.picture(frustum).commands)
+    for (const CommandRecord& command : surface.lists().commands(slot, frustum))
         picture.ranges.push_back(
             placedRun(surface.objects()[command.object],
                       surface.scene().materials()[command.material].values[value] * setup_.rules.strength_scale,
                       command.first_triangle, cosine, sine));
 }
 
-std::span<const uint64_t> CpuDeposit::finish() {
-    threads_.run([this](int part, int) { depositPart(static_cast<size_t>(part)); });
+std::span<const uint64_t> CpuDeposit::finish(size_t slot) {
+    waitForPictures(slot);
+    threads_.run([&](int part, int) { depositPart(slot, static_cast<size_t>(part)); });
     return sums_;
+}
+
+void CpuDeposit::waitForPictures(size_t slot) {
+    const auto alone = context_.transferring();
+    for (size_t i = 0; i < setup_.frusta.size(); ++i)
+        if (TakenPicture& picture = this->picture(slot, i); picture.taken)
+            picture.pixels = static_cast<const uint32_t*>(picture.words.wait());
 }
 
 Features CpuDeposit::compiled() const {
@@ -67,14 +77,14 @@ Features CpuDeposit::compiled() const {
     return all;
 }
 
-void CpuDeposit::depositPart(size_t part) {
+void CpuDeposit::depositPart(size_t slot, size_t part) {
     const uint first = firstBeam(part), last = firstBeam(part + 1);
     const size_t stride = setup_.rules.sumCount();
     std::fill(sums_.begin() + static_cast<ptrdiff_t>(first * stride),
               sums_.begin() + static_cast<ptrdiff_t>(last * stride), 0);
-    for (size_t i = 0; i < pictures_.size(); ++i)
-        if (pictures_[i].taken)
-            deposit({setup_.rules, setup_.frusta[i], setup_.shares[i], pictures_[i], planes_, first, last,
+    for (size_t i = 0; i < setup_.frusta.size(); ++i)
+        if (picture(slot, i).taken)
+            deposit({setup_.rules, setup_.frusta[i], setup_.shares[i], picture(slot, i), planes_, first, last,
                      columns_[part][i]},
                     sums_.data());
 }

@@ -8,22 +8,27 @@ namespace insonify::sonar {
  */
 class CpuDeposit final : public BinDeposit {
 public:
-    CpuDeposit(DepositSetup setup, const SurfacePass& surface, ThreadPool& threads);
-    void begin() override;
-    void take(size_t frustum, const SurfacePass& surface) override;
-    std::span<const uint64_t> finish() override;
+    /** All outlive it. */
+    CpuDeposit(DepositSetup setup, const SurfacePass& surface, const gpu::EglContext& context, ThreadPool& threads);
+    void begin(size_t slot) override;
+    void take(size_t slot, size_t frustum, const SurfacePass& surface) override;
+    void ask(size_t) override {}
+    std::span<const uint64_t> finish(size_t slot) override;
     Features compiled() const override;
 
 private:
-    void depositPart(size_t part);
+    TakenPicture& picture(size_t slot, size_t frustum) { return pictures_[slot * setup_.frusta.size() + frustum]; }
+    void waitForPictures(size_t slot);
+    void depositPart(size_t slot, size_t part);
     /** Where a thread's run of beams begins. */
     uint32_t firstBeam(size_t part) const;
 
     DepositSetup setup_;
+    const gpu::EglContext& context_;
     ThreadPool& threads_;
     const std::vector<PlaneRecord>& planes_;
     std::vector<std::vector<std::array<int, 2>>> columns_;  ///< Of each thread and frustum: from, to.
-    std::vector<TakenPicture> pictures_;
+    std::vector<TakenPicture> pictures_;                    ///< Slot after slot, of each frustum.
     std::vector<uint64_t> sums_;
 };
 

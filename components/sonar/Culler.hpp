@@ -1,7 +1,6 @@
 #pragma once
 #include <array>
 #include <cstdint>
-#include <optional>
 #include <span>
 #include <vector>
 
@@ -39,22 +38,28 @@ public:
     const std::vector<ObjectRecord>& records() const { return places_.records(); }
     size_t drawRangeLimit() const { return draw_range_limit_; }  ///< Of what `visible` gives.
 
-private:
+    /** Outward normals of the planes that bound a frustum's view, all through the sonar; sonar axes, of any length. */
     using View = std::array<glm::vec3, 5>;
+    static View viewOf(const ViewFrustum& frustum);
+    /** What a frustum may see of an object: NOT_IN_VIEW, IN_VIEW, FRONT_IN_VIEW or DRAWN_WHOLE. */
+    uint32_t inView(const View& view, size_t object) const;
+    float rangeMax() const { return range_max_; }
+    /** Whether of a cluster the back is never seen. */
+    bool isSingleSided(const types::Cluster& cluster) const;
+
+private:
     /** What is asked of the parts of an object. */
     struct Query {
         size_t object;
         const View& view;
-        std::optional<glm::vec3> before;  ///< Place of the sonar before the object's front, in its axes [m].
+        uint32_t in_view;
     };
-    std::optional<glm::vec3> before(size_t object, float distance) const;
     void addObject(const Query& query, std::vector<DrawRange>& ranges) const;
     void addClusters(const Query& query, std::span<const types::Cluster> clusters,
                      std::vector<DrawRange>& ranges) const;
-    bool isSingleSided(const types::Cluster& cluster) const;
     bool turnsItsBack(const Query& query, const types::Cluster& cluster) const;
-    /** Distance that a box along an object's axes has at least [m]; infinite when it is out of view or range. */
-    float nearest(const View& view, const ObjectRecord& object, glm::vec3 centre, glm::vec3 half) const;
+    /** Whether a box along an object's axes may be in view and range. */
+    bool mayShow(const Query& query, glm::vec3 centre, glm::vec3 half) const;
 
     const types::Geometry& geometry_;
     CullRules rules_;

@@ -100,7 +100,7 @@ void hit(const PlacedRun& run, const PlaneRecord& plane, double mapped, Pixels& 
 bool look(const FrustumPart& part, int row, int first, int count, Pixels& pixels) {
     const TakenPicture& picture = part.picture;
     const size_t at = static_cast<size_t>(row) * static_cast<size_t>(part.frustum.columns) + static_cast<size_t>(first);
-    const uint32_t* texel = picture.words.data() + picture.channels * at;
+    const uint32_t* texel = picture.pixels + picture.channels * at;
     bool any = false;
     for (int i = 0; i < count; ++i, texel += picture.channels) {
         if (texel[0] == 0) {

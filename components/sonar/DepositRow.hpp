@@ -1,6 +1,7 @@
 #pragma once
 #include <array>
 
+#include "components/gpu/ReadBack.hpp"
 #include "components/sonar/BinDeposit.hpp"
 
 namespace insonify::sonar {
@@ -17,9 +18,10 @@ struct PlacedRun {
 /** `cosine`, `sine`: of the azimuth of the frustum's axis, from the sonar's. */
 PlacedRun placedRun(const ObjectRecord& object, double strength, uint32_t first_triangle, double cosine, double sine);
 
-/** A frustum's picture and what its numbers mean, copied when taken. */
+/** A frustum's picture on its way from the device, and what its numbers mean. */
 struct TakenPicture {
-    std::vector<uint32_t> words;
+    gpu::ReadBack words;
+    const uint32_t* pixels = nullptr;  ///< Once they are here: `channels` words each, row by row from below.
     size_t channels = 2;  ///< Words a pixel [1].
     std::vector<PlacedRun> ranges;
     bool taken = false;

@@ -35,12 +35,14 @@ DepositSetup depositSetup(const RenderPlan& plan, const types::Geometry& geometr
     return setup;
 }
 
-class DrawnEchoes final : public EchoRenderer {
+class DrawnEchoes final : public PipelinedEchoes {
 public:
-    DrawnEchoes(const RenderPlan& plan, types::GeometryPtr geometry);
+    DrawnEchoes(const RenderPlan& plan, types::GeometryPtr geometry, const DrawOptions& options);
     ~DrawnEchoes() override;
     void takeQuality() override;
-    void render(const types::Snapshot& snapshot, types::Sonar& ping, Stages& stages) override;
+    size_t ringSize() const override { return slots_; }
+    void submit(const types::Snapshot& snapshot, Stages& stages) override;
+    void collect(types::Sonar& ping, Stages& stages) override;
     bool hasEchoes() const override;
     std::vector<LeftOut> culled() const override;
     Features compiled() const override;
@@ -48,15 +50,23 @@ public:
     std::string notice() const override { return context_.fallback(); }
 
 private:
+    bool depositsOnProcessor() const;
+    SurfacePass::Setup surfaceSetup() const;
     void makeDeposit();
-    void drawSlabs(const types::Snapshot& snapshot, Stages& stages);
+    /** Asks for the sums of what is drawn. */
+    void take(size_t slot);
     void fillBins(types::Sonar& ping);
+    /** Of the ping collected last. */
+    size_t lastSlot() const { return (ended_ - 1) % slots_; }
     /** Seconds since the last call, put down for a stage. */
     void lap(Stage& stage);
 
     const RenderPlan& plan_;
     types::GeometryPtr geometry_;
     gpu::EglContext context_;
+    DrawOptions options_;
+    size_t slots_;
+    size_t begun_ = 0, ended_ = 0;  ///< Pings; ping n has slot n modulo slots_.
     std::string device_;
     BinLevels levels_;
     Culler culler_;
@@ -65,36 +75,55 @@ private:
     std::unique_ptr<BinDeposit> deposit_;
     std::optional<EchoGrid> grid_;
     EchoRules rules_;
-    std::span<const uint64_t> sums_;  ///< Of the last ping.
+    std::span<const uint64_t> sums_;  ///< Of the ping collected last.
     std::chrono::steady_clock::time_point last_;
 };
 
-DrawnEchoes::DrawnEchoes(const RenderPlan& plan, types::GeometryPtr geometry)
+DrawnEchoes::DrawnEchoes(const RenderPlan& plan, types::GeometryPtr geometry, const DrawOptions& options)
     : plan_(plan),
       geometry_(std::move(geometry)),
       context_(plan.config.device),
+      options_(options),
+      slots_(options.ring > 0        ? options.ring
+             : context_.isSoftware() ? 1
+                                     : 3),
       device_(fmt::format("{}, OpenGL {}", context_.renderer(), context_.driver())),
       levels_(plan.config, plan.grid),
       culler_(*geometry_, {nearest_drawn, reachOf(plan), plan.config.draw_all}),
       threads_(plan.config.threads),
-      surface_(context_,
-               {*geometry_, plan.frusta, plan.features.defines(), nearPlane(plan.frusta.front()),
-                culler_.drawRangeLimit(), plan_.config.published},
-               threads_) {
+      surface_(context_, surfaceSetup(), culler_, threads_) {
     makeDeposit();
     context_.check();
 }
 
 DrawnEchoes::~DrawnEchoes() = default;
 
+bool DrawnEchoes::depositsOnProcessor() const {
+    return plan_.config.deposit == Deposit::Cpu || (plan_.config.deposit == Deposit::Auto && context_.isSoftware());
+}
+
+SurfacePass::Setup DrawnEchoes::surfaceSetup() const {
+    using CullOn = DrawOptions::CullOn;
+    const CullOn best = !context_.isSoftware() && !depositsOnProcessor() ? CullOn::Device : CullOn::Processor;
+    const CullOn chosen = options_.cull_on == CullOn::Auto ? best : options_.cull_on;
+    return {.geometry = *geometry_,
+            .frusta = plan_.frusta,
+            .defines = plan_.features.defines(),
+            .near_plane = nearPlane(plan_.frusta.front()),
+            .empty_too = plan_.config.published,
+            .slots = slots_,
+            .cull_on_device = chosen == CullOn::Device};
+}
+
 void DrawnEchoes::makeDeposit() {
+    using SumIn = DrawOptions::SumIn;
     DepositSetup setup = depositSetup(plan_, *geometry_);
+    setup.slots = slots_;
+    setup.group_sums = options_.sum_in == SumIn::Auto ? !context_.isSoftware() : options_.sum_in == SumIn::Groups;
     grid_.emplace(plan_, threads_.size());
     rules_ = setup.rules;
-    const bool on_cpu =
-        plan_.config.deposit == Deposit::Cpu || (plan_.config.deposit == Deposit::Auto && context_.isSoftware());
-    if (on_cpu)
-        deposit_ = std::make_unique<CpuDeposit>(std::move(setup), surface_, threads_);
+    if (depositsOnProcessor())
+        deposit_ = std::make_unique<CpuDeposit>(std::move(setup), surface_, context_, threads_);
     else
         deposit_ = makeGpuDeposit(setup, context_);
 }
@@ -105,19 +134,14 @@ void DrawnEchoes::lap(Stage& stage) {
     last_ = now;
 }
 
-void DrawnEchoes::drawSlabs(const types::Snapshot& snapshot, Stages& stages) {
-    deposit_->begin();
-    culler_.place(snapshot);
-    surface_.cull(culler_);
-    lap(stages[CullStage]);
-    surface_.draw();
-    lap(stages[DrawStage]);
-    {
-        const auto alone = context_.transferring();
-        for (size_t i = 0; i < plan_.frusta.size(); ++i)
-            if (surface_.draws(i)) deposit_->take(i, surface_);
-    }
-    lap(stages[ReadStage]);
+void DrawnEchoes::take(size_t slot) {
+    const auto alone = context_.transferring();
+    deposit_->begin(slot);
+    for (size_t i = 0; i < plan_.frusta.size(); ++i)
+        if (surface_.draws(slot, i)) deposit_->take(slot, i, surface_);
+    deposit_->ask(slot);
+    surface_.ask(slot);
+    glFlush();  // or a device would begin when its sums are waited for
 }
 
 void DrawnEchoes::fillBins(types::Sonar& ping) {
@@ -129,12 +153,25 @@ void DrawnEchoes::fillBins(types::Sonar& ping) {
     grid_->finish(ping, threads_);
 }
 
-void DrawnEchoes::render(const types::Snapshot& snapshot, types::Sonar& ping, Stages& stages) {
+void DrawnEchoes::submit(const types::Snapshot& snapshot, Stages& stages) {
+    context_.requireThread();
+    const size_t slot = begun_ % slots_;
+    last_ = std::chrono::steady_clock::now();
+    culler_.place(snapshot);
+    surface_.cull(slot);
+    lap(stages[CullStage]);
+    surface_.draw(slot);
+    lap(stages[DrawStage]);
+    take(slot);
+    context_.check();
+    lap(stages[ReadStage]);
+    ++begun_;
+}
+
+void DrawnEchoes::collect(types::Sonar& ping, Stages& stages) {
     context_.requireThread();
     last_ = std::chrono::steady_clock::now();
-    drawSlabs(snapshot, stages);
-    context_.check();
-    sums_ = deposit_->finish();
+    sums_ = deposit_->finish(ended_++ % slots_);
     lap(stages[DepositStage]);
     fillBins(ping);
     lap(stages[BeamStage]);
@@ -150,8 +187,7 @@ void DrawnEchoes::takeQuality() {
 }
 
 bool DrawnEchoes::hasEchoes() const {
-    bool drawn = false;  // published counts what is not there
-    for (size_t i = 0; i < plan_.frusta.size(); ++i) drawn = drawn || !surface_.picture(i).empty();
+    const bool drawn = ended_ > 0 && !surface_.lists().empty(lastSlot());  // published counts what is not there
     return drawn && std::ranges::any_of(sums_, [](uint64_t sum) { return sum > 0; });
 }
 
@@ -165,32 +201,25 @@ Features DrawnEchoes::compiled() const {
 }
 
 std::vector<LeftOut> DrawnEchoes::culled() const {
-    std::vector<bool> seen(geometry_->objects.size());
-    size_t empty_frusta = 0, shown = 0;  // of two frusta more than once
-    for (size_t i = 0; i < plan_.frusta.size(); ++i) {
-        const auto& ranges = surface_.picture(i).ranges;
-        empty_frusta += ranges.empty();
-        for (const Culler::DrawRange& range : ranges) {
-            seen[range.object] = true;
-            shown += range.index_count / 3;
-        }
-    }
-    const size_t triangles = geometry_->triangleCount();
     std::vector<LeftOut> all;
+    if (ended_ == 0) return all;
+    const Shown shown = surface_.lists().shown(lastSlot());
+    const size_t triangles = geometry_->triangleCount();
     const auto add = [&](Effect effect, size_t left_out, size_t of) {
         if (left_out > 0)
             all.push_back({effect, Reason::OutOfView, static_cast<double>(left_out), static_cast<double>(of)});
     };
-    add(Effect::Objects, static_cast<size_t>(std::ranges::count(seen, false)), seen.size());
-    add(Effect::Triangles, triangles - std::min(triangles, shown), triangles);
-    add(Effect::Slabs, empty_frusta, plan_.frusta.size());
+    add(Effect::Objects, static_cast<size_t>(std::ranges::count(shown.objects, false)), shown.objects.size());
+    add(Effect::Triangles, triangles - std::min(triangles, shown.triangles), triangles);
+    add(Effect::Slabs, shown.empty_frusta, plan_.frusta.size());
     return all;
 }
 
 }  // namespace
 
-std::unique_ptr<EchoRenderer> makeDrawnEchoes(const RenderPlan& plan, types::GeometryPtr geometry) {
-    return std::make_unique<DrawnEchoes>(plan, std::move(geometry));
+std::unique_ptr<PipelinedEchoes> makeDrawnEchoes(const RenderPlan& plan, types::GeometryPtr geometry,
+                                                 const DrawOptions& options) {
+    return std::make_unique<DrawnEchoes>(plan, std::move(geometry), options);
 }
 
 }  // namespace insonify::sonar

@@ -38,4 +38,21 @@ public:
     virtual std::string notice() const { return {}; }
 };
 
+/** A renderer that begins pings before earlier ones are done: they are submitted, and collected in the same order. What
+ *  is told of the last ping is of the one that was collected last, and only until the next is submitted. */
+class PipelinedEchoes : public EchoRenderer {
+public:
+    /** How many pings may be submitted and not collected [1]; of render() and takeQuality(), none may be. */
+    virtual size_t ringSize() const = 0;
+    /** Begins a ping of what the snapshot shows now and waits for nothing. Allocates nothing after the first ring. */
+    virtual void submit(const types::Snapshot& snapshot, Stages& stages) = 0;
+    /** Waits for the oldest ping and fills ping.bins. */
+    virtual void collect(types::Sonar& ping, Stages& stages) = 0;
+
+    void render(const types::Snapshot& snapshot, types::Sonar& ping, Stages& stages) final {
+        submit(snapshot, stages);
+        collect(ping, stages);
+    }
+};
+
 }  // namespace insonify::sonar

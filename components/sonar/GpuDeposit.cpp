@@ -9,26 +9,19 @@
 namespace insonify::sonar {
 namespace {
 
-/** Tells the device a list, which has its whole room already. */
-template <class T>
-void give(const std::vector<T>& items, gpu::Buffer& buffer) {
-    if (buffer.bytes() < items.capacity() * sizeof(T)) buffer = gpu::Buffer(items.capacity() * sizeof(T));
-    if (!items.empty()) buffer.write(items.data(), items.size() * sizeof(T));
-}
-
-/** The deposit as a compute shader: pictures stay on the device, only the sums come back. All frusta are drawn and
- *  summed before anybody waits. */
+/** The deposit as a compute shader: pictures stay on the device, only the sums come back. */
 class GpuDeposit final : public BinDeposit {
 public:
     GpuDeposit(const DepositSetup& setup, gpu::EglContext& context);
-    void begin() override { begun_ = false; }
-    void take(size_t frustum, const SurfacePass& surface) override;
-    std::span<const uint64_t> finish() override;
+    void begin(size_t) override { device_sums_.clear(); }
+    void take(size_t slot, size_t frustum, const SurfacePass& surface) override;
+    void ask(size_t slot) override { sums_[slot].ask(device_sums_); }
+    std::span<const uint64_t> finish(size_t slot) override;
     Features compiled() const override { return {}; }  // its program is in the context's list
 
 private:
-    struct SlabShares {
-        gpu::Buffer starts, shares, commands;
+    struct FrustumShares {
+        gpu::Buffer starts, shares;
     };
     void setUniforms(const ViewFrustum& frustum) const;
     struct Uniforms {
@@ -40,17 +33,19 @@ private:
     const gpu::EglContext& context_;
     const gpu::Program& program_;
     Uniforms uniforms_;
-    gpu::Buffer edges_, elevation_, objects_, device_sums_;
-    std::vector<SlabShares> shares_;
-    gpu::ReadBack sums_;
-    bool begun_ = false;  ///< The sums are cleared and the objects told, for the ping that is under way.
+    gpu::Buffer edges_, elevation_, device_sums_;
+    std::vector<FrustumShares> shares_;
+    std::vector<gpu::ReadBack> sums_;  ///< Of each slot.
 };
 
+std::vector<std::string> definesOf(const DepositSetup& setup) {
+    std::vector<std::string> defines = setup.rules.features.defines();
+    if (setup.group_sums) defines.emplace_back("HAVE_GROUP_SUMS");
+    return defines;
+}
+
 GpuDeposit::GpuDeposit(const DepositSetup& setup, gpu::EglContext& context)
-    : setup_(setup),
-      context_(context),
-      program_(context.programs().compute("deposit.comp.glsl", setup.rules.features.defines())),
-      sums_(setup.sumCount() * sizeof(uint64_t)) {
+    : setup_(setup), context_(context), program_(context.programs().compute("deposit.comp.glsl", definesOf(setup))) {
     const auto at = [this](const char* name) { return glGetUniformLocation(program_.id(), name); };
     uniforms_ = {at("image_size"),     at("bin_count"),    at("beam_stride"), at("bin_width"),  at("attenuation"),
                  at("strength_scale"), at("frustum_axis"), at("extent"),      at("pixel_size"), at("elevation_reach")};
@@ -59,7 +54,8 @@ GpuDeposit::GpuDeposit(const DepositSetup& setup, gpu::EglContext& context)
     if (!setup.rules.elevation_powers.empty()) elevation_ = gpu::Buffer::of(std::span(setup.rules.elevation_powers));
     device_sums_ = gpu::Buffer(setup.sumCount() * sizeof(uint64_t));
     for (const ColumnShares& frustum : setup.shares)
-        shares_.push_back({gpu::Buffer::of(std::span(frustum.starts)), gpu::Buffer::of(std::span(frustum.shares)), {}});
+        shares_.push_back({gpu::Buffer::of(std::span(frustum.starts)), gpu::Buffer::of(std::span(frustum.shares))});
+    for (size_t slot = 0; slot < setup.slots; ++slot) sums_.emplace_back(setup.sumCount() * sizeof(uint64_t));
 }
 
 void GpuDeposit::setUniforms(const ViewFrustum& frustum) const {
@@ -75,17 +71,10 @@ void GpuDeposit::setUniforms(const ViewFrustum& frustum) const {
     glUniform2d(uniforms_.pixel_size, frustum.du(), frustum.dv());
 }
 
-void GpuDeposit::take(size_t frustum, const SurfacePass& surface) {
-    if (!std::exchange(begun_, true)) {
-        device_sums_.clear();
-        give(surface.objects(), objects_);
-    }
-    objects_.bindBase(GL_SHADER_STORAGE_BUFFER, OBJECTS_BINDING);
-    give(surface.picture(frustum).commands, shares_[frustum].commands);
-    shares_[frustum].commands.bindBase(GL_SHADER_STORAGE_BUFFER, COMMANDS_BINDING);
+void GpuDeposit::take(size_t slot, size_t frustum, const SurfacePass& surface) {
     program_.use();
     setUniforms(setup_.frusta[frustum]);
-    surface.bindResults(frustum);
+    surface.bindResults(slot, frustum);
     shares_[frustum].shares.bindBase(GL_SHADER_STORAGE_BUFFER, SHARES_BINDING);
     shares_[frustum].starts.bindBase(GL_SHADER_STORAGE_BUFFER, SHARE_STARTS_BINDING);
     if (elevation_.bytes() > 0) elevation_.bindBase(GL_SHADER_STORAGE_BUFFER, ELEVATION_BINDING);
@@ -96,11 +85,9 @@ void GpuDeposit::take(size_t frustum, const SurfacePass& surface) {
     glDispatchCompute(groups(setup_.frusta[frustum].columns), groups(setup_.frusta[frustum].rows), 1);
 }
 
-std::span<const uint64_t> GpuDeposit::finish() {
+std::span<const uint64_t> GpuDeposit::finish(size_t slot) {
     const auto alone = context_.transferring();
-    if (!std::exchange(begun_, false)) device_sums_.clear();  // no frustum held anything
-    sums_.ask(device_sums_);
-    return {static_cast<const uint64_t*>(sums_.wait()), setup_.sumCount()};
+    return {static_cast<const uint64_t*>(sums_[slot].wait()), setup_.sumCount()};
 }
 
 }  // namespace

@@ -1,33 +1,50 @@
 #include "components/sonar/SonarRenderer.hpp"
 
-#include <algorithm>
+#include <stdexcept>
 
 #include "components/gpu/EglContext.hpp"
 #include "components/sonar/CastEchoes.hpp"
-#include "components/sonar/DrawnEchoes.hpp"
 #include "components/sonar/PlanReport.hpp"
 
 namespace insonify::sonar {
 
+namespace {
+
+constexpr Stages no_time{{{"cull", 0}, {"draw", 0}, {"read", 0}, {"deposit", 0}, {"beams", 0}}};
+
+/** A ping that is submitted. */
+struct UnderWay {
+    types::SnapshotPtr snapshot;
+    Stages stages = no_time;
+};
+
+}  // namespace
+
 struct SonarRenderer::Parts {
-    Parts(const SonarConfig& config, types::GeometryPtr scene);
+    Parts(const SonarConfig& config, types::GeometryPtr scene, const DrawOptions& options);
     ~Parts();
     void fillHeader(const types::Snapshot& snapshot, types::Sonar& ping) const;
 
     RenderPlan plan;
     types::Plan told;
-    Stages stages{{{"cull", 0}, {"draw", 0}, {"read", 0}, {"deposit", 0}, {"beams", 0}}};
+    Stages stages = no_time;
     std::unique_ptr<EchoRenderer> echoes;
+    PipelinedEchoes* pipeline = nullptr;  ///< The same where it draws.
+    std::vector<UnderWay> ring;
+    size_t begun = 0, ended = 0;  ///< Pings that were submitted; ping n has place n modulo the ring's size.
 };
 
-SonarRenderer::Parts::Parts(const SonarConfig& config, types::GeometryPtr scene)
+SonarRenderer::Parts::Parts(const SonarConfig& config, types::GeometryPtr scene, const DrawOptions& options)
     : plan(makeRenderPlan(config, *scene)), told(report(plan, *scene)) {
     if (plan.casts_rays) {
         echoes = makeCastEchoes(plan, std::move(scene));
     } else {
         const auto alone = gpu::EglContext::making();
-        echoes = makeDrawnEchoes(plan, std::move(scene));
+        auto drawn = makeDrawnEchoes(plan, std::move(scene), options);
+        pipeline = drawn.get();
+        echoes = std::move(drawn);
     }
+    ring.resize(pipeline ? pipeline->ringSize() : 1);
     told.device = echoes->device();
     if (const std::string notice = echoes->notice(); !notice.empty()) told.notices.push_back(notice);
 }
@@ -52,18 +69,46 @@ void SonarRenderer::Parts::fillHeader(const types::Snapshot& snapshot, types::So
     ping.bins.resize(plan.beams.size() * static_cast<size_t>(plan.grid.bin_count));
 }
 
-SonarRenderer::SonarRenderer(const SonarConfig& config, types::GeometryPtr geometry)
-    : parts_(std::make_unique<Parts>(config, std::move(geometry))) {}
+SonarRenderer::SonarRenderer(const SonarConfig& config, types::GeometryPtr geometry, const DrawOptions& options)
+    : parts_(std::make_unique<Parts>(config, std::move(geometry), options)) {}
 
 SonarRenderer::~SonarRenderer() = default;
 
 void SonarRenderer::render(const types::Snapshot& snapshot, types::Sonar& ping) {
-    for (Stage& stage : parts_->stages) stage.seconds = 0;
+    if (parts_->begun != parts_->ended)
+        throw std::logic_error("pings that were submitted are to be collected before another is rendered");
+    parts_->stages = no_time;
     parts_->fillHeader(snapshot, ping);
     parts_->echoes->render(snapshot, ping, parts_->stages);
 }
 
+size_t SonarRenderer::ringSize() const { return parts_->ring.size(); }
+
+void SonarRenderer::submit(types::SnapshotPtr snapshot) {
+    if (parts_->begun - parts_->ended == ringSize())
+        throw std::logic_error("a ping is to be collected before another is submitted");
+    UnderWay& ping = parts_->ring[parts_->begun % ringSize()];
+    ping.stages = no_time;
+    if (parts_->pipeline) parts_->pipeline->submit(*snapshot, ping.stages);
+    ping.snapshot = std::move(snapshot);
+    ++parts_->begun;
+}
+
+void SonarRenderer::collect(types::Sonar& ping) {
+    if (parts_->begun == parts_->ended) throw std::logic_error("no ping is submitted that could be collected");
+    UnderWay& first = parts_->ring[parts_->ended++ % ringSize()];
+    const types::SnapshotPtr snapshot = std::move(first.snapshot);
+    parts_->stages = first.stages;
+    parts_->fillHeader(*snapshot, ping);
+    if (parts_->pipeline)
+        parts_->pipeline->collect(ping, parts_->stages);
+    else
+        parts_->echoes->render(*snapshot, ping, parts_->stages);
+}
+
 void SonarRenderer::setQuality(int rows, int columns_per_beam) {
+    if (parts_->begun != parts_->ended)
+        throw std::logic_error("pings that were submitted are to be collected before their quality changes");
     parts_->plan.setQuality(rows, columns_per_beam);
     parts_->told.rows = rows;
     parts_->told.columns_per_beam = columns_per_beam;

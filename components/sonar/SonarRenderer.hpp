@@ -4,7 +4,7 @@
 #include <span>
 #include <vector>
 
-#include "components/sonar/EchoRenderer.hpp"
+#include "components/sonar/DrawnEchoes.hpp"
 #include "components/sonar/SonarConfig.hpp"
 #include "types/Plan.hpp"
 #include "types/Snapshot.hpp"
@@ -21,12 +21,23 @@ namespace insonify::sonar {
  *  Throws gpu::GlError where it draws without OpenGL 4.5 or loses it, std::runtime_error where Embree refuses. */
 class SonarRenderer {
 public:
-    SonarRenderer(const SonarConfig& config, types::GeometryPtr geometry);
+    SonarRenderer(const SonarConfig& config, types::GeometryPtr geometry, const DrawOptions& options = {});
     ~SonarRenderer();
 
     /** One ping from snapshot.sonar (sonar frame in the world; orientation of unit length). Fills the whole sample;
-     *  allocates nothing when `ping` has been filled by this renderer before. */
+     *  allocates nothing when `ping` has been filled by this renderer before. Throws std::logic_error while pings are
+     *  submitted and not collected. */
     void render(const types::Snapshot& snapshot, types::Sonar& ping);
+
+    /** How many pings may be submitted and not collected [1]: more than one only pays where a graphics card draws. */
+    size_t ringSize() const;
+    /** Begins a ping of what the snapshot shows now, which must not change before it is collected, and waits for
+     *  nothing: a graphics card draws, rays wait for collect(). Throws std::logic_error when ringSize() are under way.
+     */
+    void submit(types::SnapshotPtr snapshot);
+    /** Ends the ping that was submitted first: as render(). Throws std::logic_error when there is none. What is told of
+     *  the last ping is of this one, and only until the next is submitted. */
+    void collect(types::Sonar& ping);
 
     /** Renders from now on with so many rows of samples and columns per beam [1]; allocates. */
     void setQuality(int rows, int columns_per_beam);

@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "components/gpu/Program.hpp"
-#include "components/sonar/SurfaceScene.hpp"
+#include "components/sonar/DrawLists.hpp"
 #include "components/sonar/VisibilityBuffer.hpp"
 
 namespace insonify::sonar {
@@ -12,24 +12,17 @@ namespace insonify::sonar {
 class SurfacePainter {
 public:
     /** `defines` as the plan's features; nothing nearer than `near_plane` [m] along a frustum's axis is drawn.
-     * `geometry`, `scene` and `context`, which is current, must outlive the painter; the scene may be another
-     * context's. */
-    SurfacePainter(const types::Geometry& geometry, const SurfaceScene& scene, const std::vector<std::string>& defines,
-                   double near_plane, gpu::EglContext& context);
+     * `scene` and `context`, which is current, must outlive the painter; the scene may be another context's. */
+    SurfacePainter(const SurfaceScene& scene, const std::vector<std::string>& defines, double near_plane,
+                   gpu::EglContext& context);
 
-    /** Lists how the runs of a picture are drawn, of objects `placed` so; the device knows nothing of it yet. */
-    void list(VisibilityBuffer& picture, const std::vector<ObjectRecord>& placed) const;
-    /** Tells the device what is listed. */
-    void upload(VisibilityBuffer& picture) const { picture.upload(!software_); }
-    /** Draws what is listed and uploaded; everything else in the picture is a miss. */
-    void draw(const VisibilityBuffer& picture) const;
+    /** Draws what is listed; everything else in the picture is a miss. */
+    void draw(const VisibilityBuffer& picture, const Draws& draws) const;
 
 private:
     void setUniforms(const ViewFrustum& frustum) const;
-    void drawGroups(const VisibilityBuffer& picture) const;
-    void drawRuns(const VisibilityBuffer& picture, size_t first, size_t last) const;
+    void drawGroup(const Draws& draws, const DrawGroup& group) const;
 
-    const types::Geometry& geometry_;
     const SurfaceScene& scene_;
     double near_plane_;
     bool software_;

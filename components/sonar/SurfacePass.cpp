@@ -9,18 +9,28 @@ namespace {
 
 bool hasNormalMaps(const SurfacePass::Setup& setup) { return std::ranges::count(setup.defines, "HAVE_NORMAL_MAP") > 0; }
 
-/** How many contexts are worth their memory. */
+/** How many contexts are worth their memory; the device culls for one. */
 size_t partCount(const gpu::EglContext& context, const SurfacePass::Setup& setup, const ThreadPool& threads) {
-    return context.isSoftware() ? std::min(setup.frusta.size(), static_cast<size_t>(threads.size())) : 1;
+    return context.isSoftware() && !setup.cull_on_device
+               ? std::min(setup.frusta.size(), static_cast<size_t>(threads.size()))
+               : 1;
+}
+
+std::unique_ptr<DrawLists> makeLists(const SurfacePass::Setup& setup, const SurfaceScene& scene, Culler& culler,
+                                     gpu::EglContext& context) {
+    const DrawLists::Setup lists{setup.geometry, scene, culler, setup.slots, setup.frusta.size()};
+    return setup.cull_on_device ? makeDeviceLists(lists, context) : makeProcessorLists(lists);
 }
 
 }  // namespace
 
-SurfacePass::SurfacePass(gpu::EglContext& context, Setup setup, ThreadPool& threads)
+SurfacePass::SurfacePass(gpu::EglContext& context, Setup setup, Culler& culler, ThreadPool& threads)
     : setup_(std::move(setup)),
       context_(context),
+      culler_(culler),
       threads_(threads),
       scene_(setup_.geometry, hasNormalMaps(setup_)),
+      lists_(makeLists(setup_, scene_, culler, context)),
       parts_(partCount(context, setup_, threads)),
       pictures_(setup_.frusta.size()) {
     gpu::Fence::here().wait();  // the other contexts must find the scene's buffers filled
@@ -57,46 +67,53 @@ void SurfacePass::onEachPart(const Job& job) {
 
 void SurfacePass::makePart(size_t part) {
     if (part > 0) parts_[part].own.emplace(gpu::EglContext::Sharing{context_});
-    parts_[part].painter.emplace(setup_.geometry, scene_, setup_.defines, setup_.near_plane, contextOf(part));
+    parts_[part].painter.emplace(scene_, setup_.defines, setup_.near_plane, contextOf(part));
     makePictures(part);
 }
 
 void SurfacePass::makePictures(size_t part) {
     for (size_t frustum = part; frustum < pictures_.size(); frustum += parts_.size())
-        pictures_[frustum] = std::make_unique<VisibilityBuffer>(setup_.frusta[frustum], hasNormalMaps(setup_),
-                                                                setup_.draw_range_limit, contextOf(part));
+        pictures_[frustum] =
+            std::make_unique<VisibilityBuffer>(setup_.frusta[frustum], hasNormalMaps(setup_), contextOf(part));
 }
 
-void SurfacePass::cull(const Culler& culler) {
-    placed_ = &culler.records();
-    for (auto& picture : pictures_) culler.visible(picture->frustum(), picture->ranges);
-}
-
-template <class Use>
-void SurfacePass::onDrawn(size_t part, const Use& use) {
-    for (size_t frustum = part; frustum < pictures_.size(); frustum += parts_.size())
-        if (draws(frustum)) use(*parts_[part].painter, *pictures_[frustum]);
-}
-
-void SurfacePass::draw() {
-    onEachPart([this](size_t part) {
-        onDrawn(part,
-                [this](const SurfacePainter& painter, VisibilityBuffer& picture) { painter.list(picture, *placed_); });
-        const auto alone = context_.transferring();
-        onDrawn(part, [](const SurfacePainter& painter, VisibilityBuffer& picture) { painter.upload(picture); });
+void SurfacePass::cull(size_t slot) {
+    lists_->place(slot);
+    onEachPart([&](size_t part) {
+        for (size_t frustum = part; frustum < pictures_.size(); frustum += parts_.size())
+            lists_->list(slot, frustum, setup_.frusta[frustum]);
     });
-    onEachPart([this](size_t part) {
-        const auto together = context_.drawing();
-        onDrawn(part, [](const SurfacePainter& painter, const VisibilityBuffer& picture) { painter.draw(picture); });
+}
+
+void SurfacePass::draw(size_t slot) {
+    if (parts_.size() > 1 && setup_.slots > 1) {  // other contexts draw into what this one may still read
+        const auto alone = context_.transferring();
+        gpu::Fence::here().wait();
+    }
+    onEachPart([&](size_t part) {
+        // A device that culls is asked for more than draws.
+        const auto alone = setup_.cull_on_device ? context_.transferring() : std::unique_lock<std::shared_mutex>();
+        const auto together = setup_.cull_on_device ? std::shared_lock<std::shared_mutex>() : context_.drawing();
+        drawPart(slot, part);
         if (context_.isSoftware()) gpu::Fence::here().wait();  // for other contexts; a card's own takes its turn
         if (parts_[part].own) parts_[part].own->check();
     });
 }
 
-void SurfacePass::bindResults(size_t frustum) const {
+void SurfacePass::drawPart(size_t slot, size_t part) {
+    for (size_t frustum = part; frustum < pictures_.size(); frustum += parts_.size()) {
+        if (!draws(slot, frustum)) continue;
+        lists_->prepare(slot, frustum, setup_.frusta[frustum]);
+        parts_[part].painter->draw(*pictures_[frustum], lists_->draws(slot, frustum));
+    }
+}
+
+void SurfacePass::bindResults(size_t slot, size_t frustum) const {
     context_.requireStorage(scene_.planes().size() * sizeof(PlaneRecord), "the planes of all triangles");
     pictures_[frustum]->bindTexture(0);
     scene_.bindRecords();
+    lists_->objects(slot).bindBase(GL_SHADER_STORAGE_BUFFER, OBJECTS_BINDING);
+    lists_->draws(slot, frustum).commands->bindBase(GL_SHADER_STORAGE_BUFFER, COMMANDS_BINDING);
 }
 
 }  // namespace insonify::sonar

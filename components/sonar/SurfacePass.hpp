@@ -9,8 +9,9 @@
 
 namespace insonify::sonar {
 
-/** Draws what all frusta see. On a graphics card one context does it; Mesa's software renderer prepares triangles on
- * the calling thread alone, so there each thread of the pool has a context and a share of the frusta. */
+/** Draws what all frusta see, ping after ping into the same pictures. On a graphics card one context does it; Mesa's
+ *  software renderer prepares triangles on the calling thread alone, so there each thread of the pool has a context and
+ *  a share of the frusta. */
 class SurfacePass {
 public:
     struct Setup {
@@ -18,30 +19,36 @@ public:
         std::vector<ViewFrustum> frusta;
         std::vector<std::string> defines;  ///< As the plan's features.
         double near_plane;                 ///< [m]
-        size_t draw_range_limit;           ///< Most runs that a frustum may see.
         bool empty_too;                    ///< Frusta that see nothing are drawn as well: misses count.
+        size_t slots = 1;                  ///< Pings that may be under way.
+        bool cull_on_device = false;       ///< Clusters; objects are culled by the processor.
     };
-    /** `context` is current on this thread; context, geometry and threads must outlive the pass. */
-    SurfacePass(gpu::EglContext& context, Setup setup, ThreadPool& threads);
+    /** `context` is current on this thread; context, geometry, culler and threads must outlive the pass. */
+    SurfacePass(gpu::EglContext& context, Setup setup, Culler& culler, ThreadPool& threads);
     ~SurfacePass();
 
     /** Other pictures of the same frusta: as many, in more or fewer pixels. */
     void resize(const std::vector<ViewFrustum>& frusta);
 
-    /** Lists what each frustum sees of what the culler has placed. */
-    void cull(const Culler& culler);
+    /** Lists for a slot what each frustum sees of what the culler has placed. */
+    void cull(size_t slot);
     /** Whether a frustum's picture is drawn. */
-    bool draws(size_t frustum) const { return setup_.empty_too || !pictures_[frustum]->empty(); }
-    /** Draws the frusta. A graphics card may still be at it when this returns; what its context is asked for then comes
-     *  after. Throws GlError. All other functions but objects() and draws() want EglContext::transferring(); this one
-     *  does that itself. */
-    void draw();
+    bool draws(size_t slot, size_t frustum) const { return setup_.empty_too || lists_->mayShow(slot, frustum); }
+    /** Draws the frusta as the slot lists them. A graphics card may still be at it when this returns; what its context
+     *  is asked for then comes after. Throws GlError. All other functions but cull(), draws() and what reads lists want
+     *  EglContext::transferring(); this one does that itself. */
+    void draw(size_t slot);
+
+    /** Asks for what has been shown, once all is drawn. */
+    void ask(size_t slot) { lists_->ask(slot); }
 
     const VisibilityBuffer& picture(size_t frustum) const { return *pictures_[frustum]; }
     const SurfaceScene& scene() const { return scene_; }
-    const std::vector<ObjectRecord>& objects() const { return *placed_; }
-    /** Binds a picture (unit 0), planes and materials, for a compute shader. */
-    void bindResults(size_t frustum) const;
+    const DrawLists& lists() const { return *lists_; }
+    /** Where the culler has placed the objects. */
+    const std::vector<ObjectRecord>& objects() const { return culler_.records(); }
+    /** Binds a picture (unit 0), its commands, objects, planes and materials, for a compute shader. */
+    void bindResults(size_t slot, size_t frustum) const;
 
 private:
     /** One thread's part; made, used and destroyed there. */
@@ -55,16 +62,16 @@ private:
     void makePictures(size_t part);
     template <class Job>
     void onEachPart(const Job& job);
-    template <class Use>
-    void onDrawn(size_t part, const Use& use);
+    void drawPart(size_t slot, size_t part);
 
     Setup setup_;
     gpu::EglContext& context_;
+    Culler& culler_;
     ThreadPool& threads_;
     SurfaceScene scene_;
+    std::unique_ptr<DrawLists> lists_;
     std::vector<Part> parts_;
     std::vector<std::unique_ptr<VisibilityBuffer>> pictures_;
-    const std::vector<ObjectRecord>* placed_ = nullptr;
 };
 
 }  // namespace insonify::sonar

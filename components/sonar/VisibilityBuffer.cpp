@@ -42,32 +42,26 @@ struct VisibilityBuffer::Multisampled {
     std::array<GLint, 4> order;
 };
 
-VisibilityBuffer::VisibilityBuffer(const ViewFrustum& frustum, bool with_normal_maps, size_t draw_range_limit,
-                                   gpu::EglContext& context)
+VisibilityBuffer::VisibilityBuffer(const ViewFrustum& frustum, bool with_normal_maps, gpu::EglContext& context)
     : frustum_(frustum),
       channels_(with_normal_maps ? 4 : 2),
       ids_(with_normal_maps ? GL_RGBA32UI : GL_RG32UI, frustum.columns, frustum.rows),
       depth_(GL_DEPTH_COMPONENT32F, frustum.columns, frustum.rows),
-      target_(ids_, depth_),
-      device_clips_(draw_range_limit * sizeof(Clip)),
-      device_normal_transforms_(with_normal_maps ? draw_range_limit * sizeof(NormalTransform)
-                                                 : sizeof(NormalTransform)),
-      device_draws_(draw_range_limit * sizeof(DrawCommand)) {
-    ranges.reserve(draw_range_limit);
-    commands.reserve(draw_range_limit);
-    clips.reserve(draw_range_limit);
-    if (with_normal_maps) normal_transforms.reserve(draw_range_limit);
-    draws.reserve(draw_range_limit);
+      target_(ids_, depth_) {
     if (frustum.samples == 4)
         multisampled_ = std::make_unique<Multisampled>(frustum, with_normal_maps ? GL_RGBA32UI : GL_RG32UI, context);
 }
 
 VisibilityBuffer::~VisibilityBuffer() = default;
 
-void VisibilityBuffer::read(std::vector<uint32_t>& words) const {
+size_t VisibilityBuffer::bytes() const {
+    return sizeof(uint32_t) * static_cast<size_t>(channels_) * static_cast<size_t>(frustum_.columns) *
+           static_cast<size_t>(frustum_.rows);
+}
+
+void VisibilityBuffer::read(gpu::ReadBack& words) const {
     ids_.bind(0);  // so that what another context drew is seen here
-    glGetTextureImage(ids_.id(), 0, channels_ == 4 ? GL_RGBA_INTEGER : GL_RG_INTEGER, GL_UNSIGNED_INT,
-                      static_cast<GLsizei>(words.size() * sizeof(uint32_t)), words.data());
+    words.ask(ids_, channels_ == 4 ? GL_RGBA_INTEGER : GL_RG_INTEGER);
 }
 
 void VisibilityBuffer::clear() const {
@@ -95,13 +89,6 @@ void VisibilityBuffer::resolve() const {
     multisampled_->none.bind();
     glDrawArrays(GL_TRIANGLES, 0, 3);
     glEnable(GL_DEPTH_TEST);
-}
-
-void VisibilityBuffer::upload(bool with_draws) {
-    device_clips_.write(clips.data(), clips.size() * sizeof(Clip));
-    if (!normal_transforms.empty())
-        device_normal_transforms_.write(normal_transforms.data(), normal_transforms.size() * sizeof(NormalTransform));
-    if (with_draws) device_draws_.write(draws.data(), draws.size() * sizeof(DrawCommand));
 }
 
 }  // namespace insonify::sonar

@@ -1,9 +1,10 @@
-"""Programs of tests/bench: the framework's ports and the logger."""
+"""Programs of tests/bench: the framework's ports, the logger and pings that are under way together."""
 import json
 import subprocess
 import tempfile
 
 from benchmarks.common import BENCH, ROOT, fail
+from benchmarks.fans import SCENES, scene
 
 
 def measure_ports(_options):
@@ -37,3 +38,22 @@ def show_logger(logger):
     for name, unit in [("write_us", "us"), ("interval_ms", "ms")]:
         times = logger[name]
         print(f"  {name.split('_')[0]:9}{times['median']:9.3f} {unit}, p99 {times['p99']:.3f}, max {times['max']:.3f}")
+
+
+def measure_pipeline(options):
+    """What pipeline_bench tells of each scene: milliseconds a ping, from the first that is begun to the last that ends."""
+    found = {}
+    for name, scene_options in SCENES.items():
+        command = [ROOT / "build/bin/pipeline_bench", scene(scene_options), str(options.pings)]
+        done = subprocess.run(command, stdout=subprocess.PIPE, text=True)
+        if done.returncode != 0:
+            fail("pipeline_bench", done.returncode)
+        found[name] = json.loads(done.stdout)
+    return found
+
+
+def show_pipeline(scenes):
+    for name, scene_found in scenes.items():
+        print(f"FLS 512 x 1000, {name}, gl, by {scene_found['device']}")
+        for way, ms in scene_found["ms"].items():
+            print(f"  {way:32}{ms:9.3f} ms{1000 / ms:9.1f} pings/s")

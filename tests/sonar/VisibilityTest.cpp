@@ -50,18 +50,19 @@ std::vector<Seen> drawn(const types::Snapshot& snapshot, const std::vector<ViewF
     gpu::EglContext context("software");
     Culler culler(*snapshot.geometry, {.range_min = 0, .reach = {1e4}, .draw_all = true});
     ThreadPool threads(1);
-    SurfacePass surface(context, {*snapshot.geometry, frusta, {}, 1e-3, culler.drawRangeLimit(), true}, threads);
+    SurfacePass surface(context, {*snapshot.geometry, frusta, {}, 1e-3, true}, culler, threads);
     culler.place(snapshot);
-    surface.cull(culler);
-    surface.draw();
+    surface.cull(0);
+    surface.draw(0);
     std::vector<Seen> seen;
     for (size_t i = 0; i < frusta.size(); ++i) {
-        std::vector<uint32_t> words(2 * static_cast<size_t>(frusta[i].columns * frusta[i].rows));
-        surface.picture(i).read(words);
+        const size_t count = 2 * static_cast<size_t>(frusta[i].columns * frusta[i].rows);
+        gpu::ReadBack read(surface.picture(i).bytes());
+        surface.picture(i).read(read);
+        const std::span words(static_cast<const uint32_t*>(read.wait()), count);
+        const auto commands = surface.lists().commands(0, i);
         for (size_t pixel = 0; pixel < words.size(); pixel += 2)
-            seen.push_back(words[pixel] == 0
-                               ? nothing
-                               : Seen{surface.picture(i).commands[words[pixel] - 1].object, words[pixel + 1]});
+            seen.push_back(words[pixel] == 0 ? nothing : Seen{commands[words[pixel] - 1].object, words[pixel + 1]});
     }
     return seen;
 }

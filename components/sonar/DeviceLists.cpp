@@ -1,0 +1,183 @@
+#include <algorithm>
+
+#include "components/gpu/Program.hpp"
+#include "components/gpu/ReadBack.hpp"
+#include "components/sonar/DrawLists.hpp"
+
+namespace insonify::sonar {
+namespace {
+
+/** The processor chooses objects, a compute shader clusters in them. Every cluster of the scene has its draw, whose
+ * place never changes; it is empty where the cluster is not seen. */
+class DeviceLists final : public DrawLists {
+public:
+    DeviceLists(const Setup& setup, gpu::EglContext& context);
+    void list(size_t slot, size_t frustum, const ViewFrustum& view) override;
+    bool mayShow(size_t slot, size_t frustum) const override { return viewed(slot, frustum).any; }
+    void prepare(size_t slot, size_t frustum, const ViewFrustum& view) override;
+    Draws draws(size_t, size_t) const override {
+        return {&clips_, &normal_transforms_, &device_commands_, &draws_, groups_, {}};
+    }
+    std::span<const CommandRecord> commands(size_t, size_t) const override { return commands_; }
+    void ask(size_t slot) override;
+    bool empty(size_t slot) const override;
+    Shown shown(size_t slot) const override;
+
+private:
+    /** How one frustum sees all objects in one ping. */
+    struct View {
+        gpu::UploadList<ViewedObject> objects;
+        bool any = false;  ///< At least one is in view.
+    };
+    struct Uniforms {
+        GLint cluster_count, frustum, frustum_count, outward, range_max;
+    };
+    const View& viewed(size_t slot, size_t frustum) const { return views_[slot * setup_.frusta + frustum]; }
+    void addClusters(std::vector<ClusterRecord>& clusters, uint32_t object);
+    ViewedObject viewedObject(size_t object, const ViewFrustum& view, uint32_t in_view) const;
+    void setUniforms(size_t frustum, const ViewFrustum& view) const;
+    /** Triangles that each frustum showed, then whether each object was. */
+    std::span<const uint32_t> counts(size_t slot) const;
+
+    gpu::EglContext& context_;
+    const gpu::Program& program_;
+    Uniforms uniforms_;
+    std::vector<CommandRecord> commands_;  ///< Of each cluster, the same for all pings.
+    std::vector<DrawGroup> groups_;
+    std::vector<View> views_;  ///< Slot after slot, of each frustum.
+    gpu::Buffer clusters_, device_commands_, draws_, clips_, normal_transforms_, shown_;
+    bool begun_ = false;                ///< `shown_` is that of the ping that is being drawn.
+    std::vector<gpu::ReadBack> asked_;  ///< Of each slot.
+};
+
+std::vector<std::string> definesOf(const SurfaceScene& scene) {
+    return scene.withNormalMaps() ? std::vector<std::string>{"HAVE_NORMAL_MAP"} : std::vector<std::string>{};
+}
+
+DeviceLists::DeviceLists(const Setup& setup, gpu::EglContext& context)
+    : DrawLists(setup),
+      context_(context),
+      program_(context.programs().compute("cull.comp.glsl", definesOf(setup.scene))) {
+    const auto at = [this](const char* name) { return glGetUniformLocation(program_.id(), name); };
+    uniforms_ = {at("cluster_count"), at("frustum"), at("frustum_count"), at("outward"), at("range_max")};
+    std::vector<ClusterRecord> clusters;
+    for (uint32_t i = 0; i < setup.geometry.objects.size(); ++i) addClusters(clusters, i);
+    const size_t count = clusters.size(), counts = setup.frusta + setup.geometry.objects.size();
+    context.requireStorage(count * sizeof(NormalTransform), "the clusters of all objects");
+    clusters_ = gpu::Buffer::of(std::span<const ClusterRecord>(clusters));
+    device_commands_ = gpu::Buffer::of(std::span<const CommandRecord>(commands_));
+    draws_ = gpu::Buffer(count * sizeof(DrawCommand));
+    clips_ = gpu::Buffer(count * sizeof(Clip));
+    if (setup.scene.withNormalMaps()) normal_transforms_ = gpu::Buffer(count * sizeof(NormalTransform));
+    shown_ = gpu::Buffer(counts * sizeof(uint32_t));
+    for (size_t slot = 0; slot < setup.slots; ++slot) asked_.emplace_back(counts * sizeof(uint32_t));
+    for (size_t i = 0; i < setup.slots * setup.frusta; ++i)
+        views_.push_back({gpu::UploadList<ViewedObject>(setup.geometry.objects.size())});
+}
+
+void DeviceLists::addClusters(std::vector<ClusterRecord>& clusters, uint32_t object) {
+    const int mesh = setup_.geometry.objects[object].mesh;
+    const SurfaceScene::MeshPlace& place = setup_.scene.place(mesh);
+    for (const types::Cluster& cluster : setup_.geometry.meshes[static_cast<size_t>(mesh)].clusters) {
+        const types::Material& material = setup_.geometry.materials[static_cast<size_t>(cluster.material)];
+        const size_t at = clusters.size();
+        clusters.push_back({vec4(cluster.centre, material.normal_scale), vec4(cluster.half, 0),
+                            vec4(cluster.cone_apex, 0),
+                            vec4(cluster.cone_axis, setup_.culler.isSingleSided(cluster) ? cluster.cone_cutoff : 2),
+                            object, cluster.index_count, place.first_index + cluster.first_index, place.first_vertex});
+        commands_.push_back({object, place.first_triangle, static_cast<uint32_t>(cluster.material), 0});
+        const int map = setup_.scene.withNormalMaps() ? material.normal_map : -1;
+        if (groups_.empty() || groups_.back().normal_map != map) groups_.push_back({at, at, map});
+        groups_.back().last = at + 1;
+    }
+}
+
+void DeviceLists::list(size_t slot, size_t frustum, const ViewFrustum& frustum_view) {
+    View& view = views_[slot * setup_.frusta + frustum];
+    view.objects.clear();
+    view.any = false;
+    const Culler::View planes = Culler::viewOf(frustum_view);
+    for (size_t i = 0; i < setup_.geometry.objects.size(); ++i) {
+        const uint32_t in_view = setup_.culler.inView(planes, i);
+        view.any = view.any || in_view != NOT_IN_VIEW;
+        view.objects.push_back(viewedObject(i, frustum_view, in_view));
+    }
+}
+
+ViewedObject DeviceLists::viewedObject(size_t object, const ViewFrustum& view, uint32_t in_view) const {
+    ViewedObject viewed{};
+    viewed.in_view = in_view;
+    if (in_view == NOT_IN_VIEW) return viewed;
+    const ObjectRecord& record = setup_.culler.records()[object];
+    const Clip clip = clipOf(record, view);
+    viewed.clip_x = clip.x;
+    viewed.clip_y = clip.y;
+    viewed.clip_w = clip.w;
+    if (!setup_.scene.withNormalMaps()) return viewed;
+    const NormalTransform rows = normalTransformOf(record, view, 1);
+    viewed.normal_x = rows.normal[0];
+    viewed.normal_y = rows.normal[1];
+    viewed.normal_z = rows.normal[2];
+    viewed.tangent_x = rows.tangent[0];
+    viewed.tangent_y = rows.tangent[1];
+    viewed.tangent_z = rows.tangent[2];
+    return viewed;
+}
+
+void DeviceLists::setUniforms(size_t frustum, const ViewFrustum& view) const {
+    const Culler::View planes = Culler::viewOf(view);
+    glUniform1ui(uniforms_.cluster_count, static_cast<GLuint>(commands_.size()));
+    glUniform1ui(uniforms_.frustum, static_cast<GLuint>(frustum));
+    glUniform1ui(uniforms_.frustum_count, static_cast<GLuint>(setup_.frusta));
+    glUniform3fv(uniforms_.outward, static_cast<GLsizei>(planes.size()), &planes[0].x);
+    glUniform1f(uniforms_.range_max, setup_.culler.rangeMax());
+}
+
+void DeviceLists::prepare(size_t slot, size_t frustum, const ViewFrustum& view) {
+    if (!std::exchange(begun_, true)) shown_.clear();
+    program_.use();
+    setUniforms(frustum, view);
+    const auto bind = [](const gpu::Buffer& buffer, GLuint at) { buffer.bindBase(GL_SHADER_STORAGE_BUFFER, at); };
+    bind(objects(slot), OBJECTS_BINDING);
+    bind(clusters_, CLUSTERS_BINDING);
+    bind(viewed(slot, frustum).objects.buffer(), VIEWED_BINDING);
+    bind(draws_, DRAWS_BINDING);
+    bind(clips_, CLIPS_BINDING);
+    if (setup_.scene.withNormalMaps()) bind(normal_transforms_, NORMAL_TRANSFORMS_BINDING);
+    bind(shown_, SHOWN_BINDING);
+    // What the frustum before is drawn from is written anew.
+    glMemoryBarrier(GL_COMMAND_BARRIER_BIT | GL_VERTEX_ATTRIB_ARRAY_BARRIER_BIT | GL_SHADER_STORAGE_BARRIER_BIT);
+    glDispatchCompute(static_cast<GLuint>((commands_.size() + 63) / 64), 1, 1);
+    glMemoryBarrier(GL_COMMAND_BARRIER_BIT | GL_VERTEX_ATTRIB_ARRAY_BARRIER_BIT | GL_SHADER_STORAGE_BARRIER_BIT);
+}
+
+void DeviceLists::ask(size_t slot) {
+    if (!std::exchange(begun_, false)) shown_.clear();  // no frustum was drawn
+    asked_[slot].ask(shown_);
+}
+
+std::span<const uint32_t> DeviceLists::counts(size_t slot) const {
+    const auto alone = context_.transferring();
+    return {static_cast<const uint32_t*>(asked_[slot].wait()), setup_.frusta + setup_.geometry.objects.size()};
+}
+
+bool DeviceLists::empty(size_t slot) const {
+    return std::ranges::all_of(counts(slot).first(setup_.frusta), [](uint32_t count) { return count == 0; });
+}
+
+Shown DeviceLists::shown(size_t slot) const {
+    const std::span<const uint32_t> counts = this->counts(slot), triangles = counts.first(setup_.frusta);
+    Shown shown;
+    for (uint32_t of_object : counts.subspan(setup_.frusta)) shown.objects.push_back(of_object > 0);
+    for (uint32_t count : triangles) shown.triangles += count;
+    shown.empty_frusta = static_cast<size_t>(std::ranges::count(triangles, 0u));
+    return shown;
+}
+
+}  // namespace
+
+std::unique_ptr<DrawLists> makeDeviceLists(const DrawLists::Setup& setup, gpu::EglContext& context) {
+    return std::make_unique<DeviceLists>(setup, context);
+}
+
+}  // namespace insonify::sonar
