@@ -13,6 +13,7 @@ std::vector<StabilityCase> sensorCases();     ///< Fans and beams: 21 to 24, 30,
 std::vector<StabilityCase> rangeCases();      ///< Range bins and water: 24 to 29.
 std::vector<StabilityCase> levelCases();      ///< Dynamic range: 32 to 40.
 std::vector<StabilityCase> sumCases();        ///< Sums, order, buffers, devices: 41 to 44, 53 to 55.
+std::vector<StabilityCase> noiseCases();      ///< Seeds and shapes of speckle: 47, 48.
 std::vector<StabilityCase> laterCases();      ///< What waits for effects: 31, 38.
 
 }  // namespace insonify::study

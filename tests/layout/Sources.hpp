@@ -19,6 +19,8 @@ struct Source {
     }
     std::string stem() const { return std::filesystem::path(path).stem(); }
     bool isTaskHalf() const { return stem().ends_with("Task") || stem() == "registerTasks"; }
+    /** Of a component that brings its own part of the command: that part. */
+    bool isCommandHalf() const { return folder() == "study" && stem().ends_with("Command"); }
 };
 
 inline Source readSource(const std::filesystem::path& file) {

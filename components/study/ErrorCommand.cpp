@@ -5,21 +5,21 @@
 #include <cctype>
 #include <memory>
 
-#include "components/deployer/OutputFolder.hpp"
-#include "components/deployer/Pipeline.hpp"
-#include "components/deployer/ProgressLine.hpp"
-#include "components/deployer/StudyCommand.hpp"
+#include "components/command/OutputFolder.hpp"
+#include "components/command/ProgressLine.hpp"
 #include "components/sonar/BinGrid.hpp"
 #include "components/study/ErrorReport.hpp"
+#include "components/study/StudyCommand.hpp"
+#include "types/ConfigError.hpp"
 
-namespace insonify::deployer {
+namespace insonify::study {
 namespace {
 
 struct Options {
     std::string deployment, out;
     std::vector<std::string> scenes;
     uint64_t ping = 1;
-    study::ErrorOptions study;
+    ErrorOptions study;
     bool quiet = false;
 };
 
@@ -41,8 +41,8 @@ sonar::SonarConfig plain(sonar::SonarConfig config, const std::string& file) {
 
 std::vector<std::string> sceneNames() {
     std::vector<std::string> names;
-    for (const auto& makers : {study::closedFormScenes(), study::computedScenes()})
-        for (const study::SceneMaker& scene : makers) names.emplace_back(scene.name);
+    for (const auto& makers : {closedFormScenes(), computedScenes()})
+        for (const SceneMaker& scene : makers) names.emplace_back(scene.name);
     return names;
 }
 
@@ -54,12 +54,11 @@ std::string nameOf(const std::string& file) {
     return std::ranges::count(sceneNames(), name) == 0 ? name : "deployment_" + name;
 }
 
-study::StudyScene sceneOf(const std::string& file, uint64_t ping) {
-    const SonarAt sonar = sonarAt(file, ping);
+StudyScene studied(const std::string& file, const SonarAt& sonar) {
     return {nameOf(file), file, plain(sonar.config, file), sonar.snapshot, {}};
 }
 
-std::vector<study::StudyScene> scenesOf(const Options& options) {
+std::vector<StudyScene> scenesOf(const Options& options, const FindSonar& sonarAt) {
     const std::vector<std::string> names = sceneNames();
     for (const std::string& name : options.scenes)
         if (std::ranges::count(names, name) == 0)
@@ -68,30 +67,31 @@ std::vector<study::StudyScene> scenesOf(const Options& options) {
                 fmt::format("{} is not a scene of the study; those are {}", name, fmt::join(names, ", ")));
     const bool all = options.scenes.empty() && options.deployment.empty();
     const auto wanted = [&](const std::string& name) { return all || std::ranges::count(options.scenes, name) > 0; };
-    std::vector<study::StudyScene> scenes;
-    for (const auto& makers : {study::closedFormScenes(), study::computedScenes()})
-        for (const study::SceneMaker& scene : makers)
+    std::vector<StudyScene> scenes;
+    for (const auto& makers : {closedFormScenes(), computedScenes()})
+        for (const SceneMaker& scene : makers)
             if (wanted(scene.name)) scenes.push_back(scene.make());
-    if (!options.deployment.empty()) scenes.push_back(sceneOf(options.deployment, options.ping));
+    if (!options.deployment.empty())
+        scenes.push_back(studied(options.deployment, sonarAt(options.deployment, options.ping)));
     return scenes;
 }
 
-int studyError(Options options) {
-    const std::vector<study::StudyScene> scenes = scenesOf(options);
-    OutputFolder folder(options.out, "study_error");
-    StudyProgress progress(!options.quiet, scenes.size());
+int runStudy(Options options, const FindSonar& sonarAt) {
+    const std::vector<StudyScene> scenes = scenesOf(options, sonarAt);
+    command::OutputFolder folder(options.out, "study_error");
+    command::StudyProgress progress(!options.quiet, scenes.size());
     size_t scene = 0;
     options.study.progress = [&](const std::string& at) {
         for (; !at.starts_with(scenes[scene].name + " ") && scene + 1 < scenes.size(); ++scene) progress.advance();
         progress(at + ", scenes");
     };
-    const study::ErrorResult result = study::studyError(scenes, options.study);
+    const ErrorResult result = studyError(scenes, options.study);
     folder.keep();
-    study::writeReport(result, folder.path());
+    writeReport(result, folder.path());
     progress.end();
 
     bool all = true, open = false;
-    for (const study::Claim& claim : study::claims(result)) {
+    for (const Claim& claim : claims(result)) {
         all = all && !claim.fails();
         open = open || (!claim.fails() && !claim.holds());
         fmt::print("{}  {}: {:.4g}, {} {:.4g}\n", claim.verdict(), claim.text, claim.measured,
@@ -104,7 +104,7 @@ int studyError(Options options) {
 
 }  // namespace
 
-void addErrorStudy(CLI::App& study, Action& action) {
+void addErrorStudy(CLI::App& study, command::Action& action, const FindSonar& sonarAt) {
     const auto options = std::make_shared<Options>();
     CLI::App* command = study.add_subcommand("error", "Error against run time, for each way to estimate an echo");
     command->add_option(
@@ -123,7 +123,8 @@ void addErrorStudy(CLI::App& study, Action& action) {
                      "cast at most for the reference of a scene without a closed form")
         ->check(CLI::Range(1e3, 1e12));
     command->add_flag("--quiet", options->quiet, "no progress");
-    command->callback([options, &action] { action = [options] { return studyError(*options); }; });
+    command->callback(
+        [options, sonarAt, &action] { action = [options, sonarAt] { return runStudy(*options, sonarAt); }; });
 }
 
-}  // namespace insonify::deployer
+}  // namespace insonify::study

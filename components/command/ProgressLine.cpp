@@ -1,4 +1,4 @@
-#include "components/deployer/ProgressLine.hpp"
+#include "components/command/ProgressLine.hpp"
 
 #include <fmt/core.h>
 #include <unistd.h>
@@ -6,7 +6,7 @@
 #include <cmath>
 #include <cstdint>
 
-namespace insonify::deployer {
+namespace insonify::command {
 
 ProgressLine::ProgressLine(bool wanted) : shown_(wanted && isatty(STDERR_FILENO)) {}
 
@@ -48,4 +48,4 @@ std::string timeLeft(double share, double wall_s) {
     return fmt::format(", {:.0f} % done, {} left", std::floor(100 * share), durationText(wall_s * (1 - share) / share));
 }
 
-}  // namespace insonify::deployer
+}  // namespace insonify::command

@@ -2,7 +2,7 @@
 #include <filesystem>
 #include <string>
 
-namespace insonify::deployer {
+namespace insonify::command {
 
 /** Where a run leaves its files. Unless it is kept, a folder that was made for the run goes with this object. */
 class OutputFolder {
@@ -22,4 +22,4 @@ private:
     bool made_ = false, asked_, kept_ = false;
 };
 
-}  // namespace insonify::deployer
+}  // namespace insonify::command

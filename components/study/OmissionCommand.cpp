@@ -7,17 +7,16 @@
 #include <memory>
 #include <stdexcept>
 
-#include "components/deployer/Json.hpp"
-#include "components/deployer/OutputFolder.hpp"
-#include "components/deployer/Pipeline.hpp"
-#include "components/deployer/ProgressLine.hpp"
-#include "components/deployer/StudyCommand.hpp"
+#include "components/command/Json.hpp"
+#include "components/command/OutputFolder.hpp"
+#include "components/command/ProgressLine.hpp"
 #include "components/study/OmissionStudy.hpp"
+#include "components/study/StudyCommand.hpp"
 
-namespace insonify::deployer {
+namespace insonify::study {
 namespace {
 
-using study::OmissionRow;
+using command::Json;
 
 struct Options {
     std::string deployment, out;
@@ -45,7 +44,7 @@ Json toJson(const OmissionRow& row) {
 
 std::string line(const OmissionRow& row) {
     if (!row.measured) return fmt::format("| {} | {} | | | | | | {} |\n", row.name, row.reason, verdict(row));
-    const study::Ablation& a = *row.measured;
+    const Ablation& a = *row.measured;
     return fmt::format("| {} | {} | {:.2g} | {:.2g} | {} | {:.3f} | {:.3f} | {} |\n", row.name, row.reason, a.change,
                        a.rel_l2_tvg, row.bound ? fmt::format("{:.2g} of {}", *row.bound, row.bound_of) : "",
                        a.without_ms, a.with_ms, verdict(row));
@@ -65,12 +64,12 @@ std::string sheet(const std::string& deployment, const std::vector<OmissionRow>&
     return text;
 }
 
-int studyOmission(const Options& options) {
+int runStudy(const Options& options, const FindSonar& sonarAt) {
     const SonarAt sonar = sonarAt(options.deployment, options.ping);
-    OutputFolder folder(options.out, "study_omission");
-    StudyProgress progress(!options.quiet);
+    command::OutputFolder folder(options.out, "study_omission");
+    command::StudyProgress progress(!options.quiet);
     const std::vector<OmissionRow> rows =
-        study::studyOmissions(sonar.config, sonar.snapshot, options.pings, std::ref(progress));
+        studyOmissions(sonar.config, sonar.snapshot, options.pings, std::ref(progress));
     progress.end();
     folder.keep();
     const std::string text = sheet(options.deployment, rows);
@@ -79,14 +78,14 @@ int studyOmission(const Options& options) {
         throw std::runtime_error((folder.path() / "omission.md").string() + " cannot be written");
     Json json = Json::array();
     for (const OmissionRow& row : rows) json.push_back(toJson(row));
-    write(json, (folder.path() / "omission.json").string());
+    command::write(json, (folder.path() / "omission.json").string());
     fmt::print("{}", text);
     return std::ranges::all_of(rows, &OmissionRow::holds) ? 0 : 1;
 }
 
 }  // namespace
 
-void addOmissionStudy(CLI::App& study, Action& action) {
+void addOmissionStudy(CLI::App& study, command::Action& action, const FindSonar& sonarAt) {
     const auto options = std::make_shared<Options>();
     CLI::App* command =
         study.add_subcommand("omission", "Bins and time with and without each thing that the plan leaves out");
@@ -95,7 +94,8 @@ void addOmissionStudy(CLI::App& study, Action& action) {
     command->add_option("--ping", options->ping, "which ping of the deployment")->check(CLI::PositiveNumber);
     command->add_option("--pings", options->pings, "timed for each")->check(CLI::Range(1, 1000));
     command->add_flag("--quiet", options->quiet, "no progress");
-    command->callback([options, &action] { action = [options] { return studyOmission(*options); }; });
+    command->callback(
+        [options, sonarAt, &action] { action = [options, sonarAt] { return runStudy(*options, sonarAt); }; });
 }
 
-}  // namespace insonify::deployer
+}  // namespace insonify::study

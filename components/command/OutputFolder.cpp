@@ -1,4 +1,4 @@
-#include "components/deployer/OutputFolder.hpp"
+#include "components/command/OutputFolder.hpp"
 
 #include <fmt/chrono.h>
 #include <fmt/core.h>
@@ -8,7 +8,7 @@
 
 #include "types/ConfigError.hpp"
 
-namespace insonify::deployer {
+namespace insonify::command {
 namespace fs = std::filesystem;
 namespace {
 
@@ -51,4 +51,4 @@ OutputFolder::~OutputFolder() {
     if (made_ && !kept_) fs::remove_all(path_, ignored);
 }
 
-}  // namespace insonify::deployer
+}  // namespace insonify::command

@@ -3,7 +3,7 @@
 #include <cstddef>
 #include <string>
 
-namespace insonify::deployer {
+namespace insonify::command {
 
 /** One line on a terminal, at most ten times a second, wiped at the end; nothing elsewhere. */
 class ProgressLine {
@@ -43,4 +43,4 @@ std::string timeLeft(double share, double wall_s);
 /** "34 s", "5 min 03 s", "2 h 05 min" */
 std::string durationText(double seconds);
 
-}  // namespace insonify::deployer
+}  // namespace insonify::command
