@@ -93,8 +93,8 @@ const char* nameOf(Verdict verdict) {
 
 std::vector<StabilityCase> stabilityCases() {
     std::vector<StabilityCase> all;
-    for (const auto& group : {precisionCases, geometryCases, sceneFileCases, sensorCases, rangeCases, levelCases,
-                              sumCases, noiseCases, laterCases})
+    for (const auto& group :
+         {precisionCases, geometryCases, sensorCases, rangeCases, levelCases, sumCases, noiseCases, laterCases})
         for (StabilityCase& added : group()) all.push_back(std::move(added));
     return all;
 }

@@ -82,6 +82,8 @@ TEST_F(ScanningSonarTaskTest, TimeThatGoesBackwardsIsARunTimeErrorUntilItGoesOn)
     ASSERT_TRUE(next);
     EXPECT_EQ(task_.state(), TaskState::Running);
     EXPECT_NEAR(next->bearings[0].deg(), 0, 1e-9);
+    EXPECT_TRUE(pingAt(2)) << "an equal time";
+    EXPECT_TRUE(pingAt(2 + 5 * 86400.0)) << "a leap of five days";
 }
 
 TEST_F(ScanningSonarTaskTest, AStepThatTheHeadCannotMakeInThePingPeriodIsRefused) {

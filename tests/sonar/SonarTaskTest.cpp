@@ -107,6 +107,35 @@ TEST_F(SonarTaskTest, AQuaternionThatIsNotOfUnitLengthIsNormalised) {
     EXPECT_EQ(ping->bins, same->bins);
 }
 
+TEST_F(SonarTaskTest, PingsCloserThanSoundsWayThereAndBackAreToldToBeAmbiguous) {
+    const auto warning = ::testing::Contains(::testing::HasSubstr("ambiguous in range"));
+    const auto pingAt = [&](double seconds) {
+        types::Snapshot snapshot = facingWall(5);
+        snapshot.time = types::Time::fromSeconds(seconds);
+        return pingOf(snapshot);
+    };
+    start();  // 15 m there and back at 1500 m/s: 20 ms
+    ASSERT_TRUE(pingAt(1) && pingAt(1.1));
+    EXPECT_THAT(task_.notices(), ::testing::Not(warning));
+    ASSERT_TRUE(pingAt(1.101)) << "heard all the same";
+    EXPECT_THAT(task_.notices(), warning);
+}
+
+TEST_F(SonarTaskTest, ASonarFasterThanATenthOfTheSpeedOfSoundIsRefused) {
+    const auto pingAt = [&](double seconds, double y) {
+        types::Snapshot snapshot = facingWall(5);
+        snapshot.time = types::Time::fromSeconds(seconds);
+        snapshot.sonar.position.y = y;
+        return pingOf(snapshot);
+    };
+    start();
+    EXPECT_TRUE(pingAt(1, 0));
+    EXPECT_TRUE(pingAt(2, 140));
+    EXPECT_FALSE(pingAt(3, 300)) << "160 m/s of 1500";
+    EXPECT_THAT(task_.lastError(), ::testing::HasSubstr("a tenth of the speed of sound"));
+    EXPECT_TRUE(pingAt(4, 310));
+}
+
 TEST_F(SonarTaskTest, ANewSceneIsRenderedFromThenOn) {
     start();
     EXPECT_NEAR(firstEcho(*pingOf(facingWall(5)), 4), 5, 0.16);

@@ -18,7 +18,7 @@ std::vector<std::string> linesOf(const fs::path& file) {
 
 }  // namespace
 
-TEST(StudyErrorCommandTest, WritesTableJsonDiagramAndPage) {
+TEST(ErrorCommandTest, WritesTableJsonDiagramAndPage) {
     const WallFolder folder;
     const Outcome outcome = callInsonify(
         folder, {"study", "error", "--scene", "flat_bottom", "--levels", "2", "--pings", "2", "--out", "report"});
@@ -40,7 +40,7 @@ TEST(StudyErrorCommandTest, WritesTableJsonDiagramAndPage) {
     EXPECT_THAT(readFile(folder / "report/index.html"), HasSubstr("Time to an error"));
 }
 
-TEST(StudyErrorCommandTest, ADeploymentIsStudiedAgainstBruteForceThatMayBeTooCoarseToTell) {
+TEST(ErrorCommandTest, ADeploymentIsStudiedAgainstBruteForceThatMayBeTooCoarseToTell) {
     const WallFolder folder;
     const Outcome outcome = callInsonify(folder, {"study", "error", "wall.yml", "--levels", "2", "--pings", "1",
                                                   "--reference-rays", "1e5", "--out", "report"});
@@ -56,7 +56,7 @@ TEST(StudyErrorCommandTest, ADeploymentIsStudiedAgainstBruteForceThatMayBeTooCoa
         EXPECT_TRUE(point["method"] != "footprint" || point["rel_l2"] < 0.02) << point;
 }
 
-TEST(StudyErrorCommandTest, TimesOfRaysAreToldForAnyDeployment) {
+TEST(ErrorCommandTest, TimesOfRaysAreToldForAnyDeployment) {
     const WallFolder folder;
     const Outcome outcome = callInsonify(folder, {"study", "rays", "wall.yml", "--pings", "3"});
     ASSERT_EQ(outcome.code, 0) << outcome.err;
@@ -68,7 +68,7 @@ TEST(StudyErrorCommandTest, TimesOfRaysAreToldForAnyDeployment) {
     EXPECT_GT(times["ping_median_ms"], 0);
 }
 
-TEST(StudyErrorCommandTest, WhatCannotBeStudiedIsRefused) {
+TEST(ErrorCommandTest, WhatCannotBeStudiedIsRefused) {
     const WallFolder folder;
     Outcome outcome = callInsonify(folder, {"study", "error", "--scene", "moon", "--out", "report"});
     EXPECT_EQ(outcome.code, 2);

@@ -15,7 +15,7 @@ json rowOf(const json& rows, const std::string& name) {
 
 }  // namespace
 
-TEST(StudyOmissionCommandTest, WhatIsLeftOutChangesNoBinByMoreThanItsBound) {
+TEST(OmissionCommandTest, WhatIsLeftOutChangesNoBinByMoreThanItsBound) {
     const WallFolder folder;
     const Outcome outcome = callInsonify(folder, {"study", "omission", "wall.yml", "--pings", "3", "--out", "report"});
     ASSERT_EQ(outcome.code, 0) << outcome.err << outcome.out;
@@ -33,7 +33,7 @@ TEST(StudyOmissionCommandTest, WhatIsLeftOutChangesNoBinByMoreThanItsBound) {
     EXPECT_THAT(outcome.out, HasSubstr("| normal maps | no material has one |"));
 }
 
-TEST(StudyOmissionCommandTest, WhatIsConfiguredIsShownWithWhatItCosts) {
+TEST(OmissionCommandTest, WhatIsConfiguredIsShownWithWhatItCosts) {
     const WallFolder folder;
     writeFile(folder / "loud.yml",
               replaced(wall_deployment, "      range: 20\n", "      range: 20\n      absorption: {db_per_m: 0.2}\n"));
@@ -48,7 +48,7 @@ TEST(StudyOmissionCommandTest, WhatIsConfiguredIsShownWithWhatItCosts) {
     EXPECT_LE(inside["change"], inside["bound"]);
 }
 
-TEST(StudyOmissionCommandTest, WhatCannotBeStudiedIsRefused) {
+TEST(OmissionCommandTest, WhatCannotBeStudiedIsRefused) {
     const WallFolder folder;
     EXPECT_EQ(callInsonify(folder, {"study", "omission"}).code, 2);
     const Outcome outcome = callInsonify(folder, {"study", "omission", "none.yml", "--out", "report"});
