@@ -18,6 +18,7 @@ void addInitCommand(CLI::App& app, Action& action);
 void addLogCommand(CLI::App& app, Action& action);
 void addReplayCommand(CLI::App& app, Action& action);
 void addSceneCommand(CLI::App& app, Action& action);
+void addWaterCommand(CLI::App& app, Action& action);
 void addSchemaCommand(CLI::App& app, Action& action);
 void addCompletionCommand(CLI::App& app, Action& action);
 void addManCommand(CLI::App& app, Action& action);

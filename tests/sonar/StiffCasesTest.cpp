@@ -86,7 +86,7 @@ TEST(StiffCasesTest, ASurfaceOnTheEdgeOfABinIsHeardInTheBinThatBeginsThere) {
 
 TEST(StiffCasesTest, FrequenciesOutsideTheLawsAreToldAndTheirEchoesFinite) {
     for (const double khz : {0.0, 1e4})
-        for (const auto law : {AbsorptionLaw::FrancoisGarrison, AbsorptionLaw::AinslieMccolm}) {
+        for (const auto law : {acoustics::AbsorptionLaw::FrancoisGarrison, acoustics::AbsorptionLaw::AinslieMccolm}) {
             SonarConfig config = fan();
             config.water.emplace();
             config.absorption.emplace().frequency_khz = khz;
