@@ -28,7 +28,8 @@ DepositSetup depositSetup(const RenderPlan& plan, const types::Geometry& geometr
     DepositSetup setup;
     setup.rules = makeEchoRules(plan, geometry);
     setup.frusta = plan.frusta;
-    for (const ViewFrustum& frustum : plan.frusta) setup.shares.push_back(makeShares(plan.config, plan.beams, frustum));
+    for (const ViewFrustum& frustum : plan.frusta)
+        setup.shares.push_back(makeShares(plan.config, plan.beams, frustum, plan.options));
     setup.beam_count = static_cast<uint32_t>(plan.beams.size());
     return setup;
 }
@@ -73,7 +74,7 @@ DrawnEchoes::DrawnEchoes(const RenderPlan& plan, types::GeometryPtr geometry)
       device_(fmt::format("{}, OpenGL {}", context_.renderer(), context_.driver())),
       levels_(plan.config, plan.grid),
       culler_(*geometry_, {nearest_drawn, reachOf(plan), plan.config.draw_all}),
-      threads_(plan.config.threads),
+      threads_(plan.options.threads),
       surface_(context_,
                {*geometry_, plan.frusta, plan.features.defines(), nearPlane(plan.frusta.front()),
                 culler_.drawRangeLimit(), plan_.config.published},

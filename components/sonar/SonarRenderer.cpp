@@ -10,7 +10,7 @@
 namespace insonify::sonar {
 
 struct SonarRenderer::Parts {
-    Parts(const SonarConfig& config, types::GeometryPtr scene);
+    Parts(const SonarConfig& config, types::GeometryPtr scene, const RenderOptions& options);
     ~Parts();
     void fillHeader(const types::Snapshot& snapshot, types::Sonar& ping) const;
 
@@ -20,8 +20,8 @@ struct SonarRenderer::Parts {
     std::unique_ptr<EchoRenderer> echoes;
 };
 
-SonarRenderer::Parts::Parts(const SonarConfig& config, types::GeometryPtr scene)
-    : plan(makeRenderPlan(config, *scene)), told(report(plan, *scene)) {
+SonarRenderer::Parts::Parts(const SonarConfig& config, types::GeometryPtr scene, const RenderOptions& options)
+    : plan(makeRenderPlan(config, *scene, options)), told(report(plan, *scene)) {
     if (plan.casts_rays) {
         echoes = makeCastEchoes(plan, std::move(scene));
     } else {
@@ -52,8 +52,8 @@ void SonarRenderer::Parts::fillHeader(const types::Snapshot& snapshot, types::So
     ping.bins.resize(plan.beams.size() * static_cast<size_t>(plan.grid.bin_count));
 }
 
-SonarRenderer::SonarRenderer(const SonarConfig& config, types::GeometryPtr geometry)
-    : parts_(std::make_unique<Parts>(config, std::move(geometry))) {}
+SonarRenderer::SonarRenderer(const SonarConfig& config, types::GeometryPtr geometry, const RenderOptions& options)
+    : parts_(std::make_unique<Parts>(config, std::move(geometry), options)) {}
 
 SonarRenderer::~SonarRenderer() = default;
 

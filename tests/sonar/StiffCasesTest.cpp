@@ -27,9 +27,10 @@ SonarConfig fan(double field_of_view_deg = 60, int beams = 16, int bins = 200) {
     return config;
 }
 
-std::vector<float> binsOf(const SonarConfig& config, const types::GeometryPtr& geometry) {
+std::vector<float> binsOf(const SonarConfig& config, const types::GeometryPtr& geometry,
+                          const RenderOptions& options = {}) {
     types::Sonar ping;
-    SonarRenderer(config, geometry).render(test::snapshotOf(geometry), ping);
+    SonarRenderer(config, geometry, options).render(test::snapshotOf(geometry), ping);
     return ping.bins;
 }
 
@@ -104,14 +105,11 @@ TEST(StiffCasesTest, TheNumberOfThreadsThatSumADrawnPingChangesNoBit) {
         config.model = model;
         config.device = "software";
         config.deposit = Deposit::Cpu;
-        config.threads = 1;
         const auto scene = test::surfaces();
-        const std::vector<float> alone = binsOf(config, scene);
+        const std::vector<float> alone = binsOf(config, scene, {.threads = 1});
         EXPECT_THAT(alone, Contains(testing::Gt(0)));
-        for (const int threads : {2, 3, 5, 8, 16}) {
-            config.threads = threads;
-            EXPECT_EQ(binsOf(config, scene), alone) << threads << " threads";
-        }
+        for (const int threads : {2, 3, 5, 8, 16})
+            EXPECT_EQ(binsOf(config, scene, {.threads = threads}), alone) << threads << " threads";
     }
 }
 
