@@ -144,5 +144,5 @@ TEST(IncludeRuleTest, TheRuleRefusesWhatItShould) {
     EXPECT_FALSE(allowed("components/dds/Node.cpp", "components/framework/Port.hpp"));
     EXPECT_TRUE(allowed("components/dds/Node.cpp", "components/ros/Cdr.hpp"));
     EXPECT_TRUE(allowed("components/sonar/SonarRenderer.cpp", "components/gpu/Context.hpp"));
-    EXPECT_TRUE(allowed("components/deployer/main.cpp", "components/noise/registerTasks.hpp"));
+    EXPECT_TRUE(allowed("components/deployer/main.cpp", "components/noise/NoiseTask.hpp"));
 }
