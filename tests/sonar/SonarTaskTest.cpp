@@ -6,36 +6,21 @@
 
 #include "components/sonar/SonarTask.hpp"
 #include "tests/sonar/WallScene.hpp"
-#include "tests/support/Ports.hpp"
+#include "tests/support/TaskBench.hpp"
 
 namespace insonify::sonar {
 namespace {
 
 using framework::TaskState;
 
-class SonarTaskTest : public ::testing::Test {
+class SonarTaskTest : public test::TaskBench<SonarTask, types::SnapshotPtr, types::SonarPtr> {
 protected:
-    SonarTaskTest() {
-        in_.port.connectTo(task_.snapshot, framework::ConnPolicy::buffer(4));
-        task_.ping.connectTo(out_.port, framework::ConnPolicy::buffer(4));
-    }
-    void start(const SonarConfig& config = smallSonar()) {
-        task_.config.set(config);
-        ASSERT_TRUE(task_.configure()) << task_.lastError();
-        ASSERT_TRUE(task_.start()) << task_.lastError();
-    }
+    SonarTaskTest() : TaskBench(&SonarTask::snapshot, &SonarTask::ping) {}
+    void start(const SonarConfig& config = smallSonar()) { startWith(config); }
     /** The ping for one snapshot; null when there was none. */
     types::SonarPtr pingOf(types::Snapshot snapshot) {
-        in_.port.write(std::make_shared<types::Snapshot>(std::move(snapshot)));
-        task_.update();
-        types::SonarPtr ping;
-        out_.port.readNew(ping);
-        return ping;
+        return answerTo(std::make_shared<types::Snapshot>(std::move(snapshot)));
     }
-
-    SonarTask task_{"sonar"};
-    test::Writer<types::SnapshotPtr> in_;
-    test::Reader<types::SonarPtr> out_;
 };
 
 TEST_F(SonarTaskTest, APingCarriesTheTimeOfItsSnapshotAndTheGridOfItsBins) {
