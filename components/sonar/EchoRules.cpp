@@ -5,8 +5,21 @@
 #include <limits>
 
 #include "components/sonar/Acoustics.hpp"
+#include "components/sonar/Interface.hpp"
+#include "types/Angle.hpp"
 
 namespace insonify::sonar {
+namespace {
+
+void tabulateElevation(const RenderPlan& plan, EchoRules& rules) {
+    rules.elevation_reach = std::sin(types::radians(plan.sampled.beam_height_deg) / 2);
+    for (int i = 0; i <= ELEVATION_STEPS; ++i) {
+        const double sine = rules.elevation_reach * (2.0 * i / ELEVATION_STEPS - 1);
+        rules.elevation_powers.push_back(plan.directivity->elevation(std::asin(sine)));
+    }
+}
+
+}  // namespace
 
 EchoRules makeEchoRules(const RenderPlan& plan, const types::Geometry& geometry) {
     const BinGrid& bins = plan.grid;
@@ -21,6 +34,7 @@ EchoRules makeEchoRules(const RenderPlan& plan, const types::Geometry& geometry)
     for (int k = 0; k < bins.bin_count; ++k) rules.middles.push_back(bins.centre(k));
     rules.edges.resize(rules.edges.size() + bins_at_once);
     rules.middles.resize(rules.middles.size() + bins_at_once);
+    if (rules.features.has(Feature::ElevationPattern)) tabulateElevation(plan, rules);
     return rules;
 }
 
@@ -32,14 +46,15 @@ double loudest(const types::Geometry& geometry) {
 }
 
 double strengthScale(const RenderPlan& plan, double loudest) {
+    const SonarConfig& config = plan.sampled;
     const BinGrid& bins = plan.grid;
     constexpr double most = 1048576, max_sum = 8 * most;  // of one deposit, and of a bin: half of 64 bits
-    if (plan.config.model != Model::Physical) return 1;   // S and its weights are at most 1
+    if (config.model != Model::Physical) return 1;        // S and its weights are at most 1
     const double ratio =
         std::max(1.5, 0.5 * bins.bin_width / std::max(bins.range_min, 1e-3));  // of a bin's middle to its ranges
     const double strongest = loudest * ratio * ratio;
     const double pixels =
-        static_cast<double>(plan.options.samples_per_pixel * plan.config.rows()) * (plan.config.columnsPerBeam() + 2);
+        static_cast<double>(plan.options.samples_per_pixel * config.rows()) * (config.columnsPerBeam() + 2);
     return std::exp2(-std::ceil(std::max(0.0, std::log2(strongest * std::max(1 / most, pixels / max_sum)))));
 }
 
