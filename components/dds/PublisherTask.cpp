@@ -4,6 +4,7 @@
 #include <chrono>
 
 #include "components/dds/Publication.hpp"
+#include "components/dds/SubscriberTask.hpp"
 #include "components/framework/Latency.hpp"
 #include "types/ConfigError.hpp"
 
@@ -107,6 +108,11 @@ void PublisherTask::updateHook() {
 void PublisherTask::cleanupHook() {
     for (const auto& inlet : inlets_) inlet->close();
     node_.reset();
+}
+
+void registerTasks(framework::Registry& registry) {
+    registry.add<PublisherTask>("dds::PublisherTask", "sends pings, poses and pictures as ROS 2 messages");
+    registry.add<SubscriberTask>("dds::SubscriberTask", "reads poses that ROS 2 nodes send");
 }
 
 }  // namespace insonify::dds

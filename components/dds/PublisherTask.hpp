@@ -8,6 +8,7 @@
 #include "components/dds/PublisherConfig.hpp"
 #include "components/framework/Port.hpp"
 #include "components/framework/Properties.hpp"
+#include "components/framework/Registry.hpp"
 #include "components/framework/TaskContext.hpp"
 #include "types/ThrottledWarning.hpp"
 
@@ -58,5 +59,8 @@ private:
     std::optional<Node> node_;
     std::vector<std::unique_ptr<Inlet>> inlets_;
 };
+
+/** Makes the tasks of this folder known to deployments. */
+void registerTasks(framework::Registry& registry);
 
 }  // namespace insonify::dds

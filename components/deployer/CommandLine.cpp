@@ -8,6 +8,7 @@
 #include <iostream>
 
 #include "components/deployer/Commands.hpp"
+#include "components/deployer/Pipeline.hpp"
 #include "types/ConfigError.hpp"
 #include "types/DidYouMean.hpp"
 #include "types/Reason.hpp"
@@ -89,7 +90,7 @@ int runCommandLine(int argc, char** argv) {
     addSchemaCommand(app, action);
     addLogCommand(app, action);
     addReplayCommand(app, action);
-    addStudyCommand(app, action);
+    study::addCommand(app, action, sonarAt);
     addCompletionCommand(app, action);
     addManCommand(app, action);
 

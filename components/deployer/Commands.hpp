@@ -2,12 +2,12 @@
 #include <CLI/App.hpp>
 #include <CLI/Config.hpp>
 #include <CLI/Formatter.hpp>
-#include <functional>
+
+#include "components/command/Action.hpp"
 
 namespace insonify::deployer {
 
-/** What the command line asks for: does it and gives the exit code. */
-using Action = std::function<int()>;
+using command::Action;
 
 // Each adds one command with its options to `app`; parsing that command sets `action`.
 void addRunCommand(CLI::App& app, Action& action);
@@ -17,7 +17,6 @@ void addDescribeCommand(CLI::App& app, Action& action);
 void addInitCommand(CLI::App& app, Action& action);
 void addLogCommand(CLI::App& app, Action& action);
 void addReplayCommand(CLI::App& app, Action& action);
-void addStudyCommand(CLI::App& app, Action& action);
 void addSceneCommand(CLI::App& app, Action& action);
 void addBeamCommand(CLI::App& app, Action& action);
 void addWaterCommand(CLI::App& app, Action& action);

@@ -2,9 +2,6 @@
 
 #include <fmt/core.h>
 
-#include <fstream>
-#include <stdexcept>
-
 namespace insonify::deployer {
 
 Json toJson(const types::Diagnostic& diagnostic) {
@@ -41,16 +38,6 @@ Json toJson(const types::Plan& plan) {
               {"predicted_error", plan.predicted_error}}},
             {"device", plan.device},
             {"notices", plan.notices}};
-}
-
-std::string text(const Json& json) { return json.dump(2, ' ', false, Json::error_handler_t::replace); }
-
-void print(const Json& json) { fmt::print("{}\n", text(json)); }
-
-void write(const Json& json, const std::string& file) {
-    std::ofstream stream(file);
-    stream << text(json) << '\n';
-    if (!stream.flush()) throw std::runtime_error(fmt::format("{}: cannot be written", file));
 }
 
 }  // namespace insonify::deployer

@@ -1,14 +1,17 @@
 #pragma once
-#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
+#include "components/command/Json.hpp"
 #include "types/ConfigError.hpp"
 #include "types/Plan.hpp"
 
 namespace insonify::deployer {
 
-using Json = nlohmann::ordered_json;
+using command::Json;
+using command::print;
+using command::text;
+using command::write;
 
 Json toJson(const types::Diagnostic& diagnostic);
 Json toJson(const std::vector<types::Omission>& omitted);
@@ -18,10 +21,5 @@ std::string qualityText(const types::Plan& plan);
 /** `{features, passes, omitted, quality: {rows, columns_per_beam, slabs, predicted_error}, device, notices}`; an error
  * that is not predicted is null. */
 Json toJson(const types::Plan& plan);
-
-std::string text(const Json& json);  ///< Indented; text that is no UTF-8 is mended, NaN and infinities are null.
-void print(const Json& json);        ///< To stdout.
-/** Throws std::runtime_error when the file cannot be written. */
-void write(const Json& json, const std::string& file);
 
 }  // namespace insonify::deployer

@@ -65,7 +65,7 @@ std::set<std::string> pingTasks(const DeploymentSpec& spec, framework::Registry&
     return names;
 }
 
-SonarAt sonarAt(const std::string& file, uint64_t ping) {
+study::SonarAt sonarAt(const std::string& file, uint64_t ping) {
     framework::Registry registry = builtInTasks();
     Deployment deployment(pipelineOf(DeploymentSpec::load(deploymentIn(file)), registry), registry);
     deployment.configure();
@@ -75,7 +75,7 @@ SonarAt sonarAt(const std::string& file, uint64_t ping) {
         auto* sonar = dynamic_cast<sonar::PingTask*>(task.get());
         types::SnapshotPtr snapshot;
         if (!sonar || !sonar->plan() || sonar->snapshot.read(snapshot) == framework::FlowStatus::NoData) continue;
-        SonarAt found{sonar->sonarConfig(), *snapshot};
+        study::SonarAt found{sonar->sonarConfig(), *snapshot};
         found.config.quality = {};
         found.config.quality.rows = sonar->plan()->rows;
         found.config.quality.columns_per_beam = sonar->plan()->columns_per_beam;

@@ -6,10 +6,10 @@
 #include <filesystem>
 #include <memory>
 
+#include "components/command/OutputFolder.hpp"
+#include "components/command/ProgressLine.hpp"
 #include "components/deployer/Commands.hpp"
 #include "components/deployer/DeploymentFile.hpp"
-#include "components/deployer/OutputFolder.hpp"
-#include "components/deployer/ProgressLine.hpp"
 #include "components/deployer/RunOptions.hpp"
 #include "components/deployer/StopSignal.hpp"
 #include "components/deployer/Summary.hpp"
@@ -19,6 +19,8 @@
 
 namespace insonify::deployer {
 namespace {
+
+using command::OutputFolder;
 
 /** How long a run in lockstep will be by its trajectories, where nothing else ends it; 0: not known [s]. */
 double trajectoryLength(const framework::Deployment& deployment) {
@@ -41,15 +43,15 @@ public:
         const double share = pings_ > 0     ? done / static_cast<double>(pings_)
                              : seconds_ > 0 ? progress.elapsed_s / seconds_
                                             : 0;
-        line_.show(
-            progress.wall_s,
-            fmt::format("{}{} pings, {:.1f} per second, {:.1f}{} s simulated{}", progress.pings,
-                        pings_ > 0 ? fmt::format(" of {}", pings_) : "", done / progress.wall_s, progress.elapsed_s,
-                        seconds_ > 0 ? fmt::format(" of {:.1f}", seconds_) : "", timeLeft(share, progress.wall_s)));
+        line_.show(progress.wall_s,
+                   fmt::format("{}{} pings, {:.1f} per second, {:.1f}{} s simulated{}", progress.pings,
+                               pings_ > 0 ? fmt::format(" of {}", pings_) : "", done / progress.wall_s,
+                               progress.elapsed_s, seconds_ > 0 ? fmt::format(" of {:.1f}", seconds_) : "",
+                               command::timeLeft(share, progress.wall_s)));
     }
 
 private:
-    ProgressLine line_;
+    command::ProgressLine line_;
     uint64_t pings_;
     double seconds_;
 };

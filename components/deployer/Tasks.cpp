@@ -1,18 +1,18 @@
 #include "components/deployer/Tasks.hpp"
 
 #ifdef INSONIFY_DDS
-#include "components/dds/registerTasks.hpp"
+#include "components/dds/PublisherTask.hpp"
 #endif
-#include "components/logger/registerTasks.hpp"
-#include "components/noise/registerTasks.hpp"
-#include "components/output/registerTasks.hpp"
-#include "components/pose/registerTasks.hpp"
-#include "components/receiver/registerTasks.hpp"
-#include "components/replay/registerTasks.hpp"
-#include "components/scene/registerTasks.hpp"
-#include "components/sonar/registerTasks.hpp"
+#include "components/logger/LoggerTask.hpp"
+#include "components/noise/NoiseTask.hpp"
+#include "components/output/PictureTask.hpp"
+#include "components/pose/TrajectoryTask.hpp"
+#include "components/receiver/ReceiverTask.hpp"
+#include "components/replay/ReplayTask.hpp"
+#include "components/scene/SceneTask.hpp"
+#include "components/sonar/ScanningSonarTask.hpp"
 #ifdef INSONIFY_VIEWER
-#include "components/viewer/registerTasks.hpp"
+#include "components/viewer/ViewerTask.hpp"
 #endif
 
 namespace insonify::deployer {

@@ -74,6 +74,10 @@ private:
     bool vector3(const YAML::Node& node, const std::string& path, const types::Field& field, glm::dvec3& value);
     template <Number T>
     bool readNumber(const YAML::Node& node, const std::string& path, const types::Field& field, T& value);
+    template <class T>
+    bool readSequence(const YAML::Node& node, const std::string& path, const types::Field& field, T& values);
+    template <class T>
+    bool readMap(const YAML::Node& node, const std::string& path, const types::Field& field, T& values);
 
     bool null_takes_out_ = false;
     std::string file_;
@@ -208,30 +212,40 @@ bool ConfigReader::readValue(const YAML::Node& node, const std::string& path, co
         if (!value) value.emplace();
         return readValue(node, path, field, *value);
     } else if constexpr (Sequence<T>) {
-        if (!isSequence(node, path)) return false;
-        value.assign(node.size(), {});
-        bool good = true;
-        for (size_t i = 0; i < value.size(); ++i) {
-            typename Inner<T>::type element{};
-            good &= readValue(node[i], path + "[" + std::to_string(i) + "]", field, element);
-            value[i] = std::move(element);
-        }
-        return good;
+        return readSequence(node, path, field, value);
     } else if constexpr (NamedMap<T>) {
-        if (!isMap(node, path)) return false;
-        if (!null_takes_out_) value.clear();
-        bool good = true;
-        for (const auto& entry : node) {
-            const std::string& key = entry.first.Scalar();
-            if (null_takes_out_ && entry.second.IsNull())
-                value.erase(key);
-            else
-                good &= readValue(entry.second, below(path, key), field, value[key]);
-        }
-        return good;
+        return readMap(node, path, field, value);
     } else {
         return read(node, path, value);
     }
+}
+
+template <class T>
+bool ConfigReader::readSequence(const YAML::Node& node, const std::string& path, const types::Field& field, T& values) {
+    if (!isSequence(node, path)) return false;
+    values.assign(node.size(), {});
+    bool good = true;
+    for (size_t i = 0; i < values.size(); ++i) {
+        typename Inner<T>::type element{};
+        good &= readValue(node[i], path + "[" + std::to_string(i) + "]", field, element);
+        values[i] = std::move(element);
+    }
+    return good;
+}
+
+template <class T>
+bool ConfigReader::readMap(const YAML::Node& node, const std::string& path, const types::Field& field, T& values) {
+    if (!isMap(node, path)) return false;
+    if (!null_takes_out_) values.clear();
+    bool good = true;
+    for (const auto& entry : node) {
+        const std::string& key = entry.first.Scalar();
+        if (null_takes_out_ && entry.second.IsNull())
+            values.erase(key);
+        else
+            good &= readValue(entry.second, below(path, key), field, values[key]);
+    }
+    return good;
 }
 
 template <class T>

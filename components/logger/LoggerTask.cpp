@@ -172,4 +172,8 @@ void LoggerTask::cleanupHook() {
     if (properties_) properties_->close();
 }
 
+void registerTasks(framework::Registry& registry) {
+    registry.add<LoggerTask>("logger::LoggerTask", "writes what it is connected to into a pocolog or MCAP file");
+}
+
 }  // namespace insonify::logger

@@ -7,6 +7,7 @@
 
 #include "components/framework/Port.hpp"
 #include "components/framework/Properties.hpp"
+#include "components/framework/Registry.hpp"
 #include "components/framework/TaskContext.hpp"
 #include "components/logger/LogThread.hpp"
 #include "components/logger/LoggerConfig.hpp"
@@ -80,5 +81,8 @@ private:
     std::map<std::string, types::PropertyValue> configured_;  ///< With these values.
     size_t declared_ = 0;                                     ///< Streams in the log.
 };
+
+/** Makes the tasks of this folder known to deployments. */
+void registerTasks(framework::Registry& registry);
 
 }  // namespace insonify::logger

@@ -30,4 +30,8 @@ types::SonarPtr NoiseTask::withNoise(const types::SonarPtr& ping) {
     return result;
 }
 
+void registerTasks(framework::Registry& registry) {
+    registry.add<NoiseTask>("noise::NoiseTask", "puts speckle and background noise into pings");
+}
+
 }  // namespace insonify::noise

@@ -4,6 +4,7 @@
 #include "components/framework/Operation.hpp"
 #include "components/framework/Port.hpp"
 #include "components/framework/Properties.hpp"
+#include "components/framework/Registry.hpp"
 #include "components/framework/SamplePool.hpp"
 #include "components/framework/TaskContext.hpp"
 #include "components/noise/Noise.hpp"
@@ -40,5 +41,8 @@ private:
     framework::SamplePool<types::Sonar> pool_;
     uint64_t clamped_ = 0;
 };
+
+/** Makes the tasks of this folder known to deployments. */
+void registerTasks(framework::Registry& registry);
 
 }  // namespace insonify::noise

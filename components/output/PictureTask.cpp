@@ -5,6 +5,8 @@
 #include <chrono>
 #include <stdexcept>
 
+#include "components/output/ScanMosaicTask.hpp"
+
 namespace insonify::output {
 
 bool PictureTask::configureHook() {
@@ -55,5 +57,13 @@ void PictureTask::stopHook() {
 }
 
 void PictureTask::cleanupHook() { painter_.reset(); }
+
+void registerTasks(framework::Registry& registry) {
+    registry.add<FanImageTask>("output::FanImageTask", "shows the pings of a forward-looking sonar as fans");
+    registry.add<DiscImageTask>("output::DiscImageTask", "shows the pings of a scanning sonar on a disc");
+    registry.add<WaterfallImageTask>("output::WaterfallImageTask", "shows range against time");
+    registry.add<ScanMosaicTask>("output::ScanMosaicTask",
+                                 "shows the pings of a moving scanning sonar where they belong, beside the disc");
+}
 
 }  // namespace insonify::output

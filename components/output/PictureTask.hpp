@@ -3,6 +3,7 @@
 
 #include "components/framework/Port.hpp"
 #include "components/framework/Properties.hpp"
+#include "components/framework/Registry.hpp"
 #include "components/framework/SamplePool.hpp"
 #include "components/framework/TaskContext.hpp"
 #include "components/output/DiscImage.hpp"
@@ -64,5 +65,8 @@ private:
 using FanImageTask = PingPictureTask<FanImage>;
 using DiscImageTask = PingPictureTask<DiscImage>;
 using WaterfallImageTask = PingPictureTask<WaterfallImage>;
+
+/** Makes the tasks of this folder known to deployments. */
+void registerTasks(framework::Registry& registry);
 
 }  // namespace insonify::output

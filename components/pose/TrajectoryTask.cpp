@@ -46,4 +46,9 @@ bool TrajectoryTask::isLast(types::Time elapsed) {
 
 void TrajectoryTask::cleanupHook() { trajectory_.reset(); }
 
+void registerTasks(framework::Registry& registry) {
+    registry.add<TrajectoryTask>("pose::TrajectoryTask",
+                                 "moves the vehicle along a trajectory from a file or waypoints");
+}
+
 }  // namespace insonify::pose

@@ -4,6 +4,7 @@
 
 #include "components/framework/Port.hpp"
 #include "components/framework/Properties.hpp"
+#include "components/framework/Registry.hpp"
 #include "components/framework/TaskContext.hpp"
 #include "components/pose/Trajectory.hpp"
 
@@ -37,5 +38,8 @@ private:
     std::optional<Trajectory> trajectory_;
     std::atomic<bool> finished_{false};
 };
+
+/** Makes the tasks of this folder known to deployments. */
+void registerTasks(framework::Registry& registry);
 
 }  // namespace insonify::pose

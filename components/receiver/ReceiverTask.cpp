@@ -28,4 +28,8 @@ types::SonarPtr ReceiverTask::received(const types::SonarPtr& sample) {
     return result;
 }
 
+void registerTasks(framework::Registry& registry) {
+    registry.add<ReceiverTask>("receiver::ReceiverTask", "amplifies pings (TVG, gain) and gives them out by a law");
+}
+
 }  // namespace insonify::receiver

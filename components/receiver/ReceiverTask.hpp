@@ -3,6 +3,7 @@
 
 #include "components/framework/Port.hpp"
 #include "components/framework/Properties.hpp"
+#include "components/framework/Registry.hpp"
 #include "components/framework/SamplePool.hpp"
 #include "components/framework/TaskContext.hpp"
 #include "components/receiver/Receiver.hpp"
@@ -38,5 +39,8 @@ private:
     std::optional<Receiver> receiver_;
     framework::SamplePool<types::Sonar> pool_;
 };
+
+/** Makes the tasks of this folder known to deployments. */
+void registerTasks(framework::Registry& registry);
 
 }  // namespace insonify::receiver

@@ -244,4 +244,8 @@ void ReplayTask::play(types::Time until) {
     }
 }
 
+void registerTasks(framework::Registry& registry) {
+    registry.add<ReplayTask>("replay::ReplayTask", "publishes the streams of a pocolog file on ports");
+}
+
 }  // namespace insonify::replay

@@ -10,6 +10,7 @@
 #include "components/framework/Operation.hpp"
 #include "components/framework/Port.hpp"
 #include "components/framework/Properties.hpp"
+#include "components/framework/Registry.hpp"
 #include "components/framework/TaskContext.hpp"
 #include "components/log/Reader.hpp"
 #include "components/replay/ReplayConfig.hpp"
@@ -99,5 +100,8 @@ private:
     std::atomic<int64_t> played_us_{0};             ///< The instant that is played; 0: none yet.
     std::atomic<bool> finished_{false};
 };
+
+/** Makes the tasks of this folder known to deployments. */
+void registerTasks(framework::Registry& registry);
 
 }  // namespace insonify::replay

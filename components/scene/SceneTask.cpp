@@ -175,4 +175,8 @@ void SceneTask::cleanupHook() {
     pool_ = {};
 }
 
+void registerTasks(framework::Registry& registry) {
+    registry.add<SceneTask>("scene::SceneTask", "holds a scene and says what the sonar has before it at each pose");
+}
+
 }  // namespace insonify::scene

@@ -6,6 +6,7 @@
 
 #include "components/framework/Port.hpp"
 #include "components/framework/Properties.hpp"
+#include "components/framework/Registry.hpp"
 #include "components/framework/SamplePool.hpp"
 #include "components/framework/TaskContext.hpp"
 #include "components/scene/Scene.hpp"
@@ -75,5 +76,8 @@ private:
     framework::SamplePool<types::Snapshot> pool_;
     types::Time newest_;  ///< Stamp of the newest usable pose; the start before the first.
 };
+
+/** Makes the tasks of this folder known to deployments. */
+void registerTasks(framework::Registry& registry);
 
 }  // namespace insonify::scene

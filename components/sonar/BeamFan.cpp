@@ -111,8 +111,9 @@ std::vector<Beam> makeBeams(const SonarConfig& config) {
     return beams;
 }
 
-std::vector<ViewFrustum> makeFrusta(const SonarConfig& config, const std::vector<Beam>& beams) {
-    if (config.published || config.one_frustum) return {publishedFrustum(config)};
+std::vector<ViewFrustum> makeFrusta(const SonarConfig& config, const std::vector<Beam>& beams,
+                                    const RenderOptions& options) {
+    if (config.published || options.one_frustum) return {publishedFrustum(config)};
     double low = beams.front().low, high = beams.front().high;
     for (const Beam& beam : beams) {
         low = std::min(low, beam.low);
@@ -123,14 +124,14 @@ std::vector<ViewFrustum> makeFrusta(const SonarConfig& config, const std::vector
         low = coneAzimuth(low, half_elevation);
         high = coneAzimuth(high, half_elevation);
     }
-    const int count = std::max(config.min_frusta, static_cast<int>(std::ceil((high - low) / widest_slab - 1e-9)));
+    const int count = std::max(options.min_frusta, static_cast<int>(std::ceil((high - low) / widest_slab - 1e-9)));
     const double columns = config.columnsPerBeam() * (high - low) / types::radians(config.beamWidthDeg()) / count;
     std::vector<ViewFrustum> frusta(static_cast<size_t>(count));
     for (int i = 0; i < count; ++i) {
         ViewFrustum& frustum = frusta[static_cast<size_t>(i)];
         frustum.half_width = (high - low) / count / 2;
         frustum.azimuth = low + (2 * i + 1) * frustum.half_width;
-        frustum.samples = config.samples_per_pixel;
+        frustum.samples = options.samples_per_pixel;
         const int side = frustum.samples == 4 ? 2 : 1;
         frustum.columns = side * std::max(1, static_cast<int>(std::ceil(columns - 1e-9)));
         frustum.rows = side * config.rows();
@@ -140,8 +141,9 @@ std::vector<ViewFrustum> makeFrusta(const SonarConfig& config, const std::vector
     return frusta;
 }
 
-ColumnShares makeShares(const SonarConfig& config, const std::vector<Beam>& beams, const ViewFrustum& frustum) {
-    if (config.published || config.one_frustum) return roundedShares(beams, frustum);
+ColumnShares makeShares(const SonarConfig& config, const std::vector<Beam>& beams, const ViewFrustum& frustum,
+                        const RenderOptions& options) {
+    if (config.published || options.one_frustum) return roundedShares(beams, frustum);
     ColumnShares result;
     result.per_row = config.beam_geometry == BeamGeometry::Conical;
     for (int row = 0; row < (result.per_row ? frustum.rows : 1); ++row)

@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "components/sonar/Interface.hpp"
+#include "components/sonar/RenderOptions.hpp"
 #include "components/sonar/SonarConfig.hpp"
 
 namespace insonify::sonar {
@@ -41,7 +42,8 @@ constexpr double tallest_image_deg = 150;
 
 /** As few frusta of at most 60 deg as cover the beams (ACOUSTICS.md 5.3); cones reach wider than their bearing. One
  * with `published`. */
-std::vector<ViewFrustum> makeFrusta(const SonarConfig& config, const std::vector<Beam>& beams);
+std::vector<ViewFrustum> makeFrusta(const SonarConfig& config, const std::vector<Beam>& beams,
+                                    const RenderOptions& options = {});
 
 /** Overlap of columns and beams: fractional, or with `published` rounded to whole columns. Planar beams: one row of
  *  columns serves all image rows. */
@@ -55,6 +57,7 @@ struct ColumnShares {
     }
 };
 
-ColumnShares makeShares(const SonarConfig& config, const std::vector<Beam>& beams, const ViewFrustum& frustum);
+ColumnShares makeShares(const SonarConfig& config, const std::vector<Beam>& beams, const ViewFrustum& frustum,
+                        const RenderOptions& options = {});
 
 }  // namespace insonify::sonar

@@ -101,7 +101,7 @@ CastEchoes::CastEchoes(const RenderPlan& plan, types::GeometryPtr geometry)
       visibility_(*geometry_),
       planes_(planesOf(*geometry_)),
       normal_maps_(*geometry_),
-      threads_(plan.config.threads),
+      threads_(plan.options.threads),
       workers_(static_cast<size_t>(threads_.size())) {
     runs_.reserve(visibility_.commands().size());
     takeQuality();

@@ -91,13 +91,13 @@ double Directivity::halfPowerAzimuth() const {
     return 2 * angle;
 }
 
-SonarConfig sampledConfig(const SonarConfig& config) {
+SonarConfig sampledConfig(const SonarConfig& config, bool casts_rays) {
     if (!config.beam_pattern) return config;
     const Directivity directivity(config);
     SonarConfig sampled = config;
     if (directivity.hasElevation())
         sampled.beam_height_deg =
-            std::min(types::degrees(2 * directivity.elevationReach()), config.castsRays() ? 180 : tallest_image_deg);
+            std::min(types::degrees(2 * directivity.elevationReach()), casts_rays ? 180 : tallest_image_deg);
     if (!directivity.hasAzimuth()) return sampled;
     const std::vector<Beam> beams = makeBeams(config);
     const auto [low, high] = directivity.azimuthSpan(beams);
@@ -114,7 +114,7 @@ SonarConfig sampledConfig(const SonarConfig& config) {
 
 std::string whyTooLarge(const SonarConfig& config) {
     constexpr int64_t max_bins = int64_t{1} << 24;
-    const SonarConfig sampled = sampledConfig(config);
+    const SonarConfig sampled = sampledConfig(config, config.castsRays());
     if (int64_t{sampled.beams()} * sampled.bin_count <= max_bins) return {};
     return fmt::format("has {} azimuth cells of {} bins each, {} in all; may be {}: give wider beams or fewer bins",
                        sampled.beams(), sampled.bin_count, int64_t{sampled.beams()} * sampled.bin_count, max_bins);

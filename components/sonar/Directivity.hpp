@@ -43,7 +43,7 @@ private:
 /** The sonar as it is sampled: where beams have a pattern, its azimuth cells take the place of the beams, and cells and
  *  aperture go as far as the pattern is above its floor, in images at most as far as one shows. Without `beam_pattern`,
  * `config` itself. */
-SonarConfig sampledConfig(const SonarConfig& config);
+SonarConfig sampledConfig(const SonarConfig& config, bool casts_rays);
 
 /** Why the cells of a sonar would take more memory than there may be; empty where they do not.
  *  @throws types::ConfigError as Directivity does. */

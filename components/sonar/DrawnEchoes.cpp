@@ -30,14 +30,14 @@ DepositSetup depositSetup(const RenderPlan& plan, const types::Geometry& geometr
     setup.rules = makeEchoRules(plan, geometry);
     setup.frusta = plan.frusta;
     for (const ViewFrustum& frustum : plan.frusta)
-        setup.shares.push_back(makeShares(plan.sampled, plan.cells, frustum));
+        setup.shares.push_back(makeShares(plan.sampled, plan.cells, frustum, plan.options));
     setup.beam_count = static_cast<uint32_t>(plan.cells.size());
     return setup;
 }
 
 class DrawnEchoes final : public PipelinedEchoes {
 public:
-    DrawnEchoes(const RenderPlan& plan, types::GeometryPtr geometry, const DrawOptions& options);
+    DrawnEchoes(const RenderPlan& plan, types::GeometryPtr geometry);
     ~DrawnEchoes() override;
     void takeQuality() override;
     size_t ringSize() const override { return slots_; }
@@ -64,7 +64,6 @@ private:
     const RenderPlan& plan_;
     types::GeometryPtr geometry_;
     gpu::EglContext context_;
-    DrawOptions options_;
     size_t slots_;
     size_t begun_ = 0, ended_ = 0;  ///< Pings; ping n has slot n modulo slots_.
     std::string device_;
@@ -79,18 +78,17 @@ private:
     std::chrono::steady_clock::time_point last_;
 };
 
-DrawnEchoes::DrawnEchoes(const RenderPlan& plan, types::GeometryPtr geometry, const DrawOptions& options)
+DrawnEchoes::DrawnEchoes(const RenderPlan& plan, types::GeometryPtr geometry)
     : plan_(plan),
       geometry_(std::move(geometry)),
       context_(plan.config.device),
-      options_(options),
-      slots_(options.ring > 0        ? options.ring
+      slots_(plan.options.ring > 0   ? plan.options.ring
              : context_.isSoftware() ? 1
                                      : 3),
       device_(fmt::format("{}, OpenGL {}", context_.renderer(), context_.driver())),
       levels_(plan.config, plan.grid),
       culler_(*geometry_, {nearest_drawn, reachOf(plan), plan.config.draw_all}),
-      threads_(plan.config.threads),
+      threads_(plan.options.threads),
       surface_(context_, surfaceSetup(), culler_, threads_) {
     makeDeposit();
     context_.check();
@@ -103,9 +101,9 @@ bool DrawnEchoes::depositsOnProcessor() const {
 }
 
 SurfacePass::Setup DrawnEchoes::surfaceSetup() const {
-    using CullOn = DrawOptions::CullOn;
+    using CullOn = RenderOptions::CullOn;
     const CullOn best = !context_.isSoftware() && !depositsOnProcessor() ? CullOn::Device : CullOn::Processor;
-    const CullOn chosen = options_.cull_on == CullOn::Auto ? best : options_.cull_on;
+    const CullOn chosen = plan_.options.cull_on == CullOn::Auto ? best : plan_.options.cull_on;
     return {.geometry = *geometry_,
             .frusta = plan_.frusta,
             .defines = plan_.features.defines(),
@@ -116,10 +114,11 @@ SurfacePass::Setup DrawnEchoes::surfaceSetup() const {
 }
 
 void DrawnEchoes::makeDeposit() {
-    using SumIn = DrawOptions::SumIn;
+    using SumIn = RenderOptions::SumIn;
     DepositSetup setup = depositSetup(plan_, *geometry_);
     setup.slots = slots_;
-    setup.group_sums = options_.sum_in == SumIn::Auto ? !context_.isSoftware() : options_.sum_in == SumIn::Groups;
+    setup.group_sums =
+        plan_.options.sum_in == SumIn::Auto ? !context_.isSoftware() : plan_.options.sum_in == SumIn::Groups;
     grid_.emplace(plan_, threads_.size());
     rules_ = setup.rules;
     if (depositsOnProcessor())
@@ -217,9 +216,8 @@ std::vector<LeftOut> DrawnEchoes::culled() const {
 
 }  // namespace
 
-std::unique_ptr<PipelinedEchoes> makeDrawnEchoes(const RenderPlan& plan, types::GeometryPtr geometry,
-                                                 const DrawOptions& options) {
-    return std::make_unique<DrawnEchoes>(plan, std::move(geometry), options);
+std::unique_ptr<PipelinedEchoes> makeDrawnEchoes(const RenderPlan& plan, types::GeometryPtr geometry) {
+    return std::make_unique<DrawnEchoes>(plan, std::move(geometry));
 }
 
 }  // namespace insonify::sonar

@@ -27,7 +27,7 @@ EchoRules makeEchoRules(const RenderPlan& plan, const types::Geometry& geometry)
     rules.features = plan.features;
     rules.bins = bins;
     rules.attenuation = makeAbsorption(plan.config).amplitudeNepersPerMetre();
-    rules.strength_scale = strengthScale(plan.sampled, bins, loudest(geometry));
+    rules.strength_scale = strengthScale(plan, loudest(geometry));
     const double nearest = bins.range_min > 0 ? 1 / bins.range_min : std::numeric_limits<double>::max();
     for (int k = 0; k <= bins.bin_count; ++k)
         rules.edges.push_back(k == 0 ? nearest : std::min(nearest, 1 / bins.edge(k)));
@@ -45,13 +45,16 @@ double loudest(const types::Geometry& geometry) {
     return strongest;
 }
 
-double strengthScale(const SonarConfig& config, const BinGrid& bins, double loudest) {
+double strengthScale(const RenderPlan& plan, double loudest) {
+    const SonarConfig& config = plan.sampled;
+    const BinGrid& bins = plan.grid;
     constexpr double most = 1048576, max_sum = 8 * most;  // of one deposit, and of a bin: half of 64 bits
     if (config.model != Model::Physical) return 1;        // S and its weights are at most 1
     const double ratio =
         std::max(1.5, 0.5 * bins.bin_width / std::max(bins.range_min, 1e-3));  // of a bin's middle to its ranges
     const double strongest = loudest * ratio * ratio;
-    const double pixels = static_cast<double>(config.samples_per_pixel * config.rows()) * (config.columnsPerBeam() + 2);
+    const double pixels =
+        static_cast<double>(plan.options.samples_per_pixel * config.rows()) * (config.columnsPerBeam() + 2);
     return std::exp2(-std::ceil(std::max(0.0, std::log2(strongest * std::max(1 / most, pixels / max_sum)))));
 }
 

@@ -39,6 +39,6 @@ double loudest(const types::Geometry& geometry);
 
 /** The power of 2, at most 1, by which strengths of up to `loudest` must be scaled so that no sum of quanta overflows:
  *  1 but for materials, images or bins that are extreme together. */
-double strengthScale(const SonarConfig& config, const BinGrid& bins, double loudest);
+double strengthScale(const RenderPlan& plan, double loudest);
 
 }  // namespace insonify::sonar

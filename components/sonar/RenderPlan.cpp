@@ -15,15 +15,15 @@ bool hasNormalMap(const types::Geometry& geometry) {
     return std::ranges::any_of(geometry.materials, [](const auto& material) { return material.normal_map >= 0; });
 }
 
-Features featuresOf(const SonarConfig& config, const types::Geometry& geometry) {
+Features featuresOf(const SonarConfig& config, const RenderOptions& options, const types::Geometry& geometry) {
     Features features{config.model == Model::Physical ? Feature::Physical : Feature::Cerqueira2017};
     if (config.model == Model::Cerqueira2017 && makeAbsorption(config).db_per_m > 0) features.add(Feature::Absorption);
     if (config.published && config.model == Model::Cerqueira2017) features.add(Feature::Published);
     if (config.beam_geometry == BeamGeometry::Conical) features.add(Feature::Conical);
     if (hasNormalMap(geometry)) features.add(Feature::NormalMap);
-    if (config.estimator != Estimator::Footprint) features.add(Feature::Nearest);
+    if (options.estimator != Estimator::Footprint) features.add(Feature::Nearest);
     if (config.beam_pattern && config.beam_pattern->hasElevation()) features.add(Feature::ElevationPattern);
-    if (config.estimator == Estimator::NearestJitter) features.add(Feature::Jitter);
+    if (options.estimator == Estimator::NearestJitter) features.add(Feature::Jitter);
     return features;
 }
 
@@ -104,9 +104,9 @@ std::vector<std::string> Features::defines() const {
 void RenderPlan::setQuality(int rows, int columns_per_beam) {
     config.quality.rows = rows;
     config.quality.columns_per_beam = columns_per_beam;
-    sampled = sampledConfig(config);
+    sampled = sampledConfig(config, casts_rays);
     cells = directivity ? makeBeams(sampled) : beams;
-    if (!casts_rays) frusta = makeFrusta(sampled, cells);
+    if (!casts_rays) frusta = makeFrusta(sampled, cells, options);
 }
 
 const LeftOut* RenderPlan::leftOut(Effect effect) const {
@@ -120,11 +120,12 @@ Bending bending(const SonarConfig& config, const BinGrid& grid) {
             std::max(grid.bin_width, 0.1 * r * types::radians(config.beam_height_deg))};
 }
 
-RenderPlan makeRenderPlan(const SonarConfig& config, const types::Geometry& geometry) {
+RenderPlan makeRenderPlan(const SonarConfig& config, const types::Geometry& geometry, const RenderOptions& options) {
     RenderPlan plan;
     plan.config = config;
-    plan.casts_rays = config.castsRays();
-    plan.features = featuresOf(config, geometry);
+    plan.options = options;
+    plan.casts_rays = !options.needImages() && config.castsRays();
+    plan.features = featuresOf(config, options, geometry);
     plan.grid = makeBinGrid(config);
     plan.beams = makeBeams(config);
     if (config.beam_pattern) plan.directivity.emplace(config);

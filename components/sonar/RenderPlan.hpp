@@ -104,6 +104,7 @@ struct LeftOut {
  *  studies and what a user is told all read it. */
 struct RenderPlan {
     SonarConfig config;  ///< With the quality that is in force.
+    RenderOptions options;
     bool casts_rays = false;
     Features features;
     std::vector<Pass> passes;
@@ -122,7 +123,8 @@ struct RenderPlan {
     const LeftOut* leftOut(Effect effect) const;
 };
 
-RenderPlan makeRenderPlan(const SonarConfig& config, const types::Geometry& geometry);
+RenderPlan makeRenderPlan(const SonarConfig& config, const types::Geometry& geometry,
+                          const RenderOptions& options = {});
 
 /** Gradient of the speed of sound with depth that refraction is judged by, a strong thermocline [1/s]. */
 constexpr double speed_gradient = 0.1;

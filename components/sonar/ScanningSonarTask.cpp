@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "components/sonar/SonarTask.hpp"
 #include "types/Angle.hpp"
 #include "types/ConfigError.hpp"
 
@@ -43,6 +44,11 @@ void ScanningSonarTask::checkStep(double period) const {
     throw types::ConfigError("", name() + ".head.step_deg",
                              fmt::format("is {} deg, which takes {:.4g} s at {} deg/s; the ping period is {:.4g} s",
                                          config->head.step_deg, needed, *config->head.speed_deg_per_s, period));
+}
+
+void registerTasks(framework::Registry& registry) {
+    registry.add<SonarTask>("sonar::SonarTask", "forward-looking imaging sonar, a fan of beams per ping");
+    registry.add<ScanningSonarTask>("sonar::ScanningSonarTask", "mechanically scanning sonar, one beam per ping");
 }
 
 }  // namespace insonify::sonar

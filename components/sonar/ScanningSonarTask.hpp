@@ -2,6 +2,7 @@
 #include <optional>
 
 #include "components/framework/Properties.hpp"
+#include "components/framework/Registry.hpp"
 #include "components/sonar/HeadScan.hpp"
 #include "components/sonar/PingTask.hpp"
 
@@ -32,5 +33,8 @@ private:
     std::optional<types::Time> last_;  ///< Of the ping before.
     bool step_checked_ = false;
 };
+
+/** Makes the tasks of this folder known to deployments. */
+void registerTasks(framework::Registry& registry);
 
 }  // namespace insonify::sonar

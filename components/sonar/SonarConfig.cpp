@@ -154,7 +154,7 @@ std::optional<double> SonarConfig::targetError() const {
 
 bool SonarConfig::castsRays() const {
     if (visibility != Visibility::Auto) return visibility == Visibility::Cpu;
-    if (!haveRays() || needsImages() || deposit == Deposit::Gpu) return false;
+    if (!haveRays() || published || deposit == Deposit::Gpu) return false;
     if (!fitsImages(*this)) return true;
     return !gpu::EglContext::isAskedFor(device) && !gpu::EglContext::hasCard();
 }

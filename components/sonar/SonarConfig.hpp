@@ -66,13 +66,6 @@ struct BeamPatternConfig {
     void check(types::Diagnostics& diagnostics) const;
 };
 
-/** How a pixel's echo finds its bins. All but the first are for comparison, in studies of the error. */
-enum class Estimator {
-    Footprint,      ///< Spread over the ranges that the pixel covers.
-    Nearest,        ///< All in the bin of its centre.
-    NearestJitter,  ///< All in the bin of a point drawn at random in it.
-};
-
 /** Samples per beam: given, or found for an error or a time from the pings. Found for an error of 0.05 with at most
  *  400,000 samples a ping when nothing is given. */
 struct QualityConfig {
@@ -133,11 +126,6 @@ struct SonarConfig {
     QualityConfig quality;
     RangeRounding range_rounding = RangeRounding::Sample;
     bool published = false;
-    Estimator estimator = Estimator::Footprint;  ///< Not a property. Others than the first: `physical` only.
-    bool one_frustum = false;   ///< Not a property: one wide image and rounded columns, as `published`.
-    int samples_per_pixel = 1;  ///< Not a property: 1, or 4 on a rotated grid, for edges along the rows [1].
-    int min_frusta = 1;         ///< Not a property: more images than the fan needs [1].
-    int threads = 0;            ///< Not a property: 0, as many as there are cores [1].
     DetailConfig detail;
     bool draw_all = false;
     Visibility visibility = Visibility::Auto;
@@ -170,10 +158,6 @@ struct SonarConfig {
     /** The same with a fan that is given by `beam_width_deg` given by `field_of_view_deg`, or by `bearings_deg` where
      * both are. */
     SonarConfig fan() const;
-    /** Whether only an image shows what is asked for: the published simulator's, or another way to sample one. */
-    bool needsImages() const {
-        return published || one_frustum || samples_per_pixel > 1 || estimator != Estimator::Footprint;
-    }
     /** Whether triangles are found by rays on the processor, else by drawing. Looks for a graphics card where nothing
      *  else decides. */
     bool castsRays() const;

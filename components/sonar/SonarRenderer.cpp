@@ -21,7 +21,7 @@ struct UnderWay {
 }  // namespace
 
 struct SonarRenderer::Parts {
-    Parts(const SonarConfig& config, types::GeometryPtr scene, const DrawOptions& options);
+    Parts(const SonarConfig& config, types::GeometryPtr scene, const RenderOptions& options);
     ~Parts();
     void fillHeader(const types::Snapshot& snapshot, types::Sonar& ping) const;
 
@@ -34,13 +34,13 @@ struct SonarRenderer::Parts {
     size_t begun = 0, ended = 0;  ///< Pings that were submitted; ping n has place n modulo the ring's size.
 };
 
-SonarRenderer::Parts::Parts(const SonarConfig& config, types::GeometryPtr scene, const DrawOptions& options)
-    : plan(makeRenderPlan(config, *scene)), told(report(plan, *scene)) {
+SonarRenderer::Parts::Parts(const SonarConfig& config, types::GeometryPtr scene, const RenderOptions& options)
+    : plan(makeRenderPlan(config, *scene, options)), told(report(plan, *scene)) {
     if (plan.casts_rays) {
         echoes = makeCastEchoes(plan, std::move(scene));
     } else {
         const auto alone = gpu::EglContext::making();
-        auto drawn = makeDrawnEchoes(plan, std::move(scene), options);
+        auto drawn = makeDrawnEchoes(plan, std::move(scene));
         pipeline = drawn.get();
         echoes = std::move(drawn);
     }
@@ -69,7 +69,7 @@ void SonarRenderer::Parts::fillHeader(const types::Snapshot& snapshot, types::So
     ping.bins.resize(plan.beams.size() * static_cast<size_t>(plan.grid.bin_count));
 }
 
-SonarRenderer::SonarRenderer(const SonarConfig& config, types::GeometryPtr geometry, const DrawOptions& options)
+SonarRenderer::SonarRenderer(const SonarConfig& config, types::GeometryPtr geometry, const RenderOptions& options)
     : parts_(std::make_unique<Parts>(config, std::move(geometry), options)) {}
 
 SonarRenderer::~SonarRenderer() = default;

@@ -21,7 +21,7 @@ namespace insonify::sonar {
  *  Throws gpu::GlError where it draws without OpenGL 4.5 or loses it, std::runtime_error where Embree refuses. */
 class SonarRenderer {
 public:
-    SonarRenderer(const SonarConfig& config, types::GeometryPtr geometry, const DrawOptions& options = {});
+    SonarRenderer(const SonarConfig& config, types::GeometryPtr geometry, const RenderOptions& options = {});
     ~SonarRenderer();
 
     /** One ping from snapshot.sonar (sonar frame in the world; orientation of unit length). Fills the whole sample;

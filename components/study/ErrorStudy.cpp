@@ -56,13 +56,18 @@ sonar::SonarConfig configOf(const StudyScene& scene, const Measurement& point) {
     sonar::SonarConfig config = scene.config;
     config.quality.rows = point.rows;
     config.quality.columns_per_beam = point.columns_per_beam;
-    config.min_frusta = point.slabs;
-    config.samples_per_pixel = point.samples_per_pixel;
-    if (point.method == Method::Nearest || point.method == Method::Published)
-        config.estimator = sonar::Estimator::Nearest;
-    if (point.method == Method::NearestJitter) config.estimator = sonar::Estimator::NearestJitter;
-    config.one_frustum = point.method == Method::Published;
     return config;
+}
+
+sonar::RenderOptions optionsOf(const Measurement& point) {
+    sonar::RenderOptions options;
+    options.min_frusta = point.slabs;
+    options.samples_per_pixel = point.samples_per_pixel;
+    if (point.method == Method::Nearest || point.method == Method::Published)
+        options.estimator = sonar::Estimator::Nearest;
+    if (point.method == Method::NearestJitter) options.estimator = sonar::Estimator::NearestJitter;
+    options.one_frustum = point.method == Method::Published;
+    return options;
 }
 
 /** One scene under study: what measures a point of it, and its reference. */
@@ -132,7 +137,7 @@ private:
     }
 
     void timeRenderer(const sonar::SonarConfig& config, Heard& heard) {
-        sonar::SonarRenderer renderer(config, scene_.snapshot.geometry);
+        sonar::SonarRenderer renderer(config, scene_.snapshot.geometry, optionsOf(heard.point));
         types::Sonar ping;
         time([&](auto&) { renderer.render(scene_.snapshot, ping); }, options_.pings, heard.energies, heard.point);
         heard.energies = ping.bins;

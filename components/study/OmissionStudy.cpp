@@ -21,6 +21,7 @@ using sonar::SonarConfig;
 struct Way {
     SonarConfig config;
     types::Snapshot snapshot;
+    sonar::RenderOptions options = {};
     int bins_in_one = 1;  ///< So many bins are added up before they are compared [1].
 };
 
@@ -41,7 +42,7 @@ std::vector<float> joined(const std::vector<float>& bins, int in_one) {
 }
 
 void render(const Way& way, int pings, Rendered& to) {
-    sonar::SonarRenderer renderer(way.config, way.snapshot.geometry);
+    sonar::SonarRenderer renderer(way.config, way.snapshot.geometry, way.options);
     types::Sonar ping;
     renderer.render(way.snapshot, ping);
     for (int i = 0; i < pings; ++i) {
@@ -148,7 +149,7 @@ private:
                 return bound(1e-6, "change: a map that bends nothing, in float");
             case sonar::Effect::AbsorptionInBin: return splitBins(with, row);
             case sonar::Effect::FurtherSlabs:
-                with.config.min_frusta = 2;
+                with.options.min_frusta = 2;
                 return bound(quality_, "rel_l2_tvg: what twice the rows and columns change");
             case sonar::Effect::Objects:
             case sonar::Effect::Triangles:

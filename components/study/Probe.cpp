@@ -160,8 +160,4 @@ Outcome within(double tolerance, double deviation, const std::string& got, const
             deviation <= tolerance && heard.isSound() ? Verdict::Pass : Verdict::Fail};
 }
 
-Outcome none(double deviation, const std::string& got, Conditions conditions) {
-    return {std::move(conditions), got, deviation, deviation == 0 ? Verdict::Pass : Verdict::Fail};
-}
-
 }  // namespace insonify::study

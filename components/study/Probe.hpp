@@ -51,7 +51,5 @@ double worstBeam(const Probe& heard, const sonar::SonarConfig& config, const Tru
 
 /** Passes when the deviation is at most `tolerance` and the ping is sound. */
 Outcome within(double tolerance, double deviation, const std::string& got, const Probe& heard);
-/** Passes when `deviation`, a number of things that went wrong, is 0. */
-Outcome none(double deviation, const std::string& got, Conditions conditions = {});
 
 }  // namespace insonify::study

@@ -1,10 +1,9 @@
-// Odd geometry: inside, on and behind surfaces; without area or normals; mirrored, doubled, not there.
+// Odd geometry: the sonar inside, on and above surfaces; faces doubled, hidden, mirrored.
 #include <fmt/format.h>
 
 #include <cmath>
 #include <glm/gtc/matrix_transform.hpp>
 
-#include "components/sonar/SonarRenderer.hpp"
 #include "components/study/Probe.hpp"
 #include "components/study/Shapes.hpp"
 #include "components/study/StabilityGroups.hpp"
@@ -59,33 +58,6 @@ Outcome exactlyOnASurface() {
                   heard);
 }
 
-Outcome zeroArea() {
-    return sounds(0, changed([](types::Geometry& g) {
-                      types::Mesh& wall = g.meshes[0];
-                      wall.indices.insert(wall.indices.end(), {0, 0, 1, 2, 2, 2});
-                      wall.positions.push_back(0.5f * (wall.positions[0] + wall.positions[2]));
-                      wall.indices.insert(wall.indices.end(), {0, 4, 2});
-                      wall.clusters[0].index_count = static_cast<uint32_t>(wall.indices.size());
-                  }),
-                  "triangles of a repeated corner and of three corners in a line");
-}
-
-Outcome zeroNormals() {
-    return sounds(0, changed([](types::Geometry& g) {
-                      for (types::Mesh& mesh : g.meshes) mesh.normals.assign(mesh.positions.size(), glm::vec3(0));
-                  }),
-                  "vertex normals of no length against none; the geometric normal is used");
-}
-
-Outcome invertedWinding() {
-    return sounds(0, changed([](types::Geometry& g) {
-                      for (types::Mesh& mesh : g.meshes)
-                          for (size_t i = 0; i < mesh.indices.size(); i += 3)
-                              std::swap(mesh.indices[i + 1], mesh.indices[i + 2]);
-                  }),
-                  "all triangles wound the other way");
-}
-
 Outcome duplicatedFaces() {
     return sounds(1e-6, changed([](types::Geometry& g) {
                       for (types::Mesh& mesh : g.meshes) {
@@ -134,23 +106,6 @@ Outcome stretched() {
                   "a turned ball of scale (0.5, -2, 1.25) against a mesh of that shape", heard);
 }
 
-/** Nothing may be heard of a scene. */
-Outcome silent(const types::GeometryPtr& geometry, const std::string& got) {
-    const Probe heard = probe(smallFan(), lookingAt(geometry));
-    return within(0, heard.energy(), got, heard);
-}
-
-Outcome nothingToHear() {
-    auto empty = std::make_shared<types::Geometry>();
-    for (const auto& [geometry, name] : {std::pair{types::GeometryPtr(empty), "no object"},
-                                         {sceneOf({facingWall(-3)}), "all behind"},
-                                         {sceneOf({facingWall(15.1f)}), "all beyond the range"}}) {
-        const Outcome outcome = silent(geometry, name);
-        if (outcome.verdict != Verdict::Pass) return outcome;
-    }
-    return silent(empty, "no object, all behind, all beyond the range: zeros");
-}
-
 Outcome straightDown() {
     sonar::SonarConfig config = fan(40, 40, 1, 12);
     setSamples(config, 256, 64);
@@ -165,14 +120,10 @@ std::vector<StabilityCase> geometryCases() {
     return {{5, "Sonar inside a closed mesh", "deterministic; both sides reflect, to 1e-3 of the closed form",
              insideAClosedMesh},
             {6, "Sonar exactly on a surface", "no inf; the rest is heard as without, to 1e-3", exactlyOnASurface},
-            {8, "Triangles of zero area", "contribute nothing: bit-identical", zeroArea},
-            {10, "Normals of zero length", "not used: bit-identical", zeroNormals},
-            {11, "Inverted winding", "two-sided: bit-identical", invertedWinding},
             {12, "Duplicated coplanar faces", "one return, to 1e-6", duplicatedFaces},
             {12, "Non-manifold edges", "hidden faces are not heard, to 1e-6", nonManifold},
             {17, "Mirrored node", "as the shape that it makes, to 1e-5", mirrored},
             {17, "Node with unequal scales, mirrored and turned", "as a mesh of that shape, to 1e-5", stretched},
-            {19, "Empty scene; all behind; all beyond the range", "zeros", nothingToHear},
             {56, "Sonar that looks straight down", "to 1e-3 of the closed form of a facing plane", straightDown}};
 }
 

@@ -32,7 +32,7 @@ struct StabilityCase {
     std::function<Outcome()> run;
 };
 
-/** The cases that a library half can see, by number. Cases of tasks, noise and trajectories come from the deployer. */
+/** Every case that has a figure to tell, or waits for an effect; those that only hold or do not are tests. */
 std::vector<StabilityCase> stabilityCases();
 
 /** A case with its outcome. */

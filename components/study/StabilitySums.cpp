@@ -1,12 +1,10 @@
-// Sums and their order, buffers between pings, devices, sizes.
+// Sums, devices, sizes.
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <glm/gtc/matrix_transform.hpp>
 
-#include "components/sonar/SonarRenderer.hpp"
 #include "components/study/Probe.hpp"
 #include "components/study/Shapes.hpp"
 #include "components/study/StabilityGroups.hpp"
@@ -17,19 +15,6 @@ namespace {
 using sonar::SonarConfig;
 
 double seconds() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
-
-/** Ground, two balls and a wall: silhouettes, grazing, and several parts in a beam. */
-types::GeometryPtr cluttered() {
-    return sceneOf({levelGround(-4), sphere(1.5, 48), sphere(0.7, 24), facingWall(18)},
-                   {{0, 0, 0}, {9, 3, -1}, {6, -2, -2}, {0, 0, 0}});
-}
-
-SonarConfig wideFan(sonar::Deposit where = sonar::Deposit::Auto, sonar::Model model = sonar::Model::Physical) {
-    SonarConfig config = fan(130, 40, 61, 30);
-    config.deposit = where;
-    config.model = model;
-    return config;
-}
 
 Outcome manySamplesInABin() {
     SonarConfig config = fan(20, 20, 1, 12);
@@ -51,36 +36,6 @@ Outcome loudSamplesInABin() {
                   "2e6 pixels of the loudest material that a file may have, in one bin", heard);
 }
 
-/** Pings of one kind that are not bit for bit the first. */
-template <class Kinds, class Ping>
-int unlike(const Kinds& kinds, const Ping& ping) {
-    int count = 0;
-    for (const auto model : {sonar::Model::Physical, sonar::Model::Cerqueira2017}) {
-        const auto first = ping(model, *std::begin(kinds));
-        for (const auto& kind : kinds) count += ping(model, kind).bins != first.bins;
-    }
-    return count;
-}
-
-Outcome twoRuns() {
-    int different = 0;
-    for (const auto where : {sonar::Deposit::Cpu, sonar::Deposit::Gpu})
-        different += unlike(std::array{1, 2, 3},
-                            [&](auto model, int) { return probe(wideFan(where, model), lookingAt(cluttered())).ping; });
-    return within(0, different, "three runs by processor and by compute shader, both models: bit-identical each",
-                  probe(wideFan(), lookingAt(cluttered())));
-}
-
-Outcome anyNumberOfThreads() {
-    const int different = unlike(std::array{1, 2, 3, 5, 8, 16}, [](auto model, int threads) {
-        SonarConfig config = wideFan(sonar::Deposit::Cpu, model);
-        config.threads = threads;
-        return probe(config, lookingAt(cluttered())).ping;
-    });
-    return within(0, different, "1, 2, 3, 5, 8 and 16 threads, both models: bit-identical",
-                  probe(wideFan(), lookingAt(cluttered())));
-}
-
 /** Relative difference of the bins that two pings share, without the edges of echoes. */
 double innerDifference(const types::Sonar& a, const types::Sonar& b) {
     double worst = 0;
@@ -93,7 +48,8 @@ double innerDifference(const types::Sonar& a, const types::Sonar& b) {
 
 /** Ground and a wall, by one device and deposit. */
 Probe planesBy(const char* device, sonar::Deposit where) {
-    SonarConfig config = wideFan(where);
+    SonarConfig config = fan(130, 40, 61, 30);
+    config.deposit = where;
     config.device = device;
     return probe(config, lookingAt(sceneOf({levelGround(-4), facingWall(18)})));
 }
@@ -111,40 +67,6 @@ Outcome softwareAndCard() {
     const double worst =
         std::max(innerDifference(processor.ping, reference.ping), innerDifference(shader.ping, reference.ping));
     return within(1e-4, worst, "processor and shader on " + shader.device + " against " + reference.device, shader);
-}
-
-Outcome resizedBetweenPings() {
-    SonarConfig small = fan(40, 20, 5, 12), large = wideFan();
-    const auto scene = lookingAt(cluttered());
-    types::Sonar ping;
-    int stale = 0;
-    for (const SonarConfig& config : {large, small, large, small}) {
-        sonar::SonarRenderer renderer(config, scene.geometry);
-        renderer.render(scene, ping);
-        stale += ping.bins != probe(config, scene).ping.bins;
-    }
-    types::Snapshot away = scene;
-    away.sonar.position.z = 1000;
-    sonar::SonarRenderer renderer(large, scene.geometry);
-    renderer.render(scene, ping);
-    renderer.render(away, ping);
-    stale += std::ranges::any_of(ping.bins, [](float bin) { return bin != 0; });
-    return within(
-        0, stale,
-        "one sample through sonars of 61 x 300 and 5 x 120 bins, and out of the scene: nothing of the ping before",
-        probe(small, scene));
-}
-
-Outcome noDevice() {
-    SonarConfig config = wideFan();
-    config.device = "99";
-    std::string message;
-    try {
-        probe(config, lookingAt(cluttered()));
-    } catch (const std::exception& error) {
-        message = error.what();
-    }
-    return none(message.empty(), "device \"99\": " + message);
 }
 
 Outcome manyTriangles() {
@@ -182,33 +104,15 @@ Outcome largeImage() {
     return within(1e-4, deviation, "one triangle, 16384 rows and 64 columns", heard);
 }
 
-Outcome impossibleImage() {
-    SonarConfig config = fan(120, 20, 4096, 12);
-    setSamples(config, 16384, 256);
-    config.visibility = sonar::Visibility::Gl;
-    std::string message;
-    try {
-        probe(config, lookingAt(sceneOf({facingWall(10)})));
-    } catch (const std::exception& error) {
-        message = error.what();
-    }
-    return none(message.empty(), "16384 rows x 524,288 columns a slab: " + message);
-}
-
 }  // namespace
 
 std::vector<StabilityCase> sumCases() {
     return {
         {41, "1e7 samples in one bin", "to 1e-6 of the closed form", manySamplesInABin},
-        {42, "Order of sums", "two runs are bit-identical", twoRuns},
-        {43, "Number of threads", "bit-identical", anyNumberOfThreads},
         {44, "Processor and shader", "within 1e-4 but for the edges of echoes", processorAndShader},
         {44, "Software and graphics card", "within 1e-4 but for the edges of echoes", softwareAndCard},
-        {53, "Beams, bins and range changed between pings", "no stale data", resizedBetweenPings},
-        {54, "No such graphics device", "a clear error (software instead: case 44)", noDevice},
         {55, "1e8 triangles on one pixel", "time-bounded", manyTriangles},
         {55, "One triangle, 16k rows", "to 1e-4 of the closed form", largeImage},
-        {57, "An image larger than any device's", "a clear error", impossibleImage},
         {58, "2e6 samples of +20 dB in one bin", "to 1e-6 of the closed form: no wrap of the sums", loudSamplesInABin}};
 }
 

@@ -1,15 +1,19 @@
 #include "components/viewer/SerialExecutors.hpp"
 
+#include <boost/asio/post.hpp>
+
 namespace insonify::viewer {
 
 bool SerialExecutors::run(const std::string& name, Work work) {
     std::lock_guard lock(mutex_);
     if (ending_) return false;
     Executor& executor = executors_[name];
-    if (executor.waiting.size() == max_waiting) return false;
-    executor.waiting.push_back(std::move(work));
-    if (!executor.thread.joinable()) executor.thread = std::thread([this, &executor] { loop(executor); });
-    executor.wake.notify_one();
+    if (executor.waiting == max_waiting) return false;
+    ++executor.waiting;
+    boost::asio::post(executor.thread, [&executor, work = std::move(work)] {
+        --executor.waiting;
+        work();
+    });
     return true;
 }
 
@@ -17,23 +21,9 @@ void SerialExecutors::end() {
     {
         std::lock_guard lock(mutex_);
         ending_ = true;
-        for (auto& [name, executor] : executors_) executor.wake.notify_one();
+        for (auto& [name, executor] : executors_) executor.thread.stop();
     }
-    for (auto& [name, executor] : executors_)
-        if (executor.thread.joinable()) executor.thread.join();
-}
-
-void SerialExecutors::loop(Executor& executor) {
-    std::unique_lock lock(mutex_);
-    while (true) {
-        executor.wake.wait(lock, [&] { return ending_ || !executor.waiting.empty(); });
-        if (ending_) return;
-        const Work work = std::move(executor.waiting.front());
-        executor.waiting.pop_front();
-        lock.unlock();
-        work();
-        lock.lock();
-    }
+    for (auto& [name, executor] : executors_) executor.thread.join();
 }
 
 }  // namespace insonify::viewer

@@ -1,11 +1,10 @@
 #pragma once
-#include <condition_variable>
-#include <deque>
+#include <atomic>
+#include <boost/asio/thread_pool.hpp>
 #include <functional>
 #include <map>
 #include <mutex>
 #include <string>
-#include <thread>
 
 namespace insonify::viewer {
 
@@ -28,11 +27,9 @@ public:
 
 private:
     struct Executor {
-        std::deque<Work> waiting;
-        std::condition_variable wake;
-        std::thread thread;
+        std::atomic<size_t> waiting = 0;
+        boost::asio::thread_pool thread{1};
     };
-    void loop(Executor& executor);
 
     std::mutex mutex_;
     std::map<std::string, Executor> executors_;

@@ -158,4 +158,8 @@ void ViewerTask::errorHook() {
 
 void ViewerTask::cleanupHook() { publisher_.reset(); }
 
+void registerTasks(framework::Registry& registry) {
+    registry.add<ViewerTask>("viewer::ViewerTask", "shows what runs: a page in the browser, and data for Foxglove");
+}
+
 }  // namespace insonify::viewer

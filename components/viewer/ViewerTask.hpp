@@ -5,6 +5,7 @@
 
 #include "components/framework/Port.hpp"
 #include "components/framework/Properties.hpp"
+#include "components/framework/Registry.hpp"
 #include "components/framework/TaskContext.hpp"
 #include "components/viewer/Publisher.hpp"
 #include "components/viewer/ViewerConfig.hpp"
@@ -55,5 +56,8 @@ private:
     std::vector<std::unique_ptr<Inlet>> inlets_;
     std::unique_ptr<Publisher> publisher_;
 };
+
+/** Makes the tasks of this folder known to deployments. */
+void registerTasks(framework::Registry& registry);
 
 }  // namespace insonify::viewer

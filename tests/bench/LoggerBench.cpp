@@ -8,8 +8,8 @@
 
 #include "components/framework/Deployment.hpp"
 #include "components/framework/SamplePool.hpp"
-#include "components/logger/registerTasks.hpp"
 #include "components/log/pocolog/Reader.hpp"
+#include "components/logger/LoggerTask.hpp"
 #include "types/Sonar.hpp"
 
 namespace insonify {

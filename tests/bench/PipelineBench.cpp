@@ -14,15 +14,15 @@
 namespace insonify {
 namespace {
 
-using CullOn = sonar::DrawOptions::CullOn;
-using SumIn = sonar::DrawOptions::SumIn;
+using CullOn = sonar::RenderOptions::CullOn;
+using SumIn = sonar::RenderOptions::SumIn;
 
 constexpr int rounds = 5;
 
 struct Way {
     const char* name;
     sonar::Deposit deposit;
-    sonar::DrawOptions options;
+    sonar::RenderOptions options;
     std::vector<double> ms;  ///< A ping, of each round.
 };
 

@@ -1,19 +1,11 @@
 #include <gmock/gmock.h>
 
-#include "components/deployer/ProgressLine.hpp"
 #include "tests/deployer/Wall.hpp"
 
 using namespace insonify::deployer;
 using testing::AllOf;
 using testing::HasSubstr;
 using testing::Not;
-
-TEST(ProgressLineTest, TheTimeLeftFollowsFromTheShareThatIsDone) {
-    EXPECT_EQ(timeLeft(0.25, 10), ", 25 % done, 30 s left");
-    EXPECT_EQ(timeLeft(0.5, 300), ", 50 % done, 5 min 00 s left");
-    EXPECT_EQ(timeLeft(0.001, 10), ", 0 % done, 2 h 46 min left");
-    for (const double share : {0.0, -1.0, 1.0, 1.5, std::nan("")}) EXPECT_EQ(timeLeft(share, 10), "") << share;
-}
 
 /** In realtime, so that it takes the second whatever the machine. */
 TEST(ProgressLineTest, ARunOnATerminalTellsTheTotalAndTheTimeLeftAndElsewhereNothing) {

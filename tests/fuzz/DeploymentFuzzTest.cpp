@@ -1,11 +1,11 @@
 #include <gtest/gtest.h>
 
 #include "components/framework/Deployment.hpp"
-#include "components/noise/registerTasks.hpp"
-#include "components/output/registerTasks.hpp"
-#include "components/pose/registerTasks.hpp"
-#include "components/receiver/registerTasks.hpp"
-#include "components/scene/registerTasks.hpp"
+#include "components/noise/NoiseTask.hpp"
+#include "components/output/PictureTask.hpp"
+#include "components/pose/TrajectoryTask.hpp"
+#include "components/receiver/ReceiverTask.hpp"
+#include "components/scene/SceneTask.hpp"
 #include "tests/support/Fuzz.hpp"
 #include "types/ConfigError.hpp"
 

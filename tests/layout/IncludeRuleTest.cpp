@@ -30,7 +30,8 @@ std::set<std::string> neighboursOf(const Source& source) {
     const std::string folder = source.folder();
     std::set<std::string> allowed;
     if (source.isTaskHalf()) allowed.insert("framework");
-    if (folder == "study") allowed.insert({"sonar", "receiver", "scene"});
+    if (folder == "study") allowed.insert({"sonar", "noise", "receiver", "scene"});
+    if (source.isCommandHalf()) allowed.insert("command");
     if (folder == "sonar") allowed.insert({"gpu", "shaders"});
     const std::set<std::string> listeners = {"sonar", "scene", "noise", "study"};
     if (listeners.contains(folder)) allowed.insert("acoustics");
@@ -59,7 +60,9 @@ bool mayInclude(const Source& source, const Source& target) {
     if (reachesBehindTheLog(source, target)) return false;
     const std::string from = source.folder(), to = target.folder();
     if (from == "deployer") return true;
-    if (from == to) return from == "framework" || source.isTaskHalf() || !target.isTaskHalf();
+    if (from == to)
+        return from == "framework" || source.isTaskHalf() || source.isCommandHalf() ||
+               (!target.isTaskHalf() && !target.isCommandHalf());
     if (to == "types") return from != "gpu";
     if (from == "study" && target.isTaskHalf()) return false;
     return from != "types" && from != "gpu" && from != "framework" && neighboursOf(source).contains(to);
@@ -82,17 +85,18 @@ TEST(IncludeRuleTest, ComponentsMeetInTypesOnly) {
 
 TEST(IncludeRuleTest, EveryThirdPartyPackageHasItsHomes) {
     const std::multimap<std::string, std::string> homes = {
-        {"tiny_gltf.h", "scene"},  {"meshoptimizer.h", "scene"},
-        {"stb", "scene"},          {"opencv2/", "output"},
-        {"EGL/", "gpu"},           {"GL/", "gpu"},
-        {"epoxy/", "gpu"},         {"yaml-cpp/", "framework"},
-        {"yaml-cpp/", "log"},      {"CLI/", "deployer"},
-        {"nlohmann/", "deployer"}, {"nlohmann/", "viewer"},
-        {"boost/", "viewer"},      {"embree3/", "study"},
-        {"embree3/", "sonar"},     {"sdf/", "scene"},
-        {"assimp/", "scene"},      {"tinyxml2.h", "scene"},
-        {"lz4frame.h", "log"},     {"zstd.h", "log"},
-        {"dds/", "dds"},           {"png.h", "output"},
+        {"tiny_gltf.h", "scene"}, {"meshoptimizer.h", "scene"},
+        {"stb", "scene"},         {"opencv2/", "output"},
+        {"EGL/", "gpu"},          {"GL/", "gpu"},
+        {"epoxy/", "gpu"},        {"yaml-cpp/", "framework"},
+        {"yaml-cpp/", "log"},     {"CLI/", "deployer"},
+        {"CLI/", "study"},        {"nlohmann/", "command"},
+        {"nlohmann/", "viewer"},  {"boost/", "viewer"},
+        {"embree3/", "study"},    {"embree3/", "sonar"},
+        {"sdf/", "scene"},        {"assimp/", "scene"},
+        {"tinyxml2.h", "scene"},  {"lz4frame.h", "log"},
+        {"zstd.h", "log"},        {"dds/", "dds"},
+        {"png.h", "output"},
     };
     const auto livesIn = [&](const std::string& prefix, const std::string& folder) {
         const auto [first, last] = homes.equal_range(prefix);
@@ -115,6 +119,14 @@ TEST(IncludeRuleTest, TheRuleRefusesWhatItShould) {
     EXPECT_FALSE(allowed("components/noise/NoiseTask.cpp", "components/log/Reader.hpp"));
     EXPECT_FALSE(allowed("components/study/ErrorStudy.cpp", "components/sonar/SonarTask.hpp"));
     EXPECT_TRUE(allowed("components/study/ErrorStudy.cpp", "components/sonar/SonarRenderer.hpp"));
+    EXPECT_TRUE(allowed("components/study/ErrorCommand.cpp", "components/command/Json.hpp"));
+    EXPECT_TRUE(allowed("components/study/ErrorCommand.cpp", "components/study/ErrorStudy.hpp"));
+    EXPECT_FALSE(allowed("components/study/ErrorStudy.cpp", "components/command/Json.hpp"));
+    EXPECT_FALSE(allowed("components/study/ErrorStudy.cpp", "components/study/StudyCommand.hpp"));
+    EXPECT_FALSE(allowed("components/study/ErrorCommand.cpp", "components/deployer/Pipeline.hpp"));
+    EXPECT_FALSE(allowed("components/study/ErrorCommand.cpp", "components/framework/Deployment.hpp"));
+    EXPECT_FALSE(allowed("components/command/Json.cpp", "components/framework/Port.hpp"));
+    EXPECT_FALSE(allowed("components/noise/NoiseTask.cpp", "components/command/Json.hpp"));
     EXPECT_TRUE(allowed("components/noise/NoiseTask.cpp", "components/noise/Speckle.hpp"));
     EXPECT_TRUE(allowed("components/noise/Ambient.cpp", "components/acoustics/AmbientNoise.hpp"));
     EXPECT_FALSE(allowed("components/acoustics/Water.hpp", "components/sonar/SonarConfig.hpp"));
@@ -132,5 +144,5 @@ TEST(IncludeRuleTest, TheRuleRefusesWhatItShould) {
     EXPECT_FALSE(allowed("components/dds/Node.cpp", "components/framework/Port.hpp"));
     EXPECT_TRUE(allowed("components/dds/Node.cpp", "components/ros/Cdr.hpp"));
     EXPECT_TRUE(allowed("components/sonar/SonarRenderer.cpp", "components/gpu/Context.hpp"));
-    EXPECT_TRUE(allowed("components/deployer/main.cpp", "components/noise/registerTasks.hpp"));
+    EXPECT_TRUE(allowed("components/deployer/main.cpp", "components/noise/NoiseTask.hpp"));
 }

@@ -41,12 +41,6 @@ TEST(LayoutTest, AComponentsFolderIsItsNamespace) {
     }
 }
 
-TEST(LayoutTest, NoSourceFileIsLongerThan300Lines) {
-    for (const char* folder : {"types", "components", "shaders", "tests", "scripts"})
-        for (const Source& source : sourcesIn(folder, {".hpp", ".cpp", ".glsl", ".vert", ".frag", ".comp", ".py", ""}))
-            EXPECT_LE(source.lines.size(), 300u) << source.path;
-}
-
 TEST(LayoutTest, EveryTestFileIsNamedAfterWhatItTests) {
     for (const Source& source : sourcesIn("tests", {".cpp"})) {
         if (source.path.starts_with("tests/support/") || source.path.starts_with("tests/bench/")) continue;

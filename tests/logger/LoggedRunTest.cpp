@@ -8,7 +8,7 @@
 #include "components/framework/Deployment.hpp"
 #include "components/framework/Properties.hpp"
 #include "components/log/pocolog/Reader.hpp"
-#include "components/logger/registerTasks.hpp"
+#include "components/logger/LoggerTask.hpp"
 #include "tests/support/Folder.hpp"
 #include "tests/support/Waiting.hpp"
 #include "types/Sonar.hpp"

@@ -2,21 +2,11 @@
 
 #include "components/noise/NoiseTask.hpp"
 #include "tests/support/Allocations.hpp"
+#include "tests/support/Pings.hpp"
 #include "tests/support/Ports.hpp"
 
 namespace insonify::noise {
 namespace {
-
-types::SonarPtr pingAt(int64_t time) {
-    types::Sonar ping;
-    ping.time = {time};
-    ping.beam_count = 16;
-    ping.bin_count = 100;
-    ping.bearings.resize(16);
-    ping.timestamps.resize(16);
-    ping.bins.assign(1600, 1);
-    return std::make_shared<const types::Sonar>(ping);
-}
 
 TEST(AllocationTest, NoiseAllocatesNothingAfterTheFirstPings) {
     for (const SpeckleLaw law : {SpeckleLaw::Rayleigh, SpeckleLaw::Gamma, SpeckleLaw::K, SpeckleLaw::Gaussian}) {
@@ -33,15 +23,10 @@ TEST(AllocationTest, NoiseAllocatesNothingAfterTheFirstPings) {
         ASSERT_TRUE(task.configure());
         ASSERT_TRUE(task.start());
         const auto cycle = [&](int64_t time) {
-            in.port.write(pingAt(time));
+            in.port.write(test::shared(test::pingOf(16, 100, 1, time)));
             task.update();
         };
-        cycle(1);
-        EXPECT_THAT(test::allocationsOn(task,
-                                        [&] {
-                                            for (int64_t time = 2; time < 100; ++time) cycle(time);
-                                        }),
-                    testing::IsEmpty());
+        EXPECT_THAT(test::allocationsAfterTheFirst(task, cycle), testing::IsEmpty());
         EXPECT_EQ(task.noisy.written(), 99u);
     }
 }

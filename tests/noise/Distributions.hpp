@@ -7,18 +7,11 @@
 #include <vector>
 
 #include "components/noise/Noise.hpp"
+#include "tests/support/Pings.hpp"
 
 namespace insonify::noise {
 
-inline types::Sonar pingOf(uint32_t beams, uint32_t bins, float value = 1, int64_t time = 1000000) {
-    types::Sonar ping;
-    ping.time.microseconds = time;
-    ping.beam_count = beams;
-    ping.bin_count = bins;
-    ping.bearings.assign(beams, types::Angle{0});
-    ping.bins.assign(size_t{beams} * bins, value);
-    return ping;
-}
+using test::pingOf;
 
 inline types::Sonar noisyOf(const NoiseConfig& config, const types::Sonar& clean) {
     types::Sonar noisy;

@@ -1,42 +1,17 @@
 #include <gtest/gtest.h>
 
 #include "components/noise/NoiseTask.hpp"
-#include "tests/support/Ports.hpp"
+#include "tests/support/Pings.hpp"
+#include "tests/support/TaskBench.hpp"
 
 namespace insonify::noise {
 namespace {
 
-class NoiseTaskTest : public ::testing::Test {
-protected:
-    NoiseTaskTest() {
-        in_.port.connectTo(task_.clean, {});
-        task_.noisy.connectTo(out_.port, {});
-    }
-    void startWith(const NoiseConfig& config) {
-        task_.config.set(config);
-        ASSERT_TRUE(task_.configure());
-        ASSERT_TRUE(task_.start());
-    }
-    types::SonarPtr answerTo(const types::SonarPtr& ping) {
-        in_.port.write(ping);
-        task_.update();
-        types::SonarPtr answer;
-        EXPECT_TRUE(out_.port.readNew(answer));
-        return answer;
-    }
-    static types::SonarPtr makePing(int64_t time) {
-        types::Sonar ping;
-        ping.time = {time};
-        ping.beam_count = 2;
-        ping.bin_count = 100;
-        ping.bearings.resize(2);
-        ping.bins.assign(200, 1);
-        return std::make_shared<const types::Sonar>(ping);
-    }
+types::SonarPtr makePing(int64_t time) { return test::shared(test::pingOf(2, 100, 1, time)); }
 
-    NoiseTask task_{"noise"};
-    test::Writer<types::SonarPtr> in_;
-    test::Reader<types::SonarPtr> out_;
+class NoiseTaskTest : public test::TaskBench<NoiseTask, types::SonarPtr> {
+protected:
+    NoiseTaskTest() : TaskBench(&NoiseTask::clean, &NoiseTask::noisy) {}
 };
 
 TEST_F(NoiseTaskTest, WithoutNoiseThePingItselfIsPassedOn) {

@@ -37,6 +37,8 @@ TEST(RandomTest, TheExponentialIsExactToAMillionthOverItsWholeRange) {
 TEST(RandomTest, TheExponentialIsFiniteAndPositiveAtBothEnds) {
     EXPECT_NEAR(exponential(0), 22.9, 0.1);
     EXPECT_GT(exponential(0xFFFFFFFF), 0);
+    for (const uint32_t bits : {1u, 0x7fffffffu, 0x80000000u, 0xfffffffeu})
+        EXPECT_TRUE(exponential(bits) > 0 && std::isfinite(exponential(bits))) << bits;
 }
 
 TEST(RandomTest, TheNormalsLieOnTheCircleThatBoxAndMullerSay) {

@@ -3,7 +3,7 @@
 #include <gmock/gmock.h>
 
 #include "components/output/ScanMosaicTask.hpp"
-#include "tests/output/Pings.hpp"
+#include "tests/output/Pixels.hpp"
 #include "tests/support/Allocations.hpp"
 #include "tests/support/Ports.hpp"
 

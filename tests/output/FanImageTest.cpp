@@ -4,7 +4,7 @@
 #include <limits>
 
 #include "components/output/FanImage.hpp"
-#include "tests/output/Pings.hpp"
+#include "tests/output/Pixels.hpp"
 
 namespace insonify::output {
 namespace {

@@ -3,7 +3,7 @@
 #include <numbers>
 
 #include "components/output/FanShape.hpp"
-#include "tests/output/Pings.hpp"
+#include "tests/output/Pixels.hpp"
 
 namespace insonify::output {
 namespace {

@@ -6,7 +6,7 @@
 #include "components/output/FanImage.hpp"
 #include "components/output/PictureFiles.hpp"
 #include "components/output/PictureWriter.hpp"
-#include "tests/output/Pings.hpp"
+#include "tests/output/Pixels.hpp"
 
 namespace insonify::output {
 namespace {

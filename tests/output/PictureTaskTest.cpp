@@ -1,7 +1,7 @@
 #include <gtest/gtest.h>
 
 #include "components/output/PictureTask.hpp"
-#include "tests/output/Pings.hpp"
+#include "tests/output/Pixels.hpp"
 #include "tests/support/Ports.hpp"
 
 namespace insonify::output {

@@ -6,7 +6,7 @@
 #include <opencv2/imgproc.hpp>
 #include <vector>
 
-#include "tests/output/Pings.hpp"
+#include "tests/output/Pixels.hpp"
 #include "types/Pose.hpp"
 
 namespace insonify::test {

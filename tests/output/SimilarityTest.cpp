@@ -1,7 +1,7 @@
 #include <random>
 
 #include "components/output/Similarity.hpp"
-#include "tests/output/Pings.hpp"
+#include "tests/output/Pixels.hpp"
 
 namespace insonify::output {
 namespace {

@@ -6,7 +6,7 @@
 #include "components/output/PictureTask.hpp"
 #include "components/output/ScanMosaic.hpp"
 #include "components/output/WaterfallImage.hpp"
-#include "tests/output/Pings.hpp"
+#include "tests/output/Pixels.hpp"
 #include "tests/support/Ports.hpp"
 
 namespace insonify::output {

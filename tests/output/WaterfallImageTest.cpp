@@ -1,7 +1,7 @@
 #include <gtest/gtest.h>
 
 #include "components/output/WaterfallImage.hpp"
-#include "tests/output/Pings.hpp"
+#include "tests/output/Pixels.hpp"
 
 namespace insonify::output {
 namespace {

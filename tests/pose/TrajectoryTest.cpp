@@ -161,6 +161,7 @@ TEST(TrajectoryConfigTest, ExactlyOneSourceIsAskedForAndTimesMustIncrease) {
         problemsOf({.file = {}, .waypoints = {{.time = 1}, {.time = 2}, {.time = 2}, {.time = 1}}});
     ASSERT_EQ(diagnostics.size(), 2u);
     EXPECT_EQ(diagnostics[0].path, "waypoints[2].time");
+    EXPECT_EQ(problemsOf({.file = {}, .waypoints = {{.time = 0}, {.time = std::nan("")}}}).size(), 1u);
 }
 
 }  // namespace

@@ -1,8 +1,8 @@
 #include <gmock/gmock.h>
 
 #include "components/receiver/ReceiverTask.hpp"
-#include "tests/receiver/Pings.hpp"
 #include "tests/support/Allocations.hpp"
+#include "tests/support/Pings.hpp"
 #include "tests/support/Ports.hpp"
 
 namespace insonify::receiver {
@@ -23,15 +23,10 @@ TEST(AllocationTest, AReceiverAllocatesNothingAfterTheFirstPings) {
         ASSERT_TRUE(task.configure());
         ASSERT_TRUE(task.start());
         const auto cycle = [&](int64_t time) {
-            in.port.write(shared(pingOf(16, 100, 1, time)));
+            in.port.write(test::shared(test::pingOf(16, 100, 1, time)));
             task.update();
         };
-        cycle(1);
-        EXPECT_THAT(test::allocationsOn(task,
-                                        [&] {
-                                            for (int64_t time = 2; time < 100; ++time) cycle(time);
-                                        }),
-                    testing::IsEmpty());
+        EXPECT_THAT(test::allocationsAfterTheFirst(task, cycle), testing::IsEmpty());
         EXPECT_EQ(task.ping.written(), 99u);
     }
 }

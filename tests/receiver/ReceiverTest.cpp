@@ -4,7 +4,7 @@
 #include <limits>
 
 #include "components/receiver/Receiver.hpp"
-#include "tests/receiver/Pings.hpp"
+#include "tests/support/Pings.hpp"
 #include "types/Geometry.hpp"
 #include "types/VectorMath.hpp"
 
@@ -24,7 +24,7 @@ types::Sonar received(const ReceiverConfig& config, const types::Sonar& intensit
 
 /** One beam of these intensities. */
 types::Sonar beamOf(const std::vector<float>& bins) {
-    types::Sonar ping = pingOf(1, static_cast<uint32_t>(bins.size()));
+    types::Sonar ping = test::pingOf(1, static_cast<uint32_t>(bins.size()));
     ping.bins = bins;
     return ping;
 }
@@ -50,7 +50,7 @@ std::vector<std::string> faultsOf(const ReceiverConfig& config) {
 }
 
 TEST(ReceiverTest, NeutralValuesGiveTheSameBins) {
-    types::Sonar ping = pingOf(3, 200);
+    types::Sonar ping = test::pingOf(3, 200);
     for (size_t i = 0; i < ping.bins.size(); ++i) ping.bins[i] = static_cast<float>(i) * 1.37e-9f;
     ReceiverConfig neutral;
     neutral.tvg.emplace();
@@ -64,7 +64,7 @@ TEST(ReceiverTest, TheGainOfABinIsThatOfItsMiddle) {
     ReceiverConfig config;
     config.tvg = TvgConfig{.log_coefficient = 40, .db_per_m = 0.5, .max_db = 70};
     config.gain_db = 3;
-    const types::Sonar ping = received(config, pingOf(2, 400, 1e-6f));
+    const types::Sonar ping = received(config, test::pingOf(2, 400, 1e-6f));
     for (size_t k = 0; k < 400; ++k) {
         const double r = 0.1 * (static_cast<double>(k) + 0.5);
         const double gain = std::min(40 * std::log10(r) + r, 70.0) + 3;
@@ -100,7 +100,7 @@ TEST(ReceiverTest, WhatIsNearerThanTheBlankingIsSilentInEveryOutput) {
                                           {Output::Code, 0.0f}}) {
         ReceiverConfig config = giving(output);
         config.blanking = BlankingConfig{0.35};
-        types::Sonar ping = pingOf(2, 10);
+        types::Sonar ping = test::pingOf(2, 10);
         ping.bins[1] = nan;
         const auto bins = received(config, ping).bins;
         for (size_t k = 0; k < 4; ++k) EXPECT_EQ(bins[k], silence) << "the bin of 0.3 to 0.4 m begins before";
@@ -177,7 +177,7 @@ TEST(ReceiverTest, WhatMakesNoSenseIsRefusedAndWhatHasNoUseTold) {
 
 TEST(ReceiverTest, ABrightnessOfOneHalfShowsACellOfMediumSandFaceOnAsOneAtEveryRange) {
     ReceiverConfig config;
-    types::Sonar sand = pingOf(1, 300);
+    types::Sonar sand = test::pingOf(1, 300);
     for (size_t k = 0; k < 300; ++k) {
         const double r = 0.1 * (static_cast<double>(k) + 0.5);
         const double cell = types::radians(2) * 0.1 / r;  // [sr]
@@ -205,7 +205,7 @@ TEST(ReceiverTest, APingOfAnotherShapeOrRangeHasItsOwnGain) {
     ReceiverConfig config;
     config.tvg = TvgConfig{.log_coefficient = 20, .db_per_m = 0, .max_db = 100};
     Receiver receiver(config);
-    types::Sonar ping, first = pingOf(2, 100), longer = pingOf(1, 50);
+    types::Sonar ping, first = test::pingOf(2, 100), longer = test::pingOf(1, 50);
     longer.bin_duration.microseconds = 1000;
     receiver.receive(first, ping);
     const std::vector<float> before = ping.bins;
@@ -216,7 +216,7 @@ TEST(ReceiverTest, APingOfAnotherShapeOrRangeHasItsOwnGain) {
 }
 
 TEST(ReceiverTest, EverythingButTheBinsIsKept) {
-    types::Sonar ping = pingOf(2, 3);
+    types::Sonar ping = test::pingOf(2, 3);
     ping.timestamps = {{1}, {2}};
     ping.beam_height = types::Angle{0.2};
     ping.bearings = {types::Angle{0.3}, types::Angle{-0.3}};

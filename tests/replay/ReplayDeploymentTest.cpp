@@ -4,8 +4,8 @@
 #include "components/framework/Deployment.hpp"
 #include "components/log/pocolog/Reader.hpp"
 #include "components/log/pocolog/Writer.hpp"
-#include "components/logger/registerTasks.hpp"
-#include "components/replay/registerTasks.hpp"
+#include "components/logger/LoggerTask.hpp"
+#include "components/replay/ReplayTask.hpp"
 #include "tests/support/Folder.hpp"
 
 namespace insonify::replay {

@@ -73,6 +73,7 @@ TEST_F(GltfMaterialsTest, WrongAcousticsSayWhatTheyMayBe) {
     expect(R"({"lambert_db":"loud"})", "lambert_db: is \"loud\"; must be a number from -200 to 20");
     expect(R"({"reflection":1.5})", "reflection: is 1.5; must be a number from -1 to 1");
     expect(R"({"reflectivity":-0.1})", "reflectivity");
+    expect(R"({"reflectivity":1.1})", "reflectivity");
     expect(R"({"lamberd_db":-3})",
            "lamberd_db: is not known; did you mean lambert_db? may be sediment, material, lambert_db");
     expect(R"({"sediment":"clay","material":"steel"})", "give one of the two");

@@ -109,7 +109,7 @@ TEST(AllocationTest, NorDoesItWithTheDepositOnTheGraphicsDevice) {
 }
 
 TEST(AllocationTest, NorForPingsThatAreUnderWayTogether) {
-    using CullOn = DrawOptions::CullOn;
+    using CullOn = RenderOptions::CullOn;
     const std::vector<types::SnapshotPtr> snapshots = turning();
     for (Deposit deposit : {Deposit::Cpu, Deposit::Gpu})
         for (CullOn cull_on : {CullOn::Processor, CullOn::Device}) {

@@ -1,5 +1,7 @@
 #include <gmock/gmock.h>
 
+#include <algorithm>
+
 #include "components/sonar/HeadScan.hpp"
 
 namespace insonify::sonar {
@@ -27,6 +29,13 @@ TEST(HeadScanTest, ASectorThatTheStepDoesNotDivideIsNeverLeft) {
     EXPECT_THAT(
         bearings({.left_deg = 10, .right_deg = -15, .step_deg = 10, .continuous = {}, .speed_deg_per_s = {}}, 6),
         ElementsAre(10, 0, -10, 0, 10, 0));
+}
+
+TEST(HeadScanTest, NoBearingOfASectorIsHeardTwiceInARow) {
+    const std::vector<double> all =
+        bearings({.left_deg = 45, .right_deg = -45, .step_deg = 0.9, .continuous = {}, .speed_deg_per_s = {}}, 1000);
+    EXPECT_THAT(all, testing::Each(testing::AllOf(testing::Le(45), testing::Ge(-45))));
+    EXPECT_EQ(std::ranges::adjacent_find(all), all.end());
 }
 
 TEST(HeadScanTest, AStepAsWideAsTheSectorGoesBetweenItsLimits) {

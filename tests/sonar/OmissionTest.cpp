@@ -221,14 +221,14 @@ TEST(OmissionTest, MotionWithinAPingIsLeftOutBelowASpeed) {
 }
 
 /** Sonars that want each feature there is, by each way to render. */
-std::vector<SonarConfig> sonarsOfAllFeatures() {
-    std::vector<SonarConfig> all;
+std::vector<std::pair<SonarConfig, RenderOptions>> sonarsOfAllFeatures() {
+    std::vector<std::pair<SonarConfig, RenderOptions>> all;
     for (Model model : {Model::Physical, Model::Cerqueira2017})
         for (BeamGeometry beams : {BeamGeometry::Planar, BeamGeometry::Conical})
             for (Visibility visibility : {Visibility::Gl, Visibility::Cpu})
                 for (Deposit deposit : {Deposit::Cpu, Deposit::Gpu}) {
                     if (visibility == Visibility::Cpu && deposit == Deposit::Gpu) continue;
-                    SonarConfig& config = all.emplace_back(plainSonar(model));
+                    SonarConfig& config = all.emplace_back(plainSonar(model), RenderOptions{}).first;
                     config.visibility = visibility;
                     config.deposit = deposit;
                     config.beam_geometry = beams;
@@ -236,22 +236,22 @@ std::vector<SonarConfig> sonarsOfAllFeatures() {
                 }
     for (Deposit deposit : {Deposit::Cpu, Deposit::Gpu}) {
         for (Estimator estimator : {Estimator::Nearest, Estimator::NearestJitter}) {
-            all.push_back(plainSonar());
-            all.back().estimator = estimator;
-            all.back().deposit = deposit;
+            auto& [config, options] = all.emplace_back(plainSonar(), RenderOptions{});
+            options.estimator = estimator;
+            config.deposit = deposit;
         }
-        all.push_back(plainSonar(Model::Cerqueira2017));
-        all.back().published = true;
-        all.back().deposit = deposit;
+        SonarConfig& config = all.emplace_back(plainSonar(Model::Cerqueira2017), RenderOptions{}).first;
+        config.published = true;
+        config.deposit = deposit;
     }
     return all;
 }
 
 TEST(OmissionTest, WhatIsCompiledAndRunIsWhatThePlanSays) {
     Features seen;
-    for (const SonarConfig& config : sonarsOfAllFeatures())
+    for (const auto& [config, options] : sonarsOfAllFeatures())
         for (const types::GeometryPtr& geometry : {types::GeometryPtr(test::surfaces()), unmapped()}) {
-            SonarRenderer renderer(config, geometry);
+            SonarRenderer renderer(config, geometry, options);
             types::Sonar ping;
             renderer.render(test::snapshotOf(geometry, {}, 0.1, 0.15), ping);
             const RenderPlan& plan = renderer.renderPlan();

@@ -9,8 +9,8 @@
 namespace insonify::sonar {
 namespace {
 
-using CullOn = DrawOptions::CullOn;
-using SumIn = DrawOptions::SumIn;
+using CullOn = RenderOptions::CullOn;
+using SumIn = RenderOptions::SumIn;
 
 /** A sonar that turns about the harbour while its ball moves. */
 std::vector<types::SnapshotPtr> passage(const types::GeometryPtr& geometry, int count) {
@@ -53,7 +53,7 @@ protected:
         config.deposit = GetParam().deposit;
         return config;
     }
-    DrawOptions options(size_t ring) const { return {.ring = ring, .cull_on = GetParam().cull_on}; }
+    RenderOptions options(size_t ring) const { return {.ring = ring, .cull_on = GetParam().cull_on}; }
 };
 
 /** Objects, triangles and frusta that were left out, and of how many. */
@@ -64,9 +64,9 @@ std::vector<std::tuple<Effect, double, double>> leftOut(const SonarRenderer& ren
 }
 
 /** Whether two ways to draw give the same bins of each snapshot, and leave the same out. */
-void expectSame(const SonarConfig& config, const std::vector<types::SnapshotPtr>& snapshots, DrawOptions one,
-                DrawOptions other) {
-    const auto run = [&](const DrawOptions& options, const auto& use) {
+void expectSame(const SonarConfig& config, const std::vector<types::SnapshotPtr>& snapshots, RenderOptions one,
+                RenderOptions other) {
+    const auto run = [&](const RenderOptions& options, const auto& use) {
         SonarRenderer renderer(config, snapshots.front()->geometry, options);
         for (const types::SnapshotPtr& snapshot : snapshots) use(rendered(renderer, *snapshot), leftOut(renderer));
     };

@@ -9,7 +9,13 @@
 namespace insonify::sonar {
 namespace {
 
-SonarConfig sonarOf(int rows, int columns, int samples) {
+/** A sonar and its samples a pixel. */
+struct Sampled {
+    SonarConfig config;
+    RenderOptions options = {};
+};
+
+Sampled sonarOf(int rows, int columns, int samples) {
     SonarConfig config;
     config.speed_of_sound = 1000;
     config.range = 30;
@@ -19,20 +25,19 @@ SonarConfig sonarOf(int rows, int columns, int samples) {
     config.beam_height_deg = 40;
     config.quality.rows = rows;
     config.quality.columns_per_beam = columns;
-    config.samples_per_pixel = samples;
     config.device = "software";
-    return config;
+    return {config, {.samples_per_pixel = samples}};
 }
 
-std::vector<float> binsOf(const SonarConfig& config, const types::GeometryPtr& geometry) {
+std::vector<float> binsOf(const Sampled& sonar, const types::GeometryPtr& geometry) {
     types::Sonar ping;
-    SonarRenderer(config, geometry).render(test::snapshotOf(geometry), ping);
+    SonarRenderer(sonar.config, geometry, sonar.options).render(test::snapshotOf(geometry), ping);
     return ping.bins;
 }
 
-double energyOf(const SonarConfig& config, const types::GeometryPtr& geometry) {
+double energyOf(const Sampled& sonar, const types::GeometryPtr& geometry) {
     double sum = 0;
-    for (float bin : binsOf(config, geometry)) sum += bin;
+    for (float bin : binsOf(sonar, geometry)) sum += bin;
     return sum;
 }
 

@@ -3,9 +3,8 @@
 #include <cmath>
 
 #include "components/sonar/ScanningSonarTask.hpp"
-#include "components/sonar/registerTasks.hpp"
 #include "tests/sonar/WallScene.hpp"
-#include "tests/support/Ports.hpp"
+#include "tests/support/TaskBench.hpp"
 #include "types/Angle.hpp"
 
 namespace insonify::sonar {
@@ -13,21 +12,16 @@ namespace {
 
 using framework::TaskState;
 
-class ScanningSonarTaskTest : public ::testing::Test {
+class ScanningSonarTaskTest : public test::TaskBench<ScanningSonarTask, types::SnapshotPtr, types::SonarPtr> {
 protected:
-    ScanningSonarTaskTest() {
-        in_.port.connectTo(task_.snapshot, framework::ConnPolicy::buffer(4));
-        task_.ping.connectTo(out_.port, framework::ConnPolicy::buffer(4));
-    }
+    ScanningSonarTaskTest() : TaskBench(&ScanningSonarTask::snapshot, &ScanningSonarTask::ping) {}
     void start(const HeadConfig& head) {
         ScanningSonarConfig config;
         config.sonar.range = 15;
         config.sonar.bin_count = 100;
         config.sonar.device = "software";
         config.head = head;
-        task_.config.set(config);
-        ASSERT_TRUE(task_.configure()) << task_.lastError();
-        ASSERT_TRUE(task_.start()) << task_.lastError();
+        startWith(config);
     }
     /** The ping for the wall 5 m north, from a vehicle with this heading; null when there was none. */
     types::SonarPtr pingAt(double seconds, double yaw_deg = 0) {
@@ -35,17 +29,10 @@ protected:
         snapshot.geometry = wall_;
         snapshot.time = types::Time::fromSeconds(seconds);
         snapshot.sonar.orientation = glm::angleAxis(types::radians(yaw_deg), glm::dvec3(0, 0, 1));
-        in_.port.write(std::make_shared<types::Snapshot>(snapshot));
-        task_.update();
-        types::SonarPtr ping;
-        out_.port.readNew(ping);
-        return ping;
+        return answerTo(std::make_shared<types::Snapshot>(snapshot));
     }
 
     types::GeometryPtr wall_ = wallAt(5);
-    ScanningSonarTask task_{"sonar"};
-    test::Writer<types::SnapshotPtr> in_;
-    test::Reader<types::SonarPtr> out_;
 };
 
 constexpr HeadConfig sector{.left_deg = 40, .right_deg = -40, .step_deg = 40, .continuous = {}, .speed_deg_per_s = {}};
@@ -82,6 +69,8 @@ TEST_F(ScanningSonarTaskTest, TimeThatGoesBackwardsIsARunTimeErrorUntilItGoesOn)
     ASSERT_TRUE(next);
     EXPECT_EQ(task_.state(), TaskState::Running);
     EXPECT_NEAR(next->bearings[0].deg(), 0, 1e-9);
+    EXPECT_TRUE(pingAt(2)) << "an equal time";
+    EXPECT_TRUE(pingAt(2 + 5 * 86400.0)) << "a leap of five days";
 }
 
 TEST_F(ScanningSonarTaskTest, AStepThatTheHeadCannotMakeInThePingPeriodIsRefused) {
@@ -92,7 +81,7 @@ TEST_F(ScanningSonarTaskTest, AStepThatTheHeadCannotMakeInThePingPeriodIsRefused
     EXPECT_FALSE(pingAt(1.1));
     EXPECT_EQ(task_.state(), TaskState::Exception);
     EXPECT_THAT(task_.lastError(),
-                ::testing::HasSubstr("sonar.head.step_deg: is 40 deg, which takes 0.4 s at 100 deg/s; "
+                ::testing::HasSubstr("task.head.step_deg: is 40 deg, which takes 0.4 s at 100 deg/s; "
                                      "the ping period is 0.1 s"));
 }
 

@@ -6,36 +6,21 @@
 
 #include "components/sonar/SonarTask.hpp"
 #include "tests/sonar/WallScene.hpp"
-#include "tests/support/Ports.hpp"
+#include "tests/support/TaskBench.hpp"
 
 namespace insonify::sonar {
 namespace {
 
 using framework::TaskState;
 
-class SonarTaskTest : public ::testing::Test {
+class SonarTaskTest : public test::TaskBench<SonarTask, types::SnapshotPtr, types::SonarPtr> {
 protected:
-    SonarTaskTest() {
-        in_.port.connectTo(task_.snapshot, framework::ConnPolicy::buffer(4));
-        task_.ping.connectTo(out_.port, framework::ConnPolicy::buffer(4));
-    }
-    void start(const SonarConfig& config = smallSonar()) {
-        task_.config.set(config);
-        ASSERT_TRUE(task_.configure()) << task_.lastError();
-        ASSERT_TRUE(task_.start()) << task_.lastError();
-    }
+    SonarTaskTest() : TaskBench(&SonarTask::snapshot, &SonarTask::ping) {}
+    void start(const SonarConfig& config = smallSonar()) { startWith(config); }
     /** The ping for one snapshot; null when there was none. */
     types::SonarPtr pingOf(types::Snapshot snapshot) {
-        in_.port.write(std::make_shared<types::Snapshot>(std::move(snapshot)));
-        task_.update();
-        types::SonarPtr ping;
-        out_.port.readNew(ping);
-        return ping;
+        return answerTo(std::make_shared<types::Snapshot>(std::move(snapshot)));
     }
-
-    SonarTask task_{"sonar"};
-    test::Writer<types::SnapshotPtr> in_;
-    test::Reader<types::SonarPtr> out_;
 };
 
 TEST_F(SonarTaskTest, APingCarriesTheTimeOfItsSnapshotAndTheGridOfItsBins) {
@@ -105,6 +90,35 @@ TEST_F(SonarTaskTest, AQuaternionThatIsNotOfUnitLengthIsNormalised) {
     const auto same = pingOf(longer);
     ASSERT_TRUE(ping && same);
     EXPECT_EQ(ping->bins, same->bins);
+}
+
+TEST_F(SonarTaskTest, PingsCloserThanSoundsWayThereAndBackAreToldToBeAmbiguous) {
+    const auto warning = ::testing::Contains(::testing::HasSubstr("ambiguous in range"));
+    const auto pingAt = [&](double seconds) {
+        types::Snapshot snapshot = facingWall(5);
+        snapshot.time = types::Time::fromSeconds(seconds);
+        return pingOf(snapshot);
+    };
+    start();  // 15 m there and back at 1500 m/s: 20 ms
+    ASSERT_TRUE(pingAt(1) && pingAt(1.1));
+    EXPECT_THAT(task_.notices(), ::testing::Not(warning));
+    ASSERT_TRUE(pingAt(1.101)) << "heard all the same";
+    EXPECT_THAT(task_.notices(), warning);
+}
+
+TEST_F(SonarTaskTest, ASonarFasterThanATenthOfTheSpeedOfSoundIsRefused) {
+    const auto pingAt = [&](double seconds, double y) {
+        types::Snapshot snapshot = facingWall(5);
+        snapshot.time = types::Time::fromSeconds(seconds);
+        snapshot.sonar.position.y = y;
+        return pingOf(snapshot);
+    };
+    start();
+    EXPECT_TRUE(pingAt(1, 0));
+    EXPECT_TRUE(pingAt(2, 140));
+    EXPECT_FALSE(pingAt(3, 300)) << "160 m/s of 1500";
+    EXPECT_THAT(task_.lastError(), ::testing::HasSubstr("a tenth of the speed of sound"));
+    EXPECT_TRUE(pingAt(4, 310));
 }
 
 TEST_F(SonarTaskTest, ANewSceneIsRenderedFromThenOn) {

@@ -34,8 +34,8 @@ SonarConfig fan(Visibility visibility) {
     return config;
 }
 
-types::Sonar pingOf(const SonarConfig& config, const types::Snapshot& snapshot) {
-    SonarRenderer renderer(config, snapshot.geometry);
+types::Sonar pingOf(const SonarConfig& config, const types::Snapshot& snapshot, const RenderOptions& options = {}) {
+    SonarRenderer renderer(config, snapshot.geometry, options);
     types::Sonar ping;
     renderer.render(snapshot, ping);
     return ping;
@@ -188,13 +188,11 @@ TEST(VisibilityTest, TheSameBytesForAnyNumberOfThreads) {
         SonarConfig config = fan(Visibility::Cpu);
         config.quality.columns_per_beam = columns;
         config.beam_count = columns == 512 ? 2 : 50;
-        config.threads = 1;
-        const std::vector<float> alone = pingOf(config, movedScene()).bins;
+        const std::vector<float> alone = pingOf(config, movedScene(), {.threads = 1}).bins;
         EXPECT_GT(std::accumulate(alone.begin(), alone.end(), 0.0), 0);
-        for (int threads : {2, 5}) {
-            config.threads = threads;
-            EXPECT_EQ(pingOf(config, movedScene()).bins, alone) << threads << " threads, " << columns << " columns";
-        }
+        for (int threads : {2, 5})
+            EXPECT_EQ(pingOf(config, movedScene(), {.threads = threads}).bins, alone)
+                << threads << " threads, " << columns << " columns";
     }
 }
 

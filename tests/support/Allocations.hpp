@@ -26,4 +26,13 @@ std::vector<std::string> allocationsOn(framework::TaskContext& task, Work&& work
     return takeCounted();
 }
 
+/** The same of the cycles 2 to 99, after a first one. */
+template <class Cycle>
+std::vector<std::string> allocationsAfterTheFirst(framework::TaskContext& task, const Cycle& cycle) {
+    cycle(1);
+    return allocationsOn(task, [&] {
+        for (int64_t time = 2; time < 100; ++time) cycle(time);
+    });
+}
+
 }  // namespace insonify::test

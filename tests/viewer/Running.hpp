@@ -5,7 +5,7 @@
 #include <thread>
 
 #include "components/framework/Deployment.hpp"
-#include "components/viewer/registerTasks.hpp"
+#include "components/viewer/ViewerTask.hpp"
 #include "tests/viewer/Bench.hpp"
 
 namespace insonify::viewer {

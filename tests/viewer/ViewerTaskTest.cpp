@@ -4,7 +4,6 @@
 
 #include "components/framework/Deployment.hpp"
 #include "components/viewer/ViewerTask.hpp"
-#include "components/viewer/registerTasks.hpp"
 #include "tests/support/Folder.hpp"
 #include "tests/viewer/Bench.hpp"
 #include "tests/viewer/Client.hpp"

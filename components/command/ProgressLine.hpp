@@ -1,0 +1,46 @@
+#pragma once
+#include <chrono>
+#include <cstddef>
+#include <string>
+
+namespace insonify::command {
+
+/** One line on a terminal, at most ten times a second, wiped at the end; nothing elsewhere. */
+class ProgressLine {
+public:
+    explicit ProgressLine(bool wanted);
+    ~ProgressLine();
+    ProgressLine(const ProgressLine&) = delete;
+    ProgressLine& operator=(const ProgressLine&) = delete;
+
+    /** @param wall_s since the beginning [s] */
+    void show(double wall_s, const std::string& text);
+
+private:
+    bool shown_;
+    double next_s_ = 0.1;
+};
+
+/** What a study is at and for how long, how many of its steps are done, and what time is left. */
+class StudyProgress {
+public:
+    /** @param total steps; 0: not known */
+    explicit StudyProgress(bool wanted, size_t total = 0);
+    void operator()(const std::string& at);
+    void advance() { ++done_; }  ///< One more step is done.
+    void end();                  ///< Wipes the line.
+
+private:
+    bool shown_;
+    size_t total_, done_ = 0;
+    std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+};
+
+/** ", 12 % done, 34 s left" once `share` of the whole has taken `wall_s` [s]; empty where nothing can be told: no share
+ *  is known (0 or less), or all is done. */
+std::string timeLeft(double share, double wall_s);
+
+/** "34 s", "5 min 03 s", "2 h 05 min" */
+std::string durationText(double seconds);
+
+}  // namespace insonify::command

@@ -1,0 +1,130 @@
+// insonify study error [DEPLOYMENT]
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
+#include <memory>
+
+#include "components/command/OutputFolder.hpp"
+#include "components/command/ProgressLine.hpp"
+#include "components/sonar/BinGrid.hpp"
+#include "components/study/ErrorReport.hpp"
+#include "components/study/StudyCommand.hpp"
+#include "types/ConfigError.hpp"
+
+namespace insonify::study {
+namespace {
+
+struct Options {
+    std::string deployment, out;
+    std::vector<std::string> scenes;
+    uint64_t ping = 1;
+    ErrorOptions study;
+    bool quiet = false;
+};
+
+/** What a study can take away without changing where echoes come from: absorption, model. */
+sonar::SonarConfig plain(sonar::SonarConfig config, const std::string& file) {
+    if (!config.bearings_deg.empty() || config.beam_geometry != sonar::BeamGeometry::Planar)
+        throw types::ConfigError(
+            file, "tasks",
+            "has a sonar with bearings_deg or conical beams; a study of the error takes a regular planar fan");
+    const sonar::BinGrid grid = sonar::makeBinGrid(config);
+    config.range = grid.bin_width * grid.bin_count;
+    config.speed_of_sound = grid.speed_of_sound;
+    config.range_rounding = sonar::RangeRounding::Exact;
+    config.model = sonar::Model::Physical;
+    config.published = false;
+    config.absorption.reset();
+    return config;
+}
+
+std::vector<std::string> sceneNames() {
+    std::vector<std::string> names;
+    for (const auto& makers : {closedFormScenes(), computedScenes()})
+        for (const SceneMaker& scene : makers) names.emplace_back(scene.name);
+    return names;
+}
+
+/** Of the scene: the file's, in letters that every report can show; never that of a scene of the study. */
+std::string nameOf(const std::string& file) {
+    std::string name = std::filesystem::path(file).stem().string();
+    for (char& c : name)
+        if (!std::isalnum(static_cast<unsigned char>(c)) && c != '-' && c != '.') c = '_';
+    return std::ranges::count(sceneNames(), name) == 0 ? name : "deployment_" + name;
+}
+
+StudyScene studied(const std::string& file, const SonarAt& sonar) {
+    return {nameOf(file), file, plain(sonar.config, file), sonar.snapshot, {}};
+}
+
+std::vector<StudyScene> scenesOf(const Options& options, const FindSonar& sonarAt) {
+    const std::vector<std::string> names = sceneNames();
+    for (const std::string& name : options.scenes)
+        if (std::ranges::count(names, name) == 0)
+            throw types::ConfigError(
+                "", "--scene",
+                fmt::format("{} is not a scene of the study; those are {}", name, fmt::join(names, ", ")));
+    const bool all = options.scenes.empty() && options.deployment.empty();
+    const auto wanted = [&](const std::string& name) { return all || std::ranges::count(options.scenes, name) > 0; };
+    std::vector<StudyScene> scenes;
+    for (const auto& makers : {closedFormScenes(), computedScenes()})
+        for (const SceneMaker& scene : makers)
+            if (wanted(scene.name)) scenes.push_back(scene.make());
+    if (!options.deployment.empty())
+        scenes.push_back(studied(options.deployment, sonarAt(options.deployment, options.ping)));
+    return scenes;
+}
+
+int runStudy(Options options, const FindSonar& sonarAt) {
+    const std::vector<StudyScene> scenes = scenesOf(options, sonarAt);
+    command::OutputFolder folder(options.out, "study_error");
+    command::StudyProgress progress(!options.quiet, scenes.size());
+    size_t scene = 0;
+    options.study.progress = [&](const std::string& at) {
+        for (; !at.starts_with(scenes[scene].name + " ") && scene + 1 < scenes.size(); ++scene) progress.advance();
+        progress(at + ", scenes");
+    };
+    const ErrorResult result = studyError(scenes, options.study);
+    folder.keep();
+    writeReport(result, folder.path());
+    progress.end();
+
+    bool all = true, open = false;
+    for (const Claim& claim : claims(result)) {
+        all = all && !claim.fails();
+        open = open || (!claim.fails() && !claim.holds());
+        fmt::print("{}  {}: {:.4g}, {} {:.4g}\n", claim.verdict(), claim.text, claim.measured,
+                   claim.at_most ? "at most" : "at least", claim.bound);
+    }
+    if (open) fmt::print("open: --levels or --reference-rays are too few to tell; no fault of the scene\n");
+    fmt::print("{} points; report in {}\n", result.measurements.size(), (folder.path() / "index.html").string());
+    return all ? 0 : 1;
+}
+
+}  // namespace
+
+void addErrorStudy(CLI::App& study, command::Action& action, const FindSonar& sonarAt) {
+    const auto options = std::make_shared<Options>();
+    CLI::App* command = study.add_subcommand("error", "Error against run time, for each way to estimate an echo");
+    command->add_option(
+        "DEPLOYMENT", options->deployment,
+        "a YAML file whose sonar and scene are studied, normal maps as drawn; absent: all scenes of the study");
+    command->add_option("--out", options->out, "folder of the report");
+    command->add_option("--scene", options->scenes, "only this scene of the study (more than one: say it again)");
+    command->add_option("--ping", options->ping, "which ping of the deployment")->check(CLI::PositiveNumber);
+    command->add_option("--pings", options->study.pings, "timed for each point")->check(CLI::Range(1, 1000));
+    command
+        ->add_option("--levels", options->study.levels,
+                     "how often rows and columns are doubled, less one; at most 4 without a closed form")
+        ->check(CLI::Range(1, 6));
+    command
+        ->add_option("--reference-rays", options->study.reference_rays,
+                     "cast at most for the reference of a scene without a closed form")
+        ->check(CLI::Range(1e3, 1e12));
+    command->add_flag("--quiet", options->quiet, "no progress");
+    command->callback(
+        [options, sonarAt, &action] { action = [options, sonarAt] { return runStudy(*options, sonarAt); }; });
+}
+
+}  // namespace insonify::study

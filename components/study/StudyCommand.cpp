@@ -1,0 +1,17 @@
+// insonify study error|omission|stability
+#include "components/study/StudyCommand.hpp"
+
+namespace insonify::study {
+
+void addCommand(CLI::App& app, command::Action& action, const FindSonar& sonarAt) {
+    CLI::App* study = app.add_subcommand("study", "Measures the simulator itself");
+    study->require_subcommand(1);
+#ifdef INSONIFY_EMBREE
+    addErrorStudy(*study, action, sonarAt);
+    addRaysStudy(*study, action, sonarAt);
+#endif
+    addOmissionStudy(*study, action, sonarAt);
+    addStabilityStudy(*study, action);
+}
+
+}  // namespace insonify::study

@@ -1,0 +1,32 @@
+#pragma once
+// Pictures as pixels, for the tests of what is shown.
+#include <gtest/gtest.h>
+
+#include <opencv2/core.hpp>
+#include <string>
+
+#include "tests/support/Folder.hpp"
+#include "tests/support/Pings.hpp"
+#include "types/Image.hpp"
+
+namespace insonify::test {
+
+inline cv::Mat pixelsOf(const types::Image& picture) {
+    return cv::Mat(picture.size.height, picture.size.width, CV_8UC3, const_cast<uint8_t*>(picture.image.data()))
+        .clone();
+}
+
+/** Centre of gravity of where two pictures differ. */
+inline cv::Point2d centreOfDifference(const cv::Mat& a, const cv::Mat& b) {
+    double sum = 0;
+    cv::Point2d moment;
+    for (int y = 0; y < a.rows; ++y)
+        for (int x = 0; x < a.cols; ++x) {
+            const double weight = cv::norm(a.at<cv::Vec3b>(y, x), b.at<cv::Vec3b>(y, x), cv::NORM_L1);
+            sum += weight;
+            moment += weight * cv::Point2d(x, y);
+        }
+    return moment / sum;
+}
+
+}  // namespace insonify::test

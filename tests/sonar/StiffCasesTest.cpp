@@ -1,0 +1,143 @@
+// Cases of ACOUSTICS.md 11.2: they hold or they do not.
+#include <gmock/gmock.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "components/sonar/PlanReport.hpp"
+#include "components/sonar/SonarRenderer.hpp"
+#include "tests/support/Surfaces.hpp"
+
+namespace insonify::sonar {
+namespace {
+
+using ::testing::Contains;
+using ::testing::Each;
+using ::testing::Ge;
+using ::testing::HasSubstr;
+
+SonarConfig fan(double field_of_view_deg = 60, int beams = 16, int bins = 200) {
+    SonarConfig config;
+    config.speed_of_sound = 1000;
+    config.range = 0.1 * bins;
+    config.bin_count = bins;
+    config.beam_count = beams;
+    config.field_of_view_deg = field_of_view_deg;
+    config.beam_height_deg = 40;
+    return config;
+}
+
+std::vector<float> binsOf(const SonarConfig& config, const types::GeometryPtr& geometry,
+                          const RenderOptions& options = {}) {
+    types::Sonar ping;
+    SonarRenderer(config, geometry, options).render(test::snapshotOf(geometry), ping);
+    return ping.bins;
+}
+
+std::vector<types::Mesh> wallAndBall() { return {test::wall(12), test::sphere(1.5, 48)}; }
+
+/** The wall and ball as `change` leaves them. */
+template <class Change>
+std::vector<float> heardWith(const Change& change) {
+    std::vector<types::Mesh> meshes = wallAndBall();
+    for (types::Mesh& mesh : meshes) change(mesh);
+    return binsOf(fan(), test::sceneOf(std::move(meshes), 0, {{0, 0, 0}, {9, 1, -0.5}}));
+}
+
+}  // namespace
+
+TEST(StiffCasesTest, NeitherTrianglesWithoutAreaNorNormalsWithoutLengthNorWindingAreHeard) {
+    const std::vector<float> plain = heardWith([](types::Mesh&) {});
+    EXPECT_THAT(plain, Contains(testing::Gt(0)));
+    EXPECT_EQ(heardWith([](types::Mesh& mesh) {
+                  mesh.indices.insert(mesh.indices.end(), {0, 0, 1, 2, 2, 2});
+                  mesh.positions.push_back(0.5f * (mesh.positions[0] + mesh.positions[2]));
+                  mesh.indices.insert(mesh.indices.end(), {0, static_cast<uint32_t>(mesh.positions.size() - 1), 2});
+                  mesh.clusters[0].index_count = static_cast<uint32_t>(mesh.indices.size());
+              }),
+              plain)
+        << "repeated corners, and three in a line";
+    EXPECT_EQ(heardWith([](types::Mesh& mesh) { mesh.normals.assign(mesh.positions.size(), glm::vec3(0)); }), plain);
+    EXPECT_EQ(heardWith([](types::Mesh& mesh) {
+                  for (size_t i = 0; i < mesh.indices.size(); i += 3)
+                      std::swap(mesh.indices[i + 1], mesh.indices[i + 2]);
+              }),
+              plain)
+        << "wound the other way";
+}
+
+/** A plate at each of 399 edges that are exact in binary. */
+TEST(StiffCasesTest, ASurfaceOnTheEdgeOfABinIsHeardInTheBinThatBeginsThere) {
+    SonarConfig config = fan(10, 1, 400);
+    config.range = 50;
+    config.speed_of_sound = 1250;  // 0.125 m a bin
+    config.range_min = 0.05;
+    config.beam_height_deg = 10;
+    config.quality.rows = 16;
+    config.quality.columns_per_beam = 2;
+    const auto geometry = test::sceneOf({test::wall(0)});
+    SonarRenderer renderer(config, geometry);
+    for (int bin = 1; bin < 400; ++bin) {
+        types::Sonar ping;
+        renderer.render(test::snapshotOf(geometry, {-0.125 * bin, 0, 0}), ping);
+        const auto first = std::ranges::find_if(ping.bins, [](float echo) { return echo > 0; });
+        EXPECT_EQ(first - ping.bins.begin(), bin);
+    }
+}
+
+TEST(StiffCasesTest, FrequenciesOutsideTheLawsAreToldAndTheirEchoesFinite) {
+    for (const double khz : {0.0, 1e4})
+        for (const auto law : {acoustics::AbsorptionLaw::FrancoisGarrison, acoustics::AbsorptionLaw::AinslieMccolm}) {
+            SonarConfig config = fan();
+            config.water.emplace();
+            config.absorption.emplace().frequency_khz = khz;
+            config.absorption->law = law;
+            EXPECT_THAT(configNotices(config), Contains(HasSubstr("outside its law's validity"))) << khz;
+            const std::vector<float> bins = binsOf(config, test::sceneOf({test::ground(-1)}));
+            EXPECT_THAT(bins, Each(testing::AllOf(Ge(0), testing::Lt(INFINITY)))) << khz;
+            EXPECT_GT(bins[35], 0) << khz;
+        }
+}
+
+TEST(StiffCasesTest, TheNumberOfThreadsThatSumADrawnPingChangesNoBit) {
+    for (const Model model : {Model::Physical, Model::Cerqueira2017}) {
+        SonarConfig config = fan(130, 61, 300);
+        config.model = model;
+        config.device = "software";
+        config.deposit = Deposit::Cpu;
+        const auto scene = test::surfaces();
+        const std::vector<float> alone = binsOf(config, scene, {.threads = 1});
+        EXPECT_THAT(alone, Contains(testing::Gt(0)));
+        for (const int threads : {2, 3, 5, 8, 16})
+            EXPECT_EQ(binsOf(config, scene, {.threads = threads}), alone) << threads << " threads";
+    }
+}
+
+TEST(StiffCasesTest, ASampleThatHeldAnotherPingKeepsNothingOfIt) {
+    const auto scene = test::surfaces();
+    const SonarConfig small = fan(40, 5, 120), large = fan(130, 61, 300);
+    types::Sonar ping;
+    for (const SonarConfig& config : {large, small, large, small}) {
+        SonarRenderer(config, scene).render(test::snapshotOf(scene), ping);
+        EXPECT_EQ(ping.bins, binsOf(config, scene));
+    }
+    SonarRenderer renderer(large, scene);
+    renderer.render(test::snapshotOf(scene), ping);
+    renderer.render(test::snapshotOf(scene, {0, 0, 1000}), ping);
+    EXPECT_THAT(ping.bins, Each(0)) << "far above all";
+}
+
+TEST(StiffCasesTest, APictureLargerThanAnyDevicesIsRefusedInWords) {
+    SonarConfig config = fan(120, 4096);
+    config.quality.rows = 16384;
+    config.quality.columns_per_beam = 256;
+    config.visibility = Visibility::Gl;
+    try {
+        binsOf(config, test::sceneOf({test::wall(10)}));
+        FAIL() << "was drawn";
+    } catch (const std::exception& error) {
+        EXPECT_THAT(error.what(), HasSubstr("16384"));
+    }
+}
+
+}  // namespace insonify::sonar

@@ -1,0 +1,85 @@
+#include <gmock/gmock.h>
+
+#include <sstream>
+
+#include "tests/deployer/Wall.hpp"
+
+using namespace insonify::deployer;
+using testing::HasSubstr;
+
+namespace {
+
+std::vector<std::string> linesOf(const fs::path& file) {
+    std::istringstream text(readFile(file));
+    std::vector<std::string> lines;
+    for (std::string line; std::getline(text, line);) lines.push_back(line);
+    return lines;
+}
+
+}  // namespace
+
+TEST(ErrorCommandTest, WritesTableJsonDiagramAndPage) {
+    const WallFolder folder;
+    const Outcome outcome = callInsonify(
+        folder, {"study", "error", "--scene", "flat_bottom", "--levels", "2", "--pings", "2", "--out", "report"});
+    ASSERT_THAT(outcome.code, testing::AnyOf(0, 1)) << outcome.err;  // verdicts on time may fail on a busy machine
+    EXPECT_THAT(outcome.out, HasSubstr("flat_bottom: slope of footprints over samples"));
+    const auto lines = linesOf(folder / "report/error_time.csv");
+    ASSERT_GE(lines.size(), 11u);
+    EXPECT_EQ(lines[0],
+              "scene,method,rows,columns_per_beam,samples_per_pixel,slabs,rel_l2,rel_l2_tvg,db_rmse,db_p95,missing_"
+              "bins,ghost_bins,"
+              "first_return_bins,shadow_bins,energy_bias,ripple,kappa_max,hash,median_ms,p99_ms,cpu_ms");
+    for (const char* method : {"footprint", "nearest", "nearest_jitter", "published", "embree"})
+        EXPECT_THAT(lines, testing::Contains(testing::StartsWith(std::string("flat_bottom,") + method + ",64,1,1,")));
+    const json report = json::parse(readFile(folder / "report/error_time.json"));
+    EXPECT_EQ(report["references"][0]["source"], "closed form");
+    EXPECT_EQ(report["points"].size(), lines.size() - 1);
+    EXPECT_LT(report["points"][0]["rel_l2"], 1e-3);
+    EXPECT_THAT(readFile(folder / "report/flat_bottom.svg"), HasSubstr("<polyline"));
+    EXPECT_THAT(readFile(folder / "report/index.html"), HasSubstr("Time to an error"));
+}
+
+TEST(ErrorCommandTest, ADeploymentIsStudiedAgainstBruteForceThatMayBeTooCoarseToTell) {
+    const WallFolder folder;
+    const Outcome outcome = callInsonify(folder, {"study", "error", "wall.yml", "--levels", "2", "--pings", "1",
+                                                  "--reference-rays", "1e5", "--out", "report"});
+    EXPECT_EQ(outcome.code, 0) << outcome.out << outcome.err;
+    EXPECT_THAT(outcome.out, HasSubstr("open  deployment_wall: smallest error over that of the reference"));
+    EXPECT_THAT(outcome.out, HasSubstr("no fault of the scene"));
+    const json report = json::parse(readFile(folder / "report/error_time.json"));
+    ASSERT_EQ(report["references"].size(), 1u);
+    EXPECT_EQ(report["references"][0]["scene"], "deployment_wall") << "wall is a scene of the study";
+    EXPECT_THAT(report["references"][0]["source"].get<std::string>(), HasSubstr("brute force"));
+    EXPECT_GT(report["references"][0]["error"], 0);
+    for (const json& point : report["points"])
+        EXPECT_TRUE(point["method"] != "footprint" || point["rel_l2"] < 0.02) << point;
+}
+
+TEST(ErrorCommandTest, TimesOfRaysAreToldForAnyDeployment) {
+    const WallFolder folder;
+    const Outcome outcome = callInsonify(folder, {"study", "rays", "wall.yml", "--pings", "3"});
+    ASSERT_EQ(outcome.code, 0) << outcome.err;
+    const json times = json::parse(outcome.out);
+    EXPECT_GT(times["rays"], 0);
+    EXPECT_EQ(times["met"], times["rays"]) << "the wall fills the fan";
+    EXPECT_GT(times["alone_median_ms"], 0);
+    EXPECT_GE(times["alone_p99_ms"], times["alone_median_ms"]);
+    EXPECT_GT(times["ping_median_ms"], 0);
+}
+
+TEST(ErrorCommandTest, WhatCannotBeStudiedIsRefused) {
+    const WallFolder folder;
+    Outcome outcome = callInsonify(folder, {"study", "error", "--scene", "moon", "--out", "report"});
+    EXPECT_EQ(outcome.code, 2);
+    EXPECT_THAT(outcome.err, HasSubstr("moon is not a scene of the study; those are flat_bottom, "));
+    std::string conical = wall_deployment;
+    conical.insert(conical.find("range: "), "beam_geometry: conical\n      ");
+    writeFile(folder / "conical.yml", conical);
+    outcome = callInsonify(folder, {"study", "error", "conical.yml", "--out", "report"});
+    EXPECT_EQ(outcome.code, 2) << outcome.err;
+    EXPECT_THAT(outcome.err, HasSubstr("conical beams"));
+    outcome = callInsonify(folder, {"study", "error", "missing.yml", "--out", "report"});
+    EXPECT_EQ(outcome.code, 2);
+    EXPECT_FALSE(fs::exists(folder / "report")) << "nothing is written";
+}

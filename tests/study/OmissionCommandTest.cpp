@@ -1,0 +1,58 @@
+#include <gmock/gmock.h>
+
+#include "tests/deployer/Wall.hpp"
+
+using namespace insonify::deployer;
+using testing::HasSubstr;
+
+namespace {
+
+json rowOf(const json& rows, const std::string& name) {
+    for (const json& row : rows)
+        if (row["name"] == name) return row;
+    return {};
+}
+
+}  // namespace
+
+TEST(OmissionCommandTest, WhatIsLeftOutChangesNoBinByMoreThanItsBound) {
+    const WallFolder folder;
+    const Outcome outcome = callInsonify(folder, {"study", "omission", "wall.yml", "--pings", "3", "--out", "report"});
+    ASSERT_EQ(outcome.code, 0) << outcome.err << outcome.out;
+    const json rows = json::parse(readFile(folder / "report/omission.json"));
+    for (const char* neutral : {"absorption", "normal maps"}) {
+        const json row = rowOf(rows, neutral);
+        ASSERT_EQ(row["verdict"], "pass") << neutral;
+        EXPECT_LE(row["change"], row["bound"]) << neutral;
+        EXPECT_GT(row["without_ms"], 0) << neutral;
+        EXPECT_GT(row["with_ms"], 0) << neutral;
+    }
+    EXPECT_EQ(rowOf(rows, "multipath")["verdict"], "not measured");
+    EXPECT_GT(rowOf(rows, "twice the rows and columns")["change"], 0);
+    EXPECT_EQ(readFile(folder / "report/omission.md"), outcome.out);
+    EXPECT_THAT(outcome.out, HasSubstr("| normal maps | no material has one |"));
+}
+
+TEST(OmissionCommandTest, WhatIsConfiguredIsShownWithWhatItCosts) {
+    const WallFolder folder;
+    writeFile(folder / "loud.yml",
+              replaced(wall_deployment, "      range: 20\n", "      range: 20\n      absorption: {db_per_m: 0.2}\n"));
+    const Outcome outcome = callInsonify(folder, {"study", "omission", "loud.yml", "--pings", "3", "--out", "report"});
+    ASSERT_EQ(outcome.code, 0) << outcome.err << outcome.out;
+    const json rows = json::parse(readFile(folder / "report/omission.json"));
+    EXPECT_EQ(rowOf(rows, "absorption")["verdict"], "kept");
+    EXPECT_GT(rowOf(rows, "absorption")["change"], 0.01);
+    const json inside = rowOf(rows, "absorption inside a bin");
+    EXPECT_EQ(inside["verdict"], "pass");
+    EXPECT_GT(inside["change"], 0);
+    EXPECT_LE(inside["change"], inside["bound"]);
+}
+
+TEST(OmissionCommandTest, WhatCannotBeStudiedIsRefused) {
+    const WallFolder folder;
+    EXPECT_EQ(callInsonify(folder, {"study", "omission"}).code, 2);
+    const Outcome outcome = callInsonify(folder, {"study", "omission", "none.yml", "--out", "report"});
+    EXPECT_EQ(outcome.code, 2);
+    EXPECT_THAT(outcome.err, HasSubstr("none.yml"));
+    EXPECT_FALSE(fs::exists(folder / "report"));
+}

@@ -1,0 +1,32 @@
+#include <gmock/gmock.h>
+
+#include "tests/deployer/Command.hpp"
+
+using namespace insonify::deployer;
+using testing::AnyOf;
+using testing::HasSubstr;
+
+TEST(StabilityCommandTest, EveryCaseIsJudgedOnBothSheetsAndNoneFails) {
+    const TestFolder folder;
+    const Outcome outcome = callInsonify(folder, {"study", "stability", "--out", "new/sheets"});
+    EXPECT_EQ(outcome.code, 0) << outcome.out << outcome.err;
+    EXPECT_THAT(outcome.out, HasSubstr(" 0 fail, "));
+    const json rows = json::parse(readFile(folder / "new/sheets/stability.json"));
+    const std::string sheet = readFile(folder / "new/sheets/stability.md");
+    EXPECT_EQ(rows.size(), 55u);
+    for (const json& row : rows) {
+        EXPECT_THAT(row.at("verdict"), AnyOf("pass", "not run", "later")) << row;
+        EXPECT_TRUE(row.at("conditions").is_object() && row.at("deviation").is_number()) << row;
+        EXPECT_FALSE(row.at("expected").get<std::string>().empty() || row.at("got").get<std::string>().empty()) << row;
+        EXPECT_THAT(sheet, HasSubstr("| " + row.at("case").get<std::string>() + " |"));
+    }
+}
+
+TEST(StabilityCommandTest, AFolderThatIsMissingOrCannotBeMadeIsWrongUsage) {
+    const TestFolder folder;
+    EXPECT_EQ(callInsonify(folder, {"study", "stability"}).code, 2);
+    writeFile(folder / "file", "");
+    const Outcome outcome = callInsonify(folder, {"study", "stability", "--out", "file/sheets"});
+    EXPECT_EQ(outcome.code, 2);
+    EXPECT_THAT(outcome.err, HasSubstr("cannot be made"));
+}

@@ -1,0 +1,41 @@
+#pragma once
+// A lone task that takes one kind of sample and gives another.
+//
+//     class NoiseTaskTest : public test::TaskBench<NoiseTask, types::SonarPtr> {
+//     protected:
+//         NoiseTaskTest() : TaskBench(&NoiseTask::clean, &NoiseTask::noisy) {}
+//     };
+#include <gtest/gtest.h>
+
+#include "tests/support/Ports.hpp"
+
+namespace insonify::test {
+
+template <class Task, class In, class Out = In>
+class TaskBench : public ::testing::Test {
+protected:
+    TaskBench(framework::InputPort<In> Task::*input, framework::OutputPort<Out> Task::*output) {
+        in_.port.connectTo(task_.*input, framework::ConnPolicy::buffer(4));
+        (task_.*output).connectTo(out_.port, framework::ConnPolicy::buffer(4));
+    }
+    template <class Config>
+    void startWith(const Config& config) {
+        task_.config.set(config);
+        ASSERT_TRUE(task_.configure()) << task_.lastError();
+        ASSERT_TRUE(task_.start()) << task_.lastError();
+    }
+    /** What one cycle makes of a sample; none when the task refuses it. */
+    Out answerTo(const In& sample) {
+        in_.port.write(sample);
+        task_.update();
+        Out answer{};
+        out_.port.readNew(answer);
+        return answer;
+    }
+
+    Task task_{"task"};
+    Writer<In> in_;
+    Reader<Out> out_;
+};
+
+}  // namespace insonify::test
