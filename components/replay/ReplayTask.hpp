@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "components/framework/Offers.hpp"
 #include "components/framework/Operation.hpp"
 #include "components/framework/Port.hpp"
 #include "components/framework/Properties.hpp"
@@ -31,7 +32,7 @@ namespace insonify::replay {
  *
  *  A log that was cut off plays up to its last whole block, with a notice; streams that nothing is connected to, or
  *  whose type is not known, are listed in notices. A sample that cannot be decoded ends in Exception. */
-class ReplayTask final : public framework::TaskContext {
+class ReplayTask final : public framework::TaskContext, public framework::ClockSource {
 public:
     explicit ReplayTask(std::string name);
     ~ReplayTask() override;
