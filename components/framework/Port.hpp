@@ -83,8 +83,6 @@ public:
     virtual bool connectTo(InputPortBase& reader, ConnPolicy policy) = 0;
     /** Ends every connection with `reader`: once this returns nothing of this port reaches it any more. */
     virtual void disconnect(InputPortBase& reader) = 0;
-    /** An input port of this port's type, for a task that takes whatever is connected to it. */
-    virtual std::unique_ptr<InputPortBase> makeReader(TaskContext* owner, const std::string& name) const = 0;
     virtual bool connected() const = 0;
     uint64_t written() const { return written_.load(std::memory_order_relaxed); }  ///< Samples since construction.
 
@@ -235,9 +233,6 @@ public:
         std::lock_guard lock(mutex_);
         std::erase_if(readers_, [&](const Reader& other) { return other.port == &reader; });
         reader.drop(*this);
-    }
-    std::unique_ptr<InputPortBase> makeReader(TaskContext* owner, const std::string& name) const override {
-        return std::make_unique<InputPort<T>>(owner, name, "samples of " + path(), Need::Optional);
     }
 
 private:

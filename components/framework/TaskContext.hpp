@@ -111,7 +111,7 @@ public:
     /** configure, start, stop, cleanup, recover; `set<Property>` for each property (setRange); those of the task. */
     OperationBase* operation(const std::string& name);
 
-    /** A port that exists only because a connection names it: null refuses. */
+    /** A port that exists only because a connection names it, as DynamicPorts.hpp makes them: null refuses. */
     virtual InputPortBase* makeInput(const std::string& /*port*/, OutputPortBase& /*source*/) { return nullptr; }
     virtual OutputPortBase* makeOutput(const std::string& /*port*/) { return nullptr; }
 
