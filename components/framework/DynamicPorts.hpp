@@ -38,7 +38,7 @@ struct DynamicInput final {
     DynamicInput(TaskContext* owner, const std::string& name, const OutputPortBase& source, const Args&... with)
         : port(owner, name, "samples of " + source.path(), Need::Optional), kept{with...} {}
     InputPort<Carried> port;
-    Kept<T> kept;
+    Kept<T> kept{};
 };
 
 /** One port of DynamicOutputs, with what its task keeps. */
@@ -49,7 +49,7 @@ struct DynamicOutput final {
 
     DynamicOutput(TaskContext* owner, const std::string& name, const std::string& doc) : port(owner, name, doc) {}
     OutputPort<Carried> port;
-    Kept<T> kept;
+    Kept<T> kept{};
 };
 
 template <class Samples, template <class> class Kept = KeepsNothing>
