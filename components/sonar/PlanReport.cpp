@@ -7,6 +7,7 @@
 #include <limits>
 #include <numbers>
 
+#include "components/acoustics/SoundSpeed.hpp"
 #include "components/sonar/Acoustics.hpp"
 #include "components/sonar/BeamFan.hpp"
 #include "components/sonar/BinGrid.hpp"
@@ -53,6 +54,8 @@ std::string boundedWords(const LeftOut& what, const BinGrid& grid) {
     if (what.effect == Effect::Refraction)
         return fmt::format("a gradient of {} 1/s bends by {:.2g} m at {:.4g} m < {:.2g} m", speed_gradient, what.value,
                            grid.range_max, what.bound);
+    if (what.effect == Effect::RangePointSpread)
+        return fmt::format("the pulse resolves {:.2g} m, under half a bin, {:.2g} m", what.value, what.bound);
     return fmt::format("beta dR/2 = {:.1e} < {:.0e}", what.value, what.bound);
 }
 
@@ -119,9 +122,15 @@ void noteWater(const SonarConfig& config, const BinGrid& grid, std::vector<std::
     if (grid.speed_of_sound < 1350 || grid.speed_of_sound > 1650)
         notices.push_back(
             fmt::format("Warning: speed of sound is {:g} m/s; water has 1350 to 1650", grid.speed_of_sound));
-    if (config.absorption && config.absorption->frequency_khz) {
-        const AbsorptionConfig& absorption = *config.absorption;
-        const std::string outside = outsideValidity(absorption.law, *absorption.frequency_khz, *config.water);
+    if (config.water && !config.speed_of_sound) {
+        const std::string outside = acoustics::outsideValidity(config.water->sound_speed_law, *config.water);
+        if (!outside.empty())
+            notices.push_back(
+                fmt::format("Warning: speed of sound is extrapolated outside its law's validity: {}", outside));
+    }
+    if (config.absorbedKhz()) {
+        const std::string outside =
+            acoustics::outsideValidity(config.absorption->law, *config.absorbedKhz(), *config.water);
         if (!outside.empty())
             notices.push_back(
                 fmt::format("Warning: absorption is extrapolated outside its law's validity: {}", outside));

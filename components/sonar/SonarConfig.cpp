@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "components/acoustics/SoundSpeed.hpp"
 #include "components/gpu/EglContext.hpp"
-#include "components/sonar/Acoustics.hpp"
 #include "components/sonar/BeamFan.hpp"
 #include "components/sonar/BinGrid.hpp"
 #include "components/sonar/CastEchoes.hpp"
@@ -27,6 +27,25 @@ void checkPublished(const SonarConfig& config, types::Diagnostics& diagnostics) 
                                                         config.coverageDeg())});
     if (config.beam_geometry != BeamGeometry::Planar)
         diagnostics.push_back({"beam_geometry", "is conical; must be planar with published: true"});
+}
+
+/** Beams and pulses of the sonar equation, which bins of means know nothing of. */
+void checkPhysics(const SonarConfig& config, types::Diagnostics& diagnostics) {
+    const bool means = config.model == Model::Cerqueira2017;
+    if (means && config.beam_pattern)
+        diagnostics.push_back({"beam_pattern", "is given with model: cerqueira2017; it belongs to physical"});
+    if (means && config.pulse)
+        diagnostics.push_back({"pulse", "is given with model: cerqueira2017; it belongs to physical"});
+    if (!config.beam_pattern || config.frequency_khz) return;
+    const auto checkLaw = [&](const std::string& path, const std::optional<acoustics::BeamLaw>& law) {
+        if (law && law->aperture_m)
+            diagnostics.push_back(
+                {"beam_pattern." + path + ".aperture_m", "is given without frequency_khz, which it needs"});
+    };
+    checkLaw("transmit.azimuth", config.beam_pattern->transmit.azimuth);
+    checkLaw("transmit.elevation", config.beam_pattern->transmit.elevation);
+    checkLaw("receive.azimuth", config.beam_pattern->receive.azimuth);
+    checkLaw("receive.elevation", config.beam_pattern->receive.elevation);
 }
 
 void checkRangeReached(const SonarConfig& config, types::Diagnostics& diagnostics) {
@@ -60,6 +79,15 @@ void checkRays(const SonarConfig& config, types::Diagnostics& diagnostics) {
         diagnostics.push_back({"quality.columns_per_beam",
                                fmt::format("is {}, with {} beams {} columns; may be {}", config.columnsPerBeam(),
                                            config.beams(), columns, max_ray_columns)});
+}
+
+void checkAbsorption(const SonarConfig& config, types::Diagnostics& diagnostics) {
+    if (!config.absorption || config.absorption->db_per_m) return;
+    if (!config.absorbedKhz())
+        return diagnostics.push_back({"absorption", "has no value; give db_per_m, or frequency_khz for a law"});
+    if (!config.water)
+        diagnostics.push_back({config.absorption->frequency_khz ? "absorption.frequency_khz" : "absorption",
+                               "is given without water; a law needs the water block"});
 }
 
 /** A straight array hears nothing behind abeam that it does not hear ahead. */
@@ -100,8 +128,11 @@ void checkDevice(const std::string& device, types::Diagnostics& diagnostics) {
 void AbsorptionConfig::check(types::Diagnostics& diagnostics) const {
     if (db_per_m && frequency_khz)
         diagnostics.push_back({"db_per_m", "stands beside frequency_khz; give one of the two"});
-    if (!db_per_m && !frequency_khz)
-        diagnostics.push_back({"", "has no value; give db_per_m, or frequency_khz for a law"});
+}
+
+void BeamPatternConfig::check(types::Diagnostics& diagnostics) const {
+    if (!hasAzimuth() && !hasElevation())
+        diagnostics.push_back({"", "has no law; give azimuth or elevation of transmit or receive"});
 }
 
 double SonarConfig::bearingDeg(int k) const {
@@ -136,7 +167,14 @@ std::optional<double> SonarConfig::mostSamples() const {
     return default_most;
 }
 
-double SonarConfig::speedOfSound() const { return speed_of_sound.value_or(water ? leroySpeed(*water) : 1500); }
+std::optional<double> SonarConfig::absorbedKhz() const {
+    if (!absorption || absorption->db_per_m) return {};
+    return absorption->frequency_khz ? absorption->frequency_khz : frequency_khz;
+}
+
+double SonarConfig::speedOfSound() const {
+    return speed_of_sound.value_or(water ? acoustics::soundSpeed(*water) : 1500);
+}
 
 void SonarConfig::check(types::Diagnostics& diagnostics) const {
     if (!bearings_deg.empty() && !beam_width_deg)
@@ -200,11 +238,11 @@ void QualityConfig::check(types::Diagnostics& diagnostics) const {
 void SonarConfig::checkBeam(types::Diagnostics& diagnostics) const {
     if (range_min >= range)
         diagnostics.push_back({"range_min", fmt::format("is {} m; must be below range, {} m", range_min, range)});
-    if (absorption && absorption->frequency_khz && !water)
-        diagnostics.push_back({"absorption.frequency_khz", "is given without water; a law needs the water block"});
+    checkAbsorption(*this, diagnostics);
     if (beam_width_deg > 120)
         diagnostics.push_back({"beam_width_deg", fmt::format("is {:g} deg; one beam may have 120", *beam_width_deg)});
     if (published) checkPublished(*this, diagnostics);
+    checkPhysics(*this, diagnostics);
     checkRangeReached(*this, diagnostics);
     checkVisibility(*this, diagnostics);
     if (!diagnostics.empty()) return;

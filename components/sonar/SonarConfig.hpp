@@ -3,6 +3,10 @@
 #include <string>
 #include <vector>
 
+#include "components/acoustics/Absorption.hpp"
+#include "components/acoustics/BeamPattern.hpp"
+#include "components/acoustics/Pulse.hpp"
+#include "components/acoustics/Water.hpp"
 #include "types/Describe.hpp"
 
 namespace insonify::sonar {
@@ -13,29 +17,11 @@ enum class RangeRounding { Sample, Exact };
 enum class Deposit { Auto, Cpu, Gpu };
 enum class Visibility { Auto, Gl, Cpu };
 enum class BeamWidthConvention { PerBeam, TotalFov };
-enum class AbsorptionLaw { FrancoisGarrison, AinslieMccolm };
-
-/** State of the water; with it the speed of sound and absorption are computed. */
-struct WaterConfig {
-    double temperature_celsius = 10;
-    double salinity_psu = 35;
-    double depth = 0;
-    double ph = 8;
-
-    template <class Self, class V>
-    static void describe(Self& self, V& visit) {
-        using types::Field;
-        visit(Field{"temperature_celsius", "degC", "temperature", -6, 50}, self.temperature_celsius);
-        visit(Field{"salinity_psu", "psu", "practical salinity, 0 for fresh water", 0, 50}, self.salinity_psu);
-        visit(Field{"depth", "m", "depth below the surface", 0, 12000}, self.depth);
-        visit(Field{"ph", "1", "acidity", 6, 10}, self.ph);
-    }
-};
 
 /** Absorption as one number, or by a law from a frequency and the water. */
 struct AbsorptionConfig {
     std::optional<double> db_per_m;
-    AbsorptionLaw law = AbsorptionLaw::FrancoisGarrison;
+    acoustics::AbsorptionLaw law = acoustics::AbsorptionLaw::FrancoisGarrison;
     std::optional<double> frequency_khz;
 
     template <class Self, class V>
@@ -43,7 +29,39 @@ struct AbsorptionConfig {
         using types::Field;
         visit(Field{"db_per_m", "dB/m", "one-way absorption, instead of a law", 0, 1000}, self.db_per_m);
         visit(Field{"law", "", "computes it from frequency and water"}, self.law);
-        visit(Field{"frequency_khz", "kHz", "frequency for the law", 0, 1e5}, self.frequency_khz);
+        visit(Field{"frequency_khz", "kHz", "frequency for the law; absent: the sonar's", 0, 1e5}, self.frequency_khz);
+    }
+    void check(types::Diagnostics& diagnostics) const;
+};
+
+/** What an array does across the fan and up and down; a law that is absent is 1 in all directions. */
+struct ArrayConfig {
+    std::optional<acoustics::BeamLaw> azimuth, elevation;
+
+    template <class Self, class V>
+    static void describe(Self& self, V& visit) {
+        visit(types::Field{"azimuth", "", "of a sent pulse about the axis; of a beam about its own bearing"},
+              self.azimuth);
+        visit(types::Field{"elevation", "", "about the horizontal plane of the sonar"}, self.elevation);
+    }
+};
+
+/** Directivity, two way: what is sent times what is heard (ACOUSTICS.md 14). */
+struct BeamPatternConfig {
+    ArrayConfig transmit, receive;
+    double floor_db = -60;
+
+    bool hasAzimuth() const { return transmit.azimuth || receive.azimuth; }
+    bool hasElevation() const { return transmit.elevation || receive.elevation; }
+
+    template <class Self, class V>
+    static void describe(Self& self, V& visit) {
+        using types::Field;
+        visit(Field{"transmit", "", "of what is sent"}, self.transmit);
+        visit(Field{"receive", "", "of what is heard"}, self.receive);
+        visit(Field{"floor_db", "dB", "two-way level down to which sidelobes are heard, beyond fan and aperture too",
+                    -200, -3},
+              self.floor_db);
     }
     void check(types::Diagnostics& diagnostics) const;
 };
@@ -109,7 +127,8 @@ struct SonarConfig {
     double beam_height_deg = 20;
     BeamGeometry beam_geometry = BeamGeometry::Planar;
     std::optional<double> speed_of_sound;
-    std::optional<WaterConfig> water;
+    std::optional<acoustics::Water> water;
+    std::optional<double> frequency_khz;
     std::optional<AbsorptionConfig> absorption;
     QualityConfig quality;
     RangeRounding range_rounding = RangeRounding::Sample;
@@ -124,7 +143,9 @@ struct SonarConfig {
     Visibility visibility = Visibility::Auto;
     std::string device;
     Deposit deposit = Deposit::Auto;
-    std::optional<types::NotBuiltYet> beam_pattern, pulse, volume, multipath;
+    std::optional<BeamPatternConfig> beam_pattern;
+    std::optional<acoustics::PulseConfig> pulse;
+    std::optional<types::NotBuiltYet> volume, multipath;
     std::optional<types::MovedTo> tvg, gain, output, source_level_db;
 
     /** Rows of samples and columns per beam, until others are chosen for an error or a time [1]. */
@@ -156,7 +177,10 @@ struct SonarConfig {
     /** Whether triangles are found by rays on the processor, else by drawing. Looks for a graphics card where nothing
      *  else decides. */
     bool castsRays() const;
-    /** Configured, or Leroy's of `water`, or 1500 [m/s]. */
+    /** Frequency that a law of absorption is for: its own, or the sonar's [kHz]; none where absorption follows no law.
+     */
+    std::optional<double> absorbedKhz() const;
+    /** Configured, or that of `water`, or 1500 [m/s]. */
     double speedOfSound() const;
 
     template <class Self, class V>
@@ -197,6 +221,8 @@ void SonarConfig::describeBeam(Self& self, V& visit) {
     visit(Field{"beam_geometry", "", "planar: az = a_k; conical: sin(az) cos(el) = sin(a_k)"}, self.beam_geometry);
     visit(Field{"speed_of_sound", "m/s", "absent: computed from water, else 1500", 1, 20000}, self.speed_of_sound);
     visit(Field{"water", "", "state of the water"}, self.water);
+    visit(Field{"frequency_khz", "kHz", "of the sonar; absorption takes it where it names none", 0.001, 1e5},
+          self.frequency_khz);
     visit(Field{"absorption", "", "absent: none"}, self.absorption);
     visit(Field{"quality", "", "samples per beam, or what they are chosen for"}, self.quality);
     visit(Field{"range_rounding", "", "sample: bins of whole microseconds; exact: edges as asked"},
@@ -211,8 +237,9 @@ void SonarConfig::describeBeam(Self& self, V& visit) {
     visit(Field{"detail", "", "what simplified meshes may add to the error"}, self.detail);
     visit(Field{"draw_all", "", "draws what is outside the fan and the range as well, to compare; rays meet it anyway"},
           self.draw_all);
-    visit(Field{"beam_pattern", "", "directivity (not built yet)"}, self.beam_pattern);
-    visit(Field{"pulse", "", "range point-spread (not built yet)"}, self.pulse);
+    visit(Field{"beam_pattern", "", "directivity of transmitter and receiver; absent: beams are boxes side by side"},
+          self.beam_pattern);
+    visit(Field{"pulse", "", "what an echo leaves in range; absent: it is in its own bin alone"}, self.pulse);
     visit(Field{"volume", "", "volume reverberation (not built yet)"}, self.volume);
     visit(Field{"multipath", "", "second bounce (not built yet)"}, self.multipath);
     visit(Field{"tvg", "",
@@ -256,8 +283,4 @@ struct insonify::types::EnumNames<insonify::sonar::Deposit> {
 template <>
 struct insonify::types::EnumNames<insonify::sonar::Visibility> {
     static constexpr std::string_view names[] = {"auto", "gl", "cpu"};
-};
-template <>
-struct insonify::types::EnumNames<insonify::sonar::AbsorptionLaw> {
-    static constexpr std::string_view names[] = {"francois_garrison", "ainslie_mccolm"};
 };
