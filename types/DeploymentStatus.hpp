@@ -5,17 +5,11 @@
 #include <vector>
 
 #include "types/Plan.hpp"
+#include "types/PropertyInfo.hpp"
 #include "types/TaskRecord.hpp"
 #include "types/Time.hpp"
 
 namespace insonify::types {
-
-/** What is known of a property besides its value. */
-struct PropertyNote {
-    std::string name;  ///< Of the whole property; blocks are one.
-    std::string type, unit, doc;
-    double min = 0, max = 0;  ///< Inclusive; infinite when unbounded.
-};
 
 struct PortStatus {
     std::string name, type;
@@ -32,9 +26,10 @@ struct TaskStatus {
 };
 
 struct ConnectionStatus {
-    std::string from, to;  ///< "task.port"
-    std::string policy;    ///< "data", "buffer", "circular_buffer"
-    uint64_t lost = 0;     ///< Samples [1].
+    std::string from, to;      ///< "task.port"
+    std::string policy;        ///< "data", "buffer", "circular_buffer"
+    uint64_t lost = 0;         ///< Samples that were dropped before they were read [1].
+    uint64_t passed_over = 0;  ///< Samples that the reader has left aside for newer ones [1].
 };
 
 /** A deployment at one moment of its run. */
@@ -48,8 +43,8 @@ struct DeploymentStatus {
 /** What can be called and set in a task; it does not change while the deployment lives. */
 struct TaskInterface {
     std::string name;
-    std::vector<PropertyNote> properties;
-    std::vector<std::string> operations;  ///< "seek": "void(double)" is "seek void(double)".
+    std::vector<PropertyInfo> properties;  ///< Whole ones: blocks are one.
+    std::vector<std::string> operations;   ///< "seek": "void(double)" is "seek void(double)".
 };
 
 }  // namespace insonify::types

@@ -17,6 +17,7 @@ struct MovedObject {
 /** Everything that one ping needs, true at one instant. */
 struct Snapshot {
     static constexpr const char* type_name = "/insonify/Snapshot";
+    static constexpr bool shared = true;
 
     Time time;
     Pose sonar;  ///< Sonar frame in the world: x ahead, y port, z up.

@@ -16,7 +16,8 @@ namespace insonify::types {
  *  The functions are those of Rock's type, with its defects mended: see each. */
 struct Sonar {
     static constexpr const char* type_name = "/base/samples/Sonar";
-    static constexpr bool shared = true;  ///< Travels by reference, see Carried.
+    static constexpr bool shared = true;   ///< Travels by reference, see Carried.
+    static constexpr bool counted = true;  ///< Runs are limited to so many, and their speed is told in them.
 
     Time time;
     std::vector<Time> timestamps;

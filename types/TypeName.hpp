@@ -13,6 +13,12 @@ struct Pointee<std::shared_ptr<const T>> {
     using type = T;
 };
 
+/** What runs are counted in (`counted`), whichever way it travels. */
+template <class T>
+concept Counted = requires {
+    requires Pointee<T>::type::counted;
+};
+
 /** The name of what travels on a port, a shared sample named as what it points to: "/base/samples/Sonar". */
 template <class T>
 std::string typeName() {

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <chrono>
 
-#include "components/dds/Publication.hpp"
 #include "components/dds/SubscriberTask.hpp"
 #include "components/framework/Latency.hpp"
 #include "types/ConfigError.hpp"
@@ -15,49 +14,31 @@ void tellLatency(framework::TaskContext& task, const auto& sample) {
     if constexpr (requires { sample.time; }) framework::noteLatency(task, sample.time);
 }
 
+/** Why an input's samples cannot be that topic's messages; empty: they can. */
+template <class Input>
+std::string whyNot(const Input& input, const TopicOut& topic) {
+    using Sample = typename Input::Sample;
+    if (canBe<Sample>(topic.type)) return "";
+    const std::string type(types::EnumNames<MessageType>::names[static_cast<size_t>(topic.type)]);
+    return "is " + type + "; " + input.port.typeName() + " can be " + messagesOf<Sample>();
+}
+
+/** Sends a sample as all topics of its input. */
+template <class Input>
+void send(Input& input, const typename Input::Carried& sample, framework::TaskContext& task,
+          types::ThrottledWarning& drops) {
+    const auto* const content = types::carriedSample(sample);
+    if (!content) return drops.add(input.port.path() + ": a sample is null");
+    for (const auto& publication : input.kept.publications)
+        if (publication->publish(*content)) tellLatency(task, *content);
+}
+
 }  // namespace
-
-template <class Sample>
-class PublisherTask::TypedInlet final : public Inlet {
-public:
-    using Carried = types::Carried<Sample>;
-
-    explicit TypedInlet(std::unique_ptr<framework::InputPortBase> port)
-        : owned_(std::move(port)), port_(static_cast<framework::InputPort<Carried>&>(*owned_)) {}
-    framework::InputPortBase& port() const override { return port_; }
-    bool canBe(MessageType type) const override { return dds::canBe<Sample>(type); }
-    std::string messages() const override { return messagesOf<Sample>(); }
-    void open(Node& node, const PublisherConfig& config, types::ThrottledWarning& drops) override {
-        for (const TopicOut& topic : config.topics)
-            if (topic.port == port_.name())
-                publications_.push_back(std::make_unique<Publication<Sample>>(node, config, topic, drops));
-    }
-    void close() override { publications_.clear(); }
-    bool send(PublisherTask& task) override {
-        Carried sample{};
-        if (!port_.readNew(sample)) return false;
-        const Sample* const content = types::carriedSample(sample);
-        if (!content) return task.drops_.add(port_.path() + ": a sample is null"), true;
-        for (const auto& publication : publications_)
-            if (publication->publish(*content)) tellLatency(task, *content);
-        return true;
-    }
-
-private:
-    std::unique_ptr<framework::InputPortBase> owned_;
-    framework::InputPort<Carried>& port_;
-    std::vector<std::unique_ptr<Publication<Sample>>> publications_;
-};
 
 framework::InputPortBase* PublisherTask::makeInput(const std::string& port, framework::OutputPortBase& source) {
     if (std::ranges::none_of(config->topics, [&](const TopicOut& topic) { return topic.port == port; }))
         throw types::ConfigError("", "", "no topic of " + name() + " is for port " + port);
-    const size_t before = inlets_.size();
-    types::forEachSampleType([&]<class T>(std::type_identity<T>) {
-        if (dynamic_cast<framework::OutputPort<types::Carried<T>>*>(&source))
-            inlets_.push_back(std::make_unique<TypedInlet<T>>(source.makeReader(this, port)));
-    });
-    if (inlets_.size() > before) return &inlets_.back()->port();
+    if (framework::InputPortBase* const made = inputs_.make(port, source)) return made;
     throw types::ConfigError("", "",
                              source.path() + " is " + source.typeName() +
                                  ", of which no message is made; pings, poses, pictures, numbers and texts are");
@@ -67,17 +48,15 @@ void PublisherTask::check(types::Diagnostics& diagnostics) const {
     for (size_t i = 0; i < config->topics.size(); ++i) {
         const TopicOut& topic = config->topics[i];
         const std::string path = "topics[" + std::to_string(i) + "].";
-        const auto inlet =
-            std::ranges::find_if(inlets_, [&](const auto& one) { return one->port().name() == topic.port; });
-        if (inlet == inlets_.end()) {
+        bool has_input = false;
+        inputs_.forEach([&](const auto& input) {
+            if (input.port.name() != topic.port) return;
+            has_input = true;
+            if (const std::string why = whyNot(input, topic); !why.empty()) diagnostics.push_back({path + "type", why});
+        });
+        if (!has_input)
             diagnostics.push_back(
                 {path + "port", "is " + topic.port + "; no connection leads to " + name() + "." + topic.port});
-            continue;
-        }
-        const std::string type(types::EnumNames<MessageType>::names[static_cast<size_t>(topic.type)]);
-        if (!(*inlet)->canBe(topic.type))
-            diagnostics.push_back(
-                {path + "type", "is " + type + "; " + (*inlet)->port().typeName() + " can be " + (*inlet)->messages()});
     }
 }
 
@@ -92,21 +71,30 @@ bool PublisherTask::configureHook() {
     drops_.reset();
     node_.emplace(domainId(config->node.domain), config->node.nameOr(name()),
                   static_cast<size_t>(config->node.gid_size));
-    for (const auto& inlet : inlets_) inlet->open(*node_, *config, drops_);
+    inputs_.forEach([this]<class Input>(Input& input) {
+        using Sending = Publication<typename Input::Sample>;
+        for (const TopicOut& topic : config->topics)
+            if (topic.port == input.port.name())
+                input.kept.publications.push_back(std::make_unique<Sending>(*node_, *config, topic, drops_));
+    });
     node_->announce();
     return true;
 }
 
 void PublisherTask::updateHook() {
     using Clock = std::chrono::steady_clock;
-    for (const auto& inlet : inlets_)
-        for (auto start = Clock::now(); inlet->send(*this); start = Clock::now())
+    inputs_.forEach([this]<class Input>(Input& input) {
+        auto start = Clock::now();
+        for (typename Input::Carried sample{}; input.port.readNew(sample); start = Clock::now()) {
+            send(input, sample, *this, drops_);
             recordStage("send", std::chrono::duration<double>(Clock::now() - start).count());
+        }
+    });
     if (const std::string told = drops_.takeWarning(); !told.empty()) warn(told);
 }
 
 void PublisherTask::cleanupHook() {
-    for (const auto& inlet : inlets_) inlet->close();
+    inputs_.forEach([](auto& input) { input.kept.publications.clear(); });
     node_.reset();
 }
 

@@ -5,8 +5,9 @@
 #include <vector>
 
 #include "components/dds/Node.hpp"
+#include "components/dds/Publication.hpp"
 #include "components/dds/PublisherConfig.hpp"
-#include "components/framework/Port.hpp"
+#include "components/framework/DynamicPorts.hpp"
 #include "components/framework/Properties.hpp"
 #include "components/framework/Registry.hpp"
 #include "components/framework/TaskContext.hpp"
@@ -37,19 +38,11 @@ public:
     bool reachesOutside() const override { return true; }
 
 private:
-    /** One input and its topics. */
-    class Inlet {
-    public:
-        virtual ~Inlet() = default;
-        virtual framework::InputPortBase& port() const = 0;
-        virtual bool canBe(MessageType type) const = 0;  ///< Whether such a message can be made of its samples.
-        virtual std::string messages() const = 0;        ///< All that can.
-        virtual void open(Node& node, const PublisherConfig& config, types::ThrottledWarning& drops) = 0;
-        virtual void close() = 0;
-        virtual bool send(PublisherTask& task) = 0;  ///< Whether there was a sample.
-    };
+    /** The topics of an input. */
     template <class Sample>
-    class TypedInlet;
+    struct Topics {
+        std::vector<std::unique_ptr<Publication<Sample>>> publications;
+    };
 
     bool configureHook() override;
     void updateHook() override;
@@ -57,7 +50,7 @@ private:
 
     types::ThrottledWarning drops_{"message", "dropped"};
     std::optional<Node> node_;
-    std::vector<std::unique_ptr<Inlet>> inlets_;
+    framework::DynamicInputs<types::SampleTypes, Topics> inputs_{this};
 };
 
 /** Makes the tasks of this folder known to deployments. */

@@ -2,8 +2,6 @@
 
 #include <algorithm>
 
-#include "components/framework/Activity.hpp"
-
 namespace insonify::dds {
 namespace {
 
@@ -18,10 +16,7 @@ const TopicIn* topicOf(const SubscriberConfig& config, const std::string& port) 
 
 framework::OutputPortBase* SubscriberTask::makeOutput(const std::string& port) {
     if (!topicOf(*config, port)) return nullptr;
-    outlets_.push_back(
-        {std::make_unique<framework::OutputPort<types::Pose>>(this, port, "body in the world: x north, y west, z up"),
-         {}});
-    return outlets_.back().port.get();
+    return &outputs_.make<types::Pose>(port, "body in the world: x north, y west, z up").port;
 }
 
 void SubscriberTask::check(types::Diagnostics& diagnostics) const {
@@ -29,8 +24,9 @@ void SubscriberTask::check(types::Diagnostics& diagnostics) const {
         diagnostics.push_back(
             {"", "messages come on the wall clock's time, for which lockstep does not wait; set schedule: realtime"});
     for (size_t i = 0; i < config->topics.size(); ++i) {
-        const auto is = [&](const Outlet& outlet) { return outlet.port->name() == config->topics[i].port; };
-        if (std::ranges::none_of(outlets_, is))
+        bool has_output = false;
+        outputs_.forEach([&](const auto& output) { has_output |= output.port.name() == config->topics[i].port; });
+        if (!has_output)
             diagnostics.push_back({"topics[" + std::to_string(i) + "].port",
                                    "no connection leads from " + name() + "." + config->topics[i].port});
     }
@@ -40,37 +36,40 @@ std::vector<std::string> SubscriberTask::notices() const { return drops_.summary
 
 bool SubscriberTask::configureHook() {
     drops_.reset();
-    for (Outlet& outlet : outlets_) outlet.subscription.reset();  // of a configure that failed
+    outputs_.forEach([](auto& output) { output.kept.subscription.reset(); });  // of a configure that failed
     node_.emplace(domainId(config->node.domain), config->node.nameOr(name()),
                   static_cast<size_t>(config->node.gid_size));
-    for (Outlet& outlet : outlets_)
-        outlet.subscription = std::make_unique<Subscription>(*node_, *config, *topicOf(*config, outlet.port->name()),
-                                                             drops_, [this] { activity().trigger(); });
+    outputs_.forEach([this](auto& output) {
+        output.kept.subscription = std::make_unique<Subscription>(
+            *node_, *config, *topicOf(*config, output.port.name()), drops_, [this] { arrived_.raise(); });
+    });
     node_->announce();
     return true;
 }
 
 bool SubscriberTask::startHook() {
     types::Pose stale;
-    for (Outlet& outlet : outlets_)
-        for (int i = 0; i < max_at_once && outlet.subscription->take(now(), stale);) ++i;
+    outputs_.forEach([&](auto& output) {
+        for (int i = 0; i < max_at_once && output.kept.subscription->take(now(), stale);) ++i;
+    });
     return true;
 }
 
 void SubscriberTask::updateHook() {
     types::Pose pose;
-    for (Outlet& outlet : outlets_) {
+    outputs_.forEach([&](auto& output) {
+        Subscription& subscription = *output.kept.subscription;
         int taken = 0;
-        for (; taken < max_at_once && outlet.subscription->take(now(), pose); ++taken)
-            if (config->depth > 1) outlet.port->write(pose);
-        if (taken > 0 && config->depth == 1) outlet.port->write(pose);
-        if (taken == max_at_once || outlet.subscription->more()) activity().trigger();
-    }
+        for (; taken < max_at_once && subscription.take(now(), pose); ++taken)
+            if (config->depth > 1) output.port.write(pose);
+        if (taken > 0 && config->depth == 1) output.port.write(pose);
+        if (taken == max_at_once || subscription.more()) arrived_.raise();
+    });
     if (const std::string told = drops_.takeWarning(); !told.empty()) warn(told);
 }
 
 void SubscriberTask::cleanupHook() {
-    for (Outlet& outlet : outlets_) outlet.subscription.reset();
+    outputs_.forEach([](auto& output) { output.kept.subscription.reset(); });
     node_.reset();
 }
 

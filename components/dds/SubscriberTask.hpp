@@ -6,7 +6,8 @@
 
 #include "components/dds/Node.hpp"
 #include "components/dds/Subscription.hpp"
-#include "components/framework/Port.hpp"
+#include "components/framework/DynamicPorts.hpp"
+#include "components/framework/Event.hpp"
 #include "components/framework/Properties.hpp"
 #include "components/framework/TaskContext.hpp"
 
@@ -21,7 +22,7 @@ namespace insonify::dds {
  *  A message that is none, a pose that is not finite or a stamp that goes back is dropped and counted: a warning tells
  *  it at the first and then every ten seconds at most, and a notice tells the sum at the end. Refused in lockstep,
  * whose time does not wait for messages. */
-class SubscriberTask : public framework::TaskContext {
+class SubscriberTask final : public framework::TaskContext {
 public:
     using TaskContext::TaskContext;
 
@@ -31,12 +32,11 @@ public:
     void check(types::Diagnostics& diagnostics) const override;
     std::vector<std::string> notices() const override;
     bool reachesOutside() const override { return true; }
-    /** A message wakes it as well; this only says that something does. */
-    double wakeAfter() const override { return 1; }
 
 private:
-    struct Outlet {
-        std::unique_ptr<framework::OutputPort<types::Pose>> port;
+    /** The topic of an output. */
+    template <class Sample>
+    struct Topic {
         std::unique_ptr<Subscription> subscription;
     };
 
@@ -45,8 +45,9 @@ private:
     void updateHook() override;
     void cleanupHook() override;
 
+    framework::Event arrived_{this};  ///< A message; outlives the subscriptions.
     std::optional<Node> node_;
-    std::vector<Outlet> outlets_;
+    framework::DynamicOutputs<std::tuple<types::Pose>, Topic> outputs_{this};
     types::ThrottledWarning drops_{"message", "dropped"};
 };
 

@@ -69,7 +69,7 @@ study::SonarAt sonarAt(const std::string& file, uint64_t ping) {
     framework::Registry registry = builtInTasks();
     Deployment deployment(pipelineOf(DeploymentSpec::load(deploymentIn(file)), registry), registry);
     deployment.configure();
-    const framework::RunResult result = deployment.run({.pings = ping}, stopOnSignals());
+    const framework::RunResult result = deployment.run({.samples = ping}, stopOnSignals());
     if (result.failed()) throw std::runtime_error(result.failures.front());
     for (const auto& task : deployment.tasks()) {
         auto* sonar = dynamic_cast<sonar::PingTask*>(task.get());

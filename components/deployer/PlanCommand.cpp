@@ -11,6 +11,7 @@
 #include "components/deployer/StopSignal.hpp"
 #include "components/deployer/Tasks.hpp"
 #include "components/framework/Deployment.hpp"
+#include "components/framework/Offers.hpp"
 
 namespace insonify::deployer {
 namespace {
@@ -41,12 +42,12 @@ int showPlan(const std::string& file, bool json) {
     framework::Registry registry = builtInTasks();
     Deployment deployment(pipelineOf(DeploymentSpec::load(file), registry), registry);
     deployment.configure();
-    const framework::RunResult result = deployment.run({.pings = 1}, stopOnSignals());
+    const framework::RunResult result = deployment.run({.samples = 1}, stopOnSignals());
     if (result.failed()) throw std::runtime_error(result.failures.front());
 
     Plans plans;
     for (const auto& task : deployment.tasks())
-        if (task->plan()) plans.emplace_back(task->name(), task->plan());
+        if (const types::Plan* plan = framework::planOf(*task)) plans.emplace_back(task->name(), plan);
     if (plans.empty()) throw types::ConfigError(file, "tasks", "has no sonar that sends a ping: nothing to plan");
     if (json)
         printJson(plans);

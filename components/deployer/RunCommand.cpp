@@ -14,6 +14,7 @@
 #include "components/deployer/StopSignal.hpp"
 #include "components/deployer/Summary.hpp"
 #include "components/deployer/Tasks.hpp"
+#include "components/framework/Offers.hpp"
 #include "components/pose/TrajectoryTask.hpp"
 #include "types/ConfigError.hpp"
 
@@ -35,16 +36,16 @@ double trajectoryLength(const framework::Deployment& deployment) {
 class RunProgress {
 public:
     RunProgress(const framework::Deployment& deployment, const RunOptions& options)
-        : line_(!options.quiet), pings_(options.limits.pings), seconds_(options.limits.duration_s) {
+        : line_(!options.quiet), pings_(options.limits.samples), seconds_(options.limits.duration_s) {
         if (pings_ == 0 && seconds_ == 0) seconds_ = trajectoryLength(deployment);
     }
     void operator()(const framework::Progress& progress) {
-        const double done = static_cast<double>(progress.pings);
+        const double done = static_cast<double>(progress.samples);
         const double share = pings_ > 0     ? done / static_cast<double>(pings_)
                              : seconds_ > 0 ? progress.elapsed_s / seconds_
                                             : 0;
         line_.show(progress.wall_s,
-                   fmt::format("{}{} pings, {:.1f} per second, {:.1f}{} s simulated{}", progress.pings,
+                   fmt::format("{}{} pings, {:.1f} per second, {:.1f}{} s simulated{}", progress.samples,
                                pings_ > 0 ? fmt::format(" of {}", pings_) : "", done / progress.wall_s,
                                progress.elapsed_s, seconds_ > 0 ? fmt::format(" of {:.1f}", seconds_) : "",
                                command::timeLeft(share, progress.wall_s)));
@@ -76,7 +77,7 @@ void refuseUnwritable(const std::filesystem::path& summary_file) {
 
 std::vector<std::string> noticesOf(const framework::TaskContext& task) {
     std::vector<std::string> all = task.notices();
-    if (const types::Plan* plan = task.plan())
+    if (const types::Plan* plan = framework::planOf(task))
         for (const std::string& notice : without(plan->notices, all)) all.push_back(notice);
     return all;
 }

@@ -26,7 +26,7 @@ std::string refuseUnlessPositive(const std::string& text) {
 }
 
 void RunOptions::addTo(CLI::App& command) {
-    auto* pings = command.add_option("--pings", limits.pings, "end when every sonar has sent N pings")
+    auto* pings = command.add_option("--pings", limits.samples, "end when every sonar has sent N pings")
                       ->type_name("N")
                       ->check(refuseUnlessPositive);
     command.add_option("--duration", limits.duration_s, "end after S seconds on the deployment's clock")

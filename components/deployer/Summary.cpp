@@ -4,6 +4,8 @@
 
 #include <algorithm>
 
+#include "components/framework/Offers.hpp"
+
 namespace insonify::deployer {
 namespace {
 
@@ -60,14 +62,15 @@ std::string timesLine(const std::string& name, const std::string& state, const S
 }  // namespace
 
 Summary::Summary(const framework::Deployment& deployment, const framework::RunResult& result)
-    : pings(result.pings),
+    : pings(result.samples),
       wall_s(result.wall_s),
       realtime(!deployment.spec().lockstep),
       losses(deployment.losses()),
+      passed_over(deployment.passedOver()),
       warnings(result.warnings) {
     for (const auto& task : deployment.tasks()) {
         tasks.push_back(taskSummary(*task));
-        if (const types::Plan* plan = task->plan()) {
+        if (const types::Plan* plan = framework::planOf(*task)) {
             for (const types::Omission& omission : plan->omitted) addOnce(omitted, omission);
             plans[task->name()] = *plan;
         }
@@ -77,16 +80,14 @@ Summary::Summary(const framework::Deployment& deployment, const framework::RunRe
 Json Summary::json() const {
     Json by_name = Json::object();
     for (const Task& task : tasks) by_name[task.name] = taskJson(task, realtime);
-    Json lost = Json::object();
-    for (const auto& [connection, count] : losses) lost[connection] = count;
     Json quality = Json::object(), devices = Json::object();
     for (const auto& [task, plan] : plans) {
         quality[task] = toJson(plan)["quality"];
         devices[task] = plan.device;
     }
-    Json json = {{"pings", pings},    {"wall_s", wall_s},           {"tasks", by_name},
-                 {"losses", lost},    {"omitted", toJson(omitted)}, {"quality", quality},
-                 {"devices", devices}};
+    Json json = {{"pings", pings},     {"wall_s", wall_s},           {"tasks", by_name},
+                 {"losses", losses},   {"passed_over", passed_over}, {"omitted", toJson(omitted)},
+                 {"quality", quality}, {"devices", devices}};
     if (realtime) json["warnings"] = warnings;
     return json;
 }
@@ -104,9 +105,17 @@ std::string Summary::text() const {
     for (const auto& [task, plan] : plans) text += fmt::format("{}: {}\n", task, qualityText(plan));
     text += "lost samples\n";
     for (const auto& [connection, count] : losses) text += fmt::format("  {:6}  {}\n", count, connection);
+    text += passedOverText();
     if (!omitted.empty()) text += "left out\n";
     for (const types::Omission& omission : omitted) text += fmt::format("  {}: {}\n", omission.name, omission.reason);
     return text;
+}
+
+std::string Summary::passedOverText() const {
+    std::string text;
+    for (const auto& [connection, count] : passed_over)
+        if (count > 0) text += fmt::format("  {:6}  {}\n", count, connection);
+    return text.empty() ? text : "passed over for newer samples\n" + text;
 }
 
 std::string Summary::realtimeText() const {

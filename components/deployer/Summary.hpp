@@ -25,11 +25,12 @@ struct Summary {
     uint64_t pings = 0;
     double wall_s = 0;
     bool realtime = false;
-    std::vector<Task> tasks;                   ///< In file order.
-    std::map<std::string, uint64_t> losses;    ///< By "from>to" [samples].
-    std::vector<types::Omission> omitted;      ///< Of all sonars, each once.
-    std::map<std::string, types::Plan> plans;  ///< Of each sonar that has sent a ping, by task.
-    std::vector<std::string> warnings;         ///< In realtime, as of framework::Deployment::onWarning.
+    std::vector<Task> tasks;                      ///< In file order.
+    std::map<std::string, uint64_t> losses;       ///< By "from>to" [samples].
+    std::map<std::string, uint64_t> passed_over;  ///< For newer ones that came meanwhile, by "from>to" [samples].
+    std::vector<types::Omission> omitted;         ///< Of all sonars, each once.
+    std::map<std::string, types::Plan> plans;     ///< Of each sonar that has sent a ping, by task.
+    std::vector<std::string> warnings;            ///< In realtime, as of framework::Deployment::onWarning.
 
     Summary(const framework::Deployment& deployment, const framework::RunResult& result);
     Json json() const;
@@ -37,6 +38,7 @@ struct Summary {
 
 private:
     std::string realtimeText() const;
+    std::string passedOverText() const;
 };
 
 }  // namespace insonify::deployer

@@ -19,12 +19,16 @@ public:
     OutputPortBase& source() const { return source_; }
     /** Samples that were refused, dropped or overwritten before they were read. */
     uint64_t lost() const { return lost_.load(std::memory_order_relaxed); }
+    /** Samples that the reader has taken and left aside for newer ones, see InputPort::readNewest. */
+    uint64_t passedOver() const { return passed_over_.load(std::memory_order_relaxed); }
+    void notePassedOver() { passed_over_.fetch_add(1, std::memory_order_relaxed); }
 
 protected:
     std::atomic<uint64_t> lost_{0};
 
 private:
     OutputPortBase& source_;
+    std::atomic<uint64_t> passed_over_{0};
 };
 
 /** Where samples of one connection wait: a ring of fixed capacity. The mutex of its input port guards it. */

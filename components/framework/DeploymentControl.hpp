@@ -16,7 +16,7 @@ public:
     virtual types::DeploymentStatus status() const = 0;
     /** By task, in file order. */
     virtual std::vector<types::TaskInterface> interfaces() const = 0;
-    /** Calls an operation, "sonar.setRange", with arguments in YAML; gives the result as text. types::ConfigError: no
+    /** Calls an operation, "camera.setRate", with arguments in YAML; gives the result as text. types::ConfigError: no
      *  such task or operation, or arguments that do not fit; a refusal is what the operation throws. */
     virtual std::string call(const std::string& operation, const std::vector<std::string>& arguments) = 0;
     /** In lockstep: simulated time stands still once this returns, or goes on. Throws std::runtime_error in realtime.

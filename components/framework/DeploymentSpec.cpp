@@ -67,7 +67,7 @@ struct TaskKeys {
         visit(Field{"properties", "", "its configuration"}, self.properties);
     }
     void check(types::Diagnostics& diagnostics) const {
-        if (type.empty()) diagnostics.push_back({"", "has no type; a task needs one, such as type: sonar::SonarTask"});
+        if (type.empty()) diagnostics.push_back({"", "has no type; a task needs one, such as type: scene::SceneTask"});
     }
 };
 

@@ -69,7 +69,7 @@ struct DeploymentSpec {
     void set(const std::string& assignment);
 };
 
-/** "sonar.ping" -> {"sonar", "ping"}: split at the first dot; the second is empty when there is none. */
+/** "camera.image" -> {"camera", "image"}: split at the first dot; the second is empty when there is none. */
 std::pair<std::string, std::string> splitPort(const std::string& path);
 
 }  // namespace insonify::framework

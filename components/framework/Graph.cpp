@@ -35,30 +35,71 @@ bool leadsTo(const TaskContext& from, const TaskContext& to, const std::vector<C
 
 }  // namespace
 
-std::vector<TaskContext*> writersFirst(const std::vector<std::unique_ptr<TaskContext>>& tasks,
-                                       const std::vector<Connection>& connections) {
-    std::vector<TaskContext*> waiting, order;
-    for (const auto& task : tasks) waiting.push_back(task.get());
-    while (!waiting.empty()) {
-        TaskContext* next = nextTask(waiting, connections, true);
-        if (!next) next = nextTask(waiting, connections, false);
-        if (!next) next = waiting.front();
-        order.push_back(next);
-        waiting.erase(std::find(waiting.begin(), waiting.end(), next));
-    }
-    return order;
+bool hasFailed(const TaskContext& task) {
+    return task.state() == TaskState::Exception || task.state() == TaskState::FatalError;
 }
 
-std::vector<const Connection*> unbufferedLoops(const std::vector<Connection>& connections) {
+TaskContext* Graph::task(const std::string& name) const {
+    for (const auto& task : tasks_)
+        if (task->name() == name) return task.get();
+    return nullptr;
+}
+
+std::vector<const Connection*> Graph::unbufferedLoops() const {
     std::vector<const Connection*> loops;
     std::set<const TaskContext*> reported;
-    for (const Connection& connection : connections) {
+    for (const Connection& connection : connections_) {
         std::set<const TaskContext*> seen;
-        if (isBuffered(connection) || !leadsTo(connection.to->owner(), connection.from->owner(), connections, seen))
+        if (isBuffered(connection) || !leadsTo(connection.to->owner(), connection.from->owner(), connections_, seen))
             continue;
         if (reported.insert(&connection.to->owner()).second) loops.push_back(&connection);
     }
     return loops;
+}
+
+TaskContext& Graph::add(std::unique_ptr<TaskContext> task) { return *tasks_.emplace_back(std::move(task)); }
+
+bool Graph::connect(OutputPortBase& from, InputPortBase& to, ConnPolicy policy) {
+    if (!from.connectTo(to, policy)) return false;
+    connections_.push_back({&from, &to, policy, to.channels().back()});
+    return true;
+}
+
+void Graph::arrange() {
+    std::vector<TaskContext*> waiting;
+    for (const auto& task : tasks_) waiting.push_back(task.get());
+    order_.clear();
+    while (!waiting.empty()) {
+        TaskContext* next = nextTask(waiting, connections_, true);
+        if (!next) next = nextTask(waiting, connections_, false);
+        if (!next) next = waiting.front();
+        order_.push_back(next);
+        waiting.erase(std::find(waiting.begin(), waiting.end(), next));
+    }
+    counted_ = countedOutputs();
+}
+
+std::vector<const OutputPortBase*> Graph::countedOutputs() const {
+    const auto isCounted = [](const PortBase* port) { return port->counted(); };
+    std::vector<const OutputPortBase*> counted;
+    for (const auto& task : tasks_)
+        if (std::ranges::none_of(task->inputs(), isCounted))
+            std::ranges::copy_if(task->outputs(), std::back_inserter(counted), isCounted);
+    return counted;
+}
+
+uint64_t Graph::countedSamples() const {
+    if (counted_.empty()) return 0;
+    return (*std::ranges::min_element(counted_, {}, &OutputPortBase::written))->written();
+}
+
+bool Graph::hasFailed() const {
+    return std::ranges::any_of(tasks_, [](const auto& task) { return framework::hasFailed(*task); });
+}
+
+bool Graph::hasSourceInError() const {
+    return std::ranges::any_of(
+        counted_, [](const OutputPortBase* port) { return port->owner().state() == TaskState::RunTimeError; });
 }
 
 }  // namespace insonify::framework

@@ -9,6 +9,8 @@ void InputPortBase::signal() const {
     if (triggers_) owner().activity().trigger();
 }
 
+bool InputPortBase::newestCounts() const { return owner().activity().realtime(); }
+
 void OutputPortBase::noteWritten(types::Time stamp) const { noteLatency(owner(), stamp); }
 
 }  // namespace insonify::framework

@@ -1,8 +1,8 @@
 #pragma once
 // Typed ports. Small samples travel by value; large ones as std::shared_ptr<const T>, written once, never copied.
 //
-//     InputPort<types::Pose>      pose{this, "pose", "the vehicle in the world"};
-//     OutputPort<types::SonarPtr> ping{this, "ping", "one ping, noiseless"};
+//     InputPort<types::Pose>         pose{this, "pose", "the vehicle in the world"};
+//     OutputPort<types::SnapshotPtr> snapshot{this, "snapshot", "what stands where"};
 //
 // Ports connect and disconnect at any time, from any thread, while samples are written and read. One that goes
 // disconnects itself, whatever the ports at its other ends do meanwhile, except that they must not go or be
@@ -38,6 +38,8 @@ public:
     const std::string& content() const { return content_; }
     std::string path() const { return owner_->name() + "." + name_; }
     virtual std::string typeName() const = 0;
+    /** Whether its samples are what runs are counted in, see types::Counted. */
+    virtual bool counted() const = 0;
 
 private:
     TaskContext* owner_;
@@ -63,7 +65,8 @@ public:
     void setTriggers(bool on) { triggers_ = on; }
 
 protected:
-    void signal() const;  ///< A sample has arrived: wakes the task if this port triggers.
+    void signal() const;        ///< A sample has arrived: wakes the task if this port triggers.
+    bool newestCounts() const;  ///< The task runs in realtime.
 
 private:
     Need need_;
@@ -80,8 +83,6 @@ public:
     virtual bool connectTo(InputPortBase& reader, ConnPolicy policy) = 0;
     /** Ends every connection with `reader`: once this returns nothing of this port reaches it any more. */
     virtual void disconnect(InputPortBase& reader) = 0;
-    /** An input port of this port's type, for a task that takes whatever is connected to it. */
-    virtual std::unique_ptr<InputPortBase> makeReader(TaskContext* owner, const std::string& name) const = 0;
     virtual bool connected() const = 0;
     uint64_t written() const { return written_.load(std::memory_order_relaxed); }  ///< Samples since construction.
 
@@ -103,30 +104,24 @@ public:
     }
 
     /** The next sample; with OldData `sample` becomes the last one read, unless `copy_old` is false. */
-    FlowStatus read(T& sample, bool copy_old = true) {
-        std::lock_guard lock(mutex_);
-        for (const auto& channel : channels_)
-            if (channel->pop(last_)) {
-                has_last_ = true;
-                owner().noteTaken();
-                sample = last_;
-                return FlowStatus::NewData;
-            }
-        if (!has_last_) return FlowStatus::NoData;
-        if (copy_old) sample = last_;
-        return FlowStatus::OldData;
-    }
-    /** Drains the port and gives the newest sample. */
+    FlowStatus read(T& sample, bool copy_old = true) { return readFrom(nullptr, sample, copy_old); }
+    /** Drains the port and gives the newest sample; those before it count as passed over in their connections. */
     FlowStatus readNewest(T& sample, bool copy_old = true) {
-        const FlowStatus first = read(sample, copy_old);
-        if (first == FlowStatus::NewData)
-            while (read(sample, false) == FlowStatus::NewData) {
-            }
+        std::shared_ptr<ChannelBase> taken_from, next_from;
+        const FlowStatus first = readFrom(&taken_from, sample, copy_old);
+        for (; first == FlowStatus::NewData && readFrom(&next_from, sample, false) == FlowStatus::NewData;
+             taken_from = std::move(next_from))
+            taken_from->notePassedOver();
         return first;
     }
     bool readNew(T& sample) { return read(sample, false) == FlowStatus::NewData; }
+    /** The sample to work on: in lockstep the next; in realtime the newest, as of readNewest. False: none is new. */
+    bool takeNext(T& sample) {
+        return newestCounts() ? readNewest(sample, false) == FlowStatus::NewData : readNew(sample);
+    }
 
     std::string typeName() const override { return types::typeName<T>(); }
+    bool counted() const override { return types::Counted<T>; }
     bool connected() const override {
         std::lock_guard lock(mutex_);
         return !channels_.empty();
@@ -168,6 +163,21 @@ public:
     }
 
 private:
+    /** read(), which tells where a new sample was taken from, to who wants to know. */
+    FlowStatus readFrom(std::shared_ptr<ChannelBase>* taken_from, T& sample, bool copy_old) {
+        std::lock_guard lock(mutex_);
+        for (const auto& channel : channels_)
+            if (channel->pop(last_)) {
+                has_last_ = true;
+                owner().noteTaken();
+                sample = last_;
+                if (taken_from) *taken_from = channel;
+                return FlowStatus::NewData;
+            }
+        if (!has_last_) return FlowStatus::NoData;
+        if (copy_old) sample = last_;
+        return FlowStatus::OldData;
+    }
     void forgetLast() {
         last_ = T{};
         has_last_ = false;
@@ -205,6 +215,7 @@ public:
         keep_last_ = true;
     }
     std::string typeName() const override { return types::typeName<T>(); }
+    bool counted() const override { return types::Counted<T>; }
     bool connected() const override {
         std::lock_guard lock(mutex_);
         return !readers_.empty();
@@ -222,9 +233,6 @@ public:
         std::lock_guard lock(mutex_);
         std::erase_if(readers_, [&](const Reader& other) { return other.port == &reader; });
         reader.drop(*this);
-    }
-    std::unique_ptr<InputPortBase> makeReader(TaskContext* owner, const std::string& name) const override {
-        return std::make_unique<InputPort<T>>(owner, name, "samples of " + path(), Need::Optional);
     }
 
 private:

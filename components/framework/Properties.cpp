@@ -5,7 +5,7 @@
 namespace insonify::framework {
 namespace {
 
-/** "bin_count" -> "setBin_count" */
+/** "max_size" -> "setMax_size" */
 std::string setterName(std::string property) {
     property.front() = static_cast<char>(std::toupper(static_cast<unsigned char>(property.front())));
     return "set" + property;

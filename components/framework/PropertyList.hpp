@@ -6,18 +6,11 @@
 #include <vector>
 
 #include "components/framework/ConfigReader.hpp"
+#include "types/PropertyInfo.hpp"
 
 namespace insonify::framework {
 
-/** What `describe` tells of one property. */
-struct PropertyInfo {
-    std::string name;  ///< Dotted below blocks; "[]" for an element of a list, "<name>" for one of a map.
-    std::string type;  ///< "double", "rayleigh|gaussian", "block, optional"...
-    std::string unit;
-    std::string default_value;  ///< Empty: absent.
-    double min, max;            ///< Inclusive; infinite when unbounded.
-    std::string doc;
-};
+using types::PropertyInfo;
 
 template <class T>
 std::string configTypeName() {

@@ -7,10 +7,10 @@ namespace insonify::framework {
 
 /** Large samples used again once no reader holds them any more, so that a steady stream allocates nothing.
  *
- *      std::shared_ptr<types::Sonar> ping = pool_.take();   // contents are those of an earlier use
+ *      std::shared_ptr<types::Image> image = pool_.take();   // contents are those of an earlier use
  *      ... fill it ...
- *      pool_.stock(*ping);
- *      port.write(ping);
+ *      pool_.stock(*image);
+ *      port.write(image);
  *
  *  Grows while readers hold on to samples; never shrinks. For one thread. */
 template <class T>

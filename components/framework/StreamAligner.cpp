@@ -16,15 +16,25 @@ bool outlasts(types::Time later, types::Time time, types::Time span) {
 }  // namespace
 
 AlignedPortBase::AlignedPortBase(StreamAligner& aligner, const InputPortBase& port) : aligner_(aligner), port_(port) {
-    aligner.ports_.push_back(this);
+    aligner.enlist(this);
 }
 
 bool AlignedPortBase::accepts(types::Time time) {
     ++counts_.received;
-    if (time < std::max(last_, aligner_.done_)) return ++counts_.late, false;
+    if (time < std::max(last_, aligner_.handedOver())) return ++counts_.late, false;
     last_ = time;
-    aligner_.newest_ = std::max(aligner_.newest_, time);
+    aligner_.noteTaken(time);
     return true;
+}
+
+void AlignedPortBase::clear() {
+    forget();
+    counts_ = {};
+    last_ = before_all;
+}
+
+bool AlignedPortBase::holdsUp(types::Time time) const {
+    return empty() && port_.connected() && (counts_.received == 0 || last_ < time);
 }
 
 std::string AlignedPortBase::notice() const {
@@ -40,12 +50,10 @@ std::string AlignedPortBase::notice() const {
 void StreamAligner::clear(double timeout) {
     timeout_ = types::Time::fromSeconds(timeout);
     newest_ = done_ = before_all;
-    for (AlignedPortBase* port : ports_) {
-        port->forget();
-        port->counts_ = {};
-        port->last_ = before_all;
-    }
+    for (AlignedPortBase* port : ports_) port->clear();
 }
+
+void StreamAligner::noteTaken(types::Time time) { newest_ = std::max(newest_, time); }
 
 void StreamAligner::update() {
     bool taken = true;
@@ -77,14 +85,12 @@ AlignedPortBase* StreamAligner::earliest() const {
 
 bool StreamAligner::isDue(const AlignedPortBase& candidate) {
     const types::Time time = candidate.firstTime();
-    const auto holdsUp = [&](const AlignedPortBase* port) {
-        return port->empty() && port->port_.connected() && (port->counts_.received == 0 || port->last_ < time);
-    };
+    const auto holdsUp = [time](const AlignedPortBase* port) { return port->holdsUp(time); };
     if (std::ranges::none_of(ports_, holdsUp)) return true;
     const auto isFull = [](const AlignedPortBase* port) { return port->full(); };
     if (!outlasts(newest_, time, timeout_) && std::ranges::none_of(ports_, isFull)) return false;
     for (AlignedPortBase* port : ports_)
-        if (holdsUp(port)) ++port->counts_.awaited;
+        if (port->holdsUp(time)) port->noteAwaited();
     return true;
 }
 

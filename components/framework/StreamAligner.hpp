@@ -31,20 +31,25 @@ public:
     AlignedPortBase& operator=(const AlignedPortBase&) = delete;
 
     const Counts& counts() const { return counts_; }
-    /** "ping: 3 of 120 samples came too late and were dropped": what was lost or not waited for; empty: nothing. */
+    /** "pose: 3 of 120 samples came too late and were dropped": what was lost or not waited for; empty: nothing. */
     std::string notice() const;
 
-protected:
-    friend class StreamAligner;
+    // For its aligner only.
     virtual bool empty() const = 0;
     virtual bool full() const = 0;
     virtual types::Time firstTime() const = 0;  ///< Of the oldest that waits; there must be one.
     virtual bool fill() = 0;                    ///< Takes what is new while there is room; false: nothing was.
     virtual void handOver() = 0;                ///< The oldest that waits.
-    virtual void forget() = 0;
+    void clear();                               ///< Forgets samples and counts.
+    bool holdsUp(types::Time time) const;       ///< A sample before that time may still come.
+    void noteAwaited() { ++counts_.awaited; }
+
+protected:
+    virtual void forget() = 0;  ///< The samples that wait.
     /** Takes note of a sample, and whether it still has a place in the order of time. */
     bool accepts(types::Time time);
 
+private:
     StreamAligner& aligner_;
     const InputPortBase& port_;
     Counts counts_;
@@ -56,7 +61,7 @@ protected:
  *
  *      framework::StreamAligner aligner_;
  *      framework::AlignedPort<types::Pose> poses_{aligner_, pose, [this](const types::Pose& sample) { ... }};
- *      framework::AlignedPort<types::SonarPtr> pings_{aligner_, ping, [this](const types::SonarPtr& sample) { ... }};
+ *      framework::AlignedPort<types::ImagePtr> images_{aligner_, image, [this](const types::ImagePtr& sample) { ... }};
  *      bool startHook() override { return aligner_.clear(1.0), true; }
  *      void updateHook() override { aligner_.update(); }
  *
@@ -73,8 +78,12 @@ public:
     /** Of all ports; see AlignedPortBase::notice. */
     std::vector<std::string> notices() const;
 
+    // For its ports only.
+    void enlist(AlignedPortBase* port) { ports_.push_back(port); }
+    types::Time handedOver() const { return done_; }  ///< Time of the sample handed over last.
+    void noteTaken(types::Time time);                 ///< A port has taken a sample of that time.
+
 private:
-    friend class AlignedPortBase;
     AlignedPortBase* earliest() const;
     bool isDue(const AlignedPortBase& candidate);
     void handOver(AlignedPortBase& port);

@@ -5,6 +5,7 @@
 
 #include "components/framework/Activity.hpp"
 #include "components/framework/LifeCycle.hpp"
+#include "components/framework/Offers.hpp"
 #include "components/framework/Operation.hpp"
 #include "components/framework/Port.hpp"
 #include "components/framework/Properties.hpp"
@@ -71,7 +72,7 @@ void TaskContext::setLastError(const std::string& text) {
 void TaskContext::refreshRecord() {
     types::TaskRecord record{name_, "", {}, ""};
     for (const PropertiesBase* properties : properties_) record.properties.merge(properties->values());
-    const types::Plan* const made = plan();
+    const types::Plan* const made = planOf(*this);
     if (made) record.plan = flowYaml(*made);
     {
         std::lock_guard lock(record_mutex_);

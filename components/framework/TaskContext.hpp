@@ -54,6 +54,7 @@ struct Environment {
 };
 
 class Activity;
+class Event;
 class InputPortBase;
 class OutputPortBase;
 template <class T>
@@ -104,41 +105,30 @@ public:
     const std::vector<OutputPortBase*>& outputs() const { return outputs_; }
     const std::vector<PropertiesBase*>& properties() const { return properties_; }
     const std::vector<OperationBase*>& operations() const { return operations_; }
+    const std::vector<Event*>& events() const { return events_; }
     InputPortBase* input(const std::string& port);  ///< Null when there is none of that name.
     OutputPortBase* output(const std::string& port);
     /** configure, start, stop, cleanup, recover; `set<Property>` for each property (setRange); those of the task. */
     OperationBase* operation(const std::string& name);
 
-    /** A port that exists only because a connection names it (a logger's inputs, a replay's outputs): null refuses. */
+    /** A port that exists only because a connection names it, as DynamicPorts.hpp makes them: null refuses. */
     virtual InputPortBase* makeInput(const std::string& /*port*/, OutputPortBase& /*source*/) { return nullptr; }
     virtual OutputPortBase* makeOutput(const std::string& /*port*/) { return nullptr; }
 
     /** Faults that can be seen without configuring (files that are not there...); paths as in types::Diagnostic. */
     virtual void check(types::Diagnostics& /*problems*/) const {}
-    /** What is compiled and run, if this task decides such a thing. Valid after the first cycle. Whoever overrides it
-     *  calls refreshRecord() when it has changed, before the first sample that it holds for is written. */
-    virtual const types::Plan* plan() const { return nullptr; }
     /** Notices for the user (a mesh without triangles, dropped vertices). Valid after configure. */
     virtual std::vector<std::string> notices() const { return {}; }
     /** True once a source has nothing more to say: a lockstep run ends when all sources have. */
     virtual bool finished() const { return false; }
-    /** When a source without a period wants its next cycle in lockstep, on simulated time; none: not, or not any more.
-     *  A cycle at that time must move it on. Valid once the connections are made: the earliest of all tasks is then
-     *  when simulated time starts (a log's first stamp). */
-    virtual std::optional<types::Time> nextTime() const { return std::nullopt; }
-
-    /** In realtime, the clock that all tasks read in place of the wall's, which it may follow (a log's, at its pace);
-     *  none: this task has none of its own. Asked for once, when the connections are made. */
-    virtual std::function<types::Time()> clock(std::function<types::Time()> /*wall*/) { return {}; }
-
-    /** Whether it talks to others than its deployment, over a network or to a device: a replay leaves it out. */
+    /** Whether it talks to others than its deployment, over a network or to a device. */
     virtual bool reachesOutside() const { return false; }
 
     /** In realtime a triggered task runs a cycle also when it has run none for so long [s]; 0: it waits for samples.
      *  Asked for once, when it has started. */
     virtual double wakeAfter() const { return 0; }
 
-    /** Properties and plan, for any thread; the type is the deployment's to know. */
+    /** Properties, and the plan of a task that is Planned, for any thread; the type is the deployment's to know. */
     types::TaskRecord record() const {
         std::lock_guard lock(record_mutex_);
         return record_;
@@ -167,7 +157,13 @@ public:
     void enlist(OutputPortBase* port) { outputs_.push_back(port); }
     void enlist(PropertiesBase* properties) { properties_.push_back(properties); }
     void enlist(OperationBase* operation) { operations_.push_back(operation); }
+    void enlist(Event* event) { events_.push_back(event); }
     void noteTaken() { ++taken_; }
+    /** Lets the task take changed properties over, on its thread. */
+    Outcome applyProperties(const std::string& what);
+    // For its activity only.
+    /** One pass of updateHook or errorHook; true when a triggering port still holds a sample and this pass took one. */
+    bool cycle();
 
 protected:
     virtual bool configureHook() { return true; }
@@ -195,12 +191,8 @@ protected:
     std::filesystem::path outputPath(const std::string& file) const;  ///< Relative to `--out`; makes no folders.
 
 private:
-    friend class Activity;
-    friend class PropertiesBase;
     using Hook = void (TaskContext::*)();
 
-    /** One pass of updateHook or errorHook; true when a triggering port still holds a sample and this pass took one. */
-    bool cycle();
     template <class Transition>
     Outcome transition(const char* verb, Transition&& work);
     Outcome configureNow();
@@ -208,8 +200,6 @@ private:
     Outcome stopNow();
     Outcome cleanupNow();
     Outcome recoverNow();
-    /** Lets the task take changed properties over, on its thread. */
-    Outcome applyProperties(const std::string& what);
     Outcome refuse(const std::string& why);
     Outcome notAllowed(const char* allowed);
     Outcome notDone(const char* hook);
@@ -233,6 +223,7 @@ private:
     std::vector<OutputPortBase*> outputs_;
     std::vector<PropertiesBase*> properties_;
     std::vector<OperationBase*> operations_;
+    std::vector<Event*> events_;
     std::unique_ptr<OutputPort<int32_t>> state_port_;
     std::vector<std::unique_ptr<OperationBase>> life_cycle_;
     const char* transition_ = nullptr;  // the one under way

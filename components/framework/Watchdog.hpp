@@ -18,9 +18,10 @@ class Watchdog {
 public:
     struct Limit {
         TaskContext* task;
-        double seconds;  ///< How long a cycle may take, without pauses such as a sonar's for its echoes.
+        double
+            seconds;  ///< How long a cycle may take, without the pauses that it makes itself, see Activity::sleepUntil.
     };
-    /** Reports, "sonar: ...", come on the watchdog's thread. */
+    /** Reports, "camera: ...", come on the watchdog's thread. */
     using Report = std::function<void(const std::string&)>;
 
     Watchdog(const std::vector<Limit>& limits, Report report);

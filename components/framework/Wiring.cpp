@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <tuple>
 
-#include "components/framework/Graph.hpp"
+#include "components/framework/Offers.hpp"
 #include "components/framework/Properties.hpp"
 
 namespace insonify::framework {
@@ -19,8 +19,17 @@ std::vector<std::string> typesOf(const Registry& registry) {
 
 }  // namespace
 
-void Wiring::make(uint64_t seed) {
-    diagnostics_ = deployment_.spec_.diagnostics;
+uint64_t seedOf(uint64_t seed, const std::string& task) {
+    uint64_t hash = 0xcbf29ce484222325;  // FNV-1a of the name, then splitmix64 with the seed
+    for (const char c : task) hash = (hash ^ static_cast<unsigned char>(c)) * 0x100000001b3;
+    hash += seed * 0x9e3779b97f4a7c15;
+    hash = (hash ^ (hash >> 30)) * 0xbf58476d1ce4e5b9;
+    hash = (hash ^ (hash >> 27)) * 0x94d049bb133111eb;
+    return (hash ^ (hash >> 31)) >> 11;
+}
+
+Graph Wiring::make(uint64_t seed) {
+    diagnostics_ = spec_.diagnostics;
     loadLibraries();
     makeTasks();
     loadProperties(seed);
@@ -34,11 +43,12 @@ void Wiring::make(uint64_t seed) {
     std::stable_sort(consequences_.begin(), consequences_.end(), earlier);
     diagnostics_.insert(diagnostics_.end(), consequences_.begin(), consequences_.end());
     if (!diagnostics_.empty()) throw types::ConfigError(diagnostics_);
+    return std::move(graph_);
 }
 
 types::Diagnostic Wiring::diagnostic(const YAML::Node& place, const std::string& path,
                                      const std::string& message) const {
-    ConfigReader reader(deployment_.spec_.file);
+    ConfigReader reader(spec_.file);
     reader.report(place, path, message);
     return reader.diagnostics().front();
 }
@@ -52,15 +62,15 @@ void Wiring::consequence(const YAML::Node& place, const std::string& path, const
 }
 
 void Wiring::loadLibraries() {
-    for (const std::string& library : deployment_.spec_.libraries) try {
-            registry_.loadLibrary(deployment_.environment_->input_folder / library);
+    for (const std::string& library : spec_.libraries) try {
+            registry_.loadLibrary(environment_->input_folder / library);
         } catch (const types::ConfigError& error) {
             diagnostics_.insert(diagnostics_.end(), error.diagnostics().begin(), error.diagnostics().end());
         }
 }
 
 void Wiring::makeTasks() {
-    for (const TaskSpec& spec : deployment_.spec_.tasks) {
+    for (const TaskSpec& spec : spec_.tasks) {
         if (spec.type.empty()) continue;  // told by the reading
         auto task = registry_.make(spec.type, spec.name);
         if (!task) {
@@ -68,16 +78,16 @@ void Wiring::makeTasks() {
             report(type, spec.path() + ".type", "is " + spec.type + "; " + suggestion(spec.type, typesOf(registry_)));
             continue;
         }
-        task->setEnvironment(deployment_.environment_);
-        deployment_.tasks_.push_back(std::move(task));
+        task->setEnvironment(environment_);
+        graph_.add(std::move(task));
     }
 }
 
 void Wiring::loadProperties(uint64_t seed) {
-    for (const auto& task : deployment_.tasks_) {
-        TaskSpec& spec = *deployment_.spec_.task(task->name());
+    for (const auto& task : graph_.tasks()) {
+        TaskSpec& spec = *spec_.task(task->name());
         if (seed != 0) seedTask(*task, spec, seed);
-        ConfigReader reader(deployment_.spec_.file, deployment_.spec_.origins);
+        ConfigReader reader(spec_.file, spec_.origins);
         reader.setFallback(spec.place.Mark());
         const std::string path = spec.path() + ".properties";
         for (PropertiesBase* properties : task->properties()) properties->load(reader, spec.properties, path);
@@ -90,17 +100,17 @@ void Wiring::loadProperties(uint64_t seed) {
 
 void Wiring::seedTask(const TaskContext& task, const TaskSpec& spec, uint64_t seed) {
     const std::string path = spec.path() + ".properties.seed";
-    const auto& origins = deployment_.spec_.origins;
+    const auto& origins = spec_.origins;
     if (const auto found = origins.find(path); found != origins.end() && found->second.file == set_origin) return;
     for (const PropertiesBase* properties : task.properties())
         for (const PropertyInfo& info : properties->list())
             if (info.name == "seed")
-                return deployment_.spec_.set(fmt::format("{}.seed={}", task.name(), seedOf(seed, task.name())));
+                return spec_.set(fmt::format("{}.seed={}", task.name(), seedOf(seed, task.name())));
 }
 
 void Wiring::connect() {
     std::vector<std::string> made;
-    for (const ConnectionSpec& connection : deployment_.spec_.connections) {
+    for (const ConnectionSpec& connection : spec_.connections) {
         const std::string text = connection.from + ">" + connection.to;
         if (std::find(made.begin(), made.end(), text) != made.end())
             report(connection.place, connection.path, "stands here twice: " + text);
@@ -124,19 +134,18 @@ void Wiring::connectOne(const ConnectionSpec& connection) {
         return report(connection.place, connection.path,
                       fmt::format("{} gives {}, {} takes {}; the one cannot be the other", from->path(),
                                   from->content(), to->path(), to->content()));
-    if (!from->connectTo(*to, connection.policy))
+    if (!graph_.connect(*from, *to, connection.policy))
         return report(connection.place, connection.path,
                       fmt::format("{} is {}, {} is {}; types must be equal", from->path(), from->typeName(), to->path(),
                                   to->typeName()));
-    deployment_.connections_.push_back({from, to, connection.policy, to->channels().back()});
 }
 
 TaskContext* Wiring::findTask(const ConnectionSpec& connection, const char* key, const std::string& port) {
     const std::string name = splitPort(port).first;
-    TaskContext* task = deployment_.task(name);
-    if (!task && !deployment_.spec_.task(name))
+    TaskContext* task = graph_.task(name);
+    if (!task && !spec_.task(name))
         report(child(connection.place, key), connection.path + "." + key,
-               "there is no task " + name + "; " + suggestion(name, deployment_.spec_.taskNames()));
+               "there is no task " + name + "; " + suggestion(name, spec_.taskNames()));
     return task;
 }
 
@@ -179,12 +188,12 @@ InputPortBase* Wiring::findInput(const ConnectionSpec& connection, OutputPortBas
 }
 
 void Wiring::checkTasks() {
-    for (const auto& task : deployment_.tasks_) {
-        const TaskSpec& spec = *deployment_.spec_.task(task->name());
+    for (const auto& task : graph_.tasks()) {
+        const TaskSpec& spec = *spec_.task(task->name());
         checkInputs(*task, spec);
         checkActivity(*task, spec);
         if (isFaulty(*task)) continue;
-        ConfigReader reader(deployment_.spec_.file, deployment_.spec_.origins);
+        ConfigReader reader(spec_.file, spec_.origins);
         reader.setFallback(spec.place.Mark());
         types::Diagnostics diagnostics;
         task->check(diagnostics);
@@ -196,7 +205,7 @@ void Wiring::checkTasks() {
 void Wiring::checkInputs(const TaskContext& task, const TaskSpec& spec) {
     // A connection that failed has been told; that its port is now without one need not be.
     const auto meant = [&](const InputPortBase& port) {
-        const auto& all = deployment_.spec_.connections;
+        const auto& all = spec_.connections;
         return std::any_of(all.begin(), all.end(), [&](const auto& c) { return c.to == port.path(); });
     };
     for (const InputPortBase* port : task.inputs())
@@ -211,32 +220,34 @@ void Wiring::checkActivity(TaskContext& task, const TaskSpec& spec) {
         if (!task.input(name))
             report(place, spec.path() + ".activity.trigger",
                    "there is no input port " + name + "; " + suggestion(name, namesOf(task.inputs())));
-    const auto runs = [](const InputPortBase* port) { return port->connected() || port->need() == Need::Required; };
-    const auto meant = [&](const ConnectionSpec& c) { return splitPort(c.to).first == task.name(); };
-    const auto& inputs = task.inputs();
-    const auto& connections = deployment_.spec_.connections;
-    const bool is_misread = std::ranges::any_of(
-        deployment_.spec_.diagnostics,
-        [&](const types::Diagnostic& diagnostic) { return diagnostic.path.starts_with(spec.path() + ".activity"); });
-    if (!is_misread && !child(place, "period").IsDefined() && !spec.activity.periodic() && !task.nextTime() &&
-        task.wakeAfter() <= 0 && std::none_of(inputs.begin(), inputs.end(), runs) &&
-        std::none_of(connections.begin(), connections.end(), meant))
+    const bool is_misread = std::ranges::any_of(spec_.diagnostics, [&](const types::Diagnostic& diagnostic) {
+        return diagnostic.path.starts_with(spec.path() + ".activity");
+    });
+    if (!is_misread && !child(place, "period").IsDefined() && !hasCycles(task, spec))
         consequence(spec.place, spec.path(), "has nothing that would run it; give it activity: {period: seconds}");
     task.activity().configure(spec.activity);
 }
 
+bool Wiring::hasCycles(const TaskContext& task, const TaskSpec& spec) const {
+    const auto runs = [](const InputPortBase* port) { return port->connected() || port->need() == Need::Required; };
+    const auto meant = [&](const ConnectionSpec& c) { return splitPort(c.to).first == task.name(); };
+    const auto* const source = dynamic_cast<const ClockSource*>(&task);
+    return spec.activity.periodic() || !task.events().empty() || task.wakeAfter() > 0 ||
+           (source && source->nextTime()) || std::ranges::any_of(task.inputs(), runs) ||
+           std::ranges::any_of(spec_.connections, meant);
+}
+
 void Wiring::checkLoops() {
-    const auto& all = deployment_.connections_;
-    for (const Connection* loop : unbufferedLoops(all)) {
+    for (const Connection* loop : graph_.unbufferedLoops()) {
         const auto made = [&](const ConnectionSpec& c) {
             return c.from == loop->from->path() && c.to == loop->to->path();
         };
-        const auto& specs = deployment_.spec_.connections;
+        const auto& specs = spec_.connections;
         const auto spec = std::find_if(specs.begin(), specs.end(), made);
         report(spec->place, spec->path,
                loop->text() + " closes a loop without a buffer; give one of its connections one");
     }
-    deployment_.order_ = writersFirst(deployment_.tasks_, all);
+    graph_.arrange();
 }
 
 }  // namespace insonify::framework

@@ -1,14 +1,24 @@
 #pragma once
-#include "components/framework/Deployment.hpp"
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "components/framework/DeploymentSpec.hpp"
+#include "components/framework/Graph.hpp"
+#include "components/framework/Registry.hpp"
 
 namespace insonify::framework {
 
-/** Makes what a DeploymentSpec says: tasks, properties, ports, connections; collects every fault on the way. */
+/** Makes the Graph that a DeploymentSpec says: tasks, properties, ports, connections; collects every fault on the way.
+ */
 class Wiring {
 public:
-    Wiring(Deployment& deployment, Registry& registry) : deployment_(deployment), registry_(registry) {}
-    /** Throws types::ConfigError with every fault, those of reading the file first. */
-    void make(uint64_t seed);
+    /** `environment` is for all tasks. A seed is set in `spec`. */
+    Wiring(DeploymentSpec& spec, std::shared_ptr<Environment> environment, Registry& registry)
+        : spec_(spec), environment_(std::move(environment)), registry_(registry) {}
+    /** Once. Throws types::ConfigError with every fault, those of reading the file first. */
+    Graph make(uint64_t seed);
 
 private:
     void loadLibraries();
@@ -25,16 +35,23 @@ private:
     void checkTasks();
     void checkInputs(const TaskContext& task, const TaskSpec& spec);
     void checkActivity(TaskContext& task, const TaskSpec& spec);
+    /** Whether something runs it, or would if its connections were right. */
+    bool hasCycles(const TaskContext& task, const TaskSpec& spec) const;
     void checkLoops();
     types::Diagnostic diagnostic(const YAML::Node& place, const std::string& path, const std::string& message) const;
     void report(const YAML::Node& place, const std::string& path, const std::string& message);
     /** A fault that another one may well have brought about: told after all those. */
     void consequence(const YAML::Node& place, const std::string& path, const std::string& message);
 
-    Deployment& deployment_;
+    DeploymentSpec& spec_;
+    std::shared_ptr<Environment> environment_;
     Registry& registry_;
+    Graph graph_;
     types::Diagnostics diagnostics_, consequences_;
     std::vector<const TaskContext*> faulty_;
 };
+
+/** Which seed a task gets from `run --seed`: stable over runs, machines and versions; below 2^53. */
+uint64_t seedOf(uint64_t seed, const std::string& task);
 
 }  // namespace insonify::framework

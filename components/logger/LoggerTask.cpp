@@ -9,53 +9,37 @@
 
 namespace insonify::logger {
 
-template <class T>
-class LoggerTask::TypedInlet final : public Inlet {
-public:
-    using Port = framework::InputPort<types::Carried<T>>;
+namespace {
 
-    TypedInlet(std::unique_ptr<framework::InputPortBase> port, std::string source)
-        : Inlet(std::move(source)), owned_(std::move(port)), port_(static_cast<Port&>(*owned_)) {}
-    framework::InputPortBase& port() const override { return port_; }
-    Declare declaration(log::Metadata metadata) const override {
-        return [name = stream, metadata = std::move(metadata)](log::Writer& log) {
-            return log.addStream<T>(name, metadata);
-        };
-    }
-    void drain(LogThread& log, types::Time received) override {
-        for (types::Carried<T> sample{}; port_.readNew(sample);) log.push(*number, received, std::move(sample));
-    }
+/** Of the stream of an input. */
+template <class Input>
+Declare declaration(const Input& input, log::Metadata metadata) {
+    return [name = input.kept.name, metadata = std::move(metadata)](log::Writer& log) {
+        return log.addStream<typename Input::Sample>(name, metadata);
+    };
+}
 
-private:
-    std::unique_ptr<framework::InputPortBase> owned_;
-    Port& port_;
-};
+}  // namespace
 
 framework::InputPortBase* LoggerTask::makeInput(const std::string& port, framework::OutputPortBase& source) {
-    const size_t before = inlets_.size();
-    types::forEachSampleType([&]<class T>(std::type_identity<T>) {
-        if (dynamic_cast<framework::OutputPort<types::Carried<T>>*>(&source))
-            inlets_.push_back(std::make_unique<TypedInlet<T>>(source.makeReader(this, port), source.path()));
-    });
-    if (inlets_.size() == before)
-        throw types::ConfigError("", "", source.path() + " is " + source.typeName() + ", which a log cannot hold");
-    return &inlets_.back()->port();
+    if (framework::InputPortBase* const made = inputs_.make(port, source, source.path())) return made;
+    throw types::ConfigError("", "", source.path() + " is " + source.typeName() + ", which a log cannot hold");
 }
 
 std::vector<std::string> LoggerTask::notices() const {
-    if (!inlets_.empty()) return {};
+    if (!inputs_.empty()) return {};
     return {"nothing is connected to it: the log will be empty"};
 }
 
-void LoggerTask::checkInlets() const {
+void LoggerTask::checkInputs() const {
     std::set<std::string> streams;
-    for (const auto& inlet : inlets_) {
-        const std::string path = inlet->port().path();
-        if (inlet->port().channels().size() > 1)
+    inputs_.forEach([&](const auto& input) {
+        const std::string path = input.port.path();
+        if (input.port.channels().size() > 1)
             throw types::ConfigError("", path, "has several connections; give each a port of its own on the logger");
-        if (!streams.insert(inlet->stream).second)
-            throw types::ConfigError("", path, "logs " + inlet->stream + " a second time; connect it once");
-    }
+        if (!streams.insert(input.kept.name).second)
+            throw types::ConfigError("", path, "logs " + input.kept.name + " a second time; connect it once");
+    });
 }
 
 log::Metadata LoggerTask::runMetadata() {
@@ -99,7 +83,7 @@ bool LoggerTask::logsProperties() {
 }
 
 bool LoggerTask::configureHook() {
-    checkInlets();
+    checkInputs();
     const std::filesystem::path path = makePath(config->file);
     removeSequels(path);
     log_ = log::createLog(path, config->mcap);
@@ -107,7 +91,7 @@ bool LoggerTask::configureHook() {
     if (logsProperties()) properties_.emplace(log_->path().parent_path() / config->property_file);
     configured_ = fixedValues();
     declared_ = 0;
-    for (const auto& inlet : inlets_) inlet->number.reset();
+    inputs_.forEach([](auto& input) { input.kept.number.reset(); });
     return true;
 }
 
@@ -136,17 +120,15 @@ void LoggerTask::recordProperties() {
 void LoggerTask::updateHook() {
     const types::Time received = now();
     recordProperties();
-    for (const auto& inlet : inlets_) {
-        if (!config->record) {
-            inlet->port().clear();
-            continue;
+    inputs_.forEach([&]<class Input>(Input& input) {
+        if (!config->record) return input.port.clear();
+        if (!input.kept.number && input.port.hasNew()) {
+            thread_->declare(declaration(input, streamMetadata()));
+            input.kept.number = declared_++;
         }
-        if (!inlet->number && inlet->port().hasNew()) {
-            thread_->declare(inlet->declaration(streamMetadata()));
-            inlet->number = declared_++;
-        }
-        inlet->drain(*thread_, received);
-    }
+        for (typename Input::Carried sample{}; input.port.readNew(sample);)
+            thread_->push(*input.kept.number, received, std::move(sample));
+    });
 }
 
 void LoggerTask::stopHook() {
@@ -166,8 +148,9 @@ void LoggerTask::cleanupHook() {
             task.properties_.reset();
         }
     } end{*this};
-    for (const auto& inlet : inlets_)
-        if (!inlet->number) inlet->declaration(streamMetadata())(*log_);
+    inputs_.forEach([&](const auto& input) {
+        if (!input.kept.number) declaration(input, streamMetadata())(*log_);
+    });
     log_->close();
     if (properties_) properties_->close();
 }

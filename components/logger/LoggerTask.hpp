@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "components/framework/Port.hpp"
+#include "components/framework/DynamicPorts.hpp"
 #include "components/framework/Properties.hpp"
 #include "components/framework/Registry.hpp"
 #include "components/framework/TaskContext.hpp"
@@ -42,19 +42,12 @@ public:
     std::vector<std::string> notices() const override;
 
 private:
-    /** One input and its stream. */
-    class Inlet {
-    public:
-        explicit Inlet(std::string name) : stream(std::move(name)) {}
-        virtual ~Inlet() = default;
-        virtual framework::InputPortBase& port() const = 0;
-        virtual Declare declaration(log::Metadata metadata) const = 0;
-        virtual void drain(LogThread& log, types::Time received) = 0;
-        const std::string stream;      ///< "task.port" of the source.
-        std::optional<size_t> number;  ///< In the log, once it is declared.
-    };
+    /** The stream of an input. */
     template <class T>
-    class TypedInlet;
+    struct Stream {
+        const std::string name;             ///< "task.port" of the source.
+        std::optional<size_t> number = {};  ///< In the log, once it is declared.
+    };
 
     bool configureHook() override;
     bool propertiesHook() override;
@@ -62,7 +55,7 @@ private:
     void updateHook() override;
     void stopHook() override;
     void cleanupHook() override;
-    void checkInlets() const;
+    void checkInputs() const;
     /** The values of all properties but `record`. */
     std::map<std::string, types::PropertyValue> fixedValues() const;
     std::filesystem::path makePath(const std::string& file) const;
@@ -72,7 +65,7 @@ private:
     log::Metadata runMetadata();
     log::Metadata streamMetadata();  ///< With the plans of the moment.
 
-    std::vector<std::unique_ptr<Inlet>> inlets_;
+    framework::DynamicInputs<types::SampleTypes, Stream> inputs_{this};
     std::unique_ptr<log::Writer> log_;
     std::optional<Rotation> rotation_;
     std::optional<PropertyLog> properties_;

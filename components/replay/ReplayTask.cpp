@@ -5,7 +5,6 @@
 #include <algorithm>
 
 #include "components/framework/Activity.hpp"
-#include "components/framework/SamplePool.hpp"
 #include "components/log/Reader.hpp"
 
 namespace insonify::replay {
@@ -18,58 +17,39 @@ double spanOf(const log::Reader& log) {
     return (std::ranges::max(samples, {}, &log::SampleRef::time).time - samples.front().time).seconds();
 }
 
-}  // namespace
-
-class ReplayTask::Outlet {
-public:
-    virtual ~Outlet() = default;
-    virtual framework::OutputPortBase& port() = 0;
-    /** @param shift by which its stamps are moved. */
-    virtual void publish(log::Reader& log, const log::SampleRef& at, types::Time shift) = 0;
-};
-
-template <class T>
-class ReplayTask::TypedOutlet final : public Outlet {
-public:
-    TypedOutlet(ReplayTask* owner, const std::string& stream)
-        : port_(owner, stream, "stream " + stream + " of the log") {}
-    framework::OutputPortBase& port() override { return port_; }
-    void publish(log::Reader& log, const log::SampleRef& at, types::Time shift) override {
-        if constexpr (std::is_same_v<T, types::Carried<T>>) {
-            log.read(at, sample_);
-            moveStamps(sample_, shift);
-            port_.write(sample_);
-        } else {
-            const std::shared_ptr<T> sample = pool_.take();
-            log.read(at, *sample);
-            moveStamps(*sample, shift);
-            port_.write(sample);
-        }
+/** @param shift by which its stamps are moved. */
+template <class Output>
+void publish(Output& output, log::Reader& log, const log::SampleRef& at, types::Time shift) {
+    using T = typename Output::Sample;
+    if constexpr (std::is_same_v<T, typename Output::Carried>) {
+        T& sample = output.kept.sample;
+        log.read(at, sample);
+        moveStamps(sample, shift);
+        output.port.write(sample);
+    } else {
+        const std::shared_ptr<T> sample = output.kept.pool.take();
+        log.read(at, *sample);
+        moveStamps(*sample, shift);
+        output.port.write(sample);
     }
+}
 
-private:
-    framework::OutputPort<types::Carried<T>> port_;
-    framework::SamplePool<T> pool_;  ///< For what travels by reference.
-    T sample_{};                     ///< For what travels by value.
-};
-
-ReplayTask::ReplayTask(std::string name) : TaskContext(std::move(name)) {}
-ReplayTask::~ReplayTask() = default;
+}  // namespace
 
 void ReplayTask::open() {
     if (log_) return;
     log_ = log::openLog(inputPath(config->file));
-    outlets_.resize(log_->streams().size());
+    by_stream_.resize(log_->streams().size());
 }
 
 framework::OutputPortBase* ReplayTask::makeOutput(const std::string& stream) {
     open();
     const size_t index = log_->indexOf(stream);
-    types::forEachSampleType([&]<class T>(std::type_identity<T>) {
-        if (log_->streams()[index].holds<T>()) outlets_[index] = std::make_unique<TypedOutlet<T>>(this, stream);
-    });
+    const log::Stream& recorded = log_->streams()[index];
+    by_stream_[index] = outputs_.makeFirst(stream, "stream " + stream + " of the log",
+                                           [&]<class T>(std::type_identity<T>) { return recorded.holds<T>(); });
     rewind();
-    return outlets_[index] ? &outlets_[index]->port() : nullptr;
+    return output(stream);
 }
 
 void ReplayTask::check(types::Diagnostics& diagnostics) const {
@@ -89,9 +69,9 @@ std::vector<std::string> ReplayTask::notices() const {
     std::vector<std::string> notices;
     if (!log_->complete())
         notices.push_back(log_->path().string() + ": " + log_->diagnostic() + "; played up to there");
-    for (size_t i = 0; i < outlets_.size(); ++i) {
+    for (size_t i = 0; i < by_stream_.size(); ++i) {
         const log::Stream& stream = log_->streams()[i];
-        if (!outlets_[i]) notices.push_back("stream " + stream.name + " (" + stream.type + ") is not replayed");
+        if (!by_stream_[i]) notices.push_back("stream " + stream.name + " (" + stream.type + ") is not replayed");
     }
     return notices;
 }
@@ -118,15 +98,15 @@ size_t ReplayTask::indexAt(double seconds) const {
     return static_cast<size_t>(std::ranges::find_if(samples, late_enough) - samples.begin());
 }
 
-size_t ReplayTask::withOutlet(size_t index) const {
+size_t ReplayTask::withOutput(size_t index) const {
     const auto& samples = log_->samples();
-    while (index < samples.size() && !outlets_[samples[index].stream]) ++index;
+    while (index < samples.size() && !by_stream_[samples[index].stream]) ++index;
     return index;
 }
 
 void ReplayTask::settle() {
     const auto& samples = log_->samples();
-    next_ = withOutlet(next_);
+    next_ = withOutput(next_);
     if (next_ == samples.size() && config->loop && played_us_ != 0) jump(config->from);
     finished_ = next_ == samples.size();
     if (!finished_) next_time_ = std::max(next_time_, samples[next_].time + shift_);
@@ -150,7 +130,7 @@ void ReplayTask::seekTo(double seconds) {
 }
 
 void ReplayTask::jump(double seconds) {
-    next_ = withOutlet(indexAt(seconds));
+    next_ = withOutput(indexAt(seconds));
     finished_ = next_ == log_->samples().size();
     if (finished_) return;
     if (played_us_ != 0) {
@@ -238,7 +218,7 @@ void ReplayTask::play(types::Time until) {
     while (!finished_ && next_time_ <= until) {
         noteInstant();
         const log::SampleRef& at = log_->samples()[next_];
-        outlets_[at.stream]->publish(*log_, at, shift_);
+        std::visit([&](auto& output) { publish(output, *log_, at, shift_); }, *by_stream_[at.stream]);
         ++next_;
         settle();
     }

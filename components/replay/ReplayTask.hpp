@@ -7,10 +7,12 @@
 #include <string>
 #include <vector>
 
+#include "components/framework/DynamicPorts.hpp"
+#include "components/framework/Offers.hpp"
 #include "components/framework/Operation.hpp"
-#include "components/framework/Port.hpp"
 #include "components/framework/Properties.hpp"
 #include "components/framework/Registry.hpp"
+#include "components/framework/SamplePool.hpp"
 #include "components/framework/TaskContext.hpp"
 #include "components/log/Reader.hpp"
 #include "components/replay/ReplayConfig.hpp"
@@ -32,10 +34,9 @@ namespace insonify::replay {
  *
  *  A log that was cut off plays up to its last whole block, with a notice; streams that nothing is connected to, or
  *  whose type is not known, are listed in notices. A sample that cannot be decoded ends in Exception. */
-class ReplayTask final : public framework::TaskContext {
+class ReplayTask final : public framework::TaskContext, public framework::ClockSource {
 public:
-    explicit ReplayTask(std::string name);
-    ~ReplayTask() override;
+    using TaskContext::TaskContext;
 
     framework::Properties<ReplayConfig> config{this};
     framework::Operation<void(double)> seek{this, "seek",
@@ -58,9 +59,13 @@ public:
     std::function<types::Time()> clock(std::function<types::Time()> wall) override;
 
 private:
-    class Outlet;
+    /** Where samples of a stream are read into. */
     template <class T>
-    class TypedOutlet;
+    struct Room {
+        framework::SamplePool<T> pool;  ///< For what travels by reference.
+        T sample{};                     ///< For what travels by value.
+    };
+    using Outputs = framework::DynamicOutputs<types::SampleTypes, Room>;
 
     bool configureHook() override;
     bool startHook() override;
@@ -70,34 +75,35 @@ private:
     /** Goes on so long after the log's first stamp; refuses what is outside of the log. */
     void seekTo(double seconds);
     void jump(double seconds);
-    /** Index of the first sample so long after the log's first stamp; of the first from there on with an outlet. */
+    /** Index of the first sample so long after the log's first stamp; of the first from there on with an output. */
     size_t indexAt(double seconds) const;
-    size_t withOutlet(size_t index) const;
+    size_t withOutput(size_t index) const;
     void noteInstant();
     void setPaused(bool on);
     void playNext();
     /** What is due until then. */
     void play(types::Time until);
     types::Time logTime() const;
-    /** Moves on to the next sample that has an outlet, at `next_` or after it. */
+    /** Moves on to the next sample that has an output, at `next_` or after it. */
     void settle();
     /** World time of the log up to which samples are due now. */
     types::Time due();
 
     std::unique_ptr<log::Reader> log_;
-    std::vector<std::unique_ptr<Outlet>> outlets_;  ///< One for each stream of the log; null without a connection.
-    size_t next_ = 0;                               ///< Index into the log's samples.
-    types::Time next_time_;                         ///< When it is due, on the log's clock.
-    types::Time shift_;                             ///< By which stamps are moved after jumps.
-    types::Time gap_{1'000'000};                    ///< Between the last two instants.
-    types::Time pause_;                             ///< Beyond `gap_`, before the next instant, after a late jump.
-    std::atomic<double> pace_{1};                   ///< Others read the clock, too.
-    std::function<types::Time()> wall_;             ///< In realtime.
-    mutable std::mutex clock_mutex_;                ///< Of the next two, which others read through the clock.
-    int64_t started_us_ = 0;                        ///< On the wall clock, pauses left out; 0: not yet.
-    int64_t paused_us_ = 0;                         ///< Since when the log's time stands still; 0: it does not.
-    std::atomic<int64_t> first_us_{0};              ///< The instant at which playing starts, on the log's clock.
-    std::atomic<int64_t> played_us_{0};             ///< The instant that is played; 0: none yet.
+    Outputs outputs_{this};
+    std::vector<Outputs::Output*> by_stream_;  ///< The output of each stream of the log; null without a connection.
+    size_t next_ = 0;                          ///< Index into the log's samples.
+    types::Time next_time_;                    ///< When it is due, on the log's clock.
+    types::Time shift_;                        ///< By which stamps are moved after jumps.
+    types::Time gap_{1'000'000};               ///< Between the last two instants.
+    types::Time pause_;                        ///< Beyond `gap_`, before the next instant, after a late jump.
+    std::atomic<double> pace_{1};              ///< Others read the clock, too.
+    std::function<types::Time()> wall_;        ///< In realtime.
+    mutable std::mutex clock_mutex_;           ///< Of the next two, which others read through the clock.
+    int64_t started_us_ = 0;                   ///< On the wall clock, pauses left out; 0: not yet.
+    int64_t paused_us_ = 0;                    ///< Since when the log's time stands still; 0: it does not.
+    std::atomic<int64_t> first_us_{0};         ///< The instant at which playing starts, on the log's clock.
+    std::atomic<int64_t> played_us_{0};        ///< The instant that is played; 0: none yet.
     std::atomic<bool> finished_{false};
 };
 

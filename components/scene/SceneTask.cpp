@@ -110,16 +110,10 @@ std::string SceneTask::staleness() const {
     return {};
 }
 
-/** In realtime the newest wins, whatever the connection keeps. */
-bool SceneTask::takeNext(framework::InputPort<types::Pose>& port, types::Pose& taken) {
-    if (activity().realtime()) return port.readNewest(taken, false) == framework::FlowStatus::NewData;
-    return port.readNew(taken);
-}
-
 void SceneTask::updateHook() {
     const bool movables_good = readMovables();
     types::Pose body;
-    const bool is_new = takeNext(pose, body);
+    const bool is_new = pose.takeNext(body);
     if (is_new && !isUsable(body)) return error(pose.path() + unusable);
     if (is_new) newest_ = body.time;
     if (const std::string stale = staleness(); !stale.empty()) return error(stale);

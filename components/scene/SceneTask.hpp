@@ -51,7 +51,6 @@ private:
     /** Why there is no pose to go by, empty when there is one. */
     std::string staleness() const;
     double poseTimeout() const;  ///< [s]; infinite: none.
-    bool takeNext(framework::InputPort<types::Pose>& port, types::Pose& taken);
 
     /** A node that follows a port. */
     struct Movable {

@@ -101,13 +101,10 @@ bool PingTask::takeGiven() {
 bool PingTask::takeNext() {
     if (given_pose.connected()) return takeGiven();
     types::SnapshotPtr sample;
-    const bool realtime = activity().realtime();
-    const bool is_new =
-        realtime ? snapshot.readNewest(sample, false) == framework::FlowStatus::NewData : snapshot.readNew(sample);
-    if (!is_new) return false;
+    if (!snapshot.takeNext(sample)) return false;
     begun_ = now();
     aimed_ = *sample;
-    if (realtime && aimed_.max_extrapolation > 0) {
+    if (activity().realtime() && aimed_.max_extrapolation > 0) {
         aimed_.sonar = types::extrapolatePose(aimed_.sonar, begun_, aimed_.max_extrapolation);
         aimed_.time = aimed_.sonar.time;
     }

@@ -3,6 +3,7 @@
 #include <memory>
 #include <optional>
 
+#include "components/framework/Offers.hpp"
 #include "components/framework/Port.hpp"
 #include "components/framework/SamplePool.hpp"
 #include "components/framework/TaskContext.hpp"
@@ -29,7 +30,7 @@ namespace insonify::sonar {
  *
  *  `pose` tells where each ping was rendered, carried on as it was; with `given_pose` connected there is a ping for
  * each of these poses, in the newest snapshot's scene, so that what `pose` has told renders the same pings again. */
-class PingTask : public framework::TaskContext {
+class PingTask : public framework::TaskContext, public framework::Planned {
 public:
     using TaskContext::TaskContext;
     /** Stops and cleans up: the renderer must go on the task's own thread. */

@@ -1,5 +1,6 @@
 #pragma once
 #include <string>
+#include <tuple>
 #include <type_traits>
 #include <variant>
 
@@ -11,14 +12,15 @@
 
 namespace insonify::viewer {
 
-/** What can be shown: a snapshot or any sample, as it travels. */
+/** What can be shown: a snapshot or any sample. */
 template <class Samples>
-struct Shown;
+struct WithSnapshots;
 template <class... Sample>
-struct Shown<std::variant<Sample...>> {
-    using type = std::variant<types::SnapshotPtr, Sample...>;
+struct WithSnapshots<std::tuple<Sample...>> {
+    using type = std::tuple<types::Snapshot, Sample...>;
 };
-using AnySample = Shown<types::AnySample>::type;
+using ShownTypes = WithSnapshots<types::SampleTypes>::type;
+using AnySample = types::Variants<ShownTypes>::Carried;  ///< As it travels.
 
 /** Whether pages show a T; Foxglove shows all. */
 template <class T>

@@ -57,7 +57,11 @@ std::string statusText(const types::DeploymentStatus& status, const ServerCounts
     Json tasks = Json::array(), connections = Json::array();
     for (const types::TaskStatus& task : status.tasks) tasks.push_back(taskOf(task));
     for (const types::ConnectionStatus& one : status.connections)
-        connections.push_back({{"from", one.from}, {"to", one.to}, {"policy", one.policy}, {"lost", one.lost}});
+        connections.push_back({{"from", one.from},
+                               {"to", one.to},
+                               {"policy", one.policy},
+                               {"lost", one.lost},
+                               {"passed_over", one.passed_over}});
     return dump({{"type", "status"},
                  {"now_us", status.now.microseconds},
                  {"sent_s", std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count()},
@@ -74,13 +78,13 @@ std::string interfacesText(const std::vector<types::TaskInterface>& interfaces, 
     Json tasks = Json::array();
     for (const types::TaskInterface& task : interfaces) {
         Json properties = Json::array();
-        for (const types::PropertyNote& note : task.properties)
-            properties.push_back({{"name", note.name},
-                                  {"type", note.type},
-                                  {"unit", note.unit},
-                                  {"doc", note.doc},
-                                  {"min", numberOrNull(note.min)},
-                                  {"max", numberOrNull(note.max)}});
+        for (const types::PropertyInfo& info : task.properties)
+            properties.push_back({{"name", info.name},
+                                  {"type", info.type},
+                                  {"unit", info.unit},
+                                  {"doc", info.doc},
+                                  {"min", numberOrNull(info.min)},
+                                  {"max", numberOrNull(info.max)}});
         tasks.push_back({{"name", task.name}, {"properties", properties}, {"operations", task.operations}});
     }
     return dump({{"type", "interfaces"}, {"control", control}, {"tasks", tasks}});

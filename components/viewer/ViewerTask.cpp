@@ -12,17 +12,6 @@
 
 namespace insonify::viewer {
 
-/** One input. */
-class ViewerTask::Inlet {
-public:
-    explicit Inlet(Source of) : source(std::move(of)) {}
-    virtual ~Inlet() = default;
-    virtual framework::InputPortBase& port() const = 0;
-    /** Hands the newest over; gives what is wrong with one, or nothing. */
-    virtual std::string drain(Publisher& publisher, size_t number, types::Time now) = 0;
-    const Source source;
-};
-
 namespace {
 
 /** What is wrong with what came; empty: nothing. */
@@ -32,51 +21,27 @@ std::string diagnosticOf(const T* sample) {
     return what ? what : "";
 }
 
+/** Hands what came over as samples of a source; gives what is wrong with one, or nothing. */
+template <class Input>
+std::string drain(Input& input, Publisher& publisher, size_t source, types::Time now) {
+    std::string told;
+    for (typename Input::Carried sample{}; input.port.readNew(sample);) {
+        const std::string diagnostic = diagnosticOf(types::carriedSample(sample));
+        if (diagnostic.empty())
+            publisher.offer(source, std::move(sample), now);
+        else
+            told = input.port.path() + ": a sample " + diagnostic + "; it is not shown";
+    }
+    return told;
+}
+
 }  // namespace
 
-template <class T>
-class ViewerTask::TypedInlet final : public Inlet {
-public:
-    using Port = framework::InputPort<T>;
-
-    TypedInlet(std::unique_ptr<framework::InputPortBase> port, Source of)
-        : Inlet(std::move(of)), owned_(std::move(port)), port_(static_cast<Port&>(*owned_)) {}
-    framework::InputPortBase& port() const override { return port_; }
-    std::string drain(Publisher& publisher, size_t number, types::Time now) override {
-        std::string told;
-        for (T sample{}; port_.readNew(sample);) {
-            const std::string diagnostic = diagnosticOf(types::carriedSample(sample));
-            if (diagnostic.empty())
-                publisher.offer(number, std::move(sample), now);
-            else
-                told = port_.path() + ": a sample " + diagnostic + "; it is not shown";
-        }
-        return told;
-    }
-
-private:
-    std::unique_ptr<framework::InputPortBase> owned_;
-    Port& port_;
-};
-
-ViewerTask::ViewerTask(std::string name) : TaskContext(std::move(name)) {}
-ViewerTask::~ViewerTask() = default;
-
 framework::InputPortBase* ViewerTask::makeInput(const std::string& port, framework::OutputPortBase& source) {
-    const size_t before = inlets_.size();
-    const auto take = [&]<class T, class Carried>(std::type_identity<T>, std::type_identity<Carried>) {
-        if (dynamic_cast<framework::OutputPort<Carried>*>(&source))
-            inlets_.push_back(std::make_unique<TypedInlet<Carried>>(
-                source.makeReader(this, port), Source{source.path(), channelOf<T>(source.path()), on_pages<T>}));
-    };
-    types::forEachSampleType(
-        [&]<class T>(std::type_identity<T> type) { take(type, std::type_identity<types::Carried<T>>{}); });
-    take(std::type_identity<types::Snapshot>{}, std::type_identity<types::SnapshotPtr>{});
-    if (inlets_.size() == before)
-        throw types::ConfigError("", "",
-                                 source.path() + " is " + source.typeName() +
-                                     ", which a viewer cannot show; it shows what a log can hold, and snapshots");
-    return &inlets_.back()->port();
+    if (framework::InputPortBase* const made = inputs_.make(port, source, source.path())) return made;
+    throw types::ConfigError("", "",
+                             source.path() + " is " + source.typeName() +
+                                 ", which a viewer cannot show; it shows what a log can hold, and snapshots");
 }
 
 std::vector<std::string> ViewerTask::notices() const {
@@ -123,7 +88,7 @@ Access ViewerTask::access() {
 
 bool ViewerTask::configureHook() {
     std::vector<Source> sources;
-    for (const auto& inlet : inlets_) sources.push_back(inlet->source);
+    inputs_.forEach([&](const auto& input) { sources.push_back(input.kept.source); });
     ViewerConfig whole = *config;
     if (!whole.token_file.empty()) whole.token = readToken();
     try {
@@ -146,8 +111,11 @@ std::string ViewerTask::readToken() const {
 
 void ViewerTask::updateHook() {
     std::string diagnostic = publisher_->takeTrouble();
-    for (size_t i = 0; i < inlets_.size(); ++i)
-        if (std::string wrong = inlets_[i]->drain(*publisher_, i, now()); !wrong.empty()) diagnostic = std::move(wrong);
+    size_t source = 0;
+    inputs_.forEach([&](auto& input) {
+        if (std::string wrong = drain(input, *publisher_, source++, now()); !wrong.empty())
+            diagnostic = std::move(wrong);
+    });
     if (!diagnostic.empty()) error(diagnostic);
 }
 

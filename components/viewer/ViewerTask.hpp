@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "components/framework/Port.hpp"
+#include "components/framework/DynamicPorts.hpp"
 #include "components/framework/Properties.hpp"
 #include "components/framework/Registry.hpp"
 #include "components/framework/TaskContext.hpp"
@@ -25,8 +25,7 @@ namespace insonify::viewer {
  *  say, or what no message can hold, is left out and makes the task RunTimeError until the next sample. */
 class ViewerTask final : public framework::TaskContext {
 public:
-    explicit ViewerTask(std::string name);
-    ~ViewerTask() override;
+    using TaskContext::TaskContext;
 
     framework::Properties<ViewerConfig> config{this};
 
@@ -40,9 +39,12 @@ public:
     ServerCounts counts() const { return publisher_ ? publisher_->counts() : ServerCounts{}; }
 
 private:
-    class Inlet;
+    /** What an input's samples are shown as. */
     template <class T>
-    class TypedInlet;
+    struct SourceOf {
+        const Source source;
+        explicit SourceOf(const std::string& path) : source{path, channelOf<T>(path), on_pages<T>} {}
+    };
 
     bool configureHook() override;
     void updateHook() override;
@@ -53,7 +55,7 @@ private:
     std::string readToken() const;
     void refuseOwn(const std::string& operation) const;
 
-    std::vector<std::unique_ptr<Inlet>> inlets_;
+    framework::DynamicInputs<ShownTypes, SourceOf> inputs_{this};
     std::unique_ptr<Publisher> publisher_;
 };
 

@@ -68,7 +68,7 @@ connections:
     framework::Deployment deployment(framework::DeploymentSpec::parse(yaml, "bench.yml"), registry, folder);
     deployment.configure();
     const std::atomic<bool> never{false};
-    const framework::RunResult result = deployment.run({.pings = 0, .duration_s = seconds}, never);
+    const framework::RunResult result = deployment.run({.duration_s = seconds}, never);
     for (const std::string& failure : result.failures) fmt::print(stderr, "{}\n", failure);
     deployment.cleanup();
 
@@ -79,11 +79,11 @@ connections:
     fmt::print(R"({{"pings": {}, "expected": {:.0f}, "in_log": {}, "lost": {}, "megabytes_per_s": {:.1f}, )"
                R"("write_us": {}, "write_p99_at_most_us": {:.0f}, "interval_ms": {}, "logger_update_ms": {:.3f}}})"
                "\n",
-               result.pings, seconds / period, in_log, lost,
+               result.samples, seconds / period, in_log, lost,
                static_cast<double>(std::filesystem::file_size(log)) / 1e6 / result.wall_s, timesOf(sonar, "write", 1e6),
                write_p99_at_most * 1e6, timesOf(sonar, "interval", 1e3), deployment.task("log")->cycles().max() * 1e3);
     const bool slow = sonar.stages().at("write").p99() > write_p99_at_most;
-    return result.failed() || in_log != result.pings || lost > 0 || slow ? 1 : 0;
+    return result.failed() || in_log != result.samples || lost > 0 || slow ? 1 : 0;
 }
 
 }  // namespace

@@ -43,10 +43,9 @@ struct Publishing {
 };
 
 /** A subscriber with one port, which the test reads; works by itself once released. */
-template <class Task>
-struct SubscribingBy {
-    explicit SubscribingBy(const std::string& topic, PoseType type = PoseType::Odometry,
-                           const std::function<void(SubscriberConfig&)>& change = {}) {
+struct Subscribing {
+    explicit Subscribing(const std::string& topic, PoseType type = PoseType::Odometry,
+                         const std::function<void(SubscriberConfig&)>& change = {}) {
         SubscriberConfig config;
         config.topics.resize(1);
         config.topics[0].topic = topic;
@@ -60,7 +59,7 @@ struct SubscribingBy {
         EXPECT_TRUE(task.start());
         task.activity().release();
     }
-    ~SubscribingBy() { task.activity().hold(); }
+    ~Subscribing() { task.activity().hold(); }
     /** The next pose, waited for. */
     std::optional<types::Pose> next() {
         types::Pose pose;
@@ -76,9 +75,8 @@ struct SubscribingBy {
     }
 
     test::Reader<types::Pose> reader;
-    Task task{"subscriber"};
+    SubscriberTask task{"subscriber"};
 };
-using Subscribing = SubscribingBy<SubscriberTask>;
 
 /** A fan of noise, stamped now. */
 inline types::SonarPtr pingOf(uint32_t beams, uint32_t bins) {

@@ -20,15 +20,8 @@ types::Pose somewhere(double x) {
     return pose;
 }
 
-/** Whom the clock does not wake. */
-struct SoundSleeper : SubscriberTask {
-    using SubscriberTask::SubscriberTask;
-    double wakeAfter() const override { return 3600; }
-};
-
 /** Until both have found each other. */
-template <class Task>
-void meet(Publishing<types::Pose>& publishing, SubscribingBy<Task>& subscribing, const types::Pose& pose) {
+void meet(Publishing<types::Pose>& publishing, Subscribing& subscribing, const types::Pose& pose) {
     types::Pose came;
     ASSERT_TRUE(comesTrue([&] { return publishing.send(pose), subscribing.reader.port.readNew(came); }));
     subscribing.reader.port.clear();
@@ -65,7 +58,7 @@ TEST_F(SubscriberTaskTest, APoseComesBackAsItWentInAnyFrame) {
 
 TEST_F(SubscriberTaskTest, AMessageWakesTheTaskAtOnce) {
     Publishing<types::Pose> publishing({topicOut("in", "/there", message_type<ros::Odometry>)});
-    SubscribingBy<SoundSleeper> subscribing("/there");
+    Subscribing subscribing("/there");
     meet(publishing, subscribing, somewhere(0));
     for (int i = 1; i <= 50; ++i) {
         publishing.send(somewhere(i));

@@ -36,6 +36,7 @@ TEST(RunCommandTest, TheSummaryTellsPingsTimesLossesAndOmissions) {
     for (const char* stage : {"cull", "draw", "read", "deposit", "beams"})
         EXPECT_TRUE(sonar["stages"][stage].contains("p99_ms")) << stage;
     EXPECT_EQ(summary["losses"]["noise.noisy>log.noisy"], 0);
+    EXPECT_EQ(summary["passed_over"]["noise.noisy>log.noisy"], 0);
     EXPECT_NE(summary["omitted"][0]["reason"], "");
 }
 

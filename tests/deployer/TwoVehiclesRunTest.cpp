@@ -1,4 +1,6 @@
 // Two vehicles in one SDF world: the sonar of each hears the hull of the other first in the bin where it stands.
+#include <gmock/gmock.h>
+
 #include "tests/deployer/SceneRun.hpp"
 
 using namespace insonify::deployer;
@@ -48,6 +50,25 @@ TEST(TwoVehiclesRunTest, EachHearsTheOtherWhereItIs) {
     // sonars are 1.5 and 3 m before their hulls' middles, the other's bow is 2 and 1 m before its own: 16.5 and 16 m
     EXPECT_EQ(firstEcho(exportedPings(folder, "out/x.0.log", "red_sonar.ping").back()), 165u);
     EXPECT_EQ(firstEcho(exportedPings(folder, "out/x.0.log", "blue_sonar.ping").back()), 160u);
+}
+
+TEST(TwoVehiclesRunTest, PosesThatANewerOneTookThePlaceOfAreToldBesideWhatWasLost) {
+    const TestFolder folder;
+    writeFile(folder / "case.world", world);
+    std::string often = replaced(deployment, "blue: {type: pose::TrajectoryTask, activity: {period: 0.1}",
+                                 "blue: {type: pose::TrajectoryTask, activity: {period: 0.05}");
+    often = replaced(often, "to: red_scene.blue.pose}", "to: red_scene.blue.pose, policy: {type: buffer, size: 8}}");
+    writeFile(folder / "two.yml", often);
+    const Outcome run =
+        callInsonify(folder, {"run", "two.yml", "--pings", "3", "--out", "out", "--summary", "summary.json"});
+    ASSERT_EQ(run.code, 0) << run.err;
+    // Two poses of blue come between two of red, each of which takes the newer.
+    EXPECT_THAT(run.out,
+                testing::HasSubstr("passed over for newer samples\n       2  blue.pose>red_scene.blue.pose\n"));
+    const json summary = json::parse(readFile(folder / "summary.json"));
+    EXPECT_EQ(summary["passed_over"]["blue.pose>red_scene.blue.pose"], 2);
+    EXPECT_EQ(summary["losses"]["blue.pose>red_scene.blue.pose"], 0);
+    EXPECT_EQ(summary["passed_over"]["red.pose>red_scene.pose"], 0);
 }
 
 TEST(TwoVehiclesRunTest, WithoutItsPosesTheOtherIsWhereTheWorldHasIt) {

@@ -148,7 +148,7 @@ TEST(DeploymentRunTest, PingsEndTheRunWhenEverySonarHasThem) {
         "tasks: {a: {type: test::Sonar, activity: {period: 0.1}}, b: {type: test::Sonar, activity: {period: 0.2}}}";
     Deployment deployment(DeploymentSpec::parse(yaml, "a.yml"), registry);
     deployment.configure();
-    EXPECT_EQ(deployment.run({.pings = 4}, never).pings, 4u);
+    EXPECT_EQ(deployment.run({.samples = 4}, never).samples, 4u);
     EXPECT_EQ(deployment.task("a")->cycles().count(), 7u);
 }
 

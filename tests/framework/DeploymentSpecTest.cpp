@@ -126,6 +126,7 @@ TEST(DeploymentSpecTest, ALoopNeedsABuffer) {
 
 TEST(DeploymentSpecTest, ATaskThatNothingWouldRunIsRefused) {
     EXPECT_THAT(faultsOf("tasks: {s: {type: test::Source}}"), ElementsAre(HasSubstr("has nothing that would run it")));
+    EXPECT_THAT(faultsOf("tasks: {d: {type: test::Doorbell}}"), testing::IsEmpty()) << "an Event does";
     EXPECT_THAT(faultsOf("tasks: {s: {type: test::Source, activity: {period: 1, trigger: [a]}}}"),
                 testing::Contains(HasSubstr("both period and trigger")));
     EXPECT_THAT(faultsOf("tasks: {s: {type: test::Source, activity: {period: .nan}}}"),

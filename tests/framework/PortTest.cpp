@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include "components/framework/Activity.hpp"
 #include "components/framework/Port.hpp"
 #include "tests/support/Ports.hpp"
 
@@ -50,6 +51,37 @@ TEST(PortTest, ReadNewestDrains) {
     EXPECT_EQ(reader.port.readNewest(value), FlowStatus::NewData);
     EXPECT_EQ(value, 2);
     EXPECT_FALSE(reader.port.hasNew());
+}
+
+/** What a task works on of three samples, and how many samples its connections say it has passed over. */
+std::pair<std::vector<int32_t>, uint64_t> workedOn(bool realtime) {
+    test::Writer<int32_t> writer;
+    test::Reader<int32_t> reader;
+    writer.port.connectTo(reader.port, ConnPolicy::buffer(4));
+    if (realtime) reader.activity().release(), reader.activity().hold();
+    for (int i = 0; i < 3; ++i) writer.port.write(i);
+    std::vector<int32_t> got;
+    for (int32_t value = -1; reader.port.takeNext(value);) got.push_back(value);
+    return {got, reader.port.channels().front()->passedOver()};
+}
+
+TEST(PortTest, InLockstepTheNextSampleCounts) { EXPECT_EQ(workedOn(false), (Got{{0, 1, 2}, 0})); }
+TEST(PortTest, InRealtimeTheNewestCountsAndThoseBeforeItAreCounted) { EXPECT_EQ(workedOn(true), (Got{{2}, 2})); }
+
+TEST(PortTest, WhatIsPassedOverIsCountedByConnection) {
+    test::Writer<int32_t> few, many;
+    test::Reader<int32_t> reader;
+    many.port.connectTo(reader.port, ConnPolicy::buffer(8));
+    few.port.connectTo(reader.port, ConnPolicy::buffer(8));
+    for (int i = 0; i < 5; ++i) many.port.write(i);
+    for (int i = 0; i < 2; ++i) few.port.write(10 + i);
+    int32_t value = -1;
+    EXPECT_EQ(reader.port.readNewest(value), FlowStatus::NewData);
+    EXPECT_EQ(value, 11);
+    EXPECT_EQ(reader.port.channels()[0]->passedOver(), 5u);
+    EXPECT_EQ(reader.port.channels()[1]->passedOver(), 1u);
+    EXPECT_EQ(reader.port.readNewest(value), FlowStatus::OldData);
+    EXPECT_EQ(reader.port.channels()[1]->lost(), 0u);
 }
 
 TEST(PortTest, InitHandsTheLastSampleToALaterReader) {

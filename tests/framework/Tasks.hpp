@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "components/framework/Deployment.hpp"
+#include "components/framework/Event.hpp"
 #include "components/framework/Properties.hpp"
 
 namespace insonify::test {
@@ -77,6 +78,17 @@ private:
     }
 };
 
+/** Is woken by whoever rings. */
+class Doorbell : public framework::TaskContext {
+public:
+    using TaskContext::TaskContext;
+    framework::Event rung{this};
+    std::atomic<int> answered{0};
+
+private:
+    void updateHook() override { ++answered; }
+};
+
 /** Takes words, to differ in type. */
 class Words : public framework::TaskContext {
 public:
@@ -90,6 +102,7 @@ inline framework::Registry testRegistry() {
     registry.add<Burst>("test::Burst", "ten at once");
     registry.add<Relay>("test::Relay", "adds 100");
     registry.add<Faulty>("test::Faulty", "throws");
+    registry.add<Doorbell>("test::Doorbell", "counts");
     registry.add<Words>("test::Words", "takes words");
     return registry;
 }

@@ -132,6 +132,58 @@ TEST(TimesTest, ATriggeredTaskMayAskToBeWokenWithoutASample) {
     EXPECT_GT(dynamic_cast<Waiting&>(run["waiting"]).woken, 5);
 }
 
+TEST(TimesTest, AnEventFromOutsideRunsACycleOfATaskThatNothingElseWakes) {
+    test::Doorbell task("bell");
+    ASSERT_TRUE(task.configure() && task.start());
+    task.activity().release();
+    for (int rings = 1; rings <= 3; ++rings) {
+        std::thread([&] { task.rung.raise(); }).join();
+        EXPECT_TRUE(test::comesTrue([&] { return task.answered == rings; }));
+    }
+    task.activity().hold();
+    task.stop();
+}
+
+/** Takes what counts now, and does not come back from its first before 20 samples wait. */
+struct Latest : TaskContext {
+    using TaskContext::TaskContext;
+    InputPort<double> in{this, "in", "of the source"};
+    std::atomic<bool> goes_on{false};
+    std::vector<double> taken;
+    void updateHook() override {
+        double sample = 0;
+        if (!in.takeNext(sample)) return;
+        taken.push_back(sample);
+        while (!goes_on) std::this_thread::sleep_for(milliseconds(1));
+    }
+};
+
+TEST(TimesTest, SamplesThatATaskPassesOverForNewerOnesAreCounted) {
+    const char* yaml = R"(schedule: realtime
+tasks:
+  source: {type: test::Source, activity: {period: 0.001}}
+  latest: {type: test::Latest}
+connections: [{from: source.value, to: latest.in, policy: {type: buffer, size: 1000000}}]
+)";
+    Registry types = registry();
+    types.add<Latest>("test::Latest", "takes the newest");
+    Deployment deployment(DeploymentSpec::parse(yaml, "a.yml"), types);
+    deployment.configure();
+    auto& latest = dynamic_cast<Latest&>(*deployment.task("latest"));
+    const OutputPortBase& value = *deployment.task("source")->output("value");
+    std::atomic<bool> stop{false};
+    deployment.run({}, stop, [&](const Progress&) {
+        latest.goes_on = latest.goes_on || value.written() >= 20;
+        stop = value.written() >= 40;
+    });
+    const uint64_t passed_over = deployment.passedOver().at("source.value>latest.in");
+    EXPECT_GE(passed_over, 18u) << "all but the first and the newest of the first twenty";
+    EXPECT_EQ(latest.taken.size() + passed_over, value.written());
+    EXPECT_EQ(latest.taken.back(), static_cast<double>(value.written())) << "the newest is never passed over";
+    EXPECT_EQ(deployment.losses().at("source.value>latest.in"), 0u);
+    EXPECT_EQ(deployment.status().connections.front().passed_over, passed_over);
+}
+
 /** Does not come back from its first sample until all is over. */
 struct Dawdler : TaskContext {
     using TaskContext::TaskContext;

@@ -6,6 +6,7 @@
 #include <thread>
 
 #include "components/framework/Deployment.hpp"
+#include "components/framework/Offers.hpp"
 #include "components/framework/Properties.hpp"
 #include "components/log/pocolog/Reader.hpp"
 #include "components/logger/LoggerTask.hpp"
@@ -27,7 +28,7 @@ struct PlannerConfig {
 };
 
 /** A sonar that has no plan before its first ping. */
-struct PlannerTask : framework::TaskContext {
+struct PlannerTask : framework::TaskContext, framework::Planned {
     using TaskContext::TaskContext;
     framework::Properties<PlannerConfig> config{this};
     framework::OutputPort<types::SonarPtr> ping{this, "ping", "a ping"};
@@ -72,7 +73,7 @@ connections:
                                      registry, folder.path());
     deployment.configure();
     const std::atomic<bool> never{false};
-    EXPECT_FALSE(deployment.run({.pings = 3}, never).failed());
+    EXPECT_FALSE(deployment.run({.samples = 3}, never).failed());
     EXPECT_THAT(deployment.cleanup(), testing::IsEmpty());
 
     const log::pocolog::Reader log(folder / "x.0.log");
@@ -120,7 +121,7 @@ connections:
                                      registry, folder.path());
     deployment.configure();
     const std::atomic<bool> never{false};
-    EXPECT_FALSE(deployment.run({.pings = 5}, never).failed());
+    EXPECT_FALSE(deployment.run({.samples = 5}, never).failed());
     EXPECT_THAT(deployment.cleanup(), testing::IsEmpty());
     std::vector<std::pair<double, double>> ranges;
     log::pocolog::Reader(folder / "properties.0.log")

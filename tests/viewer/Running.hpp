@@ -5,6 +5,7 @@
 #include <thread>
 
 #include "components/framework/Deployment.hpp"
+#include "components/framework/Offers.hpp"
 #include "components/viewer/ViewerTask.hpp"
 #include "tests/viewer/Bench.hpp"
 
@@ -59,7 +60,7 @@ struct WaterConfig {
 };
 
 /** Sand 5 m below the surface and a stone on it, and a vehicle that goes north over it. */
-class WorldTask final : public framework::TaskContext {
+class WorldTask final : public framework::TaskContext, public framework::Planned {
 public:
     using TaskContext::TaskContext;
     framework::Properties<WaterConfig> config{this};

@@ -26,12 +26,13 @@ TEST(StatusTextTest, AStatusHoldsTasksPlansAndLosses) {
     task.plan->omitted = {{"multipath", "not configured"}};
     task.plan->predicted_error = std::numeric_limits<double>::quiet_NaN();
     status.tasks = {task};
-    status.connections = {{"a.b", "c.d", "buffer", 3}};
+    status.connections = {{"a.b", "c.d", "buffer", 3, 4}};
     const json text = json::parse(statusText(status, {2, 1, 5}));
     EXPECT_EQ(text["tasks"][0]["properties"]["range"], 50.5);
     EXPECT_EQ(text["tasks"][0]["plan"]["omitted"][0]["reason"], "not configured");
     EXPECT_TRUE(text["tasks"][0]["plan"]["predicted_error"].is_null());
     EXPECT_EQ(text["connections"][0]["lost"], 3);
+    EXPECT_EQ(text["connections"][0]["passed_over"], 4);
     EXPECT_EQ(text["clients"], 2);
     EXPECT_EQ(text["dropped"], 5);
 }
@@ -55,7 +56,7 @@ TEST(StatusTextTest, TextThatIsNotUtf8DoesNotStopIt) {
 TEST(StatusTextTest, BoundsThatAreNoneAreNull) {
     const double infinite = std::numeric_limits<double>::infinity();
     const json text = json::parse(
-        interfacesText({{"sonar", {{"range", "double", "m", "far edge", 0, infinite}}, {"start void()"}}}, true));
+        interfacesText({{"sonar", {{"range", "double", "m", "", 0, infinite, "far edge"}}, {"start void()"}}}, true));
     EXPECT_EQ(text["tasks"][0]["properties"][0]["min"], 0);
     EXPECT_TRUE(text["tasks"][0]["properties"][0]["max"].is_null());
 }

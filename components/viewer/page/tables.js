@@ -55,6 +55,9 @@ export function showPlan(status) {
   parts.push(element('h3', {}, 'lost samples'));
   for (const one of lost) parts.push(element('div', {className: 'refused'}, `${one.lost}  ${one.from} > ${one.to} (${one.policy})`));
   if (!lost.length) parts.push(element('div', {className: 'dim'}, 'none'));
+  const passed = status.connections.filter((one) => one.passed_over);
+  if (passed.length) parts.push(element('h3', {}, 'passed over for newer samples'));
+  for (const one of passed) parts.push(element('div', {className: 'dim'}, `${one.passed_over}  ${one.from} > ${one.to}`));
   byId('plan').replaceChildren(...parts);
 }
 

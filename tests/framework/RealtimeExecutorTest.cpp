@@ -1,8 +1,9 @@
 #include <gtest/gtest.h>
 
-#include <condition_variable>
+#include <thread>
 
-#include "components/framework/Activity.hpp"
+#include "components/framework/Offers.hpp"
+#include "components/framework/RealtimeExecutor.hpp"
 #include "tests/framework/Tasks.hpp"
 #include "tests/support/Ports.hpp"
 #include "tests/support/Waiting.hpp"
@@ -12,7 +13,7 @@ namespace {
 
 constexpr double patience_s = std::chrono::duration<double>(test::patience).count();
 
-TEST(RealtimeTest, APeriodicTaskKeepsToTheWallClock) {
+TEST(RealtimeExecutorTest, APeriodicTaskKeepsToTheWallClock) {
     Registry registry = test::testRegistry();
     const char* yaml = R"(
 schedule: realtime
@@ -36,7 +37,7 @@ connections: [{from: source.value, to: relay.in, policy: {type: buffer, size: 10
     EXPECT_EQ(deployment.task("relay")->state(), TaskState::Stopped);
 }
 
-TEST(RealtimeTest, ARunLastsAsLongAsItIsToLast) {
+TEST(RealtimeExecutorTest, ARunLastsAsLongAsItIsToLast) {
     Registry registry = test::testRegistry();
     const char* yaml = "schedule: realtime\ntasks: {source: {type: test::Source, activity: {period: 0.02}}}\n";
     Deployment deployment(DeploymentSpec::parse(yaml, "a.yml"), registry);
@@ -48,14 +49,14 @@ TEST(RealtimeTest, ARunLastsAsLongAsItIsToLast) {
 }
 
 /** A source whose clock stands at 5 s. */
-struct Timekeeper : test::Source {
+struct Timekeeper : test::Source, ClockSource {
     using Source::Source;
     std::function<types::Time()> clock(std::function<types::Time()> wall) override {
         return [wall] { return wall().isNull() ? types::Time{} : types::Time::fromSeconds(5); };
     }
 };
 
-TEST(RealtimeTest, ASourcesOwnClockIsThatOfAllTasks) {
+TEST(RealtimeExecutorTest, ASourcesOwnClockIsThatOfAllTasks) {
     const char* yaml = R"(
 schedule: realtime
 tasks:
@@ -76,7 +77,7 @@ connections: [{from: source.value, to: relay.in, policy: {type: buffer, size: 10
     for (const std::string& note : notes) EXPECT_TRUE(note.ends_with("@5000000")) << note;
 }
 
-TEST(RealtimeTest, TheStopFlagEndsARunInOrder) {
+TEST(RealtimeExecutorTest, TheStopFlagEndsARunInOrder) {
     Registry registry = test::testRegistry();
     const char* yaml = "schedule: realtime\ntasks: {source: {type: test::Source, activity: {period: 0.001}}}\n";
     Deployment deployment(DeploymentSpec::parse(yaml, "a.yml"), registry);
@@ -87,7 +88,7 @@ TEST(RealtimeTest, TheStopFlagEndsARunInOrder) {
     EXPECT_EQ(deployment.task("source")->state(), TaskState::Stopped);
 }
 
-TEST(RealtimeTest, ATaskThatThrowsEndsTheRunWithItsMessage) {
+TEST(RealtimeExecutorTest, ATaskThatThrowsEndsTheRunWithItsMessage) {
     Registry registry = test::testRegistry();
     const char* yaml = R"(
 schedule: realtime
@@ -102,6 +103,51 @@ connections: [{from: source.value, to: faulty.in}]
     const RunResult result = deployment.run({.duration_s = patience_s}, stop);
     EXPECT_EQ(result.failures, (std::vector<std::string>{"faulty: updateHook: the third is too much"}));
     EXPECT_LT(result.elapsed_s, patience_s);
+}
+
+/** A graph of one source, and an executor for it. */
+struct Bench {
+    Graph graph;
+    std::shared_ptr<Environment> environment = std::make_shared<Environment>();
+    test::Source* source = nullptr;
+
+    explicit Bench(double period_s) {
+        environment->warn = [](const std::string&) {};  // a machine may permit nothing
+        source = &dynamic_cast<test::Source&>(graph.add(std::make_unique<test::Source>("source")));
+        source->setEnvironment(environment);
+        ActivitySettings settings;
+        settings.period = period_s;
+        source->activity().configure(settings);
+        graph.arrange();
+        source->configure();
+    }
+    ~Bench() { source->stop(), source->cleanup(); }
+};
+
+TEST(RealtimeExecutorTest, ATaskWorksByItselfFromItsReleaseOn) {
+    Bench bench(0.001);
+    RealtimeExecutor executor(bench.graph, *bench.environment, {}, {});
+    executor.begin();
+    ASSERT_TRUE(bench.source->start());
+    std::this_thread::sleep_for(std::chrono::milliseconds(20));
+    EXPECT_EQ(bench.source->value.written(), 0u);
+    executor.release(*bench.source);
+    std::atomic<bool> stop{false};
+    executor.run({}, stop,
+                 [&](const Progress& now) { stop = bench.source->value.written() >= 3 || now.wall_s > patience_s; });
+    bench.source->activity().hold();
+    executor.end();
+    EXPECT_GE(bench.source->value.written(), 3u);
+    EXPECT_GE(executor.progress().elapsed_s, 0);
+}
+
+TEST(RealtimeExecutorTest, TimeDoesNotStandStill) {
+    Bench bench(1);
+    RealtimeExecutor executor(bench.graph, *bench.environment, {}, {});
+    EXPECT_FALSE(executor.paused());
+    EXPECT_THROW(executor.pause(true), std::runtime_error);
+    EXPECT_THROW(executor.step(), std::runtime_error);
+    EXPECT_FALSE(executor.betweenInstants().owns_lock()) << "nobody waits for cycles that go on all the time";
 }
 
 }  // namespace

@@ -1,0 +1,132 @@
+#pragma once
+// Ports that exist only because a connection names them, of any type in a list, for tasks that take what comes.
+//
+//     template <class T>
+//     struct Logged { std::string stream; size_t samples = 0; };          // what the task keeps with a port
+//     framework::DynamicInputs<types::SampleTypes, Logged> inputs_{this};
+//
+//     InputPortBase* makeInput(const std::string& name, OutputPortBase& source) override {
+//         return inputs_.make(name, source, source.path());               // null: samples of another type
+//     }
+//     void updateHook() override {
+//         inputs_.forEach([&]<class Input>(Input& input) {
+//             for (typename Input::Carried sample{}; input.port.readNew(sample);) ++input.kept.samples;
+//         });
+//     }
+#include <list>
+#include <string>
+#include <tuple>
+#include <type_traits>
+#include <variant>
+
+#include "components/framework/Port.hpp"
+#include "types/Samples.hpp"
+
+namespace insonify::framework {
+
+/** For ports with which a task keeps nothing. */
+template <class T>
+struct KeepsNothing {};
+
+/** One port of DynamicInputs, with what its task keeps. */
+template <class T, template <class> class Kept>
+struct DynamicInput final {
+    using Sample = T;
+    using Carried = types::Carried<T>;
+
+    template <class... Args>
+    DynamicInput(TaskContext* owner, const std::string& name, const OutputPortBase& source, const Args&... with)
+        : port(owner, name, "samples of " + source.path(), Need::Optional), kept{with...} {}
+    InputPort<Carried> port;
+    Kept<T> kept{};
+};
+
+/** One port of DynamicOutputs, with what its task keeps. */
+template <class T, template <class> class Kept>
+struct DynamicOutput final {
+    using Sample = T;
+    using Carried = types::Carried<T>;
+
+    DynamicOutput(TaskContext* owner, const std::string& name, const std::string& doc) : port(owner, name, doc) {}
+    OutputPort<Carried> port;
+    Kept<T> kept{};
+};
+
+template <class Samples, template <class> class Kept = KeepsNothing>
+class DynamicInputs;
+template <class Samples, template <class> class Kept = KeepsNothing>
+class DynamicOutputs;
+
+/** Input ports of the types T, made as connections name them. */
+template <class... T, template <class> class Kept>
+class DynamicInputs<std::tuple<T...>, Kept> {
+public:
+    explicit DynamicInputs(TaskContext* owner) : owner_(owner) {}
+
+    /** A port for what `source` writes, with what the task keeps made of `with`; null where that is none of T. */
+    template <class... Args>
+    InputPortBase* make(const std::string& name, const OutputPortBase& source, const Args&... with) {
+        InputPortBase* made = nullptr;
+        (void)((made = makeIf<T>(name, source, with...)) || ...);
+        return made;
+    }
+    bool empty() const { return inputs_.empty(); }
+    /** Calls `use` with each, a DynamicInput, in the order in which they were made. */
+    template <class Use>
+    void forEach(Use&& use) {
+        for (auto& input : inputs_) std::visit(use, input);
+    }
+    template <class Use>
+    void forEach(Use&& use) const {
+        for (const auto& input : inputs_) std::visit(use, input);
+    }
+
+private:
+    template <class Sample, class... Args>
+    InputPortBase* makeIf(const std::string& name, const OutputPortBase& source, const Args&... with) {
+        if (!dynamic_cast<const OutputPort<types::Carried<Sample>>*>(&source)) return nullptr;
+        using Input = DynamicInput<Sample, Kept>;
+        auto& made = inputs_.emplace_back(std::in_place_type<Input>, owner_, name, source, with...);
+        return &std::get<Input>(made).port;
+    }
+
+    TaskContext* owner_;
+    std::list<std::variant<DynamicInput<T, Kept>...>> inputs_;  ///< In place for good: ports do not move.
+};
+
+/** Output ports of the types T, made as connections name them. */
+template <class... T, template <class> class Kept>
+class DynamicOutputs<std::tuple<T...>, Kept> {
+public:
+    using Output = std::variant<DynamicOutput<T, Kept>...>;
+
+    explicit DynamicOutputs(TaskContext* owner) : owner_(owner) {}
+
+    /** A port for samples of that type. */
+    template <class Sample>
+    DynamicOutput<Sample, Kept>& make(const std::string& name, const std::string& doc) {
+        using One = DynamicOutput<Sample, Kept>;
+        return std::get<One>(outputs_.emplace_back(std::in_place_type<One>, owner_, name, doc));
+    }
+    /** A port of the first type for which `is(std::type_identity<T>{})`; null where that is none. It stays in place. */
+    template <class Is>
+    Output* makeFirst(const std::string& name, const std::string& doc, const Is& is) {
+        const bool made = ((is(std::type_identity<T>{}) && (make<T>(name, doc), true)) || ...);
+        return made ? &outputs_.back() : nullptr;
+    }
+    /** Calls `use` with each, a DynamicOutput, in the order in which they were made. */
+    template <class Use>
+    void forEach(Use&& use) {
+        for (Output& output : outputs_) std::visit(use, output);
+    }
+    template <class Use>
+    void forEach(Use&& use) const {
+        for (const Output& output : outputs_) std::visit(use, output);
+    }
+
+private:
+    TaskContext* owner_;
+    std::list<Output> outputs_;  ///< In place for good: ports do not move.
+};
+
+}  // namespace insonify::framework

@@ -1,0 +1,22 @@
+#include "components/framework/Executor.hpp"
+
+namespace insonify::framework {
+
+Executor::Executor(const Graph& graph, Environment& environment, types::Time start)
+    : graph_(graph), environment_(environment), start_(start), wall_start_(Clock::now()) {
+    environment_.start_time = [this] { return start_; };
+}
+
+void Executor::begin() { wall_start_ = Clock::now(); }
+
+Progress Executor::progress() const {
+    return {graph_.countedSamples(), (environment_.now() - start_).seconds(),
+            std::chrono::duration<double>(Clock::now() - wall_start_).count()};
+}
+
+bool Executor::isOver(const RunLimits& limits) const {
+    if (graph_.hasFailed()) return true;
+    return limits.samples > 0 && (graph_.hasSourceInError() || graph_.countedSamples() >= limits.samples);
+}
+
+}  // namespace insonify::framework

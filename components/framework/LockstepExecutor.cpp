@@ -1,0 +1,154 @@
+#include "components/framework/LockstepExecutor.hpp"
+
+#include <algorithm>
+#include <stdexcept>
+#include <thread>
+
+#include "components/framework/Activity.hpp"
+
+namespace insonify::framework {
+namespace {
+
+bool readsNothing(const TaskContext& task) {
+    return std::ranges::none_of(task.inputs(), [](const auto* port) { return port->connected(); });
+}
+
+uint64_t samplesWritten(const TaskContext& task) {
+    uint64_t written = 0;
+    for (const OutputPortBase* port : task.outputs()) written += port->written();
+    return written;
+}
+
+}  // namespace
+
+LockstepExecutor::LockstepExecutor(const Graph& graph, Environment& environment, types::Time start)
+    : Executor(graph, environment, start), now_us_(start.microseconds) {
+    environment_.now = [this] { return types::Time{now_us_.load()}; };
+}
+
+// -- the order of work ------------------------------------------------------------------------------------------------
+
+void LockstepExecutor::findTasks() {
+    timed_.clear(), sources_.clear(), triggered_.clear();
+    for (const auto& task : graph_.tasks()) {
+        const bool periodic = task->activity().settings().periodic();
+        const auto* const source = dynamic_cast<const ClockSource*>(task.get());
+        if (!periodic && !(source && source->nextTime())) continue;
+        timed_.push_back({task.get(), periodic ? nullptr : source});
+        if (readsNothing(*task)) sources_.push_back(task.get());
+    }
+    for (TaskContext* task : graph_.order())
+        if (!task->activity().settings().periodic()) triggered_.push_back(task);
+}
+
+types::Time LockstepExecutor::due(const Timed& timed) const {
+    if (timed.source) return timed.source->nextTime().value_or(never);
+    return start_ +
+           types::Time::fromSeconds(static_cast<double>(timed.cycle) * timed.task->activity().settings().period);
+}
+
+types::Time LockstepExecutor::next() const {
+    types::Time next = never;
+    for (const Timed& timed : timed_) next = std::min(next, due(timed));
+    return next;
+}
+
+types::Time LockstepExecutor::nextBetweenInstants() {
+    const auto held = betweenInstants();
+    return next();
+}
+
+void LockstepExecutor::runInstant(types::Time instant) {
+    now_us_ = instant.microseconds;
+    sources_wrote_ = false;
+    for (Timed& timed : timed_) {
+        if (due(timed) != instant) continue;
+        const uint64_t written = samplesWritten(*timed.task);
+        timed.task->update();
+        sources_wrote_ |= samplesWritten(*timed.task) != written;
+        ++timed.cycle;
+    }
+    // Writers come before readers and update() empties the triggering ports, so one pass leaves all quiet.
+    for (TaskContext* task : triggered_)
+        if (task->triggered()) task->update();
+}
+
+// -- a run ------------------------------------------------------------------------------------------------------------
+
+void LockstepExecutor::begin() {
+    Executor::begin();
+    stood_still_ = {};
+}
+
+void LockstepExecutor::run(const RunLimits& limits, const std::atomic<bool>& stop, const Report& report) {
+    findTasks();
+    const bool limited = limits.samples > 0 || limits.duration_s > 0;
+    const types::Time end = limits.duration_s > 0 ? start_ + types::Time::fromSeconds(limits.duration_s) : never;
+    for (types::Time instant = nextBetweenInstants(); !stop && instant < end; instant = nextBetweenInstants()) {
+        standStill(stop);
+        keepPace(limits.pace, instant, stop);
+        letCallersIn(stop);
+        {
+            const auto held = betweenInstants();
+            if (!takeStep()) continue;           // paused meanwhile
+            const types::Time now_due = next();  // another, where a source has moved meanwhile
+            if (now_due >= end) return;
+            runInstant(now_due);
+        }
+        if (report) report(progress());
+        if (isOver(limits) || sourcesAreDone(limited)) return;
+    }
+}
+
+bool LockstepExecutor::sourcesAreDone(bool limited) const {
+    const bool finished = std::ranges::all_of(sources_, [](const TaskContext* task) { return task->finished(); });
+    // With a limit a source that goes on holding its last value counts; one that gives nothing more does not.
+    return finished && (!limited || !sources_wrote_);
+}
+
+void LockstepExecutor::keepPace(double pace, types::Time instant, const std::atomic<bool>& stop) const {
+    if (pace <= 0) return;
+    using Seconds = std::chrono::duration<double>;
+    const Seconds due((instant - start_).seconds() / pace);
+    for (Seconds left = due; !stop && !standsStill() && left.count() > 0;
+         left = due - (Clock::now() - wall_start_ - stood_still_))
+        std::this_thread::sleep_for(std::min(left, Seconds(0.02)));
+}
+
+void LockstepExecutor::letCallersIn(const std::atomic<bool>& stop) const {
+    while (callers_ > 0 && !stop) std::this_thread::sleep_for(std::chrono::microseconds(100));
+}
+
+std::unique_lock<std::mutex> LockstepExecutor::betweenInstants() {
+    ++callers_;
+    std::unique_lock lock(instant_mutex_);
+    --callers_;
+    return lock;
+}
+
+// -- standing still ---------------------------------------------------------------------------------------------------
+
+void LockstepExecutor::pause(bool on) {
+    const auto held = betweenInstants();
+    steps_ = 0;
+    paused_ = on;
+}
+
+void LockstepExecutor::step() {
+    if (!paused_) throw std::runtime_error("cannot step: the deployment is not paused");
+    ++steps_;
+}
+
+bool LockstepExecutor::takeStep() {
+    if (standsStill()) return false;
+    if (paused_) --steps_;
+    return true;
+}
+
+void LockstepExecutor::standStill(const std::atomic<bool>& stop) {
+    const auto since = Clock::now();
+    while (standsStill() && !stop) std::this_thread::sleep_for(std::chrono::milliseconds(5));
+    stood_still_ += Clock::now() - since;
+}
+
+}  // namespace insonify::framework

@@ -1,0 +1,175 @@
+// The order of work on simulated time, of graphs made by hand; of whole deployments it is in DeploymentRunTest.
+#include <gmock/gmock.h>
+
+#include <thread>
+
+#include "components/framework/LockstepExecutor.hpp"
+#include "tests/framework/Tasks.hpp"
+
+namespace insonify::framework {
+namespace {
+
+using testing::ElementsAre;
+
+const std::atomic<bool> never{false};
+
+/** Plays at given times, as a log does. */
+struct Player : TaskContext, ClockSource {
+    using TaskContext::TaskContext;
+    OutputPort<double> value{this, "value", "its place in the list"};
+    std::vector<int64_t> times_us{5, 7, 11};
+    size_t next = 0;
+    std::vector<int64_t> played_us;
+    std::optional<types::Time> nextTime() const override {
+        return next < times_us.size() ? std::optional(types::Time{times_us[next]}) : std::nullopt;
+    }
+    bool finished() const override { return next == times_us.size(); }
+    void updateHook() override {
+        played_us.push_back(now().microseconds);
+        value.write(static_cast<double>(next++));
+    }
+};
+
+struct Shot {
+    static constexpr const char* type_name = "/test/Shot";
+    static constexpr bool counted = true;
+};
+
+/** Writes what runs are counted in; in error from its third cycle on where it is to be. */
+struct Gun : TaskContext {
+    using TaskContext::TaskContext;
+    OutputPort<Shot> shot{this, "shot", "counted"};
+    bool fails = false;
+    void updateHook() override {
+        if (fails && shot.written() == 2) return error("jammed");
+        shot.write({});
+    }
+};
+
+/** A graph, and an executor for it that starts at 1 s. */
+struct Bench {
+    Graph graph;
+    std::shared_ptr<Environment> environment = std::make_shared<Environment>();
+    std::optional<LockstepExecutor> executor;
+
+    ~Bench() {
+        for (TaskContext* task : graph.order()) task->stop(), task->cleanup();
+    }
+    template <class Task>
+    Task& add(const std::string& name, double period = 0) {
+        auto& task = dynamic_cast<Task&>(graph.add(std::make_unique<Task>(name)));
+        task.setEnvironment(environment);
+        ActivitySettings settings;
+        settings.period = period;
+        task.activity().configure(settings);
+        return task;
+    }
+    void start() {
+        graph.arrange();
+        executor.emplace(graph, *environment, types::Time{1'000'000});
+        for (const auto& task : graph.tasks()) ASSERT_TRUE(task->configure() && task->start());
+        executor->begin();
+    }
+    Progress run(const RunLimits& limits, const std::atomic<bool>& stop = never, const Executor::Report& report = {}) {
+        executor->run(limits, stop, report);
+        return executor->progress();
+    }
+};
+
+TEST(LockstepExecutorTest, TimeGoesFromOneInstantToTheNextAndWritersWorkFirst) {
+    Bench bench;
+    auto& relay = bench.add<test::Relay>("relay");
+    auto& source = bench.add<test::Source>("source", 0.25);
+    bench.graph.connect(source.value, relay.in, {});
+    bench.start();
+    EXPECT_EQ(bench.environment->now().microseconds, 1'000'000);
+    const Progress end = bench.run({.duration_s = 0.6});
+    EXPECT_THAT(relay.notes, ElementsAre("relay:1@1000000", "relay:2@1250000", "relay:3@1500000"));
+    EXPECT_DOUBLE_EQ(end.elapsed_s, 0.5);
+    EXPECT_EQ(bench.environment->start_time().microseconds, 1'000'000);
+}
+
+TEST(LockstepExecutorTest, AClockSourceIsDueWhenItSaysAndEndsTheRun) {
+    Bench bench;
+    auto& player = bench.add<Player>("player");
+    auto& relay = bench.add<test::Relay>("relay");
+    bench.graph.connect(player.value, relay.in, {});
+    bench.start();
+    bench.run({});
+    EXPECT_THAT(player.played_us, ElementsAre(5, 7, 11));
+    EXPECT_THAT(relay.notes, ElementsAre("relay:0@5", "relay:1@7", "relay:2@11"));
+}
+
+TEST(LockstepExecutorTest, WithALimitItGoesOnWhileASourceThatHasFinishedStillWrites) {
+    Bench bench;
+    auto& source = bench.add<test::Source>("source", 0.1);  // has finished after 3, and writes on
+    bench.start();
+    bench.run({.duration_s = 1});
+    EXPECT_EQ(source.value.written(), 10u);
+}
+
+TEST(LockstepExecutorTest, ItEndsOnceEverySourceHasWrittenSoManyCountedSamples) {
+    Bench bench;
+    auto &fast = bench.add<Gun>("fast", 0.1), &slow = bench.add<Gun>("slow", 0.2);
+    bench.start();
+    EXPECT_EQ(bench.run({.samples = 4}).samples, 4u);
+    EXPECT_EQ(slow.shot.written(), 4u);
+    EXPECT_EQ(fast.shot.written(), 7u);
+}
+
+TEST(LockstepExecutorTest, ACountThatCannotBeReachedAnyMoreEndsTheRun) {
+    Bench bench;
+    bench.add<Gun>("gun", 0.1).fails = true;
+    bench.start();
+    EXPECT_EQ(bench.run({.samples = 4}).samples, 2u);
+}
+
+TEST(LockstepExecutorTest, TheStopFlagAndTheReportAreLookedAtAfterEachInstant) {
+    Bench bench;
+    bench.add<test::Source>("source", 0.1);
+    bench.start();
+    std::atomic<bool> stop{false};
+    std::vector<double> elapsed;
+    bench.run({.duration_s = 100}, stop, [&](const Progress& progress) {
+        elapsed.push_back(progress.elapsed_s);
+        stop = elapsed.size() == 2;
+    });
+    ASSERT_EQ(elapsed.size(), 2u);
+    EXPECT_DOUBLE_EQ(elapsed[1], 0.1);
+}
+
+TEST(LockstepExecutorTest, NoInstantBeginsWhileSomeoneHoldsTheTimeBetweenTwo) {
+    Bench bench;
+    auto& source = bench.add<test::Source>("source", 0.1);
+    bench.start();
+    std::thread running;
+    {
+        const auto held = bench.executor->betweenInstants();
+        running = std::thread([&] { bench.run({}); });
+        std::this_thread::sleep_for(std::chrono::milliseconds(30));
+        EXPECT_EQ(source.value.written(), 0u);
+    }
+    running.join();
+    EXPECT_EQ(source.value.written(), 3u);
+}
+
+TEST(LockstepExecutorTest, TimeThatStandsStillGoesOnStepByStep) {
+    Bench bench;
+    auto& source = bench.add<test::Source>("source", 0.1);
+    bench.start();
+    EXPECT_THROW(bench.executor->step(), std::runtime_error);
+    bench.executor->pause(true);
+    EXPECT_TRUE(bench.executor->paused());
+    bench.executor->step();
+    bench.executor->step();
+    std::atomic<bool> stop{false};
+    int instants = 0;
+    bench.run({.duration_s = 100}, stop, [&](const Progress&) { stop = ++instants == 2; });
+    EXPECT_EQ(source.value.written(), 2u);
+    bench.executor->pause(false);
+    bench.run({});
+    EXPECT_EQ(source.value.written(), 3u) << "time began anew, but the source had finished with its third";
+}
+
+}  // namespace
+}  // namespace insonify::framework
