@@ -1,4 +1,4 @@
-// One pixel of a slab: its echo into the bins of the beams that own its column, in 64-bit fixed point.
+// One pixel of a frustum: its echo into the bins of the beams that own its column, in 64-bit fixed point.
 #include "interface.glsl"
 layout(local_size_x = 8, local_size_y = 8) in;
 layout(binding = 0) uniform usampler2D picture;
@@ -14,7 +14,7 @@ layout(std430, binding = SUMS_BINDING) buffer Sums { uvec2 sums[]; };  // low an
 uniform ivec2 image_size;
 uniform uint bin_count, beam_stride;
 uniform double bin_width, attenuation, strength_scale;
-uniform dvec2 extent, pixel_size, slab_axis;
+uniform dvec2 extent, pixel_size, frustum_axis;
 
 double binEdge(uint k) { return edges[k]; }
 
@@ -46,7 +46,7 @@ void addToBin(uint beam, uint bin, double amount, double weight) {
 #include "deposit.glsl"
 
 dvec3 slabFromSonar(dvec3 p) {
-    return dvec3(slab_axis.x * p.x + slab_axis.y * p.y, slab_axis.x * p.y - slab_axis.y * p.x, p.z);
+    return dvec3(frustum_axis.x * p.x + frustum_axis.y * p.y, frustum_axis.x * p.y - frustum_axis.y * p.x, p.z);
 }
 
 Surface surfaceOf(CommandRecord command, uint triangle, dvec2 uv) {

@@ -33,7 +33,7 @@ struct MaterialRecord {
     vec4 values;
 };
 
-// The part of an image column that belongs to one beam; u = tan(azimuth in the slab).
+// The part of an image column that belongs to one beam; u = tan(azimuth in the frustum).
 struct ShareRecord {
     double middle, width;  // of the part, in u [1]
     double limit;          // the aperture ends at v = +-limit there [1]

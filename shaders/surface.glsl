@@ -1,4 +1,4 @@
-// Shared by C++ and GLSL: what a ray through (u, v) of a slab's picture meets on a triangle's plane.
+// Shared by C++ and GLSL: what a ray through (u, v) of a frustum's picture meets on a triangle's plane.
 
 struct Surface {
     double range, inverse_range;  // slant range [m], and 1 / range; both 0: no echo (edge-on, or behind)
@@ -7,7 +7,7 @@ struct Surface {
     double cosine;                // of the angle between ray and geometric normal, either side [1]
 };
 
-// Plane normal.p = distance in slab axes (x into the picture, y to port, z up); the normal may have any length and sign.
+// Plane normal.p = distance in frustum axes (x into the picture, y to port, z up); the normal may have any length and sign.
 // Slopes: ACOUSTICS.md 4.2. Closer to edge-on than 1e-4 rad there is no echo, but still a shadow.
 Surface surfaceAt(double normal_x, double normal_y, double normal_z, double distance, double u, double v) {
     double q2 = 1.0 + u * u + v * v;

@@ -1,4 +1,4 @@
-// One vertex: from object axes to one slab's image. Whatever is the same for a draw comes as attributes of its one
+// One vertex: from object axes to one frustum's image. Whatever is the same for a draw comes as attributes of its one
 // instance: llvmpipe reads those once, and buffers once for each vertex.
 #extension GL_ARB_shader_draw_parameters : require
 layout(location = 0) in vec3 position;
@@ -13,7 +13,7 @@ flat out uvec2 seen;  // command, triangle (SurfaceScene.cpp has each triangle e
 layout(location = 4) in vec3 normal;
 layout(location = 5) in vec4 tangent;
 layout(location = 6) in vec2 uv;
-layout(location = 7) in vec4 normal_x;  // rows of the matrix from object axes to the slab's, for normals; w: scale of the map
+layout(location = 7) in vec4 normal_x;  // rows of the matrix from object axes to the frustum's, for normals; w: scale of the map
 layout(location = 8) in vec4 normal_y;
 layout(location = 9) in vec4 normal_z;
 layout(location = 10) in vec4 tangent_x;  // the same for tangents

@@ -3,7 +3,7 @@
 namespace insonify::types {
 namespace {
 
-std::string joined(const std::vector<Diagnostic>& diagnostics) {
+std::string joined(const Diagnostics& diagnostics) {
     std::string text;
     for (const Diagnostic& d : diagnostics) text += (text.empty() ? "" : "\n") + d.text();
     return text;
@@ -20,10 +20,10 @@ std::string Diagnostic::text() const {
     return result + (result.empty() ? "" : ": ") + message;
 }
 
-ConfigError::ConfigError(std::vector<Diagnostic> diagnostics)
+ConfigError::ConfigError(Diagnostics diagnostics)
     : std::runtime_error(joined(diagnostics)), diagnostics_(std::move(diagnostics)) {}
 
 ConfigError::ConfigError(std::string file, std::string path, std::string message)
-    : ConfigError(std::vector<Diagnostic>{{std::move(file), 0, 0, std::move(path), std::move(message)}}) {}
+    : ConfigError(Diagnostics{{std::move(path), std::move(message), std::move(file)}}) {}
 
 }  // namespace insonify::types

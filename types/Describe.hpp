@@ -13,6 +13,8 @@
 #include <string_view>
 #include <vector>
 
+#include "types/Diagnostic.hpp"
+
 namespace insonify::types {
 
 /** One field: its name in files, SI unit ("1" for a pure number, "" for text and blocks), meaning, inclusive bounds. */
@@ -63,17 +65,10 @@ struct MovedTo {
     static void describe(Self&, V&) {}
 };
 
-/** A fault in a configuration: `path` is below the described struct ("tvg.max_db"), `message` what it is and may be. */
-struct Problem {
-    std::string path;
-    std::string message;
-};
-using Problems = std::vector<Problem>;
-
-/** A described struct may judge its fields together: `void check(types::Problems&) const`. */
+/** A described struct may judge its fields together: `void check(types::Diagnostics&) const`. */
 template <class T>
-concept Checked = requires(const T& value, Problems& problems) {
-    value.check(problems);
+concept Checked = requires(const T& value, Diagnostics& diagnostics) {
+    value.check(diagnostics);
 };
 
 }  // namespace insonify::types

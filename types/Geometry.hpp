@@ -44,7 +44,7 @@ struct Cluster {
 };
 
 /** A part of a large mesh, so that what is out of view is found out for many clusters at once. */
-struct Patch {
+struct ClusterNode {
     uint32_t first_cluster = 0;  ///< Into Mesh::clusters [1].
     uint32_t cluster_count = 0;  ///< All of one material [1].
     uint32_t next = 0;           ///< The first patch that is no part of this one; its parts come directly after it [1].
@@ -61,10 +61,10 @@ struct Mesh {
         normals;  ///< Per vertex, unit; empty or as many as positions. Only used with normal maps [1].
     std::vector<glm::vec4> tangents;  ///< Per vertex, w = handedness; empty or as many as positions [1].
     std::vector<glm::vec2> uvs;  ///< Of the normal map, texture transform applied; empty or as many as positions [1].
-    std::vector<uint32_t> indices;         ///< Three a triangle.
-    std::vector<Cluster> clusters;         ///< Together they cover all indices, in order.
-    std::vector<Patch> patches;            ///< Trees over all clusters, each patch before its parts; or none.
-    std::vector<uint32_t> coarse_indices;  ///< A large mesh in few triangles, to look at; never what a sonar hears.
+    std::vector<uint32_t> indices;           ///< Three a triangle.
+    std::vector<Cluster> clusters;           ///< Together they cover all indices, in order.
+    std::vector<ClusterNode> cluster_nodes;  ///< Trees over all clusters, each patch before its parts; or none.
+    std::vector<uint32_t> coarse_indices;    ///< A large mesh in few triangles, to look at; never what a sonar hears.
 };
 
 /** One placing of a mesh in the world. */

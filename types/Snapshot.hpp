@@ -19,8 +19,9 @@ struct Snapshot {
     static constexpr const char* type_name = "/insonify/Snapshot";
 
     Time time;
-    Pose sonar;           ///< Sonar frame in the world: x ahead, y port, z up.
-    double carry_on = 0;  ///< How far `sonar` may be carried on by its velocities, to the time of the ping [s].
+    Pose sonar;  ///< Sonar frame in the world: x ahead, y port, z up.
+    double max_extrapolation =
+        0;  ///< How far `sonar` may be carried on by its velocities, to the time of the ping [s].
     GeometryPtr geometry;
     std::vector<MovedObject> moved;
     std::optional<double> water_surface;  ///< World z of the surface [m].

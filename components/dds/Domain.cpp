@@ -14,10 +14,10 @@ namespace insonify::dds {
 namespace {
 
 /** While it lives, what Cyclone logs is kept here and not printed. One at a time. */
-class Complaints {
+class LoggedErrors {
 public:
-    Complaints() { dds_set_log_sink(&Complaints::keep, this); }
-    ~Complaints() { dds_set_log_sink(nullptr, nullptr); }
+    LoggedErrors() { dds_set_log_sink(&LoggedErrors::keep, this); }
+    ~LoggedErrors() { dds_set_log_sink(nullptr, nullptr); }
     std::string text() const {
         const size_t last = logged_.find_last_not_of(" \n");
         return last == std::string::npos ? "" : ": " + logged_.substr(0, last + 1);
@@ -27,9 +27,9 @@ private:
     /** On any thread: those of other participants log here as well. */
     static void keep(void* to, const dds_log_data_t* data) {
         if (!(data->priority & (DDS_LC_ERROR | DDS_LC_WARNING | DDS_LC_FATAL | DDS_LC_CONFIG))) return;
-        auto& complaints = *static_cast<Complaints*>(to);
-        std::lock_guard lock(complaints.mutex_);
-        complaints.logged_.append(data->message, data->size);
+        auto& logged_errors = *static_cast<LoggedErrors*>(to);
+        std::lock_guard lock(logged_errors.mutex_);
+        logged_errors.logged_.append(data->message, data->size);
     }
     std::mutex mutex_;
     std::string logged_;
@@ -49,14 +49,14 @@ Entity::~Entity() {
 Entity joinDomain(uint32_t id, std::string_view user_data) {
     static std::mutex one_at_a_time;
     std::lock_guard lock(one_at_a_time);
-    const Complaints complaints;
+    const LoggedErrors logged_errors;
     const Qos qos(dds_create_qos());
     dds_qset_userdata(qos.get(), user_data.data(), user_data.size());
     const dds_entity_t joined = dds_create_participant(id, qos.get(), nullptr);
     if (joined > 0) return Entity(joined);
     throw types::ConfigError("", "domain",
                              "DDS domain " + std::to_string(id) + " cannot be joined: " + dds_strretcode(joined) +
-                                 complaints.text() + "; see CYCLONEDDS_URI and ROS_DOMAIN_ID");
+                                 logged_errors.text() + "; see CYCLONEDDS_URI and ROS_DOMAIN_ID");
 }
 
 uint32_t domainId(std::optional<uint32_t> given) {

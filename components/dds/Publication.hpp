@@ -3,12 +3,12 @@
 #include <optional>
 #include <string>
 
-#include "components/dds/Drops.hpp"
 #include "components/dds/PublisherConfig.hpp"
 #include "components/dds/Writer.hpp"
 #include "components/ros/Cdr.hpp"
 #include "components/ros/Samples.hpp"
 #include "types/ConfigError.hpp"
+#include "types/ThrottledWarning.hpp"
 
 namespace insonify::dds {
 
@@ -81,7 +81,7 @@ class Publication {
 public:
     /** What is not sent is counted in `drops`, which outlives this. Throws types::ConfigError for a message that cannot
      *  be made of a Sample, and as Writer. */
-    Publication(Node& node, const PublisherConfig& config, const TopicOut& topic, Drops& drops)
+    Publication(Node& node, const PublisherConfig& config, const TopicOut& topic, types::ThrottledWarning& drops)
         : topic_(topic.topic),
           encode_(encoderOf<Sample>(topic.type, optionsOf(config, topic))),
           writer_(writerOf(node, config, topic)),
@@ -114,7 +114,7 @@ private:
     Encode<Sample> encode_;
     Writer writer_;
     Bytes bytes_;
-    Drops& drops_;
+    types::ThrottledWarning& drops_;
 };
 
 }  // namespace insonify::dds

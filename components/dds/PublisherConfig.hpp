@@ -83,17 +83,17 @@ struct PublisherConfig {
                                  ": give one of them another, for transforms");
         return shared;
     }
-    void check(types::Problems& problems) const {
-        node.check(problems);
-        if (topics.empty()) problems.push_back({"topics", "is empty; must hold a topic"});
+    void check(types::Diagnostics& diagnostics) const {
+        node.check(diagnostics);
+        if (topics.empty()) diagnostics.push_back({"topics", "is empty; must hold a topic"});
         std::set<std::string> names;
         for (size_t i = 0; i < topics.size(); ++i) {
             const std::string path = "topics[" + std::to_string(i) + "].";
-            if (topics[i].port.empty()) problems.push_back({path + "port", "must name an input port"});
-            if (const std::string fault = faultOfTopic(topics[i].topic); !fault.empty())
-                problems.push_back({path + "topic", fault});
+            if (topics[i].port.empty()) diagnostics.push_back({path + "port", "must name an input port"});
+            if (const std::string diagnostic = faultOfTopic(topics[i].topic); !diagnostic.empty())
+                diagnostics.push_back({path + "topic", diagnostic});
             else if (!names.insert(ddsTopic(topics[i].topic)).second)
-                problems.push_back({path + "topic", "is " + topics[i].topic + " a second time"});
+                diagnostics.push_back({path + "topic", "is " + topics[i].topic + " a second time"});
         }
     }
 };

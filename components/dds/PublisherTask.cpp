@@ -26,7 +26,7 @@ public:
     framework::InputPortBase& port() const override { return port_; }
     bool canBe(MessageType type) const override { return dds::canBe<Sample>(type); }
     std::string messages() const override { return messagesOf<Sample>(); }
-    void open(Node& node, const PublisherConfig& config, Drops& drops) override {
+    void open(Node& node, const PublisherConfig& config, types::ThrottledWarning& drops) override {
         for (const TopicOut& topic : config.topics)
             if (topic.port == port_.name())
                 publications_.push_back(std::make_unique<Publication<Sample>>(node, config, topic, drops));
@@ -62,33 +62,33 @@ framework::InputPortBase* PublisherTask::makeInput(const std::string& port, fram
                                  ", of which no message is made; pings, poses, pictures, numbers and texts are");
 }
 
-void PublisherTask::check(types::Problems& problems) const {
+void PublisherTask::check(types::Diagnostics& diagnostics) const {
     for (size_t i = 0; i < config->topics.size(); ++i) {
         const TopicOut& topic = config->topics[i];
         const std::string path = "topics[" + std::to_string(i) + "].";
         const auto inlet =
             std::ranges::find_if(inlets_, [&](const auto& one) { return one->port().name() == topic.port; });
         if (inlet == inlets_.end()) {
-            problems.push_back(
+            diagnostics.push_back(
                 {path + "port", "is " + topic.port + "; no connection leads to " + name() + "." + topic.port});
             continue;
         }
         const std::string type(types::EnumNames<MessageType>::names[static_cast<size_t>(topic.type)]);
         if (!(*inlet)->canBe(topic.type))
-            problems.push_back(
+            diagnostics.push_back(
                 {path + "type", "is " + type + "; " + (*inlet)->port().typeName() + " can be " + (*inlet)->messages()});
     }
 }
 
 std::vector<std::string> PublisherTask::notices() const {
     std::vector<std::string> notices = config->sharedFrames();
-    std::ranges::move(drops_.notices(), std::back_inserter(notices));
+    std::ranges::move(drops_.summary(), std::back_inserter(notices));
     return notices;
 }
 
 bool PublisherTask::configureHook() {
     cleanupHook();  // what a configure that failed has left
-    drops_ = {};
+    drops_.reset();
     node_.emplace(domainId(config->node.domain), config->node.nameOr(name()),
                   static_cast<size_t>(config->node.gid_size));
     for (const auto& inlet : inlets_) inlet->open(*node_, *config, drops_);
@@ -101,7 +101,7 @@ void PublisherTask::updateHook() {
     for (const auto& inlet : inlets_)
         for (auto start = Clock::now(); inlet->send(*this); start = Clock::now())
             recordStage("send", std::chrono::duration<double>(Clock::now() - start).count());
-    if (const std::string told = drops_.untold(); !told.empty()) warn(told);
+    if (const std::string told = drops_.takeWarning(); !told.empty()) warn(told);
 }
 
 void PublisherTask::cleanupHook() {

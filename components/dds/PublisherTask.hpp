@@ -4,12 +4,12 @@
 #include <string>
 #include <vector>
 
-#include "components/dds/Drops.hpp"
 #include "components/dds/Node.hpp"
 #include "components/dds/PublisherConfig.hpp"
 #include "components/framework/Port.hpp"
 #include "components/framework/Properties.hpp"
 #include "components/framework/TaskContext.hpp"
+#include "types/ThrottledWarning.hpp"
 
 namespace insonify::dds {
 
@@ -31,7 +31,7 @@ public:
 
     /** Throws ConfigError for a port that no topic names, or a type that is not sent. */
     framework::InputPortBase* makeInput(const std::string& port, framework::OutputPortBase& source) override;
-    void check(types::Problems& problems) const override;
+    void check(types::Diagnostics& diagnostics) const override;
     std::vector<std::string> notices() const override;
     bool reachesOutside() const override { return true; }
 
@@ -43,7 +43,7 @@ private:
         virtual framework::InputPortBase& port() const = 0;
         virtual bool canBe(MessageType type) const = 0;  ///< Whether such a message can be made of its samples.
         virtual std::string messages() const = 0;        ///< All that can.
-        virtual void open(Node& node, const PublisherConfig& config, Drops& drops) = 0;
+        virtual void open(Node& node, const PublisherConfig& config, types::ThrottledWarning& drops) = 0;
         virtual void close() = 0;
         virtual bool send(PublisherTask& task) = 0;  ///< Whether there was a sample.
     };
@@ -54,7 +54,7 @@ private:
     void updateHook() override;
     void cleanupHook() override;
 
-    Drops drops_;
+    types::ThrottledWarning drops_{"message", "dropped"};
     std::optional<Node> node_;
     std::vector<std::unique_ptr<Inlet>> inlets_;
 };

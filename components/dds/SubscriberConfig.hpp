@@ -48,16 +48,16 @@ struct SubscriberConfig {
               self.depth);
         NodeConfig::describe(self.node, visit);
     }
-    void check(types::Problems& problems) const {
-        node.check(problems);
-        if (topics.empty()) problems.push_back({"topics", "is empty; must hold a topic"});
+    void check(types::Diagnostics& diagnostics) const {
+        node.check(diagnostics);
+        if (topics.empty()) diagnostics.push_back({"topics", "is empty; must hold a topic"});
         std::set<std::string> ports;
         for (size_t i = 0; i < topics.size(); ++i) {
             const std::string path = "topics[" + std::to_string(i) + "].";
-            if (const std::string fault = faultOfTopic(topics[i].topic); !fault.empty())
-                problems.push_back({path + "topic", fault});
+            if (const std::string diagnostic = faultOfTopic(topics[i].topic); !diagnostic.empty())
+                diagnostics.push_back({path + "topic", diagnostic});
             if (!ports.insert(topics[i].port).second)
-                problems.push_back({path + "port", "is " + topics[i].port + " a second time"});
+                diagnostics.push_back({path + "port", "is " + topics[i].port + " a second time"});
         }
     }
 };

@@ -7,7 +7,7 @@
 namespace insonify::dds {
 namespace {
 
-constexpr int most_at_once = 1000;  ///< Messages of a topic in one cycle: then others have their turn.
+constexpr int max_at_once = 1000;  ///< Messages of a topic in one cycle: then others have their turn.
 
 const TopicIn* topicOf(const SubscriberConfig& config, const std::string& port) {
     const auto found = std::ranges::find(config.topics, port, &TopicIn::port);
@@ -24,22 +24,22 @@ framework::OutputPortBase* SubscriberTask::makeOutput(const std::string& port) {
     return outlets_.back().port.get();
 }
 
-void SubscriberTask::check(types::Problems& problems) const {
+void SubscriberTask::check(types::Diagnostics& diagnostics) const {
     if (environment().lockstep)
-        problems.push_back(
+        diagnostics.push_back(
             {"", "messages come on the wall clock's time, for which lockstep does not wait; set schedule: realtime"});
     for (size_t i = 0; i < config->topics.size(); ++i) {
         const auto is = [&](const Outlet& outlet) { return outlet.port->name() == config->topics[i].port; };
         if (std::ranges::none_of(outlets_, is))
-            problems.push_back({"topics[" + std::to_string(i) + "].port",
-                                "no connection leads from " + name() + "." + config->topics[i].port});
+            diagnostics.push_back({"topics[" + std::to_string(i) + "].port",
+                                   "no connection leads from " + name() + "." + config->topics[i].port});
     }
 }
 
-std::vector<std::string> SubscriberTask::notices() const { return drops_.notices(); }
+std::vector<std::string> SubscriberTask::notices() const { return drops_.summary(); }
 
 bool SubscriberTask::configureHook() {
-    drops_ = {};
+    drops_.reset();
     for (Outlet& outlet : outlets_) outlet.subscription.reset();  // of a configure that failed
     node_.emplace(domainId(config->node.domain), config->node.nameOr(name()),
                   static_cast<size_t>(config->node.gid_size));
@@ -53,7 +53,7 @@ bool SubscriberTask::configureHook() {
 bool SubscriberTask::startHook() {
     types::Pose stale;
     for (Outlet& outlet : outlets_)
-        for (int i = 0; i < most_at_once && outlet.subscription->take(now(), stale);) ++i;
+        for (int i = 0; i < max_at_once && outlet.subscription->take(now(), stale);) ++i;
     return true;
 }
 
@@ -61,12 +61,12 @@ void SubscriberTask::updateHook() {
     types::Pose pose;
     for (Outlet& outlet : outlets_) {
         int taken = 0;
-        for (; taken < most_at_once && outlet.subscription->take(now(), pose); ++taken)
+        for (; taken < max_at_once && outlet.subscription->take(now(), pose); ++taken)
             if (config->depth > 1) outlet.port->write(pose);
         if (taken > 0 && config->depth == 1) outlet.port->write(pose);
-        if (taken == most_at_once || outlet.subscription->more()) activity().trigger();
+        if (taken == max_at_once || outlet.subscription->more()) activity().trigger();
     }
-    if (const std::string told = drops_.untold(); !told.empty()) warn(told);
+    if (const std::string told = drops_.takeWarning(); !told.empty()) warn(told);
 }
 
 void SubscriberTask::cleanupHook() {

@@ -28,7 +28,7 @@ public:
     framework::Properties<SubscriberConfig> config{this};
 
     framework::OutputPortBase* makeOutput(const std::string& port) override;
-    void check(types::Problems& problems) const override;
+    void check(types::Diagnostics& diagnostics) const override;
     std::vector<std::string> notices() const override;
     bool reachesOutside() const override { return true; }
     /** A message wakes it as well; this only says that something does. */
@@ -47,7 +47,7 @@ private:
 
     std::optional<Node> node_;
     std::vector<Outlet> outlets_;
-    Drops drops_;
+    types::ThrottledWarning drops_{"message", "dropped"};
 };
 
 }  // namespace insonify::dds

@@ -9,23 +9,23 @@
 namespace insonify::dds {
 namespace {
 
-constexpr int least_depth = 64;       ///< So that nonsense does not push a good message out before either is looked at.
-constexpr int most_drops = 64;        ///< In one take: who sends nonsense without end holds up nobody.
+constexpr int min_depth = 64;         ///< So that nonsense does not push a good message out before either is looked at.
+constexpr int max_drops = 64;         ///< In one take: who sends nonsense without end holds up nobody.
 constexpr size_t largest = 64 << 10;  ///< Of a message: 712 bytes and two names [B].
-constexpr types::Time most_ahead{1'000'000};  ///< Of the clock, for a stamp; a sonar refuses snapshots beyond it, too.
-constexpr types::Time most_silence{1'000'000};  ///< After which a sender's clock may have been set back.
+constexpr types::Time max_ahead{1'000'000};    ///< Of the clock, for a stamp; a sonar refuses snapshots beyond it, too.
+constexpr types::Time max_silence{1'000'000};  ///< After which a sender's clock may have been set back.
 
 Reader readerOf(Node& node, const SubscriberConfig& config, const TopicIn& topic, std::function<void()> arrived) {
     const char* type = topic.type == PoseType::Odometry ? ros::Odometry::type_name : ros::PoseStamped::type_name;
     const char* hash = topic.type == PoseType::Odometry ? ros::Odometry::type_hash : ros::PoseStamped::type_hash;
-    const Quality quality{.reliability = config.reliability, .depth = std::max(config.depth, least_depth)};
+    const Quality quality{.reliability = config.reliability, .depth = std::max(config.depth, min_depth)};
     return {node, ddsTopic(topic.topic), type, hash, quality, std::move(arrived), largest};
 }
 
 }  // namespace
 
-Subscription::Subscription(Node& node, const SubscriberConfig& config, const TopicIn& topic, Drops& drops,
-                           std::function<void()> arrived)
+Subscription::Subscription(Node& node, const SubscriberConfig& config, const TopicIn& topic,
+                           types::ThrottledWarning& drops, std::function<void()> arrived)
     : topic_(topic.topic),
       type_(topic.type),
       world_frame_(config.node.world_frame),
@@ -47,26 +47,26 @@ void Subscription::decode(types::Pose& pose) {
 
 std::string Subscription::faultOf(types::Time now, const types::Pose& pose) {
     if (!types::isUsable(pose)) return "position and orientation are not finite, or the orientation has no length";
-    if (pose.time - now > most_ahead) return "the stamp lies more than a second ahead of the clock";
-    if (pose.time >= newest_ || now - newest_came_ > most_silence) return "";
+    if (pose.time - now > max_ahead) return "the stamp lies more than a second ahead of the clock";
+    if (pose.time >= newest_ || now - newest_came_ > max_silence) return "";
     const bool sender_lives = sender_ == newest_sender_ || reader_.hears(newest_sender_);
     return sender_lives ? "the stamp lies before that of the pose before" : "";
 }
 
 bool Subscription::take(types::Time now, types::Pose& pose) {
     more_ = false;
-    for (int drops = 0; drops < most_drops; ++drops) {
+    for (int drops = 0; drops < max_drops; ++drops) {
         if (!reader_.take(bytes_, sender_)) return false;
-        std::string fault, detail;
+        std::string diagnostic, detail;
         try {
             decode(read_);
             if (stamped_on_arrival_ || read_.time == types::Time{}) read_.time = now;
-            fault = faultOf(now, read_);
+            diagnostic = faultOf(now, read_);
         } catch (const ros::CdrError& error) {
-            fault = bytes_.empty() ? "empty, or larger than any message of its type" : "no message of its type";
+            diagnostic = bytes_.empty() ? "empty, or larger than any message of its type" : "no message of its type";
             detail = std::string(": ") + error.what();
         }
-        if (fault.empty()) {
+        if (diagnostic.empty()) {
             newest_ = read_.time;
             newest_came_ = now;
             newest_sender_ = sender_;
@@ -74,7 +74,7 @@ bool Subscription::take(types::Time now, types::Pose& pose) {
             std::swap(pose, read_);
             return true;
         }
-        drops_.add(topic_ + ": " + fault, detail);
+        drops_.add(topic_ + ": " + diagnostic, detail);
     }
     more_ = true;
     return false;

@@ -3,11 +3,11 @@
 #include <string>
 #include <vector>
 
-#include "components/dds/Drops.hpp"
 #include "components/dds/Reader.hpp"
 #include "components/dds/SubscriberConfig.hpp"
 #include "components/ros/GeometryMessages.hpp"
 #include "types/Pose.hpp"
+#include "types/ThrottledWarning.hpp"
 
 namespace insonify::dds {
 
@@ -15,7 +15,7 @@ namespace insonify::dds {
 class Subscription {
 public:
     /** `arrived` as in Reader; what is dropped is counted in `drops`, which outlives this. */
-    Subscription(Node& node, const SubscriberConfig& config, const TopicIn& topic, Drops& drops,
+    Subscription(Node& node, const SubscriberConfig& config, const TopicIn& topic, types::ThrottledWarning& drops,
                  std::function<void()> arrived);
 
     /** The next good pose, in Rock's axes, its orientation of unit length; stamped `now` where the message has no
@@ -44,7 +44,7 @@ private:
     uint64_t sender_ = 0, newest_sender_ = 0;
     types::Time newest_, newest_came_;
     bool stamped_on_arrival_, more_ = false;
-    Drops& drops_;
+    types::ThrottledWarning& drops_;
     Reader reader_;
 };
 

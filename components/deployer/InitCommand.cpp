@@ -20,12 +20,12 @@ struct NewFile {
 
 /** A fault for each file that is there already: nothing is overwritten. */
 void refuseOverwriting(const std::vector<NewFile>& files) {
-    std::vector<types::Diagnostic> faults;
+    types::Diagnostics diagnostics;
     for (const NewFile& file : files)
         if (fs::symlink_status(file.path).type() != fs::file_type::not_found)
-            faults.push_back(
-                {file.path.string(), 0, 0, "", "is there already; init overwrites nothing, name another folder"});
-    if (!faults.empty()) throw types::ConfigError(std::move(faults));
+            diagnostics.push_back(
+                {"", "is there already; init overwrites nothing, name another folder", file.path.string()});
+    if (!diagnostics.empty()) throw types::ConfigError(std::move(diagnostics));
 }
 
 void write(const NewFile& file) {
@@ -40,13 +40,13 @@ int init(const fs::path& folder, const std::string& sonar) {
     std::vector<NewFile> files{{folder / (std::string(preset.name) + ".yml"), deployment}};
     for (const StarterFile& file : starterFiles()) files.push_back({folder / file.name, file.bytes});
     refuseOverwriting(files);
-    std::error_code trouble;
-    fs::create_directories(folder, trouble);
+    std::error_code error;
+    fs::create_directories(folder, error);
     if (!fs::is_directory(folder))
-        throw types::ConfigError(folder.string(), "", "is no folder and cannot be made: " + trouble.message());
+        throw types::ConfigError(folder.string(), "", "is no folder and cannot be made: " + error.message());
     for (const NewFile& file : files) write(file);
     fs::permissions(folder / "make_scene.py", fs::perms::owner_exec | fs::perms::group_exec | fs::perms::others_exec,
-                    fs::perm_options::add, trouble);
+                    fs::perm_options::add, error);
     for (const NewFile& file : files) fmt::print("{}\n", file.path.string());
     fmt::print("next: insonify run {}\n", folder.string());
     return 0;

@@ -33,10 +33,10 @@ void linkLatest(const fs::path& folder) {
 
 OutputFolder::OutputFolder(const std::string& asked, const fs::path& deployment)
     : path_(asked.empty() ? freshFolder(deployment) : fs::path(asked)), asked_(!asked.empty()) {
-    std::error_code trouble;
-    made_ = fs::create_directories(path_, trouble);
-    if (trouble || !fs::is_directory(path_))
-        throw types::ConfigError(path_, "--out", fmt::format("is no folder and cannot be made: {}", trouble.message()));
+    std::error_code error;
+    made_ = fs::create_directories(path_, error);
+    if (error || !fs::is_directory(path_))
+        throw types::ConfigError(path_, "--out", fmt::format("is no folder and cannot be made: {}", error.message()));
     if (::access(path_.c_str(), W_OK | X_OK) != 0)
         throw types::ConfigError(path_, "--out", "cannot be written to; give a folder that can");
 }

@@ -136,7 +136,7 @@ YAML::Node child(const YAML::Node& map, std::string_view key) {
     return YAML::Node(YAML::NodeType::Undefined);
 }
 
-void ConfigReader::fault(const YAML::Node& node, const std::string& path, const std::string& message) {
+void ConfigReader::report(const YAML::Node& node, const std::string& path, const std::string& message) {
     Origin origin{file_, path, fallback_};
     size_t longest = 0;
     for (const auto& [covered, from] : origins_) {
@@ -147,33 +147,33 @@ void ConfigReader::fault(const YAML::Node& node, const std::string& path, const 
     }
     if (node.IsDefined() && !node.Mark().is_null()) origin.mark = node.Mark();
     if (origin.file.empty() || origin.file == set_origin || origin.mark.is_null())
-        faults_.push_back({origin.file, 0, 0, origin.path, message});
+        diagnostics_.push_back({origin.path, message, origin.file});
     else
-        faults_.push_back({origin.file, origin.mark.line + 1, origin.mark.column + 1, origin.path, message});
+        diagnostics_.push_back({origin.path, message, origin.file, origin.mark.line + 1, origin.mark.column + 1});
 }
 
-void ConfigReader::report(const YAML::Node& block, const std::string& path, const types::Problems& problems) {
-    for (const types::Problem& problem : problems)
-        fault(nodeAt(block, problem.path), problem.path.empty() ? path : below(path, problem.path), problem.message);
+void ConfigReader::report(const YAML::Node& block, const std::string& path, const types::Diagnostics& diagnostics) {
+    for (const types::Diagnostic& each : diagnostics)
+        report(nodeAt(block, each.path), each.path.empty() ? path : below(path, each.path), each.message);
 }
 
 bool ConfigReader::isMap(const YAML::Node& node, const std::string& path) {
     if (node.IsNull()) return true;
-    if (!node.IsMap()) return fault(node, path, "is " + shown(node) + "; must be a block of keys and values"), false;
+    if (!node.IsMap()) return report(node, path, "is " + shown(node) + "; must be a block of keys and values"), false;
     std::set<std::string> seen;
     bool good = true;
     for (const auto& entry : node) {
         if (!entry.first.IsScalar())
-            fault(entry.first, path, "has a key that is " + shown(entry.first) + "; keys are names"), good = false;
+            report(entry.first, path, "has a key that is " + shown(entry.first) + "; keys are names"), good = false;
         else if (!seen.insert(entry.first.Scalar()).second)
-            fault(entry.first, below(path, entry.first.Scalar()), "stands here twice; once is allowed"), good = false;
+            report(entry.first, below(path, entry.first.Scalar()), "stands here twice; once is allowed"), good = false;
     }
     return good;
 }
 
 bool ConfigReader::isSequence(const YAML::Node& node, const std::string& path) {
     if (node.IsSequence()) return true;
-    fault(node, path, "is " + shown(node) + "; must be a list");
+    report(node, path, "is " + shown(node) + "; must be a list");
     return false;
 }
 
@@ -184,7 +184,7 @@ void ConfigReader::refuseUnknown(const YAML::Node& map, const std::string& path,
         if (!entry.first.IsScalar()) continue;
         const std::string& key = entry.first.Scalar();
         if (std::find(known.begin(), known.end(), key) == known.end())
-            fault(entry.first, below(path, key), "is not a key here; " + suggestion(key, known));
+            report(entry.first, below(path, key), "is not a key here; " + suggestion(key, known));
     }
 }
 
@@ -193,14 +193,14 @@ bool ConfigReader::number(const YAML::Node& node, const std::string& path, const
     if (const auto quantity = quantityOf(node)) {
         const auto unit = unitOf(field.unit);
         const auto converted = unit ? quantity->in(*unit) : std::nullopt;
-        if (!converted) return fault(node, path, "is " + shown(node) + "; " + wantedUnit(field)), false;
+        if (!converted) return report(node, path, "is " + shown(node) + "; " + wantedUnit(field)), false;
         read = *converted;
     } else if (!isPlain(node) || !parseDouble(node.Scalar(), read) || !std::isfinite(read)) {
-        fault(node, path, "is " + shown(node) + "; " + unitHint(node, field) + "must be a finite number");
+        report(node, path, "is " + shown(node) + "; " + unitHint(node, field) + "must be a finite number");
         return false;
     }
     if (read < field.min || read > field.max) {
-        fault(node, path, "is " + withUnit(fmt::format("{}", read), field) + "; " + allowed(field));
+        report(node, path, "is " + withUnit(fmt::format("{}", read), field) + "; " + allowed(field));
         return false;
     }
     value = read;
@@ -211,7 +211,7 @@ bool ConfigReader::whole(const YAML::Node& node, const std::string& path, const 
                          uint64_t highest, bool& negative, uint64_t& magnitude) {
     double wide = 0;
     if (!number(node, path, field, wide)) return false;
-    if (wide != std::floor(wide)) return fault(node, path, "is " + shown(node) + "; must be a whole number"), false;
+    if (wide != std::floor(wide)) return report(node, path, "is " + shown(node) + "; must be a whole number"), false;
     std::string_view digits = quantityOf(node) ? std::string_view("0.") : node.Scalar();
     negative = wide < 0;
     if (digits.starts_with('-') || digits.starts_with('+')) digits.remove_prefix(1);
@@ -221,7 +221,7 @@ bool ConfigReader::whole(const YAML::Node& node, const std::string& path, const 
     if (!exact && error == std::errc() && std::abs(wide) <= 0x1p53) magnitude = static_cast<uint64_t>(std::abs(wide));
     const uint64_t limit = negative ? ~static_cast<uint64_t>(lowest) + 1 : highest;
     if ((exact || (error == std::errc() && std::abs(wide) <= 0x1p53)) && magnitude <= limit) return true;
-    fault(node, path, fmt::format("is {}; must be a whole number from {} to {}", shown(node), lowest, highest));
+    report(node, path, fmt::format("is {}; must be a whole number from {} to {}", shown(node), lowest, highest));
     return false;
 }
 
@@ -230,13 +230,13 @@ bool ConfigReader::oneOf(const YAML::Node& node, const std::string& path, const 
     for (index = 0; index < count; ++index)
         if (node.IsScalar() && node.Scalar() == names[index]) return true;
     const std::string hint = node.IsScalar() ? types::didYouMean(node.Scalar(), {names, names + count}) : "";
-    fault(node, path,
-          "is " + shown(node) + "; " + hint + fmt::format("may be {}", fmt::join(names, names + count, ", ")));
+    report(node, path,
+           "is " + shown(node) + "; " + hint + fmt::format("may be {}", fmt::join(names, names + count, ", ")));
     return false;
 }
 
 bool ConfigReader::text(const YAML::Node& node, const std::string& path, std::string& value) {
-    if (!node.IsScalar()) return fault(node, path, "is " + shown(node) + "; must be a text"), false;
+    if (!node.IsScalar()) return report(node, path, "is " + shown(node) + "; must be a text"), false;
     value = node.Scalar();
     return true;
 }
@@ -246,14 +246,14 @@ bool ConfigReader::boolean(const YAML::Node& node, const std::string& path, bool
     if (good)
         value = node.Scalar() == "true";
     else
-        fault(node, path, "is " + shown(node) + "; " + truthHint(node) + "may be true or false");
+        report(node, path, "is " + shown(node) + "; " + truthHint(node) + "may be true or false");
     return good;
 }
 
 bool ConfigReader::vector3(const YAML::Node& node, const std::string& path, const types::Field& field,
                            glm::dvec3& value) {
     if (!node.IsSequence() || node.size() != 3)
-        return fault(node, path, "is " + shown(node) + "; must be a list of three numbers [x, y, z]"), false;
+        return report(node, path, "is " + shown(node) + "; must be a list of three numbers [x, y, z]"), false;
     bool good = true;
     for (int i = 0; i < 3; ++i) good &= number(node[i], path + "[" + std::to_string(i) + "]", field, value[i]);
     return good;

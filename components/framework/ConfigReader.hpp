@@ -37,8 +37,8 @@ public:
     explicit ConfigReader(std::string file, Origins origins = {})
         : file_(std::move(file)), origins_(std::move(origins)) {}
 
-    const std::vector<types::Diagnostic>& faults() const { return faults_; }
-    void fault(const YAML::Node& node, const std::string& path, const std::string& message);
+    const types::Diagnostics& diagnostics() const { return diagnostics_; }
+    void report(const YAML::Node& node, const std::string& path, const std::string& message);
     /** From now on null stands for what is not there: it takes an optional out, and gives any other value its default;
      *  maps of names are merged as well. */
     void takeOutByNull() { null_takes_out_ = true; }
@@ -49,8 +49,8 @@ public:
     template <types::Described T>
     bool read(const YAML::Node& node, const std::string& path, T& value);
 
-    /** Problems of a block, each at the node that its path leads to. */
-    void report(const YAML::Node& block, const std::string& path, const types::Problems& problems);
+    /** Diagnostics of a block, each at the node that its path leads to. */
+    void report(const YAML::Node& block, const std::string& path, const types::Diagnostics& diagnostics);
 
     bool isMap(const YAML::Node& node, const std::string& path);       ///< A map or empty, keys unique; else a fault.
     bool isSequence(const YAML::Node& node, const std::string& path);  ///< Else a fault.
@@ -78,7 +78,7 @@ private:
     bool null_takes_out_ = false;
     std::string file_;
     Origins origins_;
-    std::vector<types::Diagnostic> faults_;
+    types::Diagnostics diagnostics_;
     YAML::Mark fallback_ = YAML::Mark::null_mark();
 };
 
@@ -160,7 +160,7 @@ void giveDefault(const T&, const types::Field& field, Member& member) {
 
 template <types::Described T>
 bool ConfigReader::read(const YAML::Node& node, const std::string& path, T& value) {
-    const size_t before = faults_.size();
+    const size_t before = diagnostics_.size();
     if (node.IsDefined() && !isMap(node, path)) return false;
     std::vector<std::string> known;
     FieldVisitor visitor{[&](const types::Field& field, auto& member) {
@@ -174,11 +174,11 @@ bool ConfigReader::read(const YAML::Node& node, const std::string& path, T& valu
     T::describe(value, visitor);
     refuseUnknown(node, path, known);
     if constexpr (types::Checked<T>) {
-        types::Problems problems;
-        if (faults_.size() == before) value.check(problems);
-        report(node, path, problems);
+        types::Diagnostics diagnostics;
+        if (diagnostics_.size() == before) value.check(diagnostics);
+        report(node, path, diagnostics);
     }
-    return faults_.size() == before;
+    return diagnostics_.size() == before;
 }
 
 template <class T>
@@ -193,9 +193,9 @@ bool ConfigReader::readValue(const YAML::Node& node, const std::string& path, co
     } else if constexpr (std::same_as<T, std::string>) {
         return text(node, path, value);
     } else if constexpr (std::same_as<T, types::NotBuiltYet>) {
-        return fault(node, path, "is not built yet"), false;
+        return report(node, path, "is not built yet"), false;
     } else if constexpr (std::same_as<T, types::MovedTo>) {
-        return fault(node, path, field.doc), false;
+        return report(node, path, field.doc), false;
     } else if constexpr (std::same_as<T, glm::dvec3>) {
         return vector3(node, path, field, value);
     } else if constexpr (types::NamedEnum<T>) {
@@ -239,7 +239,7 @@ bool ConfigReader::readText(const std::string& yaml, const std::string& path, T&
     try {
         return readValue(parseValue(yaml), path, types::Field{path.c_str()}, value);
     } catch (const types::ConfigError& error) {
-        fault(YAML::Node(YAML::NodeType::Undefined), path, error.diagnostics().front().message);
+        report(YAML::Node(YAML::NodeType::Undefined), path, error.diagnostics().front().message);
         return false;
     }
 }
@@ -258,7 +258,7 @@ bool ConfigReader::readNumber(const YAML::Node& node, const std::string& path, c
         double wide = 0;
         if (!number(node, path, field, wide)) return false;
         if (std::abs(wide) > static_cast<double>(std::numeric_limits<T>::max())) {
-            fault(node, path, "is " + node.Scalar() + "; is too large");
+            report(node, path, "is " + node.Scalar() + "; is too large");
             return false;
         }
         value = static_cast<T>(wide);

@@ -29,11 +29,12 @@ bool holdsSamples(const TaskContext& task) {
 }
 
 /** Tells what a task found wrong with its properties at the place where they stand. */
-void reportOf(const TaskSpec& spec, const types::Diagnostic& fault, ConfigReader& reader) {
-    const bool names_task = fault.path.starts_with(spec.name + ".");
-    const std::string path = names_task ? fault.path.substr(spec.name.size() + 1) : fault.path;
+void reportOf(const TaskSpec& spec, const types::Diagnostic& diagnostic, ConfigReader& reader) {
+    const bool names_task = diagnostic.path.starts_with(spec.name + ".");
+    const std::string path = names_task ? diagnostic.path.substr(spec.name.size() + 1) : diagnostic.path;
     const bool has_properties = spec.properties.IsDefined();
-    reader.report(has_properties ? spec.properties : spec.place, spec.path() + ".properties", {{path, fault.message}});
+    reader.report(has_properties ? spec.properties : spec.place, spec.path() + ".properties",
+                  {{path, diagnostic.message}});
 }
 
 }  // namespace
@@ -109,22 +110,22 @@ TaskContext* Deployment::task(const std::string& name) const {
 
 void Deployment::configure() {
     ConfigReader reader(spec_.file);
-    std::vector<types::Diagnostic> elsewhere;
+    types::Diagnostics elsewhere;
     for (const auto& task : tasks_) {
         const Outcome outcome = task->configure();
         if (outcome) continue;
         const TaskSpec& spec = *spec_.task(task->name());
         if (!task->configError())
-            reader.fault(spec.place, spec.path(), outcome.reason);
+            reader.report(spec.place, spec.path(), outcome.reason);
         else
-            for (const types::Diagnostic& fault : task->configError()->diagnostics())
-                fault.file.empty() ? reportOf(spec, fault, reader) : elsewhere.push_back(fault);
+            for (const types::Diagnostic& diagnostic : task->configError()->diagnostics())
+                diagnostic.file.empty() ? reportOf(spec, diagnostic, reader) : elsewhere.push_back(diagnostic);
     }
-    std::vector<types::Diagnostic> faults = reader.faults();
-    faults.insert(faults.end(), elsewhere.begin(), elsewhere.end());
-    if (faults.empty()) return;
+    types::Diagnostics diagnostics = reader.diagnostics();
+    diagnostics.insert(diagnostics.end(), elsewhere.begin(), elsewhere.end());
+    if (diagnostics.empty()) return;
     cleanup();
-    throw types::ConfigError(faults);
+    throw types::ConfigError(diagnostics);
 }
 
 RunResult Deployment::run(const RunLimits& limits, const std::atomic<bool>& stop,

@@ -34,13 +34,13 @@ struct ActivityKeys {
         visit(Field{"watchdog", "s", "in realtime, time of a cycle after which it is reported", 1e-3, 1e6},
               self.watchdog);
     }
-    void check(types::Problems& problems) const {
+    void check(types::Diagnostics& diagnostics) const {
         if (period && !trigger.empty())
-            problems.push_back({"", "has both period and trigger; a task is either periodic or triggered"});
+            diagnostics.push_back({"", "has both period and trigger; a task is either periodic or triggered"});
         if (scheduler == Scheduler::Fifo && !priority)
-            problems.push_back({"", "has no priority; scheduler: fifo needs one, from 1 to 99"});
+            diagnostics.push_back({"", "has no priority; scheduler: fifo needs one, from 1 to 99"});
         if (scheduler == Scheduler::Other && priority)
-            problems.push_back({"priority", "is of no use with scheduler: other; fifo has one"});
+            diagnostics.push_back({"priority", "is of no use with scheduler: other; fifo has one"});
     }
     ActivitySettings settings() const {
         return {period.value_or(0),   trigger, scheduler == Scheduler::Fifo,
@@ -66,8 +66,8 @@ struct TaskKeys {
         visit(Field{"property_files", "", "its configuration in Rock's files"}, self.property_files);
         visit(Field{"properties", "", "its configuration"}, self.properties);
     }
-    void check(types::Problems& problems) const {
-        if (type.empty()) problems.push_back({"", "has no type; a task needs one, such as type: sonar::SonarTask"});
+    void check(types::Diagnostics& diagnostics) const {
+        if (type.empty()) diagnostics.push_back({"", "has no type; a task needs one, such as type: sonar::SonarTask"});
     }
 };
 
@@ -81,10 +81,10 @@ struct PolicyKeys {
         visit(Field{"size", "1", "capacity of a buffer", 1, 1e6}, self.size);
         visit(Field{"init", "1", "hand over the writer's last sample on connecting"}, self.init);
     }
-    void check(types::Problems& problems) const {
+    void check(types::Diagnostics& diagnostics) const {
         if (type == ConnPolicy::Data && size)
-            problems.push_back({"size", "is of no use with type: data; buffers have one"});
-        if (type != ConnPolicy::Data && !size) problems.push_back({"", "has no size; a buffer needs one"});
+            diagnostics.push_back({"size", "is of no use with type: data; buffers have one"});
+        if (type != ConnPolicy::Data && !size) diagnostics.push_back({"", "has no size; a buffer needs one"});
     }
 };
 
@@ -97,9 +97,9 @@ struct ConnectionKeys {
         visit(Field{"to", "", "input port, task.port"}, self.to);
         visit(Field{"policy", "", "how samples wait"}, self.policy);
     }
-    void check(types::Problems& problems) const {
+    void check(types::Diagnostics& diagnostics) const {
         for (const auto& [key, path] : {std::pair("from", from), std::pair("to", to)})
-            if (splitPort(path).second.empty()) problems.push_back({key, "is \"" + path + "\"; must be task.port"});
+            if (splitPort(path).second.empty()) diagnostics.push_back({key, "is \"" + path + "\"; must be task.port"});
     }
 };
 
@@ -121,9 +121,9 @@ struct DocumentKeys {
         visit(Field{"tasks", "", "by name"}, self.tasks);
         visit(Field{"connections", "", "from, to, policy"}, self.connections);
     }
-    void check(types::Problems& problems) const {
+    void check(types::Diagnostics& diagnostics) const {
         if (!tasks.IsDefined() || tasks.size() == 0)
-            problems.push_back({"tasks", "is empty; a deployment needs a task"});
+            diagnostics.push_back({"tasks", "is empty; a deployment needs a task"});
     }
 };
 
@@ -140,7 +140,7 @@ void readTask(ConfigReader& reader, const YAML::Node& name, const YAML::Node& bl
     task.name = name.Scalar();
     task.place.reset(block);
     if (task.name.empty() || task.name.find('.') != std::string::npos)
-        reader.fault(name, task.path(), "is no name for a task; must not be empty nor hold a dot");
+        reader.report(name, task.path(), "is no name for a task; must not be empty nor hold a dot");
     TaskKeys keys;
     reader.read(block, task.path(), keys);
     task.type = keys.type;
@@ -235,7 +235,7 @@ DeploymentSpec DeploymentSpec::parse(const std::string& text, const std::string&
     spec.libraries = keys.libraries;
     readTasks(reader, keys.tasks, spec);
     readConnections(reader, keys.connections, spec);
-    spec.faults = reader.faults();
+    spec.diagnostics = reader.diagnostics();
     PropertySources(spec).apply();
     return spec;
 }
@@ -274,7 +274,7 @@ std::vector<std::string> DeploymentSpec::unused() const {
 }
 
 void DeploymentSpec::set(const std::string& assignment) {
-    const auto refuse = [&](const std::string& why) { faults.push_back({"--set", 0, 0, assignment, why}); };
+    const auto refuse = [&](const std::string& why) { diagnostics.push_back({assignment, why, "--set"}); };
     const size_t equals = assignment.find('=');
     const auto [name, property] = splitPort(assignment.substr(0, equals));
     if (equals == std::string::npos || property.empty()) return refuse("must be task.property=value");

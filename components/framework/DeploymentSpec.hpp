@@ -53,7 +53,7 @@ struct DeploymentSpec {
     std::vector<TaskSpec> tasks;         ///< In file order, the order of configuring.
     std::vector<ConnectionSpec> connections;
     Origins origins;  ///< Of properties from elsewhere: property files, aliases, set().
-    std::vector<types::Diagnostic> faults;
+    types::Diagnostics diagnostics;
 
     /** Throws types::ConfigError when there is no text to be read or it is not YAML; other faults go to `faults`. */
     static DeploymentSpec load(const std::filesystem::path& file);

@@ -75,7 +75,7 @@ public:
         Arguments arguments;
         ConfigReader reader("");
         parse(reader, texts, arguments, std::index_sequence_for<Args...>{});
-        if (!reader.faults().empty()) throw types::ConfigError(reader.faults());
+        if (!reader.diagnostics().empty()) throw types::ConfigError(reader.diagnostics());
         if constexpr (std::is_void_v<R>)
             return std::apply(*this, arguments), "";
         else

@@ -47,10 +47,10 @@ void PropertiesBase::set(const std::string& name, const std::string& yaml) {
     YAML::Node block(YAML::NodeType::Map);
     block.force_insert(name, value);
     const auto putBack = keep();
-    if (reader.faults().empty()) load(reader, block, "");
-    if (!reader.faults().empty()) {
+    if (reader.diagnostics().empty()) load(reader, block, "");
+    if (!reader.diagnostics().empty()) {
         putBack();
-        throw types::ConfigError(reader.faults());
+        throw types::ConfigError(reader.diagnostics());
     }
     if (const Outcome outcome = owner_.applyProperties(name); !outcome) {
         putBack();

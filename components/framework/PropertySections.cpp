@@ -19,8 +19,8 @@ std::vector<std::string> split(const std::string& text, char at) {
 
 }  // namespace
 
-void PropertySections::fault(const std::string& file, int line, const std::string& path, const std::string& message) {
-    faults_.push_back({file, line, line > 0 ? 1 : 0, path, message});
+void PropertySections::report(const std::string& file, int line, const std::string& path, const std::string& message) {
+    diagnostics_.push_back({path, message, file, line, line > 0 ? 1 : 0});
 }
 
 void PropertySections::read(const std::filesystem::path& file, const std::string& shown) try {
@@ -29,7 +29,7 @@ void PropertySections::read(const std::filesystem::path& file, const std::string
     std::string body, line;
     for (int number = 1; std::getline(text, line); ++number) {
         if (line.find("<%") != std::string::npos)
-            fault(shown, number, "", "holds Ruby, which is not run; write the value");
+            report(shown, number, "", "holds Ruby, which is not run; write the value");
         if (!line.starts_with("---")) {
             body += line + "\n";
             continue;
@@ -40,7 +40,7 @@ void PropertySections::read(const std::filesystem::path& file, const std::string
     }
     take(std::move(section), body);
 } catch (const types::ConfigError& error) {
-    for (const types::Diagnostic& diagnostic : error.diagnostics()) fault(shown, 0, "", diagnostic.message);
+    for (const types::Diagnostic& diagnostic : error.diagnostics()) report(shown, 0, "", diagnostic.message);
 }
 
 PropertySection PropertySections::header(const std::string& line, const std::string& file, int number) {
@@ -57,10 +57,10 @@ PropertySection PropertySections::header(const std::string& line, const std::str
         else if (key == "chain" && !value.empty())
             section.chain = split(value, ',');
         else
-            fault(file, number, "", "has " + word + " in the head of a section; may be name:x, merge:true, chain:a,b");
+            report(file, number, "", "has " + word + " in the head of a section; may be name:x, merge:true, chain:a,b");
     }
     if (section.name.empty() && number == 1) section.name = "default";
-    if (section.name.empty()) fault(file, number, "", "heads a section without a name; must be --- name:x");
+    if (section.name.empty()) report(file, number, "", "heads a section without a name; must be --- name:x");
     return section;
 }
 
@@ -68,16 +68,16 @@ void PropertySections::take(PropertySection section, const std::string& body) {
     try {
         const std::vector<YAML::Node> documents = parseYaml(body, section.file);
         if (section.line == 0 && (documents.empty() || documents.front().IsNull())) return;  // before the first head
-        if (documents.size() > 1) fault(section.file, section.line, section.name, "holds several YAML documents");
+        if (documents.size() > 1) report(section.file, section.line, section.name, "holds several YAML documents");
         if (!documents.empty()) section.body.reset(documents.front());
     } catch (const types::ConfigError& error) {
-        faults_.insert(faults_.end(), error.diagnostics().begin(), error.diagnostics().end());
+        diagnostics_.insert(diagnostics_.end(), error.diagnostics().begin(), error.diagnostics().end());
         return;
     }
     std::vector<PropertySection>& same = sections_[section.name];
     const auto twice = [&](const PropertySection& other) { return other.file == section.file; };
     if (std::any_of(same.begin(), same.end(), twice))
-        fault(section.file, section.line, section.name, "is a section that stands here twice; once is allowed");
+        report(section.file, section.line, section.name, "is a section that stands here twice; once is allowed");
     if (!section.merge) same.clear();
     same.push_back(std::move(section));
 }
@@ -103,9 +103,9 @@ void PropertySections::addChained(const std::string& name, std::vector<std::stri
     for (const PropertySection& section : found->second) {
         for (const std::string& base : section.chain) {
             if (std::find(open.begin(), open.end(), base) != open.end())
-                fault(section.file, section.line, name, "chains " + base + ", which chains it");
+                report(section.file, section.line, name, "chains " + base + ", which chains it");
             else if (!contains(base))
-                fault(section.file, section.line, name, "chains " + base + "; " + suggestion(base, this->names()));
+                report(section.file, section.line, name, "chains " + base + "; " + suggestion(base, this->names()));
             else
                 addChained(base, open, all);
         }

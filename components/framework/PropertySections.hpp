@@ -30,7 +30,7 @@ public:
     void read(const std::filesystem::path& file, const std::string& shown);
     /** What the sections of `names` hold, in the order in which they are laid one over the other. */
     std::vector<const PropertySection*> inOrder(const std::vector<std::string>& names);
-    const std::vector<types::Diagnostic>& faults() const { return faults_; }
+    const types::Diagnostics& diagnostics() const { return diagnostics_; }
     std::vector<std::string> names() const;
     bool contains(const std::string& name) const { return sections_.count(name) > 0; }
 
@@ -38,10 +38,10 @@ private:
     void take(PropertySection section, const std::string& body);
     PropertySection header(const std::string& line, const std::string& file, int number);
     void addChained(const std::string& name, std::vector<std::string>& open, std::vector<const PropertySection*>& all);
-    void fault(const std::string& file, int line, const std::string& path, const std::string& message);
+    void report(const std::string& file, int line, const std::string& path, const std::string& message);
 
     std::map<std::string, std::vector<PropertySection>> sections_;
-    std::vector<types::Diagnostic> faults_;
+    types::Diagnostics diagnostics_;
 };
 
 }  // namespace insonify::framework

@@ -64,12 +64,12 @@ void PropertySources::checkTargets() {
                 const YAML::Node place = child(child(task.place, key), name);
                 const std::string path = task.path() + "." + key + "." + name;
                 if (rest.empty())
-                    reader.fault(place, path, "is " + target + "; must be task.property or task.port");
+                    reader.report(place, path, "is " + target + "; must be task.property or task.port");
                 else if (!spec_.task(owner))
-                    reader.fault(place, path,
-                                 "there is no task " + owner + "; " + suggestion(owner, spec_.taskNames()));
+                    reader.report(place, path,
+                                  "there is no task " + owner + "; " + suggestion(owner, spec_.taskNames()));
             }
-    spec_.faults.insert(spec_.faults.end(), reader.faults().begin(), reader.faults().end());
+    spec_.diagnostics.insert(spec_.diagnostics.end(), reader.diagnostics().begin(), reader.diagnostics().end());
 }
 
 YAML::Node PropertySources::withoutAliases(const TaskSpec& task, const YAML::Node& block, const std::string& path,
@@ -105,7 +105,7 @@ void PropertySources::move(const std::vector<Moved>& moved) {
         } else if (reader.readValue(one.value, one.origin.path, types::Field{""}, on)) {
             switches_[one.target] = {on, one.origin};
         }
-        spec_.faults.insert(spec_.faults.end(), reader.faults().begin(), reader.faults().end());
+        spec_.diagnostics.insert(spec_.diagnostics.end(), reader.diagnostics().begin(), reader.diagnostics().end());
     }
 }
 
@@ -119,9 +119,9 @@ void PropertySources::applyFiles(TaskSpec& task) {
     const YAML::Node place = child(task.place, "property_files");
     for (const std::string& name : task.property_files.sections)
         if (!sections.contains(name))
-            here.fault(place, task.path() + ".property_files.sections",
-                       "there is no section " + name + "; " + suggestion(name, sections.names()));
-    std::vector<types::Diagnostic> faults = here.faults();
+            here.report(place, task.path() + ".property_files.sections",
+                        "there is no section " + name + "; " + suggestion(name, sections.names()));
+    types::Diagnostics diagnostics = here.diagnostics();
     for (const PropertySection* section : sections.inOrder(task.property_files.sections)) {
         ConfigReader reader(section->file);
         std::vector<Moved> moved;
@@ -129,11 +129,11 @@ void PropertySources::applyFiles(TaskSpec& task) {
         const YAML::Node rest = withoutAliases(task, section->body, "", there, moved);
         if (reader.isMap(section->body, section->name) && rest.IsMap())
             for (const auto& entry : rest) lay(task, entry.first.Scalar(), entry.second, below(there, entry.first));
-        faults.insert(faults.end(), reader.faults().begin(), reader.faults().end());
+        diagnostics.insert(diagnostics.end(), reader.diagnostics().begin(), reader.diagnostics().end());
         move(moved);
     }
-    faults.insert(faults.end(), sections.faults().begin(), sections.faults().end());
-    spec_.faults.insert(spec_.faults.end(), faults.begin(), faults.end());
+    diagnostics.insert(diagnostics.end(), sections.diagnostics().begin(), sections.diagnostics().end());
+    spec_.diagnostics.insert(spec_.diagnostics.end(), diagnostics.begin(), diagnostics.end());
 }
 
 void PropertySources::lay(TaskSpec& task, const std::string& path, const YAML::Node& over, const Origin& origin) {

@@ -27,7 +27,7 @@ bool AlignedPortBase::accepts(types::Time time) {
     return true;
 }
 
-std::string AlignedPortBase::trouble() const {
+std::string AlignedPortBase::notice() const {
     std::string text;
     if (counts_.late > 0)
         text = fmt::format("{} of {} samples came too late and were dropped", counts_.late, counts_.received);
@@ -61,11 +61,11 @@ void StreamAligner::flush() {
     while (AlignedPortBase* port = earliest()) handOver(*port);
 }
 
-std::vector<std::string> StreamAligner::troubles() const {
-    std::vector<std::string> troubles;
+std::vector<std::string> StreamAligner::notices() const {
+    std::vector<std::string> notices;
     for (const AlignedPortBase* port : ports_)
-        if (std::string trouble = port->trouble(); !trouble.empty()) troubles.push_back(std::move(trouble));
-    return troubles;
+        if (std::string notice = port->notice(); !notice.empty()) notices.push_back(std::move(notice));
+    return notices;
 }
 
 AlignedPortBase* StreamAligner::earliest() const {

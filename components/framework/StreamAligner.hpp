@@ -32,7 +32,7 @@ public:
 
     const Counts& counts() const { return counts_; }
     /** "ping: 3 of 120 samples came too late and were dropped": what was lost or not waited for; empty: nothing. */
-    std::string trouble() const;
+    std::string notice() const;
 
 protected:
     friend class StreamAligner;
@@ -70,8 +70,8 @@ public:
     void clear(double timeout);  ///< Forgets samples and counts; the timeout is in [s] of the samples' time.
     void update();               ///< Takes what is new on the ports and hands over what is due.
     void flush();                ///< Hands over all that waits: no more will come.
-    /** Of all ports; see AlignedPortBase::trouble. */
-    std::vector<std::string> troubles() const;
+    /** Of all ports; see AlignedPortBase::notice. */
+    std::vector<std::string> notices() const;
 
 private:
     friend class AlignedPortBase;

@@ -113,8 +113,8 @@ public:
     virtual InputPortBase* makeInput(const std::string& /*port*/, OutputPortBase& /*source*/) { return nullptr; }
     virtual OutputPortBase* makeOutput(const std::string& /*port*/) { return nullptr; }
 
-    /** Faults that can be seen without configuring (files that are not there...); paths as in types::Problem. */
-    virtual void check(types::Problems& /*problems*/) const {}
+    /** Faults that can be seen without configuring (files that are not there...); paths as in types::Diagnostic. */
+    virtual void check(types::Diagnostics& /*problems*/) const {}
     /** What is compiled and run, if this task decides such a thing. Valid after the first cycle. Whoever overrides it
      *  calls refreshRecord() when it has changed, before the first sample that it holds for is written. */
     virtual const types::Plan* plan() const { return nullptr; }
@@ -181,7 +181,7 @@ protected:
      *  the old ones are back. Tasks that do not override this refuse while running, and need to configure() again. */
     virtual bool propertiesHook() { return !isRunning(); }
 
-    /** Running -> RunTimeError: recoverable trouble; from here errorHook runs instead of updateHook.
+    /** Running -> RunTimeError: a recoverable error; from here errorHook runs instead of updateHook.
      *  The default errorHook does nothing; a task that heals itself calls recover() from it. Only while running: a hook
      *  of another transition keeps the text for its refusal, and throws where it cannot refuse. */
     void error(const std::string& why);

@@ -20,7 +20,7 @@ std::vector<std::string> typesOf(const Registry& registry) {
 }  // namespace
 
 void Wiring::make(uint64_t seed) {
-    faults_ = deployment_.spec_.faults;
+    diagnostics_ = deployment_.spec_.diagnostics;
     loadLibraries();
     makeTasks();
     loadProperties(seed);
@@ -30,21 +30,21 @@ void Wiring::make(uint64_t seed) {
     const auto earlier = [](const auto& a, const auto& b) {
         return std::tie(a.file, a.line, a.column) < std::tie(b.file, b.line, b.column);
     };
-    std::stable_sort(faults_.begin(), faults_.end(), earlier);
+    std::stable_sort(diagnostics_.begin(), diagnostics_.end(), earlier);
     std::stable_sort(consequences_.begin(), consequences_.end(), earlier);
-    faults_.insert(faults_.end(), consequences_.begin(), consequences_.end());
-    if (!faults_.empty()) throw types::ConfigError(faults_);
+    diagnostics_.insert(diagnostics_.end(), consequences_.begin(), consequences_.end());
+    if (!diagnostics_.empty()) throw types::ConfigError(diagnostics_);
 }
 
 types::Diagnostic Wiring::diagnostic(const YAML::Node& place, const std::string& path,
                                      const std::string& message) const {
     ConfigReader reader(deployment_.spec_.file);
-    reader.fault(place, path, message);
-    return reader.faults().front();
+    reader.report(place, path, message);
+    return reader.diagnostics().front();
 }
 
-void Wiring::fault(const YAML::Node& place, const std::string& path, const std::string& message) {
-    faults_.push_back(diagnostic(place, path, message));
+void Wiring::report(const YAML::Node& place, const std::string& path, const std::string& message) {
+    diagnostics_.push_back(diagnostic(place, path, message));
 }
 
 void Wiring::consequence(const YAML::Node& place, const std::string& path, const std::string& message) {
@@ -55,7 +55,7 @@ void Wiring::loadLibraries() {
     for (const std::string& library : deployment_.spec_.libraries) try {
             registry_.loadLibrary(deployment_.environment_->input_folder / library);
         } catch (const types::ConfigError& error) {
-            faults_.insert(faults_.end(), error.diagnostics().begin(), error.diagnostics().end());
+            diagnostics_.insert(diagnostics_.end(), error.diagnostics().begin(), error.diagnostics().end());
         }
 }
 
@@ -65,7 +65,7 @@ void Wiring::makeTasks() {
         auto task = registry_.make(spec.type, spec.name);
         if (!task) {
             const YAML::Node type = child(spec.place, "type");
-            fault(type, spec.path() + ".type", "is " + spec.type + "; " + suggestion(spec.type, typesOf(registry_)));
+            report(type, spec.path() + ".type", "is " + spec.type + "; " + suggestion(spec.type, typesOf(registry_)));
             continue;
         }
         task->setEnvironment(deployment_.environment_);
@@ -82,9 +82,9 @@ void Wiring::loadProperties(uint64_t seed) {
         const std::string path = spec.path() + ".properties";
         for (PropertiesBase* properties : task->properties()) properties->load(reader, spec.properties, path);
         if (task->properties().empty()) reader.refuseUnknown(spec.properties, path, {});
-        if (reader.faults().empty()) continue;
+        if (reader.diagnostics().empty()) continue;
         faulty_.push_back(task.get());
-        faults_.insert(faults_.end(), reader.faults().begin(), reader.faults().end());
+        diagnostics_.insert(diagnostics_.end(), reader.diagnostics().begin(), reader.diagnostics().end());
     }
 }
 
@@ -103,7 +103,7 @@ void Wiring::connect() {
     for (const ConnectionSpec& connection : deployment_.spec_.connections) {
         const std::string text = connection.from + ">" + connection.to;
         if (std::find(made.begin(), made.end(), text) != made.end())
-            fault(connection.place, connection.path, "stands here twice: " + text);
+            report(connection.place, connection.path, "stands here twice: " + text);
         else
             connectOne(connection);
         made.push_back(text);
@@ -119,15 +119,15 @@ void Wiring::connectOne(const ConnectionSpec& connection) {
     InputPortBase* to = findInput(connection, *from);
     if (!to) return;
     if (&from->owner() == &to->owner())
-        return fault(connection.place, connection.path, "connects " + from->owner().name() + " with itself");
+        return report(connection.place, connection.path, "connects " + from->owner().name() + " with itself");
     if (!from->content().empty() && !to->content().empty() && from->content() != to->content())
-        return fault(connection.place, connection.path,
-                     fmt::format("{} gives {}, {} takes {}; the one cannot be the other", from->path(), from->content(),
-                                 to->path(), to->content()));
+        return report(connection.place, connection.path,
+                      fmt::format("{} gives {}, {} takes {}; the one cannot be the other", from->path(),
+                                  from->content(), to->path(), to->content()));
     if (!from->connectTo(*to, connection.policy))
-        return fault(connection.place, connection.path,
-                     fmt::format("{} is {}, {} is {}; types must be equal", from->path(), from->typeName(), to->path(),
-                                 to->typeName()));
+        return report(connection.place, connection.path,
+                      fmt::format("{} is {}, {} is {}; types must be equal", from->path(), from->typeName(), to->path(),
+                                  to->typeName()));
     deployment_.connections_.push_back({from, to, connection.policy, to->channels().back()});
 }
 
@@ -135,8 +135,8 @@ TaskContext* Wiring::findTask(const ConnectionSpec& connection, const char* key,
     const std::string name = splitPort(port).first;
     TaskContext* task = deployment_.task(name);
     if (!task && !deployment_.spec_.task(name))
-        fault(child(connection.place, key), connection.path + "." + key,
-              "there is no task " + name + "; " + suggestion(name, deployment_.spec_.taskNames()));
+        report(child(connection.place, key), connection.path + "." + key,
+               "there is no task " + name + "; " + suggestion(name, deployment_.spec_.taskNames()));
     return task;
 }
 
@@ -152,11 +152,11 @@ OutputPortBase* Wiring::findOutput(const ConnectionSpec& connection) {
     const YAML::Node place = child(connection.place, "from");
     try {
         if (OutputPortBase* port = task->makeOutput(name)) return port;
-        fault(place, connection.path + ".from",
-              fmt::format("{} has no output port {}; {}", task->name(), name,
-                          suggestion(name, namesOf(task->outputs()))));
+        report(place, connection.path + ".from",
+               fmt::format("{} has no output port {}; {}", task->name(), name,
+                           suggestion(name, namesOf(task->outputs()))));
     } catch (const std::exception& error) {
-        if (!isFaulty(*task)) fault(place, connection.path + ".from", error.what());
+        if (!isFaulty(*task)) report(place, connection.path + ".from", error.what());
     }
     return nullptr;
 }
@@ -169,11 +169,11 @@ InputPortBase* Wiring::findInput(const ConnectionSpec& connection, OutputPortBas
     const YAML::Node place = child(connection.place, "to");
     try {
         if (InputPortBase* port = task->makeInput(name, source)) return port;
-        fault(
+        report(
             place, connection.path + ".to",
             fmt::format("{} has no input port {}; {}", task->name(), name, suggestion(name, namesOf(task->inputs()))));
     } catch (const std::exception& error) {
-        if (!isFaulty(*task)) fault(place, connection.path + ".to", error.what());
+        if (!isFaulty(*task)) report(place, connection.path + ".to", error.what());
     }
     return nullptr;
 }
@@ -186,10 +186,10 @@ void Wiring::checkTasks() {
         if (isFaulty(*task)) continue;
         ConfigReader reader(deployment_.spec_.file, deployment_.spec_.origins);
         reader.setFallback(spec.place.Mark());
-        types::Problems problems;
-        task->check(problems);
-        reader.report(spec.properties, spec.path() + ".properties", problems);
-        faults_.insert(faults_.end(), reader.faults().begin(), reader.faults().end());
+        types::Diagnostics diagnostics;
+        task->check(diagnostics);
+        reader.report(spec.properties, spec.path() + ".properties", diagnostics);
+        diagnostics_.insert(diagnostics_.end(), reader.diagnostics().begin(), reader.diagnostics().end());
     }
 }
 
@@ -209,15 +209,15 @@ void Wiring::checkActivity(TaskContext& task, const TaskSpec& spec) {
     const YAML::Node place = child(spec.place, "activity");
     for (const std::string& name : spec.activity.trigger)
         if (!task.input(name))
-            fault(place, spec.path() + ".activity.trigger",
-                  "there is no input port " + name + "; " + suggestion(name, namesOf(task.inputs())));
+            report(place, spec.path() + ".activity.trigger",
+                   "there is no input port " + name + "; " + suggestion(name, namesOf(task.inputs())));
     const auto runs = [](const InputPortBase* port) { return port->connected() || port->need() == Need::Required; };
     const auto meant = [&](const ConnectionSpec& c) { return splitPort(c.to).first == task.name(); };
     const auto& inputs = task.inputs();
     const auto& connections = deployment_.spec_.connections;
-    const bool is_misread = std::ranges::any_of(deployment_.spec_.faults, [&](const types::Diagnostic& fault) {
-        return fault.path.starts_with(spec.path() + ".activity");
-    });
+    const bool is_misread = std::ranges::any_of(
+        deployment_.spec_.diagnostics,
+        [&](const types::Diagnostic& diagnostic) { return diagnostic.path.starts_with(spec.path() + ".activity"); });
     if (!is_misread && !child(place, "period").IsDefined() && !spec.activity.periodic() && !task.nextTime() &&
         task.wakeAfter() <= 0 && std::none_of(inputs.begin(), inputs.end(), runs) &&
         std::none_of(connections.begin(), connections.end(), meant))
@@ -233,8 +233,8 @@ void Wiring::checkLoops() {
         };
         const auto& specs = deployment_.spec_.connections;
         const auto spec = std::find_if(specs.begin(), specs.end(), made);
-        fault(spec->place, spec->path,
-              loop->text() + " closes a loop without a buffer; give one of its connections one");
+        report(spec->place, spec->path,
+               loop->text() + " closes a loop without a buffer; give one of its connections one");
     }
     deployment_.order_ = writersFirst(deployment_.tasks_, all);
 }

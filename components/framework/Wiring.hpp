@@ -27,13 +27,13 @@ private:
     void checkActivity(TaskContext& task, const TaskSpec& spec);
     void checkLoops();
     types::Diagnostic diagnostic(const YAML::Node& place, const std::string& path, const std::string& message) const;
-    void fault(const YAML::Node& place, const std::string& path, const std::string& message);
+    void report(const YAML::Node& place, const std::string& path, const std::string& message);
     /** A fault that another one may well have brought about: told after all those. */
     void consequence(const YAML::Node& place, const std::string& path, const std::string& message);
 
     Deployment& deployment_;
     Registry& registry_;
-    std::vector<types::Diagnostic> faults_, consequences_;
+    types::Diagnostics diagnostics_, consequences_;
     std::vector<const TaskContext*> faulty_;
 };
 

@@ -106,9 +106,9 @@ std::vector<YAML::Node> parseYaml(const std::string& text, const std::string& fi
         checkDocuments(text);
         return YAML::LoadAll(text);
     } catch (const YAML::DeepRecursion& error) {
-        throw types::ConfigError({{file, error.mark.line + 1, error.mark.column + 1, "", "is nested too deeply"}});
+        throw types::ConfigError({{"", "is nested too deeply", file, error.mark.line + 1, error.mark.column + 1}});
     } catch (const YAML::Exception& error) {
-        throw types::ConfigError({{file, error.mark.line + 1, error.mark.column + 1, "", yamlFault(text, error)}});
+        throw types::ConfigError({{"", yamlFault(text, error), file, error.mark.line + 1, error.mark.column + 1}});
     }
 }
 

@@ -77,8 +77,8 @@ bool isWord(const std::string& device) { return device == "auto" || device == "s
 /** Position in EGL's list; throws GlError when it has none such. */
 size_t indexOf(const std::string& device, size_t count) {
     size_t index = 0;
-    const auto [end, fault] = std::from_chars(device.data(), device.data() + device.size(), index);
-    if (fault != std::errc{} || end != device.data() + device.size() || index >= count)
+    const auto [end, diagnostic] = std::from_chars(device.data(), device.data() + device.size(), index);
+    if (diagnostic != std::errc{} || end != device.data() + device.size() || index >= count)
         throw GlError("EGL device '" + device + "': must be auto, software or a number below " + std::to_string(count) +
                       ", the devices that EGL lists here");
     return index;
@@ -184,7 +184,7 @@ void EglContext::watch() {
     renderer_ = textOf(GL_RENDERER);
     driver_ = textOf(GL_VERSION);
     software_ = renderer_.find("llvmpipe") != std::string::npos || renderer_.find("softpipe") != std::string::npos;
-    glGetInteger64v(GL_MAX_SHADER_STORAGE_BLOCK_SIZE, &most_storage_);
+    glGetInteger64v(GL_MAX_SHADER_STORAGE_BLOCK_SIZE, &max_storage_);
     programs_ = std::make_unique<Programs>();
     if (!wantsDebug()) return;
     glEnable(GL_DEBUG_OUTPUT);
@@ -211,9 +211,9 @@ std::string EglContext::fallback() const {
 }
 
 void EglContext::requireStorage(size_t bytes, const char* what) const {
-    if (bytes > static_cast<size_t>(most_storage_))
+    if (bytes > static_cast<size_t>(max_storage_))
         throw GlError(std::string(what) + " take " + std::to_string(bytes >> 20) + " MiB; shaders of " + renderer_ +
-                      " read at most " + std::to_string(most_storage_ >> 20) +
+                      " read at most " + std::to_string(max_storage_ >> 20) +
                       " MiB in one buffer: set deposit: cpu, or take fewer triangles or bins");
 }
 

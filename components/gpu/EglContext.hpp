@@ -79,7 +79,7 @@ private:
     std::thread::id thread_ = std::this_thread::get_id();
     std::string wanted_, renderer_, driver_;
     std::string error_;
-    int64_t most_storage_ = 0;  ///< Bytes that a shader may have in one buffer.
+    int64_t max_storage_ = 0;  ///< Bytes that a shader may have in one buffer.
     std::unique_ptr<Programs> programs_;
     bool software_ = false;
     bool robust_ = false;

@@ -59,22 +59,23 @@ struct LoggerConfig {
         visit(Field{"metadata", "", "keys and values that every stream of the log carries"}, self.metadata);
         visit(Field{"mcap", "", "how samples become ROS 2 messages; of a log that ends in .mcap"}, self.mcap);
     }
-    void check(types::Problems& problems) const {
+    void check(types::Diagnostics& diagnostics) const {
         const auto isLog = [](const std::filesystem::path& path) {
             return path.extension() == ".log" && !path.stem().empty();
         };
         const std::filesystem::path path = file;
         if (!isLog(path) && (path.extension() != ".mcap" || path.stem().empty()))
-            problems.push_back(
+            diagnostics.push_back(
                 {"file", "is '" + file + "'; it must be a file name that ends in .log or .mcap, as in harbour.0.log"});
         else if ((max_file_size || max_file_duration) && !sequenceNumber(file))
-            problems.push_back({"file", "is '" + file + "'; a log of several files must have a number, as in x.0.log"});
+            diagnostics.push_back(
+                {"file", "is '" + file + "'; a log of several files must have a number, as in x.0.log"});
         if (!property_file.empty() && (!isLog(property_file) || property_file.find('/') != std::string::npos))
-            problems.push_back({"property_file", "is '" + property_file +
-                                                     "'; it must be a file name that ends in .log, as in "
-                                                     "properties.0.log, or empty"});
+            diagnostics.push_back({"property_file", "is '" + property_file +
+                                                        "'; it must be a file name that ends in .log, as in "
+                                                        "properties.0.log, or empty"});
         if (std::filesystem::path(file).filename() == property_file)
-            problems.push_back({"property_file", "is '" + property_file + "', as `file` is; it must be another"});
+            diagnostics.push_back({"property_file", "is '" + property_file + "', as `file` is; it must be another"});
     }
 };
 

@@ -11,14 +11,16 @@ double powerOf(double decibels) { return std::pow(10.0, decibels / 10); }
 
 }  // namespace
 
-void AmbientConfig::check(types::Problems& problems) const {
+void AmbientConfig::check(types::Diagnostics& diagnostics) const {
     const std::pair<const char*, const std::optional<double>&> computed[] = {
         {"wind_m_s", wind_m_s}, {"bandwidth_khz", bandwidth_khz}, {"source_level_db", source_level_db}};
     if (!level_db && !wind_m_s && !bandwidth_khz && !source_level_db)
-        return problems.push_back({"", "has no value; give level_db, or wind_m_s, bandwidth_khz and source_level_db"});
+        return diagnostics.push_back(
+            {"", "has no value; give level_db, or wind_m_s, bandwidth_khz and source_level_db"});
     for (const auto& [name, value] : computed) {
-        if (level_db && value) problems.push_back({name, "stands beside level_db; give one of the two"});
-        if (!level_db && !value) problems.push_back({"", std::string("has no ") + name + "; without level_db it must"});
+        if (level_db && value) diagnostics.push_back({name, "stands beside level_db; give one of the two"});
+        if (!level_db && !value)
+            diagnostics.push_back({"", std::string("has no ") + name + "; without level_db it must"});
     }
 }
 

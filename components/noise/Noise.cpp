@@ -75,10 +75,10 @@ constexpr uint32_t high(uint64_t word) { return static_cast<uint32_t>(word >> 32
 
 }  // namespace
 
-void SpeckleConfig::check(types::Problems& problems) const {
+void SpeckleConfig::check(types::Diagnostics& diagnostics) const {
     const auto judge = [&](const char* name, const std::optional<double>& value, bool needed, const char* owner) {
-        if (needed && !value) problems.push_back({name, std::string("is absent; law: ") + owner + " needs it"});
-        if (!needed && value) problems.push_back({name, std::string("is given; it belongs to law: ") + owner});
+        if (needed && !value) diagnostics.push_back({name, std::string("is absent; law: ") + owner + " needs it"});
+        if (!needed && value) diagnostics.push_back({name, std::string("is given; it belongs to law: ") + owner});
     };
     judge("looks", looks, law == SpeckleLaw::Gamma, "gamma");
     judge("shape", shape, law == SpeckleLaw::K, "k");

@@ -31,7 +31,7 @@ struct SpeckleConfig {
         visit(Field{"mean", "1", "of the gaussian factor", 0, 1e6}, self.mean);
         visit(Field{"deviation", "1", "standard deviation of the gaussian factor", 0, 1e6}, self.deviation);
     }
-    void check(types::Problems& problems) const;
+    void check(types::Diagnostics& diagnostics) const;
 };
 
 /** Noise of the sea at the receiver: its mean intensity in a bin, or what it is computed from. */
@@ -53,7 +53,7 @@ struct AmbientConfig {
         visit(Field{"frequency_khz", "kHz", "of the sonar", 1e-3, 1e4}, self.frequency_khz);
         visit(Field{"shipping", "1", "activity of ships, which are heard below 1 kHz", 0, 1}, self.shipping);
     }
-    void check(types::Problems& problems) const;
+    void check(types::Diagnostics& diagnostics) const;
 };
 
 struct AdditiveConfig {

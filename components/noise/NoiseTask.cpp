@@ -15,8 +15,9 @@ bool NoiseTask::startHook() {
 void NoiseTask::updateHook() {
     types::SonarPtr ping;
     if (!clean.readNew(ping)) return;
-    if (const char* fault = ping->notIntensities())
-        return error(std::string("clean: ") + fault + "; connect a sonar's ping here, and a receiver after the noise");
+    if (const char* diagnostic = ping->notIntensities())
+        return error(std::string("clean: ") + diagnostic +
+                     "; connect a sonar's ping here, and a receiver after the noise");
     if (state() == framework::TaskState::RunTimeError) recover();
     noisy.write(withNoise(ping));
 }

@@ -59,7 +59,7 @@ void Title::add(cv::Mat& canvas) {
     column_ += width + 28;
 }
 
-void paintGround(cv::Mat& canvas, const Palette& palette, cv::Point bar) {
+void paintBackground(cv::Mat& canvas, const Palette& palette, cv::Point bar) {
     canvas.setTo(background);
     canvas.rowRange(0, FanLayout::title_height).setTo(title_ground);
     if (!fitsColourBar(canvas.size(), bar)) return;

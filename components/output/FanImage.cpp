@@ -78,7 +78,7 @@ void FanImage::buildTables() {
 
 void FanImage::buildGround() {
     ground_.create(layout_->size(), CV_8UC3);
-    paintGround(ground_, palette_, colour_bar);
+    paintBackground(ground_, palette_, colour_bar);
     overlay_.emplace(fanOverlay(*layout_));
     addColourBar(*overlay_, colour_bar, config_.dynamic_range_db);
     overlay_->finish();

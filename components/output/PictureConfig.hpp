@@ -52,7 +52,7 @@ struct RecordingConfig {
               self.video_rate);
     }
     /** The number in `file` and the kind of `video` must be such as can be written. */
-    void check(types::Problems& problems) const;
+    void check(types::Diagnostics& diagnostics) const;
 };
 
 /** The properties of every task that makes pictures of pings. */

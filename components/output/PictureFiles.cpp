@@ -32,11 +32,12 @@ bool isKnownVideo(const std::string& name) {
 
 }  // namespace
 
-void RecordingConfig::check(types::Problems& problems) const {
+void RecordingConfig::check(types::Diagnostics& diagnostics) const {
     if (file && !FilePattern::parse(*file))
-        problems.push_back({"file", "is '" + *file + "'; it must have one number and end in .png, as in fan_%06d.png"});
+        diagnostics.push_back(
+            {"file", "is '" + *file + "'; it must have one number and end in .png, as in fan_%06d.png"});
     if (video && !isKnownVideo(*video))
-        problems.push_back({"video", "is '" + *video + "'; it must end in .avi or .mp4"});
+        diagnostics.push_back({"video", "is '" + *video + "'; it must end in .avi or .mp4"});
 }
 
 void writePng(const std::filesystem::path& file, const types::Image& picture) {

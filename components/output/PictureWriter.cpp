@@ -8,15 +8,15 @@ PictureWriter::~PictureWriter() { end(); }
 
 void PictureWriter::write(types::ImagePtr picture) {
     std::unique_lock lock(mutex_);
-    changed_.wait(lock, [this] { return count_ < waiting_.size() || trouble_; });
-    if (trouble_) std::rethrow_exception(trouble_);
+    changed_.wait(lock, [this] { return count_ < waiting_.size() || error_; });
+    if (error_) std::rethrow_exception(error_);
     waiting_[(first_ + count_++) % waiting_.size()] = std::move(picture);
     changed_.notify_all();
 }
 
 void PictureWriter::close() {
     end();
-    if (trouble_) std::rethrow_exception(trouble_);
+    if (error_) std::rethrow_exception(error_);
 }
 
 void PictureWriter::end() {
@@ -45,7 +45,7 @@ void PictureWriter::loop() try {
     files_.close();
 } catch (...) {
     std::lock_guard lock(mutex_);
-    trouble_ = std::current_exception();
+    error_ = std::current_exception();
     changed_.notify_all();
 }
 

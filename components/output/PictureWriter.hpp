@@ -33,7 +33,7 @@ private:
     std::array<types::ImagePtr, 4> waiting_;
     size_t first_ = 0, count_ = 0;
     bool ending_ = false;
-    std::exception_ptr trouble_;
+    std::exception_ptr error_;
     std::thread thread_;
 };
 

@@ -7,9 +7,10 @@
 
 namespace insonify::output {
 
-void MosaicConfig::check(types::Problems& problems) const {
-    PictureConfig::check(problems);
-    if (width < 512) problems.push_back({"width", fmt::format("is {} px; two pictures side by side take 512", width)});
+void MosaicConfig::check(types::Diagnostics& diagnostics) const {
+    PictureConfig::check(diagnostics);
+    if (width < 512)
+        diagnostics.push_back({"width", fmt::format("is {} px; two pictures side by side take 512", width)});
 }
 
 std::unique_ptr<Painter> ScanMosaicTask::makePainter() {
@@ -72,7 +73,7 @@ void ScanMosaicTask::describeMap(std::string& text) const {
 }
 
 std::vector<std::string> ScanMosaicTask::notices() const {
-    std::vector<std::string> notices = aligner_.troubles();
+    std::vector<std::string> notices = aligner_.notices();
     if (held_ + left_out_ > 0) {
         std::string map;
         describeMap(map);

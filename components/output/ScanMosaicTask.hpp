@@ -24,7 +24,7 @@ struct MosaicConfig : PictureConfig {
               self.timeout);
     }
     /** As for any pictures; the two together are at least twice as wide as one. */
-    void check(types::Problems& problems) const;
+    void check(types::Diagnostics& diagnostics) const;
 };
 
 /** Shows the pings of a moving scanning sonar as they were heard, and beside that where they belong: see ScanMosaic.

@@ -54,7 +54,7 @@ void WaterfallImage::clear(const types::Sonar& ping) {
     rows_.create(history, water().width, CV_32F);
     rows_ = std::numeric_limits<float>::quiet_NaN();
     ground_.create(water().br().y + bottom_margin, width_, CV_8UC3);
-    paintGround(ground_, palette_, colour_bar);
+    paintBackground(ground_, palette_, colour_bar);
     overlay_.emplace(ground_.size());
     addColourBar(*overlay_, colour_bar, config_.dynamic_range_db);
     const double metres_per_pixel = (range_ > 0 ? range_ : 1) / water().width;

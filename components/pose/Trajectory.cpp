@@ -33,12 +33,13 @@ glm::dquat Waypoint::orientation() const {
            glm::angleAxis(types::radians(roll_deg), glm::dvec3(1, 0, 0));
 }
 
-void TrajectoryConfig::check(types::Problems& problems) const {
-    if (file && !waypoints.empty()) problems.push_back({"waypoints", "given besides file; only one of them may be"});
-    if (!file && waypoints.empty()) problems.push_back({"file", "is not given; give a file or at least one waypoint"});
+void TrajectoryConfig::check(types::Diagnostics& diagnostics) const {
+    if (file && !waypoints.empty()) diagnostics.push_back({"waypoints", "given besides file; only one of them may be"});
+    if (!file && waypoints.empty())
+        diagnostics.push_back({"file", "is not given; give a file or at least one waypoint"});
     for (size_t i = 1; i < waypoints.size(); ++i)
         if (!(waypoints[i].time > waypoints[i - 1].time))
-            problems.push_back(
+            diagnostics.push_back(
                 {"waypoints[" + std::to_string(i) + "].time", "is not after the one before; times must increase"});
 }
 

@@ -45,7 +45,7 @@ struct TrajectoryConfig {
         visit(Field{"waypoints", "", "instead of a file; a single one is a fixed pose"}, self.waypoints);
     }
     /** Exactly one source; the waypoints' times increase. */
-    void check(types::Problems& problems) const;
+    void check(types::Diagnostics& diagnostics) const;
 };
 
 /** A path through the world: position linear between stamps, orientation by slerp the shorter way; before the first

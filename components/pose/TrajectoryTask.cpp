@@ -4,12 +4,13 @@
 
 namespace insonify::pose {
 
-void TrajectoryTask::check(types::Problems& problems) const {
+void TrajectoryTask::check(types::Diagnostics& diagnostics) const {
     if (!config->file) return;
     try {
         Trajectory::fromCsv(inputPath(*config->file));
     } catch (const types::ConfigError& error) {
-        for (const types::Diagnostic& fault : error.diagnostics()) problems.push_back({"file", fault.text()});
+        for (const types::Diagnostic& diagnostic : error.diagnostics())
+            diagnostics.push_back({"file", diagnostic.text()});
     }
 }
 

@@ -21,7 +21,7 @@ public:
     framework::Properties<TrajectoryConfig> config{this};
     framework::OutputPort<types::Pose> pose{this, "pose", "body in the world: x north, y west, z up"};
 
-    void check(types::Problems& problems) const override;
+    void check(types::Diagnostics& diagnostics) const override;
     bool finished() const override { return finished_; }
     /** Time of the last stamp; 0 before it is configured [s]. */
     double duration() const { return trajectory_ ? trajectory_->stamps().back().time : 0; }

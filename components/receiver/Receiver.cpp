@@ -59,15 +59,15 @@ double sandLevelDb(const types::Sonar& ping, double r) {
 
 }  // namespace
 
-void CodeConfig::check(types::Problems& problems) const {
-    if (bits != 8 && bits != 16) problems.push_back({"bits", fmt::format("is {}; must be 8 or 16", bits)});
+void CodeConfig::check(types::Diagnostics& diagnostics) const {
+    if (bits != 8 && bits != 16) diagnostics.push_back({"bits", fmt::format("is {}; must be 8 or 16", bits)});
 }
 
-void ReceiverConfig::check(types::Problems& problems) const {
+void ReceiverConfig::check(types::Diagnostics& diagnostics) const {
     if (!brightness) return;
-    if (tvg) problems.push_back({"brightness", "is given with tvg; it makes up for spreading itself"});
+    if (tvg) diagnostics.push_back({"brightness", "is given with tvg; it makes up for spreading itself"});
     if (output != Output::Intensity)
-        problems.push_back({"brightness", "is given with another output; it scales output: intensity"});
+        diagnostics.push_back({"brightness", "is given with another output; it scales output: intensity"});
 }
 
 double unclampedTvgDb(const TvgConfig& tvg, double r) {

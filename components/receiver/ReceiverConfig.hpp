@@ -54,7 +54,7 @@ struct CodeConfig {
         visit(Field{"dynamic_range_db", "dB", "law log: below full_scale_db, the level of code 0", 0.1, 3000},
               self.dynamic_range_db);
     }
-    void check(types::Problems& problems) const;
+    void check(types::Diagnostics& diagnostics) const;
 };
 
 /** The brightness of the simulator of Rock, from 0 to 1: bins between 0 and 1 for a display, whatever the range.
@@ -100,7 +100,7 @@ struct ReceiverConfig {
         visit(Field{"code", "", "used by output code"}, self.code);
         visit(Field{"brightness", "", "in place of tvg, bins for a display; absent: none"}, self.brightness);
     }
-    void check(types::Problems& problems) const;
+    void check(types::Diagnostics& diagnostics) const;
 };
 
 }  // namespace insonify::receiver

@@ -14,8 +14,8 @@ bool ReceiverTask::configureHook() {
 void ReceiverTask::updateHook() {
     types::SonarPtr sample;
     if (!intensity.readNew(sample)) return;
-    if (const char* fault = sample->notIntensities())
-        return error(std::string("intensity: ") + fault + "; connect the noise, or a sonar's ping");
+    if (const char* diagnostic = sample->notIntensities())
+        return error(std::string("intensity: ") + diagnostic + "; connect the noise, or a sonar's ping");
     if (state() == framework::TaskState::RunTimeError) recover();
     ping.write(received(sample));
 }

@@ -72,14 +72,15 @@ framework::OutputPortBase* ReplayTask::makeOutput(const std::string& stream) {
     return outlets_[index] ? &outlets_[index]->port() : nullptr;
 }
 
-void ReplayTask::check(types::Problems& problems) const {
+void ReplayTask::check(types::Diagnostics& diagnostics) const {
     try {
         const double span = spanOf(*log::openLog(inputPath(config->file)));
         if (config->from > span)
-            problems.push_back(
+            diagnostics.push_back(
                 {"from", fmt::format("is {:g} s; the log ends {:g} s after its start", config->from, span)});
     } catch (const types::ConfigError& error) {
-        for (const types::Diagnostic& diagnostic : error.diagnostics()) problems.push_back({"file", diagnostic.text()});
+        for (const types::Diagnostic& diagnostic : error.diagnostics())
+            diagnostics.push_back({"file", diagnostic.text()});
     }
 }
 

@@ -48,7 +48,7 @@ public:
 
     /** Throws ConfigError when the log cannot be read or has no such stream; null when its type is not known. */
     framework::OutputPortBase* makeOutput(const std::string& stream) override;
-    void check(types::Problems& problems) const override;
+    void check(types::Diagnostics& diagnostics) const override;
     std::vector<std::string> notices() const override;
     bool finished() const override { return finished_; }
     std::optional<types::Time> nextTime() const override;

@@ -37,9 +37,9 @@ void inOrder(const types::Sonar& ping, ImageOrder order, Put&& put) {
 
 /** Levels of eight bits, 255 + (level - reference) * per_db rounded. Linear bins are not given a logarithm each: the
  *  least bin of every level is, and the first 16 bits of a float tell where among these to begin. */
-class EightBits {
+class LevelQuantiser {
 public:
-    EightBits(const types::Sonar& ping, const SonarOptions& options)
+    LevelQuantiser(const types::Sonar& ping, const SonarOptions& options)
         : scale_(options.scale), reference_(referenceDb(ping, options)), per_db_(255 / options.dynamic_range_db) {
         if (scale_ == BinScale::Decibel) return;
         for (size_t level = 1; level < 256; ++level)
@@ -91,14 +91,14 @@ Vector3 directionOf(double bearing_rad, SensorFrame frame) {
     return frame == SensorFrame::ZForward ? Vector3{0, -port, ahead} : Vector3{ahead, port, 0};
 }
 
-ReturnRule::ReturnRule(const types::Sonar& ping, const SonarOptions& options) : ping_(ping) {
+DetectionThreshold::DetectionThreshold(const types::Sonar& ping, const SonarOptions& options) : ping_(ping) {
     least_ = binAt(referenceDb(ping, options) + options.threshold_db, options.scale);
-    const float least_echo = options.scale == BinScale::Linear ? std::numeric_limits<float>::denorm_min()
-                                                               : std::nextafter(static_cast<float>(nothing_db), 0.0f);
-    least_ = std::max(least_, least_echo);
+    const float min_echo = options.scale == BinScale::Linear ? std::numeric_limits<float>::denorm_min()
+                                                             : std::nextafter(static_cast<float>(nothing_db), 0.0f);
+    least_ = std::max(least_, min_echo);
 }
 
-std::optional<uint32_t> ReturnRule::firstOf(uint32_t beam) const {
+std::optional<uint32_t> DetectionThreshold::firstOf(uint32_t beam) const {
     const float* bins = ping_.bins.data() + size_t{beam} * ping_.bin_count;
     const float* first = std::find_if(bins, bins + ping_.bin_count, [&](float bin) { return isReturn(bin); });
     if (first == bins + ping_.bin_count) return std::nullopt;
@@ -110,8 +110,9 @@ void fillImage(const types::Sonar& ping, const SonarOptions& options, SonarImage
     if (options.dtype == ImageType::Uint8) {
         image.dtype = SonarImageData::uint8;
         image.data.resize(ping.bins.size());
-        inOrder(ping, options.order,
-                [&, level = EightBits(ping, options)](size_t place, float bin) { image.data[place] = level(bin); });
+        inOrder(ping, options.order, [&, level = LevelQuantiser(ping, options)](size_t place, float bin) {
+            image.data[place] = level(bin);
+        });
     } else {
         image.dtype = SonarImageData::float32;
         image.data.resize(ping.bins.size() * sizeof(float));

@@ -15,9 +15,9 @@ inline float binCentre(const types::Sonar& ping, uint32_t k) { return static_cas
 Vector3 directionOf(double bearing_rad, SensorFrame frame);
 
 /** What is a return of one ping: a threshold on its bins. */
-class ReturnRule {
+class DetectionThreshold {
 public:
-    ReturnRule(const types::Sonar& ping, const SonarOptions& options);
+    DetectionThreshold(const types::Sonar& ping, const SonarOptions& options);
     bool isReturn(float bin) const { return bin >= least_; }
     /** The first bin of a beam that is a return. */
     std::optional<uint32_t> firstOf(uint32_t beam) const;

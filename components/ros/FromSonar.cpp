@@ -100,7 +100,7 @@ void convert(const types::Sonar& ping, const SonarOptions& options, SonarRanges&
     message.flags.assign(ping.beam_count, {DetectionFlag::bad_filter});
     message.intensities.assign(ping.beam_count, 0);
     message.ranges.assign(ping.beam_count, std::numeric_limits<float>::quiet_NaN());
-    const ReturnRule rule(ping, options);
+    const DetectionThreshold rule(ping, options);
     for (uint32_t beam = 0; beam < ping.beam_count; ++beam)
         if (const auto bin = rule.firstOf(beam)) {
             message.flags[beam].flag = DetectionFlag::ok;
@@ -115,7 +115,7 @@ void convert(const types::Sonar& ping, const SonarOptions& options, PointCloud2&
     message.point_step = 0;
     for (const char* name : {"x", "y", "z", "intensity"}) addField(name, message);
     message.data.clear();
-    const ReturnRule rule(ping, options);
+    const DetectionThreshold rule(ping, options);
     for (uint32_t beam = 0; beam < ping.beam_count; ++beam) {
         if (ping.bearings[beam].isUnknown()) continue;
         const Vector3 direction = directionOf(ping.bearings[beam].rad, SensorFrame::XForward);
@@ -138,7 +138,7 @@ void convert(const types::Sonar& ping, const SonarOptions& options, LaserScan& m
     message.range_max = static_cast<float>(ping.binStart(ping.bin_count));
     message.ranges.assign(ping.beam_count, std::numeric_limits<float>::infinity());
     message.intensities.assign(ping.beam_count, 0);
-    const ReturnRule rule(ping, options);
+    const DetectionThreshold rule(ping, options);
     for (uint32_t beam = 0; beam < ping.beam_count; ++beam)
         if (const auto bin = rule.firstOf(beam)) {
             message.ranges[beam] = binCentre(ping, *bin);

@@ -72,7 +72,8 @@ constexpr double convex_body_db = -9.23;
 /** Fills a described struct from values by key; collects what is wrong. */
 class ValueReader {
 public:
-    ValueReader(const AcousticValues& values, types::Problems& problems) : values_(values), problems_(problems) {}
+    ValueReader(const AcousticValues& values, types::Diagnostics& diagnostics)
+        : values_(values), problems_(diagnostics) {}
 
     template <class T>
     void operator()(const types::Field& field, std::optional<T>& value) {
@@ -117,7 +118,7 @@ private:
     }
 
     const AcousticValues& values_;
-    types::Problems& problems_;
+    types::Diagnostics& problems_;
     std::vector<std::string> known_;
 };
 
@@ -142,16 +143,16 @@ void Acoustics::applyTo(types::Material& target) const {
     target.has_acoustics = true;
 }
 
-void Acoustics::check(types::Problems& problems) const {
-    if (sediment && material) problems.push_back({"material", "stands beside `sediment`; give one of the two"});
+void Acoustics::check(types::Diagnostics& diagnostics) const {
+    if (sediment && material) diagnostics.push_back({"material", "stands beside `sediment`; give one of the two"});
 }
 
-Acoustics readAcoustics(const AcousticValues& values, types::Problems& problems) {
+Acoustics readAcoustics(const AcousticValues& values, types::Diagnostics& diagnostics) {
     Acoustics acoustics;
-    ValueReader reader(values, problems);
+    ValueReader reader(values, diagnostics);
     Acoustics::describe(acoustics, reader);
     reader.refuseUnknown();
-    acoustics.check(problems);
+    acoustics.check(diagnostics);
     return acoustics;
 }
 

@@ -70,7 +70,7 @@ struct Acoustics {
     std::optional<double> lambert_db, reflection, roughness_slope, reflectivity;
 
     void applyTo(types::Material& target) const;
-    void check(types::Problems& problems) const;
+    void check(types::Diagnostics& diagnostics) const;
 
     template <class Self, class V>
     static void describe(Self& self, V& visit) {
@@ -91,7 +91,7 @@ using AcousticValue = std::variant<std::monostate, double, std::string>;
 using AcousticValues = std::map<std::string, AcousticValue>;
 
 /** Acoustics from the keys and values of a file; what is wrong with them goes to `problems`. */
-Acoustics readAcoustics(const AcousticValues& values, types::Problems& problems);
+Acoustics readAcoustics(const AcousticValues& values, types::Diagnostics& diagnostics);
 
 }  // namespace insonify::scene
 

@@ -11,8 +11,8 @@
 #include <span>
 #include <utility>
 
+#include "components/scene/CoarseMesh.hpp"
 #include "components/scene/Cones.hpp"
-#include "components/scene/Outline.hpp"
 
 namespace insonify::scene {
 namespace {
@@ -35,7 +35,7 @@ struct Box {
 /** How many sizes of patches, each 4 times as large as the one before, are smaller than so many triangles. */
 int patchSizesBelow(size_t triangles) {
     int count = 0;
-    for (size_t size = kPatchTriangles; size < triangles; size *= 4) ++count;
+    for (size_t size = min_node_triangles; size < triangles; size *= 4) ++count;
     return count;
 }
 
@@ -46,19 +46,19 @@ public:
 
     /** One patch of `triangles`, with patches and clusters below it. */
     void addPatch(std::span<Triangle> triangles, const types::Cluster& run) {
-        const size_t patch = mesh_.patches.size();
-        mesh_.patches.push_back({.first_cluster = static_cast<uint32_t>(mesh_.clusters.size())});
+        const size_t node = mesh_.cluster_nodes.size();
+        mesh_.cluster_nodes.push_back({.first_cluster = static_cast<uint32_t>(mesh_.clusters.size())});
         split(triangles, run);
-        types::Patch& done = mesh_.patches[patch];
+        types::ClusterNode& done = mesh_.cluster_nodes[node];
         done.cluster_count = static_cast<uint32_t>(mesh_.clusters.size()) - done.first_cluster;
-        done.next = static_cast<uint32_t>(mesh_.patches.size());
+        done.next = static_cast<uint32_t>(mesh_.cluster_nodes.size());
     }
 
 private:
     /** Halves `triangles` at the median of the longest axis until each part is small enough for a cluster; what is
      *  the first to be small enough for a size of patch is one. */
     void split(std::span<Triangle> triangles, types::Cluster cluster) {
-        if (triangles.size() <= kClusterTriangles) {
+        if (triangles.size() <= cluster_triangles) {
             cluster.index_count = static_cast<uint32_t>(3 * triangles.size());
             mesh_.clusters.push_back(cluster);
             return;
@@ -114,13 +114,13 @@ void bound(const types::Mesh& mesh, types::Cluster& cluster) {
     setBox(cluster, box);
 }
 
-void bound(const types::Mesh& mesh, types::Patch& patch) {
+void bound(const types::Mesh& mesh, types::ClusterNode& node) {
     Box box;
-    for (const types::Cluster& cluster : std::span(mesh.clusters).subspan(patch.first_cluster, patch.cluster_count)) {
+    for (const types::Cluster& cluster : std::span(mesh.clusters).subspan(node.first_cluster, node.cluster_count)) {
         box.add(cluster.centre - cluster.half);
         box.add(cluster.centre + cluster.half);
     }
-    setBox(patch, box);
+    setBox(node, box);
 }
 
 template <class T>
@@ -166,7 +166,7 @@ void orderVertices(types::Mesh& mesh) {
 }  // namespace
 
 void buildClusters(types::Mesh& mesh) {
-    if (mesh.indices.size() / 3 > kClusteredFrom) {
+    if (mesh.indices.size() / 3 > clustered_from) {
         for (glm::vec3& position : mesh.positions) position += 0.0f;  // -0 is 0, and not another place
         if (mesh.uvs.empty()) weld(mesh);
         splitRuns(mesh);
@@ -176,9 +176,9 @@ void buildClusters(types::Mesh& mesh) {
         bound(mesh, cluster);
     }
     orderVertices(mesh);
-    if (mesh.patches.empty()) return;
-    for (types::Patch& patch : mesh.patches) bound(mesh, patch);
-    findOutline(mesh);
+    if (mesh.cluster_nodes.empty()) return;
+    for (types::ClusterNode& node : mesh.cluster_nodes) bound(mesh, node);
+    findCoarseMesh(mesh);
     findCones(mesh);
 }
 

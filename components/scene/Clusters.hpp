@@ -6,11 +6,11 @@
 namespace insonify::scene {
 
 /** Meshes of more triangles than this are split into compact clusters, so that parts out of view can be culled [1]. */
-constexpr size_t kClusteredFrom = 10'000;
+constexpr size_t clustered_from = 10'000;
 /** Largest cluster of such a mesh; most have half as many at least [triangles]. */
-constexpr size_t kClusterTriangles = 250;
+constexpr size_t cluster_triangles = 250;
 /** Smallest kind of patch, which has half as many at least; each larger kind has 4 times as many [triangles]. */
-constexpr size_t kPatchTriangles = 1000;
+constexpr size_t min_node_triangles = 1000;
 
 /** Orders triangles and vertices for the GPU. On entry `mesh.clusters` are runs of one material; on return each has its
  *  box, and runs of a large mesh are split where their triangles lie apart, with patches over them, an outline of

@@ -8,7 +8,7 @@
 namespace insonify::scene {
 namespace {
 
-constexpr std::string_view kMark = "insonify meshes 1\n";
+constexpr std::string_view mesh_mark = "insonify meshes 1\n";
 
 class Writer {
 public:
@@ -56,9 +56,9 @@ public:
         return count;
     }
     void expectMark() {
-        if (bytes_.size() < kMark.size() || std::memcmp(bytes_.data(), kMark.data(), kMark.size()) != 0)
+        if (bytes_.size() < mesh_mark.size() || std::memcmp(bytes_.data(), mesh_mark.data(), mesh_mark.size()) != 0)
             throw std::runtime_error("the mark is missing");
-        bytes_ = bytes_.subspan(kMark.size());
+        bytes_ = bytes_.subspan(mesh_mark.size());
     }
     void expectEnd() const {
         if (!bytes_.empty()) throw std::runtime_error("more follows than was announced");
@@ -89,7 +89,7 @@ void check(const FileMeshes& meshes) {
 
 bool writeReply(const MeshReply& reply, std::FILE* file) {
     Writer writer(file);
-    writer.bytes(kMark.data(), kMark.size());
+    writer.bytes(mesh_mark.data(), mesh_mark.size());
     writer.array(reply.refusal);
     writer.value(static_cast<uint64_t>(reply.meshes.materials.size()));
     for (const std::string& name : reply.meshes.materials) writer.array(name);

@@ -22,7 +22,7 @@ namespace insonify::scene {
 namespace {
 
 /** Instances and nodes together may be this many. */
-constexpr size_t kMaxObjects = 1'000'000;
+constexpr size_t max_objects = 1'000'000;
 
 glm::dmat4 compose(glm::dvec3 translation, glm::dquat rotation, glm::dvec3 scale) {
     return glm::scale(glm::translate(glm::dmat4(1), translation) * glm::mat4_cast(rotation), scale);
@@ -166,8 +166,8 @@ private:
             ++flat_objects_;
             return;
         }
-        if (geometry_.objects.size() == kMaxObjects)
-            fail(path, fmt::format("brings the file over {} objects", kMaxObjects));
+        if (geometry_.objects.size() == max_objects)
+            fail(path, fmt::format("brings the file over {} objects", max_objects));
         geometry_.objects.push_back({name, mesh, world_from_object});
         scene_.object_nodes.push_back(static_cast<int>(scene_.nodes.size()) - 1);
         scene_.node_from_object.push_back(node_from_object);

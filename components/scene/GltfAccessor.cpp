@@ -13,7 +13,7 @@ namespace insonify::scene {
 namespace {
 
 /** An accessor without data costs a file nothing, so its count needs a limit of its own. */
-constexpr size_t kMaxEmptyCount = size_t{1} << 24;
+constexpr size_t max_empty_count = size_t{1} << 24;
 
 size_t componentSize(int type) {
     switch (type) {
@@ -125,8 +125,8 @@ GltfAccessors::Layout GltfAccessors::layout(const tinygltf::Accessor& accessor, 
     layout.element_size = componentSize(accessor.componentType) *
                           static_cast<size_t>(tinygltf::GetNumComponentsInType(static_cast<uint32_t>(accessor.type)));
     if (accessor.bufferView >= 0) return locate(layout, accessor.bufferView, accessor.byteOffset, accessor.count, path);
-    if (accessor.count > kMaxEmptyCount)
-        fail(path + ".count", fmt::format("is {} without data; may be up to {}", accessor.count, kMaxEmptyCount));
+    if (accessor.count > max_empty_count)
+        fail(path + ".count", fmt::format("is {} without data; may be up to {}", accessor.count, max_empty_count));
     return layout;
 }
 

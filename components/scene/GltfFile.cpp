@@ -14,28 +14,28 @@ namespace insonify::scene {
 namespace {
 
 /** Deeper JSON would overflow the stack of the parser, which is recursive. */
-constexpr int kMaxNesting = 200;
+constexpr int max_nesting = 200;
 /** tinygltf and .glb count bytes in 32 bits; its sizes are cast to int. */
-constexpr uintmax_t kMaxBytes = 0x7fffffff;
+constexpr uintmax_t max_bytes = 0x7fffffff;
 
 /** What a file may require: read, or without influence on shape. */
-constexpr std::string_view kSupported[] = {"KHR_mesh_quantization",
-                                           "KHR_texture_transform",
-                                           "EXT_mesh_gpu_instancing",
-                                           "KHR_lights_punctual",
-                                           "KHR_materials_unlit",
-                                           "KHR_materials_emissive_strength",
-                                           "KHR_materials_clearcoat",
-                                           "KHR_materials_ior",
-                                           "KHR_materials_sheen",
-                                           "KHR_materials_specular",
-                                           "KHR_materials_transmission",
-                                           "KHR_materials_volume",
-                                           "KHR_materials_iridescence",
-                                           "KHR_materials_anisotropy",
-                                           "KHR_materials_pbrSpecularGlossiness",
-                                           "KHR_materials_variants",
-                                           "KHR_xmp_json_ld"};
+constexpr std::string_view supported_extensions[] = {"KHR_mesh_quantization",
+                                                     "KHR_texture_transform",
+                                                     "EXT_mesh_gpu_instancing",
+                                                     "KHR_lights_punctual",
+                                                     "KHR_materials_unlit",
+                                                     "KHR_materials_emissive_strength",
+                                                     "KHR_materials_clearcoat",
+                                                     "KHR_materials_ior",
+                                                     "KHR_materials_sheen",
+                                                     "KHR_materials_specular",
+                                                     "KHR_materials_transmission",
+                                                     "KHR_materials_volume",
+                                                     "KHR_materials_iridescence",
+                                                     "KHR_materials_anisotropy",
+                                                     "KHR_materials_pbrSpecularGlossiness",
+                                                     "KHR_materials_variants",
+                                                     "KHR_xmp_json_ld"};
 
 std::string readBytes(const std::filesystem::path& file) {
     std::error_code error;
@@ -44,7 +44,7 @@ std::string readBytes(const std::filesystem::path& file) {
     if (!std::filesystem::is_regular_file(file, error))
         throw std::runtime_error("is not a file; give the path of a .gltf or .glb file");
     const uintmax_t size = std::filesystem::file_size(file, error);
-    if (error || size > kMaxBytes) throw std::runtime_error("is larger than 2 GiB; split it");
+    if (error || size > max_bytes) throw std::runtime_error("is larger than 2 GiB; split it");
     std::string bytes(static_cast<size_t>(size), '\0');
     std::ifstream stream(file, std::ios::binary);
     if (!stream.read(bytes.data(), static_cast<std::streamsize>(size)))
@@ -106,8 +106,8 @@ int nesting(std::string_view json) {
 
 void checkBytes(const std::string& bytes) {
     if (bytes.empty()) throw std::runtime_error("is empty; must be a glTF 2.0 file (.gltf or .glb)");
-    if (const int depth = nesting(jsonPart(bytes)); depth > kMaxNesting)
-        throw std::runtime_error(fmt::format("nests JSON {} levels deep; may be up to {}", depth, kMaxNesting));
+    if (const int depth = nesting(jsonPart(bytes)); depth > max_nesting)
+        throw std::runtime_error(fmt::format("nests JSON {} levels deep; may be up to {}", depth, max_nesting));
     if (isBinary(bytes) && bytes.size() >= 12) {
         uint32_t length;
         std::memcpy(&length, bytes.data() + 8, sizeof length);
@@ -128,13 +128,13 @@ std::string remedy(const std::string& extension) {
 }
 
 void checkExtensions(GltfFile& gltf) {
-    std::vector<types::Diagnostic> refused;
-    const auto supported = [](const std::string& name) { return std::ranges::count(kSupported, name) > 0; };
+    types::Diagnostics refused;
+    const auto supported = [](const std::string& name) { return std::ranges::count(supported_extensions, name) > 0; };
     const auto& required = gltf.model.extensionsRequired;
     for (const std::string& name : required)
         if (!supported(name))
             refused.push_back(
-                {gltf.name, 0, 0, "extensionsRequired", fmt::format("{} cannot be read; {}", name, remedy(name))});
+                {"extensionsRequired", fmt::format("{} cannot be read; {}", name, remedy(name)), gltf.name});
     if (!refused.empty()) throw types::ConfigError(std::move(refused));
     for (const std::string& name : gltf.model.extensionsUsed)
         if (!supported(name))

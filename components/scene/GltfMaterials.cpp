@@ -15,7 +15,7 @@ namespace insonify::scene {
 namespace {
 
 /** Larger images are refused before they are decoded [pixels a side]. */
-constexpr int kMaxImageSide = 8192;
+constexpr int max_image_side = 8192;
 
 /** The values of a JSON object by key. */
 AcousticValues valuesOf(const tinygltf::Value& object) {
@@ -29,11 +29,12 @@ AcousticValues valuesOf(const tinygltf::Value& object) {
     return values;
 }
 
-void readExtras(const tinygltf::Value& extras, types::Material& material, types::Problems& problems) {
+void readExtras(const tinygltf::Value& extras, types::Material& material, types::Diagnostics& diagnostics) {
     if (!extras.IsObject() || !extras.Has("acoustics")) return;
     const tinygltf::Value& json = extras.Get("acoustics");
-    if (!json.IsObject()) return problems.push_back({"", "must be an object such as {\"sediment\": \"medium_sand\"}"});
-    readAcoustics(valuesOf(json), problems).applyTo(material);
+    if (!json.IsObject())
+        return diagnostics.push_back({"", "must be an object such as {\"sediment\": \"medium_sand\"}"});
+    readAcoustics(valuesOf(json), diagnostics).applyTo(material);
 }
 
 /** Bytes of an encoded image; empty when its file was not found. */
@@ -52,9 +53,9 @@ types::NormalMap decode(std::pair<const uint8_t*, const uint8_t*> bytes) {
     const bool is_known = isPngOrJpeg({reinterpret_cast<const char*>(begin), static_cast<size_t>(size)});
     if (!is_known || !stbi_info_from_memory(begin, size, &map.width, &map.height, &channels))
         throw std::runtime_error("its image is neither PNG nor JPEG");
-    if (map.width > kMaxImageSide || map.height > kMaxImageSide)
+    if (map.width > max_image_side || map.height > max_image_side)
         throw std::runtime_error(fmt::format("its image has {} x {} pixels; may have up to {} a side", map.width,
-                                             map.height, kMaxImageSide));
+                                             map.height, max_image_side));
     const std::unique_ptr<stbi_uc, decltype(&stbi_image_free)> pixels(
         stbi_load_from_memory(begin, size, &map.width, &map.height, &channels, 3), stbi_image_free);
     if (!pixels) throw std::runtime_error(fmt::format("its image is damaged ({})", stbi_failure_reason()));
@@ -137,20 +138,20 @@ NormalMapping mapping(const tinygltf::NormalTextureInfo& texture) {
 std::vector<std::optional<NormalMapping>> readMaterials(const GltfFile& gltf, const GltfAccessors& accessors,
                                                         types::Geometry& geometry) {
     std::vector<std::optional<NormalMapping>> mappings;
-    std::vector<types::Diagnostic> faults;
+    types::Diagnostics diagnostics;
     NormalMaps maps(gltf, accessors, geometry);
     for (const tinygltf::Material& from : gltf.model.materials) {
         const size_t index = geometry.materials.size();
         types::Material material;
         material.name = from.name.empty() ? fmt::format("material_{}", index) : from.name;
         material.double_sided = from.doubleSided;
-        types::Problems problems;
-        readExtras(from.extras, material, problems);
-        for (const types::Problem& problem : problems)
-            faults.push_back({gltf.name, 0, 0,
-                              fmt::format("materials[{}].extras.acoustics{}{}", index, problem.path.empty() ? "" : ".",
-                                          problem.path),
-                              problem.message});
+        types::Diagnostics found;
+        readExtras(from.extras, material, found);
+        for (const types::Diagnostic& each : found) {
+            const std::string below = each.path.empty() ? "" : "." + each.path;
+            diagnostics.push_back(
+                {fmt::format("materials[{}].extras.acoustics{}", index, below), each.message, gltf.name});
+        }
         if (from.normalTexture.index >= 0) {
             material.normal_map = maps.find(from.normalTexture.index, material.name);
             const auto scale = static_cast<float>(from.normalTexture.scale);
@@ -159,7 +160,7 @@ std::vector<std::optional<NormalMapping>> readMaterials(const GltfFile& gltf, co
         mappings.push_back(material.normal_map < 0 ? std::nullopt : std::optional(mapping(from.normalTexture)));
         geometry.materials.push_back(std::move(material));
     }
-    if (!faults.empty()) throw types::ConfigError(std::move(faults));
+    if (!diagnostics.empty()) throw types::ConfigError(std::move(diagnostics));
     return mappings;
 }
 

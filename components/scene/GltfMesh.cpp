@@ -13,7 +13,7 @@ namespace insonify::scene {
 namespace {
 
 /** A small file may refer to the same data any number of times; this many vertices and indices end it. */
-constexpr size_t kMaxElements = 200'000'000;
+constexpr size_t max_elements = 200'000'000;
 
 /** Corners of triangles from corners of a list, strip or fan; `restart` ends a strip or fan. */
 std::vector<uint32_t> triangulate(const std::vector<uint32_t>& corners, int mode, uint32_t restart) {
@@ -57,8 +57,8 @@ void GltfMeshes::fail(const std::string& path, const std::string& message) const
 
 void GltfMeshes::charge(size_t elements, const std::string& path) {
     elements_ += elements;
-    if (elements_ > kMaxElements)
-        fail(path, fmt::format("brings the file over {} vertices and indices; split it", kMaxElements));
+    if (elements_ > max_elements)
+        fail(path, fmt::format("brings the file over {} vertices and indices; split it", max_elements));
 }
 
 int GltfMeshes::material(const tinygltf::Primitive& primitive, const std::string& path) {

@@ -19,7 +19,7 @@
 namespace insonify::scene {
 namespace {
 
-constexpr const char* kRemedy = "; open the model in its own program and export it again, best as .glb";
+constexpr const char* remedy = "; open the model in its own program and export it again, best as .glb";
 
 [[noreturn]] void refuse(const std::filesystem::path& file, const std::string& message) {
     throw types::ConfigError(file.string(), "", message);
@@ -135,9 +135,9 @@ void await(pid_t process, const std::filesystem::path& file, const ReadLimits& l
     int status = 0;
     while (waitpid(process, &status, 0) < 0)
         if (errno != EINTR) return;
-    if (WIFSIGNALED(status)) refuse(file, causeOf(WTERMSIG(status), limits) + kRemedy);
+    if (WIFSIGNALED(status)) refuse(file, causeOf(WTERMSIG(status), limits) + remedy);
     if (WEXITSTATUS(status) != 0)
-        refuse(file, fmt::format("cannot be read: its reader ended with {}{}", WEXITSTATUS(status), kRemedy));
+        refuse(file, fmt::format("cannot be read: its reader ended with {}{}", WEXITSTATUS(status), remedy));
 }
 
 }  // namespace
@@ -168,7 +168,7 @@ FileMeshes readMeshesApart(const std::filesystem::path& file, bool is_y_up, cons
     } catch (const std::runtime_error& failure) {
         refuse(file, fmt::format("cannot be read: the answer of {} is damaged: {}", mesh_reader, failure.what()));
     }
-    if (!reply.refusal.empty()) refuse(file, fmt::format("cannot be read: {}{}", reply.refusal, kRemedy));
+    if (!reply.refusal.empty()) refuse(file, fmt::format("cannot be read: {}{}", reply.refusal, remedy));
     return std::move(reply.meshes);
 }
 

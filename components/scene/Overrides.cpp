@@ -38,7 +38,7 @@ void overrideObject(types::Geometry& geometry, types::Object& object, const Acou
     geometry.meshes.push_back(std::move(mesh));
 }
 
-types::Problem unknown(const Scene& scene, const std::string& name) {
+types::Diagnostic unknown(const Scene& scene, const std::string& name) {
     std::set<std::string> names;
     for (const types::Material& material : scene.geometry->materials) names.insert(material.name);
     for (const Node& node : scene.nodes) names.insert(node.name);
@@ -52,7 +52,7 @@ types::Problem unknown(const Scene& scene, const std::string& name) {
 }  // namespace
 
 types::GeometryPtr overrideMaterials(const Scene& scene, const std::map<std::string, Acoustics>& materials,
-                                     types::Problems& problems) {
+                                     types::Diagnostics& diagnostics) {
     if (materials.empty()) return scene.geometry;
     auto geometry = std::make_shared<types::Geometry>(*scene.geometry);
     std::set<std::string> used;
@@ -60,7 +60,7 @@ types::GeometryPtr overrideMaterials(const Scene& scene, const std::map<std::str
         if (overrideMaterial(*geometry, name, acoustics)) used.insert(name);
     for (const auto& [name, acoustics] : materials) {
         const int node = findNode(scene, name);
-        if (node < 0 && !used.contains(name)) problems.push_back(unknown(scene, name));
+        if (node < 0 && !used.contains(name)) diagnostics.push_back(unknown(scene, name));
         if (node >= 0)
             for (const Part& part : partsOf(scene, node))
                 overrideObject(*geometry, geometry->objects[part.object], acoustics);

@@ -11,6 +11,6 @@ namespace insonify::scene {
  *  goes before the material. Nothing is copied when there is nothing to replace. A name that is neither is a problem
  *  at path `materials.<name>`. */
 types::GeometryPtr overrideMaterials(const Scene& scene, const std::map<std::string, Acoustics>& materials,
-                                     types::Problems& problems);
+                                     types::Diagnostics& diagnostics);
 
 }  // namespace insonify::scene

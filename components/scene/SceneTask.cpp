@@ -12,7 +12,7 @@
 namespace insonify::scene {
 namespace {
 
-constexpr const char* kUnusable =
+constexpr const char* unusable =
     ": pose dropped: position and orientation must be finite, the quaternion of unit length";
 
 /** The sonar's velocities, of those of the body that carries it. */
@@ -50,10 +50,10 @@ framework::InputPortBase* SceneTask::makeInput(const std::string& port, framewor
     return movables_.emplace_back(Movable{std::move(made), node, -1, {}, {}, {}}).port.get();
 }
 
-void SceneTask::check(types::Problems& problems) const try {
-    overrideMaterials(*load(), config->materials, problems);
+void SceneTask::check(types::Diagnostics& diagnostics) const try {
+    overrideMaterials(*load(), config->materials, diagnostics);
 } catch (const types::ConfigError& error) {
-    for (const types::Diagnostic& fault : error.diagnostics()) problems.push_back({"file", fault.text()});
+    for (const types::Diagnostic& diagnostic : error.diagnostics()) diagnostics.push_back({"file", diagnostic.text()});
 }
 
 std::vector<std::string> SceneTask::notices() const {
@@ -62,9 +62,10 @@ std::vector<std::string> SceneTask::notices() const {
 
 bool SceneTask::configureHook() {
     const auto scene = load();
-    types::Problems problems;
-    geometry_ = overrideMaterials(*scene, config->materials, problems);
-    if (!problems.empty()) throw types::ConfigError("", name() + "." + problems.front().path, problems.front().message);
+    types::Diagnostics diagnostics;
+    geometry_ = overrideMaterials(*scene, config->materials, diagnostics);
+    if (!diagnostics.empty())
+        throw types::ConfigError("", name() + "." + diagnostics.front().path, diagnostics.front().message);
     for (Movable& movable : movables_) {
         movable.node = findNode(*scene, movable.node_name);
         movable.parts = partsOf(*scene, movable.node);
@@ -119,22 +120,22 @@ void SceneTask::updateHook() {
     const bool movables_good = readMovables();
     types::Pose body;
     const bool is_new = takeNext(pose, body);
-    if (is_new && !isUsable(body)) return error(pose.path() + kUnusable);
+    if (is_new && !isUsable(body)) return error(pose.path() + unusable);
     if (is_new) newest_ = body.time;
     if (const std::string stale = staleness(); !stale.empty()) return error(stale);
-    if (!is_new) return movables_good ? void() : error(name() + kUnusable);
+    if (!is_new) return movables_good ? void() : error(name() + unusable);
     if (state() == framework::TaskState::RunTimeError) recover();
     const auto sample = pool_.take();
     sample->time = body.time;
     place(body, config->mount, sample->sonar);
-    sample->carry_on = config->extrapolate.value_or(0);
+    sample->max_extrapolation = config->extrapolate.value_or(0);
     if (config->extrapolate) moveAlong(body, config->mount, sample->sonar);
     sample->geometry = geometry_;
     sample->water_surface = config->water_surface;
     addMoved(sample->moved);
     pool_.stock(*sample, [this](types::Snapshot& stocked) { stocked.moved.reserve(part_count_); });
     snapshot.write(sample);
-    if (!movables_good) error(name() + kUnusable);
+    if (!movables_good) error(name() + unusable);
 }
 
 /** Takes the newest pose of each movable; false when one was unusable, which leaves that node where it was. */

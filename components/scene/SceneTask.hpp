@@ -36,7 +36,7 @@ public:
     framework::OutputPort<types::SnapshotPtr> snapshot{this, "snapshot", "sonar, objects and geometry at one instant"};
 
     framework::InputPortBase* makeInput(const std::string& port, framework::OutputPortBase& source) override;
-    void check(types::Problems& problems) const override;
+    void check(types::Diagnostics& diagnostics) const override;
     std::vector<std::string> notices() const override;
     double wakeAfter() const override;
 

@@ -50,8 +50,8 @@ Placing scaled(Placing placing, glm::dvec3 size) {
 
 AcousticValue valueOf(const std::string& text) {
     double number;
-    const auto [end, fault] = std::from_chars(text.data(), text.data() + text.size(), number);
-    if (fault == std::errc() && end == text.data() + text.size()) return number;
+    const auto [end, diagnostic] = std::from_chars(text.data(), text.data() + text.size(), number);
+    if (diagnostic == std::errc() && end == text.data() + text.size()) return number;
     return text;
 }
 
@@ -91,7 +91,7 @@ public:
             addWorld(*world);
         else
             addModel(*root.Model(), "", -1, glm::dmat4(1));
-        if (!faults_.empty()) throw types::ConfigError(std::move(faults_));
+        if (!diagnostics_.empty()) throw types::ConfigError(std::move(diagnostics_));
         addCount(root.WorldCount() > 1 ? root.WorldCount() - 1 : 0, "worlds left out, the first of the file is read",
                  geometry_.notices);
         addCount(flat_visuals_, "visuals left out, their size is zero in some direction or not finite",
@@ -257,9 +257,9 @@ private:
             look.acoustics[attribute->GetKey()] = valueOf(attribute->GetAsString());
         for (sdf::ElementPtr key = tag->GetFirstElement(); key; key = key->GetNextElement())
             look.acoustics[key->GetName()] = valueOf(key->Get<std::string>());
-        types::Problems problems;
-        readAcoustics(look.acoustics, problems);
-        for (const types::Problem& problem : problems)
+        types::Diagnostics diagnostics;
+        readAcoustics(look.acoustics, diagnostics);
+        for (const types::Diagnostic& problem : diagnostics)
             fail(*visual.Element(), fmt::format("{}.insonify:acoustics.{}", name, problem.path), problem.message);
         return look;
     }
@@ -270,7 +270,7 @@ private:
     }
     void notice(std::string text) { geometry_.notices.push_back(std::move(text)); }
     void fail(const sdf::Element& element, const std::string& path, const std::string& message) {
-        faults_.push_back({element.FilePath(), element.LineNumber().value_or(0), 0, path, message});
+        diagnostics_.push_back({path, message, element.FilePath(), element.LineNumber().value_or(0)});
     }
 
     std::filesystem::path file_;
@@ -281,7 +281,7 @@ private:
     std::vector<glm::dmat4> world_from_node_;  ///< For each node.
     std::map<std::string, int> nodes_;         ///< By name in the file.
     UniqueNames names_, object_names_;
-    std::vector<types::Diagnostic> faults_;
+    types::Diagnostics diagnostics_;
     size_t flat_visuals_ = 0;
 };
 

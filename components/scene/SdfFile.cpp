@@ -18,8 +18,6 @@
 namespace insonify::scene {
 namespace {
 
-using Faults = std::vector<types::Diagnostic>;
-
 std::string textOf(const std::filesystem::path& file) {
     std::ifstream stream(file, std::ios::binary);
     return {std::istreambuf_iterator<char>(stream), {}};
@@ -111,69 +109,71 @@ std::string withoutColours(std::string line) {
 /** "Error Code 13: [/sdf/world[...]/uri:a.world:L43]: Msg: Unable to..." or "Error [Param.cc:598]  The value..."; of
  *  other lines, warnings among them, the message stays empty. */
 types::Diagnostic readLine(const std::string& line) {
-    types::Diagnostic fault;
+    types::Diagnostic diagnostic;
     const auto after = [&line](size_t at) {
         return line.substr(std::min(line.find_first_not_of(' ', at), line.size()));
     };
     if (const size_t message = line.find("Msg: "); line.starts_with("Error Code") && message != std::string::npos) {
-        fault.message = after(message + 5);
+        diagnostic.message = after(message + 5);
         const size_t begin = line.find('['), number = line.rfind(":L", message), file = line.rfind(':', number - 1);
-        if (begin > file || number == std::string::npos) return fault;
-        fault.path = line.substr(begin + 1, file - begin - 1);
-        fault.file = line.substr(file + 1, number - file - 1);
-        fault.line = std::atoi(line.c_str() + number + 2);
+        if (begin > file || number == std::string::npos) return diagnostic;
+        diagnostic.path = line.substr(begin + 1, file - begin - 1);
+        diagnostic.file = line.substr(file + 1, number - file - 1);
+        diagnostic.line = std::atoi(line.c_str() + number + 2);
     } else if (const size_t end = line.find("] "); line.starts_with("Error [") && end != std::string::npos) {
-        fault.message = after(end + 2);
+        diagnostic.message = after(end + 2);
         if (const size_t number = line.find("Line number="); number != std::string::npos)
-            fault.line = std::atoi(line.c_str() + number + 12);
+            diagnostic.line = std::atoi(line.c_str() + number + 12);
     }
-    return fault;
+    return diagnostic;
 }
 
 /** Adds a fault that says more than those that are known: not the same again, nor that of an element around. */
-void add(types::Diagnostic fault, Faults& faults) {
-    fault.message = plain(fault.message);
-    const auto says = [&fault](const char* text) { return fault.message.starts_with(text); };
+void add(types::Diagnostic diagnostic, types::Diagnostics& diagnostics) {
+    diagnostic.message = plain(diagnostic.message);
+    const auto says = [&diagnostic](const char* text) { return diagnostic.message.starts_with(text); };
     const auto tellsAll = [&](const types::Diagnostic& known) {
-        const bool is_same_place = !fault.path.empty() && known.path == fault.path && known.line == fault.line;
-        return known.text() == fault.text() || is_same_place ||
-               (says("Error reading element") && known.path.starts_with(fault.path));
+        const bool is_same_place =
+            !diagnostic.path.empty() && known.path == diagnostic.path && known.line == diagnostic.line;
+        return known.text() == diagnostic.text() || is_same_place ||
+               (says("Error reading element") && known.path.starts_with(diagnostic.path));
     };
     if (says("Unable to read file:") || says("Failed to load a world")) return;
-    if (!fault.message.empty() && std::ranges::none_of(faults, tellsAll)) faults.push_back(fault);
+    if (!diagnostic.message.empty() && std::ranges::none_of(diagnostics, tellsAll)) diagnostics.push_back(diagnostic);
 }
 
 /** Adds what libsdformat printed and what it returned. */
-void add(const std::string& console, const sdf::Errors& errors, Faults& faults) {
+void add(const std::string& console, const sdf::Errors& errors, types::Diagnostics& diagnostics) {
     std::istringstream lines(console);
-    for (std::string line; std::getline(lines, line);) add(readLine(withoutColours(line)), faults);
+    for (std::string line; std::getline(lines, line);) add(readLine(withoutColours(line)), diagnostics);
     for (const sdf::Error& error : errors)
-        add({error.FilePath().value_or(""), error.LineNumber().value_or(0), 0, error.XmlPath().value_or(""),
-             error.Message()},
-            faults);
+        add({error.XmlPath().value_or(""), error.Message(), error.FilePath().value_or(""),
+             error.LineNumber().value_or(0)},
+            diagnostics);
 }
 
 /** Adds the files of "Unable to read file[/models/vase/model.sdf]". */
-void findUnreadable(const Faults& faults, std::set<std::string>& unreadable) {
+void findUnreadable(const types::Diagnostics& diagnostics, std::set<std::string>& unreadable) {
     constexpr std::string_view text = "Unable to read file[";
-    for (const types::Diagnostic& fault : faults)
-        if (fault.message.starts_with(text))
-            unreadable.insert(fault.message.substr(text.size(), fault.message.rfind(']') - text.size()));
+    for (const types::Diagnostic& diagnostic : diagnostics)
+        if (diagnostic.message.starts_with(text))
+            unreadable.insert(diagnostic.message.substr(text.size(), diagnostic.message.rfind(']') - text.size()));
 }
 
 /** Joins those without a place, which say what is wrong, to the first with one, which says where. */
-[[noreturn]] void refuse(const std::filesystem::path& file, Faults faults) {
-    if (faults.empty()) faults.push_back({"", 0, 0, "", "holds neither a world nor a model of SDF"});
-    const auto placed = std::ranges::stable_partition(faults, [](const auto& fault) { return !fault.file.empty(); });
+[[noreturn]] void refuse(const std::filesystem::path& file, types::Diagnostics diagnostics) {
+    if (diagnostics.empty()) diagnostics.push_back({"", "holds neither a world nor a model of SDF"});
+    const auto placed =
+        std::ranges::stable_partition(diagnostics, [](const auto& diagnostic) { return !diagnostic.file.empty(); });
     std::string reasons;
-    for (const types::Diagnostic& fault : placed) reasons += (reasons.empty() ? "" : "; ") + fault.message;
+    for (const types::Diagnostic& diagnostic : placed) reasons += (reasons.empty() ? "" : "; ") + diagnostic.message;
     const int line = placed.empty() ? 0 : placed.front().line;
-    faults.erase(placed.begin(), placed.end());
-    if (faults.empty())
-        faults.push_back({file.string(), line, 0, "", reasons});
+    diagnostics.erase(placed.begin(), placed.end());
+    if (diagnostics.empty())
+        diagnostics.push_back({"", reasons, file.string(), line});
     else if (!reasons.empty())
-        faults.front().message += ": " + reasons;
-    throw types::ConfigError(std::move(faults));
+        diagnostics.front().message += ": " + reasons;
+    throw types::ConfigError(std::move(diagnostics));
 }
 
 }  // namespace
@@ -196,24 +196,24 @@ sdf::Root readSdfFile(const std::filesystem::path& file, const SdfPaths& paths, 
     checkIncludes(file, paths);
     std::set<std::string> unreadable;
     std::string renamed;
-    Faults faults;
+    types::Diagnostics diagnostics;
     while (true) {
         const SearchConfig search(file, paths, unreadable);
         const size_t known = unreadable.size();
         sdf::Root root;
         sdf::Errors errors;
         const std::string failure = load(root, file, renamed, errors);
-        if (!failure.empty()) add({"", 0, 0, "", "cannot be read as SDF: " + failure}, faults);
-        add(console.take(), errors, faults);
-        findUnreadable(faults, unreadable);
+        if (!failure.empty()) add({"", "cannot be read as SDF: " + failure}, diagnostics);
+        add(console.take(), errors, diagnostics);
+        findUnreadable(diagnostics, unreadable);
         if (failure.empty() && (root.WorldCount() > 0 || root.Model())) {
-            for (const types::Diagnostic& fault : faults)
-                notices.push_back(fault.text() + (fault.path.ends_with("/uri") ? "; left out" : ""));
+            for (const types::Diagnostic& diagnostic : diagnostics)
+                notices.push_back(diagnostic.text() + (diagnostic.path.ends_with("/uri") ? "; left out" : ""));
             if (!renamed.empty()) notices.push_back("names are read with \"__\" for \"::\", which libsdformat refuses");
             return root;
         }
         if (unreadable.size() > known) continue;  // again without the include that costs the whole world
-        if (!renamed.empty() || (renamed = withoutColons(file)).empty()) refuse(file, std::move(faults));
+        if (!renamed.empty() || (renamed = withoutColons(file)).empty()) refuse(file, std::move(diagnostics));
     }
 }
 

@@ -13,12 +13,12 @@
 namespace insonify::scene {
 namespace {
 
-constexpr int kMaxPictureSide = 32768;  ///< Larger pictures are refused before they are decoded [pixels].
-constexpr int kMaxCorners = 2049;       ///< Along each side.
+constexpr int max_picture_side = 32768;  ///< Larger pictures are refused before they are decoded [pixels].
+constexpr int max_corners = 2049;        ///< Along each side.
 
 /** Pixels of one side that become corners: evenly apart, with both ends. */
 std::vector<int> cornersOf(int pixels) {
-    const int count = std::min(pixels, kMaxCorners);
+    const int count = std::min(pixels, max_corners);
     std::vector<int> corners;
     for (int i = 0; i < count; ++i) corners.push_back(static_cast<int>(int64_t{i} * (pixels - 1) / (count - 1)));
     return corners;
@@ -36,9 +36,9 @@ Surface readHeightmap(const std::filesystem::path& file, glm::dvec3 size) {
     int width = 0, height = 0, channels = 0;
     if (!isRead(file) || !stbi_info(file.c_str(), &width, &height, &channels))
         throw std::runtime_error("is neither PNG nor JPEG nor PGM");
-    if (width < 2 || height < 2 || width > kMaxPictureSide || height > kMaxPictureSide)
+    if (width < 2 || height < 2 || width > max_picture_side || height > max_picture_side)
         throw std::runtime_error(
-            fmt::format("has {} x {} pixels; may have 2 to {} a side", width, height, kMaxPictureSide));
+            fmt::format("has {} x {} pixels; may have 2 to {} a side", width, height, max_picture_side));
     const std::unique_ptr<stbi_us, decltype(&stbi_image_free)> pixels(
         stbi_load_16(file.c_str(), &width, &height, &channels, 1), stbi_image_free);
     if (!pixels) throw std::runtime_error(fmt::format("is damaged ({})", stbi_failure_reason()));

@@ -6,20 +6,20 @@
 namespace insonify::scene {
 namespace {
 
-constexpr uint32_t kFacets = 64;
+constexpr uint32_t facets = 64;
 
 /** Turns a line of (radius, z), from the bottom up, about z. */
 Surface revolve(const std::vector<glm::dvec2>& profile) {
     Surface surface;
     for (const glm::dvec2 point : profile)
-        for (uint32_t k = 0; k < kFacets; ++k) {
-            const double angle = 2 * std::numbers::pi * k / kFacets;
+        for (uint32_t k = 0; k < facets; ++k) {
+            const double angle = 2 * std::numbers::pi * k / facets;
             surface.positions.emplace_back(point.x * std::cos(angle), point.x * std::sin(angle), point.y);
         }
     for (uint32_t ring = 0; ring + 1 < profile.size(); ++ring)
-        for (uint32_t k = 0; k < kFacets; ++k) {
-            const uint32_t a = ring * kFacets + k, b = ring * kFacets + (k + 1) % kFacets;
-            const uint32_t c = b + kFacets, d = a + kFacets;
+        for (uint32_t k = 0; k < facets; ++k) {
+            const uint32_t a = ring * facets + k, b = ring * facets + (k + 1) % facets;
+            const uint32_t c = b + facets, d = a + facets;
             if (profile[ring].x > 0) surface.indices.insert(surface.indices.end(), {a, b, c});
             if (profile[ring + 1].x > 0) surface.indices.insert(surface.indices.end(), {a, c, d});
         }
@@ -28,7 +28,7 @@ Surface revolve(const std::vector<glm::dvec2>& profile) {
 
 /** Half of a ball's outline about (0, z): the lower half from its pole, or the upper one to it. */
 void addQuarter(std::vector<glm::dvec2>& profile, double radius, double z, bool is_upper) {
-    constexpr uint32_t steps = kFacets / 4;
+    constexpr uint32_t steps = facets / 4;
     for (uint32_t i = 0; i <= steps; ++i) {
         const double elevation = std::numbers::pi / 2 * (is_upper ? i : steps - i) / steps;
         const bool is_pole = i == (is_upper ? steps : 0);

@@ -10,10 +10,10 @@ namespace insonify::scene {
 namespace {
 
 /** Coordinates beyond are taken for damage: their squares leave the range of float [m]. */
-constexpr float kMaxCoordinate = 1e15f;
+constexpr float max_coordinate = 1e15f;
 
 bool isUsable(glm::vec3 p) {
-    return std::abs(p.x) < kMaxCoordinate && std::abs(p.y) < kMaxCoordinate && std::abs(p.z) < kMaxCoordinate;
+    return std::abs(p.x) < max_coordinate && std::abs(p.y) < max_coordinate && std::abs(p.z) < max_coordinate;
 }
 
 /** `to` grows to `size` with `filler`, then takes `from`; nothing happens while both are empty. */

@@ -15,16 +15,16 @@ constexpr double widest_slab = types::radians(60);
 double halfElevation(const SonarConfig& config) { return types::radians(config.beam_height_deg) / 2; }
 
 /** u at which the bearing `bearing` crosses the image row v: a vertical line for planes, a hyperbola for cones. */
-double boundary(const SonarConfig& config, const Slab& slab, double bearing, double v) {
+double boundary(const SonarConfig& config, const ViewFrustum& frustum, double bearing, double v) {
     double azimuth = bearing;
     if (config.beam_geometry == BeamGeometry::Conical) {
-        // v = tan(elevation) / cos(azimuth in the slab): a few fixed-point rounds settle both.
+        // v = tan(elevation) / cos(azimuth in the frustum): a few fixed-point rounds settle both.
         for (int round = 0; round < 30; ++round) {
-            const double elevation = std::atan(v * std::cos(azimuth - slab.azimuth));
+            const double elevation = std::atan(v * std::cos(azimuth - frustum.azimuth));
             azimuth = coneAzimuth(bearing, elevation);
         }
     }
-    const double inside = std::clamp(azimuth - slab.azimuth, -slab.half_width, slab.half_width);
+    const double inside = std::clamp(azimuth - frustum.azimuth, -frustum.half_width, frustum.half_width);
     return std::tan(inside);
 }
 
@@ -34,8 +34,8 @@ ShareRecord share(double from, double to, double u, double limit, uint32_t beam,
     return {middle, to - from, limit * std::sqrt(1 + middle * middle), u / (1 + u * u), beam, column};
 }
 
-/** Beams that touch the slab, with their edges in u, for one image row. */
-void addRow(const SonarConfig& config, const std::vector<Beam>& beams, const Slab& slab, double v,
+/** Beams that touch the frustum, with their edges in u, for one image row. */
+void addRow(const SonarConfig& config, const std::vector<Beam>& beams, const ViewFrustum& frustum, double v,
             ColumnShares& result) {
     struct Edges {
         double low, high;
@@ -43,25 +43,25 @@ void addRow(const SonarConfig& config, const std::vector<Beam>& beams, const Sla
     };
     std::vector<Edges> edges;
     for (size_t k = 0; k < beams.size(); ++k) {
-        const Edges e{boundary(config, slab, beams[k].low, v), boundary(config, slab, beams[k].high, v),
+        const Edges e{boundary(config, frustum, beams[k].low, v), boundary(config, frustum, beams[k].high, v),
                       static_cast<uint32_t>(k)};
         if (e.high > e.low) edges.push_back(e);
     }
     const double limit = std::tan(halfElevation(config));
-    for (int column = 0; column < slab.columns; ++column) {
+    for (int column = 0; column < frustum.columns; ++column) {
         result.starts.push_back(static_cast<uint32_t>(result.shares.size()));
-        const double low = slab.u(column), high = slab.u(column + 1);
+        const double low = frustum.u(column), high = frustum.u(column + 1);
         for (const Edges& e : edges) {
             const double from = std::max(low, e.low), to = std::min(high, e.high);
             if (to - from > 1e-9 * (high - low))
                 result.shares.push_back(
-                    share(from, to, slab.u(column + 0.5), limit, e.beam, static_cast<uint32_t>(column)));
+                    share(from, to, frustum.u(column + 0.5), limit, e.beam, static_cast<uint32_t>(column)));
         }
     }
 }
 
 /** One image of the whole fan, its top and bottom edges straight (ACOUSTICS.md 8.2, item 1). */
-Slab publishedFrustum(const SonarConfig& config) {
+ViewFrustum publishedFrustum(const SonarConfig& config) {
     const double half_width = types::radians(config.fieldOfViewDeg()) / 2;
     return {0,
             half_width,
@@ -72,17 +72,17 @@ Slab publishedFrustum(const SonarConfig& config) {
 }
 
 /** Whole columns: beam k has [round(w/2 + tan(a_k) K), round(w/2 + tan(a_k+1) K)), K = (w/2) / tan(fov/2). */
-ColumnShares roundedShares(const std::vector<Beam>& beams, const Slab& slab) {
+ColumnShares roundedShares(const std::vector<Beam>& beams, const ViewFrustum& frustum) {
     const auto column = [&](double bearing) {
-        return static_cast<int>(std::lround(slab.columns / 2.0 * (1 + std::tan(bearing) / slab.extent_u)));
+        return static_cast<int>(std::lround(frustum.columns / 2.0 * (1 + std::tan(bearing) / frustum.extent_u)));
     };
     ColumnShares result;
     size_t beam = 0;
-    for (int c = 0; c < slab.columns; ++c) {
+    for (int c = 0; c < frustum.columns; ++c) {
         result.starts.push_back(static_cast<uint32_t>(result.shares.size()));
         while (beam + 1 < beams.size() && column(beams[beam].high) <= c) ++beam;
-        const double u = slab.u(c + 0.5);
-        result.shares.push_back({u, slab.du(), std::numeric_limits<double>::infinity(), u / (1 + u * u),
+        const double u = frustum.u(c + 0.5);
+        result.shares.push_back({u, frustum.du(), std::numeric_limits<double>::infinity(), u / (1 + u * u),
                                  static_cast<uint32_t>(beam), static_cast<uint32_t>(c)});
     }
     result.starts.push_back(static_cast<uint32_t>(result.shares.size()));
@@ -111,7 +111,7 @@ std::vector<Beam> makeBeams(const SonarConfig& config) {
     return beams;
 }
 
-std::vector<Slab> makeSlabs(const SonarConfig& config, const std::vector<Beam>& beams) {
+std::vector<ViewFrustum> makeFrusta(const SonarConfig& config, const std::vector<Beam>& beams) {
     if (config.published || config.one_frustum) return {publishedFrustum(config)};
     double low = beams.front().low, high = beams.front().high;
     for (const Beam& beam : beams) {
@@ -123,29 +123,29 @@ std::vector<Slab> makeSlabs(const SonarConfig& config, const std::vector<Beam>& 
         low = coneAzimuth(low, half_elevation);
         high = coneAzimuth(high, half_elevation);
     }
-    const int count = std::max(config.least_slabs, static_cast<int>(std::ceil((high - low) / widest_slab - 1e-9)));
+    const int count = std::max(config.min_frusta, static_cast<int>(std::ceil((high - low) / widest_slab - 1e-9)));
     const double columns = config.columnsPerBeam() * (high - low) / types::radians(config.beamWidthDeg()) / count;
-    std::vector<Slab> slabs(static_cast<size_t>(count));
+    std::vector<ViewFrustum> frusta(static_cast<size_t>(count));
     for (int i = 0; i < count; ++i) {
-        Slab& slab = slabs[static_cast<size_t>(i)];
-        slab.half_width = (high - low) / count / 2;
-        slab.azimuth = low + (2 * i + 1) * slab.half_width;
-        slab.samples = config.samples_per_pixel;
-        const int side = slab.samples == 4 ? 2 : 1;
-        slab.columns = side * std::max(1, static_cast<int>(std::ceil(columns - 1e-9)));
-        slab.rows = side * config.rows();
-        slab.extent_u = std::tan(slab.half_width);
-        slab.extent_v = std::tan(half_elevation) / std::cos(slab.half_width);
+        ViewFrustum& frustum = frusta[static_cast<size_t>(i)];
+        frustum.half_width = (high - low) / count / 2;
+        frustum.azimuth = low + (2 * i + 1) * frustum.half_width;
+        frustum.samples = config.samples_per_pixel;
+        const int side = frustum.samples == 4 ? 2 : 1;
+        frustum.columns = side * std::max(1, static_cast<int>(std::ceil(columns - 1e-9)));
+        frustum.rows = side * config.rows();
+        frustum.extent_u = std::tan(frustum.half_width);
+        frustum.extent_v = std::tan(half_elevation) / std::cos(frustum.half_width);
     }
-    return slabs;
+    return frusta;
 }
 
-ColumnShares makeShares(const SonarConfig& config, const std::vector<Beam>& beams, const Slab& slab) {
-    if (config.published || config.one_frustum) return roundedShares(beams, slab);
+ColumnShares makeShares(const SonarConfig& config, const std::vector<Beam>& beams, const ViewFrustum& frustum) {
+    if (config.published || config.one_frustum) return roundedShares(beams, frustum);
     ColumnShares result;
     result.per_row = config.beam_geometry == BeamGeometry::Conical;
-    for (int row = 0; row < (result.per_row ? slab.rows : 1); ++row)
-        addRow(config, beams, slab, slab.v(row + 0.5), result);
+    for (int row = 0; row < (result.per_row ? frustum.rows : 1); ++row)
+        addRow(config, beams, frustum, frustum.v(row + 0.5), result);
     result.starts.push_back(static_cast<uint32_t>(result.shares.size()));
     return result;
 }

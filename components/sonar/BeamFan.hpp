@@ -19,7 +19,7 @@ std::vector<Beam> makeBeams(const SonarConfig& config);
 double coneAzimuth(double bearing, double elevation);
 
 /** One perspective image of the fan. u = tan(azimuth - centre), growing to port; v = tan(elevation) / cos(...). */
-struct Slab {
+struct ViewFrustum {
     double azimuth = 0;     ///< Of the image's centre in the sonar frame [rad].
     double half_width = 0;  ///< [rad]
     int columns = 0, rows = 0;
@@ -34,11 +34,11 @@ struct Slab {
 };
 
 /** Rows or columns that an image may have: what every OpenGL 4.5 device can draw [1]. */
-constexpr int most_image_size = 16384;
+constexpr int max_image_size = 16384;
 
-/** As few slabs of at most 60 deg as cover the beams (ACOUSTICS.md 5.3); cones reach wider than their bearing. One with
- *  `published`. */
-std::vector<Slab> makeSlabs(const SonarConfig& config, const std::vector<Beam>& beams);
+/** As few frusta of at most 60 deg as cover the beams (ACOUSTICS.md 5.3); cones reach wider than their bearing. One
+ * with `published`. */
+std::vector<ViewFrustum> makeFrusta(const SonarConfig& config, const std::vector<Beam>& beams);
 
 /** Overlap of columns and beams: fractional, or with `published` rounded to whole columns. Planar beams: one row of
  *  columns serves all image rows. */
@@ -52,6 +52,6 @@ struct ColumnShares {
     }
 };
 
-ColumnShares makeShares(const SonarConfig& config, const std::vector<Beam>& beams, const Slab& slab);
+ColumnShares makeShares(const SonarConfig& config, const std::vector<Beam>& beams, const ViewFrustum& frustum);
 
 }  // namespace insonify::sonar

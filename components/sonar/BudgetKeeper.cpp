@@ -6,8 +6,8 @@
 namespace insonify::sonar {
 namespace {
 
-constexpr int patience_after_fall = 20, most_patience = 320, forgiven_after = 400;
-constexpr double fall_to = 0.9, climb_to = 0.97, most_change = 4, least_climb = 1.09;
+constexpr int patience_after_fall = 20, max_patience = 320, forgiven_after = 400;
+constexpr double fall_to = 0.9, climb_to = 0.97, max_change = 4, min_climb = 1.09;
 
 }  // namespace
 
@@ -24,19 +24,19 @@ double BudgetKeeper::slowButOne() const {
     return times[1];
 }
 
-bool BudgetKeeper::heard(double ms, double samples) {
+bool BudgetKeeper::note(double ms, double samples) {
     times_[static_cast<size_t>(pings_++ % window)] = ms;
     if (since_fall_ >= 0) ++since_fall_;
     if (pings_ < 2) return false;
     const double slow = slowButOne();
     if (slow > budget_ms_) {
         const bool again = since_fall_ >= 0 && since_fall_ < forgiven_after;
-        patience_ = again ? std::min(2 * patience_, most_patience) : patience_after_fall;
+        patience_ = again ? std::min(2 * patience_, max_patience) : patience_after_fall;
         since_fall_ = 0;
-        return moveTo(samples * std::max(fall_to * budget_ms_ / slow, 1 / most_change));
+        return moveTo(samples * std::max(fall_to * budget_ms_ / slow, 1 / max_change));
     }
-    const double room = std::min(climb_to * budget_ms_ / slow, most_change);
-    if (pings_ < patience_ || room < least_climb || samples * room <= limit_) return false;
+    const double room = std::min(climb_to * budget_ms_ / slow, max_change);
+    if (pings_ < patience_ || room < min_climb || samples * room <= limit_) return false;
     return moveTo(samples * room);
 }
 

@@ -20,7 +20,7 @@ public:
     /** Samples that a ping may have [1]. */
     double limit() const { return limit_; }
     /** Hears how long a ping of so many samples took [ms]; true when the limit is another one from now on. */
-    bool heard(double ms, double samples);
+    bool note(double ms, double samples);
 
 private:
     bool moveTo(double limit);
@@ -38,7 +38,7 @@ private:
  *  left out changes, nor two poses at once. */
 class PeriodMeter {
 public:
-    void heard(double seconds) { seconds_[count_++ % seconds_.size()] = seconds; }
+    void note(double seconds) { seconds_[count_++ % seconds_.size()] = seconds; }
     double period() const;  ///< 0 before the first time [s].
 
 private:

@@ -41,7 +41,7 @@ public:
     CastEchoes(const RenderPlan& plan, types::GeometryPtr geometry);
     void takeQuality() override;
     void render(const types::Snapshot& snapshot, types::Sonar& ping, Stages& stages) override;
-    bool heard() const override { return heard_; }
+    bool hasEchoes() const override { return heard_; }
     std::vector<LeftOut> culled() const override { return {}; }
     Features compiled() const override { return compiledForRays(plan_.features); }
     const std::string& device() const override { return device_; }

@@ -7,7 +7,7 @@
 namespace insonify::sonar {
 namespace {
 
-/** Columns of the slab that any beam of [first, last) touches: from, to. */
+/** Columns of the frustum that any beam of [first, last) touches: from, to. */
 std::array<int, 2> touched(const ColumnShares& shares, uint first, uint last) {
     std::array<int, 2> range{std::numeric_limits<int>::max(), 0};
     for (const ShareRecord& share : shares.shares)
@@ -25,13 +25,13 @@ CpuDeposit::CpuDeposit(DepositSetup setup, const SurfacePass& surface, ThreadPoo
       threads_(threads),
       planes_(surface.scene().planes()),
       columns_(static_cast<size_t>(threads.size())),
-      pictures_(setup_.slabs.size()),
+      pictures_(setup_.frusta.size()),
       sums_(setup_.sumCount()) {
     for (size_t i = 0; i < pictures_.size(); ++i) {
         pictures_[i].channels = static_cast<size_t>(surface.picture(i).channels());
-        pictures_[i].words.resize(pictures_[i].channels * static_cast<size_t>(setup_.slabs[i].columns) *
-                                  static_cast<size_t>(setup_.slabs[i].rows));
-        pictures_[i].runs.reserve(surface.picture(i).commands.capacity());
+        pictures_[i].words.resize(pictures_[i].channels * static_cast<size_t>(setup_.frusta[i].columns) *
+                                  static_cast<size_t>(setup_.frusta[i].rows));
+        pictures_[i].ranges.reserve(surface.picture(i).commands.capacity());
     }
     for (size_t part = 0; part < columns_.size(); ++part)
         for (const ColumnShares& shares : setup_.shares)
@@ -42,15 +42,15 @@ void CpuDeposit::begin() {
     for (TakenPicture& picture : pictures_) picture.taken = false;
 }
 
-void CpuDeposit::take(size_t slab, const SurfacePass& surface) {
-    TakenPicture& picture = pictures_[slab];
-    surface.picture(slab).read(picture.words);
+void CpuDeposit::take(size_t frustum, const SurfacePass& surface) {
+    TakenPicture& picture = pictures_[frustum];
+    surface.picture(frustum).read(picture.words);
     picture.taken = true;
-    picture.runs.clear();
-    const double cosine = std::cos(setup_.slabs[slab].azimuth), sine = std::sin(setup_.slabs[slab].azimuth);
+    picture.ranges.clear();
+    const double cosine = std::cos(setup_.frusta[frustum].azimuth), sine = std::sin(setup_.frusta[frustum].azimuth);
     const int value = setup_.rules.features.has(Feature::Cerqueira2017) ? 1 : 0;
-    for (const CommandRecord& command : surface.picture(slab).commands)
-        picture.runs.push_back(
+    for (const CommandRecord& command : surface.picture(frustum).commands)
+        picture.ranges.push_back(
             placedRun(surface.objects()[command.object],
                       surface.scene().materials()[command.material].values[value] * setup_.rules.strength_scale,
                       command.first_triangle, cosine, sine));
@@ -70,7 +70,7 @@ void CpuDeposit::depositPart(size_t part) {
               sums_.begin() + static_cast<ptrdiff_t>(last * stride), 0);
     for (size_t i = 0; i < pictures_.size(); ++i)
         if (pictures_[i].taken)
-            deposit({setup_.rules, setup_.slabs[i], setup_.shares[i], pictures_[i], planes_, first, last,
+            deposit({setup_.rules, setup_.frusta[i], setup_.shares[i], pictures_[i], planes_, first, last,
                      columns_[part][i]},
                     sums_.data());
 }

@@ -10,7 +10,7 @@ class CpuDeposit final : public BinDeposit {
 public:
     CpuDeposit(DepositSetup setup, const SurfacePass& surface, ThreadPool& threads);
     void begin() override;
-    void take(size_t slab, const SurfacePass& surface) override;
+    void take(size_t frustum, const SurfacePass& surface) override;
     std::span<const uint64_t> finish() override;
     Features compiled() const override;
 
@@ -22,7 +22,7 @@ private:
     DepositSetup setup_;
     ThreadPool& threads_;
     const std::vector<PlaneRecord>& planes_;
-    std::vector<std::vector<std::array<int, 2>>> columns_;  ///< Of each thread and slab: from, to.
+    std::vector<std::vector<std::array<int, 2>>> columns_;  ///< Of each thread and frustum: from, to.
     std::vector<TakenPicture> pictures_;
     std::vector<uint64_t> sums_;
 };

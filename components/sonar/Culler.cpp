@@ -9,9 +9,10 @@
 namespace insonify::sonar {
 namespace {
 
-/** Outward normals of the planes that bound a slab's view, all through the sonar; sonar axes, of any length. */
-std::array<glm::vec3, 5> viewOf(const Slab& slab) {
-    const double cosine = std::cos(slab.azimuth), sine = std::sin(slab.azimuth), u = slab.extent_u, v = slab.extent_v;
+/** Outward normals of the planes that bound a frustum's view, all through the sonar; sonar axes, of any length. */
+std::array<glm::vec3, 5> viewOf(const ViewFrustum& frustum) {
+    const double cosine = std::cos(frustum.azimuth), sine = std::sin(frustum.azimuth), u = frustum.extent_u,
+                 v = frustum.extent_v;
     const auto turned = [&](double x, double y, double z) {
         return glm::vec3(cosine * x - sine * y, sine * x + cosine * y, z);
     };
@@ -26,18 +27,18 @@ Culler::Culler(const types::Geometry& geometry, const CullRules& rules)
       places_(geometry, rules.reach, rules.draw_all),
       range_max_(static_cast<float>(rules.reach.range_max)) {
     for (const types::Object& object : geometry.objects)
-        run_limit_ += geometry.meshes[static_cast<size_t>(object.mesh)].clusters.size();
+        draw_range_limit_ += geometry.meshes[static_cast<size_t>(object.mesh)].clusters.size();
 }
 
-void Culler::visible(const Slab& slab, std::vector<Run>& runs) const {
-    runs.clear();
-    const View view = viewOf(slab);
+void Culler::visible(const ViewFrustum& frustum, std::vector<DrawRange>& ranges) const {
+    ranges.clear();
+    const View view = viewOf(frustum);
     for (size_t i = 0; i < records().size(); ++i) {
         if (places_.isFar(i)) continue;
         const ObjectPlaces::Box& box = places_.box(i);
         const glm::vec3 centre(box.low * 0.5 + box.high * 0.5), half(box.high * 0.5 - box.low * 0.5);
         const float distance = nearest(view, records()[i], centre, half);
-        if (distance <= range_max_) addObject({i, view, before(i, distance)}, runs);
+        if (distance <= range_max_) addObject({i, view, before(i, distance)}, ranges);
     }
 }
 
@@ -46,32 +47,33 @@ std::optional<glm::vec3> Culler::before(size_t object, float distance) const {
     return glm::vec3(records()[object].eye);
 }
 
-void Culler::addObject(const Query& query, std::vector<Run>& runs) const {
+void Culler::addObject(const Query& query, std::vector<DrawRange>& ranges) const {
     const types::Mesh& mesh = geometry_.meshes[static_cast<size_t>(geometry_.objects[query.object].mesh)];
-    if (mesh.patches.empty()) return addClusters(query, mesh.clusters, runs);
-    for (size_t i = 0; i < mesh.patches.size();) {
-        const types::Patch& patch = mesh.patches[i];
+    if (mesh.cluster_nodes.empty()) return addClusters(query, mesh.clusters, ranges);
+    for (size_t i = 0; i < mesh.cluster_nodes.size();) {
+        const types::ClusterNode& patch = mesh.cluster_nodes[i];
         if (!(nearest(query.view, records()[query.object], patch.centre, patch.half) <= range_max_)) {
             i = patch.next;
             continue;
         }
         const std::span clusters = std::span(mesh.clusters).subspan(patch.first_cluster, patch.cluster_count);
-        if (++i == patch.next) addClusters(query, clusters, runs);
+        if (++i == patch.next) addClusters(query, clusters, ranges);
     }
 }
 
-void Culler::addClusters(const Query& query, std::span<const types::Cluster> clusters, std::vector<Run>& runs) const {
+void Culler::addClusters(const Query& query, std::span<const types::Cluster> clusters,
+                         std::vector<DrawRange>& ranges) const {
     for (const types::Cluster& cluster : clusters) {
         if (clusters.size() > 1 &&
             !(nearest(query.view, records()[query.object], cluster.centre, cluster.half) <= range_max_))
             continue;
         if (turnsItsBack(query, cluster)) continue;
         const auto id = static_cast<uint32_t>(query.object);
-        if (!runs.empty() && runs.back().object == id && runs.back().material == cluster.material &&
-            runs.back().first_index + runs.back().index_count == cluster.first_index)
-            runs.back().index_count += cluster.index_count;
+        if (!ranges.empty() && ranges.back().object == id && ranges.back().material == cluster.material &&
+            ranges.back().first_index + ranges.back().index_count == cluster.first_index)
+            ranges.back().index_count += cluster.index_count;
         else
-            runs.push_back({id, cluster.first_index, cluster.index_count, cluster.material});
+            ranges.push_back({id, cluster.first_index, cluster.index_count, cluster.material});
     }
 }
 

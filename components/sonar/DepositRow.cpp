@@ -16,7 +16,7 @@ constexpr int stretch = 64;  ///< Pixels at a time: their numbers stay in the ne
 
 /** A stretch of a picture's row. */
 struct Pixels {
-    double normal_x[stretch], normal_y[stretch], normal_z[stretch], distance[stretch];  ///< Planes, slab axes.
+    double normal_x[stretch], normal_y[stretch], normal_z[stretch], distance[stretch];  ///< Planes, frustum axes.
     double u[stretch], ray_u[stretch], ray_v[stretch], mapped[stretch], strength[stretch];
     double near_limit[stretch], far_limit[stretch], nearest[stretch];
     double inverse_range[stretch], slope_u[stretch], slope_v[stretch], strength_range[stretch];
@@ -89,9 +89,9 @@ void hit(const PlacedRun& run, const PlaneRecord& plane, double mapped, Pixels& 
 }
 
 /** Looks up what `count` pixels from `first` show; false when all are misses. */
-bool look(const SlabPart& part, int row, int first, int count, Pixels& pixels) {
+bool look(const FrustumPart& part, int row, int first, int count, Pixels& pixels) {
     const TakenPicture& picture = part.picture;
-    const size_t at = static_cast<size_t>(row) * static_cast<size_t>(part.slab.columns) + static_cast<size_t>(first);
+    const size_t at = static_cast<size_t>(row) * static_cast<size_t>(part.frustum.columns) + static_cast<size_t>(first);
     const uint32_t* texel = picture.words.data() + picture.channels * at;
     bool any = false;
     for (int i = 0; i < count; ++i, texel += picture.channels) {
@@ -100,7 +100,7 @@ bool look(const SlabPart& part, int row, int first, int count, Pixels& pixels) {
             continue;
         }
         any = true;
-        const PlacedRun& run = picture.runs[texel[0] - 1];
+        const PlacedRun& run = picture.ranges[texel[0] - 1];
         const double mapped = picture.channels == 4 ? static_cast<double>(std::bit_cast<float>(texel[2])) : 0;
         hit(run, part.planes[run.first_triangle + texel[1]], mapped, pixels, i);
     }
@@ -109,14 +109,14 @@ bool look(const SlabPart& part, int row, int first, int count, Pixels& pixels) {
 
 /** Where each pixel is looked at: its centre, or a point at random in it. */
 template <bool jittered>
-void aim(const SlabPart& part, int row, int first, int count, Pixels& pixels) {
+void aim(const FrustumPart& part, int row, int first, int count, Pixels& pixels) {
     for (int i = 0; i < count; ++i) {
-        pixels.ray_u[i] = pixels.u[i] = part.slab.u(first + i + 0.5);
-        pixels.ray_v[i] = part.slab.v(row + 0.5);
+        pixels.ray_u[i] = pixels.u[i] = part.frustum.u(first + i + 0.5);
+        pixels.ray_v[i] = part.frustum.v(row + 0.5);
         if (!jittered) continue;
         const auto x = static_cast<uint>(first + i), y = static_cast<uint>(row);
-        pixels.ray_u[i] += part.slab.du() * jitter(x, y, 0);
-        pixels.ray_v[i] += part.slab.dv() * jitter(x, y, 1);
+        pixels.ray_u[i] += part.frustum.du() * jitter(x, y, 0);
+        pixels.ray_v[i] += part.frustum.dv() * jitter(x, y, 1);
     }
 }
 
@@ -156,11 +156,11 @@ public:
         return all;
     }
 
-    PartDeposit(const SlabPart& part, uint64_t* sums)
-        : part_(part), bins_(part.rules, sums), per_pixel_(1 / (part.slab.du() * part.slab.dv())) {}
+    PartDeposit(const FrustumPart& part, uint64_t* sums)
+        : part_(part), bins_(part.rules, sums), per_pixel_(1 / (part.frustum.du() * part.frustum.dv())) {}
 
     void run() {
-        for (int row = 0; row < part_.slab.rows; ++row)
+        for (int row = 0; row < part_.frustum.rows; ++row)
             for (int column = part_.columns[0]; column < part_.columns[1]; column += stretch)
                 pixels(row, column, std::min(stretch, part_.columns[1] - column));
     }
@@ -170,25 +170,25 @@ private:
         if (!look(part_, row, first, count, pixels_) && !Estimator::features.has(Feature::Published)) return;
         aim<Estimator::features.has(Feature::Jitter)>(part_, row, first, count, pixels_);
         meet(pixels_, count);
-        const size_t at = static_cast<size_t>(conical ? row : 0) * static_cast<size_t>(part_.slab.columns) +
+        const size_t at = static_cast<size_t>(conical ? row : 0) * static_cast<size_t>(part_.frustum.columns) +
                           static_cast<size_t>(first);
         const uint end = part_.shares.starts[at + static_cast<size_t>(count)];
         for (uint i = part_.shares.starts[at]; i < end; i += stretch)
             shares(i, static_cast<int>(std::min<uint>(stretch, end - i)), static_cast<uint>(first),
-                   part_.slab.v(row + 0.5));
+                   part_.frustum.v(row + 0.5));
     }
 
     void shares(uint first_share, int count, uint first_column, double v) {
         const ShareRecord* shares = part_.shares.shares.data() + first_share;
         for (int i = 0; i < count; ++i) shared_.set(i, shares[i], pixels_, shares[i].column - first_column);
         cover(shared_, count,
-              {v, part_.slab.dv(), part_.rules.edges.front(), bins_.binEdge(bins_.bin_count), per_pixel_}, cells_);
+              {v, part_.frustum.dv(), part_.rules.edges.front(), bins_.binEdge(bins_.bin_count), per_pixel_}, cells_);
         for (int i = 0; i < count; ++i)
             if (shares[i].beam >= part_.first && shares[i].beam < part_.last)
                 bins_.depositCell(cells_.get(i), shares[i].beam, shared_.strength_range[i]);
     }
 
-    const SlabPart& part_;
+    const FrustumPart& part_;
     Estimator bins_;
     double per_pixel_;  ///< 1 / solid angle of a whole pixel at the picture's centre [1/sr].
     Pixels pixels_;
@@ -221,7 +221,7 @@ PlacedRun placedRun(const ObjectRecord& object, double strength, uint32_t first_
     return run;
 }
 
-INSONIFY_VECTOR_CLONES __attribute__((flatten)) void deposit(const SlabPart& part, uint64_t* sums) {
+INSONIFY_VECTOR_CLONES __attribute__((flatten)) void deposit(const FrustumPart& part, uint64_t* sums) {
     withParts(part.rules.features, [&]<class Deposit>() { Deposit(part, sums).run(); });
 }
 

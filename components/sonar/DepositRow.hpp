@@ -5,7 +5,7 @@
 
 namespace insonify::sonar {
 
-/** How the triangles of one draw are turned from object axes into those of a slab. */
+/** How the triangles of one draw are turned from object axes into those of a frustum. */
 struct PlacedRun {
     double normal_x[3], normal_y[3], normal_z[3];  ///< Rows of the normals' matrix [1].
     double eye[3];                                 ///< The sonar's place in object axes [m].
@@ -14,21 +14,21 @@ struct PlacedRun {
     uint32_t first_triangle;                       ///< Of the mesh, among all planes [1].
 };
 
-/** `cosine`, `sine`: of the azimuth of the slab's axis, from the sonar's. */
+/** `cosine`, `sine`: of the azimuth of the frustum's axis, from the sonar's. */
 PlacedRun placedRun(const ObjectRecord& object, double strength, uint32_t first_triangle, double cosine, double sine);
 
-/** A slab's picture and what its numbers mean, copied when taken. */
+/** A frustum's picture and what its numbers mean, copied when taken. */
 struct TakenPicture {
     std::vector<uint32_t> words;
     size_t channels = 2;  ///< Words a pixel [1].
-    std::vector<PlacedRun> runs;
+    std::vector<PlacedRun> ranges;
     bool taken = false;
 };
 
-/** What one thread deposits of one slab: the beams [first, last). */
-struct SlabPart {
+/** What one thread deposits of one frustum: the beams [first, last). */
+struct FrustumPart {
     const EchoRules& rules;
-    const Slab& slab;
+    const ViewFrustum& frustum;
     const ColumnShares& shares;
     const TakenPicture& picture;
     const std::vector<PlaneRecord>& planes;
@@ -37,7 +37,7 @@ struct SlabPart {
 };
 
 /** Adds the part's echoes to `sums`, EchoRules::sumCount() for each beam. */
-void deposit(const SlabPart& part, uint64_t* sums);
+void deposit(const FrustumPart& part, uint64_t* sums);
 
 /** What is compiled into the deposit of pictures that has these features. */
 Features compiledForPictures(const Features& wanted);

@@ -19,16 +19,16 @@ namespace {
 constexpr double nearest_drawn = 1e-3;
 
 /** Distance of the image plane that is nowhere farther than `nearest_drawn`, even in the picture's corners. */
-double nearPlane(const Slab& slab) {
-    const double corner = std::sqrt(1 + slab.extent_u * slab.extent_u + slab.extent_v * slab.extent_v);
+double nearPlane(const ViewFrustum& frustum) {
+    const double corner = std::sqrt(1 + frustum.extent_u * frustum.extent_u + frustum.extent_v * frustum.extent_v);
     return nearest_drawn / corner;
 }
 
 DepositSetup depositSetup(const RenderPlan& plan, const types::Geometry& geometry) {
     DepositSetup setup;
     setup.rules = makeEchoRules(plan, geometry);
-    setup.slabs = plan.slabs;
-    for (const Slab& slab : plan.slabs) setup.shares.push_back(makeShares(plan.config, plan.beams, slab));
+    setup.frusta = plan.frusta;
+    for (const ViewFrustum& frustum : plan.frusta) setup.shares.push_back(makeShares(plan.config, plan.beams, frustum));
     setup.beam_count = static_cast<uint32_t>(plan.beams.size());
     return setup;
 }
@@ -39,7 +39,7 @@ public:
     ~DrawnEchoes() override;
     void takeQuality() override;
     void render(const types::Snapshot& snapshot, types::Sonar& ping, Stages& stages) override;
-    bool heard() const override;
+    bool hasEchoes() const override;
     std::vector<LeftOut> culled() const override;
     Features compiled() const override;
     const std::string& device() const override { return device_; }
@@ -75,8 +75,8 @@ DrawnEchoes::DrawnEchoes(const RenderPlan& plan, types::GeometryPtr geometry)
       culler_(*geometry_, {nearest_drawn, reachOf(plan), plan.config.draw_all}),
       threads_(plan.config.threads),
       surface_(context_,
-               {*geometry_, plan.slabs, plan.features.defines(), nearPlane(plan.slabs.front()), culler_.runLimit(),
-                plan_.config.published},
+               {*geometry_, plan.frusta, plan.features.defines(), nearPlane(plan.frusta.front()),
+                culler_.drawRangeLimit(), plan_.config.published},
                threads_) {
     makeDeposit();
     context_.check();
@@ -110,7 +110,7 @@ void DrawnEchoes::drawSlabs(const types::Snapshot& snapshot, Stages& stages) {
     lap(stages[DrawStage]);
     {
         const auto alone = context_.transferring();
-        for (size_t i = 0; i < plan_.slabs.size(); ++i)
+        for (size_t i = 0; i < plan_.frusta.size(); ++i)
             if (surface_.draws(i)) deposit_->take(i, surface_);
     }
     lap(stages[ReadStage]);
@@ -118,7 +118,7 @@ void DrawnEchoes::drawSlabs(const types::Snapshot& snapshot, Stages& stages) {
 
 void DrawnEchoes::fillBins(types::Sonar& ping) {
     const auto count = static_cast<size_t>(plan_.grid.bin_count);
-    const double pixel = plan_.slabs.front().du() * plan_.slabs.front().dv();  // solid angle of a whole pixel [sr]
+    const double pixel = plan_.frusta.front().du() * plan_.frusta.front().dv();  // solid angle of a whole pixel [sr]
     threads_.run([&](int part, int parts) {
         for (auto beam = static_cast<size_t>(part); beam < plan_.beams.size(); beam += static_cast<size_t>(parts))
             levels_.fill(rules_, &sums_[beam * rules_.sumCount()], pixel, {&ping.bins[beam * count], count});
@@ -139,15 +139,15 @@ void DrawnEchoes::render(const types::Snapshot& snapshot, types::Sonar& ping, St
 void DrawnEchoes::takeQuality() {
     context_.requireThread();
     const auto alone = context_.transferring();
-    surface_.resize(plan_.slabs);
+    surface_.resize(plan_.frusta);
     sums_ = {};
     makeDeposit();
     context_.check();
 }
 
-bool DrawnEchoes::heard() const {
+bool DrawnEchoes::hasEchoes() const {
     bool drawn = false;  // published counts what is not there
-    for (size_t i = 0; i < plan_.slabs.size(); ++i) drawn = drawn || !surface_.picture(i).empty();
+    for (size_t i = 0; i < plan_.frusta.size(); ++i) drawn = drawn || !surface_.picture(i).empty();
     return drawn && std::ranges::any_of(sums_, [](uint64_t sum) { return sum > 0; });
 }
 
@@ -162,13 +162,13 @@ Features DrawnEchoes::compiled() const {
 
 std::vector<LeftOut> DrawnEchoes::culled() const {
     std::vector<bool> seen(geometry_->objects.size());
-    size_t empty_slabs = 0, shown = 0;  // of two slabs more than once
-    for (size_t i = 0; i < plan_.slabs.size(); ++i) {
-        const auto& runs = surface_.picture(i).runs;
-        empty_slabs += runs.empty();
-        for (const Culler::Run& run : runs) {
-            seen[run.object] = true;
-            shown += run.index_count / 3;
+    size_t empty_frusta = 0, shown = 0;  // of two frusta more than once
+    for (size_t i = 0; i < plan_.frusta.size(); ++i) {
+        const auto& ranges = surface_.picture(i).ranges;
+        empty_frusta += ranges.empty();
+        for (const Culler::DrawRange& range : ranges) {
+            seen[range.object] = true;
+            shown += range.index_count / 3;
         }
     }
     const size_t triangles = geometry_->triangleCount();
@@ -179,7 +179,7 @@ std::vector<LeftOut> DrawnEchoes::culled() const {
     };
     add(Effect::Objects, static_cast<size_t>(std::ranges::count(seen, false)), seen.size());
     add(Effect::Triangles, triangles - std::min(triangles, shown), triangles);
-    add(Effect::Slabs, empty_slabs, plan_.slabs.size());
+    add(Effect::Slabs, empty_frusta, plan_.frusta.size());
     return all;
 }
 

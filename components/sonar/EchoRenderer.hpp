@@ -27,7 +27,7 @@ public:
     /** Fills ping.bins, which have their size; adds to `stages`. Allocates nothing after the first ping. */
     virtual void render(const types::Snapshot& snapshot, types::Sonar& ping, Stages& stages) = 0;
     /** Whether the last ping has any echo. */
-    virtual bool heard() const = 0;
+    virtual bool hasEchoes() const = 0;
     /** What of the scene the last ping left out. */
     virtual std::vector<LeftOut> culled() const = 0;
     /** What is compiled into what renders: what the plan wants, unless one of the two is wrong. */

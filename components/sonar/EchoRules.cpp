@@ -32,13 +32,13 @@ double loudest(const types::Geometry& geometry) {
 }
 
 double strengthScale(const SonarConfig& config, const BinGrid& bins, double loudest) {
-    constexpr double most = 1048576, most_sum = 8 * most;  // of one deposit, and of a bin: half of 64 bits
-    if (config.model != Model::Physical) return 1;         // S and its weights are at most 1
+    constexpr double most = 1048576, max_sum = 8 * most;  // of one deposit, and of a bin: half of 64 bits
+    if (config.model != Model::Physical) return 1;        // S and its weights are at most 1
     const double ratio =
         std::max(1.5, 0.5 * bins.bin_width / std::max(bins.range_min, 1e-3));  // of a bin's middle to its ranges
     const double strongest = loudest * ratio * ratio;
     const double pixels = static_cast<double>(config.samples_per_pixel * config.rows()) * (config.columnsPerBeam() + 2);
-    return std::exp2(-std::ceil(std::max(0.0, std::log2(strongest * std::max(1 / most, pixels / most_sum)))));
+    return std::exp2(-std::ceil(std::max(0.0, std::log2(strongest * std::max(1 / most, pixels / max_sum)))));
 }
 
 }  // namespace insonify::sonar

@@ -16,13 +16,13 @@ void give(const std::vector<T>& items, gpu::Buffer& buffer) {
     if (!items.empty()) buffer.write(items.data(), items.size() * sizeof(T));
 }
 
-/** The deposit as a compute shader: pictures stay on the device, only the sums come back. All slabs are drawn and
+/** The deposit as a compute shader: pictures stay on the device, only the sums come back. All frusta are drawn and
  *  summed before anybody waits. */
 class GpuDeposit final : public BinDeposit {
 public:
     GpuDeposit(const DepositSetup& setup, gpu::EglContext& context);
     void begin() override { begun_ = false; }
-    void take(size_t slab, const SurfacePass& surface) override;
+    void take(size_t frustum, const SurfacePass& surface) override;
     std::span<const uint64_t> finish() override;
     Features compiled() const override { return {}; }  // its program is in the context's list
 
@@ -30,9 +30,10 @@ private:
     struct SlabShares {
         gpu::Buffer starts, shares, commands;
     };
-    void setUniforms(const Slab& slab) const;
+    void setUniforms(const ViewFrustum& frustum) const;
     struct Uniforms {
-        GLint image_size, bin_count, beam_stride, bin_width, attenuation, strength_scale, slab_axis, extent, pixel_size;
+        GLint image_size, bin_count, beam_stride, bin_width, attenuation, strength_scale, frustum_axis, extent,
+            pixel_size;
     };
 
     DepositSetup setup_;
@@ -56,45 +57,45 @@ GpuDeposit::GpuDeposit(const DepositSetup& setup, gpu::EglContext& context)
     context.requireStorage(setup.sumCount() * sizeof(uint64_t), "the sums of all bins");
     edges_ = gpu::Buffer::of(std::span(setup.rules.edges));
     device_sums_ = gpu::Buffer(setup.sumCount() * sizeof(uint64_t));
-    for (const ColumnShares& slab : setup.shares)
-        shares_.push_back({gpu::Buffer::of(std::span(slab.starts)), gpu::Buffer::of(std::span(slab.shares)), {}});
+    for (const ColumnShares& frustum : setup.shares)
+        shares_.push_back({gpu::Buffer::of(std::span(frustum.starts)), gpu::Buffer::of(std::span(frustum.shares)), {}});
 }
 
-void GpuDeposit::setUniforms(const Slab& slab) const {
-    glUniform2i(uniforms_.image_size, slab.columns, slab.rows);
+void GpuDeposit::setUniforms(const ViewFrustum& frustum) const {
+    glUniform2i(uniforms_.image_size, frustum.columns, frustum.rows);
     glUniform1ui(uniforms_.bin_count, static_cast<GLuint>(setup_.rules.bins.bin_count));
     glUniform1ui(uniforms_.beam_stride, static_cast<GLuint>(setup_.rules.beamStride()));
     glUniform1d(uniforms_.bin_width, setup_.rules.bins.bin_width);
     glUniform1d(uniforms_.attenuation, setup_.rules.attenuation);
     glUniform1d(uniforms_.strength_scale, setup_.rules.strength_scale);
-    glUniform2d(uniforms_.slab_axis, std::cos(slab.azimuth), std::sin(slab.azimuth));
-    glUniform2d(uniforms_.extent, slab.extent_u, slab.extent_v);
-    glUniform2d(uniforms_.pixel_size, slab.du(), slab.dv());
+    glUniform2d(uniforms_.frustum_axis, std::cos(frustum.azimuth), std::sin(frustum.azimuth));
+    glUniform2d(uniforms_.extent, frustum.extent_u, frustum.extent_v);
+    glUniform2d(uniforms_.pixel_size, frustum.du(), frustum.dv());
 }
 
-void GpuDeposit::take(size_t slab, const SurfacePass& surface) {
+void GpuDeposit::take(size_t frustum, const SurfacePass& surface) {
     if (!std::exchange(begun_, true)) {
         device_sums_.clear();
         give(surface.objects(), objects_);
     }
     objects_.bindBase(GL_SHADER_STORAGE_BUFFER, OBJECTS_BINDING);
-    give(surface.picture(slab).commands, shares_[slab].commands);
-    shares_[slab].commands.bindBase(GL_SHADER_STORAGE_BUFFER, COMMANDS_BINDING);
+    give(surface.picture(frustum).commands, shares_[frustum].commands);
+    shares_[frustum].commands.bindBase(GL_SHADER_STORAGE_BUFFER, COMMANDS_BINDING);
     program_.use();
-    setUniforms(setup_.slabs[slab]);
-    surface.bindResults(slab);
-    shares_[slab].shares.bindBase(GL_SHADER_STORAGE_BUFFER, SHARES_BINDING);
-    shares_[slab].starts.bindBase(GL_SHADER_STORAGE_BUFFER, SHARE_STARTS_BINDING);
+    setUniforms(setup_.frusta[frustum]);
+    surface.bindResults(frustum);
+    shares_[frustum].shares.bindBase(GL_SHADER_STORAGE_BUFFER, SHARES_BINDING);
+    shares_[frustum].starts.bindBase(GL_SHADER_STORAGE_BUFFER, SHARE_STARTS_BINDING);
     edges_.bindBase(GL_SHADER_STORAGE_BUFFER, EDGES_BINDING);
     device_sums_.bindBase(GL_SHADER_STORAGE_BUFFER, SUMS_BINDING);
     glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_FRAMEBUFFER_BARRIER_BIT);
     const auto groups = [](int pixels) { return static_cast<GLuint>((pixels + 7) / 8); };
-    glDispatchCompute(groups(setup_.slabs[slab].columns), groups(setup_.slabs[slab].rows), 1);
+    glDispatchCompute(groups(setup_.frusta[frustum].columns), groups(setup_.frusta[frustum].rows), 1);
 }
 
 std::span<const uint64_t> GpuDeposit::finish() {
     const auto alone = context_.transferring();
-    if (!std::exchange(begun_, false)) device_sums_.clear();  // no slab held anything
+    if (!std::exchange(begun_, false)) device_sums_.clear();  // no frustum held anything
     sums_.ask(device_sums_);
     return {static_cast<const uint64_t*>(sums_.wait()), setup_.sumCount()};
 }

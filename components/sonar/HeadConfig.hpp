@@ -27,7 +27,7 @@ struct HeadConfig {
         visit(Field{"speed_deg_per_s", "deg/s", "of the head; absent: every step is reached", 0.001, 1e6},
               self.speed_deg_per_s);
     }
-    void check(types::Problems& problems) const;
+    void check(types::Diagnostics& diagnostics) const;
     friend bool operator==(const HeadConfig&, const HeadConfig&) = default;
 };
 
@@ -48,7 +48,7 @@ struct ScanningSonarConfig {
         SonarConfig::describeBeam(self.sonar, visit);
         visit(types::Field{"head", "", "how the head turns; absent: all round, 1.8 deg a ping"}, self.head);
     }
-    void check(types::Problems& problems) const { beam().checkBeam(problems); }
+    void check(types::Diagnostics& diagnostics) const { beam().checkBeam(diagnostics); }
 };
 
 }  // namespace insonify::sonar

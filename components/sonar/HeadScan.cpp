@@ -6,20 +6,21 @@
 
 namespace insonify::sonar {
 
-void HeadConfig::check(types::Problems& problems) const {
+void HeadConfig::check(types::Diagnostics& diagnostics) const {
     if (left_deg <= right_deg)
-        return problems.push_back(
+        return diagnostics.push_back(
             {"left_deg",
              fmt::format("is {} deg; must be above right_deg, {} deg (positive to port)", left_deg, right_deg)});
     if (sectorDeg() > 360)
-        problems.push_back({"left_deg", fmt::format("is {} deg from right_deg; may be at most 360 deg", sectorDeg())});
+        diagnostics.push_back(
+            {"left_deg", fmt::format("is {} deg from right_deg; may be at most 360 deg", sectorDeg())});
     if (turnsOn() && sectorDeg() != 360)
-        problems.push_back(
+        diagnostics.push_back(
             {"continuous", fmt::format("is true over a sector of {} deg; the limits of a head that turns "
                                        "on are 360 deg apart, or absent",
                                        sectorDeg())});
     if (step_deg > sectorDeg())
-        problems.push_back({"step_deg", fmt::format("is {} deg; the sector has {} deg", step_deg, sectorDeg())});
+        diagnostics.push_back({"step_deg", fmt::format("is {} deg; the sector has {} deg", step_deg, sectorDeg())});
 }
 
 SonarConfig ScanningSonarConfig::beam() const {

@@ -14,9 +14,9 @@ namespace insonify::sonar {
 namespace {
 
 /** Corners up to which a mesh is not searched by its clusters [1]. */
-constexpr size_t most_corners = 4096;
+constexpr size_t max_corners = 4096;
 /** Triangles that are looked at one by one; of what is left the box is taken [1]. */
-constexpr uint32_t most_triangles = 4096;
+constexpr uint32_t max_triangles = 4096;
 
 constexpr uint32_t at_once = 16;  ///< Triangles whose numbers stay in the nearest cache.
 
@@ -96,7 +96,7 @@ public:
         forEachCluster([&](const types::Cluster& cluster, float at_least) {
             if (at_least >= found_ || &cluster == first) return found_;
             looked_at += cluster.index_count / 3;
-            if (looked_at > most_triangles)
+            if (looked_at > max_triangles)
                 found_ = std::max(at_least, 0.0f);
             else
                 look(cluster);
@@ -113,13 +113,13 @@ private:
         const auto useAll = [&](std::span<const types::Cluster> clusters) {
             for (const types::Cluster& cluster : clusters) nearer = use(cluster, atLeast(cluster.centre, cluster.half));
         };
-        if (mesh_.patches.empty()) return useAll(mesh_.clusters);
-        for (size_t i = 0; i < mesh_.patches.size();) {
-            const types::Patch& patch = mesh_.patches[i];
-            if (atLeast(patch.centre, patch.half) >= nearer)
-                i = patch.next;
-            else if (++i == patch.next)
-                useAll(std::span(mesh_.clusters).subspan(patch.first_cluster, patch.cluster_count));
+        if (mesh_.cluster_nodes.empty()) return useAll(mesh_.clusters);
+        for (size_t i = 0; i < mesh_.cluster_nodes.size();) {
+            const types::ClusterNode& node = mesh_.cluster_nodes[i];
+            if (atLeast(node.centre, node.half) >= nearer)
+                i = node.next;
+            else if (++i == node.next)
+                useAll(std::span(mesh_.clusters).subspan(node.first_cluster, node.cluster_count));
         }
     }
 
@@ -177,7 +177,7 @@ double longestEdge(const types::Mesh& mesh) {
 double nearestDistance(const types::Mesh& mesh, double longest_edge, const glm::dmat4& sonar_from_mesh,
                        std::vector<float>& scratch) {
     Search search(mesh, sonar_from_mesh);
-    const bool few = mesh.positions.size() <= most_corners && !mesh.positions.empty();
+    const bool few = mesh.positions.size() <= max_corners && !mesh.positions.empty();
     return few ? search.nearestByCorners(longest_edge, scratch) : search.nearest();
 }
 

@@ -12,7 +12,7 @@
 #include "components/framework/Activity.hpp"
 #include "components/sonar/PlanReport.hpp"
 #include "components/sonar/Silence.hpp"
-#include "types/CarriedOn.hpp"
+#include "types/ExtrapolatePose.hpp"
 
 namespace insonify::sonar {
 namespace {
@@ -64,12 +64,12 @@ bool PingTask::configureHook() {
     return true;
 }
 
-const char* PingTask::follow(const types::Snapshot& scene) {
+const char* PingTask::useGeometry(const types::Snapshot& scene) {
     const std::optional<Mark> before = std::exchange(before_, Mark{scene.time, scene.sonar.position});
     const double seconds = before ? (scene.time - before->time).seconds() : 0;
     if (!(seconds > 0)) return nullptr;
     shortest_ = std::min(shortest_, seconds);
-    period_.heard(seconds);
+    period_.note(seconds);
     const bool too_fast = glm::distance(scene.sonar.position, before->position) > 0.1 * grid_.speed_of_sound * seconds;
     return too_fast ? "the sonar moves faster than a tenth of the speed of sound" : nullptr;
 }
@@ -95,8 +95,8 @@ bool PingTask::takeNext() {
     if (!is_new) return false;
     begun_ = now();
     aimed_ = *sample;
-    if (realtime && aimed_.carry_on > 0) {
-        aimed_.sonar = types::carriedOn(aimed_.sonar, begun_, aimed_.carry_on);
+    if (realtime && aimed_.max_extrapolation > 0) {
+        aimed_.sonar = types::extrapolatePose(aimed_.sonar, begun_, aimed_.max_extrapolation);
         aimed_.time = aimed_.sonar.time;
     }
     used_ = aimed_.sonar;
@@ -105,12 +105,12 @@ bool PingTask::takeNext() {
 
 void PingTask::updateHook() {
     if (!takeNext()) return;
-    const char* fault = aimed_.geometry ? normalisePose(aimed_.sonar) : "the snapshot has no geometry";
-    if (!fault && activity().realtime() && (aimed_.time - now()).seconds() > 1)
-        fault = "the snapshot's time is ahead of the clock by more than a second";
-    if (!fault) fault = follow(aimed_);
-    if (!fault) fault = aim(aimed_);
-    if (fault) return error(fault);
+    const char* diagnostic = aimed_.geometry ? normalisePose(aimed_.sonar) : "the snapshot has no geometry";
+    if (!diagnostic && activity().realtime() && (aimed_.time - now()).seconds() > 1)
+        diagnostic = "the snapshot's time is ahead of the clock by more than a second";
+    if (!diagnostic) diagnostic = useGeometry(aimed_);
+    if (!diagnostic) diagnostic = steer(aimed_);
+    if (diagnostic) return error(diagnostic);
     if (state() == framework::TaskState::RunTimeError) recover();
     render();
 }
@@ -142,7 +142,7 @@ void PingTask::followQuality(types::Sonar& sample, double ms) {
 
 void PingTask::followSilence() {
     if (silent_ < 0) return;
-    silent_ = renderer_->heard() ? -1 : silent_ + 1;
+    silent_ = renderer_->hasEchoes() ? -1 : silent_ + 1;
     if (silent_ != pingsPerTurn()) return;
     const double covered_deg = silent_ > 1 ? 360 : sonarConfig().coverageDeg();  // a head has looked all round
     warn(silenceText(sonarConfig(), {grid_.range_max, covered_deg}, aimed_));
@@ -160,15 +160,15 @@ void PingTask::render() {
         for (const LeftOut& what : renderer_->culled()) plan_->omitted.push_back(describe(what, grid_));
     followQuality(*sample, took.count());
     followSilence();
-    label(*sample);
+    stampBearings(*sample);
     pool_.stock(*sample);
     if (!std::exchange(plan_told_, true)) refreshRecord();
-    if (!listen()) return;
+    if (!waitForLastEcho()) return;
     if (pose.connected()) pose.write(used_);
     ping.write(sample);
 }
 
-bool PingTask::listen() {
+bool PingTask::waitForLastEcho() {
     if (!activity().realtime()) return true;
     const types::Time heard{std::max(aimed_.time, begun_).microseconds +
                             static_cast<int64_t>(std::ceil(echoTime() * 1e6))};

@@ -51,9 +51,9 @@ public:
 
 protected:
     /** Last changes to a snapshot with a valid pose before it is rendered; a reason refuses it. */
-    virtual const char* aim(types::Snapshot& /*scene*/) { return nullptr; }
+    virtual const char* steer(types::Snapshot& /*scene*/) { return nullptr; }
     /** Last changes to a ping before it is written. */
-    virtual void label(types::Sonar& /*sample*/) {}
+    virtual void stampBearings(types::Sonar& /*sample*/) {}
     /** Pings in which a turning head comes round [1]. */
     virtual int pingsPerTurn() const { return 1; }
 
@@ -72,7 +72,7 @@ private:
         glm::dvec3 position;
     };
     /** Judges the time and way since the snapshot before; a reason refuses this one. */
-    const char* follow(const types::Snapshot& scene);
+    const char* useGeometry(const types::Snapshot& scene);
     double echoTime() const { return 2 * grid_.range_max / grid_.speed_of_sound; }  ///< To the range and back [s].
     void render();
     /** The next of `given_pose`, in the newest snapshot's scene. */
@@ -80,7 +80,7 @@ private:
     /** The next snapshot; in realtime the newest, its sonar where it is by now, as far as it may be carried on. */
     bool takeNext();
     /** In realtime, until the last echo of this ping's range is back; false: the task is to stop. */
-    bool listen();
+    bool waitForLastEcho();
     void makeRenderer();
     /** Tells once when not one ping of a whole turn has heard anything. */
     void followSilence();

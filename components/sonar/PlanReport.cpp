@@ -178,7 +178,7 @@ types::Plan report(const RenderPlan& plan, const types::Geometry& geometry) {
     types::Plan told;
     told.rows = plan.config.rows();
     told.columns_per_beam = plan.config.columnsPerBeam();
-    told.slabs = static_cast<int>(plan.slabs.size());
+    told.slabs = static_cast<int>(plan.frusta.size());
     told.predicted_error = std::numeric_limits<double>::quiet_NaN();
     told.features = plan.features.names();
     for (Pass pass : plan.passes) told.passes.emplace_back(types::EnumNames<Pass>::names[static_cast<size_t>(pass)]);

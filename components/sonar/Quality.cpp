@@ -8,14 +8,14 @@
 namespace insonify::sonar {
 namespace {
 
-constexpr int most_rows = 2048, most_columns = 256, rungs_per_doubling = 8;
+constexpr int max_rows = 2048, max_columns = 256, rungs_per_doubling = 8;
 constexpr double step_of_samples = 4, worth_a_trade = 0.85;
 
 /** Whether a device can draw so many columns per beam. */
 bool fits(SonarConfig config, int columns) {
     config.quality.columns_per_beam = columns;
     if (config.castsRays()) return true;
-    return makeSlabs(config, makeBeams(config)).front().columns <= most_image_size;
+    return makeFrusta(config, makeBeams(config)).front().columns <= max_image_size;
 }
 
 /** Error of the finer of two pings whose samples differ in spacing by `ratio` < 1, from how much they differ. */
@@ -37,15 +37,15 @@ double ErrorModel::error(int rows, int columns_per_beam) const {
 
 QualityLadder::QualityLadder(const SonarConfig& config) {
     const Quality least;
-    for (int i = 0; rows_.empty() || rows_.back() < most_rows; ++i)
+    for (int i = 0; rows_.empty() || rows_.back() < max_rows; ++i)
         rows_.push_back(
             static_cast<int>(std::lround(least.rows * std::exp2(i / static_cast<double>(rungs_per_doubling)))));
-    for (int columns = least.columns_per_beam; columns <= most_columns; columns *= 2)
+    for (int columns = least.columns_per_beam; columns <= max_columns; columns *= 2)
         for (const int each : {columns, columns + columns / 2})
-            if (each <= most_columns && (columns_.empty() || fits(config, each))) columns_.push_back(each);
+            if (each <= max_columns && (columns_.empty() || fits(config, each))) columns_.push_back(each);
 }
 
-Quality QualityLadder::choose(const ErrorModel& model, double target, double most_samples, const Quality& least) const {
+Quality QualityLadder::choose(const ErrorModel& model, double target, double max_samples, const Quality& least) const {
     Quality best = least;
     best.error = model.error(least.rows, least.columns_per_beam);
     const auto better = [&](const Quality& quality) {
@@ -55,7 +55,7 @@ Quality QualityLadder::choose(const ErrorModel& model, double target, double mos
     for (const int columns : columns_)
         for (const int rows : rows_) {
             const Quality quality{rows, columns, model.error(rows, columns)};
-            if (rows < least.rows || columns < least.columns_per_beam || quality.samples() > most_samples) continue;
+            if (rows < least.rows || columns < least.columns_per_beam || quality.samples() > max_samples) continue;
             if (better(quality)) best = quality;
         }
     return best;
@@ -113,7 +113,7 @@ ErrorModel climb(ErrorEstimator& estimator, const QualityLadder& ladder, SonarRe
     };
     ErrorModel model = estimator.model(renderer, scene, ping, start);
     while (model.error() > goal.target) {
-        const double samples = std::min(goal.most_samples, step_of_samples * model.at.samples());
+        const double samples = std::min(goal.max_samples, step_of_samples * model.at.samples());
         const Quality finer = ladder.choose(model, aim_share * goal.target, samples, model.at);
         const Quality other = ladder.choose(model, aim_share * goal.target, samples);
         if (!(finer == model.at))

@@ -40,7 +40,7 @@ public:
     /** The one of fewest samples whose error is at most `target`, else the one of least error; of at least the rows and
      *  columns of `least` and at most `most_samples` per beam, `least` itself where there is none. Its error is
      *  `model`'s. */
-    Quality choose(const ErrorModel& model, double target, double most_samples, const Quality& least = {}) const;
+    Quality choose(const ErrorModel& model, double target, double max_samples, const Quality& least = {}) const;
 
 private:
     std::vector<int> rows_, columns_;
@@ -75,8 +75,8 @@ private:
 
 /** What a quality is chosen for. */
 struct QualityGoal {
-    double target = 0;                                              ///< Error [1].
-    double most_samples = std::numeric_limits<double>::infinity();  ///< Per beam [1].
+    double target = 0;                                             ///< Error [1].
+    double max_samples = std::numeric_limits<double>::infinity();  ///< Per beam [1].
     bool trades = true;  ///< Whether rows may go for columns, and columns for rows, where no more samples are allowed.
 };
 

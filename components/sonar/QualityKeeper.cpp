@@ -15,7 +15,7 @@ constexpr double first_turn_share = 0.5;     ///< The same while a head sees wha
 constexpr int rarely = 16;                   ///< Of the pings to watch, where the time is up without it.
 constexpr double off_target = 1.2, off_prediction = 1.5, well_within = 0.5, worth_lowering = 0.7, near_limit = 0.8;
 constexpr double overhead = 0.15, pings_to_choose = 10;  ///< What estimates may cost in all [1 of the pings, pings].
-constexpr int least_pings = 64, settled = 20, most_notices = 20;
+constexpr int min_pings = 64, settled = 20, max_notices = 20;
 constexpr double worth_telling = 1.2, too_far_from_model = 4;
 
 }  // namespace
@@ -37,7 +37,7 @@ double QualityKeeper::mostSamples() const {
 
 bool QualityKeeper::follow(SonarRenderer& renderer, const types::Snapshot& scene, types::Sonar& ping, double ms,
                            double period_ms) {
-    if (!renderer.heard()) return false;
+    if (!renderer.hasEchoes()) return false;
     ++pings_;
     ++since_change_;
     heard_samples_ += model_.at.samples();
@@ -85,7 +85,7 @@ bool QualityKeeper::watch(SonarRenderer& renderer, const types::Snapshot& scene,
         choose(renderer, scene, ping);
         return true;
     }
-    return since_change_ >= std::max(turn_, least_pings) && lower(renderer, scene, ping);
+    return since_change_ >= std::max(turn_, min_pings) && lower(renderer, scene, ping);
 }
 
 bool QualityKeeper::lower(SonarRenderer& renderer, const types::Snapshot& scene, types::Sonar& ping) {
@@ -111,7 +111,7 @@ bool QualityKeeper::keepBudget(SonarRenderer& renderer, const types::Snapshot& s
     if (by_period && budget_) budget_->setBudget(period_ms);
     if (by_period && !budget_) budget_.emplace(period_ms);
     const double before = mostSamples();
-    if (!budget_ || !budget_->heard(ms, model_.at.samples() * beams_)) return false;
+    if (!budget_ || !budget_->note(ms, model_.at.samples() * beams_)) return false;
     const bool rises = mostSamples() > before;
     if (rises && mostSamples() > too_far_from_model * modelled_) {
         choose(renderer, scene, ping);
@@ -125,8 +125,8 @@ bool QualityKeeper::keepBudget(SonarRenderer& renderer, const types::Snapshot& s
 }
 
 void QualityKeeper::tell(const std::string& notice) {
-    if (notices_told_ < most_notices) notices_.push_back(notice);
-    if (++notices_told_ == most_notices) notices_.push_back("further changes of the quality are not told");
+    if (notices_told_ < max_notices) notices_.push_back(notice);
+    if (++notices_told_ == max_notices) notices_.push_back("further changes of the quality are not told");
 }
 
 std::string QualityKeeper::text() const {

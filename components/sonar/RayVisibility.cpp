@@ -16,7 +16,7 @@ namespace {
 constexpr double farthest_from_origin = 1000;
 /** Triangles that are copied to where they stand, once for each object; of larger scenes, meshes that stand in several
  *  places are instances of one tree, through which rays take longer [1]. */
-constexpr size_t most_copied = 4'000'000;
+constexpr size_t max_copied = 4'000'000;
 
 /** The three rows of a matrix that takes directions and places from one frame to another. */
 struct Rows {
@@ -164,7 +164,7 @@ void RayVisibility::build(const types::Snapshot& snapshot) {
     movers_.clear();
     std::vector<size_t> uses(geometry_.meshes.size());
     for (const types::Object& object : geometry_.objects) ++uses[static_cast<size_t>(object.mesh)];
-    const bool copied = geometry_.triangleCount() <= most_copied;
+    const bool copied = geometry_.triangleCount() <= max_copied;
     for (size_t i = 0; i < geometry_.objects.size(); ++i) {
         const types::Object& object = geometry_.objects[i];
         const types::Mesh& mesh = geometry_.meshes[static_cast<size_t>(object.mesh)];

@@ -50,7 +50,7 @@ void omitEffects(const types::Geometry& geometry, RenderPlan& plan) {
     for (Effect effect : {Effect::AzimuthPattern, Effect::ElevationPattern, Effect::RangePointSpread, Effect::Volume,
                           Effect::Multipath})
         plan.left_out.push_back({effect, Reason::NotConfigured});
-    if (plan.slabs.size() == 1)
+    if (plan.frusta.size() == 1)
         plan.left_out.push_back({Effect::FurtherSlabs, Reason::OneImage, plan.config.coverageDeg()});
     const Bending bent = bending(plan.config, plan.grid);
     if (bent.offset < bent.tolerated)
@@ -81,7 +81,7 @@ std::vector<std::string> Features::defines() const {
 void RenderPlan::setQuality(int rows, int columns_per_beam) {
     config.quality.rows = rows;
     config.quality.columns_per_beam = columns_per_beam;
-    if (!casts_rays) slabs = makeSlabs(config, beams);
+    if (!casts_rays) frusta = makeFrusta(config, beams);
 }
 
 const LeftOut* RenderPlan::leftOut(Effect effect) const {

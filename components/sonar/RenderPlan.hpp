@@ -96,7 +96,7 @@ struct RenderPlan {
     std::vector<Pass> passes;
     BinGrid grid;
     std::vector<Beam> beams;
-    std::vector<Slab> slabs;  ///< Images of the fan; none with rays.
+    std::vector<ViewFrustum> frusta;  ///< Images of the fan; none with rays.
     std::vector<LeftOut> left_out;
 
     /** Other rows and columns per beam [1], and the images that go with them. */

@@ -22,7 +22,7 @@ bool ScanningSonarTask::propertiesHook() {
     return PingTask::propertiesHook();
 }
 
-const char* ScanningSonarTask::aim(types::Snapshot& scene) {
+const char* ScanningSonarTask::steer(types::Snapshot& scene) {
     if (last_ && scene.time < *last_) return "the snapshot is older than the one before";
     if (last_ && !step_checked_) checkStep((scene.time - *last_).seconds());
     step_checked_ = last_.has_value();
@@ -32,7 +32,7 @@ const char* ScanningSonarTask::aim(types::Snapshot& scene) {
     return nullptr;
 }
 
-void ScanningSonarTask::label(types::Sonar& sample) {
+void ScanningSonarTask::stampBearings(types::Sonar& sample) {
     sample.bearings[0] = types::Angle::fromDeg(scan_->bearingDeg());
     scan_->advance();
 }

@@ -21,8 +21,8 @@ public:
 protected:
     bool startHook() override;
     bool propertiesHook() override;
-    const char* aim(types::Snapshot& scene) override;
-    void label(types::Sonar& sample) override;
+    const char* steer(types::Snapshot& scene) override;
+    void stampBearings(types::Sonar& sample) override;
     int pingsPerTurn() const override { return scan_->pingsPerTurn(); }
 
 private:

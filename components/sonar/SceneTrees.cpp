@@ -6,14 +6,14 @@
 
 namespace insonify::sonar {
 std::vector<MaterialRun> materialRuns(const types::Mesh& mesh) {
-    std::vector<MaterialRun> runs;
+    std::vector<MaterialRun> ranges;
     for (const types::Cluster& cluster : mesh.clusters) {
-        if (!runs.empty() && runs.back().material == cluster.material)
-            runs.back().index_count += cluster.index_count;
+        if (!ranges.empty() && ranges.back().material == cluster.material)
+            ranges.back().index_count += cluster.index_count;
         else
-            runs.push_back({cluster.first_index, cluster.index_count, cluster.material});
+            ranges.push_back({cluster.first_index, cluster.index_count, cluster.material});
     }
-    return runs;
+    return ranges;
 }
 
 SceneTrees::SceneTrees(const types::Geometry& geometry)

@@ -30,7 +30,7 @@ std::string directionText(const glm::dvec3& ahead) {
 }
 
 /** What keeps the sonar from hearing a point, given in its own frame; empty when nothing does that is known here. */
-std::string hindranceText(const SonarConfig& config, const Reach& reach, const glm::dvec3& point) {
+std::string hindranceText(const SonarConfig& config, const Coverage& reach, const glm::dvec3& point) {
     const double range = glm::length(point);
     if (range > reach.range_max) return fmt::format("beyond the range of {:.4g} m", reach.range_max);
     if (range < config.range_min) return fmt::format("nearer than range_min, {:g} m", config.range_min);
@@ -47,7 +47,7 @@ std::string hindranceText(const SonarConfig& config, const Reach& reach, const g
 
 }  // namespace
 
-std::string silenceText(const SonarConfig& config, const Reach& reach, const types::Snapshot& scene) {
+std::string silenceText(const SonarConfig& config, const Coverage& reach, const types::Snapshot& scene) {
     const glm::dvec3& place = scene.sonar.position;
     const glm::dvec3 ahead = scene.sonar.orientation * glm::dvec3(1, 0, 0);
     const std::string sonar =

@@ -7,7 +7,7 @@
 namespace insonify::sonar {
 
 /** How far it has listened, and over which azimuth. */
-struct Reach {
+struct Coverage {
     double range_max;    ///< Far edge of the last bin [m].
     double covered_deg;  ///< From edge to edge [deg].
 };
@@ -16,6 +16,6 @@ struct Reach {
  *  its nearest point is, and which of range, aperture and fan that point is out of. Takes time in proportion to the
  *  triangles of the scene.
  */
-std::string silenceText(const SonarConfig& config, const Reach& reach, const types::Snapshot& scene);
+std::string silenceText(const SonarConfig& config, const Coverage& reach, const types::Snapshot& scene);
 
 }  // namespace insonify::sonar

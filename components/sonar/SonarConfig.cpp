@@ -15,91 +15,93 @@ namespace insonify::sonar {
 namespace {
 
 constexpr double tallest_image_deg = 150;
-constexpr int64_t most_ray_columns = int64_t{1} << 22;
-constexpr int64_t most_bins = int64_t{1} << 24;  // sums of 16 bytes: 256 MiB
+constexpr int64_t max_ray_columns = int64_t{1} << 22;
+constexpr int64_t max_bins = int64_t{1} << 24;  // sums of 16 bytes: 256 MiB
 
-void checkPublished(const SonarConfig& config, types::Problems& problems) {
+void checkPublished(const SonarConfig& config, types::Diagnostics& diagnostics) {
     if (config.model != Model::Cerqueira2017)
-        problems.push_back({"published", "is true; only with model: cerqueira2017"});
-    if (config.bin_count < 2) problems.push_back({"bin_count", "is 1; must be at least 2 with published: true"});
+        diagnostics.push_back({"published", "is true; only with model: cerqueira2017"});
+    if (config.bin_count < 2) diagnostics.push_back({"bin_count", "is 1; must be at least 2 with published: true"});
     if (config.coverageDeg() >= 180)
-        problems.push_back({"published", fmt::format("is true with {} deg of azimuth; one image shows less than 180",
-                                                     config.coverageDeg())});
+        diagnostics.push_back({"published", fmt::format("is true with {} deg of azimuth; one image shows less than 180",
+                                                        config.coverageDeg())});
     if (config.beam_geometry != BeamGeometry::Planar)
-        problems.push_back({"beam_geometry", "is conical; must be planar with published: true"});
+        diagnostics.push_back({"beam_geometry", "is conical; must be planar with published: true"});
 }
 
-void checkRangeReached(const SonarConfig& config, types::Problems& problems) {
+void checkRangeReached(const SonarConfig& config, types::Diagnostics& diagnostics) {
     const BinGrid grid = makeBinGrid(config);
     if (grid.range_max > 1.25 * config.range)
-        problems.push_back(
+        diagnostics.push_back(
             {"range", fmt::format("is {} m; {} bins of whole microseconds reach {:.6g} m, which may be at most 25 % "
                                   "more: lower bin_count, raise range, or set range_rounding: exact",
                                   config.range, config.bin_count, grid.range_max)});
 }
 
-void checkVisibility(const SonarConfig& config, types::Problems& problems) {
+void checkVisibility(const SonarConfig& config, types::Diagnostics& diagnostics) {
     if (config.visibility != Visibility::Cpu) return;
-    if (!haveRays()) problems.push_back({"visibility", "is cpu; this build has no rays (Embree), may be auto or gl"});
+    if (!haveRays())
+        diagnostics.push_back({"visibility", "is cpu; this build has no rays (Embree), may be auto or gl"});
     if (config.published)
-        problems.push_back({"visibility", "is cpu with published: true, which is an image; may be gl"});
+        diagnostics.push_back({"visibility", "is cpu with published: true, which is an image; may be gl"});
     if (config.deposit == Deposit::Gpu)
-        problems.push_back({"deposit", "is gpu with visibility: cpu; may be auto or cpu"});
+        diagnostics.push_back({"deposit", "is gpu with visibility: cpu; may be auto or cpu"});
 }
 
-int imageColumns(const SonarConfig& config) { return makeSlabs(config, makeBeams(config)).front().columns; }
+int imageColumns(const SonarConfig& config) { return makeFrusta(config, makeBeams(config)).front().columns; }
 
 bool fitsImages(const SonarConfig& config) {
-    return config.beam_height_deg <= tallest_image_deg && imageColumns(config) <= most_image_size;
+    return config.beam_height_deg <= tallest_image_deg && imageColumns(config) <= max_image_size;
 }
 
-void checkRays(const SonarConfig& config, types::Problems& problems) {
+void checkRays(const SonarConfig& config, types::Diagnostics& diagnostics) {
     const int64_t columns = int64_t{config.beams()} * config.columnsPerBeam();
-    if (columns > most_ray_columns)
-        problems.push_back({"quality.columns_per_beam",
-                            fmt::format("is {}, with {} beams {} columns; may be {}", config.columnsPerBeam(),
-                                        config.beams(), columns, most_ray_columns)});
+    if (columns > max_ray_columns)
+        diagnostics.push_back({"quality.columns_per_beam",
+                               fmt::format("is {}, with {} beams {} columns; may be {}", config.columnsPerBeam(),
+                                           config.beams(), columns, max_ray_columns)});
 }
 
 /** A straight array hears nothing behind abeam that it does not hear ahead. */
-void checkCones(const SonarConfig& config, types::Problems& problems) {
+void checkCones(const SonarConfig& config, types::Diagnostics& diagnostics) {
     for (int k = 0; k < config.beams(); ++k)
         if (std::abs(config.bearingDeg(k)) + config.beamWidthDeg() / 2 > 90 * (1 + 1e-9))
-            return problems.push_back(
+            return diagnostics.push_back(
                 {"beam_geometry",
                  fmt::format("is conical, with a beam of {:g} deg about {:g} deg; a straight array sees "
                              "-90 to 90 deg",
                              config.beamWidthDeg(), config.bearingDeg(k))});
 }
 
-void checkImages(const SonarConfig& config, types::Problems& problems) {
+void checkImages(const SonarConfig& config, types::Diagnostics& diagnostics) {
     if (config.beam_height_deg > tallest_image_deg)
-        return problems.push_back(
+        return diagnostics.push_back(
             {"beam_height_deg", fmt::format("is {:g} deg; an image shows {:g}, rays (visibility: cpu) 180",
                                             config.beam_height_deg, tallest_image_deg)});
     const int columns = imageColumns(config);
-    if (columns > most_image_size)
-        problems.push_back(
+    if (columns > max_image_size)
+        diagnostics.push_back(
             {"quality.columns_per_beam",
              fmt::format("is {}, which with beams of {:g} deg over {:g} deg makes images of {} columns; may be {}",
                          config.columnsPerBeam(), config.beamWidthDeg(), config.coverageDeg(), columns,
-                         most_image_size)});
+                         max_image_size)});
 }
 
-void checkDevice(const std::string& device, types::Problems& problems) {
+void checkDevice(const std::string& device, types::Diagnostics& diagnostics) {
     try {
         gpu::EglContext::requireDevice(device);
     } catch (const gpu::GlError& error) {
-        problems.push_back({"device", error.what()});
+        diagnostics.push_back({"device", error.what()});
     }
 }
 
 }  // namespace
 
-void AbsorptionConfig::check(types::Problems& problems) const {
-    if (db_per_m && frequency_khz) problems.push_back({"db_per_m", "stands beside frequency_khz; give one of the two"});
+void AbsorptionConfig::check(types::Diagnostics& diagnostics) const {
+    if (db_per_m && frequency_khz)
+        diagnostics.push_back({"db_per_m", "stands beside frequency_khz; give one of the two"});
     if (!db_per_m && !frequency_khz)
-        problems.push_back({"", "has no value; give db_per_m, or frequency_khz for a law"});
+        diagnostics.push_back({"", "has no value; give db_per_m, or frequency_khz for a law"});
 }
 
 double SonarConfig::bearingDeg(int k) const {
@@ -136,22 +138,22 @@ std::optional<double> SonarConfig::mostSamples() const {
 
 double SonarConfig::speedOfSound() const { return speed_of_sound.value_or(water ? leroySpeed(*water) : 1500); }
 
-void SonarConfig::check(types::Problems& problems) const {
+void SonarConfig::check(types::Diagnostics& diagnostics) const {
     if (!bearings_deg.empty() && !beam_width_deg)
-        return problems.push_back({"beam_width_deg", "is absent; bearings_deg needs the width of one beam"});
-    if (bearings_deg.empty() && beam_width_deg) return checkFan(problems);
+        return diagnostics.push_back({"beam_width_deg", "is absent; bearings_deg needs the width of one beam"});
+    if (bearings_deg.empty() && beam_width_deg) return checkFan(diagnostics);
     if (bearings_deg.size() > 4096)
-        problems.push_back({"bearings_deg", fmt::format("has {} beams; may have 4096", bearings_deg.size())});
-    if (int64_t{beams()} * bin_count > most_bins)
-        problems.push_back({"bin_count", fmt::format("is {} for each of {} beams, {} bins in all; may be {}", bin_count,
-                                                     beams(), int64_t{beams()} * bin_count, most_bins)});
+        diagnostics.push_back({"bearings_deg", fmt::format("has {} beams; may have 4096", bearings_deg.size())});
+    if (int64_t{beams()} * bin_count > max_bins)
+        diagnostics.push_back({"bin_count", fmt::format("is {} for each of {} beams, {} bins in all; may be {}",
+                                                        bin_count, beams(), int64_t{beams()} * bin_count, max_bins)});
     if (beam_geometry == BeamGeometry::Conical && coverageDeg() > 180)
-        problems.push_back({"beam_geometry", "is conical; a straight array sees at most 180 deg of azimuth"});
+        diagnostics.push_back({"beam_geometry", "is conical; a straight array sees at most 180 deg of azimuth"});
     else if (beam_geometry == BeamGeometry::Conical)
-        checkCones(*this, problems);
+        checkCones(*this, diagnostics);
     if (published && !bearings_deg.empty())
-        problems.push_back({"bearings_deg", "is given; published: true has a regular fan"});
-    checkBeam(problems);
+        diagnostics.push_back({"bearings_deg", "is given; published: true has a regular fan"});
+    checkBeam(diagnostics);
 }
 
 SonarConfig SonarConfig::fan() const {
@@ -167,48 +169,48 @@ SonarConfig SonarConfig::fan() const {
     return fan;
 }
 
-void SonarConfig::checkFan(types::Problems& problems) const {
+void SonarConfig::checkFan(types::Diagnostics& diagnostics) const {
     if (field_of_view_deg && beam_width_convention == BeamWidthConvention::TotalFov)
-        return problems.push_back({"field_of_view_deg",
-                                   "is given with beam_width_deg and beam_width_convention: total_fov; one of "
-                                   "the two tells the fan"});
+        return diagnostics.push_back({"field_of_view_deg",
+                                      "is given with beam_width_deg and beam_width_convention: total_fov; one of "
+                                      "the two tells the fan"});
     if (field_of_view_deg && published)
-        return problems.push_back(
+        return diagnostics.push_back(
             {"beam_width_deg", "is given with field_of_view_deg; published: true has beams as wide as their spacing"});
     const SonarConfig regular = fan();
     if (regular.fieldOfViewDeg() > 360)
-        return problems.push_back(
+        return diagnostics.push_back(
             {"beam_width_deg", fmt::format("is {:g} deg; {} beams of it cover {:g} deg, may be 360; give "
                                            "field_of_view_deg as well for beams that overlap",
                                            *beam_width_deg, beam_count, regular.fieldOfViewDeg())});
-    regular.check(problems);
+    regular.check(diagnostics);
 }
 
-void QualityConfig::check(types::Problems& problems) const {
+void QualityConfig::check(types::Diagnostics& diagnostics) const {
     const char* const choices =
         "is given with another choice; give rows and columns_per_beam, or target_error and max_samples, or budget_ms";
     const auto refuse = [&](const char* name, bool given, bool other) {
-        if (given && (isGiven() || other)) problems.push_back({name, choices});
+        if (given && (isGiven() || other)) diagnostics.push_back({name, choices});
     };
     refuse("target_error", target_error.has_value(), budget_ms.has_value());
     refuse("max_samples", max_samples.has_value(), budget_ms.has_value());
     refuse("budget_ms", budget_ms.has_value(), false);
 }
 
-void SonarConfig::checkBeam(types::Problems& problems) const {
+void SonarConfig::checkBeam(types::Diagnostics& diagnostics) const {
     if (range_min >= range)
-        problems.push_back({"range_min", fmt::format("is {} m; must be below range, {} m", range_min, range)});
+        diagnostics.push_back({"range_min", fmt::format("is {} m; must be below range, {} m", range_min, range)});
     if (absorption && absorption->frequency_khz && !water)
-        problems.push_back({"absorption.frequency_khz", "is given without water; a law needs the water block"});
+        diagnostics.push_back({"absorption.frequency_khz", "is given without water; a law needs the water block"});
     if (beam_width_deg > 120)
-        problems.push_back({"beam_width_deg", fmt::format("is {:g} deg; one beam may have 120", *beam_width_deg)});
-    if (published) checkPublished(*this, problems);
-    checkRangeReached(*this, problems);
-    checkVisibility(*this, problems);
-    if (!problems.empty()) return;
-    if (castsRays()) return checkRays(*this, problems);
-    checkDevice(device, problems);
-    checkImages(*this, problems);
+        diagnostics.push_back({"beam_width_deg", fmt::format("is {:g} deg; one beam may have 120", *beam_width_deg)});
+    if (published) checkPublished(*this, diagnostics);
+    checkRangeReached(*this, diagnostics);
+    checkVisibility(*this, diagnostics);
+    if (!diagnostics.empty()) return;
+    if (castsRays()) return checkRays(*this, diagnostics);
+    checkDevice(device, diagnostics);
+    checkImages(*this, diagnostics);
 }
 
 }  // namespace insonify::sonar

@@ -45,7 +45,7 @@ struct AbsorptionConfig {
         visit(Field{"law", "", "computes it from frequency and water"}, self.law);
         visit(Field{"frequency_khz", "kHz", "frequency for the law", 0, 1e5}, self.frequency_khz);
     }
-    void check(types::Problems& problems) const;
+    void check(types::Diagnostics& diagnostics) const;
 };
 
 /** How a pixel's echo finds its bins. All but the first are for comparison, in studies of the error. */
@@ -76,7 +76,7 @@ struct QualityConfig {
               self.max_samples);
         visit(Field{"budget_ms", "ms", "instead: time of a ping, used and kept", 0.1, 1e5}, self.budget_ms);
     }
-    void check(types::Problems& problems) const;
+    void check(types::Diagnostics& diagnostics) const;
 };
 
 /** What simplified meshes may cost. A bound, not a wish: all meshes are drawn in full, for on rough floors those that
@@ -117,7 +117,7 @@ struct SonarConfig {
     Estimator estimator = Estimator::Footprint;  ///< Not a property. Others than the first: `physical` only.
     bool one_frustum = false;   ///< Not a property: one wide image and rounded columns, as `published`.
     int samples_per_pixel = 1;  ///< Not a property: 1, or 4 on a rotated grid, for edges along the rows [1].
-    int least_slabs = 1;        ///< Not a property: more images than the fan needs [1].
+    int min_frusta = 1;         ///< Not a property: more images than the fan needs [1].
     int threads = 0;            ///< Not a property: 0, as many as there are cores [1].
     DetailConfig detail;
     bool draw_all = false;
@@ -177,11 +177,11 @@ struct SonarConfig {
     /** The properties that a scanning sonar has as well. */
     template <class Self, class V>
     static void describeBeam(Self& self, V& visit);
-    void check(types::Problems& problems) const;
+    void check(types::Diagnostics& diagnostics) const;
     /** The faults of a fan that is given by `beam_width_deg`. */
-    void checkFan(types::Problems& problems) const;
+    void checkFan(types::Diagnostics& diagnostics) const;
     /** The faults that a scanning sonar can have as well. */
-    void checkBeam(types::Problems& problems) const;
+    void checkBeam(types::Diagnostics& diagnostics) const;
 };
 
 template <class Self, class V>

@@ -71,7 +71,7 @@ void SonarRenderer::setQuality(int rows, int columns_per_beam) {
 }
 
 std::span<const Stage> SonarRenderer::stages() const { return parts_->stages; }
-bool SonarRenderer::heard() const { return parts_->echoes->heard(); }
+bool SonarRenderer::hasEchoes() const { return parts_->echoes->hasEchoes(); }
 std::vector<LeftOut> SonarRenderer::culled() const { return parts_->echoes->culled(); }
 const RenderPlan& SonarRenderer::renderPlan() const { return parts_->plan; }
 Features SonarRenderer::compiled() const { return parts_->echoes->compiled(); }

@@ -39,8 +39,8 @@ public:
     /** What is compiled into what renders. */
     Features compiled() const;
     /** Whether the last ping has any echo. */
-    bool heard() const;
-    /** What of the scene the last ping did not draw: objects, triangles, slabs; nothing with rays. */
+    bool hasEchoes() const;
+    /** What of the scene the last ping did not draw: objects, triangles, frusta; nothing with rays. */
     std::vector<LeftOut> culled() const;
     const std::string& device() const;  ///< What renders, with its driver.
 

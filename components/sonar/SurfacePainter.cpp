@@ -5,15 +5,17 @@
 namespace insonify::sonar {
 namespace {
 
-SlabPicture::Clip clip(const ObjectRecord& object, const Slab& slab) {
+VisibilityBuffer::Clip clip(const ObjectRecord& object, const ViewFrustum& frustum) {
     const glm::dvec4 x(object.row_x), y(object.row_y), z(object.row_z);
-    const double cosine = std::cos(slab.azimuth), sine = std::sin(slab.azimuth);
-    return {vec4((cosine * y - sine * x) / slab.extent_u), vec4(z / slab.extent_v), vec4(cosine * x + sine * y)};
+    const double cosine = std::cos(frustum.azimuth), sine = std::sin(frustum.azimuth);
+    return {vec4((cosine * y - sine * x) / frustum.extent_u), vec4(z / frustum.extent_v), vec4(cosine * x + sine * y)};
 }
 
-SlabPicture::Bend bend(const ObjectRecord& object, const Slab& slab, float normal_scale) {
-    const auto cosine = static_cast<float>(std::cos(slab.azimuth)), sine = static_cast<float>(std::sin(slab.azimuth));
-    SlabPicture::Bend rows{
+VisibilityBuffer::NormalTransform normalTransform(const ObjectRecord& object, const ViewFrustum& frustum,
+                                                  float normal_scale) {
+    const auto cosine = static_cast<float>(std::cos(frustum.azimuth)),
+               sine = static_cast<float>(std::sin(frustum.azimuth));
+    VisibilityBuffer::NormalTransform rows{
         {cosine * object.normal_x + sine * object.normal_y, cosine * object.normal_y - sine * object.normal_x,
          object.normal_z},
         {cosine * object.row_x + sine * object.row_y, cosine * object.row_y - sine * object.row_x, object.row_z}};
@@ -39,43 +41,44 @@ SurfacePainter::SurfacePainter(const types::Geometry& geometry, const SurfaceSce
     glClearDepth(0);
 }
 
-void SurfacePainter::draw(const SlabPicture& picture) const {
+void SurfacePainter::draw(const VisibilityBuffer& picture) const {
     picture.clear();
     if (picture.empty()) return;
     program_.use();
-    setUniforms(picture.slab());
+    setUniforms(picture.frustum());
     vertices_.instanceRows(1, picture.deviceClips(), 3);
-    if (scene_.withNormalMaps()) vertices_.instanceRows(7, picture.deviceBends(), 6);
+    if (scene_.withNormalMaps()) vertices_.instanceRows(7, picture.deviceNormalTransforms(), 6);
     vertices_.bind();
     drawGroups(picture);
     picture.resolve();
 }
 
-void SurfacePainter::list(SlabPicture& picture, const std::vector<ObjectRecord>& placed) const {
+void SurfacePainter::list(VisibilityBuffer& picture, const std::vector<ObjectRecord>& placed) const {
     picture.commands.clear();
     picture.clips.clear();
-    picture.bends.clear();
+    picture.normal_transforms.clear();
     picture.draws.clear();
-    for (const Culler::Run& run : picture.runs) {
-        const SurfaceScene::MeshPlace& place = scene_.place(geometry_.objects[run.object].mesh);
-        picture.draws.push_back({run.index_count, 1, place.first_index + run.first_index, place.first_vertex,
+    for (const Culler::DrawRange& range : picture.ranges) {
+        const SurfaceScene::MeshPlace& place = scene_.place(geometry_.objects[range.object].mesh);
+        picture.draws.push_back({range.index_count, 1, place.first_index + range.first_index, place.first_vertex,
                                  static_cast<uint32_t>(picture.commands.size())});
-        picture.clips.push_back(clip(placed[run.object], picture.slab()));
+        picture.clips.push_back(clip(placed[range.object], picture.frustum()));
         if (scene_.withNormalMaps())
-            picture.bends.push_back(bend(placed[run.object], picture.slab(),
-                                         geometry_.materials[static_cast<size_t>(run.material)].normal_scale));
-        picture.commands.push_back({run.object, place.first_triangle, static_cast<uint32_t>(run.material), 0});
+            picture.normal_transforms.push_back(
+                normalTransform(placed[range.object], picture.frustum(),
+                                geometry_.materials[static_cast<size_t>(range.material)].normal_scale));
+        picture.commands.push_back({range.object, place.first_triangle, static_cast<uint32_t>(range.material), 0});
     }
 }
 
-void SurfacePainter::setUniforms(const Slab& slab) const {
-    glUniform2f(uniforms_.extent, static_cast<float>(slab.extent_u), static_cast<float>(slab.extent_v));
-    const double side = slab.samples == 4 ? 2 : 1;
-    glUniform2f(uniforms_.pixel_size, static_cast<float>(side * slab.du()), static_cast<float>(side * slab.dv()));
+void SurfacePainter::setUniforms(const ViewFrustum& frustum) const {
+    glUniform2f(uniforms_.extent, static_cast<float>(frustum.extent_u), static_cast<float>(frustum.extent_v));
+    const double side = frustum.samples == 4 ? 2 : 1;
+    glUniform2f(uniforms_.pixel_size, static_cast<float>(side * frustum.du()), static_cast<float>(side * frustum.dv()));
     glUniform1f(uniforms_.near_plane, static_cast<float>(near_plane_));
 }
 
-void SurfacePainter::drawGroups(const SlabPicture& picture) const {
+void SurfacePainter::drawGroups(const VisibilityBuffer& picture) const {
     const auto map = [&](size_t i) {
         return scene_.withNormalMaps() ? geometry_.materials[picture.commands[i].material].normal_map : -1;
     };
@@ -89,19 +92,20 @@ void SurfacePainter::drawGroups(const SlabPicture& picture) const {
 
 /** Runs [first, last). Mesa's software renderer would take indirect commands one by one all the same, but look for each
  *  through what all contexts draw: see EglContext::drawing(). */
-void SurfacePainter::drawRuns(const SlabPicture& picture, size_t first, size_t last) const {
+void SurfacePainter::drawRuns(const VisibilityBuffer& picture, size_t first, size_t last) const {
     const auto offset = [](size_t bytes) { return reinterpret_cast<const void*>(bytes); };
     if (!software_) {
         picture.deviceDraws().bind(GL_DRAW_INDIRECT_BUFFER);
-        glMultiDrawElementsIndirect(GL_TRIANGLES, GL_UNSIGNED_INT, offset(first * sizeof(SlabPicture::DrawCommand)),
-                                    static_cast<GLsizei>(last - first), sizeof(SlabPicture::DrawCommand));
+        glMultiDrawElementsIndirect(GL_TRIANGLES, GL_UNSIGNED_INT,
+                                    offset(first * sizeof(VisibilityBuffer::DrawCommand)),
+                                    static_cast<GLsizei>(last - first), sizeof(VisibilityBuffer::DrawCommand));
         return;
     }
     for (size_t i = first; i < last; ++i) {
-        const SlabPicture::DrawCommand& run = picture.draws[i];
-        glDrawElementsInstancedBaseVertexBaseInstance(GL_TRIANGLES, static_cast<GLsizei>(run.count), GL_UNSIGNED_INT,
-                                                      offset(run.first_index * sizeof(uint32_t)), 1,
-                                                      static_cast<GLint>(run.base_vertex), run.base_instance);
+        const VisibilityBuffer::DrawCommand& range = picture.draws[i];
+        glDrawElementsInstancedBaseVertexBaseInstance(GL_TRIANGLES, static_cast<GLsizei>(range.count), GL_UNSIGNED_INT,
+                                                      offset(range.first_index * sizeof(uint32_t)), 1,
+                                                      static_cast<GLint>(range.base_vertex), range.base_instance);
     }
 }
 

@@ -11,7 +11,7 @@ bool hasNormalMaps(const SurfacePass::Setup& setup) { return std::ranges::count(
 
 /** How many contexts are worth their memory. */
 size_t partCount(const gpu::EglContext& context, const SurfacePass::Setup& setup, const ThreadPool& threads) {
-    return context.isSoftware() ? std::min(setup.slabs.size(), static_cast<size_t>(threads.size())) : 1;
+    return context.isSoftware() ? std::min(setup.frusta.size(), static_cast<size_t>(threads.size())) : 1;
 }
 
 }  // namespace
@@ -22,7 +22,7 @@ SurfacePass::SurfacePass(gpu::EglContext& context, Setup setup, ThreadPool& thre
       threads_(threads),
       scene_(setup_.geometry, hasNormalMaps(setup_)),
       parts_(partCount(context, setup_, threads)),
-      pictures_(setup_.slabs.size()) {
+      pictures_(setup_.frusta.size()) {
     gpu::Fence::here().wait();  // the other contexts must find the scene's buffers filled
     try {
         onEachPart([this](size_t part) { makePart(part); });
@@ -32,8 +32,8 @@ SurfacePass::SurfacePass(gpu::EglContext& context, Setup setup, ThreadPool& thre
     }
 }
 
-void SurfacePass::resize(const std::vector<Slab>& slabs) {
-    setup_.slabs = slabs;
+void SurfacePass::resize(const std::vector<ViewFrustum>& frusta) {
+    setup_.frusta = frusta;
     onEachPart([this](size_t part) { makePictures(part); });
 }
 
@@ -41,7 +41,7 @@ SurfacePass::~SurfacePass() { release(); }
 
 void SurfacePass::release() {
     onEachPart([this](size_t part) {
-        for (size_t slab = part; slab < pictures_.size(); slab += parts_.size()) pictures_[slab].reset();
+        for (size_t frustum = part; frustum < pictures_.size(); frustum += parts_.size()) pictures_[frustum].reset();
         parts_[part].painter.reset();
         parts_[part].own.reset();
     });
@@ -62,39 +62,40 @@ void SurfacePass::makePart(size_t part) {
 }
 
 void SurfacePass::makePictures(size_t part) {
-    for (size_t slab = part; slab < pictures_.size(); slab += parts_.size())
-        pictures_[slab] =
-            std::make_unique<SlabPicture>(setup_.slabs[slab], hasNormalMaps(setup_), setup_.run_limit, contextOf(part));
+    for (size_t frustum = part; frustum < pictures_.size(); frustum += parts_.size())
+        pictures_[frustum] = std::make_unique<VisibilityBuffer>(setup_.frusta[frustum], hasNormalMaps(setup_),
+                                                                setup_.draw_range_limit, contextOf(part));
 }
 
 void SurfacePass::cull(const Culler& culler) {
     placed_ = &culler.records();
-    for (auto& picture : pictures_) culler.visible(picture->slab(), picture->runs);
+    for (auto& picture : pictures_) culler.visible(picture->frustum(), picture->ranges);
 }
 
 template <class Use>
 void SurfacePass::onDrawn(size_t part, const Use& use) {
-    for (size_t slab = part; slab < pictures_.size(); slab += parts_.size())
-        if (draws(slab)) use(*parts_[part].painter, *pictures_[slab]);
+    for (size_t frustum = part; frustum < pictures_.size(); frustum += parts_.size())
+        if (draws(frustum)) use(*parts_[part].painter, *pictures_[frustum]);
 }
 
 void SurfacePass::draw() {
     onEachPart([this](size_t part) {
-        onDrawn(part, [this](const SurfacePainter& painter, SlabPicture& picture) { painter.list(picture, *placed_); });
+        onDrawn(part,
+                [this](const SurfacePainter& painter, VisibilityBuffer& picture) { painter.list(picture, *placed_); });
         const auto alone = context_.transferring();
-        onDrawn(part, [](const SurfacePainter& painter, SlabPicture& picture) { painter.upload(picture); });
+        onDrawn(part, [](const SurfacePainter& painter, VisibilityBuffer& picture) { painter.upload(picture); });
     });
     onEachPart([this](size_t part) {
         const auto together = context_.drawing();
-        onDrawn(part, [](const SurfacePainter& painter, const SlabPicture& picture) { painter.draw(picture); });
+        onDrawn(part, [](const SurfacePainter& painter, const VisibilityBuffer& picture) { painter.draw(picture); });
         if (context_.isSoftware()) gpu::Fence::here().wait();  // for other contexts; a card's own takes its turn
         if (parts_[part].own) parts_[part].own->check();
     });
 }
 
-void SurfacePass::bindResults(size_t slab) const {
+void SurfacePass::bindResults(size_t frustum) const {
     context_.requireStorage(scene_.planes().size() * sizeof(PlaneRecord), "the planes of all triangles");
-    pictures_[slab]->bindTexture(0);
+    pictures_[frustum]->bindTexture(0);
     scene_.bindRecords();
 }
 

@@ -51,9 +51,9 @@ void ThreadPool::work(int part) {
         if (waking_ == 0) continue;
         --waking_;
         lock.unlock();
-        const std::exception_ptr fault = caught([&] { call_(context_, part, size()); });
+        const std::exception_ptr diagnostic = caught([&] { call_(context_, part, size()); });
         lock.lock();
-        if (fault) fault_ = fault;
+        if (diagnostic) fault_ = diagnostic;
         if (--busy_ == 0) done_.notify_one();
     }
 }

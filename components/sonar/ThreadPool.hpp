@@ -22,9 +22,9 @@ public:
     template <class Job>
     void run(const Job& job) {
         start([](const void* context, int part, int parts) { (*static_cast<const Job*>(context))(part, parts); }, &job);
-        std::exception_ptr fault = caught([&] { job(0, size()); });
+        std::exception_ptr diagnostic = caught([&] { job(0, size()); });
         std::exception_ptr other = wait();
-        if (fault || other) std::rethrow_exception(fault ? fault : other);
+        if (diagnostic || other) std::rethrow_exception(diagnostic ? diagnostic : other);
     }
 
     /** Calls job(part, size()) on the caller and on those workers that begin before the caller is done, each with a
@@ -32,10 +32,10 @@ public:
     template <class Job>
     void share(const Job& job) {
         start([](const void* context, int part, int parts) { (*static_cast<const Job*>(context))(part, parts); }, &job);
-        std::exception_ptr fault = caught([&] { job(0, size()); });
+        std::exception_ptr diagnostic = caught([&] { job(0, size()); });
         dismiss();
         std::exception_ptr other = wait();
-        if (fault || other) std::rethrow_exception(fault ? fault : other);
+        if (diagnostic || other) std::rethrow_exception(diagnostic ? diagnostic : other);
     }
 
 private:

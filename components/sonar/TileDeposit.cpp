@@ -113,7 +113,7 @@ private:
     /** Samples from i on that are a rectangle of one triangle in one beam. */
     int sameFrom(const TileHits& hits, int i) const {
         const auto alignment = static_cast<uint32_t>(i == 0 ? tile_samples : i & -i);
-        const int most = std::min(static_cast<int>(alignment), shape_.most_merged);
+        const int most = std::min(static_cast<int>(alignment), shape_.max_merged);
         int run = 1;
         while (run < most && hits.triangle[i + run] == hits.triangle[i] && hits.command[i + run] == hits.command[i])
             ++run;
@@ -121,7 +121,7 @@ private:
     }
 
     void addCell(const CastTile& tile, int sample, int merged) {
-        const PlacedRun& run = scene_.runs[tile.hits->command[sample]];
+        const PlacedRun& run = scene_.ranges[tile.hits->command[sample]];
         const PlaneRecord& plane = scene_.planes[run.first_triangle + tile.hits->triangle[sample]];
         const glm::dvec3 n(plane.normal), p(plane.point);
         const auto turned = [&](const double* row) { return row[0] * n.x + row[1] * n.y + row[2] * n.z; };

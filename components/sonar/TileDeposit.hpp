@@ -12,7 +12,7 @@ namespace insonify::sonar {
 /** What hits' numbers mean in this ping: commands, each with its triangles turned into sonar axes, and all planes. */
 struct PlacedScene {
     std::span<const CommandRecord> commands;
-    std::span<const PlacedRun> runs;
+    std::span<const PlacedRun> ranges;
     std::span<const ObjectRecord> objects;
     const std::vector<PlaneRecord>& planes;
     const NormalMapping& normal_maps;

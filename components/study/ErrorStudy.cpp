@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <limits>
 #include <ctime>
+#include <limits>
 #include <memory>
 #include <stdexcept>
 
@@ -20,8 +20,8 @@
 namespace insonify::study {
 namespace {
 
-constexpr int least_rows = 64;
-constexpr int most_levels_computed = 4;  ///< Without a closed form: the reference has to be finer still.
+constexpr int min_rows = 64;
+constexpr int max_levels_computed = 4;  ///< Without a closed form: the reference has to be finer still.
 
 double wallMs() {
     return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now().time_since_epoch()).count();
@@ -56,7 +56,7 @@ sonar::SonarConfig configOf(const StudyScene& scene, const Measurement& point) {
     sonar::SonarConfig config = scene.config;
     config.quality.rows = point.rows;
     config.quality.columns_per_beam = point.columns_per_beam;
-    config.least_slabs = point.slabs;
+    config.min_frusta = point.slabs;
     config.samples_per_pixel = point.samples_per_pixel;
     if (point.method == Method::Nearest || point.method == Method::Published)
         config.estimator = sonar::Estimator::Nearest;
@@ -72,7 +72,7 @@ public:
         : scene_(scene), options_(options), result_(result), caster_(scene.snapshot) {
         const sonar::BinGrid grid = sonar::makeBinGrid(scene.config);
         layout_ = {scene.config.beam_count, grid.bin_count, grid.bin_width, scene.range_from};
-        base_columns_ = std::max(1, least_rows / scene.config.beam_count);
+        base_columns_ = std::max(1, min_rows / scene.config.beam_count);
     }
 
     void run() {
@@ -95,27 +95,25 @@ private:
         std::vector<float> energies;
     };
 
-    int levels() const { return scene_.truth ? options_.levels : std::min(options_.levels, most_levels_computed); }
+    int levels() const { return scene_.truth ? options_.levels : std::min(options_.levels, max_levels_computed); }
 
     /** Whether one perspective image can hold the fan, at all levels. */
     bool fitsOneFrustum() const {
         const int64_t columns = int64_t{base_columns_} << (levels() - 1);
-        return scene_.config.fieldOfViewDeg() < 175 && columns * scene_.config.beam_count <= sonar::most_image_size;
+        return scene_.config.fieldOfViewDeg() < 175 && columns * scene_.config.beam_count <= sonar::max_image_size;
     }
 
     void measureAll() {
-        const int slabs = static_cast<int>(sonar::makeSlabs(scene_.config, sonar::makeBeams(scene_.config)).size());
+        const int slabs = static_cast<int>(sonar::makeFrusta(scene_.config, sonar::makeBeams(scene_.config)).size());
         for (const Method method : methods)
             if (method != Method::Published || fitsOneFrustum())
                 for (int level = 0; level < levels(); ++level)
-                    measure(method, least_rows << level, base_columns_ << level,
-                            method == Method::Published ? 1 : slabs);
+                    measure(method, min_rows << level, base_columns_ << level, method == Method::Published ? 1 : slabs);
         for (int level = 0; level < levels(); ++level)
-            if (base_columns_ << level != 2) measure(Method::Footprint, least_rows << level, 2, slabs);
-        for (const int more : {2 * slabs, 4 * slabs})
-            measure(Method::Footprint, 4 * least_rows, 4 * base_columns_, more);
+            if (base_columns_ << level != 2) measure(Method::Footprint, min_rows << level, 2, slabs);
+        for (const int more : {2 * slabs, 4 * slabs}) measure(Method::Footprint, 4 * min_rows, 4 * base_columns_, more);
         for (int level = 0; level + 1 < levels(); ++level)
-            measure(Method::Footprint, least_rows << level, base_columns_ << level, slabs, 4);
+            measure(Method::Footprint, min_rows << level, base_columns_ << level, slabs, 4);
     }
 
     void measure(Method method, int rows, int columns, int slabs, int samples = 1) {
@@ -193,7 +191,7 @@ private:
 
     /** The mean of two halves; each is as far from it as it may be from the truth. */
     void castReference(int refinement) {
-        const int up = least_rows / 4 * refinement, across = std::max(1, base_columns_ / 4) * refinement;
+        const int up = min_rows / 4 * refinement, across = std::max(1, base_columns_ / 4) * refinement;
         double rays = 0;
         const auto half = [&](uint64_t seed) {
             options_.progress(fmt::format("{} reference, {} x {} tiles", scene_.name, up, across));

@@ -148,7 +148,7 @@ private:
                 return bound(1e-6, "change: a map that bends nothing, in float");
             case sonar::Effect::AbsorptionInBin: return splitBins(with, row);
             case sonar::Effect::FurtherSlabs:
-                with.config.least_slabs = 2;
+                with.config.min_frusta = 2;
                 return bound(quality_, "rel_l2_tvg: what twice the rows and columns change");
             case sonar::Effect::Objects:
             case sonar::Effect::Triangles:

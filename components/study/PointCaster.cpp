@@ -15,9 +15,9 @@
 namespace insonify::study {
 namespace {
 
-constexpr int split = 4;         ///< Of a tile, along each side: 16 rays.
-constexpr int partings = 2;      ///< Of a tile that shows more than one triangle.
-constexpr int least_parts = 64;  ///< Of a ping, for threads to share.
+constexpr int split = 4;       ///< Of a tile, along each side: 16 rays.
+constexpr int partings = 2;    ///< Of a tile that shows more than one triangle.
+constexpr int min_parts = 64;  ///< Of a ping, for threads to share.
 /** Points along each side of a tile that shows one triangle: after all partings, after one, after none. */
 constexpr int fill[partings + 1] = {8, 32, 128};
 constexpr int mapped_fill[partings + 1] = {8, 16, 64};  ///< Where each has to look up a normal map.
@@ -160,7 +160,7 @@ std::vector<double> PointCaster::render(const types::Pose& sonar, const sonar::S
     const sonar::BinGrid grid = sonar::makeBinGrid(config);
     const std::vector<sonar::Beam> beams = sonar::makeBeams(config);
     const double half = std::sin(types::radians(config.beam_height_deg) / 2);
-    const int parts = std::max(1, least_parts / static_cast<int>(beams.size()));  // of each beam
+    const int parts = std::max(1, min_parts / static_cast<int>(beams.size()));  // of each beam
     const auto bins = static_cast<size_t>(grid.bin_count);
     std::vector<double> sums(beams.size() * static_cast<size_t>(parts) * bins), rays(sums.size() / bins);
     workers_.forEach(static_cast<int>(rays.size()), [&](int number) {

@@ -15,14 +15,14 @@
 namespace insonify::study {
 namespace {
 
-constexpr double most_rays = 1e6, most_triangles = 1e5;  ///< For which kappa is worth its time.
+constexpr double max_rays = 1e6, max_triangles = 1e5;  ///< For which kappa is worth its time.
 
 /** Most bins that one pixel covers; NaN where the caster does not know the beams, would take too
  * long, or is not built. */
 double kappa(const sonar::SonarConfig& config, const types::Snapshot& snapshot) {
     const double rays = static_cast<double>(config.rows()) * config.columnsPerBeam() * config.beams();
     const bool planar = config.bearings_deg.empty() && config.beam_geometry == sonar::BeamGeometry::Planar;
-    if (!planar || rays > most_rays || static_cast<double>(snapshot.geometry->triangleCount()) > most_triangles)
+    if (!planar || rays > max_rays || static_cast<double>(snapshot.geometry->triangleCount()) > max_triangles)
         return NAN;
 #ifdef INSONIFY_EMBREE
     EmbreeCaster caster(snapshot);

@@ -15,7 +15,7 @@ types::GeometryPtr sceneOf(std::vector<types::Mesh> meshes, std::vector<glm::dve
         object.world_from_object[3] = glm::dvec4(positions[i], 1);
     }
     for (types::Mesh& mesh : meshes)
-        if (mesh.indices.size() / 3 > scene::kClusteredFrom) scene::buildClusters(mesh);
+        if (mesh.indices.size() / 3 > scene::clustered_from) scene::buildClusters(mesh);
     geometry->meshes = std::move(meshes);
     return geometry;
 }

@@ -27,10 +27,10 @@ double integral(double from, double to, const F& f) {
 template <class F>
 double adaptive(double from, double to, const F& f, double whole, int depth) {
     constexpr double tolerance = 1e-8;
-    constexpr int least_depth = 2, most_depth = 24;
+    constexpr int min_depth = 2, max_depth = 24;
     const double middle = 0.5 * (from + to), low = integral(from, middle, f), high = integral(middle, to, f);
     const bool settled = std::abs(low + high - whole) <= tolerance * std::abs(low + high);
-    if (depth >= most_depth || (settled && depth >= least_depth)) return low + high;
+    if (depth >= max_depth || (settled && depth >= min_depth)) return low + high;
     return adaptive(from, middle, f, low, depth + 1) + adaptive(middle, to, f, high, depth + 1);
 }
 

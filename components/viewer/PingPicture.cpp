@@ -46,7 +46,7 @@ float PingPicture::decibels(float bin) const {
 }
 
 std::string PingPicture::encode(const types::Sonar& ping, const PictureNote& note) const {
-    const uint32_t pool = (ping.bin_count + most_bins - 1) / most_bins;
+    const uint32_t pool = (ping.bin_count + max_bins - 1) / max_bins;
     const uint32_t bins = pool > 0 ? (ping.bin_count + pool - 1) / pool : 0;
     std::vector<float> levels(size_t{bins} * ping.beam_count, nothing_db);
     for (uint32_t beam = 0; beam < ping.beam_count; ++beam)

@@ -28,7 +28,7 @@ inline constexpr uint32_t ping_kind = 1, scene_kind = 2;
 class PingPicture {
 public:
     static constexpr double step_db = 0.4;
-    static constexpr uint32_t most_bins = 4096;
+    static constexpr uint32_t max_bins = 4096;
 
     explicit PingPicture(ros::BinScale scale);
     /** The ping must be well shaped. */

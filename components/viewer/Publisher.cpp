@@ -46,7 +46,7 @@ Publisher::~Publisher() {
     }
     fresh_.notify_all();
     publishing_.join();
-    lanes_.end();  // they answer through the server
+    executors_.end();  // they answer through the server
 }
 
 void Publisher::offer(size_t source, AnySample sample, types::Time now) {
@@ -168,7 +168,7 @@ void Publisher::request(uint64_t client, std::string text) {
     } catch (const std::exception& error) {
         return server_.reply(client, refusalText(request.id, error.what()));
     }
-    if (!lanes_.run(laneOf(request), [this, client, request] { server_.reply(client, answer(request)); }))
+    if (!executors_.run(laneOf(request), [this, client, request] { server_.reply(client, answer(request)); }))
         server_.reply(client, refusalText(request.id, "too many requests wait; try again later"));
 }
 

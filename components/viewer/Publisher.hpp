@@ -10,9 +10,9 @@
 #include <variant>
 #include <vector>
 
-#include "components/viewer/Lanes.hpp"
 #include "components/viewer/Messages.hpp"
 #include "components/viewer/PingPicture.hpp"
+#include "components/viewer/SerialExecutors.hpp"
 #include "components/viewer/Server.hpp"
 #include "components/viewer/StatusText.hpp"
 #include "components/viewer/ViewerConfig.hpp"
@@ -89,7 +89,7 @@ private:
     const Bytes interfaces_;
     bool ending_ = false;
     std::atomic<uint64_t> skipped_{0};
-    Lanes lanes_;  ///< Of requests, by task.
+    SerialExecutors executors_;  ///< Of requests, by task.
     Server server_;
     std::thread publishing_;
 };

@@ -20,7 +20,7 @@ constexpr uint64_t foxglove_keys = uint64_t{1} << 32;
 }  // namespace
 
 /** The server's thread, and what it shares with others. */
-class Server::Core final : public Hub {
+class Server::Core final : public ServerContext {
 public:
     struct Waiting {
         Frame frame;
@@ -28,7 +28,7 @@ public:
     };
 
     Core(ServerOptions asked, ServerHandler& answers)
-        : Hub(std::move(asked), answers), subscribers_(options.channels.size()) {
+        : ServerContext(std::move(asked), answers), subscribers_(options.channels.size()) {
         listen();
         accept();
         thread_ = std::thread(&Core::serve, this);
@@ -206,6 +206,6 @@ void Server::reply(uint64_t client, std::string text) {
     });
 }
 ServerCounts Server::counts() const { return {core_->clients, core_->refused.count(), core_->dropped}; }
-std::string Server::takeWarning() { return core_->refused.untold(); }
+std::string Server::takeWarning() { return core_->refused.takeWarning(); }
 
 }  // namespace insonify::viewer

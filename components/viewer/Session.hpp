@@ -6,8 +6,8 @@
 #include <optional>
 #include <utility>
 
-#include "components/viewer/Hub.hpp"
-#include "components/viewer/Outbox.hpp"
+#include "components/viewer/SendQueue.hpp"
+#include "components/viewer/ServerContext.hpp"
 
 namespace insonify::viewer {
 
@@ -20,15 +20,15 @@ using Request = http::request<http::string_body>;
 using Response = http::response<http::string_body>;
 using Error = boost::system::error_code;
 
-constexpr size_t largest_message = 64 << 10;  // from a client [B]
-constexpr size_t largest_header = 8 << 10;    // of a request [B]
-constexpr size_t largest_rest = 256 << 10;    // of a refused request, that is read so that the answer arrives [B]
+constexpr size_t max_message = 64 << 10;  // from a client [B]
+constexpr size_t max_header = 8 << 10;    // of a request [B]
+constexpr size_t max_rest = 256 << 10;    // of a refused request, that is read so that the answer arrives [B]
 constexpr auto request_timeout = std::chrono::seconds(5), response_timeout = std::chrono::seconds(10),
                rest_timeout = std::chrono::seconds(1);
 
 inline std::string textOf(beast::string_view view) { return {view.data(), view.size()}; }
 
-inline Admission::Request admissionOf(const Request& request) {
+inline AccessPolicy::Request admissionOf(const Request& request) {
     return {textOf(request.target()), textOf(request[http::field::host]), textOf(request[http::field::origin]),
             textOf(request[http::field::authorization])};
 }
@@ -49,7 +49,7 @@ enum class Kind { None, Page, Foxglove };
 /** One connection: a request, which is answered or becomes a WebSocket. */
 class Session : public std::enable_shared_from_this<Session> {
 public:
-    Session(tcp::socket socket, Hub& hub, uint64_t id);
+    Session(tcp::socket socket, ServerContext& context, uint64_t id);
     Kind kind() const { return open_ ? kind_ : Kind::None; }
     bool hasAsked() const { return asked_; }  ///< Its request is there.
     const Subscriptions& subscriptions() const { return subscriptions_; }
@@ -72,7 +72,7 @@ private:
     }
     void answer();
     void answerFault(const Error& error);
-    void refuse(const Admission::Refusal& refusal);
+    void refuse(const AccessPolicy::Refusal& refusal);
     void respond(Response response);
     void readRest();
     void upgrade();
@@ -83,23 +83,23 @@ private:
     void send();
     void leave();
 
-    Hub& hub_;
+    ServerContext& context_;
     const uint64_t id_;
     websocket::stream<beast::tcp_stream> ws_;
-    beast::flat_buffer buffer_{largest_message + largest_header};
+    beast::flat_buffer buffer_{max_message + max_header};
     std::optional<http::request_parser<http::string_body>> parser_;
     std::optional<Response> response_;
     Subscriptions subscriptions_;
     Kind kind_ = Kind::None;
-    Outbox outbox_;
+    SendQueue queue_;
     Frame sending_;
     uint64_t told_dropped_ = 0;
     size_t rest_ = 0;  ///< Read after the answer [B].
     bool asked_ = false, open_ = false, writing_ = false;
 };
 
-inline Session::Session(tcp::socket socket, Hub& hub, uint64_t id)
-    : hub_(hub), id_(id), ws_(std::move(socket)), subscriptions_(hub.options.channels.size()) {
+inline Session::Session(tcp::socket socket, ServerContext& context, uint64_t id)
+    : context_(context), id_(id), ws_(std::move(socket)), subscriptions_(context.options.channels.size()) {
     Error ignored;
     stream().socket().set_option(tcp::no_delay(true), ignored);
 }
@@ -108,13 +108,13 @@ template <class Work>
 void Session::attempt(Work&& work) try {
     work();
 } catch (const std::exception& thrown) {
-    hub_.refused.add(std::string("a fault of this server: ") + thrown.what());
+    context_.refused.add(std::string("a fault of this server: ") + thrown.what());
     leave();
 }
 
 inline void Session::readRequest() {
     parser_.emplace();
-    parser_->header_limit(largest_header);
+    parser_->header_limit(max_header);
     parser_->body_limit(0);
     stream().expires_after(request_timeout);
     http::async_read(stream(), buffer_, *parser_, handler([](Session& self, const Error& error) {
@@ -125,7 +125,7 @@ inline void Session::readRequest() {
 /** The request cannot be read. */
 inline void Session::answerFault(const Error& error) {
     asked_ = true;
-    if (error == beast::error::timeout) hub_.refused.add("no whole request came within 5 s");
+    if (error == beast::error::timeout) context_.refused.add("no whole request came within 5 s");
     const bool is_gone = error == http::error::end_of_stream || error == http::error::partial_message;
     if (is_gone || error.category() != http::make_error_code(http::error::end_of_stream).category()) return leave();
     const bool header = error == http::error::header_limit || error == http::error::buffer_overflow;
@@ -133,33 +133,33 @@ inline void Session::answerFault(const Error& error) {
 }
 
 /** Files that are not there and methods are no refusals of a connection. */
-inline void Session::refuse(const Admission::Refusal& refusal) {
+inline void Session::refuse(const AccessPolicy::Refusal& refusal) {
     if (refusal.status != 404 && refusal.status != 405)
-        hub_.refused.add(std::to_string(refusal.status) + ", " + refusal.reason);
+        context_.refused.add(std::to_string(refusal.status) + ", " + refusal.reason);
     respond(responseTo(parser_->get(), refusal.status, "text/plain", refusal.reason + "\n"));
 }
 
 inline void Session::answer() {
     asked_ = true;
     const Request& request = parser_->get();
-    const Admission::Request asked = admissionOf(request);
+    const AccessPolicy::Request asked = admissionOf(request);
     const bool wants_socket = websocket::is_upgrade(request);
     const std::string offered = textOf(request[http::field::sec_websocket_protocol]);
     const bool foxglove = offered.find(foxglove_protocol) != std::string::npos;
     kind_ = foxglove ? Kind::Foxglove : offered.find(page_protocol) != std::string::npos ? Kind::Page : Kind::None;
     const std::string path = asked.target.substr(0, asked.target.find('?'));
-    using enum Admission::Use;
-    const Admission::Use use = !wants_socket ? (path == "/" ? Page : File) : foxglove ? Read : Steer;
-    if (const auto refusal = hub_.admission.judge(asked, use)) return refuse(*refusal);
+    using enum AccessPolicy::Use;
+    const AccessPolicy::Use use = !wants_socket ? (path == "/" ? Page : File) : foxglove ? Read : Control;
+    if (const auto refusal = context_.access.decide(asked, use)) return refuse(*refusal);
     if (wants_socket) {
         if (kind_ == Kind::None)
             return refuse({400, std::string("the subprotocol must be ") + foxglove_protocol + " or " + page_protocol});
-        if (hub_.clients >= hub_.options.clients) return refuse({503, "there are as many clients as may be"});
+        if (context_.clients >= context_.options.clients) return refuse({503, "there are as many clients as may be"});
         return upgrade();
     }
     if (request.method() != http::verb::get && request.method() != http::verb::head)
         return refuse({405, "only GET and HEAD are served"});
-    const auto file = hub_.handler.file(path);
+    const auto file = context_.handler.file(path);
     if (!file) return refuse({404, "there is no such file"});
     respond(responseTo(request, 200, file->type, file->content));
 }
@@ -179,23 +179,22 @@ inline void Session::respond(Response response) {
 /** Until the client closes: who closes with bytes unread takes the answer away from the other. */
 inline void Session::readRest() {
     buffer_.clear();
-    stream().async_read_some(buffer_.prepare(largest_header),
-                             [self = shared_from_this()](const Error& error, size_t size) {
-                                 self->rest_ += size;
-                                 error || self->rest_ > largest_rest ? self->leave() : self->readRest();
-                             });
+    stream().async_read_some(buffer_.prepare(max_header), [self = shared_from_this()](const Error& error, size_t size) {
+        self->rest_ += size;
+        error || self->rest_ > max_rest ? self->leave() : self->readRest();
+    });
 }
 
 inline void Session::upgrade() {
     stream().expires_never();
-    const auto idle =
-        std::chrono::duration_cast<std::chrono::milliseconds>(std::chrono::duration<double>(hub_.options.idle_timeout));
+    const auto idle = std::chrono::duration_cast<std::chrono::milliseconds>(
+        std::chrono::duration<double>(context_.options.idle_timeout));
     ws_.set_option(websocket::stream_base::timeout{request_timeout, idle, true});
     const char* const protocol = kind_ == Kind::Foxglove ? foxglove_protocol : page_protocol;
     ws_.set_option(websocket::stream_base::decorator([protocol](websocket::response_type& response) {
         response.set(http::field::sec_websocket_protocol, protocol);
     }));
-    ws_.read_message_max(largest_message);
+    ws_.read_message_max(max_message);
     ws_.auto_fragment(false);
     ws_.async_accept(parser_->get(), handler([](Session& self, const Error& error) {
                          if (!error) return self.greet();
@@ -207,18 +206,18 @@ inline void Session::upgrade() {
 /** Of a client that speaks no WebSocket, or sends too much; not of one that is gone. */
 inline void Session::countFault(const Error& error) {
     const bool is_fault = error.category() == websocket::make_error_code(websocket::error::closed).category();
-    if (is_fault && error != websocket::error::closed) hub_.refused.add("WebSocket: " + error.message());
+    if (is_fault && error != websocket::error::closed) context_.refused.add("WebSocket: " + error.message());
 }
 
 inline void Session::greet() {
     open_ = true;
     buffer_.consume(buffer_.size());
-    hub_.recount();
+    context_.recount();
     if (kind_ == Kind::Foxglove) {
         post({"", bytesOf(serverInfo()), true});
-        post({"", bytesOf(advertise(hub_.options.channels)), true});
+        post({"", bytesOf(advertise(context_.options.channels)), true});
     } else {
-        for (Frame& frame : hub_.handler.greeting()) post(std::move(frame));
+        for (Frame& frame : context_.handler.greeting()) post(std::move(frame));
     }
     readMessage();
 }
@@ -236,31 +235,31 @@ inline void Session::readMessage() {
 }
 
 inline void Session::taken(std::string text) {
-    if (kind_ == Kind::Page) return hub_.handler.request(id_, std::move(text));
+    if (kind_ == Kind::Page) return context_.handler.request(id_, std::move(text));
     if (!ws_.got_text()) return;
     const auto before = subscriptions_.all();
     if (const std::string wrong = subscriptions_.take(text); !wrong.empty())
         post({"", bytesOf(complaintText("the message " + wrong)), true});
     for (const auto& [subscription, channel] : before)
-        if (!subscriptions_.all().contains(subscription)) outbox_.forget(subscription);
-    hub_.recount();
+        if (!subscriptions_.all().contains(subscription)) queue_.forget(subscription);
+    context_.recount();
 }
 
 inline void Session::put(uint32_t stream, Frame frame) {
-    outbox_.put(stream, std::move(frame));
-    hub_.dropped += outbox_.dropped() - std::exchange(told_dropped_, outbox_.dropped());
+    queue_.put(stream, std::move(frame));
+    context_.dropped += queue_.dropped() - std::exchange(told_dropped_, queue_.dropped());
     send();
 }
 
 inline void Session::post(Frame frame) {
-    if (outbox_.post(std::move(frame))) return send();
-    hub_.refused.add("answers are not read");
+    if (queue_.post(std::move(frame))) return send();
+    context_.refused.add("answers are not read");
     close();
 }
 
 inline void Session::send() {
     if (writing_ || !open_) return;
-    auto next = outbox_.next();
+    auto next = queue_.next();
     if (!next) return;
     sending_ = std::move(*next);
     writing_ = true;
@@ -281,7 +280,7 @@ inline void Session::close() {
 
 inline void Session::leave() {
     close();
-    hub_.leave(id_);
+    context_.leave(id_);
 }
 
 }  // namespace insonify::viewer

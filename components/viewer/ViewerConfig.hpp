@@ -56,15 +56,15 @@ struct ViewerConfig {
         in6_addr any{};
         return inet_pton(AF_INET, address.c_str(), &any) == 1 || inet_pton(AF_INET6, address.c_str(), &any) == 1;
     }
-    void check(types::Problems& problems) const {
+    void check(types::Diagnostics& diagnostics) const {
         if (!isNumeric())
-            problems.push_back(
+            diagnostics.push_back(
                 {"address", "is '" + address + "'; it must be a numeric address, as 127.0.0.1, 0.0.0.0 or ::1"});
         else if (!isLocal() && token.empty() && token_file.empty())
-            problems.push_back({"token", "is missing; it must be there where address is " + address +
-                                             ", which other machines can reach"});
+            diagnostics.push_back({"token", "is missing; it must be there where address is " + address +
+                                                ", which other machines can reach"});
         if (!token.empty() && !token_file.empty())
-            problems.push_back({"token_file", "is of no use beside token; one of them may be there"});
+            diagnostics.push_back({"token_file", "is of no use beside token; one of them may be there"});
     }
 };
 

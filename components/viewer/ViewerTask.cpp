@@ -145,10 +145,10 @@ std::string ViewerTask::readToken() const {
 }
 
 void ViewerTask::updateHook() {
-    std::string fault = publisher_->takeTrouble();
+    std::string diagnostic = publisher_->takeTrouble();
     for (size_t i = 0; i < inlets_.size(); ++i)
-        if (std::string wrong = inlets_[i]->drain(*publisher_, i, now()); !wrong.empty()) fault = std::move(wrong);
-    if (!fault.empty()) error(fault);
+        if (std::string wrong = inlets_[i]->drain(*publisher_, i, now()); !wrong.empty()) diagnostic = std::move(wrong);
+    if (!diagnostic.empty()) error(diagnostic);
 }
 
 void ViewerTask::errorHook() {

@@ -31,9 +31,9 @@ protected:
     }
 };
 
-std::string textOf(const types::Problems& problems) {
+std::string textOf(const types::Diagnostics& diagnostics) {
     std::string text;
-    for (const types::Problem& problem : problems) text += problem.path + " " + problem.message + "\n";
+    for (const types::Diagnostic& problem : diagnostics) text += problem.path + " " + problem.message + "\n";
     return text;
 }
 
@@ -116,10 +116,10 @@ TEST_F(PublisherTaskTest, WhatAMessageCannotHoldIsACountedDropAndTheRunGoesOn) {
     publishing.send(nullptr);
     EXPECT_EQ(publishing.task.state(), framework::TaskState::Running);
     ASSERT_EQ(told.size(), 1u);
-    EXPECT_THAT(told[0], HasSubstr("publisher: 1 messages dropped; the last: /scan: the beams do not stand at equal"));
+    EXPECT_THAT(told[0], HasSubstr("publisher: 1 message dropped; the last: /scan: the beams do not stand at equal"));
     EXPECT_THAT(publishing.task.notices(),
                 testing::UnorderedElementsAre(HasSubstr("2 messages dropped: /scan: the beams"),
-                                              HasSubstr("1 messages dropped: publisher.in: a sample is null")));
+                                              HasSubstr("1 message dropped: publisher.in: a sample is null")));
     EXPECT_EQ(heard<ros::RawSonarImage>("/image", [&] { publishing.send(crooked); }).image.beam_count, 4u);
 }
 
@@ -168,11 +168,11 @@ TEST_F(PublisherTaskTest, PortsAndTypesThatDoNotFitAreToldBeforeItRuns) {
     EXPECT_THROW(task.makeInput("other", sonar.port), types::ConfigError);
     EXPECT_THROW(task.makeInput("ping", unknown.port), types::ConfigError);
     ASSERT_NE(task.makeInput("ping", sonar.port), nullptr);
-    types::Problems problems;
-    task.check(problems);
-    EXPECT_THAT(textOf(problems), HasSubstr("topics[0].type is nav_msgs/Odometry; "));
-    EXPECT_THAT(textOf(problems), HasSubstr("can be marine_acoustic_msgs/ProjectedSonarImage, "));
-    EXPECT_THAT(textOf(problems), HasSubstr("topics[1].port is none; no connection leads to publisher.none"));
+    types::Diagnostics diagnostics;
+    task.check(diagnostics);
+    EXPECT_THAT(textOf(diagnostics), HasSubstr("topics[0].type is nav_msgs/Odometry; "));
+    EXPECT_THAT(textOf(diagnostics), HasSubstr("can be marine_acoustic_msgs/ProjectedSonarImage, "));
+    EXPECT_THAT(textOf(diagnostics), HasSubstr("topics[1].port is none; no connection leads to publisher.none"));
 }
 
 TEST_F(PublisherTaskTest, NamesThatRosRefusesAreTold) {
@@ -181,7 +181,7 @@ TEST_F(PublisherTaskTest, NamesThatRosRefusesAreTold) {
     config.node.gid_size = 20;
     config.topics = {topicOut("", "/a", message_type<ros::Image>), topicOut("x", "/a", message_type<ros::Image>),
                      topicOut("x", "a-b", message_type<ros::Image>)};
-    types::Problems problems;
-    config.check(problems);
-    EXPECT_EQ(problems.size(), 5u) << textOf(problems);
+    types::Diagnostics diagnostics;
+    config.check(diagnostics);
+    EXPECT_EQ(diagnostics.size(), 5u) << textOf(diagnostics);
 }

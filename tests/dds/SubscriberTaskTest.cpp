@@ -119,8 +119,8 @@ TEST_F(SubscriberTaskTest, NonsenseThatComesAfterAGoodPoseDoesNotPushItOut) {
 TEST_F(SubscriberTaskTest, LockstepIsRefusedWithAReason) {
     SubscriberTask task("subscriber");
     task.environment().lockstep = true;
-    types::Problems problems;
-    task.check(problems);
-    ASSERT_FALSE(problems.empty());
-    EXPECT_THAT(problems[0].message, testing::HasSubstr("set schedule: realtime"));
+    types::Diagnostics diagnostics;
+    task.check(diagnostics);
+    ASSERT_FALSE(diagnostics.empty());
+    EXPECT_THAT(diagnostics[0].message, testing::HasSubstr("set schedule: realtime"));
 }

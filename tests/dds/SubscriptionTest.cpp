@@ -28,7 +28,7 @@ struct SubscriptionTest : Loopback {
         made.topic = "/judged";
         return made;
     }();
-    Drops dropped;
+    types::ThrottledWarning dropped{"message", "dropped"};
     Subscription subscription{node, config, topic, dropped, {}};
     std::optional<Writer> writer = newWriter();
     types::Pose pose;

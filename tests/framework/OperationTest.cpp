@@ -86,8 +86,8 @@ struct WheelConfig {
         visit(types::Field{"radius", "m", "of the rim", 0.1, 10}, self.radius);
         visit(types::Field{"spoke_count", "1", "an even number", 2, 100}, self.spoke_count);
     }
-    void check(types::Problems& problems) const {
-        if (spoke_count % 2) problems.push_back({"spoke_count", "is odd; must be even"});
+    void check(types::Diagnostics& diagnostics) const {
+        if (spoke_count % 2) diagnostics.push_back({"spoke_count", "is odd; must be even"});
     }
 };
 

@@ -53,9 +53,9 @@ struct Config {
         visit(Field{"materials", "", "by name"}, self.materials);
         visit(Field{"always", "", "a block"}, self.always);
     }
-    void check(types::Problems& problems) const {
-        if (loud && file.empty()) problems.push_back({"loud", "needs file"});
-        if (layers.size() > 1) problems.push_back({"layers[1].mean", "is one too many"});
+    void check(types::Diagnostics& diagnostics) const {
+        if (loud && file.empty()) diagnostics.push_back({"loud", "needs file"});
+        if (layers.size() > 1) diagnostics.push_back({"layers[1].mean", "is one too many"});
     }
 };
 
@@ -68,7 +68,7 @@ std::vector<std::string> faultsOf(Task& task, const std::string& yaml) {
     framework::ConfigReader reader("a.yml");
     task.config.load(reader, YAML::Load(yaml), "p");
     std::vector<std::string> texts;
-    for (const auto& fault : reader.faults()) texts.push_back(fault.text());
+    for (const auto& fault : reader.diagnostics()) texts.push_back(fault.text());
     return texts;
 }
 
@@ -146,7 +146,7 @@ TEST(PropertiesTest, SettingFromOutsideAndLiveMeanTheSame) {
         spec.set("t." + setting);
         framework::ConfigReader reader("a.yml");
         set.config.load(reader, spec.task("t")->properties, "");
-        EXPECT_TRUE(spec.faults.empty() && reader.faults().empty()) << setting;
+        EXPECT_TRUE(spec.diagnostics.empty() && reader.diagnostics().empty()) << setting;
         EXPECT_EQ(live.config.values(), set.config.values()) << setting;
     }
 }
@@ -226,7 +226,7 @@ TEST(PropertiesTest, NumbersThatDoNotFitTheirTypeAreRefused) {
     EXPECT_FALSE(reader.readValue(YAML::Load("1e39"), "narrow", Field{"narrow"}, narrow));
     EXPECT_FALSE(reader.readValue(YAML::Load("4294967296"), "word", Field{"word"}, word));
     EXPECT_FALSE(reader.readValue(YAML::Load("1e30"), "word", Field{"word"}, word));
-    EXPECT_EQ(reader.faults().size(), 3u);
+    EXPECT_EQ(reader.diagnostics().size(), 3u);
     EXPECT_EQ(narrow, 1);
     EXPECT_EQ(word, 1u);
     EXPECT_TRUE(reader.readValue(YAML::Load("4294967295"), "word", Field{"word"}, word));

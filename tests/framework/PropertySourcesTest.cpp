@@ -174,7 +174,7 @@ TEST_F(PropertySourcesTest, SettingsLieOverThePropertyFilesAndKnowTheAliases) {
     spec.set("t.head.left=7");
     spec.set("t.count=8");
     spec.set("t.loud=true");
-    EXPECT_THAT(spec.faults, IsEmpty());
+    EXPECT_THAT(spec.diagnostics, IsEmpty());
     EXPECT_EQ(text(spec), "{head: {left: 7}, last: 8, noise: {}}");
     EXPECT_THAT(faults(head + "    aliases: {count: t.last}\n", {"t.count=0"}),
                 ElementsAre("--set: tasks.t.properties.count: is 0; may be 1 to 1000000"));

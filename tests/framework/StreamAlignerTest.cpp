@@ -74,7 +74,7 @@ TEST_F(StreamAlignerTest, ASampleWaitsForAPortThatMaySayMoreBeforeIt) {
     EXPECT_THAT(update(), ElementsAre("pose 10")) << "there may be another before 15";
     writePoses({16});
     EXPECT_THAT(update(), ElementsAre("ping 15"));
-    EXPECT_THAT(task_.aligner.troubles(), IsEmpty());
+    EXPECT_THAT(task_.aligner.notices(), IsEmpty());
 }
 
 TEST_F(StreamAlignerTest, OfOneTimeThePortDeclaredFirstComesFirst) {
@@ -99,7 +99,7 @@ TEST_F(StreamAlignerTest, APortThatIsSilentHoldsUpTheOthersForTheTimeoutOnly) {
     writePings({120});
     EXPECT_THAT(update(), ElementsAre("ping 20"));
     EXPECT_EQ(task_.poses.counts().awaited, 1u);
-    EXPECT_THAT(task_.aligner.troubles(), ElementsAre("pose: samples of others that went on without it: 1"));
+    EXPECT_THAT(task_.aligner.notices(), ElementsAre("pose: samples of others that went on without it: 1"));
 }
 
 TEST_F(StreamAlignerTest, AfterAGapThePortIsWaitedForAgain) {
@@ -120,7 +120,7 @@ TEST_F(StreamAlignerTest, LateSamplesAreDroppedAndCounted) {
     EXPECT_EQ(task_.poses.counts().received, 4u);
     EXPECT_EQ(task_.poses.counts().late, 2u);
     EXPECT_THAT(
-        task_.aligner.troubles(),
+        task_.aligner.notices(),
         ElementsAre("pose: 2 of 4 samples came too late and were dropped; samples of others that went on without "
                     "it: 1"));
 }
@@ -143,7 +143,7 @@ TEST_F(StreamAlignerTest, TimesBelowZeroAreTimesAsAnyOther) {
     writePings({-15, -5});
     writePoses({-20, -10, 0});
     EXPECT_THAT(update(), ElementsAre("pose -20", "ping -15", "pose -10", "ping -5"));
-    EXPECT_THAT(task_.aligner.troubles(), IsEmpty());
+    EXPECT_THAT(task_.aligner.notices(), IsEmpty());
 }
 
 TEST_F(StreamAlignerTest, TimesMayBeAsFarApartAsTheyCan) {

@@ -12,8 +12,8 @@ void read(const Input& input) {
     sections.read(input.file(), "again.yml");
     const std::vector<std::string> names = sections.names();
     for (const framework::PropertySection* section : sections.inOrder(names))
-        EXPECT_TRUE(!section->name.empty() || !sections.faults().empty());
-    for (const types::Diagnostic& fault : sections.faults()) expectOurWords(fault.message);
+        EXPECT_TRUE(!section->name.empty() || !sections.diagnostics().empty());
+    for (const types::Diagnostic& fault : sections.diagnostics()) expectOurWords(fault.message);
 }
 
 TEST(PropertyFileFuzzTest, EveryTextIsSectionsOrFaults) {

@@ -1,6 +1,6 @@
 #include <gtest/gtest.h>
 
-#include "components/viewer/Admission.hpp"
+#include "components/viewer/AccessPolicy.hpp"
 #include "components/viewer/Foxglove.hpp"
 #include "components/viewer/StatusText.hpp"
 #include "tests/support/Fuzz.hpp"
@@ -20,9 +20,10 @@ void ask(const Input& input) {
     }
     const bool is_told =
         viewer::tokenIn(input.bytes()) == "secret" || input.bytes().find("secret") != std::string::npos;
-    const viewer::Admission admission{"secret"};
-    for (const auto use : {viewer::Admission::Use::Page, viewer::Admission::Use::Read, viewer::Admission::Use::Steer})
-        EXPECT_TRUE(is_told || admission.judge({input.bytes(), input.bytes(), input.bytes(), input.bytes()}, use));
+    const viewer::AccessPolicy access{"secret"};
+    for (const auto use :
+         {viewer::AccessPolicy::Use::Page, viewer::AccessPolicy::Use::Read, viewer::AccessPolicy::Use::Control})
+        EXPECT_TRUE(is_told || access.decide({input.bytes(), input.bytes(), input.bytes(), input.bytes()}, use));
 }
 
 TEST(ViewerFuzzTest, EveryMessageIsAnsweredOrRefused) {

@@ -26,9 +26,9 @@ constexpr size_t queue = 16;
 
 /** What the process that logs tells, in memory that outlives it. */
 struct Told {
-    std::atomic<uint64_t> flushed = 0;    ///< Samples that flush() has returned for.
-    std::atomic<uint64_t> pushed = 0;     ///< Samples that push() has begun with.
-    std::atomic<uint64_t> most_late = 0;  ///< Samples written in one go after a flush was due.
+    std::atomic<uint64_t> flushed = 0;   ///< Samples that flush() has returned for.
+    std::atomic<uint64_t> pushed = 0;    ///< Samples that push() has begun with.
+    std::atomic<uint64_t> max_late = 0;  ///< Samples written in one go after a flush was due.
 };
 
 /** A log that notes when its samples are flushed. */
@@ -40,7 +40,7 @@ public:
         return log_->add(sample, name, metadata);
     }
     void put(size_t stream, types::Time received, types::Time time, types::SampleView sample) override {
-        if (Clock::now() > due_) told_.most_late = std::max<uint64_t>(told_.most_late, ++late_);
+        if (Clock::now() > due_) told_.max_late = std::max<uint64_t>(told_.max_late, ++late_);
         log_->put(stream, received, time, sample);
     }
     size_t addLike(const log::Reader& log, size_t stream) override { return log_->addLike(log, stream); }
@@ -125,7 +125,7 @@ TEST(KilledLogTest, FiftyKillsAtAnyTimeLoseWhatWasNotFlushedAndNothingElse) {
         EXPECT_LE(kept, told.pushed);
         // With a flush each `flush_period`, which may be a second at most, and one sample more while one is due, what
         // was written since the last one is what is lost, and what still waits in the queue.
-        EXPECT_LE(told.most_late, 1u);
+        EXPECT_LE(told.max_late, 1u);
     }
     munmap(shared, sizeof(Told));
 }

@@ -8,9 +8,9 @@ namespace {
 size_t problemsOf(const std::string& file) {
     LoggerConfig config;
     config.file = file;
-    types::Problems problems;
-    config.check(problems);
-    return problems.size();
+    types::Diagnostics diagnostics;
+    config.check(diagnostics);
+    return diagnostics.size();
 }
 
 TEST(LoggerConfigTest, OnlyANameThatEndsInLogIsTaken) {
@@ -25,9 +25,9 @@ TEST(LoggerConfigTest, ALogOfSeveralFilesHasANumber) {
     config.max_file_size = 1e6;
     for (const auto& [file, count] : {std::pair{"harbour.0.log", 0u}, {"harbour.17.log", 0u}, {"harbour.log", 1u}}) {
         config.file = file;
-        types::Problems problems;
-        config.check(problems);
-        EXPECT_EQ(problems.size(), count) << file;
+        types::Diagnostics diagnostics;
+        config.check(diagnostics);
+        EXPECT_EQ(diagnostics.size(), count) << file;
     }
     EXPECT_EQ(nextInSequence("day/harbour.9.log"), "day/harbour.10.log");
 }
@@ -38,9 +38,9 @@ TEST(LoggerConfigTest, PropertiesGoIntoAFileOfTheirOwn) {
     for (const auto& [file, count] :
          {std::pair{"properties.0.log", 0u}, {"", 0u}, {"x.0.log", 1u}, {"a/b.0.log", 1u}, {"properties", 1u}}) {
         config.property_file = file;
-        types::Problems problems;
-        config.check(problems);
-        EXPECT_EQ(problems.size(), count) << file;
+        types::Diagnostics diagnostics;
+        config.check(diagnostics);
+        EXPECT_EQ(diagnostics.size(), count) << file;
     }
 }
 

@@ -168,9 +168,9 @@ TEST_F(McapLogTest, TheNameOfTheFileIsJudged) {
     for (const auto& [file, right] :
          {std::pair{"x.mcap", true}, {"a/x.0.mcap", true}, {".mcap", false}, {"x.bag", false}}) {
         config.file = file;
-        types::Problems problems;
-        config.check(problems);
-        EXPECT_EQ(problems.empty(), right) << file;
+        types::Diagnostics diagnostics;
+        config.check(diagnostics);
+        EXPECT_EQ(diagnostics.empty(), right) << file;
     }
 }
 

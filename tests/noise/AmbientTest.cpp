@@ -42,9 +42,9 @@ TEST(AmbientTest, ABinHoldsTheBandsNoiseLessTheDirectivityRelativeToTheSource) {
 
 TEST(AmbientTest, ALevelOrAllThatTheFormulaNeedsAndNotBoth) {
     const auto faults = [](const AmbientConfig& config) {
-        types::Problems problems;
-        config.check(problems);
-        return problems;
+        types::Diagnostics diagnostics;
+        config.check(diagnostics);
+        return diagnostics;
     };
     EXPECT_TRUE(faults(windy(0)).empty());
     ASSERT_EQ(faults({}).size(), 1u);

@@ -68,10 +68,10 @@ TEST(SpeckleTest, KSpeckleIsAnExponentialOfGammaDistributedMean) {
 
 TEST(SpeckleTest, ALawHasTheParametersOfItsOwn) {
     const auto faults = [](const SpeckleConfig& speckle) {
-        types::Problems problems;
-        speckle.check(problems);
+        types::Diagnostics diagnostics;
+        speckle.check(diagnostics);
         std::string text;
-        for (const types::Problem& problem : problems) text += problem.path + " " + problem.message + "; ";
+        for (const types::Diagnostic& problem : diagnostics) text += problem.path + " " + problem.message + "; ";
         return text;
     };
     EXPECT_EQ(faults({.law = SpeckleLaw::Gamma, .looks = 4}) + faults({.law = SpeckleLaw::K, .shape = 2}) + faults({}),

@@ -22,16 +22,16 @@ TEST(FilePatternTest, AnythingElseIsRefused) {
 
 TEST(RecordingConfigTest, NamesThatCannotBeWrittenAreProblems) {
     const auto problemsOf = [](const RecordingConfig& config) {
-        types::Problems problems;
-        config.check(problems);
-        return problems;
+        types::Diagnostics diagnostics;
+        config.check(diagnostics);
+        return diagnostics;
     };
     EXPECT_TRUE(problemsOf({}).empty());
     EXPECT_TRUE(problemsOf({.file = "a%d.png", .video = "b.mp4", .video_rate = {}}).empty());
-    const auto problems = problemsOf({.file = "%s%n", .video = "b.mkv", .video_rate = {}});
-    ASSERT_EQ(problems.size(), 2u);
-    EXPECT_EQ(problems[0].path, "file");
-    EXPECT_EQ(problems[1].path, "video");
+    const auto diagnostics = problemsOf({.file = "%s%n", .video = "b.mkv", .video_rate = {}});
+    ASSERT_EQ(diagnostics.size(), 2u);
+    EXPECT_EQ(diagnostics[0].path, "file");
+    EXPECT_EQ(diagnostics[1].path, "video");
 }
 
 }  // namespace

@@ -132,13 +132,13 @@ TEST_F(ScanMosaicTaskTest, ALatePoseIsTold) {
 
 TEST_F(ScanMosaicTaskTest, HalvesThatAreTooNarrowAreRefused) {
     MosaicConfig config;
-    types::Problems problems;
-    config.check(problems);
-    EXPECT_THAT(problems, IsEmpty());
+    types::Diagnostics diagnostics;
+    config.check(diagnostics);
+    EXPECT_THAT(diagnostics, IsEmpty());
     config.width = 511;
-    config.check(problems);
-    ASSERT_EQ(problems.size(), 1u);
-    EXPECT_EQ(problems[0].path, "width");
+    config.check(diagnostics);
+    ASSERT_EQ(diagnostics.size(), 1u);
+    EXPECT_EQ(diagnostics[0].path, "width");
 }
 
 TEST_F(ScanMosaicTaskTest, StartedAgainItHasForgotten) {

@@ -90,10 +90,10 @@ TEST_F(TrajectoryTaskTest, AFileIsFoundBesideTheDeployment) {
 
 TEST_F(TrajectoryTaskTest, AFileThatIsNotThereIsSeenBeforeAndRefusedByConfigure) {
     task_.config.set({.file = "no_such.csv", .waypoints = {}});
-    types::Problems problems;
-    task_.check(problems);
-    ASSERT_EQ(problems.size(), 1u);
-    EXPECT_EQ(problems[0].path, "file");
+    types::Diagnostics diagnostics;
+    task_.check(diagnostics);
+    ASSERT_EQ(diagnostics.size(), 1u);
+    EXPECT_EQ(diagnostics[0].path, "file");
     EXPECT_FALSE(task_.configure());
     EXPECT_NE(task_.configError(), nullptr);
 }

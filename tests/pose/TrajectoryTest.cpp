@@ -28,7 +28,7 @@ public:
     const std::filesystem::path path = folder_ / "trajectory.csv";
 };
 
-std::vector<types::Diagnostic> faultsOf(const std::string& text) {
+types::Diagnostics faultsOf(const std::string& text) {
     const TextFile file(text);
     try {
         Trajectory::fromCsv(file.path);
@@ -150,16 +150,17 @@ TEST(TrajectoryTest, AHundredFaultsAreEnough) {
 
 TEST(TrajectoryConfigTest, ExactlyOneSourceIsAskedForAndTimesMustIncrease) {
     const auto problemsOf = [](const TrajectoryConfig& config) {
-        types::Problems problems;
-        config.check(problems);
-        return problems;
+        types::Diagnostics diagnostics;
+        config.check(diagnostics);
+        return diagnostics;
     };
     EXPECT_EQ(problemsOf({}).size(), 1u);
     EXPECT_EQ(problemsOf({.file = "a.csv", .waypoints = {Waypoint{}}}).size(), 1u);
     EXPECT_TRUE(problemsOf({.file = "a.csv", .waypoints = {}}).empty());
-    const auto problems = problemsOf({.file = {}, .waypoints = {{.time = 1}, {.time = 2}, {.time = 2}, {.time = 1}}});
-    ASSERT_EQ(problems.size(), 2u);
-    EXPECT_EQ(problems[0].path, "waypoints[2].time");
+    const auto diagnostics =
+        problemsOf({.file = {}, .waypoints = {{.time = 1}, {.time = 2}, {.time = 2}, {.time = 1}}});
+    ASSERT_EQ(diagnostics.size(), 2u);
+    EXPECT_EQ(diagnostics[0].path, "waypoints[2].time");
 }
 
 }  // namespace

@@ -42,10 +42,10 @@ ReceiverConfig coding(const CodeConfig& code) {
 }
 
 std::vector<std::string> faultsOf(const ReceiverConfig& config) {
-    types::Problems problems;
-    config.check(problems);
+    types::Diagnostics diagnostics;
+    config.check(diagnostics);
     std::vector<std::string> texts;
-    for (const types::Problem& problem : problems) texts.push_back(problem.path + ": " + problem.message);
+    for (const types::Diagnostic& problem : diagnostics) texts.push_back(problem.path + ": " + problem.message);
     return texts;
 }
 
@@ -160,10 +160,10 @@ TEST(ReceiverTest, FullScaleIsTheLevelOfTheLargestCodeWithAllGain) {
 
 TEST(ReceiverTest, WhatMakesNoSenseIsRefusedAndWhatHasNoUseTold) {
     ReceiverConfig config = coding({.bits = 12});
-    types::Problems problems;
-    config.code->check(problems);
-    ASSERT_EQ(problems.size(), 1u);
-    EXPECT_EQ(problems[0].message, "is 12; must be 8 or 16");
+    types::Diagnostics diagnostics;
+    config.code->check(diagnostics);
+    ASSERT_EQ(diagnostics.size(), 1u);
+    EXPECT_EQ(diagnostics[0].message, "is 12; must be 8 or 16");
     config = giving(Output::LevelDb);
     config.brightness.emplace();
     config.tvg.emplace();

@@ -79,10 +79,10 @@ TEST(ReplayClockTest, ItStartsWhereItIsToldTo) {
 
 TEST(ReplayClockTest, AStartBeyondTheEndIsSeenBeforeAnythingStarts) {
     Bench bench(true, {.file = {}, .from = 1});
-    types::Problems problems;
-    bench.task.check(problems);
-    ASSERT_EQ(problems.size(), 1u);
-    EXPECT_EQ(problems[0].path, "from");
+    types::Diagnostics diagnostics;
+    bench.task.check(diagnostics);
+    ASSERT_EQ(diagnostics.size(), 1u);
+    EXPECT_EQ(diagnostics[0].path, "from");
 }
 
 TEST(ReplayClockTest, InALoopStampsGoOnAndTimeNeverGoesBack) {

@@ -100,11 +100,11 @@ TEST(ReplayTaskTest, AStreamThatIsNotThereIsAnsweredWithThoseThatAre) {
 TEST(ReplayTaskTest, AFileThatIsNoLogIsSeenBeforeAnythingStarts) {
     Bench bench;
     writeBytes(bench.folder / "x.0.log", std::vector<char>(100, 'g'));
-    types::Problems problems;
-    bench.task.check(problems);
-    ASSERT_EQ(problems.size(), 1u);
-    EXPECT_EQ(problems[0].path, "file");
-    EXPECT_THAT(problems[0].message, HasSubstr("is not a pocolog file"));
+    types::Diagnostics diagnostics;
+    bench.task.check(diagnostics);
+    ASSERT_EQ(diagnostics.size(), 1u);
+    EXPECT_EQ(diagnostics[0].path, "file");
+    EXPECT_THAT(diagnostics[0].message, HasSubstr("is not a pocolog file"));
     EXPECT_FALSE(bench.task.configure());
     EXPECT_NE(bench.task.configError(), nullptr);
 }

@@ -53,8 +53,8 @@ TEST(ClustersTest, ALargeMeshIsSplitIntoCompactClustersOfTheSameTriangles) {
     EXPECT_EQ(triangles(mesh), before);
     EXPECT_GE(mesh.clusters.size(), 20u);
     for (const types::Cluster& cluster : mesh.clusters) {
-        EXPECT_LE(cluster.index_count / 3, kClusterTriangles);
-        EXPECT_GE(cluster.index_count / 3, kClusterTriangles / 2);
+        EXPECT_LE(cluster.index_count / 3, cluster_triangles);
+        EXPECT_GE(cluster.index_count / 3, cluster_triangles / 2);
         // a square of so many triangles has a half diagonal of sqrt(n / 4); up to twice that is compact
         EXPECT_LT(glm::length(cluster.half), 2 * std::sqrt(cluster.index_count / 12.0));
     }
@@ -91,7 +91,7 @@ TEST(ClustersTest, TrianglesInOnePlaceAreSplitAllTheSame) {
     mesh.clusters = {{.first_index = 0, .index_count = 60'000}};
     buildClusters(mesh);
     expectSoundMesh(mesh, 1);
-    EXPECT_GE(mesh.clusters.size(), 20'000 / kClusterTriangles);
+    EXPECT_GE(mesh.clusters.size(), 20'000 / cluster_triangles);
 }
 
 }  // namespace

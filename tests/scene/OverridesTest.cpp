@@ -24,7 +24,7 @@ protected:
         const types::Mesh& mesh = geometry.meshes.at(static_cast<size_t>(geometry.objects.at(object).mesh));
         return geometry.materials.at(static_cast<size_t>(mesh.clusters.at(0).material)).lambert_db;
     }
-    types::Problems problems_;
+    types::Diagnostics problems_;
 };
 
 TEST_F(OverridesTest, WithoutAnyTheGeometryIsTheSame) {

@@ -7,7 +7,7 @@
 #include "components/scene/SceneTask.hpp"
 #include "tests/scene/SceneFiles.hpp"
 #include "tests/support/Ports.hpp"
-#include "types/CarriedOn.hpp"
+#include "types/ExtrapolatePose.hpp"
 
 namespace insonify::scene {
 namespace {
@@ -104,9 +104,9 @@ TEST_F(PoseTimeoutTest, TheSonarMovesWithTheBodyAndMayBeCarriedOnWhereAsked) {
         EXPECT_TRUE(out_.port.readNew(snapshot));
         return *snapshot;
     };
-    EXPECT_EQ(snapshot_of({}).carry_on, 0);
+    EXPECT_EQ(snapshot_of({}).max_extrapolation, 0);
     const types::Snapshot moving = snapshot_of(0.3);
-    EXPECT_EQ(moving.carry_on, 0.3);
+    EXPECT_EQ(moving.max_extrapolation, 0.3);
     EXPECT_EQ(moving.time, pose.time);
     EXPECT_NEAR(glm::distance(moving.sonar.velocity, glm::dvec3(2, 0.5, 0)), 0, 1e-12);
     EXPECT_NEAR(glm::distance(moving.sonar.angular_velocity, glm::dvec3(-0.5, 0, 0)), 0, 1e-12);
@@ -118,7 +118,7 @@ TEST(CarriedOnTest, APoseGoesOnByItsVelocitiesAsFarAsItMay) {
     pose.velocity = {2, 0, 0};
     pose.angular_velocity = {0, 0, std::numbers::pi / 2};  // a quarter turn a second
     const auto at = [&](double now, double most) {
-        return types::carriedOn(pose, types::Time::fromSeconds(now), most);
+        return types::extrapolatePose(pose, types::Time::fromSeconds(now), most);
     };
     EXPECT_EQ(at(10.5, 1).position, glm::dvec3(1, 0, 0));
     EXPECT_EQ(at(10.5, 1).time.seconds(), 10.5);

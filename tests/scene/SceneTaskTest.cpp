@@ -182,11 +182,11 @@ TEST_F(SceneTaskTest, AFileThatIsMissingIsSeenWithoutConfiguring) {
     config_.file = (folder_ / "nowhere.glb").string();
     config_.materials["wood"];
     task_.config.set(config_);
-    types::Problems problems;
-    task_.check(problems);
-    ASSERT_EQ(problems.size(), 1u);
-    EXPECT_EQ(problems[0].path, "file");
-    EXPECT_NE(problems[0].message.find("does not exist"), std::string::npos);
+    types::Diagnostics diagnostics;
+    task_.check(diagnostics);
+    ASSERT_EQ(diagnostics.size(), 1u);
+    EXPECT_EQ(diagnostics[0].path, "file");
+    EXPECT_NE(diagnostics[0].message.find("does not exist"), std::string::npos);
     EXPECT_FALSE(task_.configure());
     ASSERT_NE(task_.configError(), nullptr);
     EXPECT_NE(task_.makeInput("boat.pose", boat_.port), nullptr);  // the file is what is wrong, not the port
@@ -195,10 +195,10 @@ TEST_F(SceneTaskTest, AFileThatIsMissingIsSeenWithoutConfiguring) {
 TEST_F(SceneTaskTest, AnUnknownMaterialIsSeenWithoutConfiguring) {
     config_.materials["woood"];
     task_.config.set(config_);
-    types::Problems problems;
-    task_.check(problems);
-    ASSERT_EQ(problems.size(), 1u);
-    EXPECT_EQ(problems[0].path, "materials.woood");
+    types::Diagnostics diagnostics;
+    task_.check(diagnostics);
+    ASSERT_EQ(diagnostics.size(), 1u);
+    EXPECT_EQ(diagnostics[0].path, "materials.woood");
     EXPECT_FALSE(task_.configure());
 }
 

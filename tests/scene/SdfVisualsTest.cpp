@@ -21,7 +21,7 @@ protected:
 };
 
 /** Volume of a body of revolution with 64 facets over that of the round one. */
-const double kFaceted = std::sin(2 * std::numbers::pi / 64) * 64 / (2 * std::numbers::pi);
+const double faceted = std::sin(2 * std::numbers::pi / 64) * 64 / (2 * std::numbers::pi);
 
 TEST_F(SdfVisualsTest, ABoxHasItsSize) {
     const auto geometry = shape("<box><size>2 4 6</size></box>");
@@ -48,7 +48,7 @@ TEST_F(SdfVisualsTest, AnEllipsoidIsASphereOfThreeRadii) {
 TEST_F(SdfVisualsTest, ACylinderStandsAlongZ) {
     const auto geometry = shape("<cylinder><radius>0.5</radius><length>4</length></cylinder>");
     expectBounds(boundsOf(*geometry), {-0.5, -0.5, -2}, {0.5, 0.5, 2});
-    EXPECT_NEAR(volumeOf(*geometry), std::numbers::pi * 0.25 * 4 * kFaceted, 1e-5);
+    EXPECT_NEAR(volumeOf(*geometry), std::numbers::pi * 0.25 * 4 * faceted, 1e-5);
     EXPECT_EQ(geometry->triangleCount(), 4u * 64);
 }
 
@@ -60,7 +60,7 @@ TEST_F(SdfVisualsTest, ACapsuleIsACylinderBetweenHalfSpheres) {
         EXPECT_NEAR(glm::length(glm::dvec3(corner.x, corner.y, beyond)), 0.5, 1e-6);
     }
     const double half_spheres = volumeOf(*shape("<sphere><radius>0.5</radius></sphere>"));
-    EXPECT_NEAR(volumeOf(*geometry), std::numbers::pi * 0.25 * 4 * kFaceted + half_spheres, 1e-5);
+    EXPECT_NEAR(volumeOf(*geometry), std::numbers::pi * 0.25 * 4 * faceted + half_spheres, 1e-5);
 }
 
 TEST_F(SdfVisualsTest, APlaneLiesSquareToItsNormal) {
@@ -112,9 +112,9 @@ TEST_F(SdfVisualsTest, MaterialsAreOverriddenByScriptNameAndByModel) {
     Acoustics wood, steel;
     wood.lambert_db = -30;
     steel.material = Matter::Steel;
-    types::Problems problems;
-    const auto geometry = overrideMaterials(scene, {{"Gazebo/Wood", wood}, {"rov", steel}}, problems);
-    EXPECT_TRUE(problems.empty());
+    types::Diagnostics diagnostics;
+    const auto geometry = overrideMaterials(scene, {{"Gazebo/Wood", wood}, {"rov", steel}}, diagnostics);
+    EXPECT_TRUE(diagnostics.empty());
     EXPECT_FLOAT_EQ(materialOf(*geometry, 0).lambert_db, -30);
     EXPECT_FLOAT_EQ(materialOf(*geometry, 1).reflection, 0.936f);
     EXPECT_FALSE(materialOf(*geometry, 2).has_acoustics);

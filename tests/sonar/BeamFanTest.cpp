@@ -29,11 +29,12 @@ struct Part {
     double from, to;
 };
 
-/** Each beam's parts of one row of a slab, in the order of the columns. */
-std::vector<std::vector<Part>> partsOfBeams(const ColumnShares& shares, const Slab& slab, size_t beams, int row = 0) {
+/** Each beam's parts of one row of a frustum, in the order of the columns. */
+std::vector<std::vector<Part>> partsOfBeams(const ColumnShares& shares, const ViewFrustum& frustum, size_t beams,
+                                            int row = 0) {
     std::vector<std::vector<Part>> parts(beams);
-    for (int column = 0; column < slab.columns; ++column) {
-        const size_t cell = shares.cell(row, column, slab.columns);
+    for (int column = 0; column < frustum.columns; ++column) {
+        const size_t cell = shares.cell(row, column, frustum.columns);
         for (uint32_t i = shares.starts[cell]; i < shares.starts[cell + 1]; ++i) {
             const ShareRecord& share = shares.shares[i];
             parts[share.beam].push_back({share.middle - share.width / 2, share.middle + share.width / 2});
@@ -42,10 +43,10 @@ std::vector<std::vector<Part>> partsOfBeams(const ColumnShares& shares, const Sl
     return parts;
 }
 
-/** Expects the parts to tile the image from one bearing to the other, as far as the slab shows it. */
-void expectTiled(const std::vector<Part>& parts, const Slab& slab, const Beam& beam) {
-    const double from = std::max(beam.low - slab.azimuth, -slab.half_width);
-    const double to = std::min(beam.high - slab.azimuth, slab.half_width);
+/** Expects the parts to tile the image from one bearing to the other, as far as the frustum shows it. */
+void expectTiled(const std::vector<Part>& parts, const ViewFrustum& frustum, const Beam& beam) {
+    const double from = std::max(beam.low - frustum.azimuth, -frustum.half_width);
+    const double to = std::min(beam.high - frustum.azimuth, frustum.half_width);
     EXPECT_EQ(parts.empty(), to - from < 1e-9);
     if (parts.empty()) return;
     EXPECT_NEAR(parts.front().from, std::tan(from), 1e-9);
@@ -90,23 +91,25 @@ types::Snapshot room(double yaw = 0) {
 TEST(BeamFanTest, SlabsOfAtMostSixtyDegreesCoverTheFanWithoutGapOrOverlap) {
     for (double degrees = 1; degrees <= 360; degrees += 0.5) {
         const SonarConfig config = fan(degrees, 64);
-        const auto slabs = makeSlabs(config, makeBeams(config));
-        ASSERT_EQ(slabs.size(), static_cast<size_t>(std::ceil(degrees / 60)));
-        EXPECT_NEAR(slabs.front().azimuth - slabs.front().half_width, -radians(degrees) / 2, 1e-12);
-        EXPECT_NEAR(slabs.back().azimuth + slabs.back().half_width, radians(degrees) / 2, 1e-12);
-        for (const Slab& slab : slabs) {
-            EXPECT_LE(slab.half_width, radians(30) + 1e-9);
-            EXPECT_NEAR(slab.extent_u, std::tan(slab.half_width), 1e-12);
+        const auto frusta = makeFrusta(config, makeBeams(config));
+        ASSERT_EQ(frusta.size(), static_cast<size_t>(std::ceil(degrees / 60)));
+        EXPECT_NEAR(frusta.front().azimuth - frusta.front().half_width, -radians(degrees) / 2, 1e-12);
+        EXPECT_NEAR(frusta.back().azimuth + frusta.back().half_width, radians(degrees) / 2, 1e-12);
+        for (const ViewFrustum& frustum : frusta) {
+            EXPECT_LE(frustum.half_width, radians(30) + 1e-9);
+            EXPECT_NEAR(frustum.extent_u, std::tan(frustum.half_width), 1e-12);
         }
-        for (size_t i = 1; i < slabs.size(); ++i)
-            EXPECT_NEAR(slabs[i].azimuth - slabs[i].half_width, slabs[i - 1].azimuth + slabs[i - 1].half_width, 1e-12);
+        for (size_t i = 1; i < frusta.size(); ++i)
+            EXPECT_NEAR(frusta[i].azimuth - frusta[i].half_width, frusta[i - 1].azimuth + frusta[i - 1].half_width,
+                        1e-12);
     }
 }
 
 TEST(BeamFanTest, TheImageReachesTheApertureInItsCorners) {
     const SonarConfig config = fan(100, 10);
-    for (const Slab& slab : makeSlabs(config, makeBeams(config)))
-        EXPECT_NEAR(std::atan(slab.extent_v * std::cos(slab.half_width)), radians(config.beam_height_deg / 2), 1e-12);
+    for (const ViewFrustum& frustum : makeFrusta(config, makeBeams(config)))
+        EXPECT_NEAR(std::atan(frustum.extent_v * std::cos(frustum.half_width)), radians(config.beam_height_deg / 2),
+                    1e-12);
 }
 
 TEST(BeamFanTest, BeamsPartitionTheFanFromStarboardToPort) {
@@ -126,11 +129,11 @@ TEST(BeamFanTest, SharesOfAColumnAddUpToItsWidth) {
         for (int columns_per_beam : {1, 2, 7}) {
             const SonarConfig config = fan(degrees, 33, columns_per_beam);
             const auto beams = makeBeams(config);
-            for (const Slab& slab : makeSlabs(config, beams)) {
-                const ColumnShares shares = makeShares(config, beams, slab);
-                std::vector<double> widths(static_cast<size_t>(slab.columns));
+            for (const ViewFrustum& frustum : makeFrusta(config, beams)) {
+                const ColumnShares shares = makeShares(config, beams, frustum);
+                std::vector<double> widths(static_cast<size_t>(frustum.columns));
                 for (const ShareRecord& share : shares.shares) widths[share.column] += share.width;
-                for (double width : widths) EXPECT_NEAR(width, slab.du(), 1e-8 * slab.du());
+                for (double width : widths) EXPECT_NEAR(width, frustum.du(), 1e-8 * frustum.du());
             }
         }
 }
@@ -139,9 +142,9 @@ TEST(BeamFanTest, EachBeamOwnsExactlyItsBearings) {
     for (double degrees : {10.0, 130.0, 360.0}) {
         const SonarConfig config = fan(degrees, 50, 3);
         const auto beams = makeBeams(config);
-        for (const Slab& slab : makeSlabs(config, beams)) {
-            const auto parts = partsOfBeams(makeShares(config, beams, slab), slab, beams.size());
-            for (size_t k = 0; k < beams.size(); ++k) expectTiled(parts[k], slab, beams[k]);
+        for (const ViewFrustum& frustum : makeFrusta(config, beams)) {
+            const auto parts = partsOfBeams(makeShares(config, beams, frustum), frustum, beams.size());
+            for (size_t k = 0; k < beams.size(); ++k) expectTiled(parts[k], frustum, beams[k]);
         }
     }
 }
@@ -156,11 +159,11 @@ TEST(BeamFanTest, ATableMayHaveGapsOverlapsAndAnyOrder) {
         EXPECT_NEAR(beams[k].centre, radians(config.bearings_deg[k]), 1e-12);
         EXPECT_NEAR(beams[k].high - beams[k].low, radians(4), 1e-12);
     }
-    const auto slabs = makeSlabs(config, beams);
-    EXPECT_EQ(slabs.size(), 2u) << "114 deg";
-    for (const Slab& slab : slabs) {
-        const auto parts = partsOfBeams(makeShares(config, beams, slab), slab, beams.size());
-        for (size_t k = 0; k < beams.size(); ++k) expectTiled(parts[k], slab, beams[k]);
+    const auto frusta = makeFrusta(config, beams);
+    EXPECT_EQ(frusta.size(), 2u) << "114 deg";
+    for (const ViewFrustum& frustum : frusta) {
+        const auto parts = partsOfBeams(makeShares(config, beams, frustum), frustum, beams.size());
+        for (size_t k = 0; k < beams.size(); ++k) expectTiled(parts[k], frustum, beams[k]);
     }
 }
 
@@ -170,16 +173,17 @@ TEST(BeamFanTest, ConicalBoundariesAreHyperbolasInTheImage) {
     config.beam_height_deg = 40;
     const auto beams = makeBeams(config);
     int checked = 0;
-    for (const Slab& slab : makeSlabs(config, beams)) {
-        const ColumnShares shares = makeShares(config, beams, slab);
+    for (const ViewFrustum& frustum : makeFrusta(config, beams)) {
+        const ColumnShares shares = makeShares(config, beams, frustum);
         ASSERT_TRUE(shares.per_row);
-        for (int row = 0; row < slab.rows; ++row) {
-            const auto parts = partsOfBeams(shares, slab, beams.size(), row);
+        for (int row = 0; row < frustum.rows; ++row) {
+            const auto parts = partsOfBeams(shares, frustum, beams.size(), row);
             for (size_t k = 0; k < beams.size(); ++k) {
-                if (parts[k].empty() || parts[k].back().to > slab.extent_u * (1 - 1e-9)) continue;  // goes on next door
+                if (parts[k].empty() || parts[k].back().to > frustum.extent_u * (1 - 1e-9))
+                    continue;  // goes on next door
                 const double in_slab = std::atan(parts[k].back().to);
-                const double elevation = std::atan(slab.v(row + 0.5) * std::cos(in_slab));
-                EXPECT_NEAR(std::sin(slab.azimuth + in_slab) * std::cos(elevation), std::sin(beams[k].high), 1e-6);
+                const double elevation = std::atan(frustum.v(row + 0.5) * std::cos(in_slab));
+                EXPECT_NEAR(std::sin(frustum.azimuth + in_slab) * std::cos(elevation), std::sin(beams[k].high), 1e-6);
                 ++checked;
             }
         }
@@ -188,11 +192,11 @@ TEST(BeamFanTest, ConicalBoundariesAreHyperbolasInTheImage) {
 }
 
 TEST(BeamFanTest, NoBeamIsEmptyWhereBeamsAreNarrowerThanColumns) {
-    const SonarConfig config = fan(360, 4096, 1);  // in the middle of a slab columns are 1.1 beams wide
+    const SonarConfig config = fan(360, 4096, 1);  // in the middle of a frustum columns are 1.1 beams wide
     const auto beams = makeBeams(config);
     std::vector<int> shares_of(beams.size());
-    for (const Slab& slab : makeSlabs(config, beams))
-        for (const ShareRecord& share : makeShares(config, beams, slab).shares) ++shares_of[share.beam];
+    for (const ViewFrustum& frustum : makeFrusta(config, beams))
+        for (const ShareRecord& share : makeShares(config, beams, frustum).shares) ++shares_of[share.beam];
     EXPECT_EQ(std::ranges::count(shares_of, 0), 0);
 
     const auto ping = pingOf(fan(110, 1000, 1), room());
@@ -214,7 +218,7 @@ TEST(BeamFanTest, ABeamOfAFullTurnIsThatOfASonarOfTenDegrees) {
 }
 
 TEST(BeamFanTest, AWallThroughThreeSlabsHasNoSeam) {
-    // Turned by ten beams, the same bearings of the world lie elsewhere in the slabs.
+    // Turned by ten beams, the same bearings of the world lie elsewhere in the frusta.
     const auto wall = test::sceneOf({test::quad({10, -300, -50}, {0, 600, 0}, {0, 0, 100})});
     SonarConfig config = fan(150, 150, 4);
     config.quality.rows = 512;

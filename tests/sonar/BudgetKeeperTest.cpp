@@ -32,7 +32,7 @@ struct Machine {
         for (int i = 0; i < pings; ++i) {
             const double samples = rung(keeper.limit());
             times.push_back(ms(samples));
-            keeper.heard(times.back(), samples);
+            keeper.note(times.back(), samples);
         }
         return times;
     }
@@ -57,10 +57,10 @@ TEST(BudgetKeeperTest, ItUsesAtLeastFourFifthsOfWhatItIsGivenAndKeepsToIt) {
 
 TEST(BudgetKeeperTest, TwoOfTwentyLatePingsLowerItOneDoesNot) {
     BudgetKeeper keeper(10, 1e5);
-    EXPECT_FALSE(keeper.heard(11, 1e5));
-    for (int i = 0; i < 25; ++i) EXPECT_FALSE(keeper.heard(9.5, 1e5)) << "one late ping is forgotten";
-    EXPECT_FALSE(keeper.heard(12, 1e5));
-    EXPECT_TRUE(keeper.heard(12, 1e5));
+    EXPECT_FALSE(keeper.note(11, 1e5));
+    for (int i = 0; i < 25; ++i) EXPECT_FALSE(keeper.note(9.5, 1e5)) << "one late ping is forgotten";
+    EXPECT_FALSE(keeper.note(12, 1e5));
+    EXPECT_TRUE(keeper.note(12, 1e5));
     EXPECT_NEAR(keeper.limit(), 0.9 * 10 / 12 * 1e5, 1);
 }
 
@@ -85,16 +85,16 @@ TEST(BudgetKeeperTest, ItDoesNotSwingBetweenTwoQualities) {
     int moves = 0;
     for (int i = 0; i < 2000; ++i) {
         const double samples = Machine::rung(keeper.limit());
-        moves += keeper.heard(machine.ms(samples), samples);
+        moves += keeper.note(machine.ms(samples), samples);
     }
     EXPECT_LE(moves, 40);
 }
 
 TEST(BudgetKeeperTest, WhatAPingDoesNotNeedIsNotRaised) {
     BudgetKeeper keeper(33);
-    for (int i = 0; i < 200; ++i) EXPECT_FALSE(keeper.heard(1, least));
+    for (int i = 0; i < 200; ++i) EXPECT_FALSE(keeper.note(1, least));
     BudgetKeeper limited(33, 1e6);
-    for (int i = 0; i < 200; ++i) EXPECT_FALSE(limited.heard(10, least)) << "there is room already";
+    for (int i = 0; i < 200; ++i) EXPECT_FALSE(limited.note(10, least)) << "there is room already";
 }
 
 TEST(BudgetKeeperTest, AnotherBudgetHoldsAtOnce) {
@@ -109,9 +109,9 @@ TEST(BudgetKeeperTest, AnotherBudgetHoldsAtOnce) {
 TEST(PeriodMeterTest, NeitherAPingThatWasLeftOutNorTwoAtOnceChangeIt) {
     PeriodMeter meter;
     EXPECT_EQ(meter.period(), 0);
-    for (int i = 0; i < 40; ++i) meter.heard(i % 4 == 0 ? 0.2 : i % 16 == 1 ? 0.001 : 0.1);
+    for (int i = 0; i < 40; ++i) meter.note(i % 4 == 0 ? 0.2 : i % 16 == 1 ? 0.001 : 0.1);
     EXPECT_EQ(meter.period(), 0.1);
-    for (int i = 0; i < 16; ++i) meter.heard(0.05);
+    for (int i = 0; i < 16; ++i) meter.note(0.05);
     EXPECT_EQ(meter.period(), 0.05);
 }
 

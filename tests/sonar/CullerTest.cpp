@@ -32,27 +32,27 @@ types::Mesh triangleSoup(Random& random, int triangles) {
     return mesh;
 }
 
-bool inView(const Slab& slab, glm::dvec3 p, double range_max) {
-    const double x = std::cos(slab.azimuth) * p.x + std::sin(slab.azimuth) * p.y;
-    const double y = std::cos(slab.azimuth) * p.y - std::sin(slab.azimuth) * p.x;
-    return x > 0 && std::abs(y) <= slab.extent_u * x && std::abs(p.z) <= slab.extent_v * x &&
+bool inView(const ViewFrustum& frustum, glm::dvec3 p, double range_max) {
+    const double x = std::cos(frustum.azimuth) * p.x + std::sin(frustum.azimuth) * p.y;
+    const double y = std::cos(frustum.azimuth) * p.y - std::sin(frustum.azimuth) * p.x;
+    return x > 0 && std::abs(y) <= frustum.extent_u * x && std::abs(p.z) <= frustum.extent_v * x &&
            glm::length(p) <= range_max;
 }
 
 /** Whether any of some points of the triangle is in view. */
-bool triangleSeen(const Slab& slab, const glm::dvec3 (&corner)[3], double range_max) {
+bool triangleSeen(const ViewFrustum& frustum, const glm::dvec3 (&corner)[3], double range_max) {
     for (double a = 0; a <= 1; a += 0.25)
         for (double b = 0; a + b <= 1; b += 0.25)
-            if (inView(slab, a * corner[0] + b * corner[1] + (1 - a - b) * corner[2], range_max)) return true;
+            if (inView(frustum, a * corner[0] + b * corner[1] + (1 - a - b) * corner[2], range_max)) return true;
     return false;
 }
 
 /** For each object, whether each of its triangles is in a run. */
-std::vector<std::vector<bool>> drawn(const types::Geometry& geometry, const std::vector<Culler::Run>& runs) {
+std::vector<std::vector<bool>> drawn(const types::Geometry& geometry, const std::vector<Culler::DrawRange>& runs) {
     std::vector<std::vector<bool>> marks;
     for (const types::Object& object : geometry.objects)
         marks.emplace_back(geometry.meshes[static_cast<size_t>(object.mesh)].indices.size() / 3);
-    for (const Culler::Run& run : runs)
+    for (const Culler::DrawRange& run : runs)
         for (uint32_t i = run.first_index / 3; i < (run.first_index + run.index_count) / 3; ++i) {
             EXPECT_FALSE(marks[run.object].at(i)) << "drawn twice";
             marks[run.object].at(i) = true;
@@ -64,16 +64,16 @@ struct Count {
     size_t seen = 0, missed = 0, drawn = 0, all = 0;
 };
 
-/** Compares the runs of all slabs with the triangles that are in view. */
+/** Compares the runs of all frusta with the triangles that are in view. */
 Count compare(const SonarConfig& config, const types::Snapshot& snapshot) {
     Culler culler(*snapshot.geometry, {0, {config.range}});
     culler.place(snapshot);
     const glm::dmat4 sonar_from_world = glm::inverse(snapshot.sonar.worldFromBody());
     Count count;
-    std::vector<Culler::Run> runs;
-    for (const Slab& slab : makeSlabs(config, makeBeams(config))) {
-        culler.visible(slab, runs);
-        EXPECT_LE(runs.size(), culler.runLimit());
+    std::vector<Culler::DrawRange> runs;
+    for (const ViewFrustum& frustum : makeFrusta(config, makeBeams(config))) {
+        culler.visible(frustum, runs);
+        EXPECT_LE(runs.size(), culler.drawRangeLimit());
         const auto marks = drawn(*snapshot.geometry, runs);
         for (size_t i = 0; i < marks.size(); ++i) {
             const types::Object& object = snapshot.geometry->objects[i];
@@ -85,7 +85,7 @@ Count compare(const SonarConfig& config, const types::Snapshot& snapshot) {
                 glm::dvec3 corner[3];
                 for (size_t k = 0; k < 3; ++k)
                     corner[k] = sonar_from_world * place * glm::dvec4(mesh.positions[mesh.indices[3 * t + k]], 1);
-                const bool seen = triangleSeen(slab, corner, config.range);
+                const bool seen = triangleSeen(frustum, corner, config.range);
                 count.seen += seen;
                 count.missed += seen && !marks[i][t];
                 count.drawn += marks[i][t];
@@ -104,16 +104,16 @@ types::Snapshot randomSnapshot(Random& random, types::GeometryPtr geometry) {
 /** Of 1 m, known by its own sphere. */
 types::Mesh ball() { return test::sphere(1, 8); }
 
-/** Runs over all slabs for one sphere of 1 m about `position`, the sonar at the origin. */
+/** Runs over all frusta for one sphere of 1 m about `position`, the sonar at the origin. */
 size_t runsOfBall(glm::dvec3 position, double field_of_view_deg = 60) {
     const auto snapshot = test::snapshotOf(test::sceneOf({ball()}, 0, {position}));
     const SonarConfig config = fan(field_of_view_deg);
     Culler culler(*snapshot.geometry, {0, {config.range}});
     culler.place(snapshot);
     size_t count = 0;
-    for (const Slab& slab : makeSlabs(config, makeBeams(config))) {
-        std::vector<Culler::Run> runs;
-        culler.visible(slab, runs);
+    for (const ViewFrustum& frustum : makeFrusta(config, makeBeams(config))) {
+        std::vector<Culler::DrawRange> runs;
+        culler.visible(frustum, runs);
         count += runs.size();
     }
     return count;
@@ -124,7 +124,7 @@ types::GeometryPtr withoutCulling(const types::Geometry& geometry) {
     auto whole = std::make_shared<types::Geometry>(geometry);
     for (types::Mesh& mesh : whole->meshes) {
         mesh.clusters = {{0, static_cast<uint32_t>(mesh.indices.size()), 0, {0, 0, 0}, glm::vec3(1e6f)}};
-        mesh.patches.clear();
+        mesh.cluster_nodes.clear();
     }
     return whole;
 }
@@ -191,18 +191,18 @@ TEST(CullerTest, AnObjectAboutTheSonarIsDrawnInEverySlab) {
 TEST(CullerTest, AMovedObjectIsDrawnWhereItIs) {
     types::Snapshot snapshot = test::snapshotOf(test::sceneOf({ball()}, 0, {{-10, 0, 0}}));
     Culler culler(*snapshot.geometry, {0, {30}});
-    std::vector<Culler::Run> runs;
-    const Slab slab = makeSlabs(fan(60), makeBeams(fan(60))).front();
+    std::vector<Culler::DrawRange> runs;
+    const ViewFrustum frustum = makeFrusta(fan(60), makeBeams(fan(60))).front();
     culler.place(snapshot);
-    culler.visible(slab, runs);
+    culler.visible(frustum, runs);
     EXPECT_TRUE(runs.empty());
     snapshot.moved = {{0, glm::translate(glm::dmat4(1), {10.0, 0.0, 0.0})}};
     culler.place(snapshot);
-    culler.visible(slab, runs);
+    culler.visible(frustum, runs);
     EXPECT_EQ(runs.size(), 1u);
     snapshot.moved.clear();
     culler.place(snapshot);
-    culler.visible(slab, runs);
+    culler.visible(frustum, runs);
     EXPECT_TRUE(runs.empty()) << "back at its place";
 }
 

@@ -13,16 +13,16 @@
 namespace insonify::sonar {
 namespace {
 
-/** Triangles drawn over all slabs of `config`. */
+/** Triangles drawn over all frusta of `config`. */
 size_t drawnBy(const SonarConfig& config, const types::Snapshot& snapshot) {
     Culler culler(*snapshot.geometry, {0, {config.range}});
     culler.place(snapshot);
     size_t drawn = 0;
-    std::vector<Culler::Run> runs;
-    for (const Slab& slab : makeSlabs(config, makeBeams(config))) {
-        culler.visible(slab, runs);
-        EXPECT_LE(runs.size(), culler.runLimit());
-        for (const Culler::Run& run : runs) drawn += run.index_count / 3;
+    std::vector<Culler::DrawRange> runs;
+    for (const ViewFrustum& frustum : makeFrusta(config, makeBeams(config))) {
+        culler.visible(frustum, runs);
+        EXPECT_LE(runs.size(), culler.drawRangeLimit());
+        for (const Culler::DrawRange& run : runs) drawn += run.index_count / 3;
     }
     return drawn;
 }
@@ -111,8 +111,8 @@ TEST(DetailCullTest, FromWithinAClosedMeshItsBackIsHeard) {
 
 TEST(DetailCullTest, ARoughFloorIsHeardTheSameInOneMeshAsInManySmallOnes) {
     const Floors floors;
-    ASSERT_FALSE(floors.one->meshes[0].patches.empty());
-    ASSERT_TRUE(floors.tiles->meshes[0].patches.empty());
+    ASSERT_FALSE(floors.one->meshes[0].cluster_nodes.empty());
+    ASSERT_TRUE(floors.tiles->meshes[0].cluster_nodes.empty());
     for (const Look& look : {Look{{0, 0, 3}, 0, 8, 40}, Look{{0, 0, 3}, 0, 8, 15}, Look{{0, 0, 8}, 0.3, 25, 40},
                              Look{{10, 5, 1.5}, -0.4, 2, 30}}) {
         const types::Sonar one = heardOf(floors.one, look), tiles = heardOf(floors.tiles, look);

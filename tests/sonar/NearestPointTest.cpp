@@ -97,7 +97,7 @@ TEST(NearestPointTest, OfAMeshOfManyClustersIsThatOfAll) {
     types::Mesh ball = test::sphere(1.5f, 200);
     const types::Mesh whole = test::sphere(1.5f, 40);
     scene::buildClusters(ball);
-    ASSERT_FALSE(ball.patches.empty());
+    ASSERT_FALSE(ball.cluster_nodes.empty());
     for (const glm::dvec3 at : {glm::dvec3(5, 0, 0), {0.9, 0.4, 0}, {-2, 3, 1}, {0, 0, 1.6}}) {
         const glm::dmat4 place = glm::translate(glm::dmat4(1), at);
         const double expected = std::abs(glm::length(at) - 1.5);

@@ -98,7 +98,7 @@ TEST(PlanTest, ThePublishedModelLeavesThePhysicsOut) {
 TEST(PlanTest, SlabsAreAsFewAsCoverTheFan) {
     struct Case {
         double fov;
-        int slabs;
+        int frusta;
     };
     for (const Case& c :
          {Case{3, 1}, Case{60, 1}, Case{61, 2}, Case{120, 2}, Case{130, 3}, Case{180, 3}, Case{360, 6}}) {

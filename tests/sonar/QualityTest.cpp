@@ -273,7 +273,7 @@ TEST(QualityKeeperTest, NorIsItABudgetWhereATargetIsSaid) {
 
 TEST(CulledTest, ThePlanSaysWhatOfTheSceneIsNotDrawn) {
     SonarConfig config = small();
-    config.field_of_view_deg = 180;  // three slabs
+    config.field_of_view_deg = 180;  // three frusta
     Fed<SonarTask> sonar(config);
     const types::Mesh ball = test::sphere(0.5, 8);
     const auto geometry = test::sceneOf({ball, ball, ball}, -10, {{10, 0, 0}, {-10, 0, 0}, {200, 0, 0}});

@@ -18,7 +18,7 @@ std::vector<std::string> faultsOf(const char* yaml) {
     Config config;
     reader.read(YAML::Load(yaml), "", config);
     std::vector<std::string> texts;
-    for (const auto& fault : reader.faults()) texts.push_back(fault.path + ": " + fault.message);
+    for (const auto& fault : reader.diagnostics()) texts.push_back(fault.path + ": " + fault.message);
     return texts;
 }
 

@@ -45,18 +45,18 @@ types::Sonar pingOf(const SonarConfig& config, const types::Snapshot& snapshot) 
 using Seen = std::pair<uint32_t, uint32_t>;
 constexpr Seen nothing{0xffffffff, 0};
 
-/** What each pixel of the slabs shows, drawn. */
-std::vector<Seen> drawn(const types::Snapshot& snapshot, const std::vector<Slab>& slabs) {
+/** What each pixel of the frusta shows, drawn. */
+std::vector<Seen> drawn(const types::Snapshot& snapshot, const std::vector<ViewFrustum>& frusta) {
     gpu::EglContext context("software");
     Culler culler(*snapshot.geometry, {.range_min = 0, .reach = {1e4}, .draw_all = true});
     ThreadPool threads(1);
-    SurfacePass surface(context, {*snapshot.geometry, slabs, {}, 1e-3, culler.runLimit(), true}, threads);
+    SurfacePass surface(context, {*snapshot.geometry, frusta, {}, 1e-3, culler.drawRangeLimit(), true}, threads);
     culler.place(snapshot);
     surface.cull(culler);
     surface.draw();
     std::vector<Seen> seen;
-    for (size_t i = 0; i < slabs.size(); ++i) {
-        std::vector<uint32_t> words(2 * static_cast<size_t>(slabs[i].columns * slabs[i].rows));
+    for (size_t i = 0; i < frusta.size(); ++i) {
+        std::vector<uint32_t> words(2 * static_cast<size_t>(frusta[i].columns * frusta[i].rows));
         surface.picture(i).read(words);
         for (size_t pixel = 0; pixel < words.size(); pixel += 2)
             seen.push_back(words[pixel] == 0
@@ -67,23 +67,24 @@ std::vector<Seen> drawn(const types::Snapshot& snapshot, const std::vector<Slab>
 }
 
 /** What rays through the same pixels' middles meet. */
-std::vector<Seen> met(const types::Snapshot& snapshot, const std::vector<Slab>& slabs) {
+std::vector<Seen> met(const types::Snapshot& snapshot, const std::vector<ViewFrustum>& frusta) {
     RayVisibility visibility(*snapshot.geometry);
     visibility.place(snapshot);
     std::vector<Seen> seen;
-    for (const Slab& slab : slabs)
-        for (int first = 0; first < slab.rows * slab.columns; first += tile_samples) {
+    for (const ViewFrustum& frustum : frusta)
+        for (int first = 0; first < frustum.rows * frustum.columns; first += tile_samples) {
             TileRays rays;
             TileHits hits;
             for (int i = 0; i < tile_samples; ++i) {
-                const double u = slab.u((first + i) % slab.columns + 0.5), v = slab.v((first + i) / slab.columns + 0.5);
-                const double cosine = std::cos(slab.azimuth), sine = std::sin(slab.azimuth);
+                const double u = frustum.u((first + i) % frustum.columns + 0.5),
+                             v = frustum.v((first + i) / frustum.columns + 0.5);
+                const double cosine = std::cos(frustum.azimuth), sine = std::sin(frustum.azimuth);
                 rays.x[i] = static_cast<float>(cosine - sine * u);
                 rays.y[i] = static_cast<float>(sine + cosine * u);
                 rays.z[i] = static_cast<float>(v);
             }
             visibility.cast({&rays, 1}, {&hits, 1});
-            for (int i = 0; i < tile_samples && first + i < slab.rows * slab.columns; ++i)
+            for (int i = 0; i < tile_samples && first + i < frustum.rows * frustum.columns; ++i)
                 seen.push_back(hits.command[i] == TileHits::nothing
                                    ? nothing
                                    : Seen{visibility.commands()[hits.command[i]].object, hits.triangle[i]});
@@ -139,9 +140,9 @@ double difference(const types::Sonar& a, const types::Sonar& b) {
 
 TEST(VisibilityTest, RaysMeetTheTrianglesThatAreDrawn) {
     const SonarConfig config = fan(Visibility::Gl);
-    const std::vector<Slab> slabs = makeSlabs(config, makeBeams(config));
+    const std::vector<ViewFrustum> frusta = makeFrusta(config, makeBeams(config));
     for (const Scene& scene : scenes()) {
-        const std::vector<Seen> pixels = drawn(scene.snapshot, slabs), rays = met(scene.snapshot, slabs);
+        const std::vector<Seen> pixels = drawn(scene.snapshot, frusta), rays = met(scene.snapshot, frusta);
         ASSERT_EQ(pixels.size(), rays.size());
         size_t differ = 0, something = 0;
         for (size_t i = 0; i < pixels.size(); ++i) {
@@ -245,15 +246,15 @@ TEST(VisibilityTest, AnApertureOf120And170DegOfElevationFollowsTheClosedForm) {
 TEST(VisibilityTest, ATallImageIsRefusedAndRaysTakeIt) {
     SonarConfig config = fan(Visibility::Gl);
     config.beam_height_deg = 170;
-    types::Problems problems;
-    config.check(problems);
-    ASSERT_EQ(problems.size(), 1u);
-    EXPECT_THAT(problems[0].message, testing::HasSubstr("rays (visibility: cpu) 180"));
-    problems.clear();
+    types::Diagnostics diagnostics;
+    config.check(diagnostics);
+    ASSERT_EQ(diagnostics.size(), 1u);
+    EXPECT_THAT(diagnostics[0].message, testing::HasSubstr("rays (visibility: cpu) 180"));
+    diagnostics.clear();
     config.visibility = Visibility::Cpu;
     config.device.clear();
-    config.check(problems);
-    EXPECT_THAT(problems, testing::IsEmpty());
+    config.check(diagnostics);
+    EXPECT_THAT(diagnostics, testing::IsEmpty());
 }
 
 TEST(VisibilityTest, WhatIsNearerThanTheBlankingIsSilentAndCastsItsShadow) {

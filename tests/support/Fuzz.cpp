@@ -37,8 +37,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr unsigned most_seconds = 60;           // for one input
-constexpr size_t most_bytes = size_t{1} << 20;  // of an input
+constexpr unsigned max_seconds = 60;           // for one input
+constexpr size_t max_bytes = size_t{1} << 20;  // of an input
 
 std::string bytesOfFile(const fs::path& file) {
     const std::vector<char> bytes = bytesOf(file);
@@ -63,7 +63,7 @@ public:
     std::string next() {
         std::string bytes = pick(corpus_);
         for (size_t changes = 1 + below(4); changes > 0; --changes) change(bytes);
-        bytes.resize(std::min(bytes.size(), most_bytes));
+        bytes.resize(std::min(bytes.size(), max_bytes));
         return bytes;
     }
     void keep(const std::string& bytes) { corpus_.push_back(bytes); }
@@ -152,7 +152,7 @@ void fuzz(const Door& door, std::vector<std::string> corpus, double seconds, con
     uint64_t inputs = 0;
     for (; std::chrono::steady_clock::now() < end && !testing::Test::HasFailure(); ++inputs) {
         const std::string bytes = mutator.next();
-        alarm(most_seconds);
+        alarm(max_seconds);
         enter(door, bytes, folder);
         if (!leadsElsewhere()) continue;
         fs::create_directories(folder / "found");

@@ -63,9 +63,9 @@ TEST(PublisherTest, OneRequestTooManyIsRefusedByItsId) {
     Blocked blocked;
     Client client(blocked.publisher.port());
     ASSERT_THAT(client.upgrade(page_protocol), testing::HasSubstr("101"));
-    for (uint64_t id = 1; id <= Lanes::most_waiting + 2; ++id) client.say(call(id, "deaf.ask"));
+    for (uint64_t id = 1; id <= SerialExecutors::max_waiting + 2; ++id) client.say(call(id, "deaf.ask"));
     const auto refused = answer(client);
-    EXPECT_GT(refused["id"], Lanes::most_waiting);
+    EXPECT_GT(refused["id"], SerialExecutors::max_waiting);
     EXPECT_THAT(refused["refused"], testing::HasSubstr("too many requests wait"));
     blocked.release.set_value();
 }

@@ -18,8 +18,8 @@ struct QualityConfig {
         visit(types::Field{"rows", "1", "of samples", 1, 1000}, self.rows);
         visit(types::Field{"budget_ms", "ms", "instead", 1, 1000}, self.budget_ms);
     }
-    void check(types::Problems& problems) const {
-        if (rows && budget_ms) problems.push_back({"rows", "stands beside budget_ms"});
+    void check(types::Diagnostics& diagnostics) const {
+        if (rows && budget_ms) diagnostics.push_back({"rows", "stands beside budget_ms"});
     }
 };
 

@@ -16,10 +16,10 @@ namespace {
 using testing::HasSubstr;
 
 std::string problemsOf(const ViewerConfig& config) {
-    types::Problems problems;
-    config.check(problems);
+    types::Diagnostics diagnostics;
+    config.check(diagnostics);
     std::string all;
-    for (const types::Problem& problem : problems) all += problem.path + ": " + problem.message + "\n";
+    for (const types::Diagnostic& problem : diagnostics) all += problem.path + ": " + problem.message + "\n";
     return all;
 }
 

@@ -23,9 +23,9 @@ extern "C" const char* __asan_default_options() { return "max_allocation_size_mb
 namespace {
 
 #ifdef __SANITIZE_ADDRESS__
-constexpr bool kLimitsMemory = false;
+constexpr bool limits_memory = false;
 #else
-constexpr bool kLimitsMemory = true;
+constexpr bool limits_memory = true;
 #endif
 
 /** A limit that is lower already stays. */
@@ -42,7 +42,7 @@ void limitAll(unsigned processor_s, unsigned wall_s, rlim_t memory) {
     limit(RLIMIT_CORE, 0, 0);
     limit(RLIMIT_CPU, processor_s, processor_s + 1);
     limit(RLIMIT_FSIZE, memory, memory);
-    if (kLimitsMemory) limit(RLIMIT_AS, memory, memory);
+    if (limits_memory) limit(RLIMIT_AS, memory, memory);
     alarm(wall_s);
 }
 

@@ -3,24 +3,24 @@
 #include <cstdint>
 #include <utility>
 
-#include "components/viewer/Admission.hpp"
-#include "components/viewer/Refusals.hpp"
+#include "components/viewer/AccessPolicy.hpp"
 #include "components/viewer/Server.hpp"
+#include "types/ThrottledWarning.hpp"
 
 namespace insonify::viewer {
 
 /** What all connections of a server share. */
-struct Hub {
-    Hub(ServerOptions asked, ServerHandler& answers)
-        : options(std::move(asked)), handler(answers), admission{options.token} {}
-    virtual ~Hub() = default;
+struct ServerContext {
+    ServerContext(ServerOptions asked, ServerHandler& answers)
+        : options(std::move(asked)), handler(answers), access{options.token} {}
+    virtual ~ServerContext() = default;
     virtual void leave(uint64_t session) = 0;
     virtual void recount() = 0;  ///< Who is connected, and subscribed to what.
 
     const ServerOptions options;
     ServerHandler& handler;
-    const Admission admission;
-    Refusals refused;
+    const AccessPolicy access;
+    types::ThrottledWarning refused{"connection", "refused"};
     std::atomic<uint64_t> clients{0}, dropped{0};
 };
 

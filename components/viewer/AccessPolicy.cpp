@@ -1,4 +1,4 @@
-#include "components/viewer/Admission.hpp"
+#include "components/viewer/AccessPolicy.hpp"
 
 #include <arpa/inet.h>
 
@@ -60,7 +60,7 @@ bool isOwnName(std::string_view host) {
     return name == "localhost" || inet_pton(AF_INET, name.c_str(), &any) == 1;
 }
 
-std::optional<Admission::Refusal> Admission::judge(const Request& request, Use use) const {
+std::optional<AccessPolicy::Refusal> AccessPolicy::decide(const Request& request, Use use) const {
     if (!token.empty()) {
         const std::string bearer = "Bearer ";
         const std::string given = request.authorization.starts_with(bearer)
@@ -72,7 +72,7 @@ std::optional<Admission::Refusal> Admission::judge(const Request& request, Use u
     if (!isOwnName(request.host))
         return Refusal{403, "the host must be localhost or a numeric address, unless a token is set"};
     const bool is_own = request.origin.empty() || request.origin == "http://" + request.host;
-    if ((use == Use::Steer && !is_own) || (use == Use::Read && !is_own && isForeignSite(request.origin)))
+    if ((use == Use::Control && !is_own) || (use == Use::Read && !is_own && isForeignSite(request.origin)))
         return Refusal{403, "pages of other origins may not connect, unless a token is set"};
     return std::nullopt;
 }

@@ -4,7 +4,7 @@
 #include <glm/geometric.hpp>
 
 #include "components/scene/Clusters.hpp"
-#include "components/scene/Outline.hpp"
+#include "components/scene/CoarseMesh.hpp"
 #include "tests/support/Scenes.hpp"
 
 namespace insonify::scene {
@@ -16,11 +16,11 @@ types::Mesh ball(int steps) {
     return mesh;
 }
 
-TEST(OutlineTest, ALargeMeshHasFewTrianglesThatShowItsShape) {
+TEST(CoarseMeshTest, ALargeMeshHasFewTrianglesThatShowItsShape) {
     const types::Mesh mesh = ball(160);
-    ASSERT_GT(mesh.indices.size() / 3, 5 * kOutlineTriangles);
-    EXPECT_LE(mesh.coarse_indices.size() / 3, kOutlineTriangles);
-    ASSERT_GT(mesh.coarse_indices.size() / 3, kOutlineTriangles / 10);
+    ASSERT_GT(mesh.indices.size() / 3, 5 * max_coarse_triangles);
+    EXPECT_LE(mesh.coarse_indices.size() / 3, max_coarse_triangles);
+    ASSERT_GT(mesh.coarse_indices.size() / 3, max_coarse_triangles / 10);
     for (size_t i = 0; i < mesh.coarse_indices.size(); i += 3) {
         const auto corner = [&](size_t k) { return mesh.positions.at(mesh.coarse_indices[i + k]); };
         const glm::vec3 middle = (corner(0) + corner(1) + corner(2)) / 3.0f;
@@ -28,9 +28,9 @@ TEST(OutlineTest, ALargeMeshHasFewTrianglesThatShowItsShape) {
     }
 }
 
-TEST(OutlineTest, ASmallMeshHasNone) { EXPECT_TRUE(ball(20).coarse_indices.empty()); }
+TEST(CoarseMeshTest, ASmallMeshHasNone) { EXPECT_TRUE(ball(20).coarse_indices.empty()); }
 
-TEST(OutlineTest, EveryMaterialKeepsItsPart) {
+TEST(CoarseMeshTest, EveryMaterialKeepsItsPart) {
     types::Mesh mesh = test::sphere(2, 160);
     const auto half = static_cast<uint32_t>(mesh.indices.size() / 6 * 3);
     mesh.clusters = {
@@ -41,7 +41,7 @@ TEST(OutlineTest, EveryMaterialKeepsItsPart) {
         std::ranges::minmax(mesh.coarse_indices, {}, [&](uint32_t index) { return mesh.positions[index].z; });
     EXPECT_LT(mesh.positions[low].z, -1.8f);
     EXPECT_GT(mesh.positions[high].z, 1.8f);
-    EXPECT_GT(mesh.coarse_indices.size() / 3, kOutlineTriangles / 5);
+    EXPECT_GT(mesh.coarse_indices.size() / 3, max_coarse_triangles / 5);
 }
 
 }  // namespace

@@ -10,7 +10,7 @@ namespace insonify::types {
 
 /** A pose as its velocities have it at `time`, but at most `most` seconds on and never back; its stamp as well. As it
  *  is where they are not known. */
-inline Pose carriedOn(Pose pose, Time time, double most) {
+inline Pose extrapolatePose(Pose pose, Time time, double most) {
     const double seconds = std::clamp((time - pose.time).seconds(), 0.0, most);
     const double turn = glm::length(pose.angular_velocity) * seconds;
     if (!std::isfinite(glm::length(pose.velocity)) || !std::isfinite(turn)) return pose;

@@ -1,4 +1,4 @@
-#include "components/sonar/SlabPicture.hpp"
+#include "components/sonar/VisibilityBuffer.hpp"
 
 #include <algorithm>
 #include <array>
@@ -20,10 +20,10 @@ std::array<GLint, 4> samplesOfQuarters() {
 
 }  // namespace
 
-struct SlabPicture::Multisampled {
-    Multisampled(const Slab& slab, GLenum format, gpu::EglContext& context)
-        : columns(slab.columns / 2),
-          rows(slab.rows / 2),
+struct VisibilityBuffer::Multisampled {
+    Multisampled(const ViewFrustum& frustum, GLenum format, gpu::EglContext& context)
+        : columns(frustum.columns / 2),
+          rows(frustum.rows / 2),
           ids(gpu::Texture::multisampled(format, columns, rows, 4)),
           depth(gpu::Texture::multisampled(GL_DEPTH_COMPONENT32F, columns, rows, 4)),
           target(ids, depth),
@@ -42,35 +42,37 @@ struct SlabPicture::Multisampled {
     std::array<GLint, 4> order;
 };
 
-SlabPicture::SlabPicture(const Slab& slab, bool with_normal_maps, size_t run_limit, gpu::EglContext& context)
-    : slab_(slab),
+VisibilityBuffer::VisibilityBuffer(const ViewFrustum& frustum, bool with_normal_maps, size_t draw_range_limit,
+                                   gpu::EglContext& context)
+    : frustum_(frustum),
       channels_(with_normal_maps ? 4 : 2),
-      ids_(with_normal_maps ? GL_RGBA32UI : GL_RG32UI, slab.columns, slab.rows),
-      depth_(GL_DEPTH_COMPONENT32F, slab.columns, slab.rows),
+      ids_(with_normal_maps ? GL_RGBA32UI : GL_RG32UI, frustum.columns, frustum.rows),
+      depth_(GL_DEPTH_COMPONENT32F, frustum.columns, frustum.rows),
       target_(ids_, depth_),
-      device_clips_(run_limit * sizeof(Clip)),
-      device_bends_(with_normal_maps ? run_limit * sizeof(Bend) : sizeof(Bend)),
-      device_draws_(run_limit * sizeof(DrawCommand)) {
-    runs.reserve(run_limit);
-    commands.reserve(run_limit);
-    clips.reserve(run_limit);
-    if (with_normal_maps) bends.reserve(run_limit);
-    draws.reserve(run_limit);
-    if (slab.samples == 4)
-        multisampled_ = std::make_unique<Multisampled>(slab, with_normal_maps ? GL_RGBA32UI : GL_RG32UI, context);
+      device_clips_(draw_range_limit * sizeof(Clip)),
+      device_normal_transforms_(with_normal_maps ? draw_range_limit * sizeof(NormalTransform)
+                                                 : sizeof(NormalTransform)),
+      device_draws_(draw_range_limit * sizeof(DrawCommand)) {
+    ranges.reserve(draw_range_limit);
+    commands.reserve(draw_range_limit);
+    clips.reserve(draw_range_limit);
+    if (with_normal_maps) normal_transforms.reserve(draw_range_limit);
+    draws.reserve(draw_range_limit);
+    if (frustum.samples == 4)
+        multisampled_ = std::make_unique<Multisampled>(frustum, with_normal_maps ? GL_RGBA32UI : GL_RG32UI, context);
 }
 
-SlabPicture::~SlabPicture() = default;
+VisibilityBuffer::~VisibilityBuffer() = default;
 
-void SlabPicture::read(std::vector<uint32_t>& words) const {
+void VisibilityBuffer::read(std::vector<uint32_t>& words) const {
     ids_.bind(0);  // so that what another context drew is seen here
     glGetTextureImage(ids_.id(), 0, channels_ == 4 ? GL_RGBA_INTEGER : GL_RG_INTEGER, GL_UNSIGNED_INT,
                       static_cast<GLsizei>(words.size() * sizeof(uint32_t)), words.data());
 }
 
-void SlabPicture::clear() const {
+void VisibilityBuffer::clear() const {
     target_.bind();
-    glViewport(0, 0, slab_.columns, slab_.rows);
+    glViewport(0, 0, frustum_.columns, frustum_.rows);
     const GLuint miss[4] = {};
     glClearBufferuiv(GL_COLOR, 0, miss);
     glClear(GL_DEPTH_BUFFER_BIT);
@@ -81,10 +83,10 @@ void SlabPicture::clear() const {
     glClear(GL_DEPTH_BUFFER_BIT);
 }
 
-void SlabPicture::resolve() const {
+void VisibilityBuffer::resolve() const {
     if (!multisampled_) return;
     target_.bind();
-    glViewport(0, 0, slab_.columns, slab_.rows);
+    glViewport(0, 0, frustum_.columns, frustum_.rows);
     glDisable(GL_DEPTH_TEST);
     multisampled_->resolve.use();
     const auto& order = multisampled_->order;
@@ -95,9 +97,10 @@ void SlabPicture::resolve() const {
     glEnable(GL_DEPTH_TEST);
 }
 
-void SlabPicture::upload(bool with_draws) {
+void VisibilityBuffer::upload(bool with_draws) {
     device_clips_.write(clips.data(), clips.size() * sizeof(Clip));
-    if (!bends.empty()) device_bends_.write(bends.data(), bends.size() * sizeof(Bend));
+    if (!normal_transforms.empty())
+        device_normal_transforms_.write(normal_transforms.data(), normal_transforms.size() * sizeof(NormalTransform));
     if (with_draws) device_draws_.write(draws.data(), draws.size() * sizeof(DrawCommand));
 }
 

@@ -9,9 +9,9 @@ namespace insonify::viewer {
 
 /** What waits to be sent to one client, who may be slow or not read at all. Of each stream only the newest frame waits;
  *  what it takes the place of is counted. Not for several threads. */
-class Outbox {
+class SendQueue {
 public:
-    static constexpr size_t most_replies = 64;
+    static constexpr size_t max_replies = 64;
 
     /** A frame of a stream, in the place of an older one that still waits. */
     void put(uint32_t stream, Frame frame) {
@@ -25,7 +25,7 @@ public:
     }
     /** A frame that must arrive; goes before those of streams. False: too many wait, the client is to be given up. */
     bool post(Frame frame) {
-        if (replies_.size() == most_replies) return false;
+        if (replies_.size() == max_replies) return false;
         replies_.push_back(std::move(frame));
         return true;
     }

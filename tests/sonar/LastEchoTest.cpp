@@ -13,7 +13,7 @@ namespace insonify::sonar {
 namespace {
 
 /** A sonar on its own thread, and the wall clock. */
-class ListenTest : public ::testing::Test {
+class LastEchoTest : public ::testing::Test {
 protected:
     void start(double range) {
         SonarConfig config = smallSonar();
@@ -51,7 +51,7 @@ protected:
     std::atomic<int64_t> clock_{0};
 };
 
-TEST_F(ListenTest, APingIsWrittenAfterSoundsWayToTheRangeAndBack) {
+TEST_F(LastEchoTest, APingIsWrittenAfterSoundsWayToTheRangeAndBack) {
     start(150);  // 0.2 s, longer than this picture takes
     for (int i = 0; i < 3; ++i) {
         const types::Time sent = send();
@@ -66,7 +66,7 @@ TEST_F(ListenTest, APingIsWrittenAfterSoundsWayToTheRangeAndBack) {
     EXPECT_GE(task_.timing().latency.quantile(0), 0.198);  // within 1 %
 }
 
-TEST_F(ListenTest, APoseThatIsOldShortensNoListening) {
+TEST_F(LastEchoTest, APoseThatIsOldShortensNoListening) {
     start(150);
     const types::Time taken = framework::wallClock(), sent = send(-0.5);
     const types::SonarPtr ping = receive();
@@ -75,7 +75,7 @@ TEST_F(ListenTest, APoseThatIsOldShortensNoListening) {
     EXPECT_GE((framework::wallClock() - taken).seconds(), 2 * 150 / 1500.0);
 }
 
-TEST_F(ListenTest, PingsDoNotOverlapAndTheNewestSnapshotCounts) {
+TEST_F(LastEchoTest, PingsDoNotOverlapAndTheNewestSnapshotCounts) {
     setClock({10'000'000});
     start(150);
     const types::Time first_sent = send();
@@ -96,23 +96,23 @@ TEST_F(ListenTest, PingsDoNotOverlapAndTheNewestSnapshotCounts) {
     }
 }
 
-TEST_F(ListenTest, ASonarIsCarriedOnToTheTimeOfItsPingWhereItMayBe) {
+TEST_F(LastEchoTest, ASonarIsCarriedOnToTheTimeOfItsPingWhereItMayBe) {
     start(15);
     types::Snapshot snapshot = facingWall(5);
     snapshot.time = snapshot.sonar.time = framework::wallClock() + types::Time::fromSeconds(-0.4);
     snapshot.sonar.velocity = {0, 0, 2};
     snapshot.sonar.angular_velocity = {0, 0, 0};
-    snapshot.carry_on = 1;
+    snapshot.max_extrapolation = 1;
     in_.port.write(std::make_shared<types::Snapshot>(snapshot));
     const types::SonarPtr ping = receive();
     ASSERT_TRUE(ping) << task_.lastError();
     EXPECT_GE((ping->time - snapshot.time).seconds(), 0.4);
-    snapshot.carry_on = 0;
+    snapshot.max_extrapolation = 0;
     in_.port.write(std::make_shared<types::Snapshot>(snapshot));
     EXPECT_EQ(receive()->time, snapshot.time);
 }
 
-TEST_F(ListenTest, AStopDoesNotWaitForTheLastEchoAndWritesNoPing) {
+TEST_F(LastEchoTest, AStopDoesNotWaitForTheLastEchoAndWritesNoPing) {
     start(75000);  // 100 s
     send();
     while (task_.stages().empty() && task_.timing().workingSince().count() == 0)
@@ -125,7 +125,7 @@ TEST_F(ListenTest, AStopDoesNotWaitForTheLastEchoAndWritesNoPing) {
     EXPECT_EQ(task_.ping.written(), 0u);
 }
 
-TEST_F(ListenTest, ASnapshotFromTheFutureIsRefused) {
+TEST_F(LastEchoTest, ASnapshotFromTheFutureIsRefused) {
     start(15);
     send(3600);
     EXPECT_TRUE(test::comesTrue([&] { return task_.state() == framework::TaskState::RunTimeError; }));

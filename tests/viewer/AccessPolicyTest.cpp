@@ -1,18 +1,18 @@
 #include <gtest/gtest.h>
 
-#include "components/viewer/Admission.hpp"
+#include "components/viewer/AccessPolicy.hpp"
 
 namespace insonify::viewer {
 namespace {
 
-using Use = Admission::Use;
+using Use = AccessPolicy::Use;
 
-unsigned judged(const std::string& token, const Admission::Request& request, Use use = Use::Steer) {
-    const auto refusal = Admission{token}.judge(request, use);
+unsigned judged(const std::string& token, const AccessPolicy::Request& request, Use use = Use::Control) {
+    const auto refusal = AccessPolicy{token}.decide(request, use);
     return refusal ? refusal->status : 200;
 }
 
-TEST(AdmissionTest, ATokenComesInTheQueryOrAsABearer) {
+TEST(AccessPolicyTest, ATokenComesInTheQueryOrAsABearer) {
     EXPECT_EQ(judged("a b", {"/?x=1&token=a%20b", "far.example", "", ""}), 200u);
     EXPECT_EQ(judged("ab", {"/", "far.example", "", "Bearer ab"}), 200u);
     EXPECT_EQ(judged("ab", {"/?token=ax", "127.0.0.1", "", ""}), 401u);
@@ -23,7 +23,7 @@ TEST(AdmissionTest, ATokenComesInTheQueryOrAsABearer) {
         << "files of the page hold nothing secret";
 }
 
-TEST(AdmissionTest, WithoutATokenOnlyPagesOfThisServerSteer) {
+TEST(AccessPolicyTest, WithoutATokenOnlyPagesOfThisServerSteer) {
     EXPECT_EQ(judged("", {"/", "127.0.0.1:8765", "http://127.0.0.1:8765", ""}), 200u);
     EXPECT_EQ(judged("", {"/", "[::1]:8765", "http://[::1]:8765", ""}), 200u);
     EXPECT_EQ(judged("", {"/", "127.0.0.1:8765", "", ""}), 200u) << "a program, no browser";
@@ -32,7 +32,7 @@ TEST(AdmissionTest, WithoutATokenOnlyPagesOfThisServerSteer) {
         << "a name that leads here today";
 }
 
-TEST(AdmissionTest, WithoutATokenNoOtherWebSiteReadsButFoxgloves) {
+TEST(AccessPolicyTest, WithoutATokenNoOtherWebSiteReadsButFoxgloves) {
     const auto reads = [](const std::string& origin) {
         return judged("", {"/", "127.0.0.1:8765", origin, ""}, Use::Read);
     };
@@ -43,7 +43,7 @@ TEST(AdmissionTest, WithoutATokenNoOtherWebSiteReadsButFoxgloves) {
          {"http://evil.example", "https://evil.example", "null", "https://app.foxglove.dev.evil.example",
           "http://app.foxglove.dev", "http://127.0.0.1:8766"})
         EXPECT_EQ(reads(origin), 403u) << origin;
-    EXPECT_EQ(judged("", {"/", "127.0.0.1:8765", "https://app.foxglove.dev", ""}, Use::Steer), 403u);
+    EXPECT_EQ(judged("", {"/", "127.0.0.1:8765", "https://app.foxglove.dev", ""}, Use::Control), 403u);
     EXPECT_EQ(judged("ab", {"/?token=ab", "127.0.0.1:8765", "https://evil.example", ""}, Use::Read), 200u)
         << "who has the token may";
 }

@@ -1,6 +1,6 @@
 #include <gtest/gtest.h>
 
-#include "components/viewer/Outbox.hpp"
+#include "components/viewer/SendQueue.hpp"
 
 namespace insonify::viewer {
 namespace {
@@ -8,8 +8,8 @@ namespace {
 Frame frame(const char* text) { return {"", bytesOf(text), true}; }
 std::string textOf(const std::optional<Frame>& frame) { return frame ? *frame->body : "nothing"; }
 
-TEST(OutboxTest, OfAStreamOnlyTheNewestFrameWaitsAndTheOthersAreCounted) {
-    Outbox outbox;
+TEST(SendQueueTest, OfAStreamOnlyTheNewestFrameWaitsAndTheOthersAreCounted) {
+    SendQueue outbox;
     outbox.put(1, frame("old"));
     outbox.put(2, frame("other"));
     outbox.put(1, frame("newer"));
@@ -20,8 +20,8 @@ TEST(OutboxTest, OfAStreamOnlyTheNewestFrameWaitsAndTheOthersAreCounted) {
     EXPECT_EQ(outbox.dropped(), 2u);
 }
 
-TEST(OutboxTest, ABusyStreamDoesNotHoldBackAnother) {
-    Outbox outbox;
+TEST(SendQueueTest, ABusyStreamDoesNotHoldBackAnother) {
+    SendQueue outbox;
     outbox.put(1, frame("busy"));
     outbox.put(2, frame("rare"));
     EXPECT_EQ(textOf(outbox.next()), "busy");
@@ -29,10 +29,10 @@ TEST(OutboxTest, ABusyStreamDoesNotHoldBackAnother) {
     EXPECT_EQ(textOf(outbox.next()), "rare");
 }
 
-TEST(OutboxTest, RepliesGoFirstAndTooManyAreRefused) {
-    Outbox outbox;
+TEST(SendQueueTest, RepliesGoFirstAndTooManyAreRefused) {
+    SendQueue outbox;
     outbox.put(1, frame("stream"));
-    for (size_t i = 0; i < Outbox::most_replies; ++i) EXPECT_TRUE(outbox.post(frame("reply")));
+    for (size_t i = 0; i < SendQueue::max_replies; ++i) EXPECT_TRUE(outbox.post(frame("reply")));
     EXPECT_FALSE(outbox.post(frame("one too many")));
     EXPECT_EQ(textOf(outbox.next()), "reply");
     EXPECT_TRUE(outbox.post(frame("now there is room")));

@@ -4,7 +4,7 @@
 #include <future>
 #include <thread>
 
-#include "components/viewer/Lanes.hpp"
+#include "components/viewer/SerialExecutors.hpp"
 #include "tests/support/Waiting.hpp"
 
 namespace insonify::viewer {
@@ -12,9 +12,9 @@ namespace {
 
 bool comes(const std::future<void>& done) { return done.wait_for(test::patience) == std::future_status::ready; }
 
-TEST(LanesTest, ABlockedLaneHoldsUpNoOther) {
+TEST(SerialExecutorsTest, ABlockedLaneHoldsUpNoOther) {
     std::promise<void> release, begun, other;
-    Lanes lanes;
+    SerialExecutors lanes;
     ASSERT_TRUE(lanes.run("blocked", [&] {
         begun.set_value();
         release.get_future().wait();
@@ -25,34 +25,34 @@ TEST(LanesTest, ABlockedLaneHoldsUpNoOther) {
     release.set_value();
 }
 
-TEST(LanesTest, ALaneKeepsTheOrder) {
+TEST(SerialExecutorsTest, ALaneKeepsTheOrder) {
     std::string order;
     std::promise<void> last;
-    Lanes lanes;
+    SerialExecutors lanes;
     for (const char c : {'a', 'b', 'c'}) ASSERT_TRUE(lanes.run("", [&order, c] { order += c; }));
     ASSERT_TRUE(lanes.run("", [&] { last.set_value(); }));
     ASSERT_TRUE(comes(last.get_future()));
     EXPECT_EQ(order, "abc");
 }
 
-TEST(LanesTest, TooManyThatWaitInALaneAreRefusedAndOthersAreNot) {
+TEST(SerialExecutorsTest, TooManyThatWaitInALaneAreRefusedAndOthersAreNot) {
     std::promise<void> release, begun;
-    Lanes lanes;
+    SerialExecutors lanes;
     ASSERT_TRUE(lanes.run("full", [&] {
         begun.set_value();
         release.get_future().wait();
     }));
     ASSERT_TRUE(comes(begun.get_future()));
-    for (size_t i = 0; i < Lanes::most_waiting; ++i) EXPECT_TRUE(lanes.run("full", [] {}));
+    for (size_t i = 0; i < SerialExecutors::max_waiting; ++i) EXPECT_TRUE(lanes.run("full", [] {}));
     EXPECT_FALSE(lanes.run("full", [] {}));
     EXPECT_TRUE(lanes.run("empty", [] {}));
     release.set_value();
 }
 
-TEST(LanesTest, TheEndWaitsForWhatHasBegunAndBeginsNothingMore) {
+TEST(SerialExecutorsTest, TheEndWaitsForWhatHasBegunAndBeginsNothingMore) {
     std::promise<void> release, begun;
     std::atomic<bool> done{false}, more{false};
-    Lanes lanes;
+    SerialExecutors lanes;
     lanes.run("", [&] {
         begun.set_value();
         release.get_future().wait();

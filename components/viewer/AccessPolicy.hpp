@@ -6,7 +6,7 @@
 namespace insonify::viewer {
 
 /** Who may have what. */
-struct Admission {
+struct AccessPolicy {
     std::string token;  ///< Empty: none is asked for.
 
     struct Request {
@@ -20,12 +20,12 @@ struct Admission {
     };
 
     enum class Use {
-        File,  ///< Holds no secret: for everybody.
-        Page,  ///< Needs the token, where there is one, as what follows.
-        Read,  ///< A socket that only reads: without a token not from web pages but ours and Foxglove's own.
-        Steer  ///< A socket that may change things: without a token from no page but ours.
+        File,    ///< Holds no secret: for everybody.
+        Page,    ///< Needs the token, where there is one, as what follows.
+        Read,    ///< A socket that only reads: without a token not from web pages but ours and Foxglove's own.
+        Control  ///< A socket that may change things: without a token from no page but ours.
     };
-    std::optional<Refusal> judge(const Request& request, Use use) const;
+    std::optional<Refusal> decide(const Request& request, Use use) const;
 };
 
 /** The value of `token` in a target's query, with its escapes undone; empty when there is none. */
