@@ -83,6 +83,7 @@ int runCommandLine(int argc, char** argv) {
     addPlanCommand(app, action);
     addDescribeCommand(app, action);
     addSceneCommand(app, action);
+    addWaterCommand(app, action);
     addSchemaCommand(app, action);
     addLogCommand(app, action);
     addReplayCommand(app, action);

@@ -19,6 +19,7 @@ void addLogCommand(CLI::App& app, Action& action);
 void addReplayCommand(CLI::App& app, Action& action);
 void addStudyCommand(CLI::App& app, Action& action);
 void addSceneCommand(CLI::App& app, Action& action);
+void addWaterCommand(CLI::App& app, Action& action);
 void addSchemaCommand(CLI::App& app, Action& action);
 void addCompletionCommand(CLI::App& app, Action& action);
 void addManCommand(CLI::App& app, Action& action);

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <sstream>
 
-#include "components/sonar/Acoustics.hpp"
+#include "components/acoustics/Absorption.hpp"
 
 // The files travel in the command itself, so that an installed one needs no path to them.
 #define INSONIFY_EMBED(symbol, file)                                                                     \
@@ -49,8 +49,8 @@ std::string absorptionBlock(const SonarPreset& preset, double db_per_m) {
 }  // namespace
 
 std::string starterDeployment(const SonarPreset& preset) {
-    const sonar::WaterConfig water{.temperature_celsius = 12, .salinity_psu = 35, .depth = 8, .ph = 8.1};
-    const double db_per_m = sonar::francoisGarrison(preset.frequency_khz, water);
+    const acoustics::Water water{.temperature_celsius = 12, .salinity_psu = 35, .depth = 8, .ph = 8.1};
+    const double db_per_m = acoustics::francoisGarrison(preset.frequency_khz, water);
     const std::string_view text = preset.isFan()
                                       ? between(insonify_starter_fan_begin, insonify_starter_fan_end)
                                       : between(insonify_starter_scanning_begin, insonify_starter_scanning_end);

@@ -70,6 +70,12 @@ std::string binsOf(const std::string& model, const std::string& output, bool amp
     return "whole numbers by `code`, of: " + intensity;
 }
 
+/** The sonar's, else that of its absorption [kHz]; null where neither is given. */
+Json frequencyOf(const TaskSpec* sonar) {
+    const Json frequency = property(sonar, {"frequency_khz"});
+    return frequency.is_null() ? property(sonar, {"absorption", "frequency_khz"}) : frequency;
+}
+
 Json pingMeaning(const DeploymentSpec& spec, const std::string& task) {
     const TaskSpec* sonar = upstream(spec, task, {"sonar::SonarTask", "sonar::ScanningSonarTask"});
     const TaskSpec* receiver = upstream(spec, task, {"receiver::ReceiverTask"});
@@ -85,7 +91,7 @@ Json pingMeaning(const DeploymentSpec& spec, const std::string& task) {
             {"gain_db", property(receiver, {"gain_db"})},
             {"code", property(receiver, {"code"})},
             {"noise", noise ? jsonOf(noise->properties) : Json(nullptr)},
-            {"frequency_khz", property(sonar, {"absorption", "frequency_khz"})},
+            {"frequency_khz", frequencyOf(sonar)},
             {"absorption", property(sonar, {"absorption"})},
             {"range_m", "slant range of the middle of each bin, [pings, bins]"},
             {"bin_duration",

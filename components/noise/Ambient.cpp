@@ -4,6 +4,8 @@
 #include <string>
 #include <utility>
 
+#include "components/acoustics/AmbientNoise.hpp"
+
 namespace insonify::noise {
 namespace {
 
@@ -24,18 +26,9 @@ void AmbientConfig::check(types::Diagnostics& diagnostics) const {
     }
 }
 
-double coatesSpectrumDb(double frequency_khz, double wind_m_s, double shipping) {
-    const double f = std::log10(frequency_khz);
-    const double turbulence = 17 - 30 * f;
-    const double ships = 40 + 20 * (shipping - 0.5) + 26 * f - 60 * std::log10(frequency_khz + 0.03);
-    const double wind = 50 + 7.5 * std::sqrt(wind_m_s) + 20 * f - 40 * std::log10(frequency_khz + 0.4);
-    const double thermal = -15 + 20 * f;
-    return 10 * std::log10(powerOf(turbulence) + powerOf(ships) + powerOf(wind) + powerOf(thermal));
-}
-
 double ambientIntensity(const AmbientConfig& ambient) {
     if (ambient.level_db) return powerOf(*ambient.level_db);
-    const double spectrum = coatesSpectrumDb(ambient.frequency_khz, *ambient.wind_m_s, ambient.shipping);
+    const double spectrum = acoustics::coatesSpectrumDb(ambient.frequency_khz, *ambient.wind_m_s, ambient.shipping);
     return powerOf(spectrum + 10 * std::log10(1e3 * *ambient.bandwidth_khz) - ambient.directivity_index_db -
                    *ambient.source_level_db);
 }

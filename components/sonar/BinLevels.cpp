@@ -9,7 +9,7 @@ namespace insonify::sonar {
 BinLevels::BinLevels(const SonarConfig& config, const BinGrid& grid)
     : factor_(static_cast<size_t>(grid.bin_count), 1.0) {
     if (config.model == Model::Cerqueira2017) return;
-    const Absorption absorption = makeAbsorption(config);
+    const acoustics::Absorption absorption = makeAbsorption(config);
     for (int j = 0; j < grid.bin_count; ++j) {
         const double r = grid.centre(j);
         factor_[static_cast<size_t>(j)] = std::pow(10, (-20 * std::log10(r) - 2 * absorption.db_per_m * r) / 10);

@@ -119,7 +119,7 @@ void DrawnEchoes::drawSlabs(const types::Snapshot& snapshot, Stages& stages) {
 void DrawnEchoes::fillBins(types::Sonar& ping) {
     const auto count = static_cast<size_t>(plan_.grid.bin_count);
     const double pixel = plan_.frusta.front().du() * plan_.frusta.front().dv();  // solid angle of a whole pixel [sr]
-    threads_.run([&](int part, int parts) {
+    threads_.range([&](int part, int parts) {
         for (auto beam = static_cast<size_t>(part); beam < plan_.beams.size(); beam += static_cast<size_t>(parts))
             levels_.fill(rules_, &sums_[beam * rules_.sumCount()], pixel, {&ping.bins[beam * count], count});
     });

@@ -7,6 +7,7 @@
 #include <limits>
 #include <numbers>
 
+#include "components/acoustics/SoundSpeed.hpp"
 #include "components/sonar/Acoustics.hpp"
 #include "components/sonar/BeamFan.hpp"
 #include "components/sonar/BinGrid.hpp"
@@ -119,9 +120,15 @@ void noteWater(const SonarConfig& config, const BinGrid& grid, std::vector<std::
     if (grid.speed_of_sound < 1350 || grid.speed_of_sound > 1650)
         notices.push_back(
             fmt::format("Warning: speed of sound is {:g} m/s; water has 1350 to 1650", grid.speed_of_sound));
-    if (config.absorption && config.absorption->frequency_khz) {
-        const AbsorptionConfig& absorption = *config.absorption;
-        const std::string outside = outsideValidity(absorption.law, *absorption.frequency_khz, *config.water);
+    if (config.water && !config.speed_of_sound) {
+        const std::string outside = acoustics::outsideValidity(config.water->sound_speed_law, *config.water);
+        if (!outside.empty())
+            notices.push_back(
+                fmt::format("Warning: speed of sound is extrapolated outside its law's validity: {}", outside));
+    }
+    if (config.absorbedKhz()) {
+        const std::string outside =
+            acoustics::outsideValidity(config.absorption->law, *config.absorbedKhz(), *config.water);
         if (!outside.empty())
             notices.push_back(
                 fmt::format("Warning: absorption is extrapolated outside its law's validity: {}", outside));
@@ -178,7 +185,7 @@ types::Plan report(const RenderPlan& plan, const types::Geometry& geometry) {
     types::Plan told;
     told.rows = plan.config.rows();
     told.columns_per_beam = plan.config.columnsPerBeam();
-    told.slabs = static_cast<int>(plan.frusta.size());
+    told.frusta = static_cast<int>(plan.frusta.size());
     told.predicted_error = std::numeric_limits<double>::quiet_NaN();
     told.features = plan.features.names();
     for (Pass pass : plan.passes) told.passes.emplace_back(types::EnumNames<Pass>::names[static_cast<size_t>(pass)]);

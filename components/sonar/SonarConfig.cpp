@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "components/acoustics/SoundSpeed.hpp"
 #include "components/gpu/EglContext.hpp"
-#include "components/sonar/Acoustics.hpp"
 #include "components/sonar/BeamFan.hpp"
 #include "components/sonar/BinGrid.hpp"
 #include "components/sonar/CastEchoes.hpp"
@@ -62,6 +62,15 @@ void checkRays(const SonarConfig& config, types::Diagnostics& diagnostics) {
                                            config.beams(), columns, max_ray_columns)});
 }
 
+void checkAbsorption(const SonarConfig& config, types::Diagnostics& diagnostics) {
+    if (!config.absorption || config.absorption->db_per_m) return;
+    if (!config.absorbedKhz())
+        return diagnostics.push_back({"absorption", "has no value; give db_per_m, or frequency_khz for a law"});
+    if (!config.water)
+        diagnostics.push_back({config.absorption->frequency_khz ? "absorption.frequency_khz" : "absorption",
+                               "is given without water; a law needs the water block"});
+}
+
 /** A straight array hears nothing behind abeam that it does not hear ahead. */
 void checkCones(const SonarConfig& config, types::Diagnostics& diagnostics) {
     for (int k = 0; k < config.beams(); ++k)
@@ -100,8 +109,6 @@ void checkDevice(const std::string& device, types::Diagnostics& diagnostics) {
 void AbsorptionConfig::check(types::Diagnostics& diagnostics) const {
     if (db_per_m && frequency_khz)
         diagnostics.push_back({"db_per_m", "stands beside frequency_khz; give one of the two"});
-    if (!db_per_m && !frequency_khz)
-        diagnostics.push_back({"", "has no value; give db_per_m, or frequency_khz for a law"});
 }
 
 double SonarConfig::bearingDeg(int k) const {
@@ -136,7 +143,14 @@ std::optional<double> SonarConfig::mostSamples() const {
     return default_most;
 }
 
-double SonarConfig::speedOfSound() const { return speed_of_sound.value_or(water ? leroySpeed(*water) : 1500); }
+std::optional<double> SonarConfig::absorbedKhz() const {
+    if (!absorption || absorption->db_per_m) return {};
+    return absorption->frequency_khz ? absorption->frequency_khz : frequency_khz;
+}
+
+double SonarConfig::speedOfSound() const {
+    return speed_of_sound.value_or(water ? acoustics::soundSpeed(*water) : 1500);
+}
 
 void SonarConfig::check(types::Diagnostics& diagnostics) const {
     if (!bearings_deg.empty() && !beam_width_deg)
@@ -200,8 +214,7 @@ void QualityConfig::check(types::Diagnostics& diagnostics) const {
 void SonarConfig::checkBeam(types::Diagnostics& diagnostics) const {
     if (range_min >= range)
         diagnostics.push_back({"range_min", fmt::format("is {} m; must be below range, {} m", range_min, range)});
-    if (absorption && absorption->frequency_khz && !water)
-        diagnostics.push_back({"absorption.frequency_khz", "is given without water; a law needs the water block"});
+    checkAbsorption(*this, diagnostics);
     if (beam_width_deg > 120)
         diagnostics.push_back({"beam_width_deg", fmt::format("is {:g} deg; one beam may have 120", *beam_width_deg)});
     if (published) checkPublished(*this, diagnostics);

@@ -3,6 +3,8 @@
 #include <string>
 #include <vector>
 
+#include "components/acoustics/Absorption.hpp"
+#include "components/acoustics/Water.hpp"
 #include "types/Describe.hpp"
 
 namespace insonify::sonar {
@@ -13,29 +15,11 @@ enum class RangeRounding { Sample, Exact };
 enum class Deposit { Auto, Cpu, Gpu };
 enum class Visibility { Auto, Gl, Cpu };
 enum class BeamWidthConvention { PerBeam, TotalFov };
-enum class AbsorptionLaw { FrancoisGarrison, AinslieMccolm };
-
-/** State of the water; with it the speed of sound and absorption are computed. */
-struct WaterConfig {
-    double temperature_celsius = 10;
-    double salinity_psu = 35;
-    double depth = 0;
-    double ph = 8;
-
-    template <class Self, class V>
-    static void describe(Self& self, V& visit) {
-        using types::Field;
-        visit(Field{"temperature_celsius", "degC", "temperature", -6, 50}, self.temperature_celsius);
-        visit(Field{"salinity_psu", "psu", "practical salinity, 0 for fresh water", 0, 50}, self.salinity_psu);
-        visit(Field{"depth", "m", "depth below the surface", 0, 12000}, self.depth);
-        visit(Field{"ph", "1", "acidity", 6, 10}, self.ph);
-    }
-};
 
 /** Absorption as one number, or by a law from a frequency and the water. */
 struct AbsorptionConfig {
     std::optional<double> db_per_m;
-    AbsorptionLaw law = AbsorptionLaw::FrancoisGarrison;
+    acoustics::AbsorptionLaw law = acoustics::AbsorptionLaw::FrancoisGarrison;
     std::optional<double> frequency_khz;
 
     template <class Self, class V>
@@ -43,7 +27,7 @@ struct AbsorptionConfig {
         using types::Field;
         visit(Field{"db_per_m", "dB/m", "one-way absorption, instead of a law", 0, 1000}, self.db_per_m);
         visit(Field{"law", "", "computes it from frequency and water"}, self.law);
-        visit(Field{"frequency_khz", "kHz", "frequency for the law", 0, 1e5}, self.frequency_khz);
+        visit(Field{"frequency_khz", "kHz", "frequency for the law; absent: the sonar's", 0, 1e5}, self.frequency_khz);
     }
     void check(types::Diagnostics& diagnostics) const;
 };
@@ -109,7 +93,8 @@ struct SonarConfig {
     double beam_height_deg = 20;
     BeamGeometry beam_geometry = BeamGeometry::Planar;
     std::optional<double> speed_of_sound;
-    std::optional<WaterConfig> water;
+    std::optional<acoustics::Water> water;
+    std::optional<double> frequency_khz;
     std::optional<AbsorptionConfig> absorption;
     QualityConfig quality;
     RangeRounding range_rounding = RangeRounding::Sample;
@@ -156,7 +141,10 @@ struct SonarConfig {
     /** Whether triangles are found by rays on the processor, else by drawing. Looks for a graphics card where nothing
      *  else decides. */
     bool castsRays() const;
-    /** Configured, or Leroy's of `water`, or 1500 [m/s]. */
+    /** Frequency that a law of absorption is for: its own, or the sonar's [kHz]; none where absorption follows no law.
+     */
+    std::optional<double> absorbedKhz() const;
+    /** Configured, or that of `water`, or 1500 [m/s]. */
     double speedOfSound() const;
 
     template <class Self, class V>
@@ -197,6 +185,8 @@ void SonarConfig::describeBeam(Self& self, V& visit) {
     visit(Field{"beam_geometry", "", "planar: az = a_k; conical: sin(az) cos(el) = sin(a_k)"}, self.beam_geometry);
     visit(Field{"speed_of_sound", "m/s", "absent: computed from water, else 1500", 1, 20000}, self.speed_of_sound);
     visit(Field{"water", "", "state of the water"}, self.water);
+    visit(Field{"frequency_khz", "kHz", "of the sonar; absorption takes it where it names none", 0.001, 1e5},
+          self.frequency_khz);
     visit(Field{"absorption", "", "absent: none"}, self.absorption);
     visit(Field{"quality", "", "samples per beam, or what they are chosen for"}, self.quality);
     visit(Field{"range_rounding", "", "sample: bins of whole microseconds; exact: edges as asked"},
@@ -256,8 +246,4 @@ struct insonify::types::EnumNames<insonify::sonar::Deposit> {
 template <>
 struct insonify::types::EnumNames<insonify::sonar::Visibility> {
     static constexpr std::string_view names[] = {"auto", "gl", "cpu"};
-};
-template <>
-struct insonify::types::EnumNames<insonify::sonar::AbsorptionLaw> {
-    static constexpr std::string_view names[] = {"francois_garrison", "ainslie_mccolm"};
 };

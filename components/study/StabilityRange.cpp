@@ -126,7 +126,7 @@ Outcome frequencies() {
     Probe heard;
     int wrong = 0;
     for (const double kilohertz : {0.0, 10'000.0})
-        for (const auto law : {sonar::AbsorptionLaw::FrancoisGarrison, sonar::AbsorptionLaw::AinslieMccolm}) {
+        for (const auto law : {acoustics::AbsorptionLaw::FrancoisGarrison, acoustics::AbsorptionLaw::AinslieMccolm}) {
             SonarConfig config = fan(60, 40, 16, 50);
             config.water.emplace();
             config.absorption.emplace().frequency_khz = kilohertz;

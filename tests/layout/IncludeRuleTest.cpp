@@ -32,6 +32,8 @@ std::set<std::string> neighboursOf(const Source& source) {
     if (source.isTaskHalf()) allowed.insert("framework");
     if (folder == "study") allowed.insert({"sonar", "receiver", "scene"});
     if (folder == "sonar") allowed.insert({"gpu", "shaders"});
+    const std::set<std::string> listeners = {"sonar", "scene", "noise", "study"};
+    if (listeners.contains(folder)) allowed.insert("acoustics");
     if (folder == "logger" || folder == "replay") allowed.insert("log");
     if (folder == "dds") allowed.insert("ros");
     if (folder == "log") allowed.insert("ros");
@@ -114,6 +116,9 @@ TEST(IncludeRuleTest, TheRuleRefusesWhatItShould) {
     EXPECT_FALSE(allowed("components/study/ErrorStudy.cpp", "components/sonar/SonarTask.hpp"));
     EXPECT_TRUE(allowed("components/study/ErrorStudy.cpp", "components/sonar/SonarRenderer.hpp"));
     EXPECT_TRUE(allowed("components/noise/NoiseTask.cpp", "components/noise/Speckle.hpp"));
+    EXPECT_TRUE(allowed("components/noise/Ambient.cpp", "components/acoustics/AmbientNoise.hpp"));
+    EXPECT_FALSE(allowed("components/acoustics/Water.hpp", "components/sonar/SonarConfig.hpp"));
+    EXPECT_FALSE(allowed("components/receiver/Receiver.cpp", "components/acoustics/Water.hpp"));
     EXPECT_FALSE(allowed("components/ros/Cdr.hpp", "components/log/Writer.hpp"));
     EXPECT_FALSE(allowed("components/logger/LoggerTask.cpp", "components/log/pocolog/Writer.hpp"));
     EXPECT_FALSE(allowed("components/deployer/LogCommand.cpp", "components/log/mcap/Reader.hpp"));

@@ -34,8 +34,8 @@ TEST(BinLevelsTest, IntensityFallsWithSpreadingAndAbsorption) {
 
 TEST(BinLevelsTest, TwoMegahertzAtFourHundredMetresIsNoEchoForNoFloatHoldsIt) {
     SonarConfig config = sonarOf(400, 800);
-    config.water = WaterConfig{10, 35, 10, 8.1};
-    config.absorption = AbsorptionConfig{{}, AbsorptionLaw::FrancoisGarrison, 2000};
+    config.water = acoustics::Water{10, 35, 10, 8.1};
+    config.absorption = AbsorptionConfig{{}, acoustics::AbsorptionLaw::FrancoisGarrison, 2000};
     const double r = 399.75;
     const double expected = -20 * std::log10(r) - 2 * francoisGarrison(2000, *config.water) * r;
     EXPECT_LT(expected, -1000);

@@ -125,6 +125,7 @@ TEST(SonarConfigTest, ValuesThatDoNotGoTogetherAreNamed) {
           Case{"{beam_geometry: conical, field_of_view_deg: 200}", "beam_geometry: ", "at most 180 deg"},
           Case{"absorption: {frequency_khz: 700}", "absorption.frequency_khz: ", "needs the water block"},
           Case{"absorption: {}", "absorption: ", "give db_per_m, or frequency_khz"},
+          Case{"{frequency_khz: 700, absorption: {}}", "absorption: ", "needs the water block"},
           Case{"absorption: {db_per_m: 1, frequency_khz: 700}", "absorption.db_per_m: ", "give one of the two"},
           Case{"quality: {rows: 64, target_error: 0.1}", "quality.target_error: ", "with another choice"},
           Case{"quality: {columns_per_beam: 4, budget_ms: 10}", "quality.budget_ms: ", "with another choice"},

@@ -1,0 +1,73 @@
+#include "components/acoustics/Pulse.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace insonify::acoustics {
+namespace {
+
+/** Sidelobes are looked for up to here, and h is integrated up to here [u]; beyond it falls as u^-2 at most. */
+constexpr double far_u = 500;
+constexpr double step_u = 0.01;
+
+Weighting weightingOf(PulseWindow window) {
+    switch (window) {
+        case PulseWindow::None: return Weighting::Uniform;
+        case PulseWindow::Hann: return Weighting::Hann;
+        case PulseWindow::Hamming: return Weighting::Hamming;
+        case PulseWindow::Taylor: return Weighting::Taylor;
+    }
+    return Weighting::Uniform;
+}
+
+}  // namespace
+
+void PulseConfig::check(types::Diagnostics& diagnostics) const {
+    if (bandwidth_khz && duration_us)
+        diagnostics.push_back({"duration_us", "stands beside bandwidth_khz; give one of the two"});
+    if (!bandwidth_khz && !duration_us)
+        diagnostics.push_back({"", "has no value; give bandwidth_khz of a chirp, or duration_us of a tone"});
+    if (window && !bandwidth_khz) diagnostics.push_back({"window", "is given without bandwidth_khz; a tone has none"});
+}
+
+Pulse::Pulse(const PulseConfig& config, double speed_of_sound) {
+    if (config.bandwidth_khz) {
+        unit_ = speed_of_sound / (2e3 * *config.bandwidth_khz);
+        taper_ = Taper(weightingOf(config.window.value_or(PulseWindow::None)));
+    } else {
+        unit_ = speed_of_sound * config.duration_us.value() * 1e-6 / 2;
+    }
+}
+
+double Pulse::response(double distance) const {
+    const double u = distance / unit_;
+    return isTone() ? (std::abs(u) <= 0.5 ? 1 : 0) : taper_->power(u);
+}
+
+double Pulse::resolution() const { return isTone() ? unit_ : unit_ * taper_->halfPowerWidth(); }
+
+double Pulse::cellLength() const {
+    if (isTone()) return unit_;
+    double sum = 0;
+    for (double u = step_u / 2; u < far_u; u += step_u) sum += taper_->power(u);
+    return 2 * unit_ * sum * step_u;
+}
+
+std::optional<double> Pulse::peakSidelobeDb() const {
+    if (isTone()) return {};
+    double u = taper_->halfPowerWidth() / 2;
+    while (taper_->power(u + step_u) < taper_->power(u)) u += step_u;  // the first minimum
+    double highest = 0;
+    for (; u < 50; u += step_u / 4) highest = std::max(highest, taper_->power(u));
+    return 10 * std::log10(highest);
+}
+
+double Pulse::extent(double floor_db) const {
+    if (isTone()) return unit_ / 2;
+    const double floor = std::pow(10, -std::abs(floor_db) / 10);
+    double u = far_u;
+    while (u > 0 && taper_->power(u) < floor) u -= step_u / 8;
+    return unit_ * u;
+}
+
+}  // namespace insonify::acoustics

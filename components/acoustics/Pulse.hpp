@@ -1,0 +1,57 @@
+#pragma once
+#include <optional>
+
+#include "components/acoustics/Taper.hpp"
+#include "types/Describe.hpp"
+
+namespace insonify::acoustics {
+
+enum class PulseWindow { None, Hann, Hamming, Taylor };
+
+/** A tone of a duration, or a chirp of a bandwidth whose matched filter is weighted by a window. */
+struct PulseConfig {
+    std::optional<double> bandwidth_khz, duration_us;
+    std::optional<PulseWindow> window;
+
+    template <class Self, class V>
+    static void describe(Self& self, V& visit) {
+        using types::Field;
+        visit(Field{"bandwidth_khz", "kHz", "of a chirp, compressed by a matched filter", 1e-3, 1e5},
+              self.bandwidth_khz);
+        visit(Field{"window", "", "of the matched filter; absent: none (Harris 1978; taylor: -30 dB, nbar 4)"},
+              self.window);
+        visit(Field{"duration_us", "us", "instead: of a tone", 0.1, 1e7}, self.duration_us);
+    }
+    void check(types::Diagnostics& diagnostics) const;
+};
+
+/** What one echo leaves in range, two way, as intensity: h(0) = 1, centred on the echo. ACOUSTICS.md 15. */
+class Pulse {
+public:
+    /** At a speed of sound [m/s]. */
+    Pulse(const PulseConfig& config, double speed_of_sound);
+
+    /** h at a distance in slant range from the echo [m]. */
+    double response(double distance) const;
+    /** Width of h where it is half [m]. */
+    double resolution() const;
+    /** Integral of h over range [m]: the length of a reverberation cell. */
+    double cellLength() const;
+    /** Highest sidelobe of the matched filter [dB]; a tone has none. */
+    std::optional<double> peakSidelobeDb() const;
+    /** Distance beyond which h stays below a level relative to its peak [m, dB below 0]. */
+    double extent(double floor_db) const;
+
+private:
+    bool isTone() const { return !taper_; }
+
+    double unit_;  ///< c / 2B, or c tau / 2 [m].
+    std::optional<Taper> taper_;
+};
+
+}  // namespace insonify::acoustics
+
+template <>
+struct insonify::types::EnumNames<insonify::acoustics::PulseWindow> {
+    static constexpr std::string_view names[] = {"none", "hann", "hamming", "taylor"};
+};

@@ -1,0 +1,37 @@
+#pragma once
+#include "types/Describe.hpp"
+
+namespace insonify::acoustics {
+
+/** Formulas for the speed of sound: ACOUSTICS.md 2.1. */
+enum class SoundSpeedLaw { Leroy, Mackenzie, Medwin, Coppens, ChenMillero, DelGrosso };
+
+/** State of the water; the speed of sound and absorption follow from it. */
+struct Water {
+    double temperature_celsius = 10;  ///< ITS-90.
+    double salinity_psu = 35;
+    double depth = 0;
+    double ph = 8;
+    double latitude_deg = 45;
+    SoundSpeedLaw sound_speed_law = SoundSpeedLaw::Leroy;
+
+    template <class Self, class V>
+    static void describe(Self& self, V& visit) {
+        using types::Field;
+        visit(Field{"temperature_celsius", "degC", "temperature", -6, 50}, self.temperature_celsius);
+        visit(Field{"salinity_psu", "psu", "practical salinity, 0 for fresh water", 0, 50}, self.salinity_psu);
+        visit(Field{"depth", "m", "depth below the surface", 0, 12000}, self.depth);
+        visit(Field{"ph", "1", "acidity", 6, 10}, self.ph);
+        visit(Field{"latitude_deg", "deg", "latitude, for pressure at depth", -90, 90}, self.latitude_deg);
+        visit(Field{"sound_speed_law", "", "computes the speed of sound (Leroy, Robinson and Goldsmith 2008)"},
+              self.sound_speed_law);
+    }
+};
+
+}  // namespace insonify::acoustics
+
+template <>
+struct insonify::types::EnumNames<insonify::acoustics::SoundSpeedLaw> {
+    static constexpr std::string_view names[] = {"leroy",   "mackenzie",    "medwin",
+                                                 "coppens", "chen_millero", "del_grosso"};
+};

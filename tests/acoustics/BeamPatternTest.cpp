@@ -1,0 +1,244 @@
+#include <gmock/gmock.h>
+
+#include <cmath>
+#include <fstream>
+#include <numbers>
+
+#include "components/acoustics/BeamPattern.hpp"
+#include "tests/support/Folder.hpp"
+#include "types/ConfigError.hpp"
+
+namespace insonify::acoustics {
+namespace {
+
+using std::numbers::pi;
+using ::testing::HasSubstr;
+
+constexpr double degree = pi / 180;
+
+/** What textbooks tell of a weighting (Harris 1978, Taylor 1955, Dolph 1946): widths and the first null in wavelengths
+ *  over the length of the aperture, and integrals of the one-way and two-way power over u. */
+struct Row {
+    const char* name;
+    Weighting weighting;
+    double width, two_way_width;
+    std::optional<double> sidelobe_db = {};
+    std::optional<int> nbar = {};
+    std::optional<double> first_null = {}, peak_sidelobe_db = {}, integral = {}, two_way_integral = {};
+};
+
+const Row table[] = {
+    {"uniform", Weighting::Uniform, 0.8859, 0.6378, {}, {}, 1.00, -13.26, 1.000, 0.667},
+    {"cosine", Weighting::Cosine, 1.189, 0.851, {}, {}, 1.50, -23.0, 1.234, 0.893},
+    {"hann", Weighting::Hann, 1.4406, 1.028, {}, {}, 2.00, -31.5, 1.500, 1.083},
+    {"hamming", Weighting::Hamming, 1.303, 0.928, {}, {}, 2.00, -42.7, 1.363, 0.980},
+    {"taylor 25", Weighting::Taylor, 1.057, 0.756, -25, 4, 1.35, -25.4, 1.104, 0.793},
+    {"taylor 30", Weighting::Taylor, 1.125, 0.804, -30, 4, 1.51, -30.3, 1.172, 0.845},
+    {"taylor 35", Weighting::Taylor, 1.188, 0.848, -35, 5, 1.67, -35.2, 1.238, 0.892},
+    {"piston", Weighting::Piston, 1.029, 0.739, {}, {}, 1.22, -17.6},
+};
+
+struct DolphRow {
+    double sidelobe_db, width;
+};
+const DolphRow dolph[] = {{-25, 0.993}, {-30, 1.073}, {-40, 1.218}};
+
+BeamLaw lawOf(const Row& row) {
+    BeamLaw law;
+    law.weighting = row.weighting;
+    law.sidelobe_db = row.sidelobe_db;
+    law.nbar = row.nbar;
+    return law;
+}
+
+/** In wavelengths over the length: twice the sine of half an angle, times the aperture. */
+double inWavelengths(double width, const BeamPattern& pattern) { return 2 * std::sin(width / 2) * pattern.aperture(); }
+
+class BeamPatternTest : public ::testing::Test {
+protected:
+    /** An array of 60 wavelengths. */
+    static BeamPattern longArray(BeamLaw law) {
+        law.aperture_m = 0.12;
+        return BeamPattern(law, 0.002);
+    }
+};
+
+TEST_F(BeamPatternTest, WidthsAreThoseOfTheTable) {
+    for (const Row& row : table) {
+        const BeamPattern pattern = longArray(lawOf(row));
+        const CutShape one_way = shapeOf([&](double a) { return pattern.power(a); });
+        const CutShape two_way = shapeOf([&](double a) { return pattern.power(a) * pattern.power(a); });
+        EXPECT_NEAR(inWavelengths(one_way.width_3db, pattern), row.width, 0.01 * row.width) << row.name;
+        EXPECT_NEAR(inWavelengths(two_way.width_3db, pattern), row.two_way_width, 0.01 * row.two_way_width) << row.name;
+        // The amplitude taken for the power would make another width.
+        const CutShape amplitude = shapeOf([&](double a) { return std::sqrt(pattern.power(a)); });
+        EXPECT_GT(inWavelengths(amplitude.width_3db, pattern), 1.2 * row.width) << row.name;
+    }
+}
+
+TEST_F(BeamPatternTest, FirstNullsAndSidelobesAreThoseOfTheTable) {
+    for (const Row& row : table) {
+        const BeamPattern pattern = longArray(lawOf(row));
+        const CutShape shape = shapeOf([&](double a) { return pattern.power(a); });
+        EXPECT_NEAR(pattern.aperture() * std::sin(shape.first_null.value()), *row.first_null, 0.02 * *row.first_null)
+            << row.name;
+        EXPECT_NEAR(shape.peak_sidelobe_db.value(), *row.peak_sidelobe_db, 0.3) << row.name;
+        EXPECT_NEAR(pattern.power(*shape.first_null), 0, 1e-8) << row.name;
+    }
+}
+
+TEST_F(BeamPatternTest, IntegralsAreThoseOfTheTable) {
+    for (const Row& row : table) {
+        if (!row.integral) continue;
+        const BeamPattern pattern = longArray(lawOf(row));
+        const double one_way = integralOverSine([&](double a) { return pattern.power(a); }),
+                     two_way = integralOverSine([&](double a) { return std::pow(pattern.power(a), 2); });
+        EXPECT_NEAR(one_way * pattern.aperture(), *row.integral, 0.01 * *row.integral) << row.name;
+        EXPECT_NEAR(two_way * pattern.aperture(), *row.two_way_integral, 0.01 * *row.two_way_integral) << row.name;
+    }
+}
+
+TEST_F(BeamPatternTest, DolphsBeamsAreThoseOfTheTableWithEverySidelobeAsHigh) {
+    for (const DolphRow& row : dolph) {
+        BeamLaw law;
+        law.weighting = Weighting::Dolph;
+        law.sidelobe_db = row.sidelobe_db;
+        law.aperture_m = 0.064;  // 64 elements of half a wavelength
+        const BeamPattern pattern(law, 0.002);
+        const CutShape shape = shapeOf([&](double a) { return pattern.power(a); });
+        EXPECT_NEAR(inWavelengths(shape.width_3db, pattern), row.width, 0.01 * row.width);
+        EXPECT_NEAR(shape.peak_sidelobe_db.value(), row.sidelobe_db, 0.01);
+        EXPECT_GT(10 * std::log10(pattern.power(80 * degree)), row.sidelobe_db - 30);
+    }
+}
+
+TEST_F(BeamPatternTest, ABeamIsAsWideAsItsWidthSaysWhateverTheWeighting) {
+    for (const double width : {0.3, 1.0, 20.0, 60.0})
+        for (const auto weighting : {Weighting::Uniform, Weighting::Cosine, Weighting::Hann, Weighting::Hamming,
+                                     Weighting::Taylor, Weighting::Dolph, Weighting::Gaussian, Weighting::Piston}) {
+            BeamLaw law;
+            law.weighting = weighting;
+            law.width_deg = width;
+            const BeamPattern pattern(law);
+            EXPECT_EQ(pattern.power(0), 1);
+            EXPECT_NEAR(pattern.power(width / 2 * degree), 0.5, 1e-6) << width << ' ' << static_cast<int>(weighting);
+            EXPECT_NEAR(shapeOf([&](double a) { return pattern.power(a); }).width_3db, width * degree,
+                        1e-3 * width * degree);
+        }
+}
+
+TEST_F(BeamPatternTest, AGaussianHasNoSidelobesAndNothingIsHeardBehind) {
+    BeamLaw law;
+    law.weighting = Weighting::Gaussian;
+    law.width_deg = 10;
+    const BeamPattern gaussian(law);
+    const CutShape shape = shapeOf([&](double a) { return gaussian.power(a); });
+    EXPECT_FALSE(shape.first_null.has_value());
+    EXPECT_FALSE(shape.peak_sidelobe_db.has_value());
+    EXPECT_NEAR(10 * std::log10(gaussian.power(10 * degree)), -12.04, 0.1);
+    law.weighting = Weighting::Uniform;
+    EXPECT_EQ(BeamPattern(law).power(pi), 0);
+    EXPECT_GT(BeamPattern(law).power(0.1), 0.2);
+}
+
+TEST_F(BeamPatternTest, SteeringWidensABeamAsTheInverseCosine) {
+    const BeamPattern pattern = longArray({});
+    const double axis = 60 * degree;
+    EXPECT_EQ(pattern.power(axis, axis), 1);
+    const CutShape shape = shapeOf([&](double a) { return pattern.power(axis + a, axis); });
+    EXPECT_NEAR(inWavelengths(shape.width_3db, pattern), 2 * 0.8859, 0.01 * 2 * 0.8859);
+}
+
+TEST_F(BeamPatternTest, AnApertureTakesTheWavelengthAndAWidthDoesNot) {
+    BeamLaw law;
+    law.aperture_m = 0.1;
+    EXPECT_NEAR(BeamPattern(law, 0.002).aperture(), 50, 1e-12);
+    EXPECT_NEAR(BeamPattern(law, 0.001).aperture(), 100, 1e-12);
+    EXPECT_THROW(BeamPattern{law}, types::ConfigError);
+    law.aperture_m.reset();
+    law.width_deg = 1;
+    EXPECT_EQ(BeamPattern(law).power(0.02), BeamPattern(law, 0.1).power(0.02));
+}
+
+TEST_F(BeamPatternTest, AMeasuredTableIsThePatternThatWasMeasured) {
+    const Folder folder;
+    BeamLaw law;
+    law.weighting = Weighting::Taylor;
+    law.width_deg = 12;
+    const BeamPattern taylor(law);
+    std::ofstream table_file(folder / "beam.csv");
+    table_file << "angle_deg,level_db\n";
+    for (double angle = 0; angle <= 60; angle += 0.1)  // one side, not relative to its axis
+        table_file << angle << ',' << 5 + 10 * std::log10(std::max(1e-8, taylor.power(angle * degree))) << '\n';
+    table_file.close();
+    BeamLaw measured_law;
+    measured_law.file = folder / "beam.csv";
+    const BeamPattern measured(measured_law);
+    EXPECT_EQ(measured.aperture(), 0);
+    for (const double angle : {-20.0, -7.3, 0.0, 3.0, 15.05, 40.0})
+        EXPECT_NEAR(measured.power(angle * degree), taylor.power(angle * degree), 2e-3) << angle;
+    EXPECT_EQ(measured.power(61 * degree), 0);
+    const CutShape a = shapeOf([&](double x) { return measured.power(x); }),
+                   b = shapeOf([&](double x) { return taylor.power(x); });
+    EXPECT_NEAR(a.width_3db, b.width_3db, 0.01 * b.width_3db);
+    EXPECT_NEAR(*a.first_null, *b.first_null, 0.02 * *b.first_null);
+    EXPECT_NEAR(*a.peak_sidelobe_db, *b.peak_sidelobe_db, 0.3);
+}
+
+TEST_F(BeamPatternTest, FaultsOfATableHaveFileLineAndColumn) {
+    const Folder folder;
+    const auto faultOf = [&](const std::string& text) {
+        std::ofstream(folder / "beam.csv") << text;
+        BeamLaw law;
+        law.file = folder / "beam.csv";
+        try {
+            BeamPattern pattern(law);
+        } catch (const types::ConfigError& error) {
+            return std::string(error.what());
+        }
+        return std::string();
+    };
+    EXPECT_THAT(faultOf("angle,level\n"),
+                HasSubstr("beam.csv:1:1: is 'angle,level'; the header must be angle_deg,level_db"));
+    EXPECT_THAT(faultOf("angle_deg,level_db\n0,0\n1,loud\n"), HasSubstr("beam.csv:3:3: level_db: is 'loud'"));
+    EXPECT_THAT(faultOf("angle_deg,level_db\n0,0\n0,-1\n"), HasSubstr("beam.csv:3:1: angle_deg: is not above"));
+    EXPECT_THAT(faultOf("angle_deg,level_db\n0,0\n1,-1,2\n"), HasSubstr("beam.csv:3:1: is '1,-1,2'; a line has 2"));
+    EXPECT_THAT(faultOf("angle_deg,level_db\n0,0\n200,nan\n"), HasSubstr("beam.csv:3:5: level_db: is 'nan'"));
+    EXPECT_THAT(faultOf("angle_deg,level_db\n0,0\n"), HasSubstr("needs at least two"));
+    EXPECT_THAT(faultOf("angle_deg,level_db\n5,0\n6,0\n"), HasSubstr("leaves out 0"));
+    EXPECT_THAT(faultOf(""), HasSubstr("is empty"));
+    BeamLaw nowhere;
+    nowhere.file = folder / "nowhere.csv";
+    EXPECT_THROW(BeamPattern{nowhere}, types::ConfigError);
+}
+
+TEST_F(BeamPatternTest, ALawHasOneWidthAndOnlyWhatItsWeightingTakes) {
+    const auto faultsOf = [](const BeamLaw& law) {
+        types::Diagnostics diagnostics;
+        law.check(diagnostics);
+        return diagnostics;
+    };
+    EXPECT_EQ(faultsOf({}).size(), 1u);
+    BeamLaw law;
+    law.width_deg = 1;
+    EXPECT_TRUE(faultsOf(law).empty());
+    law.sidelobe_db = -30;
+    EXPECT_EQ(faultsOf(law).at(0).path, "sidelobe_db");
+    law.weighting = Weighting::Dolph;
+    EXPECT_TRUE(faultsOf(law).empty());
+    law.sidelobe_db = -5;
+    law.nbar = 4;
+    EXPECT_EQ(faultsOf(law).size(), 2u);
+    law.sidelobe_db = -30;
+    law.weighting = Weighting::Taylor;
+    EXPECT_TRUE(faultsOf(law).empty());
+    law.aperture_m = 0.1;
+    EXPECT_EQ(faultsOf(law).size(), 1u);
+    BeamLaw gaussian;
+    gaussian.weighting = Weighting::Gaussian;
+    gaussian.aperture_m = 0.1;
+    EXPECT_EQ(faultsOf(gaussian).at(0).path, "aperture_m");
+}
+
+}  // namespace
+}  // namespace insonify::acoustics

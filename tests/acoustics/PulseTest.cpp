@@ -1,0 +1,111 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "components/acoustics/Pulse.hpp"
+
+namespace insonify::acoustics {
+namespace {
+
+constexpr double speed_of_sound = 1500;
+
+Pulse chirp(double bandwidth_khz, PulseWindow window = PulseWindow::None) {
+    PulseConfig config;
+    config.bandwidth_khz = bandwidth_khz;
+    config.window = window;
+    return Pulse(config, speed_of_sound);
+}
+
+Pulse tone(double duration_us) {
+    PulseConfig config;
+    config.duration_us = duration_us;
+    return Pulse(config, speed_of_sound);
+}
+
+/** Integral over range of a function [m]. */
+template <class F>
+double integral(const F& f, double from, double to) {
+    constexpr int cells = 400000;
+    double sum = 0;
+    for (int i = 0; i < cells; ++i) sum += f(from + (to - from) * (i + 0.5) / cells);
+    return sum * (to - from) / cells;
+}
+
+TEST(PulseTest, AToneIsABoxOfHalfItsLengthAboutItsEcho) {
+    const Pulse pulse = tone(100);  // 15 cm of water there and back: 7.5 cm of range
+    EXPECT_EQ(pulse.response(0), 1);
+    EXPECT_EQ(pulse.response(0.0374), 1);
+    EXPECT_EQ(pulse.response(-0.0374), 1);
+    EXPECT_EQ(pulse.response(0.0376), 0);
+    EXPECT_NEAR(pulse.resolution(), 0.075, 1e-12);
+    EXPECT_NEAR(pulse.cellLength(), 0.075, 1e-12);
+    EXPECT_FALSE(pulse.peakSidelobeDb().has_value());
+    EXPECT_NEAR(pulse.extent(-60), 0.0375, 1e-12);
+    // As it arrives, the echo would fill the range from the target outwards: a quarter of the pulse beyond.
+    EXPECT_EQ(pulse.response(0.05), 0);
+}
+
+TEST(PulseTest, AChirpHasTheResolutionAndSidelobesOfItsWindow) {
+    const double unit = speed_of_sound / (2 * 50e3);
+    struct Case {
+        PulseWindow window;
+        double width, sidelobe_db, cell;
+    };
+    for (const Case& c :
+         {Case{PulseWindow::None, 0.886, -13.26, 1.0}, Case{PulseWindow::Hann, 1.44, -31.5, 1.5},
+          Case{PulseWindow::Hamming, 1.303, -42.7, 1.363}, Case{PulseWindow::Taylor, 1.125, -30.3, 1.172}}) {
+        const Pulse pulse = chirp(50, c.window);
+        EXPECT_EQ(pulse.response(0), 1);
+        EXPECT_EQ(pulse.response(0.011), pulse.response(-0.011));
+        EXPECT_NEAR(pulse.resolution(), c.width * unit, 0.01 * c.width * unit) << static_cast<int>(c.window);
+        EXPECT_NEAR(pulse.response(pulse.resolution() / 2), 0.5, 1e-9) << static_cast<int>(c.window);
+        EXPECT_NEAR(pulse.peakSidelobeDb().value(), c.sidelobe_db, 0.3) << static_cast<int>(c.window);
+        EXPECT_NEAR(pulse.cellLength(), c.cell * unit, 0.01 * c.cell * unit) << static_cast<int>(c.window);
+    }
+}
+
+TEST(PulseTest, AChirpOfHalfTheBandIsTwiceAsLong) {
+    EXPECT_NEAR(chirp(25).resolution(), 2 * chirp(50).resolution(), 1e-9);
+    // Without the factor 2 of the way there and back it would be as long as a chirp of half the band.
+    EXPECT_GT(std::abs(chirp(50).resolution() - 0.886 * speed_of_sound / 50e3), 0.01);
+}
+
+TEST(PulseTest, ReverberationOfARangeDensityIsItTimesTheCell) {
+    // A density that hardly changes over a cell: the intensity of a bin is the density times the integral of h.
+    for (const Pulse& pulse : {tone(200), chirp(30, PulseWindow::Hann)}) {
+        const auto density = [](double r) { return std::pow(r, -3); };
+        const double heard = integral([&](double r) { return density(r) * pulse.response(20 - r); }, 15, 25);
+        EXPECT_NEAR(heard, density(20) * pulse.cellLength(), 1e-3 * heard);
+    }
+}
+
+TEST(PulseTest, ExtentReachesAsFarAsTheFloorSays) {
+    for (const auto window : {PulseWindow::None, PulseWindow::Hann, PulseWindow::Taylor}) {
+        const Pulse pulse = chirp(50, window);
+        const double reach = pulse.extent(-50);
+        EXPECT_GT(pulse.extent(-60), reach);
+        for (double further = reach; further < 3 * reach; further += reach / 500)
+            EXPECT_LT(pulse.response(further), 1.02e-5) << static_cast<int>(window) << ' ' << further;
+    }
+}
+
+TEST(PulseTest, IsGivenByABandOrADuration) {
+    const auto faultsOf = [](const PulseConfig& config) {
+        types::Diagnostics diagnostics;
+        config.check(diagnostics);
+        return diagnostics;
+    };
+    PulseConfig config;
+    EXPECT_EQ(faultsOf(config).size(), 1u);
+    config.duration_us = 100;
+    EXPECT_TRUE(faultsOf(config).empty());
+    config.window = PulseWindow::Hann;
+    EXPECT_EQ(faultsOf(config).at(0).path, "window");
+    config.bandwidth_khz = 50;
+    EXPECT_EQ(faultsOf(config).at(0).path, "duration_us");
+    config.duration_us.reset();
+    EXPECT_TRUE(faultsOf(config).empty());
+}
+
+}  // namespace
+}  // namespace insonify::acoustics
