@@ -138,7 +138,8 @@ TEST_P(PagesTest, ItsCommandsWorkOneAfterTheOther) {
 
 INSTANTIATE_TEST_SUITE_P(All, PagesTest, testing::ValuesIn(pagesWithCommands()), [](const auto& tested) {
     std::string name = tested.param;
-    std::ranges::replace_if(name, [](unsigned char c) { return !std::isalnum(c); }, '_');
+    std::ranges::replace_if(
+        name, [](unsigned char c) { return !std::isalnum(c); }, '_');
     return name;
 });
 

@@ -32,9 +32,8 @@ bool isOptional(const std::string& section) {
 
 TEST(ReferenceTest, ThePageSaysOfEachTaskWhatDescribeSaysNow) {
     const TestFolder folder;
-    const Outcome made = Process({"/usr/bin/python3", root / "scripts/make_reference", insonifyWords({}).front()},
-                                 folder.path())
-                             .wait();
+    const Outcome made =
+        Process({"/usr/bin/python3", root / "scripts/make_reference", insonifyWords({}).front()}, folder.path()).wait();
     ASSERT_EQ(made.code, 0) << made.err;
     const auto now = sectionsOf(made.out), page = sectionsOf(readFile(root / "components/PROPERTIES.md"));
     const std::string remedy = ": scripts/make_reference > components/PROPERTIES.md";
@@ -43,6 +42,9 @@ TEST(ReferenceTest, ThePageSaysOfEachTaskWhatDescribeSaysNow) {
         ASSERT_TRUE(page.contains(section)) << section << remedy;
         EXPECT_EQ(page.at(section), text) << remedy;
     }
-    for (const auto& [section, text] : page) EXPECT_TRUE(now.contains(section) || isOptional(section)) << section << remedy;
-    if (now.size() == page.size()) EXPECT_EQ(page.at(""), now.at("")) << remedy;
+    for (const auto& [section, text] : page)
+        EXPECT_TRUE(now.contains(section) || isOptional(section)) << section << remedy;
+    if (now.size() == page.size()) {
+        EXPECT_EQ(page.at(""), now.at("")) << remedy;
+    }
 }

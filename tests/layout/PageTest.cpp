@@ -52,6 +52,26 @@ Names brokenAddresses(const Page& page) {
     return broken;
 }
 
+/** Cells of a row of a table; 0 for a line that is none. */
+size_t cellsOf(const std::string& line) {
+    if (!line.starts_with("|")) return 0;
+    size_t bars = 0;
+    for (size_t i = 0; i < line.size(); ++i) bars += line[i] == '|' && (i == 0 || line[i - 1] != '\\');
+    return bars - 1;
+}
+
+/** Rows of tables with more or fewer cells than the row above. */
+Names unevenRows(const Page& page) {
+    Names uneven;
+    size_t above = 0;
+    for (const std::string& line : page.lines()) {
+        const size_t cells = cellsOf(line);
+        if (cells > 0 && above > 0 && cells != above) uneven.push_back(line);
+        above = cells;
+    }
+    return uneven;
+}
+
 /** Files and folders of the project that a page names in back quotes and that are not there. */
 Names missingPaths(const Page& page) {
     static const std::regex path("(types|components|shaders|deploy|tests|scripts)/[\\w./-]+");
@@ -132,7 +152,8 @@ TEST(PageTest, EveryPageIsReachedFromTheReadme) {
 
 TEST(PageTest, EveryPageBesideTheCodeLeadsBackToTheReadme) {
     for (const Page& page : allPages()) {
-        if (page.path() == "README.md" || page.path() == "CHANGELOG.md" || fs::path(page.path()).stem() == "ACOUSTICS") continue;
+        if (page.path() == "README.md" || page.path() == "CHANGELOG.md" || fs::path(page.path()).stem() == "ACOUSTICS")
+            continue;
         Names targets;
         for (const std::string& link : page.links()) targets.push_back(targetOf(page, link));
         EXPECT_THAT(targets, Contains("README.md")) << page.path();
@@ -153,12 +174,16 @@ TEST(PageTest, TheReadmeIsALandingPageWithATableOfItsContents) {
 }
 
 TEST(PageTest, EveryBlockOfCodeSaysWhatItIs) {
-    // Of commands, `sh` is run by tests/deployer/PagesTest.cpp; `console` is what a test cannot run: it installs, waits for
-    // others, keeps to the wall clock or takes minutes.
+    // Of commands, `sh` is run by tests/deployer/PagesTest.cpp; `console` is what a test cannot run: it installs, waits
+    // for others, keeps to the wall clock or takes minutes.
     static const std::set<std::string> known = {"sh", "console", "yaml", "json", "cpp", "glsl", "cmake", "text"};
     for (const Page& page : allPages())
         for (const CodeBlock& block : page.blocks())
             EXPECT_TRUE(known.contains(block.language)) << page.path() << ":" << block.line << ": " << block.language;
+}
+
+TEST(PageTest, TheRowsOfATableHaveTheSameNumberOfCells) {
+    for (const Page& page : allPages()) EXPECT_THAT(unevenRows(page), IsEmpty()) << page.path();
 }
 
 TEST(PageTest, EveryFileAndTestThatAPageNamesIsThere) {
@@ -183,16 +208,19 @@ TEST(PageTest, EveryMessageOfTheTroubleshootingPageIsOneThatTheCodePrints) {
 }
 
 TEST(PageTest, TheRulesRefuseWhatTheyShould) {
-    const Page page("components/README.md",
-                    "# A page\n## A page\n[a](#a-page-1) [b](#nowhere) [c](log/README.md#damage) [d](log/README.md#no)\n"
-                    "[e](nowhere.png) ![f](../deploy/pictures/harbour_fls.png) `[g](no.png)` [h](https://a.org/b_(c))\n"
-                    "https://example.org/a, http:/broken and https://nowhere\n```sh\n[i](no.png)\n```\n"
-                    "`tests/layout/PageTest.cpp`, `scripts/nowhere --all`, `PageTest.Nothing`\n");
+    const Page page(
+        "components/README.md",
+        "# A page\n## A page\n[a](#a-page-1) [b](#nowhere) [c](log/README.md#damage) [d](log/README.md#no)\n"
+        "[e](nowhere.png) ![f](../deploy/pictures/harbour_fls.png) `[g](no.png)` [h](https://a.org/b_(c))\n"
+        "https://example.org/a, http:/broken and https://nowhere\n```sh\n[i](no.png)\n```\n"
+        "`tests/layout/PageTest.cpp`, `scripts/nowhere --all`, `PageTest.Nothing`\n");
     EXPECT_THAT(brokenLinks(page), ElementsAre("#nowhere", "log/README.md#no", "nowhere.png"));
     EXPECT_THAT(brokenAddresses(page), ElementsAre("https://a.org/b_(c", "http:/broken", "https://nowhere"));
     EXPECT_THAT(missingPaths(page), ElementsAre("scripts/nowhere"));
     EXPECT_THAT(missingTests(page, allTests()), ElementsAre("PageTest.Nothing"));
     EXPECT_THAT(unprintedParts("...: is 3 m; may be ... or so", "\"{} is 3 m; may be {}\""), ElementsAre("or so"));
+    EXPECT_THAT(unevenRows(Page("", "| a | b |\n| - | - |\n| a\\|b | c |\n\n| d |\n| e | f |\n")),
+                ElementsAre("| e | f |"));
     ASSERT_EQ(page.blocks().size(), 1u);
     EXPECT_EQ(page.blocks()[0].language, "sh");
     EXPECT_EQ(page.blocks()[0].line, 6u);
