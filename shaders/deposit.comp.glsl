@@ -16,6 +16,13 @@ uniform uint bin_count, beam_stride;
 uniform double bin_width, attenuation, strength_scale;
 uniform dvec2 extent, pixel_size, frustum_axis;
 
+#ifdef HAVE_ELEVATION_PATTERN
+layout(std430, binding = ELEVATION_BINDING) readonly buffer Elevation { double elevation_powers[]; };
+uniform double elevation_reach;
+double elevationPower(uint i) { return elevation_powers[i]; }
+#include "elevation.glsl"
+#endif
+
 double binEdge(uint k) { return edges[k]; }
 
 // The order of additions does not matter: words are integers, and every wrap of the low word carries once.
@@ -87,6 +94,9 @@ void main() {
         if (texel.z != 0u) cosine = double(uintBitsToFloat(texel.z));
 #endif
         strength = strengthOf(command.material) * cosine;
+#ifdef HAVE_ELEVATION_PATTERN
+        strength *= elevationWeight(uv.x, uv.y);
+#endif
         reach = dvec2(objects[command.object].extent.xy);
     }
     double per_pixel = 1.0 / (pixel_size.x * pixel_size.y);

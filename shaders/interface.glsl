@@ -8,6 +8,10 @@
 #define SHARE_STARTS_BINDING 5
 #define EDGES_BINDING 6
 #define SUMS_BINDING 7
+#define ELEVATION_BINDING 8
+
+// Steps of the table of an elevation pattern.
+#define ELEVATION_STEPS 4096
 
 // One placing of a mesh, relative to the sonar: rows of the matrix from object to sonar axes, and of its inverse transpose.
 struct ObjectRecord {

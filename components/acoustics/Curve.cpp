@@ -79,7 +79,7 @@ private:
     }
 
     void report(int column, std::string path, std::string message) {
-        diagnostics_.push_back({file_, line_number_, column, std::move(path), std::move(message)});
+        diagnostics_.push_back({std::move(path), std::move(message), file_, line_number_, column});
     }
 
     std::string file_;

@@ -14,33 +14,79 @@ AngularView::Direction AngularView::azimuthOf(double bearing, const Elevation& u
 
 namespace {
 
-/** Rows as those of an image, equal in tan(elevation), which has more of them where a floor is far; equal in elevation
- *  where that would leave too few to the middle. */
-std::vector<AngularView::Elevation> elevationsOf(const SonarConfig& config, int rows) {
+/** Lower edges of rows as those of an image, equal in tan(elevation), which has more of them where a floor is far;
+ * equal in elevation where that would leave too few to the middle [rad]. */
+std::vector<double> evenEdges(double half, int rows) {
     constexpr double tallest_image = types::radians(120);
-    const double half = types::radians(config.beam_height_deg) / 2;
-    const auto edge = [&](int row) {
+    std::vector<double> edges;
+    for (int row = 0; row <= rows; ++row) {
         const double share = 2.0 * row / rows - 1;
-        return 2 * half <= tallest_image ? std::atan(std::tan(half) * share) : half * share;
-    };
+        edges.push_back(2 * half <= tallest_image ? std::atan(std::tan(half) * share) : half * share);
+    }
+    return edges;
+}
+
+/** The same as dense as the cube root of the pattern, which makes the most of rows whose error falls as the square of
+ *  their height: most are in the main lobe, and sidelobes have some [rad]. */
+std::vector<double> patternEdges(double half, int rows, const Directivity& directivity) {
+    constexpr int steps = 8192;
+    std::vector<double> sum{0};
+    for (int i = 0; i < steps; ++i) {
+        const double power = directivity.elevation(half * ((2 * i + 1.0) / steps - 1));
+        sum.push_back(sum.back() + std::cbrt(std::max(power, directivity.floor())));
+    }
+    std::vector<double> edges;
+    size_t i = 0;
+    for (int row = 0; row <= rows; ++row) {
+        const double wanted = sum.back() * row / rows;
+        while (i + 2 < sum.size() && sum[i + 1] < wanted) ++i;
+        const double at = static_cast<double>(i) + (wanted - sum[i]) / (sum[i + 1] - sum[i]);
+        edges.push_back(half * (2 * at / steps - 1));
+    }
+    return edges;
+}
+
+/** Integral of cosine times pattern over elevations, by Simpson's rule in parts [1]. */
+double weightedBetween(const Directivity& directivity, double low, double high) {
+    constexpr int parts = 8;
+    const double step = (high - low) / parts;
+    const auto at = [&](double angle) { return std::cos(angle) * directivity.elevation(angle); };
+    double sum = 0;
+    for (int i = 0; i < parts; ++i)
+        sum += at(low + i * step) + 4 * at(low + (i + 0.5) * step) + at(low + (i + 1) * step);
+    return sum * step / 6;
+}
+
+std::vector<AngularView::Elevation> elevationsOf(const RenderPlan& plan) {
+    const double half = types::radians(plan.sampled.beam_height_deg) / 2;
+    const bool weighted = plan.features.has(Feature::ElevationPattern);
+    const std::vector<double> edges =
+        weighted ? patternEdges(half, plan.sampled.rows(), *plan.directivity) : evenEdges(half, plan.sampled.rows());
     std::vector<AngularView::Elevation> all;
-    for (int step = 0; step <= 2 * rows; ++step) {
-        const double angle = step % 2 == 0 ? edge(step / 2) : 0.5 * (edge(step / 2) + edge(step / 2 + 1));
-        all.push_back({std::cos(angle), std::sin(angle), angle});
+    for (size_t step = 0; step + 1 < 2 * edges.size(); ++step) {
+        const double angle = step % 2 == 0 ? edges[step / 2] : 0.5 * (edges[step / 2] + edges[step / 2 + 1]);
+        double sum = std::sin(angle);
+        if (weighted && step == 0) sum = 0;
+        if (weighted && step > 0)
+            sum = all.back().weighted + weightedBetween(*plan.directivity, all.back().angle, angle);
+        all.push_back({{std::cos(angle), std::sin(angle)}, angle, sum});
     }
     return all;
 }
 
 }  // namespace
 
-AngularView makeAngularView(const SonarConfig& config, const std::vector<Beam>& beams) {
+AngularView makeAngularView(const RenderPlan& plan) {
+    const SonarConfig& config = plan.sampled;
+    const std::vector<Beam>& beams = plan.cells;
     AngularView view;
     view.beams = static_cast<int>(beams.size());
     view.beam_columns = config.columnsPerBeam();
     view.rows = config.rows();
     view.conical = config.beam_geometry == BeamGeometry::Conical;
     view.column_width = (beams.front().high - beams.front().low) / view.beam_columns;
-    view.elevations = elevationsOf(config, view.rows);
+    view.weighted = plan.features.has(Feature::ElevationPattern);
+    view.elevations = elevationsOf(plan);
     view.row_height = 0;
     for (size_t row = 0; row < static_cast<size_t>(view.rows); ++row)
         view.row_height = std::max(view.row_height, view.height(row, 1));

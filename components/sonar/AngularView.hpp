@@ -2,7 +2,7 @@
 #include <glm/vec3.hpp>
 #include <vector>
 
-#include "components/sonar/BeamFan.hpp"
+#include "components/sonar/RenderPlan.hpp"
 
 namespace insonify::sonar {
 
@@ -15,13 +15,16 @@ struct AngularView {
     };
 
     struct Elevation : Direction {
-        double angle;  ///< [rad]
+        double angle;     ///< [rad]
+        double weighted;  ///< Integral of its cosine times the elevation pattern from some angle on; `sine` without a
+                          ///< pattern.
     };
 
     int beams = 0;
     int beam_columns = 0;  ///< Of each beam [1].
     int rows = 0;          ///< From below upwards [1].
     bool conical = false;
+    bool weighted = false;     ///< By a pattern in elevation.
     double column_width = 0;   ///< Of the first beam's columns, in bearing [rad].
     double row_height = 0;     ///< Of the tallest row [rad].
     std::vector<int> beam_of;  ///< Of each column, beam after beam [1].
@@ -51,6 +54,7 @@ struct AngularView {
     double cell() const { return column_width * row_height; }
 };
 
-AngularView makeAngularView(const SonarConfig& config, const std::vector<Beam>& beams);
+/** Of the plan's cells, which are the beams of the view. */
+AngularView makeAngularView(const RenderPlan& plan);
 
 }  // namespace insonify::sonar

@@ -9,6 +9,7 @@
 
 #include "components/sonar/Acoustics.hpp"
 #include "components/sonar/BinLevels.hpp"
+#include "components/sonar/EchoGrid.hpp"
 #include "components/sonar/ObjectPlaces.hpp"
 #include "components/sonar/SurfaceScene.hpp"
 #include "components/sonar/ThreadPool.hpp"
@@ -43,7 +44,7 @@ public:
     void render(const types::Snapshot& snapshot, types::Sonar& ping, Stages& stages) override;
     bool hasEchoes() const override { return heard_; }
     std::vector<LeftOut> culled() const override { return {}; }
-    Features compiled() const override { return compiledForRays(plan_.features); }
+    Features compiled() const override;
     const std::string& device() const override { return device_; }
 
 private:
@@ -76,6 +77,7 @@ private:
     EchoRules rules_;
     CastView view_;
     BinLevels levels_;
+    std::optional<EchoGrid> grid_;
     ObjectPlaces places_;
     RayVisibility visibility_;
     std::vector<PlaneRecord> planes_;
@@ -105,9 +107,16 @@ CastEchoes::CastEchoes(const RenderPlan& plan, types::GeometryPtr geometry)
     takeQuality();
 }
 
+Features CastEchoes::compiled() const {
+    Features all = compiledForRays(plan_.features);
+    if (view_.cells.weighted) all.add(Feature::ElevationPattern);
+    return all;
+}
+
 void CastEchoes::takeQuality() {
     rules_ = makeEchoRules(plan_, *geometry_);
-    view_.cells = makeAngularView(plan_.config, plan_.beams);
+    view_.cells = makeAngularView(plan_);
+    grid_.emplace(plan_, threads_.size());
     shareOut();
 }
 
@@ -200,12 +209,11 @@ void CastEchoes::workOn(const Part& part, Worker& worker, types::Sonar& ping) {
     deposit(rules_, view_, {visibility_.commands(), runs_, places_.records(), planes_, normal_maps_}, tiles,
             part.first_beam, worker.sums.data());
     worker.lap(DepositStage);
-    const auto count = static_cast<size_t>(rules_.bins.bin_count);
     if (gather(part, worker))
         for (int beam = 0; beam < part.beams; ++beam)
             worker.heard |=
                 levels_.fill(rules_, &worker.sums[static_cast<size_t>(beam) * rules_.sumCount()], view_.cells.cell(),
-                             {&ping.bins[static_cast<size_t>(part.first_beam + beam) * count], count});
+                             grid_->cell(static_cast<size_t>(part.first_beam + beam), ping));
     worker.lap(BeamStage);
 }
 
@@ -233,6 +241,9 @@ void CastEchoes::render(const types::Snapshot& snapshot, types::Sonar& ping, Sta
         work(own, ping);
     else
         threads_.share([&](int part, int) { work(workers_[static_cast<size_t>(part)], ping); });
+    own.last = Clock::now();
+    grid_->finish(ping, threads_);
+    stages[BeamStage].seconds += std::chrono::duration<double>(Clock::now() - own.last).count();
     heard_ = false;
     for (const Worker& worker : workers_) {
         for (size_t i = 0; i < stages.size(); ++i)

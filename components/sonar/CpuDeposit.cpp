@@ -61,7 +61,11 @@ std::span<const uint64_t> CpuDeposit::finish() {
     return sums_;
 }
 
-Features CpuDeposit::compiled() const { return compiledForPictures(setup_.rules.features); }
+Features CpuDeposit::compiled() const {
+    Features all = compiledForPictures(setup_.rules.features);
+    if (!setup_.rules.elevation_powers.empty()) all.add(Feature::ElevationPattern);
+    return all;
+}
 
 void CpuDeposit::depositPart(size_t part) {
     const uint first = firstBeam(part), last = firstBeam(part + 1);

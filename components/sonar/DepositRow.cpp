@@ -12,6 +12,14 @@ namespace {
 #include "shaders/jitter.glsl"
 #include "shaders/surface.glsl"
 
+/** The table that shaders/elevation.glsl reads. */
+struct ElevationTable {
+    const double* powers;
+    double elevation_reach;
+    double elevationPower(uint i) const { return powers[i]; }
+#include "shaders/elevation.glsl"
+};
+
 constexpr int stretch = 64;  ///< Pixels at a time: their numbers stay in the nearest cache.
 
 /** A stretch of a picture's row. */
@@ -183,9 +191,15 @@ private:
         for (int i = 0; i < count; ++i) shared_.set(i, shares[i], pixels_, shares[i].column - first_column);
         cover(shared_, count,
               {v, part_.frustum.dv(), part_.rules.edges.front(), bins_.binEdge(bins_.bin_count), per_pixel_}, cells_);
+        if (part_.rules.features.has(Feature::ElevationPattern)) weigh(count, v);
         for (int i = 0; i < count; ++i)
             if (shares[i].beam >= part_.first && shares[i].beam < part_.last)
                 bins_.depositCell(cells_.get(i), shares[i].beam, shared_.strength_range[i]);
+    }
+
+    void weigh(int count, double v) {
+        ElevationTable table{part_.rules.elevation_powers.data(), part_.rules.elevation_reach};
+        for (int i = 0; i < count; ++i) shared_.strength_range[i] *= table.elevationWeight(shared_.u[i], v);
     }
 
     const FrustumPart& part_;

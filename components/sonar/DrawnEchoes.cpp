@@ -9,6 +9,7 @@
 #include "components/gpu/EglContext.hpp"
 #include "components/sonar/BinLevels.hpp"
 #include "components/sonar/CpuDeposit.hpp"
+#include "components/sonar/EchoGrid.hpp"
 #include "components/sonar/SurfacePass.hpp"
 #include "types/Angle.hpp"
 
@@ -28,8 +29,9 @@ DepositSetup depositSetup(const RenderPlan& plan, const types::Geometry& geometr
     DepositSetup setup;
     setup.rules = makeEchoRules(plan, geometry);
     setup.frusta = plan.frusta;
-    for (const ViewFrustum& frustum : plan.frusta) setup.shares.push_back(makeShares(plan.config, plan.beams, frustum));
-    setup.beam_count = static_cast<uint32_t>(plan.beams.size());
+    for (const ViewFrustum& frustum : plan.frusta)
+        setup.shares.push_back(makeShares(plan.sampled, plan.cells, frustum));
+    setup.beam_count = static_cast<uint32_t>(plan.cells.size());
     return setup;
 }
 
@@ -61,6 +63,7 @@ private:
     ThreadPool threads_;
     SurfacePass surface_;
     std::unique_ptr<BinDeposit> deposit_;
+    std::optional<EchoGrid> grid_;
     EchoRules rules_;
     std::span<const uint64_t> sums_;  ///< Of the last ping.
     std::chrono::steady_clock::time_point last_;
@@ -86,6 +89,7 @@ DrawnEchoes::~DrawnEchoes() = default;
 
 void DrawnEchoes::makeDeposit() {
     DepositSetup setup = depositSetup(plan_, *geometry_);
+    grid_.emplace(plan_, threads_.size());
     rules_ = setup.rules;
     const bool on_cpu =
         plan_.config.deposit == Deposit::Cpu || (plan_.config.deposit == Deposit::Auto && context_.isSoftware());
@@ -117,12 +121,12 @@ void DrawnEchoes::drawSlabs(const types::Snapshot& snapshot, Stages& stages) {
 }
 
 void DrawnEchoes::fillBins(types::Sonar& ping) {
-    const auto count = static_cast<size_t>(plan_.grid.bin_count);
     const double pixel = plan_.frusta.front().du() * plan_.frusta.front().dv();  // solid angle of a whole pixel [sr]
-    threads_.range([&](int part, int parts) {
-        for (auto beam = static_cast<size_t>(part); beam < plan_.beams.size(); beam += static_cast<size_t>(parts))
-            levels_.fill(rules_, &sums_[beam * rules_.sumCount()], pixel, {&ping.bins[beam * count], count});
+    threads_.run([&](int part, int parts) {
+        for (auto cell = static_cast<size_t>(part); cell < plan_.cells.size(); cell += static_cast<size_t>(parts))
+            levels_.fill(rules_, &sums_[cell * rules_.sumCount()], pixel, grid_->cell(cell, ping));
     });
+    grid_->finish(ping, threads_);
 }
 
 void DrawnEchoes::render(const types::Snapshot& snapshot, types::Sonar& ping, Stages& stages) {

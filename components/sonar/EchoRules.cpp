@@ -5,8 +5,21 @@
 #include <limits>
 
 #include "components/sonar/Acoustics.hpp"
+#include "components/sonar/Interface.hpp"
+#include "types/Angle.hpp"
 
 namespace insonify::sonar {
+namespace {
+
+void tabulateElevation(const RenderPlan& plan, EchoRules& rules) {
+    rules.elevation_reach = std::sin(types::radians(plan.sampled.beam_height_deg) / 2);
+    for (int i = 0; i <= ELEVATION_STEPS; ++i) {
+        const double sine = rules.elevation_reach * (2.0 * i / ELEVATION_STEPS - 1);
+        rules.elevation_powers.push_back(plan.directivity->elevation(std::asin(sine)));
+    }
+}
+
+}  // namespace
 
 EchoRules makeEchoRules(const RenderPlan& plan, const types::Geometry& geometry) {
     const BinGrid& bins = plan.grid;
@@ -14,13 +27,14 @@ EchoRules makeEchoRules(const RenderPlan& plan, const types::Geometry& geometry)
     rules.features = plan.features;
     rules.bins = bins;
     rules.attenuation = makeAbsorption(plan.config).amplitudeNepersPerMetre();
-    rules.strength_scale = strengthScale(plan.config, bins, loudest(geometry));
+    rules.strength_scale = strengthScale(plan.sampled, bins, loudest(geometry));
     const double nearest = bins.range_min > 0 ? 1 / bins.range_min : std::numeric_limits<double>::max();
     for (int k = 0; k <= bins.bin_count; ++k)
         rules.edges.push_back(k == 0 ? nearest : std::min(nearest, 1 / bins.edge(k)));
     for (int k = 0; k < bins.bin_count; ++k) rules.middles.push_back(bins.centre(k));
     rules.edges.resize(rules.edges.size() + bins_at_once);
     rules.middles.resize(rules.middles.size() + bins_at_once);
+    if (rules.features.has(Feature::ElevationPattern)) tabulateElevation(plan, rules);
     return rules;
 }
 

@@ -21,6 +21,9 @@ struct EchoRules {
     std::vector<double> edges;    ///< Inverse ranges of the bins' edges from the near blanking on, then 0 [1/m].
     std::vector<double> middles;  ///< Slant ranges of the bins' middles, then 0 [m].
 
+    double elevation_reach = 0;            ///< Sine of the elevation at which the table of the pattern ends [1].
+    std::vector<double> elevation_powers;  ///< Two-way pattern over it (shaders/elevation.glsl); empty without one [1].
+
     size_t channels() const { return features.has(Feature::Cerqueira2017) ? 2 : 1; }
     /** Bins from one beam's first to the next one's. */
     size_t beamStride() const { return static_cast<size_t>(bins.bin_count) + bins_at_once; }

@@ -33,14 +33,14 @@ private:
     void setUniforms(const ViewFrustum& frustum) const;
     struct Uniforms {
         GLint image_size, bin_count, beam_stride, bin_width, attenuation, strength_scale, frustum_axis, extent,
-            pixel_size;
+            pixel_size, elevation_reach;
     };
 
     DepositSetup setup_;
     const gpu::EglContext& context_;
     const gpu::Program& program_;
     Uniforms uniforms_;
-    gpu::Buffer edges_, objects_, device_sums_;
+    gpu::Buffer edges_, elevation_, objects_, device_sums_;
     std::vector<SlabShares> shares_;
     gpu::ReadBack sums_;
     bool begun_ = false;  ///< The sums are cleared and the objects told, for the ping that is under way.
@@ -52,10 +52,11 @@ GpuDeposit::GpuDeposit(const DepositSetup& setup, gpu::EglContext& context)
       program_(context.programs().compute("deposit.comp.glsl", setup.rules.features.defines())),
       sums_(setup.sumCount() * sizeof(uint64_t)) {
     const auto at = [this](const char* name) { return glGetUniformLocation(program_.id(), name); };
-    uniforms_ = {at("image_size"),     at("bin_count"), at("beam_stride"), at("bin_width"), at("attenuation"),
-                 at("strength_scale"), at("slab_axis"), at("extent"),      at("pixel_size")};
+    uniforms_ = {at("image_size"),     at("bin_count"),    at("beam_stride"), at("bin_width"),  at("attenuation"),
+                 at("strength_scale"), at("frustum_axis"), at("extent"),      at("pixel_size"), at("elevation_reach")};
     context.requireStorage(setup.sumCount() * sizeof(uint64_t), "the sums of all bins");
     edges_ = gpu::Buffer::of(std::span(setup.rules.edges));
+    if (!setup.rules.elevation_powers.empty()) elevation_ = gpu::Buffer::of(std::span(setup.rules.elevation_powers));
     device_sums_ = gpu::Buffer(setup.sumCount() * sizeof(uint64_t));
     for (const ColumnShares& frustum : setup.shares)
         shares_.push_back({gpu::Buffer::of(std::span(frustum.starts)), gpu::Buffer::of(std::span(frustum.shares)), {}});
@@ -70,6 +71,7 @@ void GpuDeposit::setUniforms(const ViewFrustum& frustum) const {
     glUniform1d(uniforms_.strength_scale, setup_.rules.strength_scale);
     glUniform2d(uniforms_.frustum_axis, std::cos(frustum.azimuth), std::sin(frustum.azimuth));
     glUniform2d(uniforms_.extent, frustum.extent_u, frustum.extent_v);
+    if (uniforms_.elevation_reach >= 0) glUniform1d(uniforms_.elevation_reach, setup_.rules.elevation_reach);
     glUniform2d(uniforms_.pixel_size, frustum.du(), frustum.dv());
 }
 
@@ -86,6 +88,7 @@ void GpuDeposit::take(size_t frustum, const SurfacePass& surface) {
     surface.bindResults(frustum);
     shares_[frustum].shares.bindBase(GL_SHADER_STORAGE_BUFFER, SHARES_BINDING);
     shares_[frustum].starts.bindBase(GL_SHADER_STORAGE_BUFFER, SHARE_STARTS_BINDING);
+    if (elevation_.bytes() > 0) elevation_.bindBase(GL_SHADER_STORAGE_BUFFER, ELEVATION_BINDING);
     edges_.bindBase(GL_SHADER_STORAGE_BUFFER, EDGES_BINDING);
     device_sums_.bindBase(GL_SHADER_STORAGE_BUFFER, SUMS_BINDING);
     glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_FRAMEBUFFER_BARRIER_BIT);

@@ -33,8 +33,8 @@ double dot2(const glm::dvec3& v) { return glm::dot(v, v); }
 }  // namespace
 
 Reach reachOf(const RenderPlan& plan) {
-    const double half_elevation = types::radians(plan.config.beam_height_deg) / 2;
-    double half_azimuth = std::max(std::abs(plan.beams.front().low), std::abs(plan.beams.back().high));
+    const double half_elevation = types::radians(plan.sampled.beam_height_deg) / 2;
+    double half_azimuth = std::max(std::abs(plan.cells.front().low), std::abs(plan.cells.back().high));
     if (plan.features.has(Feature::Conical)) half_azimuth = coneAzimuth(half_azimuth, half_elevation);
     return {plan.grid.range_max, half_azimuth, half_elevation};
 }

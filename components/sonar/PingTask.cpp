@@ -12,6 +12,7 @@
 #include "components/framework/Activity.hpp"
 #include "components/sonar/PlanReport.hpp"
 #include "components/sonar/Silence.hpp"
+#include "types/ConfigError.hpp"
 #include "types/ExtrapolatePose.hpp"
 
 namespace insonify::sonar {
@@ -54,7 +55,18 @@ std::vector<std::string> PingTask::notices() const {
     return all;
 }
 
+SonarConfig PingTask::locatedConfig() const {
+    SonarConfig config = sonarConfig();
+    if (!config.beam_pattern) return config;
+    for (ArrayConfig* array : {&config.beam_pattern->transmit, &config.beam_pattern->receive})
+        for (std::optional<acoustics::BeamLaw>* law : {&array->azimuth, &array->elevation})
+            if (*law && !(*law)->file.empty()) (*law)->file = inputPath((*law)->file);
+    return config;
+}
+
 bool PingTask::configureHook() {
+    if (const std::string why = whyTooLarge(locatedConfig()); !why.empty())
+        throw types::ConfigError("", name() + ".beam_pattern", why);
     renderer_.reset();
     plan_.reset();
     grid_ = makeBinGrid(sonarConfig());
@@ -119,7 +131,7 @@ void PingTask::makeRenderer() {
     renderer_.reset();
     quality_.reset();
     geometry_ = aimed_.geometry;
-    const SonarConfig config = sonarConfig();
+    const SonarConfig config = locatedConfig();
     renderer_ = std::make_unique<SonarRenderer>(begun(config), geometry_);
     if (config.choosesQuality()) quality_.emplace(config, pingsPerTurn());
     plan_ = renderer_->plan();

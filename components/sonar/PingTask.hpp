@@ -66,6 +66,8 @@ protected:
     void cleanupHook() override { renderer_.reset(); }
 
 private:
+    /** sonarConfig() with its files relative to the deployment. */
+    SonarConfig locatedConfig() const;
     /** Time and place of a snapshot. */
     struct Mark {
         types::Time time;

@@ -54,6 +54,8 @@ std::string boundedWords(const LeftOut& what, const BinGrid& grid) {
     if (what.effect == Effect::Refraction)
         return fmt::format("a gradient of {} 1/s bends by {:.2g} m at {:.4g} m < {:.2g} m", speed_gradient, what.value,
                            grid.range_max, what.bound);
+    if (what.effect == Effect::RangePointSpread)
+        return fmt::format("the pulse resolves {:.2g} m, under half a bin, {:.2g} m", what.value, what.bound);
     return fmt::format("beta dR/2 = {:.1e} < {:.0e}", what.value, what.bound);
 }
 
@@ -185,7 +187,7 @@ types::Plan report(const RenderPlan& plan, const types::Geometry& geometry) {
     types::Plan told;
     told.rows = plan.config.rows();
     told.columns_per_beam = plan.config.columnsPerBeam();
-    told.frusta = static_cast<int>(plan.frusta.size());
+    told.slabs = static_cast<int>(plan.frusta.size());
     told.predicted_error = std::numeric_limits<double>::quiet_NaN();
     told.features = plan.features.names();
     for (Pass pass : plan.passes) told.passes.emplace_back(types::EnumNames<Pass>::names[static_cast<size_t>(pass)]);

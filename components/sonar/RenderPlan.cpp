@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "components/sonar/Acoustics.hpp"
+#include "components/sonar/RangeResponse.hpp"
 #include "types/Angle.hpp"
 
 namespace insonify::sonar {
@@ -21,6 +22,7 @@ Features featuresOf(const SonarConfig& config, const types::Geometry& geometry) 
     if (config.beam_geometry == BeamGeometry::Conical) features.add(Feature::Conical);
     if (hasNormalMap(geometry)) features.add(Feature::NormalMap);
     if (config.estimator != Estimator::Footprint) features.add(Feature::Nearest);
+    if (config.beam_pattern && config.beam_pattern->hasElevation()) features.add(Feature::ElevationPattern);
     if (config.estimator == Estimator::NearestJitter) features.add(Feature::Jitter);
     return features;
 }
@@ -46,10 +48,31 @@ void omitMeans(RenderPlan& plan) {
         plan.left_out.push_back({effect, Reason::Published});
 }
 
+void omitPulse(RenderPlan& plan) {
+    if (plan.has(Pass::Pulse)) return;
+    if (!plan.config.pulse) return plan.left_out.push_back({Effect::RangePointSpread, Reason::NotConfigured});
+    const acoustics::Pulse pulse(*plan.config.pulse, plan.grid.speed_of_sound);
+    plan.left_out.push_back(
+        {Effect::RangePointSpread, Reason::BelowBound, pulse.resolution(), plan.grid.bin_width / 2});
+}
+
+std::vector<Pass> passesOf(const RenderPlan& plan) {
+    std::vector<Pass> passes{Pass::Cull, plan.casts_rays ? Pass::Rays : Pass::Surface, Pass::Deposit, Pass::Beams};
+    if (plan.directivity && plan.directivity->hasAzimuth()) passes.push_back(Pass::Beamform);
+    if (plan.config.pulse && !isShort(acoustics::Pulse(*plan.config.pulse, plan.grid.speed_of_sound), plan.grid))
+        passes.push_back(Pass::Pulse);
+    return passes;
+}
+
 void omitEffects(const types::Geometry& geometry, RenderPlan& plan) {
-    for (Effect effect : {Effect::AzimuthPattern, Effect::ElevationPattern, Effect::RangePointSpread, Effect::Volume,
-                          Effect::Multipath})
-        plan.left_out.push_back({effect, Reason::NotConfigured});
+    const auto omitUnless = [&](bool wanted, Effect effect) {
+        if (!wanted) plan.left_out.push_back({effect, Reason::NotConfigured});
+    };
+    omitUnless(plan.has(Pass::Beamform), Effect::AzimuthPattern);
+    omitUnless(plan.features.has(Feature::ElevationPattern), Effect::ElevationPattern);
+    omitPulse(plan);
+    omitUnless(false, Effect::Volume);
+    omitUnless(false, Effect::Multipath);
     if (plan.frusta.size() == 1)
         plan.left_out.push_back({Effect::FurtherSlabs, Reason::OneImage, plan.config.coverageDeg()});
     const Bending bent = bending(plan.config, plan.grid);
@@ -81,7 +104,9 @@ std::vector<std::string> Features::defines() const {
 void RenderPlan::setQuality(int rows, int columns_per_beam) {
     config.quality.rows = rows;
     config.quality.columns_per_beam = columns_per_beam;
-    if (!casts_rays) frusta = makeFrusta(config, beams);
+    sampled = sampledConfig(config);
+    cells = directivity ? makeBeams(sampled) : beams;
+    if (!casts_rays) frusta = makeFrusta(sampled, cells);
 }
 
 const LeftOut* RenderPlan::leftOut(Effect effect) const {
@@ -100,9 +125,10 @@ RenderPlan makeRenderPlan(const SonarConfig& config, const types::Geometry& geom
     plan.config = config;
     plan.casts_rays = config.castsRays();
     plan.features = featuresOf(config, geometry);
-    plan.passes = {Pass::Cull, plan.casts_rays ? Pass::Rays : Pass::Surface, Pass::Deposit, Pass::Beams};
     plan.grid = makeBinGrid(config);
     plan.beams = makeBeams(config);
+    if (config.beam_pattern) plan.directivity.emplace(config);
+    plan.passes = passesOf(plan);
     plan.setQuality(config.rows(), config.columnsPerBeam());
     omitAbsorption(plan);
     if (config.model == Model::Physical)

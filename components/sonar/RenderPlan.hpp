@@ -1,10 +1,13 @@
 #pragma once
+#include <algorithm>
 #include <limits>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "components/sonar/BeamFan.hpp"
 #include "components/sonar/BinGrid.hpp"
+#include "components/sonar/Directivity.hpp"
 #include "components/sonar/SonarConfig.hpp"
 #include "types/Geometry.hpp"
 
@@ -12,8 +15,18 @@ namespace insonify::sonar {
 
 /** What is compiled into the estimators where it is wanted: `#ifdef HAVE_<NAME>` in the shaders and in what the
  * processor compiles of them. */
-enum class Feature { Physical, Cerqueira2017, Absorption, Published, Conical, NormalMap, Nearest, Jitter };
-constexpr int feature_count = 8;
+enum class Feature {
+    Physical,
+    Cerqueira2017,
+    Absorption,
+    Published,
+    Conical,
+    NormalMap,
+    Nearest,
+    Jitter,
+    ElevationPattern
+};
+constexpr int feature_count = 9;
 
 /** A set of features. */
 class Features {
@@ -39,7 +52,7 @@ private:
 };
 
 /** Work for each ping, in this order. */
-enum class Pass { Cull, Surface, Rays, Deposit, Beams };
+enum class Pass { Cull, Surface, Rays, Deposit, Beams, Beamform, Pulse };
 
 /** What may be left out of a ping. */
 enum class Effect {
@@ -96,11 +109,15 @@ struct RenderPlan {
     std::vector<Pass> passes;
     BinGrid grid;
     std::vector<Beam> beams;
-    std::vector<ViewFrustum> frusta;  ///< Images of the fan; none with rays.
+    std::optional<Directivity> directivity;  ///< None without a beam pattern.
+    SonarConfig sampled;                     ///< What is sampled: sampledConfig() of `config`.
+    std::vector<Beam> cells;                 ///< Its azimuth cells; the beams themselves without a pattern in azimuth.
+    std::vector<ViewFrustum> frusta;         ///< Images of the cells; none with rays.
     std::vector<LeftOut> left_out;
 
     /** Other rows and columns per beam [1], and the images that go with them. */
     void setQuality(int rows, int columns_per_beam);
+    bool has(Pass pass) const { return std::ranges::count(passes, pass) > 0; }
     /** What is left out of an effect, null where it is not. */
     const LeftOut* leftOut(Effect effect) const;
 };
@@ -120,10 +137,11 @@ Bending bending(const SonarConfig& config, const BinGrid& grid);
 
 template <>
 struct insonify::types::EnumNames<insonify::sonar::Feature> {
-    static constexpr std::string_view names[] = {"physical", "cerqueira2017", "absorption", "published",
-                                                 "conical",  "normal_map",    "nearest",    "jitter"};
+    static constexpr std::string_view names[] = {"physical",  "cerqueira2017", "absorption",
+                                                 "published", "conical",       "normal_map",
+                                                 "nearest",   "jitter",        "elevation_pattern"};
 };
 template <>
 struct insonify::types::EnumNames<insonify::sonar::Pass> {
-    static constexpr std::string_view names[] = {"cull", "surface", "rays", "deposit", "beams"};
+    static constexpr std::string_view names[] = {"cull", "surface", "rays", "deposit", "beams", "beamform", "pulse"};
 };

@@ -29,6 +29,25 @@ void checkPublished(const SonarConfig& config, types::Diagnostics& diagnostics) 
         diagnostics.push_back({"beam_geometry", "is conical; must be planar with published: true"});
 }
 
+/** Beams and pulses of the sonar equation, which bins of means know nothing of. */
+void checkPhysics(const SonarConfig& config, types::Diagnostics& diagnostics) {
+    const bool means = config.model == Model::Cerqueira2017;
+    if (means && config.beam_pattern)
+        diagnostics.push_back({"beam_pattern", "is given with model: cerqueira2017; it belongs to physical"});
+    if (means && config.pulse)
+        diagnostics.push_back({"pulse", "is given with model: cerqueira2017; it belongs to physical"});
+    if (!config.beam_pattern || config.frequency_khz) return;
+    const auto checkLaw = [&](const std::string& path, const std::optional<acoustics::BeamLaw>& law) {
+        if (law && law->aperture_m)
+            diagnostics.push_back(
+                {"beam_pattern." + path + ".aperture_m", "is given without frequency_khz, which it needs"});
+    };
+    checkLaw("transmit.azimuth", config.beam_pattern->transmit.azimuth);
+    checkLaw("transmit.elevation", config.beam_pattern->transmit.elevation);
+    checkLaw("receive.azimuth", config.beam_pattern->receive.azimuth);
+    checkLaw("receive.elevation", config.beam_pattern->receive.elevation);
+}
+
 void checkRangeReached(const SonarConfig& config, types::Diagnostics& diagnostics) {
     const BinGrid grid = makeBinGrid(config);
     if (grid.range_max > 1.25 * config.range)
@@ -109,6 +128,11 @@ void checkDevice(const std::string& device, types::Diagnostics& diagnostics) {
 void AbsorptionConfig::check(types::Diagnostics& diagnostics) const {
     if (db_per_m && frequency_khz)
         diagnostics.push_back({"db_per_m", "stands beside frequency_khz; give one of the two"});
+}
+
+void BeamPatternConfig::check(types::Diagnostics& diagnostics) const {
+    if (!hasAzimuth() && !hasElevation())
+        diagnostics.push_back({"", "has no law; give azimuth or elevation of transmit or receive"});
 }
 
 double SonarConfig::bearingDeg(int k) const {
@@ -218,6 +242,7 @@ void SonarConfig::checkBeam(types::Diagnostics& diagnostics) const {
     if (beam_width_deg > 120)
         diagnostics.push_back({"beam_width_deg", fmt::format("is {:g} deg; one beam may have 120", *beam_width_deg)});
     if (published) checkPublished(*this, diagnostics);
+    checkPhysics(*this, diagnostics);
     checkRangeReached(*this, diagnostics);
     checkVisibility(*this, diagnostics);
     if (!diagnostics.empty()) return;

@@ -4,6 +4,8 @@
 #include <vector>
 
 #include "components/acoustics/Absorption.hpp"
+#include "components/acoustics/BeamPattern.hpp"
+#include "components/acoustics/Pulse.hpp"
 #include "components/acoustics/Water.hpp"
 #include "types/Describe.hpp"
 
@@ -28,6 +30,38 @@ struct AbsorptionConfig {
         visit(Field{"db_per_m", "dB/m", "one-way absorption, instead of a law", 0, 1000}, self.db_per_m);
         visit(Field{"law", "", "computes it from frequency and water"}, self.law);
         visit(Field{"frequency_khz", "kHz", "frequency for the law; absent: the sonar's", 0, 1e5}, self.frequency_khz);
+    }
+    void check(types::Diagnostics& diagnostics) const;
+};
+
+/** What an array does across the fan and up and down; a law that is absent is 1 in all directions. */
+struct ArrayConfig {
+    std::optional<acoustics::BeamLaw> azimuth, elevation;
+
+    template <class Self, class V>
+    static void describe(Self& self, V& visit) {
+        visit(types::Field{"azimuth", "", "of a sent pulse about the axis; of a beam about its own bearing"},
+              self.azimuth);
+        visit(types::Field{"elevation", "", "about the horizontal plane of the sonar"}, self.elevation);
+    }
+};
+
+/** Directivity, two way: what is sent times what is heard (ACOUSTICS.md 14). */
+struct BeamPatternConfig {
+    ArrayConfig transmit, receive;
+    double floor_db = -60;
+
+    bool hasAzimuth() const { return transmit.azimuth || receive.azimuth; }
+    bool hasElevation() const { return transmit.elevation || receive.elevation; }
+
+    template <class Self, class V>
+    static void describe(Self& self, V& visit) {
+        using types::Field;
+        visit(Field{"transmit", "", "of what is sent"}, self.transmit);
+        visit(Field{"receive", "", "of what is heard"}, self.receive);
+        visit(Field{"floor_db", "dB", "two-way level down to which sidelobes are heard, beyond fan and aperture too",
+                    -200, -3},
+              self.floor_db);
     }
     void check(types::Diagnostics& diagnostics) const;
 };
@@ -109,7 +143,9 @@ struct SonarConfig {
     Visibility visibility = Visibility::Auto;
     std::string device;
     Deposit deposit = Deposit::Auto;
-    std::optional<types::NotBuiltYet> beam_pattern, pulse, volume, multipath;
+    std::optional<BeamPatternConfig> beam_pattern;
+    std::optional<acoustics::PulseConfig> pulse;
+    std::optional<types::NotBuiltYet> volume, multipath;
     std::optional<types::MovedTo> tvg, gain, output, source_level_db;
 
     /** Rows of samples and columns per beam, until others are chosen for an error or a time [1]. */
@@ -201,8 +237,9 @@ void SonarConfig::describeBeam(Self& self, V& visit) {
     visit(Field{"detail", "", "what simplified meshes may add to the error"}, self.detail);
     visit(Field{"draw_all", "", "draws what is outside the fan and the range as well, to compare; rays meet it anyway"},
           self.draw_all);
-    visit(Field{"beam_pattern", "", "directivity (not built yet)"}, self.beam_pattern);
-    visit(Field{"pulse", "", "range point-spread (not built yet)"}, self.pulse);
+    visit(Field{"beam_pattern", "", "directivity of transmitter and receiver; absent: beams are boxes side by side"},
+          self.beam_pattern);
+    visit(Field{"pulse", "", "what an echo leaves in range; absent: it is in its own bin alone"}, self.pulse);
     visit(Field{"volume", "", "volume reverberation (not built yet)"}, self.volume);
     visit(Field{"multipath", "", "second bounce (not built yet)"}, self.multipath);
     visit(Field{"tvg", "",

@@ -184,7 +184,7 @@ private:
             cells_.lean[i] = 0;
         }
         cells_.size[i] =
-            cells_.width[i] * (view.elevations[low + 2 * up].sine - view.elevations[low].sine) / view.cell();
+            cells_.width[i] * (view.elevations[low + 2 * up].weighted - view.elevations[low].weighted) / view.cell();
     }
 
     const EchoRules& rules_;

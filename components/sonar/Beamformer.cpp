@@ -1,0 +1,99 @@
+#include "components/sonar/Beamformer.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "types/VectorMath.hpp"
+
+namespace insonify::sonar {
+namespace {
+
+/** Mean of a beam's pattern over a cell, by Simpson's rule. */
+double meanOver(const Beamformer::Pattern& pattern, const Beam& cell, double bearing) {
+    return (pattern(cell.low, bearing) + 4 * pattern(cell.centre, bearing) + pattern(cell.high, bearing)) / 6;
+}
+
+/** Takes weights below the floor off both ends. */
+template <class Run>
+void trim(Run& run, double floor) {
+    const auto heard = [&](float weight) { return static_cast<double>(weight) >= floor; };
+    const auto last = std::find_if(run.weights.rbegin(), run.weights.rend(), heard);
+    run.weights.erase(last.base(), run.weights.end());
+    const auto first = std::ranges::find_if(run.weights, heard);
+    run.first += static_cast<size_t>(first - run.weights.begin());
+    run.weights.erase(run.weights.begin(), first);
+}
+
+/** bins[j] += sum of weights[i] rows[i * count + j]. */
+INSONIFY_VECTOR_CLONES void addRows(const float* rows, std::span<const float> weights, float* __restrict bins,
+                                    size_t count) {
+    size_t i = 0;
+    for (; i + 4 <= weights.size(); i += 4) {
+        const float* row = rows + i * count;
+        const float a = weights[i], b = weights[i + 1], c = weights[i + 2], d = weights[i + 3];
+        for (size_t j = 0; j < count; ++j)
+            bins[j] += (a * row[j] + b * row[count + j]) + (c * row[2 * count + j] + d * row[3 * count + j]);
+    }
+    for (; i < weights.size(); ++i)
+        for (size_t j = 0; j < count; ++j) bins[j] += weights[i] * rows[i * count + j];
+}
+
+}  // namespace
+
+Beamformer::Beamformer(const std::vector<Beam>& beams, const std::vector<Beam>& cells, size_t bin_count,
+                       const Rules& rules)
+    : cell_count_(cells.size()), bin_count_(bin_count), grouped_(groupCount() * bin_count) {
+    for (const Beam& beam : beams) bands_.push_back(bandOf(beam, cells, rules));
+}
+
+Beamformer::Band Beamformer::bandOf(const Beam& beam, const std::vector<Beam>& cells, const Rules& rules) const {
+    const auto weightOf = [&](size_t cell) { return meanOver(rules.pattern, cells[cell], beam.centre); };
+    const auto addGroup = [&](size_t group, Run& run) {
+        double sum = 0;
+        for (size_t i = 0; i < cellsIn(group); ++i) sum += weightOf(group * group_cells + i);
+        run.weights.push_back(static_cast<float>(sum / static_cast<double>(cellsIn(group))));
+    };
+    const double width = (cells.front().high - cells.front().low) * group_cells;
+    const auto groupAt = [&](double azimuth) {
+        const double group = std::floor((azimuth - cells.front().low) / width);
+        return static_cast<size_t>(std::clamp(group, 0.0, static_cast<double>(groupCount() - 1)));
+    };
+    const size_t from = groupAt(beam.centre - rules.near), to = groupAt(beam.centre + rules.near) + 1;
+    Band band{{from * group_cells, {}}, {{0, {}}, {to, {}}}};
+    for (size_t c = from * group_cells; c < std::min(to * group_cells, cell_count_); ++c)
+        band.cells.weights.push_back(static_cast<float>(weightOf(c)));
+    for (size_t g = 0; g < from; ++g) addGroup(g, band.groups[0]);
+    for (size_t g = to; g < groupCount(); ++g) addGroup(g, band.groups[1]);
+    trim(band.cells, rules.floor);
+    for (Run& groups : band.groups) trim(groups, rules.floor);
+    return band;
+}
+
+void Beamformer::sumGroup(size_t group, std::span<const float> echoes) {
+    static constexpr float ones[group_cells] = {1, 1, 1, 1, 1, 1, 1, 1};
+    float* sum = &grouped_[group * bin_count_];
+    std::fill(sum, sum + bin_count_, 0.0f);
+    addRows(&echoes[group * group_cells * bin_count_], {ones, cellsIn(group)}, sum, bin_count_);
+}
+
+void Beamformer::form(size_t beam, std::span<const float> echoes, std::span<float> bins) const {
+    const Band& band = bands_[beam];
+    std::ranges::fill(bins, 0.0f);
+    addRows(echoes.data() + band.cells.first * bin_count_, band.cells.weights, bins.data(), bin_count_);
+    for (const Run& run : band.groups)
+        addRows(grouped_.data() + run.first * bin_count_, run.weights, bins.data(), bin_count_);
+}
+
+std::vector<double> Beamformer::weights(size_t beam) const {
+    std::vector<double> all(cell_count_);
+    const Band& band = bands_[beam];
+    for (size_t i = 0; i < band.cells.weights.size(); ++i)
+        all[band.cells.first + i] = static_cast<double>(band.cells.weights[i]);
+    for (const Run& run : band.groups)
+        for (size_t i = 0; i < run.weights.size(); ++i)
+            for (size_t c = 0; c < cellsIn(run.first + i); ++c)
+                all[(run.first + i) * group_cells + c] = static_cast<double>(run.weights[i]);
+    return all;
+}
+
+}  // namespace insonify::sonar

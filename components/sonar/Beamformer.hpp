@@ -1,0 +1,56 @@
+#pragma once
+#include <algorithm>
+#include <functional>
+#include <span>
+#include <vector>
+
+#include "components/sonar/BeamFan.hpp"
+
+namespace insonify::sonar {
+
+/** Forms beams from azimuth cells: beam k hears the sum over the cells of its two-way pattern there times what comes
+ *  from the cell (ACOUSTICS.md 14.4). Near its bearing a beam weighs each cell; farther off, where the pattern is all
+ *  sidelobes, so many cells together, by the pattern's mean. */
+class Beamformer {
+public:
+    /** Two-way power at an azimuth, of a beam of a bearing [rad]; 1 on its axis. */
+    using Pattern = std::function<double(double azimuth, double bearing)>;
+
+    static constexpr size_t group_cells = 8;
+
+    struct Rules {
+        Pattern pattern;
+        double near;   ///< How far from its bearing a beam weighs each cell [rad].
+        double floor;  ///< What is below it is not heard [1].
+    };
+
+    /** `cells` are equal and side by side, in ascending azimuth. */
+    Beamformer(const std::vector<Beam>& beams, const std::vector<Beam>& cells, size_t bin_count, const Rules& rules);
+
+    size_t groupCount() const { return (cell_count_ + group_cells - 1) / group_cells; }
+    /** Sums one group of cells: each once a ping, before beams are formed. `echoes`: [cell][bin]. */
+    void sumGroup(size_t group, std::span<const float> echoes);
+    /** Fills the bins of one beam. Allocates nothing, and any threads may form beams at once. */
+    void form(size_t beam, std::span<const float> echoes, std::span<float> bins) const;
+
+    /** Of beam k: its weight of each cell as it is applied [1]. */
+    std::vector<double> weights(size_t beam) const;
+
+private:
+    struct Run {
+        size_t first;
+        std::vector<float> weights;
+    };
+    /** What one beam hears: neighbouring cells, and neighbouring groups of cells on both sides. */
+    struct Band {
+        Run cells, groups[2];
+    };
+    Band bandOf(const Beam& beam, const std::vector<Beam>& cells, const Rules& rules) const;
+    size_t cellsIn(size_t group) const { return std::min(group_cells, cell_count_ - group * group_cells); }
+
+    size_t cell_count_, bin_count_;
+    std::vector<Band> bands_;
+    std::vector<float> grouped_;  ///< [group][bin].
+};
+
+}  // namespace insonify::sonar

@@ -1,0 +1,121 @@
+#include "components/sonar/Directivity.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "types/Angle.hpp"
+
+namespace insonify::sonar {
+namespace {
+
+using std::numbers::pi;
+
+/** Cells across a beam, or across the distance between two, at least [1]. */
+constexpr int min_cells = 2;
+/** Azimuth cells of a fan, at most [1]. */
+constexpr int max_cells = 16384;
+constexpr double reach_step = types::radians(0.05);
+
+std::optional<acoustics::BeamPattern> patternOf(const std::optional<acoustics::BeamLaw>& law,
+                                                const std::optional<double>& wavelength) {
+    if (!law) return {};
+    return acoustics::BeamPattern(*law, wavelength);
+}
+
+double powerOf(const std::optional<acoustics::BeamPattern>& law, double angle, double axis = 0) {
+    return law ? law->power(angle, axis) : 1;
+}
+
+/** The angle to either side of 0, turned by whole turns. */
+double wrapped(double angle) { return std::remainder(angle, 2 * pi); }
+
+/** The angle farthest from `inner` towards `outer` at which `power` is not below the floor, and a step beyond. */
+template <class Power>
+double farthest(double outer, double inner, double floor, const Power& power) {
+    const double step = std::copysign(reach_step, inner - outer);
+    double angle = outer;
+    while (std::abs(inner - angle) > reach_step && power(angle) < floor) angle += step;
+    return step > 0 ? std::max(outer, angle - step) : std::min(outer, angle - step);
+}
+
+double smallestSpacing(const std::vector<Beam>& beams) {
+    double smallest = 2 * pi;
+    for (size_t k = 1; k < beams.size(); ++k)
+        smallest = std::min(smallest, std::abs(beams[k].centre - beams[k - 1].centre));
+    return smallest;
+}
+
+}  // namespace
+
+Directivity::Directivity(const SonarConfig& config)
+    : conical_(config.beam_geometry == BeamGeometry::Conical),
+      floor_(std::pow(10, config.beam_pattern->floor_db / 10)) {
+    std::optional<double> wavelength;
+    if (config.frequency_khz) wavelength = config.speedOfSound() / (1e3 * *config.frequency_khz);
+    transmit_azimuth_ = patternOf(config.beam_pattern->transmit.azimuth, wavelength);
+    receive_azimuth_ = patternOf(config.beam_pattern->receive.azimuth, wavelength);
+    transmit_elevation_ = patternOf(config.beam_pattern->transmit.elevation, wavelength);
+    receive_elevation_ = patternOf(config.beam_pattern->receive.elevation, wavelength);
+}
+
+double Directivity::azimuth(double azimuth, double bearing) const {
+    const double sent = powerOf(transmit_azimuth_, azimuth);
+    return sent * (conical_ ? powerOf(receive_azimuth_, azimuth, bearing)
+                            : powerOf(receive_azimuth_, wrapped(azimuth - bearing)));
+}
+
+double Directivity::elevation(double angle) const {
+    return powerOf(transmit_elevation_, angle) * powerOf(receive_elevation_, angle);
+}
+
+double Directivity::elevationReach() const {
+    const auto either = [&](double angle) { return std::max(elevation(angle), elevation(-angle)); };
+    return farthest(pi / 2, 0, floor_, either);
+}
+
+Directivity::Span Directivity::azimuthSpan(const std::vector<Beam>& beams) const {
+    const double limit = conical_ ? pi / 2 : pi;
+    const auto any = [&](double at) {
+        return std::max({azimuth(at, beams.front().centre), azimuth(at, beams[beams.size() / 2].centre),
+                         azimuth(at, beams.back().centre)});
+    };
+    return {farthest(-limit, beams.front().centre, floor_, any), farthest(limit, beams.back().centre, floor_, any)};
+}
+
+double Directivity::halfPowerAzimuth() const {
+    double angle = 0;
+    while (angle < pi && azimuth(angle, 0) > 0.5) angle += reach_step / 50;
+    return 2 * angle;
+}
+
+SonarConfig sampledConfig(const SonarConfig& config) {
+    if (!config.beam_pattern) return config;
+    const Directivity directivity(config);
+    SonarConfig sampled = config;
+    if (directivity.hasElevation()) sampled.beam_height_deg = types::degrees(2 * directivity.elevationReach());
+    if (!directivity.hasAzimuth()) return sampled;
+    const std::vector<Beam> beams = makeBeams(config);
+    const auto [low, high] = directivity.azimuthSpan(beams);
+    const double fine =
+        std::min(smallestSpacing(beams), directivity.halfPowerAzimuth()) / std::max(min_cells, config.columnsPerBeam());
+    const int cells = std::clamp(static_cast<int>(std::ceil((high - low) / fine)), 1, max_cells);
+    const double width = types::degrees(high - low) / cells;
+    sampled.bearings_deg.clear();
+    for (int c = 0; c < cells; ++c) sampled.bearings_deg.push_back(types::degrees(low) + (c + 0.5) * width);
+    sampled.beam_width_deg = width;
+    sampled.quality.columns_per_beam = 1;
+    return sampled;
+}
+
+std::string whyTooLarge(const SonarConfig& config) {
+    constexpr int64_t max_bins = int64_t{1} << 24;
+    const SonarConfig sampled = sampledConfig(config);
+    if (int64_t{sampled.beams()} * sampled.bin_count <= max_bins) return {};
+    return fmt::format("has {} azimuth cells of {} bins each, {} in all; may be {}: give wider beams or fewer bins",
+                       sampled.beams(), sampled.bin_count, int64_t{sampled.beams()} * sampled.bin_count, max_bins);
+}
+
+}  // namespace insonify::sonar

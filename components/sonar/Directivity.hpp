@@ -1,0 +1,51 @@
+#pragma once
+#include <optional>
+#include <string>
+
+#include "components/acoustics/BeamPattern.hpp"
+#include "components/sonar/BeamFan.hpp"
+#include "components/sonar/SonarConfig.hpp"
+
+namespace insonify::sonar {
+
+/** Where a sonar sends and hears: the two-way power pattern of its `beam_pattern`, transmit times receive, each the
+ *  product of a law in azimuth and one in elevation (ACOUSTICS.md 14). What has no law is 1 in all directions. */
+class Directivity {
+public:
+    /** @throws types::ConfigError for a measured table that cannot be read, or an aperture without a frequency. */
+    explicit Directivity(const SonarConfig& config);
+
+    bool hasAzimuth() const { return transmit_azimuth_ || receive_azimuth_; }
+    bool hasElevation() const { return transmit_elevation_ || receive_elevation_; }
+    /** Of a beam of a bearing, at an azimuth from the sonar's axis [rad]. A conical fan is a straight array, whose
+     *  beams widen as they are steered; the beams of a planar one are alike. */
+    double azimuth(double azimuth, double bearing) const;
+    double elevation(double angle) const;
+    double floor() const { return floor_; }  ///< Below it a pattern is not drawn [1].
+
+    /** Elevation to either side beyond which it stays below the floor [rad], at most pi/2. */
+    double elevationReach() const;
+    /** Azimuths of a fan between which any beam is above the floor [rad]. */
+    struct Span {
+        double low, high;
+    };
+    Span azimuthSpan(const std::vector<Beam>& beams) const;
+    /** Between the half-power points of a beam straight ahead, two way [rad]. */
+    double halfPowerAzimuth() const;
+
+private:
+    using Law = std::optional<acoustics::BeamPattern>;
+    bool conical_;
+    double floor_;
+    Law transmit_azimuth_, receive_azimuth_, transmit_elevation_, receive_elevation_;
+};
+
+/** The sonar as it is sampled: where beams have a pattern, its azimuth cells take the place of the beams, and cells and
+ *  aperture go as far as the pattern is above its floor. Without `beam_pattern`, `config` itself. */
+SonarConfig sampledConfig(const SonarConfig& config);
+
+/** Why the cells of a sonar would take more memory than there may be; empty where they do not.
+ *  @throws types::ConfigError as Directivity does. */
+std::string whyTooLarge(const SonarConfig& config);
+
+}  // namespace insonify::sonar
