@@ -158,6 +158,37 @@ TEST(PagesTest, EveryCommandAndOptionThatAPageNamesIsThere) {
                 testing::ElementsAre("--ping", "--worst"));
 }
 
+TEST(PagesTest, EveryTaskThatAPageShowsIsOneThatTheSchemaKnows) {
+    const TestFolder folder;
+    writeFile(folder / "schema.json", callInsonify(folder, {"schema"}).out);
+    for (const Page& page : allPages())
+        for (const CodeBlock& block : page.blocks())
+            if (block.language == "yaml")
+                writeFile(folder / (std::to_string(block.line) + "_" +
+                                    fs::path(page.path()).parent_path().stem().string() + ".yml"),
+                          block.text);
+    const Outcome outcome = python(folder, R"(
+import glob, json, re, textwrap, yaml, jsonschema
+schema, seen = json.load(open("schema.json")), 0
+def tasks(node):
+    if isinstance(node, dict) and "::" in str(node.get("type", "")):
+        yield node
+    elif isinstance(node, (dict, list)):
+        for child in node.values() if isinstance(node, dict) else node:
+            yield from tasks(child)
+for name in sorted(glob.glob("*.yml")):
+    for part in re.split(r"^\.\.\.$", open(name).read(), flags=re.MULTILINE):
+        for task in tasks(yaml.safe_load(textwrap.dedent(part))):
+            try:
+                jsonschema.validate({"schedule": "realtime", "tasks": {"task": task}}, schema)
+            except jsonschema.ValidationError as error:
+                raise SystemExit(f"{name}: {task}: {error.message}")
+            seen += 1
+print(seen))");
+    ASSERT_EQ(outcome.code, 0) << outcome.err;
+    EXPECT_GT(std::stoi(outcome.out), 15);
+}
+
 TEST(PagesTest, TheComponentBuildsAndRunsInADeployment) {
     std::string deployment =
         replaced(wall_deployment, "tasks:\n",
