@@ -91,7 +91,7 @@ struct QualityConfig {
 };
 
 /** What simplified meshes may cost. A bound, not a wish: all meshes are drawn in full, for on rough floors those that
- *  keep to the default are hardly simpler (README.md, What is left out). */
+ *  keep to the default are hardly simpler (components/sonar/README.md, The plan). */
 struct DetailConfig {
     double error = 0.005;
 

@@ -2,6 +2,7 @@
 #include <gmock/gmock.h>
 
 #include "tests/install/Outside.hpp"
+#include "tests/support/Pages.hpp"
 
 using namespace insonify::deployer;
 using testing::HasSubstr;
@@ -36,8 +37,9 @@ TEST(DebTest, ThePackagesUnpackToACommandThatRunsAndAProjectThatBuilds) {
     const Outcome ran =
         call(folder, {folder / "root/usr/bin/insonify", "run", "wall.yml", "--pings", "1", "--out", "out"});
     EXPECT_EQ(ran.code, 0) << ran.err;
-    writeFile(folder / "CMakeLists.txt", readmeCode("Use it from a project of your own", "cmake"));
-    writeFile(folder / "mean_echo.cpp", readmeCode("A component of your own", "cpp"));
+    const insonify::test::Page page = insonify::test::readPage("components/framework/README.md");
+    writeFile(folder / "CMakeLists.txt", codeOf(page, "cmake", "Use it from a project of your own"));
+    writeFile(folder / "mean_echo.cpp", codeOf(page, "cpp", "A component of your own"));
     const Outcome built = buildOutside(folder, folder / "root/usr");
     EXPECT_EQ(built.code, 0) << built.out << built.err;
 }

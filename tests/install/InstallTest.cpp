@@ -2,6 +2,7 @@
 #include <gmock/gmock.h>
 
 #include "tests/install/Outside.hpp"
+#include "tests/support/Pages.hpp"
 
 using namespace insonify::deployer;
 using testing::HasSubstr;
@@ -20,8 +21,9 @@ const std::string with_the_component = replaced(
 TEST(InstallTest, AProjectOutsideBuildsAComponentThatTheInstalledCommandRuns) {
     const WallFolder folder(with_the_component);
     install(folder);
-    writeFile(folder / "CMakeLists.txt", readmeCode("Use it from a project of your own", "cmake"));
-    writeFile(folder / "mean_echo.cpp", readmeCode("A component of your own", "cpp"));
+    const insonify::test::Page page = insonify::test::readPage("components/framework/README.md");
+    writeFile(folder / "CMakeLists.txt", codeOf(page, "cmake", "Use it from a project of your own"));
+    writeFile(folder / "mean_echo.cpp", codeOf(page, "cpp", "A component of your own"));
     const Outcome built = buildOutside(folder, folder / "prefix");
     ASSERT_EQ(built.code, 0) << built.out << built.err;
 

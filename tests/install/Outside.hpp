@@ -6,13 +6,6 @@
 
 namespace insonify::deployer {
 
-/** The first block of code in this language in the README, from the heading on. */
-inline std::string readmeCode(const std::string& heading, const std::string& language) {
-    const std::string readme = readFile(fs::path(INSONIFY_SOURCE_DIR) / "README.md"), fence = "```" + language + "\n";
-    const size_t start = readme.find(fence, readme.find("\n## " + heading + "\n")) + fence.size();
-    return readme.substr(start, readme.find("```", start) - start);
-}
-
 inline Outcome call(const TestFolder& folder, std::vector<std::string> words) {
     return Process(std::move(words), folder.path()).wait();
 }

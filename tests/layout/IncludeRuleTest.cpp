@@ -1,4 +1,4 @@
-// Who may include whom: the rule of the README's architecture page, read from the sources.
+// Who may include whom: the rule of components/README.md, read from the sources.
 #include <gtest/gtest.h>
 
 #include <map>

@@ -41,14 +41,4 @@ inline std::vector<Source> sourcesIn(const std::string& folder, const std::vecto
     return found;
 }
 
-/** Targets of the links and pictures in a Markdown text that are files of ours. */
-inline std::vector<std::string> localLinks(const std::string& text) {
-    std::vector<std::string> links;
-    for (size_t at = text.find("]("); at != std::string::npos; at = text.find("](", at + 2)) {
-        const std::string target = text.substr(at + 2, text.find(')', at) - at - 2);
-        if (!target.starts_with("http") && !target.starts_with("#")) links.push_back(target);
-    }
-    return links;
-}
-
 }  // namespace insonify::layout

@@ -1,0 +1,220 @@
+// What the pages show works as it stands there: commands, deployments, code.
+#include <gmock/gmock.h>
+
+#include <map>
+
+#include "tests/deployer/Wall.hpp"
+#include "tests/support/Pages.hpp"
+
+using namespace insonify::deployer;
+using insonify::test::allPages;
+using insonify::test::CodeBlock;
+using insonify::test::codeOf;
+using insonify::test::Page;
+using insonify::test::readPage;
+using testing::HasSubstr;
+
+namespace {
+
+const fs::path root = INSONIFY_SOURCE_DIR;
+
+bool holdsCommands(const CodeBlock& block) { return block.language == "sh"; }
+
+/** The pages with commands to be run. */
+std::vector<std::string> pagesWithCommands() {
+    std::vector<std::string> paths;
+    for (const Page& page : allPages())
+        if (std::ranges::any_of(page.blocks(), holdsCommands)) paths.push_back(page.path());
+    return paths;
+}
+
+/** What a user has in the folder in which he reads a page: the project, with nothing in it that a run has left. */
+void makeCheckout(const TestFolder& folder) {
+    fs::copy(root / "deploy", folder / "deploy", fs::copy_options::recursive);
+    for (const char* name : {"types", "components", "shaders", "scripts", "tests"})
+        fs::create_directory_symlink(root / name, folder / name);
+    fs::create_directories(folder / "build");
+    fs::create_directory_symlink(INSONIFY_BIN_DIR, folder / "build/bin");
+}
+
+Outcome runInBash(const TestFolder& folder, const std::string& commands) {
+    const std::string path = std::string("export PATH=") + INSONIFY_BIN_DIR + ":$PATH\n";
+    return Process({"bash", "-euo", "pipefail", "-c", path + commands}, folder.path()).wait();
+}
+
+class PagesTest : public testing::TestWithParam<std::string> {};
+
+/** What the command says of itself. */
+struct Commands {
+    std::map<std::string, std::string> help;  ///< By the words of the command, after "insonify": "", "log", "log cut".
+
+    Commands() {
+        add("");
+        for (const char* parent : {"log", "study"}) add(parent);
+    }
+    /** The longest of its commands that a call begins with. */
+    std::string nameOf(const std::vector<std::string>& words) const {
+        std::string name;
+        for (size_t i = 1; i < words.size(); ++i) {
+            const std::string longer = name.empty() ? words[i] : name + " " + words[i];
+            if (!help.contains(longer)) return name;
+            name = longer;
+        }
+        return name;
+    }
+    bool asksForOneMore(const std::string& name) const {
+        return help.at(name).find("Subcommands:") != std::string::npos;
+    }
+    bool knows(const std::string& name, const std::string& option) const {
+        return std::regex_search(help.at(name), std::regex(option + "[^-\\w]"));
+    }
+
+private:
+    static std::string helpOf(const std::string& name) {
+        const TestFolder folder;
+        return runInBash(folder, "insonify " + name + " --help").out;
+    }
+    /** The commands of a list of "Subcommands:". */
+    void add(const std::string& parent) {
+        const std::string text = help[parent] = helpOf(parent);
+        std::istringstream lines(text.substr(text.find("Subcommands:")));
+        for (std::string line; std::getline(lines, line);) {
+            const std::string word = line.substr(0, line.find(' ', 2));
+            if (!line.starts_with("  ") || word.size() < 3) continue;
+            const std::string name = (parent.empty() ? "" : parent + " ") + word.substr(2);
+            help[name] = helpOf(name);
+        }
+    }
+};
+
+std::vector<std::string> wordsOf(const std::string& line) {
+    std::istringstream stream(line.substr(0, line.find(" #")));
+    std::vector<std::string> words;
+    for (std::string word; stream >> word;) words.push_back(word);
+    return words;
+}
+
+/** All that the page tells to type which begins with the name of the command. */
+std::vector<std::string> shownCalls(const Page& page) {
+    std::vector<std::string> calls = page.inlineCode();
+    for (const CodeBlock& block : page.blocks())
+        if (block.language == "sh" || block.language == "console") {
+            std::istringstream lines(block.text);
+            for (std::string line; std::getline(lines, line);) calls.push_back(line);
+        }
+    std::erase_if(calls, [](const std::string& call) { return !call.starts_with("insonify "); });
+    return calls;
+}
+
+/** The command or the options of a call that are not there. */
+std::vector<std::string> unknownIn(const std::string& call, const Commands& commands) {
+    const std::vector<std::string> words = wordsOf(call);
+    const std::string name = commands.nameOf(words);
+    const size_t next = name.empty() ? 1 : 2 + static_cast<size_t>(std::ranges::count(name, ' '));
+    std::vector<std::string> unknown;
+    if (commands.asksForOneMore(name) && next < words.size() && !words[next].starts_with("-")) return {words[next]};
+    for (const std::string& word : words)
+        if (word.starts_with("--") && !commands.knows(name, word)) unknown.push_back(word);
+    return unknown;
+}
+
+}  // namespace
+
+TEST_P(PagesTest, ItsCommandsWorkOneAfterTheOther) {
+    const TestFolder folder;
+    makeCheckout(folder);
+    const Page page = readPage(GetParam());
+    size_t run = 0;
+    for (const CodeBlock& block : page.blocks()) {
+        if (!holdsCommands(block)) continue;
+        const Outcome outcome = runInBash(folder, block.text);
+        ASSERT_EQ(outcome.code, 0) << page.path() << ":" << block.line << "\n" << block.text << outcome.err;
+        ++run;
+    }
+    const auto fences = std::ranges::count_if(
+        page.lines(), [](const std::string& line) { return line.find("```sh") != std::string::npos; });
+    EXPECT_EQ(run, fences) << page.path();
+}
+
+INSTANTIATE_TEST_SUITE_P(All, PagesTest, testing::ValuesIn(pagesWithCommands()), [](const auto& tested) {
+    std::string name = tested.param;
+    std::ranges::replace_if(
+        name, [](unsigned char c) { return !std::isalnum(c); }, '_');
+    return name;
+});
+
+TEST(PagesTest, EveryCommandAndOptionThatAPageNamesIsThere) {
+    const Commands commands;
+    size_t calls = 0;
+    for (const Page& page : allPages())
+        for (const std::string& call : shownCalls(page)) {
+            EXPECT_THAT(unknownIn(call, commands), testing::IsEmpty()) << page.path() << ": " << call;
+            ++calls;
+        }
+    EXPECT_GT(calls, 50u);
+    EXPECT_THAT(unknownIn("insonify log mend x.log", commands), testing::ElementsAre("mend"));
+    EXPECT_THAT(unknownIn("insonify lgo info x.log", commands), testing::ElementsAre("lgo"));
+    EXPECT_THAT(unknownIn("insonify run x.yml --ping 3 --worst 3 --out y  # --no", commands),
+                testing::ElementsAre("--ping", "--worst"));
+}
+
+TEST(PagesTest, EveryTaskThatAPageShowsIsOneThatTheSchemaKnows) {
+    const TestFolder folder;
+    if (python(folder, "import jsonschema, yaml").code != 0) GTEST_SKIP() << "there is no python3-jsonschema";
+    writeFile(folder / "schema.json", callInsonify(folder, {"schema"}).out);
+    for (const Page& page : allPages())
+        for (const CodeBlock& block : page.blocks())
+            if (block.language == "yaml")
+                writeFile(folder / (std::to_string(block.line) + "_" +
+                                    fs::path(page.path()).parent_path().stem().string() + ".yml"),
+                          block.text);
+    const Outcome outcome = python(folder, R"(
+import glob, json, re, textwrap, yaml, jsonschema
+schema, seen = json.load(open("schema.json")), 0
+def tasks(node):
+    if isinstance(node, dict) and "::" in str(node.get("type", "")):
+        yield node
+    elif isinstance(node, (dict, list)):
+        for child in node.values() if isinstance(node, dict) else node:
+            yield from tasks(child)
+for name in sorted(glob.glob("*.yml")):
+    for part in re.split(r"^\.\.\.$", open(name).read(), flags=re.MULTILINE):
+        for task in tasks(yaml.safe_load(textwrap.dedent(part))):
+            try:
+                jsonschema.validate({"schedule": "realtime", "tasks": {"task": task}}, schema)
+            except jsonschema.ValidationError as error:
+                raise SystemExit(f"{name}: {task}: {error.message}")
+            seen += 1
+print(seen))");
+    ASSERT_EQ(outcome.code, 0) << outcome.err;
+    EXPECT_GT(std::stoi(outcome.out), 15);
+}
+
+TEST(PagesTest, TheComponentBuildsAndRunsInADeployment) {
+    std::string deployment =
+        replaced(wall_deployment, "tasks:\n",
+                 "libraries: [mean_echo.so]\ntasks:\n  mean: {type: example::MeanEchoTask, properties: {beyond: 2}}\n");
+    deployment +=
+        "  - {from: sonar.ping, to: mean.ping}\n  - {from: mean.mean, to: log.mean, policy: {type: buffer, size: "
+        "64}}\n";
+    const WallFolder folder(deployment);
+    writeFile(folder / "mean_echo.cpp", codeOf(readPage("components/framework/README.md"), "cpp"));
+    const Outcome built =
+        Process({"g++", "-std=c++20", "-shared", "-fPIC", "-I" + root.string(), "mean_echo.cpp", "-o", "mean_echo.so"},
+                folder.path())
+            .wait();
+    ASSERT_EQ(built.code, 0) << built.err;
+
+    const Outcome outcome = folder.run({"--pings", "2"});
+    ASSERT_EQ(outcome.code, 0) << outcome.err;
+    ASSERT_EQ(
+        callInsonify(folder, {"log", "export", "out/wall.0.log", "--stream", "mean.mean", "--to", "mean.csv"}).code, 0);
+    EXPECT_TRUE(readFile(folder / "mean.csv").starts_with("time,value\n"));
+    EXPECT_THAT(callInsonify(folder, {"run", "wall.yml", "--set", "mean.beyond=-1"}).err,
+                HasSubstr("tasks.mean.properties.beyond"));
+}
+
+TEST(PagesTest, TheFirstDeploymentIsTheMinimalOne) {
+    for (const char* path : {"README.md", "components/framework/README.md"})
+        EXPECT_THAT(readFile(root / "deploy/minimal.yml"), HasSubstr(codeOf(readPage(path), "yaml"))) << path;
+}

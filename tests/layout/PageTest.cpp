@@ -1,0 +1,228 @@
+// The project's pages hang together: links and anchors, names of files, tests and messages, the way in and back.
+#include <gmock/gmock.h>
+
+#include <map>
+
+#include "tests/layout/Sources.hpp"
+#include "tests/support/Pages.hpp"
+
+using namespace insonify::layout;
+using insonify::test::allPages;
+using insonify::test::CodeBlock;
+using insonify::test::Page;
+using insonify::test::readPage;
+using ::testing::Contains;
+using ::testing::ElementsAre;
+using ::testing::IsEmpty;
+namespace fs = std::filesystem;
+
+namespace {
+
+using Names = std::vector<std::string>;
+
+const fs::path root = INSONIFY_SOURCE_DIR;
+
+bool isOnTheWeb(const std::string& link) { return link.find(':') != std::string::npos; }
+
+/** The file that a link of the page leads to, from the root; "" for a place on the page itself. */
+std::string targetOf(const Page& page, const std::string& link) {
+    const std::string file = link.substr(0, link.find('#'));
+    return file.empty() ? "" : (fs::path(page.path()).parent_path() / file).lexically_normal().generic_string();
+}
+
+bool leadsSomewhere(const Page& page, const std::string& link) {
+    const std::string target = targetOf(page, link);
+    if (!target.empty() && !fs::exists(root / target)) return false;
+    const size_t hash = link.find('#');
+    if (hash == std::string::npos) return true;
+    return (target.empty() ? page : readPage(target)).anchors().contains(link.substr(hash + 1));
+}
+
+Names brokenLinks(const Page& page) {
+    Names broken = page.links();
+    std::erase_if(broken, [&](const std::string& link) { return isOnTheWeb(link) || leadsSomewhere(page, link); });
+    return broken;
+}
+
+/** Addresses that no browser could open. */
+Names brokenAddresses(const Page& page) {
+    static const std::regex form(R"(https://[\w-]+(\.[\w-]+)+(/[\w./~%#?=&+:-]*)?)");
+    Names broken = page.addresses();
+    std::erase_if(broken, [&](const std::string& address) { return std::regex_match(address, form); });
+    return broken;
+}
+
+/** Cells of a row of a table; 0 for a line that is none. */
+size_t cellsOf(const std::string& line) {
+    if (!line.starts_with("|")) return 0;
+    size_t bars = 0;
+    for (size_t i = 0; i < line.size(); ++i) bars += line[i] == '|' && (i == 0 || line[i - 1] != '\\');
+    return bars - 1;
+}
+
+/** Rows of tables with more or fewer cells than the row above. */
+Names unevenRows(const Page& page) {
+    Names uneven;
+    size_t above = 0;
+    for (const std::string& line : page.lines()) {
+        const size_t cells = cellsOf(line);
+        if (cells > 0 && above > 0 && cells != above) uneven.push_back(line);
+        above = cells;
+    }
+    return uneven;
+}
+
+/** Files and folders of the project that a page names in back quotes and that are not there. */
+Names missingPaths(const Page& page) {
+    static const std::regex path("(types|components|shaders|deploy|tests|scripts)/[\\w./-]+");
+    Names missing;
+    for (const std::string& code : page.inlineCode()) {
+        const std::string word = code.substr(0, code.find(' '));
+        if (std::regex_match(word, path) && !fs::exists(root / word)) missing.push_back(word);
+    }
+    return missing;
+}
+
+/** "Suite.Name" of every TEST in the project. */
+std::set<std::string> allTests() {
+    static const std::regex test(R"(TEST(?:_F|_P)?\((\w+),\s*(\w+)\))");
+    std::set<std::string> tests;
+    for (const Source& source : sourcesIn("tests", {".cpp"})) {
+        std::string code;
+        for (const std::string& line : source.lines) code += line + "\n";
+        for (std::sregex_iterator it(code.begin(), code.end(), test); it != std::sregex_iterator(); ++it)
+            tests.insert((*it)[1].str() + "." + (*it)[2].str());
+    }
+    return tests;
+}
+
+Names missingTests(const Page& page, const std::set<std::string>& tests) {
+    static const std::regex test(R"(\w+Test\.\w+)");
+    Names missing;
+    for (const std::string& code : page.inlineCode())
+        if (std::regex_match(code, test) && !tests.contains(code)) missing.push_back(code);
+    return missing;
+}
+
+/** All code that prints, adjacent literals joined. */
+std::string printingCode() {
+    std::string code;
+    for (const char* folder : {"components", "types", "scripts"})
+        for (const Source& source : sourcesIn(folder, {".cpp", ".hpp", ".js", ""}))
+            for (const std::string& line : source.lines) code += line + "\n";
+    static const std::regex between(R"("\s*\n\s*")");
+    return std::regex_replace(code, between, "");
+}
+
+/** Parts of a quoted message, between the dots that stand for what changes, that the code does not print. */
+Names unprintedParts(const std::string& message, const std::string& code) {
+    Names unprinted;
+    for (size_t at = 0; at < message.size();) {
+        const size_t end = std::min(message.find("...", at), message.size());
+        std::string part = message.substr(at, end - at);
+        part.erase(0, part.find_first_not_of(" :;,.("));
+        part.erase(part.find_last_not_of(" :;,.(") + 1);
+        if (part.size() > 2 && code.find(part) == std::string::npos) unprinted.push_back(part);
+        at = end + 3;
+    }
+    return unprinted;
+}
+
+}  // namespace
+
+TEST(PageTest, LinksOfEveryPageLeadSomewhere) {
+    for (const Page& page : allPages()) {
+        EXPECT_THAT(brokenLinks(page), IsEmpty()) << page.path();
+        EXPECT_THAT(brokenAddresses(page), IsEmpty()) << page.path();
+    }
+}
+
+TEST(PageTest, EveryPageIsReachedFromTheReadme) {
+    std::set<std::string> reached;
+    for (Names next = {"README.md"}; !next.empty();) {
+        const std::string path = next.back();
+        next.pop_back();
+        if (!path.ends_with(".md") || !reached.insert(path).second) continue;
+        const Page page = readPage(path);
+        for (const std::string& link : page.links())
+            if (!isOnTheWeb(link)) next.push_back(targetOf(page, link));
+    }
+    for (const Page& page : allPages()) EXPECT_TRUE(reached.contains(page.path())) << page.path();
+}
+
+TEST(PageTest, EveryPageBesideTheCodeLeadsBackToTheReadme) {
+    for (const Page& page : allPages()) {
+        if (page.path() == "README.md" || page.path() == "CHANGELOG.md" || fs::path(page.path()).stem() == "ACOUSTICS")
+            continue;
+        Names targets;
+        for (const std::string& link : page.links()) targets.push_back(targetOf(page, link));
+        EXPECT_THAT(targets, Contains("README.md")) << page.path();
+    }
+}
+
+TEST(PageTest, EveryComponentHasAPage) {
+    for (const auto& entry : fs::directory_iterator(root / "components"))
+        EXPECT_TRUE(!entry.is_directory() || fs::exists(entry.path() / "README.md")) << entry.path();
+}
+
+TEST(PageTest, TheReadmeIsALandingPageWithATableOfItsContents) {
+    const Page readme = readPage("README.md");
+    EXPECT_LE(readme.lines().size(), 250u);
+    const Names links = readme.links();
+    for (const std::string& heading : readme.headings(2))
+        EXPECT_THAT(links, Contains("#" + *Page("", "## " + heading).anchors().begin())) << heading;
+}
+
+TEST(PageTest, EveryBlockOfCodeSaysWhatItIs) {
+    // Of commands, `sh` is run by tests/deployer/PagesTest.cpp; `console` is what a test cannot run: it installs, waits
+    // for others, keeps to the wall clock or takes minutes.
+    static const std::set<std::string> known = {"sh", "console", "yaml", "json", "cpp", "glsl", "cmake", "text"};
+    for (const Page& page : allPages())
+        for (const CodeBlock& block : page.blocks())
+            EXPECT_TRUE(known.contains(block.language)) << page.path() << ":" << block.line << ": " << block.language;
+}
+
+TEST(PageTest, TheRowsOfATableHaveTheSameNumberOfCells) {
+    for (const Page& page : allPages()) EXPECT_THAT(unevenRows(page), IsEmpty()) << page.path();
+}
+
+TEST(PageTest, EveryFileAndTestThatAPageNamesIsThere) {
+    const std::set<std::string> tests = allTests();
+    for (const Page& page : allPages()) {
+        EXPECT_THAT(missingPaths(page), IsEmpty()) << page.path();
+        EXPECT_THAT(missingTests(page, tests), IsEmpty()) << page.path();
+    }
+}
+
+TEST(PageTest, EveryMessageOfTheTroubleshootingPageIsOneThatTheCodePrints) {
+    const std::string code = printingCode();
+    const Page page = readPage("components/TROUBLESHOOTING.md");
+    size_t messages = 0;
+    for (const CodeBlock& block : page.blocks()) {
+        if (block.language != "text") continue;
+        std::istringstream lines(block.text);
+        for (std::string message; std::getline(lines, message); ++messages)
+            EXPECT_THAT(unprintedParts(message, code), IsEmpty()) << message;
+    }
+    EXPECT_GT(messages, 30u);
+}
+
+TEST(PageTest, TheRulesRefuseWhatTheyShould) {
+    const Page page(
+        "components/README.md",
+        "# A page\n## A page\n[a](#a-page-1) [b](#nowhere) [c](log/README.md#damage) [d](log/README.md#no)\n"
+        "[e](nowhere.png) ![f](../deploy/pictures/harbour_fls.png) `[g](no.png)` [h](https://a.org/b_(c))\n"
+        "https://example.org/a, http:/broken and https://nowhere\n```sh\n[i](no.png)\n```\n"
+        "`tests/layout/PageTest.cpp`, `scripts/nowhere --all`, `PageTest.Nothing`\n");
+    EXPECT_THAT(brokenLinks(page), ElementsAre("#nowhere", "log/README.md#no", "nowhere.png"));
+    EXPECT_THAT(brokenAddresses(page), ElementsAre("https://a.org/b_(c", "http:/broken", "https://nowhere"));
+    EXPECT_THAT(missingPaths(page), ElementsAre("scripts/nowhere"));
+    EXPECT_THAT(missingTests(page, allTests()), ElementsAre("PageTest.Nothing"));
+    EXPECT_THAT(unprintedParts("...: is 3 m; may be ... or so", "\"{} is 3 m; may be {}\""), ElementsAre("or so"));
+    EXPECT_THAT(unevenRows(Page("", "| a | b |\n| - | - |\n| a\\|b | c |\n\n| d |\n| e | f |\n")),
+                ElementsAre("| e | f |"));
+    ASSERT_EQ(page.blocks().size(), 1u);
+    EXPECT_EQ(page.blocks()[0].language, "sh");
+    EXPECT_EQ(page.blocks()[0].line, 6u);
+    EXPECT_EQ(codeOf(page, "sh"), "[i](no.png)\n");
+}
