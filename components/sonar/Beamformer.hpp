@@ -9,7 +9,7 @@
 namespace insonify::sonar {
 
 /** Forms beams from azimuth cells: beam k hears the sum over the cells of its two-way pattern there times what comes
- *  from the cell (ACOUSTICS.md 14.4). Near its bearing a beam weighs each cell; farther off, where the pattern is all
+ *  from the cell (ACOUSTICS.md 5.11). Near its bearing a beam weighs each cell; farther off, where the pattern is all
  *  sidelobes, so many cells together, by the pattern's mean. */
 class Beamformer {
 public:

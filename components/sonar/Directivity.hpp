@@ -9,7 +9,7 @@
 namespace insonify::sonar {
 
 /** Where a sonar sends and hears: the two-way power pattern of its `beam_pattern`, transmit times receive, each the
- *  product of a law in azimuth and one in elevation (ACOUSTICS.md 14). What has no law is 1 in all directions. */
+ *  product of a law in azimuth and one in elevation (ACOUSTICS.md 5.9). What has no law is 1 in all directions. */
 class Directivity {
 public:
     /** @throws types::ConfigError for a measured table that cannot be read, or an aperture without a frequency. */

@@ -7,7 +7,7 @@
 
 namespace insonify::sonar {
 
-/** What the pulse makes of a beam: each bin's echo spreads over its neighbours as h does (ACOUSTICS.md 15), the echo
+/** What the pulse makes of a beam: each bin's echo spreads over its neighbours as h does (ACOUSTICS.md 5.12), the echo
  *  being spread evenly over its own bin and h taken in the middle of the others. */
 class RangeResponse {
 public:

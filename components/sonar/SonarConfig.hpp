@@ -46,7 +46,7 @@ struct ArrayConfig {
     }
 };
 
-/** Directivity, two way: what is sent times what is heard (ACOUSTICS.md 14). */
+/** Directivity, two way: what is sent times what is heard (ACOUSTICS.md 5.9). */
 struct BeamPatternConfig {
     ArrayConfig transmit, receive;
     double floor_db = -60;

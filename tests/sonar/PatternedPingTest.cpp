@@ -1,5 +1,5 @@
-// Pings of sonars with beam patterns and pulses, against closed forms and the properties of apertures (ACOUSTICS.md 14,
-// 15).
+// Pings of sonars with beam patterns and pulses, against closed forms and the properties of apertures (ACOUSTICS.md 5.8
+// to 5.13).
 #include <gmock/gmock.h>
 
 #include <numbers>
@@ -64,7 +64,7 @@ test::Form weightedBottom(double height, double delta, const std::function<doubl
     };
 }
 
-TEST(BeamPatternTest, ABottomIsHeardByThePatternInElevation) {
+TEST(PatternedPingTest, ABottomIsHeardByThePatternInElevation) {
     SonarConfig config = sonarOf(60, 16, 0.1, 300);
     config.beam_pattern.emplace().transmit.elevation = lawOf(Weighting::Gaussian, 30);
     config.beam_pattern->receive.elevation = lawOf(Weighting::Gaussian, 40);
@@ -79,7 +79,7 @@ TEST(BeamPatternTest, ABottomIsHeardByThePatternInElevation) {
                    weightedBottom(5, delta, [&](double e) { return sent.power(e); }));
 }
 
-TEST(BeamPatternTest, ABottomIsHeardByThePatternsWholeWidthInAzimuth) {
+TEST(PatternedPingTest, ABottomIsHeardByThePatternsWholeWidthInAzimuth) {
     SonarConfig config = sonarOf(60, 30, 0.1, 200);
     config.beam_height_deg = 40;
     config.beam_pattern.emplace().receive.azimuth = lawOf(Weighting::Hann, 3);
@@ -94,7 +94,7 @@ TEST(BeamPatternTest, ABottomIsHeardByThePatternsWholeWidthInAzimuth) {
                    test::flatBottom(5, radians(20), radians(2)));
 }
 
-TEST(BeamPatternTest, APatternThatIsOneAllOverChangesNoBit) {
+TEST(PatternedPingTest, APatternThatIsOneAllOverChangesNoBit) {
     SonarConfig config = sonarOf(60, 16, 0.1, 300);
     const auto snapshot = test::snapshotOf(test::sceneOf({test::ground(-5), test::wall(20)}), {}, 0.1, 0.2);
     const types::Sonar plain = pingOf(config, snapshot);
@@ -133,7 +133,7 @@ Cut cutOf(const acoustics::BeamLaw& law) {
     return cut;
 }
 
-TEST(BeamPatternTest, ATargetSweptAcrossABeamShowsTheTableOfWeightings) {
+TEST(PatternedPingTest, ATargetSweptAcrossABeamShowsTheTableOfWeightings) {
     struct Row {
         Weighting weighting;
         double sidelobe_db;
@@ -155,7 +155,7 @@ TEST(BeamPatternTest, ATargetSweptAcrossABeamShowsTheTableOfWeightings) {
     }
 }
 
-TEST(BeamPatternTest, AStrongTargetsSidelobesStandAsAnArcAcrossTheFan) {
+TEST(PatternedPingTest, AStrongTargetsSidelobesStandAsAnArcAcrossTheFan) {
     SonarConfig config = sonarOf(90, 90, 0.2, 100);
     config.beam_pattern.emplace().receive.azimuth = lawOf(Weighting::Uniform, 1);
     const types::Sonar ping = pingOf(config, test::snapshotOf(test::sceneOf({test::disc(10.1f, 0.1f)})));
@@ -167,7 +167,7 @@ TEST(BeamPatternTest, AStrongTargetsSidelobesStandAsAnArcAcrossTheFan) {
     }
 }
 
-TEST(BeamPatternTest, AChirpShowsAnEchoAsWideAsItsBandwidthSaysAndWhereItIs) {
+TEST(PatternedPingTest, AChirpShowsAnEchoAsWideAsItsBandwidthSaysAndWhereItIs) {
     SonarConfig config = sonarOf(2, 1, 0.01, 1200);
     config.beam_height_deg = 2;
     config.quality.columns_per_beam = 64;
