@@ -22,7 +22,7 @@ PlacedRun placedRun(const ObjectRecord& object, double strength, uint32_t first_
 struct TakenPicture {
     gpu::ReadBack words;
     const uint32_t* pixels = nullptr;  ///< Once they are here: `channels` words each, row by row from below.
-    size_t channels = 2;  ///< Words a pixel [1].
+    size_t channels = 2;               ///< Words a pixel [1].
     std::vector<PlacedRun> ranges;
     bool taken = false;
 };

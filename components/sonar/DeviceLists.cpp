@@ -14,10 +14,8 @@ public:
     DeviceLists(const Setup& setup, gpu::EglContext& context);
     void list(size_t slot, size_t frustum, const ViewFrustum& view) override;
     bool mayShow(size_t slot, size_t frustum) const override { return viewed(slot, frustum).any; }
-    void prepare(size_t slot, size_t frustum, const ViewFrustum& view) override;
-    Draws draws(size_t, size_t) const override {
-        return {&clips_, &normal_transforms_, &device_commands_, &draws_, groups_, {}};
-    }
+    void prepare(size_t slot, std::span<const ViewFrustum> views) override;
+    Draws draws(size_t slot, size_t frustum) const override;
     std::span<const CommandRecord> commands(size_t, size_t) const override { return commands_; }
     void ask(size_t slot) override;
     bool empty(size_t slot) const override;
@@ -29,12 +27,17 @@ private:
         gpu::UploadList<ViewedObject> objects;
         bool any = false;  ///< At least one is in view.
     };
+    /** What a frustum is drawn from, written by the shader: one of each for each cluster. */
+    struct Found {
+        gpu::Buffer draws, clips, normal_transforms;
+    };
     struct Uniforms {
         GLint cluster_count, frustum, frustum_count, outward, range_max;
     };
     const View& viewed(size_t slot, size_t frustum) const { return views_[slot * setup_.frusta + frustum]; }
     void addClusters(std::vector<ClusterRecord>& clusters, uint32_t object);
     ViewedObject viewedObject(size_t object, const ViewFrustum& view, uint32_t in_view) const;
+    void cull(size_t slot, size_t frustum, const ViewFrustum& view) const;
     void setUniforms(size_t frustum, const ViewFrustum& view) const;
     /** Triangles that each frustum showed, then whether each object was. */
     std::span<const uint32_t> counts(size_t slot) const;
@@ -44,9 +47,9 @@ private:
     Uniforms uniforms_;
     std::vector<CommandRecord> commands_;  ///< Of each cluster, the same for all pings.
     std::vector<DrawGroup> groups_;
-    std::vector<View> views_;  ///< Slot after slot, of each frustum.
-    gpu::Buffer clusters_, device_commands_, draws_, clips_, normal_transforms_, shown_;
-    bool begun_ = false;                ///< `shown_` is that of the ping that is being drawn.
+    std::vector<View> views_;   ///< Slot after slot, of each frustum.
+    std::vector<Found> found_;  ///< Of each frustum: the device culls, draws and culls again in order.
+    gpu::Buffer clusters_, device_commands_, shown_;
     std::vector<gpu::ReadBack> asked_;  ///< Of each slot.
 };
 
@@ -66,9 +69,10 @@ DeviceLists::DeviceLists(const Setup& setup, gpu::EglContext& context)
     context.requireStorage(count * sizeof(NormalTransform), "the clusters of all objects");
     clusters_ = gpu::Buffer::of(std::span<const ClusterRecord>(clusters));
     device_commands_ = gpu::Buffer::of(std::span<const CommandRecord>(commands_));
-    draws_ = gpu::Buffer(count * sizeof(DrawCommand));
-    clips_ = gpu::Buffer(count * sizeof(Clip));
-    if (setup.scene.withNormalMaps()) normal_transforms_ = gpu::Buffer(count * sizeof(NormalTransform));
+    const size_t mapped = setup.scene.withNormalMaps() ? count : 0;
+    for (size_t i = 0; i < setup.frusta; ++i)
+        found_.push_back({gpu::Buffer(count * sizeof(DrawCommand)), gpu::Buffer(count * sizeof(Clip)),
+                          gpu::Buffer(mapped * sizeof(NormalTransform))});
     shown_ = gpu::Buffer(counts * sizeof(uint32_t));
     for (size_t slot = 0; slot < setup.slots; ++slot) asked_.emplace_back(counts * sizeof(uint32_t));
     for (size_t i = 0; i < setup.slots * setup.frusta; ++i)
@@ -133,28 +137,44 @@ void DeviceLists::setUniforms(size_t frustum, const ViewFrustum& view) const {
     glUniform1f(uniforms_.range_max, setup_.culler.rangeMax());
 }
 
-void DeviceLists::prepare(size_t slot, size_t frustum, const ViewFrustum& view) {
-    if (!std::exchange(begun_, true)) shown_.clear();
-    program_.use();
+void DeviceLists::cull(size_t slot, size_t frustum, const ViewFrustum& view) const {
     setUniforms(frustum, view);
     const auto bind = [](const gpu::Buffer& buffer, GLuint at) { buffer.bindBase(GL_SHADER_STORAGE_BUFFER, at); };
     bind(objects(slot), OBJECTS_BINDING);
     bind(clusters_, CLUSTERS_BINDING);
     bind(viewed(slot, frustum).objects.buffer(), VIEWED_BINDING);
-    bind(draws_, DRAWS_BINDING);
-    bind(clips_, CLIPS_BINDING);
-    if (setup_.scene.withNormalMaps()) bind(normal_transforms_, NORMAL_TRANSFORMS_BINDING);
+    bind(found_[frustum].draws, DRAWS_BINDING);
+    bind(found_[frustum].clips, CLIPS_BINDING);
+    bind(found_[frustum].normal_transforms, NORMAL_TRANSFORMS_BINDING);
     bind(shown_, SHOWN_BINDING);
-    // What the frustum before is drawn from is written anew.
-    glMemoryBarrier(GL_COMMAND_BARRIER_BIT | GL_VERTEX_ATTRIB_ARRAY_BARRIER_BIT | GL_SHADER_STORAGE_BARRIER_BIT);
     glDispatchCompute(static_cast<GLuint>((commands_.size() + 63) / 64), 1, 1);
-    glMemoryBarrier(GL_COMMAND_BARRIER_BIT | GL_VERTEX_ATTRIB_ARRAY_BARRIER_BIT | GL_SHADER_STORAGE_BARRIER_BIT);
 }
 
-void DeviceLists::ask(size_t slot) {
-    if (!std::exchange(begun_, false)) shown_.clear();  // no frustum was drawn
-    asked_[slot].ask(shown_);
+void DeviceLists::prepare(size_t slot, std::span<const ViewFrustum> views) {
+    // Before: the last ping is drawn from what is written anew. After: it is drawn from.
+    const auto order = [] {
+        glMemoryBarrier(GL_COMMAND_BARRIER_BIT | GL_VERTEX_ATTRIB_ARRAY_BARRIER_BIT | GL_SHADER_STORAGE_BARRIER_BIT);
+    };
+    shown_.clear();
+    program_.use();
+    order();
+    for (size_t i = 0; i < views.size(); ++i)
+        if (mayShow(slot, i)) cull(slot, i, views[i]);
+    order();
 }
+
+Draws DeviceLists::draws(size_t slot, size_t frustum) const {
+    const Found& found = found_[frustum];
+    const std::span<const DrawGroup> groups = groups_;
+    return {&found.clips,
+            &found.normal_transforms,
+            &device_commands_,
+            &found.draws,
+            mayShow(slot, frustum) ? groups : groups.first(0),
+            {}};
+}
+
+void DeviceLists::ask(size_t slot) { asked_[slot].ask(shown_); }
 
 std::span<const uint32_t> DeviceLists::counts(size_t slot) const {
     const auto alone = context_.transferring();

@@ -72,8 +72,8 @@ public:
     virtual void list(size_t slot, size_t frustum, const ViewFrustum& view) = 0;
     /** Whether there may be anything to draw. */
     virtual bool mayShow(size_t slot, size_t frustum) const = 0;
-    /** Asks the device for what comes before the drawing. */
-    virtual void prepare(size_t, size_t, const ViewFrustum&) {}
+    /** Asks the device for what comes before the drawing of all frusta. */
+    virtual void prepare(size_t, std::span<const ViewFrustum>) {}
     /** Most draws of a frustum that there can be. */
     size_t drawLimit() const { return setup_.culler.drawRangeLimit(); }
     virtual Draws draws(size_t slot, size_t frustum) const = 0;

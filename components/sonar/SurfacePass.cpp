@@ -94,6 +94,7 @@ void SurfacePass::draw(size_t slot) {
         // A device that culls is asked for more than draws.
         const auto alone = setup_.cull_on_device ? context_.transferring() : std::unique_lock<std::shared_mutex>();
         const auto together = setup_.cull_on_device ? std::shared_lock<std::shared_mutex>() : context_.drawing();
+        lists_->prepare(slot, setup_.frusta);
         drawPart(slot, part);
         if (context_.isSoftware()) gpu::Fence::here().wait();  // for other contexts; a card's own takes its turn
         if (parts_[part].own) parts_[part].own->check();
@@ -103,7 +104,6 @@ void SurfacePass::draw(size_t slot) {
 void SurfacePass::drawPart(size_t slot, size_t part) {
     for (size_t frustum = part; frustum < pictures_.size(); frustum += parts_.size()) {
         if (!draws(slot, frustum)) continue;
-        lists_->prepare(slot, frustum, setup_.frusta[frustum]);
         parts_[part].painter->draw(*pictures_[frustum], lists_->draws(slot, frustum));
     }
 }
