@@ -7,6 +7,9 @@
 //     };
 #include <gtest/gtest.h>
 
+#include <type_traits>
+#include <utility>
+
 #include "tests/support/Ports.hpp"
 
 namespace insonify::test {
@@ -18,7 +21,8 @@ protected:
         in_.port.connectTo(task_.*input, framework::ConnPolicy::buffer(4));
         (task_.*output).connectTo(out_.port, framework::ConnPolicy::buffer(4));
     }
-    template <class Config>
+    using Config = std::remove_cvref_t<decltype(*std::declval<Task&>().config)>;
+
     void startWith(const Config& config) {
         task_.config.set(config);
         ASSERT_TRUE(task_.configure()) << task_.lastError();
