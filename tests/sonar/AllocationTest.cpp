@@ -102,6 +102,21 @@ TEST(AllocationTest, NorByRays) {
     expectNoAllocation<SonarTask>(config);
 }
 
+TEST(AllocationTest, NorWithPatternsAndAPulse) {
+    SonarConfig config = fan();
+    acoustics::BeamLaw law;
+    law.width_deg = 3;
+    config.beam_pattern.emplace().receive.azimuth = law;
+    law.width_deg = 20;
+    config.beam_pattern->transmit.elevation = law;
+    config.pulse.emplace().bandwidth_khz = 1;
+    for (const Visibility visibility : {Visibility::Gl, Visibility::Cpu}) {
+        config.visibility = visibility;
+        config.device = visibility == Visibility::Gl ? "software" : "";
+        expectNoAllocation<SonarTask>(config);
+    }
+}
+
 TEST(AllocationTest, NorDoesItWithTheDepositOnTheGraphicsDevice) {
     SonarConfig config = fan();
     config.deposit = Deposit::Gpu;

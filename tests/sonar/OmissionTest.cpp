@@ -233,6 +233,10 @@ std::vector<std::pair<SonarConfig, RenderOptions>> sonarsOfAllFeatures() {
                     config.deposit = deposit;
                     config.beam_geometry = beams;
                     if (deposit == Deposit::Cpu) config.absorption.emplace().db_per_m = 0.1;
+                    if (model != Model::Physical) continue;
+                    SonarConfig& patterned = all.emplace_back(config, RenderOptions{}).first;
+                    acoustics::BeamLaw& law = patterned.beam_pattern.emplace().receive.elevation.emplace();
+                    law.width_deg = 20;
                 }
     for (Deposit deposit : {Deposit::Cpu, Deposit::Gpu}) {
         for (Estimator estimator : {Estimator::Nearest, Estimator::NearestJitter}) {

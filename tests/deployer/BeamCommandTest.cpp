@@ -1,0 +1,89 @@
+#include <gmock/gmock.h>
+
+#include <fstream>
+
+#include "tests/deployer/Wall.hpp"
+
+using namespace insonify::deployer;
+using ::testing::HasSubstr;
+
+namespace {
+
+/** A deployment of a sonar with these properties as well. */
+std::string sonarWith(const std::string& properties) {
+    return R"(tasks:
+  vehicle: {type: pose::TrajectoryTask, activity: {period: 0.1}, properties: {waypoints: [{time: 0, position: [0, 0, 0]}]}}
+  scene:   {type: scene::SceneTask, properties: {file: wall.gltf}}
+  sonar:   {type: sonar::SonarTask, properties: {beam_count: 64, field_of_view_deg: 64)" +
+           (properties.empty() ? "" : ", " + properties) + R"(}}
+connections: [{from: vehicle.pose, to: scene.pose}, {from: scene.snapshot, to: sonar.snapshot}]
+)";
+}
+
+class BeamCommandTest : public testing::Test {
+protected:
+    Outcome call(const std::string& properties, std::vector<std::string> options) {
+        writeFile(folder_ / "wall.gltf", wallGltf());
+        writeFile(folder_ / "sonar.yml", sonarWith(properties));
+        options.insert(options.begin(), {"beam", "sonar.yml"});
+        return callInsonify(folder_, options);
+    }
+    json cutsOf(const std::string& properties) {
+        const Outcome outcome = call(properties, {"--json"});
+        EXPECT_EQ(outcome.code, 0) << outcome.err;
+        return json::parse(outcome.out);
+    }
+
+    TestFolder folder_;
+};
+
+TEST_F(BeamCommandTest, TellsWidthFirstNullAndSidelobesTwoWay) {
+    const json cuts = cutsOf(
+        "beam_pattern: {transmit: {elevation: {width_deg: 12}}, "
+        "receive: {azimuth: {weighting: hann, width_deg: 1.5}, elevation: {width_deg: 12}}}");
+    const json& azimuth = cuts["azimuth"];
+    EXPECT_NEAR(azimuth["width_3db_deg"], 1.5, 0.01) << "sent alike in all directions";
+    EXPECT_NEAR(azimuth["first_null_deg"], 1.5 * 2 / 1.4406, 0.02);
+    EXPECT_NEAR(azimuth["peak_sidelobe_db"], -31.5, 0.1);
+    const json& elevation = cuts["elevation"];
+    EXPECT_NEAR(elevation["width_3db_deg"], 12 * 0.6378 / 0.8859, 0.05) << "sent and heard";
+    EXPECT_NEAR(elevation["peak_sidelobe_db"], -26.5, 0.1);
+    for (const char* axis : {"azimuth", "elevation"}) {
+        ASSERT_EQ(cuts[axis]["angle_deg"].size(), cuts[axis]["level_db"].size());
+        EXPECT_GT(cuts[axis]["angle_deg"].size(), 100u);
+        EXPECT_LT(*std::max_element(cuts[axis]["level_db"].begin(), cuts[axis]["level_db"].end()), 0.01);
+    }
+}
+
+TEST_F(BeamCommandTest, WithoutAPatternABeamIsABox) {
+    const json cuts = cutsOf("beam_height_deg: 14");
+    EXPECT_NEAR(cuts["azimuth"]["width_3db_deg"], 1, 1e-9);
+    EXPECT_NEAR(cuts["elevation"]["width_3db_deg"], 14, 1e-9);
+    EXPECT_TRUE(cuts["azimuth"]["peak_sidelobe_db"].is_null());
+    EXPECT_THAT(cuts["azimuth"]["level_db"], testing::ElementsAre(0, 0));
+}
+
+TEST_F(BeamCommandTest, DrawsBothCuts) {
+    const Outcome outcome = call("beam_pattern: {receive: {azimuth: {width_deg: 2}}}", {"--to", "beam.svg"});
+    EXPECT_EQ(outcome.code, 0) << outcome.err;
+    std::ifstream file(folder_ / "beam.svg");
+    const std::string drawing{std::istreambuf_iterator<char>(file), {}};
+    EXPECT_THAT(drawing, testing::StartsWith("<svg"));
+    EXPECT_THAT(drawing, HasSubstr("azimuth [deg]"));
+    EXPECT_THAT(drawing, HasSubstr("elevation [deg]"));
+}
+
+TEST_F(BeamCommandTest, WhatCannotBeShownIsTold) {
+    const Outcome no_task = call("", {"--task", "sona"});
+    EXPECT_EQ(no_task.code, 2);
+    EXPECT_THAT(no_task.err, HasSubstr("may be sonar"));
+    const Outcome no_file = call("beam_pattern: {receive: {azimuth: {file: none.csv}}}", {});
+    EXPECT_EQ(no_file.code, 2);
+    EXPECT_THAT(no_file.err, HasSubstr("none.csv"));
+    writeFile(folder_ / "table.csv", "angle_deg,level_db\n0,0\n1,abc\n");
+    const Outcome broken = call("beam_pattern: {receive: {azimuth: {file: table.csv}}}", {});
+    EXPECT_EQ(broken.code, 2);
+    EXPECT_THAT(broken.err, HasSubstr("table.csv:3:3"));
+}
+
+}  // namespace
