@@ -15,9 +15,9 @@ namespace {
 
 std::string useFifo(int priority) {
     const sched_param wanted{priority};
-    const int diagnostic = pthread_setschedparam(pthread_self(), SCHED_FIFO, &wanted);
-    if (diagnostic == 0) return {};
-    if (diagnostic != EPERM) return fmt::format("no SCHED_FIFO: {}", std::strerror(diagnostic));
+    const int error = pthread_setschedparam(pthread_self(), SCHED_FIFO, &wanted);
+    if (error == 0) return {};
+    if (error != EPERM) return fmt::format("no SCHED_FIFO: {}", std::strerror(error));
     return fmt::format("no SCHED_FIFO: priority {} is not permitted (LimitRTPRIO or ulimit -r, or CAP_SYS_NICE)",
                        priority);
 }
@@ -26,11 +26,11 @@ std::string useProcessors(const std::vector<uint32_t>& cpus) {
     cpu_set_t wanted;
     CPU_ZERO(&wanted);
     for (const uint32_t cpu : cpus) CPU_SET(cpu, &wanted);
-    const int diagnostic = pthread_setaffinity_np(pthread_self(), sizeof wanted, &wanted);
-    if (diagnostic == 0) return {};
+    const int error = pthread_setaffinity_np(pthread_self(), sizeof wanted, &wanted);
+    if (error == 0) return {};
     return fmt::format("does not keep to the CPUs {}: {}", fmt::join(cpus, ", "),
-                       diagnostic == EINVAL ? "there are none of these, or none that this process may use"
-                                            : std::strerror(diagnostic));
+                       error == EINVAL ? "there are none of these, or none that this process may use"
+                                            : std::strerror(error));
 }
 
 }  // namespace

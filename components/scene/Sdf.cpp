@@ -50,8 +50,8 @@ Placing scaled(Placing placing, glm::dvec3 size) {
 
 AcousticValue valueOf(const std::string& text) {
     double number;
-    const auto [end, diagnostic] = std::from_chars(text.data(), text.data() + text.size(), number);
-    if (diagnostic == std::errc() && end == text.data() + text.size()) return number;
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
+    if (error == std::errc() && end == text.data() + text.size()) return number;
     return text;
 }
 

@@ -114,12 +114,12 @@ bool PingTask::takeNext() {
 
 void PingTask::updateHook() {
     if (!takeNext()) return;
-    const char* diagnostic = aimed_.geometry ? normalisePose(aimed_.sonar) : "the snapshot has no geometry";
-    if (!diagnostic && activity().realtime() && (aimed_.time - now()).seconds() > 1)
-        diagnostic = "the snapshot's time is ahead of the clock by more than a second";
-    if (!diagnostic) diagnostic = useGeometry(aimed_);
-    if (!diagnostic) diagnostic = steer(aimed_);
-    if (diagnostic) return error(diagnostic);
+    const char* refusal = aimed_.geometry ? normalisePose(aimed_.sonar) : "the snapshot has no geometry";
+    if (!refusal && activity().realtime() && (aimed_.time - now()).seconds() > 1)
+        refusal = "the snapshot's time is ahead of the clock by more than a second";
+    if (!refusal) refusal = useGeometry(aimed_);
+    if (!refusal) refusal = steer(aimed_);
+    if (refusal) return error(refusal);
     if (state() == framework::TaskState::RunTimeError) recover();
     render();
 }

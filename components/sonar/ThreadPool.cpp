@@ -39,7 +39,7 @@ void ThreadPool::dismiss() {
 std::exception_ptr ThreadPool::wait() {
     std::unique_lock lock(mutex_);
     done_.wait(lock, [this] { return busy_ == 0; });
-    return std::exchange(fault_, {});
+    return std::exchange(thrown_, {});
 }
 
 void ThreadPool::work(int part) {
@@ -51,9 +51,9 @@ void ThreadPool::work(int part) {
         if (waking_ == 0) continue;
         --waking_;
         lock.unlock();
-        const std::exception_ptr diagnostic = caught([&] { call_(context_, part, size()); });
+        const std::exception_ptr thrown = caught([&] { call_(context_, part, size()); });
         lock.lock();
-        if (diagnostic) fault_ = diagnostic;
+        if (thrown) thrown_ = thrown;
         if (--busy_ == 0) done_.notify_one();
     }
 }

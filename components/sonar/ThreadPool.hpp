@@ -22,9 +22,9 @@ public:
     template <class Job>
     void run(const Job& job) {
         start([](const void* context, int part, int parts) { (*static_cast<const Job*>(context))(part, parts); }, &job);
-        std::exception_ptr diagnostic = caught([&] { job(0, size()); });
+        std::exception_ptr thrown = caught([&] { job(0, size()); });
         std::exception_ptr other = wait();
-        if (diagnostic || other) std::rethrow_exception(diagnostic ? diagnostic : other);
+        if (thrown || other) std::rethrow_exception(thrown ? thrown : other);
     }
 
     /** Calls job(part, size()) on the caller and on those workers that begin before the caller is done, each with a
@@ -32,10 +32,10 @@ public:
     template <class Job>
     void share(const Job& job) {
         start([](const void* context, int part, int parts) { (*static_cast<const Job*>(context))(part, parts); }, &job);
-        std::exception_ptr diagnostic = caught([&] { job(0, size()); });
+        std::exception_ptr thrown = caught([&] { job(0, size()); });
         dismiss();
         std::exception_ptr other = wait();
-        if (diagnostic || other) std::rethrow_exception(diagnostic ? diagnostic : other);
+        if (thrown || other) std::rethrow_exception(thrown ? thrown : other);
     }
 
 private:
@@ -62,7 +62,7 @@ private:
     const void* context_ = nullptr;
     uint64_t round_ = 0;
     int busy_ = 0, waking_ = 0;  ///< Workers that are not done; of them, those that have not begun.
-    std::exception_ptr fault_;
+    std::exception_ptr thrown_;
     bool quit_ = false;
 };
 

@@ -75,7 +75,7 @@ ServerCounts Publisher::counts() const {
     return counts;
 }
 
-std::string Publisher::takeTrouble() {
+std::string Publisher::takeError() {
     std::lock_guard lock(mutex_);
     return std::exchange(trouble_, {});
 }

@@ -50,7 +50,7 @@ public:
     uint16_t port() const { return server_.port(); }
     ServerCounts counts() const;
     /** What could not be made a message of since this was asked last, and why; empty: nothing. */
-    std::string takeTrouble();
+    std::string takeError();
 
 private:
     struct Slot {

@@ -110,7 +110,7 @@ std::string ViewerTask::readToken() const {
 }
 
 void ViewerTask::updateHook() {
-    std::string diagnostic = publisher_->takeTrouble();
+    std::string diagnostic = publisher_->takeError();
     size_t source = 0;
     inputs_.forEach([&](auto& input) {
         if (std::string wrong = drain(input, *publisher_, source++, now()); !wrong.empty())
