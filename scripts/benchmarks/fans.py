@@ -70,6 +70,22 @@ def measure_pings(options):
     return found
 
 
+# Blocks of a sonar that are absent from the fans above.
+PATTERN = ("beam_pattern: {transmit: {elevation: {width_deg: 20}}, receive: {azimuth: {weighting: taylor, width_deg: 1}, "
+           "elevation: {width_deg: 20}}}, ")
+PULSE = "pulse: {bandwidth_khz: 10, window: hann}, "
+
+
+def measure_effects(options):
+    """The fan of 256 beams before the 80,000 triangles, plain and with each effect."""
+    plain = SONARS["FLS 256 x 500"]
+    found = {}
+    for name, blocks in {"plain": "", "pattern": PATTERN, "pulse": PULSE, "pattern and pulse": PATTERN + PULSE}.items():
+        sonar = plain.replace("properties: {", f"properties: {{{blocks}", 1)
+        measure_seen(found, f"FLS 256 x 500, 80 k, {name}", sonar, scene(SCENES["80 k"]), options, False)
+    return found
+
+
 def measure_growth(options):
     """The same floor of more and more triangles, half of it in view."""
     found = {}
