@@ -50,7 +50,8 @@ Beamformer::Band Beamformer::bandOf(const Beam& beam, const std::vector<Beam>& c
     const auto weightOf = [&](size_t cell) { return meanOver(rules.pattern, cells[cell], beam.centre); };
     const auto addGroup = [&](size_t group, Run& run) {
         double sum = 0;
-        for (size_t i = 0; i < cellsIn(group); ++i) sum += weightOf(group * group_cells + i);
+        for (size_t i = 0; i < cellsIn(group); ++i)
+            sum += rules.pattern(cells[group * group_cells + i].centre, beam.centre);
         run.weights.push_back(static_cast<float>(sum / static_cast<double>(cellsIn(group))));
     };
     const double width = (cells.front().high - cells.front().low) * group_cells;
