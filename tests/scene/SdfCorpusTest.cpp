@@ -5,19 +5,20 @@ namespace insonify::scene {
 namespace {
 
 const std::filesystem::path shared_data = INSONIFY_SHARED_DATA;
-const std::filesystem::path worlds = shared_data / "sdf";
+const std::filesystem::path sdf_data = shared_data / "sdf";
 
 class SdfCorpusTest : public SdfFiles {
 protected:
     void SetUp() override {
         if (!std::filesystem::is_directory(worlds)) GTEST_SKIP() << "NO WORLDS AT " << worlds << ": NOTHING WAS TESTED";
     }
-    Variable models_{"INSONIFY_MODEL_PATH", (worlds / "uuv/models").string() + ":" + (worlds / "dave/models").string()};
+    Variable models_{"INSONIFY_MODEL_PATH",
+                     (sdf_data / "uuv/models").string() + ":" + (sdf_data / "dave/models").string()};
 };
 
 TEST_F(SdfCorpusTest, EveryWorldLoads) {
     size_t worlds = 0;
-    for (const auto& entry : std::filesystem::recursive_directory_iterator(worlds)) {
+    for (const auto& entry : std::filesystem::recursive_directory_iterator(sdf_data)) {
         if (entry.path().extension() != ".world") continue;
         SCOPED_TRACE(entry.path());
         const auto geometry = loadScene(entry.path());
@@ -30,7 +31,7 @@ TEST_F(SdfCorpusTest, EveryWorldLoads) {
 
 TEST_F(SdfCorpusTest, EveryModelLoadsOrSaysWhyInOneLine) {
     size_t loaded = 0, refused = 0;
-    for (const auto& entry : std::filesystem::recursive_directory_iterator(worlds)) {
+    for (const auto& entry : std::filesystem::recursive_directory_iterator(sdf_data)) {
         if (entry.path().extension() != ".sdf") continue;
         SCOPED_TRACE(entry.path());
         try {
@@ -48,20 +49,20 @@ TEST_F(SdfCorpusTest, EveryModelLoadsOrSaysWhyInOneLine) {
 
 TEST_F(SdfCorpusTest, TheWorldsWithoutTheirModelsLoadWithNotices) {
     const Variable none("INSONIFY_MODEL_PATH", "");
-    const auto geometry = loadScene(worlds / "uuv/worlds/munkholmen.world");
+    const auto geometry = loadScene(sdf_data / "uuv/worlds/munkholmen.world");
     EXPECT_TRUE(hasNotice(*geometry, "munkholmen.world:85: "));
     EXPECT_TRUE(hasNotice(*geometry, "an empty sea"));
 }
 
 TEST_F(SdfCorpusTest, TheCinderBlockInInchesHasItsSizeInMetres) {
-    const Bounds bounds = boundsOf(*loadScene(worlds / "dave/models/mossy_cinder_block/model.sdf"));
+    const Bounds bounds = boundsOf(*loadScene(sdf_data / "dave/models/mossy_cinder_block/model.sdf"));
     const glm::dvec3 inches(51.36, 24, 24);  // of the .dae; the visual scales it by 1.1
     EXPECT_LT(glm::distance(bounds.high - bounds.low, inches * 0.0254 * 1.1), 1e-6);
 }
 
 TEST_F(SdfCorpusTest, TheIncludePoseMovesMangaliaToItsPlace) {
-    const Bounds alone = boundsOf(*loadScene(worlds / "uuv/models/mangalia/model.sdf"));
-    const Scene scene = readScene(worlds / "uuv/worlds/mangalia.world");
+    const Bounds alone = boundsOf(*loadScene(sdf_data / "uuv/models/mangalia/model.sdf"));
+    const Scene scene = readScene(sdf_data / "uuv/worlds/mangalia.world");
     const auto& objects = scene.geometry->objects;
     Bounds placed;
     for (const types::Object& object : objects)

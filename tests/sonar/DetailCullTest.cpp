@@ -6,8 +6,8 @@
 #include <cmath>
 
 #include "components/sonar/Culler.hpp"
-#include "components/study/FractalFloor.hpp"
 #include "tests/sonar/ClusteredHarbour.hpp"
+#include "tests/support/FractalFloor.hpp"
 #include "types/Angle.hpp"
 
 namespace insonify::sonar {
@@ -38,17 +38,22 @@ double relativeError(const types::Sonar& got, const types::Sonar& reference) {
     return std::sqrt(error / norm);
 }
 
-/** The same floor of 522,242 triangles as one large mesh, as 64 that are not split, and as its outline. */
+/** The same floor of 524,288 triangles as one large mesh, as 64 that are not split, and as its outline. */
 struct Floors {
+    static constexpr uint32_t cells = 512, tile = 64;
     types::GeometryPtr one, tiles, outline;
 
     Floors() {
-        const study::FractalFloor floor{.centre_x = 20, .depth = 0, .seed = 7};
-        types::Mesh whole = study::meshOf(floor);
+        const test::FractalFloor floor(7, cells, 60, 20);
+        types::Mesh whole = floor.part(0, 0, cells);
         scene::buildClusters(whole);
         one = test::sceneOf({whole}, -16.7f);
-        std::vector<types::Mesh> parts = study::tilesOf(floor, 8);
-        for (types::Mesh& part : parts) scene::buildClusters(part);
+        std::vector<types::Mesh> parts;
+        for (uint32_t i = 0; i < cells; i += tile)
+            for (uint32_t j = 0; j < cells; j += tile) {
+                parts.push_back(floor.part(i, j, tile));
+                scene::buildClusters(parts.back());
+            }
         tiles = test::sceneOf(std::move(parts), -16.7f);
         outline = test::sceneOf({test::meshOf(whole.positions, whole.coarse_indices)}, -16.7f);
     }

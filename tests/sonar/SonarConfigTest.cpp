@@ -196,7 +196,7 @@ TEST(SonarConfigTest, HeadsThatCannotTurnSoAreRefused) {
           Case{"head: {left_deg: 60, right_deg: -60, continuous: true}", "sector of 120 deg"},
           Case{"head: {left_deg: 1, right_deg: -1, step_deg: 3}", "the sector has 2 deg"},
           Case{"head: {step_deg: 0}", "0.001 to 360"}, Case{"head: {step_deg: 400}", "0.001 to 360"},
-          Case{"head: {step_deg: -1}", "0.001 to 360"}, Case{"head: {step_deg: .nan}", "0.001 to 360"},
+          Case{"head: {step_deg: -1}", "0.001 to 360"}, Case{"head: {step_deg: .nan}", "must be a finite number"},
           Case{"field_of_view_deg: 120", "is not a key here"}, Case{"beam_count: 2", "is not a key here"},
           Case{"{range: 10, range_min: 20}", "must be below range"}})
         EXPECT_THAT(faultsOf<ScanningSonarConfig>(c.yaml), ElementsAre(HasSubstr(c.words))) << c.yaml;

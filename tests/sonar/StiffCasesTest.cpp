@@ -136,7 +136,7 @@ TEST(StiffCasesTest, APictureLargerThanAnyDevicesIsRefusedInWords) {
         binsOf(config, test::sceneOf({test::wall(10)}));
         FAIL() << "was drawn";
     } catch (const std::exception& error) {
-        EXPECT_THAT(error.what(), HasSubstr("16384"));
+        EXPECT_THAT(error.what(), HasSubstr("cannot draw"));
     }
 }
 

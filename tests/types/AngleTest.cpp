@@ -20,8 +20,7 @@ TEST(AngleTest, UnknownStaysUnknown) {
 }
 
 TEST(ConfigErrorTest, TellsEveryPlaceAndFault) {
-    const ConfigError error(
-        {{"a.yml", 3, 7, "tasks.sonar.range", "is -1, must be above 0"}, {"", 0, 0, "", "no tasks"}});
+    const ConfigError error({{"tasks.sonar.range", "is -1, must be above 0", "a.yml", 3, 7}, {"", "no tasks"}});
     EXPECT_STREQ(error.what(), "a.yml:3:7: tasks.sonar.range: is -1, must be above 0\nno tasks");
 }
 
