@@ -10,7 +10,8 @@ const std::filesystem::path sdf_data = shared_data / "sdf";
 class SdfCorpusTest : public SdfFiles {
 protected:
     void SetUp() override {
-        if (!std::filesystem::is_directory(worlds)) GTEST_SKIP() << "NO WORLDS AT " << worlds << ": NOTHING WAS TESTED";
+        if (!std::filesystem::is_directory(sdf_data))
+            GTEST_SKIP() << "NO WORLDS AT " << sdf_data << ": NOTHING WAS TESTED";
     }
     Variable models_{"INSONIFY_MODEL_PATH",
                      (sdf_data / "uuv/models").string() + ":" + (sdf_data / "dave/models").string()};
