@@ -44,7 +44,7 @@ private:
 };
 
 /** Properties as one described struct; each top-level field is a property, with an operation `set<Name>` (setRange,
- *  setBin_count: as oroGen forms it). */
+ *  setMax_size: as oroGen forms it). */
 template <types::Described Config>
 class Properties final : public PropertiesBase {
 public:
