@@ -50,7 +50,7 @@ TEST_F(BeamCommandTest, TellsWidthFirstNullAndSidelobesTwoWay) {
     EXPECT_NEAR(elevation["peak_sidelobe_db"], -26.5, 0.1);
     for (const char* axis : {"azimuth", "elevation"}) {
         ASSERT_EQ(cuts[axis]["angle_deg"].size(), cuts[axis]["level_db"].size());
-        EXPECT_GT(cuts[axis]["angle_deg"].size(), 100u);
+        EXPECT_GT(cuts[axis]["angle_deg"].size(), 20u);
         EXPECT_LT(*std::max_element(cuts[axis]["level_db"].begin(), cuts[axis]["level_db"].end()), 0.01);
     }
 }

@@ -28,7 +28,7 @@ std::vector<std::string> friends(const Source& source) {
     return found;
 }
 
-std::vector<Source> framework() { return sourcesIn("components/framework", {".hpp", ".cpp", ".txt", ".md"}); }
+std::vector<Source> framework() { return sourcesIn("components/framework", {".hpp", ".cpp", ".txt"}); }
 
 }  // namespace
 

@@ -66,17 +66,22 @@ test::Form weightedBottom(double height, double delta, const std::function<doubl
 
 TEST(PatternedPingTest, ABottomIsHeardByThePatternInElevation) {
     SonarConfig config = sonarOf(60, 16, 0.1, 300);
-    config.beam_pattern.emplace().transmit.elevation = lawOf(Weighting::Gaussian, 30);
-    config.beam_pattern->receive.elevation = lawOf(Weighting::Gaussian, 40);
+    config.beam_pattern.emplace().transmit.elevation = lawOf(Weighting::Gaussian, 16);
+    config.beam_pattern->receive.elevation = lawOf(Weighting::Gaussian, 20);
     config.beam_pattern->floor_db = -80;
     const acoustics::BeamPattern sent(*config.beam_pattern->transmit.elevation),
         heard(*config.beam_pattern->receive.elevation);
-    const auto snapshot = test::snapshotOf(test::sceneOf({test::ground(-5)}));
+    const auto snapshot = test::snapshotOf(test::sceneOf({test::ground(-2.5f)}));
     const double delta = radians(60.0 / 16);
-    for (const SonarConfig& way : everyWay(config))
-        expectForm(pingOf(way, snapshot),
-                   weightedBottom(5, delta, [&](double e) { return sent.power(e) * heard.power(e); }),
-                   weightedBottom(5, delta, [&](double e) { return sent.power(e); }));
+    const auto right = weightedBottom(2.5, delta, [&](double e) { return sent.power(e) * heard.power(e); });
+    const auto one_way = weightedBottom(2.5, delta, [&](double e) { return sent.power(e); });
+    for (const SonarConfig& way : everyWay(config)) {
+        const types::Sonar ping = pingOf(way, snapshot);
+        const test::Deviation off = test::deviation(ping, right);
+        EXPECT_LT(off.relative_l2, 0.01) << off;
+        EXPECT_LT(off.ripple, 0.01) << off;
+        EXPECT_GT(test::deviation(ping, one_way).relative_l2, 0.1);
+    }
 }
 
 TEST(PatternedPingTest, ABottomIsHeardByThePatternsWholeWidthInAzimuth) {
