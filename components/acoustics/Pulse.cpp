@@ -44,6 +44,14 @@ double Pulse::response(double distance) const {
     return isTone() ? (std::abs(u) <= 0.5 ? 1 : 0) : taper_->power(u);
 }
 
+double Pulse::mean(double low, double high) const {
+    if (isTone()) return std::max(0.0, std::min(high, unit_ / 2) - std::max(low, -unit_ / 2)) / (high - low);
+    const int parts = 16 + static_cast<int>(16 * (high - low) / unit_);  // lobes are a unit wide
+    double sum = 0;
+    for (int i = 0; i < parts; ++i) sum += response(low + (high - low) * (i + 0.5) / parts);
+    return sum / parts;
+}
+
 double Pulse::resolution() const { return isTone() ? unit_ : unit_ * taper_->halfPowerWidth(); }
 
 double Pulse::cellLength() const {

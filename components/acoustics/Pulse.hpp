@@ -33,6 +33,8 @@ public:
 
     /** h at a distance in slant range from the echo [m]. */
     double response(double distance) const;
+    /** Mean of h between two distances from the echo [m]. */
+    double mean(double low, double high) const;
     /** Width of h where it is half [m]. */
     double resolution() const;
     /** Integral of h over range [m]: the length of a reverberation cell. */

@@ -4,11 +4,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <future>
 #include <glm/gtc/matrix_transform.hpp>
 #include <glm/gtc/quaternion.hpp>
 #include <map>
 #include <optional>
 #include <set>
+#include <thread>
 
 #include "components/scene/Clusters.hpp"
 #include "components/scene/GltfAccessor.hpp"
@@ -38,6 +40,7 @@ public:
 
     Scene read() {
         walk(rootNodes());
+        finishMeshes();
         addNotices();
         scene_.z_up_from_file = z_up_from_y_up;
         scene_.geometry = std::make_shared<const types::Geometry>(std::move(geometry_));
@@ -206,9 +209,30 @@ private:
         if (!is_new) return known->second;
         types::Mesh read = meshes_.read(mesh);
         if (read.indices.empty()) return -1;
-        buildClusters(read);
-        geometry_.meshes.push_back(std::move(read));
-        return known->second = static_cast<int>(geometry_.meshes.size()) - 1;
+        known->second = static_cast<int>(geometry_.meshes.size());
+        cluster(std::move(read));
+        return known->second;
+    }
+
+    /** Adds a mesh in clusters; a large one is split while others are read, and takes its place in finishMeshes(). */
+    void cluster(types::Mesh&& mesh) {
+        types::Mesh& place = geometry_.meshes.emplace_back();
+        if (mesh.indices.size() / 3 <= clustered_from) {
+            buildClusters(mesh);
+            place = std::move(mesh);
+            return;
+        }
+        auto built = [mesh = std::move(mesh)]() mutable {
+            buildClusters(mesh);
+            return std::move(mesh);
+        };
+        if (building_.size() >= std::max(1u, std::thread::hardware_concurrency())) finishMeshes();
+        building_.emplace_back(geometry_.meshes.size() - 1, std::async(std::launch::async, std::move(built)));
+    }
+
+    void finishMeshes() {
+        for (auto& [place, mesh] : building_) geometry_.meshes[place] = mesh.get();
+        building_.clear();
     }
 
     void addNotices() {
@@ -236,6 +260,7 @@ private:
     GltfFile gltf_;
     GltfAccessors accessors_;
     GltfMeshes meshes_;
+    std::vector<std::pair<size_t, std::future<types::Mesh>>> building_;
     std::map<size_t, int> mesh_indices_;
     UniqueNames names_;
     size_t flat_objects_ = 0;

@@ -11,14 +11,6 @@ namespace {
 /** Below it sidelobes are left out. */
 constexpr double floor_db = -50;
 
-/** Mean of h over a bin whose middle is so far from the echo [m], by its middle points. */
-double meanOver(const acoustics::Pulse& pulse, double distance, double bin_width) {
-    constexpr int points = 64;
-    double sum = 0;
-    for (int i = 0; i < points; ++i) sum += pulse.response(distance + bin_width * ((i + 0.5) / points - 0.5));
-    return sum / points;
-}
-
 INSONIFY_VECTOR_CLONES void convolve(const float* echoes, std::span<const float> taps, float* __restrict bins,
                                      size_t count) {
     size_t i = 0;
@@ -38,7 +30,7 @@ RangeResponse::RangeResponse(const acoustics::Pulse& pulse, const BinGrid& grid)
     const double reach = pulse.extent(floor_db) / grid.bin_width + 0.5;
     const int margin = std::clamp(static_cast<int>(std::ceil(reach)) - 1, 0, grid.bin_count - 1);
     for (int m = -margin; m <= margin; ++m)
-        taps_.push_back(static_cast<float>(meanOver(pulse, m * grid.bin_width, grid.bin_width)));
+        taps_.push_back(static_cast<float>(pulse.mean((m - 0.5) * grid.bin_width, (m + 0.5) * grid.bin_width)));
 }
 
 void RangeResponse::spread(std::span<const float> echoes, std::span<float> bins) const {

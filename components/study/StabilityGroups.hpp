@@ -13,6 +13,7 @@ std::vector<StabilityCase> rangeCases();      ///< Range bins: 24, 25, 27.
 std::vector<StabilityCase> levelCases();      ///< Dynamic range: 32, 33, 35, 36, 39, 40.
 std::vector<StabilityCase> sumCases();        ///< Sums, devices, sizes: 41, 44, 55, 58.
 std::vector<StabilityCase> noiseCases();      ///< Seeds and shapes of speckle: 47, 48.
-std::vector<StabilityCase> laterCases();      ///< What waits for effects: 31, 38, 39, 59.
+std::vector<StabilityCase> patternCases();    ///< Beam patterns and pulses: 31, 59.
+std::vector<StabilityCase> laterCases();      ///< What waits for effects: 38, 39.
 
 }  // namespace insonify::study

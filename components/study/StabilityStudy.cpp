@@ -94,7 +94,7 @@ const char* nameOf(Verdict verdict) {
 std::vector<StabilityCase> stabilityCases() {
     std::vector<StabilityCase> all;
     for (const auto& group :
-         {precisionCases, geometryCases, sensorCases, rangeCases, levelCases, sumCases, noiseCases, laterCases})
+         {precisionCases, geometryCases, sensorCases, rangeCases, levelCases, sumCases, noiseCases, patternCases, laterCases})
         for (StabilityCase& added : group()) all.push_back(std::move(added));
     return all;
 }

@@ -123,12 +123,9 @@ std::vector<StabilityCase> laterCases() {
                              }};
     };
     return {
-        waits(31, "Beam pattern narrower than a column", "importance sampling or an error", "beam patterns"),
         waits(38, "Specular lobe of a mirror", "finite; level independent of resolution to 1 dB", "the specular lobe"),
         waits(39, "+60 dB glint beside a bottom of -80 dB", "both to 1 %",
-              "the specular lobe; until then no material is above +20 dB"),
-        waits(59, "Range point-spread narrower than a bin and wider than the range", "energy kept",
-              "range point-spread")};
+              "the specular lobe; until then no material is above +20 dB")};
 }
 
 }  // namespace insonify::study

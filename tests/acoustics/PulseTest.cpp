@@ -31,6 +31,15 @@ double integral(const F& f, double from, double to) {
     return sum * (to - from) / cells;
 }
 
+TEST(PulseTest, MeansAreThoseOfTheResponse) {
+    EXPECT_DOUBLE_EQ(tone(100).mean(-0.0625, 0.0625), 0.6) << "0.075 m of 0.125 m";
+    EXPECT_EQ(tone(100).mean(0.04, 0.05), 0);
+    const Pulse pulse = chirp(10);  // a unit of 0.075 m
+    const auto response = [&](double distance) { return pulse.response(distance); };
+    for (const double low : {-0.2, -0.03, 0.1})
+        EXPECT_NEAR(pulse.mean(low, low + 0.06), integral(response, low, low + 0.06) / 0.06, 1e-3);
+}
+
 TEST(PulseTest, AToneIsABoxOfHalfItsLengthAboutItsEcho) {
     const Pulse pulse = tone(100);  // 15 cm of water there and back: 7.5 cm of range
     EXPECT_EQ(pulse.response(0), 1);
