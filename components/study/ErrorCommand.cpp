@@ -23,7 +23,7 @@ struct Options {
     bool quiet = false;
 };
 
-/** What a study can take away without changing where echoes come from: absorption, model. */
+/** What a study can take away without changing where echoes come from: absorption, model, beam pattern, pulse. */
 sonar::SonarConfig plain(sonar::SonarConfig config, const std::string& file) {
     if (!config.bearings_deg.empty() || config.beam_geometry != sonar::BeamGeometry::Planar)
         throw types::ConfigError(
@@ -36,6 +36,8 @@ sonar::SonarConfig plain(sonar::SonarConfig config, const std::string& file) {
     config.model = sonar::Model::Physical;
     config.published = false;
     config.absorption.reset();
+    config.beam_pattern.reset();
+    config.pulse.reset();
     return config;
 }
 

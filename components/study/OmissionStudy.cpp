@@ -144,6 +144,8 @@ private:
             case sonar::Effect::Absorption:
                 with.config.absorption.emplace().db_per_m = 0;
                 return bound(0, "change: 0 dB/m");
+            case sonar::Effect::RangePointSpread:
+                return planned_.config.model == sonar::Model::Physical && neutralPulse(with, row);
             case sonar::Effect::NormalMaps:
                 with.snapshot.geometry = withFlatMap(*planned_.snapshot.geometry);
                 return bound(1e-6, "change: a map that bends nothing, in float");
@@ -158,6 +160,15 @@ private:
                 return bound(1e-5, "change: pixels beyond the range that reach back into it");
             default: return false;
         }
+    }
+
+    /** A tone as long as a bin, which changes nothing. */
+    bool neutralPulse(Way& with, OmissionRow& row) const {
+        const sonar::BinGrid grid = sonar::makeBinGrid(planned_.config);
+        with.config.pulse.emplace().duration_us = 2e6 * grid.bin_width / grid.speed_of_sound;
+        row.bound = 0;
+        row.bound_of = "change: a tone as long as a bin";
+        return true;
     }
 
     /** Eight bins for each, added up: absorption changes from one to the next. */
@@ -181,6 +192,16 @@ private:
         if (config.absorption) {
             without.config.absorption.reset();
             keep("absorption", without);
+        }
+        without = planned_;
+        if (config.beam_pattern) {
+            without.config.beam_pattern.reset();
+            keep("beam pattern", without);
+        }
+        without = planned_;
+        if (config.pulse) {
+            without.config.pulse.reset();
+            keep("pulse", without);
         }
         without = planned_;
         without.snapshot.geometry =

@@ -99,7 +99,7 @@ TEST(PatternedPingTest, ABottomIsHeardByThePatternsWholeWidthInAzimuth) {
                    test::flatBottom(5, radians(20), radians(2)));
 }
 
-TEST(PatternedPingTest, APatternThatIsOneAllOverChangesNoBit) {
+TEST(PatternedPingTest, APulseAsLongAsABinChangesNoBit) {
     SonarConfig config = sonarOf(60, 16, 0.1, 300);
     const auto snapshot = test::snapshotOf(test::sceneOf({test::ground(-5), test::wall(20)}), {}, 0.1, 0.2);
     const types::Sonar plain = pingOf(config, snapshot);
@@ -109,6 +109,31 @@ TEST(PatternedPingTest, APatternThatIsOneAllOverChangesNoBit) {
     EXPECT_EQ(pingOf(config, snapshot).bins, plain.bins);
     config.pulse->duration_us = 600;
     EXPECT_NE(pingOf(config, snapshot).bins, plain.bins);
+}
+
+TEST(PatternedPingTest, ThePlanTellsWhatIsFormedAndSpreadAndWhatIsNot) {
+    const auto geometry = test::sceneOf({test::ground(-5)});
+    SonarConfig config = sonarOf(60, 16, 0.1, 300);
+    const RenderPlan plain = makeRenderPlan(config, *geometry);
+    EXPECT_FALSE(plain.has(Pass::Beamform) || plain.has(Pass::Pulse));
+    for (const Effect effect : {Effect::AzimuthPattern, Effect::ElevationPattern, Effect::RangePointSpread}) {
+        ASSERT_TRUE(plain.leftOut(effect));
+        EXPECT_EQ(plain.leftOut(effect)->reason, Reason::NotConfigured);
+    }
+    EXPECT_EQ(plain.cells.size(), plain.beams.size());
+    config.beam_pattern.emplace().receive.azimuth = lawOf(Weighting::Hann, 3);
+    config.pulse.emplace().duration_us = 90;  // resolves 0.045 m, in bins of 0.1 m
+    const RenderPlan formed = makeRenderPlan(config, *geometry);
+    EXPECT_TRUE(formed.has(Pass::Beamform));
+    EXPECT_FALSE(formed.leftOut(Effect::AzimuthPattern));
+    EXPECT_TRUE(formed.leftOut(Effect::ElevationPattern));
+    EXPECT_GT(formed.cells.size(), 2 * formed.beams.size());
+    EXPECT_FALSE(formed.has(Pass::Pulse));
+    ASSERT_TRUE(formed.leftOut(Effect::RangePointSpread));
+    EXPECT_EQ(formed.leftOut(Effect::RangePointSpread)->reason, Reason::BelowBound);
+    EXPECT_DOUBLE_EQ(formed.leftOut(Effect::RangePointSpread)->value, 0.045);
+    config.pulse->duration_us = 300;
+    EXPECT_TRUE(makeRenderPlan(config, *geometry).has(Pass::Pulse));
 }
 
 /** What a fan of close beams hears of a small disc straight ahead. */
