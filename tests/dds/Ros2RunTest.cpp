@@ -77,8 +77,8 @@ TEST_F(Ros2RunTest, PosesThatAreDroppedAreToldAtOnceAndAtTheEnd) {
     const Outcome outcome = sonar.wait();
     EXPECT_EQ(outcome.code, 0) << outcome.err;
     const std::string why = "/auv/odometry: position and orientation are not finite";
-    EXPECT_THAT(outcome.err, testing::ContainsRegex("warning: poses: [0-9]+ messages dropped; the last: " + why));
-    EXPECT_THAT(outcome.out + outcome.err, HasSubstr("messages dropped: " + why));
+    EXPECT_THAT(outcome.err, testing::ContainsRegex("warning: poses: [0-9]+ messages? dropped; the last: " + why));
+    EXPECT_THAT(outcome.out + outcome.err, testing::ContainsRegex("messages? dropped: " + why));
 }
 
 TEST_F(Ros2RunTest, WithoutPosesItWaitsAndSaysSo) {
