@@ -26,17 +26,28 @@ Neighbours neighbours(float coordinate, int size, bool repeats) {
     return {first < 0 ? last : std::min(first, last), second > last ? 0 : second, at - low};
 }
 
+/** A texel, its lean scaled, as a unit normal again. */
+void appendScaled(const uint8_t* rgb, float scale, std::vector<uint8_t>& texels) {
+    if (scale == 1) return void(texels.insert(texels.end(), {rgb[0], rgb[1], rgb[2], 0}));
+    const glm::vec3 normal = glm::vec3(rgb[0], rgb[1], rgb[2]) * (2 / 255.0f) - 1.0f;
+    const glm::vec3 scaled = glm::normalize(normal * glm::vec3(scale, scale, 1));
+    for (int i = 0; i < 3; ++i) texels.push_back(static_cast<uint8_t>(std::lround((scaled[i] + 1) * 127.5f)));
+    texels.push_back(0);
+}
+
 }  // namespace
 
 NormalMapping::NormalMapping(const types::Geometry& geometry) : geometry_(geometry) {
-    for (const types::NormalMap& map : geometry.normal_maps) maps_.push_back(mapOf(map));
+    for (const types::Material& material : geometry.materials)
+        maps_.push_back(material.normal_map < 0 ? Map{}
+                                                : mapOf(geometry.normal_maps[static_cast<size_t>(material.normal_map)],
+                                                        material.normal_scale));
 }
 
-NormalMapping::Map NormalMapping::mapOf(const types::NormalMap& map) {
+NormalMapping::Map NormalMapping::mapOf(const types::NormalMap& map, float scale) {
     Map result{map.repeat_u, map.repeat_v, {}};
     Level level{map.width, map.height, {}};
-    for (size_t i = 0; i + 2 < map.rgb.size(); i += 3)
-        level.texels.insert(level.texels.end(), {map.rgb[i], map.rgb[i + 1], map.rgb[i + 2], 0});
+    for (size_t i = 0; i + 2 < map.rgb.size(); i += 3) appendScaled(&map.rgb[i], scale, level.texels);
     while (level.width > 1 || level.height > 1) {
         const Level& finer = result.levels.emplace_back(std::move(level));
         level = {std::max(1, finer.width / 2), std::max(1, finer.height / 2), {}};
@@ -85,8 +96,7 @@ float NormalMapping::texelsPerMetre(const ObjectRecord& placed, const types::Mes
 
 float NormalMapping::cosine(const ObjectRecord& placed, const Place& place) const {
     const types::Mesh& mesh = geometry_.meshes[static_cast<size_t>(geometry_.objects[place.object].mesh)];
-    const types::Material& material = geometry_.materials[static_cast<size_t>(place.material)];
-    const Map& map = maps_[static_cast<size_t>(material.normal_map)];
+    const Map& map = maps_[static_cast<size_t>(place.material)];
     const uint32_t* corners = mesh.indices.data() + 3 * static_cast<size_t>(place.triangle);
     const auto between = [&](const auto& of) {
         return (1 - place.u - place.v) * of[corners[0]] + place.u * of[corners[1]] + place.v * of[corners[2]];
@@ -99,10 +109,11 @@ float NormalMapping::cosine(const ObjectRecord& placed, const Place& place) cons
     const float facing = -glm::dot(n, place.direction);
     const float covered =
         place.extent / std::max(std::abs(facing), 0.01f) * texelsPerMetre(placed, mesh, corners, map.levels.front());
-    glm::vec3 bent = texel(map, between(mesh.uvs), covered > 1 ? std::log2(covered) : 0.0f);
-    bent.x *= material.normal_scale;
-    bent.y *= material.normal_scale;
-    const glm::vec3 normal = glm::normalize(t * bent.x + glm::cross(n, t) * (along.w * bent.y) + n * bent.z);
+    const float level = covered > 1 ? std::log2(covered) : 0.0f;
+    const glm::vec3 bent = texel(map, between(mesh.uvs), level);
+    glm::vec3 normal = t * bent.x + glm::cross(n, t) * (along.w * bent.y) + n * bent.z;
+    // A mean of several unit normals is shorter than 1: what it gives is the mean of their cosines.
+    if (level < 0.5f) normal = glm::normalize(normal);
     const float cosine = glm::dot(normal, place.direction) * (facing > 0 ? -1.0f : 1.0f);
     return cosine > 1e-6f ? cosine : 1e-6f;  // also where normal and tangent make no frame
 }

@@ -22,8 +22,8 @@ public:
     /** The geometry must outlive it. */
     explicit NormalMapping(const types::Geometry& geometry);
     bool isMapped(int material) const { return geometry_.materials[static_cast<size_t>(material)].normal_map >= 0; }
-    /** Cosine of the angle between the ray and the bent normal, on the side that the ray meets; at least 1e-6. The map
-     * is averaged over as much of it as the sample covers, as graphics devices do it. `placed`: the object relative to
+    /** Cosine of the angle between the ray and the bent normal, on the side that the ray meets; at least 1e-6. Cosines
+     * are averaged over as much of the map as the sample covers. `placed`: the object relative to
      * the sonar. */
     float cosine(const ObjectRecord& placed, const Place& place) const;
 
@@ -37,14 +37,14 @@ private:
         bool repeat_u, repeat_v;
         std::vector<Level> levels;
     };
-    static Map mapOf(const types::NormalMap& map);
+    static Map mapOf(const types::NormalMap& map, float scale);
     static glm::vec3 texel(const Map& map, glm::vec2 uv, float level);
     /** Texels of a map on a metre of a triangle as it is placed. */
     float texelsPerMetre(const ObjectRecord& placed, const types::Mesh& mesh, const uint32_t* corners,
                          const Level& finest) const;
 
     const types::Geometry& geometry_;
-    std::vector<Map> maps_;
+    std::vector<Map> maps_;  ///< Of each material, with its scale; empty for one without.
 };
 
 }  // namespace insonify::sonar
