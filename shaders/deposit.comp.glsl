@@ -105,7 +105,7 @@ void addToBin(uint beam, uint bin, double amount, double weight) {
 #include "trapezoid.glsl"
 #include "deposit.glsl"
 
-dvec3 slabFromSonar(dvec3 p) {
+dvec3 frustumFromSonar(dvec3 p) {
     return dvec3(frustum_axis.x * p.x + frustum_axis.y * p.y, frustum_axis.x * p.y - frustum_axis.y * p.x, p.z);
 }
 
@@ -115,7 +115,7 @@ Surface surfaceOf(CommandRecord command, uint triangle, dvec2 uv) {
     dvec3 across = dvec3(plane.normal.xyz);
     dvec3 normal = dvec3(dot(dvec3(object.normal_x.xyz), across), dot(dvec3(object.normal_y.xyz), across), dot(dvec3(object.normal_z.xyz), across));
     double distance = dot(across, dvec3(plane.point.xyz) - (dvec3(object.eye.xyz) + dvec3(object.eye_rest.xyz))) + double(plane.normal.w);
-    normal = slabFromSonar(normal);
+    normal = frustumFromSonar(normal);
     return surfaceAt(normal.x, normal.y, normal.z, distance, uv.x, uv.y);
 }
 

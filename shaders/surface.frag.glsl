@@ -7,8 +7,8 @@ uniform sampler2D normal_map;
 uniform bool mapped;      // the draws of this call have a normal map
 uniform vec2 extent;
 uniform vec2 pixel_size;  // [u, v]
-in vec3 slab_normal;
-in vec4 slab_tangent;
+in vec3 frustum_normal;
+in vec4 frustum_tangent;
 in vec2 map_uv;
 flat in float map_scale;
 
@@ -16,10 +16,10 @@ flat in float map_scale;
 layout(location = 0) out uvec4 surface;
 
 float mappedCosine(vec3 direction, float scale) {
-    vec3 n = normalize(slab_normal);
-    vec3 t = normalize(slab_tangent.xyz - n * dot(n, slab_tangent.xyz));
+    vec3 n = normalize(frustum_normal);
+    vec3 t = normalize(frustum_tangent.xyz - n * dot(n, frustum_tangent.xyz));
     vec3 texel = texture(normal_map, map_uv).xyz * 2.0 - 1.0;
-    vec3 bent = normalize(mat3(t, cross(n, t) * slab_tangent.w, n) * (texel * vec3(scale, scale, 1.0)));
+    vec3 bent = normalize(mat3(t, cross(n, t) * frustum_tangent.w, n) * (texel * vec3(scale, scale, 1.0)));
     float cosine = -dot(bent, direction) * sign(-dot(n, direction));  // both sides of a surface reflect
     return cosine > 1e-6 ? cosine : 1e-6;                              // also where normal and tangent make no frame
 }

@@ -19,8 +19,8 @@ layout(location = 9) in vec4 normal_z;
 layout(location = 10) in vec4 tangent_x;  // the same for tangents
 layout(location = 11) in vec4 tangent_y;
 layout(location = 12) in vec4 tangent_z;
-out vec3 slab_normal;  // x into the picture, y to port, z up
-out vec4 slab_tangent;
+out vec3 frustum_normal;  // x into the picture, y to port, z up
+out vec4 frustum_tangent;
 out vec2 map_uv;
 flat out float map_scale;
 #endif
@@ -30,8 +30,8 @@ void main() {
     vec4 p = vec4(position, 1.0);
     gl_Position = vec4(dot(clip_x, p), dot(clip_y, p), near_plane, dot(clip_w, p));  // reversed, infinite depth: near / x
 #ifdef HAVE_NORMAL_MAP
-    slab_normal = vec3(dot(normal_x.xyz, normal), dot(normal_y.xyz, normal), dot(normal_z.xyz, normal));
-    slab_tangent = vec4(dot(tangent_x.xyz, tangent.xyz), dot(tangent_y.xyz, tangent.xyz), dot(tangent_z.xyz, tangent.xyz), tangent.w);
+    frustum_normal = vec3(dot(normal_x.xyz, normal), dot(normal_y.xyz, normal), dot(normal_z.xyz, normal));
+    frustum_tangent = vec4(dot(tangent_x.xyz, tangent.xyz), dot(tangent_y.xyz, tangent.xyz), dot(tangent_z.xyz, tangent.xyz), tangent.w);
     map_uv = uv;
     map_scale = normal_x.w;
 #endif

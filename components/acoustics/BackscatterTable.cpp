@@ -9,13 +9,13 @@ namespace {
 
 using std::numbers::pi;
 
-const double least_cosine = std::sin(0.001 * pi / 180);
+const double min_cosine = std::sin(0.001 * pi / 180);
 
 }  // namespace
 
 BackscatterTable::BackscatterTable(const std::function<double(double)>& section) {
     for (int i = 0; i < entries; ++i) {
-        const double cosine = std::max(least_cosine, static_cast<double>(i) / (entries - 1));
+        const double cosine = std::max(min_cosine, static_cast<double>(i) / (entries - 1));
         values_[static_cast<size_t>(i)] = section(std::asin(cosine)) / cosine;
     }
 }

@@ -14,8 +14,8 @@ namespace {
 using std::numbers::pi;
 
 constexpr double degree = pi / 180;
-constexpr double least_grazing = 0.001 * degree;
-constexpr double least_kirchhoff = 40 * degree;
+constexpr double min_grazing = 0.001 * degree;
+constexpr double min_kirchhoff = 40 * degree;
 
 /** 1 far below 0, 0 far above: equation 57. */
 double blend(double x) { return 1 / (1 + std::exp(x)); }
@@ -61,7 +61,7 @@ SeabedBackscatter::SeabedBackscatter(const Seabed& seabed, double frequency_khz,
       normal_reflection_(std::norm(halfSpaceReflection(halfSpaceOf(seabed), pi / 2))) {}
 
 double SeabedBackscatter::crossSection(double grazing) const {
-    const double angle = std::max(grazing, least_grazing);
+    const double angle = std::max(grazing, min_grazing);
     return roughInterface(angle) + volume(angle);
 }
 
@@ -77,7 +77,7 @@ double SeabedBackscatter::roughInterface(double grazing) const {
 
 /** Equations 35 to 40. */
 double SeabedBackscatter::kirchhoff(double grazing) const {
-    if (grazing < least_kirchhoff) return 0;
+    if (grazing < min_kirchhoff) return 0;
     const double spread = std::pow(std::abs(std::cos(grazing)), 4 * alpha_) +
                           a_ * structure_ * structure_ * std::pow(std::sin(grazing), 4);
     return kirchhoffLevel(alpha_) * b_ * structure_ * normal_reflection_ /

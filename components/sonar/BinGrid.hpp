@@ -5,6 +5,9 @@
 
 namespace insonify::sonar {
 
+/** Bins of all beams of a ping, at most: sums of 16 bytes take 256 MiB [1]. */
+constexpr int64_t max_bins = int64_t{1} << 24;
+
 /** The range bins of a ping: bin k holds slant ranges [edge(k), edge(k + 1)). */
 struct BinGrid {
     int bin_count = 0;            ///< [1]

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "components/sonar/BinGrid.hpp"
 #include "types/Angle.hpp"
 
 namespace insonify::sonar {
@@ -91,9 +92,7 @@ double Directivity::halfPowerAzimuth() const {
     return 2 * angle;
 }
 
-SonarConfig sampledConfig(const SonarConfig& config, bool casts_rays) {
-    if (!config.beam_pattern) return config;
-    const Directivity directivity(config);
+SonarConfig sampledConfig(const SonarConfig& config, const Directivity& directivity, bool casts_rays) {
     SonarConfig sampled = config;
     if (directivity.hasElevation())
         sampled.beam_height_deg =
@@ -113,8 +112,8 @@ SonarConfig sampledConfig(const SonarConfig& config, bool casts_rays) {
 }
 
 std::string whyTooLarge(const SonarConfig& config) {
-    constexpr int64_t max_bins = int64_t{1} << 24;
-    const SonarConfig sampled = sampledConfig(config, config.castsRays());
+    if (!config.beam_pattern) return {};
+    const SonarConfig sampled = sampledConfig(config, Directivity(config), config.castsRays());
     if (int64_t{sampled.beams()} * sampled.bin_count <= max_bins) return {};
     return fmt::format("has {} azimuth cells of {} bins each, {} in all; may be {}: give wider beams or fewer bins",
                        sampled.beams(), sampled.bin_count, int64_t{sampled.beams()} * sampled.bin_count, max_bins);

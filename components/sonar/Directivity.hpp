@@ -40,10 +40,9 @@ private:
     Law transmit_azimuth_, receive_azimuth_, transmit_elevation_, receive_elevation_;
 };
 
-/** The sonar as it is sampled: where beams have a pattern, its azimuth cells take the place of the beams, and cells and
- *  aperture go as far as the pattern is above its floor, in images at most as far as one shows. Without `beam_pattern`,
- * `config` itself. */
-SonarConfig sampledConfig(const SonarConfig& config, bool casts_rays);
+/** A sonar with a beam pattern as it is sampled: azimuth cells take the place of the beams, and cells and
+ *  aperture go as far as the pattern is above its floor, in images at most as far as one shows. */
+SonarConfig sampledConfig(const SonarConfig& config, const Directivity& directivity, bool casts_rays);
 
 /** Why the cells of a sonar would take more memory than there may be; empty where they do not.
  *  @throws types::ConfigError as Directivity does. */

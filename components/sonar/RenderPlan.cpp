@@ -104,7 +104,7 @@ std::vector<std::string> Features::defines() const {
 void RenderPlan::setQuality(int rows, int columns_per_beam) {
     config.quality.rows = rows;
     config.quality.columns_per_beam = columns_per_beam;
-    sampled = sampledConfig(config, casts_rays);
+    sampled = directivity ? sampledConfig(config, *directivity, casts_rays) : config;
     cells = directivity ? makeBeams(sampled) : beams;
     if (!casts_rays) frusta = makeFrusta(sampled, cells, options);
 }

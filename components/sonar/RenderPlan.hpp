@@ -111,7 +111,7 @@ struct RenderPlan {
     BinGrid grid;
     std::vector<Beam> beams;
     std::optional<Directivity> directivity;  ///< None without a beam pattern.
-    SonarConfig sampled;                     ///< What is sampled: sampledConfig() of `config`.
+    SonarConfig sampled;                     ///< What is sampled: sampledConfig(), or `config`.
     std::vector<Beam> cells;                 ///< Its azimuth cells; the beams themselves without a pattern in azimuth.
     std::vector<ViewFrustum> frusta;         ///< Images of the cells; none with rays.
     std::vector<LeftOut> left_out;

@@ -15,7 +15,6 @@ namespace insonify::sonar {
 namespace {
 
 constexpr int64_t max_ray_columns = int64_t{1} << 22;
-constexpr int64_t max_bins = int64_t{1} << 24;  // sums of 16 bytes: 256 MiB
 
 void checkPublished(const SonarConfig& config, types::Diagnostics& diagnostics) {
     if (config.model != Model::Cerqueira2017)

@@ -122,11 +122,11 @@ TEST(DirectivityTest, CellsGoAsFarAsTheFloorSaysAndAreFinerThanBeams) {
     SonarConfig config = sonarWith(widthOf(2));
     config.field_of_view_deg = 60;
     config.beam_count = 60;
-    const SonarConfig sampled = sampledConfig(config, true);
+    const SonarConfig sampled = sampledConfig(config, Directivity(config), true);
     EXPECT_LE(*sampled.beam_width_deg, 0.5);
     EXPECT_GT(sampled.coverageDeg(), 62);
     config.beam_pattern->floor_db = -20;
-    const double nearer = sampledConfig(config, true).coverageDeg();
+    const double nearer = sampledConfig(config, Directivity(config), true).coverageDeg();
     EXPECT_LT(nearer, sampled.coverageDeg());
     EXPECT_GT(nearer, 59 + 2) << "from one outer bearing to the other, and the main lobe";
     EXPECT_EQ(sampled.beam_height_deg, config.beam_height_deg) << "without a law in elevation, as given";
@@ -135,7 +135,7 @@ TEST(DirectivityTest, CellsGoAsFarAsTheFloorSaysAndAreFinerThanBeams) {
 TEST(DirectivityTest, SidelobesInElevationReachBeyondTheApertureThatIsGiven) {
     SonarConfig config;
     config.beam_pattern.emplace().receive.elevation = widthOf(20, acoustics::Weighting::Uniform);
-    const SonarConfig sampled = sampledConfig(config, true);
+    const SonarConfig sampled = sampledConfig(config, Directivity(config), true);
     EXPECT_GT(sampled.beam_height_deg, 150);
     EXPECT_EQ(sampled.beams(), config.beams()) << "without a law in azimuth, beams are boxes";
 }
