@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "components/sonar/Estimators.hpp"
+#include "components/sonar/TruthDeposit.hpp"
 
 namespace insonify::sonar {
 namespace {
@@ -164,8 +165,8 @@ public:
         return all;
     }
 
-    PartDeposit(const FrustumPart& part, uint64_t* sums)
-        : part_(part), bins_(part.rules, sums), per_pixel_(1 / (part.frustum.du() * part.frustum.dv())) {}
+    PartDeposit(const FrustumPart& part, uint64_t* sums, const TruthSink* truth)
+        : part_(part), bins_(part.rules, sums, truth), per_pixel_(1 / (part.frustum.du() * part.frustum.dv())) {}
 
     void run() {
         for (int row = 0; row < part_.frustum.rows; ++row)
@@ -178,6 +179,7 @@ private:
         if (!look(part_, row, first, count, pixels_) && !Estimator::features.has(Feature::Published)) return;
         aim<Estimator::features.has(Feature::Jitter)>(part_, row, first, count, pixels_);
         meet(pixels_, count);
+        if constexpr (Estimator::tells_truth) regard(row, first, count);
         const size_t at = static_cast<size_t>(conical ? row : 0) * static_cast<size_t>(part_.frustum.columns) +
                           static_cast<size_t>(first);
         const uint end = part_.shares.starts[at + static_cast<size_t>(count)];
@@ -192,9 +194,28 @@ private:
         cover(shared_, count,
               {v, part_.frustum.dv(), part_.rules.edges.front(), bins_.binEdge(bins_.bin_count), per_pixel_}, cells_);
         if (part_.rules.features.has(Feature::ElevationPattern)) weigh(count, v);
-        for (int i = 0; i < count; ++i)
-            if (shares[i].beam >= part_.first && shares[i].beam < part_.last)
-                bins_.depositCell(cells_.get(i), shares[i].beam, shared_.strength_range[i]);
+        for (int i = 0; i < count; ++i) {
+            if (shares[i].beam < part_.first || shares[i].beam >= part_.last) continue;
+            if constexpr (Estimator::tells_truth) bins_.regard(shown_[shares[i].column - first_column]);
+            bins_.depositCell(cells_.get(i), shares[i].beam, shared_.strength_range[i]);
+        }
+    }
+
+    /** Notes what `count` pixels from `first` show; a pixel that beams share is one sample of each. */
+    void regard(int row, int first, int count) {
+        const TakenPicture& picture = part_.picture;
+        const uint32_t* texel =
+            picture.pixels + picture.channels * (static_cast<size_t>(row) * static_cast<size_t>(part_.frustum.columns) +
+                                                 static_cast<size_t>(first));
+        for (int i = 0; i < count; ++i, texel += picture.channels) {
+            CellTruth& shown = shown_[i] = {};
+            if (texel[0] == 0) continue;
+            const double u = pixels_.ray_u[i], v = pixels_.ray_v[i], length = std::sqrt(1 + u * u + v * v);
+            const double x = pixels_.normal_x[i], y = pixels_.normal_y[i], z = pixels_.normal_z[i];
+            shown.object = picture.objects[texel[0] - 1];
+            shown.hits = 1;
+            shown.aim((x + u * y + v * z) / length, x * x + y * y + z * z, v / length);
+        }
     }
 
     void weigh(int count, double v) {
@@ -208,12 +229,14 @@ private:
     Pixels pixels_;
     Shared shared_;
     Cells cells_;
+    CellTruth shown_[Estimator::tells_truth ? stretch : 1];
 };
 
 /** Calls use.operator()<Deposit>() with the PartDeposit that has the features of a plan. */
-template <class Use>
+template <template <class> class Telling, class Use>
 void withParts(const Features& features, const Use& use) {
-    withEstimator<Features{}>(features, [&]<class Estimator>() {
+    withEstimator<Features{}>(features, [&]<class Deposited>() {
+        using Estimator = Telling<Deposited>;
         if (features.has(Feature::Conical))
             use.template operator()<PartDeposit<Estimator, true>>();
         else
@@ -236,12 +259,17 @@ PlacedRun placedRun(const ObjectRecord& object, double strength, uint32_t first_
 }
 
 INSONIFY_VECTOR_CLONES __attribute__((flatten)) void deposit(const FrustumPart& part, uint64_t* sums) {
-    withParts(part.rules.features, [&]<class Deposit>() { Deposit(part, sums).run(); });
+    withParts<Untold>(part.rules.features, [&]<class Deposit>() { Deposit(part, sums, nullptr).run(); });
+}
+
+INSONIFY_VECTOR_CLONES __attribute__((flatten)) void depositAndTell(const FrustumPart& part, uint64_t* sums,
+                                                                    const TruthSink& truth) {
+    withParts<Told>(part.rules.features, [&]<class Deposit>() { Deposit(part, sums, &truth).run(); });
 }
 
 Features compiledForPictures(const Features& wanted) {
     Features compiled;
-    withParts(wanted, [&]<class Deposit>() { compiled = Deposit::features(); });
+    withParts<Untold>(wanted, [&]<class Deposit>() { compiled = Deposit::features(); });
     return compiled;
 }
 

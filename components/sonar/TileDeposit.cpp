@@ -6,6 +6,7 @@
 #include <glm/geometric.hpp>
 
 #include "components/sonar/Estimators.hpp"
+#include "components/sonar/TruthDeposit.hpp"
 
 namespace insonify::sonar {
 namespace {
@@ -85,13 +86,14 @@ public:
         return all;
     }
 
-    CellDeposit(const EchoRules& rules, const CastView& view, const PlacedScene& scene, int first_beam, uint64_t* sums)
+    CellDeposit(const EchoRules& rules, const CastView& view, const PlacedScene& scene, int first_beam, uint64_t* sums,
+                const TruthSink* truth)
         : rules_(rules),
           view_(view.cells),
           shape_(view.shape),
           scene_(scene),
           first_beam_(first_beam),
-          estimator_(rules, sums) {}
+          estimator_(rules, sums, truth) {}
 
     void add(const CastTile& tile) {
         for (int i = 0; i < tile_samples;) {
@@ -103,9 +105,11 @@ public:
     }
     void finish() {
         cover(cells_, count_, rules_.edges.front(), rules_.edges[static_cast<size_t>(rules_.bins.bin_count)], covered_);
-        for (int i = 0; i < count_; ++i)
+        for (int i = 0; i < count_; ++i) {
+            if constexpr (Estimator::tells_truth) estimator_.regard(shown_[i]);
             estimator_.depositCell(covered_.footprint(i), static_cast<uint>(cells_.beam[i] - first_beam_),
                                    covered_.strength_range[i]);
+        }
         count_ = 0;
     }
 
@@ -137,7 +141,19 @@ private:
         cells_.far_limit[i] = run.far_limit;
         aim(tile, sample, merged);
         if (normal_maps) cells_.mapped[i] = mappedCosine(tile, sample, merged);
+        if constexpr (Estimator::tells_truth) regard(tile, sample, merged);
         if (++count_ == stretch) finish();
+    }
+
+    /** Notes what the cell shows that aim() has just put down. */
+    void regard(const CastTile& tile, int sample, int merged) {
+        const int i = count_;
+        const glm::dvec3 ray(cells_.cos_el[i] * cells_.cos_az[i], cells_.cos_el[i] * cells_.sin_az[i],
+                             cells_.sin_el[i]);
+        const glm::dvec3 normal(cells_.normal_x[i], cells_.normal_y[i], cells_.normal_z[i]);
+        shown_[i].object = scene_.commands[tile.hits->command[sample]].object;
+        shown_[i].hits = static_cast<uint32_t>(merged);
+        shown_[i].aim(glm::dot(normal, ray), glm::dot(normal, normal), ray.z);
     }
 
     /** Of the middle of the cell that aim() has just put down; 0 where its material has no map. */
@@ -196,12 +212,14 @@ private:
     int count_ = 0;
     Cells cells_{};
     Covered covered_{};
+    CellTruth shown_[Estimator::tells_truth ? stretch : 1];
 };
 
 /** Calls use.operator()<Deposit>() with the CellDeposit that has the features of a plan. */
-template <class Use>
+template <template <class> class Telling, class Use>
 void withCells(const Features& features, const Use& use) {
-    withEstimator<Features{Feature::Published, Feature::Nearest}>(features, [&]<class Estimator>() {
+    withEstimator<Features{Feature::Published, Feature::Nearest}>(features, [&]<class Deposited>() {
+        using Estimator = Telling<Deposited>;
         const bool conical = features.has(Feature::Conical), mapped = features.has(Feature::NormalMap);
         if (conical && mapped)
             use.template operator()<CellDeposit<Estimator, true, true>>();
@@ -219,8 +237,19 @@ void withCells(const Features& features, const Use& use) {
 INSONIFY_VECTOR_CLONES __attribute__((flatten)) void deposit(const EchoRules& rules, const CastView& view,
                                                              const PlacedScene& scene, std::span<const CastTile> tiles,
                                                              int first_beam, uint64_t* sums) {
-    withCells(rules.features, [&]<class Deposit>() {
-        Deposit cells(rules, view, scene, first_beam, sums);
+    withCells<Untold>(rules.features, [&]<class Deposit>() {
+        Deposit cells(rules, view, scene, first_beam, sums, nullptr);
+        for (const CastTile& tile : tiles) cells.add(tile);
+        cells.finish();
+    });
+}
+
+INSONIFY_VECTOR_CLONES __attribute__((flatten)) void depositAndTell(const EchoRules& rules, const CastView& view,
+                                                                    const PlacedScene& scene,
+                                                                    std::span<const CastTile> tiles, int first_beam,
+                                                                    uint64_t* sums, const TruthSink& truth) {
+    withCells<Told>(rules.features, [&]<class Deposit>() {
+        Deposit cells(rules, view, scene, first_beam, sums, &truth);
         for (const CastTile& tile : tiles) cells.add(tile);
         cells.finish();
     });
@@ -228,7 +257,7 @@ INSONIFY_VECTOR_CLONES __attribute__((flatten)) void deposit(const EchoRules& ru
 
 Features compiledForRays(const Features& wanted) {
     Features compiled;
-    withCells(wanted, [&]<class Deposit>() { compiled = Deposit::features(); });
+    withCells<Untold>(wanted, [&]<class Deposit>() { compiled = Deposit::features(); });
     return compiled;
 }
 
