@@ -175,7 +175,7 @@ TEST(PublishedTruthTest, MissesAreNoObjects) {
     SonarConfig config = ways[1].of(fan());
     config.model = Model::Cerqueira2017;
     config.published = true;
-    const types::Snapshot snapshot = test::snapshotOf(test::sceneOf({test::wall(8)}));
+    const types::Snapshot snapshot = test::snapshotOf(test::sceneOf({test::quad({8, -1, -1}, {0, 2, 0}, {0, 0, 2})}));
     const Told told = toldOf(config, snapshot);
     SonarRenderer renderer(config, snapshot.geometry);
     types::Sonar alone;
