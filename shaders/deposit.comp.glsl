@@ -16,11 +16,20 @@ uniform uint bin_count, beam_stride;
 uniform double bin_width, attenuation, strength_scale;
 uniform dvec2 extent, pixel_size, frustum_axis;
 
+#if defined(HAVE_ELEVATION_PATTERN) || defined(HAVE_BACKSCATTER_LAWS)
+layout(std430, binding = TABLES_BINDING) readonly buffer Tables { double tables[]; };
+#endif
 #ifdef HAVE_ELEVATION_PATTERN
-layout(std430, binding = ELEVATION_BINDING) readonly buffer Elevation { double elevation_powers[]; };
 uniform double elevation_reach;
-double elevationPower(uint i) { return elevation_powers[i]; }
+double elevationPower(uint i) { return tables[i]; }
 #include "elevation.glsl"
+const uint first_backscatter = uint(ELEVATION_STEPS + 1);
+#else
+const uint first_backscatter = 0u;
+#endif
+#ifdef HAVE_BACKSCATTER_LAWS
+double backscatterEntry(uint i) { return tables[first_backscatter + i]; }
+#include "backscatter.glsl"
 #endif
 
 double binEdge(uint k) { return edges[k]; }
@@ -149,6 +158,14 @@ Seen seenAt(ivec2 pixel, dvec2 uv) {
     if (texel.z != 0u) cosine = double(uintBitsToFloat(texel.z));
 #endif
     seen.strength = strengthOf(command.material) * cosine;
+#ifdef HAVE_BACKSCATTER_LAWS
+    MaterialRecord material = materials[command.material];
+    if (!followsLambert(material.law)) {
+        double angle = max(pixel_size.x, pixel_size.y) / sqrt(1.0 + dot(uv, uv));
+        double slope = double(planes[command.first_triangle + texel.y].point.w) + slopeOfSample(angle);
+        seen.strength = backscatterOverCosine(material.law, double(material.values.x), cosine, slope) * strength_scale;
+    }
+#endif
 #ifdef HAVE_ELEVATION_PATTERN
     seen.strength *= elevationWeight(uv.x, uv.y);
 #endif

@@ -106,11 +106,11 @@ private:
 CastEchoes::CastEchoes(const RenderPlan& plan, types::GeometryPtr geometry)
     : plan_(plan),
       geometry_(std::move(geometry)),
-      rules_(makeEchoRules(plan, *geometry_)),
+      rules_(makeEchoRules(plan)),
       levels_(plan.config, plan.grid),
       places_(*geometry_, reachOf(plan), true),
       visibility_(*geometry_),
-      planes_(planesOf(*geometry_)),
+      planes_(planesOf(*geometry_, plan.laws)),
       normal_maps_(*geometry_),
       threads_(plan.options.threads),
       workers_(static_cast<size_t>(threads_.size())) {
@@ -121,11 +121,12 @@ CastEchoes::CastEchoes(const RenderPlan& plan, types::GeometryPtr geometry)
 Features CastEchoes::compiled() const {
     Features all = compiledForRays(plan_.features);
     if (view_.cells.weighted) all.add(Feature::ElevationPattern);
+    if (!rules_.laws.tables.empty() || rules_.laws.hasLobes()) all.add(Feature::BackscatterLaws);
     return all;
 }
 
 void CastEchoes::takeQuality() {
-    rules_ = makeEchoRules(plan_, *geometry_);
+    rules_ = makeEchoRules(plan_);
     view_.cells = makeAngularView(plan_);
     grid_.emplace(plan_, threads_.size());
     shareOut();
@@ -167,14 +168,8 @@ void CastEchoes::place(const types::Snapshot& snapshot) {
     places_.place(snapshot);
     visibility_.place(snapshot);
     runs_.clear();
-    for (const CommandRecord& command : visibility_.commands()) {
-        const types::Material& material = geometry_->materials[command.material];
-        const double strength = rules_.features.has(Feature::Cerqueira2017)
-                                    ? static_cast<double>(material.reflectivity)
-                                    : static_cast<double>(std::pow(10.0f, material.lambert_db / 10));
-        runs_.push_back(placedRun(places_.records()[command.object], strength * rules_.strength_scale,
-                                  command.first_triangle, 1, 0));
-    }
+    for (const CommandRecord& command : visibility_.commands())
+        runs_.push_back(placedRun(places_.records()[command.object], command, rules_, 1, 0));
 }
 
 TileRays CastEchoes::raysOf(const CastTile& tile, int end_column) const {

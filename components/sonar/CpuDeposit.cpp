@@ -49,13 +49,9 @@ void CpuDeposit::take(size_t slot, size_t frustum, const SurfacePass& surface) {
     picture.ranges.clear();
     picture.objects.clear();
     const double cosine = std::cos(setup_.frusta[frustum].azimuth), sine = std::sin(setup_.frusta[frustum].azimuth);
-    const int value = setup_.rules.features.has(Feature::Cerqueira2017) ? 1 : 0;
     for (const CommandRecord& command : surface.lists().commands(slot, frustum)) {
         if (truth_) picture.objects.push_back(command.object);
-        picture.ranges.push_back(
-            placedRun(surface.objects()[command.object],
-                      surface.scene().materials()[command.material].values[value] * setup_.rules.strength_scale,
-                      command.first_triangle, cosine, sine));
+        picture.ranges.push_back(placedRun(surface.objects()[command.object], command, setup_.rules, cosine, sine));
     }
 }
 
@@ -75,6 +71,7 @@ void CpuDeposit::waitForPictures(size_t slot) {
 Features CpuDeposit::compiled() const {
     Features all = compiledForPictures(setup_.rules.features);
     if (!setup_.rules.elevation_powers.empty()) all.add(Feature::ElevationPattern);
+    if (!setup_.rules.laws.tables.empty() || setup_.rules.laws.hasLobes()) all.add(Feature::BackscatterLaws);
     return all;
 }
 

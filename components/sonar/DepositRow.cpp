@@ -27,7 +27,8 @@ constexpr int stretch = 64;  ///< Pixels at a time: their numbers stay in the ne
 struct Pixels {
     double normal_x[stretch], normal_y[stretch], normal_z[stretch], distance[stretch];  ///< Planes, frustum axes.
     double u[stretch], ray_u[stretch], ray_v[stretch], mapped[stretch], strength[stretch];
-    double near_limit[stretch], far_limit[stretch], nearest[stretch];
+    double near_limit[stretch], far_limit[stretch], nearest[stretch], facet_slope[stretch];
+    uint material[stretch];
     double inverse_range[stretch], slope_u[stretch], slope_v[stretch], strength_range[stretch];
 };
 
@@ -80,7 +81,8 @@ struct Cells {
 void miss(Pixels& pixels, int i) {
     pixels.normal_x[i] = 1;
     pixels.normal_y[i] = pixels.normal_z[i] = pixels.distance[i] = pixels.strength[i] = pixels.mapped[i] = 0;
-    pixels.near_limit[i] = pixels.far_limit[i] = 0;
+    pixels.near_limit[i] = pixels.far_limit[i] = pixels.facet_slope[i] = 0;
+    pixels.material[i] = 0;
 }
 
 void hit(const PlacedRun& run, const PlaneRecord& plane, double mapped, Pixels& pixels, int i) {
@@ -95,6 +97,8 @@ void hit(const PlacedRun& run, const PlaneRecord& plane, double mapped, Pixels& 
     pixels.strength[i] = run.strength;
     pixels.near_limit[i] = run.near_limit;
     pixels.far_limit[i] = run.far_limit;
+    pixels.facet_slope[i] = p.w;
+    pixels.material[i] = run.material;
 }
 
 /** Looks up what `count` pixels from `first` show; false when all are misses. */
@@ -142,6 +146,21 @@ INSONIFY_VECTOR_CLONES void meet(Pixels& pixels, int count) {
     }
 }
 
+/** The strength of what does not follow Lambert's law. */
+void applyLaws(const FrustumPart& part, double v, int count, Pixels& pixels) {
+    const MaterialLaws& laws = part.rules.laws;
+    const double widest = std::max(part.frustum.du(), part.frustum.dv());
+    for (int i = 0; i < count; ++i) {
+        if (laws.followsLambert(pixels.material[i]) || pixels.inverse_range[i] == 0) continue;
+        const double cosine = pixels.mapped[i] == 0
+                                  ? pixels.strength_range[i] * pixels.inverse_range[i] / pixels.strength[i]
+                                  : pixels.mapped[i];
+        const double angle = widest / sqrt(1 + pixels.u[i] * pixels.u[i] + v * v);
+        pixels.strength_range[i] = part.rules.strength_scale / pixels.inverse_range[i] *
+                                   laws.overCosine(pixels.material[i], cosine, pixels.facet_slope[i], angle);
+    }
+}
+
 /** The same of all cells of a stretch. */
 struct Reach {
     double v, dv, near_edge, far_edge, per_pixel;
@@ -180,6 +199,8 @@ private:
         aim<Estimator::features.has(Feature::Jitter)>(part_, row, first, count, pixels_);
         meet(pixels_, count);
         if constexpr (Estimator::tells_truth) regard(row, first, count);
+        if (part_.rules.features.has(Feature::BackscatterLaws))
+            applyLaws(part_, part_.frustum.v(row + 0.5), count, pixels_);
         const size_t at = static_cast<size_t>(conical ? row : 0) * static_cast<size_t>(part_.frustum.columns) +
                           static_cast<size_t>(first);
         const uint end = part_.shares.starts[at + static_cast<size_t>(count)];
@@ -246,8 +267,19 @@ void withParts(const Features& features, const Use& use) {
 
 }  // namespace
 
-PlacedRun placedRun(const ObjectRecord& object, double strength, uint32_t first_triangle, double cosine, double sine) {
-    PlacedRun run{{}, {}, {}, {}, object.extent.x, object.extent.y, strength, first_triangle};
+PlacedRun placedRun(const ObjectRecord& object, const CommandRecord& command, const EchoRules& rules, double cosine,
+                    double sine) {
+    const vec4& values = rules.laws.records[command.material].values;
+    const double strength = double{rules.features.has(Feature::Cerqueira2017) ? values.y : values.x};
+    PlacedRun run{{},
+                  {},
+                  {},
+                  {},
+                  object.extent.x,
+                  object.extent.y,
+                  strength * rules.strength_scale,
+                  command.first_triangle,
+                  command.material};
     for (int i = 0; i < 3; ++i) {
         const double x = object.normal_x[i], y = object.normal_y[i];
         run.normal_x[i] = cosine * x + sine * y;

@@ -26,9 +26,9 @@ double nearPlane(const ViewFrustum& frustum) {
     return nearest_drawn / corner;
 }
 
-DepositSetup depositSetup(const RenderPlan& plan, const types::Geometry& geometry) {
+DepositSetup depositSetup(const RenderPlan& plan) {
     DepositSetup setup;
-    setup.rules = makeEchoRules(plan, geometry);
+    setup.rules = makeEchoRules(plan);
     setup.frusta = plan.frusta;
     for (const ViewFrustum& frustum : plan.frusta)
         setup.shares.push_back(makeShares(plan.sampled, plan.cells, frustum, plan.options));
@@ -115,6 +115,7 @@ SurfacePass::Setup DrawnEchoes::surfaceSetup() const {
     const CullOn best = !context_.isSoftware() && !depositsOnProcessor() ? CullOn::Device : CullOn::Processor;
     const CullOn chosen = plan_.options.cull_on == CullOn::Auto ? best : plan_.options.cull_on;
     return {.geometry = *geometry_,
+            .laws = plan_.laws,
             .frusta = plan_.frusta,
             .defines = plan_.features.defines(),
             .near_plane = nearPlane(plan_.frusta.front()),
@@ -125,7 +126,7 @@ SurfacePass::Setup DrawnEchoes::surfaceSetup() const {
 
 void DrawnEchoes::makeDeposit() {
     using SumIn = RenderOptions::SumIn;
-    DepositSetup setup = depositSetup(plan_, *geometry_);
+    DepositSetup setup = depositSetup(plan_);
     setup.slots = slots_;
     setup.group_sums =
         plan_.options.sum_in == SumIn::Auto ? !context_.isSoftware() : plan_.options.sum_in == SumIn::Groups;

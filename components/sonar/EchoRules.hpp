@@ -23,6 +23,7 @@ struct EchoRules {
 
     double elevation_reach = 0;            ///< Sine of the elevation at which the table of the pattern ends [1].
     std::vector<double> elevation_powers;  ///< Two-way pattern over it (shaders/elevation.glsl); empty without one [1].
+    MaterialLaws laws;
 
     size_t channels() const { return features.has(Feature::Cerqueira2017) ? 2 : 1; }
     /** Bins from one beam's first to the next one's. */
@@ -32,13 +33,10 @@ struct EchoRules {
 };
 
 /** Rules for the plan's quality. */
-EchoRules makeEchoRules(const RenderPlan& plan, const types::Geometry& geometry);
+EchoRules makeEchoRules(const RenderPlan& plan);
 
-/** Strongest Lambert parameter of a geometry's materials [1]. */
-double loudest(const types::Geometry& geometry);
-
-/** The power of 2, at most 1, by which strengths of up to `loudest` must be scaled so that no sum of quanta overflows:
- *  1 but for materials, images or bins that are extreme together. */
-double strengthScale(const RenderPlan& plan, double loudest);
+/** The power of 2, at most 1, by which strengths must be scaled so that no sum of quanta overflows: 1 but for
+ *  materials, images or bins that are extreme together. */
+double strengthScale(const RenderPlan& plan);
 
 }  // namespace insonify::sonar

@@ -33,7 +33,7 @@ private:
     const gpu::EglContext& context_;
     const gpu::Program& program_;
     Uniforms uniforms_;
-    gpu::Buffer edges_, elevation_, device_sums_;
+    gpu::Buffer edges_, tables_, device_sums_;
     std::vector<FrustumShares> shares_;
     std::vector<gpu::ReadBack> sums_;  ///< Of each slot.
 };
@@ -51,7 +51,9 @@ GpuDeposit::GpuDeposit(const DepositSetup& setup, gpu::EglContext& context)
                  at("strength_scale"), at("frustum_axis"), at("extent"),      at("pixel_size"), at("elevation_reach")};
     context.requireStorage(setup.sumCount() * sizeof(uint64_t), "the sums of all bins");
     edges_ = gpu::Buffer::of(std::span(setup.rules.edges));
-    if (!setup.rules.elevation_powers.empty()) elevation_ = gpu::Buffer::of(std::span(setup.rules.elevation_powers));
+    std::vector<double> tables = setup.rules.elevation_powers;
+    tables.insert(tables.end(), setup.rules.laws.tables.begin(), setup.rules.laws.tables.end());
+    if (!tables.empty()) tables_ = gpu::Buffer::of(std::span<const double>(tables));
     device_sums_ = gpu::Buffer(setup.sumCount() * sizeof(uint64_t));
     for (const ColumnShares& frustum : setup.shares)
         shares_.push_back({gpu::Buffer::of(std::span(frustum.starts)), gpu::Buffer::of(std::span(frustum.shares))});
@@ -77,7 +79,7 @@ void GpuDeposit::take(size_t slot, size_t frustum, const SurfacePass& surface) {
     surface.bindResults(slot, frustum);
     shares_[frustum].shares.bindBase(GL_SHADER_STORAGE_BUFFER, SHARES_BINDING);
     shares_[frustum].starts.bindBase(GL_SHADER_STORAGE_BUFFER, SHARE_STARTS_BINDING);
-    if (elevation_.bytes() > 0) elevation_.bindBase(GL_SHADER_STORAGE_BUFFER, ELEVATION_BINDING);
+    if (tables_.bytes() > 0) tables_.bindBase(GL_SHADER_STORAGE_BUFFER, TABLES_BINDING);
     edges_.bindBase(GL_SHADER_STORAGE_BUFFER, EDGES_BINDING);
     device_sums_.bindBase(GL_SHADER_STORAGE_BUFFER, SUMS_BINDING);
     glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_FRAMEBUFFER_BARRIER_BIT);

@@ -20,8 +20,10 @@ struct Cells {
     double width[stretch], height[stretch], lean[stretch];  ///< [rad], [rad], dazimuth / delevation of its sides [1].
     double size[stretch];                                   ///< Solid angle, in cells at elevation 0 [1].
     double strength[stretch];                               ///< Of the material [1].
-    double mapped[stretch];                                 ///< Cosine of a bent normal; 0: it is the plane's [1].
-    double near_limit[stretch], far_limit[stretch];         ///< Inverse ranges of the object [1/m].
+    double facet_slope[stretch];                            ///< What its facet adds to a lobe's mean square slope [1].
+    uint32_t material[stretch];
+    double mapped[stretch];                          ///< Cosine of a bent normal; 0: it is the plane's [1].
+    double near_limit[stretch], far_limit[stretch];  ///< Inverse ranges of the object [1/m].
     int beam[stretch];
 };
 
@@ -75,6 +77,20 @@ INSONIFY_VECTOR_CLONES void cover(const Cells& cells, int count, double near_edg
     }
 }
 
+/** The strength of what does not follow Lambert's law. */
+void applyLaws(const EchoRules& rules, const Cells& cells, int count, Covered& covered) {
+    for (int i = 0; i < count; ++i) {
+        if (rules.laws.followsLambert(cells.material[i]) || !(covered.pixel[i] > 0)) continue;
+        const double normal = sqrt(cells.normal_x[i] * cells.normal_x[i] + cells.normal_y[i] * cells.normal_y[i] +
+                                   cells.normal_z[i] * cells.normal_z[i]);
+        const double cosine =
+            cells.mapped[i] > 0 ? cells.mapped[i] : min(abs(cells.distance[i]) * covered.pixel[i] / normal, 1.0);
+        covered.strength_range[i] = rules.strength_scale / covered.pixel[i] *
+                                    rules.laws.overCosine(cells.material[i], cosine, cells.facet_slope[i],
+                                                          max(cells.width[i], cells.height[i]));
+    }
+}
+
 /** Makes cells of tiles, a stretch at a time. */
 template <class Estimator, bool conical, bool normal_maps>
 class CellDeposit {
@@ -105,6 +121,7 @@ public:
     }
     void finish() {
         cover(cells_, count_, rules_.edges.front(), rules_.edges[static_cast<size_t>(rules_.bins.bin_count)], covered_);
+        if (rules_.features.has(Feature::BackscatterLaws)) applyLaws(rules_, cells_, count_, covered_);
         for (int i = 0; i < count_; ++i) {
             if constexpr (Estimator::tells_truth) estimator_.regard(shown_[i]);
             estimator_.depositCell(covered_.footprint(i), static_cast<uint>(cells_.beam[i] - first_beam_),
@@ -137,6 +154,8 @@ private:
         cells_.distance[i] = n.x * (p.x - run.eye[0]) + n.y * (p.y - run.eye[1]) + n.z * (p.z - run.eye[2]) +
                              static_cast<double>(plane.normal.w);
         cells_.strength[i] = run.strength;
+        cells_.facet_slope[i] = static_cast<double>(plane.point.w);
+        cells_.material[i] = run.material;
         cells_.near_limit[i] = run.near_limit;
         cells_.far_limit[i] = run.far_limit;
         aim(tile, sample, merged);

@@ -55,6 +55,11 @@ types::GeometryPtr unmapped() {
     return changed([](types::Geometry& g) { g.materials[1].normal_map = -1; });
 }
 
+/** With a material that follows a table. */
+types::GeometryPtr measured() {
+    return changed([](types::Geometry& g) { g.materials[0].measured = {{0, -40}, {90, -10}}; });
+}
+
 /** The numbers with which an effect is left out; none when it is not. */
 std::optional<LeftOut> leftOut(const SonarConfig& config, Effect effect) {
     const RenderPlan plan = makeRenderPlan(config, *unmapped());
@@ -84,6 +89,8 @@ TEST(OmissionTest, NoEffectIsLeftOutThatIsNotTestedHere) {
         Effect::Absorption, Effect::AbsorptionInBin, Effect::SpecularLobe, Effect::Spreading,
         Effect::BackscatterByMaterial, Effect::FurtherSlabs, Effect::Refraction, Effect::MotionInPing,
         Effect::NormalMaps,
+        // in BackscatterPingTest.cpp:
+        Effect::SeabedLaw, Effect::MeasuredBackscatter,
         // of `published`, in PublishedTest.cpp:
         Effect::RangeFootprints, Effect::ElevationMask, Effect::SharedColumns, Effect::NearBlanking,
         // without values yet; SonarConfig refuses them:
@@ -254,7 +261,7 @@ std::vector<std::pair<SonarConfig, RenderOptions>> sonarsOfAllFeatures() {
 TEST(OmissionTest, WhatIsCompiledAndRunIsWhatThePlanSays) {
     Features seen;
     for (const auto& [config, options] : sonarsOfAllFeatures())
-        for (const types::GeometryPtr& geometry : {types::GeometryPtr(test::surfaces()), unmapped()}) {
+        for (const types::GeometryPtr& geometry : {types::GeometryPtr(test::surfaces()), unmapped(), measured()}) {
             SonarRenderer renderer(config, geometry, options);
             types::Sonar ping;
             renderer.render(test::snapshotOf(geometry, {}, 0.1, 0.15), ping);
