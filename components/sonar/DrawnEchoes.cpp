@@ -145,7 +145,7 @@ void DrawnEchoes::makeTruth() {
     telling_ = dynamic_cast<CpuDeposit*>(deposit_.get());
     if (!telling_) {
         const auto alone = context_.transferring();
-        DepositSetup setup = depositSetup(plan_, *geometry_);
+        DepositSetup setup = depositSetup(plan_);
         setup.slots = slots_;
         beside_ = std::make_unique<CpuDeposit>(std::move(setup), surface_, context_, threads_);
         telling_ = beside_.get();

@@ -49,42 +49,52 @@ sonar::SonarConfig fan() {
 }
 
 /** Energy of each object in each bin, [beam][bin][object], by the sonar equation along each of many rays. */
-std::vector<double> energiesByRays(const types::Snapshot& scene, const sonar::SonarConfig& config) {
-    constexpr int up = 2048, across = 16;
-    const RayTree tree(scene);
-    const size_t objects = scene.geometry->objects.size();
-    const auto bins = static_cast<size_t>(config.bin_count);
-    const double width = radians(config.field_of_view_deg) / config.beam_count,
-                 height = radians(config.beam_height_deg);
-    std::vector<double> energies(static_cast<size_t>(config.beam_count) * bins * objects);
-    for (int column = 0; column < config.beam_count * across; ++column) {
-        const double azimuth = radians(-config.field_of_view_deg / 2) + (column + 0.5) * width / across;
-        for (int row = 0; row < up; row += RayTree::packet) {
-            RayTree::Rays rays;
-            RayTree::Found found;
-            glm::dvec3 directions[RayTree::packet];
-            for (int i = 0; i < RayTree::packet; ++i) {
-                const double elevation = -height / 2 + (row + i + 0.5) * height / up;
-                directions[i] =
-                    scene.sonar.orientation * glm::dvec3(std::cos(elevation) * std::cos(azimuth),
-                                                         std::cos(elevation) * std::sin(azimuth), std::sin(elevation));
-                rays.set(i, directions[i]);
-            }
-            tree.cast(glm::dvec3(0), {&rays, 1}, {&found, 1});
-            for (int i = 0; i < RayTree::packet; ++i) {
-                if (found[static_cast<size_t>(i)] == RayTree::none) continue;
-                const uint32_t hit = found[static_cast<size_t>(i)];
-                const double facing = glm::dot(tree[hit].normal, directions[i]), range = tree[hit].distance / facing;
-                const auto bin = static_cast<size_t>(range / config.range * config.bin_count);
-                if (bin >= bins) continue;
-                const size_t at = static_cast<size_t>(column / across) * bins + bin;
-                energies[at * objects + tree.objectOf(hit)] += tree[hit].mu * std::abs(facing) / (range * range) *
-                                                               std::cos(-height / 2 + (row + i + 0.5) * height / up);
-            }
-        }
+class RayEnergies {
+public:
+    RayEnergies(const types::Snapshot& scene, const sonar::SonarConfig& config)
+        : tree_(scene), scene_(scene), config_(config), bins_(static_cast<size_t>(config.bin_count)) {
+        energies_.resize(static_cast<size_t>(config.beam_count) * bins_ * scene.geometry->objects.size());
+        for (int column = 0; column < config.beam_count * across; ++column)
+            for (int row = 0; row < up; row += RayTree::packet) cast(column, row);
     }
-    return energies;
-}
+    const std::vector<double>& energies() const { return energies_; }
+
+private:
+    static constexpr int up = 2048, across = 16;
+
+    double elevationOf(int row) const { return radians(config_.beam_height_deg) * ((row + 0.5) / up - 0.5); }
+    glm::dvec3 directionOf(int column, int row) const {
+        const double azimuth =
+            radians(*config_.field_of_view_deg) * ((column + 0.5) / across / config_.beam_count - 0.5);
+        const double elevation = elevationOf(row);
+        return scene_.sonar.orientation * glm::dvec3(std::cos(elevation) * std::cos(azimuth),
+                                                     std::cos(elevation) * std::sin(azimuth), std::sin(elevation));
+    }
+    void cast(int column, int first_row) {
+        RayTree::Rays rays;
+        RayTree::Found found;
+        for (int i = 0; i < RayTree::packet; ++i) rays.set(i, directionOf(column, first_row + i));
+        tree_.cast(glm::dvec3(0), {&rays, 1}, {&found, 1});
+        for (int i = 0; i < RayTree::packet; ++i)
+            if (const uint32_t hit = found[static_cast<size_t>(i)]; hit != RayTree::none)
+                add(column, first_row + i, hit);
+    }
+    void add(int column, int row, uint32_t hit) {
+        const RayTree::Triangle& triangle = tree_[hit];
+        const double facing = glm::dot(triangle.normal, directionOf(column, row)), range = triangle.distance / facing;
+        const auto bin = static_cast<size_t>(range / config_.range * config_.bin_count);
+        if (bin >= bins_) return;
+        const size_t at = static_cast<size_t>(column / across) * bins_ + bin;
+        energies_[at * scene_.geometry->objects.size() + tree_.objectOf(hit)] +=
+            triangle.mu * std::abs(facing) / (range * range) * std::cos(elevationOf(row));
+    }
+
+    RayTree tree_;
+    const types::Snapshot& scene_;
+    const sonar::SonarConfig& config_;
+    size_t bins_;
+    std::vector<double> energies_;
+};
 
 /** Share of all energy that lies in bins whose label is the object that returns most there. */
 double agreement(const std::vector<double>& energies, size_t objects, const std::vector<int32_t>& labels) {
@@ -128,7 +138,8 @@ TEST_P(LabelTest, TenObjectsAreToldApartAsByRays) {
     types::SonarTruth truth;
     renderer.setTruth(ping, &truth);
     renderer.render(scene, ping);
-    const std::vector<double> energies = energiesByRays(scene, config);
+    const RayEnergies rays(scene, config);
+    const std::vector<double>& energies = rays.energies();
     const double agreed = agreement(energies, 10, truth.object);
     const double wrong = agreement(energies, 10, labelsByNearestObject(scene, truth));
     std::cout << "agreement " << agreed << ", by the nearest object " << wrong << std::endl;
