@@ -3,8 +3,31 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
+
+#include "types/VectorMath.hpp"
 
 namespace insonify::sonar {
+namespace {
+
+/** Turns sines into angles, within 3e-7 rad: Abramowitz and Stegun, Handbook of Mathematical Functions, 4.4.46. */
+INSONIFY_VECTOR_CLONES void toAngles(float* sines, size_t count) {
+    constexpr float quarter = std::numbers::pi_v<float> / 2;
+    for (size_t i = 0; i < count; ++i) {
+        const float x = std::abs(sines[i]);
+        float sum = -0.0012624911f;
+        sum = sum * x + 0.0066700901f;
+        sum = sum * x - 0.0170881256f;
+        sum = sum * x + 0.0308918810f;
+        sum = sum * x - 0.0501743046f;
+        sum = sum * x + 0.0889789874f;
+        sum = sum * x - 0.2145988016f;
+        sum = sum * x + 1.5707963050f;
+        sines[i] = std::copysign(quarter - std::sqrt(1 - x) * sum, sines[i]);
+    }
+}
+
+}  // namespace
 
 ObjectEcho ObjectEcho::of(uint64_t energy, double sine_elevation, double sine_grazing, uint32_t object, uint32_t hits) {
     const double half = 0.5 * static_cast<double>(energy);  // of quanta, so that a sum holds what the bin's own holds
@@ -74,12 +97,12 @@ void TruthTable::tellBin(size_t at, size_t to, types::SonarTruth& truth) const {
         if (echo.energy > strongest.energy) strongest = echo;
     }
     const double energy = static_cast<double>(strongest.energy), per_energy = 2 / energy;
-    const auto angle = [&](int64_t sines) {
-        return static_cast<float>(std::asin(std::min(static_cast<double>(sines) * per_energy, 1.0)));
+    const auto sine = [&](int64_t sines) {
+        return std::clamp(static_cast<float>(static_cast<double>(sines) * per_energy), -1.0f, 1.0f);
     };
     truth.object[to] = static_cast<int32_t>(strongest.object);
-    truth.elevation[to] = angle(strongest.elevation);
-    truth.grazing[to] = angle(strongest.grazing);
+    truth.elevation[to] = sine(strongest.elevation);
+    truth.grazing[to] = sine(strongest.grazing);
     truth.share[to] = static_cast<float>(energy / static_cast<double>(all.energy));
     truth.hits[to] = all.hits;
 }
@@ -102,6 +125,8 @@ void TruthTable::tell(size_t beam, size_t to, types::SonarTruth& truth) const {
             truth.elevation[at] = truth.grazing[at] = unknown;
         }
     }
+    toAngles(truth.elevation.data() + to * bins_, bins_);
+    toAngles(truth.grazing.data() + to * bins_, bins_);
 }
 
 }  // namespace insonify::sonar

@@ -48,6 +48,7 @@ private:
     void addAt(size_t at, const ObjectEcho& echo);
     void insert(size_t at, const ObjectEcho& echo);
     void addRest(size_t at, const ObjectEcho& echo);
+    /** Sines for angles. */
     void tellBin(size_t at, size_t to, types::SonarTruth& truth) const;
 
     size_t bins_;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "components/sonar/TruthTable.hpp"
 
@@ -34,6 +35,19 @@ TEST(TruthTableTest, ABinIsOfTheObjectThatReturnsMostAndAnglesAreItsMeans) {
     EXPECT_NEAR(truth.elevation[1], std::asin((0.2 + 4 * 0.7) / 5), 1e-6);
     EXPECT_NEAR(truth.grazing[1], std::asin((0.5 + 4 * 0.75) / 5), 1e-6);
     EXPECT_TRUE(std::isnan(truth.elevation[0]) && std::isnan(truth.grazing[2]));
+}
+
+TEST(TruthTableTest, AnglesAreThoseOfTheirSines) {
+    double largest = 0;
+    for (double angle = -1.4; angle <= 1.4; angle += 0.001) {
+        TruthTable table(1, 3);
+        table.add(0, 0, ObjectEcho::of(uint64_t{1} << 50, std::sin(angle), 1, 0, 1));
+        const types::SonarTruth truth = told(table);
+        largest = std::max(largest, std::abs(static_cast<double>(truth.elevation[0]) - angle));
+        EXPECT_FLOAT_EQ(truth.grazing[0], static_cast<float>(std::numbers::pi / 2));
+    }
+    EXPECT_LT(largest, 1e-6);
+    RecordProperty("largest_rad", std::to_string(largest));
 }
 
 TEST(TruthTableTest, WhatIsNearerThanTheLastEchoAndSilentLiesInShadow) {
