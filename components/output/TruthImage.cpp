@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <opencv2/imgproc.hpp>
 #include <stdexcept>
 
@@ -12,8 +13,9 @@ namespace {
 
 const std::string fan_caption = "what is heard", truth_caption = "what it is of; dark blue: in shadow";
 constexpr double font_scale = 0.42;
-constexpr int line_height = 17, swatch = 11, margin = 12;
-constexpr double dimmest = 0.35;  ///< Of an object whose echo is below the dynamic range.
+constexpr int line_height = 17, swatch = 11, margin = 12, legend_width = 140;
+constexpr int bar_width = 60, bar_height = 160;  ///< Of the levels' bar of the fan, in whose place the names are.
+constexpr double dimmest = 0.35;                 ///< Of an object whose echo is below the dynamic range.
 
 DisplayConfig halved(DisplayConfig config) {
     config.width /= 2;
@@ -105,11 +107,21 @@ void TruthImage::count() {
     });
 }
 
+int TruthImage::legendEnd(const cv::Mat& canvas) const {
+    const double aside = layout().origin().x - legend_width, radius = layout().radius();
+    const double widest = radius * std::sin(std::min(layout().left(), std::numbers::pi / 2));
+    if (aside > widest) return canvas.rows - 2 * line_height;
+    return static_cast<int>(layout().origin().y - std::sqrt(radius * radius - aside * aside)) - line_height / 2;
+}
+
 void TruthImage::addLegend(cv::Mat& canvas) const {
-    const auto room = static_cast<size_t>(std::max(0, canvas.rows / 2 / line_height - 2));
-    const size_t count = shown_.size() <= room ? shown_.size() : room > 0 ? room - 1 : 0;
-    const bool all = count == shown_.size();
-    int row = canvas.rows - 2 * line_height - static_cast<int>(all ? count : count + 1) * line_height;
+    constexpr int top = FanLayout::title_height + margin;
+    const int end = legendEnd(canvas);
+    const auto room = static_cast<size_t>(std::max(0, (end - top) / line_height));
+    const bool all = shown_.size() <= room;
+    const size_t count = all ? shown_.size() : room - std::min<size_t>(room, 1);
+    canvas(cv::Rect(0, FanLayout::title_height, bar_width, bar_height) & cv::Rect({}, canvas.size())).setTo(background);
+    int row = top;
     for (size_t i = 0; i < count; ++i, row += line_height)
         addLine(canvas, row, truth_->objects[static_cast<size_t>(shown_[i].object)], colourOf(shown_[i].object));
     if (!all && room > 0) addLine(canvas, row, fmt::format("and {} more", shown_.size() - count), {90, 90, 90});

@@ -32,6 +32,8 @@ private:
     cv::Vec3b colourAt(size_t bin, const cv::Vec3b& echo) const;
     void colour(const cv::Mat& fan, cv::Mat& canvas) const;
     void count();
+    /** Row down to which the corner to the left of the fan is free. */
+    int legendEnd(const cv::Mat& canvas) const;
     void addLegend(cv::Mat& canvas) const;
     void addLine(cv::Mat& canvas, int row, const std::string& text, const cv::Vec3b& colour) const;
 

@@ -161,6 +161,16 @@ void applyLaws(const FrustumPart& part, double v, int count, Pixels& pixels) {
     }
 }
 
+/** From where and at which angle sound meets each pixel. */
+INSONIFY_VECTOR_CLONES void regard(const Pixels& pixels, int count, CellTruths<stretch>& __restrict shown) {
+    for (int i = 0; i < count; ++i) {
+        const double x = pixels.normal_x[i], y = pixels.normal_y[i], z = pixels.normal_z[i];
+        const double u = pixels.ray_u[i], v = pixels.ray_v[i], per_length = 1.0 / sqrt(1.0 + u * u + v * v);
+        shown.sine_elevation[i] = v * per_length;
+        shown.sine_grazing[i] = abs(x + u * y + v * z) * per_length / sqrt(x * x + y * y + z * z);
+    }
+}
+
 /** The same of all cells of a stretch. */
 struct Reach {
     double v, dv, near_edge, far_edge, per_pixel;
@@ -217,7 +227,8 @@ private:
         if (part_.rules.features.has(Feature::ElevationPattern)) weigh(count, v);
         for (int i = 0; i < count; ++i) {
             if (shares[i].beam < part_.first || shares[i].beam >= part_.last) continue;
-            if constexpr (Estimator::tells_truth) bins_.regard(shown_[shares[i].column - first_column]);
+            if constexpr (Estimator::tells_truth)
+                bins_.regard(shown_.get(static_cast<int>(shares[i].column - first_column)));
             bins_.depositCell(cells_.get(i), shares[i].beam, shared_.strength_range[i]);
         }
     }
@@ -229,14 +240,10 @@ private:
             picture.pixels + picture.channels * (static_cast<size_t>(row) * static_cast<size_t>(part_.frustum.columns) +
                                                  static_cast<size_t>(first));
         for (int i = 0; i < count; ++i, texel += picture.channels) {
-            CellTruth& shown = shown_[i] = {};
-            if (texel[0] == 0) continue;
-            const double u = pixels_.ray_u[i], v = pixels_.ray_v[i], length = std::sqrt(1 + u * u + v * v);
-            const double x = pixels_.normal_x[i], y = pixels_.normal_y[i], z = pixels_.normal_z[i];
-            shown.object = picture.objects[texel[0] - 1];
-            shown.hits = 1;
-            shown.aim((x + u * y + v * z) / length, x * x + y * y + z * z, v / length);
+            shown_.object[i] = texel[0] == 0 ? -1 : static_cast<int64_t>(picture.objects[texel[0] - 1]);
+            shown_.hits[i] = 1;
         }
+        sonar::regard(pixels_, count, shown_);
     }
 
     void weigh(int count, double v) {
@@ -250,7 +257,7 @@ private:
     Pixels pixels_;
     Shared shared_;
     Cells cells_;
-    CellTruth shown_[Estimator::tells_truth ? stretch : 1];
+    CellTruths<Estimator::tells_truth ? stretch : 1> shown_{};
 };
 
 /** Calls use.operator()<Deposit>() with the PartDeposit that has the features of a plan. */

@@ -91,6 +91,16 @@ void applyLaws(const EchoRules& rules, const Cells& cells, int count, Covered& c
     }
 }
 
+/** From where and at which angle sound meets the middle of each cell. */
+INSONIFY_VECTOR_CLONES void regard(const Cells& cells, int count, CellTruths<stretch>& __restrict shown) {
+    for (int i = 0; i < count; ++i) {
+        const double n_x = cells.normal_x[i], n_y = cells.normal_y[i], n_z = cells.normal_z[i];
+        const double facing = (n_x * cells.cos_az[i] + n_y * cells.sin_az[i]) * cells.cos_el[i] + n_z * cells.sin_el[i];
+        shown.sine_elevation[i] = cells.sin_el[i];
+        shown.sine_grazing[i] = abs(facing) / sqrt(n_x * n_x + n_y * n_y + n_z * n_z);
+    }
+}
+
 /** Makes cells of tiles, a stretch at a time. */
 template <class Estimator, bool conical, bool normal_maps>
 class CellDeposit {
@@ -122,8 +132,9 @@ public:
     void finish() {
         cover(cells_, count_, rules_.edges.front(), rules_.edges[static_cast<size_t>(rules_.bins.bin_count)], covered_);
         if (rules_.features.has(Feature::BackscatterLaws)) applyLaws(rules_, cells_, count_, covered_);
+        if constexpr (Estimator::tells_truth) regard(cells_, count_, shown_);
         for (int i = 0; i < count_; ++i) {
-            if constexpr (Estimator::tells_truth) estimator_.regard(shown_[i]);
+            if constexpr (Estimator::tells_truth) estimator_.regard(shown_.get(i));
             estimator_.depositCell(covered_.footprint(i), static_cast<uint>(cells_.beam[i] - first_beam_),
                                    covered_.strength_range[i]);
         }
@@ -160,19 +171,11 @@ private:
         cells_.far_limit[i] = run.far_limit;
         aim(tile, sample, merged);
         if (normal_maps) cells_.mapped[i] = mappedCosine(tile, sample, merged);
-        if constexpr (Estimator::tells_truth) regard(tile, sample, merged);
+        if constexpr (Estimator::tells_truth) {
+            shown_.object[i] = scene_.commands[tile.hits->command[sample]].object;
+            shown_.hits[i] = static_cast<uint32_t>(merged);
+        }
         if (++count_ == stretch) finish();
-    }
-
-    /** Notes what the cell shows that aim() has just put down. */
-    void regard(const CastTile& tile, int sample, int merged) {
-        const int i = count_;
-        const glm::dvec3 ray(cells_.cos_el[i] * cells_.cos_az[i], cells_.cos_el[i] * cells_.sin_az[i],
-                             cells_.sin_el[i]);
-        const glm::dvec3 normal(cells_.normal_x[i], cells_.normal_y[i], cells_.normal_z[i]);
-        shown_[i].object = scene_.commands[tile.hits->command[sample]].object;
-        shown_[i].hits = static_cast<uint32_t>(merged);
-        shown_[i].aim(glm::dot(normal, ray), glm::dot(normal, normal), ray.z);
     }
 
     /** Of the middle of the cell that aim() has just put down; 0 where its material has no map. */
@@ -231,7 +234,7 @@ private:
     int count_ = 0;
     Cells cells_{};
     Covered covered_{};
-    CellTruth shown_[Estimator::tells_truth ? stretch : 1];
+    CellTruths<Estimator::tells_truth ? stretch : 1> shown_{};
 };
 
 /** Calls use.operator()<Deposit>() with the CellDeposit that has the features of a plan. */

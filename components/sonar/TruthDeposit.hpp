@@ -14,12 +14,16 @@ struct CellTruth {
     int64_t object = -1;  ///< Index into Geometry::objects; -1: nothing [1].
     uint32_t hits = 0;    ///< Samples that the cell is made of [1].
     double sine_elevation = 0, sine_grazing = 0;
+};
 
-    /** Of a unit direction to the cell, and a normal of any length that leaves either side. */
-    void aim(double facing, double normal_square, double sine) {
-        sine_elevation = sine;
-        sine_grazing = std::sqrt(facing * facing / normal_square);
-    }
+/** What a stretch of cells shows. */
+template <int count>
+struct CellTruths {
+    int64_t object[count];
+    uint32_t hits[count];
+    double sine_elevation[count], sine_grazing[count];
+
+    CellTruth get(int i) const { return {object[i], hits[i], sine_elevation[i], sine_grazing[i]}; }
 };
 
 /** An estimator as it is: it tells no truth. */

@@ -29,81 +29,66 @@ INSONIFY_VECTOR_CLONES void toAngles(float* sines, size_t count) {
 
 }  // namespace
 
-ObjectEcho ObjectEcho::of(uint64_t energy, double sine_elevation, double sine_grazing, uint32_t object, uint32_t hits) {
-    const double half = 0.5 * static_cast<double>(energy);  // of quanta, so that a sum holds what the bin's own holds
-    return {energy, static_cast<int64_t>(half * sine_elevation), static_cast<int64_t>(half * sine_grazing), object,
-            hits};
-}
-
-void ObjectEcho::add(const ObjectEcho& other) {
-    energy += other.energy;
-    elevation += other.elevation;
-    grazing += other.grazing;
-    hits += other.hits;
-}
-
 TruthTable::TruthTable(size_t beams, size_t bins)
-    : bins_(bins), used_(beams * bins), places_(beams * bins * told_apart), rest_(beams * bins) {}
+    : bins_(bins),
+      used_(beams * bins),
+      first_(beams * bins),
+      others_(beams * bins * (told_apart - 1)),
+      rest_(beams * bins) {}
 
 void TruthTable::clear() { std::ranges::fill(used_, uint8_t{0}); }
 
-void TruthTable::clearBeam(size_t beam) {
-    std::fill_n(used_.begin() + static_cast<ptrdiff_t>(beam * bins_), bins_, uint8_t{0});
-}
-
-std::span<const ObjectEcho> TruthTable::echoes(size_t at) const {
-    return {&places_[at * told_apart], std::min<size_t>(used_[at], told_apart)};
-}
-
-void TruthTable::addAt(size_t at, const ObjectEcho& echo) {
-    ObjectEcho* const first = &places_[at * told_apart];
-    const size_t count = std::min<size_t>(used_[at], told_apart);
-    for (size_t i = 0; i < count; ++i)
-        if (first[i].object == echo.object) return first[i].add(echo);
-    insert(at, echo);
-}
-
-void TruthTable::insert(size_t at, const ObjectEcho& echo) {
-    ObjectEcho* const first = &places_[at * told_apart];
-    size_t count = std::min<size_t>(used_[at], told_apart);
-    if (count == told_apart) {
-        if (echo.object > first[count - 1].object) return addRest(at, echo);
-        addRest(at, first[--count]);
-    } else {
-        ++used_[at];
+void TruthTable::addToOthers(size_t at, const ObjectEcho& added) {
+    const size_t count = objectsAt(at);
+    size_t highest = 0;
+    for (size_t i = 0; i < count; ++i) {
+        if (echo(at, i).object == added.object) return echo(at, i).add(added);
+        if (echo(at, i).object > echo(at, highest).object) highest = i;
     }
-    for (; count > 0 && first[count - 1].object > echo.object; --count) first[count] = first[count - 1];
-    first[count] = echo;
+    if (count < told_apart) {
+        echo(at, count) = added;
+        ++used_[at];
+    } else if (added.object > echo(at, highest).object) {
+        addRest(at, added);
+    } else {
+        addRest(at, echo(at, highest));
+        echo(at, highest) = added;
+    }
 }
 
-void TruthTable::addRest(size_t at, const ObjectEcho& echo) {
+void TruthTable::addRest(size_t at, const ObjectEcho& added) {
     if (used_[at] != more) rest_[at] = {};
     used_[at] = more;
-    rest_[at].add(echo);
+    rest_[at].add(added);
 }
 
 void TruthTable::merge(size_t beam, const TruthTable& other, size_t of) {
     for (size_t bin = 0; bin < bins_; ++bin) {
-        const size_t from = of * bins_ + bin, to = beam * bins_ + bin;
-        for (const ObjectEcho& echo : other.echoes(from)) addAt(to, echo);
-        if (other.used_[from] == more) addRest(to, other.rest_[from]);
+        const size_t from = of * bins_ + bin;
+        for (size_t i = 0; i < other.objectsAt(from); ++i) add(beam, bin, other.echo(from, i));
+        if (other.used_[from] == more) addRest(beam * bins_ + bin, other.rest_[from]);
     }
 }
 
 void TruthTable::tellBin(size_t at, size_t to, types::SonarTruth& truth) const {
-    ObjectEcho all = used_[at] == more ? rest_[at] : ObjectEcho{}, strongest;
-    for (const ObjectEcho& echo : echoes(at)) {
-        all.add(echo);
-        if (echo.energy > strongest.energy) strongest = echo;
+    const ObjectEcho* strongest = &first_[at];
+    ObjectEcho all = *strongest;
+    for (size_t i = 1; i < objectsAt(at); ++i) {
+        const ObjectEcho& other = echo(at, i);
+        all.add(other);
+        if (std::pair(other.energy, strongest->object) > std::pair(strongest->energy, other.object)) strongest = &other;
     }
-    const double energy = static_cast<double>(strongest.energy), per_energy = 2 / energy;
+    if (used_[at] == more) all.add(rest_[at]);
+    const auto energy = static_cast<double>(static_cast<int64_t>(strongest->energy));
+    const double per_energy = 2 / energy;
     const auto sine = [&](int64_t sines) {
         return std::clamp(static_cast<float>(static_cast<double>(sines) * per_energy), -1.0f, 1.0f);
     };
-    truth.object[to] = static_cast<int32_t>(strongest.object);
-    truth.elevation[to] = sine(strongest.elevation);
-    truth.grazing[to] = sine(strongest.grazing);
-    truth.share[to] = static_cast<float>(energy / static_cast<double>(all.energy));
+    const bool alone = used_[at] == 1;
+    truth.object[to] = static_cast<int32_t>(strongest->object);
+    truth.elevation[to] = sine(strongest->elevation);
+    truth.grazing[to] = sine(strongest->grazing);
+    truth.share[to] = alone ? 1 : static_cast<float>(energy / static_cast<double>(all.energy));
     truth.hits[to] = all.hits;
 }
 

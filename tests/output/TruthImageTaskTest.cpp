@@ -99,7 +99,7 @@ TEST_F(TruthImageTaskTest, TheLegendNamesWhatIsShown) {
     ASSERT_EQ(pictures(), 1u);
     const cv::Mat right = test::pixelsOf(*last_).colRange(600, 1200);
     const auto hasSwatch = [&](int32_t object) {
-        for (int row = right.rows / 2; row < right.rows; ++row)
+        for (int row = FanLayout::title_height; row < right.rows / 2; ++row)
             if (right.at<cv::Vec3b>(row, 14) == TruthImage::colourOf(object)) return true;
         return false;
     };
