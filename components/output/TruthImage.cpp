@@ -13,8 +13,8 @@ namespace {
 
 const std::string fan_caption = "what is heard", truth_caption = "what it is of; dark blue: in shadow";
 constexpr double font_scale = 0.42;
-constexpr int line_height = 17, swatch = 11, margin = 12, legend_width = 140;
-constexpr int bar_width = 60, bar_height = 160;  ///< Of the levels' bar of the fan, in whose place the names are.
+constexpr int line_height = 15, swatch = 10, margin = 12, legend_width = 118;
+constexpr int bar_width = 84, bar_height = 160;  ///< Of the levels' bar of the fan, in whose place the names are.
 constexpr double dimmest = 0.35;                 ///< Of an object whose echo is below the dynamic range.
 
 DisplayConfig halved(DisplayConfig config) {
