@@ -3,6 +3,7 @@
 
 #include "components/gpu/ReadBack.hpp"
 #include "components/sonar/BinDeposit.hpp"
+#include "components/sonar/Volume.hpp"
 
 namespace insonify::sonar {
 
@@ -26,6 +27,7 @@ struct TakenPicture {
     const uint32_t* pixels = nullptr;  ///< Once they are here: `channels` words each, row by row from below.
     size_t channels = 2;               ///< Words a pixel [1].
     std::vector<PlacedRun> ranges;
+    WaterView water;
     bool taken = false;
 };
 
