@@ -153,7 +153,8 @@ struct VolumeChanges {
           sonar_height(height) {}
 
     void addVolume(uint beam, uint bin, double amount) const {
-        changes[beam * beam_sums + bin] += static_cast<uint64_t>(std::llround(amount * quanta_per_unit));
+        changes[beam * beam_sums + bin] +=
+            static_cast<uint64_t>(static_cast<int64_t>(amount * quanta_per_unit + (amount < 0 ? -0.5 : 0.5)));
     }
     double layerNumber(uint i) const { return numbers[i]; }
 
