@@ -25,8 +25,9 @@ struct SonarReturns {
     std::vector<float> strongest_elevation;
 
     /** Fills it from a ping and its truth, which has its shape. The first return is the nearest bin that shows an
-     *  object, the strongest the one with the greatest echo, which may be a sidelobe's: then its elevation is NaN. A
-     *  range is the bin's middle; levels are 10 log10 of the bin. Allocates nothing when it had as many beams. */
+     *  object, the strongest the one with the greatest echo, which may be a sidelobe's or the water's: then its
+     *  elevation is NaN. A range is the bin's middle; levels are 10 log10 of the bin. Allocates nothing when it had as
+     * many beams. */
     void take(const Sonar& ping, const SonarTruth& truth);
 
     std::vector<size_t> shape() const { return {bearings.size()}; }
@@ -53,7 +54,7 @@ struct SonarReturns {
         visit(Field{"first_elevation", "rad", "from which its echo comes, positive up"}, self.first_elevation);
         visit(Field{"strongest_range", "m", "slant range of the bin with the greatest echo"}, self.strongest_range);
         visit(Field{"strongest_level", "dB", "10 log10 of that bin"}, self.strongest_level);
-        visit(Field{"strongest_elevation", "rad", "from which its echo comes; NaN: from a sidelobe"},
+        visit(Field{"strongest_elevation", "rad", "from which its echo comes; NaN: of no object in the beam"},
               self.strongest_elevation);
     }
 };

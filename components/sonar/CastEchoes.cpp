@@ -78,6 +78,8 @@ private:
     void workOn(const Part& part, Worker& worker, types::Sonar& ping);
     std::span<const CastTile> cast(const Part& part, Worker& worker) const;
     TileRays raysOf(const CastTile& tile, int end_column) const;
+    /** Fills the bins of a cell from its sums; whether it has any echo. */
+    bool fill(size_t cell, const uint64_t* sums, types::Sonar& ping);
     /** Adds a part's sums to its strip's; whether they are complete now, and in the worker. */
     bool gather(const Part& part, Worker& worker);
 
@@ -86,6 +88,8 @@ private:
     EchoRules rules_;
     CastView view_;
     BinLevels levels_;
+    std::optional<VolumeLevels> volume_;
+    WaterView water_;  ///< In this ping.
     std::optional<EchoGrid> grid_;
     ObjectPlaces places_;
     RayVisibility visibility_;
@@ -122,13 +126,14 @@ Features CastEchoes::compiled() const {
     Features all = compiledForRays(plan_.features);
     if (view_.cells.weighted) all.add(Feature::ElevationPattern);
     if (!rules_.laws.tables.empty() || rules_.laws.hasLobes()) all.add(Feature::BackscatterLaws);
-    return all;
+    return all | (plan_.features & Features{Feature::Volume, Feature::VolumeLayers});
 }
 
 void CastEchoes::takeQuality() {
     rules_ = makeEchoRules(plan_);
     view_.cells = makeAngularView(plan_);
     grid_.emplace(plan_, threads_.size());
+    if (plan_.features.has(Feature::Volume)) volume_.emplace(plan_);
     shareOut();
     truth_grid_.reset();
 }
@@ -165,6 +170,7 @@ void CastEchoes::makeTruth() {
 }
 
 void CastEchoes::place(const types::Snapshot& snapshot) {
+    water_ = waterViewOf(snapshot);
     places_.place(snapshot);
     visibility_.place(snapshot);
     runs_.clear();
@@ -219,7 +225,7 @@ bool CastEchoes::gather(const Part& part, Worker& worker) {
 
 void CastEchoes::depositPart(const Part& part, std::span<const CastTile> tiles, Worker& worker) {
     std::fill(worker.sums.begin(), worker.sums.end(), 0);
-    const PlacedScene scene{visibility_.commands(), runs_, places_.records(), planes_, normal_maps_};
+    const PlacedScene scene{visibility_.commands(), runs_, places_.records(), planes_, normal_maps_, water_};
     if (!truth_) return deposit(rules_, view_, scene, tiles, part.first_beam, worker.sums.data());
     worker.shown->clear();
     depositAndTell(rules_, view_, scene, tiles, part.first_beam, worker.sums.data(),
@@ -236,10 +242,16 @@ void CastEchoes::workOn(const Part& part, Worker& worker, types::Sonar& ping) {
     worker.lap(DepositStage);
     if (gather(part, worker))
         for (int beam = 0; beam < part.beams; ++beam)
-            worker.heard |=
-                levels_.fill(rules_, &worker.sums[static_cast<size_t>(beam) * rules_.sumCount()], view_.cells.cell(),
-                             grid_->cell(static_cast<size_t>(part.first_beam + beam), ping));
+            worker.heard |= fill(static_cast<size_t>(part.first_beam + beam),
+                                 &worker.sums[static_cast<size_t>(beam) * rules_.sumCount()], ping);
     worker.lap(BeamStage);
+}
+
+bool CastEchoes::fill(size_t cell, const uint64_t* sums, types::Sonar& ping) {
+    const std::span<float> bins = grid_->cell(cell, ping);
+    const bool heard = levels_.fill(rules_, sums, view_.cells.cell(), bins);
+    if (volume_) volume_->add(sums + rules_.volumeOffset(), cell, view_.cells.cell(), bins);
+    return heard;
 }
 
 void CastEchoes::work(Worker& worker, types::Sonar& ping) {

@@ -38,8 +38,11 @@ CpuDeposit::CpuDeposit(DepositSetup setup, const SurfacePass& surface, const gpu
     touchColumns();
 }
 
-void CpuDeposit::begin(size_t slot) {
-    for (size_t i = 0; i < setup_.frusta.size(); ++i) picture(slot, i).taken = false;
+void CpuDeposit::begin(size_t slot, const WaterView& water) {
+    for (size_t i = 0; i < setup_.frusta.size(); ++i) {
+        picture(slot, i).taken = false;
+        picture(slot, i).water = water;
+    }
 }
 
 void CpuDeposit::take(size_t slot, size_t frustum, const SurfacePass& surface) {
@@ -72,7 +75,7 @@ Features CpuDeposit::compiled() const {
     Features all = compiledForPictures(setup_.rules.features);
     if (!setup_.rules.elevation_powers.empty()) all.add(Feature::ElevationPattern);
     if (!setup_.rules.laws.tables.empty() || setup_.rules.laws.hasLobes()) all.add(Feature::BackscatterLaws);
-    return all;
+    return all | (setup_.rules.features & Features{Feature::Volume, Feature::VolumeLayers});
 }
 
 void CpuDeposit::prepareTruth(std::vector<int32_t> beams) {

@@ -195,7 +195,10 @@ public:
     }
 
     PartDeposit(const FrustumPart& part, uint64_t* sums, const TruthSink* truth)
-        : part_(part), bins_(part.rules, sums, truth), per_pixel_(1 / (part.frustum.du() * part.frustum.dv())) {}
+        : part_(part),
+          sums_(sums),
+          bins_(part.rules, sums, truth),
+          per_pixel_(1 / (part.frustum.du() * part.frustum.dv())) {}
 
     void run() {
         for (int row = 0; row < part_.frustum.rows; ++row)
@@ -205,7 +208,7 @@ public:
 
 private:
     void pixels(int row, int first, int count) {
-        if (!look(part_, row, first, count, pixels_) && !Estimator::features.has(Feature::Published)) return;
+        if (!look(part_, row, first, count, pixels_) && !countsMisses()) return;
         aim<Estimator::features.has(Feature::Jitter)>(part_, row, first, count, pixels_);
         meet(pixels_, count);
         if constexpr (Estimator::tells_truth) regard(row, first, count);
@@ -225,6 +228,10 @@ private:
         cover(shared_, count,
               {v, part_.frustum.dv(), part_.rules.edges.front(), bins_.binEdge(bins_.bin_count), per_pixel_}, cells_);
         if (part_.rules.features.has(Feature::ElevationPattern)) weigh(count, v);
+        if (part_.rules.features.has(Feature::VolumeLayers))
+            hideVolume<LayeredVolume>(shares, count, v);
+        else if (part_.rules.features.has(Feature::Volume))
+            hideVolume<OpenVolume>(shares, count, v);
         for (int i = 0; i < count; ++i) {
             if (shares[i].beam < part_.first || shares[i].beam >= part_.last) continue;
             if constexpr (Estimator::tells_truth)
@@ -248,10 +255,30 @@ private:
 
     void weigh(int count, double v) {
         ElevationTable table{part_.rules.elevation_powers.data(), part_.rules.elevation_reach};
-        for (int i = 0; i < count; ++i) shared_.strength_range[i] *= table.elevationWeight(shared_.u[i], v);
+        for (int i = 0; i < count; ++i) cells_.size[i] *= table.elevationWeight(shared_.u[i], v);
+    }
+
+    bool countsMisses() const {
+        return Estimator::features.has(Feature::Published) || part_.rules.features.has(Feature::VolumeLayers);
+    }
+
+    template <class Volume>
+    void hideVolume(const ShareRecord* shares, int count, double v) {
+        Volume volume(part_.rules, part_.picture.water.height, sums_);
+        const glm::dvec3 up = upwardIn(part_.frustum, part_.picture.water);
+        for (int i = 0; i < count; ++i) {
+            if (shares[i].beam < part_.first || shares[i].beam >= part_.last) continue;
+            const double u = shared_.u[i], rise = (up.x + up.y * u + up.z * v) / sqrt(1 + u * u + v * v);
+            const Footprint cell = cells_.get(i);
+            if (cell.pixel > 0)
+                volume.hideVolume(cell, shares[i].beam, rise, cell.size);
+            else if constexpr (Volume::hears_misses)
+                volume.hearLayers(shares[i].beam, rise, part_.rules.bins.range_max, cell.size);
+        }
     }
 
     const FrustumPart& part_;
+    uint64_t* sums_;
     Estimator bins_;
     double per_pixel_;  ///< 1 / solid angle of a whole pixel at the picture's centre [1/sr].
     Pixels pixels_;

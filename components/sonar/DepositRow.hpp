@@ -4,6 +4,7 @@
 #include "components/gpu/ReadBack.hpp"
 #include "components/sonar/BinDeposit.hpp"
 #include "components/sonar/TruthTable.hpp"
+#include "components/sonar/Volume.hpp"
 
 namespace insonify::sonar {
 
@@ -28,6 +29,7 @@ struct TakenPicture {
     size_t channels = 2;               ///< Words a pixel [1].
     std::vector<PlacedRun> ranges;
     std::vector<uint32_t> objects;  ///< Of the ranges, where the truth is wanted.
+    WaterView water;
     bool taken = false;
 };
 

@@ -60,8 +60,9 @@ private:
     /** Fills it, once a slot's sums are there. */
     void tellTruth(size_t slot);
     /** Asks for the sums of what is drawn. */
-    void take(size_t slot);
+    void take(size_t slot, const WaterView& water);
     void fillBins(types::Sonar& ping);
+    void fill(size_t cell, const uint64_t* sums, double pixel, std::span<float> bins) const;
     /** Of the ping collected last. */
     size_t lastSlot() const { return (ended_ - 1) % slots_; }
     /** Seconds since the last call, put down for a stage. */
@@ -74,6 +75,7 @@ private:
     size_t begun_ = 0, ended_ = 0;  ///< Pings; ping n has slot n modulo slots_.
     std::string device_;
     BinLevels levels_;
+    std::optional<VolumeLevels> volume_;
     Culler culler_;
     ThreadPool threads_;
     SurfacePass surface_;
@@ -119,7 +121,7 @@ SurfacePass::Setup DrawnEchoes::surfaceSetup() const {
             .frusta = plan_.frusta,
             .defines = plan_.features.defines(),
             .near_plane = nearPlane(plan_.frusta.front()),
-            .empty_too = plan_.config.published,
+            .empty_too = plan_.config.published || plan_.features.has(Feature::VolumeLayers),
             .slots = slots_,
             .cull_on_device = chosen == CullOn::Device};
 }
@@ -132,6 +134,7 @@ void DrawnEchoes::makeDeposit() {
         plan_.options.sum_in == SumIn::Auto ? !context_.isSoftware() : plan_.options.sum_in == SumIn::Groups;
     grid_.emplace(plan_, threads_.size());
     rules_ = setup.rules;
+    if (plan_.features.has(Feature::Volume)) volume_.emplace(plan_);
     if (depositsOnProcessor())
         deposit_ = std::make_unique<CpuDeposit>(std::move(setup), surface_, context_, threads_);
     else
@@ -172,10 +175,10 @@ void DrawnEchoes::lap(Stage& stage) {
     last_ = now;
 }
 
-void DrawnEchoes::take(size_t slot) {
+void DrawnEchoes::take(size_t slot, const WaterView& water) {
     const auto alone = context_.transferring();
     const auto takeAll = [&](BinDeposit& deposit) {
-        deposit.begin(slot);
+        deposit.begin(slot, water);
         for (size_t i = 0; i < plan_.frusta.size(); ++i)
             if (surface_.draws(slot, i)) deposit.take(slot, i, surface_);
         deposit.ask(slot);
@@ -190,9 +193,14 @@ void DrawnEchoes::fillBins(types::Sonar& ping) {
     const double pixel = plan_.frusta.front().du() * plan_.frusta.front().dv();  // solid angle of a whole pixel [sr]
     threads_.run([&](int part, int parts) {
         for (auto cell = static_cast<size_t>(part); cell < plan_.cells.size(); cell += static_cast<size_t>(parts))
-            levels_.fill(rules_, &sums_[cell * rules_.sumCount()], pixel, grid_->cell(cell, ping));
+            fill(cell, &sums_[cell * rules_.sumCount()], pixel, grid_->cell(cell, ping));
     });
     grid_->finish(ping, threads_);
+}
+
+void DrawnEchoes::fill(size_t cell, const uint64_t* sums, double pixel, std::span<float> bins) const {
+    levels_.fill(rules_, sums, pixel, bins);
+    if (volume_) volume_->add(sums + rules_.volumeOffset(), cell, pixel, bins);
 }
 
 void DrawnEchoes::submit(const types::Snapshot& snapshot, Stages& stages) {
@@ -205,7 +213,7 @@ void DrawnEchoes::submit(const types::Snapshot& snapshot, Stages& stages) {
     lap(stages[CullStage]);
     surface_.draw(slot);
     lap(stages[DrawStage]);
-    take(slot);
+    take(slot, waterViewOf(snapshot));
     context_.check();
     lap(stages[ReadStage]);
     ++begun_;

@@ -7,6 +7,7 @@
 
 #include "components/sonar/Acoustics.hpp"
 #include "components/sonar/Interface.hpp"
+#include "components/sonar/Volume.hpp"
 #include "types/Angle.hpp"
 
 namespace insonify::sonar {
@@ -47,6 +48,7 @@ EchoRules makeEchoRules(const RenderPlan& plan) {
     rules.attenuation = makeAbsorption(plan.config).amplitudeNepersPerMetre();
     rules.strength_scale = strengthScale(plan);
     rules.laws = plan.laws;
+    rules.layers = layersOf(plan.config);
     const double nearest = bins.range_min > 0 ? 1 / bins.range_min : std::numeric_limits<double>::max();
     for (int k = 0; k <= bins.bin_count; ++k)
         rules.edges.push_back(k == 0 ? nearest : std::min(nearest, 1 / bins.edge(k)));

@@ -13,7 +13,10 @@ namespace {
 class GpuDeposit final : public BinDeposit {
 public:
     GpuDeposit(const DepositSetup& setup, gpu::EglContext& context);
-    void begin(size_t) override { device_sums_.clear(); }
+    void begin(size_t, const WaterView& water) override {
+        water_ = water;
+        device_sums_.clear();
+    }
     void take(size_t slot, size_t frustum, const SurfacePass& surface) override;
     void ask(size_t slot) override { sums_[slot].ask(device_sums_); }
     std::span<const uint64_t> finish(size_t slot) override;
@@ -26,13 +29,15 @@ private:
     void setUniforms(const ViewFrustum& frustum) const;
     struct Uniforms {
         GLint image_size, bin_count, beam_stride, bin_width, attenuation, strength_scale, frustum_axis, extent,
-            pixel_size, elevation_reach;
+            pixel_size, elevation_reach, upward, sonar_height, layer_count, first_layer;
     };
 
     DepositSetup setup_;
     const gpu::EglContext& context_;
     const gpu::Program& program_;
     Uniforms uniforms_;
+    GLuint first_layer_ = 0;  ///< Among the tables [1].
+    WaterView water_;         ///< Of the ping that is taken.
     gpu::Buffer edges_, tables_, device_sums_;
     std::vector<FrustumShares> shares_;
     std::vector<gpu::ReadBack> sums_;  ///< Of each slot.
@@ -48,11 +53,15 @@ GpuDeposit::GpuDeposit(const DepositSetup& setup, gpu::EglContext& context)
     : setup_(setup), context_(context), program_(context.programs().compute("deposit.comp.glsl", definesOf(setup))) {
     const auto at = [this](const char* name) { return glGetUniformLocation(program_.id(), name); };
     uniforms_ = {at("image_size"),     at("bin_count"),    at("beam_stride"), at("bin_width"),  at("attenuation"),
-                 at("strength_scale"), at("frustum_axis"), at("extent"),      at("pixel_size"), at("elevation_reach")};
+                 at("strength_scale"), at("frustum_axis"), at("extent"),      at("pixel_size"), at("elevation_reach"),
+                 at("upward"),         at("sonar_height"), at("layer_count"), at("first_layer")};
     context.requireStorage(setup.sumCount() * sizeof(uint64_t), "the sums of all bins");
     edges_ = gpu::Buffer::of(std::span(setup.rules.edges));
     std::vector<double> tables = setup.rules.elevation_powers;
-    tables.insert(tables.end(), setup.rules.laws.tables.begin(), setup.rules.laws.tables.end());
+    for (const std::vector<double>* more : {&setup.rules.laws.tables, &setup.rules.layers}) {
+        first_layer_ = static_cast<GLuint>(tables.size());
+        tables.insert(tables.end(), more->begin(), more->end());
+    }
     if (!tables.empty()) tables_ = gpu::Buffer::of(std::span<const double>(tables));
     device_sums_ = gpu::Buffer(setup.sumCount() * sizeof(uint64_t));
     for (const ColumnShares& frustum : setup.shares)
@@ -71,6 +80,12 @@ void GpuDeposit::setUniforms(const ViewFrustum& frustum) const {
     glUniform2d(uniforms_.extent, frustum.extent_u, frustum.extent_v);
     if (uniforms_.elevation_reach >= 0) glUniform1d(uniforms_.elevation_reach, setup_.rules.elevation_reach);
     glUniform2d(uniforms_.pixel_size, frustum.du(), frustum.dv());
+    if (uniforms_.layer_count < 0) return;
+    const glm::dvec3 up = upwardIn(frustum, water_);
+    glUniform3d(uniforms_.upward, up.x, up.y, up.z);
+    glUniform1d(uniforms_.sonar_height, water_.height);
+    glUniform1ui(uniforms_.layer_count, static_cast<GLuint>(setup_.rules.layers.size() / 3));
+    glUniform1ui(uniforms_.first_layer, first_layer_);
 }
 
 void GpuDeposit::take(size_t slot, size_t frustum, const SurfacePass& surface) {

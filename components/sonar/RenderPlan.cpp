@@ -25,6 +25,8 @@ Features featuresOf(const SonarConfig& config, const RenderOptions& options, con
     if (options.estimator != Estimator::Footprint) features.add(Feature::Nearest);
     if (config.beam_pattern && config.beam_pattern->hasElevation()) features.add(Feature::ElevationPattern);
     if (!laws.tables.empty() || laws.hasLobes()) features.add(Feature::BackscatterLaws);
+    if (!config.volume.empty()) features.add(Feature::Volume);
+    if (config.hasLayers()) features.add(Feature::VolumeLayers);
     if (options.estimator == Estimator::NearestJitter) features.add(Feature::Jitter);
     return features;
 }
@@ -78,7 +80,7 @@ void omitEffects(const types::Geometry& geometry, RenderPlan& plan) {
     omitUnless(plan.has(Pass::Beamform), Effect::AzimuthPattern);
     omitUnless(plan.features.has(Feature::ElevationPattern), Effect::ElevationPattern);
     omitPulse(plan);
-    omitUnless(false, Effect::Volume);
+    omitUnless(plan.features.has(Feature::Volume), Effect::Volume);
     omitUnless(false, Effect::Multipath);
     if (plan.frusta.size() == 1)
         plan.left_out.push_back({Effect::FurtherSlabs, Reason::OneImage, plan.config.coverageDeg()});
@@ -112,7 +114,7 @@ void RenderPlan::setQuality(int rows, int columns_per_beam) {
     config.quality.rows = rows;
     config.quality.columns_per_beam = columns_per_beam;
     sampled = directivity ? sampledConfig(config, *directivity, casts_rays) : config;
-    cells = directivity ? makeBeams(sampled) : beams;
+    cells = directivity ? azimuthCells(sampled, beams, *directivity, casts_rays) : beams;
     if (!casts_rays) frusta = makeFrusta(sampled, cells, options);
 }
 

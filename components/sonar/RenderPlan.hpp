@@ -26,9 +26,11 @@ enum class Feature {
     Nearest,
     Jitter,
     ElevationPattern,
-    BackscatterLaws  ///< Of any material: a table, or a lobe.
+    BackscatterLaws,  ///< Of any material: a table, or a lobe.
+    Volume,
+    VolumeLayers
 };
-constexpr int feature_count = 10;
+constexpr int feature_count = 12;
 
 /** A set of features. */
 class Features {
@@ -144,9 +146,9 @@ Bending bending(const SonarConfig& config, const BinGrid& grid);
 
 template <>
 struct insonify::types::EnumNames<insonify::sonar::Feature> {
-    static constexpr std::string_view names[] = {"physical",          "cerqueira2017",   "absorption", "published",
-                                                 "conical",           "normal_map",      "nearest",    "jitter",
-                                                 "elevation_pattern", "backscatter_laws"};
+    static constexpr std::string_view names[] = {
+        "physical", "cerqueira2017", "absorption",        "published",        "conical", "normal_map",
+        "nearest",  "jitter",        "elevation_pattern", "backscatter_laws", "volume",  "volume_layers"};
 };
 template <>
 struct insonify::types::EnumNames<insonify::sonar::Pass> {

@@ -119,13 +119,17 @@ public:
           shape_(view.shape),
           scene_(scene),
           first_beam_(first_beam),
+          sums_(sums),
           estimator_(rules, sums, truth) {}
 
     void add(const CastTile& tile) {
         for (int i = 0; i < tile_samples;) {
             const bool met = tile.hits->command[i] != TileHits::nothing;
             const int merged = met ? sameFrom(*tile.hits, i) : 1;
-            if (met) addCell(tile, i, merged);
+            if (met)
+                addCell(tile, i, merged);
+            else if (rules_.features.has(Feature::VolumeLayers))
+                hearPast(tile, i);
             i += merged;
         }
     }
@@ -138,10 +142,39 @@ public:
             estimator_.depositCell(covered_.footprint(i), static_cast<uint>(cells_.beam[i] - first_beam_),
                                    covered_.strength_range[i]);
         }
+        if (rules_.features.has(Feature::VolumeLayers))
+            hideVolume<LayeredVolume>();
+        else if (rules_.features.has(Feature::Volume))
+            hideVolume<OpenVolume>();
         count_ = 0;
     }
 
 private:
+    /** How steeply the middle of a cell goes up in the world [m for each m]. */
+    double riseOf(int i) const {
+        const glm::dvec3& up = scene_.water.up;
+        return cells_.cos_el[i] * (up.x * cells_.cos_az[i] + up.y * cells_.sin_az[i]) + up.z * cells_.sin_el[i];
+    }
+
+    template <class Volume>
+    void hideVolume() {
+        Volume volume(rules_, scene_.water.height, sums_);
+        for (int i = 0; i < count_; ++i)
+            if (covered_.pixel[i] > 0)
+                volume.hideVolume(covered_.footprint(i), static_cast<uint>(cells_.beam[i] - first_beam_), riseOf(i),
+                                  cells_.size[i]);
+    }
+
+    /** A sample that meets nothing hears all layers that it goes through. */
+    void hearPast(const CastTile& tile, int sample) {
+        const int column = tile.first_column + shape_.at[sample].columns;
+        if (column >= view_.columns() || tile.first_row + shape_.at[sample].rows >= view_.rows) return;
+        aim(tile, sample, 1);
+        LayeredVolume volume(rules_, scene_.water.height, sums_);
+        volume.hearLayers(static_cast<uint>(cells_.beam[count_] - first_beam_), riseOf(count_), rules_.bins.range_max,
+                          cells_.size[count_]);
+    }
+
     /** Samples from i on that are a rectangle of one triangle in one beam. */
     int sameFrom(const TileHits& hits, int i) const {
         const auto alignment = static_cast<uint32_t>(i == 0 ? tile_samples : i & -i);
@@ -230,6 +263,7 @@ private:
     const TileShape& shape_;
     const PlacedScene& scene_;
     int first_beam_;
+    uint64_t* sums_;
     Estimator estimator_;
     int count_ = 0;
     Cells cells_{};

@@ -40,14 +40,18 @@ class Told : public Estimator {
 public:
     static constexpr bool tells_truth = true;
     Told(const EchoRules& rules, uint64_t* all_sums, const TruthSink* truth)
-        : Estimator(rules, truth->one_beam.data()), truth_(*truth), channels_(rules.channels()), all_(all_sums) {}
+        : Estimator(rules, truth->one_beam.data()),
+          truth_(*truth),
+          channels_(rules.channels()),
+          beam_numbers_(rules.sumCount()),
+          all_(all_sums) {}
 
     /** What the next deposit is of. */
     void regard(const CellTruth& cell) { shown_ = cell; }
 
     void depositCell(const Footprint& cell, uint beam, double strength_range) {
         Estimator::depositCell(cell, 0, strength_range);
-        uint64_t* const to = all_ + static_cast<size_t>(beam) * this->beam_stride * channels_;
+        uint64_t* const to = all_ + static_cast<size_t>(beam) * beam_numbers_;
         const int32_t row = shown_.object < 0 ? -1 : truth_.rowOf(beam);
         const auto [first, last] = touched(cell);
         if (first > 0 && Estimator::features.has(Feature::Published)) move(0, to, -1);  // what is out of range
@@ -92,7 +96,7 @@ private:
     }
 
     TruthSink truth_;
-    size_t channels_;
+    size_t channels_, beam_numbers_;
     uint64_t* all_;
     CellTruth shown_;
 };

@@ -91,10 +91,12 @@ TEST(OmissionTest, NoEffectIsLeftOutThatIsNotTestedHere) {
         Effect::NormalMaps,
         // in BackscatterPingTest.cpp:
         Effect::SeabedLaw, Effect::MeasuredBackscatter,
+        // in VolumePingTest.cpp:
+        Effect::Volume,
         // of `published`, in PublishedTest.cpp:
         Effect::RangeFootprints, Effect::ElevationMask, Effect::SharedColumns, Effect::NearBlanking,
         // without values yet; SonarConfig refuses them:
-        Effect::AzimuthPattern, Effect::ElevationPattern, Effect::RangePointSpread, Effect::Volume, Effect::Multipath};
+        Effect::AzimuthPattern, Effect::ElevationPattern, Effect::RangePointSpread, Effect::Multipath};
     SonarConfig absorbing = plainSonar(), published = plainSonar(Model::Cerqueira2017);
     absorbing.absorption.emplace().db_per_m = 0.1;
     absorbing.field_of_view_deg = 50;
@@ -235,15 +237,18 @@ std::vector<std::pair<SonarConfig, RenderOptions>> sonarsOfAllFeatures() {
             for (Visibility visibility : {Visibility::Gl, Visibility::Cpu})
                 for (Deposit deposit : {Deposit::Cpu, Deposit::Gpu}) {
                     if (visibility == Visibility::Cpu && deposit == Deposit::Gpu) continue;
-                    SonarConfig& config = all.emplace_back(plainSonar(model), RenderOptions{}).first;
+                    SonarConfig config = plainSonar(model);
                     config.visibility = visibility;
                     config.deposit = deposit;
                     config.beam_geometry = beams;
                     if (deposit == Deposit::Cpu) config.absorption.emplace().db_per_m = 0.1;
+                    all.emplace_back(config, RenderOptions{});
                     if (model != Model::Physical) continue;
                     SonarConfig& patterned = all.emplace_back(config, RenderOptions{}).first;
                     acoustics::BeamLaw& law = patterned.beam_pattern.emplace().receive.elevation.emplace();
                     law.width_deg = 20;
+                    for (const VolumeLayer& water : {VolumeLayer{{}, {}, -70}, VolumeLayer{1, 5, -70}})
+                        all.emplace_back(config, RenderOptions{}).first.volume = {water};
                 }
     for (Deposit deposit : {Deposit::Cpu, Deposit::Gpu}) {
         for (Estimator estimator : {Estimator::Nearest, Estimator::NearestJitter}) {
