@@ -17,10 +17,9 @@ using std::abs, std::exp, std::sqrt;
 inline double min(double a, double b) { return a < b ? a : b; }
 inline double max(double a, double b) { return a > b ? a : b; }
 inline uint min(uint a, uint b) { return a < b ? a : b; }
-#include "shaders/footprint.glsl"
 using real = double;
+#include "shaders/footprint.glsl"
 #include "shaders/surface.glsl"
-#include "shaders/trapezoid.glsl"
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
@@ -120,7 +119,7 @@ struct AngularCell {
         const double reach = (wide + narrow) / 2, nearest = 1 / plane.distance;
         const double size = (std::sin(e + de / 2) - std::sin(e - de / 2)) / de;
         bins.depositCell({g, g, wide, narrow, 1 / wide, 0.5 / (wide * narrow), min(g + reach, nearest),
-                          max(g - reach, bins.binEdge(Bins::bin_count)), nearest, size},
+                          max(g - reach, bins.binEdge(Bins::bin_count)), nearest, size, size},
                          0, plane.distance);
     }
     void cut(const Plane& plane, Bins& bins) const {
