@@ -175,6 +175,20 @@ TEST(FootprintTest, ACellOfThePictureCoversTheBinsThatItsPointsDo) {
     EXPECT_GT(relativeL2(got, expected), 0.1) << "an upright cell covers others";
 }
 
+TEST(FootprintTest, WhatLiesBeyondTheObjectIsSpreadOverWhatLiesWithin) {
+    const auto within = [](const Footprint& cell) {
+        return trapezoidShare(cell, cell.near_end - cell.centre) - trapezoidShare(cell, cell.far_end - cell.centre);
+    };
+    const Footprint cut = trapezoidFootprint(0.1, 0.1, 0.02, 0.01, 1, 0.105, 0.097, 10, 0, 2);
+    EXPECT_LT(within(cut), 0.6);
+    EXPECT_NEAR(cut.spread * within(cut), 2, 1e-12) << "no energy is lost";
+    EXPECT_EQ(cut.size, 2) << "nor does it fill more of the view";
+    const Footprint whole = trapezoidFootprint(0.1, 0.1, 0.02, 0.01, 1, 0.2, 0.05, 10, 0, 2);
+    EXPECT_NEAR(whole.spread, 2, 1e-12);
+    const Footprint beside = trapezoidFootprint(0.1, 0.1, 0.02, 0.01, 1, 0.05, 0.04, 10, 0, 2);
+    EXPECT_EQ(beside.spread, 16) << "of a facet that is not where its plane is";
+}
+
 TEST(FootprintTest, ACellIsClippedAtTheAperture) {
     PictureCell cell{0.3, -0.12, 0.298, 0.302, 0.004};
     Bins whole, clipped;
