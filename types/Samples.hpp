@@ -13,12 +13,14 @@
 #include "types/Image.hpp"
 #include "types/Pose.hpp"
 #include "types/Sonar.hpp"
+#include "types/SonarReturns.hpp"
 #include "types/SonarScan.hpp"
+#include "types/SonarTruth.hpp"
 
 namespace insonify::types {
 
-using SampleTypes = std::tuple<Sonar, SonarBeam, SonarScan, Pose, Image, Time, Angle, double, float, int32_t, int64_t,
-                               bool, std::string>;
+using SampleTypes = std::tuple<Sonar, SonarBeam, SonarScan, SonarTruth, SonarReturns, Pose, Image, Time, Angle, double,
+                               float, int32_t, int64_t, bool, std::string>;
 
 /** What travels on a port for a T: samples that say so (`shared`), by reference, the others as they are. */
 template <class T>
@@ -125,6 +127,23 @@ struct AnyColumns {
 template <class T>
 concept Tabular = requires(const T& sample) {
     Columns<T>::forEach(sample, AnyColumns{});
+};
+
+/** A sample that is arrays of one shape: it tells its `shape()`, and by `forEachArray` each array as
+ *  `visit(name, numbers, std::type_identity<Number>{})`, Number being what files hold of it. */
+struct AnyArray {
+    void operator()(const char*, const auto&, auto) const {}
+};
+template <class T>
+concept Arrayed = requires(const T& sample) {
+    sample.shape();
+    T::forEachArray(sample, AnyArray{});
+};
+
+/** A sample that speaks of objects by number; their names stand in the metadata of its stream as well. */
+template <class T>
+concept NamesObjects = requires(const T& sample) {
+    { sample.objects } -> std::convertible_to<const std::vector<std::string>&>;
 };
 
 /** What of a sample contradicts itself, after "a sample"; null: nothing. Types tell it by `diagnostic()`. */

@@ -108,6 +108,19 @@ Json poseMeaning() {
             {"quaternion_order", quaternion_order}};
 }
 
+/** Of a sample's fields, what they are: as types tell it. */
+template <class T>
+Json fieldsOf() {
+    Json fields = Json::object();
+    const auto tell = [&](const types::Field& field, const auto&) {
+        const std::string unit = field.unit;
+        fields[field.name] = std::string(field.doc) + (unit.empty() || unit == "1" ? "" : " [" + unit + "]");
+    };
+    const T sample;
+    T::describe(sample, tell);
+    return fields;
+}
+
 std::string metadataOf(const log::Stream& stream, const char* key) {
     const auto found = stream.metadata.find(key);
     return found == stream.metadata.end() ? "" : found->second;
@@ -128,8 +141,14 @@ Json meaningOf(const log::Reader& log, const log::Stream& stream) {
         meaning.update(pingMeaning(deploymentOf(stream, log.path().string()), framework::splitPort(stream.name).first));
     else if (stream.holds<types::Pose>())
         meaning.update(poseMeaning());
+    else if (stream.holds<types::SonarTruth>())
+        meaning.update(fieldsOf<types::SonarTruth>());
+    else if (stream.holds<types::SonarReturns>())
+        meaning.update(fieldsOf<types::SonarReturns>());
     else
         meaning["type"] = stream.type;
+    if (const std::string names = metadataOf(stream, "insonify_objects"); !names.empty())
+        meaning["objects"] = Json::parse(names, nullptr, false);
     if (const std::string seed = metadataOf(stream, "insonify_seed"); !seed.empty()) meaning["seed"] = seed;
     return meaning;
 }

@@ -59,6 +59,30 @@ void writePings(Reader& log, const std::string& stream, const std::filesystem::p
     csv.close();
 }
 
+/** A line for each bin, or for each beam where there is one number of each. */
+template <types::Arrayed T>
+void writeGrids(Reader& log, const std::string& stream, const std::filesystem::path& path) {
+    constexpr bool of_bins = requires(const T& sample) { sample.bin_count; };
+    std::string header = of_bins ? "time,beam,bearing,bin" : "time,beam,bearing";
+    const T names;
+    T::forEachArray(names, [&](const char* name, const auto&, auto) { header += std::string(",") + name; });
+    CsvFile csv(path, header);
+    log.forEach<T>(stream, [&](const T& sample, const SampleRef& at) {
+        if (const char* fault = sample.diagnostic())
+            throw types::ConfigError(log.path(), stream, std::string("a sample ") + fault);
+        size_t count = sample.bearings.size(), bins = 1;
+        if constexpr (of_bins) bins = sample.bin_count;
+        for (size_t i = 0; i < count * bins; ++i) {
+            std::string row = fmt::format("{},{}", i / bins, sample.bearings[i / bins].rad);
+            if constexpr (of_bins) row += fmt::format(",{}", i % bins);
+            T::forEachArray(sample,
+                            [&](const char*, const auto& numbers, auto) { row += fmt::format(",{}", numbers[i]); });
+            csv.line(sampleTime(sample, at.time), row);
+        }
+    });
+    csv.close();
+}
+
 /** Text in quotes, those within it doubled. */
 std::string quoted(const std::string& text) {
     std::string result = "\"";
@@ -104,7 +128,9 @@ void exportCsv(Reader& log, const std::string& stream, const std::filesystem::pa
     bool done = false;
     types::forEachSampleType([&]<class T>(std::type_identity<T>) {
         if (!declared.holds<T>()) return;
-        if constexpr (types::Tabular<T>)
+        if constexpr (types::Arrayed<T>)
+            writeGrids<T>(log, stream, path);
+        else if constexpr (types::Tabular<T>)
             writeRows<T>(log, stream, path);
         else if constexpr (types::Scalar<T> || Text<T>)
             writeValues<T>(log, stream, path);
@@ -115,8 +141,8 @@ void exportCsv(Reader& log, const std::string& stream, const std::filesystem::pa
     if (!done)
         throw types::ConfigError(log.path(), stream,
                                  "holds " + declared.type +
-                                     "; as text can be written pings, beams and scans of sonars, poses, numbers and "
-                                     "texts (pictures: .png and .npz)");
+                                     "; as text can be written pings, beams and scans of sonars, truth and returns of "
+                                     "pings, poses, numbers and texts (pictures: .png and .npz)");
 }
 
 }  // namespace insonify::log

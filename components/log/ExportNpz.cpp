@@ -25,6 +25,10 @@ struct Run {
     }
 };
 
+template <types::Arrayed T>
+std::vector<size_t> shapeOf(const T& sample) {
+    return sample.shape();
+}
 std::vector<size_t> shapeOf(const Sonar& ping) { return {ping.beam_count, ping.bin_count}; }
 std::vector<size_t> shapeOf(const Image& picture) {
     return {picture.size.height, picture.size.width, picture.pixel_size};
@@ -36,6 +40,13 @@ void readShaped(Reader& log, const SampleRef& at, Image& picture) {
     if (!picture.holdsPixels())
         throw types::ConfigError(log.path(), log.streams()[at.stream].name,
                                  "a picture is compressed or has other numbers of pixels than it says");
+}
+
+template <types::Arrayed T>
+void readShaped(Reader& log, const SampleRef& at, T& sample) {
+    log.read(at, sample);
+    if (const char* fault = sample.diagnostic())
+        throw types::ConfigError(log.path(), log.streams()[at.stream].name, std::string("a sample ") + fault);
 }
 
 template <class T>
@@ -71,6 +82,58 @@ void writeRun(Reader& log, const Run& run, NpzFile& npz, Sonar ping) {
     npz.array("bin_duration", {count}, bin_duration);
     npz.array("speed_of_sound", {count}, speed_of_sound);
     npz.array("range_m", {count, run.shape[1]}, range);
+}
+
+void writeTexts(NpzFile& npz, const std::string& name, const std::vector<std::string>& texts) {
+    size_t longest = 1;
+    for (const std::string& text : texts) longest = std::max(longest, text.size());
+    npz.begin(name, "|S" + std::to_string(longest), {texts.size()});
+    for (std::string text : texts) {
+        text.resize(longest);
+        npz.append(text.data(), longest);
+    }
+    npz.end();
+}
+
+/** Time and bearings; of samples of bins their ranges and the names of the objects, which are the first sample's. */
+template <types::Arrayed T>
+void writeGrid(Reader& log, const Run& run, NpzFile& npz, T sample) {
+    std::vector<double> time, bearings;
+    std::vector<float> range;
+    std::vector<std::string> objects;
+    for (const SampleRef& at : run.samples) {
+        log.read(at, sample);
+        time.push_back(sampleTime(sample, at.time).seconds());
+        for (const types::Angle& bearing : sample.bearings) bearings.push_back(bearing.rad);
+        if constexpr (types::NamesObjects<T>) {
+            if (objects.empty()) objects = sample.objects;
+            for (uint32_t k = 0; k < sample.bin_count; ++k)
+                range.push_back(static_cast<float>(sample.binStart(k + 0.5)));
+        }
+    }
+    const size_t count = run.samples.size();
+    npz.array("time", {count}, time);
+    npz.array("bearings", {count, run.shape[0]}, bearings);
+    if constexpr (types::NamesObjects<T>) {
+        npz.array("range_m", {count, run.shape[1]}, range);
+        writeTexts(npz, "objects", objects);
+    }
+}
+
+template <types::Arrayed T>
+void writeRun(Reader& log, const Run& run, NpzFile& npz, T sample) {
+    writeGrid(log, run, npz, T{});
+    const T names;
+    T::forEachArray(names, [&]<class Number>(const std::string& wanted, const auto&, std::type_identity<Number>) {
+        npz.begin(wanted, numpyType<Number>(), run.whole());
+        for (const SampleRef& at : run.samples) {
+            log.read(at, sample);
+            T::forEachArray(sample, [&](const std::string& name, const auto& numbers, auto) {
+                if (name == wanted) npz.append(numbers.data(), numbers.size() * sizeof(numbers[0]));
+            });
+        }
+        npz.end();
+    });
 }
 
 void writeRun(Reader& log, const Run& run, NpzFile& npz, Image picture) {
@@ -132,16 +195,7 @@ void writeRows(Reader& log, const std::string& stream, const Path& path, const s
     npz.close();
 }
 
-void writeValue(NpzFile& npz, const std::vector<std::string>& texts) {
-    size_t longest = 1;
-    for (const std::string& text : texts) longest = std::max(longest, text.size());
-    npz.begin("value", "|S" + std::to_string(longest), {texts.size()});
-    for (std::string text : texts) {
-        text.resize(longest);
-        npz.append(text.data(), longest);
-    }
-    npz.end();
-}
+void writeValue(NpzFile& npz, const std::vector<std::string>& texts) { writeTexts(npz, "value", texts); }
 template <class Number>
 void writeValue(NpzFile& npz, const std::vector<Number>& numbers) {
     npz.array("value", {numbers.size()}, numbers);
@@ -177,9 +231,12 @@ std::vector<Path> exportNpz(Reader& log, const std::string& stream, const Path& 
     if (holdsPings(declared)) return writeRuns<Sonar>(log, stream, path, meta);
     if (declared.holds<Image>()) return writeRuns<Image>(log, stream, path, meta);
     bool done = false;
+    std::vector<Path> files{path};
     types::forEachSampleType([&]<class T>(std::type_identity<T>) {
         if (!declared.holds<T>()) return;
-        if constexpr (types::Tabular<T>)
+        if constexpr (types::Arrayed<T>)
+            files = writeRuns<T>(log, stream, path, meta);
+        else if constexpr (types::Tabular<T>)
             writeRows<T>(log, stream, path, meta);
         else if constexpr (types::Scalar<T> || Text<T>)
             writeValues<T>(log, stream, path, meta);
@@ -190,9 +247,9 @@ std::vector<Path> exportNpz(Reader& log, const std::string& stream, const Path& 
     if (!done)
         throw types::ConfigError(log.path(), stream,
                                  "holds " + declared.type +
-                                     "; as arrays can be written pings, beams and scans of sonars, poses, pictures, "
-                                     "numbers and texts");
-    return {path};
+                                     "; as arrays can be written pings, beams and scans of sonars, truth and returns "
+                                     "of pings, poses, pictures, numbers and texts");
+    return files;
 }
 
 }  // namespace insonify::log

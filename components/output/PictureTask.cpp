@@ -6,6 +6,7 @@
 #include <stdexcept>
 
 #include "components/output/ScanMosaicTask.hpp"
+#include "components/output/TruthImageTask.hpp"
 
 namespace insonify::output {
 
@@ -64,6 +65,8 @@ void registerTasks(framework::Registry& registry) {
     registry.add<WaterfallImageTask>("output::WaterfallImageTask", "shows range against time");
     registry.add<ScanMosaicTask>("output::ScanMosaicTask",
                                  "shows the pings of a moving scanning sonar where they belong, beside the disc");
+    registry.add<TruthImageTask>("output::TruthImageTask",
+                                 "shows pings as fans, and beside them which objects they show");
 }
 
 }  // namespace insonify::output

@@ -10,6 +10,7 @@
 #include "components/ros/Poses.hpp"
 #include "components/ros/Times.hpp"
 #include "components/ros/ToSonar.hpp"
+#include "components/ros/Truths.hpp"
 #include "types/Samples.hpp"
 
 namespace insonify::ros {
@@ -30,6 +31,10 @@ template <>
 struct MessagesOf<types::SonarBeam> : MessagesOf<types::Sonar> {};
 template <>
 struct MessagesOf<types::SonarScan> : MessagesOf<types::Sonar> {};
+template <>
+struct MessagesOf<types::SonarTruth> : Messages<types::SonarTruth, SonarTruth, Clock> {};
+template <>
+struct MessagesOf<types::SonarReturns> : Messages<types::SonarReturns, SonarReturns, Clock> {};
 template <>
 struct MessagesOf<types::Pose> : Messages<types::Pose, Odometry, PoseStamped, Clock> {};
 template <>
@@ -86,6 +91,12 @@ auto toMessage(const types::Pose& pose, const MessageOptions& options, Message& 
 inline void toMessage(const types::Image& picture, const MessageOptions& options, Image& message) {
     convert(picture, options.frame_id, message);
 }
+inline void toMessage(const types::SonarTruth& truth, const MessageOptions& options, SonarTruth& message) {
+    convert(truth, options.frame_id, message);
+}
+inline void toMessage(const types::SonarReturns& returns, const MessageOptions& options, SonarReturns& message) {
+    convert(returns, options.frame_id, message);
+}
 template <types::Stamped T>
 void toMessage(const T& sample, const MessageOptions&, Clock& message) {
     message = toClock(sample.time);
@@ -107,6 +118,12 @@ template <class Message>
 auto toSample(const Message& message, const MessageOptions& options, types::Pose& pose)
     -> decltype(convert(message, options.world_frame, pose)) {
     convert(message, options.world_frame, pose);
+}
+inline void toSample(const SonarTruth& message, const MessageOptions&, types::SonarTruth& truth) {
+    convert(message, truth);
+}
+inline void toSample(const SonarReturns& message, const MessageOptions&, types::SonarReturns& returns) {
+    convert(message, returns);
 }
 inline void toSample(const Image& message, const MessageOptions&, types::Image& picture) { convert(message, picture); }
 inline void toSample(const Time& message, const MessageOptions&, types::Time& time) { time = fromRos(message); }

@@ -161,6 +161,8 @@ void PingTask::followSilence() {
 void PingTask::render() {
     if (!renderer_ || geometry_ != aimed_.geometry) makeRenderer();
     const auto sample = pool_.take();
+    const auto told = takeTruth();
+    renderer_->setTruth(*sample, told.get());
     const auto start = std::chrono::steady_clock::now();
     renderer_->render(aimed_, *sample);
     const std::chrono::duration<double, std::milli> took = std::chrono::steady_clock::now() - start;
@@ -175,6 +177,25 @@ void PingTask::render() {
     if (!waitForLastEcho()) return;
     if (pose.connected()) pose.write(used_);
     ping.write(sample);
+    if (told) writeTruth(*sample, told);
+}
+
+std::shared_ptr<types::SonarTruth> PingTask::takeTruth() {
+    if (!truth.connected() && !returns.connected()) return nullptr;
+    return truths_.take();
+}
+
+void PingTask::writeTruth(const types::Sonar& sample, const std::shared_ptr<types::SonarTruth>& told) {
+    told->takeGrid(sample);
+    told->objects.resize(geometry_->objects.size());
+    for (size_t i = 0; i < told->objects.size(); ++i) told->objects[i] = geometry_->objects[i].name;
+    truths_.stock(*told);
+    if (truth.connected()) truth.write(told);
+    if (!returns.connected()) return;
+    const auto found = all_returns_.take();
+    found->take(sample, *told);
+    all_returns_.stock(*found);
+    returns.write(found);
 }
 
 bool PingTask::waitForLastEcho() {

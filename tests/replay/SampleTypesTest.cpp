@@ -55,6 +55,24 @@ types::SonarScan made(std::type_identity<types::SonarScan>) {
     scan.beamwidth_vertical = {0.5};
     return scan;
 }
+types::SonarTruth made(std::type_identity<types::SonarTruth>) {
+    types::SonarTruth truth;
+    truth.takeGrid(made(std::type_identity<types::Sonar>{}));
+    truth.objects = {"bottom", "a \"ball\""};
+    truth.elevation = {0.5f, -0.25f, 0, 0.125f, 0, 0};
+    truth.object = {1, 0, -1, 0, 0, 1};
+    truth.share = {1, 0.75f, 0, 1, 0.5f, 1};
+    truth.hits = {3, 70'000, 0, 1, 1, 2};
+    truth.grazing = {1.5f, 0.25f, 0, 0.5f, 0.5f, 1};
+    truth.path = {0, 1, 0, 2, 3, 0};
+    truth.shadow = {0, 0, 1, 0, 0, 0};
+    return truth;
+}
+types::SonarReturns made(std::type_identity<types::SonarReturns>) {
+    types::SonarReturns returns;
+    returns.take(made(std::type_identity<types::Sonar>{}), made(std::type_identity<types::SonarTruth>{}));
+    return returns;
+}
 types::Pose made(std::type_identity<types::Pose>) {
     types::Pose pose;
     pose.time = {1'500'000};

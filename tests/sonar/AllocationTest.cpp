@@ -60,11 +60,19 @@ int pingsThatAllocate(const SonarConfig& config, int count) {
     return allocating;
 }
 
+enum class Truth { Unheard, Heard };
+
 template <class Task, class Config>
-void expectNoAllocation(const Config& config) {
+void expectNoAllocation(const Config& config, Truth truth = Truth::Unheard) {
     Task task("sonar");
     test::Writer<types::SnapshotPtr> in;
     test::Reader<types::SonarPtr> out;
+    test::Reader<types::SonarTruthPtr> truths{"truths"};
+    test::Reader<types::SonarReturnsPtr> returns{"returns"};
+    if (truth == Truth::Heard) {
+        task.truth.connectTo(truths.port, framework::ConnPolicy::data());
+        task.returns.connectTo(returns.port, framework::ConnPolicy::data());
+    }
     in.port.connectTo(task.snapshot, framework::ConnPolicy::buffer(4));
     task.ping.connectTo(out.port, framework::ConnPolicy::data());
     task.config.set(config);
@@ -81,6 +89,7 @@ void expectNoAllocation(const Config& config) {
     });
     EXPECT_THAT(allocations, testing::IsEmpty());
     EXPECT_EQ(task.ping.written(), snapshots.size()) << task.lastError();
+    EXPECT_EQ(task.truth.written(), truth == Truth::Heard ? snapshots.size() : 0);
 }
 
 SonarConfig fan() {
@@ -115,6 +124,20 @@ TEST(AllocationTest, NorWithPatternsAndAPulse) {
         config.device = visibility == Visibility::Gl ? "software" : "";
         expectNoAllocation<SonarTask>(config);
     }
+}
+
+TEST(AllocationTest, NorWhereItTellsWhatItsPingsShow) {
+    SonarConfig config = fan();
+    expectNoAllocation<SonarTask>(config, Truth::Heard);
+    config.deposit = Deposit::Gpu;
+    expectNoAllocation<SonarTask>(config, Truth::Heard);
+    config.visibility = Visibility::Cpu;
+    config.device.clear();
+    expectNoAllocation<SonarTask>(config, Truth::Heard);
+    acoustics::BeamLaw law;
+    law.width_deg = 3;
+    config.beam_pattern.emplace().receive.azimuth = law;
+    expectNoAllocation<SonarTask>(config, Truth::Heard);
 }
 
 TEST(AllocationTest, NorDoesItWithTheDepositOnTheGraphicsDevice) {
