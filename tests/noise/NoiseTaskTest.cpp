@@ -87,12 +87,18 @@ TEST_F(NoiseTaskTest, ALawThatIsSetWhileItRunsHoldsFromTheNextPingOn) {
     EXPECT_NE(answerTo(makePing(1))->bins, makePing(1)->bins);
 }
 
+AmbientConfig ambientOf(double level_db) {
+    AmbientConfig ambient;
+    ambient.level_db = level_db;
+    return ambient;
+}
+
 TEST_F(NoiseTaskTest, EchoesBelowTheNoiseAreToldOfOnceWithNumbersAndAgainOnceTheyHaveStoodOut) {
     std::vector<std::string> told;
     const auto environment = std::make_shared<framework::Environment>();
     environment->warn = [&](const std::string& text) { told.push_back(text); };
     task_.setEnvironment(environment);
-    startWith({.seed = 1, .speckle = {}, .ambient = AmbientConfig{.level_db = -40.0}, .additive = {}});
+    startWith({.seed = 1, .speckle = {}, .ambient = ambientOf(-40), .additive = {}});
     int64_t time = 0;
     const auto hear = [&](float loudest, int pings) {
         for (int i = 0; i < pings; ++i) {
@@ -121,7 +127,7 @@ TEST_F(NoiseTaskTest, OfAnEmptyPingAndWithoutAnyBackgroundNothingIsTold) {
     const auto environment = std::make_shared<framework::Environment>();
     environment->warn = [&](const std::string& text) { told.push_back(text); };
     task_.setEnvironment(environment);
-    startWith({.seed = 1, .speckle = {}, .ambient = AmbientConfig{.level_db = -40.0}, .additive = {}});
+    startWith({.seed = 1, .speckle = {}, .ambient = ambientOf(-40), .additive = {}});
     answerTo(test::shared(test::pingOf(2, 100, 0)));
     ASSERT_TRUE(task_.stop() && task_.cleanup());
     startWith({.seed = 1, .speckle = SpeckleConfig{}, .ambient = {}, .additive = {}});

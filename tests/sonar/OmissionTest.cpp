@@ -84,6 +84,8 @@ TEST(OmissionTest, NoEffectIsLeftOutThatIsNotTestedHere) {
         Effect::Absorption, Effect::AbsorptionInBin, Effect::SpecularLobe, Effect::Spreading,
         Effect::BackscatterByMaterial, Effect::FurtherSlabs, Effect::Refraction, Effect::MotionInPing,
         Effect::NormalMaps,
+        // in RingDownTest.cpp and PointTargetTest.cpp:
+        Effect::RingDown, Effect::PointTargets,
         // of `published`, in PublishedTest.cpp:
         Effect::RangeFootprints, Effect::ElevationMask, Effect::SharedColumns, Effect::NearBlanking,
         // without values yet; SonarConfig refuses them:
