@@ -160,7 +160,7 @@ void PingTask::render() {
         if (const auto what = renderer_->targetsLeftOut()) plan_->omitted.push_back(describe(*what, grid_));
     }
     followQuality(*sample, took.count());
-    if (const std::string trouble = troubles_->follow(*renderer_, aimed_); !trouble.empty()) warn(trouble);
+    if (const std::string trouble = troubles_->follow(*renderer_, aimed_, *sample); !trouble.empty()) warn(trouble);
     stampBearings(*sample);
     pool_.stock(*sample);
     if (!std::exchange(plan_told_, true)) refreshRecord();
