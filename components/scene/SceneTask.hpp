@@ -65,6 +65,8 @@ private:
     };
 
     std::shared_ptr<const Scene> load() const;
+    /** Those of the configuration, their tables read; what is wrong with them goes to `diagnostics`. */
+    std::map<std::string, Acoustics> materials(types::Diagnostics& diagnostics) const;
     bool readMovables();
     void placeTargets(const Scene& scene, types::Diagnostics& diagnostics);
     void addMoved(std::vector<types::MovedObject>& moved);
