@@ -75,7 +75,7 @@ std::string hindranceText(const Coverage& coverage, const glm::dvec3& point) {
 
 /** That no material of an object gives anything back; empty where one does. */
 std::string materialText(const SonarConfig& config, const types::Geometry& geometry, uint32_t object) {
-    constexpr float nothing_db = -150;
+    constexpr float nothing_db = -110;  // under a quantum of the sums in which it is heard
     const bool means = config.model == Model::Cerqueira2017;
     std::string name;
     for (const types::Cluster& run : geometry.meshes[static_cast<size_t>(geometry.objects[object].mesh)].clusters) {

@@ -63,6 +63,9 @@ TEST(SilentRunTest, AMaterialThatGivesNothingBackIsNamed) {
     EXPECT_THAT(told({"sonar.model=cerqueira2017", "scene.materials={wall: {reflectivity: 0}}"}),
                 AllOf(HasSubstr("its nearest point 10 m away at [10, 0, 0] of wall: its material '"),
                       HasSubstr("' has reflectivity 0 and gives nothing back")));
+    EXPECT_THAT(told({"scene.materials={wall: {lambert_db: -200}}"}),
+                AllOf(HasSubstr("of wall: its material '"),
+                      HasSubstr("', of lambert_db -200 dB, gives nothing back that could be heard")));
 }
 
 TEST(SilentRunTest, ATargetBehindTheWallIsNamedAsWell) {
