@@ -10,6 +10,7 @@
 #include "components/sonar/BinGrid.hpp"
 #include "components/sonar/QualityKeeper.hpp"
 #include "components/sonar/SonarRenderer.hpp"
+#include "components/sonar/Troubles.hpp"
 #include "types/Snapshot.hpp"
 #include "types/Sonar.hpp"
 #include "types/SonarReturns.hpp"
@@ -98,8 +99,6 @@ private:
     /** In realtime, until the last echo of this ping's range is back; false: the task is to stop. */
     bool waitForLastEcho();
     void makeRenderer();
-    /** Tells once when not one ping of a whole turn has heard anything. */
-    void followSilence();
     /** Looks after the quality once a ping has been rendered, in `ms`; may render it again. */
     void followQuality(types::Sonar& sample, double ms);
 
@@ -109,7 +108,7 @@ private:
     PeriodMeter period_;
     std::unique_ptr<SonarRenderer> renderer_;
     std::optional<QualityKeeper> quality_;  ///< None where the quality is given.
-    int silent_ = 0;                   ///< Pings since the start without any echo; -1 once something was heard [1].
+    std::optional<Troubles> troubles_;
     bool culling_untold_ = false;      ///< Whether the plan does not say yet what the first ping's culling left out.
     std::optional<types::Plan> plan_;  ///< Outlives the renderer, for the summary.
     bool plan_told_ = false;           ///< Whether the record has the plan as it is.

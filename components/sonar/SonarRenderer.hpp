@@ -1,6 +1,7 @@
 #pragma once
 #include <array>
 #include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -56,14 +57,20 @@ public:
     const types::Plan& plan() const;
     /** What is compiled into what renders. */
     Features compiled() const;
-    /** Whether the last ping has any echo. */
+    /** Whether the last ping has any echo of a surface. */
     bool hasEchoes() const;
     /** What of the scene the last ping did not draw: objects, triangles, frusta; nothing with rays. */
     std::vector<LeftOut> culled() const;
+    /** How many point targets the last ping has heard [1]. */
+    size_t targetsHeard() const;
+    /** Point targets that it has not heard, or that there are none; none before the first ping, or if all are heard. */
+    std::optional<LeftOut> targetsLeftOut() const;
     const std::string& device() const;  ///< What renders, with its driver.
 
 private:
     struct Parts;
+    /** What comes into the bins beside the echoes of surfaces. */
+    void finish(const types::Snapshot& snapshot, types::Sonar& ping);
     std::unique_ptr<Parts> parts_;
 };
 

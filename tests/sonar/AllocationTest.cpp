@@ -34,6 +34,7 @@ std::vector<types::SnapshotPtr> turning() {
         glm::dmat4 place(1);
         place[3] = glm::dvec4(2, 4, 0.01 * i, 1);
         snapshot.moved = {{3, place}};
+        snapshot.targets = {{{2, 4, 0.8}, -20}, {{5, -3, 0}, -20}};
         snapshots.push_back(std::make_shared<types::Snapshot>(snapshot));
     }
     return snapshots;
