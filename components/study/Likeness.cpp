@@ -11,6 +11,7 @@ namespace {
 constexpr size_t patch = 16;              ///< Bins and beams of a patch.
 constexpr double quarters_alike = 0.25;   ///< A quarter's mean may differ from the patch's by so much of it [1].
 constexpr double clipped_at_most = 0.02;  ///< Of a homogeneous patch, at code 0 or the largest [1].
+constexpr double seen_arc_db = 3;         ///< Above what is around it.
 constexpr size_t targets = 5;             ///< Whose arcs are looked at.
 
 double median(std::vector<double> values) {
@@ -289,24 +290,18 @@ CodedPing cosinePing(const CodedPing& like) {
     return ping;
 }
 
-const std::vector<LikenessBound>& likenessBounds() {
-    static const std::vector<LikenessBound> bounds = {
-        {"histogram: earth mover's distance", &Apart::emd_codes, 25.5, "codes"},
-        {"histogram: Jensen-Shannon divergence", &Apart::js_bits, 0.15, "bit"},
-        {"dynamic range", &Apart::dynamic_range_db, 6, "dB"},
-        {"share of code 0", &Apart::zeros, 0.02, ""},
-        {"share of saturated codes", &Apart::saturated, 0.02, ""},
-        {"level over range", &Apart::fall_off_db, 12, "dB"},
-        {"speckle contrast", &Apart::contrast, 0.1, ""},
-        {"correlation of neighbouring bins", &Apart::range_correlation, 0.2, ""},
-        {"correlation of neighbouring beams", &Apart::beam_correlation, 0.2, ""},
-        {"level of arcs beside the strongest", &Apart::arc_db, 10, "dB"}};
-    return bounds;
-}
-
-int broken(const Apart& apart) {
-    return static_cast<int>(std::ranges::count_if(
-        likenessBounds(), [&](const LikenessBound& bound) { return !(apart.*bound.figure <= bound.at_most); }));
+std::vector<Claim> claims(const Apart& apart, const Looks& recorded) {
+    return {{"histogram: earth mover's distance [codes]", apart.emd_codes, 25.5, true},
+            {"histogram: Jensen-Shannon divergence [bit]", apart.js_bits, 0.15, true},
+            {"dynamic range, apart by [dB]", apart.dynamic_range_db, 6, true},
+            {"share of code 0, apart by", apart.zeros, 0.02, true},
+            {"share of saturated codes, apart by", apart.saturated, 0.02, true},
+            {"level over range, rms [dB]", apart.fall_off_db, 12, true},
+            {"speckle contrast, apart by", apart.contrast, 0.1, true},
+            {"correlation of neighbouring bins, apart by", apart.range_correlation, 0.2, true},
+            {"correlation of neighbouring beams, apart by", apart.beam_correlation, 0.2, true},
+            {"level of arcs beside the strongest, apart by [dB]", apart.arc_db, 10, true,
+             recorded.arc_excess_db >= seen_arc_db}};
 }
 
 }  // namespace insonify::study

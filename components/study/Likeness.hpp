@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "components/study/CodedPing.hpp"
+#include "components/study/ErrorAnalysis.hpp"
 
 namespace insonify::study {
 
@@ -53,15 +54,8 @@ Apart apart(const Looks& a, const Looks& b);
 CodedPing uniformPing(const CodedPing& like, double code);
 CodedPing cosinePing(const CodedPing& like);
 
-/** What is promised of a simulated ping, in the order of judging. */
-struct LikenessBound {
-    const char* what;
-    double Apart::*figure;
-    double at_most;
-    const char* unit;
-};
-const std::vector<LikenessBound>& likenessBounds();
-/** How many of these do not hold. */
-int broken(const Apart& apart);
+/** What is promised of a ping that is so far from recordings; of arcs only where the recordings show some, 3 dB above
+ * what is around them, else it is open. */
+std::vector<Claim> claims(const Apart& apart, const Looks& recorded);
 
 }  // namespace insonify::study

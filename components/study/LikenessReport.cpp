@@ -101,7 +101,6 @@ LikenessResult studyLikeness(const std::vector<CodedPing>& recorded, const Coded
     if (simulated) {
         add("simulated", looksOf(*simulated));
         result.shown.push_back(*simulated);
-        result.has_simulated = true;
     }
     double mean_code = 0;
     for (size_t code = 0; code < code_classes; ++code)

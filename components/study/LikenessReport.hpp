@@ -18,8 +18,7 @@ struct LikenessRow {
 struct LikenessResult {
     Looks recorded;                 ///< Mean of the recorded pings.
     std::vector<LikenessRow> rows;  ///< Each recorded ping, the simulated one if there is one, the wrong forms.
-    bool has_simulated = false;
-    std::vector<CodedPing> shown;  ///< A recorded ping, and the simulated one beside it.
+    std::vector<CodedPing> shown;   ///< A recorded ping, and the simulated one beside it.
 
     const LikenessRow* row(const std::string& name) const;  ///< Null when there is none.
 };

@@ -1,69 +1,25 @@
 #include <gmock/gmock.h>
 
-#include <cstring>
-
 #include "components/device/OculusPing.hpp"
 #include "tests/support/Folder.hpp"
+#include "tests/support/OculusMessage.hpp"
 #include "types/Angle.hpp"
 #include "types/ConfigError.hpp"
 
 namespace insonify::device {
 namespace {
 
-using Bytes = std::vector<uint8_t>;
+using test::Bytes;
+using test::put;
+using Sent = test::OculusMessage;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 
-template <class T>
-void put(Bytes& bytes, size_t at, T value) {
-    if (bytes.size() < at + sizeof value) bytes.resize(at + sizeof value);
-    std::memcpy(bytes.data() + at, &value, sizeof value);
-}
-
-/** A ping of 3 beams and 2 bins, as devices send it. */
-struct Sent {
-    uint16_t version = 1;
-    uint8_t code_size = 0;  // bytes less one
-    bool gains = false;
-    Bytes bytes() const {
-        const bool second = version == 2;
-        const size_t shift = second ? 36 : 0, row = (gains ? 4 : 0) + 3 * (code_size + size_t{1});
-        const size_t late = second ? 64 : 0, image_fields = second ? 190 : 110, bearings = second ? 202 : 122;
-        Bytes message(16);
-        put<uint16_t>(message, 0, 0x4F53);
-        put<uint16_t>(message, 6, 0x23);
-        put<uint16_t>(message, 8, version);
-        put<uint8_t>(message, 19, 127);
-        put<uint8_t>(message, 20, gains ? 0x1D : 0x19);
-        put<uint32_t>(message, 53 + shift, 77);
-        put<double>(message, 61 + shift, 2.1e6);
-        put<double>(message, second ? 145 : 85, 1490.5);
-        put<uint8_t>(message, 97 + late, code_size);
-        put<double>(message, 98 + late, 0.25);
-        put<uint16_t>(message, 106 + late, 2);
-        put<uint16_t>(message, 108 + late, 3);
-        const uint32_t image = 256;
-        put<uint32_t>(message, image_fields, image);
-        put<uint32_t>(message, image_fields + 4, static_cast<uint32_t>(2 * row));
-        for (size_t beam = 0; beam < 3; ++beam)
-            put<int16_t>(message, bearings + 2 * beam, static_cast<int16_t>(3000 * (static_cast<int>(beam) - 1)));
-        for (size_t k = 0; k < 2; ++k) {
-            if (gains) put<uint32_t>(message, image + k * row, static_cast<uint32_t>(9 + k));
-            for (size_t beam = 0; beam < 3; ++beam)
-                for (size_t byte = 0; byte <= code_size; ++byte)
-                    put<uint8_t>(message, image + k * row + (gains ? 4 : 0) + beam * (code_size + size_t{1}) + byte,
-                                 byte == 0 ? static_cast<uint8_t>(10 * beam + k) : 1);
-        }
-        put<uint32_t>(message, 10, static_cast<uint32_t>(message.size() - 16));
-        return message;
-    }
-};
-
 TEST(OculusPingTest, APingIsReadInEveryVersionAndWidth) {
     for (const uint16_t version : {0, 1, 2})
         for (const bool gains : {false, true}) {
-            const Bytes bytes = Sent{version, 0, gains}.bytes();
+            const Bytes bytes = Sent{.version = version, .gains = gains}.bytes();
             const auto pings = oculusPings(bytes);
             ASSERT_EQ(pings.size(), 1u) << version;
             const OculusPing& ping = pings[0];
@@ -78,7 +34,7 @@ TEST(OculusPingTest, APingIsReadInEveryVersionAndWidth) {
             EXPECT_THAT(ping.codes, ElementsAre(0, 1, 10, 11, 20, 21)) << "beam-first";
             EXPECT_EQ(ping.row_gains.size(), gains ? 2u : 0u);
         }
-    const OculusPing wide = oculusPings(Sent{1, 1, false}.bytes()).at(0);
+    const OculusPing wide = oculusPings(Sent{.code_bytes = 2}.bytes()).at(0);
     EXPECT_THAT(wide.codes, ElementsAre(256, 257, 266, 267, 276, 277));
     EXPECT_EQ(wide.largestCode(), 65535);
 }
