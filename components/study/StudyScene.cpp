@@ -4,6 +4,7 @@
 #include <limits>
 
 #include "components/acoustics/Backscatter.hpp"
+#include "components/acoustics/BeamPattern.hpp"
 #include "components/sonar/BeamFan.hpp"
 #include "components/sonar/BinGrid.hpp"
 #include "components/study/Probe.hpp"
@@ -31,6 +32,26 @@ StudyScene flatBottom(const std::string& name, const std::string& doc, double ra
     StudyScene scene{name, doc,       fan(130, 40, 64, 50), snapshotOf(sceneOf({levelGround(-5)}), pitch, roll),
                      {},   range_from};
     scene.truth = planeTruth(downOf(scene.snapshot), 5);
+    return scene;
+}
+
+/** As far as the pattern is heard: 60 dB below its axis. */
+StudyScene patternedBottom() {
+    const double width_deg = 20, reach_deg = width_deg / 2 * std::sqrt(60 / (2 * 10 * std::log10(2.0)));
+    StudyScene scene{"pitched_bottom_pattern",
+                     "a flat bottom 5 m below, the sonar pitched down by 20 deg, with a Gaussian beam of 20 deg in "
+                     "elevation, sent and heard",
+                     fan(60, 2 * reach_deg, 32, 50),
+                     snapshotOf(sceneOf({levelGround(-5)}), radians(20)),
+                     {}};
+    acoustics::BeamLaw law;
+    law.weighting = acoustics::Weighting::Gaussian;
+    law.width_deg = width_deg;
+    sonar::BeamPatternConfig& pattern = scene.config.beam_pattern.emplace();
+    pattern.transmit.elevation = pattern.receive.elevation = law;
+    const acoustics::BeamPattern beam(law);
+    scene.truth = planeTruth(downOf(scene.snapshot), 5, {},
+                             [beam](double elevation) { return std::pow(beam.power(elevation), 2); });
     return scene;
 }
 
@@ -116,6 +137,7 @@ const std::vector<SceneMaker>& closedFormScenes() {
              return flatBottom("tilted_plane", "the same bottom, pitched by 20 and rolled by 25 deg", 0, radians(20),
                                radians(25));
          }},
+        {"pitched_bottom_pattern", patternedBottom},
         {"wall", wallAhead},
         {"facing_disc", facingDisc},
         {"sphere", oneSphere},

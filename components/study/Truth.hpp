@@ -20,10 +20,13 @@ struct Elevations {
 /** Which elevations of a plane are seen at an azimuth; all of them when empty. */
 using Window = std::function<Elevations(double azimuth)>;
 
+/** What is heard of an elevation, there and back [1]; all of it when empty. */
+using Pattern = std::function<double(double elevation)>;
+
 /** Echo of the plane normal.p = distance (unit normal away from the sonar, sonar axes, distance above 0) of Lambert
  *  parameter 1. ACOUSTICS.md 9.6, with cos(theta) = distance / r: over a plane the integrand depends on direction
  * alone, and each bin is, at each azimuth, two stretches of elevation. */
-Truth planeTruth(glm::dvec3 normal, double distance, Window window = {});
+Truth planeTruth(glm::dvec3 normal, double distance, Window window = {}, Pattern pattern = {});
 
 /** The echo of a sphere wholly inside one beam: ACOUSTICS.md 9.4. */
 Truth sphereTruth(double radius, double centre);
