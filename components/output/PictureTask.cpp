@@ -6,6 +6,9 @@
 #include <stdexcept>
 
 #include "components/output/ScanMosaicTask.hpp"
+#include "components/output/SideScanImage.hpp"
+#include "components/output/SoundingMapTask.hpp"
+#include "components/output/XtfTask.hpp"
 
 namespace insonify::output {
 
@@ -62,6 +65,9 @@ void registerTasks(framework::Registry& registry) {
     registry.add<FanImageTask>("output::FanImageTask", "shows the pings of a forward-looking sonar as fans");
     registry.add<DiscImageTask>("output::DiscImageTask", "shows the pings of a scanning sonar on a disc");
     registry.add<WaterfallImageTask>("output::WaterfallImageTask", "shows range against time");
+    registry.add<SideScanImageTask>("output::SideScanImageTask", "shows the lines of a side-scan sonar against time");
+    registry.add<SoundingMapTask>("output::SoundingMapTask", "charts soundings from above, coloured by height");
+    registry.add<XtfTask>("output::XtfTask", "writes the lines of a side-scan sonar as an XTF file");
     registry.add<ScanMosaicTask>("output::ScanMosaicTask",
                                  "shows the pings of a moving scanning sonar where they belong, beside the disc");
 }

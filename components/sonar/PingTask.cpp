@@ -174,6 +174,7 @@ void PingTask::render() {
     if (!std::exchange(plan_told_, true)) refreshRecord();
     if (!waitForLastEcho()) return;
     if (pose.connected()) pose.write(used_);
+    tellMore(*sample, aimed_.sonar);
     ping.write(sample);
 }
 

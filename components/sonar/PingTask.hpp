@@ -57,6 +57,8 @@ protected:
     virtual const char* steer(types::Snapshot& /*scene*/) { return nullptr; }
     /** Last changes to a ping before it is written. */
     virtual void stampBearings(types::Sonar& /*sample*/) {}
+    /** What else there is to tell of a ping that is about to be written, from where it was rendered. */
+    virtual void tellMore(const types::Sonar& /*sample*/, const types::Pose& /*sonar*/) {}
     /** Pings in which a turning head comes round [1]. */
     virtual int pingsPerTurn() const { return 1; }
 

@@ -1,7 +1,10 @@
 #include <gmock/gmock.h>
 
 #include "components/framework/ConfigReader.hpp"
+#include "components/sonar/AltimeterTask.hpp"
 #include "components/sonar/HeadConfig.hpp"
+#include "components/sonar/ProfilerTask.hpp"
+#include "components/sonar/SideScanTask.hpp"
 #include "components/sonar/SonarConfig.hpp"
 
 namespace insonify::sonar {
@@ -48,6 +51,36 @@ TEST(SonarConfigTest, EveryKeyOfTheContractIsAccepted) {
         faultsOf<ScanningSonarConfig>("head: {left_deg: 60, right_deg: -60, step_deg: 0.9, speed_deg_per_s: 90}"),
         IsEmpty());
     EXPECT_THAT(faultsOf<ScanningSonarConfig>("{}"), IsEmpty());
+}
+
+TEST(SonarConfigTest, AProfilerAndAnAltimeterRefuseWhatIsNoThresholdOrNoBeam) {
+    EXPECT_THAT(
+        faultsOf<ProfilerConfig>("{beam_count: 64, detection: {threshold_db: -40, gate_db: 6, floor_db: -140}}"),
+        IsEmpty());
+    EXPECT_THAT(faultsOf<ProfilerConfig>("detection: {threshold_db: 5}"),
+                ElementsAre(AllOf(HasSubstr("detection.threshold_db"), HasSubstr("-300"), HasSubstr("0"))));
+    EXPECT_THAT(faultsOf<ProfilerConfig>("detection: {gate_db: 0}"), ElementsAre(HasSubstr("detection.gate_db")));
+    EXPECT_THAT(faultsOf<ProfilerConfig>("range_min: 60"), ElementsAre(HasSubstr("range_min: is 60 m")));
+    EXPECT_THAT(faultsOf<AltimeterConfig>("{beam_width_deg: 120, beam_height_deg: 120, threshold_db: -30}"), IsEmpty());
+    EXPECT_THAT(faultsOf<AltimeterConfig>("beam_width_deg: 121"), ElementsAre(HasSubstr("one beam may have 120")));
+    EXPECT_THAT(faultsOf<AltimeterConfig>("threshold_db: 1"), ElementsAre(HasSubstr("threshold_db")));
+    EXPECT_THAT(faultsOf<AltimeterConfig>("beam_count: 2"), ElementsAre(HasSubstr("beam_count")));
+    EXPECT_THAT(faultsOf<AltimeterConfig>("detection: {gate_db: 3}"), ElementsAre(HasSubstr("detection")));
+}
+
+TEST(SonarConfigTest, ASideScanRefusesBeamsThatItCannotHaveByItsOwnNames) {
+    EXPECT_THAT(faultsOf<SideScanConfig>("{beam_width_deg: 1, beam_height_deg: 60, depression_deg: 20, "
+                                         "quality: {rows: 1024, columns_per_beam: 4}}"),
+                IsEmpty());
+    EXPECT_THAT(faultsOf<SideScanConfig>("beam_height_deg: 130"),
+                ElementsAre("beam_height_deg: is 130 deg; a side-scan's beam may have 120"));
+    EXPECT_THAT(faultsOf<SideScanConfig>("beam_width_deg: 200"), ElementsAre(HasSubstr("beam_width_deg: is 200 deg")));
+    EXPECT_THAT(faultsOf<SideScanConfig>("depression_deg: -5"), ElementsAre(HasSubstr("depression_deg")));
+    EXPECT_THAT(faultsOf<SideScanConfig>("beam_geometry: conical"), ElementsAre(HasSubstr("beam_geometry")));
+    EXPECT_THAT(faultsOf<SideScanConfig>("quality: {rows: 5000}"), ElementsAre(HasSubstr("quality.rows: is 5000")));
+    EXPECT_THAT(faultsOf<SideScanConfig>("beam_pattern: {transmit: {elevation: {width_deg: 50}}}"),
+                ElementsAre(HasSubstr("receive.elevation")));
+    EXPECT_THAT(faultsOf<SideScanConfig>("beam_count: 3"), ElementsAre(HasSubstr("beam_count")));
 }
 
 TEST(SonarConfigTest, ValuesOutOfBoundsAreRefused) {

@@ -1,0 +1,55 @@
+#pragma once
+#include <memory>
+
+#include "components/framework/Port.hpp"
+#include "components/framework/Properties.hpp"
+#include "components/framework/SamplePool.hpp"
+#include "components/framework/TaskContext.hpp"
+#include "components/output/PictureConfig.hpp"
+#include "components/output/PictureWriter.hpp"
+#include "components/output/SoundingMap.hpp"
+
+namespace insonify::output {
+
+struct SoundingMapConfig : RecordingConfig {
+    uint32_t every = 1;
+    uint32_t width = 1024;
+    ColourMap colour_map = ColourMap::Turbo;
+
+    template <class Self, class V>
+    static void describe(Self& self, V& visit) {
+        using types::Field;
+        RecordingConfig::describe(self, visit);
+        visit(Field{"every", "1", "one picture for so many pings", 1, 1e6}, self.every);
+        visit(Field{"width", "1", "of the picture in pixels; an odd one is made even; the height follows", 256, 8192},
+              self.width);
+        visit(Field{"colour_map", "", "colours from the deepest to the highest"}, self.colour_map);
+    }
+};
+
+/** Charts soundings from above: see SoundingMap.
+ *
+ *  In: `soundings`, points in the world. Out: `image` and files, as PictureTask has them, the first picture after
+ *  `every` clouds. */
+class SoundingMapTask final : public framework::TaskContext {
+public:
+    using TaskContext::TaskContext;
+
+    framework::Properties<SoundingMapConfig> config{this};
+    framework::InputPort<types::PointCloudPtr> soundings{this, "soundings", "points in the world"};
+    framework::OutputPort<types::ImagePtr> image{this, "image", "chart, BGR with 8 bits a channel"};
+
+private:
+    bool configureHook() override;
+    bool startHook() override;
+    void updateHook() override;
+    void stopHook() override;
+    void show();
+
+    std::unique_ptr<SoundingMap> map_;
+    std::unique_ptr<PictureWriter> writer_;
+    framework::SamplePool<types::Image> pool_;
+    uint64_t clouds_ = 0;
+};
+
+}  // namespace insonify::output
