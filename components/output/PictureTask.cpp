@@ -5,9 +5,9 @@
 #include <chrono>
 #include <stdexcept>
 
+#include "components/output/SamplePictureTask.hpp"
 #include "components/output/ScanMosaicTask.hpp"
-#include "components/output/SideScanImage.hpp"
-#include "components/output/SoundingMapTask.hpp"
+#include "components/output/SideScanImageTask.hpp"
 #include "components/output/XtfTask.hpp"
 
 namespace insonify::output {
@@ -67,6 +67,7 @@ void registerTasks(framework::Registry& registry) {
     registry.add<WaterfallImageTask>("output::WaterfallImageTask", "shows range against time");
     registry.add<SideScanImageTask>("output::SideScanImageTask", "shows the lines of a side-scan sonar against time");
     registry.add<SoundingMapTask>("output::SoundingMapTask", "charts soundings from above, coloured by height");
+    registry.add<RangeImageTask>("output::RangeImageTask", "shows the ranges of a 3-D sonar by direction");
     registry.add<XtfTask>("output::XtfTask", "writes the lines of a side-scan sonar as an XTF file");
     registry.add<ScanMosaicTask>("output::ScanMosaicTask",
                                  "shows the pings of a moving scanning sonar where they belong, beside the disc");

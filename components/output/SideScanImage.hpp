@@ -1,7 +1,7 @@
 #pragma once
 #include <optional>
 
-#include "components/output/PictureTask.hpp"
+#include "components/output/PictureConfig.hpp"
 #include "components/output/WaterfallImage.hpp"
 #include "types/Range.hpp"
 
@@ -52,23 +52,6 @@ private:
 
     std::optional<GroundRangeConfig> ground_range_;
     double altitude_ = types::Range::none;
-};
-
-/** Shows the pings of a side-scan sonar: see SideScanImage. In beside the ping: `altitude`, of an altimeter. */
-class SideScanImageTask final : public PictureTask {
-public:
-    using PictureTask::PictureTask;
-
-    framework::Properties<SideScanPictureConfig> config{this};
-    framework::InputPort<types::Range> altitude{this, "altitude", "height above the bottom, the newest counts",
-                                                framework::Need::Optional};
-
-private:
-    const PictureConfig& pictureConfig() const override { return *config; }
-    std::unique_ptr<Painter> makePainter() override;
-    void updateHook() override;
-
-    SideScanImage* painter_ = nullptr;
 };
 
 }  // namespace insonify::output

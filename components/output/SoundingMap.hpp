@@ -15,6 +15,9 @@ namespace insonify::output {
  *  Shows the points of the last `history` clouds, and fits itself to them. */
 class SoundingMap {
 public:
+    using Sample = types::PointCloudPtr;
+    static constexpr const char* port = "soundings";
+
     SoundingMap(uint32_t width, ColourMap colour_map);
 
     /** Takes note of the points of a ping; those that are not finite are none. */

@@ -149,26 +149,32 @@ void PingTask::followQuality(types::Sonar& sample, double ms) {
     plan_told_ = false;
 }
 
-void PingTask::followSilence() {
+void PingTask::followSilence(bool heard) {
     if (silent_ < 0) return;
-    silent_ = renderer_->hasEchoes() ? -1 : silent_ + 1;
+    silent_ = heard ? -1 : silent_ + 1;
     if (silent_ != pingsPerTurn()) return;
-    const double covered_deg = silent_ > 1 ? 360 : sonarConfig().coverageDeg();  // a head has looked all round
-    warn(silenceText(sonarConfig(), {grid_.range_max, covered_deg}, aimed_));
+    const SonarConfig looked = coverage();
+    const double covered_deg = silent_ > 1 ? 360 : looked.coverageDeg();  // a head has looked all round
+    warn(silenceText(looked, {grid_.range_max, covered_deg}, aimed_));
     silent_ = -1;
+}
+
+bool PingTask::renderPing(SonarRenderer& renderer, types::Snapshot& scene, types::Sonar& sample) {
+    renderer.render(scene, sample);
+    return renderer.hasEchoes();
 }
 
 void PingTask::render() {
     if (!renderer_ || geometry_ != aimed_.geometry) makeRenderer();
     const auto sample = pool_.take();
     const auto start = std::chrono::steady_clock::now();
-    renderer_->render(aimed_, *sample);
+    const bool heard = renderPing(*renderer_, aimed_, *sample);
     const std::chrono::duration<double, std::milli> took = std::chrono::steady_clock::now() - start;
     for (const Stage& stage : renderer_->stages()) recordStage(stage.name, stage.seconds);
     if (std::exchange(culling_untold_, false))
         for (const LeftOut& what : renderer_->culled()) plan_->omitted.push_back(describe(what, grid_));
     followQuality(*sample, took.count());
-    followSilence();
+    followSilence(heard || renderer_->hasEchoes());
     stampBearings(*sample);
     pool_.stock(*sample);
     if (!std::exchange(plan_told_, true)) refreshRecord();

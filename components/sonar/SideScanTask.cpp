@@ -10,7 +10,7 @@ namespace insonify::sonar {
 namespace {
 
 constexpr double max_height_deg = 120;  // of one beam of a fan
-constexpr int default_rows = 2048, default_columns = 8, max_rows = 4096;
+constexpr int default_rows = 8, default_columns = 2048;
 
 }  // namespace
 
@@ -22,8 +22,8 @@ SonarConfig SideScanConfig::acrossTrack() const {
     fan.beam_height_deg = *sonar.beam_width_deg;
     const QualityConfig& quality = sonar.quality;
     if (quality.isGiven() || (!quality.target_error && !quality.budget_ms && !quality.max_samples)) {
-        fan.quality.columns_per_beam = quality.rows.value_or(default_rows);
-        fan.quality.rows = quality.columns_per_beam.value_or(default_columns);
+        fan.quality.rows = quality.rows.value_or(default_rows);
+        fan.quality.columns_per_beam = quality.columns_per_beam.value_or(default_columns);
     }
     if (fan.beam_pattern)
         for (ArrayConfig* array : {&fan.beam_pattern->transmit, &fan.beam_pattern->receive})
@@ -40,9 +40,6 @@ void SideScanConfig::check(types::Diagnostics& diagnostics) const {
         refuse("beam_width_deg", fmt::format("is {:g} deg; along the track it may be 180", *sonar.beam_width_deg));
     if (sonar.beam_geometry != BeamGeometry::Planar)
         refuse("beam_geometry", "is conical; a side-scan's beams are planar, which is the cone about its track");
-    if (sonar.quality.rows.value_or(1) > max_rows)
-        refuse("quality.rows", fmt::format("is {}; over the height of a side-scan's beam there may be {}",
-                                           *sonar.quality.rows, max_rows));
     if (sonar.beam_pattern && sonar.beam_pattern->transmit.elevation)
         refuse("beam_pattern.transmit.elevation",
                "is given; a side-scan has one law across the track, receive.elevation, two-way about each beam's axis");

@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "components/output/SideScanImage.hpp"
+#include "components/output/SideScanImageTask.hpp"
 #include "tests/output/Pixels.hpp"
 #include "tests/support/Ports.hpp"
 

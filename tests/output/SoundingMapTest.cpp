@@ -2,7 +2,7 @@
 
 #include <limits>
 
-#include "components/output/SoundingMapTask.hpp"
+#include "components/output/SamplePictureTask.hpp"
 #include "tests/output/Pixels.hpp"
 #include "tests/support/Ports.hpp"
 
@@ -53,13 +53,13 @@ TEST(SoundingMapTest, OldPointsAreForgotten) {
 
 TEST(SoundingMapTest, ATaskMakesAPictureForSoManyClouds) {
     SoundingMapTask task("chart");
-    SoundingMapConfig config;
+    SamplePictureConfig config;
     config.every = 3;
     config.width = 256;
     task.config.set(config);
     test::Writer<types::PointCloudPtr> clouds;
     test::Reader<types::ImagePtr> pictures;
-    clouds.port.connectTo(task.soundings, framework::ConnPolicy::buffer(8));
+    clouds.port.connectTo(task.input, framework::ConnPolicy::buffer(8));
     task.image.connectTo(pictures.port, framework::ConnPolicy::buffer(8));
     ASSERT_TRUE(task.configure() && task.start()) << task.lastError();
     types::ImagePtr picture;

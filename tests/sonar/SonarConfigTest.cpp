@@ -5,6 +5,7 @@
 #include "components/sonar/HeadConfig.hpp"
 #include "components/sonar/ProfilerTask.hpp"
 #include "components/sonar/SideScanTask.hpp"
+#include "components/sonar/Sonar3dTask.hpp"
 #include "components/sonar/SonarConfig.hpp"
 
 namespace insonify::sonar {
@@ -70,17 +71,39 @@ TEST(SonarConfigTest, AProfilerAndAnAltimeterRefuseWhatIsNoThresholdOrNoBeam) {
 
 TEST(SonarConfigTest, ASideScanRefusesBeamsThatItCannotHaveByItsOwnNames) {
     EXPECT_THAT(faultsOf<SideScanConfig>("{beam_width_deg: 1, beam_height_deg: 60, depression_deg: 20, "
-                                         "quality: {rows: 1024, columns_per_beam: 4}}"),
+                                         "quality: {rows: 4, columns_per_beam: 1024}}"),
                 IsEmpty());
     EXPECT_THAT(faultsOf<SideScanConfig>("beam_height_deg: 130"),
                 ElementsAre("beam_height_deg: is 130 deg; a side-scan's beam may have 120"));
     EXPECT_THAT(faultsOf<SideScanConfig>("beam_width_deg: 200"), ElementsAre(HasSubstr("beam_width_deg: is 200 deg")));
     EXPECT_THAT(faultsOf<SideScanConfig>("depression_deg: -5"), ElementsAre(HasSubstr("depression_deg")));
     EXPECT_THAT(faultsOf<SideScanConfig>("beam_geometry: conical"), ElementsAre(HasSubstr("beam_geometry")));
-    EXPECT_THAT(faultsOf<SideScanConfig>("quality: {rows: 5000}"), ElementsAre(HasSubstr("quality.rows: is 5000")));
+    EXPECT_THAT(faultsOf<SideScanConfig>("quality: {columns_per_beam: 5000}"),
+                ElementsAre(HasSubstr("quality.columns_per_beam")));
     EXPECT_THAT(faultsOf<SideScanConfig>("beam_pattern: {transmit: {elevation: {width_deg: 50}}}"),
                 ElementsAre(HasSubstr("receive.elevation")));
     EXPECT_THAT(faultsOf<SideScanConfig>("beam_count: 3"), ElementsAre(HasSubstr("beam_count")));
+}
+
+TEST(SonarConfigTest, A3dSonarRefusesGridsThatItCannotHaveByItsOwnNames) {
+    EXPECT_THAT(
+        faultsOf<Sonar3dConfig>("{horizontal: {beam_count: 128, field_of_view_deg: 60}, vertical: {beam_count: 32, "
+                                "field_of_view_deg: 20}, beam_height_deg: 0.6, quality: {rows: 2}}"),
+        IsEmpty());
+    EXPECT_THAT(faultsOf<Sonar3dConfig>("{}"), IsEmpty());
+    EXPECT_THAT(faultsOf<Sonar3dConfig>("{horizontal: {beam_count: 1024}, vertical: {beam_count: 1024}}"),
+                ElementsAre(HasSubstr("horizontal.beam_count: is 1024, with 1024 in the vertical 1048576 beams")));
+    EXPECT_THAT(faultsOf<Sonar3dConfig>("vertical: {beam_count: 0}"), ElementsAre(HasSubstr("vertical.beam_count")));
+    EXPECT_THAT(faultsOf<Sonar3dConfig>("horizontal: {field_of_view_deg: 270}"),
+                ElementsAre(HasSubstr("horizontal.field_of_view_deg")));
+    EXPECT_THAT(faultsOf<Sonar3dConfig>("beam_height_deg: 130"), ElementsAre(HasSubstr("beam_height_deg: is 130 deg")));
+    EXPECT_THAT(faultsOf<Sonar3dConfig>("quality: {target_error: 0.01}"),
+                ElementsAre(HasSubstr("quality: has a target")));
+    EXPECT_THAT(faultsOf<Sonar3dConfig>("beam_geometry: conical"), ElementsAre(HasSubstr("beam_geometry")));
+    EXPECT_THAT(faultsOf<Sonar3dConfig>("beam_pattern: {transmit: {azimuth: {width_deg: 90}}}"),
+                ElementsAre(HasSubstr("beam_pattern.transmit.azimuth")));
+    EXPECT_THAT(faultsOf<Sonar3dConfig>("detection: {threshold_db: 3}"),
+                ElementsAre(HasSubstr("detection.threshold_db")));
 }
 
 TEST(SonarConfigTest, ValuesOutOfBoundsAreRefused) {

@@ -7,11 +7,12 @@
 #include "components/framework/TaskContext.hpp"
 #include "components/output/PictureConfig.hpp"
 #include "components/output/PictureWriter.hpp"
+#include "components/output/RangeImage.hpp"
 #include "components/output/SoundingMap.hpp"
 
 namespace insonify::output {
 
-struct SoundingMapConfig : RecordingConfig {
+struct SamplePictureConfig : RecordingConfig {
     uint32_t every = 1;
     uint32_t width = 1024;
     ColourMap colour_map = ColourMap::Turbo;
@@ -20,24 +21,27 @@ struct SoundingMapConfig : RecordingConfig {
     static void describe(Self& self, V& visit) {
         using types::Field;
         RecordingConfig::describe(self, visit);
-        visit(Field{"every", "1", "one picture for so many pings", 1, 1e6}, self.every);
+        visit(Field{"every", "1", "one picture for so many samples, after so many", 1, 1e6}, self.every);
         visit(Field{"width", "1", "of the picture in pixels; an odd one is made even; the height follows", 256, 8192},
               self.width);
-        visit(Field{"colour_map", "", "colours from the deepest to the highest"}, self.colour_map);
+        visit(Field{"colour_map", "", "colours from the deepest to the highest, or from the farthest to the nearest"},
+              self.colour_map);
     }
 };
 
-/** Charts soundings from above: see SoundingMap.
+/** Shows samples that are no pings, as Picture does.
  *
- *  In: `soundings`, points in the world. Out: `image` and files, as PictureTask has them, the first picture after
- *  `every` clouds. */
-class SoundingMapTask final : public framework::TaskContext {
+ *  In: a port named by Picture::port. Out: `image` and files, as PictureTask has them, the first picture after `every`
+ *  samples. */
+template <class Picture>
+class SamplePictureTask final : public framework::TaskContext {
 public:
     using TaskContext::TaskContext;
+    using Sample = typename Picture::Sample;
 
-    framework::Properties<SoundingMapConfig> config{this};
-    framework::InputPort<types::PointCloudPtr> soundings{this, "soundings", "points in the world"};
-    framework::OutputPort<types::ImagePtr> image{this, "image", "chart, BGR with 8 bits a channel"};
+    framework::Properties<SamplePictureConfig> config{this};
+    framework::InputPort<Sample> input{this, Picture::port, "what is shown"};
+    framework::OutputPort<types::ImagePtr> image{this, "image", "picture, BGR with 8 bits a channel"};
 
 private:
     bool configureHook() override;
@@ -46,10 +50,13 @@ private:
     void stopHook() override;
     void show();
 
-    std::unique_ptr<SoundingMap> map_;
+    std::unique_ptr<Picture> picture_;
     std::unique_ptr<PictureWriter> writer_;
     framework::SamplePool<types::Image> pool_;
-    uint64_t clouds_ = 0;
+    uint64_t samples_ = 0;
 };
+
+using SoundingMapTask = SamplePictureTask<SoundingMap>;
+using RangeImageTask = SamplePictureTask<RangeImage>;
 
 }  // namespace insonify::output
