@@ -177,7 +177,7 @@ TEST_F(Sonar3dTaskTest, OneThatHearsNothingTellsWhereItLooks) {
     const auto map = mapOf(test::snapshotOf(sceneOf({test::wall(60)})));
     ASSERT_TRUE(map) << task_.lastError();
     EXPECT_TRUE(std::ranges::none_of(map->distances, [](float distance) { return std::isfinite(distance); }));
-    EXPECT_THAT(told, testing::HasSubstr("out of range"));
+    EXPECT_THAT(told, testing::HasSubstr("beyond the range of 15 m"));
 }
 
 }  // namespace
