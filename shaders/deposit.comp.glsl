@@ -16,11 +16,20 @@ uniform uint bin_count, beam_stride;
 uniform double bin_width, attenuation, strength_scale;
 uniform dvec2 extent, pixel_size, frustum_axis;
 
+#if defined(HAVE_ELEVATION_PATTERN) || defined(HAVE_BACKSCATTER_LAWS) || defined(HAVE_VOLUME_LAYERS)
+layout(std430, binding = TABLES_BINDING) readonly buffer Tables { double tables[]; };
+#endif
 #ifdef HAVE_ELEVATION_PATTERN
-layout(std430, binding = ELEVATION_BINDING) readonly buffer Elevation { double elevation_powers[]; };
 uniform double elevation_reach;
-double elevationPower(uint i) { return elevation_powers[i]; }
+double elevationPower(uint i) { return tables[i]; }
 #include "elevation.glsl"
+const uint first_backscatter = uint(ELEVATION_STEPS + 1);
+#else
+const uint first_backscatter = 0u;
+#endif
+#ifdef HAVE_BACKSCATTER_LAWS
+double backscatterEntry(uint i) { return tables[first_backscatter + i]; }
+#include "backscatter.glsl"
 #endif
 
 double binEdge(uint k) { return edges[k]; }
@@ -31,7 +40,11 @@ const uint channels = 2u;
 const uint channels = 1u;
 #endif
 
+#ifdef HAVE_VOLUME
+uint cellOf(uint beam, uint bin, uint channel) { return 2u * beam * beam_stride + bin; }  // the volume comes after it
+#else
 uint cellOf(uint beam, uint bin, uint channel) { return channels * (beam * beam_stride + bin) + channel; }
+#endif
 
 // Low and high word of an amount in quanta.
 uvec2 quantaOf(double amount) {
@@ -105,6 +118,33 @@ void addToBin(uint beam, uint bin, double amount, double weight) {
 #include "trapezoid.glsl"
 #include "deposit.glsl"
 
+#ifdef HAVE_VOLUME
+void addVolume(uint beam, uint bin, double amount) {
+    uvec2 quanta = quantaOf(abs(amount));
+    if (amount < 0.0) quanta = uvec2(~quanta.x + 1u, ~quanta.y + uint(quanta.x == 0u));
+    addToMemory((2u * beam + 1u) * beam_stride + bin, quanta);
+}
+#ifdef HAVE_VOLUME_LAYERS
+uniform uint layer_count, first_layer;
+uniform double sonar_height;
+uniform dvec3 upward;
+double layerNumber(uint i) { return tables[first_layer + i]; }
+#endif
+#include "volume.glsl"
+
+void depositVolume(Footprint cell, uint beam, dvec2 uv) {
+#ifdef HAVE_VOLUME_LAYERS
+    double rise = dot(upward, dvec3(1.0, uv)) / sqrt(1.0 + dot(uv, uv));
+    if (cell.pixel > 0.0)
+        hideVolume(cell, beam, rise, cell.size);
+    else
+        hearLayers(beam, rise, double(bin_count) * bin_width, cell.size);
+#else
+    if (cell.pixel > 0.0) hideVolume(cell, beam, 0.0, cell.size);
+#endif
+}
+#endif
+
 dvec3 frustumFromSonar(dvec3 p) {
     return dvec3(frustum_axis.x * p.x + frustum_axis.y * p.y, frustum_axis.x * p.y - frustum_axis.y * p.x, p.z);
 }
@@ -131,11 +171,15 @@ double strengthOf(uint material) {
 struct Seen {
     Surface surface;
     double strength;
-    dvec2 reach;  // inverse ranges of the object [1/m]
+    dvec2 reach;    // inverse ranges of the object [1/m]
+    double weight;  // of the pattern in elevation [1]
 };
 
 Seen seenAt(ivec2 pixel, dvec2 uv) {
-    Seen seen = Seen(Surface(0.0, 0.0, 0.0, 0.0, 0.0, 0.0), 0.0, dvec2(0.0));
+    Seen seen = Seen(Surface(0.0, 0.0, 0.0, 0.0, 0.0, 0.0), 0.0, dvec2(0.0), 1.0);
+#ifdef HAVE_ELEVATION_PATTERN
+    seen.weight = elevationWeight(uv.x, uv.y);
+#endif
     uvec4 texel = texelFetch(picture, pixel, 0);
     if (texel.x == 0u) return seen;
     CommandRecord command = commands[texel.x - 1u];
@@ -149,8 +193,13 @@ Seen seenAt(ivec2 pixel, dvec2 uv) {
     if (texel.z != 0u) cosine = double(uintBitsToFloat(texel.z));
 #endif
     seen.strength = strengthOf(command.material) * cosine;
-#ifdef HAVE_ELEVATION_PATTERN
-    seen.strength *= elevationWeight(uv.x, uv.y);
+#ifdef HAVE_BACKSCATTER_LAWS
+    MaterialRecord material = materials[command.material];
+    if (!followsLambert(material.law)) {
+        double angle = max(pixel_size.x, pixel_size.y) / sqrt(1.0 + dot(uv, uv));
+        double slope = double(planes[command.first_triangle + texel.y].point.w) + slopeOfSample(angle);
+        seen.strength = backscatterOverCosine(material.law, double(material.values.x), cosine, slope) * strength_scale;
+    }
 #endif
     seen.reach = dvec2(objects[command.object].extent.xy);
     return seen;
@@ -174,7 +223,11 @@ void depositPixel(ivec2 pixel, dvec2 uv, Seen seen) {
         Footprint cell = cellFootprint(uv.x, uv.y, share.middle, share.width, share.limit, share.shear, pixel_size.y,
                                        surface.inverse_range, surface.slope_u, surface.slope_v, surface.nearest, seen.reach.x,
                                        seen.reach.y, binEdge(0u), binEdge(bin_count), per_pixel);
+        cell.size *= seen.weight;
         depositCell(cell, share.beam, seen.strength * surface.range);
+#ifdef HAVE_VOLUME
+        depositVolume(cell, share.beam, uv);
+#endif
     }
 }
 

@@ -8,10 +8,11 @@
 #define SHARE_STARTS_BINDING 5
 #define EDGES_BINDING 6
 #define SUMS_BINDING 7
-#define ELEVATION_BINDING 8
+#define TABLES_BINDING 8
 
-// Steps of the table of an elevation pattern.
+// Steps of the table of an elevation pattern, which comes first among the tables, and entries of a table of backscatter.
 #define ELEVATION_STEPS 4096
+#define BACKSCATTER_ENTRIES 256
 
 // Of the culling of clusters, beside OBJECTS_BINDING.
 #define CLUSTERS_BINDING 1
@@ -38,7 +39,8 @@ struct ObjectRecord {
 // A triangle's plane, in object axes: as exact as the triangle is small, wherever the object's origin lies.
 struct PlaneRecord {
     vec4 normal;  // xyz: unit normal [1]; w: what is to be added to distances of `point` along it [m]
-    vec4 point;   // xyz: close to the triangle, on the plane but for the rounding that w makes up for [m]
+    vec4 point;   // xyz: close to the triangle, on the plane but for the rounding that normal.w makes up for [m]; w: what
+                  // the facet adds to the mean square slope of a lobe [1]
 };
 
 // One draw of a run of triangles.
@@ -46,9 +48,10 @@ struct CommandRecord {
     uint object, first_triangle, material, unused;  // first_triangle: of the mesh, among all planes
 };
 
-// What the model needs of a material: x mu = 10^(lambert_db/10), y reflectivity, z normal scale.
+// What the model needs of a material.
 struct MaterialRecord {
-    vec4 values;
+    vec4 values;  // x mu = 10^(lambert_db/10), y reflectivity, z normal scale
+    vec4 law;     // x its table of backscatter, -1: Lambert's law; y R^2 / (4 pi) of its lobe, 0: none; z mean square slope
 };
 
 // The part of an image column that belongs to one beam; u = tan(azimuth in the frustum).

@@ -6,6 +6,7 @@
 #include <glm/vec4.hpp>
 #include <limits>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -14,14 +15,17 @@ namespace insonify::types {
 /** What a surface does to sound. Neutral: medium sand in `physical`, reflectivity 1 in `cerqueira2017`. */
 struct Material {
     std::string name;
-    float lambert_db = -16.7f;   ///< Lambert parameter mu, backscatter at normal incidence [dB].
-    float reflection = 0;        ///< Pressure reflection coefficient at normal incidence, signed [1].
-    float roughness_slope = 0;   ///< Total rms slope of the micro-relief, for the specular lobe [1].
-    float reflectivity = 1;      ///< Factor of `cerqueira2017` [1].
-    bool has_acoustics = false;  ///< False: no acoustic values in the file, the defaults above stand.
-    bool double_sided = false;   ///< As the file says; sound is reflected by both sides in any case.
-    int normal_map = -1;         ///< Index into Geometry::normal_maps, -1 for none [1].
-    float normal_scale = 1;      ///< Scale of the map's x and y [1].
+    float lambert_db = -16.7f;  ///< Lambert parameter mu, backscatter at normal incidence [dB].
+    std::string seabed =
+        {};  ///< Name by APL-UW TR 9407, whose law takes Lambert's place where a sonar has a frequency.
+    std::vector<glm::dvec2> measured = {};  ///< Grazing angles, ascending, and strengths, in place of both [deg, dB].
+    float reflection = 0;                   ///< Pressure reflection coefficient at normal incidence, signed [1].
+    std::optional<float> roughness_slope = {};  ///< Rms slope of the micro-relief: adds a specular lobe [1].
+    float reflectivity = 1;                     ///< Factor of `cerqueira2017` [1].
+    bool has_acoustics = false;                 ///< False: no acoustic values in the file, the defaults above stand.
+    bool double_sided = false;                  ///< As the file says; sound is reflected by both sides in any case.
+    int normal_map = -1;                        ///< Index into Geometry::normal_maps, -1 for none [1].
+    float normal_scale = 1;                     ///< Scale of the map's x and y [1].
 };
 
 /** A tangent-space normal map: RGB, 8 bits, rows from top to bottom; (r, g, b) * 2 / 255 - 1 is the normal. */

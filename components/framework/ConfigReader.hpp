@@ -222,6 +222,11 @@ bool ConfigReader::readValue(const YAML::Node& node, const std::string& path, co
 
 template <class T>
 bool ConfigReader::readSequence(const YAML::Node& node, const std::string& path, const types::Field& field, T& values) {
+    if constexpr (types::Described<typename Inner<T>::type>)
+        if (node.IsMap()) {  // a list of one
+            values.assign(1, {});
+            return readValue(node, path, field, values.front());
+        }
     if (!isSequence(node, path)) return false;
     values.assign(node.size(), {});
     bool good = true;

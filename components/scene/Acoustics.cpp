@@ -8,6 +8,9 @@
 #include <iterator>
 #include <vector>
 
+#include "components/acoustics/BackscatterTable.hpp"
+#include "components/acoustics/Seabed.hpp"
+#include "types/ConfigError.hpp"
 #include "types/DidYouMean.hpp"
 
 namespace insonify::scene {
@@ -96,6 +99,12 @@ private:
             problems_.push_back(
                 {field.name, fmt::format("is {}; must be a number from {} to {}", text(from), field.min, field.max)});
     }
+    void read(const types::Field& field, const AcousticValue& from, std::optional<std::string>& value) {
+        if (const auto* file = std::get_if<std::string>(&from); file && !file->empty())
+            value = *file;
+        else
+            problems_.push_back({field.name, fmt::format("is {}; must be the path of a file", text(from))});
+    }
     template <types::NamedEnum E>
     void read(const types::Field& field, const AcousticValue& from, std::optional<E>& value) {
         const auto& names = types::EnumNames<E>::names;
@@ -130,8 +139,27 @@ double reflection(Matter matter) { return matters[static_cast<size_t>(matter)].r
 
 double lambertDb(Matter matter) { return convex_body_db + 20 * std::log10(std::abs(reflection(matter))); }
 
+void Acoustics::readTable(const std::filesystem::path& folder, types::Diagnostics& diagnostics) {
+    if (!table) return;
+    try {
+        const acoustics::Curve curve = acoustics::readBackscatter((folder / *table).string());
+        for (size_t i = 0; i < curve.x.size(); ++i) measured.emplace_back(curve.x[i], curve.y[i]);
+    } catch (const types::ConfigError& error) {
+        for (const types::Diagnostic& diagnostic : error.diagnostics())
+            diagnostics.push_back({"table", diagnostic.text()});
+    }
+}
+
 void Acoustics::applyTo(types::Material& target) const {
-    if (sediment) target.lambert_db = static_cast<float>(lambertDb(*sediment));
+    if (sediment || material || lambert_db || table) {
+        target.seabed.clear();
+        target.measured = measured;
+    }
+    if (sediment) {
+        const std::string name(types::EnumNames<Sediment>::names[static_cast<size_t>(*sediment)]);
+        if (!lambert_db && acoustics::seabedNamed(name)) target.seabed = name;
+        target.lambert_db = static_cast<float>(lambertDb(*sediment));
+    }
     if (material) {
         target.lambert_db = static_cast<float>(lambertDb(*material));
         target.reflection = static_cast<float>(scene::reflection(*material));
@@ -145,14 +173,18 @@ void Acoustics::applyTo(types::Material& target) const {
 
 void Acoustics::check(types::Diagnostics& diagnostics) const {
     if (sediment && material) diagnostics.push_back({"material", "stands beside `sediment`; give one of the two"});
+    if (table && (sediment || lambert_db))
+        diagnostics.push_back({"table", "stands beside `sediment` or `lambert_db`; give one of them"});
 }
 
-Acoustics readAcoustics(const AcousticValues& values, types::Diagnostics& diagnostics) {
+Acoustics readAcoustics(const AcousticValues& values, const std::filesystem::path& folder,
+                        types::Diagnostics& diagnostics) {
     Acoustics acoustics;
     ValueReader reader(values, diagnostics);
     Acoustics::describe(acoustics, reader);
     reader.refuseUnknown();
     acoustics.check(diagnostics);
+    acoustics.readTable(folder, diagnostics);
     return acoustics;
 }
 

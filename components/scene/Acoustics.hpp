@@ -1,8 +1,11 @@
 #pragma once
+#include <filesystem>
+#include <glm/vec2.hpp>
 #include <map>
 #include <optional>
 #include <string>
 #include <variant>
+#include <vector>
 
 #include "types/Describe.hpp"
 #include "types/Geometry.hpp"
@@ -63,26 +66,34 @@ double lambertDb(Matter matter);
 
 /** The acoustic values that a file or a property gives to a material. What is absent stays as it was.
  *
- *  A `sediment` sets lambert_db; a `material` sets reflection and lambert_db; numbers beside them refine. */
+ *  A `sediment` sets the seabed and lambert_db; a `material` sets reflection and lambert_db; numbers beside them
+ *  refine, a `lambert_db` by Lambert's law, a `table` by what was measured. */
 struct Acoustics {
     std::optional<Sediment> sediment;
     std::optional<Matter> material;
     std::optional<double> lambert_db, reflection, roughness_slope, reflectivity;
+    std::optional<std::string> table;
+    std::vector<glm::dvec2> measured;  ///< What stands in `table`, once it is read [deg, dB].
 
+    /** Reads `table`, whose path is relative to `folder`; what is wrong with it goes to `diagnostics`. */
+    void readTable(const std::filesystem::path& folder, types::Diagnostics& diagnostics);
     void applyTo(types::Material& target) const;
     void check(types::Diagnostics& diagnostics) const;
 
     template <class Self, class V>
     static void describe(Self& self, V& visit) {
         using types::Field;
-        visit(Field{"sediment", "", "a seabed of the table, sets lambert_db"}, self.sediment);
+        visit(Field{"sediment", "", "a seabed of the table: its law at the sonar's frequency, else its lambert_db"},
+              self.sediment);
         visit(Field{"material", "", "matter of the table, sets reflection and lambert_db"}, self.material);
         visit(Field{"lambert_db", "dB", "Lambert parameter, backscatter at normal incidence", -200, 20},
               self.lambert_db);
         visit(Field{"reflection", "1", "signed pressure reflection coefficient at normal incidence", -1, 1},
               self.reflection);
-        visit(Field{"roughness_slope", "1", "rms slope of the micro-relief", 0, 10}, self.roughness_slope);
+        visit(Field{"roughness_slope", "1", "rms slope of the micro-relief: adds the lobe of a `reflection`", 0, 10},
+              self.roughness_slope);
         visit(Field{"reflectivity", "1", "factor of cerqueira2017", 0, 1}, self.reflectivity);
+        visit(Field{"table", "", "instead: CSV file with grazing_deg,strength_db"}, self.table);
     }
 };
 
@@ -90,8 +101,10 @@ struct Acoustics {
 using AcousticValue = std::variant<std::monostate, double, std::string>;
 using AcousticValues = std::map<std::string, AcousticValue>;
 
-/** Acoustics from the keys and values of a file; what is wrong with them goes to `problems`. */
-Acoustics readAcoustics(const AcousticValues& values, types::Diagnostics& diagnostics);
+/** Acoustics from the keys and values of a file that lies in `folder`; what is wrong with them goes to `diagnostics`.
+ */
+Acoustics readAcoustics(const AcousticValues& values, const std::filesystem::path& folder,
+                        types::Diagnostics& diagnostics);
 
 }  // namespace insonify::scene
 

@@ -29,12 +29,13 @@ AcousticValues valuesOf(const tinygltf::Value& object) {
     return values;
 }
 
-void readExtras(const tinygltf::Value& extras, types::Material& material, types::Diagnostics& diagnostics) {
+void readExtras(const tinygltf::Value& extras, const std::filesystem::path& folder, types::Material& material,
+                types::Diagnostics& diagnostics) {
     if (!extras.IsObject() || !extras.Has("acoustics")) return;
     const tinygltf::Value& json = extras.Get("acoustics");
     if (!json.IsObject())
         return diagnostics.push_back({"", "must be an object such as {\"sediment\": \"medium_sand\"}"});
-    readAcoustics(valuesOf(json), diagnostics).applyTo(material);
+    readAcoustics(valuesOf(json), folder, diagnostics).applyTo(material);
 }
 
 /** Bytes of an encoded image; empty when its file was not found. */
@@ -146,7 +147,7 @@ std::vector<std::optional<NormalMapping>> readMaterials(const GltfFile& gltf, co
         material.name = from.name.empty() ? fmt::format("material_{}", index) : from.name;
         material.double_sided = from.doubleSided;
         types::Diagnostics found;
-        readExtras(from.extras, material, found);
+        readExtras(from.extras, std::filesystem::path(gltf.name).parent_path(), material, found);
         for (const types::Diagnostic& each : found) {
             const std::string below = each.path.empty() ? "" : "." + each.path;
             diagnostics.push_back(

@@ -36,6 +36,19 @@ std::shared_ptr<const Scene> SceneTask::load() const {
     return scene_;
 }
 
+std::map<std::string, Acoustics> SceneTask::materials(types::Diagnostics& diagnostics) const {
+    std::map<std::string, Acoustics> all = config->materials;
+    for (auto& [name, acoustics] : all) {
+        if (!acoustics.table) continue;
+        types::Diagnostics found;
+        acoustics.table = inputPath(*acoustics.table).string();
+        acoustics.readTable("", found);
+        for (const types::Diagnostic& each : found)
+            diagnostics.push_back({"materials." + name + "." + each.path, each.message});
+    }
+    return all;
+}
+
 framework::InputPortBase* SceneTask::makeInput(const std::string& port, framework::OutputPortBase&) {
     constexpr std::string_view ending = ".pose";
     if (!port.ends_with(ending)) return nullptr;
@@ -51,7 +64,7 @@ framework::InputPortBase* SceneTask::makeInput(const std::string& port, framewor
 }
 
 void SceneTask::check(types::Diagnostics& diagnostics) const try {
-    overrideMaterials(*load(), config->materials, diagnostics);
+    overrideMaterials(*load(), materials(diagnostics), diagnostics);
 } catch (const types::ConfigError& error) {
     for (const types::Diagnostic& diagnostic : error.diagnostics()) diagnostics.push_back({"file", diagnostic.text()});
 }
@@ -63,7 +76,7 @@ std::vector<std::string> SceneTask::notices() const {
 bool SceneTask::configureHook() {
     const auto scene = load();
     types::Diagnostics diagnostics;
-    geometry_ = overrideMaterials(*scene, config->materials, diagnostics);
+    geometry_ = overrideMaterials(*scene, materials(diagnostics), diagnostics);
     if (!diagnostics.empty())
         throw types::ConfigError("", name() + "." + diagnostics.front().path, diagnostics.front().message);
     for (Movable& movable : movables_) {

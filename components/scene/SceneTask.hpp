@@ -63,6 +63,8 @@ private:
     };
 
     std::shared_ptr<const Scene> load() const;
+    /** Those of the configuration, their tables read; what is wrong with them goes to `diagnostics`. */
+    std::map<std::string, Acoustics> materials(types::Diagnostics& diagnostics) const;
     bool readMovables();
     void addMoved(std::vector<types::MovedObject>& moved);
 

@@ -258,7 +258,9 @@ private:
         for (sdf::ElementPtr key = tag->GetFirstElement(); key; key = key->GetNextElement())
             look.acoustics[key->GetName()] = valueOf(key->Get<std::string>());
         types::Diagnostics diagnostics;
-        readAcoustics(look.acoustics, diagnostics);
+        const auto folder = std::filesystem::path(visual.Element()->FilePath()).parent_path();
+        const Acoustics known = readAcoustics(look.acoustics, folder, diagnostics);
+        if (known.table) look.acoustics["table"] = (folder / *known.table).string();
         for (const types::Diagnostic& problem : diagnostics)
             fail(*visual.Element(), fmt::format("{}.insonify:acoustics.{}", name, problem.path), problem.message);
         return look;

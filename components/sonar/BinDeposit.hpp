@@ -7,6 +7,7 @@
 #include "components/sonar/BeamFan.hpp"
 #include "components/sonar/EchoRules.hpp"
 #include "components/sonar/SurfacePass.hpp"
+#include "components/sonar/Volume.hpp"
 
 namespace insonify::sonar {
 
@@ -29,7 +30,7 @@ public:
     virtual ~BinDeposit() = default;
     /** Begins a ping, and forgets what an earlier one left in the slot that came to no end. Like take() and ask() to be
      *  called under EglContext::transferring(). */
-    virtual void begin(size_t slot) = 0;
+    virtual void begin(size_t slot, const WaterView& water) = 0;
     /** Takes the picture of a frustum that is drawn. */
     virtual void take(size_t slot, size_t frustum, const SurfacePass& surface) = 0;
     /** All frusta are taken. */

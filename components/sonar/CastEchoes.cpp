@@ -69,6 +69,8 @@ private:
     void workOn(const Part& part, Worker& worker, types::Sonar& ping);
     std::span<const CastTile> cast(const Part& part, Worker& worker) const;
     TileRays raysOf(const CastTile& tile, int end_column) const;
+    /** Fills the bins of a cell from its sums; whether it has any echo. */
+    bool fill(size_t cell, const uint64_t* sums, types::Sonar& ping);
     /** Adds a part's sums to its strip's; whether they are complete now, and in the worker. */
     bool gather(const Part& part, Worker& worker);
 
@@ -77,6 +79,8 @@ private:
     EchoRules rules_;
     CastView view_;
     BinLevels levels_;
+    std::optional<VolumeLevels> volume_;
+    WaterView water_;  ///< In this ping.
     std::optional<EchoGrid> grid_;
     ObjectPlaces places_;
     RayVisibility visibility_;
@@ -95,11 +99,11 @@ private:
 CastEchoes::CastEchoes(const RenderPlan& plan, types::GeometryPtr geometry)
     : plan_(plan),
       geometry_(std::move(geometry)),
-      rules_(makeEchoRules(plan, *geometry_)),
+      rules_(makeEchoRules(plan)),
       levels_(plan.config, plan.grid),
       places_(*geometry_, reachOf(plan), true),
       visibility_(*geometry_),
-      planes_(planesOf(*geometry_)),
+      planes_(planesOf(*geometry_, plan.laws)),
       normal_maps_(*geometry_),
       threads_(plan.options.threads),
       workers_(static_cast<size_t>(threads_.size())) {
@@ -110,13 +114,15 @@ CastEchoes::CastEchoes(const RenderPlan& plan, types::GeometryPtr geometry)
 Features CastEchoes::compiled() const {
     Features all = compiledForRays(plan_.features);
     if (view_.cells.weighted) all.add(Feature::ElevationPattern);
-    return all;
+    if (!rules_.laws.tables.empty() || rules_.laws.hasLobes()) all.add(Feature::BackscatterLaws);
+    return all | (plan_.features & Features{Feature::Volume, Feature::VolumeLayers});
 }
 
 void CastEchoes::takeQuality() {
-    rules_ = makeEchoRules(plan_, *geometry_);
+    rules_ = makeEchoRules(plan_);
     view_.cells = makeAngularView(plan_);
     grid_.emplace(plan_, threads_.size());
+    if (plan_.features.has(Feature::Volume)) volume_.emplace(plan_);
     shareOut();
 }
 
@@ -144,17 +150,12 @@ void CastEchoes::shareOut() {
 }
 
 void CastEchoes::place(const types::Snapshot& snapshot) {
+    water_ = waterViewOf(snapshot);
     places_.place(snapshot);
     visibility_.place(snapshot);
     runs_.clear();
-    for (const CommandRecord& command : visibility_.commands()) {
-        const types::Material& material = geometry_->materials[command.material];
-        const double strength = rules_.features.has(Feature::Cerqueira2017)
-                                    ? static_cast<double>(material.reflectivity)
-                                    : static_cast<double>(std::pow(10.0f, material.lambert_db / 10));
-        runs_.push_back(placedRun(places_.records()[command.object], strength * rules_.strength_scale,
-                                  command.first_triangle, 1, 0));
-    }
+    for (const CommandRecord& command : visibility_.commands())
+        runs_.push_back(placedRun(places_.records()[command.object], command, rules_, 1, 0));
 }
 
 TileRays CastEchoes::raysOf(const CastTile& tile, int end_column) const {
@@ -206,15 +207,21 @@ void CastEchoes::workOn(const Part& part, Worker& worker, types::Sonar& ping) {
     const std::span<const CastTile> tiles = cast(part, worker);
     worker.lap(DrawStage);
     std::fill(worker.sums.begin(), worker.sums.end(), 0);
-    deposit(rules_, view_, {visibility_.commands(), runs_, places_.records(), planes_, normal_maps_}, tiles,
+    deposit(rules_, view_, {visibility_.commands(), runs_, places_.records(), planes_, normal_maps_, water_}, tiles,
             part.first_beam, worker.sums.data());
     worker.lap(DepositStage);
     if (gather(part, worker))
         for (int beam = 0; beam < part.beams; ++beam)
-            worker.heard |=
-                levels_.fill(rules_, &worker.sums[static_cast<size_t>(beam) * rules_.sumCount()], view_.cells.cell(),
-                             grid_->cell(static_cast<size_t>(part.first_beam + beam), ping));
+            worker.heard |= fill(static_cast<size_t>(part.first_beam + beam),
+                                 &worker.sums[static_cast<size_t>(beam) * rules_.sumCount()], ping);
     worker.lap(BeamStage);
+}
+
+bool CastEchoes::fill(size_t cell, const uint64_t* sums, types::Sonar& ping) {
+    const std::span<float> bins = grid_->cell(cell, ping);
+    const bool heard = levels_.fill(rules_, sums, view_.cells.cell(), bins);
+    if (volume_) volume_->add(sums + rules_.volumeOffset(), cell, view_.cells.cell(), bins);
+    return heard;
 }
 
 void CastEchoes::work(Worker& worker, types::Sonar& ping) {

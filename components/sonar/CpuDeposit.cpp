@@ -40,8 +40,11 @@ CpuDeposit::CpuDeposit(DepositSetup setup, const SurfacePass& surface, const gpu
             columns_[part].push_back(touched(shares, firstBeam(part), firstBeam(part + 1)));
 }
 
-void CpuDeposit::begin(size_t slot) {
-    for (size_t i = 0; i < setup_.frusta.size(); ++i) picture(slot, i).taken = false;
+void CpuDeposit::begin(size_t slot, const WaterView& water) {
+    for (size_t i = 0; i < setup_.frusta.size(); ++i) {
+        picture(slot, i).taken = false;
+        picture(slot, i).water = water;
+    }
 }
 
 void CpuDeposit::take(size_t slot, size_t frustum, const SurfacePass& surface) {
@@ -50,12 +53,8 @@ void CpuDeposit::take(size_t slot, size_t frustum, const SurfacePass& surface) {
     picture.taken = true;
     picture.ranges.clear();
     const double cosine = std::cos(setup_.frusta[frustum].azimuth), sine = std::sin(setup_.frusta[frustum].azimuth);
-    const int value = setup_.rules.features.has(Feature::Cerqueira2017) ? 1 : 0;
     for (const CommandRecord& command : surface.lists().commands(slot, frustum))
-        picture.ranges.push_back(
-            placedRun(surface.objects()[command.object],
-                      surface.scene().materials()[command.material].values[value] * setup_.rules.strength_scale,
-                      command.first_triangle, cosine, sine));
+        picture.ranges.push_back(placedRun(surface.objects()[command.object], command, setup_.rules, cosine, sine));
 }
 
 std::span<const uint64_t> CpuDeposit::finish(size_t slot) {
@@ -74,7 +73,8 @@ void CpuDeposit::waitForPictures(size_t slot) {
 Features CpuDeposit::compiled() const {
     Features all = compiledForPictures(setup_.rules.features);
     if (!setup_.rules.elevation_powers.empty()) all.add(Feature::ElevationPattern);
-    return all;
+    if (!setup_.rules.laws.tables.empty() || setup_.rules.laws.hasLobes()) all.add(Feature::BackscatterLaws);
+    return all | (setup_.rules.features & Features{Feature::Volume, Feature::VolumeLayers});
 }
 
 void CpuDeposit::depositPart(size_t slot, size_t part) {

@@ -10,7 +10,7 @@ class CpuDeposit final : public BinDeposit {
 public:
     /** All outlive it. */
     CpuDeposit(DepositSetup setup, const SurfacePass& surface, const gpu::EglContext& context, ThreadPool& threads);
-    void begin(size_t slot) override;
+    void begin(size_t slot, const WaterView& water) override;
     void take(size_t slot, size_t frustum, const SurfacePass& surface) override;
     void ask(size_t) override {}
     std::span<const uint64_t> finish(size_t slot) override;

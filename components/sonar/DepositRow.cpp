@@ -26,7 +26,8 @@ constexpr int stretch = 64;  ///< Pixels at a time: their numbers stay in the ne
 struct Pixels {
     double normal_x[stretch], normal_y[stretch], normal_z[stretch], distance[stretch];  ///< Planes, frustum axes.
     double u[stretch], ray_u[stretch], ray_v[stretch], mapped[stretch], strength[stretch];
-    double near_limit[stretch], far_limit[stretch], nearest[stretch];
+    double near_limit[stretch], far_limit[stretch], nearest[stretch], facet_slope[stretch];
+    uint material[stretch];
     double inverse_range[stretch], slope_u[stretch], slope_v[stretch], strength_range[stretch];
 };
 
@@ -79,7 +80,8 @@ struct Cells {
 void miss(Pixels& pixels, int i) {
     pixels.normal_x[i] = 1;
     pixels.normal_y[i] = pixels.normal_z[i] = pixels.distance[i] = pixels.strength[i] = pixels.mapped[i] = 0;
-    pixels.near_limit[i] = pixels.far_limit[i] = 0;
+    pixels.near_limit[i] = pixels.far_limit[i] = pixels.facet_slope[i] = 0;
+    pixels.material[i] = 0;
 }
 
 void hit(const PlacedRun& run, const PlaneRecord& plane, double mapped, Pixels& pixels, int i) {
@@ -94,6 +96,8 @@ void hit(const PlacedRun& run, const PlaneRecord& plane, double mapped, Pixels& 
     pixels.strength[i] = run.strength;
     pixels.near_limit[i] = run.near_limit;
     pixels.far_limit[i] = run.far_limit;
+    pixels.facet_slope[i] = p.w;
+    pixels.material[i] = run.material;
 }
 
 /** Looks up what `count` pixels from `first` show; false when all are misses. */
@@ -141,6 +145,21 @@ INSONIFY_VECTOR_CLONES void meet(Pixels& pixels, int count) {
     }
 }
 
+/** The strength of what does not follow Lambert's law. */
+void applyLaws(const FrustumPart& part, double v, int count, Pixels& pixels) {
+    const MaterialLaws& laws = part.rules.laws;
+    const double widest = std::max(part.frustum.du(), part.frustum.dv());
+    for (int i = 0; i < count; ++i) {
+        if (laws.followsLambert(pixels.material[i]) || pixels.inverse_range[i] == 0) continue;
+        const double cosine = pixels.mapped[i] == 0
+                                  ? pixels.strength_range[i] * pixels.inverse_range[i] / pixels.strength[i]
+                                  : pixels.mapped[i];
+        const double angle = widest / sqrt(1 + pixels.u[i] * pixels.u[i] + v * v);
+        pixels.strength_range[i] = part.rules.strength_scale / pixels.inverse_range[i] *
+                                   laws.overCosine(pixels.material[i], cosine, pixels.facet_slope[i], angle);
+    }
+}
+
 /** The same of all cells of a stretch. */
 struct Reach {
     double v, dv, near_edge, far_edge, per_pixel;
@@ -165,7 +184,7 @@ public:
     }
 
     PartDeposit(const FrustumPart& part, uint64_t* sums)
-        : part_(part), bins_(part.rules, sums), per_pixel_(1 / (part.frustum.du() * part.frustum.dv())) {}
+        : part_(part), sums_(sums), bins_(part.rules, sums), per_pixel_(1 / (part.frustum.du() * part.frustum.dv())) {}
 
     void run() {
         for (int row = 0; row < part_.frustum.rows; ++row)
@@ -175,9 +194,11 @@ public:
 
 private:
     void pixels(int row, int first, int count) {
-        if (!look(part_, row, first, count, pixels_) && !Estimator::features.has(Feature::Published)) return;
+        if (!look(part_, row, first, count, pixels_) && !countsMisses()) return;
         aim<Estimator::features.has(Feature::Jitter)>(part_, row, first, count, pixels_);
         meet(pixels_, count);
+        if (part_.rules.features.has(Feature::BackscatterLaws))
+            applyLaws(part_, part_.frustum.v(row + 0.5), count, pixels_);
         const size_t at = static_cast<size_t>(conical ? row : 0) * static_cast<size_t>(part_.frustum.columns) +
                           static_cast<size_t>(first);
         const uint end = part_.shares.starts[at + static_cast<size_t>(count)];
@@ -192,6 +213,10 @@ private:
         cover(shared_, count,
               {v, part_.frustum.dv(), part_.rules.edges.front(), bins_.binEdge(bins_.bin_count), per_pixel_}, cells_);
         if (part_.rules.features.has(Feature::ElevationPattern)) weigh(count, v);
+        if (part_.rules.features.has(Feature::VolumeLayers))
+            hideVolume<LayeredVolume>(shares, count, v);
+        else if (part_.rules.features.has(Feature::Volume))
+            hideVolume<OpenVolume>(shares, count, v);
         for (int i = 0; i < count; ++i)
             if (shares[i].beam >= part_.first && shares[i].beam < part_.last)
                 bins_.depositCell(cells_.get(i), shares[i].beam, shared_.strength_range[i]);
@@ -199,10 +224,30 @@ private:
 
     void weigh(int count, double v) {
         ElevationTable table{part_.rules.elevation_powers.data(), part_.rules.elevation_reach};
-        for (int i = 0; i < count; ++i) shared_.strength_range[i] *= table.elevationWeight(shared_.u[i], v);
+        for (int i = 0; i < count; ++i) cells_.size[i] *= table.elevationWeight(shared_.u[i], v);
+    }
+
+    bool countsMisses() const {
+        return Estimator::features.has(Feature::Published) || part_.rules.features.has(Feature::VolumeLayers);
+    }
+
+    template <class Volume>
+    void hideVolume(const ShareRecord* shares, int count, double v) {
+        Volume volume(part_.rules, part_.picture.water.height, sums_);
+        const glm::dvec3 up = upwardIn(part_.frustum, part_.picture.water);
+        for (int i = 0; i < count; ++i) {
+            if (shares[i].beam < part_.first || shares[i].beam >= part_.last) continue;
+            const double u = shared_.u[i], rise = (up.x + up.y * u + up.z * v) / sqrt(1 + u * u + v * v);
+            const Footprint cell = cells_.get(i);
+            if (cell.pixel > 0)
+                volume.hideVolume(cell, shares[i].beam, rise, cell.size);
+            else if constexpr (Volume::hears_misses)
+                volume.hearLayers(shares[i].beam, rise, part_.rules.bins.range_max, cell.size);
+        }
     }
 
     const FrustumPart& part_;
+    uint64_t* sums_;
     Estimator bins_;
     double per_pixel_;  ///< 1 / solid angle of a whole pixel at the picture's centre [1/sr].
     Pixels pixels_;
@@ -223,8 +268,19 @@ void withParts(const Features& features, const Use& use) {
 
 }  // namespace
 
-PlacedRun placedRun(const ObjectRecord& object, double strength, uint32_t first_triangle, double cosine, double sine) {
-    PlacedRun run{{}, {}, {}, {}, object.extent.x, object.extent.y, strength, first_triangle};
+PlacedRun placedRun(const ObjectRecord& object, const CommandRecord& command, const EchoRules& rules, double cosine,
+                    double sine) {
+    const vec4& values = rules.laws.records[command.material].values;
+    const double strength = double{rules.features.has(Feature::Cerqueira2017) ? values.y : values.x};
+    PlacedRun run{{},
+                  {},
+                  {},
+                  {},
+                  object.extent.x,
+                  object.extent.y,
+                  strength * rules.strength_scale,
+                  command.first_triangle,
+                  command.material};
     for (int i = 0; i < 3; ++i) {
         const double x = object.normal_x[i], y = object.normal_y[i];
         run.normal_x[i] = cosine * x + sine * y;

@@ -3,6 +3,7 @@
 
 #include "components/gpu/ReadBack.hpp"
 #include "components/sonar/BinDeposit.hpp"
+#include "components/sonar/Volume.hpp"
 
 namespace insonify::sonar {
 
@@ -13,10 +14,12 @@ struct PlacedRun {
     double near_limit, far_limit;                  ///< Inverse ranges of the object [1/m].
     double strength;                               ///< Of the material at normal incidence [1].
     uint32_t first_triangle;                       ///< Of the mesh, among all planes [1].
+    uint32_t material;                             ///< Its law in EchoRules::laws [1].
 };
 
-/** `cosine`, `sine`: of the azimuth of the frustum's axis, from the sonar's. */
-PlacedRun placedRun(const ObjectRecord& object, double strength, uint32_t first_triangle, double cosine, double sine);
+/** Of a command for an object. `cosine`, `sine`: of the azimuth of the frustum's axis, from the sonar's. */
+PlacedRun placedRun(const ObjectRecord& object, const CommandRecord& command, const EchoRules& rules, double cosine,
+                    double sine);
 
 /** A frustum's picture on its way from the device, and what its numbers mean. */
 struct TakenPicture {
@@ -24,6 +27,7 @@ struct TakenPicture {
     const uint32_t* pixels = nullptr;  ///< Once they are here: `channels` words each, row by row from below.
     size_t channels = 2;               ///< Words a pixel [1].
     std::vector<PlacedRun> ranges;
+    WaterView water;
     bool taken = false;
 };
 

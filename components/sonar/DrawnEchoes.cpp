@@ -25,9 +25,9 @@ double nearPlane(const ViewFrustum& frustum) {
     return nearest_drawn / corner;
 }
 
-DepositSetup depositSetup(const RenderPlan& plan, const types::Geometry& geometry) {
+DepositSetup depositSetup(const RenderPlan& plan) {
     DepositSetup setup;
-    setup.rules = makeEchoRules(plan, geometry);
+    setup.rules = makeEchoRules(plan);
     setup.frusta = plan.frusta;
     for (const ViewFrustum& frustum : plan.frusta)
         setup.shares.push_back(makeShares(plan.sampled, plan.cells, frustum, plan.options));
@@ -54,8 +54,9 @@ private:
     SurfacePass::Setup surfaceSetup() const;
     void makeDeposit();
     /** Asks for the sums of what is drawn. */
-    void take(size_t slot);
+    void take(size_t slot, const WaterView& water);
     void fillBins(types::Sonar& ping);
+    void fill(size_t cell, const uint64_t* sums, double pixel, std::span<float> bins) const;
     /** Of the ping collected last. */
     size_t lastSlot() const { return (ended_ - 1) % slots_; }
     /** Seconds since the last call, put down for a stage. */
@@ -68,6 +69,7 @@ private:
     size_t begun_ = 0, ended_ = 0;  ///< Pings; ping n has slot n modulo slots_.
     std::string device_;
     BinLevels levels_;
+    std::optional<VolumeLevels> volume_;
     Culler culler_;
     ThreadPool threads_;
     SurfacePass surface_;
@@ -105,22 +107,24 @@ SurfacePass::Setup DrawnEchoes::surfaceSetup() const {
     const CullOn best = !context_.isSoftware() && !depositsOnProcessor() ? CullOn::Device : CullOn::Processor;
     const CullOn chosen = plan_.options.cull_on == CullOn::Auto ? best : plan_.options.cull_on;
     return {.geometry = *geometry_,
+            .laws = plan_.laws,
             .frusta = plan_.frusta,
             .defines = plan_.features.defines(),
             .near_plane = nearPlane(plan_.frusta.front()),
-            .empty_too = plan_.config.published,
+            .empty_too = plan_.config.published || plan_.features.has(Feature::VolumeLayers),
             .slots = slots_,
             .cull_on_device = chosen == CullOn::Device};
 }
 
 void DrawnEchoes::makeDeposit() {
     using SumIn = RenderOptions::SumIn;
-    DepositSetup setup = depositSetup(plan_, *geometry_);
+    DepositSetup setup = depositSetup(plan_);
     setup.slots = slots_;
     setup.group_sums =
         plan_.options.sum_in == SumIn::Auto ? !context_.isSoftware() : plan_.options.sum_in == SumIn::Groups;
     grid_.emplace(plan_, threads_.size());
     rules_ = setup.rules;
+    if (plan_.features.has(Feature::Volume)) volume_.emplace(plan_);
     if (depositsOnProcessor())
         deposit_ = std::make_unique<CpuDeposit>(std::move(setup), surface_, context_, threads_);
     else
@@ -133,9 +137,9 @@ void DrawnEchoes::lap(Stage& stage) {
     last_ = now;
 }
 
-void DrawnEchoes::take(size_t slot) {
+void DrawnEchoes::take(size_t slot, const WaterView& water) {
     const auto alone = context_.transferring();
-    deposit_->begin(slot);
+    deposit_->begin(slot, water);
     for (size_t i = 0; i < plan_.frusta.size(); ++i)
         if (surface_.draws(slot, i)) deposit_->take(slot, i, surface_);
     deposit_->ask(slot);
@@ -147,9 +151,14 @@ void DrawnEchoes::fillBins(types::Sonar& ping) {
     const double pixel = plan_.frusta.front().du() * plan_.frusta.front().dv();  // solid angle of a whole pixel [sr]
     threads_.run([&](int part, int parts) {
         for (auto cell = static_cast<size_t>(part); cell < plan_.cells.size(); cell += static_cast<size_t>(parts))
-            levels_.fill(rules_, &sums_[cell * rules_.sumCount()], pixel, grid_->cell(cell, ping));
+            fill(cell, &sums_[cell * rules_.sumCount()], pixel, grid_->cell(cell, ping));
     });
     grid_->finish(ping, threads_);
+}
+
+void DrawnEchoes::fill(size_t cell, const uint64_t* sums, double pixel, std::span<float> bins) const {
+    levels_.fill(rules_, sums, pixel, bins);
+    if (volume_) volume_->add(sums + rules_.volumeOffset(), cell, pixel, bins);
 }
 
 void DrawnEchoes::submit(const types::Snapshot& snapshot, Stages& stages) {
@@ -161,7 +170,7 @@ void DrawnEchoes::submit(const types::Snapshot& snapshot, Stages& stages) {
     lap(stages[CullStage]);
     surface_.draw(slot);
     lap(stages[DrawStage]);
-    take(slot);
+    take(slot, waterViewOf(snapshot));
     context_.check();
     lap(stages[ReadStage]);
     ++begun_;

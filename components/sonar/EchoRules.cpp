@@ -3,9 +3,11 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 
 #include "components/sonar/Acoustics.hpp"
 #include "components/sonar/Interface.hpp"
+#include "components/sonar/Volume.hpp"
 #include "types/Angle.hpp"
 
 namespace insonify::sonar {
@@ -19,15 +21,34 @@ void tabulateElevation(const RenderPlan& plan, EchoRules& rules) {
     }
 }
 
+/** How wide a sample is at least [rad]: a quarter of the narrower of what a row and a column cover, for images are
+ * finer at their edges. */
+double smallestSample(const RenderPlan& plan) {
+    const SonarConfig& config = plan.sampled;
+    const double row = config.beam_height_deg / config.rows(), column = config.beamWidthDeg() / config.columnsPerBeam();
+    return types::radians(std::min(row, column)) / 4;
+}
+
+/** How many of a beam's samples a lobe can fill: those in a circle of its slope, at eight places at once. */
+double samplesOfLobe(const RenderPlan& plan, double samples) {
+    double widest = 0;
+    for (const MaterialRecord& record : plan.laws.records)
+        if (record.law.y > 0) widest = std::max(widest, double{record.law.z});
+    const double sample = smallestSample(plan);
+    return std::min(samples, 8 * std::numbers::pi * (widest / (sample * sample) + 1));
+}
+
 }  // namespace
 
-EchoRules makeEchoRules(const RenderPlan& plan, const types::Geometry& geometry) {
+EchoRules makeEchoRules(const RenderPlan& plan) {
     const BinGrid& bins = plan.grid;
     EchoRules rules;
     rules.features = plan.features;
     rules.bins = bins;
     rules.attenuation = makeAbsorption(plan.config).amplitudeNepersPerMetre();
-    rules.strength_scale = strengthScale(plan, loudest(geometry));
+    rules.strength_scale = strengthScale(plan);
+    rules.laws = plan.laws;
+    rules.layers = layersOf(plan.config);
     const double nearest = bins.range_min > 0 ? 1 / bins.range_min : std::numeric_limits<double>::max();
     for (int k = 0; k <= bins.bin_count; ++k)
         rules.edges.push_back(k == 0 ? nearest : std::min(nearest, 1 / bins.edge(k)));
@@ -38,24 +59,18 @@ EchoRules makeEchoRules(const RenderPlan& plan, const types::Geometry& geometry)
     return rules;
 }
 
-double loudest(const types::Geometry& geometry) {
-    double strongest = 0;
-    for (const types::Material& material : geometry.materials)
-        strongest = std::max(strongest, std::pow(10.0, material.lambert_db / 10.0));
-    return strongest;
-}
-
-double strengthScale(const RenderPlan& plan, double loudest) {
+double strengthScale(const RenderPlan& plan) {
     const SonarConfig& config = plan.sampled;
     const BinGrid& bins = plan.grid;
     constexpr double most = 1048576, max_sum = 8 * most;  // of one deposit, and of a bin: half of 64 bits
     if (config.model != Model::Physical) return 1;        // S and its weights are at most 1
     const double ratio =
         std::max(1.5, 0.5 * bins.bin_width / std::max(bins.range_min, 1e-3));  // of a bin's middle to its ranges
-    const double strongest = loudest * ratio * ratio;
     const double pixels =
         static_cast<double>(plan.options.samples_per_pixel * config.rows()) * (config.columnsPerBeam() + 2);
-    return std::exp2(-std::ceil(std::max(0.0, std::log2(strongest * std::max(1 / most, pixels / max_sum)))));
+    const double lobe = plan.laws.loudestLobe(smallestSample(plan)), surface = plan.laws.loudest();
+    const double strongest = std::max(surface, lobe), sum = surface * pixels + lobe * samplesOfLobe(plan, pixels);
+    return std::exp2(-std::ceil(std::max(0.0, std::log2(ratio * ratio * std::max(strongest / most, sum / max_sum)))));
 }
 
 }  // namespace insonify::sonar

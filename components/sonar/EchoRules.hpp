@@ -23,22 +23,23 @@ struct EchoRules {
 
     double elevation_reach = 0;            ///< Sine of the elevation at which the table of the pattern ends [1].
     std::vector<double> elevation_powers;  ///< Two-way pattern over it (shaders/elevation.glsl); empty without one [1].
+    MaterialLaws laws;
+    std::vector<double> layers;  ///< Three each: low and high above the water surface [m], share of the strongest [1].
 
     size_t channels() const { return features.has(Feature::Cerqueira2017) ? 2 : 1; }
     /** Bins from one beam's first to the next one's. */
     size_t beamStride() const { return static_cast<size_t>(bins.bin_count) + bins_at_once; }
-    /** Numbers of a beam: [bin][channel]. */
-    size_t sumCount() const { return beamStride() * channels(); }
+    /** Numbers of a beam: [bin][channel], and with a volume its change in each bin. */
+    size_t sumCount() const { return beamStride() * (channels() + (features.has(Feature::Volume) ? 1 : 0)); }
+    /** Where in them the volume begins. */
+    size_t volumeOffset() const { return beamStride() * channels(); }
 };
 
 /** Rules for the plan's quality. */
-EchoRules makeEchoRules(const RenderPlan& plan, const types::Geometry& geometry);
+EchoRules makeEchoRules(const RenderPlan& plan);
 
-/** Strongest Lambert parameter of a geometry's materials [1]. */
-double loudest(const types::Geometry& geometry);
-
-/** The power of 2, at most 1, by which strengths of up to `loudest` must be scaled so that no sum of quanta overflows:
- *  1 but for materials, images or bins that are extreme together. */
-double strengthScale(const RenderPlan& plan, double loudest);
+/** The power of 2, at most 1, by which strengths must be scaled so that no sum of quanta overflows: 1 but for
+ *  materials, images or bins that are extreme together. */
+double strengthScale(const RenderPlan& plan);
 
 }  // namespace insonify::sonar

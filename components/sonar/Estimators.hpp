@@ -34,13 +34,14 @@ struct Bins {
           middles(rules.middles.data()),
           sums(all_sums),
           bin_count(static_cast<uint>(rules.bins.bin_count)),
-          beam_stride(static_cast<uint>(rules.beamStride())),
+          beam_sums(rules.sumCount()),
           bin_width(rules.bins.bin_width),
           attenuation(rules.attenuation) {}
 
     const double *edges, *middles;
     uint64_t* sums;
-    uint bin_count, beam_stride;
+    uint bin_count;
+    size_t beam_sums;  ///< Numbers of a beam.
     double bin_width, attenuation;
     double binEdge(uint k) const { return edges[k]; }
     static uint64_t quanta(double amount) {  // by way of a signed number, for which there is an instruction
@@ -70,7 +71,7 @@ struct PhysicalBins : Bins {
         uint bin = min(uint(1.0 / (cell.near_end * bin_width)), bin_count - 1u);
         while (bin > 0u && edges[bin] < cell.near_end) --bin;
         while (edges[bin + 1u] >= cell.near_end) ++bin;
-        uint64_t* of_beam = sums + static_cast<size_t>(beam) * beam_stride;
+        uint64_t* of_beam = sums + beam * beam_sums;
         for (; edges[bin] > cell.far_end; bin += bins_at_once) addBins(cell, strength_range, bin, of_beam);
     }
 
@@ -94,9 +95,7 @@ private:
 struct NearestBins : Bins {
     static constexpr Features features{Feature::Physical, Feature::Nearest};
     using Bins::Bins;
-    void addToBin(uint beam, uint bin, double amount, double) const {
-        sums[static_cast<size_t>(beam) * beam_stride + bin] += quanta(amount);
-    }
+    void addToBin(uint beam, uint bin, double amount, double) const { sums[beam * beam_sums + bin] += quanta(amount); }
 #include "shaders/deposit.glsl"
 };
 struct JitteredBins : NearestBins {
@@ -109,7 +108,7 @@ struct JitteredBins : NearestBins {
 struct MeanBins : Bins {
     using Bins::Bins;
     void addToBin(uint beam, uint bin, double amount, double weight) const {
-        uint64_t* cell = sums + 2 * (static_cast<size_t>(beam) * beam_stride + bin);
+        uint64_t* cell = sums + beam * beam_sums + 2 * size_t{bin};
         cell[0] += quanta(amount);
         cell[1] += quanta(weight);
     }
@@ -141,6 +140,47 @@ struct AbsorbingBins : MeanBins {
 };
 #undef HAVE_ABSORPTION
 #undef HAVE_CERQUEIRA2017
+
+/** Where shaders/volume.glsl adds what cells hide of the volume, or let hear of its layers. */
+struct VolumeChanges {
+    VolumeChanges(const EchoRules& rules, double height, uint64_t* all_sums)
+        : changes(all_sums + rules.volumeOffset()),
+          beam_sums(rules.sumCount()),
+          bin_count(static_cast<uint>(rules.bins.bin_count)),
+          bin_width(rules.bins.bin_width),
+          numbers(rules.layers.data()),
+          layer_count(static_cast<uint>(rules.layers.size() / 3)),
+          sonar_height(height) {}
+
+    void addVolume(uint beam, uint bin, double amount) const {
+        changes[beam * beam_sums + bin] +=
+            static_cast<uint64_t>(static_cast<int64_t>(amount * quanta_per_unit + (amount < 0 ? -0.5 : 0.5)));
+    }
+    double layerNumber(uint i) const { return numbers[i]; }
+
+    uint64_t* changes;
+    size_t beam_sums;
+    uint bin_count;
+    double bin_width;
+    const double* numbers;
+    uint layer_count;
+    double sonar_height;
+};
+#pragma GCC diagnostic push
+#pragma GCC diagnostic ignored "-Wunused-parameter"  // layers alone ask how steep a ray is
+struct OpenVolume : VolumeChanges {
+    static constexpr bool hears_misses = false;
+    using VolumeChanges::VolumeChanges;
+#include "shaders/volume.glsl"
+};
+#pragma GCC diagnostic pop
+#define HAVE_VOLUME_LAYERS
+struct LayeredVolume : VolumeChanges {
+    static constexpr bool hears_misses = true;
+    using VolumeChanges::VolumeChanges;
+#include "shaders/volume.glsl"
+};
+#undef HAVE_VOLUME_LAYERS
 
 using AllEstimators = std::tuple<PhysicalBins, NearestBins, JitteredBins, CerqueiraBins, AbsorbingBins, PublishedBins,
                                  AbsorbingPublishedBins>;

@@ -13,7 +13,10 @@ namespace {
 class GpuDeposit final : public BinDeposit {
 public:
     GpuDeposit(const DepositSetup& setup, gpu::EglContext& context);
-    void begin(size_t) override { device_sums_.clear(); }
+    void begin(size_t, const WaterView& water) override {
+        water_ = water;
+        device_sums_.clear();
+    }
     void take(size_t slot, size_t frustum, const SurfacePass& surface) override;
     void ask(size_t slot) override { sums_[slot].ask(device_sums_); }
     std::span<const uint64_t> finish(size_t slot) override;
@@ -26,14 +29,16 @@ private:
     void setUniforms(const ViewFrustum& frustum) const;
     struct Uniforms {
         GLint image_size, bin_count, beam_stride, bin_width, attenuation, strength_scale, frustum_axis, extent,
-            pixel_size, elevation_reach;
+            pixel_size, elevation_reach, upward, sonar_height, layer_count, first_layer;
     };
 
     DepositSetup setup_;
     const gpu::EglContext& context_;
     const gpu::Program& program_;
     Uniforms uniforms_;
-    gpu::Buffer edges_, elevation_, device_sums_;
+    GLuint first_layer_ = 0;  ///< Among the tables [1].
+    WaterView water_;         ///< Of the ping that is taken.
+    gpu::Buffer edges_, tables_, device_sums_;
     std::vector<FrustumShares> shares_;
     std::vector<gpu::ReadBack> sums_;  ///< Of each slot.
 };
@@ -48,10 +53,16 @@ GpuDeposit::GpuDeposit(const DepositSetup& setup, gpu::EglContext& context)
     : setup_(setup), context_(context), program_(context.programs().compute("deposit.comp.glsl", definesOf(setup))) {
     const auto at = [this](const char* name) { return glGetUniformLocation(program_.id(), name); };
     uniforms_ = {at("image_size"),     at("bin_count"),    at("beam_stride"), at("bin_width"),  at("attenuation"),
-                 at("strength_scale"), at("frustum_axis"), at("extent"),      at("pixel_size"), at("elevation_reach")};
+                 at("strength_scale"), at("frustum_axis"), at("extent"),      at("pixel_size"), at("elevation_reach"),
+                 at("upward"),         at("sonar_height"), at("layer_count"), at("first_layer")};
     context.requireStorage(setup.sumCount() * sizeof(uint64_t), "the sums of all bins");
     edges_ = gpu::Buffer::of(std::span(setup.rules.edges));
-    if (!setup.rules.elevation_powers.empty()) elevation_ = gpu::Buffer::of(std::span(setup.rules.elevation_powers));
+    std::vector<double> tables = setup.rules.elevation_powers;
+    for (const std::vector<double>* more : {&setup.rules.laws.tables, &setup.rules.layers}) {
+        first_layer_ = static_cast<GLuint>(tables.size());
+        tables.insert(tables.end(), more->begin(), more->end());
+    }
+    if (!tables.empty()) tables_ = gpu::Buffer::of(std::span<const double>(tables));
     device_sums_ = gpu::Buffer(setup.sumCount() * sizeof(uint64_t));
     for (const ColumnShares& frustum : setup.shares)
         shares_.push_back({gpu::Buffer::of(std::span(frustum.starts)), gpu::Buffer::of(std::span(frustum.shares))});
@@ -69,6 +80,12 @@ void GpuDeposit::setUniforms(const ViewFrustum& frustum) const {
     glUniform2d(uniforms_.extent, frustum.extent_u, frustum.extent_v);
     if (uniforms_.elevation_reach >= 0) glUniform1d(uniforms_.elevation_reach, setup_.rules.elevation_reach);
     glUniform2d(uniforms_.pixel_size, frustum.du(), frustum.dv());
+    if (uniforms_.layer_count < 0) return;
+    const glm::dvec3 up = upwardIn(frustum, water_);
+    glUniform3d(uniforms_.upward, up.x, up.y, up.z);
+    glUniform1d(uniforms_.sonar_height, water_.height);
+    glUniform1ui(uniforms_.layer_count, static_cast<GLuint>(setup_.rules.layers.size() / 3));
+    glUniform1ui(uniforms_.first_layer, first_layer_);
 }
 
 void GpuDeposit::take(size_t slot, size_t frustum, const SurfacePass& surface) {
@@ -77,7 +94,7 @@ void GpuDeposit::take(size_t slot, size_t frustum, const SurfacePass& surface) {
     surface.bindResults(slot, frustum);
     shares_[frustum].shares.bindBase(GL_SHADER_STORAGE_BUFFER, SHARES_BINDING);
     shares_[frustum].starts.bindBase(GL_SHADER_STORAGE_BUFFER, SHARE_STARTS_BINDING);
-    if (elevation_.bytes() > 0) elevation_.bindBase(GL_SHADER_STORAGE_BUFFER, ELEVATION_BINDING);
+    if (tables_.bytes() > 0) tables_.bindBase(GL_SHADER_STORAGE_BUFFER, TABLES_BINDING);
     edges_.bindBase(GL_SHADER_STORAGE_BUFFER, EDGES_BINDING);
     device_sums_.bindBase(GL_SHADER_STORAGE_BUFFER, SUMS_BINDING);
     glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_FRAMEBUFFER_BARRIER_BIT);

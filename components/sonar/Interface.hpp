@@ -10,7 +10,7 @@ using uint = uint32_t;
 #include "shaders/interface.glsl"
 
 static_assert(sizeof(ObjectRecord) == 144 && sizeof(PlaneRecord) == 32 && sizeof(CommandRecord) == 16 &&
-              sizeof(MaterialRecord) == 16 && sizeof(ShareRecord) == 40 && sizeof(ClusterRecord) == 80 &&
+              sizeof(MaterialRecord) == 32 && sizeof(ShareRecord) == 40 && sizeof(ClusterRecord) == 80 &&
               sizeof(ViewedObject) == 160);
 
 }  // namespace insonify::sonar

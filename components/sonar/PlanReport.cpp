@@ -20,6 +20,8 @@ std::string nameOf(Effect effect) {
     static constexpr const char* names[] = {"absorption",
                                             "absorption inside a bin",
                                             "specular lobe",
+                                            "seabeds by TR 9407",
+                                            "measured backscatter",
                                             "spreading",
                                             "backscatter by material",
                                             "range footprints",
@@ -70,9 +72,10 @@ std::string approximatedWords(const LeftOut& what) {
 std::string reasonOf(const LeftOut& what, const BinGrid& grid) {
     switch (what.reason) {
         case Reason::NotConfigured: return "not configured";
-        case Reason::NotBuiltYet: return "not built yet; lambert_db stands for all of the backscatter";
+        case Reason::NoFrequency: return "no frequency_khz; sediments follow Lambert's law by their lambert_db";
         case Reason::NoMaterialHasOne:
-            return what.effect == Effect::SpecularLobe ? "no material has a roughness_slope" : "no material has one";
+            return what.effect == Effect::SpecularLobe ? "no material has a reflection and a roughness_slope"
+                                                       : "no material has one";
         case Reason::MeansOfS:
             return std::string("cerqueira2017: bins are means of S(n.d)") +
                    (what.effect == Effect::BackscatterByMaterial ? "; reflectivity scales n.d" : "");
@@ -150,11 +153,13 @@ std::string listed(const std::vector<std::string>& names) {
     return names.size() > 5 ? text + ", ..." : text;
 }
 
-void noteMaterials(const types::Geometry& geometry, types::Plan& plan) {
+void noteMaterials(const types::Geometry& geometry, const MaterialLaws& laws, types::Plan& plan) {
     std::vector<std::string> plain, loud;
-    for (const types::Material& material : geometry.materials) {
+    for (size_t i = 0; i < geometry.materials.size(); ++i) {
+        const types::Material& material = geometry.materials[i];
         if (!material.has_acoustics) plain.push_back(material.name);
-        if (std::pow(10, material.lambert_db / 10.0) > 1 / std::numbers::pi) loud.push_back(material.name);
+        if (laws.records[i].law.x < 0 && laws.records[i].values.x > std::numbers::inv_pi_v<float>)
+            loud.push_back(material.name);
     }
     if (!plain.empty())
         plan.notices.push_back(
@@ -163,6 +168,9 @@ void noteMaterials(const types::Geometry& geometry, types::Plan& plan) {
     if (!loud.empty())
         plan.notices.push_back(
             fmt::format("Warning: a lambert_db above -4.97 dB gives back more than it gets: {}", listed(loud)));
+    if (!laws.outside_validity.empty())
+        plan.notices.push_back(fmt::format(
+            "Warning: backscatter of seabeds is extrapolated outside its law's validity: {}", laws.outside_validity));
 }
 
 }  // namespace
@@ -194,7 +202,7 @@ types::Plan report(const RenderPlan& plan, const types::Geometry& geometry) {
     for (const LeftOut& what : plan.left_out) told.omitted.push_back(describe(what, plan.grid));
     told.notices = configNotices(plan.config);
     noteAbsorption(plan, told.notices);
-    if (plan.config.model == Model::Physical) noteMaterials(geometry, told);
+    if (plan.config.model == Model::Physical) noteMaterials(geometry, plan.laws, told);
     return told;
 }
 

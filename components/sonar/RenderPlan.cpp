@@ -15,7 +15,8 @@ bool hasNormalMap(const types::Geometry& geometry) {
     return std::ranges::any_of(geometry.materials, [](const auto& material) { return material.normal_map >= 0; });
 }
 
-Features featuresOf(const SonarConfig& config, const RenderOptions& options, const types::Geometry& geometry) {
+Features featuresOf(const SonarConfig& config, const RenderOptions& options, const types::Geometry& geometry,
+                    const MaterialLaws& laws) {
     Features features{config.model == Model::Physical ? Feature::Physical : Feature::Cerqueira2017};
     if (config.model == Model::Cerqueira2017 && makeAbsorption(config).db_per_m > 0) features.add(Feature::Absorption);
     if (config.published && config.model == Model::Cerqueira2017) features.add(Feature::Published);
@@ -23,6 +24,9 @@ Features featuresOf(const SonarConfig& config, const RenderOptions& options, con
     if (hasNormalMap(geometry)) features.add(Feature::NormalMap);
     if (options.estimator != Estimator::Footprint) features.add(Feature::Nearest);
     if (config.beam_pattern && config.beam_pattern->hasElevation()) features.add(Feature::ElevationPattern);
+    if (!laws.tables.empty() || laws.hasLobes()) features.add(Feature::BackscatterLaws);
+    if (!config.volume.empty()) features.add(Feature::Volume);
+    if (config.hasLayers()) features.add(Feature::VolumeLayers);
     if (options.estimator == Estimator::NearestJitter) features.add(Feature::Jitter);
     return features;
 }
@@ -35,9 +39,14 @@ void omitAbsorption(RenderPlan& plan) {
     plan.left_out.push_back({Effect::AbsorptionInBin, reason, residual, 1e-3});
 }
 
-void omitPhysical(const types::Geometry& geometry, RenderPlan& plan) {
-    const bool rough = std::ranges::any_of(geometry.materials, [](const auto& m) { return m.roughness_slope > 0; });
-    plan.left_out.push_back({Effect::SpecularLobe, rough ? Reason::NotBuiltYet : Reason::NoMaterialHasOne});
+void omitPhysical(RenderPlan& plan) {
+    const auto omitUnless = [&](bool wanted, Effect effect, Reason reason = Reason::NoMaterialHasOne) {
+        if (!wanted) plan.left_out.push_back({effect, reason});
+    };
+    omitUnless(plan.laws.hasLobes(), Effect::SpecularLobe);
+    omitUnless(plan.laws.has_seabeds, Effect::SeabedLaw,
+               plan.laws.lacks_frequency ? Reason::NoFrequency : Reason::NoMaterialHasOne);
+    omitUnless(plan.laws.has_measured, Effect::MeasuredBackscatter);
 }
 
 void omitMeans(RenderPlan& plan) {
@@ -71,7 +80,7 @@ void omitEffects(const types::Geometry& geometry, RenderPlan& plan) {
     omitUnless(plan.has(Pass::Beamform), Effect::AzimuthPattern);
     omitUnless(plan.features.has(Feature::ElevationPattern), Effect::ElevationPattern);
     omitPulse(plan);
-    omitUnless(false, Effect::Volume);
+    omitUnless(plan.features.has(Feature::Volume), Effect::Volume);
     omitUnless(false, Effect::Multipath);
     if (plan.frusta.size() == 1)
         plan.left_out.push_back({Effect::FurtherSlabs, Reason::OneImage, plan.config.coverageDeg()});
@@ -105,7 +114,7 @@ void RenderPlan::setQuality(int rows, int columns_per_beam) {
     config.quality.rows = rows;
     config.quality.columns_per_beam = columns_per_beam;
     sampled = directivity ? sampledConfig(config, *directivity, casts_rays) : config;
-    cells = directivity ? makeBeams(sampled) : beams;
+    cells = directivity ? azimuthCells(sampled, beams, *directivity, casts_rays) : beams;
     if (!casts_rays) frusta = makeFrusta(sampled, cells, options);
 }
 
@@ -125,15 +134,16 @@ RenderPlan makeRenderPlan(const SonarConfig& config, const types::Geometry& geom
     plan.config = config;
     plan.options = options;
     plan.casts_rays = !options.needImages() && config.castsRays();
-    plan.features = featuresOf(config, options, geometry);
     plan.grid = makeBinGrid(config);
+    plan.laws = makeMaterialLaws(config, geometry);
+    plan.features = featuresOf(config, options, geometry, plan.laws);
     plan.beams = makeBeams(config);
     if (config.beam_pattern) plan.directivity.emplace(config);
     plan.passes = passesOf(plan);
     plan.setQuality(config.rows(), config.columnsPerBeam());
     omitAbsorption(plan);
     if (config.model == Model::Physical)
-        omitPhysical(geometry, plan);
+        omitPhysical(plan);
     else
         omitMeans(plan);
     omitEffects(geometry, plan);

@@ -8,6 +8,7 @@
 #include "components/sonar/BeamFan.hpp"
 #include "components/sonar/BinGrid.hpp"
 #include "components/sonar/Directivity.hpp"
+#include "components/sonar/MaterialLaws.hpp"
 #include "components/sonar/SonarConfig.hpp"
 #include "types/Geometry.hpp"
 
@@ -24,9 +25,12 @@ enum class Feature {
     NormalMap,
     Nearest,
     Jitter,
-    ElevationPattern
+    ElevationPattern,
+    BackscatterLaws,  ///< Of any material: a table, or a lobe.
+    Volume,
+    VolumeLayers
 };
-constexpr int feature_count = 9;
+constexpr int feature_count = 12;
 
 /** A set of features. */
 class Features {
@@ -59,6 +63,8 @@ enum class Effect {
     Absorption,
     AbsorptionInBin,
     SpecularLobe,
+    SeabedLaw,
+    MeasuredBackscatter,
     Spreading,
     BackscatterByMaterial,
     RangeFootprints,
@@ -82,7 +88,7 @@ enum class Effect {
 /** Why something is left out. */
 enum class Reason {
     NotConfigured,
-    NotBuiltYet,
+    NoFrequency,
     NoMaterialHasOne,
     MeansOfS,      ///< Bins of `cerqueira2017` are means of S(n.d).
     Published,     ///< The published simulator has none.
@@ -109,6 +115,7 @@ struct RenderPlan {
     Features features;
     std::vector<Pass> passes;
     BinGrid grid;
+    MaterialLaws laws;
     std::vector<Beam> beams;
     std::optional<Directivity> directivity;  ///< None without a beam pattern.
     SonarConfig sampled;                     ///< What is sampled: sampledConfig(), or `config`.
@@ -139,9 +146,9 @@ Bending bending(const SonarConfig& config, const BinGrid& grid);
 
 template <>
 struct insonify::types::EnumNames<insonify::sonar::Feature> {
-    static constexpr std::string_view names[] = {"physical",  "cerqueira2017", "absorption",
-                                                 "published", "conical",       "normal_map",
-                                                 "nearest",   "jitter",        "elevation_pattern"};
+    static constexpr std::string_view names[] = {
+        "physical", "cerqueira2017", "absorption",        "published",        "conical", "normal_map",
+        "nearest",  "jitter",        "elevation_pattern", "backscatter_laws", "volume",  "volume_layers"};
 };
 template <>
 struct insonify::types::EnumNames<insonify::sonar::Pass> {

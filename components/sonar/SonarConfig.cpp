@@ -14,6 +14,7 @@
 namespace insonify::sonar {
 namespace {
 
+constexpr size_t max_layers = 16;
 constexpr int64_t max_ray_columns = int64_t{1} << 22;
 
 void checkPublished(const SonarConfig& config, types::Diagnostics& diagnostics) {
@@ -32,6 +33,10 @@ void checkPhysics(const SonarConfig& config, types::Diagnostics& diagnostics) {
     const bool means = config.model == Model::Cerqueira2017;
     if (means && config.beam_pattern)
         diagnostics.push_back({"beam_pattern", "is given with model: cerqueira2017; it belongs to physical"});
+    if (means && !config.volume.empty())
+        diagnostics.push_back({"volume", "is given with model: cerqueira2017; it belongs to physical"});
+    if (config.volume.size() > max_layers)
+        diagnostics.push_back({"volume", fmt::format("has {} layers; may have {}", config.volume.size(), max_layers)});
     if (means && config.pulse)
         diagnostics.push_back({"pulse", "is given with model: cerqueira2017; it belongs to physical"});
     if (!config.beam_pattern || config.frequency_khz) return;
@@ -126,6 +131,14 @@ void checkDevice(const std::string& device, types::Diagnostics& diagnostics) {
 void AbsorptionConfig::check(types::Diagnostics& diagnostics) const {
     if (db_per_m && frequency_khz)
         diagnostics.push_back({"db_per_m", "stands beside frequency_khz; give one of the two"});
+}
+
+void VolumeLayer::check(types::Diagnostics& diagnostics) const {
+    if (!strength_db)
+        diagnostics.push_back({"", "has no strength_db; open sea has -90 to -70, plumes of sediment -50"});
+    if (top_m && bottom_m && !(*top_m < *bottom_m))
+        diagnostics.push_back(
+            {"bottom_m", fmt::format("is {:g}, not below top_m, {:g}; depths grow downwards", *bottom_m, *top_m)});
 }
 
 void BeamPatternConfig::check(types::Diagnostics& diagnostics) const {

@@ -66,6 +66,22 @@ struct BeamPatternConfig {
     void check(types::Diagnostics& diagnostics) const;
 };
 
+/** Water that scatters sound back, between two depths or all of it. */
+struct VolumeLayer {
+    std::optional<double> top_m, bottom_m, strength_db;
+
+    template <class Self, class V>
+    static void describe(Self& self, V& visit) {
+        using types::Field;
+        visit(Field{"top_m", "m", "depth below the water surface, or the world's z = 0; absent: no bound", -1e5, 1e5},
+              self.top_m);
+        visit(Field{"bottom_m", "m", "depth to which it reaches; absent: no bound", -1e5, 1e5}, self.bottom_m);
+        visit(Field{"strength_db", "dB re 1/m", "volume backscattering strength; -200: none", -200, 0},
+              self.strength_db);
+    }
+    void check(types::Diagnostics& diagnostics) const;
+};
+
 /** Samples per beam: given, or found for an error or a time from the pings. Found for an error of 0.05 with at most
  *  400,000 samples a ping when nothing is given. */
 struct QualityConfig {
@@ -133,9 +149,12 @@ struct SonarConfig {
     Deposit deposit = Deposit::Auto;
     std::optional<BeamPatternConfig> beam_pattern;
     std::optional<acoustics::PulseConfig> pulse;
-    std::optional<types::NotBuiltYet> volume, multipath;
+    std::vector<VolumeLayer> volume;
+    std::optional<types::NotBuiltYet> multipath;
     std::optional<types::MovedTo> tvg, gain, output, source_level_db;
 
+    /** Whether there is more than one water that scatters, or one with bounds. */
+    bool hasLayers() const { return volume.size() > 1 || (!volume.empty() && (volume[0].top_m || volume[0].bottom_m)); }
     /** Rows of samples and columns per beam, until others are chosen for an error or a time [1]. */
     int rows() const { return quality.rows.value_or(256); }
     int columnsPerBeam() const { return quality.columns_per_beam.value_or(2); }
@@ -224,7 +243,7 @@ void SonarConfig::describeBeam(Self& self, V& visit) {
     visit(Field{"beam_pattern", "", "directivity of transmitter and receiver; absent: beams are boxes side by side"},
           self.beam_pattern);
     visit(Field{"pulse", "", "what an echo leaves in range; absent: it is in its own bin alone"}, self.pulse);
-    visit(Field{"volume", "", "volume reverberation (not built yet)"}, self.volume);
+    visit(Field{"volume", "", "water that scatters sound back, or a list of its layers; absent: none"}, self.volume);
     visit(Field{"multipath", "", "second bounce (not built yet)"}, self.multipath);
     visit(Field{"tvg", "",
                 "has moved: a sonar gives intensities; tvg belongs to a receiver::ReceiverTask after the noise"},

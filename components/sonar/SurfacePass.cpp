@@ -29,7 +29,7 @@ SurfacePass::SurfacePass(gpu::EglContext& context, Setup setup, Culler& culler, 
       context_(context),
       culler_(culler),
       threads_(threads),
-      scene_(setup_.geometry, hasNormalMaps(setup_)),
+      scene_(setup_.geometry, setup_.laws, hasNormalMaps(setup_)),
       lists_(makeLists(setup_, scene_, culler, context)),
       parts_(partCount(context, setup_, threads)),
       pictures_(setup_.frusta.size()) {

@@ -16,6 +16,7 @@ class SurfacePass {
 public:
     struct Setup {
         const types::Geometry& geometry;
+        const MaterialLaws& laws;
         std::vector<ViewFrustum> frusta;
         std::vector<std::string> defines;  ///< As the plan's features.
         double near_plane;                 ///< [m]
@@ -23,7 +24,7 @@ public:
         size_t slots = 1;                  ///< Pings that may be under way.
         bool cull_on_device = false;       ///< Clusters; objects are culled by the processor.
     };
-    /** `context` is current on this thread; context, geometry, culler and threads must outlive the pass. */
+    /** `context` is current on this thread; context, geometry, laws, culler and threads must outlive the pass. */
     SurfacePass(gpu::EglContext& context, Setup setup, Culler& culler, ThreadPool& threads);
     ~SurfacePass();
 

@@ -3,6 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <glm/geometric.hpp>
+#include <glm/matrix.hpp>
+
+#include "components/sonar/FacetSlopes.hpp"
 
 namespace insonify::sonar {
 namespace {
@@ -72,6 +75,29 @@ PlaneRecord planeOf(glm::dvec3 a, glm::dvec3 b, glm::dvec3 c) {
     return {vec4(glm::vec3(normal), static_cast<float>(glm::dot(normal, a - glm::dvec3(point)))), vec4(point, 0)};
 }
 
+/** World metres to a unit of a mesh, as the first object that it is places it. */
+double scaleOf(const types::Geometry& geometry, size_t mesh) {
+    const auto placed = std::ranges::find(geometry.objects, static_cast<int>(mesh), &types::Object::mesh);
+    if (placed == geometry.objects.end()) return 1;
+    return std::cbrt(std::abs(glm::determinant(glm::dmat3(placed->world_from_object))));
+}
+
+/** Of the meshes that have a material with a lobe. */
+void addFacetSlopes(const types::Geometry& geometry, const MaterialLaws& laws, std::vector<PlaneRecord>& planes) {
+    const auto hasLobe = [&](const types::Cluster& cluster) {
+        return laws.records[static_cast<size_t>(cluster.material)].law.y > 0;
+    };
+    size_t first = 0;
+    for (size_t i = 0; i < geometry.meshes.size(); ++i) {
+        const types::Mesh& mesh = geometry.meshes[i];
+        if (std::ranges::any_of(mesh.clusters, hasLobe)) {
+            const std::vector<float> slopes = facetSlopes(mesh, scaleOf(geometry, i), laws.wavelength.value_or(0));
+            for (size_t k = 0; k < slopes.size(); ++k) planes[first + k].point.w = slopes[k];
+        }
+        first += mesh.indices.size() / 3;
+    }
+}
+
 gpu::Texture uploadedMap(int width, int height, const uint8_t* rgb, bool repeat_u, bool repeat_v) {
     gpu::Texture texture(GL_RGB8, width, height, true);
     glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
@@ -85,19 +111,19 @@ gpu::Texture uploadedMap(int width, int height, const uint8_t* rgb, bool repeat_
 
 }  // namespace
 
-std::vector<PlaneRecord> planesOf(const types::Geometry& geometry) {
+std::vector<PlaneRecord> planesOf(const types::Geometry& geometry, const MaterialLaws& laws) {
     std::vector<PlaneRecord> planes;
     for (const types::Mesh& mesh : geometry.meshes)
         for (size_t i = 0; i + 2 < mesh.indices.size(); i += 3)
             planes.push_back(planeOf(mesh.positions[mesh.indices[i]], mesh.positions[mesh.indices[i + 1]],
                                      mesh.positions[mesh.indices[i + 2]]));
+    if (laws.hasLobes()) addFacetSlopes(geometry, laws, planes);
     return planes;
 }
 
-SurfaceScene::SurfaceScene(const types::Geometry& geometry, bool with_normal_maps)
-    : with_normal_maps_(with_normal_maps), plane_list_(planesOf(geometry)) {
+SurfaceScene::SurfaceScene(const types::Geometry& geometry, const MaterialLaws& laws, bool with_normal_maps)
+    : with_normal_maps_(with_normal_maps), plane_list_(planesOf(geometry, laws)), materials_(uploaded(laws.records)) {
     uploadVertices(geometry);
-    uploadMaterials(geometry);
     if (with_normal_maps) uploadNormalMaps(geometry);
 }
 
@@ -118,13 +144,6 @@ void SurfaceScene::uploadVertices(const types::Geometry& geometry) {
     normals_ = uploaded(joined(geometry, meshes, &types::Mesh::normals, glm::vec3(0, 0, 1)));
     tangents_ = uploaded(joined(geometry, meshes, &types::Mesh::tangents, glm::vec4(1, 0, 0, 1)));
     uvs_ = uploaded(joined(geometry, meshes, &types::Mesh::uvs, glm::vec2(0)));
-}
-
-void SurfaceScene::uploadMaterials(const types::Geometry& geometry) {
-    for (const types::Material& material : geometry.materials)
-        material_list_.push_back(
-            {vec4(std::pow(10.0f, material.lambert_db / 10), material.reflectivity, material.normal_scale, 0)});
-    materials_ = uploaded(material_list_);
 }
 
 void SurfaceScene::uploadNormalMaps(const types::Geometry& geometry) {

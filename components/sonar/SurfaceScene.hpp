@@ -3,13 +3,14 @@
 
 #include "components/gpu/Objects.hpp"
 #include "components/sonar/Interface.hpp"
+#include "components/sonar/MaterialLaws.hpp"
 #include "types/Geometry.hpp"
 
 namespace insonify::sonar {
 
 /** Planes of all meshes' triangles, mesh after mesh, without those that stand for patches: as SurfaceScene::planes().
  */
-std::vector<PlaneRecord> planesOf(const types::Geometry& geometry);
+std::vector<PlaneRecord> planesOf(const types::Geometry& geometry, const MaterialLaws& laws);
 
 /** A geometry on the device: all meshes behind one another, a plane for each triangle, materials, normal maps. */
 class SurfaceScene {
@@ -19,12 +20,11 @@ public:
         uint32_t first_vertex, first_index, first_triangle;
     };
 
-    SurfaceScene(const types::Geometry& geometry, bool with_normal_maps);
+    SurfaceScene(const types::Geometry& geometry, const MaterialLaws& laws, bool with_normal_maps);
     const MeshPlace& place(int mesh) const { return places_[static_cast<size_t>(mesh)]; }
     bool withNormalMaps() const { return with_normal_maps_; }
     /** Of each triangle. */
     const std::vector<PlaneRecord>& planes() const { return plane_list_; }
-    const std::vector<MaterialRecord>& materials() const { return material_list_; }
     /** Attributes and indices of a context's vertex array. */
     void describe(const gpu::VertexArray& vertices) const;
     /** Binds planes, which the device is told when they are first bound, and materials. */
@@ -34,13 +34,11 @@ public:
 
 private:
     void uploadVertices(const types::Geometry& geometry);
-    void uploadMaterials(const types::Geometry& geometry);
     void uploadNormalMaps(const types::Geometry& geometry);
 
     bool with_normal_maps_;
     std::vector<MeshPlace> places_;
     std::vector<PlaneRecord> plane_list_;
-    std::vector<MaterialRecord> material_list_;
     gpu::Buffer positions_, normals_, tangents_, uvs_, indices_, materials_;
     mutable gpu::Buffer planes_;             ///< Empty until a deposit on the device asks for them.
     std::vector<gpu::Texture> normal_maps_;  ///< The last one is flat.

@@ -19,8 +19,10 @@ struct Cells {
     double width[stretch], height[stretch], lean[stretch];  ///< [rad], [rad], dazimuth / delevation of its sides [1].
     double size[stretch];                                   ///< Solid angle, in cells at elevation 0 [1].
     double strength[stretch];                               ///< Of the material [1].
-    double mapped[stretch];                                 ///< Cosine of a bent normal; 0: it is the plane's [1].
-    double near_limit[stretch], far_limit[stretch];         ///< Inverse ranges of the object [1/m].
+    double facet_slope[stretch];                            ///< What its facet adds to a lobe's mean square slope [1].
+    uint32_t material[stretch];
+    double mapped[stretch];                          ///< Cosine of a bent normal; 0: it is the plane's [1].
+    double near_limit[stretch], far_limit[stretch];  ///< Inverse ranges of the object [1/m].
     int beam[stretch];
 };
 
@@ -74,6 +76,20 @@ INSONIFY_VECTOR_CLONES void cover(const Cells& cells, int count, double near_edg
     }
 }
 
+/** The strength of what does not follow Lambert's law. */
+void applyLaws(const EchoRules& rules, const Cells& cells, int count, Covered& covered) {
+    for (int i = 0; i < count; ++i) {
+        if (rules.laws.followsLambert(cells.material[i]) || !(covered.pixel[i] > 0)) continue;
+        const double normal = sqrt(cells.normal_x[i] * cells.normal_x[i] + cells.normal_y[i] * cells.normal_y[i] +
+                                   cells.normal_z[i] * cells.normal_z[i]);
+        const double cosine =
+            cells.mapped[i] > 0 ? cells.mapped[i] : min(abs(cells.distance[i]) * covered.pixel[i] / normal, 1.0);
+        covered.strength_range[i] = rules.strength_scale / covered.pixel[i] *
+                                    rules.laws.overCosine(cells.material[i], cosine, cells.facet_slope[i],
+                                                          max(cells.width[i], cells.height[i]));
+    }
+}
+
 /** Makes cells of tiles, a stretch at a time. */
 template <class Estimator, bool conical, bool normal_maps>
 class CellDeposit {
@@ -91,25 +107,59 @@ public:
           shape_(view.shape),
           scene_(scene),
           first_beam_(first_beam),
+          sums_(sums),
           estimator_(rules, sums) {}
 
     void add(const CastTile& tile) {
         for (int i = 0; i < tile_samples;) {
             const bool met = tile.hits->command[i] != TileHits::nothing;
             const int merged = met ? sameFrom(*tile.hits, i) : 1;
-            if (met) addCell(tile, i, merged);
+            if (met)
+                addCell(tile, i, merged);
+            else if (rules_.features.has(Feature::VolumeLayers))
+                hearPast(tile, i);
             i += merged;
         }
     }
     void finish() {
         cover(cells_, count_, rules_.edges.front(), rules_.edges[static_cast<size_t>(rules_.bins.bin_count)], covered_);
+        if (rules_.features.has(Feature::BackscatterLaws)) applyLaws(rules_, cells_, count_, covered_);
         for (int i = 0; i < count_; ++i)
             estimator_.depositCell(covered_.footprint(i), static_cast<uint>(cells_.beam[i] - first_beam_),
                                    covered_.strength_range[i]);
+        if (rules_.features.has(Feature::VolumeLayers))
+            hideVolume<LayeredVolume>();
+        else if (rules_.features.has(Feature::Volume))
+            hideVolume<OpenVolume>();
         count_ = 0;
     }
 
 private:
+    /** How steeply the middle of a cell goes up in the world [m for each m]. */
+    double riseOf(int i) const {
+        const glm::dvec3& up = scene_.water.up;
+        return cells_.cos_el[i] * (up.x * cells_.cos_az[i] + up.y * cells_.sin_az[i]) + up.z * cells_.sin_el[i];
+    }
+
+    template <class Volume>
+    void hideVolume() {
+        Volume volume(rules_, scene_.water.height, sums_);
+        for (int i = 0; i < count_; ++i)
+            if (covered_.pixel[i] > 0)
+                volume.hideVolume(covered_.footprint(i), static_cast<uint>(cells_.beam[i] - first_beam_), riseOf(i),
+                                  cells_.size[i]);
+    }
+
+    /** A sample that meets nothing hears all layers that it goes through. */
+    void hearPast(const CastTile& tile, int sample) {
+        const int column = tile.first_column + shape_.at[sample].columns;
+        if (column >= view_.columns() || tile.first_row + shape_.at[sample].rows >= view_.rows) return;
+        aim(tile, sample, 1);
+        LayeredVolume volume(rules_, scene_.water.height, sums_);
+        volume.hearLayers(static_cast<uint>(cells_.beam[count_] - first_beam_), riseOf(count_), rules_.bins.range_max,
+                          cells_.size[count_]);
+    }
+
     /** Samples from i on that are a rectangle of one triangle in one beam. */
     int sameFrom(const TileHits& hits, int i) const {
         const auto alignment = static_cast<uint32_t>(i == 0 ? tile_samples : i & -i);
@@ -133,6 +183,8 @@ private:
         cells_.distance[i] = n.x * (p.x - run.eye[0]) + n.y * (p.y - run.eye[1]) + n.z * (p.z - run.eye[2]) +
                              static_cast<double>(plane.normal.w);
         cells_.strength[i] = run.strength;
+        cells_.facet_slope[i] = static_cast<double>(plane.point.w);
+        cells_.material[i] = run.material;
         cells_.near_limit[i] = run.near_limit;
         cells_.far_limit[i] = run.far_limit;
         aim(tile, sample, merged);
@@ -192,6 +244,7 @@ private:
     const TileShape& shape_;
     const PlacedScene& scene_;
     int first_beam_;
+    uint64_t* sums_;
     Estimator estimator_;
     int count_ = 0;
     Cells cells_{};

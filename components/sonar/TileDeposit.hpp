@@ -6,6 +6,7 @@
 #include "components/sonar/EchoRules.hpp"
 #include "components/sonar/NormalMapping.hpp"
 #include "components/sonar/RayVisibility.hpp"
+#include "components/sonar/Volume.hpp"
 
 namespace insonify::sonar {
 
@@ -16,6 +17,7 @@ struct PlacedScene {
     std::span<const ObjectRecord> objects;
     const std::vector<PlaneRecord>& planes;
     const NormalMapping& normal_maps;
+    WaterView water;
 };
 
 /** How samples lie. */
@@ -31,7 +33,8 @@ struct CastTile {
 };
 
 /** Adds the echoes of tiles to the sums of beams, [beam - first_beam][bin][channel] in quanta, EchoRules::sumCount()
- *  numbers for each. Neighbouring samples of one triangle in one beam may be one cell. Allocates nothing. */
+ *  numbers for each, and what they hide of the volume to what follows there. Neighbouring samples of one triangle in
+ * one beam may be one cell. Allocates nothing. */
 void deposit(const EchoRules& rules, const CastView& view, const PlacedScene& scene, std::span<const CastTile> tiles,
              int first_beam, uint64_t* sums);
 

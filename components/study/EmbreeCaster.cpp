@@ -134,7 +134,7 @@ public:
             plane.mapped ? mapped(triangle, across.middle, up.middle, middle) : middle * std::abs(distance);
         const Spread spread({inverseRange(across.low, up.low), inverseRange(across.low, up.high),
                              inverseRange(across.high, up.low), inverseRange(across.high, up.high)});
-        share(spread, across.size * up.size * plane.mu * cosine / middle,
+        share(spread, across.size * up.size * fan_.tree.backscatter(triangle, cosine) / middle,
               beam(static_cast<size_t>(column / fan_.columns_per_beam)));
     }
 
@@ -213,6 +213,7 @@ EmbreeCaster::~EmbreeCaster() = default;
 void EmbreeCaster::prepare(const sonar::SonarConfig& config) {
     const sonar::BinGrid grid = sonar::makeBinGrid(config);
     Fan& fan = *fan_;
+    fan.tree.takeLaws(config);
     fan.columns.clear();
     fan.rows.clear();
     fan.columns_per_beam = config.columnsPerBeam();

@@ -204,6 +204,20 @@ private:
             keep("pulse", without);
         }
         without = planned_;
+        if (!config.volume.empty()) {
+            without.config.volume.clear();
+            keep("volume reverberation", without);
+        }
+        without = planned_;
+        without.snapshot.geometry =
+            changed(*planned_.snapshot.geometry, [](types::Material& material) { material.roughness_slope.reset(); });
+        if (sonar::makeMaterialLaws(config, *planned_.snapshot.geometry).hasLobes()) keep("specular lobe", without);
+        without.snapshot.geometry = changed(*planned_.snapshot.geometry, [](types::Material& material) {
+            material.seabed.clear();
+            material.measured.clear();
+        });
+        if (!sonar::makeMaterialLaws(config, *planned_.snapshot.geometry).tables.empty())
+            keep("backscatter by table", without);
         without.snapshot.geometry =
             changed(*planned_.snapshot.geometry, [](types::Material& material) { material.normal_map = -1; });
         if (std::ranges::any_of(planned_.snapshot.geometry->materials, [](const auto& m) { return m.normal_map >= 0; }))

@@ -131,7 +131,7 @@ private:
             cosine = tree_.mappedCosine(number, from_ + range * ahead, ahead);
         }
         bins_[std::min(static_cast<int>(range / grid_.bin_width), grid_.bin_count - 1)] +=
-            solid_angle * triangle.mu * cosine / (range * range);
+            solid_angle * tree_.backscatter(number, cosine) / (range * range);
     }
 
     void aimAt(uint32_t number) {
@@ -157,6 +157,7 @@ private:
 
 std::vector<double> PointCaster::render(const types::Pose& sonar, const sonar::SonarConfig& config, int up, int across,
                                         uint64_t seed) {
+    tree_.takeLaws(config);
     const sonar::BinGrid grid = sonar::makeBinGrid(config);
     const std::vector<sonar::Beam> beams = sonar::makeBeams(config);
     const double half = std::sin(types::radians(config.beam_height_deg) / 2);

@@ -10,7 +10,7 @@ namespace insonify::study {
 
 /** The active sonar equation by brute force, for scenes without a closed form: points drawn at random, the energy of
  *  each to the bin of its own range, in double. With the renderer it has only the equation in common, E = sum of
- *  mu cos(theta) / r^2 dOmega: no footprint, no image, no slope.
+ *  sigma_b / (cos(theta) r^2) dOmega: no footprint, no image, no slope.
  *
  *  A beam is parted into tiles, a little at random. 16 rays look at each, four of them at its corners; where all meet
  *  the same triangle, the tile is filled with points of that triangle's plane, else it is parted into 16 and these are

@@ -12,6 +12,8 @@
 #include <stdexcept>
 #include <string>
 
+#include "components/sonar/SurfaceScene.hpp"
+
 namespace insonify::study {
 namespace {
 
@@ -105,6 +107,19 @@ RayTree::RayTree(const types::Snapshot& scene)
 
 RayTree::~RayTree() = default;
 
+void RayTree::takeLaws(const sonar::SonarConfig& config) {
+    laws_ = sonar::makeMaterialLaws(config, *geometry_);
+    if (laws_.tables.empty() && !laws_.hasLobes()) return void(laws_.records.clear());
+    std::vector<size_t> first{0};
+    for (const types::Mesh& mesh : geometry_->meshes) first.push_back(first.back() + mesh.indices.size() / 3);
+    const std::vector<sonar::PlaneRecord> planes = sonar::planesOf(*geometry_, laws_);
+    for (size_t i = 0; i < triangles_.size(); ++i) {
+        const Source& source = sources_[i];
+        const size_t mesh = static_cast<size_t>(geometry_->objects[source.object].mesh);
+        triangles_[i].facet_slope = planes[first[mesh] + source.first_index / 3].point.w;
+    }
+}
+
 void RayTree::add(uint32_t object, std::vector<glm::dvec3>& corners) {
     const types::Mesh& mesh = geometry_->meshes[static_cast<size_t>(geometry_->objects[object].mesh)];
     const bool has_frames = !mesh.normals.empty() && !mesh.tangents.empty() && !mesh.uvs.empty();
@@ -116,7 +131,8 @@ void RayTree::add(uint32_t object, std::vector<glm::dvec3>& corners) {
             const glm::dvec3 across = glm::cross(triangle[1] - triangle[0], triangle[2] - triangle[0]);
             const double length = glm::length(across);
             const glm::dvec3 normal = length > 0 ? across / length : glm::dvec3(0);
-            triangles_.push_back({normal, glm::dot(normal, triangle[0]), mu, has_frames && material.normal_map >= 0});
+            triangles_.push_back(
+                {normal, glm::dot(normal, triangle[0]), mu, has_frames && material.normal_map >= 0, cluster.material});
             sources_.push_back({object, i, cluster.material});
             corners.insert(corners.end(), triangle.begin(), triangle.end());
         }

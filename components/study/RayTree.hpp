@@ -8,6 +8,7 @@
 #include <span>
 #include <vector>
 
+#include "components/sonar/MaterialLaws.hpp"
 #include "types/Snapshot.hpp"
 
 namespace insonify::study {
@@ -25,6 +26,8 @@ public:
         double distance;    ///< normal.p of its points p about the origin [m].
         double mu;          ///< Its Lambert parameter [1].
         bool mapped;        ///< Its material has a normal map.
+        int material;
+        float facet_slope = 0;  ///< What it adds to the mean square slope of a lobe [1].
     };
     /** Directions in the axes of the world, of any length. */
     struct Rays {
@@ -42,6 +45,16 @@ public:
     /** The first triangle on each ray from a point about the origin, of at most `packets_at_once` packets. All rays of
      * a call should lie close together. */
     void cast(glm::dvec3 from, std::span<const Rays> rays, std::span<Found> found) const;
+
+    /** Materials give back what they do to a sonar of this configuration; Lambert's law before that. */
+    void takeLaws(const sonar::SonarConfig& config);
+    /** sigma_b / cos(theta) of a triangle [1]. */
+    double backscatter(uint32_t triangle, double cosine) const {
+        const Triangle& plane = triangles_[triangle];
+        return laws_.records.empty() ? plane.mu * cosine
+                                     : laws_.overCosine(static_cast<size_t>(plane.material), cosine,
+                                                        static_cast<double>(plane.facet_slope), 0);
+    }
 
     const glm::dvec3& origin() const { return origin_; }  ///< In the world [m].
     const Triangle& operator[](uint32_t triangle) const { return triangles_[triangle]; }
@@ -71,6 +84,7 @@ private:
     std::vector<Place> places_;  ///< Of each object.
     std::vector<Triangle> triangles_;
     std::vector<Source> sources_;  ///< Of each triangle.
+    sonar::MaterialLaws laws_;     ///< None where all follow Lambert's.
     std::unique_ptr<Embree> embree_;
 };
 

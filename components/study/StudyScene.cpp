@@ -3,6 +3,7 @@
 #include <cmath>
 #include <limits>
 
+#include "components/acoustics/Backscatter.hpp"
 #include "components/sonar/BeamFan.hpp"
 #include "components/sonar/BinGrid.hpp"
 #include "components/study/Probe.hpp"
@@ -55,6 +56,31 @@ StudyScene twoSpheres() {
             sum({sphereTruth(1, 10), sphereTruth(1, 10)})};
 }
 
+StudyScene shinySphere() {
+    const double slope = 0.3;
+    const auto geometry = copyOf(sceneOf({sphere(1, 512)}, {{10, 0, 0}}));
+    geometry->materials[0].lambert_db = -9.23f;
+    geometry->materials[0].reflection = 1;
+    geometry->materials[0].roughness_slope = static_cast<float>(slope);
+    const auto section = [=](double cosine) { return acoustics::objectSection(-9.23, 1, slope * slope, cosine); };
+    return {"sphere_lobe", "the sphere with a specular lobe of 0.3 rms slope", fan(16, 16, 1, 12), snapshotOf(geometry),
+            sphereTruth(1, 10, section)};
+}
+
+/** Loud water, so that it is most of what is heard at long range. */
+StudyScene waterOverBottom() {
+    StudyScene scene = flatBottom("volume_over_bottom", "the flat bottom in water of -45 dB re 1/m", 15, 0, 0);
+    const auto geometry = copyOf(scene.snapshot.geometry);
+    geometry->materials[0].lambert_db = -30;
+    scene.snapshot.geometry = geometry;
+    scene.config.volume.push_back({{}, {}, -45});
+    const auto bottom = [truth = scene.truth](const BeamLimits& beam, double r1, double r2) {
+        return 1e-3 * truth(beam, r1, r2);
+    };
+    scene.truth = sum({bottom, waterTruth(std::pow(10, -4.5), 5)});
+    return scene;
+}
+
 /** A screen 2 m high stands on the bottom 15 m ahead and hides what lies behind. */
 StudyScene shadowScreen() {
     const double height = 5, top = 2, ahead = 15;
@@ -93,7 +119,9 @@ const std::vector<SceneMaker>& closedFormScenes() {
         {"wall", wallAhead},
         {"facing_disc", facingDisc},
         {"sphere", oneSphere},
+        {"sphere_lobe", shinySphere},
         {"two_spheres", twoSpheres},
+        {"volume_over_bottom", waterOverBottom},
         {"shadow_screen", shadowScreen}};
     return scenes;
 }

@@ -87,6 +87,31 @@ Truth sphereTruth(double radius, double centre) {
     };
 }
 
+Truth sphereTruth(double radius, double centre, const std::function<double(double)>& section) {
+    return [=](const BeamLimits&, double r1, double r2) {
+        const double q = centre * centre - radius * radius;
+        const double from = std::max(r1, centre - radius), to = std::min(r2, std::sqrt(q));
+        if (!(to > from)) return 0.0;
+        const auto density = [&](double r) {
+            const double cosine = std::clamp((q - r * r) / (2 * radius * r), 0.0, 1.0);
+            return section(cosine) * 2 * std::numbers::pi * radius / centre * std::pow(r, -3);
+        };
+        return adaptive(from, to, density, integral(from, to, density), 0);
+    };
+}
+
+Truth waterTruth(double strength, double height) {
+    return [=](const BeamLimits& beam, double r1, double r2) {
+        const double up = std::sin(beam.half_height), met = height / up;  // from there on the bottom hides water
+        const auto before = [&](double from, double to) { return 2 * up * (1 / from - 1 / to); };
+        const auto behind = [&](double from, double to) {
+            return up * (1 / from - 1 / to) + height / 2 * (1 / (from * from) - 1 / (to * to));
+        };
+        const double middle = std::clamp(met, r1, r2);
+        return strength * (beam.azimuth_high - beam.azimuth_low) * (before(r1, middle) + behind(middle, r2));
+    };
+}
+
 Truth discTruth(double distance, double radius) {
     return [=](const BeamLimits&, double r1, double r2) {
         const double from = std::max(r1, distance), to = std::min(r2, std::hypot(distance, radius));

@@ -31,6 +31,12 @@ Truth sphereTruth(double radius, double centre);
 /** A disc of a radius that faces the sonar, wholly inside one beam: ACOUSTICS.md 9.5. */
 Truth discTruth(double distance, double radius);
 
+/** A sphere wholly inside one beam that gives back sigma_b of a cosine [1], ACOUSTICS.md 9.4. */
+Truth sphereTruth(double radius, double centre, const std::function<double(double)>& section);
+
+/** Water of a strength [1/m] over a bottom under a level sonar, which hides it: ACOUSTICS.md 9.8. */
+Truth waterTruth(double strength, double height);
+
 /** Echoes that do not hide one another. */
 Truth sum(std::vector<Truth> parts);
 

@@ -33,7 +33,7 @@ def unsaid(sonar):
     return sonar.replace(QUALITY, "")
 
 
-def deployment(sonar, file, schedule="lockstep", period=0.1):
+def deployment(sonar, file, schedule="lockstep", period=0.1, noise=""):
     return f"""schedule: {schedule}
 tasks:
   vehicle:
@@ -42,7 +42,7 @@ tasks:
     properties: {{waypoints: [{{time: 0, position: [0, 0, 0], roll_deg: 0, pitch_deg: 0, yaw_deg: 0}}]}}
   scene: {{type: scene::SceneTask, properties: {{file: {file}, mount: {{position: [0, 0, 0], pitch_deg: 10}}}}}}
   sonar: {sonar}
-  noise: {{type: noise::NoiseTask, properties: {{speckle: {{law: rayleigh}}}}}}
+  noise: {{type: noise::NoiseTask, properties: {{speckle: {{law: rayleigh}}{noise}}}}}
   receiver: {{type: receiver::ReceiverTask, properties: {{tvg: {{log_coefficient: 40, db_per_m: 0.2, max_db: 110}}}}}}
 connections:
   - {{from: vehicle.pose, to: scene.pose}}
@@ -52,10 +52,10 @@ connections:
 """
 
 
-def measure_seen(found, name, sonar, file, options, beside_rays=True):
+def measure_seen(found, name, sonar, file, options, beside_rays=True, noise=""):
     """Adds a result for each visibility."""
     for visibility in options.visibility:
-        text = deployment(seen(sonar, visibility), file)
+        text = deployment(seen(sonar, visibility), file, noise=noise)
         found[f"{name}, {visibility}"] = measure(text, options.pings, beside_rays)
 
 
@@ -74,15 +74,22 @@ def measure_pings(options):
 PATTERN = ("beam_pattern: {transmit: {elevation: {width_deg: 20}}, receive: {azimuth: {weighting: taylor, width_deg: 1}, "
            "elevation: {width_deg: 20}}}, ")
 PULSE = "pulse: {bandwidth_khz: 10, window: hann}, "
+SEABED = "frequency_khz: 100, "  # at which the scene's sand follows APL-UW TR 9407
+VOLUME = "volume: {strength_db: -70}, "
+LAYERS = "volume: [{bottom_m: 1, strength_db: -60}, {top_m: 1, strength_db: -75}], "
+EFFECTS = {"plain": "", "pattern": PATTERN, "pulse": PULSE, "pattern and pulse": PATTERN + PULSE, "TR 9407": SEABED,
+           "volume": VOLUME, "layers": LAYERS, "all": PATTERN + PULSE + SEABED + VOLUME}
+AMBIENT = ", ambient: {level_db: -110}"
 
 
 def measure_effects(options):
     """The fan of 256 beams before the 80,000 triangles, plain and with each effect."""
     plain = SONARS["FLS 256 x 500"]
     found = {}
-    for name, blocks in {"plain": "", "pattern": PATTERN, "pulse": PULSE, "pattern and pulse": PATTERN + PULSE}.items():
+    for name, blocks in EFFECTS.items():
         sonar = plain.replace("properties: {", f"properties: {{{blocks}", 1)
-        measure_seen(found, f"FLS 256 x 500, 80 k, {name}", sonar, scene(SCENES["80 k"]), options, False)
+        noise = AMBIENT if name == "all" else ""
+        measure_seen(found, f"FLS 256 x 500, 80 k, {name}", sonar, scene(SCENES["80 k"]), options, False, noise)
     return found
 
 

@@ -179,7 +179,7 @@ TEST(PropertiesTest, EveryFaultIsReportedAtItsPlaceInOneGo) {
         "speckle: {law: poisson, mean: .nan}\n"
         "gain: \"3\"\n"
         "bearings: [0, 200, x]\n"
-        "layers: {law: gaussian}\n"
+        "layers: gaussian\n"
         "materials: {sand: {mean: 11}}\n"
         "always: {mean: 1, mean: 2}\n";
     EXPECT_THAT(
@@ -199,7 +199,7 @@ TEST(PropertiesTest, EveryFaultIsReportedAtItsPlaceInOneGo) {
             "a.yml:10:7: p.gain: is the text \"3\"; must be a finite number",
             "a.yml:11:15: p.bearings[1]: is 200 deg; may be -180 to 180 deg",
             "a.yml:11:20: p.bearings[2]: is x; must be a finite number",
-            "a.yml:12:9: p.layers: is a block; must be a list",
+            "a.yml:12:9: p.layers: is gaussian; must be a list",
             "a.yml:13:26: p.materials.sand.mean: is 11; may be 0 to 10",
             "a.yml:14:19: p.always.mean: stands here twice; once is allowed"));
 }
@@ -208,6 +208,15 @@ TEST(PropertiesTest, AProblemOfFieldsTogetherIsReportedWhereItStands) {
     Task task("t");
     EXPECT_THAT(faultsOf(task, "range: 1\nloud: true\nlayers:\n  - {}\n  - {law: gaussian, mean: 3}\n"),
                 testing::ElementsAre("a.yml:2:7: p.loud: needs file", "a.yml:5:27: p.layers[1].mean: is one too many"));
+}
+
+TEST(PropertiesTest, OneBlockStandsForAListOfOne) {
+    Task task("t");
+    EXPECT_THAT(faultsOf(task, "layers: {law: gaussian}"), testing::IsEmpty());
+    ASSERT_EQ(task.config->layers.size(), 1u);
+    EXPECT_EQ(task.config->layers[0].law, Law::Gaussian);
+    EXPECT_THAT(faultsOf(task, "layers: {mean: 11}"),
+                testing::ElementsAre("a.yml:1:16: p.layers.mean: is 11; may be 0 to 10"));
 }
 
 TEST(PropertiesTest, NumbersThatAreNoneAreRefused) {

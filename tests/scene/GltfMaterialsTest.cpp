@@ -51,7 +51,7 @@ TEST_F(GltfMaterialsTest, AcousticNumbersAreTaken) {
     EXPECT_TRUE(m.has_acoustics && m.double_sided);
     EXPECT_FLOAT_EQ(m.lambert_db, -12);
     EXPECT_FLOAT_EQ(m.reflection, -0.5);
-    EXPECT_FLOAT_EQ(m.roughness_slope, 0.2f);
+    EXPECT_FLOAT_EQ(m.roughness_slope.value(), 0.2f);
     EXPECT_FLOAT_EQ(m.reflectivity, 0.25);
 }
 

@@ -87,7 +87,7 @@ TEST_F(SdfVisualsTest, TheAcousticTagHasTheKeysOfGltf) {
               visual("v", box_, acoustics("<sediment>rough_rock</sediment><roughness_slope>0.2</roughness_slope>")) +
               visual("u", box_, "<insonify:acoustics material='steel'/>") + visual("w", box_) + "</link></model>");
     EXPECT_FLOAT_EQ(materialOf(*scene.geometry, 0).lambert_db, -5);
-    EXPECT_FLOAT_EQ(materialOf(*scene.geometry, 0).roughness_slope, 0.2f);
+    EXPECT_FLOAT_EQ(materialOf(*scene.geometry, 0).roughness_slope.value(), 0.2f);
     EXPECT_FLOAT_EQ(materialOf(*scene.geometry, 1).reflection, 0.936f);
     EXPECT_TRUE(materialOf(*scene.geometry, 1).has_acoustics);
     EXPECT_FALSE(materialOf(*scene.geometry, 2).has_acoustics);

@@ -55,6 +55,11 @@ types::GeometryPtr unmapped() {
     return changed([](types::Geometry& g) { g.materials[1].normal_map = -1; });
 }
 
+/** With a material that follows a table. */
+types::GeometryPtr measured() {
+    return changed([](types::Geometry& g) { g.materials[0].measured = {{0, -40}, {90, -10}}; });
+}
+
 /** The numbers with which an effect is left out; none when it is not. */
 std::optional<LeftOut> leftOut(const SonarConfig& config, Effect effect) {
     const RenderPlan plan = makeRenderPlan(config, *unmapped());
@@ -84,10 +89,14 @@ TEST(OmissionTest, NoEffectIsLeftOutThatIsNotTestedHere) {
         Effect::Absorption, Effect::AbsorptionInBin, Effect::SpecularLobe, Effect::Spreading,
         Effect::BackscatterByMaterial, Effect::FurtherSlabs, Effect::Refraction, Effect::MotionInPing,
         Effect::NormalMaps,
+        // in BackscatterPingTest.cpp:
+        Effect::SeabedLaw, Effect::MeasuredBackscatter,
+        // in VolumePingTest.cpp:
+        Effect::Volume,
         // of `published`, in PublishedTest.cpp:
         Effect::RangeFootprints, Effect::ElevationMask, Effect::SharedColumns, Effect::NearBlanking,
         // without values yet; SonarConfig refuses them:
-        Effect::AzimuthPattern, Effect::ElevationPattern, Effect::RangePointSpread, Effect::Volume, Effect::Multipath};
+        Effect::AzimuthPattern, Effect::ElevationPattern, Effect::RangePointSpread, Effect::Multipath};
     SonarConfig absorbing = plainSonar(), published = plainSonar(Model::Cerqueira2017);
     absorbing.absorption.emplace().db_per_m = 0.1;
     absorbing.field_of_view_deg = 50;
@@ -228,15 +237,18 @@ std::vector<std::pair<SonarConfig, RenderOptions>> sonarsOfAllFeatures() {
             for (Visibility visibility : {Visibility::Gl, Visibility::Cpu})
                 for (Deposit deposit : {Deposit::Cpu, Deposit::Gpu}) {
                     if (visibility == Visibility::Cpu && deposit == Deposit::Gpu) continue;
-                    SonarConfig& config = all.emplace_back(plainSonar(model), RenderOptions{}).first;
+                    SonarConfig config = plainSonar(model);
                     config.visibility = visibility;
                     config.deposit = deposit;
                     config.beam_geometry = beams;
                     if (deposit == Deposit::Cpu) config.absorption.emplace().db_per_m = 0.1;
+                    all.emplace_back(config, RenderOptions{});
                     if (model != Model::Physical) continue;
                     SonarConfig& patterned = all.emplace_back(config, RenderOptions{}).first;
                     acoustics::BeamLaw& law = patterned.beam_pattern.emplace().receive.elevation.emplace();
                     law.width_deg = 20;
+                    for (const VolumeLayer& water : {VolumeLayer{{}, {}, -70}, VolumeLayer{1, 5, -70}})
+                        all.emplace_back(config, RenderOptions{}).first.volume = {water};
                 }
     for (Deposit deposit : {Deposit::Cpu, Deposit::Gpu}) {
         for (Estimator estimator : {Estimator::Nearest, Estimator::NearestJitter}) {
@@ -254,7 +266,7 @@ std::vector<std::pair<SonarConfig, RenderOptions>> sonarsOfAllFeatures() {
 TEST(OmissionTest, WhatIsCompiledAndRunIsWhatThePlanSays) {
     Features seen;
     for (const auto& [config, options] : sonarsOfAllFeatures())
-        for (const types::GeometryPtr& geometry : {types::GeometryPtr(test::surfaces()), unmapped()}) {
+        for (const types::GeometryPtr& geometry : {types::GeometryPtr(test::surfaces()), unmapped(), measured()}) {
             SonarRenderer renderer(config, geometry, options);
             types::Sonar ping;
             renderer.render(test::snapshotOf(geometry, {}, 0.1, 0.15), ping);

@@ -55,7 +55,7 @@ TEST(PlanTest, ThePlainPhysicalSonarCompilesNothingElseAndTellsWhy) {
                                "volume reverberation", "multipath"})
         EXPECT_EQ(reason(plan, effect), "not configured") << effect;
     EXPECT_EQ(reason(plan, "normal maps"), "no material has one");
-    EXPECT_EQ(reason(plan, "specular lobe"), "no material has a roughness_slope");
+    EXPECT_EQ(reason(plan, "specular lobe"), "no material has a reflection and a roughness_slope");
     EXPECT_THAT(reason(plan, "refraction"), HasSubstr("< 2.6 m"));
 }
 

@@ -1,4 +1,4 @@
-// Lines of a side-scan against closed forms (ACOUSTICS.md 9.10).
+// Lines of a side-scan against closed forms (ACOUSTICS.md 9.11).
 #include <gmock/gmock.h>
 
 #include <cmath>

@@ -152,8 +152,26 @@ TEST(SonarConfigTest, ValuesOutOfBoundsAreRefused) {
 }
 
 TEST(SonarConfigTest, WhatIsNotBuiltYetSaysSo) {
-    for (const char* yaml : {"volume: {}", "multipath: {}"})
-        EXPECT_THAT(faultsOf<SonarConfig>(yaml), ElementsAre(HasSubstr("not built yet"))) << yaml;
+    EXPECT_THAT(faultsOf<SonarConfig>("multipath: {}"), ElementsAre(HasSubstr("not built yet")));
+}
+
+TEST(SonarConfigTest, WaterScattersByOneStrengthOrByLayers) {
+    const auto fault = [](const char* yaml, const char* text) {
+        EXPECT_THAT(faultsOf<SonarConfig>(yaml), ElementsAre(HasSubstr(text))) << yaml;
+    };
+    EXPECT_THAT(faultsOf<SonarConfig>("volume: {strength_db: -70}"), IsEmpty());
+    EXPECT_THAT(
+        faultsOf<SonarConfig>("volume: [{top_m: 1, bottom_m: 5, strength_db: -70}, {top_m: 5, strength_db: -80}]"),
+        IsEmpty());
+    fault("volume: {}", "volume: has no strength_db");
+    fault("volume: -70", "volume: is -70; must be a list");
+    fault("volume: {strength_db: 1}", "volume.strength_db: is 1");
+    fault("volume: [{strength_db: -70}, {top_m: 5, bottom_m: 2, strength_db: -70}]",
+          "volume[1].bottom_m: is 2, not below top_m, 5");
+    fault("{model: cerqueira2017, volume: {strength_db: -70}}", "belongs to physical");
+    std::string many = "volume: [";
+    for (int i = 0; i < 17; ++i) many += "{strength_db: -70},";
+    fault((many + "]").c_str(), "volume: has 17 layers; may have 16");
 }
 
 TEST(SonarConfigTest, BeamsAndPulsesNeedWhatTheyAreMadeOf) {

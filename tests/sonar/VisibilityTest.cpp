@@ -50,7 +50,8 @@ std::vector<Seen> drawn(const types::Snapshot& snapshot, const std::vector<ViewF
     gpu::EglContext context("software");
     Culler culler(*snapshot.geometry, {.range_min = 0, .reach = {1e4}, .draw_all = true});
     ThreadPool threads(1);
-    SurfacePass surface(context, {*snapshot.geometry, frusta, {}, 1e-3, true}, culler, threads);
+    const MaterialLaws laws = makeMaterialLaws({}, *snapshot.geometry);
+    SurfacePass surface(context, {*snapshot.geometry, laws, frusta, {}, 1e-3, true}, culler, threads);
     culler.place(snapshot);
     surface.cull(0);
     surface.draw(0);

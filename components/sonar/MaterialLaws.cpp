@@ -1,0 +1,130 @@
+#include "components/sonar/MaterialLaws.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <numbers>
+
+#include "components/acoustics/BackscatterTable.hpp"
+#include "components/acoustics/Seabed.hpp"
+#include "components/acoustics/SeabedBackscatter.hpp"
+
+namespace insonify::sonar {
+namespace {
+
+static_assert(acoustics::BackscatterTable::entries == BACKSCATTER_ENTRIES);
+
+/** What shaders/backscatter.glsl reads and computes. */
+struct Shared {
+    const double* entries;
+    double backscatterEntry(uint i) const { return entries[i]; }
+    static double exp(float x) { return double{std::exp(x)}; }
+    static double min(double a, double b) { return std::min(a, b); }
+    static double max(double a, double b) { return std::max(a, b); }
+    static uint min(uint a, uint b) { return std::min(a, b); }
+#include "shaders/backscatter.glsl"
+};
+
+/** Adds tables, that of a seabed once. */
+class TableList {
+public:
+    TableList(const SonarConfig& config, MaterialLaws& laws) : config_(config), laws_(laws) {}
+
+    /** Number of the table that a material follows; -1: it follows Lambert's law. */
+    int of(const types::Material& material) {
+        if (!material.measured.empty()) return addMeasured(material);
+        if (material.seabed.empty()) return -1;
+        laws_.lacks_frequency = !config_.frequency_khz;
+        if (!config_.frequency_khz) return -1;
+        const auto [known, is_new] = seabeds_.try_emplace(material.seabed, -1);
+        if (is_new) known->second = addSeabed(material.seabed);
+        return known->second;
+    }
+
+private:
+    int add(const acoustics::BackscatterTable& table) {
+        laws_.tables.insert(laws_.tables.end(), table.values().begin(), table.values().end());
+        return static_cast<int>(laws_.tables.size() / BACKSCATTER_ENTRIES) - 1;
+    }
+    int addMeasured(const types::Material& material) {
+        acoustics::Curve curve;
+        for (const glm::dvec2& point : material.measured) {
+            curve.x.push_back(point.x);
+            curve.y.push_back(point.y);
+        }
+        laws_.has_measured = true;
+        return add(acoustics::BackscatterTable(
+            [&](double grazing) { return acoustics::measuredSection(curve, grazing); }));
+    }
+    int addSeabed(const std::string& name) {
+        const acoustics::SeabedBackscatter seabed(acoustics::seabedNamed(name).value(), *config_.frequency_khz,
+                                                  config_.speedOfSound());
+        laws_.has_seabeds = true;
+        laws_.outside_validity = acoustics::outsideSeabedModel(*config_.frequency_khz, config_.speedOfSound());
+        return add(acoustics::BackscatterTable([&](double grazing) { return seabed.crossSection(grazing); }));
+    }
+
+    const SonarConfig& config_;
+    MaterialLaws& laws_;
+    std::map<std::string, int> seabeds_;
+};
+
+vec4 lawOf(const types::Material& material, TableList& tables) {
+    vec4 law(static_cast<float>(tables.of(material)), 0, 0, 0);
+    if (!material.roughness_slope) return law;
+    law.y = material.reflection * material.reflection / (4 * std::numbers::pi_v<float>);
+    law.z = *material.roughness_slope * *material.roughness_slope;
+    return law;
+}
+
+}  // namespace
+
+bool MaterialLaws::hasLobes() const {
+    return std::ranges::any_of(records, [](const MaterialRecord& record) { return record.law.y > 0; });
+}
+
+bool MaterialLaws::followsLambert(size_t material) const {
+    return Shared{tables.data()}.followsLambert(records[material].law);
+}
+
+double MaterialLaws::overCosine(size_t material, double cosine, double facet_slope, double sample_angle) const {
+    Shared shared{tables.data()};
+    const MaterialRecord& record = records[material];
+    return shared.backscatterOverCosine(record.law, double{record.values.x}, cosine,
+                                        facet_slope + shared.slopeOfSample(sample_angle));
+}
+
+double MaterialLaws::loudest() const {
+    double strongest = 0;
+    for (const MaterialRecord& record : records)
+        if (record.law.x < 0) strongest = std::max(strongest, double{record.values.x});
+    for (size_t i = 0; i < tables.size(); ++i)
+        strongest = std::max(strongest, tables[i]);
+    return strongest;
+}
+
+double MaterialLaws::loudestLobe(double sample_angle) const {
+    Shared shared{tables.data()};
+    double strongest = 0;
+    for (const MaterialRecord& record : records) {
+        if (record.law.y == 0) continue;
+        const double slope = double{record.law.z} + shared.slopeOfSample(sample_angle);
+        for (double cosine = 1; cosine > 1e-3; cosine *= 0.95)
+            strongest = std::max(strongest, shared.lobeOverCosine(double{record.law.y}, slope, cosine));
+    }
+    return strongest;
+}
+
+MaterialLaws makeMaterialLaws(const SonarConfig& config, const types::Geometry& geometry) {
+    MaterialLaws laws;
+    TableList tables(config, laws);
+    if (config.frequency_khz) laws.wavelength = config.speedOfSound() / (1000 * *config.frequency_khz);
+    for (const types::Material& material : geometry.materials) {
+        const vec4 values(std::pow(10.0f, material.lambert_db / 10), material.reflectivity, material.normal_scale, 0);
+        const vec4 law = config.model == Model::Physical ? lawOf(material, tables) : vec4(-1, 0, 0, 0);
+        laws.records.push_back({values, law});
+    }
+    return laws;
+}
+
+}  // namespace insonify::sonar

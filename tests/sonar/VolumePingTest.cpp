@@ -1,0 +1,149 @@
+// Pings in water that scatters sound back, against closed forms (ACOUSTICS.md 3.9). Every form stands beside a
+// deliberately wrong one, which must fail by the same measure.
+#include <gmock/gmock.h>
+
+#include "components/sonar/SonarRenderer.hpp"
+#include "tests/support/ClosedForms.hpp"
+#include "tests/support/Scenes.hpp"
+#include "types/Angle.hpp"
+
+namespace insonify::sonar {
+namespace {
+
+using test::expectForm;
+using types::radians;
+
+constexpr double half = radians(20), strength = 1e-7;
+
+types::Sonar pingOf(const SonarConfig& config, const types::Snapshot& snapshot) {
+    SonarRenderer renderer(config, snapshot.geometry);
+    types::Sonar ping;
+    renderer.render(snapshot, ping);
+    return ping;
+}
+
+VolumeLayer layer(double strength_db, std::optional<double> top = {}, std::optional<double> bottom = {}) {
+    return {top, bottom, strength_db};
+}
+
+SonarConfig plainSonar() {
+    SonarConfig config;
+    config.speed_of_sound = 1000;  // bins of whole microseconds
+    config.range = 30;
+    config.range_min = 1;
+    config.bin_count = 300;
+    config.beam_count = 8;
+    config.field_of_view_deg = 80;
+    config.beam_height_deg = 40;
+    config.quality.rows = 512;
+    config.quality.columns_per_beam = 4;
+    return config;
+}
+
+SonarConfig sonarIn(std::vector<VolumeLayer> volume) {
+    SonarConfig config = plainSonar();
+    config.volume = std::move(volume);
+    return config;
+}
+
+/** The ways in which echoes are found and summed. */
+std::vector<SonarConfig> everyWay(const SonarConfig& config) {
+    std::vector<SonarConfig> all(3, config);
+    all[0].visibility = Visibility::Cpu;
+    all[1].visibility = all[2].visibility = Visibility::Gl;
+    all[1].deposit = Deposit::Cpu;
+    all[2].deposit = Deposit::Gpu;
+    for (SonarConfig& each : all) each.device = each.visibility == Visibility::Gl ? "software" : "";
+    return all;
+}
+
+/** Of a beam: the water's strength times the solid angle that hears it at a range, over the range squared. */
+test::Form waterOf(const std::function<double(double)>& solid_angle) {
+    return test::between(1, 1e9, [=](double near, double far) {
+        return test::integral(near, far, [=](double r) { return strength * solid_angle(r) / (r * r); });
+    });
+}
+
+/** Ground that gives nothing back and hides the water. */
+types::Snapshot overSilentGround(double height) {
+    return test::snapshotOf(test::sceneOf({test::ground(static_cast<float>(-height))}, -200));
+}
+
+TEST(VolumePingTest, ABottomHidesTheWaterBelowIt) {
+    const double height = 3, delta = radians(10);
+    const auto right =
+        waterOf([=](double r) { return delta * (std::sin(half) + std::min(std::sin(half), height / r)); });
+    const auto open = waterOf([=](double) { return 2 * delta * std::sin(half); });
+    for (const SonarConfig& way : everyWay(sonarIn({layer(-70)})))
+        expectForm(pingOf(way, overSilentGround(height)), right, open);
+}
+
+TEST(VolumePingTest, OpenWaterIsHeardByThePatternInElevation) {
+    SonarConfig config = sonarIn({layer(-70)});
+    acoustics::BeamLaw law;
+    law.weighting = acoustics::Weighting::Gaussian;
+    law.width_deg = 10;
+    config.beam_pattern.emplace().transmit.elevation = law;
+    const acoustics::BeamPattern pattern(law);
+    const double heard =
+        test::integral(-1.5, 1.5, [&](double angle) { return pattern.power(angle) * std::cos(angle); });
+    const auto right = waterOf([=](double) { return radians(10) * heard; });
+    const auto box = waterOf([=](double) { return 2 * radians(10) * std::sin(half); });
+    const auto far = test::snapshotOf(test::sceneOf({test::wall(90)}));
+    for (const SonarConfig& way : everyWay(config)) expectForm(pingOf(way, far), right, box);
+}
+
+TEST(VolumePingTest, ALayerIsHeardWhereItLies) {
+    // Between 1 and 2 m below a level sonar that is 4 m below the surface, over ground at 3 m below it.
+    const double delta = radians(10), top = 1, bottom = 2;
+    auto snapshot = overSilentGround(3);
+    snapshot.water_surface = 4;
+    const auto right =
+        waterOf([=](double r) { return delta * std::max(0.0, std::min(bottom / r, std::sin(half)) - top / r); });
+    const auto deeper =
+        waterOf([=](double r) { return delta * std::max(0.0, std::min(bottom / r, std::sin(half)) - 1.2 * top / r); });
+    SonarConfig config = sonarIn({layer(-70, 5, 6), layer(-200, 6, 7)});
+    config.quality.rows = 1024;
+    for (const SonarConfig& way : everyWay(config))
+        expectForm(pingOf(way, snapshot), right, deeper);
+}
+
+TEST(VolumePingTest, LayersThatShareAllDepthsAreOneWater) {
+    const auto snapshot = overSilentGround(3);
+    for (const SonarConfig& way : everyWay(sonarIn({layer(-70)}))) {
+        SonarConfig split = way;
+        split.volume = {layer(-70, {}, 1), layer(-70, 1, {})};
+        const types::Sonar whole = pingOf(way, snapshot), both = pingOf(split, snapshot);
+        const test::Deviation off = test::deviation(both, test::formOf(whole));
+        EXPECT_LT(off.worst_db, 0.1) << off;
+    }
+}
+
+TEST(VolumePingTest, WhatIsNearerThanTheBlankingHidesAllBehindIt) {
+    const auto plate = test::snapshotOf(test::sceneOf({test::wall(0.5)}));
+    for (const SonarConfig& way : everyWay(sonarIn({layer(-70)})))
+        EXPECT_THAT(pingOf(way, plate).bins, testing::Each(testing::Lt(1e-14f)));
+}
+
+TEST(VolumePingTest, WaterFarBeyondTheSceneIsHeardWithNothingInView) {
+    const auto behind = test::snapshotOf(test::sceneOf({test::wall(-5)}));
+    const auto right = waterOf([=](double) { return 2 * radians(10) * std::sin(half); });
+    for (const SonarConfig& way : everyWay(sonarIn({layer(-70)})))
+        expectForm(pingOf(way, behind), right, test::times(1.02, right));
+    for (const SonarConfig& way : everyWay(sonarIn({layer(-70, -1000, 1000)})))
+        expectForm(pingOf(way, behind), right, test::times(1.02, right));
+}
+
+TEST(VolumePingTest, WaterThatScattersNothingLeavesEveryBinAsItIs) {
+    const auto snapshot = test::snapshotOf(test::sceneOf({test::ground(-3)}));
+    for (const SonarConfig& way : everyWay(plainSonar())) {
+        SonarConfig silent = way, layered = way;
+        silent.volume = {layer(-200)};
+        layered.volume = {layer(-200, 0, 10)};
+        EXPECT_EQ(pingOf(silent, snapshot).bins, pingOf(way, snapshot).bins);
+        EXPECT_EQ(pingOf(layered, snapshot).bins, pingOf(way, snapshot).bins);
+    }
+}
+
+}  // namespace
+}  // namespace insonify::sonar
