@@ -22,6 +22,7 @@ struct PointCloud {
     std::vector<glm::dvec4> colors;
 
     void clear() { points.clear(), colors.clear(); }
+    void reserve(size_t count) { points.reserve(count), colors.reserve(count); }
     /** Adds a point [m] with the intensity of its echo [1]. */
     void add(const glm::dvec3& point, double intensity) {
         points.push_back(point);

@@ -16,7 +16,7 @@ public:
 
     RangeImage(uint32_t width, ColourMap colour_map);
 
-    void add(types::DepthMapPtr map) { map_ = std::move(map); }
+    void add(const types::DepthMapPtr& map) { map_ = map; }
     /** @param picture becomes a BGR image, 8 bits a channel, with the map's time. Its memory is used again.
      *  Throws std::runtime_error for a map that has other numbers of distances than it says. */
     void paint(types::Image& picture);

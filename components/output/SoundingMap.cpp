@@ -20,9 +20,9 @@ const cv::Point colour_bar{10, FanLayout::title_height + 24};
 bool isFinite(const glm::dvec3& p) { return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z); }
 
 template <class Use>
-void forEachPoint(const std::deque<types::PointCloudPtr>& clouds, Use&& use) {
-    for (const types::PointCloudPtr& cloud : clouds)
-        for (const glm::dvec3& point : cloud->points)
+void forEachPoint(const std::vector<std::vector<glm::dvec3>>& clouds, Use&& use) {
+    for (const std::vector<glm::dvec3>& cloud : clouds)
+        for (const glm::dvec3& point : cloud)
             if (isFinite(point)) use(point);
 }
 
@@ -31,9 +31,11 @@ void forEachPoint(const std::deque<types::PointCloudPtr>& clouds, Use&& use) {
 SoundingMap::SoundingMap(uint32_t width, ColourMap colour_map)
     : width_(static_cast<int>(width + width % 2)), palette_(paletteOf(colour_map)) {}
 
-void SoundingMap::add(types::PointCloudPtr cloud) {
-    clouds_.push_back(std::move(cloud));
-    if (clouds_.size() > history) clouds_.pop_front();
+void SoundingMap::add(const types::PointCloudPtr& cloud) {
+    if (next_ == clouds_.size()) clouds_.emplace_back();
+    clouds_[next_] = cloud->points;
+    next_ = (next_ + 1) % history;
+    time_ = cloud->time;
 }
 
 SoundingMap::Bounds SoundingMap::bounds() const {
@@ -64,8 +66,7 @@ cv::Point SoundingMap::pixel(double x, double y) const {
 void SoundingMap::paint(types::Image& picture) {
     const Bounds all = bounds();
     fit(all);
-    const types::Time time = clouds_.empty() ? types::Time{} : clouds_.back()->time;
-    cv::Mat canvas = openCanvas(picture, {width_, chart_.br().y + bottom_margin}, time);
+    cv::Mat canvas = openCanvas(picture, {width_, chart_.br().y + bottom_margin}, time_);
     paintBackground(canvas, palette_, colour_bar);
     canvas(chart_).setTo(cv::Scalar(0, 0, 0));
     drawPoints(canvas, all);

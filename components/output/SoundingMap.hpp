@@ -1,7 +1,6 @@
 #pragma once
-#include <deque>
 #include <opencv2/core.hpp>
-#include <string>
+#include <vector>
 
 #include "components/output/Colours.hpp"
 #include "components/output/Overlay.hpp"
@@ -21,10 +20,10 @@ public:
     SoundingMap(uint32_t width, ColourMap colour_map);
 
     /** Takes note of the points of a ping; those that are not finite are none. */
-    void add(types::PointCloudPtr cloud);
+    void add(const types::PointCloudPtr& cloud);
     /** @param picture becomes a BGR image, 8 bits a channel, with the newest cloud's time. Its memory is used again. */
     void paint(types::Image& picture);
-    void clear() { clouds_.clear(); }
+    void clear() { clouds_.clear(), next_ = 0; }
 
     static constexpr size_t history = 2000;  ///< Clouds that are shown.
 
@@ -44,9 +43,11 @@ private:
 
     int width_;
     Palette palette_;
-    std::deque<types::PointCloudPtr> clouds_;
-    cv::Rect chart_;      ///< Where points are drawn.
-    cv::Point2d centre_;  ///< x north, y west of the middle of the chart [m].
+    std::vector<std::vector<glm::dvec3>> clouds_;  ///< A ring, whose memory is used again.
+    size_t next_ = 0;                              ///< Place of the next in it.
+    types::Time time_;                             ///< Of the newest.
+    cv::Rect chart_;                               ///< Where points are drawn.
+    cv::Point2d centre_;                           ///< x north, y west of the middle of the chart [m].
     double pixels_per_m_ = 1;
 };
 

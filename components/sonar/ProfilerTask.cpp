@@ -8,6 +8,7 @@ void ProfilerTask::tellMore(const types::Sonar& sample, const types::Pose& sonar
     if (!soundings.connected()) return;
     const auto cloud = clouds_.take();
     cloud->clear();
+    cloud->reserve(sample.beam_count);
     cloud->time = sample.time;
     const Detector detector(config->detection, sample);
     for (uint32_t beam = 0; beam < sample.beam_count; ++beam)
@@ -17,7 +18,7 @@ void ProfilerTask::tellMore(const types::Sonar& sample, const types::Pose& sonar
             cloud->add(sonar.position + sonar.orientation * direction * found->range,
                        static_cast<double>(found->intensity));
         }
-    clouds_.stock(*cloud);
+    clouds_.stock(*cloud, [&](types::PointCloud& other) { other.reserve(sample.beam_count); });
     soundings.write(cloud);
 }
 

@@ -144,6 +144,7 @@ void Sonar3dTask::tellMore(const types::Sonar& sample, const types::Pose& sonar)
 void Sonar3dTask::writePoints(const types::Sonar& sample, const types::Pose& sonar) {
     const auto cloud = clouds_.take();
     cloud->clear();
+    cloud->reserve(map_.distances.size());
     cloud->time = sample.time;
     for (size_t row = 0; row < map_.vertical_size; ++row)
         for (size_t column = 0; column < map_.horizontal_size; ++column) {
@@ -152,7 +153,7 @@ void Sonar3dTask::writePoints(const types::Sonar& sample, const types::Pose& son
             const glm::dvec3 offset = map_.direction(row, column) * static_cast<double>(map_.distances[cell]);
             cloud->add(sonar.position + sonar.orientation * offset, static_cast<double>(map_.remissions[cell]));
         }
-    clouds_.stock(*cloud);
+    clouds_.stock(*cloud, [this](types::PointCloud& other) { other.reserve(map_.distances.size()); });
     soundings.write(cloud);
 }
 
