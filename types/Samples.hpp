@@ -10,8 +10,11 @@
 #include <variant>
 
 #include "types/Angle.hpp"
+#include "types/DepthMap.hpp"
 #include "types/Image.hpp"
+#include "types/PointCloud.hpp"
 #include "types/Pose.hpp"
+#include "types/Range.hpp"
 #include "types/Sonar.hpp"
 #include "types/SonarReturns.hpp"
 #include "types/SonarScan.hpp"
@@ -19,8 +22,8 @@
 
 namespace insonify::types {
 
-using SampleTypes = std::tuple<Sonar, SonarBeam, SonarScan, SonarTruth, SonarReturns, Pose, Image, Time, Angle, double,
-                               float, int32_t, int64_t, bool, std::string>;
+using SampleTypes = std::tuple<Sonar, SonarBeam, SonarScan, SonarTruth, SonarReturns, Pose, Image, PointCloud, DepthMap,
+                               Range, Time, Angle, double, float, int32_t, int64_t, bool, std::string>;
 
 /** What travels on a port for a T: samples that say so (`shared`), by reference, the others as they are. */
 template <class T>
@@ -119,6 +122,13 @@ struct Columns<Pose> {
         const auto& [p, q] = std::tie(pose.position, pose.orientation);
         visit("position", std::array{"x", "y", "z"}, std::array{p.x, p.y, p.z});
         visit("orientation", std::array{"qw", "qx", "qy", "qz"}, std::array{q.w, q.x, q.y, q.z});
+    }
+};
+template <>
+struct Columns<Range> {
+    template <class Visit>
+    static void forEach(const Range& sample, Visit&& visit) {
+        visit("range", std::array{"range"}, std::array{sample.range});
     }
 };
 struct AnyColumns {

@@ -77,7 +77,9 @@ Json frequencyOf(const TaskSpec* sonar) {
 }
 
 Json pingMeaning(const DeploymentSpec& spec, const std::string& task) {
-    const TaskSpec* sonar = upstream(spec, task, {"sonar::SonarTask", "sonar::ScanningSonarTask"});
+    const TaskSpec* sonar = upstream(spec, task,
+                                     {"sonar::SonarTask", "sonar::ScanningSonarTask", "sonar::ProfilerTask",
+                                      "sonar::SideScanTask", "sonar::AltimeterTask"});
     const TaskSpec* receiver = upstream(spec, task, {"receiver::ReceiverTask"});
     const TaskSpec* noise = upstream(spec, task, {"noise::NoiseTask"});
     const TaskSpec* scene = upstream(spec, task, {"scene::SceneTask"});
@@ -121,6 +123,11 @@ Json fieldsOf() {
     return fields;
 }
 
+Json cloudMeaning() {
+    return {{"points", "in the world, x north, y west, z up [m]"},
+            {"intensity", "of the strongest bin of each return, as the sonar's bins are"}};
+}
+
 std::string metadataOf(const log::Stream& stream, const char* key) {
     const auto found = stream.metadata.find(key);
     return found == stream.metadata.end() ? "" : found->second;
@@ -145,6 +152,8 @@ Json meaningOf(const log::Reader& log, const log::Stream& stream) {
         meaning.update(fieldsOf<types::SonarTruth>());
     else if (stream.holds<types::SonarReturns>())
         meaning.update(fieldsOf<types::SonarReturns>());
+    else if (stream.holds<types::PointCloud>())
+        meaning.update(cloudMeaning());
     else
         meaning["type"] = stream.type;
     if (const std::string names = metadataOf(stream, "insonify_objects"); !names.empty())

@@ -83,6 +83,25 @@ void writeGrids(Reader& log, const std::string& stream, const std::filesystem::p
     csv.close();
 }
 
+/** A line for each point, or for each cell. */
+void writePart(CsvFile& csv, const types::PointCloud& cloud, types::Time time) {
+    for (size_t k = 0; k < cloud.points.size(); ++k)
+        csv.line(time, cloud.points[k].x, cloud.points[k].y, cloud.points[k].z, cloud.intensity(k));
+}
+void writePart(CsvFile& csv, const types::DepthMap& map, types::Time time) {
+    for (size_t cell = 0; cell < map.distances.size(); ++cell)
+        csv.line(time, cell / map.horizontal_size, cell % map.horizontal_size, map.distances[cell],
+                 map.remissions.empty() ? 0 : map.remissions[cell]);
+}
+
+template <class T>
+void writeParts(Reader& log, const std::string& stream, const std::filesystem::path& path, const char* header) {
+    CsvFile csv(path, header);
+    log.forEach<T>(stream,
+                   [&](const T& sample, const SampleRef& at) { writePart(csv, sample, sampleTime(sample, at.time)); });
+    csv.close();
+}
+
 /** Text in quotes, those within it doubled. */
 std::string quoted(const std::string& text) {
     std::string result = "\"";
@@ -125,6 +144,10 @@ void writeRows(Reader& log, const std::string& stream, const std::filesystem::pa
 void exportCsv(Reader& log, const std::string& stream, const std::filesystem::path& path) {
     const Stream& declared = log.streams()[log.indexOf(stream)];
     if (holdsPings(declared)) return writePings(log, stream, path);
+    if (declared.holds<types::PointCloud>())
+        return writeParts<types::PointCloud>(log, stream, path, "time,x,y,z,intensity");
+    if (declared.holds<types::DepthMap>())
+        return writeParts<types::DepthMap>(log, stream, path, "time,row,column,distance,remission");
     bool done = false;
     types::forEachSampleType([&]<class T>(std::type_identity<T>) {
         if (!declared.holds<T>()) return;
@@ -142,7 +165,8 @@ void exportCsv(Reader& log, const std::string& stream, const std::filesystem::pa
         throw types::ConfigError(log.path(), stream,
                                  "holds " + declared.type +
                                      "; as text can be written pings, beams and scans of sonars, truth and returns of "
-                                     "pings, poses, numbers and texts (pictures: .png and .npz)");
+                                     "pings, points, maps of "
+                                     "distances, ranges, poses, numbers and texts (pictures: .png and .npz)");
 }
 
 }  // namespace insonify::log

@@ -9,7 +9,9 @@ namespace insonify::log {
 namespace {
 
 using Path = std::filesystem::path;
+using types::DepthMap;
 using types::Image;
+using types::PointCloud;
 using types::Sonar;
 
 /** Successive samples of one shape. */
@@ -33,6 +35,7 @@ std::vector<size_t> shapeOf(const Sonar& ping) { return {ping.beam_count, ping.b
 std::vector<size_t> shapeOf(const Image& picture) {
     return {picture.size.height, picture.size.width, picture.pixel_size};
 }
+std::vector<size_t> shapeOf(const DepthMap& map) { return {map.vertical_size, map.horizontal_size}; }
 
 void readShaped(Reader& log, const SampleRef& at, Sonar& ping) { readPing(log, at, ping); }
 void readShaped(Reader& log, const SampleRef& at, Image& picture) {
@@ -47,6 +50,13 @@ void readShaped(Reader& log, const SampleRef& at, T& sample) {
     log.read(at, sample);
     if (const char* fault = sample.diagnostic())
         throw types::ConfigError(log.path(), log.streams()[at.stream].name, std::string("a sample ") + fault);
+}
+
+void readShaped(Reader& log, const SampleRef& at, DepthMap& map) {
+    log.read(at, map);
+    if (const char* const fault = map.diagnostic())
+        throw types::ConfigError(log.path(), log.streams()[at.stream].name, std::string("a map ") + fault);
+    map.remissions.resize(map.distances.size());
 }
 
 template <class T>
@@ -149,12 +159,54 @@ void writeRun(Reader& log, const Run& run, NpzFile& npz, Image picture) {
     npz.array("time", {time.size()}, time);
 }
 
+void writeRun(Reader& log, const Run& run, NpzFile& npz, DepthMap map) {
+    std::vector<float> remissions;
+    std::vector<double> time, vertical, horizontal;
+    npz.begin("distances", numpyType<float>(), run.whole());
+    for (const SampleRef& at : run.samples) {
+        readShaped(log, at, map);
+        npz.append(map.distances.data(), map.distances.size() * sizeof(float));
+        remissions.insert(remissions.end(), map.remissions.begin(), map.remissions.end());
+        time.push_back(sampleTime(map, at.time).seconds());
+        vertical = map.vertical_interval, horizontal = map.horizontal_interval;
+    }
+    npz.end();
+    npz.array("remissions", run.whole(), remissions);
+    npz.array("time", {time.size()}, time);
+    npz.array("vertical_interval", {vertical.size()}, vertical);
+    npz.array("horizontal_interval", {horizontal.size()}, horizontal);
+}
+
+/** All points one after the other, each with its time. */
+void writePoints(Reader& log, const std::string& stream, NpzFile& npz) {
+    std::vector<double> time, points, intensity;
+    log.forEach<PointCloud>(stream, [&](const PointCloud& cloud, const SampleRef& at) {
+        for (size_t k = 0; k < cloud.points.size(); ++k) {
+            const glm::dvec3& p = cloud.points[k];
+            time.push_back(sampleTime(cloud, at.time).seconds());
+            points.insert(points.end(), {p.x, p.y, p.z});
+            intensity.push_back(cloud.intensity(k));
+        }
+    });
+    npz.array("time", {time.size()}, time);
+    npz.array("points", {time.size(), 3}, points);
+    npz.array("intensity", {time.size()}, intensity);
+}
+
 /** One text; nothing when it is empty. */
 void writeMeta(NpzFile& npz, const std::string& meta) {
     if (meta.empty()) return;
     npz.begin("meta", "|S" + std::to_string(meta.size()), {});
     npz.append(meta.data(), meta.size());
     npz.end();
+}
+
+std::vector<Path> writeCloud(Reader& log, const std::string& stream, const Path& path, const std::string& meta) {
+    NpzFile npz(path);
+    writePoints(log, stream, npz);
+    writeMeta(npz, meta);
+    npz.close();
+    return {path};
 }
 
 template <class T>
@@ -230,6 +282,8 @@ std::vector<Path> exportNpz(Reader& log, const std::string& stream, const Path& 
     const Stream& declared = log.streams()[log.indexOf(stream)];
     if (holdsPings(declared)) return writeRuns<Sonar>(log, stream, path, meta);
     if (declared.holds<Image>()) return writeRuns<Image>(log, stream, path, meta);
+    if (declared.holds<DepthMap>()) return writeRuns<DepthMap>(log, stream, path, meta);
+    if (declared.holds<PointCloud>()) return writeCloud(log, stream, path, meta);
     bool done = false;
     std::vector<Path> files{path};
     types::forEachSampleType([&]<class T>(std::type_identity<T>) {
@@ -248,7 +302,7 @@ std::vector<Path> exportNpz(Reader& log, const std::string& stream, const Path& 
         throw types::ConfigError(log.path(), stream,
                                  "holds " + declared.type +
                                      "; as arrays can be written pings, beams and scans of sonars, truth and returns "
-                                     "of pings, poses, pictures, numbers and texts");
+                                     "of pings, points, maps of distances, ranges, poses, pictures, numbers and texts");
     return files;
 }
 

@@ -66,8 +66,14 @@ public:
 protected:
     /** Last changes to a snapshot with a valid pose before it is rendered; a reason refuses it. */
     virtual const char* steer(types::Snapshot& /*scene*/) { return nullptr; }
+    /** Makes the ping of `scene`; whether it has any echo. */
+    virtual bool renderPing(SonarRenderer& renderer, types::Snapshot& scene, types::Sonar& sample);
     /** Last changes to a ping before it is written. */
     virtual void stampBearings(types::Sonar& /*sample*/) {}
+    /** What else there is to tell of a ping that is about to be written, from where it was rendered. */
+    virtual void tellMore(const types::Sonar& /*sample*/, const types::Pose& /*sonar*/) {}
+    /** Of a sonar that looks where this one does in one ping, to tell why it hears nothing. */
+    virtual RenderPlan coverage(const types::Snapshot& scene) const;
     /** Pings in which a turning head comes round [1]. */
     virtual int pingsPerTurn() const { return 1; }
 
@@ -99,6 +105,8 @@ private:
     /** In realtime, until the last echo of this ping's range is back; false: the task is to stop. */
     bool waitForLastEcho();
     void makeRenderer();
+    /** What is to be told of a ping in which there may be nothing. */
+    std::string troubleOf(bool heard, const types::Sonar& sample);
     /** Looks after the quality once a ping has been rendered, in `ms`; may render it again. */
     void followQuality(types::Sonar& sample, double ms);
 

@@ -1,7 +1,11 @@
 // No operator new on the sonars' threads after the first pings, even when later ones see more.
 #include <gmock/gmock.h>
 
+#include "components/sonar/AltimeterTask.hpp"
+#include "components/sonar/ProfilerTask.hpp"
 #include "components/sonar/ScanningSonarTask.hpp"
+#include "components/sonar/SideScanTask.hpp"
+#include "components/sonar/Sonar3dTask.hpp"
 #include "components/sonar/SonarRenderer.hpp"
 #include "components/sonar/SonarTask.hpp"
 #include "tests/support/Allocations.hpp"
@@ -63,9 +67,22 @@ int pingsThatAllocate(const SonarConfig& config, int count) {
 
 enum class Truth { Unheard, Heard };
 
+/** A reader of what a task tells beside its pings. */
+template <class Task>
+struct Beside {
+    explicit Beside(Task&) {}
+};
+template <class Task>
+requires requires(Task& task) { task.soundings; }
+struct Beside<Task> {
+    explicit Beside(Task& task) { task.soundings.connectTo(reader.port, framework::ConnPolicy::data()); }
+    test::Reader<types::PointCloudPtr> reader;
+};
+
 template <class Task, class Config>
 void expectNoAllocation(const Config& config, Truth truth = Truth::Unheard) {
     Task task("sonar");
+    const Beside<Task> beside(task);
     test::Writer<types::SnapshotPtr> in;
     test::Reader<types::SonarPtr> out;
     test::Reader<types::SonarTruthPtr> truths{"truths"};
@@ -189,6 +206,25 @@ TEST(AllocationTest, NorInThePublishedModel) {
     SonarConfig config = fan();
     config.model = Model::Cerqueira2017;
     expectNoAllocation<SonarTask>(config);
+}
+
+TEST(AllocationTest, NorDoTheOtherKindsOfSonarThatTellMore) {
+    ProfilerConfig profiler;
+    profiler.sonar = fan();
+    expectNoAllocation<ProfilerTask>(profiler);
+    Sonar3dConfig grid;
+    grid.sonar.bin_count = 100;
+    grid.horizontal.beam_count = 16;
+    grid.vertical.beam_count = 8;
+    expectNoAllocation<Sonar3dTask>(grid);
+    SideScanConfig side_scan;
+    side_scan.sonar.bin_count = 100;
+    side_scan.sonar.quality.columns_per_beam = 64;
+    expectNoAllocation<SideScanTask>(side_scan);
+    AltimeterConfig altimeter;
+    altimeter.sonar.bin_count = 100;
+    altimeter.sonar.quality.rows = 64;
+    expectNoAllocation<AltimeterTask>(altimeter);
 }
 
 TEST(AllocationTest, AScanningSonarAllocatesNothingAfterItsFirstPings) {
