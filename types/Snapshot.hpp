@@ -1,6 +1,7 @@
 #pragma once
 #include <memory>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "types/Geometry.hpp"
@@ -14,6 +15,12 @@ struct MovedObject {
     glm::dmat4 world_from_object{1};
 };
 
+/** What gives an echo and is too small to be resolved. */
+struct PointTarget {
+    glm::dvec3 position{0};  ///< In the world [m].
+    double strength_db = 0;  ///< Target strength [dB re 1 m^2].
+};
+
 /** Everything that one ping needs, true at one instant. */
 struct Snapshot {
     static constexpr const char* type_name = "/insonify/Snapshot";
@@ -25,7 +32,9 @@ struct Snapshot {
         0;  ///< How far `sonar` may be carried on by its velocities, to the time of the ping [s].
     GeometryPtr geometry;
     std::vector<MovedObject> moved;
-    std::optional<double> water_surface;  ///< World z of the surface [m].
+    std::vector<PointTarget> targets;
+    std::shared_ptr<const std::vector<std::string>> target_names;  ///< Of each of `targets`; may be null without any.
+    std::optional<double> water_surface;                           ///< World z of the surface [m].
 };
 using SnapshotPtr = std::shared_ptr<const Snapshot>;
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 namespace insonify::acoustics {
 namespace {
@@ -21,6 +22,17 @@ Weighting weightingOf(PulseWindow window) {
 }
 
 }  // namespace
+
+void RingDownConfig::check(types::Diagnostics& diagnostics) const {
+    if (!level_db) diagnostics.push_back({"level_db", "is missing; give the level at range 0 [dB]"});
+    if (!decay_db_per_m) diagnostics.push_back({"decay_db_per_m", "is missing; give how fast the level falls [dB/m]"});
+}
+
+double RingDownConfig::mean(double low, double high) const {
+    const double rate = decay_db_per_m.value() * std::numbers::ln10 / 10;
+    const double fallen = -std::expm1(-rate * (high - low)) / (rate * (high - low));
+    return std::pow(10, *level_db / 10) * std::exp(-rate * low) * fallen;
+}
 
 void PulseConfig::check(types::Diagnostics& diagnostics) const {
     if (bandwidth_khz && duration_us)

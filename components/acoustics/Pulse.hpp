@@ -8,10 +8,29 @@ namespace insonify::acoustics {
 
 enum class PulseWindow { None, Hann, Hamming, Taylor };
 
+/** What a receiver hears of its own transmitter after the pulse: an intensity that falls exponentially. */
+struct RingDownConfig {
+    std::optional<double> level_db, decay_db_per_m;
+
+    template <class Self, class V>
+    static void describe(Self& self, V& visit) {
+        using types::Field;
+        visit(Field{"level_db", "dB", "at range 0, relative to the source at 1 m", -3000, 300}, self.level_db);
+        visit(Field{"decay_db_per_m", "dB/m", "per metre of slant range; 54.6 f / (Q c) of a resonance f of quality Q",
+                    0.01, 1e6},
+              self.decay_db_per_m);
+    }
+    void check(types::Diagnostics& diagnostics) const;
+
+    /** Mean intensity over slant ranges, relative to the source at 1 m [m, 1]. ACOUSTICS.md 5.15. */
+    double mean(double low, double high) const;
+};
+
 /** A tone of a duration, or a chirp of a bandwidth whose matched filter is weighted by a window. */
 struct PulseConfig {
     std::optional<double> bandwidth_khz, duration_us;
     std::optional<PulseWindow> window;
+    std::optional<RingDownConfig> ring_down;
 
     template <class Self, class V>
     static void describe(Self& self, V& visit) {
@@ -21,6 +40,8 @@ struct PulseConfig {
         visit(Field{"window", "", "of the matched filter; absent: none (Harris 1978; taylor: -30 dB, nbar 4)"},
               self.window);
         visit(Field{"duration_us", "us", "instead: of a tone", 0.1, 1e7}, self.duration_us);
+        visit(Field{"ring_down", "", "the transmitter as it is heard in the first bins; absent: not at all"},
+              self.ring_down);
     }
     void check(types::Diagnostics& diagnostics) const;
 };

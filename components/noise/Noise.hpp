@@ -24,6 +24,9 @@ public:
      *  @return how many gaussian factors were below 0 and clamped. */
     uint64_t add(const types::Sonar& clean, types::Sonar& noisy) const;
 
+    /** Mean intensity of what is added to a bin; 0 where nothing is [1]. */
+    double background() const { return static_cast<double>(ambient_) + static_cast<double>(additive_); }
+
 private:
     struct Run;
     uint64_t addTo(const Run& run) const;

@@ -1,6 +1,25 @@
 #include "components/noise/NoiseTask.hpp"
 
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
 namespace insonify::noise {
+namespace {
+
+/** Tells how far the loudest bin of a ping is below a mean intensity. */
+std::string burialText(const types::Sonar& ping, size_t loudest, double background) {
+    const double echo_db = 10 * std::log10(static_cast<double>(ping.bins[loudest]));
+    const double noise_db = 10 * std::log10(background);
+    const size_t beam = loudest / ping.bin_count, bin = loudest % ping.bin_count;
+    return fmt::format(
+        "the echoes are below the noise: the loudest, {:.4g} dB at {:.4g} m in beam {}, is {:.3g} dB below the mean of "
+        "the noise, {:.4g} dB; raise the source level, or lower the noise",
+        echo_db, ping.binStart(static_cast<double>(bin) + 0.5), beam, noise_db - echo_db, noise_db);
+}
+
+}  // namespace
 
 bool NoiseTask::configureHook() {
     noise_.emplace(*config);
@@ -9,6 +28,7 @@ bool NoiseTask::configureHook() {
 
 bool NoiseTask::startHook() {
     clamped_ = 0;
+    buried_ = {};
     return true;
 }
 
@@ -26,8 +46,19 @@ types::SonarPtr NoiseTask::withNoise(const types::SonarPtr& ping) {
     if (config->isNone()) return ping;
     const auto result = pool_.take();
     clamped_ += noise_->add(*ping, *result);
+    if (noise_->background() > 0) judge(*ping);
     pool_.stock(*result);
     return result;
+}
+
+void NoiseTask::judge(const types::Sonar& ping) {
+    float most = 0;
+    for (const float bin : ping.bins) most = bin > most ? bin : most;
+    if (most == 0) return;  // of an empty ping the sonar tells
+    const bool is_buried = static_cast<double>(most) < noise_->background();
+    if (!buried_.isDue(is_buried)) return;
+    const auto loudest = static_cast<size_t>(std::ranges::find(ping.bins, most) - ping.bins.begin());
+    warn(burialText(ping, loudest, noise_->background()));
 }
 
 void registerTasks(framework::Registry& registry) {

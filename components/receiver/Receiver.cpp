@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <span>
 
 #include "types/Geometry.hpp"
 #include "types/VectorMath.hpp"
@@ -136,7 +137,7 @@ void Receiver::makeTables(const types::Sonar& ping) {
 }
 
 void Receiver::encode(float* received) const {
-    const auto most = static_cast<float>((1 << code_.bits) - 1);
+    const float most = largestCode();
     const auto range_db = static_cast<float>(code_.dynamic_range_db);
     if (isLevel()) return quantise(received, most / range_db, -range_db, most, axis_.bin_count);
     bend(received, code_.gamma, axis_.bin_count);
@@ -163,6 +164,55 @@ void Receiver::receive(const types::Sonar& intensities, types::Sonar& received) 
     const size_t count = axis_.bin_count;
     for (size_t beam = 0; beam < intensities.beam_count; ++beam)
         receiveBeam(intensities.bins.data() + beam * count, received.bins.data() + beam * count);
+}
+
+Receiver::Flaws Receiver::flawsOf(const types::Sonar& intensities, const types::Sonar& received) const {
+    Flaws flaws;
+    const size_t count = axis_.bin_count, heard = count - silent_;
+    flaws.blanked = count > 0 && heard == 0;
+    if (flaws.blanked || config_.output != Output::Code) return flaws;
+    size_t full = 0, empty = 0;
+    for (size_t beam = 0; beam < received.beam_count; ++beam) {
+        const auto codes = std::span(received.bins).subspan(beam * count + silent_, heard);
+        full += static_cast<size_t>(std::ranges::count(codes, largestCode()));
+        empty += static_cast<size_t>(std::ranges::count(codes, 0.0f));
+    }
+    const size_t all = heard * received.beam_count;
+    flaws.saturated = all > 0 ? static_cast<double>(full) / static_cast<double>(all) : 0;
+    flaws.all_zero = empty == all && std::isfinite(loudestDb(intensities));
+    return flaws;
+}
+
+double Receiver::loudestDb(const types::Sonar& intensities) const {
+    double loudest = -std::numeric_limits<double>::infinity();
+    for (size_t beam = 0; beam < intensities.beam_count; ++beam)
+        for (size_t k = silent_; k < axis_.bin_count; ++k)
+            if (const float level = intensities.bins[beam * axis_.bin_count + k]; level > 0)
+                loudest =
+                    std::max(loudest, 10 * std::log10(static_cast<double>(level)) + static_cast<double>(offset_db_[k]));
+    return loudest;
+}
+
+double Receiver::lowestDb() const {
+    const double half = 0.5 / static_cast<double>(largestCode());
+    if (code_.law == CodeLaw::Log) return (half - 1) * code_.dynamic_range_db;
+    return (code_.law == CodeLaw::Sqrt ? 20 : 10) * std::log10(half);
+}
+
+std::string Receiver::text(const Flaws& flaws, const types::Sonar& intensities) const {
+    if (flaws.blanked)
+        return fmt::format("silences everything: blanking.range_min is {:g} m, the range ends at {:.4g} m",
+                           config_.blanking->range_min, range_max_);
+    const double loudest = loudestDb(intensities);
+    if (flaws.all_zero)
+        return fmt::format(
+            "gives code 0 in every bin: the loudest is {:.3g} dB below full_scale_db, {:g} dB, and codes begin {:.3g} "
+            "dB below it; raise gain_db, or lower full_scale_db",
+            -loudest, code_.full_scale_db, -lowestDb());
+    return fmt::format(
+        "saturates: {:.3g} % of the codes are {:g}, and the loudest bin is {:.3g} dB above full_scale_db, {:g} dB; "
+        "lower gain_db, or raise full_scale_db",
+        100 * flaws.saturated, largestCode(), loudest, code_.full_scale_db);
 }
 
 std::vector<std::string> Receiver::notices() const {

@@ -31,6 +31,17 @@ public:
     /** Gives `received` everything of `intensities`, and the bins that the receiver makes of its bins. Allocates
      *  nothing when both had these shapes before. */
     void receive(const types::Sonar& intensities, types::Sonar& received);
+    /** What leaves nothing to be seen in a ping that was received last. */
+    struct Flaws {
+        bool blanked = false;   ///< Every bin is silenced.
+        double saturated = 0;   ///< Share of the bins heard that have the largest code [1].
+        bool all_zero = false;  ///< Every code is 0, and some bin that is heard has an intensity.
+        bool any() const { return blanked || all_zero || saturated > most_saturated; }
+    };
+    static constexpr double most_saturated = 0.1;  ///< Of the bins: more are told of [1].
+    Flaws flawsOf(const types::Sonar& intensities, const types::Sonar& received) const;
+    /** Of flaws: which, with numbers, and what helps. */
+    std::string text(const Flaws& flaws, const types::Sonar& intensities) const;
     /** Whether every ping comes out as it came in. */
     bool isNeutral() const;
     /** What a user should know: where the gain is clamped, what is configured without use. */
@@ -50,6 +61,11 @@ private:
     bool isLevel() const;
     void receiveBeam(const float* intensities, float* received) const;
     void encode(float* received) const;
+    float largestCode() const { return static_cast<float>((1 << code_.bits) - 1); }
+    /** Level of the loudest bin that is heard, all gain included, relative to full_scale_db [dB]. */
+    double loudestDb(const types::Sonar& intensities) const;
+    /** Level relative to full_scale_db from which a code is not 0 [dB]. */
+    double lowestDb() const;
 
     ReceiverConfig config_;
     CodeConfig code_;

@@ -8,6 +8,7 @@ std::vector<std::string> ReceiverTask::notices() const {
 
 bool ReceiverTask::configureHook() {
     receiver_.emplace(*config);
+    flawed_ = {};
     return true;
 }
 
@@ -24,8 +25,14 @@ types::SonarPtr ReceiverTask::received(const types::SonarPtr& sample) {
     if (receiver_->isNeutral()) return sample;
     const auto result = pool_.take();
     receiver_->receive(*sample, *result);
+    judge(*sample, *result);
     pool_.stock(*result);
     return result;
+}
+
+void ReceiverTask::judge(const types::Sonar& intensities, const types::Sonar& received) {
+    const Receiver::Flaws flaws = receiver_->flawsOf(intensities, received);
+    if (flawed_.isDue(flaws.any())) warn(receiver_->text(flaws, intensities));
 }
 
 void registerTasks(framework::Registry& registry) {

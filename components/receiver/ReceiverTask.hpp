@@ -7,6 +7,7 @@
 #include "components/framework/SamplePool.hpp"
 #include "components/framework/TaskContext.hpp"
 #include "components/receiver/Receiver.hpp"
+#include "types/Complaint.hpp"
 #include "types/Sonar.hpp"
 
 namespace insonify::receiver {
@@ -16,7 +17,8 @@ namespace insonify::receiver {
  *
  *  It comes after the noise. A ping whose bins are below 0, and so no intensities, leads to RunTimeError, from which
  *  the next good one recovers. With nothing to do the ping itself is passed on, not a copy. Properties that are set
- *  hold from the next ping on. */
+ *  hold from the next ping on. Pings that are silenced whole, saturate, or are all code 0 are told of: once, and
+ *  again only after they have been good. */
 class ReceiverTask final : public framework::TaskContext {
 public:
     using TaskContext::TaskContext;
@@ -36,7 +38,10 @@ private:
     void errorHook() override { updateHook(); }
     types::SonarPtr received(const types::SonarPtr& sample);
 
+    void judge(const types::Sonar& intensities, const types::Sonar& received);
+
     std::optional<Receiver> receiver_;
+    types::Complaint flawed_;
     framework::SamplePool<types::Sonar> pool_;
 };
 

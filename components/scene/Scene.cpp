@@ -55,6 +55,21 @@ void refuseMissing(const std::filesystem::path& file) {
                     near, place.string()));
 }
 
+/** A node in the axes of one at or above it; -1 is the world. */
+glm::dmat4 aboveFromNode(const Scene& scene, int above, int node) {
+    glm::dmat4 above_from_node(1);
+    for (int i = node; i != above; i = scene.nodes[static_cast<size_t>(i)].parent)
+        above_from_node = scene.nodes[static_cast<size_t>(i)].parent_from_node * above_from_node;
+    return above_from_node;
+}
+
+/** What a body that has the node's place makes of it: scale, shear, and the turn to z-up. */
+glm::dmat4 bodyFromNode(const Scene& scene, int node) {
+    const glm::dmat3 world_from_node(aboveFromNode(scene, -1, node));
+    return scene.z_up_from_file *
+           glm::dmat4(withoutRotation(world_from_node, scene.nodes[static_cast<size_t>(node)].scale));
+}
+
 }  // namespace
 
 std::string extensionOf(const std::filesystem::path& file) {
@@ -87,16 +102,11 @@ int findNode(const Scene& scene, const std::string& name) {
 }
 
 std::vector<Part> partsOf(const Scene& scene, int node) {
-    glm::dmat4 world_from_node(1);
-    for (int i = node; i >= 0; i = scene.nodes[static_cast<size_t>(i)].parent)
-        world_from_node = scene.nodes[static_cast<size_t>(i)].parent_from_node * world_from_node;
-
     // body_from_node of the nodes at and below; children come after their parents
     std::vector<glm::dmat4> body_from_node(scene.nodes.size());
     std::vector<bool> moves(scene.nodes.size());
     const auto top = static_cast<size_t>(node);
-    body_from_node[top] =
-        scene.z_up_from_file * glm::dmat4(withoutRotation(glm::dmat3(world_from_node), scene.nodes[top].scale));
+    body_from_node[top] = bodyFromNode(scene, node);
     moves[top] = true;
     for (size_t i = top + 1; i < scene.nodes.size(); ++i) {
         const Node& below = scene.nodes[i];
@@ -109,6 +119,18 @@ std::vector<Part> partsOf(const Scene& scene, int node) {
         if (const auto at = static_cast<size_t>(scene.object_nodes[i]); moves[at])
             parts.push_back({static_cast<uint32_t>(i), body_from_node[at] * scene.node_from_object[i]});
     return parts;
+}
+
+glm::dvec3 placeOf(const Scene& scene, int node, int body, const glm::dvec3& point) {
+    if (node == body) return point;
+    glm::dmat4 body_from_node = aboveFromNode(scene, body, node);
+    if (body >= 0) body_from_node = bodyFromNode(scene, body) * body_from_node;
+    const glm::dvec3 origin(body_from_node[3]);
+    if (point == glm::dvec3(0)) return origin;
+    const glm::dmat3 linear(body_from_node);
+    const glm::dmat3 shape = withoutRotation(linear, scene.nodes[static_cast<size_t>(node)].scale);
+    const glm::dmat3 rotation = linear * glm::inverse(shape);
+    return origin + rotation * glm::transpose(glm::dmat3(scene.z_up_from_file)) * point;
 }
 
 }  // namespace insonify::scene

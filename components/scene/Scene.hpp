@@ -51,4 +51,9 @@ int findNode(const Scene& scene, const std::string& name);
 /** The objects at and below a node. With a pose of the body, world_from_object = world_from_body * body_from_object. */
 std::vector<Part> partsOf(const Scene& scene, int node);
 
+/** Where a point of a node is in the axes of a body: of `body`, an index of a node at or above it, or of the world for
+ *  -1. The point is given in the node's axes, which are the body's where neither is turned, without scale [m]. Not
+ *  finite where the node is scaled to nothing and the point is not its origin. */
+glm::dvec3 placeOf(const Scene& scene, int node, int body, const glm::dvec3& point);
+
 }  // namespace insonify::scene

@@ -65,6 +65,7 @@ framework::InputPortBase* SceneTask::makeInput(const std::string& port, framewor
 
 void SceneTask::check(types::Diagnostics& diagnostics) const try {
     overrideMaterials(*load(), materials(diagnostics), diagnostics);
+    scene::placeTargets(*load(), config->targets, {}, diagnostics);
 } catch (const types::ConfigError& error) {
     for (const types::Diagnostic& diagnostic : error.diagnostics()) diagnostics.push_back({"file", diagnostic.text()});
 }
@@ -77,17 +78,27 @@ bool SceneTask::configureHook() {
     const auto scene = load();
     types::Diagnostics diagnostics;
     geometry_ = overrideMaterials(*scene, materials(diagnostics), diagnostics);
-    if (!diagnostics.empty())
-        throw types::ConfigError("", name() + "." + diagnostics.front().path, diagnostics.front().message);
     for (Movable& movable : movables_) {
         movable.node = findNode(*scene, movable.node_name);
         movable.parts = partsOf(*scene, movable.node);
     }
+    placeTargets(*scene, diagnostics);
+    if (!diagnostics.empty())
+        throw types::ConfigError("", name() + "." + diagnostics.front().path, diagnostics.front().message);
     part_count_ = 0;
     for (const Movable& movable : movables_) part_count_ += movable.parts.size();
     std::ranges::sort(movables_, {}, &Movable::node);
     mover_.assign(geometry_->objects.size(), nullptr);
     return true;
+}
+
+void SceneTask::placeTargets(const Scene& scene, types::Diagnostics& diagnostics) {
+    std::vector<int> moving;
+    for (const Movable& movable : movables_) moving.push_back(movable.node);
+    targets_ = scene::placeTargets(scene, config->targets, moving, diagnostics);
+    std::vector<std::string> names;
+    for (const TargetConfig& target : config->targets) names.push_back(target.name);
+    target_names_ = std::make_shared<const std::vector<std::string>>(std::move(names));
 }
 
 bool SceneTask::startHook() {
@@ -140,6 +151,8 @@ void SceneTask::updateHook() {
     sample->geometry = geometry_;
     sample->water_surface = config->water_surface;
     addMoved(sample->moved);
+    addTargets(sample->targets);
+    sample->target_names = target_names_;
     pool_.stock(*sample, [this](types::Snapshot& stocked) { stocked.moved.reserve(part_count_); });
     snapshot.write(sample);
     if (!movables_good) error(name() + unusable);
@@ -174,6 +187,24 @@ void SceneTask::addMoved(std::vector<types::MovedObject>& moved) {
             for (const Part& part : movable.parts)
                 if (mover_[part.object] == &movable)
                     moved.push_back({part.object, *movable.world_from_body * part.body_from_object});
+}
+
+const SceneTask::Movable* SceneTask::movableOf(int node) const {
+    const auto found = std::ranges::find(movables_, node, &Movable::node);
+    return found == movables_.end() ? nullptr : &*found;
+}
+
+/** Each target follows the innermost of the nodes at or above its own that has a pose. */
+void SceneTask::addTargets(std::vector<types::PointTarget>& targets) const {
+    targets.clear();
+    for (const PlacedTarget& placed : targets_) {
+        types::PointTarget& target = targets.emplace_back(placed.in_world, placed.strength_db);
+        for (const PlacedTarget::Carrier& carrier : placed.carriers)
+            if (const auto& body = movableOf(carrier.node)->world_from_body) {
+                target.position = glm::dvec3(*body * glm::dvec4(carrier.place, 1));
+                break;
+            }
+    }
 }
 
 void SceneTask::cleanupHook() {

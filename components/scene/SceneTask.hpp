@@ -11,6 +11,7 @@
 #include "components/framework/TaskContext.hpp"
 #include "components/scene/Scene.hpp"
 #include "components/scene/SceneConfig.hpp"
+#include "components/scene/Targets.hpp"
 #include "types/Snapshot.hpp"
 
 namespace insonify::scene {
@@ -21,7 +22,8 @@ namespace insonify::scene {
  *  In: `<node>.pose` for any node of the file (in SDF any model or link, "rov", "rov::arm") that a connection names:
  * the node's place in the world, instead of its translation and rotation in the file; axes turned like the world's,
  * scale kept, nodes below move along. The newest is taken; it does not trigger. Before the first the node is where the
- * file has it. Out: `snapshot`, sonar in the world (body times `mount`), shared geometry, moved objects.
+ * file has it. Out: `snapshot`, sonar in the world (body times `mount`), shared geometry, moved objects,
+ * point targets where they are by then: one on a node moves with it.
  *
  *  A pose that is not finite, or whose orientation has no length, is dropped: RunTimeError until the next good one. So
  * it is when no pose of the body, or of a node that a connection names, comes for `pose_timeout`, by their stamps, or
@@ -66,7 +68,10 @@ private:
     /** Those of the configuration, their tables read; what is wrong with them goes to `diagnostics`. */
     std::map<std::string, Acoustics> materials(types::Diagnostics& diagnostics) const;
     bool readMovables();
+    void placeTargets(const Scene& scene, types::Diagnostics& diagnostics);
     void addMoved(std::vector<types::MovedObject>& moved);
+    void addTargets(std::vector<types::PointTarget>& targets) const;
+    const Movable* movableOf(int node) const;
 
     mutable std::shared_ptr<const Scene> scene_;  ///< Read once for check, ports and configure.
     mutable std::string scene_file_;
@@ -74,6 +79,8 @@ private:
     std::vector<Movable> movables_;      ///< Outer nodes before inner ones, once configured.
     size_t part_count_ = 0;              ///< Of all movables, room for which is made before they move.
     std::vector<const Movable*> mover_;  ///< For each object, who moves it now.
+    std::vector<PlacedTarget> targets_;
+    std::shared_ptr<const std::vector<std::string>> target_names_;
     framework::SamplePool<types::Snapshot> pool_;
     types::Time newest_;  ///< Stamp of the newest usable pose; the start before the first.
 };

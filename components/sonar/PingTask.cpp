@@ -11,7 +11,6 @@
 
 #include "components/framework/Activity.hpp"
 #include "components/sonar/PlanReport.hpp"
-#include "components/sonar/Silence.hpp"
 #include "types/ConfigError.hpp"
 #include "types/ExtrapolatePose.hpp"
 
@@ -72,7 +71,6 @@ bool PingTask::configureHook() {
     grid_ = makeBinGrid(sonarConfig());
     shortest_ = std::numeric_limits<double>::infinity();
     period_ = {};
-    silent_ = 0;
     return true;
 }
 
@@ -128,6 +126,7 @@ void PingTask::makeRenderer() {
     renderer_.reset();
     quality_.reset();
     geometry_ = aimed_.geometry;
+    troubles_.emplace(*geometry_, pingsPerTurn());
     const SonarConfig config = locatedConfig();
     renderer_ = std::make_unique<SonarRenderer>(begun(config), geometry_);
     if (config.choosesQuality()) quality_.emplace(config, pingsPerTurn());
@@ -149,32 +148,58 @@ void PingTask::followQuality(types::Sonar& sample, double ms) {
     plan_told_ = false;
 }
 
-void PingTask::followSilence() {
-    if (silent_ < 0) return;
-    silent_ = renderer_->hasEchoes() ? -1 : silent_ + 1;
-    if (silent_ != pingsPerTurn()) return;
-    const double covered_deg = silent_ > 1 ? 360 : sonarConfig().coverageDeg();  // a head has looked all round
-    warn(silenceText(sonarConfig(), {grid_.range_max, covered_deg}, aimed_));
-    silent_ = -1;
+bool PingTask::renderPing(SonarRenderer& renderer, types::Snapshot& scene, types::Sonar& sample) {
+    renderer.render(scene, sample);
+    return renderer.hasEchoes() || renderer.targetsHeard() > 0;
+}
+
+RenderPlan PingTask::coverage(const types::Snapshot& /*scene*/) const { return renderer_->renderPlan(); }
+
+std::string PingTask::troubleOf(bool heard, const types::Sonar& sample) {
+    return troubles_->follow(heard, sonarConfig().model, aimed_, sample, [this] { return coverage(aimed_); });
 }
 
 void PingTask::render() {
     if (!renderer_ || geometry_ != aimed_.geometry) makeRenderer();
     const auto sample = pool_.take();
+    const auto told = takeTruth();
+    renderer_->setTruth(*sample, told.get());
     const auto start = std::chrono::steady_clock::now();
-    renderer_->render(aimed_, *sample);
+    const bool heard = renderPing(*renderer_, aimed_, *sample);
     const std::chrono::duration<double, std::milli> took = std::chrono::steady_clock::now() - start;
     for (const Stage& stage : renderer_->stages()) recordStage(stage.name, stage.seconds);
-    if (std::exchange(culling_untold_, false))
+    if (std::exchange(culling_untold_, false)) {
         for (const LeftOut& what : renderer_->culled()) plan_->omitted.push_back(describe(what, grid_));
+        if (const auto what = renderer_->targetsLeftOut()) plan_->omitted.push_back(describe(*what, grid_));
+    }
     followQuality(*sample, took.count());
-    followSilence();
+    if (const std::string trouble = troubleOf(heard, *sample); !trouble.empty()) warn(trouble);
     stampBearings(*sample);
     pool_.stock(*sample);
     if (!std::exchange(plan_told_, true)) refreshRecord();
     if (!waitForLastEcho()) return;
     if (pose.connected()) pose.write(used_);
+    tellMore(*sample, aimed_.sonar);
     ping.write(sample);
+    if (told) writeTruth(*sample, told);
+}
+
+std::shared_ptr<types::SonarTruth> PingTask::takeTruth() {
+    if (!truth.connected() && !returns.connected()) return nullptr;
+    return truths_.take();
+}
+
+void PingTask::writeTruth(const types::Sonar& sample, const std::shared_ptr<types::SonarTruth>& told) {
+    told->takeGrid(sample);
+    told->objects.resize(geometry_->objects.size());
+    for (size_t i = 0; i < told->objects.size(); ++i) told->objects[i] = geometry_->objects[i].name;
+    truths_.stock(*told);
+    if (truth.connected()) truth.write(told);
+    if (!returns.connected()) return;
+    const auto found = all_returns_.take();
+    found->take(sample, *told);
+    all_returns_.stock(*found);
+    returns.write(found);
 }
 
 bool PingTask::waitForLastEcho() {

@@ -31,6 +31,8 @@ std::string nameOf(Effect effect) {
                                             "azimuth beam pattern",
                                             "elevation beam pattern",
                                             "range point-spread",
+                                            "transmit ring-down",
+                                            "point targets",
                                             "volume reverberation",
                                             "multipath",
                                             "further slabs",
@@ -76,6 +78,7 @@ std::string reasonOf(const LeftOut& what, const BinGrid& grid) {
         case Reason::NoMaterialHasOne:
             return what.effect == Effect::SpecularLobe ? "no material has a reflection and a roughness_slope"
                                                        : "no material has one";
+        case Reason::NoneInScene: return "the scene has none";
         case Reason::MeansOfS:
             return std::string("cerqueira2017: bins are means of S(n.d)") +
                    (what.effect == Effect::BackscatterByMaterial ? "; reflectivity scales n.d" : "");
@@ -84,6 +87,8 @@ std::string reasonOf(const LeftOut& what, const BinGrid& grid) {
         case Reason::Approximated: return approximatedWords(what);
         case Reason::OneImage: return fmt::format("one image shows all {:g} deg", what.value);
         case Reason::OutOfView:
+            if (what.effect == Effect::PointTargets)
+                return "hidden, or out of the pattern or the range, at the first ping";
             return std::string("outside the fan or the range at the first ping") +
                    (what.effect == Effect::Triangles ? ", or on the far side of a closed mesh" : "");
     }

@@ -8,9 +8,6 @@
 namespace insonify::sonar {
 namespace {
 
-/** Below it sidelobes are left out. */
-constexpr double floor_db = -50;
-
 INSONIFY_VECTOR_CLONES void convolve(const float* echoes, std::span<const float> taps, float* __restrict bins,
                                      size_t count) {
     size_t i = 0;

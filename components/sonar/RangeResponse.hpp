@@ -11,6 +11,8 @@ namespace insonify::sonar {
  *  being spread evenly over its own bin and h taken in the middle of the others. */
 class RangeResponse {
 public:
+    static constexpr double floor_db = -50;  ///< Sidelobes below it are left out.
+
     RangeResponse(const acoustics::Pulse& pulse, const BinGrid& grid);
 
     /** Room that `echoes` needs before its first and after its last bin, of zeros [bins]. */

@@ -52,6 +52,7 @@ void omitPhysical(RenderPlan& plan) {
 void omitMeans(RenderPlan& plan) {
     plan.left_out.push_back({Effect::Spreading, Reason::MeansOfS});
     plan.left_out.push_back({Effect::BackscatterByMaterial, Reason::MeansOfS});
+    plan.left_out.push_back({Effect::PointTargets, Reason::MeansOfS});
     if (!plan.features.has(Feature::Published)) return;
     for (Effect effect : {Effect::RangeFootprints, Effect::ElevationMask, Effect::SharedColumns, Effect::NearBlanking})
         plan.left_out.push_back({effect, Reason::Published});
@@ -70,6 +71,7 @@ std::vector<Pass> passesOf(const RenderPlan& plan) {
     if (plan.directivity && plan.directivity->hasAzimuth()) passes.push_back(Pass::Beamform);
     if (plan.config.pulse && !isShort(acoustics::Pulse(*plan.config.pulse, plan.grid.speed_of_sound), plan.grid))
         passes.push_back(Pass::Pulse);
+    if (plan.config.pulse && plan.config.pulse->ring_down) passes.push_back(Pass::RingDown);
     return passes;
 }
 
@@ -80,6 +82,7 @@ void omitEffects(const types::Geometry& geometry, RenderPlan& plan) {
     omitUnless(plan.has(Pass::Beamform), Effect::AzimuthPattern);
     omitUnless(plan.features.has(Feature::ElevationPattern), Effect::ElevationPattern);
     omitPulse(plan);
+    omitUnless(plan.has(Pass::RingDown), Effect::RingDown);
     omitUnless(plan.features.has(Feature::Volume), Effect::Volume);
     omitUnless(false, Effect::Multipath);
     if (plan.frusta.size() == 1)

@@ -56,7 +56,7 @@ private:
 };
 
 /** Work for each ping, in this order. */
-enum class Pass { Cull, Surface, Rays, Deposit, Beams, Beamform, Pulse };
+enum class Pass { Cull, Surface, Rays, Deposit, Beams, Beamform, Pulse, RingDown };
 
 /** What may be left out of a ping. */
 enum class Effect {
@@ -74,6 +74,8 @@ enum class Effect {
     AzimuthPattern,
     ElevationPattern,
     RangePointSpread,
+    RingDown,
+    PointTargets,
     Volume,
     Multipath,
     FurtherSlabs,
@@ -90,6 +92,7 @@ enum class Reason {
     NotConfigured,
     NoFrequency,
     NoMaterialHasOne,
+    NoneInScene,
     MeansOfS,      ///< Bins of `cerqueira2017` are means of S(n.d).
     Published,     ///< The published simulator has none.
     BelowBound,    ///< `value` is below `bound`.
@@ -152,5 +155,6 @@ struct insonify::types::EnumNames<insonify::sonar::Feature> {
 };
 template <>
 struct insonify::types::EnumNames<insonify::sonar::Pass> {
-    static constexpr std::string_view names[] = {"cull", "surface", "rays", "deposit", "beams", "beamform", "pulse"};
+    static constexpr std::string_view names[] = {"cull",  "surface",  "rays",  "deposit",
+                                                 "beams", "beamform", "pulse", "ring_down"};
 };

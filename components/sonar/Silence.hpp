@@ -1,21 +1,18 @@
 #pragma once
 #include <string>
 
-#include "components/sonar/SonarConfig.hpp"
+#include "components/sonar/RenderPlan.hpp"
 #include "types/Snapshot.hpp"
 
 namespace insonify::sonar {
 
-/** How far it has listened, and over which azimuth. */
-struct Coverage {
-    double range_max;    ///< Far edge of the last bin [m].
-    double covered_deg;  ///< From edge to edge [deg].
-};
-
 /** Why a sonar may hear nothing, for who set it up: where it is, which way it looks, where the scene lies and how far
- *  its nearest point is, and which of range, aperture and fan that point is out of. Takes time in proportion to the
- *  triangles of the scene.
- */
-std::string silenceText(const SonarConfig& config, const Coverage& reach, const types::Snapshot& scene);
+ *  its nearest point and its nearest point target are, and what keeps it from hearing these: range, aperture, fan, or a
+ *  material that gives nothing back. Sidelobes count as far as the plan hears them. `all_round`: its head has turned.
+ *  Takes time in proportion to the triangles of the scene. */
+std::string silenceText(const RenderPlan& plan, bool all_round, const types::Snapshot& scene);
+
+/** That the sonar is inside of an object, with where it is and how far the object's nearest point. */
+std::string enclosureText(const types::Snapshot& scene, uint32_t object);
 
 }  // namespace insonify::sonar

@@ -1,10 +1,13 @@
 #include "components/sonar/SonarRenderer.hpp"
 
+#include <chrono>
 #include <stdexcept>
 
 #include "components/gpu/EglContext.hpp"
 #include "components/sonar/CastEchoes.hpp"
 #include "components/sonar/PlanReport.hpp"
+#include "components/sonar/PointTargets.hpp"
+#include "components/sonar/RingDown.hpp"
 
 namespace insonify::sonar {
 
@@ -24,18 +27,27 @@ struct SonarRenderer::Parts {
     Parts(const SonarConfig& config, types::GeometryPtr scene, const RenderOptions& options);
     ~Parts();
     void fillHeader(const types::Snapshot& snapshot, types::Sonar& ping) const;
+    void addTargets(const types::Snapshot& snapshot, types::Sonar& ping);
 
+    types::GeometryPtr geometry;
     RenderPlan plan;
     types::Plan told;
     Stages stages = no_time;
     std::unique_ptr<EchoRenderer> echoes;
     PipelinedEchoes* pipeline = nullptr;  ///< The same where it draws.
+    const types::Sonar* told_ping = nullptr;
+    types::SonarTruth* truth = nullptr;  ///< Filled with that ping; null: none is.
     std::vector<UnderWay> ring;
+    std::optional<PointTargets> targets;  ///< From the first ping with any on.
+    std::optional<RingDown> ring_down;
+    size_t targets_heard = 0;  ///< In the last ping [1].
+    std::optional<LeftOut> targets_left_out;
     size_t begun = 0, ended = 0;  ///< Pings that were submitted; ping n has place n modulo the ring's size.
 };
 
 SonarRenderer::Parts::Parts(const SonarConfig& config, types::GeometryPtr scene, const RenderOptions& options)
-    : plan(makeRenderPlan(config, *scene, options)), told(report(plan, *scene)) {
+    : geometry(scene), plan(makeRenderPlan(config, *scene, options)), told(report(plan, *scene)) {
+    if (plan.has(Pass::RingDown)) ring_down.emplace(plan);
     if (plan.casts_rays) {
         echoes = makeCastEchoes(plan, std::move(scene));
     } else {
@@ -53,6 +65,22 @@ SonarRenderer::Parts::~Parts() {
     if (plan.casts_rays) return;
     const auto alone = gpu::EglContext::making();
     echoes.reset();
+}
+
+void SonarRenderer::Parts::addTargets(const types::Snapshot& snapshot, types::Sonar& ping) {
+    if (plan.config.model != Model::Physical) return;
+    targets_heard = 0;
+    targets_left_out.reset();
+    const size_t all = snapshot.targets.size();
+    if (all == 0) {
+        targets_left_out = LeftOut{Effect::PointTargets, Reason::NoneInScene};
+        return;
+    }
+    if (!targets) targets.emplace(plan, *geometry);
+    targets_heard = targets->add(snapshot, ping);
+    if (targets_heard < all)
+        targets_left_out = LeftOut{Effect::PointTargets, Reason::OutOfView, static_cast<double>(all - targets_heard),
+                                   static_cast<double>(all)};
 }
 
 void SonarRenderer::Parts::fillHeader(const types::Snapshot& snapshot, types::Sonar& ping) const {
@@ -79,7 +107,25 @@ void SonarRenderer::render(const types::Snapshot& snapshot, types::Sonar& ping) 
         throw std::logic_error("pings that were submitted are to be collected before another is rendered");
     parts_->stages = no_time;
     parts_->fillHeader(snapshot, ping);
+    types::SonarTruth* const truth = &ping == parts_->told_ping ? parts_->truth : nullptr;
+    if (truth) truth->takeGrid(ping);
+    parts_->echoes->setTruth(truth);
     parts_->echoes->render(snapshot, ping, parts_->stages);
+    parts_->echoes->setTruth(nullptr);
+    finish(snapshot, ping);
+}
+
+void SonarRenderer::setTruth(const types::Sonar& ping, types::SonarTruth* truth) {
+    parts_->told_ping = &ping;
+    parts_->truth = truth;
+}
+
+void SonarRenderer::finish(const types::Snapshot& snapshot, types::Sonar& ping) {
+    const auto start = std::chrono::steady_clock::now();
+    parts_->addTargets(snapshot, ping);
+    if (parts_->ring_down) parts_->ring_down->add(ping);
+    parts_->stages[BeamStage].seconds +=
+        std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
 size_t SonarRenderer::ringSize() const { return parts_->ring.size(); }
@@ -104,6 +150,7 @@ void SonarRenderer::collect(types::Sonar& ping) {
         parts_->pipeline->collect(ping, parts_->stages);
     else
         parts_->echoes->render(*snapshot, ping, parts_->stages);
+    finish(*snapshot, ping);
 }
 
 void SonarRenderer::setQuality(int rows, int columns_per_beam) {
@@ -118,6 +165,8 @@ void SonarRenderer::setQuality(int rows, int columns_per_beam) {
 std::span<const Stage> SonarRenderer::stages() const { return parts_->stages; }
 bool SonarRenderer::hasEchoes() const { return parts_->echoes->hasEchoes(); }
 std::vector<LeftOut> SonarRenderer::culled() const { return parts_->echoes->culled(); }
+size_t SonarRenderer::targetsHeard() const { return parts_->targets_heard; }
+std::optional<LeftOut> SonarRenderer::targetsLeftOut() const { return parts_->targets_left_out; }
 const RenderPlan& SonarRenderer::renderPlan() const { return parts_->plan; }
 Features SonarRenderer::compiled() const { return parts_->echoes->compiled(); }
 const types::Plan& SonarRenderer::plan() const { return parts_->told; }

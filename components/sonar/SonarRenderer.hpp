@@ -1,6 +1,7 @@
 #pragma once
 #include <array>
 #include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -29,6 +30,13 @@ public:
      *  submitted and not collected. */
     void render(const types::Snapshot& snapshot, types::Sonar& ping);
 
+    /** Each time that `ping` is rendered from now on, `truth` is filled as well, with what its bins show
+     *  (types::SonarTruth; its list of names is left alone); null: no more. Other pings tell nothing, and nothing is
+     *  computed or kept for them. Of a beam that is formed from finer azimuth cells, the truth is that of the cells
+     *  within half its spacing to its neighbours: what it hears in its sidelobes is not told, nor what the pulse
+     *  spreads into a bin, nor what the water scatters. Pings that are submitted tell none. */
+    void setTruth(const types::Sonar& ping, types::SonarTruth* truth);
+
     /** How many pings may be submitted and not collected [1]: more than one only pays where a graphics card draws. */
     size_t ringSize() const;
     /** Begins a ping of what the snapshot shows now, which must not change before it is collected, and waits for
@@ -49,14 +57,20 @@ public:
     const types::Plan& plan() const;
     /** What is compiled into what renders. */
     Features compiled() const;
-    /** Whether the last ping has any echo. */
+    /** Whether the last ping has any echo of a surface. */
     bool hasEchoes() const;
     /** What of the scene the last ping did not draw: objects, triangles, frusta; nothing with rays. */
     std::vector<LeftOut> culled() const;
+    /** How many point targets the last ping has heard [1]. */
+    size_t targetsHeard() const;
+    /** Point targets that it has not heard, or that there are none; none before the first ping, or if all are heard. */
+    std::optional<LeftOut> targetsLeftOut() const;
     const std::string& device() const;  ///< What renders, with its driver.
 
 private:
     struct Parts;
+    /** What comes into the bins beside the echoes of surfaces. */
+    void finish(const types::Snapshot& snapshot, types::Sonar& ping);
     std::unique_ptr<Parts> parts_;
 };
 

@@ -103,6 +103,7 @@ public:
         renderer.render(snapshot, ping);
         left_out_ = renderer.renderPlan().left_out;
         std::ranges::copy(renderer.culled(), std::back_inserter(left_out_));
+        if (const auto what = renderer.targetsLeftOut()) left_out_.push_back(*what);
     }
 
     std::vector<OmissionRow> run() {
@@ -129,23 +130,28 @@ private:
         progress_(words.name);
         OmissionRow row{words.name, words.reason, {}, {}, "", false};
         Way with = planned_;
-        if (putBack(what.effect, with, row)) row.measured = compared(planned_, with, pings_);
+        if (putBack(what, with, row)) row.measured = compared(planned_, with, pings_);
         return row;
     }
 
     /** Puts back what has been left out; false where it cannot be. */
-    bool putBack(sonar::Effect effect, Way& with, OmissionRow& row) const {
+    bool putBack(const sonar::LeftOut& what, Way& with, OmissionRow& row) const {
         const auto bound = [&](double value, const char* of) {
             row.bound = value;
             row.bound_of = of;
             return true;
         };
-        switch (effect) {
+        switch (what.effect) {
             case sonar::Effect::Absorption:
                 with.config.absorption.emplace().db_per_m = 0;
                 return bound(0, "change: 0 dB/m");
             case sonar::Effect::RangePointSpread:
                 return planned_.config.model == sonar::Model::Physical && neutralPulse(with, row);
+            case sonar::Effect::RingDown: return weakRingDown(with, row);
+            case sonar::Effect::PointTargets:
+                if (what.reason != sonar::Reason::NoneInScene) return false;
+                with.snapshot.targets = {{with.snapshot.sonar.worldFromBody() * glm::dvec4(1, 0, 0, 1), -3000}};
+                return bound(0, "change: a target of -3000 dB");
             case sonar::Effect::NormalMaps:
                 with.snapshot.geometry = withFlatMap(*planned_.snapshot.geometry);
                 return bound(1e-6, "change: a map that bends nothing, in float");
@@ -168,6 +174,16 @@ private:
         with.config.pulse.emplace().duration_us = 2e6 * grid.bin_width / grid.speed_of_sound;
         row.bound = 0;
         row.bound_of = "change: a tone as long as a bin";
+        return true;
+    }
+
+    /** One that is nothing in float. */
+    bool weakRingDown(Way& with, OmissionRow& row) const {
+        if (planned_.config.model != sonar::Model::Physical) return false;
+        if (!with.config.pulse) neutralPulse(with, row);
+        with.config.pulse->ring_down = acoustics::RingDownConfig{-3000, 1};
+        row.bound = 0;
+        row.bound_of = "change: a ring-down of -3000 dB";
         return true;
     }
 
@@ -202,6 +218,16 @@ private:
         if (config.pulse) {
             without.config.pulse.reset();
             keep("pulse", without);
+        }
+        without = planned_;
+        if (config.pulse && config.pulse->ring_down) {
+            without.config.pulse->ring_down.reset();
+            keep("transmit ring-down", without);
+        }
+        without = planned_;
+        if (config.model == sonar::Model::Physical && !planned_.snapshot.targets.empty()) {
+            without.snapshot.targets.clear();
+            keep("point targets", without);
         }
         without = planned_;
         if (!config.volume.empty()) {

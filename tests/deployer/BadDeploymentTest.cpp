@@ -28,6 +28,12 @@ std::string receiverBeforeNoise() {
                     "{from: sonar.ping, to: receiver.intensity}\n  - {from: receiver.ping, to: noise.clean}");
 }
 
+/** The scene with these point targets. */
+BadDeployment targets(const char* name, const std::string& list, std::vector<std::string> messages) {
+    return edited(name, "{file: wall.gltf}", ("{file: wall.gltf, targets: [" + list + "]}").c_str(),
+                  std::move(messages));
+}
+
 const BadDeployment cases[] = {
     {"Empty", "", {"wall.yml"}},
     edited("YamlSyntax", "tasks:\n", "tasks: [\n", {"wall.yml:"}),
@@ -50,6 +56,33 @@ const BadDeployment cases[] = {
            {"wall.yml:17:", "multipath", "not built yet"}),
     edited("KeyOfTheReceiver", "range: 20", "range: 20\n      tvg: {log_coefficient: 40}",
            {"wall.yml:17:12: tasks.sonar.properties.tvg: has moved", "receiver::ReceiverTask after the noise"}),
+    targets("TargetWithoutAPlace", "{name: buoy, strength_db: 0}",
+            {"wall.yml:11:", "tasks.scene.properties.targets[0].position: is missing", "or attached_to"}),
+    targets("TargetWithoutAStrength", "{name: buoy, position: [1, 2, 3]}",
+            {"wall.yml:11:", "tasks.scene.properties.targets[0].strength_db: is missing"}),
+    targets("TargetWithoutAName", "{position: [1, 2, 3], strength_db: 0}",
+            {"wall.yml:11:", "tasks.scene.properties.targets[0].name: is missing"}),
+    targets("TargetTooStrong", "{name: buoy, position: [1, 2, 3], strength_db: 300}",
+            {"wall.yml:11:", "targets[0].strength_db", "300", "200"}),
+    targets("TargetNowhere", "{name: buoy, position: [1, 2, .inf], strength_db: 0}",
+            {"wall.yml:11:", "targets[0].position"}),
+    targets("TargetsOfOneName",
+            "{name: buoy, position: [1, 2, 3], strength_db: 0}, {name: buoy, position: [0, 0, 0], strength_db: 0}",
+            {"wall.yml:11:", "tasks.scene.properties.targets[1].name: is buoy, which targets[0] has"}),
+    targets("TargetOnNoNode", "{name: buoy, attached_to: wal, strength_db: 0}",
+            {"wall.yml:11:", "tasks.scene.properties.targets[0].attached_to: is wal, which is no node of the scene",
+             "wall"}),
+    targets("TargetOfUnknownKey", "{name: buoy, positon: [1, 2, 3], strength_db: 0}",
+            {"wall.yml:11:", "targets[0]", "positon", "position"}),
+    edited("RingDownWithoutADecay", "range: 20",
+           "range: 20\n      pulse: {bandwidth_khz: 10, ring_down: {level_db: 0}}",
+           {"wall.yml:17:", "tasks.sonar.properties.pulse.ring_down.decay_db_per_m: is missing"}),
+    edited("RingDownWithoutALevel", "range: 20",
+           "range: 20\n      pulse: {bandwidth_khz: 10, ring_down: {decay_db_per_m: 20}}",
+           {"wall.yml:17:", "tasks.sonar.properties.pulse.ring_down.level_db: is missing"}),
+    edited("RingDownWithoutAPulse", "range: 20",
+           "range: 20\n      pulse: {ring_down: {level_db: 0, decay_db_per_m: 20}}",
+           {"wall.yml:17:", "tasks.sonar.properties.pulse: has no value; give bandwidth_khz"}),
     {"ReceiverBeforeTheNoise",
      receiverBeforeNoise(),
      {"wall.yml:34:5: connections[3]: receiver.ping gives what a receiver has amplified, noise.clean takes intensities "

@@ -81,6 +81,19 @@ TEST_F(ReplayScoreTest, OurOwnLogScoresRelativeL2ZeroAndCorrelationOne) {
     EXPECT_FALSE(fs::exists(folder_ / "scored/score_000006.png"));
 }
 
+TEST_F(ReplayScoreTest, PointTargetsAreInTheReplayAsInTheRun) {
+    const std::string target = "scene.targets=[{name: buoy, position: [6, 0.5, 0], strength_db: 10}]";
+    record({"--pings", "3", "--set", target});
+    const Outcome outcome = score("out/wall.0.log");
+    ASSERT_EQ(outcome.code, 0) << outcome.err;
+    for (const auto& [name, stream] : streams()) expectSame(stream);
+    fs::remove_all(folder_ / "scored");
+    const Outcome without = score("out/wall.0.log", {"--set", "scene.targets=[]"});
+    ASSERT_EQ(without.code, 0) << without.err;
+    for (const auto& [name, stream] : streams())
+        for (const json& ping : stream["pings"]) EXPECT_GT(ping["rel_l2"], 0.1);
+}
+
 TEST_F(ReplayScoreTest, APoseShiftedByTenCentimetresDoesNot) {
     record();
     shiftPoses(0);

@@ -42,6 +42,57 @@ TEST(SilentRunTest, WhatKeepsItFromHearingTheNearestPointIsNamed) {
     EXPECT_THAT(told({"sonar.range_min=19"}), HasSubstr("nearer than range_min, 19 m"));
 }
 
+TEST(SilentRunTest, SidelobesAreListenedToAsFarAsTheFloorSays) {
+    const std::string pattern =
+        "sonar.beam_pattern={receive: {elevation: {weighting: gaussian, width_deg: 10}}, floor_db: ";
+    const std::string up = "scene.mount={pitch_deg: 85}";
+    EXPECT_THAT(told({up, pattern + "-20}"}),
+                AllOf(HasSubstr("85 deg above the sonar's plane, where the pattern reaches floor_db 1"),
+                      HasSubstr(" deg to either side")));
+    EXPECT_THAT(told({"scene.mount={yaw_deg: 100}",
+                      "sonar.beam_pattern={receive: {azimuth: {weighting: gaussian, width_deg: 4}}, floor_db: -20}"}),
+                AllOf(HasSubstr("at a bearing of 100 deg to starboard, where the patterns are above floor_db from 3"),
+                      HasSubstr(" deg to port to 3")));
+    EXPECT_THAT(told({"scene.mount={yaw_deg: 45}",
+                      "sonar.beam_pattern={receive: {azimuth: {weighting: uniform, width_deg: 4}}}"}),
+                Not(HasSubstr("hears nothing")))
+        << "the wall is heard by sidelobes";
+}
+
+TEST(SilentRunTest, AMaterialThatGivesNothingBackIsNamed) {
+    EXPECT_THAT(told({"sonar.model=cerqueira2017", "scene.materials={wall: {reflectivity: 0}}"}),
+                AllOf(HasSubstr("its nearest point 10 m away at [10, 0, 0] of wall: its material '"),
+                      HasSubstr("' has reflectivity 0 and gives nothing back")));
+    EXPECT_THAT(told({"scene.materials={wall: {lambert_db: -200}}"}),
+                AllOf(HasSubstr("of wall: its material '"),
+                      HasSubstr("', of lambert_db -200 dB, gives nothing back that could be heard")));
+}
+
+TEST(SilentRunTest, ATargetBehindTheWallIsNamedAsWell) {
+    EXPECT_THAT(told({"sonar.range=5",
+                      "scene.targets=[{name: buoy, position: [0, 4, 0], strength_db: 0}, "
+                      "{name: far, position: [9, 0, 0], strength_db: 0}]"}),
+                HasSubstr("; its nearest target 4 m away at [0, 4, 0], buoy: at a bearing of 90 deg to port, where the "
+                          "fan covers from 30 deg to port to 30 deg to starboard"));
+    EXPECT_THAT(told({"sonar.range=5", "scene.targets=[{name: buoy, position: [4, 0, 0], strength_db: 0}]"}),
+                Not(HasSubstr("hears nothing")));
+}
+
+TEST(SilentRunTest, ASonarInsideOfAClosedMeshIsToldOfOnce) {
+    const WallFolder folder;
+    writeFile(folder / "wall.gltf",
+              gltfOf({-2, -2, -2, 2, -2, -2, 2, 2, -2, -2, 2, -2, -2, -2, 2, 2, -2, 2, 2, 2, 2, -2, 2, 2},
+                     {0, 2, 1, 0, 3, 2, 4, 5, 6, 4, 6, 7, 0, 1, 5, 0, 5, 4,
+                      1, 2, 6, 1, 6, 5, 2, 3, 7, 2, 7, 6, 3, 0, 4, 3, 4, 7}));
+    const std::string text = folder.run({"--pings", "3"}).err;
+    EXPECT_EQ(count(text,
+                    "warning: sonar: is inside of wall, which has its faces outward: the sonar is at [0, 0, 0], its "
+                    "nearest surface 2 m away at ["),
+              1u)
+        << text;
+    EXPECT_THAT(text, Not(HasSubstr("hears nothing")));
+}
+
 TEST(SilentRunTest, ARunThatHearsSomethingSaysNothing) { EXPECT_THAT(told({}), Not(HasSubstr("hears nothing"))); }
 
 TEST(SilentRunTest, AHeadIsGivenAWholeTurnToHearSomething) {

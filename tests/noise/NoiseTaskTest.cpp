@@ -1,4 +1,4 @@
-#include <gtest/gtest.h>
+#include <gmock/gmock.h>
 
 #include "components/noise/NoiseTask.hpp"
 #include "tests/support/Pings.hpp"
@@ -85,6 +85,54 @@ TEST_F(NoiseTaskTest, ALawThatIsSetWhileItRunsHoldsFromTheNextPingOn) {
     startWith({});
     task_.operation("setSpeckle")->callText({"{law: gamma, looks: 4}"});
     EXPECT_NE(answerTo(makePing(1))->bins, makePing(1)->bins);
+}
+
+AmbientConfig ambientOf(double level_db) {
+    AmbientConfig ambient;
+    ambient.level_db = level_db;
+    return ambient;
+}
+
+TEST_F(NoiseTaskTest, EchoesBelowTheNoiseAreToldOfOnceWithNumbersAndAgainOnceTheyHaveStoodOut) {
+    std::vector<std::string> told;
+    const auto environment = std::make_shared<framework::Environment>();
+    environment->warn = [&](const std::string& text) { told.push_back(text); };
+    task_.setEnvironment(environment);
+    startWith({.seed = 1, .speckle = {}, .ambient = ambientOf(-40), .additive = {}});
+    int64_t time = 0;
+    const auto hear = [&](float loudest, int pings) {
+        for (int i = 0; i < pings; ++i) {
+            types::Sonar ping = test::pingOf(2, 100, 1e-9f, ++time);
+            ping.bins[100 + 25] = loudest;
+            answerTo(test::shared(ping));
+        }
+    };
+    hear(1e-3f, 3);
+    EXPECT_TRUE(told.empty()) << "30 dB above";
+    hear(1e-6f, 5);
+    ASSERT_EQ(told.size(), 1u);
+    EXPECT_EQ(told[0],
+              "task: the echoes are below the noise: the loudest, -60 dB at 2.55 m in beam 1, is 20 dB below the mean "
+              "of the noise, -40 dB; raise the source level, or lower the noise");
+    hear(1e-3f, 9);
+    hear(1e-6f, 1);
+    EXPECT_EQ(told.size(), 1u) << "not right for long enough";
+    hear(1e-3f, 10);
+    hear(1e-6f, 2);
+    EXPECT_EQ(told.size(), 2u);
+}
+
+TEST_F(NoiseTaskTest, OfAnEmptyPingAndWithoutAnyBackgroundNothingIsTold) {
+    std::vector<std::string> told;
+    const auto environment = std::make_shared<framework::Environment>();
+    environment->warn = [&](const std::string& text) { told.push_back(text); };
+    task_.setEnvironment(environment);
+    startWith({.seed = 1, .speckle = {}, .ambient = ambientOf(-40), .additive = {}});
+    answerTo(test::shared(test::pingOf(2, 100, 0)));
+    ASSERT_TRUE(task_.stop() && task_.cleanup());
+    startWith({.seed = 1, .speckle = SpeckleConfig{}, .ambient = {}, .additive = {}});
+    answerTo(test::shared(test::pingOf(2, 100, 1e-30f)));
+    EXPECT_TRUE(told.empty());
 }
 
 }  // namespace

@@ -67,5 +67,94 @@ TEST_F(ReceiverTaskTest, WhereTheGainIsClampedWithinThePingIsTold) {
     EXPECT_THAT(task_.notices(), testing::ElementsAre("tvg reaches its max_db of 20 dB at 10 m and stays there"));
 }
 
+/** A receiver of eight bits whose warnings are kept. */
+class FlawTest : public ReceiverTaskTest {
+protected:
+    FlawTest() {
+        const auto environment = std::make_shared<framework::Environment>();
+        environment->warn = [this](const std::string& text) { told_.push_back(text); };
+        task_.setEnvironment(environment);
+        config_.output = Output::Code;
+        config_.code = CodeConfig{.bits = 8, .law = CodeLaw::Log, .full_scale_db = -20, .dynamic_range_db = 60};
+    }
+    /** Pings of 200 bins: so many of them of an intensity, the others of 1e-5, half way down the codes. */
+    void receive(int bins, float intensity, int pings = 1) {
+        for (int i = 0; i < pings; ++i) {
+            types::Sonar ping = test::pingOf(2, 100, 1e-5f);
+            std::fill_n(ping.bins.begin(), bins, intensity);
+            answerTo(test::shared(ping));
+        }
+    }
+
+    ReceiverConfig config_;
+    std::vector<std::string> told_;
+};
+
+TEST_F(FlawTest, CodesThatSaturateAreToldOfOnceWithTheirShareAndAgainOnceTheyHaveBeenGood) {
+    startWith(config_);
+    receive(20, 1);
+    EXPECT_TRUE(told_.empty()) << "a tenth";
+    receive(74, 2, 5);
+    ASSERT_EQ(told_.size(), 1u);
+    EXPECT_EQ(told_[0],
+              "task: saturates: 37 % of the codes are 255, and the loudest bin is 23 dB above full_scale_db, -20 dB; "
+              "lower gain_db, or raise full_scale_db");
+    receive(1, 1, 10);
+    receive(74, 2);
+    EXPECT_EQ(told_.size(), 2u);
+}
+
+TEST_F(FlawTest, CodesThatAreAllZeroAreToldOfWithHowFarTheLoudestIsBelow) {
+    config_.gain_db = -50;
+    startWith(config_);
+    receive(1, 1e-4f, 3);
+    ASSERT_EQ(told_.size(), 1u);
+    EXPECT_EQ(told_[0],
+              "task: gives code 0 in every bin: the loudest is 70 dB below full_scale_db, -20 dB, and codes begin 59.9 "
+              "dB below it; raise gain_db, or lower full_scale_db");
+}
+
+TEST_F(FlawTest, LinearAndRootCodesBeginWhereTheirLawSays) {
+    for (const auto& [law, begin] :
+         {std::pair{CodeLaw::Linear, "codes begin 27.1 dB"}, {CodeLaw::Sqrt, "codes begin 54.2 dB"}}) {
+        config_.code->law = law;
+        config_.gain_db = -50;
+        Receiver receiver(config_);
+        const types::Sonar ping = test::pingOf(2, 100, 1e-4f);
+        types::Sonar received;
+        receiver.receive(ping, received);
+        const Receiver::Flaws flaws = receiver.flawsOf(ping, received);
+        EXPECT_TRUE(flaws.all_zero);
+        EXPECT_THAT(receiver.text(flaws, ping), HasSubstr(begin));
+    }
+}
+
+TEST_F(FlawTest, AnEmptyPingHasCodesOfZeroAndNoFlaw) {
+    startWith(config_);
+    answerTo(test::shared(test::pingOf(2, 100, 0)));
+    EXPECT_TRUE(told_.empty());
+}
+
+TEST_F(FlawTest, ABlankingBeyondTheRangeIsToldOfWhateverTheOutput) {
+    config_.output = Output::Intensity;
+    config_.code.reset();
+    config_.blanking = BlankingConfig{12};
+    startWith(config_);
+    receive(1, 1, 3);
+    ASSERT_EQ(told_.size(), 1u);
+    EXPECT_EQ(told_[0], "task: silences everything: blanking.range_min is 12 m, the range ends at 10 m");
+}
+
+TEST_F(FlawTest, ARingDownIsSilencedByBlanking) {
+    config_ = {};
+    config_.blanking = BlankingConfig{0.5};
+    startWith(config_);
+    types::Sonar ping = test::pingOf(1, 100, 1e-9f);
+    for (size_t k = 0; k < 5; ++k) ping.bins[k] = 1;
+    const types::SonarPtr heard = answerTo(test::shared(ping));
+    EXPECT_EQ(*std::ranges::max_element(heard->bins), 1e-9f);
+    EXPECT_TRUE(told_.empty());
+}
+
 }  // namespace
 }  // namespace insonify::receiver

@@ -89,6 +89,8 @@ TEST(OmissionTest, NoEffectIsLeftOutThatIsNotTestedHere) {
         Effect::Absorption, Effect::AbsorptionInBin, Effect::SpecularLobe, Effect::Spreading,
         Effect::BackscatterByMaterial, Effect::FurtherSlabs, Effect::Refraction, Effect::MotionInPing,
         Effect::NormalMaps,
+        // in RingDownTest.cpp and PointTargetTest.cpp:
+        Effect::RingDown, Effect::PointTargets,
         // in BackscatterPingTest.cpp:
         Effect::SeabedLaw, Effect::MeasuredBackscatter,
         // in VolumePingTest.cpp:

@@ -20,7 +20,8 @@ TEST(OmissionCommandTest, WhatIsLeftOutChangesNoBinByMoreThanItsBound) {
     const Outcome outcome = callInsonify(folder, {"study", "omission", "wall.yml", "--pings", "3", "--out", "report"});
     ASSERT_EQ(outcome.code, 0) << outcome.err << outcome.out;
     const json rows = json::parse(readFile(folder / "report/omission.json"));
-    for (const char* neutral : {"absorption", "normal maps"}) {
+    for (const char* neutral :
+         {"absorption", "normal maps", "range point-spread", "transmit ring-down", "point targets"}) {
         const json row = rowOf(rows, neutral);
         ASSERT_EQ(row["verdict"], "pass") << neutral;
         EXPECT_LE(row["change"], row["bound"]) << neutral;
@@ -46,6 +47,25 @@ TEST(OmissionCommandTest, WhatIsConfiguredIsShownWithWhatItCosts) {
     EXPECT_EQ(inside["verdict"], "pass");
     EXPECT_GT(inside["change"], 0);
     EXPECT_LE(inside["change"], inside["bound"]);
+}
+
+TEST(OmissionCommandTest, PointTargetsAndARingDownAreShownWithWhatTheyCost) {
+    const WallFolder folder;
+    const std::string ringing =
+        replaced(wall_deployment, "      range: 20\n",
+                 "      range: 20\n      pulse: {bandwidth_khz: 2, ring_down: {level_db: -20, decay_db_per_m: 30}}\n");
+    writeFile(folder / "loud.yml",
+              replaced(ringing, "{file: wall.gltf}",
+                       "{file: wall.gltf, targets: [{name: buoy, position: [5, 0, 0], strength_db: 0}, "
+                       "{name: hidden, position: [12, 0, 0], strength_db: 0}]}"));
+    const Outcome outcome = callInsonify(folder, {"study", "omission", "loud.yml", "--pings", "3", "--out", "report"});
+    ASSERT_EQ(outcome.code, 0) << outcome.err << outcome.out;
+    const json rows = json::parse(readFile(folder / "report/omission.json"));
+    for (const char* kept : {"transmit ring-down", "point targets"}) {
+        EXPECT_EQ(rowOf(rows, kept)["verdict"], "kept") << kept;
+        EXPECT_GT(rowOf(rows, kept)["change"], 1e-4) << kept;
+    }
+    EXPECT_EQ(rowOf(rows, "1 of 2 point targets")["verdict"], "not measured");
 }
 
 TEST(OmissionCommandTest, WhatCannotBeStudiedIsRefused) {

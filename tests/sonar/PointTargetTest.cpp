@@ -1,0 +1,400 @@
+// Point targets against the active sonar equation, worked out here from the laws themselves (ACOUSTICS.md 5.14).
+#include <gmock/gmock.h>
+
+#include <functional>
+#include <glm/gtc/matrix_transform.hpp>
+#include <numbers>
+#include <numeric>
+
+#include "components/acoustics/BeamPattern.hpp"
+#include "components/acoustics/Pulse.hpp"
+#include "components/sonar/BinGrid.hpp"
+#include "components/sonar/SonarRenderer.hpp"
+#include "tests/support/Scenes.hpp"
+#include "types/Angle.hpp"
+
+namespace insonify::sonar {
+namespace {
+
+using acoustics::Weighting;
+using std::numbers::pi;
+using types::radians;
+
+acoustics::BeamLaw lawOf(Weighting weighting, double width_deg) {
+    acoustics::BeamLaw law;
+    law.weighting = weighting;
+    law.width_deg = width_deg;
+    return law;
+}
+
+/** Bins of 0.1 m to 20 m, rays. */
+SonarConfig sonarOf(double fov_deg, int beams) {
+    SonarConfig config;
+    config.speed_of_sound = 1000;  // bins of whole microseconds
+    config.range = 20;
+    config.bin_count = 200;
+    config.beam_count = beams;
+    config.field_of_view_deg = fov_deg;
+    config.quality.rows = 16;
+    config.quality.columns_per_beam = 2;
+    config.visibility = Visibility::Cpu;
+    return config;
+}
+
+/** Nothing that any sonar here hears. */
+types::GeometryPtr openWater() { return test::sceneOf({test::disc(1, 0.1f)}, 0, {{-500, 0, 0}}); }
+
+/** A level sonar at the origin with one target of 0 dB. */
+types::Snapshot withTarget(types::GeometryPtr geometry, glm::dvec3 position, double strength_db = 0) {
+    types::Snapshot snapshot = test::snapshotOf(std::move(geometry));
+    snapshot.targets = {{position, strength_db}};
+    return snapshot;
+}
+
+glm::dvec3 towards(double azimuth_deg, double elevation_deg, double range) {
+    const double a = radians(azimuth_deg), e = radians(elevation_deg);
+    return range * glm::dvec3(std::cos(e) * std::cos(a), std::cos(e) * std::sin(a), std::sin(e));
+}
+
+types::Sonar pingOf(const SonarConfig& config, const types::Snapshot& snapshot) {
+    SonarRenderer renderer(config, snapshot.geometry);
+    types::Sonar ping;
+    renderer.render(snapshot, ping);
+    return ping;
+}
+
+double sumOf(const types::Sonar& ping) { return std::accumulate(ping.bins.begin(), ping.bins.end(), 0.0); }
+
+/** The pattern of one beam at a direction, by the laws of a configuration alone. */
+double patternOf(const SonarConfig& config, double bearing, double azimuth, double elevation) {
+    const auto power = [](const std::optional<acoustics::BeamLaw>& law, double angle, double axis) {
+        return law ? acoustics::BeamPattern(*law).power(angle, axis) : 1.0;
+    };
+    const bool conical = config.beam_geometry == BeamGeometry::Conical;
+    const double across = conical ? std::asin(std::sin(azimuth) * std::cos(elevation)) : azimuth;
+    const BeamPatternConfig& pattern = *config.beam_pattern;
+    return power(pattern.transmit.azimuth, across, 0) * power(pattern.transmit.elevation, elevation, 0) *
+           power(pattern.receive.elevation, elevation, 0) *
+           (conical ? power(pattern.receive.azimuth, across, bearing)
+                    : power(pattern.receive.azimuth, across - bearing, 0));
+}
+
+/** Mean of the pulse over a bin, by 2000 points of it. */
+double shareOf(const SonarConfig& config, const BinGrid& grid, int bin, double range) {
+    if (!config.pulse) return range >= grid.edge(bin) && range < grid.edge(bin + 1);
+    const acoustics::Pulse pulse(*config.pulse, grid.speed_of_sound);
+    double sum = 0;
+    for (int i = 0; i < 2000; ++i) sum += pulse.response(grid.edge(bin) + (i + 0.5) / 2000 * grid.bin_width - range);
+    return sum / 2000;
+}
+
+/** What a target leaves in a ping by the sonar equation, but for spreading and its strength. */
+std::vector<double> shapeOf(const SonarConfig& config, const types::Sonar& ping, const glm::dvec3& at) {
+    const BinGrid grid = makeBinGrid(config);
+    const double r = glm::length(at), alpha = config.absorption->db_per_m.value();
+    std::vector<double> shares(ping.bin_count), shape(ping.bins.size());
+    for (int k = 0; k < grid.bin_count; ++k)
+        if (std::abs(grid.centre(k) - r) < 1.2)
+            shares[static_cast<size_t>(k)] = shareOf(config, grid, k, r) * std::pow(10, -0.2 * alpha * r);
+    for (size_t beam = 0; beam < ping.beam_count; ++beam) {
+        const double heard = patternOf(config, ping.bearings[beam].rad, std::atan2(at.y, at.x), std::asin(at.z / r));
+        if (10 * std::log10(heard) < config.beam_pattern->floor_db) continue;
+        for (size_t k = 0; k < ping.bin_count; ++k) shape[beam * ping.bin_count + k] = heard * shares[k];
+    }
+    return shape;
+}
+
+/** How far the worst bin is from a shape at a level, of those within 45 dB of the loudest [dB]. */
+double worstOf(const types::Sonar& ping, const std::vector<double>& shape, double level_db) {
+    const double quietest = *std::ranges::max_element(shape) * std::pow(10, -4.5);
+    double worst = 0;
+    for (size_t i = 0; i < shape.size(); ++i)
+        if (shape[i] >= quietest && shape[i] > 0)
+            worst = std::max(worst, std::abs(10 * std::log10(ping.bins[i] / shape[i]) - level_db));
+    return worst;
+}
+
+struct Law {
+    const char* name;
+    std::function<void(SonarConfig&)> set;
+};
+const Law patterns[] = {
+    {"hann",
+     [](SonarConfig& c) {
+         c.beam_pattern->receive.azimuth = lawOf(Weighting::Hann, 3);
+         c.beam_pattern->transmit.elevation = lawOf(Weighting::Gaussian, 20);
+     }},
+    {"uniform, two way",
+     [](SonarConfig& c) {
+         c.beam_pattern->receive = {lawOf(Weighting::Uniform, 4), lawOf(Weighting::Uniform, 15)};
+         c.beam_pattern->transmit = {lawOf(Weighting::Cosine, 60), lawOf(Weighting::Taylor, 25)};
+     }},
+    {"conical",
+     [](SonarConfig& c) {
+         c.beam_pattern->receive = {lawOf(Weighting::Taylor, 3), lawOf(Weighting::Hamming, 20)};
+         c.beam_geometry = BeamGeometry::Conical;
+     }},
+};
+const Law pulses[] = {
+    {"no pulse", [](SonarConfig&) {}},
+    {"tone", [](SonarConfig& c) { c.pulse.emplace().duration_us = 730; }},
+    {"chirp", [](SonarConfig& c) { c.pulse.emplace().bandwidth_khz = 4; }},
+    {"long chirp, hann",
+     [](SonarConfig& c) {
+         c.pulse.emplace().bandwidth_khz = 1.5;
+         c.pulse->window = acoustics::PulseWindow::Hann;
+     }},
+};
+
+/** The places of a target about a beam ahead: azimuth, elevation [deg], range within a bin [m]. */
+std::vector<glm::dvec3> places() {
+    std::vector<glm::dvec3> all;
+    for (const double azimuth : {0.0, 0.7, -1.4, 2.9, 17.3})
+        for (const double elevation : {0.0, -4.0, 8.0})
+            for (const double range : {10.0001, 10.033, 10.05, 10.0999})
+                all.push_back(towards(azimuth, elevation, range));
+    return all;
+}
+
+TEST(PointTargetTest, ItsLevelIsThatOfTheSonarEquationAtAnyPlaceInTheBeam) {
+    double most = 0;
+    for (const Law& pattern : patterns)
+        for (const Law& pulse : pulses)
+            for (const double absorption : {0.0, 0.35}) {
+                SonarConfig config = sonarOf(40, 21);
+                config.beam_pattern.emplace();
+                pattern.set(config);
+                pulse.set(config);
+                config.absorption.emplace().db_per_m = absorption;
+                const auto geometry = openWater();
+                SonarRenderer renderer(config, geometry);
+                types::Sonar ping;
+                double worst = 0;
+                for (const glm::dvec3& at : places()) {
+                    renderer.render(withTarget(geometry, at, -17.5), ping);
+                    const std::vector<double> shape = shapeOf(config, ping, at);
+                    const double distance_db = 10 * std::log10(glm::length(at));
+                    ASSERT_GT(*std::ranges::max_element(shape), 0);
+                    worst = std::max(worst, worstOf(ping, shape, -17.5 - 4 * distance_db));
+                    EXPECT_GT(worstOf(ping, shape, -17.5 - 2 * distance_db), 10) << "spread one way alone";
+                }
+                EXPECT_LT(worst, 0.05) << pattern.name << ", " << pulse.name << ", " << absorption << " dB/m";
+                most = std::max(most, worst);
+            }
+    RecordProperty("largest difference", std::to_string(most) + " dB");
+}
+
+TEST(PointTargetTest, WithoutAPatternABeamHearsItInItsBoxAndTheAperture) {
+    const auto geometry = openWater();
+    for (const BeamGeometry fan : {BeamGeometry::Planar, BeamGeometry::Conical}) {
+        SonarConfig config = sonarOf(60, 6);
+        config.beam_geometry = fan;
+        SonarRenderer renderer(config, geometry);
+        types::Sonar ping;
+        const auto heardIn = [&](double azimuth_deg, double elevation_deg) {
+            renderer.render(withTarget(geometry, towards(azimuth_deg, elevation_deg, 5.03)), ping);
+            std::vector<size_t> beams;
+            for (size_t i = 0; i < ping.bins.size(); ++i)
+                if (ping.bins[i] > 0) {
+                    EXPECT_NEAR(10 * std::log10(ping.bins[i]), -40 * std::log10(5.03), 1e-5);
+                    EXPECT_EQ(i % ping.bin_count, 50u);
+                    beams.push_back(i / ping.bin_count);
+                }
+            return beams;
+        };
+        using Beams = std::vector<size_t>;
+        EXPECT_EQ(heardIn(-25, 0), Beams{0});
+        EXPECT_EQ(heardIn(25, 9.9), Beams{5});
+        EXPECT_EQ(heardIn(5, -9.9), Beams{3});
+        EXPECT_EQ(heardIn(5, 10.1), Beams{});
+        EXPECT_EQ(heardIn(31, 0), Beams{});
+        EXPECT_EQ(heardIn(175, 0), Beams{});
+        EXPECT_EQ(heardIn(20.1, 9.9), fan == BeamGeometry::Conical ? Beams{4} : Beams{5}) << "cones bend";
+    }
+}
+
+TEST(PointTargetTest, AllRoundItIsInOneBeamAlone) {
+    SonarConfig config = sonarOf(360, 12);
+    const auto geometry = openWater();
+    for (double azimuth = -180; azimuth < 180; azimuth += 7.3) {
+        const types::Sonar ping = pingOf(config, withTarget(geometry, towards(azimuth, 0, 5)));
+        EXPECT_EQ(std::ranges::count_if(ping.bins, [](float x) { return x > 0; }), 1) << azimuth;
+    }
+}
+
+/** What one beam hears of a target that is swept about it: level over an angle. */
+struct Cut {
+    double width_deg, first_null_deg, sidelobe_db;
+};
+
+Cut sweep(const SonarConfig& config, bool in_azimuth) {
+    const auto geometry = openWater();
+    SonarRenderer renderer(config, geometry);
+    types::Sonar ping;
+    constexpr double step = 0.02;
+    std::vector<double> level;
+    for (double angle = 0; angle < 12; angle += step) {
+        const glm::dvec3 at = in_azimuth ? towards(angle, 0, 10.05) : towards(0, angle, 10.05);
+        renderer.render(withTarget(geometry, at), ping);
+        level.push_back(sumOf(ping));
+    }
+    size_t k = 0;
+    while (level[k] > 0.5 * level[0]) ++k;
+    Cut cut{};
+    cut.width_deg = 2 * step * (static_cast<double>(k) - (0.5 * level[0] - level[k]) / (level[k - 1] - level[k]));
+    while (level[k + 1] < level[k]) ++k;
+    cut.first_null_deg = step * static_cast<double>(k);
+    cut.sidelobe_db = 10 * std::log10(*std::max_element(level.begin() + static_cast<long>(k), level.end()) / level[0]);
+    return cut;
+}
+
+TEST(PointTargetTest, SweptAcrossOneBeamItShowsTheTableOfWeightings) {
+    struct Row {
+        Weighting weighting;
+        double sidelobe_db;
+        int nbar;
+        double width, first_null, peak_db;  // in wavelengths per aperture, and below the axis
+    };
+    for (const Row& row :
+         {Row{Weighting::Uniform, 0, 0, 0.8859, 1.00, -13.26}, Row{Weighting::Cosine, 0, 0, 1.189, 1.50, -23.0},
+          Row{Weighting::Hann, 0, 0, 1.4406, 2.00, -31.5}, Row{Weighting::Hamming, 0, 0, 1.303, 2.00, -42.7},
+          Row{Weighting::Taylor, -25, 4, 1.057, 1.35, -25.4}, Row{Weighting::Taylor, -30, 4, 1.125, 1.51, -30.3},
+          Row{Weighting::Taylor, -35, 5, 1.188, 1.67, -35.2}, Row{Weighting::Piston, 0, 0, 1.029, 1.22, -17.6}})
+        for (const bool in_azimuth : {true, false}) {
+            acoustics::BeamLaw law = lawOf(row.weighting, 3);
+            if (row.nbar > 0) law.sidelobe_db = row.sidelobe_db, law.nbar = row.nbar;
+            SonarConfig config = sonarOf(2, 1);
+            (in_azimuth ? config.beam_pattern.emplace().receive.azimuth
+                        : config.beam_pattern.emplace().receive.elevation) = law;
+            const Cut cut = sweep(config, in_azimuth);
+            EXPECT_NEAR(cut.width_deg, 3, 0.03) << row.peak_db;
+            EXPECT_NEAR(cut.first_null_deg, 3 * row.first_null / row.width, 0.02 * 3 * row.first_null / row.width)
+                << row.peak_db;
+            EXPECT_NEAR(cut.sidelobe_db, row.peak_db, 0.3);
+        }
+}
+
+TEST(PointTargetTest, SidelobesReachItOutsideFanAndApertureAsFarAsTheFloorSays) {
+    SonarConfig config = sonarOf(20, 10);
+    config.beam_pattern.emplace().receive.azimuth = lawOf(Weighting::Uniform, 2);
+    const auto geometry = openWater();
+    const auto outside = withTarget(geometry, towards(35.3, 0, 10.05));
+    const types::Sonar heard = pingOf(config, outside);
+    const double top = *std::ranges::max_element(heard.bins) * std::pow(10.05, 4);
+    EXPECT_LT(10 * std::log10(top), -25);
+    EXPECT_GT(10 * std::log10(top), -60);
+    config.beam_pattern->floor_db = -20;
+    EXPECT_EQ(sumOf(pingOf(config, outside)), 0);
+}
+
+TEST(PointTargetTest, NearerThanRangeMinItIsSilentAndBeyondTheRangeOnlyItsPulseIsHeard) {
+    SonarConfig config = sonarOf(20, 1);
+    config.range_min = 2;
+    const auto geometry = openWater();
+    EXPECT_EQ(sumOf(pingOf(config, withTarget(geometry, {1.999, 0, 0}))), 0);
+    EXPECT_GT(sumOf(pingOf(config, withTarget(geometry, {2.001, 0, 0}))), 0);
+    EXPECT_EQ(sumOf(pingOf(config, withTarget(geometry, {0, 0, 0}))), 0);
+    EXPECT_EQ(sumOf(pingOf(config, withTarget(geometry, {20.01, 0, 0}))), 0);
+    config.pulse.emplace().duration_us = 1000;  // half a metre
+    EXPECT_GT(sumOf(pingOf(config, withTarget(geometry, {20.2, 0, 0}))), 0);
+    EXPECT_EQ(sumOf(pingOf(config, withTarget(geometry, {20.3, 0, 0}))), 0);
+}
+
+/** A plate of 1 m square to the x axis, in software where it is drawn. */
+std::vector<SonarConfig> everyWay(const SonarConfig& config) {
+    std::vector<SonarConfig> all(3, config);
+    all[1].visibility = all[2].visibility = Visibility::Gl;
+    all[1].deposit = Deposit::Cpu;
+    all[2].deposit = Deposit::Gpu;
+    for (SonarConfig& each : all) each.device = each.visibility == Visibility::Gl ? "software" : "";
+    return all;
+}
+
+types::GeometryPtr plate(double x, double y = 0) {
+    return test::sceneOf({test::quad({0, -0.5f, -0.5f}, {0, 1, 0}, {0, 0, 1})}, 0, {{x, y, 0}});
+}
+
+TEST(PointTargetTest, WhatStandsBeforeItHidesItInsideTheFanAndOutside) {
+    SonarConfig config = sonarOf(40, 20);
+    config.beam_pattern.emplace().receive.azimuth = lawOf(Weighting::Uniform, 2);
+    for (const SonarConfig& way : everyWay(config)) {
+        const auto heardOf = [&](const types::GeometryPtr& geometry, const glm::dvec3& at) {
+            types::Snapshot with = withTarget(geometry, at, 20), without = with;
+            without.targets.clear();
+            return sumOf(pingOf(way, with)) - sumOf(pingOf(way, without));
+        };
+        const double open = heardOf(openWater(), {10, 0, 0});
+        EXPECT_GT(open, 0);
+        EXPECT_EQ(heardOf(plate(5), {10, 0, 0}), 0) << "before it";
+        EXPECT_NEAR(heardOf(plate(10.5), {10, 0, 0}), open, 1e-3 * open) << "behind it";
+        EXPECT_NEAR(heardOf(plate(10), {10, 0, 0}), open, 1e-3 * open) << "on it";
+        EXPECT_NEAR(heardOf(plate(5, 0.6), {10, 0, 0}), open, 1e-3 * open) << "beside it";
+        EXPECT_GT(heardOf(openWater(), {10, 10, 0}), 0) << "outside the fan";
+        EXPECT_EQ(heardOf(plate(5, 5), {10, 10, 0}), 0);
+    }
+}
+
+TEST(PointTargetTest, WhatMovesAsideUncoversIt) {
+    const auto geometry = plate(5);
+    SonarRenderer renderer(sonarOf(40, 20), geometry);
+    types::Sonar ping;
+    types::Snapshot snapshot = withTarget(geometry, {10, 0, 0}, 60);
+    const auto targetsHeard = [&] {
+        renderer.render(snapshot, ping);
+        return renderer.targetsHeard();
+    };
+    EXPECT_EQ(targetsHeard(), 0u);
+    ASSERT_TRUE(renderer.targetsLeftOut());
+    EXPECT_EQ(renderer.targetsLeftOut()->reason, Reason::OutOfView);
+    snapshot.moved = {{0, glm::translate(glm::dmat4(1), {5.0, 3.0, 0.0})}};
+    EXPECT_EQ(targetsHeard(), 1u);
+    EXPECT_FALSE(renderer.targetsLeftOut());
+    snapshot.moved.clear();
+    EXPECT_EQ(targetsHeard(), 0u) << "back where the scene has it";
+    snapshot.targets.clear();
+    EXPECT_EQ(targetsHeard(), 0u);
+    EXPECT_EQ(renderer.targetsLeftOut()->reason, Reason::NoneInScene);
+}
+
+TEST(PointTargetTest, FarFromTheOriginAndTurnedItIsTheSame) {
+    SonarConfig config = sonarOf(40, 20);
+    const auto near = openWater();
+    types::Snapshot snapshot = test::snapshotOf(near, {4e6, -3e6, -200}, 1.1, 0.3, 0.2);
+    snapshot.targets = {{snapshot.sonar.position + snapshot.sonar.orientation * towards(7.3, -5, 12.34), -10}};
+    const types::Sonar far = pingOf(config, snapshot),
+                       here = pingOf(config, withTarget(near, towards(7.3, -5, 12.34), -10));
+    for (size_t i = 0; i < far.bins.size(); ++i) EXPECT_NEAR(far.bins[i], here.bins[i], 1e-6 * here.bins[i]) << i;
+}
+
+TEST(PointTargetTest, NothingOfItChangesNoBit) {
+    SonarConfig config = sonarOf(40, 20);
+    config.pulse.emplace().bandwidth_khz = 4;
+    const auto geometry = test::sceneOf({test::ground(-2), test::sphere(1, 20)}, 0, {{0, 0, 0}, {8, 0, 0}});
+    for (const Model model : {Model::Physical, Model::Cerqueira2017}) {
+        config.model = model;
+        if (model == Model::Cerqueira2017) config.pulse.reset();
+        const types::Sonar plain = pingOf(config, test::snapshotOf(geometry));
+        EXPECT_EQ(pingOf(config, withTarget(geometry, {5, 0, 0}, -3000)).bins, plain.bins);
+        const types::Sonar loud = pingOf(config, withTarget(geometry, {5, 0, 0}, 0));
+        EXPECT_EQ(loud.bins == plain.bins, model == Model::Cerqueira2017) << "means know no targets";
+    }
+}
+
+TEST(PointTargetTest, PingsThatAreUnderWayTogetherHaveTheirOwnTargets) {
+    SonarConfig config = sonarOf(40, 20);
+    config.visibility = Visibility::Gl;
+    config.device = "software";
+    const auto geometry = openWater();
+    SonarRenderer renderer(config, geometry, {.ring = 2});
+    types::Sonar ping;
+    for (const double x : {5.0, 9.0})
+        renderer.submit(std::make_shared<const types::Snapshot>(withTarget(geometry, {x, 0.1, 0})));
+    for (const size_t bin : {50u, 90u}) {
+        renderer.collect(ping);
+        const auto top = std::ranges::max_element(ping.bins) - ping.bins.begin();
+        EXPECT_EQ(static_cast<size_t>(top) % ping.bin_count, bin);
+    }
+}
+
+}  // namespace
+}  // namespace insonify::sonar

@@ -1,0 +1,73 @@
+// The transmitter in the first bins (ACOUSTICS.md 5.15).
+#include <gmock/gmock.h>
+
+#include <numbers>
+
+#include "components/sonar/SonarRenderer.hpp"
+#include "tests/support/Scenes.hpp"
+
+namespace insonify::sonar {
+namespace {
+
+SonarConfig sonar() {
+    SonarConfig config;
+    config.speed_of_sound = 1000;
+    config.range = 20;
+    config.bin_count = 200;
+    config.beam_count = 4;
+    config.quality.rows = 32;
+    config.visibility = Visibility::Cpu;
+    config.pulse.emplace().bandwidth_khz = 4;
+    return config;
+}
+
+types::Sonar pingOf(const SonarConfig& config, const types::GeometryPtr& geometry) {
+    SonarRenderer renderer(config, geometry);
+    types::Sonar ping;
+    renderer.render(test::snapshotOf(geometry), ping);
+    return ping;
+}
+
+TEST(RingDownTest, EveryBeamHearsTheMeanOfItsFallOverEachBin) {
+    SonarConfig config = sonar();
+    config.pulse->ring_down = acoustics::RingDownConfig{-30, 12};
+    const types::Sonar ping = pingOf(config, test::sceneOf({test::disc(1, 0.1f)}, 0, {{-500, 0, 0}}));
+    const auto at = [](double r) { return std::pow(10, (-30 - 12 * r) / 10); };
+    for (size_t beam = 0; beam < ping.beam_count; ++beam)
+        for (size_t k = 0; k < ping.bin_count; ++k) {
+            const double r = 0.1 * static_cast<double>(k), rate = 1.2 * std::numbers::ln10;
+            const double right = (at(r) - at(r + 0.1)) / rate / 0.1, middle = at(r + 0.05);
+            const float heard = ping.bins[beam * ping.bin_count + k];
+            EXPECT_NEAR(heard, right, 1e-6 * right) << k;
+            EXPECT_GT(std::abs(heard - middle), 1e-3 * middle) << "the level of the bin's middle is another";
+        }
+}
+
+TEST(RingDownTest, ItIsHeardBesideTheEchoesAndIsNone) {
+    const auto geometry = test::sceneOf({test::wall(10)});
+    const types::Sonar plain = pingOf(sonar(), geometry);
+    SonarConfig config = sonar();
+    config.pulse->ring_down = acoustics::RingDownConfig{-3000, 25};
+    EXPECT_EQ(pingOf(config, geometry).bins, plain.bins) << "of nothing";
+    config.pulse->ring_down->level_db = 0;
+    const types::Sonar heard = pingOf(config, geometry);
+    EXPECT_GT(heard.bins[0], 0.7f);
+    EXPECT_NEAR(heard.bins[100], plain.bins[100], 1e-6f * plain.bins[100]);
+    const auto behind = test::sceneOf({test::wall(-10)});
+    SonarRenderer deaf(config, behind);
+    types::Sonar ping;
+    deaf.render(test::snapshotOf(behind), ping);
+    EXPECT_FALSE(deaf.hasEchoes());
+}
+
+TEST(RingDownTest, ThePlanSaysWhetherItIsAdded) {
+    const auto geometry = test::sceneOf({test::wall(10)});
+    SonarConfig config = sonar();
+    EXPECT_EQ(makeRenderPlan(config, *geometry).leftOut(Effect::RingDown)->reason, Reason::NotConfigured);
+    config.pulse->ring_down = acoustics::RingDownConfig{0, 25};
+    EXPECT_TRUE(makeRenderPlan(config, *geometry).has(Pass::RingDown));
+    EXPECT_FALSE(makeRenderPlan(config, *geometry).leftOut(Effect::RingDown));
+}
+
+}  // namespace
+}  // namespace insonify::sonar

@@ -1,0 +1,101 @@
+// Lines from the sonar against every triangle of a scene, and sonars inside of things.
+#include <gmock/gmock.h>
+
+#include "components/sonar/Sightlines.hpp"
+#include "tests/sonar/ClusteredHarbour.hpp"
+#include "tests/support/Surfaces.hpp"
+
+namespace insonify::sonar {
+namespace {
+
+/** Whether the line between two points passes through any triangle, each looked at: both ends on different sides of its
+ *  plane, the line on the same side of its three edges. */
+bool isCrossed(const types::Geometry& geometry, const std::vector<glm::dmat4>& places, const glm::dvec3& from,
+               const glm::dvec3& to) {
+    const auto volume = [](glm::dvec3 a, glm::dvec3 b, glm::dvec3 c) { return glm::dot(glm::cross(a, b), c); };
+    for (size_t object = 0; object < places.size(); ++object) {
+        const types::Mesh& mesh = geometry.meshes[static_cast<size_t>(geometry.objects[object].mesh)];
+        const auto corner = [&](size_t i) {
+            return glm::dvec3(places[object] * glm::dvec4(mesh.positions[mesh.indices[i]], 1));
+        };
+        for (size_t i = 0; i < mesh.indices.size(); i += 3) {
+            const glm::dvec3 a = corner(i), b = corner(i + 1), c = corner(i + 2), way = to - from;
+            const double first = volume(b - a, c - a, from - a), second = volume(b - a, c - a, to - a);
+            if (first * second >= 0) continue;
+            const double ab = volume(a - from, b - from, way), bc = volume(b - from, c - from, way),
+                         ca = volume(c - from, a - from, way);
+            if ((ab >= 0 && bc >= 0 && ca >= 0) || (ab <= 0 && bc <= 0 && ca <= 0)) return true;
+        }
+    }
+    return false;
+}
+
+std::vector<glm::dmat4> placesOf(const types::Snapshot& snapshot) {
+    std::vector<glm::dmat4> places;
+    for (const types::Object& object : snapshot.geometry->objects) places.push_back(object.world_from_object);
+    for (const types::MovedObject& moved : snapshot.moved) places[moved.object] = moved.world_from_object;
+    return places;
+}
+
+TEST(SightlinesTest, APointIsSeenWhereNoTriangleIsBeforeIt) {
+    Random random(7);
+    for (const types::GeometryPtr& geometry :
+         {types::GeometryPtr(clusteredHarbour()), types::GeometryPtr(test::surfaces())}) {
+        Sightlines lines(*geometry);
+        types::Snapshot snapshot = test::snapshotOf(geometry);
+        int open = 0;
+        for (int ping = 0; ping < 20; ++ping) {
+            snapshot.sonar.position = uniformVector(random, 3);
+            snapshot.moved.clear();
+            if (ping % 2 == 1)
+                snapshot.moved = {{1, glm::rotate(glm::translate(glm::dmat4(1), uniformVector(random, 6)), 0.4,
+                                                  glm::dvec3(1, 2, 3))}};
+            lines.place(snapshot);
+            const auto places = placesOf(snapshot);
+            for (int i = 0; i < 25; ++i) {
+                const glm::dvec3 point = snapshot.sonar.position + uniformVector(random, 14);
+                const bool crossed = isCrossed(*geometry, places, snapshot.sonar.position, point);
+                EXPECT_EQ(lines.isOpen(point), !crossed) << ping << " " << i;
+                open += crossed ? 0 : 1;
+            }
+        }
+        EXPECT_GT(open, 50);
+        EXPECT_LT(open, 450);
+    }
+}
+
+TEST(SightlinesTest, WhatIsWithinAMillimetreOfEitherEndHidesNothing) {
+    const auto geometry = test::sceneOf({test::wall(5)});
+    Sightlines lines(*geometry);
+    lines.place(test::snapshotOf(geometry, {4.9995, 0, 0}));
+    EXPECT_TRUE(lines.isOpen({9, 0, 0}));
+    lines.place(test::snapshotOf(geometry));
+    EXPECT_TRUE(lines.isOpen({5, 1, 1}));
+    EXPECT_TRUE(lines.isOpen({5.0009, 0, 0}));
+    EXPECT_FALSE(lines.isOpen({5.002, 0, 0}));
+}
+
+TEST(SightlinesTest, ASonarIsInsideOfWhatTurnsItsBackToItAllRound) {
+    const auto insideOf = [](const types::GeometryPtr& geometry, const glm::dvec3& place) {
+        Sightlines lines(*geometry);
+        lines.place(test::snapshotOf(geometry, place));
+        return lines.enclosing();
+    };
+    types::Mesh pool = test::sphere(2, 20);  // its faces inward, as a tank's
+    for (size_t i = 0; i < pool.indices.size(); i += 3) std::swap(pool.indices[i], pool.indices[i + 1]);
+    const auto scene =
+        test::sceneOf({test::ground(-4, 200), test::sphere(2, 20), pool}, 0, {{0, 0, 0}, {10, 0, 0}, {-10, 0, 0}});
+    EXPECT_EQ(insideOf(scene, {10, 0.3, 0.2}), std::optional<uint32_t>(1));
+    EXPECT_EQ(insideOf(scene, {11.9, 0, 0}), std::optional<uint32_t>(1));
+    EXPECT_FALSE(insideOf(scene, {12.1, 0, 0}));
+    EXPECT_FALSE(insideOf(scene, {-10, 0, 0})) << "a tank";
+    EXPECT_FALSE(insideOf(scene, {0, 0, 0}));
+    EXPECT_FALSE(insideOf(scene, {0, 0, -5})) << "below a sheet";
+    const auto harbour = clusteredHarbour();
+    EXPECT_EQ(insideOf(harbour, {9, 4, -3.2}), std::optional<uint32_t>(1));
+    EXPECT_EQ(insideOf(harbour, {-12, 6, -2}), std::optional<uint32_t>(2)) << "mirrored";
+    EXPECT_FALSE(insideOf(harbour, {0, 0, 0}));
+}
+
+}  // namespace
+}  // namespace insonify::sonar

@@ -1,0 +1,78 @@
+// What a sonar's task says of pings in which there is nothing, and how often.
+#include <gmock/gmock.h>
+
+#include "components/sonar/SonarTask.hpp"
+#include "components/sonar/Troubles.hpp"
+#include "tests/sonar/WallScene.hpp"
+#include "tests/support/Ports.hpp"
+#include "tests/support/Scenes.hpp"
+
+namespace insonify::sonar {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+
+class TroublesTest : public testing::Test {
+protected:
+    TroublesTest() {
+        const auto environment = std::make_shared<framework::Environment>();
+        environment->warn = [this](const std::string& text) { told_.push_back(text); };
+        task_.setEnvironment(environment);
+        in_.port.connectTo(task_.snapshot, framework::ConnPolicy::buffer(4));
+        SonarConfig config = smallSonar();
+        config.device.clear();
+        config.visibility = Visibility::Cpu;
+        task_.config.set(config);
+        EXPECT_TRUE(task_.configure() && task_.start()) << task_.lastError();
+    }
+    /** So many pings of a scene, the sonar turned by `yaw_deg`. */
+    void ping(const types::GeometryPtr& geometry, double yaw_deg, int count,
+              const std::vector<types::PointTarget>& targets = {}) {
+        for (int i = 0; i < count; ++i) {
+            types::Snapshot snapshot = test::snapshotOf(geometry, {}, types::radians(yaw_deg));
+            snapshot.time = types::Time::fromSeconds(++pings_);
+            snapshot.targets = targets;
+            in_.port.write(std::make_shared<const types::Snapshot>(snapshot));
+            task_.update();
+        }
+    }
+
+    SonarTask task_{"sonar"};
+    test::Writer<types::SnapshotPtr> in_;
+    std::vector<std::string> told_;
+    int pings_ = 0;
+};
+
+TEST_F(TroublesTest, SilenceIsToldOfOnceAndAgainOnceEnoughHasBeenHeard) {
+    const auto wall = wallAt(5);
+    ping(wall, 0, 2);
+    EXPECT_THAT(told_, IsEmpty());
+    ping(wall, 180, 5);
+    EXPECT_THAT(told_, ElementsAre(HasSubstr("sonar: hears nothing")));
+    ping(wall, 0, 3);
+    ping(wall, 180, 5);
+    EXPECT_EQ(told_.size(), 1u) << "heard for three pings only";
+    ping(wall, 0, types::Complaint::well_after);
+    ping(wall, 180, 5);
+    EXPECT_EQ(told_.size(), 2u);
+}
+
+TEST_F(TroublesTest, ATargetAloneIsSomethingToHear) {
+    ping(wallAt(-50), 0, 3, {{{5, 0, 0}, 0}});
+    EXPECT_THAT(told_, IsEmpty());
+    ping(wallAt(-50), 0, 1, {{{-5, 0, 0}, 0}});
+    EXPECT_THAT(told_, ElementsAre(HasSubstr("; its nearest target 5 m away at [-5, 0, 0]")));
+}
+
+TEST_F(TroublesTest, ASonarInsideOfAMeshIsToldOfInPlaceOfSilence) {
+    const auto hull = test::sceneOf({test::sphere(0.05f, 12)});  // nearer than range_min
+    ping(hull, 0, 40);
+    EXPECT_THAT(told_,
+                ElementsAre(HasSubstr("is inside of object_0, which has its faces outward: the sonar is at [0, 0, "
+                                      "0], its nearest surface 0.04")));
+}
+
+}  // namespace
+}  // namespace insonify::sonar
