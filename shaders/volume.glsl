@@ -1,19 +1,24 @@
 // Shared by C++ and GLSL: volume reverberation as changes over range, which are summed up from bin to bin afterwards
 // (ACOUSTICS.md 3.9). The includer has footprint.glsl before this file, and defines:
-//     void addVolume(uint beam, uint bin, double amount);  // of either sign; the bin behind the last one as well
+//     void addVolume(uint beam, uint bin, double amount);  // of either sign; with layers the bin behind the last one as well
 //     uint bin_count; double bin_width [m]
 // and with HAVE_VOLUME_LAYERS:
 //     uint layer_count; double layerNumber(uint i);        // three each: low and high above the surface [m], share [1]
 //     double sonar_height;                                 // above the surface [m]
 
-// From `range` on a beam hears so much more of the volume.
+// From `range` on a beam hears so much more of the volume: layers between two bins by its place, for all of their rays enter
+// close to each other; what hides the volume to the nearest edge of a bin, for it is heard more than what it hides.
 void changeVolume(uint beam, double range, double amount) {
+#ifdef HAVE_VOLUME_LAYERS
     double at = range / bin_width;
     if (!(at < double(bin_count))) return;
-    uint bin = uint(at);
-    double rest = double(bin + 1u) - at;
-    addVolume(beam, bin, amount * rest);
-    addVolume(beam, bin + 1u, amount * (1.0 - rest));
+    double rest = double(uint(at) + 1u) - at;
+    addVolume(beam, uint(at), amount * rest);
+    addVolume(beam, uint(at) + 1u, amount * (1.0 - rest));
+#else
+    double at = range / bin_width + 0.5;
+    if (at < double(bin_count)) addVolume(beam, uint(at), amount);
+#endif
 }
 
 #ifdef HAVE_VOLUME_LAYERS
@@ -30,10 +35,10 @@ void hearLayers(uint beam, double rise, double end, double amount) {
 }
 #endif
 
-// What a cell of a solid angle `size` meets hides what is behind it. A cell that covers several bins does so in parts.
+// What a cell of a solid angle `size` meets hides what is behind it: one that covers several bins in up to four parts.
 void hideVolume(Footprint cell, uint beam, double rise, double size) {
     double depth = cell.wide + cell.narrow;
-    uint parts = depth > bin_width * cell.pixel * cell.pixel ? 4u : 1u;
+    uint parts = uint(min(depth / (bin_width * cell.pixel * cell.pixel), 3.0)) + 1u;
     for (uint part = 0u; part < parts; ++part) {
         double inverse_range = min(cell.centre + ((double(part) + 0.5) / double(parts) - 0.5) * depth, cell.nearest);
         if (cell.near_end > cell.far_end) inverse_range = min(max(inverse_range, cell.far_end), cell.near_end);

@@ -10,15 +10,20 @@
 #include <variant>
 
 #include "types/Angle.hpp"
+#include "types/DepthMap.hpp"
 #include "types/Image.hpp"
+#include "types/PointCloud.hpp"
 #include "types/Pose.hpp"
+#include "types/Range.hpp"
 #include "types/Sonar.hpp"
+#include "types/SonarReturns.hpp"
 #include "types/SonarScan.hpp"
+#include "types/SonarTruth.hpp"
 
 namespace insonify::types {
 
-using SampleTypes = std::tuple<Sonar, SonarBeam, SonarScan, Pose, Image, Time, Angle, double, float, int32_t, int64_t,
-                               bool, std::string>;
+using SampleTypes = std::tuple<Sonar, SonarBeam, SonarScan, SonarTruth, SonarReturns, Pose, Image, PointCloud, DepthMap,
+                               Range, Time, Angle, double, float, int32_t, int64_t, bool, std::string>;
 
 /** What travels on a port for a T: samples that say so (`shared`), by reference, the others as they are. */
 template <class T>
@@ -119,12 +124,36 @@ struct Columns<Pose> {
         visit("orientation", std::array{"qw", "qx", "qy", "qz"}, std::array{q.w, q.x, q.y, q.z});
     }
 };
+template <>
+struct Columns<Range> {
+    template <class Visit>
+    static void forEach(const Range& sample, Visit&& visit) {
+        visit("range", std::array{"range"}, std::array{sample.range});
+    }
+};
 struct AnyColumns {
     void operator()(const char*, const auto&, const auto&) const {}
 };
 template <class T>
 concept Tabular = requires(const T& sample) {
     Columns<T>::forEach(sample, AnyColumns{});
+};
+
+/** A sample that is arrays of one shape: it tells its `shape()`, and by `forEachArray` each array as
+ *  `visit(name, numbers, std::type_identity<Number>{})`, Number being what files hold of it. */
+struct AnyArray {
+    void operator()(const char*, const auto&, auto) const {}
+};
+template <class T>
+concept Arrayed = requires(const T& sample) {
+    sample.shape();
+    T::forEachArray(sample, AnyArray{});
+};
+
+/** A sample that speaks of objects by number; their names stand in the metadata of its stream as well. */
+template <class T>
+concept NamesObjects = requires(const T& sample) {
+    { sample.objects } -> std::convertible_to<const std::vector<std::string>&>;
 };
 
 /** What of a sample contradicts itself, after "a sample"; null: nothing. Types tell it by `diagnostic()`. */

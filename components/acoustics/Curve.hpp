@@ -2,6 +2,8 @@
 #include <string>
 #include <vector>
 
+#include "types/Csv.hpp"
+
 namespace insonify::acoustics {
 
 /** A measured curve: y over ascending x, with straight lines between its points. */
@@ -12,14 +14,8 @@ struct Curve {
     double at(double where) const;
 };
 
-/** What a column of a file is called, and what its numbers may be. */
-struct Column {
-    const char* name;
-    double min, max;
-};
-
 /** Reads a CSV file of two columns under their names, the first ascending.
- *  @throws types::ConfigError with file, line and column of every fault. */
-Curve readCurve(const std::string& file, const Column& x, const Column& y);
+ *  @throws types::ConfigError with file, line and column of all that is wrong. */
+Curve readCurve(const std::string& file, const types::CsvColumn& x, const types::CsvColumn& y);
 
 }  // namespace insonify::acoustics

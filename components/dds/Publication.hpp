@@ -31,7 +31,8 @@ concept Fills = requires(const T& sample, const ros::MessageOptions& options, Me
 template <class T, class Message>
 void fill(const T& sample, const TopicOptions& options, Message& message) {
     ros::toMessage(sample, options.messages, message);
-    if constexpr (std::is_same_v<T, types::Pose> && requires { message.header; }) {
+    constexpr bool of_the_world = std::is_same_v<T, types::Pose> || std::is_same_v<T, types::PointCloud>;
+    if constexpr (of_the_world && requires { message.header; }) {
         nameFrame(message.header.frame_id, options.world_frame_id, "map");
         if constexpr (requires { message.child_frame_id; })
             nameFrame(message.child_frame_id, options.child_frame_id, "base_link");

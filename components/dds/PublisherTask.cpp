@@ -39,9 +39,10 @@ framework::InputPortBase* PublisherTask::makeInput(const std::string& port, fram
     if (std::ranges::none_of(config->topics, [&](const TopicOut& topic) { return topic.port == port; }))
         throw types::ConfigError("", "", "no topic of " + name() + " is for port " + port);
     if (framework::InputPortBase* const made = inputs_.make(port, source)) return made;
-    throw types::ConfigError("", "",
-                             source.path() + " is " + source.typeName() +
-                                 ", of which no message is made; pings, poses, pictures, numbers and texts are");
+    throw types::ConfigError(
+        "", "",
+        source.path() + " is " + source.typeName() +
+            ", of which no message is made; pings, poses, points, ranges, pictures, numbers and texts are");
 }
 
 void PublisherTask::check(types::Diagnostics& diagnostics) const {

@@ -90,7 +90,7 @@ int runCommandLine(int argc, char** argv) {
     addSchemaCommand(app, action);
     addLogCommand(app, action);
     addReplayCommand(app, action);
-    study::addCommand(app, action, sonarAt);
+    study::addCommand(app, action, sonarAt, codedPingAt);
     addCompletionCommand(app, action);
     addManCommand(app, action);
 

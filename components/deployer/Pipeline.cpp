@@ -7,6 +7,8 @@
 #include "components/deployer/StopSignal.hpp"
 #include "components/deployer/Tasks.hpp"
 #include "components/framework/Deployment.hpp"
+#include "components/framework/Port.hpp"
+#include "components/receiver/ReceiverTask.hpp"
 #include "components/sonar/PingTask.hpp"
 #include "types/ConfigError.hpp"
 #include "types/Sonar.hpp"
@@ -31,6 +33,41 @@ std::set<std::string> upstreamOfSonars(const Deployment& deployment) {
     return upstreamOf(std::move(names), deployment);
 }
 
+/** The deployment with these tasks alone, in lockstep. */
+DeploymentSpec restricted(DeploymentSpec spec, const std::set<std::string>& kept) {
+    const auto keeps = [&](const std::string& port) { return kept.contains(framework::splitPort(port).first); };
+    std::vector<framework::TaskSpec> tasks;  // made anew: assigning a YAML node changes what other nodes see
+    for (const auto& task : spec.tasks)
+        if (kept.contains(task.name)) tasks.push_back(task);
+    std::vector<framework::ConnectionSpec> connections;
+    for (const auto& connection : spec.connections)
+        if (keeps(connection.from) && keeps(connection.to)) connections.push_back(connection);
+    spec.tasks.swap(tasks);
+    spec.connections.swap(connections);
+    spec.lockstep = true;
+    return spec;
+}
+
+/** Reads what a port gives out, for who is no task of the deployment. */
+struct PingReader : framework::TaskContext {
+    using TaskContext::TaskContext;
+    framework::InputPort<types::SonarPtr> ping{this, "ping", "the newest"};
+};
+
+receiver::ReceiverTask* codingReceiver(const Deployment& deployment) {
+    for (const auto& task : deployment.tasks()) {
+        auto* found = dynamic_cast<receiver::ReceiverTask*>(task.get());
+        if (found && found->config->output == receiver::Output::Code) return found;
+    }
+    return nullptr;
+}
+
+receiver::ReceiverTask& codingReceiverOf(const Deployment& deployment, const std::string& file) {
+    if (auto* found = codingReceiver(deployment)) return *found;
+    throw types::ConfigError(file, "tasks",
+                             "has no receiver that gives out codes, as instruments do: give one output: code");
+}
+
 }  // namespace
 
 std::set<std::string> upstreamOf(std::set<std::string> names, const Deployment& deployment) {
@@ -43,18 +80,7 @@ std::set<std::string> upstreamOf(std::set<std::string> names, const Deployment& 
 }
 
 DeploymentSpec pipelineOf(DeploymentSpec spec, framework::Registry& registry) {
-    const std::set<std::string> kept = upstreamOfSonars(Deployment(spec, registry));
-    const auto keeps = [&](const std::string& port) { return kept.contains(framework::splitPort(port).first); };
-    std::vector<framework::TaskSpec> tasks;  // made anew: assigning a YAML node changes what other nodes see
-    for (const auto& task : spec.tasks)
-        if (kept.contains(task.name)) tasks.push_back(task);
-    std::vector<framework::ConnectionSpec> connections;
-    for (const auto& connection : spec.connections)
-        if (keeps(connection.from) && keeps(connection.to)) connections.push_back(connection);
-    spec.tasks.swap(tasks);
-    spec.connections.swap(connections);
-    spec.lockstep = true;
-    return spec;
+    return restricted(spec, upstreamOfSonars(Deployment(spec, registry)));
 }
 
 std::set<std::string> pingTasks(const DeploymentSpec& spec, framework::Registry& registry) {
@@ -82,6 +108,24 @@ study::SonarAt sonarAt(const std::string& file, uint64_t ping) {
         return found;
     }
     throw types::ConfigError(file, "tasks", "has no sonar that got a snapshot: nothing to study");
+}
+
+study::PingAt codedPingAt(const std::string& file, uint64_t ping) {
+    framework::Registry registry = builtInTasks();
+    const DeploymentSpec spec = DeploymentSpec::load(deploymentIn(file));
+    const Deployment whole(spec, registry);
+    const std::set<std::string> kept = upstreamOf({codingReceiverOf(whole, file).name()}, whole);
+    Deployment deployment(restricted(spec, kept), registry);
+    receiver::ReceiverTask& receiver = codingReceiverOf(deployment, file);
+    PingReader reader("reader");
+    receiver.ping.connectTo(reader.ping, framework::ConnPolicy::data());
+    deployment.configure();
+    const framework::RunResult result = deployment.run({.samples = ping}, stopOnSignals());
+    if (result.failed()) throw std::runtime_error(result.failures.front());
+    types::SonarPtr received;
+    if (!reader.ping.readNew(received))
+        throw types::ConfigError(file, "tasks." + receiver.name(), "gave out no ping: nothing to study");
+    return {*received, receiver.config->code.value_or(receiver::CodeConfig{})};
 }
 
 }  // namespace insonify::deployer

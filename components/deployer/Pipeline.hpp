@@ -21,4 +21,7 @@ std::set<std::string> upstreamOf(std::set<std::string> names, const framework::D
 /** The first sonar of a deployment at its ping number `ping`, from 1. Throws types::ConfigError where there is none. */
 study::SonarAt sonarAt(const std::string& file, uint64_t ping);
 
+/** The same ping as the first receiver that gives out codes has it. Throws types::ConfigError where there is none. */
+study::PingAt codedPingAt(const std::string& file, uint64_t ping);
+
 }  // namespace insonify::deployer

@@ -43,7 +43,16 @@ std::string absorptionBlock(const SonarPreset& preset, double db_per_m) {
     if (preset.frequency_khz > highest_khz)
         return fmt::format("{{db_per_m: {:.2f}}}  # one way; laws of absorption are for up to {:g} kHz", db_per_m,
                            highest_khz);
-    return fmt::format("{{law: francois_garrison, frequency_khz: {:g}}}", preset.frequency_khz);
+    return "{law: francois_garrison}";
+}
+
+/** A chirp, or a tone, that resolves what the maker says at a sound speed of 1496 m/s: ACOUSTICS.md 5.10. */
+std::string pulseBlock(const SonarPreset& preset) {
+    constexpr double speed_of_sound = 1496, chirp_width = 0.886;
+    const double seconds = 2 * preset.range_resolution / speed_of_sound;
+    const std::string pulse = preset.sends_tones ? fmt::format("duration_us: {:.3g}", 1e6 * seconds)
+                                                 : fmt::format("bandwidth_khz: {:.3g}", 1e-3 * chirp_width / seconds);
+    return fmt::format("{{{}}}  # resolves {:.3g} mm", pulse, 1e3 * preset.range_resolution);
 }
 
 }  // namespace
@@ -64,8 +73,8 @@ std::string starterDeployment(const SonarPreset& preset) {
         arg("fov", preset.field_of_view_deg), arg("spacing", preset.field_of_view_deg / preset.beam_count),
         arg("pitch", preset.pitch_deg), arg("step", preset.step_deg), arg("speed", preset.step_deg / preset.period_s),
         arg("turn", preset.isFan() ? 0 : static_cast<int>(90 / preset.step_deg)),
-        arg("absorption", fmt::format("{:.2f}", db_per_m)),
-        arg("absorption_block", absorptionBlock(preset, db_per_m))));
+        arg("absorption", fmt::format("{:.2f}", db_per_m)), arg("absorption_block", absorptionBlock(preset, db_per_m)),
+        arg("pulse", pulseBlock(preset))));
 }
 
 const std::vector<StarterFile>& starterFiles() {

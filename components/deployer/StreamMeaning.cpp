@@ -77,7 +77,9 @@ Json frequencyOf(const TaskSpec* sonar) {
 }
 
 Json pingMeaning(const DeploymentSpec& spec, const std::string& task) {
-    const TaskSpec* sonar = upstream(spec, task, {"sonar::SonarTask", "sonar::ScanningSonarTask"});
+    const TaskSpec* sonar = upstream(spec, task,
+                                     {"sonar::SonarTask", "sonar::ScanningSonarTask", "sonar::ProfilerTask",
+                                      "sonar::SideScanTask", "sonar::AltimeterTask"});
     const TaskSpec* receiver = upstream(spec, task, {"receiver::ReceiverTask"});
     const TaskSpec* noise = upstream(spec, task, {"noise::NoiseTask"});
     const TaskSpec* scene = upstream(spec, task, {"scene::SceneTask"});
@@ -108,6 +110,24 @@ Json poseMeaning() {
             {"quaternion_order", quaternion_order}};
 }
 
+/** Of a sample's fields, what they are: as types tell it. */
+template <class T>
+Json fieldsOf() {
+    Json fields = Json::object();
+    const auto tell = [&](const types::Field& field, const auto&) {
+        const std::string unit = field.unit;
+        fields[field.name] = std::string(field.doc) + (unit.empty() || unit == "1" ? "" : " [" + unit + "]");
+    };
+    const T sample;
+    T::describe(sample, tell);
+    return fields;
+}
+
+Json cloudMeaning() {
+    return {{"points", "in the world, x north, y west, z up [m]"},
+            {"intensity", "of the strongest bin of each return, as the sonar's bins are"}};
+}
+
 std::string metadataOf(const log::Stream& stream, const char* key) {
     const auto found = stream.metadata.find(key);
     return found == stream.metadata.end() ? "" : found->second;
@@ -128,8 +148,16 @@ Json meaningOf(const log::Reader& log, const log::Stream& stream) {
         meaning.update(pingMeaning(deploymentOf(stream, log.path().string()), framework::splitPort(stream.name).first));
     else if (stream.holds<types::Pose>())
         meaning.update(poseMeaning());
+    else if (stream.holds<types::SonarTruth>())
+        meaning.update(fieldsOf<types::SonarTruth>());
+    else if (stream.holds<types::SonarReturns>())
+        meaning.update(fieldsOf<types::SonarReturns>());
+    else if (stream.holds<types::PointCloud>())
+        meaning.update(cloudMeaning());
     else
         meaning["type"] = stream.type;
+    if (const std::string names = metadataOf(stream, "insonify_objects"); !names.empty())
+        meaning["objects"] = Json::parse(names, nullptr, false);
     if (const std::string seed = metadataOf(stream, "insonify_seed"); !seed.empty()) meaning["seed"] = seed;
     return meaning;
 }

@@ -59,6 +59,49 @@ void writePings(Reader& log, const std::string& stream, const std::filesystem::p
     csv.close();
 }
 
+/** A line for each bin, or for each beam where there is one number of each. */
+template <types::Arrayed T>
+void writeGrids(Reader& log, const std::string& stream, const std::filesystem::path& path) {
+    constexpr bool of_bins = requires(const T& sample) { sample.bin_count; };
+    std::string header = of_bins ? "time,beam,bearing,bin" : "time,beam,bearing";
+    const T names;
+    T::forEachArray(names, [&](const char* name, const auto&, auto) { header += std::string(",") + name; });
+    CsvFile csv(path, header);
+    log.forEach<T>(stream, [&](const T& sample, const SampleRef& at) {
+        if (const char* fault = sample.diagnostic())
+            throw types::ConfigError(log.path(), stream, std::string("a sample ") + fault);
+        size_t count = sample.bearings.size(), bins = 1;
+        if constexpr (of_bins) bins = sample.bin_count;
+        for (size_t i = 0; i < count * bins; ++i) {
+            std::string row = fmt::format("{},{}", i / bins, sample.bearings[i / bins].rad);
+            if constexpr (of_bins) row += fmt::format(",{}", i % bins);
+            T::forEachArray(sample,
+                            [&](const char*, const auto& numbers, auto) { row += fmt::format(",{}", numbers[i]); });
+            csv.line(sampleTime(sample, at.time), row);
+        }
+    });
+    csv.close();
+}
+
+/** A line for each point, or for each cell. */
+void writePart(CsvFile& csv, const types::PointCloud& cloud, types::Time time) {
+    for (size_t k = 0; k < cloud.points.size(); ++k)
+        csv.line(time, cloud.points[k].x, cloud.points[k].y, cloud.points[k].z, cloud.intensity(k));
+}
+void writePart(CsvFile& csv, const types::DepthMap& map, types::Time time) {
+    for (size_t cell = 0; cell < map.distances.size(); ++cell)
+        csv.line(time, cell / map.horizontal_size, cell % map.horizontal_size, map.distances[cell],
+                 map.remissions.empty() ? 0 : map.remissions[cell]);
+}
+
+template <class T>
+void writeParts(Reader& log, const std::string& stream, const std::filesystem::path& path, const char* header) {
+    CsvFile csv(path, header);
+    log.forEach<T>(stream,
+                   [&](const T& sample, const SampleRef& at) { writePart(csv, sample, sampleTime(sample, at.time)); });
+    csv.close();
+}
+
 /** Text in quotes, those within it doubled. */
 std::string quoted(const std::string& text) {
     std::string result = "\"";
@@ -101,10 +144,16 @@ void writeRows(Reader& log, const std::string& stream, const std::filesystem::pa
 void exportCsv(Reader& log, const std::string& stream, const std::filesystem::path& path) {
     const Stream& declared = log.streams()[log.indexOf(stream)];
     if (holdsPings(declared)) return writePings(log, stream, path);
+    if (declared.holds<types::PointCloud>())
+        return writeParts<types::PointCloud>(log, stream, path, "time,x,y,z,intensity");
+    if (declared.holds<types::DepthMap>())
+        return writeParts<types::DepthMap>(log, stream, path, "time,row,column,distance,remission");
     bool done = false;
     types::forEachSampleType([&]<class T>(std::type_identity<T>) {
         if (!declared.holds<T>()) return;
-        if constexpr (types::Tabular<T>)
+        if constexpr (types::Arrayed<T>)
+            writeGrids<T>(log, stream, path);
+        else if constexpr (types::Tabular<T>)
             writeRows<T>(log, stream, path);
         else if constexpr (types::Scalar<T> || Text<T>)
             writeValues<T>(log, stream, path);
@@ -115,8 +164,9 @@ void exportCsv(Reader& log, const std::string& stream, const std::filesystem::pa
     if (!done)
         throw types::ConfigError(log.path(), stream,
                                  "holds " + declared.type +
-                                     "; as text can be written pings, beams and scans of sonars, poses, numbers and "
-                                     "texts (pictures: .png and .npz)");
+                                     "; as text can be written pings, beams and scans of sonars, truth and returns of "
+                                     "pings, points, maps of "
+                                     "distances, ranges, poses, numbers and texts (pictures: .png and .npz)");
 }
 
 }  // namespace insonify::log

@@ -9,7 +9,9 @@ namespace insonify::log {
 namespace {
 
 using Path = std::filesystem::path;
+using types::DepthMap;
 using types::Image;
+using types::PointCloud;
 using types::Sonar;
 
 /** Successive samples of one shape. */
@@ -25,10 +27,15 @@ struct Run {
     }
 };
 
+template <types::Arrayed T>
+std::vector<size_t> shapeOf(const T& sample) {
+    return sample.shape();
+}
 std::vector<size_t> shapeOf(const Sonar& ping) { return {ping.beam_count, ping.bin_count}; }
 std::vector<size_t> shapeOf(const Image& picture) {
     return {picture.size.height, picture.size.width, picture.pixel_size};
 }
+std::vector<size_t> shapeOf(const DepthMap& map) { return {map.vertical_size, map.horizontal_size}; }
 
 void readShaped(Reader& log, const SampleRef& at, Sonar& ping) { readPing(log, at, ping); }
 void readShaped(Reader& log, const SampleRef& at, Image& picture) {
@@ -36,6 +43,20 @@ void readShaped(Reader& log, const SampleRef& at, Image& picture) {
     if (!picture.holdsPixels())
         throw types::ConfigError(log.path(), log.streams()[at.stream].name,
                                  "a picture is compressed or has other numbers of pixels than it says");
+}
+
+template <types::Arrayed T>
+void readShaped(Reader& log, const SampleRef& at, T& sample) {
+    log.read(at, sample);
+    if (const char* fault = sample.diagnostic())
+        throw types::ConfigError(log.path(), log.streams()[at.stream].name, std::string("a sample ") + fault);
+}
+
+void readShaped(Reader& log, const SampleRef& at, DepthMap& map) {
+    log.read(at, map);
+    if (const char* const fault = map.diagnostic())
+        throw types::ConfigError(log.path(), log.streams()[at.stream].name, std::string("a map ") + fault);
+    map.remissions.resize(map.distances.size());
 }
 
 template <class T>
@@ -73,6 +94,58 @@ void writeRun(Reader& log, const Run& run, NpzFile& npz, Sonar ping) {
     npz.array("range_m", {count, run.shape[1]}, range);
 }
 
+void writeTexts(NpzFile& npz, const std::string& name, const std::vector<std::string>& texts) {
+    size_t longest = 1;
+    for (const std::string& text : texts) longest = std::max(longest, text.size());
+    npz.begin(name, "|S" + std::to_string(longest), {texts.size()});
+    for (std::string text : texts) {
+        text.resize(longest);
+        npz.append(text.data(), longest);
+    }
+    npz.end();
+}
+
+/** Time and bearings; of samples of bins their ranges and the names of the objects, which are the first sample's. */
+template <types::Arrayed T>
+void writeGrid(Reader& log, const Run& run, NpzFile& npz, T sample) {
+    std::vector<double> time, bearings;
+    std::vector<float> range;
+    std::vector<std::string> objects;
+    for (const SampleRef& at : run.samples) {
+        log.read(at, sample);
+        time.push_back(sampleTime(sample, at.time).seconds());
+        for (const types::Angle& bearing : sample.bearings) bearings.push_back(bearing.rad);
+        if constexpr (types::NamesObjects<T>) {
+            if (objects.empty()) objects = sample.objects;
+            for (uint32_t k = 0; k < sample.bin_count; ++k)
+                range.push_back(static_cast<float>(sample.binStart(k + 0.5)));
+        }
+    }
+    const size_t count = run.samples.size();
+    npz.array("time", {count}, time);
+    npz.array("bearings", {count, run.shape[0]}, bearings);
+    if constexpr (types::NamesObjects<T>) {
+        npz.array("range_m", {count, run.shape[1]}, range);
+        writeTexts(npz, "objects", objects);
+    }
+}
+
+template <types::Arrayed T>
+void writeRun(Reader& log, const Run& run, NpzFile& npz, T sample) {
+    writeGrid(log, run, npz, T{});
+    const T names;
+    T::forEachArray(names, [&]<class Number>(const std::string& wanted, const auto&, std::type_identity<Number>) {
+        npz.begin(wanted, numpyType<Number>(), run.whole());
+        for (const SampleRef& at : run.samples) {
+            log.read(at, sample);
+            T::forEachArray(sample, [&](const std::string& name, const auto& numbers, auto) {
+                if (name == wanted) npz.append(numbers.data(), numbers.size() * sizeof(numbers[0]));
+            });
+        }
+        npz.end();
+    });
+}
+
 void writeRun(Reader& log, const Run& run, NpzFile& npz, Image picture) {
     std::vector<double> time;
     npz.begin("pixels", numpyType<uint8_t>(), run.whole());
@@ -86,12 +159,54 @@ void writeRun(Reader& log, const Run& run, NpzFile& npz, Image picture) {
     npz.array("time", {time.size()}, time);
 }
 
+void writeRun(Reader& log, const Run& run, NpzFile& npz, DepthMap map) {
+    std::vector<float> remissions;
+    std::vector<double> time, vertical, horizontal;
+    npz.begin("distances", numpyType<float>(), run.whole());
+    for (const SampleRef& at : run.samples) {
+        readShaped(log, at, map);
+        npz.append(map.distances.data(), map.distances.size() * sizeof(float));
+        remissions.insert(remissions.end(), map.remissions.begin(), map.remissions.end());
+        time.push_back(sampleTime(map, at.time).seconds());
+        vertical = map.vertical_interval, horizontal = map.horizontal_interval;
+    }
+    npz.end();
+    npz.array("remissions", run.whole(), remissions);
+    npz.array("time", {time.size()}, time);
+    npz.array("vertical_interval", {vertical.size()}, vertical);
+    npz.array("horizontal_interval", {horizontal.size()}, horizontal);
+}
+
+/** All points one after the other, each with its time. */
+void writePoints(Reader& log, const std::string& stream, NpzFile& npz) {
+    std::vector<double> time, points, intensity;
+    log.forEach<PointCloud>(stream, [&](const PointCloud& cloud, const SampleRef& at) {
+        for (size_t k = 0; k < cloud.points.size(); ++k) {
+            const glm::dvec3& p = cloud.points[k];
+            time.push_back(sampleTime(cloud, at.time).seconds());
+            points.insert(points.end(), {p.x, p.y, p.z});
+            intensity.push_back(cloud.intensity(k));
+        }
+    });
+    npz.array("time", {time.size()}, time);
+    npz.array("points", {time.size(), 3}, points);
+    npz.array("intensity", {time.size()}, intensity);
+}
+
 /** One text; nothing when it is empty. */
 void writeMeta(NpzFile& npz, const std::string& meta) {
     if (meta.empty()) return;
     npz.begin("meta", "|S" + std::to_string(meta.size()), {});
     npz.append(meta.data(), meta.size());
     npz.end();
+}
+
+std::vector<Path> writeCloud(Reader& log, const std::string& stream, const Path& path, const std::string& meta) {
+    NpzFile npz(path);
+    writePoints(log, stream, npz);
+    writeMeta(npz, meta);
+    npz.close();
+    return {path};
 }
 
 template <class T>
@@ -132,16 +247,7 @@ void writeRows(Reader& log, const std::string& stream, const Path& path, const s
     npz.close();
 }
 
-void writeValue(NpzFile& npz, const std::vector<std::string>& texts) {
-    size_t longest = 1;
-    for (const std::string& text : texts) longest = std::max(longest, text.size());
-    npz.begin("value", "|S" + std::to_string(longest), {texts.size()});
-    for (std::string text : texts) {
-        text.resize(longest);
-        npz.append(text.data(), longest);
-    }
-    npz.end();
-}
+void writeValue(NpzFile& npz, const std::vector<std::string>& texts) { writeTexts(npz, "value", texts); }
 template <class Number>
 void writeValue(NpzFile& npz, const std::vector<Number>& numbers) {
     npz.array("value", {numbers.size()}, numbers);
@@ -176,10 +282,15 @@ std::vector<Path> exportNpz(Reader& log, const std::string& stream, const Path& 
     const Stream& declared = log.streams()[log.indexOf(stream)];
     if (holdsPings(declared)) return writeRuns<Sonar>(log, stream, path, meta);
     if (declared.holds<Image>()) return writeRuns<Image>(log, stream, path, meta);
+    if (declared.holds<DepthMap>()) return writeRuns<DepthMap>(log, stream, path, meta);
+    if (declared.holds<PointCloud>()) return writeCloud(log, stream, path, meta);
     bool done = false;
+    std::vector<Path> files{path};
     types::forEachSampleType([&]<class T>(std::type_identity<T>) {
         if (!declared.holds<T>()) return;
-        if constexpr (types::Tabular<T>)
+        if constexpr (types::Arrayed<T>)
+            files = writeRuns<T>(log, stream, path, meta);
+        else if constexpr (types::Tabular<T>)
             writeRows<T>(log, stream, path, meta);
         else if constexpr (types::Scalar<T> || Text<T>)
             writeValues<T>(log, stream, path, meta);
@@ -190,9 +301,9 @@ std::vector<Path> exportNpz(Reader& log, const std::string& stream, const Path& 
     if (!done)
         throw types::ConfigError(log.path(), stream,
                                  "holds " + declared.type +
-                                     "; as arrays can be written pings, beams and scans of sonars, poses, pictures, "
-                                     "numbers and texts");
-    return {path};
+                                     "; as arrays can be written pings, beams and scans of sonars, truth and returns "
+                                     "of pings, points, maps of distances, ranges, poses, pictures, numbers and texts");
+    return files;
 }
 
 }  // namespace insonify::log

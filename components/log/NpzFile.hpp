@@ -8,9 +8,10 @@
 
 namespace insonify::log {
 
-/** Numpy's name of a little-endian number: "<f4". */
+/** Numpy's name of a little-endian number: "<f4"; of a truth value in a byte: "|b1". */
 template <class T>
 std::string numpyType() {
+    if constexpr (std::is_same_v<T, bool>) return "|b1";
     const char* kind = std::is_floating_point_v<T> ? "<f" : std::is_signed_v<T> ? "<i" : "<u";
     return kind + std::to_string(sizeof(T));
 }

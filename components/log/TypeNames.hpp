@@ -4,6 +4,7 @@
 #include <glm/gtc/quaternion.hpp>
 #include <glm/mat3x3.hpp>
 #include <glm/vec3.hpp>
+#include <glm/vec4.hpp>
 #include <string>
 #include <type_traits>
 #include <vector>
@@ -24,7 +25,7 @@ template <class T>
 concept Text = std::is_same_v<T, std::string>;
 /** Eigen types in Rock, opaque there: they travel as /wrappers/Matrix and /wrappers/Quaternion. */
 template <class T>
-concept Matrix = std::is_same_v<T, glm::dvec3> || std::is_same_v<T, glm::dmat3>;
+concept Matrix = std::is_same_v<T, glm::dvec3> || std::is_same_v<T, glm::dvec4> || std::is_same_v<T, glm::dmat3>;
 template <class T>
 concept Quaternion = std::is_same_v<T, glm::dquat>;
 
@@ -71,6 +72,8 @@ std::string typelibName() {
         return "/std/vector<" + typelibName<typename T::value_type>() + ">";
     else if constexpr (std::is_same_v<T, glm::dvec3>)
         return "/wrappers/Matrix</double,3,1>";
+    else if constexpr (std::is_same_v<T, glm::dvec4>)
+        return "/wrappers/Matrix</double,4,1>";
     else if constexpr (std::is_same_v<T, glm::dmat3>)
         return "/wrappers/Matrix</double,3,3>";
     else if constexpr (Quaternion<T>)

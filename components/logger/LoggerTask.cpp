@@ -11,6 +11,28 @@ namespace insonify::logger {
 
 namespace {
 
+/** A text in quotes, as JSON has it. */
+std::string quoted(const std::string& text) {
+    std::string result = "\"";
+    for (const char c : text)
+        if (c == '"' || c == '\\')
+            result += {'\\', c};
+        else
+            result += static_cast<unsigned char>(c) < ' ' ? ' ' : c;
+    return result + '"';
+}
+
+/** Adds what the first sample of a stream tells of all of them. */
+template <class T>
+log::Metadata withNames(log::Metadata metadata, const T& sample) {
+    if constexpr (types::NamesObjects<T>) {
+        std::string names;
+        for (const std::string& name : sample.objects) names += (names.empty() ? "" : ", ") + quoted(name);
+        metadata["insonify_objects"] = "[" + names + "]";
+    }
+    return metadata;
+}
+
 /** Of the stream of an input. */
 template <class Input>
 Declare declaration(const Input& input, log::Metadata metadata) {
@@ -122,12 +144,13 @@ void LoggerTask::updateHook() {
     recordProperties();
     inputs_.forEach([&]<class Input>(Input& input) {
         if (!config->record) return input.port.clear();
-        if (!input.kept.number && input.port.hasNew()) {
-            thread_->declare(declaration(input, streamMetadata()));
-            input.kept.number = declared_++;
-        }
-        for (typename Input::Carried sample{}; input.port.readNew(sample);)
+        for (typename Input::Carried sample{}; input.port.readNew(sample);) {
+            if (!input.kept.number) {
+                thread_->declare(declaration(input, withNames(streamMetadata(), *types::carriedSample(sample))));
+                input.kept.number = declared_++;
+            }
             thread_->push(*input.kept.number, received, std::move(sample));
+        }
     });
 }
 

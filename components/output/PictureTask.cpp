@@ -5,7 +5,11 @@
 #include <chrono>
 #include <stdexcept>
 
+#include "components/output/SamplePictureTask.hpp"
 #include "components/output/ScanMosaicTask.hpp"
+#include "components/output/SideScanImageTask.hpp"
+#include "components/output/TruthImageTask.hpp"
+#include "components/output/XtfTask.hpp"
 
 namespace insonify::output {
 
@@ -62,8 +66,14 @@ void registerTasks(framework::Registry& registry) {
     registry.add<FanImageTask>("output::FanImageTask", "shows the pings of a forward-looking sonar as fans");
     registry.add<DiscImageTask>("output::DiscImageTask", "shows the pings of a scanning sonar on a disc");
     registry.add<WaterfallImageTask>("output::WaterfallImageTask", "shows range against time");
+    registry.add<SideScanImageTask>("output::SideScanImageTask", "shows the lines of a side-scan sonar against time");
+    registry.add<SoundingMapTask>("output::SoundingMapTask", "charts soundings from above, coloured by height");
+    registry.add<RangeImageTask>("output::RangeImageTask", "shows the ranges of a 3-D sonar by direction");
+    registry.add<XtfTask>("output::XtfTask", "writes the lines of a side-scan sonar as an XTF file");
     registry.add<ScanMosaicTask>("output::ScanMosaicTask",
                                  "shows the pings of a moving scanning sonar where they belong, beside the disc");
+    registry.add<TruthImageTask>("output::TruthImageTask",
+                                 "shows pings as fans, and beside them which objects they show");
 }
 
 }  // namespace insonify::output

@@ -57,24 +57,32 @@ void WaterfallImage::clear(const types::Sonar& ping) {
     paintBackground(ground_, palette_, colour_bar);
     overlay_.emplace(ground_.size());
     addColourBar(*overlay_, colour_bar, config_.dynamic_range_db);
-    const double metres_per_pixel = (range_ > 0 ? range_ : 1) / water().width;
-    const double step = roundStep(80 * metres_per_pixel);
-    for (double range = 0; range <= range_ * (1 + 1e-9); range += step) {
-        const double x = water().x + range / metres_per_pixel, y = water().br().y;
-        overlay_->line({x, y}, {x, y + 5}, 235);
-        overlay_->text(fmt::format("{:g} m", range), {x, y + 16}, Overlay::Anchor::Centre);
-    }
+    addRanges(*overlay_, range_ > 0 ? range_ : 1);
     overlay_->finish();
 }
 
-void WaterfallImage::addRow(const types::Sonar& ping) {
+void WaterfallImage::addRanges(Overlay& overlay, double range) const {
+    const double metres_per_pixel = range / water().width;
+    const double step = roundStep(80 * metres_per_pixel);
+    for (double at = 0; at <= range * (1 + 1e-9); at += step) {
+        const double x = water().x + at / metres_per_pixel, y = water().br().y;
+        overlay.line({x, y}, {x, y + 5}, 235);
+        overlay.text(fmt::format("{:g} m", at), {x, y + 16}, Overlay::Anchor::Centre);
+    }
+}
+
+void WaterfallImage::fillRow(const types::Sonar& ping, cv::Mat& row) {
     const cv::Mat bins(static_cast<int>(ping.beam_count), static_cast<int>(ping.bin_count), CV_32F,
                        const_cast<float*>(ping.bins.data()));
     cv::reduce(bins, mean_, 0, cv::REDUCE_AVG);
+    const int shrinks = mean_.cols > row.cols ? cv::INTER_AREA : cv::INTER_LINEAR;
+    cv::resize(mean_, row, row.size(), 0, 0, shrinks);
+}
+
+void WaterfallImage::addRow(const types::Sonar& ping) {
     std::memmove(rows_.ptr(1), rows_.ptr(0), rows_.step * (history - 1));
     cv::Mat newest = rows_.row(0);
-    const int shrinks = mean_.cols > newest.cols ? cv::INTER_AREA : cv::INTER_LINEAR;
-    cv::resize(mean_, newest, newest.size(), 0, 0, shrinks);
+    fillRow(ping, newest);
     std::copy_backward(times_.begin(), times_.end() - 1, times_.end());
     times_[0] = ping.time;
     filled_ = std::min(filled_ + 1, history);

@@ -13,7 +13,7 @@ namespace insonify::output {
 /** Range against time: every ping is a row, the newest on top, range from left to right. A row is the mean intensity
  *  over the ping's beams. Labels give range in metres and each row's age in seconds. A ping of other bins or range
  *  starts anew. */
-class WaterfallImage final : public Painter {
+class WaterfallImage : public Painter {
 public:
     explicit WaterfallImage(const DisplayConfig& config);
 
@@ -24,6 +24,12 @@ public:
 
     /** The part of the picture that shows echoes. */
     cv::Rect water() const;
+
+protected:
+    /** Makes the row of a ping, as wide as water(). */
+    virtual void fillRow(const types::Sonar& ping, cv::Mat& row);
+    /** Labels the lower edge of water() for pings of this range [m]. */
+    virtual void addRanges(Overlay& overlay, double range) const;
 
 private:
     void clear(const types::Sonar& ping);

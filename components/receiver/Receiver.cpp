@@ -39,6 +39,13 @@ void takeLevels(const float* __restrict in, const float* __restrict offset_db, f
     }
 }
 
+/** Values to the power of gamma. */
+void bend(float* values, double gamma, size_t count) {
+    if (gamma == 1) return;
+    if (gamma == 0.5) return takeRoots(values, count);
+    for (size_t i = 0; i < count; ++i) values[i] = std::pow(values[i], static_cast<float>(gamma));
+}
+
 /** The nearest whole numbers from 0 to `most`; of NaN 0. */
 INSONIFY_VECTOR_CLONES
 void quantise(float* values, float per_unit, float zero, float most, size_t count) {
@@ -62,6 +69,8 @@ double sandLevelDb(const types::Sonar& ping, double r) {
 
 void CodeConfig::check(types::Diagnostics& diagnostics) const {
     if (bits != 8 && bits != 16) diagnostics.push_back({"bits", fmt::format("is {}; must be 8 or 16", bits)});
+    if (gamma != 1 && law == CodeLaw::Log)
+        diagnostics.push_back({"gamma", "is given with law log; it bends law linear and sqrt"});
 }
 
 void ReceiverConfig::check(types::Diagnostics& diagnostics) const {
@@ -130,10 +139,9 @@ void Receiver::makeTables(const types::Sonar& ping) {
 void Receiver::encode(float* received) const {
     const float most = largestCode();
     const auto range_db = static_cast<float>(code_.dynamic_range_db);
-    if (isLevel())
-        quantise(received, most / range_db, -range_db, most, axis_.bin_count);
-    else
-        quantise(received, most, 0, most, axis_.bin_count);
+    if (isLevel()) return quantise(received, most / range_db, -range_db, most, axis_.bin_count);
+    bend(received, code_.gamma, axis_.bin_count);
+    quantise(received, most, 0, most, axis_.bin_count);
 }
 
 void Receiver::receiveBeam(const float* intensities, float* received) const {

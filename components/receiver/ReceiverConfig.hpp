@@ -43,6 +43,7 @@ struct CodeConfig {
     CodeLaw law = CodeLaw::Log;
     double full_scale_db = 0;
     double dynamic_range_db = 60;
+    double gamma = 1;
 
     template <class Self, class V>
     static void describe(Self& self, V& visit) {
@@ -53,6 +54,12 @@ struct CodeConfig {
               self.full_scale_db);
         visit(Field{"dynamic_range_db", "dB", "law log: below full_scale_db, the level of code 0", 0.1, 3000},
               self.dynamic_range_db);
+        visit(
+            Field{"gamma", "1",
+                  "law linear or sqrt: the code goes as the law's value to this power, as on instruments that brighten "
+                  "weak echoes so",
+                  0.05, 5},
+            self.gamma);
     }
     void check(types::Diagnostics& diagnostics) const;
 };

@@ -1,10 +1,10 @@
 #include "components/ros/FromSonar.hpp"
 
 #include <cmath>
-#include <cstring>
 #include <limits>
 #include <stdexcept>
 
+#include "components/ros/Clouds.hpp"
 #include "components/ros/Echoes.hpp"
 #include "components/ros/Times.hpp"
 
@@ -54,19 +54,6 @@ double incrementOf(const types::Sonar& ping) {
     return step(0);
 }
 
-void addField(const char* name, PointCloud2& cloud) {
-    PointField& field = cloud.fields.emplace_back();
-    field = {name, cloud.point_step, PointField::float32, 1};
-    cloud.point_step += sizeof(float);
-}
-
-void addPoint(const Vector3& direction, float range, float intensity, std::vector<uint8_t>& data) {
-    const auto along = [&](double part) { return static_cast<float>(part) * range; };
-    const float point[] = {along(direction.x), along(direction.y), along(direction.z), intensity};
-    data.resize(data.size() + sizeof point);
-    std::memcpy(data.data() + data.size() - sizeof point, point, sizeof point);
-}
-
 }  // namespace
 
 void convert(const types::Sonar& ping, const SonarOptions& options, ProjectedSonarImage& message) {
@@ -111,21 +98,20 @@ void convert(const types::Sonar& ping, const SonarOptions& options, SonarRanges&
 
 void convert(const types::Sonar& ping, const SonarOptions& options, PointCloud2& message) {
     fillHeader(ping, options, message.header);
-    message.fields.clear();
-    message.point_step = 0;
-    for (const char* name : {"x", "y", "z", "intensity"}) addField(name, message);
-    message.data.clear();
+    beginCloud({"x", "y", "z", "intensity"}, message);
     const DetectionThreshold rule(ping, options);
     for (uint32_t beam = 0; beam < ping.beam_count; ++beam) {
         if (ping.bearings[beam].isUnknown()) continue;
         const Vector3 direction = directionOf(ping.bearings[beam].rad, SensorFrame::XForward);
+        const float x = static_cast<float>(direction.x), y = static_cast<float>(direction.y),
+                    z = static_cast<float>(direction.z);
         for (uint32_t bin = 0; bin < ping.bin_count; ++bin)
-            if (const float echo = ping.bins[size_t{beam} * ping.bin_count + bin]; rule.isReturn(echo))
-                addPoint(direction, binCentre(ping, bin), echo, message.data);
+            if (const float echo = ping.bins[size_t{beam} * ping.bin_count + bin]; rule.isReturn(echo)) {
+                const float range = binCentre(ping, bin);
+                addPoint({x * range, y * range, z * range, echo}, message);
+            }
     }
-    message.row_step = static_cast<uint32_t>(message.data.size());
-    message.width = message.row_step / message.point_step;
-    message.height = 1;
+    endCloud(1, message);
 }
 
 void convert(const types::Sonar& ping, const SonarOptions& options, LaserScan& message) {

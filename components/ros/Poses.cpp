@@ -92,6 +92,9 @@ void readPose(const Header& header, const Pose& message, Axes axes, types::Pose&
 
 }  // namespace
 
+glm::dvec3 worldFromRock(WorldFrame frame, glm::dvec3 v) { return Axes{frame}.worldFromRock(v); }
+glm::dvec3 rockFromWorld(WorldFrame frame, glm::dvec3 v) { return Axes{frame}.rockFromWorld(v); }
+
 void convert(const types::Pose& pose, WorldFrame frame, PoseStamped& message) {
     fillPose(pose, {frame}, message.header, message.pose);
 }

@@ -5,6 +5,10 @@
 
 namespace insonify::ros {
 
+/** A vector of the world in the axes of a frame, and back. */
+glm::dvec3 worldFromRock(WorldFrame frame, glm::dvec3 v);
+glm::dvec3 rockFromWorld(WorldFrame frame, glm::dvec3 v);
+
 /** Rock's pose in the axes of ROS. Names of frames are kept: target_frame is header.frame_id.
  *
  *  Odometry gives velocities and their covariances in the body; Rock has the velocity in the world, and the covariance

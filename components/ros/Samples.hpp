@@ -3,6 +3,7 @@
 #include <tuple>
 #include <type_traits>
 
+#include "components/ros/Clouds.hpp"
 #include "components/ros/FromSonar.hpp"
 #include "components/ros/Messages.hpp"
 #include "components/ros/Options.hpp"
@@ -10,6 +11,7 @@
 #include "components/ros/Poses.hpp"
 #include "components/ros/Times.hpp"
 #include "components/ros/ToSonar.hpp"
+#include "components/ros/Truths.hpp"
 #include "types/Samples.hpp"
 
 namespace insonify::ros {
@@ -31,9 +33,19 @@ struct MessagesOf<types::SonarBeam> : MessagesOf<types::Sonar> {};
 template <>
 struct MessagesOf<types::SonarScan> : MessagesOf<types::Sonar> {};
 template <>
+struct MessagesOf<types::SonarTruth> : Messages<types::SonarTruth, SonarTruth, Clock> {};
+template <>
+struct MessagesOf<types::SonarReturns> : Messages<types::SonarReturns, SonarReturns, Clock> {};
+template <>
 struct MessagesOf<types::Pose> : Messages<types::Pose, Odometry, PoseStamped, Clock> {};
 template <>
 struct MessagesOf<types::Image> : Messages<types::Image, Image, Clock> {};
+template <>
+struct MessagesOf<types::PointCloud> : Messages<types::PointCloud, PointCloud2, Clock> {};
+template <>
+struct MessagesOf<types::DepthMap> : Messages<types::DepthMap, PointCloud2, Clock> {};
+template <>
+struct MessagesOf<types::Range> : Messages<types::Range, Range, Clock> {};
 template <>
 struct MessagesOf<types::Time> : Messages<types::Time, Time> {};
 template <>
@@ -70,12 +82,11 @@ auto toMessage(const types::Sonar& ping, const MessageOptions& options, Message&
     convert(ping, options, message);
 }
 template <class Beams, class Message>
-requires (std::is_same_v<Beams, types::SonarBeam> || std::is_same_v<Beams, types::SonarScan>) &&
-         requires(const types::Sonar& ping, const MessageOptions& options, Message& message) {
-             convert(ping, options, message);
-         }
-void toMessage(const Beams& beams, const MessageOptions& options,
-                                                    Message& message) {
+requires(std::is_same_v<Beams, types::SonarBeam> || std::is_same_v<Beams, types::SonarScan>) &&
+    requires(const types::Sonar& ping, const MessageOptions& options, Message& message) {
+    convert(ping, options, message);
+}
+void toMessage(const Beams& beams, const MessageOptions& options, Message& message) {
     toMessage(toSonar(beams), options, message);
 }
 template <class Message>
@@ -85,6 +96,21 @@ auto toMessage(const types::Pose& pose, const MessageOptions& options, Message& 
 }
 inline void toMessage(const types::Image& picture, const MessageOptions& options, Image& message) {
     convert(picture, options.frame_id, message);
+}
+inline void toMessage(const types::SonarTruth& truth, const MessageOptions& options, SonarTruth& message) {
+    convert(truth, options.frame_id, message);
+}
+inline void toMessage(const types::SonarReturns& returns, const MessageOptions& options, SonarReturns& message) {
+    convert(returns, options.frame_id, message);
+}
+inline void toMessage(const types::PointCloud& cloud, const MessageOptions& options, PointCloud2& message) {
+    convert(cloud, options.world_frame, message);
+}
+inline void toMessage(const types::DepthMap& map, const MessageOptions& options, PointCloud2& message) {
+    convert(map, options.frame_id, message);
+}
+inline void toMessage(const types::Range& range, const MessageOptions& options, Range& message) {
+    convert(range, options.frame_id, message);
 }
 template <types::Stamped T>
 void toMessage(const T& sample, const MessageOptions&, Clock& message) {
@@ -108,7 +134,18 @@ auto toSample(const Message& message, const MessageOptions& options, types::Pose
     -> decltype(convert(message, options.world_frame, pose)) {
     convert(message, options.world_frame, pose);
 }
+inline void toSample(const SonarTruth& message, const MessageOptions&, types::SonarTruth& truth) {
+    convert(message, truth);
+}
+inline void toSample(const SonarReturns& message, const MessageOptions&, types::SonarReturns& returns) {
+    convert(message, returns);
+}
 inline void toSample(const Image& message, const MessageOptions&, types::Image& picture) { convert(message, picture); }
+inline void toSample(const PointCloud2& message, const MessageOptions& options, types::PointCloud& cloud) {
+    convert(message, options.world_frame, cloud);
+}
+inline void toSample(const PointCloud2& message, const MessageOptions&, types::DepthMap& map) { convert(message, map); }
+inline void toSample(const Range& message, const MessageOptions&, types::Range& range) { convert(message, range); }
 inline void toSample(const Time& message, const MessageOptions&, types::Time& time) { time = fromRos(message); }
 inline void toSample(const Float64& message, const MessageOptions&, types::Angle& angle) { angle = {message.data}; }
 template <class T, class Message>
@@ -123,8 +160,8 @@ concept ReadFrom = requires(const Message& message, const MessageOptions& option
     toSample(message, options, sample);
 };
 
-/** A message that says nothing of its kind is never taken for these: it is a plain number. */
+/** A message that says nothing of its kind is never taken for these: it is a plain number, or a plain cloud. */
 template <class T>
-constexpr bool only_by_name = std::is_same_v<T, types::Angle>;
+constexpr bool only_by_name = std::is_same_v<T, types::Angle> || std::is_same_v<T, types::DepthMap>;
 
 }  // namespace insonify::ros

@@ -61,7 +61,7 @@ struct PointField {
     static constexpr const char* constants =
         "uint8 INT8=1\nuint8 UINT8=2\nuint8 INT16=3\nuint8 UINT16=4\nuint8 INT32=5\nuint8 UINT32=6\nuint8 FLOAT32=7\n"
         "uint8 FLOAT64=8\n";
-    static constexpr uint8_t float32 = 7;
+    static constexpr uint8_t float32 = 7, float64 = 8;
     std::string name;
     uint32_t offset = 0;
     uint8_t datatype = 0;
@@ -100,6 +100,32 @@ struct PointCloud2 {
         visit(Field{"row_step", "B"}, self.row_step);
         visit(Field{"data"}, self.data);
         visit(Field{"is_dense", "", "no point is invalid"}, self.is_dense);
+    }
+};
+
+/** As of ROS 2 Iron and later; Humble's has no variance, and reads the rest. */
+struct Range {
+    static constexpr const char* type_name = "sensor_msgs/msg/Range";
+    static constexpr const char* type_hash = "RIHS01_b42b62562e93cbfe9d42b82fe5994dfa3d63d7d5c90a317981703f7388adff3a";
+    static constexpr const char* constants = "uint8 ULTRASOUND=0\nuint8 INFRARED=1\n";
+    static constexpr uint8_t ultrasound = 0;
+    Header header;
+    uint8_t radiation_type = ultrasound;
+    float field_of_view = 0;
+    float min_range = 0, max_range = 0;
+    float range = 0;
+    float variance = 0;
+
+    friend bool operator==(const Range&, const Range&) = default;
+    template <class Self, class V>
+    static void describe(Self& self, V& visit) {
+        visit(Field{"header"}, self.header);
+        visit(Field{"radiation_type", "1", "sound"}, self.radiation_type);
+        visit(Field{"field_of_view", "rad"}, self.field_of_view);
+        visit(Field{"min_range", "m"}, self.min_range);
+        visit(Field{"max_range", "m"}, self.max_range);
+        visit(Field{"range", "m", "infinity: no return"}, self.range);
+        visit(Field{"variance", "m^2", "0: unknown"}, self.variance);
     }
 };
 

@@ -84,7 +84,8 @@ AngularView makeAngularView(const RenderPlan& plan) {
     view.beam_columns = config.columnsPerBeam();
     view.rows = config.rows();
     view.conical = config.beam_geometry == BeamGeometry::Conical;
-    view.column_width = (beams.front().high - beams.front().low) / view.beam_columns;
+    const auto widthOf = [](const Beam& beam) { return beam.high - beam.low; };
+    view.column_width = widthOf(beams[beams.size() / 2]) / view.beam_columns;
     view.weighted = plan.features.has(Feature::ElevationPattern);
     view.elevations = elevationsOf(plan);
     view.row_height = 0;

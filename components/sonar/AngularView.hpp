@@ -25,7 +25,7 @@ struct AngularView {
     int rows = 0;          ///< From below upwards [1].
     bool conical = false;
     bool weighted = false;     ///< By a pattern in elevation.
-    double column_width = 0;   ///< Of the first beam's columns, in bearing [rad].
+    double column_width = 0;   ///< Of the middle beam's columns, in bearing [rad].
     double row_height = 0;     ///< Of the tallest row [rad].
     std::vector<int> beam_of;  ///< Of each column, beam after beam [1].
     /** At the lower edge, the middle and the upper edge of each row: row i has 2 i, 2 i + 1 and 2 i + 2. */
@@ -50,7 +50,7 @@ struct AngularView {
     double height(size_t row, size_t count) const {
         return elevations[2 * (row + count)].angle - elevations[2 * row].angle;
     }
-    /** Solid angle of one cell of the first beam at elevation 0 [sr]. */
+    /** Solid angle of one cell of the middle beam at elevation 0 [sr]. */
     double cell() const { return column_width * row_height; }
 };
 

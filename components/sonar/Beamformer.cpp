@@ -13,6 +13,20 @@ double meanOver(const Beamformer::Pattern& pattern, const Beam& cell, double bea
     return (pattern(cell.low, bearing) + 4 * pattern(cell.centre, bearing) + pattern(cell.high, bearing)) / 6;
 }
 
+double widthOf(const Beam& cell) { return cell.high - cell.low; }
+
+/** The first cell of each group, and the number of all. */
+std::vector<size_t> groupsOf(const std::vector<Beam>& cells) {
+    const double narrow = 1.5 * widthOf(*std::ranges::min_element(cells, {}, widthOf));
+    std::vector<size_t> starts{0};
+    for (size_t i = 1; i < cells.size(); ++i)
+        if (i - starts.back() == Beamformer::group_cells || widthOf(cells[i]) > narrow ||
+            widthOf(cells[i - 1]) > narrow)
+            starts.push_back(i);
+    starts.push_back(cells.size());
+    return starts;
+}
+
 /** Takes weights below the floor off both ends. */
 template <class Run>
 void trim(Run& run, double floor) {
@@ -42,27 +56,30 @@ INSONIFY_VECTOR_CLONES void addRows(const float* rows, std::span<const float> we
 
 Beamformer::Beamformer(const std::vector<Beam>& beams, const std::vector<Beam>& cells, size_t bin_count,
                        const Rules& rules)
-    : cell_count_(cells.size()), bin_count_(bin_count), grouped_(groupCount() * bin_count) {
+    : groups_(groupsOf(cells)), bin_count_(bin_count), grouped_(groupCount() * bin_count) {
     for (const Beam& beam : beams) bands_.push_back(bandOf(beam, cells, rules));
 }
 
 Beamformer::Band Beamformer::bandOf(const Beam& beam, const std::vector<Beam>& cells, const Rules& rules) const {
     const auto weightOf = [&](size_t cell) { return meanOver(rules.pattern, cells[cell], beam.centre); };
+    const double narrow = widthOf(*std::ranges::min_element(cells, {}, widthOf));
     const auto addGroup = [&](size_t group, Run& run) {
+        const Beam &first = cells[groups_[group]], &last = cells[groups_[group + 1] - 1];
+        const auto parts = static_cast<size_t>((last.high - first.low) / narrow + 0.5);
+        const double part = (last.high - first.low) / static_cast<double>(parts);
         double sum = 0;
-        for (size_t i = 0; i < cellsIn(group); ++i)
-            sum += rules.pattern(cells[group * group_cells + i].centre, beam.centre);
-        run.weights.push_back(static_cast<float>(sum / static_cast<double>(cellsIn(group))));
+        for (size_t i = 0; i < parts; ++i)
+            sum += rules.pattern(first.low + (static_cast<double>(i) + 0.5) * part, beam.centre);
+        run.weights.push_back(static_cast<float>(sum / static_cast<double>(parts)));
     };
-    const double width = (cells.front().high - cells.front().low) * group_cells;
     const auto groupAt = [&](double azimuth) {
-        const double group = std::floor((azimuth - cells.front().low) / width);
-        return static_cast<size_t>(std::clamp(group, 0.0, static_cast<double>(groupCount() - 1)));
+        size_t group = groupCount() - 1;
+        while (group > 0 && cells[groups_[group]].low > azimuth) --group;
+        return group;
     };
     const size_t from = groupAt(beam.centre - rules.near), to = groupAt(beam.centre + rules.near) + 1;
-    Band band{{from * group_cells, {}}, {{0, {}}, {to, {}}}};
-    for (size_t c = from * group_cells; c < std::min(to * group_cells, cell_count_); ++c)
-        band.cells.weights.push_back(static_cast<float>(weightOf(c)));
+    Band band{{groups_[from], {}}, {{0, {}}, {to, {}}}};
+    for (size_t c = groups_[from]; c < groups_[to]; ++c) band.cells.weights.push_back(static_cast<float>(weightOf(c)));
     for (size_t g = 0; g < from; ++g) addGroup(g, band.groups[0]);
     for (size_t g = to; g < groupCount(); ++g) addGroup(g, band.groups[1]);
     trim(band.cells, rules.floor);
@@ -74,7 +91,7 @@ void Beamformer::sumGroup(size_t group, std::span<const float> echoes) {
     static constexpr float ones[group_cells] = {1, 1, 1, 1, 1, 1, 1, 1};
     float* sum = &grouped_[group * bin_count_];
     std::fill(sum, sum + bin_count_, 0.0f);
-    addRows(&echoes[group * group_cells * bin_count_], {ones, cellsIn(group)}, sum, bin_count_);
+    addRows(&echoes[groups_[group] * bin_count_], {ones, cellsIn(group)}, sum, bin_count_);
 }
 
 void Beamformer::form(size_t beam, std::span<const float> echoes, std::span<float> bins) const {
@@ -86,14 +103,14 @@ void Beamformer::form(size_t beam, std::span<const float> echoes, std::span<floa
 }
 
 std::vector<double> Beamformer::weights(size_t beam) const {
-    std::vector<double> all(cell_count_);
+    std::vector<double> all(groups_.back());
     const Band& band = bands_[beam];
     for (size_t i = 0; i < band.cells.weights.size(); ++i)
         all[band.cells.first + i] = static_cast<double>(band.cells.weights[i]);
     for (const Run& run : band.groups)
         for (size_t i = 0; i < run.weights.size(); ++i)
-            for (size_t c = 0; c < cellsIn(run.first + i); ++c)
-                all[(run.first + i) * group_cells + c] = static_cast<double>(run.weights[i]);
+            for (size_t c = groups_[run.first + i]; c < groups_[run.first + i + 1]; ++c)
+                all[c] = static_cast<double>(run.weights[i]);
     return all;
 }
 

@@ -24,10 +24,11 @@ public:
         double floor;  ///< What is below it is not heard [1].
     };
 
-    /** `cells` are equal and side by side, in ascending azimuth. */
+    /** `cells` are side by side, in ascending azimuth, and equal, but for some far from all beams that are wider and
+     *  count as a group each. */
     Beamformer(const std::vector<Beam>& beams, const std::vector<Beam>& cells, size_t bin_count, const Rules& rules);
 
-    size_t groupCount() const { return (cell_count_ + group_cells - 1) / group_cells; }
+    size_t groupCount() const { return groups_.size() - 1; }
     /** Sums one group of cells: each once a ping, before beams are formed. `echoes`: [cell][bin]. */
     void sumGroup(size_t group, std::span<const float> echoes);
     /** Fills the bins of one beam. Allocates nothing, and any threads may form beams at once. */
@@ -46,9 +47,10 @@ private:
         Run cells, groups[2];
     };
     Band bandOf(const Beam& beam, const std::vector<Beam>& cells, const Rules& rules) const;
-    size_t cellsIn(size_t group) const { return std::min(group_cells, cell_count_ - group * group_cells); }
+    size_t cellsIn(size_t group) const { return groups_[group + 1] - groups_[group]; }
 
-    size_t cell_count_, bin_count_;
+    std::vector<size_t> groups_;  ///< The first cell of each, and the number of all.
+    size_t bin_count_;
     std::vector<Band> bands_;
     std::vector<float> grouped_;  ///< [group][bin].
 };

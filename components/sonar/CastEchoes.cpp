@@ -14,6 +14,7 @@
 #include "components/sonar/SurfaceScene.hpp"
 #include "components/sonar/ThreadPool.hpp"
 #include "components/sonar/TileDeposit.hpp"
+#include "components/sonar/TruthGrid.hpp"
 
 namespace insonify::sonar {
 namespace {
@@ -42,6 +43,7 @@ public:
     CastEchoes(const RenderPlan& plan, types::GeometryPtr geometry);
     void takeQuality() override;
     void render(const types::Snapshot& snapshot, types::Sonar& ping, Stages& stages) override;
+    void setTruth(types::SonarTruth* truth) override { truth_ = truth; }
     bool hasEchoes() const override { return heard_; }
     std::vector<LeftOut> culled() const override { return {}; }
     Features compiled() const override;
@@ -53,6 +55,8 @@ private:
         std::vector<CastTile> tiles;
         std::vector<TileHits> hits;  ///< Of each tile.
         std::vector<uint64_t> sums;
+        std::optional<TruthTable> shown;  ///< What they are of, where it is told.
+        std::vector<uint64_t> one_beam;   ///< For TruthSink.
         Stages stages{};
         Clock::time_point last;
         bool heard = false;
@@ -64,7 +68,12 @@ private:
         }
     };
     void shareOut();
+    int beamsTogether() const {
+        return std::min(view_.cells.beams, (3 + view_.cells.beam_columns) / view_.cells.beam_columns);
+    }
     void place(const types::Snapshot& snapshot);
+    void makeTruth();
+    void depositPart(const Part& part, std::span<const CastTile> tiles, Worker& worker);
     void work(Worker& worker, types::Sonar& ping);
     void workOn(const Part& part, Worker& worker, types::Sonar& ping);
     std::span<const CastTile> cast(const Part& part, Worker& worker) const;
@@ -94,6 +103,8 @@ private:
     std::atomic<size_t> next_ = 0;
     std::string device_ = "rays on the processor";
     bool heard_ = false;
+    types::SonarTruth* truth_ = nullptr;   ///< To be filled; null: none is.
+    std::optional<TruthGrid> truth_grid_;  ///< Once it was wanted.
 };
 
 CastEchoes::CastEchoes(const RenderPlan& plan, types::GeometryPtr geometry)
@@ -124,11 +135,11 @@ void CastEchoes::takeQuality() {
     grid_.emplace(plan_, threads_.size());
     if (plan_.features.has(Feature::Volume)) volume_.emplace(plan_);
     shareOut();
+    truth_grid_.reset();
 }
 
 void CastEchoes::shareOut() {
-    const int beam_columns = view_.cells.beam_columns, beams = view_.cells.beams;
-    const int together = std::min(beams, (3 + beam_columns) / beam_columns);
+    const int beam_columns = view_.cells.beam_columns, beams = view_.cells.beams, together = beamsTogether();
     view_.shape = TileShape(view_.cells, rules_.bins, together);
     const int wanted = std::max(1, part_samples / (together * beam_columns)), up = view_.shape.all.rows;
     const int rows = std::min((wanted + up - 1) / up * up, (view_.cells.rows + up - 1) / up * up);
@@ -146,6 +157,15 @@ void CastEchoes::shareOut() {
         worker.hits.resize(static_cast<size_t>(across * (rows / up)));
         worker.tiles.resize(worker.hits.size());
         worker.sums.resize(static_cast<size_t>(together) * rules_.sumCount());
+    }
+}
+
+void CastEchoes::makeTruth() {
+    const bool whole = std::ranges::all_of(strips_, [](const Strip& strip) { return strip.parts == 1; });
+    truth_grid_.emplace(plan_, whole);
+    for (Worker& worker : workers_) {
+        worker.shown.emplace(static_cast<size_t>(beamsTogether()), static_cast<size_t>(plan_.grid.bin_count));
+        worker.one_beam.assign(rules_.sumCount(), 0);
     }
 }
 
@@ -203,12 +223,22 @@ bool CastEchoes::gather(const Part& part, Worker& worker) {
     return true;
 }
 
+void CastEchoes::depositPart(const Part& part, std::span<const CastTile> tiles, Worker& worker) {
+    std::fill(worker.sums.begin(), worker.sums.end(), 0);
+    const PlacedScene scene{visibility_.commands(), runs_, places_.records(), planes_, normal_maps_, water_};
+    if (!truth_) return deposit(rules_, view_, scene, tiles, part.first_beam, worker.sums.data());
+    worker.shown->clear();
+    depositAndTell(rules_, view_, scene, tiles, part.first_beam, worker.sums.data(),
+                   {*worker.shown, {}, worker.one_beam});
+    for (int beam = 0; beam < part.beams; ++beam)
+        truth_grid_->take(static_cast<size_t>(part.first_beam + beam), *worker.shown, static_cast<size_t>(beam),
+                          *truth_);
+}
+
 void CastEchoes::workOn(const Part& part, Worker& worker, types::Sonar& ping) {
     const std::span<const CastTile> tiles = cast(part, worker);
     worker.lap(DrawStage);
-    std::fill(worker.sums.begin(), worker.sums.end(), 0);
-    deposit(rules_, view_, {visibility_.commands(), runs_, places_.records(), planes_, normal_maps_, water_}, tiles,
-            part.first_beam, worker.sums.data());
+    depositPart(part, tiles, worker);
     worker.lap(DepositStage);
     if (gather(part, worker))
         for (int beam = 0; beam < part.beams; ++beam)
@@ -233,6 +263,8 @@ void CastEchoes::render(const types::Snapshot& snapshot, types::Sonar& ping, Sta
     Worker& own = workers_.front();
     own.last = Clock::now();
     place(snapshot);
+    if (truth_ && !truth_grid_) makeTruth();
+    if (truth_) truth_grid_->begin();
     stages[CullStage].seconds += std::chrono::duration<double>(Clock::now() - own.last).count();
     next_ = 0;
     for (Worker& worker : workers_) {
@@ -250,6 +282,7 @@ void CastEchoes::render(const types::Snapshot& snapshot, types::Sonar& ping, Sta
         threads_.share([&](int part, int) { work(workers_[static_cast<size_t>(part)], ping); });
     own.last = Clock::now();
     grid_->finish(ping, threads_);
+    if (truth_) truth_grid_->finish(*truth_, threads_);
     stages[BeamStage].seconds += std::chrono::duration<double>(Clock::now() - own.last).count();
     heard_ = false;
     for (const Worker& worker : workers_) {

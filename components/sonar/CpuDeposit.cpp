@@ -26,7 +26,7 @@ CpuDeposit::CpuDeposit(DepositSetup setup, const SurfacePass& surface, const gpu
       context_(context),
       threads_(threads),
       planes_(surface.scene().planes()),
-      columns_(static_cast<size_t>(threads.size())),
+      columns_(static_cast<size_t>(threads.size()), std::vector<std::array<int, 2>>(setup_.shares.size())),
       pictures_(setup_.slots * setup_.frusta.size()),
       sums_(setup_.sumCount()) {
     for (size_t i = 0; i < pictures_.size(); ++i) {
@@ -35,9 +35,7 @@ CpuDeposit::CpuDeposit(DepositSetup setup, const SurfacePass& surface, const gpu
         pictures_[i].words = gpu::ReadBack(drawn.bytes());
         pictures_[i].ranges.reserve(surface.lists().drawLimit());
     }
-    for (size_t part = 0; part < columns_.size(); ++part)
-        for (const ColumnShares& shares : setup_.shares)
-            columns_[part].push_back(touched(shares, firstBeam(part), firstBeam(part + 1)));
+    touchColumns();
 }
 
 void CpuDeposit::begin(size_t slot, const WaterView& water) {
@@ -52,9 +50,12 @@ void CpuDeposit::take(size_t slot, size_t frustum, const SurfacePass& surface) {
     surface.picture(frustum).read(picture.words);
     picture.taken = true;
     picture.ranges.clear();
+    picture.objects.clear();
     const double cosine = std::cos(setup_.frusta[frustum].azimuth), sine = std::sin(setup_.frusta[frustum].azimuth);
-    for (const CommandRecord& command : surface.lists().commands(slot, frustum))
+    for (const CommandRecord& command : surface.lists().commands(slot, frustum)) {
+        if (truth_) picture.objects.push_back(command.object);
         picture.ranges.push_back(placedRun(surface.objects()[command.object], command, setup_.rules, cosine, sine));
+    }
 }
 
 std::span<const uint64_t> CpuDeposit::finish(size_t slot) {
@@ -77,20 +78,42 @@ Features CpuDeposit::compiled() const {
     return all | (setup_.rules.features & Features{Feature::Volume, Feature::VolumeLayers});
 }
 
+void CpuDeposit::prepareTruth(std::vector<int32_t> beams) {
+    truth_beams_ = std::move(beams);
+    one_beam_.assign(columns_.size(), std::vector<uint64_t>(setup_.rules.sumCount()));
+    for (TakenPicture& picture : pictures_) picture.objects.reserve(picture.ranges.capacity());
+    touchColumns();
+}
+
+void CpuDeposit::touchColumns() {
+    for (size_t part = 0; part < columns_.size(); ++part)
+        for (size_t i = 0; i < setup_.shares.size(); ++i)
+            columns_[part][i] = touched(setup_.shares[i], firstBeam(part), firstBeam(part + 1));
+}
+
 void CpuDeposit::depositPart(size_t slot, size_t part) {
     const uint first = firstBeam(part), last = firstBeam(part + 1);
     const size_t stride = setup_.rules.sumCount();
     std::fill(sums_.begin() + static_cast<ptrdiff_t>(first * stride),
               sums_.begin() + static_cast<ptrdiff_t>(last * stride), 0);
-    for (size_t i = 0; i < setup_.frusta.size(); ++i)
-        if (picture(slot, i).taken)
-            deposit({setup_.rules, setup_.frusta[i], setup_.shares[i], picture(slot, i), planes_, first, last,
-                     columns_[part][i]},
-                    sums_.data());
+    for (size_t i = 0; i < setup_.frusta.size(); ++i) {
+        if (!picture(slot, i).taken) continue;
+        const FrustumPart frustum{setup_.rules, setup_.frusta[i], setup_.shares[i], picture(slot, i), planes_, first,
+                                  last,         columns_[part][i]};
+        if (truth_)
+            depositAndTell(frustum, sums_.data(), {*truth_, truth_beams_, one_beam_[part]});
+        else
+            deposit(frustum, sums_.data());
+    }
 }
 
 uint32_t CpuDeposit::firstBeam(size_t part) const {
-    return static_cast<uint32_t>(setup_.beam_count * part / static_cast<size_t>(threads_.size()));
+    auto first = static_cast<uint32_t>(setup_.beam_count * part / static_cast<size_t>(threads_.size()));
+    // Those of one beam of the truth stay with one thread.
+    while (!truth_beams_.empty() && first > 0 && first < setup_.beam_count &&
+           truth_beams_[first] == truth_beams_[first - 1])
+        ++first;
+    return first;
 }
 
 }  // namespace insonify::sonar

@@ -16,10 +16,16 @@ public:
     std::span<const uint64_t> finish(size_t slot) override;
     Features compiled() const override;
 
+    /** Makes ready to tell of which objects the echoes are: to those beams of a table (as beamsOfCells). */
+    void prepareTruth(std::vector<int32_t> beams);
+    /** What is begun from now on tells it to a table; null: no more. */
+    void setTruth(TruthTable* truth) { truth_ = truth; }
+
 private:
     TakenPicture& picture(size_t slot, size_t frustum) { return pictures_[slot * setup_.frusta.size() + frustum]; }
     void waitForPictures(size_t slot);
     void depositPart(size_t slot, size_t part);
+    void touchColumns();
     /** Where a thread's run of beams begins. */
     uint32_t firstBeam(size_t part) const;
 
@@ -30,6 +36,9 @@ private:
     std::vector<std::vector<std::array<int, 2>>> columns_;  ///< Of each thread and frustum: from, to.
     std::vector<TakenPicture> pictures_;                    ///< Slot after slot, of each frustum.
     std::vector<uint64_t> sums_;
+    TruthTable* truth_ = nullptr;
+    std::vector<int32_t> truth_beams_;
+    std::vector<std::vector<uint64_t>> one_beam_;  ///< Of each thread, for TruthSink.
 };
 
 }  // namespace insonify::sonar

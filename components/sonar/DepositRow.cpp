@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "components/sonar/Estimators.hpp"
+#include "components/sonar/TruthDeposit.hpp"
 
 namespace insonify::sonar {
 namespace {
@@ -57,7 +58,7 @@ struct Shared {
 /** What a stretch of shares covers: Footprint as arrays. */
 struct Cells {
     double pixel[stretch], centre[stretch], wide[stretch], narrow[stretch], per_wide[stretch], steepness[stretch],
-        near_end[stretch], far_end[stretch], nearest[stretch], size[stretch];
+        near_end[stretch], far_end[stretch], nearest[stretch], size[stretch], spread[stretch];
 
     void set(int i, const Footprint& f) {
         pixel[i] = f.pixel;
@@ -70,10 +71,11 @@ struct Cells {
         far_end[i] = f.far_end;
         nearest[i] = f.nearest;
         size[i] = f.size;
+        spread[i] = f.spread;
     }
     Footprint get(int i) const {
         return {pixel[i],     centre[i],   wide[i],    narrow[i],  per_wide[i],
-                steepness[i], near_end[i], far_end[i], nearest[i], size[i]};
+                steepness[i], near_end[i], far_end[i], nearest[i], size[i], spread[i]};
     }
 };
 
@@ -160,6 +162,16 @@ void applyLaws(const FrustumPart& part, double v, int count, Pixels& pixels) {
     }
 }
 
+/** From where and at which angle sound meets each pixel. */
+INSONIFY_VECTOR_CLONES void regard(const Pixels& pixels, int count, CellTruths<stretch>& __restrict shown) {
+    for (int i = 0; i < count; ++i) {
+        const double x = pixels.normal_x[i], y = pixels.normal_y[i], z = pixels.normal_z[i];
+        const double u = pixels.ray_u[i], v = pixels.ray_v[i], per_length = 1.0 / sqrt(1.0 + u * u + v * v);
+        shown.sine_elevation[i] = v * per_length;
+        shown.sine_grazing[i] = abs(x + u * y + v * z) * per_length / sqrt(x * x + y * y + z * z);
+    }
+}
+
 /** The same of all cells of a stretch. */
 struct Reach {
     double v, dv, near_edge, far_edge, per_pixel;
@@ -183,8 +195,11 @@ public:
         return all;
     }
 
-    PartDeposit(const FrustumPart& part, uint64_t* sums)
-        : part_(part), sums_(sums), bins_(part.rules, sums), per_pixel_(1 / (part.frustum.du() * part.frustum.dv())) {}
+    PartDeposit(const FrustumPart& part, uint64_t* sums, const TruthSink* truth)
+        : part_(part),
+          sums_(sums),
+          bins_(part.rules, sums, truth),
+          per_pixel_(1 / (part.frustum.du() * part.frustum.dv())) {}
 
     void run() {
         for (int row = 0; row < part_.frustum.rows; ++row)
@@ -197,6 +212,7 @@ private:
         if (!look(part_, row, first, count, pixels_) && !countsMisses()) return;
         aim<Estimator::features.has(Feature::Jitter)>(part_, row, first, count, pixels_);
         meet(pixels_, count);
+        if constexpr (Estimator::tells_truth) regard(row, first, count);
         if (part_.rules.features.has(Feature::BackscatterLaws))
             applyLaws(part_, part_.frustum.v(row + 0.5), count, pixels_);
         const size_t at = static_cast<size_t>(conical ? row : 0) * static_cast<size_t>(part_.frustum.columns) +
@@ -217,14 +233,34 @@ private:
             hideVolume<LayeredVolume>(shares, count, v);
         else if (part_.rules.features.has(Feature::Volume))
             hideVolume<OpenVolume>(shares, count, v);
-        for (int i = 0; i < count; ++i)
-            if (shares[i].beam >= part_.first && shares[i].beam < part_.last)
-                bins_.depositCell(cells_.get(i), shares[i].beam, shared_.strength_range[i]);
+        for (int i = 0; i < count; ++i) {
+            if (shares[i].beam < part_.first || shares[i].beam >= part_.last) continue;
+            if constexpr (Estimator::tells_truth)
+                bins_.regard(shown_.get(static_cast<int>(shares[i].column - first_column)));
+            bins_.depositCell(cells_.get(i), shares[i].beam, shared_.strength_range[i]);
+        }
+    }
+
+    /** Notes what `count` pixels from `first` show; a pixel that beams share is one sample of each. */
+    void regard(int row, int first, int count) {
+        const TakenPicture& picture = part_.picture;
+        const uint32_t* texel =
+            picture.pixels + picture.channels * (static_cast<size_t>(row) * static_cast<size_t>(part_.frustum.columns) +
+                                                 static_cast<size_t>(first));
+        for (int i = 0; i < count; ++i, texel += picture.channels) {
+            shown_.object[i] = texel[0] == 0 ? -1 : static_cast<int64_t>(picture.objects[texel[0] - 1]);
+            shown_.hits[i] = 1;
+        }
+        sonar::regard(pixels_, count, shown_);
     }
 
     void weigh(int count, double v) {
         ElevationTable table{part_.rules.elevation_powers.data(), part_.rules.elevation_reach};
-        for (int i = 0; i < count; ++i) cells_.size[i] *= table.elevationWeight(shared_.u[i], v);
+        for (int i = 0; i < count; ++i) {
+            const double weight = table.elevationWeight(shared_.u[i], v);
+            cells_.size[i] *= weight;
+            cells_.spread[i] *= weight;
+        }
     }
 
     bool countsMisses() const {
@@ -253,12 +289,14 @@ private:
     Pixels pixels_;
     Shared shared_;
     Cells cells_;
+    CellTruths<Estimator::tells_truth ? stretch : 1> shown_{};
 };
 
 /** Calls use.operator()<Deposit>() with the PartDeposit that has the features of a plan. */
-template <class Use>
+template <template <class> class Telling, class Use>
 void withParts(const Features& features, const Use& use) {
-    withEstimator<Features{}>(features, [&]<class Estimator>() {
+    withEstimator<Features{}>(features, [&]<class Deposited>() {
+        using Estimator = Telling<Deposited>;
         if (features.has(Feature::Conical))
             use.template operator()<PartDeposit<Estimator, true>>();
         else
@@ -292,12 +330,17 @@ PlacedRun placedRun(const ObjectRecord& object, const CommandRecord& command, co
 }
 
 INSONIFY_VECTOR_CLONES __attribute__((flatten)) void deposit(const FrustumPart& part, uint64_t* sums) {
-    withParts(part.rules.features, [&]<class Deposit>() { Deposit(part, sums).run(); });
+    withParts<Untold>(part.rules.features, [&]<class Deposit>() { Deposit(part, sums, nullptr).run(); });
+}
+
+INSONIFY_VECTOR_CLONES __attribute__((flatten)) void depositAndTell(const FrustumPart& part, uint64_t* sums,
+                                                                    const TruthSink& truth) {
+    withParts<Told>(part.rules.features, [&]<class Deposit>() { Deposit(part, sums, &truth).run(); });
 }
 
 Features compiledForPictures(const Features& wanted) {
     Features compiled;
-    withParts(wanted, [&]<class Deposit>() { compiled = Deposit::features(); });
+    withParts<Untold>(wanted, [&]<class Deposit>() { compiled = Deposit::features(); });
     return compiled;
 }
 

@@ -3,6 +3,7 @@
 
 #include "components/gpu/ReadBack.hpp"
 #include "components/sonar/BinDeposit.hpp"
+#include "components/sonar/TruthTable.hpp"
 #include "components/sonar/Volume.hpp"
 
 namespace insonify::sonar {
@@ -27,6 +28,7 @@ struct TakenPicture {
     const uint32_t* pixels = nullptr;  ///< Once they are here: `channels` words each, row by row from below.
     size_t channels = 2;               ///< Words a pixel [1].
     std::vector<PlacedRun> ranges;
+    std::vector<uint32_t> objects;  ///< Of the ranges, where the truth is wanted.
     WaterView water;
     bool taken = false;
 };
@@ -44,6 +46,9 @@ struct FrustumPart {
 
 /** Adds the part's echoes to `sums`, EchoRules::sumCount() for each beam. */
 void deposit(const FrustumPart& part, uint64_t* sums);
+
+/** The same sums, and what they are of. */
+void depositAndTell(const FrustumPart& part, uint64_t* sums, const TruthSink& truth);
 
 /** What is compiled into the deposit of pictures that has these features. */
 Features compiledForPictures(const Features& wanted);

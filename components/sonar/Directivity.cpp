@@ -16,6 +16,7 @@ using std::numbers::pi;
 
 /** Cells across a beam, or across the distance between two, at least [1]. */
 constexpr int min_cells = 2;
+constexpr size_t far_cells = 16;  ///< That are one where sidelobes alone hear them.
 /** Azimuth cells of a fan, at most [1]. */
 constexpr int max_cells = 16384;
 constexpr double reach_step = types::radians(0.05);
@@ -109,6 +110,24 @@ SonarConfig sampledConfig(const SonarConfig& config, const Directivity& directiv
     sampled.beam_width_deg = width;
     sampled.quality.columns_per_beam = 1;
     return sampled;
+}
+
+std::vector<Beam> azimuthCells(const SonarConfig& sampled, const std::vector<Beam>& beams,
+                               const Directivity& directivity, bool casts_rays) {
+    const std::vector<Beam> all = makeBeams(sampled);
+    if (!casts_rays || !directivity.hasAzimuth()) return all;
+    const double near = directivity.nearAzimuth();
+    const auto side = [&](const Beam& cell) {
+        return cell.high < beams.front().centre - near ? -1 : cell.low > beams.back().centre + near ? 1 : 0;
+    };
+    std::vector<Beam> cells;
+    for (size_t i = 0; i < all.size();) {
+        size_t end = i + 1;
+        while (side(all[i]) != 0 && end < all.size() && end - i < far_cells && side(all[end]) == side(all[i])) ++end;
+        cells.push_back({0.5 * (all[i].low + all[end - 1].high), all[i].low, all[end - 1].high});
+        i = end;
+    }
+    return cells;
 }
 
 std::string whyTooLarge(const SonarConfig& config) {

@@ -32,6 +32,9 @@ public:
     Span azimuthSpan(const std::vector<Beam>& beams) const;
     /** Between the half-power points of a beam straight ahead, two way [rad]. */
     double halfPowerAzimuth() const;
+    /** To either side of its bearing, within which a beam weighs each cell: all of the main lobe and the sidelobes that
+     *  stand out [rad]. */
+    double nearAzimuth() const { return 10 * halfPowerAzimuth(); }
 
 private:
     using Law = std::optional<acoustics::BeamPattern>;
@@ -43,6 +46,11 @@ private:
 /** A sonar with a beam pattern as it is sampled: azimuth cells take the place of the beams, and cells and
  *  aperture go as far as the pattern is above its floor, in images at most as far as one shows. */
 SonarConfig sampledConfig(const SonarConfig& config, const Directivity& directivity, bool casts_rays);
+
+/** The azimuth cells of a sonar that is sampled so. With rays those that are far from all beams are as wide as
+ *  sixteen others, for they are heard by sidelobes alone. */
+std::vector<Beam> azimuthCells(const SonarConfig& sampled, const std::vector<Beam>& beams,
+                               const Directivity& directivity, bool casts_rays);
 
 /** Why the cells of a sonar would take more memory than there may be; empty where they do not.
  *  @throws types::ConfigError as Directivity does. */

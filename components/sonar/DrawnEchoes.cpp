@@ -11,6 +11,7 @@
 #include "components/sonar/CpuDeposit.hpp"
 #include "components/sonar/EchoGrid.hpp"
 #include "components/sonar/SurfacePass.hpp"
+#include "components/sonar/TruthGrid.hpp"
 #include "types/Angle.hpp"
 
 namespace insonify::sonar {
@@ -43,6 +44,7 @@ public:
     size_t ringSize() const override { return slots_; }
     void submit(const types::Snapshot& snapshot, Stages& stages) override;
     void collect(types::Sonar& ping, Stages& stages) override;
+    void setTruth(types::SonarTruth* truth) override { truth_ = truth; }
     bool hasEchoes() const override;
     std::vector<LeftOut> culled() const override;
     Features compiled() const override;
@@ -53,6 +55,10 @@ private:
     bool depositsOnProcessor() const;
     SurfacePass::Setup surfaceSetup() const;
     void makeDeposit();
+    void makeTruth();
+    void prepareTruth();
+    /** Fills it, once a slot's sums are there. */
+    void tellTruth(size_t slot);
     /** Asks for the sums of what is drawn. */
     void take(size_t slot, const WaterView& water);
     void fillBins(types::Sonar& ping);
@@ -74,6 +80,10 @@ private:
     ThreadPool threads_;
     SurfacePass surface_;
     std::unique_ptr<BinDeposit> deposit_;
+    types::SonarTruth* truth_ = nullptr;  ///< To be filled; null: none is.
+    std::optional<TruthTable> shown_;     ///< Once it was wanted.
+    std::unique_ptr<CpuDeposit> beside_;  ///< The same, where the device deposits.
+    CpuDeposit* telling_ = nullptr;       ///< Which of the two deposits on the processor tells what is shown.
     std::optional<EchoGrid> grid_;
     EchoRules rules_;
     std::span<const uint64_t> sums_;  ///< Of the ping collected last.
@@ -129,6 +139,34 @@ void DrawnEchoes::makeDeposit() {
         deposit_ = std::make_unique<CpuDeposit>(std::move(setup), surface_, context_, threads_);
     else
         deposit_ = makeGpuDeposit(setup, context_);
+    beside_.reset();
+    shown_.reset();
+}
+
+void DrawnEchoes::makeTruth() {
+    shown_.emplace(plan_.beams.size(), static_cast<size_t>(plan_.grid.bin_count));
+    telling_ = dynamic_cast<CpuDeposit*>(deposit_.get());
+    if (!telling_) {
+        const auto alone = context_.transferring();
+        DepositSetup setup = depositSetup(plan_);
+        setup.slots = slots_;
+        beside_ = std::make_unique<CpuDeposit>(std::move(setup), surface_, context_, threads_);
+        telling_ = beside_.get();
+    }
+    telling_->prepareTruth(beamsOfCells(plan_));
+}
+
+void DrawnEchoes::prepareTruth() {
+    if (truth_ && !shown_) makeTruth();
+    if (shown_) telling_->setTruth(truth_ ? &*shown_ : nullptr);
+}
+
+void DrawnEchoes::tellTruth(size_t slot) {
+    if (beside_) beside_->finish(slot);
+    threads_.run([&](int part, int parts) {
+        for (auto beam = static_cast<size_t>(part); beam < plan_.beams.size(); beam += static_cast<size_t>(parts))
+            shown_->tell(beam, beam, *truth_);
+    });
 }
 
 void DrawnEchoes::lap(Stage& stage) {
@@ -139,10 +177,14 @@ void DrawnEchoes::lap(Stage& stage) {
 
 void DrawnEchoes::take(size_t slot, const WaterView& water) {
     const auto alone = context_.transferring();
-    deposit_->begin(slot, water);
-    for (size_t i = 0; i < plan_.frusta.size(); ++i)
-        if (surface_.draws(slot, i)) deposit_->take(slot, i, surface_);
-    deposit_->ask(slot);
+    const auto takeAll = [&](BinDeposit& deposit) {
+        deposit.begin(slot, water);
+        for (size_t i = 0; i < plan_.frusta.size(); ++i)
+            if (surface_.draws(slot, i)) deposit.take(slot, i, surface_);
+        deposit.ask(slot);
+    };
+    takeAll(*deposit_);
+    if (truth_ && beside_) takeAll(*beside_);
     surface_.ask(slot);
     glFlush();  // or a device would begin when its sums are waited for
 }
@@ -164,6 +206,7 @@ void DrawnEchoes::fill(size_t cell, const uint64_t* sums, double pixel, std::spa
 void DrawnEchoes::submit(const types::Snapshot& snapshot, Stages& stages) {
     context_.requireThread();
     const size_t slot = begun_ % slots_;
+    prepareTruth();
     last_ = std::chrono::steady_clock::now();
     culler_.place(snapshot);
     surface_.cull(slot);
@@ -179,7 +222,10 @@ void DrawnEchoes::submit(const types::Snapshot& snapshot, Stages& stages) {
 void DrawnEchoes::collect(types::Sonar& ping, Stages& stages) {
     context_.requireThread();
     last_ = std::chrono::steady_clock::now();
-    sums_ = deposit_->finish(ended_++ % slots_);
+    const size_t slot = ended_++ % slots_;
+    if (truth_) shown_->clear();
+    sums_ = deposit_->finish(slot);
+    if (truth_) tellTruth(slot);
     lap(stages[DepositStage]);
     fillBins(ping);
     lap(stages[BeamStage]);

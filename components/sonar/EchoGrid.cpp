@@ -3,21 +3,13 @@
 #include <algorithm>
 
 namespace insonify::sonar {
-namespace {
-
-/** Two-way widths of a beam from its bearing, within which it weighs each cell: all of the main lobe and the sidelobes
- *  that stand out. */
-constexpr double near_widths = 10;
-
-}  // namespace
-
 Beamformer beamformerOf(const RenderPlan& plan) {
     const Directivity& directivity = *plan.directivity;
     return {plan.beams,
             plan.cells,
             static_cast<size_t>(plan.grid.bin_count),
             {[&](double azimuth, double bearing) { return directivity.azimuth(azimuth, bearing); },
-             near_widths * directivity.halfPowerAzimuth(), directivity.floor()}};
+             directivity.nearAzimuth(), directivity.floor()}};
 }
 
 EchoGrid::EchoGrid(const RenderPlan& plan, int threads)

@@ -6,6 +6,7 @@
 #include "components/sonar/RenderPlan.hpp"
 #include "types/Snapshot.hpp"
 #include "types/Sonar.hpp"
+#include "types/SonarTruth.hpp"
 
 namespace insonify::sonar {
 
@@ -26,6 +27,9 @@ public:
     virtual void takeQuality() = 0;
     /** Fills ping.bins, which have their size; adds to `stages`. Allocates nothing after the first ping. */
     virtual void render(const types::Snapshot& snapshot, types::Sonar& ping, Stages& stages) = 0;
+    /** Pings rendered from now on tell there what their bins show, in their own grid, which it has; null: none is told.
+     */
+    virtual void setTruth(types::SonarTruth* truth) = 0;
     /** Whether the last ping has any echo. */
     virtual bool hasEchoes() const = 0;
     /** What of the scene the last ping left out. */

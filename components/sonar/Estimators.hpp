@@ -21,9 +21,8 @@ inline double max(double a, double b) { return a > b ? a : b; }
 inline uint min(uint a, uint b) { return a < b ? a : b; }
 #pragma GCC diagnostic push
 #pragma GCC diagnostic ignored "-Wunused-function"  // each includer has its own way to footprints
-#include "shaders/footprint.glsl"
 using real = double;
-#include "shaders/trapezoid.glsl"
+#include "shaders/footprint.glsl"
 #pragma GCC diagnostic pop
 
 /** Where the shared code of shaders/deposit.glsl finds its bins; HAVE_<FEATURE> chooses at compile time what it does.
@@ -153,7 +152,8 @@ struct VolumeChanges {
           sonar_height(height) {}
 
     void addVolume(uint beam, uint bin, double amount) const {
-        changes[beam * beam_sums + bin] += static_cast<uint64_t>(std::llround(amount * quanta_per_unit));
+        changes[beam * beam_sums + bin] +=
+            static_cast<uint64_t>(static_cast<int64_t>(amount * quanta_per_unit + (amount < 0 ? -0.5 : 0.5)));
     }
     double layerNumber(uint i) const { return numbers[i]; }
 

@@ -148,11 +148,24 @@ void PingTask::followQuality(types::Sonar& sample, double ms) {
     plan_told_ = false;
 }
 
+bool PingTask::renderPing(SonarRenderer& renderer, types::Snapshot& scene, types::Sonar& sample) {
+    renderer.render(scene, sample);
+    return renderer.hasEchoes() || renderer.targetsHeard() > 0;
+}
+
+RenderPlan PingTask::coverage(const types::Snapshot& /*scene*/) const { return renderer_->renderPlan(); }
+
+std::string PingTask::troubleOf(bool heard, const types::Sonar& sample) {
+    return troubles_->follow(heard, sonarConfig().model, aimed_, sample, [this] { return coverage(aimed_); });
+}
+
 void PingTask::render() {
     if (!renderer_ || geometry_ != aimed_.geometry) makeRenderer();
     const auto sample = pool_.take();
+    const auto told = takeTruth();
+    renderer_->setTruth(*sample, told.get());
     const auto start = std::chrono::steady_clock::now();
-    renderer_->render(aimed_, *sample);
+    const bool heard = renderPing(*renderer_, aimed_, *sample);
     const std::chrono::duration<double, std::milli> took = std::chrono::steady_clock::now() - start;
     for (const Stage& stage : renderer_->stages()) recordStage(stage.name, stage.seconds);
     if (std::exchange(culling_untold_, false)) {
@@ -160,13 +173,33 @@ void PingTask::render() {
         if (const auto what = renderer_->targetsLeftOut()) plan_->omitted.push_back(describe(*what, grid_));
     }
     followQuality(*sample, took.count());
-    if (const std::string trouble = troubles_->follow(*renderer_, aimed_, *sample); !trouble.empty()) warn(trouble);
+    if (const std::string trouble = troubleOf(heard, *sample); !trouble.empty()) warn(trouble);
     stampBearings(*sample);
     pool_.stock(*sample);
     if (!std::exchange(plan_told_, true)) refreshRecord();
     if (!waitForLastEcho()) return;
     if (pose.connected()) pose.write(used_);
+    tellMore(*sample, aimed_.sonar);
     ping.write(sample);
+    if (told) writeTruth(*sample, told);
+}
+
+std::shared_ptr<types::SonarTruth> PingTask::takeTruth() {
+    if (!truth.connected() && !returns.connected()) return nullptr;
+    return truths_.take();
+}
+
+void PingTask::writeTruth(const types::Sonar& sample, const std::shared_ptr<types::SonarTruth>& told) {
+    told->takeGrid(sample);
+    told->objects.resize(geometry_->objects.size());
+    for (size_t i = 0; i < told->objects.size(); ++i) told->objects[i] = geometry_->objects[i].name;
+    truths_.stock(*told);
+    if (truth.connected()) truth.write(told);
+    if (!returns.connected()) return;
+    const auto found = all_returns_.take();
+    found->take(sample, *told);
+    all_returns_.stock(*found);
+    returns.write(found);
 }
 
 bool PingTask::waitForLastEcho() {

@@ -13,6 +13,8 @@
 #include "components/sonar/Troubles.hpp"
 #include "types/Snapshot.hpp"
 #include "types/Sonar.hpp"
+#include "types/SonarReturns.hpp"
+#include "types/SonarTruth.hpp"
 
 namespace insonify::sonar {
 
@@ -28,6 +30,9 @@ namespace insonify::sonar {
  * closer in time than sound's way to the range and back are rendered, each by itself, and told of in the notices. The
  * quality is given, or a QualityKeeper chooses and keeps it; in realtime the period of the pings is its budget where
  * nothing is said, as their stamps tell it.
+ *
+ *  `truth` and `returns` tell of each ping what its bins show, for as long as one of them is connected; nothing is
+ *  computed for it otherwise, and the bins are the same either way.
  *
  *  `pose` tells where each ping was rendered, carried on as it was; with `given_pose` connected there is a ping for
  * each of these poses, in the newest snapshot's scene, so that what `pose` has told renders the same pings again. */
@@ -45,6 +50,11 @@ public:
     framework::OutputPort<types::SonarPtr> ping{this, "ping", "one ping, noiseless, at the time of its snapshot"};
     framework::OutputPort<types::Pose> pose{this, "pose", "the sonar in the world as each ping had it, at its time"};
 
+    framework::OutputPort<types::SonarTruthPtr> truth{
+        this, "truth", "which objects the bins show, from where and at which angle; computed only when connected"};
+    framework::OutputPort<types::SonarReturnsPtr> returns{
+        this, "returns", "first and strongest return of each beam; computed only when connected"};
+
     const types::Plan* plan() const override { return plan_ ? &*plan_ : nullptr; }
     std::vector<std::string> notices() const override;
 
@@ -56,8 +66,14 @@ public:
 protected:
     /** Last changes to a snapshot with a valid pose before it is rendered; a reason refuses it. */
     virtual const char* steer(types::Snapshot& /*scene*/) { return nullptr; }
+    /** Makes the ping of `scene`; whether it has any echo. */
+    virtual bool renderPing(SonarRenderer& renderer, types::Snapshot& scene, types::Sonar& sample);
     /** Last changes to a ping before it is written. */
     virtual void stampBearings(types::Sonar& /*sample*/) {}
+    /** What else there is to tell of a ping that is about to be written, from where it was rendered. */
+    virtual void tellMore(const types::Sonar& /*sample*/, const types::Pose& /*sonar*/) {}
+    /** Of a sonar that looks where this one does in one ping, to tell why it hears nothing. */
+    virtual RenderPlan coverage(const types::Snapshot& scene) const;
     /** Pings in which a turning head comes round [1]. */
     virtual int pingsPerTurn() const { return 1; }
 
@@ -79,6 +95,9 @@ private:
     const char* useGeometry(const types::Snapshot& scene);
     double echoTime() const { return 2 * grid_.range_max / grid_.speed_of_sound; }  ///< To the range and back [s].
     void render();
+    /** What the ping that is rendered next is to tell; null where nobody wants to know. */
+    std::shared_ptr<types::SonarTruth> takeTruth();
+    void writeTruth(const types::Sonar& sample, const std::shared_ptr<types::SonarTruth>& told);
     /** The next of `given_pose`, in the newest snapshot's scene. */
     bool takeGiven();
     /** The next snapshot; in realtime the newest, its sonar where it is by now, as far as it may be carried on. */
@@ -86,6 +105,8 @@ private:
     /** In realtime, until the last echo of this ping's range is back; false: the task is to stop. */
     bool waitForLastEcho();
     void makeRenderer();
+    /** What is to be told of a ping in which there may be nothing. */
+    std::string troubleOf(bool heard, const types::Sonar& sample);
     /** Looks after the quality once a ping has been rendered, in `ms`; may render it again. */
     void followQuality(types::Sonar& sample, double ms);
 
@@ -104,6 +125,8 @@ private:
     types::Pose used_;   ///< The sonar in `aimed_`, as it came.
     types::Time begun_;  ///< When it was taken.
     framework::SamplePool<types::Sonar> pool_;
+    framework::SamplePool<types::SonarTruth> truths_;
+    framework::SamplePool<types::SonarReturns> all_returns_;
 };
 
 /** Why a pose cannot be used, null when it can; makes its quaternion one of unit length. */

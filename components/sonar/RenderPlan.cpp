@@ -117,7 +117,7 @@ void RenderPlan::setQuality(int rows, int columns_per_beam) {
     config.quality.rows = rows;
     config.quality.columns_per_beam = columns_per_beam;
     sampled = directivity ? sampledConfig(config, *directivity, casts_rays) : config;
-    cells = directivity ? makeBeams(sampled) : beams;
+    cells = directivity ? azimuthCells(sampled, beams, *directivity, casts_rays) : beams;
     if (!casts_rays) frusta = makeFrusta(sampled, cells, options);
 }
 

@@ -2,6 +2,10 @@
 
 #include <fmt/format.h>
 
+#include "components/sonar/AltimeterTask.hpp"
+#include "components/sonar/ProfilerTask.hpp"
+#include "components/sonar/SideScanTask.hpp"
+#include "components/sonar/Sonar3dTask.hpp"
 #include "components/sonar/SonarTask.hpp"
 #include "types/Angle.hpp"
 #include "types/ConfigError.hpp"
@@ -49,6 +53,10 @@ void ScanningSonarTask::checkStep(double period) const {
 void registerTasks(framework::Registry& registry) {
     registry.add<SonarTask>("sonar::SonarTask", "forward-looking imaging sonar, a fan of beams per ping");
     registry.add<ScanningSonarTask>("sonar::ScanningSonarTask", "mechanically scanning sonar, one beam per ping");
+    registry.add<ProfilerTask>("sonar::ProfilerTask", "profiling multibeam sonar, one sounding per beam");
+    registry.add<SideScanTask>("sonar::SideScanTask", "side-scan sonar, a line to port and to starboard per ping");
+    registry.add<Sonar3dTask>("sonar::Sonar3dTask", "3-D sonar, a range for each beam in azimuth and elevation");
+    registry.add<AltimeterTask>("sonar::AltimeterTask", "altimeter, the range to the first return of one beam");
 }
 
 }  // namespace insonify::sonar

@@ -35,6 +35,8 @@ struct SonarRenderer::Parts {
     Stages stages = no_time;
     std::unique_ptr<EchoRenderer> echoes;
     PipelinedEchoes* pipeline = nullptr;  ///< The same where it draws.
+    const types::Sonar* told_ping = nullptr;
+    types::SonarTruth* truth = nullptr;  ///< Filled with that ping; null: none is.
     std::vector<UnderWay> ring;
     std::optional<PointTargets> targets;  ///< From the first ping with any on.
     std::optional<RingDown> ring_down;
@@ -105,8 +107,17 @@ void SonarRenderer::render(const types::Snapshot& snapshot, types::Sonar& ping) 
         throw std::logic_error("pings that were submitted are to be collected before another is rendered");
     parts_->stages = no_time;
     parts_->fillHeader(snapshot, ping);
+    types::SonarTruth* const truth = &ping == parts_->told_ping ? parts_->truth : nullptr;
+    if (truth) truth->takeGrid(ping);
+    parts_->echoes->setTruth(truth);
     parts_->echoes->render(snapshot, ping, parts_->stages);
+    parts_->echoes->setTruth(nullptr);
     finish(snapshot, ping);
+}
+
+void SonarRenderer::setTruth(const types::Sonar& ping, types::SonarTruth* truth) {
+    parts_->told_ping = &ping;
+    parts_->truth = truth;
 }
 
 void SonarRenderer::finish(const types::Snapshot& snapshot, types::Sonar& ping) {

@@ -30,6 +30,13 @@ public:
      *  submitted and not collected. */
     void render(const types::Snapshot& snapshot, types::Sonar& ping);
 
+    /** Each time that `ping` is rendered from now on, `truth` is filled as well, with what its bins show
+     *  (types::SonarTruth; its list of names is left alone); null: no more. Other pings tell nothing, and nothing is
+     *  computed or kept for them. Of a beam that is formed from finer azimuth cells, the truth is that of the cells
+     *  within half its spacing to its neighbours: what it hears in its sidelobes is not told, nor what the pulse
+     *  spreads into a bin, nor what the water scatters. Pings that are submitted tell none. */
+    void setTruth(const types::Sonar& ping, types::SonarTruth* truth);
+
     /** How many pings may be submitted and not collected [1]: more than one only pays where a graphics card draws. */
     size_t ringSize() const;
     /** Begins a ping of what the snapshot shows now, which must not change before it is collected, and waits for

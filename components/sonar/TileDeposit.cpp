@@ -6,6 +6,7 @@
 #include <glm/geometric.hpp>
 
 #include "components/sonar/Estimators.hpp"
+#include "components/sonar/TruthDeposit.hpp"
 
 namespace insonify::sonar {
 namespace {
@@ -29,11 +30,11 @@ struct Cells {
 /** What cells cover, and strength times slant range [m]. */
 struct Covered {
     double pixel[stretch], centre[stretch], wide[stretch], narrow[stretch], per_wide[stretch], steepness[stretch],
-        near_end[stretch], far_end[stretch], nearest[stretch], size[stretch], strength_range[stretch];
+        near_end[stretch], far_end[stretch], nearest[stretch], size[stretch], spread[stretch], strength_range[stretch];
 
     Footprint footprint(int i) const {
         return {pixel[i],     centre[i],   wide[i],    narrow[i],  per_wide[i],
-                steepness[i], near_end[i], far_end[i], nearest[i], size[i]};
+                steepness[i], near_end[i], far_end[i], nearest[i], size[i], spread[i]};
     }
 };
 
@@ -71,6 +72,7 @@ INSONIFY_VECTOR_CLONES void cover(const Cells& cells, int count, double near_edg
         covered.far_end[i] = cell.far_end;
         covered.nearest[i] = cell.nearest;
         covered.size[i] = cell.size;
+        covered.spread[i] = cell.spread;
         const double cosine_range = cells.mapped[i] > 0.0 && echo ? cells.mapped[i] / inverse_range : perpendicular;
         covered.strength_range[i] = cells.strength[i] * cosine_range;
     }
@@ -90,6 +92,16 @@ void applyLaws(const EchoRules& rules, const Cells& cells, int count, Covered& c
     }
 }
 
+/** From where and at which angle sound meets the middle of each cell. */
+INSONIFY_VECTOR_CLONES void regard(const Cells& cells, int count, CellTruths<stretch>& __restrict shown) {
+    for (int i = 0; i < count; ++i) {
+        const double n_x = cells.normal_x[i], n_y = cells.normal_y[i], n_z = cells.normal_z[i];
+        const double facing = (n_x * cells.cos_az[i] + n_y * cells.sin_az[i]) * cells.cos_el[i] + n_z * cells.sin_el[i];
+        shown.sine_elevation[i] = cells.sin_el[i];
+        shown.sine_grazing[i] = abs(facing) / sqrt(n_x * n_x + n_y * n_y + n_z * n_z);
+    }
+}
+
 /** Makes cells of tiles, a stretch at a time. */
 template <class Estimator, bool conical, bool normal_maps>
 class CellDeposit {
@@ -101,14 +113,15 @@ public:
         return all;
     }
 
-    CellDeposit(const EchoRules& rules, const CastView& view, const PlacedScene& scene, int first_beam, uint64_t* sums)
+    CellDeposit(const EchoRules& rules, const CastView& view, const PlacedScene& scene, int first_beam, uint64_t* sums,
+                const TruthSink* truth)
         : rules_(rules),
           view_(view.cells),
           shape_(view.shape),
           scene_(scene),
           first_beam_(first_beam),
           sums_(sums),
-          estimator_(rules, sums) {}
+          estimator_(rules, sums, truth) {}
 
     void add(const CastTile& tile) {
         for (int i = 0; i < tile_samples;) {
@@ -124,9 +137,12 @@ public:
     void finish() {
         cover(cells_, count_, rules_.edges.front(), rules_.edges[static_cast<size_t>(rules_.bins.bin_count)], covered_);
         if (rules_.features.has(Feature::BackscatterLaws)) applyLaws(rules_, cells_, count_, covered_);
-        for (int i = 0; i < count_; ++i)
+        if constexpr (Estimator::tells_truth) regard(cells_, count_, shown_);
+        for (int i = 0; i < count_; ++i) {
+            if constexpr (Estimator::tells_truth) estimator_.regard(shown_.get(i));
             estimator_.depositCell(covered_.footprint(i), static_cast<uint>(cells_.beam[i] - first_beam_),
                                    covered_.strength_range[i]);
+        }
         if (rules_.features.has(Feature::VolumeLayers))
             hideVolume<LayeredVolume>();
         else if (rules_.features.has(Feature::Volume))
@@ -189,6 +205,10 @@ private:
         cells_.far_limit[i] = run.far_limit;
         aim(tile, sample, merged);
         if (normal_maps) cells_.mapped[i] = mappedCosine(tile, sample, merged);
+        if constexpr (Estimator::tells_truth) {
+            shown_.object[i] = scene_.commands[tile.hits->command[sample]].object;
+            shown_.hits[i] = static_cast<uint32_t>(merged);
+        }
         if (++count_ == stretch) finish();
     }
 
@@ -249,12 +269,14 @@ private:
     int count_ = 0;
     Cells cells_{};
     Covered covered_{};
+    CellTruths<Estimator::tells_truth ? stretch : 1> shown_{};
 };
 
 /** Calls use.operator()<Deposit>() with the CellDeposit that has the features of a plan. */
-template <class Use>
+template <template <class> class Telling, class Use>
 void withCells(const Features& features, const Use& use) {
-    withEstimator<Features{Feature::Published, Feature::Nearest}>(features, [&]<class Estimator>() {
+    withEstimator<Features{Feature::Published, Feature::Nearest}>(features, [&]<class Deposited>() {
+        using Estimator = Telling<Deposited>;
         const bool conical = features.has(Feature::Conical), mapped = features.has(Feature::NormalMap);
         if (conical && mapped)
             use.template operator()<CellDeposit<Estimator, true, true>>();
@@ -272,8 +294,19 @@ void withCells(const Features& features, const Use& use) {
 INSONIFY_VECTOR_CLONES __attribute__((flatten)) void deposit(const EchoRules& rules, const CastView& view,
                                                              const PlacedScene& scene, std::span<const CastTile> tiles,
                                                              int first_beam, uint64_t* sums) {
-    withCells(rules.features, [&]<class Deposit>() {
-        Deposit cells(rules, view, scene, first_beam, sums);
+    withCells<Untold>(rules.features, [&]<class Deposit>() {
+        Deposit cells(rules, view, scene, first_beam, sums, nullptr);
+        for (const CastTile& tile : tiles) cells.add(tile);
+        cells.finish();
+    });
+}
+
+INSONIFY_VECTOR_CLONES __attribute__((flatten)) void depositAndTell(const EchoRules& rules, const CastView& view,
+                                                                    const PlacedScene& scene,
+                                                                    std::span<const CastTile> tiles, int first_beam,
+                                                                    uint64_t* sums, const TruthSink& truth) {
+    withCells<Told>(rules.features, [&]<class Deposit>() {
+        Deposit cells(rules, view, scene, first_beam, sums, &truth);
         for (const CastTile& tile : tiles) cells.add(tile);
         cells.finish();
     });
@@ -281,7 +314,7 @@ INSONIFY_VECTOR_CLONES __attribute__((flatten)) void deposit(const EchoRules& ru
 
 Features compiledForRays(const Features& wanted) {
     Features compiled;
-    withCells(wanted, [&]<class Deposit>() { compiled = Deposit::features(); });
+    withCells<Untold>(wanted, [&]<class Deposit>() { compiled = Deposit::features(); });
     return compiled;
 }
 

@@ -6,6 +6,7 @@
 #include "components/sonar/EchoRules.hpp"
 #include "components/sonar/NormalMapping.hpp"
 #include "components/sonar/RayVisibility.hpp"
+#include "components/sonar/TruthTable.hpp"
 #include "components/sonar/Volume.hpp"
 
 namespace insonify::sonar {
@@ -37,6 +38,10 @@ struct CastTile {
  * one beam may be one cell. Allocates nothing. */
 void deposit(const EchoRules& rules, const CastView& view, const PlacedScene& scene, std::span<const CastTile> tiles,
              int first_beam, uint64_t* sums);
+
+/** The same sums, and what they are of. */
+void depositAndTell(const EchoRules& rules, const CastView& view, const PlacedScene& scene,
+                    std::span<const CastTile> tiles, int first_beam, uint64_t* sums, const TruthSink& truth);
 
 /** What is compiled into the deposit of rays that has these features. */
 Features compiledForRays(const Features& wanted);

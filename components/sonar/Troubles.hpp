@@ -1,4 +1,5 @@
 #pragma once
+#include <functional>
 #include <string>
 
 #include "components/sonar/Sightlines.hpp"
@@ -13,8 +14,10 @@ public:
     /** `geometry` must outlive it. `turn`: pings in which a head comes round [1]. */
     Troubles(const types::Geometry& geometry, int turn) : turn_(turn), sightlines_(geometry) {}
 
-    /** What is to be told of the ping that was rendered last; usually nothing, for which nothing is allocated. */
-    std::string follow(const SonarRenderer& renderer, const types::Snapshot& scene, const types::Sonar& ping);
+    /** What is to be told of a ping; usually nothing, for which nothing is allocated. `heard`: it has an echo;
+     *  `coverage`: the plan of a sonar that looks where this one does. */
+    std::string follow(bool heard, Model model, const types::Snapshot& scene, const types::Sonar& ping,
+                       const std::function<RenderPlan()>& coverage);
 
 private:
     static constexpr unsigned between_looks = 16;  ///< Pings from one look at what is around the sonar to the next [1].

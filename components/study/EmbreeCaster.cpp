@@ -6,6 +6,7 @@
 #include <glm/geometric.hpp>
 #include <glm/gtc/quaternion.hpp>
 
+#include "components/acoustics/BeamPattern.hpp"
 #include "components/sonar/BeamFan.hpp"
 #include "components/sonar/BinGrid.hpp"
 #include "components/study/RayTree.hpp"
@@ -28,13 +29,22 @@ struct Angle {
 /** A column or row of cells: its middle and its edges. */
 struct Strip {
     Angle middle, low, high;
-    double
-        size;  ///< Of a column [rad]; of a row, between the sines of its edges. A cell's solid angle is their product.
+    double size;  ///< Of a column [rad]; of a row, between the sines of its edges, times what of it a pattern hears. A
+                  ///< cell's solid angle, so weighed, is their product.
 };
 
 Strip column(double low, double high) { return {Angle((low + high) / 2), Angle(low), Angle(high), high - low}; }
 Strip row(double low, double high) {
     return {Angle((low + high) / 2), Angle(low), Angle(high), std::sin(high) - std::sin(low)};
+}
+
+/** What is heard of an elevation, by the laws of `config` in elevation [1]. */
+double heardOf(const sonar::SonarConfig& config, double elevation) {
+    double heard = 1;
+    if (!config.beam_pattern) return heard;
+    for (const auto* law : {&config.beam_pattern->transmit.elevation, &config.beam_pattern->receive.elevation})
+        if (*law) heard *= acoustics::BeamPattern(**law).power(elevation);
+    return heard;
 }
 
 /** How the inverse ranges of a patch of plane are distributed that fills a cell: over a parallelogram of which they are
@@ -223,7 +233,10 @@ void EmbreeCaster::prepare(const sonar::SonarConfig& config) {
             fan.columns.push_back(column(beam.low + i * width, beam.low + (i + 1) * width));
         }
     const double half = types::radians(config.beam_height_deg) / 2, height = 2 * half / config.rows();
-    for (int i = 0; i < config.rows(); ++i) fan.rows.push_back(row(i * height - half, (i + 1) * height - half));
+    for (int i = 0; i < config.rows(); ++i) {
+        Strip& added = fan.rows.emplace_back(row(i * height - half, (i + 1) * height - half));
+        added.size *= heardOf(config, (i + 0.5) * height - half);
+    }
     fan.beams = config.beams();
     fan.stripes = fan.groups() >= 4 * fan.workers.size() ? 1 : 4 * fan.workers.size();
     fan.bins = static_cast<size_t>(grid.bin_count);

@@ -41,6 +41,9 @@ void judgeFlatBottom(const ErrorResult& result, std::vector<Claim>& all) {
     if (const Measurement* m = find(result, "flat_bottom_edge", Method::Footprint, 512, 2))
         all.push_back({"flat bottom with the aperture's edge, 512 rows: mean relative L2 of footprints",
                        m->metrics.mean_rel_l2, 3e-3, true});
+    if (const Measurement* m = find(result, "pitched_bottom_pattern", Method::Footprint, 512, 2))
+        all.push_back({"pitched bottom with a pattern in elevation, 512 rows: relative L2 of footprints",
+                       m->metrics.rel_l2, 0.01, true});
     const auto footprint = ladder(result, "flat_bottom", Method::Footprint),
                nearest = ladder(result, "flat_bottom", Method::Nearest);
     if (footprint.empty() || nearest.empty()) return;
@@ -54,7 +57,8 @@ void judgeFlatBottom(const ErrorResult& result, std::vector<Claim>& all) {
 }
 
 void judgeSlopes(const ErrorResult& result, std::vector<Claim>& all) {
-    for (const char* scene : {"flat_bottom", "flat_bottom_edge", "flat_bottom_pitched", "tilted_plane", "wall"}) {
+    for (const char* scene :
+         {"flat_bottom", "flat_bottom_edge", "flat_bottom_pitched", "tilted_plane", "pitched_bottom_pattern", "wall"}) {
         if (!has(result, scene)) continue;
         const double error = referenceError(result, scene);
         if (const auto s = slope(ladder(result, scene, Method::Footprint), error))

@@ -108,10 +108,16 @@ private:
         return scene_.config.fieldOfViewDeg() < 175 && columns * scene_.config.beam_count <= sonar::max_image_size;
     }
 
+    /** The caster knows nothing of water that scatters. */
+    bool canRun(Method method) const {
+        if (method == Method::Embree) return scene_.config.volume.empty();
+        return method != Method::Published || fitsOneFrustum();
+    }
+
     void measureAll() {
         const int slabs = static_cast<int>(sonar::makeFrusta(scene_.config, sonar::makeBeams(scene_.config)).size());
         for (const Method method : methods)
-            if (method != Method::Published || fitsOneFrustum())
+            if (canRun(method))
                 for (int level = 0; level < levels(); ++level)
                     measure(method, min_rows << level, base_columns_ << level, method == Method::Published ? 1 : slabs);
         for (int level = 0; level < levels(); ++level)

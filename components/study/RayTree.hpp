@@ -58,6 +58,8 @@ public:
 
     const glm::dvec3& origin() const { return origin_; }  ///< In the world [m].
     const Triangle& operator[](uint32_t triangle) const { return triangles_[triangle]; }
+    /** The object that a triangle is part of: index into the geometry's [1]. */
+    uint32_t objectOf(uint32_t triangle) const { return sources_[triangle].object; }
 
     /** Cosine between a unit direction and the mapped normal at a point of a mapped triangle (about the origin), as
      * glTF has it: normal, tangent and uv of the corners by the point's weights, the map bilinear without mipmaps; at

@@ -14,6 +14,6 @@ std::vector<StabilityCase> levelCases();      ///< Dynamic range: 32, 33, 35, 36
 std::vector<StabilityCase> sumCases();        ///< Sums, devices, sizes: 41, 44, 55, 58.
 std::vector<StabilityCase> noiseCases();      ///< Seeds and shapes of speckle: 47, 48.
 std::vector<StabilityCase> patternCases();    ///< Beam patterns and pulses: 31, 59.
-std::vector<StabilityCase> laterCases();      ///< What waits for effects: 38, 39.
+std::vector<StabilityCase> lobeCases();       ///< Specular lobes: 38, 39.
 
 }  // namespace insonify::study

@@ -74,8 +74,7 @@ constexpr const char* legend =
     "`attenuation_db`, two-way absorption from the nearest to the farthest range; `offset_ratio`, distance from the "
     "world's origin in bins; `strength_db`, loudest material over the mean; `samples_per_bin`, pixels per occupied "
     "bin. "
-    "Deviations are relative unless a unit is named; `not run` needs what this machine lacks; `later` waits for an "
-    "effect that is not built yet.\n\n";
+    "Deviations are relative unless a unit is named; `not run` needs what this machine lacks.\n\n";
 
 }  // namespace
 
@@ -86,15 +85,14 @@ const char* nameOf(Verdict verdict) {
         case Verdict::Pass: return "pass";
         case Verdict::Fail: return "fail";
         case Verdict::NotRun: return "not run";
-        case Verdict::Later: return "later";
     }
     return "";
 }
 
 std::vector<StabilityCase> stabilityCases() {
     std::vector<StabilityCase> all;
-    for (const auto& group :
-         {precisionCases, geometryCases, sensorCases, rangeCases, levelCases, sumCases, noiseCases, patternCases, laterCases})
+    for (const auto& group : {precisionCases, geometryCases, sensorCases, rangeCases, levelCases, sumCases, noiseCases,
+                              patternCases, lobeCases})
         for (StabilityCase& added : group()) all.push_back(std::move(added));
     return all;
 }
@@ -116,8 +114,8 @@ std::vector<StabilityRow> studyStability(std::vector<StabilityCase> cases,
 }
 
 std::string tally(const std::vector<StabilityRow>& rows) {
-    return fmt::format("{} pass, {} fail, {} not run, {} later", count(rows, Verdict::Pass), count(rows, Verdict::Fail),
-                       count(rows, Verdict::NotRun), count(rows, Verdict::Later));
+    return fmt::format("{} pass, {} fail, {} not run", count(rows, Verdict::Pass), count(rows, Verdict::Fail),
+                       count(rows, Verdict::NotRun));
 }
 
 void writeStability(const std::vector<StabilityRow>& rows, const std::filesystem::path& folder) {

@@ -7,8 +7,8 @@
 
 namespace insonify::study {
 
-enum class Verdict { Pass, Fail, NotRun, Later };
-/** "pass"; "fail"; "not run": this machine lacks what it needs; "later": the effect that it needs is not built yet. */
+enum class Verdict { Pass, Fail, NotRun };
+/** "pass"; "fail"; "not run": this machine lacks what it needs. */
 const char* nameOf(Verdict verdict);
 
 /** Condition numbers of a case, by name. */
@@ -19,7 +19,7 @@ struct Outcome {
     Conditions conditions;
     std::string got;
     double deviation = 0;  ///< From what is expected, relative unless `got` names a unit [1].
-    Verdict verdict = Verdict::Later;
+    Verdict verdict = Verdict::NotRun;
 };
 
 /** Whether it was run and has a deviation. */
@@ -32,7 +32,7 @@ struct StabilityCase {
     std::function<Outcome()> run;
 };
 
-/** Every case that has a figure to tell, or waits for an effect; those that only hold or do not are tests. */
+/** Every case that has a figure to tell; those that only hold or do not are tests. */
 std::vector<StabilityCase> stabilityCases();
 
 /** A case with its outcome. */
@@ -48,7 +48,7 @@ StabilityRow runCase(const StabilityCase& stability_case);
 std::vector<StabilityRow> studyStability(std::vector<StabilityCase> cases,
                                          const std::function<void(const StabilityRow&)>& done);
 
-/** "78 pass, 0 fail, 1 not run, 5 later". */
+/** "78 pass, 0 fail, 1 not run". */
 std::string tally(const std::vector<StabilityRow>& rows);
 
 /** Writes `stability.md`, a sheet to read, and `stability.json`, [{case, conditions: {}, expected, got, deviation,

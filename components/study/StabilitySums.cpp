@@ -116,16 +116,4 @@ std::vector<StabilityCase> sumCases() {
         {58, "2e6 samples of +20 dB in one bin", "to 1e-6 of the closed form: no wrap of the sums", loudSamplesInABin}};
 }
 
-std::vector<StabilityCase> laterCases() {
-    const auto waits = [](int number, const char* name, const char* expected, const char* effect) {
-        return StabilityCase{number, name, expected, [effect] {
-                                 return Outcome{{}, std::string("waits for: ") + effect, 0, Verdict::Later};
-                             }};
-    };
-    return {
-        waits(38, "Specular lobe of a mirror", "finite; level independent of resolution to 1 dB", "the specular lobe"),
-        waits(39, "+60 dB glint beside a bottom of -80 dB", "both to 1 %",
-              "the specular lobe; until then no material is above +20 dB")};
-}
-
 }  // namespace insonify::study

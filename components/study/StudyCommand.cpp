@@ -1,15 +1,16 @@
-// insonify study error|omission|stability
+// insonify study error|likeness|omission|stability
 #include "components/study/StudyCommand.hpp"
 
 namespace insonify::study {
 
-void addCommand(CLI::App& app, command::Action& action, const FindSonar& sonarAt) {
+void addCommand(CLI::App& app, command::Action& action, const FindSonar& sonarAt, const FindPing& pingAt) {
     CLI::App* study = app.add_subcommand("study", "Measures the simulator itself");
     study->require_subcommand(1);
 #ifdef INSONIFY_EMBREE
     addErrorStudy(*study, action, sonarAt);
     addRaysStudy(*study, action, sonarAt);
 #endif
+    addLikenessStudy(*study, action, pingAt);
     addOmissionStudy(*study, action, sonarAt);
     addStabilityStudy(*study, action);
 }

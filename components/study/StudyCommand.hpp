@@ -6,8 +6,10 @@
 #include <string>
 
 #include "components/command/Action.hpp"
+#include "components/receiver/ReceiverConfig.hpp"
 #include "components/sonar/SonarConfig.hpp"
 #include "types/Snapshot.hpp"
+#include "types/Sonar.hpp"
 
 namespace insonify::study {
 
@@ -19,11 +21,21 @@ struct SonarAt {
 /** The first sonar of a deployment at its ping number `ping`, from 1. Throws types::ConfigError where there is none. */
 using FindSonar = std::function<SonarAt(const std::string& deployment, uint64_t ping)>;
 
+/** A ping that a receiver gave out as codes, and by what law. */
+struct PingAt {
+    types::Sonar ping;
+    receiver::CodeConfig code;
+};
+/** The ping number `ping`, from 1, of the first receiver of a deployment that gives out codes, all noise included.
+ *  Throws types::ConfigError where there is none. */
+using FindPing = std::function<PingAt(const std::string& deployment, uint64_t ping)>;
+
 /** Adds the command `study` with its options to `app`; parsing it sets `action`. */
-void addCommand(CLI::App& app, command::Action& action, const FindSonar& sonarAt);
+void addCommand(CLI::App& app, command::Action& action, const FindSonar& sonarAt, const FindPing& pingAt);
 
 // Each adds one study to the command `study`.
 void addErrorStudy(CLI::App& study, command::Action& action, const FindSonar& sonarAt);
+void addLikenessStudy(CLI::App& study, command::Action& action, const FindPing& pingAt);
 void addOmissionStudy(CLI::App& study, command::Action& action, const FindSonar& sonarAt);
 void addRaysStudy(CLI::App& study, command::Action& action, const FindSonar& sonarAt);
 void addStabilityStudy(CLI::App& study, command::Action& action);

@@ -3,6 +3,8 @@
 #include <cmath>
 #include <limits>
 
+#include "components/acoustics/Backscatter.hpp"
+#include "components/acoustics/BeamPattern.hpp"
 #include "components/sonar/BeamFan.hpp"
 #include "components/sonar/BinGrid.hpp"
 #include "components/study/Probe.hpp"
@@ -33,6 +35,26 @@ StudyScene flatBottom(const std::string& name, const std::string& doc, double ra
     return scene;
 }
 
+/** As far as the pattern is heard: 60 dB below its axis. */
+StudyScene patternedBottom() {
+    const double width_deg = 20, reach_deg = width_deg / 2 * std::sqrt(60 / (2 * 10 * std::log10(2.0)));
+    StudyScene scene{"pitched_bottom_pattern",
+                     "a flat bottom 5 m below, the sonar pitched down by 20 deg, with a Gaussian beam of 20 deg in "
+                     "elevation, sent and heard",
+                     fan(60, 2 * reach_deg, 32, 50),
+                     snapshotOf(sceneOf({levelGround(-5)}), radians(20)),
+                     {}};
+    acoustics::BeamLaw law;
+    law.weighting = acoustics::Weighting::Gaussian;
+    law.width_deg = width_deg;
+    sonar::BeamPatternConfig& pattern = scene.config.beam_pattern.emplace();
+    pattern.transmit.elevation = pattern.receive.elevation = law;
+    const acoustics::BeamPattern beam(law);
+    scene.truth = planeTruth(downOf(scene.snapshot), 5, {},
+                             [beam](double elevation) { return std::pow(beam.power(elevation), 2); });
+    return scene;
+}
+
 StudyScene wallAhead() {
     return {"wall", "a wall 10 m ahead, 60 x 40 deg", fan(60, 40, 32, 15), snapshotOf(sceneOf({facingWall(10)})),
             planeTruth({1, 0, 0}, 10)};
@@ -53,6 +75,31 @@ StudyScene twoSpheres() {
     return {"two_spheres", "two spheres of 1 m radius at 10 m, one above the other, in one beam", fan(16, 36, 1, 12),
             snapshotOf(sceneOf({sphere(1, 256), sphere(1, 256)}, {{x, 0, z}, {x, 0, -z}})),
             sum({sphereTruth(1, 10), sphereTruth(1, 10)})};
+}
+
+StudyScene shinySphere() {
+    const double slope = 0.3;
+    const auto geometry = copyOf(sceneOf({sphere(1, 512)}, {{10, 0, 0}}));
+    geometry->materials[0].lambert_db = -9.23f;
+    geometry->materials[0].reflection = 1;
+    geometry->materials[0].roughness_slope = static_cast<float>(slope);
+    const auto section = [=](double cosine) { return acoustics::objectSection(-9.23, 1, slope * slope, cosine); };
+    return {"sphere_lobe", "the sphere with a specular lobe of 0.3 rms slope", fan(16, 16, 1, 12), snapshotOf(geometry),
+            sphereTruth(1, 10, section)};
+}
+
+/** Loud water, so that it is most of what is heard at long range. */
+StudyScene waterOverBottom() {
+    StudyScene scene = flatBottom("volume_over_bottom", "the flat bottom in water of -45 dB re 1/m", 15, 0, 0);
+    const auto geometry = copyOf(scene.snapshot.geometry);
+    geometry->materials[0].lambert_db = -30;
+    scene.snapshot.geometry = geometry;
+    scene.config.volume.push_back({{}, {}, -45});
+    const auto bottom = [truth = scene.truth](const BeamLimits& beam, double r1, double r2) {
+        return 1e-3 * truth(beam, r1, r2);
+    };
+    scene.truth = sum({bottom, waterTruth(std::pow(10, -4.5), 5)});
+    return scene;
 }
 
 /** A screen 2 m high stands on the bottom 15 m ahead and hides what lies behind. */
@@ -90,10 +137,13 @@ const std::vector<SceneMaker>& closedFormScenes() {
              return flatBottom("tilted_plane", "the same bottom, pitched by 20 and rolled by 25 deg", 0, radians(20),
                                radians(25));
          }},
+        {"pitched_bottom_pattern", patternedBottom},
         {"wall", wallAhead},
         {"facing_disc", facingDisc},
         {"sphere", oneSphere},
+        {"sphere_lobe", shinySphere},
         {"two_spheres", twoSpheres},
+        {"volume_over_bottom", waterOverBottom},
         {"shadow_screen", shadowScreen}};
     return scenes;
 }

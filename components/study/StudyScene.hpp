@@ -25,7 +25,8 @@ struct SceneMaker {
 };
 
 /** The scenes with a closed form: flat_bottom, flat_bottom_edge (its aperture's edge included), flat_bottom_pitched,
- *  tilted_plane, wall, facing_disc, sphere, two_spheres, shadow_screen. */
+ *  tilted_plane, pitched_bottom_pattern (a beam pattern in elevation), wall, facing_disc, sphere, sphere_lobe,
+ *  two_spheres, volume_over_bottom, shadow_screen. */
 const std::vector<SceneMaker>& closedFormScenes();
 
 /** The scenes without a closed form: rough_floor, bench_floor. */

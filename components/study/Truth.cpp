@@ -45,32 +45,34 @@ struct Profile {
     /** How far from the steepest elevation the range is r; nothing is nearer than 1 / slope. */
     double away(double r) const { return std::acos(std::min(1.0, 1 / (slope * r))); }
     /** Integral of cos(theta) r^-2 over solid angle, per azimuth, with cos(theta) = distance / r. */
-    double echo(double low, double high, double distance) const {
+    double echo(double low, double high, double distance, const Pattern& pattern) const {
         if (!(high > low)) return 0;
         return integral(low, high, [&](double elevation) {
             const double inverse = slope * std::cos(elevation - steepest);
-            return std::cos(elevation) * distance * inverse * inverse * inverse;
+            const double heard = pattern ? pattern(elevation) : 1;
+            return heard * std::cos(elevation) * distance * inverse * inverse * inverse;
         });
     }
 };
 
-double profileEcho(const Profile& profile, double distance, Elevations seen, double r1, double r2) {
+double profileEcho(const Profile& profile, double distance, const Pattern& pattern, Elevations seen, double r1,
+                   double r2) {
     if (r2 * profile.slope <= 1) return 0;
     const double near = profile.away(r1), far = profile.away(r2), at = profile.steepest;
-    return profile.echo(std::max(at + near, seen.low), std::min(at + far, seen.high), distance) +
-           profile.echo(std::max(at - far, seen.low), std::min(at - near, seen.high), distance);
+    return profile.echo(std::max(at + near, seen.low), std::min(at + far, seen.high), distance, pattern) +
+           profile.echo(std::max(at - far, seen.low), std::min(at - near, seen.high), distance, pattern);
 }
 
 Elevations both(Elevations a, Elevations b) { return {std::max(a.low, b.low), std::min(a.high, b.high)}; }
 
 }  // namespace
 
-Truth planeTruth(glm::dvec3 normal, double distance, Window window) {
+Truth planeTruth(glm::dvec3 normal, double distance, Window window, Pattern pattern) {
     return [=](const BeamLimits& beam, double r1, double r2) {
         const auto per_azimuth = [&](double azimuth) {
             Elevations seen{-beam.half_height, beam.half_height};
             if (window) seen = both(seen, window(azimuth));
-            return profileEcho(Profile(normal, distance, azimuth), distance, seen, r1, r2);
+            return profileEcho(Profile(normal, distance, azimuth), distance, pattern, seen, r1, r2);
         };
         return adaptive(beam.azimuth_low, beam.azimuth_high, per_azimuth,
                         integral(beam.azimuth_low, beam.azimuth_high, per_azimuth), 0);
@@ -84,6 +86,31 @@ Truth sphereTruth(double radius, double centre) {
         const double from = std::max(r1, centre - radius), to = std::min(r2, std::sqrt(q));
         if (!(to > from)) return 0.0;
         return std::numbers::pi / (2 * radius * centre) * (antiderivative(to) - antiderivative(from));
+    };
+}
+
+Truth sphereTruth(double radius, double centre, const std::function<double(double)>& section) {
+    return [=](const BeamLimits&, double r1, double r2) {
+        const double q = centre * centre - radius * radius;
+        const double from = std::max(r1, centre - radius), to = std::min(r2, std::sqrt(q));
+        if (!(to > from)) return 0.0;
+        const auto density = [&](double r) {
+            const double cosine = std::clamp((q - r * r) / (2 * radius * r), 0.0, 1.0);
+            return section(cosine) * 2 * std::numbers::pi * radius / centre * std::pow(r, -3);
+        };
+        return adaptive(from, to, density, integral(from, to, density), 0);
+    };
+}
+
+Truth waterTruth(double strength, double height) {
+    return [=](const BeamLimits& beam, double r1, double r2) {
+        const double up = std::sin(beam.half_height), met = height / up;  // from there on the bottom hides water
+        const auto before = [&](double from, double to) { return 2 * up * (1 / from - 1 / to); };
+        const auto behind = [&](double from, double to) {
+            return up * (1 / from - 1 / to) + height / 2 * (1 / (from * from) - 1 / (to * to));
+        };
+        const double middle = std::clamp(met, r1, r2);
+        return strength * (beam.azimuth_high - beam.azimuth_low) * (before(r1, middle) + behind(middle, r2));
     };
 }
 

@@ -33,6 +33,18 @@ def unsaid(sonar):
     return sonar.replace(QUALITY, "")
 
 
+# Takes what pings show, and makes no picture of it.
+TRUTH = ("  truth: {type: output::TruthImageTask}", """  - {from: sonar.ping, to: truth.ping, policy: {type: buffer, size: 4}}
+  - {from: sonar.truth, to: truth.truth, policy: {type: buffer, size: 4}}
+""")
+
+
+def with_truth(text):
+    """The deployment with somebody who takes the sonar's truth."""
+    task, connections = TRUTH
+    return text.replace("connections:", f"{task}\nconnections:", 1) + connections
+
+
 def deployment(sonar, file, schedule="lockstep", period=0.1, noise=""):
     return f"""schedule: {schedule}
 tasks:
@@ -52,10 +64,10 @@ connections:
 """
 
 
-def measure_seen(found, name, sonar, file, options, beside_rays=True, noise=""):
-    """Adds a result for each visibility."""
+def measure_seen(found, name, sonar, file, options, beside_rays=True, noise="", change=str):
+    """Adds a result for each visibility, of the deployment as `change` makes it."""
     for visibility in options.visibility:
-        text = deployment(seen(sonar, visibility), file, noise=noise)
+        text = change(deployment(seen(sonar, visibility), file, noise=noise))
         found[f"{name}, {visibility}"] = measure(text, options.pings, beside_rays)
 
 
@@ -83,13 +95,14 @@ AMBIENT = ", ambient: {level_db: -110}"
 
 
 def measure_effects(options):
-    """The fan of 256 beams before the 80,000 triangles, plain and with each effect."""
+    """The fan of 256 beams before the 80,000 triangles, plain, with each effect, and with its truth."""
     plain = SONARS["FLS 256 x 500"]
     found = {}
     for name, blocks in EFFECTS.items():
         sonar = plain.replace("properties: {", f"properties: {{{blocks}", 1)
         noise = AMBIENT if name == "all" else ""
         measure_seen(found, f"FLS 256 x 500, 80 k, {name}", sonar, scene(SCENES["80 k"]), options, False, noise)
+    measure_seen(found, "FLS 256 x 500, 80 k, truth", plain, scene(SCENES["80 k"]), options, False, "", with_truth)
     return found
 
 

@@ -202,9 +202,9 @@ TEST_F(BeamPatternTest, FaultsOfATableHaveFileLineAndColumn) {
                 HasSubstr("beam.csv:1:1: is 'angle,level'; the header must be angle_deg,level_db"));
     EXPECT_THAT(faultOf("angle_deg,level_db\n0,0\n1,loud\n"), HasSubstr("beam.csv:3:3: level_db: is 'loud'"));
     EXPECT_THAT(faultOf("angle_deg,level_db\n0,0\n0,-1\n"), HasSubstr("beam.csv:3:1: angle_deg: is not above"));
-    EXPECT_THAT(faultOf("angle_deg,level_db\n0,0\n1,-1,2\n"), HasSubstr("beam.csv:3:1: is '1,-1,2'; a line has 2"));
+    EXPECT_THAT(faultOf("angle_deg,level_db\n0,0\n1,-1,2\n"), HasSubstr("beam.csv:3:6: has too many fields; a line has 2"));
     EXPECT_THAT(faultOf("angle_deg,level_db\n0,0\n200,nan\n"), HasSubstr("beam.csv:3:5: level_db: is 'nan'"));
-    EXPECT_THAT(faultOf("angle_deg,level_db\n0,0\n"), HasSubstr("needs at least two"));
+    EXPECT_THAT(faultOf("angle_deg,level_db\n0,0\n"), HasSubstr("needs at least 2"));
     EXPECT_THAT(faultOf("angle_deg,level_db\n5,0\n6,0\n"), HasSubstr("leaves out 0"));
     EXPECT_THAT(faultOf(""), HasSubstr("is empty"));
     BeamLaw nowhere;

@@ -152,6 +152,34 @@ TEST_F(PeerTest, ReadsEveryTypeThatIsSent) {
     EXPECT_EQ(clock["first"]["clock"]["sec"], ping->time.microseconds / 1'000'000);
 }
 
+TEST_F(PeerTest, ReadsSoundingsAsPointsOfTheWorldAndTheRangeOfAnAltimeter) {
+    auto soundings = std::make_shared<types::PointCloud>();
+    soundings->time = framework::wallClock();
+    soundings->add({12.5, -3.25, -8}, 0.5);
+    soundings->add({12.5, 4, -7.5}, 0.25);
+    types::Range range;
+    range.time = soundings->time;
+    range.range = 6.5;
+    range.range_max = 30;
+    Publishing<types::PointCloudPtr> points({topicOut("in", "/soundings", message_type<ros::PointCloud2>)});
+    Publishing<types::Range> ranges({topicOut("in", "/altitude", message_type<ros::Range>)});
+    Peer point_peer("listen PointCloud2 /soundings 240 1"), range_peer("listen Range /altitude 240 1");
+    ASSERT_TRUE(comesTrue([&] {
+        points.send(soundings);
+        ranges.send(range);
+        std::this_thread::sleep_for(std::chrono::milliseconds(20));
+        return point_peer.hasEnded() && range_peer.hasEnded();
+    }));
+    const json cloud = point_peer.result()["first"], altitude = range_peer.result()["first"];
+    EXPECT_EQ(cloud["width"], 2);
+    EXPECT_EQ(cloud["header"]["frame_id"], "map");
+    EXPECT_EQ(cloud["fields"].size(), 4u);
+    EXPECT_EQ(cloud["data"]["size"], 32);
+    EXPECT_EQ(altitude["range"], 6.5);
+    EXPECT_EQ(altitude["max_range"], 30);
+    EXPECT_EQ(altitude["header"]["frame_id"], "sonar");
+}
+
 class SpoiltPoses : public PeerTest, public testing::WithParamInterface<std::pair<const char*, const char*>> {};
 
 TEST_P(SpoiltPoses, OfAPeerAreDroppedAndTheRunGoesOn) {

@@ -1,5 +1,7 @@
 #include <gmock/gmock.h>
 
+#include <cstring>
+
 #include "components/dds/PublisherTask.hpp"
 #include "components/dds/Reader.hpp"
 #include "components/ros/Cdr.hpp"
@@ -63,6 +65,20 @@ TEST_F(PublisherTaskTest, APingBecomesAllMessagesThatItCanBe) {
     EXPECT_GT(heard<ros::PointCloud2>("/points", send).width, 0u);
     EXPECT_EQ(heard<ros::LaserScan>("/scan", send).ranges.size(), 16u);
     EXPECT_EQ(ros::fromRos(heard<ros::Clock>("/clock", send).clock), ping->time);
+}
+
+TEST_F(PublisherTaskTest, SoundingsAreTurnedIntoTheWorldFrameAndNameIt) {
+    auto soundings = std::make_shared<types::PointCloud>();
+    soundings->time = framework::wallClock();
+    soundings->add({12.5, -3.25, -8}, 0.5);  // north, west, up
+    Publishing<types::PointCloudPtr> publishing({topicOut("in", "/soundings", message_type<ros::PointCloud2>)},
+                                                [](PublisherConfig& config) { config.world_frame_id = "odom"; });
+    const auto cloud = heard<ros::PointCloud2>("/soundings", [&] { publishing.send(soundings); });
+    ASSERT_EQ(cloud.data.size(), 16u);
+    float point[4];
+    std::memcpy(point, cloud.data.data(), sizeof point);
+    EXPECT_THAT(point, testing::ElementsAre(3.25f, 12.5f, -8, 0.5f)) << "east, north, up";
+    EXPECT_EQ(cloud.header.frame_id, "odom");
 }
 
 TEST_F(PublisherTaskTest, APoseIsTurnedIntoTheWorldFrameAndNamesItsFrames) {

@@ -129,6 +129,17 @@ class PointCloud2(IdlStruct, typename="sensor_msgs::msg::dds_::PointCloud2_"):
 
 
 @dataclass
+class Range(IdlStruct, typename="sensor_msgs::msg::dds_::Range_"):
+    header: Header
+    radiation_type: uint8
+    field_of_view: float32
+    min_range: float32
+    max_range: float32
+    range: float32
+    variance: float32
+
+
+@dataclass
 class PingInfo(IdlStruct, typename="marine_acoustic_msgs::msg::dds_::PingInfo_"):
     frequency: float32
     sound_speed: float32

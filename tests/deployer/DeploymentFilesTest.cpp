@@ -53,8 +53,9 @@ INSTANTIATE_TEST_SUITE_P(All, DeploymentFilesTest, testing::ValuesIn(deployments
 
 TEST(DeploymentFilesTest, TheNamedOnesAreThere) {
     EXPECT_THAT(deployments(),
-                testing::IsSupersetOf({"gemini_720i", "harbour_fls", "harbour_msis", "harbour_msis_sector", "minimal",
-                                       "rock_dropin", "tank_mosaic", "two_vehicles"}));
+                testing::IsSupersetOf({"gemini_720i", "harbour_fls", "harbour_msis", "harbour_msis_sector",
+                                       "harbour_profiler", "harbour_sidescan", "harbour_altimeter", "harbour_sonar3d",
+                                       "minimal", "rock_dropin", "tank_mosaic", "two_vehicles"}));
 }
 
 TEST(DeploymentFilesTest, ReplayShowsWhatTheHarbourRunLeftInLatest) {

@@ -20,6 +20,7 @@ TEST(DescribeCommandTest, ListsEveryTask) {
     const Outcome outcome = callInsonify(folder, {"describe"});
     EXPECT_EQ(outcome.code, 0);
     for (const char* type : {"pose::TrajectoryTask", "scene::SceneTask", "sonar::SonarTask", "sonar::ScanningSonarTask",
+                             "sonar::ProfilerTask", "sonar::SideScanTask", "sonar::AltimeterTask", "sonar::Sonar3dTask",
                              "noise::NoiseTask", "receiver::ReceiverTask", "output::FanImageTask", "logger::LoggerTask",
                              "replay::ReplayTask"})
         EXPECT_THAT(outcome.out, HasSubstr(type));

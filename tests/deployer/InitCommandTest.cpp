@@ -1,5 +1,7 @@
 #include <gmock/gmock.h>
 
+#include <opencv2/imgcodecs.hpp>
+
 #include "components/deployer/Starter.hpp"
 #include "tests/deployer/Command.hpp"
 
@@ -25,6 +27,22 @@ size_t binsHeard(const TestFolder& folder, const std::string& sonar) {
     return std::stoul(counted.out);
 }
 
+/** Pixels of echoes in the first picture of a run that is blanked nearer than `range_min` [m]. */
+int brightPixels(const TestFolder& folder, double range_min) {
+    const std::string out = "out_" + std::to_string(range_min);
+    const Outcome ran = callInsonify(folder, {"run", ".", "--pings", "1", "--out", out, "--set", "noise.ambient=null",
+                                              "--set", "sonar.range_min=" + std::to_string(range_min)});
+    EXPECT_EQ(ran.code, 0) << ran.err;
+    for (const char* name : {"fan_000000.png", "disc_000000.png"}) {
+        const cv::Mat picture = cv::imread((folder / out / name).string(), cv::IMREAD_GRAYSCALE);
+        if (!picture.empty())
+            return static_cast<int>(std::count_if(picture.begin<uint8_t>(), picture.end<uint8_t>(),
+                                                  [](uint8_t grey) { return grey > 70; }));
+    }
+    ADD_FAILURE() << "there is no picture";
+    return 0;
+}
+
 class InitPresetTest : public testing::TestWithParam<std::string> {};
 
 std::vector<std::string> presetNames() {
@@ -41,6 +59,26 @@ TEST_P(InitPresetTest, IsValidRunsAtOnceAndHearsTheScene) {
     const Outcome checked = callInsonify(folder, {"check", GetParam()});
     EXPECT_EQ(checked.code, 0) << checked.err;
     EXPECT_THAT(checked.out, testing::Not(HasSubstr("warning")));
+}
+
+TEST_P(InitPresetTest, MakesAPictureOfTheScene) {
+    const TestFolder folder;
+    ASSERT_EQ(callInsonify(folder, {"init", ".", "--sonar", GetParam()}).code, 0);
+    const SonarPreset& preset = sonarPreset(GetParam());
+    const int empty = brightPixels(folder, 0.99 * preset.range), drawn = brightPixels(folder, preset.range_min);
+    EXPECT_GT(drawn, empty + (preset.isFan() ? 5000 : 50));
+}
+
+TEST_P(InitPresetTest, HasABeamAsWideAsItsDataSheetSaysAndAPulse) {
+    const TestFolder folder;
+    ASSERT_EQ(callInsonify(folder, {"init", ".", "--sonar", GetParam()}).code, 0);
+    const SonarPreset& preset = sonarPreset(GetParam());
+    const Outcome beam = callInsonify(folder, {"beam", ".", "--json"});
+    ASSERT_EQ(beam.code, 0) << beam.err;
+    const json cuts = json::parse(beam.out);
+    EXPECT_NEAR(cuts["azimuth"]["width_3db_deg"], preset.beam_width_deg, 0.01 * preset.beam_width_deg);
+    EXPECT_NEAR(cuts["elevation"]["width_3db_deg"], preset.beam_height_deg, 0.01 * preset.beam_height_deg);
+    EXPECT_THAT(readFile(folder / (GetParam() + ".yml")), HasSubstr("pulse: {"));
 }
 
 TEST_P(InitPresetTest, BinsOfWholeMicrosecondsReachTheRangeThatIsAskedFor) {

@@ -30,7 +30,7 @@ std::set<std::string> neighboursOf(const Source& source) {
     const std::string folder = source.folder();
     std::set<std::string> allowed;
     if (source.isTaskHalf()) allowed.insert("framework");
-    if (folder == "study") allowed.insert({"sonar", "noise", "receiver", "scene"});
+    if (folder == "study") allowed.insert({"sonar", "noise", "receiver", "scene", "device", "output"});
     if (source.isCommandHalf()) allowed.insert("command");
     if (folder == "sonar") allowed.insert({"gpu", "shaders"});
     const std::set<std::string> listeners = {"sonar", "scene", "noise", "study"};

@@ -79,6 +79,64 @@ TEST(ExportTest, NumpyReadsPosesAndNumbers) {
     EXPECT_EQ(numpySays(folder / "never.npz", "x['value'].shape"), "(0,)\n");
 }
 
+/** One beam of two bins: a ball at 0.5 rad, and nothing, in its shadow. */
+types::SonarTruth truth(int64_t time) {
+    types::SonarTruth sample;
+    sample.takeGrid(ping(time, 1, 2));
+    sample.objects = {"bottom", "ball"};
+    sample.elevation = {0.5f, std::numeric_limits<float>::quiet_NaN()};
+    sample.object = {1, -1};
+    sample.share = {0.75f, 0};
+    sample.hits = {7, 0};
+    sample.grazing = {1.25f, std::numeric_limits<float>::quiet_NaN()};
+    sample.path = {3, 0};
+    sample.shadow = {0, 1};
+    return sample;
+}
+
+TEST(ExportTest, NumpyReadsTheTruthOfPings) {
+    Folder folder;
+    pocolog::Writer log(folder / "x.0.log");
+    const size_t stream = log.addStream<types::SonarTruth>("sonar.truth");
+    log.write(stream, {1}, truth(1'000'000));
+    log.write(stream, {2}, truth(1'500'000));
+    log.close();
+    pocolog::Reader reader(folder / "x.0.log");
+    exportNpz(reader, "sonar.truth", folder / "x.npz");
+    if (!numpyIsThere()) GTEST_SKIP() << "python3-numpy is not installed: the npz files are not read";
+    EXPECT_EQ(numpySays(folder / "x.npz", "sorted(x.files)"),
+              "['bearings', 'elevation', 'grazing', 'hits', 'object', 'objects', 'path', 'range_m', 'shadow', 'share', "
+              "'time']\n");
+    EXPECT_EQ(numpySays(folder / "x.npz", "x['object'].shape, x['object'].dtype, x['object'][1].tolist()"),
+              "(2, 1, 2) int32 [[1, -1]]\n");
+    EXPECT_EQ(numpySays(folder / "x.npz", "x['elevation'].dtype, x['elevation'][0, 0], x['grazing'][1, 0]"),
+              "float32 [0.5 nan] [1.25  nan]\n");
+    EXPECT_EQ(numpySays(folder / "x.npz", "x['shadow'].dtype, x['shadow'][0, 0], x['path'][0, 0], x['hits'][0, 0]"),
+              "bool [False  True] [3 0] [7 0]\n");
+    EXPECT_EQ(numpySays(folder / "x.npz", "x['objects'], x['share'][1, 0], x['time'], x['range_m'].shape"),
+              "[b'bottom' b'ball'] [0.75 0.  ] [1.  1.5] (2, 2)\n");
+}
+
+TEST(ExportTest, CsvOfTruthHasALineForEachBinAndThatOfReturnsForEachBeam) {
+    Folder folder;
+    pocolog::Writer log(folder / "x.0.log");
+    log.write(log.addStream<types::SonarTruth>("sonar.truth"), {1}, truth(1'500'000));
+    types::SonarReturns returns;
+    returns.take(ping(1'500'000, 1, 2), truth(1'500'000));
+    log.write(log.addStream<types::SonarReturns>("sonar.returns"), {1}, returns);
+    log.close();
+    pocolog::Reader reader(folder / "x.0.log");
+    exportCsv(reader, "sonar.truth", folder / "truth.csv");
+    EXPECT_EQ(textOf(folder / "truth.csv"),
+              "time,beam,bearing,bin,elevation,object,share,hits,grazing,path,shadow\n"
+              "1.500000,0,0.5,0,0.5,1,0.75,7,1.25,3,0\n"
+              "1.500000,0,0.5,1,nan,-1,0,0,nan,0,1\n");
+    exportCsv(reader, "sonar.returns", folder / "returns.csv");
+    EXPECT_THAT(textOf(folder / "returns.csv"),
+                testing::StartsWith("time,beam,bearing,first_range,first_level,first_elevation,strongest_range,"
+                                    "strongest_level,strongest_elevation\n1.500000,0,0.5,0.04958"));
+}
+
 TEST(ExportTest, PingsOfAnotherShapeBeginANewFile) {
     Folder folder;
     pocolog::Writer log(folder / "x.0.log");

@@ -148,6 +148,18 @@ TEST(ReceiverTest, CodesFollowTheirLawBetweenTheirEnds) {
               (std::vector<float>{0, 58959, 65535, 65535, 0, 37979}));
 }
 
+TEST(ReceiverTest, GammaIsThePowerOfACode) {
+    const std::vector<float> intensities = {0, 0.0625f, 0.25f, 1, 4, nan};
+    EXPECT_EQ(received(coding({.law = CodeLaw::Sqrt, .gamma = 0.5}), beamOf(intensities)).bins,
+              (std::vector<float>{0, 128, 180, 255, 255, 0}));
+    EXPECT_EQ(received(coding({.law = CodeLaw::Linear, .gamma = 0.25}), beamOf(intensities)).bins,
+              (std::vector<float>{0, 128, 180, 255, 255, 0}));
+    EXPECT_EQ(received(coding({.law = CodeLaw::Linear, .gamma = 2}), beamOf(intensities)).bins,
+              (std::vector<float>{0, 1, 16, 255, 255, 0}));
+    EXPECT_EQ(received(coding({.law = CodeLaw::Sqrt, .gamma = 1}), beamOf(intensities)).bins,
+              received(coding({.law = CodeLaw::Sqrt}), beamOf(intensities)).bins);
+}
+
 TEST(ReceiverTest, FullScaleIsTheLevelOfTheLargestCodeWithAllGain) {
     for (const CodeLaw law : {CodeLaw::Linear, CodeLaw::Sqrt, CodeLaw::Log}) {
         ReceiverConfig config = coding({.law = law, .full_scale_db = -20});
@@ -164,6 +176,10 @@ TEST(ReceiverTest, WhatMakesNoSenseIsRefusedAndWhatHasNoUseTold) {
     config.code->check(diagnostics);
     ASSERT_EQ(diagnostics.size(), 1u);
     EXPECT_EQ(diagnostics[0].message, "is 12; must be 8 or 16");
+    diagnostics.clear();
+    CodeConfig({.law = CodeLaw::Log, .gamma = 0.5}).check(diagnostics);
+    ASSERT_EQ(diagnostics.size(), 1u);
+    EXPECT_EQ(diagnostics[0].message, "is given with law log; it bends law linear and sqrt");
     config = giving(Output::LevelDb);
     config.brightness.emplace();
     config.tvg.emplace();

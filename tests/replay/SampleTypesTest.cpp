@@ -55,6 +55,24 @@ types::SonarScan made(std::type_identity<types::SonarScan>) {
     scan.beamwidth_vertical = {0.5};
     return scan;
 }
+types::SonarTruth made(std::type_identity<types::SonarTruth>) {
+    types::SonarTruth truth;
+    truth.takeGrid(made(std::type_identity<types::Sonar>{}));
+    truth.objects = {"bottom", "a \"ball\""};
+    truth.elevation = {0.5f, -0.25f, 0, 0.125f, 0, 0};
+    truth.object = {1, 0, -1, 0, 0, 1};
+    truth.share = {1, 0.75f, 0, 1, 0.5f, 1};
+    truth.hits = {3, 70'000, 0, 1, 1, 2};
+    truth.grazing = {1.5f, 0.25f, 0, 0.5f, 0.5f, 1};
+    truth.path = {0, 1, 0, 2, 3, 0};
+    truth.shadow = {0, 0, 1, 0, 0, 0};
+    return truth;
+}
+types::SonarReturns made(std::type_identity<types::SonarReturns>) {
+    types::SonarReturns returns;
+    returns.take(made(std::type_identity<types::Sonar>{}), made(std::type_identity<types::SonarTruth>{}));
+    return returns;
+}
 types::Pose made(std::type_identity<types::Pose>) {
     types::Pose pose;
     pose.time = {1'500'000};
@@ -74,6 +92,33 @@ types::Image made(std::type_identity<types::Image>) {
     picture.frame_status = types::ImageStatus::Valid;
     picture.image = {1, 2, 3, 4, 5, 6};
     return picture;
+}
+types::PointCloud made(std::type_identity<types::PointCloud>) {
+    types::PointCloud cloud;
+    cloud.time = {1'500'000};
+    cloud.add({1, -2.5, 3}, 0.25);
+    cloud.add({-4, 0.5, -8}, 0.5);
+    return cloud;
+}
+types::DepthMap made(std::type_identity<types::DepthMap>) {
+    types::DepthMap map;
+    map.time = {1'500'000};
+    map.vertical_size = 2;
+    map.horizontal_size = 3;
+    map.vertical_interval = {-0.25, 0.5};
+    map.horizontal_interval = {0.5, 0.125, -0.25};
+    map.distances = {1, 2, 4, types::DepthMap::too_far, 8, 0.5f};
+    map.remissions = {1, 0.5f, 0.25f, 0, 2, 0.125f};
+    return map;
+}
+types::Range made(std::type_identity<types::Range>) {
+    types::Range range;
+    range.time = {1'500'000};
+    range.range = 12.5;
+    range.range_min = 0.25;
+    range.range_max = 50;
+    range.field_of_view = {0.5};
+    return range;
 }
 types::Time made(std::type_identity<types::Time>) { return {1'234'567}; }
 types::Angle made(std::type_identity<types::Angle>) { return {0.75}; }

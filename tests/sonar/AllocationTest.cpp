@@ -1,7 +1,11 @@
 // No operator new on the sonars' threads after the first pings, even when later ones see more.
 #include <gmock/gmock.h>
 
+#include "components/sonar/AltimeterTask.hpp"
+#include "components/sonar/ProfilerTask.hpp"
 #include "components/sonar/ScanningSonarTask.hpp"
+#include "components/sonar/SideScanTask.hpp"
+#include "components/sonar/Sonar3dTask.hpp"
 #include "components/sonar/SonarRenderer.hpp"
 #include "components/sonar/SonarTask.hpp"
 #include "tests/support/Allocations.hpp"
@@ -61,11 +65,32 @@ int pingsThatAllocate(const SonarConfig& config, int count) {
     return allocating;
 }
 
+enum class Truth { Unheard, Heard };
+
+/** A reader of what a task tells beside its pings. */
+template <class Task>
+struct Beside {
+    explicit Beside(Task&) {}
+};
+template <class Task>
+requires requires(Task& task) { task.soundings; }
+struct Beside<Task> {
+    explicit Beside(Task& task) { task.soundings.connectTo(reader.port, framework::ConnPolicy::data()); }
+    test::Reader<types::PointCloudPtr> reader;
+};
+
 template <class Task, class Config>
-void expectNoAllocation(const Config& config) {
+void expectNoAllocation(const Config& config, Truth truth = Truth::Unheard) {
     Task task("sonar");
+    const Beside<Task> beside(task);
     test::Writer<types::SnapshotPtr> in;
     test::Reader<types::SonarPtr> out;
+    test::Reader<types::SonarTruthPtr> truths{"truths"};
+    test::Reader<types::SonarReturnsPtr> returns{"returns"};
+    if (truth == Truth::Heard) {
+        task.truth.connectTo(truths.port, framework::ConnPolicy::data());
+        task.returns.connectTo(returns.port, framework::ConnPolicy::data());
+    }
     in.port.connectTo(task.snapshot, framework::ConnPolicy::buffer(4));
     task.ping.connectTo(out.port, framework::ConnPolicy::data());
     task.config.set(config);
@@ -82,6 +107,7 @@ void expectNoAllocation(const Config& config) {
     });
     EXPECT_THAT(allocations, testing::IsEmpty());
     EXPECT_EQ(task.ping.written(), snapshots.size()) << task.lastError();
+    EXPECT_EQ(task.truth.written(), truth == Truth::Heard ? snapshots.size() : 0);
 }
 
 SonarConfig fan() {
@@ -116,6 +142,20 @@ TEST(AllocationTest, NorWithPatternsAndAPulse) {
         config.device = visibility == Visibility::Gl ? "software" : "";
         expectNoAllocation<SonarTask>(config);
     }
+}
+
+TEST(AllocationTest, NorWhereItTellsWhatItsPingsShow) {
+    SonarConfig config = fan();
+    expectNoAllocation<SonarTask>(config, Truth::Heard);
+    config.deposit = Deposit::Gpu;
+    expectNoAllocation<SonarTask>(config, Truth::Heard);
+    config.visibility = Visibility::Cpu;
+    config.device.clear();
+    expectNoAllocation<SonarTask>(config, Truth::Heard);
+    acoustics::BeamLaw law;
+    law.width_deg = 3;
+    config.beam_pattern.emplace().receive.azimuth = law;
+    expectNoAllocation<SonarTask>(config, Truth::Heard);
 }
 
 TEST(AllocationTest, NorDoesItWithTheDepositOnTheGraphicsDevice) {
@@ -166,6 +206,25 @@ TEST(AllocationTest, NorInThePublishedModel) {
     SonarConfig config = fan();
     config.model = Model::Cerqueira2017;
     expectNoAllocation<SonarTask>(config);
+}
+
+TEST(AllocationTest, NorDoTheOtherKindsOfSonarThatTellMore) {
+    ProfilerConfig profiler;
+    profiler.sonar = fan();
+    expectNoAllocation<ProfilerTask>(profiler);
+    Sonar3dConfig grid;
+    grid.sonar.bin_count = 100;
+    grid.horizontal.beam_count = 16;
+    grid.vertical.beam_count = 8;
+    expectNoAllocation<Sonar3dTask>(grid);
+    SideScanConfig side_scan;
+    side_scan.sonar.bin_count = 100;
+    side_scan.sonar.quality.columns_per_beam = 64;
+    expectNoAllocation<SideScanTask>(side_scan);
+    AltimeterConfig altimeter;
+    altimeter.sonar.bin_count = 100;
+    altimeter.sonar.quality.rows = 64;
+    expectNoAllocation<AltimeterTask>(altimeter);
 }
 
 TEST(AllocationTest, AScanningSonarAllocatesNothingAfterItsFirstPings) {

@@ -7,6 +7,7 @@
 
 #include "components/sonar/SonarRenderer.hpp"
 #include "tests/support/ClosedForms.hpp"
+#include "tests/support/Folder.hpp"
 #include "tests/support/Scenes.hpp"
 #include "types/Angle.hpp"
 
@@ -81,6 +82,45 @@ TEST(PatternedPingTest, ABottomIsHeardByThePatternInElevation) {
         EXPECT_LT(off.relative_l2, 0.01) << off;
         EXPECT_LT(off.ripple, 0.01) << off;
         EXPECT_GT(test::deviation(ping, one_way).relative_l2, 0.1);
+    }
+}
+
+/** Form 3 with a share of what comes from an elevation: a flat bottom under a thin beam that looks down by `pitch`. */
+test::Form weightedPitchedBottom(double height, double pitch, double delta,
+                                 const std::function<double(double)>& share) {
+    return [=](double r1, double r2) {
+        const auto density = [=](double r) {
+            if (r <= height) return 0.0;
+            const double down = std::asin(height / r);
+            return delta * height * height * std::pow(r, -5) * std::cos(pitch - down) / std::cos(down) *
+                   share(pitch - down);
+        };
+        return test::integral(r1, r2, density);
+    };
+}
+
+TEST(PatternedPingTest, APitchedBottomIsHeardByThePatternInElevation) {
+    SonarConfig config = sonarOf(1, 1, 0.1, 300);
+    config.beam_pattern.emplace().transmit.elevation = lawOf(Weighting::Gaussian, 12);
+    config.beam_pattern->receive.elevation = lawOf(Weighting::Gaussian, 16);
+    config.beam_pattern->floor_db = -80;
+    const acoustics::BeamPattern sent(*config.beam_pattern->transmit.elevation),
+        heard(*config.beam_pattern->receive.elevation);
+    const double pitch = radians(20), delta = radians(1);
+    const auto snapshot = test::snapshotOf(test::sceneOf({test::ground(-4)}), {}, 0, pitch);
+    const auto formOf = [&](double tilt, const auto& share) { return weightedPitchedBottom(4, tilt, delta, share); };
+    const auto both_ways = [&](double e) { return sent.power(e) * heard.power(e); };
+    const auto right = formOf(pitch, both_ways);
+    const auto one_way = formOf(pitch, [&](double e) { return sent.power(e); });
+    const auto none = formOf(pitch, [](double) { return 1.0; });
+    for (const SonarConfig& way : everyWay(config)) {
+        const types::Sonar ping = pingOf(way, snapshot);
+        const test::Deviation off = test::deviation(ping, right);
+        EXPECT_LT(off.relative_l2, 0.01) << off;
+        EXPECT_LT(off.ripple, 0.01) << off;
+        RecordProperty("relative_l2", std::to_string(off.relative_l2));
+        for (const auto& wrong : {one_way, none, formOf(0, both_ways)})
+            EXPECT_GT(test::deviation(ping, wrong).relative_l2, 0.1);
     }
 }
 
@@ -182,6 +222,50 @@ TEST(PatternedPingTest, ATargetSweptAcrossABeamShowsTheTableOfWeightings) {
         EXPECT_NEAR(cut.first_null_deg, 3 * row.first_null / row.width, 0.02 * 3 * row.first_null / row.width)
             << row.peak_db;
         EXPECT_NEAR(cut.sidelobe_db, row.peak_db, 0.3);
+    }
+}
+
+/** A beam as somebody measured it: not the same on both sides, with a shoulder. */
+struct MeasuredBeam {
+    Folder folder;
+    std::vector<double> angle{-12, -8, -6, -5, -4, -3, -2, -1, 0, 1, 2, 2.5, 3, 4, 6, 8, 12};
+    std::vector<double> level{-70, -50, -28, -22, -25, -16, -7, -1.5, 0, -1, -4, -4.5, -8, -15, -26, -40, -70};
+
+    acoustics::BeamLaw law() const {
+        std::ofstream file(folder / "measured.csv");
+        file << "angle_deg,level_db\n";
+        for (size_t i = 0; i < angle.size(); ++i) file << angle[i] << "," << level[i] << "\n";
+        acoustics::BeamLaw law;
+        law.file = folder / "measured.csv";
+        return law;
+    }
+    double at(double degrees) const { return acoustics::Curve{angle, level}.at(degrees); }
+};
+
+TEST(PatternedPingTest, ATargetSweptAcrossAMeasuredBeamShowsItsTable) {
+    const MeasuredBeam beam;
+    SonarConfig config = sonarOf(18, 361, 0.5, 24);
+    config.beam_height_deg = 2;
+    config.quality.rows = 256;
+    config.quality.columns_per_beam = 4;
+    config.beam_pattern.emplace().receive.azimuth = beam.law();
+    const auto snapshot = test::snapshotOf(test::sceneOf({test::disc(10.25f, 0.004f)}, -10));
+    for (const SonarConfig& way : everyWay(config)) {
+        const types::Sonar ping = pingOf(way, snapshot);
+        std::vector<double> energy;
+        for (size_t k = 0; k < ping.beam_count; ++k) {
+            const auto first = ping.bins.begin() + static_cast<long>(k * ping.bin_count);
+            energy.push_back(std::accumulate(first, first + ping.bin_count, 0.0));
+        }
+        double worst = 0, worst_mirrored = 0;
+        for (size_t k = 0; k < energy.size(); ++k) {
+            const double off = -ping.bearings[k].deg(), level = 10 * std::log10(energy[k] / energy[180]);
+            worst = std::max(worst, std::abs(level - beam.at(off)));
+            worst_mirrored = std::max(worst_mirrored, std::abs(level - beam.at(-off)));
+        }
+        EXPECT_LT(worst, 0.1);
+        EXPECT_GT(worst_mirrored, 1);
+        RecordProperty("worst_db", std::to_string(worst));
     }
 }
 

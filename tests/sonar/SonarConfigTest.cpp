@@ -1,7 +1,11 @@
 #include <gmock/gmock.h>
 
 #include "components/framework/ConfigReader.hpp"
+#include "components/sonar/AltimeterTask.hpp"
 #include "components/sonar/HeadConfig.hpp"
+#include "components/sonar/ProfilerTask.hpp"
+#include "components/sonar/SideScanTask.hpp"
+#include "components/sonar/Sonar3dTask.hpp"
 #include "components/sonar/SonarConfig.hpp"
 
 namespace insonify::sonar {
@@ -48,6 +52,58 @@ TEST(SonarConfigTest, EveryKeyOfTheContractIsAccepted) {
         faultsOf<ScanningSonarConfig>("head: {left_deg: 60, right_deg: -60, step_deg: 0.9, speed_deg_per_s: 90}"),
         IsEmpty());
     EXPECT_THAT(faultsOf<ScanningSonarConfig>("{}"), IsEmpty());
+}
+
+TEST(SonarConfigTest, AProfilerAndAnAltimeterRefuseWhatIsNoThresholdOrNoBeam) {
+    EXPECT_THAT(
+        faultsOf<ProfilerConfig>("{beam_count: 64, detection: {threshold_db: -40, gate_db: 6, floor_db: -140}}"),
+        IsEmpty());
+    EXPECT_THAT(faultsOf<ProfilerConfig>("detection: {threshold_db: 5}"),
+                ElementsAre(AllOf(HasSubstr("detection.threshold_db"), HasSubstr("-300"), HasSubstr("0"))));
+    EXPECT_THAT(faultsOf<ProfilerConfig>("detection: {gate_db: 0}"), ElementsAre(HasSubstr("detection.gate_db")));
+    EXPECT_THAT(faultsOf<ProfilerConfig>("range_min: 60"), ElementsAre(HasSubstr("range_min: is 60 m")));
+    EXPECT_THAT(faultsOf<AltimeterConfig>("{beam_width_deg: 120, beam_height_deg: 120, threshold_db: -30}"), IsEmpty());
+    EXPECT_THAT(faultsOf<AltimeterConfig>("beam_width_deg: 121"), ElementsAre(HasSubstr("one beam may have 120")));
+    EXPECT_THAT(faultsOf<AltimeterConfig>("threshold_db: 1"), ElementsAre(HasSubstr("threshold_db")));
+    EXPECT_THAT(faultsOf<AltimeterConfig>("beam_count: 2"), ElementsAre(HasSubstr("beam_count")));
+    EXPECT_THAT(faultsOf<AltimeterConfig>("detection: {gate_db: 3}"), ElementsAre(HasSubstr("detection")));
+}
+
+TEST(SonarConfigTest, ASideScanRefusesBeamsThatItCannotHaveByItsOwnNames) {
+    EXPECT_THAT(faultsOf<SideScanConfig>("{beam_width_deg: 1, beam_height_deg: 60, depression_deg: 20, "
+                                         "quality: {rows: 4, columns_per_beam: 1024}}"),
+                IsEmpty());
+    EXPECT_THAT(faultsOf<SideScanConfig>("beam_height_deg: 130"),
+                ElementsAre("beam_height_deg: is 130 deg; a side-scan's beam may have 120"));
+    EXPECT_THAT(faultsOf<SideScanConfig>("beam_width_deg: 200"), ElementsAre(HasSubstr("beam_width_deg: is 200 deg")));
+    EXPECT_THAT(faultsOf<SideScanConfig>("depression_deg: -5"), ElementsAre(HasSubstr("depression_deg")));
+    EXPECT_THAT(faultsOf<SideScanConfig>("beam_geometry: conical"), ElementsAre(HasSubstr("beam_geometry")));
+    EXPECT_THAT(faultsOf<SideScanConfig>("quality: {columns_per_beam: 5000}"),
+                ElementsAre(HasSubstr("quality.columns_per_beam")));
+    EXPECT_THAT(faultsOf<SideScanConfig>("beam_pattern: {transmit: {elevation: {width_deg: 50}}}"),
+                ElementsAre(HasSubstr("receive.elevation")));
+    EXPECT_THAT(faultsOf<SideScanConfig>("beam_count: 3"), ElementsAre(HasSubstr("beam_count")));
+}
+
+TEST(SonarConfigTest, A3dSonarRefusesGridsThatItCannotHaveByItsOwnNames) {
+    EXPECT_THAT(
+        faultsOf<Sonar3dConfig>("{horizontal: {beam_count: 128, field_of_view_deg: 60}, vertical: {beam_count: 32, "
+                                "field_of_view_deg: 20}, beam_height_deg: 0.6, quality: {rows: 2}}"),
+        IsEmpty());
+    EXPECT_THAT(faultsOf<Sonar3dConfig>("{}"), IsEmpty());
+    EXPECT_THAT(faultsOf<Sonar3dConfig>("{horizontal: {beam_count: 1024}, vertical: {beam_count: 1024}}"),
+                ElementsAre(HasSubstr("horizontal.beam_count: is 1024, with 1024 in the vertical 1048576 beams")));
+    EXPECT_THAT(faultsOf<Sonar3dConfig>("vertical: {beam_count: 0}"), ElementsAre(HasSubstr("vertical.beam_count")));
+    EXPECT_THAT(faultsOf<Sonar3dConfig>("horizontal: {field_of_view_deg: 270}"),
+                ElementsAre(HasSubstr("horizontal.field_of_view_deg")));
+    EXPECT_THAT(faultsOf<Sonar3dConfig>("beam_height_deg: 130"), ElementsAre(HasSubstr("beam_height_deg: is 130 deg")));
+    EXPECT_THAT(faultsOf<Sonar3dConfig>("quality: {target_error: 0.01}"),
+                ElementsAre(HasSubstr("quality: has a target")));
+    EXPECT_THAT(faultsOf<Sonar3dConfig>("beam_geometry: conical"), ElementsAre(HasSubstr("beam_geometry")));
+    EXPECT_THAT(faultsOf<Sonar3dConfig>("beam_pattern: {transmit: {azimuth: {width_deg: 90}}}"),
+                ElementsAre(HasSubstr("beam_pattern.transmit.azimuth")));
+    EXPECT_THAT(faultsOf<Sonar3dConfig>("detection: {threshold_db: 3}"),
+                ElementsAre(HasSubstr("detection.threshold_db")));
 }
 
 TEST(SonarConfigTest, ValuesOutOfBoundsAreRefused) {

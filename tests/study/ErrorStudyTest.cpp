@@ -65,6 +65,21 @@ TEST(ErrorStudyTest, RaysAndPicturesAgreeOnFloors) {
     }
 }
 
+TEST(ErrorStudyTest, APatternInElevationIsHeldToItsClosedFormByEveryMethod) {
+    const auto maker = std::ranges::find(closedFormScenes(), std::string("pitched_bottom_pattern"), &SceneMaker::name);
+    ASSERT_NE(maker, closedFormScenes().end());
+    StudyScene scene = maker->make();
+    scene.config.beam_count = 4;
+    scene.config.field_of_view_deg = 8;
+    scene.config.bin_count = 250;
+    const ErrorResult result = studyError({scene}, quick(1));
+    for (const Method method : {Method::Footprint, Method::Embree})
+        EXPECT_LT(ladder(result, scene.name, method).back().metrics.rel_l2, 0.01) << nameOf(method);
+    scene.config.beam_pattern->receive.elevation.reset();
+    const ErrorResult one_way = studyError({scene}, quick(1));
+    EXPECT_GT(ladder(one_way, scene.name, Method::Footprint).back().metrics.rel_l2, 0.1) << "a wrong form passes";
+}
+
 TEST(ErrorStudyTest, ASceneThatIsSilentIsRefused) {
     StudyScene scene = smallRoughFloor();
     scene.snapshot.sonar.position.z = 1000;

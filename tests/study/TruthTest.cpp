@@ -34,6 +34,20 @@ TEST(TruthTest, APitchedBottomFollowsTheThinBeamForm) {
             << r;
 }
 
+TEST(TruthTest, APatternInElevationWeighsThePitchedThinBeamForm) {
+    const double pitch = radians(30), half = radians(20), delta = 1e-4;
+    const glm::dvec3 down(std::sin(pitch), 0, -std::cos(pitch));
+    const Pattern pattern = [](double elevation) { return std::exp(-20 * elevation * elevation - elevation); };
+    const Truth truth = planeTruth(down, 5, {}, pattern);
+    for (double r = 5 / std::sin(pitch + half) + 0.1; r < 20; r += 0.1) {
+        const double expected = test::integral(r, r + 0.1, [&](double at) {
+            const double p = std::asin(5 / at);
+            return delta * 25 * std::pow(at, -5) * std::cos(pitch - p) / std::cos(p) * pattern(pitch - p);
+        });
+        EXPECT_NEAR(truth({-delta / 2, delta / 2, half}, r, r + 0.1), expected, 1e-4 * expected) << r;
+    }
+}
+
 TEST(TruthTest, AWallFollowsTheThinBeamForm) {
     const double half = radians(20), delta = 1e-4;
     const test::Form form = test::thinBeamOnWall(10, half, delta);

@@ -1,0 +1,36 @@
+#pragma once
+#include <cstdint>
+#include <filesystem>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace insonify::device {
+
+/** A ping as a Blueprint Subsea Oculus sends it: a "simple ping result" of version 1 or 2. */
+struct OculusPing {
+    uint32_t number = 0;
+    double frequency_hz = 0;
+    double speed_of_sound = 0;        ///< As the device took it [m/s].
+    double range_resolution = 0;      ///< Slant range of a bin [m].
+    double gamma = 1;                 ///< Of the codes: largest code * amplitude^gamma [1].
+    int bits = 8;                     ///< Of a code: 8, 16, 24 or 32.
+    std::vector<double> bearings;     ///< Middle of each beam, 0 ahead, positive to port [rad].
+    uint32_t bin_count = 0;           ///< Per beam, nearest first.
+    std::vector<uint32_t> codes;      ///< Beam-first: of beam b in bin k at b * bin_count + k.
+    std::vector<uint32_t> row_gains;  ///< Of each bin, where the device sends them; else empty.
+
+    uint32_t beamCount() const { return static_cast<uint32_t>(bearings.size()); }
+    double largestCode() const { return static_cast<double>((uint64_t{1} << bits) - 1); }
+};
+
+/** Every ping in these bytes, in order: network messages, one after the other, with anything between them, as in
+ * captures and in the maker's own log files. Other messages are passed over. What begins as a ping and contradicts
+ * itself (an image of another size than bins and beams make, bytes that are missing) is no ping.
+ *  @param problems where not null takes one line for each of these, up to 100 */
+std::vector<OculusPing> oculusPings(std::span<const uint8_t> bytes, std::vector<std::string>* problems = nullptr);
+
+/** Those of a file. Throws types::ConfigError where it cannot be read or holds none, with the reason. */
+std::vector<OculusPing> readOculusPings(const std::filesystem::path& file);
+
+}  // namespace insonify::device

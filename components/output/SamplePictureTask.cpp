@@ -1,0 +1,48 @@
+#include "components/output/SamplePictureTask.hpp"
+
+#include <chrono>
+
+namespace insonify::output {
+
+template <class Picture>
+bool SamplePictureTask<Picture>::configureHook() {
+    picture_ = std::make_unique<Picture>(config->width, config->colour_map);
+    return true;
+}
+
+template <class Picture>
+bool SamplePictureTask<Picture>::startHook() {
+    samples_ = 0;
+    picture_->clear();
+    if (config->file || config->video) writer_ = std::make_unique<PictureWriter>(PictureFiles(*config, outputPath("")));
+    return true;
+}
+
+template <class Picture>
+void SamplePictureTask<Picture>::updateHook() {
+    for (Sample sample; input.readNew(sample);) {
+        picture_->add(sample);
+        if (++samples_ % config->every == 0 && (image.connected() || writer_)) show();
+    }
+}
+
+template <class Picture>
+void SamplePictureTask<Picture>::show() {
+    const auto begin = std::chrono::steady_clock::now();
+    const auto shown = pool_.take();
+    picture_->paint(*shown);
+    recordStage("paint", std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count());
+    pool_.stock(*shown);
+    image.write(shown);
+    if (writer_) writer_->write(shown);
+}
+
+template <class Picture>
+void SamplePictureTask<Picture>::stopHook() {
+    if (const auto writer = std::move(writer_)) writer->close();
+}
+
+template class SamplePictureTask<SoundingMap>;
+template class SamplePictureTask<RangeImage>;
+
+}  // namespace insonify::output

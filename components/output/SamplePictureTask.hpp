@@ -1,0 +1,62 @@
+#pragma once
+#include <memory>
+
+#include "components/framework/Port.hpp"
+#include "components/framework/Properties.hpp"
+#include "components/framework/SamplePool.hpp"
+#include "components/framework/TaskContext.hpp"
+#include "components/output/PictureConfig.hpp"
+#include "components/output/PictureWriter.hpp"
+#include "components/output/RangeImage.hpp"
+#include "components/output/SoundingMap.hpp"
+
+namespace insonify::output {
+
+struct SamplePictureConfig : RecordingConfig {
+    uint32_t every = 1;
+    uint32_t width = 1024;
+    ColourMap colour_map = ColourMap::Turbo;
+
+    template <class Self, class V>
+    static void describe(Self& self, V& visit) {
+        using types::Field;
+        RecordingConfig::describe(self, visit);
+        visit(Field{"every", "1", "one picture for so many samples, after so many", 1, 1e6}, self.every);
+        visit(Field{"width", "1", "of the picture in pixels; an odd one is made even; the height follows", 256, 8192},
+              self.width);
+        visit(Field{"colour_map", "", "colours from the deepest to the highest, or from the farthest to the nearest"},
+              self.colour_map);
+    }
+};
+
+/** Shows samples that are no pings, as Picture does.
+ *
+ *  In: a port named by Picture::port. Out: `image` and files, as PictureTask has them, the first picture after `every`
+ *  samples. */
+template <class Picture>
+class SamplePictureTask final : public framework::TaskContext {
+public:
+    using TaskContext::TaskContext;
+    using Sample = typename Picture::Sample;
+
+    framework::Properties<SamplePictureConfig> config{this};
+    framework::InputPort<Sample> input{this, Picture::port, "what is shown"};
+    framework::OutputPort<types::ImagePtr> image{this, "image", "picture, BGR with 8 bits a channel"};
+
+private:
+    bool configureHook() override;
+    bool startHook() override;
+    void updateHook() override;
+    void stopHook() override;
+    void show();
+
+    std::unique_ptr<Picture> picture_;
+    std::unique_ptr<PictureWriter> writer_;
+    framework::SamplePool<types::Image> pool_;
+    uint64_t samples_ = 0;
+};
+
+using SoundingMapTask = SamplePictureTask<SoundingMap>;
+using RangeImageTask = SamplePictureTask<RangeImage>;
+
+}  // namespace insonify::output

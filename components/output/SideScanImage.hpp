@@ -1,0 +1,57 @@
+#pragma once
+#include <optional>
+
+#include "components/output/PictureConfig.hpp"
+#include "components/output/WaterfallImage.hpp"
+#include "types/Range.hpp"
+
+namespace insonify::output {
+
+/** What turns slant range into range along a flat bottom. */
+struct GroundRangeConfig {
+    std::optional<double> altitude;
+    double threshold_db = -20;
+
+    template <class Self, class V>
+    static void describe(Self& self, V& visit) {
+        using types::Field;
+        visit(Field{"altitude", "m", "height above the bottom; absent: that of port altitude, else the first return", 0,
+                    1e5},
+              self.altitude);
+        visit(Field{"threshold_db", "dB", "what is the first return, relative to the ping's strongest bin", -300, 0},
+              self.threshold_db);
+    }
+};
+
+struct SideScanPictureConfig : PictureConfig {
+    std::optional<GroundRangeConfig> ground_range;
+
+    template <class Self, class V>
+    static void describe(Self& self, V& visit) {
+        PictureConfig::describe(self, visit);
+        visit(types::Field{"ground_range", "",
+                           "rows in range along a flat bottom, sqrt(r^2 - h^2), without the water column; absent: in "
+                           "slant range"},
+              self.ground_range);
+    }
+};
+
+/** Lines of a side-scan: every ping is a row, the newest on top, port to the left and starboard to the right of the
+ *  middle. The side of a beam is that of its bearing; of several on one side the first counts. */
+class SideScanImage final : public WaterfallImage {
+public:
+    explicit SideScanImage(const SideScanPictureConfig& config);
+
+    /** Height above the bottom from now on, as measured [m]; not finite: unknown. */
+    void setAltitude(double altitude) { altitude_ = altitude; }
+
+private:
+    void fillRow(const types::Sonar& ping, cv::Mat& row) override;
+    void addRanges(Overlay& overlay, double range) const override;
+    double altitudeOf(const types::Sonar& ping) const;
+
+    std::optional<GroundRangeConfig> ground_range_;
+    double altitude_ = types::Range::none;
+};
+
+}  // namespace insonify::output

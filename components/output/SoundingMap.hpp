@@ -1,0 +1,54 @@
+#pragma once
+#include <opencv2/core.hpp>
+#include <vector>
+
+#include "components/output/Colours.hpp"
+#include "components/output/Overlay.hpp"
+#include "types/Image.hpp"
+#include "types/PointCloud.hpp"
+
+namespace insonify::output {
+
+/** Chart of soundings from above: north up, west to the left, coloured by height, the highest brightest.
+ *
+ *  Shows the points of the last `history` clouds, and fits itself to them. */
+class SoundingMap {
+public:
+    using Sample = types::PointCloudPtr;
+    static constexpr const char* port = "soundings";
+
+    SoundingMap(uint32_t width, ColourMap colour_map);
+
+    /** Takes note of the points of a ping; those that are not finite are none. */
+    void add(const types::PointCloudPtr& cloud);
+    /** @param picture becomes a BGR image, 8 bits a channel, with the newest cloud's time. Its memory is used again. */
+    void paint(types::Image& picture);
+    void clear() { clouds_.clear(), next_ = 0; }
+
+    static constexpr size_t history = 2000;  ///< Clouds that are shown.
+
+    /** Pixel of a place in the last picture. */
+    cv::Point pixel(double x, double y) const;
+
+private:
+    /** The box that holds all points [m]. */
+    struct Bounds {
+        glm::dvec3 low{0}, high{0};
+        size_t points = 0;
+    };
+    Bounds bounds() const;
+    void fit(const Bounds& bounds);
+    void drawPoints(cv::Mat& canvas, const Bounds& bounds) const;
+    void drawLabels(cv::Mat& canvas, const Bounds& bounds) const;
+
+    int width_;
+    Palette palette_;
+    std::vector<std::vector<glm::dvec3>> clouds_;  ///< A ring, whose memory is used again.
+    size_t next_ = 0;                              ///< Place of the next in it.
+    types::Time time_;                             ///< Of the newest.
+    cv::Rect chart_;                               ///< Where points are drawn.
+    cv::Point2d centre_;                           ///< x north, y west of the middle of the chart [m].
+    double pixels_per_m_ = 1;
+};
+
+}  // namespace insonify::output

@@ -1,0 +1,55 @@
+#include "components/output/XtfTask.hpp"
+
+#include <cmath>
+
+namespace insonify::output {
+
+void XtfConfig::check(types::Diagnostics& diagnostics) const {
+    if (!file.ends_with(".xtf")) diagnostics.push_back({"file", "is " + file + "; must end in .xtf"});
+}
+
+bool XtfTask::startHook() {
+    format_ = {config->samples, config->frequency_khz, config->file};
+    next_ = {};
+    has_pose_ = false;
+    without_pose_ = 0;
+    last_ = {};
+    aligner_.clear(config->timeout);
+    file_.emplace(outputPath(config->file));
+    return true;
+}
+
+void XtfTask::updateHook() {
+    if (types::Range measured; altitude.readNewest(measured) == framework::FlowStatus::NewData)
+        next_.altitude = measured.isKnown() ? measured.range : 0;
+    aligner_.update();
+}
+
+void XtfTask::write(const types::Sonar& line) {
+    bytes_.clear();
+    if (next_.number == 0) bytes_ = xtfHeader(format_, line);
+    if (!has_pose_) {
+        next_.sonar.position.x = types::Pose::unknown;
+        ++without_pose_;
+    }
+    next_.since_last = last_.isNull() ? 0 : (line.time - last_).seconds();
+    last_ = line.time;
+    appendXtfPing(format_, line, next_, bytes_);
+    ++next_.number;
+    file_->append(bytes_);
+}
+
+void XtfTask::stopHook() {
+    aligner_.flush();
+    if (file_) file_->close();
+    file_.reset();
+}
+
+std::vector<std::string> XtfTask::notices() const {
+    std::vector<std::string> notices = aligner_.notices();
+    if (without_pose_ > 0)
+        notices.push_back("Warning: " + std::to_string(without_pose_) + " pings of " + config->file + " have no pose");
+    return notices;
+}
+
+}  // namespace insonify::output

@@ -1,0 +1,72 @@
+#pragma once
+#include <optional>
+
+#include "components/framework/Port.hpp"
+#include "components/framework/Properties.hpp"
+#include "components/framework/StreamAligner.hpp"
+#include "components/framework/TaskContext.hpp"
+#include "components/output/ByteFile.hpp"
+#include "components/output/Xtf.hpp"
+#include "types/Range.hpp"
+
+namespace insonify::output {
+
+struct XtfConfig {
+    std::string file = "sidescan.xtf";
+    XtfSamples samples = XtfSamples::Uint16;
+    double frequency_khz = 0;
+    double timeout = 1;
+
+    template <class Self, class V>
+    static void describe(Self& self, V& visit) {
+        using types::Field;
+        visit(Field{"file", "", "name, relative to the output folder"}, self.file);
+        visit(Field{"samples", "",
+                    "uint16: whole numbers from 0 to 65535, as a receiver's codes of 16 bits are; float32: the bins"},
+              self.samples);
+        visit(Field{"frequency_khz", "kHz", "of the sonar; 0: unknown", 0, 65535}, self.frequency_khz);
+        visit(Field{"timeout", "s", "that a ping waits for its pose, in the samples' time", 0, 1e6}, self.timeout);
+    }
+    void check(types::Diagnostics& diagnostics) const;
+};
+
+/** Writes the lines of a side-scan sonar as an XTF file: see Xtf.hpp.
+ *
+ *  In: `ping`; `pose`, the sonar in the world, of which the one at the ping's time counts, or the last before it;
+ *  `altitude`, of an altimeter, the newest. A ping that comes before any pose has none in the file, and is told of. */
+class XtfTask final : public framework::TaskContext {
+public:
+    using TaskContext::TaskContext;
+
+    framework::Properties<XtfConfig> config{this};
+    framework::InputPort<types::Pose> pose{this, "pose", "the sonar in the world, as sonars tell it"};
+    framework::InputPort<types::SonarPtr> ping{this, "ping", "lines to port and starboard"};
+    framework::InputPort<types::Range> altitude{this, "altitude", "height above the bottom, the newest counts",
+                                                framework::Need::Optional};
+
+    std::vector<std::string> notices() const override;
+
+private:
+    bool startHook() override;
+    void updateHook() override;
+    void stopHook() override;
+    void write(const types::Sonar& line);
+
+    XtfFormat format_;
+    XtfPing next_;
+    bool has_pose_ = false;
+    uint64_t without_pose_ = 0;
+    types::Time last_;
+    std::optional<ByteFile> file_;
+    std::vector<char> bytes_;
+
+    framework::StreamAligner aligner_;
+    framework::AlignedPort<types::Pose> poses_{aligner_, pose, [this](const types::Pose& sonar) {
+                                                   next_.sonar = sonar;
+                                                   has_pose_ = true;
+                                               }};
+    framework::AlignedPort<types::SonarPtr> pings_{aligner_, ping,
+                                                   [this](const types::SonarPtr& line) { write(*line); }};
+};
+
+}  // namespace insonify::output

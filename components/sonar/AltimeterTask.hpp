@@ -1,0 +1,47 @@
+#pragma once
+#include "components/framework/Properties.hpp"
+#include "components/sonar/Detection.hpp"
+#include "components/sonar/PingTask.hpp"
+#include "types/Range.hpp"
+
+namespace insonify::sonar {
+
+/** One beam, and what its first return is. */
+struct AltimeterConfig {
+    SonarConfig sonar;
+    DetectionConfig detection;
+
+    AltimeterConfig() {
+        sonar.beam_width_deg = sonar.beam_height_deg = 25;
+        detection.threshold_db = -20;
+    }
+    /** The sonar of one beam, straight ahead. */
+    SonarConfig beam() const;
+
+    template <class Self, class V>
+    static void describe(Self& self, V& visit) {
+        SonarConfig::describeBeam(self.sonar, visit);
+        DetectionConfig::describeThreshold(self.detection, visit);
+    }
+    void check(types::Diagnostics& diagnostics) const { beam().checkBeam(diagnostics); }
+};
+
+/** An altimeter, or an echo sounder: one beam, and how far its first return is.
+ *
+ *  The beam looks along x of the sonar frame, `beam_width_deg` wide about z and `beam_height_deg` about y: a mount with
+ *  `pitch_deg: 90` looks straight down. Out, beside the ping: `range`, that of the first bin that reaches the
+ * threshold, at its middle, in the noiseless ping; NaN where none does. */
+class AltimeterTask final : public PingTask {
+public:
+    using PingTask::PingTask;
+
+    framework::Properties<AltimeterConfig> config{this};
+    framework::OutputPort<types::Range> range{this, "range", "to the first return, at the time of the ping"};
+
+    SonarConfig sonarConfig() const override { return config->beam(); }
+
+protected:
+    void tellMore(const types::Sonar& sample, const types::Pose& sonar) override;
+};
+
+}  // namespace insonify::sonar

@@ -1,0 +1,60 @@
+#include "components/sonar/TruthGrid.hpp"
+
+#include <algorithm>
+
+namespace insonify::sonar {
+namespace {
+
+/** Bearings half way between two beams, or as far beyond the outermost ones; of a single beam, its share of bearings.
+ */
+std::vector<double> edgesOf(const std::vector<Beam>& beams) {
+    if (beams.size() == 1) return {beams[0].low, beams[0].high};
+    std::vector<double> edges{beams[0].centre - (beams[1].centre - beams[0].centre) / 2};
+    for (size_t k = 1; k < beams.size(); ++k) edges.push_back((beams[k - 1].centre + beams[k].centre) / 2);
+    edges.push_back(2 * beams.back().centre - edges.back());
+    return edges;
+}
+
+}  // namespace
+
+std::vector<int32_t> beamsOfCells(const RenderPlan& plan) {
+    if (!plan.has(Pass::Beamform)) return {};
+    const std::vector<double> edges = edgesOf(plan.beams);
+    std::vector<int32_t> beams;
+    for (const Beam& cell : plan.cells) {
+        const auto above = std::upper_bound(edges.begin(), edges.end(), cell.centre);
+        const bool outside = above == edges.begin() || above == edges.end();
+        beams.push_back(outside ? -1 : static_cast<int32_t>(above - edges.begin()) - 1);
+    }
+    return beams;
+}
+
+TruthGrid::TruthGrid(const RenderPlan& plan, bool whole)
+    : beams_of_cells_(beamsOfCells(plan)), beam_count_(plan.beams.size()) {
+    if (whole && beams_of_cells_.empty()) return;
+    gathered_.emplace(beam_count_, static_cast<size_t>(plan.grid.bin_count));
+    alone_.resize(beam_count_);
+}
+
+void TruthGrid::begin() {
+    if (gathered_) gathered_->clear();
+}
+
+void TruthGrid::take(size_t cell, const TruthTable& echoes, size_t of, types::SonarTruth& truth) {
+    const int32_t row = beams_of_cells_.empty() ? static_cast<int32_t>(cell) : beams_of_cells_[cell];
+    if (row < 0) return;
+    const auto beam = static_cast<size_t>(row);
+    if (!gathered_) return echoes.tell(of, beam, truth);
+    const std::lock_guard one_at_a_time(alone_[beam]);
+    gathered_->merge(beam, echoes, of);
+}
+
+void TruthGrid::finish(types::SonarTruth& truth, ThreadPool& threads) const {
+    if (!gathered_) return;
+    threads.run([&](int part, int parts) {
+        for (auto beam = static_cast<size_t>(part); beam < beam_count_; beam += static_cast<size_t>(parts))
+            gathered_->tell(beam, beam, truth);
+    });
+}
+
+}  // namespace insonify::sonar

@@ -1,0 +1,44 @@
+#include "components/study/CodedPing.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace insonify::study {
+
+double CodedPing::levelDb(float code) const {
+    const double least = 0.5 / (std::pow(2, bits) - 1), share = std::max(least, static_cast<double>(code));
+    if (law.law == receiver::CodeLaw::Log) return (share - 1) * law.dynamic_range_db;
+    return (law.law == receiver::CodeLaw::Sqrt ? 20 : 10) * std::log10(share) / law.gamma;
+}
+
+CodedPing codedPing(const device::OculusPing& ping, std::string name) {
+    CodedPing coded{.name = std::move(name),
+                    .beam_count = ping.beamCount(),
+                    .bin_count = ping.bin_count,
+                    .bin_width = ping.range_resolution,
+                    .bearings = ping.bearings,
+                    .codes = {},
+                    .bits = std::min(ping.bits, 16),
+                    .law = {.law = receiver::CodeLaw::Sqrt, .gamma = ping.gamma}};
+    for (size_t i = 0; i < ping.codes.size(); ++i) {
+        const double gain = ping.row_gains.empty() ? 1 : std::max(1u, ping.row_gains[i % ping.bin_count]);
+        coded.codes.push_back(static_cast<float>(ping.codes[i] / std::sqrt(gain) / ping.largestCode()));
+    }
+    return coded;
+}
+
+CodedPing codedPing(const types::Sonar& ping, const receiver::CodeConfig& code, std::string name) {
+    CodedPing coded{.name = std::move(name),
+                    .beam_count = ping.beam_count,
+                    .bin_count = ping.bin_count,
+                    .bin_width = ping.binStart(1),
+                    .bearings = {},
+                    .codes = ping.bins,
+                    .bits = code.bits,
+                    .law = code};
+    for (const types::Angle& bearing : ping.bearings) coded.bearings.push_back(bearing.rad);
+    for (float& each : coded.codes) each /= static_cast<float>((1 << code.bits) - 1);
+    return coded;
+}
+
+}  // namespace insonify::study

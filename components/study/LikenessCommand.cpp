@@ -1,0 +1,132 @@
+// insonify study likeness [DEPLOYMENT] --real FILES
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <memory>
+
+#include "components/command/Json.hpp"
+#include "components/command/OutputFolder.hpp"
+#include "components/study/LikenessReport.hpp"
+#include "components/study/StudyCommand.hpp"
+#include "types/ConfigError.hpp"
+
+namespace insonify::study {
+namespace {
+
+namespace fs = std::filesystem;
+using command::Json;
+
+struct Options {
+    std::string deployment, out;
+    std::vector<std::string> real;
+    uint64_t ping = 1;
+};
+
+/** The files that are named, and those in the folders that are. */
+std::vector<fs::path> filesOf(const std::vector<std::string>& names) {
+    std::vector<fs::path> files;
+    for (const fs::path name : names) {
+        if (!fs::is_directory(name)) {
+            files.push_back(name);
+            continue;
+        }
+        for (const auto& entry : fs::directory_iterator(name))
+            if (entry.is_regular_file()) files.push_back(entry.path());
+    }
+    std::ranges::sort(files);
+    return files;
+}
+
+std::vector<CodedPing> recordedPings(const std::vector<std::string>& names) {
+    std::vector<CodedPing> pings;
+    for (const fs::path& file : filesOf(names))
+        for (const device::OculusPing& ping : device::readOculusPings(file)) {
+            CodedPing coded = codedPing(ping, fmt::format("recorded_{}", ping.number));
+            const auto isSame = [&](const CodedPing& other) { return other.name == coded.name; };
+            if (std::ranges::none_of(pings, isSame)) pings.push_back(std::move(coded));
+        }
+    if (pings.empty()) throw types::ConfigError(names.front(), "--real", "is a folder without a file");
+    return pings;
+}
+
+Json toJson(const LikenessRow& row) {
+    Json json{{"name", row.name}};
+    for (const LikenessFigure& figure : figuresOf(row)) json[figure.name] = figure.value;
+    json["histogram"] = row.looks.histogram;
+    json["mean_code_by_range"] = row.looks.mean_code;
+    json["level_db_by_range"] = row.looks.level_db;
+    return json;
+}
+
+Json toJson(const LikenessResult& result) {
+    Json json{{"pings", Json::array()}, {"verdicts", Json::array()}};
+    for (const LikenessRow& row : result.rows) json["pings"].push_back(toJson(row));
+    const LikenessRow* simulated = result.row("simulated");
+    for (const Claim& claim : simulated ? claims(simulated->apart, result.recorded) : std::vector<Claim>())
+        json["verdicts"].push_back({{"claim", claim.text},
+                                    {"measured", claim.measured},
+                                    {"bound", claim.bound},
+                                    {"verdict", claim.verdict()}});
+    return json;
+}
+
+void printTable(const LikenessResult& result) {
+    fmt::print("{:<18}", "");
+    for (const LikenessRow& row : result.rows) fmt::print(" {:>15}", row.name);
+    const auto first = figuresOf(result.rows.front());
+    for (size_t i = 0; i < first.size(); ++i) {
+        fmt::print("\n{:<18}", first[i].name);
+        for (const LikenessRow& row : result.rows) fmt::print(" {:>15.4g}", figuresOf(row)[i].value);
+    }
+    fmt::print("\n");
+}
+
+/** Whether none fails. */
+bool printClaims(const LikenessResult& result) {
+    const LikenessRow* simulated = result.row("simulated");
+    if (!simulated) return true;
+    const std::vector<Claim> all = claims(simulated->apart, result.recorded),
+                             uniform = claims(result.row("uniform")->apart, result.recorded),
+                             cosine = claims(result.row("cosine")->apart, result.recorded);
+    for (size_t i = 0; i < all.size(); ++i)
+        fmt::print("{}  {}: {:.3g}, at most {:.3g} (a uniform picture {:.3g}, a cosine {:.3g})\n", all[i].verdict(),
+                   all[i].text, all[i].measured, all[i].bound, uniform[i].measured, cosine[i].measured);
+    if (std::ranges::any_of(all, [](const Claim& claim) { return !claim.holds() && !claim.fails(); }))
+        fmt::print("open: the recordings show no arc to compare with\n");
+    return std::ranges::none_of(all, &Claim::fails);
+}
+
+int runStudy(const Options& options, const FindPing& pingAt) {
+    const std::vector<CodedPing> recorded = recordedPings(options.real);
+    std::optional<CodedPing> simulated;
+    if (!options.deployment.empty()) {
+        const PingAt found = pingAt(options.deployment, options.ping);
+        simulated = codedPing(found.ping, found.code, "simulated");
+    }
+    const LikenessResult result = studyLikeness(recorded, simulated ? &*simulated : nullptr);
+    command::OutputFolder folder(options.out, "study_likeness");
+    folder.keep();
+    writeReport(result, folder.path());
+    command::write(toJson(result), (folder.path() / "likeness.json").string());
+    printTable(result);
+    const bool all_hold = printClaims(result);
+    fmt::print("report in {}\n", folder.path().string());
+    return all_hold ? 0 : 1;
+}
+
+}  // namespace
+
+void addLikenessStudy(CLI::App& study, command::Action& action, const FindPing& pingAt) {
+    const auto options = std::make_shared<Options>();
+    CLI::App* command = study.add_subcommand("likeness", "How like recordings of a real sonar simulated pings look");
+    command->add_option("DEPLOYMENT", options->deployment,
+                        "a YAML file whose receiver gives out codes; absent: what the recordings look like");
+    command->add_option("--real", options->real, "recordings of an Oculus: files, or folders of them")->required();
+    command->add_option("--out", options->out, "folder of the report");
+    command->add_option("--ping", options->ping, "which ping of the deployment")->check(CLI::PositiveNumber);
+    command->callback(
+        [options, pingAt, &action] { action = [options, pingAt] { return runStudy(*options, pingAt); }; });
+}
+
+}  // namespace insonify::study

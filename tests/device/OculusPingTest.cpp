@@ -1,0 +1,109 @@
+#include <gmock/gmock.h>
+
+#include "components/device/OculusPing.hpp"
+#include "tests/support/Folder.hpp"
+#include "tests/support/OculusMessage.hpp"
+#include "types/Angle.hpp"
+#include "types/ConfigError.hpp"
+
+namespace insonify::device {
+namespace {
+
+using test::Bytes;
+using test::put;
+using Sent = test::OculusMessage;
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+
+TEST(OculusPingTest, APingIsReadInEveryVersionAndWidth) {
+    for (const uint16_t version : {0, 1, 2})
+        for (const bool gains : {false, true}) {
+            const Bytes bytes = Sent{.version = version, .gains = gains}.bytes();
+            const auto pings = oculusPings(bytes);
+            ASSERT_EQ(pings.size(), 1u) << version;
+            const OculusPing& ping = pings[0];
+            EXPECT_EQ(ping.number, 77u);
+            EXPECT_EQ(ping.frequency_hz, 2.1e6);
+            EXPECT_EQ(ping.speed_of_sound, 1490.5);
+            EXPECT_EQ(ping.range_resolution, 0.25);
+            EXPECT_NEAR(ping.gamma, 0.5, 0.003);
+            EXPECT_EQ(ping.beamCount(), 3u);
+            EXPECT_EQ(ping.bin_count, 2u);
+            EXPECT_NEAR(ping.bearings[0], types::radians(30), 1e-12) << "positive to port";
+            EXPECT_THAT(ping.codes, ElementsAre(0, 1, 10, 11, 20, 21)) << "beam-first";
+            EXPECT_EQ(ping.row_gains.size(), gains ? 2u : 0u);
+        }
+    const OculusPing wide = oculusPings(Sent{.code_bytes = 2}.bytes()).at(0);
+    EXPECT_THAT(wide.codes, ElementsAre(256, 257, 266, 267, 276, 277));
+    EXPECT_EQ(wide.largestCode(), 65535);
+}
+
+TEST(OculusPingTest, PingsStandAmongOtherMessages) {
+    Bytes all = {'S', 'O', 0, 0, 'S'};
+    for (int i = 0; i < 3; ++i) {
+        Bytes other(40);
+        put<uint16_t>(other, 0, 0x4F53);
+        put<uint16_t>(other, 6, 0xFF);
+        for (const Bytes& part : {other, Sent{}.bytes()}) all.insert(all.end(), part.begin(), part.end());
+    }
+    EXPECT_EQ(oculusPings(all).size(), 3u);
+}
+
+TEST(OculusPingTest, WhatContradictsItselfIsNoPing) {
+    std::vector<std::string> problems;
+    Bytes bytes = Sent{}.bytes();
+    put<uint32_t>(bytes, 114, 7);
+    EXPECT_THAT(oculusPings(bytes, &problems), IsEmpty());
+    EXPECT_THAT(problems, ElementsAre(HasSubstr("an image of 7 bytes where bins and beams make 6")));
+    for (size_t length = 0; length < Sent{}.bytes().size(); ++length) {
+        const Bytes whole = Sent{}.bytes();
+        EXPECT_THAT(oculusPings(std::span(whole).first(length)), IsEmpty()) << length;
+    }
+    for (size_t at = 16; at < 128; ++at)  // whatever stands there, no byte beyond the message is read
+        for (const uint8_t value : {0, 1, 127, 255}) {
+            Bytes changed = Sent{}.bytes();
+            changed[at] = value;
+            EXPECT_LE(oculusPings(changed).size(), 1u);
+        }
+}
+
+TEST(OculusPingTest, AFileWithoutAPingIsRefusedWithTheReason) {
+    const Folder folder;
+    const auto messageOf = [&](const Bytes& bytes) -> std::string {
+        std::ofstream(folder / "a.raw", std::ios::binary)
+            .write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
+        try {
+            readOculusPings(folder / "a.raw");
+        } catch (const types::ConfigError& error) {
+            return error.diagnostics()[0].text();
+        }
+        return "";
+    };
+    EXPECT_THAT(messageOf({1, 2, 3}), HasSubstr("a.raw: holds no ping of an Oculus"));
+    Bytes cut = Sent{}.bytes();
+    cut.resize(100);
+    EXPECT_THAT(messageOf(cut), HasSubstr("holds no whole ping: the ping at byte 0 is cut off after 100 bytes"));
+    EXPECT_EQ(messageOf(Sent{}.bytes()), "");
+    EXPECT_THROW(readOculusPings(folder / "missing.raw"), types::ConfigError);
+    EXPECT_THROW(readOculusPings(folder / "."), types::ConfigError);
+}
+
+TEST(OculusPingTest, TheRecordingOfAnM1200dIsWhatItIsKnownToBe) {
+    const std::filesystem::path file = INSONIFY_SHARED_DATA "/sonar/oculus/three_pings_8bit.raw";
+    if (!std::filesystem::exists(file)) GTEST_SKIP() << file << " is not there: no recording of a device is tested";
+    const auto pings = readOculusPings(file);
+    ASSERT_EQ(pings.size(), 3u);
+    for (const OculusPing& ping : pings) {
+        EXPECT_EQ(ping.beamCount(), 256u);
+        EXPECT_EQ(ping.bin_count, 703u);
+        EXPECT_NEAR(ping.range_resolution, 2.842e-3, 1e-6);
+        EXPECT_NEAR(ping.frequency_hz, 2.0989e6, 100);
+        EXPECT_NEAR(types::degrees(ping.bearings.front()), 30, 1e-9);
+        EXPECT_NEAR(types::degrees(ping.bearings.back()), -30, 1e-9);
+    }
+    EXPECT_EQ(pings[2].number, pings[0].number + 2);
+}
+
+}  // namespace
+}  // namespace insonify::device

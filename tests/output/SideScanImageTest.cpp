@@ -1,0 +1,111 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "components/output/SideScanImageTask.hpp"
+#include "tests/output/Pixels.hpp"
+#include "tests/support/Ports.hpp"
+
+namespace insonify::output {
+namespace {
+
+/** A line of 50 m with single echoes to starboard and to port, in bins of half a metre. */
+types::Sonar lineWith(uint32_t starboard, uint32_t port) {
+    types::Sonar ping = test::withEcho(test::withEcho(test::emptyPing(3, 2), 0, starboard), 1, port);
+    ping.bearings = {types::Angle::fromDeg(-90), types::Angle::fromDeg(90)};
+    return ping;
+}
+
+SideScanPictureConfig display() {
+    SideScanPictureConfig config;
+    config.width = 600;
+    config.reference_db = 0;
+    config.colour_map = ColourMap::Gray;
+    return config;
+}
+
+int levelAt(const types::Image& picture, cv::Point at) { return test::pixelsOf(picture).at<cv::Vec3b>(at)[1]; }
+
+/** Of the newest row, where range lies; positive to starboard [m]. */
+cv::Point at(const SideScanImage& image, double range) {
+    const cv::Rect water = image.water();
+    return {water.x + static_cast<int>(std::floor(water.width * (0.5 + range / 100))), water.y};
+}
+
+TEST(SideScanImageTest, PortLiesToTheLeftAndStarboardToTheRightOfTheMiddle) {
+    SideScanImage image(display());
+    types::Image picture;
+    const types::Sonar ping = lineWith(20, 60);
+    const double bin = ping.binStart(1);
+    image.paint(ping, picture);
+    EXPECT_GT(levelAt(picture, at(image, 20.5 * bin)), 200);
+    EXPECT_GT(levelAt(picture, at(image, -60.5 * bin)), 200);
+    EXPECT_EQ(levelAt(picture, at(image, -20.5 * bin)), 0);
+    EXPECT_EQ(levelAt(picture, at(image, 60.5 * bin)), 0);
+}
+
+TEST(SideScanImageTest, RowsAlongTheGroundHaveNoWaterColumn) {
+    SideScanPictureConfig config = display();
+    config.ground_range.emplace();
+    config.ground_range->altitude = 15;
+    SideScanImage image(config);
+    types::Image picture;
+    const types::Sonar ping = lineWith(40, 80);
+    const double bin = ping.binStart(1);
+    image.paint(ping, picture);
+    EXPECT_GT(levelAt(picture, at(image, std::sqrt(std::pow(40.5 * bin, 2) - 225))), 200);
+    EXPECT_GT(levelAt(picture, at(image, -std::sqrt(std::pow(80.5 * bin, 2) - 225))), 200);
+    EXPECT_EQ(levelAt(picture, at(image, 40.5 * bin)), 0) << "its slant range";
+}
+
+TEST(SideScanImageTest, TheHeightIsThatOfTheFirstReturnOrAsMeasured) {
+    SideScanPictureConfig config = display();
+    config.ground_range.emplace();
+    SideScanImage image(config);
+    types::Image picture;
+    types::Sonar ping = test::withEcho(lineWith(40, 60), 1, 24);  // the first of both sides: the bottom
+    ping = test::withEcho(ping, 1, 10, 1e-3f);                    // weaker than the threshold
+    const double bin = ping.binStart(1), height = 24.5 * bin;
+    image.paint(ping, picture);
+    EXPECT_GT(levelAt(picture, at(image, std::sqrt(std::pow(40.5 * bin, 2) - height * height))), 200);
+    image.setAltitude(10);
+    image.paint(ping, picture);
+    EXPECT_GT(levelAt(picture, at(image, std::sqrt(std::pow(40.5 * bin, 2) - 100))), 200);
+}
+
+TEST(SideScanImageTest, ThePortAltitudeTakesThePlaceOfTheFirstReturn) {
+    SideScanImageTask task("side_scan");
+    SideScanPictureConfig config = display();
+    config.ground_range.emplace();
+    task.config.set(config);
+    test::Writer<types::SonarPtr> pings;
+    test::Writer<types::Range> altitudes;
+    test::Reader<types::ImagePtr> pictures;
+    pings.port.connectTo(task.ping, framework::ConnPolicy::buffer(4));
+    altitudes.port.connectTo(task.altitude, framework::ConnPolicy::buffer(4));
+    task.image.connectTo(pictures.port, framework::ConnPolicy::buffer(4));
+    ASSERT_TRUE(task.configure() && task.start()) << task.lastError();
+    types::Range measured;
+    measured.range = 12;
+    altitudes.port.write(measured);
+    const types::Sonar ping = lineWith(40, 60);
+    pings.port.write(test::shared(ping));
+    task.update();
+    types::ImagePtr picture;
+    ASSERT_TRUE(pictures.port.readNew(picture));
+    const SideScanImage layout(config);
+    EXPECT_GT(levelAt(*picture, at(layout, std::sqrt(std::pow(40.5 * ping.binStart(1), 2) - 144))), 200);
+}
+
+TEST(SideScanImageTest, APingWithoutASideLeavesItBlank) {
+    SideScanImage image(display());
+    types::Image picture;
+    types::Sonar ping = lineWith(20, 20);
+    ping.bearings[1] = {-0.5};
+    image.paint(ping, picture);
+    EXPECT_EQ(levelAt(picture, at(image, -20.5 * ping.binStart(1))), 0);
+    EXPECT_GT(levelAt(picture, at(image, 20.5 * ping.binStart(1))), 200);
+}
+
+}  // namespace
+}  // namespace insonify::output

@@ -1,0 +1,168 @@
+#include <gmock/gmock.h>
+
+#include "components/output/TruthImageTask.hpp"
+#include "tests/output/Pixels.hpp"
+#include "tests/support/Allocations.hpp"
+#include "tests/support/Ports.hpp"
+
+namespace insonify::output {
+namespace {
+
+using testing::HasSubstr;
+
+/** 60 beams over 120 deg, 100 bins. Beams 0 to 29, to starboard, show object 0 from 30 bins on, the others object 1
+ *  from 60 bins on; what is nearer lies in shadow. */
+types::Sonar pingAt(double seconds) {
+    types::Sonar ping = test::emptyPing(120, 60);
+    ping.time = types::Time::fromSeconds(seconds);
+    ping.bins.assign(ping.bins.size(), 1);
+    return ping;
+}
+
+types::SonarTruth truthOf(const types::Sonar& ping) {
+    types::SonarTruth truth;
+    truth.takeGrid(ping);
+    truth.objects = {"quay", "wreck", "chain"};
+    for (uint32_t beam = 0; beam < ping.beam_count; ++beam)
+        for (uint32_t bin = 0; bin < ping.bin_count; ++bin) {
+            const bool starboard = beam < 30, shown = bin >= (starboard ? 30u : 60u);
+            truth.object[beam * ping.bin_count + bin] = !shown ? -1 : starboard ? 0 : 1;
+            truth.shadow[beam * ping.bin_count + bin] = !shown;
+        }
+    return truth;
+}
+
+class TruthImageTaskTest : public ::testing::Test {
+protected:
+    TruthImageTaskTest() {
+        pings_.port.connectTo(task_.ping, framework::ConnPolicy::buffer(100));
+        truths_.port.connectTo(task_.truth, framework::ConnPolicy::buffer(100));
+        task_.image.connectTo(out_.port, framework::ConnPolicy::buffer(100));
+        TruthImageConfig config;
+        config.width = 1200;
+        config.reference_db = 0;
+        config.timeout = 0.5;
+        task_.config.set(config);
+    }
+    void start() { ASSERT_TRUE(task_.configure() && task_.start()) << task_.lastError(); }
+    void givePing(double seconds) {
+        pings_.port.write(std::make_shared<const types::Sonar>(pingAt(seconds)));
+        task_.update();
+    }
+    void giveTruth(double seconds) {
+        truths_.port.write(std::make_shared<const types::SonarTruth>(truthOf(pingAt(seconds))));
+        task_.update();
+    }
+    size_t pictures() {
+        size_t count = 0;
+        for (types::ImagePtr picture; out_.port.readNew(picture); ++count) last_ = picture;
+        return count;
+    }
+
+    TruthImageTask task_{"truth"};
+    test::Writer<types::SonarPtr> pings_;
+    test::Writer<types::SonarTruthPtr> truths_;
+    test::Reader<types::ImagePtr> out_;
+    types::ImagePtr last_;
+};
+
+TEST_F(TruthImageTaskTest, ObjectsHaveTheirColoursBesideTheFan) {
+    start();
+    giveTruth(1);
+    givePing(1);
+    ASSERT_EQ(pictures(), 1u) << task_.lastError();
+    EXPECT_EQ(last_->time, types::Time::fromSeconds(1));
+    const cv::Mat picture = test::pixelsOf(*last_);
+    FanImage fan([] {
+        DisplayConfig config;
+        config.width = 600;
+        return config;
+    }());
+    types::Image alone;
+    fan.paint(pingAt(1), alone);
+    const auto pixel = [&](double share, double bearing_deg, int half) {
+        const cv::Point2d at = fan.layout().pixel(share * fan.layout().range(), types::radians(bearing_deg));
+        return picture.at<cv::Vec3b>(cvRound(at.y), cvRound(at.x) + 600 * half);
+    };
+    EXPECT_EQ(pixel(0.86, -23, 0), cv::Vec3b(255, 255, 255)) << "what is heard, in grey";
+    EXPECT_EQ(pixel(0.86, -23, 1), TruthImage::colourOf(0));
+    EXPECT_EQ(pixel(0.86, 23, 1), TruthImage::colourOf(1));
+    EXPECT_EQ(pixel(0.46, -23, 1), TruthImage::colourOf(0));
+    EXPECT_EQ(pixel(0.46, 23, 1)[0], 255) << "in shadow, as blue as its echo at least";
+    EXPECT_GT(cv::norm(TruthImage::colourOf(0), TruthImage::colourOf(1)), 100);
+}
+
+TEST_F(TruthImageTaskTest, TheLegendNamesWhatIsShown) {
+    start();
+    giveTruth(1);
+    givePing(1);
+    ASSERT_EQ(pictures(), 1u);
+    const cv::Mat right = test::pixelsOf(*last_).colRange(600, 1200);
+    const auto hasSwatch = [&](int32_t object) {
+        for (int row = FanLayout::title_height; row < right.rows / 2; ++row)
+            if (right.at<cv::Vec3b>(row, 14) == TruthImage::colourOf(object)) return true;
+        return false;
+    };
+    EXPECT_TRUE(hasSwatch(0));
+    EXPECT_TRUE(hasSwatch(1));
+    EXPECT_FALSE(hasSwatch(2)) << "no bin shows it";
+}
+
+TEST_F(TruthImageTaskTest, APingWaitsForItsTruthAndIsLeftOutWithoutOne) {
+    start();
+    givePing(1);
+    EXPECT_EQ(pictures(), 0u);
+    giveTruth(1);
+    EXPECT_EQ(pictures(), 1u);
+    givePing(1.1);
+    giveTruth(1.2);
+    givePing(1.2);
+    EXPECT_EQ(pictures(), 1u);
+    EXPECT_EQ(last_->time, types::Time::fromSeconds(1.2));
+    EXPECT_THAT(task_.notices(), testing::Contains(HasSubstr("1 pings not shown for want of their truth")));
+}
+
+TEST_F(TruthImageTaskTest, ATruthOfAnotherSonarIsRefused) {
+    start();
+    types::Sonar other = pingAt(1);
+    other.resize(50, 60);
+    truths_.port.write(std::make_shared<const types::SonarTruth>(truthOf(other)));
+    givePing(1);
+    EXPECT_EQ(task_.state(), framework::TaskState::Exception);
+    EXPECT_THAT(task_.lastError(), HasSubstr("a ping of 60 x 100 bins does not fit a truth of 60 x 50"));
+}
+
+TEST_F(TruthImageTaskTest, TwoPicturesTake512Pixels) {
+    types::Diagnostics diagnostics;
+    TruthImageConfig config;
+    config.width = 511;
+    config.check(diagnostics);
+    ASSERT_EQ(diagnostics.size(), 1u);
+    EXPECT_EQ(diagnostics[0].path, "width");
+}
+
+TEST_F(TruthImageTaskTest, ASteadyStreamAllocatesNothingOfOurs) {
+    start();
+    const auto cycle = [&](const types::SonarPtr& ping, const types::SonarTruthPtr& truth) {
+        truths_.port.write(truth);
+        pings_.port.write(ping);
+        task_.update();
+        pictures();
+    };
+    std::vector<types::SonarPtr> pings;
+    std::vector<types::SonarTruthPtr> truths;
+    for (int i = 0; i < 20; ++i) {
+        pings.push_back(std::make_shared<const types::Sonar>(pingAt(1 + i)));
+        truths.push_back(std::make_shared<const types::SonarTruth>(truthOf(*pings.back())));
+    }
+    cycle(pings[0], truths[0]);
+    std::vector<std::string> places = test::allocationsOn(task_, [&] {
+        for (size_t i = 1; i < pings.size(); ++i) cycle(pings[i], truths[i]);
+    });
+    std::erase_if(places, [](const std::string& place) { return place.starts_with("libopencv_"); });
+    EXPECT_THAT(places, testing::IsEmpty());
+    EXPECT_EQ(task_.image.written(), 20u) << task_.lastError();
+}
+
+}  // namespace
+}  // namespace insonify::output

@@ -1,0 +1,189 @@
+// XTF files: their bytes as another program reads them, and the task that writes them.
+#include <gmock/gmock.h>
+
+#include <nlohmann/json.hpp>
+
+#include "components/output/XtfTask.hpp"
+#include "tests/support/Folder.hpp"
+#include "tests/support/Pings.hpp"
+#include "tests/support/Ports.hpp"
+#include "tests/support/Python.hpp"
+
+namespace insonify::output {
+namespace {
+
+using nlohmann::json;
+using testing::ElementsAre;
+using testing::HasSubstr;
+
+/** Starboard counts up from 100, port from 1000. */
+types::Sonar line(int64_t time, uint32_t bins = 5) {
+    types::Sonar ping = test::pingOf(2, bins, 0, time);
+    ping.bearings = {types::Angle::fromDeg(-90), types::Angle::fromDeg(90)};
+    ping.beam_width = types::Angle::fromDeg(0.5);
+    ping.beam_height = types::Angle::fromDeg(50);
+    ping.speed_of_sound = 1500;
+    for (uint32_t k = 0; k < bins; ++k) {
+        ping.bins[k] = static_cast<float>(100 + k);
+        ping.bins[bins + k] = static_cast<float>(1000 + k);
+    }
+    return ping;
+}
+
+types::Pose poseAt(int64_t time, double yaw_deg = 0) {
+    types::Pose pose;
+    pose.time = {time};
+    pose.position = {12.5, -3.25, -4};
+    pose.orientation = glm::angleAxis(types::radians(yaw_deg), glm::dvec3(0, 0, 1)) *
+                       glm::angleAxis(types::radians(10), glm::dvec3(0, 1, 0)) *
+                       glm::angleAxis(types::radians(5), glm::dvec3(1, 0, 0));
+    pose.velocity = {1.852 / 3.6, 0, 0};  // a knot
+    return pose;
+}
+
+class XtfTest : public ::testing::Test {
+protected:
+    XtfTest() {
+        auto environment = std::make_shared<framework::Environment>(task_.environment());
+        environment->output_folder = folder_.path();
+        task_.setEnvironment(environment);
+        pings_.port.connectTo(task_.ping, framework::ConnPolicy::buffer(16));
+        poses_.port.connectTo(task_.pose, framework::ConnPolicy::buffer(16));
+        altitudes_.port.connectTo(task_.altitude, framework::ConnPolicy::buffer(16));
+    }
+    void start(XtfSamples samples = XtfSamples::Uint16) {
+        XtfConfig config;
+        config.file = "line.xtf";
+        config.samples = samples;
+        config.frequency_khz = 450;
+        task_.config.set(config);
+        ASSERT_TRUE(task_.configure()) << task_.lastError();
+        ASSERT_TRUE(task_.start()) << task_.lastError();
+    }
+    void give(const types::Sonar& ping) {
+        pings_.port.write(test::shared(ping));
+        task_.update();
+    }
+    void give(const types::Pose& pose) {
+        poses_.port.write(pose);
+        task_.update();
+    }
+    /** What PyPI's pyxtf reads of the file. */
+    json readBack() {
+        return json::parse(pythonSays(
+            INSONIFY_SOURCE_DIR "/tests/output/read_xtf.py " + (folder_ / "line.xtf").string(), folder_ / "answer"));
+    }
+
+    Folder folder_;
+    XtfTask task_{"xtf"};
+    test::Writer<types::SonarPtr> pings_;
+    test::Writer<types::Pose> poses_;
+    test::Writer<types::Range> altitudes_;
+};
+
+#define NEED_PYXTF() \
+    if (!pythonHas("pyxtf")) GTEST_SKIP() << "SKIPPED: the Python package pyxtf is missing; scripts/setup installs it"
+
+TEST_F(XtfTest, PyxtfReadsBackLinesAndWhatIsToldOfThem) {
+    NEED_PYXTF();
+    start();
+    types::Range measured;
+    measured.range = 6.5;
+    altitudes_.port.write(measured);
+    constexpr int64_t first = 1'700'000'000'250'000;  // 2023-11-14 22:13:20.25 UTC
+    give(poseAt(first, 90));
+    give(line(first));
+    give(poseAt(first + 500'000, -45));
+    give(line(first + 500'000, 7));
+    task_.stop();
+    const json file = readBack();
+    EXPECT_EQ(file["channels"], json::parse(R"([["port", 450.0, 2, 3, 0.5, 50.0], ["stbd", 450.0, 2, 3, 0.5, 50.0]])"));
+    EXPECT_EQ(file["program"], "Insonify");
+    ASSERT_EQ(file["pings"].size(), 2u);
+    const json& ping = file["pings"][0];
+    EXPECT_EQ(ping["time"], "2023-11-14T22:13:20.250");
+    EXPECT_EQ(ping["number"], 0);
+    EXPECT_EQ(ping["sound_velocity"], 1500);
+    EXPECT_EQ(ping["x_y"], json::parse("[3.25, 12.5]")) << "east, north";
+    EXPECT_EQ(ping["depth"], 4);
+    EXPECT_EQ(ping["altitude"], 6.5);
+    EXPECT_NEAR(ping["heading"], 270, 1e-4) << "turned to port by 90: west";
+    EXPECT_NEAR(ping["pitch"], -10, 1e-4) << "bow down";
+    EXPECT_NEAR(ping["roll"], 5, 1e-4) << "to starboard";
+    EXPECT_NEAR(ping["speed_knots"], 1, 1e-5);
+    EXPECT_THAT(ping["port"], ElementsAre(1004, 1003, 1002, 1001, 1000)) << "from the far end";
+    EXPECT_THAT(ping["stbd"], ElementsAre(100, 101, 102, 103, 104));
+    EXPECT_NEAR(ping["slant_range"], 5 * 0.15, 1e-6);
+    EXPECT_EQ(file["pings"][1]["number"], 1);
+    EXPECT_NEAR(file["pings"][1]["seconds_per_ping"], 0.5, 1e-6);
+    EXPECT_NEAR(file["pings"][1]["heading"], 45, 1e-4);
+    EXPECT_EQ(file["pings"][1]["stbd"].size(), 7u) << "a ping of other bins";
+    EXPECT_THAT(task_.notices(), testing::IsEmpty());
+}
+
+TEST_F(XtfTest, PyxtfReadsBackIntensitiesAsTheyAre) {
+    NEED_PYXTF();
+    start(XtfSamples::Float32);
+    types::Sonar ping = line(2'000'000);
+    ping.bins[0] = 1.25e-7f;
+    give(poseAt(2'000'000));
+    give(ping);
+    task_.stop();
+    const json file = readBack();
+    EXPECT_EQ(file["pings"][0]["time"], "1970-01-01T00:00:02.000");
+    EXPECT_FLOAT_EQ(file["pings"][0]["stbd"][0].get<float>(), 1.25e-7f);
+}
+
+TEST_F(XtfTest, AFileIsAHeaderOf1024BytesAndRecordsOfWholeUnits) {
+    start();
+    give(poseAt(1'000'000));
+    give(line(1'000'000));
+    task_.stop();
+    const std::vector<char> bytes = bytesOf(folder_ / "line.xtf");
+    EXPECT_EQ(bytes.size(), 1024 + 448u) << "256 + 2 * (64 + 10), up to a multiple of 64";
+    EXPECT_EQ(static_cast<uint8_t>(bytes[0]), 0x7B);
+    EXPECT_EQ(static_cast<uint8_t>(bytes[1024]), 0xCE);
+    EXPECT_EQ(static_cast<uint8_t>(bytes[1025]), 0xFA);
+}
+
+TEST_F(XtfTest, WhatIsNoCodeOrNoLineEndsTheFileWithItsReason) {
+    const auto reasonOf = [&](types::Sonar ping) {
+        start();
+        give(poseAt(ping.time.microseconds));
+        give(ping);
+        const std::string reason = task_.lastError();
+        EXPECT_EQ(task_.state(), framework::TaskState::Exception);
+        task_.recover();
+        return reason;
+    };
+    types::Sonar intensities = line(1'000'000), loud = line(1'000'000), ahead = line(1'000'000);
+    intensities.bins[2] = 1e-6f;
+    loud.bins[2] = 70000;
+    ahead.bearings[1] = {-0.5};
+    EXPECT_THAT(reasonOf(intensities),
+                testing::AllOf(HasSubstr("a bin is 1e-06"), HasSubstr("output: code"), HasSubstr("samples: float32")));
+    EXPECT_THAT(reasonOf(loud), HasSubstr("a bin is 70000"));
+    EXPECT_THAT(reasonOf(ahead), HasSubstr("no beam to port"));
+}
+
+TEST_F(XtfTest, APingBeforeAnyPoseIsWrittenWithoutOneAndTold) {
+    start();
+    give(line(1'000'000));
+    task_.stop();
+    EXPECT_GT(bytesOf(folder_ / "line.xtf").size(), 1024u);
+    EXPECT_THAT(task_.notices(), testing::Contains(HasSubstr("1 pings of line.xtf have no pose")));
+}
+
+TEST(XtfConfigTest, TheFileIsNamedSo) {
+    XtfConfig config;
+    types::Diagnostics diagnostics;
+    config.check(diagnostics);
+    EXPECT_TRUE(diagnostics.empty());
+    config.file = "line.jsf";
+    config.check(diagnostics);
+    ASSERT_EQ(diagnostics.size(), 1u);
+    EXPECT_EQ(diagnostics[0].message, "is line.jsf; must end in .xtf");
+}
+
+}  // namespace
+}  // namespace insonify::output

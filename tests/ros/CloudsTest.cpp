@@ -1,0 +1,139 @@
+#include <gmock/gmock.h>
+
+#include <cstring>
+
+#include "components/ros/Clouds.hpp"
+
+namespace insonify::ros {
+namespace {
+
+std::vector<float> numbersOf(const PointCloud2& message) {
+    std::vector<float> numbers(message.data.size() / sizeof(float));
+    std::memcpy(numbers.data(), message.data.data(), message.data.size());
+    return numbers;
+}
+
+types::PointCloud smallCloud() {
+    types::PointCloud cloud;
+    cloud.time = {2'000'001};
+    cloud.add({3, 2, -5}, 0.25);
+    cloud.add({-1, 0.5, -6}, 0.125);
+    return cloud;
+}
+
+types::DepthMap smallMap() {
+    types::DepthMap map;
+    map.time = {2'000'001};
+    map.vertical_size = map.horizontal_size = 2;
+    map.vertical_interval = {-0.5, 0.5};
+    map.horizontal_interval = {0.25, -0.25};
+    map.distances = {2, types::DepthMap::too_far, 4, 8};
+    map.remissions = {1, 0, 0.5f, 0.25f};
+    return map;
+}
+
+TEST(CloudsTest, PointsStandInTheAxesOfTheWorldFrame) {
+    PointCloud2 message;
+    convert(smallCloud(), WorldFrame::Enu, message);
+    EXPECT_EQ(message.width, 2u);
+    EXPECT_EQ(message.height, 1u);
+    EXPECT_EQ(message.header.frame_id, "map");
+    EXPECT_THAT(numbersOf(message), testing::ElementsAre(-2, 3, -5, 0.25f, -0.5f, -1, -6, 0.125f));
+    convert(smallCloud(), WorldFrame::Ned, message);
+    EXPECT_THAT(numbersOf(message), testing::ElementsAre(3, -2, 5, 0.25f, -1, -0.5f, 6, 0.125f));
+}
+
+TEST(CloudsTest, PointsComeBackFromEveryFrame) {
+    for (const WorldFrame frame : {WorldFrame::AsIs, WorldFrame::Enu, WorldFrame::Ned}) {
+        PointCloud2 message;
+        types::PointCloud back;
+        convert(smallCloud(), frame, message);
+        convert(message, frame, back);
+        EXPECT_EQ(back.time, smallCloud().time);
+        EXPECT_EQ(back.points, smallCloud().points);
+        EXPECT_EQ(back.colors, smallCloud().colors);
+    }
+}
+
+TEST(CloudsTest, ACloudOfOthersMayHaveDoublesAndNoIntensity) {
+    PointCloud2 message;
+    message.fields = {
+        {"x", 0, PointField::float64, 1}, {"y", 8, PointField::float64, 1}, {"z", 16, PointField::float64, 1}};
+    message.width = 1;
+    message.point_step = message.row_step = 24;
+    message.data.resize(24);
+    const double point[] = {1e7 + 0.125, 2, 3};
+    std::memcpy(message.data.data(), point, sizeof point);
+    types::PointCloud cloud;
+    convert(message, WorldFrame::AsIs, cloud);
+    EXPECT_EQ(cloud.points, (std::vector<glm::dvec3>{{1e7 + 0.125, 2, 3}}));
+    EXPECT_TRUE(cloud.colors.empty());
+}
+
+TEST(CloudsTest, WhatIsNoCloudIsRefusedWithItsReason) {
+    PointCloud2 message;
+    types::PointCloud cloud;
+    const auto reason = [&](const auto& spoil) -> std::string {
+        convert(smallCloud(), WorldFrame::AsIs, message);
+        spoil();
+        try {
+            convert(message, WorldFrame::AsIs, cloud);
+            return "";
+        } catch (const std::invalid_argument& error) {
+            return error.what();
+        }
+    };
+    EXPECT_EQ(reason([&] {}), "");
+    EXPECT_EQ(reason([&] { message.data.pop_back(); }), "the cloud does not hold the points that it announces");
+    EXPECT_EQ(reason([&] { message.row_step = 4; }), "the cloud does not hold the points that it announces");
+    EXPECT_EQ(reason([&] { message.fields[2].name = "w"; }), "the cloud has no field z");
+    EXPECT_EQ(reason([&] { message.fields[0].offset = 14; }), "field x reaches beyond its point");
+    EXPECT_EQ(reason([&] { message.fields[0].datatype = 2; }), "field x of the cloud is neither FLOAT32 nor FLOAT64");
+    EXPECT_EQ(reason([&] { message.is_bigendian = true; }), "big-endian points are not read");
+}
+
+TEST(CloudsTest, AMapOfDistancesIsAnOrderedCloudOfTheSonarAndComesBack) {
+    PointCloud2 message;
+    convert(smallMap(), "sonar", message);
+    EXPECT_EQ(message.height, 2u);
+    EXPECT_EQ(message.width, 2u);
+    EXPECT_FALSE(message.is_dense);
+    const std::vector<float> numbers = numbersOf(message);
+    const double up = 0.5, port = 0.25;
+    EXPECT_FLOAT_EQ(numbers[0], static_cast<float>(2 * std::cos(up) * std::cos(port)));
+    EXPECT_FLOAT_EQ(numbers[1], static_cast<float>(2 * std::cos(up) * std::sin(port)));
+    EXPECT_FLOAT_EQ(numbers[2], static_cast<float>(2 * std::sin(up)));
+    EXPECT_TRUE(std::isnan(numbers[7])) << "nothing is heard there";
+    EXPECT_LT(numbers[14 + 2], 0) << "the lower row";
+    types::DepthMap back;
+    convert(message, back);
+    EXPECT_EQ(back.distances, smallMap().distances);
+    EXPECT_EQ(back.remissions, smallMap().remissions);
+    EXPECT_EQ(back.vertical_interval, smallMap().vertical_interval);
+    EXPECT_EQ(back.horizontal_interval, smallMap().horizontal_interval);
+}
+
+TEST(CloudsTest, OnlyPolarMapsWithAllTheirAnglesBecomeClouds) {
+    PointCloud2 message;
+    types::DepthMap planar = smallMap(), few = smallMap(), short_of = smallMap();
+    planar.horizontal_projection = types::Projection::Planar;
+    few.vertical_size = 4, few.horizontal_size = 1;
+    short_of.distances.pop_back();
+    for (const types::DepthMap& map : {planar, few, short_of})
+        EXPECT_THROW(convert(map, "sonar", message), std::invalid_argument);
+}
+
+TEST(CloudsTest, ARangeThatIsNotKnownIsInfiniteInRos) {
+    types::Range range;
+    range.range_max = 30;
+    Range message;
+    convert(range, "altimeter", message);
+    EXPECT_EQ(message.range, std::numeric_limits<float>::infinity());
+    EXPECT_EQ(message.max_range, 30);
+    EXPECT_EQ(message.header.frame_id, "altimeter");
+    convert(message, range);
+    EXPECT_FALSE(range.isKnown());
+}
+
+}  // namespace
+}  // namespace insonify::ros

@@ -1,0 +1,95 @@
+// First returns against closed forms.
+#include <gmock/gmock.h>
+
+#include <cmath>
+
+#include "components/sonar/AltimeterTask.hpp"
+#include "tests/support/Scenes.hpp"
+#include "tests/support/TaskBench.hpp"
+
+namespace insonify::sonar {
+namespace {
+
+using test::ground;
+using test::sceneOf;
+
+constexpr double bin = 0.03;  // 20 us at 1500 m/s [m]
+
+class AltimeterTaskTest : public test::TaskBench<AltimeterTask, types::SnapshotPtr, types::Range> {
+protected:
+    AltimeterTaskTest() : TaskBench(&AltimeterTask::snapshot, &AltimeterTask::range) {}
+    void startWide(double opening_deg) {
+        AltimeterConfig config;
+        config.sonar.range = 30;
+        config.sonar.bin_count = 1000;
+        config.sonar.beam_width_deg = config.sonar.beam_height_deg = opening_deg;
+        config.sonar.quality.rows = config.sonar.quality.columns_per_beam = 128;
+        task_.stop();
+        task_.cleanup();
+        startWith(config);
+    }
+    /** What is told at a height above a bottom; the vehicle pitched and rolled [deg]. */
+    types::Range rangeAt(double height, double pitch = 0, double roll = 0) {
+        types::Snapshot snapshot =
+            test::snapshotOf(sceneOf({ground(0)}), {0, 0, height}, 0, types::radians(pitch), types::radians(roll));
+        snapshot.sonar.orientation *= glm::angleAxis(types::radians(90), glm::dvec3(0, 1, 0));
+        return answerTo(std::make_shared<types::Snapshot>(snapshot));
+    }
+};
+
+TEST_F(AltimeterTaskTest, OverAFlatBottomItTellsTheHeight) {
+    for (const double opening : {2.0, 25.0, 120.0}) {
+        startWide(opening);
+        for (const double height : {1.0, 7.777, 12.34, 28.0})
+            EXPECT_NEAR(rangeAt(height).range, height, bin) << opening << " deg";
+    }
+}
+
+TEST_F(AltimeterTaskTest, OnATiltedVehicleItTellsTheNearestPointThatTheBeamSees) {
+    const auto nearest = [](double height, double tilt, double half) {
+        return tilt <= half ? height : height / std::cos(types::radians(tilt - half));
+    };
+    for (const double opening : {10.0, 25.0, 120.0}) {
+        startWide(opening);
+        for (const double tilt : {3.0, 10.0, 20.0, 40.0}) {
+            const double expected = nearest(10, tilt, opening / 2);
+            EXPECT_NEAR(rangeAt(10, tilt).range, expected, bin) << opening << " deg, pitched by " << tilt;
+            EXPECT_NEAR(rangeAt(10, 0, tilt).range, expected, bin) << opening << " deg, rolled by " << tilt;
+        }
+    }
+    // A slant of D / cos(t) would be that of the axis: wrong as soon as the beam is wider than the tilt.
+    EXPECT_GT(10 / std::cos(types::radians(40)), nearest(10, 40, 60) + 10 * bin);
+}
+
+/** Of a plane through the foot of the axis, tilted by t: D cos(t), as far as the beam sees that point. */
+TEST_F(AltimeterTaskTest, OverASlopeItTellsTheFootOfThePerpendicular) {
+    constexpr double height = 10;
+    startWide(60);
+    for (const double tilt : {5.0, 15.0, 25.0}) {
+        const double t = types::radians(tilt);
+        const glm::vec3 u(std::cos(t), 0, std::sin(t)), v(0, 1, 0);
+        types::Snapshot snapshot =
+            test::snapshotOf(sceneOf({test::quad(-500.f * u - 500.f * v, 1000.f * u, 1000.f * v)}), {0, 0, height});
+        snapshot.sonar.orientation = glm::angleAxis(types::radians(90), glm::dvec3(0, 1, 0));
+        const types::Range told = answerTo(std::make_shared<types::Snapshot>(snapshot));
+        EXPECT_NEAR(told.range, height * std::cos(t), bin) << tilt;
+    }
+}
+
+TEST_F(AltimeterTaskTest, ItTellsWhatItCouldHaveHeardAndWhen) {
+    startWide(25);
+    const types::Range told = rangeAt(10);
+    EXPECT_EQ(told.time, types::Time{1'000'000});
+    EXPECT_NEAR(told.range_max, 30, 1e-6);
+    EXPECT_NEAR(told.range_min, 0.1, 1e-9);
+    EXPECT_NEAR(told.field_of_view.deg(), 25, 1e-6);
+}
+
+TEST_F(AltimeterTaskTest, WithoutAReturnTheRangeIsNotKnown) {
+    startWide(25);
+    EXPECT_FALSE(rangeAt(40).isKnown());
+    EXPECT_TRUE(rangeAt(20).isKnown());
+}
+
+}  // namespace
+}  // namespace insonify::sonar

@@ -1,0 +1,113 @@
+// Soundings against closed forms: they lie on the plane that is there, where the bearings of the beams meet it.
+#include <gmock/gmock.h>
+
+#include <cmath>
+
+#include "components/sonar/ProfilerTask.hpp"
+#include "tests/sonar/WallScene.hpp"
+#include "tests/support/Scenes.hpp"
+#include "tests/support/TaskBench.hpp"
+
+namespace insonify::sonar {
+namespace {
+
+using test::ground;
+using test::quad;
+using test::sceneOf;
+
+constexpr double bin = 0.03;  // 20 us at 1500 m/s [m]
+constexpr double down = 90;
+
+class ProfilerTaskTest : public test::TaskBench<ProfilerTask, types::SnapshotPtr, types::PointCloudPtr> {
+protected:
+    ProfilerTaskTest() : TaskBench(&ProfilerTask::snapshot, &ProfilerTask::soundings) {}
+    static ProfilerConfig profiler() {
+        ProfilerConfig config;
+        config.sonar.range = 30;
+        config.sonar.beam_count = 128;
+        config.sonar.bin_count = 1000;
+        config.sonar.field_of_view_deg = 120;
+        config.sonar.quality.rows = 8;
+        config.sonar.quality.columns_per_beam = 8;
+        return config;
+    }
+    types::PointCloudPtr soundingsOf(types::Snapshot snapshot) {
+        return answerTo(std::make_shared<types::Snapshot>(std::move(snapshot)));
+    }
+    /** From a vehicle with these angles [deg], whose profiler looks down. */
+    static types::Snapshot above(types::GeometryPtr floor, glm::dvec3 position, double yaw = 0, double roll = 0) {
+        types::Snapshot snapshot =
+            test::snapshotOf(std::move(floor), position, types::radians(yaw), 0, types::radians(roll));
+        snapshot.sonar.orientation *= glm::angleAxis(types::radians(down), glm::dvec3(0, 1, 0));
+        return snapshot;
+    }
+};
+
+/** z = -D, y = D tan(a), to starboard with the sign turned: wrong. */
+TEST_F(ProfilerTaskTest, AFlatBottomIsSoundedWhereTheBearingsMeetIt) {
+    constexpr double height = 10;
+    startWith(profiler());
+    const auto cloud = soundingsOf(above(sceneOf({ground(-height)}), {5, -3, 0}));
+    ASSERT_TRUE(cloud) << task_.lastError();
+    EXPECT_EQ(cloud->time, types::Time{1'000'000});
+    ASSERT_EQ(cloud->points.size(), 128u);
+    double worst = 0, worst_mirrored = 0;
+    for (int k = 0; k < 128; ++k) {
+        const double a = types::radians(profiler().sonar.bearingDeg(k));
+        const glm::dvec3 expected(5, -3 + height * std::tan(a), -height);
+        const glm::dvec3& got = cloud->points[static_cast<size_t>(k)];
+        worst = std::max(worst, glm::distance(got, expected));
+        worst_mirrored = std::max(worst_mirrored, glm::distance(got, {5, -3 - height * std::tan(a), -height}));
+        EXPECT_GT(cloud->intensity(static_cast<size_t>(k)), 0);
+    }
+    std::cout << "flat bottom: soundings at most " << worst << " m off, bins of " << bin << " m\n";
+    EXPECT_LT(worst, 0.5 * bin);
+    EXPECT_GT(worst_mirrored, 30);
+}
+
+/** n . p = 0 for each sounding, the sonar turned and rolled as well. */
+TEST_F(ProfilerTaskTest, SoundingsOfATiltedPlaneLieOnItInTheWorldHoweverTheVehicleLies) {
+    const double across = types::radians(15), along = types::radians(10);
+    const glm::vec3 u(std::cos(along), 0, std::sin(along)), v(0, std::cos(across), std::sin(across));
+    const auto plane = sceneOf({quad(-500.f * u - 500.f * v, 1000.f * u, 1000.f * v)});
+    const glm::dvec3 normal = glm::normalize(glm::cross(glm::dvec3(u), glm::dvec3(v)));
+    ProfilerConfig config = profiler();
+    config.sonar.field_of_view_deg = 90;
+    startWith(config);
+    for (const auto& [yaw, roll] : {std::pair{0.0, 0.0}, {90.0, 0.0}, {35.0, -12.0}, {200.0, 15.0}}) {
+        const auto cloud = soundingsOf(above(plane, {1, 2, 9}, yaw, roll));
+        ASSERT_TRUE(cloud) << task_.lastError();
+        EXPECT_GT(cloud->points.size(), 100u);
+        double worst = 0;
+        for (const glm::dvec3& p : cloud->points) worst = std::max(worst, std::abs(glm::dot(normal, p)));
+        std::cout << "tilted plane, yaw " << yaw << ", roll " << roll << ": at most " << worst << " m off the plane\n";
+        EXPECT_LT(worst, 0.5 * bin);
+    }
+}
+
+/** A box on the bottom is the strongest where it is seen, and what is farther than the range is not sounded. */
+TEST_F(ProfilerTaskTest, ABeamTellsItsStrongestReturnAndOneThatHearsNothingNone) {
+    ProfilerConfig config = profiler();
+    config.sonar.range = 12;
+    config.sonar.bin_count = 400;
+    startWith(config);
+    const auto step = quad({-50, 1, -8}, {100, 0, 0}, {0, 2, 0});
+    const auto cloud = soundingsOf(above(sceneOf({ground(-10), step}), {0, 0, 0}));
+    ASSERT_TRUE(cloud) << task_.lastError();
+    EXPECT_LT(cloud->points.size(), 100u) << "12 m reach 33 deg to either side";
+    const auto onAnEdge = [](double y) { return std::abs(y - 1) < 0.3 || std::abs(y - 3) < 0.3; };  // either is right
+    for (const glm::dvec3& p : cloud->points) {
+        if (onAnEdge(p.y)) continue;
+        EXPECT_NEAR(p.z, p.y > 1 && p.y < 3 ? -8 : -10, bin) << p.y;
+    }
+}
+
+TEST_F(ProfilerTaskTest, NothingInRangeIsACloudWithoutPoints) {
+    startWith(profiler());
+    const auto cloud = soundingsOf(above(sceneOf({ground(-100)}), {0, 0, 0}));
+    ASSERT_TRUE(cloud) << task_.lastError();
+    EXPECT_TRUE(cloud->points.empty());
+}
+
+}  // namespace
+}  // namespace insonify::sonar

@@ -1,0 +1,137 @@
+// Lines of a side-scan against closed forms (ACOUSTICS.md 9.11).
+#include <gmock/gmock.h>
+
+#include <cmath>
+
+#include "components/sonar/BinGrid.hpp"
+#include "components/sonar/SideScanTask.hpp"
+#include "tests/support/ClosedForms.hpp"
+#include "tests/support/Scenes.hpp"
+#include "tests/support/TaskBench.hpp"
+
+namespace insonify::sonar {
+namespace {
+
+using test::Form;
+using test::ground;
+using test::sceneOf;
+
+constexpr double height = 8;  // above the bottom [m]
+
+class SideScanTaskTest : public test::TaskBench<SideScanTask, types::SnapshotPtr, types::SonarPtr> {
+protected:
+    SideScanTaskTest() : TaskBench(&SideScanTask::snapshot, &SideScanTask::ping) {}
+    /** Beams from straight down to 10 deg below the horizontal. */
+    static SideScanConfig sideScan() {
+        SideScanConfig config;
+        config.sonar.range = 40.5;
+        config.sonar.bin_count = 900;
+        config.sonar.beam_height_deg = 80;
+        config.depression_deg = 50;
+        return config;
+    }
+    types::SonarPtr lineOf(types::Snapshot snapshot) {
+        return answerTo(std::make_shared<types::Snapshot>(std::move(snapshot)));
+    }
+    static types::Sonar side(const types::Sonar& line, uint32_t beam) {
+        types::Sonar one = line;
+        one.beam_count = 1;
+        one.bearings = {line.bearings[beam]};
+        one.bins.assign(line.bins.begin() + beam * line.bin_count, line.bins.begin() + (beam + 1) * line.bin_count);
+        return one;
+    }
+    /** Energy of a flat bottom between slant ranges: delta mu / D^2 [sin a - sin^3 a / 3], a = acos(D / r). */
+    static Form bottom(double mu, double along_rad, int power = 3) {
+        const auto antiderivative = [power](double r) {
+            const double a = std::acos(std::min(1.0, height / r));
+            return power == 3 ? std::sin(a) - std::pow(std::sin(a), 3) / 3 : std::sin(a);  // of cos^3, of cos
+        };
+        const double farthest = height / std::cos(types::radians(80));
+        return test::between(height, farthest, [=](double r1, double r2) {
+            return along_rad * mu / (height * height) * (antiderivative(r2) - antiderivative(r1));
+        });
+    }
+};
+
+TEST_F(SideScanTaskTest, AFlatBottomFollowsLambertAlongTheGroundOnBothSides) {
+    startWith(sideScan());
+    const auto line = lineOf(test::snapshotOf(sceneOf({ground(0)}, -10), {3, 4, height}, types::radians(70)));
+    ASSERT_TRUE(line) << task_.lastError();
+    ASSERT_EQ(line->beam_count, 2u);
+    const double along = types::radians(0.5);
+    for (const uint32_t beam : {0u, 1u}) {
+        test::expectForm(side(*line, beam), bottom(0.1, along), bottom(0.1, along, 1));
+        std::cout << "side " << beam << ": " << test::deviation(side(*line, beam), bottom(0.1, along)) << "\n";
+    }
+}
+
+TEST_F(SideScanTaskTest, TheFirstReturnIsAtTheHeightAndTheLastWhereTheUpperEdgeMeetsTheBottom) {
+    SideScanConfig config = sideScan();
+    startWith(config);
+    const auto line = lineOf(test::snapshotOf(sceneOf({ground(0)}), {0, 0, height}));
+    ASSERT_TRUE(line) << task_.lastError();
+    for (const uint32_t beam : {0u, 1u}) {
+        const types::Sonar one = side(*line, beam);
+        uint32_t first = 0;
+        while (first < one.bin_count && !(one.bins[first] > 0)) ++first;
+        EXPECT_NEAR(one.binStart(first), height, one.binStart(1));
+    }
+    config.depression_deg = 40;
+    config.sonar.beam_height_deg = 30;  // from 25 to 55 deg below the horizontal
+    task_.stop();
+    task_.cleanup();
+    startWith(config);
+    const auto narrow = lineOf(test::snapshotOf(sceneOf({ground(0)}), {0, 0, height}));
+    ASSERT_TRUE(narrow) << task_.lastError();
+    const types::Sonar one = side(*narrow, 1);
+    const double bin = one.binStart(1);
+    uint32_t first = 0, last = one.bin_count - 1;
+    while (first < one.bin_count && !(one.bins[first] > 0)) ++first;
+    while (last > 0 && !(one.bins[last] > 0)) --last;
+    EXPECT_NEAR(one.binStart(first), height / std::sin(types::radians(55)), bin);
+    EXPECT_NEAR(one.binStart(last), height / std::sin(types::radians(25)), bin);
+}
+
+TEST_F(SideScanTaskTest, PortAndStarboardAreWhereTheyAreAndTheLineIsAsThinAsTheBeam) {
+    startWith(sideScan());
+    const auto echoesOf = [&](glm::dvec3 target, double yaw) {
+        const auto line =
+            lineOf(test::snapshotOf(sceneOf({test::sphere(0.3)}, 0, {target}), {0, 0, height}, types::radians(yaw)));
+        EXPECT_TRUE(line) << task_.lastError();
+        EXPECT_NEAR(line->bearings[0].deg(), -90, 1e-9);
+        EXPECT_NEAR(line->bearings[1].deg(), 90, 1e-9);
+        EXPECT_NEAR(line->beam_width.deg(), 0.5, 1e-6);
+        EXPECT_NEAR(line->beam_height.deg(), 80, 1e-6);
+        return std::pair{std::ranges::any_of(side(*line, 0).bins, [](float bin) { return bin > 0; }),
+                         std::ranges::any_of(side(*line, 1).bins, [](float bin) { return bin > 0; })};
+    };
+    EXPECT_EQ(echoesOf({0, 12, 1}, 0), std::pair(false, true)) << "west of a vehicle that looks north: port";
+    EXPECT_EQ(echoesOf({0, -12, 1}, 0), std::pair(true, false));
+    EXPECT_EQ(echoesOf({0, -12, 1}, 180), std::pair(false, true)) << "turned round";
+    EXPECT_EQ(echoesOf({2, 12, 1}, 0), std::pair(false, false)) << "ahead of the line";
+}
+
+/** The weight of a beam's law, two-way, in the bins of one side: at the ranges where the bottom lies at an angle. */
+TEST_F(SideScanTaskTest, TheLawAcrossTheTrackIsAboutTheAxisOfEachBeam) {
+    SideScanConfig config = sideScan();
+    config.sonar.beam_height_deg = 40;
+    config.sonar.beam_pattern.emplace();
+    config.sonar.beam_pattern->receive.elevation.emplace();
+    config.sonar.beam_pattern->receive.elevation->weighting = acoustics::Weighting::Gaussian;
+    config.sonar.beam_pattern->receive.elevation->width_deg = 40;
+    startWith(config);
+    const auto line = lineOf(test::snapshotOf(sceneOf({ground(0)}), {0, 0, height}));
+    ASSERT_TRUE(line) << task_.lastError();
+    const Form flat = bottom(1, types::radians(0.5));
+    for (const uint32_t beam : {0u, 1u}) {
+        const types::Sonar one = side(*line, beam);
+        for (const double below : {70.0, 60.0, 50.0, 40.0, 30.0}) {  // the horizontal [deg]
+            const auto bin = static_cast<uint32_t>(height / std::sin(types::radians(below)) / one.binStart(1));
+            const double weight = one.bins[bin] / flat(one.binStart(bin), one.binStart(bin + 1));
+            EXPECT_NEAR(10 * std::log10(weight), -3.0103 * std::pow((below - 50) / 20, 2), 0.2) << below;
+        }
+    }
+}
+
+}  // namespace
+}  // namespace insonify::sonar

@@ -1,0 +1,184 @@
+// Range images against closed forms: a wall and a sphere, beam by beam.
+#include <gmock/gmock.h>
+
+#include <cmath>
+#include <numeric>
+
+#include "components/sonar/Sonar3dTask.hpp"
+#include "tests/support/Scenes.hpp"
+#include "tests/support/TaskBench.hpp"
+
+namespace insonify::sonar {
+namespace {
+
+using test::sceneOf;
+
+constexpr double bin = 0.03;  // 20 us at 1500 m/s [m]
+
+class Sonar3dTaskTest : public test::TaskBench<Sonar3dTask, types::SnapshotPtr, types::DepthMapPtr> {
+protected:
+    Sonar3dTaskTest() : TaskBench(&Sonar3dTask::snapshot, &Sonar3dTask::range_image) {}
+    static Sonar3dConfig grid() {
+        Sonar3dConfig config;
+        config.sonar.range = 15;
+        config.sonar.bin_count = 500;
+        config.horizontal = {60, 90};
+        config.vertical = {20, 40};
+        config.sonar.beam_height_deg = 2;
+        config.sonar.quality.rows = config.sonar.quality.columns_per_beam = 8;
+        return config;
+    }
+    types::DepthMapPtr mapOf(types::Snapshot snapshot) {
+        return answerTo(std::make_shared<types::Snapshot>(std::move(snapshot)));
+    }
+};
+
+/** D / (cos e cos a); with azimuth and elevation exchanged it is the same, so the wall is turned as well. */
+TEST_F(Sonar3dTaskTest, AWallIsSeenAtTheRangeOfEachDirection) {
+    constexpr double distance = 6;
+    startWith(grid());
+    for (const double yaw : {0.0, 20.0}) {
+        const auto map = mapOf(test::snapshotOf(sceneOf({test::wall(distance)}), {}, types::radians(yaw)));
+        ASSERT_TRUE(map) << task_.lastError();
+        ASSERT_EQ(map->distances.size(), 1200u);
+        double worst = 0;
+        for (size_t row = 0; row < 20; ++row)
+            for (size_t column = 0; column < 60; ++column) {
+                const double e = -map->vertical_interval[row],
+                             a = map->horizontal_interval[column] + types::radians(yaw);
+                const double expected = distance / (std::cos(e) * std::cos(a));
+                if (expected > 14) continue;  // the range cuts off a part of what such beams see
+                worst = std::max(worst, std::abs(map->distances[row * 60 + column] - expected));
+            }
+        std::cout << "wall, yaw " << yaw << ": ranges at most " << worst << " m off, bins of " << bin << " m\n";
+        EXPECT_LT(worst, 0.55 * bin);
+    }
+}
+
+/** L . d - sqrt((L . d)^2 - L^2 + b^2) in the directions d that meet the sphere; nothing beside it. */
+TEST_F(Sonar3dTaskTest, ASphereIsSeenAtTheRangeOfEachDirectionAndNothingBesideIt) {
+    constexpr double radius = 2;
+    const glm::dvec3 centre(7, 1, 0.5);
+    Sonar3dConfig config = grid();
+    config.horizontal = {180, 90};
+    config.vertical = {80, 40};
+    config.sonar.beam_height_deg = 0.5;
+    startWith(config);
+    const auto map = mapOf(test::snapshotOf(sceneOf({test::sphere(radius)}, 0, {centre})));
+    ASSERT_TRUE(map) << task_.lastError();
+    double worst = 0;
+    int met = 0, beside = 0;
+    for (size_t row = 0; row < 80; ++row)
+        for (size_t column = 0; column < 180; ++column) {
+            const float got = map->distances[row * 180 + column];
+            const glm::dvec3 direction = map->direction(row, column);
+            const double along = glm::dot(centre, direction), off = glm::length(centre - along * direction);
+            if (off > radius + 0.1) {
+                EXPECT_EQ(got, types::DepthMap::too_far) << row << " " << column;
+                ++beside;
+            } else if (off < 0.9 * radius) {
+                worst = std::max(worst, std::abs(got - (along - std::sqrt(radius * radius - off * off))));
+                ++met;
+            }
+        }
+    std::cout << "sphere: " << met << " ranges at most " << worst << " m off, bins of " << bin << " m\n";
+    EXPECT_GT(met, 1000);
+    EXPECT_GT(beside, 8000);
+    EXPECT_LT(worst, 0.6 * bin);
+}
+
+TEST_F(Sonar3dTaskTest, RowsRunDownAndColumnsFromPortToStarboard) {
+    startWith(grid());
+    const auto plate = test::quad({5, 1.5, 0.5}, {0, 1, 0}, {0, 0, 1});  // ahead, to port, above
+    const auto map = mapOf(test::snapshotOf(sceneOf({plate})));
+    ASSERT_TRUE(map) << task_.lastError();
+    EXPECT_LT(map->vertical_interval.front(), map->vertical_interval.back());
+    EXPECT_GT(map->horizontal_interval.front(), map->horizontal_interval.back());
+    int seen = 0;
+    for (size_t cell = 0; cell < map->distances.size(); ++cell) {
+        if (!std::isfinite(map->distances[cell])) continue;
+        ++seen;
+        EXPECT_LT(cell / 60, 10u) << "the upper half";
+        EXPECT_LT(cell % 60, 30u) << "the port half";
+        EXPECT_GT(map->remissions[cell], 0);
+    }
+    EXPECT_GT(seen, 20);
+}
+
+TEST_F(Sonar3dTaskTest, SoundingsAreTheSameInTheWorld) {
+    test::Reader<types::PointCloudPtr> clouds;
+    task_.soundings.connectTo(clouds.port, framework::ConnPolicy::buffer(2));
+    startWith(grid());
+    ASSERT_TRUE(mapOf(test::snapshotOf(sceneOf({test::ground(0)}), {3, -2, 4}, types::radians(50), types::radians(35))))
+        << task_.lastError();
+    types::PointCloudPtr cloud;
+    ASSERT_TRUE(clouds.port.readNew(cloud));
+    EXPECT_GT(cloud->points.size(), 500u);
+    for (const glm::dvec3& p : cloud->points) {
+        if (glm::distance(p, {3, -2, 4}) > 12) continue;  // beams that the range cuts off
+        EXPECT_NEAR(p.z, 0, 0.55 * bin);
+    }
+}
+
+/** The energy that a fan of the whole height hears in each azimuth. */
+TEST_F(Sonar3dTaskTest, ThePingIsTheSumOverAllElevations) {
+    test::Reader<types::SonarPtr> pings;
+    task_.ping.connectTo(pings.port, framework::ConnPolicy::buffer(2));
+    Sonar3dConfig config = grid();
+    config.sonar.quality.rows = config.sonar.quality.columns_per_beam = 16;
+    startWith(config);
+    const types::Snapshot scene = test::snapshotOf(sceneOf({test::wall(6)}));
+    ASSERT_TRUE(mapOf(scene)) << task_.lastError();
+    types::SonarPtr ping;
+    ASSERT_TRUE(pings.port.readNew(ping));
+    SonarConfig whole = config.sonar;
+    whole.beam_count = 60;
+    whole.field_of_view_deg = 90;
+    whole.beam_width_deg.reset();
+    whole.beam_height_deg = 40;
+    whole.quality.rows = 320;
+    types::Sonar fan;
+    SonarRenderer(whole, scene.geometry).render(scene, fan);
+    ASSERT_EQ(ping->bins.size(), fan.bins.size());
+    for (size_t beam = 0; beam < 60; ++beam) {
+        EXPECT_NEAR(ping->bearings[beam].rad, fan.bearings[beam].rad, 1e-9);
+        const auto energy = [&](const types::Sonar& of) {
+            return std::accumulate(of.bins.begin() + beam * 500, of.bins.begin() + (beam + 1) * 500, 0.0);
+        };
+        // Its beams are bands about a vertical plane, wider in azimuth by 1 / cos(elevation) than those of a fan.
+        EXPECT_NEAR(energy(*ping) / energy(fan), 1, 0.03) << beam;
+    }
+}
+
+TEST_F(Sonar3dTaskTest, WhatIsWeakBesideThePingIsNoReturn) {
+    Sonar3dConfig config = grid();
+    config.detection.threshold_db = -5;
+    startWith(config);
+    auto geometry = std::make_shared<types::Geometry>(
+        *sceneOf({test::quad({5, 1, -1}, {0, 2, 0}, {0, 0, 2}), test::quad({5, -3, -1}, {0, 2, 0}, {0, 0, 2})}));
+    geometry->materials.push_back(geometry->materials[0]);
+    geometry->materials[1].lambert_db = -20;
+    for (types::Cluster& cluster : geometry->meshes[1].clusters) cluster.material = 1;
+    const auto map = mapOf(test::snapshotOf(geometry));
+    ASSERT_TRUE(map) << task_.lastError();
+    size_t port = 0, starboard = 0;
+    for (size_t cell = 0; cell < map->distances.size(); ++cell)
+        if (std::isfinite(map->distances[cell])) ++(cell % 60 < 30 ? port : starboard);
+    EXPECT_GT(port, 50u);
+    EXPECT_EQ(starboard, 0u);
+}
+
+TEST_F(Sonar3dTaskTest, OneThatHearsNothingTellsWhereItLooks) {
+    std::string told;
+    auto environment = std::make_shared<framework::Environment>(task_.environment());
+    environment->warn = [&](const std::string& text) { told += text; };
+    task_.setEnvironment(environment);
+    startWith(grid());
+    const auto map = mapOf(test::snapshotOf(sceneOf({test::wall(60)})));
+    ASSERT_TRUE(map) << task_.lastError();
+    EXPECT_TRUE(std::ranges::none_of(map->distances, [](float distance) { return std::isfinite(distance); }));
+    EXPECT_THAT(told, testing::HasSubstr("beyond the range of 15 m"));
+}
+
+}  // namespace
+}  // namespace insonify::sonar

@@ -1,0 +1,276 @@
+// What the truth of a ping tells, against closed forms, and that it changes no bin.
+#include <gmock/gmock.h>
+
+#include <bit>
+#include <cmath>
+
+#include "components/sonar/SonarRenderer.hpp"
+#include "components/sonar/SonarTask.hpp"
+#include "tests/support/Ports.hpp"
+#include "tests/support/Scenes.hpp"
+#include "types/SonarReturns.hpp"
+
+namespace insonify::sonar {
+namespace {
+
+/** A ping and what its bins show. */
+struct Told {
+    types::Sonar ping;
+    types::SonarTruth truth;
+
+    size_t at(double range, size_t beam) const {
+        return beam * ping.bin_count + static_cast<size_t>(range / ping.binStart(1));
+    }
+};
+
+Told toldOf(const SonarConfig& config, const types::Snapshot& snapshot, int threads = 0) {
+    SonarRenderer renderer(config, snapshot.geometry, {.threads = threads});
+    Told told;
+    renderer.setTruth(told.ping, &told.truth);
+    renderer.render(snapshot, told.ping);
+    return told;
+}
+
+/** 16 beams of 5 deg, 200 bins of 0.1 m, 60 deg high. */
+SonarConfig fan() {
+    SonarConfig config;
+    config.speed_of_sound = 1000;
+    config.range = 20;
+    config.bin_count = 200;
+    config.beam_count = 16;
+    config.field_of_view_deg = 80;
+    config.beam_height_deg = 60;
+    config.quality.rows = 512;
+    config.quality.columns_per_beam = 4;
+    return config;
+}
+
+struct Way {
+    const char* name;
+    Visibility visibility;
+    Deposit deposit;
+
+    SonarConfig of(SonarConfig config) const {
+        config.visibility = visibility;
+        config.deposit = deposit;
+        config.device = visibility == Visibility::Gl ? "software" : "";
+        return config;
+    }
+};
+constexpr Way ways[] = {{"Rays", Visibility::Cpu, Deposit::Auto},
+                        {"Drawn", Visibility::Gl, Deposit::Cpu},
+                        {"DrawnAndDepositedOnTheDevice", Visibility::Gl, Deposit::Gpu}};
+
+class SonarTruthTest : public testing::TestWithParam<Way> {};
+
+/** All numbers of a truth, as bits: NaN equals NaN. */
+std::vector<uint32_t> bitsOf(const types::SonarTruth& truth) {
+    std::vector<uint32_t> all;
+    types::SonarTruth::forEachArray(truth, [&](const char*, const auto& numbers, auto) {
+        for (const auto number : numbers)
+            if constexpr (std::is_same_v<decltype(number), const float>)
+                all.push_back(std::bit_cast<uint32_t>(number));
+            else
+                all.push_back(static_cast<uint32_t>(number));
+    });
+    return all;
+}
+
+/** A bottom 3 m below a level sonar: at slant range r it lies at the depression asin(3 / r), which is its grazing
+ *  angle as well. A bin of 0.1 m and samples of 0.1 deg leave the mean within 3 mrad. */
+TEST_P(SonarTruthTest, ABottomHasTheElevationAndTheGrazingAngleOfItsDepth) {
+    const Told told = toldOf(GetParam().of(fan()), test::snapshotOf(test::sceneOf({test::ground(-3)})));
+    double largest = 0;
+    for (size_t beam = 0; beam < 16; ++beam)
+        for (double r = 6.55; r < 19.9; r += 0.1) {  // below 6 m the aperture ends
+            const size_t at = told.at(r, beam);
+            ASSERT_EQ(told.truth.object[at], 0) << beam << " " << r;
+            EXPECT_EQ(told.truth.share[at], 1);
+            EXPECT_GE(told.truth.hits[at], 1u);
+            const double angle = std::asin(3 / r);
+            EXPECT_NEAR(told.truth.grazing[at], angle, 0.003) << r;
+            EXPECT_NEAR(told.truth.elevation[at], -angle, 0.003) << r;
+            largest = std::max(largest, std::abs(static_cast<double>(told.truth.grazing[at]) - angle));
+        }
+    RecordProperty("largest_rad", std::to_string(largest));
+    EXPECT_THAT(told.truth.path, testing::Each(0));
+}
+
+/** A plate on the bottom, 5 m ahead and 2 m high, hides what lies between 5.83 m (its foot, straight ahead) and where
+ *  the ray over its upper edge meets the bottom: 15 m ahead, at a slant range of 15.30 m. */
+TEST_P(SonarTruthTest, APlateCastsItsShadowOnTheBottomBehindIt) {
+    const auto scene = test::sceneOf({test::ground(-3), test::quad({5, -20, -3}, {0, 40, 0}, {0, 0, 2})});
+    const Told told = toldOf(GetParam().of(fan()), test::snapshotOf(scene));
+    for (const size_t beam : {size_t{7}, size_t{8}}) {
+        for (double r = 6.15; r < 15.1; r += 0.1) {
+            EXPECT_EQ(told.truth.shadow[told.at(r, beam)], 1) << r;
+            EXPECT_EQ(told.truth.object[told.at(r, beam)], -1) << r;
+        }
+        for (double r = 15.55; r < 19.9; r += 0.1) {
+            EXPECT_EQ(told.truth.shadow[told.at(r, beam)], 0) << r;
+            EXPECT_EQ(told.truth.object[told.at(r, beam)], 0) << r;
+        }
+        EXPECT_EQ(told.truth.object[told.at(5.25, beam)], 1);
+        EXPECT_EQ(told.truth.shadow[told.at(5.25, beam)], 0);
+        EXPECT_EQ(told.truth.shadow[told.at(2.05, beam)], 1) << "water before the first echo is silent as well";
+    }
+}
+
+std::vector<SonarConfig> manyKinds() {
+    std::vector<SonarConfig> all(5, fan());
+    all[1].beam_geometry = BeamGeometry::Conical;
+    all[2].model = Model::Cerqueira2017;
+    acoustics::BeamLaw law;
+    law.width_deg = 8;
+    all[3].beam_pattern.emplace().receive.azimuth = law;
+    law.width_deg = 30;
+    all[3].beam_pattern->transmit.elevation = law;
+    all[3].pulse.emplace().bandwidth_khz = 2;
+    all[4].beam_count = 1;
+    all[4].quality.rows = 2048;
+    all[4].quality.columns_per_beam = 32;
+    return all;
+}
+
+types::Snapshot balls() {
+    std::vector<types::Mesh> meshes = {test::ground(-3), test::wall(14)};
+    std::vector<glm::dvec3> places(2);
+    for (int i = 0; i < 8; ++i) {
+        meshes.push_back(test::sphere(0.6f, 16));
+        places.emplace_back(5 + i, i % 2 ? 2.0 * i - 8 : 8 - 2.0 * i, -0.3 * i);
+    }
+    return test::snapshotOf(test::sceneOf(std::move(meshes), -10, places));
+}
+
+TEST_P(SonarTruthTest, NotABinChanges) {
+    const types::Snapshot snapshot = balls();
+    for (const SonarConfig& config : manyKinds()) {
+        SonarRenderer renderer(GetParam().of(config), snapshot.geometry);
+        types::Sonar alone, told, again;
+        types::SonarTruth truth;
+        renderer.render(snapshot, alone);
+        renderer.setTruth(told, &truth);
+        renderer.render(snapshot, told);
+        renderer.render(snapshot, again);
+        EXPECT_EQ(alone.bins, told.bins);
+        EXPECT_EQ(alone.bins, again.bins);
+        EXPECT_THAT(truth.object, testing::Contains(5));
+    }
+}
+
+TEST_P(SonarTruthTest, ItIsTheSameOnAnyNumberOfThreads) {
+    const types::Snapshot snapshot = balls();
+    for (const SonarConfig& config : manyKinds()) {
+        const std::vector<uint32_t> one = bitsOf(toldOf(GetParam().of(config), snapshot, 1).truth);
+        for (const int threads : {2, 5})
+            EXPECT_EQ(one, bitsOf(toldOf(GetParam().of(config), snapshot, threads).truth)) << threads;
+    }
+}
+
+INSTANTIATE_TEST_SUITE_P(Ways, SonarTruthTest, testing::ValuesIn(ways),
+                         [](const auto& way) { return std::string(way.param.name); });
+
+/** The published model counts what meets nothing in its first bin, where there is no object. */
+TEST(PublishedTruthTest, MissesAreNoObjects) {
+    SonarConfig config = ways[1].of(fan());
+    config.model = Model::Cerqueira2017;
+    config.published = true;
+    const types::Snapshot snapshot = test::snapshotOf(test::sceneOf({test::quad({8, -1, -1}, {0, 2, 0}, {0, 0, 2})}));
+    const Told told = toldOf(config, snapshot);
+    SonarRenderer renderer(config, snapshot.geometry);
+    types::Sonar alone;
+    renderer.render(snapshot, alone);
+    EXPECT_EQ(alone.bins, told.ping.bins);
+    EXPECT_GT(told.ping.bins[0], 0);
+    EXPECT_EQ(told.truth.object[0], -1);
+    EXPECT_EQ(told.truth.object[told.at(8.05, 8)], 0);
+}
+
+/** A ball in one beam is heard by all others in their sidelobes, but seen by its own alone. */
+TEST(PatternedTruthTest, WhatABeamHearsInItsSidelobesIsNotItsTruth) {
+    SonarConfig config = ways[0].of(fan());
+    acoustics::BeamLaw law;
+    law.width_deg = 5;
+    config.beam_pattern.emplace().receive.azimuth = law;
+    const double bearing = types::radians(2.5);  // the middle of beam 8
+    const glm::dvec3 place(10 * std::cos(bearing), 10 * std::sin(bearing), 0);
+    const Told told = toldOf(config, test::snapshotOf(test::sceneOf({test::sphere(0.2f, 32)}, 0, {place})));
+    for (size_t beam = 0; beam < 16; ++beam) {
+        const size_t at = told.at(9.85, beam);
+        EXPECT_GT(told.ping.bins[at], 0) << beam;
+        EXPECT_EQ(told.truth.object[at], beam == 8 ? 0 : -1) << beam;
+    }
+}
+
+/** Pings of a task with what is connected, and what it tells of them. */
+struct Bench {
+    SonarTask task{"sonar"};
+    test::Writer<types::SnapshotPtr> in;
+    test::Reader<types::SonarPtr> pings;
+    test::Reader<types::SonarTruthPtr> truths{"truths"};
+    test::Reader<types::SonarReturnsPtr> returns{"returns"};
+
+    explicit Bench(const SonarConfig& config) {
+        in.port.connectTo(task.snapshot, framework::ConnPolicy::buffer(4));
+        task.ping.connectTo(pings.port, framework::ConnPolicy::data());
+        task.config.set(config);
+    }
+    types::SonarPtr pingOf(const types::Snapshot& snapshot) {
+        if (!task.isRunning() && !(task.configure() && task.start())) return nullptr;
+        in.port.write(std::make_shared<types::Snapshot>(snapshot));
+        task.update();
+        types::SonarPtr ping;
+        pings.port.readNew(ping);
+        return ping;
+    }
+};
+
+TEST(SonarTaskTruthTest, NothingIsToldWhereNobodyListensAndTheQualityThatIsChosenIsTheSame) {
+    SonarConfig config = ways[0].of(fan());
+    config.quality = {};  // it is chosen, and looked after with coarser pings
+    Bench alone(config), told(config);
+    told.task.truth.connectTo(told.truths.port, framework::ConnPolicy::data());
+    types::Snapshot snapshot = balls();
+    for (int i = 0; i < 12; ++i) {
+        snapshot.time = snapshot.time + types::Time{100'000};
+        snapshot.sonar.position.x = 0.05 * i;
+        const auto ping = alone.pingOf(snapshot), same = told.pingOf(snapshot);
+        ASSERT_TRUE(ping && same);
+        EXPECT_EQ(ping->bins, same->bins) << i;
+        types::SonarTruthPtr truth;
+        ASSERT_TRUE(told.truths.port.readNew(truth));
+        EXPECT_EQ(truth->time, same->time);
+        EXPECT_EQ(truth->diagnostic(), nullptr);
+        EXPECT_THAT(truth->objects, testing::SizeIs(10));
+        EXPECT_EQ(truth->objects[4], "object_4");
+        for (size_t at = 0; at < ping->bins.size(); ++at)
+            ASSERT_EQ(ping->bins[at] > 0, truth->object[at] >= 0) << "the truth of other samples, ping " << i;
+    }
+    EXPECT_EQ(alone.task.truth.written(), 0u);
+    EXPECT_EQ(told.task.returns.written(), 0u);
+}
+
+/** A plate square to the sound 9 m ahead, and a bottom below: the bottom is met first, the plate is stronger. */
+TEST(SonarTaskTruthTest, ReturnsAreTheFirstAndTheStrongestOfEachBeam) {
+    Bench bench(ways[0].of(fan()));
+    bench.task.returns.connectTo(bench.returns.port, framework::ConnPolicy::data());
+    const auto scene = test::sceneOf({test::ground(-3), test::quad({9, -10, -0.5}, {0, 20, 0}, {0, 0, 1})});
+    const auto ping = bench.pingOf(test::snapshotOf(scene));
+    types::SonarReturnsPtr returns;
+    ASSERT_TRUE(ping && bench.returns.port.readNew(returns));
+    EXPECT_EQ(returns->diagnostic(), nullptr);
+    EXPECT_EQ(bench.task.truth.written(), 0u);
+    constexpr size_t beam = 8;
+    EXPECT_NEAR(returns->first_range[beam], 3 / std::sin(types::radians(30)), 0.1) << "where the aperture ends";
+    EXPECT_NEAR(returns->first_elevation[beam], -types::radians(30), 0.02);
+    EXPECT_NEAR(returns->strongest_range[beam], 9.05, 0.051);
+    EXPECT_NEAR(returns->strongest_elevation[beam], 0, 0.03);
+    const size_t at = beam * 200 + static_cast<size_t>(returns->strongest_range[beam] / 0.1f);
+    EXPECT_FLOAT_EQ(returns->strongest_level[beam], 10 * std::log10(ping->bins[at]));
+    const auto silent = bench.pingOf(test::snapshotOf(scene, {0, 0, 500}));
+    ASSERT_TRUE(silent && bench.returns.port.readNew(returns));
+    EXPECT_TRUE(std::isnan(returns->first_range[beam]) && std::isnan(returns->strongest_level[beam]));
+}
+
+}  // namespace
+}  // namespace insonify::sonar

@@ -1,0 +1,34 @@
+#pragma once
+#include <cmath>
+#include <limits>
+
+#include "types/Angle.hpp"
+#include "types/Time.hpp"
+
+namespace insonify::types {
+
+/** How far it is along the axis of a sonar of one beam. Rock has no such type; its fields are those of ROS's
+ *  sensor_msgs/Range. */
+struct Range {
+    static constexpr const char* type_name = "/insonify/Range";
+    static constexpr double none = std::numeric_limits<double>::quiet_NaN();
+
+    Time time;
+    double range = none;
+    double range_min = 0;
+    double range_max = 0;
+    Angle field_of_view;
+
+    bool isKnown() const { return std::isfinite(range); }
+
+    template <class Self, class V>
+    static void describe(Self& self, V& visit) {
+        visit(Field{"time", "us", "when the range was true in the world"}, self.time);
+        visit(Field{"range", "m", "to the first return; NaN: there is none"}, self.range);
+        visit(Field{"range_min", "m", "nearer ones are not heard"}, self.range_min);
+        visit(Field{"range_max", "m", "farther ones are not heard"}, self.range_max);
+        visit(Field{"field_of_view", "rad", "opening of the beam"}, self.field_of_view);
+    }
+};
+
+}  // namespace insonify::types

@@ -1,0 +1,52 @@
+#include "types/SonarReturns.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace insonify::types {
+namespace {
+
+/** Three numbers of a beam. */
+struct Return {
+    float& range;
+    float& level;
+    float& elevation;
+};
+
+void tell(const Sonar& ping, const SonarTruth& truth, size_t at, const Return& told) {
+    told.range = static_cast<float>(ping.binStart(static_cast<double>(at % ping.bin_count) + 0.5));
+    told.level = 10 * std::log10(ping.bins[at]);
+    told.elevation = truth.elevation[at];
+}
+
+}  // namespace
+
+void SonarReturns::take(const Sonar& ping, const SonarTruth& truth) {
+    time = ping.time;
+    bearings = ping.bearings;
+    forEachArray(*this, [&](const char*, auto& numbers, auto) {
+        numbers.assign(ping.beam_count, std::numeric_limits<float>::quiet_NaN());
+    });
+    for (size_t beam = 0; beam < ping.beam_count; ++beam) {
+        const auto begin = static_cast<ptrdiff_t>(beam * ping.bin_count), end = begin + ping.bin_count;
+        const auto strongest = std::max_element(ping.bins.begin() + begin, ping.bins.begin() + end);
+        const auto shown = [](int32_t object) { return object != SonarTruth::no_object; };
+        const auto first = std::find_if(truth.object.begin() + begin, truth.object.begin() + end, shown);
+        if (first != truth.object.begin() + end)
+            tell(ping, truth, static_cast<size_t>(first - truth.object.begin()),
+                 {first_range[beam], first_level[beam], first_elevation[beam]});
+        if (strongest != ping.bins.begin() + end && *strongest > 0)
+            tell(ping, truth, static_cast<size_t>(strongest - ping.bins.begin()),
+                 {strongest_range[beam], strongest_level[beam], strongest_elevation[beam]});
+    }
+}
+
+const char* SonarReturns::diagnostic() const {
+    bool fits = true;
+    forEachArray(*this,
+                 [&](const char*, const auto& numbers, auto) { fits = fits && numbers.size() == bearings.size(); });
+    return fits ? nullptr : "has other numbers of returns than bearings";
+}
+
+}  // namespace insonify::types

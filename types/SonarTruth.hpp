@@ -1,0 +1,80 @@
+#pragma once
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <type_traits>
+#include <vector>
+
+#include "types/Angle.hpp"
+#include "types/Sonar.hpp"
+#include "types/Time.hpp"
+
+namespace insonify::types {
+
+/** What the bins of a ping show: for each of them what sent the echo back, from which elevation, at which angle.
+ *
+ *  Beam-first as the ping's own bins: what is told of bin k of beam b stands at [b * bin_count + k]. A bin that has
+ *  heard nothing has object -1, share 0, no hits, and NaN for its angles. */
+struct SonarTruth {
+    static constexpr const char* type_name = "/insonify/SonarTruth";
+    static constexpr bool shared = true;  ///< Travels by reference, see Carried.
+
+    static constexpr int32_t no_object = -1;
+
+    Time time;
+    Time bin_duration;
+    float speed_of_sound = 1497.0f;
+    uint32_t bin_count = 0;
+    uint32_t beam_count = 0;
+    std::vector<Angle> bearings;
+    std::vector<std::string> objects;
+    std::vector<float> elevation;
+    std::vector<int32_t> object;
+    std::vector<float> share;
+    std::vector<uint32_t> hits;
+    std::vector<float> grazing;
+    std::vector<uint8_t> path;
+    std::vector<uint8_t> shadow;
+
+    /** Slant range at which bin k starts [m]; k = bin_count gives the far edge. */
+    double binStart(double k) const { return k * bin_duration.seconds() * static_cast<double>(speed_of_sound); }
+    std::vector<size_t> shape() const { return {beam_count, bin_count}; }
+    /** Takes the grid of a ping, and makes room for as many bins; allocates nothing when it had this shape. */
+    void takeGrid(const Sonar& ping);
+    /** What is wrong with the lists, after "a sample"; null: nothing. */
+    const char* diagnostic() const;
+
+    /** The lists of numbers that have a place for each bin, with what arrays hold of them. */
+    template <class Self, class Visit>
+    static void forEachArray(Self& self, Visit&& visit) {
+        visit("elevation", self.elevation, std::type_identity<float>{});
+        visit("object", self.object, std::type_identity<int32_t>{});
+        visit("share", self.share, std::type_identity<float>{});
+        visit("hits", self.hits, std::type_identity<uint32_t>{});
+        visit("grazing", self.grazing, std::type_identity<float>{});
+        visit("path", self.path, std::type_identity<uint8_t>{});
+        visit("shadow", self.shadow, std::type_identity<bool>{});
+    }
+    template <class Self, class V>
+    static void describe(Self& self, V& visit) {
+        visit(Field{"time", "us", "when the ping was true in the world"}, self.time);
+        visit(Field{"bin_duration", "us", "one-way travel time through one bin"}, self.bin_duration);
+        visit(Field{"speed_of_sound", "m/s", "speed of sound that turns time into range"}, self.speed_of_sound);
+        visit(Field{"bin_count", "1", "bins per beam"}, self.bin_count);
+        visit(Field{"beam_count", "1", "beams"}, self.beam_count);
+        visit(Field{"bearings", "rad", "centre of each beam, 0 ahead, positive to port"}, self.bearings);
+        visit(Field{"objects", "", "names of all objects of the scene"}, self.objects);
+        visit(Field{"elevation", "rad", "from which the strongest object's echo comes, positive up"}, self.elevation);
+        visit(Field{"object", "1", "that returns most of the bin's energy: index into `objects`; -1: none"},
+              self.object);
+        visit(Field{"share", "1", "of that object in the bin's energy", 0, 1}, self.share);
+        visit(Field{"hits", "1", "samples whose echo lies in the bin"}, self.hits);
+        visit(Field{"grazing", "rad", "angle between the sound and the object's surface, pi/2: square to it"},
+              self.grazing);
+        visit(Field{"path", "1", "0: direct, 1: by the surface once, 2: twice, 3: bounced"}, self.path);
+        visit(Field{"shadow", "", "1: nothing heard though nearer than the beam's last echo"}, self.shadow);
+    }
+};
+using SonarTruthPtr = std::shared_ptr<const SonarTruth>;
+
+}  // namespace insonify::types
