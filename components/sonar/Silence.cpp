@@ -119,9 +119,11 @@ std::string targetText(const Coverage& coverage, const types::Snapshot& scene) {
 std::string silenceText(const RenderPlan& plan, bool all_round, const types::Snapshot& scene) {
     const Coverage coverage{plan, all_round};
     const glm::dvec3 ahead = scene.sonar.orientation * glm::dvec3(1, 0, 0);
-    return fmt::format("hears nothing{}. The sonar is at {} and {}{}{}",
-                       plan.config.volume.empty() ? "" : " but the water", text(scene.sonar.position),
-                       directionText(ahead), surfaceText(coverage, scene), targetText(coverage, scene));
+    const bool is_clear = plan.config.volume.empty();
+    return fmt::format("{} {} and {}{}{}",
+                       is_clear ? "hears nothing. The sonar is at" : "hears nothing but the water. The sonar is at",
+                       text(scene.sonar.position), directionText(ahead), surfaceText(coverage, scene),
+                       targetText(coverage, scene));
 }
 
 std::string enclosureText(const types::Snapshot& scene, uint32_t object) {
