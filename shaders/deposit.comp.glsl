@@ -113,8 +113,9 @@ void addToBin(uint beam, uint bin, double amount, double weight) {
 
 #include "jitter.glsl"
 #include "surface.glsl"
-#define real double
 #include "footprint.glsl"
+#define real double
+#include "trapezoid.glsl"
 #include "deposit.glsl"
 
 #ifdef HAVE_VOLUME
@@ -223,7 +224,6 @@ void depositPixel(ivec2 pixel, dvec2 uv, Seen seen) {
                                        surface.inverse_range, surface.slope_u, surface.slope_v, surface.nearest, seen.reach.x,
                                        seen.reach.y, binEdge(0u), binEdge(bin_count), per_pixel);
         cell.size *= seen.weight;
-        cell.spread *= seen.weight;
         depositCell(cell, share.beam, seen.strength * surface.range);
 #ifdef HAVE_VOLUME
         depositVolume(cell, share.beam, uv);

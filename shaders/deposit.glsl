@@ -1,5 +1,5 @@
 // Shared by C++ and GLSL: one cell's echo, spread over the bins that its footprint covers.
-// The includer has footprint.glsl before this file, and defines:
+// The includer has footprint.glsl and trapezoid.glsl before this file, and defines:
 //     double binEdge(uint k);                      1 / range of edge k [1/m]; edge 0 is the near blanking, edge n the far end
 //     void addToBin(uint beam, uint bin, double amount, double weight);
 //     uint bin_count; double bin_width [m], attenuation (amplitude, one way, cerqueira2017) [Np/m]
@@ -23,7 +23,7 @@ void depositPart(Footprint cell, uint beam, uint bin, double share, double above
 #ifdef HAVE_ABSORPTION
     cosine = attenuated(cosine, 1.0 / inverse_range);
 #endif
-    addToBin(beam, bin, cell.spread * share * cerqueiraEcho(cosine), cell.spread * share);
+    addToBin(beam, bin, cell.size * share * cerqueiraEcho(cosine), cell.size * share);
 #endif
 #ifdef HAVE_PHYSICAL
     addToBin(beam, bin, partEnergy(cell, strength_range, share, (double(bin) + 0.5) * bin_width, above, below), 0.0);

@@ -10,17 +10,7 @@ struct Footprint {
     double near_end, far_end;    // near_end <= far_end: nothing in reach
     double nearest;              // of the plane, which ends there
     double size;                 // solid angle relative to a whole pixel at the picture's centre [1]
-    double spread;               // the same over the share of the trapezoid that is within the object [1]
 };
-
-#include "trapezoid.glsl"
-
-// The share of a trapezoid that lies within the inverse ranges of the object, which all of its energy comes from; an eighth
-// at least.
-double shareWithin(Footprint cell, double near_limit, double far_limit) {
-    double above = near_limit < cell.nearest ? trapezoidShare(cell, near_limit - cell.centre) : 0.5;
-    return max(above - trapezoidShare(cell, far_limit - cell.centre), 0.125);
-}
 
 // The trapezoid about `centre` that a cell covers: box `along` times box `across`. No part goes beyond `nearest`, the
 // plane's nearest point, nor beyond [far_limit, near_limit], the inverse ranges of what the plane belongs to (a facet seen
@@ -39,7 +29,6 @@ Footprint trapezoidFootprint(double inverse_range, double centre, double along, 
     cell.nearest = nearest;
     cell.far_end = max(max(cell.centre - half_length, far_limit), far_edge);
     cell.size = size;
-    cell.spread = size / shareWithin(cell, near_limit, far_limit);
     return cell;
 }
 

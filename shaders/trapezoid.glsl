@@ -14,5 +14,5 @@ real meanCube(real above, real below) { return 0.5 * (0.5 * (above + below)) * (
 // Energy of a part between two inverse ranges times the square of the bin's middle range. `strength_range` = strength times
 // slant range [m]; share of the trapezoid and its size are relative to one whole cell.
 real partEnergy(Footprint cell, double strength_range, real share, real middle, real above, real below) {
-    return strength_range * cell.spread * share * middle * middle * meanCube(above, below);
+    return strength_range * cell.size * share * middle * middle * meanCube(above, below);
 }

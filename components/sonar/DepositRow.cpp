@@ -58,7 +58,7 @@ struct Shared {
 /** What a stretch of shares covers: Footprint as arrays. */
 struct Cells {
     double pixel[stretch], centre[stretch], wide[stretch], narrow[stretch], per_wide[stretch], steepness[stretch],
-        near_end[stretch], far_end[stretch], nearest[stretch], size[stretch], spread[stretch];
+        near_end[stretch], far_end[stretch], nearest[stretch], size[stretch];
 
     void set(int i, const Footprint& f) {
         pixel[i] = f.pixel;
@@ -71,11 +71,10 @@ struct Cells {
         far_end[i] = f.far_end;
         nearest[i] = f.nearest;
         size[i] = f.size;
-        spread[i] = f.spread;
     }
     Footprint get(int i) const {
         return {pixel[i],     centre[i],   wide[i],    narrow[i],  per_wide[i],
-                steepness[i], near_end[i], far_end[i], nearest[i], size[i], spread[i]};
+                steepness[i], near_end[i], far_end[i], nearest[i], size[i]};
     }
 };
 
@@ -256,11 +255,7 @@ private:
 
     void weigh(int count, double v) {
         ElevationTable table{part_.rules.elevation_powers.data(), part_.rules.elevation_reach};
-        for (int i = 0; i < count; ++i) {
-            const double weight = table.elevationWeight(shared_.u[i], v);
-            cells_.size[i] *= weight;
-            cells_.spread[i] *= weight;
-        }
+        for (int i = 0; i < count; ++i) cells_.size[i] *= table.elevationWeight(shared_.u[i], v);
     }
 
     bool countsMisses() const {

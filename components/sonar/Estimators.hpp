@@ -21,8 +21,9 @@ inline double max(double a, double b) { return a > b ? a : b; }
 inline uint min(uint a, uint b) { return a < b ? a : b; }
 #pragma GCC diagnostic push
 #pragma GCC diagnostic ignored "-Wunused-function"  // each includer has its own way to footprints
-using real = double;
 #include "shaders/footprint.glsl"
+using real = double;
+#include "shaders/trapezoid.glsl"
 #pragma GCC diagnostic pop
 
 /** Where the shared code of shaders/deposit.glsl finds its bins; HAVE_<FEATURE> chooses at compile time what it does.

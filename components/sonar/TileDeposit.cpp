@@ -30,11 +30,11 @@ struct Cells {
 /** What cells cover, and strength times slant range [m]. */
 struct Covered {
     double pixel[stretch], centre[stretch], wide[stretch], narrow[stretch], per_wide[stretch], steepness[stretch],
-        near_end[stretch], far_end[stretch], nearest[stretch], size[stretch], spread[stretch], strength_range[stretch];
+        near_end[stretch], far_end[stretch], nearest[stretch], size[stretch], strength_range[stretch];
 
     Footprint footprint(int i) const {
         return {pixel[i],     centre[i],   wide[i],    narrow[i],  per_wide[i],
-                steepness[i], near_end[i], far_end[i], nearest[i], size[i], spread[i]};
+                steepness[i], near_end[i], far_end[i], nearest[i], size[i]};
     }
 };
 
@@ -72,7 +72,6 @@ INSONIFY_VECTOR_CLONES void cover(const Cells& cells, int count, double near_edg
         covered.far_end[i] = cell.far_end;
         covered.nearest[i] = cell.nearest;
         covered.size[i] = cell.size;
-        covered.spread[i] = cell.spread;
         const double cosine_range = cells.mapped[i] > 0.0 && echo ? cells.mapped[i] / inverse_range : perpendicular;
         covered.strength_range[i] = cells.strength[i] * cosine_range;
     }

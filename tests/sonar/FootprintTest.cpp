@@ -17,9 +17,10 @@ using std::abs, std::exp, std::sqrt;
 inline double min(double a, double b) { return a < b ? a : b; }
 inline double max(double a, double b) { return a > b ? a : b; }
 inline uint min(uint a, uint b) { return a < b ? a : b; }
-using real = double;
 #include "shaders/footprint.glsl"
+using real = double;
 #include "shaders/surface.glsl"
+#include "shaders/trapezoid.glsl"
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
@@ -119,7 +120,7 @@ struct AngularCell {
         const double reach = (wide + narrow) / 2, nearest = 1 / plane.distance;
         const double size = (std::sin(e + de / 2) - std::sin(e - de / 2)) / de;
         bins.depositCell({g, g, wide, narrow, 1 / wide, 0.5 / (wide * narrow), min(g + reach, nearest),
-                          max(g - reach, bins.binEdge(Bins::bin_count)), nearest, size, size},
+                          max(g - reach, bins.binEdge(Bins::bin_count)), nearest, size},
                          0, plane.distance);
     }
     void cut(const Plane& plane, Bins& bins) const {
@@ -173,20 +174,6 @@ TEST(FootprintTest, ACellOfThePictureCoversTheBinsThatItsPointsDo) {
     wide.deposit(bottom, got);
     wide.cut(bottom, expected);
     EXPECT_GT(relativeL2(got, expected), 0.1) << "an upright cell covers others";
-}
-
-TEST(FootprintTest, WhatLiesBeyondTheObjectIsSpreadOverWhatLiesWithin) {
-    const auto within = [](const Footprint& cell) {
-        return trapezoidShare(cell, cell.near_end - cell.centre) - trapezoidShare(cell, cell.far_end - cell.centre);
-    };
-    const Footprint cut = trapezoidFootprint(0.1, 0.1, 0.02, 0.01, 1, 0.105, 0.097, 10, 0, 2);
-    EXPECT_LT(within(cut), 0.6);
-    EXPECT_NEAR(cut.spread * within(cut), 2, 1e-12) << "no energy is lost";
-    EXPECT_EQ(cut.size, 2) << "nor does it fill more of the view";
-    const Footprint whole = trapezoidFootprint(0.1, 0.1, 0.02, 0.01, 1, 0.2, 0.05, 10, 0, 2);
-    EXPECT_NEAR(whole.spread, 2, 1e-12);
-    const Footprint beside = trapezoidFootprint(0.1, 0.1, 0.02, 0.01, 1, 0.05, 0.04, 10, 0, 2);
-    EXPECT_EQ(beside.spread, 16) << "of a facet that is not where its plane is";
 }
 
 TEST(FootprintTest, ACellIsClippedAtTheAperture) {
