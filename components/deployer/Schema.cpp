@@ -99,6 +99,17 @@ Json& blockAt(Json& root, const std::string& path) {
     return *block;
 }
 
+/** One block stands for a list of one, in all lists of blocks within a schema. */
+void allowOneForAList(Json& schema) {
+    for (auto& [name, property] : schema["properties"].items()) {
+        if (property.contains("properties")) allowOneForAList(property);
+        if (!property.contains("items") || !property["items"].contains("properties")) continue;
+        allowOneForAList(property["items"]);
+        property["type"] = {"array", "object"};
+        for (const char* key : {"properties", "additionalProperties"}) property[key] = property["items"][key];
+    }
+}
+
 /** A block of these fields; what is not among them is refused. */
 Json blockSchema(const std::vector<PropertyInfo>& fields) {
     Json root = {{"type", {"object", "null"}}, {"additionalProperties", false}, {"properties", Json::object()}};
@@ -108,6 +119,7 @@ Json blockSchema(const std::vector<PropertyInfo>& fields) {
         if (!block.contains("additionalProperties")) block["additionalProperties"] = false;
         block["properties"][dot == std::string::npos ? field.name : field.name.substr(dot + 1)] = documented(field);
     }
+    allowOneForAList(root);
     return root;
 }
 

@@ -156,7 +156,7 @@ bool PingTask::renderPing(SonarRenderer& renderer, types::Snapshot& scene, types
 RenderPlan PingTask::coverage(const types::Snapshot& /*scene*/) const { return renderer_->renderPlan(); }
 
 std::string PingTask::troubleOf(bool heard, const types::Sonar& sample) {
-    return troubles_->follow(heard, sonarConfig().model, aimed_, sample, [this] { return coverage(aimed_); });
+    return troubles_->follow(heard, renderer_->renderPlan().config.model, aimed_, sample, [this] { return coverage(aimed_); });
 }
 
 void PingTask::render() {
