@@ -174,7 +174,7 @@ TEST_F(PeerTest, ReadsSoundingsAsPointsOfTheWorldAndTheRangeOfAnAltimeter) {
     EXPECT_EQ(cloud["width"], 2);
     EXPECT_EQ(cloud["header"]["frame_id"], "map");
     EXPECT_EQ(cloud["fields"].size(), 4u);
-    EXPECT_EQ(cloud["data"]["size"], 32);
+    EXPECT_EQ(cloud["data"].size(), 32u);
     EXPECT_EQ(altitude["range"], 6.5);
     EXPECT_EQ(altitude["max_range"], 30);
     EXPECT_EQ(altitude["header"]["frame_id"], "sonar");
