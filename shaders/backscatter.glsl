@@ -27,5 +27,5 @@ double backscatterOverCosine(vec4 law, double mu, double cosine, double mean_squ
 }
 
 // What a sample that is `angle` wide adds [rad]: half its square, so that neighbouring samples together catch all of a lobe
-// that is narrower than they are (0.1 dB).
+// that is narrower than they are.
 double slopeOfSample(double angle) { return 0.5 * angle * angle; }

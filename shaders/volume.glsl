@@ -37,16 +37,17 @@ void hearLayers(uint beam, double rise, double end, double amount) {
 
 // What a cell of a solid angle `size` meets hides what is behind it: one that covers several bins in up to four parts.
 void hideVolume(Footprint cell, uint beam, double rise, double size) {
-    double depth = cell.wide + cell.narrow;
-    uint parts = uint(min(depth / (bin_width * cell.pixel * cell.pixel), 3.0)) + 1u;
+    double depth = cell.wide + cell.narrow, of_a_bin = bin_width * cell.pixel * cell.pixel;
+    uint parts = depth < of_a_bin ? 1u : depth < 2.0 * of_a_bin ? 2u : 4u;
+    double per_parts = 1.0 / double(parts);
     for (uint part = 0u; part < parts; ++part) {
-        double inverse_range = min(cell.centre + ((double(part) + 0.5) / double(parts) - 0.5) * depth, cell.nearest);
+        double inverse_range = min(cell.centre + ((double(part) + 0.5) * per_parts - 0.5) * depth, cell.nearest);
         if (cell.near_end > cell.far_end) inverse_range = min(max(inverse_range, cell.far_end), cell.near_end);
         if (!(inverse_range > 0.0)) continue;
 #ifdef HAVE_VOLUME_LAYERS
-        hearLayers(beam, rise, 1.0 / inverse_range, size / double(parts));
+        hearLayers(beam, rise, 1.0 / inverse_range, size * per_parts);
 #else
-        changeVolume(beam, 1.0 / inverse_range, -size / double(parts));
+        changeVolume(beam, 1.0 / inverse_range, -size * per_parts);
 #endif
     }
 }

@@ -79,7 +79,7 @@ Json frequencyOf(const TaskSpec* sonar) {
 Json pingMeaning(const DeploymentSpec& spec, const std::string& task) {
     const TaskSpec* sonar = upstream(spec, task,
                                      {"sonar::SonarTask", "sonar::ScanningSonarTask", "sonar::ProfilerTask",
-                                      "sonar::SideScanTask", "sonar::AltimeterTask"});
+                                      "sonar::SideScanTask", "sonar::AltimeterTask", "sonar::Sonar3dTask"});
     const TaskSpec* receiver = upstream(spec, task, {"receiver::ReceiverTask"});
     const TaskSpec* noise = upstream(spec, task, {"noise::NoiseTask"});
     const TaskSpec* scene = upstream(spec, task, {"scene::SceneTask"});

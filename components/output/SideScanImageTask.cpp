@@ -9,7 +9,7 @@ std::unique_ptr<Painter> SideScanImageTask::makePainter() {
 }
 
 void SideScanImageTask::updateHook() {
-    if (types::Range measured; altitude.connected() && altitude.takeNext(measured))
+    if (types::Range measured; altitude.connected() && altitude.readNewest(measured) == framework::FlowStatus::NewData)
         painter_->setAltitude(measured.range);
     PictureTask::updateHook();
 }

@@ -29,6 +29,13 @@ double smallestSample(const RenderPlan& plan) {
     return types::radians(std::min(row, column)) / 4;
 }
 
+/** Of the azimuth cells, over the middle one [1]. */
+double widestCell(const RenderPlan& plan) {
+    const auto widthOf = [](const Beam& cell) { return cell.high - cell.low; };
+    const double middle = widthOf(plan.cells[plan.cells.size() / 2]);
+    return plan.has(Pass::Beamform) ? widthOf(*std::ranges::max_element(plan.cells, {}, widthOf)) / middle : 1;
+}
+
 /** How many of a beam's samples a lobe can fill: those in a circle of its slope, at eight places at once. */
 double samplesOfLobe(const RenderPlan& plan, double samples) {
     double widest = 0;
@@ -70,7 +77,8 @@ double strengthScale(const RenderPlan& plan) {
         static_cast<double>(plan.options.samples_per_pixel * config.rows()) * (config.columnsPerBeam() + 2);
     const double lobe = plan.laws.loudestLobe(smallestSample(plan)), surface = plan.laws.loudest();
     const double strongest = std::max(surface, lobe), sum = surface * pixels + lobe * samplesOfLobe(plan, pixels);
-    return std::exp2(-std::ceil(std::max(0.0, std::log2(ratio * ratio * std::max(strongest / most, sum / max_sum)))));
+    const double scale = ratio * ratio * widestCell(plan);
+    return std::exp2(-std::ceil(std::max(0.0, std::log2(scale * std::max(strongest / most, sum / max_sum)))));
 }
 
 }  // namespace insonify::sonar

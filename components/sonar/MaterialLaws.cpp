@@ -53,8 +53,8 @@ private:
             curve.y.push_back(point.y);
         }
         laws_.has_measured = true;
-        return add(acoustics::BackscatterTable(
-            [&](double grazing) { return acoustics::measuredSection(curve, grazing); }));
+        return add(
+            acoustics::BackscatterTable([&](double grazing) { return acoustics::measuredSection(curve, grazing); }));
     }
     int addSeabed(const std::string& name) {
         const acoustics::SeabedBackscatter seabed(acoustics::seabedNamed(name).value(), *config_.frequency_khz,
@@ -83,10 +83,6 @@ bool MaterialLaws::hasLobes() const {
     return std::ranges::any_of(records, [](const MaterialRecord& record) { return record.law.y > 0; });
 }
 
-bool MaterialLaws::followsLambert(size_t material) const {
-    return Shared{tables.data()}.followsLambert(records[material].law);
-}
-
 double MaterialLaws::overCosine(size_t material, double cosine, double facet_slope, double sample_angle) const {
     Shared shared{tables.data()};
     const MaterialRecord& record = records[material];
@@ -98,8 +94,7 @@ double MaterialLaws::loudest() const {
     double strongest = 0;
     for (const MaterialRecord& record : records)
         if (record.law.x < 0) strongest = std::max(strongest, double{record.values.x});
-    for (size_t i = 0; i < tables.size(); ++i)
-        strongest = std::max(strongest, tables[i]);
+    for (size_t i = 0; i < tables.size(); ++i) strongest = std::max(strongest, tables[i]);
     return strongest;
 }
 

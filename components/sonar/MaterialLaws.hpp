@@ -12,18 +12,21 @@ namespace insonify::sonar {
 /** What materials give back to a sonar (ACOUSTICS.md 3): by Lambert's law, or by a table, and by a lobe about the
  *  normal. */
 struct MaterialLaws {
-    std::vector<MaterialRecord> records;    ///< One for each material.
-    std::vector<double> tables;             ///< sigma_b / cos(theta), BACKSCATTER_ENTRIES each [1].
-    std::optional<double> wavelength;       ///< None without a frequency [m].
-    bool has_measured = false;              ///< A table is measured.
-    bool has_seabeds = false;               ///< A table is that of APL-UW TR 9407.
-    bool lacks_frequency = false;           ///< There are seabeds, which follow Lambert's law for want of a frequency.
-    std::string outside_validity;           ///< What lies outside of what TR 9407 covers; empty: nothing.
+    std::vector<MaterialRecord> records;  ///< One for each material.
+    std::vector<double> tables;           ///< sigma_b / cos(theta), BACKSCATTER_ENTRIES each [1].
+    std::optional<double> wavelength;     ///< None without a frequency [m].
+    bool has_measured = false;            ///< A table is measured.
+    bool has_seabeds = false;             ///< A table is that of APL-UW TR 9407.
+    bool lacks_frequency = false;         ///< There are seabeds, which follow Lambert's law for want of a frequency.
+    std::string outside_validity;         ///< What lies outside of what TR 9407 covers; empty: nothing.
 
     bool hasLobes() const;
-    bool followsLambert(size_t material) const;
-    /** sigma_b / cos(theta) of a material at a cosine [1]; its lobe is widened by what the facet adds to its mean square
-     *  slope [1], and by how wide the sample is [rad]. */
+    bool followsLambert(size_t material) const {
+        const vec4& law = records[material].law;
+        return law.x < 0 && law.y == 0;
+    }
+    /** sigma_b / cos(theta) of a material at a cosine [1]; its lobe is widened by what the facet adds to its mean
+     * square slope [1], and by how wide the sample is [rad]. */
     double overCosine(size_t material, double cosine, double facet_slope, double sample_angle) const;
     /** Largest sigma_b / cos(theta) of any material but for its lobe [1]. */
     double loudest() const;

@@ -66,6 +66,9 @@ SonarConfig PingTask::locatedConfig() const {
 bool PingTask::configureHook() {
     if (const std::string why = whyTooLarge(locatedConfig()); !why.empty())
         throw types::ConfigError("", name() + ".beam_pattern", why);
+    if (!rendersOnce() && (truth.connected() || returns.connected()))
+        throw types::ConfigError("", name() + (truth.connected() ? ".truth" : ".returns"),
+                                 "is connected; a sonar that renders a ping in many parts tells no truth");
     renderer_.reset();
     plan_.reset();
     grid_ = makeBinGrid(sonarConfig());
@@ -156,7 +159,8 @@ bool PingTask::renderPing(SonarRenderer& renderer, types::Snapshot& scene, types
 RenderPlan PingTask::coverage(const types::Snapshot& /*scene*/) const { return renderer_->renderPlan(); }
 
 std::string PingTask::troubleOf(bool heard, const types::Sonar& sample) {
-    return troubles_->follow(heard, renderer_->renderPlan().config.model, aimed_, sample, [this] { return coverage(aimed_); });
+    const Model model = renderer_->renderPlan().config.model;
+    return troubles_->follow(heard, model, aimed_, sample, [this] { return coverage(aimed_); });
 }
 
 void PingTask::render() {
@@ -167,8 +171,8 @@ void PingTask::render() {
     const auto start = std::chrono::steady_clock::now();
     const bool heard = renderPing(*renderer_, aimed_, *sample);
     const std::chrono::duration<double, std::milli> took = std::chrono::steady_clock::now() - start;
-    for (const Stage& stage : renderer_->stages()) recordStage(stage.name, stage.seconds);
-    if (std::exchange(culling_untold_, false)) {
+    for (const Stage& stage : renderStages(*renderer_)) recordStage(stage.name, stage.seconds);
+    if (std::exchange(culling_untold_, false) && rendersOnce()) {
         for (const LeftOut& what : renderer_->culled()) plan_->omitted.push_back(describe(what, grid_));
         if (const auto what = renderer_->targetsLeftOut()) plan_->omitted.push_back(describe(*what, grid_));
     }

@@ -2,6 +2,7 @@
 #include <limits>
 #include <memory>
 #include <optional>
+#include <span>
 
 #include "components/framework/Offers.hpp"
 #include "components/framework/Port.hpp"
@@ -66,6 +67,10 @@ public:
 protected:
     /** Last changes to a snapshot with a valid pose before it is rendered; a reason refuses it. */
     virtual const char* steer(types::Snapshot& /*scene*/) { return nullptr; }
+    /** Whether a ping is one rendering. Of several the truth is not told, nor what each of them left out. */
+    virtual bool rendersOnce() const { return true; }
+    /** Where the time of the last ping went. */
+    virtual std::span<const Stage> renderStages(const SonarRenderer& renderer) const { return renderer.stages(); }
     /** Makes the ping of `scene`; whether it has any echo. */
     virtual bool renderPing(SonarRenderer& renderer, types::Snapshot& scene, types::Sonar& sample);
     /** Last changes to a ping before it is written. */

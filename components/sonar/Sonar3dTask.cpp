@@ -57,9 +57,10 @@ void Sonar3dConfig::check(types::Diagnostics& diagnostics) const {
 RenderPlan Sonar3dTask::coverage(const types::Snapshot& scene) const {
     SonarConfig fan = config->sonar;
     fan.beam_width_deg.reset();
+    fan.beam_pattern.reset();  // that of one beam
     fan.beam_count = config->horizontal.beam_count;
     fan.field_of_view_deg = config->horizontal.field_of_view_deg;
-    fan.beam_height_deg = config->vertical.field_of_view_deg;
+    fan.beam_height_deg = std::min(config->vertical.field_of_view_deg, fan.castsRays() ? 180 : tallest_image_deg);
     return makeRenderPlan(fan, *scene.geometry);
 }
 
@@ -67,10 +68,12 @@ bool Sonar3dTask::renderPing(SonarRenderer& renderer, types::Snapshot& scene, ty
     const glm::dquat ahead = scene.sonar.orientation;
     const glm::dquat stood_up = glm::angleAxis(types::radians(90), glm::dvec3(1, 0, 0));  // bearings become elevations
     bool heard = false;
+    for (size_t i = 0; i < fan_stages_.size(); ++i) fan_stages_[i] = {renderer.stages()[i].name, 0};
     for (int column = 0; column < config->horizontal.beam_count; ++column) {
         const double azimuth = types::radians(config->horizontal.centreDeg(column));
         scene.sonar.orientation = ahead * glm::angleAxis(azimuth, glm::dvec3(0, 0, 1)) * stood_up;
         renderer.render(scene, fan_);
+        for (size_t i = 0; i < fan_stages_.size(); ++i) fan_stages_[i].seconds += renderer.stages()[i].seconds;
         heard = renderer.hasEchoes() || renderer.targetsHeard() > 0 || heard;
         if (column == 0) shape(sample);
         addTo(sample, column);

@@ -69,6 +69,8 @@ public:
     SonarConfig sonarConfig() const override { return config->upright(); }
 
 protected:
+    bool rendersOnce() const override { return false; }
+    std::span<const Stage> renderStages(const SonarRenderer&) const override { return fan_stages_; }
     bool renderPing(SonarRenderer& renderer, types::Snapshot& scene, types::Sonar& sample) override;
     RenderPlan coverage(const types::Snapshot& scene) const override;
     void tellMore(const types::Sonar& sample, const types::Pose& sonar) override;
@@ -82,7 +84,8 @@ private:
     void writePoints(const types::Sonar& sample, const types::Pose& sonar);
     bool wantsReturns() const { return range_image.connected() || soundings.connected(); }
 
-    types::Sonar fan_;  ///< Of one azimuth.
+    types::Sonar fan_;            ///< Of one azimuth.
+    sonar::Stages fan_stages_{};  ///< Of all azimuths of the last ping.
     types::DepthMap map_;
     framework::SamplePool<types::DepthMap> maps_;
     framework::SamplePool<types::PointCloud> clouds_;

@@ -163,6 +163,9 @@ private:
             if (covered_.pixel[i] > 0)
                 volume.hideVolume(covered_.footprint(i), static_cast<uint>(cells_.beam[i] - first_beam_), riseOf(i),
                                   cells_.size[i]);
+            else if constexpr (Volume::hears_misses)
+                volume.hearLayers(static_cast<uint>(cells_.beam[i] - first_beam_), riseOf(i), rules_.bins.range_max,
+                                  cells_.size[i]);
     }
 
     /** A sample that meets nothing hears all layers that it goes through. */

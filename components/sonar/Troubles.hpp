@@ -8,7 +8,8 @@
 
 namespace insonify::sonar {
 
-/** Follows the pings of a sonar, and says why there is nothing in them: once, and again only after there was. */
+/** Follows the pings of a sonar, and says why there is nothing in them: once, and again only after ten that were well.
+ */
 class Troubles {
 public:
     /** `geometry` must outlive it. `turn`: pings in which a head comes round [1]. */

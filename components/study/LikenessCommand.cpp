@@ -43,7 +43,9 @@ std::vector<CodedPing> recordedPings(const std::vector<std::string>& names) {
     for (const fs::path& file : filesOf(names))
         for (const device::OculusPing& ping : device::readOculusPings(file)) {
             CodedPing coded = codedPing(ping, fmt::format("recorded_{}", ping.number));
-            const auto isSame = [&](const CodedPing& other) { return other.name == coded.name; };
+            const auto isSame = [&](const CodedPing& other) {
+                return other.name == coded.name && other.codes == coded.codes;
+            };
             if (std::ranges::none_of(pings, isSame)) pings.push_back(std::move(coded));
         }
     if (pings.empty()) throw types::ConfigError(names.front(), "--real", "is a folder without a file");

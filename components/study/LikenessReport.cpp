@@ -6,6 +6,7 @@
 #include <cmath>
 #include <fstream>
 #include <iterator>
+#include <numbers>
 #include <stdexcept>
 
 #include "components/output/PictureFiles.hpp"
@@ -28,7 +29,7 @@ class Fan {
 public:
     explicit Fan(const CodedPing& ping) : ping_(ping) {
         const auto [least, most] = std::ranges::minmax(ping.bearings);
-        half_ = std::min(std::max(std::abs(least), std::abs(most)), 0.5 * 3.14159265);
+        half_ = std::min(std::max(std::abs(least), std::abs(most)), 0.5 * std::numbers::pi);
         width_ = static_cast<int>(std::ceil(2 * fan_height * std::sin(half_))) + 2;
         order_.resize(ping.bearings.size());
         for (size_t i = 0; i < order_.size(); ++i) order_[i] = i;

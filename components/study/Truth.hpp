@@ -37,7 +37,7 @@ Truth discTruth(double distance, double radius);
 /** A sphere wholly inside one beam that gives back sigma_b of a cosine [1], ACOUSTICS.md 9.4. */
 Truth sphereTruth(double radius, double centre, const std::function<double(double)>& section);
 
-/** Water of a strength [1/m] over a bottom under a level sonar, which hides it: ACOUSTICS.md 9.8. */
+/** Water of a strength [1/m] over a bottom under a level sonar, which hides it: ACOUSTICS.md 9.10. */
 Truth waterTruth(double strength, double height);
 
 /** Echoes that do not hide one another. */

@@ -168,6 +168,14 @@ TEST_F(Sonar3dTaskTest, WhatIsWeakBesideThePingIsNoReturn) {
     EXPECT_EQ(starboard, 0u);
 }
 
+TEST_F(Sonar3dTaskTest, ItRefusesToTellTheTruthOfItsManyRenderings) {
+    test::Reader<types::SonarReturnsPtr> returns{"returns"};
+    task_.returns.connectTo(returns.port, framework::ConnPolicy::data());
+    task_.config.set(grid());
+    EXPECT_FALSE(task_.configure());
+    EXPECT_THAT(task_.lastError(), testing::HasSubstr("tells no truth"));
+}
+
 TEST_F(Sonar3dTaskTest, OneThatHearsNothingTellsWhereItLooks) {
     std::string told;
     auto environment = std::make_shared<framework::Environment>(task_.environment());
