@@ -64,6 +64,33 @@ TEST_F(GltfMaterialsTest, NamesOfTheTablesAreTakenAndNumbersRefineThem) {
     EXPECT_FLOAT_EQ(acoustics(R"({"sediment":"clay","lambert_db":-30})").lambert_db, -30);
 }
 
+TEST_F(GltfMaterialsTest, ASedimentKeepsItsNameWhereTheReportHasItAndNothingReplacesIt) {
+    EXPECT_EQ(acoustics(R"({"sediment":"cobble"})").seabed, "cobble");
+    EXPECT_EQ(acoustics(R"({"sediment":"mackenzie"})").seabed, "") << "measured at 1 kHz, not in the report";
+    EXPECT_EQ(acoustics(R"({"sediment":"clay","lambert_db":-30})").seabed, "") << "by Lambert's law";
+    EXPECT_EQ(acoustics(R"({"material":"steel"})").seabed, "");
+}
+
+TEST_F(GltfMaterialsTest, ATableIsReadFromBesideTheFile) {
+    write("floor.csv", "grazing_deg,strength_db\n10,-40\n90,-10\n");
+    const types::Material m = acoustics(R"({"table":"floor.csv","reflection":0.5})");
+    ASSERT_EQ(m.measured.size(), 2u);
+    EXPECT_EQ(m.measured[1], glm::dvec2(90, -10));
+    EXPECT_FLOAT_EQ(m.reflection, 0.5);
+}
+
+TEST_F(GltfMaterialsTest, AWrongTableIsToldWithItsPlace) {
+    write("floor.csv", "grazing_deg,strength_db\n10,-40\n100,-10\n");
+    const auto expect = [this](const char* json, const char* part) {
+        EXPECT_NE(faultOfAcoustics(json).find(part), std::string::npos) << json << ": " << faultOfAcoustics(json);
+    };
+    expect(R"({"table":"none.csv"})", "materials[1].extras.acoustics.table: ");
+    expect(R"({"table":"none.csv"})", "none.csv");
+    expect(R"({"table":"floor.csv"})", "floor.csv:3:1: ");
+    expect(R"({"table":7})", "table: is 7; must be the path of a file");
+    expect(R"({"table":"floor.csv","sediment":"clay"})", "table: stands beside `sediment` or `lambert_db`");
+}
+
 TEST_F(GltfMaterialsTest, WrongAcousticsSayWhatTheyMayBe) {
     const auto expect = [this](const char* json, const char* part) {
         EXPECT_NE(faultOfAcoustics(json).find(part), std::string::npos) << json << ": " << faultOfAcoustics(json);

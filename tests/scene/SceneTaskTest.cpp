@@ -172,6 +172,19 @@ TEST_F(SceneTaskTest, AnUnusedSnapshotIsUsedAgain) {
     EXPECT_EQ(ping(at(3, {0, 0, 0})).get(), address);
 }
 
+TEST_F(SceneTaskTest, ATableOfAMaterialIsToldWhereItIsWrong) {
+    config_.materials["wood"].table = "none.csv";
+    task_.config.set(config_);
+    types::Diagnostics diagnostics;
+    task_.check(diagnostics);
+    ASSERT_EQ(diagnostics.size(), 1u);
+    EXPECT_EQ(diagnostics[0].path, "materials.wood.table");
+    EXPECT_NE(diagnostics[0].message.find("none.csv"), std::string::npos) << diagnostics[0].message;
+    config_.materials["wood"].table = write("wood.csv", "grazing_deg,strength_db\n0,-40\n90,-10\n").string();
+    start();
+    EXPECT_EQ(ping(at(1, {0, 0, 0}))->geometry->materials.at(0).measured.size(), 2u);
+}
+
 TEST_F(SceneTaskTest, MaterialsOfThePropertiesGoBeforeThoseOfTheFile) {
     config_.materials["wood"].lambert_db = -5;
     start();
