@@ -1,6 +1,5 @@
 #pragma once
 #include <condition_variable>
-#include <exception>
 #include <filesystem>
 #include <fstream>
 #include <mutex>

@@ -12,7 +12,6 @@ namespace insonify::study {
 struct CodedPing {
     std::string name;
     size_t beam_count = 0, bin_count = 0;
-    double bin_width = 0;               ///< Slant range of a bin [m].
     std::vector<double> bearings = {};  ///< Of each beam's middle, 0 ahead, positive to port [rad].
     std::vector<float> codes = {};      ///< Beam-first, as shares of the largest code [1].
     int bits = 8;                       ///< Of a code.

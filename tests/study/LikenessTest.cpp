@@ -27,7 +27,7 @@ Histogram only(std::initializer_list<std::pair<size_t, double>> shares) {
 template <class F>
 CodedPing pictureOf(const F& amplitude) {
     CodedPing ping{
-        .name = "made", .beam_count = 64, .bin_count = 256, .bin_width = 0.1, .law = {.law = receiver::CodeLaw::Sqrt}};
+        .name = "made", .beam_count = 64, .bin_count = 256, .law = {.law = receiver::CodeLaw::Sqrt}};
     for (size_t beam = 0; beam < ping.beam_count; ++beam) {
         ping.bearings.push_back(0.5 - static_cast<double>(beam) / 63);
         for (size_t bin = 0; bin < ping.bin_count; ++bin)
