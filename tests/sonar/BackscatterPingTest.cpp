@@ -11,6 +11,7 @@
 #include "components/sonar/PlanReport.hpp"
 #include "components/sonar/SonarRenderer.hpp"
 #include "tests/support/ClosedForms.hpp"
+#include "tests/support/EveryWay.hpp"
 #include "tests/support/Scenes.hpp"
 #include "types/Angle.hpp"
 
@@ -18,15 +19,10 @@ namespace insonify::sonar {
 namespace {
 
 using std::numbers::pi;
+using test::everyWay;
 using test::expectForm;
+using test::pingOf;
 using types::radians;
-
-types::Sonar pingOf(const SonarConfig& config, const types::Snapshot& snapshot) {
-    SonarRenderer renderer(config, snapshot.geometry);
-    types::Sonar ping;
-    renderer.render(snapshot, ping);
-    return ping;
-}
 
 SonarConfig sonarOf(double fov_deg, double height_deg, double bin, int bins, int rows = 512) {
     SonarConfig config;
@@ -40,17 +36,6 @@ SonarConfig sonarOf(double fov_deg, double height_deg, double bin, int bins, int
     config.quality.rows = rows;
     config.quality.columns_per_beam = std::max(2, static_cast<int>(rows * fov_deg / height_deg));
     return config;
-}
-
-/** The ways in which echoes are found and summed. */
-std::vector<SonarConfig> everyWay(const SonarConfig& config) {
-    std::vector<SonarConfig> all(3, config);
-    all[0].visibility = Visibility::Cpu;
-    all[1].visibility = all[2].visibility = Visibility::Gl;
-    all[1].deposit = Deposit::Cpu;
-    all[2].deposit = Deposit::Gpu;
-    for (SonarConfig& each : all) each.device = each.visibility == Visibility::Gl ? "software" : "";
-    return all;
 }
 
 template <class Change>
@@ -85,7 +70,8 @@ void makeShiny(types::Material& material, float reflection, float slope) {
 TEST(BackscatterPingTest, ASeabedIsHeardByTheLawOfItsReportAtTheSonarsFrequency) {
     SonarConfig config = sonarOf(1, 40, 0.15, 200);
     config.frequency_khz = 100;
-    const auto snapshot = changed(test::sceneOf({test::ground(-5)}), [](types::Material& m) { m.seabed = "medium_sand"; });
+    const auto snapshot =
+        changed(test::sceneOf({test::ground(-5)}), [](types::Material& m) { m.seabed = "medium_sand"; });
     const acoustics::SeabedBackscatter sand(acoustics::seabedNamed("medium_sand").value(), 100, 1500);
     const auto right = bottomOf(5, radians(20), radians(1), [&](double angle) { return sand.crossSection(angle); });
     const auto lambert = bottomOf(5, radians(20), radians(1), [](double angle) {
@@ -100,9 +86,9 @@ TEST(BackscatterPingTest, ASeabedOfASonarWithoutAFrequencyFollowsLambert) {
     const auto sand = changed(plain.geometry, [](types::Material& m) { m.seabed = "medium_sand"; });
     EXPECT_EQ(pingOf(config, sand).bins, pingOf(config, plain).bins);
     const types::Plan plan = report(makeRenderPlan(config, *sand.geometry), *sand.geometry);
-    EXPECT_THAT(plan.omitted, testing::Contains(testing::Field(
-                                  &types::Omission::reason,
-                                  "no frequency_khz; sediments follow Lambert's law by their lambert_db")));
+    EXPECT_THAT(plan.omitted,
+                testing::Contains(testing::Field(
+                    &types::Omission::reason, "no frequency_khz; sediments follow Lambert's law by their lambert_db")));
 }
 
 TEST(BackscatterPingTest, AMeasuredTableIsHeardAsItWasMeasured) {
@@ -114,8 +100,8 @@ TEST(BackscatterPingTest, AMeasuredTableIsHeardAsItWasMeasured) {
     };
     const auto right = bottomOf(5, radians(20), radians(1),
                                 [&](double angle) { return std::pow(10, levelAt(angle * 180 / pi) / 10); });
-    const auto half = bottomOf(5, radians(20), radians(1),
-                               [&](double angle) { return std::pow(10, levelAt(angle * 90 / pi) / 10); });
+    const auto half =
+        bottomOf(5, radians(20), radians(1), [&](double angle) { return std::pow(10, levelAt(angle * 90 / pi) / 10); });
     for (const SonarConfig& way : everyWay(sonarOf(1, 40, 0.15, 200))) expectForm(pingOf(way, snapshot), right, half);
 }
 

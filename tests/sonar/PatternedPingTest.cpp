@@ -7,6 +7,7 @@
 
 #include "components/sonar/SonarRenderer.hpp"
 #include "tests/support/ClosedForms.hpp"
+#include "tests/support/EveryWay.hpp"
 #include "tests/support/Folder.hpp"
 #include "tests/support/Scenes.hpp"
 #include "types/Angle.hpp"
@@ -15,15 +16,10 @@ namespace insonify::sonar {
 namespace {
 
 using acoustics::Weighting;
+using test::everyWay;
 using test::expectForm;
+using test::pingOf;
 using types::radians;
-
-types::Sonar pingOf(const SonarConfig& config, const types::Snapshot& snapshot) {
-    SonarRenderer renderer(config, snapshot.geometry);
-    types::Sonar ping;
-    renderer.render(snapshot, ping);
-    return ping;
-}
 
 acoustics::BeamLaw lawOf(Weighting weighting, double width_deg) {
     acoustics::BeamLaw law;
@@ -42,17 +38,6 @@ SonarConfig sonarOf(double fov_deg, int beams, double bin, int bins) {
     config.quality.rows = 512;
     config.quality.columns_per_beam = 2;
     return config;
-}
-
-/** The ways in which echoes are found and summed. */
-std::vector<SonarConfig> everyWay(const SonarConfig& config) {
-    std::vector<SonarConfig> all(3, config);
-    all[0].visibility = Visibility::Cpu;
-    all[1].visibility = all[2].visibility = Visibility::Gl;
-    all[1].deposit = Deposit::Cpu;
-    all[2].deposit = Deposit::Gpu;
-    for (SonarConfig& each : all) each.device = each.visibility == Visibility::Gl ? "software" : "";
-    return all;
 }
 
 /** A flat bottom under a level fan: of what comes from an elevation, a share. */

@@ -10,6 +10,7 @@
 #include "components/acoustics/Pulse.hpp"
 #include "components/sonar/BinGrid.hpp"
 #include "components/sonar/SonarRenderer.hpp"
+#include "tests/support/EveryWay.hpp"
 #include "tests/support/Scenes.hpp"
 #include "types/Angle.hpp"
 
@@ -18,6 +19,8 @@ namespace {
 
 using acoustics::Weighting;
 using std::numbers::pi;
+using test::everyWay;
+using test::pingOf;
 using types::radians;
 
 acoustics::BeamLaw lawOf(Weighting weighting, double width_deg) {
@@ -54,13 +57,6 @@ types::Snapshot withTarget(types::GeometryPtr geometry, glm::dvec3 position, dou
 glm::dvec3 towards(double azimuth_deg, double elevation_deg, double range) {
     const double a = radians(azimuth_deg), e = radians(elevation_deg);
     return range * glm::dvec3(std::cos(e) * std::cos(a), std::cos(e) * std::sin(a), std::sin(e));
-}
-
-types::Sonar pingOf(const SonarConfig& config, const types::Snapshot& snapshot) {
-    SonarRenderer renderer(config, snapshot.geometry);
-    types::Sonar ping;
-    renderer.render(snapshot, ping);
-    return ping;
 }
 
 double sumOf(const types::Sonar& ping) { return std::accumulate(ping.bins.begin(), ping.bins.end(), 0.0); }
@@ -300,16 +296,7 @@ TEST(PointTargetTest, NearerThanRangeMinItIsSilentAndBeyondTheRangeOnlyItsPulseI
     EXPECT_EQ(sumOf(pingOf(config, withTarget(geometry, {20.3, 0, 0}))), 0);
 }
 
-/** A plate of 1 m square to the x axis, in software where it is drawn. */
-std::vector<SonarConfig> everyWay(const SonarConfig& config) {
-    std::vector<SonarConfig> all(3, config);
-    all[1].visibility = all[2].visibility = Visibility::Gl;
-    all[1].deposit = Deposit::Cpu;
-    all[2].deposit = Deposit::Gpu;
-    for (SonarConfig& each : all) each.device = each.visibility == Visibility::Gl ? "software" : "";
-    return all;
-}
-
+/** A plate of 1 m square to the x axis. */
 types::GeometryPtr plate(double x, double y = 0) {
     return test::sceneOf({test::quad({0, -0.5f, -0.5f}, {0, 1, 0}, {0, 0, 1})}, 0, {{x, y, 0}});
 }

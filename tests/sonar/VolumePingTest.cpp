@@ -4,23 +4,19 @@
 
 #include "components/sonar/SonarRenderer.hpp"
 #include "tests/support/ClosedForms.hpp"
+#include "tests/support/EveryWay.hpp"
 #include "tests/support/Scenes.hpp"
 #include "types/Angle.hpp"
 
 namespace insonify::sonar {
 namespace {
 
+using test::everyWay;
 using test::expectForm;
+using test::pingOf;
 using types::radians;
 
 constexpr double half = radians(20), strength = 1e-7;
-
-types::Sonar pingOf(const SonarConfig& config, const types::Snapshot& snapshot) {
-    SonarRenderer renderer(config, snapshot.geometry);
-    types::Sonar ping;
-    renderer.render(snapshot, ping);
-    return ping;
-}
 
 VolumeLayer layer(double strength_db, std::optional<double> top = {}, std::optional<double> bottom = {}) {
     return {top, bottom, strength_db};
@@ -44,17 +40,6 @@ SonarConfig sonarIn(std::vector<VolumeLayer> volume) {
     SonarConfig config = plainSonar();
     config.volume = std::move(volume);
     return config;
-}
-
-/** The ways in which echoes are found and summed. */
-std::vector<SonarConfig> everyWay(const SonarConfig& config) {
-    std::vector<SonarConfig> all(3, config);
-    all[0].visibility = Visibility::Cpu;
-    all[1].visibility = all[2].visibility = Visibility::Gl;
-    all[1].deposit = Deposit::Cpu;
-    all[2].deposit = Deposit::Gpu;
-    for (SonarConfig& each : all) each.device = each.visibility == Visibility::Gl ? "software" : "";
-    return all;
 }
 
 /** Of a beam: the water's strength times the solid angle that hears it at a range, over the range squared. */
@@ -104,8 +89,7 @@ TEST(VolumePingTest, ALayerIsHeardWhereItLies) {
         waterOf([=](double r) { return delta * std::max(0.0, std::min(bottom / r, std::sin(half)) - 1.2 * top / r); });
     SonarConfig config = sonarIn({layer(-70, 5, 6), layer(-200, 6, 7)});
     config.quality.rows = 1024;
-    for (const SonarConfig& way : everyWay(config))
-        expectForm(pingOf(way, snapshot), right, deeper);
+    for (const SonarConfig& way : everyWay(config)) expectForm(pingOf(way, snapshot), right, deeper);
 }
 
 TEST(VolumePingTest, LayersThatShareAllDepthsAreOneWater) {

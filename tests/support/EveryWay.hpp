@@ -1,0 +1,27 @@
+#pragma once
+// A ping by each of the ways in which echoes are found and summed.
+#include <vector>
+
+#include "components/sonar/SonarRenderer.hpp"
+
+namespace insonify::test {
+
+/** By rays, drawn and summed on the processor, and drawn and summed on the (software) device. */
+inline std::vector<sonar::SonarConfig> everyWay(const sonar::SonarConfig& config) {
+    std::vector<sonar::SonarConfig> all(3, config);
+    all[0].visibility = sonar::Visibility::Cpu;
+    all[1].visibility = all[2].visibility = sonar::Visibility::Gl;
+    all[1].deposit = sonar::Deposit::Cpu;
+    all[2].deposit = sonar::Deposit::Gpu;
+    for (sonar::SonarConfig& each : all) each.device = each.visibility == sonar::Visibility::Gl ? "software" : "";
+    return all;
+}
+
+inline types::Sonar pingOf(const sonar::SonarConfig& config, const types::Snapshot& snapshot) {
+    sonar::SonarRenderer renderer(config, snapshot.geometry);
+    types::Sonar ping;
+    renderer.render(snapshot, ping);
+    return ping;
+}
+
+}  // namespace insonify::test
