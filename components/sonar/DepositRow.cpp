@@ -29,7 +29,7 @@ struct Pixels {
     double u[stretch], ray_u[stretch], ray_v[stretch], mapped[stretch], strength[stretch];
     double near_limit[stretch], far_limit[stretch], nearest[stretch], facet_slope[stretch];
     uint material[stretch];
-    double inverse_range[stretch], slope_u[stretch], slope_v[stretch], strength_range[stretch];
+    double cosine[stretch], inverse_range[stretch], slope_u[stretch], slope_v[stretch], strength_range[stretch];
 };
 
 /** A stretch of shares, each with what its pixel shows. */
@@ -137,12 +137,12 @@ INSONIFY_VECTOR_CLONES void meet(Pixels& pixels, int count) {
     for (int i = 0; i < count; ++i) {
         const Surface surface = surfaceAt(pixels.normal_x[i], pixels.normal_y[i], pixels.normal_z[i],
                                           pixels.distance[i], pixels.ray_u[i], pixels.ray_v[i]);
-        const double cosine = pixels.mapped[i] == 0 ? surface.cosine : pixels.mapped[i];
+        pixels.cosine[i] = pixels.mapped[i] == 0 ? surface.cosine : pixels.mapped[i];
         pixels.inverse_range[i] = surface.inverse_range;
         pixels.slope_u[i] = surface.slope_u;
         pixels.slope_v[i] = surface.slope_v;
         pixels.nearest[i] = surface.nearest;
-        pixels.strength_range[i] = pixels.strength[i] * cosine * surface.range;
+        pixels.strength_range[i] = pixels.strength[i] * pixels.cosine[i] * surface.range;
     }
 }
 
@@ -152,12 +152,9 @@ void applyLaws(const FrustumPart& part, double v, int count, Pixels& pixels) {
     const double widest = std::max(part.frustum.du(), part.frustum.dv());
     for (int i = 0; i < count; ++i) {
         if (laws.followsLambert(pixels.material[i]) || pixels.inverse_range[i] == 0) continue;
-        const double cosine = pixels.mapped[i] == 0
-                                  ? pixels.strength_range[i] * pixels.inverse_range[i] / pixels.strength[i]
-                                  : pixels.mapped[i];
         const double angle = widest / sqrt(1 + pixels.u[i] * pixels.u[i] + v * v);
         pixels.strength_range[i] = part.rules.strength_scale / pixels.inverse_range[i] *
-                                   laws.overCosine(pixels.material[i], cosine, pixels.facet_slope[i], angle);
+                                   laws.overCosine(pixels.material[i], pixels.cosine[i], pixels.facet_slope[i], angle);
     }
 }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 namespace insonify::sonar {
+
 Beamformer beamformerOf(const RenderPlan& plan) {
     const Directivity& directivity = *plan.directivity;
     return {plan.beams,

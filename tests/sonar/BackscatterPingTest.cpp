@@ -182,6 +182,18 @@ TEST(BackscatterPingTest, AMirrorIsTheSonarsImageWhateverTheSamples) {
         }
 }
 
+TEST(BackscatterPingTest, ALobeIsHeardWithoutAnyLambertianPart) {
+    const auto snapshot = changed(test::sceneOf({test::wall(10)}), [](types::Material& m) {
+        makeShiny(m, 0.5f, 0.1f);
+        m.lambert_db = -1000;  // 0 as a float
+    });
+    for (const SonarConfig& way : everyWay(sonarOf(20, 20, 1, 20))) {
+        const types::Sonar ping = pingOf(way, snapshot);
+        EXPECT_NEAR(10 * std::log10(std::accumulate(ping.bins.begin(), ping.bins.end(), 0.0)),
+                    10 * std::log10(0.25 / 400), 0.5);
+    }
+}
+
 TEST(BackscatterPingTest, ARowOfFacetsIsWidenedByItsStepsAndAFlatPlateByItsSize) {
     const std::vector<float> plate = facetSlopes(test::quad({0, 0, 0}, {2, 0, 0}, {0, 1, 0}), 1, 0.01);
     ASSERT_EQ(plate.size(), 2u);

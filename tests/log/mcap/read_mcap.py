@@ -3,6 +3,7 @@
 import pathlib
 import struct
 import sys
+from dataclasses import astuple
 
 from mcap.reader import make_reader
 from mcap_ros2.decoder import DecoderFactory
@@ -24,9 +25,9 @@ def value(message):
 
 with open(path, "rb") as file:
     reader = make_reader(file, validate_crcs=True, decoder_factories=[DecoderFactory()])
-    header, summary = reader.get_header(), reader.get_summary()
+    (profile, library), summary = astuple(reader.get_header()), reader.get_summary()
     count, chunks = summary.statistics.message_count, summary.statistics.chunk_count
-    print(f"profile {header.profile}, by {header.library}, {count} messages, {chunks} chunks")
+    print(f"profile {profile}, by {library}, {count} messages, {chunks} chunks")
     for record in reader.iter_metadata():
         print("metadata", record.name, dict(sorted(record.metadata.items())))
     decoded = list(reader.iter_decoded_messages())
