@@ -106,6 +106,14 @@ INSONIFY_VECTOR_CLONES void regard(const Cells& cells, int count, CellTruths<str
 template <class Estimator>
 constexpr bool sums_fields = Estimator::features.has(Feature::Speckle);
 
+template <class Estimator>
+Estimator makeEstimator(const EchoRules& rules, uint64_t* sums, [[maybe_unused]] const TruthSink* truth) {
+    if constexpr (sums_fields<Estimator>)
+        return {rules, sums};
+    else
+        return {rules, sums, truth};
+}
+
 /** Where in the view, and of which object, a cell is. */
 struct CellPlace {
     size_t left, right;  ///< Its edges in AngularView::bearings.
@@ -132,7 +140,7 @@ public:
           scene_(scene),
           first_beam_(first_beam),
           sums_(sums),
-          estimator_(rules, sums, truth) {}
+          estimator_(makeEstimator<Estimator>(rules, sums, truth)) {}
 
     void add(const CastTile& tile) {
         for (int i = 0; i < tile_samples;) {
@@ -155,7 +163,7 @@ public:
             if constexpr (!sums_fields<Estimator>)
                 estimator_.depositCell(covered_.footprint(i), beam, covered_.strength_range[i]);
             else if (covered_.pixel[i] > 0)
-                estimator_.template depositPatch<conical>(patchOf(i), beam);
+                estimator_.deposit(patchOf(i), beam);
         }
         if (rules_.features.has(Feature::VolumeLayers))
             hideVolume<LayeredVolume>();
@@ -193,7 +201,8 @@ private:
                 covered_.strength_range[i],
                 cells_.size[i] / (cells_.width[i] * (high.sine - low.sine)),
                 scene_.objects[place.object],
-                place.object};
+                place.object,
+                conical};
     }
 
     template <class Volume>
@@ -339,11 +348,9 @@ void withCells(const Features& features, const Use& use) {
         features, [&]<class Deposited>() { withCellsOf<Telling<Deposited>>(features, use); });
 }
 
-INSONIFY_VECTOR_CLONES __attribute__((flatten)) void depositFields(const EchoRules& rules, const CastView& view,
-                                                                   const PlacedScene& scene,
-                                                                   std::span<const CastTile> tiles, int first_beam,
-                                                                   uint64_t* sums) {
-    withCellsOf<PhasorBins>(rules.features, [&]<class Deposit>() {
+void depositFields(const EchoRules& rules, const CastView& view, const PlacedScene& scene,
+                   std::span<const CastTile> tiles, int first_beam, uint64_t* sums) {
+    withCellsOf<Scatterers>(rules.features, [&]<class Deposit>() {
         Deposit cells(rules, view, scene, first_beam, sums, nullptr);
         for (const CastTile& tile : tiles) cells.add(tile);
         cells.finish();
@@ -378,7 +385,7 @@ Features compiledForRays(const Features& wanted) {
     Features compiled;
     const auto take = [&]<class Deposit>() { compiled = Deposit::features(); };
     if (wanted.has(Feature::Speckle))
-        withCellsOf<PhasorBins>(wanted, take);
+        withCellsOf<Scatterers>(wanted, take);
     else
         withCells<Untold>(wanted, take);
     return compiled;
