@@ -4,6 +4,7 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <glm/vec2.hpp>
+#include <limits>
 
 #include "types/VectorMath.hpp"
 
@@ -12,16 +13,17 @@ namespace insonify::sonar {
 /** What is the same for all scatterers of a patch on one lattice, about its middle. */
 struct LatticePatch {
     uint32_t key;
-    int32_t base_u, base_v;                  ///< The square of the middle.
-    float middle_u, middle_v;                ///< Where it lies in that [spacings].
-    float along_u[3], along_v[3];            ///< A spacing further on the plane [m].
-    float at[3], range;                      ///< The middle [m].
-    float low[3], low_at, high[3], high_at;  ///< Distances from the planes of its bearings: low.d + low_at >= 0 [1, m].
-    float low_sine, high_sine;               ///< Of elevation, or of the bearing of cones [1].
-    float low_cone, high_cone;
-    float near_end, far_end;       ///< Slant ranges, from the middle's [m].
-    float amplitude;               ///< Times the square root of a power over the square of the range.
-    float turns, turns_per_metre;  ///< Phase of the middle, two way.
+    int32_t base_u, base_v;             ///< The square of the middle.
+    float middle_u, middle_v;           ///< Where it lies in that [spacings].
+    float along_u[3], along_v[3];       ///< A spacing further on the plane [m].
+    float at[3], range;                 ///< The middle [m].
+    float low[2], low_at, low_cone;     ///< Past its lower bearing: low.d + low_at - low_cone range >= 0 [1, m, 1].
+    float high[2], high_at, high_cone;  ///< The same of the upper one,
+    float next[3][2], next_at[3], next_cone[3];  ///< and of those between beams.
+    float low_sine, high_sine;                   ///< Of elevation [1].
+    float near_end, far_end;                     ///< Slant ranges, from the middle's [m].
+    float amplitude;                             ///< Times the square root of a power over the square of the range.
+    float turns, turns_per_metre;                ///< Phase of the middle, two way.
     float cell_offset, cells_per_metre, cell_width;
     int32_t first_cell, cell_count;
 };
@@ -132,9 +134,24 @@ INSONIFY_VECTOR_CLONES void scatter(const LatticePatch& patch, const LatticeSqua
         const float turns = phase - nearest(phase);
         fields.real[i] = field * cosineOf(turns);
         fields.imaginary[i] = field * sineOf(turns);
+        int32_t beam = 0;
+        for (int k = 0; k < 3; ++k)
+            beam += p.next[k][0] * x + p.next[k][1] * y + p.next_at[k] - p.next_cone[k] * range >= 0;
         fields.cell[i] = inside != 0 ? cell : -1;
+        fields.beam[i] = beam;
         fields.bits[i] = place;
     }
+}
+
+/** From, to. */
+struct Span {
+    double low, high;
+};
+
+/** The whole number below, of what is far from the ends of int32_t. */
+int32_t below(double x) {
+    const auto whole = static_cast<int32_t>(x);
+    return whole - (x < static_cast<double>(whole) ? 1 : 0);
 }
 
 /** The outline of a patch on its lattice, from the square that holds its middle [spacings]. */
@@ -142,41 +159,54 @@ struct PatchOutline {
     std::array<glm::dvec2, 4> corners;
     glm::dvec2 margin;  ///< It may be so much larger, for its sides are bent.
 
-    struct Span {
-        double low, high;
-    };
     Span extent(int axis) const {
-        Span span{corners[0][axis], corners[0][axis]};
-        for (const glm::dvec2& corner : corners)
-            span = {std::min(span.low, corner[axis]), std::max(span.high, corner[axis])};
-        return {span.low - margin[axis], span.high + margin[axis]};
+        const auto [low, high] = std::minmax({corners[0][axis], corners[1][axis], corners[2][axis], corners[3][axis]});
+        return {low - margin[axis], high + margin[axis]};
     }
-    /** Of what lies in one row of squares; `axis` counts the rows. */
-    Span inRow(int axis, double row) const;
 };
 
-PatchOutline::Span PatchOutline::inRow(int axis, double row) const {
-    const double from = row - margin[axis], to = row + 1 + margin[axis];
-    Span span{1, 0};
-    bool any = false;
-    for (size_t k = 0; k < corners.size(); ++k) {
-        const glm::dvec2 a = corners[k], b = corners[(k + 1) % corners.size()];
-        const double rise = b[axis] - a[axis];
-        double enters = 0, leaves = 1;
-        if (rise != 0) {
-            const double first = (from - a[axis]) / rise, second = (to - a[axis]) / rise;
-            enters = std::max(0.0, std::min(first, second));
-            leaves = std::min(1.0, std::max(first, second));
-        }
-        if (enters > leaves || std::max(a[axis], b[axis]) < from || std::min(a[axis], b[axis]) > to) continue;
-        for (const double share : {enters, leaves}) {
-            const double at = a[1 - axis] + share * (b[1 - axis] - a[1 - axis]);
-            span = any ? Span{std::min(span.low, at), std::max(span.high, at)} : Span{at, at};
-            any = true;
+/** An outline row by row of squares. */
+class OutlineRows {
+public:
+    /** Rows are counted along the axis in which the outline is shorter. */
+    explicit OutlineRows(const PatchOutline& outline) {
+        const Span u = outline.extent(0), v = outline.extent(1);
+        axis = v.high - v.low <= u.high - u.low ? 1 : 0;
+        const Span rows = axis == 1 ? v : u;
+        first = below(rows.low);
+        last = below(rows.high);
+        margin_ = outline.margin;
+        for (size_t k = 0; k < 4; ++k) {
+            const glm::dvec2 a = outline.corners[k], b = outline.corners[(k + 1) % 4];
+            const double rise = b[axis] - a[axis];
+            sides_[k] = {std::min(a[axis], b[axis]), std::max(a[axis], b[axis]), 0,
+                         rise != 0 ? (b[1 - axis] - a[1 - axis]) / rise : 0};
+            sides_[k].at_zero = a[1 - axis] - sides_[k].slope * a[axis];
         }
     }
-    return {span.low - margin[1 - axis], span.high + margin[1 - axis]};
-}
+    /** What of it lies in a row, along the other axis. */
+    Span span(int row) const {
+        const double from = row - margin_[axis], to = row + 1 + margin_[axis];
+        Span span{std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity()};
+        for (const Side& side : sides_) {
+            const double low = std::max(side.low, from), high = std::min(side.high, to);
+            if (low > high) continue;
+            const double one = side.at_zero + low * side.slope, other = side.at_zero + high * side.slope;
+            span = {std::min({span.low, one, other}), std::max({span.high, one, other})};
+        }
+        return {span.low - margin_[1 - axis], span.high + margin_[1 - axis]};
+    }
+
+    int axis;
+    int32_t first, last;
+
+private:
+    struct Side {
+        double low, high, at_zero, slope;
+    };
+    Side sides_[4];
+    glm::dvec2 margin_;
+};
 
 double inverseRange(const Patch& patch, const glm::dvec3& direction) {
     return glm::dot(patch.normal, direction) / patch.distance;
@@ -241,6 +271,12 @@ LatticePatch partOf(const EchoRules& rules, const Patch& patch, const PatchLatti
     setRange(rules, range, part);
     setBearing(patch.conical, patch.low_bearing, at, part.low, part.low_at, part.low_cone);
     setBearing(patch.conical, patch.high_bearing, at, part.high, part.high_at, part.high_cone);
+    for (size_t k = 0; k + 1 < Patch::most_beams; ++k) {
+        if (k + 1 < patch.beams)
+            setBearing(patch.conical, patch.next_bearings[k], at, part.next[k], part.next_at[k], part.next_cone[k]);
+        else
+            part.next_at[k] = -1;
+    }
     part.low_sine = static_cast<float>(patch.low_sine);
     part.high_sine = static_cast<float>(patch.high_sine);
     part.amplitude = static_cast<float>(
@@ -300,7 +336,7 @@ void Scatterers::deposit(const Patch& patch, size_t beam) {
     for (const LatticeLevel& level : rules_.lattice) {
         const Ranges here{std::max(all.near, begin), std::min(all.far, level.range_end)};
         begin = level.range_end;
-        if (here.near < here.far) depositLevel(patch, lattice, level, here, sums_ + beam * rules_.sumCount());
+        if (here.near < here.far) depositLevel(patch, lattice, level, here, sums_ + beam * beam_sums_);
     }
 }
 
@@ -309,15 +345,14 @@ void Scatterers::depositLevel(const Patch& patch, const PatchLattice& lattice, c
     LatticePatch part = partOf(rules_, patch, lattice, level);
     part.near_end = static_cast<float>(ranges.near - 1 / inverseRange(patch, patch.middle));
     part.far_end = static_cast<float>(ranges.far - 1 / inverseRange(patch, patch.middle));
-    const PatchOutline outline = outlineOf(patch, lattice, level.spacing, ranges.near, ranges.far);
-    const PatchOutline::Span u = outline.extent(0), v = outline.extent(1);
-    const int axis = v.high - v.low <= u.high - u.low ? 1 : 0;
-    const PatchOutline::Span rows = axis == 1 ? v : u;
-    for (double row = std::floor(rows.low); row <= rows.high; ++row) {
-        const PatchOutline::Span span = outline.inRow(axis, row);
-        for (double at = std::floor(span.low); at <= span.high; ++at) {
-            squares_.u[squares_.count] = static_cast<int32_t>(axis == 1 ? at : row);
-            squares_.v[squares_.count] = static_cast<int32_t>(axis == 1 ? row : at);
+    const OutlineRows rows(outlineOf(patch, lattice, level.spacing, ranges.near, ranges.far));
+    for (int32_t row = rows.first; row <= rows.last; ++row) {
+        const Span span = rows.span(row);
+        if (!(span.low <= span.high)) continue;
+        const int32_t last = below(span.high);
+        for (int32_t at = below(span.low); at <= last; ++at) {
+            squares_.u[squares_.count] = rows.axis == 1 ? at : row;
+            squares_.v[squares_.count] = rows.axis == 1 ? row : at;
             if (++squares_.count == LatticeSquares::most) add(part, level, of_beam);
         }
     }
@@ -331,7 +366,7 @@ void Scatterers::add(const LatticePatch& part, const LatticeLevel& level, uint64
         float root = 1;
         if (level.merged > 0)
             root = std::sqrt(gammaPower(static_cast<float>(level.merged), fields_.bits[i] ^ 0x5bd1e995u));
-        uint64_t* const cell = of_beam + 2 * fields_.cell[i];
+        uint64_t* const cell = of_beam + static_cast<size_t>(fields_.beam[i]) * beam_sums_ + 2 * fields_.cell[i];
         cell[0] += signedQuanta(root * fields_.real[i]);
         cell[1] += signedQuanta(root * fields_.imaginary[i]);
     }

@@ -9,15 +9,19 @@ namespace insonify::sonar {
 
 /** A part of a triangle's plane that neighbouring samples see; sonar axes. */
 struct Patch {
-    glm::dvec3 normal;                  ///< Of any length [1].
-    double distance;                    ///< normal.p of its points [m].
-    glm::dvec3 middle;                  ///< Unit, to its middle [1].
-    std::array<glm::dvec3, 4> corners;  ///< Unit, to its corners, one side after the other [1].
-    double low_bearing, high_bearing;   ///< [rad]
-    double low_sine, high_sine;         ///< Of its elevations [1].
-    double width, height;               ///< [rad]
-    double strength_range;              ///< Strength times slant range [m].
-    double per_solid_angle;             ///< Two-way pattern in elevation, over the solid angle of a cell [1/sr].
+    static constexpr size_t most_beams = 4;
+
+    glm::dvec3 normal;                                 ///< Of any length [1].
+    double distance;                                   ///< normal.p of its points [m].
+    glm::dvec3 middle;                                 ///< Unit, to its middle [1].
+    std::array<glm::dvec3, 4> corners;                 ///< Unit, to its corners, one side after the other [1].
+    double low_bearing, high_bearing;                  ///< [rad]
+    size_t beams;                                      ///< In which it lies, neighbours [1].
+    std::array<double, most_beams - 1> next_bearings;  ///< Where the second begins, and so on [rad].
+    double low_sine, high_sine;                        ///< Of its elevations [1].
+    double width, height;                              ///< [rad]
+    double strength_range;                             ///< Strength times slant range [m].
+    double per_solid_angle;  ///< Two-way pattern in elevation, over the solid angle of a cell [1/sr].
     const ObjectRecord& object;
     uint32_t number;  ///< Of the object [1].
     bool conical;     ///< Bearings are those of cones.
@@ -36,7 +40,7 @@ struct LatticeSquares {
 /** What scatterers add: a field in units of the square root of a whole cell, and to which range cell; -1: none. */
 struct ScatteredFields {
     alignas(64) float real[LatticeSquares::most], imaginary[LatticeSquares::most];
-    alignas(64) int32_t cell[LatticeSquares::most];
+    alignas(64) int32_t cell[LatticeSquares::most], beam[LatticeSquares::most];  ///< The beam from the patch's first.
     alignas(64) uint32_t bits[LatticeSquares::most];
 };
 
@@ -48,8 +52,9 @@ public:
     static constexpr Features features{Feature::Physical, Feature::Speckle};
 
     /** `sums`: EchoRules::sumCount() for each beam, [range cell][real, imaginary] in quanta, with sign. */
-    Scatterers(const EchoRules& rules, uint64_t* sums) : rules_(rules), sums_(sums) {}
+    Scatterers(const EchoRules& rules, uint64_t* sums) : rules_(rules), beam_sums_(rules.sumCount()), sums_(sums) {}
 
+    /** `beam`: the patch's first. */
     void deposit(const Patch& patch, size_t beam);
 
 private:
@@ -63,6 +68,7 @@ private:
     void add(const LatticePatch& part, const LatticeLevel& level, uint64_t* of_beam);
 
     const EchoRules& rules_;
+    size_t beam_sums_;  ///< Numbers of a beam [1].
     uint64_t* sums_;
     LatticeSquares squares_;
     ScatteredFields fields_;
