@@ -27,6 +27,7 @@ Features featuresOf(const SonarConfig& config, const RenderOptions& options, con
     if (!laws.tables.empty() || laws.hasLobes()) features.add(Feature::BackscatterLaws);
     if (!config.volume.empty()) features.add(Feature::Volume);
     if (config.hasLayers()) features.add(Feature::VolumeLayers);
+    if (config.isCoherent()) features.add(Feature::Speckle);
     if (options.estimator == Estimator::NearestJitter) features.add(Feature::Jitter);
     return features;
 }
@@ -84,6 +85,7 @@ void omitEffects(const types::Geometry& geometry, RenderPlan& plan) {
     omitPulse(plan);
     omitUnless(plan.has(Pass::RingDown), Effect::RingDown);
     omitUnless(plan.features.has(Feature::Volume), Effect::Volume);
+    omitUnless(plan.features.has(Feature::Speckle), Effect::Speckle);
     omitUnless(false, Effect::Multipath);
     if (plan.frusta.size() == 1)
         plan.left_out.push_back({Effect::FurtherSlabs, Reason::OneImage, plan.config.coverageDeg()});

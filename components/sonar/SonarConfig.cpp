@@ -60,7 +60,26 @@ void checkRangeReached(const SonarConfig& config, types::Diagnostics& diagnostic
                                   config.range, config.bin_count, grid.range_max)});
 }
 
+/** Of a property that only rays can follow. */
+void checkNeedOfRays(const SonarConfig& config, types::Diagnostics& diagnostics) {
+    const std::string name = config.needsRays();
+    if (name.empty()) return;
+    if (!haveRays()) diagnostics.push_back({name, "needs rays, and this build has none (Embree)"});
+    if (config.visibility == Visibility::Gl)
+        diagnostics.push_back({"visibility", "is gl with " + name + ", which needs rays; may be auto or cpu"});
+    if (config.deposit == Deposit::Gpu)
+        diagnostics.push_back({"deposit", "is gpu with " + name + ", which needs rays; may be auto or cpu"});
+    if (config.model != Model::Physical)
+        diagnostics.push_back({name, "is given with model: cerqueira2017, whose bins are means of S(n.d)"});
+}
+
+void checkSpeckle(const SonarConfig& config, types::Diagnostics& diagnostics) {
+    if (config.isCoherent() && !config.frequency_khz)
+        diagnostics.push_back({"speckle", "is coherent without frequency_khz, which it needs"});
+}
+
 void checkVisibility(const SonarConfig& config, types::Diagnostics& diagnostics) {
+    checkNeedOfRays(config, diagnostics);
     if (config.visibility != Visibility::Cpu) return;
     if (!haveRays())
         diagnostics.push_back({"visibility", "is cpu; this build has no rays (Embree), may be auto or gl"});
@@ -164,8 +183,11 @@ std::optional<double> SonarConfig::targetError() const {
     return default_target;
 }
 
+std::string SonarConfig::needsRays() const { return isCoherent() ? "speckle" : ""; }
+
 bool SonarConfig::castsRays() const {
     if (visibility != Visibility::Auto) return visibility == Visibility::Cpu;
+    if (!needsRays().empty()) return true;
     if (!haveRays() || published || deposit == Deposit::Gpu) return false;
     if (!fitsImages(*this)) return true;
     return !gpu::EglContext::isAskedFor(device) && !gpu::EglContext::hasCard();
@@ -256,6 +278,7 @@ void SonarConfig::checkBeam(types::Diagnostics& diagnostics) const {
     checkPhysics(*this, diagnostics);
     checkRangeReached(*this, diagnostics);
     checkVisibility(*this, diagnostics);
+    checkSpeckle(*this, diagnostics);
     if (!diagnostics.empty()) return;
     if (castsRays()) return checkRays(*this, diagnostics);
     checkDevice(device, diagnostics);
