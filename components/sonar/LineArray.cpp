@@ -1,5 +1,6 @@
 #include "components/sonar/LineArray.hpp"
 
+#include <algorithm>
 #include <bit>
 #include <cmath>
 #include <numbers>
@@ -14,18 +15,27 @@ using Complex = std::complex<double>;
 constexpr size_t oversampling = 16;
 
 /** Weights across an aperture whose far field is `taper`: its Fourier series, of which the coefficients are the far
- *  field at whole u (Woodward 1946), as far as so many elements can tell. */
-std::vector<double> weightsOf(size_t count, const acoustics::Taper& taper) {
+ *  field at whole u (Woodward 1946), as far as so many elements can tell and there are directions: `aperture` in
+ *  wavelengths. */
+std::vector<double> weightsOf(size_t count, double aperture, const acoustics::Taper& taper) {
     std::vector<double> weights;
+    const auto terms = static_cast<size_t>(std::ceil(std::min(0.5 * static_cast<double>(count), aperture)));
     const auto size = static_cast<double>(count);
     for (size_t m = 0; m < count; ++m) {
         const double place = (static_cast<double>(m) + 0.5) / size - 0.5;
         double weight = 1;
-        for (size_t n = 1; 2 * n < count; ++n)
+        for (size_t n = 1; n < terms; ++n)
             weight += 2 * taper.amplitude(static_cast<double>(n)) * std::cos(2 * pi * static_cast<double>(n) * place);
         weights.push_back(weight / size);
     }
     return weights;
+}
+
+/** Mean of exp(2 pi i place sine) over the sines of a cell. */
+Complex meanTurn(double place, const Cone& cell) {
+    const double half = pi * place * (cell.high - cell.low);
+    const double size = std::abs(half) < 1e-6 ? 1 : std::sin(half) / half;
+    return std::polar(1.0, 2 * pi * place * cell.middle()) * size;
 }
 
 /** sum over m of values[m] exp(-2 pi i m q / size) in place of values[q]; a power of two of them. */
@@ -59,19 +69,21 @@ struct Direction {
 }  // namespace
 
 LineArray::LineArray(size_t count, double spacing, double wavelength, const acoustics::Taper& taper)
-    : spacing_(spacing), wavelength_(wavelength), weights_(weightsOf(count, taper)) {}
+    : spacing_(spacing),
+      wavelength_(wavelength),
+      weights_(weightsOf(count, static_cast<double>(count) * spacing / wavelength, taper)) {}
 
 double LineArray::position(size_t element) const {
     return (static_cast<double>(element) - 0.5 * static_cast<double>(count() - 1)) * spacing_;
 }
 
-ComplexRows LineArray::hear(const ComplexRows& field, std::span<const double> sines) const {
-    if (field.rowCount() != sines.size()) throw std::invalid_argument("a field has one row for each cell's sine");
+ComplexRows LineArray::hear(const ComplexRows& field, std::span<const Cone> cells) const {
+    if (field.rowCount() != cells.size()) throw std::invalid_argument("a field has one row for each cell");
     ComplexRows heard(count(), field.sample_count);
     for (size_t m = 0; m < count(); ++m) {
         const auto sum = heard.row(m);
-        for (size_t cell = 0; cell < sines.size(); ++cell) {
-            const std::complex<float> turn(std::polar(1.0, 2 * pi / wavelength_ * position(m) * sines[cell]));
+        for (size_t cell = 0; cell < cells.size(); ++cell) {
+            const std::complex<float> turn(meanTurn(position(m) / wavelength_, cells[cell]));
             const auto echoes = field.row(cell);
             for (size_t i = 0; i < sum.size(); ++i) {  // by parts, for that of std::complex looks for infinities
                 const float re = echoes[i].real(), im = echoes[i].imag();

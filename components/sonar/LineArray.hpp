@@ -22,6 +22,12 @@ struct ComplexRows {
     std::vector<std::complex<float>> values;
 };
 
+/** Directions about an array between two sines, positive to port. */
+struct Cone {
+    double low, high;
+    double middle() const { return 0.5 * (low + high); }
+};
+
 /** A straight array of elements side by side across the sonar, and the weights by which its beams are formed
  *  (ACOUSTICS.md 5.19). Directions are cones about the array: their sines, positive to port. */
 class LineArray {
@@ -32,15 +38,16 @@ public:
 
     size_t count() const { return weights_.size(); }
     double spacing() const { return spacing_; }
+    double wavelength() const { return wavelength_; }
     /** Of an element from the array's middle, positive to port [m]. */
     double position(size_t element) const;
     /** Of each element, which sum up to 1. */
     const std::vector<double>& weights() const { return weights_; }
 
-    /** What the elements hear of echoes from cones: sum over the cells of field * exp(i k position sine), k the
-     *  wavenumber. The field's phase is that of the way to the array's middle and back. One row per cell, one sine for
-     *  each row. @throws std::invalid_argument when there are other numbers of rows and sines */
-    ComplexRows hear(const ComplexRows& field, std::span<const double> sines) const;
+    /** What the elements hear of echoes from cones: sum over the cells of field times the mean of exp(i k position
+     *  sine) over the cell's sines, k the wavenumber. The field's phase is that of the way to the array's middle and
+     *  back. One row per cell. @throws std::invalid_argument when there are other numbers of rows and cells */
+    ComplexRows hear(const ComplexRows& field, std::span<const Cone> cells) const;
 
     /** Beams that look to cones, formed by a Fourier transform over the elements, 16 times as long as the array at
      *  least, and straight lines between its directions: sum over the elements of weight * heard * exp(-i k position

@@ -1,6 +1,7 @@
 // Elements of a straight array, and the beams that are formed of them, against sums and closed forms.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -23,13 +24,14 @@ LineArray halfWave(size_t count, const Taper& taper = uniform) { return {count, 
 /** Cells of a complex Gaussian field, at sines from -0.9 to 0.9. */
 struct Cells {
     ComplexRows field;
-    std::vector<double> sines;
+    std::vector<Cone> cones;
 };
 
 Cells speckled(size_t cells, size_t samples) {
     Cells made{ComplexRows(cells, samples), {}};
     for (size_t cell = 0; cell < cells; ++cell) {
-        made.sines.push_back(1.8 * (static_cast<double>(cell) + 0.5) / static_cast<double>(cells) - 0.9);
+        const double sine = 1.8 * (static_cast<double>(cell) + 0.5) / static_cast<double>(cells) - 0.9;
+        made.cones.push_back({sine, sine});
         for (size_t i = 0; i < samples; ++i) {
             const uint64_t word = study::hashed(3, cell, i);
             made.field.row(cell)[i] = std::complex<float>(
@@ -43,13 +45,14 @@ Cells speckled(size_t cells, size_t samples) {
 double heardPower(const LineArray& array, double from, double looking) {
     ComplexRows echo(1, 1);
     echo.values[0] = 1;
-    return std::norm(Complex(array.form(array.hear(echo, std::vector{from}), std::vector{looking}).values[0]));
+    return std::norm(
+        Complex(array.form(array.hear(echo, std::vector{Cone{from, from}}), std::vector{looking}).values[0]));
 }
 
 TEST(LineArrayTest, ElementsHearTheSumOfTheEchoesEachTurnedByItsWay) {
     const LineArray array = halfWave(16);
     const Cells cells = speckled(50, 7);
-    const ComplexRows heard = array.hear(cells.field, cells.sines);
+    const ComplexRows heard = array.hear(cells.field, cells.cones);
     ASSERT_EQ(heard.rowCount(), 16u);
     for (size_t m = 0; m < 16; ++m)
         for (size_t i = 0; i < 7; ++i) {
@@ -57,16 +60,27 @@ TEST(LineArrayTest, ElementsHearTheSumOfTheEchoesEachTurnedByItsWay) {
             const double place = (static_cast<double>(m) - 7.5) * wavelength / 2;
             for (size_t cell = 0; cell < 50; ++cell)
                 sum += Complex(cells.field.row(cell)[i]) *
-                       std::polar(1.0, 2 * pi / wavelength * place * cells.sines[cell]);
+                       std::polar(1.0, 2 * pi / wavelength * place * cells.cones[cell].low);
             EXPECT_NEAR(std::abs(Complex(heard.row(m)[i]) - sum), 0, 1e-4) << m << " " << i;
         }
+}
+
+TEST(LineArrayTest, AWideCellIsHeardAsManyNarrowOnes) {
+    const LineArray array = halfWave(32);
+    ComplexRows one(1, 1), many(1000, 1);
+    one.values[0] = 1;
+    std::ranges::fill(many.values, std::complex<float>(1e-3f));
+    std::vector<Cone> narrow;
+    for (int i = 0; i < 1000; ++i) narrow.push_back({0.2 + i * 5e-5, 0.2 + (i + 1) * 5e-5});
+    const ComplexRows wide = array.hear(one, std::vector{Cone{0.2, 0.25}}), fine = array.hear(many, narrow);
+    for (size_t m = 0; m < 32; ++m) EXPECT_NEAR(std::abs(wide.row(m)[0] - fine.row(m)[0]), 0, 1e-4) << m;
 }
 
 TEST(LineArrayTest, BeamsByTheTransformAreTheSumsOverTheElements) {
     for (const size_t count : {17u, 64u}) {
         const LineArray array = halfWave(count, Taper(Weighting::Taylor));
         const Cells cells = speckled(80, 5);
-        const ComplexRows heard = array.hear(cells.field, cells.sines);
+        const ComplexRows heard = array.hear(cells.field, cells.cones);
         std::vector<double> looking;
         for (double sine = -0.95; sine < 0.96; sine += 0.0171) looking.push_back(sine);
         const ComplexRows beams = array.form(heard, looking);
@@ -134,7 +148,7 @@ TEST(LineArrayTest, ElementsFartherApartThanHalfAWaveHearGratingLobes) {
 
 TEST(LineArrayTest, OtherNumbersOfRowsAreRefused) {
     const LineArray array = halfWave(4);
-    EXPECT_THROW(array.hear(ComplexRows(3, 2), std::vector{0.0, 0.1}), std::invalid_argument);
+    EXPECT_THROW(array.hear(ComplexRows(3, 2), std::vector<Cone>(2)), std::invalid_argument);
     EXPECT_THROW(array.form(ComplexRows(3, 2), std::vector{0.0}), std::invalid_argument);
 }
 
