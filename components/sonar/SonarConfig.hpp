@@ -105,6 +105,31 @@ struct SpeckleConfig {
     }
 };
 
+/** A straight array of equal elements, as long as the aperture of `beam_pattern.receive.azimuth`, whose signals are
+ *  told. */
+struct ElementsConfig {
+    std::optional<int> count;
+    std::optional<double> spacing_m;
+
+    /** How many elements there are, and how far apart [m]. */
+    struct Array {
+        size_t count;
+        double spacing;
+    };
+    /** As given, the rest from the length of the aperture [m]; half a wavelength apart where nothing is given. */
+    Array arrayOf(double aperture_m, double wavelength) const;
+
+    template <class Self, class V>
+    static void describe(Self& self, V& visit) {
+        using types::Field;
+        visit(Field{"count", "1", "elements; absent: as many as the receiver's aperture has room for", 2, 4096},
+              self.count);
+        visit(Field{"spacing_m", "m", "of their middles; absent: the aperture over count, or half a wavelength", 1e-5,
+                    10},
+              self.spacing_m);
+    }
+};
+
 /** Samples per beam: given, or found for an error or a time from the pings. Found for an error of 0.05 with at most
  *  400,000 samples a ping when nothing is given. */
 struct QualityConfig {
@@ -174,6 +199,7 @@ struct SonarConfig {
     std::optional<acoustics::PulseConfig> pulse;
     std::vector<VolumeLayer> volume;
     std::optional<SpeckleConfig> speckle;
+    std::optional<ElementsConfig> elements;
     std::optional<types::NotBuiltYet> multipath;
     std::optional<types::MovedTo> tvg, gain, output, source_level_db;
 
@@ -274,6 +300,10 @@ void SonarConfig::describeBeam(Self& self, V& visit) {
     visit(Field{"volume", "", "water that scatters sound back, or a list of its layers; absent: none"}, self.volume);
     visit(Field{"speckle", "", "echoes that interfere, by scatterers of the scene; absent: energies are summed"},
           self.speckle);
+    visit(Field{"elements", "",
+                "straight array whose signals port `elements` tells; needs speckle: {coherent: true}, beam_geometry: "
+                "conical and a weighted aperture in beam_pattern.receive.azimuth; absent: they are not told"},
+          self.elements);
     visit(Field{"multipath", "", "second bounce (not built yet)"}, self.multipath);
     visit(Field{"tvg", "",
                 "has moved: a sonar gives intensities; tvg belongs to a receiver::ReceiverTask after the noise"},
