@@ -11,6 +11,7 @@
 #include "components/sonar/BinLevels.hpp"
 #include "components/sonar/EchoGrid.hpp"
 #include "components/sonar/ObjectPlaces.hpp"
+#include "components/sonar/PathEchoes.hpp"
 #include "components/sonar/SurfaceScene.hpp"
 #include "components/sonar/ThreadPool.hpp"
 #include "components/sonar/TileDeposit.hpp"
@@ -45,7 +46,10 @@ public:
     void render(const types::Snapshot& snapshot, types::Sonar& ping, Stages& stages) override;
     void setTruth(types::SonarTruth* truth) override { truth_ = truth; }
     bool hasEchoes() const override { return heard_; }
-    std::vector<LeftOut> culled() const override { return {}; }
+    std::vector<LeftOut> culled() const override {
+        const std::optional<LeftOut> dark = paths_ ? paths_->leftOut() : std::nullopt;
+        return dark ? std::vector{*dark} : std::vector<LeftOut>{};
+    }
     Features compiled() const override;
     const std::string& device() const override { return device_; }
 
@@ -73,6 +77,10 @@ private:
     }
     void place(const types::Snapshot& snapshot);
     void makeTruth();
+    PlacedScene scene() const {
+        return {visibility_.commands(), runs_, places_.records(), planes_, normal_maps_, water_};
+    }
+    void addPaths(types::Sonar& ping);
     void depositPart(const Part& part, std::span<const CastTile> tiles, Worker& worker);
     void work(Worker& worker, types::Sonar& ping);
     void workOn(const Part& part, Worker& worker, types::Sonar& ping);
@@ -95,7 +103,8 @@ private:
     RayVisibility visibility_;
     std::vector<PlaneRecord> planes_;
     NormalMapping normal_maps_;
-    std::vector<PlacedRun> runs_;  ///< Of the visibility's commands, in this ping.
+    std::vector<PlacedRun> runs_;      ///< Of the visibility's commands, in this ping.
+    std::optional<PathEchoes> paths_;  ///< By way of mirrors, where the plan has them.
     ThreadPool threads_;
     std::vector<Worker> workers_;
     std::vector<Part> parts_;
@@ -119,6 +128,7 @@ CastEchoes::CastEchoes(const RenderPlan& plan, types::GeometryPtr geometry)
       threads_(plan.options.threads),
       workers_(static_cast<size_t>(threads_.size())) {
     runs_.reserve(visibility_.commands().size());
+    if (plan.has(Pass::Paths)) paths_.emplace(plan, *geometry_, visibility_);
     takeQuality();
 }
 
@@ -135,6 +145,7 @@ void CastEchoes::takeQuality() {
     grid_.emplace(plan_, threads_.size());
     if (plan_.features.has(Feature::Volume)) volume_.emplace(plan_);
     shareOut();
+    if (paths_) paths_->takeQuality(rules_, view_);
     truth_grid_.reset();
 }
 
@@ -173,6 +184,7 @@ void CastEchoes::place(const types::Snapshot& snapshot) {
     water_ = waterViewOf(snapshot);
     places_.place(snapshot);
     visibility_.place(snapshot);
+    if (paths_) paths_->begin(snapshot);
     runs_.clear();
     for (const CommandRecord& command : visibility_.commands())
         runs_.push_back(placedRun(places_.records()[command.object], command, rules_, 1, 0));
@@ -210,6 +222,7 @@ std::span<const CastTile> CastEchoes::cast(const Part& part, Worker& worker) con
             if (waiting == rays.size()) castWaiting();
         }
     if (waiting > 0) castWaiting();
+    for (size_t i = 0; paths_ && i < count; ++i) paths_->endAtSurface(worker.tiles[i], worker.hits[i]);
     return {worker.tiles.data(), count};
 }
 
@@ -225,10 +238,9 @@ bool CastEchoes::gather(const Part& part, Worker& worker) {
 
 void CastEchoes::depositPart(const Part& part, std::span<const CastTile> tiles, Worker& worker) {
     std::fill(worker.sums.begin(), worker.sums.end(), 0);
-    const PlacedScene scene{visibility_.commands(), runs_, places_.records(), planes_, normal_maps_, water_};
-    if (!truth_) return deposit(rules_, view_, scene, tiles, part.first_beam, worker.sums.data());
+    if (!truth_) return deposit(rules_, view_, scene(), tiles, part.first_beam, worker.sums.data());
     worker.shown->clear();
-    depositAndTell(rules_, view_, scene, tiles, part.first_beam, worker.sums.data(),
+    depositAndTell(rules_, view_, scene(), tiles, part.first_beam, worker.sums.data(),
                    {*worker.shown, {}, worker.one_beam});
     for (int beam = 0; beam < part.beams; ++beam)
         truth_grid_->take(static_cast<size_t>(part.first_beam + beam), *worker.shown, static_cast<size_t>(beam),
@@ -239,6 +251,7 @@ void CastEchoes::workOn(const Part& part, Worker& worker, types::Sonar& ping) {
     const std::span<const CastTile> tiles = cast(part, worker);
     worker.lap(DrawStage);
     depositPart(part, tiles, worker);
+    if (paths_) paths_->trace(scene(), tiles, (part.first_beam + part.beams) * view_.cells.beam_columns);
     worker.lap(DepositStage);
     if (gather(part, worker))
         for (int beam = 0; beam < part.beams; ++beam)
@@ -252,6 +265,15 @@ bool CastEchoes::fill(size_t cell, const uint64_t* sums, types::Sonar& ping) {
     const bool heard = levels_.fill(rules_, sums, view_.cells.cell(), bins);
     if (volume_) volume_->add(sums + rules_.volumeOffset(), cell, view_.cells.cell(), bins);
     return heard;
+}
+
+void CastEchoes::addPaths(types::Sonar& ping) {
+    threads_.run([&](int part, int parts) {
+        for (int cell = part; cell < view_.cells.beams; cell += parts) {
+            const auto i = static_cast<size_t>(cell);
+            workers_[static_cast<size_t>(part)].heard |= paths_->addTo(i, levels_, grid_->cell(i, ping));
+        }
+    });
 }
 
 void CastEchoes::work(Worker& worker, types::Sonar& ping) {
@@ -281,6 +303,7 @@ void CastEchoes::render(const types::Snapshot& snapshot, types::Sonar& ping, Sta
     else
         threads_.share([&](int part, int) { work(workers_[static_cast<size_t>(part)], ping); });
     own.last = Clock::now();
+    if (paths_) addPaths(ping);
     grid_->finish(ping, threads_);
     if (truth_) truth_grid_->finish(*truth_, threads_);
     stages[BeamStage].seconds += std::chrono::duration<double>(Clock::now() - own.last).count();

@@ -4,7 +4,7 @@
 
 #include "components/acoustics/Pulse.hpp"
 #include "components/sonar/RenderPlan.hpp"
-#include "components/sonar/Sightlines.hpp"
+#include "components/sonar/TargetWays.hpp"
 #include "types/Snapshot.hpp"
 #include "types/Sonar.hpp"
 
@@ -39,18 +39,27 @@ public:
     size_t add(const types::Snapshot& snapshot, types::Sonar& ping);
 
 private:
-    /** Where a target is about the sonar. */
-    struct Place {
-        double range, azimuth, elevation;  ///< Azimuth as beams have it: of cones their bearing [m, rad].
+    /** Where sound goes, or comes from. */
+    struct Direction {
+        double azimuth, elevation;  ///< Azimuth as beams have it: of cones their bearing [rad].
     };
-    std::optional<Place> placeOf(const types::Pose& sonar, const glm::dvec3& position) const;
-    double powerIn(const Beam& beam, const Place& place) const;
+    /** One echo of a target: out one way, back another or the same. */
+    struct Return {
+        double range;  ///< Half of the way out and back [m].
+        Direction sent, heard;
+        double intensity;  ///< But for patterns and the pulse [1/m^2].
+        int reflections;   ///< In mirrors, of both ways [1].
+    };
+    std::optional<Direction> directionOf(const glm::dvec3& way) const;
+    std::optional<Return> returnOf(const TargetWay& out, const TargetWay& back, double strength_db) const;
+    bool isSent(const Direction& direction) const;
+    double powerIn(const Beam& beam, const Return& echo) const;
     /** Fills means_ for bins from `first` on; whether there is any. */
     bool spread(double range);
-    bool addTo(types::Sonar& ping, const Place& place, double intensity) const;
+    bool addTo(types::Sonar& ping, const Return& echo) const;
 
     const RenderPlan& plan_;
-    Sightlines sightlines_;
+    TargetWays ways_;
     double absorption_;  ///< Two-way, of intensity [1/m].
     std::optional<PulseMeans> pulse_;
     std::vector<double> means_;  ///< Of h, for bins from first_bin_ on [1].

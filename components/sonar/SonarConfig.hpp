@@ -82,6 +82,35 @@ struct VolumeLayer {
     void check(types::Diagnostics& diagnostics) const;
 };
 
+/** The water surface as a mirror. */
+struct SurfaceMirrorConfig {
+    double wind_m_s = 0;
+
+    template <class Self, class V>
+    static void describe(Self& self, V& visit) {
+        visit(types::Field{"wind_m_s", "m/s", "wind that makes it rough; 0: as flat as a mirror", 0, 50},
+              self.wind_m_s);
+    }
+};
+
+/** Echoes that come by way of mirrors (ACOUSTICS.md 5.19). */
+struct MultipathConfig {
+    std::optional<SurfaceMirrorConfig> surface;
+    int bounces = 1;
+
+    template <class Self, class V>
+    static void describe(Self& self, V& visit) {
+        using types::Field;
+        visit(Field{"surface", "", "the scene's water_surface reflects; absent: it lets all sound through"},
+              self.surface);
+        visit(Field{"bounces", "1",
+                    "reflections of one way, at most: 1 in the water surface and materials with `mirror: true`, 2 in "
+                    "smooth materials as well; 0: none",
+                    0, 2},
+              self.bounces);
+    }
+};
+
 /** Samples per beam: given, or found for an error or a time from the pings. Found for an error of 0.05 with at most
  *  400,000 samples a ping when nothing is given. */
 struct QualityConfig {
@@ -150,7 +179,7 @@ struct SonarConfig {
     std::optional<BeamPatternConfig> beam_pattern;
     std::optional<acoustics::PulseConfig> pulse;
     std::vector<VolumeLayer> volume;
-    std::optional<types::NotBuiltYet> multipath;
+    std::optional<MultipathConfig> multipath;
     std::optional<types::MovedTo> tvg, gain, output, source_level_db;
 
     /** Whether there is more than one water that scatters, or one with bounds. */
@@ -183,6 +212,8 @@ struct SonarConfig {
     /** Frequency that a law of absorption is for: its own, or the sonar's [kHz]; none where absorption follows no law.
      */
     std::optional<double> absorbedKhz() const;
+    /** Whether echoes may come by way of mirrors, which takes rays. */
+    bool tracesPaths() const { return multipath && multipath->bounces > 0; }
     /** Configured, or that of `water`, or 1500 [m/s]. */
     double speedOfSound() const;
 
@@ -244,7 +275,7 @@ void SonarConfig::describeBeam(Self& self, V& visit) {
           self.beam_pattern);
     visit(Field{"pulse", "", "what an echo leaves in range; absent: it is in its own bin alone"}, self.pulse);
     visit(Field{"volume", "", "water that scatters sound back, or a list of its layers; absent: none"}, self.volume);
-    visit(Field{"multipath", "", "second bounce (not built yet)"}, self.multipath);
+    visit(Field{"multipath", "", "echoes by way of mirrors; absent: none"}, self.multipath);
     visit(Field{"tvg", "",
                 "has moved: a sonar gives intensities; tvg belongs to a receiver::ReceiverTask after the noise"},
           self.tvg);
