@@ -127,8 +127,9 @@ struct SpeckleConfig {
                     "scatterers in a resolution cell, beam width by range resolution, at least", 1, 200},
               self.scatterers_per_cell);
         visit(Field{"scatterers_per_m2", "1/m2",
-                    "scatterers that surfaces have, each of exponentially distributed strength: where few of them are "
-                    "in a cell, it is K-distributed (Abraham and Lyons 2002); absent: so many that none stands out",
+                    "scatterers of surfaces, of exponentially distributed strengths: intensities are K-distributed, "
+                    "of the shape of their number in a cell (Abraham and Lyons 2002); absent: so many that none stands "
+                    "out",
                     1e-6, 1e9},
               self.scatterers_per_m2);
     }
