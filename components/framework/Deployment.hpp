@@ -9,7 +9,6 @@
 #include <string>
 #include <vector>
 
-#include "components/framework/DeploymentControl.hpp"
 #include "components/framework/DeploymentSpec.hpp"
 #include "components/framework/Executor.hpp"
 #include "components/framework/Graph.hpp"
@@ -33,7 +32,7 @@ struct RunResult : Progress {
  *
  *  Tasks configure in file order, start readers before writers, stop and clean up writers before readers; a reader
  *  has a last cycle before it stops, so that nothing that waits for it is lost. Its destructor cleans up. */
-class Deployment final : public DeploymentControl {
+class Deployment final : public types::DeploymentControl {
 public:
     /** Makes and checks; nothing is configured. Throws types::ConfigError with every fault, those of `spec` first.
      *  A `seed` that is not 0 gives each task that has a property of that name a hash of it and the task's name. */

@@ -13,6 +13,7 @@
 #include "components/framework/Statistics.hpp"
 #include "components/framework/Timing.hpp"
 #include "types/ConfigError.hpp"
+#include "types/DeploymentControl.hpp"
 #include "types/Plan.hpp"
 #include "types/TaskRecord.hpp"
 #include "types/Time.hpp"
@@ -32,8 +33,6 @@ struct Outcome {
 
 types::Time wallClock();
 
-class DeploymentControl;
-
 /** Where a task finds and leaves files, and what time it is. Shared by all tasks of a deployment. */
 struct Environment {
     std::filesystem::path input_folder = ".";      ///< Of the deployment file.
@@ -50,7 +49,7 @@ struct Environment {
     std::function<std::vector<types::TaskRecord>()> records;
     /** How often tasks have told their records anew: so that nobody asks for them in vain. */
     std::shared_ptr<std::atomic<uint64_t>> record_changes = std::make_shared<std::atomic<uint64_t>>(0);
-    DeploymentControl* deployment = nullptr;  ///< Null for a task outside of a deployment.
+    types::DeploymentControl* deployment = nullptr;  ///< Null for a task outside of a deployment.
 };
 
 class Activity;

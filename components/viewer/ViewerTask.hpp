@@ -50,10 +50,8 @@ private:
     void updateHook() override;
     void errorHook() override;
     void cleanupHook() override;
-    Access access();
     /** The first line of the token's file; types::ConfigError where there is none. */
     std::string readToken() const;
-    void refuseOwn(const std::string& operation) const;
 
     framework::DynamicInputs<ShownTypes, SourceOf> inputs_{this};
     std::unique_ptr<Publisher> publisher_;
