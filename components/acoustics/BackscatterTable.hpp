@@ -16,8 +16,6 @@ public:
     /** Of a cross section over the grazing angle [rad], m^2 at 1 m for each m^2. */
     explicit BackscatterTable(const std::function<double(double)>& section);
 
-    /** sigma_b / cos(theta) [1]. */
-    double overCosine(double cos_incidence) const;
     /** Entry i is for cos(theta) = i / 255; the first for the sine of 0.001 deg. */
     const std::array<double, entries>& values() const { return values_; }
 

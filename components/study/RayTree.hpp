@@ -5,6 +5,7 @@
 #include <glm/mat4x4.hpp>
 #include <glm/vec3.hpp>
 #include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -46,7 +47,8 @@ public:
      * a call should lie close together. */
     void cast(glm::dvec3 from, std::span<const Rays> rays, std::span<Found> found) const;
 
-    /** Materials give back what they do to a sonar of this configuration; Lambert's law before that. */
+    /** Materials give back what they do to a sonar of this configuration; Lambert's law before that. Nothing is done
+     *  for one that materials are the same to as to the last. */
     void takeLaws(const sonar::SonarConfig& config);
     /** sigma_b / cos(theta) of a triangle [1]. */
     double backscatter(uint32_t triangle, double cosine) const {
@@ -73,6 +75,13 @@ private:
         uint32_t object, first_index;
         int material;
     };
+    /** What laws depend on of a sonar. */
+    struct Hearer {
+        sonar::Model model;
+        std::optional<double> frequency_khz;
+        double speed_of_sound;
+        bool operator==(const Hearer&) const = default;
+    };
     struct Place {
         glm::dmat4 origin_from_object;
         glm::dmat3 normals;
@@ -87,6 +96,7 @@ private:
     std::vector<Triangle> triangles_;
     std::vector<Source> sources_;  ///< Of each triangle.
     sonar::MaterialLaws laws_;     ///< None where all follow Lambert's.
+    std::optional<Hearer> heard_by_;
     std::unique_ptr<Embree> embree_;
 };
 
