@@ -24,7 +24,7 @@ using CsvJudge =
     std::function<std::vector<CsvProblem>(const std::vector<double>& row, const std::vector<double>* before)>;
 
 /** The rows of a CSV file of numbers, in order. Its first line that is not blank has the names of all columns. A byte
- * order mark, carriage returns, spaces about numbers and blank lines are passed over.
+ *  order mark, carriage returns, spaces about numbers and blank lines are passed over.
  *  @throws ConfigError with file, line and column of everything that is wrong, up to a hundred: another header, fields
  *  that are missing, too many, or no numbers from min to max, what `judge` tells, fewer than `least` rows */
 std::vector<std::vector<double>> readCsv(const std::filesystem::path& file, const std::vector<CsvColumn>& columns,

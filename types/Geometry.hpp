@@ -56,7 +56,7 @@ struct ClusterNode {
 };
 
 /** Triangles in their own coordinates (z up, x north-like). Every index is below positions.size(); positions are
- * finite. */
+ *  finite. */
 struct Mesh {
     std::string name;
     std::vector<glm::vec3> positions;  ///< [m]

@@ -14,7 +14,7 @@ output::DisplayConfig displayFor(const types::Sonar& ping);
 
 /** Writes the pictures of a stream, x_000000.png and on for `x.png`, and returns the files: of pings, beams and scans
  *  their fans, of frames themselves. Negative bins are taken for levels in dB. Throws types::ConfigError for a stream
- * of anything else, std::runtime_error for a frame whose pixels no PNG can hold. */
+ *  of anything else, std::runtime_error for a frame whose pixels no PNG can hold. */
 std::vector<std::filesystem::path> exportPictures(log::Reader& log, const std::string& stream,
                                                   const std::filesystem::path& path);
 

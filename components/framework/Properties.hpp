@@ -21,7 +21,7 @@ public:
     PropertiesBase& operator=(const PropertiesBase&) = delete;
 
     /** Takes the values of a YAML block over the defaults; faults go to the reader. An undefined node is an empty
-     * block. */
+     *  block. */
     virtual void load(ConfigReader& reader, const YAML::Node& block, const std::string& path) = 0;
     /** Every property with its default; nested names are dotted. */
     virtual std::vector<PropertyInfo> list() const = 0;

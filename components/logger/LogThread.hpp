@@ -22,7 +22,7 @@ using Declare = std::function<size_t(log::Writer&)>;
 class LogThread {
 public:
     /** `log` and `rotation` are the thread's alone until finish(). Flushes every `flush_period` [s]; `capacity` is
-     * above 0. */
+     *  above 0. */
     LogThread(log::Writer& log, Rotation& rotation, size_t capacity, double flush_period);
     ~LogThread();
     LogThread(const LogThread&) = delete;

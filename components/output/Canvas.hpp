@@ -25,7 +25,7 @@ private:
 };
 
 /** Paints the ground of title and picture, and the bar of all colours with its upper left corner at `bar`, where there
- * is room for it. */
+ *  is room for it. */
 void paintBackground(cv::Mat& canvas, const Palette& palette, cv::Point bar);
 
 /** A picture and a line of text to go below it. */

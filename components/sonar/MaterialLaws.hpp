@@ -23,7 +23,7 @@ struct MaterialLaws {
     bool hasLobes() const;
     bool followsLambert(size_t material) const { return FOLLOWS_LAMBERT(records[material].law); }
     /** sigma_b / cos(theta) of a material at a cosine [1]; its lobe is widened by what the facet adds to its mean
-     * square slope [1], and by how wide the sample is [rad]. */
+     *  square slope [1], and by how wide the sample is [rad]. */
     double overCosine(size_t material, double cosine, double facet_slope, double sample_angle) const;
     /** Largest sigma_b / cos(theta) of any material but for its lobe [1]. */
     double loudest() const;

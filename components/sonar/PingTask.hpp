@@ -25,18 +25,18 @@ namespace insonify::sonar {
  *  snapshot that cannot be rendered (a pose that is not finite, a quaternion of no length, no geometry, a place that
  *  only more than a tenth of the speed of sound reaches) leads to RunTimeError, from which the next good one recovers.
  *  In realtime the newest snapshot counts, and a ping is written once the last echo of its range has come back:
- * 2 range / c after its snapshot's time on the deployment's clock, and after the task took it, whichever is later.
- * Pings thus never overlap. One whose listening is cut off by the stop is not written. A snapshot whose time is a
- * second ahead of that clock is refused like the others. A quaternion that is not of unit length is normalised. Pings
- * closer in time than sound's way to the range and back are rendered, each by itself, and told of in the notices. The
- * quality is given, or a QualityKeeper chooses and keeps it; in realtime the period of the pings is its budget where
- * nothing is said, as their stamps tell it.
+ *  2 range / c after its snapshot's time on the deployment's clock, and after the task took it, whichever is later.
+ *  Pings thus never overlap. One whose listening is cut off by the stop is not written. A snapshot whose time is a
+ *  second ahead of that clock is refused like the others. A quaternion that is not of unit length is normalised. Pings
+ *  closer in time than sound's way to the range and back are rendered, each by itself, and told of in the notices. The
+ *  quality is given, or a QualityKeeper chooses and keeps it; in realtime the period of the pings is its budget where
+ *  nothing is said, as their stamps tell it.
  *
  *  `truth` and `returns` tell of each ping what its bins show, for as long as one of them is connected; nothing is
  *  computed for it otherwise, and the bins are the same either way.
  *
  *  `pose` tells where each ping was rendered, carried on as it was; with `given_pose` connected there is a ping for
- * each of these poses, in the newest snapshot's scene, so that what `pose` has told renders the same pings again. */
+ *  each of these poses, in the newest snapshot's scene, so that what `pose` has told renders the same pings again. */
 class PingTask : public framework::TaskContext, public framework::Planned {
 public:
     using TaskContext::TaskContext;

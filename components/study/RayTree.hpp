@@ -44,7 +44,7 @@ public:
     RayTree& operator=(const RayTree&) = delete;
 
     /** The first triangle on each ray from a point about the origin, of at most `packets_at_once` packets. All rays of
-     * a call should lie close together. */
+     *  a call should lie close together. */
     void cast(glm::dvec3 from, std::span<const Rays> rays, std::span<Found> found) const;
 
     /** Materials give back what they do to a sonar of this configuration; Lambert's law before that. Nothing is done
@@ -64,8 +64,8 @@ public:
     uint32_t objectOf(uint32_t triangle) const { return sources_[triangle].object; }
 
     /** Cosine between a unit direction and the mapped normal at a point of a mapped triangle (about the origin), as
-     * glTF has it: normal, tangent and uv of the corners by the point's weights, the map bilinear without mipmaps; at
-     * least 1e-6, either side. */
+     *  glTF has it: normal, tangent and uv of the corners by the point's weights, the map bilinear without mipmaps; at
+     *  least 1e-6, either side. */
     double mappedCosine(uint32_t triangle, glm::dvec3 point, glm::dvec3 direction) const;
 
 private:

@@ -38,7 +38,7 @@ protected:
     }
     /** A log of four pings, of which the last two are set otherwise.
      *  @param tell writes into the log of properties, given its stream of the property that is set first, what became
-     * of it. */
+     *  of it. */
     void recordAChange(const std::string& first, const std::string& second,
                        const std::function<void(log::Writer&, size_t)>& tell) const {
         ASSERT_EQ(call({"run", "wall.yml", "--out", "out", "--pings", "4", "--set", first}).code, 0);

@@ -99,7 +99,7 @@ TEST(LogFailureTest, ADiskThatIsFullOnlyAtTheEndIsToldByStop) {
 }
 
 /** Logs into a file that may not exceed 50000 bytes; exits 0 when the task ends in Exception. With a queue of one
- * sample the file is flushed every few samples, however the threads take turns. */
+ *  sample the file is flushed every few samples, however the threads take turns. */
 [[noreturn]] void fillLimitedDisk(const std::filesystem::path& folder) {
     const rlimit limit{50000, 50000};
     setrlimit(RLIMIT_FSIZE, &limit);
