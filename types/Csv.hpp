@@ -14,14 +14,14 @@ struct CsvColumn {
 };
 
 /** What is wrong with a row whose numbers are good, and at which of its columns. */
-struct CsvProblem {
+struct CsvDiagnostic {
     size_t column;
     std::string message;
 };
 
 /** Tells what is wrong with a row; `before` is the row of good numbers before it, null for the first. */
 using CsvJudge =
-    std::function<std::vector<CsvProblem>(const std::vector<double>& row, const std::vector<double>* before)>;
+    std::function<std::vector<CsvDiagnostic>(const std::vector<double>& row, const std::vector<double>* before)>;
 
 /** The rows of a CSV file of numbers, in order. Its first line that is not blank has the names of all columns. A byte
  *  order mark, carriage returns, spaces about numbers and blank lines are passed over.

@@ -24,7 +24,7 @@ private:
 };
 
 /** A measured strength: levels [dB] over grazing angles [deg], from a CSV file with header grazing_deg,strength_db.
- *  @throws types::ConfigError with file, line and column of every fault. */
+ *  @throws types::ConfigError with file, line and column of every diagnostic. */
 Curve readBackscatter(const std::string& file);
 /** Its cross section at a grazing angle [rad]: straight lines in decibels, the nearer end's beyond what was measured
  *  [m^2 at 1 m for each m^2]. */

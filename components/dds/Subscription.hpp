@@ -32,7 +32,7 @@ public:
 private:
     void decode(types::Pose& pose);
     /** Empty for a pose that can be used. */
-    std::string faultOf(types::Time now, const types::Pose& pose);
+    std::string diagnosticOf(types::Time now, const types::Pose& pose);
 
     std::string topic_;
     PoseType type_;

@@ -96,7 +96,7 @@ public:
 
     /** Text of the last throw, error() or refusal; empty if there was none. */
     std::string lastError() const;
-    /** The fault that configureHook threw, if it was one of the configuration. */
+    /** The diagnostic that configureHook threw, if it was one of the configuration. */
     const types::ConfigError* configError() const { return config_error_.get(); }
 
     // What `describe`, the deployment and tests look at. Order is that of declaration.
@@ -114,8 +114,9 @@ public:
     virtual InputPortBase* makeInput(const std::string& /*port*/, OutputPortBase& /*source*/) { return nullptr; }
     virtual OutputPortBase* makeOutput(const std::string& /*port*/) { return nullptr; }
 
-    /** Faults that can be seen without configuring (files that are not there...); paths as in types::Diagnostic. */
-    virtual void check(types::Diagnostics& /*problems*/) const {}
+    /** Diagnostics that can be seen without configuring (files that are not there...); paths as in types::Diagnostic.
+     */
+    virtual void check(types::Diagnostics& /*diagnostics*/) const {}
     /** Notices for the user (a mesh without triangles, dropped vertices). Valid after configure. */
     virtual std::vector<std::string> notices() const { return {}; }
     /** True once a source has nothing more to say: a lockstep run ends when all sources have. */

@@ -68,8 +68,8 @@ void writeGrids(Reader& log, const std::string& stream, const std::filesystem::p
     T::forEachArray(names, [&](const char* name, const auto&, auto) { header += std::string(",") + name; });
     CsvFile csv(path, header);
     log.forEach<T>(stream, [&](const T& sample, const SampleRef& at) {
-        if (const char* fault = sample.diagnostic())
-            throw types::ConfigError(log.path(), stream, std::string("a sample ") + fault);
+        if (const char* diagnostic = sample.diagnostic())
+            throw types::ConfigError(log.path(), stream, std::string("a sample ") + diagnostic);
         size_t count = sample.bearings.size(), bins = 1;
         if constexpr (of_bins) bins = sample.bin_count;
         for (size_t i = 0; i < count * bins; ++i) {

@@ -17,8 +17,8 @@ using Declare = std::function<size_t(log::Writer&)>;
 /** Writes samples to a log on a thread of its own, in the order in which they were pushed, and flushes in between.
  *
  *  Between push() and the file lies a ring of fixed size. Where the file is slower than the samples for long, push()
- *  waits for room. Trouble with the file is thrown once, by the next push() or by finish(), with the number of samples
- *  that were pushed and are not in the file. */
+ *  waits for room. What fails with the file is thrown once, by the next push() or by finish(), with the number of
+ *  samples that were pushed and are not in the file. */
 class LogThread {
 public:
     /** `log` and `rotation` are the thread's alone until finish(). Flushes every `flush_period` [s]; `capacity` is

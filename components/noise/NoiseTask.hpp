@@ -8,7 +8,7 @@
 #include "components/framework/SamplePool.hpp"
 #include "components/framework/TaskContext.hpp"
 #include "components/noise/Noise.hpp"
-#include "types/Complaint.hpp"
+#include "types/RecurringDiagnostic.hpp"
 #include "types/Sonar.hpp"
 
 namespace insonify::noise {
@@ -44,7 +44,7 @@ private:
     std::optional<Noise> noise_;
     framework::SamplePool<types::Sonar> pool_;
     uint64_t clamped_ = 0;
-    types::Complaint buried_;
+    types::RecurringDiagnostic buried_;
 };
 
 /** Makes the tasks of this folder known to deployments. */

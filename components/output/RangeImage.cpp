@@ -22,7 +22,7 @@ RangeImage::Span RangeImage::spanOf(const types::DepthMap& map) const {
 void RangeImage::paint(types::Image& picture) {
     static const types::DepthMap nothing;
     const types::DepthMap& map = map_ ? *map_ : nothing;
-    if (const char* const fault = map.diagnostic()) throw std::runtime_error(std::string("a map ") + fault);
+    if (const char* const diagnostic = map.diagnostic()) throw std::runtime_error(std::string("a map ") + diagnostic);
     const double rows =
         map.horizontal_size > 0 ? chart_.columns() * static_cast<double>(map.vertical_size) / map.horizontal_size : 0;
     const Span span = spanOf(map);

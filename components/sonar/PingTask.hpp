@@ -9,9 +9,9 @@
 #include "components/framework/SamplePool.hpp"
 #include "components/framework/TaskContext.hpp"
 #include "components/sonar/BinGrid.hpp"
+#include "components/sonar/PingDiagnostics.hpp"
 #include "components/sonar/QualityKeeper.hpp"
 #include "components/sonar/SonarRenderer.hpp"
-#include "components/sonar/Troubles.hpp"
 #include "types/Snapshot.hpp"
 #include "types/Sonar.hpp"
 #include "types/SonarReturns.hpp"
@@ -111,7 +111,7 @@ private:
     bool waitForLastEcho();
     void makeRenderer();
     /** What is to be told of a ping in which there may be nothing. */
-    std::string troubleOf(bool heard, const types::Sonar& sample);
+    std::string diagnosticOf(bool heard, const types::Sonar& sample);
     /** Looks after the quality once a ping has been rendered, in `ms`; may render it again. */
     void followQuality(types::Sonar& sample, double ms);
 
@@ -121,7 +121,7 @@ private:
     PeriodMeter period_;
     std::unique_ptr<SonarRenderer> renderer_;
     std::optional<QualityKeeper> quality_;  ///< None where the quality is given.
-    std::optional<Troubles> troubles_;
+    std::optional<PingDiagnostics> diagnostics_;
     bool culling_untold_ = false;      ///< Whether the plan does not say yet what the first ping's culling left out.
     std::optional<types::Plan> plan_;  ///< Outlives the renderer, for the summary.
     bool plan_told_ = false;           ///< Whether the record has the plan as it is.

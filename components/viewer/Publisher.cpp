@@ -78,7 +78,7 @@ ServerCounts Publisher::counts() const {
 
 std::string Publisher::takeError() {
     std::lock_guard lock(mutex_);
-    return std::exchange(trouble_, {});
+    return std::exchange(diagnostic_, {});
 }
 
 std::optional<PageFile> Publisher::file(std::string_view path) { return pageFile(path); }
@@ -124,7 +124,7 @@ void Publisher::publish(size_t source, const Slot& slot) try {
         server_.toFoxglove(channel, nanosecondsOf(slot.stamp), messages_.encode(slot.sample));
 } catch (const std::exception& error) {
     std::lock_guard lock(mutex_);
-    trouble_ = sources_[source].name + ": cannot be shown: " + error.what();
+    diagnostic_ = sources_[source].name + ": cannot be shown: " + error.what();
 }
 
 void Publisher::showOnPages(size_t source, const Slot& slot) {
@@ -158,7 +158,7 @@ void Publisher::showStatus() try {
     server_.toPages(status_stream, {"", bytesOf(statusText(status, counts())), true});
 } catch (const std::exception& error) {
     std::lock_guard lock(mutex_);
-    trouble_ = std::string("the state of the tasks cannot be shown: ") + error.what();
+    diagnostic_ = std::string("the state of the tasks cannot be shown: ") + error.what();
 }
 
 // -- requests ---------------------------------------------------------------------------------------------------------

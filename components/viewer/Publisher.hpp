@@ -81,7 +81,7 @@ private:
     std::mutex mutex_;
     std::condition_variable fresh_;
     std::vector<Slot> slots_;
-    std::string trouble_;
+    std::string diagnostic_;
     std::map<size_t, types::GeometryPtr> geometries_;  ///< Of `scenes_`; the publishing thread's.
     std::map<size_t, Bytes> scenes_;                   ///< By source, for pages that come later, as interfaces_.
     const std::vector<types::TaskInterface> tasks_;

@@ -82,8 +82,7 @@ void ViewerTask::updateHook() {
     std::string diagnostic = publisher_->takeError();
     size_t source = 0;
     inputs_.forEach([&](auto& input) {
-        if (std::string wrong = drain(input, *publisher_, source++, now()); !wrong.empty())
-            diagnostic = std::move(wrong);
+        if (std::string told = drain(input, *publisher_, source++, now()); !told.empty()) diagnostic = std::move(told);
     });
     if (!diagnostic.empty()) error(diagnostic);
 }

@@ -143,7 +143,7 @@ TEST(BackscatterTest, ATableIsClampedNearGrazing) {
     EXPECT_NEAR(table.values()[255], pi / 2, 1e-9);
 }
 
-TEST(BackscatterTest, AMeasuredTableIsReadWithItsFaultsInPlace) {
+TEST(BackscatterTest, AMeasuredTableIsReadWithItsDiagnosticsInPlace) {
     const Folder folder;
     std::ofstream(folder / "sand.csv") << "grazing_deg,strength_db\n10,-30\n30,-20\n\n90,-10\n";
     const Curve measured = readBackscatter(folder / "sand.csv");

@@ -51,11 +51,11 @@ TEST(OculusPingTest, PingsStandAmongOtherMessages) {
 }
 
 TEST(OculusPingTest, WhatContradictsItselfIsNoPing) {
-    std::vector<std::string> problems;
+    std::vector<std::string> diagnostics;
     Bytes bytes = Sent{}.bytes();
     put<uint32_t>(bytes, 114, 7);
-    EXPECT_THAT(oculusPings(bytes, &problems), IsEmpty());
-    EXPECT_THAT(problems, ElementsAre(HasSubstr("an image of 7 bytes where bins and beams make 6")));
+    EXPECT_THAT(oculusPings(bytes, &diagnostics), IsEmpty());
+    EXPECT_THAT(diagnostics, ElementsAre(HasSubstr("an image of 7 bytes where bins and beams make 6")));
     for (size_t length = 0; length < Sent{}.bytes().size(); ++length) {
         const Bytes whole = Sent{}.bytes();
         EXPECT_THAT(oculusPings(std::span(whole).first(length)), IsEmpty()) << length;
