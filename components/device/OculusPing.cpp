@@ -55,6 +55,10 @@ public:
             return fmt::format("has an image of {} bytes at {} in a message of {}", size, image, bytes_.size());
         const double resolution = read<double>(bytes_, layout_.resolution);
         if (!(resolution > 0 && resolution < 1e3)) return fmt::format("has bins of {:g} m", resolution);
+        const double frequency = read<double>(bytes_, layout_.frequency),
+                     speed = read<double>(bytes_, layout_.speed_of_sound);
+        if (!(frequency >= 0 && frequency < 1e9)) return fmt::format("has a frequency of {:g} Hz", frequency);
+        if (!(speed >= 0 && speed < 1e4)) return fmt::format("has a speed of sound of {:g} m/s", speed);
         return "";
     }
 
