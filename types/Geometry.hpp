@@ -20,6 +20,7 @@ struct Material {
     std::vector<glm::dvec2> measured = {};  ///< Grazing angles, ascending, and strengths, in place of both [deg, dB].
     float reflection = 0;                   ///< Pressure reflection coefficient at normal incidence, signed [1].
     std::optional<float> roughness_slope = {};  ///< Rms slope of the micro-relief: adds a specular lobe [1].
+    bool mirror = false;                        ///< Reflects sound as a flat mirror does, beside what it scatters.
     float reflectivity = 1;                     ///< Factor of `cerqueira2017` [1].
     bool has_acoustics = false;                 ///< False: no acoustic values in the file, the defaults above stand.
     bool double_sided = false;                  ///< As the file says; sound is reflected by both sides in any case.

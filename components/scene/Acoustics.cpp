@@ -105,6 +105,12 @@ private:
         else
             diagnostics_.push_back({field.name, fmt::format("is {}; must be the path of a file", text(from))});
     }
+    void read(const types::Field& field, const AcousticValue& from, std::optional<bool>& value) {
+        if (const auto* given = std::get_if<bool>(&from))
+            value = *given;
+        else
+            diagnostics_.push_back({field.name, fmt::format("is {}; must be true or false", text(from))});
+    }
     template <types::NamedEnum E>
     void read(const types::Field& field, const AcousticValue& from, std::optional<E>& value) {
         const auto& names = types::EnumNames<E>::names;
@@ -122,6 +128,7 @@ private:
     }
     static std::string text(const AcousticValue& value) {
         if (const auto* number = std::get_if<double>(&value)) return fmt::format("{}", *number);
+        if (const auto* given = std::get_if<bool>(&value)) return *given ? "true" : "false";
         const auto* name = std::get_if<std::string>(&value);
         return name ? fmt::format("\"{}\"", *name) : "no number and no text";
     }
@@ -167,6 +174,7 @@ void Acoustics::applyTo(types::Material& target) const {
     if (lambert_db) target.lambert_db = static_cast<float>(*lambert_db);
     if (reflection) target.reflection = static_cast<float>(*reflection);
     if (roughness_slope) target.roughness_slope = static_cast<float>(*roughness_slope);
+    if (mirror) target.mirror = *mirror;
     if (reflectivity) target.reflectivity = static_cast<float>(*reflectivity);
     target.has_acoustics = true;
 }

@@ -52,6 +52,7 @@ AcousticValue valueOf(const std::string& text) {
     double number;
     const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
     if (error == std::errc() && end == text.data() + text.size()) return number;
+    if (text == "true" || text == "false") return text == "true";
     return text;
 }
 

@@ -69,6 +69,12 @@ bool PingTask::configureHook() {
     if (!rendersOnce() && (truth.connected() || returns.connected()))
         throw types::ConfigError("", name() + (truth.connected() ? ".truth" : ".returns"),
                                  "is connected; a sonar that renders a ping in many parts tells no truth");
+    if (elements.connected() && !sonarConfig().elements)
+        throw types::ConfigError("", name() + ".elements",
+                                 "is connected; the sonar has none: give it `elements`, or leave the connection out");
+    if (elements.connected() && !rendersOnce())
+        throw types::ConfigError("", name() + ".elements",
+                                 "is connected; a sonar that renders a ping in many parts tells no signals");
     renderer_.reset();
     plan_.reset();
     grid_ = makeBinGrid(sonarConfig());
@@ -186,6 +192,7 @@ void PingTask::render() {
     tellMore(*sample, aimed_.sonar);
     ping.write(sample);
     if (told) writeTruth(*sample, told);
+    if (elements.connected()) writeElements(*sample);
 }
 
 std::shared_ptr<types::SonarTruth> PingTask::takeTruth() {
@@ -204,6 +211,13 @@ void PingTask::writeTruth(const types::Sonar& sample, const std::shared_ptr<type
     found->take(sample, *told);
     all_returns_.stock(*found);
     returns.write(found);
+}
+
+void PingTask::writeElements(const types::Sonar& sample) {
+    const auto signals = signals_.take();
+    renderer_->takeElements(sample, *signals);
+    signals_.stock(*signals);
+    elements.write(signals);
 }
 
 bool PingTask::waitForLastEcho() {

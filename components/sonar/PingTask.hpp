@@ -14,6 +14,7 @@
 #include "components/sonar/SonarRenderer.hpp"
 #include "types/Snapshot.hpp"
 #include "types/Sonar.hpp"
+#include "types/SonarElements.hpp"
 #include "types/SonarReturns.hpp"
 #include "types/SonarTruth.hpp"
 
@@ -35,6 +36,8 @@ namespace insonify::sonar {
  *  `truth` and `returns` tell of each ping what its bins show, for as long as one of them is connected; nothing is
  *  computed for it otherwise, and the bins are the same either way.
  *
+ *  `elements` tells what each element of a straight array heard, of a sonar that is configured to have some.
+ *
  *  `pose` tells where each ping was rendered, carried on as it was; with `given_pose` connected there is a ping for
  *  each of these poses, in the newest snapshot's scene, so that what `pose` has told renders the same pings again. */
 class PingTask : public framework::TaskContext, public framework::Planned {
@@ -55,6 +58,10 @@ public:
         this, "truth", "which objects the bins show, from where and at which angle; computed only when connected"};
     framework::OutputPort<types::SonarReturnsPtr> returns{
         this, "returns", "first and strongest return of each beam; computed only when connected"};
+
+    framework::OutputPort<types::SonarElementsPtr> elements{
+        this, "elements",
+        "complex signals of the array's elements, of a sonar with `elements`; computed only when connected"};
 
     const types::Plan* plan() const override { return plan_ ? &*plan_ : nullptr; }
     std::vector<std::string> notices() const override;
@@ -102,6 +109,7 @@ private:
     void render();
     /** What the ping that is rendered next is to tell; null where nobody wants to know. */
     std::shared_ptr<types::SonarTruth> takeTruth();
+    void writeElements(const types::Sonar& sample);
     void writeTruth(const types::Sonar& sample, const std::shared_ptr<types::SonarTruth>& told);
     /** The next of `given_pose`, in the newest snapshot's scene. */
     bool takeGiven();
@@ -132,6 +140,7 @@ private:
     framework::SamplePool<types::Sonar> pool_;
     framework::SamplePool<types::SonarTruth> truths_;
     framework::SamplePool<types::SonarReturns> all_returns_;
+    framework::SamplePool<types::SonarElements> signals_;
 };
 
 /** Why a pose cannot be used, null when it can; makes its quaternion one of unit length. */
