@@ -8,7 +8,7 @@
 #include <glm/geometric.hpp>
 #include <glm/gtc/quaternion.hpp>
 
-#include "components/sonar/Direction.hpp"
+#include "components/sonar/BeamAngles.hpp"
 #include "types/Angle.hpp"
 #include "types/Extent.hpp"
 
@@ -67,11 +67,11 @@ std::string hindranceText(const Coverage& coverage, const glm::dvec3& point) {
     if (range > plan.grid.range_max) return fmt::format("beyond the range of {:.4g} m", plan.grid.range_max);
     if (range < plan.grid.range_min) return fmt::format("nearer than range_min, {:g} m", plan.grid.range_min);
     const bool conical = plan.features.has(Feature::Conical);
-    const Direction direction = directionOf(point, conical);
-    const std::string above = aboveText(plan, degrees(direction.elevation));
+    const BeamAngles angles = beamAnglesOf(point, conical);
+    const std::string above = aboveText(plan, degrees(angles.elevation));
     if (!above.empty() || coverage.all_round) return above;
     if (conical && point.x < 0) return "behind the sonar, a straight array";
-    return asideText(plan, degrees(direction.azimuth));
+    return asideText(plan, degrees(angles.azimuth));
 }
 
 /** That no material of an object gives anything back; empty where one does. */
