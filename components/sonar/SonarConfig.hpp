@@ -291,9 +291,9 @@ struct SonarConfig {
     template <class Self, class V>
     static void describeBeam(Self& self, V& visit);
     void check(types::Diagnostics& diagnostics) const;
-    /** The faults of a fan that is given by `beam_width_deg`. */
+    /** The diagnostics of a fan that is given by `beam_width_deg`. */
     void checkFan(types::Diagnostics& diagnostics) const;
-    /** The faults that a scanning sonar can have as well. */
+    /** The diagnostics that a scanning sonar can have as well. */
     void checkBeam(types::Diagnostics& diagnostics) const;
 };
 
