@@ -11,6 +11,7 @@
 #include "components/sonar/BinLevels.hpp"
 #include "components/sonar/EchoGrid.hpp"
 #include "components/sonar/ObjectPlaces.hpp"
+#include "components/sonar/RayPaths.hpp"
 #include "components/sonar/SurfaceScene.hpp"
 #include "components/sonar/ThreadPool.hpp"
 #include "components/sonar/TileDeposit.hpp"
@@ -93,6 +94,7 @@ private:
     std::optional<EchoGrid> grid_;
     ObjectPlaces places_;
     RayVisibility visibility_;
+    std::optional<RayPaths> paths_;  ///< None where rays are straight.
     std::vector<PlaneRecord> planes_;
     NormalMapping normal_maps_;
     std::vector<PlacedRun> runs_;  ///< Of the visibility's commands, in this ping.
@@ -118,6 +120,7 @@ CastEchoes::CastEchoes(const RenderPlan& plan, types::GeometryPtr geometry)
       normal_maps_(*geometry_),
       threads_(plan.options.threads),
       workers_(static_cast<size_t>(threads_.size())) {
+    if (plan.profile) paths_.emplace(plan);
     runs_.reserve(visibility_.commands().size());
     takeQuality();
 }
@@ -126,6 +129,7 @@ Features CastEchoes::compiled() const {
     Features all = compiledForRays(plan_.features);
     if (view_.cells.weighted) all.add(Feature::ElevationPattern);
     if (!rules_.laws.tables.empty() || rules_.laws.hasLobes()) all.add(Feature::BackscatterLaws);
+    if (paths_) all.add(Feature::Refraction);
     return all | (plan_.features & Features{Feature::Volume, Feature::VolumeLayers});
 }
 
@@ -173,6 +177,7 @@ void CastEchoes::place(const types::Snapshot& snapshot) {
     water_ = waterViewOf(snapshot);
     places_.place(snapshot);
     visibility_.place(snapshot);
+    if (paths_) paths_->place(snapshot);
     runs_.clear();
     for (const CommandRecord& command : visibility_.commands())
         runs_.push_back(placedRun(places_.records()[command.object], command, rules_, 1, 0));
@@ -198,7 +203,9 @@ std::span<const CastTile> CastEchoes::cast(const Part& part, Worker& worker) con
     std::array<TileRays, RayVisibility::tiles_at_once> rays;
     size_t count = 0, waiting = 0;
     const auto castWaiting = [&] {
-        visibility_.cast({rays.data(), waiting}, {&worker.hits[count - waiting], waiting});
+        TileHits* const hits = &worker.hits[count - waiting];
+        if (!paths_) visibility_.cast({rays.data(), waiting}, {hits, waiting});
+        for (size_t i = 0; paths_ && i < waiting; ++i) visibility_.castAlong(*paths_, rays[i], hits[i]);
         waiting = 0;
     };
     for (int column = begin; column < end; column += view_.shape.all.columns)
@@ -225,7 +232,8 @@ bool CastEchoes::gather(const Part& part, Worker& worker) {
 
 void CastEchoes::depositPart(const Part& part, std::span<const CastTile> tiles, Worker& worker) {
     std::fill(worker.sums.begin(), worker.sums.end(), 0);
-    const PlacedScene scene{visibility_.commands(), runs_, places_.records(), planes_, normal_maps_, water_};
+    const PlacedScene scene{visibility_.commands(), runs_,  places_.records(),          planes_,
+                            normal_maps_,           water_, paths_ ? &*paths_ : nullptr};
     if (!truth_) return deposit(rules_, view_, scene, tiles, part.first_beam, worker.sums.data());
     worker.shown->clear();
     depositAndTell(rules_, view_, scene, tiles, part.first_beam, worker.sums.data(),

@@ -56,7 +56,8 @@ std::string publishedWords(Effect effect) {
 
 std::string boundedWords(const LeftOut& what, const BinGrid& grid) {
     if (what.effect == Effect::Refraction)
-        return fmt::format("a gradient of {} 1/s bends by {:.2g} m at {:.4g} m < {:.2g} m", speed_gradient, what.value,
+        return fmt::format("a gradient of {:.3g} 1/s bends by {:.2g} m at {:.4g} m < {:.2g} m",
+                           2 * what.value * grid.speed_of_sound / (grid.range_max * grid.range_max), what.value,
                            grid.range_max, what.bound);
     if (what.effect == Effect::RangePointSpread)
         return fmt::format("the pulse resolves {:.2g} m, under half a bin, {:.2g} m", what.value, what.bound);
@@ -144,7 +145,7 @@ void noteWater(const SonarConfig& config, const BinGrid& grid, std::vector<std::
                 fmt::format("Warning: absorption is extrapolated outside its law's validity: {}", outside));
     }
     const Bending bent = bending(config, grid);
-    if (bent.offset >= bent.tolerated)
+    if (bent.offset >= bent.tolerated && !(config.water && config.water->profile))
         notices.push_back(
             fmt::format("Warning: rays are straight; a gradient of {} 1/s would bend them by {:.3g} m at "
                         "{:.4g} m",

@@ -12,6 +12,7 @@ struct RTCRayHit16;
 
 namespace insonify::sonar {
 
+class RayPaths;
 class SceneTrees;
 
 /** Directions of a tile's rays in sonar axes, of any length above 0 [1]; `active`: bit i is set where ray i is cast. */
@@ -27,6 +28,7 @@ struct TileHits {
     alignas(64) uint32_t command[tile_samples];  ///< Index into RayVisibility::commands(), or `nothing`.
     uint32_t triangle[tile_samples];             ///< Within the mesh of the command's object [1].
     float u[tile_samples], v[tile_samples];  ///< Barycentric coordinates of the triangle's second and third corner [1].
+    float range[tile_samples];               ///< Slant range, of castAlong() alone [m].
 };
 
 /** Which triangle is seen in which direction, by rays on the processor (Embree). What does not move is one tree about
@@ -49,11 +51,17 @@ public:
      * rays[i] meet. Several threads may do so at a time. */
     void cast(std::span<const TileRays> rays, std::span<TileHits> hits) const;
 
+    /** Casts a tile along ways that are not straight, by straight pieces between their corners. */
+    void castAlong(const RayPaths& paths, const TileRays& rays, TileHits& hits) const;
+
     /** What hits mean: one command for each object and run of one material. */
     const std::vector<CommandRecord>& commands() const { return commands_; }
 
 private:
     struct Mover;
+    /** Of a tile's rays, sonar axes about the sonar [m]. */
+    using Places = std::array<glm::vec3, tile_samples>;
+    void castPiece(const TileRays& rays, const Places& from, const Places& to, RTCRayHit16& all, TileHits& hits) const;
     void listCommands();
     bool hasNewMover(const types::Snapshot& snapshot) const;
     void build(const types::Snapshot& snapshot);

@@ -167,7 +167,7 @@ std::optional<double> SonarConfig::targetError() const {
 bool SonarConfig::castsRays() const {
     if (visibility != Visibility::Auto) return visibility == Visibility::Cpu;
     if (!haveRays() || published || deposit == Deposit::Gpu) return false;
-    if (!fitsImages(*this)) return true;
+    if (!fitsImages(*this) || (water && water->profile)) return true;
     return !gpu::EglContext::isAskedFor(device) && !gpu::EglContext::hasCard();
 }
 

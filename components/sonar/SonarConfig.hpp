@@ -18,6 +18,19 @@ enum class Deposit { Auto, Cpu, Gpu };
 enum class Visibility { Auto, Gl, Cpu };
 enum class BeamWidthConvention { PerBeam, TotalFov };
 
+/** State of the water, and where its speed of sound changes with depth. */
+struct WaterConfig : acoustics::Water {
+    std::optional<std::string> profile;
+
+    template <class Self, class V>
+    static void describe(Self& self, V& visit) {
+        acoustics::Water::describe(self, visit);
+        visit(types::Field{"profile", "",
+                           "CSV file with depth_m,sound_speed_m_s, by which rays are bent; absent: straight"},
+              self.profile);
+    }
+};
+
 /** Absorption as one number, or by a law from a frequency and the water. */
 struct AbsorptionConfig {
     std::optional<double> db_per_m;
@@ -136,7 +149,7 @@ struct SonarConfig {
     double beam_height_deg = 20;
     BeamGeometry beam_geometry = BeamGeometry::Planar;
     std::optional<double> speed_of_sound;
-    std::optional<acoustics::Water> water;
+    std::optional<WaterConfig> water;
     std::optional<double> frequency_khz;
     std::optional<AbsorptionConfig> absorption;
     QualityConfig quality;
