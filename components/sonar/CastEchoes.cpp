@@ -77,6 +77,8 @@ private:
     void depositPart(const Part& part, std::span<const CastTile> tiles, Worker& worker);
     void work(Worker& worker, types::Sonar& ping);
     void workOn(const Part& part, Worker& worker, types::Sonar& ping);
+    /** The ways of this ping; null where they are straight. */
+    const RayPaths* bent() const { return paths_ && !paths_->areStraight() ? &*paths_ : nullptr; }
     std::span<const CastTile> cast(const Part& part, Worker& worker) const;
     TileRays raysOf(const CastTile& tile, int end_column) const;
     /** Fills the bins of a cell from its sums; whether it has any echo. */
@@ -120,7 +122,8 @@ CastEchoes::CastEchoes(const RenderPlan& plan, types::GeometryPtr geometry)
       normal_maps_(*geometry_),
       threads_(plan.options.threads),
       workers_(static_cast<size_t>(threads_.size())) {
-    if (plan.profile) paths_.emplace(plan);
+    if (plan.features.has(Feature::Refraction) || plan.features.has(Feature::MotionInPing))
+        paths_.emplace(plan, *geometry_);
     runs_.reserve(visibility_.commands().size());
     takeQuality();
 }
@@ -129,7 +132,8 @@ Features CastEchoes::compiled() const {
     Features all = compiledForRays(plan_.features);
     if (view_.cells.weighted) all.add(Feature::ElevationPattern);
     if (!rules_.laws.tables.empty() || rules_.laws.hasLobes()) all.add(Feature::BackscatterLaws);
-    if (paths_) all.add(Feature::Refraction);
+    if (plan_.profile && paths_) all.add(Feature::Refraction);
+    if (plan_.config.motion_in_ping && paths_) all.add(Feature::MotionInPing);
     return all | (plan_.features & Features{Feature::Volume, Feature::VolumeLayers});
 }
 
@@ -204,8 +208,8 @@ std::span<const CastTile> CastEchoes::cast(const Part& part, Worker& worker) con
     size_t count = 0, waiting = 0;
     const auto castWaiting = [&] {
         TileHits* const hits = &worker.hits[count - waiting];
-        if (!paths_) visibility_.cast({rays.data(), waiting}, {hits, waiting});
-        for (size_t i = 0; paths_ && i < waiting; ++i) visibility_.castAlong(*paths_, rays[i], hits[i]);
+        if (!bent()) visibility_.cast({rays.data(), waiting}, {hits, waiting});
+        for (size_t i = 0; bent() && i < waiting; ++i) visibility_.castAlong(*paths_, rays[i], hits[i]);
         waiting = 0;
     };
     for (int column = begin; column < end; column += view_.shape.all.columns)
@@ -232,8 +236,7 @@ bool CastEchoes::gather(const Part& part, Worker& worker) {
 
 void CastEchoes::depositPart(const Part& part, std::span<const CastTile> tiles, Worker& worker) {
     std::fill(worker.sums.begin(), worker.sums.end(), 0);
-    const PlacedScene scene{visibility_.commands(), runs_,  places_.records(),          planes_,
-                            normal_maps_,           water_, paths_ ? &*paths_ : nullptr};
+    const PlacedScene scene{visibility_.commands(), runs_, places_.records(), planes_, normal_maps_, water_, bent()};
     if (!truth_) return deposit(rules_, view_, scene, tiles, part.first_beam, worker.sums.data());
     worker.shown->clear();
     depositAndTell(rules_, view_, scene, tiles, part.first_beam, worker.sums.data(),

@@ -137,6 +137,8 @@ void PingTask::makeRenderer() {
     renderer_ = std::make_unique<SonarRenderer>(begun(config), geometry_);
     if (config.choosesQuality()) quality_.emplace(config, pingsPerTurn());
     plan_ = renderer_->plan();
+    if (const std::string note = depthNotice(renderer_->renderPlan(), aimed_); !note.empty())
+        plan_->notices.push_back(note);
     culling_untold_ = true;
     plan_told_ = false;
     aimed_.moved.reserve(geometry_->objects.size());

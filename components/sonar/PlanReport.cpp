@@ -11,6 +11,7 @@
 #include "components/sonar/Acoustics.hpp"
 #include "components/sonar/BeamFan.hpp"
 #include "components/sonar/BinGrid.hpp"
+#include "components/sonar/Volume.hpp"
 #include "types/Angle.hpp"
 
 namespace insonify::sonar {
@@ -159,6 +160,15 @@ std::string listed(const std::vector<std::string>& names) {
     return names.size() > 5 ? text + ", ..." : text;
 }
 
+void noteMotion(const RenderPlan& plan, std::vector<std::string>& notices) {
+    if (!plan.features.has(Feature::MotionInPing)) return;
+    const MotionBound bound = motionBound(plan.config, plan.grid);
+    notices.push_back(fmt::format(
+        "motion within a ping is followed from {:.2g} m/s or {:.2g} deg/s on; below that it is under half a bin and "
+        "half a beam",
+        bound.speed, types::degrees(bound.turn)));
+}
+
 void noteMaterials(const types::Geometry& geometry, const MaterialLaws& laws, types::Plan& plan) {
     std::vector<std::string> plain, loud;
     for (size_t i = 0; i < geometry.materials.size(); ++i) {
@@ -189,6 +199,17 @@ std::vector<std::string> configNotices(const SonarConfig& config) {
     return notices;
 }
 
+std::string depthNotice(const RenderPlan& plan, const types::Snapshot& snapshot) {
+    if (!plan.profile) return {};
+    const double depth = -waterViewOf(snapshot).height, top = plan.profile->top(), bottom = plan.profile->bottom();
+    if (depth >= top && depth <= bottom) return {};
+    return fmt::format(
+        "Warning: at the first ping the sonar is {:.4g} m deep, its profile of the speed of sound goes from {:g} to "
+        "{:g} m; "
+        "beyond them the speed is that of the nearer end",
+        depth, top, bottom);
+}
+
 types::Omission describe(const LeftOut& what, const BinGrid& grid) {
     const std::string name = nameOf(what.effect);
     if (what.reason != Reason::OutOfView) return {name, reasonOf(what, grid)};
@@ -208,6 +229,7 @@ types::Plan report(const RenderPlan& plan, const types::Geometry& geometry) {
     for (const LeftOut& what : plan.left_out) told.omitted.push_back(describe(what, plan.grid));
     told.notices = configNotices(plan.config);
     noteAbsorption(plan, told.notices);
+    noteMotion(plan, told.notices);
     if (plan.config.model == Model::Physical) noteMaterials(geometry, plan.laws, told);
     return told;
 }

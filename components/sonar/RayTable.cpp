@@ -11,16 +11,14 @@ namespace {
 
 /** Nothing is bent on the vertical; rays nearer to it are taken for this one [rad]. */
 constexpr double steepest_ray = types::radians(89.99);
-constexpr double widest_step = 0.002;  ///< Between rays [rad].
-constexpr double most_corners = 512;
-/** Rays go on beyond the last bin, for cells at its edge [1]. */
-constexpr double beyond = 1.02;
+constexpr double widest_step = 0.001;  ///< Between rays [rad].
 
-/** So far that an arc of the greatest curvature leaves its chord by a tenth of a bin at most [m]; no more corners than
- *  `most_corners`. */
+/** So far that an arc of the greatest curvature leaves its chord by a tenth of a bin at most [m]; no more than
+ *  `most_corners` of them. */
 double cornerSpacing(const acoustics::SoundProfile& profile, const BinGrid& grid) {
     const double radius = profile.slowest() / std::max(profile.steepest(), 1e-9);
-    return std::max(std::sqrt(8 * 0.1 * grid.bin_width * radius), grid.range_max / most_corners);
+    return std::max(std::sqrt(8 * 0.1 * grid.bin_width * radius),
+                    RayTable::beyond * grid.range_max / RayTable::most_corners);
 }
 
 }  // namespace
@@ -47,7 +45,19 @@ bool RayTable::place(double depth) {
     points_.resize(ranges_.size());
     places_.resize(rays_ * ranges_.size());
     for (size_t ray = 0; ray < rays_; ++ray) trace(ray, depth);
+    findTears();
     return true;
+}
+
+void RayTable::findTears() {
+    constexpr double widest = 6;  // times as far apart as straight rays
+    const size_t corners = ranges_.size();
+    torn_.assign(places_.size(), 0);
+    for (size_t i = 0; i + corners < places_.size(); ++i) {
+        const Place &one = places_[i], &next = places_[i + corners];
+        const bool part = (one.rise_rate < 0) != (next.rise_rate < 0);
+        torn_[i] = part && std::abs(next.rise - one.rise) > widest * elevation_step_ * ranges_[i % corners];
+    }
 }
 
 void RayTable::trace(size_t ray, double depth) {
@@ -82,7 +92,9 @@ RayTable::Place RayTable::at(double elevation, double range) const {
     const auto corner = std::min(static_cast<size_t>(along), ranges_.size() - 2);
     const double up = std::clamp((elevation + std::numbers::pi / 2) / elevation_step_, 0.0, double(rays_ - 1));
     const auto ray = std::min(static_cast<size_t>(up), rays_ - 2);
-    const double share = along - static_cast<double>(corner), upper = up - static_cast<double>(ray), lower = 1 - upper;
+    const double share = along - static_cast<double>(corner), nearer = up - static_cast<double>(ray);
+    const bool torn = torn_[ray * ranges_.size() + corner + 1];
+    const double upper = torn ? std::round(nearer) : nearer, lower = 1 - upper;
     const Place a = between(ray, corner, share), b = between(ray + 1, corner, share);
     return {lower * a.spread + upper * b.spread, lower * a.rise + upper * b.rise,
             lower * a.spread_rate + upper * b.spread_rate, lower * a.rise_rate + upper * b.rise_rate};

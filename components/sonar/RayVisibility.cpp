@@ -77,12 +77,12 @@ void take(const RTCRayHit16& all, TileHits& hits, const Meaning& meaning) {
 
 using Places = std::array<glm::vec3, tile_samples>;
 
-/** Where a tile's rays are at one range. */
-Places placesOf(const RayPaths& paths, const TileRays& rays, double range) {
+/** Where a tile's rays are at one range, for an object that moves by `drift`. */
+Places placesOf(const RayPaths& paths, const TileRays& rays, double range, const Drift* drift = nullptr) {
     Places places;
     for (int i = 0; i < tile_samples; ++i)
         places[static_cast<size_t>(i)] =
-            glm::vec3(paths.at(glm::normalize(glm::dvec3(rays.x[i], rays.y[i], rays.z[i])), range));
+            glm::vec3(paths.at(glm::normalize(glm::dvec3(rays.x[i], rays.y[i], rays.z[i])), range, drift));
     return places;
 }
 
@@ -265,33 +265,37 @@ void RayVisibility::castAlong(const RayPaths& paths, const TileRays& rays, TileH
     const std::span<const double> corners = paths.corners();
     std::fill_n(hits.command, tile_samples, TileHits::nothing);
     TileRays left = rays;
-    Places from{};
+    Piece piece{};
     for (size_t k = 1; k < corners.size() && left.active; ++k) {
-        const Places to = placesOf(paths, rays, corners[k]);
+        const double start = corners[k - 1], length = corners[k] - start;
+        piece = {start, corners[k], piece.to, placesOf(paths, rays, corners[k])};
         RTCRayHit16 all;
-        extend(left, k == 1 ? static_cast<float>(nearest / corners[1]) : 0, all);
+        extend(left, k == 1 ? static_cast<float>(nearest / length) : 0, all);
         for (float& end : all.ray.tfar) end = std::min(end, 1.0f);
-        castPiece(left, from, to, all, hits);
+        castPiece(paths, left, piece, all, hits);
         for (uint32_t i = 0; i < tile_samples; ++i) {
             if (hits.command[i] == TileHits::nothing || !(left.active >> i & 1)) continue;
-            hits.range[i] = static_cast<float>(corners[k - 1] + all.ray.tfar[i] * (corners[k] - corners[k - 1]));
+            hits.range[i] = static_cast<float>(start + static_cast<double>(all.ray.tfar[i]) * length);
             left.active &= ~(1u << i);
         }
-        from = to;
     }
 }
 
-void RayVisibility::castPiece(const TileRays& rays, const Places& from, const Places& to, RTCRayHit16& all,
+void RayVisibility::castPiece(const RayPaths& paths, const TileRays& rays, const Piece& piece, RTCRayHit16& all,
                               TileHits& hits) const {
     alignas(64) int valid[tile_samples];
     for (int i = 0; i < tile_samples; ++i) valid[i] = (rays.active >> i & 1) ? -1 : 0;
     RTCIntersectContext context = coherentRays();
-    aim(Rows(world_from_sonar_), place_, from, to, all);
+    aim(Rows(world_from_sonar_), place_, piece.from, piece.to, all);
     rtcIntersect16(valid, trees_->still(), &context, &all);
     take(all, hits, [this](uint32_t geometry, uint32_t instance) { return trees_->meaning(geometry, instance); });
     for (const Mover& mover : movers_) {
         if (!mover.placed) continue;
-        aim(Rows(mover.from_sonar), mover.place, from, to, all);
+        if (const Drift* drift = paths.drift(mover.object))
+            aim(Rows(mover.from_sonar), mover.place, placesOf(paths, rays, piece.start, drift),
+                placesOf(paths, rays, piece.end, drift), all);
+        else
+            aim(Rows(mover.from_sonar), mover.place, piece.from, piece.to, all);
         rtcIntersect16(valid, mover.mesh->scene, &context, &all);
         take(all, hits, [&](uint32_t geometry, uint32_t) { return mover.meaning(geometry); });
     }

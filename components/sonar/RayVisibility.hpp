@@ -61,7 +61,13 @@ private:
     struct Mover;
     /** Of a tile's rays, sonar axes about the sonar [m]. */
     using Places = std::array<glm::vec3, tile_samples>;
-    void castPiece(const TileRays& rays, const Places& from, const Places& to, RTCRayHit16& all, TileHits& hits) const;
+    /** Of the ways of a tile's rays between two ranges [m]. */
+    struct Piece {
+        double start, end;
+        Places from, to;
+    };
+    void castPiece(const RayPaths& paths, const TileRays& rays, const Piece& piece, RTCRayHit16& all,
+                   TileHits& hits) const;
     void listCommands();
     bool hasNewMover(const types::Snapshot& snapshot) const;
     void build(const types::Snapshot& snapshot);

@@ -116,8 +116,9 @@ void omitEffects(const types::Geometry& geometry, RenderPlan& plan) {
     if (plan.frusta.size() == 1)
         plan.left_out.push_back({Effect::FurtherSlabs, Reason::OneImage, plan.config.coverageDeg()});
     omitRefraction(plan);
-    plan.left_out.push_back({Effect::MotionInPing, Reason::Approximated,
-                             plan.grid.bin_width * plan.grid.speed_of_sound / (4 * plan.grid.range_max)});
+    if (!plan.config.motion_in_ping)
+        plan.left_out.push_back(
+            {Effect::MotionInPing, Reason::Approximated, motionBound(plan.config, plan.grid).speed});
     if (!hasNormalMap(geometry)) plan.left_out.push_back({Effect::NormalMaps, Reason::NoMaterialHasOne});
 }
 
@@ -158,6 +159,17 @@ Bending bending(const SonarConfig& config, const BinGrid& grid, double gradient)
             std::max(grid.bin_width, 0.1 * r * types::radians(config.beam_height_deg))};
 }
 
+double dopplerCoupling(const SonarConfig& config) {
+    if (!config.motion_in_ping || !config.pulse || !config.pulse->chirp_us) return 0;
+    return 1e-6 * *config.pulse->chirp_us * config.frequency_khz.value() / config.pulse->bandwidth_khz.value();
+}
+
+MotionBound motionBound(const SonarConfig& config, const BinGrid& grid) {
+    const double flight = 2 * grid.range_max / grid.speed_of_sound;
+    const double seconds = std::max(flight, dopplerCoupling(config));
+    return {grid.bin_width / (2 * seconds), types::radians(config.beamWidthDeg()) / (2 * flight)};
+}
+
 std::string whyStraight(const SonarConfig& config) {
     const bool drawn = hasProfile(config) && !config.castsRays();
     if (!bendingProfile(config, makeBinGrid(config)) || !drawn) return {};
@@ -178,6 +190,7 @@ RenderPlan makeRenderPlan(const SonarConfig& config, const types::Geometry& geom
         throw types::ConfigError("", "water.profile", why);
     plan.features = featuresOf(config, options, geometry, plan.laws);
     if (plan.profile) plan.features.add(Feature::Refraction);
+    if (config.motion_in_ping) plan.features.add(Feature::MotionInPing);
     plan.beams = makeBeams(config);
     if (config.beam_pattern) plan.directivity.emplace(config);
     plan.passes = passesOf(plan);

@@ -31,9 +31,10 @@ enum class Feature {
     BackscatterLaws,  ///< Of any material: a table, or a lobe.
     Volume,
     VolumeLayers,
-    Refraction
+    Refraction,
+    MotionInPing
 };
-constexpr int feature_count = 13;
+constexpr int feature_count = 14;
 
 /** A set of features. */
 class Features {
@@ -150,6 +151,17 @@ struct Bending {
 };
 Bending bending(const SonarConfig& config, const BinGrid& grid, double gradient = speed_gradient);
 
+/** From where on motion within a ping is heard: half a bin at the far edge, half the width of a beam (ACOUSTICS.md 12).
+ */
+struct MotionBound {
+    double speed;  ///< [m/s]
+    double turn;   ///< [rad/s]
+};
+MotionBound motionBound(const SonarConfig& config, const BinGrid& grid);
+
+/** What a chirp adds to the range of an echo for each metre a second at which it recedes, f T / B; 0: nothing [s]. */
+double dopplerCoupling(const SonarConfig& config);
+
 /** Why a sonar cannot bend its rays as its profile of the speed of sound would have them; empty where it can, or where
  *  these are too straight for it to matter.
  *  @throws types::ConfigError with all that is wrong with the profile's file */
@@ -159,9 +171,10 @@ std::string whyStraight(const SonarConfig& config);
 
 template <>
 struct insonify::types::EnumNames<insonify::sonar::Feature> {
-    static constexpr std::string_view names[] = {
-        "physical", "cerqueira2017",     "absorption",       "published", "conical",       "normal_map", "nearest",
-        "jitter",   "elevation_pattern", "backscatter_laws", "volume",    "volume_layers", "refraction"};
+    static constexpr std::string_view names[] = {"physical",          "cerqueira2017",    "absorption", "published",
+                                                 "conical",           "normal_map",       "nearest",    "jitter",
+                                                 "elevation_pattern", "backscatter_laws", "volume",     "volume_layers",
+                                                 "refraction",        "motion_in_ping"};
 };
 template <>
 struct insonify::types::EnumNames<insonify::sonar::Pass> {

@@ -39,6 +39,9 @@ void checkPhysics(const SonarConfig& config, types::Diagnostics& diagnostics) {
         diagnostics.push_back({"volume", fmt::format("has {} layers; may have {}", config.volume.size(), max_layers)});
     if (means && config.pulse)
         diagnostics.push_back({"pulse", "is given with model: cerqueira2017; it belongs to physical"});
+    if (config.pulse && config.pulse->chirp_us && !(config.motion_in_ping && config.frequency_khz))
+        diagnostics.push_back(
+            {"pulse.chirp_us", "is given without motion_in_ping: true and frequency_khz, both of which it needs"});
     if (!config.beam_pattern || config.frequency_khz) return;
     const auto checkLaw = [&](const std::string& path, const std::optional<acoustics::BeamLaw>& law) {
         if (law && law->aperture_m)
@@ -167,7 +170,7 @@ std::optional<double> SonarConfig::targetError() const {
 bool SonarConfig::castsRays() const {
     if (visibility != Visibility::Auto) return visibility == Visibility::Cpu;
     if (!haveRays() || published || deposit == Deposit::Gpu) return false;
-    if (!fitsImages(*this) || (water && water->profile)) return true;
+    if (!fitsImages(*this) || (water && water->profile) || motion_in_ping) return true;
     return !gpu::EglContext::isAskedFor(device) && !gpu::EglContext::hasCard();
 }
 
@@ -258,6 +261,11 @@ void SonarConfig::checkBeam(types::Diagnostics& diagnostics) const {
     checkVisibility(*this, diagnostics);
     if (!diagnostics.empty()) return;
     if (castsRays()) return checkRays(*this, diagnostics);
+    if (motion_in_ping)
+        return diagnostics.push_back(
+            {"motion_in_ping",
+             "is true, which rays alone follow; visibility may be auto or cpu, without published: "
+             "true and deposit: gpu, in a build with rays"});
     checkDevice(device, diagnostics);
     checkImages(*this, diagnostics);
 }

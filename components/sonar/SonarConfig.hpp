@@ -18,19 +18,6 @@ enum class Deposit { Auto, Cpu, Gpu };
 enum class Visibility { Auto, Gl, Cpu };
 enum class BeamWidthConvention { PerBeam, TotalFov };
 
-/** State of the water, and where its speed of sound changes with depth. */
-struct WaterConfig : acoustics::Water {
-    std::optional<std::string> profile;
-
-    template <class Self, class V>
-    static void describe(Self& self, V& visit) {
-        acoustics::Water::describe(self, visit);
-        visit(types::Field{"profile", "",
-                           "CSV file with depth_m,sound_speed_m_s, by which rays are bent; absent: straight"},
-              self.profile);
-    }
-};
-
 /** Absorption as one number, or by a law from a frequency and the water. */
 struct AbsorptionConfig {
     std::optional<double> db_per_m;
@@ -149,7 +136,7 @@ struct SonarConfig {
     double beam_height_deg = 20;
     BeamGeometry beam_geometry = BeamGeometry::Planar;
     std::optional<double> speed_of_sound;
-    std::optional<WaterConfig> water;
+    std::optional<acoustics::Water> water;
     std::optional<double> frequency_khz;
     std::optional<AbsorptionConfig> absorption;
     QualityConfig quality;
@@ -163,6 +150,7 @@ struct SonarConfig {
     std::optional<BeamPatternConfig> beam_pattern;
     std::optional<acoustics::PulseConfig> pulse;
     std::vector<VolumeLayer> volume;
+    bool motion_in_ping = false;
     std::optional<types::NotBuiltYet> multipath;
     std::optional<types::MovedTo> tvg, gain, output, source_level_db;
 
@@ -257,6 +245,9 @@ void SonarConfig::describeBeam(Self& self, V& visit) {
           self.beam_pattern);
     visit(Field{"pulse", "", "what an echo leaves in range; absent: it is in its own bin alone"}, self.pulse);
     visit(Field{"volume", "", "water that scatters sound back, or a list of its layers; absent: none"}, self.volume);
+    visit(Field{"motion_in_ping", "",
+                "sonar and objects move, and the receiver turns, while sound is under way; false: all stand still"},
+          self.motion_in_ping);
     visit(Field{"multipath", "", "second bounce (not built yet)"}, self.multipath);
     visit(Field{"tvg", "",
                 "has moved: a sonar gives intensities; tvg belongs to a receiver::ReceiverTask after the noise"},

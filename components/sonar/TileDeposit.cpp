@@ -210,7 +210,9 @@ private:
         cells_.far_limit[i] = run.far_limit;
         aim(tile, sample, merged);
         if (normal_maps) cells_.mapped[i] = mappedCosine(tile, sample, merged);
-        if (scene_.paths) bend(static_cast<double>(tile.hits->range[sample]));
+        if (scene_.paths)
+            bend(static_cast<double>(tile.hits->range[sample]),
+                 scene_.paths->drift(scene_.commands[tile.hits->command[sample]].object));
         if constexpr (Estimator::tells_truth) {
             shown_.object[i] = scene_.commands[tile.hits->command[sample]].object;
             shown_.hits[i] = static_cast<uint32_t>(merged);
@@ -219,19 +221,19 @@ private:
     }
 
     /** Puts the plane that the cell seems to be of, at about a range [m], in the place of the true one. */
-    void bend(double range) {
+    void bend(double range, const Drift* drift) {
         const int i = count_;
         const glm::dvec3 ray(cells_.cos_el[i] * cells_.cos_az[i], cells_.cos_el[i] * cells_.sin_az[i],
                              cells_.sin_el[i]);
         const ApparentPlane plane = scene_.paths->apparent({cells_.normal_x[i], cells_.normal_y[i], cells_.normal_z[i]},
-                                                           cells_.distance[i], ray, range);
+                                                           cells_.distance[i], ray, range, drift);
         cells_.normal_x[i] = plane.normal.x;
         cells_.normal_y[i] = plane.normal.y;
         cells_.normal_z[i] = plane.normal.z;
         cells_.distance[i] = 1;
         cells_.focus[i] = plane.focus;
-        if (!(cells_.mapped[i] > 0)) cells_.mapped[i] = plane.cosine;
-        cells_.near_limit[i] *= scene_.paths->stretch();
+        if (!normal_maps || !(cells_.mapped[i] > 0)) cells_.mapped[i] = plane.cosine;
+        cells_.near_limit[i] = scene_.paths->nearLimit(cells_.near_limit[i]);
         cells_.far_limit[i] = 0;  // bent rays may take any way round
     }
 
