@@ -140,9 +140,9 @@ TEST(ElementSignalsTest, FewerElementsAreFartherApartAndHearTheSamePlaces) {
 std::vector<std::string> diagnosticsOf(const SonarConfig& config) {
     types::Diagnostics diagnostics;
     config.check(diagnostics);
-    std::vector<std::string> diagnostics;
-    for (const types::Diagnostic& diagnostic : diagnostics) diagnostics.push_back(diagnostic.path + " " + diagnostic.message);
-    return diagnostics;
+    std::vector<std::string> texts;
+    for (const types::Diagnostic& diagnostic : diagnostics) texts.push_back(diagnostic.path + " " + diagnostic.message);
+    return texts;
 }
 
 TEST(ElementSignalsTest, WhatMakesNoArrayIsRefusedWithTheReason) {
