@@ -22,7 +22,7 @@ namespace insonify::log {
  *  rows, columns], `time`, and the angles of the last map. Ranges: `time`, `range`.
  *  Poses: `time` s, `position` [n, 3] m, `orientation` [n, 4] (w, x, y, z). Numbers, texts, times [s] and angles
  *  [rad]: `time`, `value`. `meta`, where it is given, stands beside them as one text. Throws ConfigError for a stream
- * that is not there or of another type, std::runtime_error on a full disk. */
+ *  that is not there or of another type, std::runtime_error on a full disk. */
 std::vector<std::filesystem::path> exportNpz(Reader& log, const std::string& stream, const std::filesystem::path& path,
                                              const std::string& meta = "");
 

@@ -81,8 +81,8 @@ void writeGrids(Reader& log, const std::string& stream, const std::filesystem::p
     T::forEachArray(names, [&](const char* name, const auto&, auto) { header += std::string(",") + name; });
     CsvFile csv(path, header);
     log.forEach<T>(stream, [&](const T& sample, const SampleRef& at) {
-        if (const char* fault = sample.diagnostic())
-            throw types::ConfigError(log.path(), stream, std::string("a sample ") + fault);
+        if (const char* diagnostic = sample.diagnostic())
+            throw types::ConfigError(log.path(), stream, std::string("a sample ") + diagnostic);
         const std::vector<size_t> shape = sample.shape();
         const size_t bins = shape.size() == 2 ? shape[1] : 1;
         for (size_t i = 0; i < shape[0] * bins; ++i) {

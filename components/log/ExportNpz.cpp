@@ -48,14 +48,14 @@ void readShaped(Reader& log, const SampleRef& at, Image& picture) {
 template <types::Arrayed T>
 void readShaped(Reader& log, const SampleRef& at, T& sample) {
     log.read(at, sample);
-    if (const char* fault = sample.diagnostic())
-        throw types::ConfigError(log.path(), log.streams()[at.stream].name, std::string("a sample ") + fault);
+    if (const char* diagnostic = sample.diagnostic())
+        throw types::ConfigError(log.path(), log.streams()[at.stream].name, std::string("a sample ") + diagnostic);
 }
 
 void readShaped(Reader& log, const SampleRef& at, DepthMap& map) {
     log.read(at, map);
-    if (const char* const fault = map.diagnostic())
-        throw types::ConfigError(log.path(), log.streams()[at.stream].name, std::string("a map ") + fault);
+    if (const char* const diagnostic = map.diagnostic())
+        throw types::ConfigError(log.path(), log.streams()[at.stream].name, std::string("a map ") + diagnostic);
     map.remissions.resize(map.distances.size());
 }
 

@@ -21,7 +21,7 @@ void copySignals(const From& from, To& to) {
 }
 
 void requireSound(const types::SonarElements& signals) {
-    if (const char* fault = signals.diagnostic()) throw std::invalid_argument(std::string("it ") + fault);
+    if (const char* diagnostic = signals.diagnostic()) throw std::invalid_argument(std::string("it ") + diagnostic);
 }
 
 }  // namespace

@@ -12,6 +12,7 @@
 #include "components/sonar/EchoField.hpp"
 #include "components/sonar/EchoGrid.hpp"
 #include "components/sonar/ObjectPlaces.hpp"
+#include "components/sonar/PathEchoes.hpp"
 #include "components/sonar/SurfaceScene.hpp"
 #include "components/sonar/ThreadPool.hpp"
 #include "components/sonar/TileDeposit.hpp"
@@ -47,7 +48,10 @@ public:
     void setTruth(types::SonarTruth* truth) override { truth_ = truth; }
     EchoField* field() override { return field_ ? &*field_ : nullptr; }
     bool hasEchoes() const override { return heard_; }
-    std::vector<LeftOut> culled() const override { return {}; }
+    std::vector<LeftOut> culled() const override {
+        const std::optional<LeftOut> dark = paths_ ? paths_->leftOut() : std::nullopt;
+        return dark ? std::vector{*dark} : std::vector<LeftOut>{};
+    }
     Features compiled() const override;
     const std::string& device() const override { return device_; }
 
@@ -77,6 +81,10 @@ private:
     }
     void place(const types::Snapshot& snapshot);
     void makeTruth();
+    PlacedScene scene() const {
+        return {visibility_.commands(), runs_, places_.records(), planes_, normal_maps_, water_};
+    }
+    void addPaths(types::Sonar& ping);
     void depositPart(const Part& part, std::span<const CastTile> tiles, Worker& worker);
     void work(Worker& worker, types::Sonar& ping);
     void workOn(const Part& part, Worker& worker, types::Sonar& ping);
@@ -101,7 +109,8 @@ private:
     RayVisibility visibility_;
     std::vector<PlaneRecord> planes_;
     NormalMapping normal_maps_;
-    std::vector<PlacedRun> runs_;  ///< Of the visibility's commands, in this ping.
+    std::vector<PlacedRun> runs_;      ///< Of the visibility's commands, in this ping.
+    std::optional<PathEchoes> paths_;  ///< By way of mirrors, where the plan has them.
     ThreadPool threads_;
     std::vector<Worker> workers_;
     std::vector<Part> parts_;
@@ -117,7 +126,7 @@ CastEchoes::CastEchoes(const RenderPlan& plan, types::GeometryPtr geometry)
     : plan_(plan),
       geometry_(std::move(geometry)),
       rules_(makeEchoRules(plan)),
-      levels_(plan.config, plan.grid),
+      levels_(plan.config, summedGrid(plan)),
       places_(*geometry_, reachOf(plan), true),
       visibility_(*geometry_),
       planes_(planesOf(*geometry_, plan.laws)),
@@ -126,6 +135,7 @@ CastEchoes::CastEchoes(const RenderPlan& plan, types::GeometryPtr geometry)
       workers_(static_cast<size_t>(threads_.size())) {
     runs_.reserve(visibility_.commands().size());
     for (size_t i = 0; i < workers_.size(); ++i) workers_[i].number = i;
+    if (plan.has(Pass::Paths)) paths_.emplace(plan, *geometry_, visibility_);
     takeQuality();
 }
 
@@ -148,6 +158,7 @@ void CastEchoes::takeQuality() {
         if (plan_.features.has(Feature::Volume)) volume_.emplace(plan_, plan_.grid);
     }
     shareOut();
+    if (paths_) paths_->takeQuality(rules_, view_);
     truth_grid_.reset();
 }
 
@@ -188,6 +199,7 @@ void CastEchoes::place(const types::Snapshot& snapshot) {
     water_ = waterViewOf(snapshot);
     places_.place(snapshot);
     visibility_.place(snapshot);
+    if (paths_) paths_->begin(snapshot);
     runs_.clear();
     for (const CommandRecord& command : visibility_.commands())
         runs_.push_back(placedRun(places_.records()[command.object], command, rules_, 1, 0));
@@ -225,6 +237,7 @@ std::span<const CastTile> CastEchoes::cast(const Part& part, Worker& worker) con
             if (waiting == rays.size()) castWaiting();
         }
     if (waiting > 0) castWaiting();
+    for (size_t i = 0; paths_ && i < count; ++i) paths_->endAtSurface(worker.tiles[i], worker.hits[i]);
     return {worker.tiles.data(), count};
 }
 
@@ -240,12 +253,11 @@ bool CastEchoes::gather(const Part& part, Worker& worker) {
 
 void CastEchoes::depositPart(const Part& part, std::span<const CastTile> tiles, Worker& worker) {
     std::fill(worker.sums.begin(), worker.sums.end(), 0);
-    const PlacedScene scene{visibility_.commands(), runs_, places_.records(), planes_, normal_maps_, water_};
-    if (!truth_ || field_) deposit(rules_, view_, scene, tiles, part.first_beam, worker.sums.data());
+    if (!truth_ || field_) deposit(rules_, view_, scene(), tiles, part.first_beam, worker.sums.data());
     if (!truth_) return;
     worker.shown->clear();
     std::vector<uint64_t>& told = field_ ? worker.told_sums : worker.sums;
-    depositAndTell(field_ ? *truth_rules_ : rules_, view_, scene, tiles, part.first_beam, told.data(),
+    depositAndTell(field_ ? *truth_rules_ : rules_, view_, scene(), tiles, part.first_beam, told.data(),
                    {*worker.shown, {}, worker.one_beam});
     for (int beam = 0; beam < part.beams; ++beam)
         truth_grid_->take(static_cast<size_t>(part.first_beam + beam), *worker.shown, static_cast<size_t>(beam),
@@ -256,6 +268,7 @@ void CastEchoes::workOn(const Part& part, Worker& worker, types::Sonar& ping) {
     const std::span<const CastTile> tiles = cast(part, worker);
     worker.lap(DrawStage);
     depositPart(part, tiles, worker);
+    if (paths_) paths_->trace(scene(), tiles, (part.first_beam + part.beams) * view_.cells.beam_columns);
     worker.lap(DepositStage);
     if (gather(part, worker))
         for (int beam = 0; beam < part.beams; ++beam)
@@ -270,6 +283,18 @@ bool CastEchoes::fill(size_t cell, const Worker& worker, const uint64_t* sums, t
     const bool heard = levels_.fill(rules_, sums, view_.cells.cell(), bins);
     if (volume_) volume_->add(sums + rules_.volumeOffset(), cell, view_.cells.cell(), bins);
     return heard;
+}
+
+void CastEchoes::addPaths(types::Sonar& ping) {
+    threads_.run([&](int part, int parts) {
+        for (int cell = part; cell < view_.cells.beams; cell += parts) {
+            const auto i = static_cast<size_t>(cell);
+            const auto thread = static_cast<size_t>(part);
+            const std::span<float> bins = field_ ? field_->energies(thread) : grid_->cell(i, ping);
+            workers_[thread].heard |= paths_->addTo(i, levels_, bins);
+            if (field_) field_->addEnergies(i, bins, thread);
+        }
+    });
 }
 
 void CastEchoes::work(Worker& worker, types::Sonar& ping) {
@@ -300,6 +325,7 @@ void CastEchoes::render(const types::Snapshot& snapshot, types::Sonar& ping, Sta
     else
         threads_.share([&](int part, int) { work(workers_[static_cast<size_t>(part)], ping); });
     own.last = Clock::now();
+    if (paths_) addPaths(ping);
     if (field_)
         field_->form(threads_);
     else

@@ -67,21 +67,29 @@ Directivity::Directivity(const SonarConfig& config)
     receive_elevation_ = patternOf(config.beam_pattern->receive.elevation, wavelength);
 }
 
+double Directivity::sentAzimuth(double azimuth) const { return powerOf(transmit_azimuth_, azimuth); }
+
+double Directivity::heardAzimuth(double azimuth, double bearing) const {
+    return conical_ ? powerOf(receive_azimuth_, azimuth, bearing)
+                    : powerOf(receive_azimuth_, wrapped(azimuth - bearing));
+}
+
 double Directivity::azimuth(double azimuth, double bearing) const {
-    const double sent = powerOf(transmit_azimuth_, azimuth);
-    return sent * (conical_ ? powerOf(receive_azimuth_, azimuth, bearing)
-                            : powerOf(receive_azimuth_, wrapped(azimuth - bearing)));
+    return sentAzimuth(azimuth) * heardAzimuth(azimuth, bearing);
 }
 
-double Directivity::azimuthAmplitude(double azimuth, double bearing) const {
-    const double sent = amplitudeOf(transmit_azimuth_, azimuth);
-    return sent * (conical_ ? amplitudeOf(receive_azimuth_, azimuth, bearing)
-                            : amplitudeOf(receive_azimuth_, wrapped(azimuth - bearing)));
+double Directivity::sentAmplitude(double azimuth) const { return amplitudeOf(transmit_azimuth_, azimuth); }
+
+double Directivity::heardAmplitude(double azimuth, double bearing) const {
+    return conical_ ? amplitudeOf(receive_azimuth_, azimuth, bearing)
+                    : amplitudeOf(receive_azimuth_, wrapped(azimuth - bearing));
 }
 
-double Directivity::elevation(double angle) const {
-    return powerOf(transmit_elevation_, angle) * powerOf(receive_elevation_, angle);
-}
+double Directivity::sentElevation(double angle) const { return powerOf(transmit_elevation_, angle); }
+
+double Directivity::heardElevation(double angle) const { return powerOf(receive_elevation_, angle); }
+
+double Directivity::elevation(double angle) const { return sentElevation(angle) * heardElevation(angle); }
 
 double Directivity::elevationReach() const {
     const auto either = [&](double angle) { return std::max(elevation(angle), elevation(-angle)); };
@@ -126,7 +134,7 @@ std::vector<Beam> azimuthCells(const SonarConfig& sampled, const std::vector<Bea
                                const Directivity& directivity, bool casts_rays) {
     const std::vector<Beam> all = makeBeams(sampled);
     if (!casts_rays || !directivity.hasAzimuth()) return all;
-    const double near = directivity.nearAzimuth();
+    const double near = sampled.elements ? 2 * pi : directivity.nearAzimuth();  // elements hear each cell by itself
     const auto side = [&](const Beam& cell) {
         return cell.high < beams.front().centre - near ? -1 : cell.low > beams.back().centre + near ? 1 : 0;
     };

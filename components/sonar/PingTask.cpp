@@ -135,7 +135,7 @@ void PingTask::makeRenderer() {
     renderer_.reset();
     quality_.reset();
     geometry_ = aimed_.geometry;
-    troubles_.emplace(*geometry_, pingsPerTurn());
+    diagnostics_.emplace(*geometry_, pingsPerTurn());
     const SonarConfig config = locatedConfig();
     renderer_ = std::make_unique<SonarRenderer>(begun(config), geometry_);
     if (config.choosesQuality()) quality_.emplace(config, pingsPerTurn());
@@ -164,9 +164,9 @@ bool PingTask::renderPing(SonarRenderer& renderer, types::Snapshot& scene, types
 
 RenderPlan PingTask::coverage(const types::Snapshot& /*scene*/) const { return renderer_->renderPlan(); }
 
-std::string PingTask::troubleOf(bool heard, const types::Sonar& sample) {
+std::string PingTask::diagnosticOf(bool heard, const types::Sonar& sample) {
     const Model model = renderer_->renderPlan().config.model;
-    return troubles_->follow(heard, model, aimed_, sample, [this] { return coverage(aimed_); });
+    return diagnostics_->follow(heard, model, aimed_, sample, [this] { return coverage(aimed_); });
 }
 
 void PingTask::render() {
@@ -183,7 +183,7 @@ void PingTask::render() {
         if (const auto what = renderer_->targetsLeftOut()) plan_->omitted.push_back(describe(*what, grid_));
     }
     followQuality(*sample, took.count());
-    if (const std::string trouble = troubleOf(heard, *sample); !trouble.empty()) warn(trouble);
+    if (const std::string diagnostic = diagnosticOf(heard, *sample); !diagnostic.empty()) warn(diagnostic);
     stampBearings(*sample);
     pool_.stock(*sample);
     if (!std::exchange(plan_told_, true)) refreshRecord();

@@ -67,8 +67,26 @@ void omitPulse(RenderPlan& plan) {
         {Effect::RangePointSpread, Reason::BelowBound, pulse.resolution(), plan.grid.bin_width / 2});
 }
 
-std::vector<Pass> passesOf(const RenderPlan& plan) {
-    std::vector<Pass> passes{Pass::Cull, plan.casts_rays ? Pass::Rays : Pass::Surface, Pass::Deposit, Pass::Beams};
+/** What there is to reflect sound; `bounces` says which of it does (ACOUSTICS.md 5.19). */
+bool hasMirrors(const RenderPlan& plan, const types::Geometry& geometry) {
+    const MultipathConfig& multipath = *plan.config.multipath;
+    return multipath.surface || std::ranges::any_of(geometry.materials, [&](const types::Material& material) {
+               return reflectedPower(material, multipath.bounces) > 0;
+           });
+}
+
+void omitMultipath(RenderPlan& plan) {
+    if (plan.has(Pass::Paths)) return;
+    const Reason reason = !plan.config.multipath       ? Reason::NotConfigured
+                          : !plan.config.tracesPaths() ? Reason::NoBounces
+                                                       : Reason::NoMirror;
+    plan.left_out.push_back({Effect::Multipath, reason});
+}
+
+std::vector<Pass> passesOf(const RenderPlan& plan, const types::Geometry& geometry) {
+    std::vector<Pass> passes{Pass::Cull, plan.casts_rays ? Pass::Rays : Pass::Surface, Pass::Deposit};
+    if (plan.config.tracesPaths() && hasMirrors(plan, geometry)) passes.push_back(Pass::Paths);
+    passes.push_back(Pass::Beams);
     if (plan.directivity && plan.directivity->hasAzimuth()) passes.push_back(Pass::Beamform);
     if (plan.config.pulse && !isShort(acoustics::Pulse(*plan.config.pulse, plan.grid.speed_of_sound), plan.grid))
         passes.push_back(Pass::Pulse);
@@ -86,7 +104,7 @@ void omitEffects(const types::Geometry& geometry, RenderPlan& plan) {
     omitUnless(plan.has(Pass::RingDown), Effect::RingDown);
     omitUnless(plan.features.has(Feature::Volume), Effect::Volume);
     omitUnless(plan.features.has(Feature::Speckle), Effect::Speckle);
-    omitUnless(false, Effect::Multipath);
+    omitMultipath(plan);
     if (plan.frusta.size() == 1)
         plan.left_out.push_back({Effect::FurtherSlabs, Reason::OneImage, plan.config.coverageDeg()});
     const Bending bent = bending(plan.config, plan.grid);
@@ -123,6 +141,14 @@ void RenderPlan::setQuality(int rows, int columns_per_beam) {
     if (!casts_rays) frusta = makeFrusta(sampled, cells, options);
 }
 
+double reflectedPower(const types::Material& material, int bounces) {
+    constexpr double least_reflection = 0.5, steepest = 0.3;
+    const double reflection = std::abs(static_cast<double>(material.reflection));
+    if (material.mirror && bounces > 0) return reflection > 0 ? reflection * reflection : 1;
+    const bool smooth = material.roughness_slope && static_cast<double>(*material.roughness_slope) < steepest;
+    return bounces > 1 && smooth && reflection > least_reflection ? reflection * reflection : 0;
+}
+
 const LeftOut* RenderPlan::leftOut(Effect effect) const {
     const auto found = std::ranges::find(left_out, effect, &LeftOut::effect);
     return found == left_out.end() ? nullptr : &*found;
@@ -144,7 +170,7 @@ RenderPlan makeRenderPlan(const SonarConfig& config, const types::Geometry& geom
     plan.features = featuresOf(config, options, geometry, plan.laws);
     plan.beams = makeBeams(config);
     if (config.beam_pattern) plan.directivity.emplace(config);
-    plan.passes = passesOf(plan);
+    plan.passes = passesOf(plan, geometry);
     plan.setQuality(config.rows(), config.columnsPerBeam());
     omitAbsorption(plan);
     if (config.model == Model::Physical)

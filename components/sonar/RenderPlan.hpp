@@ -60,7 +60,7 @@ private:
 };
 
 /** Work for each ping, in this order. */
-enum class Pass { Cull, Surface, Rays, Deposit, Beams, Beamform, Pulse, RingDown };
+enum class Pass { Cull, Surface, Rays, Deposit, Paths, Beams, Beamform, Pulse, RingDown };
 
 /** What may be left out of a ping. */
 enum class Effect {
@@ -102,6 +102,11 @@ enum class Reason {
     Published,     ///< The published simulator has none.
     BelowBound,    ///< `value` is below `bound`.
     Approximated,  ///< `value` is what it amounts to.
+    NoBounces,     ///< As many reflections are asked for.
+    NoMirror,      ///< Nothing in the scene reflects, or is asked to.
+    NoWaterSurface,
+    AboveSurface,  ///< The sonar is not in the water.
+    BeyondRange,   ///< `value` is the distance of the mirror, `bound` the range [m].
     OneImage,      ///< One image shows the whole fan.
     OutOfView      ///< `value` of `bound` at the first ping.
 };
@@ -141,6 +146,10 @@ struct RenderPlan {
 RenderPlan makeRenderPlan(const SonarConfig& config, const types::Geometry& geometry,
                           const RenderOptions& options = {});
 
+/** Share of the sound that a material reflects as a mirror does, where `bounces` reflections of a way are asked for
+ * [1]: one that is declared to, or from two on one that is smooth (ACOUSTICS.md 5.19); 0: it does not. */
+double reflectedPower(const types::Material& material, int bounces);
+
 /** Gradient of the speed of sound with depth that refraction is judged by, a strong thermocline [1/s]. */
 constexpr double speed_gradient = 0.1;
 
@@ -160,6 +169,6 @@ struct insonify::types::EnumNames<insonify::sonar::Feature> {
 };
 template <>
 struct insonify::types::EnumNames<insonify::sonar::Pass> {
-    static constexpr std::string_view names[] = {"cull",  "surface",  "rays",  "deposit",
+    static constexpr std::string_view names[] = {"cull",  "surface",  "rays",  "deposit",  "paths",
                                                  "beams", "beamform", "pulse", "ring_down"};
 };

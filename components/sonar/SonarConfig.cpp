@@ -37,6 +37,8 @@ void checkPhysics(const SonarConfig& config, types::Diagnostics& diagnostics) {
         diagnostics.push_back({"volume", "is given with model: cerqueira2017; it belongs to physical"});
     if (config.volume.size() > max_layers)
         diagnostics.push_back({"volume", fmt::format("has {} layers; may have {}", config.volume.size(), max_layers)});
+    if (means && config.multipath)
+        diagnostics.push_back({"multipath", "is given with model: cerqueira2017; it belongs to physical"});
     if (means && config.pulse)
         diagnostics.push_back({"pulse", "is given with model: cerqueira2017; it belongs to physical"});
     if (!config.beam_pattern || config.frequency_khz) return;
@@ -126,6 +128,7 @@ void checkVisibility(const SonarConfig& config, types::Diagnostics& diagnostics)
         diagnostics.push_back({"deposit", "is gpu with visibility: cpu; may be auto or cpu"});
 }
 
+/** Reflected ways are traced by rays alone. */
 int imageColumns(const SonarConfig& config) { return makeFrusta(config, makeBeams(config)).front().columns; }
 
 bool fitsImages(const SonarConfig& config) {
@@ -226,7 +229,7 @@ std::optional<double> SonarConfig::targetError() const {
     return default_target;
 }
 
-std::string SonarConfig::needsRays() const { return isCoherent() ? "speckle" : ""; }
+std::string SonarConfig::needsRays() const { return isCoherent() ? "speckle" : tracesPaths() ? "multipath" : ""; }
 
 bool SonarConfig::castsRays() const {
     if (visibility != Visibility::Auto) return visibility == Visibility::Cpu;

@@ -82,6 +82,35 @@ struct VolumeLayer {
     void check(types::Diagnostics& diagnostics) const;
 };
 
+/** The water surface as a mirror. */
+struct SurfaceMirrorConfig {
+    double wind_m_s = 0;
+
+    template <class Self, class V>
+    static void describe(Self& self, V& visit) {
+        visit(types::Field{"wind_m_s", "m/s", "wind that makes it rough; 0: as flat as a mirror", 0, 50},
+              self.wind_m_s);
+    }
+};
+
+/** Echoes that come by way of mirrors (ACOUSTICS.md 5.19). */
+struct MultipathConfig {
+    std::optional<SurfaceMirrorConfig> surface;
+    int bounces = 1;
+
+    template <class Self, class V>
+    static void describe(Self& self, V& visit) {
+        using types::Field;
+        visit(Field{"surface", "", "the scene's water_surface reflects; absent: it lets all sound through"},
+              self.surface);
+        visit(Field{"bounces", "1",
+                    "reflections of one way, at most: 1 in the water surface and materials with `mirror: true`, 2 in "
+                    "smooth materials as well; 0: none",
+                    0, 2},
+              self.bounces);
+    }
+};
+
 /** Echoes that interfere: each surface is a lattice of scatterers that belong to its object, and what a bin holds is
  * the square of the sum of their fields (ACOUSTICS.md 5.17). */
 struct SpeckleConfig {
@@ -98,8 +127,9 @@ struct SpeckleConfig {
                     "scatterers in a resolution cell, beam width by range resolution, at least", 1, 200},
               self.scatterers_per_cell);
         visit(Field{"scatterers_per_m2", "1/m2",
-                    "scatterers that surfaces have, each of exponentially distributed strength: where few of them are "
-                    "in a cell, it is K-distributed (Abraham and Lyons 2002); absent: so many that none stands out",
+                    "scatterers of surfaces, of exponentially distributed strengths: intensities are K-distributed, "
+                    "of the shape of their number in a cell (Abraham and Lyons 2002); absent: so many that none stands "
+                    "out",
                     1e-6, 1e9},
               self.scatterers_per_m2);
     }
@@ -200,7 +230,7 @@ struct SonarConfig {
     std::vector<VolumeLayer> volume;
     std::optional<SpeckleConfig> speckle;
     std::optional<ElementsConfig> elements;
-    std::optional<types::NotBuiltYet> multipath;
+    std::optional<MultipathConfig> multipath;
     std::optional<types::MovedTo> tvg, gain, output, source_level_db;
 
     /** Whether there is more than one water that scatters, or one with bounds. */
@@ -227,6 +257,8 @@ struct SonarConfig {
     /** The same with a fan that is given by `beam_width_deg` given by `field_of_view_deg`, or by `bearings_deg` where
      * both are. */
     SonarConfig fan() const;
+    /** Whether echoes may come by way of mirrors, which takes rays. */
+    bool tracesPaths() const { return multipath && multipath->bounces > 0; }
     /** Whether fields are summed rather than energies. */
     bool isCoherent() const { return speckle && speckle->coherent; }
     /** The property that only rays can follow; empty where there is none. */
@@ -259,9 +291,9 @@ struct SonarConfig {
     template <class Self, class V>
     static void describeBeam(Self& self, V& visit);
     void check(types::Diagnostics& diagnostics) const;
-    /** The faults of a fan that is given by `beam_width_deg`. */
+    /** The diagnostics of a fan that is given by `beam_width_deg`. */
     void checkFan(types::Diagnostics& diagnostics) const;
-    /** The faults that a scanning sonar can have as well. */
+    /** The diagnostics that a scanning sonar can have as well. */
     void checkBeam(types::Diagnostics& diagnostics) const;
 };
 
@@ -304,7 +336,7 @@ void SonarConfig::describeBeam(Self& self, V& visit) {
                 "straight array whose signals port `elements` tells; needs speckle: {coherent: true}, beam_geometry: "
                 "conical and a weighted aperture in beam_pattern.receive.azimuth; absent: they are not told"},
           self.elements);
-    visit(Field{"multipath", "", "second bounce (not built yet)"}, self.multipath);
+    visit(Field{"multipath", "", "echoes by way of mirrors; absent: none"}, self.multipath);
     visit(Field{"tvg", "",
                 "has moved: a sonar gives intensities; tvg belongs to a receiver::ReceiverTask after the noise"},
           self.tvg);

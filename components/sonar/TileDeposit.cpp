@@ -193,8 +193,8 @@ private:
                     {cells_.cos_el[i] * cells_.cos_az[i], cells_.cos_el[i] * cells_.sin_az[i], cells_.sin_el[i]},
                     {direction(place.left, low), direction(place.left, high), direction(place.right, high),
                      direction(place.right, low)},
-                    view_.bearings[place.left],
-                    view_.bearings[place.right],
+                    view_.azimuths[place.left],
+                    view_.azimuths[place.right],
                     1,
                     {},
                     low.sine,
@@ -208,7 +208,7 @@ private:
                     conical};
         for (int column = place.first + 1; column <= place.last; ++column)
             if (view_.beam_of[static_cast<size_t>(column)] != view_.beam_of[static_cast<size_t>(column) - 1])
-                patch.next_bearings[patch.beams++ - 1] = view_.bearings[view_.at(column)];
+                patch.next_bearings[patch.beams++ - 1] = view_.azimuths[view_.at(column)];
         return patch;
     }
 

@@ -139,34 +139,34 @@ TEST(ElementSignalsTest, FewerElementsAreFartherApartAndHearTheSamePlaces) {
                 static_cast<double>(dense.positions.size()) * (dense.positions[1] - dense.positions[0]), 1e-9);
 }
 
-std::vector<std::string> faultsOf(const SonarConfig& config) {
+std::vector<std::string> diagnosticsOf(const SonarConfig& config) {
     types::Diagnostics diagnostics;
     config.check(diagnostics);
-    std::vector<std::string> faults;
-    for (const types::Diagnostic& fault : diagnostics) faults.push_back(fault.path + " " + fault.message);
-    return faults;
+    std::vector<std::string> diagnostics;
+    for (const types::Diagnostic& diagnostic : diagnostics) diagnostics.push_back(diagnostic.path + " " + diagnostic.message);
+    return diagnostics;
 }
 
 TEST(ElementSignalsTest, WhatMakesNoArrayIsRefusedWithTheReason) {
-    EXPECT_THAT(faultsOf(arrayOf(Weighting::Taylor)), testing::IsEmpty());
+    EXPECT_THAT(diagnosticsOf(arrayOf(Weighting::Taylor)), testing::IsEmpty());
     SonarConfig config = arrayOf(Weighting::Uniform);
     config.speckle.reset();
-    EXPECT_THAT(faultsOf(config),
+    EXPECT_THAT(diagnosticsOf(config),
                 ElementsAre("elements need speckle: {coherent: true}; without it energies are summed, "
                             "not fields"));
     config = arrayOf(Weighting::Uniform);
     config.beam_geometry = BeamGeometry::Planar;
-    EXPECT_THAT(faultsOf(config),
+    EXPECT_THAT(diagnosticsOf(config),
                 ElementsAre("elements need beam_geometry: conical, for a straight array hears cones"));
     config = arrayOf(Weighting::Uniform);
     config.beam_pattern.reset();
-    EXPECT_THAT(faultsOf(config), ElementsAre("elements need beam_pattern.receive.azimuth, whose aperture they fill"));
-    EXPECT_THAT(faultsOf(arrayOf(Weighting::Gaussian)),
+    EXPECT_THAT(diagnosticsOf(config), ElementsAre("elements need beam_pattern.receive.azimuth, whose aperture they fill"));
+    EXPECT_THAT(diagnosticsOf(arrayOf(Weighting::Gaussian)),
                 ElementsAre(HasSubstr("they make no measured table, gaussian")));
     config = arrayOf(Weighting::Uniform);
     config.elements->count = 20;
     config.elements->spacing_m = 0.01;
-    EXPECT_THAT(faultsOf(config),
+    EXPECT_THAT(diagnosticsOf(config),
                 ElementsAre(HasSubstr("elements are 20 that are 0.01 m apart, 0.2 m in all; the aperture of "
                                       "beam_pattern.receive.azimuth is 0.0846")));
 }
