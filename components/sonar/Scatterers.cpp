@@ -86,18 +86,15 @@ float cosineOf(float turns) {
     return sum * s + 0.999999989f;
 }
 
-/** Power of one scatterer of the lattice that stands for `merged` of exponentially distributed strength, as one draws
- *  it [mean 1]: Gamma(merged), by its sum, or by Wilson and Hilferty's cube. */
-float gammaPower(float merged, uint32_t bits) {
-    if (merged <= 4) {
-        float sum = 0;
-        for (float i = 0; i < merged; ++i, bits = mixed(bits + 0x9e3779b9u)) sum -= logarithm(uniform(bits));
-        return sum / merged;
-    }
-    const float radius = std::sqrt(-2 * logarithm(uniform(bits >> 16)));
-    const float normal = radius * cosineOf(uniform(bits) - 0.5f);
-    const float root = std::max(0.0f, 1 - 1 / (9 * merged) + normal / (3 * std::sqrt(merged)));
-    return root * root * root;
+/** Strength of what one scatterer of the lattice stands for, over its mean: Gamma(shape), as the total of so many
+ *  scatterers of exponentially distributed strength is, by Wilson and Hilferty's cube for shape + 1 (1931) and the
+ * power of a uniform number that leads from there to `shape`. */
+float gammaStrength(float shape, uint32_t bits) {
+    const float next = shape + 1;
+    const float normal = std::sqrt(-2 * logarithm(uniform(bits >> 16))) * cosineOf(uniform(bits) - 0.5f);
+    const float root = std::max(0.0f, 1 - 1 / (9 * next) + normal / (3 * std::sqrt(next)));
+    const float chance = uniform(mixed(bits + 0x9e3779b9u));
+    return next / shape * root * root * root * std::exp(logarithm(chance) / shape);
 }
 
 INSONIFY_VECTOR_CLONES void scatter(const LatticePatch& patch, const LatticeSquares& squares, int count,
@@ -387,8 +384,8 @@ void Scatterers::depositLevel(const Patch& patch, const PatchLattice& lattice, c
 void Scatterers::sum(const LatticeLevel& level, int count, uint64_t* of_beam) {
     for (int i = 0; i < count; ++i) {
         float root = 1;
-        if (level.merged > 0)
-            root = std::sqrt(gammaPower(static_cast<float>(level.merged), fields_.bits[i] ^ 0x5bd1e995u));
+        if (level.stands_for > 0)
+            root = std::sqrt(gammaStrength(static_cast<float>(level.stands_for), mixed(fields_.bits[i] + 0x5bd1e995u)));
         uint64_t* const cell = of_beam + static_cast<size_t>(fields_.beam[i]) * beam_sums_ + 2 * fields_.cell[i];
         cell[0] += signedQuanta(root * fields_.real[i]);
         cell[1] += signedQuanta(root * fields_.imaginary[i]);

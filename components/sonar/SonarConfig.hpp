@@ -112,7 +112,7 @@ struct MultipathConfig {
 };
 
 /** Echoes that interfere: each surface is a lattice of scatterers that belong to its object, and what a bin holds is
- * the square of the sum of their fields (ACOUSTICS.md 5.17). */
+ * the square of the sum of their fields (ACOUSTICS.md 5.23). */
 struct SpeckleConfig {
     bool coherent = false;
     int scatterers_per_cell = 20;
@@ -127,8 +127,9 @@ struct SpeckleConfig {
                     "scatterers in a resolution cell, beam width by range resolution, at least", 1, 200},
               self.scatterers_per_cell);
         visit(Field{"scatterers_per_m2", "1/m2",
-                    "scatterers that surfaces have, each of exponentially distributed strength: where few of them are "
-                    "in a cell, it is K-distributed (Abraham and Lyons 2002); absent: so many that none stands out",
+                    "scatterers of surfaces, of exponentially distributed strengths: intensities are K-distributed, "
+                    "of the shape of their number in a cell (Abraham and Lyons 2002); absent: so many that none stands "
+                    "out",
                     1e-6, 1e9},
               self.scatterers_per_m2);
     }
@@ -227,6 +228,7 @@ struct SonarConfig {
     std::optional<BeamPatternConfig> beam_pattern;
     std::optional<acoustics::PulseConfig> pulse;
     std::vector<VolumeLayer> volume;
+    bool motion_in_ping = false;
     std::optional<SpeckleConfig> speckle;
     std::optional<ElementsConfig> elements;
     std::optional<MultipathConfig> multipath;
@@ -329,6 +331,9 @@ void SonarConfig::describeBeam(Self& self, V& visit) {
           self.beam_pattern);
     visit(Field{"pulse", "", "what an echo leaves in range; absent: it is in its own bin alone"}, self.pulse);
     visit(Field{"volume", "", "water that scatters sound back, or a list of its layers; absent: none"}, self.volume);
+    visit(Field{"motion_in_ping", "",
+                "sonar and objects move, and the receiver turns, while sound is under way; false: all stand still"},
+          self.motion_in_ping);
     visit(Field{"speckle", "", "echoes that interfere, by scatterers of the scene; absent: energies are summed"},
           self.speckle);
     visit(Field{"elements", "",

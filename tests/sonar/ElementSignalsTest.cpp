@@ -42,7 +42,9 @@ SonarConfig arrayOf(Weighting weighting) {
 }
 
 /** A level bottom with a wall on it. */
-types::Snapshot scene() { return test::snapshotOf(test::sceneOf({test::ground(-2), test::cube(1, {6, 1, -1.5})})); }
+types::Snapshot scene() {
+    return test::snapshotOf(test::sceneOf({test::ground(-2), test::quad({6, -1, -2}, {0, 3, 0}, {0, 0, 1})}));
+}
 
 struct Heard {
     types::Sonar ping;
@@ -138,9 +140,9 @@ TEST(ElementSignalsTest, FewerElementsAreFartherApartAndHearTheSamePlaces) {
 std::vector<std::string> diagnosticsOf(const SonarConfig& config) {
     types::Diagnostics diagnostics;
     config.check(diagnostics);
-    std::vector<std::string> diagnostics;
-    for (const types::Diagnostic& diagnostic : diagnostics) diagnostics.push_back(diagnostic.path + " " + diagnostic.message);
-    return diagnostics;
+    std::vector<std::string> texts;
+    for (const types::Diagnostic& diagnostic : diagnostics) texts.push_back(diagnostic.path + " " + diagnostic.message);
+    return texts;
 }
 
 TEST(ElementSignalsTest, WhatMakesNoArrayIsRefusedWithTheReason) {
