@@ -30,7 +30,7 @@ std::vector<size_t> groupsOf(const std::vector<Beam>& cells) {
 /** Takes weights below the floor off both ends. */
 template <class Run>
 void trim(Run& run, double floor) {
-    const auto heard = [&](float weight) { return static_cast<double>(weight) >= floor; };
+    const auto heard = [&](float weight) { return std::abs(static_cast<double>(weight)) >= floor; };
     const auto last = std::find_if(run.weights.rbegin(), run.weights.rend(), heard);
     run.weights.erase(last.base(), run.weights.end());
     const auto first = std::ranges::find_if(run.weights, heard);
@@ -68,9 +68,12 @@ Beamformer::Band Beamformer::bandOf(const Beam& beam, const std::vector<Beam>& c
         const auto parts = static_cast<size_t>((last.high - first.low) / narrow + 0.5);
         const double part = (last.high - first.low) / static_cast<double>(parts);
         double sum = 0;
-        for (size_t i = 0; i < parts; ++i)
-            sum += rules.pattern(first.low + (static_cast<double>(i) + 0.5) * part, beam.centre);
-        run.weights.push_back(static_cast<float>(sum / static_cast<double>(parts)));
+        for (size_t i = 0; i < parts; ++i) {
+            const double weight = rules.pattern(first.low + (static_cast<double>(i) + 0.5) * part, beam.centre);
+            sum += rules.of_fields ? weight * weight : weight;
+        }
+        const double mean = sum / static_cast<double>(parts);
+        run.weights.push_back(static_cast<float>(rules.of_fields ? std::sqrt(mean) : mean));
     };
     const auto groupAt = [&](double azimuth) {
         size_t group = groupCount() - 1;

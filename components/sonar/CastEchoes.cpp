@@ -9,6 +9,7 @@
 
 #include "components/sonar/Acoustics.hpp"
 #include "components/sonar/BinLevels.hpp"
+#include "components/sonar/EchoField.hpp"
 #include "components/sonar/EchoGrid.hpp"
 #include "components/sonar/ObjectPlaces.hpp"
 #include "components/sonar/PathEchoes.hpp"
@@ -45,6 +46,7 @@ public:
     void takeQuality() override;
     void render(const types::Snapshot& snapshot, types::Sonar& ping, Stages& stages) override;
     void setTruth(types::SonarTruth* truth) override { truth_ = truth; }
+    EchoField* field() override { return field_ ? &*field_ : nullptr; }
     bool hasEchoes() const override { return heard_; }
     std::vector<LeftOut> culled() const override {
         const std::optional<LeftOut> dark = paths_ ? paths_->leftOut() : std::nullopt;
@@ -61,6 +63,9 @@ private:
         std::vector<uint64_t> sums;
         std::optional<TruthTable> shown;  ///< What they are of, where it is told.
         std::vector<uint64_t> one_beam;   ///< For TruthSink.
+        std::vector<uint64_t> told_sums;  ///< Of energies, where the truth is told of fields.
+        std::vector<float> by_paths;      ///< Intensities of one cell, where fields are summed.
+        size_t number = 0;
         Stages stages{};
         Clock::time_point last;
         bool heard = false;
@@ -87,18 +92,20 @@ private:
     std::span<const CastTile> cast(const Part& part, Worker& worker) const;
     TileRays raysOf(const CastTile& tile, int end_column) const;
     /** Fills the bins of a cell from its sums; whether it has any echo. */
-    bool fill(size_t cell, const uint64_t* sums, types::Sonar& ping);
+    bool fill(size_t cell, const Worker& worker, const uint64_t* sums, types::Sonar& ping);
     /** Adds a part's sums to its strip's; whether they are complete now, and in the worker. */
     bool gather(const Part& part, Worker& worker);
 
     const RenderPlan& plan_;
     types::GeometryPtr geometry_;
     EchoRules rules_;
+    std::optional<EchoRules> truth_rules_;  ///< Of energies, where fields are summed.
     CastView view_;
     BinLevels levels_;
     std::optional<VolumeLevels> volume_;
-    WaterView water_;  ///< In this ping.
-    std::optional<EchoGrid> grid_;
+    WaterView water_;                 ///< In this ping.
+    std::optional<EchoGrid> grid_;    ///< Of energies,
+    std::optional<EchoField> field_;  ///< or of fields.
     ObjectPlaces places_;
     RayVisibility visibility_;
     std::vector<PlaneRecord> planes_;
@@ -128,12 +135,14 @@ CastEchoes::CastEchoes(const RenderPlan& plan, types::GeometryPtr geometry)
       threads_(plan.options.threads),
       workers_(static_cast<size_t>(threads_.size())) {
     runs_.reserve(visibility_.commands().size());
+    for (size_t i = 0; i < workers_.size(); ++i) workers_[i].number = i;
     if (plan.has(Pass::Paths)) paths_.emplace(plan, *geometry_, visibility_);
     takeQuality();
 }
 
 Features CastEchoes::compiled() const {
     Features all = compiledForRays(plan_.features);
+    if (plan_.features.has(Feature::Speckle) && !rules_.lattice.empty()) all.add(Feature::Speckle);
     if (view_.cells.weighted) all.add(Feature::ElevationPattern);
     if (!rules_.laws.tables.empty() || rules_.laws.hasLobes()) all.add(Feature::BackscatterLaws);
     return all | (plan_.features & Features{Feature::Volume, Feature::VolumeLayers});
@@ -142,10 +151,17 @@ Features CastEchoes::compiled() const {
 void CastEchoes::takeQuality() {
     rules_ = makeEchoRules(plan_);
     view_.cells = makeAngularView(plan_);
-    grid_.emplace(plan_, threads_.size());
-    if (plan_.features.has(Feature::Volume)) volume_.emplace(plan_);
+    if (plan_.features.has(Feature::Speckle)) {
+        field_.emplace(plan_, threads_.size());
+        truth_rules_ = makeEnergyRules(plan_);
+    } else {
+        grid_.emplace(plan_, threads_.size());
+        if (plan_.features.has(Feature::Volume)) volume_.emplace(plan_, plan_.grid);
+    }
     shareOut();
     if (paths_) paths_->takeQuality(rules_, view_);
+    for (Worker& worker : workers_)
+        worker.by_paths.resize(paths_ && field_ ? static_cast<size_t>(rules_.bins.bin_count) : 0);
     truth_grid_.reset();
 }
 
@@ -176,7 +192,9 @@ void CastEchoes::makeTruth() {
     truth_grid_.emplace(plan_, whole);
     for (Worker& worker : workers_) {
         worker.shown.emplace(static_cast<size_t>(beamsTogether()), static_cast<size_t>(plan_.grid.bin_count));
-        worker.one_beam.assign(rules_.sumCount(), 0);
+        const EchoRules& told = field_ ? *truth_rules_ : rules_;
+        worker.one_beam.assign(told.sumCount(), 0);
+        if (field_) worker.told_sums.assign(static_cast<size_t>(beamsTogether()) * told.sumCount(), 0);
     }
 }
 
@@ -184,7 +202,7 @@ void CastEchoes::place(const types::Snapshot& snapshot) {
     water_ = waterViewOf(snapshot);
     places_.place(snapshot);
     visibility_.place(snapshot);
-    if (paths_) paths_->begin(snapshot);
+    if (paths_) paths_->begin(snapshot, truth_);
     runs_.clear();
     for (const CommandRecord& command : visibility_.commands())
         runs_.push_back(placedRun(places_.records()[command.object], command, rules_, 1, 0));
@@ -238,9 +256,11 @@ bool CastEchoes::gather(const Part& part, Worker& worker) {
 
 void CastEchoes::depositPart(const Part& part, std::span<const CastTile> tiles, Worker& worker) {
     std::fill(worker.sums.begin(), worker.sums.end(), 0);
-    if (!truth_) return deposit(rules_, view_, scene(), tiles, part.first_beam, worker.sums.data());
+    if (!truth_ || field_) deposit(rules_, view_, scene(), tiles, part.first_beam, worker.sums.data());
+    if (!truth_) return;
     worker.shown->clear();
-    depositAndTell(rules_, view_, scene(), tiles, part.first_beam, worker.sums.data(),
+    std::vector<uint64_t>& told = field_ ? worker.told_sums : worker.sums;
+    depositAndTell(field_ ? *truth_rules_ : rules_, view_, scene(), tiles, part.first_beam, told.data(),
                    {*worker.shown, {}, worker.one_beam});
     for (int beam = 0; beam < part.beams; ++beam)
         truth_grid_->take(static_cast<size_t>(part.first_beam + beam), *worker.shown, static_cast<size_t>(beam),
@@ -255,12 +275,13 @@ void CastEchoes::workOn(const Part& part, Worker& worker, types::Sonar& ping) {
     worker.lap(DepositStage);
     if (gather(part, worker))
         for (int beam = 0; beam < part.beams; ++beam)
-            worker.heard |= fill(static_cast<size_t>(part.first_beam + beam),
+            worker.heard |= fill(static_cast<size_t>(part.first_beam + beam), worker,
                                  &worker.sums[static_cast<size_t>(beam) * rules_.sumCount()], ping);
     worker.lap(BeamStage);
 }
 
-bool CastEchoes::fill(size_t cell, const uint64_t* sums, types::Sonar& ping) {
+bool CastEchoes::fill(size_t cell, const Worker& worker, const uint64_t* sums, types::Sonar& ping) {
+    if (field_) return field_->fill(cell, rules_, sums, view_.cells.cell(), worker.number);
     const std::span<float> bins = grid_->cell(cell, ping);
     const bool heard = levels_.fill(rules_, sums, view_.cells.cell(), bins);
     if (volume_) volume_->add(sums + rules_.volumeOffset(), cell, view_.cells.cell(), bins);
@@ -268,10 +289,19 @@ bool CastEchoes::fill(size_t cell, const uint64_t* sums, types::Sonar& ping) {
 }
 
 void CastEchoes::addPaths(types::Sonar& ping) {
+    for (size_t cell = 0; truth_ && cell < plan_.cells.size(); ++cell)
+        paths_->takeDirect(cell, field_ ? std::span<const float>() : grid_->cell(cell, ping));
     threads_.run([&](int part, int parts) {
-        for (int cell = part; cell < view_.cells.beams; cell += parts) {
-            const auto i = static_cast<size_t>(cell);
-            workers_[static_cast<size_t>(part)].heard |= paths_->addTo(i, levels_, grid_->cell(i, ping));
+        Worker& worker = workers_[static_cast<size_t>(part)];
+        for (auto cell = static_cast<size_t>(part); cell < plan_.cells.size(); cell += static_cast<size_t>(parts)) {
+            if (!field_) {
+                worker.heard |= paths_->addTo(cell, grid_->cell(cell, ping));
+                continue;
+            }
+            std::ranges::fill(worker.by_paths, 0.0f);
+            if (!paths_->addTo(cell, worker.by_paths)) continue;
+            field_->addScattered(cell, worker.by_paths, worker.number);
+            worker.heard = true;
         }
     });
 }
@@ -285,6 +315,7 @@ void CastEchoes::render(const types::Snapshot& snapshot, types::Sonar& ping, Sta
     Worker& own = workers_.front();
     own.last = Clock::now();
     place(snapshot);
+    if (field_) field_->begin(snapshot);
     if (truth_ && !truth_grid_) makeTruth();
     if (truth_) truth_grid_->begin();
     stages[CullStage].seconds += std::chrono::duration<double>(Clock::now() - own.last).count();
@@ -304,8 +335,12 @@ void CastEchoes::render(const types::Snapshot& snapshot, types::Sonar& ping, Sta
         threads_.share([&](int part, int) { work(workers_[static_cast<size_t>(part)], ping); });
     own.last = Clock::now();
     if (paths_) addPaths(ping);
-    grid_->finish(ping, threads_);
+    if (field_)
+        field_->form(threads_);
+    else
+        grid_->finish(ping, threads_);
     if (truth_) truth_grid_->finish(*truth_, threads_);
+    if (truth_ && paths_) paths_->tell(*truth_);
     stages[BeamStage].seconds += std::chrono::duration<double>(Clock::now() - own.last).count();
     heard_ = false;
     for (const Worker& worker : workers_) {

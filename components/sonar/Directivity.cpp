@@ -31,6 +31,10 @@ double powerOf(const std::optional<acoustics::BeamPattern>& law, double angle, d
     return law ? law->power(angle, axis) : 1;
 }
 
+double amplitudeOf(const std::optional<acoustics::BeamPattern>& law, double angle, double axis = 0) {
+    return law ? law->amplitude(angle, axis) : 1;
+}
+
 /** The angle to either side of 0, turned by whole turns. */
 double wrapped(double angle) { return std::remainder(angle, 2 * pi); }
 
@@ -72,6 +76,12 @@ double Directivity::heardAzimuth(double azimuth, double bearing) const {
 
 double Directivity::azimuth(double azimuth, double bearing) const {
     return sentAzimuth(azimuth) * heardAzimuth(azimuth, bearing);
+}
+
+double Directivity::azimuthAmplitude(double azimuth, double bearing) const {
+    const double sent = amplitudeOf(transmit_azimuth_, azimuth);
+    return sent * (conical_ ? amplitudeOf(receive_azimuth_, azimuth, bearing)
+                            : amplitudeOf(receive_azimuth_, wrapped(azimuth - bearing)));
 }
 
 double Directivity::sentElevation(double angle) const { return powerOf(transmit_elevation_, angle); }

@@ -17,14 +17,18 @@ using std::numbers::pi;
 
 constexpr int max_bounces = 2;
 constexpr int pattern_steps = 2048;
+constexpr uint64_t surface_name = std::numeric_limits<uint64_t>::max();  ///< Among the mirrors of a chain.
 
 /** What of a part's energy goes to a bin, whichever thread brings it. */
 #define HAVE_PHYSICAL
 struct SharedBins : Bins {
     using Bins::Bins;
     void addToBin(uint cell, uint bin, double amount, double) const {
-        if (amount > 0) std::atomic_ref(sums[size_t{cell} * bin_count + bin]).fetch_add(quanta(amount), relaxed);
+        if (!(amount > 0)) return;
+        std::atomic_ref(sums[size_t{cell} * bin_count + bin]).fetch_add(quanta(amount), relaxed);
+        if (told) std::atomic_ref(told[size_t{cell} * bin_count + bin]).fetch_add(quanta(amount), relaxed);
     }
+    uint64_t* told = nullptr;  ///< Sums by the way of what is deposited now, where they are told.
     static constexpr std::memory_order relaxed = std::memory_order_relaxed;
 #include "shaders/deposit.glsl"
 };
@@ -222,6 +226,14 @@ private:
     void deposit(const Angles& at, int i, double open);
     void depositOnce(const Angles& at, int i, const MirrorPlane& plane, double open);
     Footprint footprint(const Angles& at, int i, const HalfWay& way, double size) const;
+    void tellWay(int i, bool twice) {
+        if (!paths_.tells_) return;
+        const Chain& chain = chains_[static_cast<size_t>(i)];
+        const bool by_surface = std::all_of(chain.names.begin(), chain.names.begin() + chain.count,
+                                            [](uint64_t name) { return name == surface_name; });
+        const PathTruth::Path way = twice ? PathTruth::SurfaceTwice : PathTruth::SurfaceOnce;
+        bins_.told = paths_.truth_->sums(by_surface ? way : PathTruth::Bounced);
+    }
 
     PathEchoes& paths_;
     const EchoRules& rules_;
@@ -274,7 +286,7 @@ void PathEchoes::Tracer::reflect(int i, const glm::dvec3& from, const glm::dvec3
         const double distance = paths_.water_.distance(from, way);
         if (!(lengths_[static_cast<size_t>(i)] + distance < rules_.bins.range_max)) return drop(i);
         const glm::dvec3 at = from + distance * way;
-        chain.names[k] = std::numeric_limits<uint64_t>::max();
+        chain.names[k] = surface_name;
         return send(i, tilts ? paths_.water_.facet(at, way, key_) : paths_.water_.plane(), from, way, distance);
     }
     const CommandRecord& command = scene_.commands[hits.command[i]];
@@ -375,6 +387,7 @@ void PathEchoes::Tracer::deposit(const Angles& at, int i, double open) {
     if (!(std::abs(facing) > 1e-4 && plane.distance * facing > 0)) return;
     const PlacedRun& run = scene_.ranges[hits_.command[i]];
     const PlaneRecord& record = scene_.planes[run.first_triangle + hits_.triangle[i]];
+    tellWay(i, true);
     const HalfWay twice = halfWay(plane, glm::dvec3(0), at);
     const double strength = rules_.strength_scale * chain.power * chain.power *
                             rules_.laws.overCosine(run.material, std::abs(facing), static_cast<double>(record.point.w),
@@ -397,6 +410,7 @@ void PathEchoes::Tracer::depositOnce(const Angles& at, int i, const MirrorPlane&
     const double slope = std::max(chain.widest / mirrored, facet / (direct * mirrored)) + 0.5 * angle * angle;
     const double half = std::abs(glm::dot(plane.normal, glm::normalize(at.middle + way.from_focus)));
     const MaterialLaws::Bistatic section = rules_.laws.bistatic(run.material, direct, mirrored, half, slope);
+    tellWay(i, false);
     const double scale =
         rules_.strength_scale * chain.power * open / (way.back * way.back * way.inverse * way.inverse * way.inverse);
     const auto by_mirror = paths_.patterns_->wayOf(at.middle);
@@ -428,10 +442,15 @@ void PathEchoes::takeQuality(const EchoRules& rules, const CastView& view) {
     rules_ = &rules;
     view_ = &view;
     patterns_.emplace(plan_);
-    sums_.assign(plan_.cells.size() * static_cast<size_t>(plan_.grid.bin_count), 0);
+    levels_.emplace(plan_.config, rules.bins);
+    truth_.reset();
+    sums_.assign(plan_.cells.size() * static_cast<size_t>(rules.bins.bin_count), 0);
 }
 
-void PathEchoes::begin(const types::Snapshot& snapshot) {
+void PathEchoes::begin(const types::Snapshot& snapshot, bool tells) {
+    tells_ = tells;
+    if (tells && !truth_) truth_.emplace(plan_, static_cast<size_t>(rules_->bins.bin_count));
+    if (tells) truth_->begin();
     water_.place(snapshot, plan_.grid.range_max);
     std::ranges::fill(sums_, 0);
 }
@@ -451,14 +470,18 @@ void PathEchoes::trace(const PlacedScene& scene, std::span<const CastTile> tiles
     for (const CastTile& tile : tiles) tracer.follow(tile);
 }
 
-bool PathEchoes::addTo(size_t cell, const BinLevels& levels, std::span<float> bins) const {
-    const double quantum = view_->cells.cell() / (quanta_per_unit * rules_->strength_scale);
+double PathEchoes::quantum() const { return view_->cells.cell() / (quanta_per_unit * rules_->strength_scale); }
+
+void PathEchoes::takeDirect(size_t cell, std::span<const float> bins) { truth_->take(cell, bins, *levels_, quantum()); }
+
+bool PathEchoes::addTo(size_t cell, std::span<float> bins) const {
+    const double quantum = this->quantum();
     const uint64_t* sums = sums_.data() + cell * bins.size();
     uint64_t any = 0;
     for (size_t j = 0; j < bins.size(); ++j) {
         if (sums[j] == 0) continue;
         any |= sums[j];
-        const double sum = double{bins[j]} + double{levels.intensity(j, static_cast<double>(sums[j]) * quantum)};
+        const double sum = double{bins[j]} + double{levels_->intensity(j, static_cast<double>(sums[j]) * quantum)};
         bins[j] = static_cast<float>(std::min(sum, double{std::numeric_limits<float>::max()}));
     }
     return any != 0;

@@ -34,6 +34,7 @@ std::string nameOf(Effect effect) {
                                             "transmit ring-down",
                                             "point targets",
                                             "volume reverberation",
+                                            "coherent speckle",
                                             "multipath",
                                             "further slabs",
                                             "refraction",

@@ -27,6 +27,7 @@ Features featuresOf(const SonarConfig& config, const RenderOptions& options, con
     if (!laws.tables.empty() || laws.hasLobes()) features.add(Feature::BackscatterLaws);
     if (!config.volume.empty()) features.add(Feature::Volume);
     if (config.hasLayers()) features.add(Feature::VolumeLayers);
+    if (config.isCoherent()) features.add(Feature::Speckle);
     if (options.estimator == Estimator::NearestJitter) features.add(Feature::Jitter);
     return features;
 }
@@ -66,7 +67,7 @@ void omitPulse(RenderPlan& plan) {
         {Effect::RangePointSpread, Reason::BelowBound, pulse.resolution(), plan.grid.bin_width / 2});
 }
 
-/** What there is to reflect sound; `bounces` says which of it does (ACOUSTICS.md 5.19). */
+/** What there is to reflect sound; `bounces` says which of it does (ACOUSTICS.md 5.24). */
 bool hasMirrors(const RenderPlan& plan, const types::Geometry& geometry) {
     const MultipathConfig& multipath = *plan.config.multipath;
     return multipath.surface || std::ranges::any_of(geometry.materials, [&](const types::Material& material) {
@@ -102,6 +103,7 @@ void omitEffects(const types::Geometry& geometry, RenderPlan& plan) {
     omitPulse(plan);
     omitUnless(plan.has(Pass::RingDown), Effect::RingDown);
     omitUnless(plan.features.has(Feature::Volume), Effect::Volume);
+    omitUnless(plan.features.has(Feature::Speckle), Effect::Speckle);
     omitMultipath(plan);
     if (plan.frusta.size() == 1)
         plan.left_out.push_back({Effect::FurtherSlabs, Reason::OneImage, plan.config.coverageDeg()});

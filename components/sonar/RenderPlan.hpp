@@ -28,9 +28,10 @@ enum class Feature {
     ElevationPattern,
     BackscatterLaws,  ///< Of any material: a table, or a lobe.
     Volume,
-    VolumeLayers
+    VolumeLayers,
+    Speckle  ///< Fields of scatterers are summed, not energies.
 };
-constexpr int feature_count = 12;
+constexpr int feature_count = 13;
 
 /** A set of features. */
 class Features {
@@ -41,6 +42,9 @@ public:
     }
     constexpr void add(Feature feature) { bits_ |= 1u << static_cast<unsigned>(feature); }
     constexpr bool has(Feature feature) const { return bits_ >> static_cast<unsigned>(feature) & 1u; }
+    constexpr Features without(Feature feature) const {
+        return Features(bits_ & ~(1u << static_cast<unsigned>(feature)));
+    }
     constexpr bool operator==(const Features&) const = default;
     constexpr Features operator&(Features other) const { return Features(bits_ & other.bits_); }
     constexpr Features operator|(Features other) const { return Features(bits_ | other.bits_); }
@@ -77,6 +81,7 @@ enum class Effect {
     RingDown,
     PointTargets,
     Volume,
+    Speckle,
     Multipath,
     FurtherSlabs,
     Refraction,
@@ -142,7 +147,7 @@ RenderPlan makeRenderPlan(const SonarConfig& config, const types::Geometry& geom
                           const RenderOptions& options = {});
 
 /** Share of the sound that a material reflects as a mirror does, where `bounces` reflections of a way are asked for
- * [1]: one that is declared to, or from two on one that is smooth (ACOUSTICS.md 5.19); 0: it does not. */
+ * [1]: one that is declared to, or from two on one that is smooth (ACOUSTICS.md 5.24); 0: it does not. */
 double reflectedPower(const types::Material& material, int bounces);
 
 /** Gradient of the speed of sound with depth that refraction is judged by, a strong thermocline [1/s]. */
@@ -159,8 +164,8 @@ Bending bending(const SonarConfig& config, const BinGrid& grid);
 template <>
 struct insonify::types::EnumNames<insonify::sonar::Feature> {
     static constexpr std::string_view names[] = {
-        "physical", "cerqueira2017", "absorption",        "published",        "conical", "normal_map",
-        "nearest",  "jitter",        "elevation_pattern", "backscatter_laws", "volume",  "volume_layers"};
+        "physical", "cerqueira2017",     "absorption",       "published", "conical",       "normal_map", "nearest",
+        "jitter",   "elevation_pattern", "backscatter_laws", "volume",    "volume_layers", "speckle"};
 };
 template <>
 struct insonify::types::EnumNames<insonify::sonar::Pass> {

@@ -37,8 +37,6 @@ void checkPhysics(const SonarConfig& config, types::Diagnostics& diagnostics) {
         diagnostics.push_back({"volume", "is given with model: cerqueira2017; it belongs to physical"});
     if (config.volume.size() > max_layers)
         diagnostics.push_back({"volume", fmt::format("has {} layers; may have {}", config.volume.size(), max_layers)});
-    if (means && config.multipath)
-        diagnostics.push_back({"multipath", "is given with model: cerqueira2017; it belongs to physical"});
     if (means && config.pulse)
         diagnostics.push_back({"pulse", "is given with model: cerqueira2017; it belongs to physical"});
     if (!config.beam_pattern || config.frequency_khz) return;
@@ -62,7 +60,26 @@ void checkRangeReached(const SonarConfig& config, types::Diagnostics& diagnostic
                                   config.range, config.bin_count, grid.range_max)});
 }
 
+/** Of a property that only rays can follow. */
+void checkNeedOfRays(const SonarConfig& config, types::Diagnostics& diagnostics) {
+    const std::string name = config.needsRays();
+    if (name.empty()) return;
+    if (!haveRays()) diagnostics.push_back({name, "needs rays, and this build has none (Embree)"});
+    if (config.visibility == Visibility::Gl)
+        diagnostics.push_back({"visibility", "is gl with " + name + ", which needs rays; may be auto or cpu"});
+    if (config.deposit == Deposit::Gpu)
+        diagnostics.push_back({"deposit", "is gpu with " + name + ", which needs rays; may be auto or cpu"});
+    if (config.model != Model::Physical)
+        diagnostics.push_back({name, "is given with model: cerqueira2017, whose bins are means of S(n.d)"});
+}
+
+void checkSpeckle(const SonarConfig& config, types::Diagnostics& diagnostics) {
+    if (config.isCoherent() && !config.frequency_khz)
+        diagnostics.push_back({"speckle", "is coherent without frequency_khz, which it needs"});
+}
+
 void checkVisibility(const SonarConfig& config, types::Diagnostics& diagnostics) {
+    checkNeedOfRays(config, diagnostics);
     if (config.visibility != Visibility::Cpu) return;
     if (!haveRays())
         diagnostics.push_back({"visibility", "is cpu; this build has no rays (Embree), may be auto or gl"});
@@ -70,16 +87,6 @@ void checkVisibility(const SonarConfig& config, types::Diagnostics& diagnostics)
         diagnostics.push_back({"visibility", "is cpu with published: true, which is an image; may be gl"});
     if (config.deposit == Deposit::Gpu)
         diagnostics.push_back({"deposit", "is gpu with visibility: cpu; may be auto or cpu"});
-}
-
-/** Reflected ways are traced by rays alone. */
-void checkPaths(const SonarConfig& config, types::Diagnostics& diagnostics) {
-    if (!config.tracesPaths()) return;
-    if (!haveRays()) diagnostics.push_back({"multipath", "is given; it takes rays, and this build has none (Embree)"});
-    if (config.visibility == Visibility::Gl)
-        diagnostics.push_back({"visibility", "is gl with multipath, which takes rays; may be auto or cpu"});
-    if (config.deposit == Deposit::Gpu)
-        diagnostics.push_back({"deposit", "is gpu with multipath, which takes rays; may be auto or cpu"});
 }
 
 int imageColumns(const SonarConfig& config) { return makeFrusta(config, makeBeams(config)).front().columns; }
@@ -176,9 +183,11 @@ std::optional<double> SonarConfig::targetError() const {
     return default_target;
 }
 
+std::string SonarConfig::needsRays() const { return isCoherent() ? "speckle" : tracesPaths() ? "multipath" : ""; }
+
 bool SonarConfig::castsRays() const {
     if (visibility != Visibility::Auto) return visibility == Visibility::Cpu;
-    if (haveRays() && tracesPaths()) return true;
+    if (!needsRays().empty()) return true;
     if (!haveRays() || published || deposit == Deposit::Gpu) return false;
     if (!fitsImages(*this)) return true;
     return !gpu::EglContext::isAskedFor(device) && !gpu::EglContext::hasCard();
@@ -269,7 +278,7 @@ void SonarConfig::checkBeam(types::Diagnostics& diagnostics) const {
     checkPhysics(*this, diagnostics);
     checkRangeReached(*this, diagnostics);
     checkVisibility(*this, diagnostics);
-    checkPaths(*this, diagnostics);
+    checkSpeckle(*this, diagnostics);
     if (!diagnostics.empty()) return;
     if (castsRays()) return checkRays(*this, diagnostics);
     checkDevice(device, diagnostics);

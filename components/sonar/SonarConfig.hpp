@@ -93,7 +93,7 @@ struct SurfaceMirrorConfig {
     }
 };
 
-/** Echoes that come by way of mirrors (ACOUSTICS.md 5.19). */
+/** Echoes that come by way of mirrors (ACOUSTICS.md 5.24). */
 struct MultipathConfig {
     std::optional<SurfaceMirrorConfig> surface;
     int bounces = 1;
@@ -108,6 +108,29 @@ struct MultipathConfig {
                     "smooth materials as well; 0: none",
                     0, 2},
               self.bounces);
+    }
+};
+
+/** Echoes that interfere: each surface is a lattice of scatterers that belong to its object, and what a bin holds is
+ * the square of the sum of their fields (ACOUSTICS.md 5.17). */
+struct SpeckleConfig {
+    bool coherent = false;
+    int scatterers_per_cell = 20;
+    std::optional<double> scatterers_per_m2;
+
+    template <class Self, class V>
+    static void describe(Self& self, V& visit) {
+        using types::Field;
+        visit(Field{"coherent", "", "fields are summed, not energies; needs frequency_khz; false: energies are"},
+              self.coherent);
+        visit(Field{"scatterers_per_cell", "1",
+                    "scatterers in a resolution cell, beam width by range resolution, at least", 1, 200},
+              self.scatterers_per_cell);
+        visit(Field{"scatterers_per_m2", "1/m2",
+                    "scatterers that surfaces have, each of exponentially distributed strength: where few of them are "
+                    "in a cell, it is K-distributed (Abraham and Lyons 2002); absent: so many that none stands out",
+                    1e-6, 1e9},
+              self.scatterers_per_m2);
     }
 };
 
@@ -179,6 +202,7 @@ struct SonarConfig {
     std::optional<BeamPatternConfig> beam_pattern;
     std::optional<acoustics::PulseConfig> pulse;
     std::vector<VolumeLayer> volume;
+    std::optional<SpeckleConfig> speckle;
     std::optional<MultipathConfig> multipath;
     std::optional<types::MovedTo> tvg, gain, output, source_level_db;
 
@@ -206,6 +230,10 @@ struct SonarConfig {
     /** The same with a fan that is given by `beam_width_deg` given by `field_of_view_deg`, or by `bearings_deg` where
      * both are. */
     SonarConfig fan() const;
+    /** Whether fields are summed rather than energies. */
+    bool isCoherent() const { return speckle && speckle->coherent; }
+    /** The property that only rays can follow; empty where there is none. */
+    std::string needsRays() const;
     /** Whether triangles are found by rays on the processor, else by drawing. Looks for a graphics card where nothing
      *  else decides. */
     bool castsRays() const;
@@ -275,6 +303,8 @@ void SonarConfig::describeBeam(Self& self, V& visit) {
           self.beam_pattern);
     visit(Field{"pulse", "", "what an echo leaves in range; absent: it is in its own bin alone"}, self.pulse);
     visit(Field{"volume", "", "water that scatters sound back, or a list of its layers; absent: none"}, self.volume);
+    visit(Field{"speckle", "", "echoes that interfere, by scatterers of the scene; absent: energies are summed"},
+          self.speckle);
     visit(Field{"multipath", "", "echoes by way of mirrors; absent: none"}, self.multipath);
     visit(Field{"tvg", "",
                 "has moved: a sonar gives intensities; tvg belongs to a receiver::ReceiverTask after the noise"},

@@ -5,6 +5,7 @@
 
 #include "components/gpu/EglContext.hpp"
 #include "components/sonar/CastEchoes.hpp"
+#include "components/sonar/EchoField.hpp"
 #include "components/sonar/PlanReport.hpp"
 #include "components/sonar/PointTargets.hpp"
 #include "components/sonar/RingDown.hpp"
@@ -123,6 +124,7 @@ void SonarRenderer::setTruth(const types::Sonar& ping, types::SonarTruth* truth)
 void SonarRenderer::finish(const types::Snapshot& snapshot, types::Sonar& ping) {
     const auto start = std::chrono::steady_clock::now();
     parts_->addTargets(snapshot, ping);
+    if (const EchoField* field = parts_->echoes->field()) field->detect(ping);
     if (parts_->ring_down) parts_->ring_down->add(ping);
     parts_->stages[BeamStage].seconds +=
         std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();

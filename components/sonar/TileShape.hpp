@@ -21,6 +21,7 @@ struct TileShape {
     Extent at[tile_samples] = {};                  ///< Of each sample from the tile's first.
     Extent size[tile_samples + 1] = {{}, {1, 1}};  ///< Of so many samples, a power of 2.
     int max_merged = 1;  ///< Samples of one triangle that may become one cell, and are of one beam; a power of 2 [1].
+    int one_beams = 1;   ///< Samples of a tile that are of one beam and a rectangle, at most; a power of 2 [1].
 };
 
 }  // namespace insonify::sonar

@@ -1,0 +1,71 @@
+#pragma once
+#include <array>
+#include <glm/vec3.hpp>
+
+#include "components/sonar/EchoRules.hpp"
+#include "components/sonar/Interface.hpp"
+
+namespace insonify::sonar {
+
+/** A part of a triangle's plane that neighbouring samples see; sonar axes. */
+struct Patch {
+    glm::dvec3 normal;                  ///< Of any length [1].
+    double distance;                    ///< normal.p of its points [m].
+    glm::dvec3 middle;                  ///< Unit, to its middle [1].
+    std::array<glm::dvec3, 4> corners;  ///< Unit, to its corners, one side after the other [1].
+    double low_bearing, high_bearing;   ///< [rad]
+    double low_sine, high_sine;         ///< Of its elevations [1].
+    double width, height;               ///< [rad]
+    double strength_range;              ///< Strength times slant range [m].
+    double per_solid_angle;             ///< Two-way pattern in elevation, over the solid angle of a cell [1/sr].
+    const ObjectRecord& object;
+    uint32_t number;  ///< Of the object [1].
+    bool conical;     ///< Bearings are those of cones.
+};
+
+struct PatchLattice;
+struct LatticePatch;
+
+/** Squares of a lattice in which scatterers of a patch may be, from the square that holds its middle. */
+struct LatticeSquares {
+    static constexpr int most = 256;
+    alignas(64) int32_t u[most] = {}, v[most] = {};
+    int count = 0;
+};
+
+/** What scatterers add: a field in units of the square root of a whole cell, and to which range cell; -1: none. */
+struct ScatteredFields {
+    alignas(64) float real[LatticeSquares::most], imaginary[LatticeSquares::most];
+    alignas(64) int32_t cell[LatticeSquares::most];
+    alignas(64) uint32_t bits[LatticeSquares::most];
+};
+
+/** The estimator of fields: which scatterers lie on what samples see, and what they add to the field of each range cell
+ *  of a beam (ACOUSTICS.md 5.17). */
+class Scatterers {
+public:
+    static constexpr bool tells_truth = false;
+    static constexpr Features features{Feature::Physical, Feature::Speckle};
+
+    /** `sums`: EchoRules::sumCount() for each beam, [range cell][real, imaginary] in quanta, with sign. */
+    Scatterers(const EchoRules& rules, uint64_t* sums) : rules_(rules), sums_(sums) {}
+
+    void deposit(const Patch& patch, size_t beam);
+
+private:
+    /** Slant ranges [m]. */
+    struct Ranges {
+        double near, far;
+    };
+    Ranges rangesOf(const Patch& patch) const;
+    void depositLevel(const Patch& patch, const PatchLattice& lattice, const LatticeLevel& level, const Ranges& ranges,
+                      uint64_t* of_beam);
+    void add(const LatticePatch& part, const LatticeLevel& level, uint64_t* of_beam);
+
+    const EchoRules& rules_;
+    uint64_t* sums_;
+    LatticeSquares squares_;
+    ScatteredFields fields_;
+};
+
+}  // namespace insonify::sonar
