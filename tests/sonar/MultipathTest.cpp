@@ -316,10 +316,17 @@ double between(const types::Sonar& ping, double from, double to, size_t beam = 0
     return sum;
 }
 
+/** A low fan to both sides, finely sampled. */
+SonarConfig lowFan(int beams) {
+    SonarConfig config = sonarOf(140, beams);
+    config.beam_height_deg = 20;
+    config.quality.columns_per_beam = 4096 / beams;
+    return config;
+}
+
 /** A plate of Lambert's law that faces the sonar and a mirror beside it, in beams to both. */
 TEST(MultipathTest, APlateByAMirrorIsHeardAtEachBearingThatItArrivesFrom) {
-    SonarConfig config = sonarOf(140, 14);
-    config.quality.columns_per_beam = 32;
+    const SonarConfig config = lowFan(14);
     const auto plate = test::quad({12, -0.3f, -0.3f}, {0, 0.6f, 0}, {0, 0, 0.6f});
     const auto snapshot = test::snapshotOf(sceneWith({{wallToPort(), mirrorOf(1)}, {plate, lambertian()}}));
     const auto ghosts = pingOf(bouncing(config), snapshot), plain = pingOf(config, snapshot);
@@ -349,14 +356,17 @@ TEST(MultipathTest, APlateByAMirrorIsHeardAtEachBearingThatItArrivesFrom) {
 }
 
 TEST(MultipathTest, ASurfaceIsHeardByAMirrorOnItsOwnSideAlone) {
-    const SonarConfig config = bouncing(sonarOf(140, 1));
+    const SonarConfig config = lowFan(1);
     // Edge-on to neither: the sonar sees one side of it, the mirror the other.
-    const auto plate = test::quad({8, 0.5f, -0.3f}, {3, 0.5f, 0}, {0, 0, 0.6f});
+    const auto plate = test::quad({9.4f, 1.64f, -0.3f}, {0.2f, 0.02f, 0}, {0, 0, 0.6f});
     const auto snapshot = test::snapshotOf(sceneWith({{wallToPort(), mirrorOf(1)}, {plate, lambertian()}}));
-    const auto ghosts = pingOf(config, snapshot);
-    const double r1 = std::hypot(9.5, 0.75), r2 = std::hypot(9.5, 7.25);
-    EXPECT_EQ(between(ghosts, (r1 + r2) / 2 - 0.1, (r1 + r2) / 2 + 0.1), 0);
-    EXPECT_GT(between(ghosts, r2 - 0.1, r2 + 0.1), 0);
+    const auto ghosts = pingOf(bouncing(config), snapshot), plain = pingOf(config, snapshot);
+    const double r1 = std::hypot(9.5, 1.65), r2 = std::hypot(9.5, 6.35);
+    const auto more = [&](double range) {
+        return between(ghosts, range - 0.1, range + 0.1) - between(plain, range - 0.1, range + 0.1);
+    };
+    EXPECT_EQ(more((r1 + r2) / 2), 0);
+    EXPECT_GT(more(r2), 0);
 }
 
 /** A corner of plates far away, whose lobes alone are heard; wavelength 3 mm. */
@@ -462,7 +472,7 @@ TEST(MultipathTest, AConcaveCornerShowsItsSecondAndThirdReturn) {
     const auto plate = test::quad({12, -0.3f, -0.3f}, {0, 0.6f, 0}, {0, 0, 0.6f});
     const auto snapshot =
         test::snapshotOf(sceneWith({{wallToPort(), smoothPlate(0.9f, 0.05f)}, {plate, lambertian()}}));
-    const SonarConfig config = sonarOf(140, 1);
+    const SonarConfig config = lowFan(1);
     const auto one = pingOf(bouncing(config, 1), snapshot), two = pingOf(bouncing(config, 2), snapshot);
     const double r2 = std::hypot(12, 8), second = (12 + r2) / 2;
     EXPECT_EQ(one.bins, pingOf(config, snapshot).bins);
@@ -487,6 +497,9 @@ TEST(MultipathTest, WindTiltsTheSurfaceByItsSlopeAndKeepsTheEnergy) {
     EXPECT_DOUBLE_EQ(slopeOfSea(0.5), 0.0034);
     EXPECT_NEAR(slopeOfSea(1), 0.0034, 2e-5);
     EXPECT_DOUBLE_EQ(slopeOfSea(3), 4.6e-3 * std::log(2.1 * 9));
+    EXPECT_EQ(coherentReflection(0, 0.003, 1), 1);
+    const double roughness = 2 * (2 * pi / 0.5) * 0.0053 * 9 * 0.3;
+    EXPECT_DOUBLE_EQ(coherentReflection(3, 0.5, 0.3), std::exp(-roughness * roughness / 2));
     const SonarConfig config = sonarOf(40, 8);
     auto snapshot = under(2, test::sceneOf({test::ground(-4)}));
     const auto plain = pingOf(config, snapshot), flat = pingOf(mirrored(config), snapshot);
@@ -502,6 +515,70 @@ TEST(MultipathTest, WindTiltsTheSurfaceByItsSlopeAndKeepsTheEnergy) {
     for (const double energy : difference(flat, plain)) flat_sum += energy;
     for (const double energy : difference(next, plain)) rough_sum += energy;
     EXPECT_NEAR(decibels(rough_sum / flat_sum), 0, 1.5);
+}
+
+TEST(MultipathTest, TheTruthTellsByWhichWayMostOfABinCame) {
+    const SonarConfig config = sonarOf(8, 4);
+    const auto snapshot = under(2, test::sceneOf({test::quad({10, -2, -3}, {0, 4, 0}, {0, 0, 2})}));
+    SonarRenderer renderer(mirrored(config), snapshot.geometry);
+    types::Sonar ping;
+    types::SonarTruth truth;
+    renderer.setTruth(ping, &truth);
+    renderer.render(snapshot, ping);
+    const double r1 = std::hypot(10, 2), r2 = std::hypot(10, 6);
+    const auto path = [&](double range) {
+        return static_cast<int>(truth.path[300 + static_cast<size_t>(range / 0.1)]);
+    };
+    EXPECT_EQ(path(r1), 0);
+    EXPECT_EQ(path((r1 + r2) / 2), 1);
+    EXPECT_EQ(path(r2), 2);
+    for (size_t k = 0; k < ping.bins.size(); ++k) {
+        EXPECT_EQ(ping.bins[k] > 0, truth.path[k] > 0 || truth.hits[k] > 0) << k;
+        EXPECT_FALSE(ping.bins[k] > 0 && truth.shadow[k]) << k;
+    }
+    auto wall = test::snapshotOf(sceneWith(
+        {{wallToPort(), mirrorOf(1)}, {test::quad({12, -0.3f, -0.3f}, {0, 0.6f, 0}, {0, 0, 0.6f}), lambertian()}}));
+    SonarRenderer bounced(bouncing(lowFan(1)), wall.geometry);
+    bounced.setTruth(ping, &truth);
+    bounced.render(wall, ping);
+    EXPECT_EQ(static_cast<int>(truth.path[static_cast<size_t>(std::hypot(12, 8) / 0.1)]), 3);
+}
+
+TEST(MultipathTest, ThreadsMakeNoDifference) {
+    const auto snapshot = under(2, test::sceneOf({test::ground(-4), test::sphere(1, 24)}, 0, {{}, {9, 1, -1}}));
+    const auto bins = [&](int threads) {
+        RenderOptions options;
+        options.threads = threads;
+        SonarRenderer renderer(mirrored(sonarOf(90, 16), 3), snapshot.geometry, options);
+        types::Sonar ping;
+        renderer.render(snapshot, ping);
+        return ping.bins;
+    };
+    EXPECT_EQ(bins(1), bins(2));
+    EXPECT_EQ(bins(1), bins(5));
+}
+
+TEST(MultipathTest, WithAPatternAndConesAndAMovingObjectGhostsAreWhereTheyAre) {
+    for (const BeamGeometry geometry : {BeamGeometry::Planar, BeamGeometry::Conical}) {
+        SonarConfig config = mirrored(sonarOf(60, 30));
+        config.beam_geometry = geometry;
+        acoustics::BeamLaw law;
+        law.width_deg = 3;
+        config.beam_pattern.emplace().receive.azimuth = law;
+        auto snapshot = under(3, test::sceneOf({test::sphere(0.3, 24)}, 0, {{12, 0, -1}}));
+        glm::dmat4 moved(1);
+        moved[3] = {12, 3, -1, 1};
+        snapshot.moved = {{0, moved}};
+        const auto ghosts = pingOf(config, snapshot);
+        const double r1 = glm::length(glm::dvec3(12, 3, -1)), r2 = glm::length(glm::dvec3(12, 3, 7));
+        size_t loudest = 0;
+        for (size_t beam = 0; beam < 30; ++beam)
+            if (between(ghosts, (r1 + r2) / 2 - 0.4, (r1 + r2) / 2 + 0.4, beam) >
+                between(ghosts, (r1 + r2) / 2 - 0.4, (r1 + r2) / 2 + 0.4, loudest))
+                loudest = beam;
+        EXPECT_NEAR(types::degrees(ghosts.bearings[loudest].rad), types::degrees(std::atan2(3, 12)), 2.1);
+        EXPECT_GT(between(ghosts, r2 - 0.5, r2 + 0.3, loudest), 0);
+    }
 }
 
 }  // namespace
