@@ -49,6 +49,8 @@ public:
     double amplitude(double angle, double axis = 0) const;
     /** Length of the aperture [wavelengths]; 0 for a measured table. */
     double aperture() const { return aperture_; }
+    /** Its far field, where it is no measured table. */
+    const Taper& taper() const { return taper_; }
 
 private:
     void scaleTo(const BeamLaw& law, std::optional<double> wavelength);

@@ -8,9 +8,13 @@
 namespace insonify::sonar {
 namespace {
 
-/** Mean of a beam's pattern over a cell, by Simpson's rule. */
-double meanOver(const Beamformer::Pattern& pattern, const Beam& cell, double bearing) {
-    return (pattern(cell.low, bearing) + 4 * pattern(cell.centre, bearing) + pattern(cell.high, bearing)) / 6;
+/** Mean of a beam's pattern over a cell, by Simpson's rule; of fields the root of the mean power, of the middle's sign.
+ */
+double meanOver(const Beamformer::Rules& rules, const Beam& cell, double bearing) {
+    const double low = rules.pattern(cell.low, bearing), middle = rules.pattern(cell.centre, bearing),
+                 high = rules.pattern(cell.high, bearing);
+    if (!rules.of_fields) return (low + 4 * middle + high) / 6;
+    return std::copysign(std::sqrt((low * low + 4 * middle * middle + high * high) / 6), middle);
 }
 
 double widthOf(const Beam& cell) { return cell.high - cell.low; }
@@ -61,7 +65,7 @@ Beamformer::Beamformer(const std::vector<Beam>& beams, const std::vector<Beam>& 
 }
 
 Beamformer::Band Beamformer::bandOf(const Beam& beam, const std::vector<Beam>& cells, const Rules& rules) const {
-    const auto weightOf = [&](size_t cell) { return meanOver(rules.pattern, cells[cell], beam.centre); };
+    const auto weightOf = [&](size_t cell) { return meanOver(rules, cells[cell], beam.centre); };
     const double narrow = widthOf(*std::ranges::min_element(cells, {}, widthOf));
     const auto addGroup = [&](size_t group, Run& run) {
         const Beam &first = cells[groups_[group]], &last = cells[groups_[group + 1] - 1];

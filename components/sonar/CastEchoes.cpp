@@ -64,7 +64,6 @@ private:
         std::optional<TruthTable> shown;  ///< What they are of, where it is told.
         std::vector<uint64_t> one_beam;   ///< For TruthSink.
         std::vector<uint64_t> told_sums;  ///< Of energies, where the truth is told of fields.
-        std::vector<float> by_paths;      ///< Intensities of one cell, where fields are summed.
         size_t number = 0;
         Stages stages{};
         Clock::time_point last;
@@ -127,7 +126,7 @@ CastEchoes::CastEchoes(const RenderPlan& plan, types::GeometryPtr geometry)
     : plan_(plan),
       geometry_(std::move(geometry)),
       rules_(makeEchoRules(plan)),
-      levels_(plan.config, plan.grid),
+      levels_(plan.config, summedGrid(plan)),
       places_(*geometry_, reachOf(plan), true),
       visibility_(*geometry_),
       planes_(planesOf(*geometry_, plan.laws)),
@@ -160,8 +159,6 @@ void CastEchoes::takeQuality() {
     }
     shareOut();
     if (paths_) paths_->takeQuality(rules_, view_);
-    for (Worker& worker : workers_)
-        worker.by_paths.resize(paths_ && field_ ? static_cast<size_t>(rules_.bins.bin_count) : 0);
     truth_grid_.reset();
 }
 
@@ -290,18 +287,14 @@ bool CastEchoes::fill(size_t cell, const Worker& worker, const uint64_t* sums, t
 
 void CastEchoes::addPaths(types::Sonar& ping) {
     for (size_t cell = 0; truth_ && cell < plan_.cells.size(); ++cell)
-        paths_->takeDirect(cell, field_ ? std::span<const float>() : grid_->cell(cell, ping));
+        paths_->takeDirect(cell, levels_, field_ ? std::span<const float>() : grid_->cell(cell, ping));
     threads_.run([&](int part, int parts) {
-        Worker& worker = workers_[static_cast<size_t>(part)];
-        for (auto cell = static_cast<size_t>(part); cell < plan_.cells.size(); cell += static_cast<size_t>(parts)) {
-            if (!field_) {
-                worker.heard |= paths_->addTo(cell, grid_->cell(cell, ping));
-                continue;
-            }
-            std::ranges::fill(worker.by_paths, 0.0f);
-            if (!paths_->addTo(cell, worker.by_paths)) continue;
-            field_->addScattered(cell, worker.by_paths, worker.number);
-            worker.heard = true;
+        for (int cell = part; cell < view_.cells.beams; cell += parts) {
+            const auto i = static_cast<size_t>(cell);
+            const auto thread = static_cast<size_t>(part);
+            const std::span<float> bins = field_ ? field_->energies(thread) : grid_->cell(i, ping);
+            workers_[thread].heard |= paths_->addTo(i, levels_, bins);
+            if (field_) field_->addEnergies(i, bins, thread);
         }
     });
 }

@@ -78,10 +78,11 @@ double Directivity::azimuth(double azimuth, double bearing) const {
     return sentAzimuth(azimuth) * heardAzimuth(azimuth, bearing);
 }
 
-double Directivity::azimuthAmplitude(double azimuth, double bearing) const {
-    const double sent = amplitudeOf(transmit_azimuth_, azimuth);
-    return sent * (conical_ ? amplitudeOf(receive_azimuth_, azimuth, bearing)
-                            : amplitudeOf(receive_azimuth_, wrapped(azimuth - bearing)));
+double Directivity::sentAmplitude(double azimuth) const { return amplitudeOf(transmit_azimuth_, azimuth); }
+
+double Directivity::heardAmplitude(double azimuth, double bearing) const {
+    return conical_ ? amplitudeOf(receive_azimuth_, azimuth, bearing)
+                    : amplitudeOf(receive_azimuth_, wrapped(azimuth - bearing));
 }
 
 double Directivity::sentElevation(double angle) const { return powerOf(transmit_elevation_, angle); }

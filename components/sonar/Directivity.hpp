@@ -22,7 +22,11 @@ public:
     double azimuth(double azimuth, double bearing) const;
     double elevation(double angle) const;
     /** The same of the field, of which the power is the square, with the signs of its sidelobes [1]. */
-    double azimuthAmplitude(double azimuth, double bearing) const;
+    double azimuthAmplitude(double azimuth, double bearing) const {
+        return sentAmplitude(azimuth) * heardAmplitude(azimuth, bearing);
+    }
+    double sentAmplitude(double azimuth) const;
+    double heardAmplitude(double azimuth, double bearing) const;
     /** The same of one way [rad]. */
     double sentAzimuth(double azimuth) const;
     double heardAzimuth(double azimuth, double bearing) const;

@@ -94,7 +94,8 @@ EchoField::EchoField(const RenderPlan& plan, int threads) : plan_(plan), respons
     scratch_.resize(static_cast<size_t>(threads));
     for (Scratch& scratch : scratch_) {
         scratch.sorted.resize(response_.sortedSize());
-        if (volume_) scratch.volume.resize(response_.cells());
+        scratch.energies.resize(response_.cells());
+        scratch.spread.resize(numbers());
     }
 }
 
@@ -111,19 +112,33 @@ bool EchoField::fill(size_t cell, const EchoRules& rules, const uint64_t* sums, 
         field[1] = static_cast<float>(static_cast<double>(static_cast<int64_t>(imaginary)) * unit);
     }
     if (volume_) {
-        std::ranges::fill(scratch.volume, 0.0f);
-        volume_->add(sums + rules.volumeOffset(), cell, solid_angle, scratch.volume);
-        addVolume(cell, scratch.volume, scratch.sorted);
+        volume_->add(sums + rules.volumeOffset(), cell, solid_angle, energies(thread));
+        scatter(cell, scratch.energies, scratch.sorted);
     }
     response_.spread(scratch.sorted, {&cells_[cell * numbers()], numbers()});
     return any != 0;
 }
 
-void EchoField::addVolume(size_t cell, std::span<const float> intensities, std::span<float> sorted) const {
+std::span<float> EchoField::energies(size_t thread) {
+    std::ranges::fill(scratch_[thread].energies, 0.0f);
+    return scratch_[thread].energies;
+}
+
+void EchoField::addEnergies(size_t cell, std::span<const float> intensities, size_t thread) {
+    Scratch& scratch = scratch_[thread];
+    for (size_t k = 0; k < response_.cells(); ++k)
+        scratch.sorted[response_.place(k)] = scratch.sorted[response_.place(k) + 1] = 0;
+    scatter(cell, intensities, scratch.sorted);
+    response_.spread(scratch.sorted, scratch.spread);
+    addScaled(scratch.spread.data(), 1, &cells_[cell * numbers()], numbers());
+}
+
+void EchoField::scatter(size_t cell, std::span<const float> intensities, std::span<float> sorted) const {
     const Beam& azimuth = plan_.cells[cell];
     const glm::dvec3 ray = sonar_.orientation * glm::dvec3(std::cos(azimuth.centre), std::sin(azimuth.centre), 0);
     const double width = plan_.grid.bin_width / static_cast<double>(response_.cells()) * plan_.grid.bin_count;
     for (size_t k = 0; k < intensities.size(); ++k) {
+        if (!(intensities[k] > 0)) continue;
         const double range = (static_cast<double>(k) + 0.5) * width;
         const double side = std::exp2(std::floor(std::log2(std::min(width, range * (azimuth.high - azimuth.low)))));
         const glm::dvec3 place = glm::floor((sonar_.position + range * ray) / side);
@@ -135,15 +150,6 @@ void EchoField::addVolume(size_t cell, std::span<const float> intensities, std::
         field[0] += static_cast<float>(root * std::cos(phase));
         field[1] += static_cast<float>(root * std::sin(phase));
     }
-}
-
-void EchoField::addScattered(size_t cell, std::span<const float> intensities, size_t thread) {
-    Scratch& scratch = scratch_[thread];
-    scratch.spread.resize(numbers());
-    std::ranges::fill(scratch.sorted, 0.0f);
-    addVolume(cell, intensities, scratch.sorted);
-    response_.spread(scratch.sorted, scratch.spread);
-    addScaled(scratch.spread.data(), 1, &cells_[cell * numbers()], numbers());
 }
 
 void EchoField::form(ThreadPool& threads) {

@@ -58,9 +58,11 @@ public:
     /** Fills a cell from its sums; each is filled once a ping, by one of the threads. Whether it has any echo of a
      *  surface. Allocates nothing. */
     bool fill(size_t cell, const EchoRules& rules, const uint64_t* sums, double solid_angle, size_t thread);
-    /** Adds echoes to a cell that is filled, which are told by the intensities in its range cells alone: their phases
-     * are drawn by their places. As fill(). */
-    void addScattered(size_t cell, std::span<const float> intensities, size_t thread);
+    /** Adds energies to a cell that is filled: as a field that the water's scattering is like, which belongs to places
+     *  of the world. `intensities`: of each range cell [1/m^2]. Allocates nothing. */
+    void addEnergies(size_t cell, std::span<const float> intensities, size_t thread);
+    /** Of one of the threads: room for an intensity for each range cell, 0 each. */
+    std::span<float> energies(size_t thread);
     /** Once all cells are filled: their beams. */
     void form(ThreadPool& threads);
     /** Adds an echo to a beam: of a field at its own range, times what the beam makes of it [1/m, m]. */
@@ -76,12 +78,12 @@ public:
 private:
     /** What one thread works with. */
     struct Scratch {
-        std::vector<float> sorted, volume, spread;
+        std::vector<float> sorted, energies, spread;
     };
     size_t numbers() const { return 2 * response_.samples(); }
     const std::vector<float>& beams() const { return beamformer_ ? beams_ : cells_; }
     std::vector<float>& beams() { return beamformer_ ? beams_ : cells_; }
-    void addVolume(size_t cell, std::span<const float> intensities, std::span<float> sorted) const;
+    void scatter(size_t cell, std::span<const float> intensities, std::span<float> sorted) const;
 
     const RenderPlan& plan_;
     FieldResponse response_;

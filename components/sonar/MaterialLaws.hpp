@@ -21,12 +21,9 @@ struct MaterialLaws {
     std::string outside_validity;         ///< What lies outside of what TR 9407 covers; empty: nothing.
 
     bool hasLobes() const;
-    bool followsLambert(size_t material) const {
-        const vec4& law = records[material].law;
-        return law.x < 0 && law.y == 0;
-    }
+    bool followsLambert(size_t material) const { return FOLLOWS_LAMBERT(records[material].law); }
     /** sigma_b / cos(theta) of a material at a cosine [1]; its lobe is widened by what the facet adds to its mean
-     * square slope [1], and by how wide the sample is [rad]. */
+     *  square slope [1], and by how wide the sample is [rad]. */
     double overCosine(size_t material, double cosine, double facet_slope, double sample_angle) const;
     /** The same of sound that comes and goes at other angles (ACOUSTICS.md 5.24): of what comes in at one cosine, over
      *  the other of them [1]. */

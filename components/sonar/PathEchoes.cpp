@@ -442,7 +442,6 @@ void PathEchoes::takeQuality(const EchoRules& rules, const CastView& view) {
     rules_ = &rules;
     view_ = &view;
     patterns_.emplace(plan_);
-    levels_.emplace(plan_.config, rules.bins);
     truth_.reset();
     sums_.assign(plan_.cells.size() * static_cast<size_t>(rules.bins.bin_count), 0);
 }

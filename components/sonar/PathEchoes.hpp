@@ -59,12 +59,12 @@ public:
     /** Follows tiles' rays on, of columns below `end_column`. Several threads may do so at a time; allocates nothing.
      */
     void trace(const PlacedScene& scene, std::span<const CastTile> tiles, int end_column);
-    /** Once all tiles are traced: adds what a cell has heard to the intensities of its bins, those of the rules;
-     * whether there is any. */
-    bool addTo(size_t cell, std::span<float> bins) const;
+    /** Once all tiles are traced: adds what a cell has heard to the intensities of its bins, those of the rules, which
+     *  `levels` are of; whether there is any. */
+    bool addTo(size_t cell, const BinLevels& levels, std::span<float> bins) const;
     /** For the truth, before addTo(): what a cell has heard directly, where its energies are known. Not by several
      *  threads. */
-    void takeDirect(size_t cell, std::span<const float> bins);
+    void takeDirect(size_t cell, const BinLevels& levels, std::span<const float> bins);
     /** Once all cells are taken, and the rest of the truth is told. */
     void tell(types::SonarTruth& truth) const { truth_->tell(truth); }
     /** What does not reflect in this ping. */
@@ -72,6 +72,8 @@ public:
 
 private:
     class Tracer;
+    /** Of the sums [sr]. */
+    double quantum() const;
 
     const RenderPlan& plan_;
     const types::Geometry& geometry_;
@@ -79,11 +81,8 @@ private:
     const EchoRules* rules_ = nullptr;
     const CastView* view_ = nullptr;
     std::optional<WayPatterns> patterns_;
-    std::optional<BinLevels> levels_;
     WaterMirror water_;
-    std::vector<double> reflected_;  ///< Of each command: share of the power that it reflects as a mirror [1].
-    double quantum() const;
-
+    std::vector<double> reflected_;   ///< Of each command: share of the power that it reflects as a mirror [1].
     std::vector<uint64_t> sums_;      ///< [cell][bin], in quanta.
     std::optional<PathTruth> truth_;  ///< From the first ping on that tells it.
     bool tells_ = false;

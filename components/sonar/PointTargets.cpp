@@ -2,11 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <complex>
 #include <glm/geometric.hpp>
 #include <glm/gtc/quaternion.hpp>
 #include <numbers>
 
 #include "components/sonar/Acoustics.hpp"
+#include "components/sonar/EchoField.hpp"
 #include "components/sonar/RangeResponse.hpp"
 #include "types/Angle.hpp"
 
@@ -64,7 +66,14 @@ std::optional<PointTargets::Return> PointTargets::returnOf(const TargetWay& out,
     if (!sent || !heard || !(range >= plan_.grid.range_min)) return {};
     const double intensity = std::pow(10, strength_db / 10) * out.power * back.power * std::exp(-absorption_ * range) /
                              (out.length * out.length * back.length * back.length);
-    return Return{range, *sent, *heard, intensity, out.reflections + back.reflections};
+    return Return{range,     *sent, *heard, intensity, out.by_surface == back.by_surface ? 1.0 : -1.0,
+                  inPhase(out) * inPhase(back)};
+}
+
+double PointTargets::inPhase(const TargetWay& way) const {
+    if (!way.by_surface || !plan_.config.frequency_khz) return 1;
+    const double wavelength = plan_.grid.speed_of_sound / (1e3 * *plan_.config.frequency_khz);
+    return coherentReflection(plan_.config.multipath->surface->wind_m_s, wavelength, way.sine_grazing);
 }
 
 bool PointTargets::isSent(const Direction& direction) const {
@@ -113,16 +122,38 @@ bool PointTargets::addTo(types::Sonar& ping, const Return& echo) const {
     return heard;
 }
 
-size_t PointTargets::add(const types::Snapshot& snapshot, types::Sonar& ping) {
+bool PointTargets::addTo(EchoField& field, const Return& echo, uint64_t key) const {
+    constexpr double turn = 2 * std::numbers::pi;
+    const double turns = 2e3 * *plan_.config.frequency_khz / plan_.grid.speed_of_sound * echo.range;
+    const double phase = turn * (turns - std::floor(turns)), loose = turn * static_cast<double>(key >> 11) * 0x1p-53;
+    const std::complex<double> unit = echo.sign * (std::polar(echo.in_phase, phase) +
+                                                   std::polar(std::sqrt(1 - echo.in_phase * echo.in_phase), loose));
+    bool heard = false;
+    for (size_t k = 0; k < plan_.beams.size(); ++k) {
+        const double power = powerIn(plan_.beams[k], echo);
+        if (!(power > 0)) continue;
+        double sign = 1;
+        if (plan_.directivity && plan_.directivity->hasAzimuth())
+            sign = plan_.directivity->sentAmplitude(echo.sent.azimuth) *
+                   plan_.directivity->heardAmplitude(echo.heard.azimuth, plan_.beams[k].centre);
+        field.add(k, echo.range, std::copysign(std::sqrt(echo.intensity * power), sign) * unit);
+        heard = true;
+    }
+    return heard;
+}
+
+size_t PointTargets::add(const types::Snapshot& snapshot, types::Sonar& ping, EchoField* field) {
     ways_.place(snapshot, plan_.grid.range_max + (pulse_ ? pulse_->reach() : 0));
     size_t heard = 0;
+    auto key = static_cast<uint64_t>(snapshot.time.microseconds);
     for (const types::PointTarget& target : snapshot.targets) {
         bool any = false;
         const std::vector<TargetWay>& ways = ways_.waysTo(target.position);
         for (const TargetWay& out : ways)
             for (const TargetWay& back : ways) {
                 const auto echo = returnOf(out, back, target.strength_db);
-                if (echo && spread(echo->range)) any |= addTo(ping, *echo);
+                key = key * 6364136223846793005u + 1442695040888963407u;
+                if (echo && spread(echo->range)) any |= field ? addTo(*field, *echo, key) : addTo(ping, *echo);
             }
         heard += any ? 1 : 0;
     }

@@ -10,6 +10,8 @@
 
 namespace insonify::sonar {
 
+class EchoField;
+
 /** What a pulse leaves of an echo in a bin, quickly: the mean of h over it, by an integral that is made once. */
 class PulseMeans {
 public:
@@ -35,8 +37,9 @@ public:
     /** Of a plan for model `physical`; plan and geometry must outlive it. */
     PointTargets(const RenderPlan& plan, const types::Geometry& geometry);
 
-    /** Once the bins are filled; how many targets any of them hears. Allocates nothing. */
-    size_t add(const types::Snapshot& snapshot, types::Sonar& ping);
+    /** Once the bins are filled, or `field` is, where there is one; how many targets any beam hears. Allocates nothing.
+     */
+    size_t add(const types::Snapshot& snapshot, types::Sonar& ping, EchoField* field);
 
 private:
     /** Where sound goes, or comes from. */
@@ -48,7 +51,8 @@ private:
         double range;  ///< Half of the way out and back [m].
         Direction sent, heard;
         double intensity;  ///< But for patterns and the pulse [1/m^2].
-        int reflections;   ///< In mirrors, of both ways [1].
+        double sign;       ///< -1 where the water surface has turned its pressure round [1].
+        double in_phase;   ///< Share of its amplitude that rough mirrors leave in phase [1].
     };
     std::optional<Direction> directionOf(const glm::dvec3& way) const;
     std::optional<Return> returnOf(const TargetWay& out, const TargetWay& back, double strength_db) const;
@@ -57,6 +61,9 @@ private:
     /** Fills means_ for bins from `first` on; whether there is any. */
     bool spread(double range);
     bool addTo(types::Sonar& ping, const Return& echo) const;
+    bool addTo(EchoField& field, const Return& echo, uint64_t key) const;
+    /** What a rough surface leaves in phase along a way [1]. */
+    double inPhase(const TargetWay& way) const;
 
     const RenderPlan& plan_;
     TargetWays ways_;

@@ -11,9 +11,7 @@ namespace {
 
 /** Range cells within the resolution, at least [1]. */
 constexpr double parts_of_resolution = 4;
-/** The spacing of level 0 where the scene's own scatterers are very many [m]. */
-constexpr double base_spacing = 1.0 / 1024;
-constexpr int lowest_level = -40, highest_level = 80;
+constexpr int lowest_level = -60, highest_level = 40;
 
 acoustics::Pulse pulseOf(const RenderPlan& plan) {
     return acoustics::Pulse(*plan.config.pulse, plan.grid.speed_of_sound);
@@ -50,15 +48,14 @@ BinGrid summedGrid(const RenderPlan& plan) {
 std::vector<LatticeLevel> scattererLattice(const RenderPlan& plan) {
     if (!plan.features.has(Feature::Speckle)) return {};
     const SpeckleConfig& speckle = *plan.config.speckle;
-    const std::optional<double>& density = speckle.scatterers_per_m2;
-    const double base = density ? 1 / std::sqrt(*density) : base_spacing;
+    const double density = speckle.scatterers_per_m2.value_or(0);
     const double area_per_metre = beamWidthOf(plan) * rangeResolutionOf(plan) / speckle.scatterers_per_cell;
     std::vector<LatticeLevel> levels;
-    for (int level = density ? 0 : lowest_level; level <= highest_level; ++level) {
-        const double spacing = base * std::exp2(0.5 * level);
-        const double end = 2 * spacing * spacing / area_per_metre;
+    for (int level = lowest_level; level <= highest_level; ++level) {
+        const double square = std::exp2(level);  // [m^2]
+        const double end = 2 * square / area_per_metre;
         if (level < highest_level && end <= plan.grid.range_min) continue;
-        levels.push_back({end, spacing, density ? std::exp2(level) : 0, static_cast<uint32_t>(level - lowest_level)});
+        levels.push_back({end, std::sqrt(square), density * square, static_cast<uint32_t>(level - lowest_level)});
         if (end >= plan.grid.range_max) break;
     }
     levels.back().range_end = std::max(levels.back().range_end, 2 * plan.grid.range_max);

@@ -9,10 +9,10 @@ struct RenderPlan;
 
 /** A lattice of scatterers on the surfaces, and the slant ranges in which it stands for them (ACOUSTICS.md 5.17). */
 struct LatticeLevel {
-    double range_end;  ///< It is in force from the end of the one before to here [m].
-    double spacing;    ///< One scatterer in each square of it, seen along the surface's main axis [m].
-    double merged;     ///< Scatterers of the scene that one of the lattice stands for; 0: very many [1].
-    uint32_t number;   ///< The same spacing has the same number [1].
+    double range_end;   ///< It is in force from the end of the one before to here [m].
+    double spacing;     ///< One scatterer in each square of it, seen along the surface's main axis [m].
+    double stands_for;  ///< Scatterers of the scene for each of the lattice; 0: very many [1].
+    uint32_t number;    ///< The same spacing has the same number [1].
 };
 
 /** How finely the field of a plan that is coherent is summed in range. */

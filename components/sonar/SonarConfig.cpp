@@ -78,6 +78,43 @@ void checkSpeckle(const SonarConfig& config, types::Diagnostics& diagnostics) {
         diagnostics.push_back({"speckle", "is coherent without frequency_khz, which it needs"});
 }
 
+/** Why the receiver's law in azimuth is of no array of elements; empty where it is. */
+std::string whyNoArray(const SonarConfig& config) {
+    const auto& law = config.beam_pattern ? config.beam_pattern->receive.azimuth : std::optional<acoustics::BeamLaw>();
+    if (!law) return "need beam_pattern.receive.azimuth, whose aperture they fill";
+    const acoustics::Weighting weighting = law->weighting.value_or(acoustics::Weighting::Uniform);
+    if (!law->file.empty() || weighting == acoustics::Weighting::Gaussian || weighting == acoustics::Weighting::Piston)
+        return "need a weighted line in beam_pattern.receive.azimuth; they make no measured table, gaussian or piston";
+    return {};
+}
+
+void checkElementCount(const SonarConfig& config, types::Diagnostics& diagnostics) {
+    const double wavelength = config.speedOfSound() / (1e3 * *config.frequency_khz);
+    const double aperture =
+        acoustics::BeamPattern(*config.beam_pattern->receive.azimuth, wavelength).aperture() * wavelength;
+    const auto [count, spacing] = config.elements->arrayOf(aperture, wavelength);
+    const double length = static_cast<double>(count) * spacing;
+    if (count < 2 || std::abs(length - aperture) > 0.5 * spacing + 1e-9)
+        diagnostics.push_back(
+            {"elements", fmt::format("are {} that are {:.4g} m apart, {:.4g} m in all; the aperture of "
+                                     "beam_pattern.receive.azimuth is {:.4g} m: give count or spacing_m alone",
+                                     count, spacing, length, aperture)});
+}
+
+void checkElements(const SonarConfig& config, types::Diagnostics& diagnostics) {
+    if (!config.elements) return;
+    const std::string why = whyNoArray(config);
+    if (!config.isCoherent())
+        diagnostics.push_back(
+            {"elements", "need speckle: {coherent: true}; without it energies are summed, not fields"});
+    else if (config.beam_geometry != BeamGeometry::Conical)
+        diagnostics.push_back({"elements", "need beam_geometry: conical, for a straight array hears cones"});
+    else if (!why.empty())
+        diagnostics.push_back({"elements", why});
+    else if (config.frequency_khz)
+        checkElementCount(config, diagnostics);
+}
+
 void checkVisibility(const SonarConfig& config, types::Diagnostics& diagnostics) {
     checkNeedOfRays(config, diagnostics);
     if (config.visibility != Visibility::Cpu) return;
@@ -158,6 +195,12 @@ void VolumeLayer::check(types::Diagnostics& diagnostics) const {
     if (top_m && bottom_m && !(*top_m < *bottom_m))
         diagnostics.push_back(
             {"bottom_m", fmt::format("is {:g}, not below top_m, {:g}; depths grow downwards", *bottom_m, *top_m)});
+}
+
+ElementsConfig::Array ElementsConfig::arrayOf(double aperture_m, double wavelength) const {
+    const double wanted = spacing_m.value_or(count ? aperture_m / *count : 0.5 * wavelength);
+    const auto all = count ? static_cast<size_t>(*count) : static_cast<size_t>(std::lround(aperture_m / wanted));
+    return {all, spacing_m.value_or(aperture_m / std::max(1.0, static_cast<double>(all)))};
 }
 
 void BeamPatternConfig::check(types::Diagnostics& diagnostics) const {
@@ -279,6 +322,7 @@ void SonarConfig::checkBeam(types::Diagnostics& diagnostics) const {
     checkRangeReached(*this, diagnostics);
     checkVisibility(*this, diagnostics);
     checkSpeckle(*this, diagnostics);
+    checkElements(*this, diagnostics);
     if (!diagnostics.empty()) return;
     if (castsRays()) return checkRays(*this, diagnostics);
     checkDevice(device, diagnostics);

@@ -127,10 +127,36 @@ struct SpeckleConfig {
                     "scatterers in a resolution cell, beam width by range resolution, at least", 1, 200},
               self.scatterers_per_cell);
         visit(Field{"scatterers_per_m2", "1/m2",
-                    "scatterers that surfaces have, each of exponentially distributed strength: where few of them are "
-                    "in a cell, it is K-distributed (Abraham and Lyons 2002); absent: so many that none stands out",
+                    "scatterers of surfaces, of exponentially distributed strengths: intensities are K-distributed, "
+                    "of the shape of their number in a cell (Abraham and Lyons 2002); absent: so many that none stands "
+                    "out",
                     1e-6, 1e9},
               self.scatterers_per_m2);
+    }
+};
+
+/** A straight array of equal elements, as long as the aperture of `beam_pattern.receive.azimuth`, whose signals are
+ *  told. */
+struct ElementsConfig {
+    std::optional<int> count;
+    std::optional<double> spacing_m;
+
+    /** How many elements there are, and how far apart [m]. */
+    struct Array {
+        size_t count;
+        double spacing;
+    };
+    /** As given, the rest from the length of the aperture [m]; half a wavelength apart where nothing is given. */
+    Array arrayOf(double aperture_m, double wavelength) const;
+
+    template <class Self, class V>
+    static void describe(Self& self, V& visit) {
+        using types::Field;
+        visit(Field{"count", "1", "elements; absent: as many as the receiver's aperture has room for", 2, 4096},
+              self.count);
+        visit(Field{"spacing_m", "m", "of their middles; absent: the aperture over count, or half a wavelength", 1e-5,
+                    10},
+              self.spacing_m);
     }
 };
 
@@ -203,6 +229,7 @@ struct SonarConfig {
     std::optional<acoustics::PulseConfig> pulse;
     std::vector<VolumeLayer> volume;
     std::optional<SpeckleConfig> speckle;
+    std::optional<ElementsConfig> elements;
     std::optional<MultipathConfig> multipath;
     std::optional<types::MovedTo> tvg, gain, output, source_level_db;
 
@@ -230,6 +257,8 @@ struct SonarConfig {
     /** The same with a fan that is given by `beam_width_deg` given by `field_of_view_deg`, or by `bearings_deg` where
      * both are. */
     SonarConfig fan() const;
+    /** Whether echoes may come by way of mirrors, which takes rays. */
+    bool tracesPaths() const { return multipath && multipath->bounces > 0; }
     /** Whether fields are summed rather than energies. */
     bool isCoherent() const { return speckle && speckle->coherent; }
     /** The property that only rays can follow; empty where there is none. */
@@ -240,8 +269,6 @@ struct SonarConfig {
     /** Frequency that a law of absorption is for: its own, or the sonar's [kHz]; none where absorption follows no law.
      */
     std::optional<double> absorbedKhz() const;
-    /** Whether echoes may come by way of mirrors, which takes rays. */
-    bool tracesPaths() const { return multipath && multipath->bounces > 0; }
     /** Configured, or that of `water`, or 1500 [m/s]. */
     double speedOfSound() const;
 
@@ -264,9 +291,9 @@ struct SonarConfig {
     template <class Self, class V>
     static void describeBeam(Self& self, V& visit);
     void check(types::Diagnostics& diagnostics) const;
-    /** The faults of a fan that is given by `beam_width_deg`. */
+    /** The diagnostics of a fan that is given by `beam_width_deg`. */
     void checkFan(types::Diagnostics& diagnostics) const;
-    /** The faults that a scanning sonar can have as well. */
+    /** The diagnostics that a scanning sonar can have as well. */
     void checkBeam(types::Diagnostics& diagnostics) const;
 };
 
@@ -305,6 +332,10 @@ void SonarConfig::describeBeam(Self& self, V& visit) {
     visit(Field{"volume", "", "water that scatters sound back, or a list of its layers; absent: none"}, self.volume);
     visit(Field{"speckle", "", "echoes that interfere, by scatterers of the scene; absent: energies are summed"},
           self.speckle);
+    visit(Field{"elements", "",
+                "straight array whose signals port `elements` tells; needs speckle: {coherent: true}, beam_geometry: "
+                "conical and a weighted aperture in beam_pattern.receive.azimuth; absent: they are not told"},
+          self.elements);
     visit(Field{"multipath", "", "echoes by way of mirrors; absent: none"}, self.multipath);
     visit(Field{"tvg", "",
                 "has moved: a sonar gives intensities; tvg belongs to a receiver::ReceiverTask after the noise"},

@@ -118,6 +118,7 @@ Estimator makeEstimator(const EchoRules& rules, uint64_t* sums, [[maybe_unused]]
 struct CellPlace {
     size_t left, right;  ///< Its edges in AngularView::bearings.
     size_t low, high;    ///< In AngularView::elevations.
+    int first, last;     ///< Its columns.
     uint32_t object;
 };
 
@@ -187,22 +188,28 @@ private:
                 conical ? AngularView::azimuthOf(view_.bearings[side], up) : view_.azimuths[side];
             return glm::dvec3(up.cosine * around.cosine, up.cosine * around.sine, up.sine);
         };
-        return {{cells_.normal_x[i], cells_.normal_y[i], cells_.normal_z[i]},
-                cells_.distance[i],
-                {cells_.cos_el[i] * cells_.cos_az[i], cells_.cos_el[i] * cells_.sin_az[i], cells_.sin_el[i]},
-                {direction(place.left, low), direction(place.left, high), direction(place.right, high),
-                 direction(place.right, low)},
-                view_.bearings[place.left],
-                view_.bearings[place.right],
-                low.sine,
-                high.sine,
-                cells_.width[i],
-                cells_.height[i],
-                covered_.strength_range[i],
-                cells_.size[i] / (cells_.width[i] * (high.sine - low.sine)),
-                scene_.objects[place.object],
-                place.object,
-                conical};
+        Patch patch{{cells_.normal_x[i], cells_.normal_y[i], cells_.normal_z[i]},
+                    cells_.distance[i],
+                    {cells_.cos_el[i] * cells_.cos_az[i], cells_.cos_el[i] * cells_.sin_az[i], cells_.sin_el[i]},
+                    {direction(place.left, low), direction(place.left, high), direction(place.right, high),
+                     direction(place.right, low)},
+                    view_.azimuths[place.left],
+                    view_.azimuths[place.right],
+                    1,
+                    {},
+                    low.sine,
+                    high.sine,
+                    cells_.width[i],
+                    cells_.height[i],
+                    covered_.strength_range[i],
+                    cells_.size[i] / (cells_.width[i] * (high.sine - low.sine)),
+                    scene_.objects[place.object],
+                    place.object,
+                    conical};
+        for (int column = place.first + 1; column <= place.last; ++column)
+            if (view_.beam_of[static_cast<size_t>(column)] != view_.beam_of[static_cast<size_t>(column) - 1])
+                patch.next_bearings[patch.beams++ - 1] = view_.azimuths[view_.at(column)];
+        return patch;
     }
 
     template <class Volume>
@@ -231,7 +238,7 @@ private:
     int sameFrom(const TileHits& hits, int i) const {
         const auto alignment = static_cast<uint32_t>(i == 0 ? tile_samples : i & -i);
         const int most =
-            std::min(static_cast<int>(alignment), sums_fields<Estimator> ? shape_.one_beams : shape_.max_merged);
+            std::min(static_cast<int>(alignment), sums_fields<Estimator> ? tile_samples : shape_.max_merged);
         int run = 1;
         while (run < most && hits.triangle[i + run] == hits.triangle[i] && hits.command[i + run] == hits.command[i])
             ++run;
@@ -287,8 +294,10 @@ private:
     void aim(const CastTile& tile, int sample, int merged) {
         const AngularView& view = view_;
         const int column = tile.first_column + shape_.at[sample].columns, i = count_;
-        const size_t left = view.at(column), low = 2 * static_cast<size_t>(tile.first_row + shape_.at[sample].rows);
-        const auto across = static_cast<size_t>(shape_.size[merged].columns);
+        const int across = shape_.size[merged].columns, last = column + across - 1;
+        const size_t left = view.at(column), right = view.at(last) + 2;
+        const size_t middle = across > 1 ? view.at(column + across / 2) : left + 1;
+        const size_t low = 2 * static_cast<size_t>(tile.first_row + shape_.at[sample].rows);
         const auto up = static_cast<size_t>(shape_.size[merged].rows);
         cells_.beam[i] = view.beam_of[static_cast<size_t>(column)];
         const AngularView::Elevation& elevation = view.elevations[low + up];
@@ -297,18 +306,18 @@ private:
         cells_.height[i] = view.height(low / 2, up);
         if (conical) {
             const double at = elevation.angle;
-            const double azimuth = coneAzimuth(view.bearings[left + across], at);
+            const double azimuth = coneAzimuth(view.bearings[middle], at);
             cells_.cos_az[i] = std::cos(azimuth);
             cells_.sin_az[i] = std::sin(azimuth);
-            cells_.width[i] = coneAzimuth(view.bearings[left + 2 * across], at) - coneAzimuth(view.bearings[left], at);
+            cells_.width[i] = coneAzimuth(view.bearings[right], at) - coneAzimuth(view.bearings[left], at);
             cells_.lean[i] = std::abs(azimuth) < 1.5 ? std::tan(azimuth) * elevation.sine / elevation.cosine : 0;
         } else {
-            cells_.cos_az[i] = view.azimuths[left + across].cosine;
-            cells_.sin_az[i] = view.azimuths[left + across].sine;
-            cells_.width[i] = view.bearings[left + 2 * across] - view.bearings[left];
+            cells_.cos_az[i] = view.azimuths[middle].cosine;
+            cells_.sin_az[i] = view.azimuths[middle].sine;
+            cells_.width[i] = view.bearings[right] - view.bearings[left];
             cells_.lean[i] = 0;
         }
-        if constexpr (sums_fields<Estimator>) places_[i] = {left, left + 2 * across, low, low + 2 * up, 0};
+        if constexpr (sums_fields<Estimator>) places_[i] = {left, right, low, low + 2 * up, column, last, 0};
         cells_.size[i] =
             cells_.width[i] * (view.elevations[low + 2 * up].weighted - view.elevations[low].weighted) / view.cell();
     }

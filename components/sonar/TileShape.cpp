@@ -35,8 +35,7 @@ TileShape::TileShape(const AngularView& view, const BinGrid& bins, int beams) {
             at[count + i] = {at[i].columns + (widens ? across : 0), at[i].rows + (widens ? 0 : up)};
     }
     all = size[tile_samples];
-    one_beams = together * all.rows;
-    max_merged = std::min(one_beams, mostMerged(view, bins));
+    max_merged = std::min(together * all.rows, mostMerged(view, bins));
 }
 
 }  // namespace insonify::sonar

@@ -8,7 +8,7 @@ namespace insonify::sonar {
 constexpr int tile_samples = 16;
 
 /** How the samples of a tile lie: as the bits of their numbers say, so that those that share all but the last bits are
- * a rectangle. 4 x 4, but narrower where the whole view is. */
+ *  a rectangle. 4 x 4, but narrower where the whole view is. */
 struct TileShape {
     struct Extent {
         int columns, rows;
@@ -21,7 +21,6 @@ struct TileShape {
     Extent at[tile_samples] = {};                  ///< Of each sample from the tile's first.
     Extent size[tile_samples + 1] = {{}, {1, 1}};  ///< Of so many samples, a power of 2.
     int max_merged = 1;  ///< Samples of one triangle that may become one cell, and are of one beam; a power of 2 [1].
-    int one_beams = 1;   ///< Samples of a tile that are of one beam and a rectangle, at most; a power of 2 [1].
 };
 
 }  // namespace insonify::sonar

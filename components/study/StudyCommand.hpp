@@ -39,6 +39,7 @@ void addLikenessStudy(CLI::App& study, command::Action& action, const FindPing& 
 void addMultipathStudy(CLI::App& study, command::Action& action);
 void addOmissionStudy(CLI::App& study, command::Action& action, const FindSonar& sonarAt);
 void addRaysStudy(CLI::App& study, command::Action& action, const FindSonar& sonarAt);
+void addSpeckleStudy(CLI::App& study, command::Action& action, const FindSonar& sonarAt);
 void addStabilityStudy(CLI::App& study, command::Action& action);
 
 }  // namespace insonify::study
