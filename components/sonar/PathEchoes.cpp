@@ -471,16 +471,18 @@ void PathEchoes::trace(const PlacedScene& scene, std::span<const CastTile> tiles
 
 double PathEchoes::quantum() const { return view_->cells.cell() / (quanta_per_unit * rules_->strength_scale); }
 
-void PathEchoes::takeDirect(size_t cell, std::span<const float> bins) { truth_->take(cell, bins, *levels_, quantum()); }
+void PathEchoes::takeDirect(size_t cell, const BinLevels& levels, std::span<const float> bins) {
+    truth_->take(cell, bins, levels, quantum());
+}
 
-bool PathEchoes::addTo(size_t cell, std::span<float> bins) const {
+bool PathEchoes::addTo(size_t cell, const BinLevels& levels, std::span<float> bins) const {
     const double quantum = this->quantum();
     const uint64_t* sums = sums_.data() + cell * bins.size();
     uint64_t any = 0;
     for (size_t j = 0; j < bins.size(); ++j) {
         if (sums[j] == 0) continue;
         any |= sums[j];
-        const double sum = double{bins[j]} + double{levels_->intensity(j, static_cast<double>(sums[j]) * quantum)};
+        const double sum = double{bins[j]} + double{levels.intensity(j, static_cast<double>(sums[j]) * quantum)};
         bins[j] = static_cast<float>(std::min(sum, double{std::numeric_limits<float>::max()}));
     }
     return any != 0;
