@@ -93,7 +93,7 @@ struct SurfaceMirrorConfig {
     }
 };
 
-/** Echoes that come by way of mirrors (ACOUSTICS.md 5.19). */
+/** Echoes that come by way of mirrors (ACOUSTICS.md 5.24). */
 struct MultipathConfig {
     std::optional<SurfaceMirrorConfig> surface;
     int bounces = 1;
