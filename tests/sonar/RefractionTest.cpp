@@ -99,8 +99,9 @@ TEST(RefractionTest, AFlatBottomInAGradientIsHeardFromWhereTheExactArcsComeFrom)
         if (range < drop / std::sin(radians(14.8)) || range > 1990) continue;
         EXPECT_NEAR(told_elevation, elevationAt(range, drop, gradient), 1e-3) << range << " m";
         straight_fails += std::abs(told_elevation + std::asin(drop / range)) > 0.02;
-        if (range < 1700)  // beyond, a row of samples covers more than that
+        if (range < 1700) {  // beyond, a row of samples covers more than that
             EXPECT_NEAR(1500 * timeDown(told_elevation, drop, gradient), range, 1e-3 * range + 1) << range << " m";
+        }
         ++told_bins;
     }
     EXPECT_GT(told_bins, 40);
