@@ -1,8 +1,6 @@
 // Shared by C++ and GLSL: what a surface gives back beyond Lambert's law, as sigma_b / cos(theta) [1] (ACOUSTICS.md 3.5 to
 // 3.8). `law` is that of a MaterialRecord. The includer defines double backscatterEntry(uint i), of tables one after another.
 
-bool followsLambert(vec4 law) { return law.x < 0.0 && law.y == 0.0; }
-
 double tabulatedBackscatter(uint table, double cosine) {
     double at = min(cosine, 1.0) * double(BACKSCATTER_ENTRIES - 1);
     uint i = min(uint(at), uint(BACKSCATTER_ENTRIES - 2));

@@ -195,7 +195,7 @@ Seen seenAt(ivec2 pixel, dvec2 uv) {
     seen.strength = strengthOf(command.material) * cosine;
 #ifdef HAVE_BACKSCATTER_LAWS
     MaterialRecord material = materials[command.material];
-    if (!followsLambert(material.law)) {
+    if (!FOLLOWS_LAMBERT(material.law)) {
         double angle = max(pixel_size.x, pixel_size.y) / sqrt(1.0 + dot(uv, uv));
         double slope = double(planes[command.first_triangle + texel.y].point.w) + slopeOfSample(angle);
         seen.strength = backscatterOverCosine(material.law, double(material.values.x), cosine, slope) * strength_scale;

@@ -53,6 +53,7 @@ struct MaterialRecord {
     vec4 values;  // x mu = 10^(lambert_db/10), y reflectivity, z normal scale
     vec4 law;     // x its table of backscatter, -1: Lambert's law; y R^2 / (4 pi) of its lobe, 0: none; z mean square slope
 };
+#define FOLLOWS_LAMBERT(law) ((law).x < 0.0 && (law).y == 0.0)
 
 // The part of an image column that belongs to one beam; u = tan(azimuth in the frustum).
 struct ShareRecord {

@@ -73,8 +73,8 @@ private:
         std::vector<int> places(columns_.size());
         if (!readFields(line, values, places)) return;
         if (judge_)
-            for (const CsvProblem& problem : judge_(values, rows_.empty() ? nullptr : &rows_.back()))
-                report(places[problem.column], columns_[problem.column].name, problem.message);
+            for (const CsvDiagnostic& diagnostic : judge_(values, rows_.empty() ? nullptr : &rows_.back()))
+                report(places[diagnostic.column], columns_[diagnostic.column].name, diagnostic.message);
         rows_.push_back(std::move(values));
     }
 

@@ -14,17 +14,17 @@ struct CsvColumn {
 };
 
 /** What is wrong with a row whose numbers are good, and at which of its columns. */
-struct CsvProblem {
+struct CsvDiagnostic {
     size_t column;
     std::string message;
 };
 
 /** Tells what is wrong with a row; `before` is the row of good numbers before it, null for the first. */
 using CsvJudge =
-    std::function<std::vector<CsvProblem>(const std::vector<double>& row, const std::vector<double>* before)>;
+    std::function<std::vector<CsvDiagnostic>(const std::vector<double>& row, const std::vector<double>* before)>;
 
 /** The rows of a CSV file of numbers, in order. Its first line that is not blank has the names of all columns. A byte
- * order mark, carriage returns, spaces about numbers and blank lines are passed over.
+ *  order mark, carriage returns, spaces about numbers and blank lines are passed over.
  *  @throws ConfigError with file, line and column of everything that is wrong, up to a hundred: another header, fields
  *  that are missing, too many, or no numbers from min to max, what `judge` tells, fewer than `least` rows */
 std::vector<std::vector<double>> readCsv(const std::filesystem::path& file, const std::vector<CsvColumn>& columns,

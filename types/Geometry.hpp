@@ -15,12 +15,12 @@ namespace insonify::types {
 /** What a surface does to sound. Neutral: medium sand in `physical`, reflectivity 1 in `cerqueira2017`. */
 struct Material {
     std::string name;
-    float lambert_db = -16.7f;  ///< Lambert parameter mu, backscatter at normal incidence [dB].
-    std::string seabed =
-        {};  ///< Name by APL-UW TR 9407, whose law takes Lambert's place where a sonar has a frequency.
+    float lambert_db = -16.7f;              ///< Lambert parameter mu, backscatter at normal incidence [dB].
+    std::string seabed = {};                ///< By APL-UW TR 9407, for Lambert's law where a sonar has a frequency.
     std::vector<glm::dvec2> measured = {};  ///< Grazing angles, ascending, and strengths, in place of both [deg, dB].
     float reflection = 0;                   ///< Pressure reflection coefficient at normal incidence, signed [1].
     std::optional<float> roughness_slope = {};  ///< Rms slope of the micro-relief: adds a specular lobe [1].
+    bool mirror = false;                        ///< Reflects sound as a flat mirror does, beside what it scatters.
     float reflectivity = 1;                     ///< Factor of `cerqueira2017` [1].
     bool has_acoustics = false;                 ///< False: no acoustic values in the file, the defaults above stand.
     bool double_sided = false;                  ///< As the file says; sound is reflected by both sides in any case.
@@ -57,13 +57,12 @@ struct ClusterNode {
 };
 
 /** Triangles in their own coordinates (z up, x north-like). Every index is below positions.size(); positions are
- * finite. */
+ *  finite. */
 struct Mesh {
     std::string name;
     std::vector<glm::vec3> positions;  ///< [m]
-    std::vector<glm::vec3>
-        normals;  ///< Per vertex, unit; empty or as many as positions. Only used with normal maps [1].
-    std::vector<glm::vec4> tangents;  ///< Per vertex, w = handedness; empty or as many as positions [1].
+    std::vector<glm::vec3> normals;    ///< Per vertex, unit, for normal maps; empty or as many as positions [1].
+    std::vector<glm::vec4> tangents;   ///< Per vertex, w = handedness; empty or as many as positions [1].
     std::vector<glm::vec2> uvs;  ///< Of the normal map, texture transform applied; empty or as many as positions [1].
     std::vector<uint32_t> indices;           ///< Three a triangle.
     std::vector<Cluster> clusters;           ///< Together they cover all indices, in order.

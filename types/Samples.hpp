@@ -16,14 +16,16 @@
 #include "types/Pose.hpp"
 #include "types/Range.hpp"
 #include "types/Sonar.hpp"
+#include "types/SonarElements.hpp"
 #include "types/SonarReturns.hpp"
 #include "types/SonarScan.hpp"
 #include "types/SonarTruth.hpp"
 
 namespace insonify::types {
 
-using SampleTypes = std::tuple<Sonar, SonarBeam, SonarScan, SonarTruth, SonarReturns, Pose, Image, PointCloud, DepthMap,
-                               Range, Time, Angle, double, float, int32_t, int64_t, bool, std::string>;
+using SampleTypes =
+    std::tuple<Sonar, SonarBeam, SonarScan, SonarTruth, SonarReturns, SonarElements, Pose, Image, PointCloud, DepthMap,
+               Range, Time, Angle, double, float, int32_t, int64_t, bool, std::string>;
 
 /** What travels on a port for a T: samples that say so (`shared`), by reference, the others as they are. */
 template <class T>

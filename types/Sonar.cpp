@@ -49,9 +49,9 @@ void Sonar::copyHeader(const Sonar& other) {
 }
 
 void Sonar::validate() const {
-    std::string faults;
-    const auto require = [&](bool holds, const std::string& fault) {
-        if (!holds) faults += (faults.empty() ? "" : "; ") + fault;
+    std::string diagnostics;
+    const auto require = [&](bool holds, const std::string& diagnostic) {
+        if (!holds) diagnostics += (diagnostics.empty() ? "" : "; ") + diagnostic;
     };
     const auto has = [](const char* what, size_t count, uint64_t wanted) {
         return std::string("has ") + std::to_string(count) + " " + what + ", must have " + std::to_string(wanted);
@@ -64,7 +64,7 @@ void Sonar::validate() const {
     require(std::all_of(bearings.begin(), bearings.end(), isNormalised), "has a bearing outside (-pi, pi]");
     require(bins.empty() || bin_duration.microseconds > 0, "has bins without a duration");
     require(bins.empty() || (speed_of_sound > 0 && std::isfinite(speed_of_sound)), "has bins without a speed of sound");
-    if (!faults.empty()) throw std::logic_error("a ping " + faults);
+    if (!diagnostics.empty()) throw std::logic_error("a ping " + diagnostics);
 }
 
 void Sonar::resize(uint32_t bins_per_beam, uint32_t beams, bool per_beam_timestamps) {

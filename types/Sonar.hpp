@@ -36,7 +36,7 @@ struct Sonar {
     const char* diagnostic() const {
         return wellShaped() ? nullptr : "has other numbers of bins or bearings than it says";
     }
-    /** Throws std::logic_error that tells every fault: lists of another length than the counts say; bins without a
+    /** Throws std::logic_error that tells every diagnostic: lists of another length than the counts say; bins without a
      *  duration or a speed of sound above 0; bearings outside (-pi, pi] (NaN is unknown, and may be). Rock's validate
      *  tells the first length only, multiplies the counts in 32 bits, and looks at no value. */
     void validate() const;

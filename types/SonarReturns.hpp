@@ -27,7 +27,7 @@ struct SonarReturns {
     /** Fills it from a ping and its truth, which has its shape. The first return is the nearest bin that shows an
      *  object, the strongest the one with the greatest echo, which may be a sidelobe's or the water's: then its
      *  elevation is NaN. A range is the bin's middle; levels are 10 log10 of the bin. Allocates nothing when it had as
-     * many beams. */
+     *  many beams. */
     void take(const Sonar& ping, const SonarTruth& truth);
 
     std::vector<size_t> shape() const { return {bearings.size()}; }

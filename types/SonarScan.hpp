@@ -78,8 +78,8 @@ struct SonarScan {
 Sonar toSonar(const SonarBeam& beam);
 
 /** As a ping, 255 becoming 1, beams that are not set NaN. Bearings fall from `start_bearing`, as the scan's beams
- * stand; Rock's conversion lets them rise, and its fan is mirrored. Throws std::logic_error for a picture, for data of
- * another size than the counts say and for an interval that is no time. */
+ *  stand; Rock's conversion lets them rise, and its fan is mirrored. Throws std::logic_error for a picture, for data of
+ *  another size than the counts say and for an interval that is no time. */
 Sonar toSonar(const SonarScan& scan);
 
 }  // namespace insonify::types

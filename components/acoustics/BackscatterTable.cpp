@@ -20,13 +20,6 @@ BackscatterTable::BackscatterTable(const std::function<double(double)>& section)
     }
 }
 
-double BackscatterTable::overCosine(double cos_incidence) const {
-    const double place = std::clamp(cos_incidence, 0.0, 1.0) * (entries - 1);
-    const auto low = std::min(static_cast<size_t>(place), static_cast<size_t>(entries - 2));
-    const double part = place - static_cast<double>(low);
-    return values_[low] + part * (values_[low + 1] - values_[low]);
-}
-
 Curve readBackscatter(const std::string& file) {
     return readCurve(file, {"grazing_deg", 0, 90}, {"strength_db", -300, 100});
 }

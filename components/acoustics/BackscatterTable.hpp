@@ -16,8 +16,6 @@ public:
     /** Of a cross section over the grazing angle [rad], m^2 at 1 m for each m^2. */
     explicit BackscatterTable(const std::function<double(double)>& section);
 
-    /** sigma_b / cos(theta) [1]. */
-    double overCosine(double cos_incidence) const;
     /** Entry i is for cos(theta) = i / 255; the first for the sine of 0.001 deg. */
     const std::array<double, entries>& values() const { return values_; }
 
@@ -26,7 +24,7 @@ private:
 };
 
 /** A measured strength: levels [dB] over grazing angles [deg], from a CSV file with header grazing_deg,strength_db.
- *  @throws types::ConfigError with file, line and column of every fault. */
+ *  @throws types::ConfigError with file, line and column of every diagnostic. */
 Curve readBackscatter(const std::string& file);
 /** Its cross section at a grazing angle [rad]: straight lines in decibels, the nearer end's beyond what was measured
  *  [m^2 at 1 m for each m^2]. */

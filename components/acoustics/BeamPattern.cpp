@@ -128,12 +128,18 @@ void BeamPattern::scaleTo(const BeamLaw& law, std::optional<double> wavelength) 
 
 double BeamPattern::power(double angle, double axis) const {
     if (measured_.x.empty()) {
-        if (std::abs(angle) > pi / 2) return 0;
-        return taper_.power(aperture_ * (std::sin(angle) - std::sin(axis)));
+        const double field = amplitude(angle, axis);
+        return field * field;
     }
     const double degrees = (angle - axis) * 180 / pi;
     if (degrees < measured_.x.front() || degrees > measured_.x.back()) return 0;
     return std::pow(10, measured_.at(degrees) / 10);
+}
+
+double BeamPattern::amplitude(double angle, double axis) const {
+    if (!measured_.x.empty()) return std::sqrt(power(angle, axis));
+    if (std::abs(angle) > pi / 2) return 0;
+    return taper_.amplitude(aperture_ * (std::sin(angle) - std::sin(axis)));
 }
 
 CutShape shapeOf(const std::function<double(double)>& power) {

@@ -44,8 +44,13 @@ public:
     double power(double angle) const { return power(angle, 0); }
     /** At an angle of an array that is steered to `axis`, both from its normal [rad]. */
     double power(double angle, double axis) const;
+    /** Of the field there, of which the power is the square: sidelobes of an aperture change sign from one to the next;
+     *  a measured table tells no sign, so it has none. */
+    double amplitude(double angle, double axis = 0) const;
     /** Length of the aperture [wavelengths]; 0 for a measured table. */
     double aperture() const { return aperture_; }
+    /** Its far field, where it is no measured table. */
+    const Taper& taper() const { return taper_; }
 
 private:
     void scaleTo(const BeamLaw& law, std::optional<double> wavelength);

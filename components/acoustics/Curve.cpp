@@ -14,10 +14,10 @@ double Curve::at(double where) const {
 
 Curve readCurve(const std::string& file, const types::CsvColumn& x, const types::CsvColumn& y) {
     const auto ascends = [](const std::vector<double>& row, const std::vector<double>* before) {
-        std::vector<types::CsvProblem> problems;
+        std::vector<types::CsvDiagnostic> diagnostics;
         if (before && !(row[0] > before->front()))
-            problems.push_back({0, "is not above that of the line before; it must increase"});
-        return problems;
+            diagnostics.push_back({0, "is not above that of the line before; it must increase"});
+        return diagnostics;
     };
     Curve curve;
     for (const std::vector<double>& row : types::readCsv(file, {x, y}, 2, ascends)) {

@@ -54,8 +54,13 @@ Pulse::Pulse(const PulseConfig& config, double speed_of_sound) {
 }
 
 double Pulse::response(double distance) const {
+    const double field = amplitude(distance);
+    return field * field;
+}
+
+double Pulse::amplitude(double distance) const {
     const double u = distance / unit_;
-    return isTone() ? (std::abs(u) <= 0.5 ? 1 : 0) : taper_->power(u);
+    return isTone() ? (std::abs(u) <= 0.5 ? 1 : 0) : taper_->amplitude(u);
 }
 
 double Pulse::mean(double low, double high) const {

@@ -59,6 +59,8 @@ public:
 
     /** h at a distance in slant range from the echo [m]. */
     double response(double distance) const;
+    /** Of the field, of which h is the square: sidelobes change sign from one to the next. */
+    double amplitude(double distance) const;
     /** Mean of h between two distances from the echo [m]. */
     double mean(double low, double high) const;
     /** Width of h where it is half [m]. */

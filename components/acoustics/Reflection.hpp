@@ -15,7 +15,7 @@ HalfSpace halfSpaceOf(const Seabed& seabed);
 /** kappa = (1 + i delta) / nu: wave number in the half-space over that in the water [1]. */
 std::complex<double> waveNumberRatio(const HalfSpace& half_space);
 /** Rayleigh's coefficient of the sound pressure at a grazing angle [rad], with loss: total reflection below the
- * critical angle arccos(1 / nu) of a fast half-space. ACOUSTICS.md 3.7. */
+ *  critical angle arccos(1 / nu) of a fast half-space. ACOUSTICS.md 3.7. */
 std::complex<double> halfSpaceReflection(const HalfSpace& half_space, double grazing);
 
 }  // namespace insonify::acoustics

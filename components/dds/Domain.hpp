@@ -21,8 +21,8 @@ private:
 };
 
 /** A participant of a DDS domain, with the settings of CYCLONEDDS_URI; `user_data` is what it tells of itself. Throws
- *  types::ConfigError with Cyclone's words where the domain cannot be joined: no such network interface, a fault in the
- *  settings, no port free. */
+ *  types::ConfigError with Cyclone's words where the domain cannot be joined: no such network interface, an error in
+ *  the settings, no port free. */
 Entity joinDomain(uint32_t id, std::string_view user_data);
 
 /** `given`, else ROS_DOMAIN_ID, else 0. Throws types::ConfigError for a ROS_DOMAIN_ID that is no number up to 232. */

@@ -57,7 +57,7 @@ std::string ddsType(std::string_view ros_type) {
     return std::string(ros_type.substr(0, end)) + "::msg::dds_::" + std::string(ros_type.substr(begin)) + "_";
 }
 
-std::string faultOfTopic(const std::string& name) {
+std::string diagnosticOfTopic(const std::string& name) {
     std::string_view rest(name);
     if (rest.starts_with('/')) rest.remove_prefix(1);
     for (size_t slash = rest.find('/'); slash != rest.npos && isWord(rest.substr(0, slash)); slash = rest.find('/'))
@@ -69,7 +69,7 @@ std::string faultOfTopic(const std::string& name) {
     return "is \"" + name + "\"; must be words of letters, digits and _, none beginning with a digit, as /auv/sonar";
 }
 
-std::string faultOfNode(const std::string& name) {
+std::string diagnosticOfNode(const std::string& name) {
     if (isWord(name) && name.size() <= 255) return "";
     return "is \"" + name + "\"; must be one word of letters, digits and _, not beginning with a digit";
 }

@@ -24,8 +24,8 @@ std::string ddsTopic(const std::string& ros_topic);
 /** "sensor_msgs::msg::dds_::Image_" of "sensor_msgs/msg/Image". */
 std::string ddsType(std::string_view ros_type);
 /** What is wrong with a ROS name of a topic or node, or nothing. */
-std::string faultOfTopic(const std::string& name);
-std::string faultOfNode(const std::string& name);
+std::string diagnosticOfTopic(const std::string& name);
+std::string diagnosticOfNode(const std::string& name);
 
 class Writer;
 using Guid = std::array<uint8_t, 16>;

@@ -32,7 +32,7 @@ struct NodeConfig {
     void check(types::Diagnostics& diagnostics) const {
         if (gid_size != 16 && gid_size != 24)
             diagnostics.push_back({"gid_size", "is " + std::to_string(gid_size) + "; must be 16 or 24"});
-        if (const std::string diagnostic = node_name.empty() ? "" : faultOfNode(node_name); !diagnostic.empty())
+        if (const std::string diagnostic = node_name.empty() ? "" : diagnosticOfNode(node_name); !diagnostic.empty())
             diagnostics.push_back({"node_name", diagnostic});
     }
     std::string nameOr(const std::string& task) const { return node_name.empty() ? task : node_name; }

@@ -90,7 +90,7 @@ struct PublisherConfig {
         for (size_t i = 0; i < topics.size(); ++i) {
             const std::string path = "topics[" + std::to_string(i) + "].";
             if (topics[i].port.empty()) diagnostics.push_back({path + "port", "must name an input port"});
-            if (const std::string diagnostic = faultOfTopic(topics[i].topic); !diagnostic.empty())
+            if (const std::string diagnostic = diagnosticOfTopic(topics[i].topic); !diagnostic.empty())
                 diagnostics.push_back({path + "topic", diagnostic});
             else if (!names.insert(ddsTopic(topics[i].topic)).second)
                 diagnostics.push_back({path + "topic", "is " + topics[i].topic + " a second time"});

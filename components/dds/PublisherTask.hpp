@@ -18,8 +18,8 @@ namespace insonify::dds {
 /** Sends samples as ROS 2 messages.
  *
  *  Ports: an input for each connection that names one that `topics` knows, of any type in types/Samples.hpp; their
- * topics may be of the types that such a sample can be. A topic that nobody reads costs nothing. Poses are turned into
- * `world_frame`.
+ *  topics may be of the types that such a sample can be. A topic that nobody reads costs nothing. Poses are turned into
+ *  `world_frame`.
  *
  *  Configure joins the domain and announces the node. Sending waits for no reader: one that is more than `depth`
  *  messages behind misses some. What cannot be sent, or what its message cannot hold, is dropped and counted: a warning

@@ -54,7 +54,7 @@ struct SubscriberConfig {
         std::set<std::string> ports;
         for (size_t i = 0; i < topics.size(); ++i) {
             const std::string path = "topics[" + std::to_string(i) + "].";
-            if (const std::string diagnostic = faultOfTopic(topics[i].topic); !diagnostic.empty())
+            if (const std::string diagnostic = diagnosticOfTopic(topics[i].topic); !diagnostic.empty())
                 diagnostics.push_back({path + "topic", diagnostic});
             if (!ports.insert(topics[i].port).second)
                 diagnostics.push_back({path + "port", "is " + topics[i].port + " a second time"});

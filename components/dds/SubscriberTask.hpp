@@ -21,7 +21,7 @@ namespace insonify::dds {
  *
  *  A message that is none, a pose that is not finite or a stamp that goes back is dropped and counted: a warning tells
  *  it at the first and then every ten seconds at most, and a notice tells the sum at the end. Refused in lockstep,
- * whose time does not wait for messages. */
+ *  whose time does not wait for messages. */
 class SubscriberTask final : public framework::TaskContext {
 public:
     using TaskContext::TaskContext;

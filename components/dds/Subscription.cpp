@@ -45,7 +45,7 @@ void Subscription::decode(types::Pose& pose) {
     }
 }
 
-std::string Subscription::faultOf(types::Time now, const types::Pose& pose) {
+std::string Subscription::diagnosticOf(types::Time now, const types::Pose& pose) {
     if (!types::isUsable(pose)) return "position and orientation are not finite, or the orientation has no length";
     if (pose.time - now > max_ahead) return "the stamp lies more than a second ahead of the clock";
     if (pose.time >= newest_ || now - newest_came_ > max_silence) return "";
@@ -61,7 +61,7 @@ bool Subscription::take(types::Time now, types::Pose& pose) {
         try {
             decode(read_);
             if (stamped_on_arrival_ || read_.time == types::Time{}) read_.time = now;
-            diagnostic = faultOf(now, read_);
+            diagnostic = diagnosticOf(now, read_);
         } catch (const ros::CdrError& error) {
             diagnostic = bytes_.empty() ? "empty, or larger than any message of its type" : "no message of its type";
             detail = std::string(": ") + error.what();

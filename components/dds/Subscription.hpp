@@ -20,10 +20,10 @@ public:
 
     /** The next good pose, in Rock's axes, its orientation of unit length; stamped `now` where the message has no
      *  stamp, or by the topic's choice. False, and `pose` as it was: there is none, or 64 before it had to be dropped:
-     * then more() tells. Dropped are: bytes that are no such message or are more than any is (64 KiB), poses that are
-     * not finite or without an orientation, and stamps more than a second ahead of `now` or before that of the pose
-     * before, until its sender is gone or nothing good came for a second: a bag that is played in a loop and a
-     * simulator that was reset begin anew. */
+     *  then more() tells. Dropped are: bytes that are no such message or are more than any is (64 KiB), poses that are
+     *  not finite or without an orientation, and stamps more than a second ahead of `now` or before that of the pose
+     *  before, until its sender is gone or nothing good came for a second: a bag that is played in a loop and a
+     *  simulator that was reset begin anew. */
     bool take(types::Time now, types::Pose& pose);
 
     /** Whether take() gave up before it had looked at all. */
@@ -32,7 +32,7 @@ public:
 private:
     void decode(types::Pose& pose);
     /** Empty for a pose that can be used. */
-    std::string faultOf(types::Time now, const types::Pose& pose);
+    std::string diagnosticOf(types::Time now, const types::Pose& pose);
 
     std::string topic_;
     PoseType type_;

@@ -18,7 +18,7 @@ struct NewFile {
     std::string_view bytes;
 };
 
-/** A fault for each file that is there already: nothing is overwritten. */
+/** A diagnostic for each file that is there already: nothing is overwritten. */
 void refuseOverwriting(const std::vector<NewFile>& files) {
     types::Diagnostics diagnostics;
     for (const NewFile& file : files)

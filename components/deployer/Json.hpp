@@ -19,7 +19,7 @@ Json toJson(const std::vector<types::Omission>& omitted);
 std::string qualityText(const types::Plan& plan);
 
 /** `{features, passes, omitted, quality: {rows, columns_per_beam, slabs, predicted_error}, device, notices}`; an error
- * that is not predicted is null. */
+ *  that is not predicted is null. */
 Json toJson(const types::Plan& plan);
 
 }  // namespace insonify::deployer

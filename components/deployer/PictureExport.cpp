@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <optional>
 
+#include "components/deployer/StreamMeaning.hpp"
 #include "components/log/Reader.hpp"
 #include "components/output/FanImage.hpp"
 #include "components/output/PictureFiles.hpp"
@@ -12,8 +13,14 @@
 
 namespace insonify::deployer {
 
-output::DisplayConfig displayFor(const types::Sonar& ping) {
+output::DisplayConfig displayFor(const log::Reader& log, const log::Stream& stream, const types::Sonar& ping) {
     output::DisplayConfig display;
+    const Json meaning = meaningOf(log, stream);
+    if (meaning.value("output", Json()) == "code") {
+        display.scale = output::BinScale::Code;
+        if (meaning["code"].is_object()) display.code_bits = meaning["code"].value("bits", display.code_bits);
+        return display;
+    }
     const bool levels = std::any_of(ping.bins.begin(), ping.bins.end(), [](float bin) { return bin < 0; });
     if (levels) display.scale = output::BinScale::Decibel;
     return display;
@@ -24,7 +31,8 @@ namespace {
 /** Turns the samples of one stream into pictures. */
 class Pictures {
 public:
-    Pictures(log::Reader& log, const log::Stream& stream) : log_(log), logged_(stream.holds<types::Image>()) {
+    Pictures(log::Reader& log, const log::Stream& stream)
+        : log_(log), stream_(stream), logged_(stream.holds<types::Image>()) {
         if (!logged_ && !holdsPings(stream))
             throw types::ConfigError(
                 log.path(), stream.name,
@@ -41,11 +49,12 @@ public:
 private:
     void paint(const log::SampleRef& at) {
         readPing(log_, at, ping_);
-        if (!fan_) fan_.emplace(displayFor(ping_));
+        if (!fan_) fan_.emplace(displayFor(log_, stream_, ping_));
         fan_->paint(ping_, picture_);
     }
 
     log::Reader& log_;
+    const log::Stream& stream_;
     const bool logged_;  ///< They are pictures already.
     std::optional<output::FanImage> fan_;
     types::Sonar ping_;

@@ -17,6 +17,7 @@
 #include "components/deployer/ReplaySpec.hpp"
 #include "components/deployer/Tasks.hpp"
 #include "components/framework/Deployment.hpp"
+#include "components/framework/Properties.hpp"
 #include "components/framework/YamlText.hpp"
 #include "components/replay/ReplayTask.hpp"
 #include "components/sonar/PingTask.hpp"
@@ -59,15 +60,18 @@ std::string textOf(const types::PropertyValue& value) {
     return is_block ? *text : Json(*text).dump();
 }
 
-/** The values that a property had, and when the logger came to know of each. */
-using Values = std::vector<std::pair<types::Time, types::PropertyValue>>;
+/** What takes a property out, for a setter and `--set`. */
+const std::string absent = "null";
+
+/** The values that a property had, as setters take them, and when the logger came to know of each. */
+using Values = std::vector<std::pair<types::Time, std::string>>;
 
 Values valuesOf(log::Reader& log, const log::Stream& stream) {
     Values values;
     const auto read = [&]<class T>(std::type_identity<T>) {
         if (stream.holds<T>())
             log.forEach<T>(stream.name, [&](const T& sample, const log::SampleRef& at) {
-                values.emplace_back(at.received, sample);
+                values.emplace_back(at.received, textOf(sample));
             });
     };
     read(std::type_identity<bool>{});
@@ -75,6 +79,40 @@ Values valuesOf(log::Reader& log, const log::Stream& stream) {
     read(std::type_identity<double>{});
     read(std::type_identity<std::string>{});
     return values;
+}
+
+/** Adds when the property was taken out, see logger::PropertyLog. */
+void addAbsence(log::Reader& log, const std::string& property, Values& values) {
+    const log::Stream* const presence = log.find(property + ".present");
+    if (!presence || !presence->holds<bool>()) return;
+    log.forEach<bool>(presence->name, [&](bool is_there, const log::SampleRef& at) {
+        if (!is_there) values.emplace_back(at.received, absent);
+    });
+    std::ranges::stable_sort(values, {}, &Values::value_type::first);
+}
+
+/** When the logger first heard of each task. */
+std::map<std::string, types::Time> firstRecords(const log::Reader& properties) {
+    std::map<std::string, types::Time> first;
+    for (const log::SampleRef& at : properties.samples())
+        first.emplace(splitPort(properties.streams()[at.stream].name).first, at.received);
+    return first;
+}
+
+/** The properties of a log of properties that belong to `tasks`, by "task.property". */
+std::map<std::string, Values> historiesOf(log::Reader& log, const std::set<std::string>& tasks) {
+    std::map<std::string, Values> histories;
+    const auto first = firstRecords(log);
+    for (const log::Stream& stream : log.streams()) {
+        const auto [task, property] = splitPort(stream.name);
+        if (!tasks.contains(task) || property.find('.') != std::string::npos) continue;
+        Values values = valuesOf(log, stream);
+        if (values.empty()) continue;
+        addAbsence(log, stream.name, values);
+        if (values.front().first > first.at(task)) values.insert(values.begin(), {first.at(task), absent});
+        histories.emplace(stream.name, std::move(values));
+    }
+    return histories;
 }
 
 /** Pings of a stream, by which a moment of the logger becomes one of the world. */
@@ -95,25 +133,36 @@ struct Pings {
 /** What became of a property, for pings after `start`. */
 RecordedProperty historyOf(const std::string& property, const Values& values, const Pings& pings, types::Time start) {
     RecordedProperty found{
-        splitPort(property).first, splitPort(property).second, textOf(values.front().second), pings.driver, {}};
+        splitPort(property).first, splitPort(property).second, values.front().second, pings.driver, {}};
     for (const auto& [received, value] : values) {
         const auto from = pings.firstFrom(received);
         if (!from) break;
         if (*from <= start)
-            found.start = textOf(value);
+            found.start = value;
         else
-            found.changes.push_back({*from, textOf(value)});
+            found.changes.push_back({*from, value});
     }
     return found;
 }
 
-/** Properties of the tasks as they are, by "task.property". */
-std::map<std::string, types::PropertyValue> propertiesOf(Deployment& deployment, const std::set<std::string>& tasks) {
-    std::map<std::string, types::PropertyValue> all;
+/** Properties of the tasks as they are, as setters take them, by "task.property". */
+std::map<std::string, std::string> propertiesOf(Deployment& deployment, const std::set<std::string>& tasks) {
+    std::map<std::string, std::string> all;
     for (const types::TaskRecord& task : deployment.environment().records())
         if (tasks.contains(task.name))
-            for (const auto& [name, value] : task.properties) all[task.name + "." + name] = value;
+            for (const auto& [name, value] : task.properties) all[task.name + "." + name] = textOf(value);
     return all;
+}
+
+/** The properties of the tasks that may be absent, as "task.property". */
+std::set<std::string> optionalsOf(const Deployment& deployment, const std::set<std::string>& tasks) {
+    std::set<std::string> optionals;
+    for (const auto& task : deployment.tasks())
+        for (const auto* const properties : task->properties())
+            for (const types::PropertyInfo& info : properties->list())
+                if (tasks.contains(task->name()) && info.type.ends_with(", optional"))
+                    optionals.insert(task->name() + "." + info.name);
+    return optionals;
 }
 
 bool names(const std::vector<std::string>& set, const std::string& property) {
@@ -153,20 +202,29 @@ struct Settings : RecordedSettings {
             return;
         }
         const auto properties = log::openLog(*file);
+        const auto histories = historiesOf(*properties, tasks);
         const auto present = propertiesOf(deployment, tasks);
-        for (const log::Stream& stream : properties->streams()) {
-            const auto of_task = pings.find(splitPort(stream.name).first);
-            const Values values = valuesOf(*properties, stream);
-            if (of_task == pings.end() || settled.contains(stream.name) || values.empty()) continue;
-            const auto& samples = of_task->second.samples;
+        for (const auto& [property, values] : histories) {
+            if (settled.contains(property)) continue;
+            const Pings& of_task = pings.at(splitPort(property).first);
             const types::Time begin = log.samples().front().time + types::Time::fromSeconds(from);
-            const types::Time start = samples.empty() ? begin : std::max(begin, samples.front().time);
-            const RecordedProperty history = historyOf(stream.name, values, of_task->second, start);
-            const auto now = present.find(stream.name);
-            if (now == present.end() || textOf(now->second) != history.start)
-                assignments.push_back(stream.name + "=" + history.start);
+            const types::Time start = of_task.samples.empty() ? begin : std::max(begin, of_task.samples.front().time);
+            const RecordedProperty history = historyOf(property, values, of_task, start);
+            const auto now = present.find(property);
+            if ((now == present.end() ? absent : now->second) != history.start)
+                assignments.push_back(property + "=" + history.start);
             if (!history.changes.empty()) changed.push_back(history);
         }
+        takeOut(deployment, present, histories);
+    }
+    /** Takes out what the deployment has and the log never had, of tasks that the log knows. */
+    void takeOut(const Deployment& deployment, const std::map<std::string, std::string>& present,
+                 const std::map<std::string, Values>& histories) {
+        std::set<std::string> known;
+        for (const auto& history : histories) known.insert(splitPort(history.first).first);
+        for (const std::string& property : optionalsOf(deployment, known))
+            if (present.contains(property) && !histories.contains(property) && !settled.contains(property))
+                assignments.push_back(property + "=" + absent);
     }
 };
 

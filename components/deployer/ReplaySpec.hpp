@@ -21,7 +21,7 @@ struct ReplayOptions {
 std::set<std::string> outsideTasks(const framework::DeploymentSpec& spec);
 
 /** The stream that drives a sonar whose pings are rendered again: where each of them was rendered; empty: the log has
- * no such stream. */
+ *  no such stream. */
 std::string poseStreamOf(const log::Reader& log, const std::string& sonar);
 
 /** The deployment, in lockstep on the log's time, with the log in the place of the tasks that it has streams of; where

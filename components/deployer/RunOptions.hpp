@@ -32,7 +32,7 @@ struct RunOptions {
 framework::DeploymentSpec loadSpec(const RunOptions& options);
 
 /** Makes and runs a deployment as asked, tells how it went, and gives the exit code. Throws types::ConfigError, with
- *  every fault, before anything has started.
+ *  every diagnostic, before anything has started.
  *  @param folder where its files went; null when nobody wants to know. */
 int runDeployment(framework::DeploymentSpec spec, const RunOptions& options, std::filesystem::path* folder = nullptr);
 

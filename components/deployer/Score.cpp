@@ -69,7 +69,10 @@ StreamScore score(log::Reader& recorded, log::Reader& rendered, const std::strin
         if (!sameShape(before, after) || before.bins.empty()) {
             ++result.other_shape;
         } else {
-            if (result.pings.empty()) result.display = displayFor(before);
+            if (result.pings.empty()) {
+                const log::Stream& shown = recorded.streams()[recorded.indexOf(stream)];
+                result.display = displayFor(recorded, shown, before);
+            }
             result.pings.push_back(scoreOf(before, after, result.display));
             result.pings.back().recorded = at;
             result.pings.back().rendered = other->second;

@@ -127,16 +127,14 @@ Json scoreJson(const std::vector<StreamScore>& streams) {
             for (const Column& column : columns) values[column.key] = column.value(ping);
             pings.push_back(std::move(values));
         }
-        const bool levels = score.display.scale == output::BinScale::Decibel;
-        all.push_back(
-            {{"stream", score.stream},
-             {"display",
-              {{"dynamic_range_db", score.display.dynamic_range_db}, {"scale", levels ? "decibel" : "linear"}}},
-             {"compared", score.pings.size()},
-             {"not_rendered", score.not_rendered},
-             {"not_recorded", score.not_recorded},
-             {"other_shape", score.other_shape},
-             {"pings", std::move(pings)}});
+        const auto scale = types::EnumNames<output::BinScale>::names[static_cast<size_t>(score.display.scale)];
+        all.push_back({{"stream", score.stream},
+                       {"display", {{"dynamic_range_db", score.display.dynamic_range_db}, {"scale", scale}}},
+                       {"compared", score.pings.size()},
+                       {"not_rendered", score.not_rendered},
+                       {"not_recorded", score.not_recorded},
+                       {"other_shape", score.other_shape},
+                       {"pings", std::move(pings)}});
     }
     return {{"streams", std::move(all)}};
 }

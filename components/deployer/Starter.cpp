@@ -19,11 +19,19 @@ INSONIFY_EMBED(insonify_starter_pass, "pass.csv")
 INSONIFY_EMBED(insonify_starter_hover, "hover.csv")
 INSONIFY_EMBED(insonify_starter_fan, "fan.yml")
 INSONIFY_EMBED(insonify_starter_scanning, "scanning.yml")
+INSONIFY_EMBED(insonify_starter_grid, "grid.yml")
 
 namespace insonify::deployer {
 namespace {
 
 std::string_view between(const char* begin, const char* end) { return {begin, static_cast<size_t>(end - begin)}; }
+
+/** What is to be filled in for a sonar of its kind. */
+std::string_view templateFor(const SonarPreset& preset) {
+    if (preset.isGrid()) return between(insonify_starter_grid_begin, insonify_starter_grid_end);
+    if (preset.isFan()) return between(insonify_starter_fan_begin, insonify_starter_fan_end);
+    return between(insonify_starter_scanning_begin, insonify_starter_scanning_end);
+}
 
 /** Comments behind values begin in one column, where there is room. */
 std::string aligned(const std::string& text) {
@@ -60,21 +68,19 @@ std::string pulseBlock(const SonarPreset& preset) {
 std::string starterDeployment(const SonarPreset& preset) {
     const acoustics::Water water{.temperature_celsius = 12, .salinity_psu = 35, .depth = 8, .ph = 8.1};
     const double db_per_m = acoustics::francoisGarrison(preset.frequency_khz, water);
-    const std::string_view text = preset.isFan()
-                                      ? between(insonify_starter_fan_begin, insonify_starter_fan_end)
-                                      : between(insonify_starter_scanning_begin, insonify_starter_scanning_end);
     using fmt::arg;
     return aligned(fmt::format(
-        fmt::runtime(text), arg("name", preset.name), arg("title", preset.title), arg("source", preset.source),
-        arg("summary", preset.summary), arg("frequency", preset.frequency_khz), arg("range", preset.range),
-        arg("range_min", preset.range_min), arg("range_max", preset.range_max), arg("bins", preset.bin_count),
-        arg("bin_us", preset.bin_us), arg("width", preset.beam_width_deg), arg("height", preset.beam_height_deg),
-        arg("period", preset.period_s), arg("columns", preset.columns_per_beam), arg("beams", preset.beam_count),
-        arg("fov", preset.field_of_view_deg), arg("spacing", preset.field_of_view_deg / preset.beam_count),
-        arg("pitch", preset.pitch_deg), arg("step", preset.step_deg), arg("speed", preset.step_deg / preset.period_s),
-        arg("turn", preset.isFan() ? 0 : static_cast<int>(90 / preset.step_deg)),
-        arg("absorption", fmt::format("{:.2f}", db_per_m)), arg("absorption_block", absorptionBlock(preset, db_per_m)),
-        arg("pulse", pulseBlock(preset))));
+        fmt::runtime(templateFor(preset)), arg("name", preset.name), arg("title", preset.title),
+        arg("source", preset.source), arg("summary", preset.summary), arg("frequency", preset.frequency_khz),
+        arg("range", preset.range), arg("range_min", preset.range_min), arg("range_max", preset.range_max),
+        arg("bins", preset.bin_count), arg("bin_us", preset.bin_us), arg("width", preset.beam_width_deg),
+        arg("height", preset.beam_height_deg), arg("period", preset.period_s), arg("columns", preset.columns_per_beam),
+        arg("beams", preset.beam_count), arg("fov", preset.field_of_view_deg),
+        arg("spacing", preset.field_of_view_deg / preset.beam_count), arg("pitch", preset.pitch_deg),
+        arg("step", preset.step_deg), arg("speed", preset.step_deg / preset.period_s),
+        arg("turn", preset.step_deg > 0 ? static_cast<int>(90 / preset.step_deg) : 0), arg("rows", preset.row_count),
+        arg("rows_fov", preset.rows_field_of_view_deg), arg("absorption", fmt::format("{:.2f}", db_per_m)),
+        arg("absorption_block", absorptionBlock(preset, db_per_m)), arg("pulse", pulseBlock(preset))));
 }
 
 const std::vector<StarterFile>& starterFiles() {

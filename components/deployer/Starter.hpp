@@ -13,18 +13,21 @@ struct SonarPreset {
     const char* source;   ///< Where the figures are from, and which are not from there.
     const char* summary;  ///< "130 x 20 degrees, 512 beams at 750 kHz"
     double frequency_khz;
-    double range, range_min, range_max;  ///< As deployed; as the maker has it at this frequency [m].
-    int bin_count, bin_us;               ///< Whole microseconds, one way, that reach `range` and no further.
+    double range, range_min, range_max;      ///< As deployed; as the maker has it at this frequency [m].
+    int bin_count, bin_us;                   ///< Whole microseconds, one way, that reach `range` and no further.
     double beam_width_deg, beam_height_deg;  ///< Half power, one way.
     double range_resolution;                 ///< Of its pulse, as the maker has it [m].
-    double period_s;  ///< From ping to ping.
+    double period_s;                         ///< From ping to ping.
     int columns_per_beam;
-    int beam_count = 1;            ///< More than one: a fan.
-    double field_of_view_deg = 0;  ///< Of a fan.
-    double pitch_deg = 0;          ///< Of the mount, down; of a fan.
-    double step_deg = 0;           ///< Of a scanning head.
-    bool sends_tones = false;      ///< Else chirps.
-    bool isFan() const { return beam_count > 1; }
+    int beam_count = 1;                 ///< More than one: a fan.
+    double field_of_view_deg = 0;       ///< Of a fan.
+    double pitch_deg = 0;               ///< Of the mount, down; of a fan.
+    double step_deg = 0;                ///< Of a scanning head.
+    int row_count = 1;                  ///< More than one: a grid of beams, so many above each other.
+    double rows_field_of_view_deg = 0;  ///< Of a grid, in elevation.
+    bool sends_tones = false;           ///< Else chirps.
+    bool isGrid() const { return row_count > 1; }
+    bool isFan() const { return beam_count > 1 && !isGrid(); }
 };
 
 /** Every preset; the first is what `init` takes when none is named. */

@@ -8,10 +8,10 @@ namespace insonify::deployer {
  *  outside stand in the run's properties log.
  *
  *  Pings: {stream, bins, output, model, reference, tvg, gain_db, code, noise, frequency_khz, speed_of_sound_m_s or
- * null, range_m, bin_duration, frame, mount: {position [m], roll_deg, pitch_deg, yaw_deg}, quaternion_order, seed};
- * what is not configured is null. Poses: {stream, position, orientation, quaternion_order}. Truth and returns of pings:
- * {stream, a text for each field; objects: the names of the truth's objects, where they are known}. Points: {stream,
- * points, intensity}. Others: {stream, type}. */
+ *  null, range_m, bin_duration, frame, mount: {position [m], roll_deg, pitch_deg, yaw_deg}, quaternion_order, seed};
+ *  what is not configured is null. Poses: {stream, position, orientation, quaternion_order}. Truth, returns and
+ *  elements of pings: {stream, a text for each field; objects: the names of the truth's objects, where they are known}.
+ *  Points: {stream, points, intensity}. Others: {stream, type}. */
 Json meaningOf(const log::Reader& log, const log::Stream& stream);
 
 }  // namespace insonify::deployer

@@ -15,7 +15,7 @@
 namespace insonify::device {
 namespace {
 
-constexpr size_t header_size = 16, max_problems = 100;
+constexpr size_t header_size = 16, max_diagnostics = 100;
 constexpr uint16_t oculus_id = 0x4F53, ping_result = 0x23;
 constexpr size_t max_bins = 1 << 16;
 
@@ -43,7 +43,7 @@ public:
         : bytes_(bytes), layout_(read<uint16_t>(bytes, 8) == 2 ? version2 : version1) {}
 
     /** Why this is no ping; empty: it is one. */
-    std::string problem() const {
+    std::string diagnostic() const {
         if (bytes_.size() < layout_.bearings) return fmt::format("is cut off after {} bytes", bytes_.size());
         if (codeBytes() > 4) return fmt::format("has codes of {} bytes; there are 1 to 4", codeBytes());
         if (beams() == 0 || bins() == 0 || bins() > max_bins)
@@ -55,6 +55,10 @@ public:
             return fmt::format("has an image of {} bytes at {} in a message of {}", size, image, bytes_.size());
         const double resolution = read<double>(bytes_, layout_.resolution);
         if (!(resolution > 0 && resolution < 1e3)) return fmt::format("has bins of {:g} m", resolution);
+        const double frequency = read<double>(bytes_, layout_.frequency),
+                     speed = read<double>(bytes_, layout_.speed_of_sound);
+        if (!(frequency >= 0 && frequency < 1e9)) return fmt::format("has a frequency of {:g} Hz", frequency);
+        if (!(speed >= 0 && speed < 1e4)) return fmt::format("has a speed of sound of {:g} m/s", speed);
         return "";
     }
 
@@ -105,7 +109,7 @@ bool beginsPing(std::span<const uint8_t> bytes) {
 
 }  // namespace
 
-std::vector<OculusPing> oculusPings(std::span<const uint8_t> bytes, std::vector<std::string>* problems) {
+std::vector<OculusPing> oculusPings(std::span<const uint8_t> bytes, std::vector<std::string>* diagnostics) {
     std::vector<OculusPing> pings;
     for (size_t at = 0; at + header_size <= bytes.size();) {
         const auto rest = bytes.subspan(at);
@@ -115,11 +119,11 @@ std::vector<OculusPing> oculusPings(std::span<const uint8_t> bytes, std::vector<
         }
         const size_t size = std::min(rest.size(), header_size + read<uint32_t>(rest, 10));
         const Message message(rest.first(size));
-        const std::string problem = message.problem();
-        if (problem.empty()) pings.push_back(message.ping());
-        if (!problem.empty() && problems && problems->size() < max_problems)
-            problems->push_back(fmt::format("the ping at byte {} {}", at, problem));
-        at += problem.empty() ? size : 2;
+        const std::string diagnostic = message.diagnostic();
+        if (diagnostic.empty()) pings.push_back(message.ping());
+        if (!diagnostic.empty() && diagnostics && diagnostics->size() < max_diagnostics)
+            diagnostics->push_back(fmt::format("the ping at byte {} {}", at, diagnostic));
+        at += diagnostic.empty() ? size : 2;
     }
     return pings;
 }
@@ -129,11 +133,11 @@ std::vector<OculusPing> readOculusPings(const std::filesystem::path& file) {
     if (!stream || std::filesystem::is_directory(file))
         throw types::ConfigError(file.string(), "", "cannot be read; it must be a file of Oculus messages");
     const std::vector<uint8_t> bytes{std::istreambuf_iterator<char>(stream), {}};
-    std::vector<std::string> problems;
-    std::vector<OculusPing> pings = oculusPings(bytes, &problems);
+    std::vector<std::string> diagnostics;
+    std::vector<OculusPing> pings = oculusPings(bytes, &diagnostics);
     if (!pings.empty()) return pings;
-    if (problems.empty()) throw types::ConfigError(file.string(), "", "holds no ping of an Oculus");
-    throw types::ConfigError(file.string(), "", "holds no whole ping: " + problems.front());
+    if (diagnostics.empty()) throw types::ConfigError(file.string(), "", "holds no ping of an Oculus");
+    throw types::ConfigError(file.string(), "", "holds no whole ping: " + diagnostics.front());
 }
 
 }  // namespace insonify::device

@@ -25,10 +25,10 @@ struct OculusPing {
 };
 
 /** Every ping in these bytes, in order: network messages, one after the other, with anything between them, as in
- * captures and in the maker's own log files. Other messages are passed over. What begins as a ping and contradicts
- * itself (an image of another size than bins and beams make, bytes that are missing) is no ping.
- *  @param problems where not null takes one line for each of these, up to 100 */
-std::vector<OculusPing> oculusPings(std::span<const uint8_t> bytes, std::vector<std::string>* problems = nullptr);
+ *  captures and in the maker's own log files. Other messages are passed over. What begins as a ping and contradicts
+ *  itself (an image of another size than bins and beams make, bytes that are missing) is no ping.
+ *  @param diagnostics where not null takes one line for each of these, up to 100 */
+std::vector<OculusPing> oculusPings(std::span<const uint8_t> bytes, std::vector<std::string>* diagnostics = nullptr);
 
 /** Those of a file. Throws types::ConfigError where it cannot be read or holds none, with the reason. */
 std::vector<OculusPing> readOculusPings(const std::filesystem::path& file);

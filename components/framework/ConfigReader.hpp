@@ -1,5 +1,5 @@
 #pragma once
-// Strict reading of YAML into described structs: every fault is collected, with its place, none stops the reading.
+// Strict reading of YAML into described structs: every diagnostic is collected, with its place, none stops the reading.
 #include <yaml-cpp/yaml.h>
 
 #include <cmath>
@@ -33,7 +33,8 @@ inline constexpr const char* set_origin = "--set";
 
 class ConfigReader {
 public:
-    /** Faults name `file`, but for paths that have an origin of their own. Without a file faults have no place. */
+    /** Diagnostics name `file`, but for paths that have an origin of their own. Without a file diagnostics have no
+     *  place. */
     explicit ConfigReader(std::string file, Origins origins = {})
         : file_(std::move(file)), origins_(std::move(origins)) {}
 
@@ -42,19 +43,19 @@ public:
     /** From now on null stands for what is not there: it takes an optional out, and gives any other value its default;
      *  maps of names are merged as well. */
     void takeOutByNull() { null_takes_out_ = true; }
-    /** Where faults of nodes that do not exist are reported: the block that lacks them. */
+    /** Where diagnostics of nodes that do not exist are reported: the block that lacks them. */
     void setFallback(const YAML::Mark& mark) { fallback_ = mark; }
 
-    /** Reads `node` into `value`; what the node does not name keeps its value. False when there was any fault. */
+    /** Reads `node` into `value`; what the node does not name keeps its value. False when there was any diagnostic. */
     template <types::Described T>
     bool read(const YAML::Node& node, const std::string& path, T& value);
 
     /** Diagnostics of a block, each at the node that its path leads to. */
     void report(const YAML::Node& block, const std::string& path, const types::Diagnostics& diagnostics);
 
-    bool isMap(const YAML::Node& node, const std::string& path);       ///< A map or empty, keys unique; else a fault.
-    bool isSequence(const YAML::Node& node, const std::string& path);  ///< Else a fault.
-    /** A fault for each key that is not among `known`, with the nearest known one. */
+    bool isMap(const YAML::Node& node, const std::string& path);  ///< A map or empty, keys unique; else a diagnostic.
+    bool isSequence(const YAML::Node& node, const std::string& path);  ///< Else a diagnostic.
+    /** A diagnostic for each key that is not among `known`, with the nearest known one. */
     void refuseUnknown(const YAML::Node& map, const std::string& path, const std::vector<std::string>& known);
     bool number(const YAML::Node& node, const std::string& path, const types::Field& field, double& value);
 

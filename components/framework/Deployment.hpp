@@ -9,7 +9,6 @@
 #include <string>
 #include <vector>
 
-#include "components/framework/DeploymentControl.hpp"
 #include "components/framework/DeploymentSpec.hpp"
 #include "components/framework/Executor.hpp"
 #include "components/framework/Graph.hpp"
@@ -27,15 +26,15 @@ struct RunResult : Progress {
 /** Tasks made, given their properties and connected, as a DeploymentSpec says: a Graph, with the executor for its
  *  schedule.
  *
- *      Deployment deployment(DeploymentSpec::load("deploy/minimal.yml"), registry, "out");  // throws every fault
- *      deployment.configure();                                                              // throws every fault
+ *      Deployment deployment(DeploymentSpec::load("deploy/minimal.yml"), registry, "out");  // throws every diagnostic
+ *      deployment.configure();                                                              // throws every diagnostic
  *      RunResult result = deployment.run({.duration_s = 10}, stop, {});
  *
  *  Tasks configure in file order, start readers before writers, stop and clean up writers before readers; a reader
  *  has a last cycle before it stops, so that nothing that waits for it is lost. Its destructor cleans up. */
-class Deployment final : public DeploymentControl {
+class Deployment final : public types::DeploymentControl {
 public:
-    /** Makes and checks; nothing is configured. Throws types::ConfigError with every fault, those of `spec` first.
+    /** Makes and checks; nothing is configured. Throws types::ConfigError with every diagnostic, those of `spec` first.
      *  A `seed` that is not 0 gives each task that has a property of that name a hash of it and the task's name. */
     Deployment(DeploymentSpec spec, Registry& registry, std::filesystem::path output_folder = ".", uint64_t seed = 0);
     ~Deployment() override;
@@ -49,7 +48,7 @@ public:
     const std::vector<Connection>& connections() const { return graph_.connections(); }
     const std::vector<TaskContext*>& order() const { return graph_.order(); }  ///< Writers before readers.
 
-    /** Configures every task; throws types::ConfigError with the faults of all, having cleaned up. */
+    /** Configures every task; throws types::ConfigError with the diagnostics of all, having cleaned up. */
     void configure();
     /** Starts, runs until a limit, the end of the sources, a task that fails, or `stop`; stops all. Does not clean up.
      *  `report` as of the executors, on this thread. */

@@ -28,7 +28,7 @@ struct TaskSpec {
     std::map<std::string, std::string> switches;  ///< "task.property", a block that true puts in and false takes out.
     PropertyFiles property_files;
     YAML::Node properties{YAML::NodeType::Undefined};  ///< From all sources; undefined when there are none.
-    YAML::Node place{YAML::NodeType::Undefined};       ///< The task's whole block, for faults.
+    YAML::Node place{YAML::NodeType::Undefined};       ///< The task's whole block, for diagnostics.
 
     std::string path() const { return "tasks." + name; }
 };
@@ -41,9 +41,9 @@ struct ConnectionSpec {
 };
 
 /** A deployment as written: nothing in it is made or checked against the tasks yet, and all of it may be edited.
- *  Faults of reading are collected, so that Deployment reports them together with its own. */
+ *  Diagnostics of reading are collected, so that Deployment reports them together with its own. */
 struct DeploymentSpec {
-    std::string file;  ///< As given, for faults.
+    std::string file;  ///< As given, for diagnostics.
     std::string text;  ///< The YAML as read.
     bool lockstep = true;
     double start_time = 1;               ///< Of simulated time [s].
@@ -55,7 +55,8 @@ struct DeploymentSpec {
     Origins origins;  ///< Of properties from elsewhere: property files, aliases, set().
     types::Diagnostics diagnostics;
 
-    /** Throws types::ConfigError when there is no text to be read or it is not YAML; other faults go to `faults`. */
+    /** Throws types::ConfigError when there is no text to be read or it is not YAML; other diagnostics go to
+     *  `diagnostics`. */
     static DeploymentSpec load(const std::filesystem::path& file);
     static DeploymentSpec parse(const std::string& text, const std::string& file);
 
@@ -65,7 +66,7 @@ struct DeploymentSpec {
     /** What is written but its schedule leaves out, a line for each task and for the whole; empty: nothing. */
     std::vector<std::string> unused() const;
     /** `task.property.path=value`, the value in YAML: a layer over the file. Of a block only what it names is changed;
-     *  null takes a property out. Faults go to `faults`. */
+     *  null takes a property out. Diagnostics go to `diagnostics`. */
     void set(const std::string& assignment);
 };
 

@@ -10,7 +10,7 @@
 namespace insonify::framework {
 
 /** When a run ends by itself, and how fast it goes; 0 stands for no limit. Without limits a lockstep run ends once its
- * sources have finished, a realtime run with the stop flag. */
+ *  sources have finished, a realtime run with the stop flag. */
 struct RunLimits {
     uint64_t samples = 0;   ///< Counted ones, see Graph::countedSamples.
     double duration_s = 0;  ///< On the deployment's clock [s].

@@ -18,7 +18,7 @@ public:
 
     void begin() override;
     /** Ends as well once every source, a task that runs by the clock and reads nothing, has finished: with a limit,
-     * only if none writes any more. `report` comes after each instant. */
+     *  only if none writes any more. `report` comes after each instant. */
     void run(const RunLimits& limits, const std::atomic<bool>& stop, const Report& report) override;
     bool paused() const override { return paused_; }
     void pause(bool on) override;

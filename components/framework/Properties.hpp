@@ -20,8 +20,8 @@ public:
     PropertiesBase(const PropertiesBase&) = delete;
     PropertiesBase& operator=(const PropertiesBase&) = delete;
 
-    /** Takes the values of a YAML block over the defaults; faults go to the reader. An undefined node is an empty
-     * block. */
+    /** Takes the values of a YAML block over the defaults; diagnostics go to the reader. An undefined node is an empty
+     *  block. */
     virtual void load(ConfigReader& reader, const YAML::Node& block, const std::string& path) = 0;
     /** Every property with its default; nested names are dotted. */
     virtual std::vector<PropertyInfo> list() const = 0;

@@ -26,7 +26,7 @@ struct PropertySection {
  *  Ruby (`<%= %>`) is not run. */
 class PropertySections {
 public:
-    /** Reads a file, called `shown` in faults, which are collected. */
+    /** Reads a file, called `shown` in diagnostics, which are collected. */
     void read(const std::filesystem::path& file, const std::string& shown);
     /** What the sections of `names` hold, in the order in which they are laid one over the other. */
     std::vector<const PropertySection*> inOrder(const std::vector<std::string>& names);

@@ -8,7 +8,7 @@ namespace insonify::framework {
 namespace {
 
 /** A copy of `block` in which `key` has another value, or is gone if that is undefined: nodes that an anchor shares
- * must not change together. */
+ *  must not change together. */
 YAML::Node with(const YAML::Node& block, const std::string& key, const YAML::Node& value) {
     YAML::Node changed(YAML::NodeType::Map);
     if (block.IsDefined() && block.IsMap())

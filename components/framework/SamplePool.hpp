@@ -26,8 +26,8 @@ public:
     }
 
     /** Makes what readers in step with the writer will need, copies of the first sample filled, so that later ones of
-     * its size allocate nothing; `prepare` makes room in each that a copy does not have. Does nothing when there are as
-     * many. */
+     *  its size allocate nothing; `prepare` makes room in each that a copy does not have. Does nothing when there are
+     *  as many. */
     template <class Prepare>
     void stock(const T& filled, const Prepare& prepare) {
         while (samples_.size() < stocked) prepare(*samples_.emplace_back(std::make_shared<T>(filled)));

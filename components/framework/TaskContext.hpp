@@ -13,6 +13,7 @@
 #include "components/framework/Statistics.hpp"
 #include "components/framework/Timing.hpp"
 #include "types/ConfigError.hpp"
+#include "types/DeploymentControl.hpp"
 #include "types/Plan.hpp"
 #include "types/TaskRecord.hpp"
 #include "types/Time.hpp"
@@ -32,8 +33,6 @@ struct Outcome {
 
 types::Time wallClock();
 
-class DeploymentControl;
-
 /** Where a task finds and leaves files, and what time it is. Shared by all tasks of a deployment. */
 struct Environment {
     std::filesystem::path input_folder = ".";      ///< Of the deployment file.
@@ -50,7 +49,7 @@ struct Environment {
     std::function<std::vector<types::TaskRecord>()> records;
     /** How often tasks have told their records anew: so that nobody asks for them in vain. */
     std::shared_ptr<std::atomic<uint64_t>> record_changes = std::make_shared<std::atomic<uint64_t>>(0);
-    DeploymentControl* deployment = nullptr;  ///< Null for a task outside of a deployment.
+    types::DeploymentControl* deployment = nullptr;  ///< Null for a task outside of a deployment.
 };
 
 class Activity;
@@ -97,7 +96,7 @@ public:
 
     /** Text of the last throw, error() or refusal; empty if there was none. */
     std::string lastError() const;
-    /** The fault that configureHook threw, if it was one of the configuration. */
+    /** The diagnostic that configureHook threw, if it was one of the configuration. */
     const types::ConfigError* configError() const { return config_error_.get(); }
 
     // What `describe`, the deployment and tests look at. Order is that of declaration.
@@ -115,8 +114,9 @@ public:
     virtual InputPortBase* makeInput(const std::string& /*port*/, OutputPortBase& /*source*/) { return nullptr; }
     virtual OutputPortBase* makeOutput(const std::string& /*port*/) { return nullptr; }
 
-    /** Faults that can be seen without configuring (files that are not there...); paths as in types::Diagnostic. */
-    virtual void check(types::Diagnostics& /*problems*/) const {}
+    /** Diagnostics that can be seen without configuring (files that are not there...); paths as in types::Diagnostic.
+     */
+    virtual void check(types::Diagnostics& /*diagnostics*/) const {}
     /** Notices for the user (a mesh without triangles, dropped vertices). Valid after configure. */
     virtual std::vector<std::string> notices() const { return {}; }
     /** True once a source has nothing more to say: a lockstep run ends when all sources have. */

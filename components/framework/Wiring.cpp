@@ -93,7 +93,7 @@ void Wiring::loadProperties(uint64_t seed) {
         for (PropertiesBase* properties : task->properties()) properties->load(reader, spec.properties, path);
         if (task->properties().empty()) reader.refuseUnknown(spec.properties, path, {});
         if (reader.diagnostics().empty()) continue;
-        faulty_.push_back(task.get());
+        unreliable_.push_back(task.get());
         diagnostics_.insert(diagnostics_.end(), reader.diagnostics().begin(), reader.diagnostics().end());
     }
 }
@@ -149,8 +149,8 @@ TaskContext* Wiring::findTask(const ConnectionSpec& connection, const char* key,
     return task;
 }
 
-bool Wiring::isFaulty(const TaskContext& task) const {
-    return std::find(faulty_.begin(), faulty_.end(), &task) != faulty_.end();
+bool Wiring::isUnreliable(const TaskContext& task) const {
+    return std::find(unreliable_.begin(), unreliable_.end(), &task) != unreliable_.end();
 }
 
 OutputPortBase* Wiring::findOutput(const ConnectionSpec& connection) {
@@ -165,7 +165,7 @@ OutputPortBase* Wiring::findOutput(const ConnectionSpec& connection) {
                fmt::format("{} has no output port {}; {}", task->name(), name,
                            suggestion(name, namesOf(task->outputs()))));
     } catch (const std::exception& error) {
-        if (!isFaulty(*task)) report(place, connection.path + ".from", error.what());
+        if (!isUnreliable(*task)) report(place, connection.path + ".from", error.what());
     }
     return nullptr;
 }
@@ -182,7 +182,7 @@ InputPortBase* Wiring::findInput(const ConnectionSpec& connection, OutputPortBas
             place, connection.path + ".to",
             fmt::format("{} has no input port {}; {}", task->name(), name, suggestion(name, namesOf(task->inputs()))));
     } catch (const std::exception& error) {
-        if (!isFaulty(*task)) report(place, connection.path + ".to", error.what());
+        if (!isUnreliable(*task)) report(place, connection.path + ".to", error.what());
     }
     return nullptr;
 }
@@ -192,7 +192,7 @@ void Wiring::checkTasks() {
         const TaskSpec& spec = *spec_.task(task->name());
         checkInputs(*task, spec);
         checkActivity(*task, spec);
-        if (isFaulty(*task)) continue;
+        if (isUnreliable(*task)) continue;
         ConfigReader reader(spec_.file, spec_.origins);
         reader.setFallback(spec.place.Mark());
         types::Diagnostics diagnostics;

@@ -10,14 +10,15 @@
 
 namespace insonify::framework {
 
-/** Makes the Graph that a DeploymentSpec says: tasks, properties, ports, connections; collects every fault on the way.
+/** Makes the Graph that a DeploymentSpec says: tasks, properties, ports, connections; collects every diagnostic on the
+ *  way.
  */
 class Wiring {
 public:
     /** `environment` is for all tasks. A seed is set in `spec`. */
     Wiring(DeploymentSpec& spec, std::shared_ptr<Environment> environment, Registry& registry)
         : spec_(spec), environment_(std::move(environment)), registry_(registry) {}
-    /** Once. Throws types::ConfigError with every fault, those of reading the file first. */
+    /** Once. Throws types::ConfigError with every diagnostic, those of reading the file first. */
     Graph make(uint64_t seed);
 
 private:
@@ -30,8 +31,8 @@ private:
     OutputPortBase* findOutput(const ConnectionSpec& connection);
     InputPortBase* findInput(const ConnectionSpec& connection, OutputPortBase& source);
     TaskContext* findTask(const ConnectionSpec& connection, const char* key, const std::string& port);
-    /** Its properties are not to be relied on: ports made on demand and checks would only repeat their faults. */
-    bool isFaulty(const TaskContext& task) const;
+    /** Its properties are not to be relied on: ports made on demand and checks would only repeat their diagnostics. */
+    bool isUnreliable(const TaskContext& task) const;
     void checkTasks();
     void checkInputs(const TaskContext& task, const TaskSpec& spec);
     void checkActivity(TaskContext& task, const TaskSpec& spec);
@@ -40,7 +41,7 @@ private:
     void checkLoops();
     types::Diagnostic diagnostic(const YAML::Node& place, const std::string& path, const std::string& message) const;
     void report(const YAML::Node& place, const std::string& path, const std::string& message);
-    /** A fault that another one may well have brought about: told after all those. */
+    /** A diagnostic that another one may well have brought about: told after all those. */
     void consequence(const YAML::Node& place, const std::string& path, const std::string& message);
 
     DeploymentSpec& spec_;
@@ -48,7 +49,7 @@ private:
     Registry& registry_;
     Graph graph_;
     types::Diagnostics diagnostics_, consequences_;
-    std::vector<const TaskContext*> faulty_;
+    std::vector<const TaskContext*> unreliable_;
 };
 
 /** Which seed a task gets from `run --seed`: stable over runs, machines and versions; below 2^53. */

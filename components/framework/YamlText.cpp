@@ -74,7 +74,7 @@ bool opensBlock(const std::vector<std::string>& lines, size_t line) {
 }
 
 /** What is wrong with the indent of a line, of which YAML's own words tell nothing; empty when nothing is. */
-std::string indentFault(const std::vector<std::string>& lines, size_t line) {
+std::string indentDiagnostic(const std::vector<std::string>& lines, size_t line) {
     if (line >= lines.size() || isBlank(lines[line])) return "";
     if (isIndentedByTab(lines[line])) return "is indented with a tab; indent with spaces";
     const std::vector<size_t> open = openIndents(lines, line);
@@ -87,11 +87,11 @@ std::string indentFault(const std::vector<std::string>& lines, size_t line) {
 }
 
 /** YAML's words for what is wrong, in ours where they tell little. */
-std::string yamlFault(const std::string& text, const YAML::Exception& error) {
+std::string yamlDiagnostic(const std::string& text, const YAML::Exception& error) {
     if (error.msg.find("map flow") != std::string::npos) return "is not YAML: a { has no } to close it";
     if (error.msg.find("sequence flow") != std::string::npos) return "is not YAML: a [ has no ] to close it";
     const std::string indent =
-        error.mark.line < 0 ? "" : indentFault(linesOf(text), static_cast<size_t>(error.mark.line));
+        error.mark.line < 0 ? "" : indentDiagnostic(linesOf(text), static_cast<size_t>(error.mark.line));
     if (!indent.empty()) return indent;
     if (error.msg == "illegal map value")
         return "is not YAML: has a colon where there can be no key; a text with \": \" in it is put in quotes";
@@ -108,7 +108,7 @@ std::vector<YAML::Node> parseYaml(const std::string& text, const std::string& fi
     } catch (const YAML::DeepRecursion& error) {
         throw types::ConfigError({{"", "is nested too deeply", file, error.mark.line + 1, error.mark.column + 1}});
     } catch (const YAML::Exception& error) {
-        throw types::ConfigError({{"", yamlFault(text, error), file, error.mark.line + 1, error.mark.column + 1}});
+        throw types::ConfigError({{"", yamlDiagnostic(text, error), file, error.mark.line + 1, error.mark.column + 1}});
     }
 }
 

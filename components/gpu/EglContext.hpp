@@ -36,7 +36,7 @@ public:
         const EglContext& other;
     };
     /** A context for this thread on the device of another one, with which it shares buffers, textures and programs;
-     * vertex arrays and framebuffers belong to one context. The other one may be current on another thread. */
+     *  vertex arrays and framebuffers belong to one context. The other one may be current on another thread. */
     explicit EglContext(Sharing with);
     EglContext(const EglContext&) = delete;
     ~EglContext();
@@ -63,7 +63,7 @@ public:
     const std::string& driver() const { return driver_; }      ///< "4.5 (Core Profile) Mesa 22.3.6".
     bool isSoftware() const { return software_; }
     /** Why it is drawn in software though nobody asked for that, a sentence that may begin with "Warning: "; empty when
-     * it is not. */
+     *  it is not. */
     std::string fallback() const;
     /** The programs of this context. */
     Programs& programs() { return *programs_; }

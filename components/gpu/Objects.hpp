@@ -92,7 +92,7 @@ public:
     /** Floats, `components` a vertex, tightly packed, as attribute `location`. */
     void attribute(GLuint location, const Buffer& buffer, int components) const;
     /** Attributes `location` to `location + rows - 1` from rows of four floats: the same for all vertices of an
-     * instance. */
+     *  instance. */
     void instanceRows(GLuint location, const Buffer& buffer, int rows) const;
     void indices(const Buffer& buffer) const { glVertexArrayElementBuffer(id(), buffer.id()); }
 

@@ -20,7 +20,7 @@ struct Verdict {
 };
 
 /** Reads a log strictly. Of a pocolog file, see pocolog::check; of an MCAP file each record, checksum, index and
- * message. Throws ConfigError when the file cannot be read. */
+ *  message. Throws ConfigError when the file cannot be read. */
 Verdict check(const std::filesystem::path& path);
 
 namespace pocolog {

@@ -32,7 +32,7 @@ struct Copied {
 };
 
 /** Writes the selected samples of a log, or of the files of one in order (x.0.log, x.1.log...), into a new log, with
- * all that its streams declare, and its index. Within one format samples are copied byte for byte, compressed ones
+ *  all that its streams declare, and its index. Within one format samples are copied byte for byte, compressed ones
  *  decompressed (Rock's C++ reader fails on them); into the other they are written anew. Those of known types are
  *  decoded to see that they are whole. What is damaged is told, and what stands behind it looked for or not; so are
  *  streams of a type that the other format cannot hold. Throws ConfigError for a file that is no log or without a

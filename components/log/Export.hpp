@@ -15,18 +15,20 @@ namespace insonify::log {
  *  columns, bytes of a pixel] uint8, `time` s. Where their shape changes a new file begins: x.0.npz, x.1.npz.
  *  Truth of pings: `elevation`, `object`, `share`, `hits`, `grazing`, `path` and `shadow` [pings, beams, bins], as
  *  types::SonarTruth has them, `objects` (names), `time`, `bearings`, `range_m`. Returns of pings: `first_range` and so
- *  forth [pings, beams], as types::SonarReturns has them, `time`, `bearings`.
+ *  forth [pings, beams], as types::SonarReturns has them, `time`, `bearings`. Elements of pings: `in_phase`,
+ *  `quadrature` [pings, elements, samples], `positions`, `weights` [pings, elements], `range_m` [pings, samples],
+ *  `wavelength`, `speed_of_sound`, `time`, as types::SonarElements has them.
  *  Points: `time` s, `points` [n, 3] m, `intensity`, of each point. Maps of distances: `distances`, `remissions` [maps,
  *  rows, columns], `time`, and the angles of the last map. Ranges: `time`, `range`.
  *  Poses: `time` s, `position` [n, 3] m, `orientation` [n, 4] (w, x, y, z). Numbers, texts, times [s] and angles
  *  [rad]: `time`, `value`. `meta`, where it is given, stands beside them as one text. Throws ConfigError for a stream
- * that is not there or of another type, std::runtime_error on a full disk. */
+ *  that is not there or of another type, std::runtime_error on a full disk. */
 std::vector<std::filesystem::path> exportNpz(Reader& log, const std::string& stream, const std::filesystem::path& path,
                                              const std::string& meta = "");
 
 /** Writes a stream as text. Pings, beams and scans: `time,beam,bearing,bin,value`, a line for each bin [s, 1, rad, 1,
  *  1]; truth the same, with `elevation,object,share,hits,grazing,path,shadow` for the value, and returns without bins.
- *  1]. Points: `time,x,y,z,intensity`; maps: `time,row,column,distance,remission`; ranges: `time,range`.
+ *  1], elements `time,element,position,sample,in_phase,quadrature`. Points: `time,x,y,z,intensity`; maps: `time,row,column,distance,remission`; ranges: `time,range`.
  *  Poses: `time,x,y,z,qw,qx,qy,qz`, which a trajectory reads [s, m, 1]. Numbers, texts, times [s] and angles
  *  [rad]: `time,value`. Throws as exportNpz. */
 void exportCsv(Reader& log, const std::string& stream, const std::filesystem::path& path);

@@ -59,22 +59,35 @@ void writePings(Reader& log, const std::string& stream, const std::filesystem::p
     csv.close();
 }
 
+/** Where a row of a sample is: the bearing of a beam, the position of an element. */
+template <types::Arrayed T>
+double rowPlace(const T& sample, size_t row) {
+    return sample.bearings[row].rad;
+}
+double rowPlace(const types::SonarElements& signals, size_t row) { return signals.positions[row]; }
+
+/** The columns that tell which number of a sample stands in a line. */
+template <types::Arrayed T>
+const char* placeColumns(const T& sample) {
+    return sample.shape().size() == 2 ? "time,beam,bearing,bin" : "time,beam,bearing";
+}
+const char* placeColumns(const types::SonarElements&) { return "time,element,position,sample"; }
+
 /** A line for each bin, or for each beam where there is one number of each. */
 template <types::Arrayed T>
 void writeGrids(Reader& log, const std::string& stream, const std::filesystem::path& path) {
-    constexpr bool of_bins = requires(const T& sample) { sample.bin_count; };
-    std::string header = of_bins ? "time,beam,bearing,bin" : "time,beam,bearing";
+    std::string header = placeColumns(T{});
     const T names;
     T::forEachArray(names, [&](const char* name, const auto&, auto) { header += std::string(",") + name; });
     CsvFile csv(path, header);
     log.forEach<T>(stream, [&](const T& sample, const SampleRef& at) {
-        if (const char* fault = sample.diagnostic())
-            throw types::ConfigError(log.path(), stream, std::string("a sample ") + fault);
-        size_t count = sample.bearings.size(), bins = 1;
-        if constexpr (of_bins) bins = sample.bin_count;
-        for (size_t i = 0; i < count * bins; ++i) {
-            std::string row = fmt::format("{},{}", i / bins, sample.bearings[i / bins].rad);
-            if constexpr (of_bins) row += fmt::format(",{}", i % bins);
+        if (const char* diagnostic = sample.diagnostic())
+            throw types::ConfigError(log.path(), stream, std::string("a sample ") + diagnostic);
+        const std::vector<size_t> shape = sample.shape();
+        const size_t bins = shape.size() == 2 ? shape[1] : 1;
+        for (size_t i = 0; i < shape[0] * bins; ++i) {
+            std::string row = fmt::format("{},{}", i / bins, rowPlace(sample, i / bins));
+            if (shape.size() == 2) row += fmt::format(",{}", i % bins);
             T::forEachArray(sample,
                             [&](const char*, const auto& numbers, auto) { row += fmt::format(",{}", numbers[i]); });
             csv.line(sampleTime(sample, at.time), row);
@@ -164,9 +177,9 @@ void exportCsv(Reader& log, const std::string& stream, const std::filesystem::pa
     if (!done)
         throw types::ConfigError(log.path(), stream,
                                  "holds " + declared.type +
-                                     "; as text can be written pings, beams and scans of sonars, truth and returns of "
-                                     "pings, points, maps of "
-                                     "distances, ranges, poses, numbers and texts (pictures: .png and .npz)");
+                                     "; as text can be written pings, beams and scans of sonars, truth, returns and "
+                                     "elements of pings, points, maps of distances, ranges, poses, numbers and texts "
+                                     "(pictures: .png and .npz)");
 }
 
 }  // namespace insonify::log

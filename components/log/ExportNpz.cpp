@@ -48,14 +48,14 @@ void readShaped(Reader& log, const SampleRef& at, Image& picture) {
 template <types::Arrayed T>
 void readShaped(Reader& log, const SampleRef& at, T& sample) {
     log.read(at, sample);
-    if (const char* fault = sample.diagnostic())
-        throw types::ConfigError(log.path(), log.streams()[at.stream].name, std::string("a sample ") + fault);
+    if (const char* diagnostic = sample.diagnostic())
+        throw types::ConfigError(log.path(), log.streams()[at.stream].name, std::string("a sample ") + diagnostic);
 }
 
 void readShaped(Reader& log, const SampleRef& at, DepthMap& map) {
     log.read(at, map);
-    if (const char* const fault = map.diagnostic())
-        throw types::ConfigError(log.path(), log.streams()[at.stream].name, std::string("a map ") + fault);
+    if (const char* const diagnostic = map.diagnostic())
+        throw types::ConfigError(log.path(), log.streams()[at.stream].name, std::string("a map ") + diagnostic);
     map.remissions.resize(map.distances.size());
 }
 
@@ -128,6 +128,27 @@ void writeGrid(Reader& log, const Run& run, NpzFile& npz, T sample) {
         npz.array("range_m", {count, run.shape[1]}, range);
         writeTexts(npz, "objects", objects);
     }
+}
+
+/** Of signals of elements: time, where each element and each sample is, and what turns range into phase. */
+void writeGrid(Reader& log, const Run& run, NpzFile& npz, types::SonarElements sample) {
+    std::vector<double> time, positions, weights, wavelength, speed_of_sound, range;
+    for (const SampleRef& at : run.samples) {
+        log.read(at, sample);
+        time.push_back(sampleTime(sample, at.time).seconds());
+        positions.insert(positions.end(), sample.positions.begin(), sample.positions.end());
+        weights.insert(weights.end(), sample.weights.begin(), sample.weights.end());
+        wavelength.push_back(sample.wavelength);
+        speed_of_sound.push_back(sample.speed_of_sound);
+        for (size_t i = 0; i < sample.sample_count; ++i) range.push_back(sample.range(i));
+    }
+    const size_t count = run.samples.size();
+    npz.array("time", {count}, time);
+    npz.array("positions", {count, run.shape[0]}, positions);
+    npz.array("weights", {count, run.shape[0]}, weights);
+    npz.array("wavelength", {count}, wavelength);
+    npz.array("speed_of_sound", {count}, speed_of_sound);
+    npz.array("range_m", {count, run.shape[1]}, range);
 }
 
 template <types::Arrayed T>
@@ -299,10 +320,11 @@ std::vector<Path> exportNpz(Reader& log, const std::string& stream, const Path& 
         done = true;
     });
     if (!done)
-        throw types::ConfigError(log.path(), stream,
-                                 "holds " + declared.type +
-                                     "; as arrays can be written pings, beams and scans of sonars, truth and returns "
-                                     "of pings, points, maps of distances, ranges, poses, pictures, numbers and texts");
+        throw types::ConfigError(
+            log.path(), stream,
+            "holds " + declared.type +
+                "; as arrays can be written pings, beams and scans of sonars, truth, returns "
+                "and elements of pings, points, maps of distances, ranges, poses, pictures, numbers and texts");
     return files;
 }
 

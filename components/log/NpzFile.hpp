@@ -17,7 +17,7 @@ std::string numpyType() {
 }
 
 /** Writes a numpy `.npz`: a zip file of uncompressed arrays, with 64-bit sizes throughout.
- *  Trouble while writing is told by close(), which throws std::runtime_error. */
+ *  What fails while writing is told by close(), which throws std::runtime_error. */
 class NpzFile {
 public:
     /** Throws ConfigError when the file cannot be created. */

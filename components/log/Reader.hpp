@@ -38,7 +38,7 @@ public:
     std::string metadatum(const std::string& key) const;
 
     /** Decodes one sample into `sample`, whose memory is used again. Throws ConfigError for a sample of another type
-     * and for one that cannot be decoded. */
+     *  and for one that cannot be decoded. */
     template <class T>
     void read(const SampleRef& at, T& sample) {
         if (!streams_[at.stream].holds<T>()) failType(at, types::sampleIndex<T>());

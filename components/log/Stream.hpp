@@ -70,7 +70,7 @@ inline void addGap(std::vector<Gap>& gaps, Gap gap) {
 enum class AtDamage { Stop, Skip };
 
 /** Bytes that are not what they must be: the first of them, counted from the beginning of the file or of the buffer
- * that was read, and why. */
+ *  that was read, and why. */
 struct FormatError : std::runtime_error {
     FormatError(uint64_t at, const std::string& what) : std::runtime_error(what), byte(at) {}
     uint64_t byte;

@@ -16,8 +16,8 @@ namespace insonify::log {
  *      log->write(ping, received, sample);
  *
  *  Samples gather in memory and go to the file with flush(), close(), or when some megabytes have come together. A
- * write that fails throws std::runtime_error with the system's reason and leaves what was flushed before, whole; after
- * it the writer takes nothing more, and kept() tells how much that is. For one thread. */
+ *  write that fails throws std::runtime_error with the system's reason and leaves what was flushed before, whole; after
+ *  it the writer takes nothing more, and kept() tells how much that is. For one thread. */
 class Writer {
 public:
     virtual ~Writer() = default;
@@ -58,7 +58,7 @@ struct McapConfig : ros::MessageOptions {
 };
 
 /** Creates a log, or empties it; the format follows from the name, *.mcap or pocolog. Throws ConfigError when that
- * cannot be done or another Writer, of this process or not, has it open. */
+ *  cannot be done or another Writer, of this process or not, has it open. */
 std::unique_ptr<Writer> createLog(const std::filesystem::path& path, const McapConfig& mcap = {});
 
 }  // namespace insonify::log

@@ -17,12 +17,12 @@ using Declare = std::function<size_t(log::Writer&)>;
 /** Writes samples to a log on a thread of its own, in the order in which they were pushed, and flushes in between.
  *
  *  Between push() and the file lies a ring of fixed size. Where the file is slower than the samples for long, push()
- *  waits for room. Trouble with the file is thrown once, by the next push() or by finish(), with the number of samples
- *  that were pushed and are not in the file. */
+ *  waits for room. What fails with the file is thrown once, by the next push() or by finish(), with the number of
+ *  samples that were pushed and are not in the file. */
 class LogThread {
 public:
     /** `log` and `rotation` are the thread's alone until finish(). Flushes every `flush_period` [s]; `capacity` is
-     * above 0. */
+     *  above 0. */
     LogThread(log::Writer& log, Rotation& rotation, size_t capacity, double flush_period);
     ~LogThread();
     LogThread(const LogThread&) = delete;

@@ -23,8 +23,8 @@ namespace insonify::logger {
  *  it a buffer. The stream is named after its source, `task.port`. Samples bear the time at which they were true and
  *  the time at which they reached this task. Every stream carries the deployment and its seed in its metadata, and the
  *  plans that the tasks had at its first sample, with which it is declared; streams without samples come at the end.
- * One of truth has the names of the objects as well (`insonify_objects`, a JSON list). The properties of all tasks go
- * into `property_file` at each start; of several loggers that name one, the first does it.
+ *  One of truth has the names of the objects as well (`insonify_objects`, a JSON list). The properties of all tasks go
+ *  into `property_file` at each start; of several loggers that name one, the first does it.
  *
  *  The file is opened by configure (what cannot be written refuses it), written by a thread of its own, flushed every
  *  `flush_period`, continued in NAME.1.log where `max_file_size` or `max_file_duration` says so, and finished with its

@@ -1,5 +1,6 @@
 #pragma once
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -9,7 +10,9 @@
 namespace insonify::logger {
 
 /** Writes the properties of tasks into a log of their own: a stream `task.property` for each that is present, a sample
- *  when it is first seen and whenever it has changed. As Rock's logger does it, in properties.0.log. */
+ *  when it is first seen and whenever it has changed. As Rock's logger does it, in properties.0.log. What Rock has no
+ *  word for: an optional property that is taken out writes false to a stream `task.property.present`, and true, before
+ *  its value, when it is there again. */
 class PropertyLog {
 public:
     /** Throws ConfigError when the file cannot be created. */
@@ -21,12 +24,18 @@ public:
 
 private:
     struct Written {
-        size_t stream = 0;
-        types::PropertyValue value;
+        std::optional<size_t> stream, presence;     ///< Of its value, and of whether it is there: once declared.
+        std::optional<types::PropertyValue> value;  ///< None: it is not there now.
     };
 
+    /** A sample of a stream, which is declared with its first. */
+    template <class T>
+    void write(std::optional<size_t>& stream, const std::string& name, types::Time now, const T& value,
+               const log::Metadata& metadata);
+    void writePresence(Written& property, const std::string& name, types::Time now, const log::Metadata& metadata);
+
     std::unique_ptr<log::Writer> log_;
-    std::map<std::string, Written> written_;  ///< By stream.
+    std::map<std::string, std::map<std::string, Written>> written_;  ///< By task and property.
 };
 
 }  // namespace insonify::logger

@@ -9,7 +9,7 @@ namespace insonify::noise {
 
 /** Of the factor on intensity. Rayleigh: exponential of unit mean, of many scatterers in every bin. Gamma: the mean of
  *  `looks` of them. K: an exponential whose mean is gamma distributed of `shape`, of few or patchy scatterers.
- * Gaussian: N(mean, deviation), clamped at 0, of Cerqueira et al. 2017. */
+ *  Gaussian: N(mean, deviation), clamped at 0, of Cerqueira et al. 2017. */
 enum class SpeckleLaw { Rayleigh, Gamma, K, Gaussian };
 
 struct SpeckleConfig {

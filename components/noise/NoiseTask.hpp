@@ -8,7 +8,7 @@
 #include "components/framework/SamplePool.hpp"
 #include "components/framework/TaskContext.hpp"
 #include "components/noise/Noise.hpp"
-#include "types/Complaint.hpp"
+#include "types/RecurringDiagnostic.hpp"
 #include "types/Sonar.hpp"
 
 namespace insonify::noise {
@@ -17,9 +17,9 @@ namespace insonify::noise {
  *
  *  It comes before the receiver, whose gain raises noise and echoes alike. The bins must be linear intensities: a ping
  *  with bins below 0 leads to RunTimeError, from which the next good one recovers. The same seed and the same ping
- * times give the same noise, in a replay too; two sonars that ping at the same times need different seeds. Without any
- * noise the ping itself is passed on, not a copy. Properties that are set hold from the next ping on. A ping whose
- * loudest echo is below the mean of the added noise is told of: once, and again only after echoes have stood out. */
+ *  times give the same noise, in a replay too; two sonars that ping at the same times need different seeds. Without any
+ *  noise the ping itself is passed on, not a copy. Properties that are set hold from the next ping on. A ping whose
+ *  loudest echo is below the mean of the added noise is told of: once, and again only after echoes have stood out. */
 class NoiseTask final : public framework::TaskContext {
 public:
     using TaskContext::TaskContext;
@@ -44,7 +44,7 @@ private:
     std::optional<Noise> noise_;
     framework::SamplePool<types::Sonar> pool_;
     uint64_t clamped_ = 0;
-    types::Complaint buried_;
+    types::RecurringDiagnostic buried_;
 };
 
 /** Makes the tasks of this folder known to deployments. */

@@ -28,7 +28,7 @@ inline Counter philox(Counter counter, Key key) {
 }
 
 /** -ln(u) for u = (bits + 0.5) / 2^32: exponentially distributed of unit mean, in [1.2e-10, 22.9], within 1e-6
- * relative. */
+ *  relative. */
 inline float exponential(uint32_t bits) {
     constexpr uint32_t half_root = 0xB504F333;  // 2^32 sqrt(1/2): above it 1 - u is small, and exact from ~bits
     const float above = -(static_cast<float>(~bits) + 0.5f) * 0x1p-32f;

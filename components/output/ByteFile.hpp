@@ -13,7 +13,7 @@ class ByteFile {
 public:
     /** Throws ConfigError where the file cannot be made. */
     explicit ByteFile(const std::filesystem::path& path);
-    ~ByteFile();  ///< Writes what waits; trouble is not told any more.
+    ~ByteFile();  ///< Writes what waits; errors are not told any more.
     ByteFile(const ByteFile&) = delete;
     ByteFile& operator=(const ByteFile&) = delete;
 

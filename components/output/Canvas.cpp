@@ -30,7 +30,7 @@ cv::Mat openCanvas(types::Image& picture, cv::Size size, types::Time time) {
     return cv::Mat(size, CV_8UC3, picture.image.data());
 }
 
-void Title::draw(cv::Mat& canvas, const types::Sonar& ping, double reference_db) {
+void Title::draw(cv::Mat& canvas, const types::Sonar& ping, const LevelScale& scale) {
     constexpr double year_2001 = 978307200;
     const double seconds = ping.time.seconds();
     column_ = 12;
@@ -46,7 +46,10 @@ void Title::draw(cv::Mat& canvas, const types::Sonar& ping, double reference_db)
     add(canvas);
     fmt::format_to(out(), "c {:.0f} m/s", ping.speed_of_sound);
     add(canvas);
-    fmt::format_to(out(), "0 dB = {:.1f} dB", reference_db);
+    if (scale.config().scale == BinScale::Code)
+        fmt::format_to(out(), "codes of {} bits", scale.config().code_bits);
+    else
+        fmt::format_to(out(), "0 dB = {:.1f} dB", scale.referenceDb());
     add(canvas);
 }
 

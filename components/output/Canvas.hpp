@@ -3,6 +3,7 @@
 #include <string>
 
 #include "components/output/Colours.hpp"
+#include "components/output/LevelScale.hpp"
 #include "types/Image.hpp"
 #include "types/Sonar.hpp"
 
@@ -11,11 +12,11 @@ namespace insonify::output {
 /** Makes `picture` a BGR image of this size and time, and gives a view of its pixels. */
 cv::Mat openCanvas(types::Image& picture, cv::Size size, types::Time time);
 
-/** The line of text on top of every picture: time, range, shape, reference level. Keeps its memory. */
+/** The line of text on top of every picture: time, range, shape, reference level or largest code. Keeps its memory. */
 class Title {
 public:
     /** Draws on the uppermost rows of `canvas`; what does not fit in its width is left out. */
-    void draw(cv::Mat& canvas, const types::Sonar& ping, double reference_db);
+    void draw(cv::Mat& canvas, const types::Sonar& ping, const LevelScale& scale);
 
 private:
     void add(cv::Mat& canvas);
@@ -25,7 +26,7 @@ private:
 };
 
 /** Paints the ground of title and picture, and the bar of all colours with its upper left corner at `bar`, where there
- * is room for it. */
+ *  is room for it. */
 void paintBackground(cv::Mat& canvas, const Palette& palette, cv::Point bar);
 
 /** A picture and a line of text to go below it. */

@@ -29,7 +29,7 @@ void DiscImage::paint(const types::Sonar& ping, types::Image& picture) {
     cv::Mat canvas = fan_.draw(disc_, picture);
     for (const types::Angle bearing : ping.bearings)
         if (!bearing.isUnknown()) drawHead(canvas, fan_.layout(), bearing.rad);
-    title_.draw(canvas, ping, fan_.referenceDb());
+    title_.draw(canvas, ping, fan_.scale());
 }
 
 void DiscImage::skip(const types::Sonar& ping) {

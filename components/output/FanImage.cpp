@@ -19,7 +19,7 @@ FanImage::FanImage(const DisplayConfig& config)
 
 void FanImage::paint(const types::Sonar& ping, types::Image& picture) {
     cv::Mat canvas = draw(ping, picture);
-    title_.draw(canvas, ping, referenceDb());
+    title_.draw(canvas, ping, scale_);
 }
 
 cv::Mat FanImage::draw(const types::Sonar& ping, types::Image& picture) {
@@ -80,7 +80,7 @@ void FanImage::buildGround() {
     ground_.create(layout_->size(), CV_8UC3);
     paintBackground(ground_, palette_, colour_bar);
     overlay_.emplace(fanOverlay(*layout_));
-    addColourBar(*overlay_, colour_bar, config_.dynamic_range_db);
+    addColourBar(*overlay_, colour_bar, config_);
     overlay_->finish();
 }
 

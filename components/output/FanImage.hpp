@@ -27,7 +27,7 @@ public:
 
     /** Where things are in the last picture. There must have been one. */
     const FanLayout& layout() const { return *layout_; }
-    double referenceDb() const { return scale_.referenceDb(); }
+    const LevelScale& scale() const { return scale_; }
     int tablesBuilt() const { return tables_built_; }
 
 private:

@@ -7,7 +7,14 @@
 
 namespace insonify::output {
 
+void LevelScale::applyToCodes(const cv::Mat& bins, cv::Mat& levels) {
+    bins.copyTo(decibels_);
+    cv::patchNaNs(decibels_, 0);
+    decibels_.convertTo(levels, CV_8U, 255 / config_.largestCode());
+}
+
 void LevelScale::apply(const cv::Mat& bins, cv::Mat& levels) {
+    if (config_.scale == BinScale::Code) return applyToCodes(bins, levels);
     toDecibels(bins);
     if (config_.reference_db)
         reference_db_ = *config_.reference_db;

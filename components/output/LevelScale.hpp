@@ -6,7 +6,8 @@
 
 namespace insonify::output {
 
-/** Log compression: level 255 is the reference, level 0 lies `dynamic_range_db` below it, clipped at both ends.
+/** Log compression: level 255 is the reference, level 0 lies `dynamic_range_db` below it, clipped at both ends. Codes
+ *  are not compressed: level 255 is the largest, level 0 is 0.
  *
  *  Without a fixed `reference_db` the reference follows the echoes: the level that 0.2 % of a picture's bins exceed,
  *  smoothed with a tenth of the difference from one picture to the next. */
@@ -18,10 +19,12 @@ public:
      *  @param levels 8 bits each, of the same shape. */
     void apply(const cv::Mat& bins, cv::Mat& levels);
 
-    /** The level of the brightest colour in the last picture [dB]. */
+    /** The level of the brightest colour in the last picture [dB]; 0 where bins are codes. */
     double referenceDb() const { return reference_db_; }
+    const DisplayConfig& config() const { return config_; }
 
 private:
+    void applyToCodes(const cv::Mat& bins, cv::Mat& levels);
     void toDecibels(const cv::Mat& bins);
     void follow();
     double strongLevel();

@@ -124,15 +124,22 @@ bool fitsColourBar(cv::Size picture, cv::Point at) {
     return (bar & cv::Rect({}, picture)) == bar;
 }
 
-void addColourBar(Overlay& overlay, cv::Point at, double dynamic_range_db) {
+void addColourBar(Overlay& overlay, cv::Point at, const DisplayConfig& display) {
     if (!fitsColourBar(overlay.size(), at)) return;
-    const double step = roundStep(dynamic_range_db / 4.5);
-    for (double below = 0; below < dynamic_range_db * (1 + 1e-9); below += step) {
-        const double y = at.y + below / dynamic_range_db * (colour_bar_size.height - 1);
-        overlay.line({at.x + colour_bar_size.width + 1.0, y}, {at.x + colour_bar_size.width + 4.0, y}, full);
-        const std::string text = below == 0 ? "0 dB" : fmt::format("{:g}", -below);
-        overlay.text(text, {at.x + colour_bar_size.width + 8.0, y}, Overlay::Anchor::Left);
-    }
+    const auto label = [&](double share_below, const std::string& text) {
+        const double x = at.x + colour_bar_size.width, y = at.y + share_below * (colour_bar_size.height - 1);
+        overlay.line({x + 1, y}, {x + 4, y}, full);
+        overlay.text(text, {x + 8, y}, Overlay::Anchor::Left);
+    };
+    const bool codes = display.scale == BinScale::Code;
+    const double span = codes ? display.largestCode() : display.dynamic_range_db, step = roundStep(span / 4.5);
+    label(0, codes ? fmt::format("{:.0f}", span) : "0 dB");
+    if (codes)
+        for (double code = 0; code <= span - step / 2; code += step)
+            label(1 - code / span, fmt::format("{:.0f}", code));
+    else
+        for (double below = step; below < span * (1 + 1e-9); below += step)
+            label(below / span, fmt::format("{:g}", -below));
 }
 
 double roundStep(double least) {

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "components/output/FanShape.hpp"
+#include "components/output/PictureConfig.hpp"
 
 namespace insonify::output {
 
@@ -41,7 +42,7 @@ inline const cv::Size colour_bar_size{12, 128};
 bool fitsColourBar(cv::Size picture, cv::Point at);
 
 /** The levels of the bar of all colours at `at`, relative to the brightest; nothing where the bar does not fit. */
-void addColourBar(Overlay& overlay, cv::Point at, double dynamic_range_db);
+void addColourBar(Overlay& overlay, cv::Point at, const DisplayConfig& display);
 
 /** A round step (1, 2 or 5 times a power of ten) not below `least`. */
 double roundStep(double least);

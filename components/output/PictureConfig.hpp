@@ -1,4 +1,5 @@
 #pragma once
+#include <cmath>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -11,8 +12,8 @@ namespace insonify::output {
 /** Colours from the weakest to the strongest echo. */
 enum class ColourMap { Amber, Copper, Turbo, Viridis, Inferno, Gray };
 
-/** What the bins hold: linear intensities, or levels in dB. */
-enum class BinScale { Linear, Decibel };
+/** What the bins hold: linear intensities, levels in dB, or codes. */
+enum class BinScale { Linear, Decibel, Code };
 
 /** How a picture looks. */
 struct DisplayConfig {
@@ -21,6 +22,9 @@ struct DisplayConfig {
     std::optional<double> reference_db;
     ColourMap colour_map = ColourMap::Amber;
     BinScale scale = BinScale::Linear;
+    int code_bits = 8;
+
+    double largestCode() const { return std::exp2(code_bits) - 1; }
 
     template <class Self, class V>
     static void describe(Self& self, V& visit) {
@@ -33,8 +37,13 @@ struct DisplayConfig {
                     "level of the brightest colour, 10 log10 of a bin; absent: follows the echoes", -3000, 3000},
               self.reference_db);
         visit(Field{"colour_map", "", "colours from weak to strong"}, self.colour_map);
-        visit(Field{"scale", "", "what the bins hold: linear intensities, or decibel"}, self.scale);
+        visit(Field{"scale", "",
+                    "what the bins hold: linear intensities, decibel, or code, shown as it is from 0 to the largest"},
+              self.scale);
+        visit(Field{"code_bits", "1", "of the largest code, where scale is code", 1, 32}, self.code_bits);
     }
+    /** A code has no reference level. */
+    void check(types::Diagnostics& diagnostics) const;
 };
 
 /** Which files are written; names are relative to the output folder. */
@@ -65,6 +74,10 @@ struct PictureConfig : DisplayConfig, RecordingConfig {
         visit(types::Field{"every", "1", "one picture for so many pings", 1, 1e6}, self.every);
         DisplayConfig::describe(self, visit);
     }
+    void check(types::Diagnostics& diagnostics) const {
+        RecordingConfig::check(diagnostics);
+        DisplayConfig::check(diagnostics);
+    }
 };
 
 }  // namespace insonify::output
@@ -75,5 +88,5 @@ struct insonify::types::EnumNames<insonify::output::ColourMap> {
 };
 template <>
 struct insonify::types::EnumNames<insonify::output::BinScale> {
-    static constexpr std::string_view names[] = {"linear", "decibel"};
+    static constexpr std::string_view names[] = {"linear", "decibel", "code"};
 };

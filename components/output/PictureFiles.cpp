@@ -32,6 +32,12 @@ bool isKnownVideo(const std::string& name) {
 
 }  // namespace
 
+void DisplayConfig::check(types::Diagnostics& diagnostics) const {
+    if (scale == BinScale::Code && reference_db)
+        diagnostics.push_back(
+            {"reference_db", "is given where bins are codes; the brightest colour is the largest code of code_bits"});
+}
+
 void RecordingConfig::check(types::Diagnostics& diagnostics) const {
     if (file && !FilePattern::parse(*file))
         diagnostics.push_back(

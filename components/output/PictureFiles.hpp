@@ -10,7 +10,7 @@
 namespace insonify::output {
 
 /** Writes a grey, RGB or BGR picture of 8 bits a channel as a PNG file. @throws std::runtime_error with the name of the
- * file. */
+ *  file. */
 void writePng(const std::filesystem::path& file, const types::Image& picture);
 
 /** The files of a stream of pictures: numbered PNG files, a video, or both. Makes the folders that they need. */

@@ -13,7 +13,7 @@ namespace insonify::output {
 class PictureWriter {
 public:
     explicit PictureWriter(PictureFiles files);
-    /** Writes what waits; trouble is not told any more. */
+    /** Writes what waits; errors are not told any more. */
     ~PictureWriter();
     PictureWriter(const PictureWriter&) = delete;
     PictureWriter& operator=(const PictureWriter&) = delete;

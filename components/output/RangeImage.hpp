@@ -1,7 +1,7 @@
 #pragma once
 #include <opencv2/core.hpp>
 
-#include "components/output/Colours.hpp"
+#include "components/output/Chart.hpp"
 #include "types/DepthMap.hpp"
 #include "types/Image.hpp"
 
@@ -14,7 +14,7 @@ public:
     using Sample = types::DepthMapPtr;
     static constexpr const char* port = "range_image";
 
-    RangeImage(uint32_t width, ColourMap colour_map);
+    RangeImage(uint32_t width, ColourMap colour_map) : chart_(width, colour_map) {}
 
     void add(const types::DepthMapPtr& map) { map_ = map; }
     /** @param picture becomes a BGR image, 8 bits a channel, with the map's time. Its memory is used again.
@@ -23,7 +23,7 @@ public:
     void clear() { map_.reset(); }
 
     /** The part of the last picture that shows cells. */
-    const cv::Rect& cells() const { return cells_; }
+    const cv::Rect& cells() const { return chart_.area(); }
 
 private:
     /** Of the returns [m]; equal without any. */
@@ -34,10 +34,8 @@ private:
     void drawCells(cv::Mat& canvas, const types::DepthMap& map, const Span& span) const;
     void drawLabels(cv::Mat& canvas, const types::DepthMap& map, const Span& span) const;
 
-    int width_;
-    Palette palette_;
+    Chart chart_;
     types::DepthMapPtr map_;
-    cv::Rect cells_;
 };
 
 }  // namespace insonify::output

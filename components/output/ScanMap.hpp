@@ -20,7 +20,7 @@ public:
     ScanMap(int radius, double range);
 
     /** Whether a ping of this pose can be laid: one that is usable and within 1e9 m, the plane of the sonar not on
-     * edge, where nothing of it is seen from above. */
+     *  edge, where nothing of it is seen from above. */
     static bool shows(const types::Pose& sonar);
     /** @param sonar a pose that it shows. */
     void lay(const types::Sonar& ping, const types::Pose& sonar);

@@ -51,7 +51,7 @@ void ScanMosaic::build(const types::Sonar& ping) {
     ground_.create(layout_->size(), CV_8UC3);
     paintBackground(ground_, palette_, colour_bar);
     overlay_.emplace(fanOverlay(*layout_));
-    addColourBar(*overlay_, colour_bar, half_.dynamic_range_db);
+    addColourBar(*overlay_, colour_bar, half_);
     overlay_->finish();
 }
 
@@ -73,7 +73,7 @@ void ScanMosaic::drawMap(const types::Sonar& ping) {
             if (!std::isnan(cells.at<float>(row, column)))
                 canvas.at<cv::Vec3b>(corner.y + row, corner.x + column) = palette_[levels_.at<uint8_t>(row, column)];
     overlay_->blend(canvas);
-    title_.draw(canvas, ping, scale_.referenceDb());
+    title_.draw(canvas, ping, scale_);
 }
 
 }  // namespace insonify::output

@@ -7,42 +7,24 @@
 
 namespace insonify::output {
 
-void MosaicConfig::check(types::Diagnostics& diagnostics) const {
-    PictureConfig::check(diagnostics);
-    if (width < 512)
-        diagnostics.push_back({"width", fmt::format("is {} px; two pictures side by side take 512", width)});
-}
-
-std::unique_ptr<Painter> ScanMosaicTask::makePainter() {
-    auto mosaic = std::make_unique<ScanMosaic>(*config);
-    mosaic_ = mosaic.get();
-    return mosaic;
-}
-
 void ScanMosaicTask::keep(const types::Pose& body) {
     if (types::isUsable(body)) before_ = body;
 }
 
 bool ScanMosaicTask::startHook() {
-    aligner_.clear(config->timeout);
     before_.reset();
     laid_ = held_ = left_out_ = 0;
     held_for_ = 0;
-    return PictureTask::startHook();
-}
-
-void ScanMosaicTask::stopHook() {
-    aligner_.flush();
-    PictureTask::stopHook();
+    return PairPictureTask::startHook();
 }
 
 void ScanMosaicTask::show(const types::Sonar& sample) {
     std::optional<types::Pose> sonar = bodyAt(sample.time);
     if (sonar) types::place(types::Pose(*sonar), config->mount, *sonar);
-    const bool usable = mosaic_->place(sonar);
+    const bool usable = picture_->place(sonar);
     ++(sonar && usable ? laid_ : left_out_);
     describeMap(caption_);
-    mosaic_->setCaption(caption_);
+    picture_->setCaption(caption_);
     take(sample);
 }
 

@@ -1,30 +1,21 @@
 #pragma once
 #include <optional>
 
-#include "components/framework/StreamAligner.hpp"
-#include "components/output/PictureTask.hpp"
+#include "components/output/PairPictureTask.hpp"
 #include "components/output/ScanMosaic.hpp"
 #include "types/Mount.hpp"
 #include "types/Pose.hpp"
 
 namespace insonify::output {
 
-struct MosaicConfig : PictureConfig {
+struct MosaicConfig : PairConfig {
     types::Mount mount;
-    double timeout = 1;
-
-    MosaicConfig() { width = 2048; }
 
     template <class Self, class V>
     static void describe(Self& self, V& visit) {
-        using types::Field;
-        PictureConfig::describe(self, visit);
-        visit(Field{"mount", "", "the sonar in the body"}, self.mount);
-        visit(Field{"timeout", "s", "that a ping waits for the pose after it, in the samples' time", 0, 1e6},
-              self.timeout);
+        PairConfig::describe(self, visit);
+        visit(types::Field{"mount", "", "the sonar in the body"}, self.mount);
     }
-    /** As for any pictures; the two together are at least twice as wide as one. */
-    void check(types::Diagnostics& diagnostics) const;
 };
 
 /** Shows the pings of a moving scanning sonar as they were heard, and beside that where they belong: see ScanMosaic.
@@ -35,21 +26,16 @@ struct MosaicConfig : PictureConfig {
  *  A pose that is not finite is none. A ping without any pose, or with one that the map cannot show, is left out of it,
  *  which is told as well.
  *  Out: `image`, both pictures side by side, at the ping's time. */
-class ScanMosaicTask final : public PictureTask {
+class ScanMosaicTask final : public PairPictureTask<MosaicConfig, ScanMosaic> {
 public:
-    using PictureTask::PictureTask;
+    using PairPictureTask::PairPictureTask;
 
-    framework::Properties<MosaicConfig> config{this};
     framework::InputPort<types::Pose> pose{this, "pose", "body in the world: x north, y west, z up"};
 
     std::vector<std::string> notices() const override;
 
 private:
-    const PictureConfig& pictureConfig() const override { return *config; }
-    std::unique_ptr<Painter> makePainter() override;
     bool startHook() override;
-    void updateHook() override { aligner_.update(); }
-    void stopHook() override;
     void keep(const types::Pose& body);
     void show(const types::Sonar& sample);
     /** The body at a time between the pose before and the one after it. */
@@ -58,13 +44,11 @@ private:
     /** How the map has come about, and what is amiss with it; keeps the text's memory. */
     void describeMap(std::string& text) const;
 
-    ScanMosaic* mosaic_ = nullptr;  ///< The painter.
     std::string caption_;
     std::optional<types::Pose> before_;
     uint64_t laid_ = 0, held_ = 0, left_out_ = 0;
     double held_for_ = 0;  ///< The longest time to a pose that was held [s].
 
-    framework::StreamAligner aligner_;
     framework::AlignedPort<types::Pose> poses_{aligner_, pose, [this](const types::Pose& body) { keep(body); }};
     framework::AlignedPort<types::SonarPtr> pings_{aligner_, ping,
                                                    [this](const types::SonarPtr& sample) { show(*sample); }};

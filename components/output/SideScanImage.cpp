@@ -6,6 +6,8 @@
 #include <cmath>
 #include <limits>
 
+#include "components/output/Sides.hpp"
+
 namespace insonify::output {
 namespace {
 
@@ -13,9 +15,8 @@ constexpr float blank = std::numeric_limits<float>::quiet_NaN();
 
 /** The bins of the first beam on a side, +1 for port; null where there is none. */
 const float* binsOf(const types::Sonar& ping, int side) {
-    for (uint32_t beam = 0; beam < ping.beam_count; ++beam)
-        if (ping.bearings[beam].rad * side > 0) return ping.bins.data() + size_t{beam} * ping.bin_count;
-    return nullptr;
+    const auto beam = firstBeamOn(ping, side);
+    return beam ? ping.bins.data() + size_t{*beam} * ping.bin_count : nullptr;
 }
 
 /** Mean of the bins between two places, counted in bins; at least the one that holds the first of them. */

@@ -5,17 +5,11 @@
 #include <algorithm>
 #include <cmath>
 #include <glm/common.hpp>
-#include <opencv2/imgproc.hpp>
-
-#include "components/output/Canvas.hpp"
-#include "components/output/FanShape.hpp"
 
 namespace insonify::output {
 namespace {
 
-constexpr int left_margin = 96, right_margin = 16, top_margin = 10, bottom_margin = 34;
 constexpr double tallest = 1.5;  // of a chart [of its width]
-const cv::Point colour_bar{10, FanLayout::title_height + 24};
 
 bool isFinite(const glm::dvec3& p) { return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z); }
 
@@ -27,9 +21,6 @@ void forEachPoint(const std::vector<std::vector<glm::dvec3>>& clouds, Use&& use)
 }
 
 }  // namespace
-
-SoundingMap::SoundingMap(uint32_t width, ColourMap colour_map)
-    : width_(static_cast<int>(width + width % 2)), palette_(paletteOf(colour_map)) {}
 
 void SoundingMap::add(const types::PointCloudPtr& cloud) {
     if (next_ == clouds_.size()) clouds_.emplace_back();
@@ -48,27 +39,24 @@ SoundingMap::Bounds SoundingMap::bounds() const {
     return bounds;
 }
 
-void SoundingMap::fit(const Bounds& bounds) {
-    const int columns = width_ - left_margin - right_margin;
+int SoundingMap::fit(const Bounds& bounds) {
+    const int columns = chart_.columns();
     const glm::dvec3 extent = glm::max(bounds.high - bounds.low, glm::dvec3(1));
-    const int rows =
-        static_cast<int>(std::clamp(columns * extent.x / extent.y, colour_bar_size.height + 40.0, tallest * columns));
-    chart_ = {left_margin, FanLayout::title_height + top_margin, columns, rows};
+    const int rows = chart_.rowsFor(columns * extent.x / extent.y, tallest);
     centre_ = {(bounds.low.x + bounds.high.x) / 2, (bounds.low.y + bounds.high.y) / 2};
     pixels_per_m_ = 0.96 * std::min(columns / extent.y, rows / extent.x);
+    return rows;
 }
 
 cv::Point SoundingMap::pixel(double x, double y) const {
-    return {cvRound(chart_.x + chart_.width / 2.0 - (y - centre_.y) * pixels_per_m_),
-            cvRound(chart_.y + chart_.height / 2.0 - (x - centre_.x) * pixels_per_m_)};
+    const cv::Rect& area = chart_.area();
+    return {cvRound(area.x + area.width / 2.0 - (y - centre_.y) * pixels_per_m_),
+            cvRound(area.y + area.height / 2.0 - (x - centre_.x) * pixels_per_m_)};
 }
 
 void SoundingMap::paint(types::Image& picture) {
     const Bounds all = bounds();
-    fit(all);
-    cv::Mat canvas = openCanvas(picture, {width_, chart_.br().y + bottom_margin}, time_);
-    paintBackground(canvas, palette_, colour_bar);
-    canvas(chart_).setTo(cv::Scalar(0, 0, 0));
+    cv::Mat canvas = chart_.open(picture, time_, fit(all));
     drawPoints(canvas, all);
     drawLabels(canvas, all);
 }
@@ -76,32 +64,27 @@ void SoundingMap::paint(types::Image& picture) {
 void SoundingMap::drawPoints(cv::Mat& canvas, const Bounds& bounds) const {
     const double relief = std::max(bounds.high.z - bounds.low.z, 1e-6);
     // Somewhat larger than the room that a point has to itself, so that a swath has few holes and keeps its detail.
-    const double room = static_cast<double>(chart_.area()) / (1.0 + static_cast<double>(bounds.points));
+    const double room = static_cast<double>(chart_.area().area()) / (1.0 + static_cast<double>(bounds.points));
     const int size = std::clamp(cvRound(1.6 * std::sqrt(room)), 1, 9);
     forEachPoint(clouds_, [&](const glm::dvec3& point) {
-        const auto level = static_cast<size_t>(std::clamp(255 * (point.z - bounds.low.z) / relief, 0.0, 255.0));
+        const double level = 255 * (point.z - bounds.low.z) / relief;
         const cv::Point at = pixel(point.x, point.y) - cv::Point(size / 2, size / 2);
-        canvas(cv::Rect(at, cv::Size(size, size)) & chart_).setTo(cv::Scalar(palette_[level]));
+        canvas(cv::Rect(at, cv::Size(size, size)) & chart_.area()).setTo(cv::Scalar(chart_.colour(level)));
     });
 }
 
 void SoundingMap::drawLabels(cv::Mat& canvas, const Bounds& bounds) const {
     Overlay overlay(canvas.size());
     using Anchor = Overlay::Anchor;
-    for (int i = 0; i <= 4; ++i) {
-        const double y = colour_bar.y + i / 4.0 * (colour_bar_size.height - 1);
-        const double z = bounds.high.z - i / 4.0 * (bounds.high.z - bounds.low.z);
-        overlay.text(fmt::format("{:.2f} m", z), {colour_bar.x + colour_bar_size.width + 5.0, y}, Anchor::Left);
-    }
+    Chart::labelBar(overlay, bounds.high.z, bounds.low.z);
     const double step = roundStep(90 / pixels_per_m_);
     for (double y = step * std::ceil(bounds.low.y / step); y <= bounds.high.y; y += step)
-        overlay.text(fmt::format("y {:g}", y + 0.0), {static_cast<double>(pixel(0, y).x), chart_.br().y + 16.0},
+        overlay.text(fmt::format("y {:g}", y + 0.0), {static_cast<double>(pixel(0, y).x), chart_.area().br().y + 16.0},
                      Anchor::Centre);
     for (double x = step * std::ceil(bounds.low.x / step); x <= bounds.high.x; x += step)
-        if (const double row = pixel(x, 0).y; row > colour_bar.y + colour_bar_size.height + 20)
-            overlay.text(fmt::format("x {:g}", x + 0.0), {left_margin - 8.0, row}, Anchor::Right);
-    overlay.text(fmt::format("{} soundings, x north, y west [m], colour: height", bounds.points),
-                 {12, FanLayout::title_height / 2.0}, Anchor::Left);
+        if (const double row = pixel(x, 0).y; row > Chart::colour_bar.y + colour_bar_size.height + 20)
+            overlay.text(fmt::format("x {:g}", x + 0.0), {Chart::left_margin - 8.0, row}, Anchor::Right);
+    Chart::addTitle(overlay, fmt::format("{} soundings, x north, y west [m], colour: height", bounds.points));
     overlay.finish();
     overlay.blend(canvas);
 }

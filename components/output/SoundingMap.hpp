@@ -2,8 +2,7 @@
 #include <opencv2/core.hpp>
 #include <vector>
 
-#include "components/output/Colours.hpp"
-#include "components/output/Overlay.hpp"
+#include "components/output/Chart.hpp"
 #include "types/Image.hpp"
 #include "types/PointCloud.hpp"
 
@@ -17,7 +16,7 @@ public:
     using Sample = types::PointCloudPtr;
     static constexpr const char* port = "soundings";
 
-    SoundingMap(uint32_t width, ColourMap colour_map);
+    SoundingMap(uint32_t width, ColourMap colour_map) : chart_(width, colour_map) {}
 
     /** Takes note of the points of a ping; those that are not finite are none. */
     void add(const types::PointCloudPtr& cloud);
@@ -37,16 +36,15 @@ private:
         size_t points = 0;
     };
     Bounds bounds() const;
-    void fit(const Bounds& bounds);
+    /** The scale at which they fit in, and the rows that this takes. */
+    int fit(const Bounds& bounds);
     void drawPoints(cv::Mat& canvas, const Bounds& bounds) const;
     void drawLabels(cv::Mat& canvas, const Bounds& bounds) const;
 
-    int width_;
-    Palette palette_;
+    Chart chart_;
     std::vector<std::vector<glm::dvec3>> clouds_;  ///< A ring, whose memory is used again.
     size_t next_ = 0;                              ///< Place of the next in it.
     types::Time time_;                             ///< Of the newest.
-    cv::Rect chart_;                               ///< Where points are drawn.
     cv::Point2d centre_;                           ///< x north, y west of the middle of the chart [m].
     double pixels_per_m_ = 1;
 };

@@ -4,29 +4,15 @@
 
 namespace insonify::output {
 
-void TruthImageConfig::check(types::Diagnostics& diagnostics) const {
-    PictureConfig::check(diagnostics);
-    if (width < 512)
-        diagnostics.push_back({"width", fmt::format("is {} px; two pictures side by side take 512", width)});
-}
-
-std::unique_ptr<Painter> TruthImageTask::makePainter() {
-    auto picture = std::make_unique<TruthImage>(*config);
-    picture_ = picture.get();
-    return picture;
-}
-
 bool TruthImageTask::startHook() {
-    aligner_.clear(config->timeout);
     last_.reset();
     left_out_ = 0;
-    return PictureTask::startHook();
+    return PairPictureTask::startHook();
 }
 
 void TruthImageTask::stopHook() {
-    aligner_.flush();
+    PairPictureTask::stopHook();
     last_.reset();
-    PictureTask::stopHook();
 }
 
 void TruthImageTask::show(const types::Sonar& sample) {

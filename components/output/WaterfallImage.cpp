@@ -39,7 +39,7 @@ void WaterfallImage::paint(const types::Sonar& ping, types::Image& picture) {
                        [this](uint8_t level) { return palette_[level]; });
     overlay_->blend(canvas);
     labelAges(canvas);
-    title_.draw(canvas, ping, scale_.referenceDb());
+    title_.draw(canvas, ping, scale_);
 }
 
 void WaterfallImage::skip(const types::Sonar& ping) {
@@ -56,7 +56,7 @@ void WaterfallImage::clear(const types::Sonar& ping) {
     ground_.create(water().br().y + bottom_margin, width_, CV_8UC3);
     paintBackground(ground_, palette_, colour_bar);
     overlay_.emplace(ground_.size());
-    addColourBar(*overlay_, colour_bar, config_.dynamic_range_db);
+    addColourBar(*overlay_, colour_bar, config_);
     addRanges(*overlay_, range_ > 0 ? range_ : 1);
     overlay_->finish();
 }

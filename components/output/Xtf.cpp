@@ -10,6 +10,7 @@
 #include <ctime>
 #include <stdexcept>
 
+#include "components/output/Sides.hpp"
 #include "types/Angle.hpp"
 
 namespace insonify::output {
@@ -103,8 +104,7 @@ void putPose(Block& header, const types::Pose& sonar) {
 }
 
 uint32_t beamOf(const types::Sonar& ping, int side) {
-    for (uint32_t beam = 0; beam < ping.beam_count; ++beam)
-        if (ping.bearings[beam].rad * side > 0) return beam;
+    if (const auto beam = firstBeamOn(ping, side)) return *beam;
     throw std::invalid_argument("a ping has no beam to " + std::string(side > 0 ? "port" : "starboard") +
                                 "; lines of a side-scan have one to either side");
 }

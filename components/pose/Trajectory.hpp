@@ -63,8 +63,8 @@ public:
     explicit Trajectory(const std::vector<Waypoint>& waypoints);
 
     /** Reads a CSV with header `time,x,y,z,qw,qx,qy,qz`; quaternions are made unit, blank lines skipped.
-     *  @throws types::ConfigError with line and column of every fault: a field that is missing, too many or no finite
-     *  number, a time that does not increase, a quaternion shorter than 1e-6. */
+     *  @throws types::ConfigError with line and column of every diagnostic: a field that is missing, too many or no
+     *  finite number, a time that does not increase, a quaternion shorter than 1e-6. */
     static Trajectory fromCsv(const std::filesystem::path& file);
 
     /** Body "body" in frame "world" at `time` [s] since the start of the run, with velocity [m/s] in the world and

@@ -10,14 +10,14 @@ constexpr double shortest_quaternion = 1e-6;
 
 glm::dquat orientationOf(const std::vector<double>& row) { return {row[4], row[5], row[6], row[7]}; }
 
-std::vector<types::CsvProblem> judge(const std::vector<double>& row, const std::vector<double>* before) {
-    std::vector<types::CsvProblem> problems;
+std::vector<types::CsvDiagnostic> judge(const std::vector<double>& row, const std::vector<double>* before) {
+    std::vector<types::CsvDiagnostic> diagnostics;
     if (before && !(row[0] > before->front()))
-        problems.push_back({0, "is not after the line before; times must increase"});
+        diagnostics.push_back({0, "is not after the line before; times must increase"});
     const double length = glm::length(orientationOf(row));
     if (!(length >= shortest_quaternion) || !std::isfinite(length))
-        problems.push_back({4, "starts a quaternion of no usable length; it must be about 1"});
-    return problems;
+        diagnostics.push_back({4, "starts a quaternion of no usable length; it must be about 1"});
+    return diagnostics;
 }
 
 }  // namespace

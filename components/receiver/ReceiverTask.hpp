@@ -7,7 +7,7 @@
 #include "components/framework/SamplePool.hpp"
 #include "components/framework/TaskContext.hpp"
 #include "components/receiver/Receiver.hpp"
-#include "types/Complaint.hpp"
+#include "types/RecurringDiagnostic.hpp"
 #include "types/Sonar.hpp"
 
 namespace insonify::receiver {
@@ -41,7 +41,7 @@ private:
     void judge(const types::Sonar& intensities, const types::Sonar& received);
 
     std::optional<Receiver> receiver_;
-    types::Complaint flawed_;
+    types::RecurringDiagnostic flawed_;
     framework::SamplePool<types::Sonar> pool_;
 };
 

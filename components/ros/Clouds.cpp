@@ -83,7 +83,8 @@ void endCloud(uint32_t rows, PointCloud2& message) {
 }
 
 void convert(const types::PointCloud& cloud, WorldFrame frame, PointCloud2& message) {
-    if (const char* const fault = cloud.diagnostic()) throw std::invalid_argument(std::string("the cloud ") + fault);
+    if (const char* const diagnostic = cloud.diagnostic())
+        throw std::invalid_argument(std::string("the cloud ") + diagnostic);
     message.header.stamp = toRos(cloud.time);
     message.header.frame_id = "map";
     beginCloud({"x", "y", "z", "intensity"}, message);
@@ -112,7 +113,8 @@ void convert(const PointCloud2& message, WorldFrame frame, types::PointCloud& cl
 }
 
 void convert(const types::DepthMap& map, const std::string& frame_id, PointCloud2& message) {
-    if (const char* const fault = map.diagnostic()) throw std::invalid_argument(std::string("the map ") + fault);
+    if (const char* const diagnostic = map.diagnostic())
+        throw std::invalid_argument(std::string("the map ") + diagnostic);
     const bool polar =
         map.vertical_projection == types::Projection::Polar && map.horizontal_projection == types::Projection::Polar;
     if (!polar || map.vertical_interval.size() != map.vertical_size ||

@@ -19,7 +19,7 @@ void addPoint(std::initializer_list<float> numbers, PointCloud2& message);
 void endCloud(uint32_t rows, PointCloud2& message);
 
 /** x, y, z in the axes of the world frame, named map [m], intensity: of each point's echo. Numbers of 32 bits, which
- * far from the origin are coarse: half a metre at 5000 km. */
+ *  far from the origin are coarse: half a metre at 5000 km. */
 void convert(const types::PointCloud& cloud, WorldFrame frame, PointCloud2& message);
 /** Reads x, y and z, and intensity where it is there, of 32 or 64 bits. */
 void convert(const PointCloud2& message, WorldFrame frame, types::PointCloud& cloud);

@@ -3,6 +3,7 @@
 #include <tuple>
 #include <type_traits>
 
+#include "components/ros/ElementMessages.hpp"
 #include "components/ros/GeometryMessages.hpp"
 #include "components/ros/SensorMessages.hpp"
 #include "components/ros/SonarMessages.hpp"
@@ -15,7 +16,7 @@ using MessageTypes =
     std::tuple<Bool, Int32, Int64, Float32, Float64, String, Time, Header, Clock, Vector3, Point, Quaternion, Pose,
                PoseStamped, PoseWithCovariance, Twist, TwistWithCovariance, Odometry, Image, LaserScan, PointField,
                PointCloud2, Range, PingInfo, SonarImageData, ProjectedSonarImage, RawSonarImage, DetectionFlag,
-               SonarRanges, SonarTruth, SonarReturns>;
+               SonarRanges, SonarTruth, SonarReturns, SonarElements>;
 
 /** Calls `use(std::type_identity<T>{})` for each message. */
 template <class Use>

@@ -15,7 +15,7 @@ enum class ImageOrder { RangeMajor, BeamMajor };
 enum class ImageType { Uint8, Float32 };
 
 /** Axes of what a sonar measures: z ahead, x up, y to starboard (marine_acoustic_msgs), or x ahead, y to port, z up
- * (Rock, REP 103). */
+ *  (Rock, REP 103). */
 enum class SensorFrame { ZForward, XForward };
 
 /** What the bins of a ping hold: linear intensities, or levels in dB. */

@@ -4,6 +4,7 @@
 #include <type_traits>
 
 #include "components/ros/Clouds.hpp"
+#include "components/ros/Elements.hpp"
 #include "components/ros/FromSonar.hpp"
 #include "components/ros/Messages.hpp"
 #include "components/ros/Options.hpp"
@@ -36,6 +37,8 @@ template <>
 struct MessagesOf<types::SonarTruth> : Messages<types::SonarTruth, SonarTruth, Clock> {};
 template <>
 struct MessagesOf<types::SonarReturns> : Messages<types::SonarReturns, SonarReturns, Clock> {};
+template <>
+struct MessagesOf<types::SonarElements> : Messages<types::SonarElements, SonarElements, Clock> {};
 template <>
 struct MessagesOf<types::Pose> : Messages<types::Pose, Odometry, PoseStamped, Clock> {};
 template <>
@@ -103,6 +106,9 @@ inline void toMessage(const types::SonarTruth& truth, const MessageOptions& opti
 inline void toMessage(const types::SonarReturns& returns, const MessageOptions& options, SonarReturns& message) {
     convert(returns, options.frame_id, message);
 }
+inline void toMessage(const types::SonarElements& signals, const MessageOptions& options, SonarElements& message) {
+    convert(signals, options.frame_id, message);
+}
 inline void toMessage(const types::PointCloud& cloud, const MessageOptions& options, PointCloud2& message) {
     convert(cloud, options.world_frame, message);
 }
@@ -139,6 +145,9 @@ inline void toSample(const SonarTruth& message, const MessageOptions&, types::So
 }
 inline void toSample(const SonarReturns& message, const MessageOptions&, types::SonarReturns& returns) {
     convert(message, returns);
+}
+inline void toSample(const SonarElements& message, const MessageOptions&, types::SonarElements& signals) {
+    convert(message, signals);
 }
 inline void toSample(const Image& message, const MessageOptions&, types::Image& picture) { convert(message, picture); }
 inline void toSample(const PointCloud2& message, const MessageOptions& options, types::PointCloud& cloud) {

@@ -46,7 +46,7 @@ void copyTruth(const From& from, To& to) {
 
 template <class Sample>
 void requireSound(const Sample& sample) {
-    if (const char* fault = sample.diagnostic()) throw std::invalid_argument(std::string("it ") + fault);
+    if (const char* diagnostic = sample.diagnostic()) throw std::invalid_argument(std::string("it ") + diagnostic);
 }
 
 }  // namespace

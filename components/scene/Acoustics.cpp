@@ -76,7 +76,7 @@ constexpr double convex_body_db = -9.23;
 class ValueReader {
 public:
     ValueReader(const AcousticValues& values, types::Diagnostics& diagnostics)
-        : values_(values), problems_(diagnostics) {}
+        : values_(values), diagnostics_(diagnostics) {}
 
     template <class T>
     void operator()(const types::Field& field, std::optional<T>& value) {
@@ -86,8 +86,8 @@ public:
     void refuseUnknown() {
         for (const auto& [key, value] : values_)
             if (std::ranges::count(known_, key) == 0)
-                problems_.push_back({key, fmt::format("is not known; {}may be {}", types::didYouMean(key, known_),
-                                                      fmt::join(known_, ", "))});
+                diagnostics_.push_back({key, fmt::format("is not known; {}may be {}", types::didYouMean(key, known_),
+                                                         fmt::join(known_, ", "))});
     }
 
 private:
@@ -96,14 +96,20 @@ private:
         if (number && *number >= field.min && *number <= field.max)
             value = *number;
         else
-            problems_.push_back(
+            diagnostics_.push_back(
                 {field.name, fmt::format("is {}; must be a number from {} to {}", text(from), field.min, field.max)});
     }
     void read(const types::Field& field, const AcousticValue& from, std::optional<std::string>& value) {
         if (const auto* file = std::get_if<std::string>(&from); file && !file->empty())
             value = *file;
         else
-            problems_.push_back({field.name, fmt::format("is {}; must be the path of a file", text(from))});
+            diagnostics_.push_back({field.name, fmt::format("is {}; must be the path of a file", text(from))});
+    }
+    void read(const types::Field& field, const AcousticValue& from, std::optional<bool>& value) {
+        if (const auto* given = std::get_if<bool>(&from))
+            value = *given;
+        else
+            diagnostics_.push_back({field.name, fmt::format("is {}; must be true or false", text(from))});
     }
     template <types::NamedEnum E>
     void read(const types::Field& field, const AcousticValue& from, std::optional<E>& value) {
@@ -113,7 +119,7 @@ private:
         if (found != std::end(names))
             value = static_cast<E>(found - names);
         else
-            problems_.push_back(
+            diagnostics_.push_back(
                 {field.name, fmt::format("is {}; {}may be {}", text(from), near(name, names), fmt::join(names, ", "))});
     }
     template <class Names>
@@ -122,12 +128,13 @@ private:
     }
     static std::string text(const AcousticValue& value) {
         if (const auto* number = std::get_if<double>(&value)) return fmt::format("{}", *number);
+        if (const auto* given = std::get_if<bool>(&value)) return *given ? "true" : "false";
         const auto* name = std::get_if<std::string>(&value);
         return name ? fmt::format("\"{}\"", *name) : "no number and no text";
     }
 
     const AcousticValues& values_;
-    types::Diagnostics& problems_;
+    types::Diagnostics& diagnostics_;
     std::vector<std::string> known_;
 };
 
@@ -167,6 +174,7 @@ void Acoustics::applyTo(types::Material& target) const {
     if (lambert_db) target.lambert_db = static_cast<float>(*lambert_db);
     if (reflection) target.reflection = static_cast<float>(*reflection);
     if (roughness_slope) target.roughness_slope = static_cast<float>(*roughness_slope);
+    if (mirror) target.mirror = *mirror;
     if (reflectivity) target.reflectivity = static_cast<float>(*reflectivity);
     target.has_acoustics = true;
 }

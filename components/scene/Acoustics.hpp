@@ -72,6 +72,7 @@ struct Acoustics {
     std::optional<Sediment> sediment;
     std::optional<Matter> material;
     std::optional<double> lambert_db, reflection, roughness_slope, reflectivity;
+    std::optional<bool> mirror;
     std::optional<std::string> table;
     std::vector<glm::dvec2> measured;  ///< What stands in `table`, once it is read [deg, dB].
 
@@ -92,13 +93,15 @@ struct Acoustics {
               self.reflection);
         visit(Field{"roughness_slope", "1", "rms slope of the micro-relief: adds the lobe of a `reflection`", 0, 10},
               self.roughness_slope);
+        visit(Field{"mirror", "", "reflects as a flat mirror, by `reflection` or all of the sound: for multipath"},
+              self.mirror);
         visit(Field{"reflectivity", "1", "factor of cerqueira2017", 0, 1}, self.reflectivity);
         visit(Field{"table", "", "instead: CSV file with grazing_deg,strength_db"}, self.table);
     }
 };
 
-/** What a file gives to a key: a number, a text, or neither. */
-using AcousticValue = std::variant<std::monostate, double, std::string>;
+/** What a file gives to a key: a number, a text, a yes or no, or neither. */
+using AcousticValue = std::variant<std::monostate, double, std::string, bool>;
 using AcousticValues = std::map<std::string, AcousticValue>;
 
 /** Acoustics from the keys and values of a file that lies in `folder`; what is wrong with them goes to `diagnostics`.

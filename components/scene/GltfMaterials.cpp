@@ -25,6 +25,7 @@ AcousticValues valuesOf(const tinygltf::Value& object) {
         AcousticValue& value = values[key];
         if (json.IsNumber()) value = json.GetNumberAsDouble();
         if (json.IsString()) value = json.Get<std::string>();
+        if (json.IsBool()) value = json.Get<bool>();
     }
     return values;
 }

@@ -20,16 +20,16 @@ namespace insonify::scene {
  *
  *  In: `pose`, body in the world (x north, y west, z up); each new one gives one `snapshot`, with its time.
  *  In: `<node>.pose` for any node of the file (in SDF any model or link, "rov", "rov::arm") that a connection names:
- * the node's place in the world, instead of its translation and rotation in the file; axes turned like the world's,
- * scale kept, nodes below move along. The newest is taken; it does not trigger. Before the first the node is where the
- * file has it. Out: `snapshot`, sonar in the world (body times `mount`), shared geometry, moved objects,
- * point targets where they are by then: one on a node moves with it.
+ *  the node's place in the world, instead of its translation and rotation in the file; axes turned like the world's,
+ *  scale kept, nodes below move along. The newest is taken; it does not trigger. Before the first the node is where the
+ *  file has it. Out: `snapshot`, sonar in the world (body times `mount`), shared geometry, moved objects,
+ *  point targets where they are by then: one on a node moves with it.
  *
  *  A pose that is not finite, or whose orientation has no length, is dropped: RunTimeError until the next good one. So
- * it is when no pose of the body, or of a node that a connection names, comes for `pose_timeout`, by their stamps, or
- * one comes that is as old or far ahead of the clock: there is no snapshot then. In realtime on the wall clock a
- * timeout that is not given is 1 s; otherwise there is none. With `extrapolate` the snapshot has the sonar's
- * velocities, by which the sonar's task carries it on to its ping. */
+ *  it is when no pose of the body, or of a node that a connection names, comes for `pose_timeout`, by their stamps, or
+ *  one comes that is as old or far ahead of the clock: there is no snapshot then. In realtime on the wall clock a
+ *  timeout that is not given is 1 s; otherwise there is none. With `extrapolate` the snapshot has the sonar's
+ *  velocities, by which the sonar's task carries it on to its ping. */
 class SceneTask final : public framework::TaskContext {
 public:
     using TaskContext::TaskContext;

@@ -52,6 +52,7 @@ AcousticValue valueOf(const std::string& text) {
     double number;
     const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
     if (error == std::errc() && end == text.data() + text.size()) return number;
+    if (text == "true" || text == "false") return text == "true";
     return text;
 }
 
@@ -261,8 +262,8 @@ private:
         const auto folder = std::filesystem::path(visual.Element()->FilePath()).parent_path();
         const Acoustics known = readAcoustics(look.acoustics, folder, diagnostics);
         if (known.table) look.acoustics["table"] = (folder / *known.table).string();
-        for (const types::Diagnostic& problem : diagnostics)
-            fail(*visual.Element(), fmt::format("{}.insonify:acoustics.{}", name, problem.path), problem.message);
+        for (const types::Diagnostic& diagnostic : diagnostics)
+            fail(*visual.Element(), fmt::format("{}.insonify:acoustics.{}", name, diagnostic.path), diagnostic.message);
         return look;
     }
 

@@ -128,7 +128,7 @@ types::Diagnostic readLine(const std::string& line) {
     return diagnostic;
 }
 
-/** Adds a fault that says more than those that are known: not the same again, nor that of an element around. */
+/** Adds a diagnostic that says more than those that are known: not the same again, nor that of an element around. */
 void add(types::Diagnostic diagnostic, types::Diagnostics& diagnostics) {
     diagnostic.message = plain(diagnostic.message);
     const auto says = [&diagnostic](const char* text) { return diagnostic.message.starts_with(text); };

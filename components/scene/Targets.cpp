@@ -69,8 +69,8 @@ std::vector<PlacedTarget> placeTargets(const Scene& scene, const std::vector<Tar
         target.strength_db = config.strength_db.value_or(0);
         if (config.attached_to.empty())
             target.in_world = config.position.value_or(glm::dvec3(0));
-        else if (const std::string fault = attach(scene, config, moving, target); !fault.empty())
-            diagnostics.push_back({fmt::format("targets[{}].attached_to", i), fault});
+        else if (const std::string diagnostic = attach(scene, config, moving, target); !diagnostic.empty())
+            diagnostics.push_back({fmt::format("targets[{}].attached_to", i), diagnostic});
     }
     return all;
 }

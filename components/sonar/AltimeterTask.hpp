@@ -30,7 +30,7 @@ struct AltimeterConfig {
  *
  *  The beam looks along x of the sonar frame, `beam_width_deg` wide about z and `beam_height_deg` about y: a mount with
  *  `pitch_deg: 90` looks straight down. Out, beside the ping: `range`, that of the first bin that reaches the
- * threshold, at its middle, in the noiseless ping; NaN where none does. */
+ *  threshold, at its middle, in the noiseless ping; NaN where none does. */
 class AltimeterTask final : public PingTask {
 public:
     using PingTask::PingTask;

@@ -15,7 +15,7 @@ AngularView::Direction AngularView::azimuthOf(double bearing, const Elevation& u
 namespace {
 
 /** Lower edges of rows as those of an image, equal in tan(elevation), which has more of them where a floor is far;
- * equal in elevation where that would leave too few to the middle [rad]. */
+ *  equal in elevation where that would leave too few to the middle [rad]. */
 std::vector<double> evenEdges(double half, int rows) {
     constexpr double tallest_image = types::radians(120);
     std::vector<double> edges;

@@ -41,7 +41,7 @@ constexpr int max_image_size = 16384;
 constexpr double tallest_image_deg = 150;
 
 /** As few frusta of at most 60 deg as cover the beams (ACOUSTICS.md 5.3); cones reach wider than their bearing. One
- * with `published`. */
+ *  with `published`. */
 std::vector<ViewFrustum> makeFrusta(const SonarConfig& config, const std::vector<Beam>& beams,
                                     const RenderOptions& options = {});
 

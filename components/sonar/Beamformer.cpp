@@ -8,9 +8,13 @@
 namespace insonify::sonar {
 namespace {
 
-/** Mean of a beam's pattern over a cell, by Simpson's rule. */
-double meanOver(const Beamformer::Pattern& pattern, const Beam& cell, double bearing) {
-    return (pattern(cell.low, bearing) + 4 * pattern(cell.centre, bearing) + pattern(cell.high, bearing)) / 6;
+/** Mean of a beam's pattern over a cell, by Simpson's rule; of fields the root of the mean power, of the middle's sign.
+ */
+double meanOver(const Beamformer::Rules& rules, const Beam& cell, double bearing) {
+    const double low = rules.pattern(cell.low, bearing), middle = rules.pattern(cell.centre, bearing),
+                 high = rules.pattern(cell.high, bearing);
+    if (!rules.of_fields) return (low + 4 * middle + high) / 6;
+    return std::copysign(std::sqrt((low * low + 4 * middle * middle + high * high) / 6), middle);
 }
 
 double widthOf(const Beam& cell) { return cell.high - cell.low; }
@@ -30,7 +34,7 @@ std::vector<size_t> groupsOf(const std::vector<Beam>& cells) {
 /** Takes weights below the floor off both ends. */
 template <class Run>
 void trim(Run& run, double floor) {
-    const auto heard = [&](float weight) { return static_cast<double>(weight) >= floor; };
+    const auto heard = [&](float weight) { return std::abs(static_cast<double>(weight)) >= floor; };
     const auto last = std::find_if(run.weights.rbegin(), run.weights.rend(), heard);
     run.weights.erase(last.base(), run.weights.end());
     const auto first = std::ranges::find_if(run.weights, heard);
@@ -61,16 +65,19 @@ Beamformer::Beamformer(const std::vector<Beam>& beams, const std::vector<Beam>& 
 }
 
 Beamformer::Band Beamformer::bandOf(const Beam& beam, const std::vector<Beam>& cells, const Rules& rules) const {
-    const auto weightOf = [&](size_t cell) { return meanOver(rules.pattern, cells[cell], beam.centre); };
+    const auto weightOf = [&](size_t cell) { return meanOver(rules, cells[cell], beam.centre); };
     const double narrow = widthOf(*std::ranges::min_element(cells, {}, widthOf));
     const auto addGroup = [&](size_t group, Run& run) {
         const Beam &first = cells[groups_[group]], &last = cells[groups_[group + 1] - 1];
         const auto parts = static_cast<size_t>((last.high - first.low) / narrow + 0.5);
         const double part = (last.high - first.low) / static_cast<double>(parts);
         double sum = 0;
-        for (size_t i = 0; i < parts; ++i)
-            sum += rules.pattern(first.low + (static_cast<double>(i) + 0.5) * part, beam.centre);
-        run.weights.push_back(static_cast<float>(sum / static_cast<double>(parts)));
+        for (size_t i = 0; i < parts; ++i) {
+            const double weight = rules.pattern(first.low + (static_cast<double>(i) + 0.5) * part, beam.centre);
+            sum += rules.of_fields ? weight * weight : weight;
+        }
+        const double mean = sum / static_cast<double>(parts);
+        run.weights.push_back(static_cast<float>(rules.of_fields ? std::sqrt(mean) : mean));
     };
     const auto groupAt = [&](double azimuth) {
         size_t group = groupCount() - 1;

@@ -13,15 +13,16 @@ namespace insonify::sonar {
  *  sidelobes, so many cells together, by the pattern's mean. */
 class Beamformer {
 public:
-    /** Two-way power at an azimuth, of a beam of a bearing [rad]; 1 on its axis. */
+    /** Two-way power at an azimuth, of a beam of a bearing [rad], or what its field is multiplied by; 1 on its axis. */
     using Pattern = std::function<double(double azimuth, double bearing)>;
 
     static constexpr size_t group_cells = 8;
 
     struct Rules {
         Pattern pattern;
-        double near;   ///< How far from its bearing a beam weighs each cell [rad].
-        double floor;  ///< What is below it is not heard [1].
+        double near;             ///< How far from its bearing a beam weighs each cell [rad].
+        double floor;            ///< What is below it, to either side of 0, is not heard [1].
+        bool of_fields = false;  ///< Fields are summed; of groups, whose fields have any phase, the mean is of powers.
     };
 
     /** `cells` are side by side, in ascending azimuth, and equal, but for some far from all beams that are wider and

@@ -24,6 +24,9 @@ public:
         return accumulated > 0 ? static_cast<float>(std::min(accumulated * factor_[j], largest)) : 0.0f;
     }
 
+    /** Spreading and absorption of bin j, of intensity [1/m^2]. */
+    double factor(size_t j) const { return factor_[j]; }
+
     /** One beam's bins from its sums in quanta, EchoRules::sumCount() of them, of cells of `solid_angle` [sr]. Returns
      * whether there is any echo. Allocates nothing. */
     bool fill(const EchoRules& rules, const uint64_t* sums, double solid_angle, std::span<float> bins) const;

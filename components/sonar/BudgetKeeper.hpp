@@ -6,9 +6,9 @@
 namespace insonify::sonar {
 
 /** Keeps pings within a time by limiting their samples. Down to nine tenths of the time when 2 of the last 20 pings
- * took longer than it; up when so many pings in a row would leave room for at least 9 % more samples: 4 until the first
- *  fall, then 20, twice as many after each fall that follows within 400 pings of the one before, at most 320. Times are
- *  taken to be in proportion to samples, which overrates what more of them take. */
+ *  took longer than it; up when so many pings in a row would leave room for at least 9 % more samples: 4 until the
+ *  first fall, then 20, twice as many after each fall that follows within 400 pings of the one before, at most 320.
+ *  Times are taken to be in proportion to samples, which overrates what more of them take. */
 class BudgetKeeper {
 public:
     /** Begins at `limit` samples. */

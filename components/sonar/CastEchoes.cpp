@@ -9,8 +9,10 @@
 
 #include "components/sonar/Acoustics.hpp"
 #include "components/sonar/BinLevels.hpp"
+#include "components/sonar/EchoField.hpp"
 #include "components/sonar/EchoGrid.hpp"
 #include "components/sonar/ObjectPlaces.hpp"
+#include "components/sonar/PathEchoes.hpp"
 #include "components/sonar/RayPaths.hpp"
 #include "components/sonar/SurfaceScene.hpp"
 #include "components/sonar/ThreadPool.hpp"
@@ -45,8 +47,12 @@ public:
     void takeQuality() override;
     void render(const types::Snapshot& snapshot, types::Sonar& ping, Stages& stages) override;
     void setTruth(types::SonarTruth* truth) override { truth_ = truth; }
+    EchoField* field() override { return field_ ? &*field_ : nullptr; }
     bool hasEchoes() const override { return heard_; }
-    std::vector<LeftOut> culled() const override { return {}; }
+    std::vector<LeftOut> culled() const override {
+        const std::optional<LeftOut> dark = paths_ ? paths_->leftOut() : std::nullopt;
+        return dark ? std::vector{*dark} : std::vector<LeftOut>{};
+    }
     Features compiled() const override;
     const std::string& device() const override { return device_; }
 
@@ -58,6 +64,8 @@ private:
         std::vector<uint64_t> sums;
         std::optional<TruthTable> shown;  ///< What they are of, where it is told.
         std::vector<uint64_t> one_beam;   ///< For TruthSink.
+        std::vector<uint64_t> told_sums;  ///< Of energies, where the truth is told of fields.
+        size_t number = 0;
         Stages stages{};
         Clock::time_point last;
         bool heard = false;
@@ -74,32 +82,39 @@ private:
     }
     void place(const types::Snapshot& snapshot);
     void makeTruth();
+    PlacedScene scene() const {
+        return {visibility_.commands(), runs_, places_.records(), planes_, normal_maps_, water_, bent()};
+    }
+    void addPaths(types::Sonar& ping);
     void depositPart(const Part& part, std::span<const CastTile> tiles, Worker& worker);
     void work(Worker& worker, types::Sonar& ping);
     void workOn(const Part& part, Worker& worker, types::Sonar& ping);
     /** The ways of this ping; null where they are straight. */
-    const RayPaths* bent() const { return paths_ && !paths_->areStraight() ? &*paths_ : nullptr; }
+    const RayPaths* bent() const { return ray_paths_ && !ray_paths_->areStraight() ? &*ray_paths_ : nullptr; }
     std::span<const CastTile> cast(const Part& part, Worker& worker) const;
     TileRays raysOf(const CastTile& tile, int end_column) const;
     /** Fills the bins of a cell from its sums; whether it has any echo. */
-    bool fill(size_t cell, const uint64_t* sums, types::Sonar& ping);
+    bool fill(size_t cell, const Worker& worker, const uint64_t* sums, types::Sonar& ping);
     /** Adds a part's sums to its strip's; whether they are complete now, and in the worker. */
     bool gather(const Part& part, Worker& worker);
 
     const RenderPlan& plan_;
     types::GeometryPtr geometry_;
     EchoRules rules_;
+    std::optional<EchoRules> truth_rules_;  ///< Of energies, where fields are summed.
     CastView view_;
     BinLevels levels_;
     std::optional<VolumeLevels> volume_;
-    WaterView water_;  ///< In this ping.
-    std::optional<EchoGrid> grid_;
+    WaterView water_;                 ///< In this ping.
+    std::optional<EchoGrid> grid_;    ///< Of energies,
+    std::optional<EchoField> field_;  ///< or of fields.
     ObjectPlaces places_;
     RayVisibility visibility_;
-    std::optional<RayPaths> paths_;  ///< None where rays are straight.
+    std::optional<RayPaths> ray_paths_;  ///< None where rays are straight.
     std::vector<PlaneRecord> planes_;
     NormalMapping normal_maps_;
-    std::vector<PlacedRun> runs_;  ///< Of the visibility's commands, in this ping.
+    std::vector<PlacedRun> runs_;      ///< Of the visibility's commands, in this ping.
+    std::optional<PathEchoes> paths_;  ///< By way of mirrors, where the plan has them.
     ThreadPool threads_;
     std::vector<Worker> workers_;
     std::vector<Part> parts_;
@@ -115,7 +130,7 @@ CastEchoes::CastEchoes(const RenderPlan& plan, types::GeometryPtr geometry)
     : plan_(plan),
       geometry_(std::move(geometry)),
       rules_(makeEchoRules(plan)),
-      levels_(plan.config, plan.grid),
+      levels_(plan.config, summedGrid(plan)),
       places_(*geometry_, reachOf(plan), true),
       visibility_(*geometry_),
       planes_(planesOf(*geometry_, plan.laws)),
@@ -123,26 +138,35 @@ CastEchoes::CastEchoes(const RenderPlan& plan, types::GeometryPtr geometry)
       threads_(plan.options.threads),
       workers_(static_cast<size_t>(threads_.size())) {
     if (plan.features.has(Feature::Refraction) || plan.features.has(Feature::MotionInPing))
-        paths_.emplace(plan, *geometry_);
+        ray_paths_.emplace(plan, *geometry_);
     runs_.reserve(visibility_.commands().size());
+    for (size_t i = 0; i < workers_.size(); ++i) workers_[i].number = i;
+    if (plan.has(Pass::Paths)) paths_.emplace(plan, *geometry_, visibility_);
     takeQuality();
 }
 
 Features CastEchoes::compiled() const {
     Features all = compiledForRays(plan_.features);
+    if (plan_.features.has(Feature::Speckle) && !rules_.lattice.empty()) all.add(Feature::Speckle);
     if (view_.cells.weighted) all.add(Feature::ElevationPattern);
     if (!rules_.laws.tables.empty() || rules_.laws.hasLobes()) all.add(Feature::BackscatterLaws);
-    if (plan_.profile && paths_) all.add(Feature::Refraction);
-    if (plan_.config.motion_in_ping && paths_) all.add(Feature::MotionInPing);
+    if (plan_.profile && ray_paths_) all.add(Feature::Refraction);
+    if (plan_.config.motion_in_ping && ray_paths_) all.add(Feature::MotionInPing);
     return all | (plan_.features & Features{Feature::Volume, Feature::VolumeLayers});
 }
 
 void CastEchoes::takeQuality() {
     rules_ = makeEchoRules(plan_);
     view_.cells = makeAngularView(plan_);
-    grid_.emplace(plan_, threads_.size());
-    if (plan_.features.has(Feature::Volume)) volume_.emplace(plan_);
+    if (plan_.features.has(Feature::Speckle)) {
+        field_.emplace(plan_, threads_.size());
+        truth_rules_ = makeEnergyRules(plan_);
+    } else {
+        grid_.emplace(plan_, threads_.size());
+        if (plan_.features.has(Feature::Volume)) volume_.emplace(plan_, plan_.grid);
+    }
     shareOut();
+    if (paths_) paths_->takeQuality(rules_, view_);
     truth_grid_.reset();
 }
 
@@ -173,7 +197,9 @@ void CastEchoes::makeTruth() {
     truth_grid_.emplace(plan_, whole);
     for (Worker& worker : workers_) {
         worker.shown.emplace(static_cast<size_t>(beamsTogether()), static_cast<size_t>(plan_.grid.bin_count));
-        worker.one_beam.assign(rules_.sumCount(), 0);
+        const EchoRules& told = field_ ? *truth_rules_ : rules_;
+        worker.one_beam.assign(told.sumCount(), 0);
+        if (field_) worker.told_sums.assign(static_cast<size_t>(beamsTogether()) * told.sumCount(), 0);
     }
 }
 
@@ -181,7 +207,8 @@ void CastEchoes::place(const types::Snapshot& snapshot) {
     water_ = waterViewOf(snapshot);
     places_.place(snapshot);
     visibility_.place(snapshot);
-    if (paths_) paths_->place(snapshot);
+    if (paths_) paths_->begin(snapshot);
+    if (ray_paths_) ray_paths_->place(snapshot);
     runs_.clear();
     for (const CommandRecord& command : visibility_.commands())
         runs_.push_back(placedRun(places_.records()[command.object], command, rules_, 1, 0));
@@ -209,7 +236,7 @@ std::span<const CastTile> CastEchoes::cast(const Part& part, Worker& worker) con
     const auto castWaiting = [&] {
         TileHits* const hits = &worker.hits[count - waiting];
         if (!bent()) visibility_.cast({rays.data(), waiting}, {hits, waiting});
-        for (size_t i = 0; bent() && i < waiting; ++i) visibility_.castAlong(*paths_, rays[i], hits[i]);
+        for (size_t i = 0; bent() && i < waiting; ++i) visibility_.castAlong(*ray_paths_, rays[i], hits[i]);
         waiting = 0;
     };
     for (int column = begin; column < end; column += view_.shape.all.columns)
@@ -221,6 +248,7 @@ std::span<const CastTile> CastEchoes::cast(const Part& part, Worker& worker) con
             if (waiting == rays.size()) castWaiting();
         }
     if (waiting > 0) castWaiting();
+    for (size_t i = 0; paths_ && i < count; ++i) paths_->endAtSurface(worker.tiles[i], worker.hits[i]);
     return {worker.tiles.data(), count};
 }
 
@@ -236,10 +264,11 @@ bool CastEchoes::gather(const Part& part, Worker& worker) {
 
 void CastEchoes::depositPart(const Part& part, std::span<const CastTile> tiles, Worker& worker) {
     std::fill(worker.sums.begin(), worker.sums.end(), 0);
-    const PlacedScene scene{visibility_.commands(), runs_, places_.records(), planes_, normal_maps_, water_, bent()};
-    if (!truth_) return deposit(rules_, view_, scene, tiles, part.first_beam, worker.sums.data());
+    if (!truth_ || field_) deposit(rules_, view_, scene(), tiles, part.first_beam, worker.sums.data());
+    if (!truth_) return;
     worker.shown->clear();
-    depositAndTell(rules_, view_, scene, tiles, part.first_beam, worker.sums.data(),
+    std::vector<uint64_t>& told = field_ ? worker.told_sums : worker.sums;
+    depositAndTell(field_ ? *truth_rules_ : rules_, view_, scene(), tiles, part.first_beam, told.data(),
                    {*worker.shown, {}, worker.one_beam});
     for (int beam = 0; beam < part.beams; ++beam)
         truth_grid_->take(static_cast<size_t>(part.first_beam + beam), *worker.shown, static_cast<size_t>(beam),
@@ -250,19 +279,33 @@ void CastEchoes::workOn(const Part& part, Worker& worker, types::Sonar& ping) {
     const std::span<const CastTile> tiles = cast(part, worker);
     worker.lap(DrawStage);
     depositPart(part, tiles, worker);
+    if (paths_) paths_->trace(scene(), tiles, (part.first_beam + part.beams) * view_.cells.beam_columns);
     worker.lap(DepositStage);
     if (gather(part, worker))
         for (int beam = 0; beam < part.beams; ++beam)
-            worker.heard |= fill(static_cast<size_t>(part.first_beam + beam),
+            worker.heard |= fill(static_cast<size_t>(part.first_beam + beam), worker,
                                  &worker.sums[static_cast<size_t>(beam) * rules_.sumCount()], ping);
     worker.lap(BeamStage);
 }
 
-bool CastEchoes::fill(size_t cell, const uint64_t* sums, types::Sonar& ping) {
+bool CastEchoes::fill(size_t cell, const Worker& worker, const uint64_t* sums, types::Sonar& ping) {
+    if (field_) return field_->fill(cell, rules_, sums, view_.cells.cell(), worker.number);
     const std::span<float> bins = grid_->cell(cell, ping);
     const bool heard = levels_.fill(rules_, sums, view_.cells.cell(), bins);
     if (volume_) volume_->add(sums + rules_.volumeOffset(), cell, view_.cells.cell(), bins);
     return heard;
+}
+
+void CastEchoes::addPaths(types::Sonar& ping) {
+    threads_.run([&](int part, int parts) {
+        for (int cell = part; cell < view_.cells.beams; cell += parts) {
+            const auto i = static_cast<size_t>(cell);
+            const auto thread = static_cast<size_t>(part);
+            const std::span<float> bins = field_ ? field_->energies(thread) : grid_->cell(i, ping);
+            workers_[thread].heard |= paths_->addTo(i, levels_, bins);
+            if (field_) field_->addEnergies(i, bins, thread);
+        }
+    });
 }
 
 void CastEchoes::work(Worker& worker, types::Sonar& ping) {
@@ -274,6 +317,7 @@ void CastEchoes::render(const types::Snapshot& snapshot, types::Sonar& ping, Sta
     Worker& own = workers_.front();
     own.last = Clock::now();
     place(snapshot);
+    if (field_) field_->begin(snapshot);
     if (truth_ && !truth_grid_) makeTruth();
     if (truth_) truth_grid_->begin();
     stages[CullStage].seconds += std::chrono::duration<double>(Clock::now() - own.last).count();
@@ -292,7 +336,11 @@ void CastEchoes::render(const types::Snapshot& snapshot, types::Sonar& ping, Sta
     else
         threads_.share([&](int part, int) { work(workers_[static_cast<size_t>(part)], ping); });
     own.last = Clock::now();
-    grid_->finish(ping, threads_);
+    if (paths_) addPaths(ping);
+    if (field_)
+        field_->form(threads_);
+    else
+        grid_->finish(ping, threads_);
     if (truth_) truth_grid_->finish(*truth_, threads_);
     stages[BeamStage].seconds += std::chrono::duration<double>(Clock::now() - own.last).count();
     heard_ = false;

@@ -17,8 +17,8 @@ struct CullRules {
 };
 
 /** Chooses what of a scene is drawn: objects, and clusters of triangles in them, whose boxes reach a frustum's view
- * within the range; of the clusters of a closed, single-sided mesh not those that turn their backs. They are drawn with
- * all their triangles: of a rough floor no fewer keep the echo within 0.005 (rel_l2_tvg). */
+ *  within the range; of the clusters of a closed, single-sided mesh not those that turn their backs. They are drawn
+ *  with all their triangles: of a rough floor no fewer keep the echo within 0.005 (rel_l2_tvg). */
 class Culler {
 public:
     /** One draw: a run of triangles of one object and material; first_index counts within the indices of the object's

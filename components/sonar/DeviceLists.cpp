@@ -8,7 +8,7 @@ namespace insonify::sonar {
 namespace {
 
 /** The processor chooses objects, a compute shader clusters in them. Every cluster of the scene has its draw, whose
- * place never changes; it is empty where the cluster is not seen. */
+ *  place never changes; it is empty where the cluster is not seen. */
 class DeviceLists final : public DrawLists {
 public:
     DeviceLists(const Setup& setup, gpu::EglContext& context);

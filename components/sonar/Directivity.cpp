@@ -31,6 +31,10 @@ double powerOf(const std::optional<acoustics::BeamPattern>& law, double angle, d
     return law ? law->power(angle, axis) : 1;
 }
 
+double amplitudeOf(const std::optional<acoustics::BeamPattern>& law, double angle, double axis = 0) {
+    return law ? law->amplitude(angle, axis) : 1;
+}
+
 /** The angle to either side of 0, turned by whole turns. */
 double wrapped(double angle) { return std::remainder(angle, 2 * pi); }
 
@@ -63,15 +67,29 @@ Directivity::Directivity(const SonarConfig& config)
     receive_elevation_ = patternOf(config.beam_pattern->receive.elevation, wavelength);
 }
 
-double Directivity::azimuth(double azimuth, double bearing) const {
-    const double sent = powerOf(transmit_azimuth_, azimuth);
-    return sent * (conical_ ? powerOf(receive_azimuth_, azimuth, bearing)
-                            : powerOf(receive_azimuth_, wrapped(azimuth - bearing)));
+double Directivity::sentAzimuth(double azimuth) const { return powerOf(transmit_azimuth_, azimuth); }
+
+double Directivity::heardAzimuth(double azimuth, double bearing) const {
+    return conical_ ? powerOf(receive_azimuth_, azimuth, bearing)
+                    : powerOf(receive_azimuth_, wrapped(azimuth - bearing));
 }
 
-double Directivity::elevation(double angle) const {
-    return powerOf(transmit_elevation_, angle) * powerOf(receive_elevation_, angle);
+double Directivity::azimuth(double azimuth, double bearing) const {
+    return sentAzimuth(azimuth) * heardAzimuth(azimuth, bearing);
 }
+
+double Directivity::sentAmplitude(double azimuth) const { return amplitudeOf(transmit_azimuth_, azimuth); }
+
+double Directivity::heardAmplitude(double azimuth, double bearing) const {
+    return conical_ ? amplitudeOf(receive_azimuth_, azimuth, bearing)
+                    : amplitudeOf(receive_azimuth_, wrapped(azimuth - bearing));
+}
+
+double Directivity::sentElevation(double angle) const { return powerOf(transmit_elevation_, angle); }
+
+double Directivity::heardElevation(double angle) const { return powerOf(receive_elevation_, angle); }
+
+double Directivity::elevation(double angle) const { return sentElevation(angle) * heardElevation(angle); }
 
 double Directivity::elevationReach() const {
     const auto either = [&](double angle) { return std::max(elevation(angle), elevation(-angle)); };

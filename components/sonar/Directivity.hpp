@@ -21,6 +21,17 @@ public:
      *  beams widen as they are steered; the beams of a planar one are alike. */
     double azimuth(double azimuth, double bearing) const;
     double elevation(double angle) const;
+    /** The same of the field, of which the power is the square, with the signs of its sidelobes [1]. */
+    double azimuthAmplitude(double azimuth, double bearing) const {
+        return sentAmplitude(azimuth) * heardAmplitude(azimuth, bearing);
+    }
+    double sentAmplitude(double azimuth) const;
+    double heardAmplitude(double azimuth, double bearing) const;
+    /** The same of one way [rad]. */
+    double sentAzimuth(double azimuth) const;
+    double heardAzimuth(double azimuth, double bearing) const;
+    double sentElevation(double angle) const;
+    double heardElevation(double angle) const;
     double floor() const { return floor_; }  ///< Below it a pattern is not drawn [1].
 
     /** Elevation to either side beyond which it stays below the floor [rad], at most pi/2. */

@@ -20,7 +20,7 @@ struct Clip {
 Clip clipOf(const ObjectRecord& object, const ViewFrustum& frustum);
 
 /** What a normal map needs: rows of the matrices from object axes to the frustum's (x into the picture, y to port, z
- * up) for normals, the first row's w the scale of the map, and for tangents. */
+ *  up) for normals, the first row's w the scale of the map, and for tangents. */
 struct NormalTransform {
     vec4 normal[3], tangent[3];
 };

@@ -134,7 +134,7 @@ void DrawnEchoes::makeDeposit() {
         plan_.options.sum_in == SumIn::Auto ? !context_.isSoftware() : plan_.options.sum_in == SumIn::Groups;
     grid_.emplace(plan_, threads_.size());
     rules_ = setup.rules;
-    if (plan_.features.has(Feature::Volume)) volume_.emplace(plan_);
+    if (plan_.features.has(Feature::Volume)) volume_.emplace(plan_, plan_.grid);
     if (depositsOnProcessor())
         deposit_ = std::make_unique<CpuDeposit>(std::move(setup), surface_, context_, threads_);
     else

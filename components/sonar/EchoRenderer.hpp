@@ -10,6 +10,8 @@
 
 namespace insonify::sonar {
 
+class EchoField;
+
 /** Where the time of a ping went: cull, draw, read, deposit, beams. */
 struct Stage {
     const char* name;
@@ -30,6 +32,8 @@ public:
     /** Pings rendered from now on tell there what their bins show, in their own grid, which it has; null: none is told.
      */
     virtual void setTruth(types::SonarTruth* truth) = 0;
+    /** The field of the last ping, whose squares are still to be its bins; null where energies are summed. */
+    virtual EchoField* field() { return nullptr; }
     /** Whether the last ping has any echo. */
     virtual bool hasEchoes() const = 0;
     /** What of the scene the last ping left out. */

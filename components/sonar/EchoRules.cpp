@@ -48,7 +48,7 @@ double samplesOfLobe(const RenderPlan& plan, double samples) {
 }  // namespace
 
 EchoRules makeEchoRules(const RenderPlan& plan) {
-    const BinGrid& bins = plan.grid;
+    const BinGrid bins = summedGrid(plan);
     EchoRules rules;
     rules.features = plan.features;
     rules.bins = bins;
@@ -56,6 +56,8 @@ EchoRules makeEchoRules(const RenderPlan& plan) {
     rules.strength_scale = strengthScale(plan);
     rules.laws = plan.laws;
     rules.layers = layersOf(plan.config);
+    rules.lattice = scattererLattice(plan);
+    if (plan.config.frequency_khz) rules.turns_per_metre = 2e3 * *plan.config.frequency_khz / bins.speed_of_sound;
     const double nearest = bins.range_min > 0 ? 1 / bins.range_min : std::numeric_limits<double>::max();
     for (int k = 0; k <= bins.bin_count; ++k)
         rules.edges.push_back(k == 0 ? nearest : std::min(nearest, 1 / bins.edge(k)));
@@ -64,6 +66,11 @@ EchoRules makeEchoRules(const RenderPlan& plan) {
     rules.middles.resize(rules.middles.size() + bins_at_once);
     if (rules.features.has(Feature::ElevationPattern)) tabulateElevation(plan, rules);
     return rules;
+}
+
+EchoRules makeEnergyRules(RenderPlan plan) {
+    plan.features = plan.features.without(Feature::Speckle);
+    return makeEchoRules(plan);
 }
 
 double strengthScale(const RenderPlan& plan) {

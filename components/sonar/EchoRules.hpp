@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "components/sonar/RenderPlan.hpp"
+#include "components/sonar/ScattererLattice.hpp"
 
 namespace insonify::sonar {
 
@@ -15,7 +16,7 @@ constexpr double quanta_per_unit = 1099511627776.0;
 /** What the arithmetic of an echo reads, the same for rays and pictures, on the processor and on a card. */
 struct EchoRules {
     Features features;
-    BinGrid bins;
+    BinGrid bins;                 ///< In which echoes are summed: the ping's, or with fields finer ones.
     double attenuation = 0;       ///< Amplitude, one way, in `cerqueira2017` [Np/m].
     double strength_scale = 1;    ///< Strengths are deposited times this: strengthScale.
     std::vector<double> edges;    ///< Inverse ranges of the bins' edges from the near blanking on, then 0 [1/m].
@@ -24,9 +25,11 @@ struct EchoRules {
     double elevation_reach = 0;            ///< Sine of the elevation at which the table of the pattern ends [1].
     std::vector<double> elevation_powers;  ///< Two-way pattern over it (shaders/elevation.glsl); empty without one [1].
     MaterialLaws laws;
+    std::vector<LatticeLevel> lattice;  ///< Of the scatterers; empty where energies are summed.
+    double turns_per_metre = 0;         ///< Phase of an echo for each metre of its slant range, two way [1/m].
     std::vector<double> layers;  ///< Three each: low and high above the water surface [m], share of the strongest [1].
 
-    size_t channels() const { return features.has(Feature::Cerqueira2017) ? 2 : 1; }
+    size_t channels() const { return features.has(Feature::Cerqueira2017) || features.has(Feature::Speckle) ? 2 : 1; }
     /** Bins from one beam's first to the next one's. */
     size_t beamStride() const { return static_cast<size_t>(bins.bin_count) + bins_at_once; }
     /** Numbers of a beam: [bin][channel], and with a volume its change in each bin. */
@@ -37,6 +40,8 @@ struct EchoRules {
 
 /** Rules for the plan's quality. */
 EchoRules makeEchoRules(const RenderPlan& plan);
+/** The same with energies in the plan's bins, whatever it sums. */
+EchoRules makeEnergyRules(RenderPlan plan);
 
 /** The power of 2, at most 1, by which strengths must be scaled so that no sum of quanta overflows: 1 but for
  *  materials, images or bins that are extreme together. */

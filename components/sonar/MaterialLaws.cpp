@@ -90,6 +90,21 @@ double MaterialLaws::overCosine(size_t material, double cosine, double facet_slo
                                         facet_slope + shared.slopeOfSample(sample_angle));
 }
 
+MaterialLaws::Bistatic MaterialLaws::bistatic(size_t material, double in, double out, double half,
+                                              double mean_square_slope) const {
+    Shared shared{tables.data()};
+    const MaterialRecord& record = records[material];
+    const auto diffuse = [&](double cosine) {  // over the cosine
+        return record.law.x < 0 ? double{record.values.x} * cosine
+                                : shared.tabulatedBackscatter(static_cast<uint>(record.law.x), cosine);
+    };
+    Bistatic section{std::sqrt(diffuse(in) * diffuse(out) * in / out), 0};
+    if (record.law.y > 0)
+        section.lobe =
+            shared.lobeOverCosine(double{record.law.y}, double{record.law.z} + mean_square_slope, half) * half / out;
+    return section;
+}
+
 double MaterialLaws::loudest() const {
     double strongest = 0;
     for (const MaterialRecord& record : records)

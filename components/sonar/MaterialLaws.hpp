@@ -21,13 +21,18 @@ struct MaterialLaws {
     std::string outside_validity;         ///< What lies outside of what TR 9407 covers; empty: nothing.
 
     bool hasLobes() const;
-    bool followsLambert(size_t material) const {
-        const vec4& law = records[material].law;
-        return law.x < 0 && law.y == 0;
-    }
+    bool followsLambert(size_t material) const { return FOLLOWS_LAMBERT(records[material].law); }
     /** sigma_b / cos(theta) of a material at a cosine [1]; its lobe is widened by what the facet adds to its mean
-     * square slope [1], and by how wide the sample is [rad]. */
+     *  square slope [1], and by how wide the sample is [rad]. */
     double overCosine(size_t material, double cosine, double facet_slope, double sample_angle) const;
+    /** The same of sound that comes and goes at other angles (ACOUSTICS.md 5.19): of what comes in at one cosine, over
+     *  the other of them [1]. */
+    struct Bistatic {
+        double diffuse, lobe;
+    };
+    /** `half`: cosine between the normal and the middle of the two directions [1]. `mean_square_slope`: what facets
+     *  and the sample add to that of the lobe [1]. */
+    Bistatic bistatic(size_t material, double in, double out, double half, double mean_square_slope) const;
     /** Largest sigma_b / cos(theta) of any material but for its lobe [1]. */
     double loudest() const;
     /** The same of lobes alone, in samples that are so wide [1, rad]. */

@@ -10,8 +10,8 @@ namespace insonify::sonar {
 double longestEdge(const types::Mesh& mesh);
 
 /** Distance from the sonar to the nearest point of a mesh that stands where `sonar_from_mesh` says [m]; of a mesh that
- * has very many triangles about as near as each other, that of the nearest box of triangles. 0 where it has no
- * triangles. Allocates in `scratch` alone. */
+ *  has very many triangles about as near as each other, that of the nearest box of triangles. 0 where it has no
+ *  triangles. Allocates in `scratch` alone. */
 double nearestDistance(const types::Mesh& mesh, double longest_edge, const glm::dmat4& sonar_from_mesh,
                        std::vector<float>& scratch);
 

@@ -23,8 +23,8 @@ public:
     explicit NormalMapping(const types::Geometry& geometry);
     bool isMapped(int material) const { return geometry_.materials[static_cast<size_t>(material)].normal_map >= 0; }
     /** Cosine of the angle between the ray and the bent normal, on the side that the ray meets; at least 1e-6. Cosines
-     * are averaged over as much of the map as the sample covers. `placed`: the object relative to
-     * the sonar. */
+     *  are averaged over as much of the map as the sample covers. `placed`: the object relative to
+     *  the sonar. */
     float cosine(const ObjectRecord& placed, const Place& place) const;
 
 private:

@@ -72,6 +72,12 @@ bool PingTask::configureHook() {
     if (!rendersOnce() && (truth.connected() || returns.connected()))
         throw types::ConfigError("", name() + (truth.connected() ? ".truth" : ".returns"),
                                  "is connected; a sonar that renders a ping in many parts tells no truth");
+    if (elements.connected() && !sonarConfig().elements)
+        throw types::ConfigError("", name() + ".elements",
+                                 "is connected; the sonar has none: give it `elements`, or leave the connection out");
+    if (elements.connected() && !rendersOnce())
+        throw types::ConfigError("", name() + ".elements",
+                                 "is connected; a sonar that renders a ping in many parts tells no signals");
     renderer_.reset();
     plan_.reset();
     grid_ = makeBinGrid(sonarConfig());
@@ -132,7 +138,7 @@ void PingTask::makeRenderer() {
     renderer_.reset();
     quality_.reset();
     geometry_ = aimed_.geometry;
-    troubles_.emplace(*geometry_, pingsPerTurn());
+    diagnostics_.emplace(*geometry_, pingsPerTurn());
     const SonarConfig config = locatedConfig();
     renderer_ = std::make_unique<SonarRenderer>(begun(config), geometry_);
     if (config.choosesQuality()) quality_.emplace(config, pingsPerTurn());
@@ -163,9 +169,9 @@ bool PingTask::renderPing(SonarRenderer& renderer, types::Snapshot& scene, types
 
 RenderPlan PingTask::coverage(const types::Snapshot& /*scene*/) const { return renderer_->renderPlan(); }
 
-std::string PingTask::troubleOf(bool heard, const types::Sonar& sample) {
+std::string PingTask::diagnosticOf(bool heard, const types::Sonar& sample) {
     const Model model = renderer_->renderPlan().config.model;
-    return troubles_->follow(heard, model, aimed_, sample, [this] { return coverage(aimed_); });
+    return diagnostics_->follow(heard, model, aimed_, sample, [this] { return coverage(aimed_); });
 }
 
 void PingTask::render() {
@@ -182,7 +188,7 @@ void PingTask::render() {
         if (const auto what = renderer_->targetsLeftOut()) plan_->omitted.push_back(describe(*what, grid_));
     }
     followQuality(*sample, took.count());
-    if (const std::string trouble = troubleOf(heard, *sample); !trouble.empty()) warn(trouble);
+    if (const std::string diagnostic = diagnosticOf(heard, *sample); !diagnostic.empty()) warn(diagnostic);
     stampBearings(*sample);
     pool_.stock(*sample);
     if (!std::exchange(plan_told_, true)) refreshRecord();
@@ -191,6 +197,7 @@ void PingTask::render() {
     tellMore(*sample, aimed_.sonar);
     ping.write(sample);
     if (told) writeTruth(*sample, told);
+    if (elements.connected()) writeElements(*sample);
 }
 
 std::shared_ptr<types::SonarTruth> PingTask::takeTruth() {
@@ -209,6 +216,13 @@ void PingTask::writeTruth(const types::Sonar& sample, const std::shared_ptr<type
     found->take(sample, *told);
     all_returns_.stock(*found);
     returns.write(found);
+}
+
+void PingTask::writeElements(const types::Sonar& sample) {
+    const auto signals = signals_.take();
+    renderer_->takeElements(sample, *signals);
+    signals_.stock(*signals);
+    elements.write(signals);
 }
 
 bool PingTask::waitForLastEcho() {

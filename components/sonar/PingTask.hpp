@@ -9,11 +9,12 @@
 #include "components/framework/SamplePool.hpp"
 #include "components/framework/TaskContext.hpp"
 #include "components/sonar/BinGrid.hpp"
+#include "components/sonar/PingDiagnostics.hpp"
 #include "components/sonar/QualityKeeper.hpp"
 #include "components/sonar/SonarRenderer.hpp"
-#include "components/sonar/Troubles.hpp"
 #include "types/Snapshot.hpp"
 #include "types/Sonar.hpp"
+#include "types/SonarElements.hpp"
 #include "types/SonarReturns.hpp"
 #include "types/SonarTruth.hpp"
 
@@ -25,18 +26,20 @@ namespace insonify::sonar {
  *  snapshot that cannot be rendered (a pose that is not finite, a quaternion of no length, no geometry, a place that
  *  only more than a tenth of the speed of sound reaches) leads to RunTimeError, from which the next good one recovers.
  *  In realtime the newest snapshot counts, and a ping is written once the last echo of its range has come back:
- * 2 range / c after its snapshot's time on the deployment's clock, and after the task took it, whichever is later.
- * Pings thus never overlap. One whose listening is cut off by the stop is not written. A snapshot whose time is a
- * second ahead of that clock is refused like the others. A quaternion that is not of unit length is normalised. Pings
- * closer in time than sound's way to the range and back are rendered, each by itself, and told of in the notices. The
- * quality is given, or a QualityKeeper chooses and keeps it; in realtime the period of the pings is its budget where
- * nothing is said, as their stamps tell it.
+ *  2 range / c after its snapshot's time on the deployment's clock, and after the task took it, whichever is later.
+ *  Pings thus never overlap. One whose listening is cut off by the stop is not written. A snapshot whose time is a
+ *  second ahead of that clock is refused like the others. A quaternion that is not of unit length is normalised. Pings
+ *  closer in time than sound's way to the range and back are rendered, each by itself, and told of in the notices. The
+ *  quality is given, or a QualityKeeper chooses and keeps it; in realtime the period of the pings is its budget where
+ *  nothing is said, as their stamps tell it.
  *
  *  `truth` and `returns` tell of each ping what its bins show, for as long as one of them is connected; nothing is
  *  computed for it otherwise, and the bins are the same either way.
  *
+ *  `elements` tells what each element of a straight array heard, of a sonar that is configured to have some.
+ *
  *  `pose` tells where each ping was rendered, carried on as it was; with `given_pose` connected there is a ping for
- * each of these poses, in the newest snapshot's scene, so that what `pose` has told renders the same pings again. */
+ *  each of these poses, in the newest snapshot's scene, so that what `pose` has told renders the same pings again. */
 class PingTask : public framework::TaskContext, public framework::Planned {
 public:
     using TaskContext::TaskContext;
@@ -55,6 +58,10 @@ public:
         this, "truth", "which objects the bins show, from where and at which angle; computed only when connected"};
     framework::OutputPort<types::SonarReturnsPtr> returns{
         this, "returns", "first and strongest return of each beam; computed only when connected"};
+
+    framework::OutputPort<types::SonarElementsPtr> elements{
+        this, "elements",
+        "complex signals of the array's elements, of a sonar with `elements`; computed only when connected"};
 
     const types::Plan* plan() const override { return plan_ ? &*plan_ : nullptr; }
     std::vector<std::string> notices() const override;
@@ -102,6 +109,7 @@ private:
     void render();
     /** What the ping that is rendered next is to tell; null where nobody wants to know. */
     std::shared_ptr<types::SonarTruth> takeTruth();
+    void writeElements(const types::Sonar& sample);
     void writeTruth(const types::Sonar& sample, const std::shared_ptr<types::SonarTruth>& told);
     /** The next of `given_pose`, in the newest snapshot's scene. */
     bool takeGiven();
@@ -111,7 +119,7 @@ private:
     bool waitForLastEcho();
     void makeRenderer();
     /** What is to be told of a ping in which there may be nothing. */
-    std::string troubleOf(bool heard, const types::Sonar& sample);
+    std::string diagnosticOf(bool heard, const types::Sonar& sample);
     /** Looks after the quality once a ping has been rendered, in `ms`; may render it again. */
     void followQuality(types::Sonar& sample, double ms);
 
@@ -121,7 +129,7 @@ private:
     PeriodMeter period_;
     std::unique_ptr<SonarRenderer> renderer_;
     std::optional<QualityKeeper> quality_;  ///< None where the quality is given.
-    std::optional<Troubles> troubles_;
+    std::optional<PingDiagnostics> diagnostics_;
     bool culling_untold_ = false;      ///< Whether the plan does not say yet what the first ping's culling left out.
     std::optional<types::Plan> plan_;  ///< Outlives the renderer, for the summary.
     bool plan_told_ = false;           ///< Whether the record has the plan as it is.
@@ -132,6 +140,7 @@ private:
     framework::SamplePool<types::Sonar> pool_;
     framework::SamplePool<types::SonarTruth> truths_;
     framework::SamplePool<types::SonarReturns> all_returns_;
+    framework::SamplePool<types::SonarElements> signals_;
 };
 
 /** Why a pose cannot be used, null when it can; makes its quaternion one of unit length. */

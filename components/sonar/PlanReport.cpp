@@ -35,6 +35,7 @@ std::string nameOf(Effect effect) {
                                             "transmit ring-down",
                                             "point targets",
                                             "volume reverberation",
+                                            "coherent speckle",
                                             "multipath",
                                             "further slabs",
                                             "refraction",
@@ -87,6 +88,13 @@ std::string reasonOf(const LeftOut& what, const BinGrid& grid) {
         case Reason::Published: return publishedWords(what.effect);
         case Reason::BelowBound: return boundedWords(what, grid);
         case Reason::Approximated: return approximatedWords(what);
+        case Reason::NoBounces: return "bounces is 0";
+        case Reason::NoMirror: return "no surface is asked for, and no material is `mirror: true` or smooth enough";
+        case Reason::NoWaterSurface: return "multipath.surface is given, and the scene has no water_surface";
+        case Reason::AboveSurface: return "the sonar was above the water surface at the first ping";
+        case Reason::BeyondRange:
+            return fmt::format("the water surface was {:.4g} m away at the first ping, beyond {:.4g} m", what.value,
+                               what.bound);
         case Reason::OneImage: return fmt::format("one image shows all {:g} deg", what.value);
         case Reason::OutOfView:
             if (what.effect == Effect::PointTargets)

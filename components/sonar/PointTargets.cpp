@@ -2,11 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <complex>
 #include <glm/geometric.hpp>
 #include <glm/gtc/quaternion.hpp>
 #include <numbers>
 
 #include "components/sonar/Acoustics.hpp"
+#include "components/sonar/EchoField.hpp"
 #include "components/sonar/RangeResponse.hpp"
 #include "types/Angle.hpp"
 
@@ -45,29 +47,54 @@ double PulseMeans::mean(double low, double high) const {
 }
 
 PointTargets::PointTargets(const RenderPlan& plan, const types::Geometry& geometry)
-    : plan_(plan), sightlines_(geometry), absorption_(makeAbsorption(plan.config).intensityPerMetre()) {
+    : plan_(plan), ways_(plan.config, geometry), absorption_(makeAbsorption(plan.config).intensityPerMetre()) {
     if (plan.has(Pass::Pulse)) pulse_.emplace(acoustics::Pulse(*plan.config.pulse, plan.grid.speed_of_sound));
     means_.reserve(static_cast<size_t>(plan.grid.bin_count));
 }
 
-std::optional<PointTargets::Place> PointTargets::placeOf(const types::Pose& sonar, const glm::dvec3& position) const {
-    const glm::dvec3 at = glm::conjugate(sonar.orientation) * (position - sonar.position);
-    const double range = glm::length(at);
+std::optional<PointTargets::Direction> PointTargets::directionOf(const glm::dvec3& way) const {
     const bool conical = plan_.features.has(Feature::Conical);
-    const bool silent = !(range >= plan_.grid.range_min && range > 0) || (conical && at.x < 0);
-    if (silent) return {};
-    const double azimuth = conical ? std::asin(std::clamp(at.y / range, -1.0, 1.0)) : std::atan2(at.y, at.x);
-    return Place{range, azimuth, std::asin(std::clamp(at.z / range, -1.0, 1.0))};
+    if (conical && way.x < 0) return {};
+    return Direction{conical ? std::asin(std::clamp(way.y, -1.0, 1.0)) : std::atan2(way.y, way.x),
+                     std::asin(std::clamp(way.z, -1.0, 1.0))};
 }
 
-double PointTargets::powerIn(const Beam& beam, const Place& place) const {
+std::optional<PointTargets::Return> PointTargets::returnOf(const TargetWay& out, const TargetWay& back,
+                                                           double strength_db) const {
+    const auto sent = directionOf(out.direction), heard = directionOf(back.direction);
+    const double range = 0.5 * (out.length + back.length);
+    if (!sent || !heard || !(range >= plan_.grid.range_min)) return {};
+    const double intensity = std::pow(10, strength_db / 10) * out.power * back.power * std::exp(-absorption_ * range) /
+                             (out.length * out.length * back.length * back.length);
+    return Return{range,     *sent, *heard, intensity, out.by_surface == back.by_surface ? 1.0 : -1.0,
+                  inPhase(out) * inPhase(back)};
+}
+
+double PointTargets::inPhase(const TargetWay& way) const {
+    if (!way.by_surface || !plan_.config.frequency_khz) return 1;
+    const double wavelength = plan_.grid.speed_of_sound / (1e3 * *plan_.config.frequency_khz);
+    return coherentReflection(plan_.config.multipath->surface->wind_m_s, wavelength, way.sine_grazing);
+}
+
+bool PointTargets::isSent(const Direction& direction) const {
+    const std::vector<Beam>& beams = plan_.beams;
+    const double middle = 0.5 * (beams.front().low + beams.back().high);
+    const double off = std::abs(std::remainder(direction.azimuth - middle, 2 * std::numbers::pi));
+    return off <= 0.5 * (beams.back().high - beams.front().low) * (1 + 1e-12);
+}
+
+double PointTargets::powerIn(const Beam& beam, const Return& echo) const {
     const auto& pattern = plan_.directivity;
     const double half_height = types::radians(plan_.config.beam_height_deg) / 2;
-    const double off = std::remainder(place.azimuth - beam.centre, 2 * std::numbers::pi);
+    const double off = std::remainder(echo.heard.azimuth - beam.centre, 2 * std::numbers::pi);
     const bool in_box = off >= beam.low - beam.centre && off < beam.high - beam.centre;
-    const double across = pattern && pattern->hasAzimuth() ? pattern->azimuth(place.azimuth, beam.centre) : in_box;
-    const double along = pattern && pattern->hasElevation() ? pattern->elevation(place.elevation)
-                                                            : std::abs(place.elevation) <= half_height;
+    const double across = pattern && pattern->hasAzimuth() ? pattern->sentAzimuth(echo.sent.azimuth) *
+                                                                 pattern->heardAzimuth(echo.heard.azimuth, beam.centre)
+                                                           : in_box && isSent(echo.sent);
+    const double along =
+        pattern && pattern->hasElevation()
+            ? pattern->sentElevation(echo.sent.elevation) * pattern->heardElevation(echo.heard.elevation)
+            : std::abs(echo.heard.elevation) <= half_height && std::abs(echo.sent.elevation) <= half_height;
     return pattern && across * along < pattern->floor() ? 0 : across * along;
 }
 
@@ -83,27 +110,52 @@ bool PointTargets::spread(double range) {
     return !means_.empty();
 }
 
-bool PointTargets::addTo(types::Sonar& ping, const Place& place, double intensity) const {
+bool PointTargets::addTo(types::Sonar& ping, const Return& echo) const {
     bool heard = false;
     for (size_t beam = 0; beam < plan_.beams.size(); ++beam) {
-        const double power = powerIn(plan_.beams[beam], place);
+        const double power = powerIn(plan_.beams[beam], echo);
         if (!(power > 0)) continue;
         float* bins = &ping.bins[beam * ping.bin_count + first_bin_];
-        for (size_t i = 0; i < means_.size(); ++i) bins[i] += static_cast<float>(intensity * power * means_[i]);
+        for (size_t i = 0; i < means_.size(); ++i) bins[i] += static_cast<float>(echo.intensity * power * means_[i]);
         heard = true;
     }
     return heard;
 }
 
-size_t PointTargets::add(const types::Snapshot& snapshot, types::Sonar& ping) {
-    sightlines_.place(snapshot);
+bool PointTargets::addTo(EchoField& field, const Return& echo, uint64_t key) const {
+    constexpr double turn = 2 * std::numbers::pi;
+    const double turns = 2e3 * *plan_.config.frequency_khz / plan_.grid.speed_of_sound * echo.range;
+    const double phase = turn * (turns - std::floor(turns)), loose = turn * static_cast<double>(key >> 11) * 0x1p-53;
+    const std::complex<double> unit = echo.sign * (std::polar(echo.in_phase, phase) +
+                                                   std::polar(std::sqrt(1 - echo.in_phase * echo.in_phase), loose));
+    bool heard = false;
+    for (size_t k = 0; k < plan_.beams.size(); ++k) {
+        const double power = powerIn(plan_.beams[k], echo);
+        if (!(power > 0)) continue;
+        double sign = 1;
+        if (plan_.directivity && plan_.directivity->hasAzimuth())
+            sign = plan_.directivity->sentAmplitude(echo.sent.azimuth) *
+                   plan_.directivity->heardAmplitude(echo.heard.azimuth, plan_.beams[k].centre);
+        field.add(k, echo.range, std::copysign(std::sqrt(echo.intensity * power), sign) * unit);
+        heard = true;
+    }
+    return heard;
+}
+
+size_t PointTargets::add(const types::Snapshot& snapshot, types::Sonar& ping, EchoField* field) {
+    ways_.place(snapshot, plan_.grid.range_max + (pulse_ ? pulse_->reach() : 0));
     size_t heard = 0;
+    auto key = static_cast<uint64_t>(snapshot.time.microseconds);
     for (const types::PointTarget& target : snapshot.targets) {
-        const auto place = placeOf(snapshot.sonar, target.position);
-        if (!place || !spread(place->range) || !sightlines_.isOpen(target.position)) continue;
-        const double r = place->range;
-        const double intensity = std::pow(10, target.strength_db / 10) * std::exp(-absorption_ * r) / (r * r * r * r);
-        heard += addTo(ping, *place, intensity) ? 1 : 0;
+        bool any = false;
+        const std::vector<TargetWay>& ways = ways_.waysTo(target.position);
+        for (const TargetWay& out : ways)
+            for (const TargetWay& back : ways) {
+                const auto echo = returnOf(out, back, target.strength_db);
+                key = key * 6364136223846793005u + 1442695040888963407u;
+                if (echo && spread(echo->range)) any |= field ? addTo(*field, *echo, key) : addTo(ping, *echo);
+            }
+        heard += any ? 1 : 0;
     }
     return heard;
 }

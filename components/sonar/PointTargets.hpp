@@ -4,11 +4,13 @@
 
 #include "components/acoustics/Pulse.hpp"
 #include "components/sonar/RenderPlan.hpp"
-#include "components/sonar/Sightlines.hpp"
+#include "components/sonar/TargetWays.hpp"
 #include "types/Snapshot.hpp"
 #include "types/Sonar.hpp"
 
 namespace insonify::sonar {
+
+class EchoField;
 
 /** What a pulse leaves of an echo in a bin, quickly: the mean of h over it, by an integral that is made once. */
 class PulseMeans {
@@ -35,22 +37,36 @@ public:
     /** Of a plan for model `physical`; plan and geometry must outlive it. */
     PointTargets(const RenderPlan& plan, const types::Geometry& geometry);
 
-    /** Once the bins are filled; how many targets any of them hears. Allocates nothing. */
-    size_t add(const types::Snapshot& snapshot, types::Sonar& ping);
+    /** Once the bins are filled, or `field` is, where there is one; how many targets any beam hears. Allocates nothing.
+     */
+    size_t add(const types::Snapshot& snapshot, types::Sonar& ping, EchoField* field);
 
 private:
-    /** Where a target is about the sonar. */
-    struct Place {
-        double range, azimuth, elevation;  ///< Azimuth as beams have it: of cones their bearing [m, rad].
+    /** Where sound goes, or comes from. */
+    struct Direction {
+        double azimuth, elevation;  ///< Azimuth as beams have it: of cones their bearing [rad].
     };
-    std::optional<Place> placeOf(const types::Pose& sonar, const glm::dvec3& position) const;
-    double powerIn(const Beam& beam, const Place& place) const;
+    /** One echo of a target: out one way, back another or the same. */
+    struct Return {
+        double range;  ///< Half of the way out and back [m].
+        Direction sent, heard;
+        double intensity;  ///< But for patterns and the pulse [1/m^2].
+        double sign;       ///< -1 where the water surface has turned its pressure round [1].
+        double in_phase;   ///< Share of its amplitude that rough mirrors leave in phase [1].
+    };
+    std::optional<Direction> directionOf(const glm::dvec3& way) const;
+    std::optional<Return> returnOf(const TargetWay& out, const TargetWay& back, double strength_db) const;
+    bool isSent(const Direction& direction) const;
+    double powerIn(const Beam& beam, const Return& echo) const;
     /** Fills means_ for bins from `first` on; whether there is any. */
     bool spread(double range);
-    bool addTo(types::Sonar& ping, const Place& place, double intensity) const;
+    bool addTo(types::Sonar& ping, const Return& echo) const;
+    bool addTo(EchoField& field, const Return& echo, uint64_t key) const;
+    /** What a rough surface leaves in phase along a way [1]. */
+    double inPhase(const TargetWay& way) const;
 
     const RenderPlan& plan_;
-    Sightlines sightlines_;
+    TargetWays ways_;
     double absorption_;  ///< Two-way, of intensity [1/m].
     std::optional<PulseMeans> pulse_;
     std::vector<double> means_;  ///< Of h, for bins from first_bin_ on [1].

@@ -24,8 +24,8 @@ struct ProfilerConfig {
 /** A profiling multibeam sonar: a fan of thin beams, of each of which the strongest return is one sounding.
  *
  *  The fan lies in the x-y plane of the sonar frame, about x: a mount with `pitch_deg: 90` looks straight down, with
- * the fan across the track. Out, beside the ping: `soundings`, points in the world, at most one for each beam, with the
- *  intensity of the strongest bin of the return; found in the noiseless ping, and only where somebody is connected. */
+ *  the fan across the track. Out, beside the ping: `soundings`, points in the world, at most one for each beam, with
+ *  the intensity of the strongest bin of the return; found in the noiseless ping, only where somebody is connected. */
 class ProfilerTask final : public PingTask {
 public:
     using PingTask::PingTask;

@@ -48,8 +48,8 @@ private:
 
 /** Tells the error of pings by comparing them with cheaper ones of the same snapshot. Three fifths of the rows are
  *  compared rather than half: an edge along the rows may lie as wrong at half as many. Columns are halved. The
- * difference is taken for that of two errors that do not depend on each other and are in proportion to the spacing of
- * the samples. */
+ *  difference is taken for that of two errors that do not depend on each other and are in proportion to the spacing of
+ *  the samples. */
 class ErrorEstimator {
 public:
     explicit ErrorEstimator(const SonarConfig& config);

@@ -55,6 +55,48 @@ void extend(const TileRays& rays, float nearest, RTCRayHit16& all) {
     }
 }
 
+/** Aims rays that begin elsewhere, in the axes that `turn` and `place` of the sonar tell. */
+template <class Rays>
+void aim(const Rows& turn, glm::vec3 place, const PathRays& rays, Rays& ray) {
+    const auto turned = [](glm::vec3 row, float x, float y, float z) { return row.x * x + row.y * y + row.z * z; };
+    for (int i = 0; i < tile_samples; ++i) {
+        ray.org_x[i] = place.x + turned(turn.x, rays.from_x[i], rays.from_y[i], rays.from_z[i]);
+        ray.org_y[i] = place.y + turned(turn.y, rays.from_x[i], rays.from_y[i], rays.from_z[i]);
+        ray.org_z[i] = place.z + turned(turn.z, rays.from_x[i], rays.from_y[i], rays.from_z[i]);
+        ray.dir_x[i] = turned(turn.x, rays.towards.x[i], rays.towards.y[i], rays.towards.z[i]);
+        ray.dir_y[i] = turned(turn.y, rays.towards.x[i], rays.towards.y[i], rays.towards.z[i]);
+        ray.dir_z[i] = turned(turn.z, rays.towards.x[i], rays.towards.y[i], rays.towards.z[i]);
+    }
+}
+
+/** Lets rays meet what lies between their own bounds; those that are not active end before they begin. */
+template <class Rays>
+void bound(const PathRays& rays, Rays& ray) {
+    constexpr float infinity = std::numeric_limits<float>::infinity();
+    for (int i = 0; i < tile_samples; ++i) {
+        const bool active = rays.towards.active >> i & 1;
+        ray.tnear[i] = active ? rays.nearest[i] : infinity;
+        ray.tfar[i] = active ? rays.farthest[i] : -infinity;
+        ray.time[i] = 0;
+        ray.mask[i] = 0xffffffff;
+        ray.flags[i] = 0;
+    }
+}
+
+/** Which rays Embree is to look at. */
+struct Valid {
+    alignas(64) int of[tile_samples];
+
+    explicit Valid(uint32_t active) {
+        for (int i = 0; i < tile_samples; ++i) of[i] = (active >> i & 1) ? -1 : 0;
+    }
+};
+
+void forgetHits(RTCRayHit16& all) {
+    std::fill_n(all.hit.geomID, tile_samples, RTC_INVALID_GEOMETRY_ID);
+    std::fill_n(all.hit.instID[0], tile_samples, RTC_INVALID_GEOMETRY_ID);
+}
+
 RTCIntersectContext coherentRays() {
     RTCIntersectContext context;
     rtcInitIntersectContext(&context);
@@ -72,6 +114,7 @@ void take(const RTCRayHit16& all, TileHits& hits, const Meaning& meaning) {
         hits.triangle[i] = part.first_triangle + all.hit.primID[i];
         hits.u[i] = all.hit.u[i];
         hits.v[i] = all.hit.v[i];
+        hits.distance[i] = all.ray.tfar[i];
     }
 }
 
@@ -299,6 +342,45 @@ void RayVisibility::castPiece(const RayPaths& paths, const TileRays& rays, const
         rtcIntersect16(valid, mover.mesh->scene, &context, &all);
         take(all, hits, [&](uint32_t geometry, uint32_t) { return mover.meaning(geometry); });
     }
+}
+
+void RayVisibility::cast(const PathRays& rays, TileHits& hits) const {
+    std::fill_n(hits.command, tile_samples, TileHits::nothing);
+    RTCRayHit16 all;
+    const Valid valid(rays.towards.active);
+    bound(rays, all.ray);
+    aim(Rows(world_from_sonar_), place_, rays, all.ray);
+    forgetHits(all);
+    RTCIntersectContext context = coherentRays();
+    rtcIntersect16(valid.of, trees_->still(), &context, &all);
+    take(all, hits, [this](uint32_t geometry, uint32_t instance) { return trees_->meaning(geometry, instance); });
+    for (const Mover& mover : movers_) {
+        if (!mover.placed) continue;
+        aim(Rows(mover.from_sonar), mover.place, rays, all.ray);
+        forgetHits(all);
+        rtcIntersect16(valid.of, mover.mesh->scene, &context, &all);
+        take(all, hits, [&](uint32_t geometry, uint32_t) {
+            const SceneTrees::Part& part = mover.mesh->parts[geometry];
+            return SceneTrees::Part{mover.first_command + part.command, part.first_triangle};
+        });
+    }
+}
+
+uint32_t RayVisibility::blocked(const PathRays& rays) const {
+    RTCRay16 all;
+    const Valid valid(rays.towards.active);
+    bound(rays, all);
+    aim(Rows(world_from_sonar_), place_, rays, all);
+    RTCIntersectContext context = coherentRays();
+    rtcOccluded16(valid.of, trees_->still(), &context, &all);
+    for (const Mover& mover : movers_) {
+        if (!mover.placed) continue;
+        aim(Rows(mover.from_sonar), mover.place, rays, all);
+        rtcOccluded16(valid.of, mover.mesh->scene, &context, &all);
+    }
+    uint32_t met = 0;
+    for (int i = 0; i < tile_samples; ++i) met |= static_cast<uint32_t>(all.tfar[i] < 0) << i;
+    return met & rays.towards.active;
 }
 
 }  // namespace insonify::sonar

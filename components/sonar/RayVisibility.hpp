@@ -28,7 +28,15 @@ struct TileHits {
     alignas(64) uint32_t command[tile_samples];  ///< Index into RayVisibility::commands(), or `nothing`.
     uint32_t triangle[tile_samples];             ///< Within the mesh of the command's object [1].
     float u[tile_samples], v[tile_samples];  ///< Barycentric coordinates of the triangle's second and third corner [1].
+    float distance[tile_samples];            ///< In lengths of the ray's direction [1].
     float range[tile_samples];               ///< Slant range, of castAlong() alone [m].
+};
+
+/** Rays of a tile that begin anywhere, sonar axes; distances along them in lengths of their directions. */
+struct PathRays {
+    alignas(64) float from_x[tile_samples], from_y[tile_samples], from_z[tile_samples];  ///< [m]
+    TileRays towards;
+    alignas(64) float nearest[tile_samples], farthest[tile_samples];  ///< Between these something is met [1].
 };
 
 /** Which triangle is seen in which direction, by rays on the processor (Embree). What does not move is one tree about
@@ -51,6 +59,10 @@ public:
      * rays[i] meet. Several threads may do so at a time. */
     void cast(std::span<const TileRays> rays, std::span<TileHits> hits) const;
 
+    /** What rays that begin elsewhere meet first. */
+    void cast(const PathRays& rays, TileHits& hits) const;
+    /** Those of the active rays, as bits, that meet anything. */
+    uint32_t blocked(const PathRays& rays) const;
     /** Casts a tile along ways that are not straight, by straight pieces between their corners. */
     void castAlong(const RayPaths& paths, const TileRays& rays, TileHits& hits) const;
 

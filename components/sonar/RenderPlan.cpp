@@ -28,6 +28,7 @@ Features featuresOf(const SonarConfig& config, const RenderOptions& options, con
     if (!laws.tables.empty() || laws.hasLobes()) features.add(Feature::BackscatterLaws);
     if (!config.volume.empty()) features.add(Feature::Volume);
     if (config.hasLayers()) features.add(Feature::VolumeLayers);
+    if (config.isCoherent()) features.add(Feature::Speckle);
     if (options.estimator == Estimator::NearestJitter) features.add(Feature::Jitter);
     return features;
 }
@@ -67,6 +68,22 @@ void omitPulse(RenderPlan& plan) {
         {Effect::RangePointSpread, Reason::BelowBound, pulse.resolution(), plan.grid.bin_width / 2});
 }
 
+/** What there is to reflect sound; `bounces` says which of it does (ACOUSTICS.md 5.19). */
+bool hasMirrors(const RenderPlan& plan, const types::Geometry& geometry) {
+    const MultipathConfig& multipath = *plan.config.multipath;
+    return multipath.surface || std::ranges::any_of(geometry.materials, [&](const types::Material& material) {
+               return reflectedPower(material, multipath.bounces) > 0;
+           });
+}
+
+void omitMultipath(RenderPlan& plan) {
+    if (plan.has(Pass::Paths)) return;
+    const Reason reason = !plan.config.multipath       ? Reason::NotConfigured
+                          : !plan.config.tracesPaths() ? Reason::NoBounces
+                                                       : Reason::NoMirror;
+    plan.left_out.push_back({Effect::Multipath, reason});
+}
+
 bool hasProfile(const SonarConfig& config) { return config.water && config.water->profile; }
 
 /** Whether a profile puts any echo elsewhere: by bending its ray, or by another speed of sound than the sonar's. */
@@ -94,8 +111,10 @@ void omitRefraction(RenderPlan& plan) {
         plan.left_out.push_back({Effect::Refraction, Reason::BelowBound, bent.offset, bent.tolerated});
 }
 
-std::vector<Pass> passesOf(const RenderPlan& plan) {
-    std::vector<Pass> passes{Pass::Cull, plan.casts_rays ? Pass::Rays : Pass::Surface, Pass::Deposit, Pass::Beams};
+std::vector<Pass> passesOf(const RenderPlan& plan, const types::Geometry& geometry) {
+    std::vector<Pass> passes{Pass::Cull, plan.casts_rays ? Pass::Rays : Pass::Surface, Pass::Deposit};
+    if (plan.config.tracesPaths() && hasMirrors(plan, geometry)) passes.push_back(Pass::Paths);
+    passes.push_back(Pass::Beams);
     if (plan.directivity && plan.directivity->hasAzimuth()) passes.push_back(Pass::Beamform);
     if (plan.config.pulse && !isShort(acoustics::Pulse(*plan.config.pulse, plan.grid.speed_of_sound), plan.grid))
         passes.push_back(Pass::Pulse);
@@ -112,7 +131,8 @@ void omitEffects(const types::Geometry& geometry, RenderPlan& plan) {
     omitPulse(plan);
     omitUnless(plan.has(Pass::RingDown), Effect::RingDown);
     omitUnless(plan.features.has(Feature::Volume), Effect::Volume);
-    omitUnless(false, Effect::Multipath);
+    omitUnless(plan.features.has(Feature::Speckle), Effect::Speckle);
+    omitMultipath(plan);
     if (plan.frusta.size() == 1)
         plan.left_out.push_back({Effect::FurtherSlabs, Reason::OneImage, plan.config.coverageDeg()});
     omitRefraction(plan);
@@ -146,6 +166,14 @@ void RenderPlan::setQuality(int rows, int columns_per_beam) {
     sampled = directivity ? sampledConfig(config, *directivity, casts_rays) : config;
     cells = directivity ? azimuthCells(sampled, beams, *directivity, casts_rays) : beams;
     if (!casts_rays) frusta = makeFrusta(sampled, cells, options);
+}
+
+double reflectedPower(const types::Material& material, int bounces) {
+    constexpr double least_reflection = 0.5, steepest = 0.3;
+    const double reflection = std::abs(static_cast<double>(material.reflection));
+    if (material.mirror && bounces > 0) return reflection > 0 ? reflection * reflection : 1;
+    const bool smooth = material.roughness_slope && static_cast<double>(*material.roughness_slope) < steepest;
+    return bounces > 1 && smooth && reflection > least_reflection ? reflection * reflection : 0;
 }
 
 const LeftOut* RenderPlan::leftOut(Effect effect) const {
@@ -193,7 +221,7 @@ RenderPlan makeRenderPlan(const SonarConfig& config, const types::Geometry& geom
     if (config.motion_in_ping) plan.features.add(Feature::MotionInPing);
     plan.beams = makeBeams(config);
     if (config.beam_pattern) plan.directivity.emplace(config);
-    plan.passes = passesOf(plan);
+    plan.passes = passesOf(plan, geometry);
     plan.setQuality(config.rows(), config.columnsPerBeam());
     omitAbsorption(plan);
     if (config.model == Model::Physical)

@@ -31,10 +31,11 @@ enum class Feature {
     BackscatterLaws,  ///< Of any material: a table, or a lobe.
     Volume,
     VolumeLayers,
+    Speckle,  ///< Fields of scatterers are summed, not energies.
     Refraction,
     MotionInPing
 };
-constexpr int feature_count = 14;
+constexpr int feature_count = 15;
 
 /** A set of features. */
 class Features {
@@ -45,6 +46,9 @@ public:
     }
     constexpr void add(Feature feature) { bits_ |= 1u << static_cast<unsigned>(feature); }
     constexpr bool has(Feature feature) const { return bits_ >> static_cast<unsigned>(feature) & 1u; }
+    constexpr Features without(Feature feature) const {
+        return Features(bits_ & ~(1u << static_cast<unsigned>(feature)));
+    }
     constexpr bool operator==(const Features&) const = default;
     constexpr Features operator&(Features other) const { return Features(bits_ & other.bits_); }
     constexpr Features operator|(Features other) const { return Features(bits_ | other.bits_); }
@@ -60,7 +64,7 @@ private:
 };
 
 /** Work for each ping, in this order. */
-enum class Pass { Cull, Surface, Rays, Deposit, Beams, Beamform, Pulse, RingDown };
+enum class Pass { Cull, Surface, Rays, Deposit, Paths, Beams, Beamform, Pulse, RingDown };
 
 /** What may be left out of a ping. */
 enum class Effect {
@@ -81,6 +85,7 @@ enum class Effect {
     RingDown,
     PointTargets,
     Volume,
+    Speckle,
     Multipath,
     FurtherSlabs,
     Refraction,
@@ -101,6 +106,11 @@ enum class Reason {
     Published,     ///< The published simulator has none.
     BelowBound,    ///< `value` is below `bound`.
     Approximated,  ///< `value` is what it amounts to.
+    NoBounces,     ///< As many reflections are asked for.
+    NoMirror,      ///< Nothing in the scene reflects, or is asked to.
+    NoWaterSurface,
+    AboveSurface,  ///< The sonar is not in the water.
+    BeyondRange,   ///< `value` is the distance of the mirror, `bound` the range [m].
     OneImage,      ///< One image shows the whole fan.
     OutOfView      ///< `value` of `bound` at the first ping.
 };
@@ -141,6 +151,10 @@ struct RenderPlan {
 RenderPlan makeRenderPlan(const SonarConfig& config, const types::Geometry& geometry,
                           const RenderOptions& options = {});
 
+/** Share of the sound that a material reflects as a mirror does, where `bounces` reflections of a way are asked for
+ * [1]: one that is declared to, or from two on one that is smooth (ACOUSTICS.md 5.19); 0: it does not. */
+double reflectedPower(const types::Material& material, int bounces);
+
 /** Gradient of the speed of sound with depth that refraction is judged by without a profile, a strong thermocline
  *  [1/s]. */
 constexpr double speed_gradient = 0.1;
@@ -171,13 +185,13 @@ std::string whyStraight(const SonarConfig& config);
 
 template <>
 struct insonify::types::EnumNames<insonify::sonar::Feature> {
-    static constexpr std::string_view names[] = {"physical",          "cerqueira2017",    "absorption", "published",
-                                                 "conical",           "normal_map",       "nearest",    "jitter",
-                                                 "elevation_pattern", "backscatter_laws", "volume",     "volume_layers",
-                                                 "refraction",        "motion_in_ping"};
+    static constexpr std::string_view names[] = {
+        "physical",   "cerqueira2017", "absorption", "published",         "conical",
+        "normal_map", "nearest",       "jitter",     "elevation_pattern", "backscatter_laws",
+        "volume",     "volume_layers", "speckle",    "refraction",        "motion_in_ping"};
 };
 template <>
 struct insonify::types::EnumNames<insonify::sonar::Pass> {
-    static constexpr std::string_view names[] = {"cull",  "surface",  "rays",  "deposit",
+    static constexpr std::string_view names[] = {"cull",  "surface",  "rays",  "deposit",  "paths",
                                                  "beams", "beamform", "pulse", "ring_down"};
 };

@@ -16,7 +16,7 @@ struct MaterialRun {
 std::vector<MaterialRun> materialRuns(const types::Mesh& mesh);
 
 /** Embree's trees of a geometry, and what the numbers of their hits mean. Built by one thread, so that of surfaces in
- * the same place the same one is met on any machine. */
+ *  the same place the same one is met on any machine. */
 class SceneTrees {
 public:
     /** What a geometry of a tree is: a command, and the first triangle of its run. */

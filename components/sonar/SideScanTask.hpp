@@ -14,7 +14,7 @@ struct SideScanConfig {
         sonar.beam_height_deg = 50;
     }
     /** The same as a sonar that looks straight down with its fan across the track: what is height here is width there,
-     * and elevation is azimuth. */
+     *  and elevation is azimuth. */
     SonarConfig acrossTrack() const;
 
     template <class Self, class V>
@@ -31,8 +31,8 @@ struct SideScanConfig {
  *  The sonar frame is that of the vehicle, x ahead. `beam_width_deg` is the opening along the track, `beam_height_deg`
  *  that across it, about an axis `depression_deg` below the horizontal. Of `beam_pattern`, azimuth is along the track;
  *  across it there is one law, `receive.elevation`, two-way, about the axis of each beam. `quality.rows` are along the
- * track and `columns_per_beam` across it; 8 and 2048 where nothing is said. In a ping beam 0 is starboard, at bearing
- * -90 deg, and beam 1 is port. */
+ *  track and `columns_per_beam` across it; 8 and 2048 where nothing is said. In a ping beam 0 is starboard, at bearing
+ *  -90 deg, and beam 1 is port. */
 class SideScanTask final : public PingTask {
 public:
     using PingTask::PingTask;

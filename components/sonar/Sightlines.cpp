@@ -116,17 +116,17 @@ void Sightlines::place(const types::Snapshot& snapshot) {
 }
 
 template <class Use>
-bool Sightlines::anyMet(size_t object, const glm::dvec3& end, const Use& use) const {
+bool Sightlines::anyMet(size_t object, const glm::dvec3& from, const glm::dvec3& end, const Use& use) const {
     const types::Mesh& mesh = meshOf(object);
     const glm::dmat4& place = placed_[object].world_from_object;
-    if (mesh.clusters.empty() || !meets(sonar_, end, placed_[object].centre, placed_[object].half)) return false;
+    if (mesh.clusters.empty() || !meets(from, end, placed_[object].centre, placed_[object].half)) return false;
     const bool mirrored = glm::determinant(glm::dmat3(place)) < 0;
     const auto mayMeet = [&](const glm::dvec3& centre, const glm::dvec3& half) {
         const Box box(place, centre, half);
-        return meets(sonar_, end, box.centre, box.half);
+        return meets(from, end, box.centre, box.half);
     };
     const auto corner = [&](size_t index) {
-        return glm::dvec3(place * glm::dvec4(mesh.positions[mesh.indices[index]], 1)) - sonar_;
+        return glm::dvec3(place * glm::dvec4(mesh.positions[mesh.indices[index]], 1)) - from;
     };
     return anyCluster(mesh, mayMeet, [&](const types::Cluster& cluster) {
         for (size_t i = cluster.first_index; i < cluster.first_index + cluster.index_count; i += 3) {
@@ -137,12 +137,12 @@ bool Sightlines::anyMet(size_t object, const glm::dvec3& end, const Use& use) co
     });
 }
 
-bool Sightlines::isOpen(const glm::dvec3& point) const {
-    const glm::dvec3 end = point - sonar_;
+bool Sightlines::isOpen(const glm::dvec3& from, const glm::dvec3& to) const {
+    const glm::dvec3 end = to - from;
     const double range = glm::length(end);
     const auto hides = [&](double share, bool) { return share * range > nearest && (1 - share) * range > nearest; };
     for (size_t i = 0; i < placed_.size(); ++i)
-        if (anyMet(i, end, hides)) return false;
+        if (anyMet(i, from, end, hides)) return false;
     return true;
 }
 
@@ -152,7 +152,7 @@ std::optional<uint32_t> Sightlines::enclosing() const {
         if (glm::any(glm::greaterThan(glm::abs(sonar_ - placed.centre), placed.half))) return false;
         return std::ranges::all_of(ways_out, [&](const glm::dvec3& way) {
             int backs = 0;  // more than fronts: as often it is left as entered, and once more
-            anyMet(object, way * (4 * glm::length(placed.half)), [&](double, bool is_back) {
+            anyMet(object, sonar_, way * (4 * glm::length(placed.half)), [&](double, bool is_back) {
                 backs += is_back ? 1 : -1;
                 return false;
             });

@@ -20,7 +20,9 @@ public:
     /** Once a ping, before anything is asked of it. Allocates nothing. */
     void place(const types::Snapshot& snapshot);
     /** Whether a point in the world is seen. */
-    bool isOpen(const glm::dvec3& point) const;
+    bool isOpen(const glm::dvec3& point) const { return isOpen(sonar_, point); }
+    /** Whether one point in the world is seen from another. */
+    bool isOpen(const glm::dvec3& from, const glm::dvec3& to) const;
     /** The object that the sonar is inside of, as all that it sees of it are backs; none where it is in the open. */
     std::optional<uint32_t> enclosing() const;
 
@@ -32,10 +34,10 @@ private:
     };
     void placeObject(size_t object, const glm::dmat4& world_from_object);
     const types::Mesh& meshOf(size_t object) const;
-    /** Calls `use(share, is_back)` for each triangle of an object that the line from the sonar to `end` meets, a vector
+    /** Calls `use(share, is_back)` for each triangle of an object that the line from a point meets to `end`, a vector
      *  from there, at so much of its length [1]; ends when it says true, which is then returned. */
     template <class Use>
-    bool anyMet(size_t object, const glm::dvec3& end, const Use& use) const;
+    bool anyMet(size_t object, const glm::dvec3& from, const glm::dvec3& end, const Use& use) const;
 
     const types::Geometry& geometry_;
     std::vector<Placed> placed_;

@@ -8,6 +8,7 @@
 #include <glm/geometric.hpp>
 #include <glm/gtc/quaternion.hpp>
 
+#include "components/sonar/BeamAngles.hpp"
 #include "types/Angle.hpp"
 #include "types/Extent.hpp"
 
@@ -65,12 +66,12 @@ std::string hindranceText(const Coverage& coverage, const glm::dvec3& point) {
     const double range = glm::length(point);
     if (range > plan.grid.range_max) return fmt::format("beyond the range of {:.4g} m", plan.grid.range_max);
     if (range < plan.grid.range_min) return fmt::format("nearer than range_min, {:g} m", plan.grid.range_min);
-    const double elevation = degrees(std::asin(std::clamp(point.z / std::max(range, 1e-12), -1.0, 1.0)));
-    if (const std::string above = aboveText(plan, elevation); !above.empty() || coverage.all_round) return above;
     const bool conical = plan.features.has(Feature::Conical);
+    const BeamAngles angles = beamAnglesOf(point, conical);
+    const std::string above = aboveText(plan, degrees(angles.elevation));
+    if (!above.empty() || coverage.all_round) return above;
     if (conical && point.x < 0) return "behind the sonar, a straight array";
-    return asideText(plan, degrees(conical ? std::asin(std::clamp(point.y / std::max(range, 1e-12), -1.0, 1.0))
-                                           : std::atan2(point.y, point.x)));
+    return asideText(plan, degrees(angles.azimuth));
 }
 
 /** That no material of an object gives anything back; empty where one does. */

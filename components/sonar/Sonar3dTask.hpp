@@ -34,7 +34,7 @@ struct Sonar3dConfig {
 
     Sonar3dConfig();
     /** The beams of one azimuth, as a fan that stands upright: its bearings are their elevations, what is height here
-     * is width there, and elevation is azimuth. */
+     *  is width there, and elevation is azimuth. */
     SonarConfig upright() const;
     double beamWidthDeg() const { return sonar.beam_width_deg.value_or(horizontal.spacingDeg()); }
 

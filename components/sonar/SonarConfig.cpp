@@ -37,6 +37,8 @@ void checkPhysics(const SonarConfig& config, types::Diagnostics& diagnostics) {
         diagnostics.push_back({"volume", "is given with model: cerqueira2017; it belongs to physical"});
     if (config.volume.size() > max_layers)
         diagnostics.push_back({"volume", fmt::format("has {} layers; may have {}", config.volume.size(), max_layers)});
+    if (means && config.multipath)
+        diagnostics.push_back({"multipath", "is given with model: cerqueira2017; it belongs to physical"});
     if (means && config.pulse)
         diagnostics.push_back({"pulse", "is given with model: cerqueira2017; it belongs to physical"});
     if (config.pulse && config.pulse->chirp_us && !(config.motion_in_ping && config.frequency_khz))
@@ -63,7 +65,72 @@ void checkRangeReached(const SonarConfig& config, types::Diagnostics& diagnostic
                                   config.range, config.bin_count, grid.range_max)});
 }
 
+/** Of a property that only rays can follow. */
+void checkNeedOfRays(const SonarConfig& config, types::Diagnostics& diagnostics) {
+    const std::string name = config.needsRays();
+    if (name.empty()) return;
+    if (!haveRays()) diagnostics.push_back({name, "needs rays, and this build has none (Embree)"});
+    if (config.visibility == Visibility::Gl)
+        diagnostics.push_back({"visibility", "is gl with " + name + ", which needs rays; may be auto or cpu"});
+    if (config.deposit == Deposit::Gpu)
+        diagnostics.push_back({"deposit", "is gpu with " + name + ", which needs rays; may be auto or cpu"});
+    if (config.model != Model::Physical)
+        diagnostics.push_back({name, "is given with model: cerqueira2017, whose bins are means of S(n.d)"});
+}
+
+/** Of ways that are bent, what follows straight ones alone. */
+void checkStraightWays(const SonarConfig& config, types::Diagnostics& diagnostics) {
+    const bool bends = config.water && config.water->profile;
+    const std::string name = config.needsRays();
+    if (!name.empty() && (bends || config.motion_in_ping))
+        diagnostics.push_back({name, std::string("follows straight ways; leave it out, or ") +
+                                         (bends ? "water.profile" : "motion_in_ping")});
+}
+
+void checkSpeckle(const SonarConfig& config, types::Diagnostics& diagnostics) {
+    if (config.isCoherent() && !config.frequency_khz)
+        diagnostics.push_back({"speckle", "is coherent without frequency_khz, which it needs"});
+}
+
+/** Why the receiver's law in azimuth is of no array of elements; empty where it is. */
+std::string whyNoArray(const SonarConfig& config) {
+    const auto& law = config.beam_pattern ? config.beam_pattern->receive.azimuth : std::optional<acoustics::BeamLaw>();
+    if (!law) return "need beam_pattern.receive.azimuth, whose aperture they fill";
+    const acoustics::Weighting weighting = law->weighting.value_or(acoustics::Weighting::Uniform);
+    if (!law->file.empty() || weighting == acoustics::Weighting::Gaussian || weighting == acoustics::Weighting::Piston)
+        return "need a weighted line in beam_pattern.receive.azimuth; they make no measured table, gaussian or piston";
+    return {};
+}
+
+void checkElementCount(const SonarConfig& config, types::Diagnostics& diagnostics) {
+    const double wavelength = config.speedOfSound() / (1e3 * *config.frequency_khz);
+    const double aperture =
+        acoustics::BeamPattern(*config.beam_pattern->receive.azimuth, wavelength).aperture() * wavelength;
+    const auto [count, spacing] = config.elements->arrayOf(aperture, wavelength);
+    const double length = static_cast<double>(count) * spacing;
+    if (count < 2 || std::abs(length - aperture) > 0.5 * spacing + 1e-9)
+        diagnostics.push_back(
+            {"elements", fmt::format("are {} that are {:.4g} m apart, {:.4g} m in all; the aperture of "
+                                     "beam_pattern.receive.azimuth is {:.4g} m: give count or spacing_m alone",
+                                     count, spacing, length, aperture)});
+}
+
+void checkElements(const SonarConfig& config, types::Diagnostics& diagnostics) {
+    if (!config.elements) return;
+    const std::string why = whyNoArray(config);
+    if (!config.isCoherent())
+        diagnostics.push_back(
+            {"elements", "need speckle: {coherent: true}; without it energies are summed, not fields"});
+    else if (config.beam_geometry != BeamGeometry::Conical)
+        diagnostics.push_back({"elements", "need beam_geometry: conical, for a straight array hears cones"});
+    else if (!why.empty())
+        diagnostics.push_back({"elements", why});
+    else if (config.frequency_khz)
+        checkElementCount(config, diagnostics);
+}
+
 void checkVisibility(const SonarConfig& config, types::Diagnostics& diagnostics) {
+    checkNeedOfRays(config, diagnostics);
     if (config.visibility != Visibility::Cpu) return;
     if (!haveRays())
         diagnostics.push_back({"visibility", "is cpu; this build has no rays (Embree), may be auto or gl"});
@@ -73,6 +140,7 @@ void checkVisibility(const SonarConfig& config, types::Diagnostics& diagnostics)
         diagnostics.push_back({"deposit", "is gpu with visibility: cpu; may be auto or cpu"});
 }
 
+/** Reflected ways are traced by rays alone. */
 int imageColumns(const SonarConfig& config) { return makeFrusta(config, makeBeams(config)).front().columns; }
 
 bool fitsImages(const SonarConfig& config) {
@@ -144,6 +212,12 @@ void VolumeLayer::check(types::Diagnostics& diagnostics) const {
             {"bottom_m", fmt::format("is {:g}, not below top_m, {:g}; depths grow downwards", *bottom_m, *top_m)});
 }
 
+ElementsConfig::Array ElementsConfig::arrayOf(double aperture_m, double wavelength) const {
+    const double wanted = spacing_m.value_or(count ? aperture_m / *count : 0.5 * wavelength);
+    const auto all = count ? static_cast<size_t>(*count) : static_cast<size_t>(std::lround(aperture_m / wanted));
+    return {all, spacing_m.value_or(aperture_m / std::max(1.0, static_cast<double>(all)))};
+}
+
 void BeamPatternConfig::check(types::Diagnostics& diagnostics) const {
     if (!hasAzimuth() && !hasElevation())
         diagnostics.push_back({"", "has no law; give azimuth or elevation of transmit or receive"});
@@ -167,8 +241,11 @@ std::optional<double> SonarConfig::targetError() const {
     return default_target;
 }
 
+std::string SonarConfig::needsRays() const { return isCoherent() ? "speckle" : tracesPaths() ? "multipath" : ""; }
+
 bool SonarConfig::castsRays() const {
     if (visibility != Visibility::Auto) return visibility == Visibility::Cpu;
+    if (!needsRays().empty()) return true;
     if (!haveRays() || published || deposit == Deposit::Gpu) return false;
     if (!fitsImages(*this) || (water && water->profile) || motion_in_ping) return true;
     return !gpu::EglContext::isAskedFor(device) && !gpu::EglContext::hasCard();
@@ -259,6 +336,9 @@ void SonarConfig::checkBeam(types::Diagnostics& diagnostics) const {
     checkPhysics(*this, diagnostics);
     checkRangeReached(*this, diagnostics);
     checkVisibility(*this, diagnostics);
+    checkStraightWays(*this, diagnostics);
+    checkSpeckle(*this, diagnostics);
+    checkElements(*this, diagnostics);
     if (!diagnostics.empty()) return;
     if (castsRays()) return checkRays(*this, diagnostics);
     if (motion_in_ping)

@@ -82,6 +82,84 @@ struct VolumeLayer {
     void check(types::Diagnostics& diagnostics) const;
 };
 
+/** The water surface as a mirror. */
+struct SurfaceMirrorConfig {
+    double wind_m_s = 0;
+
+    template <class Self, class V>
+    static void describe(Self& self, V& visit) {
+        visit(types::Field{"wind_m_s", "m/s", "wind that makes it rough; 0: as flat as a mirror", 0, 50},
+              self.wind_m_s);
+    }
+};
+
+/** Echoes that come by way of mirrors (ACOUSTICS.md 5.19). */
+struct MultipathConfig {
+    std::optional<SurfaceMirrorConfig> surface;
+    int bounces = 1;
+
+    template <class Self, class V>
+    static void describe(Self& self, V& visit) {
+        using types::Field;
+        visit(Field{"surface", "", "the scene's water_surface reflects; absent: it lets all sound through"},
+              self.surface);
+        visit(Field{"bounces", "1",
+                    "reflections of one way, at most: 1 in the water surface and materials with `mirror: true`, 2 in "
+                    "smooth materials as well; 0: none",
+                    0, 2},
+              self.bounces);
+    }
+};
+
+/** Echoes that interfere: each surface is a lattice of scatterers that belong to its object, and what a bin holds is
+ * the square of the sum of their fields (ACOUSTICS.md 5.23). */
+struct SpeckleConfig {
+    bool coherent = false;
+    int scatterers_per_cell = 20;
+    std::optional<double> scatterers_per_m2;
+
+    template <class Self, class V>
+    static void describe(Self& self, V& visit) {
+        using types::Field;
+        visit(Field{"coherent", "", "fields are summed, not energies; needs frequency_khz; false: energies are"},
+              self.coherent);
+        visit(Field{"scatterers_per_cell", "1",
+                    "scatterers in a resolution cell, beam width by range resolution, at least", 1, 200},
+              self.scatterers_per_cell);
+        visit(Field{"scatterers_per_m2", "1/m2",
+                    "scatterers of surfaces, of exponentially distributed strengths: intensities are K-distributed, "
+                    "of the shape of their number in a cell (Abraham and Lyons 2002); absent: so many that none stands "
+                    "out",
+                    1e-6, 1e9},
+              self.scatterers_per_m2);
+    }
+};
+
+/** A straight array of equal elements, as long as the aperture of `beam_pattern.receive.azimuth`, whose signals are
+ *  told. */
+struct ElementsConfig {
+    std::optional<int> count;
+    std::optional<double> spacing_m;
+
+    /** How many elements there are, and how far apart [m]. */
+    struct Array {
+        size_t count;
+        double spacing;
+    };
+    /** As given, the rest from the length of the aperture [m]; half a wavelength apart where nothing is given. */
+    Array arrayOf(double aperture_m, double wavelength) const;
+
+    template <class Self, class V>
+    static void describe(Self& self, V& visit) {
+        using types::Field;
+        visit(Field{"count", "1", "elements; absent: as many as the receiver's aperture has room for", 2, 4096},
+              self.count);
+        visit(Field{"spacing_m", "m", "of their middles; absent: the aperture over count, or half a wavelength", 1e-5,
+                    10},
+              self.spacing_m);
+    }
+};
+
 /** Samples per beam: given, or found for an error or a time from the pings. Found for an error of 0.05 with at most
  *  400,000 samples a ping when nothing is given. */
 struct QualityConfig {
@@ -151,7 +229,9 @@ struct SonarConfig {
     std::optional<acoustics::PulseConfig> pulse;
     std::vector<VolumeLayer> volume;
     bool motion_in_ping = false;
-    std::optional<types::NotBuiltYet> multipath;
+    std::optional<SpeckleConfig> speckle;
+    std::optional<ElementsConfig> elements;
+    std::optional<MultipathConfig> multipath;
     std::optional<types::MovedTo> tvg, gain, output, source_level_db;
 
     /** Whether there is more than one water that scatters, or one with bounds. */
@@ -178,6 +258,12 @@ struct SonarConfig {
     /** The same with a fan that is given by `beam_width_deg` given by `field_of_view_deg`, or by `bearings_deg` where
      * both are. */
     SonarConfig fan() const;
+    /** Whether echoes may come by way of mirrors, which takes rays. */
+    bool tracesPaths() const { return multipath && multipath->bounces > 0; }
+    /** Whether fields are summed rather than energies. */
+    bool isCoherent() const { return speckle && speckle->coherent; }
+    /** The property that only rays can follow; empty where there is none. */
+    std::string needsRays() const;
     /** Whether triangles are found by rays on the processor, else by drawing. Looks for a graphics card where nothing
      *  else decides. */
     bool castsRays() const;
@@ -206,9 +292,9 @@ struct SonarConfig {
     template <class Self, class V>
     static void describeBeam(Self& self, V& visit);
     void check(types::Diagnostics& diagnostics) const;
-    /** The faults of a fan that is given by `beam_width_deg`. */
+    /** The diagnostics of a fan that is given by `beam_width_deg`. */
     void checkFan(types::Diagnostics& diagnostics) const;
-    /** The faults that a scanning sonar can have as well. */
+    /** The diagnostics that a scanning sonar can have as well. */
     void checkBeam(types::Diagnostics& diagnostics) const;
 };
 
@@ -248,7 +334,13 @@ void SonarConfig::describeBeam(Self& self, V& visit) {
     visit(Field{"motion_in_ping", "",
                 "sonar and objects move, and the receiver turns, while sound is under way; false: all stand still"},
           self.motion_in_ping);
-    visit(Field{"multipath", "", "second bounce (not built yet)"}, self.multipath);
+    visit(Field{"speckle", "", "echoes that interfere, by scatterers of the scene; absent: energies are summed"},
+          self.speckle);
+    visit(Field{"elements", "",
+                "straight array whose signals port `elements` tells; needs speckle: {coherent: true}, beam_geometry: "
+                "conical and a weighted aperture in beam_pattern.receive.azimuth; absent: they are not told"},
+          self.elements);
+    visit(Field{"multipath", "", "echoes by way of mirrors; absent: none"}, self.multipath);
     visit(Field{"tvg", "",
                 "has moved: a sonar gives intensities; tvg belongs to a receiver::ReceiverTask after the noise"},
           self.tvg);

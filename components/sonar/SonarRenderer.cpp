@@ -5,6 +5,8 @@
 
 #include "components/gpu/EglContext.hpp"
 #include "components/sonar/CastEchoes.hpp"
+#include "components/sonar/EchoField.hpp"
+#include "components/sonar/ElementSignals.hpp"
 #include "components/sonar/PlanReport.hpp"
 #include "components/sonar/PointTargets.hpp"
 #include "components/sonar/RingDown.hpp"
@@ -40,7 +42,8 @@ struct SonarRenderer::Parts {
     std::vector<UnderWay> ring;
     std::optional<PointTargets> targets;  ///< From the first ping with any on.
     std::optional<RingDown> ring_down;
-    size_t targets_heard = 0;  ///< In the last ping [1].
+    std::optional<LineArray> array;  ///< From the first ping whose signals are taken on.
+    size_t targets_heard = 0;        ///< In the last ping [1].
     std::optional<LeftOut> targets_left_out;
     size_t begun = 0, ended = 0;  ///< Pings that were submitted; ping n has place n modulo the ring's size.
 };
@@ -77,7 +80,7 @@ void SonarRenderer::Parts::addTargets(const types::Snapshot& snapshot, types::So
         return;
     }
     if (!targets) targets.emplace(plan, *geometry);
-    targets_heard = targets->add(snapshot, ping);
+    targets_heard = targets->add(snapshot, ping, echoes->field());
     if (targets_heard < all)
         targets_left_out = LeftOut{Effect::PointTargets, Reason::OutOfView, static_cast<double>(all - targets_heard),
                                    static_cast<double>(all)};
@@ -123,9 +126,18 @@ void SonarRenderer::setTruth(const types::Sonar& ping, types::SonarTruth* truth)
 void SonarRenderer::finish(const types::Snapshot& snapshot, types::Sonar& ping) {
     const auto start = std::chrono::steady_clock::now();
     parts_->addTargets(snapshot, ping);
+    if (const EchoField* field = parts_->echoes->field()) field->detect(ping);
     if (parts_->ring_down) parts_->ring_down->add(ping);
     parts_->stages[BeamStage].seconds +=
         std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+void SonarRenderer::takeElements(const types::Sonar& ping, types::SonarElements& signals) {
+    const EchoField* field = parts_->echoes->field();
+    if (!field || !parts_->plan.config.elements) throw std::logic_error("the sonar has no elements");
+    if (!parts_->array) parts_->array.emplace(lineArrayOf(parts_->plan.config));
+    takeSignals(parts_->plan, *field, *parts_->array, signals);
+    signals.time = ping.time;
 }
 
 size_t SonarRenderer::ringSize() const { return parts_->ring.size(); }

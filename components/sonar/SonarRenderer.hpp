@@ -10,6 +10,7 @@
 #include "types/Plan.hpp"
 #include "types/Snapshot.hpp"
 #include "types/Sonar.hpp"
+#include "types/SonarElements.hpp"
 
 namespace insonify::sonar {
 
@@ -36,6 +37,10 @@ public:
      *  within half its spacing to its neighbours: what it hears in its sidelobes is not told, nor what the pulse
      *  spreads into a bin, nor what the water scatters. Pings that are submitted tell none. */
     void setTruth(const types::Sonar& ping, types::SonarTruth* truth);
+
+    /** Of a sonar with `elements`: what they heard of `ping`, the last that was rendered. Takes some time and
+     * allocates. Throws std::logic_error where the sonar has none. */
+    void takeElements(const types::Sonar& ping, types::SonarElements& signals);
 
     /** How many pings may be submitted and not collected [1]: more than one only pays where a graphics card draws. */
     size_t ringSize() const;

@@ -12,7 +12,7 @@ namespace insonify::sonar {
 class SurfacePainter {
 public:
     /** `defines` as the plan's features; nothing nearer than `near_plane` [m] along a frustum's axis is drawn.
-     * `scene` and `context`, which is current, must outlive the painter; the scene may be another context's. */
+     *  `scene` and `context`, which is current, must outlive the painter; the scene may be another context's. */
     SurfacePainter(const SurfaceScene& scene, const std::vector<std::string>& defines, double near_plane,
                    gpu::EglContext& context);
 

@@ -11,8 +11,8 @@ namespace insonify::sonar {
 namespace {
 
 /** A mesh as it is drawn: triangle t ends in vertex t, which no other triangle ends in. So the last vertex of a
- * triangle, the provoking one, tells which triangle it is, and gl_PrimitiveID, for which llvmpipe takes meshes apart,
- * is not needed. */
+ *  triangle, the provoking one, tells which triangle it is, and gl_PrimitiveID, for which llvmpipe takes meshes apart,
+ *  is not needed. */
 class Drawn {
 public:
     explicit Drawn(const types::Mesh& mesh) : indices(mesh.indices), place_(mesh.positions.size(), nobody) {
@@ -65,7 +65,7 @@ gpu::Buffer uploaded(const std::vector<T>& items) {
 }
 
 /** Of what has no area: no normal, which is no echo. The point is that of the plane which is nearest to the origin
- * within the triangle's reach: even of a huge triangle it is close to what is seen, if that is close to the origin. */
+ *  within the triangle's reach: even of a huge triangle it is close to what is seen, if that is close to the origin. */
 PlaneRecord planeOf(glm::dvec3 a, glm::dvec3 b, glm::dvec3 c) {
     const glm::dvec3 across = glm::cross(b - a, c - a), middle = (a + b + c) / 3.0;
     if (!(glm::length(across) > 0)) return {vec4(0), vec4(0)};

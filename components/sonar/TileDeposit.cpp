@@ -6,6 +6,7 @@
 #include <glm/geometric.hpp>
 
 #include "components/sonar/Estimators.hpp"
+#include "components/sonar/Scatterers.hpp"
 #include "components/sonar/TruthDeposit.hpp"
 
 namespace insonify::sonar {
@@ -102,6 +103,26 @@ INSONIFY_VECTOR_CLONES void regard(const Cells& cells, int count, CellTruths<str
     }
 }
 
+/** Whether an estimator sums the fields of scatterers. */
+template <class Estimator>
+constexpr bool sums_fields = Estimator::features.has(Feature::Speckle);
+
+template <class Estimator>
+Estimator makeEstimator(const EchoRules& rules, uint64_t* sums, [[maybe_unused]] const TruthSink* truth) {
+    if constexpr (sums_fields<Estimator>)
+        return {rules, sums};
+    else
+        return {rules, sums, truth};
+}
+
+/** Where in the view, and of which object, a cell is. */
+struct CellPlace {
+    size_t left, right;  ///< Its edges in AngularView::bearings.
+    size_t low, high;    ///< In AngularView::elevations.
+    int first, last;     ///< Its columns.
+    uint32_t object;
+};
+
 /** Makes cells of tiles, a stretch at a time. */
 template <class Estimator, bool conical, bool normal_maps>
 class CellDeposit {
@@ -121,7 +142,7 @@ public:
           scene_(scene),
           first_beam_(first_beam),
           sums_(sums),
-          estimator_(rules, sums, truth) {}
+          estimator_(makeEstimator<Estimator>(rules, sums, truth)) {}
 
     void add(const CastTile& tile) {
         for (int i = 0; i < tile_samples;) {
@@ -142,8 +163,11 @@ public:
         if constexpr (Estimator::tells_truth) regard(cells_, count_, shown_);
         for (int i = 0; i < count_; ++i) {
             if constexpr (Estimator::tells_truth) estimator_.regard(shown_.get(i));
-            estimator_.depositCell(covered_.footprint(i), static_cast<uint>(cells_.beam[i] - first_beam_),
-                                   covered_.strength_range[i]);
+            const auto beam = static_cast<uint>(cells_.beam[i] - first_beam_);
+            if constexpr (!sums_fields<Estimator>)
+                estimator_.depositCell(covered_.footprint(i), beam, covered_.strength_range[i]);
+            else if (covered_.pixel[i] > 0)
+                estimator_.deposit(patchOf(i), beam);
         }
         if (rules_.features.has(Feature::VolumeLayers))
             hideVolume<LayeredVolume>();
@@ -157,6 +181,38 @@ private:
     double riseOf(int i) const {
         const glm::dvec3& up = scene_.water.up;
         return cells_.cos_el[i] * (up.x * cells_.cos_az[i] + up.y * cells_.sin_az[i]) + up.z * cells_.sin_el[i];
+    }
+
+    Patch patchOf(int i) const {
+        const CellPlace& place = places_[i];
+        const AngularView::Elevation &low = view_.elevations[place.low], &high = view_.elevations[place.high];
+        const auto direction = [&](size_t side, const AngularView::Elevation& up) {
+            const AngularView::Direction around =
+                conical ? AngularView::azimuthOf(view_.bearings[side], up) : view_.azimuths[side];
+            return glm::dvec3(up.cosine * around.cosine, up.cosine * around.sine, up.sine);
+        };
+        Patch patch{{cells_.normal_x[i], cells_.normal_y[i], cells_.normal_z[i]},
+                    cells_.distance[i],
+                    {cells_.cos_el[i] * cells_.cos_az[i], cells_.cos_el[i] * cells_.sin_az[i], cells_.sin_el[i]},
+                    {direction(place.left, low), direction(place.left, high), direction(place.right, high),
+                     direction(place.right, low)},
+                    view_.azimuths[place.left],
+                    view_.azimuths[place.right],
+                    1,
+                    {},
+                    low.sine,
+                    high.sine,
+                    cells_.width[i],
+                    cells_.height[i],
+                    covered_.strength_range[i],
+                    cells_.size[i] / (cells_.width[i] * (high.sine - low.sine)),
+                    scene_.objects[place.object],
+                    place.object,
+                    conical};
+        for (int column = place.first + 1; column <= place.last; ++column)
+            if (view_.beam_of[static_cast<size_t>(column)] != view_.beam_of[static_cast<size_t>(column) - 1])
+                patch.next_bearings[patch.beams++ - 1] = view_.azimuths[view_.at(column)];
+        return patch;
     }
 
     template <class Volume>
@@ -184,7 +240,8 @@ private:
     /** Samples from i on that are a rectangle of one triangle in one beam. */
     int sameFrom(const TileHits& hits, int i) const {
         const auto alignment = static_cast<uint32_t>(i == 0 ? tile_samples : i & -i);
-        const int most = scene_.paths ? 1 : std::min(static_cast<int>(alignment), shape_.max_merged);
+        const int largest = sums_fields<Estimator> ? tile_samples : shape_.max_merged;
+        const int most = scene_.paths ? 1 : std::min(static_cast<int>(alignment), largest);
         int run = 1;
         while (run < most && hits.triangle[i + run] == hits.triangle[i] && hits.command[i + run] == hits.command[i])
             ++run;
@@ -209,6 +266,7 @@ private:
         cells_.near_limit[i] = run.near_limit;
         cells_.far_limit[i] = run.far_limit;
         aim(tile, sample, merged);
+        if constexpr (sums_fields<Estimator>) places_[i].object = scene_.commands[tile.hits->command[sample]].object;
         if (normal_maps) cells_.mapped[i] = mappedCosine(tile, sample, merged);
         if (scene_.paths)
             bend(static_cast<double>(tile.hits->range[sample]),
@@ -259,8 +317,10 @@ private:
     void aim(const CastTile& tile, int sample, int merged) {
         const AngularView& view = view_;
         const int column = tile.first_column + shape_.at[sample].columns, i = count_;
-        const size_t left = view.at(column), low = 2 * static_cast<size_t>(tile.first_row + shape_.at[sample].rows);
-        const auto across = static_cast<size_t>(shape_.size[merged].columns);
+        const int across = shape_.size[merged].columns, last = column + across - 1;
+        const size_t left = view.at(column), right = view.at(last) + 2;
+        const size_t middle = across > 1 ? view.at(column + across / 2) : left + 1;
+        const size_t low = 2 * static_cast<size_t>(tile.first_row + shape_.at[sample].rows);
         const auto up = static_cast<size_t>(shape_.size[merged].rows);
         cells_.beam[i] = view.beam_of[static_cast<size_t>(column)];
         const AngularView::Elevation& elevation = view.elevations[low + up];
@@ -269,17 +329,18 @@ private:
         cells_.height[i] = view.height(low / 2, up);
         if (conical) {
             const double at = elevation.angle;
-            const double azimuth = coneAzimuth(view.bearings[left + across], at);
+            const double azimuth = coneAzimuth(view.bearings[middle], at);
             cells_.cos_az[i] = std::cos(azimuth);
             cells_.sin_az[i] = std::sin(azimuth);
-            cells_.width[i] = coneAzimuth(view.bearings[left + 2 * across], at) - coneAzimuth(view.bearings[left], at);
+            cells_.width[i] = coneAzimuth(view.bearings[right], at) - coneAzimuth(view.bearings[left], at);
             cells_.lean[i] = std::abs(azimuth) < 1.5 ? std::tan(azimuth) * elevation.sine / elevation.cosine : 0;
         } else {
-            cells_.cos_az[i] = view.azimuths[left + across].cosine;
-            cells_.sin_az[i] = view.azimuths[left + across].sine;
-            cells_.width[i] = view.bearings[left + 2 * across] - view.bearings[left];
+            cells_.cos_az[i] = view.azimuths[middle].cosine;
+            cells_.sin_az[i] = view.azimuths[middle].sine;
+            cells_.width[i] = view.bearings[right] - view.bearings[left];
             cells_.lean[i] = 0;
         }
+        if constexpr (sums_fields<Estimator>) places_[i] = {left, right, low, low + 2 * up, column, last, 0};
         cells_.size[i] =
             cells_.width[i] * (view.elevations[low + 2 * up].weighted - view.elevations[low].weighted) / view.cell();
     }
@@ -295,22 +356,36 @@ private:
     Cells cells_{};
     Covered covered_{};
     CellTruths<Estimator::tells_truth ? stretch : 1> shown_{};
+    CellPlace places_[sums_fields<Estimator> ? stretch : 1] = {};
 };
 
-/** Calls use.operator()<Deposit>() with the CellDeposit that has the features of a plan. */
+/** Calls use.operator()<Deposit>() with the CellDeposit of an estimator for the fan and the materials of a plan. */
+template <class Estimator, class Use>
+void withCellsOf(const Features& features, const Use& use) {
+    const bool conical = features.has(Feature::Conical), mapped = features.has(Feature::NormalMap);
+    if (conical && mapped)
+        use.template operator()<CellDeposit<Estimator, true, true>>();
+    else if (conical)
+        use.template operator()<CellDeposit<Estimator, true, false>>();
+    else if (mapped)
+        use.template operator()<CellDeposit<Estimator, false, true>>();
+    else
+        use.template operator()<CellDeposit<Estimator, false, false>>();
+}
+
+/** The same with the estimator of energies that has the features of a plan. */
 template <template <class> class Telling, class Use>
 void withCells(const Features& features, const Use& use) {
-    withEstimator<Features{Feature::Published, Feature::Nearest}>(features, [&]<class Deposited>() {
-        using Estimator = Telling<Deposited>;
-        const bool conical = features.has(Feature::Conical), mapped = features.has(Feature::NormalMap);
-        if (conical && mapped)
-            use.template operator()<CellDeposit<Estimator, true, true>>();
-        else if (conical)
-            use.template operator()<CellDeposit<Estimator, true, false>>();
-        else if (mapped)
-            use.template operator()<CellDeposit<Estimator, false, true>>();
-        else
-            use.template operator()<CellDeposit<Estimator, false, false>>();
+    withEstimator<Features{Feature::Published, Feature::Nearest}>(
+        features, [&]<class Deposited>() { withCellsOf<Telling<Deposited>>(features, use); });
+}
+
+void depositFields(const EchoRules& rules, const CastView& view, const PlacedScene& scene,
+                   std::span<const CastTile> tiles, int first_beam, uint64_t* sums) {
+    withCellsOf<Scatterers>(rules.features, [&]<class Deposit>() {
+        Deposit cells(rules, view, scene, first_beam, sums, nullptr);
+        for (const CastTile& tile : tiles) cells.add(tile);
+        cells.finish();
     });
 }
 
@@ -319,6 +394,7 @@ void withCells(const Features& features, const Use& use) {
 INSONIFY_VECTOR_CLONES __attribute__((flatten)) void deposit(const EchoRules& rules, const CastView& view,
                                                              const PlacedScene& scene, std::span<const CastTile> tiles,
                                                              int first_beam, uint64_t* sums) {
+    if (rules.features.has(Feature::Speckle)) return depositFields(rules, view, scene, tiles, first_beam, sums);
     withCells<Untold>(rules.features, [&]<class Deposit>() {
         Deposit cells(rules, view, scene, first_beam, sums, nullptr);
         for (const CastTile& tile : tiles) cells.add(tile);
@@ -339,7 +415,11 @@ INSONIFY_VECTOR_CLONES __attribute__((flatten)) void depositAndTell(const EchoRu
 
 Features compiledForRays(const Features& wanted) {
     Features compiled;
-    withCells<Untold>(wanted, [&]<class Deposit>() { compiled = Deposit::features(); });
+    const auto take = [&]<class Deposit>() { compiled = Deposit::features(); };
+    if (wanted.has(Feature::Speckle))
+        withCellsOf<Scatterers>(wanted, take);
+    else
+        withCells<Untold>(wanted, take);
     return compiled;
 }
 

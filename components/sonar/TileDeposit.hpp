@@ -36,12 +36,12 @@ struct CastTile {
 };
 
 /** Adds the echoes of tiles to the sums of beams, [beam - first_beam][bin][channel] in quanta, EchoRules::sumCount()
- *  numbers for each, and what they hide of the volume to what follows there. Neighbouring samples of one triangle in
- * one beam may be one cell. Allocates nothing. */
+ *  numbers for each, or their fields, [..][real, imaginary] with sign, and what they hide of the volume to what follows
+ * there. Neighbouring samples of one triangle in one beam may be one cell. Allocates nothing. */
 void deposit(const EchoRules& rules, const CastView& view, const PlacedScene& scene, std::span<const CastTile> tiles,
              int first_beam, uint64_t* sums);
 
-/** The same sums, and what they are of. */
+/** The sums of deposit(), and what they are of. */
 void depositAndTell(const EchoRules& rules, const CastView& view, const PlacedScene& scene,
                     std::span<const CastTile> tiles, int first_beam, uint64_t* sums, const TruthSink& truth);
 

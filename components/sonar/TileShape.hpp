@@ -8,7 +8,7 @@ namespace insonify::sonar {
 constexpr int tile_samples = 16;
 
 /** How the samples of a tile lie: as the bits of their numbers say, so that those that share all but the last bits are
- * a rectangle. 4 x 4, but narrower where the whole view is. */
+ *  a rectangle. 4 x 4, but narrower where the whole view is. */
 struct TileShape {
     struct Extent {
         int columns, rows;

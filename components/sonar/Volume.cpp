@@ -66,9 +66,8 @@ std::vector<double> openSolidAngles(const RenderPlan& plan) {
     return all;
 }
 
-VolumeLevels::VolumeLevels(const RenderPlan& plan) : open_(plan.cells.size(), 0.0) {
+VolumeLevels::VolumeLevels(const RenderPlan& plan, const BinGrid& grid) : open_(plan.cells.size(), 0.0) {
     if (!plan.features.has(Feature::VolumeLayers)) open_ = openSolidAngles(plan);
-    const BinGrid& grid = plan.grid;
     const double strength = strongest(plan.config), beta = makeAbsorption(plan.config).intensityPerMetre();
     const double nearest = std::max(grid.range_min, grid.bin_width / 4);
     for (int j = 0; j < grid.bin_count; ++j) {

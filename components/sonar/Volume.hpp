@@ -28,7 +28,8 @@ std::vector<double> openSolidAngles(const RenderPlan& plan);
 /** Intensity of the water itself, from the solid angle in which it is heard (ACOUSTICS.md 3.9). */
 class VolumeLevels {
 public:
-    explicit VolumeLevels(const RenderPlan& plan);
+    /** `grid`: of the bins that are filled. */
+    VolumeLevels(const RenderPlan& plan, const BinGrid& grid);
 
     /** Adds it to the bins of a cell. `changes`: in quanta of `unit` [sr], of each bin. Allocates nothing. */
     void add(const uint64_t* changes, size_t cell, double unit, std::span<float> bins) const;

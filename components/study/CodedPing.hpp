@@ -23,7 +23,7 @@ struct CodedPing {
 };
 
 /** A recorded ping. Where rows have gains of their own, these are taken off: codes by sqrt(gain), by what open drivers
- * do. */
+ *  do. */
 CodedPing codedPing(const device::OculusPing& ping, std::string name);
 
 /** A ping that a receiver gave out as codes, by what it was configured to. */

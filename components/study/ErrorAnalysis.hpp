@@ -13,7 +13,7 @@ double referenceError(const ErrorResult& result, const std::string& scene);
 std::vector<Measurement> ladder(const ErrorResult& result, const std::string& scene, Method method);
 
 /** Slope of ln(rel_l2) over ln(samples), fitted through the points with an error below one half and above 10 times that
- * of the reference; nothing with fewer than two of them. */
+ *  of the reference; nothing with fewer than two of them. */
 std::optional<double> slope(const std::vector<Measurement>& points, double reference_error);
 
 /** A time that was not measured, but found from those that were. */
@@ -34,7 +34,7 @@ struct ReachTime {
 const char* nameOf(ReachTime::Kind kind);
 
 /** Time to reach an error, from the line through the two points about it on logarithmic scales. Finest point not good
- * enough: extended from the last two, nothing when they hardly fall: further than 30 times the finest point's time. */
+ *  enough: extended from the last two, nothing when they hardly fall: further than 30 times the finest point's time. */
 std::optional<ReachTime> timeTo(double error, const std::vector<Measurement>& points);
 
 /** Error that is reached in a time, likewise; the nearest point's beyond the ends. */

@@ -99,7 +99,7 @@ int runStudy(Options options, const FindSonar& sonarAt) {
         fmt::print("{}  {}: {:.4g}, {} {:.4g}\n", claim.verdict(), claim.text, claim.measured,
                    claim.at_most ? "at most" : "at least", claim.bound);
     }
-    if (open) fmt::print("open: --levels or --reference-rays are too few to tell; no fault of the scene\n");
+    if (open) fmt::print("open: --levels or --reference-rays are too few to tell; nothing is wrong with the scene\n");
     fmt::print("{} points; report in {}\n", result.measurements.size(), (folder.path() / "index.html").string());
     return all ? 0 : 1;
 }

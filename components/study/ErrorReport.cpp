@@ -64,7 +64,7 @@ void addVerdicts(Out out, const ErrorResult& result) {
     fmt::format_to(
         out,
         "</table>\n<p>Bounds are what is promised. <i>open</i>: the reference, or the levels that were asked "
-        "for, are too coarse to tell; that is this study's limit and no fault of the scene.</p>\n");
+        "for, are too coarse to tell; that is this study's limit, and nothing is wrong with the scene.</p>\n");
 }
 
 void addPoints(Out out, const ErrorResult& result) {

@@ -30,7 +30,7 @@ struct Looks {
 };
 
 /** Figures of a ping of at least 32 beams and 64 bins. Where there is no homogeneous patch, or nothing varies in them,
- * the figures of these are NaN. */
+ *  the figures of these are NaN. */
 Looks looksOf(const CodedPing& ping);
 /** The mean of each figure. */
 Looks meanOf(const std::vector<Looks>& all);
@@ -55,7 +55,7 @@ CodedPing uniformPing(const CodedPing& like, double code);
 CodedPing cosinePing(const CodedPing& like);
 
 /** What is promised of a ping that is so far from recordings; of arcs only where the recordings show some, 3 dB above
- * what is around them, else it is open. */
+ *  what is around them, else it is open. */
 std::vector<Claim> claims(const Apart& apart, const Looks& recorded);
 
 }  // namespace insonify::study

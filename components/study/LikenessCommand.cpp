@@ -2,19 +2,17 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <filesystem>
 #include <memory>
 
 #include "components/command/Json.hpp"
 #include "components/command/OutputFolder.hpp"
 #include "components/study/LikenessReport.hpp"
+#include "components/study/Recordings.hpp"
 #include "components/study/StudyCommand.hpp"
-#include "types/ConfigError.hpp"
 
 namespace insonify::study {
 namespace {
 
-namespace fs = std::filesystem;
 using command::Json;
 
 struct Options {
@@ -22,35 +20,6 @@ struct Options {
     std::vector<std::string> real;
     uint64_t ping = 1;
 };
-
-/** The files that are named, and those in the folders that are. */
-std::vector<fs::path> filesOf(const std::vector<std::string>& names) {
-    std::vector<fs::path> files;
-    for (const fs::path name : names) {
-        if (!fs::is_directory(name)) {
-            files.push_back(name);
-            continue;
-        }
-        for (const auto& entry : fs::directory_iterator(name))
-            if (entry.is_regular_file()) files.push_back(entry.path());
-    }
-    std::ranges::sort(files);
-    return files;
-}
-
-std::vector<CodedPing> recordedPings(const std::vector<std::string>& names) {
-    std::vector<CodedPing> pings;
-    for (const fs::path& file : filesOf(names))
-        for (const device::OculusPing& ping : device::readOculusPings(file)) {
-            CodedPing coded = codedPing(ping, fmt::format("recorded_{}", ping.number));
-            const auto isSame = [&](const CodedPing& other) {
-                return other.name == coded.name && other.codes == coded.codes;
-            };
-            if (std::ranges::none_of(pings, isSame)) pings.push_back(std::move(coded));
-        }
-    if (pings.empty()) throw types::ConfigError(names.front(), "--real", "is a folder without a file");
-    return pings;
-}
 
 Json toJson(const LikenessRow& row) {
     Json json{{"name", row.name}};

@@ -18,7 +18,7 @@ namespace {
 constexpr double max_rays = 1e6, max_triangles = 1e5;  ///< For which kappa is worth its time.
 
 /** Most bins that one pixel covers; NaN where the caster does not know the beams, would take too
- * long, or is not built. */
+ *  long, or is not built. */
 double kappa(const sonar::SonarConfig& config, const types::Snapshot& snapshot) {
     const double rays = static_cast<double>(config.rows()) * config.columnsPerBeam() * config.beams();
     const bool planar = config.bearings_deg.empty() && config.beam_geometry == sonar::BeamGeometry::Planar;

@@ -108,6 +108,8 @@ RayTree::RayTree(const types::Snapshot& scene)
 RayTree::~RayTree() = default;
 
 void RayTree::takeLaws(const sonar::SonarConfig& config) {
+    const Hearer hearer{config.model, config.frequency_khz, config.speedOfSound()};
+    if (std::exchange(heard_by_, hearer) == hearer) return;
     laws_ = sonar::makeMaterialLaws(config, *geometry_);
     if (laws_.tables.empty() && !laws_.hasLobes()) return void(laws_.records.clear());
     std::vector<size_t> first{0};

@@ -5,6 +5,7 @@
 #include <glm/mat4x4.hpp>
 #include <glm/vec3.hpp>
 #include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -43,10 +44,11 @@ public:
     RayTree& operator=(const RayTree&) = delete;
 
     /** The first triangle on each ray from a point about the origin, of at most `packets_at_once` packets. All rays of
-     * a call should lie close together. */
+     *  a call should lie close together. */
     void cast(glm::dvec3 from, std::span<const Rays> rays, std::span<Found> found) const;
 
-    /** Materials give back what they do to a sonar of this configuration; Lambert's law before that. */
+    /** Materials give back what they do to a sonar of this configuration; Lambert's law before that. Nothing is done
+     *  for one that materials are the same to as to the last. */
     void takeLaws(const sonar::SonarConfig& config);
     /** sigma_b / cos(theta) of a triangle [1]. */
     double backscatter(uint32_t triangle, double cosine) const {
@@ -62,8 +64,8 @@ public:
     uint32_t objectOf(uint32_t triangle) const { return sources_[triangle].object; }
 
     /** Cosine between a unit direction and the mapped normal at a point of a mapped triangle (about the origin), as
-     * glTF has it: normal, tangent and uv of the corners by the point's weights, the map bilinear without mipmaps; at
-     * least 1e-6, either side. */
+     *  glTF has it: normal, tangent and uv of the corners by the point's weights, the map bilinear without mipmaps; at
+     *  least 1e-6, either side. */
     double mappedCosine(uint32_t triangle, glm::dvec3 point, glm::dvec3 direction) const;
 
 private:
@@ -72,6 +74,13 @@ private:
     struct Source {
         uint32_t object, first_index;
         int material;
+    };
+    /** What laws depend on of a sonar. */
+    struct Hearer {
+        sonar::Model model;
+        std::optional<double> frequency_khz;
+        double speed_of_sound;
+        bool operator==(const Hearer&) const = default;
     };
     struct Place {
         glm::dmat4 origin_from_object;
@@ -87,6 +96,7 @@ private:
     std::vector<Triangle> triangles_;
     std::vector<Source> sources_;  ///< Of each triangle.
     sonar::MaterialLaws laws_;     ///< None where all follow Lambert's.
+    std::optional<Hearer> heard_by_;
     std::unique_ptr<Embree> embree_;
 };
 

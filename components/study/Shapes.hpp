@@ -63,7 +63,7 @@ inline types::Mesh disc(double distance, double radius, uint32_t segments = 256)
 }
 
 /** One object for each mesh, at `positions` or else the origin, of one material with 10^(lambert_db/10) = 1. Large
- * meshes are split into clusters. */
+ *  meshes are split into clusters. */
 types::GeometryPtr sceneOf(std::vector<types::Mesh> meshes, std::vector<glm::dvec3> positions = {});
 
 }  // namespace insonify::study

@@ -15,7 +15,7 @@ namespace {
 using types::radians;
 
 /** A room of 20 x 30 m, its bottom 4 m below the sonar, which stands off its middle. No wall stands at the edge of a
- * bin, where the last digit of its distance decides in which bin it is heard. */
+ *  bin, where the last digit of its distance decides in which bin it is heard. */
 types::GeometryPtr room() {
     return sceneOf({levelGround(-4, 100), quad({12.03f, -14.03f, -4}, {0, 30, 0}, {0, 0, 20}),
                     quad({-7.97f, -14.03f, -4}, {0, 30, 0}, {0, 0, 20}),

@@ -1,4 +1,4 @@
-// insonify study error|likeness|omission|stability
+// insonify study error|likeness|omission|speckle|stability
 #include "components/study/StudyCommand.hpp"
 
 namespace insonify::study {
@@ -12,6 +12,7 @@ void addCommand(CLI::App& app, command::Action& action, const FindSonar& sonarAt
 #endif
     addLikenessStudy(*study, action, pingAt);
     addOmissionStudy(*study, action, sonarAt);
+    addSpeckleStudy(*study, action, sonarAt);
     addStabilityStudy(*study, action);
 }
 

@@ -38,6 +38,7 @@ void addErrorStudy(CLI::App& study, command::Action& action, const FindSonar& so
 void addLikenessStudy(CLI::App& study, command::Action& action, const FindPing& pingAt);
 void addOmissionStudy(CLI::App& study, command::Action& action, const FindSonar& sonarAt);
 void addRaysStudy(CLI::App& study, command::Action& action, const FindSonar& sonarAt);
+void addSpeckleStudy(CLI::App& study, command::Action& action, const FindSonar& sonarAt);
 void addStabilityStudy(CLI::App& study, command::Action& action);
 
 }  // namespace insonify::study

@@ -33,11 +33,11 @@ const std::vector<SceneMaker>& closedFormScenes();
 const std::vector<SceneMaker>& computedScenes();
 
 /** A fractal floor (FractalFloor.hpp) of 2 (points - 1)^2 triangles, 522,242 of them by default, from 3 m above it, 8
- * deg down: 128 beams over 90 x 20 deg, 400 bins to 40 m. */
+ *  deg down: 128 beams over 90 x 20 deg, 400 bins to 40 m. */
 StudyScene roughFloor(int points = 512);
 
 /** The scene that scripts/make_bench_scene.py makes, a rolling floor with 20 objects on it seen at grazing angles:
- * 80,000 triangles at 200 cells. Objects stand where they stand there, of a few triangles more or fewer. */
+ *  80,000 triangles at 200 cells. Objects stand where they stand there, of a few triangles more or fewer. */
 StudyScene benchFloor(int cells = 200);
 
 /** Energies of all bins, [beam][bin], by the scene's truth. */

@@ -25,7 +25,7 @@ using Pattern = std::function<double(double elevation)>;
 
 /** Echo of the plane normal.p = distance (unit normal away from the sonar, sonar axes, distance above 0) of Lambert
  *  parameter 1. ACOUSTICS.md 9.6, with cos(theta) = distance / r: over a plane the integrand depends on direction
- * alone, and each bin is, at each azimuth, two stretches of elevation. */
+ *  alone, and each bin is, at each azimuth, two stretches of elevation. */
 Truth planeTruth(glm::dvec3 normal, double distance, Window window = {}, Pattern pattern = {});
 
 /** The echo of a sphere wholly inside one beam: ACOUSTICS.md 9.4. */

@@ -42,7 +42,7 @@ std::string advertise(const std::vector<FoxgloveChannel>& channels) {
     return Json{{"op", "advertise"}, {"channels", list}}.dump();
 }
 
-std::string complaintText(const std::string& message) {
+std::string diagnosticText(const std::string& message) {
     return Json{{"op", "status"}, {"level", 2}, {"message", message}}.dump(-1, ' ', false,
                                                                            Json::error_handler_t::replace);
 }
@@ -66,8 +66,9 @@ std::string Subscriptions::take(std::string_view text) {
     for (const Json& one : listIn(said, "subscriptions")) {
         if (!one.is_object() || !isId(one.value("id", Json())) || !isId(one.value("channelId", Json())))
             return "a subscription has an id and a channelId, whole numbers";
-        if (std::string wrong = add(one["id"].get<uint32_t>(), one["channelId"].get<uint32_t>()); !wrong.empty())
-            return wrong;
+        if (std::string diagnostic = add(one["id"].get<uint32_t>(), one["channelId"].get<uint32_t>());
+            !diagnostic.empty())
+            return diagnostic;
     }
     return "";
 }

@@ -20,7 +20,7 @@ struct FoxgloveChannel {
 std::string serverInfo();
 std::string advertise(const std::vector<FoxgloveChannel>& channels);
 /** Level 2 is an error. */
-std::string complaintText(const std::string& message);
+std::string diagnosticText(const std::string& message);
 
 /** 0x01, subscription, time, all little endian: goes before the message. */
 std::string messageHead(uint32_t subscription, uint64_t nanoseconds);

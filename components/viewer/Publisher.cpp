@@ -1,6 +1,7 @@
 #include "components/viewer/Publisher.hpp"
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 
 #include "components/viewer/Page.hpp"
@@ -27,14 +28,14 @@ uint64_t nanosecondsOf(types::Time stamp) {
 
 }  // namespace
 
-Publisher::Publisher(const ViewerConfig& config, std::vector<Source> sources, Access access)
+Publisher::Publisher(const ViewerConfig& config, std::vector<Source> sources, Host host)
     : config_(config),
       sources_(std::move(sources)),
-      access_(std::move(access)),
+      host_(std::move(host)),
       picture_(config.messages.scale),
       messages_(config.messages, config.world_frame),
       slots_(sources_.size()),
-      tasks_(access_.interfaces()),
+      tasks_(host_.deployment ? host_.deployment->interfaces() : std::vector<types::TaskInterface>{}),
       interfaces_(bytesOf(interfacesText(tasks_, config.control))),
       server_(optionsOf(config_, sources_), *this),
       publishing_(&Publisher::publishAll, this) {}
@@ -77,7 +78,7 @@ ServerCounts Publisher::counts() const {
 
 std::string Publisher::takeError() {
     std::lock_guard lock(mutex_);
-    return std::exchange(trouble_, {});
+    return std::exchange(diagnostic_, {});
 }
 
 std::optional<PageFile> Publisher::file(std::string_view path) { return pageFile(path); }
@@ -109,7 +110,7 @@ void Publisher::publishAll() {
         }
         if (ending_ || std::chrono::steady_clock::now() < next_status) continue;
         lock.unlock();
-        if (const std::string warning = server_.takeWarning(); !warning.empty()) access_.warn(warning);
+        if (const std::string warning = server_.takeWarning(); !warning.empty()) host_.warn(warning);
         showStatus();
         next_status = std::chrono::steady_clock::now() + status_period;
         lock.lock();
@@ -123,7 +124,7 @@ void Publisher::publish(size_t source, const Slot& slot) try {
         server_.toFoxglove(channel, nanosecondsOf(slot.stamp), messages_.encode(slot.sample));
 } catch (const std::exception& error) {
     std::lock_guard lock(mutex_);
-    trouble_ = sources_[source].name + ": cannot be shown: " + error.what();
+    diagnostic_ = sources_[source].name + ": cannot be shown: " + error.what();
 }
 
 void Publisher::showOnPages(size_t source, const Slot& slot) {
@@ -153,10 +154,11 @@ void Publisher::showScene(size_t source, const types::GeometryPtr& geometry) {
 
 void Publisher::showStatus() try {
     if (server_.pages() == 0) return;
-    server_.toPages(status_stream, {"", bytesOf(statusText(access_.status(), counts())), true});
+    const auto status = host_.deployment ? host_.deployment->status() : types::DeploymentStatus{};
+    server_.toPages(status_stream, {"", bytesOf(statusText(status, counts())), true});
 } catch (const std::exception& error) {
     std::lock_guard lock(mutex_);
-    trouble_ = std::string("the state of the tasks cannot be shown: ") + error.what();
+    diagnostic_ = std::string("the state of the tasks cannot be shown: ") + error.what();
 }
 
 // -- requests ---------------------------------------------------------------------------------------------------------
@@ -186,12 +188,22 @@ std::string Publisher::answer(const Request& request) const try {
 
 std::string Publisher::carryOut(const Request& request) const {
     if (!config_.control) throw std::runtime_error("this viewer only shows (control: false)");
+    if (!host_.deployment) throw std::runtime_error("there is no deployment around this viewer");
     switch (request.kind) {
-        case Request::Kind::Call: return access_.call(request.operation, request.arguments);
-        case Request::Kind::Pause: access_.pause(request.on); break;
-        case Request::Kind::Step: access_.step(); break;
+        case Request::Kind::Call:
+            refuseOwn(request.operation);
+            return host_.deployment->call(request.operation, request.arguments);
+        case Request::Kind::Pause: host_.deployment->pause(request.on); break;
+        case Request::Kind::Step: host_.deployment->step(); break;
     }
     return "";
+}
+
+void Publisher::refuseOwn(const std::string& operation) const {
+    static constexpr std::array life_cycle{".configure", ".start", ".stop", ".cleanup", ".recover"};
+    if (operation.starts_with(host_.viewer + ".")) throw std::runtime_error("the viewer does not steer itself");
+    if (std::ranges::any_of(life_cycle, [&](const char* ending) { return operation.ends_with(ending); }))
+        throw std::runtime_error("states of tasks are the deployment's to change");
 }
 
 }  // namespace insonify::viewer

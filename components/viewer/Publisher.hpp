@@ -16,17 +16,15 @@
 #include "components/viewer/Server.hpp"
 #include "components/viewer/StatusText.hpp"
 #include "components/viewer/ViewerConfig.hpp"
+#include "types/DeploymentControl.hpp"
 
 namespace insonify::viewer {
 
-/** What pages see of a deployment and do to it; each is called on a thread of the publisher. */
-struct Access {
-    std::function<types::DeploymentStatus()> status;
-    std::function<std::vector<types::TaskInterface>()> interfaces;
-    std::function<std::string(const std::string&, const std::vector<std::string>&)> call;
-    std::function<void(bool)> pause;
-    std::function<void()> step;
-    std::function<void(const std::string&)> warn;
+/** Where a publisher runs. */
+struct Host {
+    std::string viewer;                                      ///< The name of its task, which pages do not steer.
+    types::DeploymentControl* deployment = nullptr;          ///< What pages see and control; null: nothing.
+    std::function<void(const std::string&)> warn = nullptr;  ///< Called on a thread of the publisher.
 };
 
 struct Source {
@@ -42,7 +40,7 @@ struct Source {
 class Publisher final : private ServerHandler {
 public:
     /** Throws ListenError where the port cannot be had. */
-    Publisher(const ViewerConfig& config, std::vector<Source> sources, Access access);
+    Publisher(const ViewerConfig& config, std::vector<Source> sources, Host host);
     ~Publisher() override;
 
     /** The newest sample of a source; waits for nobody. `now`: on the deployment's clock. */
@@ -73,16 +71,17 @@ private:
     std::string laneOf(const Request& request) const;
     std::string answer(const Request& request) const;
     std::string carryOut(const Request& request) const;
+    void refuseOwn(const std::string& operation) const;
 
     const ViewerConfig config_;
     const std::vector<Source> sources_;
-    const Access access_;
+    const Host host_;
     const PingPicture picture_;
     Messages messages_;
     std::mutex mutex_;
     std::condition_variable fresh_;
     std::vector<Slot> slots_;
-    std::string trouble_;
+    std::string diagnostic_;
     std::map<size_t, types::GeometryPtr> geometries_;  ///< Of `scenes_`; the publishing thread's.
     std::map<size_t, Bytes> scenes_;                   ///< By source, for pages that come later, as interfaces_.
     const std::vector<types::TaskInterface> tasks_;

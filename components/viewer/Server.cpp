@@ -70,7 +70,7 @@ void Server::Core::serve() {
             io_.run();
             done = true;
         } catch (const std::exception& error) {
-            refused.add(std::string("a fault of this server: ") + error.what());
+            refused.add(std::string("an error of this server: ") + error.what());
         }
 }
 

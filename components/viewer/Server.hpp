@@ -59,10 +59,10 @@ struct ServerCounts {
  *
  *  A thread of its own does all; every function is for any thread and waits for no client. What is published faster
  *  than it is sent is dropped, the oldest first; see SendQueue. A client that sends what is not WebSocket, or a message
- * of more than 64 KiB, is closed, and before it is one answered with 400, 413 or 431. When too many are connected,
- * those that have asked for nothing yet make room. Without a token only pages from this server itself may connect as
- * pages, under a numeric address or as localhost, and as Foxglove clients besides those only Foxglove's own and
- * programs: no other web site can. */
+ *  of more than 64 KiB, is closed, and before it is one answered with 400, 413 or 431. When too many are connected,
+ *  those that have asked for nothing yet make room. Without a token only pages from this server itself may connect as
+ *  pages, under a numeric address or as localhost, and as Foxglove clients besides those only Foxglove's own and
+ *  programs: no other web site can. */
 class Server {
 public:
     /** Throws ListenError where the port cannot be had. `handler` outlives this. */

@@ -71,12 +71,12 @@ private:
         };
     }
     void answer();
-    void answerFault(const Error& error);
+    void answerError(const Error& error);
     void refuse(const AccessPolicy::Refusal& refusal);
     void respond(Response response);
     void readRest();
     void upgrade();
-    void countFault(const Error& error);
+    void countError(const Error& error);
     void greet();
     void readMessage();
     void taken(std::string text);
@@ -108,7 +108,7 @@ template <class Work>
 void Session::attempt(Work&& work) try {
     work();
 } catch (const std::exception& thrown) {
-    context_.refused.add(std::string("a fault of this server: ") + thrown.what());
+    context_.refused.add(std::string("an error of this server: ") + thrown.what());
     leave();
 }
 
@@ -118,12 +118,12 @@ inline void Session::readRequest() {
     parser_->body_limit(0);
     stream().expires_after(request_timeout);
     http::async_read(stream(), buffer_, *parser_, handler([](Session& self, const Error& error) {
-                         error ? self.answerFault(error) : self.answer();
+                         error ? self.answerError(error) : self.answer();
                      }));
 }
 
 /** The request cannot be read. */
-inline void Session::answerFault(const Error& error) {
+inline void Session::answerError(const Error& error) {
     asked_ = true;
     if (error == beast::error::timeout) context_.refused.add("no whole request came within 5 s");
     const bool is_gone = error == http::error::end_of_stream || error == http::error::partial_message;
@@ -198,15 +198,15 @@ inline void Session::upgrade() {
     ws_.auto_fragment(false);
     ws_.async_accept(parser_->get(), handler([](Session& self, const Error& error) {
                          if (!error) return self.greet();
-                         self.countFault(error);
+                         self.countError(error);
                          self.leave();
                      }));
 }
 
 /** Of a client that speaks no WebSocket, or sends too much; not of one that is gone. */
-inline void Session::countFault(const Error& error) {
-    const bool is_fault = error.category() == websocket::make_error_code(websocket::error::closed).category();
-    if (is_fault && error != websocket::error::closed) context_.refused.add("WebSocket: " + error.message());
+inline void Session::countError(const Error& error) {
+    const bool is_error = error.category() == websocket::make_error_code(websocket::error::closed).category();
+    if (is_error && error != websocket::error::closed) context_.refused.add("WebSocket: " + error.message());
 }
 
 inline void Session::greet() {
@@ -225,7 +225,7 @@ inline void Session::greet() {
 inline void Session::readMessage() {
     ws_.async_read(buffer_, handler([](Session& self, const Error& error) {
                        if (error) {
-                           self.countFault(error);
+                           self.countError(error);
                            return self.leave();
                        }
                        self.taken(beast::buffers_to_string(self.buffer_.data()));
@@ -238,8 +238,8 @@ inline void Session::taken(std::string text) {
     if (kind_ == Kind::Page) return context_.handler.request(id_, std::move(text));
     if (!ws_.got_text()) return;
     const auto before = subscriptions_.all();
-    if (const std::string wrong = subscriptions_.take(text); !wrong.empty())
-        post({"", bytesOf(complaintText("the message " + wrong)), true});
+    if (const std::string diagnostic = subscriptions_.take(text); !diagnostic.empty())
+        post({"", bytesOf(diagnosticText("the message " + diagnostic)), true});
     for (const auto& [subscription, channel] : before)
         if (!subscriptions_.all().contains(subscription)) queue_.forget(subscription);
     context_.recount();

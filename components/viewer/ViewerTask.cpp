@@ -2,12 +2,9 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <array>
 #include <filesystem>
 #include <fstream>
 
-#include "components/framework/DeploymentControl.hpp"
 #include "types/ConfigError.hpp"
 
 namespace insonify::viewer {
@@ -56,43 +53,15 @@ std::vector<std::string> ViewerTask::notices() const {
     return notices;
 }
 
-void ViewerTask::refuseOwn(const std::string& operation) const {
-    static constexpr std::array life_cycle{".configure", ".start", ".stop", ".cleanup", ".recover"};
-    if (operation.starts_with(name() + ".")) throw std::runtime_error("the viewer does not steer itself");
-    if (std::ranges::any_of(life_cycle, [&](const char* ending) { return operation.ends_with(ending); }))
-        throw std::runtime_error("states of tasks are the deployment's to change");
-}
-
-Access ViewerTask::access() {
-    const auto tell = [this](const std::string& text) { warn(text); };
-    framework::DeploymentControl* const deployment = environment().deployment;
-    if (!deployment) {
-        const auto refuse = [] { throw std::runtime_error("there is no deployment around this viewer"); };
-        return {[] { return types::DeploymentStatus{}; },
-                [] { return std::vector<types::TaskInterface>{}; },
-                [refuse](const std::string&, const std::vector<std::string>&) { return refuse(), std::string(); },
-                [refuse](bool) { refuse(); },
-                [refuse] { refuse(); },
-                tell};
-    }
-    return {[deployment] { return deployment->status(); },
-            [deployment] { return deployment->interfaces(); },
-            [this, deployment](const std::string& operation, const std::vector<std::string>& arguments) {
-                refuseOwn(operation);
-                return deployment->call(operation, arguments);
-            },
-            [deployment](bool on) { deployment->pause(on); },
-            [deployment] { deployment->step(); },
-            tell};
-}
-
 bool ViewerTask::configureHook() {
     std::vector<Source> sources;
     inputs_.forEach([&](const auto& input) { sources.push_back(input.kept.source); });
     ViewerConfig whole = *config;
     if (!whole.token_file.empty()) whole.token = readToken();
     try {
-        publisher_ = std::make_unique<Publisher>(whole, std::move(sources), access());
+        const auto tell = [this](const std::string& text) { warn(text); };
+        publisher_ =
+            std::make_unique<Publisher>(whole, std::move(sources), Host{name(), environment().deployment, tell});
     } catch (const ListenError& error) {
         throw types::ConfigError("", name() + "." + error.property, error.what());
     }
@@ -113,8 +82,7 @@ void ViewerTask::updateHook() {
     std::string diagnostic = publisher_->takeError();
     size_t source = 0;
     inputs_.forEach([&](auto& input) {
-        if (std::string wrong = drain(input, *publisher_, source++, now()); !wrong.empty())
-            diagnostic = std::move(wrong);
+        if (std::string told = drain(input, *publisher_, source++, now()); !told.empty()) diagnostic = std::move(told);
     });
     if (!diagnostic.empty()) error(diagnostic);
 }

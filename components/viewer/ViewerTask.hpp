@@ -15,9 +15,9 @@ namespace insonify::viewer {
 /** Shows a deployment while it runs: a page at http://address:port/, and the same samples for Foxglove on that port.
  *
  *  Ports: an input for each connection that names one, whatever the name, of any type in types/Samples.hpp, and
- * snapshots. The page shows pings as a fan, the scene and the sonar's place from snapshots, the vehicle's path from
- * poses, the tasks, what connections lost and what is left out; where `control` allows it sets properties, calls
- * operations and, in lockstep, pauses. Foxglove gets a channel for each input.
+ *  snapshots. The page shows pings as a fan, the scene and the sonar's place from snapshots, the vehicle's path from
+ *  poses, the tasks, what connections lost and what is left out; where `control` allows it sets properties, calls
+ *  operations and, in lockstep, pauses. Foxglove gets a channel for each input.
  *
  *  configure opens the port; one that is taken refuses it. Cycles only hand over the newest samples: no client delays
  *  them, and what a client is too slow for is dropped and counted. Connections that are refused are counted, and warned
@@ -50,10 +50,8 @@ private:
     void updateHook() override;
     void errorHook() override;
     void cleanupHook() override;
-    Access access();
     /** The first line of the token's file; types::ConfigError where there is none. */
     std::string readToken() const;
-    void refuseOwn(const std::string& operation) const;
 
     framework::DynamicInputs<ShownTypes, SourceOf> inputs_{this};
     std::unique_ptr<Publisher> publisher_;

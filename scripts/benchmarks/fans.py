@@ -64,9 +64,9 @@ connections:
 """
 
 
-def measure_seen(found, name, sonar, file, options, beside_rays=True, noise="", change=str):
+def measure_seen(found, name, sonar, file, options, beside_rays=True, noise="", change=str, visible=None):
     """Adds a result for each visibility, of the deployment as `change` makes it."""
-    for visibility in options.visibility:
+    for visibility in options.visibility if visible is None else visible:
         text = change(deployment(seen(sonar, visibility), file, noise=noise))
         found[f"{name}, {visibility}"] = measure(text, options.pings, beside_rays)
 
@@ -89,8 +89,10 @@ PULSE = "pulse: {bandwidth_khz: 10, window: hann}, "
 SEABED = "frequency_khz: 100, "  # at which the scene's sand follows APL-UW TR 9407
 VOLUME = "volume: {strength_db: -70}, "
 LAYERS = "volume: [{bottom_m: 1, strength_db: -60}, {top_m: 1, strength_db: -75}], "
+COHERENT = "frequency_khz: 700, speckle: {coherent: true}, "
 EFFECTS = {"plain": "", "pattern": PATTERN, "pulse": PULSE, "pattern and pulse": PATTERN + PULSE, "TR 9407": SEABED,
            "volume": VOLUME, "layers": LAYERS, "all": PATTERN + PULSE + SEABED + VOLUME}
+RAYS_ALONE = {"coherent": COHERENT, "coherent, pattern and pulse": COHERENT + PATTERN + PULSE}
 AMBIENT = ", ambient: {level_db: -110}"
 
 
@@ -98,10 +100,12 @@ def measure_effects(options):
     """The fan of 256 beams before the 80,000 triangles, plain, with each effect, and with its truth."""
     plain = SONARS["FLS 256 x 500"]
     found = {}
-    for name, blocks in EFFECTS.items():
+    for name, blocks in {**EFFECTS, **RAYS_ALONE}.items():
         sonar = plain.replace("properties: {", f"properties: {{{blocks}", 1)
         noise = AMBIENT if name == "all" else ""
-        measure_seen(found, f"FLS 256 x 500, 80 k, {name}", sonar, scene(SCENES["80 k"]), options, False, noise)
+        visible = [way for way in options.visibility if way == "cpu" or name not in RAYS_ALONE]
+        measure_seen(found, f"FLS 256 x 500, 80 k, {name}", sonar, scene(SCENES["80 k"]), options, False, noise, str,
+                     visible)
     measure_seen(found, "FLS 256 x 500, 80 k, truth", plain, scene(SCENES["80 k"]), options, False, "", with_truth)
     return found
 

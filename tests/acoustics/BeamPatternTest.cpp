@@ -185,9 +185,9 @@ TEST_F(BeamPatternTest, AMeasuredTableIsThePatternThatWasMeasured) {
     EXPECT_NEAR(*a.peak_sidelobe_db, *b.peak_sidelobe_db, 0.3);
 }
 
-TEST_F(BeamPatternTest, FaultsOfATableHaveFileLineAndColumn) {
+TEST_F(BeamPatternTest, DiagnosticsOfATableHaveFileLineAndColumn) {
     const Folder folder;
-    const auto faultOf = [&](const std::string& text) {
+    const auto diagnosticOf = [&](const std::string& text) {
         std::ofstream(folder / "beam.csv") << text;
         BeamLaw law;
         law.file = folder / "beam.csv";
@@ -198,46 +198,47 @@ TEST_F(BeamPatternTest, FaultsOfATableHaveFileLineAndColumn) {
         }
         return std::string();
     };
-    EXPECT_THAT(faultOf("angle,level\n"),
+    EXPECT_THAT(diagnosticOf("angle,level\n"),
                 HasSubstr("beam.csv:1:1: is 'angle,level'; the header must be angle_deg,level_db"));
-    EXPECT_THAT(faultOf("angle_deg,level_db\n0,0\n1,loud\n"), HasSubstr("beam.csv:3:3: level_db: is 'loud'"));
-    EXPECT_THAT(faultOf("angle_deg,level_db\n0,0\n0,-1\n"), HasSubstr("beam.csv:3:1: angle_deg: is not above"));
-    EXPECT_THAT(faultOf("angle_deg,level_db\n0,0\n1,-1,2\n"), HasSubstr("beam.csv:3:6: has too many fields; a line has 2"));
-    EXPECT_THAT(faultOf("angle_deg,level_db\n0,0\n200,nan\n"), HasSubstr("beam.csv:3:5: level_db: is 'nan'"));
-    EXPECT_THAT(faultOf("angle_deg,level_db\n0,0\n"), HasSubstr("needs at least 2"));
-    EXPECT_THAT(faultOf("angle_deg,level_db\n5,0\n6,0\n"), HasSubstr("leaves out 0"));
-    EXPECT_THAT(faultOf(""), HasSubstr("is empty"));
+    EXPECT_THAT(diagnosticOf("angle_deg,level_db\n0,0\n1,loud\n"), HasSubstr("beam.csv:3:3: level_db: is 'loud'"));
+    EXPECT_THAT(diagnosticOf("angle_deg,level_db\n0,0\n0,-1\n"), HasSubstr("beam.csv:3:1: angle_deg: is not above"));
+    EXPECT_THAT(diagnosticOf("angle_deg,level_db\n0,0\n1,-1,2\n"),
+                HasSubstr("beam.csv:3:6: has too many fields; a line has 2"));
+    EXPECT_THAT(diagnosticOf("angle_deg,level_db\n0,0\n200,nan\n"), HasSubstr("beam.csv:3:5: level_db: is 'nan'"));
+    EXPECT_THAT(diagnosticOf("angle_deg,level_db\n0,0\n"), HasSubstr("needs at least 2"));
+    EXPECT_THAT(diagnosticOf("angle_deg,level_db\n5,0\n6,0\n"), HasSubstr("leaves out 0"));
+    EXPECT_THAT(diagnosticOf(""), HasSubstr("is empty"));
     BeamLaw nowhere;
     nowhere.file = folder / "nowhere.csv";
     EXPECT_THROW(BeamPattern{nowhere}, types::ConfigError);
 }
 
 TEST_F(BeamPatternTest, ALawHasOneWidthAndOnlyWhatItsWeightingTakes) {
-    const auto faultsOf = [](const BeamLaw& law) {
+    const auto diagnosticsOf = [](const BeamLaw& law) {
         types::Diagnostics diagnostics;
         law.check(diagnostics);
         return diagnostics;
     };
-    EXPECT_EQ(faultsOf({}).size(), 1u);
+    EXPECT_EQ(diagnosticsOf({}).size(), 1u);
     BeamLaw law;
     law.width_deg = 1;
-    EXPECT_TRUE(faultsOf(law).empty());
+    EXPECT_TRUE(diagnosticsOf(law).empty());
     law.sidelobe_db = -30;
-    EXPECT_EQ(faultsOf(law).at(0).path, "sidelobe_db");
+    EXPECT_EQ(diagnosticsOf(law).at(0).path, "sidelobe_db");
     law.weighting = Weighting::Dolph;
-    EXPECT_TRUE(faultsOf(law).empty());
+    EXPECT_TRUE(diagnosticsOf(law).empty());
     law.sidelobe_db = -5;
     law.nbar = 4;
-    EXPECT_EQ(faultsOf(law).size(), 2u);
+    EXPECT_EQ(diagnosticsOf(law).size(), 2u);
     law.sidelobe_db = -30;
     law.weighting = Weighting::Taylor;
-    EXPECT_TRUE(faultsOf(law).empty());
+    EXPECT_TRUE(diagnosticsOf(law).empty());
     law.aperture_m = 0.1;
-    EXPECT_EQ(faultsOf(law).size(), 1u);
+    EXPECT_EQ(diagnosticsOf(law).size(), 1u);
     BeamLaw gaussian;
     gaussian.weighting = Weighting::Gaussian;
     gaussian.aperture_m = 0.1;
-    EXPECT_EQ(faultsOf(gaussian).at(0).path, "aperture_m");
+    EXPECT_EQ(diagnosticsOf(gaussian).at(0).path, "aperture_m");
 }
 
 }  // namespace

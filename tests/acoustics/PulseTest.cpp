@@ -99,21 +99,21 @@ TEST(PulseTest, ExtentReachesAsFarAsTheFloorSays) {
 }
 
 TEST(PulseTest, IsGivenByABandOrADuration) {
-    const auto faultsOf = [](const PulseConfig& config) {
+    const auto diagnosticsOf = [](const PulseConfig& config) {
         types::Diagnostics diagnostics;
         config.check(diagnostics);
         return diagnostics;
     };
     PulseConfig config;
-    EXPECT_EQ(faultsOf(config).size(), 1u);
+    EXPECT_EQ(diagnosticsOf(config).size(), 1u);
     config.duration_us = 100;
-    EXPECT_TRUE(faultsOf(config).empty());
+    EXPECT_TRUE(diagnosticsOf(config).empty());
     config.window = PulseWindow::Hann;
-    EXPECT_EQ(faultsOf(config).at(0).path, "window");
+    EXPECT_EQ(diagnosticsOf(config).at(0).path, "window");
     config.bandwidth_khz = 50;
-    EXPECT_EQ(faultsOf(config).at(0).path, "duration_us");
+    EXPECT_EQ(diagnosticsOf(config).at(0).path, "duration_us");
     config.duration_us.reset();
-    EXPECT_TRUE(faultsOf(config).empty());
+    EXPECT_TRUE(diagnosticsOf(config).empty());
 }
 
 }  // namespace

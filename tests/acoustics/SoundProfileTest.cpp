@@ -132,7 +132,8 @@ TEST(SoundProfileTest, AFileThatIsWrongIsToldWithItsPlace) {
                 HasSubstr("profile.csv:1:1: is 'depth_m'; the header must be depth_m,sound_speed_m_s"));
     EXPECT_THAT(faultOf("depth_m,sound_speed_m_s\n0,1500\n20,1490\n10,1480\n"),
                 HasSubstr("profile.csv:4:1: depth_m: is not above that of the line before"));
-    EXPECT_THAT(faultOf("depth_m,sound_speed_m_s\n0,1500\n"), HasSubstr("profile.csv:2:1: has 1 lines after its header"));
+    EXPECT_THAT(faultOf("depth_m,sound_speed_m_s\n0,1500\n"),
+                HasSubstr("profile.csv:2:1: has 1 lines after its header"));
     EXPECT_THAT(faultOf("depth_m,sound_speed_m_s\n0,nan\n1,1500\n"),
                 HasSubstr("profile.csv:2:3: sound_speed_m_s: is 'nan'"));
     EXPECT_THAT(faultOf("depth_m,sound_speed_m_s\n0,-1500\n1,1500\n"),

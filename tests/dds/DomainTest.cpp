@@ -36,14 +36,14 @@ TEST_F(DomainTest, NamesAreThoseOfRos) {
 }
 
 TEST_F(DomainTest, NamesThatRosRefusesAreRefused) {
-    for (const char* good : {"/auv/sonar", "sonar", "/a_1/B2"}) EXPECT_EQ(faultOfTopic(good), "") << good;
+    for (const char* good : {"/auv/sonar", "sonar", "/a_1/B2"}) EXPECT_EQ(diagnosticOfTopic(good), "") << good;
     for (const char* bad : {"", "/", "//a", "/a/", "/1a", "/a b", "/a-b", "/a//b", "~/a"})
-        EXPECT_THAT(faultOfTopic(bad), HasSubstr("must be words of letters")) << bad;
-    EXPECT_EQ(faultOfTopic(std::string(252, 'a')), "");
-    EXPECT_THAT(faultOfTopic(std::string(253, 'a')), HasSubstr("has 253 characters; at most 252"));
-    EXPECT_THAT(faultOfTopic("/" + std::string(70'000, 'a')), HasSubstr("at most 252"));
-    EXPECT_EQ(faultOfNode("sonar_1"), "");
-    for (const char* bad : {"", "a/b", "1a", "a b"}) EXPECT_NE(faultOfNode(bad), "") << bad;
+        EXPECT_THAT(diagnosticOfTopic(bad), HasSubstr("must be words of letters")) << bad;
+    EXPECT_EQ(diagnosticOfTopic(std::string(252, 'a')), "");
+    EXPECT_THAT(diagnosticOfTopic(std::string(253, 'a')), HasSubstr("has 253 characters; at most 252"));
+    EXPECT_THAT(diagnosticOfTopic("/" + std::string(70'000, 'a')), HasSubstr("at most 252"));
+    EXPECT_EQ(diagnosticOfNode("sonar_1"), "");
+    for (const char* bad : {"", "a/b", "1a", "a b"}) EXPECT_NE(diagnosticOfNode(bad), "") << bad;
 }
 
 TEST_F(DomainTest, TheDomainIsTheOneGivenOrThatOfTheEnvironment) {

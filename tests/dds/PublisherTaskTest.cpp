@@ -35,7 +35,7 @@ protected:
 
 std::string textOf(const types::Diagnostics& diagnostics) {
     std::string text;
-    for (const types::Diagnostic& problem : diagnostics) text += problem.path + " " + problem.message + "\n";
+    for (const types::Diagnostic& diagnostic : diagnostics) text += diagnostic.path + " " + diagnostic.message + "\n";
     return text;
 }
 

@@ -92,7 +92,7 @@ TEST_F(Ros2RunTest, WithoutPosesItWaitsAndSaysSo) {
 
 TEST_F(Ros2RunTest, TheDeploymentIsValid) { EXPECT_EQ(callInsonify(folder, {"check", fls}).code, 0); }
 
-TEST_F(Ros2RunTest, FaultsAreToldWithTheirPlace) {
+TEST_F(Ros2RunTest, DiagnosticsAreToldWithTheirPlace) {
     Outcome outcome = check(replaced(vehicle, "type: nav_msgs/Odometry", "type: nav_msgs/Odometri"));
     EXPECT_EQ(outcome.code, 2);
     EXPECT_THAT(outcome.err, HasSubstr("x.yml:4:"));

@@ -3,7 +3,7 @@
     peer.py listen TYPE TOPIC SECONDS [COUNT]   counts messages, until that many came, and their latency [ms]; keeps the first
     peer.py node SECONDS WRITERS                nodes, and writers with their types and hashes, once a node has so many
     peer.py image TOPIC COUNT HERTZ             sends images of 1 MB, 256 beams x 1000 ranges of float32
-    peer.py odometry TOPIC COUNT HERTZ [FAULT]  sends poses along x; FAULT nan, back, zero or bytes spoils every second
+    peer.py odometry TOPIC COUNT HERTZ [FLAW]  sends poses along x; FLAW nan, back, zero or bytes spoils every second
 
 Who listens says `met` at the first image without a stamp, and does not count those. With --greet, who sends sends such an
 image, or poses at the origin, until SIGUSR1: none of what follows is lost because one side did not know the other yet.
@@ -160,23 +160,23 @@ class Octets(IdlStruct, typename="nav_msgs::msg::dds_::Odometry_"):
     all: array[uint8, len(bytes_of(pose_at(0, 0.0, 0.0, 0.0)))]
 
 
-def odometry(topic, count, hertz, fault=""):
+def odometry(topic, count, hertz, flaw=""):
     participant = DomainParticipant(DOMAIN)
-    kind, as_sent = (Octets, lambda pose: Octets(bytes_of(pose))) if fault == "bytes" else (messages.Odometry, lambda pose: pose)
+    kind, as_sent = (Octets, lambda pose: Octets(bytes_of(pose))) if flaw == "bytes" else (messages.Odometry, lambda pose: pose)
     writer = DataWriter(participant, Topic(participant, "rt" + topic, kind), qos=DEEP)
     ready()
     greet(writer, as_sent(pose_at(time.time(), 0.0, 0.0, 0.0)))
     for i in range(int(count)):
         now = time.time()
-        spoilt = bool(fault) and i % 2 == 1
-        now -= 5 if spoilt and fault == "back" else 0
+        spoilt = bool(flaw) and i % 2 == 1
+        now -= 5 if spoilt and flaw == "back" else 0
         sample = pose_at(now, float(i), 2.0, -3.0)
-        if spoilt and fault == "nan":
+        if spoilt and flaw == "nan":
             sample.pose.pose.position.x = float("nan")
-        if spoilt and fault == "zero":
+        if spoilt and flaw == "zero":
             sample.pose.pose.orientation.w = 0.0
         sent = as_sent(sample)
-        if spoilt and fault == "bytes":
+        if spoilt and flaw == "bytes":
             sent.all = sent.all[:8] + b"\xff" * 4 + sent.all[12:]  # a name of 4 GB
         writer.write(sent)
         time.sleep(1 / float(hertz))

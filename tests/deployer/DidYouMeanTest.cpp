@@ -10,7 +10,7 @@ using testing::Not;
 namespace {
 
 /** What `check` says of the wall's deployment with another text in the place of one that is there. */
-std::string faultsWith(const std::string& from, const std::string& to) {
+std::string diagnosticsWith(const std::string& from, const std::string& to) {
     const WallFolder folder(replaced(wall_deployment, from, to));
     const Outcome outcome = callInsonify(folder, {"check", "wall.yml"});
     EXPECT_EQ(outcome.code, 2) << to;
@@ -22,7 +22,7 @@ struct Case {
 };
 
 void expectWords(std::initializer_list<Case> cases) {
-    for (const Case& c : cases) EXPECT_THAT(faultsWith(c.from, c.to), HasSubstr(c.words)) << c.to;
+    for (const Case& c : cases) EXPECT_THAT(diagnosticsWith(c.from, c.to), HasSubstr(c.words)) << c.to;
 }
 
 }  // namespace
@@ -56,8 +56,8 @@ TEST(DidYouMeanTest, ANumberWithItsUnitIsShownAsItIsToBeWritten) {
         {"beam_height_deg: 10", "beam_height_deg: 10\n      absorption: {db_per_m: 0.2 dB/m}", "write 0.2;"},
         {"beam_height_deg: 10", "beam_height_deg: 10\n      published: yes", "write true;"},
     });
-    EXPECT_THAT(faultsWith("range: 20", "range: 20 deg"), Not(HasSubstr("write")));
-    EXPECT_THAT(faultsWith("range: 20", "range: far"), Not(HasSubstr("write")));
+    EXPECT_THAT(diagnosticsWith("range: 20", "range: 20 deg"), Not(HasSubstr("write")));
+    EXPECT_THAT(diagnosticsWith("range: 20", "range: far"), Not(HasSubstr("write")));
 }
 
 TEST(DidYouMeanTest, ATabAndAWrongIndentAreNamedAsSuch) {
@@ -72,20 +72,20 @@ TEST(DidYouMeanTest, ATabAndAWrongIndentAreNamedAsSuch) {
 
 TEST(DidYouMeanTest, TheCauseComesBeforeItsConsequences) {
     // A task of another name: connections lead to one that is not there, and its own port has no connection.
-    const std::string faults = faultsWith("  noise:\n", "  nose:\n");
-    const size_t cause = faults.find("did you mean nose?"), consequence = faults.find("input port clean");
-    ASSERT_NE(cause, std::string::npos) << faults;
-    ASSERT_NE(consequence, std::string::npos) << faults;
+    const std::string diagnostics = diagnosticsWith("  noise:\n", "  nose:\n");
+    const size_t cause = diagnostics.find("did you mean nose?"), consequence = diagnostics.find("input port clean");
+    ASSERT_NE(cause, std::string::npos) << diagnostics;
+    ASSERT_NE(consequence, std::string::npos) << diagnostics;
     EXPECT_LT(cause, consequence);
 }
 
 TEST(DidYouMeanTest, AMissingSceneIsToldWhereItWasLookedForAndWhatCanBeRead) {
     const WallFolder folder(replaced(wall_deployment, "wall.gltf", "wal.gltf"));
-    const std::string faults = callInsonify(folder, {"check", "wall.yml"}).err;
-    EXPECT_THAT(faults, HasSubstr("wall.yml:11:24: tasks.scene.properties.file: "));
-    EXPECT_THAT(faults, HasSubstr("did you mean wall.gltf?"));
-    EXPECT_THAT(faults, HasSubstr("looked for at " + (folder / "wal.gltf").string()));
-    EXPECT_THAT(faults, HasSubstr(".gltf, .glb, .world or .sdf"));
+    const std::string diagnostics = callInsonify(folder, {"check", "wall.yml"}).err;
+    EXPECT_THAT(diagnostics, HasSubstr("wall.yml:11:24: tasks.scene.properties.file: "));
+    EXPECT_THAT(diagnostics, HasSubstr("did you mean wall.gltf?"));
+    EXPECT_THAT(diagnostics, HasSubstr("looked for at " + (folder / "wal.gltf").string()));
+    EXPECT_THAT(diagnostics, HasSubstr(".gltf, .glb, .world or .sdf"));
 }
 
 TEST(DidYouMeanTest, CommandsOptionsAndTypesOnTheCommandLine) {

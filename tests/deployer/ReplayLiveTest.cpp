@@ -33,20 +33,29 @@ protected:
     }
     /** A log of four pings at 1.0 to 1.3 s, of which the last two have another range, as after `setRange` at 1.2 s. */
     void recordAChange() const {
-        ASSERT_EQ(call({"run", "wall.yml", "--out", "out", "--pings", "4"}).code, 0);
-        ASSERT_EQ(call({"run", "wall.yml", "--out", "other", "--pings", "4", "--set", "sonar.range=15"}).code, 0);
+        recordAChange("sonar.range=20", "sonar.range=15",
+                      [](log::Writer& to, size_t range) { to.write(range, {1'200'000}, 15.0); });
+    }
+    /** A log of four pings, of which the last two are set otherwise.
+     *  @param tell writes into the log of properties, given its stream of the property that is set first, what became
+     *  of it. */
+    void recordAChange(const std::string& first, const std::string& second,
+                       const std::function<void(log::Writer&, size_t)>& tell) const {
+        ASSERT_EQ(call({"run", "wall.yml", "--out", "out", "--pings", "4", "--set", first}).code, 0);
+        ASSERT_EQ(call({"run", "wall.yml", "--out", "other", "--pings", "4", "--set", second}).code, 0);
         ASSERT_EQ(call({"log", "cut", "out/wall.0.log", "--until", "1.15", "--to", "a.0.log"}).code, 0);
         ASSERT_EQ(call({"log", "cut", "other/wall.0.log", "--from", "1.15", "--to", "b.0.log"}).code, 0);
         fs::create_directory(folder_ / "changed");
         log::copyLog({folder_ / "a.0.log", folder_ / "b.0.log"}, folder_ / "changed/wall.0.log");
-        writeProperties();
+        writeProperties(first.substr(0, first.find('=')), tell);
     }
-    void writeProperties() const {
+    void writeProperties(const std::string& property, const std::function<void(log::Writer&, size_t)>& tell) const {
         const auto from = log::openLog(folder_ / "out/properties.0.log");
         log::pocolog::Writer to(folder_ / "changed/properties.0.log");
         for (size_t i = 0; i < from->streams().size(); ++i) to.addLike(*from, i);
         for (const log::SampleRef& at : from->samples()) to.copy(at.stream, *from, at);
-        to.log::Writer::write(from->indexOf("sonar.range"), {1'200'000}, 15.0);
+        const log::Stream* const stream = from->find(property);
+        tell(to, stream ? from->indexOf(property) : 0);
         to.close();
     }
 
@@ -85,6 +94,36 @@ TEST_F(ReplayLiveTest, APropertyThatWasSetWhileItRanIsReplayedAsItChanged) {
     ASSERT_EQ(outcome.code, 0) << outcome.err;
     EXPECT_THAT(outcome.err, HasSubstr("notice: as in the log, from 1.200000 s on: sonar.range=15\n"));
     expectAllSame(4);
+}
+
+TEST_F(ReplayLiveTest, APropertyThatWasTakenOutWhileItRanIsTakenOutAgain) {
+    recordAChange("sonar.absorption={db_per_m: 1}", "sonar.absorption=null", [](log::Writer& to, size_t) {
+        to.write(to.addStream<bool>("sonar.absorption.present"), {1'200'000}, false);
+    });
+    const Outcome outcome = score("changed/wall.0.log");
+    ASSERT_EQ(outcome.code, 0) << outcome.err;
+    EXPECT_THAT(outcome.err, HasSubstr("notice: as in the log, from 1.200000 s on: sonar.absorption=null\n"));
+    expectAllSame(4);
+}
+
+TEST_F(ReplayLiveTest, APropertyThatCameWhileItRanIsNotThereBefore) {
+    recordAChange("sonar.absorption=null", "sonar.absorption={db_per_m: 1}", [](log::Writer& to, size_t) {
+        to.write(to.addStream<std::string>("sonar.absorption"), {1'200'000}, std::string("{\"db_per_m\": 1}"));
+    });
+    const Outcome outcome = score("changed/wall.0.log");
+    ASSERT_EQ(outcome.code, 0) << outcome.err;
+    EXPECT_THAT(outcome.err, HasSubstr("from 1.200000 s on: sonar.absorption={\"db_per_m\": 1}\n"));
+    expectAllSame(4);
+}
+
+TEST_F(ReplayLiveTest, WhatWasTakenOutBeforeItRanIsTakenOutAgain) {
+    writeFile(folder_ / "wall.yml",
+              replaced(wall_deployment, "range: 20", "range: 20\n      absorption: {db_per_m: 1}"));
+    ASSERT_EQ(call({"run", "wall.yml", "--out", "out", "--pings", "3", "--set", "sonar.absorption=null"}).code, 0);
+    const Outcome outcome = score("out/wall.0.log");
+    ASSERT_EQ(outcome.code, 0) << outcome.err;
+    EXPECT_THAT(outcome.err, HasSubstr("notice: as in the log: sonar.absorption=null\n"));
+    expectAllSame(3);
 }
 
 TEST_F(ReplayLiveTest, FromBehindAChangeItHoldsFromTheStart) {

@@ -1,4 +1,4 @@
-// Trouble with what a run writes.
+// What goes wrong with what a run writes.
 #include <gmock/gmock.h>
 
 #include "tests/deployer/Wall.hpp"

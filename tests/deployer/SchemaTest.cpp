@@ -21,7 +21,7 @@ protected:
         schema_ = json::parse(outcome.out);
     }
     /** What the validator finds wrong, a line each. */
-    std::string faultsOf(std::vector<std::string> files) {
+    std::string diagnosticsOf(std::vector<std::string> files) {
         files.insert(files.begin(), {"/usr/bin/python3",
                                      fs::path(INSONIFY_SOURCE_DIR) / "tests/deployer/check_schema.py", "schema.json"});
         const Outcome outcome = Process(files, folder_.path()).wait();
@@ -29,9 +29,9 @@ protected:
         return outcome.out;
     }
     /** Of the wall's deployment with another text in the place of one that is there. */
-    std::string faultsWith(const std::string& from, const std::string& to) {
+    std::string diagnosticsWith(const std::string& from, const std::string& to) {
         writeFile(folder_ / "other.yml", replaced(wall_deployment, from, to));
-        return faultsOf({"other.yml"});
+        return diagnosticsOf({"other.yml"});
     }
     const json& property(const std::string& type, const std::string& name) const {
         return schema_["$defs"][type]["properties"][name];
@@ -52,13 +52,13 @@ TEST_F(SchemaTest, EveryDeploymentThatIsDeliveredIsValid) {
         ASSERT_EQ(callInsonify(folder_, {"init", sonar, "--sonar", sonar}).code, 0);
         files.push_back(std::string(sonar) + "/" + sonar + ".yml");
     }
-    EXPECT_EQ(faultsOf(files), "");
+    EXPECT_EQ(diagnosticsOf(files), "");
 }
 
 TEST_F(SchemaTest, WhatTheCommandRefusesOfOneValueTheSchemaRefusesAtItsPlace) {
-    EXPECT_EQ(faultsWith("range: 20", "range: 30"), "");
-    EXPECT_EQ(faultsWith("range: 20", "range: 2000.cm"), "");
-    EXPECT_EQ(faultsWith("beam_height_deg: 10", "beam_height_deg: {rad: 0.2}"), "");
+    EXPECT_EQ(diagnosticsWith("range: 20", "range: 30"), "");
+    EXPECT_EQ(diagnosticsWith("range: 20", "range: 2000.cm"), "");
+    EXPECT_EQ(diagnosticsWith("beam_height_deg: 10", "beam_height_deg: {rad: 0.2}"), "");
     struct Case {
         const char *from, *to, *place;
     };
@@ -77,7 +77,7 @@ TEST_F(SchemaTest, WhatTheCommandRefusesOfOneValueTheSchemaRefusesAtItsPlace) {
                           Case{"schedule: lockstep", "schedule: lockstop", "schedule: "},
                           Case{"schedule: lockstep", "scheduler: lockstep", ": "},
                           Case{"from: vehicle.pose", "from: vehicle", "connections.0.from: "}}) {
-        EXPECT_THAT(faultsWith(c.from, c.to), HasSubstr(c.place)) << c.to;
+        EXPECT_THAT(diagnosticsWith(c.from, c.to), HasSubstr(c.place)) << c.to;
         EXPECT_EQ(callInsonify(folder_, {"check", "other.yml"}).code, 2) << c.to;
     }
 }
@@ -106,12 +106,12 @@ TEST_F(SchemaTest, EveryTaskAndPropertyIsThereWithDocumentationUnitBoundsDefault
 }
 
 TEST_F(SchemaTest, OtherNamesAndLibrariesOpenWhatIsBehindThem) {
-    EXPECT_EQ(
-        faultsWith("    type: sonar::SonarTask\n", "    type: sonar::SonarTask\n    aliases: {reach: sonar.range}\n"),
-        "");
-    EXPECT_EQ(faultsWith("range: 20", "range: 20\n      reach: 30").find("reach") == std::string::npos, false);
-    EXPECT_EQ(faultsWith("schedule: lockstep", "libraries: [mine.so]\nschedule: lockstep"), "");
+    EXPECT_EQ(diagnosticsWith("    type: sonar::SonarTask\n",
+                              "    type: sonar::SonarTask\n    aliases: {reach: sonar.range}\n"),
+              "");
+    EXPECT_EQ(diagnosticsWith("range: 20", "range: 20\n      reach: 30").find("reach") == std::string::npos, false);
+    EXPECT_EQ(diagnosticsWith("schedule: lockstep", "libraries: [mine.so]\nschedule: lockstep"), "");
     writeFile(folder_ / "other.yml", replaced(replaced(wall_deployment, "noise::NoiseTask", "my::Task"),
                                               "schedule: lockstep", "libraries: [mine.so]"));
-    EXPECT_EQ(faultsOf({"other.yml"}), "");
+    EXPECT_EQ(diagnosticsOf({"other.yml"}), "");
 }

@@ -1,5 +1,7 @@
 #include <gmock/gmock.h>
 
+#include <cmath>
+
 #include "components/device/OculusPing.hpp"
 #include "tests/support/Folder.hpp"
 #include "tests/support/OculusMessage.hpp"
@@ -51,14 +53,21 @@ TEST(OculusPingTest, PingsStandAmongOtherMessages) {
 }
 
 TEST(OculusPingTest, WhatContradictsItselfIsNoPing) {
-    std::vector<std::string> problems;
+    std::vector<std::string> diagnostics;
     Bytes bytes = Sent{}.bytes();
     put<uint32_t>(bytes, 114, 7);
-    EXPECT_THAT(oculusPings(bytes, &problems), IsEmpty());
-    EXPECT_THAT(problems, ElementsAre(HasSubstr("an image of 7 bytes where bins and beams make 6")));
+    EXPECT_THAT(oculusPings(bytes, &diagnostics), IsEmpty());
+    EXPECT_THAT(diagnostics, ElementsAre(HasSubstr("an image of 7 bytes where bins and beams make 6")));
     for (size_t length = 0; length < Sent{}.bytes().size(); ++length) {
         const Bytes whole = Sent{}.bytes();
         EXPECT_THAT(oculusPings(std::span(whole).first(length)), IsEmpty()) << length;
+    }
+    for (const auto& [at, words] : {std::pair{61, "a frequency of nan Hz"}, {85, "a speed of sound of nan m/s"}}) {
+        Bytes changed = Sent{}.bytes();
+        put<double>(changed, static_cast<size_t>(at), std::nan(""));
+        diagnostics.clear();
+        EXPECT_THAT(oculusPings(changed, &diagnostics), IsEmpty());
+        EXPECT_THAT(diagnostics, ElementsAre(HasSubstr(words)));
     }
     for (size_t at = 16; at < 128; ++at)  // whatever stands there, no byte beyond the message is read
         for (const uint8_t value : {0, 1, 127, 255}) {

@@ -23,7 +23,7 @@ TEST(DeploymentControlTest, ItTellsTasksPortsAndConnections) {
     deployment.configure();
     const std::atomic<bool> never{false};
     ASSERT_FALSE(deployment.run({}, never).failed());
-    DeploymentControl* const control = deployment.task("relay")->environment().deployment;
+    types::DeploymentControl* const control = deployment.task("relay")->environment().deployment;
     ASSERT_EQ(control, &deployment);
     const types::DeploymentStatus status = control->status();
     EXPECT_TRUE(status.lockstep);

@@ -121,15 +121,15 @@ TEST(DeploymentRunTest, ATaskThatThrowsEndsTheRunAndTheRestStopsInOrder) {
     LockstepRun run(R"(
 tasks:
   source: {type: test::Source, activity: {period: 0.1}, properties: {last: 9}}
-  faulty: {type: test::Faulty}
+  throwing: {type: test::Throwing}
   relay: {type: test::Relay}
 connections:
-  - {from: source.value, to: faulty.in}
+  - {from: source.value, to: throwing.in}
   - {from: source.value, to: relay.in}
 )");
-    EXPECT_EQ(run.result.failures, (std::vector<std::string>{"faulty: updateHook: the third is too much"}));
+    EXPECT_EQ(run.result.failures, (std::vector<std::string>{"throwing: updateHook: the third is too much"}));
     EXPECT_EQ(run.notes("relay").size(), 3u);
-    EXPECT_EQ(run.deployment->task("faulty")->state(), TaskState::Exception);
+    EXPECT_EQ(run.deployment->task("throwing")->state(), TaskState::Exception);
     EXPECT_EQ(run.deployment->task("source")->state(), TaskState::Stopped);
 }
 

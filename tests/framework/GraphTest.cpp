@@ -97,7 +97,7 @@ struct Misfire : Gun {
     }
 };
 
-TEST(GraphTest, ItTellsWhichTroubleEndsARun) {
+TEST(GraphTest, ItTellsWhichErrorEndsARun) {
     Graph graph;
     auto& gun = add<Misfire>(graph, "gun");
     graph.arrange();

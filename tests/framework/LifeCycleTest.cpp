@@ -32,7 +32,7 @@ private:
     bool startHook() override { return hook('S'); }
     void updateHook() override {
         hook('U');
-        if (erring) error("trouble");
+        if (erring) error("no depth");
     }
     void errorHook() override { hook('E'); }
     void stopHook() override { hook('s'); }
@@ -173,7 +173,7 @@ TEST(LifeCycleTest, ARefusingHookLeavesTheStateAndIsNotUndone) {
 TEST(LifeCycleTest, ErrorRunsErrorHookUntilRecovered) {
     Probe task("probe");
     bring(task, TaskState::RunTimeError);
-    EXPECT_EQ(task.lastError(), "trouble");
+    EXPECT_EQ(task.lastError(), "no depth");
     task.update();
     ASSERT_TRUE(task.recover());
     task.update();
@@ -241,7 +241,7 @@ TEST(LifeCycleTest, NoCycleRunsWithinATransition) {
     EXPECT_EQ(task.hooks, "CSs");
 }
 
-TEST(LifeCycleTest, AFaultOfTheConfigurationIsKeptWhole) {
+TEST(LifeCycleTest, ADiagnosticOfTheConfigurationIsKeptWhole) {
     Probe task("probe");
     task.during = [] { throw types::ConfigError("a.glb", "meshes[2]", "is no mesh"); };
     EXPECT_FALSE(task.configure());

@@ -25,8 +25,8 @@ protected:
         out << spec.task(task)->properties;
         return out.c_str();
     }
-    /** Every fault, without the folder. */
-    std::vector<std::string> faults(const std::string& yaml, const std::vector<std::string>& sets = {}) {
+    /** Every diagnostic, without the folder. */
+    std::vector<std::string> diagnostics(const std::string& yaml, const std::vector<std::string>& sets = {}) {
         std::vector<std::string> texts;
         Registry registry = test::testRegistry();
         try {
@@ -77,11 +77,11 @@ TEST_F(PropertySourcesTest, ALaterFileIsLaidOverAnEarlierOneOrTakesItsPlace) {
     EXPECT_EQ(properties(head + "    property_files: {files: [one.yml, two.yml, three.yml]}\n"), "{b: 3}");
 }
 
-TEST_F(PropertySourcesTest, FaultsNameTheFileAndLineOfTheValueAllAtOnce) {
+TEST_F(PropertySourcesTest, DiagnosticsNameTheFileAndLineOfTheValueAllAtOnce) {
     write("one.yml", "# as Rock writes it\n--- name:default\nlast: 0\n\n--- name:more\nsed: 3\nseed: many\n");
     EXPECT_THAT(
-        faults(head + "    properties: {lost: 1}\n" +
-               "    property_files: {files: [one.yml], sections: [default, more]}\n"),
+        diagnostics(head + "    properties: {lost: 1}\n" +
+                    "    property_files: {files: [one.yml], sections: [default, more]}\n"),
         ElementsAre("a.yml:5:18: tasks.t.properties.lost: is not a key here; did you mean last? known: last, seed",
                     "one.yml:3:7: last: is 0; may be 1 to 1000000",
                     "one.yml:6:1: sed: is not a key here; did you mean seed? known: last, seed",
@@ -99,7 +99,7 @@ TEST_F(PropertySourcesTest, APropertyFileThatIsNotOneIsNamedWithItsPlace) {
           "--- name:ruby\n"
           "last: <%= 3 %>\n");
     EXPECT_THAT(
-        faults(head + "    property_files: {files: [bad.yml, no.yml], sections: [loop, defalt]}\n"),
+        diagnostics(head + "    property_files: {files: [bad.yml, no.yml], sections: [loop, defalt]}\n"),
         testing::UnorderedElementsAre(
             HasSubstr("a.yml:5:21: tasks.t.property_files.sections: there is no section defalt"),
             HasSubstr("bad.yml:1:1: has b:c in the head of a section"), HasSubstr("bad.yml:3:1: is not YAML"),
@@ -109,7 +109,7 @@ TEST_F(PropertySourcesTest, APropertyFileThatIsNotOneIsNamedWithItsPlace) {
             HasSubstr("bad.yml:8:1: holds Ruby, which is not run"),
             HasSubstr("no.yml: cannot be opened; must be a property file")));
     write("twice.yml", "--- name:a\nlast: 1\n--- name:a\nlast: 2\n");
-    EXPECT_THAT(faults(head + "    property_files: {files: [twice.yml], sections: [a]}\n"),
+    EXPECT_THAT(diagnostics(head + "    property_files: {files: [twice.yml], sections: [a]}\n"),
                 ElementsAre("twice.yml:3:1: a: is a section that stands here twice; once is allowed"));
 }
 
@@ -128,7 +128,7 @@ TEST_F(PropertySourcesTest, ACopyStaysAndGoesToAPropertyOfAnyTaskAsWell) {
                              "  other: {type: test::Source, activity: {period: 1}}\n";
     EXPECT_EQ(properties(read), "{model: fine}");
     EXPECT_EQ(properties(read, "other"), "{model: fine}");
-    EXPECT_THAT(faults(head + "    copies: {last: nobody.x}\n"),
+    EXPECT_THAT(diagnostics(head + "    copies: {last: nobody.x}\n"),
                 ElementsAre("a.yml:5:20: tasks.t.copies.last: there is no task nobody; known: t"));
 }
 
@@ -154,13 +154,13 @@ TEST_F(PropertySourcesTest, ASwitchPutsABlockInOrTakesItOut) {
     EXPECT_EQ(noise("    property_files: {files: [one.yml], sections: [default, loud]}\n"), "{noise: {}}");
 }
 
-TEST_F(PropertySourcesTest, FaultsOfAliasesAreToldWhereTheValueStands) {
+TEST_F(PropertySourcesTest, DiagnosticsOfAliasesAreToldWhereTheValueStands) {
     write("one.yml", "count: 0\nloud: 3\n");
     EXPECT_THAT(
-        faults(head + "    aliases: {count: t.last, of_nobody: nobody.x, short: last}\n"
-                      "    switches: {loud: t.noise}\n"
-                      "    properties: {of_nobody: 1}\n"
-                      "    property_files: {files: [one.yml]}\n"),
+        diagnostics(head + "    aliases: {count: t.last, of_nobody: nobody.x, short: last}\n"
+                           "    switches: {loud: t.noise}\n"
+                           "    properties: {of_nobody: 1}\n"
+                           "    property_files: {files: [one.yml]}\n"),
         ElementsAre("a.yml:5:41: tasks.t.aliases.of_nobody: there is no task nobody; known: t",
                     "a.yml:5:58: tasks.t.aliases.short: is last; must be task.property or task.port",
                     "one.yml:1:8: count: is 0; may be 1 to 1000000", "one.yml:2:7: loud: is 3; may be true or false"));
@@ -176,7 +176,7 @@ TEST_F(PropertySourcesTest, SettingsLieOverThePropertyFilesAndKnowTheAliases) {
     spec.set("t.loud=true");
     EXPECT_THAT(spec.diagnostics, IsEmpty());
     EXPECT_EQ(text(spec), "{head: {left: 7}, last: 8, noise: {}}");
-    EXPECT_THAT(faults(head + "    aliases: {count: t.last}\n", {"t.count=0"}),
+    EXPECT_THAT(diagnostics(head + "    aliases: {count: t.last}\n", {"t.count=0"}),
                 ElementsAre("--set: tasks.t.properties.count: is 0; may be 1 to 1000000"));
 }
 

@@ -76,7 +76,7 @@ TEST(QuantityTest, AQuantityThatDoesNotFitIsNamed) {
                 head);
     reader.read(YAML::Load("{step_deg: {rad: 400.deg}, turns: {rad: 1}}"), "", head);
     std::vector<std::string> texts;
-    for (const auto& fault : reader.diagnostics()) texts.push_back(fault.text());
+    for (const auto& diagnostic : reader.diagnostics()) texts.push_back(diagnostic.text());
     EXPECT_EQ(texts, (std::vector<std::string>{"a.yml:1:12: step_deg: is 3.m; must be in deg",
                                                "a.yml:1:24: turns: is 2.5.ceil.m; must be a finite number",
                                                "a.yml:1:57: temperature_celsius: is {rad: 1}; must be in degC",

@@ -94,14 +94,14 @@ TEST(RealtimeExecutorTest, ATaskThatThrowsEndsTheRunWithItsMessage) {
 schedule: realtime
 tasks:
   source: {type: test::Source, activity: {period: 0.001}}
-  faulty: {type: test::Faulty}
-connections: [{from: source.value, to: faulty.in}]
+  throwing: {type: test::Throwing}
+connections: [{from: source.value, to: throwing.in}]
 )";
     Deployment deployment(DeploymentSpec::parse(yaml, "a.yml"), registry);
     deployment.configure();
     const std::atomic<bool> stop{false};
     const RunResult result = deployment.run({.duration_s = patience_s}, stop);
-    EXPECT_EQ(result.failures, (std::vector<std::string>{"faulty: updateHook: the third is too much"}));
+    EXPECT_EQ(result.failures, (std::vector<std::string>{"throwing: updateHook: the third is too much"}));
     EXPECT_LT(result.elapsed_s, patience_s);
 }
 

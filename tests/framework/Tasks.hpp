@@ -66,7 +66,7 @@ private:
 };
 
 /** Throws, or goes into error, at its third sample. */
-class Faulty : public framework::TaskContext {
+class Throwing : public framework::TaskContext {
 public:
     using TaskContext::TaskContext;
     framework::InputPort<double> in{this, "in", "any number"};
@@ -101,7 +101,7 @@ inline framework::Registry testRegistry() {
     registry.add<Source>("test::Source", "counts");
     registry.add<Burst>("test::Burst", "ten at once");
     registry.add<Relay>("test::Relay", "adds 100");
-    registry.add<Faulty>("test::Faulty", "throws");
+    registry.add<Throwing>("test::Throwing", "throws");
     registry.add<Doorbell>("test::Doorbell", "counts");
     registry.add<Words>("test::Words", "takes words");
     return registry;

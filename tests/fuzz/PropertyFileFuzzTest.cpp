@@ -13,10 +13,10 @@ void read(const Input& input) {
     const std::vector<std::string> names = sections.names();
     for (const framework::PropertySection* section : sections.inOrder(names))
         EXPECT_TRUE(!section->name.empty() || !sections.diagnostics().empty());
-    for (const types::Diagnostic& fault : sections.diagnostics()) expectOurWords(fault.message);
+    for (const types::Diagnostic& diagnostic : sections.diagnostics()) expectOurWords(diagnostic.message);
 }
 
-TEST(PropertyFileFuzzTest, EveryTextIsSectionsOrFaults) {
+TEST(PropertyFileFuzzTest, EveryTextIsSectionsOrDiagnostics) {
     push({"property_file",
           "properties.yml",
           {"--- name:", "--- name:default\n", " merge:false", " chain:", "chain:a,b\n", "<%= 1 %>", "\n", ": ", "[",

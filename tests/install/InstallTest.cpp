@@ -2,6 +2,7 @@
 #include <gmock/gmock.h>
 
 #include "tests/install/Outside.hpp"
+#include "tests/scene/Dae.hpp"
 #include "tests/support/Pages.hpp"
 
 using namespace insonify::deployer;
@@ -61,6 +62,29 @@ TEST(InstallTest, TheExamplesRunFromThePrefix) {
     EXPECT_EQ(ran.code, 0) << ran.err;
     EXPECT_TRUE(fs::exists(folder / "out/fan_000000.png"));
     EXPECT_THAT(call(folder, {"ldd", insonify}).out, testing::Not(HasSubstr(INSONIFY_BINARY_DIR)));
+}
+
+TEST(InstallTest, AMeshThatAProcessOfItsOwnReadsIsReadFromThePrefix) {
+    const TestFolder folder;
+    install(folder);
+    writeFile(folder / "plate.dae", insonify::scene::Dae().text());
+    writeFile(folder / "plate.world", R"(<sdf version="1.9"><world name="w"><model name="plate"><static>true</static>
+<link name="l"><visual name="v"><geometry><mesh><uri>plate.dae</uri></mesh></geometry></visual></link></model></world></sdf>
+)");
+    const std::vector<std::string> words{folder / "prefix/bin/insonify", "scene", "plate.world", "--json"};
+    const Outcome read = call(folder, words);
+    ASSERT_EQ(read.code, 0) << read.err;
+    const json scene = json::parse(read.out);
+    EXPECT_EQ(scene["triangles"], 2);
+    EXPECT_EQ(scene["bounds"]["max"], json::parse("[1, 2, 3]"));
+
+    const fs::path reader = folder / "prefix/bin/insonify-read-mesh";
+    fs::remove(reader);
+    writeFile(reader, "#!/bin/sh\nexit 7\n");
+    fs::permissions(reader, fs::perms::owner_all);
+    const Outcome other = call(folder, words);
+    EXPECT_EQ(other.code, 2) << "another reader than the prefix's was taken";
+    EXPECT_THAT(other.err, HasSubstr("plate.dae: cannot be read: its reader ended with 7"));
 }
 
 TEST(InstallTest, AFirstDeploymentIsMadeAndRunsAndTheManualPageIsThere) {

@@ -41,7 +41,7 @@ TEST(ServiceTest, StopsWithSigintComesBackAfterAFailureAndMayUseRealtime) {
     EXPECT_TRUE(settings.at("[Service]ExecStart").starts_with("/usr/bin/insonify run "));
 }
 
-TEST(ServiceTest, SystemdFindsNoFaultInIt) {
+TEST(ServiceTest, SystemdFindsNothingWrongWithIt) {
     const TestFolder folder;
     if (call(folder, {"systemd-analyze", "--version"}).code != 0) GTEST_SKIP() << "there is no systemd-analyze here";
     // The command has to be there; here it is not in /usr/bin.

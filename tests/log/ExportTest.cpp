@@ -117,6 +117,43 @@ TEST(ExportTest, NumpyReadsTheTruthOfPings) {
               "[b'bottom' b'ball'] [0.75 0.  ] [1.  1.5] (2, 2)\n");
 }
 
+types::SonarElements elements(int64_t time) {
+    types::SonarElements signals;
+    signals.time = {time};
+    signals.speed_of_sound = 1500;
+    signals.wavelength = 0.002;
+    signals.first_range = 0.25;
+    signals.sample_spacing = 0.5;
+    signals.sample_count = 2;
+    signals.positions = {-0.5, 0.5};
+    signals.weights = {0.5, 0.5};
+    signals.in_phase = {1, -2, 3, 4};
+    signals.quadrature = {0, 0.5f, 0, 8};
+    return signals;
+}
+
+TEST(ExportTest, SignalsOfElementsAreArraysAndLines) {
+    Folder folder;
+    pocolog::Writer log(folder / "x.0.log");
+    const size_t stream = log.addStream<types::SonarElements>("sonar.elements");
+    log.write(stream, {1}, elements(1'000'000));
+    log.write(stream, {2}, elements(1'500'000));
+    log.close();
+    pocolog::Reader reader(folder / "x.0.log");
+    exportCsv(reader, "sonar.elements", folder / "x.csv");
+    EXPECT_THAT(textOf(folder / "x.csv"),
+                testing::StartsWith("time,element,position,sample,in_phase,quadrature\n1.000000,0,-0.5,0,1,0\n"
+                                    "1.000000,0,-0.5,1,-2,0.5\n1.000000,1,0.5,0,3,0\n"));
+    exportNpz(reader, "sonar.elements", folder / "x.npz");
+    if (!numpyIsThere()) GTEST_SKIP() << "python3-numpy is not installed: the npz files are not read";
+    EXPECT_EQ(numpySays(folder / "x.npz", "sorted(x.files)"),
+              "['in_phase', 'positions', 'quadrature', 'range_m', 'speed_of_sound', 'time', 'wavelength', "
+              "'weights']\n");
+    EXPECT_EQ(numpySays(folder / "x.npz", "(x['in_phase'] + 1j * x['quadrature'])[1, 1]"), "[3.+0.j 4.+8.j]\n");
+    EXPECT_EQ(numpySays(folder / "x.npz", "x['range_m'][0], x['positions'][1], x['wavelength']"),
+              "[0.25 0.75] [-0.5  0.5] [0.002 0.002]\n");
+}
+
 TEST(ExportTest, CsvOfTruthHasALineForEachBinAndThatOfReturnsForEachBeam) {
     Folder folder;
     pocolog::Writer log(folder / "x.0.log");

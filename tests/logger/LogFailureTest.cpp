@@ -23,8 +23,8 @@ LoggerConfig configFor(const std::string& file) {
     return config;
 }
 
-/** Logs texts of 1000 bytes until the task is in trouble, at most 5000 of them. */
-void logUntilTrouble(LoggerTask& task, test::Writer<std::string>& source) {
+/** Logs texts of 1000 bytes until the task fails, at most 5000 of them. */
+void logUntilFailure(LoggerTask& task, test::Writer<std::string>& source) {
     for (int i = 0; i < 5000 && task.state() == TaskState::Running; ++i) {
         source.port.write(std::string(1000, 'x'));
         task.update();
@@ -64,7 +64,7 @@ TEST(LogFailureTest, AFullDiskEndsInExceptionWithTheSystemsReason) {
     source.port.connectTo(*task.makeInput("in", source.port), ConnPolicy::buffer(10));
     ASSERT_TRUE(task.configure());
     ASSERT_TRUE(task.start());
-    logUntilTrouble(task, source);
+    logUntilFailure(task, source);
     EXPECT_EQ(task.state(), TaskState::Exception);
     EXPECT_THAT(task.lastError(), testing::HasSubstr("No space left on device"));
 }
@@ -99,7 +99,7 @@ TEST(LogFailureTest, ADiskThatIsFullOnlyAtTheEndIsToldByStop) {
 }
 
 /** Logs into a file that may not exceed 50000 bytes; exits 0 when the task ends in Exception. With a queue of one
- * sample the file is flushed every few samples, however the threads take turns. */
+ *  sample the file is flushed every few samples, however the threads take turns. */
 [[noreturn]] void fillLimitedDisk(const std::filesystem::path& folder) {
     const rlimit limit{50000, 50000};
     setrlimit(RLIMIT_FSIZE, &limit);
@@ -113,7 +113,7 @@ TEST(LogFailureTest, ADiskThatIsFullOnlyAtTheEndIsToldByStop) {
     source.port.connectTo(*task.makeInput("in", source.port), ConnPolicy::buffer(10));
     task.configure();
     task.start();
-    logUntilTrouble(task, source);
+    logUntilFailure(task, source);
     std::_Exit(task.state() == TaskState::Exception ? 0 : 1);
 }
 

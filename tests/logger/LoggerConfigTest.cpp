@@ -5,7 +5,7 @@
 namespace insonify::logger {
 namespace {
 
-size_t problemsOf(const std::string& file) {
+size_t diagnosticsOf(const std::string& file) {
     LoggerConfig config;
     config.file = file;
     types::Diagnostics diagnostics;
@@ -15,9 +15,9 @@ size_t problemsOf(const std::string& file) {
 
 TEST(LoggerConfigTest, OnlyANameThatEndsInLogIsTaken) {
     for (const char* good : {"harbour.0.log", "harbour.log", "day/harbour.1.log"})
-        EXPECT_EQ(problemsOf(good), 0u) << good;
+        EXPECT_EQ(diagnosticsOf(good), 0u) << good;
     for (const char* bad : {"", ".log", "harbour", "harbour.log.gz", "harbour.log/"})
-        EXPECT_EQ(problemsOf(bad), 1u) << bad;
+        EXPECT_EQ(diagnosticsOf(bad), 1u) << bad;
 }
 
 TEST(LoggerConfigTest, ALogOfSeveralFilesHasANumber) {

@@ -117,7 +117,7 @@ std::string noise(std::minstd_rand& random) {
 }
 
 /** Logs texts into a file that may not exceed 50000 bytes; exits 0 when the task tells of samples that it has lost.
- * With a queue of one sample the file is flushed every few samples, however the threads take turns. */
+ *  With a queue of one sample the file is flushed every few samples, however the threads take turns. */
 [[noreturn]] void fillLimitedDisk(const std::filesystem::path& folder) {
     const rlimit limit{50000, 50000};
     setrlimit(RLIMIT_FSIZE, &limit);

@@ -35,5 +35,24 @@ TEST(PropertyLogTest, APropertyIsAStreamWithASampleForEachChange) {
     EXPECT_EQ(metadata.at("insonify_seed"), "7");
 }
 
+TEST(PropertyLogTest, WhatIsTakenOutAndComesBackIsTold) {
+    Folder folder;
+    PropertyLog log(folder / "properties.0.log");
+    const types::TaskRecord with{"sonar", "sonar::SonarTask", {{"range", 50.0}, {"speed_of_sound", 1480.0}}, ""};
+    const types::TaskRecord without{"sonar", "sonar::SonarTask", {{"range", 50.0}}, ""};
+    int64_t moment = 1'000'000;
+    for (const types::TaskRecord& record : {with, without, without, with, with}) log.record({record}, {moment++}, {});
+    log.close();
+
+    log::pocolog::Reader reader(folder / "properties.0.log");
+    std::vector<std::pair<int64_t, bool>> presence;
+    reader.forEach<bool>("sonar.speed_of_sound.present", [&](bool is_there, const log::SampleRef& at) {
+        presence.emplace_back(at.received.microseconds - 1'000'000, is_there);
+    });
+    EXPECT_THAT(presence, testing::ElementsAre(testing::Pair(1, false), testing::Pair(3, true)));
+    EXPECT_EQ(reader.find("sonar.speed_of_sound")->count, 2u) << "at the start and when it is back";
+    EXPECT_FALSE(reader.find("sonar.range.present")) << "it was always there";
+}
+
 }  // namespace
 }  // namespace insonify::logger

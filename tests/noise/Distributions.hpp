@@ -111,6 +111,7 @@ inline double kCdf(double x, double shape) {
                    std::cyl_bessel_k(shape, 2 * std::sqrt(shape * x));
 }
 
-inline constexpr double ks_one_percent = 1.628;
+/** Above these in 1 case of 100. */
+inline constexpr double ks_one_percent = 1.628, chi_one_percent = 36.19;
 
 }  // namespace insonify::noise

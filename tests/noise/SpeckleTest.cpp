@@ -67,19 +67,21 @@ TEST(SpeckleTest, KSpeckleIsAnExponentialOfGammaDistributedMean) {
 }
 
 TEST(SpeckleTest, ALawHasTheParametersOfItsOwn) {
-    const auto faults = [](const SpeckleConfig& speckle) {
+    const auto diagnostics = [](const SpeckleConfig& speckle) {
         types::Diagnostics diagnostics;
         speckle.check(diagnostics);
         std::string text;
-        for (const types::Diagnostic& problem : diagnostics) text += problem.path + " " + problem.message + "; ";
+        for (const types::Diagnostic& diagnostic : diagnostics)
+            text += diagnostic.path + " " + diagnostic.message + "; ";
         return text;
     };
-    EXPECT_EQ(faults({.law = SpeckleLaw::Gamma, .looks = 4}) + faults({.law = SpeckleLaw::K, .shape = 2}) + faults({}),
+    EXPECT_EQ(diagnostics({.law = SpeckleLaw::Gamma, .looks = 4}) + diagnostics({.law = SpeckleLaw::K, .shape = 2}) +
+                  diagnostics({}),
               "");
-    EXPECT_EQ(faults({.law = SpeckleLaw::Gamma}), "looks is absent; law: gamma needs it; ");
-    EXPECT_EQ(faults({.law = SpeckleLaw::K}), "shape is absent; law: k needs it; ");
-    EXPECT_EQ(faults({.looks = 4}), "looks is given; it belongs to law: gamma; ");
-    EXPECT_EQ(faults({.shape = 4}), "shape is given; it belongs to law: k; ");
+    EXPECT_EQ(diagnostics({.law = SpeckleLaw::Gamma}), "looks is absent; law: gamma needs it; ");
+    EXPECT_EQ(diagnostics({.law = SpeckleLaw::K}), "shape is absent; law: k needs it; ");
+    EXPECT_EQ(diagnostics({.looks = 4}), "looks is given; it belongs to law: gamma; ");
+    EXPECT_EQ(diagnostics({.shape = 4}), "shape is given; it belongs to law: k; ");
 }
 
 TEST(SpeckleTest, TheOtherLawsAreHeldToOnePercentToo) {

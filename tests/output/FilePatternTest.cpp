@@ -20,15 +20,15 @@ TEST(FilePatternTest, AnythingElseIsRefused) {
         EXPECT_FALSE(FilePattern::parse(pattern)) << pattern;
 }
 
-TEST(RecordingConfigTest, NamesThatCannotBeWrittenAreProblems) {
-    const auto problemsOf = [](const RecordingConfig& config) {
+TEST(RecordingConfigTest, NamesThatCannotBeWrittenAreDiagnostics) {
+    const auto diagnosticsOf = [](const RecordingConfig& config) {
         types::Diagnostics diagnostics;
         config.check(diagnostics);
         return diagnostics;
     };
-    EXPECT_TRUE(problemsOf({}).empty());
-    EXPECT_TRUE(problemsOf({.file = "a%d.png", .video = "b.mp4", .video_rate = {}}).empty());
-    const auto diagnostics = problemsOf({.file = "%s%n", .video = "b.mkv", .video_rate = {}});
+    EXPECT_TRUE(diagnosticsOf({}).empty());
+    EXPECT_TRUE(diagnosticsOf({.file = "a%d.png", .video = "b.mp4", .video_rate = {}}).empty());
+    const auto diagnostics = diagnosticsOf({.file = "%s%n", .video = "b.mkv", .video_rate = {}});
     ASSERT_EQ(diagnostics.size(), 2u);
     EXPECT_EQ(diagnostics[0].path, "file");
     EXPECT_EQ(diagnostics[1].path, "video");

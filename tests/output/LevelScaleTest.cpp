@@ -37,6 +37,30 @@ TEST(LevelScaleTest, WhatIsOutsideIsClippedAndWhatIsUnknownIsDark) {
     EXPECT_EQ(levelOf(config, std::numeric_limits<float>::infinity()), 255);
 }
 
+TEST(LevelScaleTest, CodesAreTakenAsTheyAre) {
+    DisplayConfig config;
+    config.scale = BinScale::Code;
+    for (const int code : {0, 1, 64, 128, 255}) EXPECT_EQ(levelOf(config, code), code);
+    EXPECT_EQ(levelOf(config, std::nan("")), 0);
+    EXPECT_EQ(levelOf(config, 256), 255);
+    config.code_bits = 16;
+    EXPECT_EQ(levelOf(config, 65535), 255);
+    EXPECT_EQ(levelOf(config, 257 * 100), 100);
+    EXPECT_EQ(levelOf(config, 0), 0);
+}
+
+TEST(LevelScaleTest, CodesHaveNoReferenceLevel) {
+    PictureConfig config;
+    config.scale = BinScale::Code;
+    types::Diagnostics diagnostics;
+    config.check(diagnostics);
+    EXPECT_TRUE(diagnostics.empty());
+    config.reference_db = 255;
+    config.check(diagnostics);
+    ASSERT_EQ(diagnostics.size(), 1u);
+    EXPECT_EQ(diagnostics[0].path, "reference_db");
+}
+
 TEST(LevelScaleTest, BinsInDecibelsAreTakenAsTheyAre) {
     DisplayConfig config = fixed(100, 51);
     config.scale = BinScale::Decibel;

@@ -87,7 +87,7 @@ TEST(PictureWriterTest, EverythingThatWasGivenIsWrittenBeforeTheEnd) {
     EXPECT_EQ(picture.use_count(), 1);
 }
 
-TEST(PictureWriterTest, TroubleReachesTheGiver) {
+TEST(PictureWriterTest, AnErrorReachesTheGiver) {
     const Folder folder;
     std::filesystem::create_directories(folder.path() / "0.png");  // in the way of the first file
     const auto picture = std::make_shared<const types::Image>(fanPicture());

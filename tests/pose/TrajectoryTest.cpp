@@ -28,7 +28,7 @@ public:
     const std::filesystem::path path = folder_ / "trajectory.csv";
 };
 
-types::Diagnostics faultsOf(const std::string& text) {
+types::Diagnostics diagnosticsOf(const std::string& text) {
     const TextFile file(text);
     try {
         Trajectory::fromCsv(file.path);
@@ -107,15 +107,15 @@ TEST(TrajectoryTest, AQuaternionThatIsNotQuiteUnitIsNormalised) {
     EXPECT_NEAR(path.stamps()[1].orientation.z, 1, tiny);
 }
 
-TEST(TrajectoryTest, EveryFaultOfAFileIsToldWithItsPlace) {
-    const auto faults = faultsOf(header +
-                                 "0,0,0,0,1,0,0,0\n"      // 2: good
-                                 "1,0,abc,0,1,0,0,0\n"    // 3: no number
-                                 "2,0,0,0,1,0,0\n"        // 4: too few
-                                 "3,0,0,0,1,0,0,0,9\n"    // 5: too many
-                                 "4,0,0,0,0,0,1e-7,0\n"   // 6: no direction
-                                 "4,0,0,nan,1,0,0,0x1\n"  // 7: two faults
-                                 "4,0,0,0,1,0,0,0\n");    // 8: time stands still
+TEST(TrajectoryTest, EveryDiagnosticOfAFileIsToldWithItsPlace) {
+    const auto diagnostics = diagnosticsOf(header +
+                                           "0,0,0,0,1,0,0,0\n"      // 2: good
+                                           "1,0,abc,0,1,0,0,0\n"    // 3: no number
+                                           "2,0,0,0,1,0,0\n"        // 4: too few
+                                           "3,0,0,0,1,0,0,0,9\n"    // 5: too many
+                                           "4,0,0,0,0,0,1e-7,0\n"   // 6: no direction
+                                           "4,0,0,nan,1,0,0,0x1\n"  // 7: two diagnostics
+                                           "4,0,0,0,1,0,0,0\n");    // 8: time stands still
     struct Place {
         int line, column;
         const char *path, *message;
@@ -123,18 +123,18 @@ TEST(TrajectoryTest, EveryFaultOfAFileIsToldWithItsPlace) {
     const Place expected[] = {{3, 5, "y", "'abc'"},       {4, 14, "qz", "missing"}, {5, 17, "", "too many"},
                               {6, 9, "qw", "quaternion"}, {7, 7, "z", "finite"},    {7, 17, "qz", "'0x1'"},
                               {8, 1, "time", "increase"}};
-    ASSERT_EQ(faults.size(), std::size(expected));
-    for (size_t i = 0; i < faults.size(); ++i) {
-        EXPECT_EQ(faults[i].line, expected[i].line) << i;
-        EXPECT_EQ(faults[i].column, expected[i].column) << i;
-        EXPECT_EQ(faults[i].path, expected[i].path) << i;
-        EXPECT_THAT(faults[i].message, HasSubstr(expected[i].message)) << i;
+    ASSERT_EQ(diagnostics.size(), std::size(expected));
+    for (size_t i = 0; i < diagnostics.size(); ++i) {
+        EXPECT_EQ(diagnostics[i].line, expected[i].line) << i;
+        EXPECT_EQ(diagnostics[i].column, expected[i].column) << i;
+        EXPECT_EQ(diagnostics[i].path, expected[i].path) << i;
+        EXPECT_THAT(diagnostics[i].message, HasSubstr(expected[i].message)) << i;
     }
 }
 
 TEST(TrajectoryTest, AFileWithoutHeaderStampsOrContentIsRefused) {
     for (const char* text : {"", "\n\n", "time,x,y,z,qw,qx,qy,qz\n", "t,x\n0,0,0,0,1,0,0,0\n"})
-        EXPECT_EQ(faultsOf(text).size(), 1u) << text;
+        EXPECT_EQ(diagnosticsOf(text).size(), 1u) << text;
 }
 
 TEST(TrajectoryTest, AFolderAndAFileThatIsNotThereAreRefused) {
@@ -142,26 +142,26 @@ TEST(TrajectoryTest, AFolderAndAFileThatIsNotThereAreRefused) {
     EXPECT_THROW(Trajectory::fromCsv("no/such/file.csv"), types::ConfigError);
 }
 
-TEST(TrajectoryTest, AHundredFaultsAreEnough) {
+TEST(TrajectoryTest, AHundredDiagnosticsAreEnough) {
     std::string text = header;
     for (int i = 0; i < 5000; ++i) text += "x,x,x,x,x,x,x,x\n";
-    EXPECT_LE(faultsOf(text).size(), 108u);
+    EXPECT_LE(diagnosticsOf(text).size(), 108u);
 }
 
 TEST(TrajectoryConfigTest, ExactlyOneSourceIsAskedForAndTimesMustIncrease) {
-    const auto problemsOf = [](const TrajectoryConfig& config) {
+    const auto diagnosticsOf = [](const TrajectoryConfig& config) {
         types::Diagnostics diagnostics;
         config.check(diagnostics);
         return diagnostics;
     };
-    EXPECT_EQ(problemsOf({}).size(), 1u);
-    EXPECT_EQ(problemsOf({.file = "a.csv", .waypoints = {Waypoint{}}}).size(), 1u);
-    EXPECT_TRUE(problemsOf({.file = "a.csv", .waypoints = {}}).empty());
+    EXPECT_EQ(diagnosticsOf({}).size(), 1u);
+    EXPECT_EQ(diagnosticsOf({.file = "a.csv", .waypoints = {Waypoint{}}}).size(), 1u);
+    EXPECT_TRUE(diagnosticsOf({.file = "a.csv", .waypoints = {}}).empty());
     const auto diagnostics =
-        problemsOf({.file = {}, .waypoints = {{.time = 1}, {.time = 2}, {.time = 2}, {.time = 1}}});
+        diagnosticsOf({.file = {}, .waypoints = {{.time = 1}, {.time = 2}, {.time = 2}, {.time = 1}}});
     ASSERT_EQ(diagnostics.size(), 2u);
     EXPECT_EQ(diagnostics[0].path, "waypoints[2].time");
-    EXPECT_EQ(problemsOf({.file = {}, .waypoints = {{.time = 0}, {.time = std::nan("")}}}).size(), 1u);
+    EXPECT_EQ(diagnosticsOf({.file = {}, .waypoints = {{.time = 0}, {.time = std::nan("")}}}).size(), 1u);
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-// Noise before the receiver: it grows with the gain, and the other way round is told as a fault.
+// Noise before the receiver: it grows with the gain, and the other way round is told as an error.
 #include <gmock/gmock.h>
 
 #include <cmath>
@@ -59,7 +59,7 @@ TEST(ChainTest, NoiseAfterTheGainDoesNotGrow) {
     EXPECT_GT(offTheLaw(ping), 50);
 }
 
-TEST(ChainTest, AReceiverBeforeTheNoiseIsAFaultOfTheDeployment) {
+TEST(ChainTest, AReceiverBeforeTheNoiseIsAnErrorOfTheDeployment) {
     framework::Registry registry;
     noise::registerTasks(registry);
     receiver::registerTasks(registry);

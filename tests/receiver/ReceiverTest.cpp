@@ -41,11 +41,12 @@ ReceiverConfig coding(const CodeConfig& code) {
     return config;
 }
 
-std::vector<std::string> faultsOf(const ReceiverConfig& config) {
+std::vector<std::string> diagnosticsOf(const ReceiverConfig& config) {
     types::Diagnostics diagnostics;
     config.check(diagnostics);
     std::vector<std::string> texts;
-    for (const types::Diagnostic& problem : diagnostics) texts.push_back(problem.path + ": " + problem.message);
+    for (const types::Diagnostic& diagnostic : diagnostics)
+        texts.push_back(diagnostic.path + ": " + diagnostic.message);
     return texts;
 }
 
@@ -183,7 +184,7 @@ TEST(ReceiverTest, WhatMakesNoSenseIsRefusedAndWhatHasNoUseTold) {
     config = giving(Output::LevelDb);
     config.brightness.emplace();
     config.tvg.emplace();
-    EXPECT_THAT(faultsOf(config),
+    EXPECT_THAT(diagnosticsOf(config),
                 testing::ElementsAre("brightness: is given with tvg; it makes up for spreading itself",
                                      "brightness: is given with another output; it scales output: intensity"));
     config = {};

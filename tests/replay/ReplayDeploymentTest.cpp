@@ -78,14 +78,14 @@ TEST(ReplayDeploymentTest, TwoReplaysGiveTheSameLogBitForBit) {
     EXPECT_EQ(bytesOf(folder / "b.0.log"), first);
 }
 
-TEST(ReplayDeploymentTest, ALogThatIsNotThereIsTheOnlyComplaint) {
+TEST(ReplayDeploymentTest, ALogThatIsNotThereIsTheOnlyDiagnostic) {
     Folder folder;
     try {
         runIn(folder, again);
         FAIL() << "no ConfigError";
     } catch (const types::ConfigError& error) {
-        for (const types::Diagnostic& fault : error.diagnostics())
-            EXPECT_THAT(fault.text(), testing::HasSubstr("a.0.log: cannot be read"));
+        for (const types::Diagnostic& diagnostic : error.diagnostics())
+            EXPECT_THAT(diagnostic.text(), testing::HasSubstr("a.0.log: cannot be read"));
     }
 }
 

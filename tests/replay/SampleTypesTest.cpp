@@ -73,6 +73,20 @@ types::SonarReturns made(std::type_identity<types::SonarReturns>) {
     returns.take(made(std::type_identity<types::Sonar>{}), made(std::type_identity<types::SonarTruth>{}));
     return returns;
 }
+types::SonarElements made(std::type_identity<types::SonarElements>) {
+    types::SonarElements signals;
+    signals.time = {1'500'000};
+    signals.speed_of_sound = 1500;
+    signals.wavelength = 0.002;
+    signals.first_range = 0.25;
+    signals.sample_spacing = 0.5;
+    signals.sample_count = 3;
+    signals.positions = {-0.001, 0.001};
+    signals.weights = {0.5, 0.5};
+    signals.in_phase = {1, -2, 0.5f, 0, 4, 8};
+    signals.quadrature = {0, 0.25f, -1, 2, 0.125f, -8};
+    return signals;
+}
 types::Pose made(std::type_identity<types::Pose>) {
     types::Pose pose;
     pose.time = {1'500'000};

@@ -27,7 +27,7 @@ std::string bodyOf(const T& message) {
 }
 
 template <class T>
-std::string faultOf(const std::vector<char>& bytes) {
+std::string diagnosticOf(const std::vector<char>& bytes) {
     try {
         T message;
         decode(bytes, message);
@@ -131,7 +131,7 @@ void expectRoundTripAndNoTruncation(const T& message) {
     EXPECT_EQ(again, message) << T::type_name;
     for (size_t size = 0; size < bytes.size(); ++size) {
         const std::vector<char> cut(bytes.begin(), bytes.begin() + static_cast<int64_t>(size));
-        EXPECT_NE(faultOf<T>(cut), "") << T::type_name << " cut to " << size << " of " << bytes.size();
+        EXPECT_NE(diagnosticOf<T>(cut), "") << T::type_name << " cut to " << size << " of " << bytes.size();
     }
 }
 
@@ -173,30 +173,30 @@ TEST(CdrTest, ARandomByteNeverHarms) {
         for (const int value : {0, 1, 127, 128, 255}) {
             std::vector<char> wrong = bytes;
             wrong[at] = static_cast<char>(value);
-            refused += !faultOf<ProjectedSonarImage>(wrong).empty();
+            refused += !diagnosticOf<ProjectedSonarImage>(wrong).empty();
         }
     EXPECT_GT(refused, bytes.size() / 4);
 }
 
-TEST(CdrTest, AFaultIsNamedWithItsPlace) {
+TEST(CdrTest, ADiagnosticIsNamedWithItsPlace) {
     std::vector<char> bytes = bytesOf(Header{{0, 0}, "ab"});
-    EXPECT_EQ(faultOf<Header>({0, 0, 0, 0}), "byte 0: encoding 0 is not read, only 1: plain CDR, little endian");
+    EXPECT_EQ(diagnosticOf<Header>({0, 0, 0, 0}), "byte 0: encoding 0 is not read, only 1: plain CDR, little endian");
     bytes[12] = 100;
-    EXPECT_EQ(faultOf<Header>(bytes), "byte 12: 100 elements are announced, more than the message holds");
+    EXPECT_EQ(diagnosticOf<Header>(bytes), "byte 12: 100 elements are announced, more than the message holds");
     bytes[12] = 2;
-    EXPECT_EQ(faultOf<Header>(bytes), "byte 17: a text does not end in NUL");
+    EXPECT_EQ(diagnosticOf<Header>(bytes), "byte 17: a text does not end in NUL");
     bytes = bytesOf(smallCloud());
     bytes.back() = 3;
-    EXPECT_EQ(faultOf<PointCloud2>(bytes),
+    EXPECT_EQ(diagnosticOf<PointCloud2>(bytes),
               "byte " + std::to_string(bytes.size() - 1) + ": a truth value is 3, not 0 or 1");
 }
 
 TEST(CdrTest, UpToThreeBytesOfPaddingMayFollow) {
     std::vector<char> bytes = bytesOf(Time{1, 2});
     bytes.resize(bytes.size() + 3);
-    EXPECT_EQ(faultOf<Time>(bytes), "");
+    EXPECT_EQ(diagnosticOf<Time>(bytes), "");
     bytes.push_back(0);
-    EXPECT_EQ(faultOf<Time>(bytes), "byte 12: the message has 4 bytes too many");
+    EXPECT_EQ(diagnosticOf<Time>(bytes), "byte 12: the message has 4 bytes too many");
 }
 
 }  // namespace

@@ -29,7 +29,7 @@ std::vector<float> floatsOf(const std::vector<uint8_t>& bytes) {
     return numbers;
 }
 
-std::string faultOf(const types::Sonar& ping) {
+std::string diagnosticOf(const types::Sonar& ping) {
     try {
         messageOf<LaserScan>(ping);
         return "";
@@ -166,14 +166,14 @@ TEST(FromSonarTest, AScanHasItsRaysWhereTheBeamsAre) {
 TEST(FromSonarTest, WhatCannotBeHeldIsRefused) {
     types::Sonar ping = smallPing();
     ping.bins.pop_back();
-    EXPECT_EQ(faultOf(ping), "the lists of the ping are not as long as its counts say");
+    EXPECT_EQ(diagnosticOf(ping), "the lists of the ping are not as long as its counts say");
     ping = smallPing();
     ping.resize(3, 3);
     ping.bearings[2] = {-0.5};
-    EXPECT_EQ(faultOf(ping), "the beams do not stand at equal angles from one another, as a LaserScan's do");
+    EXPECT_EQ(diagnosticOf(ping), "the beams do not stand at equal angles from one another, as a LaserScan's do");
     ping = smallPing();
     ping.time = types::Time::fromSeconds(3e9);
-    EXPECT_EQ(faultOf(ping), "ROS holds no time of 3000000000 s: from -2147483648 s to 2147483647 s");
+    EXPECT_EQ(diagnosticOf(ping), "ROS holds no time of 3000000000 s: from -2147483648 s to 2147483647 s");
 }
 
 }  // namespace

@@ -7,7 +7,7 @@
 namespace insonify::ros {
 namespace {
 
-std::string faultOf(const ProjectedSonarImage& message) {
+std::string diagnosticOf(const ProjectedSonarImage& message) {
     try {
         types::Sonar ping;
         convert(message, {}, ping);
@@ -71,26 +71,26 @@ TEST(ToSonarTest, WholeNumbersAreSharesOfTheirGreatestValue) {
 TEST(ToSonarTest, WhatIsNoPingIsRefused) {
     ProjectedSonarImage message = smallImage();
     message.image.data.pop_back();
-    EXPECT_EQ(faultOf(message), "sonar image: 5 bytes of data for 2 beams, 3 ranges and 1 bytes a number");
+    EXPECT_EQ(diagnosticOf(message), "sonar image: 5 bytes of data for 2 beams, 3 ranges and 1 bytes a number");
     message = smallImage();
     message.beam_directions.pop_back();
-    EXPECT_EQ(faultOf(message), "sonar image: 1 directions for 2 beams");
+    EXPECT_EQ(diagnosticOf(message), "sonar image: 1 directions for 2 beams");
     message = smallImage();
     message.image.dtype = 7;
-    EXPECT_EQ(faultOf(message), "sonar image: dtype 7 is not read, only uint8, uint16, uint32, float32, float64");
+    EXPECT_EQ(diagnosticOf(message), "sonar image: dtype 7 is not read, only uint8, uint16, uint32, float32, float64");
     message = smallImage();
     message.ranges[1] = 1;
-    EXPECT_EQ(faultOf(message),
+    EXPECT_EQ(diagnosticOf(message),
               "sonar image: range 1 is 1.000000 m; the ranges must be the centres of equal bins from 0 on");
     message = smallImage();
     message.ping_info.sound_speed = 0;
-    EXPECT_EQ(faultOf(message), "sonar image: a speed of sound of 0.000000 m/s");
+    EXPECT_EQ(diagnosticOf(message), "sonar image: a speed of sound of 0.000000 m/s");
 }
 
 TEST(ToSonarTest, CountsWhoseProductExceedsTheWordAreRefused) {
     ProjectedSonarImage message = smallImage();
     message.image.beam_count = 0xffffffff;
-    EXPECT_EQ(faultOf(message), "sonar image: 2 directions for 4294967295 beams");
+    EXPECT_EQ(diagnosticOf(message), "sonar image: 2 directions for 4294967295 beams");
 }
 
 }  // namespace

@@ -8,13 +8,13 @@ namespace {
 
 class BadInputTest : public SceneFiles {
 protected:
-    void expectFault(const std::filesystem::path& file, const std::string& part) const {
-        const std::string fault = faultOf(file);
-        EXPECT_NE(fault.find(file.string()), std::string::npos) << fault;
-        EXPECT_NE(fault.find(part), std::string::npos) << fault;
+    void expectDiagnostic(const std::filesystem::path& file, const std::string& part) const {
+        const std::string diagnostic = diagnosticOf(file);
+        EXPECT_NE(diagnostic.find(file.string()), std::string::npos) << diagnostic;
+        EXPECT_NE(diagnostic.find(part), std::string::npos) << diagnostic;
     }
-    void expectGltfFault(const std::string& rest, const std::string& part) const {
-        expectFault(write("case.gltf", gltf(rest)), part);
+    void expectGltfDiagnostic(const std::string& rest, const std::string& part) const {
+        expectDiagnostic(write("case.gltf", gltf(rest)), part);
     }
     /** A triangle of which the accessors and bufferViews are given. */
     static std::string triangle(const std::string& accessors, const std::string& views) {
@@ -37,98 +37,103 @@ std::string glb(const std::string& json, const std::string& binary) {
 
 TEST_F(BadInputTest, AFileThatIsMissingOrAFolderOrEmptyOrOfAnotherKindIsNamed) {
     std::filesystem::create_directory(folder_ / "folder.glb");
-    expectFault(folder_ / "missing.glb", "must be a scene, which may be .gltf, .glb, .world or .sdf");
-    expectFault(folder_ / "folder.glb", "is not a file");
-    expectFault(write("empty.glb", ""), "is empty");
-    expectFault(write("cube.obj", "v 0 0 0"), "has extension \".obj\"; may be .gltf, .glb, .world or .sdf");
-    expectFault(write("noise.glb", "this is no model at all"), "cannot be read as glTF 2.0");
+    expectDiagnostic(folder_ / "missing.glb", "must be a scene, which may be .gltf, .glb, .world or .sdf");
+    expectDiagnostic(folder_ / "folder.glb", "is not a file");
+    expectDiagnostic(write("empty.glb", ""), "is empty");
+    expectDiagnostic(write("cube.obj", "v 0 0 0"), "has extension \".obj\"; may be .gltf, .glb, .world or .sdf");
+    expectDiagnostic(write("noise.glb", "this is no model at all"), "cannot be read as glTF 2.0");
 }
 
 TEST_F(BadInputTest, AnImageNameWhoseReadingExhaustsMemoryIsNotRead) {
-    expectFault(write("416.gltf", R"({"images":[{"uri":"%!QAAAQAAA5"}],"asset":{"version":""}})"), "asset.version");
-    expectFault(write("cut.gltf", R"({"asset":{"version":"2.0"},"images":[{"uri":"%!QAAAQA)"),
-                "cannot be read as glTF 2.0");
-    EXPECT_EQ(faultOfGltf(R"("images":[{"uri":"."},{"uri":""},{"uri":"/"},{"uri":"/dev/zero"}])"), "");
+    expectDiagnostic(write("416.gltf", R"({"images":[{"uri":"%!QAAAQAAA5"}],"asset":{"version":""}})"),
+                     "asset.version");
+    expectDiagnostic(write("cut.gltf", R"({"asset":{"version":"2.0"},"images":[{"uri":"%!QAAAQA)"),
+                     "cannot be read as glTF 2.0");
+    EXPECT_EQ(diagnosticOfGltf(R"("images":[{"uri":"."},{"uri":""},{"uri":"/"},{"uri":"/dev/zero"}])"), "");
 }
 
 TEST_F(BadInputTest, OtherVersionsAreRefused) {
-    expectFault(write("one.gltf", R"({"asset":{"version":"1.0"}})"), "asset.version: is \"1.0\"; must be 2.0");
+    expectDiagnostic(write("one.gltf", R"({"asset":{"version":"1.0"}})"), "asset.version: is \"1.0\"; must be 2.0");
 }
 
 TEST_F(BadInputTest, JsonNestedTooDeeplyIsRefusedBeforeItIsParsed) {
     const std::string deep(100'000, '[');
-    expectFault(write("deep.gltf", R"({"asset":{"version":"2.0","extras":)" + deep),
-                "nests JSON 100002 levels deep; may be up to 200");
-    expectFault(write("deep.glb", glb(R"({"asset":{"version":"2.0","extras":)" + deep, "")), "levels deep");
-    EXPECT_EQ(faultOfGltf(R"("extras":")" + deep + "\""), "");  // brackets in a text do not nest
+    expectDiagnostic(write("deep.gltf", R"({"asset":{"version":"2.0","extras":)" + deep),
+                     "nests JSON 100002 levels deep; may be up to 200");
+    expectDiagnostic(write("deep.glb", glb(R"({"asset":{"version":"2.0","extras":)" + deep, "")), "levels deep");
+    EXPECT_EQ(diagnosticOfGltf(R"("extras":")" + deep + "\""), "");  // brackets in a text do not nest
 }
 
 TEST_F(BadInputTest, GigabytesDeclaredInAKilobyteAreRefusedWithoutBeingAllocated) {
-    expectGltfFault(R"("buffers":[{"byteLength":4294967295,"uri":"data:application/octet-stream;base64,AAAA"}])", "");
-    expectGltfFault(
+    expectGltfDiagnostic(R"("buffers":[{"byteLength":4294967295,"uri":"data:application/octet-stream;base64,AAAA"}])",
+                         "");
+    expectGltfDiagnostic(
         triangle(R"({"bufferView":0,"componentType":5126,"type":"VEC3","count":4294967295})", good_view),
         "accessors[0]: 4294967295 elements of 12 bytes from byteOffset 0 run over the bufferView's 36 bytes");
-    expectGltfFault(triangle(R"({"componentType":5126,"type":"VEC3","count":4294967295})", good_view),
-                    "accessors[0].count");
-    expectGltfFault(
+    expectGltfDiagnostic(triangle(R"({"componentType":5126,"type":"VEC3","count":4294967295})", good_view),
+                         "accessors[0].count");
+    expectGltfDiagnostic(
         triangle(R"({"bufferView":0,"componentType":5126,"type":"VEC3","count":18446744073709551615})", good_view),
         "run over");
-    expectFault(write("4g.glb", "glTF" + bytesOf<uint32_t>({2, 0xffffffff, 0xfffffff0}) + "JSON{}"), "truncated");
+    expectDiagnostic(write("4g.glb", "glTF" + bytesOf<uint32_t>({2, 0xffffffff, 0xfffffff0}) + "JSON{}"), "truncated");
 }
 
 TEST_F(BadInputTest, ManyPrimitivesOfTheSameDataAreCharged) {
     std::string primitives;
     for (int i = 0; i < 30; ++i) primitives += R"({"attributes":{"POSITION":0}},)";
     primitives += R"({"attributes":{"POSITION":0}})";
-    expectGltfFault(R"("nodes":[{"mesh":0}],"meshes":[{"primitives":[)" + primitives +
-                        R"(]}],"accessors":[{"componentType":5126,"type":"VEC3","count":10000000}])",
-                    "brings the file over 200000000 vertices and indices");
+    expectGltfDiagnostic(R"("nodes":[{"mesh":0}],"meshes":[{"primitives":[)" + primitives +
+                             R"(]}],"accessors":[{"componentType":5126,"type":"VEC3","count":10000000}])",
+                         "brings the file over 200000000 vertices and indices");
 }
 
 TEST_F(BadInputTest, EveryBoundOfAnAccessorIsChecked) {
     const auto accessor = [](const std::string& fields) { return triangle("{" + fields + "}", good_view); };
     const auto view = [](const std::string& fields) { return triangle(good_accessor, "{" + fields + "}"); };
-    EXPECT_EQ(faultOfGltf(triangle(good_accessor, good_view)), "");
-    expectGltfFault(accessor(R"("bufferView":3,"componentType":5126,"type":"VEC3","count":3)"),
-                    "accessors[0].bufferView: is 3; the file has 1");
-    expectGltfFault(accessor(R"("bufferView":0,"byteOffset":1,"componentType":5126,"type":"VEC3","count":3)"),
-                    "run over");
-    expectGltfFault(
+    EXPECT_EQ(diagnosticOfGltf(triangle(good_accessor, good_view)), "");
+    expectGltfDiagnostic(accessor(R"("bufferView":3,"componentType":5126,"type":"VEC3","count":3)"),
+                         "accessors[0].bufferView: is 3; the file has 1");
+    expectGltfDiagnostic(accessor(R"("bufferView":0,"byteOffset":1,"componentType":5126,"type":"VEC3","count":3)"),
+                         "run over");
+    expectGltfDiagnostic(
         accessor(R"("bufferView":0,"byteOffset":18446744073709551615,"componentType":5126,"type":"VEC3","count":3)"),
         "run over");
-    expectGltfFault(accessor(R"("bufferView":0,"componentType":5124,"type":"VEC3","count":3)"),
-                    "componentType: is 5124");
-    expectGltfFault(accessor(R"("bufferView":0,"componentType":5126,"type":"VEC2","count":3)"), "must be VEC3");
-    expectGltfFault(view(R"("buffer":0,"byteLength":37)"),
-                    "bufferViews[0]: byteOffset 0 + byteLength 37 run over the buffer's 36 bytes");
-    expectGltfFault(view(R"("buffer":0,"byteOffset":18446744073709551615,"byteLength":36)"), "run over the buffer's");
-    expectGltfFault(view(R"("buffer":1,"byteLength":36)"), "bufferViews[0].buffer: is 1; the file has 1");
-    expectGltfFault(view(R"("buffer":-1,"byteLength":36)"), "bufferViews[0].buffer: is -1");
-    expectGltfFault(view(R"("buffer":0,"byteLength":36,"byteStride":8)"),
-                    "byteStride is 8; its elements have 12 bytes");
-    expectGltfFault(view(R"("buffer":0,"byteLength":36,"byteStride":16)"), "run over");
-    expectGltfFault(R"("nodes":[{"mesh":0}],"meshes":[{"primitives":[{"attributes":{"POSITION":9}}]}])",
-                    "accessors[9]: does not exist");
-    expectGltfFault(R"("nodes":[{"mesh":0}],"meshes":[{"primitives":[{"attributes":{"POSITION":-2}}]}])",
-                    "accessors[-2]: does not exist");
+    expectGltfDiagnostic(accessor(R"("bufferView":0,"componentType":5124,"type":"VEC3","count":3)"),
+                         "componentType: is 5124");
+    expectGltfDiagnostic(accessor(R"("bufferView":0,"componentType":5126,"type":"VEC2","count":3)"), "must be VEC3");
+    expectGltfDiagnostic(view(R"("buffer":0,"byteLength":37)"),
+                         "bufferViews[0]: byteOffset 0 + byteLength 37 run over the buffer's 36 bytes");
+    expectGltfDiagnostic(view(R"("buffer":0,"byteOffset":18446744073709551615,"byteLength":36)"),
+                         "run over the buffer's");
+    expectGltfDiagnostic(view(R"("buffer":1,"byteLength":36)"), "bufferViews[0].buffer: is 1; the file has 1");
+    expectGltfDiagnostic(view(R"("buffer":-1,"byteLength":36)"), "bufferViews[0].buffer: is -1");
+    expectGltfDiagnostic(view(R"("buffer":0,"byteLength":36,"byteStride":8)"),
+                         "byteStride is 8; its elements have 12 bytes");
+    expectGltfDiagnostic(view(R"("buffer":0,"byteLength":36,"byteStride":16)"), "run over");
+    expectGltfDiagnostic(R"("nodes":[{"mesh":0}],"meshes":[{"primitives":[{"attributes":{"POSITION":9}}]}])",
+                         "accessors[9]: does not exist");
+    expectGltfDiagnostic(R"("nodes":[{"mesh":0}],"meshes":[{"primitives":[{"attributes":{"POSITION":-2}}]}])",
+                         "accessors[-2]: does not exist");
 }
 
 TEST_F(BadInputTest, SparseIndicesAreChecked) {
     const auto sparse = [](const std::string& fields) {
         return triangle(R"({"componentType":5126,"type":"VEC3","count":2,"sparse":{)" + fields + "}}", good_view);
     };
-    expectGltfFault(
+    expectGltfDiagnostic(
         sparse(
             R"("count":1,"indices":{"bufferView":0,"componentType":5125,"byteOffset":12},"values":{"bufferView":0})"),
         "sparse.indices: hold 1065353216; the accessor has 2 elements");
-    expectGltfFault(sparse(R"("count":-1,"indices":{"bufferView":0,"componentType":5121},"values":{"bufferView":0})"),
-                    "negative");
-    expectGltfFault(sparse(R"("count":99,"indices":{"bufferView":0,"componentType":5121},"values":{"bufferView":0})"),
-                    "run over");
-    expectGltfFault(sparse(R"("count":1,"indices":{"bufferView":0,"componentType":5126},"values":{"bufferView":0})"),
-                    "may be 5121");
-    expectGltfFault(sparse(R"("count":1,"indices":{"bufferView":7,"componentType":5121},"values":{"bufferView":0})"),
-                    "bufferView: is 7");
+    expectGltfDiagnostic(
+        sparse(R"("count":-1,"indices":{"bufferView":0,"componentType":5121},"values":{"bufferView":0})"), "negative");
+    expectGltfDiagnostic(
+        sparse(R"("count":99,"indices":{"bufferView":0,"componentType":5121},"values":{"bufferView":0})"), "run over");
+    expectGltfDiagnostic(
+        sparse(R"("count":1,"indices":{"bufferView":0,"componentType":5126},"values":{"bufferView":0})"),
+        "may be 5121");
+    expectGltfDiagnostic(
+        sparse(R"("count":1,"indices":{"bufferView":7,"componentType":5121},"values":{"bufferView":0})"),
+        "bufferView: is 7");
 }
 
 TEST_F(BadInputTest, IndicesOfTrianglesAndAttributesOfOtherLengthsAreRefused) {
@@ -139,16 +144,17 @@ TEST_F(BadInputTest, IndicesOfTrianglesAndAttributesOfOtherLengthsAreRefused) {
             "bufferViews":[{"buffer":0,"byteLength":36},{"buffer":0,"byteOffset":36,"byteLength":3}],)" +
                buffers(bytesOf<float>({0, 0, 0, 1, 0, 0, 0, 1, 0}) + bytesOf<uint8_t>({0, 1, 3}));
     };
-    expectGltfFault(indexed(R"("indices":1)"), "meshes[0].primitives[0].indices: hold 3; the primitive has 3 vertices");
-    expectGltfFault(indexed(R"("indices":0)"), "accessors[0]: holds indices but");
-    expectGltfFault(indexed(R"("mode":9)"), "mode: is 9; may be 0 to 6");
-    expectGltfFault(indexed(R"("material":4)"), "material: is 4; the file has 0");
+    expectGltfDiagnostic(indexed(R"("indices":1)"),
+                         "meshes[0].primitives[0].indices: hold 3; the primitive has 3 vertices");
+    expectGltfDiagnostic(indexed(R"("indices":0)"), "accessors[0]: holds indices but");
+    expectGltfDiagnostic(indexed(R"("mode":9)"), "mode: is 9; may be 0 to 6");
+    expectGltfDiagnostic(indexed(R"("material":4)"), "material: is 4; the file has 0");
 }
 
 TEST_F(BadInputTest, WhatCannotBeReadIsNamedWithWhatToDo) {
     const auto require = [this](const std::string& name, const std::string& part) {
-        expectGltfFault(R"("extensionsUsed":[")" + name + R"("],"extensionsRequired":[")" + name + "\"]",
-                        name + " cannot be read; " + part);
+        expectGltfDiagnostic(R"("extensionsUsed":[")" + name + R"("],"extensionsRequired":[")" + name + "\"]",
+                             name + " cannot be read; " + part);
     };
     require("KHR_draco_mesh_compression", "decompress it: `gltf-transform copy");
     require("EXT_meshopt_compression", "decompress it");

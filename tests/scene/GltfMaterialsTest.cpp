@@ -14,11 +14,11 @@ protected:
         return load(R"("materials":[{"name":"m","doubleSided":true,"extras":{"acoustics":)" + json + "}}]")
             ->materials.at(0);
     }
-    std::string faultOfAcoustics(const std::string& json) const {
-        return faultOfGltf(R"("materials":[{},{"extras":{"acoustics":)" + json + "}}]");
+    std::string diagnosticOfAcoustics(const std::string& json) const {
+        return diagnosticOfGltf(R"("materials":[{},{"extras":{"acoustics":)" + json + "}}]");
     }
     /** A unit square whose uvs are its x and -y (v down), with a normal map from `image`; `info` is inside
-     * normalTexture, `attributes` beside POSITION and TEXCOORD_0 (accessor 1). */
+     *  normalTexture, `attributes` beside POSITION and TEXCOORD_0 (accessor 1). */
     types::GeometryPtr mapped(const std::string& image, const std::string& info = "",
                               const std::string& attributes = "") const {
         return load(
@@ -82,7 +82,8 @@ TEST_F(GltfMaterialsTest, ATableIsReadFromBesideTheFile) {
 TEST_F(GltfMaterialsTest, AWrongTableIsToldWithItsPlace) {
     write("floor.csv", "grazing_deg,strength_db\n10,-40\n100,-10\n");
     const auto expect = [this](const char* json, const char* part) {
-        EXPECT_NE(faultOfAcoustics(json).find(part), std::string::npos) << json << ": " << faultOfAcoustics(json);
+        EXPECT_NE(diagnosticOfAcoustics(json).find(part), std::string::npos)
+            << json << ": " << diagnosticOfAcoustics(json);
     };
     expect(R"({"table":"none.csv"})", "materials[1].extras.acoustics.table: ");
     expect(R"({"table":"none.csv"})", "none.csv");
@@ -93,7 +94,8 @@ TEST_F(GltfMaterialsTest, AWrongTableIsToldWithItsPlace) {
 
 TEST_F(GltfMaterialsTest, WrongAcousticsSayWhatTheyMayBe) {
     const auto expect = [this](const char* json, const char* part) {
-        EXPECT_NE(faultOfAcoustics(json).find(part), std::string::npos) << json << ": " << faultOfAcoustics(json);
+        EXPECT_NE(diagnosticOfAcoustics(json).find(part), std::string::npos)
+            << json << ": " << diagnosticOfAcoustics(json);
     };
     expect(R"({"sediment":"sandd"})", "materials[1].extras.acoustics.sediment: is \"sandd\"; may be rough_rock, rock");
     expect(R"({"material":7})", "material: is 7; may be steel");
@@ -166,9 +168,9 @@ TEST_F(GltfMaterialsTest, OtherImagesAreNeverDecoded) {
 
 TEST_F(GltfMaterialsTest, IndicesOfTexturesImagesSamplersAndMaterialsAreChecked) {
     const std::string material = R"("materials":[{"normalTexture":{"index":0}}])";
-    EXPECT_NE(faultOfGltf(material).find("textures[0]: does not exist"), std::string::npos);
-    EXPECT_NE(faultOfGltf(material + R"(,"textures":[{"source":4}])").find("images[4]"), std::string::npos);
-    EXPECT_NE(faultOfGltf(material + R"(,"textures":[{"source":0,"sampler":2}],"images":[{"uri":")" + png + "\"}]")
+    EXPECT_NE(diagnosticOfGltf(material).find("textures[0]: does not exist"), std::string::npos);
+    EXPECT_NE(diagnosticOfGltf(material + R"(,"textures":[{"source":4}])").find("images[4]"), std::string::npos);
+    EXPECT_NE(diagnosticOfGltf(material + R"(,"textures":[{"source":0,"sampler":2}],"images":[{"uri":")" + png + "\"}]")
                   .find("samplers[2]"),
               std::string::npos);
 }

@@ -15,8 +15,8 @@ const std::string triangle = R"("meshes":[{"name":"tri","primitives":[{"attribut
 class GltfNodesTest : public SceneFiles {
 protected:
     types::GeometryPtr nodes(const std::string& json) const { return load(R"("nodes":)" + json + "," + triangle); }
-    std::string faultOfNodes(const std::string& json) const {
-        return faultOfGltf(R"("nodes":)" + json + "," + triangle);
+    std::string diagnosticOfNodes(const std::string& json) const {
+        return diagnosticOfGltf(R"("nodes":)" + json + "," + triangle);
     }
 };
 
@@ -98,21 +98,22 @@ TEST_F(GltfNodesTest, AChainOfManyNodesDoesNotOverflowTheStack) {
 }
 
 TEST_F(GltfNodesTest, CyclesSecondParentsAndWrongIndicesAreRefused) {
-    EXPECT_NE(faultOfGltf(R"("scenes":[{"nodes":[0]}],"nodes":[{"children":[0]}])").find("reached twice"),
+    EXPECT_NE(diagnosticOfGltf(R"("scenes":[{"nodes":[0]}],"nodes":[{"children":[0]}])").find("reached twice"),
               std::string::npos);
-    EXPECT_NE(faultOfNodes(R"([{"children":[2]},{"children":[2]},{"mesh":0}])").find("nodes[2]"), std::string::npos);
-    EXPECT_NE(faultOfNodes(R"([{"children":[7]}])").find("nodes[7]: does not exist"), std::string::npos);
-    EXPECT_NE(faultOfNodes(R"([{"mesh":5}])").find("nodes[0].mesh: is 5"), std::string::npos);
-    EXPECT_NE(faultOfGltf(R"("scene":3,"scenes":[{"nodes":[]}])").find("scene: is 3"), std::string::npos);
+    EXPECT_NE(diagnosticOfNodes(R"([{"children":[2]},{"children":[2]},{"mesh":0}])").find("nodes[2]"),
+              std::string::npos);
+    EXPECT_NE(diagnosticOfNodes(R"([{"children":[7]}])").find("nodes[7]: does not exist"), std::string::npos);
+    EXPECT_NE(diagnosticOfNodes(R"([{"mesh":5}])").find("nodes[0].mesh: is 5"), std::string::npos);
+    EXPECT_NE(diagnosticOfGltf(R"("scene":3,"scenes":[{"nodes":[]}])").find("scene: is 3"), std::string::npos);
 }
 
 TEST_F(GltfNodesTest, TransformsThatAreNoneAreRefused) {
-    EXPECT_NE(faultOfNodes(R"([{"mesh":0,"translation":[1,2]}])").find("has 2 numbers; must have 3"),
+    EXPECT_NE(diagnosticOfNodes(R"([{"mesh":0,"translation":[1,2]}])").find("has 2 numbers; must have 3"),
               std::string::npos);
-    EXPECT_NE(faultOfNodes(R"([{"mesh":0,"rotation":[0,0,0,0]}])").find("has no length"), std::string::npos);
-    EXPECT_NE(
-        faultOfNodes(R"([{"children":[1],"scale":[1e300,1,1]},{"mesh":0,"scale":[1e300,1,1]}])").find("not finite"),
-        std::string::npos);
+    EXPECT_NE(diagnosticOfNodes(R"([{"mesh":0,"rotation":[0,0,0,0]}])").find("has no length"), std::string::npos);
+    EXPECT_NE(diagnosticOfNodes(R"([{"children":[1],"scale":[1e300,1,1]},{"mesh":0,"scale":[1e300,1,1]}])")
+                  .find("not finite"),
+              std::string::npos);
 }
 
 TEST_F(GltfNodesTest, AnObjectOfScaleZeroIsLeftOutWithANotice) {

@@ -20,7 +20,7 @@ namespace {
 class MeshProcessTest : public SdfFiles {
 protected:
     /** What is wrong with a mesh file; empty where it was read, and then it must be sound. */
-    std::string faultOfMesh(const std::filesystem::path& file) const {
+    std::string diagnosticOfMesh(const std::filesystem::path& file) const {
         try {
             const types::GeometryPtr geometry = readMeshFile(file);
             for (const types::Mesh& mesh : geometry->meshes) expectSoundMesh(mesh, geometry->materials.size());
@@ -30,14 +30,14 @@ protected:
             return error.what();
         }
     }
-    std::string faultOf(const Dae& dae) const { return faultOfMesh(write("part.dae", dae.text())); }
+    std::string diagnosticOf(const Dae& dae) const { return diagnosticOfMesh(write("part.dae", dae.text())); }
 
     /** Lets a shell script stand for the program that reads. */
-    std::string faultWithReader(const std::string& script) const {
+    std::string diagnosticWithReader(const std::string& script) const {
         const auto reader = write("reader", "#!/bin/sh\nulimit -c 0\n" + script + "\n");
         std::filesystem::permissions(reader, std::filesystem::perms::owner_all);
         const Variable named("INSONIFY_MESH_READER", reader);
-        return faultOf(Dae());
+        return diagnosticOf(Dae());
     }
     void expectPart(const std::string& text, const std::string& part) const {
         EXPECT_NE(text.find(part), std::string::npos) << text;
@@ -69,9 +69,9 @@ void expectSame(const FileMeshes& apart, const FileMeshes& here) {
 TEST_F(MeshProcessTest, ANodeThatInstancesItselfIsRefused) {
     Dae dae;
     dae.nodes = R"(<node id="n" name="n"><instance_geometry url="#g"/><instance_node url="#n"/></node>)";
-    const std::string fault = faultOf(dae);
-    expectPart(fault, "part.dae");
-    expectPart(fault, "best as .glb");
+    const std::string diagnostic = diagnosticOf(dae);
+    expectPart(diagnostic, "part.dae");
+    expectPart(diagnostic, "best as .glb");
 }
 
 TEST_F(MeshProcessTest, CornersThatAreNoneOrNoNumbersEndInAnErrorOrASoundMesh) {
@@ -80,7 +80,7 @@ TEST_F(MeshProcessTest, CornersThatAreNoneOrNoNumbersEndInAnErrorOrASoundMesh) {
             Dae dae;
             dae.triangles = Dae::polygonsOf(count, corners);
             SCOPED_TRACE(dae.triangles);
-            faultOf(dae);
+            diagnosticOf(dae);
         }
 }
 
@@ -89,16 +89,16 @@ TEST_F(MeshProcessTest, AStrideBeyondTheArrayEndsInAnErrorOrASoundMesh) {
         Dae dae;
         dae.accessor = std::string(R"(count="4" stride=")") + stride + "\"";
         SCOPED_TRACE(dae.accessor);
-        faultOf(dae);
+        diagnosticOf(dae);
     }
 }
 
 TEST_F(MeshProcessTest, ACommaBetweenIndicesIsRefusedWithinItsMemory) {
     Dae dae;
     dae.triangles = Dae::trianglesOf("0,1 2 0 2 3");
-    const std::string fault = faultOf(dae);
-    expectPart(fault, "part.dae");
-    expectPart(fault, "best as .glb");
+    const std::string diagnostic = diagnosticOf(dae);
+    expectPart(diagnostic, "part.dae");
+    expectPart(diagnostic, "best as .glb");
 }
 
 TEST_F(MeshProcessTest, CountsOfThreeGigabytesAreRefused) {
@@ -106,9 +106,9 @@ TEST_F(MeshProcessTest, CountsOfThreeGigabytesAreRefused) {
     floats.float_count = "800000000";
     corners.triangles = Dae::polygonsOf("800000000", "3 3");
     for (const Dae& dae : {floats, corners}) {
-        const std::string fault = faultOf(dae);
-        expectPart(fault, "cannot be read: ");
-        EXPECT_EQ(fault.find("std::"), std::string::npos) << fault;
+        const std::string diagnostic = diagnosticOf(dae);
+        expectPart(diagnostic, "cannot be read: ");
+        EXPECT_EQ(diagnostic.find("std::"), std::string::npos) << diagnostic;
     }
 }
 
@@ -141,22 +141,25 @@ TEST_F(MeshProcessTest, AFileThatTakesTooLongIsRefused) {
 }
 
 TEST_F(MeshProcessTest, HoweverTheReaderEndsItIsTold) {
-    expectPart(faultWithReader("kill -SEGV $$"), "part.dae: crashes the library that reads it (assimp, SIGSEGV); ");
-    expectPart(faultWithReader("kill -ABRT $$"), "part.dae: crashes the library that reads it (assimp, SIGABRT); ");
-    expectPart(faultWithReader("kill -KILL $$"), "part.dae: was too much to read: its reader was killed");
-    expectPart(faultWithReader("kill -XCPU $$"), "part.dae: takes more than 10 s to compute; ");
-    expectPart(faultWithReader("kill -ALRM $$"), "part.dae: was not read within 120 s; ");
-    expectPart(faultWithReader("kill -XFSZ $$"), "part.dae: holds more than 1024 MB; ");
-    expectPart(faultWithReader("exit 7"), "part.dae: cannot be read: its reader ended with 7; ");
-    expectPart(faultWithReader("exit 0"), "damaged: the mark is missing");
-    expectPart(faultWithReader("echo noise >&3"), "damaged: the mark is missing");
-    expectPart(faultWithReader("echo 'insonify meshes 1' >&3"), "damaged: the end is missing");
-    expectPart(faultWithReader("echo 'insonify meshes 1' >&3; head -c 7000 /dev/zero | tr '\\0' '\\1' >&3"), "damaged");
+    expectPart(diagnosticWithReader("kill -SEGV $$"),
+               "part.dae: crashes the library that reads it (assimp, SIGSEGV); ");
+    expectPart(diagnosticWithReader("kill -ABRT $$"),
+               "part.dae: crashes the library that reads it (assimp, SIGABRT); ");
+    expectPart(diagnosticWithReader("kill -KILL $$"), "part.dae: was too much to read: its reader was killed");
+    expectPart(diagnosticWithReader("kill -XCPU $$"), "part.dae: takes more than 10 s to compute; ");
+    expectPart(diagnosticWithReader("kill -ALRM $$"), "part.dae: was not read within 120 s; ");
+    expectPart(diagnosticWithReader("kill -XFSZ $$"), "part.dae: holds more than 1024 MB; ");
+    expectPart(diagnosticWithReader("exit 7"), "part.dae: cannot be read: its reader ended with 7; ");
+    expectPart(diagnosticWithReader("exit 0"), "damaged: the mark is missing");
+    expectPart(diagnosticWithReader("echo noise >&3"), "damaged: the mark is missing");
+    expectPart(diagnosticWithReader("echo 'insonify meshes 1' >&3"), "damaged: the end is missing");
+    expectPart(diagnosticWithReader("echo 'insonify meshes 1' >&3; head -c 7000 /dev/zero | tr '\\0' '\\1' >&3"),
+               "damaged");
 }
 
 TEST_F(MeshProcessTest, AReaderThatIsNotThereIsTold) {
     const Variable named("INSONIFY_MESH_READER", folder_ / "nowhere");
-    expectPart(faultOf(Dae()), "part.dae: cannot be read: " + (folder_ / "nowhere").string() + ": No such file");
+    expectPart(diagnosticOf(Dae()), "part.dae: cannot be read: " + (folder_ / "nowhere").string() + ": No such file");
 }
 
 TEST_F(MeshProcessTest, ManyReadAtOnceAndAProgramMayIgnoreItsChildren) {
@@ -230,7 +233,7 @@ TEST_F(MeshProcessTest, EveryDamageIsAMeshOrAnError) {
             for (unsigned flips = 1 + random() % 3; flips > 0; --flips)
                 damaged[random() % damaged.size()] = static_cast<char>(random() % 2 ? random() : '0' + random() % 10);
             SCOPED_TRACE(damaged);
-            faultOfMesh(write(name, damaged));
+            diagnosticOfMesh(write(name, damaged));
         }
 }
 

@@ -24,34 +24,35 @@ protected:
         const types::Mesh& mesh = geometry.meshes.at(static_cast<size_t>(geometry.objects.at(object).mesh));
         return geometry.materials.at(static_cast<size_t>(mesh.clusters.at(0).material)).lambert_db;
     }
-    types::Diagnostics problems_;
+    types::Diagnostics diagnostics_;
 };
 
 TEST_F(OverridesTest, WithoutAnyTheGeometryIsTheSame) {
     const Scene scene = walls();
-    EXPECT_EQ(overrideMaterials(scene, {}, problems_), scene.geometry);
+    EXPECT_EQ(overrideMaterials(scene, {}, diagnostics_), scene.geometry);
 }
 
 TEST_F(OverridesTest, AMaterialChangesWhereverItIs) {
-    const auto geometry = overrideMaterials(walls(), {{"stone", lambert(-9)}}, problems_);
-    EXPECT_TRUE(problems_.empty());
+    const auto geometry = overrideMaterials(walls(), {{"stone", lambert(-9)}}, diagnostics_);
+    EXPECT_TRUE(diagnostics_.empty());
     EXPECT_FLOAT_EQ(lambertOf(*geometry, 0), -9);
     EXPECT_FLOAT_EQ(lambertOf(*geometry, 1), -9);
 }
 
 TEST_F(OverridesTest, AModelChangesAloneWithAllBelowItAndGoesBeforeItsMaterial) {
-    const auto geometry = overrideMaterials(walls(), {{"group", lambert(-3)}, {"stone", lambert(-9)}}, problems_);
-    EXPECT_TRUE(problems_.empty());
+    const auto geometry = overrideMaterials(walls(), {{"group", lambert(-3)}, {"stone", lambert(-9)}}, diagnostics_);
+    EXPECT_TRUE(diagnostics_.empty());
     expectSound(*geometry);
     EXPECT_FLOAT_EQ(lambertOf(*geometry, 0), -9);
     EXPECT_FLOAT_EQ(lambertOf(*geometry, 1), -3);
 }
 
-TEST_F(OverridesTest, AnUnknownNameIsAProblemThatListsTheKnown) {
-    overrideMaterials(walls(), {{"stoone", lambert(-9)}}, problems_);
-    ASSERT_EQ(problems_.size(), 1u);
-    EXPECT_EQ(problems_[0].path, "materials.stoone");
-    EXPECT_NE(problems_[0].message.find("may be far, group, near, stone"), std::string::npos) << problems_[0].message;
+TEST_F(OverridesTest, AnUnknownNameIsADiagnosticThatListsTheKnown) {
+    overrideMaterials(walls(), {{"stoone", lambert(-9)}}, diagnostics_);
+    ASSERT_EQ(diagnostics_.size(), 1u);
+    EXPECT_EQ(diagnostics_[0].path, "materials.stoone");
+    EXPECT_NE(diagnostics_[0].message.find("may be far, group, near, stone"), std::string::npos)
+        << diagnostics_[0].message;
 }
 
 }  // namespace

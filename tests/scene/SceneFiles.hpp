@@ -54,7 +54,7 @@ protected:
     types::GeometryPtr load(const std::string& rest) const { return loadScene(write("case.gltf", gltf(rest))); }
     static std::string gltf(const std::string& rest) { return R"({"asset":{"version":"2.0"},)" + rest + "}"; }
     /** What is wrong with it; empty when nothing is. */
-    std::string faultOf(const std::filesystem::path& file) const {
+    std::string diagnosticOf(const std::filesystem::path& file) const {
         try {
             loadScene(file);
             return "";
@@ -62,7 +62,7 @@ protected:
             return error.what();
         }
     }
-    std::string faultOfGltf(const std::string& rest) const { return faultOf(write("case.gltf", gltf(rest))); }
+    std::string diagnosticOfGltf(const std::string& rest) const { return diagnosticOf(write("case.gltf", gltf(rest))); }
 
     const Folder owned_;
     const std::filesystem::path folder_ = owned_.path();

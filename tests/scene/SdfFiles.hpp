@@ -33,7 +33,7 @@ protected:
     Scene world(const std::string& body, const std::string& version = "1.9") const {
         return readScene(writeWorld(body, version));
     }
-    std::string faultOfWorld(const std::string& body) const { return faultOf(writeWorld(body)); }
+    std::string diagnosticOfWorld(const std::string& body) const { return diagnosticOf(writeWorld(body)); }
 
     /** A model of one link with one visual, each named, at its model's origin. */
     static std::string model(const std::string& name, const std::string& geometry, const std::string& more = "") {

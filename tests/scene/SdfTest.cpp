@@ -191,8 +191,8 @@ TEST_F(SdfTest, LibsdformatKeepsQuiet) {
     testing::internal::CaptureStderr();
     testing::internal::CaptureStdout();
     world("<include><uri>model://sun</uri></include>");
-    faultOfWorld("<model name='m'>" + pose("1 2 x") + "</model>");
-    faultOf(write("urdf.sdf", "<html/>"));
+    diagnosticOfWorld("<model name='m'>" + pose("1 2 x") + "</model>");
+    diagnosticOf(write("urdf.sdf", "<html/>"));
     EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
     EXPECT_EQ(testing::internal::GetCapturedStdout(), "");
 }

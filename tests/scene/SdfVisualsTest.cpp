@@ -94,15 +94,15 @@ TEST_F(SdfVisualsTest, TheAcousticTagHasTheKeysOfGltf) {
 }
 
 TEST_F(SdfVisualsTest, AWrongAcousticTagIsToldWithItsLine) {
-    const std::string fault = faultOfWorld(
+    const std::string diagnostic = diagnosticOfWorld(
         "<model name='a'>\n<link name='l'>\n" +
         visual("v", box_, "\n" + acoustics("<sediment>sandd</sediment><lamber_db>1</lamber_db>")) + "</link></model>");
-    EXPECT_NE(fault.find("case.world:4: a::l::v.insonify:acoustics.sediment: is \"sandd\"; may be rough_rock, "),
+    EXPECT_NE(diagnostic.find("case.world:4: a::l::v.insonify:acoustics.sediment: is \"sandd\"; may be rough_rock, "),
               std::string::npos)
-        << fault;
-    EXPECT_NE(fault.find("insonify:acoustics.lamber_db: is not known; did you mean lambert_db? may be sediment, "),
+        << diagnostic;
+    EXPECT_NE(diagnostic.find("insonify:acoustics.lamber_db: is not known; did you mean lambert_db? may be sediment, "),
               std::string::npos)
-        << fault;
+        << diagnostic;
 }
 
 TEST_F(SdfVisualsTest, MaterialsAreOverriddenByScriptNameAndByModel) {

@@ -51,7 +51,7 @@ protected:
         out_.port.readNew(snapshot);
         return snapshot;
     }
-    std::string fault() const {
+    std::string diagnostic() const {
         SceneTask task("scene");
         task.config.set(config_);
         return task.configure() ? "" : task.lastError();
@@ -108,10 +108,10 @@ TEST_F(TargetsTest, OneMovesWithItsNodeAndWithTheInnermostThatMoves) {
 
 TEST_F(TargetsTest, WhatIsWrongIsToldWithItsPlace) {
     config_.targets = {{"buoy", glm::dvec3(0), "", 0}, {"bow", {}, "baot", 0}};
-    EXPECT_THAT(fault(), AllOf(HasSubstr("scene.targets[1].attached_to: is baot, which is no node of the scene"),
-                               HasSubstr("boat")));
+    EXPECT_THAT(diagnostic(), AllOf(HasSubstr("scene.targets[1].attached_to: is baot, which is no node of the scene"),
+                                    HasSubstr("boat")));
     config_.targets = {{"on dot", glm::dvec3(1, 0, 0), "dot", 0}};
-    EXPECT_THAT(fault(), HasSubstr("scene.targets[0].attached_to: is dot, which is scaled to nothing"));
+    EXPECT_THAT(diagnostic(), HasSubstr("scene.targets[0].attached_to: is dot, which is scaled to nothing"));
 }
 
 }  // namespace

@@ -6,8 +6,8 @@
 #include <cmath>
 
 #include "components/sonar/Culler.hpp"
+#include "components/study/FractalFloor.hpp"
 #include "tests/sonar/ClusteredHarbour.hpp"
-#include "tests/support/FractalFloor.hpp"
 #include "types/Angle.hpp"
 
 namespace insonify::sonar {
@@ -38,22 +38,20 @@ double relativeError(const types::Sonar& got, const types::Sonar& reference) {
     return std::sqrt(error / norm);
 }
 
-/** The same floor of 524,288 triangles as one large mesh, as 64 that are not split, and as its outline. */
+/** The same floor of 522,242 triangles as one large mesh, as 64 that are not split, and as its outline. */
 struct Floors {
-    static constexpr uint32_t cells = 512, tile = 64;
     types::GeometryPtr one, tiles, outline;
 
     Floors() {
-        const test::FractalFloor floor(7, cells, 60, 20);
-        types::Mesh whole = floor.part(0, 0, cells);
+        study::FractalFloor floor;
+        floor.centre_x = 20;
+        floor.depth = 0;
+        floor.seed = 2;
+        types::Mesh whole = study::meshOf(floor);
         scene::buildClusters(whole);
         one = test::sceneOf({whole}, -16.7f);
-        std::vector<types::Mesh> parts;
-        for (uint32_t i = 0; i < cells; i += tile)
-            for (uint32_t j = 0; j < cells; j += tile) {
-                parts.push_back(floor.part(i, j, tile));
-                scene::buildClusters(parts.back());
-            }
+        std::vector<types::Mesh> parts = study::tilesOf(floor, 8);
+        for (types::Mesh& part : parts) scene::buildClusters(part);
         tiles = test::sceneOf(std::move(parts), -16.7f);
         outline = test::sceneOf({test::meshOf(whole.positions, whole.coarse_indices)}, -16.7f);
     }

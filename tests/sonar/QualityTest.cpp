@@ -6,8 +6,8 @@
 #include "components/sonar/QualityKeeper.hpp"
 #include "components/sonar/ScanningSonarTask.hpp"
 #include "components/sonar/SonarTask.hpp"
+#include "components/study/FractalFloor.hpp"
 #include "tests/support/Ports.hpp"
-#include "tests/support/RoughFloor.hpp"
 #include "tests/support/Scenes.hpp"
 
 namespace insonify::sonar {
@@ -30,7 +30,9 @@ SonarConfig small() {
 }
 
 types::GeometryPtr floorAndWall() {
-    return test::sceneOf({test::roughFloor(-3, 80, 128, 0.3, 4), test::wall(-4)}, -10);
+    const study::FractalFloor floor = {
+        .points = 128, .side = 80, .slope = -1.7, .rms = 0.3, .centre_x = 0, .depth = 3, .seed = 1};
+    return test::sceneOf({study::meshOf(floor), test::wall(-4)}, -10);
 }
 
 /** Towards the open floor, or the wall behind. */

@@ -17,17 +17,17 @@ using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 
 template <class Config>
-std::vector<std::string> faultsOf(const char* yaml) {
+std::vector<std::string> diagnosticsOf(const char* yaml) {
     framework::ConfigReader reader("sonar.yml");
     Config config;
     reader.read(YAML::Load(yaml), "", config);
     std::vector<std::string> texts;
-    for (const auto& fault : reader.diagnostics()) texts.push_back(fault.path + ": " + fault.message);
+    for (const auto& diagnostic : reader.diagnostics()) texts.push_back(diagnostic.path + ": " + diagnostic.message);
     return texts;
 }
 
 TEST(SonarConfigTest, EveryKeyOfTheContractIsAccepted) {
-    EXPECT_THAT(faultsOf<SonarConfig>(R"(
+    EXPECT_THAT(diagnosticsOf<SonarConfig>(R"(
         model: physical
         range: 75
         range_min: 0.5
@@ -46,63 +46,67 @@ TEST(SonarConfigTest, EveryKeyOfTheContractIsAccepted) {
         detail: {error: 0}
         draw_all: true)"),
                 IsEmpty());
-    EXPECT_THAT(faultsOf<SonarConfig>("{model: cerqueira2017, published: true, absorption: {db_per_m: 0.2}}"),
+    EXPECT_THAT(diagnosticsOf<SonarConfig>("{model: cerqueira2017, published: true, absorption: {db_per_m: 0.2}}"),
                 IsEmpty());
     EXPECT_THAT(
-        faultsOf<ScanningSonarConfig>("head: {left_deg: 60, right_deg: -60, step_deg: 0.9, speed_deg_per_s: 90}"),
+        diagnosticsOf<ScanningSonarConfig>("head: {left_deg: 60, right_deg: -60, step_deg: 0.9, speed_deg_per_s: 90}"),
         IsEmpty());
-    EXPECT_THAT(faultsOf<ScanningSonarConfig>("{}"), IsEmpty());
+    EXPECT_THAT(diagnosticsOf<ScanningSonarConfig>("{}"), IsEmpty());
 }
 
 TEST(SonarConfigTest, AProfilerAndAnAltimeterRefuseWhatIsNoThresholdOrNoBeam) {
     EXPECT_THAT(
-        faultsOf<ProfilerConfig>("{beam_count: 64, detection: {threshold_db: -40, gate_db: 6, floor_db: -140}}"),
+        diagnosticsOf<ProfilerConfig>("{beam_count: 64, detection: {threshold_db: -40, gate_db: 6, floor_db: -140}}"),
         IsEmpty());
-    EXPECT_THAT(faultsOf<ProfilerConfig>("detection: {threshold_db: 5}"),
+    EXPECT_THAT(diagnosticsOf<ProfilerConfig>("detection: {threshold_db: 5}"),
                 ElementsAre(AllOf(HasSubstr("detection.threshold_db"), HasSubstr("-300"), HasSubstr("0"))));
-    EXPECT_THAT(faultsOf<ProfilerConfig>("detection: {gate_db: 0}"), ElementsAre(HasSubstr("detection.gate_db")));
-    EXPECT_THAT(faultsOf<ProfilerConfig>("range_min: 60"), ElementsAre(HasSubstr("range_min: is 60 m")));
-    EXPECT_THAT(faultsOf<AltimeterConfig>("{beam_width_deg: 120, beam_height_deg: 120, threshold_db: -30}"), IsEmpty());
-    EXPECT_THAT(faultsOf<AltimeterConfig>("beam_width_deg: 121"), ElementsAre(HasSubstr("one beam may have 120")));
-    EXPECT_THAT(faultsOf<AltimeterConfig>("threshold_db: 1"), ElementsAre(HasSubstr("threshold_db")));
-    EXPECT_THAT(faultsOf<AltimeterConfig>("beam_count: 2"), ElementsAre(HasSubstr("beam_count")));
-    EXPECT_THAT(faultsOf<AltimeterConfig>("detection: {gate_db: 3}"), ElementsAre(HasSubstr("detection")));
+    EXPECT_THAT(diagnosticsOf<ProfilerConfig>("detection: {gate_db: 0}"), ElementsAre(HasSubstr("detection.gate_db")));
+    EXPECT_THAT(diagnosticsOf<ProfilerConfig>("range_min: 60"), ElementsAre(HasSubstr("range_min: is 60 m")));
+    EXPECT_THAT(diagnosticsOf<AltimeterConfig>("{beam_width_deg: 120, beam_height_deg: 120, threshold_db: -30}"),
+                IsEmpty());
+    EXPECT_THAT(diagnosticsOf<AltimeterConfig>("beam_width_deg: 121"), ElementsAre(HasSubstr("one beam may have 120")));
+    EXPECT_THAT(diagnosticsOf<AltimeterConfig>("threshold_db: 1"), ElementsAre(HasSubstr("threshold_db")));
+    EXPECT_THAT(diagnosticsOf<AltimeterConfig>("beam_count: 2"), ElementsAre(HasSubstr("beam_count")));
+    EXPECT_THAT(diagnosticsOf<AltimeterConfig>("detection: {gate_db: 3}"), ElementsAre(HasSubstr("detection")));
 }
 
 TEST(SonarConfigTest, ASideScanRefusesBeamsThatItCannotHaveByItsOwnNames) {
-    EXPECT_THAT(faultsOf<SideScanConfig>("{beam_width_deg: 1, beam_height_deg: 60, depression_deg: 20, "
-                                         "quality: {rows: 4, columns_per_beam: 1024}}"),
+    EXPECT_THAT(diagnosticsOf<SideScanConfig>("{beam_width_deg: 1, beam_height_deg: 60, depression_deg: 20, "
+                                              "quality: {rows: 4, columns_per_beam: 1024}}"),
                 IsEmpty());
-    EXPECT_THAT(faultsOf<SideScanConfig>("beam_height_deg: 130"),
+    EXPECT_THAT(diagnosticsOf<SideScanConfig>("beam_height_deg: 130"),
                 ElementsAre("beam_height_deg: is 130 deg; a side-scan's beam may have 120"));
-    EXPECT_THAT(faultsOf<SideScanConfig>("beam_width_deg: 200"), ElementsAre(HasSubstr("beam_width_deg: is 200 deg")));
-    EXPECT_THAT(faultsOf<SideScanConfig>("depression_deg: -5"), ElementsAre(HasSubstr("depression_deg")));
-    EXPECT_THAT(faultsOf<SideScanConfig>("beam_geometry: conical"), ElementsAre(HasSubstr("beam_geometry")));
-    EXPECT_THAT(faultsOf<SideScanConfig>("quality: {columns_per_beam: 5000}"),
+    EXPECT_THAT(diagnosticsOf<SideScanConfig>("beam_width_deg: 200"),
+                ElementsAre(HasSubstr("beam_width_deg: is 200 deg")));
+    EXPECT_THAT(diagnosticsOf<SideScanConfig>("depression_deg: -5"), ElementsAre(HasSubstr("depression_deg")));
+    EXPECT_THAT(diagnosticsOf<SideScanConfig>("beam_geometry: conical"), ElementsAre(HasSubstr("beam_geometry")));
+    EXPECT_THAT(diagnosticsOf<SideScanConfig>("quality: {columns_per_beam: 5000}"),
                 ElementsAre(HasSubstr("quality.columns_per_beam")));
-    EXPECT_THAT(faultsOf<SideScanConfig>("beam_pattern: {transmit: {elevation: {width_deg: 50}}}"),
+    EXPECT_THAT(diagnosticsOf<SideScanConfig>("beam_pattern: {transmit: {elevation: {width_deg: 50}}}"),
                 ElementsAre(HasSubstr("receive.elevation")));
-    EXPECT_THAT(faultsOf<SideScanConfig>("beam_count: 3"), ElementsAre(HasSubstr("beam_count")));
+    EXPECT_THAT(diagnosticsOf<SideScanConfig>("beam_count: 3"), ElementsAre(HasSubstr("beam_count")));
 }
 
 TEST(SonarConfigTest, A3dSonarRefusesGridsThatItCannotHaveByItsOwnNames) {
-    EXPECT_THAT(
-        faultsOf<Sonar3dConfig>("{horizontal: {beam_count: 128, field_of_view_deg: 60}, vertical: {beam_count: 32, "
-                                "field_of_view_deg: 20}, beam_height_deg: 0.6, quality: {rows: 2}}"),
-        IsEmpty());
-    EXPECT_THAT(faultsOf<Sonar3dConfig>("{}"), IsEmpty());
-    EXPECT_THAT(faultsOf<Sonar3dConfig>("{horizontal: {beam_count: 1024}, vertical: {beam_count: 1024}}"),
+    EXPECT_THAT(diagnosticsOf<Sonar3dConfig>(
+                    "{horizontal: {beam_count: 128, field_of_view_deg: 60}, vertical: {beam_count: 32, "
+                    "field_of_view_deg: 20}, beam_height_deg: 0.6, quality: {rows: 2}}"),
+                IsEmpty());
+    EXPECT_THAT(diagnosticsOf<Sonar3dConfig>("{}"), IsEmpty());
+    EXPECT_THAT(diagnosticsOf<Sonar3dConfig>("{horizontal: {beam_count: 1024}, vertical: {beam_count: 1024}}"),
                 ElementsAre(HasSubstr("horizontal.beam_count: is 1024, with 1024 in the vertical 1048576 beams")));
-    EXPECT_THAT(faultsOf<Sonar3dConfig>("vertical: {beam_count: 0}"), ElementsAre(HasSubstr("vertical.beam_count")));
-    EXPECT_THAT(faultsOf<Sonar3dConfig>("horizontal: {field_of_view_deg: 270}"),
+    EXPECT_THAT(diagnosticsOf<Sonar3dConfig>("vertical: {beam_count: 0}"),
+                ElementsAre(HasSubstr("vertical.beam_count")));
+    EXPECT_THAT(diagnosticsOf<Sonar3dConfig>("horizontal: {field_of_view_deg: 270}"),
                 ElementsAre(HasSubstr("horizontal.field_of_view_deg")));
-    EXPECT_THAT(faultsOf<Sonar3dConfig>("beam_height_deg: 130"), ElementsAre(HasSubstr("beam_height_deg: is 130 deg")));
-    EXPECT_THAT(faultsOf<Sonar3dConfig>("quality: {target_error: 0.01}"),
+    EXPECT_THAT(diagnosticsOf<Sonar3dConfig>("beam_height_deg: 130"),
+                ElementsAre(HasSubstr("beam_height_deg: is 130 deg")));
+    EXPECT_THAT(diagnosticsOf<Sonar3dConfig>("quality: {target_error: 0.01}"),
                 ElementsAre(HasSubstr("quality: has a target")));
-    EXPECT_THAT(faultsOf<Sonar3dConfig>("beam_geometry: conical"), ElementsAre(HasSubstr("beam_geometry")));
-    EXPECT_THAT(faultsOf<Sonar3dConfig>("beam_pattern: {transmit: {azimuth: {width_deg: 90}}}"),
+    EXPECT_THAT(diagnosticsOf<Sonar3dConfig>("beam_geometry: conical"), ElementsAre(HasSubstr("beam_geometry")));
+    EXPECT_THAT(diagnosticsOf<Sonar3dConfig>("beam_pattern: {transmit: {azimuth: {width_deg: 90}}}"),
                 ElementsAre(HasSubstr("beam_pattern.transmit.azimuth")));
-    EXPECT_THAT(faultsOf<Sonar3dConfig>("detection: {threshold_db: 3}"),
+    EXPECT_THAT(diagnosticsOf<Sonar3dConfig>("detection: {threshold_db: 3}"),
                 ElementsAre(HasSubstr("detection.threshold_db")));
 }
 
@@ -148,56 +152,57 @@ TEST(SonarConfigTest, ValuesOutOfBoundsAreRefused) {
                              "{bearings_deg: [0, 200], beam_width_deg: 1}",
                              "beam_count: 2.5",
                              "model: magic"})
-        EXPECT_EQ(faultsOf<SonarConfig>(yaml).size(), 1u) << yaml;
+        EXPECT_EQ(diagnosticsOf<SonarConfig>(yaml).size(), 1u) << yaml;
 }
 
 TEST(SonarConfigTest, WhatIsNotBuiltYetSaysSo) {
-    EXPECT_THAT(faultsOf<SonarConfig>("multipath: {}"), ElementsAre(HasSubstr("not built yet")));
+    EXPECT_THAT(diagnosticsOf<SonarConfig>("multipath: {}"), ElementsAre(HasSubstr("not built yet")));
 }
 
 TEST(SonarConfigTest, WaterScattersByOneStrengthOrByLayers) {
-    const auto fault = [](const char* yaml, const char* text) {
-        EXPECT_THAT(faultsOf<SonarConfig>(yaml), ElementsAre(HasSubstr(text))) << yaml;
+    const auto diagnostic = [](const char* yaml, const char* text) {
+        EXPECT_THAT(diagnosticsOf<SonarConfig>(yaml), ElementsAre(HasSubstr(text))) << yaml;
     };
-    EXPECT_THAT(faultsOf<SonarConfig>("volume: {strength_db: -70}"), IsEmpty());
+    EXPECT_THAT(diagnosticsOf<SonarConfig>("volume: {strength_db: -70}"), IsEmpty());
     EXPECT_THAT(
-        faultsOf<SonarConfig>("volume: [{top_m: 1, bottom_m: 5, strength_db: -70}, {top_m: 5, strength_db: -80}]"),
+        diagnosticsOf<SonarConfig>("volume: [{top_m: 1, bottom_m: 5, strength_db: -70}, {top_m: 5, strength_db: -80}]"),
         IsEmpty());
-    fault("volume: {}", "volume: has no strength_db");
-    fault("volume: -70", "volume: is -70; must be a list");
-    fault("volume: {strength_db: 1}", "volume.strength_db: is 1");
-    fault("volume: [{strength_db: -70}, {top_m: 5, bottom_m: 2, strength_db: -70}]",
-          "volume[1].bottom_m: is 2, not below top_m, 5");
-    fault("{model: cerqueira2017, volume: {strength_db: -70}}", "belongs to physical");
+    diagnostic("volume: {}", "volume: has no strength_db");
+    diagnostic("volume: -70", "volume: is -70; must be a list");
+    diagnostic("volume: {strength_db: 1}", "volume.strength_db: is 1");
+    diagnostic("volume: [{strength_db: -70}, {top_m: 5, bottom_m: 2, strength_db: -70}]",
+               "volume[1].bottom_m: is 2, not below top_m, 5");
+    diagnostic("{model: cerqueira2017, volume: {strength_db: -70}}", "belongs to physical");
     std::string many = "volume: [";
     for (int i = 0; i < 17; ++i) many += "{strength_db: -70},";
-    fault((many + "]").c_str(), "volume: has 17 layers; may have 16");
+    diagnostic((many + "]").c_str(), "volume: has 17 layers; may have 16");
 }
 
 TEST(SonarConfigTest, BeamsAndPulsesNeedWhatTheyAreMadeOf) {
-    const auto fault = [](const char* yaml, const char* text) {
-        EXPECT_THAT(faultsOf<SonarConfig>(yaml), ElementsAre(HasSubstr(text))) << yaml;
+    const auto diagnostic = [](const char* yaml, const char* text) {
+        EXPECT_THAT(diagnosticsOf<SonarConfig>(yaml), ElementsAre(HasSubstr(text))) << yaml;
     };
-    fault("beam_pattern: {}", "beam_pattern: has no law");
-    fault("beam_pattern: {receive: {azimuth: {weighting: hann}}}", "receive.azimuth: has no width");
-    fault("beam_pattern: {receive: {azimuth: {aperture_m: 0.1}}}",
-          "beam_pattern.receive.azimuth.aperture_m: is given without frequency_khz");
-    fault("{model: cerqueira2017, beam_pattern: {receive: {azimuth: {width_deg: 1}}}}", "it belongs to physical");
-    fault("pulse: {}", "pulse: has no value");
-    fault("pulse: {bandwidth_khz: 20, duration_us: 20}", "give one of the two");
-    fault("{model: cerqueira2017, pulse: {bandwidth_khz: 20}}", "it belongs to physical");
-    EXPECT_THAT(faultsOf<SonarConfig>("{frequency_khz: 700, beam_pattern: {receive: {azimuth: {aperture_m: 0.1}}}}"),
-                testing::IsEmpty());
+    diagnostic("beam_pattern: {}", "beam_pattern: has no law");
+    diagnostic("beam_pattern: {receive: {azimuth: {weighting: hann}}}", "receive.azimuth: has no width");
+    diagnostic("beam_pattern: {receive: {azimuth: {aperture_m: 0.1}}}",
+               "beam_pattern.receive.azimuth.aperture_m: is given without frequency_khz");
+    diagnostic("{model: cerqueira2017, beam_pattern: {receive: {azimuth: {width_deg: 1}}}}", "it belongs to physical");
+    diagnostic("pulse: {}", "pulse: has no value");
+    diagnostic("pulse: {bandwidth_khz: 20, duration_us: 20}", "give one of the two");
+    diagnostic("{model: cerqueira2017, pulse: {bandwidth_khz: 20}}", "it belongs to physical");
+    EXPECT_THAT(
+        diagnosticsOf<SonarConfig>("{frequency_khz: 700, beam_pattern: {receive: {azimuth: {aperture_m: 0.1}}}}"),
+        testing::IsEmpty());
 }
 
 TEST(SonarConfigTest, WhatAReceiverDoesIsToldToBeThere) {
     for (const char* yaml :
          {"tvg: {log_coefficient: 40}", "gain: 0.5", "output: level_db", "output: intensity", "source_level_db: 210"}) {
         const std::string key = std::string(yaml).substr(0, std::string(yaml).find(':'));
-        EXPECT_THAT(faultsOf<SonarConfig>(yaml),
+        EXPECT_THAT(diagnosticsOf<SonarConfig>(yaml),
                     ElementsAre(AllOf(HasSubstr(key + ": has moved"), HasSubstr("receiver::ReceiverTask"))))
             << yaml;
-        EXPECT_EQ(faultsOf<ScanningSonarConfig>(yaml).size(), 1u) << yaml;
+        EXPECT_EQ(diagnosticsOf<ScanningSonarConfig>(yaml).size(), 1u) << yaml;
     }
 }
 
@@ -231,7 +236,8 @@ TEST(SonarConfigTest, ValuesThatDoNotGoTogetherAreNamed) {
           Case{"{model: cerqueira2017, published: true, bin_count: 1}", "bin_count: ", "at least 2"},
           Case{"{model: cerqueira2017, published: true, field_of_view_deg: 180}", "published: ", "less than 180"},
           Case{"{range: 1, bin_count: 1000}", "range: ", "1000 bins of whole microseconds reach 1.5 m"}})
-        EXPECT_THAT(faultsOf<SonarConfig>(c.yaml), ElementsAre(AllOf(HasSubstr(c.path), HasSubstr(c.words)))) << c.yaml;
+        EXPECT_THAT(diagnosticsOf<SonarConfig>(c.yaml), ElementsAre(AllOf(HasSubstr(c.path), HasSubstr(c.words))))
+            << c.yaml;
 }
 
 TEST(SonarConfigTest, WhatIsNotSaidOfTheQualityIsAnErrorOfFivePerCentWithACapOfSamples) {
@@ -251,11 +257,12 @@ TEST(SonarConfigTest, WhatIsNotSaidOfTheQualityIsAnErrorOfFivePerCentWithACapOfS
 }
 
 TEST(SonarConfigTest, OneWideBeamMayHaveThousandsOfColumns) {
-    EXPECT_THAT(faultsOf<ScanningSonarConfig>("{beam_width_deg: 60, quality: {columns_per_beam: 4096}}"), IsEmpty());
+    EXPECT_THAT(diagnosticsOf<ScanningSonarConfig>("{beam_width_deg: 60, quality: {columns_per_beam: 4096}}"),
+                IsEmpty());
 }
 
 TEST(SonarConfigTest, ExactRangesNeedNoWholeMicroseconds) {
-    EXPECT_THAT(faultsOf<SonarConfig>("{range: 1, bin_count: 1000, range_rounding: exact}"), IsEmpty());
+    EXPECT_THAT(diagnosticsOf<SonarConfig>("{range: 1, bin_count: 1000, range_rounding: exact}"), IsEmpty());
 }
 
 TEST(SonarConfigTest, HeadsThatCannotTurnSoAreRefused) {
@@ -273,7 +280,7 @@ TEST(SonarConfigTest, HeadsThatCannotTurnSoAreRefused) {
           Case{"head: {step_deg: -1}", "0.001 to 360"}, Case{"head: {step_deg: .nan}", "must be a finite number"},
           Case{"field_of_view_deg: 120", "is not a key here"}, Case{"beam_count: 2", "is not a key here"},
           Case{"{range: 10, range_min: 20}", "must be below range"}})
-        EXPECT_THAT(faultsOf<ScanningSonarConfig>(c.yaml), ElementsAre(HasSubstr(c.words))) << c.yaml;
+        EXPECT_THAT(diagnosticsOf<ScanningSonarConfig>(c.yaml), ElementsAre(HasSubstr(c.words))) << c.yaml;
 }
 
 TEST(SonarConfigTest, TheWidthOfABeamIsOneBeamsOrByConventionTheWholeFans) {
@@ -286,13 +293,13 @@ TEST(SonarConfigTest, TheWidthOfABeamIsOneBeamsOrByConventionTheWholeFans) {
     config.beam_width_convention = BeamWidthConvention::TotalFov;
     EXPECT_DOUBLE_EQ(config.fan().coverageDeg(), 130);
     EXPECT_DOUBLE_EQ(config.fan().beamWidthDeg(), 130.0 / 60);
-    EXPECT_THAT(faultsOf<SonarConfig>("{beam_width_deg: 130, beam_width_convention: total_fov}"), IsEmpty());
+    EXPECT_THAT(diagnosticsOf<SonarConfig>("{beam_width_deg: 130, beam_width_convention: total_fov}"), IsEmpty());
 }
 
 TEST(SonarConfigTest, BeamsOfAFanMayBeWiderThanTheirSpacing) {
     for (const char* fov : {"130", "120"}) {  // the default as well, where it is written
         const std::string yaml = "{beam_count: 512, field_of_view_deg: " + std::string(fov) + ", beam_width_deg: 1}";
-        EXPECT_THAT(faultsOf<SonarConfig>(yaml.c_str()), IsEmpty()) << yaml;
+        EXPECT_THAT(diagnosticsOf<SonarConfig>(yaml.c_str()), IsEmpty()) << yaml;
     }
     SonarConfig config;
     config.beam_count = 512;

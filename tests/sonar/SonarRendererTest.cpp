@@ -78,8 +78,8 @@ TEST(SonarRendererTest, AnotherThreadIsRefused) {
         try {
             types::Sonar ping;
             renderer.render(snapshot, ping);
-        } catch (const gpu::GlError& fault) {
-            error = fault.what();
+        } catch (const gpu::GlError& thrown) {
+            error = thrown.what();
         }
     }).join();
     EXPECT_THAT(error, HasSubstr("another thread"));

@@ -46,7 +46,7 @@ TEST(ErrorCommandTest, ADeploymentIsStudiedAgainstBruteForceThatMayBeTooCoarseTo
                                                   "--reference-rays", "1e5", "--out", "report"});
     EXPECT_EQ(outcome.code, 0) << outcome.out << outcome.err;
     EXPECT_THAT(outcome.out, HasSubstr("open  deployment_wall: smallest error over that of the reference"));
-    EXPECT_THAT(outcome.out, HasSubstr("no fault of the scene"));
+    EXPECT_THAT(outcome.out, HasSubstr("nothing is wrong with the scene"));
     const json report = json::parse(readFile(folder / "report/error_time.json"));
     ASSERT_EQ(report["references"].size(), 1u);
     EXPECT_EQ(report["references"][0]["scene"], "deployment_wall") << "wall is a scene of the study";

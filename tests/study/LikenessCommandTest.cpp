@@ -1,8 +1,7 @@
 #include <gmock/gmock.h>
 
-#include "components/study/Hash.hpp"
 #include "tests/deployer/Wall.hpp"
-#include "tests/support/OculusMessage.hpp"
+#include "tests/support/SpeckleRecording.hpp"
 
 using namespace insonify::deployer;
 using insonify::test::OculusMessage;
@@ -11,20 +10,7 @@ using testing::HasSubstr;
 
 namespace {
 
-/** A recording of speckle, 64 beams by 128 bins, two pings. */
-void record(const fs::path& file) {
-    std::string bytes;
-    for (const uint32_t number : {5u, 6u}) {
-        const auto speckle = [&](size_t beam, size_t bin) {
-            const uint64_t word = insonify::study::hashed(number, beam, bin);
-            return static_cast<uint8_t>(
-                std::min(255.0, 90 * std::sqrt(std::sqrt(-std::log(insonify::study::unit(word >> 32))))));
-        };
-        const auto message = OculusMessage{.beams = 64, .bins = 128, .number = number, .code = speckle}.bytes();
-        bytes.append(message.begin(), message.end());
-    }
-    writeFile(file, bytes);
-}
+void record(const fs::path& file) { writeFile(file, insonify::test::recordedSpeckle()); }
 
 /** The wall as a receiver gives it out in codes. */
 std::string codedWall() {

@@ -8,9 +8,9 @@
 #include "components/sonar/BinGrid.hpp"
 #include "components/sonar/Quality.hpp"
 #include "components/sonar/SonarRenderer.hpp"
+#include "components/study/FractalFloor.hpp"
 #include "components/study/Metrics.hpp"
 #include "components/study/StudyScene.hpp"
-#include "tests/support/RoughFloor.hpp"
 #include "tests/support/Scenes.hpp"
 #include "tests/support/Surfaces.hpp"
 
@@ -72,7 +72,14 @@ std::vector<StudyScene> unseenScenes() {
     config.device = "software";
     for (unsigned seed = 20; seed < 26; ++seed) {
         config.range = 22 + 4 * (seed % 4);
-        const auto floor = test::sceneOf({test::roughFloor(-3, 60, 64 << seed % 3, 0.05 * (seed - 18), seed)});
+        const FractalFloor shape = {.points = 64 << seed % 3,
+                                    .side = 60,
+                                    .slope = -1.7,
+                                    .rms = 0.05 * (seed - 18),
+                                    .centre_x = 0,
+                                    .depth = 3,
+                                    .seed = seed};
+        const auto floor = test::sceneOf({meshOf(shape)});
         scenes.push_back({"floor " + std::to_string(seed),
                           "",
                           config,

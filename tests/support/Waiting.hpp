@@ -7,7 +7,7 @@
 namespace insonify::test {
 
 /** How long a test waits for what does not come before it fails. What comes ends the wait at once, so this is no
- * measure of speed: it is far beyond what a loaded machine takes. */
+ *  measure of speed: it is far beyond what a loaded machine takes. */
 constexpr std::chrono::seconds patience{60};
 
 /** Waits until the condition holds; false where patience has run out. */

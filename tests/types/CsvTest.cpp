@@ -18,18 +18,18 @@ std::vector<std::vector<double>> rowsOf(const std::string& text, size_t least = 
 }
 
 /** "line:column: path: message" of each. */
-std::vector<std::string> problemsOf(const std::string& text, size_t least = 1, const CsvJudge& judge = {}) {
-    std::vector<std::string> problems;
+std::vector<std::string> diagnosticsOf(const std::string& text, size_t least = 1, const CsvJudge& judge = {}) {
+    std::vector<std::string> diagnostics;
     try {
         rowsOf(text, least, judge);
     } catch (const ConfigError& error) {
         for (Diagnostic diagnostic : error.diagnostics()) {
             diagnostic.file.clear();
-            problems.push_back(std::to_string(diagnostic.line) + ":" + std::to_string(diagnostic.column) + ": " +
-                               diagnostic.path + ": " + diagnostic.message);
+            diagnostics.push_back(std::to_string(diagnostic.line) + ":" + std::to_string(diagnostic.column) + ": " +
+                                  diagnostic.path + ": " + diagnostic.message);
         }
     }
-    return problems;
+    return diagnostics;
 }
 
 TEST(CsvTest, RowsAreNumbersWhateverStandsAboutThem) {
@@ -39,13 +39,13 @@ TEST(CsvTest, RowsAreNumbersWhateverStandsAboutThem) {
 
 TEST(CsvTest, WhatIsWrongIsToldWithItsPlace) {
     EXPECT_THAT(
-        problemsOf("time,level_db\n0,-1\n1\n2,-3,4\nnan,5\n"),
+        diagnosticsOf("time,level_db\n0,-1\n1\n2,-3,4\nnan,5\n"),
         ElementsAre("3:2: level_db: is missing; a line has 2 fields", "4:6: : has too many fields; a line has 2",
                     "5:1: time: is 'nan'; it must be a finite number",
                     "5:5: level_db: is '5'; it must be a number from -10 to 0"));
-    EXPECT_THAT(problemsOf(""), ElementsAre("0:1: : is empty; it must start with the header time,level_db"));
-    EXPECT_THAT(problemsOf("t,level\n0,0\n"), ElementsAre("1:1: : is 't,level'; the header must be time,level_db"));
-    EXPECT_THAT(problemsOf("time,level_db\n0,0\n", 2),
+    EXPECT_THAT(diagnosticsOf(""), ElementsAre("0:1: : is empty; it must start with the header time,level_db"));
+    EXPECT_THAT(diagnosticsOf("t,level\n0,0\n"), ElementsAre("1:1: : is 't,level'; the header must be time,level_db"));
+    EXPECT_THAT(diagnosticsOf("time,level_db\n0,0\n", 2),
                 ElementsAre("2:1: : has 1 lines after its header; it needs at least 2"));
     EXPECT_THROW(readCsv("nowhere.csv", columns, 1), ConfigError);
     EXPECT_THROW(readCsv(".", columns, 1), ConfigError);
@@ -53,10 +53,10 @@ TEST(CsvTest, WhatIsWrongIsToldWithItsPlace) {
 
 TEST(CsvTest, AJudgeSeesEachRowAndTheOneBefore) {
     const CsvJudge ascends = [](const std::vector<double>& row, const std::vector<double>* before) {
-        return before && row[0] <= before->front() ? std::vector<CsvProblem>{{0, "must increase"}}
-                                                   : std::vector<CsvProblem>{};
+        return before && row[0] <= before->front() ? std::vector<CsvDiagnostic>{{0, "must increase"}}
+                                                   : std::vector<CsvDiagnostic>{};
     };
-    EXPECT_THAT(problemsOf("time,level_db\n1,0\n2,0\n2,0\nx,0\n 1,0\n", 1, ascends),
+    EXPECT_THAT(diagnosticsOf("time,level_db\n1,0\n2,0\n2,0\nx,0\n 1,0\n", 1, ascends),
                 ElementsAre("4:1: time: must increase", "5:1: time: is 'x'; it must be a finite number",
                             "6:1: time: must increase"));
 }

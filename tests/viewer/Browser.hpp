@@ -52,7 +52,7 @@ public:
     Browser(const Browser&) = delete;
     Browser& operator=(const Browser&) = delete;
 
-    /** The value of an expression; a fault of the test when it throws. */
+    /** The value of an expression; a failure of the test when it throws. */
     nlohmann::json value(const std::string& expression) { return ask({{"eval", expression}}); }
     /** Waits until it is true. */
     bool becomes(const std::string& expression) {

@@ -23,24 +23,29 @@ std::string call(uint64_t id, const std::string& operation) {
 }
 
 /** Of tasks of which one does not answer until it is let go. */
-struct Blocked {
-    std::promise<void> release;
-    std::shared_future<void> released{release.get_future()};
-    Publisher publisher{config(), {}, access()};
+class Blocked : public types::DeploymentControl {
+    std::promise<void> release_;
+    std::shared_future<void> released_{release_.get_future()};
 
+public:
+    Publisher publisher{config(), {}, {"viewer", this, [](const std::string&) {}}};
+
+    types::DeploymentStatus status() const override { return {}; }
+    std::vector<types::TaskInterface> interfaces() const override { return {{"deaf", {}, {}}, {"lively", {}, {}}}; }
+    std::string call(const std::string& operation, const std::vector<std::string>&) override {
+        if (operation == "deaf.ask") released_.wait();
+        return operation;
+    }
+    void pause(bool) override {}
+    void step() override {}
+    void release() { release_.set_value(); }
+
+private:
     static ViewerConfig config() {
         ViewerConfig config;
         config.port = 0;
         config.idle_timeout = 3600;
         return config;
-    }
-    Access access() {
-        const auto call = [this](const std::string& operation, const std::vector<std::string>&) {
-            if (operation == "deaf.ask") released.wait();
-            return operation;
-        };
-        const auto tasks = [] { return std::vector<types::TaskInterface>{{"deaf", {}, {}}, {"lively", {}, {}}}; };
-        return {[] { return types::DeploymentStatus{}; }, tasks, call, [](bool) {}, [] {}, [](const std::string&) {}};
     }
 };
 
@@ -55,8 +60,20 @@ TEST(PublisherTest, ATaskThatDoesNotAnswerHoldsUpNoOther) {
     EXPECT_EQ(answer(client)["id"], 3);
     client.say(call(4, "unknown.ask"));
     EXPECT_EQ(answer(client)["id"], 4);
-    blocked.release.set_value();
+    blocked.release();
     EXPECT_EQ(answer(client)["result"], "deaf.ask");
+}
+
+TEST(PublisherTest, TheViewerAndTheStatesOfTasksAreNotForPages) {
+    Blocked blocked;
+    Client client(blocked.publisher.port());
+    ASSERT_THAT(client.upgrade(page_protocol), testing::HasSubstr("101"));
+    client.say(call(1, "viewer.setControl"));
+    EXPECT_THAT(answer(client)["refused"], testing::HasSubstr("the viewer does not steer itself"));
+    client.say(call(2, "lively.stop"));
+    EXPECT_THAT(answer(client)["refused"], testing::HasSubstr("states of tasks are the deployment's to change"));
+    client.say(call(3, "lively.stopwatch"));
+    EXPECT_EQ(answer(client)["result"], "lively.stopwatch");
 }
 
 TEST(PublisherTest, OneRequestTooManyIsRefusedByItsId) {
@@ -67,7 +84,7 @@ TEST(PublisherTest, OneRequestTooManyIsRefusedByItsId) {
     const auto refused = answer(client);
     EXPECT_GT(refused["id"], SerialExecutors::max_waiting);
     EXPECT_THAT(refused["refused"], testing::HasSubstr("too many requests wait"));
-    blocked.release.set_value();
+    blocked.release();
 }
 
 }  // namespace

@@ -10,17 +10,17 @@ namespace insonify::viewer {
 namespace {
 
 /** Fails at everything. */
-struct Faulty final : ServerHandler {
+struct Throwing final : ServerHandler {
     std::optional<PageFile> file(std::string_view) override { throw std::runtime_error("no files today"); }
     std::vector<Frame> greeting() override { return {}; }
     void request(uint64_t, std::string) override { throw std::runtime_error("no answers today"); }
 };
 
-TEST(ServerTest, AFaultClosesTheSessionThatItWasFor) {
-    Faulty faulty;
-    Server server({}, faulty);
+TEST(ServerTest, AnErrorClosesTheSessionThatItWasFor) {
+    Throwing throwing;
+    Server server({}, throwing);
     EXPECT_EQ(Client(server.port()).get("/"), "");
-    EXPECT_EQ(server.takeWarning(), "1 connection refused; the last: a fault of this server: no files today");
+    EXPECT_EQ(server.takeWarning(), "1 connection refused; the last: an error of this server: no files today");
     Client asks(server.port()), silent(server.port());
     for (Client* client : {&asks, &silent}) ASSERT_THAT(client->upgrade(page_protocol), testing::HasSubstr("101"));
     asks.say("{}");

@@ -14,11 +14,11 @@ namespace {
 
 using testing::HasSubstr;
 
-std::string problemsOf(const ViewerConfig& config) {
+std::string diagnosticsOf(const ViewerConfig& config) {
     types::Diagnostics diagnostics;
     config.check(diagnostics);
     std::string all;
-    for (const types::Diagnostic& problem : diagnostics) all += problem.path + ": " + problem.message + "\n";
+    for (const types::Diagnostic& diagnostic : diagnostics) all += diagnostic.path + ": " + diagnostic.message + "\n";
     return all;
 }
 
@@ -30,16 +30,16 @@ ViewerConfig at(const std::string& address, const std::string& token = "") {
 }
 
 TEST(ViewerTaskTest, AnAddressThatOthersReachNeedsAToken) {
-    for (const char* local : {"127.0.0.1", "127.1.2.3", "::1"}) EXPECT_EQ(problemsOf(at(local)), "") << local;
+    for (const char* local : {"127.0.0.1", "127.1.2.3", "::1"}) EXPECT_EQ(diagnosticsOf(at(local)), "") << local;
     for (const char* open : {"0.0.0.0", "192.168.0.1", "::"}) {
-        EXPECT_THAT(problemsOf(at(open)), HasSubstr("token: is missing")) << open;
-        EXPECT_EQ(problemsOf(at(open, "secret")), "") << open;
+        EXPECT_THAT(diagnosticsOf(at(open)), HasSubstr("token: is missing")) << open;
+        EXPECT_EQ(diagnosticsOf(at(open, "secret")), "") << open;
     }
-    EXPECT_THAT(problemsOf(at("localhost", "secret")),
+    EXPECT_THAT(diagnosticsOf(at("localhost", "secret")),
                 HasSubstr("address: is 'localhost'; it must be a numeric address"));
 }
 
-TEST(ViewerTaskTest, APortThatIsTakenIsOneClearFault) {
+TEST(ViewerTaskTest, APortThatIsTakenIsOneClearDiagnostic) {
     Bench first;
     first.start();
     ViewerTask second("second");
@@ -53,7 +53,7 @@ TEST(ViewerTaskTest, APortThatIsTakenIsOneClearFault) {
                                HasSubstr("Address already in use"), HasSubstr("0 for any that is free")));
 }
 
-TEST(ViewerTaskTest, AnAddressOfAnotherMachineIsOneClearFault) {
+TEST(ViewerTaskTest, AnAddressOfAnotherMachineIsOneClearDiagnostic) {
     ViewerTask viewer("viewer");
     viewer.config.set(at("203.0.113.7", "secret"));  // of an example
     EXPECT_FALSE(viewer.configure());
@@ -67,13 +67,13 @@ TEST(ViewerTaskTest, ATokenMayStandInAFileOfItsOwn) {
     bench.viewer.environment().input_folder = folder.path();
     ViewerConfig config;
     config.token_file = "token.txt";
-    EXPECT_EQ(problemsOf([&] {
+    EXPECT_EQ(diagnosticsOf([&] {
                   auto open = config;
                   open.address = "0.0.0.0";
                   return open;
               }()),
               "");
-    EXPECT_THAT(problemsOf([&] {
+    EXPECT_THAT(diagnosticsOf([&] {
                     auto both = config;
                     both.token = "x";
                     return both;

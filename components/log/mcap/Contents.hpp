@@ -101,7 +101,7 @@ private:
 ChunkInfo chunkInfo(const File::Record& record);
 
 /** The records of a chunk, decompressed where they are not plain, checked against their size and checksum. Throws
- * FormatError for damaged ones and for a compression that is not read. */
+ *  FormatError for damaged ones and for a compression that is not read. */
 std::span<const char> recordsOf(const ChunkInfo& chunk, std::span<const char> stored, std::vector<char>& room);
 
 /** Compares summary and footer, which stand behind the data, with the data. Throws FormatError for what differs. */

@@ -8,7 +8,7 @@
 namespace insonify::log::pocolog {
 
 /** The flat map of scalars that Rock's readers accept, as YAML: one `key: "value"` a line; line breaks and control
- * characters escaped. */
+ *  characters escaped. */
 std::string toYaml(const Metadata& metadata);
 
 /** The scalars of a YAML map; empty for what is no such map. */

@@ -4,7 +4,7 @@
 
 #include "types/DeploymentStatus.hpp"
 
-namespace insonify::framework {
+namespace insonify::types {
 
 /** What a task may see of its deployment and do to it, through Environment::deployment. Any thread, but none of a
  *  task's cycles: a call waits for the task that is called. Valid from configure to cleanup. */
@@ -13,10 +13,10 @@ public:
     virtual ~DeploymentControl() = default;
 
     /** As things are now; waits for no task. */
-    virtual types::DeploymentStatus status() const = 0;
+    virtual DeploymentStatus status() const = 0;
     /** By task, in file order. */
-    virtual std::vector<types::TaskInterface> interfaces() const = 0;
-    /** Calls an operation, "camera.setRate", with arguments in YAML; gives the result as text. types::ConfigError: no
+    virtual std::vector<TaskInterface> interfaces() const = 0;
+    /** Calls an operation, "camera.setRate", with arguments in YAML; gives the result as text. ConfigError: no
      *  such task or operation, or arguments that do not fit; a refusal is what the operation throws. */
     virtual std::string call(const std::string& operation, const std::vector<std::string>& arguments) = 0;
     /** In lockstep: simulated time stands still once this returns, or goes on. Throws std::runtime_error in realtime.
@@ -26,4 +26,4 @@ public:
     virtual void step() = 0;
 };
 
-}  // namespace insonify::framework
+}  // namespace insonify::types

@@ -3,7 +3,7 @@
 namespace insonify::types {
 
 /** When to tell of what is wrong with samples: when it begins, and again only after it has been right for a while. */
-class Complaint {
+class RecurringDiagnostic {
 public:
     static constexpr int well_after = 10;  ///< Samples that are right, one after the other [1].
 

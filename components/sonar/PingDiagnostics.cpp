@@ -1,4 +1,4 @@
-#include "components/sonar/Troubles.hpp"
+#include "components/sonar/PingDiagnostics.hpp"
 
 #include <algorithm>
 
@@ -17,8 +17,8 @@ bool isLoud(Model model, const types::Sonar& ping) {
 
 }  // namespace
 
-std::string Troubles::follow(bool heard, Model model, const types::Snapshot& scene, const types::Sonar& ping,
-                             const std::function<RenderPlan()>& coverage) {
+std::string PingDiagnostics::follow(bool heard, Model model, const types::Snapshot& scene, const types::Sonar& ping,
+                                    const std::function<RenderPlan()>& coverage) {
     if (pings_++ % between_looks == 0) {
         sightlines_.place(scene);
         const auto around = sightlines_.enclosing();

@@ -4,16 +4,16 @@
 
 #include "components/sonar/Sightlines.hpp"
 #include "components/sonar/SonarRenderer.hpp"
-#include "types/Complaint.hpp"
+#include "types/RecurringDiagnostic.hpp"
 
 namespace insonify::sonar {
 
 /** Follows the pings of a sonar, and says why there is nothing in them: once, and again only after ten that were well.
  */
-class Troubles {
+class PingDiagnostics {
 public:
     /** `geometry` must outlive it. `turn`: pings in which a head comes round [1]. */
-    Troubles(const types::Geometry& geometry, int turn) : turn_(turn), sightlines_(geometry) {}
+    PingDiagnostics(const types::Geometry& geometry, int turn) : turn_(turn), sightlines_(geometry) {}
 
     /** What is to be told of a ping; usually nothing, for which nothing is allocated. `heard`: it has an echo;
      *  `coverage`: the plan of a sonar that looks where this one does. */
@@ -27,7 +27,7 @@ private:
     unsigned pings_ = 0;  ///< So far [1].
     bool inside_ = false;
     int silent_ = 0;  ///< Pings without any echo, one after the other [1].
-    types::Complaint silence_, enclosure_;
+    types::RecurringDiagnostic silence_, enclosure_;
     Sightlines sightlines_;
 };
 

@@ -1,8 +1,8 @@
 // What a sonar's task says of pings in which there is nothing, and how often.
 #include <gmock/gmock.h>
 
+#include "components/sonar/PingDiagnostics.hpp"
 #include "components/sonar/SonarTask.hpp"
-#include "components/sonar/Troubles.hpp"
 #include "tests/sonar/WallScene.hpp"
 #include "tests/support/Ports.hpp"
 #include "tests/support/Scenes.hpp"
@@ -14,9 +14,9 @@ using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
 
-class TroublesTest : public testing::Test {
+class PingDiagnosticsTest : public testing::Test {
 protected:
-    TroublesTest() {
+    PingDiagnosticsTest() {
         const auto environment = std::make_shared<framework::Environment>();
         environment->warn = [this](const std::string& text) { told_.push_back(text); };
         task_.setEnvironment(environment);
@@ -45,7 +45,7 @@ protected:
     int pings_ = 0;
 };
 
-TEST_F(TroublesTest, SilenceIsToldOfOnceAndAgainOnceEnoughHasBeenHeard) {
+TEST_F(PingDiagnosticsTest, SilenceIsToldOfOnceAndAgainOnceEnoughHasBeenHeard) {
     const auto wall = wallAt(5);
     ping(wall, 0, 2);
     EXPECT_THAT(told_, IsEmpty());
@@ -54,19 +54,19 @@ TEST_F(TroublesTest, SilenceIsToldOfOnceAndAgainOnceEnoughHasBeenHeard) {
     ping(wall, 0, 3);
     ping(wall, 180, 5);
     EXPECT_EQ(told_.size(), 1u) << "heard for three pings only";
-    ping(wall, 0, types::Complaint::well_after);
+    ping(wall, 0, types::RecurringDiagnostic::well_after);
     ping(wall, 180, 5);
     EXPECT_EQ(told_.size(), 2u);
 }
 
-TEST_F(TroublesTest, ATargetAloneIsSomethingToHear) {
+TEST_F(PingDiagnosticsTest, ATargetAloneIsSomethingToHear) {
     ping(wallAt(-50), 0, 3, {{{5, 0, 0}, 0}});
     EXPECT_THAT(told_, IsEmpty());
     ping(wallAt(-50), 0, 1, {{{-5, 0, 0}, 0}});
     EXPECT_THAT(told_, ElementsAre(HasSubstr("; its nearest target 5 m away at [-5, 0, 0]")));
 }
 
-TEST_F(TroublesTest, ASonarInsideOfAMeshIsToldOfInPlaceOfSilence) {
+TEST_F(PingDiagnosticsTest, ASonarInsideOfAMeshIsToldOfInPlaceOfSilence) {
     const auto hull = test::sceneOf({test::sphere(0.05f, 12)});  // nearer than range_min
     ping(hull, 0, 40);
     EXPECT_THAT(told_,

@@ -21,7 +21,7 @@ struct Listener : TaskContext {
     bool configureHook() override { throw types::ConfigError("", name() + ".port", "is taken"); }
 };
 
-TEST(ConfigureFaultTest, WhatConfiguringFindsIsToldWhereThePropertyStands) {
+TEST(ConfigureErrorTest, WhatConfiguringFindsIsToldWhereThePropertyStands) {
     Registry registry;
     registry.add(
         {"test::Listener", "listens", [](const std::string& name) { return std::make_unique<Listener>(name); }});

@@ -1,0 +1,192 @@
+#include "components/sonar/EchoField.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <glm/gtc/quaternion.hpp>
+#include <numbers>
+
+#include "components/sonar/RangeResponse.hpp"
+#include "types/VectorMath.hpp"
+
+namespace insonify::sonar {
+namespace {
+
+/** fields[j] += weight * from[j]. */
+INSONIFY_VECTOR_CLONES void addScaled(const float* from, float weight, float* __restrict fields, size_t count) {
+    for (size_t j = 0; j < count; ++j) fields[j] += weight * from[j];
+}
+
+INSONIFY_VECTOR_CLONES void square(const float* fields, float* __restrict intensities, size_t count) {
+    for (size_t j = 0; j < count; ++j)
+        intensities[j] = fields[2 * j] * fields[2 * j] + fields[2 * j + 1] * fields[2 * j + 1];
+}
+
+Beamformer fieldBeamformer(const RenderPlan& plan, size_t numbers) {
+    const Directivity& directivity = *plan.directivity;
+    return {plan.beams,
+            plan.cells,
+            numbers,
+            {[&](double azimuth, double bearing) { return directivity.azimuthAmplitude(azimuth, bearing); },
+             directivity.nearAzimuth(), std::sqrt(directivity.floor()), true}};
+}
+
+/** A uniform number in (0, 1). */
+double uniform(uint64_t& state) {
+    uint64_t x = state += 0x9e3779b97f4a7c15u;  // splitmix64
+    x = (x ^ x >> 30) * 0xbf58476d1ce4e5b9u;
+    x = (x ^ x >> 27) * 0x94d049bb133111ebu;
+    return (static_cast<double>((x ^ x >> 31) >> 11) + 0.5) * 0x1p-53;
+}
+
+uint64_t bitsOf(double whole) { return static_cast<uint64_t>(static_cast<int64_t>(whole)); }
+
+}  // namespace
+
+FieldResponse::FieldResponse(const RenderPlan& plan) {
+    const FieldSampling sampling = fieldSamplingOf(plan);
+    samples_ = static_cast<size_t>(plan.grid.bin_count * sampling.samples);
+    stride_ = static_cast<size_t>(sampling.parts / sampling.samples);
+    sample_width_ = plan.grid.bin_width / sampling.samples;
+    if (!plan.has(Pass::Pulse)) return;
+    pulse_.emplace(*plan.config.pulse, plan.grid.speed_of_sound);
+    reach_ = pulse_->extent(RangeResponse::floor_db);
+    const double width = sample_width_ / static_cast<double>(stride_);
+    const auto most = static_cast<int>(std::min(std::ceil(reach_ / width), static_cast<double>(cells() - 1)));
+    const auto stride = static_cast<int>(stride_);
+    for (int t = -most; t <= most; ++t) {
+        const double power = pulse_->mean((t - 0.5) * width, (t + 0.5) * width);
+        const int from = (stride - 1) / 2 + t, run = (from % stride + stride) % stride;
+        const ptrdiff_t shift = (from - run) / stride;
+        taps_.push_back({static_cast<size_t>(run), shift,
+                         static_cast<float>(std::copysign(std::sqrt(power), pulse_->amplitude(t * width)))});
+        margin_ = std::max(margin_, static_cast<size_t>(std::abs(shift)));
+    }
+}
+
+void FieldResponse::spread(std::span<const float> sorted, std::span<float> fields) const {
+    if (!pulse_) {
+        std::ranges::copy(sorted, fields.begin());
+        return;
+    }
+    std::ranges::fill(fields, 0.0f);
+    for (const Tap& tap : taps_) {
+        const ptrdiff_t first = static_cast<ptrdiff_t>(tap.run * runLength() + 2 * margin_) + 2 * tap.shift;
+        addScaled(sorted.data() + first, tap.weight, fields.data(), fields.size());
+    }
+}
+
+double FieldResponse::amplitude(size_t sample, double range) const {
+    const double off = (static_cast<double>(sample) + 0.5) * sample_width_ - range;
+    if (pulse_) return pulse_->amplitude(off);
+    return off <= sample_width_ / 2 && off > -sample_width_ / 2 ? 1 : 0;
+}
+
+EchoField::EchoField(const RenderPlan& plan, int threads) : plan_(plan), response_(plan) {
+    const BinGrid grid = summedGrid(plan);
+    const BinLevels levels(plan.config, grid);
+    for (int k = 0; k < grid.bin_count; ++k) amplitudes_.push_back(std::sqrt(levels.factor(static_cast<size_t>(k))));
+    if (plan.features.has(Feature::Volume)) volume_.emplace(plan, grid);
+    cells_.resize(plan.cells.size() * numbers());
+    if (plan.has(Pass::Beamform)) {
+        beamformer_ = fieldBeamformer(plan, numbers());
+        beams_.resize(plan.beams.size() * numbers());
+    }
+    scratch_.resize(static_cast<size_t>(threads));
+    for (Scratch& scratch : scratch_) {
+        scratch.sorted.resize(response_.sortedSize());
+        scratch.energies.resize(response_.cells());
+        scratch.spread.resize(numbers());
+    }
+}
+
+bool EchoField::fill(size_t cell, const EchoRules& rules, const uint64_t* sums, double solid_angle, size_t thread) {
+    Scratch& scratch = scratch_[thread];
+    const double quantum = std::sqrt(solid_angle / rules.strength_scale) / quanta_per_unit;
+    uint64_t any = 0;
+    for (size_t k = 0; k < response_.cells(); ++k) {
+        const uint64_t real = sums[2 * k], imaginary = sums[2 * k + 1];
+        any |= real | imaginary;
+        float* const field = &scratch.sorted[response_.place(k)];
+        const double unit = amplitudes_[k] * quantum;
+        field[0] = static_cast<float>(static_cast<double>(static_cast<int64_t>(real)) * unit);
+        field[1] = static_cast<float>(static_cast<double>(static_cast<int64_t>(imaginary)) * unit);
+    }
+    if (volume_) {
+        volume_->add(sums + rules.volumeOffset(), cell, solid_angle, energies(thread));
+        scatter(cell, scratch.energies, scratch.sorted);
+    }
+    response_.spread(scratch.sorted, {&cells_[cell * numbers()], numbers()});
+    return any != 0;
+}
+
+std::span<float> EchoField::energies(size_t thread) {
+    std::ranges::fill(scratch_[thread].energies, 0.0f);
+    return scratch_[thread].energies;
+}
+
+void EchoField::addEnergies(size_t cell, std::span<const float> intensities, size_t thread) {
+    Scratch& scratch = scratch_[thread];
+    for (size_t k = 0; k < response_.cells(); ++k)
+        scratch.sorted[response_.place(k)] = scratch.sorted[response_.place(k) + 1] = 0;
+    scatter(cell, intensities, scratch.sorted);
+    response_.spread(scratch.sorted, scratch.spread);
+    addScaled(scratch.spread.data(), 1, &cells_[cell * numbers()], numbers());
+}
+
+void EchoField::scatter(size_t cell, std::span<const float> intensities, std::span<float> sorted) const {
+    const Beam& azimuth = plan_.cells[cell];
+    const glm::dvec3 ray = sonar_.orientation * glm::dvec3(std::cos(azimuth.centre), std::sin(azimuth.centre), 0);
+    const double width = plan_.grid.bin_width / static_cast<double>(response_.cells()) * plan_.grid.bin_count;
+    for (size_t k = 0; k < intensities.size(); ++k) {
+        if (!(intensities[k] > 0)) continue;
+        const double range = (static_cast<double>(k) + 0.5) * width;
+        const double side = std::exp2(std::floor(std::log2(std::min(width, range * (azimuth.high - azimuth.low)))));
+        const glm::dvec3 place = glm::floor((sonar_.position + range * ray) / side);
+        uint64_t state = bitsOf(place.x) * 0x9e3779b97f4a7c15u ^ bitsOf(place.y) * 0xc2b2ae3d27d4eb4fu ^
+                         bitsOf(place.z) * 0x165667b19e3779f9u;
+        const double root = std::sqrt(-double{intensities[k]} * std::log(uniform(state)));
+        const double phase = 2 * std::numbers::pi * uniform(state);
+        float* const field = &sorted[response_.place(k)];
+        field[0] += static_cast<float>(root * std::cos(phase));
+        field[1] += static_cast<float>(root * std::sin(phase));
+    }
+}
+
+void EchoField::form(ThreadPool& threads) {
+    if (!beamformer_) return;
+    const auto eachOf = [&](size_t count, const auto& work) {
+        threads.run([&](int part, int parts) {
+            for (auto i = static_cast<size_t>(part); i < count; i += static_cast<size_t>(parts)) work(i);
+        });
+    };
+    eachOf(beamformer_->groupCount(), [&](size_t group) { beamformer_->sumGroup(group, cells_); });
+    eachOf(plan_.beams.size(), [&](size_t beam) {
+        beamformer_->form(beam, cells_, {&beams_[beam * numbers()], numbers()});
+    });
+}
+
+void EchoField::add(size_t beam, double range, std::complex<double> field) {
+    const double width = response_.sampleWidth();
+    const double first = std::max(0.0, std::floor((range - response_.reach()) / width));
+    const double last = std::floor((range + response_.reach()) / width);
+    float* const fields = &beams()[beam * numbers()];
+    for (auto sample = static_cast<size_t>(first); sample < response_.samples() && static_cast<double>(sample) <= last;
+         ++sample) {
+        const std::complex<double> heard = response_.amplitude(sample, range) * field;
+        fields[2 * sample] += static_cast<float>(heard.real());
+        fields[2 * sample + 1] += static_cast<float>(heard.imag());
+    }
+}
+
+void EchoField::detect(types::Sonar& ping) const {
+    const size_t per_bin = response_.samples() / ping.bin_count;
+    if (per_bin == 1) return square(beams().data(), ping.bins.data(), ping.bins.size());
+    const float* field = beams().data();
+    for (float& bin : ping.bins) {
+        float sum = 0;
+        for (size_t i = 0; i < per_bin; ++i, field += 2) sum += field[0] * field[0] + field[1] * field[1];
+        bin = sum / static_cast<float>(per_bin);
+    }
+}
+
+}  // namespace insonify::sonar

@@ -1,0 +1,76 @@
+#include "components/sonar/Mirrors.hpp"
+
+#include <algorithm>
+#include <limits>
+#include <numbers>
+
+#include "components/sonar/Volume.hpp"
+
+namespace insonify::sonar {
+namespace {
+
+/** One step of splitmix64 (Steele, Lea and Flood 2014). */
+uint64_t mixed(uint64_t x) {
+    x += 0x9e3779b97f4a7c15;
+    x = (x ^ (x >> 30)) * 0xbf58476d1ce4e5b9;
+    x = (x ^ (x >> 27)) * 0x94d049bb133111eb;
+    return x ^ (x >> 31);
+}
+
+/** Between 0 and 1, never either. */
+double uniform(uint64_t x) { return (static_cast<double>(x >> 11) + 0.5) * 0x1p-53; }
+
+}  // namespace
+
+double slopeOfSea(double wind) {
+    if (!(wind > 0)) return 0;
+    constexpr double calm = 0.0034;
+    return wind < 1 ? calm : std::max(calm, 4.6e-3 * std::log(2.1 * wind * wind));
+}
+
+double coherentReflection(double wind, double wavelength, double sine_grazing) {
+    const double height = 0.0053 * wind * wind;
+    const double roughness = 4 * std::numbers::pi / wavelength * height * sine_grazing;
+    return std::exp(-roughness * roughness / 2);
+}
+
+WaterMirror::WaterMirror(const SonarConfig& config)
+    : wanted_(config.tracesPaths() && config.multipath->surface),
+      slope_(wanted_ ? std::sqrt(slopeOfSea(config.multipath->surface->wind_m_s) / 2) : 0) {}
+
+void WaterMirror::place(const types::Snapshot& snapshot, double range_max) {
+    const WaterView water = waterViewOf(snapshot);
+    ping_ = mixed(static_cast<uint64_t>(snapshot.time.microseconds));
+    plane_ = {water.up, -water.height};
+    left_out_.reset();
+    if (wanted_ && !snapshot.water_surface)
+        left_out_ = LeftOut{Effect::Multipath, Reason::NoWaterSurface};
+    else if (wanted_ && !(plane_.distance > 0))
+        left_out_ = LeftOut{Effect::Multipath, Reason::AboveSurface};
+    else if (wanted_ && plane_.distance > range_max)
+        left_out_ = LeftOut{Effect::Multipath, Reason::BeyondRange, plane_.distance, range_max};
+    reflects_ = wanted_ && !left_out_;
+}
+
+double WaterMirror::distance(const glm::dvec3& from, const glm::dvec3& way) const {
+    constexpr double edge_on = 1e-9;
+    const double rise = glm::dot(plane_.normal, way);
+    if (!reflects_ || !(rise > edge_on)) return std::numeric_limits<double>::infinity();
+    return std::max(0.0, (plane_.distance - glm::dot(plane_.normal, from)) / rise);
+}
+
+MirrorPlane WaterMirror::facet(const glm::dvec3& at, const glm::dvec3& way, uint64_t key) const {
+    if (slope_ == 0) return plane_;
+    const glm::dvec3& up = plane_.normal;
+    const glm::dvec3 level =
+        glm::normalize(std::abs(up.x) < 0.5 ? glm::cross(up, glm::dvec3(1, 0, 0)) : glm::cross(up, {0, 1, 0}));
+    const uint64_t drawn = mixed(ping_ ^ mixed(key));
+    const double size = slope_ * std::sqrt(-2 * std::log(uniform(drawn)));
+    const double turn = 2 * std::numbers::pi * uniform(mixed(drawn));
+    const glm::dvec3 slope = size * (std::cos(turn) * level + std::sin(turn) * glm::cross(up, level));
+    const glm::dvec3 tilted = glm::dot(up + slope, way) > 0 ? up + slope : up - slope;
+    const MirrorPlane facet{glm::normalize(tilted), glm::dot(glm::normalize(tilted), at)};
+    return glm::dot(facet.turned(way), up) < 0 ? facet : plane_;
+}
+
+}  // namespace insonify::sonar

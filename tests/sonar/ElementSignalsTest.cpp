@@ -1,0 +1,200 @@
+// Signals of a straight array's elements: beams that are formed of them hold what the sonar's own bins do.
+#include <gmock/gmock.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "components/sonar/LineArray.hpp"
+#include "components/sonar/SonarRenderer.hpp"
+#include "components/sonar/SonarTask.hpp"
+#include "tests/support/Scenes.hpp"
+#include "tests/support/TaskBench.hpp"
+#include "types/Angle.hpp"
+
+namespace insonify::sonar {
+namespace {
+
+using acoustics::Weighting;
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+
+/** A straight array whose beams are 3 degrees wide. */
+SonarConfig arrayOf(Weighting weighting) {
+    SonarConfig config;
+    config.speed_of_sound = 1500;
+    config.frequency_khz = 300;
+    config.range = 9;
+    config.bin_count = 200;
+    config.beam_count = 33;
+    config.field_of_view_deg = 60;
+    config.beam_geometry = BeamGeometry::Conical;
+    config.beam_pattern.emplace().receive.azimuth.emplace().weighting = weighting;
+    config.beam_pattern->receive.azimuth->width_deg = 3;
+    config.beam_pattern->transmit.azimuth.emplace().weighting = Weighting::Gaussian;
+    config.beam_pattern->transmit.azimuth->width_deg = 70;
+    config.beam_pattern->floor_db = -40;
+    config.pulse.emplace().bandwidth_khz = 20;
+    config.speckle.emplace().coherent = true;
+    config.elements.emplace();
+    config.quality.rows = 64;
+    config.quality.columns_per_beam = 2;
+    return config;
+}
+
+/** A level bottom with a wall on it. */
+types::Snapshot scene() {
+    return test::snapshotOf(test::sceneOf({test::ground(-2), test::quad({6, -1, -2}, {0, 3, 0}, {0, 0, 1})}));
+}
+
+struct Heard {
+    types::Sonar ping;
+    types::SonarElements signals;
+};
+
+Heard heard(const SonarConfig& config) {
+    Heard result;
+    const types::Snapshot snapshot = scene();
+    SonarRenderer renderer(config, snapshot.geometry);
+    renderer.render(snapshot, result.ping);
+    renderer.takeElements(result.ping, result.signals);
+    return result;
+}
+
+/** Bins of beams that look where those of the ping do. @param turn -1: as if port were starboard */
+std::vector<double> beamformed(const Heard& heard, const acoustics::Taper& taper, double turn = 1) {
+    const types::SonarElements& signals = heard.signals;
+    const size_t count = signals.positions.size();
+    const LineArray array(count, signals.positions[1] - signals.positions[0], signals.wavelength, taper);
+    ComplexRows rows(count, signals.sample_count);
+    for (size_t i = 0; i < rows.values.size(); ++i) rows.values[i] = {signals.in_phase[i], signals.quadrature[i]};
+    std::vector<double> sines;
+    for (const types::Angle& bearing : heard.ping.bearings) sines.push_back(turn * std::sin(bearing.rad));
+    const ComplexRows beams = array.form(rows, sines);
+    const size_t per_bin = signals.sample_count / heard.ping.bin_count;
+    std::vector<double> bins(heard.ping.bins.size());
+    for (size_t i = 0; i < beams.values.size(); ++i)
+        bins[i / per_bin] += std::norm(std::complex<double>(beams.values[i])) / static_cast<double>(per_bin);
+    return bins;
+}
+
+/** Of the bins that are at most 30 dB below the mean at their range: the share that is off by more than 0.5 dB, and
+ *  what the energy of all is off by [dB]. */
+struct Off {
+    double share = 0, energy_db = 0;
+};
+
+Off off(const types::Sonar& ping, const std::vector<double>& bins) {
+    double count = 0, wrong = 0, sum = 0, own_sum = 0;
+    for (size_t k = 0; k < ping.bin_count; ++k) {
+        double mean = 0;
+        for (size_t beam = 0; beam < ping.beam_count; ++beam)
+            mean += static_cast<double>(ping.bins[beam * ping.bin_count + k]) / ping.beam_count;
+        for (size_t i = k; i < bins.size(); i += ping.bin_count) {
+            const auto own = static_cast<double>(ping.bins[i]);
+            if (own < 1e-3 * mean || own == 0) continue;
+            count += 1, sum += bins[i], own_sum += own;
+            wrong += std::abs(10 * std::log10(bins[i] / own)) > 0.5;
+        }
+    }
+    EXPECT_GT(count, 3000);
+    return {wrong / count, 10 * std::log10(sum / own_sum)};
+}
+
+TEST(ElementSignalsTest, BeamsFormedOfThemAreThePingsBins) {
+    for (const Weighting weighting : {Weighting::Uniform, Weighting::Hann, Weighting::Taylor}) {
+        const Heard both = heard(arrayOf(weighting));
+        const Off right = off(both.ping, beamformed(both, acoustics::Taper(weighting)));
+        EXPECT_LT(right.share, 0.01) << static_cast<int>(weighting);
+        EXPECT_NEAR(right.energy_db, 0, 0.05) << static_cast<int>(weighting);
+        EXPECT_GT(off(both.ping, beamformed(both, acoustics::Taper(weighting), -1)).share, 0.5) << "turned about";
+        const Weighting other = weighting == Weighting::Uniform ? Weighting::Hann : Weighting::Uniform;
+        EXPECT_GT(off(both.ping, beamformed(both, acoustics::Taper(other))).share, 0.3) << "other weights";
+        std::printf("share %g energy %g\n", right.share, right.energy_db);
+    }
+}
+
+TEST(ElementSignalsTest, TheyTellWhereElementsAndSamplesAre) {
+    const Heard both = heard(arrayOf(Weighting::Uniform));
+    const types::SonarElements& signals = both.signals;
+    EXPECT_EQ(signals.diagnostic(), nullptr);
+    EXPECT_EQ(signals.time, both.ping.time);
+    EXPECT_NEAR(signals.wavelength, 0.005, 1e-12);
+    const size_t count = signals.positions.size();
+    EXPECT_NEAR(static_cast<double>(count), 0.8859 / std::sin(types::radians(1.5)), 1) << "half a wavelength apart";
+    EXPECT_NEAR(signals.positions.back() - signals.positions.front(), static_cast<double>(count - 1) * 0.0025, 3e-5);
+    EXPECT_NEAR(signals.positions.front(), -signals.positions.back(), 1e-12);
+    EXPECT_EQ(signals.sample_count % both.ping.bin_count, 0u);
+    EXPECT_NEAR(signals.range(signals.sample_count - 1) + 0.5 * signals.sample_spacing, 9, 0.01);
+    EXPECT_NEAR(signals.range(0), 0.5 * signals.sample_spacing, 1e-12);
+}
+
+TEST(ElementSignalsTest, FewerElementsAreFartherApartAndHearTheSamePlaces) {
+    SonarConfig config = arrayOf(Weighting::Uniform);
+    config.elements->count = 20;
+    const types::SonarElements sparse = heard(config).signals, dense = heard(arrayOf(Weighting::Uniform)).signals;
+    EXPECT_EQ(sparse.positions.size(), 20u);
+    EXPECT_NEAR(20 * (sparse.positions[1] - sparse.positions[0]),
+                static_cast<double>(dense.positions.size()) * (dense.positions[1] - dense.positions[0]), 1e-9);
+}
+
+std::vector<std::string> diagnosticsOf(const SonarConfig& config) {
+    types::Diagnostics diagnostics;
+    config.check(diagnostics);
+    std::vector<std::string> texts;
+    for (const types::Diagnostic& diagnostic : diagnostics) texts.push_back(diagnostic.path + " " + diagnostic.message);
+    return texts;
+}
+
+TEST(ElementSignalsTest, WhatMakesNoArrayIsRefusedWithTheReason) {
+    EXPECT_THAT(diagnosticsOf(arrayOf(Weighting::Taylor)), testing::IsEmpty());
+    SonarConfig config = arrayOf(Weighting::Uniform);
+    config.speckle.reset();
+    EXPECT_THAT(diagnosticsOf(config),
+                ElementsAre("elements need speckle: {coherent: true}; without it energies are summed, "
+                            "not fields"));
+    config = arrayOf(Weighting::Uniform);
+    config.beam_geometry = BeamGeometry::Planar;
+    EXPECT_THAT(diagnosticsOf(config),
+                ElementsAre("elements need beam_geometry: conical, for a straight array hears cones"));
+    config = arrayOf(Weighting::Uniform);
+    config.beam_pattern.reset();
+    EXPECT_THAT(diagnosticsOf(config), ElementsAre("elements need beam_pattern.receive.azimuth, whose aperture they fill"));
+    EXPECT_THAT(diagnosticsOf(arrayOf(Weighting::Gaussian)),
+                ElementsAre(HasSubstr("they make no measured table, gaussian")));
+    config = arrayOf(Weighting::Uniform);
+    config.elements->count = 20;
+    config.elements->spacing_m = 0.01;
+    EXPECT_THAT(diagnosticsOf(config),
+                ElementsAre(HasSubstr("elements are 20 that are 0.01 m apart, 0.2 m in all; the aperture of "
+                                      "beam_pattern.receive.azimuth is 0.0846")));
+}
+
+class ElementPortTest : public test::TaskBench<SonarTask, types::SnapshotPtr, types::SonarPtr> {
+protected:
+    ElementPortTest() : TaskBench(&SonarTask::snapshot, &SonarTask::ping) {}
+    test::Reader<types::SonarElementsPtr> signals_;
+};
+
+TEST_F(ElementPortTest, ThePortTellsThemOfEachPing) {
+    task_.elements.connectTo(signals_.port, framework::ConnPolicy::buffer(4));
+    startWith(arrayOf(Weighting::Uniform));
+    const types::SonarPtr ping = answerTo(std::make_shared<const types::Snapshot>(scene()));
+    types::SonarElementsPtr signals;
+    ASSERT_TRUE(ping && signals_.port.readNew(signals));
+    const Heard expected = heard(arrayOf(Weighting::Uniform));
+    EXPECT_EQ(ping->bins, expected.ping.bins) << "told or not";
+    EXPECT_EQ(signals->in_phase, expected.signals.in_phase);
+    EXPECT_EQ(signals->time, ping->time);
+}
+
+TEST_F(ElementPortTest, AConnectedPortOfASonarWithoutElementsIsRefused) {
+    task_.elements.connectTo(signals_.port, framework::ConnPolicy::buffer(4));
+    SonarConfig config = arrayOf(Weighting::Uniform);
+    config.elements.reset();
+    task_.config.set(config);
+    EXPECT_FALSE(task_.configure());
+    EXPECT_THAT(task_.lastError(), HasSubstr("is connected; the sonar has none: give it `elements`"));
+}
+
+}  // namespace
+}  // namespace insonify::sonar

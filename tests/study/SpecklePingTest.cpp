@@ -1,0 +1,329 @@
+// Pings whose echoes interfere (ACOUSTICS.md 5.23): laws come out of sums of scatterers, none is put in. Every law
+// stands beside a wrong one, which must fail by the same measure.
+#include <gmock/gmock.h>
+
+#include <cmath>
+
+#include "components/sonar/SonarRenderer.hpp"
+#include "components/study/SpeckleStatistics.hpp"
+#include "tests/support/EveryWay.hpp"
+#include "tests/support/Scenes.hpp"
+#include "types/Angle.hpp"
+
+namespace insonify::study {
+namespace {
+
+using test::pingOf;
+using namespace sonar;
+using ::testing::ElementsAreArray;
+using types::radians;
+
+/** Boxes of 1 deg by 0.05 m over a level bottom: each bin is a resolution cell. */
+SonarConfig boxes() {
+    SonarConfig config;
+    config.speed_of_sound = 1500;
+    config.range_rounding = RangeRounding::Exact;
+    config.range = 20;
+    config.range_min = 8;
+    config.bin_count = 400;
+    config.beam_count = 90;
+    config.field_of_view_deg = 90;
+    config.beam_height_deg = 40;
+    config.frequency_khz = 500;
+    config.quality.rows = 128;
+    config.quality.columns_per_beam = 2;
+    config.visibility = Visibility::Cpu;
+    return config;
+}
+
+SonarConfig coherent(SonarConfig config, int scatterers_per_cell = 20, std::optional<double> per_m2 = {}) {
+    config.speckle = SpeckleConfig{true, scatterers_per_cell, per_m2};
+    return config;
+}
+
+types::Snapshot overBottom(glm::dvec3 place = {}, double yaw = 0) {
+    return test::snapshotOf(test::sceneOf({test::ground(-3)}), place, yaw);
+}
+
+/** Of each bin, the intensity over what it has on the average. */
+SpeckleField fieldOf(const SonarConfig& config, const types::Snapshot& snapshot) {
+    SonarConfig energies = config;
+    energies.speckle.reset();
+    return overMeans(pingOf(config, snapshot), pingOf(energies, snapshot));
+}
+
+double meanOf(const SpeckleField& field) {
+    double sum = 0, count = 0;
+    for (const double value : field.relative)
+        if (std::isfinite(value)) sum += value, ++count;
+    return sum / count;
+}
+
+/** How alike two pings from different places are, in intensity. */
+double alike(const SonarConfig& config, const types::Snapshot& a, const types::Snapshot& b) {
+    return likewise(fieldOf(config, a), fieldOf(config, b)).intensities;
+}
+
+TEST(SpecklePingTest, WhatIsNotCoherentIsAsIfItWereNotThere) {
+    SonarConfig config = boxes();
+    const types::Sonar absent = pingOf(config, overBottom());
+    config.speckle = SpeckleConfig{};
+    EXPECT_THAT(pingOf(config, overBottom()).bins, ElementsAreArray(absent.bins));
+    EXPECT_NE(pingOf(coherent(boxes()), overBottom()).bins, absent.bins);
+}
+
+TEST(SpecklePingTest, ManyScatterersAreRayleighAndKeepTheMean) {
+    const SpeckleField field = fieldOf(coherent(boxes()), overBottom());
+    const SpeckleFigures figures = figuresOf(field);
+    RecordProperty("mean", std::to_string(meanOf(field)));
+    EXPECT_NEAR(meanOf(field), 1, 0.03);
+    EXPECT_NEAR(figures.scintillation.value, 1, 4 * figures.scintillation.error);
+    EXPECT_LT(figures.rayleigh_distance, rayleigh_distance_limit);
+    EXPECT_NEAR(figures.along[1], 0, 0.03);
+    EXPECT_NEAR(figures.across[1], 0, 0.03);
+    const SpeckleFigures few = figuresOf(fieldOf(coherent(boxes(), 20, 100.0), overBottom()));
+    EXPECT_GT(few.rayleigh_distance, rayleigh_distance_limit);
+}
+
+TEST(SpecklePingTest, EveryFanAndPatternKeepsTheMean) {
+    SonarConfig conical = coherent(boxes());
+    conical.beam_geometry = BeamGeometry::Conical;
+    EXPECT_NEAR(meanOf(fieldOf(conical, overBottom())), 1, 0.03);
+    SonarConfig patterned = coherent(boxes());
+    patterned.beam_pattern.emplace();
+    patterned.beam_pattern->receive.azimuth.emplace().width_deg = 1.5;
+    patterned.beam_pattern->transmit.elevation.emplace().width_deg = 30;
+    EXPECT_NEAR(meanOf(fieldOf(patterned, overBottom())), 1, 0.03);
+    for (const double bandwidth : {5.0, 12.0, 20.0}) {
+        SonarConfig chirp = patterned;
+        chirp.pulse.emplace().bandwidth_khz = bandwidth;
+        chirp.pulse->window = acoustics::PulseWindow::Hann;
+        EXPECT_NEAR(meanOf(fieldOf(chirp, overBottom())), 1, 0.04) << bandwidth;
+    }
+    SonarConfig tone = coherent(boxes());
+    tone.pulse.emplace().duration_us = 173;
+    EXPECT_NEAR(meanOf(fieldOf(tone, overBottom())), 1, 0.04);
+}
+
+TEST(SpecklePingTest, AStillSceneIsTheSamePingAndAnotherBottomIsNot) {
+    const SonarConfig config = coherent(boxes());
+    const types::Snapshot here = overBottom();
+    EXPECT_EQ(pingOf(config, here).bins, pingOf(config, here).bins);
+    types::Snapshot far = overBottom({5e5, 4.5e6, 0});
+    auto moved = test::sceneOf({test::ground(-3)}, 0, {{5e5, 4.5e6, 0}});
+    far.geometry = moved;
+    EXPECT_GT(alike(config, here, far), 0.999) << "a scene that is elsewhere in the world";
+    EXPECT_LT(std::abs(alike(config, here, overBottom({30, 20, 0}))), 0.04);
+}
+
+TEST(SpecklePingTest, SpeckleDoesNotDependOnQualityOrTriangles) {
+    const SonarConfig config = coherent(boxes());
+    SonarConfig finer = config;
+    finer.quality.rows = 512;
+    finer.quality.columns_per_beam = 4;
+    const SpeckleField coarse = fieldOf(config, overBottom()), fine = fieldOf(finer, overBottom());
+    EXPECT_GT(likewise(coarse, fine).intensities, 0.98);
+    EXPECT_NEAR(figuresOf(coarse).scintillation.value, figuresOf(fine).scintillation.value, 0.02);
+    types::Snapshot pieces = overBottom();
+    std::vector<glm::vec3> corners;
+    std::vector<uint32_t> indices;
+    for (int x = 0; x <= 100; ++x)
+        for (int y = 0; y <= 100; ++y) {
+            corners.push_back({-30 + 0.6f * static_cast<float>(x), -30 + 0.6f * static_cast<float>(y), -3});
+            if (x == 0 || y == 0) continue;
+            const auto at = static_cast<uint32_t>(101 * x + y);
+            for (const uint32_t corner : {at - 102, at - 1, at - 101, at - 101, at - 1, at}) indices.push_back(corner);
+        }
+    pieces.geometry = test::sceneOf({test::meshOf(corners, indices)});
+    EXPECT_GT(alike(config, overBottom(), pieces), 0.98);
+}
+
+/** A line that sends in all directions and hears by an aperture, of beams 0.25 deg apart. */
+SonarConfig lineArray(double aperture) {
+    SonarConfig config = coherent(boxes());
+    config.beam_count = 360;
+    config.beam_pattern.emplace();
+    config.beam_pattern->floor_db = -40;
+    config.beam_pattern->receive.azimuth.emplace().aperture_m = aperture;
+    return config;
+}
+
+TEST(SpecklePingTest, SidewaysItLosesItselfAsTheApertureLeavesItself) {
+    // van Cittert and Zernike: the field's correlation is the autocorrelation of the aperture at twice the way, that of
+    // intensities its square, which is a half at 0.146 of the aperture.
+    const double aperture = 0.1;
+    const SonarConfig config = lineArray(aperture);
+    const types::Snapshot here = overBottom();
+    const auto after = [&](double way) {
+        SonarConfig ahead = config;
+        ahead.field_of_view_deg = 30;  // beams that look ahead, for the aperture is seen at a slant by the others
+        ahead.beam_count = 120;
+        return alike(ahead, here, overBottom({0, way, 0}));
+    };
+    for (const double share : {0.05, 0.1, 0.146, 0.2, 0.3}) {
+        const double theory = std::pow(1 - 2 * share, 2);
+        EXPECT_NEAR(after(share * aperture), theory, 0.05) << share;
+    }
+    EXPECT_LT(after(0.6 * aperture), 0.06);
+}
+
+TEST(SpecklePingTest, APureShiftInRangeTakesItAlong) {
+    // Over a bin of 0.05 m towards the bottom ahead: what was in a bin is in the one before, where little else changes.
+    SonarConfig config = coherent(boxes());
+    config.field_of_view_deg = 4;
+    config.beam_count = 4;
+    config.beam_height_deg = 1;
+    const auto wall = [&](double shift) {
+        types::Snapshot snapshot = test::snapshotOf(test::sceneOf({test::ground(-3)}), {shift, 0, 0}, 0, 0);
+        return fieldOf(config, snapshot);
+    };
+    config.beam_height_deg = 40;
+    const SpeckleField here = wall(0);
+    SpeckleField nearer = wall(0.05);
+    for (size_t beam = 0; beam < nearer.beam_count; ++beam)
+        for (size_t bin = nearer.bin_count; bin-- > 0;)
+            nearer.relative[beam * nearer.bin_count + bin] =
+                bin > 0 ? nearer.relative[beam * nearer.bin_count + bin - 1] : std::nan("");
+    EXPECT_GT(likewise(here, nearer).intensities, 0.6);
+    EXPECT_LT(likewise(here, wall(0.05)).intensities, 0.3);
+}
+
+/** What of a field lies beyond a range, where the pulse spreads it from both sides. */
+SpeckleField beyond(SpeckleField field, double range, const SonarConfig& config) {
+    const auto first = static_cast<size_t>(range / config.range * config.bin_count);
+    for (size_t i = 0; i < field.relative.size(); ++i)
+        if (i % field.bin_count < first) field.relative[i] = std::nan("");
+    return field;
+}
+
+TEST(SpecklePingTest, NeighboursAreAsAlikeAsPulseAndPatternSay) {
+    // Of a chirp without a window, the square of the sinc of the distance over c / 2B; of an aperture that of the
+    // difference of sines over wavelength / L.
+    SonarConfig chirp = coherent(boxes());
+    chirp.pulse.emplace().bandwidth_khz = 1500.0 / (2 * 0.2) / 1e3;  // resolves 0.2 m: bins are a quarter of it
+    const SpeckleFigures along = figuresOf(beyond(fieldOf(chirp, overBottom()), 10, chirp));
+    EXPECT_NEAR(along.along[1], 0.81, 0.04);
+    EXPECT_NEAR(along.along[2], 0.41, 0.05);
+    SonarConfig array = lineArray(0.003 / radians(1));  // resolves 1 deg ahead: beams are a quarter of it
+    array.field_of_view_deg = 30;
+    array.beam_count = 120;
+    const SpeckleFigures across = figuresOf(fieldOf(array, overBottom()));
+    EXPECT_NEAR(across.across[1], 0.81, 0.04);
+    EXPECT_NEAR(across.across[2], 0.41, 0.05);
+}
+
+TEST(SpecklePingTest, EqualScatterersScintillateByTwoLessTheirShare) {
+    // N equal scatterers at random in one cell: <I^2> / <I>^2 = 2 - 1/N (Stanton, Lee and Baik 2018).
+    SonarConfig config = coherent(boxes());
+    config.beam_count = 1;
+    config.field_of_view_deg = 10;
+    config.range = 12;
+    config.range_min = 8;
+    config.bin_count = 12;
+    types::Snapshot snapshot = test::snapshotOf(test::sceneOf({test::ground(-500)}));
+    SonarRenderer renderer(config, snapshot.geometry);
+    uint32_t state = 1;
+    const auto random = [&] { return static_cast<double>((state = state * 1664525u + 1013904223u) >> 8) / (1 << 24); };
+    for (const int count : {1, 2, 3, 4, 10, 100}) {
+        constexpr int pings = 4000;
+        double sum = 0, squares = 0;
+        for (int i = 0; i < pings; ++i) {
+            snapshot.targets.clear();
+            for (int n = 0; n < count; ++n) {
+                const double range = 10.05 + 0.9 * random(), azimuth = radians(9) * (random() - 0.5);
+                snapshot.targets.push_back({{range * std::cos(azimuth), range * std::sin(azimuth), 0}, 0});
+            }
+            types::Sonar ping;
+            renderer.render(snapshot, ping);
+            const double intensity = static_cast<double>(ping.bins[10]);
+            sum += intensity;
+            squares += intensity * intensity;
+        }
+        const double index = pings * squares / (sum * sum);
+        EXPECT_NEAR(index, 2 - 1.0 / count, 0.12) << count << " scatterers";
+    }
+}
+
+TEST(SpecklePingTest, FewScatterersAreKDistributedByTheirNumberInACell) {
+    // Abraham and Lyons 2002: the shape is the number in a cell, which doubles with the width of the beam and with the
+    // range.
+    const double density = 400;
+    const auto shapeBetween = [&](const SonarConfig& config, double near, double far) {
+        const SpeckleField field = fieldOf(config, overBottom());
+        double squares = 0, sum = 0, count = 0;
+        for (size_t beam = 0; beam < field.beam_count; ++beam)
+            for (size_t bin = 0; bin < field.bin_count; ++bin) {
+                const double range = (static_cast<double>(bin) + 0.5) * config.range / config.bin_count;
+                if (range < near || range > far || !std::isfinite(field.at(beam, bin))) continue;
+                sum += field.at(beam, bin);
+                squares += field.at(beam, bin) * field.at(beam, bin);
+                ++count;
+            }
+        return 2 / (squares * count / (sum * sum) - 2);
+    };
+    SonarConfig narrow = coherent(boxes(), 20, density);
+    narrow.range = 40;
+    narrow.bin_count = 400;
+    narrow.beam_count = 360;  // 0.25 deg by 0.1 m
+    SonarConfig wide = narrow;
+    wide.beam_count = 180;
+    const double near = shapeBetween(narrow, 9, 13), far = shapeBetween(narrow, 19, 24),
+                 wider = shapeBetween(wide, 9, 13);
+    RecordProperty("shapes", std::to_string(near) + " " + std::to_string(far) + " " + std::to_string(wider));
+    EXPECT_NEAR(near, density * 0.1 * 11 * radians(0.25), 0.25 * near);
+    EXPECT_NEAR(far / near, 21.5 / 11, 0.5);
+    EXPECT_NEAR(wider / near, 2, 0.5);
+}
+
+TEST(SpecklePingTest, WaterThatScattersHasSpeckleToo) {
+    SonarConfig config = coherent(boxes());
+    config.volume = {VolumeLayer{{}, {}, -50}};
+    const types::Snapshot open = test::snapshotOf(test::sceneOf({test::ground(-500)}));
+    const SpeckleField field = fieldOf(config, open);
+    EXPECT_NEAR(meanOf(field), 1, 0.03);
+    EXPECT_NEAR(figuresOf(field).scintillation.value, 1, 0.05);
+    EXPECT_EQ(pingOf(config, open).bins, pingOf(config, open).bins);
+}
+
+TEST(SpecklePingTest, StiffCasesAreFinite) {
+    const auto isFinite = [](const types::Sonar& ping) {
+        return std::ranges::all_of(ping.bins, [](float bin) { return std::isfinite(bin) && bin >= 0; });
+    };
+    SonarConfig grazing = coherent(boxes());
+    grazing.range = 2000;
+    grazing.range_min = 0.1;
+    grazing.beam_height_deg = 170;
+    EXPECT_TRUE(isFinite(pingOf(grazing, overBottom())));
+    EXPECT_TRUE(isFinite(pingOf(coherent(boxes(), 1, 1e-6), overBottom())));
+    EXPECT_TRUE(isFinite(pingOf(coherent(boxes(), 200, 1e9), overBottom())));
+    SonarConfig around = coherent(boxes());
+    around.range_min = 0;
+    around.field_of_view_deg = 360;
+    around.beam_height_deg = 180;
+    around.bin_count = 1;
+    EXPECT_TRUE(isFinite(pingOf(around, test::snapshotOf(test::sceneOf({test::sphere(5, 30)})))));
+    EXPECT_TRUE(isFinite(pingOf(around, test::snapshotOf(test::sceneOf({test::ground(0)})))));
+}
+
+TEST(SpecklePingTest, WhatItNeedsIsAskedFor) {
+    const auto wordsOf = [](const SonarConfig& config) {
+        types::Diagnostics diagnostics;
+        config.check(diagnostics);
+        std::string all;
+        for (const auto& diagnostic : diagnostics) all += diagnostic.path + " " + diagnostic.message + "\n";
+        return all;
+    };
+    EXPECT_EQ(wordsOf(coherent(boxes())), "");
+    SonarConfig silent = coherent(boxes());
+    silent.frequency_khz.reset();
+    EXPECT_THAT(wordsOf(silent), ::testing::HasSubstr("without frequency_khz"));
+    SonarConfig drawn = coherent(boxes());
+    drawn.visibility = Visibility::Gl;
+    EXPECT_THAT(wordsOf(drawn), ::testing::HasSubstr("needs rays"));
+    SonarConfig mean = coherent(boxes());
+    mean.model = Model::Cerqueira2017;
+    EXPECT_THAT(wordsOf(mean), ::testing::HasSubstr("cerqueira2017"));
+}
+
+}  // namespace
+}  // namespace insonify::study

@@ -1,0 +1,59 @@
+#pragma once
+#include <cstdint>
+#include <memory>
+#include <type_traits>
+#include <vector>
+
+#include "types/Describe.hpp"
+#include "types/Time.hpp"
+
+namespace insonify::types {
+
+/** What the elements of a straight array heard of a ping, as complex baseband after the pulse's matched filter: the
+ *  square of its size is intensity relative to the source, its phase is turned by exp(i 4 pi r / wavelength) along the
+ *  range. Sample i of element m stands at [m * sample_count + i] of `in_phase` and `quadrature`. */
+struct SonarElements {
+    static constexpr const char* type_name = "/insonify/SonarElements";
+    static constexpr bool shared = true;  ///< Travels by reference, see Carried.
+
+    Time time;
+    double speed_of_sound = 0;
+    double wavelength = 0;
+    double first_range = 0;
+    double sample_spacing = 0;
+    uint32_t sample_count = 0;
+    std::vector<double> positions;
+    std::vector<double> weights;
+    std::vector<float> in_phase;
+    std::vector<float> quadrature;
+
+    std::vector<size_t> shape() const { return {positions.size(), sample_count}; }
+    /** Slant range of a sample [m]. */
+    double range(size_t sample) const { return first_range + static_cast<double>(sample) * sample_spacing; }
+    /** What is wrong with the lists, after "a sample"; null: nothing. */
+    const char* diagnostic() const;
+
+    /** The lists of numbers that have a place for each sample, with what arrays hold of them. */
+    template <class Self, class Visit>
+    static void forEachArray(Self& self, Visit&& visit) {
+        visit("in_phase", self.in_phase, std::type_identity<float>{});
+        visit("quadrature", self.quadrature, std::type_identity<float>{});
+    }
+    template <class Self, class V>
+    static void describe(Self& self, V& visit) {
+        visit(Field{"time", "us", "when the ping was true in the world"}, self.time);
+        visit(Field{"speed_of_sound", "m/s", "speed of sound that turns time into range"}, self.speed_of_sound);
+        visit(Field{"wavelength", "m", "of the carrier"}, self.wavelength);
+        visit(Field{"first_range", "m", "slant range of the first sample"}, self.first_range);
+        visit(Field{"sample_spacing", "m", "slant range from one sample to the next"}, self.sample_spacing);
+        visit(Field{"sample_count", "1", "samples of each element"}, self.sample_count);
+        visit(Field{"positions", "m", "of each element from the array's middle, positive to port"}, self.positions);
+        visit(Field{"weights", "1", "of each element where the sonar forms its own beams; their sum is 1"},
+              self.weights);
+        visit(Field{"in_phase", "1/m", "real part of the field, element by element"}, self.in_phase);
+        visit(Field{"quadrature", "1/m", "imaginary part of the field, element by element"}, self.quadrature);
+    }
+};
+using SonarElementsPtr = std::shared_ptr<const SonarElements>;
+
+}  // namespace insonify::types
