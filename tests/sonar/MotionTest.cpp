@@ -1,4 +1,4 @@
-// What moves and turns while sound is under way, against exact solutions of its way there and back (ACOUSTICS.md 5.22).
+// What moves and turns while sound is under way, against exact solutions of its way there and back (ACOUSTICS.md 5.20).
 #include <gmock/gmock.h>
 
 #include <cmath>
