@@ -115,7 +115,7 @@ struct MultipathConfig {
  * the square of the sum of their fields (ACOUSTICS.md 5.21). */
 struct SpeckleConfig {
     bool coherent = false;
-    int scatterers_per_cell = 20;
+    int scatterers_per_cell = 10;
     std::optional<double> scatterers_per_m2;
 
     template <class Self, class V>
