@@ -37,6 +37,8 @@ double RingDownConfig::mean(double low, double high) const {
 void PulseConfig::check(types::Diagnostics& diagnostics) const {
     if (bandwidth_khz && duration_us)
         diagnostics.push_back({"duration_us", "stands beside bandwidth_khz; give one of the two"});
+    if (chirp_us && !bandwidth_khz)
+        diagnostics.push_back({"chirp_us", "is given without bandwidth_khz; a tone is no chirp"});
     if (!bandwidth_khz && !duration_us)
         diagnostics.push_back({"", "has no value; give bandwidth_khz of a chirp, or duration_us of a tone"});
     if (window && !bandwidth_khz) diagnostics.push_back({"window", "is given without bandwidth_khz; a tone has none"});

@@ -28,7 +28,7 @@ struct RingDownConfig {
 
 /** A tone of a duration, or a chirp of a bandwidth whose matched filter is weighted by a window. */
 struct PulseConfig {
-    std::optional<double> bandwidth_khz, duration_us;
+    std::optional<double> bandwidth_khz, duration_us, chirp_us;
     std::optional<PulseWindow> window;
     std::optional<RingDownConfig> ring_down;
 
@@ -40,6 +40,11 @@ struct PulseConfig {
         visit(Field{"window", "", "of the matched filter; absent: none (Harris 1978; taylor: -30 dB, nbar 4)"},
               self.window);
         visit(Field{"duration_us", "us", "instead: of a tone", 0.1, 1e7}, self.duration_us);
+        visit(Field{"chirp_us", "us",
+                    "how long a chirp rises through its bandwidth, which shifts what moves; needs motion_in_ping and "
+                    "frequency_khz; absent: nothing is shifted",
+                    0.1, 1e7},
+              self.chirp_us);
         visit(Field{"ring_down", "", "the transmitter as it is heard in the first bins; absent: not at all"},
               self.ring_down);
     }

@@ -1,4 +1,7 @@
 #pragma once
+#include <optional>
+#include <string>
+
 #include "types/Describe.hpp"
 
 namespace insonify::acoustics {
@@ -14,6 +17,7 @@ struct Water {
     double ph = 8;
     double latitude_deg = 45;
     SoundSpeedLaw sound_speed_law = SoundSpeedLaw::Leroy;
+    std::optional<std::string> profile{};  ///< File of the speed of sound over depth, by which rays are bent.
 
     template <class Self, class V>
     static void describe(Self& self, V& visit) {
@@ -25,6 +29,8 @@ struct Water {
         visit(Field{"latitude_deg", "deg", "latitude, for pressure at depth", -90, 90}, self.latitude_deg);
         visit(Field{"sound_speed_law", "", "computes the speed of sound (Leroy, Robinson and Goldsmith 2008)"},
               self.sound_speed_law);
+        visit(Field{"profile", "", "CSV file with depth_m,sound_speed_m_s, by which rays are bent; absent: straight"},
+              self.profile);
     }
 };
 

@@ -155,7 +155,7 @@ inline std::string below(const std::string& path, const std::string& name) {
 /** Gives a member of `whole` the value that it has in a fresh one. */
 template <types::Described T, class Member>
 void giveDefault(const T&, const types::Field& field, Member& member) {
-    const T fresh{};
+    static const T fresh{};
     FieldVisitor visitor{[&](const types::Field& other, const auto& value) {
         if constexpr (std::same_as<std::remove_cvref_t<decltype(value)>, Member>)
             if (std::string_view(other.name) == field.name) member = value;

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "components/output/FanShape.hpp"
+#include "components/output/PictureConfig.hpp"
 
 namespace insonify::output {
 

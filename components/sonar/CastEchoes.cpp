@@ -13,6 +13,7 @@
 #include "components/sonar/EchoGrid.hpp"
 #include "components/sonar/ObjectPlaces.hpp"
 #include "components/sonar/PathEchoes.hpp"
+#include "components/sonar/RayPaths.hpp"
 #include "components/sonar/SurfaceScene.hpp"
 #include "components/sonar/ThreadPool.hpp"
 #include "components/sonar/TileDeposit.hpp"
@@ -82,12 +83,14 @@ private:
     void place(const types::Snapshot& snapshot);
     void makeTruth();
     PlacedScene scene() const {
-        return {visibility_.commands(), runs_, places_.records(), planes_, normal_maps_, water_};
+        return {visibility_.commands(), runs_, places_.records(), planes_, normal_maps_, water_, bent()};
     }
     void addPaths(types::Sonar& ping);
     void depositPart(const Part& part, std::span<const CastTile> tiles, Worker& worker);
     void work(Worker& worker, types::Sonar& ping);
     void workOn(const Part& part, Worker& worker, types::Sonar& ping);
+    /** The ways of this ping; null where they are straight. */
+    const RayPaths* bent() const { return ray_paths_ && !ray_paths_->areStraight() ? &*ray_paths_ : nullptr; }
     std::span<const CastTile> cast(const Part& part, Worker& worker) const;
     TileRays raysOf(const CastTile& tile, int end_column) const;
     /** Fills the bins of a cell from its sums; whether it has any echo. */
@@ -107,6 +110,7 @@ private:
     std::optional<EchoField> field_;  ///< or of fields.
     ObjectPlaces places_;
     RayVisibility visibility_;
+    std::optional<RayPaths> ray_paths_;  ///< None where rays are straight.
     std::vector<PlaneRecord> planes_;
     NormalMapping normal_maps_;
     std::vector<PlacedRun> runs_;      ///< Of the visibility's commands, in this ping.
@@ -133,6 +137,8 @@ CastEchoes::CastEchoes(const RenderPlan& plan, types::GeometryPtr geometry)
       normal_maps_(*geometry_),
       threads_(plan.options.threads),
       workers_(static_cast<size_t>(threads_.size())) {
+    if (plan.features.has(Feature::Refraction) || plan.features.has(Feature::MotionInPing))
+        ray_paths_.emplace(plan, *geometry_);
     runs_.reserve(visibility_.commands().size());
     for (size_t i = 0; i < workers_.size(); ++i) workers_[i].number = i;
     if (plan.has(Pass::Paths)) paths_.emplace(plan, *geometry_, visibility_);
@@ -144,6 +150,8 @@ Features CastEchoes::compiled() const {
     if (plan_.features.has(Feature::Speckle) && !rules_.lattice.empty()) all.add(Feature::Speckle);
     if (view_.cells.weighted) all.add(Feature::ElevationPattern);
     if (!rules_.laws.tables.empty() || rules_.laws.hasLobes()) all.add(Feature::BackscatterLaws);
+    if (plan_.profile && ray_paths_) all.add(Feature::Refraction);
+    if (plan_.config.motion_in_ping && ray_paths_) all.add(Feature::MotionInPing);
     return all | (plan_.features & Features{Feature::Volume, Feature::VolumeLayers});
 }
 
@@ -200,6 +208,7 @@ void CastEchoes::place(const types::Snapshot& snapshot) {
     places_.place(snapshot);
     visibility_.place(snapshot);
     if (paths_) paths_->begin(snapshot, truth_);
+    if (ray_paths_) ray_paths_->place(snapshot);
     runs_.clear();
     for (const CommandRecord& command : visibility_.commands())
         runs_.push_back(placedRun(places_.records()[command.object], command, rules_, 1, 0));
@@ -225,7 +234,9 @@ std::span<const CastTile> CastEchoes::cast(const Part& part, Worker& worker) con
     std::array<TileRays, RayVisibility::tiles_at_once> rays;
     size_t count = 0, waiting = 0;
     const auto castWaiting = [&] {
-        visibility_.cast({rays.data(), waiting}, {&worker.hits[count - waiting], waiting});
+        TileHits* const hits = &worker.hits[count - waiting];
+        if (!bent()) visibility_.cast({rays.data(), waiting}, {hits, waiting});
+        for (size_t i = 0; bent() && i < waiting; ++i) visibility_.castAlong(*ray_paths_, rays[i], hits[i]);
         waiting = 0;
     };
     for (int column = begin; column < end; column += view_.shape.all.columns)

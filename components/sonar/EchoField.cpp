@@ -27,7 +27,8 @@ Beamformer fieldBeamformer(const RenderPlan& plan, size_t numbers) {
             plan.cells,
             numbers,
             {[&](double azimuth, double bearing) { return directivity.azimuthAmplitude(azimuth, bearing); },
-             directivity.nearAzimuth(), std::sqrt(directivity.floor()), true}};
+             plan.config.elements ? 2 * std::numbers::pi : directivity.nearAzimuth(), std::sqrt(directivity.floor()),
+             true}};
 }
 
 /** A uniform number in (0, 1). */

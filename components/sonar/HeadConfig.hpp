@@ -12,6 +12,7 @@ struct HeadConfig {
     double step_deg = 1.8;
     std::optional<bool> continuous;
     std::optional<double> speed_deg_per_s;
+    bool sweeps = false;
 
     double sectorDeg() const { return left_deg - right_deg; }
     /** Whether the head turns on and on, rather than back at its limits. */
@@ -26,6 +27,8 @@ struct HeadConfig {
         visit(Field{"continuous", "", "turns on and on; absent: when the limits are 360 deg apart"}, self.continuous);
         visit(Field{"speed_deg_per_s", "deg/s", "of the head; absent: every step is reached", 0.001, 1e6},
               self.speed_deg_per_s);
+        visit(Field{"sweeps", "", "turns evenly while it listens, with motion_in_ping; false: stands at each step"},
+              self.sweeps);
     }
     void check(types::Diagnostics& diagnostics) const;
     friend bool operator==(const HeadConfig&, const HeadConfig&) = default;
@@ -48,7 +51,7 @@ struct ScanningSonarConfig {
         SonarConfig::describeBeam(self.sonar, visit);
         visit(types::Field{"head", "", "how the head turns; absent: all round, 1.8 deg a ping"}, self.head);
     }
-    void check(types::Diagnostics& diagnostics) const { beam().checkBeam(diagnostics); }
+    void check(types::Diagnostics& diagnostics) const;
 };
 
 }  // namespace insonify::sonar

@@ -23,6 +23,12 @@ void HeadConfig::check(types::Diagnostics& diagnostics) const {
         diagnostics.push_back({"step_deg", fmt::format("is {} deg; the sector has {} deg", step_deg, sectorDeg())});
 }
 
+void ScanningSonarConfig::check(types::Diagnostics& diagnostics) const {
+    beam().checkBeam(diagnostics);
+    if (head.sweeps && !sonar.motion_in_ping)
+        diagnostics.push_back({"head.sweeps", "is true without motion_in_ping: true, which it needs"});
+}
+
 SonarConfig ScanningSonarConfig::beam() const {
     SonarConfig one = sonar;
     one.bearings_deg = {0};

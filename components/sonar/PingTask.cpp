@@ -56,6 +56,7 @@ std::vector<std::string> PingTask::notices() const {
 
 SonarConfig PingTask::locatedConfig() const {
     SonarConfig config = sonarConfig();
+    if (config.water && config.water->profile) config.water->profile = inputPath(*config.water->profile).string();
     if (!config.beam_pattern) return config;
     for (ArrayConfig* array : {&config.beam_pattern->transmit, &config.beam_pattern->receive})
         for (std::optional<acoustics::BeamLaw>* law : {&array->azimuth, &array->elevation})
@@ -66,6 +67,8 @@ SonarConfig PingTask::locatedConfig() const {
 bool PingTask::configureHook() {
     if (const std::string why = whyTooLarge(locatedConfig()); !why.empty())
         throw types::ConfigError("", name() + ".beam_pattern", why);
+    if (const std::string why = whyStraight(locatedConfig()); !why.empty())
+        throw types::ConfigError("", name() + ".water.profile", why);
     if (!rendersOnce() && (truth.connected() || returns.connected()))
         throw types::ConfigError("", name() + (truth.connected() ? ".truth" : ".returns"),
                                  "is connected; a sonar that renders a ping in many parts tells no truth");
@@ -140,6 +143,8 @@ void PingTask::makeRenderer() {
     renderer_ = std::make_unique<SonarRenderer>(begun(config), geometry_);
     if (config.choosesQuality()) quality_.emplace(config, pingsPerTurn());
     plan_ = renderer_->plan();
+    if (const std::string note = depthNotice(renderer_->renderPlan(), aimed_); !note.empty())
+        plan_->notices.push_back(note);
     culling_untold_ = true;
     plan_told_ = false;
     aimed_.moved.reserve(geometry_->objects.size());

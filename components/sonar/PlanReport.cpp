@@ -11,6 +11,7 @@
 #include "components/sonar/Acoustics.hpp"
 #include "components/sonar/BeamFan.hpp"
 #include "components/sonar/BinGrid.hpp"
+#include "components/sonar/Volume.hpp"
 #include "types/Angle.hpp"
 
 namespace insonify::sonar {
@@ -57,7 +58,8 @@ std::string publishedWords(Effect effect) {
 
 std::string boundedWords(const LeftOut& what, const BinGrid& grid) {
     if (what.effect == Effect::Refraction)
-        return fmt::format("a gradient of {} 1/s bends by {:.2g} m at {:.4g} m < {:.2g} m", speed_gradient, what.value,
+        return fmt::format("a gradient of {:.3g} 1/s bends by {:.2g} m at {:.4g} m < {:.2g} m",
+                           2 * what.value * grid.speed_of_sound / (grid.range_max * grid.range_max), what.value,
                            grid.range_max, what.bound);
     if (what.effect == Effect::RangePointSpread)
         return fmt::format("the pulse resolves {:.2g} m, under half a bin, {:.2g} m", what.value, what.bound);
@@ -152,7 +154,7 @@ void noteWater(const SonarConfig& config, const BinGrid& grid, std::vector<std::
                 fmt::format("Warning: absorption is extrapolated outside its law's validity: {}", outside));
     }
     const Bending bent = bending(config, grid);
-    if (bent.offset >= bent.tolerated)
+    if (bent.offset >= bent.tolerated && !(config.water && config.water->profile))
         notices.push_back(
             fmt::format("Warning: rays are straight; a gradient of {} 1/s would bend them by {:.3g} m at "
                         "{:.4g} m",
@@ -164,6 +166,15 @@ std::string listed(const std::vector<std::string>& names) {
     std::string text;
     for (size_t i = 0; i < names.size() && i < 5; ++i) text += fmt::format("{}'{}'", i ? ", " : "", names[i]);
     return names.size() > 5 ? text + ", ..." : text;
+}
+
+void noteMotion(const RenderPlan& plan, std::vector<std::string>& notices) {
+    if (!plan.features.has(Feature::MotionInPing)) return;
+    const MotionBound bound = motionBound(plan.config, plan.grid);
+    notices.push_back(fmt::format(
+        "motion within a ping is followed from {:.2g} m/s or {:.2g} deg/s on; below that it is under half a bin and "
+        "half a beam",
+        bound.speed, types::degrees(bound.turn)));
 }
 
 void noteMaterials(const types::Geometry& geometry, const MaterialLaws& laws, types::Plan& plan) {
@@ -196,6 +207,17 @@ std::vector<std::string> configNotices(const SonarConfig& config) {
     return notices;
 }
 
+std::string depthNotice(const RenderPlan& plan, const types::Snapshot& snapshot) {
+    if (!plan.profile) return {};
+    const double depth = -waterViewOf(snapshot).height, top = plan.profile->top(), bottom = plan.profile->bottom();
+    if (depth >= top && depth <= bottom) return {};
+    return fmt::format(
+        "Warning: at the first ping the sonar is {:.4g} m deep, its profile of the speed of sound goes from {:g} to "
+        "{:g} m; "
+        "beyond them the speed is that of the nearer end",
+        depth, top, bottom);
+}
+
 types::Omission describe(const LeftOut& what, const BinGrid& grid) {
     const std::string name = nameOf(what.effect);
     if (what.reason != Reason::OutOfView) return {name, reasonOf(what, grid)};
@@ -215,6 +237,7 @@ types::Plan report(const RenderPlan& plan, const types::Geometry& geometry) {
     for (const LeftOut& what : plan.left_out) told.omitted.push_back(describe(what, plan.grid));
     told.notices = configNotices(plan.config);
     noteAbsorption(plan, told.notices);
+    noteMotion(plan, told.notices);
     if (plan.config.model == Model::Physical) noteMaterials(geometry, plan.laws, told);
     return told;
 }

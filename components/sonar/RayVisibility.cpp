@@ -7,6 +7,7 @@
 #include <glm/matrix.hpp>
 #include <limits>
 
+#include "components/sonar/RayPaths.hpp"
 #include "components/sonar/SceneTrees.hpp"
 
 namespace insonify::sonar {
@@ -117,6 +118,32 @@ void take(const RTCRayHit16& all, TileHits& hits, const Meaning& meaning) {
     }
 }
 
+using Places = std::array<glm::vec3, tile_samples>;
+
+/** Where a tile's rays are at one range, for an object that moves by `drift`. */
+Places placesOf(const RayPaths& paths, const TileRays& rays, double range, const Drift* drift = nullptr) {
+    Places places;
+    for (int i = 0; i < tile_samples; ++i)
+        places[static_cast<size_t>(i)] =
+            glm::vec3(paths.at(glm::normalize(glm::dvec3(rays.x[i], rays.y[i], rays.z[i])), range, drift));
+    return places;
+}
+
+/** Aims the rays from one place to another; what they have met before stays. */
+void aim(const Rows& turn, glm::vec3 place, const Places& from, const Places& to, RTCRayHit16& all) {
+    for (size_t i = 0; i < tile_samples; ++i) {
+        const glm::vec3 way = to[i] - from[i];
+        all.ray.org_x[i] = place.x + glm::dot(turn.x, from[i]);
+        all.ray.org_y[i] = place.y + glm::dot(turn.y, from[i]);
+        all.ray.org_z[i] = place.z + glm::dot(turn.z, from[i]);
+        all.ray.dir_x[i] = glm::dot(turn.x, way);
+        all.ray.dir_y[i] = glm::dot(turn.y, way);
+        all.ray.dir_z[i] = glm::dot(turn.z, way);
+        all.hit.geomID[i] = RTC_INVALID_GEOMETRY_ID;
+        all.hit.instID[0][i] = RTC_INVALID_GEOMETRY_ID;
+    }
+}
+
 }  // namespace
 
 /** An object that moves. */
@@ -132,6 +159,10 @@ struct RayVisibility::Mover {
 
     void placeAt(const glm::dmat4& sonar_from_object);
     bool mayMeet(const TileRays& rays) const;
+    SceneTrees::Part meaning(uint32_t geometry) const {
+        const SceneTrees::Part& part = mesh->parts[geometry];
+        return {first_command + part.command, part.first_triangle};
+    }
 };
 
 void RayVisibility::Mover::placeAt(const glm::dmat4& sonar_from_object) {
@@ -269,10 +300,47 @@ void RayVisibility::castAtMovers(const TileRays& rays, RTCRayHit16& all, TileHit
         if (!mover.mayMeet(rays)) continue;
         aim(Rows(mover.from_sonar), mover.place, rays, all);
         rtcIntersect16(valid, mover.mesh->scene, &context, &all);
-        take(all, hits, [&](uint32_t geometry, uint32_t) {
-            const SceneTrees::Part& part = mover.mesh->parts[geometry];
-            return SceneTrees::Part{mover.first_command + part.command, part.first_triangle};
-        });
+        take(all, hits, [&](uint32_t geometry, uint32_t) { return mover.meaning(geometry); });
+    }
+}
+
+void RayVisibility::castAlong(const RayPaths& paths, const TileRays& rays, TileHits& hits) const {
+    const std::span<const double> corners = paths.corners();
+    std::fill_n(hits.command, tile_samples, TileHits::nothing);
+    TileRays left = rays;
+    Piece piece{};
+    for (size_t k = 1; k < corners.size() && left.active; ++k) {
+        const double start = corners[k - 1], length = corners[k] - start;
+        piece = {start, corners[k], piece.to, placesOf(paths, rays, corners[k])};
+        RTCRayHit16 all;
+        extend(left, k == 1 ? static_cast<float>(nearest / length) : 0, all);
+        for (float& end : all.ray.tfar) end = std::min(end, 1.0f);
+        castPiece(paths, left, piece, all, hits);
+        for (uint32_t i = 0; i < tile_samples; ++i) {
+            if (hits.command[i] == TileHits::nothing || !(left.active >> i & 1)) continue;
+            hits.range[i] = static_cast<float>(start + static_cast<double>(all.ray.tfar[i]) * length);
+            left.active &= ~(1u << i);
+        }
+    }
+}
+
+void RayVisibility::castPiece(const RayPaths& paths, const TileRays& rays, const Piece& piece, RTCRayHit16& all,
+                              TileHits& hits) const {
+    alignas(64) int valid[tile_samples];
+    for (int i = 0; i < tile_samples; ++i) valid[i] = (rays.active >> i & 1) ? -1 : 0;
+    RTCIntersectContext context = coherentRays();
+    aim(Rows(world_from_sonar_), place_, piece.from, piece.to, all);
+    rtcIntersect16(valid, trees_->still(), &context, &all);
+    take(all, hits, [this](uint32_t geometry, uint32_t instance) { return trees_->meaning(geometry, instance); });
+    for (const Mover& mover : movers_) {
+        if (!mover.placed) continue;
+        if (const Drift* drift = paths.drift(mover.object))
+            aim(Rows(mover.from_sonar), mover.place, placesOf(paths, rays, piece.start, drift),
+                placesOf(paths, rays, piece.end, drift), all);
+        else
+            aim(Rows(mover.from_sonar), mover.place, piece.from, piece.to, all);
+        rtcIntersect16(valid, mover.mesh->scene, &context, &all);
+        take(all, hits, [&](uint32_t geometry, uint32_t) { return mover.meaning(geometry); });
     }
 }
 

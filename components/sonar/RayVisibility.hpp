@@ -12,6 +12,7 @@ struct RTCRayHit16;
 
 namespace insonify::sonar {
 
+class RayPaths;
 class SceneTrees;
 
 /** Directions of a tile's rays in sonar axes, of any length above 0 [1]; `active`: bit i is set where ray i is cast. */
@@ -28,6 +29,7 @@ struct TileHits {
     uint32_t triangle[tile_samples];             ///< Within the mesh of the command's object [1].
     float u[tile_samples], v[tile_samples];  ///< Barycentric coordinates of the triangle's second and third corner [1].
     float distance[tile_samples];            ///< In lengths of the ray's direction [1].
+    float range[tile_samples];               ///< Slant range, of castAlong() alone [m].
 };
 
 /** Rays of a tile that begin anywhere, sonar axes; distances along them in lengths of their directions. */
@@ -61,12 +63,23 @@ public:
     void cast(const PathRays& rays, TileHits& hits) const;
     /** Those of the active rays, as bits, that meet anything. */
     uint32_t blocked(const PathRays& rays) const;
+    /** Casts a tile along ways that are not straight, by straight pieces between their corners. */
+    void castAlong(const RayPaths& paths, const TileRays& rays, TileHits& hits) const;
 
     /** What hits mean: one command for each object and run of one material. */
     const std::vector<CommandRecord>& commands() const { return commands_; }
 
 private:
     struct Mover;
+    /** Of a tile's rays, sonar axes about the sonar [m]. */
+    using Places = std::array<glm::vec3, tile_samples>;
+    /** Of the ways of a tile's rays between two ranges [m]. */
+    struct Piece {
+        double start, end;
+        Places from, to;
+    };
+    void castPiece(const RayPaths& paths, const TileRays& rays, const Piece& piece, RTCRayHit16& all,
+                   TileHits& hits) const;
     void listCommands();
     bool hasNewMover(const types::Snapshot& snapshot) const;
     void build(const types::Snapshot& snapshot);

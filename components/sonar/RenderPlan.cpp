@@ -7,6 +7,7 @@
 #include "components/sonar/Acoustics.hpp"
 #include "components/sonar/RangeResponse.hpp"
 #include "types/Angle.hpp"
+#include "types/ConfigError.hpp"
 
 namespace insonify::sonar {
 namespace {
@@ -83,6 +84,33 @@ void omitMultipath(RenderPlan& plan) {
     plan.left_out.push_back({Effect::Multipath, reason});
 }
 
+bool hasProfile(const SonarConfig& config) { return config.water && config.water->profile; }
+
+/** Whether a profile puts any echo elsewhere: by bending its ray, or by another speed of sound than the sonar's. */
+bool matters(const acoustics::SoundProfile& profile, const SonarConfig& config, const BinGrid& grid) {
+    const double c = grid.speed_of_sound, slow = profile.slowest();
+    const Bending bent = bending(config, grid, profile.steepest() * c / slow);
+    const double off = std::max(c / slow - 1, 1 - c / profile.fastest()) * grid.range_max;
+    return !(bent.offset < bent.tolerated) || !(off < grid.bin_width / 2);
+}
+
+std::shared_ptr<const acoustics::SoundProfile> bendingProfile(const SonarConfig& config, const BinGrid& grid) {
+    if (!hasProfile(config)) return nullptr;
+    auto profile =
+        std::make_shared<const acoustics::SoundProfile>(acoustics::SoundProfile::read(*config.water->profile));
+    return matters(*profile, config, grid) ? profile : nullptr;
+}
+
+void omitRefraction(RenderPlan& plan) {
+    if (plan.profile) return;
+    const bool straight = hasProfile(plan.config);
+    const double gradient =
+        straight ? acoustics::SoundProfile::read(*plan.config.water->profile).steepest() : speed_gradient;
+    const Bending bent = bending(plan.config, plan.grid, gradient);
+    if (bent.offset < bent.tolerated)
+        plan.left_out.push_back({Effect::Refraction, Reason::BelowBound, bent.offset, bent.tolerated});
+}
+
 std::vector<Pass> passesOf(const RenderPlan& plan, const types::Geometry& geometry) {
     std::vector<Pass> passes{Pass::Cull, plan.casts_rays ? Pass::Rays : Pass::Surface, Pass::Deposit};
     if (plan.config.tracesPaths() && hasMirrors(plan, geometry)) passes.push_back(Pass::Paths);
@@ -107,11 +135,10 @@ void omitEffects(const types::Geometry& geometry, RenderPlan& plan) {
     omitMultipath(plan);
     if (plan.frusta.size() == 1)
         plan.left_out.push_back({Effect::FurtherSlabs, Reason::OneImage, plan.config.coverageDeg()});
-    const Bending bent = bending(plan.config, plan.grid);
-    if (bent.offset < bent.tolerated)
-        plan.left_out.push_back({Effect::Refraction, Reason::BelowBound, bent.offset, bent.tolerated});
-    plan.left_out.push_back({Effect::MotionInPing, Reason::Approximated,
-                             plan.grid.bin_width * plan.grid.speed_of_sound / (4 * plan.grid.range_max)});
+    omitRefraction(plan);
+    if (!plan.config.motion_in_ping)
+        plan.left_out.push_back(
+            {Effect::MotionInPing, Reason::Approximated, motionBound(plan.config, plan.grid).speed});
     if (!hasNormalMap(geometry)) plan.left_out.push_back({Effect::NormalMaps, Reason::NoMaterialHasOne});
 }
 
@@ -154,10 +181,28 @@ const LeftOut* RenderPlan::leftOut(Effect effect) const {
     return found == left_out.end() ? nullptr : &*found;
 }
 
-Bending bending(const SonarConfig& config, const BinGrid& grid) {
+Bending bending(const SonarConfig& config, const BinGrid& grid, double gradient) {
     const double r = grid.range_max;
-    return {speed_gradient * r * r / (2 * grid.speed_of_sound),
+    return {gradient * r * r / (2 * grid.speed_of_sound),
             std::max(grid.bin_width, 0.1 * r * types::radians(config.beam_height_deg))};
+}
+
+double dopplerCoupling(const SonarConfig& config) {
+    if (!config.motion_in_ping || !config.pulse || !config.pulse->chirp_us) return 0;
+    return 1e-6 * *config.pulse->chirp_us * config.frequency_khz.value() / config.pulse->bandwidth_khz.value();
+}
+
+MotionBound motionBound(const SonarConfig& config, const BinGrid& grid) {
+    const double flight = 2 * grid.range_max / grid.speed_of_sound;
+    const double seconds = std::max(flight, dopplerCoupling(config));
+    return {grid.bin_width / (2 * seconds), types::radians(config.beamWidthDeg()) / (2 * flight)};
+}
+
+std::string whyStraight(const SonarConfig& config) {
+    const bool drawn = hasProfile(config) && !config.castsRays();
+    if (!bendingProfile(config, makeBinGrid(config)) || !drawn) return {};
+    return "bends what a sonar hears of this range, which rays alone show; visibility may be auto or cpu, without "
+           "published: true and deposit: gpu, in a build with rays";
 }
 
 RenderPlan makeRenderPlan(const SonarConfig& config, const types::Geometry& geometry, const RenderOptions& options) {
@@ -167,7 +212,13 @@ RenderPlan makeRenderPlan(const SonarConfig& config, const types::Geometry& geom
     plan.casts_rays = !options.needImages() && config.castsRays();
     plan.grid = makeBinGrid(config);
     plan.laws = makeMaterialLaws(config, geometry);
+    if (plan.casts_rays)
+        plan.profile = bendingProfile(config, plan.grid);
+    else if (const std::string why = whyStraight(config); !why.empty())
+        throw types::ConfigError("", "water.profile", why);
     plan.features = featuresOf(config, options, geometry, plan.laws);
+    if (plan.profile) plan.features.add(Feature::Refraction);
+    if (config.motion_in_ping) plan.features.add(Feature::MotionInPing);
     plan.beams = makeBeams(config);
     if (config.beam_pattern) plan.directivity.emplace(config);
     plan.passes = passesOf(plan, geometry);

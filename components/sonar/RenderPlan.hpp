@@ -1,10 +1,12 @@
 #pragma once
 #include <algorithm>
 #include <limits>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "components/acoustics/SoundProfile.hpp"
 #include "components/sonar/BeamFan.hpp"
 #include "components/sonar/BinGrid.hpp"
 #include "components/sonar/Directivity.hpp"
@@ -29,9 +31,11 @@ enum class Feature {
     BackscatterLaws,  ///< Of any material: a table, or a lobe.
     Volume,
     VolumeLayers,
-    Speckle  ///< Fields of scatterers are summed, not energies.
+    Speckle,  ///< Fields of scatterers are summed, not energies.
+    Refraction,
+    MotionInPing
 };
-constexpr int feature_count = 13;
+constexpr int feature_count = 15;
 
 /** A set of features. */
 class Features {
@@ -129,6 +133,7 @@ struct RenderPlan {
     std::vector<Pass> passes;
     BinGrid grid;
     MaterialLaws laws;
+    std::shared_ptr<const acoustics::SoundProfile> profile;  ///< That bends the rays; null: they are straight.
     std::vector<Beam> beams;
     std::optional<Directivity> directivity;  ///< None without a beam pattern.
     SonarConfig sampled;                     ///< What is sampled: sampledConfig(), or `config`.
@@ -150,22 +155,40 @@ RenderPlan makeRenderPlan(const SonarConfig& config, const types::Geometry& geom
  * [1]: one that is declared to, or from two on one that is smooth (ACOUSTICS.md 5.24); 0: it does not. */
 double reflectedPower(const types::Material& material, int bounces);
 
-/** Gradient of the speed of sound with depth that refraction is judged by, a strong thermocline [1/s]. */
+/** Gradient of the speed of sound with depth that refraction is judged by without a profile, a strong thermocline
+ *  [1/s]. */
 constexpr double speed_gradient = 0.1;
 
-/** How far a ray is bent at the far edge by speed_gradient, and what of it can be ignored [m] (ACOUSTICS.md 12). */
+/** How far a ray is bent at the far edge by a gradient [1/s], and what of it can be ignored [m] (ACOUSTICS.md 12). */
 struct Bending {
     double offset, tolerated;
 };
-Bending bending(const SonarConfig& config, const BinGrid& grid);
+Bending bending(const SonarConfig& config, const BinGrid& grid, double gradient = speed_gradient);
+
+/** From where on motion within a ping is heard: half a bin at the far edge, half the width of a beam (ACOUSTICS.md 12).
+ */
+struct MotionBound {
+    double speed;  ///< [m/s]
+    double turn;   ///< [rad/s]
+};
+MotionBound motionBound(const SonarConfig& config, const BinGrid& grid);
+
+/** What a chirp adds to the range of an echo for each metre a second at which it recedes, f T / B; 0: nothing [s]. */
+double dopplerCoupling(const SonarConfig& config);
+
+/** Why a sonar cannot bend its rays as its profile of the speed of sound would have them; empty where it can, or where
+ *  these are too straight for it to matter.
+ *  @throws types::ConfigError with all that is wrong with the profile's file */
+std::string whyStraight(const SonarConfig& config);
 
 }  // namespace insonify::sonar
 
 template <>
 struct insonify::types::EnumNames<insonify::sonar::Feature> {
     static constexpr std::string_view names[] = {
-        "physical", "cerqueira2017",     "absorption",       "published", "conical",       "normal_map", "nearest",
-        "jitter",   "elevation_pattern", "backscatter_laws", "volume",    "volume_layers", "speckle"};
+        "physical",   "cerqueira2017", "absorption", "published",         "conical",
+        "normal_map", "nearest",       "jitter",     "elevation_pattern", "backscatter_laws",
+        "volume",     "volume_layers", "speckle",    "refraction",        "motion_in_ping"};
 };
 template <>
 struct insonify::types::EnumNames<insonify::sonar::Pass> {

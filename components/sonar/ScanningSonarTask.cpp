@@ -2,7 +2,12 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <numbers>
+
 #include "components/sonar/AltimeterTask.hpp"
+#include "components/sonar/Motion.hpp"
 #include "components/sonar/ProfilerTask.hpp"
 #include "components/sonar/SideScanTask.hpp"
 #include "components/sonar/Sonar3dTask.hpp"
@@ -15,6 +20,7 @@ namespace insonify::sonar {
 bool ScanningSonarTask::startHook() {
     scan_.emplace(config->head);
     last_.reset();
+    before_.reset();
     step_checked_ = false;
     return true;
 }
@@ -31,10 +37,25 @@ const char* ScanningSonarTask::steer(types::Snapshot& scene) {
     if (last_ && scene.time < *last_) return "the snapshot is older than the one before";
     if (last_ && !step_checked_) checkStep((scene.time - *last_).seconds());
     step_checked_ = last_.has_value();
+    const double seconds = last_ ? (scene.time - *last_).seconds() : 0;
     last_ = scene.time;
-    const double bearing = types::radians(scan_->bearingDeg());
-    scene.sonar.orientation *= glm::angleAxis(bearing, glm::dvec3(0, 0, 1));
+    const Aim aim{scene.sonar.orientation, types::radians(scan_->bearingDeg())};
+    scene.sonar.orientation *= glm::angleAxis(aim.bearing, glm::dvec3(0, 0, 1));
+    if (config->sonar.motion_in_ping) turn(scene.sonar, aim, seconds);
+    before_ = aim;
     return nullptr;
+}
+
+void ScanningSonarTask::turn(types::Pose& sonar, const Aim& aim, double seconds) const {
+    const bool follows = before_ && seconds > 0;
+    glm::dvec3 turn(0);  // in the world
+    if (std::isfinite(glm::length(sonar.angular_velocity)))
+        turn = aim.body * sonar.angular_velocity;
+    else if (follows)
+        turn = turnBetween(before_->body, aim.body, seconds);
+    const double step = follows ? std::remainder(aim.bearing - before_->bearing, 2 * std::numbers::pi) : 0;
+    if (config->head.sweeps && follows) turn += aim.body * glm::dvec3(0, 0, step / seconds);
+    sonar.angular_velocity = glm::conjugate(sonar.orientation) * turn;
 }
 
 void ScanningSonarTask::stampBearings(types::Sonar& sample) {

@@ -27,10 +27,19 @@ protected:
     int pingsPerTurn() const override { return scan_->pingsPerTurn(); }
 
 private:
+    /** Where a ping looks: the sonar with its head ahead, in the world, and the bearing of the head [rad]. */
+    struct Aim {
+        glm::dquat body;
+        double bearing;
+    };
     void checkStep(double period) const;
+    /** Gives a sonar whose head has been turned its angular velocity: that of what carries it, and where the head
+     * sweeps, its own. */
+    void turn(types::Pose& sonar, const Aim& aim, double seconds) const;
 
     std::optional<HeadScan> scan_;
     std::optional<types::Time> last_;  ///< Of the ping before.
+    std::optional<Aim> before_;        ///< Likewise.
     bool step_checked_ = false;
 };
 

@@ -39,6 +39,9 @@ void checkPhysics(const SonarConfig& config, types::Diagnostics& diagnostics) {
         diagnostics.push_back({"volume", fmt::format("has {} layers; may have {}", config.volume.size(), max_layers)});
     if (means && config.pulse)
         diagnostics.push_back({"pulse", "is given with model: cerqueira2017; it belongs to physical"});
+    if (config.pulse && config.pulse->chirp_us && !(config.motion_in_ping && config.frequency_khz))
+        diagnostics.push_back(
+            {"pulse.chirp_us", "is given without motion_in_ping: true and frequency_khz, both of which it needs"});
     if (!config.beam_pattern || config.frequency_khz) return;
     const auto checkLaw = [&](const std::string& path, const std::optional<acoustics::BeamLaw>& law) {
         if (law && law->aperture_m)
@@ -71,6 +74,15 @@ void checkNeedOfRays(const SonarConfig& config, types::Diagnostics& diagnostics)
         diagnostics.push_back({"deposit", "is gpu with " + name + ", which needs rays; may be auto or cpu"});
     if (config.model != Model::Physical)
         diagnostics.push_back({name, "is given with model: cerqueira2017, whose bins are means of S(n.d)"});
+}
+
+/** Of ways that are bent, what follows straight ones alone. */
+void checkStraightWays(const SonarConfig& config, types::Diagnostics& diagnostics) {
+    const bool bends = config.water && config.water->profile;
+    const std::string name = config.needsRays();
+    if (!name.empty() && (bends || config.motion_in_ping))
+        diagnostics.push_back({name, std::string("follows straight ways; leave it out, or ") +
+                                         (bends ? "water.profile" : "motion_in_ping")});
 }
 
 void checkSpeckle(const SonarConfig& config, types::Diagnostics& diagnostics) {
@@ -232,7 +244,7 @@ bool SonarConfig::castsRays() const {
     if (visibility != Visibility::Auto) return visibility == Visibility::Cpu;
     if (!needsRays().empty()) return true;
     if (!haveRays() || published || deposit == Deposit::Gpu) return false;
-    if (!fitsImages(*this)) return true;
+    if (!fitsImages(*this) || (water && water->profile) || motion_in_ping) return true;
     return !gpu::EglContext::isAskedFor(device) && !gpu::EglContext::hasCard();
 }
 
@@ -321,10 +333,16 @@ void SonarConfig::checkBeam(types::Diagnostics& diagnostics) const {
     checkPhysics(*this, diagnostics);
     checkRangeReached(*this, diagnostics);
     checkVisibility(*this, diagnostics);
+    checkStraightWays(*this, diagnostics);
     checkSpeckle(*this, diagnostics);
     checkElements(*this, diagnostics);
     if (!diagnostics.empty()) return;
     if (castsRays()) return checkRays(*this, diagnostics);
+    if (motion_in_ping)
+        return diagnostics.push_back(
+            {"motion_in_ping",
+             "is true, which rays alone follow; visibility may be auto or cpu, without published: "
+             "true and deposit: gpu, in a build with rays"});
     checkDevice(device, diagnostics);
     checkImages(*this, diagnostics);
 }

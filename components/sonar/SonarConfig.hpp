@@ -112,7 +112,7 @@ struct MultipathConfig {
 };
 
 /** Echoes that interfere: each surface is a lattice of scatterers that belong to its object, and what a bin holds is
- * the square of the sum of their fields (ACOUSTICS.md 5.17). */
+ * the square of the sum of their fields (ACOUSTICS.md 5.23). */
 struct SpeckleConfig {
     bool coherent = false;
     int scatterers_per_cell = 20;
@@ -228,6 +228,7 @@ struct SonarConfig {
     std::optional<BeamPatternConfig> beam_pattern;
     std::optional<acoustics::PulseConfig> pulse;
     std::vector<VolumeLayer> volume;
+    bool motion_in_ping = false;
     std::optional<SpeckleConfig> speckle;
     std::optional<ElementsConfig> elements;
     std::optional<MultipathConfig> multipath;
@@ -330,6 +331,9 @@ void SonarConfig::describeBeam(Self& self, V& visit) {
           self.beam_pattern);
     visit(Field{"pulse", "", "what an echo leaves in range; absent: it is in its own bin alone"}, self.pulse);
     visit(Field{"volume", "", "water that scatters sound back, or a list of its layers; absent: none"}, self.volume);
+    visit(Field{"motion_in_ping", "",
+                "sonar and objects move, and the receiver turns, while sound is under way; false: all stand still"},
+          self.motion_in_ping);
     visit(Field{"speckle", "", "echoes that interfere, by scatterers of the scene; absent: energies are summed"},
           self.speckle);
     visit(Field{"elements", "",

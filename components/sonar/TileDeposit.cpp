@@ -23,7 +23,8 @@ struct Cells {
     double strength[stretch];                               ///< Of the material [1].
     double facet_slope[stretch];                            ///< What its facet adds to a lobe's mean square slope [1].
     uint32_t material[stretch];
-    double mapped[stretch];                          ///< Cosine of a bent normal; 0: it is the plane's [1].
+    double mapped[stretch];  ///< Cosine of a bent normal, or of a bent ray; 0: it is the plane's [1].
+    double focus[stretch];   ///< What bent rays bring together [1].
     double near_limit[stretch], far_limit[stretch];  ///< Inverse ranges of the object [1/m].
     int beam[stretch];
 };
@@ -157,6 +158,8 @@ public:
     void finish() {
         cover(cells_, count_, rules_.edges.front(), rules_.edges[static_cast<size_t>(rules_.bins.bin_count)], covered_);
         if (rules_.features.has(Feature::BackscatterLaws)) applyLaws(rules_, cells_, count_, covered_);
+        if (scene_.paths && rules_.features.has(Feature::Physical))
+            for (int i = 0; i < count_; ++i) covered_.strength_range[i] *= cells_.focus[i];
         if constexpr (Estimator::tells_truth) regard(cells_, count_, shown_);
         for (int i = 0; i < count_; ++i) {
             if constexpr (Estimator::tells_truth) estimator_.regard(shown_.get(i));
@@ -237,8 +240,8 @@ private:
     /** Samples from i on that are a rectangle of one triangle in one beam. */
     int sameFrom(const TileHits& hits, int i) const {
         const auto alignment = static_cast<uint32_t>(i == 0 ? tile_samples : i & -i);
-        const int most =
-            std::min(static_cast<int>(alignment), sums_fields<Estimator> ? tile_samples : shape_.max_merged);
+        const int largest = sums_fields<Estimator> ? tile_samples : shape_.max_merged;
+        const int most = scene_.paths ? 1 : std::min(static_cast<int>(alignment), largest);
         int run = 1;
         while (run < most && hits.triangle[i + run] == hits.triangle[i] && hits.command[i + run] == hits.command[i])
             ++run;
@@ -265,11 +268,31 @@ private:
         aim(tile, sample, merged);
         if constexpr (sums_fields<Estimator>) places_[i].object = scene_.commands[tile.hits->command[sample]].object;
         if (normal_maps) cells_.mapped[i] = mappedCosine(tile, sample, merged);
+        if (scene_.paths)
+            bend(static_cast<double>(tile.hits->range[sample]),
+                 scene_.paths->drift(scene_.commands[tile.hits->command[sample]].object));
         if constexpr (Estimator::tells_truth) {
             shown_.object[i] = scene_.commands[tile.hits->command[sample]].object;
             shown_.hits[i] = static_cast<uint32_t>(merged);
         }
         if (++count_ == stretch) finish();
+    }
+
+    /** Puts the plane that the cell seems to be of, at about a range [m], in the place of the true one. */
+    void bend(double range, const Drift* drift) {
+        const int i = count_;
+        const glm::dvec3 ray(cells_.cos_el[i] * cells_.cos_az[i], cells_.cos_el[i] * cells_.sin_az[i],
+                             cells_.sin_el[i]);
+        const ApparentPlane plane = scene_.paths->apparent({cells_.normal_x[i], cells_.normal_y[i], cells_.normal_z[i]},
+                                                           cells_.distance[i], ray, range, drift);
+        cells_.normal_x[i] = plane.normal.x;
+        cells_.normal_y[i] = plane.normal.y;
+        cells_.normal_z[i] = plane.normal.z;
+        cells_.distance[i] = 1;
+        cells_.focus[i] = plane.focus;
+        if (!normal_maps || !(cells_.mapped[i] > 0)) cells_.mapped[i] = plane.cosine;
+        cells_.near_limit[i] = scene_.paths->nearLimit(cells_.near_limit[i]);
+        cells_.far_limit[i] = 0;  // bent rays may take any way round
     }
 
     /** Of the middle of the cell that aim() has just put down; 0 where its material has no map. */

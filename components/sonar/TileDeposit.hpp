@@ -5,6 +5,7 @@
 #include "components/sonar/DepositRow.hpp"
 #include "components/sonar/EchoRules.hpp"
 #include "components/sonar/NormalMapping.hpp"
+#include "components/sonar/RayPaths.hpp"
 #include "components/sonar/RayVisibility.hpp"
 #include "components/sonar/TruthTable.hpp"
 #include "components/sonar/Volume.hpp"
@@ -19,6 +20,7 @@ struct PlacedScene {
     const std::vector<PlaneRecord>& planes;
     const NormalMapping& normal_maps;
     WaterView water;
+    const RayPaths* paths = nullptr;  ///< Null where rays are straight.
 };
 
 /** How samples lie. */

@@ -159,6 +159,9 @@ private:
             case sonar::Effect::NormalMaps:
                 with.snapshot.geometry = withFlatMap(*planned_.snapshot.geometry);
                 return bound(1e-6, "change: a map that bends nothing, in float");
+            case sonar::Effect::MotionInPing:
+                with.config.motion_in_ping = true;
+                return planned_.config.castsRays() && bound(0, "change: a sonar at rest");
             case sonar::Effect::AbsorptionInBin: return splitBins(with, row);
             case sonar::Effect::FurtherSlabs:
                 with.options.min_frusta = 2;

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <fstream>
 #include <optional>
 #include <set>
 
@@ -231,6 +232,12 @@ TEST(OmissionTest, MotionWithinAPingIsLeftOutBelowASpeed) {
     ASSERT_TRUE(motion);
     const double travel_time = 2 * 40 / 1000.0;  // [s]
     EXPECT_DOUBLE_EQ(motion->value * travel_time, 0.1 / 2) << "half a bin [m]";
+    SonarConfig at_rest = plainSonar();
+    at_rest.device = "";
+    at_rest.visibility = Visibility::Cpu;
+    const Bins without = binsOf(at_rest);
+    at_rest.motion_in_ping = true;
+    EXPECT_EQ(binsOf(at_rest), without);
 }
 
 /** Sonars that want each feature there is, by each way to render. */
@@ -264,6 +271,12 @@ std::vector<std::pair<SonarConfig, RenderOptions>> sonarsOfAllFeatures() {
         config.published = true;
         config.deposit = deposit;
     }
+    SonarConfig& bent = all.emplace_back(plainSonar(), RenderOptions{}).first;
+    bent.visibility = Visibility::Cpu;
+    bent.device = "";
+    bent.motion_in_ping = true;
+    bent.water.emplace().profile = testing::TempDir() + "omission.csv";
+    std::ofstream(*bent.water->profile) << "depth_m,sound_speed_m_s\n0,1000\n20,1050\n";
     return all;
 }
 

@@ -1,0 +1,358 @@
+// What moves and turns while sound is under way, against exact solutions of its way there and back (ACOUSTICS.md 5.22).
+#include <gmock/gmock.h>
+
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <glm/gtc/quaternion.hpp>
+
+#include "components/sonar/Motion.hpp"
+#include "components/sonar/PlanReport.hpp"
+#include "components/sonar/ScanningSonarTask.hpp"
+#include "components/sonar/SonarRenderer.hpp"
+#include "tests/support/Scenes.hpp"
+#include "tests/support/TaskBench.hpp"
+#include "types/Angle.hpp"
+
+namespace insonify::sonar {
+namespace {
+
+using ::testing::HasSubstr;
+using types::radians;
+
+constexpr double c = 1500;
+
+/** 40 beams of 1 deg to 300 m, by bins of 0.1 m. */
+SonarConfig fan() {
+    SonarConfig config;
+    config.range_rounding = RangeRounding::Exact;
+    config.speed_of_sound = c;
+    config.range = 300;
+    config.bin_count = 3000;
+    config.beam_count = 40;
+    config.field_of_view_deg = 40;
+    config.beam_height_deg = 10;
+    config.visibility = Visibility::Cpu;
+    config.quality.rows = 128;
+    config.quality.columns_per_beam = 4;
+    config.motion_in_ping = true;
+    return config;
+}
+
+/** A plate of 1 m across the x axis about its object's origin. */
+types::Mesh plate(float size = 1) { return test::quad({0, -size / 2, -size / 2}, {0, size, 0}, {0, 0, size}); }
+
+struct Loudest {
+    double range;
+    double bearing;  ///< [rad]
+    float intensity;
+};
+
+Loudest loudestOf(const types::Sonar& ping, double bin_width = 0.1) {
+    const auto at = static_cast<size_t>(std::ranges::max_element(ping.bins) - ping.bins.begin());
+    return {bin_width * (static_cast<double>(at % ping.bin_count) + 0.5), ping.bearings[at / ping.bin_count].rad,
+            ping.bins[at]};
+}
+
+types::Snapshot movingSonar(const types::GeometryPtr& geometry, glm::dvec3 velocity, glm::dvec3 turn = {}) {
+    types::Snapshot snapshot = test::snapshotOf(geometry);
+    snapshot.sonar.velocity = velocity;
+    snapshot.sonar.angular_velocity = turn;
+    return snapshot;
+}
+
+types::Sonar pingOf(const SonarConfig& config, const types::Snapshot& snapshot) {
+    SonarRenderer renderer(config, snapshot.geometry);
+    types::Sonar ping;
+    renderer.render(snapshot, ping);
+    return ping;
+}
+
+/** The second ping of an object that has moved for 0.5 s, by its velocity, to where it is. */
+types::Sonar pingOfMoving(const SonarConfig& config, const types::GeometryPtr& geometry, glm::dvec3 place,
+                          glm::dvec3 velocity, glm::dvec3 sonar_velocity = {}) {
+    SonarRenderer renderer(config, geometry);
+    types::Sonar ping;
+    for (const double ago : {0.5, 0.0}) {
+        types::Snapshot snapshot = test::snapshotOf(geometry, -ago * sonar_velocity);
+        snapshot.time = types::Time::fromSeconds(10 - ago);
+        glm::dmat4 there(1);
+        there[3] = glm::dvec4(place - ago * velocity, 1);
+        snapshot.moved = {{0, there}};
+        renderer.render(snapshot, ping);
+    }
+    return ping;
+}
+
+/** The slant range and the direction at which a point is heard: |p(t1) - s(0)| = c t1, |s(t2) - p(t1)| = c (t2 - t1),
+ *  solved by halving. */
+struct Heard {
+    double range;
+    glm::dvec3 direction;
+};
+template <class F>
+double rootOf(const F& f, double low, double high) {
+    for (int i = 0; i < 200; ++i) {
+        const double middle = 0.5 * (low + high);
+        (f(middle) < 0 ? low : high) = middle;
+    }
+    return low;
+}
+Heard exactly(glm::dvec3 point, glm::dvec3 point_velocity, glm::dvec3 sonar_velocity) {
+    const double out = rootOf([&](double t) { return c * t - glm::length(point + point_velocity * t); }, 0,
+                              4 * glm::length(point) / c);
+    const glm::dvec3 met = point + point_velocity * out;
+    const double back = rootOf([&](double t) { return c * (t - out) - glm::length(sonar_velocity * t - met); }, out,
+                               8 * glm::length(point) / c);
+    return {c * back / 2, glm::normalize(met - sonar_velocity * back)};
+}
+
+TEST(MotionTest, APointIsHeardAtTheRangeOfSoundsExactWayToItAndBack) {
+    struct Case {
+        glm::dvec3 place, velocity, sonar;
+    };
+    for (const Case& moving :
+         {Case{{200, 5, 0}, {-20, 0, 0}, {}}, Case{{200, 5, 0}, {}, {15, 0, 0}},
+          Case{{250, -40, 3}, {10, 12, 0}, {25, -3, 0.5}}, Case{{80, 10, 0}, {30, 0, 0}, {-20, 0, 0}}}) {
+        const types::Sonar ping =
+            pingOfMoving(fan(), test::sceneOf({plate()}), moving.place, moving.velocity, moving.sonar);
+        const Heard exact = exactly(moving.place, moving.velocity, moving.sonar);
+        const Loudest loudest = loudestOf(ping);
+        EXPECT_NEAR(loudest.range, exact.range, 0.11);
+        EXPECT_NEAR(loudest.bearing, std::atan2(exact.direction.y, exact.direction.x), radians(0.6));
+        EXPECT_GT(std::abs(exact.range - glm::length(moving.place)), 1) << "where it was, stop and hop does not pass";
+    }
+}
+
+TEST(MotionTest, AWallAheadOfAMovingSonarIsHeardNearerInEachBeam) {
+    const auto geometry = test::sceneOf({test::wall(200)});
+    const glm::dvec3 velocity{25, 8, 0};
+    SonarRenderer renderer(fan(), geometry);
+    types::Sonar ping;
+    types::SonarTruth truth;
+    renderer.setTruth(ping, &truth);
+    renderer.render(movingSonar(geometry, velocity), ping);
+    for (size_t beam = 0; beam < 40; beam += 3) {
+        // The beam hears, at the edge that is nearer to the wall's foot, the range at which the arriving ray has met
+        // it.
+        const double edge = std::abs(ping.bearings[beam].rad) - radians(0.5);
+        const double bearing = std::copysign(edge, ping.bearings[beam].rad);
+        const glm::dvec3 ray(std::cos(bearing), std::sin(bearing), 0);
+        const double range = rootOf(
+            [&](double r) {
+                const glm::dvec3 there = velocity * (2 * r / c);
+                const double leg = (4 * r * r - glm::dot(there, there)) / (4 * r + 2 * glm::dot(ray, there));
+                return (there + leg * ray).x - 200;
+            },
+            100, 400);
+        const float* bins = &ping.bins[beam * ping.bin_count];
+        const auto first = std::find_if(bins, bins + ping.bin_count, [](float x) { return x > 0; }) - bins;
+        EXPECT_NEAR(0.1 * static_cast<double>(first), range, 0.2) << beam;
+        EXPECT_GT(std::abs(range - 200 / ray.x), 2) << "a wall that is heard where it stands does not pass";
+    }
+}
+
+TEST(MotionTest, AFloorUnderAMovingSonarHasTheEnergyOfOneUnderASonarAtRest) {
+    const auto geometry = test::sceneOf({test::ground(-10)});
+    SonarConfig config = fan();
+    config.beam_height_deg = 40;
+    const auto energyOf = [&](glm::dvec3 velocity) {
+        double sum = 0;
+        const types::Sonar ping = pingOf(config, movingSonar(geometry, velocity));
+        for (size_t i = 0; i < ping.bins.size(); ++i) sum += ping.bins[i];
+        return sum;
+    };
+    const double rest = energyOf({});
+    EXPECT_GT(rest, 0);
+    EXPECT_NEAR(energyOf({15, 0, 0}) / rest, 1, 4 * 15 / c);
+}
+
+TEST(MotionTest, AReceiverThatTurnsHearsAnEchoFromWhereItLooksByThen) {
+    const double turn = radians(30), flight = 2 * 200 / c, bearing = radians(5);
+    const auto geometry = test::sceneOf({plate()}, 0, {{200 * std::cos(bearing), 200 * std::sin(bearing), 0}});
+    const Loudest loudest = loudestOf(pingOf(fan(), movingSonar(geometry, {}, {0, 0, turn})));
+    EXPECT_NEAR(loudest.range, 200, 0.11);
+    EXPECT_NEAR(loudest.bearing, bearing - turn * flight, radians(0.6));
+    EXPECT_GT(turn * flight, radians(7)) << "where it was is seven beams off";
+}
+
+TEST(MotionTest, ASonarOfOneBeamLooksHalfAsFarRoundForItSentWithItToo) {
+    const double turn = radians(45), flight = 2 * 200 / c;
+    SonarConfig one = fan();
+    one.beam_count = 1;
+    one.field_of_view_deg = 2;
+    const auto heardAt = [&](double bearing) {
+        const auto geometry = test::sceneOf({plate(3)}, 0, {{200 * std::cos(bearing), 200 * std::sin(bearing), 0}});
+        return loudestOf(pingOf(one, movingSonar(geometry, {}, {0, 0, turn}))).intensity;
+    };
+    EXPECT_GT(heardAt(turn * flight / 2), 0);
+    EXPECT_EQ(heardAt(0), 0);
+    EXPECT_EQ(heardAt(turn * flight), 0);
+}
+
+TEST(MotionTest, AChirpShiftsWhatMovesByItsRangeDopplerCoupling) {
+    SonarConfig config = fan();
+    config.frequency_khz = 300;
+    config.pulse.emplace().bandwidth_khz = 5;
+    config.pulse->chirp_us = 20000;
+    const double seconds = 0.02 * 300e3 / 5e3, speed = 2;  // f T / B = 1.2 s
+    EXPECT_DOUBLE_EQ(dopplerCoupling(config), seconds);
+    const auto geometry = test::sceneOf({plate()});
+    for (const double away : {speed, -speed}) {
+        const Heard exact = exactly({150, 1, 0}, {away, 0, 0}, {});
+        EXPECT_NEAR(loudestOf(pingOfMoving(config, geometry, {150, 1, 0}, {away, 0, 0})).range,
+                    exact.range + away * seconds, 0.11);
+    }
+    config.pulse->chirp_us.reset();
+    const double plain = loudestOf(pingOfMoving(config, geometry, {150, 1, 0}, {speed, 0, 0})).range;
+    EXPECT_NEAR(plain, exactly({150, 1, 0}, {speed, 0, 0}, {}).range, 0.11) << "no chirp, no shift";
+}
+
+TEST(MotionTest, ASonarAtRestAndOneThatIsSlowChangeNoBit) {
+    const auto geometry = test::sceneOf({test::ground(-10), plate(5)}, -10, {{}, {100, 3, 0}});
+    SonarConfig without = fan();
+    without.motion_in_ping = false;
+    const types::Sonar absent = pingOf(without, movingSonar(geometry, {}));
+    EXPECT_GT(loudestOf(absent).intensity, 0);
+    const double slow = 0.99 * motionBound(fan(), makeBinGrid(fan())).speed;
+    EXPECT_NEAR(slow, 0.99 * 0.1 * c / (4 * 300), 1e-9);
+    for (const glm::dvec3& velocity : {glm::dvec3(0), glm::dvec3(slow, 0, 0), glm::dvec3(types::Pose::unknown)})
+        EXPECT_EQ(pingOf(fan(), movingSonar(geometry, velocity)).bins, absent.bins);
+    EXPECT_NE(pingOf(fan(), movingSonar(geometry, {slow / 0.9, 0, 0})).bins, absent.bins);
+}
+
+TEST(MotionTest, ThePlanTellsFromWhichSpeedOnMotionIsFollowed) {
+    const auto geometry = test::sceneOf({test::ground(-10)});
+    const RenderPlan plan = makeRenderPlan(fan(), *geometry);
+    EXPECT_TRUE(plan.features.has(Feature::MotionInPing));
+    EXPECT_FALSE(plan.leftOut(Effect::MotionInPing));
+    EXPECT_THAT(report(plan, *geometry).notices,
+                testing::Contains(HasSubstr("motion within a ping is followed from 0.12 m/s or 1.2 deg/s on")));
+    SonarConfig without = fan();
+    without.motion_in_ping = false;
+    EXPECT_TRUE(makeRenderPlan(without, *geometry).leftOut(Effect::MotionInPing));
+}
+
+/** What is wrong with a configuration, joined. */
+std::string diagnosticsOf(const SonarConfig& config) {
+    types::Diagnostics diagnostics;
+    config.check(diagnostics);
+    std::string all;
+    for (const types::Diagnostic& each : diagnostics) all += each.path + ": " + each.message + "\n";
+    return all;
+}
+
+TEST(MotionTest, WhatItNeedsIsToldWhereItIsMissing) {
+    EXPECT_EQ(diagnosticsOf(fan()), "");
+    SonarConfig config = fan();
+    config.visibility = Visibility::Gl;
+    config.device = "software";
+    EXPECT_THAT(diagnosticsOf(config), HasSubstr("motion_in_ping: is true, which rays alone follow"));
+    config = fan();
+    config.pulse.emplace().bandwidth_khz = 50;
+    config.pulse->chirp_us = 1000;
+    EXPECT_THAT(diagnosticsOf(config),
+                HasSubstr("pulse.chirp_us: is given without motion_in_ping: true and frequency_khz"));
+    types::Diagnostics diagnostics;
+    acoustics::PulseConfig tone;
+    tone.duration_us = tone.chirp_us = 100;
+    tone.check(diagnostics);
+    ASSERT_EQ(diagnostics.size(), 1u);
+    EXPECT_EQ(diagnostics[0].path, "chirp_us");
+    ScanningSonarConfig head;
+    head.head.sweeps = true;
+    diagnostics.clear();
+    head.check(diagnostics);
+    ASSERT_EQ(diagnostics.size(), 1u);
+    EXPECT_EQ(diagnostics[0].path, "head.sweeps");
+}
+
+TEST(MotionTest, VelocitiesAreThoseOfThePoseElseOfTwoSnapshots) {
+    const auto geometry = test::sceneOf({plate(), plate()});
+    Motion motion(*geometry);
+    types::Snapshot snapshot = test::snapshotOf(geometry, {1e6, 2, 3}, 0.2);
+    glm::dmat4 place(1);
+    place[3] = {1e6, 10, 0, 1};
+    snapshot.moved = {{1, place}};
+    snapshot.targets = {{{5, 0, 0}, 0}};
+    motion.follow(snapshot);
+    EXPECT_EQ(motion.velocity(), glm::dvec3(0));
+    EXPECT_EQ(motion.fastest(), 0);
+    snapshot.time.microseconds += 500'000;
+    snapshot.sonar.position += glm::dvec3(1, -2, 0.5);
+    snapshot.sonar.orientation = glm::angleAxis(0.3, glm::dvec3(0, 0, 1));
+    const glm::dquat spun = glm::angleAxis(0.01, glm::dvec3(0, 0, 1));
+    snapshot.moved[0].world_from_object = glm::mat4_cast(spun);
+    snapshot.moved[0].world_from_object[3] = {1e6 + 3, 10, 0, 1};
+    snapshot.targets[0].position.y = 4;
+    for (int again = 0; again < 2; ++again) {  // a ping that is rendered twice
+        motion.follow(snapshot);
+        EXPECT_NEAR(glm::distance(motion.velocity(), {2, -4, 1}), 0, 1e-9);
+        EXPECT_NEAR(glm::distance(motion.turn(), {0, 0, 0.2}), 0, 1e-9);
+        EXPECT_NEAR(glm::distance(motion.targetVelocity(0), {0, 8, 0}), 0, 1e-9);
+        EXPECT_FALSE(motion.drift(0));
+        ASSERT_TRUE(motion.drift(1));
+        const glm::dvec3 origin =
+            glm::conjugate(snapshot.sonar.orientation) * (glm::dvec3(1e6 + 3, 10, 0) - snapshot.sonar.position);
+        const glm::dvec3 seen = snapshot.sonar.orientation * motion.drift(1)->at(origin);
+        EXPECT_NEAR(glm::distance(seen, {6, 0, 0}), 0, 1e-6);
+        EXPECT_NEAR(motion.drift(1)->linear[0].y, 0.02, 1e-4);
+    }
+    snapshot.time.microseconds += 500'000;
+    snapshot.sonar.velocity = {7, 0, 0};
+    snapshot.sonar.angular_velocity = {0, 0.5, 0};
+    motion.follow(snapshot);
+    EXPECT_EQ(motion.velocity(), glm::dvec3(7, 0, 0));
+    EXPECT_NEAR(glm::distance(motion.turn(), snapshot.sonar.orientation * glm::dvec3(0, 0.5, 0)), 0, 1e-12);
+}
+
+class SweepTest : public test::TaskBench<ScanningSonarTask, types::SnapshotPtr, types::SonarPtr> {
+protected:
+    SweepTest() : TaskBench(&ScanningSonarTask::snapshot, &ScanningSonarTask::ping) {}
+    void start(bool sweeps) {
+        ScanningSonarConfig config;
+        config.sonar = fan();
+        config.sonar.beam_width_deg = 2;
+        config.head = {.left_deg = 180, .right_deg = -180, .step_deg = 10, .continuous = {}, .speed_deg_per_s = {}};
+        config.head.sweeps = sweeps;
+        startWith(config);
+    }
+    /** The loudest of the ping at a time, of a plate at 200 m and a bearing in the body. */
+    Loudest heardAt(double seconds, double bearing_deg) {
+        types::Snapshot snapshot = test::snapshotOf(nullptr);
+        const double bearing = radians(bearing_deg);
+        auto geometry =
+            test::sceneOf({test::sphere(2, 24)}, 0, {{200 * std::cos(bearing), 200 * std::sin(bearing), 0}});
+        snapshot.geometry = geometry;
+        snapshot.time = types::Time::fromSeconds(seconds);
+        const types::SonarPtr ping = answerTo(std::make_shared<types::Snapshot>(snapshot));
+        return ping ? loudestOf(*ping) : Loudest{};
+    }
+};
+
+TEST_F(SweepTest, AHeadThatSweepsHearsFromHalfWayToWhereItLooksByThen) {
+    const double behind = 10 / 0.5 * (2 * 200 / c) / 2;  // of steps of 10 deg in 0.5 s
+    EXPECT_GT(behind, 2.5) << "more than the beam of 2 deg";
+    start(true);
+    heardAt(1, 180);
+    for (int i = 0; i < 20; ++i) {
+        const double t = 1.5 + 0.5 * i, b = 170 - 10.0 * i;
+        const double o = (i - 10) * 0.6;
+        printf("%g: %g at %g\n", o, heardAt(t, b + o).intensity, t);
+    }
+    EXPECT_GT(heardAt(1.5, 170 - behind).intensity, 0);
+    EXPECT_EQ(heardAt(2, 160).intensity, 0);
+    const Loudest last = heardAt(2.5, 150 - behind);
+    EXPECT_GT(last.intensity, 0);
+    EXPECT_NEAR(last.range, 198, 0.2);
+}
+
+TEST_F(SweepTest, AHeadThatStandsAtEachStepHearsFromWhereItStands) {
+    const double behind = 10 / 0.5 * (2 * 200 / c) / 2;
+    start(false);
+    heardAt(1, 180);
+    EXPECT_GT(heardAt(1.5, 170).intensity, 0);
+    EXPECT_EQ(heardAt(2, 160 - behind).intensity, 0);
+}
+
+}  // namespace
+}  // namespace insonify::sonar

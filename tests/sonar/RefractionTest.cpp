@@ -1,0 +1,256 @@
+// Rays that a profile of the speed of sound bends, against exact arcs (ACOUSTICS.md 5.21).
+#include <gmock/gmock.h>
+
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <functional>
+#include <numeric>
+
+#include "components/acoustics/SoundProfile.hpp"
+#include "components/sonar/PlanReport.hpp"
+#include "components/sonar/SonarRenderer.hpp"
+#include "components/sonar/SonarTask.hpp"
+#include "tests/support/Ports.hpp"
+#include "tests/support/Scenes.hpp"
+#include "types/Angle.hpp"
+#include "types/ConfigError.hpp"
+
+namespace insonify::sonar {
+namespace {
+
+using ::testing::HasSubstr;
+using types::radians;
+
+/** A file of the temporary folder. */
+std::string profileOf(const std::vector<std::pair<double, double>>& speeds) {
+    static int count = 0;
+    const std::string file = testing::TempDir() + "speeds_" + std::to_string(count++) + ".csv";
+    std::ofstream stream(file);
+    stream.precision(17);
+    stream << "depth_m,sound_speed_m_s\n";
+    for (const auto& [depth, speed] : speeds) stream << depth << ',' << speed << '\n';
+    return file;
+}
+
+/** 1500 m/s at the surface, a strong thermocline without end. */
+std::string thermocline(double gradient = 0.1) { return profileOf({{0, 1500}, {1000, 1500 + 1000 * gradient}}); }
+
+/** To 2 km by bins of 2 m; the sonar's own speed is 1500 m/s. */
+SonarConfig longRange(const std::string& profile, double height_deg = 30) {
+    SonarConfig config;
+    config.range_rounding = RangeRounding::Exact;
+    config.range = 2000;
+    config.bin_count = 1000;
+    config.beam_count = 4;
+    config.field_of_view_deg = 8;
+    config.beam_height_deg = height_deg;
+    config.speed_of_sound = 1500;
+    config.visibility = Visibility::Cpu;
+    config.quality.rows = 2048;
+    config.quality.columns_per_beam = 2;
+    if (!profile.empty()) config.water.emplace().profile = profile;
+    return config;
+}
+
+struct Told {
+    types::Sonar ping;
+    types::SonarTruth truth;
+};
+
+Told toldOf(const SonarConfig& config, const types::Snapshot& snapshot) {
+    SonarRenderer renderer(config, snapshot.geometry);
+    Told told;
+    renderer.setTruth(told.ping, &told.truth);
+    renderer.render(snapshot, told.ping);
+    return told;
+}
+
+double loudest(const types::Sonar& ping) { return std::ranges::max(ping.bins); }
+
+size_t loudestBin(const types::Sonar& ping) {
+    return static_cast<size_t>(std::ranges::max_element(ping.bins) - ping.bins.begin()) % ping.bin_count;
+}
+
+/** When a ray that leaves 1500 m/s at an elevation below the horizon [rad] has gone down so far in a gradient: by its
+ *  own circle [s]. */
+double timeDown(double elevation, double drop, double gradient) {
+    const double at_bottom = -std::acos(std::cos(elevation) * (1500 + gradient * drop) / 1500);
+    return (std::asinh(std::tan(at_bottom)) - std::asinh(std::tan(elevation))) / gradient;
+}
+
+/** The elevation at which the bottom is heard at a slant range, by halving. */
+double elevationAt(double range, double drop, double gradient) {
+    double low = -1.5, high = -std::acos(1500 / (1500 + gradient * drop)) - 1e-12;
+    for (int i = 0; i < 200; ++i) {
+        const double middle = 0.5 * (low + high);
+        (1500 * timeDown(middle, drop, gradient) < range ? low : high) = middle;
+    }
+    return low;
+}
+
+TEST(RefractionTest, AFlatBottomInAGradientIsHeardFromWhereTheExactArcsComeFrom) {
+    constexpr double drop = 200, gradient = 0.1;
+    const auto geometry = test::sceneOf({test::ground(-drop, 20000)});
+    const Told told = toldOf(longRange(thermocline(gradient)), test::snapshotOf(geometry));
+    int told_bins = 0, straight_fails = 0;
+    for (size_t bin = 450; bin < 1000; bin += 10) {
+        const double range = 2 * (static_cast<double>(bin) + 0.5), told_elevation = told.truth.elevation[bin];
+        if (range < drop / std::sin(radians(14.8)) || range > 1990) continue;
+        EXPECT_NEAR(told_elevation, elevationAt(range, drop, gradient), 1e-3) << range << " m";
+        straight_fails += std::abs(told_elevation + std::asin(drop / range)) > 0.02;
+        if (range < 1700) {  // beyond, a row of samples covers more than that
+            EXPECT_NEAR(1500 * timeDown(told_elevation, drop, gradient), range, 1e-3 * range + 1) << range << " m";
+        }
+        ++told_bins;
+    }
+    EXPECT_GT(told_bins, 40);
+    EXPECT_GT(straight_fails, 30) << "straight rays do not pass";
+}
+
+/** A plate of 40 x 8 m square to the x axis, its middle at a place. */
+types::Mesh plate(glm::vec3 middle) { return test::quad(middle - glm::vec3(0, 20, 4), {0, 40, 0}, {0, 0, 8}); }
+
+TEST(RefractionTest, ALevelRayMeetsAtTwoKilometresWhatIsHundredMetresAbove) {
+    const auto exact = [](double seconds) {
+        std::vector<acoustics::RayPoint> at(1);
+        acoustics::traceRay(acoustics::SoundProfile({{0, 1000}, {1500, 1600}}), 300, 0, std::vector{seconds}, at);
+        return at.front();
+    };
+    const double range = 1951, time = range / 1500;
+    const acoustics::RayPoint met = exact(time);
+    const double rise = 300 - met.depth;
+    EXPECT_NEAR(rise, 0.1 * 1951 * 1951 / (2 * 1530.0) * 1530 / 1500 * 1530 / 1500, 5) << "the brief form";
+    const SonarConfig thin = longRange(thermocline(), 0.4);
+    const auto heard = [&](double height, const SonarConfig& config) {
+        const auto geometry = test::sceneOf({plate({met.across, 0, -300 + height})});
+        SonarRenderer renderer(config, geometry);
+        types::Sonar ping;
+        renderer.render(test::snapshotOf(geometry, {0, 0, -300}), ping);
+        return ping;
+    };
+    const types::Sonar ping = heard(rise, thin);
+    ASSERT_GT(loudest(ping), 0);
+    EXPECT_EQ(loudestBin(ping), static_cast<size_t>(range / 2)) << "two metres, a thousandth of the range";
+    EXPECT_EQ(loudest(heard(0, thin)), 0) << "straight ahead";
+    EXPECT_EQ(loudest(heard(rise, longRange("", 0.4))), 0) << "by straight rays";
+    EXPECT_GT(loudest(heard(0, longRange("", 0.4))), 0) << "by straight rays";
+}
+
+TEST(RefractionTest, WaterOfAnotherSpeedThanTheSonarsStretchesRangesAndSpreadsAsItIs) {
+    const double ratio = 1500.0 / 1470;
+    SonarConfig config = longRange(profileOf({{0, 1470}, {100, 1470}}));
+    config.range = 200;
+    const auto snapshot = [](double scale) {
+        return test::snapshotOf(test::sceneOf({test::ground(static_cast<float>(-20 * scale))}), {}, 0.1, 0.1, 0.2);
+    };
+    const types::Sonar bent = toldOf(config, snapshot(1)).ping;
+    config.water.reset();
+    const types::Sonar plain = toldOf(config, snapshot(ratio)).ping;
+    double error = 0, norm = 0;
+    for (size_t i = 0; i < plain.bins.size(); ++i) {
+        error += std::pow(bent.bins[i] - ratio * ratio * plain.bins[i], 2);
+        norm += std::pow(ratio * ratio * plain.bins[i], 2);
+    }
+    EXPECT_LT(std::sqrt(error / norm), 1e-3);
+    EXPECT_GT(norm, 0);
+}
+
+TEST(RefractionTest, WaterOfTheSonarsOwnSpeedChangesNoBit) {
+    const auto snapshot =
+        test::snapshotOf(test::sceneOf({test::ground(-20), test::sphere(3, 24)}, -10, {{}, {60, 3, -9}}));
+    SonarConfig config = longRange(profileOf({{0, 1500}, {30, 1500}, {90, 1500}}));
+    const types::Sonar same = toldOf(config, snapshot).ping;
+    config.water->profile.reset();
+    EXPECT_EQ(same.bins, toldOf(config, snapshot).ping.bins);
+    config.water.reset();
+    EXPECT_EQ(same.bins, toldOf(config, snapshot).ping.bins);
+    EXPECT_GT(loudest(same), 0);
+}
+
+/** Speed grows down to 50 m, and falls below: rays of the duct stay in it, the others go down steeply. */
+TEST(RefractionTest, BelowADuctThereIsAShadow) {
+    const std::string duct = profileOf({{0, 1499}, {50, 1501.5}, {250, 1481.5}});
+    const auto heardAt = [&](double depth, const std::string& profile) {
+        const auto geometry =
+            test::sceneOf({test::quad({2000, -50, static_cast<float>(-depth) - 2}, {0, 100, 0}, {0, 0, 4})});
+        SonarConfig config = longRange(profile, 12);
+        config.range = 2200;
+        SonarRenderer renderer(config, geometry);
+        types::Sonar ping;
+        renderer.render(test::snapshotOf(geometry, {0, 0, -20}), ping);
+        for (const float bin : ping.bins) EXPECT_TRUE(std::isfinite(bin)) << depth << " m deep";
+        return loudest(ping);
+    };
+    EXPECT_EQ(heardAt(56, duct), 0) << "in the shadow";
+    EXPECT_GT(heardAt(56, ""), 0) << "straight rays know none";
+    EXPECT_GT(heardAt(25, duct), 0) << "in the duct";
+    EXPECT_GT(heardAt(95, duct), 0) << "below the shadow";
+}
+
+TEST(RefractionTest, WhatStandsInTheWayOfABentRayHidesWhatIsBehind) {
+    std::vector<acoustics::RayPoint> at(2);
+    acoustics::traceRay(acoustics::SoundProfile({{0, 1000}, {1500, 1600}}), 300, 0, std::vector{0.7, 1.3}, at);
+    const auto place = [&](size_t i) { return glm::vec3(at[i].across, 0, -at[i].depth); };
+    const auto both = test::sceneOf({plate(place(0)), plate(place(1))}), far = test::sceneOf({plate(place(1))});
+    const SonarConfig thin = longRange(thermocline(), 0.2);
+    const types::Sonar hidden = toldOf(thin, test::snapshotOf(both, {0, 0, -300})).ping;
+    const types::Sonar open = toldOf(thin, test::snapshotOf(far, {0, 0, -300})).ping;
+    const size_t near_bin = static_cast<size_t>(0.7 * 1500 / 2), far_bin = static_cast<size_t>(1.3 * 1500 / 2);
+    EXPECT_EQ(loudestBin(hidden), near_bin);
+    EXPECT_NEAR(static_cast<double>(loudestBin(open)), static_cast<double>(far_bin), 1);
+    EXPECT_EQ(hidden.bins[1000 + far_bin], 0);
+}
+
+TEST(RefractionTest, AMovingObjectIsMetWhereItIsByBentRaysToo) {
+    const auto geometry = test::sceneOf({plate({0, 0, 0})}, 0, {{0, 0, 5000}});
+    std::vector<acoustics::RayPoint> at(1);
+    acoustics::traceRay(acoustics::SoundProfile({{0, 1000}, {1500, 1600}}), 300, 0, std::vector{1.0}, at);
+    types::Snapshot snapshot = test::snapshotOf(geometry, {0, 0, -300});
+    glm::dmat4 place(1);
+    place[3] = {at[0].across, 0, -at[0].depth, 1};
+    snapshot.moved = {{0, place}};
+    const types::Sonar ping = toldOf(longRange(thermocline(), 0.4), snapshot).ping;
+    ASSERT_GT(loudest(ping), 0);
+    EXPECT_NEAR(static_cast<double>(loudestBin(ping)), 750, 1);
+}
+
+TEST(RefractionTest, ThePlanTellsWhetherRaysAreBentAndByWhichBound) {
+    const auto geometry = test::sceneOf({test::ground(-20)});
+    const auto planOf = [&](double range, const std::string& profile) {
+        SonarConfig config = longRange(profile);
+        config.range = range;
+        config.bin_count = 200;
+        return makeRenderPlan(config, *geometry);
+    };
+    EXPECT_TRUE(planOf(2000, thermocline()).features.has(Feature::Refraction));
+    EXPECT_FALSE(planOf(2000, thermocline()).leftOut(Effect::Refraction));
+    const RenderPlan near = planOf(20, profileOf({{0, 1500}, {20, 1500.2}}));
+    EXPECT_FALSE(near.features.has(Feature::Refraction));
+    ASSERT_TRUE(near.leftOut(Effect::Refraction));
+    EXPECT_NEAR(near.leftOut(Effect::Refraction)->value, 0.01 * 20 * 20 / 3000, 1e-9);
+    EXPECT_NEAR(near.leftOut(Effect::Refraction)->bound, 0.1 * 20 * radians(30), 1e-9);
+    EXPECT_THAT(describe(*near.leftOut(Effect::Refraction), near.grid).reason,
+                HasSubstr("a gradient of 0.01 1/s bends by"));
+    EXPECT_TRUE(planOf(100, profileOf({{0, 1490}, {9, 1490}})).features.has(Feature::Refraction))
+        << "no gradient, but another speed than the sonar's: 0.67 m at 100 m, by bins of 0.5 m";
+    EXPECT_FALSE(planOf(100, profileOf({{0, 1498}, {9, 1498}})).features.has(Feature::Refraction)) << "0.13 m";
+}
+
+TEST(RefractionTest, WhatIsDrawnRefusesAProfileThatMatters) {
+    SonarConfig config = longRange(thermocline());
+    config.visibility = Visibility::Gl;
+    config.device = "software";
+    const auto geometry = test::sceneOf({test::ground(-20)});
+    EXPECT_THAT(whyStraight(config), HasSubstr("rays alone"));
+    EXPECT_THROW(makeRenderPlan(config, *geometry), types::ConfigError);
+    config.range = 20;
+    config.water->profile = profileOf({{0, 1500}, {20, 1500.2}});
+    EXPECT_EQ(whyStraight(config), "") << "what does not matter is left out";
+    config.visibility = Visibility::Auto;
+    config.device = "";
+    EXPECT_TRUE(config.castsRays());
+}
+
+}  // namespace
+}  // namespace insonify::sonar
