@@ -13,7 +13,7 @@
 
 namespace insonify::sonar {
 
-/** What the pulse leaves of a field in range: of range cells, at each sample of the field (ACOUSTICS.md 5.23). */
+/** What the pulse leaves of a field in range: of range cells, at each sample of the field (ACOUSTICS.md 5.21). */
 class FieldResponse {
 public:
     explicit FieldResponse(const RenderPlan& plan);

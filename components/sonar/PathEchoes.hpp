@@ -42,7 +42,7 @@ private:
     std::vector<double> azimuths_;      ///< Power that is sent, over azimuths from -pi on [1].
 };
 
-/** Echoes that come by way of mirrors, in one or both directions (ACOUSTICS.md 5.24): rays that meet a mirror before
+/** Echoes that come by way of mirrors, in one or both directions (ACOUSTICS.md 5.23): rays that meet a mirror before
  *  all else are followed on, and what they meet is heard at half of its way out and back. Echoes of all cells are
  *  summed in whole quanta, in any order. */
 class PathEchoes {

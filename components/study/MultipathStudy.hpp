@@ -23,8 +23,8 @@ struct MultipathResult {
     std::vector<Claim> claims;
 };
 
-/** Echoes by way of mirrors against the image method and the target strengths of corner reflectors (ACOUSTICS.md 5.24,
- *  5.26): a point target and a flat bottom under a flat surface, a target beside a wall, a dihedral and trihedrals that
+/** Echoes by way of mirrors against the image method and the target strengths of corner reflectors (ACOUSTICS.md 5.23,
+ *  5.25): a point target and a flat bottom under a flat surface, a target beside a wall, a dihedral and trihedrals that
  *  are turned; and what none of it may change, the first echo. */
 MultipathResult studyMultipath();
 

@@ -1,5 +1,5 @@
 // Echoes by way of mirrors against the image method, worked out here from the sonar equation itself
-// (ACOUSTICS.md 5.24).
+// (ACOUSTICS.md 5.23).
 #include <gmock/gmock.h>
 
 #include <array>
