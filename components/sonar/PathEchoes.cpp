@@ -17,7 +17,8 @@ using std::numbers::pi;
 
 constexpr int max_bounces = 2;
 constexpr int pattern_steps = 2048;
-constexpr double edge_on = 1e-4;  ///< Cosine below which a surface gives no echo [1].
+constexpr double reaching_back = 1.1;  ///< Of the range, within which cells beyond it may reach back into it [1].
+constexpr double edge_on = 1e-4;       ///< Cosine below which a surface gives no echo [1].
 constexpr uint64_t surface_name = std::numeric_limits<uint64_t>::max();  ///< Among the mirrors of a chain.
 
 /** What of a part's energy goes to a bin, whichever thread brings it. */
@@ -339,7 +340,8 @@ uint32_t PathEchoes::Tracer::openBack() const {
                      mean = 0.5 * (range + lengths_[static_cast<size_t>(i)] + double{hits_.distance[i]});
         const MirrorPlane plane = planeOf(hits_, i);
         const bool same_side = glm::dot(plane.normal, towards(i)) * glm::dot(plane.normal, at) > 0;
-        if (!same_side || !(mean < rules_.bins.range_max) || !(range > RayVisibility::nearest)) continue;
+        if (!same_side || !(mean < reaching_back * rules_.bins.range_max) || !(range > RayVisibility::nearest))
+            continue;
         const glm::vec3 begin(at);
         back.from_x[i] = begin.x, back.from_y[i] = begin.y, back.from_z[i] = begin.z;
         back.towards.x[i] = -begin.x, back.towards.y[i] = -begin.y, back.towards.z[i] = -begin.z;
