@@ -53,12 +53,6 @@ struct EnumSymbol {
 template <class E>
 struct EnumTable;
 
-/** The value of a key that is reserved: whatever a file gives it is refused with "is not built yet". */
-struct NotBuiltYet {
-    template <class Self, class V>
-    static void describe(Self&, V&) {}
-};
-
 /** The value of a key that is another task's now: whatever a file gives it is refused with the doc of its field. */
 struct MovedTo {
     template <class Self, class V>

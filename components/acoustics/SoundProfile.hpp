@@ -14,7 +14,7 @@ public:
     /** Speeds [m/s] over ascending depths [m], at least two. */
     explicit SoundProfile(Curve speeds) : speeds_(std::move(speeds)) {}
     /** From a CSV file with header depth_m,sound_speed_m_s.
-     *  @throws types::ConfigError with file, line and column of every fault. */
+     *  @throws types::ConfigError with file, line and column of every diagnostic. */
     static SoundProfile read(const std::string& file);
 
     double speed(double depth) const { return speeds_.at(depth); }  ///< [m/s]

@@ -197,8 +197,6 @@ bool ConfigReader::readValue(const YAML::Node& node, const std::string& path, co
         return readNumber(node, path, field, value);
     } else if constexpr (std::same_as<T, std::string>) {
         return text(node, path, value);
-    } else if constexpr (std::same_as<T, types::NotBuiltYet>) {
-        return report(node, path, "is not built yet"), false;
     } else if constexpr (std::same_as<T, types::MovedTo>) {
         return report(node, path, field.doc), false;
     } else if constexpr (std::same_as<T, glm::dvec3>) {

@@ -9,13 +9,13 @@
 
 namespace insonify::framework {
 
-/** Whether there is nothing to write: an optional that is absent, a block that is not built yet or has moved. */
+/** Whether there is nothing to write: an optional that is absent, a block that has moved. */
 template <class T>
 bool isAbsent(const T& value) {
     if constexpr (Optional<T>)
         return !value || isAbsent(*value);
     else
-        return std::same_as<T, types::NotBuiltYet> || std::same_as<T, types::MovedTo>;
+        return std::same_as<T, types::MovedTo>;
 }
 
 template <class T>

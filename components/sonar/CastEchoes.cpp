@@ -207,7 +207,7 @@ void CastEchoes::place(const types::Snapshot& snapshot) {
     water_ = waterViewOf(snapshot);
     places_.place(snapshot);
     visibility_.place(snapshot);
-    if (paths_) paths_->begin(snapshot);
+    if (paths_) paths_->begin(snapshot, truth_);
     if (ray_paths_) ray_paths_->place(snapshot);
     runs_.clear();
     for (const CommandRecord& command : visibility_.commands())
@@ -297,6 +297,8 @@ bool CastEchoes::fill(size_t cell, const Worker& worker, const uint64_t* sums, t
 }
 
 void CastEchoes::addPaths(types::Sonar& ping) {
+    for (size_t cell = 0; truth_ && cell < plan_.cells.size(); ++cell)
+        paths_->takeDirect(cell, levels_, field_ ? std::span<const float>() : grid_->cell(cell, ping));
     threads_.run([&](int part, int parts) {
         for (int cell = part; cell < view_.cells.beams; cell += parts) {
             const auto i = static_cast<size_t>(cell);
@@ -342,6 +344,7 @@ void CastEchoes::render(const types::Snapshot& snapshot, types::Sonar& ping, Sta
     else
         grid_->finish(ping, threads_);
     if (truth_) truth_grid_->finish(*truth_, threads_);
+    if (truth_ && paths_) paths_->tell(*truth_);
     stages[BeamStage].seconds += std::chrono::duration<double>(Clock::now() - own.last).count();
     heard_ = false;
     for (const Worker& worker : workers_) {

@@ -134,7 +134,7 @@ std::vector<Beam> azimuthCells(const SonarConfig& sampled, const std::vector<Bea
                                const Directivity& directivity, bool casts_rays) {
     const std::vector<Beam> all = makeBeams(sampled);
     if (!casts_rays || !directivity.hasAzimuth()) return all;
-    const double near = directivity.nearAzimuth();
+    const double near = sampled.elements ? 2 * pi : directivity.nearAzimuth();  // elements hear each cell by itself
     const auto side = [&](const Beam& cell) {
         return cell.high < beams.front().centre - near ? -1 : cell.low > beams.back().centre + near ? 1 : 0;
     };

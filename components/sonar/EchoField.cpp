@@ -3,8 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <glm/gtc/quaternion.hpp>
-#include <numbers>
+#include <limits>
 
+#include "components/sonar/RandomFields.hpp"
 #include "components/sonar/RangeResponse.hpp"
 #include "types/VectorMath.hpp"
 
@@ -27,18 +28,36 @@ Beamformer fieldBeamformer(const RenderPlan& plan, size_t numbers) {
             plan.cells,
             numbers,
             {[&](double azimuth, double bearing) { return directivity.azimuthAmplitude(azimuth, bearing); },
-             directivity.nearAzimuth(), std::sqrt(directivity.floor()), true}};
+             plan.config.elements ? 2 * std::numbers::pi : directivity.nearAzimuth(), std::sqrt(directivity.floor()),
+             true}};
 }
 
-/** A uniform number in (0, 1). */
-double uniform(uint64_t& state) {
-    uint64_t x = state += 0x9e3779b97f4a7c15u;  // splitmix64
-    x = (x ^ x >> 30) * 0xbf58476d1ce4e5b9u;
-    x = (x ^ x >> 27) * 0x94d049bb133111ebu;
-    return (static_cast<double>((x ^ x >> 31) >> 11) + 0.5) * 0x1p-53;
-}
+/** Range cells in which the water's scatterers are as fine, and where a beam's are, in their cubes. */
+struct Cubes {
+    size_t first, last;       ///< Range cells.
+    float start[3], step[3];  ///< Of the first range cell, and to the next one [cubes].
+    uint32_t base[3];         ///< The cube that these are counted from.
+};
 
-uint64_t bitsOf(double whole) { return static_cast<uint64_t>(static_cast<int64_t>(whole)); }
+/** A complex Gaussian field of given intensities, which belongs to the cubes that the middles of range cells are in. */
+INSONIFY_VECTOR_CLONES void scatterInCubes(const Cubes& cubes, const float* intensities, float* __restrict real,
+                                           float* __restrict imaginary) {
+    const Cubes c = cubes;
+    for (size_t k = c.first; k < c.last; ++k) {
+        const auto on = static_cast<float>(static_cast<int32_t>(k - c.first));
+        uint32_t place = 0;
+        for (int axis = 0; axis < 3; ++axis) {
+            const float at = c.start[axis] + on * c.step[axis];
+            const auto whole = static_cast<int32_t>(at);
+            place =
+                mixed(place + c.base[axis] + static_cast<uint32_t>(whole - (at < static_cast<float>(whole) ? 1 : 0)));
+        }
+        const float field = std::sqrt(-intensities[k] * logarithm(uniform(place)));
+        const float phase = uniform(place >> 16), turns = phase - nearest(phase);
+        real[k] = field * cosineOf(turns);
+        imaginary[k] = field * sineOf(turns);
+    }
+}
 
 }  // namespace
 
@@ -94,7 +113,8 @@ EchoField::EchoField(const RenderPlan& plan, int threads) : plan_(plan), respons
     scratch_.resize(static_cast<size_t>(threads));
     for (Scratch& scratch : scratch_) {
         scratch.sorted.resize(response_.sortedSize());
-        scratch.energies.resize(response_.cells());
+        for (std::vector<float>* each : {&scratch.energies, &scratch.real, &scratch.imaginary})
+            each->resize(response_.cells());
         scratch.spread.resize(numbers());
     }
 }
@@ -113,7 +133,7 @@ bool EchoField::fill(size_t cell, const EchoRules& rules, const uint64_t* sums, 
     }
     if (volume_) {
         volume_->add(sums + rules.volumeOffset(), cell, solid_angle, energies(thread));
-        scatter(cell, scratch.energies, scratch.sorted);
+        scatter(cell, scratch.energies, scratch);
     }
     response_.spread(scratch.sorted, {&cells_[cell * numbers()], numbers()});
     return any != 0;
@@ -128,27 +148,35 @@ void EchoField::addEnergies(size_t cell, std::span<const float> intensities, siz
     Scratch& scratch = scratch_[thread];
     for (size_t k = 0; k < response_.cells(); ++k)
         scratch.sorted[response_.place(k)] = scratch.sorted[response_.place(k) + 1] = 0;
-    scatter(cell, intensities, scratch.sorted);
+    scatter(cell, intensities, scratch);
     response_.spread(scratch.sorted, scratch.spread);
     addScaled(scratch.spread.data(), 1, &cells_[cell * numbers()], numbers());
 }
 
-void EchoField::scatter(size_t cell, std::span<const float> intensities, std::span<float> sorted) const {
+void EchoField::scatter(size_t cell, std::span<const float> intensities, Scratch& scratch) const {
     const Beam& azimuth = plan_.cells[cell];
     const glm::dvec3 ray = sonar_.orientation * glm::dvec3(std::cos(azimuth.centre), std::sin(azimuth.centre), 0);
-    const double width = plan_.grid.bin_width / static_cast<double>(response_.cells()) * plan_.grid.bin_count;
-    for (size_t k = 0; k < intensities.size(); ++k) {
-        if (!(intensities[k] > 0)) continue;
-        const double range = (static_cast<double>(k) + 0.5) * width;
-        const double side = std::exp2(std::floor(std::log2(std::min(width, range * (azimuth.high - azimuth.low)))));
-        const glm::dvec3 place = glm::floor((sonar_.position + range * ray) / side);
-        uint64_t state = bitsOf(place.x) * 0x9e3779b97f4a7c15u ^ bitsOf(place.y) * 0xc2b2ae3d27d4eb4fu ^
-                         bitsOf(place.z) * 0x165667b19e3779f9u;
-        const double root = std::sqrt(-double{intensities[k]} * std::log(uniform(state)));
-        const double phase = 2 * std::numbers::pi * uniform(state);
-        float* const field = &sorted[response_.place(k)];
-        field[0] += static_cast<float>(root * std::cos(phase));
-        field[1] += static_cast<float>(root * std::sin(phase));
+    const double width = plan_.grid.bin_width * plan_.grid.bin_count / static_cast<double>(response_.cells());
+    const double spread = azimuth.high - azimuth.low;
+    for (size_t first = 0; first < response_.cells();) {
+        // Cubes as long as a range cell, nearer by as the azimuth cell is wide; powers of 2, so that they stay.
+        const double near = (static_cast<double>(first) + 0.5) * width;
+        const double side = std::exp2(std::floor(std::log2(std::min(width, near * spread))));
+        const double finer_to = 2 * side <= width ? 2 * side / spread : std::numeric_limits<double>::infinity();
+        const double last = std::min(std::ceil(finer_to / width - 0.5), static_cast<double>(response_.cells()));
+        Cubes cubes{first, std::max(static_cast<size_t>(last), first + 1), {}, {}, {}};
+        for (int axis = 0; axis < 3; ++axis) {
+            const double start = (sonar_.position[axis] + near * ray[axis]) / side, base = std::floor(start);
+            cubes.start[axis] = static_cast<float>(start - base);
+            cubes.step[axis] = static_cast<float>(width * ray[axis] / side);
+            cubes.base[axis] = static_cast<uint32_t>(static_cast<int64_t>(base));
+        }
+        scatterInCubes(cubes, intensities.data(), scratch.real.data(), scratch.imaginary.data());
+        first = cubes.last;
+    }
+    for (size_t k = 0; k < response_.cells(); ++k) {
+        scratch.sorted[response_.place(k)] += scratch.real[k];
+        scratch.sorted[response_.place(k) + 1] += scratch.imaginary[k];
     }
 }
 

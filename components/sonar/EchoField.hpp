@@ -13,7 +13,7 @@
 
 namespace insonify::sonar {
 
-/** What the pulse leaves of a field in range: of range cells, at each sample of the field (ACOUSTICS.md 5.23). */
+/** What the pulse leaves of a field in range: of range cells, at each sample of the field (ACOUSTICS.md 5.21). */
 class FieldResponse {
 public:
     explicit FieldResponse(const RenderPlan& plan);
@@ -78,12 +78,13 @@ public:
 private:
     /** What one thread works with. */
     struct Scratch {
-        std::vector<float> sorted, energies, spread;
+        std::vector<float> sorted, energies, real, imaginary, spread;
     };
     size_t numbers() const { return 2 * response_.samples(); }
     const std::vector<float>& beams() const { return beamformer_ ? beams_ : cells_; }
     std::vector<float>& beams() { return beamformer_ ? beams_ : cells_; }
-    void scatter(size_t cell, std::span<const float> intensities, std::span<float> sorted) const;
+    /** Adds a random field of intensities to what is sorted. */
+    void scatter(size_t cell, std::span<const float> intensities, Scratch& scratch) const;
 
     const RenderPlan& plan_;
     FieldResponse response_;

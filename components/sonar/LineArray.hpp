@@ -29,7 +29,7 @@ struct Cone {
 };
 
 /** A straight array of elements side by side across the sonar, and the weights by which its beams are formed
- *  (ACOUSTICS.md 5.24). Directions are cones about the array: their sines, positive to port. */
+ *  (ACOUSTICS.md 5.22). Directions are cones about the array: their sines, positive to port. */
 class LineArray {
 public:
     /** `spacing` of neighbouring elements and `wavelength` [m]; `taper` is the far field of the aperture, count *

@@ -25,7 +25,7 @@ struct MaterialLaws {
     /** sigma_b / cos(theta) of a material at a cosine [1]; its lobe is widened by what the facet adds to its mean
      *  square slope [1], and by how wide the sample is [rad]. */
     double overCosine(size_t material, double cosine, double facet_slope, double sample_angle) const;
-    /** The same of sound that comes and goes at other angles (ACOUSTICS.md 5.19): of what comes in at one cosine, over
+    /** The same of sound that comes and goes at other angles (ACOUSTICS.md 5.23): of what comes in at one cosine, over
      *  the other of them [1]. */
     struct Bistatic {
         double diffuse, lobe;

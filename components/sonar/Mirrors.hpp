@@ -22,11 +22,11 @@ struct MirrorPlane {
 };
 
 /** Mean square slope of a sea surface in a wind [m/s], of both its directions together; 0 without wind [1].
- *  ACOUSTICS.md 5.20. */
+ *  ACOUSTICS.md 5.24. */
 double slopeOfSea(double wind);
 
 /** What of a pressure a sea surface reflects as a mirror does, in phase, the rest of it scattered about: by its rms
- *  height in the wind [m/s], wavelength [m] and sine of the grazing angle [1]. ACOUSTICS.md 5.20. */
+ *  height in the wind [m/s], wavelength [m] and sine of the grazing angle [1]. ACOUSTICS.md 5.24. */
 double coherentReflection(double wind, double wavelength, double sine_grazing);
 
 /** The water surface of one ping, from below. */

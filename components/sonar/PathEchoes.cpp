@@ -17,14 +17,19 @@ using std::numbers::pi;
 
 constexpr int max_bounces = 2;
 constexpr int pattern_steps = 2048;
+constexpr double edge_on = 1e-4;  ///< Cosine below which a surface gives no echo [1].
+constexpr uint64_t surface_name = std::numeric_limits<uint64_t>::max();  ///< Among the mirrors of a chain.
 
 /** What of a part's energy goes to a bin, whichever thread brings it. */
 #define HAVE_PHYSICAL
 struct SharedBins : Bins {
     using Bins::Bins;
     void addToBin(uint cell, uint bin, double amount, double) const {
-        if (amount > 0) std::atomic_ref(sums[size_t{cell} * bin_count + bin]).fetch_add(quanta(amount), relaxed);
+        if (!(amount > 0)) return;
+        std::atomic_ref(sums[size_t{cell} * bin_count + bin]).fetch_add(quanta(amount), relaxed);
+        if (told) std::atomic_ref(told[size_t{cell} * bin_count + bin]).fetch_add(quanta(amount), relaxed);
     }
+    uint64_t* told = nullptr;  ///< Sums by the way of what is deposited now, where they are told.
     static constexpr std::memory_order relaxed = std::memory_order_relaxed;
 #include "shaders/deposit.glsl"
 };
@@ -48,6 +53,11 @@ struct Chain {
     }
     glm::dvec3 turned(glm::dvec3 way) const {
         for (int k = count; k-- > 0;) way = planes[static_cast<size_t>(k)].turned(way);
+        return way;
+    }
+    /** Undoes turned(). */
+    glm::dvec3 turnedBack(glm::dvec3 way) const {
+        for (int k = 0; k < count; ++k) way = planes[static_cast<size_t>(k)].turned(way);
         return way;
     }
 };
@@ -220,8 +230,17 @@ private:
     void hear(const CastTile& tile);
     int sameFrom(int i) const;
     void deposit(const Angles& at, int i, double open);
+    MaterialLaws::Bistatic section(const Angles& at, int i, const MirrorPlane& plane, const HalfWay& way) const;
     void depositOnce(const Angles& at, int i, const MirrorPlane& plane, double open);
     Footprint footprint(const Angles& at, int i, const HalfWay& way, double size) const;
+    void tellWay(int i, bool twice) {
+        if (!paths_.tells_) return;
+        const Chain& chain = chains_[static_cast<size_t>(i)];
+        const bool by_surface = std::all_of(chain.names.begin(), chain.names.begin() + chain.count,
+                                            [](uint64_t name) { return name == surface_name; });
+        const PathTruth::Path way = twice ? PathTruth::SurfaceTwice : PathTruth::SurfaceOnce;
+        bins_.told = paths_.truth_->sums(by_surface ? way : PathTruth::Bounced);
+    }
 
     PathEchoes& paths_;
     const EchoRules& rules_;
@@ -230,8 +249,8 @@ private:
     int end_column_;
     SharedBins bins_;
     double near_edge_, far_edge_;
-    PathRays rays_;
-    TileHits hits_;
+    PathRays rays_{};
+    TileHits hits_{};
     std::array<Chain, tile_samples> chains_;
     std::array<double, tile_samples> lengths_;  ///< Of each ray's way so far [m].
     uint64_t key_ = 0;                          ///< Of the tile.
@@ -274,14 +293,14 @@ void PathEchoes::Tracer::reflect(int i, const glm::dvec3& from, const glm::dvec3
         const double distance = paths_.water_.distance(from, way);
         if (!(lengths_[static_cast<size_t>(i)] + distance < rules_.bins.range_max)) return drop(i);
         const glm::dvec3 at = from + distance * way;
-        chain.names[k] = std::numeric_limits<uint64_t>::max();
+        chain.names[k] = surface_name;
         return send(i, tilts ? paths_.water_.facet(at, way, key_) : paths_.water_.plane(), from, way, distance);
     }
     const CommandRecord& command = scene_.commands[hits.command[i]];
     const double reflected = paths_.reflected_[hits.command[i]];
     const MirrorPlane plane = planeOf(hits, i);
     const double cosine = std::abs(glm::dot(plane.normal, way));
-    if (reflected == 0 || !(cosine > 1e-4)) return drop(i);
+    if (reflected == 0 || !(cosine > edge_on)) return drop(i);
     const PlaneRecord& record = scene_.planes[scene_.ranges[hits.command[i]].first_triangle + hits.triangle[i]];
     chain.names[k] = uint64_t{hits.command[i]} << 32 | hits.triangle[i];
     chain.power *= reflected;
@@ -310,7 +329,7 @@ void PathEchoes::Tracer::castOn() { paths_.visibility_.cast(rays_, hits_); }
 
 /** Of the rays that have met something, those from where the sonar is seen on the side that they came to. */
 uint32_t PathEchoes::Tracer::openBack() const {
-    PathRays back;
+    PathRays back{};
     back.towards.active = 0;
     for (int i = 0; i < tile_samples; ++i) {
         back.nearest[i] = 1, back.farthest[i] = 0;
@@ -372,9 +391,10 @@ void PathEchoes::Tracer::deposit(const Angles& at, int i, double open) {
     const glm::dvec3 focus = chain.image(glm::dvec3(0)), normal = chain.turned(real.normal);
     const MirrorPlane plane{normal, real.distance + glm::dot(normal, focus)};
     const double facing = glm::dot(plane.normal, at.middle);
-    if (!(std::abs(facing) > 1e-4 && plane.distance * facing > 0)) return;
+    if (!(std::abs(facing) > edge_on && plane.distance * facing > 0)) return;
     const PlacedRun& run = scene_.ranges[hits_.command[i]];
     const PlaneRecord& record = scene_.planes[run.first_triangle + hits_.triangle[i]];
+    tellWay(i, true);
     const HalfWay twice = halfWay(plane, glm::dvec3(0), at);
     const double strength = rules_.strength_scale * chain.power * chain.power *
                             rules_.laws.overCosine(run.material, std::abs(facing), static_cast<double>(record.point.w),
@@ -383,39 +403,44 @@ void PathEchoes::Tracer::deposit(const Angles& at, int i, double open) {
     if (open > 0) depositOnce(at, i, plane, open);
 }
 
+/** What a cell gives back of sound that comes directly and goes by the mirrors, or the other way round. */
+MaterialLaws::Bistatic PathEchoes::Tracer::section(const Angles& at, int i, const MirrorPlane& plane,
+                                                   const HalfWay& way) const {
+    const PlacedRun& run = scene_.ranges[hits_.command[i]];
+    const double facet = static_cast<double>(scene_.planes[run.first_triangle + hits_.triangle[i]].point.w);
+    const double angle = std::max(at.width, at.height);
+    const double direct = std::abs(glm::dot(plane.normal, way.from_focus));
+    const double mirrored = std::abs(glm::dot(plane.normal, at.middle));
+    if (!(direct > edge_on)) return {0, 0};
+    const double widest = chains_[static_cast<size_t>(i)].widest;
+    const double slope = std::max(widest / mirrored, facet / (direct * mirrored)) + 0.5 * angle * angle;
+    const double half = std::abs(glm::dot(plane.normal, glm::normalize(at.middle + way.from_focus)));
+    return rules_.laws.bistatic(run.material, direct, mirrored, half, slope);
+}
+
 /** Out directly and back by the mirrors, and the other way round, which is the same but for where it is sent and
  *  heard. */
 void PathEchoes::Tracer::depositOnce(const Angles& at, int i, const MirrorPlane& plane, double open) {
     const Chain& chain = chains_[static_cast<size_t>(i)];
-    const PlacedRun& run = scene_.ranges[hits_.command[i]];
-    const double facet = static_cast<double>(scene_.planes[run.first_triangle + hits_.triangle[i]].point.w);
     const HalfWay way = halfWay(plane, chain.image(glm::dvec3(0)), at);
-    const double angle = std::max(at.width, at.height);
-    const double direct = std::abs(glm::dot(plane.normal, way.from_focus));
-    const double mirrored = std::abs(glm::dot(plane.normal, at.middle));
-    if (!(direct > 1e-4)) return;
-    const double slope = std::max(chain.widest / mirrored, facet / (direct * mirrored)) + 0.5 * angle * angle;
-    const double half = std::abs(glm::dot(plane.normal, glm::normalize(at.middle + way.from_focus)));
-    const MaterialLaws::Bistatic section = rules_.laws.bistatic(run.material, direct, mirrored, half, slope);
+    const MaterialLaws::Bistatic given = section(at, i, plane, way);
     const double scale =
         rules_.strength_scale * chain.power * open / (way.back * way.back * way.inverse * way.inverse * way.inverse);
-    const auto by_mirror = paths_.patterns_->wayOf(at.middle);
-    // The point itself is where the mirrors show it from the sonar's image: turn the way from there back.
-    glm::dvec3 seen = way.from_focus;
-    for (int k = 0; k < chain.count; ++k) seen = chain.planes[static_cast<size_t>(k)].turned(seen);
-    const auto by_itself = paths_.patterns_->wayOf(seen);
-    const double back = paths_.patterns_->power(by_itself, by_mirror);
+    tellWay(i, false);
+    const WayPatterns& patterns = *paths_.patterns_;
+    const WayPatterns::Way by_mirror = patterns.wayOf(at.middle);
+    const WayPatterns::Way by_itself = patterns.wayOf(chain.turnedBack(way.from_focus));
+    const double back = patterns.power(by_itself, by_mirror), there = patterns.power(by_mirror, by_itself);
     if (back > 0)
         bins_.depositCell(footprint(at, i, way, at.size * back), static_cast<uint>(at.cell),
-                          scale * (section.diffuse + section.lobe));
-    const double there = paths_.patterns_->power(by_mirror, by_itself);
+                          scale * (given.diffuse + given.lobe));
     if (!(there > 0)) return;
     // What this surface and the first mirror both reflect and scatter comes by rays of its own from the other end.
-    const bool comes_itself = chain.begins_lobed && paths_.reflected_[hits_.command[i]] > 0 &&
-                              !paths_.patterns_->inOneBeam(by_mirror, by_itself);
-    const double strength = scale * (section.diffuse + (comes_itself ? 0 : section.lobe));
+    const bool comes_itself =
+        chain.begins_lobed && paths_.reflected_[hits_.command[i]] > 0 && !patterns.inOneBeam(by_mirror, by_itself);
+    const double strength = scale * (given.diffuse + (comes_itself ? 0 : given.lobe));
     const Footprint cell = footprint(at, i, way, at.size * there);
-    paths_.patterns_->eachCell(by_itself, [&](uint32_t heard) { bins_.depositCell(cell, heard, strength); });
+    patterns.eachCell(by_itself, [&](uint32_t heard) { bins_.depositCell(cell, heard, strength); });
 }
 
 PathEchoes::PathEchoes(const RenderPlan& plan, const types::Geometry& geometry, const RayVisibility& visibility)
@@ -428,10 +453,14 @@ void PathEchoes::takeQuality(const EchoRules& rules, const CastView& view) {
     rules_ = &rules;
     view_ = &view;
     patterns_.emplace(plan_);
+    truth_.reset();
     sums_.assign(plan_.cells.size() * static_cast<size_t>(rules.bins.bin_count), 0);
 }
 
-void PathEchoes::begin(const types::Snapshot& snapshot) {
+void PathEchoes::begin(const types::Snapshot& snapshot, bool tells) {
+    tells_ = tells;
+    if (tells && !truth_) truth_.emplace(plan_, static_cast<size_t>(rules_->bins.bin_count));
+    if (tells) truth_->begin();
     water_.place(snapshot, plan_.grid.range_max);
     std::ranges::fill(sums_, 0);
 }
@@ -451,8 +480,14 @@ void PathEchoes::trace(const PlacedScene& scene, std::span<const CastTile> tiles
     for (const CastTile& tile : tiles) tracer.follow(tile);
 }
 
+double PathEchoes::quantum() const { return view_->cells.cell() / (quanta_per_unit * rules_->strength_scale); }
+
+void PathEchoes::takeDirect(size_t cell, const BinLevels& levels, std::span<const float> bins) {
+    truth_->take(cell, bins, levels, quantum());
+}
+
 bool PathEchoes::addTo(size_t cell, const BinLevels& levels, std::span<float> bins) const {
-    const double quantum = view_->cells.cell() / (quanta_per_unit * rules_->strength_scale);
+    const double quantum = this->quantum();
     const uint64_t* sums = sums_.data() + cell * bins.size();
     uint64_t any = 0;
     for (size_t j = 0; j < bins.size(); ++j) {

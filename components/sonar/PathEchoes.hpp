@@ -5,6 +5,7 @@
 
 #include "components/sonar/BinLevels.hpp"
 #include "components/sonar/Mirrors.hpp"
+#include "components/sonar/PathTruth.hpp"
 #include "components/sonar/TileDeposit.hpp"
 
 namespace insonify::sonar {
@@ -41,7 +42,7 @@ private:
     std::vector<double> azimuths_;      ///< Power that is sent, over azimuths from -pi on [1].
 };
 
-/** Echoes that come by way of mirrors, in one or both directions (ACOUSTICS.md 5.19): rays that meet a mirror before
+/** Echoes that come by way of mirrors, in one or both directions (ACOUSTICS.md 5.23): rays that meet a mirror before
  *  all else are followed on, and what they meet is heard at half of its way out and back. Echoes of all cells are
  *  summed in whole quanta, in any order. */
 class PathEchoes {
@@ -51,20 +52,28 @@ public:
 
     /** With the quality that the plan has by now; `rules` and `view` must outlive it. Allocates. */
     void takeQuality(const EchoRules& rules, const CastView& view);
-    /** Once a ping, once the visibility is placed. */
-    void begin(const types::Snapshot& snapshot);
+    /** Once a ping, once the visibility is placed. `tells`: by which ways echoes come is told of it. */
+    void begin(const types::Snapshot& snapshot, bool tells);
     /** Takes away what the rays of a tile have met beyond the water surface. */
     void endAtSurface(const CastTile& tile, TileHits& hits) const;
     /** Follows tiles' rays on, of columns below `end_column`. Several threads may do so at a time; allocates nothing.
      */
     void trace(const PlacedScene& scene, std::span<const CastTile> tiles, int end_column);
-    /** Once all tiles are traced: adds what a cell has heard to its bins; whether there is any. */
+    /** Once all tiles are traced: adds what a cell has heard to the intensities of its bins, those of the rules, which
+     *  `levels` are of; whether there is any. */
     bool addTo(size_t cell, const BinLevels& levels, std::span<float> bins) const;
+    /** For the truth, before addTo(): what a cell has heard directly, where its energies are known. Not by several
+     *  threads. */
+    void takeDirect(size_t cell, const BinLevels& levels, std::span<const float> bins);
+    /** Once all cells are taken, and the rest of the truth is told. */
+    void tell(types::SonarTruth& truth) const { truth_->tell(truth); }
     /** What does not reflect in this ping. */
     std::optional<LeftOut> leftOut() const { return water_.leftOut(); }
 
 private:
     class Tracer;
+    /** Of the sums [sr]. */
+    double quantum() const;
 
     const RenderPlan& plan_;
     const types::Geometry& geometry_;
@@ -73,8 +82,10 @@ private:
     const CastView* view_ = nullptr;
     std::optional<WayPatterns> patterns_;
     WaterMirror water_;
-    std::vector<double> reflected_;  ///< Of each command: share of the power that it reflects as a mirror [1].
-    std::vector<uint64_t> sums_;     ///< [cell][range cell], in quanta.
+    std::vector<double> reflected_;   ///< Of each command: share of the power that it reflects as a mirror [1].
+    std::vector<uint64_t> sums_;      ///< [cell][bin], in quanta.
+    std::optional<PathTruth> truth_;  ///< From the first ping on that tells it.
+    bool tells_ = false;
 };
 
 }  // namespace insonify::sonar

@@ -184,7 +184,11 @@ void PingTask::render() {
     const std::chrono::duration<double, std::milli> took = std::chrono::steady_clock::now() - start;
     for (const Stage& stage : renderStages(*renderer_)) recordStage(stage.name, stage.seconds);
     if (std::exchange(culling_untold_, false) && rendersOnce()) {
-        for (const LeftOut& what : renderer_->culled()) plan_->omitted.push_back(describe(what, grid_));
+        for (const LeftOut& what : renderer_->culled()) {
+            plan_->omitted.push_back(describe(what, grid_));
+            if (what.reason == Reason::NoWaterSurface)
+                plan_->notices.push_back("Warning: " + plan_->omitted.back().reason);
+        }
         if (const auto what = renderer_->targetsLeftOut()) plan_->omitted.push_back(describe(*what, grid_));
     }
     followQuality(*sample, took.count());

@@ -22,7 +22,7 @@ struct ApparentPlane {
 
 /** The ways that sound takes where it does not come straight from where an object is: bent by a profile of the speed
  *  of sound, or because sonar and objects move and turn while it is under way. What is heard from a direction at a
- *  slant range is at a place that depends on both (ACOUSTICS.md 5.21, 5.22). */
+ *  slant range is at a place that depends on both (ACOUSTICS.md 5.19, 5.20). */
 class RayPaths {
 public:
     static constexpr double most_focus = 4;  ///< At a caustic rays would give infinitely much [1].

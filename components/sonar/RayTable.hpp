@@ -9,7 +9,7 @@ namespace insonify::sonar {
 
 /** How rays are bent by a profile of the speed of sound: where sound is that has left the sonar at an elevation, once
  *  its travel time makes a slant range at the sonar's own speed of sound. Made for a depth of the sonar, and again
- *  where it has gone so far up or down that a hundredth of a bin may be missed (ACOUSTICS.md 5.21). */
+ *  where it has gone so far up or down that a hundredth of a bin may be missed (ACOUSTICS.md 5.19). */
 class RayTable {
 public:
     static constexpr int most_corners = 512;  ///< [1]

@@ -68,7 +68,7 @@ void omitPulse(RenderPlan& plan) {
         {Effect::RangePointSpread, Reason::BelowBound, pulse.resolution(), plan.grid.bin_width / 2});
 }
 
-/** What there is to reflect sound; `bounces` says which of it does (ACOUSTICS.md 5.19). */
+/** What there is to reflect sound; `bounces` says which of it does (ACOUSTICS.md 5.23). */
 bool hasMirrors(const RenderPlan& plan, const types::Geometry& geometry) {
     const MultipathConfig& multipath = *plan.config.multipath;
     return multipath.surface || std::ranges::any_of(geometry.materials, [&](const types::Material& material) {

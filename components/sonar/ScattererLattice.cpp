@@ -32,7 +32,7 @@ double rangeResolutionOf(const RenderPlan& plan) {
 FieldSampling fieldSamplingOf(const RenderPlan& plan) {
     if (!plan.features.has(Feature::Speckle) || !plan.has(Pass::Pulse)) return {};
     const double cells = plan.grid.bin_width / rangeResolutionOf(plan);
-    const int samples = std::max(1, static_cast<int>(std::ceil(cells - 1e-9)));
+    const int samples = std::max(1, static_cast<int>(std::ceil(cells - 0.25)));
     const int half = static_cast<int>(std::ceil((parts_of_resolution * cells / samples - 1) / 2));
     return {samples, samples * (2 * std::max(0, half) + 1)};
 }

@@ -7,7 +7,7 @@ namespace insonify::sonar {
 
 struct RenderPlan;
 
-/** A lattice of scatterers on the surfaces, and the slant ranges in which it stands for them (ACOUSTICS.md 5.23). */
+/** A lattice of scatterers on the surfaces, and the slant ranges in which it stands for them (ACOUSTICS.md 5.21). */
 struct LatticeLevel {
     double range_end;   ///< It is in force from the end of the one before to here [m].
     double spacing;     ///< One scatterer in each square of it, seen along the surface's main axis [m].

@@ -6,14 +6,14 @@
 #include <glm/vec2.hpp>
 #include <limits>
 
+#include "components/sonar/RandomFields.hpp"
 #include "types/VectorMath.hpp"
 
 namespace insonify::sonar {
 
 /** What is the same for all scatterers of a patch on one lattice, about its middle. */
 struct LatticePatch {
-    uint32_t key;
-    int32_t base_u, base_v;             ///< The square of the middle.
+    uint32_t key, base_u, base_v;       ///< The square of the middle.
     float middle_u, middle_v;           ///< Where it lies in that [spacings].
     float along_u[3], along_v[3];       ///< A spacing further on the plane [m].
     float at[3], range;                 ///< The middle [m].
@@ -46,46 +46,6 @@ struct PatchLattice {
 
 namespace {
 
-/** A fixed 32-bit integer hash (C. Wellons' lowbias32). */
-uint32_t mixed(uint32_t x) {
-    x = (x ^ x >> 16) * 0x7feb352du;
-    x = (x ^ x >> 15) * 0x846ca68bu;
-    return x ^ x >> 16;
-}
-
-/** To the nearest whole number, for less than 2^22, without a call. */
-float nearest(float x) { return (x + 12582912.0f) - 12582912.0f; }
-
-/** A uniform number in (0, 1) of 16 bits. */
-float uniform(uint32_t bits) { return (static_cast<float>(static_cast<int32_t>(bits & 0xffffu)) + 0.5f) * 0x1p-16f; }
-
-float logarithm(float x) {
-    const types::PowersOfTwo parts = types::split(x);
-    return types::log1pSmall(parts.rest) + 0.693147181f * static_cast<float>(parts.powers);
-}
-
-/** Sine and cosine of turns within [-1/2, 1/2]; polynomials at Chebyshev's points, within 1e-6. */
-float sineOf(float turns) {
-    const float s = turns * turns;
-    float sum = 3.19933885f;
-    sum = sum * s + -14.8683228f;
-    sum = sum * s + 42.0160758f;
-    sum = sum * s + -76.7015377f;
-    sum = sum * s + 81.6050236f;
-    sum = sum * s + -41.341697f;
-    return turns * (sum * s + 6.28318527f);
-}
-float cosineOf(float turns) {
-    const float s = turns * turns;
-    float sum = 6.52865816f;
-    sum = sum * s + -25.9675992f;
-    sum = sum * s + 60.167631f;
-    sum = sum * s + -85.4501395f;
-    sum = sum * s + 64.9391175f;
-    sum = sum * s + -19.7392045f;
-    return sum * s + 0.999999989f;
-}
-
 /** Strength of what one scatterer of the lattice stands for, over its mean: Gamma(shape), as the total of so many
  *  scatterers of exponentially distributed strength is, by Wilson and Hilferty's cube for shape + 1 (1931) and the
  * power of a uniform number that leads from there to `shape`. */
@@ -102,8 +62,8 @@ INSONIFY_VECTOR_CLONES void scatter(const LatticePatch& patch, const LatticeSqua
     const LatticePatch p = patch;
     const int whole_vectors = (count + 15) & ~15;
     for (int i = 0; i < whole_vectors; ++i) {
-        const uint32_t place = mixed(mixed(static_cast<uint32_t>(p.base_u + squares.u[i]) + p.key) +
-                                     static_cast<uint32_t>(p.base_v + squares.v[i]));
+        const uint32_t place = mixed(mixed(p.base_u + static_cast<uint32_t>(squares.u[i]) + p.key) + p.base_v +
+                                     static_cast<uint32_t>(squares.v[i]));
         const uint32_t power = mixed(place + 0x632be5abu);
         const float on_u = static_cast<float>(squares.u[i]) + uniform(place) - p.middle_u;
         const float on_v = static_cast<float>(squares.v[i]) + uniform(place >> 16) - p.middle_v;
@@ -266,8 +226,8 @@ LatticePatch partOf(const EchoRules& rules, const Patch& patch, const PatchLatti
     const glm::dvec3 at = lattice.range * patch.middle;
     LatticePatch part{};
     part.key = mixed(patch.number * 6 + lattice.side + mixed(level.number + 1));
-    part.base_u = static_cast<int32_t>(static_cast<int64_t>(base.x));
-    part.base_v = static_cast<int32_t>(static_cast<int64_t>(base.y));
+    part.base_u = static_cast<uint32_t>(static_cast<int64_t>(base.x));
+    part.base_v = static_cast<uint32_t>(static_cast<int64_t>(base.y));
     part.middle_u = static_cast<float>(lattice.middle.x / level.spacing - base.x);
     part.middle_v = static_cast<float>(lattice.middle.y / level.spacing - base.y);
     for (int i = 0; i < 3; ++i) {

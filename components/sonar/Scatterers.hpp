@@ -58,7 +58,7 @@ struct ScatteredFields {
 };
 
 /** The estimator of fields: which scatterers lie on what samples see, and what they add to the field of each range cell
- *  of a beam (ACOUSTICS.md 5.23). */
+ *  of a beam (ACOUSTICS.md 5.21). */
 class Scatterers {
 public:
     static constexpr bool tells_truth = false;

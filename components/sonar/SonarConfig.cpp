@@ -37,8 +37,6 @@ void checkPhysics(const SonarConfig& config, types::Diagnostics& diagnostics) {
         diagnostics.push_back({"volume", "is given with model: cerqueira2017; it belongs to physical"});
     if (config.volume.size() > max_layers)
         diagnostics.push_back({"volume", fmt::format("has {} layers; may have {}", config.volume.size(), max_layers)});
-    if (means && config.multipath)
-        diagnostics.push_back({"multipath", "is given with model: cerqueira2017; it belongs to physical"});
     if (means && config.pulse)
         diagnostics.push_back({"pulse", "is given with model: cerqueira2017; it belongs to physical"});
     if (config.pulse && config.pulse->chirp_us && !(config.motion_in_ping && config.frequency_khz))
@@ -140,7 +138,6 @@ void checkVisibility(const SonarConfig& config, types::Diagnostics& diagnostics)
         diagnostics.push_back({"deposit", "is gpu with visibility: cpu; may be auto or cpu"});
 }
 
-/** Reflected ways are traced by rays alone. */
 int imageColumns(const SonarConfig& config) { return makeFrusta(config, makeBeams(config)).front().columns; }
 
 bool fitsImages(const SonarConfig& config) {

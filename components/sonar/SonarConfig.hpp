@@ -93,7 +93,7 @@ struct SurfaceMirrorConfig {
     }
 };
 
-/** Echoes that come by way of mirrors (ACOUSTICS.md 5.19). */
+/** Echoes that come by way of mirrors (ACOUSTICS.md 5.23). */
 struct MultipathConfig {
     std::optional<SurfaceMirrorConfig> surface;
     int bounces = 1;
@@ -112,10 +112,10 @@ struct MultipathConfig {
 };
 
 /** Echoes that interfere: each surface is a lattice of scatterers that belong to its object, and what a bin holds is
- * the square of the sum of their fields (ACOUSTICS.md 5.23). */
+ * the square of the sum of their fields (ACOUSTICS.md 5.21). */
 struct SpeckleConfig {
     bool coherent = false;
-    int scatterers_per_cell = 20;
+    int scatterers_per_cell = 10;
     std::optional<double> scatterers_per_m2;
 
     template <class Self, class V>

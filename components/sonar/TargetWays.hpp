@@ -17,7 +17,7 @@ struct TargetWay {
 };
 
 /** All ways between the sonar and points of the world that nothing hides: the straight one, and those by way of the
- *  water surface and of triangles of mirrors (ACOUSTICS.md 5.19), by the image method, in double. */
+ *  water surface and of triangles of mirrors (ACOUSTICS.md 5.23), by the image method, in double. */
 class TargetWays {
 public:
     /** `geometry` must outlive it. */

@@ -38,6 +38,7 @@ sonar::SonarConfig plain(sonar::SonarConfig config, const std::string& file) {
     config.absorption.reset();
     config.beam_pattern.reset();
     config.pulse.reset();
+    config.multipath.reset();
     return config;
 }
 

@@ -152,6 +152,10 @@ private:
                 if (what.reason != sonar::Reason::NoneInScene) return false;
                 with.snapshot.targets = {{with.snapshot.sonar.worldFromBody() * glm::dvec4(1, 0, 0, 1), -3000}};
                 return bound(0, "change: a target of -3000 dB");
+            case sonar::Effect::Multipath:
+                if (what.reason != sonar::Reason::NotConfigured) return false;
+                with.config.multipath.emplace().bounces = 0;
+                return bound(0, "change: no bounces");
             case sonar::Effect::NormalMaps:
                 with.snapshot.geometry = withFlatMap(*planned_.snapshot.geometry);
                 return bound(1e-6, "change: a map that bends nothing, in float");
@@ -236,6 +240,11 @@ private:
         if (!config.volume.empty()) {
             without.config.volume.clear();
             keep("volume reverberation", without);
+        }
+        without = planned_;
+        if (config.tracesPaths()) {
+            without.config.multipath.reset();
+            keep("multipath", without);
         }
         without = planned_;
         without.snapshot.geometry =

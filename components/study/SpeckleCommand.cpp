@@ -6,6 +6,8 @@
 
 #include "components/command/Json.hpp"
 #include "components/command/OutputFolder.hpp"
+#include "components/sonar/CastEchoes.hpp"
+#include "components/study/CoherentSpeckle.hpp"
 #include "components/study/Recordings.hpp"
 #include "components/study/SpeckleStudy.hpp"
 #include "components/study/StudyCommand.hpp"
@@ -86,6 +88,8 @@ SonarAt ownSonar() {
 int runStudy(const Options& options, const FindSonar& sonarAt) {
     std::vector<SpeckleRow> rows = recordedRows(options.real);
     std::vector<Claim> claims = lawClaims();
+    if (sonar::haveRays())
+        for (const Claim& claim : coherentClaims()) claims.push_back(claim);
     for (const Claim& claim : recordedClaims(rows)) claims.push_back(claim);
     const SonarAt found = options.deployment.empty() ? ownSonar() : sonarAt(options.deployment, options.ping);
     for (SpeckleRow& row : simulatedRows(found.config, found.snapshot)) rows.push_back(std::move(row));

@@ -1,4 +1,4 @@
-// insonify study error|likeness|omission|speckle|stability
+// insonify study error|likeness|multipath|omission|speckle|stability
 #include "components/study/StudyCommand.hpp"
 
 namespace insonify::study {
@@ -9,6 +9,7 @@ void addCommand(CLI::App& app, command::Action& action, const FindSonar& sonarAt
 #ifdef INSONIFY_EMBREE
     addErrorStudy(*study, action, sonarAt);
     addRaysStudy(*study, action, sonarAt);
+    addMultipathStudy(*study, action);
 #endif
     addLikenessStudy(*study, action, pingAt);
     addOmissionStudy(*study, action, sonarAt);

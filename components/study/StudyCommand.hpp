@@ -36,6 +36,7 @@ void addCommand(CLI::App& app, command::Action& action, const FindSonar& sonarAt
 // Each adds one study to the command `study`.
 void addErrorStudy(CLI::App& study, command::Action& action, const FindSonar& sonarAt);
 void addLikenessStudy(CLI::App& study, command::Action& action, const FindPing& pingAt);
+void addMultipathStudy(CLI::App& study, command::Action& action);
 void addOmissionStudy(CLI::App& study, command::Action& action, const FindSonar& sonarAt);
 void addRaysStudy(CLI::App& study, command::Action& action, const FindSonar& sonarAt);
 void addSpeckleStudy(CLI::App& study, command::Action& action, const FindSonar& sonarAt);

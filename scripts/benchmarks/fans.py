@@ -71,6 +71,18 @@ def measure_seen(found, name, sonar, file, options, beside_rays=True, noise="", 
         found[f"{name}, {visibility}"] = measure(text, options.pings, beside_rays)
 
 
+def under_water(text):
+    """The deployment with the sonar level and the water surface 3 m above it; objects are smooth."""
+    return text.replace("pitch_deg: 10}", "pitch_deg: 0}, water_surface: 3, "
+                        "materials: {steel: {reflection: 0.9, roughness_slope: 0.1}}", 1)
+
+
+def measure_rays(found, name, sonar, file, options):
+    """Adds a result of rays alone under the water surface."""
+    text = under_water(deployment(seen(sonar, "cpu"), file))
+    found[f"{name}, cpu"] = measure(text, options.pings, False)
+
+
 def measure_pings(options):
     """Each sonar before each scene, and the fan of 256 beams where nothing is said on quality."""
     found = {}
@@ -94,6 +106,10 @@ EFFECTS = {"plain": "", "pattern": PATTERN, "pulse": PULSE, "pattern and pulse":
            "volume": VOLUME, "layers": LAYERS, "all": PATTERN + PULSE + SEABED + VOLUME}
 RAYS_ALONE = {"coherent": COHERENT, "coherent, pattern and pulse": COHERENT + PATTERN + PULSE}
 AMBIENT = ", ambient: {level_db: -110}"
+# Level, 3 m below the surface, which half of the rays meet: without it, with it, in wind, and with smooth objects as well.
+SURFACE = "multipath: {surface: {wind_m_s: 0}}, "
+PATHS = {"level": "", "level, surface": SURFACE, "level, wind": SURFACE.replace("0", "3"),
+         "level, second bounce": SURFACE.replace("}}", "}, bounces: 2}")}
 
 
 def measure_effects(options):
@@ -106,6 +122,10 @@ def measure_effects(options):
         visible = [way for way in options.visibility if way == "cpu" or name not in RAYS_ALONE]
         measure_seen(found, f"FLS 256 x 500, 80 k, {name}", sonar, scene(SCENES["80 k"]), options, False, noise, str,
                      visible)
+    if "cpu" in options.visibility:
+        for name, blocks in PATHS.items():
+            sonar = plain.replace("properties: {", f"properties: {{{blocks}", 1)
+            measure_rays(found, f"FLS 256 x 500, 80 k, {name}", sonar, scene(SCENES["80 k"]), options)
     measure_seen(found, "FLS 256 x 500, 80 k, truth", plain, scene(SCENES["80 k"]), options, False, "", with_truth)
     return found
 

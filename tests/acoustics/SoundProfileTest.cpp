@@ -115,7 +115,7 @@ TEST(SoundProfileTest, RaysTrappedOnTheAxisOfAChannelStayFinite) {
         EXPECT_TRUE(std::isfinite(traced(channel, 100, elevation, {5}).back().depth));
 }
 
-std::string faultOf(const std::string& text) {
+std::string diagnosticOf(const std::string& text) {
     const std::string file = testing::TempDir() + "profile.csv";
     std::ofstream(file) << text;
     try {
@@ -127,20 +127,20 @@ std::string faultOf(const std::string& text) {
 }
 
 TEST(SoundProfileTest, AFileThatIsWrongIsToldWithItsPlace) {
-    EXPECT_EQ(faultOf("depth_m,sound_speed_m_s\n0,1500\n10,1490.5\n"), "");
-    EXPECT_THAT(faultOf("depth_m\n0\n10\n"),
+    EXPECT_EQ(diagnosticOf("depth_m,sound_speed_m_s\n0,1500\n10,1490.5\n"), "");
+    EXPECT_THAT(diagnosticOf("depth_m\n0\n10\n"),
                 HasSubstr("profile.csv:1:1: is 'depth_m'; the header must be depth_m,sound_speed_m_s"));
-    EXPECT_THAT(faultOf("depth_m,sound_speed_m_s\n0,1500\n20,1490\n10,1480\n"),
+    EXPECT_THAT(diagnosticOf("depth_m,sound_speed_m_s\n0,1500\n20,1490\n10,1480\n"),
                 HasSubstr("profile.csv:4:1: depth_m: is not above that of the line before"));
-    EXPECT_THAT(faultOf("depth_m,sound_speed_m_s\n0,1500\n"),
+    EXPECT_THAT(diagnosticOf("depth_m,sound_speed_m_s\n0,1500\n"),
                 HasSubstr("profile.csv:2:1: has 1 lines after its header"));
-    EXPECT_THAT(faultOf("depth_m,sound_speed_m_s\n0,nan\n1,1500\n"),
+    EXPECT_THAT(diagnosticOf("depth_m,sound_speed_m_s\n0,nan\n1,1500\n"),
                 HasSubstr("profile.csv:2:3: sound_speed_m_s: is 'nan'"));
-    EXPECT_THAT(faultOf("depth_m,sound_speed_m_s\n0,-1500\n1,1500\n"),
+    EXPECT_THAT(diagnosticOf("depth_m,sound_speed_m_s\n0,-1500\n1,1500\n"),
                 HasSubstr("profile.csv:2:3: sound_speed_m_s: is '-1500'; it must be a number from 1 to 20000"));
-    EXPECT_THAT(faultOf("depth_m,sound_speed_m_s\n0,1500\n1\n"),
+    EXPECT_THAT(diagnosticOf("depth_m,sound_speed_m_s\n0,1500\n1\n"),
                 HasSubstr("profile.csv:3:2: sound_speed_m_s: is missing"));
-    EXPECT_THAT(faultOf(""), HasSubstr("is empty"));
+    EXPECT_THAT(diagnosticOf(""), HasSubstr("is empty"));
 }
 
 }  // namespace

@@ -118,13 +118,13 @@ TEST_F(RockDropInTest, SwitchesPutEffectsInAndTakeThemOut) {
 }
 
 TEST_F(RockDropInTest, DiagnosticsOfPropertyFilesAreToldWithTheirPlacesAllAtOnce) {
-    edit(multibeam_file, "enable_reverberation: false", "enable_reverberation: true");
+    edit(multibeam_file, "enable_reverberation: false", "enable_reverberation: maybe");
     edit(multibeam_file, "rad: 120.deg", "rad: 120.m");
     edit(multibeam_file, "bin_count: 500", "bin_cuont: 500");
     const Outcome outcome = run({});
     EXPECT_EQ(outcome.code, 2);
     for (const char* diagnostic :
-         {":10:5: beam_width: is {rad: 120.m}; must be in deg", ":15:1: enable_reverberation: is not built yet",
+         {":10:5: beam_width: is {rad: 120.m}; must be in deg", ":15:1: enable_reverberation: is maybe",
           ":25:1: bin_cuont: is not a key here; did you mean bin_count?"})
         EXPECT_THAT(outcome.err, HasSubstr(multibeam_file + diagnostic));
 }

@@ -1,4 +1,4 @@
-// What moves and turns while sound is under way, against exact solutions of its way there and back (ACOUSTICS.md 5.22).
+// What moves and turns while sound is under way, against exact solutions of its way there and back (ACOUSTICS.md 5.20).
 #include <gmock/gmock.h>
 
 #include <cmath>
@@ -250,7 +250,7 @@ TEST(MotionTest, ThePlanTellsFromWhichSpeedOnMotionIsFollowed) {
 }
 
 /** What is wrong with a configuration, joined. */
-std::string faultsOf(const SonarConfig& config) {
+std::string diagnosticsOf(const SonarConfig& config) {
     types::Diagnostics diagnostics;
     config.check(diagnostics);
     std::string all;
@@ -259,15 +259,16 @@ std::string faultsOf(const SonarConfig& config) {
 }
 
 TEST(MotionTest, WhatItNeedsIsToldWhereItIsMissing) {
-    EXPECT_EQ(faultsOf(fan()), "");
+    EXPECT_EQ(diagnosticsOf(fan()), "");
     SonarConfig config = fan();
     config.visibility = Visibility::Gl;
     config.device = "software";
-    EXPECT_THAT(faultsOf(config), HasSubstr("motion_in_ping: is true, which rays alone follow"));
+    EXPECT_THAT(diagnosticsOf(config), HasSubstr("motion_in_ping: is true, which rays alone follow"));
     config = fan();
     config.pulse.emplace().bandwidth_khz = 50;
     config.pulse->chirp_us = 1000;
-    EXPECT_THAT(faultsOf(config), HasSubstr("pulse.chirp_us: is given without motion_in_ping: true and frequency_khz"));
+    EXPECT_THAT(diagnosticsOf(config),
+                HasSubstr("pulse.chirp_us: is given without motion_in_ping: true and frequency_khz"));
     types::Diagnostics diagnostics;
     acoustics::PulseConfig tone;
     tone.duration_us = tone.chirp_us = 100;

@@ -99,7 +99,9 @@ TEST(OmissionTest, NoEffectIsLeftOutThatIsNotTestedHere) {
         // of `published`, in PublishedTest.cpp:
         Effect::RangeFootprints, Effect::ElevationMask, Effect::SharedColumns, Effect::NearBlanking,
         // without values yet; SonarConfig refuses them:
-        Effect::AzimuthPattern, Effect::ElevationPattern, Effect::RangePointSpread, Effect::Multipath};
+        Effect::AzimuthPattern, Effect::ElevationPattern, Effect::RangePointSpread,
+        // in MultipathTest.cpp:
+        Effect::Multipath};
     SonarConfig absorbing = plainSonar(), published = plainSonar(Model::Cerqueira2017);
     absorbing.absorption.emplace().db_per_m = 0.1;
     absorbing.field_of_view_deg = 50;

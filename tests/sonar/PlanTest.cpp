@@ -11,6 +11,7 @@ using ::testing::Contains;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
+using ::testing::Not;
 
 types::Material sand() {
     types::Material material;
@@ -81,6 +82,29 @@ TEST(PlanTest, WhatASceneOrConfigurationHasIsNotLeftOut) {
             EXPECT_THAT(plan.features, Contains(c.feature)) << c.effect;
         }
     }
+}
+
+TEST(PlanTest, MultipathIsAPassWhereAnythingReflects) {
+    SonarConfig config = quietSonar();
+    config.visibility = Visibility::Auto;
+    types::Material steel = sand();
+    steel.reflection = 0.9f;
+    steel.roughness_slope = 0.1f;
+    const auto passes = [&](int bounces) {
+        config.multipath->bounces = bounces;
+        return makePlan(config, sceneOf({sand(), steel})).passes;
+    };
+    config.multipath.emplace().bounces = 0;
+    EXPECT_EQ(reason(makePlan(config, sceneOf({steel})), "multipath"), "bounces is 0");
+    EXPECT_THAT(passes(1), Not(Contains("paths")));
+    EXPECT_THAT(reason(makePlan(config, sceneOf({steel})), "multipath"), HasSubstr("no material is `mirror: true`"));
+    EXPECT_THAT(passes(2), ElementsAre("cull", "rays", "deposit", "paths", "beams"));
+    steel.mirror = true;
+    EXPECT_THAT(passes(1), Contains("paths"));
+    steel = sand();
+    config.multipath->surface.emplace();
+    EXPECT_THAT(passes(1), Contains("paths"));
+    EXPECT_EQ(reason(makePlan(config, sceneOf({sand()})), "multipath"), "");
 }
 
 TEST(PlanTest, ThePublishedModelLeavesThePhysicsOut) {

@@ -1,4 +1,4 @@
-// Rays that a profile of the speed of sound bends, against exact arcs (ACOUSTICS.md 5.21).
+// Rays that a profile of the speed of sound bends, against exact arcs (ACOUSTICS.md 5.19).
 #include <gmock/gmock.h>
 
 #include <cmath>

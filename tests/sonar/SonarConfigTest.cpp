@@ -155,8 +155,21 @@ TEST(SonarConfigTest, ValuesOutOfBoundsAreRefused) {
         EXPECT_EQ(diagnosticsOf<SonarConfig>(yaml).size(), 1u) << yaml;
 }
 
-TEST(SonarConfigTest, WhatIsNotBuiltYetSaysSo) {
-    EXPECT_THAT(diagnosticsOf<SonarConfig>("multipath: {}"), ElementsAre(HasSubstr("not built yet")));
+TEST(SonarConfigTest, MultipathTakesRaysAndHasItsBounds) {
+    const auto fault = [](const char* yaml, const char* text) {
+        EXPECT_THAT(diagnosticsOf<SonarConfig>(yaml), ElementsAre(HasSubstr(text))) << yaml;
+    };
+    EXPECT_THAT(diagnosticsOf<SonarConfig>("multipath: {surface: {wind_m_s: 0}, bounces: 2}"), IsEmpty());
+    fault("multipath: {bounces: 3}", "multipath.bounces");
+    fault("multipath: {bounces: -1}", "multipath.bounces");
+    fault("multipath: {bounces: 1.5}", "multipath.bounces");
+    fault("multipath: {surface: {wind_m_s: -1}}", "multipath.surface.wind_m_s");
+    fault("multipath: {surface: {wind_m_s: .nan}}", "multipath.surface.wind_m_s");
+    fault("multipath: {surface: 3}", "multipath.surface");
+    fault("multipath: {}\nvisibility: gl", "visibility: is gl with multipath, which needs rays");
+    fault("multipath: {}\ndeposit: gpu", "deposit: is gpu with multipath, which needs rays");
+    fault("multipath: {}\nmodel: cerqueira2017", "multipath: is given with model: cerqueira2017");
+    EXPECT_THAT(diagnosticsOf<SonarConfig>("multipath: {bounces: 0}\nvisibility: gl\ndevice: software"), IsEmpty());
 }
 
 TEST(SonarConfigTest, WaterScattersByOneStrengthOrByLayers) {

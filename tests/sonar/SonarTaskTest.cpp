@@ -159,7 +159,7 @@ TEST_F(SonarTaskTest, APropertyThatIsSetHoldsFromTheNextPingOn) {
     EXPECT_NEAR(ping->binStart(50), 10, 0.1);
     EXPECT_NEAR(firstEcho(*ping, 4), 5, 0.2);
     EXPECT_THROW(set("setRange", "-1"), types::ConfigError);
-    EXPECT_THROW(set("setMultipath", "{}"), types::ConfigError);
+    EXPECT_THROW(set("setMultipath", "{bounces: 3}"), types::ConfigError);
     EXPECT_EQ(task_.config->range, 10);
     EXPECT_EQ(task_.state(), TaskState::Running);
 }

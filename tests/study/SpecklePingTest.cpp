@@ -1,4 +1,4 @@
-// Pings whose echoes interfere (ACOUSTICS.md 5.23): laws come out of sums of scatterers, none is put in. Every law
+// Pings whose echoes interfere (ACOUSTICS.md 5.21): laws come out of sums of scatterers, none is put in. Every law
 // stands beside a wrong one, which must fail by the same measure.
 #include <gmock/gmock.h>
 

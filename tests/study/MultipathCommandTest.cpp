@@ -1,0 +1,26 @@
+#include <gmock/gmock.h>
+
+#include "tests/deployer/Wall.hpp"
+
+using namespace insonify::deployer;
+using testing::HasSubstr;
+
+TEST(MultipathCommandTest, WritesTableJsonAndDiagramAndEveryClaimHolds) {
+    const WallFolder folder;
+    const Outcome outcome = callInsonify(folder, {"study", "multipath", "--out", "report"});
+    EXPECT_EQ(outcome.code, 0) << outcome.out << outcome.err;
+    const json report = json::parse(readFile(folder / "report/multipath.json"));
+    EXPECT_EQ(report["curves"].size(), 6u);
+    EXPECT_EQ(report["verdicts"].size(), 8u);
+    for (const json& verdict : report["verdicts"]) EXPECT_EQ(verdict["verdict"], "pass") << verdict;
+    EXPECT_THAT(readFile(folder / "report/multipath.csv"), HasSubstr("\nsquare trihedral,-20,"));
+    EXPECT_THAT(readFile(folder / "report/multipath.svg"), HasSubstr("Ghost of a flat bottom"));
+}
+
+TEST(MultipathCommandTest, AFolderThatCannotBeWrittenIsTold) {
+    const WallFolder folder;
+    writeFile(folder / "taken", "a file");
+    const Outcome outcome = callInsonify(folder, {"study", "multipath", "--out", "taken/report"});
+    EXPECT_NE(outcome.code, 0);
+    EXPECT_FALSE(outcome.err.empty());
+}
