@@ -36,7 +36,7 @@ SonarConfig boxes() {
     return config;
 }
 
-SonarConfig coherent(SonarConfig config, int scatterers_per_cell = 20, std::optional<double> per_m2 = {}) {
+SonarConfig coherent(SonarConfig config, int scatterers_per_cell = 10, std::optional<double> per_m2 = {}) {
     config.speckle = SpeckleConfig{true, scatterers_per_cell, per_m2};
     return config;
 }
