@@ -166,7 +166,7 @@ public:
             const auto beam = static_cast<uint>(cells_.beam[i] - first_beam_);
             if constexpr (!sums_fields<Estimator>)
                 estimator_.depositCell(covered_.footprint(i), beam, covered_.strength_range[i]);
-            else if (covered_.pixel[i] > 0)
+            else if (covered_.pixel[i] > 0 && cells_.width[i] > 0)  // beyond a cone's end there is no direction
                 estimator_.deposit(patchOf(i), beam);
         }
         if (rules_.features.has(Feature::VolumeLayers))
