@@ -49,6 +49,8 @@ double PulseMeans::mean(double low, double high) const {
 PointTargets::PointTargets(const RenderPlan& plan, const types::Geometry& geometry)
     : plan_(plan), ways_(plan.config, geometry), absorption_(makeAbsorption(plan.config).intensityPerMetre()) {
     if (plan.has(Pass::Pulse)) pulse_.emplace(acoustics::Pulse(*plan.config.pulse, plan.grid.speed_of_sound));
+    if (plan.features.has(Feature::Refraction) || plan.features.has(Feature::MotionInPing))
+        bent_.emplace(plan, geometry);
     means_.reserve(static_cast<size_t>(plan.grid.bin_count));
 }
 
@@ -66,8 +68,8 @@ std::optional<PointTargets::Return> PointTargets::returnOf(const TargetWay& out,
     if (!sent || !heard || !(range >= plan_.grid.range_min)) return {};
     const double intensity = std::pow(10, strength_db / 10) * out.power * back.power * std::exp(-absorption_ * range) /
                              (out.length * out.length * back.length * back.length);
-    return Return{range,     *sent, *heard, intensity, out.by_surface == back.by_surface ? 1.0 : -1.0,
-                  inPhase(out) * inPhase(back)};
+    return Return{
+        range, *sent, *heard, intensity, out.by_surface == back.by_surface ? 1.0 : -1.0, inPhase(out) * inPhase(back)};
 }
 
 double PointTargets::inPhase(const TargetWay& way) const {
@@ -144,11 +146,14 @@ bool PointTargets::addTo(EchoField& field, const Return& echo, uint64_t key) con
 
 size_t PointTargets::add(const types::Snapshot& snapshot, types::Sonar& ping, EchoField* field) {
     ways_.place(snapshot, plan_.grid.range_max + (pulse_ ? pulse_->reach() : 0));
+    if (bent_) bent_->place(snapshot);
     size_t heard = 0;
     auto key = static_cast<uint64_t>(snapshot.time.microseconds);
-    for (const types::PointTarget& target : snapshot.targets) {
+    for (size_t i = 0; i < snapshot.targets.size(); ++i) {
+        const types::PointTarget& target = snapshot.targets[i];
         bool any = false;
-        const std::vector<TargetWay>& ways = ways_.waysTo(target.position);
+        std::span<const TargetWay> ways = ways_.waysTo(target.position);
+        if (bent_ && !bent_->areStraight() && !ways.empty()) ways = bent_->wayTo(target, i);
         for (const TargetWay& out : ways)
             for (const TargetWay& back : ways) {
                 const auto echo = returnOf(out, back, target.strength_db);

@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "components/acoustics/Pulse.hpp"
+#include "components/sonar/BentTargets.hpp"
 #include "components/sonar/RenderPlan.hpp"
 #include "components/sonar/TargetWays.hpp"
 #include "types/Snapshot.hpp"
@@ -67,7 +68,8 @@ private:
 
     const RenderPlan& plan_;
     TargetWays ways_;
-    double absorption_;  ///< Two-way, of intensity [1/m].
+    std::optional<BentTargets> bent_;  ///< Where ways are not straight.
+    double absorption_;                ///< Two-way, of intensity [1/m].
     std::optional<PulseMeans> pulse_;
     std::vector<double> means_;  ///< Of h, for bins from first_bin_ on [1].
     size_t first_bin_ = 0;

@@ -359,10 +359,7 @@ void RayVisibility::cast(const PathRays& rays, TileHits& hits) const {
         aim(Rows(mover.from_sonar), mover.place, rays, all.ray);
         forgetHits(all);
         rtcIntersect16(valid.of, mover.mesh->scene, &context, &all);
-        take(all, hits, [&](uint32_t geometry, uint32_t) {
-            const SceneTrees::Part& part = mover.mesh->parts[geometry];
-            return SceneTrees::Part{mover.first_command + part.command, part.first_triangle};
-        });
+        take(all, hits, [&](uint32_t geometry, uint32_t) { return mover.meaning(geometry); });
     }
 }
 

@@ -166,6 +166,23 @@ TEST(MotionTest, AFloorUnderAMovingSonarHasTheEnergyOfOneUnderASonarAtRest) {
     EXPECT_NEAR(energyOf({15, 0, 0}) / rest, 1, 4 * 15 / c);
 }
 
+TEST(MotionTest, APointTargetIsHeardAtTheRangeOfSoundsExactWay) {
+    const auto nothing = test::sceneOf({test::disc(1, 0.1f)}, 0, {{-500, 0, 0}});
+    SonarRenderer renderer(fan(), nothing);
+    types::Sonar ping;
+    const glm::dvec3 place(240, 30, 2), velocity(-15, 4, 0), sonar(20, 1, 0);
+    for (const double ago : {0.5, 0.0}) {
+        types::Snapshot snapshot = test::snapshotOf(nothing, -ago * sonar);
+        snapshot.time = types::Time::fromSeconds(10 - ago);
+        snapshot.targets = {{place - ago * velocity, 0}};
+        renderer.render(snapshot, ping);
+    }
+    const Heard exact = exactly(place, velocity, sonar);
+    EXPECT_NEAR(loudestOf(ping).range, exact.range, 0.051) << "its own bin";
+    EXPECT_NEAR(loudestOf(ping).bearing, std::atan2(exact.direction.y, exact.direction.x), radians(0.51));
+    EXPECT_GT(std::abs(exact.range - glm::length(place)), 4);
+}
+
 TEST(MotionTest, AReceiverThatTurnsHearsAnEchoFromWhereItLooksByThen) {
     const double turn = radians(30), flight = 2 * 200 / c, bearing = radians(5);
     const auto geometry = test::sceneOf({plate()}, 0, {{200 * std::cos(bearing), 200 * std::sin(bearing), 0}});

@@ -215,6 +215,27 @@ TEST(RefractionTest, AMovingObjectIsMetWhereItIsByBentRaysToo) {
     EXPECT_NEAR(static_cast<double>(loudestBin(ping)), 750, 1);
 }
 
+TEST(RefractionTest, APointTargetIsHeardWhereItsArcComesFromAndNotInAShadow) {
+    const double elevation = -0.05, time = 1801 / 1500.0;
+    std::vector<acoustics::RayPoint> at(1);
+    acoustics::traceRay(acoustics::SoundProfile({{0, 1000}, {1500, 1600}}), 300, elevation, std::vector{time}, at);
+    const auto nothing = test::sceneOf({test::disc(1, 0.1f)}, 0, {{-500, 0, 0}});
+    const auto heard = [&](const std::string& profile, double pitch, glm::dvec3 place) {
+        types::Snapshot snapshot = test::snapshotOf(nothing, {0, 0, -300}, 0, pitch);
+        snapshot.targets = {{place, 0}};
+        return toldOf(longRange(profile, 0.2), snapshot).ping;
+    };
+    const glm::dvec3 place(at[0].across, 0.5, -at[0].depth);
+    const std::string linear = profileOf({{0, 1500}, {1000, 1600}});
+    const types::Sonar ping = heard(linear, -elevation, place);
+    ASSERT_GT(loudest(ping), 0);
+    EXPECT_EQ(loudestBin(ping), static_cast<size_t>(time * 1500 / 2)) << "2 m in 1800";
+    EXPECT_EQ(loudest(heard("", -elevation, place)), 0) << "straight rays come from elsewhere";
+    const double r = time * 1500;
+    EXPECT_NEAR(10 * std::log10(loudest(ping) * r * r * r * r), 0, 1) << "nearly as far as it sounds";
+    EXPECT_EQ(loudest(heard(linear, -elevation, place + glm::dvec3(0, 0, 20))), 0) << "out of the thin beam";
+}
+
 TEST(RefractionTest, ThePlanTellsWhetherRaysAreBentAndByWhichBound) {
     const auto geometry = test::sceneOf({test::ground(-20)});
     const auto planOf = [&](double range, const std::string& profile) {
