@@ -15,6 +15,23 @@ TEST(AcousticsTest, SedimentsHaveTheLambertParametersOfTheTable) {
     EXPECT_DOUBLE_EQ(lambertDb(Sediment::Mackenzie), -27);
 }
 
+TEST(AcousticsTest, AMirrorIsTrueOrFalse) {
+    const auto read = [](const AcousticValue& value, types::Diagnostics& diagnostics) {
+        types::Material material;
+        readAcoustics({{"mirror", value}}, ".", diagnostics).applyTo(material);
+        return material.mirror;
+    };
+    types::Diagnostics diagnostics;
+    EXPECT_TRUE(read(true, diagnostics));
+    EXPECT_FALSE(read(false, diagnostics));
+    EXPECT_TRUE(diagnostics.empty());
+    read(1.0, diagnostics);
+    read(std::string("maybe"), diagnostics);
+    ASSERT_EQ(diagnostics.size(), 2u);
+    EXPECT_EQ(diagnostics[0].text(), "mirror: is 1; must be true or false");
+    EXPECT_EQ(diagnostics[1].text(), "mirror: is \"maybe\"; must be true or false");
+}
+
 TEST(AcousticsTest, LambertsLawFollowsTheReportsSeabeds) {
     struct Case {
         Sediment sediment;
