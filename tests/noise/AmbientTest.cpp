@@ -29,21 +29,21 @@ TEST(AmbientTest, ABinHoldsTheBandsNoiseLessTheDirectivityRelativeToTheSource) {
 }
 
 TEST(AmbientTest, ALevelOrAllThatTheFormulaNeedsAndNotBoth) {
-    const auto diagnostics = [](const AmbientConfig& config) {
+    const auto diagnosticsOf = [](const AmbientConfig& config) {
         types::Diagnostics diagnostics;
         config.check(diagnostics);
         return diagnostics;
     };
-    EXPECT_TRUE(diagnostics(windy(0)).empty());
-    ASSERT_EQ(diagnostics({}).size(), 1u);
-    EXPECT_EQ(diagnostics({})[0].message,
+    EXPECT_TRUE(diagnosticsOf(windy(0)).empty());
+    ASSERT_EQ(diagnosticsOf({}).size(), 1u);
+    EXPECT_EQ(diagnosticsOf({})[0].message,
               "has no value; give level_db, or wind_m_s, bandwidth_khz and source_level_db");
     AmbientConfig both = windy(3), half = windy(3);
     both.level_db = -100;
-    EXPECT_EQ(diagnostics(both).size(), 3u);
+    EXPECT_EQ(diagnosticsOf(both).size(), 3u);
     half.bandwidth_khz.reset();
-    ASSERT_EQ(diagnostics(half).size(), 1u);
-    EXPECT_EQ(diagnostics(half)[0].message, "has no bandwidth_khz; without level_db it must");
+    ASSERT_EQ(diagnosticsOf(half).size(), 1u);
+    EXPECT_EQ(diagnosticsOf(half)[0].message, "has no bandwidth_khz; without level_db it must");
 }
 
 }  // namespace

@@ -67,7 +67,7 @@ TEST(SpeckleTest, KSpeckleIsAnExponentialOfGammaDistributedMean) {
 }
 
 TEST(SpeckleTest, ALawHasTheParametersOfItsOwn) {
-    const auto diagnostics = [](const SpeckleConfig& speckle) {
+    const auto diagnosticsOf = [](const SpeckleConfig& speckle) {
         types::Diagnostics diagnostics;
         speckle.check(diagnostics);
         std::string text;
@@ -75,13 +75,13 @@ TEST(SpeckleTest, ALawHasTheParametersOfItsOwn) {
             text += diagnostic.path + " " + diagnostic.message + "; ";
         return text;
     };
-    EXPECT_EQ(diagnostics({.law = SpeckleLaw::Gamma, .looks = 4}) + diagnostics({.law = SpeckleLaw::K, .shape = 2}) +
-                  diagnostics({}),
+    EXPECT_EQ(diagnosticsOf({.law = SpeckleLaw::Gamma, .looks = 4}) + diagnosticsOf({.law = SpeckleLaw::K, .shape = 2}) +
+                  diagnosticsOf({}),
               "");
-    EXPECT_EQ(diagnostics({.law = SpeckleLaw::Gamma}), "looks is absent; law: gamma needs it; ");
-    EXPECT_EQ(diagnostics({.law = SpeckleLaw::K}), "shape is absent; law: k needs it; ");
-    EXPECT_EQ(diagnostics({.looks = 4}), "looks is given; it belongs to law: gamma; ");
-    EXPECT_EQ(diagnostics({.shape = 4}), "shape is given; it belongs to law: k; ");
+    EXPECT_EQ(diagnosticsOf({.law = SpeckleLaw::Gamma}), "looks is absent; law: gamma needs it; ");
+    EXPECT_EQ(diagnosticsOf({.law = SpeckleLaw::K}), "shape is absent; law: k needs it; ");
+    EXPECT_EQ(diagnosticsOf({.looks = 4}), "looks is given; it belongs to law: gamma; ");
+    EXPECT_EQ(diagnosticsOf({.shape = 4}), "shape is given; it belongs to law: k; ");
 }
 
 TEST(SpeckleTest, TheOtherLawsAreHeldToOnePercentToo) {
