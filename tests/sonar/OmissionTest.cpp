@@ -86,22 +86,24 @@ Bins times(Bins bins, float factor) {
 }  // namespace
 
 TEST(OmissionTest, NoEffectIsLeftOutThatIsNotTestedHere) {
-    const std::set<Effect> tested = {
-        Effect::Absorption, Effect::AbsorptionInBin, Effect::SpecularLobe, Effect::Spreading,
-        Effect::BackscatterByMaterial, Effect::FurtherSlabs, Effect::Refraction, Effect::MotionInPing,
-        Effect::NormalMaps,
-        // in RingDownTest.cpp and PointTargetTest.cpp:
-        Effect::RingDown, Effect::PointTargets,
-        // in BackscatterPingTest.cpp:
-        Effect::SeabedLaw, Effect::MeasuredBackscatter,
-        // in VolumePingTest.cpp:
-        Effect::Volume,
-        // of `published`, in PublishedTest.cpp:
-        Effect::RangeFootprints, Effect::ElevationMask, Effect::SharedColumns, Effect::NearBlanking,
-        // without values yet; SonarConfig refuses them:
-        Effect::AzimuthPattern, Effect::ElevationPattern, Effect::RangePointSpread,
-        // in MultipathTest.cpp:
-        Effect::Multipath};
+    const std::set<Effect> tested = {Effect::Absorption, Effect::AbsorptionInBin, Effect::SpecularLobe,
+                                     Effect::Spreading, Effect::BackscatterByMaterial, Effect::FurtherSlabs,
+                                     Effect::Refraction, Effect::MotionInPing, Effect::NormalMaps,
+                                     // in RingDownTest.cpp and PointTargetTest.cpp:
+                                     Effect::RingDown, Effect::PointTargets,
+                                     // where fields are summed, in tests/study/SpecklePingTest.cpp:
+                                     Effect::Speckle,
+                                     // in BackscatterPingTest.cpp:
+                                     Effect::SeabedLaw, Effect::MeasuredBackscatter,
+                                     // in VolumePingTest.cpp:
+                                     Effect::Volume,
+                                     // of `published`, in PublishedTest.cpp:
+                                     Effect::RangeFootprints, Effect::ElevationMask, Effect::SharedColumns,
+                                     Effect::NearBlanking,
+                                     // without values yet; SonarConfig refuses them:
+                                     Effect::AzimuthPattern, Effect::ElevationPattern, Effect::RangePointSpread,
+                                     // in MultipathTest.cpp:
+                                     Effect::Multipath};
     SonarConfig absorbing = plainSonar(), published = plainSonar(Model::Cerqueira2017);
     absorbing.absorption.emplace().db_per_m = 0.1;
     absorbing.field_of_view_deg = 50;
@@ -271,6 +273,11 @@ std::vector<std::pair<SonarConfig, RenderOptions>> sonarsOfAllFeatures() {
         config.published = true;
         config.deposit = deposit;
     }
+    SonarConfig& coherent = all.emplace_back(plainSonar(), RenderOptions{}).first;
+    coherent.visibility = Visibility::Cpu;
+    coherent.device = "";
+    coherent.frequency_khz = 300;
+    coherent.speckle.emplace().coherent = true;
     SonarConfig& bent = all.emplace_back(plainSonar(), RenderOptions{}).first;
     bent.visibility = Visibility::Cpu;
     bent.device = "";
