@@ -124,7 +124,7 @@ TEST_F(RockDropInTest, DiagnosticsOfPropertyFilesAreToldWithTheirPlacesAllAtOnce
     const Outcome outcome = run({});
     EXPECT_EQ(outcome.code, 2);
     for (const char* diagnostic :
-         {":10:5: beam_width: is {rad: 120.m}; must be in deg", ":15:1: enable_reverberation: is maybe",
+         {":10:5: beam_width: is {rad: 120.m}; must be in deg", ":15:23: enable_reverberation: is maybe",
           ":25:1: bin_cuont: is not a key here; did you mean bin_count?"})
         EXPECT_THAT(outcome.err, HasSubstr(multibeam_file + diagnostic));
 }
