@@ -75,8 +75,8 @@ TEST(SpeckleTest, ALawHasTheParametersOfItsOwn) {
             text += diagnostic.path + " " + diagnostic.message + "; ";
         return text;
     };
-    EXPECT_EQ(diagnosticsOf({.law = SpeckleLaw::Gamma, .looks = 4}) + diagnosticsOf({.law = SpeckleLaw::K, .shape = 2}) +
-                  diagnosticsOf({}),
+    EXPECT_EQ(diagnosticsOf({.law = SpeckleLaw::Gamma, .looks = 4}) +
+                  diagnosticsOf({.law = SpeckleLaw::K, .shape = 2}) + diagnosticsOf({}),
               "");
     EXPECT_EQ(diagnosticsOf({.law = SpeckleLaw::Gamma}), "looks is absent; law: gamma needs it; ");
     EXPECT_EQ(diagnosticsOf({.law = SpeckleLaw::K}), "shape is absent; law: k needs it; ");
