@@ -9,9 +9,10 @@
 
 namespace insonify::types {
 
-/** What the elements of a straight array heard of a ping, as complex baseband after the pulse's matched filter: the
- *  square of its size is intensity relative to the source, its phase is turned by exp(i 4 pi r / wavelength) along the
- *  range. Sample i of element m stands at [m * sample_count + i] of `in_phase` and `quadrature`. */
+/** What the elements of a straight array heard of a ping, but of point targets, mirrors and ring-down, as complex
+ *  baseband after the pulse's matched filter: the square of its size is intensity relative to the source, its phase is
+ *  turned by exp(i 4 pi r / wavelength) along the range. Sample i of element m stands at [m * sample_count + i] of
+ *  `in_phase` and `quadrature`. */
 struct SonarElements {
     static constexpr const char* type_name = "/insonify/SonarElements";
     static constexpr bool shared = true;  ///< Travels by reference, see Carried.

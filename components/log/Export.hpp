@@ -29,8 +29,8 @@ std::vector<std::filesystem::path> exportNpz(Reader& log, const std::string& str
 /** Writes a stream as text. Pings, beams and scans: `time,beam,bearing,bin,value`, a line for each bin [s, 1, rad, 1,
  *  1]; truth the same, with `elevation,object,share,hits,grazing,path,shadow` for the value, and returns without bins.
  *  1], elements `time,element,position,sample,in_phase,quadrature`. Points: `time,x,y,z,intensity`; maps:
- * `time,row,column,distance,remission`; ranges: `time,range`. Poses: `time,x,y,z,qw,qx,qy,qz`, which a trajectory reads
- * [s, m, 1]. Numbers, texts, times [s] and angles [rad]: `time,value`. Throws as exportNpz. */
+ *  `time,row,column,distance,remission`; ranges: `time,range`. Poses: `time,x,y,z,qw,qx,qy,qz`, which a trajectory
+ *  reads [s, m, 1]. Numbers, texts, times [s] and angles [rad]: `time,value`. Throws as exportNpz. */
 void exportCsv(Reader& log, const std::string& stream, const std::filesystem::path& path);
 
 }  // namespace insonify::log

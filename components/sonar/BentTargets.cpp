@@ -6,7 +6,7 @@
 namespace insonify::sonar {
 
 BentTargets::BentTargets(const RenderPlan& plan, const types::Geometry& geometry)
-    : plan_(plan), paths_(plan, geometry), motion_(geometry) {}
+    : plan_(plan), paths_(plan, geometry), motion_(geometry, 0.1 * plan.grid.speed_of_sound) {}
 
 void BentTargets::place(const types::Snapshot& snapshot) {
     paths_.place(snapshot);

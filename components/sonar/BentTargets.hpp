@@ -9,7 +9,7 @@
 namespace insonify::sonar {
 
 /** The ways of sound to point targets where they are not straight: bent by a profile of the speed of sound, or because
- *  sonar and targets move while it is under way (ACOUSTICS.md 5.21, 5.22). */
+ *  sonar and targets move while it is under way (ACOUSTICS.md 5.19, 5.20). */
 class BentTargets {
 public:
     /** Of a plan with Feature::Refraction or Feature::MotionInPing; both must outlive it. */

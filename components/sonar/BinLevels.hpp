@@ -18,7 +18,7 @@ public:
     BinLevels(const SonarConfig& config, const BinGrid& grid);
 
     /** Intensity of bin j [1/m^2, of the source's at 1 m], at most the largest float; an A_j that is not positive is no
-     * echo. */
+     *  echo. */
     float intensity(size_t j, double accumulated) const {
         constexpr double largest = static_cast<double>(std::numeric_limits<float>::max());
         return accumulated > 0 ? static_cast<float>(std::min(accumulated * factor_[j], largest)) : 0.0f;
@@ -28,7 +28,7 @@ public:
     double factor(size_t j) const { return factor_[j]; }
 
     /** One beam's bins from its sums in quanta, EchoRules::sumCount() of them, of cells of `solid_angle` [sr]. Returns
-     * whether there is any echo. Allocates nothing. */
+     *  whether there is any echo. Allocates nothing. */
     bool fill(const EchoRules& rules, const uint64_t* sums, double solid_angle, std::span<float> bins) const;
 
 private:

@@ -304,8 +304,9 @@ void CastEchoes::addPaths(types::Sonar& ping) {
             const auto i = static_cast<size_t>(cell);
             const auto thread = static_cast<size_t>(part);
             const std::span<float> bins = field_ ? field_->energies(thread) : grid_->cell(i, ping);
-            workers_[thread].heard |= paths_->addTo(i, levels_, bins);
-            if (field_) field_->addEnergies(i, bins, thread);
+            const bool any = paths_->addTo(i, levels_, bins);
+            if (any && field_) field_->addEnergies(i, bins, thread);
+            workers_[thread].heard |= any;
         }
     });
 }

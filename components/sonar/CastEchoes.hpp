@@ -10,8 +10,8 @@ namespace insonify::sonar {
 bool haveRays();
 
 /** Pings by rays on the processor, without OpenGL. Beams are shared out to the threads as these come free; a beam's
- * rays are cast, deposited and turned into bins by one thread, while they are in its cache. Throws std::runtime_error
- * where the build has none, or Embree refuses the scene. */
+ *  rays are cast, deposited and turned into bins by one thread, while they are in its cache. Throws std::runtime_error
+ *  where the build has none, or Embree refuses the scene. */
 std::unique_ptr<EchoRenderer> makeCastEchoes(const RenderPlan& plan, types::GeometryPtr geometry);
 
 }  // namespace insonify::sonar

@@ -37,6 +37,7 @@ struct Cubes {
     size_t first, last;       ///< Range cells.
     float start[3], step[3];  ///< Of the first range cell, and to the next one [cubes].
     uint32_t base[3];         ///< The cube that these are counted from.
+    uint32_t seed;            ///< Other than that of another field in the same cubes.
 };
 
 /** A complex Gaussian field of given intensities, which belongs to the cubes that the middles of range cells are in. */
@@ -45,7 +46,7 @@ INSONIFY_VECTOR_CLONES void scatterInCubes(const Cubes& cubes, const float* inte
     const Cubes c = cubes;
     for (size_t k = c.first; k < c.last; ++k) {
         const auto on = static_cast<float>(static_cast<int32_t>(k - c.first));
-        uint32_t place = 0;
+        uint32_t place = c.seed;
         for (int axis = 0; axis < 3; ++axis) {
             const float at = c.start[axis] + on * c.step[axis];
             const auto whole = static_cast<int32_t>(at);
@@ -133,7 +134,7 @@ bool EchoField::fill(size_t cell, const EchoRules& rules, const uint64_t* sums, 
     }
     if (volume_) {
         volume_->add(sums + rules.volumeOffset(), cell, solid_angle, energies(thread));
-        scatter(cell, scratch.energies, scratch);
+        scatter(cell, scratch.energies, 1, scratch);
     }
     response_.spread(scratch.sorted, {&cells_[cell * numbers()], numbers()});
     return any != 0;
@@ -148,12 +149,12 @@ void EchoField::addEnergies(size_t cell, std::span<const float> intensities, siz
     Scratch& scratch = scratch_[thread];
     for (size_t k = 0; k < response_.cells(); ++k)
         scratch.sorted[response_.place(k)] = scratch.sorted[response_.place(k) + 1] = 0;
-    scatter(cell, intensities, scratch);
+    scatter(cell, intensities, 2, scratch);
     response_.spread(scratch.sorted, scratch.spread);
     addScaled(scratch.spread.data(), 1, &cells_[cell * numbers()], numbers());
 }
 
-void EchoField::scatter(size_t cell, std::span<const float> intensities, Scratch& scratch) const {
+void EchoField::scatter(size_t cell, std::span<const float> intensities, uint32_t seed, Scratch& scratch) const {
     const Beam& azimuth = plan_.cells[cell];
     const glm::dvec3 ray = sonar_.orientation * glm::dvec3(std::cos(azimuth.centre), std::sin(azimuth.centre), 0);
     const double width = plan_.grid.bin_width * plan_.grid.bin_count / static_cast<double>(response_.cells());
@@ -164,12 +165,12 @@ void EchoField::scatter(size_t cell, std::span<const float> intensities, Scratch
         const double side = std::exp2(std::floor(std::log2(std::min(width, near * spread))));
         const double finer_to = 2 * side <= width ? 2 * side / spread : std::numeric_limits<double>::infinity();
         const double last = std::min(std::ceil(finer_to / width - 0.5), static_cast<double>(response_.cells()));
-        Cubes cubes{first, std::max(static_cast<size_t>(last), first + 1), {}, {}, {}};
+        Cubes cubes{first, std::max(static_cast<size_t>(last), first + 1), {}, {}, {}, seed};
         for (int axis = 0; axis < 3; ++axis) {
             const double start = (sonar_.position[axis] + near * ray[axis]) / side, base = std::floor(start);
             cubes.start[axis] = static_cast<float>(start - base);
             cubes.step[axis] = static_cast<float>(width * ray[axis] / side);
-            cubes.base[axis] = static_cast<uint32_t>(static_cast<int64_t>(base));
+            cubes.base[axis] = squareOf(base);
         }
         scatterInCubes(cubes, intensities.data(), scratch.real.data(), scratch.imaginary.data());
         first = cubes.last;

@@ -83,8 +83,8 @@ private:
     size_t numbers() const { return 2 * response_.samples(); }
     const std::vector<float>& beams() const { return beamformer_ ? beams_ : cells_; }
     std::vector<float>& beams() { return beamformer_ ? beams_ : cells_; }
-    /** Adds a random field of intensities to what is sorted. */
-    void scatter(size_t cell, std::span<const float> intensities, Scratch& scratch) const;
+    /** Adds a random field of intensities to what is sorted; fields of different seeds have nothing in common. */
+    void scatter(size_t cell, std::span<const float> intensities, uint32_t seed, Scratch& scratch) const;
 
     const RenderPlan& plan_;
     FieldResponse response_;

@@ -15,7 +15,7 @@ namespace insonify::sonar {
 Beamformer beamformerOf(const RenderPlan& plan);
 
 /** The way of echoes from azimuth cells to the bins of a ping: beams are formed of the cells, and the pulse spreads
- * them in range. Of a plan without either, cells are the ping's beams, and there is no work. */
+ *  them in range. Of a plan without either, cells are the ping's beams, and there is no work. */
 class EchoGrid {
 public:
     /** `threads`: of the pool that will finish it. */

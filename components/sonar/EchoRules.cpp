@@ -22,7 +22,7 @@ void tabulateElevation(const RenderPlan& plan, EchoRules& rules) {
 }
 
 /** How wide a sample is at least [rad]: a quarter of the narrower of what a row and a column cover, for images are
- * finer at their edges. */
+ *  finer at their edges. */
 double smallestSample(const RenderPlan& plan) {
     const SonarConfig& config = plan.sampled;
     const double row = config.beam_height_deg / config.rows(), column = config.beamWidthDeg() / config.columnsPerBeam();

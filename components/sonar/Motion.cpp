@@ -28,7 +28,8 @@ glm::dvec3 turnBetween(const glm::dquat& from, const glm::dquat& to, double seco
     return sine > 0 ? axis * (2 * std::atan2(sine, turned.w) / (sine * seconds)) : glm::dvec3(0);
 }
 
-Motion::Motion(const types::Geometry& geometry) : drifts_(geometry.objects.size()) {
+Motion::Motion(const types::Geometry& geometry, double fastest)
+    : fastest_allowed_(fastest), drifts_(geometry.objects.size()) {
     for (const types::Object& object : geometry.objects)
         boxes_.push_back(boxOf(geometry.meshes[static_cast<size_t>(object.mesh)]));
 }
@@ -51,7 +52,7 @@ void Motion::follow(const types::Snapshot& snapshot) {
 void Motion::followSonar(const types::Snapshot& snapshot) {
     const types::Pose& sonar = snapshot.sonar;
     velocity_ = turn_ = glm::dvec3(0);
-    if (isKnown(sonar.velocity))
+    if (isKnown(sonar.velocity) && glm::length(sonar.velocity) <= fastest_allowed_)
         velocity_ = sonar.velocity;
     else if (before_)
         velocity_ = (sonar.position - before_->sonar.position) / seconds_;
@@ -86,14 +87,15 @@ void Motion::driftOf(const types::Pose& sonar, const types::MovedObject& now, co
         const glm::dvec4 p(corner & 1 ? high.x : low.x, corner & 2 ? high.y : low.y, corner & 4 ? high.z : low.z, 1);
         drift.fastest = std::max(drift.fastest, glm::length(glm::dvec3(rate * p)));
     }
-    if (!std::isfinite(drift.fastest) || !isKnown(drift.constant)) return;
+    if (!(drift.fastest <= fastest_allowed_) || !isKnown(drift.constant)) return;
     fastest_ = std::max(fastest_, drift.fastest);
     drifts_[now.object] = drift;
 }
 
 glm::dvec3 Motion::targetVelocity(size_t target) const {
     if (!before_ || before_->targets.size() != now_->targets.size() || target >= now_->targets.size()) return {};
-    return (now_->targets[target].position - before_->targets[target].position) / seconds_;
+    const glm::dvec3 velocity = (now_->targets[target].position - before_->targets[target].position) / seconds_;
+    return glm::length(velocity) <= fastest_allowed_ ? velocity : glm::dvec3(0);
 }
 
 }  // namespace insonify::sonar

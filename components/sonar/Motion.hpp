@@ -23,9 +23,10 @@ struct Drift {
  *  velocities. */
 class Motion {
 public:
-    explicit Motion(const types::Geometry& geometry);
+    /** What seems to move faster than `fastest` [m/s] has been put elsewhere, and is taken to be at rest. */
+    Motion(const types::Geometry& geometry, double fastest);
 
-    /** Once a ping; several of one time are one. Allocates nothing after the first. */
+    /** Once a ping; several of one time are one. Allocates nothing after the second. */
     void follow(const types::Snapshot& snapshot);
 
     const glm::dvec3& velocity() const { return velocity_; }  ///< Of the sonar, in the world [m/s].
@@ -50,7 +51,8 @@ private:
 
     std::vector<std::pair<glm::dvec3, glm::dvec3>> boxes_;  ///< Of each object's mesh, low and high [m].
     std::optional<Mark> before_, now_;
-    double seconds_ = 0;  ///< Between the two.
+    double fastest_allowed_;  ///< [m/s]
+    double seconds_ = 0;      ///< Between the two.
     glm::dvec3 velocity_{0}, turn_{0};
     std::vector<std::optional<Drift>> drifts_;
     double fastest_ = 0;

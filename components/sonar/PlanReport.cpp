@@ -213,8 +213,7 @@ std::string depthNotice(const RenderPlan& plan, const types::Snapshot& snapshot)
     if (depth >= top && depth <= bottom) return {};
     return fmt::format(
         "Warning: at the first ping the sonar is {:.4g} m deep, its profile of the speed of sound goes from {:g} to "
-        "{:g} m; "
-        "beyond them the speed is that of the nearer end",
+        "{:g} m; beyond them the speed is that of the nearer end",
         depth, top, bottom);
 }
 

@@ -38,8 +38,8 @@ public:
     /** Of a plan for model `physical`; plan and geometry must outlive it. */
     PointTargets(const RenderPlan& plan, const types::Geometry& geometry);
 
-    /** Once the bins are filled, or `field` is, where there is one; how many targets any beam hears. Allocates nothing.
-     */
+    /** Once the bins are filled, or `field` is, where there is one; how many targets any beam hears. Allocates nothing
+     *  where nothing reflects and rays are straight. */
     size_t add(const types::Snapshot& snapshot, types::Sonar& ping, EchoField* field);
 
 private:

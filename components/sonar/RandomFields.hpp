@@ -1,6 +1,7 @@
 #pragma once
 // Random numbers that belong to a place, and the phases of fields: for loops that become vector code, so without calls.
 // To be included by files that are compiled without contraction.
+#include <cmath>
 #include <cstdint>
 
 #include "types/VectorMath.hpp"
@@ -12,6 +13,11 @@ inline uint32_t mixed(uint32_t x) {
     x = (x ^ x >> 16) * 0x7feb352du;
     x = (x ^ x >> 15) * 0x846ca68bu;
     return x ^ x >> 16;
+}
+
+/** The number of a square of a lattice, or of a cube, that may lie anywhere: it comes round after 2^32. */
+inline uint32_t squareOf(double whole) {
+    return static_cast<uint32_t>(static_cast<int64_t>(std::fmod(whole, 4294967296.0)));
 }
 
 /** To the nearest whole number, for less than 2^22, without a call. */

@@ -30,7 +30,7 @@ public:
     /** Of a plan with Feature::Refraction or Feature::MotionInPing; both outlive it. */
     RayPaths(const RenderPlan& plan, const types::Geometry& geometry);
 
-    /** Once a ping. Allocates nothing after the first, but where rays are bent for another depth. */
+    /** Once a ping. Allocates nothing after the second. */
     void place(const types::Snapshot& snapshot);
     /** Whether all ways of this ping are as good as straight: nothing is bent, and nothing moves enough. */
     bool areStraight() const { return !table_ && !moves_; }

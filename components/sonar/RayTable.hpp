@@ -50,7 +50,7 @@ private:
     std::vector<acoustics::RayPoint> points_;
     std::vector<Place> places_;  ///< Of each ray, from straight down to straight up, at each corner.
     /** Whether each ray and the next have been torn apart there, as where one turns back from a layer that the other
-     * goes through: between them is a shadow. */
+     *  goes through: between them is a shadow. */
     std::vector<uint8_t> torn_;
 };
 

@@ -40,8 +40,8 @@ struct PathRays {
 };
 
 /** Which triangle is seen in which direction, by rays on the processor (Embree). What does not move is one tree about
- * an origin near the sonar, so that world coordinates may be large; each object that moves has a tree of its own, which
- * is re-placed each ping and never built again. Surfaces nearer than `nearest` are not seen. */
+ *  an origin near the sonar, so that world coordinates may be large; each object that moves has a tree of its own,
+ *  which is re-placed each ping and never built again. Surfaces nearer than `nearest` are not seen. */
 class RayVisibility {
 public:
     static constexpr double nearest = 1e-3;     ///< [m]
@@ -52,11 +52,11 @@ public:
     ~RayVisibility();
 
     /** Places the sonar and what moves, once a ping. Builds the tree anew when an object moves that never did before,
-     * or when the sonar has gone far from the tree's origin; allocates only then. */
+     *  or when the sonar has gone far from the tree's origin; allocates only then. */
     void place(const types::Snapshot& snapshot);
 
     /** Casts tiles from the place of the sonar, at most `tiles_at_once`, which should lie side by side: hits[i] is what
-     * rays[i] meet. Several threads may do so at a time. */
+     *  rays[i] meet. Several threads may do so at a time. */
     void cast(std::span<const TileRays> rays, std::span<TileHits> hits) const;
 
     /** What rays that begin elsewhere meet first. */

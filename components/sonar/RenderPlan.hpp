@@ -17,7 +17,7 @@
 namespace insonify::sonar {
 
 /** What is compiled into the estimators where it is wanted: `#ifdef HAVE_<NAME>` in the shaders and in what the
- * processor compiles of them. */
+ *  processor compiles of them. */
 enum class Feature {
     Physical,
     Cerqueira2017,
@@ -152,7 +152,7 @@ RenderPlan makeRenderPlan(const SonarConfig& config, const types::Geometry& geom
                           const RenderOptions& options = {});
 
 /** Share of the sound that a material reflects as a mirror does, where `bounces` reflections of a way are asked for
- * [1]: one that is declared to, or from two on one that is smooth (ACOUSTICS.md 5.23); 0: it does not. */
+ *  [1]: one that is declared to, or from two on one that is smooth (ACOUSTICS.md 5.23); 0: it does not. */
 double reflectedPower(const types::Material& material, int bounces);
 
 /** Gradient of the speed of sound with depth that refraction is judged by without a profile, a strong thermocline

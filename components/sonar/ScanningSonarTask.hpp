@@ -12,7 +12,7 @@ namespace insonify::sonar {
  *
  *  The scan starts at `head.left_deg` with the first ping after start. A snapshot older than the one before leads to
  *  RunTimeError until time goes on. A head that is set while it scans starts anew. A step that `head.speed_deg_per_s`
- * cannot make between the first two pings is an error of the configuration. */
+ *  cannot make between the first two pings is an error of the configuration. */
 class ScanningSonarTask final : public PingTask {
 public:
     using PingTask::PingTask;
@@ -34,7 +34,7 @@ private:
     };
     void checkStep(double period) const;
     /** Gives a sonar whose head has been turned its angular velocity: that of what carries it, and where the head
-     * sweeps, its own. */
+     *  sweeps, its own. */
     void turn(types::Pose& sonar, const Aim& aim, double seconds) const;
 
     std::optional<HeadScan> scan_;

@@ -48,7 +48,7 @@ namespace {
 
 /** Strength of what one scatterer of the lattice stands for, over its mean: Gamma(shape), as the total of so many
  *  scatterers of exponentially distributed strength is, by Wilson and Hilferty's cube for shape + 1 (1931) and the
- * power of a uniform number that leads from there to `shape`. */
+ *  power of a uniform number that leads from there to `shape`. */
 float gammaStrength(float shape, uint32_t bits) {
     const float next = shape + 1;
     const float normal = std::sqrt(-2 * logarithm(uniform(bits >> 16))) * cosineOf(uniform(bits) - 0.5f);
@@ -226,8 +226,8 @@ LatticePatch partOf(const EchoRules& rules, const Patch& patch, const PatchLatti
     const glm::dvec3 at = lattice.range * patch.middle;
     LatticePatch part{};
     part.key = mixed(patch.number * 6 + lattice.side + mixed(level.number + 1));
-    part.base_u = static_cast<uint32_t>(static_cast<int64_t>(base.x));
-    part.base_v = static_cast<uint32_t>(static_cast<int64_t>(base.y));
+    part.base_u = squareOf(base.x);
+    part.base_v = squareOf(base.y);
     part.middle_u = static_cast<float>(lattice.middle.x / level.spacing - base.x);
     part.middle_v = static_cast<float>(lattice.middle.y / level.spacing - base.y);
     for (int i = 0; i < 3; ++i) {
@@ -249,7 +249,9 @@ LatticePatch partOf(const EchoRules& rules, const Patch& patch, const PatchLatti
 }
 
 uint64_t signedQuanta(float field) {
-    return static_cast<uint64_t>(static_cast<int64_t>(static_cast<double>(field) * quanta_per_unit));
+    constexpr double most = 1048576;
+    return static_cast<uint64_t>(
+        static_cast<int64_t>(std::clamp(static_cast<double>(field), -most, most) * quanta_per_unit));
 }
 
 }  // namespace
@@ -322,6 +324,7 @@ void Scatterers::depositLevel(const Patch& patch, const PatchLattice& lattice, c
     int32_t* const up = rows.axis == 1 ? squares_.v : squares_.u;
     int count = 0;
     const auto add = [&] {
+        for (int i = count; i < LatticeSquares::most && i % 16 != 0; ++i) squares_.u[i] = squares_.v[i] = 0;
         scatter(part, squares_, count, fields_);
         sum(level, count, of_beam);
         count = 0;

@@ -11,7 +11,7 @@ namespace insonify::sonar {
 
 /** A part of a triangle's plane that neighbouring samples see; sonar axes. */
 struct Patch {
-    static constexpr size_t most_beams = 4;
+    static constexpr size_t most_beams = 4;  ///< As many as a tile has columns.
 
     glm::dvec3 normal;                  ///< Of any length [1].
     double distance;                    ///< normal.p of its points [m].
@@ -50,7 +50,7 @@ struct LatticeSquares {
 };
 
 /** What scatterers add: a field in units of the square root of a whole cell, and to which range cell; 0 to the first:
- * none. */
+ *  none. */
 struct ScatteredFields {
     alignas(64) float real[LatticeSquares::most], imaginary[LatticeSquares::most];
     alignas(64) int32_t cell[LatticeSquares::most], beam[LatticeSquares::most];  ///< The beam from the patch's first.

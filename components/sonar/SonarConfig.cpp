@@ -86,6 +86,8 @@ void checkStraightWays(const SonarConfig& config, types::Diagnostics& diagnostic
 }
 
 void checkSpeckle(const SonarConfig& config, types::Diagnostics& diagnostics) {
+    if (config.speckle && !config.speckle->coherent && config.speckle->scatterers_per_m2)
+        diagnostics.push_back({"speckle.scatterers_per_m2", "is given without coherent: true, which it needs"});
     if (config.isCoherent() && !config.frequency_khz)
         diagnostics.push_back({"speckle", "is coherent without frequency_khz, which it needs"});
 }
@@ -106,6 +108,12 @@ void checkElementCount(const SonarConfig& config, types::Diagnostics& diagnostic
         acoustics::BeamPattern(*config.beam_pattern->receive.azimuth, wavelength).aperture() * wavelength;
     const auto [count, spacing] = config.elements->arrayOf(aperture, wavelength);
     const double length = static_cast<double>(count) * spacing;
+    if (count > 4096)
+        return diagnostics.push_back(
+            {"elements",
+             fmt::format("are {} that are {:.4g} m apart; may be 4096: give a larger spacing_m, or a shorter "
+                         "aperture",
+                         count, spacing)});
     if (count < 2 || std::abs(length - aperture) > 0.5 * spacing + 1e-9)
         diagnostics.push_back(
             {"elements", fmt::format("are {} that are {:.4g} m apart, {:.4g} m in all; the aperture of "

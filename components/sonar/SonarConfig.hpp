@@ -112,7 +112,7 @@ struct MultipathConfig {
 };
 
 /** Echoes that interfere: each surface is a lattice of scatterers that belong to its object, and what a bin holds is
- * the square of the sum of their fields (ACOUSTICS.md 5.21). */
+ *  the square of the sum of their fields (ACOUSTICS.md 5.21). */
 struct SpeckleConfig {
     bool coherent = false;
     int scatterers_per_cell = 10;
@@ -256,7 +256,7 @@ struct SonarConfig {
     /** Azimuth from the outer edge of the first beam to that of the last [deg], at most 360. */
     double coverageDeg() const;
     /** The same with a fan that is given by `beam_width_deg` given by `field_of_view_deg`, or by `bearings_deg` where
-     * both are. */
+     *  both are. */
     SonarConfig fan() const;
     /** Whether echoes may come by way of mirrors, which takes rays. */
     bool tracesPaths() const { return multipath && multipath->bounces > 0; }

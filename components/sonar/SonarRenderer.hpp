@@ -39,7 +39,7 @@ public:
     void setTruth(const types::Sonar& ping, types::SonarTruth* truth);
 
     /** Of a sonar with `elements`: what they heard of `ping`, the last that was rendered. Takes some time and
-     * allocates. Throws std::logic_error where the sonar has none. */
+     *  allocates. Throws std::logic_error where the sonar has none. */
     void takeElements(const types::Sonar& ping, types::SonarElements& signals);
 
     /** How many pings may be submitted and not collected [1]: more than one only pays where a graphics card draws. */

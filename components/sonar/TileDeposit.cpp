@@ -41,7 +41,7 @@ struct Covered {
 };
 
 /** The trapezoid of inverse ranges that a cell covers of a plane n.p = D: n.d / D is linear in azimuth and elevation
- * but for the curvature of sine and cosine. Closer to edge-on than 1e-4 rad there is no echo, but still a shadow. */
+ *  but for the curvature of sine and cosine. Closer to edge-on than 1e-4 rad there is no echo, but still a shadow. */
 INSONIFY_VECTOR_CLONES void cover(const Cells& cells, int count, double near_edge, double far_edge,
                                   Covered& __restrict covered) {
     for (int i = 0; i < count; ++i) {

@@ -16,6 +16,7 @@ struct CodedPing {
     std::vector<float> codes = {};      ///< Beam-first, as shares of the largest code [1].
     int bits = 8;                       ///< Of a code.
     receiver::CodeConfig law = {};      ///< How codes go with intensity: `law`, `gamma`, `dynamic_range_db`.
+    std::string file = {};              ///< Of a recording.
 
     float code(size_t beam, size_t bin) const { return codes[beam * bin_count + bin]; }
     /** Level of a code below that of the largest; of code 0 that of half a code [dB]. */

@@ -112,7 +112,7 @@ void addLaws(Bottom& bottom, std::vector<Claim>& claims) {
 }
 
 /** Where the correlation is a half, of the sonar moved aside: by theory the square of the autocorrelation of the
- * aperture at twice the way, (1 - 2 x / L)^2. */
+ *  aperture at twice the way, (1 - 2 x / L)^2. */
 void addLateral(Bottom& bottom, std::vector<Claim>& claims) {
     const double length = aperture() * wavelength, theory = 0.5 * length * (1 - std::sqrt(0.5));
     const SpeckleField still = bottom.heard({});

@@ -34,6 +34,7 @@ std::vector<CodedPing> recordedPings(const std::vector<std::string>& names) {
     for (const fs::path& file : filesOf(names))
         for (const device::OculusPing& ping : device::readOculusPings(file)) {
             CodedPing coded = codedPing(ping, fmt::format("recorded_{}", ping.number));
+            coded.file = file.string();
             const auto isSame = [&](const CodedPing& other) {
                 return other.name == coded.name && other.codes == coded.codes;
             };

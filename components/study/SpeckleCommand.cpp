@@ -73,8 +73,12 @@ std::vector<SpeckleRow> recordedRows(const std::vector<std::string>& real) {
     std::vector<SpeckleRow> rows;
     if (real.empty()) return rows;
     const std::vector<CodedPing> pings = recordedPings(real);
-    for (size_t i = 0; i < pings.size(); ++i)
-        rows.push_back(speckleRow(pings[i], i + 1 < pings.size() ? &pings[i + 1] : nullptr));
+    for (size_t i = 0; i < pings.size(); ++i) {
+        const CodedPing* next = i + 1 < pings.size() ? &pings[i + 1] : nullptr;
+        const bool follows = next && next->file == pings[i].file && next->beam_count == pings[i].beam_count &&
+                             next->bin_count == pings[i].bin_count;
+        rows.push_back(speckleRow(pings[i], follows ? next : nullptr));
+    }
     return rows;
 }
 

@@ -295,6 +295,20 @@ TEST(SpecklePingTest, WaterThatScattersHasSpeckleToo) {
     EXPECT_EQ(pingOf(config, open).bins, pingOf(config, open).bins);
 }
 
+TEST(SpecklePingTest, WaterAndMirrorsAddTheirEnergiesForTheirFieldsHaveNothingInCommon) {
+    SonarConfig config = coherent(boxes());
+    config.volume = {VolumeLayer{{}, {}, -35}};
+    config.multipath.emplace().surface.emplace();
+    types::Snapshot snapshot = overBottom();
+    snapshot.water_surface = 2;
+    SonarConfig straight = config;
+    straight.multipath.reset();
+    straight.speckle.reset();
+    const SpeckleField by_mirrors = overMeans(pingOf(config, snapshot), pingOf(straight, snapshot));
+    EXPECT_GT(meanOf(by_mirrors), 1.05) << "mirrors add nothing that could be seen";
+    EXPECT_NEAR(meanOf(fieldOf(config, snapshot)), 1, 0.03);
+}
+
 TEST(SpecklePingTest, ATargetUnderAFlatSurfaceHasTheFringesOfLloydsMirror) {
     // Out and back each by the straight way and by the surface, which turns the pressure round: the square of the sum.
     SonarConfig config = coherent(boxes());
