@@ -283,9 +283,31 @@ TEST(MotionTest, WhatItNeedsIsToldWhereItIsMissing) {
     EXPECT_EQ(diagnostics[0].path, "head.sweeps");
 }
 
+TEST(MotionTest, WhatJumpsHasBeenPutElsewhereAndDoesNotMove) {
+    const auto geometry = test::sceneOf({plate()});
+    Motion motion(*geometry, 150);
+    types::Snapshot snapshot = test::snapshotOf(geometry);
+    const auto putAt = [&](double x) {
+        glm::dmat4 place(1);
+        place[3] = {x, 0, 0, 1};
+        snapshot.moved = {{0, place}};
+        snapshot.targets = {{{x, 0, 0}, 0}};
+        snapshot.time.microseconds += 100'000;
+        motion.follow(snapshot);
+    };
+    putAt(0);
+    putAt(1);
+    EXPECT_NEAR(motion.fastest(), 10, 1e-6);
+    EXPECT_NE(motion.drift(0), nullptr);
+    putAt(100);
+    EXPECT_EQ(motion.fastest(), 0);
+    EXPECT_EQ(motion.drift(0), nullptr);
+    EXPECT_EQ(motion.targetVelocity(0), glm::dvec3(0));
+}
+
 TEST(MotionTest, VelocitiesAreThoseOfThePoseElseOfTwoSnapshots) {
     const auto geometry = test::sceneOf({plate(), plate()});
-    Motion motion(*geometry);
+    Motion motion(*geometry, 150);
     types::Snapshot snapshot = test::snapshotOf(geometry, {1e6, 2, 3}, 0.2);
     glm::dmat4 place(1);
     place[3] = {1e6, 10, 0, 1};
