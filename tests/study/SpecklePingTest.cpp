@@ -297,10 +297,10 @@ TEST(SpecklePingTest, WaterThatScattersHasSpeckleToo) {
 
 TEST(SpecklePingTest, WaterAndMirrorsAddTheirEnergiesForTheirFieldsHaveNothingInCommon) {
     SonarConfig config = coherent(boxes());
-    config.volume = {VolumeLayer{{}, {}, -35}};
+    config.volume = {VolumeLayer{{}, {}, -20}};
     config.multipath.emplace().surface.emplace();
     types::Snapshot snapshot = overBottom();
-    snapshot.water_surface = 2;
+    snapshot.water_surface = 0.5;
     SonarConfig straight = config;
     straight.multipath.reset();
     straight.speckle.reset();
