@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "components/acoustics/SoundProfile.hpp"
+#include "tests/support/Folder.hpp"
 #include "types/ConfigError.hpp"
 
 namespace insonify::acoustics {
@@ -116,7 +117,8 @@ TEST(SoundProfileTest, RaysTrappedOnTheAxisOfAChannelStayFinite) {
 }
 
 std::string diagnosticOf(const std::string& text) {
-    const std::string file = testing::TempDir() + "profile.csv";
+    const Folder folder;
+    const std::string file = folder / "profile.csv";
     std::ofstream(file) << text;
     try {
         SoundProfile::read(file);

@@ -12,6 +12,7 @@
 #include "components/sonar/BinGrid.hpp"
 #include "components/sonar/PlanReport.hpp"
 #include "components/sonar/SonarRenderer.hpp"
+#include "tests/support/Folder.hpp"
 #include "tests/support/Surfaces.hpp"
 #include "types/Angle.hpp"
 
@@ -282,7 +283,8 @@ std::vector<std::pair<SonarConfig, RenderOptions>> sonarsOfAllFeatures() {
     bent.visibility = Visibility::Cpu;
     bent.device = "";
     bent.motion_in_ping = true;
-    bent.water.emplace().profile = testing::TempDir() + "omission.csv";
+    static const Folder folder;
+    bent.water.emplace().profile = folder / "omission.csv";
     std::ofstream(*bent.water->profile) << "depth_m,sound_speed_m_s\n0,1000\n20,1050\n";
     return all;
 }

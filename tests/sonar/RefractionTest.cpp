@@ -11,6 +11,7 @@
 #include "components/sonar/PlanReport.hpp"
 #include "components/sonar/SonarRenderer.hpp"
 #include "components/sonar/SonarTask.hpp"
+#include "tests/support/Folder.hpp"
 #include "tests/support/Ports.hpp"
 #include "tests/support/Scenes.hpp"
 #include "types/Angle.hpp"
@@ -22,10 +23,11 @@ namespace {
 using ::testing::HasSubstr;
 using types::radians;
 
-/** A file of the temporary folder. */
+/** A file of this process's own. */
 std::string profileOf(const std::vector<std::pair<double, double>>& speeds) {
+    static const Folder folder;
     static int count = 0;
-    const std::string file = testing::TempDir() + "speeds_" + std::to_string(count++) + ".csv";
+    const std::string file = folder / ("speeds_" + std::to_string(count++) + ".csv");
     std::ofstream stream(file);
     stream.precision(17);
     stream << "depth_m,sound_speed_m_s\n";
