@@ -78,8 +78,13 @@ std::vector<SpeckleRow> simulatedRows(const sonar::SonarConfig& config, const ty
     types::Snapshot still = snapshot;
     still.time.microseconds += 100'000;
     renderer.render(still, next);
+    sonar::SonarConfig energies = config;
+    energies.speckle.reset();
+    energies.elements.reset();
+    types::Sonar mean;
+    sonar::SonarRenderer(energies, snapshot.geometry).render(snapshot, mean);
     return {speckleRow("sonar", ping, next),
-            speckleRow("law_rayleigh", withSpeckle(ping, {}), withSpeckle(later(ping), {}))};
+            speckleRow("law_rayleigh", withSpeckle(mean, {}), withSpeckle(later(mean), {}))};
 }
 
 std::vector<Claim> lawClaims() {
