@@ -7,6 +7,7 @@
 
 #include "components/framework/Offers.hpp"
 #include "components/framework/Properties.hpp"
+#include "types/Hash.hpp"
 
 namespace insonify::framework {
 namespace {
@@ -22,10 +23,7 @@ std::vector<std::string> typesOf(const Registry& registry) {
 uint64_t seedOf(uint64_t seed, const std::string& task) {
     uint64_t hash = 0xcbf29ce484222325;  // FNV-1a of the name, then splitmix64 with the seed
     for (const char c : task) hash = (hash ^ static_cast<unsigned char>(c)) * 0x100000001b3;
-    hash += seed * 0x9e3779b97f4a7c15;
-    hash = (hash ^ (hash >> 30)) * 0xbf58476d1ce4e5b9;
-    hash = (hash ^ (hash >> 27)) * 0x94d049bb133111eb;
-    return (hash ^ (hash >> 31)) >> 11;
+    return types::mixedBits(hash + seed * 0x9e3779b97f4a7c15) >> 11;
 }
 
 Graph Wiring::make(uint64_t seed) {

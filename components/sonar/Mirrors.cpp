@@ -5,22 +5,9 @@
 #include <numbers>
 
 #include "components/sonar/Volume.hpp"
+#include "types/Hash.hpp"
 
 namespace insonify::sonar {
-namespace {
-
-/** One step of splitmix64 (Steele, Lea and Flood 2014). */
-uint64_t mixed(uint64_t x) {
-    x += 0x9e3779b97f4a7c15;
-    x = (x ^ (x >> 30)) * 0xbf58476d1ce4e5b9;
-    x = (x ^ (x >> 27)) * 0x94d049bb133111eb;
-    return x ^ (x >> 31);
-}
-
-/** Between 0 and 1, never either. */
-double uniform(uint64_t x) { return (static_cast<double>(x >> 11) + 0.5) * 0x1p-53; }
-
-}  // namespace
 
 double slopeOfSea(double wind) {
     if (!(wind > 0)) return 0;
@@ -40,7 +27,7 @@ WaterMirror::WaterMirror(const SonarConfig& config)
 
 void WaterMirror::place(const types::Snapshot& snapshot, double range_max) {
     const WaterView water = waterViewOf(snapshot);
-    ping_ = mixed(static_cast<uint64_t>(snapshot.time.microseconds));
+    ping_ = static_cast<uint64_t>(snapshot.time.microseconds);
     plane_ = {water.up, -water.height};
     left_out_.reset();
     if (wanted_ && !snapshot.water_surface)
@@ -64,9 +51,9 @@ MirrorPlane WaterMirror::facet(const glm::dvec3& at, const glm::dvec3& way, uint
     const glm::dvec3& up = plane_.normal;
     const glm::dvec3 level =
         glm::normalize(std::abs(up.x) < 0.5 ? glm::cross(up, glm::dvec3(1, 0, 0)) : glm::cross(up, {0, 1, 0}));
-    const uint64_t drawn = mixed(ping_ ^ mixed(key));
-    const double size = slope_ * std::sqrt(-2 * std::log(uniform(drawn)));
-    const double turn = 2 * std::numbers::pi * uniform(mixed(drawn));
+    const auto uniform = [&](uint64_t number) { return types::unit(types::hashed(ping_, key, number) >> 32); };
+    const double size = slope_ * std::sqrt(-2 * std::log(uniform(0)));
+    const double turn = 2 * std::numbers::pi * uniform(1);
     const glm::dvec3 slope = size * (std::cos(turn) * level + std::sin(turn) * glm::cross(up, level));
     const glm::dvec3 tilted = glm::dot(up + slope, way) > 0 ? up + slope : up - slope;
     const MirrorPlane facet{glm::normalize(tilted), glm::dot(glm::normalize(tilted), at)};

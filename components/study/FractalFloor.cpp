@@ -4,8 +4,8 @@
 #include <complex>
 #include <numbers>
 
-#include "components/study/Hash.hpp"
 #include "components/study/Shapes.hpp"
+#include "types/Hash.hpp"
 
 namespace insonify::study {
 namespace {
@@ -35,8 +35,9 @@ void transform(Complex* values, size_t n, size_t stride) {
 
 /** A standard complex Gaussian number (Box and Muller, 1958). */
 Complex gaussian(uint64_t seed, uint64_t a, uint64_t b) {
-    const uint64_t word = hashed(seed, a, b);
-    return std::polar(std::sqrt(-2 * std::log(unit(word >> 32))), 2 * std::numbers::pi * unit(word & 0xffffffffu));
+    const uint64_t word = types::hashed(seed, a, b);
+    return std::polar(std::sqrt(-2 * std::log(types::unit(word >> 32))),
+                      2 * std::numbers::pi * types::unit(word & 0xffffffffu));
 }
 
 types::Mesh patchOf(const FractalFloor& floor, const std::vector<double>& heights, int from_x, int to_x, int from_y,

@@ -9,8 +9,8 @@
 
 #include "components/sonar/BeamFan.hpp"
 #include "components/sonar/BinGrid.hpp"
-#include "components/study/Hash.hpp"
 #include "types/Angle.hpp"
+#include "types/Hash.hpp"
 
 namespace insonify::study {
 namespace {
@@ -45,7 +45,8 @@ struct Tile {
 
 /** Where a whole is parted into n, a little at random, so that no two seeds have the same tiles. */
 double boundary(int k, int n, uint64_t seed) {
-    const double moved = k == 0 || k == n ? 0 : (unit(mixedBits(seed + static_cast<uint64_t>(k)) >> 32) - 0.5) / 2;
+    const double moved =
+        k == 0 || k == n ? 0 : (types::unit(types::mixedBits(seed + static_cast<uint64_t>(k)) >> 32) - 0.5) / 2;
     return (k + moved) / n;
 }
 
@@ -68,7 +69,7 @@ public:
     }
 
 private:
-    double draw() { return unit(mixedBits(seed_ + ++drawn_) >> 32); }
+    double draw() { return types::unit(types::mixedBits(seed_ + ++drawn_) >> 32); }
 
     void cast(const Tile& tile, int partings_left) {
         Directions directions;
@@ -168,15 +169,15 @@ std::vector<double> PointCaster::render(const types::Pose& sonar, const sonar::S
         const auto which = static_cast<uint64_t>(number / parts);
         const sonar::Beam& beam = beams[which];
         const auto azimuth = [&](int k) {
-            return beam.low + (beam.high - beam.low) * boundary(k, across, hashed(seed, which, 0));
+            return beam.low + (beam.high - beam.low) * boundary(k, across, types::hashed(seed, which, 0));
         };
-        const auto sine = [&](int k) { return half * (2 * boundary(k, up, hashed(seed, which, 1)) - 1); };
+        const auto sine = [&](int k) { return half * (2 * boundary(k, up, types::hashed(seed, which, 1)) - 1); };
         Part part(tree_, sonar, grid, sums.data() + static_cast<size_t>(number) * bins);
         for (int row = number % parts; row < up; row += parts)
             for (int column = 0; column < across; ++column)
                 part.cast(
                     {azimuth(column), azimuth(column + 1) - azimuth(column), sine(row), sine(row + 1) - sine(row)},
-                    hashed(seed, which, static_cast<uint64_t>(row + 1) << 32 | static_cast<uint32_t>(column)));
+                    types::hashed(seed, which, static_cast<uint64_t>(row + 1) << 32 | static_cast<uint32_t>(column)));
         rays[static_cast<size_t>(number)] = part.rays();
     });
     rays_ = 0;

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "components/study/Hash.hpp"
+#include "types/Hash.hpp"
 
 namespace insonify::study {
 namespace {
@@ -28,7 +28,7 @@ Intensities intensitiesOf(const CodedPing& ping) {
         const float code = ping.codes[i];
         const bool clipped = code <= 0 || static_cast<double>(code) > 1 - 1.5 * step;
         // A code stands for all levels that are rounded to it: evenly, by the hash of its place.
-        const double within = clipped ? 0 : step * (unit(hashed(ping.bits, i, 0) >> 32) - 0.5);
+        const double within = clipped ? 0 : step * (types::unit(types::hashed(ping.bits, i, 0) >> 32) - 0.5);
         const auto spread = static_cast<float>(static_cast<double>(code) + within);
         all.values.push_back(std::pow(10, ping.levelDb(spread) / 10));
         all.clipped.push_back(clipped);

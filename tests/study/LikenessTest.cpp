@@ -4,9 +4,9 @@
 #include <cmath>
 #include <filesystem>
 
-#include "components/study/Hash.hpp"
 #include "components/study/Likeness.hpp"
 #include "components/study/LikenessReport.hpp"
+#include "types/Hash.hpp"
 
 namespace insonify::study {
 namespace {
@@ -26,8 +26,7 @@ Histogram only(std::initializer_list<std::pair<size_t, double>> shares) {
 /** A picture of 64 beams x 256 bins whose codes are amplitudes. */
 template <class F>
 CodedPing pictureOf(const F& amplitude) {
-    CodedPing ping{
-        .name = "made", .beam_count = 64, .bin_count = 256, .law = {.law = receiver::CodeLaw::Sqrt}};
+    CodedPing ping{.name = "made", .beam_count = 64, .bin_count = 256, .law = {.law = receiver::CodeLaw::Sqrt}};
     for (size_t beam = 0; beam < ping.beam_count; ++beam) {
         ping.bearings.push_back(0.5 - static_cast<double>(beam) / 63);
         for (size_t bin = 0; bin < ping.bin_count; ++bin)
@@ -37,7 +36,9 @@ CodedPing pictureOf(const F& amplitude) {
 }
 
 /** Amplitude of an exponential intensity of unit mean: speckle of many scatterers. */
-double rayleigh(uint64_t seed, size_t a, size_t b) { return std::sqrt(-std::log(unit(hashed(seed, a, b) >> 32))); }
+double rayleigh(uint64_t seed, size_t a, size_t b) {
+    return std::sqrt(-std::log(types::unit(types::hashed(seed, a, b) >> 32)));
+}
 
 TEST(LikenessTest, HistogramsAreAsFarApartAsTheirCodesMustBeMoved) {
     const Histogram a = only({{10, 1}}), b = only({{30, 1}}), half = only({{10, 0.5}, {30, 0.5}});

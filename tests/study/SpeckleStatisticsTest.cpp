@@ -7,9 +7,9 @@
 #include <numbers>
 
 #include "components/noise/Noise.hpp"
-#include "components/study/Hash.hpp"
 #include "components/study/SpeckleStatistics.hpp"
 #include "tests/support/Pings.hpp"
+#include "types/Hash.hpp"
 
 namespace insonify::study {
 namespace {
@@ -30,8 +30,9 @@ SpeckleFigures figuresOfLaw(const noise::SpeckleConfig& law) {
 
 /** A complex Gaussian of unit mean square, the same for the same place. */
 std::complex<double> gaussian(uint64_t seed, size_t a, size_t b) {
-    const uint64_t word = hashed(seed, a, b);
-    return std::polar(std::sqrt(-std::log(unit(word >> 32))), 2 * std::numbers::pi * unit(word & 0xffffffff));
+    const uint64_t word = types::hashed(seed, a, b);
+    return std::polar(std::sqrt(-std::log(types::unit(word >> 32))),
+                      2 * std::numbers::pi * types::unit(word & 0xffffffff));
 }
 
 /** Intensities of a complex field. */

@@ -4,8 +4,8 @@
 #include <cmath>
 #include <string>
 
-#include "components/study/Hash.hpp"
 #include "tests/support/OculusMessage.hpp"
+#include "types/Hash.hpp"
 
 namespace insonify::test {
 
@@ -14,8 +14,8 @@ inline std::string recordedSpeckle(bool frozen = false) {
     std::string bytes;
     for (const uint32_t number : {5u, 6u}) {
         const auto speckle = [&](size_t beam, size_t bin) {
-            const uint64_t word = study::hashed(frozen ? 5 : number, beam, bin);
-            return static_cast<uint8_t>(std::min(255.0, 90 * std::sqrt(std::sqrt(-std::log(study::unit(word >> 32))))));
+            const uint64_t word = types::hashed(frozen ? 5 : number, beam, bin);
+            return static_cast<uint8_t>(std::min(255.0, 90 * std::sqrt(std::sqrt(-std::log(types::unit(word >> 32))))));
         };
         const auto message = OculusMessage{.beams = 64, .bins = 128, .number = number, .code = speckle}.bytes();
         bytes.append(message.begin(), message.end());

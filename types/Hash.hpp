@@ -1,7 +1,7 @@
 #pragma once
 #include <cstdint>
 
-namespace insonify::study {
+namespace insonify::types {
 
 /** Mixes the bits of a word: the finaliser of SplitMix64 (Steele, Lea and Flood, "Fast splittable pseudorandom number
  *  generators", 2014). */
@@ -20,4 +20,4 @@ inline uint64_t hashed(uint64_t seed, uint64_t a, uint64_t b) {
 /** 32 random bits as a number in (0, 1), never an end. */
 inline double unit(uint64_t bits32) { return (static_cast<double>(bits32) + 0.5) * 0x1p-32; }
 
-}  // namespace insonify::study
+}  // namespace insonify::types
