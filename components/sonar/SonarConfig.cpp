@@ -79,7 +79,7 @@ void checkNeedOfRays(const SonarConfig& config, types::Diagnostics& diagnostics)
 /** Of ways that are bent, what follows straight ones alone. */
 void checkStraightWays(const SonarConfig& config, types::Diagnostics& diagnostics) {
     const bool bends = config.water && config.water->profile;
-    const std::string name = config.needsRays();
+    const std::string name = config.isCoherent() ? "speckle" : config.tracesPaths() ? "multipath" : "";
     if (!name.empty() && (bends || config.motion_in_ping))
         diagnostics.push_back({name, std::string("follows straight ways; leave it out, or ") +
                                          (bends ? "water.profile" : "motion_in_ping")});
@@ -246,7 +246,10 @@ std::optional<double> SonarConfig::targetError() const {
     return default_target;
 }
 
-std::string SonarConfig::needsRays() const { return isCoherent() ? "speckle" : tracesPaths() ? "multipath" : ""; }
+std::string SonarConfig::needsRays() const {
+    if (isCoherent()) return "speckle";
+    return tracesPaths() ? "multipath" : motion_in_ping ? "motion_in_ping" : "";
+}
 
 bool SonarConfig::castsRays() const {
     if (visibility != Visibility::Auto) return visibility == Visibility::Cpu;
@@ -346,11 +349,6 @@ void SonarConfig::checkBeam(types::Diagnostics& diagnostics) const {
     checkElements(*this, diagnostics);
     if (!diagnostics.empty()) return;
     if (castsRays()) return checkRays(*this, diagnostics);
-    if (motion_in_ping)
-        return diagnostics.push_back(
-            {"motion_in_ping",
-             "is true, which rays alone follow; visibility may be auto or cpu, without published: "
-             "true and deposit: gpu, in a build with rays"});
     checkDevice(device, diagnostics);
     checkImages(*this, diagnostics);
 }

@@ -261,9 +261,11 @@ std::string diagnosticsOf(const SonarConfig& config) {
 TEST(MotionTest, WhatItNeedsIsToldWhereItIsMissing) {
     EXPECT_EQ(diagnosticsOf(fan()), "");
     SonarConfig config = fan();
+    config.visibility = Visibility::Auto;
+    EXPECT_TRUE(config.castsRays()) << "whatever device there is";
     config.visibility = Visibility::Gl;
     config.device = "software";
-    EXPECT_THAT(diagnosticsOf(config), HasSubstr("motion_in_ping: is true, which rays alone follow"));
+    EXPECT_THAT(diagnosticsOf(config), HasSubstr("visibility: is gl with motion_in_ping, which needs rays"));
     config = fan();
     config.pulse.emplace().bandwidth_khz = 50;
     config.pulse->chirp_us = 1000;
