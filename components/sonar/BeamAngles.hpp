@@ -12,11 +12,15 @@ struct BeamAngles {
     double elevation;  ///< Above the sonar's plane.
 };
 
+/** The azimuth of a direction, unit, in the sonar's axes: of a conical fan its cone's bearing [rad]. */
+inline double beamAzimuthOf(const glm::dvec3& direction, bool conical) {
+    return conical ? std::asin(std::clamp(direction.y, -1.0, 1.0)) : std::atan2(direction.y, direction.x);
+}
+
 /** Of a point in the sonar's axes [m]; of the sonar's own place it is 0, 0. */
 inline BeamAngles beamAnglesOf(const glm::dvec3& at, bool conical) {
-    const double range = std::max(glm::length(at), 1e-12);
-    const auto above = [range](double part) { return std::asin(std::clamp(part / range, -1.0, 1.0)); };
-    return {conical ? above(at.y) : std::atan2(at.y, at.x), above(at.z)};
+    const glm::dvec3 direction = at / std::max(glm::length(at), 1e-12);
+    return {beamAzimuthOf(direction, conical), std::asin(std::clamp(direction.z, -1.0, 1.0))};
 }
 
 }  // namespace insonify::sonar

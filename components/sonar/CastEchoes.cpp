@@ -48,6 +48,7 @@ public:
     void render(const types::Snapshot& snapshot, types::Sonar& ping, Stages& stages) override;
     void setTruth(types::SonarTruth* truth) override { truth_ = truth; }
     EchoField* field() override { return field_ ? &*field_ : nullptr; }
+    const RayPaths* bent() const override { return ray_paths_ && !ray_paths_->areStraight() ? &*ray_paths_ : nullptr; }
     bool hasEchoes() const override { return heard_; }
     std::vector<LeftOut> culled() const override {
         const std::optional<LeftOut> dark = paths_ ? paths_->leftOut() : std::nullopt;
@@ -89,8 +90,6 @@ private:
     void depositPart(const Part& part, std::span<const CastTile> tiles, Worker& worker);
     void work(Worker& worker, types::Sonar& ping);
     void workOn(const Part& part, Worker& worker, types::Sonar& ping);
-    /** The ways of this ping; null where they are straight. */
-    const RayPaths* bent() const { return ray_paths_ && !ray_paths_->areStraight() ? &*ray_paths_ : nullptr; }
     std::span<const CastTile> cast(const Part& part, Worker& worker) const;
     TileRays raysOf(const CastTile& tile, int end_column) const;
     /** Fills the bins of a cell from its sums; whether it has any echo. */

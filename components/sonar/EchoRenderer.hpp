@@ -11,6 +11,7 @@
 namespace insonify::sonar {
 
 class EchoField;
+class RayPaths;
 
 /** Where the time of a ping went: cull, draw, read, deposit, beams. */
 struct Stage {
@@ -34,6 +35,8 @@ public:
     virtual void setTruth(types::SonarTruth* truth) = 0;
     /** The field of the last ping, whose squares are still to be its bins; null where energies are summed. */
     virtual EchoField* field() { return nullptr; }
+    /** The ways of sound in the last ping; null where all are straight. */
+    virtual const RayPaths* bent() const { return nullptr; }
     /** Whether the last ping has any echo. */
     virtual bool hasEchoes() const = 0;
     /** What of the scene the last ping left out. */

@@ -7,6 +7,7 @@
 #include <limits>
 #include <numbers>
 
+#include "components/sonar/BeamAngles.hpp"
 #include "components/sonar/Estimators.hpp"
 #include "types/Angle.hpp"
 
@@ -143,9 +144,7 @@ WayPatterns::WayPatterns(const RenderPlan& plan)
 }
 
 WayPatterns::Way WayPatterns::wayOf(const glm::dvec3& direction) const {
-    const double azimuth =
-        conical_ ? std::asin(std::clamp(direction.y, -1.0, 1.0)) : std::atan2(direction.y, direction.x);
-    return {azimuth, direction.z, !conical_ || direction.x >= 0};
+    return {beamAzimuthOf(direction, conical_), direction.z, !conical_ || direction.x >= 0};
 }
 
 double WayPatterns::elevation(const std::vector<double>& table, double sine) const {

@@ -11,6 +11,7 @@
 #include "components/sonar/EchoField.hpp"
 #include "components/sonar/RangeResponse.hpp"
 #include "types/Angle.hpp"
+#include "types/Hash.hpp"
 
 namespace insonify::sonar {
 namespace {
@@ -49,16 +50,13 @@ double PulseMeans::mean(double low, double high) const {
 PointTargets::PointTargets(const RenderPlan& plan, const types::Geometry& geometry)
     : plan_(plan), ways_(plan.config, geometry), absorption_(makeAbsorption(plan.config).intensityPerMetre()) {
     if (plan.has(Pass::Pulse)) pulse_.emplace(acoustics::Pulse(*plan.config.pulse, plan.grid.speed_of_sound));
-    if (plan.features.has(Feature::Refraction) || plan.features.has(Feature::MotionInPing))
-        bent_.emplace(plan, geometry);
     means_.reserve(static_cast<size_t>(plan.grid.bin_count));
 }
 
-std::optional<PointTargets::Direction> PointTargets::directionOf(const glm::dvec3& way) const {
+std::optional<BeamAngles> PointTargets::directionOf(const glm::dvec3& way) const {
     const bool conical = plan_.features.has(Feature::Conical);
     if (conical && way.x < 0) return {};
-    return Direction{conical ? std::asin(std::clamp(way.y, -1.0, 1.0)) : std::atan2(way.y, way.x),
-                     std::asin(std::clamp(way.z, -1.0, 1.0))};
+    return beamAnglesOf(way, conical);
 }
 
 std::optional<PointTargets::Return> PointTargets::returnOf(const TargetWay& out, const TargetWay& back,
@@ -78,7 +76,7 @@ double PointTargets::inPhase(const TargetWay& way) const {
     return coherentReflection(plan_.config.multipath->surface->wind_m_s, wavelength, way.sine_grazing);
 }
 
-bool PointTargets::isSent(const Direction& direction) const {
+bool PointTargets::isSent(const BeamAngles& direction) const {
     const std::vector<Beam>& beams = plan_.beams;
     const double middle = 0.5 * (beams.front().low + beams.back().high);
     const double off = std::abs(std::remainder(direction.azimuth - middle, 2 * std::numbers::pi));
@@ -144,21 +142,34 @@ bool PointTargets::addTo(EchoField& field, const Return& echo, uint64_t key) con
     return heard;
 }
 
-size_t PointTargets::add(const types::Snapshot& snapshot, types::Sonar& ping, EchoField* field) {
+std::optional<TargetWay> PointTargets::bentWay(const RayPaths& bent, const types::Snapshot& snapshot, size_t target) {
+    const glm::dvec3 from_sonar = snapshot.targets[target].position - snapshot.sonar.position;
+    const auto heard = bent.heard(glm::conjugate(snapshot.sonar.orientation) * from_sonar, target);
+    if (!heard) return {};
+    TargetWay way;
+    way.length = glm::length(heard->place);
+    way.direction = heard->place / way.length;
+    way.power = heard->focus;
+    return way;
+}
+
+size_t PointTargets::add(const types::Snapshot& snapshot, types::Sonar& ping, EchoField* field, const RayPaths* bent) {
     ways_.place(snapshot, plan_.grid.range_max + (pulse_ ? pulse_->reach() : 0));
-    if (bent_) bent_->place(snapshot);
     size_t heard = 0;
-    auto key = static_cast<uint64_t>(snapshot.time.microseconds);
+    const auto time = static_cast<uint64_t>(snapshot.time.microseconds);
     for (size_t i = 0; i < snapshot.targets.size(); ++i) {
         const types::PointTarget& target = snapshot.targets[i];
         bool any = false;
         std::span<const TargetWay> ways = ways_.waysTo(target.position);
-        if (bent_ && !bent_->areStraight() && !ways.empty()) ways = bent_->wayTo(target, i);
+        const auto way = bent && !ways.empty() ? bentWay(*bent, snapshot, i) : std::nullopt;
+        if (bent) ways = {way ? &*way : nullptr, way ? 1u : 0u};
         for (const TargetWay& out : ways)
             for (const TargetWay& back : ways) {
                 const auto echo = returnOf(out, back, target.strength_db);
-                key = key * 6364136223846793005u + 1442695040888963407u;
-                if (echo && spread(echo->range)) any |= field ? addTo(*field, *echo, key) : addTo(ping, *echo);
+                if (!echo || !spread(echo->range)) continue;
+                const auto pair =
+                    static_cast<uint64_t>((&out - ways.data()) * std::ssize(ways) + (&back - ways.data()));
+                any |= field ? addTo(*field, *echo, types::hashed(time, i, pair)) : addTo(ping, *echo);
             }
         heard += any ? 1 : 0;
     }

@@ -3,7 +3,8 @@
 #include <vector>
 
 #include "components/acoustics/Pulse.hpp"
-#include "components/sonar/BentTargets.hpp"
+#include "components/sonar/BeamAngles.hpp"
+#include "components/sonar/RayPaths.hpp"
 #include "components/sonar/RenderPlan.hpp"
 #include "components/sonar/TargetWays.hpp"
 #include "types/Snapshot.hpp"
@@ -38,26 +39,25 @@ public:
     /** Of a plan for model `physical`; plan and geometry must outlive it. */
     PointTargets(const RenderPlan& plan, const types::Geometry& geometry);
 
-    /** Once the bins are filled, or `field` is, where there is one; how many targets any beam hears. Allocates nothing
-     *  where nothing reflects and rays are straight. */
-    size_t add(const types::Snapshot& snapshot, types::Sonar& ping, EchoField* field);
+    /** Once the bins are filled, or `field` is, where there is one; how many targets any beam hears. `bent`: the ways
+     * of this ping, null where they are straight. Allocates nothing where nothing reflects. */
+    size_t add(const types::Snapshot& snapshot, types::Sonar& ping, EchoField* field, const RayPaths* bent);
 
 private:
-    /** Where sound goes, or comes from. */
-    struct Direction {
-        double azimuth, elevation;  ///< Azimuth as beams have it: of cones their bearing [rad].
-    };
     /** One echo of a target: out one way, back another or the same. */
     struct Return {
         double range;  ///< Half of the way out and back [m].
-        Direction sent, heard;
+        BeamAngles sent, heard;
         double intensity;  ///< But for patterns and the pulse [1/m^2].
         double sign;       ///< -1 where the water surface has turned its pressure round [1].
         double in_phase;   ///< Share of its amplitude that rough mirrors leave in phase [1].
     };
-    std::optional<Direction> directionOf(const glm::dvec3& way) const;
+    /** None behind a straight array. */
+    std::optional<BeamAngles> directionOf(const glm::dvec3& way) const;
     std::optional<Return> returnOf(const TargetWay& out, const TargetWay& back, double strength_db) const;
-    bool isSent(const Direction& direction) const;
+    /** None where it is not heard. */
+    static std::optional<TargetWay> bentWay(const RayPaths& bent, const types::Snapshot& snapshot, size_t target);
+    bool isSent(const BeamAngles& direction) const;
     double powerIn(const Beam& beam, const Return& echo) const;
     /** Fills means_ for bins from `first` on; whether there is any. */
     bool spread(double range);
@@ -68,8 +68,7 @@ private:
 
     const RenderPlan& plan_;
     TargetWays ways_;
-    std::optional<BentTargets> bent_;  ///< Where ways are not straight.
-    double absorption_;                ///< Two-way, of intensity [1/m].
+    double absorption_;  ///< Two-way, of intensity [1/m].
     std::optional<PulseMeans> pulse_;
     std::vector<double> means_;  ///< Of h, for bins from first_bin_ on [1].
     size_t first_bin_ = 0;

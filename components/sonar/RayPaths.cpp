@@ -55,6 +55,22 @@ void RayPaths::placeCorners() {
         corners_.push_back(farthest * static_cast<double>(i) / static_cast<double>(count));
 }
 
+std::optional<HeardPoint> RayPaths::heard(const glm::dvec3& place, size_t target) const {
+    constexpr int steps = 100;
+    Drift drift;
+    if (motion_) drift.constant = motion_->targetVelocity(target) * world_from_sonar_;
+    glm::dvec3 point = place, missed(0);  // what is heard as from `point` is `missed` away from the target
+    for (int i = 0; i < steps; ++i) {
+        missed = place - at(glm::normalize(point), glm::length(point), &drift);
+        if (glm::length(missed) < 1e-6 * glm::length(place)) break;
+        point += missed;
+    }
+    if (!(glm::length(missed) < 0.1 * plan_.grid.bin_width)) return {};
+    const double range = glm::length(point);
+    const glm::dvec3 direction = point / range;
+    return HeardPoint{point, apparent(direction, glm::dot(direction, place), direction, range, &drift).focus};
+}
+
 glm::dvec3 RayPaths::movedBy(const glm::dvec3& direction, double range, const Drift* drift) const {
     const double c = plan_.grid.speed_of_sound, back = 2 * range / c;
     const glm::dvec3 swept = turn_ * (back * share_);

@@ -20,6 +20,12 @@ struct ApparentPlane {
     double focus = 0;      ///< Intensity there, over that of straight rays of the same range [1].
 };
 
+/** A point that is not heard from where it is. */
+struct HeardPoint {
+    glm::dvec3 place;  ///< Where it seems to be, sonar axes [m].
+    double focus;      ///< Intensity there, over that of straight rays of the same range [1].
+};
+
 /** The ways that sound takes where it does not come straight from where an object is: bent by a profile of the speed
  *  of sound, or because sonar and objects move and turn while it is under way. What is heard from a direction at a
  *  slant range is at a place that depends on both (ACOUSTICS.md 5.19, 5.20). */
@@ -44,6 +50,10 @@ public:
     /** Of the plane normal . place = distance as it is met in a direction near a range [m]. */
     ApparentPlane apparent(const glm::dvec3& normal, double distance, const glm::dvec3& direction, double near,
                            const Drift* drift) const;
+    /** From where a point target of this ping is heard that was there about the sonar, sonar axes, when the pulse was
+     *  sent [m]: the place that is nearest to the straight one, as if it were heard along a straight ray; none where
+     *  there is none, as in a shadow. */
+    std::optional<HeardPoint> heard(const glm::dvec3& place, size_t target) const;
     /** The greatest inverse range at which something is heard that is within an inverse distance [1/m]. */
     double nearLimit(double inverse_distance) const;
 

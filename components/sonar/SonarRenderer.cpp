@@ -80,7 +80,7 @@ void SonarRenderer::Parts::addTargets(const types::Snapshot& snapshot, types::So
         return;
     }
     if (!targets) targets.emplace(plan, *geometry);
-    targets_heard = targets->add(snapshot, ping, echoes->field());
+    targets_heard = targets->add(snapshot, ping, echoes->field(), echoes->bent());
     if (targets_heard < all)
         targets_left_out = LeftOut{Effect::PointTargets, Reason::OutOfView, static_cast<double>(all - targets_heard),
                                    static_cast<double>(all)};

@@ -6,7 +6,7 @@
 #include <numbers>
 
 #include "components/sonar/LineArray.hpp"
-#include "components/study/Hash.hpp"
+#include "types/Hash.hpp"
 
 namespace insonify::sonar {
 namespace {
@@ -33,9 +33,9 @@ Cells speckled(size_t cells, size_t samples) {
         const double sine = 1.8 * (static_cast<double>(cell) + 0.5) / static_cast<double>(cells) - 0.9;
         made.cones.push_back({sine, sine});
         for (size_t i = 0; i < samples; ++i) {
-            const uint64_t word = study::hashed(3, cell, i);
+            const uint64_t word = types::hashed(3, cell, i);
             made.field.row(cell)[i] = std::complex<float>(
-                std::polar(std::sqrt(-std::log(study::unit(word >> 32))), 2 * pi * study::unit(word & 0xffffffff)));
+                std::polar(std::sqrt(-std::log(types::unit(word >> 32))), 2 * pi * types::unit(word & 0xffffffff)));
         }
     }
     return made;
