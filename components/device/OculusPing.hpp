@@ -24,6 +24,10 @@ struct OculusPing {
     double largestCode() const { return static_cast<double>((uint64_t{1} << bits) - 1); }
 };
 
+struct OculusResult;
+
+OculusPing pingOf(const OculusResult& result);
+
 /** Every ping in these bytes, in order: network messages, one after the other, with anything between them, as in
  *  captures and in the maker's own log files. Other messages are passed over. What begins as a ping and contradicts
  *  itself (an image of another size than bins and beams make, bytes that are missing) is no ping.
