@@ -13,6 +13,8 @@
 namespace insonify::device {
 
 inline constexpr uint16_t oculus_mark = 0x4F53;
+/** Of the clock in pings of version 1, by a recording at ten pings a second. */
+inline constexpr double oculus_ticks_per_second = 625e6;
 
 /** What a message is, by its header. */
 enum class OculusId : uint16_t {
@@ -80,7 +82,7 @@ struct OculusResult {
     double pressure_bar = 0;
     double heading_deg = 0, pitch_deg = 0, roll_deg = 0;  ///< Version 2.
     double speed_of_sound = 0;                            ///< As the device took it [m/s].
-    uint32_t start_ticks = 0;                             ///< Version 1: of the device's clock of 625 MHz, which wraps.
+    uint32_t start_ticks = 0;                             ///< Version 1: of the device's clock, which wraps.
     double start_s = 0;                                   ///< Version 2: since the device was switched on [s].
     uint8_t code_size = 0;                                ///< Bytes of a code less one.
     double range_resolution = 0;                          ///< Slant range of a bin [m].

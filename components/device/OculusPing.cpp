@@ -8,6 +8,7 @@
 #include <iterator>
 
 #include "components/device/OculusMessages.hpp"
+#include "components/device/OculusRecording.hpp"
 #include "types/Angle.hpp"
 #include "types/ConfigError.hpp"
 
@@ -70,7 +71,20 @@ std::vector<OculusPing> oculusPings(std::span<const uint8_t> bytes, std::vector<
     return pings;
 }
 
+namespace {
+
+std::vector<OculusPing> pingsOfRecording(const std::filesystem::path& file) {
+    OculusPings recording(file);
+    std::vector<OculusPing> pings;
+    while (const auto recorded = recording.next()) pings.push_back(pingOf(recorded->ping));
+    return pings;
+}
+
+}  // namespace
+
 std::vector<OculusPing> readOculusPings(const std::filesystem::path& file) {
+    if (OculusRecording::isOne(file))
+        if (auto pings = pingsOfRecording(file); !pings.empty()) return pings;
     std::ifstream stream(file, std::ios::binary);
     if (!stream || std::filesystem::is_directory(file))
         throw types::ConfigError(file.string(), "", "cannot be read; it must be a file of Oculus messages");
