@@ -3,9 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstring>
 #include <fstream>
 #include <iterator>
+#include <numeric>
 
 #include "components/device/OculusMessages.hpp"
 #include "components/device/OculusRecording.hpp"
@@ -50,6 +52,28 @@ OculusPing pingOf(const OculusResult& result) {
         ping.bearings.push_back(types::radians(-0.01 * bearing));
     takeImage(result, ping);
     return ping;
+}
+
+types::Sonar sonarOf(const OculusPing& ping, types::Time time) {
+    types::Sonar sonar;
+    sonar.time = time;
+    sonar.speed_of_sound = static_cast<float>(ping.speed_of_sound);
+    const double us = 1e6 * ping.range_resolution / static_cast<double>(sonar.speed_of_sound);
+    sonar.bin_duration = {std::max<int64_t>(1, std::llround(us))};
+    sonar.bin_count = ping.bin_count;
+    sonar.beam_count = ping.beamCount();
+    sonar.bins.reserve(ping.codes.size());
+    std::vector<size_t> beams(ping.beamCount());
+    std::iota(beams.begin(), beams.end(), 0);
+    std::ranges::stable_sort(beams, {}, [&](size_t beam) { return ping.bearings[beam]; });
+    for (const size_t beam : beams) {
+        sonar.bearings.push_back({ping.bearings[beam]});
+        for (size_t k = 0; k < ping.bin_count; ++k) {
+            const double gain = ping.row_gains.empty() ? 1 : std::max(1u, ping.row_gains[k]);
+            sonar.bins.push_back(static_cast<float>(ping.codes[beam * ping.bin_count + k] / std::sqrt(gain)));
+        }
+    }
+    return sonar;
 }
 
 std::vector<OculusPing> oculusPings(std::span<const uint8_t> bytes, std::vector<std::string>* diagnostics) {
