@@ -3,7 +3,7 @@ import os
 import statistics
 import subprocess
 
-from benchmarks.common import INSONIFY, ROOT, deployment_file, fail
+from benchmarks.common import ROOT, deployment_file, fail, run_pings
 from benchmarks.fans import SCENES, SONARS, deployment, scene, seen
 
 ROUNDS = 5
@@ -29,14 +29,8 @@ def by_python(file, pings):
 
 def by_command(file, pings):
     """The difference of a long run and one of ten pings, so that the start of the process is not in it."""
-    times = []
-    for count in (10, 10 + pings):
-        usage = os.times()
-        start = usage.elapsed
-        if subprocess.run([INSONIFY, "run", file, "--pings", str(count), "--quiet", "--out", os.devnull]).returncode:
-            fail("insonify run", 1)
-        times.append(os.times().elapsed - start)
-    return 1e3 * (times[1] - times[0]) / pings
+    (_, few, _), (_, many, _) = run_pings(file, 10), run_pings(file, 10 + pings)
+    return (many - few) / pings
 
 
 def measure_steps(options):
