@@ -1,10 +1,13 @@
 #include "components/logger/LoggerTask.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <filesystem>
 #include <set>
 #include <system_error>
 
+#include "components/framework/Upstream.hpp"
 #include "types/ConfigError.hpp"
 
 namespace insonify::logger {
@@ -36,21 +39,35 @@ log::Metadata withNames(log::Metadata metadata, const T& sample) {
 /** Of the stream of an input. */
 template <class Input>
 Declare declaration(const Input& input, log::Metadata metadata) {
-    return [name = input.kept.name, metadata = std::move(metadata)](log::Writer& log) {
+    return [name = input.kept.name.path(), metadata = std::move(metadata)](log::Writer& log) {
         return log.addStream<typename Input::Sample>(name, metadata);
     };
+}
+
+/** Of the sonar whose pings an input takes [kHz]; none: it takes others, or that is not known. */
+template <class Input>
+std::optional<double> frequencyOf(const Input& input) {
+    if constexpr (std::is_same_v<typename Input::Sample, types::Sonar>)
+        return framework::upstreamFrequency(input.port);
+    else
+        return std::nullopt;
 }
 
 }  // namespace
 
 framework::InputPortBase* LoggerTask::makeInput(const std::string& port, framework::OutputPortBase& source) {
-    if (framework::InputPortBase* const made = inputs_.make(port, source, source.path())) return made;
+    if (framework::InputPortBase* const made = inputs_.make(port, source, framework::streamNameOf(source))) return made;
     throw types::ConfigError("", "", source.path() + " is " + source.typeName() + ", which a log cannot hold");
 }
 
 std::vector<std::string> LoggerTask::notices() const {
-    if (!inputs_.empty()) return {};
-    return {"nothing is connected to it: the log will be empty"};
+    if (inputs_.empty()) return {"nothing is connected to it: the log will be empty"};
+    bool has_pings = false;
+    inputs_.forEach(
+        [&]<class Input>(const Input&) { has_pings |= std::is_same_v<typename Input::Sample, types::Sonar>; });
+    const bool is_rounded = log::isMcap(config->file) && config->mcap.dtype == ros::ImageType::Uint8;
+    if (!has_pings || !is_rounded) return {};
+    return {"pings are logged as uint8 levels; mcap: {dtype: float32} keeps their bins, for a replay or a score"};
 }
 
 void LoggerTask::checkInputs() const {
@@ -59,20 +76,23 @@ void LoggerTask::checkInputs() const {
         const std::string path = input.port.path();
         if (input.port.channels().size() > 1)
             throw types::ConfigError("", path, "has several connections; give each a port of its own on the logger");
-        if (!streams.insert(input.kept.name).second)
-            throw types::ConfigError("", path, "logs " + input.kept.name + " a second time; connect it once");
+        const std::string stream = input.kept.name.path();
+        if (!streams.insert(stream).second)
+            throw types::ConfigError("", path, "logs " + stream + " a second time; connect it once");
     });
 }
 
-log::Metadata LoggerTask::runMetadata() {
+log::Metadata LoggerTask::runMetadata() const {
     log::Metadata metadata = config->metadata;
-    metadata["insonify_deployment"] = environment().deployment_text;
     metadata["insonify_seed"] = std::to_string(environment().seed);
     return metadata;
 }
 
-log::Metadata LoggerTask::streamMetadata() {
+log::Metadata LoggerTask::streamMetadata(const framework::StreamName& stream, std::optional<double> frequency) {
     log::Metadata metadata = runMetadata();
+    if (!stream.model.empty()) metadata["rock_task_model"] = stream.model;
+    if (frequency) metadata["insonify_frequency_khz"] = fmt::format("{}", *frequency);
+    if (declared_ == 0) metadata["insonify_deployment"] = environment().deployment_text;
     if (!environment().records) return metadata;
     std::string plans;
     for (const types::TaskRecord& task : environment().records())
@@ -110,7 +130,9 @@ bool LoggerTask::configureHook() {
     removeSequels(path);
     log_ = log::createLog(path, config->mcap);
     rotation_.emplace(*config, *log_);
-    if (logsProperties()) properties_.emplace(log_->path().parent_path() / config->property_file);
+    if (logsProperties())
+        properties_.emplace(log_->path().parent_path() / config->property_file, framework::propertyAliases(*this),
+                            environment().deployment_text);
     configured_ = fixedValues();
     declared_ = 0;
     inputs_.forEach([](auto& input) { input.kept.number.reset(); });
@@ -146,7 +168,9 @@ void LoggerTask::updateHook() {
         if (!config->record) return input.port.clear();
         for (typename Input::Carried sample{}; input.port.readNew(sample);) {
             if (!input.kept.number) {
-                thread_->declare(declaration(input, withNames(streamMetadata(), *types::carriedSample(sample))));
+                log::Metadata metadata =
+                    withNames(streamMetadata(input.kept.name, frequencyOf(input)), *types::carriedSample(sample));
+                thread_->declare(declaration(input, std::move(metadata)));
                 input.kept.number = declared_++;
             }
             thread_->push(*input.kept.number, received, std::move(sample));
@@ -172,7 +196,9 @@ void LoggerTask::cleanupHook() {
         }
     } end{*this};
     inputs_.forEach([&](const auto& input) {
-        if (!input.kept.number) declaration(input, streamMetadata())(*log_);
+        if (input.kept.number) return;
+        declaration(input, streamMetadata(input.kept.name, frequencyOf(input)))(*log_);
+        ++declared_;
     });
     log_->close();
     if (properties_) properties_->close();

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "components/framework/StreamNames.hpp"
 #include "components/log/Writer.hpp"
 #include "types/TaskRecord.hpp"
 
@@ -12,11 +13,14 @@ namespace insonify::logger {
 /** Writes the properties of tasks into a log of their own: a stream `task.property` for each that is present, a sample
  *  when it is first seen and whenever it has changed. As Rock's logger does it, in properties.0.log. What Rock has no
  *  word for: an optional property that is taken out writes false to a stream `task.property.present`, and true, before
- *  its value, when it is there again. */
+ *  its value, when it is there again. A property with an alias has a stream of that name as well, an angle as Rock's
+ *  `base::Angle`; its metadata name where it leads, `insonify_alias_of`. */
 class PropertyLog {
 public:
     /** Throws ConfigError when the file cannot be created. */
-    explicit PropertyLog(const std::filesystem::path& path) : log_(log::createLog(path)) {}
+    explicit PropertyLog(const std::filesystem::path& path, std::vector<framework::PropertyAlias> aliases = {},
+                         std::string deployment = "")
+        : log_(log::createLog(path)), aliases_(std::move(aliases)), deployment_(std::move(deployment)) {}
 
     /** Throws std::runtime_error when the file cannot be written. */
     void record(const std::vector<types::TaskRecord>& tasks, types::Time now, const log::Metadata& metadata);
@@ -33,8 +37,13 @@ private:
     void write(std::optional<size_t>& stream, const std::string& name, types::Time now, const T& value,
                const log::Metadata& metadata);
     void writePresence(Written& property, const std::string& name, types::Time now, const log::Metadata& metadata);
+    void recordAliases(const std::vector<types::TaskRecord>& tasks, types::Time now, const log::Metadata& metadata);
 
     std::unique_ptr<log::Writer> log_;
+    std::vector<framework::PropertyAlias> aliases_;
+    std::string deployment_;                          ///< Until it is written, with the first stream.
+    std::map<std::string, std::string> models_;       ///< Of tasks that have aliases, as Rock calls them.
+    std::map<std::string, Written> written_aliases_;  ///< By "task.alias".
     std::map<std::string, std::map<std::string, Written>> written_;  ///< By task and property.
 };
 

@@ -40,7 +40,7 @@ struct MessagesOf<types::SonarReturns> : Messages<types::SonarReturns, SonarRetu
 template <>
 struct MessagesOf<types::SonarElements> : Messages<types::SonarElements, SonarElements, Clock> {};
 template <>
-struct MessagesOf<types::Pose> : Messages<types::Pose, Odometry, PoseStamped, Clock> {};
+struct MessagesOf<types::Pose> : Messages<types::Pose, Odometry, PoseStamped, TFMessage, Clock> {};
 template <>
 struct MessagesOf<types::Image> : Messages<types::Image, Image, Clock> {};
 template <>

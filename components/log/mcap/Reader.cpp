@@ -5,6 +5,7 @@
 #include "components/log/TypeNames.hpp"
 #include "components/ros/Cdr.hpp"
 #include "components/ros/Samples.hpp"
+#include "components/ros/Stamps.hpp"
 
 namespace insonify::log::mcap {
 namespace {
@@ -54,6 +55,7 @@ public:
     explicit TypedDecoder(const ros::MessageOptions& options) : options_(options) {}
     void decode(std::span<const char> bytes, types::SampleRoom room) override {
         ros::decode(bytes, message_);
+        ros::noteStamp(message_);
         ros::toSample(message_, options_, *std::get<T*>(room));
     }
 
