@@ -1,7 +1,9 @@
 #pragma once
+#include <algorithm>
 #include <functional>
 #include <optional>
 #include <string>
+#include <utility>
 
 #include "components/dds/PublisherConfig.hpp"
 #include "components/dds/Writer.hpp"
@@ -109,6 +111,13 @@ public:
         if (!names_frequency_) options_.messages.frequency_khz = khz;
     }
 
+    const std::string& topic() const { return topic_; }
+    /** Whether a message was larger than the receive buffers that Linux gives by default; true once. */
+    bool hasOutgrownBuffers() {
+        constexpr size_t usual_buffer = 212'992;  // net.core.rmem_default [B]
+        return largest_ > usual_buffer && !std::exchange(size_is_told_, true);
+    }
+
     /** Makes no message for a topic that nobody reads. A sample that the message cannot hold (see ros/Samples.hpp) is
      *  dropped. Whether it was sent. */
     bool publish(const Sample& sample) {
@@ -119,6 +128,7 @@ public:
             drops_.add(topic_ + ": " + error.what());
             return false;
         }
+        largest_ = std::max(largest_, bytes_.size());
         if (writer_.write(bytes_)) return true;
         drops_.add(topic_ + ": " + writer_.failure());
         return false;
@@ -131,6 +141,8 @@ private:
     Encode<Sample> encode_;
     Writer writer_;
     Bytes bytes_;
+    size_t largest_ = 0;  ///< Of the messages [B].
+    bool size_is_told_ = false;
     types::ThrottledWarning& drops_;
 };
 

@@ -6,6 +6,7 @@
 #include "components/ros/Cdr.hpp"
 #include "components/ros/Poses.hpp"
 #include "components/ros/Stamps.hpp"
+#include "components/ros/Times.hpp"
 
 namespace insonify::dds {
 namespace {

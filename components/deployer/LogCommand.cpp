@@ -221,7 +221,7 @@ void addEnum(CLI::App& command, const char* name, const char* help, E& value) {
 }
 
 void addMcapOptions(CLI::App& command, log::McapConfig& config) {
-    addEnum(command, "--dtype", "of echoes in an MCAP file (default: uint8)", config.dtype);
+    addEnum(command, "--dtype", "of echoes in an MCAP file (default: float32)", config.dtype);
     addEnum(command, "--world-frame", "of poses in an MCAP file (default: enu)", config.world_frame);
 }
 

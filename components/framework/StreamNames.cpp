@@ -45,6 +45,7 @@ std::vector<PropertyAlias> propertyAliases(const TaskContext& task) {
     if (!deployment) return all;
     const DeploymentSpec& spec = deployment->spec();
     const auto add = [&](const TaskSpec& owner, const std::string& alias, const std::string& target, bool is_switch) {
+        if (alias.find('.') != std::string::npos) return;  // a field of a compound: no property of its own
         const auto [name, property] = splitPort(target);
         const TaskContext* const target_task = deployment->task(name);
         const auto info = target_task ? propertyOf(*target_task, property) : std::nullopt;

@@ -61,13 +61,8 @@ framework::InputPortBase* LoggerTask::makeInput(const std::string& port, framewo
 }
 
 std::vector<std::string> LoggerTask::notices() const {
-    if (inputs_.empty()) return {"nothing is connected to it: the log will be empty"};
-    bool has_pings = false;
-    inputs_.forEach(
-        [&]<class Input>(const Input&) { has_pings |= std::is_same_v<typename Input::Sample, types::Sonar>; });
-    const bool is_rounded = log::isMcap(config->file) && config->mcap.dtype == ros::ImageType::Uint8;
-    if (!has_pings || !is_rounded) return {};
-    return {"pings are logged as uint8 levels; mcap: {dtype: float32} keeps their bins, for a replay or a score"};
+    if (!inputs_.empty()) return {};
+    return {"nothing is connected to it: the log will be empty"};
 }
 
 void LoggerTask::checkInputs() const {
