@@ -53,6 +53,19 @@ std::optional<double> frequencyOf(const Input& input) {
         return std::nullopt;
 }
 
+/** Properties of the deployment by their other names, with what they are now. */
+std::vector<PropertyAlias> aliasesOf(const LoggerTask& logger, const std::vector<types::TaskRecord>& records) {
+    std::vector<PropertyAlias> aliases;
+    for (const framework::PropertyAlias& alias : framework::propertyAliases(logger)) {
+        const auto task = std::ranges::find(records, alias.task, &types::TaskRecord::name);
+        auto value = task == records.end() ? std::nullopt : framework::valueAt(*task, alias.property);
+        if (alias.is_switch) value = value.has_value();
+        const std::string leads_to = alias.task + "." + alias.property;
+        aliases.push_back({alias.name.task, alias.name.object, alias.name.model, leads_to, value, alias.in_degrees});
+    }
+    return aliases;
+}
+
 }  // namespace
 
 framework::InputPortBase* LoggerTask::makeInput(const std::string& port, framework::OutputPortBase& source) {
@@ -126,8 +139,7 @@ bool LoggerTask::configureHook() {
     log_ = log::createLog(path, config->mcap);
     rotation_.emplace(*config, *log_);
     if (logsProperties())
-        properties_.emplace(log_->path().parent_path() / config->property_file, framework::propertyAliases(*this),
-                            environment().deployment_text);
+        properties_.emplace(log_->path().parent_path() / config->property_file, environment().deployment_text);
     configured_ = fixedValues();
     declared_ = 0;
     inputs_.forEach([](auto& input) { input.kept.number.reset(); });
@@ -153,7 +165,8 @@ void LoggerTask::recordProperties() {
     const uint64_t changes = *environment().record_changes;
     if (!properties_ || changes == recorded_changes_) return;
     recorded_changes_ = changes;
-    properties_->record(environment().records(), now(), runMetadata());
+    const std::vector<types::TaskRecord> records = environment().records();
+    properties_->record(records, now(), runMetadata(), aliasesOf(*this, records));
 }
 
 void LoggerTask::updateHook() {

@@ -1,20 +1,9 @@
 #include "components/logger/PropertyLog.hpp"
 
 #include <algorithm>
-
-#include "components/framework/Upstream.hpp"
+#include <utility>
 
 namespace insonify::logger {
-namespace {
-
-/** Of the property that an alias leads to; none: it is not there. Of a switch, whether its block is there. */
-std::optional<types::PropertyValue> valueOf(const framework::PropertyAlias& alias, const types::TaskRecord& task) {
-    const auto value = framework::valueAt(task, alias.property);
-    if (alias.is_switch) return value.has_value();
-    return value;
-}
-
-}  // namespace
 
 template <class T>
 void PropertyLog::write(std::optional<size_t>& stream, const std::string& name, types::Time now, const T& value,
@@ -32,13 +21,14 @@ void PropertyLog::writePresence(Written& property, const std::string& name, type
     write(property.presence, name + ".present", now, property.value.has_value(), metadata);
 }
 
-void PropertyLog::record(const std::vector<types::TaskRecord>& tasks, types::Time now, const log::Metadata& metadata) {
-    for (const framework::PropertyAlias& alias : aliases_) models_[alias.name.task] = alias.name.model;
+void PropertyLog::record(const std::vector<types::TaskRecord>& tasks, types::Time now, const log::Metadata& metadata,
+                         const std::vector<PropertyAlias>& aliases) {
     for (const types::TaskRecord& task : tasks) {
         auto& written = written_[task.name];
         log::Metadata all = metadata;
         all["rock_stream_type"] = "property";
-        all["rock_task_model"] = models_.contains(task.name) ? models_.at(task.name) : task.type;
+        const auto alias = std::ranges::find(aliases, task.name, &PropertyAlias::task);
+        all["rock_task_model"] = alias == aliases.end() ? task.type : alias->model;
         for (const auto& [name, value] : task.properties) {
             Written& property = written[name];
             if (property.value == value) continue;
@@ -54,30 +44,24 @@ void PropertyLog::record(const std::vector<types::TaskRecord>& tasks, types::Tim
             writePresence(property, task.name + "." + name, now, all);
         }
     }
-    recordAliases(tasks, now, metadata);
+    for (const PropertyAlias& alias : aliases)
+        if (!written_[alias.task].contains(alias.name)) recordAlias(alias, now, metadata);
     log_->flush();
 }
 
-void PropertyLog::recordAliases(const std::vector<types::TaskRecord>& tasks, types::Time now,
-                                const log::Metadata& metadata) {
-    for (const framework::PropertyAlias& alias : aliases_) {
-        const auto task = std::ranges::find(tasks, alias.task, &types::TaskRecord::name);
-        const auto value = task == tasks.end() ? std::nullopt : valueOf(alias, *task);
-        const std::string stream = alias.name.path();
-        Written& written = written_aliases_[stream];
-        if (!value || written.value == value || written_[alias.name.task].contains(alias.name.object)) continue;
-        log::Metadata all = metadata;
-        all["rock_stream_type"] = "property";
-        all["rock_task_model"] = alias.name.model;
-        all["insonify_alias_of"] = alias.task + "." + alias.property;
-        const double* const number = std::get_if<double>(&*value);
-        if (written.value && written.value->index() != value->index()) continue;  // its stream has another type
-        written.value = value;
-        if (alias.in_degrees && number)
-            write(written.stream, stream, now, types::Angle::fromDeg(*number), all);
-        else
-            std::visit([&](const auto& held) { write(written.stream, stream, now, held, all); }, *value);
-    }
+void PropertyLog::recordAlias(const PropertyAlias& alias, types::Time now, const log::Metadata& metadata) {
+    const std::string stream = alias.task + "." + alias.name;
+    Written& written = written_aliases_[stream];
+    const bool is_other_type = written.value && alias.value && written.value->index() != alias.value->index();
+    if (!alias.value || written.value == alias.value || is_other_type) return;
+    written.value = alias.value;
+    log::Metadata all = metadata;
+    all["rock_stream_type"] = "property";
+    all["rock_task_model"] = alias.model;
+    all["insonify_alias_of"] = alias.leads_to;
+    const double* const number = std::get_if<double>(&*alias.value);
+    if (alias.in_degrees && number) return write(written.stream, stream, now, types::Angle::fromDeg(*number), all);
+    std::visit([&](const auto& held) { write(written.stream, stream, now, held, all); }, *alias.value);
 }
 
 }  // namespace insonify::logger

@@ -4,11 +4,18 @@
 #include <string>
 #include <vector>
 
-#include "components/framework/StreamNames.hpp"
 #include "components/log/Writer.hpp"
 #include "types/TaskRecord.hpp"
 
 namespace insonify::logger {
+
+/** A property by another name, at one moment. */
+struct PropertyAlias {
+    std::string task, name, model;              ///< Whose it is by that name, and what kind of task that is.
+    std::string leads_to;                       ///< "task.property"
+    std::optional<types::PropertyValue> value;  ///< None: it is not there.
+    bool in_degrees = false;
+};
 
 /** Writes the properties of tasks into a log of their own: a stream `task.property` for each that is present, a sample
  *  when it is first seen and whenever it has changed. As Rock's logger does it, in properties.0.log. What Rock has no
@@ -17,13 +24,13 @@ namespace insonify::logger {
  *  `base::Angle`; its metadata name where it leads, `insonify_alias_of`. */
 class PropertyLog {
 public:
-    /** Throws ConfigError when the file cannot be created. */
-    explicit PropertyLog(const std::filesystem::path& path, std::vector<framework::PropertyAlias> aliases = {},
-                         std::string deployment = "")
-        : log_(log::createLog(path)), aliases_(std::move(aliases)), deployment_(std::move(deployment)) {}
+    /** Throws ConfigError when the file cannot be created. `deployment` goes into the metadata of the first stream. */
+    explicit PropertyLog(const std::filesystem::path& path, std::string deployment = "")
+        : log_(log::createLog(path)), deployment_(std::move(deployment)) {}
 
     /** Throws std::runtime_error when the file cannot be written. */
-    void record(const std::vector<types::TaskRecord>& tasks, types::Time now, const log::Metadata& metadata);
+    void record(const std::vector<types::TaskRecord>& tasks, types::Time now, const log::Metadata& metadata,
+                const std::vector<PropertyAlias>& aliases = {});
     void close() { log_->close(); }
 
 private:
@@ -37,13 +44,11 @@ private:
     void write(std::optional<size_t>& stream, const std::string& name, types::Time now, const T& value,
                const log::Metadata& metadata);
     void writePresence(Written& property, const std::string& name, types::Time now, const log::Metadata& metadata);
-    void recordAliases(const std::vector<types::TaskRecord>& tasks, types::Time now, const log::Metadata& metadata);
+    void recordAlias(const PropertyAlias& alias, types::Time now, const log::Metadata& metadata);
 
     std::unique_ptr<log::Writer> log_;
-    std::vector<framework::PropertyAlias> aliases_;
-    std::string deployment_;                          ///< Until it is written, with the first stream.
-    std::map<std::string, std::string> models_;       ///< Of tasks that have aliases, as Rock calls them.
-    std::map<std::string, Written> written_aliases_;  ///< By "task.alias".
+    std::string deployment_;                                         ///< Until it is written.
+    std::map<std::string, Written> written_aliases_;                 ///< By "task.alias".
     std::map<std::string, std::map<std::string, Written>> written_;  ///< By task and property.
 };
 

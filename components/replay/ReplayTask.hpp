@@ -13,6 +13,7 @@
 #include "components/framework/Properties.hpp"
 #include "components/framework/Registry.hpp"
 #include "components/framework/SamplePool.hpp"
+#include "components/framework/StreamNames.hpp"
 #include "components/framework/TaskContext.hpp"
 #include "components/log/Reader.hpp"
 #include "components/replay/ReplayConfig.hpp"

@@ -56,17 +56,16 @@ TEST(PropertyLogTest, WhatIsTakenOutAndComesBackIsTold) {
 
 TEST(PropertyLogTest, AnAliasIsAStreamOfItsOwnAnAngleInRadians) {
     Folder folder;
-    framework::PropertyAlias gain{{"rock", "gain", "p::Task"}, "receiver", "brightness.gain"},
-        width{{"rock", "beam_width", "p::Task"}, "sonar", "beam_width_deg"},
-        noisy{{"rock", "enable_noise", "p::Task"}, "receiver", "noise"};
-    width.in_degrees = true;
-    noisy.is_switch = true;
-    PropertyLog log(folder / "properties.0.log", {gain, width, noisy}, "tasks: {}");
-    types::TaskRecord receiver{"receiver", "r::Task", {{"brightness", "{\"gain\": 0.5}"}}, ""};
+    PropertyLog log(folder / "properties.0.log", "tasks: {}");
+    PropertyAlias gain{"rock", "gain", "p::Task", "receiver.brightness.gain", 0.5},
+        width{"rock", "beam_width", "p::Task", "sonar.beam_width_deg", 90.0, true},
+        noisy{"rock", "enable_noise", "p::Task", "receiver.noise", false};
     const types::TaskRecord sonar{"sonar", "s::Task", {{"beam_width_deg", 90.0}}, ""};
-    log.record({receiver, sonar}, {1}, {});
-    receiver.properties = {{"brightness", "{\"gain\": 0.75}"}, {"noise", "{}"}};
-    log.record({receiver, sonar}, {2}, {});
+    log.record({sonar}, {1}, {}, {gain, width, noisy});
+    gain.value = 0.75;
+    noisy.value = true;
+    width.value.reset();
+    log.record({sonar}, {2}, {}, {gain, width, noisy});
     log.close();
 
     log::pocolog::Reader reader(folder / "properties.0.log");
