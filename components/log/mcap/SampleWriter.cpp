@@ -41,6 +41,16 @@ bool isWord(std::string_view word) {
 
 uint64_t nanoseconds(types::Time time) { return static_cast<uint64_t>(std::max<int64_t>(time.microseconds, 0)) * 1000; }
 
+/** Adds what a stream has otherwise than the record that all share; an empty text stands for what it has not. The
+ *  deployment is the whole log's. */
+void addDifferences(const Metadata& shared, const Metadata& metadata, Texts& channel) {
+    for (const auto& [key, value] : shared)
+        if (!metadata.contains(key) && key != "insonify_deployment") channel.emplace(key, "");
+    for (const auto& [key, value] : metadata)
+        if (const auto found = shared.find(key); found == shared.end() || found->second != value)
+            channel.emplace(key, value);
+}
+
 template <class E>
 std::string nameOf(E value) {
     return std::string(types::EnumNames<E>::names[static_cast<size_t>(value)]);
@@ -110,7 +120,11 @@ size_t SampleWriter::add(size_t sample, const std::string& name, const Metadata&
 }
 
 size_t SampleWriter::declare(const Schema* schema, Channel channel, const Metadata& metadata) {
-    if (metadata_ != metadata) out_.addMetadata("insonify", metadata_ = metadata);
+    std::erase_if(channel.metadata, [&](const auto& text) { return isOfStream(channel.metadata, text.first); });
+    if (metadata_.empty() && !metadata.empty())
+        out_.addMetadata("insonify", metadata_ = metadata);
+    else
+        addDifferences(metadata_, metadata, channel.metadata);
     if (schema) {
         auto known = schemas_.find(*schema);
         if (known == schemas_.end()) known = schemas_.emplace(*schema, out_.addSchema(*schema)).first;

@@ -58,7 +58,7 @@ private:
     bool closed_ = false;
     std::vector<Options> options_;  ///< Of each channel.
     std::map<Schema, uint16_t> schemas_;
-    Metadata metadata_;           ///< As last written.
+    Metadata metadata_;           ///< Of the record that all streams share.
     ros::MessageTypes messages_;  ///< Room to convert into.
     std::vector<char> bytes_;
 };

@@ -236,6 +236,25 @@ TEST(SampleWriterTest, ALogOfSeveralFilesIsOneBagAndEachFileStandsAlone) {
     EXPECT_THAT(bag, testing::HasSubstr("name: \"/sonar/ping\"\n        type: marine_acoustic_msgs/msg/"));
 }
 
+TEST(SampleWriterTest, EachStreamHasItsOwnMetadataInEachFileAndTheDeploymentStandsOnce) {
+    const Folder folder, other;
+    const Metadata first = {{"insonify_deployment", "tasks: {}"}, {"insonify_seed", "7"}, {"rock_task_model", "a::T"}},
+                   second = {{"insonify_seed", "7"}, {"own", "x"}};
+    {
+        SampleWriter log(folder / "x.0.mcap", {});
+        log.write(log.addStream<types::Sonar>("a.ping", first), {1}, smallPing(1));
+        log.write(log.addStream<types::Sonar>("b.ping", second), {1}, smallPing(1));
+        log.next(folder / "x.1.mcap");
+    }
+    copyLog({folder / "x.0.mcap"}, other / "y.0.mcap");
+    for (const auto& file : {folder / "x.0.mcap", folder / "x.1.mcap", other / "y.0.mcap"}) {
+        const auto log = openLog(file);
+        ASSERT_EQ(log->streams().size(), 2u) << file;
+        EXPECT_EQ(log->streams()[0].metadata, first) << file;
+        EXPECT_EQ(log->streams()[1].metadata, second) << file;
+    }
+}
+
 TEST(SampleWriterTest, TheMetadataOfAnotherBagIsNotOverwritten) {
     const Folder folder;
     smallFile(folder / "x.0.mcap");
