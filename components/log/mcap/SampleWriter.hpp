@@ -16,9 +16,9 @@ bool isTopic(std::string_view name);
 
 /** Writes samples into an MCAP file as ROS 2 messages, with metadata.yaml beside it for `ros2 bag`.
  *
- *  Stream "task.port" is topic /task/port, unless `McapConfig::streams` names another. Metadata of the streams go into
- * records named "insonify", each time they change. Log time is when a sample was received, publish time when it was
- * true. */
+ *  Stream "task.port" is topic /task/port, unless `McapConfig::streams` names another. What the first stream carries
+ * goes into a record named "insonify", what others carry otherwise into their channels' metadata. Log time is when a
+ * sample was received, publish time when it was true. */
 class SampleWriter final : public log::Writer {
 public:
     /** Throws as createLog, and ConfigError when the folder holds the metadata.yaml of another bag. */
