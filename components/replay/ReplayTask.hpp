@@ -34,7 +34,7 @@ namespace insonify::replay {
  *
  *  A log that was cut off plays up to its last whole block, with a notice; streams that nothing is connected to, or
  *  whose type is not known, are listed in notices. A sample that cannot be decoded ends in Exception. */
-class ReplayTask final : public framework::TaskContext, public framework::ClockSource {
+class ReplayTask final : public framework::TaskContext, public framework::ClockSource, public framework::Player {
 public:
     using TaskContext::TaskContext;
 
@@ -57,6 +57,8 @@ public:
     /** World time in the log of the next sample, of all or of one stream; none: there is no more. Between instants. */
     std::optional<types::Time> nextStamp(const std::string& stream = "") const;
     std::function<types::Time()> clock(std::function<types::Time()> wall) override;
+    /** Where the sample that was played last lies in the log, by its recorded stamp. */
+    std::optional<types::Playback> playback() const override;
 
 private:
     /** Where samples of a stream are read into. */
@@ -104,6 +106,8 @@ private:
     int64_t paused_us_ = 0;                    ///< Since when the log's time stands still; 0: it does not.
     std::atomic<int64_t> first_us_{0};         ///< The instant at which playing starts, on the log's clock.
     std::atomic<int64_t> played_us_{0};        ///< The instant that is played; 0: none yet.
+    std::atomic<int64_t> at_us_{0};            ///< The sample that was played last, after the log's first.
+    std::atomic<double> span_s_{-1};           ///< Of the log; negative: it is not open.
     std::atomic<bool> finished_{false};
 };
 

@@ -47,6 +47,7 @@ Json taskOf(const types::TaskStatus& task) {
     Json json = {{"name", task.record.name}, {"type", task.record.type}, {"state", task.state},
                  {"error", task.error},      {"cycle_s", task.cycle_s},  {"latency_s", numberOrNull(task.latency_s)},
                  {"outputs", outputs},       {"properties", properties}};
+    if (task.playback) json["playback"] = {{"at_s", task.playback->at_s}, {"length_s", task.playback->length_s}};
     if (task.plan) json["plan"] = planOf(*task.plan);
     return json;
 }
