@@ -75,6 +75,14 @@ std::string statusText(const types::DeploymentStatus& status, const ServerCounts
                  {"dropped", counts.dropped}});
 }
 
+Parameters parametersOf(const types::DeploymentStatus& status) {
+    Parameters parameters;
+    for (const types::TaskStatus& task : status.tasks)
+        for (const auto& [name, value] : task.record.properties)
+            parameters.emplace_back(task.record.name + "." + name, dump(shown(name, value)));
+    return parameters;
+}
+
 std::string interfacesText(const std::vector<types::TaskInterface>& interfaces, bool control) {
     Json tasks = Json::array();
     for (const types::TaskInterface& task : interfaces) {
