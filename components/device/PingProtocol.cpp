@@ -71,6 +71,8 @@ std::vector<PingFrame> pingFrames(std::span<const uint8_t> datagram, size_t max_
     return frames;
 }
 
+void PingPayloadWriter::put(const std::string& text) { payload_.insert(payload_.end(), text.begin(), text.end()); }
+
 void PingPayloadWriter::put(const Bytes& data) {
     append(payload_, static_cast<uint16_t>(data.size()));
     payload_.insert(payload_.end(), data.begin(), data.end());

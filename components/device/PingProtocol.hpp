@@ -63,7 +63,7 @@ private:
     void put(T value) {
         append(payload_, value);
     }
-    void put(const std::string& text) { payload_.insert(payload_.end(), text.begin(), text.end()); }
+    void put(const std::string& text);
     void put(const Bytes& data);  ///< Its u16 length before it.
 
     Bytes& payload_;
