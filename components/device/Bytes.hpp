@@ -1,4 +1,6 @@
 #pragma once
+// Bytes of the wire, little endian as the processors that this runs on.
+#include <cstddef>
 #include <cstdint>
 #include <cstring>
 #include <span>
@@ -9,24 +11,23 @@ namespace insonify::device {
 
 using Bytes = std::vector<uint8_t>;
 
-// Numbers as they lie on the wire: little endian, as on the processors that this runs on.
-
-/** The number at byte `at`; the caller has seen to it that it is there. */
+/** The number at a place that the caller knows to be there. */
 template <class T>
 T read(std::span<const uint8_t> bytes, size_t at) {
-    static_assert(std::is_arithmetic_v<T>);
+    static_assert(std::is_trivially_copyable_v<T>);
     T value;
     std::memcpy(&value, bytes.data() + at, sizeof value);
     return value;
 }
 
-/** Puts a number where there is room for it. */
+/** Writes a number over bytes that are there. */
 template <class T>
 void write(Bytes& bytes, size_t at, T value) {
-    static_assert(std::is_arithmetic_v<T>);
+    static_assert(std::is_trivially_copyable_v<T>);
     std::memcpy(bytes.data() + at, &value, sizeof value);
 }
 
+/** Writes a number behind the last byte. */
 template <class T>
 void append(Bytes& bytes, T value) {
     bytes.resize(bytes.size() + sizeof value);
