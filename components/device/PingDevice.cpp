@@ -111,14 +111,18 @@ void PingDevice::handle(PingClient client, const PingFrame& frame, types::Time n
         with<PingGeneralRequest>(client, frame, [&](const auto& m) { handleRequest(client, m.requested, now); });
     else if (frame.message == PingSetDeviceId::message)
         with<PingSetDeviceId>(client, frame, [&](const auto& m) { setId(client, m.message, m.device_id, 1); });
-    else
+    else if (!frame.payload.empty() || !answerAny(client, frame.message, now))
         command(client, frame, now);
 }
 
+bool PingDevice::answerAny(PingClient client, uint16_t requested, types::Time now) {
+    if (requested == PingDeviceInformation::message) return send(client, information_), true;
+    if (requested == PingProtocolVersion::message) return send(client, version_), true;
+    return answer(client, requested, now);
+}
+
 void PingDevice::handleRequest(PingClient client, uint16_t requested, types::Time now) {
-    if (requested == PingDeviceInformation::message) return send(client, information_);
-    if (requested == PingProtocolVersion::message) return send(client, version_);
-    if (!answer(client, requested, now)) refuse(client, requested, "there is no such message to be asked for");
+    if (!answerAny(client, requested, now)) refuse(client, requested, "there is no such message to be asked for");
 }
 
 void PingDevice::setId(PingClient client, uint16_t message, uint8_t id, uint8_t min) {

@@ -71,7 +71,8 @@ private:
     std::string warning_;
 };
 
-/** What devices of the ping protocol do alike: they find frames, answer general requests, acknowledge and refuse.
+/** What devices of the ping protocol do alike: they find frames, answer general requests, acknowledge and refuse. A
+ *  message that the device tells, sent to it without payload, asks for it as well, as older drivers do.
  *
  *  Bytes go in by client, bytes come out by client, and pings are asked for; it has no sockets and no clock. */
 class PingDevice {
@@ -135,6 +136,7 @@ protected:
 private:
     void handle(PingClient client, const PingFrame& frame, types::Time now);
     void handleRequest(PingClient client, uint16_t requested, types::Time now);
+    bool answerAny(PingClient client, uint16_t requested, types::Time now);
 
     uint8_t id_;
     PingDeviceInformation information_;

@@ -56,6 +56,18 @@ TEST_F(Ping1dEmulatorTest, WhatItIsIsTold) {
     EXPECT_EQ(bench_.only<PingNack>().nacked, 1301);
 }
 
+TEST_F(Ping1dEmulatorTest, OlderDriversAskByAMessageWithoutPayload) {
+    for (const uint16_t message : {4, 5, 1200, 1204, 1210}) {
+        bench_.give(PingFrame{message, 0, 0, {}}.bytes());
+        const auto heard = bench_.heard();
+        ASSERT_EQ(heard.size(), 1u) << message;
+        EXPECT_EQ(heard[0].message, message);
+        EXPECT_FALSE(heard[0].payload.empty());
+    }
+    bench_.give(PingFrame{1300, 0, 0, {}}.bytes());
+    EXPECT_TRUE(bench_.asked());
+}
+
 TEST_F(Ping1dEmulatorTest, WhatIsSetIsReadBack) {
     set(Ping1dSetModeAuto{0});
     set(Ping1dSetRange{500, 12'000});
