@@ -3,6 +3,9 @@
 #include <algorithm>
 #include <chrono>
 
+#include "components/device/OculusTask.hpp"
+#include "components/device/Ping1dTask.hpp"
+#include "components/device/Ping360Task.hpp"
 #include "types/ConfigError.hpp"
 
 namespace insonify::device {
@@ -44,6 +47,12 @@ void DeviceTask::updateHook() {
         network_->wakeAt(std::chrono::steady_clock::now() +
                          std::chrono::microseconds(static_cast<int64_t>(1e6 * wait)));
     }
+}
+
+void registerTasks(framework::Registry& registry) {
+    registry.add<OculusTask>("device::OculusTask", "stands in for a Blueprint Subsea Oculus, a forward-looking sonar");
+    registry.add<Ping360Task>("device::Ping360Task", "stands in for a Blue Robotics Ping360, a scanning sonar");
+    registry.add<Ping1dTask>("device::Ping1dTask", "stands in for a Blue Robotics Ping1D, an echo sounder");
 }
 
 }  // namespace insonify::device
