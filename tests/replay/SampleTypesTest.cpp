@@ -87,6 +87,20 @@ types::SonarElements made(std::type_identity<types::SonarElements>) {
     signals.quadrature = {0, 0.25f, -1, 2, 0.125f, -8};
     return signals;
 }
+types::SonarSettings made(std::type_identity<types::SonarSettings>) {
+    types::SonarSettings settings;
+    settings.time = {1'500'000};
+    settings.range = 12.5;
+    settings.frequency_khz = 750;
+    settings.speed_of_sound = 1490.5;
+    settings.gain_db = -3;
+    settings.bearing = {0.25};
+    settings.field_of_view = {1.5};
+    settings.beam_height = {0.125};
+    settings.bin_count = 500;
+    settings.beam_count = 256;
+    return settings;
+}
 types::Pose made(std::type_identity<types::Pose>) {
     types::Pose pose;
     pose.time = {1'500'000};
