@@ -55,7 +55,7 @@ void MicronEmulator::take(Client client, const SeaNetMessage& message, types::Ti
         case SeaNetType::SendVersion:
             return outlet_.send(client, SeaNetVersion{.software = 12,
                                                       .info = 1,
-                                                      .serial = device_.serial_number,
+                                                      .serial = static_cast<uint16_t>(device_.serial_number),
                                                       .program_length = 0x10000,
                                                       .program_sum = 0x1234}
                                             .message()
@@ -88,6 +88,7 @@ void MicronEmulator::configure(Client client, const SeaNetMessage& message, type
         backwards_ = false;
         line_.reset();
         arrived_ = now;
+        if (!isWithinSector()) turnTo(command_.left);
     }
     outlet_.send(client, alive(now).message().packet());
 }
@@ -165,20 +166,24 @@ void MicronEmulator::finishLine() {
     turn();
 }
 
+bool MicronEmulator::isWithinSector() const {
+    return command_.has(SeaNetControl::continuous) ||
+           wrapped(bearing_ - command_.left) <= wrapped(command_.right - command_.left);
+}
+
+void MicronEmulator::turnTo(int bearing) {
+    const int way = std::min(wrapped(bearing - bearing_), wrapped(bearing_ - bearing));
+    bearing_ = wrapped(bearing);
+    arrived_ = arrived_ + seconds(way * command_.motor_delay * motor_unit);
+}
+
 void MicronEmulator::turn() {
     if (command_.has(SeaNetControl::motor_off)) return;
-    const int before = bearing_;
-    if (command_.has(SeaNetControl::continuous)) {
-        bearing_ = wrapped(bearing_ + command_.step);
-    } else {
-        const int width = wrapped(command_.right - command_.left), from_left = wrapped(bearing_ - command_.left);
-        int place = from_left + (backwards_ ? -1 : 1) * command_.step;
-        if (from_left > width) place = 0;  // outside of the sector: to its left limit
-        backwards_ = place >= width || (backwards_ && place > 0);
-        bearing_ = wrapped(command_.left + std::clamp(place, 0, width));
-    }
-    const int way = std::min(wrapped(bearing_ - before), wrapped(before - bearing_));
-    arrived_ = arrived_ + seconds(way * command_.motor_delay * motor_unit);
+    if (command_.has(SeaNetControl::continuous)) return turnTo(bearing_ + command_.step);
+    const int width = wrapped(command_.right - command_.left);
+    const int place = wrapped(bearing_ - command_.left) + (backwards_ ? -1 : 1) * command_.step;
+    backwards_ = place >= width || (backwards_ && place > 0);
+    turnTo(command_.left + std::clamp(place, 0, width));
 }
 
 SeaNetAlive MicronEmulator::alive(types::Time now) const {

@@ -14,10 +14,21 @@ namespace insonify::device {
 
 /** What of a Micron is not told by a driver. */
 struct MicronDevice {
-    uint16_t serial_number = 1;
+    int serial_number = 1;
     double frequency_khz = 700;    ///< Where a command names none.
     double speed_of_sound = 1500;  ///< By which sound's time becomes the sonar's range [m/s].
     double boot_time = 0.5;        ///< Until a head that is switched on or rebooted is ready [s].
+
+    template <class Self, class V>
+    static void describe(Self& self, V& visit) {
+        using types::Field;
+        visit(Field{"serial_number", "1", "that it tells drivers", 0, 65535}, self.serial_number);
+        visit(Field{"frequency_khz", "kHz", "of a head command that names none", 100, 2000}, self.frequency_khz);
+        visit(Field{"speed_of_sound", "m/s", "by which the time of a scan line is the sonar's range", 1000, 2000},
+              self.speed_of_sound);
+        visit(Field{"boot_time", "s", "until a head that is switched on or rebooted tells that it lives", 0, 60},
+              self.boot_time);
+    }
 };
 
 /** A Tritech Micron without sockets and clocks: handshake, head commands, scan lines.
@@ -63,7 +74,9 @@ private:
     void requestLine(Client client, types::Time now);
     void askForPing(types::Time now);
     void finishLine();
-    void turn();
+    bool isWithinSector() const;
+    void turnTo(int bearing);
+    void turn();  ///< By one step, back at a limit.
     SeaNetAlive alive(types::Time now) const;
     void tellAlive(types::Time now);
     double listening() const;  ///< To the last bin and back [s].

@@ -17,7 +17,7 @@ using Json = nlohmann::json;
 
 namespace {
 
-constexpr double low_opening_deg = 90, high_opening_deg = 40;
+constexpr double low_opening_deg = 90, high_opening_deg = 40, columns = 256;  // between the outermost columns
 constexpr double millimetre = 1e-3;   // of a pixel's unit, as far as 16 bits reach
 constexpr double patience = 2;        // beyond sound's way, for a ping that was asked for [s]
 constexpr double strength_unit = 30;  // that of the device's strengths
@@ -264,7 +264,8 @@ void Sonar3dEmulator::ask(types::Time now) {
     settings.range = state_.range_max;
     settings.frequency_khz = frequencyKhz();
     settings.speed_of_sound = speedOfSound();
-    settings.field_of_view = types::Angle::fromDeg(state_.high_frequency ? high_opening_deg : low_opening_deg);
+    const double opening_deg = state_.high_frequency ? high_opening_deg : low_opening_deg;
+    settings.field_of_view = types::Angle::fromDeg(opening_deg * columns / (columns - 1));  // to the edges of beams
     asked_ = state_;
     asked_.speed_of_sound = settings.speed_of_sound;
     under_way_ = last_ = now;
@@ -304,15 +305,17 @@ RipImage Sonar3dEmulator::frameOf(const types::DepthMap& map) const {
 
 void Sonar3dEmulator::send(const Bytes& packet) {
     if (state_.udp_mode == "unicast") outlet_.send(state_.unicast_ip, state_.unicast_port, packet);
-    if (state_.udp_mode == "multicast") outlet_.send(device_.multicast_address, device_.multicast_port, packet);
+    if (state_.udp_mode == "multicast")
+        outlet_.send(device_.multicast_address, static_cast<uint16_t>(device_.multicast_port), packet);
 }
 
 void Sonar3dEmulator::heard(const types::DepthMap& map, types::Time) {
     under_way_.reset();
     ++sequence_;
     if (!state_.acoustics || state_.udp_mode == "disabled") return;
-    RangePixels ranges{frameOf(map)};
-    StrengthPixels strengths{frameOf(map)};
+    RangePixels ranges;
+    StrengthPixels strengths;
+    static_cast<RipImage&>(ranges) = static_cast<RipImage&>(strengths) = frameOf(map);
     ranges.pixel_scale = static_cast<float>(std::max(millimetre, asked_.range_max / UINT16_MAX));
     const auto loudest = map.remissions.empty() ? map.remissions.end() : std::ranges::max_element(map.remissions);
     for (size_t row = map.vertical_size; row-- > 0;)  // the lowest first
@@ -325,10 +328,12 @@ void Sonar3dEmulator::heard(const types::DepthMap& map, types::Time) {
             const double share =
                 seen && loudest != map.remissions.end() && *loudest > 0 ? map.remissions[cell] / *loudest : 0;
             const double level = strongest_pixel + 50 * std::log10(share);  // 100 log10 of an amplitude
-            strengths.pixels.push_back(pixel > 0 ? static_cast<uint8_t>(std::clamp(level, 1.0, strongest_pixel)) : 0);
+            strengths.pixels.push_back(
+                pixel > 0 ? static_cast<uint8_t>(std::lround(std::clamp(level, 1.0, strongest_pixel))) : 0);
         }
-    send(ripPacket(ranges, device_.version));
-    send(ripPacket(strengths, device_.version));
+    const RipVersion version = device_.compressed ? RipVersion::Rip2 : RipVersion::Rip1;
+    send(ripPacket(ranges, version));
+    send(ripPacket(strengths, version));
 }
 
 }  // namespace insonify::device

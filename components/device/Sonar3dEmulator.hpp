@@ -17,8 +17,26 @@ struct Sonar3dDevice {
     double high_frequency_khz = 2400;  ///< 40 x 40 degrees, 20 pings a second.
     double temperature_celsius = 12;   ///< In the housing, and of the water for the automatic speed of sound.
     std::string multicast_address = "224.0.0.96";
-    uint16_t multicast_port = 4747;
-    RipVersion version = RipVersion::Rip2;
+    int multicast_port = 4747;
+    bool compressed = true;
+
+    template <class Self, class V>
+    static void describe(Self& self, V& visit) {
+        using types::Field;
+        visit(Field{"longest_range", "m", "that the API takes", 1, 65}, self.longest_range);
+        visit(Field{"low_frequency_khz", "kHz", "of the mode of 90 x 40 degrees, 5 pings a second", 10, 10000},
+              self.low_frequency_khz);
+        visit(Field{"high_frequency_khz", "kHz", "of the mode of 40 x 40 degrees, 20 pings a second", 10, 10000},
+              self.high_frequency_khz);
+        visit(Field{"temperature_celsius", "degC", "in the housing, and of the water for the automatic speed of sound",
+                    -2, 40},
+              self.temperature_celsius);
+        visit(Field{"multicast_address", "", "group to which images go where the client sets no other"},
+              self.multicast_address);
+        visit(Field{"multicast_port", "1", "of the group", 1, 65535}, self.multicast_port);
+        visit(Field{"compressed", "", "whether images are RIP2, as of release 1.6; else RIP1, as before"},
+              self.compressed);
+    }
 };
 
 /** What clients have set over the API; as the device has it when it is switched on. */

@@ -140,7 +140,7 @@ TEST_F(Sonar3dEmulatorTest, ItAsksForPingsAtTheRateOfItsModeOnceItMay) {
     EXPECT_EQ(asked_[0].range, 15);
     EXPECT_EQ(asked_[0].speed_of_sound, 1500);
     EXPECT_EQ(asked_[0].frequency_khz, 1200);
-    EXPECT_NEAR(asked_[0].field_of_view.deg(), 90, 1e-9);
+    EXPECT_NEAR(asked_[0].field_of_view.deg() * 255 / 256, 90, 1e-9) << "between the outermost of 256 columns";
     advance(0.1);
     emulator_.heard(map(), now_);
     advance(0.05);
@@ -156,7 +156,7 @@ TEST_F(Sonar3dEmulatorTest, ItAsksForPingsAtTheRateOfItsModeOnceItMay) {
     advance(0);
     EXPECT_EQ(asked_.at(2).frequency_khz, 2400);
     EXPECT_EQ(asked_[2].range, 5);
-    EXPECT_NEAR(asked_[2].field_of_view.deg(), 40, 1e-9);
+    EXPECT_NEAR(asked_[2].field_of_view.deg() * 255 / 256, 40, 1e-9);
     emulator_.heard(map(), now_);
     advance(0.05);
     EXPECT_EQ(asked_.size(), 4u) << "twenty a second";

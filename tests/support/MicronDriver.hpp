@@ -1,5 +1,6 @@
 #pragma once
 // A driver of a Micron, by the bytes that open drivers send and by the checks that they make.
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <cstdio>
@@ -105,8 +106,8 @@ private:
         const size_t length = payload.size() + 8;
         char digits[9];
         std::snprintf(digits, sizeof digits, "%04zX", length);
-        Bytes packet = {'@'};
-        packet.insert(packet.end(), digits, digits + 4);
+        Bytes packet(5, '@');
+        std::copy(digits, digits + 4, packet.begin() + 1);
         for (const int byte : {static_cast<int>(length & 255), static_cast<int>(length >> 8), 255, 2,
                                static_cast<int>(payload.size() + 3) & 255, static_cast<int>(type), 0x80, 2})
             packet.push_back(static_cast<uint8_t>(byte));
@@ -117,7 +118,7 @@ private:
 
     /** The next packet of a type; others are passed over. */
     Bytes packetOf(uint8_t type) {
-        while (true) {
+        for (int others = 0; others < 100; ++others) {
             while (bytes_.size() < 14 || bytes_.size() < size()) {
                 const Bytes more = read_();
                 bytes_.insert(bytes_.end(), more.begin(), more.end());
@@ -127,6 +128,7 @@ private:
             checkSize(packet);
             if (packet[10] == type) return packet;
         }
+        throw std::runtime_error("nothing but other packets");
     }
     /** Of the packet at the beginning, which has to be one: nothing of ours is ever out of step. */
     size_t size() const {
