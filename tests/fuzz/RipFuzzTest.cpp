@@ -38,7 +38,7 @@ void expectSound(std::span<const uint8_t> bytes) {
             expectSound(*ranges, ranges->pixels.size());
             EXPECT_TRUE(std::isfinite(ranges->pixel_scale));
             const auto again = ripMessages(ripPacket(*ranges, RipVersion::Rip1));
-            if (!again.empty()) EXPECT_EQ(std::get<RangePixels>(again[0]).pixels, ranges->pixels);
+            EXPECT_TRUE(again.empty() || std::get<RangePixels>(again[0]).pixels == ranges->pixels);
         }
         if (const auto* strengths = std::get_if<StrengthPixels>(&message))
             expectSound(*strengths, strengths->pixels.size());

@@ -39,7 +39,7 @@ void read(const Input& input) {
             sonar.heard({}, now);
         }
     }
-    if (reader.refusal()) EXPECT_GE(reader.refusal()->status, 400);
+    EXPECT_TRUE(!reader.refusal() || reader.refusal()->status >= 400);
 }
 
 TEST(Sonar3dFuzzTest, EveryRequestIsAnsweredAndNoneSetsWhatTheDeviceCannotHave) {

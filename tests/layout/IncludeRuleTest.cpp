@@ -97,6 +97,7 @@ TEST(IncludeRuleTest, EveryThirdPartyPackageHasItsHomes) {
         {"tinyxml2.h", "scene"},  {"lz4frame.h", "log"},
         {"zstd.h", "log"},        {"dds/", "dds"},
         {"png.h", "output"},      {"boost/", "device"},
+        {"snappy.h", "device"},   {"nlohmann/", "device"},
     };
     const auto livesIn = [&](const std::string& prefix, const std::string& folder) {
         const auto [first, last] = homes.equal_range(prefix);
