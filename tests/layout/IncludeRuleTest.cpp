@@ -97,7 +97,8 @@ TEST(IncludeRuleTest, EveryThirdPartyPackageHasItsHomes) {
         {"tinyxml2.h", "scene"},  {"lz4frame.h", "log"},
         {"zstd.h", "log"},        {"dds/", "dds"},
         {"png.h", "output"},      {"boost/", "device"},
-        {"pybind11/", "python"},
+        {"pybind11/", "python"},  {"nlohmann/", "device"},
+        {"snappy.h", "device"},
     };
     const auto livesIn = [&](const std::string& prefix, const std::string& folder) {
         const auto [first, last] = homes.equal_range(prefix);
