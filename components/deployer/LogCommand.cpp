@@ -103,8 +103,9 @@ void noteSize(log::Reader& log, const std::string& stream, const fs::path& to) {
 }
 
 /** The files that were written. */
-std::vector<fs::path> exportTo(log::Reader& log, const std::string& stream, const fs::path& to) {
-    const std::string meta = text(meaningOf(log, log.streams()[log.indexOf(stream)]));
+std::vector<fs::path> exportTo(log::Reader& log, const std::string& name, const fs::path& to) {
+    const log::Stream& exported = log.streams()[log.indexOf(name)];
+    const std::string &stream = exported.name, meta = text(meaningOf(log, exported));
     if (!to.has_extension() || fs::is_directory(to)) {
         fs::create_directories(to);
         return log::exportNpz(log, stream, to / (stream + ".npz"), meta);
@@ -236,7 +237,7 @@ void addEnum(CLI::App& command, const char* name, const char* help, E& value) {
 
 void addMcapOptions(CLI::App& command, log::McapConfig& config) {
     addEnum(command, "--dtype", "of echoes in an MCAP file (default: float32)", config.dtype);
-    addEnum(command, "--world-frame", "of poses in an MCAP file (default: as_is)", config.world_frame);
+    addEnum(command, "--world-frame", "of poses in an MCAP file (default: enu)", config.world_frame);
 }
 
 /** A subcommand of `log` that does `work`. */

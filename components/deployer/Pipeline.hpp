@@ -13,6 +13,9 @@ namespace insonify::deployer {
 /** The deployment down to its sonars, in lockstep so that it takes no longer than it must. */
 framework::DeploymentSpec pipelineOf(framework::DeploymentSpec spec, framework::Registry& registry);
 
+/** The deployment with these tasks alone, in lockstep. */
+framework::DeploymentSpec restrictedTo(framework::DeploymentSpec spec, const std::set<std::string>& kept);
+
 /** Tasks of the deployment that write pings or read them. */
 std::set<std::string> pingTasks(const framework::DeploymentSpec& spec, framework::Registry& registry);
 

@@ -14,7 +14,8 @@ namespace insonify::pose {
  *
  *  Each cycle writes the pose at now(); the trajectory's times count from the start of the run. It has finished once
  *  the next pose would lie beyond the last stamp (a single waypoint: after one pose), and holds its end if it goes on
- *  running. A file that is not right refuses configure. */
+ *  running. With `loop` it goes on from the first stamp, as often as it comes to the last, and has never finished. A
+ * file that is not right refuses configure. */
 class TrajectoryTask final : public framework::TaskContext {
 public:
     using TaskContext::TaskContext;

@@ -1,5 +1,6 @@
 #pragma once
 #include <limits>
+#include <map>
 #include <memory>
 #include <optional>
 #include <span>
@@ -89,6 +90,8 @@ protected:
     virtual std::span<const Stage> renderStages(const SonarRenderer& renderer) const { return renderer.stages(); }
     /** Makes the ping of `scene`; whether it has any echo. */
     virtual bool renderPing(SonarRenderer& renderer, types::Snapshot& scene, types::Sonar& sample);
+    /** Of settings what differs from the configuration: names and YAML of properties, as a fan of beams has them. */
+    virtual std::map<std::string, std::string> changedBy(const types::SonarSettings& asked) const;
     /** Where a turning head is to look from the next ping on. */
     virtual void turnHead(types::Angle /*bearing*/) {}
     /** Last changes to a ping before it is written. */

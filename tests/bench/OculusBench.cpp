@@ -9,7 +9,7 @@
 #include <thread>
 
 #include "components/device/OculusTask.hpp"
-#include "components/device/Tasks.hpp"
+#include "components/device/DeviceTask.hpp"
 #include "components/framework/Deployment.hpp"
 #include "components/noise/NoiseTask.hpp"
 #include "components/pose/TrajectoryTask.hpp"

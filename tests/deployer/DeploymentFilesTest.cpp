@@ -1,5 +1,5 @@
-// Every file in deploy/ runs. Those of ROS 2 wait for others: see tests/dds/Ros2RunTest.cpp. So do those of devices,
-// for drivers: see tests/device.
+// Every file in deploy/ runs. Those of ROS 2 wait for others: see tests/dds/Ros2RunTest.cpp. Those of devices wait for
+// drivers: see tests/device and tests/deployer/PingDriverTest.cpp.
 #include <gmock/gmock.h>
 
 #include "tests/deployer/Command.hpp"

@@ -6,7 +6,7 @@
 #include <thread>
 
 #include "components/device/OculusTask.hpp"
-#include "components/device/Tasks.hpp"
+#include "components/device/DeviceTask.hpp"
 #include "components/framework/Deployment.hpp"
 #include "tests/support/OculusDriver.hpp"
 
