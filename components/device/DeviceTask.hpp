@@ -26,6 +26,8 @@ public:
     framework::OutputPort<types::SonarSettings> settings{this, "settings", "one ping as the driver asks for it"};
 
     bool reachesOutside() const override { return true; }
+    /** A first cycle, and one for what came before it ran. */
+    double wakeAfter() const override { return 0.1; }
     void check(types::Diagnostics& diagnostics) const override;
     /** Where clients find it, and what was not sent. */
     std::vector<std::string> notices() const override;
