@@ -47,13 +47,13 @@ receiver::ReceiverTask* codingReceiver(const Deployment& deployment) {
     return nullptr;
 }
 
+}  // namespace
+
 receiver::ReceiverTask& codingReceiverOf(const Deployment& deployment, const std::string& file) {
     if (auto* found = codingReceiver(deployment)) return *found;
     throw types::ConfigError(file, "tasks",
                              "has no receiver that gives out codes, as instruments do: give one output: code");
 }
-
-}  // namespace
 
 std::set<std::string> upstreamOf(std::set<std::string> names, const Deployment& deployment) {
     for (size_t before = 0; before != names.size();) {

@@ -22,11 +22,11 @@ bool isOfPort(const log::Stream& stream) {
     return type == stream.metadata.end() || type->second == "port";
 }
 
-/** Tasks of the deployment that have a stream in the log. */
+/** Tasks of the deployment that have a stream in the log, by whichever of their names. */
 std::set<std::string> loggedTasks(const log::Reader& log, const DeploymentSpec& spec) {
     std::set<std::string> names;
     for (const log::Stream& stream : log.streams())
-        if (const std::string task = splitPort(stream.name).first; isOfPort(stream) && spec.task(task))
+        if (const std::string task = writerOf(spec, stream.name); isOfPort(stream) && spec.task(task))
             names.insert(task);
     return names;
 }
@@ -75,6 +75,12 @@ TaskSpec replayTask(const std::string& name, const ReplayOptions& options) {
     return task;
 }
 
+/** The stream in which a log has a port, under its alias or its own name; empty: it has none. */
+std::string streamOf(const log::Reader& log, const DeploymentSpec& spec, const std::string& port) {
+    const std::string alias = spec.aliasOf(port);
+    return !alias.empty() && log.find(alias) ? alias : log.find(port) ? port : "";
+}
+
 /** Connections of logged ports lead from the replay; those that a replaced task would have read, or written without
  *  a stream in the log, are left out. */
 std::vector<ConnectionSpec> reconnected(const DeploymentSpec& spec, const log::Reader& log,
@@ -82,9 +88,10 @@ std::vector<ConnectionSpec> reconnected(const DeploymentSpec& spec, const log::R
     std::vector<ConnectionSpec> connections;
     for (const ConnectionSpec& written : spec.connections) {
         const bool from_log = replaced.contains(splitPort(written.from).first);
-        if (replaced.contains(splitPort(written.to).first) || (from_log && !log.find(written.from))) continue;
+        const std::string stream = from_log ? streamOf(log, spec, written.from) : "";
+        if (replaced.contains(splitPort(written.to).first) || (from_log && stream.empty())) continue;
         connections.push_back(written);
-        if (from_log) connections.back().from = replay + "." + written.from;
+        if (from_log) connections.back().from = replay + "." + stream;
     }
     return connections;
 }
@@ -136,8 +143,12 @@ std::string poseStreamOf(const log::Reader& log, const std::string& sonar) {
 std::vector<std::string> pingStreams(const log::Reader& log, const DeploymentSpec& spec) {
     std::vector<std::string> names;
     for (const log::Stream& stream : log.streams())
-        if (stream.holds<types::Sonar>() && spec.task(splitPort(stream.name).first)) names.push_back(stream.name);
+        if (stream.holds<types::Sonar>() && spec.task(writerOf(spec, stream.name))) names.push_back(stream.name);
     return names;
+}
+
+std::string writerOf(const DeploymentSpec& spec, const std::string& stream) {
+    return splitPort(spec.withoutAlias(stream)).first;
 }
 
 void addLogger(DeploymentSpec& spec, const std::vector<std::string>& ports, const std::string& file) {
@@ -149,7 +160,7 @@ void addLogger(DeploymentSpec& spec, const std::vector<std::string>& ports, cons
     spec.tasks.push_back(task);
     for (const std::string& port : ports) {
         ConnectionSpec connection;
-        connection.from = port;
+        connection.from = spec.withoutAlias(port);
         connection.to = task.name + "." + port;
         connection.policy = framework::ConnPolicy::buffer(256);
         spec.connections.push_back(connection);

@@ -3,7 +3,7 @@
 #ifdef INSONIFY_DDS
 #include "components/dds/PublisherTask.hpp"
 #endif
-#include "components/device/Tasks.hpp"
+#include "components/device/DeviceTask.hpp"
 #include "components/logger/LoggerTask.hpp"
 #include "components/noise/NoiseTask.hpp"
 #include "components/output/PictureTask.hpp"

@@ -8,6 +8,7 @@
 #include "components/device/Network.hpp"
 #include "components/framework/Event.hpp"
 #include "components/framework/Port.hpp"
+#include "components/framework/Registry.hpp"
 #include "components/framework/TaskContext.hpp"
 #include "types/SonarSettings.hpp"
 #include "types/Time.hpp"
@@ -55,5 +56,8 @@ private:
     framework::Event happened_{this};  ///< On the network; outlives it.
     std::unique_ptr<Network> network_;
 };
+
+/** Makes the tasks of this folder known to deployments. */
+void registerTasks(framework::Registry& registry);
 
 }  // namespace insonify::device

@@ -7,6 +7,7 @@
 #include "components/framework/Operation.hpp"
 #include "components/framework/RealtimeExecutor.hpp"
 #include "components/framework/Status.hpp"
+#include "components/framework/Waits.hpp"
 #include "components/framework/Wiring.hpp"
 
 namespace insonify::framework {
@@ -28,8 +29,9 @@ void reportOf(const TaskSpec& spec, const types::Diagnostic& diagnostic, ConfigR
 void stopTask(TaskContext& task, std::vector<std::string>& failures) {
     task.activity().hold();
     if (holdsSamples(task)) task.update();
+    const auto* const waiting = dynamic_cast<const Waits*>(&task);
     const bool in_error = task.state() == TaskState::RunTimeError;
-    if (in_error) failures.push_back(task.name() + ": " + task.lastError());
+    if (in_error && !(waiting && waiting->waits())) failures.push_back(task.name() + ": " + task.lastError());
     if (task.isRunning()) task.stop();
     if (hasFailed(task)) failures.push_back(task.name() + ": " + task.lastError());
 }

@@ -17,6 +17,9 @@ double spanOf(const log::Reader& log) {
     return (std::ranges::max(samples, {}, &log::SampleRef::time).time - samples.front().time).seconds();
 }
 
+/** Whether Rock's beams or scans are in a stream, which are pings as well. */
+bool isOlderPing(const log::Stream& stream) { return log::holdsPings(stream) && !stream.holds<types::Sonar>(); }
+
 /** @param shift by which its stamps are moved. */
 template <class Output>
 void publish(Output& output, log::Reader& log, const log::SampleRef& at, types::Time shift) {
@@ -28,7 +31,10 @@ void publish(Output& output, log::Reader& log, const log::SampleRef& at, types::
         output.port.write(sample);
     } else {
         const std::shared_ptr<T> sample = output.kept.pool.take();
-        log.read(at, *sample);
+        if constexpr (std::is_same_v<T, types::Sonar>)
+            isOlderPing(log.streams()[at.stream]) ? log::readPing(log, at, *sample) : log.read(at, *sample);
+        else
+            log.read(at, *sample);
         moveStamps(*sample, shift);
         output.port.write(sample);
     }
@@ -40,14 +46,22 @@ void ReplayTask::open() {
     if (log_) return;
     log_ = log::openLog(inputPath(config->file));
     by_stream_.resize(log_->streams().size());
+    span_s_ = spanOf(*log_);
+}
+
+std::optional<types::Playback> ReplayTask::playback() const {
+    if (span_s_ < 0) return std::nullopt;
+    return types::Playback{std::clamp(types::Time{at_us_}.seconds(), 0.0, span_s_.load()), span_s_};
 }
 
 framework::OutputPortBase* ReplayTask::makeOutput(const std::string& stream) {
     open();
     const size_t index = log_->indexOf(stream);
     const log::Stream& recorded = log_->streams()[index];
-    by_stream_[index] = outputs_.makeFirst(stream, "stream " + stream + " of the log",
-                                           [&]<class T>(std::type_identity<T>) { return recorded.holds<T>(); });
+    by_stream_[index] =
+        outputs_.makeFirst(stream, "stream " + stream + " of the log", [&]<class T>(std::type_identity<T>) {
+            return isOlderPing(recorded) ? std::is_same_v<T, types::Sonar> : recorded.holds<T>();
+        });
     rewind();
     return output(stream);
 }
@@ -115,6 +129,7 @@ void ReplayTask::settle() {
 void ReplayTask::rewind() {
     next_ = indexAt(config->from);
     next_time_ = shift_ = pause_ = {};
+    at_us_ = types::Time::fromSeconds(config->from).microseconds;
     pace_ = config->pace;
     played_us_ = 0;
     settle();
@@ -123,7 +138,7 @@ void ReplayTask::rewind() {
 
 void ReplayTask::seekTo(double seconds) {
     open();
-    const double span = spanOf(*log_);
+    const double span = span_s_;
     if (!(seconds >= 0 && seconds <= span + 0.5e-6))  // stamps are whole microseconds
         throw std::runtime_error(fmt::format("{:g} s is outside of the log, which is {:g} s long", seconds, span));
     jump(seconds);
@@ -140,6 +155,7 @@ void ReplayTask::jump(double seconds) {
         pause_ = next_time_ - after;
     }
     shift_ = next_time_ - log_->samples()[next_].time;
+    at_us_ = (log_->samples()[next_].time - log_->samples().front().time).microseconds;
 }
 
 std::function<types::Time()> ReplayTask::clock(std::function<types::Time()> wall) {
@@ -154,6 +170,16 @@ types::Time ReplayTask::logTime() const {
     const types::Time wall = paused_us_ != 0 ? types::Time{paused_us_} : wall_();
     const double seconds = started_us_ == 0 ? 0 : (wall - types::Time{started_us_}).seconds();
     return types::Time{first_us_} + types::Time::fromSeconds(pace * seconds);
+}
+
+std::string ReplayTask::streamOf(const std::string& port) const {
+    const log::Stream* const recorded = log_ ? log_->find(port) : nullptr;
+    return recorded ? recorded->name : port;
+}
+
+std::string ReplayTask::modelOf(const std::string& port) const {
+    const log::Stream* const recorded = log_ ? log_->find(port) : nullptr;
+    return recorded ? recorded->metadatum("rock_task_model") : "";
 }
 
 bool ReplayTask::configureHook() {
@@ -218,6 +244,7 @@ void ReplayTask::play(types::Time until) {
     while (!finished_ && next_time_ <= until) {
         noteInstant();
         const log::SampleRef& at = log_->samples()[next_];
+        at_us_ = (at.time - log_->samples().front().time).microseconds;
         std::visit([&](auto& output) { publish(output, *log_, at, shift_); }, *by_stream_[at.stream]);
         ++next_;
         settle();

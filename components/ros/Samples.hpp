@@ -43,7 +43,7 @@ struct MessagesOf<types::SonarElements> : Messages<types::SonarElements, SonarEl
 template <>
 struct MessagesOf<types::SonarSettings> : Messages<types::SonarSettings, SonarSettings, Clock> {};
 template <>
-struct MessagesOf<types::Pose> : Messages<types::Pose, Odometry, PoseStamped, Clock> {};
+struct MessagesOf<types::Pose> : Messages<types::Pose, Odometry, PoseStamped, TFMessage, Clock> {};
 template <>
 struct MessagesOf<types::Image> : Messages<types::Image, Image, Clock> {};
 template <>

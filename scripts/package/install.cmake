@@ -13,6 +13,8 @@ install(FILES ${PROJECT_BINARY_DIR}/InsonifyConfig.cmake ${PROJECT_BINARY_DIR}/I
 install(FILES shaders/interface.glsl DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/insonify/shaders COMPONENT development)
 install(DIRECTORY deploy DESTINATION ${CMAKE_INSTALL_DATADIR}/insonify COMPONENT runtime PATTERN pictures EXCLUDE)
 install(FILES README.md CHANGELOG.md DESTINATION ${documents} COMPONENT runtime)
+# Where systemd looks, below /usr as below /usr/local, whatever the libraries' folder is called.
+install(FILES deploy/insonify.service DESTINATION lib/systemd/system COMPONENT runtime)
 file(GLOB pages RELATIVE ${PROJECT_SOURCE_DIR} CONFIGURE_DEPENDS components/*.md components/*/*.md types/*.md)
 foreach(page ${pages})
   get_filename_component(folder ${page} DIRECTORY)
