@@ -78,7 +78,6 @@ void MicronEmulator::reboot(types::Time now) {
 }
 
 void MicronEmulator::configure(Client client, const SeaNetMessage& message, types::Time now) {
-    if (state_ == State::Booting) return;
     const auto command = SeaNetHeadCommand::in(message);
     const char* why = command ? refusal(*command) : "is too short";
     if (why) outlet_.warn(fmt::format("a head command was not taken: it {}", why));
@@ -87,7 +86,7 @@ void MicronEmulator::configure(Client client, const SeaNetMessage& message, type
         state_ = State::Ready;
         backwards_ = false;
         line_.reset();
-        arrived_ = now;
+        arrived_ = std::max(now, begun_ + seconds(device_.boot_time));
         if (!isWithinSector()) turnTo(command_.left);
     }
     outlet_.send(client, alive(now).message().packet());

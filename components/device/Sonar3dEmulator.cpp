@@ -245,6 +245,11 @@ struct Sonar3dEmulator::Api {
     std::map<std::string, Path> paths;
 };
 
+void Sonar3dDevice::check(types::Diagnostics& diagnostics) const {
+    if (!isAddress(multicast_address))
+        diagnostics.push_back({"multicast_address", "is \"" + multicast_address + "\"; must be like 224.0.0.96"});
+}
+
 HttpReply Sonar3dEmulator::answer(const HttpRequest& request, types::Time now) {
     try {
         return Api(*this, now).reply(request);

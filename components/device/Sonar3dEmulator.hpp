@@ -37,6 +37,7 @@ struct Sonar3dDevice {
         visit(Field{"compressed", "", "whether images are RIP2, as of release 1.6; else RIP1, as before"},
               self.compressed);
     }
+    void check(types::Diagnostics& diagnostics) const;
 };
 
 /** What clients have set over the API; as the device has it when it is switched on. */

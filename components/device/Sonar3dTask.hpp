@@ -23,6 +23,7 @@ struct Sonar3dDeviceConfig {
               self.port);
         Sonar3dDevice::describe(self.device, visit);
     }
+    void check(types::Diagnostics& diagnostics) const { device.check(diagnostics); }
 };
 
 /** Stands in for a Water Linked Sonar 3D-15: its HTTP API, and range images by UDP. See Sonar3dEmulator for what it

@@ -84,6 +84,7 @@ public:
 protected:
     /** Last changes to a snapshot with a valid pose before it is rendered; a reason refuses it. */
     virtual const char* steer(types::Snapshot& /*scene*/) { return nullptr; }
+    double binWidth() const { return grid_.bin_width; }  ///< Exact, where `bin_duration` of a ping is rounded [m].
     /** Whether a ping is one rendering. Of several the truth is not told, nor what each of them left out. */
     virtual bool rendersOnce() const { return true; }
     /** Where the time of the last ping went. */

@@ -133,7 +133,7 @@ void Sonar3dTask::addTo(types::Sonar& sample, int column) const {
 }
 
 void Sonar3dTask::detect(int column) {
-    const Detector detector(config->detection, fan_);
+    const Detector detector(config->detection, fan_, binWidth());
     const size_t from_left = map_.horizontal_size - 1 - static_cast<size_t>(column);
     for (uint32_t beam = 0; beam < fan_.beam_count; ++beam)
         if (const auto found = detector.strongest(beam)) {

@@ -270,6 +270,17 @@ TEST_F(MicronEmulatorTest, OneThatRebootsInMidPingStartsAgain) {
     EXPECT_NEAR(driver_.beam().bearing, 0, 1e-3) << "ahead again";
 }
 
+/** A driver that takes an old mtAlive for the answer to its mtReBoot goes on at once. */
+TEST_F(MicronEmulatorTest, ACommandWhileItBootsIsTakenAndItsLineWaits) {
+    emulator_.received(client, seaNetRequest(SeaNetType::Reboot).packet(), now_);
+    driver_.configure({});
+    driver_.request();
+    advance(0.4);
+    EXPECT_TRUE(asked_.empty());
+    advance(0.1);
+    EXPECT_EQ(asked_.size(), 1u);
+}
+
 TEST_F(MicronEmulatorTest, APingThatNeverComesIsToldOnceAndLeavesTheHeadUsable) {
     driver_.configure({});
     answers_ = false;
