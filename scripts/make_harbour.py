@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
-"""Makes deploy/scenes/harbour.glb and harbour_pass.csv: a quay, a wreck and a fractal sea floor. Needs numpy.
+"""Makes deploy/scenes/harbour.glb, harbour_pass.csv and harbour_round.csv: a quay, a wreck and a fractal sea floor.
 
 The water surface is z = 0, the floor about z = -9; the quay runs north along y = 9 (west) and the vehicle passes it at
-y = 0. Same script, same bytes. With a survey's .npz (array `elev`, 2 m spacing) as argument the spectral slope of that
+y = 0. Same script, same bytes; needs numpy. With a survey's .npz (array `elev`, 2 m spacing) as argument the spectral slope of that
 tile is printed beside the floor's.
 
 The spectral slope is that of the radial power spectrum: power per unit area of the wave-number plane, averaged over
@@ -268,6 +268,26 @@ def write_pass(path, duration=18.0, step=0.2):
     path.write_text("\n".join(lines) + "\n")
 
 
+def write_round(path, length=24.0, radius=6.0, step=0.2):
+    """North along the quay, round to starboard, back south over the open floor and round again, at 1 m/s and swaying: it
+    ends where it begins, so that it can be gone round for ever."""
+    turn, lines = np.pi * radius, ["time,x,y,z,qw,qx,qy,qz"]
+    duration = round((2 * (length + turn)) / step) * step
+    for t in np.linspace(0, duration, round(duration / step) + 1):
+        w = 2 * np.pi * t / duration
+        along = min(t, duration) / duration * 2 * (length + turn)
+        back, along = divmod(along, length + turn) if t < duration else (2, 0.0)
+        bend = max(0.0, along - length) / radius  # 0 to pi
+        x, y = min(along, length) + radius * np.sin(bend), -radius * (1 - np.cos(bend))
+        if back == 1:
+            x, y = length - x, -2 * radius - y
+        yaw = -np.degrees(bend) - 180 * back
+        turned = rotation(roll=1.5 * np.sin(18 * w), pitch=1.0 * np.sin(14 * w), yaw=yaw + 3 * np.sin(6 * w))
+        position = (x, y + 0.25 * np.sin(7 * w), -5.5 + 0.1 * np.sin(13 * w))
+        lines.append(",".join(f"{v:.6f}" for v in (t, *position, *quaternion(turned))))
+    path.write_text("\n".join(lines) + "\n")
+
+
 def main():
     rng = np.random.default_rng(2017)
     surface = fractal_surface(rng)
@@ -278,6 +298,7 @@ def main():
     SCENES.mkdir(parents=True, exist_ok=True)
     make_scene(rng, Floor(surface)).write(SCENES / "harbour.glb")
     write_pass(SCENES / "harbour_pass.csv")
+    write_round(SCENES / "harbour_round.csv")
     print(f"harbour.glb: {(SCENES / 'harbour.glb').stat().st_size / 1e6:.2f} MB")
 
 

@@ -16,6 +16,12 @@ struct PortStatus {
     uint64_t written = 0;  ///< Samples [1].
 };
 
+/** How far a task has come in what it plays. */
+struct Playback {
+    double at_s = 0;      ///< After the start of it [s].
+    double length_s = 0;  ///< [s]
+};
+
 struct TaskStatus {
     TaskRecord record;         ///< Name, type, values of properties.
     std::string state, error;  ///< Text of the last error; empty: there was none.
@@ -23,6 +29,7 @@ struct TaskStatus {
     double latency_s = 0;      ///< From the stamp of the last sample written to its being written, realtime only [s].
     std::optional<Plan> plan;  ///< As the task told it last.
     std::vector<PortStatus> outputs;
+    std::optional<Playback> playback = std::nullopt;  ///< Of a task that plays a log.
 };
 
 struct ConnectionStatus {

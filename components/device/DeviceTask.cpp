@@ -3,6 +3,11 @@
 #include <algorithm>
 #include <chrono>
 
+#include "components/device/MicronTask.hpp"
+#include "components/device/OculusTask.hpp"
+#include "components/device/Ping1dTask.hpp"
+#include "components/device/Ping360Task.hpp"
+#include "components/device/Sonar3dTask.hpp"
 #include "types/ConfigError.hpp"
 
 namespace insonify::device {
@@ -44,6 +49,15 @@ void DeviceTask::updateHook() {
         network_->wakeAt(std::chrono::steady_clock::now() +
                          std::chrono::microseconds(static_cast<int64_t>(1e6 * wait)));
     }
+}
+
+void registerTasks(framework::Registry& registry) {
+    registry.add<OculusTask>("device::OculusTask", "stands in for a Blueprint Subsea Oculus, a forward-looking sonar");
+    registry.add<Ping360Task>("device::Ping360Task", "stands in for a Blue Robotics Ping360, a scanning sonar");
+    registry.add<Ping1dTask>("device::Ping1dTask", "stands in for a Blue Robotics Ping1D, an echo sounder");
+    registry.add<MicronTask>("device::MicronTask",
+                             "stands in for a Tritech Micron, by SeaNet over TCP or a serial line");
+    registry.add<Sonar3dTask>("device::Sonar3dTask", "stands in for a Water Linked Sonar 3D-15, by HTTP and UDP");
 }
 
 }  // namespace insonify::device

@@ -8,6 +8,7 @@
 #include "components/device/Network.hpp"
 #include "components/framework/Event.hpp"
 #include "components/framework/Port.hpp"
+#include "components/framework/Registry.hpp"
 #include "components/framework/TaskContext.hpp"
 #include "types/SonarSettings.hpp"
 #include "types/Time.hpp"
@@ -26,6 +27,8 @@ public:
     framework::OutputPort<types::SonarSettings> settings{this, "settings", "one ping as the driver asks for it"};
 
     bool reachesOutside() const override { return true; }
+    /** A first cycle, and one for what came before it ran. */
+    double wakeAfter() const override { return 0.1; }
     void check(types::Diagnostics& diagnostics) const override;
     /** Where clients find it, and what was not sent. */
     std::vector<std::string> notices() const override;
@@ -53,5 +56,8 @@ private:
     framework::Event happened_{this};  ///< On the network; outlives it.
     std::unique_ptr<Network> network_;
 };
+
+/** Makes the tasks of this folder known to deployments. */
+void registerTasks(framework::Registry& registry);
 
 }  // namespace insonify::device

@@ -128,6 +128,23 @@ RunResult Deployment::run(const RunLimits& limits, const std::atomic<bool>& stop
     return result;
 }
 
+std::vector<std::string> Deployment::start() {
+    std::vector<std::string> failures;
+    executor_->begin();
+    if (startAll(failures)) return {};
+    noteFailed(failures);
+    std::vector<std::string> more = stop();
+    failures.insert(failures.end(), more.begin(), more.end());
+    return failures;
+}
+
+std::vector<std::string> Deployment::stop() {
+    std::vector<std::string> failures;
+    stopAll(failures);
+    executor_->end();
+    return failures;
+}
+
 bool Deployment::startAll(std::vector<std::string>& failures) {
     for (auto task = order().rbegin(); task != order().rend(); ++task) {
         const Outcome outcome = (*task)->start();

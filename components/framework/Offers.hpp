@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "components/framework/TaskContext.hpp"
+#include "types/DeploymentStatus.hpp"
 #include "types/Plan.hpp"
 #include "types/Time.hpp"
 
@@ -24,6 +25,15 @@ public:
     /** In realtime, the clock that all tasks read in place of the wall's, which it may follow at a pace of its own;
      *  none: this task has none. Asked for once, when the connections are made. */
     virtual std::function<types::Time()> clock(std::function<types::Time()> /*wall*/) { return {}; }
+};
+
+/** A task that plays what was recorded. */
+class Player {
+public:
+    virtual ~Player() = default;
+
+    /** None: nothing is opened yet. Any thread. */
+    virtual std::optional<types::Playback> playback() const = 0;
 };
 
 /** A task that decides what of its work is done and what is left out. */

@@ -1,5 +1,6 @@
 #include "components/framework/Status.hpp"
 
+#include "components/framework/Offers.hpp"
 #include "components/framework/Operation.hpp"
 #include "components/framework/Properties.hpp"
 
@@ -14,6 +15,7 @@ types::TaskStatus statusOf(const TaskContext& task, const std::string& type) {
                              task.recordedPlan(),
                              {}};
     status.record.type = type;
+    if (const auto* const player = dynamic_cast<const Player*>(&task)) status.playback = player->playback();
     for (const OutputPortBase* port : task.outputs())
         status.outputs.push_back({port->name(), port->typeName(), port->written()});
     return status;

@@ -1,6 +1,7 @@
 #include "components/pose/Trajectory.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <glm/geometric.hpp>
 #include <stdexcept>
 
@@ -69,6 +70,11 @@ types::Pose Trajectory::at(double time) const {
     pose.velocity = (to.position - from.position) / seconds;
     pose.angular_velocity = angularVelocity(from.orientation, to.orientation, seconds);
     return pose;
+}
+
+double Trajectory::inLoop(double time) const {
+    const double first = stamps_.front().time, length = stamps_.back().time - first;
+    return length > 0 && time > first ? first + std::fmod(time - first, length) : time;
 }
 
 }  // namespace insonify::pose

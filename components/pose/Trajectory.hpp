@@ -37,12 +37,15 @@ struct Waypoint {
 struct TrajectoryConfig {
     std::optional<std::string> file;
     std::vector<Waypoint> waypoints;
+    bool loop = false;
 
     template <class Self, class V>
     static void describe(Self& self, V& visit) {
         using types::Field;
         visit(Field{"file", "", "CSV with header time,x,y,z,qw,qx,qy,qz in [s], [m], [1]"}, self.file);
         visit(Field{"waypoints", "", "instead of a file; a single one is a fixed pose"}, self.waypoints);
+        visit(Field{"loop", "", "at its last stamp it goes on from the first, for ever; else it ends there"},
+              self.loop);
     }
     /** Exactly one source; the waypoints' times increase. */
     void check(types::Diagnostics& diagnostics) const;
@@ -70,6 +73,9 @@ public:
     /** Body "body" in frame "world" at `time` [s] since the start of the run, with velocity [m/s] in the world and
      *  angular velocity [rad/s] in the body, both zero where the trajectory holds still. Pose::time is left null. */
     types::Pose at(double time) const;
+    /** The time of the trajectory that a time of the run is, when it goes on from the first stamp wherever it has come
+     *  to the last [s]: the same before the first stamp, else from the first up to the last. */
+    double inLoop(double time) const;
 
     const std::vector<Stamp>& stamps() const { return stamps_; }
 

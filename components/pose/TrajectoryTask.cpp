@@ -14,11 +14,12 @@ void TrajectoryTask::check(types::Diagnostics& diagnostics) const {
     }
 }
 
+Trajectory TrajectoryTask::trajectory() const {
+    return config->file ? Trajectory::fromCsv(inputPath(*config->file)) : Trajectory(config->waypoints);
+}
+
 bool TrajectoryTask::configureHook() {
-    if (config->file)
-        trajectory_ = Trajectory::fromCsv(inputPath(*config->file));
-    else
-        trajectory_.emplace(config->waypoints);
+    trajectory_ = trajectory();
     return true;
 }
 
@@ -30,10 +31,11 @@ bool TrajectoryTask::startHook() {
 void TrajectoryTask::updateHook() {
     const types::Time time = now();
     const types::Time elapsed = time - environment().start_time();
-    types::Pose sample = trajectory_->at(elapsed.seconds());
+    const double seconds = elapsed.seconds();
+    types::Pose sample = trajectory_->at(config->loop ? trajectory_->inLoop(seconds) : seconds);
     sample.time = time;
     pose.write(sample);
-    finished_ = finished_ || isLast(elapsed);
+    finished_ = !config->loop && (finished_ || isLast(elapsed));
 }
 
 bool TrajectoryTask::isLast(types::Time elapsed) {

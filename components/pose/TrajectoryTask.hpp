@@ -14,7 +14,8 @@ namespace insonify::pose {
  *
  *  Each cycle writes the pose at now(); the trajectory's times count from the start of the run. It has finished once
  *  the next pose would lie beyond the last stamp (a single waypoint: after one pose), and holds its end if it goes on
- *  running. A file that is not right refuses configure. */
+ *  running. With `loop` it goes on from the first stamp, as often as it comes to the last, and has never finished. A
+ * file that is not right refuses configure. */
 class TrajectoryTask final : public framework::TaskContext {
 public:
     using TaskContext::TaskContext;
@@ -24,6 +25,8 @@ public:
 
     void check(types::Diagnostics& diagnostics) const override;
     bool finished() const override { return finished_; }
+    /** The path of its properties, configured or not. Throws types::ConfigError as Trajectory::fromCsv. */
+    Trajectory trajectory() const;
     /** Time of the last stamp; 0 before it is configured [s]. */
     double duration() const { return trajectory_ ? trajectory_->stamps().back().time : 0; }
 

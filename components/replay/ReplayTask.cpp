@@ -46,6 +46,12 @@ void ReplayTask::open() {
     if (log_) return;
     log_ = log::openLog(inputPath(config->file));
     by_stream_.resize(log_->streams().size());
+    span_s_ = spanOf(*log_);
+}
+
+std::optional<types::Playback> ReplayTask::playback() const {
+    if (span_s_ < 0) return std::nullopt;
+    return types::Playback{std::clamp(types::Time{at_us_}.seconds(), 0.0, span_s_.load()), span_s_};
 }
 
 framework::OutputPortBase* ReplayTask::makeOutput(const std::string& stream) {
@@ -123,6 +129,7 @@ void ReplayTask::settle() {
 void ReplayTask::rewind() {
     next_ = indexAt(config->from);
     next_time_ = shift_ = pause_ = {};
+    at_us_ = types::Time::fromSeconds(config->from).microseconds;
     pace_ = config->pace;
     played_us_ = 0;
     settle();
@@ -131,7 +138,7 @@ void ReplayTask::rewind() {
 
 void ReplayTask::seekTo(double seconds) {
     open();
-    const double span = spanOf(*log_);
+    const double span = span_s_;
     if (!(seconds >= 0 && seconds <= span + 0.5e-6))  // stamps are whole microseconds
         throw std::runtime_error(fmt::format("{:g} s is outside of the log, which is {:g} s long", seconds, span));
     jump(seconds);
@@ -148,6 +155,7 @@ void ReplayTask::jump(double seconds) {
         pause_ = next_time_ - after;
     }
     shift_ = next_time_ - log_->samples()[next_].time;
+    at_us_ = (log_->samples()[next_].time - log_->samples().front().time).microseconds;
 }
 
 std::function<types::Time()> ReplayTask::clock(std::function<types::Time()> wall) {
@@ -236,6 +244,7 @@ void ReplayTask::play(types::Time until) {
     while (!finished_ && next_time_ <= until) {
         noteInstant();
         const log::SampleRef& at = log_->samples()[next_];
+        at_us_ = (at.time - log_->samples().front().time).microseconds;
         std::visit([&](auto& output) { publish(output, *log_, at, shift_); }, *by_stream_[at.stream]);
         ++next_;
         settle();

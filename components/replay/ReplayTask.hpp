@@ -36,7 +36,10 @@ namespace insonify::replay {
  *
  *  A log that was cut off plays up to its last whole block, with a notice; streams that nothing is connected to, or
  *  whose type is not known, are listed in notices. A sample that cannot be decoded ends in Exception. */
-class ReplayTask final : public framework::TaskContext, public framework::ClockSource, public framework::StandIn {
+class ReplayTask final : public framework::TaskContext,
+                         public framework::ClockSource,
+                         public framework::StandIn,
+                         public framework::Player {
 public:
     using TaskContext::TaskContext;
 
@@ -61,6 +64,8 @@ public:
     std::function<types::Time()> clock(std::function<types::Time()> wall) override;
     std::string streamOf(const std::string& port) const override;
     std::string modelOf(const std::string& port) const override;
+    /** Where the sample that was played last lies in the log, by its recorded stamp. */
+    std::optional<types::Playback> playback() const override;
 
 private:
     /** Where samples of a stream are read into. */
@@ -108,6 +113,8 @@ private:
     int64_t paused_us_ = 0;                    ///< Since when the log's time stands still; 0: it does not.
     std::atomic<int64_t> first_us_{0};         ///< The instant at which playing starts, on the log's clock.
     std::atomic<int64_t> played_us_{0};        ///< The instant that is played; 0: none yet.
+    std::atomic<int64_t> at_us_{0};            ///< The sample that was played last, after the log's first.
+    std::atomic<double> span_s_{-1};           ///< Of the log; negative: it is not open.
     std::atomic<bool> finished_{false};
 };
 

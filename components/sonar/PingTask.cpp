@@ -28,25 +28,6 @@ SonarConfig begun(SonarConfig config) {
     return config;
 }
 
-/** Of settings what differs from a configuration: names and YAML of properties. */
-std::map<std::string, std::string> changedProperties(const SonarConfig& config, const types::SonarSettings& asked) {
-    std::map<std::string, std::string> changed;
-    const auto compare = [&](const char* name, double wanted, std::optional<double> now) {
-        if (std::isfinite(wanted) && wanted != now) changed[name] = fmt::format("{}", wanted);
-    };
-    const auto compareCount = [&](const char* name, uint32_t wanted, uint32_t now) {
-        if (wanted != 0 && wanted != now) changed[name] = fmt::format("{}", wanted);
-    };
-    compare("range", asked.range, config.range);
-    compare("frequency_khz", asked.frequency_khz, config.frequency_khz);
-    compare("speed_of_sound", asked.speed_of_sound, config.speed_of_sound);
-    compare("field_of_view_deg", asked.field_of_view.deg(), config.field_of_view_deg);
-    compare("beam_height_deg", asked.beam_height.deg(), config.beam_height_deg);
-    compareCount("bin_count", asked.bin_count, static_cast<uint32_t>(config.bin_count));
-    compareCount("beam_count", asked.beam_count, static_cast<uint32_t>(config.beam_count));
-    return changed;
-}
-
 }  // namespace
 
 const char* normalisePose(types::Pose& pose) {
@@ -128,8 +109,27 @@ bool PingTask::takeGiven() {
     return true;
 }
 
+std::map<std::string, std::string> PingTask::changedBy(const types::SonarSettings& asked) const {
+    const SonarConfig config = sonarConfig();
+    std::map<std::string, std::string> changed;
+    const auto compare = [&](const char* name, double wanted, std::optional<double> now) {
+        if (std::isfinite(wanted) && wanted != now) changed[name] = fmt::format("{}", wanted);
+    };
+    const auto compareCount = [&](const char* name, uint32_t wanted, uint32_t now) {
+        if (wanted != 0 && wanted != now) changed[name] = fmt::format("{}", wanted);
+    };
+    compare("range", asked.range, config.range);
+    compare("frequency_khz", asked.frequency_khz, config.frequency_khz);
+    compare("speed_of_sound", asked.speed_of_sound, config.speed_of_sound);
+    compare("field_of_view_deg", asked.field_of_view.deg(), config.field_of_view_deg);
+    compare("beam_height_deg", asked.beam_height.deg(), config.beam_height_deg);
+    compareCount("bin_count", asked.bin_count, static_cast<uint32_t>(config.bin_count));
+    compareCount("beam_count", asked.beam_count, static_cast<uint32_t>(config.beam_count));
+    return changed;
+}
+
 void PingTask::applySettings(const types::SonarSettings& asked) {
-    const auto changed = changedProperties(sonarConfig(), asked);
+    const auto changed = changedBy(asked);
     if (!changed.empty()) properties().front()->set(changed);
     if (!asked.bearing.isUnknown()) turnHead(asked.bearing);
 }

@@ -1,5 +1,6 @@
 #pragma once
 #include <limits>
+#include <map>
 #include <memory>
 #include <optional>
 #include <span>
@@ -83,12 +84,15 @@ public:
 protected:
     /** Last changes to a snapshot with a valid pose before it is rendered; a reason refuses it. */
     virtual const char* steer(types::Snapshot& /*scene*/) { return nullptr; }
+    double binWidth() const { return grid_.bin_width; }  ///< Exact, where `bin_duration` of a ping is rounded [m].
     /** Whether a ping is one rendering. Of several the truth is not told, nor what each of them left out. */
     virtual bool rendersOnce() const { return true; }
     /** Where the time of the last ping went. */
     virtual std::span<const Stage> renderStages(const SonarRenderer& renderer) const { return renderer.stages(); }
     /** Makes the ping of `scene`; whether it has any echo. */
     virtual bool renderPing(SonarRenderer& renderer, types::Snapshot& scene, types::Sonar& sample);
+    /** Of settings what differs from the configuration: names and YAML of properties, as a fan of beams has them. */
+    virtual std::map<std::string, std::string> changedBy(const types::SonarSettings& asked) const;
     /** Where a turning head is to look from the next ping on. */
     virtual void turnHead(types::Angle /*bearing*/) {}
     /** Last changes to a ping before it is written. */

@@ -30,11 +30,13 @@ bool same(const std::string& a, const std::string& b) {
     return difference == 0;
 }
 
-/** Of a web page, but Foxglove's. Pages that hide theirs say "null"; programs made of pages have schemes of their own.
- */
-bool isForeignSite(std::string_view origin) {
-    if (origin == "https://app.foxglove.dev" || origin == "https://studio.foxglove.dev") return false;
+/** Of a web page. Pages that hide theirs say "null"; programs made of pages have schemes of their own. */
+bool isSite(std::string_view origin) {
     return origin == "null" || origin.starts_with("http://") || origin.starts_with("https://");
+}
+
+bool isFoxglove(std::string_view origin) {
+    return origin == "https://app.foxglove.dev" || origin == "https://studio.foxglove.dev";
 }
 
 }  // namespace
@@ -72,9 +74,14 @@ std::optional<AccessPolicy::Refusal> AccessPolicy::decide(const Request& request
     if (!isOwnName(request.host))
         return Refusal{403, "the host must be localhost or a numeric address, unless a token is set"};
     const bool is_own = request.origin.empty() || request.origin == "http://" + request.host;
-    if ((use == Use::Control && !is_own) || (use == Use::Read && !is_own && isForeignSite(request.origin)))
+    if ((use == Use::Control && !is_own) ||
+        (use == Use::Read && !is_own && isSite(request.origin) && !isFoxglove(request.origin)))
         return Refusal{403, "pages of other origins may not connect, unless a token is set"};
     return std::nullopt;
+}
+
+bool AccessPolicy::maySet(const Request& request) const {
+    return !token.empty() || !isSite(request.origin) || request.origin == "http://" + request.host;
 }
 
 }  // namespace insonify::viewer

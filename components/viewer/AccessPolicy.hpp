@@ -26,6 +26,9 @@ struct AccessPolicy {
         Control  ///< A socket that may change things: without a token from no page but ours.
     };
     std::optional<Refusal> decide(const Request& request, Use use) const;
+    /** Whether a Foxglove client that may read may set parameters: without a token programs and our own pages may,
+     * other sites none. */
+    bool maySet(const Request& request) const;
 };
 
 /** The value of `token` in a target's query, with its escapes undone; empty when there is none. */

@@ -2,6 +2,7 @@
 
 #include <cstring>
 #include <nlohmann/json.hpp>
+#include <stdexcept>
 
 #include "components/viewer/ReadJson.hpp"
 
@@ -21,10 +22,11 @@ Json listIn(const Json& said, const char* key) {
 
 }  // namespace
 
-std::string serverInfo() {
+std::string serverInfo(const std::string& session) {
     return Json{{"op", "serverInfo"},
                 {"name", "Insonify"},
-                {"capabilities", Json::array()},
+                {"sessionId", session},
+                {"capabilities", {"time", "parameters", "parametersSubscribe"}},
                 {"supportedEncodings", {"cdr"}},
                 {"metadata", Json::object()}}
         .dump();
@@ -53,6 +55,86 @@ std::string messageHead(uint32_t subscription, uint64_t nanoseconds) {
     std::memcpy(head.data() + 5, &nanoseconds, sizeof nanoseconds);
     return head;
 }
+
+std::string timeMessage(uint64_t nanoseconds) {
+    std::string message(9, '\2');
+    std::memcpy(message.data() + 1, &nanoseconds, sizeof nanoseconds);
+    return message;
+}
+
+// -- parameters -------------------------------------------------------------------------------------------------------
+
+namespace {
+
+ParameterRequest::Kind kindOf(const Json& said) {
+    using enum ParameterRequest::Kind;
+    const Json op = said.is_object() ? said.value("op", Json()) : Json();
+    return op == "getParameters"                 ? Get
+           : op == "setParameters"               ? Set
+           : op == "subscribeParameterUpdates"   ? Subscribe
+           : op == "unsubscribeParameterUpdates" ? Unsubscribe
+                                                 : Other;
+}
+
+/** A value as a property takes it: texts as they are. */
+std::string yamlOf(const Json& one) {
+    const Json value = one.value("value", Json());
+    return value.is_string() ? value.get<std::string>() : value.dump();
+}
+
+std::pair<std::string, std::string> settingOf(const Json& one) {
+    if (!one.is_object() || !one.value("name", Json()).is_string())
+        throw std::invalid_argument("sets a parameter without a name");
+    if (one.value("type", Json()) == "byte_array")
+        throw std::invalid_argument("sets " + one["name"].dump() + " to bytes, which no property holds");
+    return {one["name"].get<std::string>(), yamlOf(one)};
+}
+
+}  // namespace
+
+ParameterRequest readParameterRequest(std::string_view text) {
+    const Json said = readJson(text);
+    ParameterRequest request;
+    request.kind = kindOf(said);
+    if (request.kind == ParameterRequest::Kind::Other) return request;
+    if (const Json id = said.value("id", Json()); id.is_string()) request.id = id.get<std::string>();
+    if (request.kind == ParameterRequest::Kind::Set) {
+        for (const Json& one : listIn(said, "parameters")) request.values.push_back(settingOf(one));
+        return request;
+    }
+    for (const Json& name : listIn(said, "parameterNames")) {
+        if (!name.is_string()) throw std::invalid_argument("names a parameter by what is no text");
+        request.names.push_back(name.get<std::string>());
+    }
+    return request;
+}
+
+std::string parameterValues(const Parameters& parameters, const std::optional<std::string>& id) {
+    Json list = Json::array();
+    for (const auto& [name, value] : parameters) {
+        Json one = {{"name", name}, {"value", Json::parse(value)}};
+        if (one["value"].is_number_float()) one["type"] = "float64";
+        list.push_back(std::move(one));
+    }
+    Json message = {{"op", "parameterValues"}, {"parameters", list}};
+    if (id) message["id"] = *id;
+    return message.dump(-1, ' ', false, Json::error_handler_t::replace);
+}
+
+void ParameterSubscriptions::take(const ParameterRequest& request) {
+    const bool on = request.kind == ParameterRequest::Kind::Subscribe;
+    if (request.names.empty()) {
+        all_ = on;
+        names_.clear();
+    }
+    for (const std::string& name : request.names)
+        if (on == all_)
+            names_.erase(name);
+        else
+            names_.insert(name);
+}
+
+// -- subscriptions ----------------------------------------------------------------------------------------------------
 
 std::string Subscriptions::take(std::string_view text) {
     const Json said = readJson(text);

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "components/ros/Cdr.hpp"
+#include "types/SonarScan.hpp"
 
 namespace insonify::viewer {
 
@@ -13,22 +14,61 @@ std::string topicOf(const std::string& source) {
     return topic;
 }
 
-Messages::Messages(ros::SonarOptions options, ros::WorldFrame world) {
+namespace {
+
+/** A frame in another, from a pose of it. */
+foxglove::FrameTransforms transformOf(const types::Pose& pose, const std::string& child,
+                                      const ros::MessageOptions& options) {
+    ros::PoseStamped placed;
+    ros::toMessage(pose, options, placed);
+    const auto& [position, orientation] = placed.pose;
+    return {{{placed.header.stamp, placed.header.frame_id, child, {position.x, position.y, position.z}, orientation}}};
+}
+
+const types::Sonar& pingOf(const types::Sonar& ping) { return ping; }
+template <class Beams>
+types::Sonar pingOf(const Beams& beams) {
+    return types::toSonar(beams);
+}
+
+}  // namespace
+
+Messages::Messages(ros::SonarOptions options, ros::WorldFrame world, size_t max_triangles)
+    : scene_(world, max_triangles) {
     static_cast<ros::SonarOptions&>(options_) = std::move(options);
     options_.world_frame = world;
 }
 
-Bytes Messages::encode(const AnySample& sample) const {
+template <class T>
+void Messages::append(const T& sample, Form form, std::vector<char>& bytes) {
+    if constexpr (is_ping<T>) {
+        if (form == Form::Picture) {
+            ros::Image picture;
+            picture_.draw(pingOf(sample), options_, picture);
+            return ros::encode(picture, bytes);
+        }
+        if (form == Form::Points) {
+            ros::PointCloud2 points;
+            ros::toMessage(sample, options_, points);
+            return ros::encode(points, bytes);
+        }
+    }
+    if constexpr (std::is_same_v<T, types::Pose>) {
+        if (form == Form::Transforms) return ros::encode(transformOf(sample, sample.source_frame, options_), bytes);
+    }
+    typename ShownMessage<T>::type message;
+    if constexpr (std::is_same_v<T, types::Snapshot>) {
+        if (form == Form::Transforms) return ros::encode(transformOf(sample.sonar, options_.frame_id, options_), bytes);
+        ros::toMessage(sample.sonar, options_, message);
+    } else {
+        ros::toMessage(sample, options_, message);
+    }
+    ros::encode(message, bytes);
+}
+
+Bytes Messages::encode(const AnySample& sample, Form form) {
     std::vector<char> bytes;
-    const auto append = [&]<class T>(const T& shown) {
-        typename ShownMessage<T>::type message;
-        if constexpr (std::is_same_v<T, types::Snapshot>)
-            ros::toMessage(shown.sonar, options_, message);
-        else
-            ros::toMessage(shown, options_, message);
-        ros::encode(message, bytes);
-    };
-    std::visit([&](const auto& held) { append(*types::carriedSample(held)); }, sample);
+    std::visit([&](const auto& held) { append(*types::carriedSample(held), form, bytes); }, sample);
     return bytesOf({bytes.begin(), bytes.end()});
 }
 

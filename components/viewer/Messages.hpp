@@ -3,11 +3,15 @@
 #include <tuple>
 #include <type_traits>
 #include <variant>
+#include <vector>
 
 #include "components/ros/Samples.hpp"
 #include "components/ros/Schema.hpp"
+#include "components/viewer/FanPicture.hpp"
 #include "components/viewer/Foxglove.hpp"
+#include "components/viewer/FoxgloveMessages.hpp"
 #include "components/viewer/Frame.hpp"
+#include "components/viewer/SceneUpdates.hpp"
 #include "types/Snapshot.hpp"
 
 namespace insonify::viewer {
@@ -41,25 +45,65 @@ struct ShownMessage<types::Snapshot> {
     using type = ros::PoseStamped;
 };
 
+/** A form in which Foxglove gets samples, each on a channel of its own. */
+enum class Form {
+    Message,     ///< See ShownMessage.
+    Picture,     ///< Of a ping: sensor_msgs/Image, the fan, see FanPicture.
+    Points,      ///< Of a ping: sensor_msgs/PointCloud2, every bin that is a return.
+    Transforms,  ///< Of a pose and of the sonar in a snapshot: foxglove_msgs/FrameTransforms.
+    Scene        ///< Of a snapshot: foxglove_msgs/SceneUpdate, see SceneUpdates.
+};
+
+/** What a source has for Foxglove. */
+struct FoxgloveForm {
+    Form form;
+    FoxgloveChannel channel;
+};
+
 /** "/noise/noisy" of "noise.noisy". */
 std::string topicOf(const std::string& source);
 
-/** The channel of a source of T. */
-template <class T>
-FoxgloveChannel channelOf(const std::string& source) {
-    using Message = typename ShownMessage<T>::type;
-    return {topicOf(source), ros::shortName(Message::type_name), ros::schemaOf<Message>()};
+template <class Message>
+FoxgloveChannel channelOf(const std::string& topic) {
+    return {topic, ros::shortName(Message::type_name), ros::schemaOf<Message>()};
 }
 
-/** Samples as ROS 2 messages. */
+/** A ping, in whichever of its types. */
+template <class T>
+inline constexpr bool is_ping =
+    std::is_same_v<T, types::Sonar> || std::is_same_v<T, types::SonarBeam> || std::is_same_v<T, types::SonarScan>;
+
+/** Of a source of T: its message first, then those that built-in panels draw. */
+template <class T>
+std::vector<FoxgloveForm> formsOf(const std::string& source) {
+    const std::string topic = topicOf(source);
+    std::vector<FoxgloveForm> forms{{Form::Message, channelOf<typename ShownMessage<T>::type>(topic)}};
+    if constexpr (is_ping<T>) {
+        forms.push_back({Form::Picture, channelOf<ros::Image>(topic + "/image")});
+        forms.push_back({Form::Points, channelOf<ros::PointCloud2>(topic + "/points")});
+    }
+    if constexpr (std::is_same_v<T, types::Pose> || std::is_same_v<T, types::Snapshot>)
+        forms.push_back({Form::Transforms, channelOf<foxglove::FrameTransforms>(topic + "/transforms")});
+    if constexpr (std::is_same_v<T, types::Snapshot>)
+        forms.push_back({Form::Scene, channelOf<foxglove::SceneUpdate>(topic + "/scene")});
+    return forms;
+}
+
+/** The samples of one source as messages in CDR. Not for several threads. */
 class Messages {
 public:
-    Messages(ros::SonarOptions options, ros::WorldFrame world);
-    /** CDR. Throws std::invalid_argument and std::out_of_range for what ROS cannot hold. */
-    Bytes encode(const AnySample& sample) const;
+    Messages(ros::SonarOptions options, ros::WorldFrame world, size_t max_triangles = 500'000);
+    /** In any form but Scene. Throws std::invalid_argument and std::out_of_range for what ROS cannot hold. */
+    Bytes encode(const AnySample& sample, Form form = Form::Message);
+    SceneUpdates& scene() { return scene_; }
 
 private:
+    template <class T>
+    void append(const T& sample, Form form, std::vector<char>& bytes);
+
     ros::MessageOptions options_;
+    FanPicture picture_;
+    SceneUpdates scene_;
 };
 
 /** Its stamp; of one that bears none, `otherwise`. */

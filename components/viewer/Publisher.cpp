@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <array>
+#include <cctype>
 #include <chrono>
+#include <set>
 
 #include "components/viewer/Page.hpp"
 #include "components/viewer/SceneMesh.hpp"
@@ -13,12 +15,35 @@ namespace {
 constexpr auto status_period = std::chrono::milliseconds(500);
 constexpr uint32_t status_stream = 0, first_source_stream = 1;
 
+/** When it started. */
+std::string sessionName() {
+    const auto since_epoch = std::chrono::system_clock::now().time_since_epoch();
+    return std::to_string(std::chrono::duration_cast<std::chrono::microseconds>(since_epoch).count());
+}
+
 ServerOptions optionsOf(const ViewerConfig& config, const std::vector<Source>& sources) {
     ServerOptions options{config.address,      static_cast<uint16_t>(config.port),
                           config.token,        static_cast<size_t>(config.clients),
-                          config.idle_timeout, {}};
-    for (const Source& source : sources) options.channels.push_back(source.channel);
+                          config.idle_timeout, {},
+                          sessionName()};
+    for (const Source& source : sources)
+        for (const FoxgloveForm& form : source.forms) options.channels.push_back(form.channel);
     return options;
+}
+
+std::vector<uint32_t> firstChannels(const std::vector<Source>& sources) {
+    std::vector<uint32_t> first;
+    uint32_t count = 0;
+    for (const Source& source : sources) {
+        first.push_back(count);
+        count += static_cast<uint32_t>(source.forms.size());
+    }
+    return first;
+}
+
+std::vector<Messages> messagesOf(const ViewerConfig& config, size_t sources) {
+    return std::vector<Messages>(
+        sources, Messages(config.messages, config.world_frame, static_cast<size_t>(config.max_triangles)));
 }
 
 /** 0 for a time before the epoch. */
@@ -33,7 +58,8 @@ Publisher::Publisher(const ViewerConfig& config, std::vector<Source> sources, Ho
       sources_(std::move(sources)),
       host_(std::move(host)),
       picture_(config.messages.scale),
-      messages_(config.messages, config.world_frame),
+      messages_(messagesOf(config, sources_.size())),
+      first_channel_(firstChannels(sources_)),
       slots_(sources_.size()),
       tasks_(host_.deployment ? host_.deployment->interfaces() : std::vector<types::TaskInterface>{}),
       interfaces_(bytesOf(interfacesText(tasks_, config.control))),
@@ -61,13 +87,17 @@ void Publisher::offer(size_t source, AnySample sample, types::Time now) {
         slot.latency_s = (now - stamp).seconds();
         slot.fresh = true;
         ++slot.count;
+        now_ = now;
     }
     fresh_.notify_one();
 }
 
 /** How many clients a sample goes to. */
 uint64_t Publisher::audience(size_t source) const {
-    return server_.subscribers(static_cast<uint32_t>(source)) + (sources_[source].on_pages ? server_.pages() : 0);
+    uint64_t clients = sources_[source].on_pages ? server_.pages() : 0;
+    for (uint32_t i = 0; i < sources_[source].forms.size(); ++i)
+        clients += server_.subscribers(first_channel_[source] + i);
+    return clients;
 }
 
 ServerCounts Publisher::counts() const {
@@ -92,6 +122,15 @@ std::vector<Frame> Publisher::greeting() {
     return frames;
 }
 
+void Publisher::subscribed() {
+    {
+        std::lock_guard lock(mutex_);
+        for (Slot& slot : slots_) slot.fresh = slot.count > 0;
+        newcomers_ = true;
+    }
+    fresh_.notify_one();
+}
+
 // -- samples ----------------------------------------------------------------------------------------------------------
 
 void Publisher::publishAll() {
@@ -100,14 +139,7 @@ void Publisher::publishAll() {
     while (!ending_) {
         const auto isFresh = [](const Slot& slot) { return slot.fresh; };
         fresh_.wait_until(lock, next_status, [&] { return ending_ || std::ranges::any_of(slots_, isFresh); });
-        for (size_t i = 0; i < slots_.size() && !ending_; ++i) {
-            if (!std::exchange(slots_[i].fresh, false)) continue;
-            slots_[i].shown = slots_[i].count;
-            const Slot slot = slots_[i];
-            lock.unlock();
-            publish(i, slot);
-            lock.lock();
-        }
+        publishFresh(lock);
         if (ending_ || std::chrono::steady_clock::now() < next_status) continue;
         lock.unlock();
         if (const std::string warning = server_.takeWarning(); !warning.empty()) host_.warn(warning);
@@ -117,14 +149,58 @@ void Publisher::publishAll() {
     }
 }
 
-void Publisher::publish(size_t source, const Slot& slot) try {
-    const auto channel = static_cast<uint32_t>(source);
+void Publisher::publishFresh(std::unique_lock<std::mutex>& lock) {
+    const bool to_newcomers = std::exchange(newcomers_, false);
+    if (to_newcomers) told_.clear();
+    bool any = false;
+    for (size_t i = 0; i < slots_.size() && !ending_; ++i) {
+        if (!std::exchange(slots_[i].fresh, false)) continue;
+        slots_[i].shown = slots_[i].count;
+        any = true;
+        const Slot slot = slots_[i];
+        lock.unlock();
+        publish(i, slot, to_newcomers);
+        lock.lock();
+    }
+    if (any) tellTime(now_);
+}
+
+void Publisher::tellTime(types::Time now) {
+    if (server_.foxglove() > 0) server_.timeToFoxglove(nanosecondsOf(now));
+}
+
+void Publisher::publish(size_t source, const Slot& slot, bool to_newcomers) try {
     if (server_.pages() > 0) showOnPages(source, slot);
-    if (server_.subscribers(channel) > 0)
-        server_.toFoxglove(channel, nanosecondsOf(slot.stamp), messages_.encode(slot.sample));
+    showInFoxglove(source, slot, to_newcomers);
 } catch (const std::exception& error) {
     std::lock_guard lock(mutex_);
     diagnostic_ = sources_[source].name + ": cannot be shown: " + error.what();
+}
+
+void Publisher::showInFoxglove(size_t source, const Slot& slot, bool to_newcomers) {
+    for (uint32_t i = 0; i < sources_[source].forms.size(); ++i) {
+        const uint32_t channel = first_channel_[source] + i;
+        const Form form = sources_[source].forms[i].form;
+        if (server_.subscribers(channel) == 0) continue;
+        if (form == Form::Scene)
+            sendScene(channel, source, slot, to_newcomers);
+        else
+            server_.toFoxglove(channel, nanosecondsOf(slot.stamp), messages_[source].encode(slot.sample, form));
+    }
+}
+
+/** A scene is sent once, and then what moves in it. */
+void Publisher::sendScene(uint32_t channel, size_t source, const Slot& slot, bool whole) {
+    const auto* const snapshot = std::get_if<types::SnapshotPtr>(&slot.sample);
+    if (!snapshot) return;
+    SceneUpdates& scene = messages_[source].scene();
+    whole = whole || scene.isNew(**snapshot);
+    Bytes message = whole ? scene.whole(**snapshot) : scene.moved(**snapshot);
+    if (!message) return;
+    if (whole)
+        server_.everyToFoxglove(channel, nanosecondsOf(slot.stamp), std::move(message));
+    else
+        server_.toFoxglove(channel, nanosecondsOf(slot.stamp), std::move(message));
 }
 
 void Publisher::showOnPages(size_t source, const Slot& slot) {
@@ -153,12 +229,25 @@ void Publisher::showScene(size_t source, const types::GeometryPtr& geometry) {
 }
 
 void Publisher::showStatus() try {
-    if (server_.pages() == 0) return;
+    const bool to_pages = server_.pages() > 0, to_foxglove = server_.foxglove() > 0;
+    if (!to_pages && !to_foxglove) return;
     const auto status = host_.deployment ? host_.deployment->status() : types::DeploymentStatus{};
-    server_.toPages(status_stream, {"", bytesOf(statusText(status, counts())), true});
+    if (to_pages) server_.toPages(status_stream, {"", bytesOf(statusText(status, counts())), true});
+    if (!to_foxglove) return;
+    if (host_.deployment) tellTime(status.now);
+    showParameters(status);
 } catch (const std::exception& error) {
     std::lock_guard lock(mutex_);
     diagnostic_ = std::string("the state of the tasks cannot be shown: ") + error.what();
+}
+
+void Publisher::showParameters(const types::DeploymentStatus& status) {
+    if (server_.parameterReaders() == 0) return told_.clear();  // who comes is told all
+    Parameters parameters = parametersOf(status), changed;
+    for (const auto& one : parameters)
+        if (std::ranges::find(told_, one) == told_.end()) changed.push_back(one);
+    told_ = std::move(parameters);
+    if (!changed.empty()) server_.parametersToFoxglove(std::move(changed));
 }
 
 // -- requests ---------------------------------------------------------------------------------------------------------
@@ -170,13 +259,13 @@ void Publisher::request(uint64_t client, std::string text) {
     } catch (const std::exception& error) {
         return server_.reply(client, refusalText(request.id, error.what()));
     }
-    if (!executors_.run(laneOf(request), [this, client, request] { server_.reply(client, answer(request)); }))
+    if (!executors_.run(taskOf(request.operation), [this, client, request] { server_.reply(client, answer(request)); }))
         server_.reply(client, refusalText(request.id, "too many requests wait; try again later"));
 }
 
 /** The task that is called; empty: none that there is. */
-std::string Publisher::laneOf(const Request& request) const {
-    const std::string task = request.operation.substr(0, request.operation.find('.'));
+std::string Publisher::taskOf(const std::string& path) const {
+    const std::string task = path.substr(0, path.find('.'));
     return std::ranges::find(tasks_, task, &types::TaskInterface::name) == tasks_.end() ? "" : task;
 }
 
@@ -184,6 +273,45 @@ std::string Publisher::answer(const Request& request) const try {
     return answerText(request.id, carryOut(request));
 } catch (const std::exception& error) {
     return refusalText(request.id, error.what());
+}
+
+void Publisher::parameters(uint64_t client, ParameterRequest request, bool may_set) {
+    const std::string lane = request.values.empty() ? "" : taskOf(request.values.front().first);
+    const auto work = [this, client, request, may_set] {
+        server_.reply(client, answerParameters(client, request, may_set));
+    };
+    if (!executors_.run(lane, work)) server_.reply(client, diagnosticText("too many requests wait; try again later"));
+}
+
+/** Sets what is to be set, with a message for each refusal; then tells what holds. */
+std::string Publisher::answerParameters(uint64_t client, const ParameterRequest& request, bool may_set) try {
+    std::set<std::string> names(request.names.begin(), request.names.end());
+    for (const auto& [name, yaml] : request.values) {
+        names.insert(name);
+        if (const std::string why = setParameter(name, yaml, may_set); !why.empty())
+            server_.reply(client, diagnosticText(name + ": " + why));
+    }
+    Parameters all = host_.deployment ? parametersOf(host_.deployment->status()) : Parameters{};
+    if (!names.empty()) std::erase_if(all, [&](const auto& one) { return !names.contains(one.first); });
+    return parameterValues(all, request.id);
+} catch (const std::exception& error) {
+    return diagnosticText(error.what());
+}
+
+/** Gives why it was refused, or nothing. */
+std::string Publisher::setParameter(const std::string& name, const std::string& yaml, bool may_set) const try {
+    if (!may_set) throw std::runtime_error("a web site may set parameters only with the viewer's token");
+    const std::string task = taskOf(name);
+    if (task.empty() || task.size() + 1 >= name.size()) throw std::runtime_error("is no property of a task");
+    std::string operation = name;
+    operation.replace(task.size(), 2, std::string(".set") + static_cast<char>(std::toupper(name[task.size() + 1])));
+    Request request;
+    request.operation = operation;
+    request.arguments = {yaml};
+    carryOut(request);
+    return "";
+} catch (const std::exception& error) {
+    return error.what();
 }
 
 std::string Publisher::carryOut(const Request& request) const {

@@ -28,9 +28,9 @@ struct Host {
 };
 
 struct Source {
-    std::string name;  ///< "noise.noisy"
-    FoxgloveChannel channel;
-    bool on_pages = false;  ///< Whether pages show it, too.
+    std::string name;                 ///< "noise.noisy"
+    std::vector<FoxgloveForm> forms;  ///< What it is for Foxglove.
+    bool on_pages = false;            ///< Whether pages show it, too.
 };
 
 /** Sends the newest sample of each source to those who look, and does what pages ask for.
@@ -62,13 +62,22 @@ private:
     std::optional<PageFile> file(std::string_view path) override;
     std::vector<Frame> greeting() override;
     void request(uint64_t client, std::string text) override;
+    void parameters(uint64_t client, ParameterRequest request, bool may_set) override;
+    void subscribed() override;
     uint64_t audience(size_t source) const;
     void publishAll();
-    void publish(size_t source, const Slot& slot);
+    void publishFresh(std::unique_lock<std::mutex>& lock);
+    void publish(size_t source, const Slot& slot, bool to_newcomers);
+    void showInFoxglove(size_t source, const Slot& slot, bool to_newcomers);
+    void sendScene(uint32_t channel, size_t source, const Slot& slot, bool whole);
     void showOnPages(size_t source, const Slot& slot);
     void showScene(size_t source, const types::GeometryPtr& geometry);
     void showStatus();
-    std::string laneOf(const Request& request) const;
+    void showParameters(const types::DeploymentStatus& status);
+    void tellTime(types::Time now);
+    std::string answerParameters(uint64_t client, const ParameterRequest& request, bool may_set);
+    std::string setParameter(const std::string& name, const std::string& yaml, bool may_set) const;
+    std::string taskOf(const std::string& path) const;
     std::string answer(const Request& request) const;
     std::string carryOut(const Request& request) const;
     void refuseOwn(const std::string& operation) const;
@@ -77,11 +86,15 @@ private:
     const std::vector<Source> sources_;
     const Host host_;
     const PingPicture picture_;
-    Messages messages_;
+    std::vector<Messages> messages_;       ///< By source; the publishing thread's.
+    std::vector<uint32_t> first_channel_;  ///< Of each source.
     std::mutex mutex_;
     std::condition_variable fresh_;
     std::vector<Slot> slots_;
     std::string diagnostic_;
+    types::Time now_;                                  ///< As it came with the newest sample.
+    bool newcomers_ = false;                           ///< In Foxglove, who have seen nothing yet.
+    Parameters told_;                                  ///< As clients know them; the publishing thread's.
     std::map<size_t, types::GeometryPtr> geometries_;  ///< Of `scenes_`; the publishing thread's.
     std::map<size_t, Bytes> scenes_;                   ///< By source, for pages that come later, as interfaces_.
     const std::vector<types::TaskInterface> tasks_;

@@ -11,13 +11,6 @@ namespace {
 
 using Json = nlohmann::json;
 
-/** Vertices and triangles of a mesh as they are sent. */
-struct Part {
-    std::vector<float> positions;
-    std::vector<uint32_t> indices;
-    int material = 0;
-};
-
 template <class T>
 void append(std::string& data, const std::vector<T>& values) {
     data.append(reinterpret_cast<const char*>(values.data()), values.size() * sizeof(T));
@@ -69,15 +62,20 @@ Json orientationOf(const glm::dquat& q) { return {q.x, q.y, q.z, q.w}; }
 
 }  // namespace
 
+ShownScene shownScene(const types::Geometry& geometry, size_t max_triangles) {
+    ShownScene scene;
+    scene.coarse = geometry.triangleCount() > max_triangles;
+    for (const types::Mesh& mesh : geometry.meshes) scene.parts.push_back(partOf(mesh, scene.coarse));
+    scene.objects = shownObjects(geometry, scene.parts, max_triangles);
+    std::vector<bool> used(scene.parts.size());
+    for (const size_t i : scene.objects) used[static_cast<size_t>(geometry.objects[i].mesh)] = true;
+    for (size_t i = 0; i < scene.parts.size(); ++i)
+        if (!used[i]) scene.parts[i] = {};  // keeps its number
+    return scene;
+}
+
 std::string sceneMessage(const types::Geometry& geometry, size_t max_triangles, const std::string& source) {
-    const bool coarse = geometry.triangleCount() > max_triangles;
-    std::vector<Part> parts;
-    for (const types::Mesh& mesh : geometry.meshes) parts.push_back(partOf(mesh, coarse));
-    const std::vector<size_t> shown = shownObjects(geometry, parts, max_triangles);
-    std::vector<bool> used(parts.size());
-    for (const size_t i : shown) used[static_cast<size_t>(geometry.objects[i].mesh)] = true;
-    for (size_t i = 0; i < parts.size(); ++i)
-        if (!used[i]) parts[i] = {};  // keeps its number
+    const auto [parts, shown, coarse] = shownScene(geometry, max_triangles);
     Json meshes = Json::array(), objects = Json::array(), materials = Json::array();
     std::string data;
     for (const Part& part : parts) {

@@ -12,12 +12,14 @@ namespace insonify::viewer {
 class SendQueue {
 public:
     static constexpr size_t max_replies = 64;
+    /** What time it is, beyond all streams of 32 bits: an older one is no loss. */
+    static constexpr uint64_t time_stream = uint64_t{1} << 32;
 
     /** A frame of a stream, in the place of an older one that still waits. */
-    void put(uint32_t stream, Frame frame) {
+    void put(uint64_t stream, Frame frame) {
         for (auto& [key, waiting] : streams_)
             if (key == stream) {
-                ++dropped_;
+                if (stream != time_stream) ++dropped_;
                 waiting = std::move(frame);
                 return;
             }
@@ -41,14 +43,14 @@ public:
         streams_.pop_front();
         return frame;
     }
-    void forget(uint32_t stream) {
+    void forget(uint64_t stream) {
         std::erase_if(streams_, [stream](const auto& waiting) { return waiting.first == stream; });
     }
     uint64_t dropped() const { return dropped_; }  ///< Frames [1].
 
 private:
     std::deque<Frame> replies_;
-    std::deque<std::pair<uint32_t, Frame>> streams_;
+    std::deque<std::pair<uint64_t, Frame>> streams_;
     uint64_t dropped_ = 0;
 };
 

@@ -14,8 +14,8 @@ namespace insonify::viewer {
 namespace {
 
 constexpr size_t spare_connections = 32;  // for requests of files, beyond those of clients [1]
-/** Streams for Foxglove in the map of what waits: their channel, beyond all of pages. */
-constexpr uint64_t foxglove_keys = uint64_t{1} << 32;
+/** Streams for Foxglove in the map of what waits: their channel, beyond all of pages; then the time. */
+constexpr uint64_t foxglove_keys = uint64_t{1} << 32, time_key = uint64_t{1} << 33;
 
 }  // namespace
 
@@ -48,6 +48,13 @@ public:
     void publish(uint64_t key, Frame frame, uint64_t nanoseconds);
     void deliver();
     static void give(Session& session, uint64_t key, const Waiting& item);
+    /** On the server's thread. */
+    template <class Work>
+    void forEachFoxglove(Work&& work) {
+        const auto sessions = sessions_;  // sending may end one
+        for (const auto& [id, session] : sessions)
+            if (session->kind() == Kind::Foxglove) session->attempt([&] { work(*session); });
+    }
     void leave(uint64_t session) override;
     void recount() override;
 
@@ -57,7 +64,7 @@ public:
     std::map<uint64_t, std::shared_ptr<Session>> sessions_;
     uint64_t next_session_ = 1;
     uint16_t port_ = 0;
-    std::atomic<uint64_t> pages_{0};
+    std::atomic<uint64_t> pages_{0}, foxglove_{0}, parameter_readers_{0};
     std::vector<std::atomic<uint64_t>> subscribers_;  ///< By channel.
     std::mutex mutex_;
     std::map<uint64_t, Waiting> waiting_;  ///< Published and not delivered, the newest of each stream.
@@ -146,7 +153,8 @@ bool Server::Core::makeRoom() {
 void Server::Core::publish(uint64_t key, Frame frame, uint64_t nanoseconds) {
     std::lock_guard lock(mutex_);
     const bool idle = waiting_.empty();
-    if (waiting_.contains(key)) dropped += key < foxglove_keys ? pages_ : subscribers_[key - foxglove_keys];
+    if (waiting_.contains(key) && key != time_key)
+        dropped += key < foxglove_keys ? pages_ : subscribers_[key - foxglove_keys];
     waiting_[key] = {std::move(frame), nanoseconds};
     if (idle) post([this] { deliver(); });
 }
@@ -165,6 +173,7 @@ void Server::Core::deliver() {
 void Server::Core::give(Session& session, uint64_t key, const Waiting& item) {
     if (key < foxglove_keys && session.kind() == Kind::Page) session.put(static_cast<uint32_t>(key), item.frame);
     if (key < foxglove_keys || session.kind() != Kind::Foxglove) return;
+    if (key == time_key) return session.put(SendQueue::time_stream, item.frame);
     for (const auto& [subscription, channel] : session.subscriptions().all())
         if (channel == key - foxglove_keys)
             session.put(subscription, {messageHead(subscription, item.nanoseconds), item.frame.body, false});
@@ -175,15 +184,18 @@ void Server::Core::leave(uint64_t session) {
 }
 
 void Server::Core::recount() {
-    uint64_t pages = 0, others = 0;
+    uint64_t pages = 0, others = 0, readers = 0;
     std::vector<uint64_t> wanted(subscribers_.size());
     for (const auto& [id, session] : sessions_) {
         pages += session->kind() == Kind::Page ? 1 : 0;
         others += session->kind() == Kind::Foxglove ? 1 : 0;
+        readers += session->parameters().any() ? 1 : 0;
         for (const auto& [subscription, channel] : session->subscriptions().all()) ++wanted[channel];
     }
     clients = pages + others;
     pages_ = pages;
+    foxglove_ = others;
+    parameter_readers_ = readers;
     for (size_t i = 0; i < wanted.size(); ++i) subscribers_[i] = wanted[i];
 }
 
@@ -196,6 +208,29 @@ uint64_t Server::subscribers(uint32_t channel) const { return core_->subscribers
 void Server::toPages(uint32_t stream, Frame frame) { core_->publish(stream, std::move(frame), 0); }
 void Server::toFoxglove(uint32_t channel, uint64_t nanoseconds, Bytes message) {
     core_->publish(foxglove_keys + channel, {"", std::move(message), false}, nanoseconds);
+}
+uint64_t Server::foxglove() const { return core_->foxglove_; }
+uint64_t Server::parameterReaders() const { return core_->parameter_readers_; }
+void Server::timeToFoxglove(uint64_t nanoseconds) {
+    core_->publish(time_key, {"", bytesOf(timeMessage(nanoseconds)), false}, nanoseconds);
+}
+void Server::everyToFoxglove(uint32_t channel, uint64_t nanoseconds, Bytes message) {
+    core_->post([core = core_.get(), channel, nanoseconds, message = std::move(message)] {
+        core->forEachFoxglove([&](Session& session) {
+            for (const auto& [subscription, subscribed] : session.subscriptions().all())
+                if (subscribed == channel) session.post({messageHead(subscription, nanoseconds), message, false});
+        });
+    });
+}
+void Server::parametersToFoxglove(Parameters changed) {
+    core_->post([core = core_.get(), changed = std::move(changed)] {
+        core->forEachFoxglove([&](Session& session) {
+            Parameters wanted;
+            for (const auto& one : changed)
+                if (session.parameters().contains(one.first)) wanted.push_back(one);
+            if (!wanted.empty()) session.post({"", bytesOf(parameterValues(wanted, {})), true});
+        });
+    });
 }
 void Server::reply(uint64_t client, std::string text) {
     core_->post([core = core_.get(), client, frame = Frame{"", bytesOf(std::move(text)), true}] {

@@ -27,6 +27,10 @@ public:
     virtual std::vector<Frame> greeting() = 0;
     /** A page has sent this; the answer is given to Server::reply(). */
     virtual void request(uint64_t client, std::string text) = 0;
+    /** A Foxglove client asks for parameters, or to set some, which only who `may_set` may. */
+    virtual void parameters(uint64_t client, ParameterRequest request, bool may_set) = 0;
+    /** Foxglove clients have subscribed to this or that, and have seen nothing of it yet. */
+    virtual void subscribed() = 0;
 };
 
 struct ServerOptions {
@@ -36,6 +40,7 @@ struct ServerOptions {
     size_t clients = 16;       ///< Pages and Foxglove clients together [1].
     double idle_timeout = 30;  ///< [s]
     std::vector<FoxgloveChannel> channels;
+    std::string session;  ///< See serverInfo().
 };
 
 /** No connection can come. */
@@ -61,8 +66,8 @@ struct ServerCounts {
  *  than it is sent is dropped, the oldest first; see SendQueue. A client that sends what is not WebSocket, or a message
  *  of more than 64 KiB, is closed, and before it is one answered with 400, 413 or 431. When too many are connected,
  *  those that have asked for nothing yet make room. Without a token only pages from this server itself may connect as
- *  pages, under a numeric address or as localhost, and as Foxglove clients besides those only Foxglove's own and
- *  programs: no other web site can. */
+ *  pages, under a numeric address or as localhost, and as Foxglove clients besides those only Foxglove's own, which may
+ *  only read, and programs: no other web site can. */
 class Server {
 public:
     /** Throws ListenError where the port cannot be had. `handler` outlives this. */
@@ -74,8 +79,15 @@ public:
     uint16_t port() const;   ///< That was asked for, or was free.
     uint64_t pages() const;  ///< That are connected.
     uint64_t subscribers(uint32_t channel) const;
+    uint64_t foxglove() const;          ///< Clients that are Foxglove's.
+    uint64_t parameterReaders() const;  ///< Those that are told of parameters.
     void toPages(uint32_t stream, Frame frame);
     void toFoxglove(uint32_t channel, uint64_t nanoseconds, Bytes message);
+    /** The same for what nothing newer takes the place of. */
+    void everyToFoxglove(uint32_t channel, uint64_t nanoseconds, Bytes message);
+    void timeToFoxglove(uint64_t nanoseconds);
+    /** To those who have asked to be told of them. */
+    void parametersToFoxglove(Parameters changed);
     void reply(uint64_t client, std::string text);
     ServerCounts counts() const;
     /** See types::ThrottledWarning::takeWarning(). */

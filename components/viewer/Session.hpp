@@ -45,6 +45,19 @@ inline Response responseTo(const Request& request, unsigned status, std::string_
     return response;
 }
 
+/** The first of those that a client offers, in its order, which this server speaks; empty: none. */
+inline std::string protocolOf(const std::string& offered) {
+    const std::string separators = ", \t";
+    for (size_t at = 0; (at = offered.find_first_not_of(separators, at)) != std::string::npos;) {
+        const size_t end = std::min(offered.find_first_of(separators, at), offered.size());
+        const std::string name = offered.substr(at, end - at);
+        for (const char* const known : {foxglove_sdk_protocol, foxglove_protocol, page_protocol})
+            if (name == known) return name;
+        at = end;
+    }
+    return "";
+}
+
 enum class Kind { None, Page, Foxglove };
 /** One connection: a request, which is answered or becomes a WebSocket. */
 class Session : public std::enable_shared_from_this<Session> {
@@ -53,8 +66,9 @@ public:
     Kind kind() const { return open_ ? kind_ : Kind::None; }
     bool hasAsked() const { return asked_; }  ///< Its request is there.
     const Subscriptions& subscriptions() const { return subscriptions_; }
+    const ParameterSubscriptions& parameters() const { return parameters_; }
     void readRequest();
-    void put(uint32_t stream, Frame frame);
+    void put(uint64_t stream, Frame frame);
     void post(Frame frame);
     void close();
     /** What `work` throws closes this session, and nothing else. */
@@ -80,6 +94,8 @@ private:
     void greet();
     void readMessage();
     void taken(std::string text);
+    void takeFromFoxglove(const std::string& text);
+    bool takeParameters(const std::string& text);
     void send();
     void leave();
 
@@ -90,6 +106,9 @@ private:
     std::optional<http::request_parser<http::string_body>> parser_;
     std::optional<Response> response_;
     Subscriptions subscriptions_;
+    ParameterSubscriptions parameters_;
+    std::string protocol_;  ///< That was agreed on.
+    bool may_set_ = false;  ///< Parameters.
     Kind kind_ = Kind::None;
     SendQueue queue_;
     Frame sending_;
@@ -144,16 +163,18 @@ inline void Session::answer() {
     const Request& request = parser_->get();
     const AccessPolicy::Request asked = admissionOf(request);
     const bool wants_socket = websocket::is_upgrade(request);
-    const std::string offered = textOf(request[http::field::sec_websocket_protocol]);
-    const bool foxglove = offered.find(foxglove_protocol) != std::string::npos;
-    kind_ = foxglove ? Kind::Foxglove : offered.find(page_protocol) != std::string::npos ? Kind::Page : Kind::None;
+    protocol_ = protocolOf(textOf(request[http::field::sec_websocket_protocol]));
+    const bool foxglove = protocol_ == foxglove_protocol || protocol_ == foxglove_sdk_protocol;
+    kind_ = foxglove ? Kind::Foxglove : protocol_ == page_protocol ? Kind::Page : Kind::None;
+    may_set_ = context_.access.maySet(asked);
     const std::string path = asked.target.substr(0, asked.target.find('?'));
     using enum AccessPolicy::Use;
     const AccessPolicy::Use use = !wants_socket ? (path == "/" ? Page : File) : foxglove ? Read : Control;
     if (const auto refusal = context_.access.decide(asked, use)) return refuse(*refusal);
     if (wants_socket) {
         if (kind_ == Kind::None)
-            return refuse({400, std::string("the subprotocol must be ") + foxglove_protocol + " or " + page_protocol});
+            return refuse({400, std::string("the subprotocol must be ") + foxglove_sdk_protocol + ", " +
+                                    foxglove_protocol + " or " + page_protocol});
         if (context_.clients >= context_.options.clients) return refuse({503, "there are as many clients as may be"});
         return upgrade();
     }
@@ -190,8 +211,7 @@ inline void Session::upgrade() {
     const auto idle = std::chrono::duration_cast<std::chrono::milliseconds>(
         std::chrono::duration<double>(context_.options.idle_timeout));
     ws_.set_option(websocket::stream_base::timeout{request_timeout, idle, true});
-    const char* const protocol = kind_ == Kind::Foxglove ? foxglove_protocol : page_protocol;
-    ws_.set_option(websocket::stream_base::decorator([protocol](websocket::response_type& response) {
+    ws_.set_option(websocket::stream_base::decorator([protocol = protocol_](websocket::response_type& response) {
         response.set(http::field::sec_websocket_protocol, protocol);
     }));
     ws_.read_message_max(max_message);
@@ -214,7 +234,7 @@ inline void Session::greet() {
     buffer_.consume(buffer_.size());
     context_.recount();
     if (kind_ == Kind::Foxglove) {
-        post({"", bytesOf(serverInfo()), true});
+        post({"", bytesOf(serverInfo(context_.options.session)), true});
         post({"", bytesOf(advertise(context_.options.channels)), true});
     } else {
         for (Frame& frame : context_.handler.greeting()) post(std::move(frame));
@@ -236,16 +256,38 @@ inline void Session::readMessage() {
 
 inline void Session::taken(std::string text) {
     if (kind_ == Kind::Page) return context_.handler.request(id_, std::move(text));
-    if (!ws_.got_text()) return;
+    if (ws_.got_text() && !takeParameters(text)) takeFromFoxglove(text);
+}
+
+/** False: it is about something else. */
+inline bool Session::takeParameters(const std::string& text) try {
+    using enum ParameterRequest::Kind;
+    ParameterRequest request = readParameterRequest(text);
+    if (request.kind == Other) return false;
+    if (request.kind == Get || request.kind == Set) {
+        context_.handler.parameters(id_, std::move(request), may_set_);
+        return true;
+    }
+    parameters_.take(request);
+    context_.recount();
+    if (request.kind == Subscribe) context_.handler.subscribed();
+    return true;
+} catch (const std::invalid_argument& error) {
+    post({"", bytesOf(diagnosticText(std::string("the message ") + error.what())), true});
+    return true;
+}
+
+inline void Session::takeFromFoxglove(const std::string& text) {
     const auto before = subscriptions_.all();
     if (const std::string diagnostic = subscriptions_.take(text); !diagnostic.empty())
         post({"", bytesOf(diagnosticText("the message " + diagnostic)), true});
     for (const auto& [subscription, channel] : before)
         if (!subscriptions_.all().contains(subscription)) queue_.forget(subscription);
     context_.recount();
+    if (subscriptions_.all() != before) context_.handler.subscribed();
 }
 
-inline void Session::put(uint32_t stream, Frame frame) {
+inline void Session::put(uint64_t stream, Frame frame) {
     queue_.put(stream, std::move(frame));
     context_.dropped += queue_.dropped() - std::exchange(told_dropped_, queue_.dropped());
     send();

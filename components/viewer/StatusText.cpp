@@ -47,6 +47,7 @@ Json taskOf(const types::TaskStatus& task) {
     Json json = {{"name", task.record.name}, {"type", task.record.type}, {"state", task.state},
                  {"error", task.error},      {"cycle_s", task.cycle_s},  {"latency_s", numberOrNull(task.latency_s)},
                  {"outputs", outputs},       {"properties", properties}};
+    if (task.playback) json["playback"] = {{"at_s", task.playback->at_s}, {"length_s", task.playback->length_s}};
     if (task.plan) json["plan"] = planOf(*task.plan);
     return json;
 }
@@ -72,6 +73,14 @@ std::string statusText(const types::DeploymentStatus& status, const ServerCounts
                  {"clients", counts.clients},
                  {"refused", counts.refused},
                  {"dropped", counts.dropped}});
+}
+
+Parameters parametersOf(const types::DeploymentStatus& status) {
+    Parameters parameters;
+    for (const types::TaskStatus& task : status.tasks)
+        for (const auto& [name, value] : task.record.properties)
+            parameters.emplace_back(task.record.name + "." + name, dump(shown(name, value)));
+    return parameters;
 }
 
 std::string interfacesText(const std::vector<types::TaskInterface>& interfaces, bool control) {

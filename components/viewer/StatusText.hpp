@@ -9,6 +9,8 @@ namespace insonify::viewer {
 
 /** JSON for pages. */
 std::string statusText(const types::DeploymentStatus& status, const ServerCounts& counts);
+/** All properties, "sonar.range", as JSON values. */
+Parameters parametersOf(const types::DeploymentStatus& status);
 std::string interfacesText(const std::vector<types::TaskInterface>& interfaces, bool control);
 
 /** What a page asks for. */

@@ -13,6 +13,8 @@ install(FILES ${PROJECT_BINARY_DIR}/InsonifyConfig.cmake ${PROJECT_BINARY_DIR}/I
 install(FILES shaders/interface.glsl DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/insonify/shaders COMPONENT development)
 install(DIRECTORY deploy DESTINATION ${CMAKE_INSTALL_DATADIR}/insonify COMPONENT runtime PATTERN pictures EXCLUDE)
 install(FILES README.md CHANGELOG.md DESTINATION ${documents} COMPONENT runtime)
+# Where systemd looks, below /usr as below /usr/local, whatever the libraries' folder is called.
+install(FILES deploy/insonify.service DESTINATION lib/systemd/system COMPONENT runtime)
 file(GLOB pages RELATIVE ${PROJECT_SOURCE_DIR} CONFIGURE_DEPENDS components/*.md components/*/*.md types/*.md)
 foreach(page ${pages})
   get_filename_component(folder ${page} DIRECTORY)
@@ -41,5 +43,5 @@ set(CPACK_DEBIAN_DEVELOPMENT_DESCRIPTION "Headers and libraries of Insonify, to 
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS
   "insonify (= ${PROJECT_VERSION}), libfmt-dev, libglm-dev, libyaml-cpp-dev")
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SUGGESTS
-  "cyclonedds-dev, libembree-dev, libepoxy-dev, liblz4-dev, libmeshoptimizer-dev, libopencv-dev, libpng-dev, libsdformat-dev, libstb-dev, libtinygltf-dev, libtinyxml2-dev, libzstd-dev, zlib1g-dev")
+  "cyclonedds-dev, libembree-dev, libepoxy-dev, liblz4-dev, libmeshoptimizer-dev, libopencv-dev, libpng-dev, libsdformat-dev, libsnappy-dev, libstb-dev, libtinygltf-dev, libtinyxml2-dev, libzstd-dev, zlib1g-dev")
 include(CPack)

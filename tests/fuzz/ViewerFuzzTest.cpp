@@ -12,6 +12,12 @@ void ask(const Input& input) {
     static viewer::Subscriptions subscriptions(3);
     subscriptions.take(input.bytes());
     EXPECT_LE(subscriptions.all().size(), 3u);
+    try {
+        const viewer::ParameterRequest asked = viewer::readParameterRequest(input.bytes());
+        viewer::ParameterSubscriptions().take(asked);
+    } catch (const std::invalid_argument& error) {
+        expectOurWords(error.what());
+    }
     viewer::Request request;
     try {
         viewer::readRequest(input.bytes(), request);
@@ -29,9 +35,30 @@ void ask(const Input& input) {
 TEST(ViewerFuzzTest, EveryMessageIsAnsweredOrRefused) {
     push({"viewer",
           "message",
-          {"\"op\":\"subscribe\"", "\"op\":\"unsubscribe\"", "\"subscriptions\":[",
-           "\"id\":", "\"channelId\":", "\"call\":", "\"arguments\":[", "\"pause\":true", "\"step\":", "{", "}", "[",
-           "]", ",", "%41", "/?token=", "Bearer ", "\\ud800"},
+          {"\"op\":\"subscribe\"",
+           "\"op\":\"unsubscribe\"",
+           "\"op\":\"setParameters\"",
+           "\"op\":\"getParameters\"",
+           "\"parameters\":[",
+           "\"parameterNames\":[",
+           "\"name\":",
+           "\"value\":",
+           "\"subscriptions\":[",
+           "\"id\":",
+           "\"channelId\":",
+           "\"call\":",
+           "\"arguments\":[",
+           "\"pause\":true",
+           "\"step\":",
+           "{",
+           "}",
+           "[",
+           "]",
+           ",",
+           "%41",
+           "/?token=",
+           "Bearer ",
+           "\\ud800"},
           ask});
 }
 

@@ -28,6 +28,8 @@ TEST(DebTest, ThePackagesUnpackToACommandThatRunsAndAProjectThatBuilds) {
     for (const char* name : {"insonify", "insonify-dev"})
         ASSERT_EQ(call(folder, {"dpkg-deb", "-x", package(folder, name), "root"}).code, 0);
 
+    EXPECT_TRUE(fs::exists(folder / "root/usr/lib/systemd/system/insonify.service"));
+
     const std::string depends = call(folder, {"dpkg-deb", "-f", package(folder, "insonify"), "Depends"}).out;
     for (const char* needed : {"libc6 (>=", "libyaml-cpp", "libepoxy0", "libopencv-core", "libegl1", "libgl1-mesa-dri"})
         EXPECT_THAT(depends, HasSubstr(needed));

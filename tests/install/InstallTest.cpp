@@ -64,6 +64,14 @@ TEST(InstallTest, TheExamplesRunFromThePrefix) {
     EXPECT_THAT(call(folder, {"ldd", insonify}).out, testing::Not(HasSubstr(INSONIFY_BINARY_DIR)));
 }
 
+TEST(InstallTest, TheServiceLiesWhereSystemdLooks) {
+    const TestFolder folder;
+    install(folder);
+    EXPECT_EQ(readFile(folder / "prefix/lib/systemd/system/insonify.service"),
+              readFile(fs::path(INSONIFY_SOURCE_DIR) / "deploy/insonify.service"));
+    EXPECT_TRUE(fs::exists(folder / "prefix/share/man/man1/insonify.1")) << "which the service names";
+}
+
 TEST(InstallTest, AMeshThatAProcessOfItsOwnReadsIsReadFromThePrefix) {
     const TestFolder folder;
     install(folder);

@@ -80,6 +80,33 @@ TEST_F(TrajectoryTaskTest, AFixedPoseHasFinishedAfterOnePose) {
     EXPECT_TRUE(task_.finished());
 }
 
+TEST_F(TrajectoryTaskTest, ALoopGoesOnFromItsFirstStampForEver) {
+    task_.config.set(
+        {.file = {},
+         .waypoints = {{.time = 2}, {.time = 4, .position = {4, 0, 0}}, {.time = 6, .position = {0, 0, 0}}},
+         .loop = true});
+    ASSERT_TRUE(task_.configure());
+    ASSERT_TRUE(task_.start());
+    EXPECT_EQ(poseAt(2).position.x, 0) << "before the first stamp it waits, as without a loop";
+    for (const double turn : {0.0, 4.0, 400'000.0}) {
+        EXPECT_DOUBLE_EQ(poseAt(1 + 3 + turn).position.x, 2) << "on its way, turn after " << turn << " s";
+        EXPECT_DOUBLE_EQ(poseAt(1 + 5.5 + turn).position.x, 1);
+        EXPECT_DOUBLE_EQ(poseAt(1 + 6 + turn).position.x, 0);
+        EXPECT_EQ(poseAt(1 + 5.5 + turn).time, types::Time::fromSeconds(6.5 + turn)) << "stamps do not go back";
+        EXPECT_FALSE(task_.finished());
+    }
+}
+
+TEST_F(TrajectoryTaskTest, ALoopOfOneWaypointHoldsItsPoseForEver) {
+    task_.config.set({.file = {}, .waypoints = {{.time = 0, .position = {1, 2, 3}}}, .loop = true});
+    ASSERT_TRUE(task_.configure());
+    ASSERT_TRUE(task_.start());
+    for (const double time : {1.0, 50.0, 1e6}) {
+        EXPECT_EQ(poseAt(time).position, glm::dvec3(1, 2, 3));
+        EXPECT_FALSE(task_.finished());
+    }
+}
+
 TEST_F(TrajectoryTaskTest, AFileIsFoundBesideTheDeployment) {
     std::ofstream(folder_ / "trajectory.csv") << "time,x,y,z,qw,qx,qy,qz\n0,7,8,9,1,0,0,0\n";
     task_.config.set({.file = "trajectory.csv", .waypoints = {}});

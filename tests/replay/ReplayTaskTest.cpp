@@ -50,6 +50,24 @@ TEST(ReplayTaskTest, SamplesAreTheRecordedOnes) {
     EXPECT_EQ(second->bins, std::vector<float>{20});
 }
 
+TEST(ReplayTaskTest, ItTellsWhereItIsInTheLog) {
+    Bench bench;
+    EXPECT_FALSE(bench.task.playback()) << "nothing is open";
+    test::Reader<types::Pose> poses;
+    bench.connect("vehicle.pose", poses);
+    ASSERT_TRUE(bench.task.configure());
+    ASSERT_TRUE(bench.task.start());
+    const auto at = [&] { return std::lround(bench.task.playback()->at_s * 1e6); };
+    EXPECT_NEAR(bench.task.playback()->length_s, 20e-6, 1e-12);
+    EXPECT_EQ(at(), 0);
+    bench.updateAt(20);
+    EXPECT_EQ(at(), 10);
+    bench.task.seek(0);
+    EXPECT_EQ(at(), 0) << "it goes on from there";
+    bench.updateAt(1000);
+    EXPECT_EQ(at(), 20) << "of the log, whose stamps were moved by the jump";
+}
+
 TEST(ReplayTaskTest, StartedAgainItPlaysFromTheStart) {
     Bench bench;
     test::Reader<types::Pose> poses;

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "components/sonar/ScanningSonarTask.hpp"
+#include "components/sonar/Sonar3dTask.hpp"
 #include "components/sonar/SonarTask.hpp"
 #include "tests/sonar/WallScene.hpp"
 #include "tests/support/Ports.hpp"
@@ -118,6 +119,38 @@ TEST(SettingsTest, AHeadLooksWhereItIsToldTo) {
     const types::SonarPtr again = sonar.ask({});
     ASSERT_TRUE(again);
     EXPECT_NEAR(again->bearings[0].deg(), 30, 1e-9) << "it stays there";
+}
+
+TEST(SettingsTest, AGridTakesTheViewOfItsBeamsSideBySide) {
+    Sonar3dConfig config;
+    config.sonar.range = 10;
+    config.sonar.bin_count = 100;
+    config.sonar.beam_height_deg = 10;
+    config.horizontal = {8, 80};
+    config.vertical = {4, 40};
+    Asked<Sonar3dTask> sonar(config);
+    test::Reader<types::DepthMapPtr> maps{"maps"};
+    sonar.task.range_image.connectTo(maps.port, framework::ConnPolicy::buffer(4));
+    sonar.show(facingWall(5));
+    types::SonarSettings asked;
+    asked.field_of_view = types::Angle::fromDeg(40);
+    asked.beam_height = types::Angle::fromDeg(5);
+    asked.range = 8;
+    for (int i = 0; i < 2; ++i) {
+        ASSERT_TRUE(sonar.ask(asked)) << sonar.task.lastError();
+        types::DepthMapPtr map;
+        ASSERT_TRUE(maps.port.readNew(map));
+        EXPECT_EQ(map->distances.size(), 32u);
+        EXPECT_NEAR(types::degrees(map->horizontal_interval.front()), 17.5, 1e-9);
+        EXPECT_NEAR(types::degrees(map->vertical_interval.back()), 15, 1e-9);
+    }
+    EXPECT_EQ(sonar.task.config->sonar.range, 8);
+    EXPECT_NEAR(sonar.task.config->sonar.beam_height_deg, 5, 1e-9);
+    asked = {};
+    asked.beam_count = 4;
+    ASSERT_TRUE(sonar.ask(asked)) << sonar.task.lastError();
+    EXPECT_EQ(sonar.task.config->horizontal.beam_count, 4);
+    EXPECT_NEAR(sonar.task.config->horizontal.field_of_view_deg, 40, 1e-9);
 }
 
 }  // namespace

@@ -48,5 +48,17 @@ TEST(AccessPolicyTest, WithoutATokenNoOtherWebSiteReadsButFoxgloves) {
         << "who has the token may";
 }
 
+TEST(AccessPolicyTest, ParametersAreSetByProgramsAndWhoHasTheToken) {
+    const auto sets = [](const std::string& token, const std::string& origin) {
+        return AccessPolicy{token}.maySet({"/?token=ab", "127.0.0.1:8765", origin, ""});
+    };
+    for (const char* origin : {"", "file://", "foxglove://studio", "http://127.0.0.1:8765"})
+        EXPECT_TRUE(sets("", origin)) << origin;
+    for (const char* origin :
+         {"https://app.foxglove.dev", "https://studio.foxglove.dev", "http://evil.example", "null"})
+        EXPECT_FALSE(sets("", origin)) << origin;
+    EXPECT_TRUE(sets("ab", "https://app.foxglove.dev"));
+}
+
 }  // namespace
 }  // namespace insonify::viewer

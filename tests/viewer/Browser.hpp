@@ -61,9 +61,26 @@ public:
     /** Into what has the focus; then Enter. */
     void type(const std::string& text) { ask({{"type", text}}); }
     /** Moves the mouse there, in pixels from the upper left corner of the page. */
-    void point(double x, double y) { ask({{"point", {x, y}}}); }
+    void point(double x, double y) { mouse("mouseMoved", x, y); }
+    void click(double x, double y) {
+        mouse("mousePressed", x, y, {{"button", "left"}, {"clickCount", 1}});
+        mouse("mouseReleased", x, y, {{"button", "left"}, {"clickCount", 1}});
+    }
+    void drag(double x, double y, double dx, double dy) {
+        mouse("mousePressed", x, y, {{"button", "left"}, {"clickCount", 1}});
+        mouse("mouseMoved", x + dx, y + dy, {{"button", "left"}, {"buttons", 1}});
+        mouse("mouseReleased", x + dx, y + dy, {{"button", "left"}, {"clickCount", 1}});
+    }
+    /** Turns the wheel by so many pixels, positive towards oneself. */
+    void wheel(double x, double y, double by) { mouse("mouseWheel", x, y, {{"deltaX", 0}, {"deltaY", by}}); }
+    void size(int width, int height) { ask({{"size", {width, height}}}); }
+    void screenshot(const std::string& file) { ask({{"screenshot", file}}); }
 
 private:
+    void mouse(const std::string& kind, double x, double y, nlohmann::json more = nlohmann::json::object()) {
+        more.update({{"type", kind}, {"x", x}, {"y", y}});
+        ask({{"mouse", more}});
+    }
     nlohmann::json ask(const nlohmann::json& question) {
         fprintf(asks_, "%s\n", question.dump().c_str());
         fflush(asks_);

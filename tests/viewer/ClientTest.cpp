@@ -6,6 +6,7 @@
 #include <future>
 #include <mutex>
 #include <optional>
+#include <set>
 
 #include "components/ros/Cdr.hpp"
 #include "components/ros/SonarMessages.hpp"
@@ -82,6 +83,66 @@ TEST(ClientTest, FoxgloveGetsItsChannelAndThePingAsACdrMessage) {
     EXPECT_EQ(image.image.beam_count, 32u);
     EXPECT_EQ(image.image.data[size_t{45} * 32 + 15], 255);
     EXPECT_EQ(image.image.data[size_t{45} * 32 + 25], 0);
+}
+
+TEST(ClientTest, FoxglovesNewerProtocolIsTheSame) {
+    Bench bench;
+    bench.start();
+    for (const auto& [offered, agreed] : {std::pair("foxglove.sdk.v1", "foxglove.sdk.v1"),
+                                          {"foxglove.sdk.v1, foxglove.websocket.v1", "foxglove.sdk.v1"},
+                                          {"foxglove.sdk.v2,foxglove.websocket.v1", "foxglove.websocket.v1"}}) {
+        Client client(bench.port());
+        EXPECT_THAT(client.upgrade(offered), HasSubstr("101"));
+        EXPECT_THAT(client.head() + "\r\n", HasSubstr(std::string("Sec-WebSocket-Protocol: ") + agreed + "\r\n"));
+        EXPECT_EQ(json::parse(client.heard())["op"], "serverInfo");
+        EXPECT_EQ(json::parse(client.heard())["op"], "advertise");
+    }
+    EXPECT_THAT(Client(bench.port()).upgrade("foxglove.sdk.v10"), HasSubstr("400"));
+}
+
+TEST(ClientTest, EachServerHasASessionOfItsOwn) {
+    std::set<std::string> sessions;
+    for (int i = 0; i < 2; ++i) {
+        Bench bench;
+        bench.start();
+        for (int k = 0; k < 2; ++k) {
+            Client client(bench.port());
+            ASSERT_THAT(client.upgrade(foxglove_protocol), HasSubstr("101"));
+            sessions.insert(json::parse(client.heard())["sessionId"].get<std::string>());
+        }
+    }
+    EXPECT_EQ(sessions.size(), 2u) << "the same for who comes back, another after a start";
+}
+
+TEST(ClientTest, FoxgloveIsToldTheTimeOfTheDeployment) {
+    Bench bench;
+    bench.start();
+    Client client(bench.port());
+    ASSERT_THAT(client.upgrade(foxglove_sdk_protocol), HasSubstr("101"));
+    client.heard();
+    client.heard();
+    bench.show(blockPing());
+    const std::string time = client.heard();
+    ASSERT_EQ(time.size(), 9u);
+    EXPECT_EQ(time[0], 2);
+    EXPECT_EQ(at<uint64_t>(time, 1), 3'500'000'000u) << "the clock, not the stamp";
+}
+
+TEST(ClientTest, WhoSubscribesToAChannelGetsItsNewestSampleAtOnce) {
+    Bench bench;
+    bench.start();
+    bench.show(blockPing());
+    Client client(bench.port());
+    ASSERT_THAT(client.upgrade(foxglove_protocol), HasSubstr("101"));
+    client.say(R"({"op":"subscribe","subscriptions":[{"id":9,"channelId":1}]})");
+    while (const auto message = client.hear()) {
+        if ((*message)[0] != 1) continue;
+        ros::Image image;
+        ros::decode(std::span(*message).subspan(13), image);
+        EXPECT_EQ(image.encoding, "mono8");
+        return;
+    }
+    FAIL() << "no picture came";
 }
 
 TEST(ClientTest, APageGetsTheLastPingWhenItComesAndEachAfterwards) {

@@ -28,6 +28,55 @@ TEST(FoxgloveTest, AMessageBeginsWithItsSubscriptionAndTime) {
     EXPECT_EQ(messageHead(0x04030201, 0x0807060504030201), std::string("\1\1\2\3\4\1\2\3\4\5\6\7\x8", 13));
 }
 
+TEST(FoxgloveTest, TheServerTellsItsSessionTimeAndParameters) {
+    const json said = json::parse(serverInfo("17"));
+    EXPECT_EQ(said["op"], "serverInfo");
+    EXPECT_EQ(said["sessionId"], "17");
+    EXPECT_EQ(said["capabilities"], json({"time", "parameters", "parametersSubscribe"}));
+    EXPECT_EQ(timeMessage(0x0807060504030201), std::string("\2\1\2\3\4\5\6\7\x8", 9));
+}
+
+TEST(FoxgloveTest, ParametersAreAskedForSetAndToldOf) {
+    using enum ParameterRequest::Kind;
+    EXPECT_EQ(readParameterRequest(R"({"op":"subscribe"})").kind, Other);
+    EXPECT_EQ(readParameterRequest("[").kind, Other);
+    const auto get = readParameterRequest(R"({"op":"getParameters","parameterNames":["a.b","c.d"],"id":"7"})");
+    EXPECT_EQ(get.kind, Get);
+    EXPECT_EQ(get.id, "7");
+    EXPECT_THAT(get.names, ElementsAre("a.b", "c.d"));
+    const auto set = readParameterRequest(
+        R"({"op":"setParameters","parameters":[{"name":"a","value":2.5,"type":"float64"},{"name":"b","value":true},
+            {"name":"c","value":"{rows: 3}"},{"name":"d","value":[1,2]},{"name":"e"}]})");
+    EXPECT_EQ(set.kind, Set);
+    EXPECT_FALSE(set.id);
+    EXPECT_THAT(set.values, ElementsAre(Pair("a", "2.5"), Pair("b", "true"), Pair("c", "{rows: 3}"), Pair("d", "[1,2]"),
+                                        Pair("e", "null")));
+    for (const char* wrong :
+         {R"({"op":"getParameters","parameterNames":[1]})", R"({"op":"setParameters","parameters":[1]})",
+          R"({"op":"setParameters","parameters":[{"value":1}]})",
+          R"({"op":"setParameters","parameters":[{"name":"a","value":"QQ==","type":"byte_array"}]})"})
+        EXPECT_THROW(readParameterRequest(wrong), std::invalid_argument) << wrong;
+    EXPECT_EQ(json::parse(parameterValues({{"a", "2.0"}, {"b", "3"}, {"c", "\"x\""}}, "7")),
+              json::parse(R"({"op":"parameterValues","id":"7","parameters":[{"name":"a","value":2.0,"type":"float64"},
+                              {"name":"b","value":3},{"name":"c","value":"x"}]})"));
+}
+
+TEST(FoxgloveTest, WhoSubscribesToParametersHearsOfThoseAndNoOthers) {
+    using enum ParameterRequest::Kind;
+    ParameterSubscriptions wanted;
+    EXPECT_FALSE(wanted.any());
+    wanted.take({Subscribe, {}, {"a", "b"}, {}});
+    wanted.take({Unsubscribe, {}, {"b"}, {}});
+    EXPECT_TRUE(wanted.contains("a"));
+    EXPECT_FALSE(wanted.contains("b"));
+    wanted.take({Subscribe, {}, {}, {}});
+    wanted.take({Unsubscribe, {}, {"a"}, {}});
+    EXPECT_TRUE(wanted.contains("c")) << "all, but one";
+    EXPECT_FALSE(wanted.contains("a"));
+    wanted.take({Unsubscribe, {}, {}, {}});
+    EXPECT_FALSE(wanted.any());
+}
+
 TEST(FoxgloveTest, SubscriptionsComeAndGo) {
     Subscriptions subscriptions(2);
     EXPECT_EQ(
@@ -36,7 +85,7 @@ TEST(FoxgloveTest, SubscriptionsComeAndGo) {
     EXPECT_THAT(subscriptions.all(), ElementsAre(Pair(7, 1), Pair(8, 0)));
     EXPECT_EQ(subscriptions.take(R"({"op":"unsubscribe","subscriptionIds":[7, 99]})"), "");
     EXPECT_THAT(subscriptions.all(), ElementsAre(Pair(8, 0)));
-    EXPECT_EQ(subscriptions.take(R"({"op":"getParameters"})"), "") << "of the protocol, but not for this server";
+    EXPECT_EQ(subscriptions.take(R"({"op":"fetchAsset"})"), "") << "of the protocol, but not for this server";
 }
 
 TEST(FoxgloveTest, WhatIsWrongIsToldAndChangesNothing) {

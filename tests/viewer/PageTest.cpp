@@ -50,16 +50,26 @@ protected:
             "); fan.gl.readPixels(x, y, 1, 1, fan.gl.RGBA, fan.gl.UNSIGNED_BYTE, p);"
             "return [...p].slice(0, 3); })()");
     }
-    /** Points with the mouse at a place; the text beside the controls. */
-    std::string readAt(double range, double bearing_deg) {
-        const json at = value(
+    /** Where a place of the water is in the window [px]. */
+    std::array<double, 2> windowAt(double range, double bearing_deg) {
+        return value(
             "(() => { const {fan} = insonify, box = fan.canvas.getBoundingClientRect(); fan.draw();"
             "const [x, y] = fan.pixelOf(" +
             std::to_string(range) + ", " + std::to_string(types::radians(bearing_deg)) +
             "); return [box.left + x / devicePixelRatio, box.bottom - y / devicePixelRatio]; })()");
+    }
+    void nextFrame() { value("new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done)))"); }
+    /** Points with the mouse at a place; the text over the picture. */
+    std::string readAt(double range, double bearing_deg) {
+        const auto at = windowAt(range, bearing_deg);
         browser->point(at[0], at[1]);
-        value("new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done)))");
+        nextFrame();
         return text("cursor");
+    }
+    void clickAt(double range, double bearing_deg) {
+        const auto at = windowAt(range, bearing_deg);
+        browser->click(at[0], at[1]);
+        nextFrame();
     }
     bool hasThree() { return value("fetch('three.min.js').then((answer) => answer.ok)"); }
 
@@ -166,7 +176,7 @@ TEST_F(PageTest, TasksPlansAndLossesAreListed) {
     EXPECT_EQ(value("[...document.querySelectorAll('#plan dt, #plan dd')].map((one) => one.textContent)"),
               json({"multipath", "not asked for"}));
     EXPECT_EQ(value("[...document.querySelectorAll('#plan h3')].map((one) => one.textContent)"),
-              json({"world", "left out", "lost samples"}));
+              json({"world", "left out", "lost samples", "left aside for newer samples, as asked for"}));
     EXPECT_THAT(text("plan"),
                 testing::AllOf(HasSubstr("64 rows, 2 columns per beam, 1 slabs, predicted error 0.01"),
                                HasSubstr("compiled: cones"), HasSubstr("run: draw, sum"), HasSubstr("a notice")));
@@ -174,8 +184,180 @@ TEST_F(PageTest, TasksPlansAndLossesAreListed) {
         becomes("/^[1-9][0-9]*  world.pose > viewer.pose \\(buffer\\)$/.test(document.querySelector('#plan "
                 ".refused').textContent)"))
         << "a buffer of one that gets two poses each time";
+    const std::string meant = "[...document.querySelectorAll('#plan .dim')].at(-1)";
+    EXPECT_TRUE(becomes("/^[1-9][0-9]*  world.pose > viewer.newest \\(data\\)$/.test(" + meant + ".textContent)"))
+        << "the newest of two poses is wanted, and is no loss";
+    EXPECT_EQ(value("document.querySelectorAll('#plan .refused').length"), 1);
+    EXPECT_TRUE(
+        becomes("document.querySelector('#graph .lost').textContent === "
+                "'-' + insonify.status().connections.find((one) => one.policy === 'buffer' && one.lost).lost"))
+        << "nor is it in the drawing";
     EXPECT_EQ(value("document.querySelectorAll('#graph .node').length"), 3);
     EXPECT_EQ(value("document.querySelectorAll('#graph .edge').length"), 2);
+}
+
+TEST_F(PageTest, WhatATaskHasRefusedStandsWhereItWasAskedForAndNotInTheTaskTable) {
+    EXPECT_THROW(running->deployment().call("source.setLevel", {"66"}), std::exception);
+    ASSERT_TRUE(becomes("/66 is no level/.test(insonify.status().tasks[0].error)"));
+    EXPECT_TRUE(becomes("/66 is no level/.test(document.querySelectorAll('#tasks tr')[1].title)"));
+    EXPECT_EQ(value("document.querySelectorAll('#tasks tr')[1].cells[1].textContent"), "Running");
+    EXPECT_THAT(text("tasks"), testing::Not(HasSubstr("66")));
+}
+
+TEST_F(PageTest, HoveringMovesNothing) {
+    const std::string places =
+        "JSON.stringify([...document.querySelectorAll('header, main, section, .bar, .picture, nav > *')].map((one) => "
+        "one.getBoundingClientRect()))";
+    for (const int width : {400, 900, 1600}) {
+        browser->size(width, 900);
+        nextFrame();
+        const json before = value(places);
+        EXPECT_THAT(readAt(6.75, 8), HasSubstr("dB")) << width;
+        EXPECT_EQ(value(places), before) << width;
+        browser->point(1, 1);
+        nextFrame();
+    }
+}
+
+TEST_F(PageTest, AllOfItCanBeReachedFrom400To1920Pixels) {
+    for (const auto& [width, height] : {std::pair(400, 800), {768, 1024}, {1024, 768}, {1440, 900}, {1920, 1080}}) {
+        browser->size(width, height);
+        nextFrame();
+        EXPECT_LE(value("document.documentElement.scrollWidth"), width) << "it scrolls sideways";
+        EXPECT_EQ(value("[...document.querySelectorAll('button, select, input, output, .figure, h2')].filter((one) => {"
+                        "const box = one.getBoundingClientRect(); return box.width && (box.left < 0 || box.right > "
+                        "innerWidth); }).map((one) => one.id || one.textContent)"),
+                  json::array())
+            << "outside, at " << width;
+        for (const char* picture : {"fan", "view"}) {
+            const json box =
+                value(std::string("document.getElementById('") + picture + "').getBoundingClientRect().toJSON()");
+            EXPECT_GE(box["width"], width < 800 ? width * 0.95 : width * 0.48) << picture << " " << width;
+            EXPECT_GE(box["height"], 200) << picture << " " << width;
+        }
+        EXPECT_EQ(pixelAt(6.75, 0), brightest) << width;
+        if (const char* const folder = std::getenv("INSONIFY_SCREENSHOTS"))
+            browser->screenshot(std::string(folder) + "/page_" + std::to_string(width) + ".png");
+    }
+    EXPECT_EQ(value("document.querySelector('meta[name=viewport]').content"), "width=device-width, initial-scale=1");
+}
+
+TEST_F(PageTest, AFrozenPingStaysWhileTheSonarGoesOn) {
+    click("freeze");
+    const json frozen = value("insonify.fan.ping.time_us");
+    ASSERT_TRUE(
+        becomes("Number(document.getElementById('time').textContent.slice(0, -2)) > " + frozen.dump() + "e-6 + 0.2"));
+    EXPECT_EQ(value("insonify.fan.ping.time_us"), frozen);
+    EXPECT_EQ(pixelAt(6.75, 0), brightest);
+    click("freeze");
+    EXPECT_TRUE(becomes("insonify.fan.ping.time_us > " + frozen.dump()));
+}
+
+TEST_F(PageTest, TheWheelGoesNearerAndDraggingMovesThePicture) {
+    const auto at = windowAt(6.75, 0);
+    browser->wheel(at[0], at[1], -800);
+    ASSERT_TRUE(becomes("insonify.fan.zoom > 3"));
+    // The mouse stands at whole pixels.
+    EXPECT_NEAR(windowAt(6.75, 0)[0], at[0], 3) << "what is under the mouse stays there";
+    EXPECT_NEAR(windowAt(6.75, 0)[1], at[1], 3);
+    EXPECT_THAT(readAt(6.75, 0), HasSubstr("6.7"));
+    EXPECT_EQ(pixelAt(6.75, 0), brightest);
+    EXPECT_EQ(pixelAt(5.7, 0), darkest);
+    browser->drag(at[0], at[1], 40, -30);
+    nextFrame();
+    EXPECT_NEAR(windowAt(6.75, 0)[0], at[0] + 40, 3);
+    EXPECT_NEAR(windowAt(6.75, 0)[1], at[1] - 30, 3);
+    EXPECT_EQ(pixelAt(6.75, 0), brightest);
+    click("whole");
+    EXPECT_NEAR(windowAt(6.75, 0)[0], at[0], 1);
+    EXPECT_EQ(value("document.getElementById('whole').disabled"), true);
+}
+
+TEST_F(PageTest, TwoClicksMeasureHowFarAndWhichWay) {
+    click("measure");
+    clickAt(6, 30);
+    EXPECT_THAT(text("measured"), testing::StartsWith("6.0"));
+    clickAt(6 * std::sqrt(3), 0);  // of a triangle of 6 m, 6 m and 6 sqrt 3 m
+    const json found = value("insonify.fan.measured()");
+    EXPECT_NEAR(found["distance"], 6, 0.06);
+    EXPECT_NEAR(types::degrees(found["bearing"].get<double>()), -30, 1);
+    EXPECT_THAT(text("measured"), testing::AllOf(HasSubstr(" m apart, towards -"), HasSubstr("stbd, 0")));
+    double heading = 0;
+    const std::string told = text("measured");
+    ASSERT_EQ(std::sscanf(told.c_str() + told.find("stbd, ") + 6, "%lf° true", &heading), 1) << told;
+    EXPECT_NEAR(heading, 30, 1) << "the sonar looks north";
+    clickAt(3, 0);
+    EXPECT_EQ(value("insonify.fan.marks.length"), 1) << "a third begins anew";
+    click("measure");
+    nextFrame();
+    EXPECT_EQ(text("measured"), "");
+}
+
+TEST_F(PageTest, ASnapshotIsThePictureAsAFile) {
+    value(R"(HTMLAnchorElement.prototype.click = async function() {
+        const picture = await createImageBitmap(await (await fetch(this.href)).blob()), canvas = document.createElement('canvas');
+        Object.assign(canvas, {width: picture.width, height: picture.height});
+        canvas.getContext('2d').drawImage(picture, 0, 0);
+        self.saved = {name: this.download, height: picture.height, pixel: (x, y) => [...canvas.getContext('2d').getImageData(x, y, 1, 1).data].slice(0, 3)};
+    })");
+    value("insonify.fan.rings = false");
+    click("freeze");
+    click("snapshot");
+    ASSERT_TRUE(becomes("self.saved"));
+    EXPECT_EQ(value("saved.name"), value("`source.ping_${insonify.fan.ping.time_us}.png`"));
+    EXPECT_EQ(value("saved.height"), value("insonify.fan.canvas.height + 22"));
+    EXPECT_EQ(value("(() => { const [x, y] = insonify.fan.pixelOf(6.75, 0); return saved.pixel(x, "
+                    "insonify.fan.canvas.height - y); })()"),
+              brightest);
+}
+
+TEST_F(PageTest, HeadingDepthAndAttitudeStandOverThePicture) {
+    ASSERT_TRUE(becomes("!document.getElementById('attitude').hidden"));
+    EXPECT_TRUE(
+        becomes("document.getElementById('attitude').textContent === "
+                "'heading000.0°depth2.00 mpitch0.0°roll0.0°'"))
+        << text("attitude");
+    // Turned to starboard by 90 degrees, then nose down by 20, then starboard down by 10: z, y, x of the body.
+    const json turned = value(R"(import('./attitude.js').then(({attitudeOf}) => {
+        const half = (deg) => deg * Math.PI / 360, product = ([ax, ay, az, aw], [bx, by, bz, bw]) =>
+            [aw * bx + ax * bw + ay * bz - az * by, aw * by - ax * bz + ay * bw + az * bx, aw * bz + ax * by - ay * bx + az * bw,
+             aw * bw - ax * bx - ay * by - az * bz];
+        const about = (axis, deg) => [0, 1, 2].map((i) => i === axis ? Math.sin(half(deg)) : 0).concat(Math.cos(half(deg)));
+        const orientation = product(product(about(2, -90), about(1, 20)), about(0, 10));
+        return attitudeOf({orientation, position: [1, 2, -3.5]}, 0.5);
+    }))");
+    EXPECT_NEAR(turned["heading"], 90, 1e-9);
+    EXPECT_NEAR(turned["pitch"], 20, 1e-9);
+    EXPECT_NEAR(turned["roll"], 10, 1e-9);
+    EXPECT_NEAR(turned["depth"], 4, 1e-12);
+}
+
+TEST_F(PageTest, ALogsTimelineTellsWhereItIsAndGoesElsewhere) {
+    ASSERT_TRUE(becomes("document.querySelector('.timeline .figure')?.textContent === '25.0 / 100.0 s'"));
+    const auto pull = [&](const std::string& to) {
+        value("(() => { const slider = document.querySelector('.timeline input'); slider.value = " + to +
+              "; slider.dispatchEvent(new Event('input')); slider.dispatchEvent(new Event('change')); })()");
+    };
+    pull("60");
+    EXPECT_TRUE(becomes("document.querySelector('.timeline .figure').textContent === '60.0 / 100.0 s'"));
+    pull("95");
+    EXPECT_TRUE(becomes("/not the last 10 s/.test(document.querySelector('.timeline .refused').textContent)"));
+    EXPECT_TRUE(becomes("document.querySelector('.timeline input').value === '60'")) << "it shows where the log is";
+}
+
+TEST_F(PageTest, RangeGainAndFrequencyComeFirst) {
+    // Of the sonar that is shown, in this order, whichever task has them.
+    const json found = value(R"(import('./first.js').then(({First}) => {
+        const property = (name) => ({name, type: 'double', unit: 'x', doc: ''}), task = (name, ...names) => ({name, properties: names.map(property)});
+        const first = new First({}, document.createElement('span'));
+        first.setInterfaces({control: true, tasks: [task('other', 'range'), task('sonar', 'bins', 'frequency_khz', 'range'), task('receiver', 'gain_db')]});
+        first.update({tasks: [{name: 'sonar', properties: {range: 50}}], connections: [{from: 'sonar.ping', to: 'receiver.in'}]}, 'receiver.ping');
+        return [[...first.place.children].map((one) => one.title.split(':')[0]), first.place.querySelector('input').value];
+    }))");
+    EXPECT_EQ(found, json({{"sonar.range", "receiver.gain_db", "sonar.frequency_khz"}, "50"}));
+    const json sorted = value(R"(import('./tables.js').then(({rank}) =>
+        ['bins', 'frequency_khz', 'range', 'gain_db', 'more'].map((name) => ({name})).sort((a, b) => rank(a) - rank(b)).map((one) => one.name)))");
+    EXPECT_EQ(sorted, json({"range", "gain_db", "frequency_khz", "bins", "more"}));
 }
 
 TEST_F(PageTest, TheSceneTheWaterThePathAndTheFanAreDrawn) {

@@ -43,7 +43,10 @@ public:
     framework::OutputPort<types::SonarPtr> ping{this, "ping", "of that level"};
 
 private:
-    bool propertiesHook() override { return true; }
+    bool propertiesHook() override {
+        if (config->level == 66) throw std::runtime_error("66 is no level for today");
+        return true;
+    }
     void updateHook() override {
         const auto sample = blockPing(now().microseconds);
         for (float& bin : sample->bins) bin *= static_cast<float>(config->level);
@@ -60,14 +63,20 @@ struct WaterConfig {
 };
 
 /** Sand 5 m below the surface and a stone on it, and a vehicle that goes north over it. */
-class WorldTask final : public framework::TaskContext, public framework::Planned {
+class WorldTask final : public framework::TaskContext, public framework::Planned, public framework::Player {
 public:
     using TaskContext::TaskContext;
     framework::Properties<WaterConfig> config{this};
     framework::OutputPort<types::SnapshotPtr> snapshot{this, "snapshot", "of the scene"};
     framework::OutputPort<types::Pose> pose{this, "pose", "two each time"};
 
+    framework::Operation<void(double)> seek{this, "seek", "goes there in its log of 100 s", [this](double seconds) {
+                                                if (seconds > 90) throw std::runtime_error("not the last 10 s");
+                                                at_s_ = seconds;
+                                            }};
+
     const types::Plan* plan() const override { return &plan_; }
+    std::optional<types::Playback> playback() const override { return types::Playback{at_s_, 100}; }
 
 private:
     bool propertiesHook() override { return true; }
@@ -105,6 +114,7 @@ private:
         pose.write(here);
     }
 
+    std::atomic<double> at_s_{25};
     const types::GeometryPtr geometry_ = scene();
     const types::Plan plan_{{"cones"}, {"draw", "sum"}, {{"multipath", "not asked for"}}, {"a notice"}, 64, 2, 1,
                             0.01,      "llvmpipe"};
@@ -139,6 +149,7 @@ connections:
   - {from: source.ping,    to: viewer.ping,  policy: {type: buffer, size: 8}}
   - {from: world.snapshot, to: viewer.scene, policy: {type: buffer, size: 8}}
   - {from: world.pose,     to: viewer.pose,  policy: {type: buffer, size: 1}}
+  - {from: world.pose,     to: viewer.newest}
 )",
                                                      "test.yml");
         spec.set("viewer.port=" + std::to_string(port));

@@ -14,6 +14,8 @@ struct Throwing final : ServerHandler {
     std::optional<PageFile> file(std::string_view) override { throw std::runtime_error("no files today"); }
     std::vector<Frame> greeting() override { return {}; }
     void request(uint64_t, std::string) override { throw std::runtime_error("no answers today"); }
+    void parameters(uint64_t, ParameterRequest, bool) override { throw std::runtime_error("no parameters today"); }
+    void subscribed() override { throw std::runtime_error("no subscriptions today"); }
 };
 
 TEST(ServerTest, AnErrorClosesTheSessionThatItWasFor) {
@@ -36,6 +38,8 @@ TEST(ServerTest, WhatIsReplacedBeforeItIsSentIsCountedForEachClient) {
         std::optional<PageFile> file(std::string_view) override { return std::nullopt; }
         std::vector<Frame> greeting() override { return {}; }
         void request(uint64_t, std::string) override {}
+        void parameters(uint64_t, ParameterRequest, bool) override {}
+        void subscribed() override {}
     } quiet;
     Server server({}, quiet);
     Client client(server.port());

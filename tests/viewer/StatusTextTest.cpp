@@ -25,12 +25,14 @@ TEST(StatusTextTest, AStatusHoldsTasksPlansAndLosses) {
     task.plan.emplace();
     task.plan->omitted = {{"multipath", "not configured"}};
     task.plan->predicted_error = std::numeric_limits<double>::quiet_NaN();
+    task.playback = {1.5, 60};
     status.tasks = {task};
     status.connections = {{"a.b", "c.d", "buffer", 3, 4}};
     const json text = json::parse(statusText(status, {2, 1, 5}));
     EXPECT_EQ(text["tasks"][0]["properties"]["range"], 50.5);
     EXPECT_EQ(text["tasks"][0]["plan"]["omitted"][0]["reason"], "not configured");
     EXPECT_TRUE(text["tasks"][0]["plan"]["predicted_error"].is_null());
+    EXPECT_EQ(text["tasks"][0]["playback"], (json{{"at_s", 1.5}, {"length_s", 60}}));
     EXPECT_EQ(text["connections"][0]["lost"], 3);
     EXPECT_EQ(text["connections"][0]["passed_over"], 4);
     EXPECT_EQ(text["clients"], 2);

@@ -1,8 +1,11 @@
 #include <gmock/gmock.h>
 
 #include <fstream>
+#include <map>
+#include <span>
 
 #include "components/framework/Deployment.hpp"
+#include "components/ros/Cdr.hpp"
 #include "components/viewer/ViewerTask.hpp"
 #include "tests/support/Folder.hpp"
 #include "tests/viewer/Bench.hpp"
@@ -141,10 +144,18 @@ TEST(ViewerTaskTest, AllKindsOfSamplesAreTaken) {
     EXPECT_THAT(client.upgrade(foxglove_protocol), HasSubstr("101"));
     ASSERT_TRUE(client.hear());
     const auto channels = nlohmann::json::parse(client.heard())["channels"];
-    ASSERT_EQ(channels.size(), 4u);
-    EXPECT_EQ(channels[1]["schemaName"], "geometry_msgs/PoseStamped");
-    EXPECT_EQ(channels[2]["schemaName"], "sensor_msgs/Image");
-    EXPECT_EQ(channels[3]["topic"], "/scene/port");
+    std::vector<std::pair<std::string, std::string>> topics;
+    for (const auto& channel : channels) topics.emplace_back(channel["topic"], channel["schemaName"]);
+    using testing::Pair;
+    EXPECT_THAT(topics, testing::ElementsAre(Pair("/sonar/port", "marine_acoustic_msgs/ProjectedSonarImage"),
+                                             Pair("/sonar/port/image", "sensor_msgs/Image"),
+                                             Pair("/sonar/port/points", "sensor_msgs/PointCloud2"),
+                                             Pair("/vehicle/port", "geometry_msgs/PoseStamped"),
+                                             Pair("/vehicle/port/transforms", "foxglove_msgs/FrameTransforms"),
+                                             Pair("/fan/port", "sensor_msgs/Image"),
+                                             Pair("/scene/port", "geometry_msgs/PoseStamped"),
+                                             Pair("/scene/port/transforms", "foxglove_msgs/FrameTransforms"),
+                                             Pair("/scene/port/scene", "foxglove_msgs/SceneUpdate")));
 }
 
 // -- in a deployment --------------------------------------------------------------------------------------------------
@@ -177,6 +188,137 @@ TEST(ViewerTaskTest, APageSetsPropertiesButNoStates) {
     EXPECT_THAT(refused("source.stop", ""), HasSubstr("states of tasks"));
     EXPECT_THAT(refused("viewer.setPort", "1"), HasSubstr("does not steer itself"));
     EXPECT_THAT(answerTo(client, "nonsense")["refused"], "is no JSON object");
+}
+
+/** The next text message with this op. */
+nlohmann::json nextOf(Client& client, const std::string& op) {
+    while (const auto message = client.hear()) {
+        const auto json = nlohmann::json::parse(*message, nullptr, false);
+        if (json.is_object() && json["op"] == op) return json;
+    }
+    return nullptr;
+}
+
+/** By name, from parameterValues. */
+std::map<std::string, nlohmann::json> valuesIn(const nlohmann::json& message) {
+    std::map<std::string, nlohmann::json> values;
+    for (const auto& one : message["parameters"]) values[one["name"]] = one["value"];
+    return values;
+}
+
+TEST(ViewerTaskTest, FoxglovesParametersAreThePropertiesOfTasks) {
+    Running running;
+    Client client(running.port());
+    ASSERT_THAT(client.upgrade(foxglove_protocol), HasSubstr("101"));
+    client.say(R"({"op":"getParameters","parameterNames":[],"id":"all"})");
+    auto said = nextOf(client, "parameterValues");
+    EXPECT_EQ(said["id"], "all");
+    EXPECT_EQ(valuesIn(said).at("source.level"), 1);
+    EXPECT_EQ(valuesIn(said).at("world.water"), true);
+    EXPECT_TRUE(valuesIn(said).contains("viewer.port"));
+
+    client.say(
+        R"({"op":"setParameters","id":"one","parameters":[{"name":"source.level","value":7.5},{"name":"world.water","value":false}]})");
+    said = nextOf(client, "parameterValues");
+    EXPECT_EQ(said["id"], "one");
+    EXPECT_EQ(valuesIn(said).size(), 2u);
+    EXPECT_EQ(valuesIn(said).at("source.level"), 7.5);
+    EXPECT_EQ(std::get<double>(running.deployment().task("source")->record().properties.at("level")), 7.5);
+
+    for (const auto& [name, why] : {std::pair("source.level", "source.level: level: is 700"),
+                                    {"source.levl", "no operation setLevl"},
+                                    {"sauce.level", "is no property of a task"},
+                                    {"source", "is no property of a task"},
+                                    {"viewer.port", "does not steer itself"}}) {
+        client.say(std::string(R"({"op":"setParameters","parameters":[{"name":")") + name + R"(","value":700}]})");
+        const auto refused = nextOf(client, "status");
+        EXPECT_THAT(refused["message"].get<std::string>(), HasSubstr(why));
+        EXPECT_EQ(refused["level"], 2);
+    }
+}
+
+TEST(ViewerTaskTest, FoxgloveIsToldOfParametersThatChange) {
+    Running running;
+    Client client(running.port());
+    ASSERT_THAT(client.upgrade(foxglove_protocol), HasSubstr("101"));
+    client.say(R"({"op":"subscribeParameterUpdates","parameterNames":["source.level"]})");
+    EXPECT_EQ(valuesIn(nextOf(client, "parameterValues")), (std::map<std::string, nlohmann::json>{{"source.level", 1}}))
+        << "as it is";
+    running.deployment().call("world.setWater", {"false"});
+    running.deployment().call("source.setLevel", {"3"});
+    for (nlohmann::json level = 1; level != 3;) {
+        const auto told = valuesIn(nextOf(client, "parameterValues"));
+        ASSERT_EQ(told.size(), 1u) << "of this one alone";
+        level = told.at("source.level");
+        ASSERT_TRUE(level == 1 || level == 3) << level;
+    }
+}
+
+TEST(ViewerTaskTest, AWebSiteReadsParametersAndSetsThemOnlyWithTheToken) {
+    Running running;
+    Client client(running.port());
+    ASSERT_THAT(client.upgrade(foxglove_protocol, "/", "Origin: https://app.foxglove.dev\r\n"), HasSubstr("101"));
+    client.say(R"({"op":"setParameters","id":"x","parameters":[{"name":"source.level","value":9}]})");
+    EXPECT_THAT(nextOf(client, "status")["message"].get<std::string>(), HasSubstr("only with the viewer's token"));
+    EXPECT_EQ(valuesIn(nextOf(client, "parameterValues")).at("source.level"), 1);
+}
+
+TEST(ViewerTaskTest, FoxgloveGetsTheWholeSceneWhenItSubscribesAndThenWhatMoves) {
+    Bench bench;
+    Feed<types::SnapshotPtr> scene(bench.viewer, "scene");
+    bench.start();
+    auto geometry = std::make_shared<types::Geometry>();
+    geometry->meshes.resize(1);
+    geometry->meshes[0].positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
+    geometry->meshes[0].indices = {0, 1, 2};
+    geometry->meshes[0].clusters.resize(1);
+    geometry->meshes[0].clusters[0].index_count = 3;
+    geometry->materials.resize(1);
+    geometry->materials[0].name = "Steel";
+    geometry->objects = {{"plate", 0, glm::dmat4(1)}, {"door", 0, glm::dmat4(1)}};
+    const auto show = [&](double north) {
+        auto snapshot = std::make_shared<types::Snapshot>();
+        snapshot->geometry = geometry;
+        snapshot->sonar.target_frame = "world";
+        if (north != 0) {
+            snapshot->moved = {{1, glm::dmat4(1)}};
+            snapshot->moved[0].world_from_object[3] = {north, 0, 0, 1};
+        }
+        scene.write(snapshot);
+        bench.viewer.update();
+    };
+    const auto next = [](Client& client) {
+        foxglove::SceneUpdate update;
+        std::optional<std::string> message;
+        do message = client.hear();
+        while (message && (*message)[0] != 1);
+        if (message) ros::decode(std::span(*message).subspan(13), update);
+        return update;
+    };
+    show(0);
+    for (int i = 0; i < 2; ++i) {  // who comes later gets it, too
+        Client client(bench.port());
+        ASSERT_THAT(client.upgrade(foxglove_protocol), HasSubstr("101"));
+        client.say(R"({"op":"subscribe","subscriptions":[{"id":1,"channelId":5}]})");
+        auto update = next(client);
+        ASSERT_EQ(update.entities.size(), 2u);
+        EXPECT_EQ(update.deletions.size(), 1u);
+        EXPECT_EQ(update.entities[0].id, "0 plate");
+        EXPECT_EQ(update.entities[0].frame_id, "world");
+        EXPECT_EQ(update.entities[0].triangles[0].indices, (std::vector<uint32_t>{0, 1, 2}));
+        EXPECT_NEAR(update.entities[0].triangles[0].points[1].y, 1, 1e-6) << "north is y in ENU";
+        EXPECT_NEAR(update.entities[0].triangles[0].color.r, 0.53, 1e-6);
+        show(4);
+        update = next(client);
+        ASSERT_EQ(update.entities.size(), 1u);
+        EXPECT_EQ(update.entities[0].id, "1 door");
+        EXPECT_NEAR(update.entities[0].triangles[0].points[0].y, 4, 1e-6);
+        show(0);
+        update = next(client);
+        ASSERT_EQ(update.entities.size(), 1u) << "it went back";
+        EXPECT_NEAR(update.entities[0].triangles[0].points[0].y, 0, 1e-6);
+        EXPECT_TRUE(update.deletions.empty());
+    }
 }
 
 TEST(ViewerTaskTest, APagePausesALockstepRunAndStepsIt) {

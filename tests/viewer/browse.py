@@ -1,8 +1,8 @@
 """A headless Chromium that does what is asked: python3 browse.py CHROMIUM URL [SCRIPT]
 
 Reads lines of JSON and answers each with one: {"eval": EXPRESSION} gives its value, {"until": EXPRESSION, "seconds": S}
-waits until it is true, {"screenshot": FILE} writes a PNG, {"type": TEXT} types it and Enter, {"point": [X, Y]} moves
-the mouse. An expression that throws gives {"error": TEXT}. SCRIPT runs before those of the page.
+waits until it is true, {"screenshot": FILE} writes a PNG, {"type": TEXT} types it and Enter, {"mouse": {"type": KIND,
+"x": X, "y": Y, ...}} is what the mouse does, {"size": [W, H]} makes the window so large. An expression that throws gives {"error": TEXT}. SCRIPT runs before those of the page.
 """
 
 import asyncio
@@ -98,8 +98,14 @@ class Page:
             await self.send("Input.dispatchKeyEvent", type=kind, key="Enter", code="Enter", windowsVirtualKeyCode=13)
         return {"value": True}
 
-    async def point(self, x, y):
-        await self.send("Input.dispatchMouseEvent", type="mouseMoved", x=x, y=y)
+    async def mouse(self, event):
+        await self.send("Input.dispatchMouseEvent", **event)
+        return {"value": True}
+
+    async def size(self, width, height):
+        await self.send(
+            "Emulation.setDeviceMetricsOverride", width=width, height=height, deviceScaleFactor=1, mobile=False
+        )
         return {"value": True}
 
 
@@ -117,8 +123,10 @@ async def serve(address, url, script):
                 answer = await page.until(asked["until"], asked["seconds"])
             elif "type" in asked:
                 answer = await page.type(asked["type"])
-            elif "point" in asked:
-                answer = await page.point(*asked["point"])
+            elif "mouse" in asked:
+                answer = await page.mouse(asked["mouse"])
+            elif "size" in asked:
+                answer = await page.size(*asked["size"])
             else:
                 answer = await page.screenshot(asked["screenshot"])
             print(json.dumps(answer), flush=True)

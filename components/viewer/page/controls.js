@@ -1,4 +1,4 @@
-// Buttons for what the deployment offers: recording, pausing, stepping, seeking.
+// Buttons for what the deployment offers: recording, pausing, stepping.
 import {element} from './tables.js';
 
 export class Controls {
@@ -9,7 +9,6 @@ export class Controls {
   setInterfaces({tasks, control}) {
     this.control = control;
     this.loggers = tasks.filter((task) => task.properties.some((property) => property.name === 'record')).map((task) => task.name);
-    this.seekers = tasks.filter((task) => task.operations.includes('seek void(double)')).map((task) => task.name);
     this.replays = tasks.filter((task) => task.operations.includes('pause void(bool)')).map((task) => task.name);
     this.built = false;
   }
@@ -27,10 +26,6 @@ export class Controls {
       parts.push(this.button(`pause ${name}`, () => this.link.call(`${name}.pause`, true), 'the log\'s time stands still'),
                  this.button('go on', () => this.link.call(`${name}.pause`, false), 'the log\'s time goes on'),
                  this.button('step', () => this.link.call(`${name}.step`), 'one instant of the log'));
-    for (const name of this.seekers) {
-      const seconds = element('input', {type: 'text', size: 5, value: '0', title: 'seconds of the log'});
-      parts.push(' ', seconds, this.button('seek', () => this.link.call(`${name}.seek`, seconds.value), `${name} goes there`));
-    }
     this.place.replaceChildren(...(this.control ? parts : []));
   }
   record(name) { return this.link.call(`${name}.setRecord`, !this.recording.get(name)); }

@@ -54,6 +54,10 @@ function textureOf(gl, unit) {
 }
 
 const table_size = 4096, degrees = 180 / Math.PI;
+const bearingText = (bearing) => `${(bearing * degrees).toFixed(1)}°` + (Math.abs(bearing) < 5e-4 ? '' : bearing > 0 ? ' port' : ' stbd');
+/** Ahead and to port [m], and back. */
+const metresOf = ({range, bearing}) => [range * Math.cos(bearing), range * Math.sin(bearing)];
+const placeOf = ([ahead, port]) => ({range: Math.hypot(ahead, port), bearing: Math.atan2(port, ahead)});
 
 export class Fan {
   constructor(canvas, overlay) {
@@ -63,6 +67,8 @@ export class Fan {
     this.rings = true;
     this.span_db = 45;
     this.top_db = 0;
+    this.marks = [];  // places between which is measured, two at most
+    this.whole();
     const gl = this.gl = canvas.getContext('webgl2', {antialias: false, preserveDrawingBuffer: true});
     if (!gl) return;  // rings, cursor and levels are there nonetheless
     this.program = programOf(gl);
@@ -104,8 +110,35 @@ export class Fan {
     gl.texImage2D(gl.TEXTURE_2D, 0, gl.R32F, table_size, 1, 0, gl.RED, gl.FLOAT, table);
   }
 
+  /** All of the picture, as large as fits. */
+  whole() {
+    this.zoom = 1;
+    this.shift = [0, 0];  // of the picture's middle, in pixels of the canvas as all offsets
+  }
+  moveBy(dx, dy) { this.shiftTo([this.shift[0] + dx, this.shift[1] + dy]); }
+  /** Nearer by a factor, about a pixel that stays where it is. */
+  zoomBy(factor, about) {
+    const zoom = Math.max(1, Math.min(50, this.zoom * factor)), by = zoom / this.zoom, middle = [this.canvas.width / 2, this.canvas.height / 2];
+    this.zoom = zoom;
+    this.shiftTo(middle.map((m, i) => (1 - by) * (about[i] - m) + by * this.shift[i]));
+  }
+  /** No farther than leaves the picture's edge in the middle. */
+  shiftTo(shift) {
+    const most = [this.canvas.width, this.canvas.height].map((size) => (this.zoom - 1) * size / 2);
+    this.shift = shift.map((s, i) => Math.max(-most[i], Math.min(most[i], s)));
+  }
+  /** A place to measure from, or to; a third begins anew. */
+  mark(at) {
+    if (this.ping) this.marks = [...this.marks.length === 2 ? [] : this.marks, this.placeAt(...at)];
+  }
+
   /** Where metres, or radians and metres, lie on the canvas; y goes up. */
   place() {
+    const {scale, origin} = this.wholePlace(), middle = [this.canvas.width / 2, this.canvas.height / 2];
+    return {scale: scale.map((s) => s * this.zoom), origin: origin.map((o, i) => middle[i] + (o - middle[i]) * this.zoom + this.shift[i])};
+  }
+  /** The same of all of the picture. */
+  wholePlace() {
     const {width, height} = this.canvas, margin = 26 * devicePixelRatio, far = this.ping.bins * this.ping.bin_m;
     const inner = [width - 2 * margin, height - 2 * margin];
     if (this.polar) {
@@ -181,14 +214,17 @@ export class Fan {
     line(arc.map((b) => [far, b]));
     if (this.high - this.low < 6.2) for (const b of [this.low, this.high]) line([[0, b], [far, b]]);
     if (this.rings) this.drawRings(far, arc, line, label);
-    if (this.cursor) this.drawCursor(context, height);
+    if (this.cursor) this.drawCross(context, this.cursor, 'rgba(242, 176, 74, .8)');
+    this.drawMarks(context, line, label);
   }
 
   drawRings(far, arc, line, label) {
-    const step = [0.1, 0.2, 0.5, 1, 2, 5, 10, 20, 50, 100, 200, 500].find((s) => far / s <= 6) ?? 1000;
+    const seen = far / this.zoom, step = [0.1, 0.2, 0.5, 1, 2, 5, 10, 20, 50, 100, 200, 500].find((s) => seen / s <= 6) ?? 1000;
+    const middle = this.placeAt(this.canvas.width / 2, this.canvas.height / 2).bearing;
+    const labelled = this.zoom > 1.5 ? Math.max(this.low, Math.min(this.high, middle)) : this.low;
     for (let r = step; r < far * 0.999; r += step) {
       line(arc.map((b) => [r, b]));
-      label(`${+r.toFixed(1)} m`, r, this.low, this.polar ? -2 : 16, this.polar ? -3 : 4);
+      label(`${+r.toFixed(1)} m`, r, labelled, this.polar ? -2 : 16, this.polar ? -3 : 4);
     }
     const turn = (this.high - this.low) * degrees > 200 ? 45 : 15;
     for (let d = Math.ceil(this.low * degrees / turn) * turn; d <= this.high * degrees; d += turn) {
@@ -197,15 +233,40 @@ export class Fan {
     }
   }
 
-  drawCursor(context, height) {
-    const [x, y] = this.cursor;
-    context.strokeStyle = 'rgba(242, 176, 74, .8)';
+  drawCross(context, [x, y], colour) {
+    const height = this.overlay.height, size = devicePixelRatio;
+    context.strokeStyle = colour;
     context.beginPath();
     for (const [dx, dy] of [[1, 0], [-1, 0], [0, 1], [0, -1]]) {
-      context.moveTo(x + dx * 4, height - y + dy * 4);
-      context.lineTo(x + dx * 12, height - y + dy * 12);
+      context.moveTo(x + dx * 4 * size, height - y + dy * 4 * size);
+      context.lineTo(x + dx * 12 * size, height - y + dy * 12 * size);
     }
     context.stroke();
+  }
+
+  /** What is measured: a straight line in the water, which in the polar picture is none. */
+  drawMarks(context, line, label) {
+    const ends = this.marks.map(metresOf), colour = '#f2b04a';
+    for (const mark of this.marks) this.drawCross(context, this.pixelOf(mark.range, mark.bearing), colour);
+    if (ends.length < 2) return;
+    const between = (share) => placeOf(ends[0].map((a, i) => a + share * (ends[1][i] - a)));
+    context.strokeStyle = context.fillStyle = colour;
+    line(Array.from({length: 65}, (_, i) => between(i / 64)).map(({range, bearing}) => [range, bearing]));
+    const middle = between(0.5);
+    label(`${this.measured().distance.toFixed(2)} m`, middle.range, middle.bearing, 0, -8);
+  }
+  /** From the first mark to the second: metres, and which way [rad], positive to port of ahead; null: there are no two. */
+  measured() {
+    if (this.marks.length < 2) return null;
+    const [a, b] = this.marks.map(metresOf), way = placeOf([b[0] - a[0], b[1] - a[1]]);
+    return {distance: way.range, bearing: way.bearing};
+  }
+  /** @param heading of the sonar, clockwise from north [deg]; undefined: unknown. */
+  measuredText(heading) {
+    const told = this.marks.map(({range, bearing}) => `${range.toFixed(2)} m   ${bearingText(bearing)}`), way = this.measured();
+    if (way) told.push(`${way.distance.toFixed(2)} m apart, towards ${bearingText(way.bearing)}` +
+        (heading === undefined ? '' : `, ${((heading - way.bearing * degrees + 720) % 360).toFixed(1).padStart(5, '0')}° true`));
+    return told.join('\n');
   }
 
   /** Range, bearing (positive to port, as in pictures) and level under the cursor, in words. */
@@ -213,8 +274,7 @@ export class Fan {
     if (!this.cursor || !this.ping) return '';
     const {range, bearing} = this.placeAt(...this.cursor), level = levelAt(this.ping, range, bearing);
     if (level === null) return '';
-    const side = Math.abs(bearing) < 5e-4 ? '' : bearing > 0 ? ' port' : ' stbd';
-    return `${range.toFixed(2)} m   ${(bearing * degrees).toFixed(1)}°${side}   ` +
+    return `${range.toFixed(2)} m   ${bearingText(bearing)}   ` +
         (level === -Infinity ? 'no echo' : `${level.toFixed(1)} dB`);
   }
 }

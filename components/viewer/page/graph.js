@@ -1,11 +1,13 @@
 // The tasks as boxes from left to right, what they are connected by, their states and what got lost.
 
-const svg = (name, attributes, text) => {
+export const svg = (name, attributes, text) => {
   const made = document.createElementNS('http://www.w3.org/2000/svg', name);
   for (const [key, value] of Object.entries(attributes)) made.setAttribute(key, value);
   if (text !== undefined) made.textContent = text;
   return made;
 };
+/** Whether it is a fault that samples were dropped: not where the newest is to take the place of the others. */
+export const isLoss = ({policy}) => policy === 'buffer';
 /** The task of a port. */
 export const owner = (port) => port.slice(0, port.indexOf('.'));
 const lamp = {Running: '#58b368', RunTimeError: '#e0b13c', Exception: '#e4574c', FatalError: '#e4574c'};
@@ -29,7 +31,8 @@ export function showGraph(target, status, rates) {
     list.forEach((task, i) => place.set(task.name, {x: 10 + column * (width - 20 - wide) / Math.max(1, count - 1),
                                                     y: height * (i + 0.5) / list.length - tall / 2}));
   const parts = [], seen = new Map();
-  for (const {from, to, lost} of status.connections) {
+  for (const connection of status.connections) {
+    const {from, to} = connection, lost = isLoss(connection) ? connection.lost : 0;
     const key = owner(from) + ' ' + owner(to), edge = seen.get(key) ?? {a: place.get(owner(from)), b: place.get(owner(to)), lost: 0};
     edge.lost += lost;
     seen.set(key, edge);

@@ -1,18 +1,23 @@
 // What comes over the link, to where it is shown.
 import {names} from './colours.js';
+import {attitudeOf, showAttitude} from './attitude.js';
 import {Controls} from './controls.js';
 import {Fan} from './fan.js';
+import {First} from './first.js';
 import {showGraph} from './graph.js';
+import {Hands} from './hands.js';
 import {Link} from './link.js';
 import {Places} from './places.js';
 import {Scan, pingOf, strongLevel} from './ping.js';
+import {savePicture} from './save.js';
 import {Properties, Rates, element, showPlan, showTasks} from './tables.js';
+import {Timelines} from './timeline.js';
 import {World, loadThree} from './world.js';
 
 const byId = (id) => document.getElementById(id);
 const fan = new Fan(byId('fan'), byId('overlay'));
-const rates = new Rates(), scans = new Map(), arrivals = [], scenes = new Map(), places = new Places();
-let world = null, scene = null, snapshot = null, placed = '', reference = null, missed = 0, last_count = null, shown = 0, needs_drawing = false;
+const rates = new Rates(), scans = new Map(), arrivals = [], scenes = new Map(), places = new Places(), poses = new Places();
+let world = null, scene = null, snapshot = null, placed = '', reference = null, missed = 0, last_count = null, shown = 0, needs_drawing = false, frozen = false;
 
 const link = new Link(take, (open) => {
   byId('link').className = open ? 'lamp' : 'lamp off';
@@ -21,25 +26,29 @@ const link = new Link(take, (open) => {
   last_count = null;
 });
 const properties = new Properties(link), controls = new Controls(link, byId('controls'));
+const first = new First(link, byId('first')), timelines = new Timelines(link, byId('timelines'));
+const hands = new Hands(fan, () => { needs_drawing = true; });
 
 const show = {
   interfaces(message) {
-    properties.setInterfaces(message);
-    controls.setInterfaces(message);
+    for (const part of [properties, controls, first, timelines]) part.setInterfaces(message);
   },
   status(status) {
     rates.update(status);
     showTasks(status, rates);
     showGraph(byId('graph'), status, rates);
     showPlan(status);
-    properties.update(status);
-    controls.update(status);
+    for (const part of [properties, controls, timelines]) part.update(status);
+    first.update(status, byId('source').value);
   },
   snapshot(message) {
     places.add(message);
     place();
   },
-  pose(message) { world?.showPose(message); },
+  pose(message) {
+    poses.add(message);
+    world?.showPose(message);
+  },
 };
 
 function take(message) {
@@ -69,6 +78,13 @@ function place() {
   byId('pose_text').textContent = 'sonar ' + snapshot.position.map((x) => x.toFixed(2)).join('  ') + ' m';
 }
 
+/** Of the vehicle when the ping was made, or else of the sonar; null: nobody tells. */
+function attitude() {
+  const {ping} = fan, connections = properties.status?.connections ?? [];
+  const found = (ping && poses.of(ping, connections)) ?? snapshot;
+  return found ? {...attitudeOf(found, snapshot?.water_surface), source: found.source} : null;
+}
+
 function takePing(ping) {
   const chooser = byId('source');
   if (![...chooser.options].some((option) => option.value === ping.source)) chooser.append(element('option', {}, ping.source));
@@ -80,7 +96,7 @@ function takePing(ping) {
   const strong = strongLevel(ping);
   reference = reference === null || Math.abs(strong - reference) > 30 ? strong : reference + 0.1 * (strong - reference);
   tell(ping);
-  display(ping);
+  if (!frozen) display(ping);
 }
 
 function tell(ping) {
@@ -102,6 +118,7 @@ function display(ping) {
   fan.span_db = Number(byId('span').value);
   fan.show(ping, top);
   place();
+  showAttitude(byId('attitude'), attitude());
   world?.showPing(ping, top, fan.span_db, byId('map').value);
   needs_drawing = true;
   ++shown;
@@ -127,11 +144,17 @@ byId('shape').onclick = () => {
   byId('shape').textContent = fan.polar ? 'polar' : 'fan';
   needs_drawing = true;
 };
-byId('fan').onpointermove = ({offsetX, offsetY}) => {
-  fan.cursor = [offsetX * devicePixelRatio, fan.canvas.height - offsetY * devicePixelRatio];
-  needs_drawing = true;
+byId('freeze').onclick = () => {
+  frozen = !frozen;
+  byId('freeze').className = frozen ? 'on' : '';
 };
-byId('fan').onpointerleave = () => { fan.cursor = null; needs_drawing = true; };
+byId('measure').onclick = () => {
+  hands.measure(!hands.measuring);
+  byId('measure').className = hands.measuring ? 'on' : '';
+};
+byId('whole').onclick = () => hands.whole();
+hands.on_zoom = (zoom) => { byId('whole').disabled = zoom === 1; };
+byId('save').onclick = () => savePicture(fan, attitude());
 addEventListener('resize', () => { needs_drawing = true; });
 settingsChanged();
 
@@ -141,6 +164,7 @@ function frame(now) {
   if (needs_drawing) fan.draw();
   needs_drawing = false;
   byId('cursor').textContent = fan.cursorText();
+  byId('measured').textContent = fan.measuredText(snapshot ? attitudeOf(snapshot).heading : undefined);
   if (world && now >= next_view) {
     const begin = performance.now();
     world.draw();
@@ -162,4 +186,4 @@ loadThree().then((THREE) => {
 });
 
 /** For tests and for the curious. */
-self.insonify = {fan, link, shown: () => shown, world: () => world, snapshot: () => snapshot, status: () => properties.status};
+self.insonify = {fan, link, attitude, shown: () => shown, world: () => world, snapshot: () => snapshot, status: () => properties.status};

@@ -1,10 +1,10 @@
-// Which snapshot a ping was made of.
+// Which snapshot or pose a ping was made of.
 import {owner} from './graph.js';
 
 const most = 64;
 
 /** Tasks that what `port` writes is made by, as far as connections tell. */
-function upstream(connections, port) {
+export function upstream(connections, port) {
   const tasks = new Set([owner(port)]);
   for (let size = 0; size !== tasks.size;) {
     size = tasks.size;

@@ -1,4 +1,5 @@
 // Tasks, connections, plan and properties as tables; what can be changed is changed here.
+import {isLoss} from './graph.js';
 
 export function element(name, attributes = {}, ...children) {
   const made = document.createElement(name);
@@ -28,10 +29,13 @@ export class Rates {
   ofTask(task) { return Math.max(0, ...task.outputs.filter((port) => port.name !== 'state').map((port) => this.of(`${task.name}.${port.name}`))); }
 }
 
+const failed = ['RunTimeError', 'Exception', 'FatalError'];
+
+/** An error stands there as long as it lasts: what was refused is told where it was asked for. */
 export function showTasks(status, rates) {
-  const rows = status.tasks.map((task) => element('tr', {title: task.type},
+  const rows = status.tasks.map((task) => element('tr', {title: task.error ? `${task.type}; last told: ${task.error}` : task.type},
       cell(task.name), cell(task.state, task.state), cell(milliseconds(task.cycle_s), 'n'),
-      cell(status.lockstep || !task.latency_s ? '-' : milliseconds(task.latency_s), 'n'), cell(rates.ofTask(task).toFixed(1), 'n'), cell(task.error, 'refused')));
+      cell(status.lockstep || !task.latency_s ? '-' : milliseconds(task.latency_s), 'n'), cell(rates.ofTask(task).toFixed(1), 'n'), cell(failed.includes(task.state) ? task.error : '', 'refused')));
   const head = element('tr', {}, ...[['task'], ['state'], ['cycle ms', 'n'], ['latency ms', 'n'], ['samples/s', 'n'], ['']].map(
       ([text, kind]) => element('th', {className: kind ?? ''}, text)));
   byId('tasks').replaceChildren(head, ...rows);
@@ -51,14 +55,18 @@ export function showPlan(status) {
     if (plan.omitted.length) parts.push(element('h3', {}, 'left out'), list);
     for (const notice of plan.notices) parts.push(element('div', {className: 'RunTimeError'}, notice));
   }
-  const lost = status.connections.filter((one) => one.lost);
-  parts.push(element('h3', {}, 'lost samples'));
+  byId('plan').replaceChildren(...parts, ...lossesOf(status.connections));
+}
+
+/** What was lost, and what was left aside for newer samples as it was meant to be. */
+function lossesOf(connections) {
+  const lost = connections.filter((one) => isLoss(one) && one.lost), parts = [element('h3', {}, 'lost samples')];
   for (const one of lost) parts.push(element('div', {className: 'refused'}, `${one.lost}  ${one.from} > ${one.to} (${one.policy})`));
   if (!lost.length) parts.push(element('div', {className: 'dim'}, 'none'));
-  const passed = status.connections.filter((one) => one.passed_over);
-  if (passed.length) parts.push(element('h3', {}, 'passed over for newer samples'));
-  for (const one of passed) parts.push(element('div', {className: 'dim'}, `${one.passed_over}  ${one.from} > ${one.to}`));
-  byId('plan').replaceChildren(...parts);
+  const replaced = connections.map((one) => ({...one, count: one.passed_over + (isLoss(one) ? 0 : one.lost)})).filter((one) => one.count);
+  if (replaced.length) parts.push(element('h3', {}, 'left aside for newer samples, as asked for'));
+  for (const one of replaced) parts.push(element('div', {className: 'dim'}, `${one.count}  ${one.from} > ${one.to} (${one.policy})`));
+  return parts;
 }
 
 const setter = (name) => 'set' + name[0].toUpperCase() + name.slice(1);
@@ -68,7 +76,7 @@ function inputFor(property) {
   if (property.type === 'bool') return element('input', {type: 'checkbox'});
   if (property.type.includes('|') && !property.type.includes(' '))
     return element('select', {}, ...property.type.split('|').map((name) => element('option', {}, name)));
-  return element('input', {type: 'text', spellcheck: false});
+  return element('input', {type: 'text', spellcheck: false, placeholder: property.type.includes('optional') ? 'none' : ''});
 }
 function put(input, value) {
   if (document.activeElement === input) return;
@@ -96,7 +104,25 @@ export function settingOf(type, before, after) {
   return `{${[text.slice(1, -1).trim(), ...gone].filter((part) => part).join(', ')}}`;
 }
 
-/** The properties of one task, each with what its last change was refused for. */
+/** Properties in the order in which they are shown: these first, the others as the task has them. */
+export const rank = ({name}) => (['range', 'gain_db', 'gain', 'frequency_khz'].indexOf(name) + 1) || 99;
+
+const valuesOf = (status, task) => status?.tasks.find((one) => one.name === task)?.properties ?? {};
+
+/** A property where it can be set: its input, and what its last change was refused for. */
+export function fieldOf(link, task, property, control) {
+  const input = inputFor(property), said = element('span', {className: 'refused'});
+  const field = {input, said, update(status) { put(input, valuesOf(field.status = status, task)[property.name]); }};
+  input.disabled = !control;
+  input.onchange = async () => {
+    const value = input.type === 'checkbox' ? input.checked : settingOf(property.type, valuesOf(field.status, task)[property.name], input.value);
+    said.textContent = (await link.call(`${task}.${setter(property.name)}`, value)).refused ?? '';
+  };
+  input.onkeydown = (event) => event.key === 'Enter' && input.blur();
+  return field;
+}
+
+/** The properties of one task. */
 export class Properties {
   constructor(link) {
     this.link = link;
@@ -113,27 +139,19 @@ export class Properties {
   }
   build() {
     const task = this.tasks.get(byId('task').value);
-    this.inputs = new Map();
-    byId('properties').replaceChildren(...(task?.properties ?? []).map((property) => this.row(task.name, property)));
+    this.fields = [];
+    const sorted = [...task?.properties ?? []].sort((a, b) => rank(a) - rank(b));
+    byId('properties').replaceChildren(...sorted.map((property) => this.row(task.name, property)));
     if (this.status) this.update(this.status);
   }
   row(task, property) {
-    const input = inputFor(property), said = element('span', {className: 'refused'});
+    const field = fieldOf(this.link, task, property, this.control);
     const bounds = property.min === null && property.max === null ? '' : ` (${property.min ?? '-inf'} to ${property.max ?? 'inf'})`;
-    input.disabled = !this.control;
-    input.onchange = async () => {
-      const answer = await this.link.call(`${task}.${setter(property.name)}`, input.type === 'checkbox' ? input.checked : settingOf(property.type, this.values()[property.name], input.value));
-      said.textContent = answer.refused ?? '';
-    };
-    input.onkeydown = (event) => event.key === 'Enter' && input.blur();
-    this.inputs.set(property.name, input);
-    return element('tr', {title: property.doc + bounds}, cell(property.name), element('td', {}, input, said), cell(property.unit === '1' ? '' : property.unit, 'dim'));
+    this.fields.push(field);
+    return element('tr', {title: property.doc + bounds}, cell(property.name), element('td', {}, field.input, field.said), cell(property.unit === '1' ? '' : property.unit, 'dim'));
   }
-  /** Of the task that is shown. */
-  values() { return this.status?.tasks.find((task) => task.name === byId('task').value)?.properties ?? {}; }
   update(status) {
     this.status = status;
-    const values = this.values();
-    for (const [name, input] of this.inputs ?? []) put(input, values[name]);
+    for (const field of this.fields ?? []) field.update(status);
   }
 }

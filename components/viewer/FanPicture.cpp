@@ -1,0 +1,117 @@
+#include "components/viewer/FanPicture.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <stdexcept>
+
+#include "components/ros/Echoes.hpp"
+#include "components/ros/Times.hpp"
+
+namespace insonify::viewer {
+namespace {
+
+constexpr int directions = 8192;
+constexpr double one_beam_width = 0.03, most_covered = 8;
+
+/** Which beam a bearing belongs to, by its place between the outermost edges. */
+struct Beams {
+    double low = 0, high = 0;
+    std::vector<int> beam;  ///< -1: none.
+
+    explicit Beams(const types::Sonar& ping) : beam(directions, -1) {
+        const std::vector<double> edges = edgesOf(ping);
+        low = *std::ranges::min_element(edges);
+        high = *std::ranges::max_element(edges);
+        for (size_t i = 0; i + 1 < edges.size(); ++i) {
+            const auto [from, to] = std::minmax(slot(edges[i]), slot(edges[i + 1]));
+            for (int k = std::max(from, 0); k < std::min(to, directions); ++k)
+                beam[static_cast<size_t>(k)] = static_cast<int>(i);
+        }
+    }
+    int slot(double bearing) const { return static_cast<int>(std::floor((bearing - low) / (high - low) * directions)); }
+    int at(double bearing) const {
+        const int k = slot(bearing);
+        return k >= 0 && k < directions ? beam[static_cast<size_t>(k)] : -1;
+    }
+
+private:
+    /** One more than beams, in the middle between two. */
+    static std::vector<double> edgesOf(const types::Sonar& ping) {
+        const auto bearing = [&](size_t i) { return ping.bearings[i].isUnknown() ? 0.0 : ping.bearings[i].rad; };
+        const size_t n = ping.bearings.size();
+        const double alone = ping.beam_width.rad > 0 ? ping.beam_width.rad : one_beam_width;
+        const double first = n > 1 ? bearing(1) - bearing(0) : alone,
+                     last = n > 1 ? bearing(n - 1) - bearing(n - 2) : alone;
+        std::vector<double> edges{bearing(0) - first / 2};
+        for (size_t i = 1; i < n; ++i) edges.push_back((bearing(i - 1) + bearing(i)) / 2);
+        edges.push_back(bearing(n - 1) + last / 2);
+        return edges;
+    }
+};
+
+/** What of the plane the fan takes, for a range of 1: x to starboard, y ahead. */
+struct Extent {
+    double x0 = 0, x1 = 0, y0 = 0, y1 = 0;
+
+    explicit Extent(const Beams& beams) {
+        for (int i = 0; i <= 180; ++i) {
+            const double bearing = beams.low + (beams.high - beams.low) * i / 180;
+            x0 = std::min(x0, -std::sin(bearing));
+            x1 = std::max(x1, -std::sin(bearing));
+            y0 = std::min(y0, std::cos(bearing));
+            y1 = std::max(y1, std::cos(bearing));
+        }
+    }
+};
+
+}  // namespace
+
+bool FanPicture::fits(const types::Sonar& ping) const {
+    return ping.bin_count == bin_count_ && ping.binStart(1) == bin_m_ &&
+           std::ranges::equal(ping.bearings, bearings_, {}, &types::Angle::rad, &types::Angle::rad);
+}
+
+void FanPicture::build(const types::Sonar& ping) {
+    bearings_ = ping.bearings;
+    bin_count_ = ping.bin_count;
+    bin_m_ = ping.binStart(1);
+    const Beams beams(ping);
+    const Extent extent(beams);
+    const double across = extent.x1 - extent.x0, along = extent.y1 - extent.y0;
+    const double pixel = std::max(across, along) / longest_side;  // for a range of 1
+    width_ = std::max(1u, static_cast<uint32_t>(across / pixel));
+    height_ = std::max(1u, static_cast<uint32_t>(along / pixel));
+    table_.assign(size_t{width_} * height_, {});
+    const auto covered = static_cast<uint32_t>(std::clamp(std::ceil(pixel * bin_count_), 1.0, most_covered));
+    for (uint32_t row = 0; row < height_; ++row)
+        for (uint32_t column = 0; column < width_; ++column) {
+            const double x = extent.x0 + (column + 0.5) * pixel, y = extent.y1 - (row + 0.5) * pixel;
+            const auto bin = static_cast<uint32_t>(std::hypot(x, y) * bin_count_);
+            const int beam = beams.at(std::atan2(-x, y));
+            if (beam < 0 || bin >= bin_count_) continue;
+            table_[size_t{row} * width_ + column] = {static_cast<uint32_t>(beam) * bin_count_ + bin,
+                                                     std::min(covered, bin_count_ - bin)};
+        }
+}
+
+void FanPicture::draw(const types::Sonar& ping, const ros::SonarOptions& options, ros::Image& message) {
+    if (!ping.wellShaped() || ping.beam_count == 0)
+        throw std::invalid_argument("the lists of the ping are not as long as its counts say, or it has no beams");
+    if (!fits(ping)) build(ping);
+    ros::SonarOptions levels = options;
+    levels.order = ros::ImageOrder::BeamMajor;
+    levels.dtype = ros::ImageType::Uint8;
+    ros::SonarImageData image;
+    ros::fillImage(ping, levels, image);
+    message.header = {ros::toRos(ping.time), options.frame_id};
+    message.width = message.step = width_;
+    message.height = height_;
+    message.encoding = "mono8";
+    message.data.assign(table_.size(), 0);
+    for (size_t i = 0; i < table_.size(); ++i)
+        for (uint32_t k = 0; k < table_[i].count; ++k)
+            message.data[i] = std::max(message.data[i], image.data[table_[i].first + k]);
+}
+
+}  // namespace insonify::viewer

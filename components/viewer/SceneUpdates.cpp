@@ -1,0 +1,95 @@
+#include "components/viewer/SceneUpdates.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <string_view>
+
+#include "components/ros/Cdr.hpp"
+#include "components/ros/Poses.hpp"
+#include "components/ros/Times.hpp"
+#include "components/viewer/FoxgloveMessages.hpp"
+
+namespace insonify::viewer {
+namespace {
+
+struct Tint {
+    std::string_view material;
+    foxglove::Color colour;
+};
+/** As the page has them. */
+constexpr std::array tints{Tint{"sand", {0.69, 0.60, 0.42, 1}},  Tint{"mud", {0.49, 0.44, 0.35, 1}},
+                           Tint{"clay", {0.54, 0.45, 0.38, 1}},  Tint{"gravel", {0.56, 0.53, 0.48, 1}},
+                           Tint{"stone", {0.52, 0.51, 0.48, 1}}, Tint{"rock", {0.48, 0.46, 0.43, 1}},
+                           Tint{"steel", {0.53, 0.41, 0.31, 1}}, Tint{"concrete", {0.62, 0.63, 0.64, 1}},
+                           Tint{"wood", {0.49, 0.36, 0.24, 1}},  Tint{"rubber", {0.20, 0.20, 0.23, 1}}};
+
+foxglove::Color colourOf(const types::Geometry& geometry, int material) {
+    const auto number = static_cast<size_t>(material);
+    std::string name = number < geometry.materials.size() ? geometry.materials[number].name : "";
+    std::ranges::transform(name, name.begin(), [](unsigned char c) { return std::tolower(c); });
+    const auto found = std::ranges::find(tints, name, &Tint::material);
+    return found == tints.end() ? foxglove::Color{0.55, 0.58, 0.6, 1} : found->colour;
+}
+
+/** The triangles of an object, its points in the axes of a frame. */
+foxglove::TriangleListPrimitive trianglesOf(const Part& part, const glm::dmat4& world_from_object,
+                                            ros::WorldFrame axes) {
+    foxglove::TriangleListPrimitive triangles;
+    triangles.indices = part.indices;
+    for (size_t i = 0; i + 2 < part.positions.size(); i += 3) {
+        const glm::dvec4 point(part.positions[i], part.positions[i + 1], part.positions[i + 2], 1);
+        const glm::dvec3 world = ros::worldFromRock(axes, glm::dvec3(world_from_object * point));
+        triangles.points.push_back({world.x, world.y, world.z});
+    }
+    return triangles;
+}
+
+}  // namespace
+
+Bytes SceneUpdates::whole(const types::Snapshot& snapshot) {
+    if (!snapshot.geometry) return nullptr;
+    if (isNew(snapshot)) {
+        geometry_ = snapshot.geometry;
+        shown_ = shownScene(*geometry_, max_triangles_);
+        home_.clear();
+        for (const size_t i : shown_.objects) home_[i] = geometry_->objects[i].world_from_object;
+    }
+    moved_.clear();
+    for (const types::MovedObject& one : snapshot.moved)
+        if (home_.contains(one.object)) moved_[one.object] = one.world_from_object;
+    Places places = moved_;
+    places.insert(home_.begin(), home_.end());
+    return messageOf(snapshot, places, true);
+}
+
+Bytes SceneUpdates::moved(const types::Snapshot& snapshot) {
+    Places now;
+    for (const types::MovedObject& one : snapshot.moved)
+        if (home_.contains(one.object)) now[one.object] = one.world_from_object;
+    for (const auto& [object, place] : moved_) now.emplace(object, home_.at(object));
+    if (now == moved_) return nullptr;
+    moved_ = std::move(now);
+    return messageOf(snapshot, moved_, false);
+}
+
+Bytes SceneUpdates::messageOf(const types::Snapshot& snapshot, const Places& places, bool all) const {
+    foxglove::SceneUpdate update;
+    const ros::Time stamp = ros::toRos(snapshot.time);
+    if (all) update.deletions.push_back({stamp, foxglove::SceneEntityDeletion::all, ""});
+    for (const auto& [number, place] : places) {
+        const types::Object& object = geometry_->objects[number];
+        const Part& part = shown_.parts[static_cast<size_t>(object.mesh)];
+        foxglove::SceneEntity& entity = update.entities.emplace_back();
+        entity.timestamp = stamp;
+        entity.frame_id = snapshot.sonar.target_frame;
+        entity.id = std::to_string(number) + " " + object.name;
+        entity.triangles.push_back(trianglesOf(part, place, axes_));
+        entity.triangles.back().color = colourOf(*geometry_, part.material);
+    }
+    std::vector<char> bytes;
+    ros::encode(update, bytes);
+    return bytesOf({bytes.begin(), bytes.end()});
+}
+
+}  // namespace insonify::viewer
