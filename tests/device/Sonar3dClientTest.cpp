@@ -1,7 +1,9 @@
 // A Sonar 3D-15 before its maker's own client, PyPI's wlsonar: HTTP, unicast and multicast, and what the voxels show.
 #include <gmock/gmock.h>
 
+#include "components/device/Http.hpp"
 #include "tests/device/HilRun.hpp"
+#include "tests/device/Wire.hpp"
 #include "tests/support/Python.hpp"
 
 namespace insonify::device {
@@ -25,7 +27,7 @@ tasks:
     properties:
       range: 8
       range_rounding: exact
-      bin_count: 800
+      bin_count: 1200
       speed_of_sound: 1500
       horizontal: {beam_count: 128, field_of_view_deg: 90}
       vertical: {beam_count: 64, field_of_view_deg: 40}
@@ -93,6 +95,34 @@ TEST_P(Sonar3dClientTest, TheMakersClientSetsItAndSeesTheWallAndTheBall) {
 
 INSTANTIATE_TEST_SUITE_P(Ways, Sonar3dClientTest, ::testing::Values("unicast", "14747"),
                          [](const auto& way) { return std::string(way.param) == "unicast" ? "Unicast" : "Multicast"; });
+
+/** Clients that leave in the middle of a request, and one that asks and never reads, hold up nobody. */
+TEST(Sonar3dReconnectTest, AThousandReconnectsAndOneThatDoesNotReadLeaveItAsItWas) {
+    const TestFolder folder;
+    HilRun run(deployment(folder), {});
+    const int port = run.port();
+    ASSERT_GT(port, 0) << readFile(run.folder() / "stderr.txt");
+    const Bytes about = httpBytes(HttpRequest{"GET", "/api/v1/integration/about", ""}, "sonar");
+    const Bytes enable = httpBytes(HttpRequest{"POST", "/api/v1/integration/acoustics/enabled", "true"}, "sonar");
+    const Wire deaf(Wire::connected(port));
+    for (int i = 0; i < 1000; ++i) {
+        deaf.say(about);
+        const Wire wire(Wire::connected(port));
+        const Bytes& whole = i % 2 == 0 ? about : enable;
+        wire.say({whole.begin(), whole.begin() + i % static_cast<int>(whole.size())});
+    }
+    const Wire last(Wire::connected(port));
+    last.say(about);
+    Bytes heard;
+    const auto text = [&] { return std::string(heard.begin(), heard.end()); };
+    while (text().find("is_ready") == std::string::npos) {
+        const Bytes more = last.hear();
+        heard.insert(heard.end(), more.begin(), more.end());
+    }
+    EXPECT_THAT(text(), HasSubstr("HTTP/1.1 200 OK"));
+    const Outcome outcome = run.stop();
+    EXPECT_EQ(outcome.code, 0) << outcome.err;
+}
 
 }  // namespace
 }  // namespace insonify::device
