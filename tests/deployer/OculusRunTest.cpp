@@ -42,6 +42,7 @@ protected:
                        "--set", "device.status_port=" + std::to_string(listener_.port()), "--set",
                        "scene.pose_timeout=60"}),
         folder_.path()};
+    bool ended_ = false;
 };
 
 }  // namespace
