@@ -14,7 +14,7 @@ struct Imported {
     size_t other_shape = 0;               ///< Pings of other beams or bins than the first, which were left out.
     std::string stream;                   ///< Of the pings.
     std::vector<std::string> properties;  ///< That the recording tells, as `--set` takes them.
-    std::string diagnostic;               ///< What of the recording was passed over; empty: nothing.
+    std::string diagnostic{};             ///< What of the recording was passed over; empty: nothing.
 };
 
 /** Makes a log of the recording of an Oculus as the deployment would have written it, had it been the sea: the pings as

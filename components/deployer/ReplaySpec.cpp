@@ -96,6 +96,29 @@ std::vector<ConnectionSpec> reconnected(const DeploymentSpec& spec, const log::R
     return connections;
 }
 
+/** Adds the tasks between others that hear nobody any more: those who wrote to them are replaced, and the log has not
+ *  what they wrote. */
+void addDeaf(const DeploymentSpec& spec, const log::Reader& log, std::set<std::string>& replaced) {
+    const auto hears = [&](const ConnectionSpec& connection) {
+        return !replaced.contains(splitPort(connection.from).first) || !streamOf(log, spec, connection.from).empty();
+    };
+    const auto isDeaf = [&](const TaskSpec& task) {
+        bool reads = false, writes = false, hears_any = false;
+        for (const ConnectionSpec& connection : spec.connections) {
+            writes |= splitPort(connection.from).first == task.name;
+            if (splitPort(connection.to).first != task.name) continue;
+            reads = true;
+            hears_any |= hears(connection);
+        }
+        return reads && writes && !hears_any;
+    };
+    for (size_t before = 0; before != replaced.size();) {
+        before = replaced.size();
+        for (const TaskSpec& task : spec.tasks)
+            if (!replaced.contains(task.name) && isDeaf(task)) replaced.insert(task.name);
+    }
+}
+
 /** A head does not tell where it stood when a log's middle was recorded. */
 void refuseScansFrom(const DeploymentSpec& spec, double from) {
     for (const TaskSpec& task : spec.tasks)
@@ -111,6 +134,7 @@ DeploymentSpec replaying(DeploymentSpec spec, const log::Reader& log, const Repl
     if (options.rerender) refuseScansFrom(spec, options.from);
     std::set<std::string> replaced = replacedTasks(log, spec, options.rerender);
     if (!options.outside) replaced.merge(outsideTasks(spec));
+    if (!options.rerender) addDeaf(spec, log, replaced);
     const std::string name = freeName(spec, "replay");
     // New lists are made, since assigning a YAML node changes what other nodes see.
     std::vector<TaskSpec> tasks{replayTask(name, options)};

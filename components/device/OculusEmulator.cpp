@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
-#include <utility>
+#include <iterator>
 
 namespace insonify::device {
 namespace {
@@ -92,11 +92,12 @@ types::SonarSettings OculusEmulator::settingsOf(const OculusFire& fire, Time now
 }
 
 bool OculusEmulator::isDue(Time now) {
-    if (asked_) {
-        const double way = 2 * asked_->settings.range / 1300;
-        if ((now - asked_->settings.time).seconds() < 2 + way) return false;
+    if (!asked_.empty()) {
+        const types::SonarSettings& last = asked_.back().settings;
+        const double way = 2 * last.range / 1300, patience = 2 * static_cast<double>(asked_.size());
+        if ((now - last.time).seconds() < patience + way) return false;
         ++lost_;
-        asked_.reset();
+        if (asked_.size() == most_asked) asked_.erase(asked_.begin());
     }
     return now >= last_ping_ + periodOf(fire_);
 }
@@ -118,20 +119,22 @@ OculusEmulator::Due OculusEmulator::tick(Time now) {
         return due;
     }
     if (isDue(now)) {
-        asked_ = Asked{settingsOf(fire_, now), fire_};
-        due.ask = asked_->settings;
+        asked_.push_back({settingsOf(fire_, now), fire_});
+        due.ask = asked_.back().settings;
         const Time planned = last_ping_ + periodOf(fire_);  // the rate holds though a cycle comes late
         last_ping_ = now - planned < periodOf(fire_) ? planned : now;
     }
-    due.next = std::min(due.next, asked_ ? now + second : last_ping_ + periodOf(fire_));
+    due.next = std::min(due.next, asked_.empty() ? last_ping_ + periodOf(fire_) : now + second);
     return due;
 }
 
 Bytes OculusEmulator::ping(const types::Sonar& codes) {
-    const bool awaited = asked_ && codes.time >= asked_->settings.time && codes.bin_count > 0 && codes.beam_count > 0 &&
-                         codes.bin_count <= 65535 && codes.beam_count <= 65535 && codes.wellShaped();
-    if (!awaited) return {};
-    const Asked asked = *std::exchange(asked_, std::nullopt);
+    const bool fits = codes.bin_count > 0 && codes.beam_count > 0 && codes.bin_count <= 65535 &&
+                      codes.beam_count <= 65535 && codes.wellShaped();
+    const auto later = std::ranges::find_if(asked_, [&](const Asked& each) { return each.settings.time > codes.time; });
+    if (!fits || later == asked_.begin()) return {};
+    const Asked asked = *std::prev(later);
+    asked_.erase(asked_.begin(), later);
     if (std::isnan(asked.settings.speed_of_sound)) own_speed_ = static_cast<double>(codes.speed_of_sound);
     if (standsBy()) return {};
     return bytesOf(resultOf(asked, codes));

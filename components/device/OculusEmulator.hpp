@@ -1,5 +1,6 @@
 #pragma once
 #include <array>
+#include <atomic>
 #include <cstdint>
 #include <map>
 #include <optional>
@@ -69,8 +70,8 @@ public:
     void received(ClientId client, std::span<const uint8_t> bytes);
     void closed(ClientId client);
 
-    /** What is due now. A ping that is asked for and does not come is given up after two seconds and the way of its
-     *  sound. */
+    /** What is due now. There is one ping under way; one that does not come for two seconds and the way of its sound is
+     *  asked for anew, then for four, and so on. It is still sent when it comes. */
     Due tick(types::Time now);
     /** The message of a ping, for all clients; empty for one that nobody waits for. Its bins are a receiver's codes. */
     Bytes ping(const types::Sonar& codes);
@@ -78,11 +79,11 @@ public:
     /** The settings of the next ping, as they were understood. */
     const OculusFire& fire() const { return fire_; }
     bool standsBy() const { return clients_.empty() || fire_.isStandby(); }
-    uint64_t lost() const { return lost_; }        ///< Pings that were asked for and did not come.
+    uint64_t lost() const { return lost_; }        ///< Pings that did not come in time.
     uint64_t refused() const { return refused_; }  ///< Messages of clients that were no settings.
 
 private:
-    static constexpr size_t largest_message = 4096;
+    static constexpr size_t largest_message = 4096, most_asked = 4;
 
     struct Asked {
         types::SonarSettings settings;
@@ -105,11 +106,11 @@ private:
     types::Time started_;
     std::map<ClientId, OculusFramer> clients_;
     OculusFire fire_;
-    std::optional<Asked> asked_;  ///< Under way.
+    std::vector<Asked> asked_;  ///< Under way, the newest last; more than one: those before have not come in time.
     types::Time last_ping_, last_dummy_, last_status_;
     double own_speed_ = types::SonarSettings::unset;  ///< Of sound, of the sonar where no driver sets it [m/s].
     uint32_t number_ = 0;
-    uint64_t lost_ = 0, refused_ = 0;
+    std::atomic<uint64_t> lost_{0}, refused_{0};  ///< Others than the task's thread may look at them.
 };
 
 }  // namespace insonify::device

@@ -85,7 +85,8 @@ double wallAt(double angle) {
 }
 
 /** The water's depth at the vehicle, below its sounder, as the scene's script has the floor [m]. */
-double bottomBelow(const TestFolder& folder) {
+double bottomBelow() {
+    const TestFolder folder;
     const std::string program = "import sys; sys.dont_write_bytecode = True; sys.path.insert(0, '" +
                                 (root / "scripts").string() +
                                 "'); import numpy; from make_harbour import *; "
@@ -131,7 +132,7 @@ TEST_F(PingDriverTest, TheSameComesByASerialLine) {
 }
 
 TEST_F(PingDriverTest, AnEchoSounderFindsTheBottomByUdpAndBySerialLine) {
-    const double bottom = bottomBelow(folder_);
+    const double bottom = bottomBelow();
     for (const std::string& line : {udpPortOf("ping1d"), lineOf("ping1d")}) {
         const json told = driven("ping1d " + line);
         EXPECT_EQ(told["information"]["device_type"], 1) << line;

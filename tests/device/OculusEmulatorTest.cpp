@@ -232,12 +232,21 @@ TEST_F(OculusEmulatorTest, OnlyThePingThatIsAwaitedIsSent) {
     EXPECT_TRUE(emulator_.ping(heard(before)).empty()) << "once";
 }
 
-TEST_F(OculusEmulatorTest, APingThatDoesNotComeIsGivenUp) {
+TEST_F(OculusEmulatorTest, APingThatDoesNotComeIsAskedForAnewAndSentWhenItComesLate) {
     connect();
-    asked(metres(120));
+    const types::SonarSettings first = asked(metres(120));
     EXPECT_FALSE(after(2.1).ask) << "its sound may still be under way";
-    EXPECT_TRUE(after(0.2).ask);
+    fire(metres(60));
+    const auto second = after(0.2).ask;
+    ASSERT_TRUE(second);
     EXPECT_EQ(emulator_.lost(), 1u);
+    EXPECT_FALSE(after(3.9).ask) << "with more patience";
+    types::Sonar late = heard(first);
+    EXPECT_EQ(oculusResult(emulator_.ping(late)).value().fire.range, 120) << "with its own settings";
+    EXPECT_EQ(oculusResult(emulator_.ping(heard(*second))).value().fire.range, 60);
+    EXPECT_TRUE(after(0).ask);
+    for (int i = 0; i < 10; ++i) after(100);
+    EXPECT_EQ(emulator_.lost(), 11u) << "it never ceases to ask";
 }
 
 TEST_F(OculusEmulatorTest, AClientThatGoesInMidPingLeavesNothingBehind) {

@@ -18,7 +18,7 @@ struct Source {
         return below.substr(0, below.find('/'));
     }
     std::string stem() const { return std::filesystem::path(path).stem(); }
-    bool isTaskHalf() const { return stem().ends_with("Task") || stem() == "Tasks"; }
+    bool isTaskHalf() const { return stem().ends_with("Task"); }
     /** Of a component that brings its own part of the command: that part. */
     bool isCommandHalf() const { return folder() == "study" && stem().ends_with("Command"); }
 };
