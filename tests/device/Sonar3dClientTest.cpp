@@ -82,6 +82,7 @@ TEST_P(Sonar3dClientTest, TheMakersClientSetsItAndSeesTheWallAndTheBall) {
     EXPECT_GT(told["wall"]["voxels"], 5000);
     EXPECT_NEAR(told["wall"]["mean"], 5, 0.002);
     EXPECT_LT(told["wall"]["worst"], 0.01) << "every voxel of a flat wall at 5 m";
+    EXPECT_LT(told["wall"]["worst_beside_ball"], 0.03) << "those of beams of which the ball hides a part too";
     EXPECT_GT(told["ball"]["voxels"], 300);
     EXPECT_NEAR(told["ball"]["radius"], ball_radius, 0.01);
     EXPECT_NEAR(told["ball"]["centre"][0], 3.5, 0.01) << "ahead";

@@ -90,13 +90,17 @@ if len(sys.argv) > 3:
     ranges = numpy.array(wlsonar.range_image_to_distance(image)).reshape(image.height, image.width)
     numpy.savez(sys.argv[3], ranges=ranges, strengths=numpy.array(strengths).reshape(ranges.shape), points=points)
 
-wall = points[points[:, 0] > 4.8]
-told["wall"] = {"voxels": len(wall), "mean": float(wall[:, 0].mean()), "worst": float(abs(wall[:, 0] - 5).max())}
 near = points[points[:, 0] < 4.6]
 centre, radius = ball(near)
 front = near[((near - centre) * -centre).sum(1) > 0.5 * radius * numpy.linalg.norm(centre)]  # not its rim
 centre, radius = ball(front)
 told["ball"] = {"voxels": len(front), "centre": list(map(float, centre)), "radius": radius}
+
+wall = points[points[:, 0] > 4.8]
+ways = wall / numpy.linalg.norm(wall, axis=1, keepdims=True)
+whole = numpy.linalg.norm(numpy.cross(ways, centre), axis=1) > radius + 0.1  # past the ball by more than half a beam
+told["wall"] = {"voxels": int(whole.sum()), "mean": float(wall[:, 0].mean()),
+                "worst": float(abs(wall[whole, 0] - 5).max()), "worst_beside_ball": float(abs(wall[:, 0] - 5).max())}
 
 sonar.set_mode("high-frequency")
 sonar.set_range(0.3, 6)
