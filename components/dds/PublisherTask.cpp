@@ -130,7 +130,8 @@ void PublisherTask::announceMounts() {
 void PublisherTask::takeFrequencies() {
     known_changes_ = *environment().record_changes;
     inputs_.forEach([](auto& input) {
-        const double frequency = framework::upstreamFrequency(input.port).value_or(0);
+        const auto given = framework::upstreamNumber(input.port, {"frequency_khz", "absorption.frequency_khz"});
+        const double frequency = given.value_or(0);
         for (const auto& publication : input.kept.publications) publication->takeFrequency(frequency);
     });
 }
@@ -144,7 +145,8 @@ void PublisherTask::updateHook() {
             send(input, sample, *this, drops_);
             for (const auto& publication : input.kept.publications)
                 if (publication->hasOutgrownBuffers())
-                    warn(publication->topic() + ": its messages are larger than Linux's receive buffers: Fast DDS loses " +
+                    warn(publication->topic() +
+                         ": its messages are larger than Linux's receive buffers: Fast DDS loses " +
                          "most of them; take dtype: uint8 for pings, or see components/dds/README.md");
             recordStage("send", std::chrono::duration<double>(Clock::now() - start).count());
         }

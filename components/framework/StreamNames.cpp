@@ -30,9 +30,9 @@ std::optional<PropertyInfo> propertyOf(const TaskContext& task, const std::strin
 StreamName streamNameOf(const OutputPortBase& port) {
     const Deployment* const deployment = deploymentOf(port.owner());
     const DeploymentSpec* const spec = deployment ? &deployment->spec() : nullptr;
-    if (const auto* const replay = dynamic_cast<const StandIn*>(&port.owner())) {
-        StreamName name = named(replay->streamOf(port.name()), spec);
-        if (const std::string model = replay->modelOf(port.name()); !model.empty()) name.model = model;
+    if (const auto* const stand_in = dynamic_cast<const StandIn*>(&port.owner())) {
+        StreamName name = named(stand_in->streamOf(port.name()), spec);
+        if (const std::string model = stand_in->modelOf(port.name()); !model.empty()) name.model = model;
         return name;
     }
     const std::string alias = spec ? spec->aliasOf(port.path()) : "";

@@ -19,7 +19,7 @@ class StandIn {
 public:
     virtual ~StandIn() = default;
 
-    /** The stream that a port was, "sonar.ping". */
+    /** The stream that a port was, "task.port". */
     virtual std::string streamOf(const std::string& port) const = 0;
     /** What is known of the kind of task whose port that was; empty: nothing. */
     virtual std::string modelOf(const std::string& port) const = 0;

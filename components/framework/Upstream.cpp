@@ -57,10 +57,10 @@ std::optional<types::PropertyValue> upstreamValue(const InputPortBase& port, std
     return std::nullopt;
 }
 
-std::optional<double> upstreamFrequency(const InputPortBase& port) {
-    const auto value = upstreamValue(port, {"frequency_khz", "absorption.frequency_khz"});
-    const double* const frequency = value ? std::get_if<double>(&*value) : nullptr;
-    return frequency ? std::optional(*frequency) : std::nullopt;
+std::optional<double> upstreamNumber(const InputPortBase& port, std::initializer_list<const char*> paths) {
+    const auto value = upstreamValue(port, paths);
+    const double* const number = value ? std::get_if<double>(&*value) : nullptr;
+    return number ? std::optional(*number) : std::nullopt;
 }
 
 }  // namespace insonify::framework

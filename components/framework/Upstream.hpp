@@ -1,5 +1,5 @@
 #pragma once
-// What a task can know of those from which it hears: the frequency of a sonar, the mount of a scene.
+// What a task can know of those from which it hears.
 #include <initializer_list>
 #include <optional>
 #include <string>
@@ -16,7 +16,7 @@ std::optional<types::PropertyValue> valueAt(const types::TaskRecord& task, const
  *  such task has one. */
 std::optional<types::PropertyValue> upstreamValue(const InputPortBase& port, std::initializer_list<const char*> paths);
 
-/** The frequency of the sonar from which a port hears, else that of its absorption [kHz]; none: it is not given. */
-std::optional<double> upstreamFrequency(const InputPortBase& port);
+/** The same for a number. */
+std::optional<double> upstreamNumber(const InputPortBase& port, std::initializer_list<const char*> paths);
 
 }  // namespace insonify::framework

@@ -48,7 +48,7 @@ Declare declaration(const Input& input, log::Metadata metadata) {
 template <class Input>
 std::optional<double> frequencyOf(const Input& input) {
     if constexpr (std::is_same_v<typename Input::Sample, types::Sonar>)
-        return framework::upstreamFrequency(input.port);
+        return framework::upstreamNumber(input.port, {"frequency_khz", "absorption.frequency_khz"});
     else
         return std::nullopt;
 }

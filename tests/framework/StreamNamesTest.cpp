@@ -65,7 +65,7 @@ TEST(UpstreamTest, AValueComesFromTheNearestTaskThatHasIt) {
     ASSERT_TRUE(last);
     EXPECT_EQ(std::get<int64_t>(*last), 7);
     EXPECT_FALSE(upstreamValue(port, {"nothing"}));
-    EXPECT_FALSE(upstreamFrequency(port));
+    EXPECT_FALSE(upstreamNumber(port, {"last"})) << "it is a whole one";
 }
 
 TEST(UpstreamTest, AValueWithinABlockIsFoundByItsPath) {
