@@ -19,13 +19,14 @@
 #include "types/SonarElements.hpp"
 #include "types/SonarReturns.hpp"
 #include "types/SonarScan.hpp"
+#include "types/SonarSettings.hpp"
 #include "types/SonarTruth.hpp"
 
 namespace insonify::types {
 
 using SampleTypes =
-    std::tuple<Sonar, SonarBeam, SonarScan, SonarTruth, SonarReturns, SonarElements, Pose, Image, PointCloud, DepthMap,
-               Range, Time, Angle, double, float, int32_t, int64_t, bool, std::string>;
+    std::tuple<Sonar, SonarBeam, SonarScan, SonarTruth, SonarReturns, SonarElements, SonarSettings, Pose, Image,
+               PointCloud, DepthMap, Range, Time, Angle, double, float, int32_t, int64_t, bool, std::string>;
 
 /** What travels on a port for a T: samples that say so (`shared`), by reference, the others as they are. */
 template <class T>
@@ -131,6 +132,20 @@ struct Columns<Range> {
     template <class Visit>
     static void forEach(const Range& sample, Visit&& visit) {
         visit("range", std::array{"range"}, std::array{sample.range});
+    }
+};
+template <>
+struct Columns<SonarSettings> {
+    template <class Visit>
+    static void forEach(const SonarSettings& sample, Visit&& visit) {
+        visit("range", std::array{"range"}, std::array{sample.range});
+        visit("frequency_khz", std::array{"frequency_khz"}, std::array{sample.frequency_khz});
+        visit("speed_of_sound", std::array{"speed_of_sound"}, std::array{sample.speed_of_sound});
+        visit("gain_db", std::array{"gain_db"}, std::array{sample.gain_db});
+        visit("bearing", std::array{"bearing"}, std::array{sample.bearing.rad});
+        visit("field_of_view", std::array{"field_of_view"}, std::array{sample.field_of_view.rad});
+        visit("beam_height", std::array{"beam_height"}, std::array{sample.beam_height.rad});
+        visit("counts", std::array{"bin_count", "beam_count"}, std::array{sample.bin_count, sample.beam_count});
     }
 };
 struct AnyColumns {

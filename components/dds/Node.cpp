@@ -46,6 +46,21 @@ bool isWord(std::string_view word) {
     return !word.empty() && !std::isdigit(static_cast<unsigned char>(word[0])) && std::ranges::all_of(word, fits);
 }
 
+/** "auv/sonar", "/auv/sonar" or "sonar". */
+bool areWords(std::string_view name) {
+    if (name.starts_with('/')) name.remove_prefix(1);
+    for (size_t slash = name.find('/'); slash != name.npos && isWord(name.substr(0, slash)); slash = name.find('/'))
+        name.remove_prefix(slash + 1);
+    return isWord(name);
+}
+
+/** "/auv" of "/auv/sonar", "/" of "sonar". */
+std::string namespaceOf(const std::string& node) {
+    const size_t slash = node.rfind('/');
+    const std::string words = slash == node.npos ? "" : node.substr(0, slash);
+    return words.starts_with('/') ? words : "/" + words;
+}
+
 }  // namespace
 
 std::string ddsTopic(const std::string& ros_topic) {
@@ -58,25 +73,25 @@ std::string ddsType(std::string_view ros_type) {
 }
 
 std::string diagnosticOfTopic(const std::string& name) {
-    std::string_view rest(name);
-    if (rest.starts_with('/')) rest.remove_prefix(1);
-    for (size_t slash = rest.find('/'); slash != rest.npos && isWord(rest.substr(0, slash)); slash = rest.find('/'))
-        rest.remove_prefix(slash + 1);
     if (ddsTopic(name).size() > longest_topic)
         return "has " + std::to_string(name.size()) + " characters; at most " + std::to_string(longest_topic - 3) +
                " are a topic's name";
-    if (isWord(rest)) return "";
+    if (areWords(name)) return "";
     return "is \"" + name + "\"; must be words of letters, digits and _, none beginning with a digit, as /auv/sonar";
 }
 
 std::string diagnosticOfNode(const std::string& name) {
-    if (isWord(name) && name.size() <= 255) return "";
-    return "is \"" + name + "\"; must be one word of letters, digits and _, not beginning with a digit";
+    if (areWords(name) && name.size() <= 255) return "";
+    return "is \"" + name +
+           "\"; must be words of letters, digits and _, none beginning with a digit, as sonar or /auv/sonar";
 }
 
 // Without an enclave ROS 2 takes a participant for none of its own.
-Node::Node(uint32_t domain, std::string name, size_t gid_size)
-    : name_(std::move(name)), gid_size_(gid_size), participant_(joinDomain(domain, "enclave=/;")) {}
+Node::Node(uint32_t domain, const std::string& name, size_t gid_size)
+    : namespace_(namespaceOf(name)),
+      name_(name.substr(name.rfind('/') + 1)),
+      gid_size_(gid_size),
+      participant_(joinDomain(domain, "enclave=/;")) {}
 Node::~Node() = default;
 
 Entity Node::makeTopic(const std::string& dds_topic, const std::string& dds_type, size_t largest) const {
@@ -98,7 +113,7 @@ void Node::announceWith() {
     using Info = ParticipantEntitiesInfo<gid_size>;
     const Quality quality{.reliability = Reliability::Reliable, .depth = 1, .transient_local = true};
     const Info info{gidOf<gid_size>(guidOf(participant())),
-                    {{"/", name_, gidsOf<gid_size>(readers_), gidsOf<gid_size>(writers_)}}};
+                    {{namespace_, name_, gidsOf<gid_size>(readers_), gidsOf<gid_size>(writers_)}}};
     Bytes bytes;
     ros::encode(info, bytes);
     if (!discovery_)

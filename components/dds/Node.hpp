@@ -33,9 +33,10 @@ using Guid = std::array<uint8_t, 16>;
 /** A ROS 2 node: a participant of a domain that tells others its name and what it reads and writes. */
 class Node {
 public:
-    /** `gid_size` is 16, or 24 for Humble and before [B]. Throws types::ConfigError where the domain cannot be joined.
+    /** `name` may have a namespace: "/auv/sonar". `gid_size` is 16, or 24 for Humble and before [B]. Throws
+     * types::ConfigError where the domain cannot be joined.
      */
-    Node(uint32_t domain, std::string name, size_t gid_size);
+    Node(uint32_t domain, const std::string& name, size_t gid_size);
     ~Node();
 
     int32_t participant() const { return participant_.handle(); }
@@ -52,7 +53,7 @@ private:
     template <size_t gid_size>
     void announceWith();
 
-    std::string name_;
+    std::string namespace_, name_;
     size_t gid_size_;
     Entity participant_;
     std::unique_ptr<Writer> discovery_;

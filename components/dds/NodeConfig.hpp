@@ -20,7 +20,8 @@ struct NodeConfig {
     static void describe(Self& self, V& visit) {
         using types::Field;
         visit(Field{"domain", "1", "DDS domain; absent: ROS_DOMAIN_ID, or 0", 0, highest_domain}, self.domain);
-        visit(Field{"node_name", "", "name of the ROS 2 node; empty: the task's"}, self.node_name);
+        visit(Field{"node_name", "", "name of the ROS 2 node, /auv/sonar with a namespace; empty: the task's"},
+              self.node_name);
         visit(Field{"world_frame", "",
                     "axes of poses on the wire: ours (x north, y west, z up), x east, y north, z up, or x north, y "
                     "east, z down"},

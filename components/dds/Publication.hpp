@@ -1,12 +1,15 @@
 #pragma once
+#include <algorithm>
 #include <functional>
 #include <optional>
 #include <string>
+#include <utility>
 
 #include "components/dds/PublisherConfig.hpp"
 #include "components/dds/Writer.hpp"
 #include "components/ros/Cdr.hpp"
 #include "components/ros/Samples.hpp"
+#include "components/ros/Stamps.hpp"
 #include "types/ConfigError.hpp"
 #include "types/ThrottledWarning.hpp"
 
@@ -28,26 +31,33 @@ concept Fills = requires(const T& sample, const ros::MessageOptions& options, Me
     ros::toMessage(sample, options, message);
 };
 
+/** Names the frames of a message of the world: a pose, points. */
+template <class Message>
+void nameFrames(const TopicOptions& options, Message& message) {
+    if constexpr (requires { message.header; }) nameFrame(message.header.frame_id, options.world_frame_id, "map");
+    if constexpr (requires { message.child_frame_id; })
+        nameFrame(message.child_frame_id, options.child_frame_id, "base_link");
+    if constexpr (requires { message.transforms; })
+        for (ros::TransformStamped& transform : message.transforms) nameFrames(options, transform);
+}
+
 template <class T, class Message>
 void fill(const T& sample, const TopicOptions& options, Message& message) {
     ros::toMessage(sample, options.messages, message);
+    ros::restoreStamps(message);
     constexpr bool of_the_world = std::is_same_v<T, types::Pose> || std::is_same_v<T, types::PointCloud>;
-    if constexpr (of_the_world && requires { message.header; }) {
-        nameFrame(message.header.frame_id, options.world_frame_id, "map");
-        if constexpr (requires { message.child_frame_id; })
-            nameFrame(message.child_frame_id, options.child_frame_id, "base_link");
-    }
+    if constexpr (of_the_world) nameFrames(options, message);
 }
 
 template <class Sample>
-using Encode = std::function<void(const Sample&, Bytes&)>;
+using Encode = std::function<void(const Sample&, const TopicOptions&, Bytes&)>;
 
 /** None where the message cannot be made of a Sample. */
 template <class Sample>
-Encode<Sample> encoderOf(MessageType type, const TopicOptions& options) {
+Encode<Sample> encoderOf(MessageType type) {
     return withMessage(type, [&]<class Message>(std::type_identity<Message>) -> Encode<Sample> {
         if constexpr (Fills<Sample, Message>)
-            return [options, message = Message{}](const Sample& sample, Bytes& bytes) mutable {
+            return [message = Message{}](const Sample& sample, const TopicOptions& options, Bytes& bytes) mutable {
                 fill(sample, options, message);
                 bytes.clear();
                 ros::encode(message, bytes);
@@ -59,7 +69,7 @@ Encode<Sample> encoderOf(MessageType type, const TopicOptions& options) {
 
 template <class Sample>
 bool canBe(MessageType type) {
-    return encoderOf<Sample>(type, {}) != nullptr;
+    return encoderOf<Sample>(type) != nullptr;
 }
 
 /** Types of messages that a Sample can be, as in YAML: "nav_msgs/Odometry, ...". */
@@ -84,7 +94,8 @@ public:
      *  be made of a Sample, and as Writer. */
     Publication(Node& node, const PublisherConfig& config, const TopicOut& topic, types::ThrottledWarning& drops)
         : topic_(topic.topic),
-          encode_(encoderOf<Sample>(topic.type, optionsOf(config, topic))),
+          options_(optionsOf(config, topic)),
+          encode_(encoderOf<Sample>(topic.type)),
           writer_(writerOf(node, config, topic)),
           drops_(drops) {
         node.addWriter(writer_.handle());
@@ -95,16 +106,29 @@ public:
             type + " cannot be made of what comes on port " + topic.port + "; that can be " + messagesOf<Sample>());
     }
 
+    /** Of the device, where the topic names none of its own [kHz]. */
+    void takeFrequency(double khz) {
+        if (!names_frequency_) options_.messages.frequency_khz = khz;
+    }
+
+    const std::string& topic() const { return topic_; }
+    /** Whether a message was larger than the receive buffers that Linux gives by default; true once. */
+    bool hasOutgrownBuffers() {
+        constexpr size_t usual_buffer = 212'992;  // net.core.rmem_default [B]
+        return largest_ > usual_buffer && !std::exchange(size_is_told_, true);
+    }
+
     /** Makes no message for a topic that nobody reads. A sample that the message cannot hold (see ros/Samples.hpp) is
      *  dropped. Whether it was sent. */
     bool publish(const Sample& sample) {
         if (!writer_.hasReaders()) return false;
         try {
-            encode_(sample, bytes_);
+            encode_(sample, options_, bytes_);
         } catch (const std::logic_error& error) {
             drops_.add(topic_ + ": " + error.what());
             return false;
         }
+        largest_ = std::max(largest_, bytes_.size());
         if (writer_.write(bytes_)) return true;
         drops_.add(topic_ + ": " + writer_.failure());
         return false;
@@ -112,9 +136,13 @@ public:
 
 private:
     std::string topic_;
+    TopicOptions options_;
+    bool names_frequency_ = options_.messages.frequency_khz > 0;
     Encode<Sample> encode_;
     Writer writer_;
     Bytes bytes_;
+    size_t largest_ = 0;  ///< Of the messages [B].
+    bool size_is_told_ = false;
     types::ThrottledWarning& drops_;
 };
 

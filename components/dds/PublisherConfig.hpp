@@ -37,6 +37,18 @@ struct TopicOut {
     }
 };
 
+/** Where the sonars sit in the body, as a transform that stays. */
+struct StaticTransforms {
+    std::string topic = "/tf_static";
+    std::string frame_id = "base_link";
+
+    template <class Self, class V>
+    static void describe(Self& self, V& visit) {
+        visit(types::Field{"topic", "", "as in ROS"}, self.topic);
+        visit(types::Field{"frame_id", "", "of the body that carries the sonars"}, self.frame_id);
+    }
+};
+
 /** How the axes of a ping's message lie; none: it has none, or is of a pose. */
 inline std::optional<ros::SensorFrame> axesOf(const TopicOut& topic) {
     const auto is = [&]<class Message>(std::type_identity<Message>) { return topic.type == message_type<Message>; };
@@ -53,6 +65,7 @@ struct PublisherConfig {
     std::optional<std::string> world_frame_id;
     Reliability reliability = Reliability::Reliable;
     int depth = 5;
+    std::optional<StaticTransforms> tf_static;
     NodeConfig node;
 
     template <class Self, class V>
@@ -64,16 +77,21 @@ struct PublisherConfig {
               self.world_frame_id);
         visit(Field{"reliability", "", "best_effort is not heard by readers that ask for reliable ones"},
               self.reliability);
+        visit(Field{"tf_static", "",
+                    "tells where the frames of pings sit in the body, by the scene's mount; absent: not"},
+              self.tf_static);
         visit(Field{"depth", "1", "messages kept for readers that are behind", 1, 1000}, self.depth);
         NodeConfig::describe(self.node, visit);
+    }
+    std::string frameOf(const TopicOut& topic) const {
+        return topic.sonar.frame_id.empty() ? frame_id : topic.sonar.frame_id;
     }
     /** Frames that messages with different axes share: no transform fits both. */
     std::vector<std::string> sharedFrames() const {
         std::map<std::string, std::array<std::string, 2>> by_frame;  // topics with x ahead, with z ahead
         for (const TopicOut& topic : topics)
             if (const auto axes = axesOf(topic)) {
-                std::string& topics_so = by_frame[topic.sonar.frame_id.empty() ? frame_id : topic.sonar.frame_id]
-                                                 [*axes == ros::SensorFrame::ZForward];
+                std::string& topics_so = by_frame[frameOf(topic)][*axes == ros::SensorFrame::ZForward];
                 topics_so += (topics_so.empty() ? "" : ", ") + topic.topic;
             }
         std::vector<std::string> shared;
@@ -87,6 +105,11 @@ struct PublisherConfig {
         node.check(diagnostics);
         if (topics.empty()) diagnostics.push_back({"topics", "is empty; must hold a topic"});
         std::set<std::string> names;
+        if (tf_static) {
+            if (const std::string diagnostic = diagnosticOfTopic(tf_static->topic); !diagnostic.empty())
+                diagnostics.push_back({"tf_static.topic", diagnostic});
+            names.insert(ddsTopic(tf_static->topic));
+        }
         for (size_t i = 0; i < topics.size(); ++i) {
             const std::string path = "topics[" + std::to_string(i) + "].";
             if (topics[i].port.empty()) diagnostics.push_back({path + "port", "must name an input port"});

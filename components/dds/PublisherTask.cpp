@@ -4,7 +4,11 @@
 #include <chrono>
 
 #include "components/dds/SubscriberTask.hpp"
+#include "components/framework/ConfigReader.hpp"
 #include "components/framework/Latency.hpp"
+#include "components/framework/Upstream.hpp"
+#include "components/ros/Poses.hpp"
+#include "components/ros/Times.hpp"
 #include "types/ConfigError.hpp"
 
 namespace insonify::dds {
@@ -21,6 +25,16 @@ std::string whyNot(const Input& input, const TopicOut& topic) {
     if (canBe<Sample>(topic.type)) return "";
     const std::string type(types::EnumNames<MessageType>::names[static_cast<size_t>(topic.type)]);
     return "is " + type + "; " + input.port.typeName() + " can be " + messagesOf<Sample>();
+}
+
+/** Where a port's sonar sits in the body; none: no scene says so. */
+std::optional<types::Mount> mountOf(const framework::InputPortBase& port) {
+    const auto value = framework::upstreamValue(port, {"mount"});
+    const std::string* const text = value ? std::get_if<std::string>(&*value) : nullptr;
+    types::Mount mount;
+    framework::ConfigReader reader("");
+    if (!text || !reader.readText(*text, "mount", mount)) return std::nullopt;
+    return mount;
 }
 
 /** Sends a sample as all topics of its input. */
@@ -78,16 +92,60 @@ bool PublisherTask::configureHook() {
             if (topic.port == input.port.name())
                 input.kept.publications.push_back(std::make_unique<Sending>(*node_, *config, topic, drops_));
     });
+    if (config->tf_static) announceMounts();
+    takeFrequencies();
     node_->announce();
     return true;
 }
 
+ros::TFMessage PublisherTask::mounts() const {
+    ros::TFMessage message;
+    inputs_.forEach([&]<class Input>(const Input& input) {
+        constexpr bool of_the_world = std::is_same_v<typename Input::Sample, types::PointCloud>;
+        const auto mount = of_the_world ? std::nullopt : mountOf(input.port);
+        for (const TopicOut& topic : config->topics) {
+            const auto axes = axesOf(topic);
+            const std::string frame = config->frameOf(topic);
+            const bool is_told =
+                std::ranges::count(message.transforms, frame, &ros::TransformStamped::child_frame_id) > 0;
+            if (topic.port != input.port.name() || !mount || !axes || is_told) continue;
+            message.transforms.push_back({{ros::toRos(now()), config->tf_static->frame_id},
+                                          frame,
+                                          ros::toTransform(*mount, config->node.world_frame, *axes)});
+        }
+    });
+    return message;
+}
+
+void PublisherTask::announceMounts() {
+    using Message = ros::TFMessage;
+    const Quality quality{.reliability = Reliability::Reliable, .depth = 1, .transient_local = true};
+    tf_static_.emplace(*node_, ddsTopic(config->tf_static->topic), Message::type_name, Message::type_hash, quality);
+    node_->addWriter(tf_static_->handle());
+    Bytes bytes;
+    ros::encode(mounts(), bytes);
+    if (!tf_static_->write(bytes)) throw std::runtime_error("the mounts cannot be told: " + tf_static_->failure());
+}
+
+void PublisherTask::takeFrequencies() {
+    known_changes_ = *environment().record_changes;
+    inputs_.forEach([](auto& input) {
+        const double frequency = framework::upstreamFrequency(input.port).value_or(0);
+        for (const auto& publication : input.kept.publications) publication->takeFrequency(frequency);
+    });
+}
+
 void PublisherTask::updateHook() {
     using Clock = std::chrono::steady_clock;
+    if (*environment().record_changes != known_changes_) takeFrequencies();
     inputs_.forEach([this]<class Input>(Input& input) {
         auto start = Clock::now();
         for (typename Input::Carried sample{}; input.port.readNew(sample); start = Clock::now()) {
             send(input, sample, *this, drops_);
+            for (const auto& publication : input.kept.publications)
+                if (publication->hasOutgrownBuffers())
+                    warn(publication->topic() + ": its messages are larger than Linux's receive buffers: Fast DDS loses " +
+                         "most of them; take dtype: uint8 for pings, or see components/dds/README.md");
             recordStage("send", std::chrono::duration<double>(Clock::now() - start).count());
         }
     });
@@ -96,6 +154,7 @@ void PublisherTask::updateHook() {
 
 void PublisherTask::cleanupHook() {
     inputs_.forEach([](auto& input) { input.kept.publications.clear(); });
+    tf_static_.reset();
     node_.reset();
 }
 

@@ -19,7 +19,8 @@ namespace insonify::dds {
  *
  *  Ports: an input for each connection that names one that `topics` knows, of any type in types/Samples.hpp; their
  *  topics may be of the types that such a sample can be. A topic that nobody reads costs nothing. Poses are turned into
- *  `world_frame`.
+ *  `world_frame`. With `tf_static` the frames of pings are told with the mount of the scene from which they come, to
+ *  who comes later as well. The frequency of a ping is its sonar's, unless a topic names another.
  *
  *  Configure joins the domain and announces the node. Sending waits for no reader: one that is more than `depth`
  *  messages behind misses some. What cannot be sent, or what its message cannot hold, is dropped and counted: a warning
@@ -47,9 +48,15 @@ private:
     bool configureHook() override;
     void updateHook() override;
     void cleanupHook() override;
+    /** Where the frames of all pings sit. */
+    ros::TFMessage mounts() const;
+    void announceMounts();
+    void takeFrequencies();
 
     types::ThrottledWarning drops_{"message", "dropped"};
     std::optional<Node> node_;
+    std::optional<Writer> tf_static_;
+    uint64_t known_changes_ = 0;  ///< Of the tasks' records, when the frequencies were taken.
     framework::DynamicInputs<types::SampleTypes, Topics> inputs_{this};
 };
 

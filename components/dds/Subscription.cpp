@@ -5,6 +5,8 @@
 
 #include "components/ros/Cdr.hpp"
 #include "components/ros/Poses.hpp"
+#include "components/ros/Stamps.hpp"
+#include "components/ros/Times.hpp"
 
 namespace insonify::dds {
 namespace {
@@ -39,9 +41,11 @@ void Subscription::decode(types::Pose& pose) {
     if (type_ == PoseType::Odometry) {
         ros::decode(std::span<const char>(bytes_), odometry_);
         ros::convert(odometry_, world_frame_, pose);
+        stamp_ = odometry_.header.stamp;
     } else {
         ros::decode(std::span<const char>(bytes_), stamped_);
         ros::convert(stamped_, world_frame_, pose);
+        stamp_ = stamped_.header.stamp;
     }
 }
 
@@ -67,6 +71,7 @@ bool Subscription::take(types::Time now, types::Pose& pose) {
             detail = std::string(": ") + error.what();
         }
         if (diagnostic.empty()) {
+            if (read_.time == ros::fromRos(stamp_)) ros::fineStamps().note(stamp_);
             newest_ = read_.time;
             newest_came_ = now;
             newest_sender_ = sender_;

@@ -41,6 +41,7 @@ private:
     types::Pose read_;
     ros::Odometry odometry_;
     ros::PoseStamped stamped_;
+    ros::Time stamp_;  ///< Of the message that was read last, with its nanoseconds.
     uint64_t sender_ = 0, newest_sender_ = 0;
     types::Time newest_, newest_came_;
     bool stamped_on_arrival_, more_ = false;

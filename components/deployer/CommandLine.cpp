@@ -87,6 +87,7 @@ int runCommandLine(int argc, char** argv) {
     addBeamCommand(app, action);
     addWaterCommand(app, action);
     addBackscatterCommand(app, action);
+    addDeviceCommand(app, action);
     addSchemaCommand(app, action);
     addLogCommand(app, action);
     addReplayCommand(app, action);

@@ -10,6 +10,8 @@
 #include <set>
 
 #include "components/deployer/Commands.hpp"
+#include "components/deployer/DeploymentFile.hpp"
+#include "components/deployer/Import.hpp"
 #include "components/deployer/Json.hpp"
 #include "components/deployer/PictureExport.hpp"
 #include "components/deployer/StreamMeaning.hpp"
@@ -101,8 +103,9 @@ void noteSize(log::Reader& log, const std::string& stream, const fs::path& to) {
 }
 
 /** The files that were written. */
-std::vector<fs::path> exportTo(log::Reader& log, const std::string& stream, const fs::path& to) {
-    const std::string meta = text(meaningOf(log, log.streams()[log.indexOf(stream)]));
+std::vector<fs::path> exportTo(log::Reader& log, const std::string& name, const fs::path& to) {
+    const log::Stream& exported = log.streams()[log.indexOf(name)];
+    const std::string &stream = exported.name, meta = text(meaningOf(log, exported));
     if (!to.has_extension() || fs::is_directory(to)) {
         fs::create_directories(to);
         return log::exportNpz(log, stream, to / (stream + ".npz"), meta);
@@ -118,7 +121,7 @@ std::vector<fs::path> exportTo(log::Reader& log, const std::string& stream, cons
 }
 
 struct Options {
-    std::string file, stream, to, samples;
+    std::string file, deployment, stream, to, samples;
     std::vector<std::string> files, streams;
     std::string from, until;
     log::McapConfig mcap;
@@ -192,6 +195,19 @@ int logRepair(const Options& options) {
     return copyTo(options.to, {fs::path(options.file)}, {.at_damage = log::AtDamage::Skip});
 }
 
+int logImport(const Options& options) {
+    refuseMissingFolder(options.to);
+    const Imported made =
+        importOculus(options.file, framework::DeploymentSpec::load(deploymentIn(options.deployment)), options.to);
+    if (!made.diagnostic.empty()) fmt::print(stderr, "notice: {}: {}\n", options.file, made.diagnostic);
+    if (made.other_shape > 0)
+        fmt::print(stderr, "notice: {}: {} pings of other beams or bins than the first are left out\n", options.file,
+                   made.other_shape);
+    for (const std::string& property : made.properties) fmt::print(stderr, "notice: as recorded: {}\n", property);
+    fmt::print("{}: {} pings as {}\n", options.to, made.pings, made.stream);
+    return 0;
+}
+
 Json verdictJson(const log::Verdict& verdict) {
     Json wrong;
     if (const auto& found = verdict.diagnostic)
@@ -221,7 +237,7 @@ void addEnum(CLI::App& command, const char* name, const char* help, E& value) {
 
 void addMcapOptions(CLI::App& command, log::McapConfig& config) {
     addEnum(command, "--dtype", "of echoes in an MCAP file (default: float32)", config.dtype);
-    addEnum(command, "--world-frame", "of poses in an MCAP file (default: as_is)", config.world_frame);
+    addEnum(command, "--world-frame", "of poses in an MCAP file (default: enu)", config.world_frame);
 }
 
 /** A subcommand of `log` that does `work`. */
@@ -260,6 +276,16 @@ void addLogCommand(CLI::App& app, Action& action) {
     cut->add_option("--samples", options->samples, "FIRST:LAST, numbers from 0 in the kept streams, LAST not included");
     cut->add_option("--stream", options->streams, "task.port to keep; may be given again; none: all")
         ->allow_extra_args(false);
+
+    CLI::App* import = add(*log, action, options, "import",
+                           "Makes a log of an Oculus' recording, to be replayed, rendered again and scored", logImport);
+    import->add_option("FILE", options->file, "a file of the maker's viewer (.oculus), or captured messages")
+        ->required();
+    import
+        ->add_option("DEPLOYMENT", options->deployment,
+                     "whose receiver's pings they become; its trajectories tell the poses, from the first ping on")
+        ->required();
+    import->add_option("--to", options->to, "the new log, NAME.0.log or NAME.0.mcap")->required();
 
     CLI::App* repair = add(*log, action, options, "repair",
                            "Copies what is whole of a damaged log into a new one, and tells what was lost", logRepair);

@@ -33,21 +33,6 @@ std::set<std::string> upstreamOfSonars(const Deployment& deployment) {
     return upstreamOf(std::move(names), deployment);
 }
 
-/** The deployment with these tasks alone, in lockstep. */
-DeploymentSpec restricted(DeploymentSpec spec, const std::set<std::string>& kept) {
-    const auto keeps = [&](const std::string& port) { return kept.contains(framework::splitPort(port).first); };
-    std::vector<framework::TaskSpec> tasks;  // made anew: assigning a YAML node changes what other nodes see
-    for (const auto& task : spec.tasks)
-        if (kept.contains(task.name)) tasks.push_back(task);
-    std::vector<framework::ConnectionSpec> connections;
-    for (const auto& connection : spec.connections)
-        if (keeps(connection.from) && keeps(connection.to)) connections.push_back(connection);
-    spec.tasks.swap(tasks);
-    spec.connections.swap(connections);
-    spec.lockstep = true;
-    return spec;
-}
-
 /** Reads what a port gives out, for who is no task of the deployment. */
 struct PingReader : framework::TaskContext {
     using TaskContext::TaskContext;
@@ -62,13 +47,13 @@ receiver::ReceiverTask* codingReceiver(const Deployment& deployment) {
     return nullptr;
 }
 
+}  // namespace
+
 receiver::ReceiverTask& codingReceiverOf(const Deployment& deployment, const std::string& file) {
     if (auto* found = codingReceiver(deployment)) return *found;
     throw types::ConfigError(file, "tasks",
                              "has no receiver that gives out codes, as instruments do: give one output: code");
 }
-
-}  // namespace
 
 std::set<std::string> upstreamOf(std::set<std::string> names, const Deployment& deployment) {
     for (size_t before = 0; before != names.size();) {
@@ -79,8 +64,22 @@ std::set<std::string> upstreamOf(std::set<std::string> names, const Deployment& 
     return names;
 }
 
+DeploymentSpec restrictedTo(DeploymentSpec spec, const std::set<std::string>& kept) {
+    const auto keeps = [&](const std::string& port) { return kept.contains(framework::splitPort(port).first); };
+    std::vector<framework::TaskSpec> tasks;  // made anew: assigning a YAML node changes what other nodes see
+    for (const auto& task : spec.tasks)
+        if (kept.contains(task.name)) tasks.push_back(task);
+    std::vector<framework::ConnectionSpec> connections;
+    for (const auto& connection : spec.connections)
+        if (keeps(connection.from) && keeps(connection.to)) connections.push_back(connection);
+    spec.tasks.swap(tasks);
+    spec.connections.swap(connections);
+    spec.lockstep = true;
+    return spec;
+}
+
 DeploymentSpec pipelineOf(DeploymentSpec spec, framework::Registry& registry) {
-    return restricted(spec, upstreamOfSonars(Deployment(spec, registry)));
+    return restrictedTo(spec, upstreamOfSonars(Deployment(spec, registry)));
 }
 
 std::set<std::string> pingTasks(const DeploymentSpec& spec, framework::Registry& registry) {
@@ -115,7 +114,7 @@ study::PingAt codedPingAt(const std::string& file, uint64_t ping) {
     const DeploymentSpec spec = DeploymentSpec::load(deploymentIn(file));
     const Deployment whole(spec, registry);
     const std::set<std::string> kept = upstreamOf({codingReceiverOf(whole, file).name()}, whole);
-    Deployment deployment(restricted(spec, kept), registry);
+    Deployment deployment(restrictedTo(spec, kept), registry);
     receiver::ReceiverTask& receiver = codingReceiverOf(deployment, file);
     PingReader reader("reader");
     receiver.ping.connectTo(reader.ping, framework::ConnPolicy::data());

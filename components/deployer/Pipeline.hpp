@@ -5,6 +5,7 @@
 #include "components/framework/Deployment.hpp"
 #include "components/framework/DeploymentSpec.hpp"
 #include "components/framework/Registry.hpp"
+#include "components/receiver/ReceiverTask.hpp"
 #include "components/study/StudyCommand.hpp"
 
 namespace insonify::deployer {
@@ -12,11 +13,17 @@ namespace insonify::deployer {
 /** The deployment down to its sonars, in lockstep so that it takes no longer than it must. */
 framework::DeploymentSpec pipelineOf(framework::DeploymentSpec spec, framework::Registry& registry);
 
+/** The deployment with these tasks alone, in lockstep. */
+framework::DeploymentSpec restrictedTo(framework::DeploymentSpec spec, const std::set<std::string>& kept);
+
 /** Tasks of the deployment that write pings or read them. */
 std::set<std::string> pingTasks(const framework::DeploymentSpec& spec, framework::Registry& registry);
 
 /** These tasks and all from which they hear, directly or not. */
 std::set<std::string> upstreamOf(std::set<std::string> names, const framework::Deployment& deployment);
+
+/** The first receiver that gives out codes. Throws types::ConfigError where there is none. */
+receiver::ReceiverTask& codingReceiverOf(const framework::Deployment& deployment, const std::string& file);
 
 /** The first sonar of a deployment at its ping number `ping`, from 1. Throws types::ConfigError where there is none. */
 study::SonarAt sonarAt(const std::string& file, uint64_t ping);

@@ -105,7 +105,8 @@ std::map<std::string, Values> historiesOf(log::Reader& log, const std::set<std::
     const auto first = firstRecords(log);
     for (const log::Stream& stream : log.streams()) {
         const auto [task, property] = splitPort(stream.name);
-        if (!tasks.contains(task) || property.find('.') != std::string::npos) continue;
+        const bool is_alias = stream.metadata.contains("insonify_alias_of");  // what it leads to is there as well
+        if (!tasks.contains(task) || is_alias || property.find('.') != std::string::npos) continue;
         Values values = valuesOf(log, stream);
         if (values.empty()) continue;
         addAbsence(log, stream.name, values);
@@ -120,7 +121,8 @@ struct Pings {
     std::string driver;
     std::vector<log::SampleRef> samples;
 
-    Pings(const log::Reader& log, const std::string& stream) : driver(poseStreamOf(log, splitPort(stream).first)) {
+    Pings(const log::Reader& log, const std::string& stream, const std::string& writer)
+        : driver(poseStreamOf(log, writer)) {
         log.forEachRef(stream, [&](const log::SampleRef& at) { samples.push_back(at); });
     }
     /** Stamp of the first ping that came with or after what the logger learnt then; none came. */
@@ -233,8 +235,8 @@ std::map<std::string, Pings> pingsByTask(const log::Reader& log, const framework
                                          const Deployment& deployment) {
     std::map<std::string, Pings> pings;
     for (const std::string& stream : pingStreams(log, spec))
-        for (const std::string& task : upstreamOf({splitPort(stream).first}, deployment))
-            if (!pings.contains(task)) pings.emplace(task, Pings(log, stream));
+        for (const std::string& task : upstreamOf({writerOf(spec, stream)}, deployment))
+            if (!pings.contains(task)) pings.emplace(task, Pings(log, stream, writerOf(spec, stream)));
     return pings;
 }
 

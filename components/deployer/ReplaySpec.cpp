@@ -22,11 +22,11 @@ bool isOfPort(const log::Stream& stream) {
     return type == stream.metadata.end() || type->second == "port";
 }
 
-/** Tasks of the deployment that have a stream in the log. */
+/** Tasks of the deployment that have a stream in the log, by whichever of their names. */
 std::set<std::string> loggedTasks(const log::Reader& log, const DeploymentSpec& spec) {
     std::set<std::string> names;
     for (const log::Stream& stream : log.streams())
-        if (const std::string task = splitPort(stream.name).first; isOfPort(stream) && spec.task(task))
+        if (const std::string task = writerOf(spec, stream.name); isOfPort(stream) && spec.task(task))
             names.insert(task);
     return names;
 }
@@ -75,6 +75,12 @@ TaskSpec replayTask(const std::string& name, const ReplayOptions& options) {
     return task;
 }
 
+/** The stream in which a log has a port, under its alias or its own name; empty: it has none. */
+std::string streamOf(const log::Reader& log, const DeploymentSpec& spec, const std::string& port) {
+    const std::string alias = spec.aliasOf(port);
+    return !alias.empty() && log.find(alias) ? alias : log.find(port) ? port : "";
+}
+
 /** Connections of logged ports lead from the replay; those that a replaced task would have read, or written without
  *  a stream in the log, are left out. */
 std::vector<ConnectionSpec> reconnected(const DeploymentSpec& spec, const log::Reader& log,
@@ -82,11 +88,35 @@ std::vector<ConnectionSpec> reconnected(const DeploymentSpec& spec, const log::R
     std::vector<ConnectionSpec> connections;
     for (const ConnectionSpec& written : spec.connections) {
         const bool from_log = replaced.contains(splitPort(written.from).first);
-        if (replaced.contains(splitPort(written.to).first) || (from_log && !log.find(written.from))) continue;
+        const std::string stream = from_log ? streamOf(log, spec, written.from) : "";
+        if (replaced.contains(splitPort(written.to).first) || (from_log && stream.empty())) continue;
         connections.push_back(written);
-        if (from_log) connections.back().from = replay + "." + written.from;
+        if (from_log) connections.back().from = replay + "." + stream;
     }
     return connections;
+}
+
+/** Adds the tasks between others that hear nobody any more: those who wrote to them are replaced, and the log has not
+ *  what they wrote. */
+void addDeaf(const DeploymentSpec& spec, const log::Reader& log, std::set<std::string>& replaced) {
+    const auto hears = [&](const ConnectionSpec& connection) {
+        return !replaced.contains(splitPort(connection.from).first) || !streamOf(log, spec, connection.from).empty();
+    };
+    const auto isDeaf = [&](const TaskSpec& task) {
+        bool reads = false, writes = false, hears_any = false;
+        for (const ConnectionSpec& connection : spec.connections) {
+            writes |= splitPort(connection.from).first == task.name;
+            if (splitPort(connection.to).first != task.name) continue;
+            reads = true;
+            hears_any |= hears(connection);
+        }
+        return reads && writes && !hears_any;
+    };
+    for (size_t before = 0; before != replaced.size();) {
+        before = replaced.size();
+        for (const TaskSpec& task : spec.tasks)
+            if (!replaced.contains(task.name) && isDeaf(task)) replaced.insert(task.name);
+    }
 }
 
 /** A head does not tell where it stood when a log's middle was recorded. */
@@ -104,6 +134,7 @@ DeploymentSpec replaying(DeploymentSpec spec, const log::Reader& log, const Repl
     if (options.rerender) refuseScansFrom(spec, options.from);
     std::set<std::string> replaced = replacedTasks(log, spec, options.rerender);
     if (!options.outside) replaced.merge(outsideTasks(spec));
+    if (!options.rerender) addDeaf(spec, log, replaced);
     const std::string name = freeName(spec, "replay");
     // New lists are made, since assigning a YAML node changes what other nodes see.
     std::vector<TaskSpec> tasks{replayTask(name, options)};
@@ -136,8 +167,12 @@ std::string poseStreamOf(const log::Reader& log, const std::string& sonar) {
 std::vector<std::string> pingStreams(const log::Reader& log, const DeploymentSpec& spec) {
     std::vector<std::string> names;
     for (const log::Stream& stream : log.streams())
-        if (stream.holds<types::Sonar>() && spec.task(splitPort(stream.name).first)) names.push_back(stream.name);
+        if (stream.holds<types::Sonar>() && spec.task(writerOf(spec, stream.name))) names.push_back(stream.name);
     return names;
+}
+
+std::string writerOf(const DeploymentSpec& spec, const std::string& stream) {
+    return splitPort(spec.withoutAlias(stream)).first;
 }
 
 void addLogger(DeploymentSpec& spec, const std::vector<std::string>& ports, const std::string& file) {
@@ -149,7 +184,7 @@ void addLogger(DeploymentSpec& spec, const std::vector<std::string>& ports, cons
     spec.tasks.push_back(task);
     for (const std::string& port : ports) {
         ConnectionSpec connection;
-        connection.from = port;
+        connection.from = spec.withoutAlias(port);
         connection.to = task.name + "." + port;
         connection.policy = framework::ConnPolicy::buffer(256);
         spec.connections.push_back(connection);

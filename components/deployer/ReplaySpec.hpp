@@ -30,10 +30,13 @@ std::string poseStreamOf(const log::Reader& log, const std::string& sonar);
 framework::DeploymentSpec replaying(framework::DeploymentSpec spec, const log::Reader& log,
                                     const ReplayOptions& options);
 
+/** The task that writes what is in a stream, whose name may be an alias. */
+std::string writerOf(const framework::DeploymentSpec& spec, const std::string& stream);
+
 /** Streams of pings in the log that a task of the deployment writes. */
 std::vector<std::string> pingStreams(const log::Reader& log, const framework::DeploymentSpec& spec);
 
-/** Adds a logger that writes these ports to a file. */
+/** Adds a logger that writes these ports, or aliases of ports, to a file. */
 void addLogger(framework::DeploymentSpec& spec, const std::vector<std::string>& ports, const std::string& file);
 
 }  // namespace insonify::deployer

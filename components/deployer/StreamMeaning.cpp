@@ -3,6 +3,7 @@
 #include <optional>
 #include <set>
 
+#include "components/deployer/ReplaySpec.hpp"
 #include "components/framework/DeploymentSpec.hpp"
 #include "components/log/Reader.hpp"
 #include "types/Pose.hpp"
@@ -128,14 +129,10 @@ Json cloudMeaning() {
             {"intensity", "of the strongest bin of each return, as the sonar's bins are"}};
 }
 
-std::string metadataOf(const log::Stream& stream, const char* key) {
-    const auto found = stream.metadata.find(key);
-    return found == stream.metadata.end() ? "" : found->second;
-}
-
-/** The deployment that wrote the stream; an empty one where it is not known or cannot be read. */
-DeploymentSpec deploymentOf(const log::Stream& stream, const std::string& file) try {
-    return DeploymentSpec::parse(metadataOf(stream, "insonify_deployment"), file);
+/** The deployment that wrote the log, which its first stream carries; an empty one where it is not known or cannot be
+ *  read. */
+DeploymentSpec deploymentOf(const log::Reader& log) try {
+    return DeploymentSpec::parse(log.metadatum("insonify_deployment"), log.path().string());
 } catch (const types::ConfigError&) {
     return {};
 }
@@ -144,9 +141,10 @@ DeploymentSpec deploymentOf(const log::Stream& stream, const std::string& file) 
 
 Json meaningOf(const log::Reader& log, const log::Stream& stream) {
     Json meaning = {{"stream", stream.name}};
-    if (log::holdsPings(stream))
-        meaning.update(pingMeaning(deploymentOf(stream, log.path().string()), framework::splitPort(stream.name).first));
-    else if (stream.holds<types::Pose>())
+    if (log::holdsPings(stream)) {
+        const DeploymentSpec spec = deploymentOf(log);
+        meaning.update(pingMeaning(spec, writerOf(spec, stream.name)));
+    } else if (stream.holds<types::Pose>())
         meaning.update(poseMeaning());
     else if (stream.holds<types::SonarTruth>())
         meaning.update(fieldsOf<types::SonarTruth>());
@@ -158,9 +156,9 @@ Json meaningOf(const log::Reader& log, const log::Stream& stream) {
         meaning.update(cloudMeaning());
     else
         meaning["type"] = stream.type;
-    if (const std::string names = metadataOf(stream, "insonify_objects"); !names.empty())
+    if (const std::string names = stream.metadatum("insonify_objects"); !names.empty())
         meaning["objects"] = Json::parse(names, nullptr, false);
-    if (const std::string seed = metadataOf(stream, "insonify_seed"); !seed.empty()) meaning["seed"] = seed;
+    if (const std::string seed = stream.metadatum("insonify_seed"); !seed.empty()) meaning["seed"] = seed;
     return meaning;
 }
 

@@ -3,6 +3,7 @@
 #ifdef INSONIFY_DDS
 #include "components/dds/PublisherTask.hpp"
 #endif
+#include "components/device/DeviceTask.hpp"
 #include "components/logger/LoggerTask.hpp"
 #include "components/noise/NoiseTask.hpp"
 #include "components/output/PictureTask.hpp"
@@ -27,6 +28,7 @@ framework::Registry builtInTasks() {
     output::registerTasks(registry);
     logger::registerTasks(registry);
     replay::registerTasks(registry);
+    device::registerTasks(registry);
 #ifdef INSONIFY_DDS
     dds::registerTasks(registry);
 #endif

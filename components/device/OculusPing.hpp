@@ -5,6 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "types/Sonar.hpp"
+
 namespace insonify::device {
 
 /** A ping as a Blueprint Subsea Oculus sends it: a "simple ping result" of version 1 or 2. */
@@ -23,6 +25,14 @@ struct OculusPing {
     uint32_t beamCount() const { return static_cast<uint32_t>(bearings.size()); }
     double largestCode() const { return static_cast<double>((uint64_t{1} << bits) - 1); }
 };
+
+struct OculusResult;
+
+OculusPing pingOf(const OculusResult& result);
+
+/** What a receiver would have given out: codes as bins, in rows with gains divided by the root of them; beams from
+ *  starboard to port, as in a fan of ours. Its bin_duration is the nearest whole microsecond, at least 1. */
+types::Sonar sonarOf(const OculusPing& ping, types::Time time);
 
 /** Every ping in these bytes, in order: network messages, one after the other, with anything between them, as in
  *  captures and in the maker's own log files. Other messages are passed over. What begins as a ping and contradicts

@@ -7,6 +7,7 @@
 #include "components/framework/Operation.hpp"
 #include "components/framework/RealtimeExecutor.hpp"
 #include "components/framework/Status.hpp"
+#include "components/framework/Waits.hpp"
 #include "components/framework/Wiring.hpp"
 
 namespace insonify::framework {
@@ -28,8 +29,9 @@ void reportOf(const TaskSpec& spec, const types::Diagnostic& diagnostic, ConfigR
 void stopTask(TaskContext& task, std::vector<std::string>& failures) {
     task.activity().hold();
     if (holdsSamples(task)) task.update();
+    const auto* const waiting = dynamic_cast<const Waits*>(&task);
     const bool in_error = task.state() == TaskState::RunTimeError;
-    if (in_error) failures.push_back(task.name() + ": " + task.lastError());
+    if (in_error && !(waiting && waiting->waits())) failures.push_back(task.name() + ": " + task.lastError());
     if (task.isRunning()) task.stop();
     if (hasFailed(task)) failures.push_back(task.name() + ": " + task.lastError());
 }
@@ -124,6 +126,23 @@ RunResult Deployment::run(const RunLimits& limits, const std::atomic<bool>& stop
     result.warnings = warnings_;
     static_cast<Progress&>(result) = executor_->progress();
     return result;
+}
+
+std::vector<std::string> Deployment::start() {
+    std::vector<std::string> failures;
+    executor_->begin();
+    if (startAll(failures)) return {};
+    noteFailed(failures);
+    std::vector<std::string> more = stop();
+    failures.insert(failures.end(), more.begin(), more.end());
+    return failures;
+}
+
+std::vector<std::string> Deployment::stop() {
+    std::vector<std::string> failures;
+    stopAll(failures);
+    executor_->end();
+    return failures;
 }
 
 bool Deployment::startAll(std::vector<std::string>& failures) {

@@ -53,6 +53,13 @@ public:
     /** Starts, runs until a limit, the end of the sources, a task that fails, or `stop`; stops all. Does not clean up.
      *  `report` as of the executors, on this thread. */
     RunResult run(const RunLimits& limits, const std::atomic<bool>& stop, const Executor::Report& report = {});
+    // A run that a program drives itself, in lockstep: start(), advance() as often as it likes, stop().
+    /** Returns the failures, "task: message"; where there are any, all have stopped again. */
+    std::vector<std::string> start();
+    /** Runs the next instant; false: no task is due any more. Throws std::logic_error in realtime. */
+    bool advance() { return executor_->advance(); }
+    /** Returns the failures, "task: message". */
+    std::vector<std::string> stop();
     /** Returns the failures, "task: message". */
     std::vector<std::string> cleanup();
     /** In realtime: what of priorities, processors and memory was not permitted, before tasks start; then tasks that

@@ -1,5 +1,7 @@
 #include "components/framework/DeploymentSpec.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 
 #include "components/framework/DeploymentKeys.hpp"
@@ -53,6 +55,7 @@ struct TaskKeys {
     std::string type;
     ActivityKeys activity;
     std::map<std::string, std::string> aliases, copies, switches;
+    std::vector<std::string> ignored_properties;
     PropertyFiles property_files;
     YAML::Node properties{YAML::NodeType::Undefined};
     template <class Self, class V>
@@ -63,6 +66,8 @@ struct TaskKeys {
         visit(Field{"copies", "", "properties whose value another one takes as well: where that is"}, self.copies);
         visit(Field{"switches", "", "properties true and false: the block that they put in or take out"},
               self.switches);
+        visit(Field{"ignored_properties", "", "names in its configuration that nothing here takes: they are left out"},
+              self.ignored_properties);
         visit(Field{"property_files", "", "its configuration in Rock's files"}, self.property_files);
         visit(Field{"properties", "", "its configuration"}, self.properties);
     }
@@ -148,6 +153,7 @@ void readTask(ConfigReader& reader, const YAML::Node& name, const YAML::Node& bl
     task.aliases = keys.aliases;
     task.copies = keys.copies;
     task.switches = keys.switches;
+    task.ignored_properties = keys.ignored_properties;
     task.property_files = keys.property_files;
     task.properties.reset(keys.properties);
     spec.tasks.push_back(std::move(task));
@@ -162,14 +168,6 @@ void readTasks(ConfigReader& reader, const YAML::Node& tasks, DeploymentSpec& sp
             readTask(reader, entry.first, entry.second, spec);
 }
 
-/** Where "task.port" leads if the task has an alias of that name. */
-std::string withoutAlias(const std::string& path, const DeploymentSpec& spec) {
-    const auto [name, port] = splitPort(path);
-    const TaskSpec* const task = spec.task(name);
-    const auto alias = task ? task->aliases.find(port) : std::map<std::string, std::string>::const_iterator();
-    return task && alias != task->aliases.end() ? alias->second : path;
-}
-
 void readConnections(ConfigReader& reader, const YAML::Node& connections, DeploymentSpec& spec) {
     if (!connections.IsDefined() || connections.IsNull() || !reader.isSequence(connections, "connections")) return;
     for (size_t i = 0; i < connections.size(); ++i) {
@@ -177,7 +175,7 @@ void readConnections(ConfigReader& reader, const YAML::Node& connections, Deploy
         const std::string path = "connections[" + std::to_string(i) + "]";
         const YAML::Node block = connections[i];
         if (!reader.read(block, path, keys)) continue;
-        for (std::string* port : {&keys.from, &keys.to}) *port = withoutAlias(*port, spec);
+        for (std::string* port : {&keys.from, &keys.to}) *port = spec.withoutAlias(*port);
         const ConnPolicy policy{keys.policy.type, keys.policy.size.value_or(1), keys.policy.init};
         spec.connections.push_back({keys.from, keys.to, policy, block, path});
     }
@@ -246,6 +244,32 @@ TaskSpec* DeploymentSpec::task(const std::string& name) {
     return found == tasks.end() ? nullptr : &*found;
 }
 
+std::string TaskSpec::model() const {
+    if (property_files.files.empty()) return type;
+    const std::string stem = std::filesystem::path(property_files.files.front()).stem().string();
+    return stem.find("::") == std::string::npos ? type : stem;
+}
+
+bool TaskSpec::ignores(const std::string& property) const {
+    return std::ranges::any_of(ignored_properties, [&](const std::string& ignored) {
+        return property == ignored || property.starts_with(ignored + ".");
+    });
+}
+
+std::string DeploymentSpec::withoutAlias(const std::string& path) const {
+    const auto [name, port] = splitPort(path);
+    const TaskSpec* const owner = task(name);
+    const auto alias = owner ? owner->aliases.find(port) : std::map<std::string, std::string>::const_iterator();
+    return owner && alias != owner->aliases.end() ? alias->second : path;
+}
+
+std::string DeploymentSpec::aliasOf(const std::string& path) const {
+    for (const TaskSpec& owner : tasks)
+        for (const auto& [name, target] : owner.aliases)
+            if (target == path) return owner.name + "." + name;
+    return "";
+}
+
 std::vector<std::string> DeploymentSpec::taskNames() const {
     std::vector<std::string> names;
     for (const TaskSpec& task : tasks) names.push_back(task.name);
@@ -255,6 +279,10 @@ std::vector<std::string> DeploymentSpec::taskNames() const {
 std::vector<std::string> DeploymentSpec::unused() const {
     static const DeploymentSpec usual;
     std::vector<std::string> lines;
+    for (const TaskSpec& task : tasks)
+        if (!task.left_out.empty())
+            lines.push_back(task.name +
+                            ": left out, by ignored_properties: " + fmt::format("{}", fmt::join(task.left_out, ", ")));
     const auto note = [&](const std::string& whose, const std::string& keys) {
         if (!keys.empty()) lines.push_back(whose + "not used in " + (lockstep ? "lockstep: " : "realtime: ") + keys);
     };

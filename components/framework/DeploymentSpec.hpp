@@ -1,5 +1,6 @@
 #pragma once
 #include <filesystem>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -26,11 +27,18 @@ struct TaskSpec {
     std::map<std::string, std::string> aliases;   ///< "task.port" or "task.property" by another name for it.
     std::map<std::string, std::string> copies;    ///< "task.property" that takes the value of one of this task as well.
     std::map<std::string, std::string> switches;  ///< "task.property", a block that true puts in and false takes out.
+    std::vector<std::string> ignored_properties;  ///< Names that nothing here takes: their values are left out.
+    std::set<std::string> left_out;               ///< Those of them that were given a value.
     PropertyFiles property_files;
     YAML::Node properties{YAML::NodeType::Undefined};  ///< From all sources; undefined when there are none.
     YAML::Node place{YAML::NodeType::Undefined};       ///< The task's whole block, for diagnostics.
 
     std::string path() const { return "tasks." + name; }
+    /** What Rock calls its kind: that of its property files, which are named so ("project::Task.yml"), else its type.
+     */
+    std::string model() const;
+    /** Whether a property, or the block that it stands in, is one of `ignored_properties`. */
+    bool ignores(const std::string& property) const;
 };
 
 struct ConnectionSpec {
@@ -63,6 +71,10 @@ struct DeploymentSpec {
     TaskSpec* task(const std::string& name);  ///< Null when there is none.
     const TaskSpec* task(const std::string& name) const { return const_cast<DeploymentSpec*>(this)->task(name); }
     std::vector<std::string> taskNames() const;
+    /** Where "task.port" leads if the task has an alias of that name, else itself. */
+    std::string withoutAlias(const std::string& path) const;
+    /** The "task.alias" that leads to "task.port" or "task.property", of several the first; empty: none does. */
+    std::string aliasOf(const std::string& path) const;
     /** What is written but its schedule leaves out, a line for each task and for the whole; empty: nothing. */
     std::vector<std::string> unused() const;
     /** `task.property.path=value`, the value in YAML: a layer over the file. Of a block only what it names is changed;

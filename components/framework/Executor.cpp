@@ -1,5 +1,7 @@
 #include "components/framework/Executor.hpp"
 
+#include <stdexcept>
+
 namespace insonify::framework {
 
 Executor::Executor(const Graph& graph, Environment& environment, types::Time start)
@@ -8,6 +10,8 @@ Executor::Executor(const Graph& graph, Environment& environment, types::Time sta
 }
 
 void Executor::begin() { wall_start_ = Clock::now(); }
+
+bool Executor::advance() { throw std::logic_error("only schedule: lockstep goes on instant by instant"); }
 
 Progress Executor::progress() const {
     return {graph_.countedSamples(), (environment_.now() - start_).seconds(),

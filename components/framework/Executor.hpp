@@ -47,6 +47,9 @@ public:
     /** Returns at a limit, with the end of the sources, with a task that fails, or with `stop`. `report` is called
      *  on this thread. */
     virtual void run(const RunLimits& limits, const std::atomic<bool>& stop, const Report& report) = 0;
+    /** Runs the next instant, where time goes by instants; false: no task is due any more. Throws std::logic_error
+     *  where it does not. */
+    virtual bool advance();
     virtual void end() {}  ///< After tasks have stopped.
 
     virtual bool paused() const { return false; }

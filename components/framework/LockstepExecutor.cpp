@@ -78,6 +78,16 @@ void LockstepExecutor::runInstant(types::Time instant) {
 void LockstepExecutor::begin() {
     Executor::begin();
     stood_still_ = {};
+    timed_.clear();
+}
+
+bool LockstepExecutor::advance() {
+    if (timed_.empty()) findTasks();
+    const auto held = betweenInstants();
+    const types::Time instant = next();
+    if (instant == never) return false;
+    runInstant(instant);
+    return true;
 }
 
 void LockstepExecutor::run(const RunLimits& limits, const std::atomic<bool>& stop, const Report& report) {

@@ -20,6 +20,7 @@ public:
     /** Ends as well once every source, a task that runs by the clock and reads nothing, has finished: with a limit,
      *  only if none writes any more. `report` comes after each instant. */
     void run(const RunLimits& limits, const std::atomic<bool>& stop, const Report& report) override;
+    bool advance() override;
     bool paused() const override { return paused_; }
     void pause(bool on) override;
     void step() override;

@@ -39,20 +39,24 @@ void PropertiesBase::addSetters() {
             setters_.push_back(std::make_unique<Setter>(owner_, *this, property));
 }
 
-void PropertiesBase::set(const std::string& name, const std::string& yaml) {
+void PropertiesBase::setAll(const std::map<std::string, std::string>& values) {
     ConfigReader reader("");
     reader.takeOutByNull();
-    YAML::Node value;
-    reader.readText(yaml, name, value);
     YAML::Node block(YAML::NodeType::Map);
-    block.force_insert(name, value);
+    std::string names;
+    for (const auto& [name, yaml] : values) {
+        YAML::Node value;
+        reader.readText(yaml, name, value);
+        block.force_insert(name, value);
+        names += (names.empty() ? "" : ", ") + name;
+    }
     const auto putBack = keep();
     if (reader.diagnostics().empty()) load(reader, block, "");
     if (!reader.diagnostics().empty()) {
         putBack();
         throw types::ConfigError(reader.diagnostics());
     }
-    if (const Outcome outcome = owner_.applyProperties(name); !outcome) {
+    if (const Outcome outcome = owner_.applyProperties(names); !outcome) {
         putBack();
         throw std::runtime_error(outcome.reason);
     }

@@ -1,5 +1,6 @@
 #pragma once
 #include <functional>
+#include <map>
 #include <memory>
 #include <string>
 #include <vector>
@@ -31,7 +32,9 @@ public:
      *  its default. For the task's thread. Throws
      *  types::ConfigError when the value does not fit, std::runtime_error when the task does not take it over: then
      *  the old value stays. */
-    void set(const std::string& name, const std::string& yaml);
+    void set(const std::string& name, const std::string& yaml) { setAll({{name, yaml}}); }
+    /** Several at once: all, or none. */
+    void setAll(const std::map<std::string, std::string>& values);
 
 protected:
     void addSetters();
@@ -51,6 +54,7 @@ public:
     explicit Properties(TaskContext* owner) : PropertiesBase(owner) { addSetters(); }
     const Config& operator*() const { return value_; }
     const Config* operator->() const { return &value_; }
+    using PropertiesBase::set;
     /** From code: bounds are the caller's affair. Takes effect at the next configure. */
     void set(Config value) { value_ = std::move(value); }
 

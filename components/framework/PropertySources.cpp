@@ -35,6 +35,13 @@ bool leadsBelow(const std::map<std::string, std::string>& names, const std::stri
                        [&](const auto& name) { return name.first.starts_with(path + "."); });
 }
 
+/** Whether some of what lies below a block goes elsewhere, or nowhere. */
+bool takesApart(const TaskSpec& task, const std::string& path) {
+    return leadsBelow(task.aliases, path) || leadsBelow(task.switches, path) ||
+           std::ranges::any_of(task.ignored_properties,
+                               [&](const std::string& name) { return name.starts_with(path + "."); });
+}
+
 std::string fullPath(const TaskSpec& task, const std::string& property) {
     const std::string block = task.path() + ".properties";
     return property.empty() ? block : framework::below(block, property);
@@ -72,9 +79,10 @@ void PropertySources::checkTargets() {
     spec_.diagnostics.insert(spec_.diagnostics.end(), reader.diagnostics().begin(), reader.diagnostics().end());
 }
 
-YAML::Node PropertySources::withoutAliases(const TaskSpec& task, const YAML::Node& block, const std::string& path,
+YAML::Node PropertySources::withoutAliases(TaskSpec& task, const YAML::Node& block, const std::string& path,
                                            const Origin& origin, std::vector<Moved>& moved) {
-    const bool has_none = task.aliases.empty() && task.copies.empty() && task.switches.empty();
+    const bool has_none =
+        task.aliases.empty() && task.copies.empty() && task.switches.empty() && task.ignored_properties.empty();
     if (has_none || !block.IsDefined() || !block.IsMap()) return block;
     YAML::Node rest(YAML::NodeType::Map);
     for (const auto& entry : block) {
@@ -85,7 +93,9 @@ YAML::Node PropertySources::withoutAliases(const TaskSpec& task, const YAML::Nod
             moved.push_back({alias->second, entry.second, below(origin, entry.first), false});
         } else if (const auto change = task.switches.find(name); change != task.switches.end()) {
             moved.push_back({change->second, entry.second, below(origin, entry.first), true});
-        } else if (leadsBelow(task.aliases, name) || leadsBelow(task.switches, name)) {
+        } else if (task.ignores(name)) {
+            task.left_out.insert(name);
+        } else if (takesApart(task, name)) {
             const YAML::Node inner = withoutAliases(task, entry.second, name, below(origin, entry.first), moved);
             if (!inner.IsMap() || inner.size() > 0) rest.force_insert(entry.first, inner);
         } else {
@@ -202,6 +212,8 @@ void PropertySources::set(TaskSpec& task, const std::string& property, const YAM
             return set(base, by, fullPath(owner, path), origin);
         }));
     };
+    if (task.ignores(property))
+        throw types::ConfigError("", "", "is one of the task's ignored_properties, which nothing takes");
     const Origin origin{set_origin, fullPath(task, "")};
     const YAML::Node block = changedAt(YAML::Node(), property, [&](const YAML::Node&) { return value; });
     std::vector<Moved> moved;

@@ -12,7 +12,7 @@ namespace insonify::framework {
  *  property files, over that `--set`; of two values for one property the later counts, blocks are merged, lists element
  *  by element. A property with an alias goes to where the alias leads, with the place where it was written; one of
  *  `copies` stays as well; one of `switches` puts an empty block in there, or takes the block out, once all else is in
- *  its place. */
+ *  its place; one of `ignored_properties` is left out. */
 class PropertySources {
 public:
     explicit PropertySources(DeploymentSpec& spec) : spec_(spec) {}
@@ -30,9 +30,10 @@ private:
         Origin origin;
         bool is_switch;
     };
-    /** `block` without the values that have an alias; these, and those that are copied, are added to `moved`. */
-    YAML::Node withoutAliases(const TaskSpec& task, const YAML::Node& block, const std::string& path,
-                              const Origin& origin, std::vector<Moved>& moved);
+    /** `block` without the values that have an alias or are ignored; the former, and those that are copied, are added
+     *  to `moved`. */
+    YAML::Node withoutAliases(TaskSpec& task, const YAML::Node& block, const std::string& path, const Origin& origin,
+                              std::vector<Moved>& moved);
     void applyFiles(TaskSpec& task);
     /** Lays values where they lead; of switches the last is kept, for turn(). */
     void move(const std::vector<Moved>& moved);

@@ -18,6 +18,43 @@ std::vector<std::string> typesOf(const Registry& registry) {
     return types;
 }
 
+constexpr const char* unknown_key = "is not a key here; ";  // as ConfigReader tells it
+
+/** Whether there is such a property, or was: what has moved elsewhere is told by the task. */
+bool knows(PropertiesBase& properties, const std::string& key) {
+    YAML::Node block(YAML::NodeType::Map);
+    block.force_insert(key, YAML::Node());
+    ConfigReader reader("");
+    reader.takeOutByNull();
+    properties.load(reader, block, "");
+    return std::ranges::none_of(reader.diagnostics(), [&](const types::Diagnostic& diagnostic) {
+        return diagnostic.path == key && diagnostic.message.starts_with(unknown_key);
+    });
+}
+
+std::vector<std::string> topLevel(const PropertiesBase& properties) {
+    std::vector<std::string> names;
+    for (const PropertyInfo& info : properties.list())
+        if (info.name.find_first_of(".[") == std::string::npos) names.push_back(info.name);
+    return names;
+}
+
+/** Each once, in the order of their first. */
+std::vector<std::string> unique(const std::vector<std::string>& names) {
+    std::vector<std::string> all;
+    for (const std::string& name : names)
+        if (std::ranges::count(all, name) == 0) all.push_back(name);
+    return all;
+}
+
+/** Names within a block: "depth" of "water.depth". */
+std::vector<std::string> within(const std::vector<std::string>& names, const std::string& block) {
+    std::vector<std::string> inner;
+    for (const std::string& name : names)
+        if (name.starts_with(block + ".")) inner.push_back(splitPort(name.substr(block.size() + 1)).first);
+    return unique(inner);
+}
+
 }  // namespace
 
 uint64_t seedOf(uint64_t seed, const std::string& task) {
@@ -88,12 +125,57 @@ void Wiring::loadProperties(uint64_t seed) {
         ConfigReader reader(spec_.file, spec_.origins);
         reader.setFallback(spec.place.Mark());
         const std::string path = spec.path() + ".properties";
-        for (PropertiesBase* properties : task->properties()) properties->load(reader, spec.properties, path);
+        const YAML::Node known = withoutUnknown(*task, spec, reader);
+        for (PropertiesBase* properties : task->properties()) properties->load(reader, known, path);
         if (task->properties().empty()) reader.refuseUnknown(spec.properties, path, {});
         if (reader.diagnostics().empty()) continue;
         unreliable_.push_back(task.get());
         diagnostics_.insert(diagnostics_.end(), reader.diagnostics().begin(), reader.diagnostics().end());
     }
+}
+
+std::vector<std::string> Wiring::aliasesOfPorts(const TaskSpec& spec, bool outputs) const {
+    std::vector<std::string> names;
+    for (const auto& [name, target] : spec.aliases) {
+        const auto [owner, port] = splitPort(target);
+        TaskContext* const task = graph_.task(owner);
+        if (task && (outputs ? task->output(port) != nullptr : task->input(port) != nullptr)) names.push_back(name);
+    }
+    return names;
+}
+
+std::vector<std::string> Wiring::aliasesOfProperties(const TaskSpec& spec) const {
+    std::vector<std::string> ports = aliasesOfPorts(spec, true), names;
+    std::ranges::copy(aliasesOfPorts(spec, false), std::back_inserter(ports));
+    for (const auto& [name, target] : spec.aliases)
+        if (std::ranges::count(ports, name) == 0) names.push_back(name);
+    for (const auto& [name, target] : spec.switches) names.push_back(name);
+    return names;
+}
+
+/** What of a task's properties it knows. Where it has aliases, what it does not know is told here, since a task knows
+ *  nothing of them. */
+YAML::Node Wiring::withoutUnknown(const TaskContext& task, const TaskSpec& spec, ConfigReader& reader) const {
+    const std::vector<std::string> aliases = aliasesOfProperties(spec);
+    if (aliases.empty() || task.properties().size() != 1 || !spec.properties.IsDefined() || !spec.properties.IsMap())
+        return spec.properties;
+    PropertiesBase& properties = *task.properties().front();
+    std::vector<std::string> names = topLevel(properties);
+    for (const std::string& alias : aliases) names.push_back(splitPort(alias).first);
+    YAML::Node known(YAML::NodeType::Map);
+    for (const auto& entry : spec.properties) {
+        const std::string key = entry.first.IsScalar() ? entry.first.Scalar() : "";
+        if (key.empty() || knows(properties, key)) {
+            known.force_insert(entry.first, entry.second);
+            continue;
+        }
+        const std::string path = below(spec.path() + ".properties", key);
+        if (const auto inner = within(aliases, key); entry.second.IsMap() && !inner.empty())
+            reader.refuseUnknown(entry.second, path, inner);
+        else
+            reader.report(entry.first, path, unknown_key + suggestion(key, unique(names)));
+    }
+    return known.size() == spec.properties.size() ? spec.properties : known;
 }
 
 void Wiring::seedTask(const TaskContext& task, const TaskSpec& spec, uint64_t seed) {
@@ -159,9 +241,10 @@ OutputPortBase* Wiring::findOutput(const ConnectionSpec& connection) {
     const YAML::Node place = child(connection.place, "from");
     try {
         if (OutputPortBase* port = task->makeOutput(name)) return port;
+        std::vector<std::string> known = namesOf(task->outputs());
+        std::ranges::copy(aliasesOfPorts(*spec_.task(task->name()), true), std::back_inserter(known));
         report(place, connection.path + ".from",
-               fmt::format("{} has no output port {}; {}", task->name(), name,
-                           suggestion(name, namesOf(task->outputs()))));
+               fmt::format("{} has no output port {}; {}", task->name(), name, suggestion(name, known)));
     } catch (const std::exception& error) {
         if (!isUnreliable(*task)) report(place, connection.path + ".from", error.what());
     }
@@ -176,9 +259,10 @@ InputPortBase* Wiring::findInput(const ConnectionSpec& connection, OutputPortBas
     const YAML::Node place = child(connection.place, "to");
     try {
         if (InputPortBase* port = task->makeInput(name, source)) return port;
-        report(
-            place, connection.path + ".to",
-            fmt::format("{} has no input port {}; {}", task->name(), name, suggestion(name, namesOf(task->inputs()))));
+        std::vector<std::string> known = namesOf(task->inputs());
+        std::ranges::copy(aliasesOfPorts(*spec_.task(task->name()), false), std::back_inserter(known));
+        report(place, connection.path + ".to",
+               fmt::format("{} has no input port {}; {}", task->name(), name, suggestion(name, known)));
     } catch (const std::exception& error) {
         if (!isUnreliable(*task)) report(place, connection.path + ".to", error.what());
     }

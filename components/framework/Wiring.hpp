@@ -25,6 +25,10 @@ private:
     void loadLibraries();
     void makeTasks();
     void loadProperties(uint64_t seed);
+    /** Aliases and switches of a task's properties; those that lead to ports. */
+    std::vector<std::string> aliasesOfProperties(const TaskSpec& spec) const;
+    std::vector<std::string> aliasesOfPorts(const TaskSpec& spec, bool outputs) const;
+    YAML::Node withoutUnknown(const TaskContext& task, const TaskSpec& spec, ConfigReader& reader) const;
     void seedTask(const TaskContext& task, const TaskSpec& spec, uint64_t seed);
     void connect();
     void connectOne(const ConnectionSpec& connection);

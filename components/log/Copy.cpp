@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <map>
+#include <utility>
 
 namespace insonify::log {
 namespace {
@@ -12,6 +13,12 @@ using Readers = std::vector<std::unique_ptr<Reader>>;
 
 bool takes(const Selection& selection, const Stream& stream) {
     return selection.streams.empty() || selection.streams.contains(stream.name);
+}
+
+/** What the first stream of a log carries for all of them. */
+Metadata ofTheWholeLog(const Reader& log) {
+    const std::string deployment = log.metadatum("insonify_deployment");
+    return deployment.empty() ? Metadata{} : Metadata{{"insonify_deployment", deployment}};
 }
 
 class Copier {
@@ -45,8 +52,11 @@ private:
         if (known != numbers_.end()) return known->second;
         try {
             const bool as_it_is = !anew_ || !stream.sample;
+            Metadata all = stream.metadata;
+            const Metadata more = std::exchange(has_stream_, true) ? Metadata{} : ofTheWholeLog(log);
+            all.insert(more.begin(), more.end());
             const size_t number =
-                as_it_is ? out_->addLike(log, index) : out_->add(*stream.sample, stream.name, stream.metadata);
+                as_it_is ? out_->addLike(log, index, more) : out_->add(*stream.sample, stream.name, all);
             return numbers_[stream.name] = number;
         } catch (const types::ConfigError& error) {
             if (!selection_.streams.empty()) throw;
@@ -79,6 +89,7 @@ private:
     const Selection& selection_;
     const bool anew_;
     std::unique_ptr<Writer> out_;
+    bool has_stream_ = false;
     std::map<std::string, std::optional<size_t>> numbers_;  ///< Of the streams in the new log; none: it takes it not.
     size_t place_ = 0;                                      ///< Samples seen of these streams.
     Copied copied_;
@@ -94,6 +105,15 @@ void refuse(const Readers& logs, const Selection& selection, const std::filesyst
         if (std::filesystem::equivalent(log->path(), to, not_there))
             throw types::ConfigError(to, "", "is the log itself: the copy must be another file");
     }
+}
+
+/** The streams' own names, of those that are given as topics as well. */
+std::set<std::string> namesOf(const Readers& logs, const std::set<std::string>& given) {
+    std::set<std::string> names;
+    for (const std::string& name : given)
+        for (const auto& log : logs)
+            if (const Stream* stream = log->find(name)) names.insert(stream->name);
+    return names;
 }
 
 /** Streams of one name become one in the copy: they must be of one type, of the same layout. */
@@ -122,8 +142,10 @@ Copied copyLog(const std::vector<std::filesystem::path>& logs, const std::filesy
     Readers readers;
     for (const auto& log : logs) readers.push_back(openLog(log, options.at_damage));
     refuse(readers, options.selection, to);
-    refuseOtherTypes(readers, options.selection);
-    Copier copier(options, to);
+    CopyOptions named = options;
+    named.selection.streams = namesOf(readers, options.selection.streams);
+    refuseOtherTypes(readers, named.selection);
+    Copier copier(named, to);
     for (const auto& log : readers) copier.add(*log);
     return copier.close();
 }

@@ -14,7 +14,11 @@ std::string Reader::diagnostic() const {
 
 const Stream* Reader::find(const std::string& name) const {
     const auto found = std::ranges::find(streams_, name, &Stream::name);
-    return found == streams_.end() ? nullptr : &*found;
+    if (found != streams_.end()) return &*found;
+    if (!name.starts_with('/')) return nullptr;
+    std::string by_topic = name.substr(1);  // "/auv/sonar" is stream auv.sonar
+    std::ranges::replace(by_topic, '/', '.');
+    return find(by_topic);
 }
 
 size_t Reader::indexOf(const std::string& name) const {

@@ -5,6 +5,20 @@
 
 namespace insonify::log {
 
+void McapConfig::check(types::Diagnostics& diagnostics) const {
+    std::map<std::string, std::string> streams_by_topic;
+    for (const auto& [name, stream] : streams) {
+        if (!stream.topic) continue;
+        const std::string topic = "/" + stream.topic->substr(stream.topic->starts_with('/'));
+        const std::string path = "streams." + name + ".topic";
+        if (!mcap::isTopic(topic))
+            diagnostics.push_back({path, "is \"" + *stream.topic + "\"; must be words of letters, digits and _, none " +
+                                             "beginning with a digit, as /auv/sonar"});
+        else if (const auto [other, is_new] = streams_by_topic.emplace(topic, name); !is_new)
+            diagnostics.push_back({path, "is " + topic + ", as that of " + other->second + "; must be another"});
+    }
+}
+
 std::unique_ptr<Writer> createLog(const std::filesystem::path& path, const McapConfig& mcap) {
     if (isMcap(path)) return std::make_unique<mcap::SampleWriter>(path, mcap);
     return std::make_unique<pocolog::Writer>(path);

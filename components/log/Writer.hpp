@@ -1,6 +1,8 @@
 #pragma once
 #include <filesystem>
+#include <map>
 #include <memory>
+#include <optional>
 #include <string>
 
 #include "components/log/Reader.hpp"
@@ -38,8 +40,9 @@ public:
     virtual void put(size_t stream, types::Time received, types::Time time, types::SampleView sample) = 0;
 
     /** Declares a stream as another log does: with all that it declares there where both are of one format, else for
-     *  its samples' type. Throws ConfigError for a type that the format cannot hold. */
-    virtual size_t addLike(const Reader& log, size_t stream) = 0;
+     *  its samples' type; with `more` metadata, of keys that it has not. Throws ConfigError for a type that the format
+     *  cannot hold. */
+    virtual size_t addLike(const Reader& log, size_t stream, const Metadata& more = {}) = 0;
     /** Adds a sample of such a stream: byte for byte where both logs are of one format, else what it says. */
     virtual void copy(size_t stream, Reader& log, const SampleRef& at) = 0;
 
@@ -52,9 +55,30 @@ public:
     virtual uint64_t kept() const = 0;  ///< Samples that were flushed, in all files [1].
 };
 
-/** How samples become messages in an MCAP file. The defaults lose nothing of what a ping holds in its bins. */
+/** What of a stream's messages is not as usual. */
+struct McapStream {
+    std::optional<std::string> topic, frame_id, child_frame_id;
+
+    template <class Self, class V>
+    static void describe(Self& self, V& visit) {
+        using types::Field;
+        visit(Field{"topic", "", "as in ROS, /auv/sonar; absent: /task/port"}, self.topic);
+        visit(Field{"frame_id", "", "of its messages; absent: the sonar's, of poses what they name"}, self.frame_id);
+        visit(Field{"child_frame_id", "", "the body of an Odometry; absent: what its pose names"}, self.child_frame_id);
+    }
+};
+
+/** How samples become messages in an MCAP file: by default as dds::PublisherTask sends them. */
 struct McapConfig : ros::MessageOptions {
-    McapConfig() { dtype = ros::ImageType::Float32; }
+    std::map<std::string, McapStream> streams;  ///< By name, "task.port".
+
+    template <class Self, class V>
+    static void describe(Self& self, V& visit) {
+        MessageOptions::describe(self, visit);
+        visit(types::Field{"streams", "", "topics and frames of single streams, by the stream's name: task.port"},
+              self.streams);
+    }
+    void check(types::Diagnostics& diagnostics) const;
 };
 
 /** Creates a log, or empties it; the format follows from the name, *.mcap or pocolog. Throws ConfigError when that

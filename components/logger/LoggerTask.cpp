@@ -1,10 +1,13 @@
 #include "components/logger/LoggerTask.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <filesystem>
 #include <set>
 #include <system_error>
 
+#include "components/framework/Upstream.hpp"
 #include "types/ConfigError.hpp"
 
 namespace insonify::logger {
@@ -36,15 +39,37 @@ log::Metadata withNames(log::Metadata metadata, const T& sample) {
 /** Of the stream of an input. */
 template <class Input>
 Declare declaration(const Input& input, log::Metadata metadata) {
-    return [name = input.kept.name, metadata = std::move(metadata)](log::Writer& log) {
+    return [name = input.kept.name.path(), metadata = std::move(metadata)](log::Writer& log) {
         return log.addStream<typename Input::Sample>(name, metadata);
     };
+}
+
+/** Of the sonar whose pings an input takes [kHz]; none: it takes others, or that is not known. */
+template <class Input>
+std::optional<double> frequencyOf(const Input& input) {
+    if constexpr (std::is_same_v<typename Input::Sample, types::Sonar>)
+        return framework::upstreamFrequency(input.port);
+    else
+        return std::nullopt;
+}
+
+/** Properties of the deployment by their other names, with what they are now. */
+std::vector<PropertyAlias> aliasesOf(const LoggerTask& logger, const std::vector<types::TaskRecord>& records) {
+    std::vector<PropertyAlias> aliases;
+    for (const framework::PropertyAlias& alias : framework::propertyAliases(logger)) {
+        const auto task = std::ranges::find(records, alias.task, &types::TaskRecord::name);
+        auto value = task == records.end() ? std::nullopt : framework::valueAt(*task, alias.property);
+        if (alias.is_switch) value = value.has_value();
+        const std::string leads_to = alias.task + "." + alias.property;
+        aliases.push_back({alias.name.task, alias.name.object, alias.name.model, leads_to, value, alias.in_degrees});
+    }
+    return aliases;
 }
 
 }  // namespace
 
 framework::InputPortBase* LoggerTask::makeInput(const std::string& port, framework::OutputPortBase& source) {
-    if (framework::InputPortBase* const made = inputs_.make(port, source, source.path())) return made;
+    if (framework::InputPortBase* const made = inputs_.make(port, source, framework::streamNameOf(source))) return made;
     throw types::ConfigError("", "", source.path() + " is " + source.typeName() + ", which a log cannot hold");
 }
 
@@ -59,20 +84,23 @@ void LoggerTask::checkInputs() const {
         const std::string path = input.port.path();
         if (input.port.channels().size() > 1)
             throw types::ConfigError("", path, "has several connections; give each a port of its own on the logger");
-        if (!streams.insert(input.kept.name).second)
-            throw types::ConfigError("", path, "logs " + input.kept.name + " a second time; connect it once");
+        const std::string stream = input.kept.name.path();
+        if (!streams.insert(stream).second)
+            throw types::ConfigError("", path, "logs " + stream + " a second time; connect it once");
     });
 }
 
-log::Metadata LoggerTask::runMetadata() {
+log::Metadata LoggerTask::runMetadata() const {
     log::Metadata metadata = config->metadata;
-    metadata["insonify_deployment"] = environment().deployment_text;
     metadata["insonify_seed"] = std::to_string(environment().seed);
     return metadata;
 }
 
-log::Metadata LoggerTask::streamMetadata() {
+log::Metadata LoggerTask::streamMetadata(const framework::StreamName& stream, std::optional<double> frequency) {
     log::Metadata metadata = runMetadata();
+    if (!stream.model.empty()) metadata["rock_task_model"] = stream.model;
+    if (frequency) metadata["insonify_frequency_khz"] = fmt::format("{}", *frequency);
+    if (declared_ == 0) metadata["insonify_deployment"] = environment().deployment_text;
     if (!environment().records) return metadata;
     std::string plans;
     for (const types::TaskRecord& task : environment().records())
@@ -110,7 +138,8 @@ bool LoggerTask::configureHook() {
     removeSequels(path);
     log_ = log::createLog(path, config->mcap);
     rotation_.emplace(*config, *log_);
-    if (logsProperties()) properties_.emplace(log_->path().parent_path() / config->property_file);
+    if (logsProperties())
+        properties_.emplace(log_->path().parent_path() / config->property_file, environment().deployment_text);
     configured_ = fixedValues();
     declared_ = 0;
     inputs_.forEach([](auto& input) { input.kept.number.reset(); });
@@ -136,7 +165,8 @@ void LoggerTask::recordProperties() {
     const uint64_t changes = *environment().record_changes;
     if (!properties_ || changes == recorded_changes_) return;
     recorded_changes_ = changes;
-    properties_->record(environment().records(), now(), runMetadata());
+    const std::vector<types::TaskRecord> records = environment().records();
+    properties_->record(records, now(), runMetadata(), aliasesOf(*this, records));
 }
 
 void LoggerTask::updateHook() {
@@ -146,7 +176,9 @@ void LoggerTask::updateHook() {
         if (!config->record) return input.port.clear();
         for (typename Input::Carried sample{}; input.port.readNew(sample);) {
             if (!input.kept.number) {
-                thread_->declare(declaration(input, withNames(streamMetadata(), *types::carriedSample(sample))));
+                log::Metadata metadata =
+                    withNames(streamMetadata(input.kept.name, frequencyOf(input)), *types::carriedSample(sample));
+                thread_->declare(declaration(input, std::move(metadata)));
                 input.kept.number = declared_++;
             }
             thread_->push(*input.kept.number, received, std::move(sample));
@@ -172,7 +204,9 @@ void LoggerTask::cleanupHook() {
         }
     } end{*this};
     inputs_.forEach([&](const auto& input) {
-        if (!input.kept.number) declaration(input, streamMetadata())(*log_);
+        if (input.kept.number) return;
+        declaration(input, streamMetadata(input.kept.name, frequencyOf(input)))(*log_);
+        ++declared_;
     });
     log_->close();
     if (properties_) properties_->close();

@@ -8,6 +8,7 @@
 #include "components/framework/DynamicPorts.hpp"
 #include "components/framework/Properties.hpp"
 #include "components/framework/Registry.hpp"
+#include "components/framework/StreamNames.hpp"
 #include "components/framework/TaskContext.hpp"
 #include "components/logger/LogThread.hpp"
 #include "components/logger/LoggerConfig.hpp"
@@ -20,11 +21,13 @@ namespace insonify::logger {
  *  ROS 2 messages into an MCAP file, with metadata.yaml beside it for `ros2 bag`: see log/mcap/SampleWriter.hpp.
  *
  *  Ports: an input for each connection that names one, whatever the name, of any type in types/Samples.hpp; give
- *  it a buffer. The stream is named after its source, `task.port`. Samples bear the time at which they were true and
- *  the time at which they reached this task. Every stream carries the deployment and its seed in its metadata, and the
- *  plans that the tasks had at its first sample, with which it is declared; streams without samples come at the end.
- *  One of truth has the names of the objects as well (`insonify_objects`, a JSON list). The properties of all tasks go
- *  into `property_file` at each start; of several loggers that name one, the first does it.
+ *  it a buffer. The stream is named after its source, `task.port`; one with an alias after that, a replayed one as it
+ *  was. Samples bear the time at which they were true and
+ *  the time at which they reached this task. Every stream carries the seed of the run in its metadata, and the plans
+ * that the tasks had at its first sample, with which it is declared, the first one of the log the deployment as well;
+ * streams without samples come at the end. One of truth has the names of the objects as well (`insonify_objects`, a
+ * JSON list). The properties of all tasks go into `property_file` at each start; of several loggers that name one, the
+ * first does it.
  *
  *  The file is opened by configure (what cannot be written refuses it), written by a thread of its own, flushed every
  *  `flush_period`, continued in NAME.1.log where `max_file_size` or `max_file_duration` says so, and finished with its
@@ -45,7 +48,7 @@ private:
     /** The stream of an input. */
     template <class T>
     struct Stream {
-        const std::string name;             ///< "task.port" of the source.
+        const framework::StreamName name;   ///< Of the source.
         std::optional<size_t> number = {};  ///< In the log, once it is declared.
     };
 
@@ -61,9 +64,10 @@ private:
     std::filesystem::path makePath(const std::string& file) const;
     /** Whether no other logger of the deployment writes the same property file and comes first. */
     bool logsProperties();
-    void recordProperties();  ///< What of all tasks' properties has changed since the last time.
-    log::Metadata runMetadata();
-    log::Metadata streamMetadata();  ///< With the plans of the moment.
+    void recordProperties();            ///< What of all tasks' properties has changed since the last time.
+    log::Metadata runMetadata() const;  ///< What all streams of the run carry.
+    /** Of the log's next stream, with the plans of the moment; `frequency` is its sonar's [kHz]. */
+    log::Metadata streamMetadata(const framework::StreamName& stream, std::optional<double> frequency);
 
     framework::DynamicInputs<types::SampleTypes, Stream> inputs_{this};
     std::unique_ptr<log::Writer> log_;

@@ -14,11 +14,12 @@ void TrajectoryTask::check(types::Diagnostics& diagnostics) const {
     }
 }
 
+Trajectory TrajectoryTask::trajectory() const {
+    return config->file ? Trajectory::fromCsv(inputPath(*config->file)) : Trajectory(config->waypoints);
+}
+
 bool TrajectoryTask::configureHook() {
-    if (config->file)
-        trajectory_ = Trajectory::fromCsv(inputPath(*config->file));
-    else
-        trajectory_.emplace(config->waypoints);
+    trajectory_ = trajectory();
     return true;
 }
 

@@ -25,6 +25,8 @@ public:
 
     void check(types::Diagnostics& diagnostics) const override;
     bool finished() const override { return finished_; }
+    /** The path of its properties, configured or not. Throws types::ConfigError as Trajectory::fromCsv. */
+    Trajectory trajectory() const;
     /** Time of the last stamp; 0 before it is configured [s]. */
     double duration() const { return trajectory_ ? trajectory_->stamps().back().time : 0; }
 

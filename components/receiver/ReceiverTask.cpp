@@ -1,5 +1,9 @@
 #include "components/receiver/ReceiverTask.hpp"
 
+#include <fmt/format.h>
+
+#include <cmath>
+
 namespace insonify::receiver {
 
 std::vector<std::string> ReceiverTask::notices() const {
@@ -12,7 +16,15 @@ bool ReceiverTask::configureHook() {
     return true;
 }
 
+void ReceiverTask::takeSettings() {
+    types::SonarSettings asked;
+    if (settings.readNewest(asked, false) != framework::FlowStatus::NewData) return;
+    if (std::isfinite(asked.gain_db) && asked.gain_db != config->gain_db)
+        config.set("gain_db", fmt::format("{}", asked.gain_db));
+}
+
 void ReceiverTask::updateHook() {
+    takeSettings();
     types::SonarPtr sample;
     if (!intensity.readNew(sample)) return;
     if (const char* diagnostic = sample->notIntensities())

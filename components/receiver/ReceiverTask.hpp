@@ -9,6 +9,7 @@
 #include "components/receiver/Receiver.hpp"
 #include "types/RecurringDiagnostic.hpp"
 #include "types/Sonar.hpp"
+#include "types/SonarSettings.hpp"
 
 namespace insonify::receiver {
 
@@ -29,6 +30,9 @@ public:
     framework::OutputPort<types::SonarPtr> ping{this, "ping", "the same ping as the receiver gives it out",
                                                 types::left_receiver};
 
+    framework::InputPort<types::SonarSettings> settings{
+        this, "settings", "whose gain_db this receiver takes over, from the next ping on", framework::Need::Optional};
+
     std::vector<std::string> notices() const override;
 
 private:
@@ -36,6 +40,7 @@ private:
     bool propertiesHook() override { return configureHook(); }
     void updateHook() override;
     void errorHook() override { updateHook(); }
+    void takeSettings();
     types::SonarPtr received(const types::SonarPtr& sample);
 
     void judge(const types::Sonar& intensities, const types::Sonar& received);

@@ -17,6 +17,9 @@ double spanOf(const log::Reader& log) {
     return (std::ranges::max(samples, {}, &log::SampleRef::time).time - samples.front().time).seconds();
 }
 
+/** Whether Rock's beams or scans are in a stream, which are pings as well. */
+bool isOlderPing(const log::Stream& stream) { return log::holdsPings(stream) && !stream.holds<types::Sonar>(); }
+
 /** @param shift by which its stamps are moved. */
 template <class Output>
 void publish(Output& output, log::Reader& log, const log::SampleRef& at, types::Time shift) {
@@ -28,7 +31,10 @@ void publish(Output& output, log::Reader& log, const log::SampleRef& at, types::
         output.port.write(sample);
     } else {
         const std::shared_ptr<T> sample = output.kept.pool.take();
-        log.read(at, *sample);
+        if constexpr (std::is_same_v<T, types::Sonar>)
+            isOlderPing(log.streams()[at.stream]) ? log::readPing(log, at, *sample) : log.read(at, *sample);
+        else
+            log.read(at, *sample);
         moveStamps(*sample, shift);
         output.port.write(sample);
     }
@@ -52,8 +58,10 @@ framework::OutputPortBase* ReplayTask::makeOutput(const std::string& stream) {
     open();
     const size_t index = log_->indexOf(stream);
     const log::Stream& recorded = log_->streams()[index];
-    by_stream_[index] = outputs_.makeFirst(stream, "stream " + stream + " of the log",
-                                           [&]<class T>(std::type_identity<T>) { return recorded.holds<T>(); });
+    by_stream_[index] =
+        outputs_.makeFirst(stream, "stream " + stream + " of the log", [&]<class T>(std::type_identity<T>) {
+            return isOlderPing(recorded) ? std::is_same_v<T, types::Sonar> : recorded.holds<T>();
+        });
     rewind();
     return output(stream);
 }
@@ -162,6 +170,16 @@ types::Time ReplayTask::logTime() const {
     const types::Time wall = paused_us_ != 0 ? types::Time{paused_us_} : wall_();
     const double seconds = started_us_ == 0 ? 0 : (wall - types::Time{started_us_}).seconds();
     return types::Time{first_us_} + types::Time::fromSeconds(pace * seconds);
+}
+
+std::string ReplayTask::streamOf(const std::string& port) const {
+    const log::Stream* const recorded = log_ ? log_->find(port) : nullptr;
+    return recorded ? recorded->name : port;
+}
+
+std::string ReplayTask::modelOf(const std::string& port) const {
+    const log::Stream* const recorded = log_ ? log_->find(port) : nullptr;
+    return recorded ? recorded->metadatum("rock_task_model") : "";
 }
 
 bool ReplayTask::configureHook() {

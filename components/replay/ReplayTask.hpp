@@ -13,6 +13,7 @@
 #include "components/framework/Properties.hpp"
 #include "components/framework/Registry.hpp"
 #include "components/framework/SamplePool.hpp"
+#include "components/framework/StreamNames.hpp"
 #include "components/framework/TaskContext.hpp"
 #include "components/log/Reader.hpp"
 #include "components/replay/ReplayConfig.hpp"
@@ -22,10 +23,11 @@ namespace insonify::replay {
 /** Publishes a log's streams again, sample by sample in the order of the file: a source.
  *
  *  Ports: an output for each connection that names a stream of the log, as in `replay.sonar.ping`; the samples are
- *  the recorded ones, stamps and all. A sample is due at its world time, or with the one before it in the file if that
- *  is later. In lockstep simulated time starts at the first sample and goes from one to the next; in realtime the task
- *  keeps `pace`, checking every millisecond unless its activity has a period, and all tasks of the deployment read the
- *  log's time, at that pace, in place of the wall clock.
+ *  the recorded ones, stamps and all; Rock's older beams and scans come as pings. A logger names them as they were. A
+ * sample is due at its world time, or with the one before it in the file if that is later. In lockstep simulated time
+ * starts at the first sample and goes from one to the next; in realtime the task keeps `pace`, checking every
+ * millisecond unless its activity has a period, and all tasks of the deployment read the log's time, at that pace, in
+ * place of the wall clock.
  *
  *  In realtime the log's time can be paused and stepped; in lockstep the deployment's is.
  *
@@ -34,7 +36,10 @@ namespace insonify::replay {
  *
  *  A log that was cut off plays up to its last whole block, with a notice; streams that nothing is connected to, or
  *  whose type is not known, are listed in notices. A sample that cannot be decoded ends in Exception. */
-class ReplayTask final : public framework::TaskContext, public framework::ClockSource, public framework::Player {
+class ReplayTask final : public framework::TaskContext,
+                         public framework::ClockSource,
+                         public framework::StandIn,
+                         public framework::Player {
 public:
     using TaskContext::TaskContext;
 
@@ -57,6 +62,8 @@ public:
     /** World time in the log of the next sample, of all or of one stream; none: there is no more. Between instants. */
     std::optional<types::Time> nextStamp(const std::string& stream = "") const;
     std::function<types::Time()> clock(std::function<types::Time()> wall) override;
+    std::string streamOf(const std::string& port) const override;
+    std::string modelOf(const std::string& port) const override;
     /** Where the sample that was played last lies in the log, by its recorded stamp. */
     std::optional<types::Playback> playback() const override;
 

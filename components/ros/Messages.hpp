@@ -6,17 +6,20 @@
 #include "components/ros/ElementMessages.hpp"
 #include "components/ros/GeometryMessages.hpp"
 #include "components/ros/SensorMessages.hpp"
+#include "components/ros/SettingsMessage.hpp"
 #include "components/ros/SonarMessages.hpp"
 #include "components/ros/StdMessages.hpp"
+#include "components/ros/TransformMessages.hpp"
 #include "components/ros/TruthMessages.hpp"
 
 namespace insonify::ros {
 
 using MessageTypes =
     std::tuple<Bool, Int32, Int64, Float32, Float64, String, Time, Header, Clock, Vector3, Point, Quaternion, Pose,
-               PoseStamped, PoseWithCovariance, Twist, TwistWithCovariance, Odometry, Image, LaserScan, PointField,
-               PointCloud2, Range, PingInfo, SonarImageData, ProjectedSonarImage, RawSonarImage, DetectionFlag,
-               SonarRanges, SonarTruth, SonarReturns, SonarElements>;
+               PoseStamped, PoseWithCovariance, Twist, TwistWithCovariance, Odometry, Transform, TransformStamped,
+               TFMessage, Image, LaserScan, PointField, PointCloud2, Range, PingInfo, SonarImageData,
+               ProjectedSonarImage, RawSonarImage, DetectionFlag, SonarRanges, SonarTruth, SonarReturns, SonarElements,
+               SonarSettings>;
 
 /** Calls `use(std::type_identity<T>{})` for each message. */
 template <class Use>

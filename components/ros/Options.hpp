@@ -28,10 +28,11 @@ enum class WorldFrame {
     Ned    ///< World x north, y east, z down; body x forward, y right, z down.
 };
 
-/** How a ping becomes messages. A level is 10 log10 of a bin [dB]. */
+/** How a ping becomes messages. The defaults lose nothing of what it holds in its bins, in logs and on the wire alike. A
+ *  level is 10 log10 of a bin [dB]. */
 struct SonarOptions {
     ImageOrder order = ImageOrder::RangeMajor;
-    ImageType dtype = ImageType::Uint8;
+    ImageType dtype = ImageType::Float32;
     SensorFrame frame = SensorFrame::ZForward;
     BinScale scale = BinScale::Linear;
     double dynamic_range_db = 60;
@@ -56,14 +57,15 @@ struct SonarOptions {
         visit(Field{"reference_db", "dB", "level of the strongest echo; absent: that of each ping", -3000, 3000},
               self.reference_db);
         visit(Field{"threshold_db", "dB", "what is a return, relative to the reference", -300, 0}, self.threshold_db);
-        visit(Field{"frequency_khz", "kHz", "of the device; 0: unknown", 0, 1e5}, self.frequency_khz);
+        visit(Field{"frequency_khz", "kHz", "of the device; 0: that of the sonar, where it is known", 0, 1e5},
+              self.frequency_khz);
         visit(Field{"frame_id", "", "name of the sonar's frame"}, self.frame_id);
     }
 };
 
 /** How samples become messages and are read back. */
 struct MessageOptions : SonarOptions {
-    WorldFrame world_frame = WorldFrame::AsIs;
+    WorldFrame world_frame = WorldFrame::Enu;
 
     template <class Self, class V>
     static void describe(Self& self, V& visit) {

@@ -99,6 +99,25 @@ void convert(const types::Pose& pose, WorldFrame frame, PoseStamped& message) {
     fillPose(pose, {frame}, message.header, message.pose);
 }
 
+void convert(const types::Pose& pose, WorldFrame frame, TFMessage& message) {
+    message.transforms.resize(1);
+    TransformStamped& stamped = message.transforms[0];
+    Pose placed;
+    fillPose(pose, {frame}, stamped.header, placed);
+    stamped.child_frame_id = pose.source_frame;
+    stamped.transform = {{placed.position.x, placed.position.y, placed.position.z}, placed.orientation};
+}
+
+Transform toTransform(const types::Mount& mount, WorldFrame frame, SensorFrame axes) {
+    constexpr double half = std::numbers::sqrt2 / 2;
+    const glm::dquat body_from_rock = frame == WorldFrame::Ned ? glm::dquat(0, 1, 0, 0) : glm::dquat(1, 0, 0, 0),
+                     ahead_from_z =
+                         axes == SensorFrame::ZForward ? glm::dquat(0, half, 0, half) : glm::dquat(1, 0, 0, 0);
+    const glm::dvec3 p = Axes{frame}.body(mount.position);
+    const glm::dquat q = glm::normalize(body_from_rock * mount.orientation() * ahead_from_z);
+    return {{p.x, p.y, p.z}, {q.x, q.y, q.z, q.w}};
+}
+
 void convert(const types::Pose& pose, WorldFrame frame, Odometry& message) {
     const Axes axes{frame};
     fillPose(pose, axes, message.header, message.pose.pose);

@@ -1,6 +1,8 @@
 #pragma once
 #include "components/ros/GeometryMessages.hpp"
 #include "components/ros/Options.hpp"
+#include "components/ros/TransformMessages.hpp"
+#include "types/Mount.hpp"
 #include "types/Pose.hpp"
 
 namespace insonify::ros {
@@ -17,6 +19,11 @@ glm::dvec3 rockFromWorld(WorldFrame frame, glm::dvec3 v);
  *  All throw std::out_of_range for a time that ROS cannot hold. */
 void convert(const types::Pose& pose, WorldFrame frame, PoseStamped& message);
 void convert(const types::Pose& pose, WorldFrame frame, Odometry& message);
+/** One transform: that of the body in the world. */
+void convert(const types::Pose& pose, WorldFrame frame, TFMessage& message);
+
+/** Where a sensor sits in the body, whose axes are those of `frame`; the sensor's are as `axes` says. */
+Transform toTransform(const types::Mount& mount, WorldFrame frame, SensorFrame axes);
 
 /** The reverse. What the message does not tell is unknown. */
 void convert(const PoseStamped& message, WorldFrame frame, types::Pose& pose);

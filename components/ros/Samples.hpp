@@ -10,6 +10,7 @@
 #include "components/ros/Options.hpp"
 #include "components/ros/Pictures.hpp"
 #include "components/ros/Poses.hpp"
+#include "components/ros/Settings.hpp"
 #include "components/ros/Times.hpp"
 #include "components/ros/ToSonar.hpp"
 #include "components/ros/Truths.hpp"
@@ -40,7 +41,9 @@ struct MessagesOf<types::SonarReturns> : Messages<types::SonarReturns, SonarRetu
 template <>
 struct MessagesOf<types::SonarElements> : Messages<types::SonarElements, SonarElements, Clock> {};
 template <>
-struct MessagesOf<types::Pose> : Messages<types::Pose, Odometry, PoseStamped, Clock> {};
+struct MessagesOf<types::SonarSettings> : Messages<types::SonarSettings, SonarSettings, Clock> {};
+template <>
+struct MessagesOf<types::Pose> : Messages<types::Pose, Odometry, PoseStamped, TFMessage, Clock> {};
 template <>
 struct MessagesOf<types::Image> : Messages<types::Image, Image, Clock> {};
 template <>
@@ -109,6 +112,9 @@ inline void toMessage(const types::SonarReturns& returns, const MessageOptions& 
 inline void toMessage(const types::SonarElements& signals, const MessageOptions& options, SonarElements& message) {
     convert(signals, options.frame_id, message);
 }
+inline void toMessage(const types::SonarSettings& settings, const MessageOptions& options, SonarSettings& message) {
+    convert(settings, options.frame_id, message);
+}
 inline void toMessage(const types::PointCloud& cloud, const MessageOptions& options, PointCloud2& message) {
     convert(cloud, options.world_frame, message);
 }
@@ -148,6 +154,9 @@ inline void toSample(const SonarReturns& message, const MessageOptions&, types::
 }
 inline void toSample(const SonarElements& message, const MessageOptions&, types::SonarElements& signals) {
     convert(message, signals);
+}
+inline void toSample(const SonarSettings& message, const MessageOptions&, types::SonarSettings& settings) {
+    convert(message, settings);
 }
 inline void toSample(const Image& message, const MessageOptions&, types::Image& picture) { convert(message, picture); }
 inline void toSample(const PointCloud2& message, const MessageOptions& options, types::PointCloud& cloud) {

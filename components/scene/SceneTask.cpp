@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "components/framework/Activity.hpp"
 #include "components/scene/Overrides.hpp"
@@ -108,6 +109,7 @@ bool SceneTask::startHook() {
         if (activity().settings().trigger.empty()) movable.port->setTriggers(false);
     }
     newest_ = now();
+    newest_came_ = waiting_is_told_ = is_stale_ = false;
     return true;
 }
 
@@ -134,13 +136,21 @@ std::string SceneTask::staleness() const {
     return {};
 }
 
+void SceneTask::lackPose(const std::string& why) {
+    const bool is_first = !newest_came_ && (now() - newest_).seconds() > poseTimeout();
+    is_stale_ = !is_first;
+    if (!is_first) return error(why);
+    if (!std::exchange(waiting_is_told_, true)) warn(pose.path() + ": waits for the first pose");
+}
+
 void SceneTask::updateHook() {
     const bool movables_good = readMovables();
     types::Pose body;
     const bool is_new = pose.takeNext(body);
-    if (is_new && !isUsable(body)) return error(pose.path() + unusable);
-    if (is_new) newest_ = body.time;
-    if (const std::string stale = staleness(); !stale.empty()) return error(stale);
+    if (is_new && !isUsable(body)) return is_stale_ = false, error(pose.path() + unusable);
+    if (is_new) newest_ = body.time, newest_came_ = true;
+    if (const std::string stale = staleness(); !stale.empty()) return lackPose(stale);
+    is_stale_ = false;
     if (!is_new) return movables_good ? void() : error(name() + unusable);
     if (state() == framework::TaskState::RunTimeError) recover();
     const auto sample = pool_.take();

@@ -1,4 +1,5 @@
 #pragma once
+#include <atomic>
 #include <memory>
 #include <optional>
 #include <string>
@@ -9,6 +10,7 @@
 #include "components/framework/Registry.hpp"
 #include "components/framework/SamplePool.hpp"
 #include "components/framework/TaskContext.hpp"
+#include "components/framework/Waits.hpp"
 #include "components/scene/Scene.hpp"
 #include "components/scene/SceneConfig.hpp"
 #include "components/scene/Targets.hpp"
@@ -27,10 +29,11 @@ namespace insonify::scene {
  *
  *  A pose that is not finite, or whose orientation has no length, is dropped: RunTimeError until the next good one. So
  *  it is when no pose of the body, or of a node that a connection names, comes for `pose_timeout`, by their stamps, or
- *  one comes that is as old or far ahead of the clock: there is no snapshot then. In realtime on the wall clock a
- *  timeout that is not given is 1 s; otherwise there is none. With `extrapolate` the snapshot has the sonar's
- *  velocities, by which the sonar's task carries it on to its ping. */
-class SceneTask final : public framework::TaskContext {
+ *  one comes that is as old or far ahead of the clock: there is no snapshot then. A run that ends so has not failed:
+ *  who sent the poses may have gone home. Waiting for the body's first pose is no error: it is told once. In realtime
+ * on the wall clock a timeout that is not given is 1 s; otherwise there is none. With `extrapolate` the snapshot has
+ * the sonar's velocities, by which the sonar's task carries it on to its ping. */
+class SceneTask final : public framework::TaskContext, public framework::Waits {
 public:
     using TaskContext::TaskContext;
 
@@ -42,6 +45,7 @@ public:
     void check(types::Diagnostics& diagnostics) const override;
     std::vector<std::string> notices() const override;
     double wakeAfter() const override;
+    bool waits() const override { return is_stale_ && newest_came_; }
 
 private:
     bool configureHook() override;
@@ -52,6 +56,8 @@ private:
 
     /** Why there is no pose to go by, empty when there is one. */
     std::string staleness() const;
+    /** Without a pose of late: tells that it waits for the first, or is in error. */
+    void lackPose(const std::string& why);
     double poseTimeout() const;  ///< [s]; infinite: none.
 
     /** A node that follows a port. */
@@ -82,7 +88,10 @@ private:
     std::vector<PlacedTarget> targets_;
     std::shared_ptr<const std::vector<std::string>> target_names_;
     framework::SamplePool<types::Snapshot> pool_;
-    types::Time newest_;  ///< Stamp of the newest usable pose; the start before the first.
+    types::Time newest_;                  ///< Stamp of the newest usable pose; the start before the first.
+    bool newest_came_ = false;            ///< A pose of the body has come since the start.
+    bool waiting_is_told_ = false;        ///< That none has.
+    std::atomic<bool> is_stale_ = false;  ///< In error for want of poses, not for what is wrong with one.
 };
 
 /** Makes the tasks of this folder known to deployments. */

@@ -12,9 +12,9 @@ void AltimeterTask::tellMore(const types::Sonar& sample, const types::Pose& /*so
     if (!range.connected()) return;
     types::Range told;
     told.time = sample.time;
-    if (const auto found = Detector(config->detection, sample).first(0)) told.range = found->range;
+    if (const auto found = Detector(config->detection, sample, binWidth()).first(0)) told.range = found->range;
     told.range_min = config->sonar.range_min;
-    told.range_max = sample.binStart(sample.bin_count);
+    told.range_max = binWidth() * sample.bin_count;
     told.field_of_view = sample.beam_width;
     range.write(told);
 }

@@ -22,8 +22,9 @@ double strongestOf(const std::vector<float>& bins) {
 
 }  // namespace
 
-Detector::Detector(const DetectionConfig& config, const types::Sonar& ping)
+Detector::Detector(const DetectionConfig& config, const types::Sonar& ping, double bin_width)
     : ping_(ping),
+      bin_width_(bin_width),
       least_(std::max(strongestOf(ping.bins) * shareOf(config.threshold_db),
                       config.floor_db ? shareOf(*config.floor_db) : 0)),
       gate_share_(shareOf(-config.gate_db)) {}
@@ -43,14 +44,14 @@ std::optional<Detection> Detector::strongest(uint32_t beam) const {
         sum += weight;
         moment += weight * at;
     }
-    return Detection{ping_.binStart(moment / sum), *peak};
+    return Detection{moment / sum * bin_width_, *peak};
 }
 
 std::optional<Detection> Detector::first(uint32_t beam) const {
     const std::span<const float> bins = binsOf(ping_, beam);
     const auto found = std::find_if(bins.begin(), bins.end(), [this](float bin) { return bin > 0 && bin >= least_; });
     if (found == bins.end()) return std::nullopt;
-    return Detection{ping_.binStart(static_cast<double>(found - bins.begin()) + 0.5), *found};
+    return Detection{(static_cast<double>(found - bins.begin()) + 0.5) * bin_width_, *found};
 }
 
 }  // namespace insonify::sonar

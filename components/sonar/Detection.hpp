@@ -42,8 +42,8 @@ struct Detection {
 /** Finds the returns in the beams of one ping (ACOUSTICS.md 5.16). */
 class Detector {
 public:
-    /** Keeps a reference to the ping. */
-    Detector(const DetectionConfig& config, const types::Sonar& ping);
+    /** Keeps a reference to the ping, whose bins are exactly so wide [m]: `bin_duration` is rounded. */
+    Detector(const DetectionConfig& config, const types::Sonar& ping, double bin_width);
     /** The beam's strongest bin and those around it down to the gate: at their centre of mass, each bin weighing what
      *  it holds times the square of its range. None where the strongest is below the threshold. */
     std::optional<Detection> strongest(uint32_t beam) const;
@@ -52,6 +52,7 @@ public:
 
 private:
     const types::Sonar& ping_;
+    double bin_width_;   ///< [m]
     double least_;       ///< Of a return [1].
     double gate_share_;  ///< Of the strongest bin, that others of its return have [1].
 };

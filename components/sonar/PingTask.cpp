@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "components/framework/Activity.hpp"
+#include "components/framework/Properties.hpp"
 #include "components/sonar/PlanReport.hpp"
 #include "types/ConfigError.hpp"
 #include "types/ExtrapolatePose.hpp"
@@ -108,18 +109,64 @@ bool PingTask::takeGiven() {
     return true;
 }
 
+std::map<std::string, std::string> PingTask::changedBy(const types::SonarSettings& asked) const {
+    const SonarConfig config = sonarConfig();
+    std::map<std::string, std::string> changed;
+    const auto compare = [&](const char* name, double wanted, std::optional<double> now) {
+        if (std::isfinite(wanted) && wanted != now) changed[name] = fmt::format("{}", wanted);
+    };
+    const auto compareCount = [&](const char* name, uint32_t wanted, uint32_t now) {
+        if (wanted != 0 && wanted != now) changed[name] = fmt::format("{}", wanted);
+    };
+    compare("range", asked.range, config.range);
+    compare("frequency_khz", asked.frequency_khz, config.frequency_khz);
+    compare("speed_of_sound", asked.speed_of_sound, config.speed_of_sound);
+    compare("field_of_view_deg", asked.field_of_view.deg(), config.field_of_view_deg);
+    compare("beam_height_deg", asked.beam_height.deg(), config.beam_height_deg);
+    compareCount("bin_count", asked.bin_count, static_cast<uint32_t>(config.bin_count));
+    compareCount("beam_count", asked.beam_count, static_cast<uint32_t>(config.beam_count));
+    return changed;
+}
+
+void PingTask::applySettings(const types::SonarSettings& asked) {
+    const auto changed = changedBy(asked);
+    if (!changed.empty()) properties().front()->setAll(changed);
+    if (!asked.bearing.isUnknown()) turnHead(asked.bearing);
+}
+
+bool PingTask::takeAsked() {
+    types::SonarSettings asked;
+    types::SnapshotPtr sample;
+    if (!settings.takeNext(asked) || snapshot.readNewest(sample) == framework::FlowStatus::NoData) return false;
+    try {
+        applySettings(asked);
+    } catch (const std::exception& refused) {
+        error(std::string("settings: ") + refused.what());
+        return false;
+    }
+    aim(*sample);
+    aimed_.time = std::max(aimed_.time, asked.time);
+    used_.time = aimed_.time;
+    return true;
+}
+
 bool PingTask::takeNext() {
     if (given_pose.connected()) return takeGiven();
+    if (settings.connected()) return takeAsked();
     types::SnapshotPtr sample;
     if (!snapshot.takeNext(sample)) return false;
+    aim(*sample);
+    return true;
+}
+
+void PingTask::aim(const types::Snapshot& scene) {
     begun_ = now();
-    aimed_ = *sample;
+    aimed_ = scene;
     if (activity().realtime() && aimed_.max_extrapolation > 0) {
         aimed_.sonar = types::extrapolatePose(aimed_.sonar, begun_, aimed_.max_extrapolation);
         aimed_.time = aimed_.sonar.time;
     }
     used_ = aimed_.sonar;
-    return true;
 }
 
 void PingTask::updateHook() {

@@ -1,5 +1,6 @@
 #pragma once
 #include <limits>
+#include <map>
 #include <memory>
 #include <optional>
 #include <span>
@@ -16,6 +17,7 @@
 #include "types/Sonar.hpp"
 #include "types/SonarElements.hpp"
 #include "types/SonarReturns.hpp"
+#include "types/SonarSettings.hpp"
 #include "types/SonarTruth.hpp"
 
 namespace insonify::sonar {
@@ -38,6 +40,10 @@ namespace insonify::sonar {
  *
  *  `elements` tells what each element of a straight array heard, of a sonar that is configured to have some.
  *
+ *  With `settings` connected there is a ping for each of them, and none else, as the driver of a device asks for it, at
+ *  the time of asking in the newest snapshot's scene: what they name becomes the value of the property of that name,
+ * and stays. Settings that the sonar cannot have lead to RunTimeError, and to no ping.
+ *
  *  `pose` tells where each ping was rendered, carried on as it was; with `given_pose` connected there is a ping for
  *  each of these poses, in the newest snapshot's scene, so that what `pose` has told renders the same pings again. */
 class PingTask : public framework::TaskContext, public framework::Planned {
@@ -50,6 +56,10 @@ public:
     framework::InputPort<types::Pose> given_pose{
         this, "given_pose",
         "drives the task in place of snapshots: the sonar in the world for each ping, as `pose` told it",
+        framework::Need::Optional};
+    framework::InputPort<types::SonarSettings> settings{
+        this, "settings",
+        "drives the task in place of snapshots: one ping for each of these, as it asks, in the newest snapshot's scene",
         framework::Need::Optional};
     framework::OutputPort<types::SonarPtr> ping{this, "ping", "one ping, noiseless, at the time of its snapshot"};
     framework::OutputPort<types::Pose> pose{this, "pose", "the sonar in the world as each ping had it, at its time"};
@@ -74,12 +84,17 @@ public:
 protected:
     /** Last changes to a snapshot with a valid pose before it is rendered; a reason refuses it. */
     virtual const char* steer(types::Snapshot& /*scene*/) { return nullptr; }
+    double binWidth() const { return grid_.bin_width; }  ///< Exact, where `bin_duration` of a ping is rounded [m].
     /** Whether a ping is one rendering. Of several the truth is not told, nor what each of them left out. */
     virtual bool rendersOnce() const { return true; }
     /** Where the time of the last ping went. */
     virtual std::span<const Stage> renderStages(const SonarRenderer& renderer) const { return renderer.stages(); }
     /** Makes the ping of `scene`; whether it has any echo. */
     virtual bool renderPing(SonarRenderer& renderer, types::Snapshot& scene, types::Sonar& sample);
+    /** Of settings what differs from the configuration: names and YAML of properties, as a fan of beams has them. */
+    virtual std::map<std::string, std::string> changedBy(const types::SonarSettings& asked) const;
+    /** Where a turning head is to look from the next ping on. */
+    virtual void turnHead(types::Angle /*bearing*/) {}
     /** Last changes to a ping before it is written. */
     virtual void stampBearings(types::Sonar& /*sample*/) {}
     /** What else there is to tell of a ping that is about to be written, from where it was rendered. */
@@ -113,7 +128,12 @@ private:
     void writeTruth(const types::Sonar& sample, const std::shared_ptr<types::SonarTruth>& told);
     /** The next of `given_pose`, in the newest snapshot's scene. */
     bool takeGiven();
-    /** The next snapshot; in realtime the newest, its sonar where it is by now, as far as it may be carried on. */
+    /** The scene of a snapshot, in realtime with its sonar where it is by now, as far as it may be carried on. */
+    void aim(const types::Snapshot& scene);
+    void applySettings(const types::SonarSettings& asked);
+    /** Of the newest settings, in the newest snapshot's scene. */
+    bool takeAsked();
+    /** What the next ping is of; in realtime the newest. */
     bool takeNext();
     /** In realtime, until the last echo of this ping's range is back; false: the task is to stop. */
     bool waitForLastEcho();

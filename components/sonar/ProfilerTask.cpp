@@ -10,7 +10,7 @@ void ProfilerTask::tellMore(const types::Sonar& sample, const types::Pose& sonar
     cloud->clear();
     cloud->reserve(sample.beam_count);
     cloud->time = sample.time;
-    const Detector detector(config->detection, sample);
+    const Detector detector(config->detection, sample, binWidth());
     for (uint32_t beam = 0; beam < sample.beam_count; ++beam)
         if (const auto found = detector.strongest(beam)) {
             const double bearing = sample.bearings[beam].rad;

@@ -19,6 +19,7 @@ namespace insonify::sonar {
 
 bool ScanningSonarTask::startHook() {
     scan_.emplace(config->head);
+    asked_ = {};
     last_.reset();
     before_.reset();
     step_checked_ = false;
@@ -35,11 +36,11 @@ bool ScanningSonarTask::propertiesHook() {
 
 const char* ScanningSonarTask::steer(types::Snapshot& scene) {
     if (last_ && scene.time < *last_) return "the snapshot is older than the one before";
-    if (last_ && !step_checked_) checkStep((scene.time - *last_).seconds());
+    if (last_ && !step_checked_ && asked_.isUnknown()) checkStep((scene.time - *last_).seconds());
     step_checked_ = last_.has_value();
     const double seconds = last_ ? (scene.time - *last_).seconds() : 0;
     last_ = scene.time;
-    const Aim aim{scene.sonar.orientation, types::radians(scan_->bearingDeg())};
+    const Aim aim{scene.sonar.orientation, types::radians(bearingDeg())};
     scene.sonar.orientation *= glm::angleAxis(aim.bearing, glm::dvec3(0, 0, 1));
     if (config->sonar.motion_in_ping) turn(scene.sonar, aim, seconds);
     before_ = aim;
@@ -59,7 +60,7 @@ void ScanningSonarTask::turn(types::Pose& sonar, const Aim& aim, double seconds)
 }
 
 void ScanningSonarTask::stampBearings(types::Sonar& sample) {
-    sample.bearings[0] = types::Angle::fromDeg(scan_->bearingDeg());
+    sample.bearings[0] = types::Angle::fromDeg(bearingDeg());
     scan_->advance();
 }
 

@@ -54,6 +54,22 @@ void Sonar3dConfig::check(types::Diagnostics& diagnostics) const {
     if (diagnostics.empty()) upright().checkBeam(diagnostics);
 }
 
+std::map<std::string, std::string> Sonar3dTask::changedBy(const types::SonarSettings& asked) const {
+    types::SonarSettings of_all = asked;
+    of_all.field_of_view = of_all.beam_height = {};
+    of_all.beam_count = 0;
+    auto changed = PingTask::changedBy(of_all);
+    const BeamRow& row = config->horizontal;
+    const double view_deg = asked.field_of_view.isUnknown() ? row.field_of_view_deg : asked.field_of_view.deg();
+    const auto beams = asked.beam_count == 0 ? static_cast<uint32_t>(row.beam_count) : asked.beam_count;
+    if (view_deg != row.field_of_view_deg || beams != static_cast<uint32_t>(row.beam_count))
+        changed["horizontal"] = fmt::format("{{beam_count: {}, field_of_view_deg: {}}}", beams, view_deg);
+    if (const double height_deg = asked.beam_height.deg();
+        !asked.beam_height.isUnknown() && height_deg != config->sonar.beam_height_deg)
+        changed["beam_height_deg"] = fmt::format("{}", height_deg);
+    return changed;
+}
+
 RenderPlan Sonar3dTask::coverage(const types::Snapshot& scene) const {
     SonarConfig fan = config->sonar;
     fan.beam_width_deg.reset();
@@ -117,7 +133,7 @@ void Sonar3dTask::addTo(types::Sonar& sample, int column) const {
 }
 
 void Sonar3dTask::detect(int column) {
-    const Detector detector(config->detection, fan_);
+    const Detector detector(config->detection, fan_, binWidth());
     const size_t from_left = map_.horizontal_size - 1 - static_cast<size_t>(column);
     for (uint32_t beam = 0; beam < fan_.beam_count; ++beam)
         if (const auto found = detector.strongest(beam)) {

@@ -74,6 +74,8 @@ protected:
     bool renderPing(SonarRenderer& renderer, types::Snapshot& scene, types::Sonar& sample) override;
     RenderPlan coverage(const types::Snapshot& scene) const override;
     void tellMore(const types::Sonar& sample, const types::Pose& sonar) override;
+    /** `field_of_view` and `beam_count` are those of a row of beams side by side, `beam_height` is that of one beam. */
+    std::map<std::string, std::string> changedBy(const types::SonarSettings& asked) const override;
 
 private:
     /** Takes the returns of one upright fan into a column of the map. */

@@ -40,6 +40,20 @@ def show_logger(logger):
         print(f"  {name.split('_')[0]:9}{times['median']:9.3f} {unit}, p99 {times['p99']:.3f}, max {times['max']:.3f}")
 
 
+def measure_oculus(options):
+    """What oculus_bench tells of a driver that asks deploy/hil_oculus.yml for 512 x 1000 at 40 Hz over TCP."""
+    command = [ROOT / "build/bin/oculus_bench", str(options.log_seconds)]
+    done = subprocess.run(command, stdout=subprocess.PIPE, text=True)
+    if done.returncode != 0:
+        fail("oculus_bench", done.returncode)
+    return json.loads(done.stdout)
+
+
+def show_oculus(oculus):
+    print(f"Oculus, 512 x 1000 codes of 16 bits at 40 Hz over TCP: {oculus['received']} pings received of "
+          f"{oculus['asked']:.0f} asked for in {oculus['seconds']:.0f} s, {oculus['mb_per_s']:.1f} MB/s")
+
+
 def measure_pipeline(options):
     """What pipeline_bench tells of each scene: milliseconds a ping, from the first that is begun to the last that ends."""
     found = {}

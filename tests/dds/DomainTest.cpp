@@ -42,8 +42,9 @@ TEST_F(DomainTest, NamesThatRosRefusesAreRefused) {
     EXPECT_EQ(diagnosticOfTopic(std::string(252, 'a')), "");
     EXPECT_THAT(diagnosticOfTopic(std::string(253, 'a')), HasSubstr("has 253 characters; at most 252"));
     EXPECT_THAT(diagnosticOfTopic("/" + std::string(70'000, 'a')), HasSubstr("at most 252"));
-    EXPECT_EQ(diagnosticOfNode("sonar_1"), "");
-    for (const char* bad : {"", "a/b", "1a", "a b"}) EXPECT_NE(diagnosticOfNode(bad), "") << bad;
+    for (const char* good : {"sonar_1", "/sonar", "/auv/sonar", "auv/sonar"})
+        EXPECT_EQ(diagnosticOfNode(good), "") << good;
+    for (const char* bad : {"", "/", "//a", "a/", "1a", "a b"}) EXPECT_NE(diagnosticOfNode(bad), "") << bad;
 }
 
 TEST_F(DomainTest, TheDomainIsTheOneGivenOrThatOfTheEnvironment) {
@@ -76,7 +77,7 @@ TEST_F(DomainTest, ADomainCanBeLeftAndJoinedAgain) {
 
 TEST_F(DomainTest, ANodeIsAnnouncedWithIdentifiersOfSixteenOrTwentyFourBytes) {
     using Info = ParticipantEntitiesInfo<24>;
-    Node listener(domainId({}), "listener", 16), humble(domainId({}), "humble", 24);
+    Node listener(domainId({}), "listener", 16), humble(domainId({}), "/auv/old/humble", 24);
     const Quality latched{.reliability = Reliability::Reliable, .depth = 1, .transient_local = true};
     Reader reader(listener, "ros_discovery_info", Info::type_name, "", latched, {});
     const Writer writer(humble, "rt/topic", ros::PoseStamped::type_name, "", Quality{});
@@ -88,6 +89,7 @@ TEST_F(DomainTest, ANodeIsAnnouncedWithIdentifiersOfSixteenOrTwentyFourBytes) {
     Info info;
     ros::decode(std::span<const char>(bytes), info);
     ASSERT_EQ(info.node_entities_info_seq.size(), 1u);
+    EXPECT_EQ(info.node_entities_info_seq[0].node_namespace, "/auv/old");
     EXPECT_EQ(info.node_entities_info_seq[0].node_name, "humble");
     ASSERT_EQ(info.node_entities_info_seq[0].writer_gid_seq.size(), 1u);
     const auto& gid = info.node_entities_info_seq[0].writer_gid_seq[0].data;

@@ -27,7 +27,9 @@ protected:
 }  // namespace
 
 TEST_F(FastDdsTest, HearsEveryPingOf128KilobytesAtFortyHertz) {
-    Publishing<types::SonarPtr> publishing({topicOut("in", "/auv/sonar", message_type<ros::ProjectedSonarImage>)},
+    TopicOut levels = topicOut("in", "/auv/sonar", message_type<ros::ProjectedSonarImage>);
+    levels.sonar.dtype = ros::ImageType::Uint8;
+    Publishing<types::SonarPtr> publishing({levels},
                                            [](PublisherConfig& config) { config.depth = 200; });  // a busy machine
     Peer peer({program, "listen", "marine_acoustic_msgs::msg::dds_::ProjectedSonarImage_", "/auv/sonar", "240", "200"});
     ASSERT_TRUE(peer.meets([&] { publishing.send(greeting()); }));

@@ -1,5 +1,6 @@
 #include <gmock/gmock.h>
 
+#include <cmath>
 #include <cstring>
 
 #include "components/dds/PublisherTask.hpp"
@@ -8,6 +9,7 @@
 #include "components/ros/FromSonar.hpp"
 #include "components/ros/Times.hpp"
 #include "tests/dds/Ends.hpp"
+#include "types/Mount.hpp"
 
 using namespace insonify;
 using namespace insonify::dds;
@@ -33,6 +35,28 @@ protected:
     }
 };
 
+/** What a sonar and its scene tell of themselves. */
+struct Described {
+    double frequency_khz = 0;
+    types::Mount mount;
+    template <class Self, class V>
+    static void describe(Self& self, V& visit) {
+        visit(types::Field{"frequency_khz", "kHz"}, self.frequency_khz);
+        visit(types::Field{"mount"}, self.mount);
+    }
+};
+struct Sonar : framework::TaskContext {
+    Sonar() : TaskContext("sonar") {
+        Described described;
+        described.frequency_khz = 750;
+        described.mount.position = {0.5, 0, -0.25};
+        config.set(described);
+        refreshRecord();
+    }
+    framework::Properties<Described> config{this};
+    framework::OutputPort<types::SonarPtr> ping{this, "ping", ""};
+};
+
 std::string textOf(const types::Diagnostics& diagnostics) {
     std::string text;
     for (const types::Diagnostic& diagnostic : diagnostics) text += diagnostic.path + " " + diagnostic.message + "\n";
@@ -53,7 +77,7 @@ TEST_F(PublisherTaskTest, APingBecomesAllMessagesThatItCanBe) {
     const auto image = heard<ros::ProjectedSonarImage>("/image", send);
     EXPECT_EQ(image.image.beam_count, 16u);
     EXPECT_EQ(image.ranges.size(), 50u);
-    EXPECT_EQ(image.image.data.size(), 16u * 50);  // uint8
+    EXPECT_EQ(image.image.data.size(), 16u * 50 * 4);  // float32
     EXPECT_EQ(image.header.frame_id, "sonar");
     EXPECT_EQ(ros::fromRos(image.header.stamp), ping->time);
     ros::ProjectedSonarImage expected;
@@ -95,6 +119,68 @@ TEST_F(PublisherTaskTest, APoseIsTurnedIntoTheWorldFrameAndNamesItsFrames) {
         EXPECT_EQ(message.header.frame_id, "map");
         EXPECT_EQ(message.child_frame_id, "base_link");
     }
+}
+
+TEST_F(PublisherTaskTest, APoseBecomesATransformOfItsFrames) {
+    types::Pose pose;
+    pose.time = framework::wallClock();
+    pose.position = {3, 2, 1};  // north, west, up
+    Publishing<types::Pose> publishing({topicOut("in", "/tf", message_type<ros::TFMessage>)});
+    const auto message = heard<ros::TFMessage>("/tf", [&] { publishing.send(pose); });
+    ASSERT_EQ(message.transforms.size(), 1u);
+    EXPECT_EQ(message.transforms[0].header.frame_id, "map");
+    EXPECT_EQ(message.transforms[0].child_frame_id, "base_link");
+    EXPECT_EQ(message.transforms[0].transform.translation, (ros::Vector3{-2, 3, 1}));
+}
+
+TEST_F(PublisherTaskTest, TheMountOfASonarIsToldToWhoComesLaterAndItsFrequencyInItsPings) {
+    TopicOut image = topicOut("in", "/image", message_type<ros::ProjectedSonarImage>),
+             other = topicOut("in", "/other", message_type<ros::ProjectedSonarImage>);
+    image.sonar.frame_id = "sonar_z";
+    other.sonar.frequency_khz = 300;
+    PublisherConfig config;
+    config.topics = {topicOut("in", "/scan", message_type<ros::LaserScan>), image, other};
+    config.tf_static.emplace();
+    PublisherTask task("publisher");
+    task.config.set(config);
+    Sonar sonar;
+    sonar.ping.connectTo(*task.makeInput("in", sonar.ping), framework::ConnPolicy::buffer(8));
+    ASSERT_TRUE(task.configure() && task.start());
+
+    const Quality latched{.reliability = Reliability::Reliable, .depth = 1, .transient_local = true};
+    Reader late(node, ddsTopic("/tf_static"), ros::TFMessage::type_name, "", latched, {});
+    Bytes bytes;
+    uint64_t sender = 0;
+    ASSERT_TRUE(comesTrue([&] { return late.take(bytes, sender); }));
+    ros::TFMessage mounts;
+    ros::decode(std::span<const char>(bytes), mounts);
+    ASSERT_EQ(mounts.transforms.size(), 2u) << "a frame once";
+    EXPECT_EQ(mounts.transforms[0].header.frame_id, "base_link");
+    EXPECT_EQ(mounts.transforms[0].child_frame_id, "sonar");
+    EXPECT_EQ(mounts.transforms[0].transform.translation, (ros::Vector3{0.5, 0, -0.25}));
+    EXPECT_EQ(mounts.transforms[0].transform.rotation, (ros::Quaternion{0, 0, 0, 1}));
+    EXPECT_EQ(mounts.transforms[1].child_frame_id, "sonar_z");
+    EXPECT_NEAR(mounts.transforms[1].transform.rotation.x, std::sqrt(0.5), 1e-15);
+
+    const auto send = [&] {
+        sonar.ping.write(pingOf(4, 4));
+        task.update();
+    };
+    EXPECT_EQ(heard<ros::ProjectedSonarImage>("/image", send).ping_info.frequency, 750e3f);
+    EXPECT_EQ(heard<ros::ProjectedSonarImage>("/other", send).ping_info.frequency, 300e3f) << "the topic's own";
+}
+
+TEST_F(PublisherTaskTest, AMessageThatFastDdsWouldLoseIsWarnedOfOnce) {
+    Publishing<types::SonarPtr> publishing({topicOut("in", "/large", message_type<ros::ProjectedSonarImage>)});
+    std::vector<std::string> told;
+    publishing.task.environment().warn = [&](const std::string& text) { told.push_back(text); };
+    heard<ros::ProjectedSonarImage>("/large", [&] { publishing.send(pingOf(16, 50)); });
+    EXPECT_THAT(told, testing::IsEmpty());
+    Reader reader(node, ddsTopic("/large"), ros::ProjectedSonarImage::type_name, "", {}, {});
+    EXPECT_TRUE(comesTrue([&] { return publishing.send(pingOf(256, 500)), !told.empty(); }));
+    publishing.send(pingOf(256, 500));
+    ASSERT_EQ(told.size(), 1u);
+    EXPECT_THAT(told[0], HasSubstr("/large: its messages are larger than Linux's receive buffers"));
 }
 
 TEST_F(PublisherTaskTest, APictureBecomesAnImage) {

@@ -4,6 +4,8 @@
 #include "components/dds/Subscription.hpp"
 #include "components/dds/Writer.hpp"
 #include "components/ros/Cdr.hpp"
+#include "components/ros/SonarMessages.hpp"
+#include "components/ros/Stamps.hpp"
 #include "components/ros/Times.hpp"
 #include "tests/dds/Ends.hpp"
 
@@ -54,6 +56,19 @@ struct SubscriptionTest : Loopback {
 };
 
 }  // namespace
+
+TEST_F(SubscriptionTest, TheNanosecondsOfAStampAreKeptForWhatIsMadeOfThePose) {
+    ros::Odometry message = at(1, 1);
+    message.header.stamp = {1, 123'456'789};
+    send(message);
+    ASSERT_TRUE(take());
+    EXPECT_EQ(pose.time, types::Time{1'123'456});
+    ros::ProjectedSonarImage image;
+    image.header.stamp = ros::toRos(pose.time);
+    ros::restoreStamps(image);
+    EXPECT_EQ(image.header.stamp, message.header.stamp);
+    EXPECT_EQ(ros::fineStamps().exact({1, 123'457'000}), (ros::Time{1, 123'457'000})) << "of another microsecond";
+}
 
 TEST_F(SubscriptionTest, GoodPosesComeInOrder) {
     for (int i = 1; i < 4; ++i) send(at(i, i));

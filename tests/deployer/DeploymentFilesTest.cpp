@@ -1,4 +1,5 @@
-// Every file in deploy/ runs. Those of ROS 2 wait for others: see tests/dds/Ros2RunTest.cpp.
+// Every file in deploy/ runs. Those of ROS 2 wait for others: see tests/dds/Ros2RunTest.cpp. Those of devices wait for
+// drivers: see tests/device and tests/deployer/PingDriverTest.cpp.
 #include <gmock/gmock.h>
 
 #include "tests/deployer/Command.hpp"
@@ -12,8 +13,8 @@ const fs::path deploy = fs::path(INSONIFY_SOURCE_DIR) / "deploy";
 std::vector<std::string> deployments() {
     std::vector<std::string> names;
     for (const auto& entry : fs::directory_iterator(deploy))
-        if (const std::string name = entry.path().stem();
-            entry.path().extension() == ".yml" && name != "replay" && !name.starts_with("ros2_"))
+        if (const std::string name = entry.path().stem(); entry.path().extension() == ".yml" && name != "replay" &&
+                                                          !name.starts_with("ros2_") && !name.starts_with("hil_"))
             names.push_back(name);
     std::sort(names.begin(), names.end());
     return names;

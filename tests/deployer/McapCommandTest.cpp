@@ -48,7 +48,7 @@ TEST_F(McapCommandTest, APocologFileExportedAndReplayedGivesTheSamePings) {
     expectSamePings("out/wall.0.log", "wall.mcap");
     const Outcome replayed = call({"replay", "wall.mcap", "wall.yml", "--out", "again"});
     ASSERT_EQ(replayed.code, 0) << replayed.err;
-    expectSamePings("out/wall.0.log", "again/wall.0.log", "replay.noise.noisy");
+    expectSamePings("out/wall.0.log", "again/wall.0.log", "noise.noisy");
 }
 
 TEST_F(McapCommandTest, PosesOfAnMcapFileDriveTheSonarToTheSamePings) {

@@ -50,7 +50,7 @@ struct Commands {
 
     Commands() {
         add("");
-        for (const char* parent : {"log", "study"}) add(parent);
+        for (const char* parent : {"log", "study", "device"}) add(parent);
     }
     /** The longest of its commands that a call begins with. */
     std::string nameOf(const std::vector<std::string>& words) const {

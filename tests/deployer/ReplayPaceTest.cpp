@@ -35,7 +35,7 @@ protected:
     std::vector<int64_t> stamps() const {
         std::vector<int64_t> result;
         log::pocolog::Reader log(folder_ / "again/wall.0.log");
-        log.forEach<insonify::types::Sonar>("replay.noise.noisy",
+        log.forEach<insonify::types::Sonar>("noise.noisy",
                                             [&](const insonify::types::Sonar& ping, const log::SampleRef& at) {
                                                 result.push_back(ping.time.microseconds / 1000);
                                                 EXPECT_EQ(at.received, ping.time) << "the logger's clock is the log's";
@@ -65,7 +65,7 @@ TEST_F(ReplayPaceTest, InALoopTimeGoesOnAndTheLogIsPlayedAgain) {
     EXPECT_THAT(stamps(), testing::ElementsAre(1000, 1100, 1200, 1300, 1400, 1500, 1600));
     EXPECT_EQ(python(folder_,
                      "import subprocess, numpy\n"
-                     "for log, stream in (('out', 'noise.noisy'), ('again', 'replay.noise.noisy')):\n"
+                     "for log, stream in (('out', 'noise.noisy'), ('again', 'noise.noisy')):\n"
                      "    subprocess.run(['" INSONIFY_BIN_DIR "/insonify', 'log', 'export', log + '/wall.0.log',"
                      " '--stream', stream, '--to', log + '.npz'], stdout=subprocess.DEVNULL, check=True)\n"
                      "a, b = numpy.load('out.npz')['bins'], numpy.load('again.npz')['bins']\n"
@@ -128,7 +128,7 @@ connections:
 )");
     const Process process(insonifyWords({"run", "realtime.yml", "--out", "again"}), folder_.path());
     EXPECT_TRUE(insonify::test::comesTrue(
-        [&] { return flushedSamples(folder_ / "again/again.0.log", "replay.vehicle.pose") >= 4; }));
+        [&] { return flushedSamples(folder_ / "again/again.0.log", "vehicle.pose") >= 4; }));
     process.signal(SIGINT);
     const Outcome outcome = process.wait();
     ASSERT_EQ(outcome.code, 0) << outcome.err;

@@ -3,6 +3,7 @@
 
 #include <numeric>
 
+#include "components/log/Writer.hpp"
 #include "tests/deployer/SceneRun.hpp"
 #include "types/Angle.hpp"
 
@@ -27,7 +28,7 @@ protected:
         return callInsonify(folder_, words);
     }
     /** The one ping of a run. */
-    types::Sonar ping(std::vector<std::string> more, const std::string& stream = "multibeam_receiver.ping") const {
+    types::Sonar ping(std::vector<std::string> more, const std::string& stream = "multibeam.sonar_samples") const {
         more.insert(more.end(), {"--pings", "1"});
         const Outcome outcome = run(more);
         if (outcome.code != 0) throw std::runtime_error(outcome.err);
@@ -57,7 +58,7 @@ TEST_F(RockDropInTest, ThePublishedPropertiesAndSectionsGiveTheSonarTheyDescribe
 
 TEST_F(RockDropInTest, AScanningSonarStartsAtItsLeftLimitAndTurnsByItsMotorStep) {
     ASSERT_EQ(run({"--pings", "3"}).code, 0);
-    const auto pings = exportedPings(folder_, "out/rock.0.log", "scanning_receiver.ping");
+    const auto pings = exportedPings(folder_, "out/rock.0.log", "scanning.sonar_samples");
     ASSERT_EQ(pings.size(), 3u);
     for (size_t i = 0; i < 3; ++i) EXPECT_NEAR(pings[i].bearings.at(0).deg(), 140 - 1.8 * static_cast<double>(i), 1e-6);
 }
@@ -117,12 +118,108 @@ TEST_F(RockDropInTest, SwitchesPutEffectsInAndTakeThemOut) {
     }
 }
 
+TEST_F(RockDropInTest, ScansOfAnOlderLogBecomePictures) {
+    {
+        const auto log = insonify::log::createLog(folder_ / "old.0.log");
+        types::SonarScan scan;
+        scan.time = {1'000'000};
+        scan.number_of_beams = 8;
+        scan.number_of_bins = 20;
+        scan.data.assign(160, 200);
+        scan.start_bearing = {0.5};
+        scan.angular_resolution = {0.125};
+        scan.sampling_interval = 1e-3;
+        scan.speed_of_sound = 1500;
+        log->write(log->addStream<types::SonarScan>("multibeam.sonar_samples"), {1'000'000}, scan);
+        log->close();
+    }
+    writeFile(folder_ / "old.yml",
+              "tasks:\n  replay: {type: replay::ReplayTask, properties: {file: old.0.log}}\n"
+              "  fan: {type: output::FanImageTask, properties: {file: fan_%06d.png}}\n"
+              "connections:\n  - {from: replay.multibeam.sonar_samples, to: fan.ping}\n");
+    const Outcome outcome = callInsonify(folder_, {"run", "old.yml", "--out", "drawn"});
+    EXPECT_EQ(outcome.code, 0) << outcome.err;
+    EXPECT_TRUE(fs::exists(folder_ / "drawn/fan_000000.png"));
+}
+
+/** A property file of the published tasks, with every key that their files have. */
+std::string published(const std::string& of_one) {
+    return "--- name:default\n"
+           "attenuation_properties:\n  water_temperature:\n    kelvin: 293.15\n  sonar_frequency: 700.0\n" +
+           of_one +
+           "gain: 0.5\nheight: 600\nignored_models: []\nmodel_paths: []\nrange: 50.0\nwidth: 800\n"
+           "world_file_path: ''\nwrite_shader_image: false\n";
+}
+
+TEST_F(RockDropInTest, ThePublishedFilesLoadAsTheyAreAndWhatIsLeftOutIsNamed) {
+    writeFile(folder_ / multibeam_file,
+              published("beam_count: 256\nbeam_height:\n  rad: 20.deg\nbeam_width:\n  rad: 120.deg\nbin_count: 500\n"));
+    writeFile(folder_ / "deploy/rock/imaging_sonar_simulation::ScanningSonarTask.yml",
+              published("beam_height:\n  rad: 35.deg\nbeam_width:\n  rad: 3.deg\nbin_count: 400\ncontinuous: true\n"
+                        "motor_step:\n  rad: 1.8.deg\n"));
+    for (const std::string name : {"harbour", "port_sector"})
+        edit("deploy/rock_dropin.yml", name == "harbour" ? "[default, harbour]" : "[port_sector]", "[default]");
+    const Outcome outcome = run({"--pings", "1", "--summary", "summary.json"});
+    ASSERT_EQ(outcome.code, 0) << outcome.err;
+    const types::Sonar ping = exportedPings(folder_, "out/rock.0.log", "multibeam.sonar_samples").at(0);
+    EXPECT_EQ(ping.bin_count, 500u);
+    EXPECT_NEAR(ping.binStart(ping.bin_count), 50, 0.1);
+    EXPECT_EQ(exportedPings(folder_, "out/rock.0.log", "scanning.sonar_samples").at(0).bin_count, 400u);
+    const json told = json::parse(readFile(folder_ / "summary.json"));
+    EXPECT_THAT(told["warnings"].get<std::vector<std::string>>(),
+                testing::Contains("multibeam: left out, by ignored_properties: height, ignored_models, model_paths, "
+                                  "width, world_file_path, write_shader_image"));
+}
+
+TEST_F(RockDropInTest, TheLogHasRocksNamesOfPortsPropertiesAndTasks) {
+    ASSERT_EQ(run({"--pings", "1"}).code, 0);
+    const auto metadata = [&](const std::string& log) {
+        return json::parse(callInsonify(folder_, {"log", "info", log, "--metadata", "--json"}).out);
+    };
+    const json log = metadata("out/rock.0.log"), properties = metadata("out/properties.0.log");
+    int deployments = 0;
+    for (const json& all : {log, properties})
+        for (const auto& [name, stream] : all.items())
+            deployments += stream["metadata"].contains("insonify_deployment");
+    EXPECT_EQ(deployments, 2) << "once in each file";
+    const auto expectOf = [](const json& stream, const char* object, const char* kind, const char* type) {
+        EXPECT_EQ(stream["metadata"]["rock_task_name"], "multibeam");
+        EXPECT_EQ(stream["metadata"]["rock_task_object_name"], object);
+        EXPECT_EQ(stream["metadata"]["rock_task_model"], "imaging_sonar_simulation::MultibeamSonarTask");
+        EXPECT_EQ(stream["metadata"]["rock_stream_type"], kind);
+        EXPECT_EQ(stream["metadata"]["rock_cxx_type_name"], type);
+    };
+    expectOf(log.at("multibeam.sonar_samples"), "sonar_samples", "port", "/base/samples/Sonar");
+    expectOf(log.at("multibeam.shader_image"), "shader_image", "port", "/base/samples/frame/Frame");
+    expectOf(log.at("multibeam.state"), "state", "port", "/int32_t");
+    expectOf(properties.at("multibeam.range"), "range", "property", "/double");
+    expectOf(properties.at("multibeam.gain"), "gain", "property", "/double");
+    expectOf(properties.at("multibeam.beam_width"), "beam_width", "property", "/base/Angle");
+    expectOf(properties.at("multibeam.enable_attenuation"), "enable_attenuation", "property", "/bool");
+    const Outcome widths = callInsonify(
+        folder_, {"log", "export", "out/properties.0.log", "--stream", "multibeam.beam_width", "--to", "w.csv"});
+    ASSERT_EQ(widths.code, 0) << widths.err;
+    EXPECT_THAT(readFile(folder_ / "w.csv"), HasSubstr(",2.094395"));  // 120 deg, in rad
+}
+
+TEST_F(RockDropInTest, ALogOfItsReplaysByItsNamesAndScoresAsItself) {
+    ASSERT_EQ(run({"--pings", "2"}).code, 0);
+    const Outcome scored = callInsonify(folder_, {"replay", "out/rock.0.log", "deploy/rock_dropin.yml", "--out",
+                                                  "again", "--set", "multibeam.beam_count=16"});
+    ASSERT_EQ(scored.code, 0) << scored.err;
+    const auto first = exportedPings(folder_, "out/rock.0.log", "multibeam.sonar_samples"),
+               again = exportedPings(folder_, "again/rock.0.log", "multibeam.sonar_samples");
+    ASSERT_EQ(first.size(), again.size());
+    for (size_t i = 0; i < first.size(); ++i) EXPECT_EQ(first[i].bins, again[i].bins);
+}
+
 TEST_F(RockDropInTest, DiagnosticsOfPropertyFilesAreToldWithTheirPlacesAllAtOnce) {
     edit(multibeam_file, "enable_reverberation: false", "enable_reverberation: maybe");
     edit(multibeam_file, "rad: 120.deg", "rad: 120.m");
     edit(multibeam_file, "bin_count: 500", "bin_cuont: 500");
     const Outcome outcome = run({});
     EXPECT_EQ(outcome.code, 2);
+    EXPECT_THAT(outcome.err, HasSubstr("gain, "));  // an alias is known as well
     for (const char* diagnostic :
          {":10:5: beam_width: is {rad: 120.m}; must be in deg", ":15:23: enable_reverberation: is maybe",
           ":25:1: bin_cuont: is not a key here; did you mean bin_count?"})

@@ -180,6 +180,43 @@ TEST_F(PropertySourcesTest, SettingsLieOverThePropertyFilesAndKnowTheAliases) {
                 ElementsAre("--set: tasks.t.properties.count: is 0; may be 1 to 1000000"));
 }
 
+TEST_F(PropertySourcesTest, IgnoredPropertiesAreLeftOutAndNamed) {
+    write("one.yml", "height: 600\nlast: 5\nwater: {kelvin: 280, depth: 3}\n");
+    const std::string yaml =
+        head +
+        "    aliases: {water.kelvin: t.last}\n    ignored_properties: [height, water.depth, of_none]\n"
+        "    property_files: {files: [one.yml]}\n";
+    const DeploymentSpec spec = parse(yaml);
+    EXPECT_THAT(spec.diagnostics, IsEmpty());
+    EXPECT_EQ(text(spec), "{last: 280}");
+    EXPECT_THAT(spec.unused(), ElementsAre("t: left out, by ignored_properties: height, water.depth"));
+    EXPECT_THAT(diagnostics(yaml, {"t.height=3"}),
+                ElementsAre(HasSubstr("t.height=3: is one of the task's ignored_properties")));
+}
+
+TEST_F(PropertySourcesTest, KnownNamesAreThoseOfAliasesAndSwitchesAsWell) {
+    write("one.yml", "coumt: 4\nwater: {depht: 3}\n");
+    EXPECT_THAT(
+        diagnostics(head + "    aliases: {count: t.last, water.depth: t.last, samples: t.value}\n"
+                           "    property_files: {files: [one.yml]}\n"),
+        ElementsAre("one.yml:1:1: coumt: is not a key here; did you mean count? known: last, seed, count, water",
+                    "one.yml:2:9: water.depht: is not a key here; did you mean depth? known: depth"));
+}
+
+TEST_F(PropertySourcesTest, KnownPortsAreThoseOfAliasesAsWell) {
+    const std::string yaml =
+        "tasks:\n  s: {type: test::Source, activity: {period: 1}, aliases: {samples: s.value, command: r.in}}\n"
+        "  r: {type: test::Relay}\nconnections: [{from: s.sample, to: r.in}]\n";
+    EXPECT_THAT(diagnostics(yaml), testing::Contains(HasSubstr("s has no output port sample; did you mean samples? ")));
+}
+
+TEST_F(PropertySourcesTest, AModelIsThatOfItsPropertyFilesOrItsType) {
+    write("rock::Task.yml", "last: 5\n");
+    EXPECT_EQ(parse(head).task("t")->model(), "test::Source");
+    EXPECT_EQ(parse(head + "    property_files: {files: [rock::Task.yml]}\n").task("t")->model(), "rock::Task");
+    EXPECT_EQ(parse(head + "    property_files: {files: [one.yml]}\n").task("t")->model(), "test::Source");
+}
+
 TEST_F(PropertySourcesTest, APortIsConnectedByItsAlias) {
     Registry registry = test::testRegistry();
     Deployment deployment(parse("tasks:\n"

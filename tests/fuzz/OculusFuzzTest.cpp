@@ -1,10 +1,12 @@
-// What an Oculus sends, as it lies in captures and in its maker's log files.
+// What an Oculus sends, as it lies in captures and in its maker's log files, and what drivers send to one.
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
 
+#include "components/device/OculusEmulator.hpp"
 #include "components/device/OculusPing.hpp"
+#include "components/device/OculusRecording.hpp"
 #include "tests/support/Fuzz.hpp"
 #include "types/ConfigError.hpp"
 
@@ -25,6 +27,77 @@ void read(const Input& input) try {
     for (const device::OculusPing& ping : device::readOculusPings(input.file())) expectSound(ping);
 } catch (const types::ConfigError& error) {
     expectOurWords(error.what());
+}
+
+std::span<const uint8_t> bytesIn(const Input& input) {
+    return {reinterpret_cast<const uint8_t*>(input.bytes().data()), input.bytes().size()};
+}
+
+/** Every ping of a stream is written as it was read. */
+void frame(const Input& input) {
+    device::OculusFramer framer;
+    framer.add(bytesIn(input));
+    for (device::Bytes message = framer.next(); !message.empty(); message = framer.next()) {
+        EXPECT_TRUE(device::oculusHeader(message));
+        if (const auto ping = device::oculusResult(message)) {
+            EXPECT_EQ(bytesOf(*ping), message);
+        }
+        if (const auto fire = device::oculusFire(message)) {
+            EXPECT_EQ(bytesOf(*fire).size(), fire->size());
+        }
+        device::oculusUserConfig(message);
+        device::oculusStatus(message);
+    }
+}
+
+/** A sonar of two beams and two bins answers whatever the driver asks for. */
+void drive(const Input& input) {
+    types::Time now{1'000'000};
+    device::OculusEmulator emulator({}, now);
+    emulator.opened(1);
+    const auto bytes = bytesIn(input);
+    for (size_t at = 0; at < bytes.size(); at += 64) {
+        emulator.received(1, bytes.subspan(at, std::min<size_t>(64, bytes.size() - at)));
+        now = now + types::Time{1'000'000};
+        const auto asked = emulator.tick(now).ask;
+        if (!asked) continue;
+        EXPECT_TRUE(asked->range >= 0.1 && asked->range <= 120) << asked->range;
+        EXPECT_TRUE(asked->bin_count >= 1 && asked->bin_count <= 1000) << asked->bin_count;
+        EXPECT_TRUE(asked->gain_db >= -20 && asked->gain_db <= 20) << asked->gain_db;
+        types::Sonar ping;
+        ping.time = now;
+        ping.resize(2, 2);
+        ping.setRegularBearings({0}, {0.1});
+        ping.bins = {0, 1, 300, 65535};
+        EXPECT_TRUE(device::oculusResult(emulator.ping(ping)));
+    }
+}
+
+void play(const Input& input) try {
+    frame(input);
+    device::OculusPings recording(input.file());
+    while (const auto recorded = recording.next()) expectSound(device::pingOf(recorded->ping));
+    if (!device::OculusRecording::isOne(input.file())) return;
+    device::OculusRecording items(input.file());
+    while (const auto item = items.next()) item->content();
+} catch (const types::ConfigError& error) {
+    expectOurWords(error.what());
+}
+
+TEST(OculusFuzzTest, ADriverThatSendsAnythingGetsPingsOrNothing) {
+    push({"oculus_driver",
+          "driver.raw",
+          {std::string("\x53\x4f\0\0\0\0\x15\0\1\0", 10), std::string("\x25\0\0\0", 4), std::string("\x49\0\0\0", 4),
+           std::string("\x53\x4f\0\0\0\0\x55\0\0\0", 10), std::string("\xff\xff\xff\xff\xff\xff\xff\x7f", 8)},
+          drive});
+}
+
+TEST(OculusFuzzTest, EveryRecordingIsPingsOrAnError) {
+    push({"oculus_recording",
+          "dive.oculus",
+          {std::string("\x44\x33\x22\x11\x30\0\0\0", 8), std::string("\xdd\xcc\xbb\xaa\x28\0\0\0", 8),
+           std::string("\x53\x4f\0\0\0\0\x23\0\1\0", 10), std::string("\x78\x9c", 2)},
+          play});
 }
 
 TEST(OculusFuzzTest, EveryCaptureIsPingsOrAnError) {

@@ -43,7 +43,9 @@ public:
         if (Clock::now() > due_) told_.max_late = std::max<uint64_t>(told_.max_late, ++late_);
         log_->put(stream, received, time, sample);
     }
-    size_t addLike(const log::Reader& log, size_t stream) override { return log_->addLike(log, stream); }
+    size_t addLike(const log::Reader& log, size_t stream, const log::Metadata& more) override {
+        return log_->addLike(log, stream, more);
+    }
     void copy(size_t stream, log::Reader& log, const log::SampleRef& at) override { log_->copy(stream, log, at); }
     void flush() override {
         log_->flush();

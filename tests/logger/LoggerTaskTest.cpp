@@ -1,6 +1,7 @@
 #include <gmock/gmock.h>
 
 #include "components/framework/Operation.hpp"
+#include "components/log/Copy.hpp"
 #include "components/log/TypeNames.hpp"
 #include "components/log/pocolog/Reader.hpp"
 #include "components/logger/LoggerTask.hpp"
@@ -108,6 +109,25 @@ TEST(LoggerTaskTest, TheLogCarriesTheDeploymentItsSeedAndWhatTheUserAdds) {
     EXPECT_EQ(metadata.at("insonify_deployment"), "tasks:\n  a: {type: \"b\"}\n");
     EXPECT_EQ(metadata.at("insonify_seed"), "7");
     EXPECT_EQ(metadata.at("vessel"), "Kai");
+}
+
+TEST(LoggerTaskTest, TheDeploymentStandsOnceInALogWhateverIsCutFromIt) {
+    Bench bench;
+    bench.task.environment().deployment_text = "tasks: {}";
+    Source<double> depth(bench.task, "depth");
+    Source<int32_t> counter(bench.task, "counter");
+    ASSERT_TRUE(bench.task.configure());
+    ASSERT_TRUE(bench.task.start());
+    counter.write(1);
+    depth.write(2.5);
+    bench.task.update();
+    bench.finish();
+    const log::pocolog::Reader log(bench.path());
+    ASSERT_EQ(log.streams().size(), 2u);
+    EXPECT_EQ(log.streams()[0].metadatum("insonify_deployment"), "tasks: {}");
+    EXPECT_EQ(log.streams()[1].metadata.count("insonify_deployment"), 0u);
+    log::copyLog({bench.path()}, bench.folder / "cut.0.log", {.selection = {.streams = {log.streams()[1].name}}});
+    EXPECT_EQ(log::openLog(bench.folder / "cut.0.log")->metadatum("insonify_deployment"), "tasks: {}");
 }
 
 TEST(LoggerTaskTest, AFileSlowerThanTheSamplesLosesNone) {

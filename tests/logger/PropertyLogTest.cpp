@@ -54,5 +54,37 @@ TEST(PropertyLogTest, WhatIsTakenOutAndComesBackIsTold) {
     EXPECT_FALSE(reader.find("sonar.range.present")) << "it was always there";
 }
 
+TEST(PropertyLogTest, AnAliasIsAStreamOfItsOwnAnAngleInRadians) {
+    Folder folder;
+    PropertyLog log(folder / "properties.0.log", "tasks: {}");
+    PropertyAlias gain{"rock", "gain", "p::Task", "receiver.brightness.gain", 0.5},
+        width{"rock", "beam_width", "p::Task", "sonar.beam_width_deg", 90.0, true},
+        noisy{"rock", "enable_noise", "p::Task", "receiver.noise", false};
+    const types::TaskRecord sonar{"sonar", "s::Task", {{"beam_width_deg", 90.0}}, ""};
+    log.record({sonar}, {1}, {}, {gain, width, noisy});
+    gain.value = 0.75;
+    noisy.value = true;
+    width.value.reset();
+    log.record({sonar}, {2}, {}, {gain, width, noisy});
+    log.close();
+
+    log::pocolog::Reader reader(folder / "properties.0.log");
+    std::vector<double> gains;
+    reader.forEach<double>("rock.gain", [&](double value, const log::SampleRef&) { gains.push_back(value); });
+    EXPECT_THAT(gains, testing::ElementsAre(0.5, 0.75));
+    std::vector<double> widths;
+    reader.forEach<types::Angle>("rock.beam_width",
+                                 [&](types::Angle value, const log::SampleRef&) { widths.push_back(value.deg()); });
+    EXPECT_THAT(widths, testing::ElementsAre(testing::DoubleNear(90, 1e-12)));
+    std::vector<bool> switches;
+    reader.forEach<bool>("rock.enable_noise", [&](bool on, const log::SampleRef&) { switches.push_back(on); });
+    EXPECT_THAT(switches, testing::ElementsAre(false, true));
+    EXPECT_EQ(reader.find("rock.gain")->metadata.at("rock_task_model"), "p::Task");
+    EXPECT_EQ(reader.find("rock.gain")->metadata.at("insonify_alias_of"), "receiver.brightness.gain");
+    size_t deployments = 0;
+    for (const log::Stream& stream : reader.streams()) deployments += stream.metadata.count("insonify_deployment");
+    EXPECT_EQ(deployments, 1u);
+}
+
 }  // namespace
 }  // namespace insonify::logger

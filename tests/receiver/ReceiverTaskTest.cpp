@@ -31,6 +31,23 @@ TEST_F(ReceiverTaskTest, ThePingThatCameInIsNotChangedAndItsTimeIsKept) {
     EXPECT_EQ(ping->bins, std::vector<float>(20, 1));
 }
 
+TEST_F(ReceiverTaskTest, TheGainThatADriverAsksForHoldsFromTheNextPingOn) {
+    test::Writer<types::SonarSettings> driver{"driver"};
+    driver.port.connectTo(task_.settings, {});
+    startWith({});
+    const types::SonarPtr ping = test::shared(test::pingOf(2, 10));
+    types::SonarSettings asked;
+    asked.gain_db = 10;
+    driver.port.write(asked);
+    task_.update();
+    const types::SonarPtr louder = answerTo(ping);
+    ASSERT_TRUE(louder);
+    EXPECT_EQ(louder->bins, std::vector<float>(20, 10));
+    driver.port.write({});
+    EXPECT_EQ(answerTo(ping)->bins, louder->bins) << "who asks for none leaves it";
+    EXPECT_EQ(task_.config->gain_db, 10);
+}
+
 TEST_F(ReceiverTaskTest, DecibelsAreRefusedWithWhatToConnectAndTheNextIntensitiesAreTaken) {
     startWith({});
     EXPECT_FALSE(answerTo(test::shared(test::pingOf(2, 10, -60))));

@@ -60,13 +60,47 @@ TEST(ReplayDeploymentTest, AReplayedLogIsTheSameLogAgainAndTheRunEndsWithIt) {
     ASSERT_EQ(second.samples().size(), 40u);
     for (size_t i = 0; i < 40; ++i) EXPECT_EQ(second.samples()[i].time, first.samples()[i].time);
     int count = 0;
-    second.forEach<types::Sonar>("replay.sonar.ping", [&](const types::Sonar& ping, const log::SampleRef& at) {
+    second.forEach<types::Sonar>("sonar.ping", [&](const types::Sonar& ping, const log::SampleRef& at) {
         EXPECT_EQ(ping.bins, std::vector<float>{static_cast<float>(count++)});
         EXPECT_EQ(at.received, ping.time) << "simulated time is the log's time";
     });
-    second.forEach<types::Pose>("replay.vehicle.pose", [&](const types::Pose& pose, const log::SampleRef& at) {
-        EXPECT_EQ(at.received, pose.time);
-    });
+    second.forEach<types::Pose>(
+        "vehicle.pose", [&](const types::Pose& pose, const log::SampleRef& at) { EXPECT_EQ(at.received, pose.time); });
+}
+
+TEST(ReplayDeploymentTest, OlderBeamsAndScansComeAsPingsUnderTheirNamesAndModels) {
+    Folder folder;
+    {
+        log::pocolog::Writer log(folder / "a.0.log");
+        types::SonarBeam beam;
+        beam.time = {1'000'000};
+        beam.bearing = {0.5};
+        beam.sampling_interval = 1e-4;
+        beam.speed_of_sound = 1500;
+        beam.beam = {0, 255};
+        types::SonarScan scan;
+        scan.time = {1'000'000};
+        scan.number_of_beams = 1;
+        scan.number_of_bins = 2;
+        scan.data = {0, 255};
+        scan.start_bearing = {0.5};
+        scan.angular_resolution = {0.25};
+        scan.sampling_interval = 1e-4;
+        scan.speed_of_sound = 1500;
+        log.write(log.addStream<types::SonarBeam>("vehicle.pose", {{"rock_task_model", "old::Micron"}}), {1}, beam);
+        log.write(log.addStream<types::SonarScan>("sonar.ping"), {1}, scan);
+    }
+    EXPECT_FALSE(runIn(folder, again).failed());
+    log::pocolog::Reader log(folder / "b.0.log");
+    for (const char* stream : {"vehicle.pose", "sonar.ping"})
+        log.forEach<types::Sonar>(stream, [&](const types::Sonar& ping, const log::SampleRef&) {
+            EXPECT_EQ(ping.bins, (std::vector<float>{0, 1})) << stream;
+            EXPECT_EQ(ping.bearings.at(0).rad, 0.5);
+        });
+    EXPECT_EQ(log.samples().size(), 2u);
+    EXPECT_EQ(log.find("vehicle.pose")->metadatum("rock_task_model"), "old::Micron");
+    EXPECT_EQ(log.find("vehicle.pose")->metadatum("rock_task_name"), "vehicle");
+    EXPECT_EQ(log.find("sonar.ping")->metadatum("rock_cxx_type_name"), "/base/samples/Sonar");
 }
 
 TEST(ReplayDeploymentTest, TwoReplaysGiveTheSameLogBitForBit) {

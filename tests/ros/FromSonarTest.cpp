@@ -16,6 +16,13 @@ using testing::FloatEq;
 using testing::FloatNear;
 using testing::IsNan;
 
+/** Options for images of eight bits. */
+SonarOptions levels() {
+    SonarOptions options;
+    options.dtype = ImageType::Uint8;
+    return options;
+}
+
 template <class Message>
 Message messageOf(const types::Sonar& ping, const SonarOptions& options = {}) {
     Message message;
@@ -59,11 +66,12 @@ TEST(FromSonarTest, DirectionsHaveZAheadAndYToStarboardOrXAheadAndYToPort) {
 
 TEST(FromSonarTest, EightBitsAreDecibelsBelowTheStrongestEcho) {
     // levels 0, 9.5, 20 and -17, none, 30 dB; 30 dB is 255 and -30 dB is 0: 4.25 a dB
-    EXPECT_THAT(messageOf<ProjectedSonarImage>(smallPing()).image.data, ElementsAre(128, 55, 168, 0, 213, 255));
+    EXPECT_THAT(messageOf<ProjectedSonarImage>(smallPing(), levels()).image.data,
+                ElementsAre(128, 55, 168, 0, 213, 255));
 }
 
 TEST(FromSonarTest, AFixedReferenceClipsWhatIsAboveIt) {
-    SonarOptions options;
+    SonarOptions options = levels();
     options.order = ImageOrder::BeamMajor;
     options.reference_db = 10;
     options.dynamic_range_db = 20;
@@ -82,13 +90,13 @@ TEST(FromSonarTest, EightBitsAreTheRoundedLevelOfEveryBin) {
     ping.bins.front() = std::numeric_limits<float>::infinity();
     for (const auto& [reference, range] :
          {std::pair{0.0, 60.0}, {-120.0, 300.0}, {35.5, 1.0}, {-3000.0, 60.0}, {3000.0, 90.0}}) {
-        SonarOptions options;
+        SonarOptions options = levels();
         options.reference_db = reference;
         options.dynamic_range_db = range;
-        const auto levels = messageOf<ProjectedSonarImage>(ping, options).image.data;
+        const auto got = messageOf<ProjectedSonarImage>(ping, options).image.data;
         for (size_t i = 0; i < ping.bins.size(); ++i) {
             const double exact = 255 + (10 * std::log10(static_cast<double>(ping.bins[i])) - reference) * 255 / range;
-            ASSERT_NEAR(levels[i], std::clamp(exact, 0.0, 255.0), 0.5 + 1e-4) << ping.bins[i] << " over " << reference;
+            ASSERT_NEAR(got[i], std::clamp(exact, 0.0, 255.0), 0.5 + 1e-4) << ping.bins[i] << " over " << reference;
         }
     }
 }
@@ -96,10 +104,10 @@ TEST(FromSonarTest, EightBitsAreTheRoundedLevelOfEveryBin) {
 TEST(FromSonarTest, APingWithoutEchoIsBlack) {
     types::Sonar ping = smallPing();
     ping.bins.assign(6, 0);
-    EXPECT_THAT(messageOf<ProjectedSonarImage>(ping).image.data, testing::Each(0));
+    EXPECT_THAT(messageOf<ProjectedSonarImage>(ping, levels()).image.data, testing::Each(0));
     EXPECT_EQ(messageOf<PointCloud2>(ping).width, 0u);
     ping.bins.assign(6, -3000);  // no echo, in decibels
-    SonarOptions options;
+    SonarOptions options = levels();
     options.scale = BinScale::Decibel;
     EXPECT_THAT(messageOf<ProjectedSonarImage>(ping, options).image.data, testing::Each(0));
     EXPECT_EQ(messageOf<PointCloud2>(ping, options).width, 0u);
@@ -107,8 +115,7 @@ TEST(FromSonarTest, APingWithoutEchoIsBlack) {
 }
 
 TEST(FromSonarTest, FloatsAreTheBinsUnchangedInBothOrders) {
-    SonarOptions options;
-    options.dtype = ImageType::Float32;
+    SonarOptions options;  // float32, in logs and on the wire
     EXPECT_THAT(floatsOf(messageOf<ProjectedSonarImage>(smallPing(), options).image.data),
                 ElementsAre(1, 0.02f, 9, IsNan(), 100, 1000));
     options.order = ImageOrder::BeamMajor;

@@ -59,6 +59,40 @@ TEST(PosesTest, ANoseDownBodyIsSoInNed) {
     expectNear(nose(messageOf<PoseStamped>(pose, WorldFrame::Ned).pose), {std::cos(types::radians(30)), 0, 0.5});
 }
 
+TEST(PosesTest, ATransformIsThatOfTheOdometry) {
+    for (const WorldFrame frame : {WorldFrame::AsIs, WorldFrame::Enu, WorldFrame::Ned}) {
+        const auto odometry = messageOf<Odometry>(smallPose(), frame);
+        const auto message = messageOf<TFMessage>(smallPose(), frame);
+        ASSERT_EQ(message.transforms.size(), 1u);
+        const TransformStamped& transform = message.transforms[0];
+        EXPECT_EQ(transform.header, odometry.header);
+        EXPECT_EQ(transform.child_frame_id, "body");
+        const Point& p = odometry.pose.pose.position;
+        EXPECT_EQ(transform.transform.translation, (Vector3{p.x, p.y, p.z}));
+        EXPECT_EQ(transform.transform.rotation, odometry.pose.pose.orientation);
+    }
+}
+
+TEST(PosesTest, AMountIsATransformToTheAxesOfThePing) {
+    types::Mount mount;
+    mount.position = {0.4, 0.1, -0.2};
+    mount.pitch_deg = 90;  // looks down
+    const auto turned = [](const Transform& transform, glm::dvec3 v) {
+        const Quaternion& q = transform.rotation;
+        return glm::dquat(q.w, q.x, q.y, q.z) * v;
+    };
+    const Transform ahead = toTransform(mount, WorldFrame::Enu, SensorFrame::XForward);
+    EXPECT_EQ(ahead.translation, (Vector3{0.4, 0.1, -0.2}));
+    expectNear(turned(ahead, {1, 0, 0}), {0, 0, -1});
+    const Transform z_ahead = toTransform(mount, WorldFrame::Enu, SensorFrame::ZForward);
+    expectNear(turned(z_ahead, {0, 0, 1}), {0, 0, -1});
+    expectNear(turned(z_ahead, {0, 1, 0}), {0, -1, 0});  // to starboard
+    expectNear(turned(z_ahead, {1, 0, 0}), {1, 0, 0});   // the sonar's up is ahead
+    const Transform in_ned = toTransform(mount, WorldFrame::Ned, SensorFrame::XForward);
+    EXPECT_EQ(in_ned.translation, (Vector3{0.4, -0.1, 0.2}));
+    expectNear(turned(in_ned, {1, 0, 0}), {0, 0, 1});  // down
+}
+
 TEST(PosesTest, OdometryHasTheVelocityInTheBody) {
     // 0.5 north, 1.5 west, seen from a body that looks west: 1.5 ahead, 0.5 to starboard
     const auto enu = messageOf<Odometry>(smallPose(), WorldFrame::Enu);

@@ -61,12 +61,34 @@ TEST_F(PoseTimeoutTest, PosesThatStayAwayAreAnErrorUntilTheyAreBack) {
     EXPECT_EQ(task_.timing().errors, 1u);
 }
 
-TEST_F(PoseTimeoutTest, APoseThatNeverCameIsMissingFromTheStartOn) {
+TEST_F(PoseTimeoutTest, TheFirstPoseIsWaitedForWithoutAnErrorAndThatIsToldOnce) {
+    std::vector<std::string> told;
+    task_.environment().warn = [&](const std::string& text) { told.push_back(text); };
     start(0.5);
     EXPECT_FALSE(cycle(10.4));
-    EXPECT_EQ(task_.state(), TaskState::Running);
+    EXPECT_THAT(told, testing::IsEmpty());
     EXPECT_FALSE(cycle(10.6));
+    EXPECT_FALSE(cycle(1000));
+    EXPECT_THAT(told, testing::ElementsAre("scene: scene.pose: waits for the first pose"));
+    EXPECT_EQ(task_.state(), TaskState::Running);
+    EXPECT_EQ(task_.timing().errors, 0u);
+    EXPECT_FALSE(task_.waits()) << "in error: nobody was ever there";
+    EXPECT_TRUE(cycle(1000.1, 1000.1));
+}
+
+TEST_F(PoseTimeoutTest, OnlyPosesThatHaveEndedAreWaitedForNotThoseThatAreWrong) {
+    start(0.5);
+    EXPECT_TRUE(cycle(10.1, 10.1));
+    EXPECT_FALSE(task_.waits());
+    EXPECT_FALSE(cycle(11));
+    EXPECT_TRUE(task_.waits());
+    types::Pose broken;
+    broken.time = types::Time::fromSeconds(11.1);
+    broken.position.x = types::Pose::unknown;
+    vehicle_.port.write(broken);
+    EXPECT_FALSE(cycle(11.1));
     EXPECT_EQ(task_.state(), TaskState::RunTimeError);
+    EXPECT_FALSE(task_.waits());
 }
 
 TEST_F(PoseTimeoutTest, APoseThatIsOldWhenItComesGivesNoSnapshot) {

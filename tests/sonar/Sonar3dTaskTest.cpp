@@ -55,6 +55,22 @@ TEST_F(Sonar3dTaskTest, AWallIsSeenAtTheRangeOfEachDirection) {
     }
 }
 
+/** 1 cm is 6.67 us one way, which a ping tells as 7. */
+TEST_F(Sonar3dTaskTest, RangesAreThoseOfBinsThatLastNoWholeMicroseconds) {
+    Sonar3dConfig config = grid();
+    config.sonar.range = 8;
+    config.sonar.bin_count = 800;
+    config.sonar.range_rounding = RangeRounding::Exact;
+    startWith(config);
+    const auto map = mapOf(test::snapshotOf(sceneOf({test::wall(5)})));
+    ASSERT_TRUE(map) << task_.lastError();
+    double worst = 0;
+    for (size_t cell = 0; cell < map->distances.size(); ++cell)
+        if (std::isfinite(map->distances[cell]))
+            worst = std::max(worst, std::abs(map->distances[cell] * map->direction(cell / 60, cell % 60).x - 5));
+    EXPECT_LT(worst, 0.006);
+}
+
 /** L . d - sqrt((L . d)^2 - L^2 + b^2) in the directions d that meet the sphere; nothing beside it. */
 TEST_F(Sonar3dTaskTest, ASphereIsSeenAtTheRangeOfEachDirectionAndNothingBesideIt) {
     constexpr double radius = 2;

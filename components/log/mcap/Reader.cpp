@@ -1,10 +1,12 @@
 #include "components/log/mcap/Reader.hpp"
 
 #include <algorithm>
+#include <set>
 
 #include "components/log/TypeNames.hpp"
 #include "components/ros/Cdr.hpp"
 #include "components/ros/Samples.hpp"
+#include "components/ros/Stamps.hpp"
 
 namespace insonify::log::mcap {
 namespace {
@@ -40,6 +42,13 @@ types::Time timeOf(uint64_t ns) { return {static_cast<int64_t>(ns / 1000)}; }
 
 }  // namespace
 
+bool isOfStream(const Texts& channel, const std::string& key) {
+    static const std::set<std::string> of_messages = {"offered_qos_profiles", "topic_type_hash", "insonify_stream",
+                                                      "insonify_type",        "insonify_order",  "insonify_frame",
+                                                      "insonify_world_frame"};
+    return channel.contains("insonify_stream") && !of_messages.contains(key);
+}
+
 /** Reads messages of one channel as samples. */
 class Reader::Decoder {
 public:
@@ -54,6 +63,7 @@ public:
     explicit TypedDecoder(const ros::MessageOptions& options) : options_(options) {}
     void decode(std::span<const char> bytes, types::SampleRoom room) override {
         ros::decode(bytes, message_);
+        ros::noteStamp(message_);
         ros::toSample(message_, options_, *std::get<T*>(room));
     }
 
@@ -84,6 +94,11 @@ void Reader::addStream(const Channel& channel, const Contents& contents) {
     stream.type = schema == contents.schemas.end() ? channel.encoding : schema->second.name;
     for (const Contents::Metadata& metadata : contents.metadata)
         if (metadata.name == "insonify" && metadata.channels_before < streams_.size()) stream.metadata = metadata.texts;
+    if (streams_.size() > 1 && streams_.front().metadata.contains("insonify_deployment"))
+        stream.metadata.erase("insonify_deployment");  // of the whole log, which its first stream carries
+    for (const auto& [key, value] : channel.metadata)
+        if (isOfStream(channel.metadata, key)) stream.metadata[key] = value;
+    std::erase_if(stream.metadata, [](const auto& text) { return text.second.empty(); });
     decoders_.push_back(decoderFor(stream, channel, schema == contents.schemas.end() ? "" : schema->second.name));
 }
 

@@ -7,6 +7,9 @@
 
 namespace insonify::log::mcap {
 
+/** Whether a text of a channel's metadata is of its stream's, not of how its messages are written. */
+bool isOfStream(const Texts& channel, const std::string& key);
+
 /** Reads an MCAP file. Messages of known types in CDR are samples; other channels are streams of a type that is not
  *  known. Streams are named as they were written, or topic /a/b is stream a.b; images and poses of others are taken as
  *  ours by default, poses as ENU (REP 103). */

@@ -2,18 +2,21 @@
 
 #include <algorithm>
 #include <cctype>
+#include <cstdlib>
 
 #include "components/log/TypeNames.hpp"
 #include "components/log/mcap/Reader.hpp"
 #include "components/ros/Cdr.hpp"
 #include "components/ros/Schema.hpp"
+#include "components/ros/Stamps.hpp"
+#include "components/ros/Times.hpp"
 
 namespace insonify::log::mcap {
 namespace {
 
 /** "/task/port" of "task.port", of letters, digits and underscores, as ROS has its names. */
-std::string topicOf(const std::string& stream) {
-    std::string topic = "/" + stream;
+std::string usualTopic(const std::string& stream) {
+    std::string topic = stream.starts_with('/') ? stream : "/" + stream;
     for (char& c : topic)
         if (c == '.')
             c = '/';
@@ -22,7 +25,31 @@ std::string topicOf(const std::string& stream) {
     return topic;
 }
 
+/** Nanoseconds of a time that lies after 1970, with what its stamp had beyond the microsecond; others are 0. */
+uint64_t exactNanoseconds(types::Time time) try {
+    if (time.microseconds <= 0) return 0;
+    const ros::Time stamp = ros::fineStamps().exact(ros::toRos(time));
+    return static_cast<uint64_t>(stamp.sec) * 1'000'000'000 + stamp.nanosec;
+} catch (const std::out_of_range&) {
+    return static_cast<uint64_t>(time.microseconds) * 1000;
+}
+
+bool isWord(std::string_view word) {
+    const auto fits = [](unsigned char c) { return std::isalnum(c) || c == '_'; };
+    return !word.empty() && !std::isdigit(static_cast<unsigned char>(word[0])) && std::ranges::all_of(word, fits);
+}
+
 uint64_t nanoseconds(types::Time time) { return static_cast<uint64_t>(std::max<int64_t>(time.microseconds, 0)) * 1000; }
+
+/** Adds what a stream has otherwise than the record that all share; an empty text stands for what it has not. The
+ *  deployment is the whole log's. */
+void addDifferences(const Metadata& shared, const Metadata& metadata, Texts& channel) {
+    for (const auto& [key, value] : shared)
+        if (!metadata.contains(key) && key != "insonify_deployment") channel.emplace(key, "");
+    for (const auto& [key, value] : metadata)
+        if (const auto found = shared.find(key); found == shared.end() || found->second != value)
+            channel.emplace(key, value);
+}
 
 template <class E>
 std::string nameOf(E value) {
@@ -30,6 +57,34 @@ std::string nameOf(E value) {
 }
 
 }  // namespace
+
+bool isTopic(std::string_view name) {
+    while (name.starts_with('/')) {
+        const size_t end = std::min(name.find('/', 1), name.size());
+        if (!isWord(name.substr(1, end - 1))) return false;
+        name.remove_prefix(end);
+    }
+    return name.empty();
+}
+
+std::string SampleWriter::topicOf(const std::string& stream) const {
+    const auto given = config_.streams.find(stream);
+    if (given == config_.streams.end() || !given->second.topic) return usualTopic(stream);
+    return "/" + given->second.topic->substr(given->second.topic->starts_with('/'));
+}
+
+SampleWriter::Options SampleWriter::optionsOf(const std::string& stream, const Metadata& metadata) const {
+    Options options{config_, {}, {}};
+    const auto frequency = metadata.find("insonify_frequency_khz");
+    if (options.frequency_khz == 0 && frequency != metadata.end())
+        options.frequency_khz = std::strtod(frequency->second.c_str(), nullptr);
+    const auto given = config_.streams.find(stream);
+    if (given == config_.streams.end()) return options;
+    if (given->second.frame_id) options.frame_id = *given->second.frame_id;
+    options.world_frame_id = given->second.frame_id;
+    options.child_frame_id = given->second.child_frame_id;
+    return options;
+}
 
 SampleWriter::SampleWriter(std::filesystem::path path, const McapConfig& config)
     : config_(config), bag_(path), out_(std::move(path)) {
@@ -58,12 +113,18 @@ size_t SampleWriter::add(size_t sample, const std::string& name, const Metadata&
                        {"insonify_frame", nameOf(config_.frame)},
                        {"insonify_world_frame", nameOf(config_.world_frame)}};
         number = declare(&schema, {0, topicOf(name), "cdr", std::move(texts)}, metadata);
+        options_.resize(number + 1);
+        options_[number] = optionsOf(name, metadata);
     });
     return number;
 }
 
 size_t SampleWriter::declare(const Schema* schema, Channel channel, const Metadata& metadata) {
-    if (metadata_ != metadata) out_.addMetadata("insonify", metadata_ = metadata);
+    std::erase_if(channel.metadata, [&](const auto& text) { return isOfStream(channel.metadata, text.first); });
+    if (metadata_.empty() && !metadata.empty())
+        out_.addMetadata("insonify", metadata_ = metadata);
+    else
+        addDifferences(metadata_, metadata, channel.metadata);
     if (schema) {
         auto known = schemas_.find(*schema);
         if (known == schemas_.end()) known = schemas_.emplace(*schema, out_.addSchema(*schema)).first;
@@ -72,11 +133,13 @@ size_t SampleWriter::declare(const Schema* schema, Channel channel, const Metada
     return out_.addChannel(std::move(channel));
 }
 
-size_t SampleWriter::addLike(const log::Reader& log, size_t number) {
+size_t SampleWriter::addLike(const log::Reader& log, size_t number, const Metadata& more) {
     const Stream& stream = log.streams()[number];
+    Metadata all = stream.metadata;
+    all.insert(more.begin(), more.end());
     if (const auto* same = dynamic_cast<const Reader*>(&log))
-        return declare(same->schema(number), same->channel(number), stream.metadata);
-    if (stream.sample) return add(*stream.sample, stream.name, stream.metadata);
+        return declare(same->schema(number), same->channel(number), all);
+    if (stream.sample) return add(*stream.sample, stream.name, all);
     throw types::ConfigError(log.path(), stream.name, "holds " + stream.type + ", which has no message");
 }
 
@@ -84,7 +147,14 @@ void SampleWriter::put(size_t stream, types::Time received, types::Time time, ty
     const auto encode = [&]<class T>(const T* held) {
         auto& message = std::get<ros::LoggedMessage<T>>(messages_);
         bytes_.clear();
-        ros::toMessage(*held, config_, message);
+        const Options& options = options_.at(stream);
+        ros::toMessage(*held, options, message);
+        ros::restoreStamps(message);
+        constexpr bool of_the_world = std::is_same_v<T, types::Pose> || std::is_same_v<T, types::PointCloud>;
+        if constexpr (of_the_world && requires { message.header; })
+            if (options.world_frame_id) message.header.frame_id = *options.world_frame_id;
+        if constexpr (requires { message.child_frame_id; })
+            if (options.child_frame_id) message.child_frame_id = *options.child_frame_id;
         ros::encode(message, bytes_);
         time = sampleTime(*held, time);
     };
@@ -93,7 +163,7 @@ void SampleWriter::put(size_t stream, types::Time received, types::Time time, ty
     } catch (const std::logic_error& error) {
         fail(stream, error.what());
     }
-    out_.write(static_cast<uint16_t>(stream), nanoseconds(received), nanoseconds(time), bytes_);
+    out_.write(static_cast<uint16_t>(stream), nanoseconds(received), exactNanoseconds(time), bytes_);
 }
 
 void SampleWriter::copy(size_t stream, log::Reader& log, const SampleRef& at) {

@@ -1,6 +1,8 @@
 #pragma once
 #include <map>
 #include <memory>
+#include <optional>
+#include <string_view>
 
 #include "components/log/Writer.hpp"
 #include "components/log/mcap/Bag.hpp"
@@ -9,10 +11,14 @@
 
 namespace insonify::log::mcap {
 
+/** Whether ROS takes it for a topic: "/auv/sonar". */
+bool isTopic(std::string_view name);
+
 /** Writes samples into an MCAP file as ROS 2 messages, with metadata.yaml beside it for `ros2 bag`.
  *
- *  Stream "task.port" is topic /task/port. Metadata of the streams go into records named "insonify", each time they
- *  change. Log time is when a sample was received, publish time when it was true. */
+ *  Stream "task.port" is topic /task/port, unless `McapConfig::streams` names another. What the first stream carries
+ * goes into a record named "insonify", what others carry otherwise into their channels' metadata. Log time is when a
+ * sample was received, publish time when it was true. */
 class SampleWriter final : public log::Writer {
 public:
     /** Throws as createLog, and ConfigError when the folder holds the metadata.yaml of another bag. */
@@ -23,7 +29,7 @@ public:
     /** Throws std::runtime_error for a sample that cannot be told as a message: a compressed picture, a time after
      *  2038. */
     void put(size_t stream, types::Time received, types::Time time, types::SampleView sample) override;
-    size_t addLike(const log::Reader& log, size_t stream) override;
+    size_t addLike(const log::Reader& log, size_t stream, const Metadata& more = {}) override;
     void copy(size_t stream, log::Reader& log, const SampleRef& at) override;
 
     void flush() override { out_.flush(); }
@@ -39,12 +45,20 @@ private:
     size_t declare(const Schema* schema, Channel channel, const Metadata& metadata);
     [[noreturn]] void fail(size_t stream, const std::string& why) const;
 
+    /** How samples become the messages of one channel. */
+    struct Options : ros::MessageOptions {
+        std::optional<std::string> world_frame_id, child_frame_id;  ///< In place of those that a sample names.
+    };
+    Options optionsOf(const std::string& stream, const Metadata& metadata) const;
+    std::string topicOf(const std::string& stream) const;
+
     McapConfig config_;
     Bag bag_;
     ChunkWriter out_;
     bool closed_ = false;
+    std::vector<Options> options_;  ///< Of each channel.
     std::map<Schema, uint16_t> schemas_;
-    Metadata metadata_;           ///< As last written.
+    Metadata metadata_;           ///< Of the record that all streams share.
     ros::MessageTypes messages_;  ///< Room to convert into.
     std::vector<char> bytes_;
 };

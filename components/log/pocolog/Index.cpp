@@ -48,7 +48,9 @@ std::vector<char> indexBytes(const std::vector<StreamIndex>& streams, uint64_t l
     put(bytes, log_size);
     put(bytes, log_modified);
     put(bytes, streams.size());
-    uint64_t data_position = bytes.size() + streams.size() * stream_entry_size;
+    uint64_t data_position = bytes.size() + streams.size() * stream_entry_size, size = data_position;
+    for (const StreamIndex& stream : streams) size += stream.samples.size() * sample_entry_size;
+    bytes.reserve(size);
     for (const StreamIndex& stream : streams) {
         putStream(bytes, stream, data_position);
         data_position += stream.samples.size() * sample_entry_size;

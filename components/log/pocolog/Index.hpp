@@ -1,5 +1,6 @@
 #pragma once
 #include <cstdint>
+#include <deque>
 #include <filesystem>
 #include <vector>
 
@@ -15,7 +16,7 @@ struct StreamIndex {
     };
     uint64_t declaration = 0;  ///< Position of the block that declares the stream [B].
     types::Time first_received{}, last_received{};
-    std::vector<Entry> samples{};
+    std::deque<Entry> samples{};  ///< All that a writer keeps of each; a deque, which grows without a copy of itself.
 };
 
 /** `x.0.log` -> `x.0.idx`. */

@@ -112,14 +112,17 @@ void Writer::put(size_t stream, types::Time received, types::Time time, types::S
         sample);
 }
 
-size_t Writer::addLike(const log::Reader& log, size_t number) {
+size_t Writer::addLike(const log::Reader& log, size_t number, const Metadata& more) {
     const Stream& stream = log.streams()[number];
+    Metadata all = stream.metadata;
+    all.insert(more.begin(), more.end());
+    const bool unchanged = all.size() == stream.metadata.size();
     if (const auto* same = dynamic_cast<const Reader*>(&log))
         return declareRaw(stream.name, stream.type, same->layout(number),
-                          findNotFlat(same->yaml(number)) ? toYaml(stream.metadata) : same->yaml(number));
+                          unchanged && !findNotFlat(same->yaml(number)) ? same->yaml(number) : toYaml(all));
     if (!stream.sample)
         throw types::ConfigError(log.path(), stream.name, "holds " + stream.type + ", which pocolog cannot hold");
-    return add(*stream.sample, stream.name, stream.metadata);
+    return add(*stream.sample, stream.name, all);
 }
 
 void Writer::copy(size_t number, log::Reader& log, const SampleRef& at) {

@@ -38,7 +38,7 @@ public:
     void put(size_t stream, types::Time received, types::Time time, types::SampleView sample) override;
     /** The same for a sample that is bytes already. */
     void write(size_t stream, types::Time received, types::Time time, std::span<const char> bytes);
-    size_t addLike(const log::Reader& log, size_t stream) override;
+    size_t addLike(const log::Reader& log, size_t stream, const Metadata& more = {}) override;
     void copy(size_t stream, log::Reader& log, const SampleRef& at) override;
 
     void flush() override;

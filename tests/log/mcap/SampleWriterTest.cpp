@@ -2,7 +2,10 @@
 
 #include <sstream>
 
+#include "components/log/mcap/Reader.hpp"
 #include "components/log/mcap/SampleWriter.hpp"
+#include "components/ros/Cdr.hpp"
+#include "components/ros/Stamps.hpp"
 #include "tests/log/mcap/SmallFile.hpp"
 #include "types/Image.hpp"
 
@@ -47,6 +50,92 @@ TEST(SampleWriterTest, PingsAndPosesComeBackAsTheyWere) {
     EXPECT_EQ(poses[1].orientation, smallPose(2).orientation);
     EXPECT_EQ(poses[1].target_frame, "world");
     EXPECT_TRUE(std::isnan(poses[1].velocity.x));
+}
+
+TEST(SampleWriterTest, ByDefaultPingsKeepTheirBinsAndPosesAreEastNorthUp) {
+    const Folder folder;
+    smallFile(folder / "x.mcap", {});
+    const auto log = openLog(folder / "x.mcap");
+    expectSame(samplesOf<types::Sonar>(*log, "sonar.ping").at(0), smallPing(1));
+    const types::Pose pose = samplesOf<types::Pose>(*log, "vehicle.pose").at(0);
+    EXPECT_EQ(pose.position, smallPose(1).position);
+    EXPECT_NEAR(std::abs(glm::dot(pose.orientation, smallPose(1).orientation)), 1, 1e-15);
+    EXPECT_EQ(ros::MessageOptions().world_frame, ros::WorldFrame::Enu);
+    EXPECT_EQ(McapConfig().dtype, ros::ImageType::Float32);
+}
+
+/** What the messages of a stream say, in order. */
+template <class Message>
+std::vector<Message> messagesOf(log::Reader& log, const std::string& stream) {
+    std::vector<Message> messages;
+    log.forEachRef(stream, [&](const SampleRef& at) { ros::decode(log.bytesOf(at), messages.emplace_back()); });
+    return messages;
+}
+
+TEST(SampleWriterTest, AStreamMayHaveATopicFramesAndAFrequencyOfItsOwn) {
+    const Folder folder;
+    McapConfig config;
+    config.streams = {{"sonar.ping", {"/auv/sonar", "sonar_link", {}}}, {"vehicle.pose", {"auv/pose", "odom", "auv"}}};
+    types::Diagnostics diagnostics;
+    config.check(diagnostics);
+    EXPECT_TRUE(diagnostics.empty());
+    {
+        SampleWriter log(folder / "x.mcap", config);
+        const size_t ping = log.addStream<types::Sonar>("sonar.ping", {{"insonify_frequency_khz", "750"}});
+        const size_t pose = log.addStream<types::Pose>("vehicle.pose");
+        const size_t other = log.addStream<types::Sonar>("/other/sonar.ping");
+        log.write(ping, {2}, smallPing(1));
+        log.write(pose, {2}, smallPose(1));
+        log.write(other, {2}, smallPing(1));
+    }
+    const Reader log(folder / "x.mcap");
+    EXPECT_EQ(log.channel(0).topic, "/auv/sonar");
+    EXPECT_EQ(log.channel(1).topic, "/auv/pose");
+    EXPECT_EQ(log.channel(2).topic, "/other/sonar/ping");
+    EXPECT_EQ(log.streams()[2].name, "/other/sonar.ping");
+    const auto open = openLog(folder / "x.mcap");
+    const auto ping = messagesOf<ros::ProjectedSonarImage>(*open, "sonar.ping").at(0);
+    EXPECT_EQ(ping.header.frame_id, "sonar_link");
+    EXPECT_EQ(ping.ping_info.frequency, 750e3f);
+    const auto pose = messagesOf<ros::Odometry>(*open, "vehicle.pose").at(0);
+    EXPECT_EQ(pose.header.frame_id, "odom");
+    EXPECT_EQ(pose.child_frame_id, "auv");
+    EXPECT_EQ(messagesOf<ros::ProjectedSonarImage>(*open, "/other/sonar.ping").at(0).ping_info.frequency, 0);
+}
+
+TEST(SampleWriterTest, TopicsThatAreNoneOrTwiceThereAreTold) {
+    McapConfig config;
+    config.streams["a.ping"].topic = "/auv/1sonar";
+    config.streams["b.ping"].topic = "/auv/sonar";
+    config.streams["c.ping"].topic = "auv/sonar";
+    types::Diagnostics diagnostics;
+    config.check(diagnostics);
+    ASSERT_EQ(diagnostics.size(), 2u);
+    EXPECT_EQ(diagnostics[0].path, "streams.a.ping.topic");
+    EXPECT_EQ(diagnostics[1].text(), "streams.c.ping.topic: is /auv/sonar, as that of b.ping; must be another");
+}
+
+TEST(SampleWriterTest, NanosecondsOfAStampThatWasReadComeBack) {
+    const Folder folder;
+    ros::fineStamps().note({7, 123'456'789});
+    {
+        SampleWriter log(folder / "x.mcap", {});
+        log.write(log.addStream<types::Sonar>("sonar.ping"), {9'000'000}, smallPing(7'123'456));
+    }
+    const auto log = openLog(folder / "x.mcap");
+    EXPECT_EQ(messagesOf<ros::ProjectedSonarImage>(*log, "sonar.ping").at(0).header.stamp, (ros::Time{7, 123'456'789}));
+    const Reader raw(folder / "x.mcap");
+    EXPECT_EQ(raw.message(raw.samples().at(0)).publish_ns, 7'123'456'789u);
+}
+
+TEST(SampleWriterTest, AStreamIsFoundByItsTopic) {
+    const Folder folder;
+    smallFile(folder / "x.mcap");
+    const auto log = openLog(folder / "x.mcap");
+    EXPECT_EQ(log->find("/sonar/ping"), log->find("sonar.ping"));
+    EXPECT_EQ(log->find("/sonar/pong"), nullptr);
+    EXPECT_EQ(copyLog({folder / "x.mcap"}, folder / "y.0.log", {.selection = {.streams = {"/sonar/ping"}}}).samples,
+              3u);
 }
 
 TEST(SampleWriterTest, OtherOrdersAndAxesAreReadAsTheyWereWritten) {
@@ -145,6 +234,25 @@ TEST(SampleWriterTest, ALogOfSeveralFilesIsOneBagAndEachFileStandsAlone) {
     EXPECT_THAT(bag, testing::HasSubstr("  duration:\n    nanoseconds: 1999999000\n"));
     EXPECT_THAT(bag, testing::HasSubstr("nanoseconds_since_epoch: 1000001000\n  message_count: 3\n"));
     EXPECT_THAT(bag, testing::HasSubstr("name: \"/sonar/ping\"\n        type: marine_acoustic_msgs/msg/"));
+}
+
+TEST(SampleWriterTest, EachStreamHasItsOwnMetadataInEachFileAndTheDeploymentStandsOnce) {
+    const Folder folder, other;
+    const Metadata first = {{"insonify_deployment", "tasks: {}"}, {"insonify_seed", "7"}, {"rock_task_model", "a::T"}},
+                   second = {{"insonify_seed", "7"}, {"own", "x"}};
+    {
+        SampleWriter log(folder / "x.0.mcap", {});
+        log.write(log.addStream<types::Sonar>("a.ping", first), {1}, smallPing(1));
+        log.write(log.addStream<types::Sonar>("b.ping", second), {1}, smallPing(1));
+        log.next(folder / "x.1.mcap");
+    }
+    copyLog({folder / "x.0.mcap"}, other / "y.0.mcap");
+    for (const auto& file : {folder / "x.0.mcap", folder / "x.1.mcap", other / "y.0.mcap"}) {
+        const auto log = openLog(file);
+        ASSERT_EQ(log->streams().size(), 2u) << file;
+        EXPECT_EQ(log->streams()[0].metadata, first) << file;
+        EXPECT_EQ(log->streams()[1].metadata, second) << file;
+    }
 }
 
 TEST(SampleWriterTest, TheMetadataOfAnotherBagIsNotOverwritten) {

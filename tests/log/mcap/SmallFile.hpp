@@ -30,8 +30,15 @@ inline types::Pose smallPose(int64_t time) {
     return pose;
 }
 
+/** Which gives back every bit of an orientation: as Rock has it. */
+inline McapConfig asItIs() {
+    McapConfig config;
+    config.world_frame = ros::WorldFrame::AsIs;
+    return config;
+}
+
 /** Three pings and two poses, a ping last; each received 10 s after its time. */
-inline std::vector<char> smallFile(const std::filesystem::path& path, const McapConfig& config = {}) {
+inline std::vector<char> smallFile(const std::filesystem::path& path, const McapConfig& config = asItIs()) {
     SampleWriter log(path, config);
     const Metadata metadata = {{"insonify_seed", "7"}, {"insonify_deployment", "tasks:\n  a: \"b\"\n"}};
     const size_t ping = log.addStream<types::Sonar>("sonar.ping", metadata);

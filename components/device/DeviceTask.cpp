@@ -1,0 +1,63 @@
+#include "components/device/DeviceTask.hpp"
+
+#include <algorithm>
+#include <chrono>
+
+#include "components/device/MicronTask.hpp"
+#include "components/device/OculusTask.hpp"
+#include "components/device/Ping1dTask.hpp"
+#include "components/device/Ping360Task.hpp"
+#include "components/device/Sonar3dTask.hpp"
+#include "types/ConfigError.hpp"
+
+namespace insonify::device {
+
+void DeviceTask::check(types::Diagnostics& diagnostics) const {
+    if (environment().lockstep)
+        diagnostics.push_back(
+            {"", "a driver keeps the wall clock's time, for which lockstep does not wait; set schedule: realtime"});
+}
+
+std::vector<std::string> DeviceTask::notices() const {
+    if (!network_) return {};
+    std::vector<std::string> all;
+    for (const std::string& end : network_->names()) all.push_back("listens on " + end);
+    if (const uint64_t lost = network_->dropped(); lost > 0)
+        all.push_back(std::to_string(lost) + " messages not sent, for newer ones or for want of a way");
+    return all;
+}
+
+bool DeviceTask::configureHook() {
+    network_ = std::make_unique<Network>([this] { happened_.raise(); });
+    try {
+        listen(*network_);
+    } catch (const NetworkError& error) {
+        throw types::ConfigError("", name() + "." + error.property, error.what());
+    }
+    return true;
+}
+
+void DeviceTask::updateHook() {
+    for (const NetworkEvent& event : network_->take()) switch (event.kind) {
+            case NetworkEvent::Kind::Opened: opened(event.client); break;
+            case NetworkEvent::Kind::Received: received(event.client, event.bytes); break;
+            case NetworkEvent::Kind::Closed: closed(event.client); break;
+        }
+    takePings();
+    if (const auto next = tick(now())) {
+        const double wait = std::max(0.0, (*next - now()).seconds());
+        network_->wakeAt(std::chrono::steady_clock::now() +
+                         std::chrono::microseconds(static_cast<int64_t>(1e6 * wait)));
+    }
+}
+
+void registerTasks(framework::Registry& registry) {
+    registry.add<OculusTask>("device::OculusTask", "stands in for a Blueprint Subsea Oculus, a forward-looking sonar");
+    registry.add<Ping360Task>("device::Ping360Task", "stands in for a Blue Robotics Ping360, a scanning sonar");
+    registry.add<Ping1dTask>("device::Ping1dTask", "stands in for a Blue Robotics Ping1D, an echo sounder");
+    registry.add<MicronTask>("device::MicronTask",
+                             "stands in for a Tritech Micron, by SeaNet over TCP or a serial line");
+    registry.add<Sonar3dTask>("device::Sonar3dTask", "stands in for a Water Linked Sonar 3D-15, by HTTP and UDP");
+}
+
+}  // namespace insonify::device

@@ -1,0 +1,116 @@
+#include "components/device/DriverLine.hpp"
+
+#include <fcntl.h>
+#include <netdb.h>
+#include <poll.h>
+#include <sys/socket.h>
+#include <termios.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <memory>
+#include <utility>
+
+namespace insonify::device {
+namespace {
+
+[[noreturn]] void fail(int error) { throw LineError(std::generic_category().message(error)); }
+
+struct Freed {
+    void operator()(addrinfo* list) const { freeaddrinfo(list); }
+};
+using Addresses = std::unique_ptr<addrinfo, Freed>;
+
+Addresses addressesOf(const std::string& host, uint16_t port, int type) {
+    addrinfo hints{}, *found = nullptr;
+    hints.ai_socktype = type;
+    if (const int error = getaddrinfo(host.c_str(), std::to_string(port).c_str(), &hints, &found); error != 0)
+        throw LineError(gai_strerror(error));
+    return Addresses(found);
+}
+
+bool isReady(int file, short events, DriverLine::Duration patience) {
+    pollfd ready{file, events, 0};
+    return poll(&ready, 1, static_cast<int>(patience.count())) == 1;
+}
+
+/** Bytes as they are, at 115200 baud. */
+void makeRaw(int file) {
+    termios line{};
+    if (tcgetattr(file, &line) != 0) fail(errno);
+    cfmakeraw(&line);
+    cfsetspeed(&line, B115200);
+    line.c_cflag |= CLOCAL | CREAD;
+    if (tcsetattr(file, TCSANOW, &line) != 0) fail(errno);
+}
+
+}  // namespace
+
+DriverLine::DriverLine(DriverLine&& other) noexcept : file_(std::exchange(other.file_, -1)) {}
+
+DriverLine::~DriverLine() {
+    if (file_ >= 0) close(file_);
+}
+
+DriverLine DriverLine::udp(const std::string& host, uint16_t port) {
+    const Addresses to = addressesOf(host, port, SOCK_DGRAM);
+    DriverLine line(socket(to->ai_family, SOCK_DGRAM | SOCK_CLOEXEC, 0));
+    if (line.file_ < 0 || connect(line.file_, to->ai_addr, to->ai_addrlen) != 0) fail(errno);
+    return line;
+}
+
+DriverLine DriverLine::tcp(const std::string& host, uint16_t port, Duration patience) {
+    const Addresses to = addressesOf(host, port, SOCK_STREAM);
+    DriverLine line(socket(to->ai_family, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0));
+    if (line.file_ < 0) fail(errno);
+    if (connect(line.file_, to->ai_addr, to->ai_addrlen) == 0) return line;
+    if (errno != EINPROGRESS) fail(errno);
+    if (!isReady(line.file_, POLLOUT, patience)) fail(ETIMEDOUT);
+    int error = 0;
+    socklen_t size = sizeof error;
+    getsockopt(line.file_, SOL_SOCKET, SO_ERROR, &error, &size);
+    if (error != 0) fail(error);
+    return line;
+}
+
+DriverLine DriverLine::serial(const std::filesystem::path& file) {
+    DriverLine line(open(file.c_str(), O_RDWR | O_NOCTTY | O_NONBLOCK | O_CLOEXEC));
+    if (line.file_ < 0) fail(errno);
+    makeRaw(line.file_);
+    return line;
+}
+
+DriverLine DriverLine::broadcasts(uint16_t port) {
+    const Addresses at = addressesOf("0.0.0.0", port, SOCK_DGRAM);
+    DriverLine line(socket(at->ai_family, SOCK_DGRAM | SOCK_CLOEXEC, 0));
+    const int shared = 1;  // drivers may listen there as well
+    setsockopt(line.file_, SOL_SOCKET, SO_REUSEADDR, &shared, sizeof shared);
+    setsockopt(line.file_, SOL_SOCKET, SO_REUSEPORT, &shared, sizeof shared);
+    if (line.file_ < 0 || bind(line.file_, at->ai_addr, at->ai_addrlen) != 0) fail(errno);
+    return line;
+}
+
+void DriverLine::send(std::span<const uint8_t> bytes) const {
+    if (::write(file_, bytes.data(), bytes.size()) != static_cast<ssize_t>(bytes.size())) fail(errno);
+}
+
+Bytes DriverLine::receive(Duration patience) const {
+    if (!isReady(file_, POLLIN, patience)) return {};
+    Bytes bytes(65536);
+    const ssize_t got = ::read(file_, bytes.data(), bytes.size());
+    if (got < 0) fail(errno);
+    if (got == 0) throw LineError("the other end has closed the line");
+    bytes.resize(static_cast<size_t>(got));
+    return bytes;
+}
+
+bool isKnownHost(const std::string& host) {
+    try {
+        addressesOf(host, 1, SOCK_DGRAM);
+        return true;
+    } catch (const LineError&) {
+        return false;
+    }
+}
+
+}  // namespace insonify::device

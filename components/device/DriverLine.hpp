@@ -1,0 +1,47 @@
+#pragma once
+#include <chrono>
+#include <filesystem>
+#include <stdexcept>
+#include <string>
+
+#include "components/device/Bytes.hpp"
+
+namespace insonify::device {
+
+/** A line that cannot be had, or has broken: why, in words. */
+struct LineError : std::runtime_error {
+    using std::runtime_error::runtime_error;
+};
+
+/** A driver's end of a line to a device. Nothing takes longer than it is given. */
+class DriverLine {
+public:
+    using Duration = std::chrono::milliseconds;
+
+    // Each throws LineError. `host` is numeric or a name.
+    static DriverLine udp(const std::string& host, uint16_t port);
+    static DriverLine tcp(const std::string& host, uint16_t port, Duration patience);
+    static DriverLine serial(const std::filesystem::path& file);
+    /** What is broadcast to a UDP port of this machine. */
+    static DriverLine broadcasts(uint16_t port);
+
+    DriverLine(DriverLine&& other) noexcept;
+    ~DriverLine();
+    DriverLine(const DriverLine&) = delete;
+    DriverLine& operator=(const DriverLine&) = delete;
+    DriverLine& operator=(DriverLine&&) = delete;
+
+    /** Throws LineError. */
+    void send(std::span<const uint8_t> bytes) const;
+    /** What comes next, at most 64 KiB; empty: nothing has come. Throws LineError where the line is closed. */
+    Bytes receive(Duration patience) const;
+
+private:
+    explicit DriverLine(int file) : file_(file) {}
+    int file_;
+};
+
+/** Whether this machine knows such a host. */
+bool isKnownHost(const std::string& host);
+
+}  // namespace insonify::device

@@ -1,0 +1,53 @@
+#pragma once
+#include <optional>
+#include <string>
+
+#include "components/device/DeviceTask.hpp"
+#include "components/device/MicronEmulator.hpp"
+#include "components/framework/Properties.hpp"
+#include "components/framework/Registry.hpp"
+
+namespace insonify::device {
+
+struct MicronConfig {
+    std::string address = "127.0.0.1";
+    int port = 4001;
+    std::string serial;
+    MicronDevice device;
+
+    template <class Self, class V>
+    static void describe(Self& self, V& visit) {
+        using types::Field;
+        visit(Field{"address", "", "numeric address to listen on; 0.0.0.0: every network of this machine"},
+              self.address);
+        visit(Field{"port", "1", "TCP port; 0: any that is free, told in a notice", 0, 65535}, self.port);
+        visit(Field{"serial", "",
+                    "the file that drivers open as a serial line, relative to the run's output folder; "
+                    "empty: none"},
+              self.serial);
+        MicronDevice::describe(self.device, visit);
+    }
+};
+
+/** Stands in for a Tritech Micron, or a SeaKing: drivers that speak SeaNet over TCP or a serial line. See
+ *  MicronEmulator for what it does. The sonar is a sonar::ScanningSonarTask; `ping` takes codes of 16 bits on a
+ *  scale of 80 dB, of which the scan lines are made. */
+class MicronTask final : public DeviceTask {
+public:
+    using DeviceTask::DeviceTask;
+
+    framework::Properties<MicronConfig> config{this};
+    framework::InputPort<types::SonarPtr> ping{this, "ping", "codes of 16 bits, logarithmic over 80 dB"};
+
+private:
+    void listen(Network& network) override;
+    void opened(Client client) override { emulator_->opened(client); }
+    void received(Client client, std::span<const uint8_t> bytes) override { emulator_->received(client, bytes, now()); }
+    void closed(Client client) override { emulator_->closed(client); }
+    void takePings() override;
+    std::optional<types::Time> tick(types::Time now) override { return emulator_->tick(now); }
+
+    std::optional<MicronEmulator> emulator_;
+};
+
+}  // namespace insonify::device

@@ -1,0 +1,116 @@
+#pragma once
+#include <array>
+#include <atomic>
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "components/device/OculusEncoder.hpp"
+#include "components/device/OculusMessages.hpp"
+#include "components/device/OculusModels.hpp"
+#include "types/Sonar.hpp"
+#include "types/SonarSettings.hpp"
+#include "types/Time.hpp"
+
+namespace insonify::device {
+
+/** What an Oculus is, beyond what drivers set. */
+struct OculusConfig {
+    OculusModel model = OculusModel::M750d;
+    int serial_number = 7700;
+    int bin_count = 1000;
+    int code_bits = 16;
+    double gain_min_db = -20, gain_max_db = 20;
+    double temperature_celsius = 10;
+    double pressure_bar = 1.5;
+    std::string device_address;
+
+    template <class Self, class V>
+    static void describe(Self& self, V& visit) {
+        using types::Field;
+        visit(Field{"model", "", "sets frequencies, ranges and angles"}, self.model);
+        visit(Field{"serial_number", "1", "of the device, in its status and pings", 1, 65535}, self.serial_number);
+        visit(Field{"bin_count", "1", "of a beam; fewer where bins would be finer than the model's", 1, 65535},
+              self.bin_count);
+        visit(
+            Field{"code_bits", "1", "of the receiver's codes, which go as amplitude: its output code, law sqrt", 8, 16},
+            self.code_bits);
+        visit(Field{"gain_min_db", "dB", "of the receiver at a gain of 0 %", -200, 200}, self.gain_min_db);
+        visit(Field{"gain_max_db", "dB", "of the receiver at a gain of 100 %", -200, 200}, self.gain_max_db);
+        visit(Field{"temperature_celsius", "degC", "of the water, as the device reports it", -5, 60},
+              self.temperature_celsius);
+        visit(Field{"pressure_bar", "bar", "of the water, as the device reports it", 0, 1200}, self.pressure_bar);
+        visit(Field{"device_address", "", "IPv4 address in its status, to which drivers connect; empty: `address`"},
+              self.device_address);
+    }
+};
+
+/** A Blueprint Subsea Oculus as drivers know it: bytes of clients, pings and the time go in, bytes and what is to be
+ *  asked of the sonar come out. It has one state for all of its clients: the last fire message counts. Without a
+ *  client, and until a fire message has come, it stands by. */
+class OculusEmulator {
+public:
+    using ClientId = uint64_t;
+
+    /** What is due. */
+    struct Due {
+        std::optional<types::SonarSettings> ask;  ///< A ping.
+        Bytes dummy;                              ///< To all clients, in standby.
+        Bytes status;                             ///< A datagram to whoever listens.
+        types::Time next;                         ///< When something is due again.
+    };
+
+    /** @param started when it was switched on */
+    OculusEmulator(const OculusConfig& config, types::Time started);
+
+    void opened(ClientId client) { clients_[client] = OculusFramer(largest_message); }
+    void received(ClientId client, std::span<const uint8_t> bytes);
+    void closed(ClientId client);
+
+    /** What is due now. There is one ping under way; one that does not come for two seconds and the way of its sound is
+     *  asked for anew, then for four, and so on. It is still sent when it comes. */
+    Due tick(types::Time now);
+    /** The message of a ping, for all clients; empty for one that nobody waits for. Its bins are a receiver's codes. */
+    Bytes ping(const types::Sonar& codes);
+
+    /** The settings of the next ping, as they were understood. */
+    const OculusFire& fire() const { return fire_; }
+    bool standsBy() const { return clients_.empty() || fire_.isStandby(); }
+    uint64_t lost() const { return lost_; }        ///< Pings that did not come in time.
+    uint64_t refused() const { return refused_; }  ///< Messages of clients that were no settings.
+
+private:
+    static constexpr size_t largest_message = 4096, most_asked = 4;
+
+    struct Asked {
+        types::SonarSettings settings;
+        OculusFire fire;
+    };
+
+    void take(std::span<const uint8_t> message);
+    /** Settings as the device can have them; none: they are no numbers. */
+    std::optional<OculusFire> possible(OculusFire fire) const;
+    double rangeOf(const OculusFire& fire) const;
+    types::SonarSettings settingsOf(const OculusFire& fire, types::Time now) const;
+    bool isDue(types::Time now);
+    OculusResult resultOf(const Asked& asked, const types::Sonar& codes);
+    Bytes statusBytes() const;
+    const OculusMode& mode(const OculusFire& fire) const { return capabilities_.mode(fire.mode); }
+
+    OculusConfig config_;
+    const OculusCapabilities& capabilities_;
+    OculusEncoder encoder_;
+    types::Time started_;
+    std::map<ClientId, OculusFramer> clients_;
+    OculusFire fire_;
+    std::vector<Asked> asked_;  ///< Under way, the newest last; more than one: those before have not come in time.
+    types::Time last_ping_, last_dummy_, last_status_;
+    double own_speed_ = types::SonarSettings::unset;  ///< Of sound, of the sonar where no driver sets it [m/s].
+    uint32_t number_ = 0;
+    std::atomic<uint64_t> lost_{0}, refused_{0};  ///< Others than the task's thread may look at them.
+};
+
+}  // namespace insonify::device

@@ -1,0 +1,308 @@
+#include "components/device/OculusMessages.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace insonify::device {
+namespace {
+
+constexpr size_t max_bins = 1 << 16;
+
+/** Takes the fields of a message out of bytes that hold them all. */
+class Taker {
+public:
+    explicit Taker(std::span<const uint8_t> bytes) : bytes_(bytes) {}
+    template <class T>
+    void operator()(T& value) {
+        value = read<T>(bytes_, at_);
+        at_ += sizeof value;
+    }
+
+private:
+    std::span<const uint8_t> bytes_;
+    size_t at_ = 0;
+};
+
+class Giver {
+public:
+    template <class T>
+    void operator()(const T& value) {
+        append(bytes, value);
+    }
+    Bytes bytes;
+};
+
+template <class Header, class Visit>
+void visitHeader(Header& header, Visit& visit) {
+    uint16_t mark = oculus_mark;
+    visit(mark);
+    visit(header.source);
+    visit(header.destination);
+    visit(header.id);
+    visit(header.version);
+    visit(header.payload_size);
+    visit(header.part);
+}
+
+template <class Fire, class Visit>
+void visitFire(Fire& fire, Visit& visit) {
+    visitHeader(fire.header, visit);
+    visit(fire.mode);
+    visit(fire.rate);
+    visit(fire.network_speed);
+    visit(fire.gamma);
+    visit(fire.flags);
+    visit(fire.range);
+    visit(fire.gain_percent);
+    visit(fire.speed_of_sound);
+    visit(fire.salinity);
+    if (!fire.isVersion2()) return;
+    visit(fire.extended_flags);
+    visit(fire.reserved);
+}
+
+template <class Result, class Visit>
+void visitResult(Result& result, Visit& visit) {
+    visitFire(result.fire, visit);
+    const bool version2 = result.fire.isVersion2();
+    visit(result.number);
+    visit(result.status);
+    visit(result.frequency_hz);
+    visit(result.temperature_celsius);
+    visit(result.pressure_bar);
+    if (version2) {
+        visit(result.heading_deg);
+        visit(result.pitch_deg);
+        visit(result.roll_deg);
+    }
+    visit(result.speed_of_sound);
+    version2 ? visit(result.start_s) : visit(result.start_ticks);
+    visit(result.code_size);
+    visit(result.range_resolution);
+    visit(result.bin_count);
+    visit(result.beam_count);
+    if (version2) visit(result.spare);
+    visit(result.image_offset);
+    visit(result.image_size);
+    visit(result.message_size);
+}
+
+template <class Status, class Visit>
+void visitStatus(Status& status, Visit& visit) {
+    visitHeader(status.header, visit);
+    visit(status.device_id);
+    visit(status.device_type);
+    visit(status.part);
+    visit(status.status);
+    visit(status.versions);
+    visit(status.address);
+    visit(status.mask);
+    visit(status.connected);
+    visit(status.mac);
+    visit(status.temperatures);
+    visit(status.pressure_bar);
+}
+
+template <class Config, class Visit>
+void visitUserConfig(Config& config, Visit& visit) {
+    visitHeader(config.header, visit);
+    visit(config.address);
+    visit(config.mask);
+    visit(config.dhcp);
+}
+
+/** Why a ping whose fixed part is there cannot be one; empty: it can. */
+std::string numbersDiagnostic(const OculusResult& ping, size_t size) {
+    if (ping.codeBytes() > 4) return fmt::format("has codes of {} bytes; there are 1 to 4", ping.codeBytes());
+    if (ping.beam_count == 0 || ping.bin_count == 0 || ping.bin_count > max_bins)
+        return fmt::format("has {} beams of {} bins", ping.beam_count, ping.bin_count);
+    const size_t made = ping.bin_count * ping.rowBytes(), image = ping.image_offset;
+    if (ping.image_size != made)
+        return fmt::format("has an image of {} bytes where bins and beams make {}", ping.image_size, made);
+    if (image < ping.fixedSize() + 2 * size_t{ping.beam_count} || image + made > size)
+        return fmt::format("has an image of {} bytes at {} in a message of {}", made, image, size);
+    if (!(ping.range_resolution > 0 && ping.range_resolution < 1e3))
+        return fmt::format("has bins of {:g} m", ping.range_resolution);
+    if (!(ping.frequency_hz >= 0 && ping.frequency_hz < 1e9))
+        return fmt::format("has a frequency of {:g} Hz", ping.frequency_hz);
+    if (!(ping.speed_of_sound >= 0 && ping.speed_of_sound < 1e4))
+        return fmt::format("has a speed of sound of {:g} m/s", ping.speed_of_sound);
+    return "";
+}
+
+std::string resultDiagnostic(std::span<const uint8_t> message, OculusResult& ping) {
+    const auto header = oculusHeader(message);
+    if (!header || !header->is(OculusId::PingResult)) return "does not begin as one";
+    const size_t fixed = header->version == 2 ? OculusResult::size_v2 : OculusResult::size_v1;
+    if (message.size() < fixed) return fmt::format("is cut off after {} bytes", message.size());
+    ping.fire.header = *header;
+    Taker take(message);
+    visitResult(ping, take);
+    return numbersDiagnostic(ping, message.size());
+}
+
+Bytes headerBytes(OculusHeader header) {
+    Giver give;
+    visitHeader(header, give);
+    return std::move(give.bytes);
+}
+
+}  // namespace
+
+size_t OculusFire::codeBytes() const {
+    if (isVersion2() && (extended_flags & wide_32) != 0) return 4;
+    return (flags & wide_16) != 0 ? 2 : 1;
+}
+
+double OculusFire::rateHz() const {
+    constexpr double rates[] = {10, 15, 40, 5, 2, 0};
+    return rate < std::size(rates) ? rates[rate] : rates[0];
+}
+
+void OculusResult::settle() {
+    image_offset = static_cast<uint32_t>(fixedSize() + 2 * bearings.size() + before_image.size());
+    image_size = static_cast<uint32_t>(image.size());
+    message_size = static_cast<uint32_t>(image_offset + image.size() + after_image.size());
+    fire.header.payload_size = static_cast<uint32_t>(message_size - OculusHeader::size);
+}
+
+std::optional<OculusHeader> oculusHeader(std::span<const uint8_t> bytes) {
+    if (bytes.size() < OculusHeader::size || read<uint16_t>(bytes, 0) != oculus_mark) return std::nullopt;
+    OculusHeader header;
+    Taker take(bytes);
+    visitHeader(header, take);
+    return header;
+}
+
+std::optional<OculusFire> oculusFire(std::span<const uint8_t> message) {
+    const auto header = oculusHeader(message);
+    if (!header || !header->is(OculusId::Fire) || message.size() < OculusFire::size_v1) return std::nullopt;
+    Bytes whole(message.begin(), message.end());
+    whole.resize(std::max(whole.size(), OculusFire::size_v2));  // what version 2 has left out is 0
+    OculusFire fire{.header = *header};
+    Taker take(whole);
+    visitFire(fire, take);
+    return fire;
+}
+
+Bytes bytesOf(OculusFire fire) {
+    fire.header.payload_size = static_cast<uint32_t>(fire.size() - OculusHeader::size);
+    Giver give;
+    visitFire(fire, give);
+    return std::move(give.bytes);
+}
+
+std::optional<OculusResult> oculusResult(std::span<const uint8_t> message, std::string* diagnostic) {
+    OculusResult ping;
+    const std::string reason = resultDiagnostic(message, ping);
+    if (diagnostic) *diagnostic = reason;
+    if (!reason.empty()) return std::nullopt;
+    const size_t bearings_end = ping.fixedSize() + 2 * size_t{ping.beam_count};
+    for (size_t at = ping.fixedSize(); at < bearings_end; at += 2) ping.bearings.push_back(read<int16_t>(message, at));
+    const auto part = [&](size_t from, size_t to) { return Bytes(message.begin() + from, message.begin() + to); };
+    const size_t image_end = size_t{ping.image_offset} + ping.image_size;
+    ping.before_image = part(bearings_end, ping.image_offset);
+    ping.image = part(ping.image_offset, image_end);
+    ping.after_image = part(image_end, message.size());
+    return ping;
+}
+
+Bytes bytesOf(const OculusResult& result) {
+    Giver give;
+    visitResult(result, give);
+    give.bytes.reserve(give.bytes.size() + 2 * result.bearings.size() + result.before_image.size() +
+                       result.image.size() + result.after_image.size());
+    for (const int16_t bearing : result.bearings) give(bearing);
+    for (const Bytes* part : {&result.before_image, &result.image, &result.after_image})
+        give.bytes.insert(give.bytes.end(), part->begin(), part->end());
+    return std::move(give.bytes);
+}
+
+std::optional<OculusStatus> oculusStatus(std::span<const uint8_t> datagram) {
+    if (datagram.size() != OculusStatus::size || !oculusHeader(datagram)) return std::nullopt;
+    OculusStatus status;
+    Taker take(datagram);
+    visitStatus(status, take);
+    return status;
+}
+
+Bytes bytesOf(const OculusStatus& status) {
+    Giver give;
+    visitStatus(status, give);
+    return std::move(give.bytes);
+}
+
+std::optional<OculusUserConfig> oculusUserConfig(std::span<const uint8_t> message) {
+    const auto header = oculusHeader(message);
+    if (!header || !header->is(OculusId::UserConfig) || message.size() < OculusUserConfig::size) return std::nullopt;
+    OculusUserConfig config;
+    Taker take(message);
+    visitUserConfig(config, take);
+    return config;
+}
+
+Bytes bytesOf(const OculusUserConfig& config) {
+    Giver give;
+    visitUserConfig(config, give);
+    return std::move(give.bytes);
+}
+
+Bytes oculusDummy(uint16_t source, uint16_t part) {
+    return headerBytes({.source = source, .id = static_cast<uint16_t>(OculusId::Dummy), .part = part});
+}
+
+Bytes oculusLog(uint16_t source, uint16_t part, const std::string& text) {
+    Bytes bytes = headerBytes({.source = source,
+                               .id = static_cast<uint16_t>(OculusId::Log),
+                               .payload_size = static_cast<uint32_t>(text.size()),
+                               .part = part});
+    bytes.insert(bytes.end(), text.begin(), text.end());
+    return bytes;
+}
+
+size_t OculusFramer::sizeAt(const OculusHeader& header) const {
+    constexpr size_t most_of_others = 4096;
+    const size_t payload = header.payload_size;
+    const auto whole = [&](bool possible) { return possible ? OculusHeader::size + payload : 0; };
+    if (payload > largest_) return 0;
+    switch (static_cast<OculusId>(header.id)) {
+        case OculusId::Fire:
+            if (payload == 0) return header.version == 2 ? OculusFire::size_v2 : OculusFire::size_v1;
+            return whole(payload + OculusHeader::size >= OculusFire::size_v1 && payload <= 256);
+        case OculusId::UserConfig:
+            return whole(payload + OculusHeader::size >= OculusUserConfig::size && payload <= 64);
+        case OculusId::PingResult: return whole(payload + OculusHeader::size > OculusResult::size_v1);
+        case OculusId::FullResult: return whole(true);
+        case OculusId::Status:
+        case OculusId::Log:
+        case OculusId::Dummy: return whole(payload <= most_of_others);
+        default: return 0;
+    }
+}
+
+void OculusFramer::skip(size_t bytes) {
+    at_ += bytes;
+    skipped_ += bytes;
+}
+
+Bytes OculusFramer::next() {
+    for (;;) {
+        const auto rest = std::span<const uint8_t>(buffer_).subspan(at_);
+        if (rest.size() < OculusHeader::size) break;
+        const auto header = oculusHeader(rest);
+        const size_t size = header ? sizeAt(*header) : 0;
+        if (size == 0) {
+            skip(1);
+            continue;
+        }
+        if (size > rest.size()) break;
+        at_ += size;
+        return {rest.begin(), rest.begin() + static_cast<std::ptrdiff_t>(size)};
+    }
+    buffer_.erase(buffer_.begin(), buffer_.begin() + static_cast<std::ptrdiff_t>(at_));
+    at_ = 0;
+    return {};
+}
+
+}  // namespace insonify::device

@@ -1,0 +1,83 @@
+#include "components/device/OculusTask.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace insonify::device {
+
+void OculusTask::check(types::Diagnostics& diagnostics) const {
+    DeviceTask::check(diagnostics);
+    if (config->address == "0.0.0.0" && config->device.device_address.empty())
+        diagnostics.push_back(
+            {"device_address", "is empty; with address 0.0.0.0 the status needs one that drivers can connect to"});
+    if (config->device.gain_min_db > config->device.gain_max_db)
+        diagnostics.push_back({"gain_min_db", "is above gain_max_db"});
+}
+
+std::vector<std::string> OculusTask::notices() const {
+    std::vector<std::string> all = DeviceTask::notices();
+    if (emulator_ && emulator_->lost() > 0)
+        all.push_back(std::to_string(emulator_->lost()) + " pings of the sonar did not come in time");
+    if (emulator_ && emulator_->refused() > 0)
+        all.push_back(std::to_string(emulator_->refused()) + " messages of drivers were no settings");
+    return all;
+}
+
+void OculusTask::listen(Network& network) {
+    network.listenTcp(config->address, static_cast<uint16_t>(config->port));
+    OculusConfig device = config->device;
+    if (device.device_address.empty()) device.device_address = config->address;
+    emulator_.emplace(device, now());
+    clients_.clear();
+    no_codes_ = {};
+    try {
+        sendStatus(emulator_->tick(now()).status, network);
+    } catch (const NetworkError& error) {
+        throw NetworkError("status_address", error.what());
+    }
+}
+
+void OculusTask::sendStatus(const Bytes& status, Network& network) const {
+    if (!status.empty()) network.sendTo(config->status_address, static_cast<uint16_t>(config->status_port), status);
+}
+
+void OculusTask::opened(Client client) {
+    clients_.insert(client);
+    emulator_->opened(client.number);
+}
+
+void OculusTask::received(Client client, std::span<const uint8_t> bytes) { emulator_->received(client.number, bytes); }
+
+void OculusTask::closed(Client client) {
+    clients_.erase(client);
+    emulator_->closed(client.number);
+}
+
+void OculusTask::takePings() {
+    types::SonarPtr sample;
+    while (ping.readNew(sample)) {
+        judge(*sample);
+        sendToAll(emulator_->ping(*sample));
+    }
+}
+
+void OculusTask::judge(const types::Sonar& codes) {
+    const auto is_no_code = [](float bin) { return bin != std::floor(bin); };
+    if (no_codes_.isDue(std::ranges::any_of(codes.bins, is_no_code)))
+        warn("ping: bins are no whole numbers; give the receiver output: code");
+}
+
+void OculusTask::sendToAll(const Bytes& message) {
+    if (message.empty()) return;
+    for (const Client& client : clients_) network().send(client, message, Network::Kind::Stream);
+}
+
+std::optional<types::Time> OculusTask::tick(types::Time now) {
+    const OculusEmulator::Due due = emulator_->tick(now);
+    sendStatus(due.status, network());
+    sendToAll(due.dummy);
+    if (due.ask) settings.write(*due.ask);
+    return due.next;
+}
+
+}  // namespace insonify::device

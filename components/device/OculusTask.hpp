@@ -1,0 +1,70 @@
+#pragma once
+#include <optional>
+#include <set>
+#include <string>
+
+#include "components/device/DeviceTask.hpp"
+#include "components/device/OculusEmulator.hpp"
+#include "components/framework/Properties.hpp"
+#include "types/RecurringDiagnostic.hpp"
+#include "types/Sonar.hpp"
+
+namespace insonify::device {
+
+struct OculusTaskConfig {
+    std::string address = "127.0.0.1";
+    int port = 52100;
+    std::string status_address = "127.255.255.255";
+    int status_port = 52102;
+    OculusConfig device;
+
+    template <class Self, class V>
+    static void describe(Self& self, V& visit) {
+        using types::Field;
+        visit(Field{"address", "", "numeric address to listen on; 0.0.0.0: every network of this machine"},
+              self.address);
+        visit(Field{"port", "1", "TCP port; drivers expect 52100; 0: any that is free, told in a notice", 0, 65535},
+              self.port);
+        visit(Field{"status_address", "",
+                    "where the status goes each second; a network's broadcast address, as "
+                    "192.168.2.255; 127.255.255.255: this machine"},
+              self.status_address);
+        visit(Field{"status_port", "1", "UDP port of the status; drivers expect 52102", 1, 65535}, self.status_port);
+        OculusConfig::describe(self.device, visit);
+    }
+};
+
+/** Stands in for a Blueprint Subsea Oculus. Drivers find it by its status, connect over TCP, and get pings with the
+ *  settings that they fire with: see OculusEmulator. `ping` takes what a receiver gives out as codes that go as
+ *  amplitude (output code, law sqrt, code_bits bits); a client that does not read gets fewer of them. */
+class OculusTask final : public DeviceTask {
+public:
+    using DeviceTask::DeviceTask;
+
+    framework::Properties<OculusTaskConfig> config{this};
+    framework::InputPort<types::SonarPtr> ping{this, "ping", "codes of a receiver, which go as amplitude",
+                                               framework::Need::Required, types::left_receiver};
+
+    void check(types::Diagnostics& diagnostics) const override;
+    std::vector<std::string> notices() const override;
+    /** Where it listens, 0 before it is configured. */
+    uint16_t port() const { return portOf(0); }
+
+private:
+    void listen(Network& network) override;
+    void opened(Client client) override;
+    void received(Client client, std::span<const uint8_t> bytes) override;
+    void closed(Client client) override;
+    void takePings() override;
+    std::optional<types::Time> tick(types::Time now) override;
+    void sendStatus(const Bytes& status, Network& network) const;
+    void sendToAll(const Bytes& message);
+    /** Warns where bins are no codes. */
+    void judge(const types::Sonar& codes);
+
+    std::optional<OculusEmulator> emulator_;
+    std::set<Client> clients_;
+    types::RecurringDiagnostic no_codes_;
+};
+
+}  // namespace insonify::device

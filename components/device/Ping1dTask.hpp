@@ -1,0 +1,31 @@
+#pragma once
+#include "components/device/Ping1dEmulator.hpp"
+#include "components/device/PingDeviceTask.hpp"
+#include "components/framework/Properties.hpp"
+
+namespace insonify::device {
+
+struct Ping1dTaskConfig {
+    PingEnds ends{9090};
+    Ping1dConfig device;
+
+    template <class Self, class V>
+    static void describe(Self& self, V& visit) {
+        PingEnds::describe(self.ends, visit);
+        Ping1dConfig::describe(self.device, visit);
+    }
+};
+
+/** Stands in for a Blue Robotics Ping1D: its drivers, viewers and autopilots, over UDP, TCP or a serial line. See
+ *  Ping1dEmulator for what it does. `settings` leads to a sonar::AltimeterTask, and to its receiver for the gain. */
+class Ping1dTask final : public PingDeviceTask {
+public:
+    using PingDeviceTask::PingDeviceTask;
+    framework::Properties<Ping1dTaskConfig> config{this};
+
+private:
+    const PingEnds& ends() const override { return config->ends; }
+    std::unique_ptr<PingDevice> makeDevice() const override { return std::make_unique<Ping1dEmulator>(config->device); }
+};
+
+}  // namespace insonify::device

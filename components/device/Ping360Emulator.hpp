@@ -1,0 +1,98 @@
+#pragma once
+#include <deque>
+
+#include "components/device/Ping360Messages.hpp"
+#include "components/device/PingDevice.hpp"
+#include "types/Describe.hpp"
+#include "types/Diagnostic.hpp"
+
+namespace insonify::device {
+
+/** What of a Ping360 is not set over the wire. Its maker's figures, a full turn in 9 s at 2 m and in 35 s at 50 m, are
+ *  met by the defaults. */
+struct Ping360Config {
+    double seconds_per_gradian = 0.006;
+    double overhead = 0.0138;
+    double ahead = 200;
+    std::vector<double> gain_db = {0, 10, 20};
+
+    template <class Self, class V>
+    static void describe(Self& self, V& visit) {
+        using types::Field;
+        visit(Field{"seconds_per_gradian", "s", "that the head turns through a gradian, of 400 to a turn", 0, 1},
+              self.seconds_per_gradian);
+        visit(Field{"overhead", "s", "between the last echo and the answer", 0, 10}, self.overhead);
+        visit(Field{"ahead", "gradian", "angle of the head that is ahead; the maker's viewer draws 200 there", 0, 399},
+              self.ahead);
+        visit(Field{"gain_db", "dB", "of the receiver at gain settings 0, 1 and 2"}, self.gain_db);
+    }
+    void check(types::Diagnostics& diagnostics) const;
+};
+
+/** A Blue Robotics Ping360: a scanning sonar whose every ping is asked for, or that scans a sector on and on.
+ *
+ *  One command is done after the other. A command turns the head the shorter way, listens, and is answered when head,
+ *  sound and device have taken their time; what is out of bounds is refused at once. An automatic scan goes from start
+ *  to stop clockwise, seen from above; back the same way where the sector is at most half a turn, else it begins anew.
+ */
+class Ping360Emulator final : public PingDevice {
+public:
+    /** @param most the largest code of the receiver that the pings come from */
+    explicit Ping360Emulator(const Ping360Config& config, double most = 65535);
+
+    std::optional<types::Time> wakeAt() const override;
+    uint16_t angle() const { return state_.angle; }  ///< That the head is at, or turns to [gradian].
+    bool scans() const { return scan_.has_value(); }
+
+private:
+    struct Command {
+        std::optional<PingClient> client;  ///< None: it is gone.
+        Ping360Transducer asked;
+    };
+    /** An automatic scan. */
+    struct Scan {
+        PingClient client;
+        Ping360AutoTransmit asked;
+        uint32_t number;                ///< Since the beginning.
+        int offset = 0, direction = 1;  ///< From the start, clockwise [gradian].
+        int width() const;
+        int angle() const;
+        void advance();
+    };
+    enum class Phase { Idle, Turning, Listening };
+
+    void command(PingClient client, const PingFrame& frame, types::Time now) override;
+    bool answer(PingClient client, uint16_t requested, types::Time now) override;
+    void forget(PingClient client) override;
+    void proceed(types::Time now) override;
+
+    void takeTransducer(PingClient client, const Ping360Transducer& asked);
+    void takeAutoTransmit(PingClient client, const Ping360AutoTransmit& asked);
+    void reset(bool bootloader, types::Time now);
+    bool begin(types::Time now);
+    void turnTo(const Ping360Transducer& asked, types::Time now);
+    void listen(types::Time now);
+    bool step(types::Time now);
+    void finish(types::Time now, Bytes data);
+    void fail(types::Time now);
+    double listens() const;  ///< To one ping [s].
+
+    Ping360Config config_;
+    double most_;
+    Ping360DeviceData state_;
+    Phase phase_ = Phase::Idle;
+    types::Time ready_;             ///< When the head is there, or the next ping of a scan may begin.
+    std::deque<Command> commands_;  ///< The first is at hand unless a scan's ping is.
+    std::optional<Scan> scan_;
+    uint32_t scans_ = 0;         ///< So far.
+    bool scanning_ = false;      ///< A scan's ping is at hand,
+    uint32_t scan_at_hand_ = 0;  ///< of this one.
+};
+
+/** The answer to "Discovery" on UDP 30303. @param mac 6 bytes; ip 4 */
+std::string ping360Discovery(std::span<const uint8_t, 6> mac, std::span<const uint8_t, 4> ip);
+
+/** Bearing at which a head that is at an angle looks, positive to port. @param ahead angle that is ahead [gradian] */
+types::Angle ping360Bearing(double angle, double ahead);
+
+}  // namespace insonify::device

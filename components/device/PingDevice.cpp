@@ -1,0 +1,140 @@
+#include "components/device/PingDevice.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace insonify::device {
+namespace {
+
+constexpr size_t max_payload = 64;  ///< Of what goes to a device.
+constexpr double patience = 2;      ///< With a sonar that is to answer, beyond the time that the sound takes [s].
+
+types::Time after(types::Time now, double seconds) { return now + types::Time::fromSeconds(seconds); }
+
+}  // namespace
+
+std::string diagnosticOf(std::initializer_list<PingBound> bounds) {
+    for (const PingBound& bound : bounds)
+        if (bound.value < bound.min || bound.value > bound.max)
+            return fmt::format("{} is {}; must be {} to {}", bound.name, bound.value, bound.min, bound.max);
+    return "";
+}
+
+Bytes bytesOfCodes(std::span<const float> codes, double most) {
+    Bytes bytes(codes.size());
+    std::ranges::transform(codes, bytes.begin(), [&](float code) {
+        const double part = code > 0 ? code / most : 0;  // of NaN 0
+        return static_cast<uint8_t>(std::lround(255 * std::min(1.0, part)));
+    });
+    return bytes;
+}
+
+void PingTurn::ask(types::SonarSettings wanted, double listens, double earliest, types::Time now) {
+    asked_ = wanted;
+    listens_ = listens;
+    again_ = false;
+    due_ = after(now, earliest);
+    ask(now);
+}
+
+void PingTurn::ask(types::Time now) {
+    asked_->time = now;
+    asked_->range = speed_of_sound_ * listens_ / 2;
+    unsent_ = asked_;
+    ping_.reset();
+    deadline_ = after(std::max(now, due_), listens_ + patience);
+}
+
+bool PingTurn::take(const types::SonarPtr& ping, types::Time now) {
+    if (!asked_ || ping_ || ping->time < asked_->time) return false;
+    if (ping->beam_count != 1 || ping->bin_count != asked_->bin_count || !ping->wellShaped()) {
+        warning_ = fmt::format(
+            "pings have {} beams of {} bins where the driver asked for one of {}; connect `settings` to a sonar of one "
+            "beam",
+            ping->beam_count, ping->bin_count, asked_->bin_count);
+        return false;
+    }
+    const double speed = static_cast<double>(ping->speed_of_sound);
+    const bool other = speed > 0 && std::abs(speed / speed_of_sound_ - 1) > 1e-6;
+    if (other) speed_of_sound_ = speed;
+    if (other && !std::exchange(again_, true))
+        ask(now);
+    else
+        ping_ = ping;
+    return true;
+}
+
+types::SonarPtr PingTurn::due(types::Time now) {
+    if (!asked_ || !ping_ || now < due_) return nullptr;
+    asked_.reset();
+    return std::exchange(ping_, {});
+}
+
+bool PingTurn::failed(types::Time now) {
+    if (!asked_ || ping_ || now < deadline_) return false;
+    asked_.reset();
+    return true;
+}
+
+void PingDevice::receive(PingClient client, std::span<const uint8_t> bytes, bool datagram, types::Time now) {
+    if (datagram) {
+        for (const PingFrame& frame : pingFrames(bytes, max_payload)) handle(client, frame, now);
+    } else {
+        PingFrameReader& reader = readers_.try_emplace(client, max_payload).first->second;
+        reader.push(bytes);
+        while (const auto frame = reader.next()) handle(client, *frame, now);
+    }
+    proceed(now);
+}
+
+void PingDevice::close(PingClient client) {
+    readers_.erase(client);
+    std::erase_if(outgoing_, [&](const PingOutgoing& each) { return each.client == client; });
+    forget(client);
+}
+
+void PingDevice::hear(const types::SonarPtr& ping, types::Time now) {
+    turn_.take(ping, now);
+    if (std::string warning = turn_.takeWarning(); !warning.empty() && !std::exchange(silent_, true))
+        warnings_.push_back(std::move(warning));
+    proceed(now);
+}
+
+void PingDevice::handle(PingClient client, const PingFrame& frame, types::Time now) {
+    constexpr uint8_t all = 0, broadcast = 255;
+    if (now < deaf_until_) return;
+    if (frame.destination != all && frame.destination != broadcast && frame.destination != id_) return;
+    if (frame.message >= PingAck::message && frame.message <= PingText::message) return;  // an answer is not answered
+    if (frame.message == PingGeneralRequest::message)
+        with<PingGeneralRequest>(client, frame, [&](const auto& m) { handleRequest(client, m.requested, now); });
+    else if (frame.message == PingSetDeviceId::message)
+        with<PingSetDeviceId>(client, frame, [&](const auto& m) { setId(client, m.message, m.device_id, 1); });
+    else if (!frame.payload.empty() || !answerAny(client, frame.message, now))
+        command(client, frame, now);
+}
+
+bool PingDevice::answerAny(PingClient client, uint16_t requested, types::Time now) {
+    if (requested == PingDeviceInformation::message) return send(client, information_), true;
+    if (requested == PingProtocolVersion::message) return send(client, version_), true;
+    return answer(client, requested, now);
+}
+
+void PingDevice::handleRequest(PingClient client, uint16_t requested, types::Time now) {
+    if (!answerAny(client, requested, now)) refuse(client, requested, "there is no such message to be asked for");
+}
+
+void PingDevice::setId(PingClient client, uint16_t message, uint8_t id, uint8_t min) {
+    if (const std::string why = diagnosticOf({{"id", id, min, 254}}); !why.empty()) return refuse(client, message, why);
+    id_ = id;
+    acknowledge(client, message);
+}
+
+void PingDevice::warnOfSilence() {
+    if (std::exchange(silent_, true)) return;
+    warnings_.emplace_back(
+        "no ping has come for what the driver asked for; is `settings` connected to a sonar that runs?");
+}
+
+}  // namespace insonify::device

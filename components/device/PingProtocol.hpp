@@ -1,0 +1,119 @@
+#pragma once
+#include <concepts>
+#include <optional>
+#include <string>
+
+#include "components/device/Bytes.hpp"
+
+namespace insonify::device {
+
+/** One frame of Blue Robotics' ping protocol, little endian: 'B', 'R', u16 length of the payload, u16 message, u8
+ * source, u8 destination, payload, u16 sum of all bytes before. */
+struct PingFrame {
+    uint16_t message = 0;
+    uint8_t source = 0;       ///< Device that it comes from; 0: a program.
+    uint8_t destination = 0;  ///< Device that it is for; 0: whichever hears it.
+    Bytes payload;            ///< At most 65,535 bytes.
+
+    Bytes bytes() const;
+    friend bool operator==(const PingFrame&, const PingFrame&) = default;
+};
+
+/** Finds frames in what a line brings, whatever lies between them.
+ *
+ *  What begins like a frame and does not add up is passed over by a byte, so that a frame within it is found. A frame
+ * that is not whole yet is waited for, unless a whole one follows within its bytes: a stray beginning holds up nobody.
+ */
+class PingFrameReader {
+public:
+    /** @param max_payload a longer one is none: to a device at most tens of bytes go, from it 1,220 [bytes] */
+    explicit PingFrameReader(size_t max_payload) : max_payload_(max_payload) {}
+
+    void push(std::span<const uint8_t> bytes);
+    /** The next frame, if there is one. */
+    std::optional<PingFrame> next();
+    /** Bytes that are kept until more come [1]. */
+    size_t waiting() const { return bytes_.size() - begin_; }
+
+private:
+    enum class Finding { None, Partial, Whole };
+    Finding findingAt(size_t at) const;
+    size_t sizeAt(size_t at) const;  ///< Of the frame that begins there [bytes].
+    PingFrame take(size_t at);
+
+    size_t max_payload_;
+    Bytes bytes_;
+    size_t begin_ = 0;  ///< What is before has been read.
+};
+
+/** Every frame of one datagram. */
+std::vector<PingFrame> pingFrames(std::span<const uint8_t> datagram, size_t max_payload);
+
+/** Writes the fields of a message into a payload, in order. */
+class PingPayloadWriter {
+public:
+    explicit PingPayloadWriter(Bytes& payload) : payload_(payload) {}
+    template <class... Fields>
+    void operator()(const Fields&... fields) {
+        (put(fields), ...);
+    }
+
+private:
+    template <std::integral T>
+    void put(T value) {
+        append(payload_, value);
+    }
+    void put(const std::string& text);
+    void put(const Bytes& data);  ///< Its u16 length before it.
+
+    Bytes& payload_;
+};
+
+/** Reads the fields of a message from a payload, in order; what is not there stays as it was. */
+class PingPayloadReader {
+public:
+    explicit PingPayloadReader(std::span<const uint8_t> payload) : payload_(payload) {}
+    template <class... Fields>
+    void operator()(Fields&... fields) {
+        (take(fields), ...);
+    }
+    /** Whether all was there. */
+    bool complete() const { return complete_; }
+
+private:
+    template <std::integral T>
+    void take(T& value) {
+        if (!has(sizeof value)) return;
+        value = read<T>(payload_, at_);
+        at_ += sizeof value;
+    }
+    void take(std::string& text);  ///< All that is left.
+    void take(Bytes& data);        ///< Its u16 length before it.
+    bool has(size_t size);
+
+    std::span<const uint8_t> payload_;
+    size_t at_ = 0;
+    bool complete_ = true;
+};
+
+/** A message as a frame's bytes. */
+template <class Message>
+Bytes pingBytes(const Message& message, uint8_t source = 0, uint8_t destination = 0) {
+    PingFrame frame{Message::message, source, destination, {}};
+    PingPayloadWriter writer(frame.payload);
+    Message::describe(message, writer);
+    return frame.bytes();
+}
+
+/** The message of a frame; none where it is another one, or short of a field. Bytes after the last field are passed
+ *  over. */
+template <class Message>
+std::optional<Message> pingMessage(const PingFrame& frame) {
+    Message message;
+    PingPayloadReader reader(frame.payload);
+    Message::describe(message, reader);
+    if (frame.message != Message::message || !reader.complete()) return {};
+    return message;
+}
+
+}  // namespace insonify::device

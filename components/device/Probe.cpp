@@ -1,0 +1,285 @@
+#include "components/device/Probe.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
+#include <charconv>
+#include <set>
+#include <string_view>
+
+#include "components/device/DriverLine.hpp"
+#include "components/device/PingMessages.hpp"
+#include "types/ConfigError.hpp"
+
+namespace insonify::device {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+std::string_view textOf(std::span<const uint8_t> bytes) {
+    return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
+}
+
+Bytes bytesOf(std::string_view text) { return {text.begin(), text.end()}; }
+
+std::string nameOf(uint8_t ping_device) {
+    switch (static_cast<PingDeviceType>(ping_device)) {
+        case PingDeviceType::Ping1d: return "Blue Robotics Ping1D";
+        case PingDeviceType::Ping360: return "Blue Robotics Ping360";
+        default: return fmt::format("device of type {} of the ping protocol", ping_device);
+    }
+}
+
+Bytes pingQuestion() {
+    Bytes question = pingBytes(PingGeneralRequest{PingDeviceInformation::message});
+    const Bytes second = pingBytes(PingGeneralRequest{PingProtocolVersion::message});
+    question.insert(question.end(), second.begin(), second.end());
+    return question;
+}
+
+/** mtSendVersion from a PC, 255, to an imaging sonar, 2. */
+Bytes seaNetQuestion() { return {'@', '0', '0', '0', '8', 8, 0, 255, 2, 3, 23, 0x80, 2, 0x0A}; }
+
+constexpr const char* nobody_there =
+    "nothing listens there: the device or its deployment does not run, its `port` is another, or its `address` is "
+    "127.0.0.1 and you ask from another machine";
+constexpr const char* lost_on_the_way =
+    "a datagram was lost on the way: another address or port, a firewall, or a device of another kind";
+
+void addPing(std::vector<Probe>& all) {
+    const char* const protocol = "ping protocol (Ping360, Ping1D)";
+    for (const uint16_t port : {12345, 9092, 9090})
+        all.push_back({protocol, Probe::Line::Udp, port, pingQuestion(), pingDeviceIn, lost_on_the_way});
+    for (const uint16_t port : {12345, 9090})
+        all.push_back({protocol, Probe::Line::Tcp, port, pingQuestion(), pingDeviceIn,
+                       "it is connected, and does not speak the ping protocol"});
+    all.push_back({protocol, Probe::Line::Serial, 0, pingQuestion(), pingDeviceIn,
+                   "nothing answers at 115200 baud: another baud rate, another program that holds the line, crossed "
+                   "wires, or a device of another kind"});
+    all.push_back({"discovery of a Ping360", Probe::Line::Udp, 30303, bytesOf("Discovery"), ping360DiscoveryIn,
+                   "finders do not see it; a stand-in answers only with `discovery` in its properties"});
+}
+
+void addOculus(std::vector<Probe>& all) {
+    all.push_back(
+        {"Oculus status",
+         Probe::Line::Broadcast,
+         52102,
+         {},
+         oculusIn,
+         "no status is broadcast: drivers that find an Oculus by it wait for ever; broadcasts cross no router, "
+         "and a firewall must let UDP 52102 in"});
+    all.push_back({"Oculus",
+                   Probe::Line::Tcp,
+                   52100,
+                   {},
+                   oculusIn,
+                   "it is connected and silent: in standby until a driver sends fire messages, or no Oculus"});
+}
+
+void addSeaNet(std::vector<Probe>& all) {
+    const char* const silence =
+        "no version comes: a driver that waits for mtAlive or mtVersionData waits for ever; the sonar's node is not 2, "
+        "or "
+        "it is no Micron";
+    all.push_back({"SeaNet (Micron)", Probe::Line::Tcp, 4001, seaNetQuestion(), seaNetIn, silence});
+    all.push_back({"SeaNet (Micron)", Probe::Line::Serial, 0, seaNetQuestion(), seaNetIn, silence});
+}
+
+void addSonar3d(std::vector<Probe>& all) {
+    const std::string question = "GET /api/v1/integration/about HTTP/1.1\r\nHost: sonar\r\nConnection: close\r\n\r\n";
+    for (const uint16_t port : {80, 8080})
+        all.push_back({"HTTP (Sonar 3D-15)", Probe::Line::Tcp, port, bytesOf(question), sonar3dIn,
+                       "what answers is no Sonar 3D-15, or firmware before 1.7.1"});
+}
+
+uint16_t portFor(const Probe& probe, const ProbeAddress& address) {
+    return address.port != 0 && probe.line != Probe::Line::Broadcast ? address.port : probe.port;
+}
+
+DriverLine lineFor(const Probe& probe, const ProbeAddress& address, std::chrono::milliseconds patience) {
+    const uint16_t port = portFor(probe, address);
+    switch (probe.line) {
+        case Probe::Line::Udp: return DriverLine::udp(address.host, port);
+        case Probe::Line::Tcp: return DriverLine::tcp(address.host, port, patience);
+        case Probe::Line::Serial: return DriverLine::serial(address.serial);
+        case Probe::Line::Broadcast: return DriverLine::broadcasts(port);
+    }
+    throw LineError("there is no such line");
+}
+
+std::string nameOf(const Probe& probe, const ProbeAddress& address) {
+    const uint16_t port = portFor(probe, address);
+    const std::string host = address.host.find(':') == std::string::npos ? address.host : "[" + address.host + "]";
+    switch (probe.line) {
+        case Probe::Line::Udp: return fmt::format("UDP {}:{}", host, port);
+        case Probe::Line::Tcp: return fmt::format("TCP {}:{}", host, port);
+        case Probe::Line::Serial: return "serial line " + address.serial;
+        case Probe::Line::Broadcast: return fmt::format("broadcasts to UDP {}", port);
+    }
+    return "";
+}
+
+/** Sends the question and reads until the device has told what it is. */
+std::optional<std::string> converse(const Probe& probe, const DriverLine& line, std::chrono::milliseconds patience) {
+    if (!probe.question.empty()) line.send(probe.question);
+    Bytes heard;
+    const auto end = Clock::now() + patience;
+    while (Clock::now() < end && heard.size() < (1 << 20)) {
+        const Bytes more = line.receive(std::chrono::duration_cast<std::chrono::milliseconds>(end - Clock::now()));
+        heard.insert(heard.end(), more.begin(), more.end());
+        if (auto device = probe.read(heard)) return device;
+    }
+    return {};
+}
+
+ProbeOutcome ask(const Probe& probe, const ProbeAddress& address, std::chrono::milliseconds patience) {
+    ProbeOutcome outcome{probe.protocol, nameOf(probe, address), "", "", ""};
+    bool opened = false;
+    try {
+        const DriverLine line = lineFor(probe, address, patience);
+        opened = true;
+        outcome.device = converse(probe, line, patience).value_or("");
+        if (outcome.device.empty()) outcome.failure = "no answer";
+    } catch (const LineError& error) {
+        outcome.failure = error.what();
+    }
+    if (!outcome.failure.empty())
+        outcome.advice = opened && outcome.failure != "Connection refused" ? probe.silence : nobody_there;
+    return outcome;
+}
+
+bool canAsk(const Probe& probe, const ProbeAddress& address) {
+    return (probe.line == Probe::Line::Serial) == !address.serial.empty();
+}
+
+/** One question for each line, where a port is given. */
+std::vector<Probe> questionsFor(const ProbeAddress& address) {
+    std::vector<Probe> asked;
+    for (Probe& probe : allProbes()) {
+        const auto same = [&](const Probe& other) {
+            return other.protocol == probe.protocol && other.line == probe.line && address.port != 0;
+        };
+        const bool elsewhere = address.port != 0 && probe.line == Probe::Line::Broadcast;
+        if (canAsk(probe, address) && !elsewhere && std::ranges::none_of(asked, same))
+            asked.push_back(std::move(probe));
+    }
+    return asked;
+}
+
+[[noreturn]] void refuse(const std::string& text, const std::string& why) {
+    throw types::ConfigError(
+        "", "ADDRESS", fmt::format("is '{}', {}; write a host, host:port, or the path of a serial line", text, why));
+}
+
+uint16_t portOf(const std::string& text, std::string_view digits) {
+    uint16_t port = 0;
+    const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), port);
+    if (error != std::errc() || end != digits.data() + digits.size() || port == 0)
+        refuse(text, fmt::format("whose port '{}' is not from 1 to 65535", digits));
+    return port;
+}
+
+}  // namespace
+
+std::optional<std::string> pingDeviceIn(std::span<const uint8_t> bytes) {
+    std::optional<std::string> device, version;
+    for (const PingFrame& frame : pingFrames(bytes, 4096)) {
+        if (const auto about = pingMessage<PingDeviceInformation>(frame))
+            device = fmt::format("{}, id {}, revision {}, firmware {}.{}.{}", nameOf(about->type), frame.source,
+                                 about->revision, about->major, about->minor, about->patch);
+        if (const auto spoken = pingMessage<PingProtocolVersion>(frame))
+            version = fmt::format(", protocol {}.{}.{}", spoken->major, spoken->minor, spoken->patch);
+    }
+    if (!device || !version) return {};
+    return *device + *version;
+}
+
+std::optional<std::string> ping360DiscoveryIn(std::span<const uint8_t> bytes) {
+    std::string text(textOf(bytes));
+    if (!text.starts_with("SONAR PING360")) return {};
+    for (size_t at; (at = text.find("\r\n")) != std::string::npos;)
+        text.replace(at, 2, at + 2 < text.size() ? ", " : "");
+    return std::all_of(text.begin(), text.end(), [](char c) { return c >= ' ' && c <= '~'; }) ? std::optional(text)
+                                                                                              : std::nullopt;
+}
+
+std::optional<std::string> oculusIn(std::span<const uint8_t> bytes) {
+    constexpr size_t header = 16, status_size = 142;
+    if (bytes.size() < header || read<uint16_t>(bytes, 0) != 0x4F53) return {};
+    const auto message = read<uint16_t>(bytes, 6);
+    if (bytes.size() != status_size) return fmt::format("Blueprint Subsea Oculus, message 0x{:02x}", message);
+    static const std::pair<uint16_t, const char*> models[] = {
+        {1032, "M750d"}, {1042, "M1200d"}, {1041, "M370s"}, {2203, "M3000d"}};
+    const auto part = read<uint16_t>(bytes, 22);
+    const auto model = std::ranges::find(models, part, &std::pair<uint16_t, const char*>::first);
+    const std::string name = model != std::end(models) ? model->second : fmt::format("of part {}", part);
+    const uint32_t status = read<uint32_t>(bytes, 24);
+    return fmt::format("Blueprint Subsea Oculus {}, at {}.{}.{}.{}, {}", name, bytes[52], bytes[53], bytes[54],
+                       bytes[55], (status & 7) == 3 ? "running" : "not ready: drivers may give up");
+}
+
+std::optional<std::string> seaNetIn(std::span<const uint8_t> bytes) {
+    constexpr size_t message_at = 10;
+    constexpr uint8_t version_data = 1, alive = 4;
+    for (size_t at = 0; at + message_at < bytes.size(); ++at) {
+        const auto isHex = [&](size_t i) { return std::isxdigit(bytes[at + i]) != 0; };
+        if (bytes[at] != '@' || !isHex(1) || !isHex(2) || !isHex(3) || !isHex(4)) continue;
+        const uint8_t message = bytes[at + message_at];
+        if (message == version_data || message == alive)
+            return fmt::format("Tritech SeaNet device, node {}, {}", bytes[at + 7],
+                               message == alive ? "alive" : "tells its version");
+    }
+    return {};
+}
+
+std::optional<std::string> sonar3dIn(std::span<const uint8_t> bytes) {
+    const std::string_view text = textOf(bytes);
+    const std::string_view key = "\"version_short\"";
+    if (!text.starts_with("HTTP/1.") || text.find("}") == std::string_view::npos) return {};
+    const size_t at = text.find(key);
+    if (at == std::string_view::npos) return {};
+    const size_t begin = text.find('"', at + key.size()), end = text.find('"', begin + 1);
+    if (begin == std::string_view::npos || end == std::string_view::npos) return {};
+    return fmt::format("Water Linked Sonar 3D-15, version {}", text.substr(begin + 1, end - begin - 1));
+}
+
+std::vector<Probe> allProbes() {
+    std::vector<Probe> all;
+    addPing(all);
+    addOculus(all);
+    addSeaNet(all);
+    addSonar3d(all);
+    return all;
+}
+
+ProbeAddress probeAddress(const std::string& text) {
+    ProbeAddress address;
+    if (text.find('/') != std::string::npos) {
+        address.serial = text;
+        return address;
+    }
+    const size_t colon = text.rfind(':');
+    const bool bracketed = text.starts_with('['),
+               has_port = colon != std::string::npos && (bracketed ? text[colon - 1] == ']' : text.find(':') == colon);
+    address.host = has_port ? text.substr(0, colon) : text;
+    if (has_port) address.port = portOf(text, std::string_view(text).substr(colon + 1));
+    if (bracketed && address.host.ends_with(']')) address.host = address.host.substr(1, address.host.size() - 2);
+    if (address.host.empty()) refuse(text, "which names no host");
+    if (!isKnownHost(address.host)) refuse(text, "a host that this machine does not know");
+    return address;
+}
+
+std::vector<ProbeOutcome> probe(const ProbeAddress& address, std::chrono::milliseconds patience) {
+    std::vector<ProbeOutcome> outcomes;
+    std::set<std::string> answered;  // lines; one that has said what it is is asked nothing more
+    for (const Probe& question : questionsFor(address)) {
+        if (answered.contains(nameOf(question, address))) continue;
+        outcomes.push_back(ask(question, address, patience));
+        if (!outcomes.back().device.empty()) answered.insert(outcomes.back().asked);
+    }
+    return outcomes;
+}
+
+}  // namespace insonify::device

@@ -1,0 +1,60 @@
+#pragma once
+// Protocol Buffers on the wire, as far as devices here use them.
+#include <optional>
+#include <string_view>
+
+#include "components/device/Bytes.hpp"
+
+namespace insonify::device {
+
+/** Appends the fields of a message. Numbers that are 0 are left out, as proto3 has it. */
+class ProtobufWriter {
+public:
+    void number(uint32_t field, uint64_t value);
+    void real(uint32_t field, float value);
+    void bytes(uint32_t field, std::span<const uint8_t> value);
+    void text(uint32_t field, std::string_view value);
+    void packed(uint32_t field, std::span<const uint32_t> values);
+    const Bytes& message() const { return message_; }
+
+private:
+    void varint(uint64_t value);
+    void tag(uint32_t field, uint32_t wire_type) { varint(uint64_t{field} << 3 | wire_type); }
+
+    Bytes message_;
+};
+
+/** One field: a number, or bytes. */
+struct ProtobufField {
+    enum class Kind { Number, Fixed32, Fixed64, Text };
+
+    uint32_t number = 0;
+    Kind kind = Kind::Number;
+    uint64_t value = 0;              ///< Of a number, or the bits of what has a fixed width.
+    std::span<const uint8_t> bytes;  ///< Of text, bytes, a message or packed numbers.
+
+    /** That of a float; 0 of anything else. */
+    float real() const;
+    std::string_view text() const;
+};
+
+/** Takes the fields out of a message, one after the other. */
+class ProtobufReader {
+public:
+    explicit ProtobufReader(std::span<const uint8_t> message) : rest_(message) {}
+    /** None at the end of the message, and where it is broken. */
+    std::optional<ProtobufField> next();
+    /** Of packed numbers; none at their end, and where they are broken. */
+    std::optional<uint64_t> varint();
+    bool isBroken() const { return broken_; }
+
+private:
+    /** So many bytes from here, if they are there. */
+    std::optional<std::span<const uint8_t>> take(uint64_t count);
+    std::optional<ProtobufField> payloadOf(ProtobufField field, uint32_t wire_type);
+
+    std::span<const uint8_t> rest_;
+    bool broken_ = false;
+};
+
+}  // namespace insonify::device

@@ -1,0 +1,111 @@
+#pragma once
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "components/device/Http.hpp"
+#include "components/device/Rip2.hpp"
+#include "types/DepthMap.hpp"
+#include "types/SonarSettings.hpp"
+
+namespace insonify::device {
+
+/** What of a Sonar 3D-15 is not set over its API. */
+struct Sonar3dDevice {
+    double longest_range = 15;         ///< That the API takes [m].
+    double low_frequency_khz = 1200;   ///< 90 x 40 degrees, 5 pings a second.
+    double high_frequency_khz = 2400;  ///< 40 x 40 degrees, 20 pings a second.
+    double temperature_celsius = 12;   ///< In the housing, and of the water for the automatic speed of sound.
+    std::string multicast_address = "224.0.0.96";
+    int multicast_port = 4747;
+    bool compressed = true;
+
+    template <class Self, class V>
+    static void describe(Self& self, V& visit) {
+        using types::Field;
+        visit(Field{"longest_range", "m", "that the API takes", 1, 65}, self.longest_range);
+        visit(Field{"low_frequency_khz", "kHz", "of the mode of 90 x 40 degrees, 5 pings a second", 10, 10000},
+              self.low_frequency_khz);
+        visit(Field{"high_frequency_khz", "kHz", "of the mode of 40 x 40 degrees, 20 pings a second", 10, 10000},
+              self.high_frequency_khz);
+        visit(Field{"temperature_celsius", "degC", "in the housing, and of the water for the automatic speed of sound",
+                    -2, 40},
+              self.temperature_celsius);
+        visit(Field{"multicast_address", "", "group to which images go where the client sets no other"},
+              self.multicast_address);
+        visit(Field{"multicast_port", "1", "of the group", 1, 65535}, self.multicast_port);
+        visit(Field{"compressed", "", "whether images are RIP2, as of release 1.6; else RIP1, as before"},
+              self.compressed);
+    }
+    void check(types::Diagnostics& diagnostics) const;
+};
+
+/** What clients have set over the API; as the device has it when it is switched on. */
+struct Sonar3dState {
+    bool acoustics = false;
+    double range_min = 0.3, range_max = 15;  ///< [m]
+    double speed_of_sound = 1491;            ///< [m/s]; 0: by salinity and temperature.
+    bool high_frequency = false;
+    bool fresh_water = false;
+    std::string udp_mode = "multicast";
+    std::string unicast_ip;
+    uint16_t unicast_port = 0;
+    bool imu = false;
+    std::string ntp_address = "auto";
+    bool ntp_synced = false;
+    types::Time synced_at;
+};
+
+/** A Water Linked Sonar 3D-15 without sockets and clocks: answers to its HTTP API, and range images in its protocol.
+ *
+ *  Once acoustics are enabled it asks for pings at the rate of its mode, one at a time; each range image is sent with
+ *  the image of its strengths. The clock of the device is that which it is given, shifted where a client sets it. There
+ *  is no IMU: its switch is kept and nothing is sent. */
+class Sonar3dEmulator {
+public:
+    struct Outlet {
+        std::function<void(const types::SonarSettings&)> ask;  ///< Wants one ping.
+        std::function<void(const std::string& address, uint16_t port, Bytes packet)> send;
+        std::function<void(const std::string&)> warn;
+    };
+
+    Sonar3dEmulator(Sonar3dDevice device, Outlet outlet) : device_(std::move(device)), outlet_(std::move(outlet)) {}
+
+    HttpReply answer(const HttpRequest& request, types::Time now);
+    /** A ping that was asked for, then or later: ranges and strengths by direction. */
+    void heard(const types::DepthMap& map);
+    /** Asks for what is due; when the next is. */
+    std::optional<types::Time> tick(types::Time now);
+    const Sonar3dState& state() const { return state_; }
+
+private:
+    struct Api;
+    /** A ping that was asked for, and what held then. */
+    struct Asked {
+        types::Time time;
+        Sonar3dState state;
+    };
+    void ask(types::Time now);
+    double speedOfSound() const;
+    double period() const { return state_.high_frequency ? 1.0 / 20 : 1.0 / 5; }  ///< [s]
+    double frequencyKhz(const Sonar3dState& state) const {
+        return state.high_frequency ? device_.high_frequency_khz : device_.low_frequency_khz;
+    }
+    RipImage frameOf(const types::DepthMap& map, const Sonar3dState& asked) const;
+    /** What held when this ping was asked for; none: nobody asked. */
+    std::optional<Sonar3dState> takeAsked(types::Time heard);
+    void sendImages(const types::DepthMap& map, const Sonar3dState& asked);
+    void send(const Bytes& packet);
+
+    Sonar3dDevice device_;
+    Outlet outlet_;
+    Sonar3dState state_;
+    std::vector<Asked> under_way_;  ///< The oldest first.
+    std::optional<types::Time> last_;
+    types::Time shift_;  ///< Of the device's clock.
+    uint32_t sequence_ = 0;
+    bool warned_ = false;
+};
+
+}  // namespace insonify::device

@@ -1,0 +1,51 @@
+#pragma once
+#include <map>
+#include <optional>
+#include <string>
+
+#include "components/device/DeviceTask.hpp"
+#include "components/device/Sonar3dEmulator.hpp"
+#include "components/framework/Properties.hpp"
+
+namespace insonify::device {
+
+struct Sonar3dDeviceConfig {
+    std::string address = "127.0.0.1";
+    int port = 80;
+    Sonar3dDevice device;
+
+    template <class Self, class V>
+    static void describe(Self& self, V& visit) {
+        using types::Field;
+        visit(Field{"address", "", "numeric address to listen on; 0.0.0.0: every network of this machine"},
+              self.address);
+        visit(Field{"port", "1", "TCP port of the HTTP API; 0: any that is free, told in a notice", 0, 65535},
+              self.port);
+        Sonar3dDevice::describe(self.device, visit);
+    }
+    void check(types::Diagnostics& diagnostics) const { device.check(diagnostics); }
+};
+
+/** Stands in for a Water Linked Sonar 3D-15: its HTTP API, and range images by UDP. See Sonar3dEmulator for what it
+ *  does. The sonar is a sonar::Sonar3dTask. */
+class Sonar3dTask final : public DeviceTask {
+public:
+    using DeviceTask::DeviceTask;
+
+    framework::Properties<Sonar3dDeviceConfig> config{this};
+    framework::InputPort<types::DepthMapPtr> range_image{this, "range_image",
+                                                         "range and strength of each beam's return"};
+
+private:
+    void listen(Network& network) override;
+    void opened(Client client) override { clients_[client]; }
+    void received(Client client, std::span<const uint8_t> bytes) override;
+    void closed(Client client) override { clients_.erase(client); }
+    void takePings() override;
+    std::optional<types::Time> tick(types::Time now) override { return emulator_->tick(now); }
+
+    std::optional<Sonar3dEmulator> emulator_;
+    std::map<Client, HttpReader> clients_;
+};
+
+}  // namespace insonify::device

@@ -1,0 +1,66 @@
+#include "components/framework/Upstream.hpp"
+
+#include <algorithm>
+#include <vector>
+
+#include "components/framework/ConfigReader.hpp"
+#include "components/framework/DeploymentSpec.hpp"
+
+namespace insonify::framework {
+namespace {
+
+std::optional<types::PropertyValue> valueWithin(const std::string& block, std::string path) {
+    YAML::Node node = parseValue(block);
+    while (!path.empty() && node.IsDefined()) {
+        const auto [key, rest] = splitPort(path);
+        node.reset(child(node, key));
+        path = rest;
+    }
+    if (!node.IsDefined() || node.IsNull()) return std::nullopt;
+    if (!node.IsScalar()) return YAML::Dump(node);
+    if (node.Tag() == "!") return node.Scalar();  // in quotes
+    bool truth = false;
+    double number = 0;
+    if (YAML::convert<bool>::decode(node, truth)) return truth;
+    if (YAML::convert<double>::decode(node, number)) return number;
+    return node.Scalar();
+}
+
+/** Tasks that write to a port. */
+std::vector<const TaskContext*> writersOf(const InputPortBase& port) {
+    std::vector<const TaskContext*> writers;
+    for (const auto& channel : port.channels()) writers.push_back(&channel->source().owner());
+    return writers;
+}
+
+}  // namespace
+
+std::optional<types::PropertyValue> valueAt(const types::TaskRecord& task, const std::string& path) {
+    const auto [top, rest] = splitPort(path);
+    const auto found = task.properties.find(top);
+    if (found == task.properties.end()) return std::nullopt;
+    if (rest.empty()) return found->second;
+    const std::string* const block = std::get_if<std::string>(&found->second);
+    return block ? valueWithin(*block, rest) : std::nullopt;
+}
+
+std::optional<types::PropertyValue> upstreamValue(const InputPortBase& port, std::initializer_list<const char*> paths) {
+    std::vector<const TaskContext*> waiting = writersOf(port);
+    for (size_t i = 0; i < waiting.size(); ++i) {
+        const types::TaskRecord record = waiting[i]->record();
+        for (const char* path : paths)
+            if (auto value = valueAt(record, path)) return value;
+        for (const InputPortBase* input : waiting[i]->inputs())
+            for (const TaskContext* writer : writersOf(*input))
+                if (std::ranges::count(waiting, writer) == 0) waiting.push_back(writer);
+    }
+    return std::nullopt;
+}
+
+std::optional<double> upstreamFrequency(const InputPortBase& port) {
+    const auto value = upstreamValue(port, {"frequency_khz", "absorption.frequency_khz"});
+    const double* const frequency = value ? std::get_if<double>(&*value) : nullptr;
+    return frequency ? std::optional(*frequency) : std::nullopt;
+}
+
+}  // namespace insonify::framework

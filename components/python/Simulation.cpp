@@ -1,0 +1,199 @@
+#include "components/python/Simulation.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <set>
+#include <stdexcept>
+
+#include "components/deployer/DeploymentFile.hpp"
+#include "components/deployer/Pipeline.hpp"
+#include "components/deployer/ReplaySpec.hpp"
+#include "components/deployer/Tasks.hpp"
+#include "components/framework/Properties.hpp"
+#include "components/framework/Wiring.hpp"
+#include "types/ConfigError.hpp"
+
+namespace insonify::python {
+namespace {
+
+using framework::DeploymentSpec;
+using framework::splitPort;
+
+constexpr const char* scene_type = "scene::SceneTask";
+
+bool isScenePose(const DeploymentSpec& spec, const framework::ConnectionSpec& connection) {
+    const auto [task, port] = splitPort(connection.to);
+    const framework::TaskSpec* const scene = spec.task(task);
+    return scene && scene->type == scene_type && port == "pose";
+}
+
+bool carriesPings(const framework::PortBase& port) { return port.typeName() == types::Sonar::type_name; }
+
+/** Outputs of pings that no other task of the deployment takes. */
+std::vector<framework::OutputPortBase*> lastPings(const framework::Deployment& deployment) {
+    std::vector<framework::OutputPortBase*> last;
+    for (const auto& task : deployment.tasks()) {
+        if (std::ranges::any_of(deployment.connections(), [&](const framework::Connection& connection) {
+                return &connection.from->owner() == task.get() && carriesPings(*connection.from);
+            }))
+            continue;
+        for (framework::OutputPortBase* port : task->outputs())
+            if (carriesPings(*port)) last.push_back(port);
+    }
+    return last;
+}
+
+/** The sonar whose pings come to a task; null: there is none that tells what they show. */
+framework::OutputPortBase* truthBehind(const framework::Deployment& deployment, framework::TaskContext* task) {
+    for (size_t steps = 0; task && steps < deployment.tasks().size(); ++steps) {
+        if (framework::OutputPortBase* truth = task->output("truth")) return truth;
+        framework::TaskContext* before = nullptr;
+        for (const framework::Connection& connection : deployment.connections())
+            if (&connection.to->owner() == task && carriesPings(*connection.to)) before = &connection.from->owner();
+        task = before;
+    }
+    return nullptr;
+}
+
+std::set<std::string> tasksThatLeadToPings(const framework::Deployment& deployment) {
+    std::set<std::string> names;
+    for (const auto& task : deployment.tasks())
+        for (const framework::OutputPortBase* port : task->outputs())
+            if (carriesPings(*port)) names.insert(task->name());
+    return deployer::upstreamOf(std::move(names), deployment);
+}
+
+void throwAny(const std::vector<std::string>& failures) {
+    if (!failures.empty()) throw std::runtime_error(failures.front());
+}
+
+/** Without those tasks, and what leads to them or from them. */
+DeploymentSpec without(DeploymentSpec spec, const std::set<std::string>& left_out) {
+    std::set<std::string> kept;
+    for (const std::string& name : spec.taskNames())
+        if (!left_out.contains(name)) kept.insert(name);
+    return deployer::restrictedTo(std::move(spec), kept);
+}
+
+}  // namespace
+
+Simulation::Simulation(const std::string& file, SimulationOptions options) : registry_(deployer::builtInTasks()) {
+    registry_.add<PoseFeed>("python::PoseFeed", "poses that the caller gives");
+    DeploymentSpec spec = DeploymentSpec::load(deployer::deploymentIn(file));
+    for (const std::string& assignment : options.overrides) {
+        spec.set(assignment);
+        if (const auto end = assignment.find(".seed="); end != std::string::npos)
+            own_seeds_.insert(assignment.substr(0, end));
+    }
+    spec.lockstep = true;
+    start_time_ = spec.start_time;
+    replacePoses(spec);
+    spec = without(spec, deployer::outsideTasks(spec));
+    spec = deployer::restrictedTo(spec, tasksThatLeadToPings(framework::Deployment(spec, registry_)));
+    if (options.period) period_ = *options.period;
+    deployment_ = std::make_unique<framework::Deployment>(spec, registry_, ".", options.seed);
+    for (const std::string& port : poses_)
+        feeds_.push_back(&dynamic_cast<PoseFeed&>(*deployment_->task(splitPort(port).first)));
+    connectReaders(options.truth);
+    deployment_->configure();
+    start();
+}
+
+void Simulation::replacePoses(DeploymentSpec& spec) {
+    std::set<std::string> replaced;
+    for (const framework::ConnectionSpec& connection : spec.connections)
+        if (isScenePose(spec, connection)) replaced.insert(splitPort(connection.from).first);
+    for (const framework::ConnectionSpec& connection : spec.connections)
+        if (replaced.contains(splitPort(connection.from).first) && std::ranges::count(poses_, connection.from) == 0)
+            poses_.push_back(connection.from);
+    if (poses_.empty())
+        throw types::ConfigError(spec.file, "connections",
+                                 "none leads to the pose of a scene; there is nothing to step");
+    std::vector<framework::TaskSpec> tasks;  // made anew: assigning a YAML node changes what other nodes see
+    for (const framework::TaskSpec& task : spec.tasks) {
+        if (!replaced.contains(task.name)) {
+            tasks.push_back(task);
+            continue;
+        }
+        if (task.activity.periodic()) period_ = task.activity.period;
+        framework::TaskSpec& feed = tasks.emplace_back();
+        feed.name = task.name;
+        feed.type = "python::PoseFeed";
+    }
+    spec.tasks.swap(tasks);
+}
+
+void Simulation::connectReaders(bool truth) {
+    const auto last = lastPings(*deployment_);
+    if (last.empty()) throw types::ConfigError(deployment_->spec().file, "tasks", "none makes pings");
+    for (framework::OutputPortBase* port : last) {
+        PingReader& reader = *readers_.emplace_back(std::make_unique<PingReader>(port->path()));
+        port->connectTo(reader.ping, framework::ConnPolicy::buffer(4));
+        if (!truth) continue;
+        framework::OutputPortBase* const told = truthBehind(*deployment_, &port->owner());
+        if (!told)
+            throw types::ConfigError(deployment_->spec().file, port->path(),
+                                     "comes from no sonar that tells its truth");
+        told->connectTo(reader.truth, framework::ConnPolicy::buffer(4));
+    }
+}
+
+void Simulation::start() {
+    throwAny(deployment_->start());
+    time_ = start_time_;
+    last_.reset();
+}
+
+std::vector<std::string> Simulation::pings() const {
+    std::vector<std::string> ports;
+    for (const auto& reader : readers_) ports.push_back(reader->name());
+    return ports;
+}
+
+std::vector<SteppedPing> Simulation::step(std::map<std::string, types::Pose> at, std::optional<double> time) {
+    const types::Time now = types::Time::fromSeconds(time.value_or(time_));
+    if (last_ && !(*last_ < now))
+        throw std::runtime_error(
+            fmt::format("the step is at {:g} s, and the one before was at {:g} s", now.seconds(), last_->seconds()));
+    last_ = now;
+    for (size_t i = 0; i < poses_.size(); ++i) {
+        const auto given = at.find(poses_[i]);
+        if (given == at.end()) throw std::runtime_error("no pose is given for " + poses_[i]);
+        given->second.time = now;
+        feeds_[i]->give(splitPort(poses_[i]).second, given->second);
+    }
+    while (std::ranges::any_of(feeds_, [](const PoseFeed* feed) { return feed->nextTime().has_value(); }))
+        if (!deployment_->advance()) break;
+    time_ = now.seconds() + period_;
+    throwErrors();
+    std::vector<SteppedPing> made(readers_.size());
+    for (size_t i = 0; i < readers_.size(); ++i) {
+        readers_[i]->ping.readNewest(made[i].ping, false);
+        readers_[i]->truth.readNewest(made[i].truth, false);
+    }
+    return made;
+}
+
+void Simulation::throwErrors() const {
+    for (const auto& task : deployment_->tasks())
+        if (framework::hasFailed(*task) || task->state() == framework::TaskState::RunTimeError)
+            throw std::runtime_error(task->name() + ": " + task->lastError());
+}
+
+void Simulation::reset(std::optional<uint64_t> seed) {
+    throwAny(deployment_->stop());
+    for (const auto& reader : readers_) reader->ping.clear(), reader->truth.clear();
+    for (const auto& task : deployment_->tasks()) {
+        if (deployment_->spec().task(task->name())->type == scene_type) continue;
+        if (const framework::Outcome outcome = task->cleanup(); !outcome) throw std::runtime_error(outcome.reason);
+        for (framework::PropertiesBase* properties : task->properties())
+            for (const framework::PropertyInfo& property : properties->list())
+                if (seed && property.name == "seed" && !own_seeds_.contains(task->name()))
+                    properties->set("seed", std::to_string(framework::seedOf(*seed, task->name())));
+        if (const framework::Outcome outcome = task->configure(); !outcome) throw std::runtime_error(outcome.reason);
+    }
+    start();
+}
+
+}  // namespace insonify::python

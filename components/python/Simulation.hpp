@@ -1,0 +1,73 @@
+#pragma once
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <optional>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "components/framework/Deployment.hpp"
+#include "components/framework/Registry.hpp"
+#include "components/python/StepTasks.hpp"
+#include "types/Pose.hpp"
+
+namespace insonify::python {
+
+/** What a simulation is made of. */
+struct SimulationOptions {
+    uint64_t seed = 0;                   ///< As of `insonify run --seed`; 0: the deployment's own.
+    std::vector<std::string> overrides;  ///< "task.property=value", as of `insonify run --set`.
+    bool truth = false;                  ///< Whether pings come with what they show.
+    std::optional<double> period;        ///< Between two steps; none: that of the poses it replaces, or 0.1 [s].
+};
+
+/** One ping that a step has made. */
+struct SteppedPing {
+    types::SonarPtr ping;
+    types::SonarTruthPtr truth;  ///< Null where it was not asked for.
+};
+
+/** A deployment that goes on by one pose at a time, given by who calls.
+ *
+ *  Of the deployment there are the tasks that lead to pings, in lockstep. Those that tell a scene's `pose` are replaced
+ * by the caller; those that move objects stay and go by simulated time. It gives the pings of the last task of each
+ * chain that takes them: a receiver's, where there is one. Errors of the deployment are types::ConfigError, those of a
+ * step std::runtime_error. For one thread at a time. */
+class Simulation {
+public:
+    Simulation(const std::string& deployment, SimulationOptions options);
+
+    /** Ports whose poses are to be given, "task.port". */
+    const std::vector<std::string>& poses() const { return poses_; }
+    /** Ports whose pings come back, "task.port". */
+    std::vector<std::string> pings() const;
+    double period() const { return period_; }  ///< [s]
+    double time() const { return time_; }      ///< Of the next step where nothing else is said [s].
+
+    /** Gives each scene its pose at a time, later than that of the step before [s]; one ping for each of pings(), with
+     *  null where it made none. */
+    std::vector<SteppedPing> step(std::map<std::string, types::Pose> at, std::optional<double> time);
+    /** Back to the start, as if it had just been made with this seed; none: the same. The scene stays loaded. */
+    void reset(std::optional<uint64_t> seed);
+
+private:
+    void replacePoses(framework::DeploymentSpec& spec);
+    void connectReaders(bool truth);
+    void start();
+    /** Throws what a task says that is in error. */
+    void throwErrors() const;
+
+    framework::Registry registry_;
+    std::vector<std::string> poses_;
+    std::vector<std::unique_ptr<PingReader>> readers_;  ///< Outlive the tasks that write to them.
+    std::unique_ptr<framework::Deployment> deployment_;
+    std::vector<PoseFeed*> feeds_;
+    double period_ = 0.1;
+    double start_time_ = 0;
+    double time_ = 0;
+    std::optional<types::Time> last_;  ///< Of the step before.
+    std::set<std::string> own_seeds_;  ///< Tasks whose seed has been given by name.
+};
+
+}  // namespace insonify::python

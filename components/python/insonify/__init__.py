@@ -1,0 +1,277 @@
+"""Imaging sonar from a 3-D scene, step by step.
+
+    import insonify
+
+    sim = insonify.Simulation("deploy/minimal.yml", seed=1, overrides={"sonar.range": 30})
+    ping = sim.step(insonify.Pose([0, 0, -5]))
+    ping.bins.shape     # (beams, bins), float32, the simulator's own memory
+
+Frames are Rock's: the world is x north, y west, z up; a body x forward, y to port, z up. Lengths are metres, angles
+radians, times seconds; bearings are positive to port.
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from ._insonify import ConfigError, Ping, Stream
+from . import _insonify
+
+__all__ = ["ConfigError", "Log", "Ping", "Pose", "Simulation", "Truth", "read_log"]
+
+
+@dataclass(eq=False)
+class Pose:
+    """A body in the world."""
+
+    position: np.ndarray
+    """Of its origin [m]: north, west, up."""
+    orientation_wxyz: np.ndarray = field(default_factory=lambda: np.array([1.0, 0.0, 0.0, 0.0]))
+    """The quaternion w, x, y, z that turns vectors of the body into the world."""
+    time: float | None = None
+    """When it was true [s]; None: unknown."""
+
+    def __post_init__(self) -> None:
+        self.position = np.asarray(self.position, float).reshape(3)
+        self.orientation_wxyz = np.asarray(self.orientation_wxyz, float).reshape(4)
+
+    def __eq__(self, other: object) -> bool:
+        if not isinstance(other, Pose):
+            return NotImplemented
+        return (
+            np.array_equal(self.position, other.position)
+            and np.array_equal(self.orientation_wxyz, other.orientation_wxyz)
+            and self.time == other.time
+        )
+
+    @classmethod
+    def from_matrix(cls, world_from_body: np.ndarray) -> Pose:
+        """Of a 4 x 4 transform: ValueError for one that is not made of a rotation and a place."""
+        matrix = np.asarray(world_from_body, float)
+        rotation = matrix[:3, :3]
+        if matrix.shape != (4, 4) or not np.allclose(matrix[3], [0, 0, 0, 1]):
+            raise ValueError("a transform is 4 x 4, with a last row of 0 0 0 1")
+        if not np.allclose(rotation @ rotation.T, np.eye(3), atol=1e-6) or np.linalg.det(rotation) < 0:
+            raise ValueError("the upper left 3 x 3 of the transform is no rotation")
+        return cls(matrix[:3, 3], _quaternion(rotation))
+
+    @classmethod
+    def from_euler(cls, position: np.ndarray, roll: float = 0, pitch: float = 0, yaw: float = 0) -> Pose:
+        """Turned by Rz(yaw) Ry(pitch) Rx(roll) [rad]: a positive pitch looks down, a positive yaw turns to port."""
+        (cr, sr), (cp, sp), (cy, sy) = ((np.cos(a / 2), np.sin(a / 2)) for a in (roll, pitch, yaw))
+        return cls(
+            position,
+            [
+                cr * cp * cy + sr * sp * sy,
+                sr * cp * cy - cr * sp * sy,
+                cr * sp * cy + sr * cp * sy,
+                cr * cp * sy - sr * sp * cy,
+            ],
+        )
+
+    def matrix(self) -> np.ndarray:
+        """The 4 x 4 transform from the body to the world."""
+        w, x, y, z = self.orientation_wxyz / np.linalg.norm(self.orientation_wxyz)
+        made = np.eye(4)
+        made[:3, :3] = [
+            [1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)],
+            [2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)],
+            [2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)],
+        ]
+        made[:3, 3] = self.position
+        return made
+
+
+def _quaternion(rotation: np.ndarray) -> np.ndarray:
+    """w, x, y, z of a rotation: the largest of the four is taken first, so that none is divided by next to nothing."""
+    r = rotation
+    squares = np.array(
+        [
+            1 + r[0, 0] + r[1, 1] + r[2, 2],
+            1 + r[0, 0] - r[1, 1] - r[2, 2],
+            1 - r[0, 0] + r[1, 1] - r[2, 2],
+            1 - r[0, 0] - r[1, 1] + r[2, 2],
+        ]
+    )
+    largest = int(np.argmax(squares))
+    rows = np.array(
+        [
+            [squares[0], r[2, 1] - r[1, 2], r[0, 2] - r[2, 0], r[1, 0] - r[0, 1]],
+            [r[2, 1] - r[1, 2], squares[1], r[0, 1] + r[1, 0], r[0, 2] + r[2, 0]],
+            [r[0, 2] - r[2, 0], r[0, 1] + r[1, 0], squares[2], r[1, 2] + r[2, 1]],
+            [r[1, 0] - r[0, 1], r[0, 2] + r[2, 0], r[1, 2] + r[2, 1], squares[3]],
+        ]
+    )
+    return rows[largest] / np.linalg.norm(rows[largest])
+
+
+class Truth(Mapping):
+    """What the bins of a ping show: arrays [beams, bins] by name, as attributes as well.
+
+    `object` is an index into `objects` (names), -1 where there is none; `share` of that object in the bin's energy;
+    `elevation` and `grazing` [rad]; `hits`; `path` (0 direct, 1 and 2 by the surface, 3 by a second bounce); `shadow`.
+    """
+
+    def __init__(self, arrays: dict) -> None:
+        self._arrays = arrays
+
+    def __getitem__(self, name: str):
+        return self._arrays[name]
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._arrays)
+
+    def __len__(self) -> int:
+        return len(self._arrays)
+
+    def __getattr__(self, name: str):
+        try:
+            return self.__dict__["_arrays"][name]
+        except KeyError:
+            raise AttributeError(name) from None
+
+
+def _ping_truth(self) -> Truth | None:
+    arrays = self._truth
+    return None if arrays is None else Truth(arrays)
+
+
+def _ping_fan(
+    self,
+    width: int = 512,
+    dynamic_range_db: float = 40,
+    reference_db: float | None = None,
+    colour_map: str = "amber",
+    scale: str = "linear",
+    code_bits: int = 8,
+) -> np.ndarray:
+    """The ping as a picture [height, width, 3] of uint8, red first; the arguments are the properties of
+    output::FanImageTask. Ahead is up, port is left."""
+    return self._fan(width, dynamic_range_db, reference_db, colour_map, scale, code_bits)
+
+
+Ping.truth = property(_ping_truth, doc="What the bins show; None where the simulation was not asked for it")
+Ping.fan = _ping_fan
+
+
+class Simulation:
+    """A deployment that goes on by one pose at a time.
+
+    Of the deployment there are the tasks that lead to pings, in lockstep; what tells a scene where the vehicle is, is
+    replaced by the caller, and what talks to others is left out. The same seed and the same poses give the same pings,
+    as `insonify run` does with the same poses. Several simulations may live in one process, each used by one thread at
+    a time: other threads run while one renders.
+
+    :param deployment: a file, or a folder with one.
+    :param seed: of the run; 0: the deployment's own seeds.
+    :param overrides: values of "task.property", as of `--set`: what JSON can hold.
+    :param truth: whether pings come with what they show, which takes time.
+    :param period: between two steps [s]; None: that of the poses of the deployment.
+    :raises ConfigError: with `file`, `line`, `column` of the first diagnostic, and all of them in `diagnostics`.
+    """
+
+    def __init__(
+        self,
+        deployment: str,
+        seed: int = 0,
+        overrides: Mapping[str, object] | None = None,
+        *,
+        truth: bool = False,
+        period: float | None = None,
+    ) -> None:
+        assignments = [f"{name}={json.dumps(value)}" for name, value in (overrides or {}).items()]
+        self._simulation = _insonify.Simulation(str(deployment), seed, assignments, truth, period)
+
+    @property
+    def poses(self) -> list[str]:
+        """Ports whose poses step() takes."""
+        return self._simulation.poses
+
+    @property
+    def pings(self) -> list[str]:
+        """Ports whose pings step() gives."""
+        return self._simulation.pings
+
+    @property
+    def period(self) -> float:
+        """Between two steps [s]."""
+        return self._simulation.period
+
+    @property
+    def time(self) -> float:
+        """Of the next step, where it is told no other [s]."""
+        return self._simulation.time
+
+    def step(self, pose, time: float | None = None):
+        """The ping at a pose: a Pose, or a 4 x 4 transform from the body to the world.
+
+        With several vehicles, a dictionary of poses by port; with several sonars, the pings come as one. A ping that
+        was not made is None. RuntimeError tells what a task says that is in error.
+        """
+        given = pose if isinstance(pose, Mapping) else {self._only(self.poses, "poses"): pose}
+        made = self._simulation.step({port: _parts(each) for port, each in given.items()}, time)
+        return made[0] if len(made) == 1 else dict(zip(self.pings, made))
+
+    def reset(self, seed: int | None = None) -> None:
+        """Back to the start, as if made anew with this seed; None: the same seed. The scene stays loaded."""
+        self._simulation.reset(seed)
+
+    @staticmethod
+    def _only(ports: list[str], what: str) -> str:
+        if len(ports) != 1:
+            raise ValueError(f"this deployment has several {what}: give a dictionary of {', '.join(ports)}")
+        return ports[0]
+
+
+def _parts(pose) -> tuple[np.ndarray, np.ndarray]:
+    made = pose if isinstance(pose, Pose) else Pose.from_matrix(pose)
+    return made.position, made.orientation_wxyz
+
+
+class Log(Mapping):
+    """The streams of a log by name: each a sequence of samples, with `times` [s], `type` and `metadata`."""
+
+    def __init__(self, path: str) -> None:
+        self.path = str(path)
+        self._streams = {stream.name: _Samples(stream) for stream in _insonify.streams(self.path)}
+
+    def __getitem__(self, name: str) -> _Samples:
+        return self._streams[name]
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._streams)
+
+    def __len__(self) -> int:
+        return len(self._streams)
+
+
+class _Samples:
+    """One stream: samples are read when they are asked for. Pings are Ping, poses Pose, pictures arrays."""
+
+    def __init__(self, stream: Stream) -> None:
+        self._stream = stream
+        self.name, self.type, self.metadata, self.times = stream.name, stream.type, stream.metadata, stream.times
+
+    def __len__(self) -> int:
+        return len(self._stream)
+
+    def __getitem__(self, index: int):
+        sample = self._stream._sample(index + len(self) if index < 0 else index)
+        if isinstance(sample, dict):
+            return Truth(sample)
+        if isinstance(sample, tuple):
+            time, position, orientation = sample
+            return Pose(position, orientation, time)
+        return sample
+
+    def __iter__(self):
+        return (self[index] for index in range(len(self)))
+
+
+def read_log(path: str) -> Log:
+    """The streams of a log of Rock's format or an MCAP file. ConfigError for what is no log."""
+    return Log(path)

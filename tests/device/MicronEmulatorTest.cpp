@@ -1,0 +1,339 @@
+// A Micron by bytes and a made-up clock, before what an open driver sends and checks.
+#include <gmock/gmock.h>
+
+#include <map>
+
+#include "components/device/MicronEmulator.hpp"
+#include "tests/support/MicronDriver.hpp"
+#include "types/Angle.hpp"
+
+namespace insonify::device {
+namespace {
+
+using test::MicronDriver;
+using ::testing::Each;
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+
+class MicronEmulatorTest : public ::testing::Test {
+protected:
+    MicronEmulatorTest() {
+        emulator_.opened(client);
+        advance(0);
+        advance(1);
+        sent_.clear();
+    }
+
+    void advance(double seconds) {
+        now_ = now_ + types::Time::fromSeconds(seconds);
+        emulator_.tick(now_);
+    }
+    void hear() {
+        ping_.time = now_;
+        emulator_.heard(ping_);
+    }
+    /** Goes on to what is due next; the sonar answers at once. */
+    void wait() {
+        emulator_.tick(now_);
+        if (answers_ && !asked_.empty()) {
+            hear();
+            asked_.pop_back();
+        }
+        if (const auto due = emulator_.tick(now_)) now_ = std::max(now_, *due);
+        emulator_.tick(now_);
+    }
+    /** Lets time go on until there is something to read, as a driver waits. */
+    Bytes readFor(Client whom) {
+        for (int i = 0; i < 10 && sent_[whom].empty(); ++i) wait();
+        if (sent_[whom].empty()) throw std::runtime_error("time out");
+        Bytes bytes;
+        std::swap(bytes, sent_[whom]);
+        return bytes;
+    }
+    MicronDriver driverOf(Client whom) {
+        return {[this, whom](const Bytes& bytes) { emulator_.received(whom, bytes, now_); },
+                [this, whom] { return readFor(whom); }};
+    }
+    static types::Sonar pingOf(std::vector<float> bins) {
+        types::Sonar ping;
+        ping.bins = std::move(bins);
+        return ping;
+    }
+
+    const Client client{0, 1}, other{0, 2};
+    types::Time now_{1'700'000'000'000'000};
+    std::map<Client, Bytes> sent_;
+    std::vector<types::SonarSettings> asked_, all_asked_;
+    std::vector<std::string> warnings_;
+    bool answers_ = true;
+    types::Sonar ping_ = pingOf(std::vector<float>(200, 65535));
+    MicronEmulator emulator_{
+        {},
+        {[this](const types::SonarSettings& settings) {
+             asked_.push_back(settings);
+             all_asked_.push_back(settings);
+         },
+         [this](Client to, Bytes bytes) { sent_[to].insert(sent_[to].end(), bytes.begin(), bytes.end()); },
+         [this](const std::string& text) { warnings_.push_back(text); }}};
+    MicronDriver driver_ = driverOf(client);
+};
+
+TEST_F(MicronEmulatorTest, ADriverComesThroughItsHandshakeAndScansAllRound) {
+    driver_.reboot();
+    EXPECT_EQ(driver_.serialNumber(), 1);
+    EXPECT_TRUE(driver_.isFullDuplex());
+    driver_.configure({});
+    double before = 0;
+    for (int i = 0; i < 430; ++i) {
+        driver_.request();
+        const auto beam = driver_.beam();
+        EXPECT_EQ(beam.bins.size(), 200u);
+        EXPECT_THAT(beam.bins, Each(255));
+        const double turned = std::remainder(beam.bearing - before, 2 * M_PI);
+        EXPECT_NEAR(turned, i == 0 ? 0 : -2 * M_PI * 15 / 6400, 1e-3) << "clockwise, by 15/16 gradian";
+        before = beam.bearing;
+        EXPECT_NEAR(std::remainder(all_asked_.back().bearing.rad - beam.bearing, 2 * M_PI), 0, 1e-3) << i;
+    }
+    EXPECT_EQ(all_asked_.size(), 430u);
+    EXPECT_THAT(warnings_, IsEmpty());
+}
+
+TEST_F(MicronEmulatorTest, WhatIsCommandedIsAskedOfTheSonar) {
+    SeaNetHeadCommand command;
+    command.control = SeaNetControl::eight_bits;
+    command.transmit[0] = 77846282;
+    command.gain = 105;
+    command.ad_interval = 100;
+    command.bins = 250;
+    command.right = 6399;
+    emulator_.received(client, command.message().packet(), now_);
+    driver_.request();
+    advance(0);
+    ASSERT_EQ(asked_.size(), 1u);
+    EXPECT_EQ(asked_[0].time, now_);
+    EXPECT_NEAR(asked_[0].range, 250 * 64e-6 * 1500 / 2, 1e-9);
+    EXPECT_EQ(asked_[0].bin_count, 250u);
+    EXPECT_NEAR(asked_[0].frequency_khz, 580, 1e-4);
+    EXPECT_NEAR(asked_[0].gain_db, 8, 1e-9) << "50 % of 80 dB, where 40 % is usual";
+    EXPECT_EQ(asked_[0].bearing.rad, 0) << "ahead";
+    EXPECT_EQ(asked_[0].speed_of_sound, 1500);
+}
+
+TEST_F(MicronEmulatorTest, ALineIsAnsweredOnceSoundIsBackAndTheMotorHasArrived) {
+    driver_.configure({.resolution = 0.1, .max_distance = 20, .step = 2 * M_PI / 100});
+    const double listening = 200 * 208 * 640e-9, travel = 63 * 25 * 10e-6;
+    types::Time asked_at = now_;
+    driver_.request();
+    advance(0);
+    ASSERT_EQ(asked_.size(), 1u);
+    hear();
+    advance(listening - 1e-4);
+    EXPECT_TRUE(sent_[client].empty()) << "sound is not back";
+    advance(1e-4);
+    EXPECT_FALSE(sent_[client].empty());
+    EXPECT_NEAR((now_ - asked_at).seconds(), listening, 2e-6);
+    sent_.clear();
+    driver_.request();
+    advance(travel - 1e-4);
+    EXPECT_EQ(asked_.size(), 1u) << "the motor turns";
+    advance(1e-4);
+    ASSERT_EQ(asked_.size(), 2u);
+    advance(2 * listening);
+    EXPECT_TRUE(sent_[client].empty()) << "the ping has not come";
+    hear();
+    advance(0);
+    EXPECT_FALSE(sent_[client].empty());
+}
+
+TEST_F(MicronEmulatorTest, ASectorIsScannedToAndFro) {
+    driver_.configure({.left = M_PI / 4, .right = -M_PI / 4, .step = 2 * M_PI / 40, .continuous = false});
+    std::vector<int> places;
+    for (int i = 0; i < 20; ++i) {
+        driver_.request();
+        places.push_back(static_cast<int>(std::lround(driver_.beam().bearing / (2 * M_PI) * 6400)));
+    }
+    int turns = 0;
+    for (size_t i = 2; i < places.size(); ++i) {
+        EXPECT_LE(std::abs(places[i]), 802) << "within the limits";
+        turns += (places[i] - places[i - 1]) * (places[i - 1] - places[i - 2]) < 0 ? 1 : 0;
+    }
+    EXPECT_GE(turns, 1);
+    EXPECT_NEAR(*std::ranges::max_element(places), 800, 2);
+    EXPECT_NEAR(*std::ranges::min_element(places), -800, 2);
+}
+
+TEST_F(MicronEmulatorTest, ASectorAcrossTheSternIsEnteredAtItsLimit) {
+    SeaNetHeadCommand command;
+    command.control = SeaNetControl::eight_bits;
+    command.left = 6000;
+    command.right = 400;
+    command.step = 160;
+    command.ad_interval = 10;
+    command.bins = 10;
+    emulator_.received(client, command.message().packet(), now_);
+    sent_.clear();
+    EXPECT_EQ(emulator_.bearing(), 6000) << "it goes there at once";
+    std::vector<int> places;
+    for (int i = 0; i < 9; ++i) {
+        driver_.request();
+        readFor(client);
+        places.push_back(emulator_.bearing());
+    }
+    EXPECT_THAT(places, ElementsAre(6160, 6320, 80, 240, 400, 240, 80, 6320, 6160));
+}
+
+TEST_F(MicronEmulatorTest, FourBitsShowTheSpanThatIsCommanded) {
+    driver_.configure({.resolution = 0.1, .max_distance = 0.8, .low_resolution = true});
+    const auto code = [](double of_255) { return static_cast<float>(65535 * of_255 / 255); };
+    ping_ = pingOf({0, code(8), code(8 + 81 / 15.0), code(48.5), code(89), code(255), NAN});
+    driver_.request();
+    EXPECT_THAT(driver_.beam().bins, ElementsAre(0, 0, 17, 8 * 17, 255, 255, 0, 0));
+    ping_ = pingOf({code(9), code(10)});
+    driver_.configure({.resolution = 0.1, .max_distance = 0.4});
+    driver_.request();
+    EXPECT_THAT(driver_.beam().bins, ElementsAre(9, 10, 0, 0)) << "8 bits: 255 for 80 dB; a bin that was not made is 0";
+}
+
+TEST_F(MicronEmulatorTest, AnInvertedHeadTurnsTheOtherWay) {
+    SeaNetHeadCommand command;
+    command.control = SeaNetControl::eight_bits | SeaNetControl::continuous | SeaNetControl::inverted;
+    command.ad_interval = 10;
+    command.bins = 10;
+    command.step = 100;
+    emulator_.received(client, command.message().packet(), now_);
+    sent_.clear();
+    for (int i = 0; i < 2; ++i) {
+        driver_.request();
+        readFor(client);
+    }
+    EXPECT_NEAR(all_asked_[1].bearing.rad, 2 * M_PI * 100 / 6400, 1e-9);
+}
+
+TEST_F(MicronEmulatorTest, WhatItCannotDoItDoesNotTake) {
+    const auto configured = [&](auto change) {
+        SeaNetHeadCommand command;
+        command.ad_interval = command.bins = 100;
+        change(command);
+        sent_.clear();
+        emulator_.received(client, seaNetRequest(SeaNetType::Reboot).packet(), now_);
+        advance(1);
+        sent_.clear();
+        emulator_.received(client, command.message().packet(), now_);
+        SeaNetReader reader;
+        reader.add(sent_[client]);
+        return SeaNetAlive::in(*reader.next())->configured;
+    };
+    EXPECT_TRUE(configured([](auto&) {}));
+    EXPECT_FALSE(configured([](auto& command) { command.bins = 0; }));
+    EXPECT_FALSE(configured([](auto& command) { command.bins = 1501; }));
+    EXPECT_FALSE(configured([](auto& command) { command.ad_interval = 0; }));
+    EXPECT_FALSE(configured([](auto& command) { command.ad_interval = 1501; }));
+    EXPECT_FALSE(configured([](auto& command) { command.left = 6400; }));
+    EXPECT_FALSE(configured([](auto& command) { command.right = 65535; }));
+    EXPECT_EQ(warnings_.size(), 6u);
+    EXPECT_THAT(warnings_.front(), HasSubstr("must have 1 to 1500 bins"));
+    sent_.clear();
+    driver_.request();
+    SeaNetReader reader;
+    reader.add(sent_[client]);
+    EXPECT_TRUE(SeaNetAlive::in(*reader.next())->unconfigured) << "no parameters, no line";
+}
+
+TEST_F(MicronEmulatorTest, TwoClientsHaveOneHead) {
+    emulator_.opened(other);
+    MicronDriver second = driverOf(other);
+    driver_.configure({});
+    second.configure({});
+    driver_.request();
+    second.request();
+    const auto first = driver_.beam();
+    EXPECT_EQ(all_asked_.size(), 1u) << "one ping for both";
+    EXPECT_EQ(second.beam().bearing, first.bearing);
+    driver_.request();
+    advance(0);
+    emulator_.closed(client);  // in mid-ping
+    hear();
+    advance(1);
+    EXPECT_TRUE(sent_[client].empty());
+    second.request();
+    EXPECT_EQ(second.beam().bins.size(), 200u) << "and the head goes on for the other";
+}
+
+TEST_F(MicronEmulatorTest, OneThatRebootsInMidPingStartsAgain) {
+    driver_.configure({});
+    driver_.request();
+    advance(0);
+    ASSERT_EQ(asked_.size(), 1u);
+    driver_.reboot();
+    hear();
+    advance(0.1);
+    EXPECT_TRUE(sent_[client].empty()) << "the line is forgotten";
+    driver_.configure({});
+    driver_.request();
+    EXPECT_NEAR(driver_.beam().bearing, 0, 1e-3) << "ahead again";
+}
+
+/** A driver that takes an old mtAlive for the answer to its mtReBoot goes on at once. */
+TEST_F(MicronEmulatorTest, ACommandWhileItBootsIsTakenAndItsLineWaits) {
+    emulator_.received(client, seaNetRequest(SeaNetType::Reboot).packet(), now_);
+    driver_.configure({});
+    driver_.request();
+    advance(0.4);
+    EXPECT_TRUE(asked_.empty());
+    advance(0.1);
+    EXPECT_EQ(asked_.size(), 1u);
+}
+
+TEST_F(MicronEmulatorTest, APingThatNeverComesIsToldOnceAndLeavesTheHeadUsable) {
+    driver_.configure({});
+    answers_ = false;
+    for (int i = 0; i < 2; ++i) {
+        driver_.request();
+        advance(0);
+        advance(3);
+    }
+    ASSERT_EQ(warnings_.size(), 1u);
+    EXPECT_THAT(warnings_[0], HasSubstr("no ping came"));
+    driver_.request();
+    advance(0);
+    sent_.clear();
+    ping_.time = now_ - types::Time{1};
+    emulator_.heard(ping_);
+    advance(1);
+    EXPECT_TRUE(sent_[client].size() < 45) << "a ping of before is of another bearing";
+    advance(3);
+    sent_.clear();
+    asked_.clear();
+    answers_ = true;
+    driver_.request();
+    EXPECT_EQ(driver_.beam().bins.size(), 200u);
+}
+
+TEST_F(MicronEmulatorTest, ItTellsThatItLivesUntilItIsToldNotTo) {
+    const auto heard = [&] {
+        const size_t size = sent_[client].size();
+        sent_.clear();
+        return size / 22;
+    };
+    for (int i = 0; i < 3; ++i) advance(1);
+    EXPECT_EQ(heard(), 3u);
+    emulator_.received(client, seaNetRequest(SeaNetType::StopAlive).packet(), now_);
+    for (int i = 0; i < 3; ++i) advance(1);
+    EXPECT_EQ(heard(), 0u);
+}
+
+TEST_F(MicronEmulatorTest, ANoisyLineAndOtherNodesDisturbNothing) {
+    SeaNetMessage to_another = seaNetRequest(SeaNetType::Reboot);
+    to_another.to = 20;
+    emulator_.received(client, to_another.packet(), now_);
+    emulator_.received(client, Bytes{'@', '0', '0', 0, 255, '@'}, now_);
+    emulator_.received(client, SeaNetMessage{static_cast<SeaNetType>(99), 255, 2, Bytes(7)}.packet(), now_);
+    emulator_.received(client, SeaNetMessage{SeaNetType::HeadCommand, 255, 2, Bytes(7)}.packet(), now_);
+    EXPECT_THAT(warnings_, ElementsAre(HasSubstr("it is too short")));
+    sent_.clear();
+    EXPECT_EQ(driver_.serialNumber(), 1);
+}
+
+}  // namespace
+}  // namespace insonify::device

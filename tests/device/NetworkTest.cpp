@@ -1,0 +1,222 @@
+// The ends on which drivers find a device, with real clients on this machine.
+#include <arpa/inet.h>
+#include <fcntl.h>
+#include <gmock/gmock.h>
+#include <poll.h>
+#include <sys/socket.h>
+#include <termios.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <atomic>
+#include <chrono>
+#include <filesystem>
+#include <memory>
+#include <thread>
+
+#include "components/device/Network.hpp"
+#include "tests/support/Folder.hpp"
+
+namespace insonify::device {
+namespace {
+
+using Kind = NetworkEvent::Kind;
+using namespace std::chrono_literals;
+
+/** A driver's end of a connection, datagrams or a line. */
+class Peer {
+public:
+    Peer(int type, uint16_t port) : file_(socket(AF_INET, type, 0)) {
+        sockaddr_in to{};
+        to.sin_family = AF_INET;
+        to.sin_port = htons(port);
+        to.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+        EXPECT_EQ(connect(file_, reinterpret_cast<sockaddr*>(&to), sizeof to), 0);
+    }
+    explicit Peer(const std::filesystem::path& line) : file_(open(line.c_str(), O_RDWR | O_NOCTTY)) {
+        termios raw{};
+        cfmakeraw(&raw);
+        tcsetattr(file_, TCSANOW, &raw);
+    }
+    ~Peer() { close(file_); }
+    Peer(const Peer&) = delete;
+    Peer& operator=(const Peer&) = delete;
+    void say(const Bytes& bytes) const { EXPECT_EQ(::write(file_, bytes.data(), bytes.size()), ssize_t(bytes.size())); }
+    /** So many bytes, or fewer where the end closes or falls silent. */
+    Bytes hear(size_t count) const {
+        Bytes bytes;
+        for (pollfd ready{file_, POLLIN, 0}; bytes.size() < count && poll(&ready, 1, 5000) == 1;) {
+            Bytes part(count - bytes.size());
+            const ssize_t got = ::read(file_, part.data(), part.size());
+            if (got <= 0) break;
+            bytes.insert(bytes.end(), part.begin(), part.begin() + got);
+        }
+        return bytes;
+    }
+
+private:
+    int file_;
+};
+
+class NetworkTest : public testing::Test {
+protected:
+    /** The next events, as soon as there are so many of a kind; fewer after ten seconds. */
+    std::vector<NetworkEvent> await(Kind kind, size_t count = 1) {
+        std::vector<NetworkEvent> all;
+        const auto end = std::chrono::steady_clock::now() + 10s;
+        while (std::ranges::count(all, kind, &NetworkEvent::kind) < std::ptrdiff_t(count)) {
+            if (std::chrono::steady_clock::now() > end) break;
+            for (NetworkEvent& event : network_.take()) all.push_back(std::move(event));
+            std::this_thread::sleep_for(1ms);
+        }
+        return all;
+    }
+
+    std::atomic<int> woken_{0};
+    Network network_{[this] { ++woken_; }};
+};
+
+TEST_F(NetworkTest, BytesGoThereAndBackByConnectionDatagramAndLine) {
+    const Folder folder;
+    const End tcp = network_.listenTcp("127.0.0.1", 0), udp = network_.listenUdp("127.0.0.1", 0);
+    network_.openSerial(folder / "line");
+    const Peer a(SOCK_STREAM, network_.portOf(tcp)), b(SOCK_DGRAM, network_.portOf(udp)), c(folder / "line");
+    for (const Peer* peer : {&a, &b, &c}) {
+        peer->say({1, 2, 3});
+        const NetworkEvent got = await(Kind::Received).back();
+        EXPECT_THAT(got.bytes, testing::ElementsAre(1, 2, 3));
+        network_.send(got.client, {9, 8});
+        EXPECT_THAT(peer->hear(2), testing::ElementsAre(9, 8));
+    }
+    EXPECT_GE(woken_, 3);
+    EXPECT_THAT(network_.names(),
+                testing::ElementsAre(testing::StartsWith("TCP 127.0.0.1:"), testing::StartsWith("UDP 127.0.0.1:"),
+                                     "serial line " + (folder / "line").string()));
+}
+
+TEST_F(NetworkTest, ALineStaysWhileDriversComeAndGoAndItsLinkGoesWithIt) {
+    const Folder folder;
+    {
+        Network network([] {});
+        network.openSerial(folder / "line");
+        for (uint8_t i = 0; i < 3; ++i) {
+            const Peer driver(folder / "line");
+            driver.say({i});
+            std::vector<NetworkEvent> events;
+            while (events.empty() || events.back().kind != Kind::Received) {
+                for (NetworkEvent& event : network.take()) events.push_back(std::move(event));
+                std::this_thread::sleep_for(1ms);
+            }
+            EXPECT_EQ(events.back().bytes, Bytes{i});
+        }
+    }
+    EXPECT_FALSE(std::filesystem::is_symlink(folder / "line"));
+}
+
+TEST_F(NetworkTest, AThousandReconnectsLeaveNoClientAndNoFileBehind) {
+    const auto openFiles = [] {
+        return std::distance(std::filesystem::directory_iterator("/proc/self/fd"),
+                             std::filesystem::directory_iterator());
+    };
+    const End end = network_.listenTcp("127.0.0.1", 0);
+    const auto before = openFiles();
+    std::vector<NetworkEvent> all;
+    for (int i = 0; i < 1000; ++i) {
+        const Peer peer(SOCK_STREAM, network_.portOf(end));
+        peer.say({1});
+        for (NetworkEvent& event : await(Kind::Received)) all.push_back(std::move(event));
+    }
+    for (NetworkEvent& event : await(Kind::Closed)) all.push_back(std::move(event));
+    while (std::ranges::count(all, Kind::Closed, &NetworkEvent::kind) < 1000)
+        for (NetworkEvent& event : await(Kind::Closed)) all.push_back(std::move(event));
+    EXPECT_EQ(std::ranges::count(all, Kind::Opened, &NetworkEvent::kind), 1000);
+    EXPECT_EQ(openFiles(), before);
+}
+
+TEST_F(NetworkTest, OneWhoDoesNotReadLosesWhatIsStreamedAndHoldsUpNobody) {
+    const End end = network_.listenTcp("127.0.0.1", 0);
+    const Peer deaf(SOCK_STREAM, network_.portOf(end));
+    const Client never = await(Kind::Opened).back().client;
+    const Peer other(SOCK_STREAM, network_.portOf(end));
+    const Client reads = await(Kind::Opened).back().client;
+    for (int i = 0; i < 200; ++i) network_.send(never, Bytes(1 << 20, 7), Network::Kind::Stream);
+    network_.send(reads, {5});
+    EXPECT_THAT(other.hear(1), testing::ElementsAre(5));
+    EXPECT_GT(network_.dropped(), 100u);
+    for (int i = 0; i < 30; ++i) network_.send(never, Bytes(1 << 20, 7));
+    const NetworkEvent closed = await(Kind::Closed).back();
+    EXPECT_EQ(closed.client, never) << "for whom too much waits that must arrive";
+}
+
+TEST_F(NetworkTest, OneWhoSendsWithoutEndIsReadNoFasterThanTheTaskTakes) {
+    const End end = network_.listenTcp("127.0.0.1", 0);
+    const Peer peer(SOCK_STREAM, network_.portOf(end));
+    std::thread sender([&] { peer.say(Bytes(size_t{16} << 20, 3)); });
+    std::this_thread::sleep_for(200ms);
+    size_t largest = 0, total = 0;
+    while (total < size_t{16} << 20) {
+        size_t part = 0;
+        for (const NetworkEvent& event : network_.take()) part += event.bytes.size();
+        largest = std::max(largest, part);
+        total += part;
+        std::this_thread::sleep_for(1ms);
+    }
+    sender.join();
+    EXPECT_LE(largest, Network::max_received + 65536);
+}
+
+TEST_F(NetworkTest, AClosedClientHearsWhatWasSentBefore) {
+    const End end = network_.listenTcp("127.0.0.1", 0);
+    const Peer peer(SOCK_STREAM, network_.portOf(end));
+    const Client client = await(Kind::Opened).back().client;
+    network_.send(client, Bytes(100'000, 4));
+    network_.close(client);
+    EXPECT_EQ(peer.hear(100'001).size(), 100'000u);
+    EXPECT_EQ(await(Kind::Closed).back().client, client);
+}
+
+TEST_F(NetworkTest, MoreClientsThanAreServedAreClosedAtOnce) {
+    const End end = network_.listenTcp("127.0.0.1", 0);
+    std::vector<std::unique_ptr<Peer>> peers;
+    for (size_t i = 0; i < Network::max_clients; ++i)
+        peers.push_back(std::make_unique<Peer>(SOCK_STREAM, network_.portOf(end)));
+    await(Kind::Opened, Network::max_clients);
+    EXPECT_TRUE(Peer(SOCK_STREAM, network_.portOf(end)).hear(1).empty());
+}
+
+TEST_F(NetworkTest, DatagramsGoToWhomeverTheyAreFor) {
+    const End end = network_.listenUdp("127.0.0.1", 0);
+    network_.sendTo("127.0.0.1", network_.portOf(end), {6, 6});
+    EXPECT_THAT(await(Kind::Received).back().bytes, testing::ElementsAre(6, 6));
+}
+
+TEST_F(NetworkTest, ItWakesWhenItIsAskedTo) {
+    const auto begin = std::chrono::steady_clock::now();
+    network_.wakeAt(begin + 10s);
+    network_.wakeAt(begin + 50ms);
+    while (woken_ == 0 && std::chrono::steady_clock::now() < begin + 5s) std::this_thread::sleep_for(1ms);
+    EXPECT_EQ(woken_, 1);
+    EXPECT_GE(std::chrono::steady_clock::now(), begin + 50ms);
+}
+
+TEST_F(NetworkTest, AnEndThatCannotBeHadSaysWhy) {
+    const uint16_t taken = network_.portOf(network_.listenTcp("127.0.0.1", 0));
+    const auto whyOf = [](auto&& open) -> std::string {
+        try {
+            open();
+        } catch (const NetworkError& error) {
+            return error.property + ": " + error.what();
+        }
+        return "";
+    };
+    EXPECT_EQ(whyOf([&] { network_.listenTcp("127.0.0.1", taken); }),
+              "port: is 127.0.0.1:" + std::to_string(taken) + ", where it cannot listen: Address already in use");
+    EXPECT_EQ(whyOf([&] { network_.listenUdp("sonar", 1); }),
+              "address: is sonar, which is no address; write one as 127.0.0.1 or ::1");
+    EXPECT_THAT(whyOf([&] { network_.openSerial("/nowhere/line"); }),
+                testing::StartsWith("serial: is /nowhere/line, which cannot be made: "));
+    EXPECT_THAT(whyOf([&] { network_.sendTo("", 1, {}); }), testing::HasSubstr("no address"));
+}
+
+}  // namespace
+}  // namespace insonify::device

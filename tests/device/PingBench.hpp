@@ -1,0 +1,86 @@
+#pragma once
+// A device of the ping protocol with a made-up clock, its clients, and a sonar that answers.
+#include <gmock/gmock.h>
+
+#include <map>
+
+#include "components/device/PingDevice.hpp"
+
+namespace insonify::device {
+
+inline types::Time seconds(double s) { return types::Time::fromSeconds(1e9 + s); }
+
+/** A ping as a sonar makes it for what is asked: one beam, code k in bin k unless told else. */
+inline std::shared_ptr<types::Sonar> pingFor(const types::SonarSettings& asked, float speed_of_sound = 1500) {
+    auto ping = std::make_shared<types::Sonar>();
+    ping->time = asked.time;
+    ping->speed_of_sound = speed_of_sound;
+    ping->bin_count = asked.bin_count;
+    ping->beam_count = 1;
+    ping->bearings = {asked.bearing};
+    ping->bin_duration = types::Time::fromSeconds(asked.range / asked.bin_count / static_cast<double>(speed_of_sound));
+    ping->bins.resize(asked.bin_count);
+    for (size_t k = 0; k < ping->bins.size(); ++k) ping->bins[k] = static_cast<float>(k * 257);
+    return ping;
+}
+
+class PingBench {
+public:
+    explicit PingBench(PingDevice& device) : device_(device) {}
+
+    types::Time now() const { return now_; }
+    /** Says a message as a client. */
+    template <class Message>
+    void say(const Message& message, PingClient client = 1, uint8_t destination = 0) {
+        give(pingBytes(message, 0, destination), client, false);
+    }
+    void give(const Bytes& bytes, PingClient client = 1, bool datagram = true) {
+        device_.receive(client, bytes, datagram, now_);
+    }
+    void wait(double s) {
+        now_ = now_ + types::Time::fromSeconds(s);
+        device_.tick(now_);
+    }
+    /** Lets time pass until the device has something to do, at most so long; how long it was [s]. */
+    double waitForNext(double at_most = 10) {
+        const auto next = device_.wakeAt();
+        const double s = next ? std::min(at_most, (*next - now_).seconds()) : at_most;
+        wait(std::max(0.0, s));
+        return s;
+    }
+    std::optional<types::SonarSettings> asked() { return device_.takeAsked(); }
+    void answer(const types::SonarSettings& asked, float speed_of_sound = 1500) {
+        device_.hear(pingFor(asked, speed_of_sound), now_);
+    }
+    /** What a client has been sent since the last call. */
+    std::vector<PingFrame> heard(PingClient client = 1) {
+        for (const PingOutgoing& out : device_.takeOutgoing())
+            for (PingFrame& frame : pingFrames(out.bytes, 4096)) inbox_[out.client].push_back(std::move(frame));
+        return std::exchange(inbox_[client], {});
+    }
+    /** The one message that a client has been sent. */
+    template <class Message>
+    Message only(PingClient client = 1) {
+        const auto frames = heard(client);
+        EXPECT_EQ(frames.size(), 1u) << Message::message;
+        if (frames.size() != 1) return {};
+        EXPECT_EQ(frames[0].message, Message::message);
+        const auto message = pingMessage<Message>(frames[0]);
+        EXPECT_TRUE(message.has_value());
+        return message.value_or(Message{});
+    }
+    template <class Message>
+    std::string refusalOf(const Message& message) {
+        say(message);
+        const PingNack nack = only<PingNack>();
+        EXPECT_EQ(nack.nacked, Message::message);
+        return nack.text;
+    }
+
+private:
+    PingDevice& device_;
+    types::Time now_ = seconds(0);
+    std::map<PingClient, std::vector<PingFrame>> inbox_;
+};
+
+}  // namespace insonify::device

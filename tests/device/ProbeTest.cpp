@@ -1,0 +1,105 @@
+#include <gmock/gmock.h>
+
+#include <thread>
+
+#include "components/device/Network.hpp"
+#include "components/device/PingMessages.hpp"
+#include "components/device/Probe.hpp"
+#include "types/ConfigError.hpp"
+
+namespace insonify::device {
+namespace {
+
+using ::testing::AllOf;
+using ::testing::Each;
+using ::testing::Field;
+using ::testing::HasSubstr;
+
+Bytes bytesOf(const std::string& text) { return {text.begin(), text.end()}; }
+
+Bytes operator+(Bytes a, const Bytes& b) {
+    a.insert(a.end(), b.begin(), b.end());
+    return a;
+}
+
+TEST(ProbeTest, AnAddressIsAHostAPortOrALine) {
+    EXPECT_EQ(probeAddress("127.0.0.1").host, "127.0.0.1");
+    EXPECT_EQ(probeAddress("127.0.0.1").port, 0);
+    EXPECT_EQ(probeAddress("127.0.0.1:9092").port, 9092);
+    EXPECT_EQ(probeAddress("[::1]:12345").host, "::1");
+    EXPECT_EQ(probeAddress("[::1]:12345").port, 12345);
+    EXPECT_EQ(probeAddress("::1").host, "::1");
+    EXPECT_EQ(probeAddress("/dev/ttyUSB0").serial, "/dev/ttyUSB0");
+    const auto why = [](const std::string& text) -> std::string {
+        try {
+            probeAddress(text);
+        } catch (const types::ConfigError& error) {
+            return error.diagnostics()[0].text();
+        }
+        return "";
+    };
+    EXPECT_THAT(why(""), HasSubstr("names no host"));
+    EXPECT_THAT(why(":5"), HasSubstr("names no host"));
+    for (const char* port : {"0", "65536", "x", "", "12 "})
+        EXPECT_THAT(why(std::string("127.0.0.1:") + port), HasSubstr("is not from 1 to 65535")) << port;
+    EXPECT_THAT(why("no.such.host.invalid"), HasSubstr("a host that this machine does not know"));
+}
+
+TEST(ProbeTest, DevicesTellWhatTheyAre) {
+    const Bytes information = pingBytes(PingDeviceInformation{1, 2, 3, 29, 0, 0}, 7),
+                version = pingBytes(PingProtocolVersion{});
+    EXPECT_EQ(pingDeviceIn(information + version),
+              "Blue Robotics Ping1D, id 7, revision 2, firmware 3.29.0, protocol 1.0.0");
+    EXPECT_FALSE(pingDeviceIn(information)) << "the rest is on its way";
+    EXPECT_THAT(*pingDeviceIn(pingBytes(PingDeviceInformation{9, 0, 0, 0, 0, 0}) + version), HasSubstr("of type 9"));
+    EXPECT_EQ(ping360DiscoveryIn(bytesOf("SONAR PING360\r\nBlue Robotics\r\nMAC Address:- 02-00\r\n")),
+              "SONAR PING360, Blue Robotics, MAC Address:- 02-00");
+    Bytes status(142);
+    write<uint16_t>(status, 0, 0x4F53);
+    write<uint16_t>(status, 22, 1032);
+    write<uint32_t>(status, 24, 3);
+    EXPECT_EQ(oculusIn(status), "Blueprint Subsea Oculus M750d, at 0.0.0.0, running");
+    write<uint32_t>(status, 24, 1);
+    EXPECT_THAT(*oculusIn(status), HasSubstr("not ready"));
+    EXPECT_EQ(seaNetIn(Bytes{'@', '0', '0', '0', '8', 8, 0, 2, 255, 3, 4, 0x80, 2, 10}),
+              "Tritech SeaNet device, node 2, alive");
+    EXPECT_EQ(sonar3dIn(bytesOf("HTTP/1.1 200 OK\r\n\r\n{\"version_short\": \"1.7.1\"}")),
+              "Water Linked Sonar 3D-15, version 1.7.1");
+}
+
+TEST(ProbeTest, BytesOfOthersAreNoDevice) {
+    for (const Bytes& bytes : {Bytes{}, Bytes{0}, Bytes(200, 'B'), bytesOf("HTTP/1.1 404 Not Found\r\n\r\n{}"),
+                               bytesOf("SONAR"), bytesOf("SONAR PING360\x01"), Bytes(200, '@')}) {
+        EXPECT_FALSE(pingDeviceIn(bytes));
+        EXPECT_FALSE(ping360DiscoveryIn(bytes));
+        EXPECT_FALSE(oculusIn(bytes));
+        EXPECT_FALSE(seaNetIn(bytes));
+        EXPECT_FALSE(sonar3dIn(bytes));
+    }
+}
+
+TEST(ProbeTest, WhatDoesNotAnswerIsToldWithWhatMayBeTheMatter) {
+    Network network([] {});
+    const End end = network.listenTcp("127.0.0.1", 0);
+    ProbeAddress address{"127.0.0.1", "", network.portOf(end)};
+    for (const ProbeOutcome& outcome : probe(address, std::chrono::milliseconds(20))) {
+        EXPECT_EQ(outcome.device, "");
+        EXPECT_NE(outcome.failure, "") << outcome.asked;
+        EXPECT_NE(outcome.advice, "") << outcome.asked;
+    }
+    const ProbeAddress line{"", "/nowhere/line", 0};
+    const auto outcomes = probe(line, std::chrono::milliseconds(20));
+    ASSERT_EQ(outcomes.size(), 2u) << "ping protocol and SeaNet";
+    for (const ProbeOutcome& outcome : outcomes) EXPECT_EQ(outcome.failure, "No such file or directory");
+}
+
+TEST(ProbeTest, EveryQuestionSaysWhySilenceMayBe) {
+    for (const Probe& each : allProbes()) {
+        EXPECT_NE(each.silence, "") << each.protocol;
+        EXPECT_TRUE(each.read) << each.protocol;
+        EXPECT_TRUE(each.port != 0 || each.line == Probe::Line::Serial) << each.protocol;
+    }
+}
+
+}  // namespace
+}  // namespace insonify::device

@@ -1,0 +1,111 @@
+"""Talks to a Sonar 3D-15 by the maker's client: python3 sonar3d_client.py PORT unicast|MULTICAST_PORT [VOXELS.npz]
+
+Sets what the client can set, takes range images, and prints one JSON object: what was kept, what was refused, and the
+wall and the ball that the voxels show (x ahead, y to starboard, z down).
+"""
+
+import datetime
+import json
+import sys
+
+import numpy
+import requests
+import wlsonar
+import wlsonar.range_image_protocol as rip
+
+port, way = int(sys.argv[1]), sys.argv[2]
+told = {}
+
+
+def refused(call):
+    try:
+        call()
+    except requests.HTTPError as error:
+        return [error.response.status_code, error.response.json()["error"]]
+    return None
+
+
+def image_of(sock, kind, fits):
+    """The first image that fits; packets of a ping that was asked for before a change do not."""
+    while True:
+        message = rip.unpackb(sock.recv(wlsonar.UDP_MAX_DATAGRAM_SIZE))
+        if isinstance(message, kind) and fits(message):
+            return message
+
+
+def ball(points):
+    """Centre and radius by least squares: |p|^2 = 2 p c + r^2 - |c|^2."""
+    matrix = numpy.hstack([2 * points, numpy.ones((len(points), 1))])
+    solution = numpy.linalg.lstsq(matrix, (points**2).sum(1), rcond=None)[0]
+    centre = solution[:3]
+    return centre, float(numpy.sqrt(solution[3] + centre @ centre))
+
+
+sonar = wlsonar.Sonar3D("127.0.0.1", port, timeout=60)
+told["about"] = sonar.about().product_name
+told["ready"] = sonar.get_status().api.operational and sonar.get_status().time.operational
+told["temperature"] = sonar.get_temperature()
+told["enabled_at_first"] = sonar.get_acoustics_enabled()
+
+sonar.set_speed_of_sound(1500)
+sonar.set_range(0.3, 8)
+sonar.set_mode("low-frequency")
+sonar.set_salinity("fresh")
+sonar.set_output_imu_batch_enabled(True)
+sonar.set_time_ntp(wlsonar.NTPConfiguration("10.0.0.1"))
+told["kept"] = [sonar.get_speed_of_sound(), sonar.get_range(), sonar.get_mode(), sonar.get_salinity(),
+                sonar.get_output_imu_batch_enabled(), sonar.get_time_ntp().ntp_address]
+told["refused"] = [refused(lambda: sonar.set_range(0, 1000)), refused(lambda: sonar.set_speed_of_sound(10)),
+                   refused(lambda: sonar.set_udp_unicast("nowhere", 1))]
+
+if way == "unicast":
+    sock = wlsonar.open_sonar_udp_unicast_socket(udp_port=0, iface_ip="127.0.0.1")
+    sonar.set_udp_unicast("127.0.0.1", sock.getsockname()[1])
+else:
+    try:
+        sock = wlsonar.open_sonar_udp_multicast_socket(udp_port=int(way))
+    except OSError as error:
+        print(json.dumps({"no_multicast": str(error)}))
+        sys.exit()
+    sonar.set_udp_multicast()
+sock.settimeout(60)
+told["udp"] = sonar.get_udp_config().mode
+sonar.set_acoustics_enabled(True)
+
+image = image_of(sock, rip.RangeImage, lambda image: image.range == 8)
+bitmap = image_of(sock, rip.BitmapImageGreyscale8, lambda bitmap: True)
+told["size"] = [image.width, image.height, bitmap.width, bitmap.height]
+told["view"] = [image.fov_horizontal, image.fov_vertical]
+told["frequency"], told["speed"] = image.frequency, image.speed_of_sound
+strengths = wlsonar.bitmap_image_to_strength_linear(bitmap)
+told["strongest"] = max(strengths)
+told["same_pixels"] = all((a == 0) == (b == 0) for a, b in zip(image.image_pixel_data, strengths))
+stamp = image.header.timestamp.ToDatetime(tzinfo=datetime.timezone.utc)
+told["age"] = (datetime.datetime.now(datetime.timezone.utc) - stamp).total_seconds()
+
+voxels = wlsonar.range_image_to_xyz(image)
+points = numpy.array([voxel for voxel in voxels if voxel is not None])
+told["heard"] = len(points)
+if len(sys.argv) > 3:
+    ranges = numpy.array(wlsonar.range_image_to_distance(image)).reshape(image.height, image.width)
+    numpy.savez(sys.argv[3], ranges=ranges, strengths=numpy.array(strengths).reshape(ranges.shape), points=points)
+
+wall = points[points[:, 0] > 4.8]
+told["wall"] = {"voxels": len(wall), "mean": float(wall[:, 0].mean()), "worst": float(abs(wall[:, 0] - 5).max())}
+near = points[points[:, 0] < 4.6]
+centre, radius = ball(near)
+front = near[((near - centre) * -centre).sum(1) > 0.5 * radius * numpy.linalg.norm(centre)]  # not its rim
+centre, radius = ball(front)
+told["ball"] = {"voxels": len(front), "centre": list(map(float, centre)), "radius": radius}
+
+sonar.set_mode("high-frequency")
+sonar.set_range(0.3, 6)
+image = image_of(sock, rip.RangeImage, lambda image: image.range == 6)
+told["high"] = [image.frequency, image.fov_horizontal]
+points = numpy.array([voxel for voxel in wlsonar.range_image_to_xyz(image) if voxel is not None])
+wall = points[points[:, 0] > 4.8]
+told["high_wall"] = float(wall[:, 0].mean())
+
+told["synchronised"] = sonar.force_sync_ntp(1).success
+sonar.set_acoustics_enabled(False)
+print(json.dumps(told))

@@ -1,0 +1,81 @@
+#include <gmock/gmock.h>
+
+#include "components/framework/StreamNames.hpp"
+#include "components/framework/Upstream.hpp"
+#include "tests/framework/Tasks.hpp"
+
+namespace insonify::framework {
+namespace {
+
+TEST(StreamNamesTest, APortIsCalledByTheAliasThatLeadsToItElseByItself) {
+    Registry registry = test::testRegistry();
+    const Deployment deployment(DeploymentSpec::parse("tasks:\n"
+                                                      "  s: {type: test::Source, activity: {period: 1}}\n"
+                                                      "  r: {type: test::Relay, aliases: {samples: s.value}}\n"
+                                                      "connections:\n  - {from: r.samples, to: r.in}\n",
+                                                      "a.yml"),
+                                registry);
+    const StreamName aliased = streamNameOf(*deployment.task("s")->output("value")),
+                     own = streamNameOf(*deployment.task("r")->output("out"));
+    EXPECT_EQ(aliased.path(), "r.samples");
+    EXPECT_EQ(aliased.model, "test::Relay");
+    EXPECT_EQ(own.path(), "r.out");
+    test::Source alone("alone");
+    EXPECT_EQ(streamNameOf(alone.value).path(), "alone.value");
+    EXPECT_EQ(streamNameOf(alone.value).model, "") << "it is in no deployment";
+}
+
+TEST(StreamNamesTest, APortThatStandsForAnotherIsCalledAsThatOne) {
+    struct Replay : TaskContext, StandIn {
+        Replay() : TaskContext("replay") {}
+        std::string streamOf(const std::string& port) const override { return "sonar." + port; }
+        std::string modelOf(const std::string&) const override { return "p::Task"; }
+        OutputPort<double> ping{this, "ping", ""};
+    } replay;
+    EXPECT_EQ(streamNameOf(replay.ping).path(), "sonar.ping");
+    EXPECT_EQ(streamNameOf(replay.ping).model, "p::Task");
+}
+
+TEST(StreamNamesTest, AliasesOfPropertiesAreToldWithWhereTheyLead) {
+    Registry registry = test::testRegistry();
+    const Deployment deployment(
+        DeploymentSpec::parse("tasks:\n"
+                              "  s: {type: test::Source, activity: {period: 1}}\n"
+                              "  t: {type: test::Source, activity: {period: 1},\n"
+                              "      aliases: {count: s.last, samples: s.value, water.depth: s.last}}\n",
+                              "a.yml"),
+        registry);
+    const std::vector<PropertyAlias> aliases = propertyAliases(*deployment.task("t"));
+    ASSERT_EQ(aliases.size(), 1u) << "neither a port nor a field of a block";
+    EXPECT_EQ(aliases[0].name.path(), "t.count");
+    EXPECT_EQ(aliases[0].task + "." + aliases[0].property, "s.last");
+}
+
+TEST(UpstreamTest, AValueComesFromTheNearestTaskThatHasIt) {
+    Registry registry = test::testRegistry();
+    const Deployment deployment(
+        DeploymentSpec::parse("tasks:\n"
+                              "  s: {type: test::Source, activity: {period: 1}, properties: {last: 7}}\n"
+                              "  a: {type: test::Relay}\n  b: {type: test::Relay}\n"
+                              "connections:\n  - {from: s.value, to: a.in}\n  - {from: a.out, to: b.in}\n",
+                              "a.yml"),
+        registry);
+    const InputPortBase& port = *deployment.task("b")->input("in");
+    const auto last = upstreamValue(port, {"nothing", "last"});
+    ASSERT_TRUE(last);
+    EXPECT_EQ(std::get<int64_t>(*last), 7);
+    EXPECT_FALSE(upstreamValue(port, {"nothing"}));
+    EXPECT_FALSE(upstreamFrequency(port));
+}
+
+TEST(UpstreamTest, AValueWithinABlockIsFoundByItsPath) {
+    const types::TaskRecord task{"t", "T", {{"block", "{\"a\": {\"b\": 2.5, \"c\": true, \"d\": \"5\"}}"}}, ""};
+    EXPECT_EQ(valueAt(task, "block.a.b"), types::PropertyValue(2.5));
+    EXPECT_EQ(valueAt(task, "block.a.c"), types::PropertyValue(true));
+    EXPECT_EQ(valueAt(task, "block.a.d"), types::PropertyValue(std::string("5")));
+    EXPECT_FALSE(valueAt(task, "block.x.b"));
+    EXPECT_FALSE(valueAt(task, "other"));
+}
+
+}  // namespace
+}  // namespace insonify::framework

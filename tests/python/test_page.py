@@ -1,0 +1,36 @@
+"""What the page of the module shows, and its example, run as they stand."""
+
+import re
+import subprocess
+import sys
+
+import pytest
+from conftest import ROOT
+
+PAGE = ROOT / "components/python/README.md"
+BLOCKS = re.findall(r"```python\n(.*?)```", PAGE.read_text(), re.DOTALL)
+
+
+@pytest.fixture
+def folder(tmp_path):
+    (tmp_path / "deploy").symlink_to(ROOT / "deploy")
+    command = [ROOT / "build/bin/insonify", "run", "deploy/harbour_fls.yml", "--pings", "2", "--quiet", "--out", "."]
+    subprocess.run(command, cwd=tmp_path, check=True, timeout=600)
+    return tmp_path
+
+
+def test_every_block_runs(folder):
+    assert len(BLOCKS) == 3
+    for block in BLOCKS:
+        if "gym" in block:
+            pytest.importorskip("gymnasium")
+        done = subprocess.run([sys.executable, "-c", block], cwd=folder, capture_output=True, text=True, timeout=600)
+        assert done.returncode == 0, block + done.stderr
+
+
+def test_the_example_draws(tmp_path):
+    pytest.importorskip("matplotlib")
+    picture = tmp_path / "look.png"
+    example = ROOT / "components/python/examples/look.py"
+    subprocess.run([sys.executable, example, ROOT / "deploy/harbour_fls.yml", picture], check=True, timeout=900)
+    assert picture.read_bytes().startswith(b"\x89PNG") and picture.stat().st_size > 50_000

@@ -1,0 +1,197 @@
+"""Stepping a deployment from Python, held against what the command makes of the same poses."""
+
+import subprocess
+import threading
+
+import insonify
+import numpy as np
+import pytest
+from conftest import ROOT
+
+HERE = insonify.Pose([0, 0, 0])
+
+
+@pytest.fixture
+def minimal(deploy):
+    return insonify.Simulation(deploy / "minimal.yml", seed=1)
+
+
+def test_a_step_gives_a_ping_with_its_grid(minimal):
+    ping = minimal.step(HERE)
+    assert ping.bins.shape == (256, 500) and ping.bins.dtype == np.float32
+    assert ping.bearings.shape == (256,) and ping.bearings[0] == pytest.approx(-ping.bearings[-1]) and ping.bearings[0] < 0
+    np.testing.assert_allclose(np.diff(ping.ranges), ping.bin_length)
+    assert ping.ranges[0] == pytest.approx(ping.bin_length / 2)
+    assert ping.bins.max() > 0 and ping.truth is None
+
+
+def test_bins_are_the_pings_own_memory_and_stay_when_it_goes(minimal):
+    ping = minimal.step(HERE)
+    bins, again = ping.bins, ping.bins
+    assert np.shares_memory(bins, again) and not bins.flags.owndata
+    with pytest.raises(ValueError):
+        bins[0, 0] = 1
+    kept = bins.copy()
+    del ping, again
+    for step in range(20):
+        minimal.step(insonify.Pose([0.1 * step, 0, 0]))
+    np.testing.assert_array_equal(bins, kept)
+
+
+def test_the_command_makes_the_same_pings_of_the_same_poses(deploy, tmp_path):
+    command = [ROOT / "build/bin/insonify", "run", deploy / "harbour_fls.yml", "--pings", "3", "--seed", "5", "--quiet"]
+    subprocess.run([*command, "--out", tmp_path], check=True, timeout=600)
+    log = insonify.read_log(next(tmp_path.glob("harbour*.log")))
+    simulation = insonify.Simulation(deploy / "harbour_fls.yml", seed=5)
+    pings = [stream for name, stream in log.items() if name == simulation.pings[0]][0]
+    assert len(pings) == 3
+    for ping, pose in zip(pings, log["vehicle.pose"]):
+        stepped = simulation.step(pose, time=pose.time)
+        assert stepped.time == ping.time
+        np.testing.assert_array_equal(stepped.bins, ping.bins)
+
+
+def test_a_reset_is_as_good_as_new(deploy):
+    file = deploy / "harbour_fls.yml"
+    poses = [insonify.Pose([0.3 * step, 0, -5.5]) for step in range(3)]
+    simulation = insonify.Simulation(file, seed=3)
+    first = [simulation.step(pose).bins.copy() for pose in poses]
+    simulation.reset()
+    for bins, pose in zip(first, poses):
+        np.testing.assert_array_equal(simulation.step(pose).bins, bins)
+    simulation.reset(4)
+    other = insonify.Simulation(file, seed=4)
+    for bins, pose in zip(first, poses):
+        again = simulation.step(pose).bins
+        np.testing.assert_array_equal(again, other.step(pose).bins)
+        assert not np.array_equal(again, bins)
+
+
+def test_a_transform_is_a_pose():
+    pose = insonify.Pose.from_euler([1, 2, 3], roll=0.3, pitch=-0.7, yaw=2.5)
+    again = insonify.Pose.from_matrix(pose.matrix())
+    assert abs(np.dot(pose.orientation_wxyz, again.orientation_wxyz)) == pytest.approx(1)
+    np.testing.assert_allclose(again.position, [1, 2, 3])
+    down = insonify.Pose.from_euler([0, 0, 0], pitch=np.pi / 2).matrix() @ [1, 0, 0, 1]
+    np.testing.assert_allclose(down, [0, 0, -1, 1], atol=1e-12)
+    for wrong in (np.eye(3), np.diag([1, 1, -1, 1]), np.diag([2, 2, 2, 1])):
+        with pytest.raises(ValueError):
+            insonify.Pose.from_matrix(wrong)
+
+
+def test_a_transform_and_a_pose_step_alike(minimal):
+    matrix = insonify.Pose.from_euler([0.5, 0, 0], yaw=0.2).matrix()
+    bins = minimal.step(insonify.Pose.from_matrix(matrix)).bins.copy()
+    minimal.reset()
+    np.testing.assert_array_equal(minimal.step(matrix).bins, bins)
+    assert not np.array_equal(minimal.step(np.eye(4)).bins, bins)
+
+
+def test_the_truth_names_objects_and_has_the_shape_of_the_bins(deploy):
+    simulation = insonify.Simulation(deploy / "harbour_fls.yml", truth=True)
+    ping = simulation.step(insonify.Pose([2, 0, -5.5]))
+    truth = ping.truth
+    for name in ("elevation", "object", "share", "hits", "grazing", "path", "shadow"):
+        assert getattr(truth, name).shape == ping.bins.shape
+    assert "sea_floor" in truth.objects
+    shown = truth.object[truth.object >= 0]
+    assert shown.size > 1000 and shown.max() < len(truth.objects)
+
+
+def test_a_fan_is_a_picture(deploy):
+    ping = insonify.Simulation(deploy / "harbour_fls.yml").step(insonify.Pose([2, 0, -5.5]))
+    picture = ping.fan(width=400)
+    assert picture.dtype == np.uint8 and picture.shape[1:] == (400, 3)
+    assert picture.std() > 10, "neither black nor uniform"
+    with pytest.raises(insonify.ConfigError, match="amber, copper"):
+        ping.fan(colour_map="rainbow")
+
+
+def test_overrides_reach_the_tasks(deploy):
+    simulation = insonify.Simulation(
+        deploy / "minimal.yml", overrides={"sonar.range": 30, "sonar.quality": {"rows": 64, "columns_per_beam": 1}}
+    )
+    ping = simulation.step(HERE)
+    assert ping.ranges[-1] == pytest.approx(30, rel=0.02)
+
+
+def test_errors_tell_file_line_and_column(tmp_path, deploy):
+    file = tmp_path / "wrong.yml"
+    text = (deploy / "minimal.yml").read_text().replace("scenes/wall.glb", str(deploy / "scenes/wall.glb"))
+    file.write_text(text.replace("sonar::SonarTask}", "sonar::SonarTask, properties: {rnge: 20}}"))
+    with pytest.raises(insonify.ConfigError, match="did you mean range") as told:
+        insonify.Simulation(file)
+    line = 1 + next(i for i, text in enumerate(file.read_text().splitlines()) if "rnge" in text)
+    assert told.value.file == str(file) and told.value.line == line and told.value.column > 0
+    assert told.value.diagnostics[0]["path"].endswith(".rnge")
+    with pytest.raises(insonify.ConfigError, match="nowhere.yml"):
+        insonify.Simulation(tmp_path / "nowhere.yml")
+
+
+def test_a_pose_that_cannot_be_is_an_error_and_the_next_is_good(minimal):
+    with pytest.raises(RuntimeError, match="finite"):
+        minimal.step(insonify.Pose([np.nan, 0, 0]))
+    assert minimal.step(HERE).bins.max() > 0
+    with pytest.raises(RuntimeError, match="the one before"):
+        minimal.step(HERE, time=0.5)
+    with pytest.raises(ValueError):
+        insonify.Pose([1, 2])
+
+
+def test_several_simulations_do_not_meet(deploy):
+    """Each on a thread of its own, with the poses of the others in between."""
+    poses = [insonify.Pose([0.2 * step, 0, 0]) for step in range(10)]
+    alone = insonify.Simulation(deploy / "minimal.yml", seed=2)
+    wanted = [alone.step(pose).bins.copy() for pose in poses]
+    differ = []
+
+    def run():
+        simulation = insonify.Simulation(deploy / "minimal.yml", seed=2)
+        differ.append(sum(not np.array_equal(simulation.step(pose).bins, bins) for pose, bins in zip(poses, wanted)))
+
+    threads = [threading.Thread(target=run) for _ in range(3)]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join()
+    assert differ == [0, 0, 0]
+
+
+def test_others_run_while_a_step_renders(deploy):
+    """A thread of Python's that counts goes on during a step: the lock of the interpreter is free."""
+    simulation = insonify.Simulation(
+        deploy / "minimal.yml", overrides={"sonar.quality": {"rows": 2048, "columns_per_beam": 16}}
+    )
+    counted, ended = [0], threading.Event()
+
+    def count():
+        while not ended.is_set():
+            counted[0] += 1
+
+    simulation.step(HERE)
+    thread = threading.Thread(target=count)
+    thread.start()
+    before = counted[0]
+    simulation.step(insonify.Pose([1, 0, 0]))
+    during = counted[0] - before
+    ended.set()
+    thread.join()
+    assert during > 100
+
+
+def test_two_vehicles_take_a_dictionary(deploy):
+    simulation = insonify.Simulation(deploy / "two_vehicles.yml")
+    assert len(simulation.poses) == 2
+    with pytest.raises(ValueError, match="dictionary"):
+        simulation.step(HERE)
+    with pytest.raises(RuntimeError, match="no pose is given"):
+        simulation.step({simulation.poses[0]: HERE})
+    simulation.reset()
+    pings = simulation.step({port: HERE for port in simulation.poses})
+    assert len(pings) == len(simulation.pings) == 2
+
+
+def test_a_log_that_is_none_is_an_error(tmp_path):
+    (tmp_path / "x.log").write_bytes(b"not a log")
+    with pytest.raises(insonify.ConfigError):
+        insonify.read_log(tmp_path / "x.log")

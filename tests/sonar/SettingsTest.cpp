@@ -1,0 +1,157 @@
+// Pings that a driver asks for: `settings` of the sonar tasks.
+#include <gmock/gmock.h>
+
+#include <cmath>
+
+#include "components/sonar/ScanningSonarTask.hpp"
+#include "components/sonar/Sonar3dTask.hpp"
+#include "components/sonar/SonarTask.hpp"
+#include "tests/sonar/WallScene.hpp"
+#include "tests/support/Ports.hpp"
+#include "types/Angle.hpp"
+
+namespace insonify::sonar {
+namespace {
+
+/** A sonar task whose pings are asked for, in front of a wall. */
+template <class Task>
+class Asked {
+public:
+    template <class Config>
+    explicit Asked(const Config& config) {
+        task.config.set(config);
+        scenes_.port.connectTo(task.snapshot, {});
+        asked_.port.connectTo(task.settings, framework::ConnPolicy::buffer(4));
+        task.ping.connectTo(heard_.port, framework::ConnPolicy::buffer(4));
+        EXPECT_TRUE(task.configure()) << task.lastError();
+        EXPECT_TRUE(task.start()) << task.lastError();
+    }
+    void show(const types::Snapshot& scene) {
+        scenes_.port.write(std::make_shared<types::Snapshot>(scene));
+        task.update();
+    }
+    /** The ping that follows; null: there is none. */
+    types::SonarPtr ask(const types::SonarSettings& settings) {
+        asked_.port.write(settings);
+        task.update();
+        return next();
+    }
+    types::SonarPtr next() {
+        types::SonarPtr ping;
+        return heard_.port.readNew(ping) ? ping : nullptr;
+    }
+
+    Task task{"sonar"};
+
+private:
+    test::Writer<types::SnapshotPtr> scenes_{"scenes"};
+    test::Writer<types::SonarSettings> asked_{"driver"};
+    test::Reader<types::SonarPtr> heard_{"heard"};
+};
+
+TEST(SettingsTest, ThereIsAPingForEachAndNoneForASnapshot) {
+    Asked<SonarTask> sonar(smallSonar());
+    EXPECT_FALSE(sonar.ask({})) << "there is no scene yet";
+    sonar.show(facingWall(5));
+    EXPECT_FALSE(sonar.next());
+    types::SonarSettings later;
+    later.time = {8'000'000};
+    const types::SonarPtr first = sonar.ask({}), second = sonar.ask(later);
+    ASSERT_TRUE(first && second) << sonar.task.lastError();
+    EXPECT_EQ(first->bins, second->bins);
+    EXPECT_EQ(first->time, types::Time{7'000'000});
+    EXPECT_EQ(second->time, types::Time{8'000'000}) << "when it was asked for";
+}
+
+TEST(SettingsTest, WhatTheyNameHoldsFromThatPingOnAndTheRestStays) {
+    Asked<SonarTask> sonar(smallSonar());
+    sonar.show(facingWall(5));
+    types::SonarSettings asked;
+    asked.range = 8;
+    asked.bin_count = 200;
+    asked.beam_count = 16;
+    asked.field_of_view = types::Angle::fromDeg(40);
+    asked.speed_of_sound = 1480;
+    const types::SonarPtr ping = sonar.ask(asked);
+    ASSERT_TRUE(ping) << sonar.task.lastError();
+    EXPECT_EQ(ping->bin_count, 200u);
+    EXPECT_EQ(ping->beam_count, 16u);
+    EXPECT_NEAR(ping->bearings[0].deg(), -18.75, 1e-9);
+    EXPECT_EQ(ping->speed_of_sound, 1480);
+    EXPECT_NEAR(firstEcho(*ping, 8), 5, 0.1);
+    EXPECT_EQ(sonar.task.config->beam_height_deg, smallSonar().beam_height_deg);
+    EXPECT_EQ(sonar.task.config->range, 8);
+    const types::SonarPtr same = sonar.ask({});
+    ASSERT_TRUE(same);
+    EXPECT_EQ(same->bins, ping->bins);
+}
+
+TEST(SettingsTest, WhatASonarCannotHaveIsRefusedWholeAndTheNextGoodOneRecovers) {
+    Asked<SonarTask> sonar(smallSonar());
+    sonar.show(facingWall(5));
+    types::SonarSettings asked;
+    asked.range = 8;
+    asked.bin_count = 1'000'000;
+    EXPECT_FALSE(sonar.ask(asked));
+    EXPECT_THAT(sonar.task.lastError(), ::testing::HasSubstr("bin_count"));
+    EXPECT_EQ(sonar.task.state(), framework::TaskState::RunTimeError);
+    EXPECT_EQ(sonar.task.config->range, smallSonar().range) << "nothing of it holds";
+    EXPECT_TRUE(sonar.ask({}));
+    EXPECT_EQ(sonar.task.state(), framework::TaskState::Running);
+}
+
+TEST(SettingsTest, AHeadLooksWhereItIsToldTo) {
+    ScanningSonarConfig config;
+    config.sonar = smallSonar();
+    config.sonar.beam_width_deg = 3;
+    Asked<ScanningSonarTask> sonar(config);
+    sonar.show(facingWall(5));
+    types::SonarSettings asked;
+    const auto heardAt = [&](double deg) {
+        asked.bearing = types::Angle::fromDeg(deg);
+        const types::SonarPtr ping = sonar.ask(asked);
+        EXPECT_TRUE(ping) << sonar.task.lastError();
+        EXPECT_NEAR(ping->bearings[0].deg(), deg, 1e-9);
+        return firstEcho(*ping, 0);
+    };
+    EXPECT_NEAR(heardAt(0), 5, 0.16);
+    EXPECT_NEAR(heardAt(30), 5 / std::cos(types::radians(30)), 0.4) << "slanting, over the width of the beam";
+    const types::SonarPtr again = sonar.ask({});
+    ASSERT_TRUE(again);
+    EXPECT_NEAR(again->bearings[0].deg(), 30, 1e-9) << "it stays there";
+}
+
+TEST(SettingsTest, AGridTakesTheViewOfItsBeamsSideBySide) {
+    Sonar3dConfig config;
+    config.sonar.range = 10;
+    config.sonar.bin_count = 100;
+    config.sonar.beam_height_deg = 10;
+    config.horizontal = {8, 80};
+    config.vertical = {4, 40};
+    Asked<Sonar3dTask> sonar(config);
+    test::Reader<types::DepthMapPtr> maps{"maps"};
+    sonar.task.range_image.connectTo(maps.port, framework::ConnPolicy::buffer(4));
+    sonar.show(facingWall(5));
+    types::SonarSettings asked;
+    asked.field_of_view = types::Angle::fromDeg(40);
+    asked.beam_height = types::Angle::fromDeg(5);
+    asked.range = 8;
+    for (int i = 0; i < 2; ++i) {
+        ASSERT_TRUE(sonar.ask(asked)) << sonar.task.lastError();
+        types::DepthMapPtr map;
+        ASSERT_TRUE(maps.port.readNew(map));
+        EXPECT_EQ(map->distances.size(), 32u);
+        EXPECT_NEAR(types::degrees(map->horizontal_interval.front()), 17.5, 1e-9);
+        EXPECT_NEAR(types::degrees(map->vertical_interval.back()), 15, 1e-9);
+    }
+    EXPECT_EQ(sonar.task.config->sonar.range, 8);
+    EXPECT_NEAR(sonar.task.config->sonar.beam_height_deg, 5, 1e-9);
+    asked = {};
+    asked.beam_count = 4;
+    ASSERT_TRUE(sonar.ask(asked)) << sonar.task.lastError();
+    EXPECT_EQ(sonar.task.config->horizontal.beam_count, 4);
+    EXPECT_NEAR(sonar.task.config->horizontal.field_of_view_deg, 40, 1e-9);
+}
+
+}  // namespace
+}  // namespace insonify::sonar

@@ -1,0 +1,43 @@
+#pragma once
+#include <cmath>
+#include <cstdint>
+#include <limits>
+
+#include "types/Angle.hpp"
+#include "types/Describe.hpp"
+#include "types/Time.hpp"
+
+namespace insonify::types {
+
+/** One ping as a driver asks for it. What is NaN, or 0 of a count, stays as it is. */
+struct SonarSettings {
+    static constexpr const char* type_name = "/insonify/SonarSettings";
+    static constexpr double unset = std::numeric_limits<double>::quiet_NaN();
+
+    Time time;
+    double range = unset;
+    double frequency_khz = unset;
+    double speed_of_sound = unset;
+    double gain_db = unset;
+    Angle bearing;
+    Angle field_of_view;
+    Angle beam_height;
+    uint32_t bin_count = 0;
+    uint32_t beam_count = 0;
+
+    template <class Self, class V>
+    static void describe(Self& self, V& visit) {
+        visit(Field{"time", "us", "when the ping was asked for"}, self.time);
+        visit(Field{"range", "m", "slant range at which the last bin ends"}, self.range);
+        visit(Field{"frequency_khz", "kHz", "of the sonar"}, self.frequency_khz);
+        visit(Field{"speed_of_sound", "m/s", "by which the sonar turns time into range"}, self.speed_of_sound);
+        visit(Field{"gain_db", "dB", "of the receiver, after its TVG"}, self.gain_db);
+        visit(Field{"bearing", "rad", "of a scanning sonar's head, 0 ahead, positive to port"}, self.bearing);
+        visit(Field{"field_of_view", "rad", "from the first beam to the last"}, self.field_of_view);
+        visit(Field{"beam_height", "rad", "of a beam, in elevation"}, self.beam_height);
+        visit(Field{"bin_count", "1", "of a beam; 0: as it is"}, self.bin_count);
+        visit(Field{"beam_count", "1", "0: as it is"}, self.beam_count);
+    }
+};
+
+}  // namespace insonify::types
