@@ -4,8 +4,8 @@
 #include <cmath>
 #include <numbers>
 
-#include "tests/device/HilRun.hpp"
-#include "tests/device/Wire.hpp"
+#include "tests/deployer/HilRun.hpp"
+#include "tests/support/Wire.hpp"
 #include "tests/support/MicronDriver.hpp"
 #include "types/Angle.hpp"
 

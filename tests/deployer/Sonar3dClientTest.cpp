@@ -2,8 +2,8 @@
 #include <gmock/gmock.h>
 
 #include "components/device/Http.hpp"
-#include "tests/device/HilRun.hpp"
-#include "tests/device/Wire.hpp"
+#include "tests/deployer/HilRun.hpp"
+#include "tests/support/Wire.hpp"
 #include "tests/support/Python.hpp"
 
 namespace insonify::device {
@@ -54,7 +54,7 @@ TEST_P(Sonar3dClientTest, TheMakersClientSetsItAndSeesTheWallAndTheBall) {
     HilRun run(deployment(folder), {"device.multicast_port=" + group_port});
     const int port = run.port();
     ASSERT_GT(port, 0) << readFile(run.folder() / "stderr.txt");
-    const std::string script = INSONIFY_SOURCE_DIR "/tests/device/sonar3d_client.py ";
+    const std::string script = INSONIFY_SOURCE_DIR "/tests/deployer/sonar3d_client.py ";
     const std::string said = pythonSays(script + std::to_string(port) + " " + (unicast ? "unicast" : group_port) + " " +
                                             (folder / "voxels.npz").string(),
                                         folder / "said.json");
