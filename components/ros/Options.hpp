@@ -28,8 +28,8 @@ enum class WorldFrame {
     Ned    ///< World x north, y east, z down; body x forward, y right, z down.
 };
 
-/** How a ping becomes messages. The defaults lose nothing of what it holds in its bins, in logs and on the wire alike. A
- *  level is 10 log10 of a bin [dB]. */
+/** How a ping becomes messages. The defaults lose nothing of what it holds in its bins, in logs and on the wire alike.
+ *  A level is 10 log10 of a bin [dB]. */
 struct SonarOptions {
     ImageOrder order = ImageOrder::RangeMajor;
     ImageType dtype = ImageType::Float32;

@@ -8,8 +8,8 @@
 #include <cstdlib>
 #include <thread>
 
-#include "components/device/OculusTask.hpp"
 #include "components/device/DeviceTask.hpp"
+#include "components/device/OculusTask.hpp"
 #include "components/framework/Deployment.hpp"
 #include "components/noise/NoiseTask.hpp"
 #include "components/pose/TrajectoryTask.hpp"

@@ -5,8 +5,8 @@
 #include <numbers>
 
 #include "tests/deployer/HilRun.hpp"
-#include "tests/support/Wire.hpp"
 #include "tests/support/MicronDriver.hpp"
+#include "tests/support/Wire.hpp"
 #include "types/Angle.hpp"
 
 namespace insonify::device {

@@ -70,7 +70,7 @@ TEST_F(OculusRunTest, DriversHearTheHarbourWithTheirOwnSettings) {
     rock.fire({.range = 30});
     device::OculusResult ping = rock.nextPing();
     while (ping.fire.range != 30) ping = rock.nextPing();  // what was under way for the other
-    int near = 0, far = 0;  // the floor is some metres below: nothing is heard before it
+    int near = 0, far = 0;                                 // the floor is some metres below: nothing is heard before it
     for (size_t bin = 10; bin < 60; ++bin) near = std::max(near, loudest(ping, bin));
     for (size_t bin = 300; bin < 1000; ++bin) far = std::max(far, loudest(ping, bin));
     EXPECT_GT(far, 2 * near) << near << " within 1.8 m";

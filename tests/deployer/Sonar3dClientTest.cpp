@@ -3,8 +3,8 @@
 
 #include "components/device/Http.hpp"
 #include "tests/deployer/HilRun.hpp"
-#include "tests/support/Wire.hpp"
 #include "tests/support/Python.hpp"
+#include "tests/support/Wire.hpp"
 
 namespace insonify::device {
 namespace {

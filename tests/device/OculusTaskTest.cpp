@@ -5,8 +5,8 @@
 #include <memory>
 #include <thread>
 
-#include "components/device/OculusTask.hpp"
 #include "components/device/DeviceTask.hpp"
+#include "components/device/OculusTask.hpp"
 #include "components/framework/Deployment.hpp"
 #include "tests/support/OculusDriver.hpp"
 

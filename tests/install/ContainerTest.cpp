@@ -39,7 +39,7 @@ TEST(ContainerTest, TheRecipeBuildsWithPackagesOfTheSetup) {
     for (const std::string& package : packages) EXPECT_TRUE(known.contains(package)) << package;
     const std::set<std::string> of_tests = {"libfastrtps-dev", "libgmock-dev", "libgtest-dev", "pybind11-dev",
                                             "python3-dev"};  // and of the Python module
-    for (const std::string& package : known) {  // all that may be compiled or linked against
+    for (const std::string& package : known) {               // all that may be compiled or linked against
         if (!package.ends_with("-dev") || of_tests.contains(package)) continue;
         EXPECT_TRUE(packages.contains(package)) << package;
     }

@@ -18,11 +18,10 @@ std::string textOf(const std::string& path) {
 }  // namespace
 
 TEST(LayoutTest, TheTopLevelHoldsOnlyWhatTheDesignNames) {
-    const std::set<std::string> expected = {"CMakeLists.txt", "README.md",   "LICENSE",    "CHANGELOG.md",
-                                            "types",          "components",  "shaders",    "deploy",
-                                            "tests",          "scripts",     ".ci",        ".git",
-                                            ".clang-format",  ".clang-tidy", ".gitignore", "out",
-                                            "pyproject.toml"};
+    const std::set<std::string> expected = {
+        "CMakeLists.txt", "README.md",   "LICENSE",    "CHANGELOG.md", "types",         "components",
+        "shaders",        "deploy",      "tests",      "scripts",      ".ci",           ".git",
+        ".clang-format",  ".clang-tidy", ".gitignore", "out",          "pyproject.toml"};
     for (const auto& entry : std::filesystem::directory_iterator(INSONIFY_SOURCE_DIR)) {
         const std::string name = entry.path().filename();
         EXPECT_TRUE(expected.contains(name) || name.starts_with("build")) << name;

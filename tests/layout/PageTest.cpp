@@ -176,7 +176,8 @@ TEST(PageTest, TheReadmeIsALandingPageWithATableOfItsContents) {
 TEST(PageTest, EveryBlockOfCodeSaysWhatItIs) {
     // Of commands, `sh` is run by tests/deployer/PagesTest.cpp; `console` is what a test cannot run: it installs, waits
     // for others, keeps to the wall clock or takes minutes.
-    static const std::set<std::string> known = {"sh", "console", "yaml", "json", "cpp", "glsl", "cmake", "python", "text"};
+    static const std::set<std::string> known = {"sh",   "console", "yaml",   "json", "cpp",
+                                                "glsl", "cmake",   "python", "text"};
     for (const Page& page : allPages())
         for (const CodeBlock& block : page.blocks())
             EXPECT_TRUE(known.contains(block.language)) << page.path() << ":" << block.line << ": " << block.language;
