@@ -91,13 +91,13 @@ DriverLine DriverLine::broadcasts(uint16_t port) {
 }
 
 void DriverLine::send(std::span<const uint8_t> bytes) const {
-    if (write(file_, bytes.data(), bytes.size()) != static_cast<ssize_t>(bytes.size())) fail(errno);
+    if (::write(file_, bytes.data(), bytes.size()) != static_cast<ssize_t>(bytes.size())) fail(errno);
 }
 
 Bytes DriverLine::receive(Duration patience) const {
     if (!isReady(file_, POLLIN, patience)) return {};
     Bytes bytes(65536);
-    const ssize_t got = read(file_, bytes.data(), bytes.size());
+    const ssize_t got = ::read(file_, bytes.data(), bytes.size());
     if (got < 0) fail(errno);
     if (got == 0) throw LineError("the other end has closed the line");
     bytes.resize(static_cast<size_t>(got));

@@ -105,6 +105,7 @@ double MicronEmulator::listening() const { return command_.bins * command_.ad_in
 
 void MicronEmulator::askForPing(types::Time now) {
     line_->asked = true;
+    line_->sent = now;
     line_->whole = now + seconds(listening());
     types::SonarSettings settings;
     settings.time = now;
@@ -145,8 +146,8 @@ Bytes MicronEmulator::dataOf(const types::Sonar& ping) const {
     return data;
 }
 
-void MicronEmulator::heard(const types::Sonar& ping, types::Time) {
-    if (!line_ || !line_->asked || line_->heard) return;  // of a driver that is gone or thought better of it
+void MicronEmulator::heard(const types::Sonar& ping) {
+    if (!line_ || !line_->asked || line_->heard || ping.time < line_->sent) return;
     line_->heard = true;
     line_->data = dataOf(ping);
 }

@@ -49,8 +49,9 @@ public:
     void opened(Client client);
     void received(Client client, std::span<const uint8_t> bytes, types::Time now);
     void closed(Client client);
-    /** The ping that was asked for, in codes on a scale of decibels whose largest is 80 dB above the smallest. */
-    void heard(const types::Sonar& ping, types::Time now);
+    /** The ping that was asked for, in codes on a scale of decibels whose largest is 80 dB above the smallest. One of
+     *  before is passed over. */
+    void heard(const types::Sonar& ping);
     /** Does what is due; when something is next. */
     std::optional<types::Time> tick(types::Time now);
 
@@ -61,6 +62,7 @@ private:
     /** A scan line on its way. */
     struct Line {
         types::Time ready;  ///< When the motor has arrived.
+        types::Time sent;   ///< When the ping was asked for.
         types::Time whole;  ///< When sound is back.
         bool asked = false;
         Bytes data;  ///< Once the ping has come.

@@ -14,7 +14,7 @@ void MicronTask::listen(Network& network) {
 
 void MicronTask::takePings() {
     types::SonarPtr sample;
-    while (ping.readNew(sample)) emulator_->heard(*sample, now());
+    while (ping.readNew(sample)) emulator_->heard(*sample);
 }
 
 }  // namespace insonify::device

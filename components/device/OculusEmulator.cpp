@@ -73,7 +73,7 @@ std::optional<OculusFire> OculusEmulator::possible(OculusFire fire) const {
 
 double OculusEmulator::rangeOf(const OculusFire& fire) const {
     const bool metres = (fire.flags & OculusFire::range_in_metres) != 0;
-    return metres ? fire.range : fire.range / 100 * mode(fire).longest_range;
+    return metres ? fire.range : std::max(mode(fire).shortest_range, fire.range / 100 * mode(fire).longest_range);
 }
 
 types::SonarSettings OculusEmulator::settingsOf(const OculusFire& fire, Time now) const {

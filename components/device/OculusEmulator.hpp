@@ -1,5 +1,6 @@
 #pragma once
 #include <array>
+#include <atomic>
 #include <cstdint>
 #include <map>
 #include <optional>
@@ -109,7 +110,7 @@ private:
     types::Time last_ping_, last_dummy_, last_status_;
     double own_speed_ = types::SonarSettings::unset;  ///< Of sound, of the sonar where no driver sets it [m/s].
     uint32_t number_ = 0;
-    uint64_t lost_ = 0, refused_ = 0;
+    std::atomic<uint64_t> lost_{0}, refused_{0};  ///< Others than the task's thread may look at them.
 };
 
 }  // namespace insonify::device

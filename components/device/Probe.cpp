@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cctype>
 #include <charconv>
+#include <set>
 #include <string_view>
 
 #include "components/device/DriverLine.hpp"
@@ -93,7 +94,12 @@ void addSonar3d(std::vector<Probe>& all) {
                        "what answers is no Sonar 3D-15, or firmware before 1.7.1"});
 }
 
-DriverLine lineFor(const Probe& probe, const ProbeAddress& address, uint16_t port, std::chrono::milliseconds patience) {
+uint16_t portFor(const Probe& probe, const ProbeAddress& address) {
+    return address.port != 0 && probe.line != Probe::Line::Broadcast ? address.port : probe.port;
+}
+
+DriverLine lineFor(const Probe& probe, const ProbeAddress& address, std::chrono::milliseconds patience) {
+    const uint16_t port = portFor(probe, address);
     switch (probe.line) {
         case Probe::Line::Udp: return DriverLine::udp(address.host, port);
         case Probe::Line::Tcp: return DriverLine::tcp(address.host, port, patience);
@@ -103,7 +109,8 @@ DriverLine lineFor(const Probe& probe, const ProbeAddress& address, uint16_t por
     throw LineError("there is no such line");
 }
 
-std::string nameOf(const Probe& probe, const ProbeAddress& address, uint16_t port) {
+std::string nameOf(const Probe& probe, const ProbeAddress& address) {
+    const uint16_t port = portFor(probe, address);
     const std::string host = address.host.find(':') == std::string::npos ? address.host : "[" + address.host + "]";
     switch (probe.line) {
         case Probe::Line::Udp: return fmt::format("UDP {}:{}", host, port);
@@ -128,11 +135,10 @@ std::optional<std::string> converse(const Probe& probe, const DriverLine& line, 
 }
 
 ProbeOutcome ask(const Probe& probe, const ProbeAddress& address, std::chrono::milliseconds patience) {
-    const uint16_t port = address.port != 0 && probe.line != Probe::Line::Broadcast ? address.port : probe.port;
-    ProbeOutcome outcome{probe.protocol, nameOf(probe, address, port), "", "", ""};
+    ProbeOutcome outcome{probe.protocol, nameOf(probe, address), "", "", ""};
     bool opened = false;
     try {
-        const DriverLine line = lineFor(probe, address, port, patience);
+        const DriverLine line = lineFor(probe, address, patience);
         opened = true;
         outcome.device = converse(probe, line, patience).value_or("");
         if (outcome.device.empty()) outcome.failure = "no answer";
@@ -267,7 +273,12 @@ ProbeAddress probeAddress(const std::string& text) {
 
 std::vector<ProbeOutcome> probe(const ProbeAddress& address, std::chrono::milliseconds patience) {
     std::vector<ProbeOutcome> outcomes;
-    for (const Probe& question : questionsFor(address)) outcomes.push_back(ask(question, address, patience));
+    std::set<std::string> answered;  // lines; one that has said what it is is asked nothing more
+    for (const Probe& question : questionsFor(address)) {
+        if (answered.contains(nameOf(question, address))) continue;
+        outcomes.push_back(ask(question, address, patience));
+        if (!outcomes.back().device.empty()) answered.insert(outcomes.back().asked);
+    }
     return outcomes;
 }
 

@@ -7,6 +7,7 @@
 #include <map>
 #include <nlohmann/json.hpp>
 #include <regex>
+#include <utility>
 
 #include "components/device/IsoTime.hpp"
 #include "types/Angle.hpp"
@@ -23,6 +24,7 @@ constexpr double patience = 2;        // beyond sound's way, for a ping that was
 constexpr double strength_unit = 30;  // that of the device's strengths
 constexpr double strongest_pixel = 255;
 constexpr double slowest = 1000, fastest = 2000;  // [m/s]
+constexpr size_t most_under_way = 8;              // that a sonar which is slow may answer still
 constexpr const char* prefix = "/api/v1/integration/";
 
 /** A request that the device does not take, and why. */
@@ -267,40 +269,46 @@ void Sonar3dEmulator::ask(types::Time now) {
     types::SonarSettings settings;
     settings.time = now;
     settings.range = state_.range_max;
-    settings.frequency_khz = frequencyKhz();
+    settings.frequency_khz = frequencyKhz(state_);
     settings.speed_of_sound = speedOfSound();
     const double opening_deg = state_.high_frequency ? high_opening_deg : low_opening_deg;
     settings.field_of_view = types::Angle::fromDeg(opening_deg * columns / (columns - 1));  // to the edges of beams
-    asked_ = state_;
-    asked_.speed_of_sound = settings.speed_of_sound;
-    under_way_ = last_ = now;
+    if (under_way_.size() >= most_under_way) under_way_.erase(under_way_.begin());
+    under_way_.push_back({now, state_});
+    under_way_.back().state.speed_of_sound = settings.speed_of_sound;
+    last_ = now;
     outlet_.ask(settings);
 }
 
 std::optional<types::Time> Sonar3dEmulator::tick(types::Time now) {
     if (!state_.acoustics) return std::nullopt;
-    if (under_way_) {
-        const types::Time enough =
-            *under_way_ + types::Time::fromSeconds(patience + 2 * asked_.range_max / asked_.speed_of_sound);
-        if (now < enough) return enough;
-        if (!warned_) outlet_.warn("no range image came of a ping that was asked for; another is asked for");
-        warned_ = true;
-        under_way_.reset();
+    types::Time due = last_ ? *last_ + types::Time::fromSeconds(period()) : now;
+    if (!under_way_.empty()) {
+        const Sonar3dState& asked = under_way_.back().state;
+        due = std::max(due, *last_ + types::Time::fromSeconds(patience + 2 * asked.range_max / asked.speed_of_sound));
     }
-    const types::Time due = last_ ? *last_ + types::Time::fromSeconds(period()) : now;
     if (now < due) return due;
+    if (!under_way_.empty() && !std::exchange(warned_, true))
+        outlet_.warn("no range image came of a ping that was asked for; another is asked for");
     ask(now);
     return now + types::Time::fromSeconds(period());
 }
 
-RipImage Sonar3dEmulator::frameOf(const types::DepthMap& map) const {
+std::optional<Sonar3dState> Sonar3dEmulator::takeAsked(types::Time heard) {
+    const auto later = std::ranges::find_if(under_way_, [&](const Asked& asked) { return asked.time > heard; });
+    if (later == under_way_.begin()) return std::nullopt;
+    Sonar3dState state = std::prev(later)->state;
+    under_way_.erase(under_way_.begin(), later);
+    return state;
+}
+
+RipImage Sonar3dEmulator::frameOf(const types::DepthMap& map, const Sonar3dState& asked) const {
     RipImage image;
     image.time = map.time + shift_;
     image.sequence = sequence_;
-    image.speed_of_sound = static_cast<float>(asked_.speed_of_sound);
-    image.range = static_cast<float>(asked_.range_max);
-    image.frequency_hz = static_cast<uint32_t>(
-        std::lround(1e3 * (asked_.high_frequency ? device_.high_frequency_khz : device_.low_frequency_khz)));
+    image.speed_of_sound = static_cast<float>(asked.speed_of_sound);
+    image.range = static_cast<float>(asked.range_max);
+    image.frequency_hz = static_cast<uint32_t>(std::lround(1e3 * frequencyKhz(asked)));
     image.width = map.horizontal_size;
     image.height = map.vertical_size;
     image.field_of_view_deg = static_cast<float>(degreesBetween(map.horizontal_interval));
@@ -314,20 +322,24 @@ void Sonar3dEmulator::send(const Bytes& packet) {
         outlet_.send(device_.multicast_address, static_cast<uint16_t>(device_.multicast_port), packet);
 }
 
-void Sonar3dEmulator::heard(const types::DepthMap& map, types::Time) {
-    under_way_.reset();
+void Sonar3dEmulator::heard(const types::DepthMap& map) {
+    const auto asked = takeAsked(map.time);
+    if (!asked) return;
     ++sequence_;
-    if (!state_.acoustics || state_.udp_mode == "disabled") return;
+    if (state_.acoustics && state_.udp_mode != "disabled") sendImages(map, *asked);
+}
+
+void Sonar3dEmulator::sendImages(const types::DepthMap& map, const Sonar3dState& asked) {
     RangePixels ranges;
     StrengthPixels strengths;
-    static_cast<RipImage&>(ranges) = static_cast<RipImage&>(strengths) = frameOf(map);
-    ranges.pixel_scale = static_cast<float>(std::max(millimetre, asked_.range_max / UINT16_MAX));
+    static_cast<RipImage&>(ranges) = static_cast<RipImage&>(strengths) = frameOf(map, asked);
+    ranges.pixel_scale = static_cast<float>(std::max(millimetre, asked.range_max / UINT16_MAX));
     const auto loudest = map.remissions.empty() ? map.remissions.end() : std::ranges::max_element(map.remissions);
     for (size_t row = map.vertical_size; row-- > 0;)  // the lowest first
         for (size_t column = 0; column < map.horizontal_size; ++column) {
             const size_t cell = row * map.horizontal_size + column;
             const double range = map.distances[cell];
-            const bool seen = range >= asked_.range_min && range <= asked_.range_max;
+            const bool seen = range >= asked.range_min && range <= asked.range_max;
             const double pixel = seen ? std::round(range / static_cast<double>(ranges.pixel_scale)) : 0;
             ranges.pixels.push_back(static_cast<uint32_t>(std::min<double>(pixel, UINT16_MAX)));
             const double share =

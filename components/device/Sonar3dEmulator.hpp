@@ -2,6 +2,7 @@
 #include <functional>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "components/device/Http.hpp"
 #include "components/device/Rip2.hpp"
@@ -72,27 +73,36 @@ public:
     Sonar3dEmulator(Sonar3dDevice device, Outlet outlet) : device_(std::move(device)), outlet_(std::move(outlet)) {}
 
     HttpReply answer(const HttpRequest& request, types::Time now);
-    /** The ping that was asked for: ranges and strengths by direction. */
-    void heard(const types::DepthMap& map, types::Time now);
+    /** A ping that was asked for, then or later: ranges and strengths by direction. */
+    void heard(const types::DepthMap& map);
     /** Asks for what is due; when the next is. */
     std::optional<types::Time> tick(types::Time now);
     const Sonar3dState& state() const { return state_; }
 
 private:
     struct Api;
+    /** A ping that was asked for, and what held then. */
+    struct Asked {
+        types::Time time;
+        Sonar3dState state;
+    };
     void ask(types::Time now);
     double speedOfSound() const;
     double period() const { return state_.high_frequency ? 1.0 / 20 : 1.0 / 5; }  ///< [s]
-    double frequencyKhz() const {
-        return state_.high_frequency ? device_.high_frequency_khz : device_.low_frequency_khz;
+    double frequencyKhz(const Sonar3dState& state) const {
+        return state.high_frequency ? device_.high_frequency_khz : device_.low_frequency_khz;
     }
-    RipImage frameOf(const types::DepthMap& map) const;
+    RipImage frameOf(const types::DepthMap& map, const Sonar3dState& asked) const;
+    /** What held when this ping was asked for; none: nobody asked. */
+    std::optional<Sonar3dState> takeAsked(types::Time heard);
+    void sendImages(const types::DepthMap& map, const Sonar3dState& asked);
     void send(const Bytes& packet);
 
     Sonar3dDevice device_;
     Outlet outlet_;
-    Sonar3dState state_, asked_;  ///< Now; and when the ping under way was asked for.
-    std::optional<types::Time> under_way_, last_;
+    Sonar3dState state_;
+    std::vector<Asked> under_way_;  ///< The oldest first.
+    std::optional<types::Time> last_;
     types::Time shift_;  ///< Of the device's clock.
     uint32_t sequence_ = 0;
     bool warned_ = false;

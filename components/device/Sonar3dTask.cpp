@@ -27,7 +27,7 @@ void Sonar3dTask::received(Client client, std::span<const uint8_t> bytes) {
 
 void Sonar3dTask::takePings() {
     types::DepthMapPtr map;
-    while (range_image.readNew(map)) emulator_->heard(*map, now());
+    while (range_image.readNew(map)) emulator_->heard(*map);
 }
 
 }  // namespace insonify::device

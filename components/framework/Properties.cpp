@@ -39,7 +39,7 @@ void PropertiesBase::addSetters() {
             setters_.push_back(std::make_unique<Setter>(owner_, *this, property));
 }
 
-void PropertiesBase::set(const std::map<std::string, std::string>& values) {
+void PropertiesBase::setAll(const std::map<std::string, std::string>& values) {
     ConfigReader reader("");
     reader.takeOutByNull();
     YAML::Node block(YAML::NodeType::Map);

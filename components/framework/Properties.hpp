@@ -32,9 +32,9 @@ public:
      *  its default. For the task's thread. Throws
      *  types::ConfigError when the value does not fit, std::runtime_error when the task does not take it over: then
      *  the old value stays. */
-    void set(const std::string& name, const std::string& yaml) { set({{name, yaml}}); }
+    void set(const std::string& name, const std::string& yaml) { setAll({{name, yaml}}); }
     /** Several at once: all, or none. */
-    void set(const std::map<std::string, std::string>& values);
+    void setAll(const std::map<std::string, std::string>& values);
 
 protected:
     void addSetters();

@@ -130,7 +130,7 @@ std::map<std::string, std::string> PingTask::changedBy(const types::SonarSetting
 
 void PingTask::applySettings(const types::SonarSettings& asked) {
     const auto changed = changedBy(asked);
-    if (!changed.empty()) properties().front()->set(changed);
+    if (!changed.empty()) properties().front()->setAll(changed);
     if (!asked.bearing.isUnknown()) turnHead(asked.bearing);
 }
 

@@ -24,7 +24,7 @@ struct Beams {
         low = *std::ranges::min_element(edges);
         high = *std::ranges::max_element(edges);
         for (size_t i = 0; i + 1 < edges.size(); ++i) {
-            const auto [from, to] = std::minmax(slot(edges[i]), slot(edges[i + 1]));
+            const auto [from, to] = std::minmax({slot(edges[i]), slot(edges[i + 1])});
             for (int k = std::max(from, 0); k < std::min(to, directions); ++k)
                 beam[static_cast<size_t>(k)] = static_cast<int>(i);
         }

@@ -17,7 +17,8 @@ namespace insonify::viewer {
  *  Ports: an input for each connection that names one, whatever the name, of any type in types/Samples.hpp, and
  *  snapshots. The page shows pings as a fan, the scene and the sonar's place from snapshots, the vehicle's path from
  *  poses, the tasks, what connections lost and what is left out; where `control` allows it sets properties, calls
- *  operations and, in lockstep, pauses. Foxglove gets a channel for each input.
+ *  operations and, in lockstep, pauses. Foxglove gets channels for each input, and the properties of tasks as
+ *  parameters, which it sets where `control` allows it.
  *
  *  configure opens the port; one that is taken refuses it. Cycles only hand over the newest samples: no client delays
  *  them, and what a client is too slow for is dropped and counted. Connections that are refused are counted, and warned

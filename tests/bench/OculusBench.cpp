@@ -37,7 +37,7 @@ framework::Registry registry() {
 /** Pings that come in so many seconds, and how many were left out in between by their numbers. */
 void count(uint16_t port, double seconds) {
     test::OculusDriver driver(port);
-    driver.send(bytesOf({.rate = 2, .flags = 0x4B, .range = 10}));
+    driver.send(device::bytesOf(device::OculusFire{.rate = 2, .flags = 0x4B, .range = 10}));
     for (int i = 0; i < 20; ++i) driver.nextPing();  // shaders are compiled, the quality is found
     const auto begin = Clock::now();
     const uint32_t first = driver.nextPing().number;

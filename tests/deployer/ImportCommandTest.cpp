@@ -49,7 +49,8 @@ protected:
         const Outcome outcome =
             callInsonify(folder_, {"replay", "dive.0.log", deployment, "--rerender", "--score", "--out", "scored"});
         EXPECT_EQ(outcome.code, 0) << outcome.err;
-        for (const json& stream : json::parse(readFile(folder_ / "scored/score.json"))["streams"])
+        const json all = json::parse(readFile(folder_ / "scored/score.json"));
+        for (const json& stream : all["streams"])
             if (stream["stream"] == "receiver.ping") return stream;
         return {};
     }

@@ -52,7 +52,7 @@ protected:
     }
     std::string lineOf(const std::string& task) const { return folder_ / "out" / task; }
     json driven(const std::string& arguments) const {
-        const std::string script = root / "tests/device/ping_driver.py";
+        const std::string script = root / "tests/deployer/ping_driver.py";
         const std::string said = insonify::pythonSays(script + " " + arguments, folder_ / "said.txt");
         const json parsed = json::parse(said, nullptr, false);
         EXPECT_FALSE(parsed.is_discarded()) << said.substr(0, 2000);

@@ -29,11 +29,15 @@ protected:
         now_ = now_ + types::Time::fromSeconds(seconds);
         emulator_.tick(now_);
     }
+    void hear() {
+        ping_.time = now_;
+        emulator_.heard(ping_);
+    }
     /** Goes on to what is due next; the sonar answers at once. */
     void wait() {
         emulator_.tick(now_);
         if (answers_ && !asked_.empty()) {
-            emulator_.heard(ping_, now_);
+            hear();
             asked_.pop_back();
         }
         if (const auto due = emulator_.tick(now_)) now_ = std::max(now_, *due);
@@ -123,7 +127,7 @@ TEST_F(MicronEmulatorTest, ALineIsAnsweredOnceSoundIsBackAndTheMotorHasArrived) 
     driver_.request();
     advance(0);
     ASSERT_EQ(asked_.size(), 1u);
-    emulator_.heard(ping_, now_);
+    hear();
     advance(listening - 1e-4);
     EXPECT_TRUE(sent_[client].empty()) << "sound is not back";
     advance(1e-4);
@@ -137,7 +141,7 @@ TEST_F(MicronEmulatorTest, ALineIsAnsweredOnceSoundIsBackAndTheMotorHasArrived) 
     ASSERT_EQ(asked_.size(), 2u);
     advance(2 * listening);
     EXPECT_TRUE(sent_[client].empty()) << "the ping has not come";
-    emulator_.heard(ping_, now_);
+    hear();
     advance(0);
     EXPECT_FALSE(sent_[client].empty());
 }
@@ -249,7 +253,7 @@ TEST_F(MicronEmulatorTest, TwoClientsHaveOneHead) {
     driver_.request();
     advance(0);
     emulator_.closed(client);  // in mid-ping
-    emulator_.heard(ping_, now_);
+    hear();
     advance(1);
     EXPECT_TRUE(sent_[client].empty());
     second.request();
@@ -262,7 +266,7 @@ TEST_F(MicronEmulatorTest, OneThatRebootsInMidPingStartsAgain) {
     advance(0);
     ASSERT_EQ(asked_.size(), 1u);
     driver_.reboot();
-    emulator_.heard(ping_, now_);
+    hear();
     advance(0.1);
     EXPECT_TRUE(sent_[client].empty()) << "the line is forgotten";
     driver_.configure({});
@@ -291,6 +295,14 @@ TEST_F(MicronEmulatorTest, APingThatNeverComesIsToldOnceAndLeavesTheHeadUsable) 
     }
     ASSERT_EQ(warnings_.size(), 1u);
     EXPECT_THAT(warnings_[0], HasSubstr("no ping came"));
+    driver_.request();
+    advance(0);
+    sent_.clear();
+    ping_.time = now_ - types::Time{1};
+    emulator_.heard(ping_);
+    advance(1);
+    EXPECT_TRUE(sent_[client].size() < 45) << "a ping of before is of another bearing";
+    advance(3);
     sent_.clear();
     asked_.clear();
     answers_ = true;

@@ -145,6 +145,7 @@ TEST_F(OculusEmulatorTest, WhatADriverSetsIsAskedOfTheSonar) {
     const types::SonarSettings high =
         asked({.mode = 2, .flags = OculusFire::beams_512, .range = 5, .gain_percent = 100, .speed_of_sound = 1500});
     EXPECT_EQ(high.range, 2) << "5 % of 40 m";
+    EXPECT_EQ(asked({.flags = 0, .range = 0}).range, 0.1) << "the shortest, not one bit less";
     EXPECT_EQ(high.frequency_khz, 1200);
     EXPECT_NEAR(degrees(high.field_of_view.rad), 70, 1e-9);
     EXPECT_NEAR(degrees(high.beam_height.rad), 12, 1e-9);

@@ -39,8 +39,12 @@ void frame(const Input& input) {
     framer.add(bytesIn(input));
     for (device::Bytes message = framer.next(); !message.empty(); message = framer.next()) {
         EXPECT_TRUE(device::oculusHeader(message));
-        if (const auto ping = device::oculusResult(message)) EXPECT_EQ(bytesOf(*ping), message);
-        if (const auto fire = device::oculusFire(message)) EXPECT_EQ(bytesOf(*fire).size(), fire->size());
+        if (const auto ping = device::oculusResult(message)) {
+            EXPECT_EQ(bytesOf(*ping), message);
+        }
+        if (const auto fire = device::oculusFire(message)) {
+            EXPECT_EQ(bytesOf(*fire).size(), fire->size());
+        }
         device::oculusUserConfig(message);
         device::oculusStatus(message);
     }
@@ -60,7 +64,10 @@ void drive(const Input& input) {
         EXPECT_TRUE(asked->range >= 0.1 && asked->range <= 120) << asked->range;
         EXPECT_TRUE(asked->bin_count >= 1 && asked->bin_count <= 1000) << asked->bin_count;
         EXPECT_TRUE(asked->gain_db >= -20 && asked->gain_db <= 20) << asked->gain_db;
-        types::Sonar ping{.time = now, .bearings = {{0}, {0.1}}, .bin_count = 2, .beam_count = 2};
+        types::Sonar ping;
+        ping.time = now;
+        ping.resize(2, 2);
+        ping.setRegularBearings({0}, {0.1});
         ping.bins = {0, 1, 300, 65535};
         EXPECT_TRUE(device::oculusResult(emulator.ping(ping)));
     }

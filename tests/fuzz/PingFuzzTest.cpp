@@ -1,6 +1,8 @@
 // What comes in at a device of the ping protocol, from drivers and from noisy lines; and what a device answers.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "components/device/Ping1dEmulator.hpp"
 #include "components/device/Ping360Emulator.hpp"
 #include "tests/support/Fuzz.hpp"

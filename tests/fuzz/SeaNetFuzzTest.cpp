@@ -33,11 +33,12 @@ private:
         EXPECT_TRUE(asked.gain_db >= -80 && asked.gain_db <= 80) << asked.gain_db;
         EXPECT_FALSE(asked.bearing.isUnknown());
         types::Sonar ping;
+        ping.time = asked.time;
         ping.bins.assign(asked.bin_count, 30000);
         pings_.push_back(ping);
     }
     void expectPackets() {
-        for (const types::Sonar& ping : pings_) emulator_.heard(ping, now_);
+        for (const types::Sonar& ping : pings_) emulator_.heard(ping);
         emulator_.tick(now_ + types::Time::fromSeconds(10));
         device::SeaNetReader reader;
         reader.add(sent_);

@@ -36,7 +36,9 @@ void read(const Input& input) {
             expectSound(sonar.state());
             now = now + types::Time::fromSeconds(0.1);
             sonar.tick(now);
-            sonar.heard({}, now);
+            types::DepthMap silence;
+            silence.time = now;
+            sonar.heard(silence);
         }
     }
     EXPECT_TRUE(!reader.refusal() || reader.refusal()->status >= 400);

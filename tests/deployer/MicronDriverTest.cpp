@@ -1,16 +1,11 @@
 // A Micron over TCP and over a serial line, before what an open driver sends and checks, with the sonar behind it.
-#include <arpa/inet.h>
-#include <fcntl.h>
 #include <gmock/gmock.h>
-#include <poll.h>
-#include <sys/socket.h>
-#include <termios.h>
-#include <unistd.h>
 
 #include <cmath>
 #include <numbers>
 
-#include "tests/device/HilRun.hpp"
+#include "tests/deployer/HilRun.hpp"
+#include "tests/support/Wire.hpp"
 #include "tests/support/MicronDriver.hpp"
 #include "types/Angle.hpp"
 
@@ -18,53 +13,6 @@ namespace insonify::device {
 namespace {
 
 using test::MicronDriver;
-using Bytes = MicronDriver::Bytes;
-
-/** An open file that a driver talks to. */
-class Wire {
-public:
-    static int connected(int port) {
-        const int file = socket(AF_INET, SOCK_STREAM, 0);
-        sockaddr_in to{};
-        to.sin_family = AF_INET;
-        to.sin_port = htons(static_cast<uint16_t>(port));
-        to.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
-        EXPECT_EQ(connect(file, reinterpret_cast<sockaddr*>(&to), sizeof to), 0);
-        return file;
-    }
-    static int line(const std::filesystem::path& link) {
-        const int file = open(link.c_str(), O_RDWR | O_NOCTTY);
-        termios raw{};
-        cfmakeraw(&raw);
-        tcsetattr(file, TCSANOW, &raw);
-        return file;
-    }
-
-    explicit Wire(int file) : file_(file) {}
-    ~Wire() { close(file_); }
-    Wire(const Wire&) = delete;
-    Wire& operator=(const Wire&) = delete;
-
-    MicronDriver driver() const {
-        return {[this](const Bytes& bytes) {
-                    EXPECT_EQ(::write(file_, bytes.data(), bytes.size()), ssize_t(bytes.size()));
-                },
-                [this] { return hear(); }};
-    }
-
-private:
-    Bytes hear() const {
-        pollfd ready{file_, POLLIN, 0};
-        Bytes bytes(4096);
-        const auto patience = static_cast<int>(std::chrono::milliseconds(test::patience).count());
-        const ssize_t got = poll(&ready, 1, patience) == 1 ? ::read(file_, bytes.data(), bytes.size()) : -1;
-        if (got <= 0) throw std::runtime_error("time out");
-        bytes.resize(static_cast<size_t>(got));
-        return bytes;
-    }
-
-    int file_;
-};
 
 /** The sonar at the origin looks north at a wall 6 m away. */
 std::string deployment(const TestFolder& folder) {
@@ -94,6 +42,10 @@ connections:
 double strongestRange(const MicronDriver::Beam& beam) {
     const auto bin = std::ranges::max_element(beam.bins) - beam.bins.begin();
     return (static_cast<double>(bin) + 0.5) * beam.sampling_interval * 1500 / 2;
+}
+
+MicronDriver driverOn(const Wire& wire) {
+    return {[&wire](const Bytes& bytes) { wire.say(bytes); }, [&wire] { return wire.hear(); }};
 }
 
 class MicronDriverTest : public ::testing::Test {
@@ -135,8 +87,8 @@ TEST_F(MicronDriverTest, ADriverScansASectorOverTcpAndOverALine) {
     const int port = run_.port();
     ASSERT_GT(port, 0) << readFile(run_.folder() / "stderr.txt");
     const Wire tcp(Wire::connected(port)), line(Wire::line(run_.folder() / "out" / "line"));
-    expectAWallAt6Metres(tcp.driver(), false);
-    expectAWallAt6Metres(line.driver(), true);
+    expectAWallAt6Metres(driverOn(tcp), false);
+    expectAWallAt6Metres(driverOn(line), true);
 }
 
 /** Clients that come and go, in mid-ping too, and one that asks and never reads, hold up nobody. */
@@ -144,16 +96,16 @@ TEST_F(MicronDriverTest, AThousandReconnectsAndOneThatDoesNotReadLeaveItAsItWas)
     const int port = run_.port();
     ASSERT_GT(port, 0) << readFile(run_.folder() / "stderr.txt");
     const Wire deaf(Wire::connected(port));
-    MicronDriver never_reads = deaf.driver();
+    MicronDriver never_reads = driverOn(deaf);
     for (int i = 0; i < 1000; ++i) {
         never_reads.request();
         const Wire wire(Wire::connected(port));
-        MicronDriver driver = wire.driver();
+        MicronDriver driver = driverOn(wire);
         if (i % 100 == 0) driver.configure({.resolution = 0.05, .max_distance = 10, .step = 0.1});
         driver.request();  // and gone, before its line comes
     }
     const Wire last(Wire::connected(port));
-    MicronDriver driver = last.driver();
+    MicronDriver driver = driverOn(last);
     driver.configure({.resolution = 0.05, .max_distance = 10});
     driver.request();
     EXPECT_EQ(driver.beam().bins.size(), 200u);

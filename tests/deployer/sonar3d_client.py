@@ -1,4 +1,4 @@
-"""Talks to a Sonar 3D-15 by the maker's client: python3 sonar3d_client.py PORT unicast|multicast [VOXELS.npy]
+"""Talks to a Sonar 3D-15 by the maker's client: python3 sonar3d_client.py PORT unicast|MULTICAST_PORT [VOXELS.npz]
 
 Sets what the client can set, takes range images, and prints one JSON object: what was kept, what was refused, and the
 wall and the ball that the voxels show (x ahead, y to starboard, z down).
@@ -41,7 +41,7 @@ def ball(points):
     return centre, float(numpy.sqrt(solution[3] + centre @ centre))
 
 
-sonar = wlsonar.Sonar3D("127.0.0.1", port)
+sonar = wlsonar.Sonar3D("127.0.0.1", port, timeout=60)
 told["about"] = sonar.about().product_name
 told["ready"] = sonar.get_status().api.operational and sonar.get_status().time.operational
 told["temperature"] = sonar.get_temperature()
@@ -62,7 +62,11 @@ if way == "unicast":
     sock = wlsonar.open_sonar_udp_unicast_socket(udp_port=0, iface_ip="127.0.0.1")
     sonar.set_udp_unicast("127.0.0.1", sock.getsockname()[1])
 else:
-    sock = wlsonar.open_sonar_udp_multicast_socket(udp_port=int(way))
+    try:
+        sock = wlsonar.open_sonar_udp_multicast_socket(udp_port=int(way))
+    except OSError as error:
+        print(json.dumps({"no_multicast": str(error)}))
+        sys.exit()
     sonar.set_udp_multicast()
 sock.settimeout(60)
 told["udp"] = sonar.get_udp_config().mode
@@ -86,13 +90,17 @@ if len(sys.argv) > 3:
     ranges = numpy.array(wlsonar.range_image_to_distance(image)).reshape(image.height, image.width)
     numpy.savez(sys.argv[3], ranges=ranges, strengths=numpy.array(strengths).reshape(ranges.shape), points=points)
 
-wall = points[points[:, 0] > 4.8]
-told["wall"] = {"voxels": len(wall), "mean": float(wall[:, 0].mean()), "worst": float(abs(wall[:, 0] - 5).max())}
 near = points[points[:, 0] < 4.6]
 centre, radius = ball(near)
 front = near[((near - centre) * -centre).sum(1) > 0.5 * radius * numpy.linalg.norm(centre)]  # not its rim
 centre, radius = ball(front)
 told["ball"] = {"voxels": len(front), "centre": list(map(float, centre)), "radius": radius}
+
+wall = points[points[:, 0] > 4.8]
+ways = wall / numpy.linalg.norm(wall, axis=1, keepdims=True)
+whole = numpy.linalg.norm(numpy.cross(ways, centre), axis=1) > radius + 0.1  # past the ball by more than half a beam
+told["wall"] = {"voxels": int(whole.sum()), "mean": float(wall[:, 0].mean()),
+                "worst": float(abs(wall[whole, 0] - 5).max()), "worst_beside_ball": float(abs(wall[:, 0] - 5).max())}
 
 sonar.set_mode("high-frequency")
 sonar.set_range(0.3, 6)
