@@ -128,7 +128,7 @@ TEST(FromSonarTest, FloatsAreTheBinsUnchangedInBothOrders) {
 TEST(FromSonarTest, ARawImageHasTheRateThatGivesTheBinsTheirWidth) {
     types::Sonar ping = smallPing();
     ping.timestamps = {ping.time, ping.time + types::Time{250}};
-    const auto raw = messageOf<RawSonarImage>(ping);
+    const auto raw = messageOf<RawSonarImage>(ping, levels());
     EXPECT_FLOAT_EQ(1500 / (2 * raw.sample_rate), 0.75f);
     EXPECT_EQ(raw.samples_per_beam, 3u);
     EXPECT_THAT(raw.tx_delays, ElementsAre(0, FloatEq(250e-6f)));
