@@ -39,7 +39,7 @@ protected:
             result.speed_of_sound = static_cast<double>(ping.speed_of_sound);
             encoder.encode(ping, result);
             result.settle();
-            recorder.write(1700000000 + ping.time.seconds(), bytesOf(result));
+            recorder.write(ping.time.seconds(), bytesOf(result));  // speckle goes by the time
         });
     }
     Outcome import(const std::string& recording, const std::string& deployment = "wall.yml") const {
@@ -78,7 +78,7 @@ TEST_F(ImportCommandTest, TheLogHasThePingsTimesAndThePosesOfTheTrajectory) {
     ASSERT_TRUE(log->find("vehicle.pose") && log->find("receiver.ping"));
     EXPECT_EQ(log->find("vehicle.pose")->count, 3u);
     EXPECT_NEAR(log->find("receiver.ping")->last.seconds() - log->find("receiver.ping")->first.seconds(), 0.2, 1e-5);
-    EXPECT_GT(log->find("receiver.ping")->first.seconds(), 1.7e9);
+    EXPECT_NEAR(log->find("receiver.ping")->first.seconds(), 1, 1e-6);
     log->forEach<types::Sonar>("receiver.ping", [](const types::Sonar& ping, const log::SampleRef&) {
         EXPECT_EQ(ping.beam_count, 20u);
         EXPECT_NEAR(ping.bearings.front().deg(), -28.5, 1e-9) << "starboard first";
