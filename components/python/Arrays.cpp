@@ -79,7 +79,7 @@ py::array_t<uint8_t> fanOf(const types::Sonar& ping, const output::DisplayConfig
     return pixelsOf(picture);
 }
 
-types::Pose poseOf(const py::array_t<double>& position, const py::array_t<double>& orientation) {
+types::Pose poseOf(const Numbers& position, const Numbers& orientation) {
     if (position.size() != 3) throw std::invalid_argument("a position has 3 numbers");
     if (orientation.size() != 4) throw std::invalid_argument("an orientation is a quaternion w, x, y, z");
     types::Pose pose;

@@ -27,7 +27,10 @@ py::array_t<uint8_t> pixelsOf(const types::Image& picture);
 /** The ping as a fan. Throws types::ConfigError for what no picture can be. */
 py::array_t<uint8_t> fanOf(const types::Sonar& ping, const output::DisplayConfig& display);
 
+/** Numbers one after the other, whatever the array of the caller is. */
+using Numbers = py::array_t<double, py::array::c_style | py::array::forcecast>;
+
 /** A pose of three numbers and a quaternion w, x, y, z. */
-types::Pose poseOf(const py::array_t<double>& position, const py::array_t<double>& orientation);
+types::Pose poseOf(const Numbers& position, const Numbers& orientation);
 
 }  // namespace insonify::python

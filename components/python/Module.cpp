@@ -66,8 +66,7 @@ void addSimulation(py::module_& module) {
         .def_property_readonly("period", &Simulation::period)
         .def_property_readonly("time", &Simulation::time)
         .def("step",
-             [](Simulation& self,
-                const std::map<std::string, std::pair<py::array_t<double>, py::array_t<double>>>& given,
+             [](Simulation& self, const std::map<std::string, std::pair<Numbers, Numbers>>& given,
                 std::optional<double> time) {
                  std::map<std::string, types::Pose> poses;
                  for (const auto& [port, pose] : given) poses[port] = poseOf(pose.first, pose.second);
@@ -92,17 +91,25 @@ struct PyStream {
     const log::Stream& declared() const { return log->streams()[stream]; }
 };
 
+/** The sample, if its lists are as long as it says, which arrays rely on. */
+template <class Sample>
+std::shared_ptr<Sample> soundOf(std::shared_ptr<Sample> sample) {
+    if (const char* diagnostic = sample->diagnostic())
+        throw types::ConfigError("", "", std::string("a sample of the log ") + diagnostic);
+    return sample;
+}
+
 py::object sampleOf(const PyStream& stream, size_t index) {
     const log::SampleRef& at = stream.log->samples()[stream.samples[index]];
-    if (stream.declared().holds<types::Sonar>()) {
+    if (log::holdsPings(stream.declared())) {
         auto ping = std::make_shared<types::Sonar>();
-        stream.log->read(at, *ping);
-        return py::cast(PyPing{ping, nullptr});
+        log::readPing(*stream.log, at, *ping);
+        return py::cast(PyPing{soundOf(ping), nullptr});
     }
     if (stream.declared().holds<types::SonarTruth>()) {
         auto truth = std::make_shared<types::SonarTruth>();
         stream.log->read(at, *truth);
-        return truthOf(truth);
+        return truthOf(soundOf(truth));
     }
     return std::visit(
         [](const auto* sample) -> py::object {

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <set>
 #include <stdexcept>
 
@@ -10,6 +11,7 @@
 #include "components/deployer/Pipeline.hpp"
 #include "components/deployer/ReplaySpec.hpp"
 #include "components/deployer/Tasks.hpp"
+#include "components/framework/Activity.hpp"
 #include "components/framework/Properties.hpp"
 #include "components/framework/Wiring.hpp"
 #include "types/ConfigError.hpp"
@@ -21,6 +23,8 @@ using framework::DeploymentSpec;
 using framework::splitPort;
 
 constexpr const char* scene_type = "scene::SceneTask";
+constexpr const char* busy = "another thread uses this simulation";
+constexpr double longest_step = 86400;  ///< [s]
 
 bool isScenePose(const DeploymentSpec& spec, const framework::ConnectionSpec& connection) {
     const auto [task, port] = splitPort(connection.to);
@@ -151,17 +155,33 @@ std::vector<std::string> Simulation::pings() const {
     return ports;
 }
 
-std::vector<SteppedPing> Simulation::step(std::map<std::string, types::Pose> at, std::optional<double> time) {
-    const types::Time now = types::Time::fromSeconds(time.value_or(time_));
+types::Time Simulation::timeOfStep(double seconds) const {
+    if (!std::isfinite(seconds)) throw std::invalid_argument("the time of a step is not finite");
+    const types::Time now = types::Time::fromSeconds(seconds);
     if (last_ && !(*last_ < now))
         throw std::runtime_error(
-            fmt::format("the step is at {:g} s, and the one before was at {:g} s", now.seconds(), last_->seconds()));
+            fmt::format("the step is at {:g} s, and the one before was at {:g} s", seconds, last_->seconds()));
+    const double ahead = seconds - (last_ ? last_->seconds() : start_time_);
+    const bool others_go_on = std::ranges::any_of(
+        deployment_->tasks(), [](const auto& task) { return task->activity().settings().periodic(); });
+    if (others_go_on && ahead > longest_step)
+        throw std::runtime_error(fmt::format(
+            "the step is {:g} s after the one before or the start, in which tasks with a period go on; at most {:g} s",
+            ahead, longest_step));
+    return now;
+}
+
+std::vector<SteppedPing> Simulation::step(std::map<std::string, types::Pose> at, std::optional<double> time) {
+    const std::unique_lock use(in_use_, std::try_to_lock);
+    if (!use) throw std::runtime_error(busy);
+    const types::Time now = timeOfStep(time.value_or(time_));
+    for (const std::string& port : poses_)
+        if (!at.contains(port)) throw std::runtime_error("no pose is given for " + port);
     last_ = now;
     for (size_t i = 0; i < poses_.size(); ++i) {
-        const auto given = at.find(poses_[i]);
-        if (given == at.end()) throw std::runtime_error("no pose is given for " + poses_[i]);
-        given->second.time = now;
-        feeds_[i]->give(splitPort(poses_[i]).second, given->second);
+        types::Pose& given = at.at(poses_[i]);
+        given.time = now;
+        feeds_[i]->give(splitPort(poses_[i]).second, given);
     }
     while (std::ranges::any_of(feeds_, [](const PoseFeed* feed) { return feed->nextTime().has_value(); }))
         if (!deployment_->advance()) break;
@@ -182,6 +202,9 @@ void Simulation::throwErrors() const {
 }
 
 void Simulation::reset(std::optional<uint64_t> seed) {
+    if (seed == 0) throw std::invalid_argument("a seed of 0 stands for the deployment's own; make a simulation of it");
+    const std::unique_lock use(in_use_, std::try_to_lock);
+    if (!use) throw std::runtime_error(busy);
     throwAny(deployment_->stop());
     for (const auto& reader : readers_) reader->ping.clear(), reader->truth.clear();
     for (const auto& task : deployment_->tasks()) {

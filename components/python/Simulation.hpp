@@ -2,6 +2,7 @@
 #include <cstdint>
 #include <map>
 #include <memory>
+#include <mutex>
 #include <optional>
 #include <set>
 #include <string>
@@ -33,7 +34,7 @@ struct SteppedPing {
  *  Of the deployment there are the tasks that lead to pings, in lockstep. Those that tell a scene's `pose` are replaced
  * by the caller; those that move objects stay and go by simulated time. It gives the pings of the last task of each
  * chain that takes them: a receiver's, where there is one. Errors of the deployment are types::ConfigError, those of a
- * step std::runtime_error. For one thread at a time. */
+ * step std::runtime_error, as is its use by two threads at a time. */
 class Simulation {
 public:
     Simulation(const std::string& deployment, SimulationOptions options);
@@ -48,12 +49,14 @@ public:
     /** Gives each scene its pose at a time, later than that of the step before [s]; one ping for each of pings(), with
      *  null where it made none. */
     std::vector<SteppedPing> step(std::map<std::string, types::Pose> at, std::optional<double> time);
-    /** Back to the start, as if it had just been made with this seed; none: the same. The scene stays loaded. */
+    /** Back to the start, as if it had just been made with this seed, not 0; none: the same. The scene stays loaded. */
     void reset(std::optional<uint64_t> seed);
 
 private:
     void replacePoses(framework::DeploymentSpec& spec);
     void connectReaders(bool truth);
+    /** Throws for one that cannot follow the step before, or only after hours of work of other tasks. */
+    types::Time timeOfStep(double seconds) const;
     void start();
     /** Throws what a task says that is in error. */
     void throwErrors() const;
@@ -66,6 +69,7 @@ private:
     double period_ = 0.1;
     double start_time_ = 0;
     double time_ = 0;
+    std::mutex in_use_;
     std::optional<types::Time> last_;  ///< Of the step before.
     std::set<std::string> own_seeds_;  ///< Tasks whose seed has been given by name.
 };

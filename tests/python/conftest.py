@@ -1,8 +1,10 @@
+import os
 import pathlib
 
 import pytest
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
+INSONIFY = pathlib.Path(os.environ.get("INSONIFY_BUILD", ROOT / "build")) / "bin/insonify"
 
 
 @pytest.fixture

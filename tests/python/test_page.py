@@ -5,7 +5,7 @@ import subprocess
 import sys
 
 import pytest
-from conftest import ROOT
+from conftest import INSONIFY, ROOT
 
 PAGE = ROOT / "components/python/README.md"
 BLOCKS = re.findall(r"```python\n(.*?)```", PAGE.read_text(), re.DOTALL)
@@ -14,7 +14,7 @@ BLOCKS = re.findall(r"```python\n(.*?)```", PAGE.read_text(), re.DOTALL)
 @pytest.fixture
 def folder(tmp_path):
     (tmp_path / "deploy").symlink_to(ROOT / "deploy")
-    command = [ROOT / "build/bin/insonify", "run", "deploy/harbour_fls.yml", "--pings", "2", "--quiet", "--out", "."]
+    command = [INSONIFY, "run", "deploy/harbour_fls.yml", "--pings", "2", "--quiet", "--out", "."]
     subprocess.run(command, cwd=tmp_path, check=True, timeout=600)
     return tmp_path
 

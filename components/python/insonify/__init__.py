@@ -57,7 +57,7 @@ class Pose:
             raise ValueError("a transform is 4 x 4, with a last row of 0 0 0 1")
         if not np.allclose(rotation @ rotation.T, np.eye(3), atol=1e-6) or np.linalg.det(rotation) < 0:
             raise ValueError("the upper left 3 x 3 of the transform is no rotation")
-        return cls(matrix[:3, 3], _quaternion(rotation))
+        return cls(matrix[:3, 3].copy(), _quaternion(rotation))
 
     @classmethod
     def from_euler(cls, position: np.ndarray, roll: float = 0, pitch: float = 0, yaw: float = 0) -> Pose:
@@ -183,7 +183,7 @@ class Simulation:
         truth: bool = False,
         period: float | None = None,
     ) -> None:
-        assignments = [f"{name}={json.dumps(value)}" for name, value in (overrides or {}).items()]
+        assignments = [f"{name}={json.dumps(value, default=_plain)}" for name, value in (overrides or {}).items()]
         self._simulation = _insonify.Simulation(str(deployment), seed, assignments, truth, period)
 
     @property
@@ -217,7 +217,7 @@ class Simulation:
         return made[0] if len(made) == 1 else dict(zip(self.pings, made))
 
     def reset(self, seed: int | None = None) -> None:
-        """Back to the start, as if made anew with this seed; None: the same seed. The scene stays loaded."""
+        """Back to the start, as if made anew with this seed, not 0; None: the same seed. The scene stays loaded."""
         self._simulation.reset(seed)
 
     @staticmethod
@@ -225,6 +225,11 @@ class Simulation:
         if len(ports) != 1:
             raise ValueError(f"this deployment has several {what}: give a dictionary of {', '.join(ports)}")
         return ports[0]
+
+
+def _plain(value: object) -> object:
+    """What JSON can hold of a number of numpy, an array, or a path."""
+    return value.tolist() if isinstance(value, (np.generic, np.ndarray)) else str(value)
 
 
 def _parts(pose) -> tuple[np.ndarray, np.ndarray]:
