@@ -81,8 +81,16 @@ TEST(ClientTest, FoxgloveGetsItsChannelAndThePingAsACdrMessage) {
     ros::ProjectedSonarImage image;
     ros::decode(std::span(message).subspan(13), image);
     EXPECT_EQ(image.image.beam_count, 32u);
-    EXPECT_EQ(image.image.data[size_t{45} * 32 + 15], 255);
-    EXPECT_EQ(image.image.data[size_t{45} * 32 + 25], 0);
+    const auto shown = blockPing();  // float32, bin by bin
+    const auto bin = [&](size_t beam, size_t k) {
+        float value = 0;
+        std::memcpy(&value, image.image.data.data() + (k * 32 + beam) * sizeof value, sizeof value);
+        return value;
+    };
+    ASSERT_EQ(image.image.data.size(), shown->bins.size() * sizeof(float));
+    EXPECT_EQ(bin(15, 45), shown->bins[15 * shown->bin_count + 45]);
+    EXPECT_EQ(bin(25, 45), shown->bins[25 * shown->bin_count + 45]);
+    EXPECT_NE(bin(15, 45), bin(25, 45));
 }
 
 TEST(ClientTest, FoxglovesNewerProtocolIsTheSame) {

@@ -389,9 +389,10 @@ TEST_F(PageTest, TheSceneTheWaterThePathAndTheFanAreDrawn) {
         }
         return changed;
     })");
+    EXPECT_TRUE(becomes("look().path > 5")) << "a path grows until it is longer than the vehicle that hides it";
     const json seen = value("look()");
     EXPECT_GT(seen["colours"], 50) << seen;
-    for (const auto& [part, least] : {std::pair("scene", 1000), {"fan", 1000}, {"water", 1000}, {"path", 5}})
+    for (const auto& [part, least] : {std::pair("scene", 1000), {"fan", 1000}, {"water", 1000}})
         EXPECT_GT(seen[part], least) << seen;
 
     running->deployment().call("world.setWater", {"false"});
