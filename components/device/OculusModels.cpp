@@ -12,4 +12,10 @@ const OculusCapabilities& capabilitiesOf(OculusModel model) {
     return all[static_cast<size_t>(model)];
 }
 
+std::optional<OculusModel> oculusModelOf(uint16_t part) {
+    for (const OculusModel model : {OculusModel::M370s, OculusModel::M750d, OculusModel::M1200d, OculusModel::M3000d})
+        if (capabilitiesOf(model).part == part) return model;
+    return std::nullopt;
+}
+
 }  // namespace insonify::device

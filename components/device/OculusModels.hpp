@@ -28,6 +28,8 @@ struct OculusCapabilities {
 };
 
 const OculusCapabilities& capabilitiesOf(OculusModel model);
+/** The model of a part number; none: not one of these. */
+std::optional<OculusModel> oculusModelOf(uint16_t part);
 
 }  // namespace insonify::device
 

@@ -1,15 +1,18 @@
 #include "components/device/Probe.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
-#include <cctype>
 #include <charconv>
 #include <set>
 #include <string_view>
 
 #include "components/device/DriverLine.hpp"
+#include "components/device/OculusMessages.hpp"
+#include "components/device/OculusModels.hpp"
 #include "components/device/PingMessages.hpp"
+#include "components/device/SeaNet.hpp"
 #include "types/ConfigError.hpp"
 
 namespace insonify::device {
@@ -31,15 +34,21 @@ std::string nameOf(uint8_t ping_device) {
     }
 }
 
+/** "M750d", as its maker writes it. */
+std::string oculusName(uint16_t part) {
+    const auto model = oculusModelOf(part);
+    if (!model) return fmt::format("of part {}", part);
+    std::string name(types::EnumNames<OculusModel>::names[static_cast<size_t>(*model)]);
+    name.front() = 'M';
+    return name;
+}
+
 Bytes pingQuestion() {
     Bytes question = pingBytes(PingGeneralRequest{PingDeviceInformation::message});
     const Bytes second = pingBytes(PingGeneralRequest{PingProtocolVersion::message});
     question.insert(question.end(), second.begin(), second.end());
     return question;
 }
-
-/** mtSendVersion from a PC, 255, to an imaging sonar, 2. */
-Bytes seaNetQuestion() { return {'@', '0', '0', '0', '8', 8, 0, 255, 2, 3, 23, 0x80, 2, 0x0A}; }
 
 constexpr const char* nobody_there =
     "nothing listens there: the device or its deployment does not run, its `port` is another, or its `address` is "
@@ -83,8 +92,8 @@ void addSeaNet(std::vector<Probe>& all) {
         "no version comes: a driver that waits for mtAlive or mtVersionData waits for ever; the sonar's node is not 2, "
         "or "
         "it is no Micron";
-    all.push_back({"SeaNet (Micron)", Probe::Line::Tcp, 4001, seaNetQuestion(), seaNetIn, silence});
-    all.push_back({"SeaNet (Micron)", Probe::Line::Serial, 0, seaNetQuestion(), seaNetIn, silence});
+    all.push_back({"SeaNet (Micron)", Probe::Line::Tcp, 4001, seaNetRequest(SeaNetType::SendVersion).packet(), seaNetIn, silence});
+    all.push_back({"SeaNet (Micron)", Probe::Line::Serial, 0, seaNetRequest(SeaNetType::SendVersion).packet(), seaNetIn, silence});
 }
 
 void addSonar3d(std::vector<Probe>& all) {
@@ -206,30 +215,24 @@ std::optional<std::string> ping360DiscoveryIn(std::span<const uint8_t> bytes) {
 }
 
 std::optional<std::string> oculusIn(std::span<const uint8_t> bytes) {
-    constexpr size_t header = 16, status_size = 142;
-    if (bytes.size() < header || read<uint16_t>(bytes, 0) != 0x4F53) return {};
-    const auto message = read<uint16_t>(bytes, 6);
-    if (bytes.size() != status_size) return fmt::format("Blueprint Subsea Oculus, message 0x{:02x}", message);
-    static const std::pair<uint16_t, const char*> models[] = {
-        {1032, "M750d"}, {1042, "M1200d"}, {1041, "M370s"}, {2203, "M3000d"}};
-    const auto part = read<uint16_t>(bytes, 22);
-    const auto model = std::ranges::find(models, part, &std::pair<uint16_t, const char*>::first);
-    const std::string name = model != std::end(models) ? model->second : fmt::format("of part {}", part);
-    const uint32_t status = read<uint32_t>(bytes, 24);
-    return fmt::format("Blueprint Subsea Oculus {}, at {}.{}.{}.{}, {}", name, bytes[52], bytes[53], bytes[54],
-                       bytes[55], (status & 7) == 3 ? "running" : "not ready: drivers may give up");
+    if (const auto status = oculusStatus(bytes)) {
+        const bool runs = (status->status & 7) == OculusStatus::running;
+        return fmt::format("Blueprint Subsea Oculus {}, at {}, {}", oculusName(status->part),
+                           fmt::join(status->address, "."), runs ? "running" : "not ready: drivers may give up");
+    }
+    const auto header = oculusHeader(bytes);
+    if (!header) return {};
+    return fmt::format("Blueprint Subsea Oculus, message 0x{:02x}", header->id);
 }
 
 std::optional<std::string> seaNetIn(std::span<const uint8_t> bytes) {
-    constexpr size_t message_at = 10;
-    constexpr uint8_t version_data = 1, alive = 4;
-    for (size_t at = 0; at + message_at < bytes.size(); ++at) {
-        const auto isHex = [&](size_t i) { return std::isxdigit(bytes[at + i]) != 0; };
-        if (bytes[at] != '@' || !isHex(1) || !isHex(2) || !isHex(3) || !isHex(4)) continue;
-        const uint8_t message = bytes[at + message_at];
-        if (message == version_data || message == alive)
-            return fmt::format("Tritech SeaNet device, node {}, {}", bytes[at + 7],
-                               message == alive ? "alive" : "tells its version");
+    SeaNetReader reader;
+    reader.add(bytes);
+    while (const auto message = reader.next()) {
+        if (const auto version = SeaNetVersion::in(*message))
+            return fmt::format("Tritech SeaNet device, node {}, software {}, serial number {}", message->from,
+                               version->software, version->serial);
+        if (SeaNetAlive::in(*message)) return fmt::format("Tritech SeaNet device, node {}, alive", message->from);
     }
     return {};
 }

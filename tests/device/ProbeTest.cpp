@@ -3,8 +3,10 @@
 #include <thread>
 
 #include "components/device/Network.hpp"
+#include "components/device/OculusMessages.hpp"
 #include "components/device/PingMessages.hpp"
 #include "components/device/Probe.hpp"
+#include "components/device/SeaNet.hpp"
 #include "types/ConfigError.hpp"
 
 namespace insonify::device {
@@ -54,17 +56,30 @@ TEST(ProbeTest, DevicesTellWhatTheyAre) {
     EXPECT_THAT(*pingDeviceIn(pingBytes(PingDeviceInformation{9, 0, 0, 0, 0, 0}) + version), HasSubstr("of type 9"));
     EXPECT_EQ(ping360DiscoveryIn(bytesOf("SONAR PING360\r\nBlue Robotics\r\nMAC Address:- 02-00\r\n")),
               "SONAR PING360, Blue Robotics, MAC Address:- 02-00");
-    Bytes status(142);
-    write<uint16_t>(status, 0, 0x4F53);
-    write<uint16_t>(status, 22, 1032);
-    write<uint32_t>(status, 24, 3);
-    EXPECT_EQ(oculusIn(status), "Blueprint Subsea Oculus M750d, at 0.0.0.0, running");
-    write<uint32_t>(status, 24, 1);
-    EXPECT_THAT(*oculusIn(status), HasSubstr("not ready"));
-    EXPECT_EQ(seaNetIn(Bytes{'@', '0', '0', '0', '8', 8, 0, 2, 255, 3, 4, 0x80, 2, 10}),
-              "Tritech SeaNet device, node 2, alive");
+    OculusStatus status{.part = 1032, .address = {192, 168, 2, 3}};
+    EXPECT_EQ(oculusIn(bytesOf(status)), "Blueprint Subsea Oculus M750d, at 192.168.2.3, running");
+    status.status = 1;
+    EXPECT_THAT(*oculusIn(bytesOf(status)), HasSubstr("not ready"));
+    status.part = 9;
+    EXPECT_THAT(*oculusIn(bytesOf(status)), HasSubstr("Oculus of part 9,"));
+    EXPECT_EQ(oculusIn(oculusDummy(1, 1032)), "Blueprint Subsea Oculus, message 0xff");
+    EXPECT_EQ(seaNetIn(SeaNetAlive{}.message().packet()), "Tritech SeaNet device, node 2, alive");
+    EXPECT_EQ(seaNetIn(Bytes{'@', '0'} + SeaNetVersion{.software = 3, .serial = 1234}.message().packet()),
+              "Tritech SeaNet device, node 2, software 3, serial number 1234");
     EXPECT_EQ(sonar3dIn(bytesOf("HTTP/1.1 200 OK\r\n\r\n{\"version_short\": \"1.7.1\"}")),
               "Water Linked Sonar 3D-15, version 1.7.1");
+}
+
+TEST(ProbeTest, WhatOnlyLooksLikeAPacketOfSeaNetIsNone) {
+    const Bytes alive = SeaNetAlive{}.message().packet();
+    EXPECT_FALSE(seaNetIn(std::span(alive).first(alive.size() - 1))) << "the rest is on its way";
+    Bytes damaged = alive;
+    damaged.back() = 0;
+    EXPECT_FALSE(seaNetIn(damaged)) << "no line feed where it ends";
+    damaged = alive;
+    damaged[5] += 1;
+    EXPECT_FALSE(seaNetIn(damaged)) << "two lengths that differ";
+    EXPECT_FALSE(seaNetIn(seaNetRequest(SeaNetType::SendVersion).packet())) << "an echo of the question";
 }
 
 TEST(ProbeTest, BytesOfOthersAreNoDevice) {
