@@ -125,7 +125,10 @@ std::vector<Frame> Publisher::greeting() {
 void Publisher::subscribed() {
     {
         std::lock_guard lock(mutex_);
-        for (Slot& slot : slots_) slot.fresh = slot.count > 0;
+        for (Slot& slot : slots_) {
+            slot.fresh = slot.count > 0;
+            slot.for_newcomer = true;
+        }
         newcomers_ = true;
     }
     fresh_.notify_one();
@@ -150,16 +153,16 @@ void Publisher::publishAll() {
 }
 
 void Publisher::publishFresh(std::unique_lock<std::mutex>& lock) {
-    const bool to_newcomers = std::exchange(newcomers_, false);
-    if (to_newcomers) told_.clear();
+    if (std::exchange(newcomers_, false)) told_.clear();
     bool any = false;
     for (size_t i = 0; i < slots_.size() && !ending_; ++i) {
         if (!std::exchange(slots_[i].fresh, false)) continue;
         slots_[i].shown = slots_[i].count;
         any = true;
         const Slot slot = slots_[i];
+        slots_[i].for_newcomer = false;
         lock.unlock();
-        publish(i, slot, to_newcomers);
+        publish(i, slot);
         lock.lock();
     }
     if (any) tellTime(now_);
@@ -169,32 +172,32 @@ void Publisher::tellTime(types::Time now) {
     if (server_.foxglove() > 0) server_.timeToFoxglove(nanosecondsOf(now));
 }
 
-void Publisher::publish(size_t source, const Slot& slot, bool to_newcomers) try {
+void Publisher::publish(size_t source, const Slot& slot) try {
     if (server_.pages() > 0) showOnPages(source, slot);
-    showInFoxglove(source, slot, to_newcomers);
+    showInFoxglove(source, slot);
 } catch (const std::exception& error) {
     std::lock_guard lock(mutex_);
     diagnostic_ = sources_[source].name + ": cannot be shown: " + error.what();
 }
 
-void Publisher::showInFoxglove(size_t source, const Slot& slot, bool to_newcomers) {
+void Publisher::showInFoxglove(size_t source, const Slot& slot) {
     for (uint32_t i = 0; i < sources_[source].forms.size(); ++i) {
         const uint32_t channel = first_channel_[source] + i;
         const Form form = sources_[source].forms[i].form;
         if (server_.subscribers(channel) == 0) continue;
         if (form == Form::Scene)
-            sendScene(channel, source, slot, to_newcomers);
+            sendScene(channel, source, slot);
         else
             server_.toFoxglove(channel, nanosecondsOf(slot.stamp), messages_[source].encode(slot.sample, form));
     }
 }
 
 /** A scene is sent once, and then what moves in it. */
-void Publisher::sendScene(uint32_t channel, size_t source, const Slot& slot, bool whole) {
+void Publisher::sendScene(uint32_t channel, size_t source, const Slot& slot) {
     const auto* const snapshot = std::get_if<types::SnapshotPtr>(&slot.sample);
     if (!snapshot) return;
     SceneUpdates& scene = messages_[source].scene();
-    whole = whole || scene.isNew(**snapshot);
+    const bool whole = slot.for_newcomer || scene.isNew(**snapshot);
     Bytes message = whole ? scene.whole(**snapshot) : scene.moved(**snapshot);
     if (!message) return;
     if (whole)

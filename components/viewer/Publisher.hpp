@@ -57,6 +57,7 @@ private:
         double latency_s = 0;           ///< Since its stamp [s].
         uint64_t count = 0, shown = 0;  ///< Samples so far; as of the last that was shown.
         bool fresh = false;
+        bool for_newcomer = false;  ///< Somebody in Foxglove has seen nothing of it yet.
     };
 
     std::optional<PageFile> file(std::string_view path) override;
@@ -67,9 +68,9 @@ private:
     uint64_t audience(size_t source) const;
     void publishAll();
     void publishFresh(std::unique_lock<std::mutex>& lock);
-    void publish(size_t source, const Slot& slot, bool to_newcomers);
-    void showInFoxglove(size_t source, const Slot& slot, bool to_newcomers);
-    void sendScene(uint32_t channel, size_t source, const Slot& slot, bool whole);
+    void publish(size_t source, const Slot& slot);
+    void showInFoxglove(size_t source, const Slot& slot);
+    void sendScene(uint32_t channel, size_t source, const Slot& slot);
     void showOnPages(size_t source, const Slot& slot);
     void showScene(size_t source, const types::GeometryPtr& geometry);
     void showStatus();
@@ -93,7 +94,7 @@ private:
     std::vector<Slot> slots_;
     std::string diagnostic_;
     types::Time now_;                                  ///< As it came with the newest sample.
-    bool newcomers_ = false;                           ///< In Foxglove, who have seen nothing yet.
+    bool newcomers_ = false;                           ///< In Foxglove, who have been told no parameters yet.
     Parameters told_;                                  ///< As clients know them; the publishing thread's.
     std::map<size_t, types::GeometryPtr> geometries_;  ///< Of `scenes_`; the publishing thread's.
     std::map<size_t, Bytes> scenes_;                   ///< By source, for pages that come later, as interfaces_.

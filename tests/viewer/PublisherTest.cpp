@@ -1,9 +1,12 @@
 #include <gmock/gmock.h>
 
+#include <chrono>
 #include <future>
 #include <nlohmann/json.hpp>
+#include <thread>
 
 #include "components/viewer/Publisher.hpp"
+#include "tests/viewer/Bench.hpp"
 #include "tests/viewer/Client.hpp"
 
 namespace insonify::viewer {
@@ -85,6 +88,75 @@ TEST(PublisherTest, OneRequestTooManyIsRefusedByItsId) {
     EXPECT_GT(refused["id"], SerialExecutors::max_waiting);
     EXPECT_THAT(refused["refused"], testing::HasSubstr("too many requests wait"));
     blocked.release();
+}
+
+// -- scenes for Foxglove ----------------------------------------------------------------------------------------------
+
+/** Pings, then a scene: a source that takes long before one that is sent once. */
+class SceneBench {
+public:
+    static constexpr int ping_channel = 0, picture_channel = 1, scene_channel = 5;
+
+    Publisher publisher{config(),
+                        {{"sonar", formsOf<types::Sonar>("sonar"), false}, {"scene", formsOf<types::Snapshot>("scene"), false}},
+                        {"viewer", nullptr, [](const std::string&) {}}};
+
+    void offerPing(int64_t seconds, uint32_t beams = 32, uint32_t bins = 100) {
+        publisher.offer(0, blockPing(seconds * 1'000'000, beams, bins), {seconds * 1'000'000});
+    }
+    void offerScene(int64_t seconds) {
+        types::Snapshot snapshot;
+        snapshot.geometry = std::make_shared<types::Geometry>();
+        publisher.offer(1, std::make_shared<const types::Snapshot>(snapshot), {seconds * 1'000'000});
+    }
+
+private:
+    static ViewerConfig config() {
+        ViewerConfig config = Bench::patient();
+        config.port = 0;
+        return config;
+    }
+};
+
+/** A Foxglove client that the server knows. */
+Client joined(const SceneBench& bench) {
+    Client client(bench.publisher.port());
+    client.upgrade(foxglove_protocol);
+    EXPECT_THAT(client.heard(), testing::HasSubstr("serverInfo"));
+    EXPECT_THAT(client.heard(), testing::HasSubstr("advertise"));
+    return client;
+}
+
+void subscribe(Client& client, int channel) {
+    client.say(R"({"op":"subscribe","subscriptions":[{"id":7,"channelId":)" + std::to_string(channel) + "}]}");
+}
+
+/** Whether a sample comes, whatever else does. */
+bool hearsSample(Client& client) {
+    const auto end = std::chrono::steady_clock::now() + test::patience;
+    while (std::chrono::steady_clock::now() < end) {
+        const auto message = client.hear();
+        if (!message || message->front() == 1) return message.has_value();
+    }
+    return false;
+}
+
+TEST(PublisherTest, WhoSubscribesWhileAnotherSourceIsShownGetsTheSceneToo) {
+    SceneBench bench;
+    Client watcher = joined(bench);
+    subscribe(watcher, SceneBench::scene_channel);
+    bench.offerScene(1);
+    ASSERT_TRUE(hearsSample(watcher)) << "it is new to nobody after this";
+    Client busy = joined(bench);
+    subscribe(busy, SceneBench::picture_channel);
+    const std::jthread pings([&](const std::stop_token& stop) {
+        for (int64_t i = 2; !stop.stop_requested(); ++i) bench.offerPing(i, 256, 1000);
+    });
+    for (int newcomer = 0; newcomer < 5; ++newcomer) {
+        Client client = joined(bench);
+        subscribe(client, SceneBench::scene_channel);
+        ASSERT_TRUE(hearsSample(client)) << "newcomer " << newcomer;
+    }
 }
 
 }  // namespace
