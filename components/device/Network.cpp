@@ -165,11 +165,15 @@ namespace {
 template <class Stream>
 class Session : public std::enable_shared_from_this<Session<Stream>> {
 public:
-    using Ended = std::function<void()>;
+    /** Of a stream that ends where too much waits: called once, at its end. */
+    struct Ended : std::function<void()> {};
+    /** Of a stream that cannot end, and loses the oldest of what is too much: empties what it holds itself. */
+    struct Drain : std::function<void()> {};
 
-    /** `ended` is called once; without it the stream cannot end, and loses what is too much. */
-    Session(Network::Core& core, Stream stream, Client client, Ended ended = {})
+    Session(Network::Core& core, Stream stream, Client client, Ended ended)
         : core_(core), stream_(std::move(stream)), client_(client), ended_(std::move(ended)) {}
+    Session(Network::Core& core, Stream stream, Client client, Drain drain)
+        : core_(core), stream_(std::move(stream)), client_(client), drain_(std::move(drain)) {}
 
     void read() {
         if (reading_ || closed_) return;
@@ -191,7 +195,8 @@ public:
             if (newest_) ++core_.dropped;
             newest_ = std::move(bytes);
         } else {
-            if (waiting_ + bytes.size() > Network::max_replies) return overflow();
+            if (ended_ && waiting_ + bytes.size() > Network::max_replies) return end();
+            if (drain_ && waiting_ + bytes.size() > Network::max_line) forgetFor(bytes.size());
             waiting_ += bytes.size();
             replies_.push_back(std::move(bytes));
         }
@@ -229,9 +234,14 @@ private:
             self->write();
         });
     }
-    void overflow() {
-        if (ended_) return end();
-        ++core_.dropped;
+    /** The oldest, until so many bytes find room. */
+    void forgetFor(size_t count) {
+        drain_();
+        while (!replies_.empty() && waiting_ + count > Network::max_line) {
+            waiting_ -= replies_.front().size();
+            replies_.pop_front();
+            ++core_.dropped;
+        }
     }
     void end() {
         if (closed_ || !ended_) return;
@@ -244,6 +254,7 @@ private:
     Stream stream_;
     Client client_;
     Ended ended_;
+    Drain drain_;
     std::array<uint8_t, 65536> buffer_{};
     std::deque<Bytes> replies_;
     std::optional<Bytes> newest_;  ///< Of what is streamed.
@@ -305,8 +316,9 @@ private:
         socket.set_option(Tcp::no_delay(true), wrong);
         fcntl(socket.native_handle(), F_SETFD, FD_CLOEXEC);
         const uint64_t number = next_++;
-        const auto session = std::make_shared<TcpSession>(core_, std::move(socket), Client{end_, number},
-                                                          [this, number] { sessions_.erase(number); });
+        const auto session =
+            std::make_shared<TcpSession>(core_, std::move(socket), Client{end_, number},
+                                         TcpSession::Ended{[this, number] { sessions_.erase(number); }});
         sessions_[number] = session;
         core_.tell({NetworkEvent::Kind::Opened, {end_, number}, {}, textOf(peer)});
         session->read();
@@ -394,6 +406,7 @@ Terminal openTerminal() {
     if (openpty(&made.master, &made.slave, name.data(), &raw, nullptr) != 0)
         throw NetworkError("serial", std::string("cannot be opened: ") + std::strerror(errno));
     for (const int side : {made.master, made.slave}) fcntl(side, F_SETFD, FD_CLOEXEC);
+    fcntl(made.slave, F_SETFL, O_NONBLOCK);
     made.name = name.data();
     return made;
 }
@@ -413,7 +426,8 @@ public:
             throw NetworkError("serial", "is " + link_.string() + ", which cannot be made: " + wrong.message());
         }
         name = "serial line " + link_.string();
-        session_ = std::make_shared<Line>(core, asio::posix::stream_descriptor(core.io, terminal_.master), client_);
+        session_ = std::make_shared<Line>(core, asio::posix::stream_descriptor(core.io, terminal_.master), client_,
+                                          Line::Drain{[this] { drain(); }});
         core.tell({NetworkEvent::Kind::Opened, client_, {}, terminal_.name});
         session_->read();
     }
@@ -430,6 +444,13 @@ public:
 
 private:
     using Line = Session<asio::posix::stream_descriptor>;
+
+    /** By reading: a flush leaves what has not reached the slave side yet, and does not call for it. */
+    void drain() const {
+        std::array<uint8_t, 4096> past{};
+        while (::read(terminal_.slave, past.data(), past.size()) > 0) {
+        }
+    }
 
     Network::Core& core_;
     Client client_;

@@ -113,6 +113,24 @@ TEST_F(NetworkTest, ALineStaysWhileDriversComeAndGoAndItsLinkGoesWithIt) {
     EXPECT_FALSE(std::filesystem::is_symlink(folder / "line"));
 }
 
+TEST_F(NetworkTest, WhoOpensALineReadsLittleOfThePastAndTheNewest) {
+    const Folder folder;
+    network_.openSerial(folder / "line");
+    const Client line = await(Kind::Opened).back().client;
+    constexpr size_t packets = 10'000, size = 100, little = 32'768;
+    for (size_t i = 0; i < packets; ++i) network_.send(line, Bytes(size, static_cast<uint8_t>(i % 200)));
+    network_.send(line, Bytes(size, 255));
+    network_.listenTcp("127.0.0.1", 0);  // once all have been taken
+    EXPECT_GT(network_.dropped(), packets / 2);
+    const Peer driver(folder / "line");
+    size_t past = 0;
+    Bytes next;
+    while (past <= little && !(next = driver.hear(1)).empty() && next[0] != 255) ++past;
+    EXPECT_LE(past, little) << "of " << packets * size;
+    EXPECT_THAT(next, testing::ElementsAre(255));
+    EXPECT_EQ(driver.hear(size - 1), Bytes(size - 1, 255));
+}
+
 TEST_F(NetworkTest, AThousandReconnectsLeaveNoClientAndNoFileBehind) {
     const auto openFiles = [] {
         return std::distance(std::filesystem::directory_iterator("/proc/self/fd"),
