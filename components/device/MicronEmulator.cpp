@@ -80,12 +80,14 @@ void MicronEmulator::reboot(types::Time now) {
 void MicronEmulator::configure(Client client, const SeaNetMessage& message, types::Time now) {
     const auto command = SeaNetHeadCommand::in(message);
     const char* why = command ? refusal(*command) : "is too short";
-    if (why) outlet_.warn(fmt::format("a head command was not taken: it {}", why));
-    if (!why) {
+    line_.reset();
+    if (why) {
+        outlet_.warn(fmt::format("a head command was not taken: it {}", why));
+        if (state_ == State::Ready) state_ = State::Unconfigured;
+    } else {
         command_ = *command;
         state_ = State::Ready;
         backwards_ = false;
-        line_.reset();
         arrived_ = std::max(now, begun_ + seconds(device_.boot_time));
         if (!isWithinSector()) turnTo(command_.left);
     }
