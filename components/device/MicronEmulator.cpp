@@ -150,6 +150,7 @@ Bytes MicronEmulator::dataOf(const types::Sonar& ping) const {
 
 void MicronEmulator::heard(const types::Sonar& ping) {
     if (!line_ || !line_->asked || line_->heard || ping.time < line_->sent) return;
+    warned_ = false;
     line_->heard = true;
     line_->data = dataOf(ping);
 }

@@ -289,7 +289,7 @@ TEST_F(MicronEmulatorTest, ACommandWhileItBootsIsTakenAndItsLineWaits) {
     EXPECT_EQ(asked_.size(), 1u);
 }
 
-TEST_F(MicronEmulatorTest, APingThatNeverComesIsToldOnceAndLeavesTheHeadUsable) {
+TEST_F(MicronEmulatorTest, APingThatNeverComesIsToldOncePerOutageAndLeavesTheHeadUsable) {
     driver_.configure({});
     answers_ = false;
     for (int i = 0; i < 2; ++i) {
@@ -312,6 +312,12 @@ TEST_F(MicronEmulatorTest, APingThatNeverComesIsToldOnceAndLeavesTheHeadUsable) 
     answers_ = true;
     driver_.request();
     EXPECT_EQ(driver_.beam().bins.size(), 200u);
+    EXPECT_EQ(warnings_.size(), 1u);
+    answers_ = false;
+    driver_.request();
+    advance(1);
+    advance(3);
+    EXPECT_EQ(warnings_.size(), 2u) << "of the next outage";
 }
 
 TEST_F(MicronEmulatorTest, ItTellsThatItLivesUntilItIsToldNotTo) {

@@ -231,7 +231,7 @@ TEST_F(Sonar3dEmulatorTest, ClientsMaySetItsClock) {
     EXPECT_EQ(post("time/ntp/force-sync", "{}").status, 400);
 }
 
-TEST_F(Sonar3dEmulatorTest, APingThatNeverComesIsAskedForAnewAndToldOnce) {
+TEST_F(Sonar3dEmulatorTest, APingThatNeverComesIsAskedForAnewAndToldOncePerOutage) {
     post("acoustics/enabled", "true");
     advance(0);
     for (int i = 0; i < 3; ++i) advance(3);
@@ -247,6 +247,10 @@ TEST_F(Sonar3dEmulatorTest, APingThatNeverComesIsAskedForAnewAndToldOnce) {
     emulator_.heard(unmeasured);
     EXPECT_EQ(datagrams_.size(), 4u) << "an empty map, and one without strengths";
     EXPECT_THAT(sent<StrengthPixels>(3).pixels, ElementsAre(1, 1, 0, 1, 1, 1));
+    EXPECT_EQ(warnings_.size(), 1u);
+    advance(1);
+    advance(3);
+    EXPECT_EQ(warnings_.size(), 2u) << "of the next outage";
 }
 
 /** A sonar that takes longer than the device waits: each image tells what it was asked for with. */
