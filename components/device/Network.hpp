@@ -46,8 +46,8 @@ struct NetworkError : std::runtime_error {
  * and one that does not read what must arrive is closed. All functions are for one thread, that of the task. */
 class Network {
 public:
-    static constexpr size_t max_clients = 64;  ///< Of an end; more are closed at once, datagrams displace the oldest.
-    static constexpr size_t max_received = 1 << 20;         ///< Of all clients, before they are read no more [bytes].
+    static constexpr size_t max_clients = 64;        ///< Of an end; of datagrams the longest silent goes.
+    static constexpr size_t max_received = 1 << 20;  ///< With their events, before clients are read no more [bytes].
     static constexpr size_t max_replies = size_t{8} << 20;  ///< That wait for one client, before it is closed [bytes].
     static constexpr size_t max_line = 4096;  ///< Replies that wait for a serial line, before the oldest go [bytes].
 

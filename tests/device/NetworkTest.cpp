@@ -2,6 +2,7 @@
 #include <arpa/inet.h>
 #include <fcntl.h>
 #include <gmock/gmock.h>
+#include <netinet/tcp.h>
 #include <poll.h>
 #include <sys/socket.h>
 #include <termios.h>
@@ -206,6 +207,61 @@ TEST_F(NetworkTest, DatagramsGoToWhomeverTheyAreFor) {
     const End end = network_.listenUdp("127.0.0.1", 0);
     network_.sendTo("127.0.0.1", network_.portOf(end), {6, 6});
     EXPECT_THAT(await(Kind::Received).back().bytes, testing::ElementsAre(6, 6));
+}
+
+TEST_F(NetworkTest, OfDatagramsWhoIsLongestSilentGoesFirst) {
+    const uint16_t port = network_.portOf(network_.listenUdp("127.0.0.1", 0));
+    const Peer talks(SOCK_DGRAM, port);
+    talks.say({1});
+    const Client stays = await(Kind::Received).back().client;
+    std::vector<std::unique_ptr<Peer>> others;
+    std::vector<Client> gone;
+    for (size_t i = 0; i < Network::max_clients; ++i) {
+        others.push_back(std::make_unique<Peer>(SOCK_DGRAM, port));
+        for (const Peer* peer : {static_cast<const Peer*>(others.back().get()), &talks}) {
+            peer->say({2});
+            for (const NetworkEvent& event : await(Kind::Received))
+                if (event.kind == Kind::Closed) gone.push_back(event.client);
+        }
+    }
+    EXPECT_THAT(gone, testing::ElementsAre(Client{stays.end, stays.number + 1})) << "the first of the others";
+    network_.send(stays, {7});
+    EXPECT_THAT(talks.hear(1), testing::ElementsAre(7));
+}
+
+TEST_F(NetworkTest, EmptyDatagramsAreBoundedAsWell) {
+    const Peer peer(SOCK_DGRAM, network_.portOf(network_.listenUdp("127.0.0.1", 0)));
+    const auto end = std::chrono::steady_clock::now() + 60s;
+    while (network_.dropped() == 0 && std::chrono::steady_clock::now() < end) peer.say({});
+    EXPECT_GT(network_.dropped(), 0u);
+    EXPECT_LE(network_.take().size(), Network::max_received / sizeof(NetworkEvent) + 1);
+}
+
+TEST_F(NetworkTest, AConnectionIsAskedWhetherItLives) {
+    const uint16_t port = network_.portOf(network_.listenTcp("127.0.0.1", 0));
+    const Peer peer(SOCK_STREAM, port);
+    await(Kind::Opened);
+    const auto optionOf = [](int file, int level, int option) {
+        int value = 0;
+        socklen_t size = sizeof value;
+        getsockopt(file, level, option, &value, &size);
+        return value;
+    };
+    int found = 0;
+    for (const auto& entry : std::filesystem::directory_iterator("/proc/self/fd")) {
+        const int file = std::stoi(entry.path().filename());
+        sockaddr_in own{}, other{};
+        socklen_t own_size = sizeof own, other_size = sizeof other;
+        if (getsockname(file, reinterpret_cast<sockaddr*>(&own), &own_size) != 0 || own.sin_port != htons(port) ||
+            getpeername(file, reinterpret_cast<sockaddr*>(&other), &other_size) != 0)
+            continue;
+        ++found;
+        EXPECT_EQ(optionOf(file, SOL_SOCKET, SO_KEEPALIVE), 1);
+        EXPECT_EQ(optionOf(file, IPPROTO_TCP, TCP_KEEPIDLE), 10);
+        EXPECT_EQ(optionOf(file, IPPROTO_TCP, TCP_KEEPINTVL), 5);
+        EXPECT_EQ(optionOf(file, IPPROTO_TCP, TCP_KEEPCNT), 3);
+    }
+    EXPECT_EQ(found, 1);
 }
 
 TEST_F(NetworkTest, ItWakesWhenItIsAskedTo) {
