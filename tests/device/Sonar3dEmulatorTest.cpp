@@ -129,6 +129,13 @@ TEST_F(Sonar3dEmulatorTest, WhatIsOutOfBoundsIsRefusedWithTheBoundAndChangesNoth
     EXPECT_EQ(emulator_.answer({"DELETE", prefix + "udp", ""}, now_).status, 405);
 }
 
+TEST_F(Sonar3dEmulatorTest, ItBeginsNoFartherThanItMayBeSet) {
+    Sonar3dDevice device;
+    device.longest_range = 7;
+    EXPECT_EQ(Sonar3dEmulator(device, {}).state().range_max, 7);
+    EXPECT_EQ(emulator_.state().range_max, 15);
+}
+
 TEST_F(Sonar3dEmulatorTest, ItAsksForPingsAtTheRateOfItsModeOnceItMay) {
     advance(1);
     EXPECT_THAT(asked_, IsEmpty());
