@@ -55,6 +55,9 @@ public:
         return bytes;
     }
 
+    /** Whoever is still speaking stops. */
+    void hangUp() const { shutdown(file_, SHUT_RDWR); }
+
 private:
     int file_;
 };
@@ -62,12 +65,13 @@ private:
 class NetworkTest : public testing::Test {
 protected:
     /** The next events, as soon as there are so many of a kind; fewer after ten seconds. */
-    std::vector<NetworkEvent> await(Kind kind, size_t count = 1) {
+    std::vector<NetworkEvent> await(Kind kind, size_t count = 1) { return await(network_, kind, count); }
+    static std::vector<NetworkEvent> await(Network& network, Kind kind, size_t count = 1) {
         std::vector<NetworkEvent> all;
         const auto end = std::chrono::steady_clock::now() + 10s;
         while (std::ranges::count(all, kind, &NetworkEvent::kind) < std::ptrdiff_t(count)) {
             if (std::chrono::steady_clock::now() > end) break;
-            for (NetworkEvent& event : network_.take()) all.push_back(std::move(event));
+            for (NetworkEvent& event : network.take()) all.push_back(std::move(event));
             std::this_thread::sleep_for(1ms);
         }
         return all;
@@ -103,11 +107,8 @@ TEST_F(NetworkTest, ALineStaysWhileDriversComeAndGoAndItsLinkGoesWithIt) {
         for (uint8_t i = 0; i < 3; ++i) {
             const Peer driver(folder / "line");
             driver.say({i});
-            std::vector<NetworkEvent> events;
-            while (events.empty() || events.back().kind != Kind::Received) {
-                for (NetworkEvent& event : network.take()) events.push_back(std::move(event));
-                std::this_thread::sleep_for(1ms);
-            }
+            const auto events = await(network, Kind::Received);
+            ASSERT_FALSE(events.empty());
             EXPECT_EQ(events.back().bytes, Bytes{i});
         }
     }
@@ -145,9 +146,10 @@ TEST_F(NetworkTest, AThousandReconnectsLeaveNoClientAndNoFileBehind) {
         peer.say({1});
         for (NetworkEvent& event : await(Kind::Received)) all.push_back(std::move(event));
     }
-    for (NetworkEvent& event : await(Kind::Closed)) all.push_back(std::move(event));
-    while (std::ranges::count(all, Kind::Closed, &NetworkEvent::kind) < 1000)
-        for (NetworkEvent& event : await(Kind::Closed)) all.push_back(std::move(event));
+    const auto closed = [&] { return std::ranges::count(all, Kind::Closed, &NetworkEvent::kind); };
+    for (NetworkEvent& event : await(Kind::Closed, static_cast<size_t>(1000 - closed())))
+        all.push_back(std::move(event));
+    EXPECT_EQ(closed(), 1000);
     EXPECT_EQ(std::ranges::count(all, Kind::Opened, &NetworkEvent::kind), 1000);
     EXPECT_EQ(openFiles(), before);
 }
@@ -173,13 +175,16 @@ TEST_F(NetworkTest, OneWhoSendsWithoutEndIsReadNoFasterThanTheTaskTakes) {
     std::thread sender([&] { peer.say(Bytes(size_t{16} << 20, 3)); });
     std::this_thread::sleep_for(200ms);
     size_t largest = 0, total = 0;
-    while (total < size_t{16} << 20) {
+    const auto deadline = std::chrono::steady_clock::now() + 60s;
+    while (total < size_t{16} << 20 && std::chrono::steady_clock::now() < deadline) {
         size_t part = 0;
         for (const NetworkEvent& event : network_.take()) part += event.bytes.size();
         largest = std::max(largest, part);
         total += part;
         std::this_thread::sleep_for(1ms);
     }
+    EXPECT_EQ(total, size_t{16} << 20);
+    peer.hangUp();
     sender.join();
     EXPECT_LE(largest, Network::max_received + 65536);
 }
