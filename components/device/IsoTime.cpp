@@ -48,8 +48,9 @@ std::optional<types::Time> isoTime(const std::string& text) {
     const auto zone = zoneSeconds(text.substr(static_cast<size_t>(length)));
     day.tm_year -= 1900;
     day.tm_mon -= 1;
+    if (!std::isfinite(second)) return std::nullopt;
     day.tm_sec = static_cast<int>(std::clamp(second, 0.0, 60.0));
-    if (!zone || !std::isfinite(second) || !isOfTheCalendar(day, second)) return std::nullopt;
+    if (!zone || !isOfTheCalendar(day, second)) return std::nullopt;
     const types::Time time{(static_cast<int64_t>(timegm(&day)) - *zone) * 1'000'000 +
                            std::llround((second - std::floor(second)) * 1e6)};
     return time < types::Time{} ? std::nullopt : std::optional(time);

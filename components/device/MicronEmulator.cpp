@@ -80,12 +80,14 @@ void MicronEmulator::reboot(types::Time now) {
 void MicronEmulator::configure(Client client, const SeaNetMessage& message, types::Time now) {
     const auto command = SeaNetHeadCommand::in(message);
     const char* why = command ? refusal(*command) : "is too short";
-    if (why) outlet_.warn(fmt::format("a head command was not taken: it {}", why));
-    if (!why) {
+    line_.reset();
+    if (why) {
+        outlet_.warn(fmt::format("a head command was not taken: it {}", why));
+        if (state_ == State::Ready) state_ = State::Unconfigured;
+    } else {
         command_ = *command;
         state_ = State::Ready;
         backwards_ = false;
-        line_.reset();
         arrived_ = std::max(now, begun_ + seconds(device_.boot_time));
         if (!isWithinSector()) turnTo(command_.left);
     }
@@ -148,6 +150,7 @@ Bytes MicronEmulator::dataOf(const types::Sonar& ping) const {
 
 void MicronEmulator::heard(const types::Sonar& ping) {
     if (!line_ || !line_->asked || line_->heard || ping.time < line_->sent) return;
+    warned_ = false;
     line_->heard = true;
     line_->data = dataOf(ping);
 }

@@ -1,9 +1,12 @@
 #include "components/device/Network.hpp"
 
 #include <fcntl.h>
+#include <netinet/tcp.h>
 #include <pty.h>
+#include <sys/socket.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <atomic>
 #include <boost/asio.hpp>
@@ -49,6 +52,15 @@ void bindTo(Socket& socket, const Endpoint& endpoint) {
     fcntl(socket.native_handle(), F_SETFD, FD_CLOEXEC);
 }
 
+/** Ends a connection whose other side is gone without a word, after half a minute. */
+void keepAlive(int socket) {
+    const auto set = [&](int level, int option, int value) { setsockopt(socket, level, option, &value, sizeof value); };
+    set(IPPROTO_TCP, TCP_KEEPIDLE, 10);  // [s]
+    set(IPPROTO_TCP, TCP_KEEPINTVL, 5);  // [s]
+    set(IPPROTO_TCP, TCP_KEEPCNT, 3);
+    set(SOL_SOCKET, SO_KEEPALIVE, 1);
+}
+
 }  // namespace
 
 /** Its events and counters are for any thread, the rest for the network's. */
@@ -77,7 +89,7 @@ public:
         bool room = false;
         {
             std::lock_guard lock(mutex_);
-            received_ += event.bytes.size();
+            received_ += sizeof event + event.bytes.size();
             room = received_ < max_received;
             events_.push_back(std::move(event));
         }
@@ -165,11 +177,15 @@ namespace {
 template <class Stream>
 class Session : public std::enable_shared_from_this<Session<Stream>> {
 public:
-    using Ended = std::function<void()>;
+    /** Of a stream that ends where too much waits: called once, at its end. */
+    struct Ended : std::function<void()> {};
+    /** Of a stream that cannot end, and loses the oldest of what is too much: empties what it holds itself. */
+    struct Drain : std::function<void()> {};
 
-    /** `ended` is called once; without it the stream cannot end, and loses what is too much. */
-    Session(Network::Core& core, Stream stream, Client client, Ended ended = {})
+    Session(Network::Core& core, Stream stream, Client client, Ended ended)
         : core_(core), stream_(std::move(stream)), client_(client), ended_(std::move(ended)) {}
+    Session(Network::Core& core, Stream stream, Client client, Drain drain)
+        : core_(core), stream_(std::move(stream)), client_(client), drain_(std::move(drain)) {}
 
     void read() {
         if (reading_ || closed_) return;
@@ -191,7 +207,8 @@ public:
             if (newest_) ++core_.dropped;
             newest_ = std::move(bytes);
         } else {
-            if (waiting_ + bytes.size() > Network::max_replies) return overflow();
+            if (ended_ && waiting_ + bytes.size() > Network::max_replies) return end();
+            if (drain_ && waiting_ + bytes.size() > Network::max_line) forgetFor(bytes.size());
             waiting_ += bytes.size();
             replies_.push_back(std::move(bytes));
         }
@@ -229,9 +246,14 @@ private:
             self->write();
         });
     }
-    void overflow() {
-        if (ended_) return end();
-        ++core_.dropped;
+    /** The oldest, until so many bytes find room. */
+    void forgetFor(size_t count) {
+        drain_();
+        while (!replies_.empty() && waiting_ + count > Network::max_line) {
+            waiting_ -= replies_.front().size();
+            replies_.pop_front();
+            ++core_.dropped;
+        }
     }
     void end() {
         if (closed_ || !ended_) return;
@@ -244,6 +266,7 @@ private:
     Stream stream_;
     Client client_;
     Ended ended_;
+    Drain drain_;
     std::array<uint8_t, 65536> buffer_{};
     std::deque<Bytes> replies_;
     std::optional<Bytes> newest_;  ///< Of what is streamed.
@@ -272,6 +295,7 @@ public:
     }
     void resume() override {
         for (const auto& [number, session] : sessions_) session->read();
+        if (std::exchange(full_, false)) accept();
     }
     void shut() override {
         error_code ignored;
@@ -288,6 +312,8 @@ private:
         return found == sessions_.end() ? nullptr : found->second;
     }
     void accept() {
+        full_ = !core_.hasRoom();
+        if (full_) return;
         acceptor_.async_accept([this](error_code wrong, Tcp::socket socket) {
             if (!acceptor_.is_open()) return;
             if (!wrong) open(std::move(socket));
@@ -303,10 +329,12 @@ private:
         const Tcp::endpoint peer = socket.remote_endpoint(wrong);
         if (wrong || sessions_.size() >= Network::max_clients) return;
         socket.set_option(Tcp::no_delay(true), wrong);
+        keepAlive(socket.native_handle());
         fcntl(socket.native_handle(), F_SETFD, FD_CLOEXEC);
         const uint64_t number = next_++;
-        const auto session = std::make_shared<TcpSession>(core_, std::move(socket), Client{end_, number},
-                                                          [this, number] { sessions_.erase(number); });
+        const auto session =
+            std::make_shared<TcpSession>(core_, std::move(socket), Client{end_, number},
+                                         TcpSession::Ended{[this, number] { sessions_.erase(number); }});
         sessions_[number] = session;
         core_.tell({NetworkEvent::Kind::Opened, {end_, number}, {}, textOf(peer)});
         session->read();
@@ -316,6 +344,7 @@ private:
     End end_;
     Tcp::acceptor acceptor_;
     asio::steady_timer retry_{core_.io};
+    bool full_ = false;  ///< Nobody is accepted before there is room for what happens.
     std::map<uint64_t, std::shared_ptr<TcpSession>> sessions_;
     uint64_t next_ = 1;
 };
@@ -334,7 +363,7 @@ public:
         const auto found = clients_.find(client);
         if (found == clients_.end()) return;
         error_code wrong;
-        socket_.send_to(asio::buffer(bytes), found->second, 0, wrong);
+        socket_.send_to(asio::buffer(bytes), found->second.endpoint, 0, wrong);
         if (wrong) ++core_.dropped;
     }
     void close(uint64_t client) override {
@@ -346,6 +375,11 @@ public:
     }
 
 private:
+    struct Known {
+        Udp::endpoint endpoint;
+        uint64_t heard = 0;  ///< The number of its last datagram, of all.
+    };
+
     void read() {
         socket_.async_receive_from(asio::buffer(buffer_), from_, [this](error_code wrong, size_t count) {
             if (!socket_.is_open() || wrong == asio::error::operation_aborted) return;
@@ -363,10 +397,14 @@ private:
         core_.tell({NetworkEvent::Kind::Received, client, {begin, begin + static_cast<std::ptrdiff_t>(count)}, ""});
     }
     uint64_t numberOf(const Udp::endpoint& peer) {
-        for (const auto& [number, endpoint] : clients_)
-            if (endpoint == peer) return number;
-        if (clients_.size() >= Network::max_clients) close(clients_.begin()->first);
-        clients_[next_] = peer;
+        for (auto& [number, known] : clients_)
+            if (known.endpoint == peer) {
+                known.heard = ++heard_;
+                return number;
+            }
+        if (clients_.size() >= Network::max_clients)
+            close(std::ranges::min_element(clients_, {}, [](const auto& each) { return each.second.heard; })->first);
+        clients_[next_] = {peer, ++heard_};
         core_.tell({NetworkEvent::Kind::Opened, {end_, next_}, {}, textOf(peer)});
         return next_++;
     }
@@ -376,8 +414,8 @@ private:
     Udp::socket socket_;
     Udp::endpoint from_;
     std::array<uint8_t, 65536> buffer_{};
-    std::map<uint64_t, Udp::endpoint> clients_;
-    uint64_t next_ = 1;
+    std::map<uint64_t, Known> clients_;
+    uint64_t next_ = 1, heard_ = 0;
 };
 
 /** The two sides of a pseudo terminal, raw; drivers open `slave`. */
@@ -394,6 +432,7 @@ Terminal openTerminal() {
     if (openpty(&made.master, &made.slave, name.data(), &raw, nullptr) != 0)
         throw NetworkError("serial", std::string("cannot be opened: ") + std::strerror(errno));
     for (const int side : {made.master, made.slave}) fcntl(side, F_SETFD, FD_CLOEXEC);
+    fcntl(made.slave, F_SETFL, O_NONBLOCK);
     made.name = name.data();
     return made;
 }
@@ -413,7 +452,8 @@ public:
             throw NetworkError("serial", "is " + link_.string() + ", which cannot be made: " + wrong.message());
         }
         name = "serial line " + link_.string();
-        session_ = std::make_shared<Line>(core, asio::posix::stream_descriptor(core.io, terminal_.master), client_);
+        session_ = std::make_shared<Line>(core, asio::posix::stream_descriptor(core.io, terminal_.master), client_,
+                                          Line::Drain{[this] { drain(); }});
         core.tell({NetworkEvent::Kind::Opened, client_, {}, terminal_.name});
         session_->read();
     }
@@ -430,6 +470,13 @@ public:
 
 private:
     using Line = Session<asio::posix::stream_descriptor>;
+
+    /** By reading: a flush leaves what has not reached the slave side yet, and does not call for it. */
+    void drain() const {
+        std::array<uint8_t, 4096> past{};
+        while (::read(terminal_.slave, past.data(), past.size()) > 0) {
+        }
+    }
 
     Network::Core& core_;
     Client client_;

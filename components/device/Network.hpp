@@ -46,9 +46,10 @@ struct NetworkError : std::runtime_error {
  * and one that does not read what must arrive is closed. All functions are for one thread, that of the task. */
 class Network {
 public:
-    static constexpr size_t max_clients = 64;  ///< Of an end; more are closed at once, datagrams displace the oldest.
-    static constexpr size_t max_received = 1 << 20;         ///< Of all clients, before they are read no more [bytes].
+    static constexpr size_t max_clients = 64;        ///< Of an end; of datagrams the longest silent goes.
+    static constexpr size_t max_received = 1 << 20;  ///< With their events, before clients are read no more [bytes].
     static constexpr size_t max_replies = size_t{8} << 20;  ///< That wait for one client, before it is closed [bytes].
+    static constexpr size_t max_line = 4096;  ///< Replies that wait for a serial line, before the oldest go [bytes].
 
     /** Reply: arrives, in order. Stream: of these only the newest waits, behind all replies. */
     enum class Kind { Reply, Stream };
@@ -63,7 +64,10 @@ public:
     End listenTcp(const std::string& address, uint16_t port);
     End listenUdp(const std::string& address, uint16_t port);
     /** A pseudo terminal in place of a serial line; `link` leads to the side that drivers open, and goes with the end.
-     */
+     *
+     *  A line does not tell whether a driver has it open, so what nobody reads is kept as if one were slow: `max_line`
+     *  here, beside what the terminal itself holds (about 16 KiB). Where more comes, the oldest of both is lost, which
+     *  may cut a packet; a driver that opens the line reads that little of the past before the newest. */
     End openSerial(const std::filesystem::path& link);
     uint16_t portOf(End end) const;  ///< 0: it has none.
     /** Every end, as "TCP 127.0.0.1:52100" or "serial line /tmp/sonar". */

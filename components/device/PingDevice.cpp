@@ -125,6 +125,15 @@ void PingDevice::handleRequest(PingClient client, uint16_t requested, types::Tim
     if (!answerAny(client, requested, now)) refuse(client, requested, "there is no such message to be asked for");
 }
 
+void PingDevice::add(PingOutgoing out) {
+    const auto same = std::ranges::find_if(
+        outgoing_, [&](const PingOutgoing& each) { return out.stream && each.stream && each.client == out.client; });
+    if (same == outgoing_.end())
+        outgoing_.push_back(std::move(out));
+    else
+        same->bytes.insert(same->bytes.end(), out.bytes.begin(), out.bytes.end());
+}
+
 void PingDevice::setId(PingClient client, uint16_t message, uint8_t id, uint8_t min) {
     if (const std::string why = diagnosticOf({{"id", id, min, 254}}); !why.empty()) return refuse(client, message, why);
     id_ = id;

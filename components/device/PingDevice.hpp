@@ -108,7 +108,7 @@ protected:
 
     template <class Message>
     void send(PingClient client, const Message& message, bool stream = false) {
-        outgoing_.push_back({client, pingBytes(message, id_), stream});
+        add({client, pingBytes(message, id_), stream});
     }
     void acknowledge(PingClient client, uint16_t message) { send(client, PingAck{message}); }
     void refuse(PingClient client, uint16_t message, std::string why) {
@@ -136,6 +136,8 @@ protected:
 private:
     void handle(PingClient client, const PingFrame& frame, types::Time now);
     void handleRequest(PingClient client, uint16_t requested, types::Time now);
+    /** What is streamed to a client at once is one piece, which the next displaces whole. */
+    void add(PingOutgoing out);
     bool answerAny(PingClient client, uint16_t requested, types::Time now);
 
     uint8_t id_;

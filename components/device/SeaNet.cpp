@@ -218,34 +218,47 @@ SeaNetMessage seaNetRequest(SeaNetType type) {
     return {type, seanet_computer, seanet_imaging_sonar, Bytes(type == SeaNetType::SendData ? 4 : 0)};
 }
 
-void SeaNetReader::add(std::span<const uint8_t> bytes) { bytes_.insert(bytes_.end(), bytes.begin(), bytes.end()); }
+void SeaNetReader::add(std::span<const uint8_t> bytes) {
+    bytes_.erase(bytes_.begin(), bytes_.begin() + static_cast<std::ptrdiff_t>(begin_));
+    begin_ = 0;
+    bytes_.insert(bytes_.end(), bytes.begin(), bytes.end());
+}
 
-void SeaNetReader::skip(size_t count) {
-    bytes_.erase(bytes_.begin(), bytes_.begin() + static_cast<std::ptrdiff_t>(count));
-    skipped_ += count;
+size_t SeaNetReader::sizeAt(size_t at) const { return read<uint16_t>(bytes_, at + 5) + outside; }
+
+SeaNetReader::Finding SeaNetReader::findingAt(size_t at) const {
+    const size_t left = bytes_.size() - at;
+    if (bytes_[at] != start) return Finding::None;
+    if (left < 7) return Finding::Partial;
+    const size_t size = sizeAt(at);
+    const auto digits = hexadecimal(std::span(bytes_).subspan(at + 1).first<4>());
+    if (digits != size - outside || size < frame_size || size > max_packet) return Finding::None;
+    if (left < size) return Finding::Partial;
+    return bytes_[at + size - 1] == end ? Finding::Whole : Finding::None;
+}
+
+SeaNetMessage SeaNetReader::take(size_t at) {
+    goOnAt(at);
+    const auto packet = std::span(bytes_).subspan(at, sizeAt(at));
+    const auto payload = packet.subspan(payload_at, packet.size() - payload_at - 1);
+    begin_ = at + packet.size();
+    return {static_cast<SeaNetType>(packet[10]), packet[7], packet[8], Bytes(payload.begin(), payload.end())};
+}
+
+void SeaNetReader::goOnAt(size_t at) {
+    skipped_ += at - begin_;
+    begin_ = at;
 }
 
 std::optional<SeaNetMessage> SeaNetReader::next() {
-    while (true) {
-        skip(static_cast<size_t>(std::ranges::find(bytes_, start) - bytes_.begin()));
-        if (bytes_.size() < 7) return std::nullopt;
-        const auto digits = hexadecimal(std::span(bytes_).subspan<1, 4>());
-        const size_t length = read<uint16_t>(bytes_, 5), size = length + outside;
-        if (digits != length || size < frame_size || size > max_packet) {
-            skip(1);
-            continue;
-        }
-        if (bytes_.size() < size) return std::nullopt;
-        if (bytes_[size - 1] != end) {
-            skip(1);
-            continue;
-        }
-        const auto from = bytes_.begin(), payload = from + payload_at;
-        SeaNetMessage message{static_cast<SeaNetType>(bytes_[10]), bytes_[7], bytes_[8],
-                              Bytes(payload, from + static_cast<std::ptrdiff_t>(size) - 1)};
-        bytes_.erase(from, from + static_cast<std::ptrdiff_t>(size));
-        return message;
+    std::optional<size_t> partial;
+    for (size_t at = begin_; at < bytes_.size(); ++at) {
+        const Finding finding = findingAt(at);
+        if (finding == Finding::Whole) return take(at);
+        if (finding == Finding::Partial && !partial) partial = at;
     }
+    goOnAt(partial.value_or(bytes_.size()));
+    return std::nullopt;
 }
 
 }  // namespace insonify::device

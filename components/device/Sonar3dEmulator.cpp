@@ -325,6 +325,7 @@ void Sonar3dEmulator::send(const Bytes& packet) {
 void Sonar3dEmulator::heard(const types::DepthMap& map) {
     const auto asked = takeAsked(map.time);
     if (!asked) return;
+    warned_ = false;
     ++sequence_;
     if (state_.acoustics && state_.udp_mode != "disabled") sendImages(map, *asked);
 }

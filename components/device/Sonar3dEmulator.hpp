@@ -1,4 +1,5 @@
 #pragma once
+#include <algorithm>
 #include <functional>
 #include <optional>
 #include <string>
@@ -70,7 +71,9 @@ public:
         std::function<void(const std::string&)> warn;
     };
 
-    Sonar3dEmulator(Sonar3dDevice device, Outlet outlet) : device_(std::move(device)), outlet_(std::move(outlet)) {}
+    Sonar3dEmulator(Sonar3dDevice device, Outlet outlet) : device_(std::move(device)), outlet_(std::move(outlet)) {
+        state_.range_max = std::min(state_.range_max, device_.longest_range);
+    }
 
     HttpReply answer(const HttpRequest& request, types::Time now);
     /** A ping that was asked for, then or later: ranges and strengths by direction. */

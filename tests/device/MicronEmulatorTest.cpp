@@ -216,16 +216,20 @@ TEST_F(MicronEmulatorTest, WhatItCannotDoItDoesNotTake) {
         command.ad_interval = command.bins = 100;
         change(command);
         sent_.clear();
-        emulator_.received(client, seaNetRequest(SeaNetType::Reboot).packet(), now_);
-        advance(1);
-        sent_.clear();
         emulator_.received(client, command.message().packet(), now_);
         SeaNetReader reader;
         reader.add(sent_[client]);
         return SeaNetAlive::in(*reader.next())->configured;
     };
     EXPECT_TRUE(configured([](auto&) {}));
+    driver_.request();
+    advance(0);
+    ASSERT_EQ(asked_.size(), 1u);
     EXPECT_FALSE(configured([](auto& command) { command.bins = 0; }));
+    sent_.clear();
+    hear();
+    advance(0.5);
+    EXPECT_TRUE(sent_[client].empty()) << "the line of before is dropped";
     EXPECT_FALSE(configured([](auto& command) { command.bins = 1501; }));
     EXPECT_FALSE(configured([](auto& command) { command.ad_interval = 0; }));
     EXPECT_FALSE(configured([](auto& command) { command.ad_interval = 1501; }));
@@ -285,7 +289,7 @@ TEST_F(MicronEmulatorTest, ACommandWhileItBootsIsTakenAndItsLineWaits) {
     EXPECT_EQ(asked_.size(), 1u);
 }
 
-TEST_F(MicronEmulatorTest, APingThatNeverComesIsToldOnceAndLeavesTheHeadUsable) {
+TEST_F(MicronEmulatorTest, APingThatNeverComesIsToldOncePerOutageAndLeavesTheHeadUsable) {
     driver_.configure({});
     answers_ = false;
     for (int i = 0; i < 2; ++i) {
@@ -308,6 +312,12 @@ TEST_F(MicronEmulatorTest, APingThatNeverComesIsToldOnceAndLeavesTheHeadUsable) 
     answers_ = true;
     driver_.request();
     EXPECT_EQ(driver_.beam().bins.size(), 200u);
+    EXPECT_EQ(warnings_.size(), 1u);
+    answers_ = false;
+    driver_.request();
+    advance(1);
+    advance(3);
+    EXPECT_EQ(warnings_.size(), 2u) << "of the next outage";
 }
 
 TEST_F(MicronEmulatorTest, ItTellsThatItLivesUntilItIsToldNotTo) {

@@ -2,6 +2,7 @@
 #include <arpa/inet.h>
 #include <fcntl.h>
 #include <gmock/gmock.h>
+#include <netinet/tcp.h>
 #include <poll.h>
 #include <sys/socket.h>
 #include <termios.h>
@@ -54,6 +55,9 @@ public:
         return bytes;
     }
 
+    /** Whoever is still speaking stops. */
+    void hangUp() const { shutdown(file_, SHUT_RDWR); }
+
 private:
     int file_;
 };
@@ -61,12 +65,13 @@ private:
 class NetworkTest : public testing::Test {
 protected:
     /** The next events, as soon as there are so many of a kind; fewer after ten seconds. */
-    std::vector<NetworkEvent> await(Kind kind, size_t count = 1) {
+    std::vector<NetworkEvent> await(Kind kind, size_t count = 1) { return await(network_, kind, count); }
+    static std::vector<NetworkEvent> await(Network& network, Kind kind, size_t count = 1) {
         std::vector<NetworkEvent> all;
         const auto end = std::chrono::steady_clock::now() + 10s;
         while (std::ranges::count(all, kind, &NetworkEvent::kind) < std::ptrdiff_t(count)) {
             if (std::chrono::steady_clock::now() > end) break;
-            for (NetworkEvent& event : network_.take()) all.push_back(std::move(event));
+            for (NetworkEvent& event : network.take()) all.push_back(std::move(event));
             std::this_thread::sleep_for(1ms);
         }
         return all;
@@ -102,15 +107,30 @@ TEST_F(NetworkTest, ALineStaysWhileDriversComeAndGoAndItsLinkGoesWithIt) {
         for (uint8_t i = 0; i < 3; ++i) {
             const Peer driver(folder / "line");
             driver.say({i});
-            std::vector<NetworkEvent> events;
-            while (events.empty() || events.back().kind != Kind::Received) {
-                for (NetworkEvent& event : network.take()) events.push_back(std::move(event));
-                std::this_thread::sleep_for(1ms);
-            }
+            const auto events = await(network, Kind::Received);
+            ASSERT_FALSE(events.empty());
             EXPECT_EQ(events.back().bytes, Bytes{i});
         }
     }
     EXPECT_FALSE(std::filesystem::is_symlink(folder / "line"));
+}
+
+TEST_F(NetworkTest, WhoOpensALineReadsLittleOfThePastAndTheNewest) {
+    const Folder folder;
+    network_.openSerial(folder / "line");
+    const Client line = await(Kind::Opened).back().client;
+    constexpr size_t packets = 10'000, size = 100, little = 32'768;
+    for (size_t i = 0; i < packets; ++i) network_.send(line, Bytes(size, static_cast<uint8_t>(i % 200)));
+    network_.send(line, Bytes(size, 255));
+    network_.listenTcp("127.0.0.1", 0);  // once all have been taken
+    EXPECT_GT(network_.dropped(), packets / 2);
+    const Peer driver(folder / "line");
+    size_t past = 0;
+    Bytes next;
+    while (past <= little && !(next = driver.hear(1)).empty() && next[0] != 255) ++past;
+    EXPECT_LE(past, little) << "of " << packets * size;
+    EXPECT_THAT(next, testing::ElementsAre(255));
+    EXPECT_EQ(driver.hear(size - 1), Bytes(size - 1, 255));
 }
 
 TEST_F(NetworkTest, AThousandReconnectsLeaveNoClientAndNoFileBehind) {
@@ -126,9 +146,10 @@ TEST_F(NetworkTest, AThousandReconnectsLeaveNoClientAndNoFileBehind) {
         peer.say({1});
         for (NetworkEvent& event : await(Kind::Received)) all.push_back(std::move(event));
     }
-    for (NetworkEvent& event : await(Kind::Closed)) all.push_back(std::move(event));
-    while (std::ranges::count(all, Kind::Closed, &NetworkEvent::kind) < 1000)
-        for (NetworkEvent& event : await(Kind::Closed)) all.push_back(std::move(event));
+    const auto closed = [&] { return std::ranges::count(all, Kind::Closed, &NetworkEvent::kind); };
+    for (NetworkEvent& event : await(Kind::Closed, static_cast<size_t>(1000 - closed())))
+        all.push_back(std::move(event));
+    EXPECT_EQ(closed(), 1000);
     EXPECT_EQ(std::ranges::count(all, Kind::Opened, &NetworkEvent::kind), 1000);
     EXPECT_EQ(openFiles(), before);
 }
@@ -154,13 +175,16 @@ TEST_F(NetworkTest, OneWhoSendsWithoutEndIsReadNoFasterThanTheTaskTakes) {
     std::thread sender([&] { peer.say(Bytes(size_t{16} << 20, 3)); });
     std::this_thread::sleep_for(200ms);
     size_t largest = 0, total = 0;
-    while (total < size_t{16} << 20) {
+    const auto deadline = std::chrono::steady_clock::now() + 60s;
+    while (total < size_t{16} << 20 && std::chrono::steady_clock::now() < deadline) {
         size_t part = 0;
         for (const NetworkEvent& event : network_.take()) part += event.bytes.size();
         largest = std::max(largest, part);
         total += part;
         std::this_thread::sleep_for(1ms);
     }
+    EXPECT_EQ(total, size_t{16} << 20);
+    peer.hangUp();
     sender.join();
     EXPECT_LE(largest, Network::max_received + 65536);
 }
@@ -188,6 +212,64 @@ TEST_F(NetworkTest, DatagramsGoToWhomeverTheyAreFor) {
     const End end = network_.listenUdp("127.0.0.1", 0);
     network_.sendTo("127.0.0.1", network_.portOf(end), {6, 6});
     EXPECT_THAT(await(Kind::Received).back().bytes, testing::ElementsAre(6, 6));
+}
+
+TEST_F(NetworkTest, OfDatagramsWhoIsLongestSilentGoesFirst) {
+    const uint16_t port = network_.portOf(network_.listenUdp("127.0.0.1", 0));
+    const Peer talks(SOCK_DGRAM, port);
+    talks.say({1});
+    const Client stays = await(Kind::Received).back().client;
+    std::vector<std::unique_ptr<Peer>> others;
+    std::vector<Client> gone;
+    for (size_t i = 0; i < Network::max_clients; ++i) {
+        others.push_back(std::make_unique<Peer>(SOCK_DGRAM, port));
+        for (const Peer* peer : {static_cast<const Peer*>(others.back().get()), &talks}) {
+            peer->say({2});
+            for (const NetworkEvent& event : await(Kind::Received))
+                if (event.kind == Kind::Closed) gone.push_back(event.client);
+        }
+    }
+    EXPECT_THAT(gone, testing::ElementsAre(Client{stays.end, stays.number + 1})) << "the first of the others";
+    network_.send(stays, {7});
+    EXPECT_THAT(talks.hear(1), testing::ElementsAre(7));
+}
+
+TEST_F(NetworkTest, EmptyDatagramsAreBoundedAsWell) {
+    const Peer peer(SOCK_DGRAM, network_.portOf(network_.listenUdp("127.0.0.1", 0)));
+    const auto end = std::chrono::steady_clock::now() + 60s;
+    while (network_.dropped() == 0 && std::chrono::steady_clock::now() < end) {
+        for (int i = 0; i < 100; ++i) peer.say({});
+        std::this_thread::sleep_for(1ms);  // in which they are taken
+    }
+    EXPECT_GT(network_.dropped(), 0u);
+    EXPECT_LE(network_.take().size(), Network::max_received / sizeof(NetworkEvent) + 1);
+}
+
+TEST_F(NetworkTest, AConnectionIsAskedWhetherItLives) {
+    const uint16_t port = network_.portOf(network_.listenTcp("127.0.0.1", 0));
+    const Peer peer(SOCK_STREAM, port);
+    await(Kind::Opened);
+    const auto optionOf = [](int file, int level, int option) {
+        int value = 0;
+        socklen_t size = sizeof value;
+        getsockopt(file, level, option, &value, &size);
+        return value;
+    };
+    int found = 0;
+    for (const auto& entry : std::filesystem::directory_iterator("/proc/self/fd")) {
+        const int file = std::stoi(entry.path().filename());
+        sockaddr_in own{}, other{};
+        socklen_t own_size = sizeof own, other_size = sizeof other;
+        if (getsockname(file, reinterpret_cast<sockaddr*>(&own), &own_size) != 0 || own.sin_port != htons(port) ||
+            getpeername(file, reinterpret_cast<sockaddr*>(&other), &other_size) != 0)
+            continue;
+        ++found;
+        EXPECT_EQ(optionOf(file, SOL_SOCKET, SO_KEEPALIVE), 1);
+        EXPECT_EQ(optionOf(file, IPPROTO_TCP, TCP_KEEPIDLE), 10);
+        EXPECT_EQ(optionOf(file, IPPROTO_TCP, TCP_KEEPINTVL), 5);
+        EXPECT_EQ(optionOf(file, IPPROTO_TCP, TCP_KEEPCNT), 3);
+    }
+    EXPECT_EQ(found, 1);
 }
 
 TEST_F(NetworkTest, ItWakesWhenItIsAskedTo) {

@@ -187,6 +187,25 @@ TEST_F(Ping1dEmulatorTest, AStreamKeepsItsIntervalUntilItIsStopped) {
     EXPECT_FALSE(device_.wakeAt());
 }
 
+TEST_F(Ping1dEmulatorTest, WhatIsStreamedOfOnePingIsOnePieceForEachClient) {
+    const auto messages = {Ping1dDistanceSimple::message, Ping1dDistance::message, Ping1dProfile::message};
+    for (const uint16_t message : messages)
+        for (const PingClient client : {1, 2}) bench_.say(Ping1dContinuousStart{message}, client);
+    device_.takeOutgoing();
+    const auto asked = bench_.asked();
+    ASSERT_TRUE(asked);
+    bench_.answer(*asked);
+    bench_.waitForNext();
+    const auto out = device_.takeOutgoing();
+    ASSERT_EQ(out.size(), 2u);
+    for (const PingOutgoing& each : out) {
+        EXPECT_TRUE(each.stream);
+        std::vector<uint16_t> found;
+        for (const PingFrame& frame : pingFrames(each.bytes, 4096)) found.push_back(frame.message);
+        EXPECT_THAT(found, ::testing::ElementsAreArray(messages));
+    }
+}
+
 TEST_F(Ping1dEmulatorTest, ALongScanIsSlowerThanTheInterval) {
     set(Ping1dSetModeAuto{0});
     set(Ping1dSetPingInterval{1});

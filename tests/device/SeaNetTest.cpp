@@ -151,7 +151,7 @@ TEST(SeaNetTest, ShortLongAndMisSizedPacketsArePassedOver) {
     for (size_t length = 0; length < good.size(); ++length) {
         Bytes all(good.begin(), good.begin() + static_cast<long>(length));
         all.insert(all.end(), good.begin(), good.end());
-        EXPECT_GE(followed(all).size(), 1u) << "cut off after " << length;
+        EXPECT_EQ(followed(all).size(), 2u) << "cut off after " << length;
     }
     Bytes lengths = good, unended = good, endless = good, digits = good;
     lengths[5] = 13;
@@ -163,6 +163,31 @@ TEST(SeaNetTest, ShortLongAndMisSizedPacketsArePassedOver) {
     Bytes longer = good;
     longer.insert(longer.end() - 1, 3, 0);
     EXPECT_EQ(followed(longer).size(), 1u);
+}
+
+TEST(SeaNetTest, APacketThatIsCutOffHoldsUpNoneBehindIt) {
+    const Bytes cut = someCommand().message().packet(), good = seaNetRequest(SeaNetType::SendData).packet();
+    SeaNetReader reader;
+    reader.add(std::span(cut).first(20));
+    EXPECT_FALSE(reader.next());
+    reader.add(good);
+    const auto message = reader.next();
+    ASSERT_TRUE(message);
+    EXPECT_EQ(message->type, SeaNetType::SendData);
+    EXPECT_EQ(message->payload.size(), 4u);
+    EXPECT_EQ(reader.skipped(), 20u);
+    EXPECT_FALSE(reader.next());
+}
+
+TEST(SeaNetTest, OfBytesThatOnlyBeginPacketsNoMoreAreKeptThanMayBeOne) {
+    constexpr size_t count = 1 << 20;
+    SeaNetReader reader;
+    reader.add(Bytes(count, '@'));
+    EXPECT_FALSE(reader.next());
+    EXPECT_EQ(reader.skipped(), count - 6) << "of the last six the lengths are not known";
+    reader.add(seaNetRequest(SeaNetType::SendData).packet());
+    EXPECT_TRUE(reader.next());
+    EXPECT_EQ(reader.skipped(), count);
 }
 
 /** A line that changes bits and invents bytes between packets loses some; it never loses its place for good. */

@@ -129,6 +129,13 @@ TEST_F(Sonar3dEmulatorTest, WhatIsOutOfBoundsIsRefusedWithTheBoundAndChangesNoth
     EXPECT_EQ(emulator_.answer({"DELETE", prefix + "udp", ""}, now_).status, 405);
 }
 
+TEST_F(Sonar3dEmulatorTest, ItBeginsNoFartherThanItMayBeSet) {
+    Sonar3dDevice device;
+    device.longest_range = 7;
+    EXPECT_EQ(Sonar3dEmulator(device, {}).state().range_max, 7);
+    EXPECT_EQ(emulator_.state().range_max, 15);
+}
+
 TEST_F(Sonar3dEmulatorTest, ItAsksForPingsAtTheRateOfItsModeOnceItMay) {
     advance(1);
     EXPECT_THAT(asked_, IsEmpty());
@@ -231,7 +238,7 @@ TEST_F(Sonar3dEmulatorTest, ClientsMaySetItsClock) {
     EXPECT_EQ(post("time/ntp/force-sync", "{}").status, 400);
 }
 
-TEST_F(Sonar3dEmulatorTest, APingThatNeverComesIsAskedForAnewAndToldOnce) {
+TEST_F(Sonar3dEmulatorTest, APingThatNeverComesIsAskedForAnewAndToldOncePerOutage) {
     post("acoustics/enabled", "true");
     advance(0);
     for (int i = 0; i < 3; ++i) advance(3);
@@ -247,6 +254,10 @@ TEST_F(Sonar3dEmulatorTest, APingThatNeverComesIsAskedForAnewAndToldOnce) {
     emulator_.heard(unmeasured);
     EXPECT_EQ(datagrams_.size(), 4u) << "an empty map, and one without strengths";
     EXPECT_THAT(sent<StrengthPixels>(3).pixels, ElementsAre(1, 1, 0, 1, 1, 1));
+    EXPECT_EQ(warnings_.size(), 1u);
+    advance(1);
+    advance(3);
+    EXPECT_EQ(warnings_.size(), 2u) << "of the next outage";
 }
 
 /** A sonar that takes longer than the device waits: each image tells what it was asked for with. */
