@@ -115,6 +115,7 @@ private:
     static ViewerConfig config() {
         ViewerConfig config = Bench::patient();
         config.port = 0;
+        config.clients = 128;
         return config;
     }
 };
@@ -153,7 +154,7 @@ TEST(PublisherTest, WhoSubscribesWhileAnotherSourceIsShownGetsTheSceneToo) {
     const std::jthread pings([&](const std::stop_token& stop) {
         for (int64_t i = 2; !stop.stop_requested(); ++i) bench.offerPing(i, 256, 1000);
     });
-    for (int newcomer = 0; newcomer < 5; ++newcomer) {
+    for (int newcomer = 0; newcomer < 100; ++newcomer) {
         Client client = joined(bench);
         subscribe(client, SceneBench::scene_channel);
         ASSERT_TRUE(hearsSample(client)) << "newcomer " << newcomer;
