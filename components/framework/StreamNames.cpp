@@ -39,6 +39,13 @@ StreamName streamNameOf(const OutputPortBase& port) {
     return named(alias.empty() ? port.path() : alias, spec);
 }
 
+std::map<std::string, std::string> taskModels(const TaskContext& task) {
+    std::map<std::string, std::string> models;
+    if (const Deployment* const deployment = deploymentOf(task))
+        for (const TaskSpec& one : deployment->spec().tasks) models[one.name] = one.model();
+    return models;
+}
+
 std::vector<PropertyAlias> propertyAliases(const TaskContext& task) {
     std::vector<PropertyAlias> all;
     const Deployment* const deployment = deploymentOf(task);

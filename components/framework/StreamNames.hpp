@@ -1,5 +1,6 @@
 #pragma once
 // What a port's samples and a task's properties are called outside of their deployment: in logs.
+#include <map>
 #include <string>
 #include <vector>
 
@@ -27,6 +28,9 @@ public:
 
 /** Of a port that stands for another, that one's name; else the first alias that leads to it, else its own. */
 StreamName streamNameOf(const OutputPortBase& port);
+
+/** TaskSpec::model() of each task, by its name, of the deployment that a task belongs to; outside of one, none. */
+std::map<std::string, std::string> taskModels(const TaskContext& task);
 
 /** Another name of a property, or of the switch of a block. */
 struct PropertyAlias {

@@ -16,6 +16,8 @@ const Stream* Reader::find(const std::string& name) const {
     const auto found = std::ranges::find(streams_, name, &Stream::name);
     if (found != streams_.end()) return &*found;
     if (!name.starts_with('/')) return nullptr;
+    const auto on_topic = std::ranges::find(streams_, name, &Stream::topic);
+    if (on_topic != streams_.end()) return &*on_topic;
     std::string by_topic = name.substr(1);  // "/auv/sonar" is stream auv.sonar
     std::ranges::replace(by_topic, '/', '.');
     return find(by_topic);

@@ -31,7 +31,8 @@ public:
     const std::vector<Gap>& gaps() const { return gaps_; }  ///< What was not read, in file order.
     const std::vector<Stream>& streams() const { return streams_; }
     const std::vector<SampleRef>& samples() const { return samples_; }  ///< Of all streams, in file order.
-    const Stream* find(const std::string& name) const;                  ///< Null when there is none.
+    /** By its name, or else its topic, or else as "/task/port"; null when there is none. */
+    const Stream* find(const std::string& name) const;
     /** Index of a stream; throws ConfigError that lists the streams when there is none. */
     size_t indexOf(const std::string& name) const;
     /** Of the first stream that has this key; empty: none has. */

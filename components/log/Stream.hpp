@@ -24,6 +24,7 @@ struct Stream {
     Metadata metadata{};
     size_t count = 0;             ///< Samples [1].
     types::Time first{}, last{};  ///< World time of its first and last sample, 0 without samples.
+    std::string topic{};          ///< Of its messages, "/auv/sonar"; empty in a log that has none.
 
     /** Whether its samples are of T. */
     template <class T>

@@ -166,7 +166,7 @@ void LoggerTask::recordProperties() {
     if (!properties_ || changes == recorded_changes_) return;
     recorded_changes_ = changes;
     const std::vector<types::TaskRecord> records = environment().records();
-    properties_->record(records, now(), runMetadata(), aliasesOf(*this, records));
+    properties_->record(records, now(), runMetadata(), aliasesOf(*this, records), framework::taskModels(*this));
 }
 
 void LoggerTask::updateHook() {

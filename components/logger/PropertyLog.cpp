@@ -22,13 +22,13 @@ void PropertyLog::writePresence(Written& property, const std::string& name, type
 }
 
 void PropertyLog::record(const std::vector<types::TaskRecord>& tasks, types::Time now, const log::Metadata& metadata,
-                         const std::vector<PropertyAlias>& aliases) {
+                         const std::vector<PropertyAlias>& aliases, const std::map<std::string, std::string>& models) {
     for (const types::TaskRecord& task : tasks) {
         auto& written = written_[task.name];
         log::Metadata all = metadata;
         all["rock_stream_type"] = "property";
-        const auto alias = std::ranges::find(aliases, task.name, &PropertyAlias::task);
-        all["rock_task_model"] = alias == aliases.end() ? task.type : alias->model;
+        const auto model = models.find(task.name);
+        all["rock_task_model"] = model == models.end() ? task.type : model->second;
         for (const auto& [name, value] : task.properties) {
             Written& property = written[name];
             if (property.value == value) continue;

@@ -28,9 +28,10 @@ public:
     explicit PropertyLog(const std::filesystem::path& path, std::string deployment = "")
         : log_(log::createLog(path)), deployment_(std::move(deployment)) {}
 
-    /** Throws std::runtime_error when the file cannot be written. */
+    /** Throws std::runtime_error when the file cannot be written.
+     *  @param models what Rock calls the kind of each task; of one that is not there, its type. */
     void record(const std::vector<types::TaskRecord>& tasks, types::Time now, const log::Metadata& metadata,
-                const std::vector<PropertyAlias>& aliases = {});
+                const std::vector<PropertyAlias>& aliases = {}, const std::map<std::string, std::string>& models = {});
     void close() { log_->close(); }
 
 private:

@@ -122,16 +122,22 @@ std::vector<Frame> Publisher::greeting() {
     return frames;
 }
 
-void Publisher::subscribed() {
+void Publisher::subscribed(const std::vector<uint32_t>& channels) {
     {
         std::lock_guard lock(mutex_);
-        for (Slot& slot : slots_) {
-            slot.fresh = slot.count > 0;
-            slot.for_newcomer = true;
-        }
-        newcomers_ = true;
+        for (size_t source = 0; source < slots_.size(); ++source)
+            for (uint32_t i = 0; i < sources_[source].forms.size(); ++i) {
+                if (std::ranges::find(channels, first_channel_[source] + i) == channels.end()) continue;
+                slots_[source].fresh = slots_[source].count > 0;
+                if (sources_[source].forms[i].form == Form::Scene) slots_[source].for_newcomer = true;
+            }
     }
     fresh_.notify_one();
+}
+
+void Publisher::subscribedToParameters() {
+    std::lock_guard lock(mutex_);
+    newcomers_ = true;
 }
 
 // -- samples ----------------------------------------------------------------------------------------------------------

@@ -57,14 +57,15 @@ private:
         double latency_s = 0;           ///< Since its stamp [s].
         uint64_t count = 0, shown = 0;  ///< Samples so far; as of the last that was shown.
         bool fresh = false;
-        bool for_newcomer = false;  ///< Somebody in Foxglove has seen nothing of it yet.
+        bool for_newcomer = false;  ///< Somebody in Foxglove has not got its scene yet.
     };
 
     std::optional<PageFile> file(std::string_view path) override;
     std::vector<Frame> greeting() override;
     void request(uint64_t client, std::string text) override;
     void parameters(uint64_t client, ParameterRequest request, bool may_set) override;
-    void subscribed() override;
+    void subscribed(const std::vector<uint32_t>& channels) override;
+    void subscribedToParameters() override;
     uint64_t audience(size_t source) const;
     void publishAll();
     void publishFresh(std::unique_lock<std::mutex>& lock);

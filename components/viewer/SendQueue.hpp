@@ -25,16 +25,22 @@ public:
             }
         streams_.emplace_back(stream, std::move(frame));
     }
-    /** A frame that must arrive; goes before those of streams. False: too many wait, the client is to be given up. */
-    bool post(Frame frame) {
+    /** A frame that must arrive; goes before those of streams. One `of` a stream takes the place of an older one of
+     *  it that was posted and still waits. False: too many wait, the client is to be given up. */
+    bool post(Frame frame, std::optional<uint64_t> of = {}) {
+        for (auto& [key, waiting] : replies_)
+            if (of && key == of) {
+                waiting = std::move(frame);
+                return true;
+            }
         if (replies_.size() == max_replies) return false;
-        replies_.push_back(std::move(frame));
+        replies_.emplace_back(of, std::move(frame));
         return true;
     }
     /** The next to send: replies, then the stream that has waited longest. */
     std::optional<Frame> next() {
         if (!replies_.empty()) {
-            Frame frame = std::move(replies_.front());
+            Frame frame = std::move(replies_.front().second);
             replies_.pop_front();
             return frame;
         }
@@ -44,12 +50,14 @@ public:
         return frame;
     }
     void forget(uint64_t stream) {
-        std::erase_if(streams_, [stream](const auto& waiting) { return waiting.first == stream; });
+        const auto is_of_it = [stream](const auto& waiting) { return waiting.first == stream; };
+        std::erase_if(replies_, is_of_it);
+        std::erase_if(streams_, is_of_it);
     }
     uint64_t dropped() const { return dropped_; }  ///< Frames [1].
 
 private:
-    std::deque<Frame> replies_;
+    std::deque<std::pair<std::optional<uint64_t>, Frame>> replies_;
     std::deque<std::pair<uint64_t, Frame>> streams_;
     uint64_t dropped_ = 0;
 };

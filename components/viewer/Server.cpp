@@ -218,7 +218,8 @@ void Server::everyToFoxglove(uint32_t channel, uint64_t nanoseconds, Bytes messa
     core_->post([core = core_.get(), channel, nanoseconds, message = std::move(message)] {
         core->forEachFoxglove([&](Session& session) {
             for (const auto& [subscription, subscribed] : session.subscriptions().all())
-                if (subscribed == channel) session.post({messageHead(subscription, nanoseconds), message, false});
+                if (subscribed == channel)
+                    session.post({messageHead(subscription, nanoseconds), message, false}, subscription);
         });
     });
 }

@@ -29,8 +29,10 @@ public:
     virtual void request(uint64_t client, std::string text) = 0;
     /** A Foxglove client asks for parameters, or to set some, which only who `may_set` may. */
     virtual void parameters(uint64_t client, ParameterRequest request, bool may_set) = 0;
-    /** Foxglove clients have subscribed to this or that, and have seen nothing of it yet. */
-    virtual void subscribed() = 0;
+    /** A Foxglove client has subscribed to these channels, and has seen nothing of them yet. */
+    virtual void subscribed(const std::vector<uint32_t>& channels) = 0;
+    /** One has subscribed to parameters, and has been told of none yet. */
+    virtual void subscribedToParameters() = 0;
 };
 
 struct ServerOptions {
@@ -83,7 +85,7 @@ public:
     uint64_t parameterReaders() const;  ///< Those that are told of parameters.
     void toPages(uint32_t stream, Frame frame);
     void toFoxglove(uint32_t channel, uint64_t nanoseconds, Bytes message);
-    /** The same for what nothing newer takes the place of. */
+    /** The same for what must arrive: only a newer one of these takes its place, and toFoxglove() does not. */
     void everyToFoxglove(uint32_t channel, uint64_t nanoseconds, Bytes message);
     void timeToFoxglove(uint64_t nanoseconds);
     /** To those who have asked to be told of them. */

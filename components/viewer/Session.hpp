@@ -69,7 +69,7 @@ public:
     const ParameterSubscriptions& parameters() const { return parameters_; }
     void readRequest();
     void put(uint64_t stream, Frame frame);
-    void post(Frame frame);
+    void post(Frame frame, std::optional<uint64_t> of = {});
     void close();
     /** What `work` throws closes this session, and nothing else. */
     template <class Work>
@@ -270,7 +270,7 @@ inline bool Session::takeParameters(const std::string& text) try {
     }
     parameters_.take(request);
     context_.recount();
-    if (request.kind == Subscribe) context_.handler.subscribed();
+    if (request.kind == Subscribe) context_.handler.subscribedToParameters();
     return true;
 } catch (const std::invalid_argument& error) {
     post({"", bytesOf(diagnosticText(std::string("the message ") + error.what())), true});
@@ -284,7 +284,10 @@ inline void Session::takeFromFoxglove(const std::string& text) {
     for (const auto& [subscription, channel] : before)
         if (!subscriptions_.all().contains(subscription)) queue_.forget(subscription);
     context_.recount();
-    if (subscriptions_.all() != before) context_.handler.subscribed();
+    std::vector<uint32_t> channels;
+    for (const auto& one : subscriptions_.all())
+        if (!before.contains(one.first)) channels.push_back(one.second);
+    if (!channels.empty()) context_.handler.subscribed(channels);
 }
 
 inline void Session::put(uint64_t stream, Frame frame) {
@@ -293,8 +296,8 @@ inline void Session::put(uint64_t stream, Frame frame) {
     send();
 }
 
-inline void Session::post(Frame frame) {
-    if (queue_.post(std::move(frame))) return send();
+inline void Session::post(Frame frame, std::optional<uint64_t> of) {
+    if (queue_.post(std::move(frame), of)) return send();
     context_.refused.add("answers are not read");
     close();
 }

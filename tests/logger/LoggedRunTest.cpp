@@ -3,6 +3,7 @@
 
 #include <atomic>
 #include <chrono>
+#include <fstream>
 #include <thread>
 
 #include "components/framework/Deployment.hpp"
@@ -92,6 +93,29 @@ connections:
     EXPECT_THAT(ranges, testing::ElementsAre(30));
     EXPECT_EQ(properties.find("sonar.gain"), nullptr) << "absent";
     EXPECT_NE(properties.find("log.file"), nullptr);
+}
+
+TEST(LoggedRunTest, ATaskIsOfOneModelInBothLogs) {
+    const Folder folder;
+    std::ofstream(folder / "rock::Sonar.yml") << "--- name:default\nrange: 30\n";
+    framework::Registry registry;
+    logger::registerTasks(registry);
+    registry.add<PlannerTask>("test::PlannerTask", "a sonar");
+    framework::Deployment deployment(framework::DeploymentSpec::parse(R"(
+tasks:
+  sonar: {type: test::PlannerTask, activity: {period: 0.1}, property_files: {files: ["rock::Sonar.yml"]}}
+  log: {type: logger::LoggerTask, properties: {file: x.0.log}}
+connections:
+  - {from: sonar.ping, to: log.ping, policy: {type: buffer, size: 8}}
+)",
+                                                                      (folder / "x.yml").string()),
+                                     registry, folder.path());
+    deployment.configure();
+    const std::atomic<bool> never{false};
+    EXPECT_FALSE(deployment.run({.samples = 1}, never).failed());
+    EXPECT_THAT(deployment.cleanup(), testing::IsEmpty());
+    for (const auto& [file, stream] : {std::pair{"x.0.log", "sonar.ping"}, {"properties.0.log", "sonar.range"}})
+        EXPECT_EQ(log::pocolog::Reader(folder / file).find(stream)->metadatum("rock_task_model"), "rock::Sonar");
 }
 
 /** Sets its range anew with its third ping. */

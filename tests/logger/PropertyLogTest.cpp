@@ -35,6 +35,18 @@ TEST(PropertyLogTest, APropertyIsAStreamWithASampleForEachChange) {
     EXPECT_EQ(metadata.at("insonify_seed"), "7");
 }
 
+TEST(PropertyLogTest, ATaskIsOfRocksModelWhereThatIsKnown) {
+    Folder folder;
+    PropertyLog log(folder / "properties.0.log");
+    log.record({{"sonar", "sonar::SonarTask", {{"range", 50.0}}, ""}, {"pose", "pose::PoseTask", {{"rate", 5.0}}, ""}},
+               {1}, {}, {}, {{"sonar", "rock::Sonar"}});
+    log.close();
+
+    const log::pocolog::Reader reader(folder / "properties.0.log");
+    EXPECT_EQ(reader.find("sonar.range")->metadatum("rock_task_model"), "rock::Sonar");
+    EXPECT_EQ(reader.find("pose.rate")->metadatum("rock_task_model"), "pose::PoseTask");
+}
+
 TEST(PropertyLogTest, WhatIsTakenOutAndComesBackIsTold) {
     Folder folder;
     PropertyLog log(folder / "properties.0.log");

@@ -311,6 +311,25 @@ TEST_F(PageTest, ASnapshotIsThePictureAsAFile) {
               brightest);
 }
 
+TEST_F(PageTest, AFrozenPictureIsSavedWithTheAttitudeThatItWasShownWith) {
+    ASSERT_TRUE(becomes("document.getElementById('attitude').textContent.includes('depth2.00 m')"));
+    click("freeze");
+    value(R"(import('./places.js').then(({Places}) => {
+        const {of} = Places.prototype;
+        Places.prototype.of = function(...asked) { return {...of.apply(this, asked), position: [0, 0, -9]}; };
+        const {fan} = insonify, draw = CanvasRenderingContext2D.prototype.fillText;
+        CanvasRenderingContext2D.prototype.fillText = function(text, ...more) {
+            if (text.startsWith(fan.ping.source)) self.caption = text;
+            return draw.call(this, text, ...more);
+        };
+        HTMLAnchorElement.prototype.click = () => {};
+    }))");
+    put("gain", "3");
+    click("snapshot");
+    ASSERT_TRUE(becomes("self.caption"));
+    EXPECT_THAT(value("self.caption").get<std::string>(), HasSubstr("depth 2.00 m"));
+}
+
 TEST_F(PageTest, HeadingDepthAndAttitudeStandOverThePicture) {
     ASSERT_TRUE(becomes("!document.getElementById('attitude').hidden"));
     EXPECT_TRUE(

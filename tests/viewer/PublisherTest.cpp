@@ -97,9 +97,10 @@ class SceneBench {
 public:
     static constexpr int ping_channel = 0, picture_channel = 1, scene_channel = 5;
 
-    Publisher publisher{config(),
-                        {{"sonar", formsOf<types::Sonar>("sonar"), false}, {"scene", formsOf<types::Snapshot>("scene"), false}},
-                        {"viewer", nullptr, [](const std::string&) {}}};
+    Publisher publisher{
+        config(),
+        {{"sonar", formsOf<types::Sonar>("sonar"), false}, {"scene", formsOf<types::Snapshot>("scene"), false}},
+        {"viewer", nullptr, [](const std::string&) {}}};
 
     void offerPing(int64_t seconds, uint32_t beams = 32, uint32_t bins = 100) {
         publisher.offer(0, blockPing(seconds * 1'000'000, beams, bins), {seconds * 1'000'000});
@@ -114,6 +115,7 @@ private:
     static ViewerConfig config() {
         ViewerConfig config = Bench::patient();
         config.port = 0;
+        config.clients = 128;
         return config;
     }
 };
@@ -152,11 +154,38 @@ TEST(PublisherTest, WhoSubscribesWhileAnotherSourceIsShownGetsTheSceneToo) {
     const std::jthread pings([&](const std::stop_token& stop) {
         for (int64_t i = 2; !stop.stop_requested(); ++i) bench.offerPing(i, 256, 1000);
     });
-    for (int newcomer = 0; newcomer < 5; ++newcomer) {
+    for (int newcomer = 0; newcomer < 100; ++newcomer) {
         Client client = joined(bench);
         subscribe(client, SceneBench::scene_channel);
         ASSERT_TRUE(hearsSample(client)) << "newcomer " << newcomer;
     }
+}
+
+/** Samples that come before the server's clock shows this. */
+int samplesUntil(Client& client, uint64_t seconds) {
+    int samples = 0;
+    while (const auto message = client.hear()) {
+        if (*message == timeMessage(seconds * 1'000'000'000)) return samples;
+        samples += message->front() == 1 ? 1 : 0;
+    }
+    ADD_FAILURE() << "the connection has ended";
+    return samples;
+}
+
+TEST(PublisherTest, ASceneIsNotSentAgainWhenSomebodySubscribesToSomethingElse) {
+    SceneBench bench;
+    Client watcher = joined(bench);
+    bench.offerScene(1);
+    EXPECT_EQ(samplesUntil(watcher, 1), 0);
+    subscribe(watcher, SceneBench::scene_channel);
+    ASSERT_TRUE(hearsSample(watcher));
+    bench.offerPing(2);
+    EXPECT_EQ(samplesUntil(watcher, 2), 0);
+    Client other = joined(bench);
+    subscribe(other, SceneBench::ping_channel);
+    ASSERT_TRUE(hearsSample(other));
+    bench.offerPing(3);
+    EXPECT_EQ(samplesUntil(watcher, 3), 0);
 }
 
 }  // namespace

@@ -38,5 +38,20 @@ TEST(SendQueueTest, RepliesGoFirstAndTooManyAreRefused) {
     EXPECT_TRUE(outbox.post(frame("now there is room")));
 }
 
+TEST(SendQueueTest, ANewerReplyOfAStreamTakesThePlaceOfTheOneThatWaits) {
+    SendQueue outbox;
+    EXPECT_TRUE(outbox.post(frame("reply")));
+    for (size_t i = 0; i < SendQueue::max_replies; ++i) EXPECT_TRUE(outbox.post(frame("scene"), 1));
+    EXPECT_TRUE(outbox.post(frame("newest scene"), 1));
+    EXPECT_TRUE(outbox.post(frame("other scene"), 2));
+    outbox.put(1, frame("what moves"));
+    EXPECT_EQ(textOf(outbox.next()), "reply");
+    EXPECT_EQ(textOf(outbox.next()), "newest scene");
+    outbox.forget(2);
+    EXPECT_EQ(textOf(outbox.next()), "what moves");
+    EXPECT_EQ(textOf(outbox.next()), "nothing");
+    EXPECT_EQ(outbox.dropped(), 0u) << "a whole scene tells all that an older one does";
+}
+
 }  // namespace
 }  // namespace insonify::viewer

@@ -15,7 +15,8 @@ struct Throwing final : ServerHandler {
     std::vector<Frame> greeting() override { return {}; }
     void request(uint64_t, std::string) override { throw std::runtime_error("no answers today"); }
     void parameters(uint64_t, ParameterRequest, bool) override { throw std::runtime_error("no parameters today"); }
-    void subscribed() override { throw std::runtime_error("no subscriptions today"); }
+    void subscribed(const std::vector<uint32_t>&) override { throw std::runtime_error("no subscriptions today"); }
+    void subscribedToParameters() override { throw std::runtime_error("no subscriptions today"); }
 };
 
 TEST(ServerTest, AnErrorClosesTheSessionThatItWasFor) {
@@ -39,7 +40,8 @@ TEST(ServerTest, WhatIsReplacedBeforeItIsSentIsCountedForEachClient) {
         std::vector<Frame> greeting() override { return {}; }
         void request(uint64_t, std::string) override {}
         void parameters(uint64_t, ParameterRequest, bool) override {}
-        void subscribed() override {}
+        void subscribed(const std::vector<uint32_t>&) override {}
+        void subscribedToParameters() override {}
     } quiet;
     Server server({}, quiet);
     Client client(server.port());

@@ -91,6 +91,7 @@ void Reader::addStream(const Channel& channel, const Contents& contents) {
     const auto schema = contents.schemas.find(channel.schema);
     Stream& stream = streams_.emplace_back();
     stream.name = streamName(channel);
+    stream.topic = channel.topic;
     stream.type = schema == contents.schemas.end() ? channel.encoding : schema->second.name;
     for (const Contents::Metadata& metadata : contents.metadata)
         if (metadata.name == "insonify" && metadata.channels_before < streams_.size()) stream.metadata = metadata.texts;

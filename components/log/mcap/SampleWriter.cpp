@@ -99,7 +99,17 @@ SampleWriter::~SampleWriter() {
     }
 }
 
+void SampleWriter::checkTopic(const std::string& stream) const {
+    const std::string topic = topicOf(stream);
+    for (const Channel& other : out_.channels())
+        if (other.topic == topic)
+            throw types::ConfigError(
+                path(), stream,
+                "its topic " + topic + " is that of another stream; give one of them another " + "under mcap.streams");
+}
+
 size_t SampleWriter::add(size_t sample, const std::string& name, const Metadata& metadata) {
+    checkTopic(name);
     size_t number = 0;
     types::forEachSampleType([&]<class T>(std::type_identity<T>) {
         if (types::sampleIndex<T>() != sample) return;

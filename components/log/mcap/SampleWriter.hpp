@@ -25,6 +25,7 @@ public:
     SampleWriter(std::filesystem::path path, const McapConfig& config);
     ~SampleWriter() override;  ///< Closes; a failure at that point is not told.
 
+    /** Throws ConfigError for a topic that is another stream's, too. */
     size_t add(size_t sample, const std::string& name, const Metadata& metadata) override;
     /** Throws std::runtime_error for a sample that cannot be told as a message: a compressed picture, a time after
      *  2038. */
@@ -51,6 +52,7 @@ private:
     };
     Options optionsOf(const std::string& stream, const Metadata& metadata) const;
     std::string topicOf(const std::string& stream) const;
+    void checkTopic(const std::string& stream) const;
 
     McapConfig config_;
     Bag bag_;

@@ -17,7 +17,7 @@ import {World, loadThree} from './world.js';
 const byId = (id) => document.getElementById(id);
 const fan = new Fan(byId('fan'), byId('overlay'));
 const rates = new Rates(), scans = new Map(), arrivals = [], scenes = new Map(), places = new Places(), poses = new Places();
-let world = null, scene = null, snapshot = null, placed = '', reference = null, missed = 0, last_count = null, shown = 0, needs_drawing = false, frozen = false;
+let world = null, scene = null, snapshot = null, shown_attitude = null, placed = '', reference = null, missed = 0, last_count = null, shown = 0, needs_drawing = false, frozen = false;
 
 const link = new Link(take, (open) => {
   byId('link').className = open ? 'lamp' : 'lamp off';
@@ -96,7 +96,10 @@ function takePing(ping) {
   const strong = strongLevel(ping);
   reference = reference === null || Math.abs(strong - reference) > 30 ? strong : reference + 0.1 * (strong - reference);
   tell(ping);
-  if (!frozen) display(ping);
+  if (frozen) return;
+  display(ping);
+  shown_attitude = attitude();  // while its pose is still known
+  showAttitude(byId('attitude'), shown_attitude);
 }
 
 function tell(ping) {
@@ -118,7 +121,6 @@ function display(ping) {
   fan.span_db = Number(byId('span').value);
   fan.show(ping, top);
   place();
-  showAttitude(byId('attitude'), attitude());
   world?.showPing(ping, top, fan.span_db, byId('map').value);
   needs_drawing = true;
   ++shown;
@@ -154,7 +156,7 @@ byId('measure').onclick = () => {
 };
 byId('whole').onclick = () => hands.whole();
 hands.on_zoom = (zoom) => { byId('whole').disabled = zoom === 1; };
-byId('save').onclick = () => savePicture(fan, attitude());
+byId('save').onclick = () => savePicture(fan, shown_attitude);
 addEventListener('resize', () => { needs_drawing = true; });
 settingsChanged();
 

@@ -103,6 +103,38 @@ TEST(SampleWriterTest, AStreamMayHaveATopicFramesAndAFrequencyOfItsOwn) {
     EXPECT_EQ(messagesOf<ros::ProjectedSonarImage>(*open, "/other/sonar.ping").at(0).ping_info.frequency, 0);
 }
 
+TEST(SampleWriterTest, AStreamIsFoundByTheTopicThatItWasGiven) {
+    const Folder folder;
+    McapConfig config;
+    config.streams["receiver.ping"].topic = "/auv/sonar";
+    {
+        SampleWriter log(folder / "x.mcap", config);
+        const size_t given = log.addStream<types::Sonar>("receiver.ping");
+        log.addStream<types::Sonar>("sonar.ping");
+        log.write(given, {2}, smallPing(1));
+    }
+    const auto log = openLog(folder / "x.mcap");
+    EXPECT_EQ(log->indexOf("/auv/sonar"), 0u);
+    EXPECT_EQ(log->indexOf("receiver.ping"), 0u);
+    EXPECT_EQ(log->indexOf("/sonar/ping"), 1u);
+    EXPECT_FALSE(log->find("/auv/pose"));
+    EXPECT_EQ(samplesOf<types::Sonar>(*log, "/auv/sonar").size(), 1u);
+}
+
+TEST(SampleWriterTest, TwoStreamsOnOneTopicAreRefused) {
+    const Folder folder;
+    McapConfig config;
+    config.streams["receiver.ping"].topic = "/sonar/ping";
+    SampleWriter log(folder / "x.mcap", config);
+    log.addStream<types::Sonar>("receiver.ping");
+    try {
+        log.addStream<types::Sonar>("sonar.ping");
+        FAIL() << "nothing was thrown";
+    } catch (const types::ConfigError& error) {
+        EXPECT_THAT(error.what(), testing::HasSubstr("sonar.ping: its topic /sonar/ping is that of another stream"));
+    }
+}
+
 TEST(SampleWriterTest, TopicsThatAreNoneOrTwiceThereAreTold) {
     McapConfig config;
     config.streams["a.ping"].topic = "/auv/1sonar";
