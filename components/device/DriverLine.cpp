@@ -2,11 +2,14 @@
 
 #include <fcntl.h>
 #include <netdb.h>
+#include <netinet/in.h>
 #include <poll.h>
 #include <sys/socket.h>
 #include <termios.h>
 #include <unistd.h>
 
+#include <algorithm>
+#include <bit>
 #include <cerrno>
 #include <memory>
 #include <utility>
@@ -31,7 +34,8 @@ Addresses addressesOf(const std::string& host, uint16_t port, int type) {
 
 bool isReady(int file, short events, DriverLine::Duration patience) {
     pollfd ready{file, events, 0};
-    return poll(&ready, 1, static_cast<int>(patience.count())) == 1;
+    const auto wait = std::max<DriverLine::Duration::rep>(0, patience.count());  // poll waits for ever below 0
+    return poll(&ready, 1, static_cast<int>(wait)) == 1;
 }
 
 /** Bytes as they are, at 115200 baud. */
@@ -102,6 +106,33 @@ Bytes DriverLine::receive(Duration patience) const {
     if (got == 0) throw LineError("the other end has closed the line");
     bytes.resize(static_cast<size_t>(got));
     return bytes;
+}
+
+DriverLine::Datagram DriverLine::receiveDatagram(Duration patience) const {
+    if (!isReady(file_, POLLIN, patience)) return {};
+    Datagram datagram{Bytes(65536)};
+    sockaddr_in from{};
+    socklen_t size = sizeof from;
+    const ssize_t got =
+        recvfrom(file_, datagram.bytes.data(), datagram.bytes.size(), 0, reinterpret_cast<sockaddr*>(&from), &size);
+    if (got < 0) fail(errno);
+    datagram.bytes.resize(static_cast<size_t>(got));
+    datagram.from = std::bit_cast<Ipv4>(from.sin_addr.s_addr);
+    return datagram;
+}
+
+std::vector<Ipv4> ipv4Of(const std::string& host) {
+    std::vector<Ipv4> found;
+    try {
+        const Addresses all = addressesOf(host, 1, SOCK_DGRAM);
+        for (const addrinfo* each = all.get(); each; each = each->ai_next)
+            if (each->ai_family == AF_INET)
+                found.push_back(
+                    std::bit_cast<Ipv4>(reinterpret_cast<const sockaddr_in*>(each->ai_addr)->sin_addr.s_addr));
+    } catch (const LineError&) {
+        found.clear();
+    }
+    return found;
 }
 
 bool isKnownHost(const std::string& host) {

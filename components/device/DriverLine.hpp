@@ -3,8 +3,10 @@
 #include <filesystem>
 #include <stdexcept>
 #include <string>
+#include <vector>
 
 #include "components/device/Bytes.hpp"
+#include "components/device/Ipv4.hpp"
 
 namespace insonify::device {
 
@@ -35,6 +37,12 @@ public:
     void send(std::span<const uint8_t> bytes) const;
     /** What comes next, at most 64 KiB; empty: nothing has come. Throws LineError where the line is closed. */
     Bytes receive(Duration patience) const;
+    /** A datagram of anybody, and who has sent it; no bytes: nothing has come. */
+    struct Datagram {
+        Bytes bytes;
+        Ipv4 from{};
+    };
+    Datagram receiveDatagram(Duration patience) const;
 
 private:
     explicit DriverLine(int file) : file_(file) {}
@@ -43,5 +51,7 @@ private:
 
 /** Whether this machine knows such a host. */
 bool isKnownHost(const std::string& host);
+/** The IPv4 addresses of a host; none where it is not known. */
+std::vector<Ipv4> ipv4Of(const std::string& host);
 
 }  // namespace insonify::device

@@ -1,9 +1,10 @@
 #include "components/device/OculusEmulator.hpp"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <iterator>
+
+#include "components/device/Ipv4.hpp"
 
 namespace insonify::device {
 namespace {
@@ -16,19 +17,6 @@ Time periodOf(const OculusFire& fire) { return Time::fromSeconds(1 / fire.rateHz
 
 /** In high frequency the device has a gain of 40 % at least, and 0 to 100 % of a driver go over the rest. */
 double usedGain(const OculusFire& fire) { return fire.mode == 2 ? 40 + 0.6 * fire.gain_percent : fire.gain_percent; }
-
-/** Of "192.168.2.3"; of anything else 0.0.0.0. */
-std::array<uint8_t, 4> ipv4(const std::string& text) {
-    std::array<uint8_t, 4> bytes{};
-    const char* at = text.data();
-    const char* const end = at + text.size();
-    for (size_t i = 0; i < bytes.size(); ++i) {
-        const auto [next, error] = std::from_chars(at, end, bytes[i]);
-        if (error != std::errc() || (i < 3 ? next == end || *next != '.' : next != end)) return {};
-        at = next + 1;
-    }
-    return bytes;
-}
 
 }  // namespace
 
@@ -167,7 +155,7 @@ Bytes OculusEmulator::statusBytes() const {
     status.header.part = capabilities_.part;
     status.device_id = static_cast<uint32_t>(config_.serial_number);
     status.part = capabilities_.part;
-    status.address = ipv4(config_.device_address);
+    status.address = ipv4(config_.device_address).value_or(Ipv4{});
     status.mask = {255, 255, 255, 0};
     const uint16_t serial = status.header.source;
     status.mac = {0x02, 0x4F, 0x53, 0, static_cast<uint8_t>(serial >> 8), static_cast<uint8_t>(serial)};

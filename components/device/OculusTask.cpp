@@ -3,13 +3,19 @@
 #include <algorithm>
 #include <cmath>
 
+#include "components/device/Ipv4.hpp"
+
 namespace insonify::device {
 
 void OculusTask::check(types::Diagnostics& diagnostics) const {
     DeviceTask::check(diagnostics);
-    if (config->address == "0.0.0.0" && config->device.device_address.empty())
-        diagnostics.push_back(
-            {"device_address", "is empty; with address 0.0.0.0 the status needs one that drivers can connect to"});
+    const std::string &address = config->address, &told = config->device.device_address;
+    const bool tells_none = address.find(':') != std::string::npos || ipv4(address) == Ipv4{};
+    if (told.empty() && tells_none)
+        diagnostics.push_back({"device_address", "is empty; with address " + address +
+                                                     " the status needs an IPv4 address that drivers can connect to"});
+    if (!told.empty() && ipv4(told).value_or(Ipv4{}) == Ipv4{})
+        diagnostics.push_back({"device_address", "is '" + told + "'; must be an IPv4 address, as 192.168.2.3"});
     if (config->device.gain_min_db > config->device.gain_max_db)
         diagnostics.push_back({"gain_min_db", "is above gain_max_db"});
 }

@@ -6,37 +6,35 @@
 #include <cstdlib>
 #include <string_view>
 
+#include "components/device/Ipv4.hpp"
+
 namespace insonify::device {
 namespace {
 
-/** The parts of "192.168.2.10" or "02-00-00-00-03-60"; none where it is no such text. */
-template <size_t Count>
-std::optional<std::array<uint8_t, Count>> partsOf(const std::string& text, char separator, int base) {
-    std::array<uint8_t, Count> parts{};
+/** Of "02-00-00-00-03-60"; none where it is no such text. */
+std::optional<std::array<uint8_t, 6>> macOf(const std::string& text) {
+    std::array<uint8_t, 6> parts{};
     const char* at = text.c_str();
-    for (size_t i = 0; i < Count; ++i) {
+    for (size_t i = 0; i < parts.size(); ++i) {
         char* end = nullptr;
         if (!std::isxdigit(static_cast<unsigned char>(*at))) return {};
-        const unsigned long part = std::strtoul(at, &end, base);
-        if (end == at || part > 255 || *end != (i + 1 < Count ? separator : '\0')) return {};
+        const unsigned long part = std::strtoul(at, &end, 16);
+        if (end == at || part > 255 || *end != (i + 1 < parts.size() ? '-' : '\0')) return {};
         parts[i] = static_cast<uint8_t>(part);
         at = end + 1;
     }
     return parts;
 }
 
-std::optional<std::array<uint8_t, 4>> ipOf(const std::string& text) { return partsOf<4>(text, '.', 10); }
-std::optional<std::array<uint8_t, 6>> macOf(const std::string& text) { return partsOf<6>(text, '-', 16); }
-
 }  // namespace
 
 void Ping360Discovery::check(types::Diagnostics& diagnostics) const {
-    if (!ipOf(ip)) diagnostics.push_back({"ip", "is '" + ip + "'; write it as 192.168.2.10"});
+    if (!ipv4(ip)) diagnostics.push_back({"ip", "is '" + ip + "'; write it as 192.168.2.10"});
     if (!macOf(mac)) diagnostics.push_back({"mac", "is '" + mac + "'; write it as 02-00-00-00-03-60"});
 }
 
 std::string Ping360Discovery::answer() const {
-    return ping360Discovery(macOf(mac).value_or(std::array<uint8_t, 6>{}), ipOf(ip).value_or(std::array<uint8_t, 4>{}));
+    return ping360Discovery(macOf(mac).value_or(std::array<uint8_t, 6>{}), ipv4(ip).value_or(Ipv4{}));
 }
 
 void Ping360Task::listen(Network& network) {

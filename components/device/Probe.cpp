@@ -92,8 +92,10 @@ void addSeaNet(std::vector<Probe>& all) {
         "no version comes: a driver that waits for mtAlive or mtVersionData waits for ever; the sonar's node is not 2, "
         "or "
         "it is no Micron";
-    all.push_back({"SeaNet (Micron)", Probe::Line::Tcp, 4001, seaNetRequest(SeaNetType::SendVersion).packet(), seaNetIn, silence});
-    all.push_back({"SeaNet (Micron)", Probe::Line::Serial, 0, seaNetRequest(SeaNetType::SendVersion).packet(), seaNetIn, silence});
+    all.push_back({"SeaNet (Micron)", Probe::Line::Tcp, 4001, seaNetRequest(SeaNetType::SendVersion).packet(), seaNetIn,
+                   silence});
+    all.push_back({"SeaNet (Micron)", Probe::Line::Serial, 0, seaNetRequest(SeaNetType::SendVersion).packet(), seaNetIn,
+                   silence});
 }
 
 void addSonar3d(std::vector<Probe>& all) {
@@ -143,20 +145,25 @@ std::optional<std::string> converse(const Probe& probe, const DriverLine& line, 
     return {};
 }
 
-ProbeOutcome ask(const Probe& probe, const ProbeAddress& address, std::chrono::milliseconds patience) {
-    ProbeOutcome outcome{probe.protocol, nameOf(probe, address), "", "", ""};
-    bool opened = false;
-    try {
-        const DriverLine line = lineFor(probe, address, patience);
-        opened = true;
-        outcome.device = converse(probe, line, patience).value_or("");
-        if (outcome.device.empty()) outcome.failure = "no answer";
-    } catch (const LineError& error) {
-        outcome.failure = error.what();
+/** Whether a datagram is of a device at one of these addresses. */
+bool isOf(const DriverLine::Datagram& datagram, const std::vector<Ipv4>& addresses) {
+    const auto has = [&](const Ipv4& address) { return std::ranges::find(addresses, address) != addresses.end(); };
+    const auto status = oculusStatus(datagram.bytes);
+    return has(datagram.from) || (status && has(status->address));
+}
+
+/** Listens until the device at this host has told what it is; others are passed over. */
+std::optional<std::string> overhear(const Probe& probe, const DriverLine& line, const std::string& host,
+                                    std::chrono::milliseconds patience) {
+    const std::vector<Ipv4> addresses = ipv4Of(host == "::1" ? "127.0.0.1" : host);
+    const auto end = Clock::now() + patience;
+    while (Clock::now() < end) {
+        const auto heard =
+            line.receiveDatagram(std::chrono::duration_cast<std::chrono::milliseconds>(end - Clock::now()));
+        if (!isOf(heard, addresses)) continue;
+        if (auto device = probe.read(heard.bytes)) return device;
     }
-    if (!outcome.failure.empty())
-        outcome.advice = opened && outcome.failure != "Connection refused" ? probe.silence : nobody_there;
-    return outcome;
+    return {};
 }
 
 bool canAsk(const Probe& probe, const ProbeAddress& address) {
@@ -272,6 +279,24 @@ ProbeAddress probeAddress(const std::string& text) {
     if (address.host.empty()) refuse(text, "which names no host");
     if (!isKnownHost(address.host)) refuse(text, "a host that this machine does not know");
     return address;
+}
+
+ProbeOutcome ask(const Probe& probe, const ProbeAddress& address, std::chrono::milliseconds patience) {
+    ProbeOutcome outcome{probe.protocol, nameOf(probe, address), "", "", ""};
+    bool opened = false;
+    try {
+        const DriverLine line = lineFor(probe, address, patience);
+        opened = true;
+        const bool overhears = probe.line == Probe::Line::Broadcast;
+        const auto device = overhears ? overhear(probe, line, address.host, patience) : converse(probe, line, patience);
+        outcome.device = device.value_or("");
+        if (outcome.device.empty()) outcome.failure = "no answer";
+    } catch (const LineError& error) {
+        outcome.failure = error.what();
+    }
+    if (!outcome.failure.empty())
+        outcome.advice = opened && outcome.failure != "Connection refused" ? probe.silence : nobody_there;
+    return outcome;
 }
 
 std::vector<ProbeOutcome> probe(const ProbeAddress& address, std::chrono::milliseconds patience) {

@@ -45,6 +45,10 @@ struct ProbeOutcome {
     std::string advice;           ///< what may be the matter.
 };
 
+/** Asks one question for so long. Of what is broadcast only that counts which the address has sent, or which names the
+ *  address as its own; ::1 is 127.0.0.1 there. */
+ProbeOutcome ask(const Probe& probe, const ProbeAddress& address, std::chrono::milliseconds patience);
+
 /** Asks all that can be asked at an address, each question for so long. */
 std::vector<ProbeOutcome> probe(const ProbeAddress& address, std::chrono::milliseconds patience);
 

@@ -203,7 +203,11 @@ TEST_F(OculusTaskTest, WhatCannotBeIsRefusedWithTheKey) {
     };
     EXPECT_THAT(messageOf("device.address=nowhere"), HasSubstr("tasks.device.properties.address: is nowhere"));
     EXPECT_THAT(messageOf("device.status_address=nowhere"), HasSubstr("properties.status_address: is nowhere"));
-    EXPECT_THAT(messageOf("device.address=0.0.0.0"), HasSubstr("properties.device_address: is empty"));
+    for (const char* every : {"0.0.0.0", "'::'", "'::1'"})
+        EXPECT_THAT(messageOf(std::string("device.address=") + every), HasSubstr("device_address: is empty")) << every;
+    for (const char* wrong : {"host", "192.168.2", "192.168.2.300", "0.0.0.0", "'::1'"})
+        EXPECT_THAT(messageOf(std::string("device.device_address=") + wrong), HasSubstr("must be an IPv4 address"))
+            << wrong;
     EXPECT_THAT(messageOf("device.model=m900"), HasSubstr("m900"));
     EXPECT_THAT(messageOf("device.gain_min_db=90"), HasSubstr("properties.gain_min_db: is above gain_max_db"));
     EXPECT_THAT(messageOf("device.port=70000"), HasSubstr("properties.port: is 70000"));

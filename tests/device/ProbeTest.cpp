@@ -1,12 +1,15 @@
 #include <gmock/gmock.h>
 
+#include <atomic>
 #include <thread>
 
+#include "components/device/DriverLine.hpp"
 #include "components/device/Network.hpp"
 #include "components/device/OculusMessages.hpp"
 #include "components/device/PingMessages.hpp"
 #include "components/device/Probe.hpp"
 #include "components/device/SeaNet.hpp"
+#include "tests/support/OculusDriver.hpp"
 #include "types/ConfigError.hpp"
 
 namespace insonify::device {
@@ -106,6 +109,54 @@ TEST(ProbeTest, WhatDoesNotAnswerIsToldWithWhatMayBeTheMatter) {
     const auto outcomes = probe(line, std::chrono::milliseconds(20));
     ASSERT_EQ(outcomes.size(), 2u) << "ping protocol and SeaNet";
     for (const ProbeOutcome& outcome : outcomes) EXPECT_EQ(outcome.failure, "No such file or directory");
+}
+
+/** Sends a status to a port of this machine again and again, from an address of its own. */
+class StatusSender {
+public:
+    StatusSender(const char* from, uint16_t port, const OculusStatus& status) {
+        const sockaddr_in here = test::Socket::address(inet_addr(from), 0);
+        EXPECT_EQ(bind(socket_.file(), reinterpret_cast<const sockaddr*>(&here), sizeof here), 0);
+        thread_ = std::thread([this, port, bytes = bytesOf(status)] {
+            const sockaddr_in to = test::Socket::address(htonl(INADDR_LOOPBACK), port);
+            while (!stop_) {
+                sendto(socket_.file(), bytes.data(), bytes.size(), 0, reinterpret_cast<const sockaddr*>(&to),
+                       sizeof to);
+                std::this_thread::sleep_for(std::chrono::milliseconds(5));
+            }
+        });
+    }
+    ~StatusSender() {
+        stop_ = true;
+        thread_.join();
+    }
+
+private:
+    const test::Socket socket_{SOCK_DGRAM};
+    std::atomic<bool> stop_{false};
+    std::thread thread_;
+};
+
+TEST(ProbeTest, ABroadcastCountsOnlyFromTheDeviceThatIsAsked) {
+    const uint16_t port = test::OculusListener().port();
+    const Probe question{"Oculus status", Probe::Line::Broadcast, port, {}, oculusIn, "silence"};
+    const auto heardOf = [&](const char* host, int patience_ms) {
+        return ask(question, {host, "", 0}, std::chrono::milliseconds(patience_ms)).device;
+    };
+    const StatusSender other("127.0.0.2", port, {.part = 1042, .address = {192, 168, 2, 3}});
+    EXPECT_THAT(heardOf("127.0.0.2", 10000), HasSubstr("M1200d")) << "by its sender";
+    EXPECT_THAT(heardOf("192.168.2.3", 10000), HasSubstr("M1200d")) << "by its own address";
+    EXPECT_EQ(heardOf("127.0.0.1", 100), "");
+    EXPECT_EQ(heardOf("::1", 100), "");
+    EXPECT_EQ(heardOf("192.168.2.4", 100), "");
+    const StatusSender own("127.0.0.1", port, {.part = 1032});
+    EXPECT_THAT(heardOf("127.0.0.1", 10000), HasSubstr("M750d"));
+    EXPECT_THAT(heardOf("::1", 10000), HasSubstr("M750d"));
+}
+
+TEST(ProbeTest, NothingIsAwaitedForLessThanNoTime) {
+    EXPECT_TRUE(DriverLine::broadcasts(0).receive(std::chrono::milliseconds(-5)).empty());
+    EXPECT_TRUE(DriverLine::broadcasts(0).receiveDatagram(std::chrono::milliseconds(-5)).bytes.empty());
 }
 
 TEST(ProbeTest, EveryQuestionSaysWhySilenceMayBe) {
