@@ -27,10 +27,15 @@ std::optional<types::Time> PingDeviceTask::tick(types::Time now) {
     return device_->wakeAt();
 }
 
+void PingDeviceTask::send(Client client, PingOutgoing out) {
+    const auto kind = out.stream ? Network::Kind::Stream : Network::Kind::Reply;
+    if (client.end != udp) return network().send(client, std::move(out.bytes), kind);
+    for (const PingFrame& frame : pingFrames(out.bytes, UINT16_MAX))  // a datagram holds one
+        network().send(client, frame.bytes(), kind);
+}
+
 void PingDeviceTask::sendWhatIsWanted() {
-    for (PingOutgoing& out : device_->takeOutgoing())
-        network().send(clientOf(out.client), std::move(out.bytes),
-                       out.stream ? Network::Kind::Stream : Network::Kind::Reply);
+    for (PingOutgoing& out : device_->takeOutgoing()) send(clientOf(out.client), std::move(out));
     if (const auto asked = device_->takeAsked()) settings.write(*asked);
     for (const std::string& warning : device_->takeWarnings()) warn(warning);
 }

@@ -53,6 +53,7 @@ protected:
 private:
     PingClient numberOf(Client client) const { return client.number << 8 | client.end; }
     Client clientOf(PingClient number) const { return {number & 0xff, number >> 8}; }
+    void send(Client client, PingOutgoing out);
     void sendWhatIsWanted();
 
     std::unique_ptr<PingDevice> device_;
