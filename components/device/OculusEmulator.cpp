@@ -38,6 +38,7 @@ void OculusEmulator::closed(ClientId client) {
 }
 
 void OculusEmulator::take(std::span<const uint8_t> message) {
+    if (oculusUserConfig(message)) return;  // the network settings that it keeps are not changed
     const auto asked = oculusFire(message);
     const auto settings = asked ? possible(*asked) : std::nullopt;
     if (settings)

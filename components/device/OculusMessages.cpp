@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <utility>
 
 namespace insonify::device {
 namespace {
@@ -301,8 +302,14 @@ Bytes OculusFramer::next() {
         return {rest.begin(), rest.begin() + static_cast<std::ptrdiff_t>(size)};
     }
     buffer_.erase(buffer_.begin(), buffer_.begin() + static_cast<std::ptrdiff_t>(at_));
-    at_ = 0;
+    erased_ += std::exchange(at_, 0);
     return {};
+}
+
+bool OculusFramer::giveUp() {
+    if (buffer_.size() < at_ + OculusHeader::size) return false;
+    skip(1);
+    return true;
 }
 
 }  // namespace insonify::device

@@ -170,6 +170,11 @@ public:
     /** The next whole message; empty: there is none yet. */
     Bytes next();
     size_t skipped() const { return skipped_; }  ///< Bytes that were of no message.
+    /** At the end of a stream: gives up the header whose message is not whole, so that next() goes on behind it. False:
+     *  there is none. */
+    bool giveUp();
+    /** Where the next message is looked for, from the beginning of the stream [B]. */
+    uint64_t position() const { return erased_ + at_; }
 
 private:
     /** Whole size of the message that begins here; 0: none does. */
@@ -178,6 +183,7 @@ private:
 
     Bytes buffer_;
     size_t largest_, at_ = 0, skipped_ = 0;
+    uint64_t erased_ = 0;  ///< Bytes that are no longer in the buffer.
 };
 
 }  // namespace insonify::device

@@ -31,7 +31,8 @@ struct OculusResult;
 OculusPing pingOf(const OculusResult& result);
 
 /** What a receiver would have given out: codes as bins, in rows with gains divided by the root of them; beams from
- *  starboard to port, as in a fan of ours. Its bin_duration is the nearest whole microsecond, at least 1. */
+ *  starboard to port, as in a fan of ours. Its bin_duration is the nearest whole microsecond, at least 1. A speed
+ *  of sound that the ping does not tell is 1500 m/s, so that ranges hold. */
 types::Sonar sonarOf(const OculusPing& ping, types::Time time);
 
 /** Every ping in these bytes, in order: network messages, one after the other, with anything between them, as in

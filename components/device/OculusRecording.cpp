@@ -195,7 +195,12 @@ struct OculusPings::Source {
         for (;;) {
             if (Bytes message = framer.next(); !message.empty()) return message;
             capture.read(reinterpret_cast<char*>(block.data()), static_cast<std::streamsize>(block.size()));
-            if (capture.gcount() == 0) return {};
+            if (capture.gcount() == 0) {
+                const uint64_t at = framer.position();
+                if (!framer.giveUp()) return {};
+                if (damage.empty()) damage = fmt::format("the message at byte {} is longer than the file", at);
+                continue;
+            }
             framer.add(std::span(block).first(static_cast<size_t>(capture.gcount())));
         }
     }
@@ -214,6 +219,7 @@ struct OculusPings::Source {
     std::optional<OculusRecording> recording;
     std::ifstream capture;
     OculusFramer framer;
+    std::string damage;  ///< Of a capture, what was passed over first; empty: nothing.
     bool known = false;
     double elapsed = 0, start_s = 0;
     uint32_t start_ticks = 0;
@@ -232,7 +238,7 @@ std::optional<RecordedPing> OculusPings::next() {
             return RecordedPing{message.time ? *message.time : source_->clockOf(*ping), std::move(*ping)};
         if (diagnostic_.empty()) diagnostic_ = fmt::format("ping {} {}", number_, reason);
     }
-    if (diagnostic_.empty() && source_->recording) diagnostic_ = source_->recording->diagnostic();
+    if (diagnostic_.empty()) diagnostic_ = source_->recording ? source_->recording->diagnostic() : source_->damage;
     return std::nullopt;
 }
 

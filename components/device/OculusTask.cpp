@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "components/device/Ipv4.hpp"
+#include "types/ConfigError.hpp"
 
 namespace insonify::device {
 
@@ -35,11 +36,23 @@ void OculusTask::listen(Network& network) {
     if (device.device_address.empty()) device.device_address = config->address;
     emulator_.emplace(device, now());
     clients_.clear();
+    openRecord();
     no_codes_ = {};
     try {
         sendStatus(emulator_->tick(now()).status, network);
     } catch (const NetworkError& error) {
         throw NetworkError("status_address", error.what());
+    }
+}
+
+void OculusTask::openRecord() {
+    recorder_.reset();
+    if (!config->record) return;
+    const std::filesystem::path file = outputPath(*config->record);
+    try {
+        recorder_.emplace(file, OculusFileHeader{.time = now().seconds()});
+    } catch (const types::ConfigError&) {
+        throw NetworkError("record", "is " + file.string() + ", which cannot be written");
     }
 }
 
@@ -63,7 +76,9 @@ void OculusTask::takePings() {
     types::SonarPtr sample;
     while (ping.readNew(sample)) {
         judge(*sample);
-        sendToAll(emulator_->ping(*sample));
+        const Bytes message = emulator_->ping(*sample);
+        sendToAll(message);
+        if (recorder_ && !message.empty()) recorder_->write(now().seconds(), message);
     }
 }
 

@@ -5,6 +5,7 @@
 
 #include "components/device/DeviceTask.hpp"
 #include "components/device/OculusEmulator.hpp"
+#include "components/device/OculusRecording.hpp"
 #include "components/framework/Properties.hpp"
 #include "types/RecurringDiagnostic.hpp"
 #include "types/Sonar.hpp"
@@ -16,6 +17,7 @@ struct OculusTaskConfig {
     int port = 52100;
     std::string status_address = "127.255.255.255";
     int status_port = 52102;
+    std::optional<std::string> record;
     OculusConfig device;
 
     template <class Self, class V>
@@ -30,6 +32,10 @@ struct OculusTaskConfig {
                     "192.168.2.255; 127.255.255.255: this machine"},
               self.status_address);
         visit(Field{"status_port", "1", "UDP port of the status; drivers expect 52102", 1, 65535}, self.status_port);
+        visit(Field{"record", "",
+                    "file (.oculus) of the maker's viewer that gets the pings that are sent, relative to the output "
+                    "folder; absent: none"},
+              self.record);
         OculusConfig::describe(self.device, visit);
     }
 };
@@ -57,12 +63,14 @@ private:
     void closed(Client client) override;
     void takePings() override;
     std::optional<types::Time> tick(types::Time now) override;
+    void openRecord();
     void sendStatus(const Bytes& status, Network& network) const;
     void sendToAll(const Bytes& message);
     /** Warns where bins are no codes. */
     void judge(const types::Sonar& codes);
 
     std::optional<OculusEmulator> emulator_;
+    std::optional<OculusRecorder> recorder_;
     std::set<Client> clients_;
     types::RecurringDiagnostic no_codes_;
 };

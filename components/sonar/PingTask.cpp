@@ -137,7 +137,7 @@ void PingTask::applySettings(const types::SonarSettings& asked) {
 bool PingTask::takeAsked() {
     types::SonarSettings asked;
     types::SnapshotPtr sample;
-    if (!settings.takeNext(asked) || snapshot.readNewest(sample) == framework::FlowStatus::NoData) return false;
+    if (snapshot.readNewest(sample) == framework::FlowStatus::NoData || !settings.takeNext(asked)) return false;
     try {
         applySettings(asked);
     } catch (const std::exception& refused) {

@@ -41,8 +41,9 @@ namespace insonify::sonar {
  *  `elements` tells what each element of a straight array heard, of a sonar that is configured to have some.
  *
  *  With `settings` connected there is a ping for each of them, and none else, as the driver of a device asks for it, at
- *  the time of asking in the newest snapshot's scene: what they name becomes the value of the property of that name,
- * and stays. Settings that the sonar cannot have lead to RunTimeError, and to no ping.
+ *  the time of asking in the newest snapshot's scene; they wait for the first snapshot. In realtime the newest of those
+ *  that wait counts, and there is no ping for the others. What they name becomes the value of the property of that
+ *  name, and stays. Settings that the sonar cannot have lead to RunTimeError, and to no ping.
  *
  *  `pose` tells where each ping was rendered, carried on as it was; with `given_pose` connected there is a ping for
  *  each of these poses, in the newest snapshot's scene, so that what `pose` has told renders the same pings again. */
@@ -131,7 +132,7 @@ private:
     /** The scene of a snapshot, in realtime with its sonar where it is by now, as far as it may be carried on. */
     void aim(const types::Snapshot& scene);
     void applySettings(const types::SonarSettings& asked);
-    /** Of the newest settings, in the newest snapshot's scene. */
+    /** The next settings, in realtime the newest, in the newest snapshot's scene; they wait until there is one. */
     bool takeAsked();
     /** What the next ping is of; in realtime the newest. */
     bool takeNext();

@@ -35,7 +35,8 @@ protected:
                          << ": scripts/setup puts it there";
         run_.emplace(insonifyWords({"run", deployment, "--out", "out", "--set", "ping360.port=0", "--set",
                                     "ping1d.port=0", "--set", "scene.pose_timeout=60", "--set",
-                                    "bottom.pose_timeout=60", "--set", "ping360.seconds_per_gradian=0.001"}),
+                                    "bottom.pose_timeout=60", "--set", "ping360.seconds_per_gradian=0.001", "--set",
+                                    "scanner_noise.speckle=null", "--set", "scanner_noise.ambient=null"}),
                      folder_.path());
         ASSERT_TRUE(says(folder_, "ping1d: listens on serial line"));
     }

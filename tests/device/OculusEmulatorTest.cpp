@@ -282,6 +282,14 @@ TEST_F(OculusEmulatorTest, TheLastFireMessageOfAllClientsCounts) {
     EXPECT_EQ(emulator_.fire().range, 9) << "bytes of clients do not mix";
 }
 
+TEST_F(OculusEmulatorTest, NetworkSettingsAreNotCountedAsRefused) {
+    connect();
+    emulator_.received(1, bytesOf(OculusUserConfig{.address = {192, 168, 2, 4}}));
+    EXPECT_EQ(emulator_.refused(), 0u);
+    emulator_.received(1, oculusDummy(1, 1032));
+    EXPECT_EQ(emulator_.refused(), 1u) << "which is neither";
+}
+
 TEST_F(OculusEmulatorTest, TheSpeedOfSoundGoesBackToTheSonarsOwn) {
     connect();
     pinged(metres(5));

@@ -41,6 +41,14 @@ TEST(OculusPingTest, APingIsReadInEveryVersionAndWidth) {
     EXPECT_EQ(wide.largestCode(), 65535);
 }
 
+TEST(OculusPingTest, ASpeedOfSoundThatIsNotToldIsTheUsualOne) {
+    OculusPing ping = oculusPings(Sent{}.bytes()).at(0);
+    ping.speed_of_sound = 0;
+    const types::Sonar sonar = sonarOf(ping, {});
+    EXPECT_EQ(sonar.speed_of_sound, 1500);
+    EXPECT_EQ(sonar.bin_duration.microseconds, 167) << "0.25 m";
+}
+
 TEST(OculusPingTest, PingsStandAmongOtherMessages) {
     Bytes all = {'S', 'O', 0, 0, 'S'};
     for (int i = 0; i < 3; ++i) {

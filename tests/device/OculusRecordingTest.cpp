@@ -191,6 +191,26 @@ TEST_F(OculusRecordingTest, DamageCostsTheItemsThatItMeets) {
     }
 }
 
+TEST_F(OculusRecordingTest, AMessageOfACaptureThatIsNotWholeAtItsEndCostsNoOther) {
+    std::vector<char> all;
+    for (uint32_t number = 1; number <= 4; ++number) {
+        const Bytes bytes = pingBytes(number);
+        all.insert(all.end(), bytes.begin(), bytes.end());
+    }
+    const size_t size = pingBytes(1).size();
+    std::string diagnostic;
+    writeBytes(file_, all);
+    EXPECT_THAT(numbers(&diagnostic), ElementsAre(1, 2, 3, 4));
+    EXPECT_THAT(diagnostic, IsEmpty());
+    damage(size + 10, {0, 0, 1, 0});  // the size of the second, far below 2^28
+    EXPECT_THAT(numbers(&diagnostic), ElementsAre(1, 3, 4));
+    EXPECT_EQ(diagnostic, "the message at byte " + std::to_string(size) + " is longer than the file");
+    all.resize(3 * size + 20);
+    writeBytes(file_, all);
+    EXPECT_THAT(numbers(&diagnostic), ElementsAre(1, 2, 3));
+    EXPECT_THAT(diagnostic, HasSubstr("the message at byte " + std::to_string(3 * size)));
+}
+
 TEST_F(OculusRecordingTest, WhatIsNoRecordingIsRefused) {
     const auto messageOf = [](const auto& make) -> std::string {
         try {

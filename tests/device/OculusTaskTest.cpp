@@ -8,6 +8,7 @@
 #include "components/device/DeviceTask.hpp"
 #include "components/device/OculusTask.hpp"
 #include "components/framework/Deployment.hpp"
+#include "tests/support/Folder.hpp"
 #include "tests/support/OculusDriver.hpp"
 
 namespace insonify::device {
@@ -146,6 +147,27 @@ TEST_F(OculusTaskTest, TheDriverOfTheUniversityOfWashingtonReads32BitsOf512Beams
     EXPECT_EQ(ping.range_resolution, 0.01);
 }
 
+TEST_F(OculusTaskTest, WhatIsSentIsRecorded) {
+    const Folder folder;
+    start({"device.record=" + (folder / "dive.oculus").string()});
+    std::vector<Bytes> heard;
+    {
+        OculusDriver driver(port_);
+        driver.send(bytesOf({.rate = 2, .range = 10}));
+        for (int i = 0; i < 3; ++i) heard.push_back(bytesOf(driver.nextPing()));
+    }
+    stop_ = true;
+    thread_.join();
+    OculusPings pings(folder / "dive.oculus");
+    std::vector<Bytes> recorded;
+    while (const auto ping = pings.next()) {
+        EXPECT_GT(ping->time, 1.6e9) << "since the epoch";
+        recorded.push_back(bytesOf(ping->ping));
+    }
+    EXPECT_EQ(pings.diagnostic(), "");
+    for (const Bytes& ping : heard) EXPECT_THAT(recorded, ::testing::Contains(ping));
+}
+
 TEST_F(OculusTaskTest, AClientThatDoesNotReadHoldsUpNobody) {
     start();
     OculusDriver deaf(port_), driver(port_);
@@ -208,6 +230,8 @@ TEST_F(OculusTaskTest, WhatCannotBeIsRefusedWithTheKey) {
     for (const char* wrong : {"host", "192.168.2", "192.168.2.300", "0.0.0.0", "'::1'"})
         EXPECT_THAT(messageOf(std::string("device.device_address=") + wrong), HasSubstr("must be an IPv4 address"))
             << wrong;
+    EXPECT_THAT(messageOf("device.record=/nowhere/a.oculus"),
+                HasSubstr("properties.record: is /nowhere/a.oculus, which"));
     EXPECT_THAT(messageOf("device.model=m900"), HasSubstr("m900"));
     EXPECT_THAT(messageOf("device.gain_min_db=90"), HasSubstr("properties.gain_min_db: is above gain_max_db"));
     EXPECT_THAT(messageOf("device.port=70000"), HasSubstr("properties.port: is 70000"));

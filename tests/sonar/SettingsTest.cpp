@@ -53,6 +53,8 @@ TEST(SettingsTest, ThereIsAPingForEachAndNoneForASnapshot) {
     Asked<SonarTask> sonar(smallSonar());
     EXPECT_FALSE(sonar.ask({})) << "there is no scene yet";
     sonar.show(facingWall(5));
+    EXPECT_TRUE(sonar.next()) << "what was asked for has waited";
+    sonar.show(facingWall(5));
     EXPECT_FALSE(sonar.next());
     types::SonarSettings later;
     later.time = {8'000'000};
