@@ -151,10 +151,9 @@ void Simulation::addObjects(DeploymentSpec& spec, const std::vector<std::string>
             connection.path = "objects";
         }
     }
-    framework::TaskSpec feed;
+    framework::TaskSpec& feed = spec.tasks.emplace_back();
     feed.name = object_feed;
     feed.type = feed_type;
-    spec.tasks.insert(spec.tasks.begin(), feed);
 }
 
 void Simulation::connectReaders(bool truth) {
