@@ -102,7 +102,9 @@ void writeNpz(const fs::path& file, const Heard& heard, const std::string& meta)
 }
 
 void writeMcap(const fs::path& file, const Heard& heard) {
-    const auto log = log::createLog(file);
+    const fs::path bag = file.string() + ".bag", inside = bag / "sample.mcap";  // a description comes to lie beside it
+    fs::create_directory(bag);
+    const auto log = log::createLog(inside);
     const size_t ping = log->addStream<types::Sonar>("sonar.ping");
     const size_t truth = log->addStream<types::SonarTruth>("sonar.truth");
     const size_t pose = log->addStream<types::Pose>("vehicle.pose");
@@ -112,6 +114,8 @@ void writeMcap(const fs::path& file, const Heard& heard) {
     log->write(ping, at.time, heard.ping);
     log->write(truth, at.time, heard.truth);
     log->close();
+    fs::rename(inside, file);
+    fs::remove_all(bag);
 }
 
 }  // namespace

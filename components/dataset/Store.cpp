@@ -122,7 +122,7 @@ bool Store::has(uint64_t index) const {
 void Store::removeLeftovers() const {
     std::error_code ignored;
     for (const auto& entry : fs::directory_iterator(folder_))
-        if (entry.path().filename().string().starts_with(leftover)) fs::remove(entry.path(), ignored);
+        if (entry.path().filename().string().starts_with(leftover)) fs::remove_all(entry.path(), ignored);
 }
 
 }  // namespace insonify::dataset

@@ -10,9 +10,9 @@
 namespace insonify::dataset {
 namespace {
 
-constexpr double millionth = 1e-6;
+constexpr double millionths = 1e6;
 
-double inMillionths(double value) { return std::round(value / millionth) * millionth; }
+double inMillionths(double value) { return std::round(value * millionths) / millionths; }
 
 /** "x" must be [least, most], or be absent. */
 void checkSpan(const char* name, const auto& span, bool needed, types::Diagnostics& diagnostics) {
