@@ -71,21 +71,21 @@ std::string Store::stemOf(uint64_t index) const {
 }
 
 std::string Store::put(const std::string& name, const std::function<void(const fs::path&)>& writer) {
-    const fs::path passing = folder_ / passingName(name);
-    std::string sum;
-    try {
-        writer(passing);
-        sum = command::sha256OfFile(passing);
-    } catch (...) {
-        std::error_code ignored;
-        fs::remove(passing, ignored);
-        throw;
+    constexpr int most_tries = 5;
+    for (int attempt = 1;; ++attempt) {
+        const fs::path passing = folder_ / passingName(name);
+        try {
+            writer(passing);
+            const std::string sum = command::sha256OfFile(passing);
+            fs::rename(passing, folder_ / name);
+            return sum;
+        } catch (...) {
+            std::error_code ignored;
+            const bool was_taken = !fs::exists(passing, ignored);  // by who took it for a leftover
+            fs::remove(passing, ignored);
+            if (!was_taken || attempt == most_tries) throw;
+        }
     }
-    std::error_code error;
-    fs::rename(passing, folder_ / name, error);
-    if (error && !(error == std::errc::no_such_file_or_directory && fs::exists(folder_ / name)))
-        throw std::runtime_error("cannot write " + (folder_ / name).string() + ": " + error.message());
-    return sum;
 }
 
 std::string Store::putText(const std::string& name, const std::string& text) {

@@ -36,7 +36,7 @@ public:
     std::optional<Json> record(uint64_t index) const;
     /** Whether a sample has its record, and each file that this names is as it was written. */
     bool has(uint64_t index) const;
-    /** Removes what writers that were killed have left; only where all samples are there. */
+    /** Removes what writers that were killed have left, once all samples are there. Writers that live write again. */
     void removeLeftovers() const;
 
 private:

@@ -159,7 +159,7 @@ struct Setting {
 
 /** One of the scenes: a file, and properties that go with it. */
 struct SceneChoice {
-    std::string file;                                   ///< Empty: that of the deployment.
+    std::string file;                                  ///< Empty: that of the deployment.
     std::vector<std::pair<std::string, Written>> set;  ///< "task.property.path"
     int line = 0, column = 0;
 };

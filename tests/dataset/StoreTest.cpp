@@ -95,6 +95,17 @@ TEST_F(StoreTest, WhatKilledWritersLeftGoesInTheEnd) {
     EXPECT_EQ(std::distance(fs::directory_iterator(folder_.path()), {}), 2);
 }
 
+TEST_F(StoreTest, AWriterWhoseFileIsTakenForALeftoverWritesAgain) {
+    Store files = store();
+    int tries = 0;
+    files.put("x.png", [&](const fs::path& file) {
+        std::ofstream(file) << "whole";
+        if (++tries == 1) files.removeLeftovers();
+    });
+    EXPECT_EQ(tries, 2);
+    EXPECT_EQ(bytesOf(folder_ / "x.png").size(), 5u);
+}
+
 TEST_F(StoreTest, SeveralMayWriteTheSameSample) {
     std::vector<std::jthread> writers;
     for (int i = 0; i < 4; ++i)
