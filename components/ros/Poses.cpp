@@ -72,6 +72,10 @@ void readPose(const Header& header, const Pose& message, Axes axes, types::Pose&
 glm::dvec3 worldFromRock(WorldFrame frame, glm::dvec3 v) { return Axes{frame}.worldFromRock(v); }
 glm::dvec3 rockFromWorld(WorldFrame frame, glm::dvec3 v) { return Axes{frame}.rockFromWorld(v); }
 
+glm::dvec3 turnedBody(WorldFrame frame, glm::dvec3 v) { return Axes{frame}.body(v); }
+glm::dquat orientationFromRock(WorldFrame frame, glm::dquat q) { return Axes{frame}.orientationFromRock(q); }
+glm::dquat rockFromOrientation(WorldFrame frame, glm::dquat q) { return Axes{frame}.rockFromOrientation(q); }
+
 void convert(const types::Pose& pose, WorldFrame frame, PoseStamped& message) {
     fillPose(pose, {frame}, message.header, message.pose);
 }
