@@ -7,6 +7,7 @@
 All workers see the same DIR. A shard whose worker dies goes to another one; called again, it makes what is missing. A line
 is printed for each shard that is done; the exit code is 1 where one has failed. Needs PyPI's ray."""
 import argparse
+import os
 import subprocess
 import sys
 
@@ -34,7 +35,9 @@ def main():
     if args.address:
         ray.init(address=args.address, log_to_driver=False)
     else:
-        ray.init(num_cpus=args.workers, include_dashboard=False, log_to_driver=False)
+        os.environ.setdefault("RAY_USAGE_STATS_ENABLED", "0")  # it tells its makers of its use otherwise
+        # Nothing but exit codes and texts is kept in memory.
+        ray.init(num_cpus=args.workers, include_dashboard=False, log_to_driver=False, object_store_memory=100_000_000)
     # One shard a processor at a time; a shard whose worker dies goes to another, at most four times.
     task = ray.remote(num_cpus=1, num_gpus=args.gpus, max_retries=4)(make)
     waiting = [task.remote(args.command, index, args.shards) for index in range(args.shards)]

@@ -61,14 +61,6 @@ std::string damageOf(const fs::path& folder, const Json& manifest) {
     return {};
 }
 
-/** A lock that ends with its process; -1: another holds it, or the file system knows no locks. */
-int lockFolder(const fs::path& folder) {
-    const int opened = open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
-    if (opened >= 0 && flock(opened, LOCK_EX | LOCK_NB) == 0) return opened;
-    if (opened >= 0) close(opened);
-    return -1;
-}
-
 /** The first key whose values differ, with both; empty: none. */
 std::string differenceOf(const Json& there, const Json& asked) {
     for (const auto& [key, value] : asked.items()) {
@@ -87,6 +79,15 @@ std::string countOf(const fs::path& folder) {
 
 }  // namespace
 
+ShardFolder::Lock::Lock(const fs::path& folder, bool waits)
+    : folder_(open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC)) {
+    holds_ = folder_ >= 0 && flock(folder_, LOCK_EX | (waits ? 0 : LOCK_NB)) == 0;
+}
+
+ShardFolder::Lock::~Lock() {
+    if (folder_ >= 0) close(folder_);
+}
+
 ShardFolder::ShardFolder(const fs::path& shared, const command::Shard& shard, Json run)
     : shared_(shared), path_(shared / ("shard_" + shard.fileText())), shard_(shard), run_(std::move(run)) {
     std::error_code failed;
@@ -99,7 +100,6 @@ ShardFolder::ShardFolder(const fs::path& shared, const command::Shard& shard, Js
 ShardFolder::~ShardFolder() {
     std::error_code ignored;
     if (!part_.empty()) fs::remove_all(part_, ignored);
-    if (lock_ >= 0) close(lock_);
 }
 
 void ShardFolder::refuseOthers() const {
@@ -136,21 +136,21 @@ void ShardFolder::removeLeft() const {
     const std::string beginning = "." + path_.filename().string() + ".";
     for (const auto& entry : fs::directory_iterator(shared_)) {
         if (!entry.path().filename().string().starts_with(beginning)) continue;
-        const int lock = lockFolder(entry.path());
-        if (lock < 0) continue;  // somebody is at it
+        const Lock lock(entry.path(), false);
+        if (!lock.holds()) continue;  // somebody is at it
         std::error_code ignored;
         fs::remove_all(entry.path(), ignored);
-        close(lock);
     }
 }
 
 const fs::path& ShardFolder::begin() {
+    const Lock together(shared_, true);  // nobody takes a folder that is not locked yet for one that was left
     removeLeft();
     std::string name = shared_ / ("." + path_.filename().string() + ".XXXXXX");
     if (!mkdtemp(name.data())) throw types::ConfigError(shared_, "--out", "cannot be written to");
     part_ = name;
     fs::permissions(part_, fs::status(shared_).permissions());
-    lock_ = lockFolder(part_);
+    lock_.emplace(part_, false);
     return part_;
 }
 

@@ -35,13 +35,27 @@ public:
     command::Json finish(const command::Json& more);
 
 private:
+    /** Of a folder, until it goes or its process ends. */
+    class Lock {
+    public:
+        Lock(const std::filesystem::path& folder, bool waits);
+        ~Lock();
+        Lock(const Lock&) = delete;
+        Lock& operator=(const Lock&) = delete;
+        bool holds() const { return holds_; }  ///< False: another has it, or the file system knows no locks.
+
+    private:
+        int folder_;
+        bool holds_;
+    };
+
     void refuseOthers() const;
     void removeLeft() const;
 
     std::filesystem::path shared_, path_, part_;
     command::Shard shard_;
     command::Json run_;
-    int lock_ = -1;
+    std::optional<Lock> lock_;  ///< Of `part_`.
 };
 
 }  // namespace insonify::deployer

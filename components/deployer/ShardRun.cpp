@@ -74,6 +74,18 @@ framework::RunLimits::Shard pingsOf(const command::Shard& shard, uint64_t pings,
     return made;
 }
 
+/** The index beside a pocolog file has the time at which that was written, the only thing that differs from machine to
+ *  machine; whoever needs one makes it. */
+void removeIndices(const std::filesystem::path& folder) {
+    std::vector<std::filesystem::path> indices;
+    for (const auto& entry : std::filesystem::recursive_directory_iterator(folder)) {
+        std::filesystem::path log = entry.path();
+        if (log.extension() == ".idx" && std::filesystem::exists(log.replace_extension(".log")))
+            indices.push_back(entry.path());
+    }
+    for (const auto& index : indices) std::filesystem::remove(index);
+}
+
 void tell(const RunOptions& options, const Json& manifest, const std::filesystem::path& folder, const char* how) {
     if (options.quiet) return;
     fmt::print("shard {}: {} pings from {} on, of {}; {} files {} {}\n", options.shard->text(),
@@ -113,6 +125,7 @@ int runShard(RunOptions options) {
     const int code = runDeployment(spec, options);
     if (code != 0) return code;
     if (stopOnSignals()) throw std::runtime_error("interrupted; nothing is kept of the shard");
+    removeIndices(options.out);
     const auto block = options.shard->block(pings);
     const Json more = {{"first_ping", made.first}, {"pings", block.last - block.first}, {"pings_of_run", pings}};
     tell(options, folder.finish(more), folder.path(), "in");

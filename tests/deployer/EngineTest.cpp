@@ -63,7 +63,11 @@ protected:
                          << " is missing; scripts/setup installs it";
     }
     std::vector<std::string> byWorkers(const std::string& program, int workers) const {
-        std::vector<std::string> words = {insonify::python(),
+        // Ray leaves its session and a token behind otherwise.
+        std::vector<std::string> words = {"env",
+                                          "RAY_TMPDIR=" + folder_.path().string(),
+                                          "RAY_AUTH_MODE=disabled",
+                                          insonify::python(),
                                           sourceFile(std::string("scripts/dataset_") + GetParam().name + ".py"),
                                           "--shards",
                                           std::to_string(shard_count),

@@ -88,7 +88,9 @@ public:
         for (const fs::path& shard : shards()) {
             words.push_back(shard / log);
             for (const auto& [name, bytes] : filesIn(shard))
-                if (name.ends_with(".png")) EXPECT_TRUE(all.emplace(name, bytes).second) << name << " is there twice";
+                if (name.ends_with(".png")) {
+                    EXPECT_TRUE(all.emplace(name, bytes).second) << name << " is there twice";
+                }
         }
         words.insert(words.end(), {"--to", "joined" + log.substr(4)});
         const Outcome outcome = callInsonify(*this, words);
