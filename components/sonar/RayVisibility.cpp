@@ -9,11 +9,13 @@
 
 #include "components/sonar/RayPaths.hpp"
 #include "components/sonar/SceneTrees.hpp"
+#include "types/Extent.hpp"
 
 namespace insonify::sonar {
 namespace {
 
-/** From here on the tree is built anew about the sonar: float has 0.06 mm there [m]. */
+/** So far from the middle of the scene, and then from where it was built, the tree is built anew about the sonar: float
+ *  has 0.06 mm there [m]. */
 constexpr double farthest_from_origin = 1000;
 /** Triangles that are copied to where they stand, once for each object; of larger scenes, meshes that stand in several
  *  places are instances of one tree, through which rays take longer [1]. */
@@ -199,6 +201,8 @@ bool RayVisibility::Mover::mayMeet(const TileRays& rays) const {
 
 RayVisibility::RayVisibility(const types::Geometry& geometry)
     : geometry_(geometry), moves_(geometry.objects.size()), trees_(std::make_unique<SceneTrees>(geometry)) {
+    if (const types::Extent extent = types::extentOf(geometry); !extent.isEmpty())
+        middle_ = (extent.low + extent.high) / 2.0;
     listCommands();
 }
 
@@ -233,7 +237,8 @@ void RayVisibility::place(const types::Snapshot& snapshot) {
 
 void RayVisibility::build(const types::Snapshot& snapshot) {
     for (const types::MovedObject& moved : snapshot.moved) moves_[moved.object] = true;
-    origin_ = snapshot.sonar.position;
+    const bool in_scene = glm::distance(snapshot.sonar.position, middle_) <= farthest_from_origin;
+    origin_ = in_scene ? middle_ : snapshot.sonar.position;
     trees_->clear();
     movers_.clear();
     std::vector<size_t> uses(geometry_.meshes.size());

@@ -92,6 +92,7 @@ private:
     std::vector<bool> moves_;              ///< Whether an object has ever moved.
     std::unique_ptr<SceneTrees> trees_;
     std::vector<Mover> movers_;
+    glm::dvec3 middle_{0};        ///< Of the box about the geometry: an origin that no way there has a part in [m].
     glm::dvec3 origin_{0};        ///< Of the tree of what does not move, in the world [m].
     glm::mat3 world_from_sonar_;  ///< [1]
     glm::vec3 place_{0};          ///< Of the sonar about the origin [m].

@@ -197,6 +197,18 @@ TEST(VisibilityTest, TheSameBytesForAnyNumberOfThreads) {
     }
 }
 
+TEST(VisibilityTest, WhereASonarHasBeenBeforeHasNoPartInItsPing) {
+    const types::GeometryPtr geometry = plainSurfaces();
+    const types::Snapshot last = test::snapshotOf(geometry, {0.3, 0.2, 0.1}, 0.1, 0.15, 0.05);
+    SonarRenderer renderer(fan(Visibility::Cpu), geometry);
+    types::Sonar ping;
+    for (const glm::dvec3& place : {glm::dvec3(-7.123, 3.21, 0.4), glm::dvec3(400, 1, 0)})
+        renderer.render(test::snapshotOf(geometry, place, 0.1, 0.15, 0.05), ping);
+    renderer.render(last, ping);
+    EXPECT_GT(std::accumulate(ping.bins.begin(), ping.bins.end(), 0.0), 0);
+    EXPECT_EQ(ping.bins, pingOf(fan(Visibility::Cpu), last).bins);
+}
+
 TEST(VisibilityTest, AnObjectMovesFromPingToPing) {
     const types::Snapshot still = test::snapshotOf(plainSurfaces(), {0, 0, 0}, 0.1, 0.15, 0.05), moved = movedScene();
     SonarRenderer renderer(fan(Visibility::Cpu), still.geometry);
