@@ -5,6 +5,8 @@
 #endif
 #include "components/device/DeviceTask.hpp"
 #include "components/logger/LoggerTask.hpp"
+#include "components/mavlink/PoseTask.hpp"
+#include "components/nav/ImuTask.hpp"
 #include "components/noise/NoiseTask.hpp"
 #include "components/output/PictureTask.hpp"
 #include "components/pose/TrajectoryTask.hpp"
@@ -21,6 +23,8 @@ namespace insonify::deployer {
 framework::Registry builtInTasks() {
     framework::Registry registry;
     pose::registerTasks(registry);
+    mavlink::registerTasks(registry);
+    nav::registerTasks(registry);
     scene::registerTasks(registry);
     sonar::registerTasks(registry);
     noise::registerTasks(registry);

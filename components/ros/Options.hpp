@@ -4,6 +4,7 @@
 #include <string_view>
 
 #include "types/Describe.hpp"
+#include "types/WorldFrame.hpp"
 
 namespace insonify::ros {
 
@@ -21,12 +22,7 @@ enum class SensorFrame { ZForward, XForward };
 /** What the bins of a ping hold: linear intensities, or levels in dB. */
 enum class BinScale { Linear, Decibel };
 
-/** Axes of poses. Ours are Rock's: world x north, y west, z up; body x forward, y left, z up. */
-enum class WorldFrame {
-    AsIs,  ///< Rock's.
-    Enu,   ///< World x east, y north, z up; body as in Rock (REP 103).
-    Ned    ///< World x north, y east, z down; body x forward, y right, z down.
-};
+using types::WorldFrame;
 
 /** How a ping becomes messages. The defaults lose nothing of what it holds in its bins, in logs and on the wire alike.
  *  A level is 10 log10 of a bin [dB]. */
@@ -91,8 +87,4 @@ struct insonify::types::EnumNames<insonify::ros::SensorFrame> {
 template <>
 struct insonify::types::EnumNames<insonify::ros::BinScale> {
     static constexpr std::string_view names[] = {"linear", "decibel"};
-};
-template <>
-struct insonify::types::EnumNames<insonify::ros::WorldFrame> {
-    static constexpr std::string_view names[] = {"as_is", "enu", "ned"};
 };

@@ -4,45 +4,13 @@
 #include <numbers>
 
 #include "components/ros/Times.hpp"
+#include "components/ros/Unknowns.hpp"
 
 namespace insonify::ros {
 
 namespace {
 
-/** From Rock's axes to those of a frame, and back: rotations that only exchange and negate axes. */
-struct Axes {
-    WorldFrame frame;
-
-    glm::dvec3 worldFromRock(glm::dvec3 v) const {
-        if (frame == WorldFrame::Enu) return {-v.y, v.x, v.z};
-        return body(v);
-    }
-    glm::dvec3 rockFromWorld(glm::dvec3 v) const {
-        if (frame == WorldFrame::Enu) return {v.y, -v.x, v.z};
-        return body(v);
-    }
-    /** Both ways. */
-    glm::dvec3 body(glm::dvec3 v) const { return frame == WorldFrame::Ned ? glm::dvec3{v.x, -v.y, -v.z} : v; }
-    glm::dquat orientationFromRock(glm::dquat q) const { return turned(q, 1); }
-    glm::dquat rockFromOrientation(glm::dquat q) const { return turned(q, -1); }
-
-    /** Covariances, whose columns are vectors: C becomes A C A^T. */
-    template <class Turn>
-    static glm::dmat3 both(const glm::dmat3& covariance, Turn&& turn) {
-        const auto columns = [&](const glm::dmat3& m) { return glm::dmat3(turn(m[0]), turn(m[1]), turn(m[2])); };
-        return columns(glm::transpose(columns(covariance)));
-    }
-
-private:
-    glm::dquat turned(glm::dquat q, int way) const {
-        constexpr double half = std::numbers::sqrt2 / 2;
-        if (frame == WorldFrame::Enu) return glm::dquat(half, 0, 0, way * half) * q;
-        return frame == WorldFrame::Ned ? glm::dquat(q.w, q.x, -q.y, -q.z) : q;
-    }
-};
-
-bool isUnknown(glm::dvec3 v) { return std::isnan(v.x) || std::isnan(v.y) || std::isnan(v.z); }
-bool isUnknown(const glm::dmat3& m) { return isUnknown(m[0]) || isUnknown(m[1]) || isUnknown(m[2]); }
+using types::Axes;
 
 template <class Xyz>
 Xyz known(glm::dvec3 v) {
@@ -127,13 +95,12 @@ void convert(const types::Pose& pose, WorldFrame frame, Odometry& message) {
     const auto world = [&](glm::dvec3 v) { return axes.worldFromRock(v); };
     const auto to_body = [&](glm::dvec3 v) { return axes.body(body_from_rock * v); };
     const auto to_world = [&](glm::dvec3 v) { return axes.worldFromRock(rock_from_body * v); };
-    setBlock(0, true, Axes::both(pose.cov_position, world), message.pose.covariance);
-    setBlock(1, true, Axes::both(pose.cov_orientation, to_world), message.pose.covariance);
+    setBlock(0, true, both(pose.cov_position, world), message.pose.covariance);
+    setBlock(1, true, both(pose.cov_orientation, to_world), message.pose.covariance);
     message.twist.twist.linear = known<Vector3>(to_body(pose.velocity));
     message.twist.twist.angular = known<Vector3>(body(pose.angular_velocity));
-    setBlock(0, !isUnknown(pose.velocity), Axes::both(pose.cov_velocity, to_body), message.twist.covariance);
-    setBlock(1, !isUnknown(pose.angular_velocity), Axes::both(pose.cov_angular_velocity, body),
-             message.twist.covariance);
+    setBlock(0, !isUnknown(pose.velocity), both(pose.cov_velocity, to_body), message.twist.covariance);
+    setBlock(1, !isUnknown(pose.angular_velocity), both(pose.cov_angular_velocity, body), message.twist.covariance);
 }
 
 void convert(const PoseStamped& message, WorldFrame frame, types::Pose& pose) {
@@ -150,12 +117,12 @@ void convert(const Odometry& message, WorldFrame frame, types::Pose& pose) {
     const auto from_body = [&](glm::dvec3 v) { return rock_from_body * axes.body(v); };
     const auto from_world = [&](glm::dvec3 v) { return body_from_rock * axes.rockFromWorld(v); };
     const Covariance &of_pose = message.pose.covariance, &of_twist = message.twist.covariance;
-    pose.cov_position = Axes::both(blockOf(0, of_pose), [&](glm::dvec3 v) { return axes.rockFromWorld(v); });
-    pose.cov_orientation = Axes::both(blockOf(1, of_pose), from_world);
+    pose.cov_position = both(blockOf(0, of_pose), [&](glm::dvec3 v) { return axes.rockFromWorld(v); });
+    pose.cov_orientation = both(blockOf(1, of_pose), from_world);
     pose.velocity = from_body(valueOf(0, message.twist.twist.linear, of_twist));
     pose.angular_velocity = body(valueOf(1, message.twist.twist.angular, of_twist));
-    pose.cov_velocity = Axes::both(blockOf(0, of_twist), from_body);
-    pose.cov_angular_velocity = Axes::both(blockOf(1, of_twist), body);
+    pose.cov_velocity = both(blockOf(0, of_twist), from_body);
+    pose.cov_angular_velocity = both(blockOf(1, of_twist), body);
 }
 
 }  // namespace insonify::ros

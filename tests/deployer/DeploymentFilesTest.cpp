@@ -1,5 +1,6 @@
 // Every file in deploy/ runs. Those of ROS 2 wait for others: see tests/dds/Ros2RunTest.cpp. Those of devices wait for
-// drivers: see tests/device and tests/deployer/PingDriverTest.cpp.
+// drivers: see tests/device and tests/deployer/PingDriverTest.cpp. Those of MAVLink wait for a vehicle: see
+// tests/mavlink/MavlinkRunTest.cpp.
 #include <gmock/gmock.h>
 
 #include "tests/deployer/Command.hpp"
@@ -14,7 +15,8 @@ std::vector<std::string> deployments() {
     std::vector<std::string> names;
     for (const auto& entry : fs::directory_iterator(deploy))
         if (const std::string name = entry.path().stem(); entry.path().extension() == ".yml" && name != "replay" &&
-                                                          !name.starts_with("ros2_") && !name.starts_with("hil_"))
+                                                          !name.starts_with("ros2_") && !name.starts_with("hil_") &&
+                                                          !name.starts_with("mavlink_"))
             names.push_back(name);
     std::sort(names.begin(), names.end());
     return names;

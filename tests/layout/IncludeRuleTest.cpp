@@ -39,6 +39,7 @@ std::set<std::string> neighboursOf(const Source& source) {
     if (folder == "logger" || folder == "replay") allowed.insert("log");
     if (folder == "dds") allowed.insert("ros");
     if (folder == "log") allowed.insert("ros");
+    if (folder == "mavlink") allowed.insert("device");  // its network
     if (folder == "viewer") allowed.insert("ros");
     return allowed;
 }

@@ -1,0 +1,85 @@
+#pragma once
+#include <glm/vec3.hpp>
+#include <optional>
+#include <set>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "types/Describe.hpp"
+#include "types/Diagnostic.hpp"
+
+namespace insonify::mavlink {
+
+/** Which messages make a pose. */
+enum class Source {
+    Estimate,  ///< ATTITUDE_QUATERNION and LOCAL_POSITION_NED: what an autopilot takes its own pose for.
+    Vision     ///< VISION_POSITION_ESTIMATE: what something beside it does.
+};
+
+/** One body's messages as one port's poses. */
+struct BodyConfig {
+    std::string port = "pose";
+    Source source = Source::Estimate;
+    int system_id = 1;
+    std::optional<int> component_id = {};
+
+    template <class Self, class V>
+    static void describe(Self& self, V& visit) {
+        using types::Field;
+        visit(Field{"port", "", "output port that connections lead from"}, self.port);
+        visit(Field{"source", "",
+                    "estimate: ATTITUDE_QUATERNION with LOCAL_POSITION_NED, of an autopilot; vision: "
+                    "VISION_POSITION_ESTIMATE"},
+              self.source);
+        visit(Field{"system_id", "", "of the vehicle", 1, 255}, self.system_id);
+        visit(Field{"component_id", "", "of who speaks for it; absent: any, one at a time", 1, 255}, self.component_id);
+    }
+};
+
+/** How a vehicle is asked for its messages. */
+struct RequestConfig {
+    double rate = 20;
+
+    template <class Self, class V>
+    static void describe(Self& self, V& visit) {
+        visit(types::Field{"rate", "Hz", "of each message", 0.1, 1000}, self.rate);
+    }
+};
+
+struct PoseConfig {
+    std::string address = "127.0.0.1";
+    int port = 14550;
+    std::vector<BodyConfig> bodies;
+    glm::dvec3 origin{0};
+    std::optional<RequestConfig> request = {};
+
+    template <class Self, class V>
+    static void describe(Self& self, V& visit) {
+        using types::Field;
+        visit(Field{"address", "", "numeric address to listen on; 0.0.0.0: every network of this machine"},
+              self.address);
+        visit(Field{"port", "1", "of UDP; 0: any that is free, told in a notice", 0, 65535}, self.port);
+        visit(Field{"bodies", "", "what is read"}, self.bodies);
+        visit(Field{"origin", "m", "where the messages' origin lies in the world: x north, y west, z up"}, self.origin);
+        visit(Field{"request", "",
+                    "vehicles that are heard are asked for what they do not send, by SET_MESSAGE_INTERVAL; absent: "
+                    "nothing is ever sent"},
+              self.request);
+    }
+    void check(types::Diagnostics& diagnostics) const {
+        if (bodies.empty()) diagnostics.push_back({"bodies", "is empty; must hold a body"});
+        std::set<std::string> ports;
+        for (size_t i = 0; i < bodies.size(); ++i)
+            if (!ports.insert(bodies[i].port).second)
+                diagnostics.push_back(
+                    {"bodies[" + std::to_string(i) + "].port", "is " + bodies[i].port + " a second time"});
+    }
+};
+
+}  // namespace insonify::mavlink
+
+template <>
+struct insonify::types::EnumNames<insonify::mavlink::Source> {
+    static constexpr std::string_view names[] = {"estimate", "vision"};
+};

@@ -1,0 +1,214 @@
+// What messages say of a body: axes, times, and what is refused.
+#include <gmock/gmock.h>
+
+#include <numbers>
+
+#include "components/mavlink/Body.hpp"
+#include "types/Mount.hpp"
+
+namespace insonify::mavlink {
+namespace {
+
+using testing::HasSubstr;
+using types::Time;
+
+constexpr double pi = std::numbers::pi;
+constexpr float unknown = std::numeric_limits<float>::quiet_NaN();
+
+/** A turn about an axis of the body in MAVLink's axes: forward, right, down. */
+AttitudeQuaternion turned(double radians, glm::vec3 axis, uint32_t ms = 0) {
+    const auto s = static_cast<float>(std::sin(radians / 2));
+    return {.time_boot_ms = ms,
+            .w = static_cast<float>(std::cos(radians / 2)),
+            .x = s * axis.x,
+            .y = s * axis.y,
+            .z = s * axis.z};
+}
+
+void expectNear(glm::dvec3 a, glm::dvec3 b) { EXPECT_LT(glm::distance(a, b), 1e-6) << a.x << " " << a.y << " " << a.z; }
+
+class BodyTest : public testing::Test {
+protected:
+    template <class Message>
+    Body::Taken take(const Message& message, double seconds, uint8_t component = 1, uint64_t way = 1) {
+        return body.take(frameOf(message, 1, component), way, Time::fromSeconds(seconds));
+    }
+    Body body{{}, {0, 0, 0}};
+    Body eye{{.source = Source::Vision}, {100, 0, 0}};
+
+    Body::Taken see(const VisionPositionEstimate& estimate, double seconds) {
+        return eye.take(frameOf(estimate, 1, 197), 1, Time::fromSeconds(seconds));
+    }
+};
+
+TEST_F(BodyTest, AVehicleThatIsLevelAndLooksNorthIsNotTurned) {
+    const types::Pose pose = poseOf(AttitudeQuaternion{}, LocalPositionNed{.x = 1, .y = 2, .z = 3});
+    expectNear(pose.position, {1, -2, -3});  // north, west, up
+    EXPECT_EQ(pose.orientation, glm::dquat(1, 0, 0, 0));
+}
+
+TEST_F(BodyTest, EastIsToStarboardOfNorth) {
+    const types::Pose pose = poseOf(turned(pi / 2, {0, 0, 1}), {});
+    expectNear(pose.orientation * glm::dvec3(1, 0, 0), {0, -1, 0});  // ahead
+    expectNear(pose.orientation * glm::dvec3(0, 1, 0), {1, 0, 0});   // to port
+    expectNear(pose.orientation * glm::dvec3(0, 0, 1), {0, 0, 1});
+}
+
+TEST_F(BodyTest, ThirtyDegreesOfPitchRaiseTheBow) {
+    const types::Pose pose = poseOf(turned(pi / 6, {0, 1, 0}), {});
+    expectNear(pose.orientation * glm::dvec3(1, 0, 0), {std::cos(pi / 6), 0, 0.5});
+    expectNear(pose.orientation * glm::dvec3(0, 1, 0), {0, 1, 0});
+}
+
+TEST_F(BodyTest, ThirtyDegreesOfRollLowerStarboard) {
+    const types::Pose pose = poseOf(turned(pi / 6, {1, 0, 0}), {});
+    expectNear(pose.orientation * glm::dvec3(0, 1, 0), {0, std::cos(pi / 6), 0.5});
+    expectNear(pose.orientation * glm::dvec3(1, 0, 0), {1, 0, 0});
+}
+
+TEST_F(BodyTest, AnglesOfAVisionEstimateAreOursWithPitchAndYawNegated) {
+    const types::Pose pose =
+        poseOf(VisionPositionEstimate{.x = 1, .y = 2, .z = 3, .roll = 0.1f, .pitch = 0.2f, .yaw = 2});
+    const types::Mount same{.roll_deg = 0.1 * 180 / pi, .pitch_deg = -0.2 * 180 / pi, .yaw_deg = -2 * 180 / pi};
+    EXPECT_GT(std::abs(glm::dot(pose.orientation, same.orientation())), 1 - 1e-12);
+    expectNear(pose.position, {1, -2, -3});
+}
+
+TEST_F(BodyTest, VelocitiesAreThoseOfTheWorldAndRatesThoseOfTheBody) {
+    AttitudeQuaternion attitude = turned(pi / 2, {0, 0, 1});
+    attitude.roll_speed = 0.1f;
+    attitude.pitch_speed = 0.2f;
+    attitude.yaw_speed = 0.3f;
+    const types::Pose pose = poseOf(attitude, LocalPositionNed{.vx = 1, .vy = 2, .vz = 3});
+    expectNear(pose.velocity, {1, -2, -3});
+    expectNear(pose.angular_velocity, {0.1, -0.2, -0.3});
+}
+
+TEST_F(BodyTest, APositionIsCarriedOnToTheInstantOfTheAttitude) {
+    take(LocalPositionNed{.time_boot_ms = 1000, .x = 5, .vx = 2}, 50);
+    const auto [pose, diagnostic] = take(AttitudeQuaternion{.time_boot_ms = 1100}, 50.1);
+    ASSERT_TRUE(pose) << diagnostic;
+    expectNear(pose->position, {5.2, 0, 0});
+    EXPECT_EQ(pose->time, Time::fromSeconds(50.1));
+    take(LocalPositionNed{.time_boot_ms = 1200, .x = 5, .vx = unknown}, 50.2);
+    expectNear(take(AttitudeQuaternion{.time_boot_ms = 1150}, 50.2).pose.value().position, {5, 0, 0});
+}
+
+TEST_F(BodyTest, AnAttitudeWithoutAPositionIsNoPose) {
+    EXPECT_FALSE(take(AttitudeQuaternion{.time_boot_ms = 1000}, 50).pose);
+    take(LocalPositionNed{.time_boot_ms = 1000}, 50);
+    EXPECT_TRUE(take(AttitudeQuaternion{.time_boot_ms = 1500}, 50.5).pose);
+    EXPECT_FALSE(take(AttitudeQuaternion{.time_boot_ms = 1501}, 50.501).pose) << "of more than half a second ago";
+}
+
+TEST_F(BodyTest, AHalfThatStaysAwayIsToldOnceThatHasGoneOnForAWhile) {
+    std::string told;
+    for (int i = 0; i < 30; ++i) {
+        const auto taken = take(AttitudeQuaternion{.time_boot_ms = static_cast<uint32_t>(100 * i)}, 50 + 0.1 * i);
+        EXPECT_EQ(taken.diagnostic.empty(), i < 20) << i;
+        told = taken.diagnostic;
+    }
+    EXPECT_EQ(told, "ATTITUDE_QUATERNION comes without LOCAL_POSITION_NED: the vehicle is to stream both");
+    EXPECT_THAT(body.missing(Time::fromSeconds(53)), testing::ElementsAre(LocalPositionNed::kind.message));
+}
+
+TEST_F(BodyTest, PositionsWithoutAnAttitudeAreToldTheSame) {
+    std::string told;
+    for (int i = 0; i < 50; ++i)
+        told = take(LocalPositionNed{.time_boot_ms = static_cast<uint32_t>(100 * i)}, 50 + 0.1 * i).diagnostic;
+    EXPECT_EQ(told, "LOCAL_POSITION_NED comes without ATTITUDE_QUATERNION: the vehicle is to stream both");
+    EXPECT_THAT(body.missing(Time::fromSeconds(55)), testing::ElementsAre(AttitudeQuaternion::kind.message));
+}
+
+TEST_F(BodyTest, QuaternionsAreMadeOfUnitLengthAndThoseWithoutALengthDropped) {
+    take(LocalPositionNed{}, 50);
+    const auto taken = take(AttitudeQuaternion{.time_boot_ms = 1, .w = 3, .z = 3}, 50);
+    ASSERT_TRUE(taken.pose);
+    EXPECT_DOUBLE_EQ(glm::length(taken.pose->orientation), 1);
+    expectNear(taken.pose->orientation * glm::dvec3(1, 0, 0), {0, -1, 0});
+    for (const AttitudeQuaternion& bad :
+         {AttitudeQuaternion{.w = 0}, AttitudeQuaternion{.w = unknown}, AttitudeQuaternion{.x = unknown},
+          AttitudeQuaternion{.z = std::numeric_limits<float>::infinity()}})
+        EXPECT_THAT(take(bad, 50.1).diagnostic, HasSubstr("not finite"));
+}
+
+TEST_F(BodyTest, PositionsThatAreNotFiniteAreDroppedAndTheOneBeforeHolds) {
+    take(LocalPositionNed{.x = 7}, 50);
+    EXPECT_THAT(take(LocalPositionNed{.time_boot_ms = 1, .y = unknown}, 50).diagnostic, HasSubstr("not finite"));
+    expectNear(take(AttitudeQuaternion{.time_boot_ms = 2}, 50).pose.value().position, {7, 0, 0});
+    EXPECT_THAT(see({.usec = 1, .yaw = unknown}, 50).diagnostic, HasSubstr("not finite"));
+}
+
+TEST_F(BodyTest, AJumpIsTakenAsItIs) {
+    take(LocalPositionNed{.time_boot_ms = 1000, .x = 7}, 50);
+    take(AttitudeQuaternion{.time_boot_ms = 1000}, 50);
+    take(LocalPositionNed{.time_boot_ms = 1100, .x = -900}, 50.1);  // an estimator that was reset
+    expectNear(take(AttitudeQuaternion{.time_boot_ms = 1100}, 50.1).pose.value().position, {-900, 0, 0});
+}
+
+TEST_F(BodyTest, MillisecondsGoOnWhenTheyBeginAgain) {
+    Time last;
+    for (int i = -5; i < 5; ++i) {  // 100 ms apart, over 2^32
+        const auto ms = static_cast<uint32_t>(i * 100);
+        take(LocalPositionNed{.time_boot_ms = ms - 50, .x = 1, .vx = 1}, 50 + 0.1 * i);
+        const auto [pose, diagnostic] = take(AttitudeQuaternion{.time_boot_ms = ms}, 50 + 0.1 * i);
+        ASSERT_TRUE(pose) << i << diagnostic;
+        EXPECT_EQ(pose->time, Time::fromSeconds(50 + 0.1 * i)) << i;
+        expectNear(pose->position, {1.05, 0, 0});
+    }
+}
+
+TEST_F(BodyTest, StampsThatGoBackAreDroppedUnlessTheVehicleHasBootedAgain) {
+    take(LocalPositionNed{.time_boot_ms = 600'000, .x = 7}, 50);
+    take(AttitudeQuaternion{.time_boot_ms = 600'000}, 50);
+    EXPECT_THAT(take(AttitudeQuaternion{.time_boot_ms = 599'900}, 50.1).diagnostic, HasSubstr("lies before"));
+    EXPECT_THAT(take(LocalPositionNed{.time_boot_ms = 599'900}, 50.1).diagnostic, HasSubstr("lies before"));
+    EXPECT_FALSE(take(AttitudeQuaternion{.time_boot_ms = 100}, 50.2).pose) << "with a position of another life";
+    take(LocalPositionNed{.time_boot_ms = 200, .x = 1}, 50.3);
+    expectNear(take(AttitudeQuaternion{.time_boot_ms = 200}, 50.3).pose.value().position, {1, 0, 0});
+}
+
+TEST_F(BodyTest, WhatComesTwiceIsOnePose) {
+    take(LocalPositionNed{.time_boot_ms = 1000}, 50);
+    EXPECT_TRUE(take(AttitudeQuaternion{.time_boot_ms = 1000}, 50).pose);
+    const auto again = take(AttitudeQuaternion{.time_boot_ms = 1000}, 50.001);
+    EXPECT_FALSE(again.pose);
+    EXPECT_EQ(again.diagnostic, "");
+}
+
+TEST_F(BodyTest, OfTwoSendersOneCountsUntilItIsSilent) {
+    take(LocalPositionNed{.time_boot_ms = 1000, .x = 1}, 50);
+    EXPECT_TRUE(take(AttitudeQuaternion{.time_boot_ms = 1000}, 50).pose);
+    for (const auto& [component, way] : {std::pair{2, 1}, {1, 2}}) {
+        const auto other =
+            take(AttitudeQuaternion{.time_boot_ms = 1010}, 50.5, static_cast<uint8_t>(component), uint64_t(way));
+        EXPECT_FALSE(other.pose);
+        EXPECT_EQ(other.diagnostic, "of another sender while the first goes on");
+    }
+    take(LocalPositionNed{.time_boot_ms = 77, .x = 2}, 51.5, 2);
+    expectNear(take(AttitudeQuaternion{.time_boot_ms = 77}, 51.5, 2).pose.value().position, {2, 0, 0});
+}
+
+TEST_F(BodyTest, SystemAndComponentSayWhoseAMessageIs) {
+    const Frame of_one = frameOf(AttitudeQuaternion{}, 1, 1), of_two = frameOf(AttitudeQuaternion{}, 2, 1);
+    EXPECT_TRUE(body.isOf(of_one));
+    EXPECT_FALSE(body.isOf(of_two));
+    EXPECT_FALSE(body.isOf(frameOf(VisionPositionEstimate{}, 1, 1)));
+    const Body particular({.component_id = 1}, {0, 0, 0});
+    EXPECT_TRUE(particular.isOf(of_one));
+    EXPECT_FALSE(particular.isOf(frameOf(AttitudeQuaternion{}, 1, 2)));
+}
+
+TEST_F(BodyTest, EveryVisionEstimateIsAPoseBesideTheOrigin) {
+    const auto [pose, diagnostic] = see({.usec = 1700000000123456, .x = 1}, 50);
+    ASSERT_TRUE(pose) << diagnostic;
+    expectNear(pose->position, {101, 0, 0});
+    EXPECT_EQ(pose->time, Time::fromSeconds(50)) << "whatever its clock counts from";
+    EXPECT_EQ(see({.usec = 1700000000223456}, 50.1).pose.value().time, Time::fromSeconds(50.1));
+    EXPECT_THAT(see({.usec = 1700000000200000}, 50.1).diagnostic, HasSubstr("lies before"));
+    EXPECT_THAT(see({.usec = ~uint64_t{0}}, 50.2).diagnostic, HasSubstr("out of bounds"));
+    EXPECT_TRUE(see({.usec = 5}, 50.3).pose) << "booted again";
+}
+
+}  // namespace
+}  // namespace insonify::mavlink

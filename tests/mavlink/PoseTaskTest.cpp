@@ -1,0 +1,143 @@
+// Vehicles by PyPI's pymavlink, and the task that reads their poses.
+#include <gmock/gmock.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "components/framework/Activity.hpp"
+#include "components/mavlink/PoseTask.hpp"
+#include "tests/mavlink/Vehicle.hpp"
+#include "tests/support/Ports.hpp"
+#include "tests/support/Python.hpp"
+#include "types/Mount.hpp"
+
+using namespace insonify;
+using namespace insonify::mavlink;
+using test::comesTrue;
+using testing::HasSubstr;
+
+namespace {
+
+class PoseTaskTest : public testing::Test {
+protected:
+    void SetUp() override {
+        if (!Vehicle::available())
+            GTEST_SKIP() << "PyPI's pymavlink is not in " << python() << ": scripts/setup puts it there";
+    }
+    ~PoseTaskTest() override { task.activity().hold(); }
+
+    void startWith(const std::function<void(PoseConfig&)>& change = {}) {
+        PoseConfig config;
+        config.port = 0;
+        config.bodies.resize(1);
+        if (change) change(config);
+        task.config.set(config);
+        for (size_t i = 0; i < config.bodies.size(); ++i)
+            task.makeOutput(config.bodies[i].port)->connectTo(readers[i].port, framework::ConnPolicy::buffer(10'000));
+        const framework::Outcome configured = task.configure();
+        ASSERT_TRUE(configured) << configured.reason;
+        ASSERT_TRUE(task.start());
+        task.activity().release();
+    }
+    std::optional<types::Pose> next(size_t reader = 0) {
+        types::Pose pose;
+        if (!comesTrue([&] { return readers[reader].port.readNew(pose); })) return std::nullopt;
+        return pose;
+    }
+    /** A pose of vehicle.py, in our axes. */
+    static void expectKnown(const types::Pose& pose) {
+        const double k = std::round(10 * pose.position.x), pi = std::numbers::pi;
+        EXPECT_LT(glm::distance(pose.position, {0.1 * k, -2, -3}), 1e-6);
+        const types::Mount same{
+            .roll_deg = 0.1 * 180 / pi, .pitch_deg = -0.2 * 180 / pi, .yaw_deg = -0.3 * k * 180 / pi};
+        EXPECT_GT(std::abs(glm::dot(pose.orientation, same.orientation())), 1 - 1e-9) << k;
+    }
+    void expectPoses(int count, size_t reader = 0) {
+        types::Time last;
+        for (int i = 0; i < count; ++i) {
+            const auto pose = next(reader);
+            ASSERT_TRUE(pose) << i;
+            expectKnown(*pose);
+            EXPECT_GE(pose->time, last);
+            EXPECT_LE(pose->time, framework::wallClock());
+            last = pose->time;
+        }
+    }
+
+    test::Reader<types::Pose> readers[2];
+    PoseTask task{"vehicle"};
+};
+
+}  // namespace
+
+TEST_F(PoseTaskTest, PosesOfEveryVersionOfMavlinkAreRead) {
+    startWith();
+    for (const char* work : {"poses1", "poses2", "signed"}) {
+        const Vehicle vehicle(task.port(), work);
+        expectPoses(25);
+    }
+    EXPECT_THAT(task.notices(), testing::Contains(HasSubstr("listens on UDP 127.0.0.1:")));
+}
+
+TEST_F(PoseTaskTest, AVehicleAndAnObjectBesideItComeOverOnePort) {
+    startWith([](PoseConfig& config) {
+        config.bodies = {{.port = "rov"}, {.port = "diver", .source = Source::Vision, .system_id = 2}};
+    });
+    const Vehicle rov(task.port(), "poses2"), diver(task.port(), "vision 2");
+    expectPoses(25, 0);
+    expectPoses(25, 1);
+}
+
+TEST_F(PoseTaskTest, AVehicleThatSendsHeartbeatsAloneIsAskedForItsPoses) {
+    startWith([](PoseConfig& config) { config.request = {.rate = 50}; });
+    const Vehicle vehicle(task.port(), "heartbeat");
+    expectPoses(25);
+}
+
+TEST_F(PoseTaskTest, DamageIsToldAndWhatLiesBetweenIsRead) {
+    startWith();
+    const Vehicle vehicle(task.port(), "damaged");
+    expectPoses(25);
+    EXPECT_THAT(task.notices(), testing::Contains(HasSubstr("messages dropped: a frame whose sum is wrong")));
+    EXPECT_THAT(task.notices(), testing::Contains(HasSubstr("messages dropped: a frame that is cut off")));
+}
+
+TEST_F(PoseTaskTest, MessagesOfAnotherSystemAreToldWithItsNumber) {
+    startWith();
+    const Vehicle vehicle(task.port(), "poses2 9");
+    EXPECT_TRUE(comesTrue([&] {
+        const std::vector<std::string> all = task.notices();
+        return std::ranges::any_of(all, [](const std::string& line) {
+            return line.find("of others passed over: ATTITUDE_QUATERNION of system 9, component 1") !=
+                   std::string::npos;
+        });
+    }));
+    types::Pose pose;
+    EXPECT_FALSE(readers[0].port.readNew(pose));
+}
+
+TEST_F(PoseTaskTest, AnAddressThatIsNoneAndAPortThatIsTakenAreErrors) {
+    startWith();
+    PoseTask other("other");
+    PoseConfig config;
+    config.port = task.port();
+    other.config.set(config);
+    EXPECT_THAT(other.configure().reason, HasSubstr("other.port: is 127.0.0.1:" + std::to_string(task.port())));
+    PoseTask third("third");
+    config.address = "nowhere";
+    third.config.set(config);
+    EXPECT_THAT(third.configure().reason, HasSubstr("third.address: is nowhere, which is no address"));
+}
+
+TEST_F(PoseTaskTest, LockstepIsRefusedWithAReason) {
+    PoseTask other("other");
+    PoseConfig config;
+    config.bodies.resize(1);
+    other.config.set(config);
+    other.environment().lockstep = true;
+    types::Diagnostics diagnostics;
+    other.check(diagnostics);
+    ASSERT_EQ(diagnostics.size(), 2u);
+    EXPECT_THAT(diagnostics[0].message, HasSubstr("set schedule: realtime"));
+    EXPECT_THAT(diagnostics[1].message, HasSubstr("no connection leads from other.pose"));
+}

@@ -1,0 +1,109 @@
+#include <gtest/gtest.h>
+
+#include "types/SenderClock.hpp"
+
+namespace insonify::types {
+namespace {
+
+using Order = SenderClock::Order;
+
+Time at(double seconds) { return Time::fromSeconds(seconds); }
+
+/** Ours reads so many seconds more than the sender's. */
+constexpr double ahead = 1000;
+
+TEST(SenderClockTest, TheLeastDelayCountsAndNotThatOfEachMessage) {
+    SenderClock clock;
+    EXPECT_EQ(clock.read(at(1), at(ahead + 1.020)).time, at(ahead + 1.020));
+    EXPECT_EQ(clock.read(at(2), at(ahead + 2.005)).time, at(ahead + 2.005));
+    const Time delayed = clock.read(at(2.9), at(ahead + 2.985)).time;
+    EXPECT_NEAR(delayed.seconds(), ahead + 2.905, 0.001) << "80 ms more of which next to nothing is believed";
+    EXPECT_NEAR(clock.read(at(3), at(ahead + 3.005)).time.seconds(), ahead + 3.005, 0.001);
+}
+
+TEST(SenderClockTest, OurTimesNeitherGoBackNorLieAfterTheArrival) {
+    SenderClock clock;
+    Time last;
+    for (int i = 1; i < 2000; ++i) {
+        const double stamp = 0.02 * i, delay = 0.001 * (i * 37 % 18);  // up to 17 ms, less than a period
+        const auto [order, time] = clock.read(at(stamp), at(ahead + stamp + delay));
+        EXPECT_EQ(order, Order::Next);
+        EXPECT_GE(time, last);
+        EXPECT_LE(time, at(ahead + stamp + delay));
+        EXPECT_GE(time, at(ahead + stamp - 1e-6));
+        last = time;
+    }
+}
+
+TEST(SenderClockTest, AClockThatIsSlowerThanOursIsFollowed) {
+    SenderClock clock;  // as of a simulation that runs at half the speed
+    for (int i = 1; i < 1000; ++i) {
+        const Time arrival = at(ahead + 0.02 * i);
+        const Time time = clock.read(at(0.01 * i), arrival).time;
+        const Time behind = SenderClock::max_lag + SenderClock::max_doubt + at(0.02);
+        EXPECT_LE(arrival - time, behind) << i;
+    }
+}
+
+TEST(SenderClockTest, AClockThatDriftsIsFollowedClosely) {
+    SenderClock clock;
+    Time time;
+    for (int i = 1; i <= 50 * 600; ++i) time = clock.read(at(0.02 * i * (1 - 5e-5)), at(ahead + 0.02 * i)).time;
+    EXPECT_NEAR(time.seconds(), ahead + 600, 0.001) << "after ten minutes, in which it has lost 30 ms";
+}
+
+TEST(SenderClockTest, MessagesThatHaveWaitedForUsKeepTheirDistances) {
+    SenderClock clock;
+    clock.read(at(1), at(ahead + 1));
+    clock.read(at(1.1), at(ahead + 1.1));
+    const Time burst = at(ahead + 1.9);
+    EXPECT_EQ(clock.read(at(1.2), burst).time, at(ahead + 1.2));
+    EXPECT_EQ(clock.read(at(1.5), burst).time, at(ahead + 1.5));
+    EXPECT_EQ(clock.read(at(1.9), burst).time, at(ahead + 1.9));
+}
+
+TEST(SenderClockTest, AStampThatStandsStillIsToldAndGoesOnAfterAPause) {
+    SenderClock clock;
+    clock.read(at(5), at(ahead + 5));
+    for (int i = 0; i < 100; ++i)
+        EXPECT_EQ(clock.read(at(5), at(ahead + 5 + i)).order, Order::Repeated) << "paused for 100 s";
+    const auto [order, time] = clock.read(at(5.02), at(ahead + 105));
+    EXPECT_EQ(order, Order::Next);
+    EXPECT_EQ(time, at(ahead + 105)) << "the pause is no delay";
+}
+
+TEST(SenderClockTest, WhatWasOvertakenIsLateAndASenderThatBeginsAnewIsBelieved) {
+    SenderClock clock;
+    clock.read(at(100), at(ahead + 100));
+    EXPECT_EQ(clock.read(at(99.5), at(ahead + 100.1)).order, Order::Late);
+    EXPECT_EQ(clock.read(at(100.1), at(ahead + 100.1)).order, Order::Next);
+    const auto [order, time] = clock.read(at(0), at(ahead + 100.2));
+    EXPECT_EQ(order, Order::Restarted) << "a simulation that was reset";
+    EXPECT_EQ(time, at(ahead + 100.2));
+    EXPECT_EQ(clock.read(at(0.1), at(ahead + 100.3)).time, at(ahead + 100.3));
+}
+
+TEST(SenderClockTest, AfterASilenceStampsThatLieALittleBackAreTaken) {
+    SenderClock clock;
+    clock.read(at(0.8), at(ahead));
+    EXPECT_EQ(clock.read(at(0.1), at(ahead + 0.5)).order, Order::Late);
+    EXPECT_EQ(clock.read(at(0.2), at(ahead + 2)).order, Order::Restarted);
+}
+
+TEST(SenderClockTest, AStampFarAheadDoesNotSilenceThoseAfterIt) {
+    SenderClock clock;
+    clock.read(at(1), at(ahead + 1));
+    EXPECT_EQ(clock.read(at(1e6), at(ahead + 1.1)).time, at(ahead + 1.1));
+    const auto [order, time] = clock.read(at(1.2), at(ahead + 1.2));
+    EXPECT_EQ(order, Order::Restarted);
+    EXPECT_EQ(time, at(ahead + 1.2));
+}
+
+TEST(SenderClockTest, WhereOurClockIsSetBackOurTimesGoBackWithIt) {
+    SenderClock clock;
+    clock.read(at(1), at(ahead + 3600));
+    EXPECT_EQ(clock.read(at(1.1), at(ahead)).time, at(ahead));
+}
+
+}  // namespace
+}  // namespace insonify::types

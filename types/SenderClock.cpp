@@ -1,0 +1,46 @@
+#include "types/SenderClock.hpp"
+
+namespace insonify::types {
+
+SenderClock::Order SenderClock::orderOf(Time stamp, Time arrival) const {
+    if (!newest_ || stamp > *newest_) return Order::Next;
+    if (stamp == *newest_) return Order::Repeated;
+    const bool begins_anew = *newest_ - stamp > max_lateness || arrival - newest_came_ > max_silence;
+    return begins_anew ? Order::Restarted : Order::Late;
+}
+
+void SenderClock::follow(Time delay, Time arrival) {
+    const Time excess = delay - offset_;
+    if (excess <= max_lag)
+        doubted_since_.reset();
+    else if (!doubted_since_)
+        doubted_since_ = arrival;
+    const bool is_wrong = doubted_since_ && arrival - *doubted_since_ > max_doubt;
+    if (excess < Time{} || is_wrong) {
+        offset_ = delay;
+        doubted_since_.reset();
+    } else if (!doubted_since_) {
+        constexpr int64_t share = 256;  // of messages, in which it goes along with a clock that drifts
+        offset_ = offset_ + Time{excess.microseconds / share};
+    }
+}
+
+SenderClock::Reading SenderClock::read(Time stamp, Time arrival) {
+    const Order order = orderOf(stamp, arrival);
+    if (order == Order::Repeated || order == Order::Late) return {order, time_};
+    const bool ours_went_back = newest_ && arrival < newest_came_;
+    const Time delay = arrival - stamp;
+    if (!newest_ || order == Order::Restarted || ours_went_back || arrival - newest_came_ > max_silence) {
+        offset_ = delay;
+        doubted_since_.reset();
+    } else {
+        follow(delay, arrival);
+    }
+    newest_ = stamp;
+    newest_came_ = arrival;
+    const Time time = stamp + offset_;
+    if (time > time_ || ours_went_back) time_ = time;
+    return {order, time_};
+}
+
+}  // namespace insonify::types
