@@ -18,10 +18,11 @@ constexpr uint64_t pose_stream = 0x706f7365, noise_stream = 0x6e6f697365;
 
 /** The coordinates of a pose of a grid. */
 std::vector<double> gridded(const PoseAxes& axes, uint64_t pose) {
-    std::vector<std::vector<double>> steps;
-    PoseAxes::forEach(axes, [&](const char*, const char*, const Axis& axis) { steps.push_back(axis.steps()); });
-    std::vector<double> values(steps.size());
-    for (size_t i = steps.size(); i-- > 0; pose /= steps[i].size()) values[i] = steps[i][pose % steps[i].size()];
+    std::vector<const Axis*> all;
+    PoseAxes::forEach(axes, [&](const char*, const char*, const Axis& axis) { all.push_back(&axis); });
+    std::vector<double> values(all.size());
+    for (size_t i = all.size(); i-- > 0; pose /= all[i]->stepCount())
+        values[i] = all[i]->step(pose % all[i]->stepCount());
     return values;
 }
 
@@ -60,7 +61,8 @@ std::vector<std::string> resolve(const Sweep& sweep, const std::vector<std::stri
 Samples::Samples(const Sweep& sweep, std::vector<TimedPose> trajectory, std::vector<SceneParts> scenes)
     : sweep_(sweep), trajectory_(std::move(trajectory)), scenes_(std::move(scenes)) {
     poses_ = sweep.grid ? sweep.grid->gridSize() : sweep.random ? sweep.random_count : trajectory_.size();
-    for (const Setting& setting : sweep.settings) settings_ *= setting.values.size();
+    for (const Setting& setting : sweep.settings)
+        settings_ = std::min<uint64_t>(settings_ * setting.values.size(), 1'000'000'000'000);
     const double all = static_cast<double>(poses_) * static_cast<double>(settings_) * double(sweep.scenes.size());
     if (all > static_cast<double>(most_samples))
         throw types::ConfigError(sweep.file, "",

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -23,18 +24,18 @@ void checkSpan(const char* name, const auto& span, bool needed, types::Diagnosti
 
 }  // namespace
 
-std::vector<double> Axis::steps() const {
-    if (!count) return values.empty() ? std::vector<double>{0} : values;
-    std::vector<double> all;
-    for (uint32_t i = 0; i < *count; ++i)
-        all.push_back(*count == 1 ? *from : *from + (*to - *from) * i / static_cast<double>(*count - 1));
-    return all;
+uint64_t Axis::stepCount() const { return count ? *count : std::max<uint64_t>(1, values.size()); }
+
+double Axis::step(uint64_t number) const {
+    if (!count) return values.empty() ? 0 : values[number];
+    if (*count == 1) return *from;
+    return *from + (*to - *from) * static_cast<double>(number) / static_cast<double>(*count - 1);
 }
 
 double Axis::draw(uint64_t random) const {
     const double first = types::unit(random >> 32), second = types::unit(random & 0xffffffff);
     if (!uniform.empty()) return inMillionths(uniform[0] + (uniform[1] - uniform[0]) * first);
-    if (normal.empty()) return steps().front();
+    if (normal.empty()) return step(0);
     const double variate = std::sqrt(-2 * std::log(first)) * std::cos(2 * std::numbers::pi * second);
     return inMillionths(normal[0] + normal[1] * variate);
 }
@@ -53,7 +54,9 @@ void Axis::check(types::Diagnostics& diagnostics) const {
 
 uint64_t PoseAxes::gridSize() const {
     uint64_t size = 1;
-    forEach(*this, [&](const char*, const char*, const Axis& axis) { size *= axis.steps().size(); });
+    forEach(*this, [&](const char*, const char*, const Axis& axis) {
+        size = std::min<uint64_t>(size * axis.stepCount(), 1'000'000'000'000);
+    });
     return size;
 }
 

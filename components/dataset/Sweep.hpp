@@ -25,8 +25,9 @@ struct Axis {
     std::vector<double> uniform, normal;
 
     bool isDrawn() const { return !uniform.empty() || !normal.empty(); }
-    /** The values of a grid; {0} where nothing is given. */
-    std::vector<double> steps() const;
+    /** Values of a grid, at least one; 0 where nothing is given. */
+    uint64_t stepCount() const;
+    double step(uint64_t number) const;
     /** The value of one pose of many: drawn by a random word, in whole millionths, so that processors that differ in
      *  the last bit of a logarithm draw the same; or the one that is given. */
     double draw(uint64_t random) const;
@@ -57,6 +58,7 @@ struct PoseAxes {
         visit("pitch_deg", "deg", self.pitch_deg);
         visit("yaw_deg", "deg", self.yaw_deg);
     }
+    /** Poses of the grid; 10^12 where there are more. */
     uint64_t gridSize() const;
 };
 
@@ -72,7 +74,7 @@ struct TrajectoryPoses {
     static void describe(Self& self, V& visit) {
         using types::Field;
         visit(Field{"file", "", "CSV with header time,x,y,z,qw,qx,qy,qz, relative to the sweep"}, self.file);
-        visit(Field{"count", "1", "poses, evenly from `from` to `to`", 1, 1e7}, self.count);
+        visit(Field{"count", "1", "poses, evenly from `from` to `to`", 1, 1e6}, self.count);
         visit(Field{"period", "s", "instead: time between two poses", 1e-3, 1e6}, self.period);
         visit(Field{"from", "s", "time of the first", 0, 86400}, self.from);
         visit(Field{"to", "s", "time of the last; absent: the end of the trajectory", 0, 86400}, self.to);

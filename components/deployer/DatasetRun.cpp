@@ -25,6 +25,7 @@ using dataset::Sweep;
 using framework::child, framework::splitPort;
 
 constexpr const char* scene_type = "scene::SceneTask";
+constexpr uint64_t most_poses = 1'000'000;  ///< Of a trajectory.
 
 /** A text as a value in YAML. */
 std::string quoted(const std::string& text) { return command::Json(text).dump(); }
@@ -39,6 +40,9 @@ std::vector<dataset::TimedPose> posesOf(const Sweep& sweep) {
         throw types::ConfigError(sweep.file, "poses.trajectory.from",
                                  fmt::format("is {:g} s; the trajectory ends at {:g} s", asked.from, to));
     const auto count = asked.count ? uint64_t{*asked.count} : static_cast<uint64_t>(length / *asked.period + 1e-9) + 1;
+    if (count > most_poses)
+        throw types::ConfigError(sweep.file, "poses.trajectory.period",
+                                 fmt::format("makes {} poses; at most {}", count, most_poses));
     for (uint64_t i = 0; i < count; ++i) {
         const double step = asked.count ? (count == 1 ? 0 : length / static_cast<double>(count - 1)) : *asked.period;
         const double time = asked.from + step * static_cast<double>(i);

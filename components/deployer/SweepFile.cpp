@@ -152,7 +152,7 @@ private:
             known.push_back(name);
             const YAML::Node value = child(node, name);
             if (!value.IsDefined() || !readAxis(value, path + "." + name, unit, axis)) return;
-            if (is_drawn && axis.steps().size() != 1)
+            if (is_drawn && axis.stepCount() != 1)
                 reader_.report(value, path + "." + name,
                                "has several values; of drawn poses it is a number, {uniform: ...} or {normal: ...}");
             if (!is_drawn && axis.isDrawn())

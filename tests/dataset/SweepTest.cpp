@@ -17,6 +17,12 @@ Axis drawnFrom(std::vector<double> uniform, std::vector<double> normal) {
     return axis;
 }
 
+std::vector<double> stepsOf(const Axis& axis) {
+    std::vector<double> steps;
+    for (uint64_t i = 0; i < axis.stepCount(); ++i) steps.push_back(axis.step(i));
+    return steps;
+}
+
 std::vector<std::string> diagnosticsOf(const auto& checked) {
     types::Diagnostics diagnostics;
     checked.check(diagnostics);
@@ -27,14 +33,21 @@ std::vector<std::string> diagnosticsOf(const auto& checked) {
 
 TEST(SweepTest, StepsGoEvenlyFromOneValueToTheOther) {
     Axis axis;
-    EXPECT_THAT(axis.steps(), ElementsAre(0));
+    EXPECT_THAT(stepsOf(axis), ElementsAre(0));
     axis.from = -1, axis.to = 1, axis.count = 3;
-    EXPECT_THAT(axis.steps(), ElementsAre(-1, 0, 1));
+    EXPECT_THAT(stepsOf(axis), ElementsAre(-1, 0, 1));
     axis.count = 1;
-    EXPECT_THAT(axis.steps(), ElementsAre(-1));
+    EXPECT_THAT(stepsOf(axis), ElementsAre(-1));
     axis = {};
     axis.values = {4, 2};
-    EXPECT_THAT(axis.steps(), ElementsAre(4, 2));
+    EXPECT_THAT(stepsOf(axis), ElementsAre(4, 2));
+}
+
+TEST(SweepTest, AGridThatNobodyCouldMakeDoesNotRunOver) {
+    PoseAxes axes;
+    PoseAxes::forEach(axes,
+                      [](const char*, const char*, Axis& axis) { axis.from = 0, axis.to = 1, axis.count = 1000000; });
+    EXPECT_EQ(axes.gridSize(), 1000000000000u);
 }
 
 TEST(SweepTest, DrawnValuesFollowTheirLaw) {
