@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "components/framework/Offers.hpp"
 #include "components/framework/Port.hpp"
 #include "components/framework/Properties.hpp"
 #include "components/framework/Registry.hpp"
@@ -35,7 +36,7 @@ namespace insonify::scene {
  * on the wall clock a timeout that is not given is 1 s; otherwise there is none. With `extrapolate` the snapshot has
  * the sonar's velocities, by which the sonar's task carries it on to its ping. With `bathymetry` the geometry has the
  *  floor about the sonar, and is another one each time that more of it is read. */
-class SceneTask final : public framework::TaskContext, public framework::Waits {
+class SceneTask final : public framework::TaskContext, public framework::Waits, public framework::Divisible {
 public:
     using TaskContext::TaskContext;
 

@@ -223,6 +223,24 @@ TEST(VisibilityTest, AnObjectMovesFromPingToPing) {
     EXPECT_GT(difference(after, before), 0.05);
 }
 
+TEST(VisibilityTest, APingIsTheSameWhateverCameBeforeIt) {
+    auto geometry = std::make_shared<types::Geometry>();
+    geometry->materials.resize(1);
+    geometry->meshes = {test::sphere(0.4f, 40)};
+    for (const double x : {8, 264, 708})
+        geometry->objects.push_back({"ball", 0, glm::translate(glm::dmat4(1), {x, 1, -0.5})});
+    const SonarConfig config = fan(Visibility::Cpu);
+    SonarRenderer renderer(config, geometry);
+    // Places to either side of where the tree's origin changes, and to and fro.
+    for (const double x : {0.3, 255.9, 256.1, 255.95, 256.2, 700.0, 0.3}) {
+        const types::Snapshot snapshot = test::snapshotOf(geometry, {x, 0, 0}, 0.1, 0.15);
+        types::Sonar ping;
+        renderer.render(snapshot, ping);
+        EXPECT_GT(*std::ranges::max_element(ping.bins), 0) << x;
+        EXPECT_EQ(ping.bins, pingOf(config, snapshot).bins) << x;
+    }
+}
+
 TEST(VisibilityTest, ManyPlacingsOfLargeMeshesAreInstancesThatSoundTheSame) {
     // 70 balls of 65,000 triangles are more than are copied.
     auto geometry = std::make_shared<types::Geometry>();
