@@ -103,6 +103,23 @@ TEST_F(NavigationRunTest, TheSameSeedGivesTheSameReadingsAndAnotherGivesOthers) 
     }
 }
 
+TEST_F(NavigationRunTest, ShardsHaveEachReadingOnceAndAsTheWholeRunHasIt) {
+    const std::vector<std::string> log = {"--pings", "6", "--set", "log.file=x.0.log"};
+    run("whole", log);
+    for (const char* shard : {"0/3", "1/3", "2/3"}) {
+        std::vector<std::string> words = log;
+        words.insert(words.end(), {"--shard", shard});
+        run("parts", words);
+    }
+    const auto rows = [](const std::string& csv) { return csv.substr(csv.find('\n') + 1); };
+    for (const char* stream : {"dvl.dvl", "imu.imu", "pressure.pressure"}) {
+        std::string joined;
+        for (const char* part : {"0", "1", "2"})
+            joined += rows(exported(std::string("parts/shard_") + part + "_of_3/x.0.log", stream));
+        EXPECT_EQ(joined, rows(exported("whole/x.0.log", stream))) << stream;
+    }
+}
+
 TEST_F(NavigationRunTest, ALogOfPosesGivesTheSameReadingsWhenItIsReplayed) {
     writeFile(folder_ / "sensors.yml", R"(
 tasks:
