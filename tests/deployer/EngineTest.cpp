@@ -63,8 +63,10 @@ protected:
                          << " is missing; scripts/setup installs it";
     }
     std::vector<std::string> byWorkers(const std::string& program, int workers) const {
-        // Ray leaves its session and a token behind otherwise.
+        // Engines give up where a machine is slow to start them, and Ray leaves its session and a token behind.
         std::vector<std::string> words = {"env",
+                                          "DASK_DISTRIBUTED__COMM__TIMEOUTS__CONNECT=600s",
+                                          "RAY_raylet_start_wait_time_s=600",
                                           "RAY_TMPDIR=" + folder_.path().string(),
                                           "RAY_AUTH_MODE=disabled",
                                           insonify::python(),
@@ -94,7 +96,7 @@ protected:
                       "    until ls " +
                       shards + "/.shard_2_of_6.*/wall.0.log " + shards +
                       "/shard_2_of_6 2> /dev/null |\n"
-                      "            grep -q .; do :; done\n"
+                      "            grep -q .; do sleep 0.01; done\n"
                       "    kill -STOP $!\n"
                       "    echo $PPID $$ $! > " +
                       first + "/written && mv " + first + "/written " + first +
@@ -111,7 +113,8 @@ protected:
         std::istringstream pids(readFile(folder_ / "first/pids"));
         pid_t worker = 0, waiting = 0, command = 0;
         ASSERT_TRUE(pids >> worker >> waiting >> command);
-        for (const pid_t pid : {command, worker, waiting}) EXPECT_EQ(kill(pid, SIGKILL), 0);
+        for (const pid_t pid : {command, worker}) EXPECT_EQ(kill(pid, SIGKILL), 0);
+        kill(waiting, SIGKILL);  // Ray ends what a dead worker has begun
     }
     static size_t linesOf(const std::string& text, const std::string& ending) {
         size_t count = 0;
@@ -124,9 +127,11 @@ protected:
 
 TEST_P(WorkersTest, OneOfTwoWorkersDiesInTheMiddleAndNothingIsLostOrDoubled) {
     const Process engine(byWorkers(stallingProgram(), 2), folder_.path());
-    ASSERT_TRUE(insonify::test::comesTrue([&] {
+    const auto isAtIt = [&] {
         return fs::exists(folder_ / "first/pids") && linesOf(readFile(folder_ / "stdout.txt"), "done\n") > 0;
-    })) << readFile(folder_ / "stderr.txt");
+    };
+    for (int times = 0; times < 10 && !isAtIt(); ++times) insonify::test::comesTrue(isAtIt);
+    ASSERT_TRUE(isAtIt()) << readFile(folder_ / "stderr.txt");
     killStalled();
     const Outcome outcome = engine.wait();
     EXPECT_EQ(outcome.code, 0) << outcome.out << outcome.err;
