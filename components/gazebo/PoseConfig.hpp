@@ -39,7 +39,7 @@ struct PoseConfig {
     static void describe(Self& self, V& visit) {
         using types::Field;
         visit(Field{"bodies", "", "what is read"}, self.bodies);
-        visit(Field{"world", "", "name of Gazebo's world, whose poses are on /world/<world>/pose/info"}, self.world);
+        visit(Field{"world", "", "name of Gazebo's world, whose poses are on /world/NAME/pose/info"}, self.world);
         visit(Field{"pose_topic", "", "another topic of poses; empty: that of the world"}, self.pose_topic);
         visit(Field{"world_frame", "",
                     "axes of Gazebo's world: as_is, those of the scene, as where both read one SDF file; enu or ned, "

@@ -37,9 +37,10 @@ TEST_F(GazeboRunTest, PosesOfAWorldInAnotherProcessBecomePings) {
         world.tell(0.02 * told, 0.01 * told);
         std::this_thread::sleep_for(std::chrono::milliseconds(20));
     };
-    const bool pings = gazebo::comesTrue([&] { return tell(), fs::exists(folder / "out/fan_000010.png"); });
+    const bool pings = gazebo::comesTrue([&] { return tell(), fs::exists(folder / "out/fan_000000.png"); });
     const bool ended = pings && gazebo::comesTrue([&] { return tell(), fs::exists(folder / "summary.json"); });
     if (!ended) sonar.signal(SIGKILL);
+    EXPECT_TRUE(ended);
     const Outcome outcome = sonar.wait();
     ASSERT_EQ(outcome.code, 0) << outcome.err;
     EXPECT_GE(json::parse(readFile(folder / "summary.json"))["pings"], 20);
