@@ -4,6 +4,7 @@
 #include <chrono>
 
 #include "components/dds/SubscriberTask.hpp"
+#include "components/dds/TransformTask.hpp"
 #include "components/framework/ConfigReader.hpp"
 #include "components/framework/Latency.hpp"
 #include "components/framework/Upstream.hpp"
@@ -163,6 +164,7 @@ void PublisherTask::cleanupHook() {
 void registerTasks(framework::Registry& registry) {
     registry.add<PublisherTask>("dds::PublisherTask", "sends pings, poses and pictures as ROS 2 messages");
     registry.add<SubscriberTask>("dds::SubscriberTask", "reads poses that ROS 2 nodes send");
+    registry.add<TransformTask>("dds::TransformTask", "tells where frames of ROS 2's tf lie in the world");
 }
 
 }  // namespace insonify::dds

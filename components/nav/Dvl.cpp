@@ -1,5 +1,6 @@
 #include "components/nav/Dvl.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
@@ -61,7 +62,8 @@ double Dvl::range(size_t beam, const Motion& motion, const Bottom& bottom) const
     const glm::dvec3 direction = motion.orientation * beams_[beam];
     const auto met = bottom.range(motion.position, direction, config_.max_altitude / cosine_);
     if (!met || *met * cosine_ < config_.min_altitude) return types::Pose::unknown;
-    return *met + config_.errors.range_noise * normal(config_.seed, channelOf(Range, beam), motion.time);
+    const double noise = config_.errors.range_noise * normal(config_.seed, channelOf(Range, beam), motion.time);
+    return std::max(*met + noise, 0.0);
 }
 
 double Dvl::variance(double velocity) const {

@@ -34,10 +34,10 @@ private:
 
 /** One axis: what it tells of what is. In the order of a device: noise and biases, the end of its range, its steps. */
 struct AxisErrors {
-    double noise_density = 0;     ///< Deviation of white noise, of an average over 1 s [unit/sqrt(Hz)].
-    double bias_deviation = 0;    ///< Of the wandering bias [unit].
-    double bias_time = 1000;      ///< It forgets where it was [s].
-    double resolution = 0;        ///< Least step; 0: none [unit].
+    double noise_density = 0;       ///< Deviation of white noise, of an average over 1 s [unit/sqrt(Hz)].
+    double bias_deviation = 0;      ///< Of the wandering bias [unit].
+    double bias_time = 1000;        ///< It forgets where it was [s].
+    double resolution = 0;          ///< Least step; 0: none [unit].
     std::optional<double> range{};  ///< Most that it tells, either sign [unit].
 };
 class Axis {

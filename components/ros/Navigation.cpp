@@ -4,33 +4,24 @@
 #include <glm/matrix.hpp>
 #include <stdexcept>
 
-#include "components/ros/Poses.hpp"
 #include "components/ros/Times.hpp"
+#include "components/ros/Unknowns.hpp"
+#include "types/WorldFrame.hpp"
 
 namespace insonify::ros {
 namespace {
 
 using Covariance3 = std::array<double, 9>;
 
-bool isKnown(glm::dvec3 v) { return !std::isnan(v.x) && !std::isnan(v.y) && !std::isnan(v.z); }
-bool isKnown(const glm::dmat3& m) { return isKnown(m[0]) && isKnown(m[1]) && isKnown(m[2]); }
-
 Vector3 toRos(glm::dvec3 v) { return {v.x, v.y, v.z}; }
 glm::dvec3 fromRos(const Vector3& v) { return {v.x, v.y, v.z}; }
-
-/** A covariance whose vectors are turned: C becomes A C A^T. */
-template <class Turn>
-glm::dmat3 turned(const glm::dmat3& covariance, Turn&& turn) {
-    const auto columns = [&](const glm::dmat3& m) { return glm::dmat3(turn(m[0]), turn(m[1]), turn(m[2])); };
-    return columns(glm::transpose(columns(covariance)));
-}
 
 /** By rows; -1 first where the value itself is not known. */
 Covariance3 rowsOf(const glm::dmat3& covariance, bool value_known, double unknown) {
     Covariance3 rows;
     for (int row = 0; row < 3; ++row)
         for (int column = 0; column < 3; ++column)
-            rows[static_cast<size_t>(3 * row + column)] = isKnown(covariance) ? covariance[column][row] : unknown;
+            rows[static_cast<size_t>(3 * row + column)] = isUnknown(covariance) ? unknown : covariance[column][row];
     if (!value_known) rows[0] = -1;
     return rows;
 }
@@ -46,15 +37,15 @@ glm::dmat3 matrixOf(const Covariance3& rows, double unknown) {
 
 /** A vector of the body, and its covariance. */
 void tell(glm::dvec3 value, const glm::dmat3& covariance, WorldFrame frame, Vector3& told, Covariance3& rows) {
-    const auto body = [frame](glm::dvec3 v) { return turnedBody(frame, v); };
-    told = isKnown(value) ? toRos(body(value)) : Vector3{};
-    rows = rowsOf(turned(covariance, body), isKnown(value), 0);
+    const auto body = [frame](glm::dvec3 v) { return types::Axes{frame}.body(v); };
+    told = isUnknown(value) ? Vector3{} : toRos(body(value));
+    rows = rowsOf(both(covariance, body), !isUnknown(value), 0);
 }
 
 void read(const Vector3& told, const Covariance3& rows, WorldFrame frame, glm::dvec3& value, glm::dmat3& covariance) {
-    const auto body = [frame](glm::dvec3 v) { return turnedBody(frame, v); };
+    const auto body = [frame](glm::dvec3 v) { return types::Axes{frame}.body(v); };
     value = rows[0] == -1 ? glm::dvec3(types::Pose::unknown) : body(fromRos(told));
-    covariance = turned(matrixOf(rows, 0), body);
+    covariance = both(matrixOf(rows, 0), body);
 }
 
 /** From the axes of an instrument that are ours, z up, to those with z where it looks, and back. */
@@ -83,10 +74,10 @@ void clearBeams(Dvl& message) {
 void convert(const types::Imu& imu, WorldFrame frame, const std::string& frame_id, Imu& message) {
     message.header = {toRos(imu.time), frame_id};
     const bool is_known = !std::isnan(glm::length(imu.orientation));
-    const glm::dquat q = is_known ? orientationFromRock(frame, imu.orientation) : glm::dquat(1, 0, 0, 0);
+    const glm::dquat q = is_known ? types::Axes{frame}.orientationFromRock(imu.orientation) : glm::dquat(1, 0, 0, 0);
     message.orientation = {q.x, q.y, q.z, q.w};
-    const auto to_world = [&](glm::dvec3 v) { return worldFromRock(frame, imu.orientation * v); };
-    message.orientation_covariance = rowsOf(turned(imu.cov_orientation, to_world), is_known, 0);
+    const auto to_world = [&](glm::dvec3 v) { return types::Axes{frame}.worldFromRock(imu.orientation * v); };
+    message.orientation_covariance = rowsOf(both(imu.cov_orientation, to_world), is_known, 0);
     tell(imu.angular_velocity, imu.cov_angular_velocity, frame, message.angular_velocity,
          message.angular_velocity_covariance);
     tell(imu.linear_acceleration, imu.cov_linear_acceleration, frame, message.linear_acceleration,
@@ -98,9 +89,11 @@ void convert(const Imu& message, WorldFrame frame, types::Imu& imu) {
     imu.time = fromRos(message.header.stamp);
     const Quaternion& q = message.orientation;
     if (message.orientation_covariance[0] != -1)
-        imu.orientation = rockFromOrientation(frame, glm::dquat(q.w, q.x, q.y, q.z));
-    const auto from_world = [&](glm::dvec3 v) { return glm::inverse(imu.orientation) * rockFromWorld(frame, v); };
-    imu.cov_orientation = turned(matrixOf(message.orientation_covariance, 0), from_world);
+        imu.orientation = types::Axes{frame}.rockFromOrientation(glm::dquat(q.w, q.x, q.y, q.z));
+    const auto from_world = [&](glm::dvec3 v) {
+        return glm::inverse(imu.orientation) * types::Axes{frame}.rockFromWorld(v);
+    };
+    imu.cov_orientation = both(matrixOf(message.orientation_covariance, 0), from_world);
     read(message.angular_velocity, message.angular_velocity_covariance, frame, imu.angular_velocity,
          imu.cov_angular_velocity);
     read(message.linear_acceleration, message.linear_acceleration_covariance, frame, imu.linear_acceleration,
@@ -131,7 +124,7 @@ void convert(const types::Dvl& dvl, const std::string& frame_id, Dvl& message) {
     message.velocity_mode = Dvl::bottom;
     message.dvl_type = Dvl::piston;
     message.velocity = toRos(v);
-    message.velocity_covar = rowsOf(turned(dvl.cov_velocity, turnedOver), true, -1);
+    message.velocity_covar = rowsOf(both(dvl.cov_velocity, turnedOver), true, -1);
     message.altitude = dvl.altitude;
     message.course_gnd = std::atan2(v.y, v.x);
     message.speed_gnd = std::hypot(v.x, v.y);
@@ -147,7 +140,7 @@ void convert(const Dvl& message, types::Dvl& dvl) {
     dvl = {};
     dvl.time = fromRos(message.header.stamp);
     dvl.velocity = turnedOver(fromRos(message.velocity));
-    dvl.cov_velocity = turned(matrixOf(message.velocity_covar, -1), turnedOver);
+    dvl.cov_velocity = both(matrixOf(message.velocity_covar, -1), turnedOver);
     dvl.altitude = message.altitude;
     dvl.speed_of_sound = static_cast<double>(message.sound_speed);
     for (size_t beam = 0; beam < Dvl::beams; ++beam) {

@@ -11,12 +11,6 @@ namespace insonify::ros {
 glm::dvec3 worldFromRock(WorldFrame frame, glm::dvec3 v);
 glm::dvec3 rockFromWorld(WorldFrame frame, glm::dvec3 v);
 
-/** A vector of the body in the axes of a frame, and back: the same either way. */
-glm::dvec3 turnedBody(WorldFrame frame, glm::dvec3 v);
-/** The orientation of a body in the world, both in the axes of a frame, and back. */
-glm::dquat orientationFromRock(WorldFrame frame, glm::dquat q);
-glm::dquat rockFromOrientation(WorldFrame frame, glm::dquat q);
-
 /** Rock's pose in the axes of ROS. Names of frames are kept: target_frame is header.frame_id.
  *
  *  Odometry gives velocities and their covariances in the body; Rock has the velocity in the world, and the covariance

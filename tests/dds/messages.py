@@ -83,6 +83,24 @@ class Odometry(IdlStruct, typename="nav_msgs::msg::dds_::Odometry_"):
 
 
 @dataclass
+class Transform(IdlStruct, typename="geometry_msgs::msg::dds_::Transform_"):
+    translation: Vector3 = field(default_factory=Vector3)
+    rotation: Quaternion = field(default_factory=Quaternion)
+
+
+@dataclass
+class TransformStamped(IdlStruct, typename="geometry_msgs::msg::dds_::TransformStamped_"):
+    header: Header = field(default_factory=Header)
+    child_frame_id: str = ""
+    transform: Transform = field(default_factory=Transform)
+
+
+@dataclass
+class TFMessage(IdlStruct, typename="tf2_msgs::msg::dds_::TFMessage_"):
+    transforms: sequence[TransformStamped] = field(default_factory=list)
+
+
+@dataclass
 class Image(IdlStruct, typename="sensor_msgs::msg::dds_::Image_"):
     header: Header
     height: uint32
@@ -137,6 +155,46 @@ class Range(IdlStruct, typename="sensor_msgs::msg::dds_::Range_"):
     max_range: float32
     range: float32
     variance: float32
+
+
+@dataclass
+class Imu(IdlStruct, typename="sensor_msgs::msg::dds_::Imu_"):
+    header: Header
+    orientation: Quaternion
+    orientation_covariance: array[float64, 9]
+    angular_velocity: Vector3
+    angular_velocity_covariance: array[float64, 9]
+    linear_acceleration: Vector3
+    linear_acceleration_covariance: array[float64, 9]
+
+
+@dataclass
+class FluidPressure(IdlStruct, typename="sensor_msgs::msg::dds_::FluidPressure_"):
+    header: Header
+    fluid_pressure: float64
+    variance: float64
+
+
+@dataclass
+class Dvl(IdlStruct, typename="marine_acoustic_msgs::msg::dds_::Dvl_"):
+    header: Header
+    velocity_mode: uint8
+    dvl_type: uint8
+    velocity: Vector3
+    velocity_covar: array[float64, 9]
+    altitude: float64
+    course_gnd: float64
+    speed_gnd: float64
+    num_good_beams: uint8
+    sound_speed: float32
+    beam_ranges_valid: bool
+    beam_velocities_valid: bool
+    beam_unit_vec: array[Vector3, 4]
+    range: array[float64, 4]
+    range_covar: array[float32, 4]
+    beam_quality: array[float32, 4]
+    beam_velocity: array[float32, 4]
+    beam_velocity_covar: array[float32, 4]
 
 
 @dataclass

@@ -3,6 +3,7 @@
     peer.py listen TYPE TOPIC SECONDS [COUNT]   counts messages, until that many came, and their latency [ms]; keeps the first
     peer.py node SECONDS WRITERS                nodes, and writers with their types and hashes, once a node has so many
     peer.py image TOPIC COUNT HERTZ             sends images of 1 MB, 256 beams x 1000 ranges of float32
+    peer.py transforms SPEED [ODOM]             sends where base_link is, forever: see there; ODOM 0 leaves a link out
     peer.py odometry TOPIC COUNT HERTZ [FLAW]  sends poses along x; FLAW nan, back, zero or bytes spoils every second
 
 Who listens says `met` at the first image without a stamp, and does not count those. With --greet, who sends sends such an
@@ -10,6 +11,7 @@ image, or poses at the origin, until SIGUSR1: none of what follows is lost becau
 """
 import dataclasses
 import json
+import math
 import signal
 import struct
 import sys
@@ -184,7 +186,29 @@ def odometry(topic, count, hertz, flaw=""):
     return {"count": int(count)}
 
 
+def transform(parent, child, now, x, y, z, turn=0.0):
+    placed = messages.Transform(messages.Vector3(x, y, z), messages.Quaternion(0.0, 0.0, math.sin(turn / 2), math.cos(turn / 2)))
+    return messages.TransformStamped(messages.Header(messages.Time(int(now), int(now % 1 * 1e9)), parent), child, placed)
+
+
+def transforms(speed, odom=1):
+    """The world is east, north, up. odom lies 10 m east of map, turned left by a quarter, every tenth of a second; in it
+    base_link goes ahead from 1 m on, fifty times a second, by a sender of its own; in base_link an arm does not move."""
+    participant = DomainParticipant(DOMAIN)
+    topic = Topic(participant, "rt/tf", messages.TFMessage)
+    latched = DataWriter(participant, Topic(participant, "rt/tf_static", messages.TFMessage), qos=LATCHED)
+    latched.write(messages.TFMessage([transform("base_link", "arm", 0, 0.0, 0.0, 0.5)]))
+    slow, fast = DataWriter(participant, topic, qos=DEEP), DataWriter(participant, topic, qos=DEEP)
+    ready()
+    for i in range(10**9):
+        now = time.time()
+        if i % 5 == 0 and int(odom):
+            slow.write(messages.TFMessage([transform("map", "odom", now, 10.0, 0.0, 0.0, math.pi / 2)]))
+        fast.write(messages.TFMessage([transform("odom", "base_link", now, 1 + float(speed) * (now - START), 0.0, -3.0)]))
+        time.sleep(0.02)
+
+
 if __name__ == "__main__":
     DOMAIN = int(__import__("os").environ.get("ROS_DOMAIN_ID", "0"))
     work, *words = (word for word in sys.argv[1:] if word != "--greet")
-    print(json.dumps({"listen": listen, "node": node, "image": image, "odometry": odometry}[work](*words)))
+    print(json.dumps({"listen": listen, "node": node, "image": image, "odometry": odometry, "transforms": transforms}[work](*words)))

@@ -129,6 +129,20 @@ TEST(DvlTest, OutOfItsReachThereIsNoBottomLock) {
     }
 }
 
+TEST(DvlTest, RangesHaveTheirNoiseAndAreNeverNegative) {
+    Motion motion = moving({});
+    const Dvl noisy({.errors = {.range_noise = 0.05}}), wild({.errors = {.range_noise = 1000}});
+    constexpr int count = 20'000;
+    double squares = 0, least = 1;
+    for (int i = 0; i < count; ++i) {
+        motion.time = motion.time + types::Time{125'000};
+        squares += std::pow(ping(noisy, motion, Bottom(-10.0)).beam_ranges[2] - 10 / std::cos(types::radians(30)), 2);
+        least = std::min(least, ping(wild, motion, Bottom(-10.0)).beam_ranges[2]);
+    }
+    EXPECT_NEAR(squares / count / (0.05 * 0.05), 1, 5 * std::sqrt(2.0 / count));
+    EXPECT_EQ(least, 0);
+}
+
 TEST(DvlTest, AShareOfBeamsIsLost) {
     const Dvl log({.errors = {.dropout = 0.2}});
     Motion motion = moving({1, 0, 0});

@@ -1,0 +1,174 @@
+#include "components/dds/TransformTask.hpp"
+
+#include <algorithm>
+
+#include "components/ros/Cdr.hpp"
+#include "components/ros/Poses.hpp"
+#include "components/ros/Stamps.hpp"
+#include "components/ros/Times.hpp"
+
+namespace insonify::dds {
+namespace {
+
+constexpr int max_at_once = 1000;            ///< Messages of a topic in one cycle: then others have their turn.
+constexpr int depth = 1000;                  ///< Messages of all senders that wait to be taken.
+constexpr size_t largest = size_t{1} << 20;  ///< Of a message [B].
+constexpr types::Time patience{2'000'000};   ///< With a chain that is not whole.
+constexpr types::Time static_period{100'000};
+
+std::unique_ptr<Reader> readerOf(Node& node, const std::string& topic, const Quality& quality,
+                                 std::function<void()> arrived) {
+    auto made = std::make_unique<Reader>(node, ddsTopic(topic), ros::TFMessage::type_name, ros::TFMessage::type_hash,
+                                         quality, std::move(arrived), largest);
+    node.addReader(made->handle());
+    return made;
+}
+
+const FrameOut* frameOf(const TransformConfig& config, const std::string& port) {
+    const auto found = std::ranges::find(config.frames, port, &FrameOut::port);
+    return found == config.frames.end() ? nullptr : &*found;
+}
+
+/** In our axes. */
+types::Pose poseOf(const ros::TransformTree::Placed& placed, const std::string& frame_id,
+                   const TransformConfig& config) {
+    ros::PoseStamped message;
+    message.header.frame_id = config.world_frame_id;
+    const glm::dvec3& p = placed.position;
+    const glm::dquat& q = placed.orientation;
+    message.pose = {{p.x, p.y, p.z}, {q.x, q.y, q.z, q.w}};
+    types::Pose pose;
+    ros::convert(message, config.node.world_frame, pose);
+    pose.source_frame = frame_id;
+    pose.time = placed.time;
+    return pose;
+}
+
+}  // namespace
+
+TransformConfig::TransformConfig() = default;
+
+void TransformConfig::check(types::Diagnostics& diagnostics) const {
+    node.check(diagnostics);
+    for (const auto& [key, name] : {std::pair{"topic", &topic}, {"static_topic", &static_topic}})
+        if (const std::string diagnostic = diagnosticOfTopic(*name); !diagnostic.empty())
+            diagnostics.push_back({key, diagnostic});
+    if (frames.empty()) diagnostics.push_back({"frames", "is empty; must hold a frame"});
+    std::set<std::string> ports;
+    for (size_t i = 0; i < frames.size(); ++i) {
+        const std::string path = "frames[" + std::to_string(i) + "].";
+        if (frames[i].frame_id == world_frame_id)
+            diagnostics.push_back({path + "frame_id", "is " + world_frame_id + ", the world_frame_id itself"});
+        if (!ports.insert(frames[i].port).second)
+            diagnostics.push_back({path + "port", "is " + frames[i].port + " a second time"});
+    }
+}
+
+framework::OutputPortBase* TransformTask::makeOutput(const std::string& port) {
+    const FrameOut* frame = frameOf(*config, port);
+    if (!frame) return nullptr;
+    return &outputs_.make<types::Pose>(port, "body in the world: x north, y west, z up").port;
+}
+
+void TransformTask::check(types::Diagnostics& diagnostics) const {
+    if (environment().lockstep)
+        diagnostics.push_back(
+            {"", "messages come on the wall clock's time, for which lockstep does not wait; set schedule: realtime"});
+    for (size_t i = 0; i < config->frames.size(); ++i) {
+        bool has_output = false;
+        outputs_.forEach([&](const auto& output) { has_output |= output.port.name() == config->frames[i].port; });
+        if (!has_output)
+            diagnostics.push_back({"frames[" + std::to_string(i) + "].port",
+                                   "no connection leads from " + name() + "." + config->frames[i].port});
+    }
+}
+
+std::vector<std::string> TransformTask::notices() const {
+    std::vector<std::string> all = drops_.summary();
+    for (std::string& line : gaps_.summary()) all.push_back(std::move(line));
+    return all;
+}
+
+bool TransformTask::configureHook() {
+    drops_.reset();
+    gaps_.reset();
+    tree_ = {};
+    moving_.reset();  // of a configure that failed
+    fixed_.reset();
+    node_.emplace(domainId(config->node.domain), config->node.nameOr(name()),
+                  static_cast<size_t>(config->node.gid_size));
+    moving_ = readerOf(*node_, config->topic, {.reliability = config->reliability, .depth = depth},
+                       [this] { arrived_.raise(); });
+    fixed_ =
+        readerOf(*node_, config->static_topic, {.depth = depth, .transient_local = true}, [this] { arrived_.raise(); });
+    node_->announce();
+    return true;
+}
+
+bool TransformTask::startHook() {
+    outputs_.forEach([this](auto& output) {
+        output.kept = {frameOf(*config, output.port.name())->frame_id, {}, {}, 0, {}};
+    });
+    return true;
+}
+
+void TransformTask::updateHook() {
+    take(*fixed_, true);
+    take(*moving_, false);
+    outputs_.forEach([this](auto& output) { tell(output); });
+    for (auto* counted : {&drops_, &gaps_})
+        if (const std::string told = counted->takeWarning(); !told.empty()) warn(told);
+}
+
+void TransformTask::take(Reader& reader, bool is_static) {
+    int taken = 0;
+    uint64_t sender = 0;
+    for (; taken < max_at_once && reader.take(bytes_, sender); ++taken) try {
+            ros::decode(std::span<const char>(bytes_), message_);
+            for (const ros::TransformStamped& transform : message_.transforms) add(transform, is_static);
+        } catch (const ros::CdrError& error) {
+            drops_.add(bytes_.empty() ? "a message that is empty, or larger than any of its type"
+                                      : "a message that is none of its type",
+                       std::string(": ") + error.what());
+        }
+    if (taken == max_at_once) arrived_.raise();
+}
+
+void TransformTask::add(const ros::TransformStamped& transform, bool is_static) {
+    const ros::Time& stamp = transform.header.stamp;
+    const bool is_stamped = config->stamp == StampFrom::Message && stamp != ros::Time{};
+    const std::string diagnostic = tree_.add(transform, is_static, is_stamped ? ros::fromRos(stamp) : now(), now());
+    if (!diagnostic.empty()) return drops_.add(diagnostic);
+    if (is_stamped && !is_static) ros::fineStamps().note(stamp);
+}
+
+template <class Output>
+void TransformTask::tell(Output& output) {
+    auto& kept = output.kept;
+    auto [placed, diagnostic] = tree_.newest(config->world_frame_id, kept.frame_id, now());
+    if (placed && diagnostic.empty())
+        kept.lacking.reset();
+    else if (!kept.lacking)
+        kept.lacking = now();
+    if (kept.lacking && !diagnostic.empty() && now() - *kept.lacking >= patience)
+        gaps_.add(output.port.name() + ": " + diagnostic);
+    if (!placed) return;
+    const bool is_fixed = placed->time.isNull();
+    if (is_fixed ? now() - kept.written < static_period
+                 : placed->time == kept.time || (placed->time < kept.time && kept.life == tree_.lives()))
+        return;
+    kept.time = placed->time;
+    kept.life = tree_.lives();
+    kept.written = now();
+    types::Pose pose = poseOf(*placed, kept.frame_id, *config);
+    if (is_fixed) pose.time = now();
+    output.port.write(pose);
+}
+
+void TransformTask::cleanupHook() {
+    moving_.reset();
+    fixed_.reset();
+    node_.reset();
+}
+
+}  // namespace insonify::dds

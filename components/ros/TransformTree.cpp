@@ -1,0 +1,128 @@
+#include "components/ros/TransformTree.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+
+#include "types/Pose.hpp"
+
+namespace insonify::ros {
+namespace {
+
+constexpr size_t longest_name = 255;
+
+/** As tf2 has it: "/map" is "map". */
+std::string nameOf(const std::string& frame) { return frame.starts_with('/') ? frame.substr(1) : frame; }
+
+types::Pose poseOf(const Transform& transform) {
+    types::Pose pose;
+    pose.position = {transform.translation.x, transform.translation.y, transform.translation.z};
+    pose.orientation = {transform.rotation.w, transform.rotation.x, transform.rotation.y, transform.rotation.z};
+    return pose;
+}
+
+}  // namespace
+
+std::string TransformTree::diagnosticOf(const TransformStamped& transform, bool is_static, types::Time stamp,
+                                        types::Time now) const {
+    const std::string child = nameOf(transform.child_frame_id), parent = nameOf(transform.header.frame_id);
+    if (child.empty() || parent.empty()) return "a transform without the name of its frame or of its parent";
+    if (std::max(child.size(), parent.size()) > longest_name) return "a name of more than 255 letters";
+    if (child == parent) return child + " is its own parent";
+    if (!types::isUsable(poseOf(transform.transform)))
+        return child + ": translation and rotation are not finite, or the rotation has no length";
+    if (!is_static && stamp - now > max_ahead)
+        return child + ": the stamp lies more than ten seconds ahead of the clock";
+    const auto found = links_.find(child);
+    if (found == links_.end()) return links_.size() < max_frames ? "" : "more frames than are kept";
+    const Link& link = found->second;
+    if (link.is_static && is_static) return "";
+    if (!link.is_static && now - link.came > max_silence) return "";
+    if (link.is_static != is_static) return child + " comes by /tf and by /tf_static";
+    if (link.parent != parent) return child + " has two parents, " + link.parent + " and " + parent;
+    return stamp < link.samples.back().time ? child + ": the stamp lies before the one before" : "";
+}
+
+std::string TransformTree::add(const TransformStamped& transform, bool is_static, types::Time stamp, types::Time now) {
+    if (std::string diagnostic = diagnosticOf(transform, is_static, stamp, now); !diagnostic.empty()) return diagnostic;
+    Link& link = links_[nameOf(transform.child_frame_id)];
+    const std::string parent = nameOf(transform.header.frame_id);
+    const bool begins_anew = link.is_static != is_static || link.parent != parent ||
+                             (!link.samples.empty() && stamp < link.samples.back().time);
+    if (is_static || begins_anew) link.samples.clear();
+    if (begins_anew) ++lives_;
+    link.parent = parent;
+    link.is_static = is_static;
+    link.came = now;
+    if (!link.samples.empty() && link.samples.back().time == stamp) return "";  // told twice
+    const types::Pose pose = poseOf(transform.transform);
+    link.samples.push_back({stamp, pose.position, glm::normalize(pose.orientation)});
+    while (link.samples.size() > max_kept || stamp - link.samples.front().time > memory) link.samples.pop_front();
+    return "";
+}
+
+std::optional<TransformTree::Chain> TransformTree::chainOf(const std::string& frame, std::string& diagnostic) const {
+    Chain chain;
+    for (auto link = links_.find(frame); link != links_.end(); link = links_.find(link->second.parent)) {
+        chain.push_back(&*link);
+        if (chain.size() > links_.size()) {
+            diagnostic = "the parents of " + frame + " go in a circle";
+            return std::nullopt;
+        }
+    }
+    return chain;
+}
+
+std::optional<TransformTree::Sample> TransformTree::at(const Chain& chain, types::Time time) {
+    Sample all{time, glm::dvec3(0), glm::dquat(1, 0, 0, 0)};
+    for (const auto* named : chain) {
+        const Link& link = named->second;
+        const auto after = std::ranges::lower_bound(link.samples, time, {}, &Sample::time);
+        Sample one = after == link.samples.end() ? link.samples.back() : *after;
+        if (!link.is_static && one.time != time) {
+            if (after == link.samples.begin() || after == link.samples.end()) return std::nullopt;
+            const Sample& before = *std::prev(after);
+            const double share = (time - before.time).seconds() / (after->time - before.time).seconds();
+            types::Pose between;
+            types::interpolate(before, *after, share, between);
+            one = {time, between.position, between.orientation};
+        }
+        all.position = one.position + one.orientation * all.position;
+        all.orientation = glm::normalize(one.orientation * all.orientation);
+    }
+    return all;
+}
+
+const TransformTree::Links::value_type* TransformTree::oldestOf(const Chain& up, const Chain& down) {
+    const Links::value_type* oldest = nullptr;
+    const auto newestTime = [](const auto* link) { return link->second.samples.back().time; };
+    for (const Chain* chain : {&up, &down})
+        for (const auto* link : *chain)
+            if (!link->second.is_static && (!oldest || newestTime(link) < newestTime(oldest))) oldest = link;
+    return oldest;
+}
+
+TransformTree::Found TransformTree::newest(const std::string& world, const std::string& frame, types::Time now) const {
+    std::string diagnostic;
+    auto up = chainOf(nameOf(frame), diagnostic), down = chainOf(nameOf(world), diagnostic);
+    if (!up || !down) return {{}, diagnostic};
+    const std::string root = up->empty() ? nameOf(frame) : up->back()->second.parent;
+    if (root != (down->empty() ? nameOf(world) : down->back()->second.parent))
+        return {{}, "no transforms lead from " + frame + " to " + world + (up->empty() ? "" : ", only to " + root)};
+    while (!up->empty() && !down->empty() && up->back() == down->back()) {
+        up->pop_back();
+        down->pop_back();
+    }
+    const auto* oldest = oldestOf(*up, *down);
+    if (oldest && now - oldest->second.came > max_silence)
+        diagnostic = oldest->first + " in " + oldest->second.parent + " has not come for a second";
+    const types::Time time = oldest ? oldest->second.samples.back().time : types::Time{};
+    const auto of_frame = at(*up, time), of_world = at(*down, time);
+    if (!of_frame || !of_world) return {{}, diagnostic};
+    const glm::dquat world_from_root = glm::conjugate(of_world->orientation);
+    return {Placed{time, world_from_root * (of_frame->position - of_world->position),
+                   world_from_root * of_frame->orientation},
+            diagnostic};
+}
+
+}  // namespace insonify::ros
