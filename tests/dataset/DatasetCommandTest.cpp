@@ -282,6 +282,30 @@ classes: {rock: rock_000}
     }
 }
 
+TEST_F(DatasetCommandTest, ScenesHaveFilesAndPropertiesOfTheirOwn) {
+    writeFile(folder_ / "sweep.yml", "scenes: [" + (root / "deploy/scenes/tank.glb").string() +
+                                         ", {set: {sonar.bin_count: 100}}]\nposes: {grid: {z: -3}}\n");
+    ASSERT_EQ(make("out").code, 0);
+    const json first = recordOf("out", "000000"), second = recordOf("out", "000001");
+    EXPECT_EQ(first["scene"], "tank.glb");
+    EXPECT_EQ(first["ping"]["bins"], 200);
+    EXPECT_EQ(second["scene"], "harbour.glb");
+    EXPECT_EQ(second["ping"]["bins"], 100);
+    const json classes = json::parse(readFile(folder_ / "out/manifest.json"))["classes"];
+    EXPECT_THAT(classes, testing::IsSupersetOf({json("pillar"), json("pile"), json("sea_floor")}));
+}
+
+TEST_F(DatasetCommandTest, ALogOfASampleHasItsPingTruthAndPose) {
+    ASSERT_EQ(make("out", {"--format", "mcap", "--shard", "2/8"}).code, 0);
+    const json record = recordOf("out", "000002");
+    const std::string log = "out/" + std::string(record["files"].items().begin().key());
+    const json info = json::parse(callInsonify(folder_, {"log", "info", log, "--json"}).out);
+    std::map<std::string, int> samples;
+    for (const json& stream : info["streams"]) samples[stream["name"]] = stream["count"];
+    EXPECT_THAT(samples, ElementsAre(testing::Pair("sonar.ping", 1), testing::Pair("sonar.truth", 1),
+                                     testing::Pair("vehicle.pose", 1)));
+}
+
 struct BadSweep {
     std::string name, text, message;
 };
