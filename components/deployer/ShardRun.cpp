@@ -3,6 +3,7 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <limits>
 #include <utility>
 
 #include "components/command/Sha256.hpp"
@@ -54,7 +55,7 @@ uint64_t rehearsedPings(const DeploymentSpec& spec, const RunOptions& options, c
     refuseIndivisible(deployment);
     deployment.configure();
     framework::RunLimits limits = options.limits;
-    limits.shard.emplace().first = limits.shard->last;
+    limits.shard = {.first = std::numeric_limits<uint64_t>::max()};
     const framework::RunResult result = deployment.run(limits, stopOnSignals());
     if (stopped(result))
         throw std::runtime_error(result.failed() ? "rehearsal: " + result.failures.front() : "interrupted");

@@ -4,6 +4,10 @@
 #include "components/dds/PublisherTask.hpp"
 #endif
 #include "components/device/DeviceTask.hpp"
+#include "components/framework/LeftOut.hpp"
+#ifdef INSONIFY_GAZEBO
+#include "components/gazebo/PoseTask.hpp"
+#endif
 #include "components/logger/LoggerTask.hpp"
 #include "components/mavlink/PoseTask.hpp"
 #include "components/nav/ImuTask.hpp"
@@ -35,9 +39,18 @@ framework::Registry builtInTasks() {
     device::registerTasks(registry);
 #ifdef INSONIFY_DDS
     dds::registerTasks(registry);
+#else
+    framework::leaveOut("dds::", "cyclonedds-dev");
+#endif
+#ifdef INSONIFY_GAZEBO
+    gazebo::registerTasks(registry);
+#else
+    framework::leaveOut("gazebo::", "libignition-transport-dev and libignition-msgs-dev");
 #endif
 #ifdef INSONIFY_VIEWER
     viewer::registerTasks(registry);
+#else
+    framework::leaveOut("viewer::", "libboost-dev");
 #endif
     return registry;
 }

@@ -47,12 +47,12 @@ public:
     virtual const types::Plan* plan() const = 0;
 };
 
-/** A task of which a run can be cut into shards: whatever pings a run begins with, this one writes of each the same.
+/** A task of which a run can be cut into shards: whatever sample a run begins with, this one writes of each the same.
  *
- *  Instants before those of the shard are rehearsed (Environment::rehearsing). The task then does what later pings
- *  depend on, a head that turns for example, and what may be long or leaves the deployment it leaves out: a sonar
- *  renders nothing, and writes a ping that has a time and nothing else; who reads pings hands such on, counts them,
- *  and makes nothing of them. */
+ *  Instants before those of the shard are rehearsed (Environment::rehearsing). The task then does what later samples
+ *  depend on, a motor that turns for example, and what may be long or leaves the deployment it leaves out: a source of
+ *  counted samples makes nothing, and writes one that has a time and nothing else; who reads such hands them on, counts
+ *  them, and makes nothing of them. */
 class Divisible {
 public:
     virtual ~Divisible() = default;

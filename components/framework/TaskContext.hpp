@@ -41,7 +41,7 @@ struct Environment {
     std::function<types::Time()> start_time;       ///< Of the run, on the same clock.
     bool lockstep = false;
     bool wall_clock = true;  ///< In realtime: no task has put a clock of its own in its place.
-    bool is_shard = false;   ///< Only some pings of the run are made, see RunLimits::shard.
+    bool is_shard = false;   ///< Only some samples of the run are made, see RunLimits::shard.
     /** This instant is not of the shard: see framework::Divisible. */
     bool rehearsing = false;
     std::string deployment_text;                   ///< The YAML as read, for the log's metadata.

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <tuple>
 
+#include "components/framework/LeftOut.hpp"
 #include "components/framework/Offers.hpp"
 #include "components/framework/Properties.hpp"
 #include "types/Hash.hpp"
@@ -110,7 +111,9 @@ void Wiring::makeTasks() {
         auto task = registry_.make(spec.type, spec.name);
         if (!task) {
             const YAML::Node type = child(spec.place, "type");
-            report(type, spec.path() + ".type", "is " + spec.type + "; " + suggestion(spec.type, typesOf(registry_)));
+            const std::string lacks = whyLeftOut(spec.type);
+            report(type, spec.path() + ".type",
+                   "is " + spec.type + (lacks.empty() ? "; " + suggestion(spec.type, typesOf(registry_)) : lacks));
             continue;
         }
         task->setEnvironment(environment_);

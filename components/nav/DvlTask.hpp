@@ -1,6 +1,7 @@
 #pragma once
 #include <optional>
 
+#include "components/framework/Offers.hpp"
 #include "components/framework/Port.hpp"
 #include "components/framework/Properties.hpp"
 #include "components/framework/SamplePool.hpp"
@@ -19,7 +20,7 @@ namespace insonify::nav {
  *
  *  The same seed and poses give the same errors. A pose that is not finite leads to RunTimeError, from which the next
  *  good one recovers. */
-class DvlTask final : public framework::TaskContext {
+class DvlTask final : public framework::TaskContext, public framework::Divisible {
 public:
     using TaskContext::TaskContext;
 

@@ -1,6 +1,7 @@
 #pragma once
 #include <optional>
 
+#include "components/framework/Offers.hpp"
 #include "components/framework/Port.hpp"
 #include "components/framework/Properties.hpp"
 #include "components/framework/Registry.hpp"
@@ -17,7 +18,7 @@ namespace insonify::nav {
  *
  *  The same seed and poses give the same errors, in a replay too that starts with the first pose: a bias wanders from
  *  there. A pose that is not finite leads to RunTimeError, from which the next good one recovers. */
-class ImuTask final : public framework::TaskContext {
+class ImuTask final : public framework::TaskContext, public framework::Divisible {
 public:
     using TaskContext::TaskContext;
 

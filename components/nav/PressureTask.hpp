@@ -1,6 +1,7 @@
 #pragma once
 #include <optional>
 
+#include "components/framework/Offers.hpp"
 #include "components/framework/Port.hpp"
 #include "components/framework/Properties.hpp"
 #include "components/framework/TaskContext.hpp"
@@ -14,7 +15,7 @@ namespace insonify::nav {
  *  In: `pose`, body in the world. Out, at the time of the pose: `pressure`, absolute; the depth in the same water as
  *  Rock's `depth_samples`. The same seed and poses give the same errors, in a replay too that starts with the first
  *  pose. A pose that is not finite leads to RunTimeError, from which the next good one recovers. */
-class PressureTask final : public framework::TaskContext {
+class PressureTask final : public framework::TaskContext, public framework::Divisible {
 public:
     using TaskContext::TaskContext;
 

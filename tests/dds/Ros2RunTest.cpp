@@ -1,4 +1,4 @@
-// deploy/ros2_fls.yml and what is wrong with others, as a user sees it.
+// deploy/ros2_fls.yml, deploy/ros2_tf.yml and what is wrong with others, as a user sees it.
 #include <gmock/gmock.h>
 
 #include "components/dds/Reader.hpp"
@@ -17,6 +17,7 @@ class Ros2RunTest : public Loopback {
 protected:
     TestFolder folder;
     const std::string fls = INSONIFY_SOURCE_DIR "/deploy/ros2_fls.yml";
+    const std::string tf = INSONIFY_SOURCE_DIR "/deploy/ros2_tf.yml";
 
     Outcome check(const std::string& yaml) {
         writeFile(folder / "x.yml", yaml);
@@ -92,7 +93,22 @@ TEST_F(Ros2RunTest, WithoutPosesItWaitsAndSaysSo) {
     EXPECT_EQ(outcome.code, 0) << outcome.err;
 }
 
-TEST_F(Ros2RunTest, TheDeploymentIsValid) { EXPECT_EQ(callInsonify(folder, {"check", fls}).code, 0); }
+TEST_F(Ros2RunTest, TransformsOfAPeerBecomePings) {
+    if (!Peer::available())
+        GTEST_SKIP() << "PyPI's cyclonedds is not in " << python() << ": scripts/setup puts it there";
+    const Process sonar(
+        insonifyWords({"run", tf, "--out", "out", "--pings", "10", "--summary", "summary.json", "--set", patience}),
+        folder.path());
+    const Peer peer("transforms 0.5");
+    if (!comesTrue([&] { return fs::exists(folder / "summary.json"); })) sonar.signal(SIGKILL);
+    const Outcome outcome = sonar.wait();
+    ASSERT_EQ(outcome.code, 0) << outcome.err;
+    EXPECT_GE(json::parse(readFile(folder / "summary.json"))["pings"], 10);
+}
+
+TEST_F(Ros2RunTest, TheDeploymentsAreValid) {
+    for (const std::string& deployment : {fls, tf}) EXPECT_EQ(callInsonify(folder, {"check", deployment}).code, 0);
+}
 
 TEST_F(Ros2RunTest, DiagnosticsAreToldWithTheirPlace) {
     Outcome outcome = check(replaced(vehicle, "type: nav_msgs/Odometry", "type: nav_msgs/Odometri"));

@@ -1,6 +1,6 @@
 // Every file in deploy/ runs. Those of ROS 2 wait for others: see tests/dds/Ros2RunTest.cpp. Those of devices wait for
-// drivers: see tests/device and tests/deployer/PingDriverTest.cpp. Those of MAVLink wait for a vehicle: see
-// tests/mavlink/MavlinkRunTest.cpp.
+// drivers: see tests/device and tests/deployer/PingDriverTest.cpp. Those of MAVLink and Gazebo wait for
+// these: see tests/mavlink/MavlinkRunTest.cpp and tests/gazebo/GazeboRunTest.cpp.
 #include <gmock/gmock.h>
 
 #include "tests/deployer/Command.hpp"
@@ -16,7 +16,7 @@ std::vector<std::string> deployments() {
     for (const auto& entry : fs::directory_iterator(deploy))
         if (const std::string name = entry.path().stem(); entry.path().extension() == ".yml" && name != "replay" &&
                                                           !name.starts_with("ros2_") && !name.starts_with("hil_") &&
-                                                          !name.starts_with("mavlink_"))
+                                                          !name.starts_with("mavlink_") && !name.starts_with("gazebo_"))
             names.push_back(name);
     std::sort(names.begin(), names.end());
     return names;

@@ -161,7 +161,7 @@ TEST_F(DeviceExportTest, ALogWithoutPosesGivesLinesWithoutPlacesAndSaysSo) {
 
 TEST_F(DeviceExportTest, WhatIsNoSideScanIsRefused) {
     expectRefused("sonar.pose", "x.xtf", {},
-                  "sonar.pose: holds /base/samples/RigidBodyState; an XTF file takes the lines");
+                  "sonar.pose: holds /base/samples/RigidBodyState_m; an XTF file takes the lines");
     expectRefused("no.ping", "x.xtf", {}, "no.ping");
     expectRefused("receiver.ping", "x.xtf", {"--pose", "receiver.ping"}, "--pose takes poses");
     expectRefused("receiver.ping", "x.xtf", {"--pose", "vehicle.pos"}, "vehicle.pos");
@@ -184,7 +184,7 @@ std::string codedWall(const std::string& code) {
 }
 
 TEST(OculusExportTest, ARecordingIsImportedAgainCodeByCode) {
-    for (const char* code : {"{bits: 16, law: sqrt, full_scale_db: -20}", "{law: sqrt, full_scale_db: -20}"}) {
+    for (const char* code : {"{bits: 16, law: sqrt, full_scale_db: -40}", "{law: sqrt, full_scale_db: -40}"}) {
         const WallFolder folder(codedWall(code));
         ASSERT_EQ(folder.run({"--pings", "3"}).code, 0);
         const Outcome outcome = callInsonify(

@@ -63,8 +63,14 @@ protected:
                          << " is missing; scripts/setup installs it";
     }
     std::vector<std::string> byWorkers(const std::string& program, int workers) const {
-        // Ray leaves its session and a token behind otherwise.
+        return byWorkers(program, workers, runTo("shards"));
+    }
+    std::vector<std::string> byWorkers(const std::string& program, int workers,
+                                       const std::vector<std::string>& command) const {
+        // Engines give up where a machine is slow to start them, and Ray leaves its session and a token behind.
         std::vector<std::string> words = {"env",
+                                          "DASK_DISTRIBUTED__COMM__TIMEOUTS__CONNECT=600s",
+                                          "RAY_raylet_start_wait_time_s=600",
                                           "RAY_TMPDIR=" + folder_.path().string(),
                                           "RAY_AUTH_MODE=disabled",
                                           insonify::python(),
@@ -75,8 +81,7 @@ protected:
                                           std::to_string(workers),
                                           "--",
                                           program};
-        const std::vector<std::string> run = runTo("shards");
-        words.insert(words.end(), run.begin(), run.end());
+        words.insert(words.end(), command.begin(), command.end());
         return words;
     }
     /** Runs the command, but who gets shard 2 first stops in the middle of it for ever and tells who it is. */
@@ -94,7 +99,7 @@ protected:
                       "    until ls " +
                       shards + "/.shard_2_of_6.*/wall.0.log " + shards +
                       "/shard_2_of_6 2> /dev/null |\n"
-                      "            grep -q .; do :; done\n"
+                      "            grep -q .; do sleep 0.01; done\n"
                       "    kill -STOP $!\n"
                       "    echo $PPID $$ $! > " +
                       first + "/written && mv " + first + "/written " + first +
@@ -111,7 +116,8 @@ protected:
         std::istringstream pids(readFile(folder_ / "first/pids"));
         pid_t worker = 0, waiting = 0, command = 0;
         ASSERT_TRUE(pids >> worker >> waiting >> command);
-        for (const pid_t pid : {command, worker, waiting}) EXPECT_EQ(kill(pid, SIGKILL), 0);
+        for (const pid_t pid : {command, worker}) EXPECT_EQ(kill(pid, SIGKILL), 0);
+        kill(waiting, SIGKILL);  // Ray ends what a dead worker has begun
     }
     static size_t linesOf(const std::string& text, const std::string& ending) {
         size_t count = 0;
@@ -124,9 +130,11 @@ protected:
 
 TEST_P(WorkersTest, OneOfTwoWorkersDiesInTheMiddleAndNothingIsLostOrDoubled) {
     const Process engine(byWorkers(stallingProgram(), 2), folder_.path());
-    ASSERT_TRUE(insonify::test::comesTrue([&] {
+    const auto isAtIt = [&] {
         return fs::exists(folder_ / "first/pids") && linesOf(readFile(folder_ / "stdout.txt"), "done\n") > 0;
-    })) << readFile(folder_ / "stderr.txt");
+    };
+    for (int times = 0; times < 10 && !isAtIt(); ++times) insonify::test::comesTrue(isAtIt);
+    ASSERT_TRUE(isAtIt()) << readFile(folder_ / "stderr.txt");
     killStalled();
     const Outcome outcome = engine.wait();
     EXPECT_EQ(outcome.code, 0) << outcome.out << outcome.err;
@@ -142,6 +150,26 @@ TEST_P(WorkersTest, AShardThatFailsIsToldAndFailsTheWhole) {
     EXPECT_EQ(outcome.code, 1) << outcome.err;
     EXPECT_EQ(linesOf(outcome.out, ": exit code 2: "), size_t{shard_count}) << outcome.out;
     EXPECT_THAT(outcome.out, HasSubstr("wall.gltf"));
+}
+
+TEST_P(WorkersTest, ADataSetIsThatOfOneMachine) {
+    writeFile(folder_ / "sweep.yml", "poses: {grid: {x: [0, 1, 2, 3], y: [0, 1]}}\npicture: {height: 64}\n");
+    const auto dataSet = [&](const std::string& out) {
+        return std::vector<std::string>{"dataset", folder_ / "wall.yml", "--sweep",  folder_ / "sweep.yml",
+                                        "--out",   folder_ / out,        "--format", "yolo"};
+    };
+    ASSERT_EQ(callInsonify(folder_, dataSet("one")).code, 0);
+    const Outcome outcome =
+        Process(byWorkers(INSONIFY_BIN_DIR "/insonify", 2, dataSet("shards")), folder_.path()).wait();
+    EXPECT_EQ(outcome.code, 0) << outcome.out << outcome.err;
+    std::map<std::string, std::string> one, shards;
+    for (const auto& file : fs::directory_iterator(folder_ / "one"))
+        one[file.path().filename()] = readFile(file.path());
+    for (const auto& file : fs::directory_iterator(folder_ / "shards"))
+        shards[file.path().filename()] = readFile(file.path());
+    EXPECT_TRUE(one.contains("manifest.json"));
+    EXPECT_EQ(shards.size(), one.size());
+    EXPECT_TRUE(shards == one);
 }
 
 INSTANTIATE_TEST_SUITE_P(All, WorkersTest, testing::Values(Engine{"dask", "distributed"}, Engine{"ray", "ray"}),

@@ -180,7 +180,7 @@ def tasks(node):
 for name in sorted(glob.glob("*.yml")):
     for part in re.split(r"^\.\.\.$", open(name).read(), flags=re.MULTILINE):
         for task in tasks(yaml.safe_load(textwrap.dedent(part))):
-            if task["type"] not in schema["$defs"] and task["type"].startswith(("dds::", "viewer::")):
+            if task["type"] not in schema["$defs"] and task["type"].startswith(("dds::", "gazebo::", "viewer::")):
                 continue  # a build may be without them
             try:
                 jsonschema.validate({"schedule": "realtime", "tasks": {"task": task}}, schema)

@@ -28,7 +28,7 @@ std::map<std::string, Lines> sectionsOf(const std::string& page) {
 
 /** Tasks that a build may be without. */
 bool isOptional(const std::string& section) {
-    return section.starts_with("## dds::") || section.starts_with("## viewer::");
+    return section.starts_with("## dds::") || section.starts_with("## gazebo::") || section.starts_with("## viewer::");
 }
 
 /** Lines of the first that the second has not. */

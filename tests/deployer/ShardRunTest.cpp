@@ -92,10 +92,11 @@ public:
                     EXPECT_TRUE(all.emplace(name, bytes).second) << name << " is there twice";
                 }
         }
-        words.insert(words.end(), {"--to", "joined" + log.substr(4)});
+        fs::create_directory(*this / "joined");
+        words.insert(words.end(), {"--to", "joined/" + log});
         const Outcome outcome = callInsonify(*this, words);
         EXPECT_EQ(outcome.code, 0) << outcome.err;
-        all[log] = readFile(path() / ("joined" + log.substr(4)));
+        all[log] = readFile(path() / "joined" / log);
         return all;
     }
     /** The same of the whole run, its log copied as well. */
@@ -103,10 +104,11 @@ public:
                                              const std::string& log = "wall.0.log") const {
         const Outcome outcome = run(more);
         EXPECT_EQ(outcome.code, 0) << outcome.err;
-        EXPECT_EQ(callInsonify(*this, {"log", "cut", "out/" + log, "--to", "whole" + log.substr(4)}).code, 0);
+        fs::create_directory(*this / "whole");
+        EXPECT_EQ(callInsonify(*this, {"log", "cut", "out/" + log, "--to", "whole/" + log}).code, 0);
         std::map<std::string, std::string> all = filesIn(path() / "out");
         std::erase_if(all, [](const auto& file) { return !file.first.ends_with(".png"); });
-        all[log] = readFile(path() / ("whole" + log.substr(4)));
+        all[log] = readFile(path() / "whole" / log);
         return all;
     }
     std::vector<fs::path> shards(const std::string& out = "shards") const {
@@ -160,6 +162,7 @@ TEST(ShardRunTest, ARunAsLongAsItsTrajectoryOrAsATimeIsCutAsWell) {
     {
         const Shards folder(movingWall());
         folder.makeAll(3);
+        ASSERT_EQ(folder.shards().size(), 3u);
         EXPECT_EQ(manifestOf(folder.shards().front())["pings_of_run"], 20);
         expectSame(folder.joined(), folder.whole());
     }
@@ -172,6 +175,8 @@ TEST(ShardRunTest, McapFilesAreOfTheSameBytesWhoeverMakesThemAndJoinToTheWhole) 
     const Shards folder(movingWall("wall.0.mcap"));
     folder.makeAll(2, {"--pings", "8"});
     folder.makeAll(2, {"--pings", "8"}, "again");
+    ASSERT_EQ(folder.shards().size(), 2u);
+    ASSERT_EQ(folder.shards("again").size(), 2u);
     for (size_t i = 0; i < 2; ++i)
         EXPECT_EQ(readFile(folder.shards()[i] / "manifest.json"),
                   readFile(folder.shards("again")[i] / "manifest.json"));
@@ -181,6 +186,7 @@ TEST(ShardRunTest, McapFilesAreOfTheSameBytesWhoeverMakesThemAndJoinToTheWhole) 
 TEST(ShardRunTest, TheManifestHasEveryFileWithItsHashAndNothingOfTheMachine) {
     const Shards folder(movingWall());
     folder.makeAll(1, {"--pings", "4"});
+    ASSERT_EQ(folder.shards().size(), 1u);
     const fs::path shard = folder.shards().front();
     const json manifest = manifestOf(shard);
     EXPECT_EQ(manifest["shard"], "0/1");

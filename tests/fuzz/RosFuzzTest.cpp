@@ -4,7 +4,9 @@
 #include "components/ros/Cdr.hpp"
 #include "components/ros/Messages.hpp"
 #include "components/ros/Poses.hpp"
+#include "components/ros/Times.hpp"
 #include "components/ros/ToSonar.hpp"
+#include "components/ros/TransformTree.hpp"
 #include "tests/support/Fuzz.hpp"
 
 namespace insonify::fuzz {
@@ -27,7 +29,27 @@ void read(const Input& input, const Layout&... layout) try {
     expectOurWords(error.what());
 }
 
+/** Whatever a message tells of frames, the chains between them end. */
+void follow(const Input& input) try {
+    ros::TFMessage message;
+    ros::decode(input.span(), message);
+    ros::TransformTree tree;
+    const types::Time now = types::Time::fromSeconds(1e9);
+    for (const bool is_static : {false, true})
+        for (const ros::TransformStamped& transform : message.transforms)
+            tree.add(transform, is_static, ros::fromRos(transform.header.stamp), now);
+    for (const ros::TransformStamped& transform : message.transforms) {
+        const auto found = tree.newest("map", transform.child_frame_id, now);
+        if (found.placed) {
+            EXPECT_NEAR(glm::length(found.placed->orientation), 1, 1e-9);
+        }
+    }
+} catch (const ros::CdrError& error) {
+    expectOurWords(error.what());
+}
+
 void readAll(const Input& input) {
+    follow(input);
     read<ros::Odometry, types::Pose>(input, ros::WorldFrame::Enu);
     read<ros::PoseStamped, types::Pose>(input, ros::WorldFrame::Ned);
     for (const auto order : {ros::ImageOrder::RangeMajor, ros::ImageOrder::BeamMajor})

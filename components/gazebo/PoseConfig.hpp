@@ -1,0 +1,55 @@
+#pragma once
+#include <set>
+#include <string>
+#include <vector>
+
+#include "types/Describe.hpp"
+#include "types/Diagnostic.hpp"
+#include "types/WorldFrame.hpp"
+
+namespace insonify::gazebo {
+
+/** One body's place as one port's poses. */
+struct BodyConfig {
+    std::string port = "pose";
+    std::string entity;
+    std::string odometry;
+
+    template <class Self, class V>
+    static void describe(Self& self, V& visit) {
+        using types::Field;
+        visit(Field{"port", "", "output port that connections lead from"}, self.port);
+        visit(Field{"entity", "", "the model of this name, of the world's poses; empty: odometry is given"},
+              self.entity);
+        visit(Field{"odometry", "", "topic of the body's Odometry, /model/rov/odometry; empty: entity is given"},
+              self.odometry);
+    }
+};
+
+struct PoseConfig {
+    std::string world;
+    std::string pose_topic;
+    std::vector<BodyConfig> bodies;
+    types::WorldFrame world_frame = types::WorldFrame::AsIs;
+    std::string partition;
+
+    PoseConfig();  // not in line: g++ 12 takes its texts for uninitialized
+
+    template <class Self, class V>
+    static void describe(Self& self, V& visit) {
+        using types::Field;
+        visit(Field{"bodies", "", "what is read"}, self.bodies);
+        visit(Field{"world", "", "name of Gazebo's world, whose poses are on /world/NAME/pose/info"}, self.world);
+        visit(Field{"pose_topic", "", "another topic of poses; empty: that of the world"}, self.pose_topic);
+        visit(Field{"world_frame", "",
+                    "axes of Gazebo's world: as_is, those of the scene, as where both read one SDF file; enu or ned, "
+                    "where x of the scene is north"},
+              self.world_frame);
+        visit(Field{"partition", "", "of Gazebo's transport; empty: IGN_PARTITION"}, self.partition);
+    }
+    void check(types::Diagnostics& diagnostics) const;
+    /** Of the entities' poses. */
+    std::string poseTopic() const { return pose_topic.empty() ? "/world/" + world + "/pose/info" : pose_topic; }
+};
+
+}  // namespace insonify::gazebo

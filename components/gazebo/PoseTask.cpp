@@ -1,0 +1,113 @@
+#include "components/gazebo/PoseTask.hpp"
+
+#include <algorithm>
+
+#include "types/ConfigError.hpp"
+
+namespace insonify::gazebo {
+
+using Order = types::SenderClock::Order;
+
+PoseConfig::PoseConfig() = default;
+
+void PoseConfig::check(types::Diagnostics& diagnostics) const {
+    if (bodies.empty()) diagnostics.push_back({"bodies", "is empty; must hold a body"});
+    std::set<std::string> ports;
+    bool has_entity = false;
+    for (size_t i = 0; i < bodies.size(); ++i) {
+        const std::string path = "bodies[" + std::to_string(i) + "]";
+        has_entity |= !bodies[i].entity.empty();
+        if (bodies[i].entity.empty() == bodies[i].odometry.empty())
+            diagnostics.push_back({path, "must have an entity or an odometry, one of both"});
+        if (!ports.insert(bodies[i].port).second)
+            diagnostics.push_back({path + ".port", "is " + bodies[i].port + " a second time"});
+    }
+    if (has_entity && world.empty() == pose_topic.empty())
+        diagnostics.push_back({"world", "must be given for the poses of entities, or pose_topic, one of both"});
+}
+
+framework::OutputPortBase* PoseTask::makeOutput(const std::string& port) {
+    if (std::ranges::find(config->bodies, port, &BodyConfig::port) == config->bodies.end()) return nullptr;
+    return &outputs_.make<types::Pose>(port, "body in the world: x north, y west, z up").port;
+}
+
+void PoseTask::check(types::Diagnostics& diagnostics) const {
+    if (environment().lockstep)
+        diagnostics.push_back(
+            {"", "messages come on the wall clock's time, for which lockstep does not wait; set schedule: realtime"});
+    for (size_t i = 0; i < config->bodies.size(); ++i) {
+        bool has_output = false;
+        outputs_.forEach([&](const auto& output) { has_output |= output.port.name() == config->bodies[i].port; });
+        if (!has_output)
+            diagnostics.push_back({"bodies[" + std::to_string(i) + "].port",
+                                   "no connection leads from " + name() + "." + config->bodies[i].port});
+    }
+}
+
+std::vector<std::string> PoseTask::notices() const {
+    std::vector<std::string> all = drops_.summary();
+    if (const uint64_t lost = inbox_ ? inbox_->lost() : 0; lost > 0)
+        all.push_back(std::to_string(lost) + " messages lost, for newer ones");
+    return all;
+}
+
+bool PoseTask::configureHook() {
+    drops_.reset();
+    inbox_ = std::make_shared<Inbox>([this] { arrived_.raise(); });
+    try {
+        subscriptions_ = std::make_unique<Subscriptions>(*config, inbox_);
+    } catch (const types::ConfigError& error) {
+        inbox_->close();
+        const types::Diagnostic& first = error.diagnostics().front();
+        throw types::ConfigError("", name() + "." + first.path, first.message);
+    }
+    return true;
+}
+
+bool PoseTask::startHook() {
+    inbox_->take();  // what came before the start
+    clocks_.assign(subscriptions_->topics().size(), {});
+    return true;
+}
+
+void PoseTask::updateHook() {
+    for (Arrived& message : inbox_->take()) take(message);
+    if (const std::string told = drops_.takeWarning(); !told.empty()) warn(told);
+}
+
+void PoseTask::take(Arrived& message) {
+    types::Time time = now();
+    if (message.stamp) {
+        const auto reading = clocks_[message.topic].read(*message.stamp, now());
+        if (reading.order == Order::Repeated) return;
+        if (reading.order == Order::Late)
+            return drops_.add(subscriptions_->topics()[message.topic] +
+                              ": the stamp lies before that of the message before");
+        time = reading.time;
+    }
+    for (Placed& placed : message.bodies) write(placed, time);
+}
+
+void PoseTask::write(Placed& placed, types::Time time) {
+    const BodyConfig& body = config->bodies[placed.body];
+    const std::string& name = body.entity.empty() ? body.odometry : body.entity;
+    if (!placed.diagnostic.empty()) return drops_.add(name + ": " + placed.diagnostic);
+    if (!types::isUsable(placed.pose))
+        return drops_.add(name + ": position and orientation are not finite, or the orientation has no length");
+    placed.pose.time = time;
+    placed.pose.orientation = glm::normalize(placed.pose.orientation);
+    outputs_.forEach([&](auto& output) {
+        if (output.port.name() == body.port) output.port.write(placed.pose);
+    });
+}
+
+void PoseTask::cleanupHook() {
+    subscriptions_.reset();
+    inbox_.reset();
+}
+
+void registerTasks(framework::Registry& registry) {
+    registry.add<PoseTask>("gazebo::PoseTask", "reads where bodies are in a world of Gazebo's");
+}
+
+}  // namespace insonify::gazebo

@@ -1,0 +1,60 @@
+#pragma once
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "components/framework/DynamicPorts.hpp"
+#include "components/framework/Event.hpp"
+#include "components/framework/Properties.hpp"
+#include "components/framework/Registry.hpp"
+#include "components/framework/TaskContext.hpp"
+#include "components/gazebo/PoseConfig.hpp"
+#include "components/gazebo/Subscriptions.hpp"
+#include "types/SenderClock.hpp"
+#include "types/ThrottledWarning.hpp"
+
+namespace insonify::gazebo {
+
+/** Reads where bodies are in a world of Gazebo's; for `schedule: realtime`.
+ *
+ *  Ports: an output for each of `bodies`: body in the world, Rock's axes (x north, y west, z up). Every message that is
+ *  newer than the one before is a pose, stamped by the simulation's time carried over to ours. A message wakes the
+ * task; with a period it takes what has come by then. While the simulation stands still there is no pose; one that is
+ * reset begins anew.
+ *
+ *  What is dropped is counted: a warning tells it at the first and then every ten seconds at most, a notice the sum at
+ *  the end. Refused in lockstep, whose time does not wait for messages. */
+class PoseTask final : public framework::TaskContext {
+public:
+    using TaskContext::TaskContext;
+
+    framework::Properties<PoseConfig> config{this};
+
+    framework::OutputPortBase* makeOutput(const std::string& port) override;
+    void check(types::Diagnostics& diagnostics) const override;
+    std::vector<std::string> notices() const override;
+    bool reachesOutside() const override { return true; }
+    /** For what came before it ran. */
+    double wakeAfter() const override { return 0.5; }
+
+private:
+    bool configureHook() override;
+    bool startHook() override;
+    void updateHook() override;
+    void cleanupHook() override;
+
+    void take(Arrived& message);
+    void write(Placed& placed, types::Time time);
+
+    framework::Event arrived_{this};  ///< A message; outlives the subscriptions.
+    std::shared_ptr<Inbox> inbox_;
+    std::unique_ptr<Subscriptions> subscriptions_;
+    std::vector<types::SenderClock> clocks_;  ///< By topic.
+    framework::DynamicOutputs<std::tuple<types::Pose>> outputs_{this};
+    types::ThrottledWarning drops_{"message", "dropped"};
+};
+
+/** Makes the tasks of this folder known to deployments. */
+void registerTasks(framework::Registry& registry);
+
+}  // namespace insonify::gazebo

@@ -1,0 +1,91 @@
+// deploy/gazebo_poses.yml and what is wrong with others, as a user sees it.
+#include <gmock/gmock.h>
+#include <signal.h>
+
+#include "tests/deployer/Command.hpp"
+#include "tests/gazebo/World.hpp"
+
+using namespace insonify;
+using namespace insonify::deployer;
+using testing::HasSubstr;
+
+namespace {
+
+const std::string deployment = INSONIFY_SOURCE_DIR "/deploy/gazebo_poses.yml";
+
+class GazeboRunTest : public gazebo::OwnPartition {
+protected:
+    Process run(const std::vector<std::string>& more) const {
+        std::vector<std::string> words = {"run", deployment, "--out", "out"};
+        words.insert(words.end(), more.begin(), more.end());
+        return Process(insonifyWords(words), folder.path());
+    }
+    bool says(const std::string& text) const {
+        return gazebo::comesTrue([&] { return readFile(folder / "stderr.txt").find(text) != std::string::npos; });
+    }
+    TestFolder folder;
+};
+
+}  // namespace
+
+TEST_F(GazeboRunTest, PosesOfAWorldInAnotherProcessBecomePings) {
+    gazebo::World world("/world/two_vehicles/pose/info");
+    const Process sonar = run({"--pings", "20", "--summary", "summary.json", "--set", "scene.pose_timeout=60"});
+    int told = 0;
+    const auto tell = [&] {
+        ++told;
+        world.tell(0.02 * told, 0.01 * told);
+        std::this_thread::sleep_for(std::chrono::milliseconds(20));
+    };
+    const bool pings = gazebo::comesTrue([&] { return tell(), fs::exists(folder / "out/fan_000000.png"); });
+    const bool ended = pings && gazebo::comesTrue([&] { return tell(), fs::exists(folder / "summary.json"); });
+    if (!ended) sonar.signal(SIGKILL);
+    EXPECT_TRUE(ended);
+    const Outcome outcome = sonar.wait();
+    ASSERT_EQ(outcome.code, 0) << outcome.err;
+    EXPECT_GE(json::parse(readFile(folder / "summary.json"))["pings"], 20);
+}
+
+TEST_F(GazeboRunTest, AWorldThatIsPausedStopsThePingsAndTheyGoOnWithIt) {
+    gazebo::World world("/world/two_vehicles/pose/info");
+    const Process sonar = run({"--set", "scene.pose_timeout=2", "--set", "fan.every=1"});
+    int told = 0;
+    const auto tell = [&](bool goes_on) {
+        told += goes_on ? 1 : 0;
+        world.tell(0.02 * told, 0.01 * told);
+        std::this_thread::sleep_for(std::chrono::milliseconds(20));
+    };
+    const auto pictures = [&] {
+        return std::distance(fs::directory_iterator(folder / "out"), fs::directory_iterator{});
+    };
+    EXPECT_TRUE(gazebo::comesTrue([&] { return tell(true), fs::exists(folder / "out/fan_000003.png"); }));
+    EXPECT_TRUE(gazebo::comesTrue([&] {
+        tell(false);
+        return readFile(folder / "stderr.txt").find("no pose of the last 2 s (pose_timeout)") != std::string::npos;
+    }));
+    EXPECT_TRUE(gazebo::comesTrue([&, before = pictures()] { return tell(true), pictures() > before + 2; }));
+    sonar.signal(SIGINT);
+    const Outcome outcome = sonar.wait();
+    EXPECT_EQ(outcome.code, 0) << outcome.err;
+}
+
+TEST_F(GazeboRunTest, WithoutAWorldItWaitsAndSaysSo) {
+    const Process sonar = run({"--set", "scene.pose_timeout=0.2"});
+    EXPECT_TRUE(says("warning: scene: scene.pose: waits for the first pose")) << readFile(folder / "stderr.txt");
+    sonar.signal(SIGINT);
+    EXPECT_EQ(sonar.wait().code, 0);
+}
+
+TEST_F(GazeboRunTest, TheDeploymentIsValidAndDiagnosticsAreToldWithTheirPlace) {
+    EXPECT_EQ(callInsonify(folder, {"check", deployment}).code, 0);
+    const auto diagnosed = [&](const std::string& set) {
+        return callInsonify(folder, {"run", deployment, "--out", "out", "--set", set}).err;
+    };
+    EXPECT_THAT(diagnosed("world.bodies=[{port: red}, {port: blue, entity: blue}]"),
+                HasSubstr("bodies[0]: must have an entity or an odometry, one of both"));
+    EXPECT_THAT(diagnosed("world.bodies=[{port: red, entity: red}, {port: red, entity: blue}]"),
+                HasSubstr("bodies[1].port: is red a second time"));
+    EXPECT_THAT(diagnosed("world.pose_topic=/poses"),
+                HasSubstr("world: must be given for the poses of entities, or pose_topic, one of both"));
+    EXPECT_THAT(diagnosed("world.world_frame=ecef"), HasSubstr("world_frame: is ecef"));
+}

@@ -1,0 +1,197 @@
+// A world by the transport's own publisher, and the task that reads its poses.
+#include <gmock/gmock.h>
+
+#include <limits>
+
+#include "components/framework/Activity.hpp"
+#include "components/gazebo/PoseTask.hpp"
+#include "tests/gazebo/World.hpp"
+#include "tests/support/Ports.hpp"
+
+using namespace insonify;
+using namespace insonify::gazebo;
+using testing::Contains;
+using testing::HasSubstr;
+
+namespace {
+
+class PoseTaskTest : public OwnPartition {
+protected:
+    ~PoseTaskTest() override { task.activity().hold(); }
+
+    static BodyConfig entity(const std::string& port, const std::string& name) { return {port, name, ""}; }
+    void startWith(std::vector<BodyConfig> bodies) {
+        PoseConfig config;
+        config.world = "sea";
+        config.bodies = std::move(bodies);
+        task.config.set(config);
+        for (size_t i = 0; i < config.bodies.size(); ++i)
+            task.makeOutput(config.bodies[i].port)->connectTo(readers[i].port, framework::ConnPolicy::buffer(10'000));
+        const framework::Outcome configured = task.configure();
+        ASSERT_TRUE(configured) << configured.reason;
+        ASSERT_TRUE(task.start());
+    }
+    /** Until a message has come; then nothing of it is left. */
+    void meet(double seconds = 1) {
+        ASSERT_TRUE(comesTrue([&] {
+            world.tell(seconds, 0);
+            task.update();
+            types::Pose pose;
+            return readers[0].port.readNew(pose);
+        }));
+        task.update();
+        for (auto& reader : readers) reader.port.clear();
+    }
+    /** The next pose, which the message that `tell` sends becomes. */
+    std::optional<types::Pose> next(size_t reader = 0) {
+        types::Pose pose;
+        if (!comesTrue([&] { return task.update(), readers[reader].port.readNew(pose); })) return std::nullopt;
+        return pose;
+    }
+    /** Waits until something has been dropped, or not. */
+    bool tells(const std::string& text) {
+        return comesTrue([&] {
+            task.update();
+            const std::vector<std::string> all = task.notices();
+            return std::ranges::any_of(all, [&](const auto& line) { return line.find(text) != std::string::npos; });
+        });
+    }
+
+    World world;
+    test::Reader<types::Pose> readers[2];
+    PoseTask task{"world"};
+};
+
+}  // namespace
+
+TEST_F(PoseTaskTest, AVehicleAndAnObjectOfTheWorldAreFollowed) {
+    startWith({entity("rov", "red"), entity("other", "blue")});
+    meet();
+    types::Time last;
+    for (int i = 1; i <= 20; ++i) {
+        world.tell(1 + 0.02 * i, i);
+        const auto red = next(0), blue = next(1);
+        ASSERT_TRUE(red && blue) << i;
+        EXPECT_EQ(red->position, glm::dvec3(i, 2, -5));
+        EXPECT_NEAR(2 * std::atan2(red->orientation.z, red->orientation.w), 0.5, 1e-12);
+        EXPECT_EQ(blue->position, glm::dvec3(i + 12, 4, -5));
+        EXPECT_EQ(red->time, blue->time);
+        EXPECT_GE(red->time, last);
+        EXPECT_LE(red->time, framework::wallClock());
+        last = red->time;
+    }
+}
+
+TEST_F(PoseTaskTest, AMessageWakesTheTask) {
+    startWith({entity("rov", "red")});
+    task.activity().release();
+    int told = 0;
+    types::Pose pose;
+    EXPECT_TRUE(comesTrue([&] {
+        ++told;
+        world.tell(1 + 0.01 * told, told);
+        return readers[0].port.readNew(pose);
+    }));
+}
+
+TEST_F(PoseTaskTest, OdometryIsFollowedWithItsVelocities) {
+    startWith({{"rov", "", "/model/rov/odometry"}});
+    ignition::msgs::Odometry message;
+    setPose(*message.mutable_pose(), "", 1, 2, 3, 0);
+    message.mutable_twist()->mutable_linear()->set_x(0.5);
+    std::optional<types::Pose> pose;
+    double seconds = 5;
+    ASSERT_TRUE(comesTrue([&] {
+        setStamp(*message.mutable_header(), seconds += 0.02);
+        world.send(message);
+        task.update();
+        types::Pose came;
+        if (readers[0].port.readNew(came)) pose = came;
+        return pose.has_value();
+    }));
+    EXPECT_EQ(pose->position, glm::dvec3(1, 2, 3));
+    EXPECT_EQ(pose->velocity, glm::dvec3(0.5, 0, 0));
+}
+
+TEST_F(PoseTaskTest, AWorldThatIsPausedGivesNoPoseAndOneThatIsResetBeginsAnew) {
+    startWith({entity("rov", "red")});
+    meet(100);
+    for (int i = 0; i < 5; ++i) world.tell(100, 1);  // stands still
+    world.tell(100.02, 2);
+    EXPECT_EQ(next().value_or(types::Pose{}).position.x, 2);
+    world.tell(99.9, 3);  // of another publisher, or overtaken
+    EXPECT_TRUE(tells("dropped: /world/sea/pose/info: the stamp lies before"));
+    world.tell(0, 4);
+    const auto pose = next();
+    EXPECT_EQ(pose.value_or(types::Pose{}).position.x, 4);
+    EXPECT_GT(pose.value_or(types::Pose{}).time, types::Time::fromSeconds(1e9)) << "of our clock";
+}
+
+TEST_F(PoseTaskTest, PosesThatAreNotFiniteAndEntitiesThatAreNotThereAreDroppedAndTold) {
+    startWith({entity("rov", "red"), entity("other", "auv")});
+    meet();
+    ignition::msgs::Pose_V message;
+    setStamp(*message.mutable_header(), 2);
+    setPose(*message.add_pose(), "red", std::numeric_limits<double>::quiet_NaN(), 0, 0, 0);
+    world.send(message);
+    EXPECT_TRUE(tells("dropped: red: position and orientation are not finite"));
+    EXPECT_TRUE(tells("dropped: auv: no entity of that name"));
+    setStamp(*message.mutable_header(), 2.1);
+    setPose(*message.mutable_pose(0), "red", 1, 0, 0, 0);
+    message.mutable_pose(0)->mutable_orientation()->set_w(0);
+    world.send(message);
+    message.mutable_pose(0)->mutable_orientation()->set_w(7);  // of another length
+    setStamp(*message.mutable_header(), 2.2);
+    world.send(message);
+    const auto pose = next();
+    ASSERT_TRUE(pose);
+    EXPECT_EQ(pose->position.x, 1);
+    EXPECT_EQ(pose->orientation, glm::dquat(1, 0, 0, 0));
+}
+
+TEST_F(PoseTaskTest, AMessageWithoutAStampBearsItsArrival) {
+    startWith({entity("rov", "red")});
+    meet();
+    ignition::msgs::Pose_V message;
+    setPose(*message.add_pose(), "red", 9, 0, 0, 0);
+    const types::Time before = framework::wallClock();
+    world.send(message);
+    EXPECT_GE(next().value_or(types::Pose{}).time, before);
+}
+
+TEST_F(PoseTaskTest, MessagesThatNobodyTakesDoNotFillTheMemory) {
+    int woken = 0;
+    Inbox inbox([&] { ++woken; });
+    for (size_t i = 0; i < Inbox::capacity + 5; ++i) inbox.put({i, {}, {}});
+    EXPECT_EQ(inbox.lost(), 5u);
+    const std::vector<Arrived> taken = inbox.take();
+    ASSERT_EQ(taken.size(), Inbox::capacity);
+    EXPECT_EQ(taken.front().topic, 5u);
+    inbox.close();
+    inbox.put({});
+    EXPECT_TRUE(inbox.take().empty());
+    EXPECT_EQ(woken, int(Inbox::capacity) + 5);
+}
+
+TEST_F(PoseTaskTest, WhatTheTransportDoesNotTakeIsAnErrorOfItsProperty) {
+    PoseConfig config;
+    config.pose_topic = "/with a space";
+    config.bodies = {entity("rov", "red")};
+    PoseTask other("other");
+    other.config.set(config);
+    EXPECT_THAT(other.configure().reason, HasSubstr("other.pose_topic: is /with a space, which"));
+    config.pose_topic = "/poses";
+    config.partition = "a@b";
+    PoseTask third("third");
+    third.config.set(config);
+    EXPECT_THAT(third.configure().reason, HasSubstr("third.partition: is a@b, which"));
+}
+
+TEST_F(PoseTaskTest, LockstepIsRefusedWithAReason) {
+    PoseTask other("other");
+    other.environment().lockstep = true;
+    types::Diagnostics diagnostics;
+    other.check(diagnostics);
+    ASSERT_EQ(diagnostics.size(), 1u);
+    EXPECT_THAT(diagnostics[0].message, HasSubstr("set schedule: realtime"));
+}

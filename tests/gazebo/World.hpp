@@ -1,0 +1,70 @@
+#pragma once
+// What stands in for Gazebo: its transport's own publisher, in a partition of the test's own on this machine.
+#include <gtest/gtest.h>
+#include <ignition/msgs/odometry.pb.h>
+#include <ignition/msgs/pose_v.pb.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <cstdlib>
+#include <ignition/transport/Node.hh>
+#include <random>
+#include <string>
+
+#include "tests/support/Waiting.hpp"
+
+namespace insonify::gazebo {
+
+using test::comesTrue;
+
+/** Tests that hear nobody else, and nobody else hears. */
+class OwnPartition : public testing::Test {
+protected:
+    OwnPartition() {
+        setenv("IGN_IP", "127.0.0.1", 1);
+        setenv("IGN_PARTITION",
+               ("insonify-" + std::to_string(getpid()) + "-" + std::to_string(std::random_device{}())).c_str(), 1);
+    }
+};
+
+inline void setStamp(ignition::msgs::Header& header, double seconds) {
+    const auto whole = static_cast<int64_t>(seconds);
+    header.mutable_stamp()->set_sec(whole);
+    header.mutable_stamp()->set_nsec(static_cast<int32_t>((seconds - static_cast<double>(whole)) * 1e9));
+}
+
+inline void setPose(ignition::msgs::Pose& pose, const std::string& name, double x, double y, double z, double yaw) {
+    pose.set_name(name);
+    pose.mutable_position()->set_x(x);
+    pose.mutable_position()->set_y(y);
+    pose.mutable_position()->set_z(z);
+    pose.mutable_orientation()->set_w(std::cos(yaw / 2));
+    pose.mutable_orientation()->set_z(std::sin(yaw / 2));
+}
+
+/** A world's poses, as Gazebo's scene broadcaster tells them: models and, within them, their links. */
+class World {
+public:
+    explicit World(const std::string& topic = "/world/sea/pose/info")
+        : poses_(node_.Advertise<ignition::msgs::Pose_V>(topic)),
+          odometry_(node_.Advertise<ignition::msgs::Odometry>("/model/rov/odometry")) {}
+    /** Red at x along the world's x, blue 12 m beyond it. */
+    void tell(double seconds, double x) {
+        ignition::msgs::Pose_V message;
+        setStamp(*message.mutable_header(), seconds);
+        setPose(*message.add_pose(), "sea_floor", 0, 0, -9, 0);
+        setPose(*message.add_pose(), "red", x, 2, -5, 0.5);
+        setPose(*message.add_pose(), "link", 0, 0, 0, 0);
+        setPose(*message.add_pose(), "blue", x + 12, 4, -5, 0);
+        setPose(*message.add_pose(), "link", 0.1, 0, 0, 0);
+        send(message);
+    }
+    void send(const ignition::msgs::Pose_V& message) { poses_.Publish(message); }
+    void send(const ignition::msgs::Odometry& message) { odometry_.Publish(message); }
+
+private:
+    ignition::transport::Node node_;
+    ignition::transport::Node::Publisher poses_, odometry_;
+};
+
+}  // namespace insonify::gazebo
