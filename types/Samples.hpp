@@ -1,6 +1,7 @@
 #pragma once
 // Every type of sample that travels, is logged, exported, replayed, sent and shown, declared in this one place. A new
 // one takes a line in SampleTypes; components/log/README.md has the recipe.
+#include <algorithm>
 #include <array>
 #include <concepts>
 #include <memory>
@@ -11,9 +12,12 @@
 
 #include "types/Angle.hpp"
 #include "types/DepthMap.hpp"
+#include "types/Dvl.hpp"
 #include "types/Image.hpp"
+#include "types/Imu.hpp"
 #include "types/PointCloud.hpp"
 #include "types/Pose.hpp"
+#include "types/Pressure.hpp"
 #include "types/Range.hpp"
 #include "types/Sonar.hpp"
 #include "types/SonarElements.hpp"
@@ -24,9 +28,9 @@
 
 namespace insonify::types {
 
-using SampleTypes =
-    std::tuple<Sonar, SonarBeam, SonarScan, SonarTruth, SonarReturns, SonarElements, SonarSettings, Pose, Image,
-               PointCloud, DepthMap, Range, Time, Angle, double, float, int32_t, int64_t, bool, std::string>;
+using SampleTypes = std::tuple<Sonar, SonarBeam, SonarScan, SonarTruth, SonarReturns, SonarElements, SonarSettings,
+                               Pose, Image, PointCloud, DepthMap, Range, ImuSensors, Imu, Dvl, Pressure, Time, Angle,
+                               double, float, int32_t, int64_t, bool, std::string>;
 
 /** What travels on a port for a T: samples that say so (`shared`), by reference, the others as they are. */
 template <class T>
@@ -146,6 +150,53 @@ struct Columns<SonarSettings> {
         visit("field_of_view", std::array{"field_of_view"}, std::array{sample.field_of_view.rad});
         visit("beam_height", std::array{"beam_height"}, std::array{sample.beam_height.rad});
         visit("counts", std::array{"bin_count", "beam_count"}, std::array{sample.bin_count, sample.beam_count});
+    }
+};
+template <>
+struct Columns<ImuSensors> {
+    template <class Visit>
+    static void forEach(const ImuSensors& sample, Visit&& visit) {
+        const auto& [a, g, m] = std::tie(sample.acc, sample.gyro, sample.mag);
+        visit("acc", std::array{"acc_x", "acc_y", "acc_z"}, std::array{a.x, a.y, a.z});
+        visit("gyro", std::array{"gyro_x", "gyro_y", "gyro_z"}, std::array{g.x, g.y, g.z});
+        visit("mag", std::array{"mag_x", "mag_y", "mag_z"}, std::array{m.x, m.y, m.z});
+    }
+};
+template <>
+struct Columns<Imu> {
+    template <class Visit>
+    static void forEach(const Imu& sample, Visit&& visit) {
+        const auto& [q, w, a] = std::tie(sample.orientation, sample.angular_velocity, sample.linear_acceleration);
+        visit("orientation", std::array{"qw", "qx", "qy", "qz"}, std::array{q.w, q.x, q.y, q.z});
+        visit("angular_velocity", std::array{"wx", "wy", "wz"}, std::array{w.x, w.y, w.z});
+        visit("linear_acceleration", std::array{"ax", "ay", "az"}, std::array{a.x, a.y, a.z});
+    }
+};
+template <>
+struct Columns<Dvl> {
+    /** A list of up to four as four numbers, unknown beyond its end. */
+    static std::array<double, Dvl::most_beams> four(const std::vector<double>& list) {
+        std::array<double, Dvl::most_beams> all;
+        all.fill(Pose::unknown);
+        std::copy_n(list.begin(), std::min(list.size(), all.size()), all.begin());
+        return all;
+    }
+    template <class Visit>
+    static void forEach(const Dvl& sample, Visit&& visit) {
+        const auto& v = sample.velocity;
+        visit("velocity", std::array{"vx", "vy", "vz"}, std::array{v.x, v.y, v.z});
+        visit("altitude", std::array{"altitude"}, std::array{sample.altitude});
+        visit("speed_of_sound", std::array{"speed_of_sound"}, std::array{sample.speed_of_sound});
+        visit("beam_ranges", std::array{"range_1", "range_2", "range_3", "range_4"}, four(sample.beam_ranges));
+        visit("beam_velocities", std::array{"velocity_1", "velocity_2", "velocity_3", "velocity_4"},
+              four(sample.beam_velocities));
+    }
+};
+template <>
+struct Columns<Pressure> {
+    template <class Visit>
+    static void forEach(const Pressure& sample, Visit&& visit) {
+        visit("pascal", std::array{"pascal"}, std::array{sample.pascal});
     }
 };
 struct AnyColumns {

@@ -91,6 +91,7 @@ int runCommandLine(int argc, char** argv) {
     addSchemaCommand(app, action);
     addLogCommand(app, action);
     addReplayCommand(app, action);
+    addDatasetCommand(app, action);
     study::addCommand(app, action, sonarAt, codedPingAt);
     addCompletionCommand(app, action);
     addManCommand(app, action);

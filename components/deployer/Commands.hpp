@@ -21,6 +21,7 @@ void addSceneCommand(CLI::App& app, Action& action);
 void addBeamCommand(CLI::App& app, Action& action);
 void addWaterCommand(CLI::App& app, Action& action);
 void addBackscatterCommand(CLI::App& app, Action& action);
+void addDatasetCommand(CLI::App& app, Action& action);
 void addDeviceCommand(CLI::App& app, Action& action);
 void addSchemaCommand(CLI::App& app, Action& action);
 void addCompletionCommand(CLI::App& app, Action& action);

@@ -11,6 +11,7 @@
 
 #include "components/deployer/Commands.hpp"
 #include "components/deployer/DeploymentFile.hpp"
+#include "components/deployer/DeviceExport.hpp"
 #include "components/deployer/Import.hpp"
 #include "components/deployer/Json.hpp"
 #include "components/deployer/PictureExport.hpp"
@@ -103,7 +104,8 @@ void noteSize(log::Reader& log, const std::string& stream, const fs::path& to) {
 }
 
 /** The files that were written. */
-std::vector<fs::path> exportTo(log::Reader& log, const std::string& name, const fs::path& to) {
+std::vector<fs::path> exportTo(log::Reader& log, const std::string& name, const std::string& poses,
+                               const fs::path& to) {
     const log::Stream& exported = log.streams()[log.indexOf(name)];
     const std::string &stream = exported.name, meta = text(meaningOf(log, exported));
     if (!to.has_extension() || fs::is_directory(to)) {
@@ -113,15 +115,17 @@ std::vector<fs::path> exportTo(log::Reader& log, const std::string& name, const 
     refuseMissingFolder(to);
     if (to.extension() == ".npz") return log::exportNpz(log, stream, to, meta);
     if (to.extension() == ".png") return exportPictures(log, stream, to);
+    if (to.extension() == ".xtf") return exportXtf(log, stream, poses, to), std::vector{to};
+    if (to.extension() == ".oculus") return exportOculus(log, stream, to), std::vector{to};
     if (to.extension() != ".csv")
-        throw types::ConfigError(to, "--to", "may be a folder, or end in .npz, .csv, .png or .mcap");
+        throw types::ConfigError(to, "--to", "may be a folder, or end in .npz, .csv, .png, .mcap, .xtf or .oculus");
     noteSize(log, stream, to);
     log::exportCsv(log, stream, to);
     return {to};
 }
 
 struct Options {
-    std::string file, deployment, stream, to, samples;
+    std::string file, deployment, stream, poses, to, samples;
     std::vector<std::string> files, streams;
     std::string from, until;
     log::McapConfig mcap;
@@ -147,7 +151,8 @@ int logExport(const Options& options) {
     const auto log = opened(options.file);
     if (options.stream.empty())
         throw types::ConfigError("", "--stream", "is missing; only an MCAP file takes all streams");
-    for (const fs::path& written : exportTo(*log, options.stream, options.to)) fmt::print("{}\n", written.string());
+    for (const fs::path& written : exportTo(*log, options.stream, options.poses, options.to))
+        fmt::print("{}\n", written.string());
     return 0;
 }
 
@@ -260,10 +265,14 @@ void addLogCommand(CLI::App& app, Action& action) {
     info->add_flag("--json", options->json, "for machines");
     info->add_flag("--metadata", options->metadata, "deployment, seed and plan, and what the numbers mean, with units");
 
-    CLI::App* out = add(*log, action, options, "export",
-                        "Writes a stream as numpy arrays, text or pictures, or the log as ROS 2 messages", logExport);
+    CLI::App* out =
+        add(*log, action, options, "export",
+            "Writes a stream as numpy arrays, text, pictures, XTF or .oculus, or the log as ROS 2 messages", logExport);
     out->add_option("--stream", options->stream, "task.port, as `log info` lists them; none: all, to an MCAP file");
-    out->add_option("--to", options->to, "FILE.npz, FILE.csv, FILE.png, FILE.mcap, or a folder for FILE.npz")
+    out->add_option("--pose", options->poses, "of an XTF file: task.port of the sonar's poses, or its vehicle's");
+    out->add_option("--to", options->to,
+                    "FILE.npz, FILE.csv, FILE.png, FILE.mcap, FILE.xtf (side-scan), FILE.oculus, or a folder for "
+                    "FILE.npz")
         ->required();
     addMcapOptions(*out, options->mcap);
 

@@ -11,6 +11,7 @@
 #include "components/deployer/Commands.hpp"
 #include "components/deployer/DeploymentFile.hpp"
 #include "components/deployer/RunOptions.hpp"
+#include "components/deployer/ShardRun.hpp"
 #include "components/deployer/StopSignal.hpp"
 #include "components/deployer/Summary.hpp"
 #include "components/deployer/Tasks.hpp"
@@ -92,13 +93,12 @@ Notices noticesOf(const framework::Deployment& deployment) {
 }
 
 /** Notices that have come up while it ran, and the summary. */
-void tell(const framework::Deployment& deployment, const Notices& told, const Summary& summary,
-          const OutputFolder& folder) {
+void tell(const framework::Deployment& deployment, const Notices& told, const Summary& summary) {
     for (size_t i = 0; i < told.size(); ++i) {
         const framework::TaskContext& task = *deployment.tasks()[i];
         printNotices(task, without(noticesOf(task), told[i]));
     }
-    fmt::print("{}files in {}\n", summary.text(), folder.path().string());
+    fmt::print("{}", summary.text());
 }
 
 /** Split at its commas, those within brackets left alone. */
@@ -143,6 +143,7 @@ framework::RunResult runAll(framework::Deployment& deployment, const RunOptions&
 int runDeployment(framework::DeploymentSpec spec, const RunOptions& options, std::filesystem::path* written_to) {
     framework::Registry registry = builtInTasks();
     framework::Deployment deployment(std::move(spec), registry, options.out, options.seed.value_or(0));
+    if (options.shard) refuseIndivisible(deployment);
     OutputFolder folder(options.out, options.deployment);
     deployment.environment().output_folder = folder.path();
     if (written_to) *written_to = folder.path();
@@ -156,7 +157,8 @@ int runDeployment(framework::DeploymentSpec spec, const RunOptions& options, std
     const Notices told = noticesOf(deployment);
     framework::RunResult result = runAll(deployment, options, stop);
     const Summary summary(deployment, result);
-    if (!options.quiet) tell(deployment, told, summary, folder);
+    if (!options.quiet) tell(deployment, told, summary);
+    if (!options.quiet && !options.shard) fmt::print("files in {}\n", folder.path().string());
     if (!options.summary.empty()) write(summary.json(), options.summary);
     for (std::string& failure : deployment.cleanup()) result.failures.push_back(std::move(failure));
     for (const std::string& failure : result.failures) fmt::print(stderr, "insonify: {}\n", failure);
@@ -165,17 +167,26 @@ int runDeployment(framework::DeploymentSpec spec, const RunOptions& options, std
 
 void addRunCommand(CLI::App& app, Action& action) {
     const auto options = std::make_shared<RunOptions>();
-    CLI::App* command = app.add_subcommand("run", "Runs a deployment");
+    CLI::App* command = app.add_subcommand("run", "Runs a deployment, or a shard of it");
     command->add_option("DEPLOYMENT", options->deployment, "a YAML file, or a folder with one deployment")->required();
     options->addTo(*command);
+    CLI::Option* const calls =
+        command
+            ->add_option(
+                "--call", options->calls,
+                "task.operation[=argument,...]: calls it once all is configured; may be repeated, called in order")
+            ->allow_extra_args(false);
     command
-        ->add_option("--call", options->calls,
-                     "task.operation[=argument,...]: calls it once all is configured; may be repeated, called in order")
-        ->allow_extra_args(false);
+        ->add_option_function<std::string>(
+            "--shard", [options](const std::string& text) { options->shard = command::Shard::read(text); },
+            "i/N: makes the i-th of N parts of the run's pings, i from 0; needs --out, which all parts share")
+        ->type_name("i/N")
+        ->check(command::Shard::refuse)
+        ->excludes(calls);
     command->callback([options, &action] {
         action = [options] {
             options->deployment = deploymentIn(options->deployment);
-            return runDeployment(loadSpec(*options), *options);
+            return options->shard ? runShard(*options) : runDeployment(loadSpec(*options), *options);
         };
     });
 }

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "components/command/Shard.hpp"
 #include "components/framework/Deployment.hpp"
 
 namespace insonify::deployer {
@@ -21,6 +22,7 @@ struct RunOptions {
     framework::RunLimits limits;
     std::optional<uint64_t> seed;  ///< None or 0: tasks keep the seeds of the file.
     bool quiet = false;
+    std::optional<command::Shard> shard;  ///< Part of the run that is made; none: all of it.
     /** Called after each instant of a lockstep run. */
     std::function<void(framework::Deployment&, const framework::Progress&)> progress;
 

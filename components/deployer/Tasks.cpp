@@ -10,6 +10,7 @@
 #endif
 #include "components/logger/LoggerTask.hpp"
 #include "components/mavlink/PoseTask.hpp"
+#include "components/nav/ImuTask.hpp"
 #include "components/noise/NoiseTask.hpp"
 #include "components/output/PictureTask.hpp"
 #include "components/pose/TrajectoryTask.hpp"
@@ -27,6 +28,7 @@ framework::Registry builtInTasks() {
     framework::Registry registry;
     pose::registerTasks(registry);
     mavlink::registerTasks(registry);
+    nav::registerTasks(registry);
     scene::registerTasks(registry);
     sonar::registerTasks(registry);
     noise::registerTasks(registry);

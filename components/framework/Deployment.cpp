@@ -112,6 +112,7 @@ void Deployment::configure() {
 RunResult Deployment::run(const RunLimits& limits, const std::atomic<bool>& stop, const Executor::Report& report) {
     RunResult result;
     warnings_.clear();
+    environment_->is_shard = limits.shard.has_value();
     for (const std::string& line : spec_.unused()) warn(line);
     {
         struct Run {

@@ -1,5 +1,6 @@
 #include "components/framework/Executor.hpp"
 
+#include <algorithm>
 #include <stdexcept>
 
 namespace insonify::framework {
@@ -14,7 +15,8 @@ void Executor::begin() { wall_start_ = Clock::now(); }
 bool Executor::advance() { throw std::logic_error("only schedule: lockstep goes on instant by instant"); }
 
 Progress Executor::progress() const {
-    return {graph_.countedSamples(), (environment_.now() - start_).seconds(),
+    const uint64_t counted = graph_.countedSamples(), rehearsed = std::min(counted, first_);
+    return {counted - rehearsed, rehearsed, (environment_.now() - start_).seconds(),
             std::chrono::duration<double>(Clock::now() - wall_start_).count()};
 }
 

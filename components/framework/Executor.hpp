@@ -3,7 +3,9 @@
 #include <chrono>
 #include <cstdint>
 #include <functional>
+#include <limits>
 #include <mutex>
+#include <optional>
 
 #include "components/framework/Graph.hpp"
 
@@ -12,15 +14,24 @@ namespace insonify::framework {
 /** When a run ends by itself, and how fast it goes; 0 stands for no limit. Without limits a lockstep run ends once its
  *  sources have finished, a realtime run with the stop flag. */
 struct RunLimits {
+    /** Some of the counted samples of a run, by their numbers from 0 on, `last` not included. */
+    struct Shard {
+        uint64_t first = 0, last = std::numeric_limits<uint64_t>::max();
+    };
+
     uint64_t samples = 0;   ///< Counted ones, see Graph::countedSamples.
     double duration_s = 0;  ///< On the deployment's clock [s].
     double pace = 0;  ///< In lockstep, simulated seconds per second of the wall clock at most; 0: as fast as it goes.
+    /** In lockstep: only these are made. Instants before are rehearsed, from the one after sample `first` - 1 on all
+     *  goes as in the whole run, and with sample `last` - 1 it ends. All tasks must be Divisible. */
+    std::optional<Shard> shard{};
 };
 
 struct Progress {
-    uint64_t samples = 0;  ///< Counted ones, see Graph::countedSamples.
-    double elapsed_s = 0;  ///< On the deployment's clock [s].
-    double wall_s = 0;     ///< [s]
+    uint64_t samples = 0;    ///< Counted ones, see Graph::countedSamples; of a shard, those that were made.
+    uint64_t rehearsed = 0;  ///< Those before a shard.
+    double elapsed_s = 0;    ///< On the deployment's clock [s].
+    double wall_s = 0;       ///< [s]
 };
 
 /** Has the tasks of a graph work, between their start and their stop, and keeps the clock that they read.
@@ -67,6 +78,7 @@ protected:
     bool isOver(const RunLimits& limits) const;
 
     const Graph& graph_;
+    uint64_t first_ = 0;  ///< Counted sample that is made, those before are rehearsed.
     Environment& environment_;
     types::Time start_;             ///< Of the run, on the deployment's clock.
     Clock::time_point wall_start_;  ///< Of the run.

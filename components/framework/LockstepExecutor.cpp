@@ -92,6 +92,7 @@ bool LockstepExecutor::advance() {
 
 void LockstepExecutor::run(const RunLimits& limits, const std::atomic<bool>& stop, const Report& report) {
     findTasks();
+    first_ = limits.shard ? limits.shard->first : 0;
     const bool limited = limits.samples > 0 || limits.duration_s > 0;
     const types::Time end = limits.duration_s > 0 ? start_ + types::Time::fromSeconds(limits.duration_s) : never;
     for (types::Time instant = nextBetweenInstants(); !stop && instant < end; instant = nextBetweenInstants()) {
@@ -102,12 +103,18 @@ void LockstepExecutor::run(const RunLimits& limits, const std::atomic<bool>& sto
             const auto held = betweenInstants();
             if (!takeStep()) continue;           // paused meanwhile
             const types::Time now_due = next();  // another, where a source has moved meanwhile
-            if (now_due >= end) return;
+            if (now_due >= end || !takePart(limits)) return;
             runInstant(now_due);
         }
         if (report) report(progress());
         if (isOver(limits) || sourcesAreDone(limited)) return;
     }
+}
+
+bool LockstepExecutor::takePart(const RunLimits& limits) {
+    const uint64_t done = graph_.countedSamples();
+    environment_.rehearsing = limits.shard && done < limits.shard->first;
+    return !limits.shard || done < limits.shard->last;
 }
 
 bool LockstepExecutor::sourcesAreDone(bool limited) const {

@@ -42,6 +42,8 @@ private:
     types::Time nextBetweenInstants();
     /** The due tasks in file order, then triggered ones until no sample triggers any. */
     void runInstant(types::Time instant);
+    /** Sees to whether the next instant is rehearsed; false: it comes after the shard. */
+    bool takePart(const RunLimits& limits);
     /** Whether no source has anything more to say. */
     bool sourcesAreDone(bool limited) const;
     /** Waits until an instant is due at the pace that is wanted, or time stands still. */

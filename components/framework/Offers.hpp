@@ -4,6 +4,7 @@
 //     class ReaderTask final : public framework::TaskContext, public framework::ClockSource { ... };
 #include <functional>
 #include <optional>
+#include <string>
 
 #include "components/framework/TaskContext.hpp"
 #include "types/DeploymentStatus.hpp"
@@ -44,6 +45,21 @@ public:
     /** Null: not decided yet. Valid after the first cycle. When it has changed, the task calls
      *  TaskContext::refreshRecord before it writes the first sample that it holds for. */
     virtual const types::Plan* plan() const = 0;
+};
+
+/** A task of which a run can be cut into shards: whatever sample a run begins with, this one writes of each the same.
+ *
+ *  Instants before those of the shard are rehearsed (Environment::rehearsing). The task then does what later samples
+ *  depend on, a motor that turns for example, and what may be long or leaves the deployment it leaves out: a source of
+ *  counted samples makes nothing, and writes one that has a time and nothing else; who reads such hands them on, counts
+ *  them, and makes nothing of them. */
+class Divisible {
+public:
+    virtual ~Divisible() = default;
+
+    /** Why a run with this task, as its properties are, cannot be cut; empty: it can. Starts with the property that
+     *  stands in the way and says what would do, "quality: is chosen ...". */
+    virtual std::string indivisible() const { return {}; }
 };
 
 /** Of a task that is Planned; null: it is not, or not yet. On the task's thread, or when it has stopped. */

@@ -291,7 +291,8 @@ bool TaskContext::cycle() {
         failCycle(running ? "updateHook" : "errorHook", std::current_exception());
         return false;
     }
-    cycles_.add(timing_.end());
+    const double seconds = timing_.end();
+    if (!environment_->rehearsing) cycles_.add(seconds);
     return isRunning() && taken_ != taken && triggered();
 }
 

@@ -40,7 +40,10 @@ struct Environment {
     std::function<types::Time()> now = wallClock;  ///< Simulated or log time instead, where the deployment says so.
     std::function<types::Time()> start_time;       ///< Of the run, on the same clock.
     bool lockstep = false;
-    bool wall_clock = true;                        ///< In realtime: no task has put a clock of its own in its place.
+    bool wall_clock = true;  ///< In realtime: no task has put a clock of its own in its place.
+    bool is_shard = false;   ///< Only some samples of the run are made, see RunLimits::shard.
+    /** This instant is not of the shard: see framework::Divisible. */
+    bool rehearsing = false;
     std::string deployment_text;                   ///< The YAML as read, for the log's metadata.
     uint64_t seed = 0;                             ///< Of the run (`--seed`), 0 when not given.
     std::function<void(const std::string&)> warn;  ///< Tells the user at once; empty outside of a deployment.

@@ -178,7 +178,8 @@ void exportCsv(Reader& log, const std::string& stream, const std::filesystem::pa
         throw types::ConfigError(log.path(), stream,
                                  "holds " + declared.type +
                                      "; as text can be written pings, beams and scans of sonars, truth, returns and "
-                                     "elements of pings, points, maps of distances, ranges, poses, numbers and texts "
+                                     "elements of pings, points, maps of distances, ranges, poses, readings of navigation's "
+                                     "sensors, numbers and texts "
                                      "(pictures: .png and .npz)");
 }
 

@@ -324,7 +324,8 @@ std::vector<Path> exportNpz(Reader& log, const std::string& stream, const Path& 
             log.path(), stream,
             "holds " + declared.type +
                 "; as arrays can be written pings, beams and scans of sonars, truth, returns "
-                "and elements of pings, points, maps of distances, ranges, poses, pictures, numbers and texts");
+                "and elements of pings, points, maps of distances, ranges, poses, readings of navigation's sensors, "
+                "pictures, numbers and texts");
     return files;
 }
 

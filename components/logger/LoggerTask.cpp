@@ -157,7 +157,9 @@ bool LoggerTask::propertiesHook() { return !isRunning() || fixedValues() == conf
 bool LoggerTask::startHook() {
     recorded_changes_ = 0;
     recordProperties();
-    thread_.emplace(*log_, *rotation_, static_cast<size_t>(config->queue), config->flush_period);
+    constexpr double never = 1e9;  // [s]
+    thread_.emplace(*log_, *rotation_, static_cast<size_t>(config->queue),
+                    environment().is_shard ? never : config->flush_period);
     return true;
 }
 
@@ -173,7 +175,7 @@ void LoggerTask::updateHook() {
     const types::Time received = now();
     recordProperties();
     inputs_.forEach([&]<class Input>(Input& input) {
-        if (!config->record) return input.port.clear();
+        if (!config->record || environment().rehearsing) return input.port.clear();
         for (typename Input::Carried sample{}; input.port.readNew(sample);) {
             if (!input.kept.number) {
                 log::Metadata metadata =

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "components/framework/DynamicPorts.hpp"
+#include "components/framework/Offers.hpp"
 #include "components/framework/Properties.hpp"
 #include "components/framework/Registry.hpp"
 #include "components/framework/StreamNames.hpp"
@@ -29,12 +30,15 @@ namespace insonify::logger {
  * JSON list). The properties of all tasks go into `property_file` at each start; of several loggers that name one, the
  * first does it.
  *
+ *  The log of a shard is what `log cut` makes of the whole run's. It is not flushed before its end, for it is of use
+ *  whole alone, and where an MCAP file is flushed depends on how fast the run is.
+ *
  *  The file is opened by configure (what cannot be written refuses it), written by a thread of its own, flushed every
  *  `flush_period`, continued in NAME.1.log where `max_file_size` or `max_file_duration` says so, and finished with its
  *  index by cleanup. A file slower than the samples makes this task wait, and then its ports' buffers count what they
  *  lose. A disk that is full or broken ends in Exception, which tells how many samples are lost; what was flushed
  *  stays. */
-class LoggerTask final : public framework::TaskContext {
+class LoggerTask final : public framework::TaskContext, public framework::Divisible {
 public:
     using TaskContext::TaskContext;
 

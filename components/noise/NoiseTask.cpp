@@ -35,6 +35,7 @@ bool NoiseTask::startHook() {
 void NoiseTask::updateHook() {
     types::SonarPtr ping;
     if (!clean.readNew(ping)) return;
+    if (environment().rehearsing) return noisy.write(ping);
     if (const char* diagnostic = ping->notIntensities())
         return error(std::string("clean: ") + diagnostic +
                      "; connect a sonar's ping here, and a receiver after the noise");

@@ -1,6 +1,7 @@
 #pragma once
 #include <optional>
 
+#include "components/framework/Offers.hpp"
 #include "components/framework/Operation.hpp"
 #include "components/framework/Port.hpp"
 #include "components/framework/Properties.hpp"
@@ -20,7 +21,7 @@ namespace insonify::noise {
  *  times give the same noise, in a replay too; two sonars that ping at the same times need different seeds. Without any
  *  noise the ping itself is passed on, not a copy. Properties that are set hold from the next ping on. A ping whose
  *  loudest echo is below the mean of the added noise is told of: once, and again only after echoes have stood out. */
-class NoiseTask final : public framework::TaskContext {
+class NoiseTask final : public framework::TaskContext, public framework::Divisible {
 public:
     using TaskContext::TaskContext;
 

@@ -20,6 +20,7 @@ public:
     PictureFiles(const RecordingConfig& config, const std::filesystem::path& folder);
 
     void write(const types::Image& picture);
+    void skip() { ++number_; }  ///< Leaves out the next picture's number.
     void close();
 
 private:

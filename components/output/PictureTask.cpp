@@ -32,10 +32,23 @@ void PictureTask::updateHook() {
 
 void PictureTask::take(const types::Sonar& sample) {
     const bool due = pings_++ % pictureConfig().every == 0;
+    if (environment().rehearsing) {
+        if (due && writer_) writer_->skip();
+        return;
+    }
     if (due && (image.connected() || writer_))
         show(sample);
     else
         painter_->skip(sample);
+}
+
+std::string PictureTask::indivisible() const {
+    const PictureConfig& config = pictureConfig();
+    if (!showsOne()) return "its pictures show pings of before as well; make them of the joined log";
+    if (config.video) return "video: is one file of all pictures; make it of the joined log";
+    if (config.scale != BinScale::Code && !config.reference_db)
+        return "reference_db: is absent, and the brightest colour follows the echoes from ping to ping; give it";
+    return {};
 }
 
 void PictureTask::show(const types::Sonar& sample) {

@@ -1,6 +1,8 @@
 #pragma once
 #include <memory>
+#include <type_traits>
 
+#include "components/framework/Offers.hpp"
 #include "components/framework/Port.hpp"
 #include "components/framework/Properties.hpp"
 #include "components/framework/Registry.hpp"
@@ -22,12 +24,14 @@ namespace insonify::output {
  *  A picture is made only when somebody is connected to `image` or a file is configured, and of one ping in `every`;
  *  it carries the ping's time. Files are numbered by picture from 0 at each start, and written by a thread of their
  *  own; one that cannot be written ends the task in Exception. */
-class PictureTask : public framework::TaskContext {
+class PictureTask : public framework::TaskContext, public framework::Divisible {
 public:
     using TaskContext::TaskContext;
 
     framework::InputPort<types::SonarPtr> ping{this, "ping", "what is shown"};
     framework::OutputPort<types::ImagePtr> image{this, "image", "picture, BGR with 8 bits a channel"};
+
+    std::string indivisible() const override;
 
 protected:
     bool configureHook() override;
@@ -41,6 +45,8 @@ protected:
 private:
     virtual const PictureConfig& pictureConfig() const = 0;
     virtual std::unique_ptr<Painter> makePainter() = 0;
+    /** Whether a picture shows its own ping alone. */
+    virtual bool showsOne() const { return false; }
     void show(const types::Sonar& sample);
     void paint(const types::Sonar& sample, types::Image& picture);
 
@@ -60,6 +66,7 @@ public:
 private:
     const PictureConfig& pictureConfig() const override { return *config; }
     std::unique_ptr<Painter> makePainter() override { return std::make_unique<Picture>(*config); }
+    bool showsOne() const override { return std::is_same_v<Picture, FanImage>; }
 };
 
 using FanImageTask = PingPictureTask<FanImage>;

@@ -14,6 +14,11 @@ void PictureWriter::write(types::ImagePtr picture) {
     changed_.notify_all();
 }
 
+void PictureWriter::skip() {
+    std::lock_guard lock(mutex_);
+    files_.skip();
+}
+
 void PictureWriter::close() {
     end();
     if (error_) std::rethrow_exception(error_);

@@ -20,6 +20,8 @@ public:
 
     /** Takes hold of the picture until it is written. Throws what an earlier picture met. */
     void write(types::ImagePtr picture);
+    /** Leaves out the next picture's number; before the first of write(). */
+    void skip();
     /** Writes what waits and ends the files. Throws what any picture met. */
     void close();
 

@@ -26,6 +26,21 @@ glm::dvec3 angularVelocity(const glm::dquat& from, const glm::dquat& to, double 
     return sine == 0 ? glm::dvec3(0) : half * (2 * std::atan2(sine, turn.w) / (sine * seconds));
 }
 
+/** The spline through stamps, each quaternion of the sign that is nearer to the one before. */
+Spline splineThrough(const std::vector<Trajectory::Stamp>& stamps) {
+    std::vector<double> times;
+    std::vector<Spline::Row> rows;
+    glm::dquat before = stamps.front().orientation;
+    for (const Trajectory::Stamp& stamp : stamps) {
+        const glm::dvec3& p = stamp.position;
+        const glm::dquat q = glm::dot(before, stamp.orientation) < 0 ? -stamp.orientation : stamp.orientation;
+        times.push_back(stamp.time);
+        rows.push_back({p.x, p.y, p.z, q.w, q.x, q.y, q.z});
+        before = q;
+    }
+    return {std::move(times), std::move(rows)};
+}
+
 }  // namespace
 
 glm::dquat Waypoint::orientation() const {
@@ -44,13 +59,24 @@ void TrajectoryConfig::check(types::Diagnostics& diagnostics) const {
                 {"waypoints[" + std::to_string(i) + "].time", "is not after the one before; times must increase"});
 }
 
-Trajectory::Trajectory(std::vector<Stamp> stamps) : stamps_(std::move(stamps)) {
+Trajectory::Trajectory(std::vector<Stamp> stamps, bool smooth) : stamps_(std::move(stamps)) {
     const auto out_of_order = [](const Stamp& a, const Stamp& b) { return !(a.time < b.time); };
     if (stamps_.empty() || std::adjacent_find(stamps_.begin(), stamps_.end(), out_of_order) != stamps_.end())
         throw std::invalid_argument("a trajectory needs a stamp, and increasing times");
+    if (smooth && stamps_.size() > 1) spline_.emplace(splineThrough(stamps_));
 }
 
-Trajectory::Trajectory(const std::vector<Waypoint>& waypoints) : Trajectory(stampsOf(waypoints)) {}
+Trajectory::Trajectory(const std::vector<Waypoint>& waypoints, bool smooth) : Trajectory(stampsOf(waypoints), smooth) {}
+
+void Trajectory::placeOnSpline(size_t stamp, double time, types::Pose& pose) const {
+    const auto [v, rate] = spline_->at(stamp, time);
+    const glm::dquat q(v[3], v[4], v[5], v[6]), turning(rate[3], rate[4], rate[5], rate[6]);
+    const glm::dquat turn = glm::inverse(q) * turning;
+    pose.position = {v[0], v[1], v[2]};
+    pose.velocity = {rate[0], rate[1], rate[2]};
+    pose.orientation = glm::normalize(q);
+    pose.angular_velocity = 2.0 * glm::dvec3(turn.x, turn.y, turn.z);
+}
 
 types::Pose Trajectory::at(double time) const {
     types::Pose pose;
@@ -65,6 +91,10 @@ types::Pose Trajectory::at(double time) const {
     pose.position = from.position;
     pose.orientation = from.orientation;
     if (!moving) return pose;
+    if (spline_) {
+        placeOnSpline(static_cast<size_t>(after - stamps_.begin()), time, pose);
+        return pose;
+    }
     const double seconds = to.time - from.time;
     types::interpolate(from, to, (time - from.time) / seconds, pose);
     pose.velocity = (to.position - from.position) / seconds;

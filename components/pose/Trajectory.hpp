@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "components/pose/Spline.hpp"
 #include "types/Pose.hpp"
 
 namespace insonify::pose {
@@ -38,6 +39,7 @@ struct TrajectoryConfig {
     std::optional<std::string> file;
     std::vector<Waypoint> waypoints;
     bool loop = false;
+    bool smooth = false;
 
     template <class Self, class V>
     static void describe(Self& self, V& visit) {
@@ -46,13 +48,18 @@ struct TrajectoryConfig {
         visit(Field{"waypoints", "", "instead of a file; a single one is a fixed pose"}, self.waypoints);
         visit(Field{"loop", "", "at its last stamp it goes on from the first, for ever; else it ends there"},
               self.loop);
+        visit(Field{"smooth", "",
+                    "a natural cubic spline through the stamps, so that accelerations are those of a body; else "
+                    "straight lines, whose corners are none"},
+              self.smooth);
     }
     /** Exactly one source; the waypoints' times increase. */
     void check(types::Diagnostics& diagnostics) const;
 };
 
 /** A path through the world: position linear between stamps, orientation by slerp the shorter way; before the first
- *  stamp and after the last it holds still. Immutable. */
+ *  stamp and after the last it holds still. A smooth one is a natural cubic spline through the stamps, of positions and
+ *  of the parts of quaternions, which are made unit. Immutable. */
 class Trajectory {
 public:
     struct Stamp {
@@ -62,13 +69,13 @@ public:
     };
 
     /** @param stamps at least one, at strictly increasing times; else std::invalid_argument. */
-    explicit Trajectory(std::vector<Stamp> stamps);
-    explicit Trajectory(const std::vector<Waypoint>& waypoints);
+    explicit Trajectory(std::vector<Stamp> stamps, bool smooth = false);
+    explicit Trajectory(const std::vector<Waypoint>& waypoints, bool smooth = false);
 
     /** Reads a CSV with header `time,x,y,z,qw,qx,qy,qz`; quaternions are made unit, blank lines skipped.
      *  @throws types::ConfigError with line and column of every diagnostic: a field that is missing, too many or no
      *  finite number, a time that does not increase, a quaternion shorter than 1e-6. */
-    static Trajectory fromCsv(const std::filesystem::path& file);
+    static Trajectory fromCsv(const std::filesystem::path& file, bool smooth = false);
 
     /** Body "body" in frame "world" at `time` [s] since the start of the run, with velocity [m/s] in the world and
      *  angular velocity [rad/s] in the body, both zero where the trajectory holds still. Pose::time is left null. */
@@ -80,7 +87,11 @@ public:
     const std::vector<Stamp>& stamps() const { return stamps_; }
 
 private:
+    /** Place and velocities on the spline, within the segment that ends with a stamp. */
+    void placeOnSpline(size_t stamp, double time, types::Pose& pose) const;
+
     std::vector<Stamp> stamps_;
+    std::optional<Spline> spline_;
 };
 
 }  // namespace insonify::pose

@@ -22,14 +22,14 @@ std::vector<types::CsvDiagnostic> judge(const std::vector<double>& row, const st
 
 }  // namespace
 
-Trajectory Trajectory::fromCsv(const std::filesystem::path& file) {
+Trajectory Trajectory::fromCsv(const std::filesystem::path& file, bool smooth) {
     static const std::vector<types::CsvColumn> columns{{"time"}, {"x"}, {"y"}, {"z"}, {"qw"}, {"qx"}, {"qy"}, {"qz"}};
     std::vector<Stamp> stamps;
     for (const std::vector<double>& row : types::readCsv(file, columns, 1, judge)) {
         const glm::dquat orientation = orientationOf(row);
         stamps.push_back({row[0], {row[1], row[2], row[3]}, orientation / glm::length(orientation)});
     }
-    return Trajectory(std::move(stamps));
+    return Trajectory(std::move(stamps), smooth);
 }
 
 }  // namespace insonify::pose

@@ -15,7 +15,8 @@ void TrajectoryTask::check(types::Diagnostics& diagnostics) const {
 }
 
 Trajectory TrajectoryTask::trajectory() const {
-    return config->file ? Trajectory::fromCsv(inputPath(*config->file)) : Trajectory(config->waypoints);
+    return config->file ? Trajectory::fromCsv(inputPath(*config->file), config->smooth)
+                        : Trajectory(config->waypoints, config->smooth);
 }
 
 bool TrajectoryTask::configureHook() {

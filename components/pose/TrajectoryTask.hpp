@@ -2,6 +2,7 @@
 #include <atomic>
 #include <optional>
 
+#include "components/framework/Offers.hpp"
 #include "components/framework/Port.hpp"
 #include "components/framework/Properties.hpp"
 #include "components/framework/Registry.hpp"
@@ -16,7 +17,7 @@ namespace insonify::pose {
  *  the next pose would lie beyond the last stamp (a single waypoint: after one pose), and holds its end if it goes on
  *  running. With `loop` it goes on from the first stamp, as often as it comes to the last, and has never finished. A
  * file that is not right refuses configure. */
-class TrajectoryTask final : public framework::TaskContext {
+class TrajectoryTask final : public framework::TaskContext, public framework::Divisible {
 public:
     using TaskContext::TaskContext;
 

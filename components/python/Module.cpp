@@ -5,13 +5,15 @@
 
 #include <algorithm>
 
+#include "components/deployer/Simulation.hpp"
 #include "components/log/Reader.hpp"
 #include "components/python/Arrays.hpp"
-#include "components/python/Simulation.hpp"
 #include "types/ConfigError.hpp"
 
 namespace insonify::python {
 namespace {
+
+using deployer::Simulation, deployer::SimulationOptions, deployer::SteppedPing;
 
 /** A name of an enumeration as its value. */
 template <class Enum>
@@ -59,7 +61,7 @@ void addSimulation(py::module_& module) {
         .def(py::init([](const std::string& deployment, uint64_t seed, std::vector<std::string> overrides, bool truth,
                          std::optional<double> period) {
             const py::gil_scoped_release others;
-            return std::make_unique<Simulation>(deployment, SimulationOptions{seed, overrides, truth, period});
+            return std::make_unique<Simulation>(deployment, SimulationOptions{seed, overrides, truth, period, {}});
         }))
         .def_property_readonly("poses", &Simulation::poses)
         .def_property_readonly("pings", &Simulation::pings)

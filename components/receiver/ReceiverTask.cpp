@@ -27,6 +27,7 @@ void ReceiverTask::updateHook() {
     takeSettings();
     types::SonarPtr sample;
     if (!intensity.readNew(sample)) return;
+    if (environment().rehearsing) return ping.write(sample);
     if (const char* diagnostic = sample->notIntensities())
         return error(std::string("intensity: ") + diagnostic + "; connect the noise, or a sonar's ping");
     if (state() == framework::TaskState::RunTimeError) recover();

@@ -1,6 +1,7 @@
 #pragma once
 #include <optional>
 
+#include "components/framework/Offers.hpp"
 #include "components/framework/Port.hpp"
 #include "components/framework/Properties.hpp"
 #include "components/framework/Registry.hpp"
@@ -20,7 +21,7 @@ namespace insonify::receiver {
  *  the next good one recovers. With nothing to do the ping itself is passed on, not a copy. Properties that are set
  *  hold from the next ping on. Pings that are silenced whole, saturate, or are all code 0 are told of: once, and
  *  again only after they have been good. */
-class ReceiverTask final : public framework::TaskContext {
+class ReceiverTask final : public framework::TaskContext, public framework::Divisible {
 public:
     using TaskContext::TaskContext;
 

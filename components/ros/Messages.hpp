@@ -14,11 +14,12 @@
 
 namespace insonify::ros {
 
-using MessageTypes = std::tuple<Bool, Int32, Int64, Float32, Float64, String, Time, Header, Clock, Vector3, Point,
-                                Quaternion, Pose, PoseStamped, PoseWithCovariance, Twist, TwistWithCovariance, Odometry,
-                                Transform, TransformStamped, TFMessage, Image, LaserScan, PointField, PointCloud2,
-                                Range, PingInfo, SonarImageData, ProjectedSonarImage, RawSonarImage, DetectionFlag,
-                                SonarRanges, SonarTruth, SonarReturns, SonarElements, SonarSettings>;
+using MessageTypes =
+    std::tuple<Bool, Int32, Int64, Float32, Float64, String, Time, Header, Clock, Vector3, Point, Quaternion, Pose,
+               PoseStamped, PoseWithCovariance, Twist, TwistWithCovariance, Odometry, Transform, TransformStamped,
+               TFMessage, Image, LaserScan, PointField, PointCloud2, Range, PingInfo, SonarImageData,
+               ProjectedSonarImage, RawSonarImage, DetectionFlag, SonarRanges, SonarTruth, SonarReturns, SonarElements,
+               SonarSettings, Imu, FluidPressure, Dvl>;
 
 /** Calls `use(std::type_identity<T>{})` for each message. */
 template <class Use>

@@ -4,22 +4,13 @@
 #include <numbers>
 
 #include "components/ros/Times.hpp"
+#include "components/ros/Unknowns.hpp"
 
 namespace insonify::ros {
 
 namespace {
 
 using types::Axes;
-
-/** Covariances, whose columns are vectors: C becomes A C A^T. */
-template <class Turn>
-glm::dmat3 both(const glm::dmat3& covariance, Turn&& turn) {
-    const auto columns = [&](const glm::dmat3& m) { return glm::dmat3(turn(m[0]), turn(m[1]), turn(m[2])); };
-    return columns(glm::transpose(columns(covariance)));
-}
-
-bool isUnknown(glm::dvec3 v) { return std::isnan(v.x) || std::isnan(v.y) || std::isnan(v.z); }
-bool isUnknown(const glm::dmat3& m) { return isUnknown(m[0]) || isUnknown(m[1]) || isUnknown(m[2]); }
 
 template <class Xyz>
 Xyz known(glm::dvec3 v) {

@@ -7,6 +7,7 @@
 #include "components/ros/Elements.hpp"
 #include "components/ros/FromSonar.hpp"
 #include "components/ros/Messages.hpp"
+#include "components/ros/Navigation.hpp"
 #include "components/ros/Options.hpp"
 #include "components/ros/Pictures.hpp"
 #include "components/ros/Poses.hpp"
@@ -52,6 +53,14 @@ template <>
 struct MessagesOf<types::DepthMap> : Messages<types::DepthMap, PointCloud2, Clock> {};
 template <>
 struct MessagesOf<types::Range> : Messages<types::Range, Range, Clock> {};
+template <>
+struct MessagesOf<types::ImuSensors> : Messages<types::ImuSensors, Imu, Clock> {};
+template <>
+struct MessagesOf<types::Imu> : Messages<types::Imu, Imu, Clock> {};
+template <>
+struct MessagesOf<types::Dvl> : Messages<types::Dvl, Dvl, Clock> {};
+template <>
+struct MessagesOf<types::Pressure> : Messages<types::Pressure, FluidPressure, Clock> {};
 template <>
 struct MessagesOf<types::Time> : Messages<types::Time, Time> {};
 template <>
@@ -124,6 +133,18 @@ inline void toMessage(const types::DepthMap& map, const MessageOptions& options,
 inline void toMessage(const types::Range& range, const MessageOptions& options, Range& message) {
     convert(range, options.frame_id, message);
 }
+inline void toMessage(const types::ImuSensors& sensors, const MessageOptions& options, Imu& message) {
+    convert(sensors, options.world_frame, options.frame_id, message);
+}
+inline void toMessage(const types::Imu& imu, const MessageOptions& options, Imu& message) {
+    convert(imu, options.world_frame, options.frame_id, message);
+}
+inline void toMessage(const types::Dvl& dvl, const MessageOptions& options, Dvl& message) {
+    convert(dvl, options.frame_id, message);
+}
+inline void toMessage(const types::Pressure& pressure, const MessageOptions& options, FluidPressure& message) {
+    convert(pressure, options.frame_id, message);
+}
 template <types::Stamped T>
 void toMessage(const T& sample, const MessageOptions&, Clock& message) {
     message = toClock(sample.time);
@@ -164,6 +185,16 @@ inline void toSample(const PointCloud2& message, const MessageOptions& options, 
 }
 inline void toSample(const PointCloud2& message, const MessageOptions&, types::DepthMap& map) { convert(message, map); }
 inline void toSample(const Range& message, const MessageOptions&, types::Range& range) { convert(message, range); }
+inline void toSample(const Imu& message, const MessageOptions& options, types::ImuSensors& sensors) {
+    convert(message, options.world_frame, sensors);
+}
+inline void toSample(const Imu& message, const MessageOptions& options, types::Imu& imu) {
+    convert(message, options.world_frame, imu);
+}
+inline void toSample(const Dvl& message, const MessageOptions&, types::Dvl& dvl) { convert(message, dvl); }
+inline void toSample(const FluidPressure& message, const MessageOptions&, types::Pressure& pressure) {
+    convert(message, pressure);
+}
 inline void toSample(const Time& message, const MessageOptions&, types::Time& time) { time = fromRos(message); }
 inline void toSample(const Float64& message, const MessageOptions&, types::Angle& angle) { angle = {message.data}; }
 template <class T, class Message>
@@ -178,8 +209,10 @@ concept ReadFrom = requires(const Message& message, const MessageOptions& option
     toSample(message, options, sample);
 };
 
-/** A message that says nothing of its kind is never taken for these: it is a plain number, or a plain cloud. */
+/** A message that says nothing of its kind is never taken for these: it is a plain number, a plain cloud, or an IMU
+ *  with an attitude. */
 template <class T>
-constexpr bool only_by_name = std::is_same_v<T, types::Angle> || std::is_same_v<T, types::DepthMap>;
+constexpr bool only_by_name =
+    std::is_same_v<T, types::Angle> || std::is_same_v<T, types::DepthMap> || std::is_same_v<T, types::ImuSensors>;
 
 }  // namespace insonify::ros

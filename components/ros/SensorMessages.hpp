@@ -1,5 +1,6 @@
 #pragma once
 // ROS 2 messages of sensor_msgs, field for field: see GeometryMessages.hpp.
+#include <array>
 #include <vector>
 
 #include "components/ros/GeometryMessages.hpp"
@@ -126,6 +127,47 @@ struct Range {
         visit(Field{"max_range", "m"}, self.max_range);
         visit(Field{"range", "m", "infinity: no return"}, self.range);
         visit(Field{"variance", "m^2", "0: unknown"}, self.variance);
+    }
+};
+
+/** Covariances by rows; a first element of -1: what they are of is not measured; zeros: unknown. */
+struct Imu {
+    static constexpr const char* type_name = "sensor_msgs/msg/Imu";
+    static constexpr const char* type_hash = "RIHS01_7d9a00ff131080897a5ec7e26e315954b8eae3353c3f995c55faf71574000b5b";
+    Header header;
+    Quaternion orientation;
+    std::array<double, 9> orientation_covariance{};
+    Vector3 angular_velocity;
+    std::array<double, 9> angular_velocity_covariance{};
+    Vector3 linear_acceleration;
+    std::array<double, 9> linear_acceleration_covariance{};
+
+    friend bool operator==(const Imu&, const Imu&) = default;
+    template <class Self, class V>
+    static void describe(Self& self, V& visit) {
+        visit(Field{"header"}, self.header);
+        visit(Field{"orientation", "1", "turns the unit's vectors into the world"}, self.orientation);
+        visit(Field{"orientation_covariance", "rad^2"}, self.orientation_covariance);
+        visit(Field{"angular_velocity", "rad/s", "in the unit"}, self.angular_velocity);
+        visit(Field{"angular_velocity_covariance", "rad^2/s^2"}, self.angular_velocity_covariance);
+        visit(Field{"linear_acceleration", "m/s^2", "specific force, in the unit"}, self.linear_acceleration);
+        visit(Field{"linear_acceleration_covariance", "m^2/s^4"}, self.linear_acceleration_covariance);
+    }
+};
+
+struct FluidPressure {
+    static constexpr const char* type_name = "sensor_msgs/msg/FluidPressure";
+    static constexpr const char* type_hash = "RIHS01_22dfb2b145a0bd5a31a1ac3882a1b32148b51d9b2f3bab250290d66f3595bc32";
+    Header header;
+    double fluid_pressure = 0;
+    double variance = 0;
+
+    friend bool operator==(const FluidPressure&, const FluidPressure&) = default;
+    template <class Self, class V>
+    static void describe(Self& self, V& visit) {
+        visit(Field{"header"}, self.header);
+        visit(Field{"fluid_pressure", "Pa", "absolute"}, self.fluid_pressure);
+        visit(Field{"variance", "Pa^2", "0: unknown"}, self.variance);
     }
 };
 

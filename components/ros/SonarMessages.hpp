@@ -1,5 +1,6 @@
 #pragma once
 // ROS 2 messages of marine_acoustic_msgs 2, field for field: see GeometryMessages.hpp.
+#include <array>
 #include <vector>
 
 #include "components/ros/GeometryMessages.hpp"
@@ -135,6 +136,51 @@ struct SonarRanges {
         visit(Field{"intensities", "1"}, self.intensities);
         visit(Field{"beam_unit_vec", "1"}, self.beam_unit_vec);
         visit(Field{"ranges", "m"}, self.ranges);
+    }
+};
+
+/** Axes: x forward, z where the instrument looks. */
+struct Dvl {
+    static constexpr const char* type_name = "marine_acoustic_msgs/msg/Dvl";
+    static constexpr const char* type_hash = "RIHS01_77604ba1b113d1a39148d095ac2cb21540de83cff2bbc5443e06e25208afd421";
+    static constexpr const char* constants =
+        "uint8 DVL_MODE_BOTTOM=1\nuint8 DVL_MODE_WATER=2\nuint8 DVL_TYPE_PISTON=0\nuint8 DVL_TYPE_PHASED_ARRAY=1\n";
+    static constexpr uint8_t bottom = 1, piston = 0;
+    static constexpr size_t beams = 4;
+    Header header;
+    uint8_t velocity_mode = bottom;
+    uint8_t dvl_type = piston;
+    Vector3 velocity;
+    std::array<double, 9> velocity_covar{};
+    double altitude = 0, course_gnd = 0, speed_gnd = 0;
+    uint8_t num_good_beams = 0;
+    float sound_speed = 0;
+    bool beam_ranges_valid = false, beam_velocities_valid = false;
+    std::array<Vector3, beams> beam_unit_vec{};
+    std::array<double, beams> range{};
+    std::array<float, beams> range_covar{}, beam_quality{}, beam_velocity{}, beam_velocity_covar{};
+
+    friend bool operator==(const Dvl&, const Dvl&) = default;
+    template <class Self, class V>
+    static void describe(Self& self, V& visit) {
+        visit(Field{"header"}, self.header);
+        visit(Field{"velocity_mode", "1", "over the bottom"}, self.velocity_mode);
+        visit(Field{"dvl_type", "1", "a transducer for each beam"}, self.dvl_type);
+        visit(Field{"velocity", "m/s"}, self.velocity);
+        visit(Field{"velocity_covar", "m^2/s^2", "by rows; -1: unknown"}, self.velocity_covar);
+        visit(Field{"altitude", "m"}, self.altitude);
+        visit(Field{"course_gnd", "rad", "atan2 of velocity's y and x"}, self.course_gnd);
+        visit(Field{"speed_gnd", "m/s", "of velocity's x and y"}, self.speed_gnd);
+        visit(Field{"num_good_beams", "1"}, self.num_good_beams);
+        visit(Field{"sound_speed", "m/s"}, self.sound_speed);
+        visit(Field{"beam_ranges_valid", "", "a beam has an echo"}, self.beam_ranges_valid);
+        visit(Field{"beam_velocities_valid", "", "there is bottom lock"}, self.beam_velocities_valid);
+        visit(Field{"beam_unit_vec", "1"}, self.beam_unit_vec);
+        visit(Field{"range", "m", "along each beam"}, self.range);
+        visit(Field{"range_covar", "m^2", "-1: unknown"}, self.range_covar);
+        visit(Field{"beam_quality", "1", "1: an echo, 0: none"}, self.beam_quality);
+        visit(Field{"beam_velocity", "m/s"}, self.beam_velocity);
+        visit(Field{"beam_velocity_covar", "m^2/s^2", "-1: unknown"}, self.beam_velocity_covar);
     }
 };
 

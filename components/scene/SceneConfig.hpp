@@ -34,8 +34,38 @@ struct TargetConfig {
     void check(types::Diagnostics& diagnostics) const;
 };
 
+/** The sea floor of a survey, read as the vehicle comes. */
+struct BathymetryConfig {
+    std::string file;
+    std::optional<double> easting, northing;
+    int band = 1, tile = 64;
+    bool positive_down = false;
+    double reach = 200;
+
+    template <class Self, class V>
+    static void describe(Self& self, V& visit) {
+        using types::Field;
+        visit(Field{"file", "",
+                    "elevations on a map in metres: GeoTIFF, BAG, netCDF, ESRI .flt, ENVI, Erdas .img, or a mosaic of them (.vrt)"},
+              self.file);
+        visit(Field{"easting", "m", "of the world's zero on the map; absent: the middle of the survey", -1e8, 1e8},
+              self.easting);
+        visit(Field{"northing", "m", "of the world's zero on the map; absent: the middle of the survey", -1e8, 1e8},
+              self.northing);
+        visit(Field{"band", "1", "of the file", 1, 1000}, self.band);
+        visit(Field{"positive_down", "", "true: the file has depths; false: elevations"}, self.positive_down);
+        visit(Field{"reach", "m", "how far about the vehicle the floor is there at least: the sonar's range", 1, 1e5},
+              self.reach);
+        visit(Field{"tile", "1", "posts by which the part that is there grows on each side when it is read anew", 1,
+                    2048},
+              self.tile);
+    }
+    void check(types::Diagnostics& diagnostics) const;
+};
+
 struct SceneConfig {
     std::string file;
+    std::optional<BathymetryConfig> bathymetry;
     Mount mount;
     std::optional<double> water_surface, pose_timeout, extrapolate;
     std::map<std::string, Acoustics> materials;
@@ -44,7 +74,13 @@ struct SceneConfig {
     template <class Self, class V>
     static void describe(Self& self, V& visit) {
         using types::Field;
-        visit(Field{"file", "", "scene: .gltf, .glb, .world or .sdf, relative to the deployment"}, self.file);
+        visit(Field{"file", "",
+                    "scene: .gltf, .glb, .world or .sdf, relative to the deployment; may be absent beside bathymetry"},
+              self.file);
+        visit(Field{"bathymetry", "",
+                    "the sea floor of a survey, of which the part around the vehicle is there; absent: "
+                    "what file has"},
+              self.bathymetry);
         visit(Field{"mount", "", "the sonar in the body"}, self.mount);
         visit(Field{"water_surface", "m", "z of the water surface in the world; absent: none"}, self.water_surface);
         visit(Field{"pose_timeout", "s",

@@ -27,12 +27,18 @@ void moveAlong(const types::Pose& body, const Mount& mount, types::Pose& sonar) 
 
 std::shared_ptr<const Scene> SceneTask::load() const {
     const std::string file = inputPath(config->file).string();
-    if (!scene_ || scene_file_ != file) {
-        if (config->file.empty())
+    const bool has_survey = config->bathymetry.has_value();
+    if (!scene_ || scene_file_ != file || scene_has_survey_ != has_survey) {
+        if (config->file.empty() && !has_survey)
             throw types::ConfigError("", name() + ".file",
-                                     "is missing; give the path of a .gltf, .glb, .world or .sdf file");
-        scene_ = std::make_shared<const Scene>(readScene(file));
+                                     "is missing; give the path of a .gltf, .glb, .world or .sdf file, or bathymetry");
+        auto scene = std::make_shared<Scene>();
+        scene->geometry = std::make_shared<const types::Geometry>();
+        if (!config->file.empty()) *scene = readScene(file);
+        if (has_survey) Bathymetry::addMaterial(*scene);
+        scene_ = std::move(scene);
         scene_file_ = file;
+        scene_has_survey_ = has_survey;
     }
     return scene_;
 }
@@ -64,7 +70,18 @@ framework::InputPortBase* SceneTask::makeInput(const std::string& port, framewor
     return movables_.emplace_back(Movable{std::move(made), node, -1, {}, {}, {}}).port.get();
 }
 
+std::unique_ptr<Bathymetry> SceneTask::openSurvey() const {
+    if (!config->bathymetry) return nullptr;
+    return std::make_unique<Bathymetry>(*config->bathymetry, inputPath(config->bathymetry->file));
+}
+
 void SceneTask::check(types::Diagnostics& diagnostics) const try {
+    try {
+        openSurvey();
+    } catch (const types::ConfigError& error) {
+        for (const types::Diagnostic& each : error.diagnostics())
+            diagnostics.push_back({"bathymetry.file", each.text()});
+    }
     overrideMaterials(*load(), materials(diagnostics), diagnostics);
     scene::placeTargets(*load(), config->targets, {}, diagnostics);
 } catch (const types::ConfigError& error) {
@@ -79,6 +96,7 @@ bool SceneTask::configureHook() {
     const auto scene = load();
     types::Diagnostics diagnostics;
     geometry_ = overrideMaterials(*scene, materials(diagnostics), diagnostics);
+    bathymetry_ = openSurvey();
     for (Movable& movable : movables_) {
         movable.node = findNode(*scene, movable.node_name);
         movable.parts = partsOf(*scene, movable.node);
@@ -143,7 +161,7 @@ void SceneTask::lackPose(const std::string& why) {
     if (!std::exchange(waiting_is_told_, true)) warn(pose.path() + ": waits for the first pose");
 }
 
-void SceneTask::updateHook() {
+void SceneTask::updateHook() try {
     const bool movables_good = readMovables();
     types::Pose body;
     const bool is_new = pose.takeNext(body);
@@ -158,7 +176,7 @@ void SceneTask::updateHook() {
     place(body, config->mount, sample->sonar);
     sample->max_extrapolation = config->extrapolate.value_or(0);
     if (config->extrapolate) moveAlong(body, config->mount, sample->sonar);
-    sample->geometry = geometry_;
+    sample->geometry = bathymetry_ ? bathymetry_->about(sample->sonar.position, geometry_) : geometry_;
     sample->water_surface = config->water_surface;
     addMoved(sample->moved);
     addTargets(sample->targets);
@@ -166,6 +184,8 @@ void SceneTask::updateHook() {
     pool_.stock(*sample, [this](types::Snapshot& stocked) { stocked.moved.reserve(part_count_); });
     snapshot.write(sample);
     if (!movables_good) error(name() + unusable);
+} catch (const SurveyError& failure) {
+    error(failure.what());
 }
 
 /** Takes the newest pose of each movable; false when one was unusable, which leaves that node where it was. */
@@ -219,6 +239,7 @@ void SceneTask::addTargets(std::vector<types::PointTarget>& targets) const {
 
 void SceneTask::cleanupHook() {
     geometry_.reset();
+    bathymetry_.reset();
     scene_.reset();
     pool_ = {};
 }

@@ -5,12 +5,14 @@
 #include <string>
 #include <vector>
 
+#include "components/framework/Offers.hpp"
 #include "components/framework/Port.hpp"
 #include "components/framework/Properties.hpp"
 #include "components/framework/Registry.hpp"
 #include "components/framework/SamplePool.hpp"
 #include "components/framework/TaskContext.hpp"
 #include "components/framework/Waits.hpp"
+#include "components/scene/Bathymetry.hpp"
 #include "components/scene/Scene.hpp"
 #include "components/scene/SceneConfig.hpp"
 #include "components/scene/Targets.hpp"
@@ -32,8 +34,9 @@ namespace insonify::scene {
  *  one comes that is as old or far ahead of the clock: there is no snapshot then. A run that ends so has not failed:
  *  who sent the poses may have gone home. Waiting for the body's first pose is no error: it is told once. In realtime
  * on the wall clock a timeout that is not given is 1 s; otherwise there is none. With `extrapolate` the snapshot has
- * the sonar's velocities, by which the sonar's task carries it on to its ping. */
-class SceneTask final : public framework::TaskContext, public framework::Waits {
+ * the sonar's velocities, by which the sonar's task carries it on to its ping. With `bathymetry` the geometry has the
+ *  floor about the sonar, and is another one each time that more of it is read. */
+class SceneTask final : public framework::TaskContext, public framework::Waits, public framework::Divisible {
 public:
     using TaskContext::TaskContext;
 
@@ -71,6 +74,7 @@ private:
     };
 
     std::shared_ptr<const Scene> load() const;
+    std::unique_ptr<Bathymetry> openSurvey() const;  ///< Null without one.
     /** Those of the configuration, their tables read; what is wrong with them goes to `diagnostics`. */
     std::map<std::string, Acoustics> materials(types::Diagnostics& diagnostics) const;
     bool readMovables();
@@ -81,7 +85,9 @@ private:
 
     mutable std::shared_ptr<const Scene> scene_;  ///< Read once for check, ports and configure.
     mutable std::string scene_file_;
-    types::GeometryPtr geometry_;
+    mutable bool scene_has_survey_ = false;  ///< Whether the floor's material is in it.
+    types::GeometryPtr geometry_;            ///< Of the scene's file, with all materials.
+    std::unique_ptr<Bathymetry> bathymetry_;
     std::vector<Movable> movables_;      ///< Outer nodes before inner ones, once configured.
     size_t part_count_ = 0;              ///< Of all movables, room for which is made before they move.
     std::vector<const Movable*> mover_;  ///< For each object, who moves it now.

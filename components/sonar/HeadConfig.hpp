@@ -24,7 +24,9 @@ struct HeadConfig {
         visit(Field{"left_deg", "deg", "where a scan starts", -360, 360}, self.left_deg);
         visit(Field{"right_deg", "deg", "where a sector scan turns back", -360, 360}, self.right_deg);
         visit(Field{"step_deg", "deg", "turn between two pings", 0.001, 360}, self.step_deg);
-        visit(Field{"continuous", "", "turns on and on; absent: when the limits are 360 deg apart"}, self.continuous);
+        visit(Field{"continuous", "",
+                    "turns on and on from left_deg, whatever right_deg is; absent: when they are 360 deg apart"},
+              self.continuous);
         visit(Field{"speed_deg_per_s", "deg/s", "of the head; absent: every step is reached", 0.001, 1e6},
               self.speed_deg_per_s);
         visit(Field{"sweeps", "", "turns evenly while it listens, with motion_in_ping; false: stands at each step"},

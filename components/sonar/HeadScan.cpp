@@ -7,6 +7,7 @@
 namespace insonify::sonar {
 
 void HeadConfig::check(types::Diagnostics& diagnostics) const {
+    if (continuous.value_or(false)) return;
     if (left_deg <= right_deg)
         return diagnostics.push_back(
             {"left_deg",
@@ -14,11 +15,6 @@ void HeadConfig::check(types::Diagnostics& diagnostics) const {
     if (sectorDeg() > 360)
         diagnostics.push_back(
             {"left_deg", fmt::format("is {} deg from right_deg; may be at most 360 deg", sectorDeg())});
-    if (turnsOn() && sectorDeg() != 360)
-        diagnostics.push_back(
-            {"continuous", fmt::format("is true over a sector of {} deg; the limits of a head that turns "
-                                       "on are 360 deg apart, or absent",
-                                       sectorDeg())});
     if (step_deg > sectorDeg())
         diagnostics.push_back({"step_deg", fmt::format("is {} deg; the sector has {} deg", step_deg, sectorDeg())});
 }

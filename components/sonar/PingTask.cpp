@@ -178,7 +178,22 @@ void PingTask::updateHook() {
     if (!refusal) refusal = steer(aimed_);
     if (refusal) return error(refusal);
     if (state() == framework::TaskState::RunTimeError) recover();
-    render();
+    environment().rehearsing ? rehearse() : render();
+    goOn();
+}
+
+void PingTask::rehearse() {
+    const auto sample = std::make_shared<types::Sonar>();
+    sample->time = aimed_.time;
+    if (pose.connected()) pose.write(used_);
+    ping.write(sample);
+}
+
+std::string PingTask::indivisible() const {
+    if (!sonarConfig().choosesQuality()) return {};
+    return "quality: is chosen from the pings before, which a shard does not have; give rows and columns_per_beam, "
+           "such "
+           "as a run of a few pings tells";
 }
 
 void PingTask::makeRenderer() {

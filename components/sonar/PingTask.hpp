@@ -45,9 +45,12 @@ namespace insonify::sonar {
  *  that wait counts, and there is no ping for the others. What they name becomes the value of the property of that
  *  name, and stays. Settings that the sonar cannot have lead to RunTimeError, and to no ping.
  *
+ *  Of a run that is cut into shards every ping is that of the whole run; its quality is to be given, for what is chosen
+ *  depends on the pings before.
+ *
  *  `pose` tells where each ping was rendered, carried on as it was; with `given_pose` connected there is a ping for
  *  each of these poses, in the newest snapshot's scene, so that what `pose` has told renders the same pings again. */
-class PingTask : public framework::TaskContext, public framework::Planned {
+class PingTask : public framework::TaskContext, public framework::Planned, public framework::Divisible {
 public:
     using TaskContext::TaskContext;
     /** Stops and cleans up: the renderer must go on the task's own thread. */
@@ -76,6 +79,7 @@ public:
 
     const types::Plan* plan() const override { return plan_ ? &*plan_ : nullptr; }
     std::vector<std::string> notices() const override;
+    std::string indivisible() const override;
 
     /** The sonar to render, as configured. */
     virtual SonarConfig sonarConfig() const = 0;
@@ -98,6 +102,8 @@ protected:
     virtual void turnHead(types::Angle /*bearing*/) {}
     /** Last changes to a ping before it is written. */
     virtual void stampBearings(types::Sonar& /*sample*/) {}
+    /** A ping has been rendered or rehearsed: a head that turns goes on. */
+    virtual void goOn() {}
     /** What else there is to tell of a ping that is about to be written, from where it was rendered. */
     virtual void tellMore(const types::Sonar& /*sample*/, const types::Pose& /*sonar*/) {}
     /** Of a sonar that looks where this one does in one ping, to tell why it hears nothing. */
@@ -123,6 +129,8 @@ private:
     const char* useGeometry(const types::Snapshot& scene);
     double echoTime() const { return 2 * grid_.range_max / grid_.speed_of_sound; }  ///< To the range and back [s].
     void render();
+    /** Does what later pings depend on. */
+    void rehearse();
     /** What the ping that is rendered next is to tell; null where nobody wants to know. */
     std::shared_ptr<types::SonarTruth> takeTruth();
     void writeElements(const types::Sonar& sample);

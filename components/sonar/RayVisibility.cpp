@@ -13,8 +13,13 @@
 namespace insonify::sonar {
 namespace {
 
-/** From here on the tree is built anew about the sonar: float has 0.06 mm there [m]. */
-constexpr double farthest_from_origin = 1000;
+/** On each axis, between places where a tree may have its origin: at most 444 m from the sonar, where float has 0.03
+ * mm. */
+constexpr double origin_spacing = 512;
+
+/** Follows from where the sonar is alone, so that no ping depends on those before it [m]. */
+glm::dvec3 originNear(const glm::dvec3& sonar) { return origin_spacing * glm::round(sonar / origin_spacing); }
+
 /** Triangles that are copied to where they stand, once for each object; of larger scenes, meshes that stand in several
  *  places are instances of one tree, through which rays take longer [1]. */
 constexpr size_t max_copied = 4'000'000;
@@ -197,8 +202,21 @@ bool RayVisibility::Mover::mayMeet(const TileRays& rays) const {
     return glm::dot(axis, towards) >= half * cosine - half_sine * sine || half * sine + half_sine * cosine < 0;
 }
 
+/** The scene about one origin. */
+struct RayVisibility::Tree {
+    explicit Tree(const types::Geometry& geometry) : trees(geometry) {}
+
+    SceneTrees trees;
+    std::vector<Mover> movers;
+    glm::dvec3 origin{0};  ///< In the world [m].
+    bool is_built = false;
+};
+
 RayVisibility::RayVisibility(const types::Geometry& geometry)
-    : geometry_(geometry), moves_(geometry.objects.size()), trees_(std::make_unique<SceneTrees>(geometry)) {
+    : geometry_(geometry),
+      moves_(geometry.objects.size()),
+      here_(std::make_unique<Tree>(geometry)),
+      before_(std::make_unique<Tree>(geometry)) {
     listCommands();
 }
 
@@ -224,18 +242,25 @@ bool RayVisibility::hasNewMover(const types::Snapshot& snapshot) const {
 }
 
 void RayVisibility::place(const types::Snapshot& snapshot) {
-    const bool too_far = !(glm::distance(snapshot.sonar.position, origin_) <= farthest_from_origin);
-    if (!trees_->still() || too_far || hasNewMover(snapshot)) build(snapshot);
+    const glm::dvec3 origin = originNear(snapshot.sonar.position);
+    if (hasNewMover(snapshot)) forgetTrees(snapshot);
+    if (here_->is_built && here_->origin != origin) std::swap(here_, before_);
+    if (!here_->is_built || here_->origin != origin) build(origin);
     world_from_sonar_ = glm::mat3(glm::mat3_cast(snapshot.sonar.orientation));
-    place_ = glm::vec3(snapshot.sonar.position - origin_);
+    place_ = glm::vec3(snapshot.sonar.position - origin);
     placeMovers(snapshot);
 }
 
-void RayVisibility::build(const types::Snapshot& snapshot) {
+void RayVisibility::forgetTrees(const types::Snapshot& snapshot) {
     for (const types::MovedObject& moved : snapshot.moved) moves_[moved.object] = true;
-    origin_ = snapshot.sonar.position;
-    trees_->clear();
-    movers_.clear();
+    here_->is_built = before_->is_built = false;
+}
+
+void RayVisibility::build(const glm::dvec3& origin) {
+    here_->is_built = false;
+    here_->origin = origin;
+    here_->movers.clear();
+    here_->trees.clear();
     std::vector<size_t> uses(geometry_.meshes.size());
     for (const types::Object& object : geometry_.objects) ++uses[static_cast<size_t>(object.mesh)];
     const bool copied = geometry_.triangleCount() <= max_copied;
@@ -244,26 +269,27 @@ void RayVisibility::build(const types::Snapshot& snapshot) {
         const types::Mesh& mesh = geometry_.meshes[static_cast<size_t>(object.mesh)];
         if (mesh.indices.empty()) continue;
         glm::dmat4 place = object.world_from_object;
-        place[3] -= glm::dvec4(origin_, 0);
+        place[3] -= glm::dvec4(origin, 0);
         if (moves_[i]) {
-            Mover mover{static_cast<uint32_t>(i), first_command_[i], &trees_->treeOf(object.mesh), {}, {}};
+            Mover mover{static_cast<uint32_t>(i), first_command_[i], &here_->trees.treeOf(object.mesh), {}, {}};
             mover.low = mover.high = mesh.positions.front();
             for (const glm::vec3& p : mesh.positions)
                 mover.low = glm::min(mover.low, p), mover.high = glm::max(mover.high, p);
-            movers_.push_back(mover);
+            here_->movers.push_back(mover);
         } else if (copied || uses[static_cast<size_t>(object.mesh)] == 1) {
-            trees_->copy(object.mesh, place, first_command_[i]);
+            here_->trees.copy(object.mesh, place, first_command_[i]);
         } else {
-            trees_->instance(object.mesh, place, first_command_[i]);
+            here_->trees.instance(object.mesh, place, first_command_[i]);
         }
     }
-    trees_->commit();
+    here_->trees.commit();
+    here_->is_built = true;
 }
 
 void RayVisibility::placeMovers(const types::Snapshot& snapshot) {
-    if (movers_.empty()) return;
+    if (here_->movers.empty()) return;
     const glm::dmat3 sonar_from_world = glm::transpose(glm::mat3_cast(snapshot.sonar.orientation));
-    for (Mover& mover : movers_) {
+    for (Mover& mover : here_->movers) {
         const auto moved = std::ranges::find(snapshot.moved, mover.object, &types::MovedObject::object);
         const glm::dmat4& world_from_object = moved == snapshot.moved.end()
                                                   ? geometry_.objects[mover.object].world_from_object
@@ -282,12 +308,12 @@ void RayVisibility::cast(std::span<const TileRays> rays, std::span<TileHits> hit
         aim(world, place_, rays[i], all[i]);
     }
     RTCIntersectContext context = coherentRays();
-    rtcIntersectNM(trees_->still(), &context, reinterpret_cast<RTCRayHitN*>(all.data()), tile_samples,
+    rtcIntersectNM(here_->trees.still(), &context, reinterpret_cast<RTCRayHitN*>(all.data()), tile_samples,
                    static_cast<unsigned>(rays.size()), sizeof(RTCRayHit16));
     for (size_t i = 0; i < rays.size(); ++i) {
         std::fill_n(hits[i].command, tile_samples, TileHits::nothing);
         take(all[i], hits[i],
-             [this](uint32_t geometry, uint32_t instance) { return trees_->meaning(geometry, instance); });
+             [this](uint32_t geometry, uint32_t instance) { return here_->trees.meaning(geometry, instance); });
         castAtMovers(rays[i], all[i], hits[i]);
     }
 }
@@ -296,7 +322,7 @@ void RayVisibility::castAtMovers(const TileRays& rays, RTCRayHit16& all, TileHit
     alignas(64) int valid[tile_samples];
     for (int i = 0; i < tile_samples; ++i) valid[i] = (rays.active >> i & 1) ? -1 : 0;
     RTCIntersectContext context = coherentRays();
-    for (const Mover& mover : movers_) {
+    for (const Mover& mover : here_->movers) {
         if (!mover.mayMeet(rays)) continue;
         aim(Rows(mover.from_sonar), mover.place, rays, all);
         rtcIntersect16(valid, mover.mesh->scene, &context, &all);
@@ -330,9 +356,9 @@ void RayVisibility::castPiece(const RayPaths& paths, const TileRays& rays, const
     for (int i = 0; i < tile_samples; ++i) valid[i] = (rays.active >> i & 1) ? -1 : 0;
     RTCIntersectContext context = coherentRays();
     aim(Rows(world_from_sonar_), place_, piece.from, piece.to, all);
-    rtcIntersect16(valid, trees_->still(), &context, &all);
-    take(all, hits, [this](uint32_t geometry, uint32_t instance) { return trees_->meaning(geometry, instance); });
-    for (const Mover& mover : movers_) {
+    rtcIntersect16(valid, here_->trees.still(), &context, &all);
+    take(all, hits, [this](uint32_t geometry, uint32_t instance) { return here_->trees.meaning(geometry, instance); });
+    for (const Mover& mover : here_->movers) {
         if (!mover.placed) continue;
         if (const Drift* drift = paths.drift(mover.object))
             aim(Rows(mover.from_sonar), mover.place, placesOf(paths, rays, piece.start, drift),
@@ -352,9 +378,9 @@ void RayVisibility::cast(const PathRays& rays, TileHits& hits) const {
     aim(Rows(world_from_sonar_), place_, rays, all.ray);
     forgetHits(all);
     RTCIntersectContext context = coherentRays();
-    rtcIntersect16(valid.of, trees_->still(), &context, &all);
-    take(all, hits, [this](uint32_t geometry, uint32_t instance) { return trees_->meaning(geometry, instance); });
-    for (const Mover& mover : movers_) {
+    rtcIntersect16(valid.of, here_->trees.still(), &context, &all);
+    take(all, hits, [this](uint32_t geometry, uint32_t instance) { return here_->trees.meaning(geometry, instance); });
+    for (const Mover& mover : here_->movers) {
         if (!mover.placed) continue;
         aim(Rows(mover.from_sonar), mover.place, rays, all.ray);
         forgetHits(all);
@@ -369,8 +395,8 @@ uint32_t RayVisibility::blocked(const PathRays& rays) const {
     bound(rays, all);
     aim(Rows(world_from_sonar_), place_, rays, all);
     RTCIntersectContext context = coherentRays();
-    rtcOccluded16(valid.of, trees_->still(), &context, &all);
-    for (const Mover& mover : movers_) {
+    rtcOccluded16(valid.of, here_->trees.still(), &context, &all);
+    for (const Mover& mover : here_->movers) {
         if (!mover.placed) continue;
         aim(Rows(mover.from_sonar), mover.place, rays, all);
         rtcOccluded16(valid.of, mover.mesh->scene, &context, &all);

@@ -40,8 +40,8 @@ struct PathRays {
 };
 
 /** Which triangle is seen in which direction, by rays on the processor (Embree). What does not move is one tree about
- *  an origin near the sonar, so that world coordinates may be large; each object that moves has a tree of its own,
- *  which is re-placed each ping and never built again. Surfaces nearer than `nearest` are not seen. */
+ *  an origin near the sonar, on a coarse grid, so that world coordinates may be large; each object that moves has a
+ * tree of its own, which is re-placed each ping and never built again. Surfaces nearer than `nearest` are not seen. */
 class RayVisibility {
 public:
     static constexpr double nearest = 1e-3;     ///< [m]
@@ -52,7 +52,8 @@ public:
     ~RayVisibility();
 
     /** Places the sonar and what moves, once a ping. Builds the tree anew when an object moves that never did before,
-     *  or when the sonar has gone far from the tree's origin; allocates only then. */
+     *  or when the sonar has gone to another origin than the last two; allocates only then. What is seen follows from
+     * the snapshot alone, whatever came before. */
     void place(const types::Snapshot& snapshot);
 
     /** Casts tiles from the place of the sonar, at most `tiles_at_once`, which should lie side by side: hits[i] is what
@@ -71,6 +72,7 @@ public:
 
 private:
     struct Mover;
+    struct Tree;
     /** Of a tile's rays, sonar axes about the sonar [m]. */
     using Places = std::array<glm::vec3, tile_samples>;
     /** Of the ways of a tile's rays between two ranges [m]. */
@@ -82,7 +84,9 @@ private:
                    TileHits& hits) const;
     void listCommands();
     bool hasNewMover(const types::Snapshot& snapshot) const;
-    void build(const types::Snapshot& snapshot);
+    /** Enlists the objects of a snapshot as moving; every tree is to be built anew. */
+    void forgetTrees(const types::Snapshot& snapshot);
+    void build(const glm::dvec3& origin);
     void placeMovers(const types::Snapshot& snapshot);
     void castAtMovers(const TileRays& rays, RTCRayHit16& all, TileHits& hits) const;
 
@@ -90,9 +94,8 @@ private:
     std::vector<CommandRecord> commands_;
     std::vector<uint32_t> first_command_;  ///< Of each object.
     std::vector<bool> moves_;              ///< Whether an object has ever moved.
-    std::unique_ptr<SceneTrees> trees_;
-    std::vector<Mover> movers_;
-    glm::dvec3 origin_{0};        ///< Of the tree of what does not move, in the world [m].
+    /** The scene about the origin at hand, and about the one before, for a sonar that stays between the two. */
+    std::unique_ptr<Tree> here_, before_;
     glm::mat3 world_from_sonar_;  ///< [1]
     glm::vec3 place_{0};          ///< Of the sonar about the origin [m].
 };

@@ -61,7 +61,6 @@ void ScanningSonarTask::turn(types::Pose& sonar, const Aim& aim, double seconds)
 
 void ScanningSonarTask::stampBearings(types::Sonar& sample) {
     sample.bearings[0] = types::Angle::fromDeg(bearingDeg());
-    scan_->advance();
 }
 
 void ScanningSonarTask::checkStep(double period) const {

@@ -26,6 +26,7 @@ protected:
     const char* steer(types::Snapshot& scene) override;
     void turnHead(types::Angle bearing) override { asked_ = bearing; }
     void stampBearings(types::Sonar& sample) override;
+    void goOn() override { scan_->advance(); }
     int pingsPerTurn() const override { return scan_->pingsPerTurn(); }
 
 private:

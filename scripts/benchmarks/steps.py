@@ -18,6 +18,21 @@ for _ in range(pings): simulation.step(pose).bins
 print(1e3 * (time.perf_counter() - start) / pings)
 """
 
+# Steps a second of so many environments of gymnasium, each in a process of its own.
+AGENTS = """
+import sys, time, gymnasium, insonify, insonify.gym
+file, count, steps = sys.argv[1], int(sys.argv[2]), int(sys.argv[3])
+def make(): return insonify.gym.SonarEnv(file, insonify.Pose([0, 0, 0]), max_steps=10**9, collision_range=0)
+if __name__ == "__main__":
+    agents = gymnasium.vector.AsyncVectorEnv([make] * count)
+    agents.reset(seed=1)
+    for _ in range(10): agents.step(0 * agents.action_space.sample())
+    start = time.perf_counter()
+    for _ in range(steps): agents.step(0 * agents.action_space.sample())
+    print(count * steps / (time.perf_counter() - start))
+    agents.close()
+"""
+
 
 def by_python(file, pings):
     environment = os.environ | {"PYTHONPATH": str(ROOT / "build/python")}
@@ -49,3 +64,22 @@ def show_steps(found):
     for visibility, times in found.items():
         print(f"FLS 256 x 500, 80 k, {visibility}: command {times['command_ms']:.2f} ms a ping, a step from Python "
               f"{times['python_ms']:.2f} ms, {times['ratio']:.3f} times as long (median of {ROUNDS} rounds)")
+
+
+def measure_agents(options):
+    python = ROOT / "build/venv/bin/python"
+    environment = os.environ | {"PYTHONPATH": str(ROOT / "build/python")}
+    found = {}
+    with deployment_file(deployment(seen(SONARS["FLS 256 x 500"], "cpu"), scene(SCENES["80 k"]))) as file:
+        for count in (1, 2, 4):
+            done = subprocess.run([python, "-c", AGENTS, file, str(count), str(options.pings)], stdout=subprocess.PIPE,
+                                  env=environment)
+            if done.returncode != 0:
+                fail("environments of gymnasium", done.returncode)
+            found[count] = float(done.stdout)
+    return found
+
+
+def show_agents(found):
+    for count, rate in found.items():
+        print(f"FLS 256 x 500, 80 k, {count} environments of gymnasium: {rate:.1f} steps a second in all")

@@ -152,6 +152,49 @@ TEST_F(PeerTest, ReadsEveryTypeThatIsSent) {
     EXPECT_EQ(clock["first"]["clock"]["sec"], ping->time.microseconds / 1'000'000);
 }
 
+TEST_F(PeerTest, ReadsWhatNavigationsSensorsMeasure) {
+    types::Imu imu;
+    imu.time = framework::wallClock();
+    imu.orientation = {1, 0, 0, 0};
+    imu.angular_velocity = {0.125, -0.25, 0.5};
+    imu.linear_acceleration = {0.25, -0.5, 9.75};
+    imu.cov_linear_acceleration = glm::dmat3(0.25);
+    const types::Pressure pressure{201'325.5f, imu.time};
+    auto dvl = std::make_shared<types::Dvl>();
+    dvl->time = imu.time;
+    dvl->velocity = {0.5, -0.25, 0.125};
+    dvl->altitude = 12.5;
+    dvl->beam_directions = {{0.5, 0, -1}, {0, 0.5, -1}, {-0.5, 0, -1}, {0, -0.5, -1}};
+    dvl->beam_ranges = {14, 14.5, types::Pose::unknown, 13.5};
+    dvl->beam_velocities = {0.125, -0.25, types::Pose::unknown, 0};
+    dvl->beam_velocity_variances = {0.5, 0.5, types::Pose::unknown, 0.5};
+    Publishing<types::Imu> imus({topicOut("in", "/imu", message_type<ros::Imu>)});
+    Publishing<types::Pressure> pressures({topicOut("in", "/pressure", message_type<ros::FluidPressure>)});
+    Publishing<types::DvlPtr> dvls({topicOut("in", "/dvl", message_type<ros::Dvl>)});
+    Peer imu_peer("listen Imu /imu 240 1"), pressure_peer("listen FluidPressure /pressure 240 1"),
+        dvl_peer("listen Dvl /dvl 240 1");
+    ASSERT_TRUE(comesTrue([&] {
+        imus.send(imu);
+        pressures.send(pressure);
+        dvls.send(dvl);
+        std::this_thread::sleep_for(std::chrono::milliseconds(20));
+        return imu_peer.hasEnded() && pressure_peer.hasEnded() && dvl_peer.hasEnded();
+    }));
+    const json felt = imu_peer.result()["first"], told = dvl_peer.result()["first"];
+    EXPECT_EQ(felt["linear_acceleration"]["z"], 9.75);
+    EXPECT_EQ(felt["angular_velocity"]["y"], -0.25);
+    EXPECT_EQ(felt["linear_acceleration_covariance"][4], 0.25);
+    EXPECT_NEAR(felt["orientation"]["z"], std::sqrt(0.5), 1e-12) << "north, in a world of x east";
+    EXPECT_EQ(pressure_peer.result()["first"]["fluid_pressure"], 201'325.5);
+    EXPECT_EQ(told["velocity"]["y"], 0.25) << "to starboard";
+    EXPECT_EQ(told["num_good_beams"], 3);
+    EXPECT_EQ(told["beam_velocities_valid"], true);
+    EXPECT_EQ(told["beam_unit_vec"][1]["y"], -0.5);
+    EXPECT_EQ(told["range"][3], 13.5);
+    EXPECT_TRUE(told["range"][2].is_null()) << "NaN";
+    EXPECT_EQ(told["beam_velocity_covar"][2], -1);
+}
+
 TEST_F(PeerTest, ReadsSoundingsAsPointsOfTheWorldAndTheRangeOfAnAltimeter) {
     auto soundings = std::make_shared<types::PointCloud>();
     soundings->time = framework::wallClock();

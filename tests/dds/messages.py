@@ -158,6 +158,46 @@ class Range(IdlStruct, typename="sensor_msgs::msg::dds_::Range_"):
 
 
 @dataclass
+class Imu(IdlStruct, typename="sensor_msgs::msg::dds_::Imu_"):
+    header: Header
+    orientation: Quaternion
+    orientation_covariance: array[float64, 9]
+    angular_velocity: Vector3
+    angular_velocity_covariance: array[float64, 9]
+    linear_acceleration: Vector3
+    linear_acceleration_covariance: array[float64, 9]
+
+
+@dataclass
+class FluidPressure(IdlStruct, typename="sensor_msgs::msg::dds_::FluidPressure_"):
+    header: Header
+    fluid_pressure: float64
+    variance: float64
+
+
+@dataclass
+class Dvl(IdlStruct, typename="marine_acoustic_msgs::msg::dds_::Dvl_"):
+    header: Header
+    velocity_mode: uint8
+    dvl_type: uint8
+    velocity: Vector3
+    velocity_covar: array[float64, 9]
+    altitude: float64
+    course_gnd: float64
+    speed_gnd: float64
+    num_good_beams: uint8
+    sound_speed: float32
+    beam_ranges_valid: bool
+    beam_velocities_valid: bool
+    beam_unit_vec: array[Vector3, 4]
+    range: array[float64, 4]
+    range_covar: array[float32, 4]
+    beam_quality: array[float32, 4]
+    beam_velocity: array[float32, 4]
+    beam_velocity_covar: array[float32, 4]
+
+
+@dataclass
 class PingInfo(IdlStruct, typename="marine_acoustic_msgs::msg::dds_::PingInfo_"):
     frequency: float32
     sound_speed: float32

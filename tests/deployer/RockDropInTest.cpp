@@ -156,7 +156,7 @@ TEST_F(RockDropInTest, ThePublishedFilesLoadAsTheyAreAndWhatIsLeftOutIsNamed) {
               published("beam_count: 256\nbeam_height:\n  rad: 20.deg\nbeam_width:\n  rad: 120.deg\nbin_count: 500\n"));
     writeFile(folder_ / "deploy/rock/imaging_sonar_simulation::ScanningSonarTask.yml",
               published("beam_height:\n  rad: 35.deg\nbeam_width:\n  rad: 3.deg\nbin_count: 400\ncontinuous: true\n"
-                        "motor_step:\n  rad: 1.8.deg\n"));
+                        "left_limit:\n  rad: -180.deg\nright_limit:\n  rad: 179.9.deg\nmotor_step:\n  rad: 1.8.deg\n"));
     for (const std::string name : {"harbour", "port_sector"})
         edit("deploy/rock_dropin.yml", name == "harbour" ? "[default, harbour]" : "[port_sector]", "[default]");
     const Outcome outcome = run({"--pings", "1"});

@@ -32,6 +32,7 @@ std::set<std::string> neighboursOf(const Source& source) {
     if (source.isTaskHalf()) allowed.insert("framework");
     if (folder == "study") allowed.insert({"sonar", "noise", "receiver", "scene", "device", "output"});
     if (source.isCommandHalf()) allowed.insert("command");
+    if (folder == "dataset") allowed.insert({"command", "log", "output"});
     if (folder == "sonar") allowed.insert({"gpu", "shaders"});
     const std::set<std::string> listeners = {"sonar", "scene", "noise", "study"};
     if (listeners.contains(folder)) allowed.insert("acoustics");
@@ -65,7 +66,7 @@ bool mayInclude(const Source& source, const Source& target) {
         return from == "framework" || source.isTaskHalf() || source.isCommandHalf() ||
                (!target.isTaskHalf() && !target.isCommandHalf());
     if (to == "types") return from != "gpu";
-    if (from == "study" && target.isTaskHalf()) return false;
+    if ((from == "study" || from == "dataset") && target.isTaskHalf()) return false;
     return from != "types" && from != "gpu" && from != "framework" && neighboursOf(source).contains(to);
 }
 
@@ -141,6 +142,9 @@ TEST(IncludeRuleTest, TheRuleRefusesWhatItShould) {
     EXPECT_TRUE(allowed("components/log/Reader.cpp", "components/log/pocolog/Reader.hpp"));
     EXPECT_TRUE(allowed("components/log/pocolog/Reader.cpp", "components/log/Reader.hpp"));
     EXPECT_FALSE(allowed("components/viewer/Server.cpp", "components/framework/Port.hpp"));
+    EXPECT_TRUE(allowed("components/dataset/Store.cpp", "components/command/Json.hpp"));
+    EXPECT_FALSE(allowed("components/dataset/Samples.cpp", "components/framework/ConfigReader.hpp"));
+    EXPECT_FALSE(allowed("components/dataset/SampleFiles.cpp", "components/output/FanImageTask.hpp"));
     EXPECT_TRUE(allowed("components/viewer/Messages.cpp", "components/ros/Cdr.hpp"));
     EXPECT_TRUE(allowed("components/logger/LoggerTask.cpp", "components/log/Writer.hpp"));
     EXPECT_TRUE(allowed("components/log/mcap/SampleWriter.cpp", "components/ros/Cdr.hpp"));

@@ -49,6 +49,63 @@ TEST(TrajectoryTest, PositionIsLinearBetweenStampsAndHeldOutside) {
     EXPECT_EQ(path.at(3).position, glm::dvec3(4, -2, 1));
 }
 
+/** Rounds of a circle of 5 m, one in 20 s, that looks along its way, with a stamp each `step` seconds. */
+std::vector<Trajectory::Stamp> circle(double step) {
+    std::vector<Trajectory::Stamp> stamps;
+    for (int i = 0; i * step <= 40; ++i) {
+        const double angle = 2 * std::numbers::pi * i * step / 20;
+        stamps.push_back(
+            {i * step, {5 * std::sin(angle), -5 * std::cos(angle), -2}, glm::angleAxis(angle, glm::dvec3(0, 0, 1))});
+    }
+    return stamps;
+}
+
+TEST(TrajectoryTest, ASmoothPathPassesThroughItsStampsAndKeepsToTheCurveBetween) {
+    const double turn_rate = 2 * std::numbers::pi / 20;
+    double error_before = 0;
+    for (const double step : {2.0, 1.0, 0.5}) {
+        const std::vector<Trajectory::Stamp> stamps = circle(step);
+        const Trajectory path(stamps, true);
+        const auto at_stamp = path.at(20);
+        EXPECT_LT(glm::distance(at_stamp.position, stamps[static_cast<size_t>(20 / step)].position), tiny);
+        double error = 0;
+        for (double time = 15; time < 25; time += 0.03) {
+            const types::Pose pose = path.at(time);
+            const double angle = turn_rate * time;
+            error = std::max(error, glm::distance(pose.position, {5 * std::sin(angle), -5 * std::cos(angle), -2}));
+            EXPECT_NEAR(glm::length(pose.orientation), 1, tiny);
+            EXPECT_NEAR(glm::length(pose.velocity), 5 * turn_rate, 0.02 * step * step);
+            EXPECT_LT(glm::distance(pose.angular_velocity, {0, 0, turn_rate}), 0.01 * step * step);
+        }
+        if (error_before > 0) {
+            EXPECT_NEAR(error_before / error, 16, 3) << "the fourth order of a cubic spline";
+        }
+        error_before = error;
+    }
+}
+
+TEST(TrajectoryTest, VelocitiesOfASmoothPathAreThoseOfItsPlacesAndDoNotJump) {
+    const Trajectory path({Waypoint{.time = 0}, Waypoint{.time = 1, .position = {1, 0, 0}, .yaw_deg = 30},
+                           Waypoint{.time = 2.5, .position = {1, 2, -1}, .roll_deg = 10, .yaw_deg = 100},
+                           Waypoint{.time = 4, .position = {0, 2, -1}, .yaw_deg = 200}},
+                          true);
+    constexpr double h = 1e-5;
+    for (const double time : {0.5, 1 - 1e-7, 1 + 1e-7, 2.0, 3.5}) {
+        const types::Pose before = path.at(time - h), pose = path.at(time), after = path.at(time + h);
+        const glm::dquat turn = glm::conjugate(before.orientation) * after.orientation;
+        EXPECT_LT(glm::distance(pose.velocity, (after.position - before.position) / (2 * h)), 1e-8) << time;
+        EXPECT_LT(glm::distance(pose.angular_velocity, glm::dvec3(turn.x, turn.y, turn.z) / h), 1e-8) << time;
+    }
+}
+
+TEST(TrajectoryTest, ASmoothPathOfOneOrTwoStampsIsAPointOrALine) {
+    EXPECT_EQ(Trajectory({Waypoint{.time = 3, .position = {1, 2, 3}}}, true).at(5).position, glm::dvec3(1, 2, 3));
+    const Trajectory line({Waypoint{.time = 0}, Waypoint{.time = 2, .position = {4, 0, -2}}}, true);
+    EXPECT_LT(glm::distance(line.at(0.5).position, {1, 0, -0.5}), tiny);
+    EXPECT_LT(glm::distance(line.at(0.5).velocity, {2, 0, -1}), tiny);
+    EXPECT_EQ(line.at(3).velocity, glm::dvec3(0)) << "after the last stamp it holds still";
+}
+
 TEST(TrajectoryTest, VelocityIsThatOfTheSegmentAndZeroWhereItHolds) {
     const Trajectory path({Waypoint{.time = 0}, Waypoint{.time = 2, .position = {4, 0, -2}, .yaw_deg = 90}});
     EXPECT_LT(glm::distance(path.at(1).velocity, {2, 0, -1}), tiny);

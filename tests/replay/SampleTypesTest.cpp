@@ -148,6 +148,42 @@ types::Range made(std::type_identity<types::Range>) {
     range.field_of_view = {0.5};
     return range;
 }
+types::ImuSensors made(std::type_identity<types::ImuSensors>) {
+    types::ImuSensors sensors;
+    sensors.time = {1'500'000};
+    sensors.acc = {0.25, -0.5, 9.75};
+    sensors.gyro = {0.125, 0.5, -1};
+    return sensors;
+}
+types::Imu made(std::type_identity<types::Imu>) {
+    types::Imu imu;
+    imu.time = {1'500'000};
+    imu.orientation = {0.5, -0.5, 0.5, 0.5};
+    imu.cov_orientation = glm::dmat3(0.25);
+    imu.angular_velocity = {0.125, 0.5, -1};
+    imu.cov_angular_velocity = {{1, 0.5, 0}, {0.5, 2, 0}, {0, 0, 3}};
+    imu.linear_acceleration = {0.25, -0.5, 9.75};
+    return imu;
+}
+types::Dvl made(std::type_identity<types::Dvl>) {
+    types::Dvl dvl;
+    dvl.time = {1'500'000};
+    dvl.velocity = {0.5, -0.25, 0.125};
+    dvl.cov_velocity = {{1, 0.5, 0.25}, {0.5, 2, 0}, {0.25, 0, 3}};
+    dvl.altitude = 12.5;
+    dvl.speed_of_sound = 1490.5;
+    dvl.beam_directions = {{0.5, 0.25, -1}, {-0.5, 0.25, -1}, {-0.5, -0.25, -1}, {0.5, -0.25, -1}};
+    dvl.beam_ranges = {15, types::Pose::unknown, 14, 15.5};
+    dvl.beam_velocities = {0.25, types::Pose::unknown, -0.25, 0.5};
+    dvl.beam_velocity_variances = {0.25, types::Pose::unknown, 0.125, 0.5};
+    return dvl;
+}
+types::Pressure made(std::type_identity<types::Pressure>) {
+    types::Pressure pressure;
+    pressure.time = {1'500'000};
+    pressure.pascal = 201'325.5f;
+    return pressure;
+}
 types::Time made(std::type_identity<types::Time>) { return {1'234'567}; }
 types::Angle made(std::type_identity<types::Angle>) { return {0.75}; }
 std::string made(std::type_identity<std::string>) { return "a \"word\"\n"; }

@@ -49,6 +49,16 @@ TEST(HeadScanTest, AFullTurnGoesOnToStarboard) {
         ElementsAre(180, 90, 0, -90, 180, 90));
 }
 
+TEST(HeadScanTest, AHeadThatTurnsOnDoesNotLookAtItsRightLimit) {
+    const HeadConfig published{
+        .left_deg = -180, .right_deg = 179.9, .step_deg = 90, .continuous = true, .speed_deg_per_s = {}};
+    types::Diagnostics diagnostics;
+    published.check(diagnostics);
+    EXPECT_THAT(diagnostics, testing::IsEmpty());
+    EXPECT_THAT(bearings(published, 5), ElementsAre(-180, -270, -360, -450, -180));
+    EXPECT_EQ(HeadScan(published).pingsPerTurn(), 4);
+}
+
 TEST(HeadScanTest, AFullTurnMayTurnBackToo) {
     EXPECT_THAT(
         bearings({.left_deg = 180, .right_deg = -180, .step_deg = 180, .continuous = false, .speed_deg_per_s = {}}, 5),

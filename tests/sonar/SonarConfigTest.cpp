@@ -287,7 +287,7 @@ TEST(SonarConfigTest, HeadsThatCannotTurnSoAreRefused) {
          {Case{"head: {left_deg: -60, right_deg: 60}", "must be above right_deg"},
           Case{"head: {left_deg: 30, right_deg: 30}", "must be above right_deg"},
           Case{"head: {left_deg: 300, right_deg: -300}", "at most 360 deg"},
-          Case{"head: {left_deg: 60, right_deg: -60, continuous: true}", "sector of 120 deg"},
+          Case{"head: {left_deg: 60, right_deg: 60, continuous: false}", "must be above right_deg"},
           Case{"head: {left_deg: 1, right_deg: -1, step_deg: 3}", "the sector has 2 deg"},
           Case{"head: {step_deg: 0}", "0.001 to 360"}, Case{"head: {step_deg: 400}", "0.001 to 360"},
           Case{"head: {step_deg: -1}", "0.001 to 360"}, Case{"head: {step_deg: .nan}", "must be a finite number"},

@@ -197,6 +197,18 @@ TEST(VisibilityTest, TheSameBytesForAnyNumberOfThreads) {
     }
 }
 
+TEST(VisibilityTest, WhereASonarHasBeenBeforeHasNoPartInItsPing) {
+    const types::GeometryPtr geometry = plainSurfaces();
+    const types::Snapshot last = test::snapshotOf(geometry, {0.3, 0.2, 0.1}, 0.1, 0.15, 0.05);
+    SonarRenderer renderer(fan(Visibility::Cpu), geometry);
+    types::Sonar ping;
+    for (const glm::dvec3& place : {glm::dvec3(-7.123, 3.21, 0.4), glm::dvec3(400, 1, 0)})
+        renderer.render(test::snapshotOf(geometry, place, 0.1, 0.15, 0.05), ping);
+    renderer.render(last, ping);
+    EXPECT_GT(std::accumulate(ping.bins.begin(), ping.bins.end(), 0.0), 0);
+    EXPECT_EQ(ping.bins, pingOf(fan(Visibility::Cpu), last).bins);
+}
+
 TEST(VisibilityTest, AnObjectMovesFromPingToPing) {
     const types::Snapshot still = test::snapshotOf(plainSurfaces(), {0, 0, 0}, 0.1, 0.15, 0.05), moved = movedScene();
     SonarRenderer renderer(fan(Visibility::Cpu), still.geometry);
@@ -209,6 +221,24 @@ TEST(VisibilityTest, AnObjectMovesFromPingToPing) {
     EXPECT_EQ(after.bins, pingOf(fan(Visibility::Cpu), moved).bins);
     EXPECT_LT(difference(again, before), 1e-6) << "at its place again, by a tree of its own";
     EXPECT_GT(difference(after, before), 0.05);
+}
+
+TEST(VisibilityTest, APingIsTheSameWhateverCameBeforeIt) {
+    auto geometry = std::make_shared<types::Geometry>();
+    geometry->materials.resize(1);
+    geometry->meshes = {test::sphere(0.4f, 40)};
+    for (const double x : {8, 264, 708})
+        geometry->objects.push_back({"ball", 0, glm::translate(glm::dmat4(1), {x, 1, -0.5})});
+    const SonarConfig config = fan(Visibility::Cpu);
+    SonarRenderer renderer(config, geometry);
+    // Places to either side of where the tree's origin changes, and to and fro.
+    for (const double x : {0.3, 255.9, 256.1, 255.95, 256.2, 700.0, 0.3}) {
+        const types::Snapshot snapshot = test::snapshotOf(geometry, {x, 0, 0}, 0.1, 0.15);
+        types::Sonar ping;
+        renderer.render(snapshot, ping);
+        EXPECT_GT(*std::ranges::max_element(ping.bins), 0) << x;
+        EXPECT_EQ(ping.bins, pingOf(config, snapshot).bins) << x;
+    }
 }
 
 TEST(VisibilityTest, ManyPlacingsOfLargeMeshesAreInstancesThatSoundTheSame) {

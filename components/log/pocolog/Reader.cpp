@@ -45,8 +45,8 @@ private:
     uint64_t take(uint64_t block) {
         const BlockHeader header = file_.header(block);
         if (header.type == BlockType::Stream && !index_.contains(header.stream)) {  // repeated ones are harmless
-            index_[header.stream] = found_.declarations.size();
             found_.declarations.push_back(file_.declaration(block, header));
+            index_[header.stream] = found_.declarations.size() - 1;
         }
         if (header.type == BlockType::Data) sample(block, header);
         return block + sizeof header + header.size;

@@ -33,6 +33,15 @@ TEST(TypelibTest, FrameHasRocksOffsetsAndSize) {
     EXPECT_EQ(extentOf<types::Image>().size, 88u);
 }
 
+TEST(TypelibTest, ReadingsOfNavigationLieWhereRockHasThem) {
+    EXPECT_THAT(offsetsOf<types::ImuSensors>(), testing::ElementsAre(0, 8, 32, 56));
+    EXPECT_EQ(extentOf<types::ImuSensors>().size, 80u);
+    EXPECT_EQ(typelibName<types::ImuSensors>(), "/base/samples/IMUSensors_m") << "of Eigen's vectors";
+    EXPECT_THAT(offsetsOf<types::Pressure>(), testing::ElementsAre(0, 8)) << "its base class first";
+    EXPECT_EQ(extentOf<types::Pressure>().size, 16u);
+    EXPECT_EQ(typelibName<types::Pressure>(), "/base/samples/Pressure");
+}
+
 TEST(TypelibTest, ScansAndBeamsHaveRocksOffsetsAndSize) {
     EXPECT_THAT(offsetsOf<types::SonarBeam>(), testing::ElementsAre(0, 8, 16, 24, 28, 32, 40));
     EXPECT_EQ(extentOf<types::SonarBeam>().size, 64u);

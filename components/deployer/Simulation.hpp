@@ -8,12 +8,12 @@
 #include <string>
 #include <vector>
 
+#include "components/deployer/StepTasks.hpp"
 #include "components/framework/Deployment.hpp"
 #include "components/framework/Registry.hpp"
-#include "components/python/StepTasks.hpp"
 #include "types/Pose.hpp"
 
-namespace insonify::python {
+namespace insonify::deployer {
 
 /** What a simulation is made of. */
 struct SimulationOptions {
@@ -21,6 +21,8 @@ struct SimulationOptions {
     std::vector<std::string> overrides;  ///< "task.property=value", as of `insonify run --set`.
     bool truth = false;                  ///< Whether pings come with what they show.
     std::optional<double> period;        ///< Between two steps; none: that of the poses it replaces, or 0.1 [s].
+    std::vector<std::string>
+        objects;  ///< Nodes of the scene that the caller places as well, see Simulation::objectPort.
 };
 
 /** One ping that a step has made. */
@@ -41,6 +43,8 @@ public:
 
     /** Ports whose poses are to be given, "task.port". */
     const std::vector<std::string>& poses() const { return poses_; }
+    /** The one of them that places a node of SimulationOptions::objects in every scene. */
+    static std::string objectPort(const std::string& node);
     /** Ports whose pings come back, "task.port". */
     std::vector<std::string> pings() const;
     double period() const { return period_; }  ///< [s]
@@ -54,6 +58,8 @@ public:
 
 private:
     void replacePoses(framework::DeploymentSpec& spec);
+    /** Throws for a node that a connection of the deployment moves. */
+    void addObjects(framework::DeploymentSpec& spec, const std::vector<std::string>& nodes);
     void connectReaders(bool truth);
     /** Throws for one that cannot follow the step before, or only after hours of work of other tasks. */
     types::Time timeOfStep(double seconds) const;
@@ -74,4 +80,4 @@ private:
     std::set<std::string> own_seeds_;  ///< Tasks whose seed has been given by name.
 };
 
-}  // namespace insonify::python
+}  // namespace insonify::deployer

@@ -15,7 +15,7 @@
 #include "types/Sonar.hpp"
 #include "types/SonarTruth.hpp"
 
-namespace insonify::python {
+namespace insonify::deployer {
 
 /** Tells poses that a caller gives, at their time. Its outputs are those that connections name. */
 class PoseFeed final : public framework::TaskContext, public framework::ClockSource {
@@ -62,4 +62,4 @@ struct PingReader : framework::TaskContext {
     framework::InputPort<types::SonarTruthPtr> truth{this, "truth", "of the same", framework::Need::Optional};
 };
 
-}  // namespace insonify::python
+}  // namespace insonify::deployer

@@ -1,4 +1,4 @@
-#include "components/python/Simulation.hpp"
+#include "components/deployer/Simulation.hpp"
 
 #include <fmt/format.h>
 
@@ -16,13 +16,15 @@
 #include "components/framework/Wiring.hpp"
 #include "types/ConfigError.hpp"
 
-namespace insonify::python {
+namespace insonify::deployer {
 namespace {
 
 using framework::DeploymentSpec;
 using framework::splitPort;
 
 constexpr const char* scene_type = "scene::SceneTask";
+constexpr const char* feed_type = "deployer::PoseFeed";
+constexpr const char* object_feed = "placed_objects";
 constexpr const char* busy = "another thread uses this simulation";
 constexpr double longest_step = 86400;  ///< [s]
 
@@ -65,7 +67,7 @@ std::set<std::string> tasksThatLeadToPings(const framework::Deployment& deployme
     for (const auto& task : deployment.tasks())
         for (const framework::OutputPortBase* port : task->outputs())
             if (carriesPings(*port)) names.insert(task->name());
-    return deployer::upstreamOf(std::move(names), deployment);
+    return upstreamOf(std::move(names), deployment);
 }
 
 void throwAny(const std::vector<std::string>& failures) {
@@ -77,14 +79,14 @@ DeploymentSpec without(DeploymentSpec spec, const std::set<std::string>& left_ou
     std::set<std::string> kept;
     for (const std::string& name : spec.taskNames())
         if (!left_out.contains(name)) kept.insert(name);
-    return deployer::restrictedTo(std::move(spec), kept);
+    return restrictedTo(std::move(spec), kept);
 }
 
 }  // namespace
 
-Simulation::Simulation(const std::string& file, SimulationOptions options) : registry_(deployer::builtInTasks()) {
-    registry_.add<PoseFeed>("python::PoseFeed", "poses that the caller gives");
-    DeploymentSpec spec = DeploymentSpec::load(deployer::deploymentIn(file));
+Simulation::Simulation(const std::string& file, SimulationOptions options) : registry_(builtInTasks()) {
+    registry_.add<PoseFeed>(feed_type, "poses that the caller gives");
+    DeploymentSpec spec = DeploymentSpec::load(deploymentIn(file));
     for (const std::string& assignment : options.overrides) {
         spec.set(assignment);
         if (const auto end = assignment.find(".seed="); end != std::string::npos)
@@ -93,8 +95,9 @@ Simulation::Simulation(const std::string& file, SimulationOptions options) : reg
     spec.lockstep = true;
     start_time_ = spec.start_time;
     replacePoses(spec);
-    spec = without(spec, deployer::outsideTasks(spec));
-    spec = deployer::restrictedTo(spec, tasksThatLeadToPings(framework::Deployment(spec, registry_)));
+    addObjects(spec, options.objects);
+    spec = without(spec, outsideTasks(spec));
+    spec = restrictedTo(spec, tasksThatLeadToPings(framework::Deployment(spec, registry_)));
     if (options.period) period_ = *options.period;
     deployment_ = std::make_unique<framework::Deployment>(spec, registry_, ".", options.seed);
     for (const std::string& port : poses_)
@@ -123,9 +126,34 @@ void Simulation::replacePoses(DeploymentSpec& spec) {
         if (task.activity.periodic()) period_ = task.activity.period;
         framework::TaskSpec& feed = tasks.emplace_back();
         feed.name = task.name;
-        feed.type = "python::PoseFeed";
+        feed.type = feed_type;
     }
     spec.tasks.swap(tasks);
+}
+
+std::string Simulation::objectPort(const std::string& node) { return std::string(object_feed) + "." + node; }
+
+void Simulation::addObjects(DeploymentSpec& spec, const std::vector<std::string>& nodes) {
+    if (nodes.empty()) return;
+    std::vector<std::string> scenes;
+    for (const framework::TaskSpec& task : spec.tasks)
+        if (task.type == scene_type) scenes.push_back(task.name);
+    for (const std::string& node : nodes) {
+        poses_.push_back(objectPort(node));
+        for (const std::string& scene : scenes) {
+            const std::string input = scene + "." + node + ".pose";
+            for (const framework::ConnectionSpec& other : spec.connections)
+                if (other.to == input)
+                    throw types::ConfigError(spec.file, other.path, "moves " + node + ", which is to be placed");
+            framework::ConnectionSpec& connection = spec.connections.emplace_back();
+            connection.from = objectPort(node);
+            connection.to = input;
+            connection.path = "objects";
+        }
+    }
+    framework::TaskSpec& feed = spec.tasks.emplace_back();
+    feed.name = object_feed;
+    feed.type = feed_type;
 }
 
 void Simulation::connectReaders(bool truth) {
@@ -219,4 +247,4 @@ void Simulation::reset(std::optional<uint64_t> seed) {
     start();
 }
 
-}  // namespace insonify::python
+}  // namespace insonify::deployer

@@ -1,0 +1,167 @@
+#include "components/dataset/Annotate.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <stdexcept>
+
+namespace insonify::dataset {
+namespace {
+
+constexpr int32_t none = types::SonarTruth::no_object;
+
+/** One ping with what it shows. */
+class Annotator {
+public:
+    Annotator(const types::Sonar& ping, const types::SonarTruth& truth, const output::PlainPicture& picture,
+              const Classes& classes, const AnnotationConfig& config, output::BinScale scale)
+        : ping_(ping), truth_(truth), picture_(picture), config_(config), decibel_(scale == output::BinScale::Decibel) {
+        if (truth.beam_count != ping.beam_count || truth.bin_count != ping.bin_count)
+            throw std::runtime_error("a ping has other beams or bins than its truth");
+        for (const std::string& name : truth.objects) class_of_.push_back(classes.of(name));
+    }
+
+    Annotated annotated() {
+        labelCells();
+        addPixels();
+        Annotated all;
+        std::map<int32_t, uint16_t> number_of;
+        for (auto& [object, annotation] : found_) {
+            if (annotation.area < config_.min_pixels) continue;
+            number_of[object] = static_cast<uint16_t>(all.annotations.size() + 1);
+            all.annotations.push_back(std::move(annotation));
+        }
+        label(all, number_of);
+        return all;
+    }
+
+private:
+    double intensityOf(size_t bin) const {
+        const auto value = static_cast<double>(ping_.bins[bin]);
+        return decibel_ ? std::pow(10, value / 10) : value;
+    }
+    bool counts(size_t bin) const {
+        const int32_t object = truth_.object[bin];
+        return object != none && class_of_[static_cast<size_t>(object)] != 0 &&
+               static_cast<double>(truth_.share[bin]) >= config_.min_share && intensityOf(bin) > 0;
+    }
+
+    void labelCells() {
+        const uint32_t cells = picture_.cellsPerBeam(), step = picture_.binsPerCell();
+        object_of_.assign(size_t{ping_.beam_count} * cells, none);
+        for (uint32_t beam = 0; beam < ping_.beam_count; ++beam)
+            for (uint32_t cell = 0; cell < cells; ++cell) {
+                const size_t at = size_t{beam} * cells + cell;
+                if (picture_.levels()[at] < config_.min_level || ping_.bearings[beam].isUnknown()) continue;
+                const uint32_t last = std::min((cell + 1) * step, ping_.bin_count);
+                labelCell(beam, cell * step, last, object_of_[at]);
+                if (object_of_[at] != none) addCell(beam, cell, cell * step, last, object_of_[at]);
+            }
+    }
+
+    void labelCell(uint32_t beam, uint32_t first, uint32_t last, int32_t& object) const {
+        double strongest = 0;
+        for (uint32_t k = first; k < last; ++k) {
+            const size_t bin = size_t{beam} * ping_.bin_count + k;
+            if (!counts(bin)) continue;
+            const double energy = intensityOf(bin) * static_cast<double>(truth_.share[bin]);
+            if (energy <= strongest) continue;
+            strongest = energy;
+            object = truth_.object[bin];
+        }
+    }
+
+    void addCell(uint32_t beam, uint32_t cell, uint32_t first, uint32_t last, int32_t object) {
+        const double bearing = ping_.bearings[beam].rad;
+        Annotation& annotation = annotationOf(object, bearing, ping_.binStart(first));
+        annotation.bearing_min = std::min(annotation.bearing_min, bearing);
+        annotation.bearing_max = std::max(annotation.bearing_max, bearing);
+        annotation.range_min = std::min(annotation.range_min, ping_.binStart(first));
+        annotation.range_max = std::max(annotation.range_max, ping_.binStart(last));
+        for (uint32_t k = first; k < last; ++k) {
+            const size_t bin = size_t{beam} * ping_.bin_count + k;
+            if (truth_.object[bin] != object) continue;
+            ++annotation.bins;
+            annotation.energy += intensityOf(bin) * static_cast<double>(truth_.share[bin]);
+        }
+        const cv::Point at = picture_.pixelOf(beam, cell);
+        widen(annotation.box, at.x, at.y);
+    }
+
+    Annotation& annotationOf(int32_t object, double bearing, double range) {
+        const auto [at, is_new] = found_.try_emplace(object);
+        if (is_new) {
+            at->second.object = object;
+            at->second.name = truth_.objects[static_cast<size_t>(object)];
+            at->second.category = class_of_[static_cast<size_t>(object)];
+            at->second.bearing_min = at->second.bearing_max = bearing;
+            at->second.range_min = at->second.range_max = range;
+        }
+        return at->second;
+    }
+
+    static void widen(Box& box, int x, int y) {
+        if (box.width == 0) {
+            box = {x, y, 1, 1};
+            return;
+        }
+        const int right = std::max(box.x + box.width, x + 1), bottom = std::max(box.y + box.height, y + 1);
+        box.x = std::min(box.x, x), box.y = std::min(box.y, y);
+        box.width = right - box.x, box.height = bottom - box.y;
+    }
+
+    int32_t objectAt(size_t pixel) const {
+        const int32_t cell = picture_.cells()[pixel];
+        return cell < 0 ? none : object_of_[static_cast<size_t>(cell)];
+    }
+
+    void addPixels() {
+        for (uint32_t y = 0; y < picture_.height(); ++y)
+            for (uint32_t x = 0; x < picture_.width(); ++x) {
+                const int32_t object = objectAt(size_t{y} * picture_.width() + x);
+                if (object == none) continue;
+                Annotation& annotation = found_.at(object);
+                ++annotation.area;
+                widen(annotation.box, static_cast<int>(x), static_cast<int>(y));
+            }
+    }
+
+    /** Labels and runs, which go column by column. */
+    void label(Annotated& all, const std::map<int32_t, uint16_t>& number_of) const {
+        all.labels.assign(picture_.cells().size(), 0);
+        std::vector<uint32_t> end(all.annotations.size(), 0);  // of the last run, in pixels from the start
+        uint32_t place = 0;
+        for (uint32_t x = 0; x < picture_.width(); ++x)
+            for (uint32_t y = 0; y < picture_.height(); ++y, ++place) {
+                const size_t pixel = size_t{y} * picture_.width() + x;
+                const auto number = number_of.find(objectAt(pixel));
+                if (number == number_of.end()) continue;
+                all.labels[pixel] = number->second;
+                const size_t i = number->second - 1u;
+                std::vector<uint32_t>& runs = all.annotations[i].runs;
+                if (runs.empty() || end[i] < place) runs.insert(runs.end(), {place - end[i], 0});
+                ++runs.back();
+                end[i] = place + 1;
+            }
+        for (size_t i = 0; i < end.size(); ++i)
+            if (end[i] < place) all.annotations[i].runs.push_back(place - end[i]);
+    }
+
+    const types::Sonar& ping_;
+    const types::SonarTruth& truth_;
+    const output::PlainPicture& picture_;
+    const AnnotationConfig& config_;
+    const bool decibel_;
+    std::vector<uint32_t> class_of_;  ///< Of each object of the truth.
+    std::vector<int32_t> object_of_;  ///< Of each cell.
+    std::map<int32_t, Annotation> found_;
+};
+
+}  // namespace
+
+Annotated annotate(const types::Sonar& ping, const types::SonarTruth& truth, const output::PlainPicture& picture,
+                   const Classes& classes, const AnnotationConfig& config, output::BinScale scale) {
+    return Annotator(ping, truth, picture, classes, config, scale).annotated();
+}
+
+}  // namespace insonify::dataset

@@ -1,0 +1,46 @@
+#pragma once
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "components/dataset/Classes.hpp"
+#include "components/output/PlainPicture.hpp"
+#include "types/Sonar.hpp"
+#include "types/SonarTruth.hpp"
+
+namespace insonify::dataset {
+
+/** Pixels from (x, y) on, both from the upper left corner. */
+struct Box {
+    int x = 0, y = 0, width = 0, height = 0;
+    bool operator==(const Box&) const = default;
+};
+
+/** One object as a picture shows it. */
+struct Annotation {
+    int32_t object = 0;  ///< Index into the truth's objects.
+    std::string name;
+    uint32_t category = 0;                    ///< From 1.
+    Box box;                                  ///< Holds its pixels and the middle of each of its cells.
+    uint32_t area = 0;                        ///< [px]
+    uint32_t bins = 0;                        ///< Of the ping, of which it is the strongest.
+    double energy = 0;                        ///< Sum of these bins, its share of each; linear.
+    double range_min = 0, range_max = 0;      ///< [m]
+    double bearing_min = 0, bearing_max = 0;  ///< [rad], positive to port.
+    std::vector<uint32_t> runs;  ///< Pixels column by column: so many that are not of it, so many that are, and so on.
+};
+
+/** All that a picture shows, and to which object each pixel belongs. */
+struct Annotated {
+    std::vector<Annotation> annotations;  ///< In order of the truth's objects.
+    std::vector<uint16_t> labels;         ///< Of each pixel, row by row: number of its annotation from 1; 0: none.
+};
+
+/** Finds which objects a picture shows. A cell is of the object that gives most energy to one of its bins, if its share
+ *  there is at least `min_share`, it has a class, and the cell's grey level is at least `min_level`. An object of fewer
+ *  than `min_pixels` pixels is not annotated, and its pixels belong to none.
+ *  @param picture that took the ping. Throws std::runtime_error for a truth of another grid. */
+Annotated annotate(const types::Sonar& ping, const types::SonarTruth& truth, const output::PlainPicture& picture,
+                   const Classes& classes, const AnnotationConfig& config, output::BinScale scale);
+
+}  // namespace insonify::dataset

@@ -1,0 +1,37 @@
+#include "components/dataset/Classes.hpp"
+
+#include <algorithm>
+#include <set>
+
+#include "components/dataset/Samples.hpp"
+
+namespace insonify::dataset {
+
+std::string withoutNumber(const std::string& name) {
+    const size_t letter = name.find_last_not_of("0123456789");
+    if (letter == std::string::npos || letter + 1 == name.size()) return name;
+    const size_t end = name.find_last_not_of("_-. ", letter);
+    return end == std::string::npos ? name : name.substr(0, end + 1);
+}
+
+Classes::Classes(const Sweep& sweep, const std::vector<std::string>& objects) : rules_(sweep.classes) {
+    for (const ClassRule& rule : rules_) {
+        resolve(sweep, rule.patterns, objects, "classes." + rule.name, rule.line, rule.column);
+        names_.push_back(rule.name);
+    }
+    if (!rules_.empty()) return;
+    std::set<std::string> bare;
+    for (const std::string& object : objects) bare.insert(withoutNumber(object));
+    names_.assign(bare.begin(), bare.end());
+}
+
+uint32_t Classes::of(const std::string& object) const {
+    for (size_t i = 0; i < rules_.size(); ++i)
+        if (std::ranges::any_of(rules_[i].patterns, [&](const std::string& each) { return matches(each, object); }))
+            return static_cast<uint32_t>(i + 1);
+    if (!rules_.empty()) return 0;
+    const auto found = std::ranges::find(names_, withoutNumber(object));
+    return found == names_.end() ? 0 : static_cast<uint32_t>(found - names_.begin() + 1);
+}
+
+}  // namespace insonify::dataset

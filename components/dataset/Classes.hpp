@@ -1,0 +1,28 @@
+#pragma once
+#include <string>
+#include <vector>
+
+#include "components/dataset/Sweep.hpp"
+
+namespace insonify::dataset {
+
+/** The classes that objects belong to, numbered from 1; 0 is no class. */
+class Classes {
+public:
+    /** By the rules of a sweep, of which the first that matches counts; without any, an object's class is its name
+     *  without the number at its end: "pile_07" is a pile. Throws types::ConfigError for a pattern that matches none.
+     *  @param objects names of all objects of all scenes */
+    Classes(const Sweep& sweep, const std::vector<std::string>& objects);
+
+    const std::vector<std::string>& names() const { return names_; }  ///< Of class 1 and on.
+    uint32_t of(const std::string& object) const;
+
+private:
+    std::vector<ClassRule> rules_;
+    std::vector<std::string> names_;
+};
+
+/** "pile" of "pile_07", "pile.007" and "pile 7"; a name of digits alone stays. */
+std::string withoutNumber(const std::string& name);
+
+}  // namespace insonify::dataset

@@ -1,0 +1,126 @@
+#include "components/dataset/Placement.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "types/Angle.hpp"
+#include "types/ConfigError.hpp"
+#include "types/Hash.hpp"
+
+namespace insonify::dataset {
+namespace {
+
+constexpr uint64_t tries = 1000, words_per_try = 4;
+constexpr uint64_t stream = 0x706c6163650000;  ///< Of the random words of places; groups and objects are added.
+constexpr double out_of_hearing = 1e5;         ///< How far below its place an object is that is not there [m].
+
+double headingOf(const types::Pose& pose) {
+    const glm::dvec3 ahead = pose.orientation * glm::dvec3(1, 0, 0);
+    return std::atan2(ahead.y, ahead.x);
+}
+
+double distanceTo(const types::Extent& box, double x, double y) {
+    const double dx = std::max({box.low.x - x, 0.0, x - box.high.x}),
+                 dy = std::max({box.low.y - y, 0.0, y - box.high.y});
+    return std::hypot(dx, dy);
+}
+
+}  // namespace
+
+std::optional<double> highestAt(const std::vector<std::array<glm::dvec3, 3>>& triangles, double x, double y) {
+    std::optional<double> highest;
+    for (const auto& [a, b, c] : triangles) {
+        const double area = (b.x - a.x) * (c.y - a.y) - (c.x - a.x) * (b.y - a.y);
+        if (area == 0) continue;
+        const double v = ((x - a.x) * (c.y - a.y) - (c.x - a.x) * (y - a.y)) / area;
+        const double w = ((b.x - a.x) * (y - a.y) - (x - a.x) * (b.y - a.y)) / area;
+        if (v < 0 || w < 0 || v + w > 1) continue;
+        const double z = a.z + v * (b.z - a.z) + w * (c.z - a.z);
+        if (!highest || z > *highest) highest = z;
+    }
+    return highest;
+}
+
+Placement::Placement(const Sweep& sweep, const SceneParts& scene, uint64_t pose, const types::Pose& vehicle)
+    : sweep_(sweep), scene_(scene), pose_(pose), vehicle_(vehicle) {
+    taken_.push_back({vehicle.position.x, vehicle.position.y, 0});
+}
+
+double Placement::between(const std::vector<double>& span, uint64_t word) const {
+    Axis axis;
+    axis.uniform = span;
+    return axis.draw(types::hashed(sweep_.seed, pose_, word));
+}
+
+void Placement::add(size_t number, const std::vector<std::string>& names) {
+    const ObjectGroup& group = sweep_.objects[number];
+    const uint64_t first_word = stream + (uint64_t{number} << 48);
+    size_t wanted = names.size();
+    if (!group.count.empty()) {
+        const double drawn = between({double(group.count[0]), double(group.count[1]) + 1}, first_word - 1);
+        wanted = std::min<size_t>({wanted, static_cast<size_t>(drawn), group.count[1]});
+    }
+    for (size_t i = 0; i < names.size(); ++i) {
+        const Placeable& object = scene_.placeables.at(names[i]);
+        if (i >= wanted) {
+            objects_.push_back({names[i], object.filed, false});
+            objects_.back().at.position.z -= out_of_hearing;
+            continue;
+        }
+        std::optional<PlacedObject> placed;
+        for (uint64_t attempt = 0; attempt < tries && !placed; ++attempt)
+            placed = tryOnce(group, names[i], first_word + (i * tries + attempt) * words_per_try);
+        if (!placed)
+            throw types::ConfigError(
+                {{fmt::format("objects[{}]", number),
+                  fmt::format("has room for {} of its {} objects at pose {}, of {} tries each; give "
+                              "it a larger area, fewer objects or a smaller gap",
+                              i, wanted, pose_, tries),
+                  sweep_.file, group.line, group.column}});
+        objects_.push_back(std::move(*placed));
+    }
+}
+
+std::optional<PlacedObject> Placement::tryOnce(const ObjectGroup& group, const std::string& name, uint64_t word) {
+    const Placeable& object = scene_.placeables.at(name);
+    glm::dvec2 at{between(group.x, word), between(group.y, word + 1)};
+    if (group.frame == Frame::Vehicle) {
+        const double heading = headingOf(vehicle_), c = std::cos(heading), s = std::sin(heading);
+        at = {vehicle_.position.x + c * at.x - s * at.y, vehicle_.position.y + s * at.x + c * at.y};
+    }
+    const Circle circle{at.x, at.y, object.radius};
+    if (!isFree(group, circle)) return std::nullopt;
+    const std::optional<double> z = heightOf(group, object, circle, word + 2);
+    if (!z) return std::nullopt;
+    PlacedObject placed{name, object.filed, true};
+    placed.at.position = {at.x, at.y, *z};
+    if (!group.yaw_deg.empty()) {
+        const double yaw = types::radians(between(group.yaw_deg, word + 3));
+        placed.at.orientation = glm::angleAxis(yaw, glm::dvec3(0, 0, 1)) * placed.at.orientation;
+    }
+    taken_.push_back(circle);
+    return placed;
+}
+
+bool Placement::isFree(const ObjectGroup& group, const Circle& circle) const {
+    for (const Circle& other : taken_)
+        if (std::hypot(circle.x - other.x, circle.y - other.y) < circle.radius + other.radius + group.gap) return false;
+    for (const auto& [name, box] : scene_.boxes)
+        if (std::ranges::any_of(group.avoid, [&](const std::string& pattern) { return matches(pattern, name); }) &&
+            distanceTo(box, circle.x, circle.y) < circle.radius + group.gap)
+            return false;
+    return true;
+}
+
+std::optional<double> Placement::heightOf(const ObjectGroup& group, const Placeable& object, const Circle& at,
+                                          uint64_t word) const {
+    if (!group.z.empty()) return between(group.z, word);
+    if (!group.ground) return object.filed.position.z;
+    const std::optional<double> ground = highestAt(scene_.grounds.at(*group.ground), at.x, at.y);
+    if (!ground) return std::nullopt;
+    return std::round((*ground - object.low) * 1e6) / 1e6;
+}
+
+}  // namespace insonify::dataset

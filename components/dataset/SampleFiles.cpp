@@ -1,0 +1,187 @@
+#include "components/dataset/SampleFiles.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <limits>
+#include <stdexcept>
+
+#include "components/log/NpzFile.hpp"
+#include "components/log/Writer.hpp"
+#include "components/output/PictureFiles.hpp"
+
+namespace insonify::dataset {
+namespace fs = std::filesystem;
+namespace {
+
+Json toJson(const types::Pose& pose) {
+    const auto& [p, q] = std::tie(pose.position, pose.orientation);
+    return {{"position", {p.x, p.y, p.z}}, {"orientation_wxyz", {q.w, q.x, q.y, q.z}}};
+}
+
+Json toJson(const Annotation& annotation, const Classes& classes, const output::PlainPicture& picture) {
+    const Box& box = annotation.box;
+    return {{"object", annotation.object},
+            {"name", annotation.name},
+            {"class", classes.names()[annotation.category - 1]},
+            {"category", annotation.category},
+            {"bbox", {box.x, box.y, box.width, box.height}},
+            {"area", annotation.area},
+            {"bins", annotation.bins},
+            {"energy", annotation.energy},
+            {"range_m", {annotation.range_min, annotation.range_max}},
+            {"bearing_rad", {annotation.bearing_min, annotation.bearing_max}},
+            {"segmentation", {{"size", {picture.height(), picture.width()}}, {"counts", annotation.runs}}}};
+}
+
+Json toJson(const types::Sonar& ping) {
+    return {{"beams", ping.beam_count},
+            {"bins", ping.bin_count},
+            {"range_m", ping.binStart(ping.bin_count)},
+            {"bearing_rad", {ping.bearings.front().rad, ping.bearings.back().rad}},
+            {"speed_of_sound_m_s", ping.speed_of_sound}};
+}
+
+/** Grey levels that say of which annotation, or class, a pixel is. */
+types::Image maskOf(types::Image picture, const Annotated& annotated, bool classes) {
+    for (size_t i = 0; i < picture.image.size(); ++i) {
+        const uint16_t number = annotated.labels[i];
+        const uint32_t level = number == 0 ? 0 : classes ? annotated.annotations[number - 1u].category : number;
+        if (level > std::numeric_limits<uint8_t>::max())
+            throw std::runtime_error(
+                "a picture shows more than 255 objects or classes, which a mask cannot tell apart; "
+                "give fewer classes");
+        picture.image[i] = static_cast<uint8_t>(level);
+    }
+    return picture;
+}
+
+/** Class, middle and size of each box, as shares of the picture. */
+std::string yoloOf(const Annotated& annotated, const output::PlainPicture& picture) {
+    const double width = picture.width(), height = picture.height();
+    std::string text;
+    for (const Annotation& each : annotated.annotations)
+        text += fmt::format("{} {:.6f} {:.6f} {:.6f} {:.6f}\n", each.category - 1,
+                            (each.box.x + each.box.width / 2.0) / width, (each.box.y + each.box.height / 2.0) / height,
+                            each.box.width / width, each.box.height / height);
+    return text;
+}
+
+void writeTexts(log::NpzFile& npz, const std::string& name, const std::vector<std::string>& texts) {
+    size_t longest = 1;
+    for (const std::string& text : texts) longest = std::max(longest, text.size());
+    npz.begin(name, "|S" + std::to_string(longest), {texts.size()});
+    for (std::string text : texts) {
+        text.resize(longest);
+        npz.append(text.data(), longest);
+    }
+    npz.end();
+}
+
+void writeNpz(const fs::path& file, const Heard& heard, const std::string& meta) {
+    const types::Sonar& ping = heard.ping;
+    const std::vector<size_t> shape{ping.beam_count, ping.bin_count};
+    std::vector<double> bearings, ranges;
+    for (const types::Angle& bearing : ping.bearings) bearings.push_back(bearing.rad);
+    for (uint32_t k = 0; k < ping.bin_count; ++k) ranges.push_back(ping.binStart(k + 0.5));
+    log::NpzFile npz(file);
+    npz.array("bins", shape, ping.bins);
+    npz.array("bearings", {bearings.size()}, bearings);
+    npz.array("range_m", {ranges.size()}, ranges);
+    types::SonarTruth::forEachArray(
+        heard.truth, [&]<class Number>(const char* name, const auto& numbers, std::type_identity<Number>) {
+            npz.begin(name, log::numpyType<Number>(), shape);
+            npz.append(numbers.data(), numbers.size() * sizeof(numbers[0]));
+            npz.end();
+        });
+    writeTexts(npz, "objects", heard.truth.objects);
+    npz.begin("meta", "|S" + std::to_string(meta.size()), {});
+    npz.append(meta.data(), meta.size());
+    npz.end();
+    npz.close();
+}
+
+void writeMcap(const fs::path& file, const Heard& heard) {
+    const fs::path bag = file.string() + ".bag", inside = bag / "sample.mcap";  // a description comes to lie beside it
+    fs::create_directory(bag);
+    const auto log = log::createLog(inside);
+    const size_t ping = log->addStream<types::Sonar>("sonar.ping");
+    const size_t truth = log->addStream<types::SonarTruth>("sonar.truth");
+    const size_t pose = log->addStream<types::Pose>("vehicle.pose");
+    types::Pose at = heard.sample.at;
+    at.time = heard.ping.time;
+    log->write(pose, at.time, at);
+    log->write(ping, at.time, heard.ping);
+    log->write(truth, at.time, heard.truth);
+    log->close();
+    fs::rename(inside, file);
+    fs::remove_all(bag);
+}
+
+}  // namespace
+
+SampleFiles::SampleFiles(const Sweep& sweep, Format format, const Classes& classes, Store& store)
+    : sweep_(sweep), format_(format), classes_(classes), store_(store), picture_(sweep.picture) {}
+
+void SampleFiles::write(const Heard& heard) {
+    picture_.take(heard.ping);
+    const Annotated annotated =
+        annotate(heard.ping, heard.truth, picture_, classes_, sweep_.annotations, sweep_.picture.scale);
+    Json record = recordOf(heard, annotated);
+    record["files"] = writeFiles(store_.stemOf(heard.sample.index), heard, annotated, record);
+    store_.putRecord(heard.sample.index, std::move(record));
+}
+
+Json SampleFiles::recordOf(const Heard& heard, const Annotated& annotated) const {
+    const Sample& sample = heard.sample;
+    Json record{{"index", sample.index},
+                {"part", std::string(types::EnumNames<Part>::names[static_cast<size_t>(sample.part)])},
+                {"scene", heard.scene},
+                {"sequence", {sample.scene, sample.setting}},
+                {"frame", sample.pose},
+                {"time_s", sample.time},
+                {"settings", Json::object()},
+                {"pose", toJson(sample.at)},
+                {"objects", Json::array()},
+                {"ping", toJson(heard.ping)},
+                {"picture",
+                 {{"width", picture_.width()},
+                  {"height", picture_.height()},
+                  {"shape",
+                   std::string(types::EnumNames<output::PlainShape>::names[static_cast<size_t>(sweep_.picture.shape)])},
+                  {"reference_db", picture_.referenceDb()}}},
+                {"annotations", Json::array()}};
+    for (const auto& [property, value] : heard.settings) record["settings"][property] = value;
+    for (const PlacedObject& object : sample.objects) {
+        Json placed{{"name", object.name}, {"present", object.present}};
+        if (object.present) placed.update(toJson(object.at));
+        record["objects"].push_back(std::move(placed));
+    }
+    for (const Annotation& each : annotated.annotations)
+        record["annotations"].push_back(toJson(each, classes_, picture_));
+    return record;
+}
+
+std::string SampleFiles::putPicture(const std::string& name, const types::Image& picture) {
+    return store_.put(name, [&](const fs::path& file) { output::writePng(file, picture); });
+}
+
+Json SampleFiles::writeFiles(const std::string& stem, const Heard& heard, const Annotated& annotated,
+                             const Json& meta) {
+    Json files = Json::object();
+    if (hasPictures(format_)) files[stem + ".png"] = putPicture(stem + ".png", picture_.image());
+    if (format_ == Format::Yolo) files[stem + ".txt"] = store_.putText(stem + ".txt", yoloOf(annotated, picture_));
+    if (format_ == Format::Mask)
+        for (const bool classes : {false, true}) {
+            const std::string name = stem + (classes ? "_classes.png" : "_instances.png");
+            files[name] = putPicture(name, maskOf(picture_.image(), annotated, classes));
+        }
+    if (format_ == Format::Npz)
+        files[stem + ".npz"] =
+            store_.put(stem + ".npz", [&](const fs::path& file) { writeNpz(file, heard, textOf(meta)); });
+    if (format_ == Format::Mcap)
+        files[stem + ".mcap"] = store_.put(stem + ".mcap", [&](const fs::path& file) { writeMcap(file, heard); });
+    return files;
+}
+
+}  // namespace insonify::dataset

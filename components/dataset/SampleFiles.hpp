@@ -1,0 +1,46 @@
+#pragma once
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "components/dataset/Annotate.hpp"
+#include "components/dataset/Samples.hpp"
+#include "components/dataset/Store.hpp"
+#include "types/Sonar.hpp"
+#include "types/SonarTruth.hpp"
+
+namespace insonify::dataset {
+
+/** A sample with what a sonar heard of it. */
+struct Heard {
+    const Sample& sample;
+    const types::Sonar& ping;
+    const types::SonarTruth& truth;
+    std::string scene;                                            ///< Name of its file.
+    std::vector<std::pair<std::string, std::string>> settings{};  ///< "task.property", value in YAML.
+};
+
+/** Writes the files of samples in one format, and their records. */
+class SampleFiles {
+public:
+    SampleFiles(const Sweep& sweep, Format format, const Classes& classes, Store& store);
+    /** Throws std::runtime_error where a file cannot be written. */
+    void write(const Heard& heard);
+
+private:
+    Json recordOf(const Heard& heard, const Annotated& annotated) const;
+    /** Files and their sums. */
+    Json writeFiles(const std::string& stem, const Heard& heard, const Annotated& annotated, const Json& meta);
+    std::string putPicture(const std::string& name, const types::Image& picture);
+
+    const Sweep& sweep_;
+    const Format format_;
+    const Classes& classes_;
+    Store& store_;
+    output::PlainPicture picture_;
+};
+
+/** Whether a format has a picture for each sample. */
+inline bool hasPictures(Format format) { return format != Format::Npz && format != Format::Mcap; }
+
+}  // namespace insonify::dataset

@@ -1,0 +1,139 @@
+#include "components/dataset/Samples.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "components/dataset/Placement.hpp"
+#include "types/ConfigError.hpp"
+#include "types/DidYouMean.hpp"
+#include "types/Hash.hpp"
+#include "types/Mount.hpp"
+
+namespace insonify::dataset {
+namespace {
+
+constexpr uint64_t most_samples = 100'000'000;
+constexpr uint64_t pose_stream = 0x706f7365, noise_stream = 0x6e6f697365;
+
+/** The coordinates of a pose of a grid. */
+std::vector<double> gridded(const PoseAxes& axes, uint64_t pose) {
+    std::vector<std::vector<double>> steps;
+    PoseAxes::forEach(axes, [&](const char*, const char*, const Axis& axis) { steps.push_back(axis.steps()); });
+    std::vector<double> values(steps.size());
+    for (size_t i = steps.size(); i-- > 0; pose /= steps[i].size()) values[i] = steps[i][pose % steps[i].size()];
+    return values;
+}
+
+/** The coordinates of a pose that is drawn. */
+std::vector<double> drawn(const PoseAxes& axes, uint64_t seed, uint64_t pose) {
+    std::vector<double> values;
+    PoseAxes::forEach(axes, [&](const char*, const char*, const Axis& axis) {
+        values.push_back(axis.draw(types::hashed(seed, pose, pose_stream + values.size())));
+    });
+    return values;
+}
+
+}  // namespace
+
+std::vector<std::string> resolve(const Sweep& sweep, const std::vector<std::string>& patterns,
+                                 const std::vector<std::string>& known, const std::string& what, int line, int column) {
+    std::vector<std::string> names;
+    types::Diagnostics diagnostics;
+    for (size_t i = 0; i < patterns.size(); ++i) {
+        bool found = false;
+        for (const std::string& name : known) {
+            if (!matches(patterns[i], name)) continue;
+            found = true;
+            if (std::ranges::count(names, name) == 0) names.push_back(name);
+        }
+        if (!found)
+            diagnostics.push_back({fmt::format("{}[{}]", what, i),
+                                   fmt::format("is {}, which is no name in the scene; {}insonify scene lists them",
+                                               patterns[i], types::didYouMean(patterns[i], known)),
+                                   sweep.file, line, column});
+    }
+    if (!diagnostics.empty()) throw types::ConfigError(diagnostics);
+    return names;
+}
+
+Samples::Samples(const Sweep& sweep, std::vector<TimedPose> trajectory, std::vector<SceneParts> scenes)
+    : sweep_(sweep), trajectory_(std::move(trajectory)), scenes_(std::move(scenes)) {
+    poses_ = sweep.grid ? sweep.grid->gridSize() : sweep.random ? sweep.random_count : trajectory_.size();
+    for (const Setting& setting : sweep.settings) settings_ *= setting.values.size();
+    const double all = static_cast<double>(poses_) * static_cast<double>(settings_) * double(sweep.scenes.size());
+    if (all > static_cast<double>(most_samples))
+        throw types::ConfigError(sweep.file, "",
+                                 fmt::format("makes {:g} samples; at most {} go into one data set", all, most_samples));
+    count_ = poses_ * settings_ * sweep.scenes.size();
+    names_.resize(scenes_.size());
+    for (size_t scene = 0; scene < scenes_.size(); ++scene)
+        for (size_t group = 0; group < sweep.objects.size(); ++group) names_[scene].push_back(namesOf(scene, group));
+}
+
+std::vector<std::string> Samples::namesOf(size_t scene, size_t number) const {
+    const ObjectGroup& group = sweep_.objects[number];
+    std::vector<std::string> known;
+    for (const auto& [name, placeable] : scenes_[scene].placeables) known.push_back(name);
+    const std::string path = fmt::format("objects[{}].names", number);
+    const auto names = resolve(sweep_, group.names, known, path, group.line, group.column);
+    for (size_t before = 0; before < number; ++before)
+        for (const std::string& name : names_[scene][before])
+            if (std::ranges::count(names, name) > 0)
+                throw types::ConfigError(
+                    {{path, "places " + name + " for the second time", sweep_.file, group.line, group.column}});
+    return names;
+}
+
+std::vector<std::string> Samples::objectsOf(size_t scene) const {
+    std::vector<std::string> all;
+    for (const auto& names : names_[scene]) all.insert(all.end(), names.begin(), names.end());
+    return all;
+}
+
+std::vector<std::pair<std::string, std::string>> Samples::settingsOf(size_t setting) const {
+    std::vector<std::pair<std::string, std::string>> chosen;
+    for (auto each = sweep_.settings.rbegin(); each != sweep_.settings.rend(); ++each) {
+        chosen.emplace_back(each->property, each->values[setting % each->values.size()].yaml);
+        setting /= each->values.size();
+    }
+    std::ranges::reverse(chosen);
+    return chosen;
+}
+
+types::Pose Samples::poseOf(uint64_t pose, double& time) const {
+    if (sweep_.trajectory) {
+        time = trajectory_[pose].time;
+        return trajectory_[pose].at;
+    }
+    const std::vector<double> values =
+        sweep_.grid ? gridded(*sweep_.grid, pose) : drawn(*sweep_.random, sweep_.seed, pose);
+    const types::Mount mount{{values[0], values[1], values[2]}, values[3], values[4], values[5]};
+    types::Pose at;
+    at.source_frame = "body";
+    at.target_frame = "world";
+    at.position = mount.position;
+    at.orientation = mount.orientation();
+    return at;
+}
+
+std::vector<PlacedObject> Samples::place(size_t scene, uint64_t pose, const types::Pose& vehicle) const {
+    Placement placement(sweep_, scenes_[scene], pose, vehicle);
+    for (size_t group = 0; group < names_[scene].size(); ++group) placement.add(group, names_[scene][group]);
+    return placement.objects();
+}
+
+Sample Samples::at(uint64_t index) const {
+    Sample sample;
+    sample.index = index;
+    sample.pose = index % poses_;
+    sample.setting = index / poses_ % settings_;
+    sample.scene = index / poses_ / settings_;
+    sample.at = poseOf(sample.pose, sample.time);
+    sample.objects = place(sample.scene, sample.pose, sample.at);
+    sample.seed = types::hashed(sweep_.seed, index, noise_stream) | 1;
+    sample.part = sweep_.split.of(sweep_.seed, index);
+    return sample;
+}
+
+}  // namespace insonify::dataset

@@ -1,0 +1,44 @@
+#pragma once
+#include <cstdint>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "components/dataset/Classes.hpp"
+#include "components/dataset/Store.hpp"
+
+namespace insonify::dataset {
+
+/** A page that shows what a data set holds: how many samples and objects of each class, how large they are, how far
+ *  away, and examples with their boxes. It needs no network and no script. */
+class StatisticsPage {
+public:
+    StatisticsPage(std::string title, const Classes& classes) : title_(std::move(title)), classes_(classes) {}
+
+    /** @param picture file, beside the page; empty: there is none */
+    void add(const Json& record, const std::string& picture);
+    std::string text() const;
+
+private:
+    /** Numbers by the name of a bar. */
+    using Bars = std::vector<std::pair<std::string, uint64_t>>;
+    struct OfClass {
+        uint64_t objects = 0, samples = 0, pixels = 0;
+        double nearest = 0, farthest = 0;  ///< [m]
+    };
+
+    static std::string drawn(const std::string& caption, const Bars& bars);
+    std::string tableOfClasses() const;
+    static std::string exampleOf(const Json& record, const std::string& picture);
+
+    const std::string title_;
+    const Classes& classes_;
+    uint64_t samples_ = 0;
+    std::map<std::string, uint64_t> parts_, scenes_, settings_;
+    std::map<uint32_t, OfClass> of_class_;
+    std::map<int, uint64_t> areas_, ranges_;  ///< By power of two of pixels, by steps of range.
+    std::map<size_t, uint64_t> objects_in_picture_;
+    std::vector<std::string> examples_;
+};
+
+}  // namespace insonify::dataset

@@ -1,0 +1,128 @@
+#include "components/dataset/Store.hpp"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <atomic>
+#include <fstream>
+#include <iterator>
+#include <random>
+#include <system_error>
+
+#include "components/command/Sha256.hpp"
+#include "types/ConfigError.hpp"
+
+namespace insonify::dataset {
+namespace fs = std::filesystem;
+namespace {
+
+constexpr const char* leftover = ".part_";
+constexpr size_t hash_digits = 12;
+
+/** Of this process and no other, on any machine that shares the folder; the end stays, for it tells the format. */
+std::string passingName(const std::string& name) {
+    static std::atomic<uint64_t> number{0};
+    static const uint64_t process = uint64_t{std::random_device{}()} << 32 | static_cast<uint32_t>(::getpid());
+    return fmt::format("{}{:016x}_{}_{}", leftover, process, ++number, name);
+}
+
+/** The number of a sample of whose files this is one; none: it is of no sample. */
+std::optional<uint64_t> indexOf(const std::string& name) {
+    const size_t digits = name.find_first_not_of("0123456789");
+    if (digits == std::string::npos || digits < 6 || digits > 18 || name[digits] != '_') return std::nullopt;
+    const size_t end = name.find_first_not_of("0123456789abcdef", digits + 1);
+    if (end != digits + 1 + hash_digits) return std::nullopt;
+    return std::stoull(name.substr(0, digits));
+}
+
+std::string bytesOf(const fs::path& file) {
+    std::ifstream stream(file, std::ios::binary);
+    return {std::istreambuf_iterator<char>(stream), {}};
+}
+
+std::string sumOf(Json record) {
+    record.erase("sum");
+    return command::sha256Of(textOf(record));
+}
+
+}  // namespace
+
+std::string textOf(const Json& json) { return json.dump(-1, ' ', false, Json::error_handler_t::replace); }
+
+Store::Store(fs::path folder, std::string digest) : folder_(std::move(folder)), digest_(std::move(digest)) {
+    refuseOthers();
+}
+
+void Store::refuseOthers() const {
+    for (const auto& entry : fs::directory_iterator(folder_)) {
+        const std::string name = entry.path().filename();
+        const std::optional<uint64_t> index = indexOf(name);
+        if (index && !name.starts_with(stemOf(*index)))
+            throw types::ConfigError(folder_, "--out",
+                                     fmt::format("holds {}, a sample of another sweep, deployment, scene, format or "
+                                                 "version; give an empty folder",
+                                                 name));
+    }
+}
+
+std::string Store::stemOf(uint64_t index) const {
+    return fmt::format("{:06}_{}", index,
+                       command::sha256Of(fmt::format("{}\n{}", digest_, index)).substr(0, hash_digits));
+}
+
+std::string Store::put(const std::string& name, const std::function<void(const fs::path&)>& writer) {
+    constexpr int most_tries = 5;
+    for (int attempt = 1;; ++attempt) {
+        const fs::path passing = folder_ / passingName(name);
+        try {
+            writer(passing);
+            const std::string sum = command::sha256OfFile(passing);
+            fs::rename(passing, folder_ / name);
+            return sum;
+        } catch (...) {
+            std::error_code ignored;
+            const bool was_taken = !fs::exists(passing, ignored);  // by who took it for a leftover
+            fs::remove(passing, ignored);
+            if (!was_taken || attempt == most_tries) throw;
+        }
+    }
+}
+
+std::string Store::putText(const std::string& name, const std::string& text) {
+    return put(name, [&](const fs::path& file) {
+        std::ofstream out(file, std::ios::binary);
+        out << text;
+        out.close();
+        if (!out) throw std::runtime_error("cannot write " + file.string());
+    });
+}
+
+void Store::putRecord(uint64_t index, Json record) {
+    record["sum"] = sumOf(record);
+    putText(stemOf(index) + ".json", textOf(record) + "\n");
+}
+
+std::optional<Json> Store::record(uint64_t index) const {
+    const fs::path file = folder_ / (stemOf(index) + ".json");
+    if (!fs::exists(file)) return std::nullopt;
+    Json record = Json::parse(bytesOf(file), nullptr, false);
+    if (!record.is_object() || record.value("sum", Json()) != sumOf(record)) return std::nullopt;
+    return record;
+}
+
+bool Store::has(uint64_t index) const {
+    const std::optional<Json> found = record(index);
+    if (!found) return false;
+    for (const auto& [name, sum] : (*found)["files"].items())
+        if (!fs::exists(folder_ / name) || command::sha256OfFile(folder_ / name) != sum.get<std::string>())
+            return false;
+    return true;
+}
+
+void Store::removeLeftovers() const {
+    std::error_code ignored;
+    for (const auto& entry : fs::directory_iterator(folder_))
+        if (entry.path().filename().string().starts_with(leftover)) fs::remove_all(entry.path(), ignored);
+}
+
+}  // namespace insonify::dataset

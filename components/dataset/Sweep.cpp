@@ -1,0 +1,109 @@
+#include "components/dataset/Sweep.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "types/Hash.hpp"
+
+namespace insonify::dataset {
+namespace {
+
+constexpr double millionths = 1e6;
+
+double inMillionths(double value) { return std::round(value * millionths) / millionths; }
+
+/** "x" must be [least, most], or be absent. */
+void checkSpan(const char* name, const auto& span, bool needed, types::Diagnostics& diagnostics) {
+    if (span.empty() && needed) diagnostics.push_back({name, "is missing; give [least, most]"});
+    if (!span.empty() && (span.size() != 2 || span[1] < span[0]))
+        diagnostics.push_back({name, "must be two numbers, [least, most]"});
+}
+
+}  // namespace
+
+std::vector<double> Axis::steps() const {
+    if (!count) return values.empty() ? std::vector<double>{0} : values;
+    std::vector<double> all;
+    for (uint32_t i = 0; i < *count; ++i)
+        all.push_back(*count == 1 ? *from : *from + (*to - *from) * i / static_cast<double>(*count - 1));
+    return all;
+}
+
+double Axis::draw(uint64_t random) const {
+    const double first = types::unit(random >> 32), second = types::unit(random & 0xffffffff);
+    if (!uniform.empty()) return inMillionths(uniform[0] + (uniform[1] - uniform[0]) * first);
+    if (normal.empty()) return steps().front();
+    const double variate = std::sqrt(-2 * std::log(first)) * std::cos(2 * std::numbers::pi * second);
+    return inMillionths(normal[0] + normal[1] * variate);
+}
+
+void Axis::check(types::Diagnostics& diagnostics) const {
+    const int ways = (from || to || count) + !uniform.empty() + !normal.empty();
+    if (ways > 1) diagnostics.push_back({"", "is given in several ways; steps, uniform or normal"});
+    if (ways == 0 && values.empty())
+        diagnostics.push_back({"", "is empty; give a number, a list, {from, to, count}, {uniform} or {normal}"});
+    if ((from || to || count) && !(from && to && count))
+        diagnostics.push_back({"", "has not all of from, to and count, which steps need"});
+    checkSpan("uniform", uniform, false, diagnostics);
+    if (!normal.empty() && (normal.size() != 2 || normal[1] < 0))
+        diagnostics.push_back({"normal", "must be two numbers, [mean, deviation], the deviation not below 0"});
+}
+
+uint64_t PoseAxes::gridSize() const {
+    uint64_t size = 1;
+    forEach(*this, [&](const char*, const char*, const Axis& axis) { size *= axis.steps().size(); });
+    return size;
+}
+
+void TrajectoryPoses::check(types::Diagnostics& diagnostics) const {
+    if (file.empty()) diagnostics.push_back({"", "has no file"});
+    if (count.has_value() == period.has_value())
+        diagnostics.push_back({"", "has neither or both of count and period; one says how many poses there are"});
+    if (to && *to < from)
+        diagnostics.push_back({"to", fmt::format("is {:g} s; must not be before from, {:g} s", *to, from)});
+}
+
+void ObjectGroup::check(types::Diagnostics& diagnostics) const {
+    if (names.empty()) diagnostics.push_back({"names", "is missing; give names of nodes of the scene"});
+    checkSpan("x", x, true, diagnostics);
+    checkSpan("y", y, true, diagnostics);
+    checkSpan("z", z, false, diagnostics);
+    checkSpan("yaw_deg", yaw_deg, false, diagnostics);
+    checkSpan("count", count, false, diagnostics);
+    if (ground && !z.empty()) diagnostics.push_back({"ground", "is given beside z; one tells the height"});
+}
+
+Part Split::of(uint64_t seed, uint64_t index) const {
+    constexpr uint64_t stream = 0x73706c6974;
+    const double place = types::unit(types::hashed(seed, index, stream) >> 32);
+    if (place < train) return Part::Train;
+    return place < train + val || test == 0 ? Part::Val : Part::Test;
+}
+
+void Split::check(types::Diagnostics& diagnostics) const {
+    const double sum = train + val + test;
+    if (std::abs(sum - 1) > 1e-9)
+        diagnostics.push_back({"", fmt::format("adds up to {:g}; train, val and test must add up to 1", sum)});
+}
+
+bool matches(const std::string& pattern, const std::string& name) {
+    // The place behind the last *, and how far of the name it stands for: where the rest fits not, it takes one more.
+    size_t p = 0, n = 0, star = std::string::npos, taken = 0;
+    while (n < name.size()) {
+        if (p < pattern.size() && pattern[p] == '*') {
+            star = ++p, taken = n;
+        } else if (p < pattern.size() && pattern[p] == name[n]) {
+            ++p, ++n;
+        } else if (star != std::string::npos) {
+            p = star, n = ++taken;
+        } else {
+            return false;
+        }
+    }
+    while (p < pattern.size() && pattern[p] == '*') ++p;
+    return p == pattern.size();
+}
+
+}  // namespace insonify::dataset

@@ -1,0 +1,209 @@
+#pragma once
+// What a data set is made of: scenes x poses x settings.
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "components/output/PlainPicture.hpp"
+#include "types/Describe.hpp"
+
+namespace insonify::dataset {
+
+/** What a sample is written as. */
+enum class Format { Coco, Yolo, Mask, Npz, Mcap };
+
+/** The parts of a data set. */
+enum class Part { Train, Val, Test };
+
+/** Values of one coordinate: one or several that are listed, steps from one to another, or drawn at random. */
+struct Axis {
+    std::vector<double> values;
+    std::optional<double> from, to;
+    std::optional<uint32_t> count;
+    std::vector<double> uniform, normal;
+
+    bool isDrawn() const { return !uniform.empty() || !normal.empty(); }
+    /** The values of a grid; {0} where nothing is given. */
+    std::vector<double> steps() const;
+    /** The value of one pose of many: drawn by a random word, in whole millionths, so that processors that differ in
+     *  the last bit of a logarithm draw the same; or the one that is given. */
+    double draw(uint64_t random) const;
+
+    template <class Self, class V>
+    static void describe(Self& self, V& visit) {
+        using types::Field;
+        visit(Field{"from", "", "first of `count` steps", -1e7, 1e7}, self.from);
+        visit(Field{"to", "", "last of `count` steps", -1e7, 1e7}, self.to);
+        visit(Field{"count", "1", "steps", 1, 1e6}, self.count);
+        visit(Field{"uniform", "", "drawn from between two values: [lowest, highest]", -1e7, 1e7}, self.uniform);
+        visit(Field{"normal", "", "drawn from a normal law: [mean, deviation]", -1e7, 1e7}, self.normal);
+    }
+    void check(types::Diagnostics& diagnostics) const;
+};
+
+/** Poses of the vehicle in the world, coordinate by coordinate; what is not given is 0. */
+struct PoseAxes {
+    Axis x, y, z, roll_deg, pitch_deg, yaw_deg;
+
+    /** visit(name, unit, axis) for each, in the order in which a grid nests: the last runs fastest. */
+    template <class Self, class V>
+    static void forEach(Self& self, V&& visit) {
+        visit("x", "m", self.x);
+        visit("y", "m", self.y);
+        visit("z", "m", self.z);
+        visit("roll_deg", "deg", self.roll_deg);
+        visit("pitch_deg", "deg", self.pitch_deg);
+        visit("yaw_deg", "deg", self.yaw_deg);
+    }
+    uint64_t gridSize() const;
+};
+
+/** Poses of a trajectory at even times. */
+struct TrajectoryPoses {
+    std::string file;
+    std::optional<uint32_t> count;
+    std::optional<double> period;
+    double from = 0;
+    std::optional<double> to;
+
+    template <class Self, class V>
+    static void describe(Self& self, V& visit) {
+        using types::Field;
+        visit(Field{"file", "", "CSV with header time,x,y,z,qw,qx,qy,qz, relative to the sweep"}, self.file);
+        visit(Field{"count", "1", "poses, evenly from `from` to `to`", 1, 1e7}, self.count);
+        visit(Field{"period", "s", "instead: time between two poses", 1e-3, 1e6}, self.period);
+        visit(Field{"from", "s", "time of the first", 0, 86400}, self.from);
+        visit(Field{"to", "s", "time of the last; absent: the end of the trajectory", 0, 86400}, self.to);
+    }
+    void check(types::Diagnostics& diagnostics) const;
+};
+
+enum class Frame { World, Vehicle };
+
+/** Objects of the scene that stand elsewhere in each pose, without touching each other. */
+struct ObjectGroup {
+    std::vector<std::string> names, avoid;
+    std::optional<std::string> ground;
+    Frame frame = Frame::World;
+    std::vector<double> x, y, z, yaw_deg;
+    double gap = 0.1;
+    std::vector<uint32_t> count;
+    int line = 0, column = 0;  ///< Where it stands in the sweep.
+
+    template <class Self, class V>
+    static void describe(Self& self, V& visit) {
+        using types::Field;
+        visit(Field{"names", "", "nodes of the scene; a * stands for any letters"}, self.names);
+        visit(Field{"x", "m", "area: [least, most], north in the world, ahead of the vehicle", -1e7, 1e7}, self.x);
+        visit(Field{"y", "m", "area: [least, most], west in the world, to port of the vehicle", -1e7, 1e7}, self.y);
+        visit(Field{"z", "m", "height of the node's origin: [least, most]; absent: as in the file, or on the ground",
+                    -1e5, 1e5},
+              self.z);
+        visit(Field{"ground", "", "instead of z: node on whose highest surface they stand"}, self.ground);
+        visit(Field{"yaw_deg", "deg", "turn about the vertical, beside that in the file: [least, most]", -360, 360},
+              self.yaw_deg);
+        visit(Field{"frame", "", "of the area: world, or vehicle, by its place and heading"}, self.frame);
+        visit(Field{"gap", "m", "between upright cylinders about them", 0, 1e4}, self.gap);
+        visit(Field{"avoid", "", "nodes that stay where they are, from whose boxes they keep off"}, self.avoid);
+        visit(Field{"count", "1", "how many of them are there: [least, most]; absent: all", 0, 1e6}, self.count);
+    }
+    void check(types::Diagnostics& diagnostics) const;
+};
+
+/** Which share of the samples belongs to which part. */
+struct Split {
+    double train = 1, val = 0, test = 0;
+
+    /** Of a sample, by its number alone: the same however many there are. */
+    Part of(uint64_t seed, uint64_t index) const;
+
+    template <class Self, class V>
+    static void describe(Self& self, V& visit) {
+        using types::Field;
+        visit(Field{"train", "1", "share of the samples to learn from", 0, 1}, self.train);
+        visit(Field{"val", "1", "to choose by", 0, 1}, self.val);
+        visit(Field{"test", "1", "to judge by", 0, 1}, self.test);
+    }
+    void check(types::Diagnostics& diagnostics) const;
+};
+
+/** What is worth an annotation. */
+struct AnnotationConfig {
+    double min_share = 0.5;
+    uint32_t min_level = 1;
+    uint32_t min_pixels = 12;
+
+    template <class Self, class V>
+    static void describe(Self& self, V& visit) {
+        using types::Field;
+        visit(Field{"min_share", "1", "of a bin's energy that is the object's, from which the bin is part of it", 0, 1},
+              self.min_share);
+        visit(Field{"min_level", "1", "grey level of the picture from which a place is seen", 0, 255}, self.min_level);
+        visit(Field{"min_pixels", "1", "of an object, from which it is annotated", 1, 1e6}, self.min_pixels);
+    }
+};
+
+/** A value in YAML, and where it stands in the sweep. */
+struct Written {
+    std::string yaml;
+    int line = 0, column = 0;
+};
+
+/** A property of the deployment that takes the values of a list. */
+struct Setting {
+    std::string property;  ///< "task.property.path"
+    std::vector<Written> values;
+};
+
+/** One of the scenes: a file, and properties that go with it. */
+struct SceneChoice {
+    std::string file;                                  ///< Empty: that of the deployment.
+    std::vector<std::pair<std::string, Written>> set;  ///< "task.property.path"
+    int line = 0, column = 0;
+};
+
+/** A class of objects, and which names are of it; a * stands for any letters. */
+struct ClassRule {
+    std::string name;
+    std::vector<std::string> patterns;
+    int line = 0, column = 0;
+};
+
+/** Every sample is one of `scenes`, with one combination of the values of `settings`, at one pose. */
+struct Sweep {
+    std::string file;  ///< As given, for diagnostics.
+    std::string text;
+    uint64_t seed = 1;
+    std::vector<SceneChoice> scenes{1};
+    std::vector<Setting> settings;
+    // Exactly one of these:
+    std::optional<PoseAxes> grid;
+    std::optional<PoseAxes> random;
+    uint32_t random_count = 0;
+    std::optional<TrajectoryPoses> trajectory;
+    std::vector<ObjectGroup> objects;
+    Split split;
+    std::vector<ClassRule> classes;
+    output::PlainConfig picture;
+    AnnotationConfig annotations;
+};
+
+/** Whether a name is what a pattern says, in which * stands for any letters or none. */
+bool matches(const std::string& pattern, const std::string& name);
+
+}  // namespace insonify::dataset
+
+template <>
+struct insonify::types::EnumNames<insonify::dataset::Format> {
+    static constexpr std::string_view names[] = {"coco", "yolo", "mask", "npz", "mcap"};
+};
+template <>
+struct insonify::types::EnumNames<insonify::dataset::Part> {
+    static constexpr std::string_view names[] = {"train", "val", "test"};
+};
+template <>
+struct insonify::types::EnumNames<insonify::dataset::Frame> {
+    static constexpr std::string_view names[] = {"world", "vehicle"};
+};

@@ -1,0 +1,203 @@
+#include "components/deployer/DeviceExport.hpp"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "components/deployer/StreamMeaning.hpp"
+#include "components/device/OculusEncoder.hpp"
+#include "components/device/OculusRecording.hpp"
+#include "components/output/ByteFile.hpp"
+#include "components/output/Xtf.hpp"
+#include "types/Mount.hpp"
+
+namespace insonify::deployer {
+namespace {
+
+namespace fs = std::filesystem;
+
+[[noreturn]] void refuse(const log::Reader& log, const std::string& stream, const std::string& why) {
+    throw types::ConfigError(log.path(), stream, why);
+}
+
+const log::Stream& pingsOf(const log::Reader& log, const std::string& stream, const std::string& wanted) {
+    const log::Stream& pings = log.streams()[log.indexOf(stream)];
+    if (!holdsPings(pings)) refuse(log, pings.name, "holds " + pings.type + "; " + wanted);
+    if (pings.count == 0) refuse(log, pings.name, "holds no ping");
+    return pings;
+}
+
+double frequencyOf(const Json& meaning) {
+    const Json& frequency = meaning["frequency_khz"];
+    return frequency.is_number() ? frequency.get<double>() : 0;
+}
+
+// -- XTF --------------------------------------------------------------------------------------------------------------
+
+/** The stream of poses that is asked for, or the only one; null: there is none. */
+const log::Stream* posesOf(log::Reader& log, const std::string& asked) {
+    if (!asked.empty()) {
+        const log::Stream& poses = log.streams()[log.indexOf(asked)];
+        if (!poses.holds<types::Pose>()) refuse(log, asked, "holds " + poses.type + "; --pose takes poses");
+        return &poses;
+    }
+    std::vector<const log::Stream*> all, of_sonars;
+    std::string names;
+    for (const log::Stream& stream : log.streams()) {
+        if (!stream.holds<types::Pose>()) continue;
+        all.push_back(&stream);
+        names += (names.empty() ? "" : ", ") + stream.name;
+        if (stream.metadatum("rock_task_model").starts_with("sonar::")) of_sonars.push_back(&stream);
+    }
+    if (of_sonars.size() == 1) return of_sonars.front();
+    if (all.size() > 1)
+        throw types::ConfigError(log.path(), "--pose",
+                                 "is missing; name the poses of the side-scan or its vehicle: " + names);
+    return all.empty() ? nullptr : all.front();
+}
+
+types::Mount mountOf(const Json& meaning) {
+    types::Mount mount;
+    const Json& given = meaning["mount"];
+    if (!given.is_object()) return mount;
+    if (const Json place = given.value("position", Json()); place.is_array() && place.size() == 3)
+        for (int axis = 0; axis < 3; ++axis) mount.position[axis] = place[static_cast<size_t>(axis)].get<double>();
+    mount.roll_deg = given.value("roll_deg", 0.0);
+    mount.pitch_deg = given.value("pitch_deg", 0.0);
+    mount.yaw_deg = given.value("yaw_deg", 0.0);
+    return mount;
+}
+
+/** The sonar in the world over time. */
+class Track {
+public:
+    Track(log::Reader& log, const log::Stream* poses, const types::Mount& mount) {
+        if (!poses) return;
+        log.forEach<types::Pose>(poses->name, [&](const types::Pose& body, const log::SampleRef&) {
+            types::Pose& sonar = all_.emplace_back(body);
+            if (body.source_frame != "sonar" && isUsable(body)) place(body, mount, sonar);
+        });
+        std::ranges::stable_sort(all_, {}, &types::Pose::time);
+    }
+    /** At this time or the last before; none is known before the first. */
+    types::Pose at(types::Time time) const {
+        const auto after = std::ranges::upper_bound(all_, time, {}, &types::Pose::time);
+        if (after != all_.begin()) return *std::prev(after);
+        types::Pose none;
+        none.position.x = types::Pose::unknown;
+        return none;
+    }
+
+private:
+    std::vector<types::Pose> all_;
+};
+
+void refuseUnlessSideScan(const log::Reader& log, const std::string& stream, const types::Sonar& ping) {
+    const auto to = [&](int side) {
+        return std::ranges::count_if(ping.bearings,
+                                     [&](const types::Angle& bearing) { return bearing.rad * side > 0; });
+    };
+    if (ping.beam_count != 2 || to(1) != 1 || to(-1) != 1)
+        refuse(log, stream,
+               fmt::format("holds pings of {} beams; an XTF file takes the lines of a side-scan, one beam to port and "
+                           "one to starboard",
+                           ping.beam_count));
+}
+
+// -- Oculus -----------------------------------------------------------------------------------------------------------
+
+/** How the codes of a stream came about. */
+struct Codes {
+    int bits = 8;
+    double gamma = 1;
+};
+
+Codes codesOf(const log::Reader& log, const std::string& stream, const Json& meaning) {
+    const char* const what =
+        "an Oculus' recording takes codes that go as amplitude: of a receiver with output: code and "
+        "code: {law: sqrt}";
+    if (meaning.value("output", Json()) != "code")
+        refuse(log, stream, fmt::format("holds {}; {}", meaning.value("output", "bins"), what));
+    const Json code = meaning["code"].is_object() ? meaning["code"] : Json::object();
+    if (code.value("law", "log") != "sqrt")
+        refuse(log, stream, fmt::format("holds codes of law {}; {}", code.value("law", "log"), what));
+    const Codes codes{code.value("bits", 8), code.value("gamma", 1.0)};
+    if (codes.gamma < 1.0 / 255 || codes.gamma > 1)
+        refuse(log, stream, fmt::format("holds codes of gamma {:g}; an Oculus tells of 0.004 to 1", codes.gamma));
+    return codes;
+}
+
+/** What holds for all pings of a recording. */
+device::OculusResult settingsOf(const Codes& codes, double frequency_khz) {
+    device::OculusResult result;
+    result.fire.header.version = 2;
+    if (codes.bits == 16) result.fire.flags |= device::OculusFire::wide_16;
+    result.frequency_hz = 1e3 * frequency_khz;
+    return result;
+}
+
+void setPing(const types::Sonar& ping, double since_first, device::OculusResult& result) {
+    result.speed_of_sound = static_cast<double>(ping.speed_of_sound);
+    result.fire.speed_of_sound = result.speed_of_sound;
+    result.fire.range = ping.binStart(ping.bin_count);
+    result.range_resolution = ping.binStart(1);
+    result.start_s = since_first;
+    if (ping.beam_count > 256) result.fire.flags |= device::OculusFire::beams_512;
+}
+
+}  // namespace
+
+void exportXtf(log::Reader& log, const std::string& stream, const std::string& poses, const fs::path& to) {
+    const log::Stream& pings = pingsOf(log, stream, "an XTF file takes the lines of a side-scan");
+    const Json meaning = meaningOf(log, pings);
+    const bool codes = meaning.value("output", Json()) == "code";
+    const output::XtfFormat format{codes ? output::XtfSamples::Uint16 : output::XtfSamples::Float32,
+                                   frequencyOf(meaning), to.filename().string()};
+    const log::Stream* const placed = posesOf(log, poses);
+    if (!placed) fmt::print(stderr, "notice: {} holds no poses: the lines have no places\n", log.path().string());
+    const Track track(log, placed, mountOf(meaning));
+    types::Sonar ping;
+    readPing(log, *std::ranges::find(log.samples(), log.indexOf(stream), &log::SampleRef::stream), ping);
+    refuseUnlessSideScan(log, pings.name, ping);
+    output::ByteFile file(to);
+    std::vector<char> bytes = output::xtfHeader(format, ping);
+    output::XtfPing more;
+    types::Time last;
+    log.forEachRef(stream, [&](const log::SampleRef& at) {
+        readPing(log, at, ping);
+        more.sonar = track.at(ping.time);
+        more.since_last = last.isNull() ? 0 : (ping.time - last).seconds();
+        last = ping.time;
+        output::appendXtfPing(format, ping, more, bytes);
+        ++more.number;
+        file.append(bytes);
+        bytes.clear();
+    });
+    file.close();
+}
+
+void exportOculus(log::Reader& log, const std::string& stream, const fs::path& to) {
+    const log::Stream& pings = pingsOf(log, stream, "an Oculus' recording takes pings");
+    const Json meaning = meaningOf(log, pings);
+    const Codes codes = codesOf(log, pings.name, meaning);
+    device::OculusEncoder encoder(codes.bits);
+    device::OculusResult result = settingsOf(codes, frequencyOf(meaning));
+    device::OculusRecorder recorder(to, {.time = pings.first.seconds()});
+    types::Sonar ping;
+    log.forEachRef(stream, [&](const log::SampleRef& at) {
+        readPing(log, at, ping);
+        if (ping.bin_count > 65535 || ping.beam_count > 65535)
+            refuse(log, pings.name, "holds pings of more than 65535 beams or bins");
+        setPing(ping, (ping.time - pings.first).seconds(), result);
+        result.fire.gamma = 0xFF;  // the codes are bent already
+        encoder.encode(ping, result);
+        result.fire.gamma = static_cast<uint8_t>(std::lround(255 * codes.gamma));
+        result.settle();
+        recorder.write(ping.time.seconds(), bytesOf(result));
+        ++result.number;
+    });
+}
+
+}  // namespace insonify::deployer

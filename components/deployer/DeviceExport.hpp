@@ -1,0 +1,23 @@
+#pragma once
+// Streams of a log as files of what records sonars.
+#include <filesystem>
+#include <string>
+
+#include "components/log/Reader.hpp"
+
+namespace insonify::deployer {
+
+/** Writes the lines of a side-scan as an XTF file (output/Xtf.hpp): whole numbers of 16 bits where the log knows the
+ * bins as codes, else the bins as they are. Each line has the pose at its time, or the last before it; that of the
+ * vehicle is taken to the sonar by the mount that the log knows.
+ *  @param poses stream of the sonar's poses or its vehicle's; empty: the only one of the log, or the only one that a
+ *  sonar tells; where there is none the file has no places, which is told on stderr.
+ *  Throws types::ConfigError for a stream of anything but pings of one beam to port and one to starboard, for poses
+ * that are none or have to be named, and for a file that cannot be made. */
+void exportXtf(log::Reader& log, const std::string& stream, const std::string& poses, const std::filesystem::path& to);
+
+/** Writes codes that go as amplitude as a recording of the viewer of a Blueprint Oculus (device/OculusRecording.hpp),
+ *  bin for bin. Throws types::ConfigError for a stream of anything else, and for a file that cannot be made. */
+void exportOculus(log::Reader& log, const std::string& stream, const std::filesystem::path& to);
+
+}  // namespace insonify::deployer

@@ -1,0 +1,173 @@
+#include "components/deployer/ShardFolder.hpp"
+
+#include <fcntl.h>
+#include <fmt/core.h>
+#include <sys/file.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <fstream>
+#include <system_error>
+#include <utility>
+#include <vector>
+
+#include "components/command/Sha256.hpp"
+#include "types/ConfigError.hpp"
+
+namespace insonify::deployer {
+namespace fs = std::filesystem;
+namespace {
+
+using command::Json;
+
+constexpr const char* manifest_name = "manifest.json";
+
+/** None: it is not there, or is no JSON. */
+std::optional<Json> manifestIn(const fs::path& folder) {
+    std::ifstream file(folder / manifest_name);
+    Json manifest = Json::parse(file, nullptr, false);
+    if (!manifest.is_object() || !manifest.contains("files") || !manifest["files"].is_array()) return std::nullopt;
+    return manifest;
+}
+
+/** Files of a folder, by their names within it, in the order of these. */
+std::vector<fs::path> filesIn(const fs::path& folder) {
+    std::vector<fs::path> files;
+    for (const auto& entry : fs::recursive_directory_iterator(folder))
+        if (entry.is_regular_file()) files.push_back(entry.path().lexically_relative(folder));
+    std::ranges::sort(files);
+    return files;
+}
+
+Json entryOf(const fs::path& folder, const fs::path& file) {
+    return {{"file", file.generic_string()},
+            {"bytes", fs::file_size(folder / file)},
+            {"sha256", command::sha256OfFile(folder / file)}};
+}
+
+/** What of a folder is not as its manifest says; empty: nothing. */
+std::string damageOf(const fs::path& folder, const Json& manifest) {
+    for (const Json& entry : manifest["files"]) {
+        const fs::path file = entry.value("file", "");
+        std::error_code absent;
+        const uint64_t bytes = fs::file_size(folder / file, absent);
+        if (absent) return file.string() + " is missing";
+        if (bytes != entry.value("bytes", uint64_t{0}))
+            return fmt::format("{} has {} bytes, not {}", file.string(), bytes, entry.value("bytes", uint64_t{0}));
+        if (command::sha256OfFile(folder / file) != entry.value("sha256", ""))
+            return file.string() + " has another SHA-256 than when it was written";
+    }
+    return {};
+}
+
+/** The first key whose values differ, with both; empty: none. */
+std::string differenceOf(const Json& there, const Json& asked) {
+    for (const auto& [key, value] : asked.items()) {
+        const Json& before = there.contains(key) ? there[key] : Json();
+        if (before != value) return fmt::format("{} is {} there, and {} here", key, before.dump(), value.dump());
+    }
+    return {};
+}
+
+/** "shard_03_of_16" -> "16"; empty: it is another file. */
+std::string countOf(const fs::path& folder) {
+    const std::string name = folder.filename().string();
+    const size_t of = name.rfind("_of_");
+    return name.starts_with("shard_") && of != name.npos ? name.substr(of + 4) : "";
+}
+
+}  // namespace
+
+ShardFolder::Lock::Lock(const fs::path& folder, bool waits)
+    : folder_(open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC)) {
+    holds_ = folder_ >= 0 && flock(folder_, LOCK_EX | (waits ? 0 : LOCK_NB)) == 0;
+}
+
+ShardFolder::Lock::~Lock() {
+    if (folder_ >= 0) close(folder_);
+}
+
+ShardFolder::ShardFolder(const fs::path& shared, const command::Shard& shard, Json run)
+    : shared_(shared), path_(shared / ("shard_" + shard.fileText())), shard_(shard), run_(std::move(run)) {
+    std::error_code failed;
+    fs::create_directories(shared_, failed);
+    if (failed || !fs::is_directory(shared_))
+        throw types::ConfigError(shared_, "--out", "is no folder and cannot be made: " + failed.message());
+    refuseOthers();
+}
+
+ShardFolder::~ShardFolder() {
+    std::error_code ignored;
+    if (!part_.empty()) fs::remove_all(part_, ignored);
+}
+
+void ShardFolder::refuseOthers() const {
+    bool compared = false;
+    for (const auto& entry : fs::directory_iterator(shared_)) {
+        const std::string count = countOf(entry.path());
+        if (count.empty()) continue;
+        if (count != std::to_string(shard_.count))
+            throw types::ConfigError(
+                shared_, "--out",
+                fmt::format("holds shards of {}, and this is one of {}; give another folder", count, shard_.count));
+        // One will do: each was compared with one before it.
+        const auto manifest = compared ? std::nullopt : manifestIn(entry.path());
+        if (!manifest) continue;
+        compared = true;
+        const std::string difference = differenceOf(manifest->value("run", Json::object()), run_);
+        if (!difference.empty())
+            throw types::ConfigError(shared_, "--out",
+                                     "holds shards of another run: " + difference + "; give another folder");
+    }
+}
+
+std::optional<Json> ShardFolder::done() const {
+    if (!fs::exists(path_)) return std::nullopt;
+    const auto manifest = manifestIn(path_);
+    const std::string damage = manifest ? damageOf(path_, *manifest) : "its manifest.json is missing or broken";
+    if (damage.empty()) return manifest;
+    fmt::print(stderr, "notice: {}: {}; the shard is made anew\n", path_.string(), damage);
+    fs::remove_all(path_);
+    return std::nullopt;
+}
+
+void ShardFolder::removeLeft() const {
+    const std::string beginning = "." + path_.filename().string() + ".";
+    for (const auto& entry : fs::directory_iterator(shared_)) {
+        if (!entry.path().filename().string().starts_with(beginning)) continue;
+        const Lock lock(entry.path(), false);
+        if (!lock.holds()) continue;  // somebody is at it
+        std::error_code ignored;
+        fs::remove_all(entry.path(), ignored);
+    }
+}
+
+const fs::path& ShardFolder::begin() {
+    const Lock together(shared_, true);  // nobody takes a folder that is not locked yet for one that was left
+    removeLeft();
+    std::string name = shared_ / ("." + path_.filename().string() + ".XXXXXX");
+    if (!mkdtemp(name.data())) throw types::ConfigError(shared_, "--out", "cannot be written to");
+    part_ = name;
+    fs::permissions(part_, fs::status(shared_).permissions());
+    lock_.emplace(part_, false);
+    return part_;
+}
+
+Json ShardFolder::finish(const Json& more) {
+    Json manifest = {{"shard", shard_.text()}, {"run", run_}};
+    manifest.update(more);
+    manifest["files"] = Json::array();
+    for (const fs::path& file : filesIn(part_)) manifest["files"].push_back(entryOf(part_, file));
+    command::write(manifest, part_ / manifest_name);
+    std::error_code failed;
+    fs::rename(part_, path_, failed);
+    if (!failed) {
+        part_.clear();
+        return manifest;
+    }
+    if (const auto first = manifestIn(path_)) return *first;
+    throw std::runtime_error(fmt::format("{}: cannot become {}: {}", part_.string(), path_.string(), failed.message()));
+}
+
+}  // namespace insonify::deployer

@@ -1,0 +1,136 @@
+#include "components/deployer/ShardRun.hpp"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <limits>
+#include <utility>
+
+#include "components/command/Sha256.hpp"
+#include "components/deployer/ShardFolder.hpp"
+#include "components/deployer/StopSignal.hpp"
+#include "components/deployer/Tasks.hpp"
+#include "components/framework/Activity.hpp"
+#include "components/framework/Offers.hpp"
+#include "types/ConfigError.hpp"
+
+namespace insonify::deployer {
+namespace {
+
+using command::Json;
+using framework::Deployment;
+using framework::DeploymentSpec;
+
+/** What a run's files follow from, beside the files that the deployment names. */
+Json runOf(const RunOptions& options, const DeploymentSpec& spec) {
+    return {{"insonify", INSONIFY_VERSION},
+            {"deployment", std::filesystem::path(spec.file).filename().string()},
+            {"deployment_sha256", command::sha256Of(spec.text)},
+            {"set", options.set},
+            {"seed", options.seed.value_or(0)},
+            {"pings", options.limits.samples},
+            {"duration_s", options.limits.duration_s}};
+}
+
+/** Why a task cannot be cut, empty: it can. */
+std::string whyWhole(const framework::TaskContext& task, const std::string& type) {
+    const auto* const divisible = dynamic_cast<const framework::Divisible*>(&task);
+    if (!divisible)
+        return fmt::format(
+            "is a {}, of which a shard cannot know what the pings before would have done to it; leave it out, and "
+            "give it the joined log (insonify log cut, insonify replay)",
+            type);
+    const auto isRead = [](const auto* port) { return port->connected(); };
+    if (task.activity().settings().periodic() && std::ranges::any_of(task.inputs(), isRead))
+        return "has a period and reads from others, and so may take what came before the shard; leave the period out";
+    return divisible->indivisible();
+}
+
+bool stopped(const framework::RunResult& result) { return result.failed() || stopOnSignals(); }
+
+/** How many pings the whole run has: all but the rendering. */
+uint64_t rehearsedPings(const DeploymentSpec& spec, const RunOptions& options, const std::filesystem::path& folder) {
+    framework::Registry registry = builtInTasks();
+    Deployment deployment(spec, registry, folder, options.seed.value_or(0));
+    refuseIndivisible(deployment);
+    deployment.configure();
+    framework::RunLimits limits = options.limits;
+    limits.shard = {.first = std::numeric_limits<uint64_t>::max()};
+    const framework::RunResult result = deployment.run(limits, stopOnSignals());
+    if (stopped(result))
+        throw std::runtime_error(result.failed() ? "rehearsal: " + result.failures.front() : "interrupted");
+    return result.rehearsed;
+}
+
+/** The pings of a run that its shard makes; the last has all that comes after its last ping, too. */
+framework::RunLimits::Shard pingsOf(const command::Shard& shard, uint64_t pings, const std::string& file) {
+    if (pings < shard.count)
+        throw types::ConfigError(
+            file, "--shard",
+            fmt::format("is {}; the run has {} pings, and so {} shards at most", shard.text(), pings, pings));
+    const auto [first, last] = shard.block(pings);
+    framework::RunLimits::Shard made;
+    made.first = first;
+    if (shard.index + 1 < shard.count) made.last = last;
+    return made;
+}
+
+/** The index beside a pocolog file has the time at which that was written, the only thing that differs from machine to
+ *  machine; whoever needs one makes it. */
+void removeIndices(const std::filesystem::path& folder) {
+    std::vector<std::filesystem::path> indices;
+    for (const auto& entry : std::filesystem::recursive_directory_iterator(folder)) {
+        std::filesystem::path log = entry.path();
+        if (log.extension() == ".idx" && std::filesystem::exists(log.replace_extension(".log")))
+            indices.push_back(entry.path());
+    }
+    for (const auto& index : indices) std::filesystem::remove(index);
+}
+
+void tell(const RunOptions& options, const Json& manifest, const std::filesystem::path& folder, const char* how) {
+    if (options.quiet) return;
+    fmt::print("shard {}: {} pings from {} on, of {}; {} files {} {}\n", options.shard->text(),
+               manifest["pings"].dump(), manifest["first_ping"].dump(), manifest["pings_of_run"].dump(),
+               manifest["files"].size(), how, folder.string());
+}
+
+}  // namespace
+
+void refuseIndivisible(const Deployment& deployment) {
+    const DeploymentSpec& spec = deployment.spec();
+    types::Diagnostics diagnostics;
+    const auto refuse = [&](const std::string& path, const std::string& why) {
+        diagnostics.push_back({path, why + " (--shard)"});
+        diagnostics.back().file = spec.file;
+    };
+    if (!spec.lockstep) refuse("schedule", "is realtime, whose pings depend on the clock of the wall; lockstep");
+    for (const auto& task : deployment.tasks())
+        if (const std::string why = whyWhole(*task, spec.task(task->name())->type); !why.empty())
+            refuse("tasks." + task->name(), why);
+    if (!diagnostics.empty()) throw types::ConfigError(diagnostics);
+}
+
+int runShard(RunOptions options) {
+    if (options.out.empty()) throw types::ConfigError("", "--out", "is missing; all shards of a run share a folder");
+    const DeploymentSpec spec = loadSpec(options);
+    ShardFolder folder(options.out, *options.shard, runOf(options, spec));
+    if (const auto manifest = folder.done()) {
+        tell(options, *manifest, folder.path(), "were there already, in");
+        return 0;
+    }
+    options.out = folder.begin().string();
+    const uint64_t pings =
+        options.limits.samples > 0 ? options.limits.samples : rehearsedPings(spec, options, options.out);
+    const auto made = pingsOf(*options.shard, pings, spec.file);
+    options.limits.shard = made;
+    const int code = runDeployment(spec, options);
+    if (code != 0) return code;
+    if (stopOnSignals()) throw std::runtime_error("interrupted; nothing is kept of the shard");
+    removeIndices(options.out);
+    const auto block = options.shard->block(pings);
+    const Json more = {{"first_ping", made.first}, {"pings", block.last - block.first}, {"pings_of_run", pings}};
+    tell(options, folder.finish(more), folder.path(), "in");
+    return 0;
+}
+
+}  // namespace insonify::deployer

@@ -1,0 +1,119 @@
+#include "components/nav/Dvl.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <glm/matrix.hpp>
+
+#include "components/nav/ErrorModel.hpp"
+#include "types/Angle.hpp"
+
+namespace insonify::nav {
+namespace {
+
+/** What each beam draws random numbers for: constants of the instrument, and what differs from ping to ping. */
+enum Channel : uint64_t { Scale, Bias, Velocity, Range, Dropout };
+uint64_t channelOf(Channel channel, size_t beam) { return 200 + beam_count * channel + beam; }
+
+}  // namespace
+
+BeamDirections janusBeams(double slant_deg, double azimuth_deg) {
+    const double slant = types::radians(slant_deg);
+    BeamDirections beams;
+    for (size_t i = 0; i < beam_count; ++i) {
+        const double azimuth = types::radians(azimuth_deg + 90 * static_cast<double>(i));
+        beams[i] = {std::sin(slant) * std::cos(azimuth), std::sin(slant) * std::sin(azimuth), -std::cos(slant)};
+    }
+    return beams;
+}
+
+std::optional<VelocitySolution> solveVelocity(const BeamDirections& beams,
+                                              const std::array<double, beam_count>& velocities,
+                                              const std::array<double, beam_count>& variances) {
+    glm::dmat3 normal{0}, spread{0};
+    glm::dvec3 sum{0};
+    size_t good = 0;
+    for (size_t i = 0; i < beam_count; ++i) {
+        if (std::isnan(velocities[i])) continue;
+        const glm::dmat3 square = glm::outerProduct(beams[i], beams[i]);
+        normal += square;
+        spread += square * variances[i];
+        sum += beams[i] * velocities[i];
+        ++good;
+    }
+    if (good < 3) return {};
+    const glm::dmat3 inverse = glm::inverse(normal);
+    return VelocitySolution{inverse * sum, inverse * spread * inverse};
+}
+
+Dvl::Dvl(const DvlConfig& config)
+    : config_(config),
+      beams_(janusBeams(config.slant_deg, config.beam_azimuth_deg)),
+      cosine_(std::cos(types::radians(config.slant_deg))) {
+    for (size_t i = 0; i < beam_count; ++i) {
+        scale_[i] = config.errors.scale_error * normal(config.seed, channelOf(Scale, i), {});
+        bias_[i] = config.errors.velocity_bias * normal(config.seed, channelOf(Bias, i), {});
+    }
+}
+
+double Dvl::range(size_t beam, const Motion& motion, const Bottom& bottom) const {
+    if (config_.errors.dropout > uniform(config_.seed, channelOf(Dropout, beam), motion.time))
+        return types::Pose::unknown;
+    const glm::dvec3 direction = motion.orientation * beams_[beam];
+    const auto met = bottom.range(motion.position, direction, config_.max_altitude / cosine_);
+    if (!met || *met * cosine_ < config_.min_altitude) return types::Pose::unknown;
+    const double noise = config_.errors.range_noise * normal(config_.seed, channelOf(Range, beam), motion.time);
+    return std::max(*met + noise, 0.0);
+}
+
+double Dvl::variance(double velocity) const {
+    const BeamErrors& errors = config_.errors;
+    const auto square = [](double x) { return x * x; };
+    return square(errors.velocity_noise) + square(errors.velocity_bias) + square(errors.scale_error * velocity);
+}
+
+void Dvl::measure(const Motion& motion, const Bottom& bottom, types::Dvl& told) const {
+    const glm::dvec3 velocity = glm::conjugate(motion.orientation) * motion.velocity;
+    const bool is_under_water = bottom.isUnderWater(motion.position);
+    told.time = motion.time;
+    told.speed_of_sound = config_.speed_of_sound;
+    told.beam_directions.assign(beams_.begin(), beams_.end());
+    for (auto* list : {&told.beam_ranges, &told.beam_velocities, &told.beam_velocity_variances})
+        list->assign(beam_count, types::Pose::unknown);
+    for (size_t i = 0; i < beam_count; ++i) {
+        told.beam_ranges[i] = is_under_water ? range(i, motion, bottom) : types::Pose::unknown;
+        if (std::isnan(told.beam_ranges[i])) continue;
+        const double along = glm::dot(beams_[i], velocity);
+        const double noise = config_.errors.velocity_noise * normal(config_.seed, channelOf(Velocity, i), motion.time);
+        told.beam_velocities[i] = (1 + scale_[i]) * along + bias_[i] + noise;
+        told.beam_velocity_variances[i] = variance(along);
+    }
+    solve(told);
+}
+
+void Dvl::solve(types::Dvl& told) const {
+    std::array<double, beam_count> velocities, variances;
+    double sum = 0;
+    for (size_t i = 0; i < beam_count; ++i) {
+        velocities[i] = told.beam_velocities[i];
+        variances[i] = told.beam_velocity_variances[i];
+        sum += std::isnan(told.beam_ranges[i]) ? 0 : told.beam_ranges[i];
+    }
+    const auto good = static_cast<double>(told.goodBeams());
+    told.altitude = good > 0 ? cosine_ * sum / good : types::Pose::unknown;
+    const auto solution = solveVelocity(beams_, velocities, variances);
+    told.velocity = solution ? solution->velocity : glm::dvec3(types::Pose::unknown);
+    told.cov_velocity = solution ? solution->covariance : types::Pose::unknownMatrix();
+}
+
+types::Pose velocityOf(const types::Dvl& dvl) {
+    types::Pose pose;
+    pose.time = dvl.time;
+    pose.source_frame = pose.target_frame = "dvl";
+    pose.position = glm::dvec3(types::Pose::unknown);
+    pose.velocity = dvl.velocity;
+    pose.cov_velocity = dvl.cov_velocity;
+    return pose;
+}
+
+}  // namespace insonify::nav

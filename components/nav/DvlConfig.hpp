@@ -1,0 +1,73 @@
+#pragma once
+#include <cstdint>
+#include <optional>
+
+#include "types/Mount.hpp"
+
+namespace insonify::nav {
+
+/** Errors of what each beam tells. */
+struct BeamErrors {
+    double velocity_noise = 0;
+    double scale_error = 0;
+    double velocity_bias = 0;
+    double range_noise = 0;
+    double dropout = 0;
+
+    template <class Self, class V>
+    static void describe(Self& self, V& visit) {
+        using types::Field;
+        visit(Field{"velocity_noise", "m/s", "deviation of each beam's velocity, from ping to ping", 0, 100},
+              self.velocity_noise);
+        visit(Field{"scale_error", "1",
+                    "deviation of each beam's scale, which stays: the long-term accuracy as a share of velocity", 0, 1},
+              self.scale_error);
+        visit(Field{"velocity_bias", "m/s", "deviation of each beam's bias, which stays: the other long-term part", 0,
+                    100},
+              self.velocity_bias);
+        visit(Field{"range_noise", "m", "deviation of each beam's range, from ping to ping", 0, 1000},
+              self.range_noise);
+        visit(Field{"dropout", "1", "share of beams that are lost though the bottom is in reach", 0, 1}, self.dropout);
+    }
+};
+
+/** Four beams about an axis that looks down, out of it by `slant_deg`: a Janus configuration. */
+struct DvlConfig {
+    types::Mount mount{};
+    uint64_t seed = 1;
+    double period = 0;
+    double slant_deg = 30;
+    double beam_azimuth_deg = 45;
+    double min_altitude = 0.05;
+    double max_altitude = 50;
+    double speed_of_sound = 1500;
+    std::optional<double> bottom_height{};
+    BeamErrors errors{};
+
+    template <class Self, class V>
+    static void describe(Self& self, V& visit) {
+        using types::Field;
+        visit(Field{"mount", "", "of the instrument in the body; it looks down where it is not turned"}, self.mount);
+        visit(Field{"seed", "1", "of the random numbers: the same seed and poses give the same errors"}, self.seed);
+        visit(Field{"period", "s", "between pings; 0: one for each pose", 0, 1e6}, self.period);
+        visit(Field{"slant_deg", "deg", "of each beam out of the instrument's axis", 5, 60}, self.slant_deg);
+        visit(Field{"beam_azimuth_deg", "deg", "of the first beam from ahead, positive to port; the others each 90 on",
+                    -360, 360},
+              self.beam_azimuth_deg);
+        visit(Field{"min_altitude", "m", "a bottom that is nearer along the axis is not heard", 0, 1e4},
+              self.min_altitude);
+        visit(Field{"max_altitude", "m", "a bottom that is farther along the axis is not heard", 1e-3, 1e4},
+              self.max_altitude);
+        visit(Field{"speed_of_sound", "m/s", "that it tells beside its velocities", 1, 1e4}, self.speed_of_sound);
+        visit(
+            Field{"bottom_height", "m",
+                  "of a level bottom in the world, where no scene is connected; absent: there must be one", -1e5, 1e5},
+            self.bottom_height);
+        visit(Field{"errors", "", "of its beams; absent: none"}, self.errors);
+    }
+    void check(types::Diagnostics& diagnostics) const {
+        if (!(min_altitude < max_altitude)) diagnostics.push_back({"min_altitude", "is not below max_altitude"});
+    }
+};
+
+}  // namespace insonify::nav

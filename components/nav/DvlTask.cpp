@@ -1,0 +1,40 @@
+#include "components/nav/DvlTask.hpp"
+
+namespace insonify::nav {
+
+bool DvlTask::configureHook() {
+    log_.emplace(*config);
+    return true;
+}
+
+bool DvlTask::startHook() {
+    if (!snapshot.connected() && !config->bottom_height) {
+        error("there is no bottom: connect a scene's snapshot, or set bottom_height");
+        return false;
+    }
+    tracker_ = MotionTracker(config->mount);
+    cadence_ = Cadence(config->period);
+    bottom_ = snapshot.connected() ? Bottom() : Bottom(config->bottom_height);
+    return true;
+}
+
+void DvlTask::updateHook() {
+    if (types::SnapshotPtr scene; snapshot.readNewest(scene, false) == framework::FlowStatus::NewData)
+        bottom_.take(std::move(scene));
+    types::Pose body;
+    if (!pose.readNew(body)) return;
+    if (!isUsable(body)) return error("pose: is not finite, or its orientation has no length");
+    if (state() == framework::TaskState::RunTimeError) recover();
+    const std::optional<Motion> motion = tracker_.take(body);
+    if (motion && cadence_.isDue(motion->time)) measure(*motion);
+}
+
+void DvlTask::measure(const Motion& motion) {
+    const auto told = pool_.take();
+    log_->measure(motion, bottom_, *told);
+    pool_.stock(*told);
+    dvl.write(told);
+    velocity_samples.write(velocityOf(*told));
+}
+
+}  // namespace insonify::nav

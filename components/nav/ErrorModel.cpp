@@ -1,0 +1,54 @@
+#include "components/nav/ErrorModel.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "types/Hash.hpp"
+
+namespace insonify::nav {
+namespace {
+
+uint64_t bitsOf(uint64_t seed, uint64_t channel, types::Time time) {
+    return types::hashed(seed, channel, static_cast<uint64_t>(time.microseconds));
+}
+
+}  // namespace
+
+double normal(uint64_t seed, uint64_t channel, types::Time time) {
+    const uint64_t bits = bitsOf(seed, channel, time);
+    const double radius = std::sqrt(-2 * std::log(types::unit(bits >> 32)));
+    return radius * std::cos(2 * std::numbers::pi * types::unit(bits & 0xffffffffu));
+}
+
+double uniform(uint64_t seed, uint64_t channel, types::Time time) {
+    return types::unit(bitsOf(seed, channel, time) >> 32);
+}
+
+double WanderingBias::at(types::Time time) {
+    if (deviation_ == 0) return 0;
+    if (!last_) {
+        value_ = deviation_ * normal(seed_, channel_, time);
+        last_ = time;
+    } else if (time > *last_) {
+        const double kept = std::exp(-(time - *last_).seconds() / correlation_time_);
+        value_ = kept * value_ + deviation_ * std::sqrt(1 - kept * kept) * normal(seed_, channel_, time);
+        last_ = time;
+    }
+    return value_;
+}
+
+double Axis::measure(double truth, double constant_bias, types::Time time, double interval) {
+    double told = truth + constant_bias + bias_.at(time);
+    if (errors_.noise_density > 0)
+        told += errors_.noise_density / std::sqrt(interval) * normal(seed_, noise_channel_, time);
+    if (errors_.range) told = std::clamp(told, -*errors_.range, *errors_.range);
+    return errors_.resolution > 0 ? errors_.resolution * std::round(told / errors_.resolution) : told;
+}
+
+double varianceOf(const AxisErrors& errors, double interval) {
+    const double noise = errors.noise_density > 0 ? errors.noise_density * errors.noise_density / interval : 0;
+    return noise + errors.bias_deviation * errors.bias_deviation + errors.resolution * errors.resolution / 12;
+}
+
+}  // namespace insonify::nav

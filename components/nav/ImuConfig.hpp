@@ -1,0 +1,95 @@
+#pragma once
+#include <cstdint>
+#include <glm/vec3.hpp>
+#include <optional>
+
+#include "components/nav/ErrorModel.hpp"
+#include "types/Mount.hpp"
+
+namespace insonify::nav {
+
+/** Errors of three like axes. */
+struct TriadConfig : AxisErrors {
+    glm::dvec3 bias{0};
+};
+
+struct GyroscopeConfig : TriadConfig {
+    template <class Self, class V>
+    static void describe(Self& self, V& visit) {
+        using types::Field;
+        visit(Field{"noise_density", "rad/s/sqrt(Hz)", "of white noise: the angular random walk", 0, 1},
+              self.noise_density);
+        visit(Field{"bias", "rad/s", "that stays", -10, 10}, self.bias);
+        visit(Field{"bias_deviation", "rad/s", "of the bias that wanders; Allan's deviation has 0.618 of it at most", 0,
+                    1},
+              self.bias_deviation);
+        visit(Field{"bias_time", "s", "after which the wandering bias forgets where it was", 1e-3, 1e9},
+              self.bias_time);
+        visit(Field{"resolution", "rad/s", "of what it tells; 0: any number", 0, 1}, self.resolution);
+        visit(Field{"range", "rad/s", "most that it tells, either way; absent: no end", 1e-6, 1e6}, self.range);
+    }
+};
+
+struct AccelerometerConfig : TriadConfig {
+    template <class Self, class V>
+    static void describe(Self& self, V& visit) {
+        using types::Field;
+        visit(Field{"noise_density", "m/s^2/sqrt(Hz)", "of white noise: the velocity random walk", 0, 10},
+              self.noise_density);
+        visit(Field{"bias", "m/s^2", "that stays", -100, 100}, self.bias);
+        visit(Field{"bias_deviation", "m/s^2", "of the bias that wanders; Allan's deviation has 0.618 of it at most", 0,
+                    10},
+              self.bias_deviation);
+        visit(Field{"bias_time", "s", "after which the wandering bias forgets where it was", 1e-3, 1e9},
+              self.bias_time);
+        visit(Field{"resolution", "m/s^2", "of what it tells; 0: any number", 0, 10}, self.resolution);
+        visit(Field{"range", "m/s^2", "most that it tells, either way; absent: no end", 1e-3, 1e6}, self.range);
+    }
+};
+
+/** Of the attitude that the unit computes: errors that wander, about level axes and about the vertical. */
+struct AttitudeConfig {
+    double tilt_deviation_deg = 0;
+    double heading_deviation_deg = 0;
+    double error_time = 60;
+
+    template <class Self, class V>
+    static void describe(Self& self, V& visit) {
+        using types::Field;
+        visit(Field{"tilt_deviation_deg", "deg", "of the error about each of the world's level axes", 0, 90},
+              self.tilt_deviation_deg);
+        visit(Field{"heading_deviation_deg", "deg", "of the error about the vertical", 0, 180},
+              self.heading_deviation_deg);
+        visit(Field{"error_time", "s", "after which an error forgets where it was", 1e-3, 1e9}, self.error_time);
+    }
+};
+
+struct ImuConfig {
+    types::Mount mount{};
+    uint64_t seed = 1;
+    double period = 0;
+    double latitude_deg = 45;
+    std::optional<double> gravity{};
+    bool earth_rotation = false;
+    GyroscopeConfig gyroscope{};
+    AccelerometerConfig accelerometer{};
+    AttitudeConfig attitude{};
+
+    template <class Self, class V>
+    static void describe(Self& self, V& visit) {
+        using types::Field;
+        visit(Field{"mount", "", "of the unit in the body"}, self.mount);
+        visit(Field{"seed", "1", "of the random numbers: the same seed and poses give the same errors"}, self.seed);
+        visit(Field{"period", "s", "between measurements; 0: one for each pose", 0, 1e6}, self.period);
+        visit(Field{"latitude_deg", "deg", "of the world, for gravity and the rotation of the earth", -90, 90},
+              self.latitude_deg);
+        visit(Field{"gravity", "m/s^2", "instead of WGS 84's normal gravity", 0, 1000}, self.gravity);
+        visit(Field{"earth_rotation", "", "the gyroscope feels the earth turn, and the accelerometer Coriolis' force"},
+              self.earth_rotation);
+        visit(Field{"gyroscope", "", "its errors; absent: none"}, self.gyroscope);
+        visit(Field{"accelerometer", "", "its errors; absent: none"}, self.accelerometer);
+        visit(Field{"attitude", "", "errors of the attitude; absent: none"}, self.attitude);
+    }
+};
+
+}  // namespace insonify::nav

@@ -1,0 +1,56 @@
+#pragma once
+#include <cstdint>
+#include <optional>
+
+#include "types/Mount.hpp"
+
+namespace insonify::nav {
+
+/** Errors of a pressure gauge. */
+struct GaugeErrors {
+    double noise = 0;
+    double offset = 0;
+    double drift_deviation = 0;
+    double drift_time = 3600;
+    double resolution = 0;
+
+    template <class Self, class V>
+    static void describe(Self& self, V& visit) {
+        using types::Field;
+        visit(Field{"noise", "Pa", "deviation, from measurement to measurement", 0, 1e7}, self.noise);
+        visit(Field{"offset", "Pa", "that stays", -1e7, 1e7}, self.offset);
+        visit(Field{"drift_deviation", "Pa", "of an offset that wanders about 0", 0, 1e7}, self.drift_deviation);
+        visit(Field{"drift_time", "s", "after which it forgets where it was", 1e-3, 1e9}, self.drift_time);
+        visit(Field{"resolution", "Pa", "of what it tells; 0: any number", 0, 1e7}, self.resolution);
+    }
+};
+
+struct PressureConfig {
+    types::Mount mount{};
+    uint64_t seed = 1;
+    double period = 0;
+    double water_surface = 0;
+    double latitude_deg = 45;
+    std::optional<double> density{};
+    double atmosphere = 101325;
+    std::optional<double> max_pressure{};
+    GaugeErrors errors{};
+
+    template <class Self, class V>
+    static void describe(Self& self, V& visit) {
+        using types::Field;
+        visit(Field{"mount", "", "of the gauge in the body"}, self.mount);
+        visit(Field{"seed", "1", "of the random numbers: the same seed and poses give the same errors"}, self.seed);
+        visit(Field{"period", "s", "between measurements; 0: one for each pose", 0, 1e6}, self.period);
+        visit(Field{"water_surface", "m", "its height in the world", -1e5, 1e5}, self.water_surface);
+        visit(Field{"latitude_deg", "deg", "of the world, for gravity", -90, 90}, self.latitude_deg);
+        visit(Field{"density", "kg/m^3", "of water that is alike at all depths; absent: UNESCO's standard ocean (1983)",
+                    1, 1e5},
+              self.density);
+        visit(Field{"atmosphere", "Pa", "pressure of the air at the surface", 0, 1e7}, self.atmosphere);
+        visit(Field{"max_pressure", "Pa", "most that it tells; absent: no end", 1, 1e12}, self.max_pressure);
+        visit(Field{"errors", "", "of the gauge; absent: none"}, self.errors);
+    }
+};
+
+}  // namespace insonify::nav

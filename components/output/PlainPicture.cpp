@@ -1,0 +1,140 @@
+#include "components/output/PlainPicture.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <stdexcept>
+
+namespace insonify::output {
+namespace {
+
+constexpr double quarter_turn = std::numbers::pi / 2;
+
+/** The picture's width and height of a fan of unit radius, {half the width, what lies behind the sonar}. */
+std::pair<double, double> reachOf(const FanShape& shape) {
+    const double half_angle = std::max({std::abs(shape.left), std::abs(shape.right), 1e-3});
+    if (half_angle < quarter_turn) return {std::sin(half_angle), 0};
+    return {1, -std::cos(half_angle)};
+}
+
+constexpr double nothing = -std::numeric_limits<double>::infinity();
+
+/** The level that 0.2 % of those that are finite exceed; 0 without any [dB]. In double precision, so that other
+ *  processors, whose logarithms differ in the last bit, show the same. */
+double strongLevel(std::vector<double> levels) {
+    std::erase_if(levels, [](double level) { return !std::isfinite(level); });
+    if (levels.empty()) return 0;
+    const auto at = levels.begin() + static_cast<std::ptrdiff_t>(levels.size() - 1 - levels.size() / 500);
+    std::nth_element(levels.begin(), at, levels.end());
+    return *at;
+}
+
+}  // namespace
+
+DisplayConfig PlainConfig::display() const {
+    DisplayConfig display;
+    display.dynamic_range_db = dynamic_range_db;
+    display.reference_db = reference_db;
+    display.scale = scale;
+    display.code_bits = code_bits;
+    return display;
+}
+
+void PlainPicture::take(const types::Sonar& ping) {
+    if (!ping.wellShaped() || ping.bin_count == 0 || ping.beam_count == 0)
+        throw std::runtime_error("a ping without bins, or with other numbers than it says, is no picture");
+    shape_ = FanShape::of(ping);
+    if (shape_.beams.empty()) throw std::runtime_error("a ping without known bearings is no picture");
+    time_ = ping.time;
+    bins_per_cell_ = (ping.bin_count + config_.height - 1) / config_.height;
+    cells_ = (ping.bin_count + bins_per_cell_ - 1) / bins_per_cell_;
+    bearing_of_.clear();
+    for (const types::Angle& bearing : ping.bearings) bearing_of_.push_back(bearing.rad);
+    if (config_.shape == PlainShape::Fan)
+        buildFan();
+    else
+        buildPolar();
+    findLevels(ping);
+}
+
+void PlainPicture::buildFan() {
+    radius_ = config_.height;
+    const auto [half_width, depth] = reachOf(shape_);
+    width_ = 2 * static_cast<uint32_t>(std::ceil(radius_ * half_width));
+    height_ = static_cast<uint32_t>(std::ceil(radius_ * (1 + depth)));
+    origin_ = {width_ / 2.0 - 0.5, radius_ - 0.5};
+    cell_of_.assign(size_t{width_} * height_, -1);
+    for (uint32_t y = 0; y < height_; ++y)
+        for (uint32_t x = 0; x < width_; ++x) {
+            const double ahead = origin_.y - y, port = origin_.x - x;
+            const double bearing = std::atan2(port, ahead);
+            const auto cell = static_cast<uint32_t>(std::hypot(ahead, port) / radius_ * cells_);
+            if (cell >= cells_ || bearing < shape_.right || bearing > shape_.left) continue;
+            const uint32_t beam = shape_.beams[static_cast<size_t>(std::lround(shape_.beamAt(bearing)))];
+            cell_of_[size_t{y} * width_ + x] = static_cast<int32_t>(beam * cells_ + cell);
+        }
+}
+
+void PlainPicture::buildPolar() {
+    width_ = static_cast<uint32_t>(shape_.beams.size());
+    height_ = cells_;
+    column_of_.assign(bearing_of_.size(), 0);
+    cell_of_.assign(size_t{width_} * height_, -1);
+    for (uint32_t x = 0; x < width_; ++x) {
+        const uint32_t beam = shape_.beams[width_ - 1 - x];
+        column_of_[beam] = x;
+        for (uint32_t y = 0; y < height_; ++y)
+            cell_of_[size_t{y} * width_ + x] = static_cast<int32_t>(beam * cells_ + cells_ - 1 - y);
+    }
+}
+
+void PlainPicture::findLevels(const types::Sonar& ping) {
+    const bool linear = config_.scale == BinScale::Linear, codes = config_.scale == BinScale::Code;
+    std::vector<double> shown;
+    shown.reserve(size_t{ping.beam_count} * cells_);
+    for (uint32_t beam = 0; beam < ping.beam_count; ++beam)
+        for (uint32_t cell = 0; cell < cells_; ++cell) {
+            const double mean = meanOf(ping, beam, cell);
+            shown.push_back(!linear ? mean : mean > 0 ? 10 * std::log10(mean) : nothing);
+        }
+    reference_db_ = codes ? 0 : config_.reference_db.value_or(strongLevel(shown));
+    const double step = codes ? 255 / config_.display().largestCode() : 255 / config_.dynamic_range_db;
+    const double black = codes ? 0 : reference_db_ - config_.dynamic_range_db;
+    levels_.clear();
+    for (const double level : shown)  // of what is not known, and of nothing: 0
+        levels_.push_back(level > black ? static_cast<uint8_t>(std::lround(std::min((level - black) * step, 255.0)))
+                                        : 0);
+}
+
+double PlainPicture::meanOf(const types::Sonar& ping, uint32_t beam, uint32_t cell) const {
+    const uint32_t first = cell * bins_per_cell_, last = std::min(first + bins_per_cell_, ping.bin_count);
+    double sum = 0;
+    for (uint32_t k = first; k < last; ++k) sum += static_cast<double>(ping.bins[size_t{beam} * ping.bin_count + k]);
+    return sum / (last - first);
+}
+
+cv::Point PlainPicture::pixelOf(uint32_t beam, uint32_t cell) const {
+    if (config_.shape == PlainShape::Polar)
+        return {static_cast<int>(column_of_[beam]), static_cast<int>(cells_ - 1 - cell)};
+    const double distance = (cell + 0.5) / cells_ * radius_, bearing = bearing_of_[beam];
+    const int x = static_cast<int>(std::lround(origin_.x - distance * std::sin(bearing)));
+    const int y = static_cast<int>(std::lround(origin_.y - distance * std::cos(bearing)));
+    return {std::clamp(x, 0, static_cast<int>(width_) - 1), std::clamp(y, 0, static_cast<int>(height_) - 1)};
+}
+
+types::Image PlainPicture::image() const {
+    types::Image picture;
+    picture.time = time_;
+    picture.frame_mode = types::ImageMode::Grayscale;
+    picture.size = {static_cast<uint16_t>(width_), static_cast<uint16_t>(height_)};
+    picture.pixel_size = 1;
+    picture.row_size = width_;
+    picture.frame_status = types::ImageStatus::Valid;
+    picture.image.resize(cell_of_.size());
+    std::ranges::transform(cell_of_, picture.image.begin(),
+                           [this](int32_t cell) { return cell < 0 ? uint8_t{0} : levels_[static_cast<size_t>(cell)]; });
+    return picture;
+}
+
+}  // namespace insonify::output

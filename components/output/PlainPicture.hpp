@@ -1,0 +1,93 @@
+#pragma once
+#include <cstdint>
+#include <vector>
+
+#include "components/output/FanShape.hpp"
+#include "components/output/PictureConfig.hpp"
+#include "types/Image.hpp"
+#include "types/Sonar.hpp"
+
+namespace insonify::output {
+
+enum class PlainShape { Fan, Polar };
+
+/** How a plain picture looks. */
+struct PlainConfig {
+    PlainShape shape = PlainShape::Fan;
+    uint32_t height = 512;
+    double dynamic_range_db = 50;
+    std::optional<double> reference_db;
+    BinScale scale = BinScale::Linear;
+    int code_bits = 8;
+
+    DisplayConfig display() const;
+
+    template <class Self, class V>
+    static void describe(Self& self, V& visit) {
+        using types::Field;
+        visit(Field{"shape", "", "fan: as it was in the water, ahead is up; polar: a column for each beam"},
+              self.shape);
+        visit(Field{"height", "1", "pixels that the range takes, at most; a pixel is never longer than bins make it",
+                    16, 8192},
+              self.height);
+        visit(Field{"dynamic_range_db", "dB", "between black and white", 1, 300}, self.dynamic_range_db);
+        visit(Field{"reference_db", "dB",
+                    "level of white, 10 log10 of a bin; absent: what 0.2 % of the picture's bins exceed", -3000, 3000},
+              self.reference_db);
+        visit(Field{"scale", "", "what the bins hold: linear intensities, decibel, or code"}, self.scale);
+        visit(Field{"code_bits", "1", "of the largest code, where scale is code", 1, 32}, self.code_bits);
+    }
+    void check(types::Diagnostics& diagnostics) const { display().check(diagnostics); }
+};
+
+/** A ping as grey levels and nothing else, for programs that learn from it: no rings, no text, no bars. Port is left,
+ *  what is far is on top. Each pixel shows one cell: a beam between two ranges, of one bin or several; so that what is
+ *  known of cells is known of pixels. Each ping has its own scale, whatever came before it. */
+class PlainPicture {
+public:
+    explicit PlainPicture(const PlainConfig& config) : config_(config) {}
+
+    /** Takes a ping with one bearing for each beam. */
+    void take(const types::Sonar& ping);
+
+    uint32_t width() const { return width_; }    ///< [px]
+    uint32_t height() const { return height_; }  ///< [px]
+    /** Bins in each cell of a beam but the last, which may have fewer. */
+    uint32_t binsPerCell() const { return bins_per_cell_; }
+    uint32_t cellsPerBeam() const { return cells_; }
+    /** Of each pixel, row by row from the top, its cell: beam * cellsPerBeam() + number of the cell; -1: no water. */
+    const std::vector<int32_t>& cells() const { return cell_of_; }
+    /** Of each cell from black, 0, to white, 255. */
+    const std::vector<uint8_t>& levels() const { return levels_; }
+    /** The pixel nearest to the middle of a cell, {column, row}; inside of the picture. */
+    cv::Point pixelOf(uint32_t beam, uint32_t cell) const;
+    /** The level of white [dB]; 0 where bins are codes. */
+    double referenceDb() const { return reference_db_; }
+    /** The picture. */
+    types::Image image() const;
+
+private:
+    void buildFan();
+    void buildPolar();
+    void findLevels(const types::Sonar& ping);
+    double meanOf(const types::Sonar& ping, uint32_t beam, uint32_t cell) const;
+
+    PlainConfig config_;
+    FanShape shape_;
+    std::vector<double> bearing_of_;   ///< Of each beam of the ping [rad].
+    std::vector<uint32_t> column_of_;  ///< Of each beam in a polar picture.
+    uint32_t bins_per_cell_ = 1, cells_ = 0, width_ = 0, height_ = 0;
+    cv::Point2d origin_{};  ///< The sonar in a fan [px].
+    double radius_ = 0;     ///< Of a fan [px].
+    double reference_db_ = 0;
+    types::Time time_;
+    std::vector<int32_t> cell_of_;
+    std::vector<uint8_t> levels_;
+};
+
+}  // namespace insonify::output
+
+template <>
+struct insonify::types::EnumNames<insonify::output::PlainShape> {
+    static constexpr std::string_view names[] = {"fan", "polar"};
+};

@@ -1,0 +1,148 @@
+#include <gmock/gmock.h>
+
+#include <cmath>
+#include <numeric>
+
+#include "components/dataset/Annotate.hpp"
+#include "tests/support/Pings.hpp"
+
+namespace insonify::dataset {
+namespace {
+
+using ::testing::ElementsAre;
+using ::testing::IsEmpty;
+using ::testing::SizeIs;
+
+constexpr uint32_t beams = 61, bins = 100;
+
+/** A floor everywhere at -20 dB, a "rock" and a "pile" at 0 dB in it. */
+class AnnotateTest : public ::testing::Test {
+protected:
+    AnnotateTest() {
+        ping_ = test::emptyPing(120, beams, bins);
+        std::ranges::fill(ping_.bins, 0.01f);
+        truth_.beam_count = beams, truth_.bin_count = bins;
+        truth_.objects = {"floor", "rock", "pile"};
+        truth_.object.assign(ping_.bins.size(), 0);
+        truth_.share.assign(ping_.bins.size(), 1);
+        put(1, {20, 24}, {50, 60});
+        put(2, {40, 41}, {70, 72});
+        sweep_.classes = {{"stone", {"rock"}, 1, 1}, {"pile", {"pile"}, 1, 1}};
+        picture_.reference_db = 0;
+        picture_.height = 200;
+    }
+    struct Span {
+        uint32_t first, last;
+    };
+    void put(int32_t object, Span in_beams, Span in_bins, float intensity = 1, float share = 1) {
+        for (uint32_t beam = in_beams.first; beam < in_beams.last; ++beam)
+            for (uint32_t bin = in_bins.first; bin < in_bins.last; ++bin) {
+                const size_t at = size_t{beam} * bins + bin;
+                ping_.bins[at] = intensity, truth_.object[at] = object, truth_.share[at] = share;
+            }
+    }
+    Annotated annotated() {
+        shown_.emplace(picture_);
+        shown_->take(ping_);
+        const Classes classes(sweep_, truth_.objects);
+        return annotate(ping_, truth_, *shown_, classes, config_, picture_.scale);
+    }
+    /** Of the pixel at which a bin is shown. */
+    bool holds(const Box& box, uint32_t beam, uint32_t bin) const {
+        const cv::Point at = shown_->pixelOf(beam, bin / shown_->binsPerCell());
+        return at.x >= box.x && at.x < box.x + box.width && at.y >= box.y && at.y < box.y + box.height;
+    }
+
+    types::Sonar ping_;
+    types::SonarTruth truth_;
+    Sweep sweep_;
+    output::PlainConfig picture_;
+    AnnotationConfig config_;
+    std::optional<output::PlainPicture> shown_;
+};
+
+TEST_F(AnnotateTest, EachObjectOfAClassHasABoxThatHoldsItsBins) {
+    const Annotated all = annotated();
+    ASSERT_THAT(all.annotations, SizeIs(2));
+    const Annotation &rock = all.annotations[0], &pile = all.annotations[1];
+    EXPECT_EQ(rock.name, "rock");
+    EXPECT_EQ(rock.category, 1u);
+    EXPECT_EQ(pile.category, 2u);
+    EXPECT_EQ(rock.bins, 40u);
+    EXPECT_NEAR(rock.energy, 40, 1e-3);
+    EXPECT_NEAR(rock.range_min, ping_.binStart(50), 1e-9);
+    EXPECT_NEAR(rock.range_max, ping_.binStart(60), 1e-9);
+    EXPECT_EQ(rock.bearing_min, ping_.bearings[20].rad);
+    EXPECT_EQ(rock.bearing_max, ping_.bearings[23].rad);
+    for (uint32_t beam = 20; beam < 24; ++beam)
+        for (uint32_t bin = 50; bin < 60; ++bin) EXPECT_TRUE(holds(rock.box, beam, bin)) << beam << " " << bin;
+    EXPECT_FALSE(holds(rock.box, 40, 70));
+    EXPECT_TRUE(holds(pile.box, 40, 70));
+}
+
+TEST_F(AnnotateTest, RunsLabelsAndAreaTellTheSamePixels) {
+    const Annotated all = annotated();
+    for (size_t i = 0; i < all.annotations.size(); ++i) {
+        const Annotation& annotation = all.annotations[i];
+        uint32_t place = 0, area = 0;
+        for (size_t run = 0; run < annotation.runs.size(); ++run)
+            for (uint32_t k = 0; k < annotation.runs[run]; ++k, ++place) {
+                const uint32_t x = place / shown_->height(), y = place % shown_->height();
+                const bool in_label = all.labels[size_t{y} * shown_->width() + x] == i + 1;
+                ASSERT_EQ(in_label, run % 2 == 1) << x << " " << y;
+                area += in_label;
+            }
+        EXPECT_EQ(place, shown_->width() * shown_->height());
+        EXPECT_EQ(area, annotation.area);
+    }
+}
+
+TEST_F(AnnotateTest, ThePolarPictureHasAPixelForEachBin) {
+    picture_.shape = output::PlainShape::Polar;
+    const Annotated all = annotated();
+    ASSERT_THAT(all.annotations, SizeIs(1));  // the pile has two bins
+    EXPECT_EQ(all.annotations[0].area, 40u);
+    EXPECT_EQ(all.annotations[0].box, (Box{static_cast<int>(beams) - 24, bins - 60, 4, 10}));
+}
+
+TEST_F(AnnotateTest, WhatIsNotSeenIsNotAnnotated) {
+    put(1, {20, 24}, {50, 60}, 1e-6f);  // below black
+    EXPECT_THAT(annotated().annotations, SizeIs(1));
+    put(1, {20, 24}, {50, 60}, 1, 0.4f);  // most of it is something else's
+    EXPECT_THAT(annotated().annotations, SizeIs(1));
+    config_.min_share = 0.3;
+    EXPECT_THAT(annotated().annotations, SizeIs(2));
+    config_.min_level = 255;
+    put(1, {20, 24}, {50, 60}, 0.9f);
+    EXPECT_THAT(annotated().annotations, SizeIs(1));
+    config_.min_pixels = 100000;
+    const Annotated none = annotated();
+    EXPECT_THAT(none.annotations, IsEmpty());
+    EXPECT_EQ(std::accumulate(none.labels.begin(), none.labels.end(), 0), 0);
+}
+
+TEST_F(AnnotateTest, OfBinsThatShareACellTheLoudestGivesTheLabel) {
+    picture_.shape = output::PlainShape::Polar;
+    picture_.height = 25;
+    config_.min_pixels = 1;
+    put(2, {22, 23}, {52, 53}, 100);
+    const Annotated all = annotated();
+    const Annotation& pile = all.annotations.at(1);
+    EXPECT_EQ(pile.box.x, static_cast<int>(beams) - 41);
+    EXPECT_EQ(pile.area, 2u);  // with the cell that it takes from the rock
+    EXPECT_NEAR(pile.energy, 102, 1e-3);
+}
+
+TEST_F(AnnotateTest, LevelsAreTurnedIntoEnergies) {
+    picture_.scale = output::BinScale::Decibel;
+    for (float& bin : ping_.bins) bin = 10 * std::log10(bin);
+    EXPECT_NEAR(annotated().annotations.at(0).energy, 40, 1e-3);
+}
+
+TEST_F(AnnotateTest, ATruthOfAnotherGridIsRefused) {
+    truth_.bin_count = 10;
+    EXPECT_THROW(annotated(), std::runtime_error);
+}
+
+}  // namespace
+}  // namespace insonify::dataset

@@ -1,0 +1,49 @@
+#include <gmock/gmock.h>
+
+#include "components/dataset/Classes.hpp"
+#include "types/ConfigError.hpp"
+
+namespace insonify::dataset {
+namespace {
+
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+
+const std::vector<std::string> objects = {"pile_00", "pile_01", "hull", "rock.001", "rock.002", "12"};
+
+TEST(ClassesTest, WithoutRulesAClassIsANameWithoutItsNumber) {
+    const Classes classes(Sweep{}, objects);
+    EXPECT_THAT(classes.names(), ElementsAre("12", "hull", "pile", "rock"));
+    EXPECT_EQ(classes.of("pile_01"), 3u);
+    EXPECT_EQ(classes.of("rock.002"), 4u);
+    EXPECT_EQ(classes.of("12"), 1u);
+    EXPECT_EQ(classes.of("crane"), 0u);
+}
+
+TEST(ClassesTest, OfRulesTheFirstThatMatchesCountsInTheOrderOfTheFile) {
+    Sweep sweep;
+    sweep.classes = {{"wreck", {"hull"}, 3, 1}, {"first", {"*_00"}, 4, 1}, {"pile", {"pile_*"}, 5, 1}};
+    const Classes classes(sweep, objects);
+    EXPECT_THAT(classes.names(), ElementsAre("wreck", "first", "pile"));
+    EXPECT_EQ(classes.of("hull"), 1u);
+    EXPECT_EQ(classes.of("pile_00"), 2u);
+    EXPECT_EQ(classes.of("pile_01"), 3u);
+    EXPECT_EQ(classes.of("rock.001"), 0u);
+}
+
+TEST(ClassesTest, APatternThatMatchesNothingIsRefused) {
+    Sweep sweep;
+    sweep.file = "sweep.yml";
+    sweep.classes = {{"wreck", {"hul"}, 3, 1}};
+    try {
+        const Classes classes(sweep, objects);
+        FAIL() << "there is no hul";
+    } catch (const types::ConfigError& error) {
+        EXPECT_THAT(error.diagnostics().front().text(),
+                    HasSubstr("sweep.yml:3:1: classes.wreck[0]: is hul, which is no "
+                              "name in the scene; did you mean hull?"));
+    }
+}
+
+}  // namespace
+}  // namespace insonify::dataset

@@ -1,0 +1,388 @@
+// insonify dataset: data sets of a small sonar in the harbour.
+#include <gmock/gmock.h>
+
+#include <map>
+#include <set>
+
+#include "tests/deployer/Command.hpp"
+#include "tests/support/Python.hpp"
+
+using namespace insonify::deployer;
+using testing::AllOf;
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+
+namespace {
+
+const fs::path root = INSONIFY_SOURCE_DIR;
+
+const std::string deployment = R"(schedule: lockstep
+tasks:
+  vehicle:
+    type: pose::TrajectoryTask
+    activity: {period: 0.1}
+    properties: {waypoints: [{time: 0, position: [0, 0, -5.5]}]}
+  scene:
+    type: scene::SceneTask
+    properties:
+      file: )" + (root / "deploy/scenes/harbour.glb").string() +
+                               R"(
+      mount: {position: [0.4, 0, -0.2], roll_deg: 0, pitch_deg: 12, yaw_deg: 0}
+  sonar:
+    type: sonar::SonarTask
+    properties:
+      range: 30
+      beam_count: 128
+      bin_count: 200
+      field_of_view_deg: 120
+      beam_height_deg: 20
+      quality: {rows: 128, columns_per_beam: 1}
+  noise: {type: noise::NoiseTask, properties: {speckle: {law: rayleigh}}}
+  receiver: {type: receiver::ReceiverTask, properties: {tvg: {log_coefficient: 40}}}
+connections:
+  - {from: vehicle.pose, to: scene.pose}
+  - {from: scene.snapshot, to: sonar.snapshot}
+  - {from: sonar.ping, to: noise.clean}
+  - {from: noise.noisy, to: receiver.intensity}
+)";
+
+const std::string sweep = R"(seed: 3
+poses:
+  random: {count: 4, x: {uniform: [0, 20]}, y: {uniform: [-8, 0]}, z: -5.5, yaw_deg: {uniform: [-60, 30]}}
+settings:
+  sonar.range: [20, 30]
+objects:
+  - {names: [rock_00*], count: [2, 8], x: [4, 20], y: [-8, 4], frame: vehicle, ground: sea_floor, avoid: [quay_wall, hull, pile_*]}
+classes: {pile: pile_*, wreck: hull, rock: rock_*, pipeline: [pipeline, saddle_*]}
+split: {train: 0.5, val: 0.5, test: 0}
+picture: {height: 200}
+annotations: {min_pixels: 30}
+)";
+
+/** Bytes of all files of a folder, by name. */
+std::map<std::string, std::string> filesOf(const fs::path& folder) {
+    std::map<std::string, std::string> files;
+    for (const auto& entry : fs::directory_iterator(folder)) files[entry.path().filename()] = readFile(entry.path());
+    return files;
+}
+
+std::vector<std::string> namesOf(const fs::path& folder) {
+    std::vector<std::string> names;
+    for (const auto& [name, bytes] : filesOf(folder)) names.push_back(name);
+    return names;
+}
+
+std::string replaced(std::string text, const std::string& old, const std::string& by) {
+    return text.replace(text.find(old), old.size(), by);
+}
+
+class DatasetCommandTest : public testing::Test {
+protected:
+    DatasetCommandTest() {
+        writeFile(folder_ / "d.yml", deployment);
+        writeFile(folder_ / "sweep.yml", sweep);
+    }
+    std::vector<std::string> words(const std::string& out, std::vector<std::string> more = {}) const {
+        std::vector<std::string> all = {"dataset", "d.yml", "--sweep", "sweep.yml", "--out", out};
+        all.insert(all.end(), more.begin(), more.end());
+        return all;
+    }
+    Outcome make(const std::string& out, std::vector<std::string> more = {}) const {
+        return callInsonify(folder_, words(out, std::move(more)));
+    }
+    json recordOf(const std::string& out, const std::string& index) const {
+        for (const auto& [name, bytes] : filesOf(folder_ / out))
+            if (name.starts_with(index) && name.ends_with(".json")) return json::parse(bytes);
+        return {};
+    }
+
+    const TestFolder folder_;
+};
+
+}  // namespace
+
+TEST_F(DatasetCommandTest, EachSampleHasItsFilesAndTheManifestNamesAll) {
+    const Outcome outcome = make("out");
+    ASSERT_EQ(outcome.code, 0) << outcome.err;
+    EXPECT_THAT(outcome.out, HasSubstr("8 samples made, 0 were there, of 8 in all"));
+    const auto files = filesOf(folder_ / "out");
+    const json manifest = json::parse(files.at("manifest.json"));
+    EXPECT_EQ(manifest["samples"], 8);
+    EXPECT_EQ(manifest["classes"], json::array({"pile", "wreck", "rock", "pipeline"}));
+    EXPECT_EQ(manifest["files"].size() + 1, files.size());
+    for (const auto& [name, sum] : manifest["files"].items()) EXPECT_TRUE(files.contains(name)) << name;
+    const json near = recordOf("out", "000001"), far = recordOf("out", "000005");
+    EXPECT_EQ(near["settings"]["sonar.range"], "20");
+    EXPECT_EQ(far["settings"]["sonar.range"], "30");
+    EXPECT_EQ(near["pose"], far["pose"]);
+    EXPECT_EQ(near["objects"], far["objects"]);
+    EXPECT_NEAR(far["ping"]["range_m"], 30, 0.3);
+    EXPECT_EQ(far["picture"]["height"], 200);
+}
+
+TEST_F(DatasetCommandTest, TheBytesAreTheSameWhoeverMadeThem) {
+    writeFile(folder_ / "sweep.yml", replaced(sweep, "count: 4", "count: 2"));
+    for (const char* format : {"coco", "mcap", "npz"}) {
+        const std::string one = std::string("one_") + format, three = std::string("three_") + format;
+        ASSERT_EQ(make(one, {"--format", format}).code, 0);
+        for (const char* shard : {"2/3", "0/3", "1/3"}) {
+            EXPECT_FALSE(fs::exists(folder_ / three / "manifest.json"));
+            ASSERT_EQ(make(three, {"--format", format, "--shard", shard}).code, 0);
+        }
+        EXPECT_EQ(namesOf(folder_ / one), namesOf(folder_ / three)) << format;
+        EXPECT_EQ(filesOf(folder_ / one), filesOf(folder_ / three)) << format;
+    }
+}
+
+TEST_F(DatasetCommandTest, WhatIsThereIsKeptAndWhatIsMissingOrDamagedIsMadeAgain) {
+    ASSERT_EQ(make("out").code, 0);
+    const auto whole = filesOf(folder_ / "out");
+    const std::vector<std::string> names = namesOf(folder_ / "out");
+    const auto kept = fs::last_write_time(folder_ / "out" / names[6]);
+    fs::remove(folder_ / "out" / names[0]);
+    fs::resize_file(folder_ / "out" / names[3], 100);
+    fs::remove(folder_ / "out/manifest.json");
+    const Outcome again = make("out");
+    EXPECT_THAT(again.out, HasSubstr("2 samples made, 6 were there"));
+    EXPECT_EQ(filesOf(folder_ / "out"), whole);
+    EXPECT_EQ(fs::last_write_time(folder_ / "out" / names[6]), kept);
+    EXPECT_THAT(make("out").out, HasSubstr("0 samples made, 8 were there"));
+}
+
+TEST_F(DatasetCommandTest, AKilledRunIsTakenUpWhereItWas) {
+    ASSERT_EQ(make("whole").code, 0);
+    const TestFolder elsewhere;  // for the output of the one that is killed
+    for (const char* name : {"d.yml", "sweep.yml"}) fs::copy(folder_ / name, elsewhere / name);
+    const Process killed(insonifyWords(words((folder_ / "out").string())), elsewhere.path());
+    const auto aFewAreThere = [&] { return fs::exists(folder_ / "out") && namesOf(folder_ / "out").size() > 4; };
+    EXPECT_TRUE(insonify::test::comesTrue(aFewAreThere));
+    killed.signal(SIGKILL);
+    killed.wait();
+    writeFile(folder_ / "out/.part_00_1_left.png", "of a writer that is no more");
+    ASSERT_EQ(make("out").code, 0);
+    EXPECT_EQ(filesOf(folder_ / "out"), filesOf(folder_ / "whole"));
+}
+
+TEST_F(DatasetCommandTest, TwoProcessesInOneFolderDoNotHarmEachOther) {
+    ASSERT_EQ(make("whole").code, 0);
+    const TestFolder elsewhere;
+    for (const char* name : {"d.yml", "sweep.yml"}) fs::copy(folder_ / name, elsewhere / name);
+    const Process other(insonifyWords(words((folder_ / "out").string())), elsewhere.path());
+    const Outcome own = make("out");
+    const Outcome others = other.wait();
+    EXPECT_EQ(own.code, 0) << own.err;
+    EXPECT_EQ(others.code, 0) << others.err;
+    EXPECT_EQ(filesOf(folder_ / "out"), filesOf(folder_ / "whole"));
+}
+
+TEST_F(DatasetCommandTest, AnotherSweepGoesToAnotherFolder) {
+    ASSERT_EQ(make("out", {"--shard", "0/8"}).code, 0);
+    writeFile(folder_ / "sweep.yml", sweep + "# changed\n");
+    const Outcome outcome = make("out");
+    EXPECT_EQ(outcome.code, 2);
+    EXPECT_THAT(outcome.err, HasSubstr("a sample of another sweep, deployment, scene, format or version"));
+}
+
+TEST_F(DatasetCommandTest, PycocotoolsReadsItAndEveryBoxHoldsItsObjectsEnergy) {
+    if (!insonify::pythonHas("pycocotools.coco"))
+        GTEST_SKIP() << "python has no pycocotools; scripts/setup installs it";
+    ASSERT_EQ(make("coco", {"--format", "coco"}).code, 0);
+    ASSERT_EQ(make("npz", {"--format", "npz"}).code, 0);
+    const std::string said = insonify::pythonSays((root / "tests/dataset/check_coco.py").string() + " " +
+                                                      (folder_ / "coco").string() + " " + (folder_ / "npz").string(),
+                                                  folder_ / "answer.txt");
+    const size_t at = said.find("{\"pictures\"");
+    ASSERT_NE(at, std::string::npos) << said;
+    const json found = json::parse(said.substr(at));
+    EXPECT_EQ(found["pictures"], 8);
+    EXPECT_GT(found["boxes"], 40);
+    EXPECT_GE(found["worst"], 0.99);
+    RecordProperty("worst", found["worst"].dump());
+}
+
+TEST_F(DatasetCommandTest, YoloHasALabelForEachBoxAndListsByPart) {
+    ASSERT_EQ(make("out", {"--format", "yolo"}).code, 0);
+    const auto files = filesOf(folder_ / "out");
+    EXPECT_EQ(files.at("data.yaml"),
+              "path: .\ntrain: train.txt\nval: val.txt\nnames:\n  0: \"pile\"\n  1: \"wreck\"\n  2: \"rock\"\n  3: "
+              "\"pipeline\"\n");
+    size_t listed = 0;
+    for (const char* list : {"train.txt", "val.txt"}) {
+        std::istringstream lines(files.at(list));
+        for (std::string line; std::getline(lines, line); ++listed) EXPECT_TRUE(files.contains(line.substr(2))) << line;
+    }
+    EXPECT_EQ(listed, 8u);
+    const json record = recordOf("out", "000002");
+    std::istringstream labels(files.at(std::string(record["files"].items().begin().key()).substr(0, 19) + ".txt"));
+    for (const json& each : record["annotations"]) {
+        double category = 0, x = 0, y = 0, width = 0, height = 0;
+        labels >> category >> x >> y >> width >> height;
+        EXPECT_EQ(category + 1, each["category"]);
+        EXPECT_NEAR((x - width / 2) * record["picture"]["width"].get<double>(), each["bbox"][0], 1e-2);
+        EXPECT_NEAR((y + height / 2) * 200, each["bbox"][1].get<double>() + each["bbox"][3].get<double>(), 1e-2);
+    }
+    std::string more;
+    EXPECT_FALSE(labels >> more);
+}
+
+TEST_F(DatasetCommandTest, MasksTellInstancesAndClassesPixelByPixel) {
+    ASSERT_EQ(make("out", {"--format", "mask", "--shard", "1/8"}).code, 0);
+    const json record = recordOf("out", "000001");
+    const Outcome read = python(folder_, R"(
+import glob, json
+import matplotlib.image as image
+import numpy as np
+record = json.load(open(glob.glob("out/000001_*[0-9a-f].json")[0]))
+levels = lambda end: np.rint(image.imread(glob.glob("out/000001_*" + end)[0]) * 255).astype(int)
+instances, classes = levels("_instances.png"), levels("_classes.png")
+for number, each in enumerate(record["annotations"], 1):
+    assert (instances == number).sum() == each["area"], each
+    assert set(classes[instances == number]) == {each["category"]}, each
+assert ((classes == 0) == (instances == 0)).all() and instances.max() == len(record["annotations"])
+print(instances.shape))");
+    ASSERT_EQ(read.code, 0) << read.err;
+    EXPECT_GT(record["annotations"].size(), 3u);
+}
+
+TEST_F(DatasetCommandTest, PosesOfATrajectoryGiveTracks) {
+    writeFile(folder_ / "sweep.yml",
+              "poses:\n  trajectory: {file: " + (root / "deploy/scenes/harbour_pass.csv").string() +
+                  ", count: 4, to: 6}\nclasses: {pile: pile_*}\npicture: {shape: polar}\n");
+    ASSERT_EQ(make("out").code, 0);
+    std::istringstream lines(readFile(folder_ / "out/tracks_000_000.txt"));
+    std::map<std::string, std::set<std::string>> frames;  // by object
+    std::string frame, object, rest;
+    while (std::getline(lines, frame, ',') && std::getline(lines, object, ',') && std::getline(lines, rest)) {
+        frames[object].insert(frame);
+        EXPECT_THAT(rest, testing::MatchesRegex("[0-9]+,[0-9]+,[0-9]+,[0-9]+,1,1,1"));
+    }
+    EXPECT_GT(frames.size(), 1u);
+    EXPECT_TRUE(std::ranges::any_of(frames, [](const auto& of) { return of.second.size() > 1; }));
+    EXPECT_EQ(recordOf("out", "000003")["time_s"], 6);
+    EXPECT_EQ(recordOf("out", "000003")["picture"]["width"], 128);
+}
+
+TEST_F(DatasetCommandTest, ObjectsAreHeardWhereTheyArePlaced) {
+    writeFile(folder_ / "sweep.yml", R"(poses: {grid: {x: 5, y: -30, z: -5.5, yaw_deg: [0, 90]}}
+objects: [{names: [rock_000], x: [12, 12.001], y: [2, 2.001], frame: vehicle, ground: sea_floor}]
+classes: {rock: rock_000}
+)");
+    ASSERT_EQ(make("out").code, 0);
+    for (const char* index : {"000000", "000001"}) {
+        const json record = recordOf("out", index);
+        ASSERT_EQ(record["annotations"].size(), 1u) << index;
+        const json& found = record["annotations"][0];
+        EXPECT_EQ(found["name"], "rock_000");
+        const double bearing = std::atan2(2, 12 - 0.4);
+        EXPECT_LT(found["bearing_rad"][0], bearing);
+        EXPECT_GT(found["bearing_rad"][1], bearing);
+        EXPECT_LT(found["range_m"][0], std::hypot(11.6, 2, 3.5));
+        EXPECT_GT(found["range_m"][1], std::hypot(11.6, 2, 3.5) - 1);
+    }
+}
+
+TEST_F(DatasetCommandTest, ScenesHaveFilesAndPropertiesOfTheirOwn) {
+    writeFile(folder_ / "sweep.yml", "scenes: [" + (root / "deploy/scenes/tank.glb").string() +
+                                         ", {set: {sonar.bin_count: 100}}]\nposes: {grid: {z: -3}}\n");
+    ASSERT_EQ(make("out").code, 0);
+    const json first = recordOf("out", "000000"), second = recordOf("out", "000001");
+    EXPECT_EQ(first["scene"], "tank.glb");
+    EXPECT_EQ(first["ping"]["bins"], 200);
+    EXPECT_EQ(second["scene"], "harbour.glb");
+    EXPECT_EQ(second["ping"]["bins"], 100);
+    const json classes = json::parse(readFile(folder_ / "out/manifest.json"))["classes"];
+    EXPECT_THAT(classes, testing::IsSupersetOf({json("pillar"), json("pile"), json("sea_floor")}));
+}
+
+TEST_F(DatasetCommandTest, ALogOfASampleHasItsPingTruthAndPose) {
+    ASSERT_EQ(make("out", {"--format", "mcap", "--shard", "2/8"}).code, 0);
+    const json record = recordOf("out", "000002");
+    const std::string log = "out/" + std::string(record["files"].items().begin().key());
+    const json info = json::parse(callInsonify(folder_, {"log", "info", log, "--json"}).out);
+    std::map<std::string, int> samples;
+    for (const json& stream : info["streams"]) samples[stream["name"]] = stream["count"];
+    EXPECT_THAT(samples, ElementsAre(testing::Pair("sonar.ping", 1), testing::Pair("sonar.truth", 1),
+                                     testing::Pair("vehicle.pose", 1)));
+}
+
+struct BadSweep {
+    std::string name, text, message;
+};
+
+class BadSweepTest : public testing::TestWithParam<BadSweep> {};
+
+TEST_P(BadSweepTest, IsRefusedAtItsPlace) {
+    const TestFolder folder;
+    writeFile(folder / "d.yml", deployment);
+    writeFile(folder / "sweep.yml", GetParam().text);
+    const Outcome outcome = callInsonify(folder, {"dataset", "d.yml", "--sweep", "sweep.yml", "--out", "out"});
+    EXPECT_EQ(outcome.code, 2);
+    EXPECT_THAT(outcome.err, HasSubstr(GetParam().message));
+    EXPECT_FALSE(fs::exists(folder / "out/manifest.json"));
+}
+
+const std::string grid = "poses: {grid: {x: [0, 1]}}\n";
+
+INSTANTIATE_TEST_SUITE_P(
+    All, BadSweepTest,
+    testing::Values(
+        BadSweep{"UnknownKey", grid + "setings: {}\n",
+                 "sweep.yml:2:1: setings: is not a key here; did you mean settings?"},
+        BadSweep{"NoPoses", "seed: 1\n", "poses: is missing; give grid, random or trajectory"},
+        BadSweep{"TwoKindsOfPoses", "poses: {grid: {x: 1}, random: {count: 1}}\n",
+                 "sweep.yml:1:8: poses: must have one of grid, random and trajectory"},
+        BadSweep{"EmptyGrid", "poses:\n  grid: {x: []}\n", "sweep.yml:2:13: poses.grid.x: is empty"},
+        BadSweep{"DrawnGrid", "poses:\n  grid: {x: {uniform: [0, 1]}}\n",
+                 "sweep.yml:2:13: poses.grid.x: is drawn at random"},
+        BadSweep{"UnknownCoordinate", "poses:\n  grid: {yaw: 1}\n",
+                 "sweep.yml:2:10: poses.grid.yaw: is not a key here; did you mean yaw_deg?"},
+        BadSweep{"NoCount", "poses:\n  random: {x: 1}\n", "sweep.yml:2:11: poses.random: has no count"},
+        BadSweep{"ListOfDrawn", "poses:\n  random: {count: 2, x: [1, 2]}\n",
+                 "sweep.yml:2:25: poses.random.x: has several values"},
+        BadSweep{"Split", grid + "split: {train: 0.9, val: 0.2}\n",
+                 "sweep.yml:2:8: split: adds up to 1.1; train, val and test must add up to 1"},
+        BadSweep{"NoScene", grid + "scenes: [harbor.glb]\n",
+                 "sweep.yml:2:10: scenes[0]: is harbor.glb; there is no such file"},
+        BadSweep{"SettingOfNoTask", grid + "settings: {sonr.range: [1]}\n",
+                 "sweep.yml:2:25: settings.sonr.range[0]: sonr.range=1: there is no task sonr; did you mean sonar?"},
+        BadSweep{
+            "SettingOutOfBounds", grid + "settings:\n  sonar.range: [30, -5]\n",
+            "sweep.yml:3:21: settings.sonar.range[1]: tasks.sonar.properties.range: is -5 m; may be 0.001 to 100000 m"},
+        BadSweep{"EmptySetting", grid + "settings: {sonar.range: []}\n", "settings.sonar.range: is empty"},
+        BadSweep{"Budget", grid + "settings: {sonar.quality.budget_ms: [5]}\n",
+                 "sweep.yml:2:38: settings.sonar.quality.budget_ms: lets the speed of the machine decide"},
+        BadSweep{
+            "NoObject", grid + "objects:\n  - {names: [rok_000], x: [0, 1], y: [0, 1]}\n",
+            "sweep.yml:3:5: objects[0].names[0]: is rok_000, which is no name in the scene; did you mean rock_000?"},
+        BadSweep{"NoGround", grid + "objects:\n  - {names: [rock_000], x: [0, 1], y: [0, 1], ground: see_floor}\n",
+                 "objects[0].ground[0]: is see_floor, which is no name in the scene; did you mean sea_floor?"},
+        BadSweep{"NoRoom", grid + "objects:\n  - {names: [rock_*], x: [0, 2], y: [0, 2]}\n",
+                 "sweep.yml:3:5: objects[0]: has room for "},
+        BadSweep{"NoClass", grid + "classes:\n  wreck: hul\n",
+                 "sweep.yml:3:3: classes.wreck[0]: is hul, which is no name"},
+        BadSweep{"Picture", grid + "picture: {shape: disc}\n",
+                 "sweep.yml:2:18: picture.shape: is disc; may be fan, polar"},
+        BadSweep{"Trajectory", "poses: {trajectory: {file: no.csv, count: 2}}\n", "no.csv"},
+        BadSweep{"NoYaml", "poses: {", "sweep.yml:"}),
+    [](const auto& tested) { return tested.param.name; });
+
+TEST_F(DatasetCommandTest, WhatOnlyTheCommandLineCanSayIsCheckedAsWell) {
+    EXPECT_THAT(make("out", {"--shard", "3/3"}).err, HasSubstr("of 3 shards i may be from 0 to 2"));
+    EXPECT_EQ(make("out", {"--format", "voc"}).code, 2);
+    EXPECT_THAT(callInsonify(folder_, {"dataset", "d.yml", "--sweep", "no.yml", "--out", "out"}).err,
+                HasSubstr("no.yml"));
+    writeFile(folder_ / "d.yml", deployment.substr(0, deployment.find("quality")) + "quality: {budget_ms: 5}\n" +
+                                     deployment.substr(deployment.find("  noise:")));
+    EXPECT_THAT(make("out").err, HasSubstr("d.yml:20:28: tasks.sonar.properties.quality.budget_ms: lets the speed"));
+    EXPECT_FALSE(fs::exists(folder_ / "out"));
+}
+
+TEST_F(DatasetCommandTest, TheSweepOfTheHarbourIsMadeWithItsDeployment) {
+    const Outcome outcome =
+        callInsonify(folder_, {"dataset", root / "deploy/truth.yml", "--sweep", root / "deploy/sweeps/harbour.yml",
+                               "--out", "out", "--shard", "0/24"});
+    ASSERT_EQ(outcome.code, 0) << outcome.err;
+    EXPECT_THAT(outcome.out, HasSubstr("1 samples made, 0 were there, of 24 in all"));
+    EXPECT_GT(recordOf("out", "000000")["annotations"].size(), 5u);
+}

@@ -1,0 +1,129 @@
+#include <gmock/gmock.h>
+
+#include <cmath>
+
+#include "components/dataset/Placement.hpp"
+#include "types/ConfigError.hpp"
+
+namespace insonify::dataset {
+namespace {
+
+using ::testing::HasSubstr;
+
+std::vector<std::string> namesOf(int count) {
+    std::vector<std::string> names;
+    for (int i = 0; i < count; ++i) names.push_back("stone_" + std::to_string(i));
+    return names;
+}
+
+SceneParts stones(int count) {
+    SceneParts parts;
+    for (const std::string& name : namesOf(count)) {
+        Placeable& stone = parts.placeables[name];
+        stone.radius = 0.5;
+        stone.low = -0.4;
+        stone.filed.position = {0, 0, -3};
+    }
+    return parts;
+}
+
+Sweep sweepOf(std::vector<double> x, std::vector<double> y) {
+    Sweep sweep;
+    sweep.file = "sweep.yml";
+    ObjectGroup& group = sweep.objects.emplace_back();
+    group.names = {"stone_*"};
+    group.x = std::move(x), group.y = std::move(y);
+    group.line = 4, group.column = 5;
+    return sweep;
+}
+
+std::vector<PlacedObject> placed(const Sweep& sweep, const SceneParts& scene, int count, uint64_t pose,
+                                 const types::Pose& vehicle = {}) {
+    Placement placement(sweep, scene, pose, vehicle);
+    placement.add(0, namesOf(count));
+    return placement.objects();
+}
+
+double apart(const glm::dvec3& a, const glm::dvec3& b) { return std::hypot(a.x - b.x, a.y - b.y); }
+
+TEST(PlacementTest, ObjectsStandInTheirAreaAndDoNotTouch) {
+    const Sweep sweep = sweepOf({-4, 4}, {2, 8});
+    const SceneParts scene = stones(12);
+    for (uint64_t pose = 0; pose < 50; ++pose) {
+        const auto objects = placed(sweep, scene, 12, pose);
+        ASSERT_EQ(objects.size(), 12u);
+        for (size_t i = 0; i < objects.size(); ++i) {
+            const glm::dvec3& at = objects[i].at.position;
+            EXPECT_TRUE(at.x >= -4 && at.x <= 4 && at.y >= 2 && at.y <= 8 && at.z == -3) << at.x << " " << at.y;
+            for (size_t k = 0; k < i; ++k) EXPECT_GE(apart(at, objects[k].at.position), 1.1);
+        }
+        EXPECT_NE(objects[0].at.position, placed(sweep, scene, 12, pose + 1)[0].at.position);
+        EXPECT_EQ(objects[7].at.position, placed(sweep, scene, 12, pose)[7].at.position);
+    }
+}
+
+TEST(PlacementTest, TheyKeepOffTheVehicleAndWhatIsToBeAvoided) {
+    Sweep sweep = sweepOf({-2, 2}, {-2, 2});
+    sweep.objects[0].avoid = {"wall*"};
+    SceneParts scene = stones(1);
+    scene.boxes["wall_a"].add(glm::dvec3(-2, -2, -5));
+    scene.boxes["wall_a"].add(glm::dvec3(2, 0, 5));
+    for (uint64_t pose = 0; pose < 200; ++pose) {
+        const glm::dvec3 at = placed(sweep, scene, 1, pose)[0].at.position;
+        EXPECT_GE(at.y, 0.6) << pose;
+        EXPECT_GE(std::hypot(at.x, at.y), 0.6) << pose;
+    }
+}
+
+TEST(PlacementTest, AnAreaGoesWithTheVehicle) {
+    Sweep sweep = sweepOf({5, 6}, {0, 1});
+    sweep.objects[0].frame = Frame::Vehicle;
+    types::Pose vehicle;
+    vehicle.position = {100, 200, -5};
+    vehicle.orientation = glm::angleAxis(std::numbers::pi / 2, glm::dvec3(0, 0, 1));  // looks west
+    for (uint64_t pose = 0; pose < 50; ++pose) {
+        const glm::dvec3 at = placed(sweep, stones(1), 1, pose, vehicle)[0].at.position;
+        EXPECT_TRUE(at.x >= 99 && at.x <= 100 && at.y >= 205 && at.y <= 206) << at.x << " " << at.y;
+    }
+}
+
+TEST(PlacementTest, TheyStandOnTheHighestGroundBelowTheirOrigin) {
+    Sweep sweep = sweepOf({1, 3}, {1, 3});
+    sweep.objects[0].ground = "floor";
+    SceneParts scene = stones(1);
+    scene.grounds["floor"] = {{glm::dvec3(-9, -9, -9), glm::dvec3(9, -9, -9), glm::dvec3(0, 20, -9)},
+                              {glm::dvec3(-9, -9, -7), glm::dvec3(9, -9, -7), glm::dvec3(0, 20, -7)}};
+    EXPECT_NEAR(placed(sweep, scene, 1, 3)[0].at.position.z, -6.6, 1e-9);
+    EXPECT_EQ(highestAt(scene.grounds["floor"], 50, 50), std::nullopt);
+    const std::vector<std::array<glm::dvec3, 3>> slope = {
+        {glm::dvec3(0, 0, 0), glm::dvec3(4, 0, 4), glm::dvec3(0, 4, 0)}};
+    EXPECT_NEAR(*highestAt(slope, 1, 1), 1, 1e-12);
+}
+
+TEST(PlacementTest, AsManyAreThereAsTheCountAllowsAndTheOthersAreOutOfHearing) {
+    Sweep sweep = sweepOf({-20, 20}, {-20, 20});
+    sweep.objects[0].count = {2, 5};
+    std::array<int, 7> seen{};
+    for (uint64_t pose = 0; pose < 300; ++pose) {
+        const auto objects = placed(sweep, stones(6), 6, pose);
+        const auto there = static_cast<size_t>(std::ranges::count_if(objects, &PlacedObject::present));
+        ++seen[there];
+        for (const PlacedObject& object : objects) EXPECT_EQ(object.present, object.at.position.z > -1000);
+    }
+    for (size_t i = 0; i < 7; ++i) EXPECT_EQ(seen[i] > 0, i >= 2 && i <= 5) << i;
+}
+
+TEST(PlacementTest, WhereThereIsNoRoomItSaysHowManyFitted) {
+    const Sweep sweep = sweepOf({2, 4}, {2, 4});
+    try {
+        placed(sweep, stones(30), 30, 8);
+        FAIL() << "30 stones of a metre on 4 m2";
+    } catch (const types::ConfigError& error) {
+        const types::Diagnostic& told = error.diagnostics().front();
+        EXPECT_THAT(told.text(), HasSubstr("sweep.yml:4:5: objects[0]: has room for "));
+        EXPECT_THAT(told.text(), HasSubstr("of its 30 objects at pose 8"));
+    }
+}
+
+}  // namespace
+}  // namespace insonify::dataset

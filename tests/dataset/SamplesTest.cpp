@@ -1,0 +1,131 @@
+#include <gmock/gmock.h>
+
+#include <set>
+
+#include "components/dataset/Samples.hpp"
+#include "types/ConfigError.hpp"
+
+namespace insonify::dataset {
+namespace {
+
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::Pair;
+
+Sweep gridded() {
+    Sweep sweep;
+    sweep.file = "sweep.yml";
+    sweep.scenes.resize(2);
+    sweep.settings = {{"sonar.range", {{"20", 1, 1}, {"30", 1, 1}}}, {"sonar.bin_count", {{"100", 1, 1}}}};
+    sweep.grid.emplace();
+    sweep.grid->x.values = {1, 2};
+    sweep.grid->yaw_deg.values = {0, 90, 180};
+    return sweep;
+}
+
+Sweep drawn(uint32_t count) {
+    Sweep sweep;
+    sweep.file = "sweep.yml";
+    sweep.random.emplace();
+    sweep.random->x.uniform = {0, 10};
+    sweep.random->yaw_deg.uniform = {-180, 180};
+    sweep.random_count = count;
+    return sweep;
+}
+
+/** Objects "stone_0" and on, each of half a metre about its origin. */
+SceneParts stones(int count) {
+    SceneParts parts;
+    for (int i = 0; i < count; ++i) {
+        Placeable stone;
+        stone.radius = 0.5;
+        stone.low = -0.5;
+        stone.filed.position = {0, 0, -3};
+        parts.placeables["stone_" + std::to_string(i)] = stone;
+    }
+    return parts;
+}
+
+TEST(SamplesTest, APoseIsTheFastestThenSettingsThenScenes) {
+    const Sweep sweep = gridded();
+    const Samples samples(sweep, {}, {SceneParts{}, SceneParts{}});
+    ASSERT_EQ(samples.count(), 24u);
+    const Sample first = samples.at(0), second = samples.at(1), last = samples.at(23);
+    EXPECT_EQ(first.at.position, glm::dvec3(1, 0, 0));
+    EXPECT_NEAR((second.at.orientation * glm::dvec3(1, 0, 0)).y, 1, 1e-12);
+    EXPECT_EQ(samples.at(6).pose, 0u);
+    EXPECT_EQ(samples.at(6).setting, 1u);
+    EXPECT_EQ(samples.at(12).scene, 1u);
+    EXPECT_EQ(last.at.position, glm::dvec3(2, 0, 0));
+    EXPECT_THAT(samples.settingsOf(1), ElementsAre(Pair("sonar.range", "30"), Pair("sonar.bin_count", "100")));
+}
+
+TEST(SamplesTest, ASampleIsTheSameHoweverManyThereAreAndWhateverWasAskedBefore) {
+    const Sweep few = drawn(3), many = drawn(1000);
+    const Samples of_few(few, {}, {SceneParts{}}), of_many(many, {}, {SceneParts{}});
+    of_many.at(999);
+    for (const uint64_t index : {2, 0, 1}) {
+        EXPECT_EQ(of_few.at(index).at.position, of_many.at(index).at.position);
+        EXPECT_EQ(of_few.at(index).seed, of_many.at(index).seed);
+        EXPECT_EQ(of_few.at(index).part, of_many.at(index).part);
+    }
+    std::set<double> places;
+    std::set<uint64_t> seeds;
+    for (uint64_t index = 0; index < 1000; ++index) {
+        places.insert(of_many.at(index).at.position.x);
+        seeds.insert(of_many.at(index).seed);
+    }
+    EXPECT_GT(places.size(), 990u);
+    EXPECT_EQ(seeds.size(), 1000u);
+    EXPECT_FALSE(seeds.contains(0));
+}
+
+TEST(SamplesTest, SettingsAndScenesShareTheirPosesAndHaveNoiseOfTheirOwn) {
+    Sweep sweep = drawn(5);
+    sweep.settings = {{"sonar.range", {{"20", 1, 1}, {"30", 1, 1}}}};
+    sweep.objects.emplace_back();
+    sweep.objects[0].names = {"stone_*"};
+    sweep.objects[0].x = sweep.objects[0].y = {-10, 10};
+    const Samples samples(sweep, {}, {stones(3)});
+    const Sample near = samples.at(2), far = samples.at(7);
+    EXPECT_EQ(near.at.position, far.at.position);
+    EXPECT_NE(near.seed, far.seed);
+    for (size_t i = 0; i < 3; ++i) EXPECT_EQ(near.objects[i].at.position, far.objects[i].at.position);
+}
+
+TEST(SamplesTest, ATrajectoryGivesItsPosesAtTheirTimes) {
+    Sweep sweep;
+    sweep.trajectory.emplace();
+    types::Pose there;
+    there.position = {3, 0, 0};
+    const Samples samples(sweep, {{0, {}}, {2.5, there}}, {SceneParts{}});
+    EXPECT_EQ(samples.count(), 2u);
+    EXPECT_EQ(samples.at(1).time, 2.5);
+    EXPECT_EQ(samples.at(1).at.position, there.position);
+}
+
+TEST(SamplesTest, ObjectsThatAreNotThereOrTwiceAreRefusedWithTheirPlace) {
+    Sweep sweep = drawn(1);
+    sweep.objects.resize(2);
+    for (ObjectGroup& group : sweep.objects) group.names = {"stone_1"}, group.x = group.y = {0, 1}, group.line = 9;
+    const auto messageOf = [&] {
+        try {
+            const Samples samples(sweep, {}, {stones(2)});
+        } catch (const types::ConfigError& error) {
+            return error.diagnostics().front().text();
+        }
+        return std::string("none");
+    };
+    EXPECT_EQ(messageOf(), "sweep.yml:9: objects[1].names: places stone_1 for the second time");
+    sweep.objects[1].names = {"stne_0"};
+    EXPECT_THAT(messageOf(), HasSubstr("objects[1].names[0]: is stne_0, which is no name in the scene; did you mean"));
+}
+
+TEST(SamplesTest, MoreThanCanBeAreRefused) {
+    Sweep sweep = drawn(100000000);
+    sweep.settings = {{"sonar.range", {{"20", 1, 1}, {"30", 1, 1}}}};
+    EXPECT_THROW(Samples(sweep, {}, {SceneParts{}}), types::ConfigError);
+}
+
+}  // namespace
+}  // namespace insonify::dataset

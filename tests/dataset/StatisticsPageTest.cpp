@@ -1,0 +1,49 @@
+#include <gmock/gmock.h>
+
+#include "components/dataset/StatisticsPage.hpp"
+
+namespace insonify::dataset {
+namespace {
+
+using ::testing::HasSubstr;
+using ::testing::Not;
+
+Json recordOf(uint64_t index, const std::string& part, uint32_t area) {
+    return {{"index", index},
+            {"part", part},
+            {"scene", "har<bour>.glb"},
+            {"settings", {{"sonar.range", "30"}}},
+            {"picture", {{"width", 100}, {"height", 50}}},
+            {"annotations",
+             {{{"name", "pile_0"}, {"category", 1}, {"bbox", {1, 2, 3, 4}}, {"area", area}, {"range_m", {4.0, 8.5}}}}}};
+}
+
+TEST(StatisticsPageTest, ItTellsCountsSizesAndRangesAndShowsExamples) {
+    Sweep sweep;
+    const Classes classes(sweep, {"pile_0", "rock"});
+    StatisticsPage page("sweep.yml", classes);
+    page.add(recordOf(0, "train", 100), "000000_a.png");
+    page.add(recordOf(1, "val", 300), "000001_b.png");
+    const std::string text = page.text();
+    EXPECT_THAT(text, HasSubstr("<p>2 samples</p>"));
+    EXPECT_THAT(text, HasSubstr("<td>pile</td><td>2</td><td>2</td><td>200</td><td>4.00</td><td>8.50</td>"));
+    EXPECT_THAT(text, HasSubstr("<td>rock</td><td>0</td>"));
+    EXPECT_THAT(text, HasSubstr(">64 to 127 px</text>"));
+    EXPECT_THAT(text, HasSubstr(">256 to 511 px</text>"));
+    EXPECT_THAT(text, HasSubstr(">5 to 10 m</text>"));
+    EXPECT_THAT(text, HasSubstr("sonar.range = 30"));
+    EXPECT_THAT(text, HasSubstr("har&lt;bour&gt;.glb"));
+    EXPECT_THAT(text, HasSubstr("<image href=\"000001_b.png\" width=\"100\" height=\"50\"/>"));
+    EXPECT_THAT(text, HasSubstr("<rect x=\"1\" y=\"2\" width=\"3\" height=\"4\""));
+}
+
+TEST(StatisticsPageTest, WithoutPicturesThereAreNoExamples) {
+    Sweep sweep;
+    const Classes classes(sweep, {"pile_0"});
+    StatisticsPage page("sweep.yml", classes);
+    page.add(recordOf(0, "train", 100), "");
+    EXPECT_THAT(page.text(), Not(HasSubstr("Examples")));
+}
+
+}  // namespace
+}  // namespace insonify::dataset

@@ -1,0 +1,52 @@
+"""Reads a data set as those who learn from it do: check_coco.py COCO NPZ, two data sets of one sweep.
+
+Every box must hold the energy of its object, as the bins and the truth of the other data set tell it, without anything that the
+program knows of pictures; and every mask must lie in its box."""
+
+import glob
+import json
+import os
+import sys
+
+import numpy as np
+from pycocotools.coco import COCO
+
+LEAST = 0.99  # of an object's energy
+
+
+def places(ping, width, height):
+    """Column and row of the middle of each bin in a fan, ahead up and port left."""
+    reach = ping["range_m"][-1] + (ping["range_m"][1] - ping["range_m"][0]) / 2
+    distance = height * ping["range_m"][None, :] / reach
+    bearing = ping["bearings"][:, None]
+    return width / 2 - 0.5 - distance * np.sin(bearing), height - 0.5 - distance * np.cos(bearing)
+
+
+def main(coco_folder, npz_folder):
+    worst, boxes, pictures = 1.0, 0, 0
+    for file in sorted(glob.glob(os.path.join(coco_folder, "instances_*.json"))):
+        coco = COCO(file)
+        for image in coco.loadImgs(coco.getImgIds()):
+            pictures += 1
+            assert os.path.exists(os.path.join(coco_folder, image["file_name"]))
+            (name,) = glob.glob(os.path.join(npz_folder, f"{image['id']:06}_*.npz"))
+            ping = np.load(name)
+            objects = [text.decode() for text in ping["objects"]]
+            x, y = places(ping, image["width"], image["height"])
+            for annotation in coco.loadAnns(coco.getAnnIds(image["id"])):
+                left, top, width, height = annotation["bbox"]
+                inside = (x > left - 1) & (x < left + width) & (y > top - 1) & (y < top + height)
+                of_object = ping["object"] == objects.index(annotation["object"])
+                energy = np.where(of_object, ping["bins"].astype(float) * ping["share"], 0)
+                worst = min(worst, energy[inside].sum() / energy.sum())
+                mask = coco.annToMask(annotation).astype(bool)
+                rows, columns = np.where(mask)
+                assert mask.sum() == annotation["area"], annotation
+                assert rows.min() >= top and rows.max() < top + height, annotation
+                assert columns.min() >= left and columns.max() < left + width, annotation
+                boxes += 1
+    print(json.dumps({"pictures": pictures, "boxes": boxes, "worst": worst}))
+    assert worst >= LEAST, worst
+
+
+main(*sys.argv[1:])

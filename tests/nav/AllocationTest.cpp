@@ -1,0 +1,52 @@
+#include <gmock/gmock.h>
+
+#include "components/nav/DvlTask.hpp"
+#include "components/nav/ImuTask.hpp"
+#include "components/nav/PressureTask.hpp"
+#include "tests/nav/Paths.hpp"
+#include "tests/support/Allocations.hpp"
+#include "tests/support/Ports.hpp"
+#include "tests/support/Scenes.hpp"
+
+namespace insonify::nav {
+namespace {
+
+template <class Task, class Out>
+std::vector<std::string> allocationsOf(Task& task, framework::OutputPort<Out> Task::*output) {
+    test::Writer<types::Pose> poses;
+    test::Reader<Out> reader;
+    poses.port.connectTo(task.pose, framework::ConnPolicy::buffer(4));
+    (task.*output).connectTo(reader.port, {});
+    EXPECT_TRUE(task.configure() && task.start()) << task.lastError();
+    const auto cycle = [&](int64_t time) {
+        types::Pose pose = circle(5, 0.4)(static_cast<double>(time) * 0.01);
+        poses.port.write(pose);
+        task.update();
+        Out sample{};
+        reader.port.readNew(sample);
+    };
+    for (int64_t time = -5; time < 0; ++time) cycle(time);  // three poses, then some that are told of
+    return test::allocationsAfterTheFirst(task, cycle);
+}
+
+TEST(AllocationTest, AnInertialUnitAllocatesNothing) {
+    ImuTask task("imu");
+    EXPECT_THAT(allocationsOf(task, &ImuTask::imu), testing::IsEmpty());
+}
+
+TEST(AllocationTest, ADopplerLogOverASceneAllocatesNothing) {
+    DvlTask task("dvl");
+    test::Writer<types::SnapshotPtr> scene;
+    scene.port.connectTo(task.snapshot, {});
+    const auto snapshot = std::make_shared<types::Snapshot>(test::snapshotOf(test::sceneOf({test::ground(-17)})));
+    scene.port.write(snapshot);
+    EXPECT_THAT(allocationsOf(task, &DvlTask::dvl), testing::IsEmpty());
+}
+
+TEST(AllocationTest, APressureGaugeAllocatesNothing) {
+    PressureTask task("pressure");
+    EXPECT_THAT(allocationsOf(task, &PressureTask::pressure), testing::IsEmpty());
+}
+
+}  // namespace
+}  // namespace insonify::nav

@@ -1,0 +1,79 @@
+// Ranges of straight beams against closed forms.
+#include <gtest/gtest.h>
+
+#include <glm/gtc/matrix_transform.hpp>
+
+#include "components/nav/Bottom.hpp"
+#include "tests/support/Surfaces.hpp"
+
+namespace insonify::nav {
+namespace {
+
+Bottom bottomOf(types::Snapshot snapshot) {
+    Bottom bottom;
+    bottom.take(std::make_shared<types::Snapshot>(std::move(snapshot)));
+    return bottom;
+}
+
+const glm::dvec3 down(0, 0, -1);
+
+TEST(BottomTest, ALevelBottomIsMetFromAboveAndFromBelow) {
+    const Bottom bottom(-20.0);
+    EXPECT_EQ(bottom.range({5, 6, -8}, down, 100), 12);
+    EXPECT_EQ(bottom.range({5, 6, -26}, -down, 100), 6);
+    EXPECT_EQ(bottom.range({5, 6, -8}, -down, 100), std::nullopt);
+    EXPECT_EQ(bottom.range({5, 6, -8}, {1, 0, 0}, 1e300), std::nullopt);
+    EXPECT_EQ(bottom.range({5, 6, -8}, down, 11.9), std::nullopt) << "too far";
+    EXPECT_EQ(Bottom().range({5, 6, -8}, down, 100), std::nullopt);
+}
+
+TEST(BottomTest, AFloorOfTrianglesIsWhereALevelBottomIs) {
+    const Bottom floor = bottomOf(test::snapshotOf(test::sceneOf({test::ground(-20)})));
+    const Bottom level(-20.0);
+    for (const glm::dvec3 way : {glm::dvec3(0.3, 0.4, -0.8), glm::dvec3(-0.1, 0.7, -0.2), down}) {
+        const glm::dvec3 direction = glm::normalize(way);
+        const auto range = floor.range({5, 6, -8}, direction, 200);
+        ASSERT_TRUE(range);
+        EXPECT_NEAR(*range, *level.range({5, 6, -8}, direction, 200), 1e-9);
+    }
+    EXPECT_FALSE(floor.range({5, 6, -8}, -down, 200));
+    EXPECT_FALSE(floor.range({5, 6, -8}, down, 11.9));
+}
+
+TEST(BottomTest, TheNearestOfManyIsMetWhereverObjectsHaveMoved) {
+    auto geometry = test::surfaces();  // ground at -4, and a block, turned, among others
+    types::Snapshot snapshot = test::snapshotOf(geometry);
+    EXPECT_NEAR(*bottomOf(snapshot).range({-30, 30, 0}, down, 100), 4, 1e-6);
+    const auto ball = static_cast<uint32_t>(1);  // 1.5 m, of flat triangles
+    snapshot.moved = {{ball, glm::translate(glm::dmat4(1), {-30, 30, -2})}};
+    Bottom bottom = bottomOf(snapshot);
+    EXPECT_NEAR(*bottom.range({-30, 30, 10}, down, 100), 10.5, 0.02);
+    EXPECT_NEAR(*bottom.range({-30, 33, 0}, down, 100), 4, 1e-6) << "beside it";
+    EXPECT_NEAR(*bottom.range({9, 3, 10}, down, 100), 14, 1e-6) << "nor is it where it was";
+    snapshot.moved.clear();
+    bottom.take(std::make_shared<types::Snapshot>(snapshot));
+    EXPECT_NEAR(*bottom.range({9, 3, 10}, down, 100), 9.5, 0.02) << "where the file has it, again";
+    EXPECT_NEAR(*bottom.range({-10, 12, 10}, down, 100), 8.5, 0.02) << "one that is mirrored and stretched";
+}
+
+TEST(BottomTest, AnotherGeometryTakesThePlaceOfTheFirst) {
+    Bottom bottom = bottomOf(test::snapshotOf(test::sceneOf({test::ground(-20)})));
+    bottom.take(std::make_shared<types::Snapshot>(test::snapshotOf(test::sceneOf({test::ground(-10)}))));
+    EXPECT_NEAR(*bottom.range({0, 0, -8}, down, 100), 2, 1e-9);
+    bottom.take(std::make_shared<types::Snapshot>());
+    EXPECT_FALSE(bottom.range({0, 0, -8}, down, 100)) << "one without a geometry";
+    bottom.take(std::make_shared<types::Snapshot>(test::snapshotOf(std::make_shared<types::Geometry>())));
+    EXPECT_FALSE(bottom.range({0, 0, -8}, down, 100)) << "one without objects";
+}
+
+TEST(BottomTest, WhatIsUnderWaterIsBelowTheSurfaceOfTheScene) {
+    types::Snapshot snapshot = test::snapshotOf(test::sceneOf({test::ground(-20)}));
+    EXPECT_TRUE(bottomOf(snapshot).isUnderWater({0, 0, 5})) << "without a surface all is water";
+    snapshot.water_surface = 1;
+    EXPECT_TRUE(bottomOf(snapshot).isUnderWater({0, 0, 0.5}));
+    EXPECT_FALSE(bottomOf(snapshot).isUnderWater({0, 0, 1.5}));
+    EXPECT_TRUE(Bottom(-20.0).isUnderWater({0, 0, 5}));
+}
+
+}  // namespace
+}  // namespace insonify::nav

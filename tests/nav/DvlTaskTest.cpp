@@ -1,0 +1,109 @@
+#include <gmock/gmock.h>
+
+#include "components/nav/DvlTask.hpp"
+#include "tests/nav/Paths.hpp"
+#include "tests/support/Scenes.hpp"
+#include "tests/support/TaskBench.hpp"
+
+namespace insonify::nav {
+namespace {
+
+class DvlTaskTest : public test::TaskBench<DvlTask, types::Pose, types::DvlPtr> {
+protected:
+    DvlTaskTest() : TaskBench(&DvlTask::pose, &DvlTask::dvl) {}
+
+    void connectScene() { scene_.port.connectTo(task_.snapshot, {}); }
+    void show(types::Snapshot snapshot) { scene_.port.write(std::make_shared<types::Snapshot>(std::move(snapshot))); }
+    /** What is told of the middle of three poses, a tenth of a second apart, up to a time. */
+    types::DvlPtr told(double time, const Path& path) {
+        answerTo(path(time - 0.2));
+        answerTo(path(time - 0.1));
+        return answerTo(path(time));
+    }
+    const Path ahead_ = [](double time) { return poseAt(time, {1.5 * time, 0, -5}); };
+    test::Writer<types::SnapshotPtr> scene_;
+};
+
+TEST_F(DvlTaskTest, MeasuresOverALevelBottomWithoutAScene) {
+    startWith({.bottom_height = -17.0});
+    const types::DvlPtr dvl = told(1, ahead_);
+    ASSERT_TRUE(dvl);
+    EXPECT_EQ(dvl->time, types::Time::fromSeconds(0.9));
+    EXPECT_LT(glm::distance(dvl->velocity, {1.5, 0, 0}), 1e-9);
+    EXPECT_NEAR(dvl->altitude, 12, 1e-9);
+}
+
+TEST_F(DvlTaskTest, WithoutABottomItDoesNotStart) {
+    task_.config.set(DvlConfig{});
+    ASSERT_TRUE(task_.configure());
+    EXPECT_FALSE(task_.start());
+    EXPECT_THAT(task_.lastError(), testing::HasSubstr("connect a scene's snapshot, or set bottom_height"));
+}
+
+TEST_F(DvlTaskTest, MeasuresOverTheFloorOfASceneFromItsPlaceInTheBody) {
+    connectScene();
+    startWith({.mount = {.position = {0.5, 0, -1}, .yaw_deg = 90}});
+    show(test::snapshotOf(test::sceneOf({test::ground(-17)})));
+    const types::DvlPtr dvl = told(1, ahead_);
+    ASSERT_TRUE(dvl);
+    EXPECT_LT(glm::distance(dvl->velocity, {0, -1.5, 0}), 1e-9) << "its x axis looks to port";
+    EXPECT_NEAR(dvl->altitude, 11, 1e-9);
+}
+
+TEST_F(DvlTaskTest, BeforeTheFirstSnapshotAndAboveTheSurfaceThereIsNoBottomLock) {
+    connectScene();
+    startWith({});
+    EXPECT_FALSE(told(1, ahead_)->hasBottomLock());
+    types::Snapshot snapshot = test::snapshotOf(test::sceneOf({test::ground(-17)}));
+    snapshot.water_surface = -6;
+    show(snapshot);
+    EXPECT_FALSE(told(2, ahead_)->hasBottomLock());
+    snapshot.water_surface = 0;
+    show(snapshot);
+    EXPECT_TRUE(told(3, ahead_)->hasBottomLock());
+}
+
+TEST_F(DvlTaskTest, TheVelocityGoesToRockAsWell) {
+    test::Reader<types::Pose> reader;
+    task_.velocity_samples.connectTo(reader.port, framework::ConnPolicy::buffer(4));
+    startWith({.bottom_height = -17.0, .errors = {.velocity_noise = 0.01}});
+    const types::DvlPtr dvl = told(1, ahead_);
+    types::Pose sample;
+    ASSERT_TRUE(dvl && reader.port.readNew(sample));
+    EXPECT_EQ(sample.velocity, dvl->velocity);
+    EXPECT_EQ(sample.cov_velocity, dvl->cov_velocity);
+    EXPECT_EQ(sample.source_frame, "dvl");
+    EXPECT_TRUE(std::isnan(sample.position.x));
+}
+
+TEST_F(DvlTaskTest, APeriodTellsFewerAndTheSameSeedTheSameBits) {
+    const auto run = [&] {
+        std::vector<glm::dvec3> velocities;
+        for (int i = 0; i < 200; ++i)
+            if (const types::DvlPtr dvl = answerTo(ahead_(1 + i * 0.01))) velocities.push_back(dvl->velocity);
+        return velocities;
+    };
+    startWith({.period = 0.125, .bottom_height = -17.0, .errors = {.velocity_noise = 0.01}});
+    const std::vector<glm::dvec3> first = run();
+    EXPECT_EQ(first.size(), 16u);
+    ASSERT_TRUE(task_.stop() && task_.start());
+    EXPECT_EQ(run(), first);
+}
+
+TEST_F(DvlTaskTest, APoseThatIsNotFiniteIsRefusedUntilAGoodOne) {
+    startWith({.bottom_height = -17.0});
+    EXPECT_FALSE(answerTo(poseAt(1, glm::dvec3(INFINITY))));
+    EXPECT_EQ(task_.state(), framework::TaskState::RunTimeError);
+    EXPECT_TRUE(told(2, ahead_));
+    EXPECT_EQ(task_.state(), framework::TaskState::Running);
+}
+
+TEST_F(DvlTaskTest, AltitudesThatLeaveNothingAreRefused) {
+    types::Diagnostics diagnostics;
+    DvlConfig{.min_altitude = 5, .max_altitude = 5}.check(diagnostics);
+    ASSERT_EQ(diagnostics.size(), 1u);
+    EXPECT_EQ(diagnostics[0].path, "min_altitude");
+}
+
+}  // namespace
+}  // namespace insonify::nav

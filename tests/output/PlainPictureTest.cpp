@@ -1,0 +1,108 @@
+#include <gmock/gmock.h>
+
+#include <cmath>
+
+#include "components/output/PlainPicture.hpp"
+#include "tests/support/Pings.hpp"
+
+namespace insonify::output {
+namespace {
+
+using test::emptyPing;
+using test::withEcho;
+
+PlainConfig configOf(PlainShape shape, uint32_t height) {
+    PlainConfig config;
+    config.shape = shape;
+    config.height = height;
+    config.reference_db = 0;
+    return config;
+}
+
+PlainPicture pictureOf(const types::Sonar& ping, const PlainConfig& config) {
+    PlainPicture picture(config);
+    picture.take(ping);
+    return picture;
+}
+
+/** Middle of the pixels that are not black, {column, row}. */
+cv::Point2d middleOf(const types::Image& picture) {
+    cv::Point2d sum;
+    double count = 0;
+    for (int y = 0; y < picture.size.height; ++y)
+        for (int x = 0; x < picture.size.width; ++x)
+            if (picture.image[static_cast<size_t>(y) * picture.row_size + static_cast<size_t>(x)])
+                sum += cv::Point2d(x, y), ++count;
+    return sum / count;
+}
+
+TEST(PlainPictureTest, AFanHasNothingButTheWaterAheadIsUpAndPortIsLeft) {
+    const types::Sonar empty = emptyPing(120, 121);
+    const PlainConfig config = configOf(PlainShape::Fan, 100);
+    const PlainPicture nothing = pictureOf(empty, config);
+    EXPECT_THAT(nothing.image().image, testing::Each(0));
+    EXPECT_EQ(nothing.height(), 100u);
+    for (const uint32_t beam : {10u, 60u, 110u}) {
+        const double bearing = empty.bearings[beam].rad;
+        const cv::Point2d at = middleOf(pictureOf(withEcho(empty, beam, 80), config).image());
+        EXPECT_NEAR(at.x, nothing.width() / 2.0 - 0.5 - 80.5 * std::sin(bearing), 1) << beam;
+        EXPECT_NEAR(at.y, 99.5 - 80.5 * std::cos(bearing), 1) << beam;
+    }
+}
+
+TEST(PlainPictureTest, APolarPictureHasAPixelForEachBin) {
+    const types::Sonar empty = emptyPing(120, 121);
+    const PlainPicture picture = pictureOf(withEcho(empty, 110, 80), configOf(PlainShape::Polar, 100));
+    EXPECT_EQ(picture.width(), 121u);
+    EXPECT_EQ(picture.height(), 100u);
+    EXPECT_EQ(middleOf(picture.image()), cv::Point2d(10, 19));
+    EXPECT_EQ(picture.pixelOf(110, 80), cv::Point(10, 19));
+}
+
+TEST(PlainPictureTest, FinerBinsShareACellAndTheirMeanIsShown) {
+    const types::Sonar empty = emptyPing(120, 4);
+    const PlainPicture picture = pictureOf(withEcho(empty, 2, 99), configOf(PlainShape::Polar, 32));
+    EXPECT_EQ(picture.binsPerCell(), 4u);
+    EXPECT_EQ(picture.cellsPerBeam(), 25u);
+    const double mean = static_cast<double>(withEcho(empty, 2, 99).bins[2 * 100 + 99]) / 4;
+    EXPECT_NEAR(picture.levels()[2 * 25 + 24], std::clamp(255 + 10 * std::log10(mean) * 255 / 50, 0.0, 255.0), 1);
+}
+
+TEST(PlainPictureTest, EachPixelTellsItsCellAndTheCellItsPixel) {
+    const types::Sonar ping = emptyPing(130, 64);
+    for (const PlainShape shape : {PlainShape::Fan, PlainShape::Polar}) {
+        const PlainPicture picture = pictureOf(ping, configOf(shape, 200));
+        const auto count = static_cast<int32_t>(64 * picture.cellsPerBeam());
+        for (const int32_t cell : picture.cells()) EXPECT_LT(cell, count);
+        for (int32_t cell = count / 4; cell < count; cell += 97) {
+            const auto cells = static_cast<int32_t>(picture.cellsPerBeam());
+            if (cell % cells < cells / 3) continue;  // nearer, a pixel of a fan shows one of several beams
+            const cv::Point at =
+                picture.pixelOf(static_cast<uint32_t>(cell / cells), static_cast<uint32_t>(cell % cells));
+            const int32_t shown =
+                picture.cells()[static_cast<size_t>(at.y) * picture.width() + static_cast<size_t>(at.x)];
+            EXPECT_LE(std::abs(shown / cells - cell / cells), 1) << cell;
+            EXPECT_LE(std::abs(shown % cells - cell % cells), 1) << cell;
+        }
+    }
+}
+
+TEST(PlainPictureTest, ItsScaleIsThatOfThePingWhateverCameBefore) {
+    const types::Sonar loud = withEcho(emptyPing(120, 31), 3, 50);
+    types::Sonar faint = loud;
+    for (float& bin : faint.bins) bin *= 1e-6f;
+    PlainConfig config = configOf(PlainShape::Fan, 64);
+    config.reference_db.reset();
+    PlainPicture both(config);
+    both.take(loud);
+    both.take(faint);
+    EXPECT_EQ(both.image().image, pictureOf(faint, config).image().image);
+    EXPECT_NEAR(both.referenceDb(), pictureOf(loud, config).referenceDb() - 60, 1e-4);
+}
+
+TEST(PlainPictureTest, NoPictureIsMadeOfAPingWithoutBins) {
+    EXPECT_THROW(pictureOf(types::Sonar{}, configOf(PlainShape::Fan, 100)), std::runtime_error);
+}
+
+}  // namespace
+}  // namespace insonify::output

@@ -1,0 +1,105 @@
+#pragma once
+// Straight lines and the triangles of meshes, by themselves and in double: what needs no tree of its own.
+#include <algorithm>
+#include <cmath>
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+#include <glm/mat4x4.hpp>
+#include <glm/matrix.hpp>
+#include <optional>
+#include <span>
+
+#include "types/Geometry.hpp"
+
+namespace insonify::types {
+
+/** A box along an object's axes as one along the world's that holds it, rounded by the floats that tell it [m]. */
+struct WorldBox {
+    glm::dvec3 centre, half;
+
+    WorldBox(const glm::dmat4& world_from_object, const glm::dvec3& middle, const glm::dvec3& told)
+        : centre(world_from_object * glm::dvec4(middle, 1)) {
+        const glm::dmat3 linear(world_from_object);
+        const glm::dvec3 reach = told + 1e-6 * (glm::abs(middle) + told);
+        half = glm::abs(linear[0]) * reach.x + glm::abs(linear[1]) * reach.y + glm::abs(linear[2]) * reach.z;
+    }
+};
+
+/** Whether a line from `from` to `from + way` meets a box, or nearly. */
+inline bool meetsBox(const glm::dvec3& from, const glm::dvec3& way, const glm::dvec3& centre, const glm::dvec3& half) {
+    double enters = 0, leaves = 1;
+    for (int axis = 0; axis < 3; ++axis) {
+        const double reach = half[axis] + 1e-9 * (std::abs(centre[axis]) + half[axis] + 1);
+        const double low = centre[axis] - reach - from[axis], high = centre[axis] + reach - from[axis];
+        if (way[axis] == 0) {
+            if (low > 0 || high < 0) return false;
+            continue;
+        }
+        const double a = low / way[axis], b = high / way[axis];
+        enters = std::max(enters, std::min(a, b));
+        leaves = std::min(leaves, std::max(a, b));
+    }
+    return enters <= leaves;
+}
+
+/** Where on its way from the origin a line meets a triangle [1], and whether at its back. */
+struct TriangleMet {
+    double share;
+    bool is_back;
+};
+/** None where it passes by. Möller and Trumbore 1997, edges included. */
+inline std::optional<TriangleMet> meetTriangle(const glm::dvec3& way, const glm::dvec3& a, const glm::dvec3& b,
+                                               const glm::dvec3& c) {
+    constexpr double slack = 1e-12;
+    const glm::dvec3 along = b - a, across = c - a, p = glm::cross(way, across);
+    const double volume = glm::dot(along, p);
+    if (volume == 0) return {};
+    const double u = -glm::dot(a, p) / volume;
+    const glm::dvec3 q = glm::cross(-a, along);
+    const double v = glm::dot(way, q) / volume;
+    if (u < -slack || v < -slack || u + v > 1 + slack) return {};
+    return TriangleMet{glm::dot(across, q) / volume, volume < 0};
+}
+
+/** Calls `use` for the clusters of a mesh whose boxes, and those of the patches about them, `mayMeet` lets pass; ends
+ *  when it says true, which is then returned. */
+template <class MayMeet, class Use>
+bool anyCluster(const Mesh& mesh, const MayMeet& mayMeet, const Use& use) {
+    const auto among = [&](std::span<const Cluster> clusters) {
+        return std::ranges::any_of(
+            clusters, [&](const Cluster& cluster) { return mayMeet(cluster.centre, cluster.half) && use(cluster); });
+    };
+    if (mesh.cluster_nodes.empty()) return among(mesh.clusters);
+    for (size_t i = 0; i < mesh.cluster_nodes.size();) {
+        const ClusterNode& node = mesh.cluster_nodes[i];
+        if (!mayMeet(node.centre, node.half))
+            i = node.next;
+        else if (++i == node.next && among(std::span(mesh.clusters).subspan(node.first_cluster, node.cluster_count)))
+            return true;
+    }
+    return false;
+}
+
+/** Calls `use(share, is_back)` for each triangle of a mesh in its place that the line from a point to `from + way`
+ *  meets, at so much of the way [1], above 0 and below 1; ends when it says true, which is then returned. */
+template <class Use>
+bool anyTriangleMet(const Mesh& mesh, const glm::dmat4& world_from_object, const glm::dvec3& from,
+                    const glm::dvec3& way, const Use& use) {
+    const bool mirrored = glm::determinant(glm::dmat3(world_from_object)) < 0;
+    const auto mayMeet = [&](const glm::dvec3& centre, const glm::dvec3& half) {
+        const WorldBox box(world_from_object, centre, half);
+        return meetsBox(from, way, box.centre, box.half);
+    };
+    const auto corner = [&](size_t index) {
+        return glm::dvec3(world_from_object * glm::dvec4(mesh.positions[mesh.indices[index]], 1)) - from;
+    };
+    return anyCluster(mesh, mayMeet, [&](const Cluster& cluster) {
+        for (size_t i = cluster.first_index; i < cluster.first_index + cluster.index_count; i += 3) {
+            const auto met = meetTriangle(way, corner(i), corner(i + 1), corner(i + 2));
+            if (met && met->share > 0 && met->share < 1 && use(met->share, met->is_back != mirrored)) return true;
+        }
+        return false;
+    });
+}
+
+}  // namespace insonify::types
