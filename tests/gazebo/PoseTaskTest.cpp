@@ -5,6 +5,7 @@
 
 #include "components/framework/Activity.hpp"
 #include "components/gazebo/PoseTask.hpp"
+#include "components/scene/SceneTask.hpp"
 #include "tests/gazebo/World.hpp"
 #include "tests/support/Ports.hpp"
 
@@ -79,6 +80,42 @@ TEST_F(PoseTaskTest, AVehicleAndAnObjectOfTheWorldAreFollowed) {
         EXPECT_GE(red->time, last);
         EXPECT_LE(red->time, framework::wallClock());
         last = red->time;
+    }
+}
+
+TEST_F(PoseTaskTest, AnObjectOfTheSceneMovesWithItsModelInGazebo) {
+    scene::SceneTask scene("scene");
+    scene::SceneConfig config;
+    config.file = INSONIFY_SOURCE_DIR "/deploy/scenes/two_vehicles.world";
+    scene.config.set(config);
+    PoseConfig poses;
+    poses.world = "sea";
+    poses.bodies = {entity("rov", "red"), entity("other", "blue")};
+    task.config.set(poses);
+    auto* rov = task.makeOutput("rov");
+    auto* other = task.makeOutput("other");
+    rov->connectTo(scene.pose, {});
+    rov->connectTo(readers[0].port, {});
+    other->connectTo(*scene.makeInput("blue.pose", *other), {});
+    test::Reader<types::SnapshotPtr> shown;
+    scene.snapshot.connectTo(shown.port, {});
+    for (framework::TaskContext* each :
+         {static_cast<framework::TaskContext*>(&task), static_cast<framework::TaskContext*>(&scene)})
+        ASSERT_TRUE(each->configure() && each->start()) << each->lastError();
+    meet();
+    glm::dvec3 first{0};
+    for (const double x : {3.0, 5.5}) {
+        world.tell(1 + x, x);
+        ASSERT_TRUE(next());
+        scene.update();
+        types::SnapshotPtr snapshot;
+        ASSERT_TRUE(shown.port.readNew(snapshot));
+        EXPECT_EQ(snapshot->sonar.position, glm::dvec3(x, 2, -5));
+        ASSERT_FALSE(snapshot->moved.empty());
+        const glm::dvec3 place = snapshot->moved[0].world_from_object[3];
+        EXPECT_LT(glm::distance(place, {x + 12, 4, -5}), 3) << "a part of blue";
+        EXPECT_TRUE(x == 3 || glm::distance(place - first, {2.5, 0, 0}) < 1e-9);
+        first = place;
     }
 }
 
