@@ -161,7 +161,7 @@ void TransformTask::tell(Output& output) {
     kept.life = tree_.lives();
     kept.written = now();
     types::Pose pose = poseOf(*placed, kept.frame_id, *config);
-    if (is_fixed) pose.time = now();
+    if (is_fixed) pose.time = kept.written;
     output.port.write(pose);
 }
 

@@ -46,8 +46,8 @@ protected:
     }
     /** A pose of vehicle.py, in our axes. */
     static void expectKnown(const types::Pose& pose) {
-        const double k = std::round(10 * pose.position.x), pi = std::numbers::pi;
-        EXPECT_LT(glm::distance(pose.position, {0.1 * k, -2, -3}), 1e-6);
+        const double k = std::round(50 * pose.position.x), pi = std::numbers::pi;
+        EXPECT_LT(glm::distance(pose.position, {0.02 * k, -2, -3}), 1e-6);
         const types::Mount same{
             .roll_deg = 0.1 * 180 / pi, .pitch_deg = -0.2 * 180 / pi, .yaw_deg = -0.3 * k * 180 / pi};
         EXPECT_GT(std::abs(glm::dot(pose.orientation, same.orientation())), 1 - 1e-9) << k;

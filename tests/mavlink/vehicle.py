@@ -3,7 +3,7 @@
 
 WORK is poses1, poses2 or signed (ATTITUDE_QUATERNION and LOCAL_POSITION_NED by a version of MAVLink), vision,
 heartbeat (and the messages of poses2 that are asked for), damaged (poses2, each between damaged copies of itself). The
-k-th pose is 0.1 k m north, 2 m east, 3 m deep, rolled by 0.1, its bow raised by 0.2, its heading 0.3 k, with k from 0
+k-th pose is 0.02 k m north, 2 m east, 3 m deep, rolled by 0.1, its bow raised by 0.2, its heading 0.3 k, with k from 0
 to 19 and back; all of it NORTH farther north."""
 import socket
 import sys
@@ -56,11 +56,11 @@ for count in range(10**9):
     boot = int(1000 * (time.time() - START)) + 5000
     roll, pitch, yaw = 0.1, 0.2, 0.3 * k
     if WORK == "vision":
-        send(common.MAVLink_vision_position_estimate_message(1000 * boot, NORTH + 0.1 * k, 2, 3, roll, pitch, yaw))
+        send(common.MAVLink_vision_position_estimate_message(1000 * boot, NORTH + 0.02 * k, 2, 3, roll, pitch, yaw))
     elif count % 10 == 0:
         send(common.MAVLink_heartbeat_message(12, 3, 0, 0, 4, 3))
     if WORK != "vision" and 32 in streamed:
-        send(common.MAVLink_local_position_ned_message(boot, NORTH + 0.1 * k, 2, 3, 0, 0, 0))
+        send(common.MAVLink_local_position_ned_message(boot, NORTH + 0.02 * k, 2, 3, 0, 0, 0))
     if WORK != "vision" and 31 in streamed:
         send(common.MAVLink_attitude_quaternion_message(boot, *QuaternionBase([roll, pitch, yaw]).q, 0.1, 0.2, 0.3))
     hear()
