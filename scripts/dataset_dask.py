@@ -38,9 +38,9 @@ def main():
         for shard in as_completed(shards):
             try:
                 index, code, told = shard.result()
-            except KilledWorker as killed:
+            except (KilledWorker, OSError) as error:    # no worker outlived it, or none has the command
                 failed += 1
-                print(f"a shard was given up: {killed}", file=sys.stderr)
+                print(f"a shard was given up: {error}", file=sys.stderr)
                 continue
             failed += code != 0
             print(f"shard {index}/{args.shards}: {'done' if code == 0 else f'exit code {code}: {told}'}", flush=True)

@@ -47,7 +47,7 @@ Json entryOf(const fs::path& folder, const fs::path& file) {
 }
 
 /** What of a folder is not as its manifest says; empty: nothing. */
-std::string damageOf(const fs::path& folder, const Json& manifest) {
+std::string damageOf(const fs::path& folder, const Json& manifest) try {
     for (const Json& entry : manifest["files"]) {
         const fs::path file = entry.value("file", "");
         std::error_code absent;
@@ -58,7 +58,11 @@ std::string damageOf(const fs::path& folder, const Json& manifest) {
         if (command::sha256OfFile(folder / file) != entry.value("sha256", ""))
             return file.string() + " has another SHA-256 than when it was written";
     }
+    for (const char* key : {"pings", "first_ping", "pings_of_run"})
+        if (!manifest.at(key).is_number_unsigned()) return std::string("its manifest.json has no number of ") + key;
     return {};
+} catch (const Json::exception& error) {
+    return std::string("its manifest.json is broken: ") + error.what();
 }
 
 /** The first key whose values differ, with both; empty: none. */
@@ -103,7 +107,6 @@ ShardFolder::~ShardFolder() {
 }
 
 void ShardFolder::refuseOthers() const {
-    bool compared = false;
     for (const auto& entry : fs::directory_iterator(shared_)) {
         const std::string count = countOf(entry.path());
         if (count.empty()) continue;
@@ -111,10 +114,8 @@ void ShardFolder::refuseOthers() const {
             throw types::ConfigError(
                 shared_, "--out",
                 fmt::format("holds shards of {}, and this is one of {}; give another folder", count, shard_.count));
-        // One will do: each was compared with one before it.
-        const auto manifest = compared ? std::nullopt : manifestIn(entry.path());
+        const auto manifest = manifestIn(entry.path());
         if (!manifest) continue;
-        compared = true;
         const std::string difference = differenceOf(manifest->value("run", Json::object()), run_);
         if (!difference.empty())
             throw types::ConfigError(shared_, "--out",
@@ -160,6 +161,8 @@ Json ShardFolder::finish(const Json& more) {
     manifest["files"] = Json::array();
     for (const fs::path& file : filesIn(part_)) manifest["files"].push_back(entryOf(part_, file));
     command::write(manifest, part_ / manifest_name);
+    const Lock together(shared_, true);
+    refuseOthers();  // that came to be done meanwhile
     std::error_code failed;
     fs::rename(part_, path_, failed);
     if (!failed) {

@@ -21,6 +21,9 @@ public:
      * file cannot be read on. */
     types::GeometryPtr about(const glm::dvec3& place, const types::GeometryPtr& rest);
 
+    /** Begins anew: what is there next follows from the place alone. */
+    void forget() { window_.reset(); }
+
     /** Gives a scene the material that the floor has there. Throws types::ConfigError for one that has an object of the
      *  floor's name. */
     static void addMaterial(Scene& scene);

@@ -128,6 +128,7 @@ bool SceneTask::startHook() {
     }
     newest_ = now();
     newest_came_ = waiting_is_told_ = is_stale_ = false;
+    if (bathymetry_) bathymetry_->forget();
     return true;
 }
 

@@ -204,6 +204,8 @@ TEST_F(EngineTest, AnArrayOfSlurmMakesAllShards) {
 }
 
 TEST_F(EngineTest, AJobOfKubernetesIsWellFormedAndItsPodsMakeShards) {
+    if (Process({"/usr/bin/python3", "-c", "import jsonschema, yaml"}, folder_.path()).wait().code != 0)
+        GTEST_SKIP() << "SKIPPED: python3-jsonschema and python3-yaml are not installed; scripts/setup does that";
     const auto wordsOf = [&](int index) {
         const Outcome outcome = Process({"/usr/bin/python3", sourceFile("tests/deployer/check_job.py"),
                                          sourceFile("deploy/kubernetes/shards.yml"), std::to_string(index)},

@@ -4,9 +4,14 @@
 #include <map>
 
 #include "components/command/Sha256.hpp"
+#include "components/deployer/ShardFolder.hpp"
 #include "tests/deployer/Wall.hpp"
+#include "tests/support/Folder.hpp"
+#include "types/ConfigError.hpp"
 
 using namespace insonify::deployer;
+using insonify::command::Json;
+using insonify::command::Shard;
 using testing::AllOf;
 using testing::HasSubstr;
 using testing::IsEmpty;
@@ -236,6 +241,30 @@ TEST(ShardRunTest, ABrokenFileIsFoundAndTheShardMadeAnew) {
     expectMended("fan_000.png is missing");
     writeFile(shard / "manifest.json", "{");
     expectMended("its manifest.json is missing or broken");
+    Json manifest = Json::parse(readFile(folder.path() / "shards/shard_1_of_2/manifest.json"));
+    manifest["files"] = {1};
+    writeFile(shard / "manifest.json", manifest.dump());
+    expectMended("its manifest.json is broken: ");
+    manifest["files"] = Json::array();
+    manifest.erase("pings");
+    writeFile(shard / "manifest.json", manifest.dump());
+    expectMended("its manifest.json is broken: ");
+}
+
+TEST(ShardRunTest, ShardsOfTwoRunsThatBeganTogetherAreNotMixed) {
+    const insonify::Folder folder;
+    ShardFolder one(folder / "shards", Shard::read("0/2"), {{"seed", 1}});
+    ShardFolder other(folder / "shards", Shard::read("1/2"), {{"seed", 2}});
+    ShardFolder rival(folder / "shards", Shard::read("0/2"), {{"seed", 2}});
+    for (ShardFolder* each : {&one, &other, &rival}) each->begin();
+    one.finish({{"pings", 3}});
+    for (ShardFolder* each : {&other, &rival})
+        EXPECT_THAT(
+            [&] {
+                each->finish({{"pings", 3}});
+            },
+            testing::ThrowsMessage<insonify::types::ConfigError>(HasSubstr("seed is 1 there, and 2 here")));
+    EXPECT_FALSE(fs::exists(folder / "shards/shard_1_of_2"));
 }
 
 /** The name of a file that a shard is being written to; empty: nobody is at it. */

@@ -121,6 +121,16 @@ TEST_F(BathymetryTest, AVehicleThatHoversAtTheEdgeOfATileHasOneFloor) {
     }
 }
 
+TEST_F(BathymetryTest, AFloorThatBeginsAnewFollowsFromThePlaceAlone) {
+    Bathymetry floor(config_, grid("floor", 200, 200)), fresh(config_, grid("floor", 200, 200));
+    about(floor, {101, -200, -40});
+    const types::GeometryPtr kept = about(floor, {109, -200, -40});
+    floor.forget();
+    const types::GeometryPtr anew = about(floor, {109, -200, -40});
+    EXPECT_EQ(meshOf(*anew).positions, meshOf(*about(fresh, {109, -200, -40})).positions);
+    EXPECT_NE(meshOf(*anew).positions, meshOf(*kept).positions) << "places chosen so that it matters";
+}
+
 TEST_F(BathymetryTest, WithoutAPlaceTheWorldsZeroIsTheMiddleOfTheSurvey) {
     config_.easting = config_.northing = std::nullopt;
     Bathymetry floor(config_, grid("floor", 61, 41));
