@@ -1,9 +1,16 @@
 #pragma once
+#include <cstdint>
+#include <limits>
 #include <optional>
 
 #include "types/Time.hpp"
 
 namespace insonify::types {
+
+/** How long ago something was by our clock; for ever where the clock has been set back since. */
+constexpr Time elapsed(Time since, Time now) {
+    return now < since ? Time{std::numeric_limits<int64_t>::max()} : now - since;
+}
 
 /** Carries the stamps of a sender's own clock, which counts since its boot or in its simulation, over to ours.
  *

@@ -154,7 +154,7 @@ void TransformTask::tell(Output& output) {
         gaps_.add(output.port.name() + ": " + diagnostic);
     if (!placed) return;
     const bool is_fixed = placed->time.isNull();
-    if (is_fixed ? now() - kept.written < static_period
+    if (is_fixed ? types::elapsed(kept.written, now()) < static_period
                  : placed->time == kept.time || (placed->time < kept.time && kept.life == tree_.lives()))
         return;
     kept.time = placed->time;

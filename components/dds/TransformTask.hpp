@@ -12,6 +12,7 @@
 #include "components/framework/Properties.hpp"
 #include "components/framework/TaskContext.hpp"
 #include "components/ros/TransformTree.hpp"
+#include "types/SenderClock.hpp"
 #include "types/ThrottledWarning.hpp"
 
 namespace insonify::dds {
@@ -19,8 +20,8 @@ namespace insonify::dds {
 /** Tells where frames of ROS 2's tf lie in the world; for `schedule: realtime`.
  *
  *  Ports: an output for each of `frames`: body in the world, Rock's axes (x north, y west, z up). There is a pose for
- *  each newer time at which the whole chain of transforms between the frame and `world_frame_id` is known; of a chain
- *  that is static, ten a second, stamped now. Velocities are unknown.
+ *  the newest time at which the whole chain of transforms between the frame and `world_frame_id` is known, each time
+ *  that messages were taken; of a chain that is static, ten a second, stamped now. Velocities are unknown.
  *
  *  What is refused of the messages is counted: a warning tells it at the first and then every ten seconds at most, a
  *  notice the sum at the end. A chain that leads nowhere, goes in a circle or is cut is told so once that has gone on

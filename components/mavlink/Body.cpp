@@ -59,7 +59,7 @@ bool Body::isOf(const Frame& frame) const {
 }
 
 bool Body::listensTo(const Sender& sender, Time now) {
-    if (sender_ && *sender_ != sender && now - sender_came_ <= max_silence) return false;
+    if (sender_ && *sender_ != sender && types::elapsed(sender_came_, now) <= max_silence) return false;
     if (sender_ != sender) {
         position_.reset();
         boot_ms_.reset();
@@ -79,7 +79,7 @@ Body::Taken Body::take(const Frame& frame, uint64_t way, Time now) {
 }
 
 std::vector<uint32_t> Body::missing(Time now) const {
-    const auto lacks = [&](Time came) { return now - came > patience; };
+    const auto lacks = [&](Time came) { return types::elapsed(came, now) > patience; };
     std::vector<uint32_t> all;
     if (config_.source == Source::Vision) return all;  // what is beside the autopilot sends of itself
     if (lacks(attitude_came_)) all.push_back(AttitudeQuaternion::kind.message);

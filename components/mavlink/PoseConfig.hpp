@@ -43,7 +43,7 @@ struct RequestConfig {
 
     template <class Self, class V>
     static void describe(Self& self, V& visit) {
-        visit(types::Field{"rate", "Hz", "of each message", 0.1, 1000}, self.rate);
+        visit(types::Field{"rate", "Hz", "of each message", 2, 1000}, self.rate);
     }
 };
 

@@ -109,7 +109,7 @@ void PoseTask::take(const Frame& frame, device::Client client) {
 }
 
 void PoseTask::request(types::Time now) {
-    if (now - requested_ < request_period) return;
+    if (types::elapsed(requested_, now) < request_period) return;
     requested_ = now;
     for (const auto& [client, sequence] : peers_) {
         send(Heartbeat{.type = 6, .autopilot = 8, .system_status = 4}, client);  // ground station, no autopilot, active

@@ -13,6 +13,11 @@ uint64_t bitsOf(uint64_t seed, uint64_t channel, types::Time time) {
     return types::hashed(seed, channel, static_cast<uint64_t>(time.microseconds));
 }
 
+/** The most that is told: the last whole step within the range. */
+double lastStep(const AxisErrors& errors) {
+    return errors.resolution > 0 ? errors.resolution * std::floor(*errors.range / errors.resolution) : *errors.range;
+}
+
 }  // namespace
 
 double normal(uint64_t seed, uint64_t channel, types::Time time) {
@@ -42,8 +47,8 @@ double Axis::measure(double truth, double constant_bias, types::Time time, doubl
     double told = truth + constant_bias + bias_.at(time);
     if (errors_.noise_density > 0)
         told += errors_.noise_density / std::sqrt(interval) * normal(seed_, noise_channel_, time);
-    if (errors_.range) told = std::clamp(told, -*errors_.range, *errors_.range);
-    return errors_.resolution > 0 ? errors_.resolution * std::round(told / errors_.resolution) : told;
+    if (errors_.resolution > 0) told = errors_.resolution * std::round(told / errors_.resolution);
+    return errors_.range ? std::clamp(told, -lastStep(errors_), lastStep(errors_)) : told;
 }
 
 double varianceOf(const AxisErrors& errors, double interval) {

@@ -5,6 +5,7 @@
 #include <iterator>
 
 #include "types/Pose.hpp"
+#include "types/SenderClock.hpp"
 
 namespace insonify::ros {
 namespace {
@@ -37,7 +38,7 @@ std::string TransformTree::diagnosticOf(const TransformStamped& transform, bool 
     if (found == links_.end()) return links_.size() < max_frames ? "" : "more frames than are kept";
     const Link& link = found->second;
     if (link.is_static && is_static) return "";
-    if (!link.is_static && now - link.came > max_silence) return "";
+    if (!link.is_static && types::elapsed(link.came, now) > max_silence) return "";
     if (link.is_static != is_static) return child + " comes by /tf and by /tf_static";
     if (link.parent != parent) return child + " has two parents, " + link.parent + " and " + parent;
     return stamp < link.samples.back().time ? child + ": the stamp lies before the one before" : "";
@@ -114,10 +115,13 @@ TransformTree::Found TransformTree::newest(const std::string& world, const std::
         down->pop_back();
     }
     const auto* oldest = oldestOf(*up, *down);
-    if (oldest && now - oldest->second.came > max_silence)
+    if (oldest && types::elapsed(oldest->second.came, now) > max_silence)
         diagnostic = oldest->first + " in " + oldest->second.parent + " has not come for a second";
     const types::Time time = oldest ? oldest->second.samples.back().time : types::Time{};
     const auto of_frame = at(*up, time), of_world = at(*down, time);
+    if ((!of_frame || !of_world) && diagnostic.empty())
+        diagnostic =
+            oldest->first + " in " + oldest->second.parent + " is stamped before all that is kept of the others";
     if (!of_frame || !of_world) return {{}, diagnostic};
     const glm::dquat world_from_root = glm::conjugate(of_world->orientation);
     return {Placed{time, world_from_root * (of_frame->position - of_world->position),

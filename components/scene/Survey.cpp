@@ -10,6 +10,7 @@
 #include <cmath>
 #include <limits>
 #include <mutex>
+#include <set>
 
 #include "components/scene/Scene.hpp"
 #include "types/ConfigError.hpp"
@@ -25,8 +26,7 @@ constexpr int64_t cache_size = int64_t{64} << 20;
 void prepareGdal() {
     static std::once_flag once;
     std::call_once(once, [] {
-        CPLSetErrorHandler(CPLQuietErrorHandler);
-        GDALSetCacheMax64(cache_size);
+        if (!CPLGetConfigOption("GDAL_CACHEMAX", nullptr)) GDALSetCacheMax64(cache_size);
         for (const auto add : {GDALRegister_VRT, GDALRegister_GTiff, GDALRegister_BAG, GDALRegister_netCDF,
                                GDALRegister_HFA, GDALRegister_EHdr, GDALRegister_ENVI})
             add();
@@ -54,9 +54,16 @@ double metresOf(GDALDataset& dataset, const std::filesystem::path& file) {
 
 /** Of files that are nothing but numbers: what such a file lacks GDAL reads as 0, and of a .flt it takes the numbers of
  * a shorter one for bytes. */
+void checkUnit(GDALRasterBand& band, const std::filesystem::path& file) {
+    const std::string unit = band.GetUnitType();
+    if (!unit.empty() && !std::set<std::string>{"m", "metre", "metres", "meter", "meters"}.contains(unit))
+        refuse(file, "has elevations in " + unit + "; may be metres: gdal_calc.py -A IN --calc=A*0.3048 of feet");
+}
+
 void checkSize(GDALDataset& dataset, const std::filesystem::path& file) {
     const std::string format = dataset.GetDriverName();
     if (format != "EHdr" && format != "ENVI") return;
+    if (dataset.GetMetadataItem("COMPRESSION", "IMAGE_STRUCTURE")) return;
     uint64_t expected = 0;
     for (int band = 1; band <= dataset.GetRasterCount(); ++band) {
         const GDALDataType type = dataset.GetRasterBand(band)->GetRasterDataType();
@@ -73,6 +80,7 @@ void Survey::Close::operator()(GDALDataset* dataset) const { GDALClose(GDALDatas
 
 Survey::Survey(const std::filesystem::path& file, int band) : file_(file), band_(band) {
     prepareGdal();
+    const CPLErrorHandlerPusher quiet(CPLQuietErrorHandler);
     std::error_code error;
     if (!std::filesystem::exists(file, error)) refuse(file, "is not there");
     CPLErrorReset();
@@ -92,6 +100,7 @@ Survey::Survey(const std::filesystem::path& file, int band) : file_(file), band_
                "does not say where it lies on the map; give it a place: gdal_translate -a_ullr WEST NORTH EAST SOUTH "
                "IN OUT");
     if (map[2] != 0 || map[4] != 0) refuse(file, "is turned against north; turn it: gdalwarp IN OUT");
+    checkUnit(*dataset_->GetRasterBand(band), file);
     const double metres = metresOf(*dataset_, file);
     spacing_ = metres * glm::dvec2(map[1], map[5]);
     first_ = metres * glm::dvec2(map[0], map[3]) + 0.5 * spacing_;
@@ -104,6 +113,7 @@ Survey::~Survey() = default;
 std::vector<float> Survey::read(const PostWindow& window) const {
     std::vector<float> values(static_cast<size_t>(window.columns) * static_cast<size_t>(window.rows));
     GDALRasterBand& band = *dataset_->GetRasterBand(band_);
+    const CPLErrorHandlerPusher quiet(CPLQuietErrorHandler);
     CPLErrorReset();
     if (band.RasterIO(GF_Read, window.column, window.row, window.columns, window.rows, values.data(), window.columns,
                       window.rows, GDT_Float32, 0, 0) != CE_None)

@@ -43,5 +43,5 @@ set(CPACK_DEBIAN_DEVELOPMENT_DESCRIPTION "Headers and libraries of Insonify, to 
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS
   "insonify (= ${PROJECT_VERSION}), libfmt-dev, libglm-dev, libyaml-cpp-dev")
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SUGGESTS
-  "cyclonedds-dev, libembree-dev, libepoxy-dev, libignition-msgs-dev, libignition-transport-dev, liblz4-dev, libmeshoptimizer-dev, libopencv-dev, libpng-dev, libsdformat-dev, libsnappy-dev, libstb-dev, libtinygltf-dev, libtinyxml2-dev, libzstd-dev, zlib1g-dev")
+  "cyclonedds-dev, libembree-dev, libepoxy-dev, libgdal-dev, libignition-msgs-dev, libignition-transport-dev, liblz4-dev, libmeshoptimizer-dev, libopencv-dev, libpng-dev, libsdformat-dev, libsnappy-dev, libstb-dev, libtinygltf-dev, libtinyxml2-dev, libzstd-dev, zlib1g-dev")
 include(CPack)

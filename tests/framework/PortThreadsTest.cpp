@@ -26,20 +26,20 @@ public:
         activity().hold();
         stop();
     }
-    InputPort<int32_t> in{this, "in", "rising numbers"};
+    InputPort<int64_t> in{this, "in", "rising numbers"};
     std::atomic<int> samples{0}, disordered{0};
     std::function<void()> during;
 
 private:
     void updateHook() override {
-        int32_t value = 0;
+        int64_t value = 0;
         if (!in.readNew(value)) return;
         if (value <= last_) ++disordered;
         last_ = value;
         if (during) during();
         ++samples;
     }
-    int32_t last_ = 0;
+    int64_t last_ = 0;
 };
 
 /** Writes 1, 2, 3... as fast as it can until it goes. */
@@ -53,24 +53,24 @@ public:
 
 private:
     void run() {
-        for (int32_t i = 1; !stop_; ++i) writer_.port.write(i);
+        for (int64_t i = 1; !stop_; ++i) writer_.port.write(i);
     }
-    test::Writer<int32_t> writer_;
+    test::Writer<int64_t> writer_;
     std::atomic<bool> stop_{false};
     std::thread thread_{&Chatter::run, this};
 };
 
 TEST(PortThreadsTest, EverySampleOfABurstRunsATriggeredTask) {
-    test::Writer<int32_t> writer;
+    test::Writer<int64_t> writer;
     Listener listener;
     writer.port.connectTo(listener.in, ConnPolicy::buffer(300));
-    for (int32_t i = 1; i <= 300; ++i) writer.port.write(i);
+    for (int64_t i = 1; i <= 300; ++i) writer.port.write(i);
     EXPECT_TRUE(comesTrue([&] { return listener.samples == 300; })) << listener.samples;
     EXPECT_EQ(listener.disordered, 0);
 }
 
 TEST(PortThreadsTest, ASampleThatCameBeforeTheThreadWasReleasedRunsTheTask) {
-    test::Writer<int32_t> writer;
+    test::Writer<int64_t> writer;
     Listener listener;
     listener.activity().hold();
     writer.port.connectTo(listener.in, {});
@@ -81,7 +81,7 @@ TEST(PortThreadsTest, ASampleThatCameBeforeTheThreadWasReleasedRunsTheTask) {
 }
 
 TEST(PortThreadsTest, AReaderThatHangsInItsHookDoesNotHoldUpItsWriter) {
-    test::Writer<int32_t> writer;
+    test::Writer<int64_t> writer;
     Listener listener;
     std::promise<void> hanging, let_go;
     listener.during = [&, done = let_go.get_future().share(), told = false]() mutable {
@@ -91,7 +91,7 @@ TEST(PortThreadsTest, AReaderThatHangsInItsHookDoesNotHoldUpItsWriter) {
     writer.port.connectTo(listener.in, ConnPolicy::circularBuffer(2));
     writer.port.write(1);
     hanging.get_future().wait();
-    for (int32_t i = 2; i <= 10001; ++i) writer.port.write(i);  // would never end if the reader were waited for
+    for (int64_t i = 2; i <= 10001; ++i) writer.port.write(i);  // would never end if the reader were waited for
     EXPECT_EQ(listener.samples, 0);
     EXPECT_EQ(listener.in.channels().front()->lost(), 9998u);
     let_go.set_value();
@@ -137,8 +137,8 @@ TEST(PortThreadsTest, ATaskThatGoesWhileOthersWriteDisconnectsItself) {
 
 TEST(PortThreadsTest, AnOutputMayGoRightAfterItsReaderWentOnAnotherThread) {
     for (int i = 0; i < 50; ++i) {
-        auto writer = std::make_unique<test::Writer<int32_t>>();
-        auto reader = std::make_unique<test::Reader<int32_t>>();
+        auto writer = std::make_unique<test::Writer<int64_t>>();
+        auto reader = std::make_unique<test::Reader<int64_t>>();
         writer->port.connectTo(reader->port, {});
         std::atomic<bool> gone{false};
         std::thread other([&] {

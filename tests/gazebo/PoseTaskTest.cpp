@@ -156,10 +156,20 @@ TEST_F(PoseTaskTest, AWorldThatIsPausedGivesNoPoseAndOneThatIsResetBeginsAnew) {
     for (int i = 0; i < 5; ++i) world.tell(100, 1);  // stands still
     world.tell(100.02, 2);
     EXPECT_EQ(next().value_or(types::Pose{}).position.x, 2);
-    world.tell(99.9, 3);  // of another publisher, or overtaken
-    EXPECT_TRUE(tells("dropped: /world/sea/pose/info: the stamp lies before"));
+    double stamp = 100.02;
+    const auto is_told = [&] {  // in pairs, for after a second of silence any stamp may come
+        world.tell(stamp += 0.1, 2);
+        world.tell(stamp - 0.05, 3);  // of another publisher, or overtaken
+        task.update();
+        const std::vector<std::string> all = task.notices();
+        return std::ranges::any_of(all, [](const auto& line) {
+            return line.find("dropped: /world/sea/pose/info: the stamp lies before") != std::string::npos;
+        });
+    };
+    EXPECT_TRUE(comesTrue(is_told));
     world.tell(0, 4);
-    const auto pose = next();
+    auto pose = next();
+    while (pose && pose->position.x != 4) pose = next();
     EXPECT_EQ(pose.value_or(types::Pose{}).position.x, 4);
     EXPECT_GT(pose.value_or(types::Pose{}).time, types::Time::fromSeconds(1e9)) << "of our clock";
 }

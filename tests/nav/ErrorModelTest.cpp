@@ -92,6 +92,7 @@ TEST(ErrorModelTest, AnAxisEndsAtItsRangeAndTellsWholeSteps) {
     EXPECT_EQ(axis.measure(1e300, 0, {3}, 1), 2.0);
     EXPECT_EQ(axis.measure(-1e300, 0, {4}, 1), -2.0);
     EXPECT_EQ(axis.measure(1.1, 0.5, {5}, 1), 1.5) << "a bias that stays";
+    EXPECT_EQ(Axis({.resolution = 0.4, .range = 1}, 1, 0).measure(5, 0, {1}, 1), 0.8) << "the last step within it";
     Axis exact({}, 1, 0);
     EXPECT_EQ(exact.measure(1.1, 0, {1}, 1), 1.1);
 }
