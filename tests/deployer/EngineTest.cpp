@@ -2,6 +2,7 @@
 // machine.
 #include <gmock/gmock.h>
 
+#include <cerrno>
 #include <map>
 
 #include "tests/deployer/Wall.hpp"
@@ -111,12 +112,13 @@ protected:
         fs::permissions(folder_ / "insonify", fs::perms::owner_all);
         return folder_ / "insonify";
     }
-    /** The machine of the worker that has stopped dies: its command, itself, and what it waits for. */
+    /** The machine of the worker that has stopped dies: its command, itself, and what it waits for. An engine that took
+     *  the worker for dead meanwhile, because the machine is slow, has ended it in the middle as well. */
     void killStalled() const {
         std::istringstream pids(readFile(folder_ / "first/pids"));
         pid_t worker = 0, waiting = 0, command = 0;
         ASSERT_TRUE(pids >> worker >> waiting >> command);
-        for (const pid_t pid : {command, worker}) EXPECT_EQ(kill(pid, SIGKILL), 0);
+        for (const pid_t pid : {command, worker}) EXPECT_TRUE(kill(pid, SIGKILL) == 0 || errno == ESRCH) << pid;
         kill(waiting, SIGKILL);  // Ray ends what a dead worker has begun
     }
     static size_t linesOf(const std::string& text, const std::string& ending) {

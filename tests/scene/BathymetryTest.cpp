@@ -1,5 +1,6 @@
 // The floor of a survey: where its posts stand, how much of it is there, and files that are none.
 #include <fmt/format.h>
+#include <gdal_frmts.h>
 #include <gdal_priv.h>
 #include <gmock/gmock.h>
 
@@ -47,6 +48,8 @@ protected:
     /** The same as a GeoTIFF of strips. The half of its bytes. */
     std::string cutTiff(const std::string& name, int columns, int rows) {
         const std::string file = (folder_ / name).string();
+        GDALRegister_GTiff();
+        GDALRegister_EHdr();
         GDALDataset* from = GDALDataset::Open(grid("from", columns, rows).c_str());
         GDALClose(GetGDALDriverManager()->GetDriverByName("GTiff")->CreateCopy(file.c_str(), from, false, nullptr,
                                                                                nullptr, nullptr));
