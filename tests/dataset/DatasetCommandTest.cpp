@@ -205,7 +205,7 @@ TEST_F(DatasetCommandTest, YoloHasALabelForEachBoxAndListsByPart) {
     ASSERT_EQ(make("out", {"--format", "yolo"}).code, 0);
     const auto files = filesOf(folder_ / "out");
     EXPECT_EQ(files.at("data.yaml"),
-              "path: .\ntrain: train.txt\nval: val.txt\nnames:\n  0: \"pile\"\n  1: \"wreck\"\n  2: \"rock\"\n  3: "
+              "train: train.txt\nval: val.txt\nnames:\n  0: \"pile\"\n  1: \"wreck\"\n  2: \"rock\"\n  3: "
               "\"pipeline\"\n");
     size_t listed = 0;
     for (const char* list : {"train.txt", "val.txt"}) {
