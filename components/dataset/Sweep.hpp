@@ -103,7 +103,8 @@ struct ObjectGroup {
         visit(Field{"z", "m", "height of the node's origin: [least, most]; absent: as in the file, or on the ground",
                     -1e5, 1e5},
               self.z);
-        visit(Field{"ground", "", "instead of z: node on whose highest surface they stand"}, self.ground);
+        visit(Field{"ground", "", "instead of z: node on whose highest surface they stand; a * stands for any letters"},
+              self.ground);
         visit(Field{"yaw_deg", "deg", "turn about the vertical, beside that in the file: [least, most]", -360, 360},
               self.yaw_deg);
         visit(Field{"frame", "", "of the area: world, or vehicle, by its place and heading"}, self.frame);
