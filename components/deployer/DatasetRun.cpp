@@ -35,17 +35,21 @@ std::vector<dataset::TimedPose> posesOf(const Sweep& sweep) {
     if (!sweep.trajectory) return poses;
     const dataset::TrajectoryPoses& asked = *sweep.trajectory;
     const pose::Trajectory trajectory = pose::Trajectory::fromCsv(asked.file);
-    const double to = asked.to.value_or(trajectory.stamps().back().time), length = to - asked.from;
-    if (length < 0)
-        throw types::ConfigError(sweep.file, "poses.trajectory.from",
-                                 fmt::format("is {:g} s; the trajectory ends at {:g} s", asked.from, to));
+    const double first = trajectory.stamps().front().time, last = trajectory.stamps().back().time;
+    const double from = asked.from.value_or(std::max(first, 0.0)), to = asked.to.value_or(last), length = to - from;
+    for (const auto& [key, time] : {std::pair("from", from), std::pair("to", to)})
+        if (time < first || time > last)
+            throw types::ConfigError(
+                {{std::string("poses.trajectory.") + key,
+                  fmt::format("is {:g} s; the trajectory is from {:g} to {:g} s", time, first, last), sweep.file,
+                  asked.line, asked.column}});
     const auto count = asked.count ? uint64_t{*asked.count} : static_cast<uint64_t>(length / *asked.period + 1e-9) + 1;
     if (count > most_poses)
         throw types::ConfigError(sweep.file, "poses.trajectory.period",
                                  fmt::format("makes {} poses; at most {}", count, most_poses));
     for (uint64_t i = 0; i < count; ++i) {
         const double step = asked.count ? (count == 1 ? 0 : length / static_cast<double>(count - 1)) : *asked.period;
-        const double time = asked.from + step * static_cast<double>(i);
+        const double time = from + step * static_cast<double>(i);
         poses.push_back({time, trajectory.at(time)});
     }
     return poses;

@@ -265,6 +265,26 @@ TEST_F(DatasetCommandTest, PosesOfATrajectoryGiveTracks) {
     EXPECT_EQ(recordOf("out", "000003")["picture"]["width"], 128);
 }
 
+TEST_F(DatasetCommandTest, PosesOfATrajectoryAreFromItsFirstStampToItsLast) {
+    writeFile(folder_ / "path.csv", "time,x,y,z,qw,qx,qy,qz\n100,4,-4,-5.5,1,0,0,0\n102,8,-4,-5.5,1,0,0,0\n");
+    const auto make = [&](const std::string& times) {
+        writeFile(folder_ / "sweep.yml", "poses:\n  trajectory: {file: path.csv, count: 3" + times + "}\n");
+        return DatasetCommandTest::make("out");
+    };
+    const std::string place = "sweep.yml:2:15: poses.trajectory.";
+    const Outcome early = make(", from: 2"), late = make(", to: 103");
+    EXPECT_EQ(early.code, 2);
+    EXPECT_THAT(early.err, HasSubstr(place + "from: is 2 s; the trajectory is from 100 to 102 s"));
+    EXPECT_EQ(late.code, 2);
+    EXPECT_THAT(late.err, HasSubstr(place + "to: is 103 s; the trajectory is from 100 to 102 s"));
+    ASSERT_EQ(make("").code, 0);
+    for (int i = 0; i < 3; ++i) {
+        const json record = recordOf("out", "00000" + std::to_string(i));
+        EXPECT_EQ(record["time_s"], 100 + i);
+        EXPECT_EQ(record["pose"]["position"][0], 4 + 2 * i);
+    }
+}
+
 TEST_F(DatasetCommandTest, ObjectsAreHeardWhereTheyArePlaced) {
     writeFile(folder_ / "sweep.yml", R"(poses: {grid: {x: 5, y: -30, z: -5.5, yaw_deg: [0, 90]}}
 objects: [{names: [rock_000], x: [12, 12.001], y: [2, 2.001], frame: vehicle, ground: sea_floor}]
