@@ -157,8 +157,13 @@ void DatasetRun::checkAssignment(const std::string& path, const std::string& pro
 }
 
 DatasetRun::SceneFile DatasetRun::readScene(const std::string& file) const {
-    const scene::Scene scene = scene::readScene(file);
-    SceneFile read{fs::path(file).filename(), partsOf(sweep_, scene), {}, deployer::digestOf(*scene.geometry)};
+    scene::Scene scene;
+    scene.geometry = std::make_shared<const types::Geometry>();
+    if (!file.empty()) scene = scene::readScene(file);  // else there is but the floor of a survey
+    SceneFile read{file.empty() ? "bathymetry" : fs::path(file).filename().string(),
+                   partsOf(sweep_, scene),
+                   {},
+                   deployer::digestOf(*scene.geometry)};
     for (const types::Object& object : scene.geometry->objects) read.objects.push_back(object.name);
     return read;
 }

@@ -285,6 +285,24 @@ TEST_F(DatasetCommandTest, PosesOfATrajectoryAreFromItsFirstStampToItsLast) {
     }
 }
 
+TEST_F(DatasetCommandTest, TheFloorOfASurveyIsAScene) {
+    const std::string file = (root / "deploy/scenes/harbour.glb").string(),
+                      survey = (root / "deploy/scenes/bay.flt").string();
+    writeFile(folder_ / "d.yml", replaced(deployment, "file: " + file, "bathymetry: {file: " + survey + "}"));
+    writeFile(folder_ / "sweep.yml", "poses: {grid: {z: [-11, -10]}}\n");
+    const Outcome outcome = make("out");
+    ASSERT_EQ(outcome.code, 0) << outcome.err;
+    for (const char* index : {"000000", "000001"}) {
+        const json record = recordOf("out", index);
+        EXPECT_EQ(record["scene"], "bathymetry");
+        EXPECT_THAT(record["annotations"], IsEmpty());
+    }
+    EXPECT_THAT(json::parse(readFile(folder_ / "out/manifest.json"))["classes"], IsEmpty());
+    writeFile(folder_ / "sweep.yml", "poses: {grid: {z: -11}}\nclasses: {rock: rock_*}\n");
+    EXPECT_THAT(make("none").err,
+                HasSubstr("sweep.yml:2:11: classes.rock[0]: is rock_*, which is no name in the scene"));
+}
+
 TEST_F(DatasetCommandTest, ObjectsAreHeardWhereTheyArePlaced) {
     writeFile(folder_ / "sweep.yml", R"(poses: {grid: {x: 5, y: -30, z: -5.5, yaw_deg: [0, 90]}}
 objects: [{names: [rock_000], x: [12, 12.001], y: [2, 2.001], frame: vehicle, ground: sea_floor}]
