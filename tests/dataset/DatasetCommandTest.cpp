@@ -285,6 +285,21 @@ TEST_F(DatasetCommandTest, PosesOfATrajectoryAreFromItsFirstStampToItsLast) {
     }
 }
 
+TEST_F(DatasetCommandTest, AnotherFileThatTheSweepNamesIsAnotherDataSet) {
+    for (const char* place : {"settings: {scene.materials: [{sand: {table: sand.csv}}]}\n",
+                              "scenes: [{set: {scene.materials.sand.table: sand.csv}}]\n"}) {
+        writeFile(folder_ / "sand.csv", "grazing_deg,strength_db\n10,-30\n80,-20\n");
+        writeFile(folder_ / "sweep.yml", place + std::string("poses: {grid: {x: 5, y: -4, z: -5.5}}\n"));
+        const std::string out = place[1] == 'e' ? "settings" : "scenes";
+        const Outcome first = make(out);
+        ASSERT_EQ(first.code, 0) << first.err;
+        writeFile(folder_ / "sand.csv", "grazing_deg,strength_db\n10,-30\n80,-21\n");
+        const Outcome second = make(out);
+        EXPECT_EQ(second.code, 2) << place;
+        EXPECT_THAT(second.err, HasSubstr("a sample of another sweep, deployment, scene, format or version"));
+    }
+}
+
 TEST_F(DatasetCommandTest, TheFloorOfASurveyIsAScene) {
     const std::string file = (root / "deploy/scenes/harbour.glb").string(),
                       survey = (root / "deploy/scenes/bay.flt").string();
@@ -301,6 +316,17 @@ TEST_F(DatasetCommandTest, TheFloorOfASurveyIsAScene) {
     writeFile(folder_ / "sweep.yml", "poses: {grid: {z: -11}}\nclasses: {rock: rock_*}\n");
     EXPECT_THAT(make("none").err,
                 HasSubstr("sweep.yml:2:11: classes.rock[0]: is rock_*, which is no name in the scene"));
+}
+
+TEST_F(DatasetCommandTest, ABudgetInAPropertyFileIsRefused) {
+    writeFile(folder_ / "sonar.yml", "--- name:default\nquality:\n  budget_ms: 5\n");
+    const std::string open = replaced(deployment, "quality: {rows: 128, columns_per_beam: 1}", "");
+    writeFile(folder_ / "d.yml",
+              replaced(open, "sonar::SonarTask\n", "sonar::SonarTask\n    property_files: {files: [sonar.yml]}\n"));
+    const Outcome outcome = make("out");
+    EXPECT_EQ(outcome.code, 2);
+    EXPECT_THAT(outcome.err,
+                HasSubstr("sonar.yml:3:14: quality.budget_ms: budget_ms lets the speed of the machine decide"));
 }
 
 TEST_F(DatasetCommandTest, ObjectsAreHeardWhereTheyArePlaced) {
@@ -391,7 +417,16 @@ INSTANTIATE_TEST_SUITE_P(
             "sweep.yml:3:21: settings.sonar.range[1]: tasks.sonar.properties.range: is -5 m; may be 0.001 to 100000 m"},
         BadSweep{"EmptySetting", grid + "settings: {sonar.range: []}\n", "settings.sonar.range: is empty"},
         BadSweep{"Budget", grid + "settings: {sonar.quality.budget_ms: [5]}\n",
-                 "sweep.yml:2:38: settings.sonar.quality.budget_ms: lets the speed of the machine decide"},
+                 "sweep.yml:2:38: settings.sonar.quality.budget_ms[0]: budget_ms lets the speed of the machine decide"},
+        BadSweep{"BudgetInABlock", grid + "settings:\n  sonar.quality: [{rows: 64}, {budget_ms: 5}]\n",
+                 "sweep.yml:3:31: settings.sonar.quality[1]: budget_ms lets the speed of the machine decide"},
+        BadSweep{"BudgetOfAScene", grid + "scenes: [{set: {sonar.quality.budget_ms: 5}}]\n",
+                 "sweep.yml:2:42: scenes[0].set.sonar.quality.budget_ms: budget_ms lets the speed of the machine"},
+        BadSweep{"SceneAsASetting", grid + "settings: {scene.file: [tank.glb]}\n",
+                 "sweep.yml:2:25: settings.scene.file[0]: names the file of scene, which decides what objects there "
+                 "are; name it under scenes"},
+        BadSweep{"SceneInASet", grid + "scenes: [{set: {scene.file: tank.glb}}]\n",
+                 "sweep.yml:2:29: scenes[0].set.scene.file: names the file of scene"},
         BadSweep{
             "NoObject", grid + "objects:\n  - {names: [rok_000], x: [0, 1], y: [0, 1]}\n",
             "sweep.yml:3:5: objects[0].names[0]: is rok_000, which is no name in the scene; did you mean rock_000?"},
@@ -414,7 +449,8 @@ TEST_F(DatasetCommandTest, WhatOnlyTheCommandLineCanSayIsCheckedAsWell) {
                 HasSubstr("no.yml"));
     writeFile(folder_ / "d.yml", deployment.substr(0, deployment.find("quality")) + "quality: {budget_ms: 5}\n" +
                                      deployment.substr(deployment.find("  noise:")));
-    EXPECT_THAT(make("out").err, HasSubstr("d.yml:20:28: tasks.sonar.properties.quality.budget_ms: lets the speed"));
+    EXPECT_THAT(make("out").err,
+                HasSubstr("d.yml:20:28: tasks.sonar.properties.quality.budget_ms: budget_ms lets the speed"));
     EXPECT_FALSE(fs::exists(folder_ / "out"));
 }
 
