@@ -126,7 +126,7 @@ void Collection::writeCocoAnnotations(Part part, std::ostream& out) const {
 }
 
 void Collection::writeYolo() {
-    std::string data = "path: .\n";
+    std::string data;  // without a path: the files are beside it
     for (const Part part : parts) {
         if (countOf(part) == 0) continue;
         const std::string list = nameOf(part) + ".txt";

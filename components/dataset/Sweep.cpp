@@ -64,8 +64,8 @@ void TrajectoryPoses::check(types::Diagnostics& diagnostics) const {
     if (file.empty()) diagnostics.push_back({"", "has no file"});
     if (count.has_value() == period.has_value())
         diagnostics.push_back({"", "has neither or both of count and period; one says how many poses there are"});
-    if (to && *to < from)
-        diagnostics.push_back({"to", fmt::format("is {:g} s; must not be before from, {:g} s", *to, from)});
+    if (from && to && *to < *from)
+        diagnostics.push_back({"to", fmt::format("is {:g} s; must not be before from, {:g} s", *to, *from)});
 }
 
 void ObjectGroup::check(types::Diagnostics& diagnostics) const {

@@ -67,8 +67,8 @@ struct TrajectoryPoses {
     std::string file;
     std::optional<uint32_t> count;
     std::optional<double> period;
-    double from = 0;
-    std::optional<double> to;
+    std::optional<double> from, to;
+    int line = 0, column = 0;  ///< Where it stands in the sweep.
 
     template <class Self, class V>
     static void describe(Self& self, V& visit) {
@@ -76,8 +76,8 @@ struct TrajectoryPoses {
         visit(Field{"file", "", "CSV with header time,x,y,z,qw,qx,qy,qz, relative to the sweep"}, self.file);
         visit(Field{"count", "1", "poses, evenly from `from` to `to`", 1, 1e6}, self.count);
         visit(Field{"period", "s", "instead: time between two poses", 1e-3, 1e6}, self.period);
-        visit(Field{"from", "s", "time of the first", 0, 86400}, self.from);
-        visit(Field{"to", "s", "time of the last; absent: the end of the trajectory", 0, 86400}, self.to);
+        visit(Field{"from", "s", "time of the first; absent: the start of the trajectory", 0, 1e10}, self.from);
+        visit(Field{"to", "s", "time of the last; absent: the end of the trajectory", 0, 1e10}, self.to);
     }
     void check(types::Diagnostics& diagnostics) const;
 };
@@ -103,7 +103,8 @@ struct ObjectGroup {
         visit(Field{"z", "m", "height of the node's origin: [least, most]; absent: as in the file, or on the ground",
                     -1e5, 1e5},
               self.z);
-        visit(Field{"ground", "", "instead of z: node on whose highest surface they stand"}, self.ground);
+        visit(Field{"ground", "", "instead of z: node on whose highest surface they stand; a * stands for any letters"},
+              self.ground);
         visit(Field{"yaw_deg", "deg", "turn about the vertical, beside that in the file: [least, most]", -360, 360},
               self.yaw_deg);
         visit(Field{"frame", "", "of the area: world, or vehicle, by its place and heading"}, self.frame);

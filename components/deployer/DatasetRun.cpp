@@ -27,6 +27,10 @@ using framework::child, framework::splitPort;
 constexpr const char* scene_type = "scene::SceneTask";
 constexpr uint64_t most_poses = 1'000'000;  ///< Of a trajectory.
 
+constexpr const char* no_budget =
+    "budget_ms lets the speed of the machine decide how samples are rendered, which must not depend on it; "
+    "give rows or target_error";
+
 /** A text as a value in YAML. */
 std::string quoted(const std::string& text) { return command::Json(text).dump(); }
 
@@ -35,17 +39,21 @@ std::vector<dataset::TimedPose> posesOf(const Sweep& sweep) {
     if (!sweep.trajectory) return poses;
     const dataset::TrajectoryPoses& asked = *sweep.trajectory;
     const pose::Trajectory trajectory = pose::Trajectory::fromCsv(asked.file);
-    const double to = asked.to.value_or(trajectory.stamps().back().time), length = to - asked.from;
-    if (length < 0)
-        throw types::ConfigError(sweep.file, "poses.trajectory.from",
-                                 fmt::format("is {:g} s; the trajectory ends at {:g} s", asked.from, to));
+    const double first = trajectory.stamps().front().time, last = trajectory.stamps().back().time;
+    const double from = asked.from.value_or(std::max(first, 0.0)), to = asked.to.value_or(last), length = to - from;
+    for (const auto& [key, time] : {std::pair("from", from), std::pair("to", to)})
+        if (time < first || time > last)
+            throw types::ConfigError(
+                {{std::string("poses.trajectory.") + key,
+                  fmt::format("is {:g} s; the trajectory is from {:g} to {:g} s", time, first, last), sweep.file,
+                  asked.line, asked.column}});
     const auto count = asked.count ? uint64_t{*asked.count} : static_cast<uint64_t>(length / *asked.period + 1e-9) + 1;
     if (count > most_poses)
         throw types::ConfigError(sweep.file, "poses.trajectory.period",
                                  fmt::format("makes {} poses; at most {}", count, most_poses));
     for (uint64_t i = 0; i < count; ++i) {
         const double step = asked.count ? (count == 1 ? 0 : length / static_cast<double>(count - 1)) : *asked.period;
-        const double time = asked.from + step * static_cast<double>(i);
+        const double time = from + step * static_cast<double>(i);
         poses.push_back({time, trajectory.at(time)});
     }
     return poses;
@@ -68,6 +76,18 @@ void addFiles(const YAML::Node& node, const fs::path& folder, std::string& text)
     if (node.IsScalar() && !node.Scalar().empty() && fs::is_regular_file(folder / node.Scalar(), ignored))
         text += fmt::format("file {}\n", command::sha256OfFile(folder / node.Scalar()));
 }
+
+/** The files that a sweep names for properties, whose folder is that of the deployment, and its scenes. */
+void addFiles(const Sweep& sweep, const fs::path& folder, std::string& text) {
+    for (const dataset::Setting& setting : sweep.settings)
+        for (const dataset::Written& value : setting.values) addFiles(framework::parseValue(value.yaml), folder, text);
+    for (const dataset::SceneChoice& scene : sweep.scenes) {
+        if (!scene.file.empty()) text += fmt::format("file {}\n", command::sha256OfFile(scene.file));
+        for (const auto& [property, value] : scene.set) addFiles(framework::parseValue(value.yaml), folder, text);
+    }
+}
+
+YAML::Node budgetOf(const framework::TaskSpec& task) { return child(child(task.properties, "quality"), "budget_ms"); }
 
 /** The deployment's one, where it has one. */
 const std::string& onlyOf(const std::vector<std::string>& names, const std::string& file, const char* what) {
@@ -109,19 +129,12 @@ std::vector<std::string> DatasetRun::tasksOfType(const std::string& type) const 
 
 /** A time that a machine takes decides nothing that is to be the same everywhere. */
 void DatasetRun::refuseBudgets() const {
-    constexpr const char* why =
-        "lets the speed of the machine decide how samples are rendered, which must not depend on it; "
-        "give rows or target_error";
     framework::ConfigReader reader(spec_.file, spec_.origins);
     for (const framework::TaskSpec& task : spec_.tasks) {
-        const YAML::Node budget = child(child(task.properties, "quality"), "budget_ms");
-        if (budget.IsDefined()) reader.report(budget, task.path() + ".properties.quality.budget_ms", why);
+        const YAML::Node budget = budgetOf(task);
+        if (budget.IsDefined()) reader.report(budget, task.path() + ".properties.quality.budget_ms", no_budget);
     }
     if (!reader.diagnostics().empty()) throw types::ConfigError(reader.diagnostics());
-    for (const dataset::Setting& setting : sweep_.settings)
-        if (setting.property.ends_with(".budget_ms"))
-            throw types::ConfigError(
-                {{"settings." + setting.property, why, sweep_.file, setting.values[0].line, setting.values[0].column}});
 }
 
 void DatasetRun::checkAssignments() const {
@@ -139,22 +152,35 @@ void DatasetRun::checkAssignment(const std::string& path, const std::string& pro
     framework::Registry registry = builtInTasks();
     framework::DeploymentSpec spec = framework::DeploymentSpec::load(deployment_);
     spec.set(property + "=" + value.yaml);
+    types::Diagnostics wrong;
+    const auto refuse = [&](const std::string& why) {
+        wrong.push_back({path, why, sweep_.file, value.line, value.column});
+    };
+    for (const framework::TaskSpec& each : spec.tasks) {
+        const auto file = spec.origins.find(each.path() + ".properties.file");
+        if (each.type == scene_type && file != spec.origins.end() && file->second.file == framework::set_origin)
+            refuse("names the file of " + each.name + ", which decides what objects there are; name it under scenes");
+        if (budgetOf(each).IsDefined()) refuse(no_budget);
+    }
     const std::string task = splitPort(property).first;
     if (spec.task(task)) spec = restrictedTo(std::move(spec), {task});
-    types::Diagnostics wrong;
     try {
         const framework::Deployment deployment(std::move(spec), registry);
     } catch (const types::ConfigError& error) {
         for (const types::Diagnostic& each : error.diagnostics())
-            if (each.file == framework::set_origin)
-                wrong.push_back({path, each.path + ": " + each.message, sweep_.file, value.line, value.column});
+            if (each.file == framework::set_origin) refuse(each.path + ": " + each.message);
     }
     if (!wrong.empty()) throw types::ConfigError(wrong);
 }
 
 DatasetRun::SceneFile DatasetRun::readScene(const std::string& file) const {
-    const scene::Scene scene = scene::readScene(file);
-    SceneFile read{fs::path(file).filename(), partsOf(sweep_, scene), {}, deployer::digestOf(*scene.geometry)};
+    scene::Scene scene;
+    scene.geometry = std::make_shared<const types::Geometry>();
+    if (!file.empty()) scene = scene::readScene(file);  // else there is but the floor of a survey
+    SceneFile read{file.empty() ? "bathymetry" : fs::path(file).filename().string(),
+                   partsOf(sweep_, scene),
+                   {},
+                   deployer::digestOf(*scene.geometry)};
     for (const types::Object& object : scene.geometry->objects) read.objects.push_back(object.name);
     return read;
 }
@@ -180,6 +206,7 @@ std::string DatasetRun::digestOfAll() const {
         for (const std::string& file : task.property_files.files)
             text += fmt::format("file {}\n", command::sha256OfFile(folder / file));
     }
+    addFiles(sweep_, folder, text);
     for (const SceneFile& scene : scenes_) text += fmt::format("scene {} {}\n", scene.name, scene.digest);
     if (sweep_.trajectory) text += fmt::format("trajectory {}\n", command::sha256OfFile(sweep_.trajectory->file));
     return command::sha256Of(text);

@@ -132,6 +132,8 @@ private:
         if (!keys.trajectory.IsDefined()) return;
         sweep_.trajectory.emplace();
         reader_.read(keys.trajectory, "poses.trajectory", *sweep_.trajectory);
+        const YAML::Mark place = keys.trajectory.Mark();
+        sweep_.trajectory->line = place.line + 1, sweep_.trajectory->column = place.column + 1;
         sweep_.trajectory->file = inFolder(sweep_.trajectory->file);
     }
 

@@ -7,6 +7,7 @@
 #include <glm/gtc/quaternion.hpp>
 
 #include "components/command/Sha256.hpp"
+#include "types/ConfigError.hpp"
 
 namespace insonify::deployer {
 namespace {
@@ -46,9 +47,8 @@ types::Extent boxOf(const scene::Scene& scene, const std::vector<scene::Part>& p
     return box;
 }
 
-std::vector<std::array<glm::dvec3, 3>> trianglesOf(const scene::Scene& scene, const std::vector<scene::Part>& parts) {
-    std::vector<std::array<glm::dvec3, 3>> triangles;
-    for (const scene::Part& part : parts) {
+void addTriangles(const scene::Scene& scene, size_t node, std::vector<std::array<glm::dvec3, 3>>& triangles) {
+    for (const scene::Part& part : scene::partsOf(scene, static_cast<int>(node))) {
         const types::Object& object = scene.geometry->objects[part.object];
         const types::Mesh& mesh = scene.geometry->meshes[static_cast<size_t>(object.mesh)];
         const auto corner = [&](size_t i) {
@@ -57,6 +57,13 @@ std::vector<std::array<glm::dvec3, 3>> trianglesOf(const scene::Scene& scene, co
         for (size_t i = 0; i + 2 < mesh.indices.size(); i += 3)
             triangles.push_back({corner(i), corner(i + 1), corner(i + 2)});
     }
+}
+
+/** The triangles of all nodes that a pattern matches. */
+std::vector<std::array<glm::dvec3, 3>> groundOf(const scene::Scene& scene, const std::string& pattern) {
+    std::vector<std::array<glm::dvec3, 3>> triangles;
+    for (size_t node = 0; node < scene.nodes.size(); ++node)
+        if (dataset::matches(pattern, scene.nodes[node].name)) addTriangles(scene, node, triangles);
     return triangles;
 }
 
@@ -68,16 +75,21 @@ void addNode(const dataset::Sweep& sweep, const scene::Scene& scene, size_t node
     const std::string& name = scene.nodes[node].name;
     const std::vector<scene::Part> objects = scene::partsOf(scene, static_cast<int>(node));
     if (objects.empty()) return;
-    for (const dataset::ObjectGroup& group : sweep.objects) {
+    for (const dataset::ObjectGroup& group : sweep.objects)
         if (anyMatches(group.avoid, name)) parts.boxes[name] = boxOf(scene, objects);
-        if (group.ground == name) parts.grounds[name] = trianglesOf(scene, objects);
-    }
     parts.placeables[name] = placeableOf(scene, objects);
 }
 
 template <class T>
 void addBytes(command::Sha256& hash, const std::vector<T>& values) {
     hash.add({reinterpret_cast<const char*>(values.data()), values.size() * sizeof(T)});
+}
+
+void addMaterial(command::Sha256& hash, const types::Material& material) {
+    hash.add(fmt::format("{} {} {} {} {} {} {} {} {} {}\n", material.name, material.lambert_db, material.seabed,
+                         material.reflection, material.roughness_slope.value_or(-1), material.mirror,
+                         material.reflectivity, material.has_acoustics, material.normal_map, material.normal_scale));
+    addBytes(hash, material.measured);
 }
 
 }  // namespace
@@ -94,7 +106,12 @@ SceneParts partsOf(const dataset::Sweep& sweep, const scene::Scene& scene) {
         const dataset::ObjectGroup& group = sweep.objects[i];
         const std::string path = fmt::format("objects[{}].", i);
         dataset::resolve(sweep, group.avoid, known, path + "avoid", group.line, group.column);
-        if (group.ground) dataset::resolve(sweep, {*group.ground}, known, path + "ground", group.line, group.column);
+        if (!group.ground) continue;
+        dataset::resolve(sweep, {*group.ground}, known, path + "ground", group.line, group.column);
+        auto& ground = parts.grounds[*group.ground] = groundOf(scene, *group.ground);
+        if (ground.empty())
+            throw types::ConfigError({{path + "ground", "is " + *group.ground + ", which has no surface to stand on",
+                                       sweep.file, group.line, group.column}});
     }
     return parts;
 }
@@ -104,18 +121,21 @@ std::string digestOf(const types::Geometry& geometry) {
     for (const types::Mesh& mesh : geometry.meshes) {
         addBytes(hash, mesh.positions);
         addBytes(hash, mesh.normals);
+        addBytes(hash, mesh.tangents);
         addBytes(hash, mesh.uvs);
         addBytes(hash, mesh.indices);
+        for (const types::Cluster& cluster : mesh.clusters)
+            hash.add(fmt::format("{} {} {}\n", cluster.first_index, cluster.index_count, cluster.material));
     }
     for (const types::Object& object : geometry.objects) {
         hash.add(fmt::format("{}\n{}\n", object.name, object.mesh));
         hash.add({reinterpret_cast<const char*>(&object.world_from_object), sizeof object.world_from_object});
     }
-    for (const types::Material& material : geometry.materials)
-        hash.add(fmt::format("{} {} {} {} {} {} {}\n", material.name, material.lambert_db, material.seabed,
-                             material.reflection, material.roughness_slope.value_or(-1), material.mirror,
-                             material.reflectivity));
-    for (const types::NormalMap& map : geometry.normal_maps) addBytes(hash, map.rgb);
+    for (const types::Material& material : geometry.materials) addMaterial(hash, material);
+    for (const types::NormalMap& map : geometry.normal_maps) {
+        hash.add(fmt::format("{} {} {} {}\n", map.width, map.height, map.repeat_u, map.repeat_v));
+        addBytes(hash, map.rgb);
+    }
     return hash.hex();
 }
 

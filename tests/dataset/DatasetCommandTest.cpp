@@ -205,7 +205,7 @@ TEST_F(DatasetCommandTest, YoloHasALabelForEachBoxAndListsByPart) {
     ASSERT_EQ(make("out", {"--format", "yolo"}).code, 0);
     const auto files = filesOf(folder_ / "out");
     EXPECT_EQ(files.at("data.yaml"),
-              "path: .\ntrain: train.txt\nval: val.txt\nnames:\n  0: \"pile\"\n  1: \"wreck\"\n  2: \"rock\"\n  3: "
+              "train: train.txt\nval: val.txt\nnames:\n  0: \"pile\"\n  1: \"wreck\"\n  2: \"rock\"\n  3: "
               "\"pipeline\"\n");
     size_t listed = 0;
     for (const char* list : {"train.txt", "val.txt"}) {
@@ -227,6 +227,8 @@ TEST_F(DatasetCommandTest, YoloHasALabelForEachBoxAndListsByPart) {
 }
 
 TEST_F(DatasetCommandTest, MasksTellInstancesAndClassesPixelByPixel) {
+    if (python(folder_, "import matplotlib.image").code != 0)
+        GTEST_SKIP() << "/usr/bin/python3 has no matplotlib; scripts/setup installs it";
     ASSERT_EQ(make("out", {"--format", "mask", "--shard", "1/8"}).code, 0);
     const json record = recordOf("out", "000001");
     const Outcome read = python(folder_, R"(
@@ -261,6 +263,70 @@ TEST_F(DatasetCommandTest, PosesOfATrajectoryGiveTracks) {
     EXPECT_TRUE(std::ranges::any_of(frames, [](const auto& of) { return of.second.size() > 1; }));
     EXPECT_EQ(recordOf("out", "000003")["time_s"], 6);
     EXPECT_EQ(recordOf("out", "000003")["picture"]["width"], 128);
+}
+
+TEST_F(DatasetCommandTest, PosesOfATrajectoryAreFromItsFirstStampToItsLast) {
+    writeFile(folder_ / "path.csv", "time,x,y,z,qw,qx,qy,qz\n100,4,-4,-5.5,1,0,0,0\n102,8,-4,-5.5,1,0,0,0\n");
+    const auto make = [&](const std::string& times) {
+        writeFile(folder_ / "sweep.yml", "poses:\n  trajectory: {file: path.csv, count: 3" + times + "}\n");
+        return DatasetCommandTest::make("out");
+    };
+    const std::string place = "sweep.yml:2:15: poses.trajectory.";
+    const Outcome early = make(", from: 2"), late = make(", to: 103");
+    EXPECT_EQ(early.code, 2);
+    EXPECT_THAT(early.err, HasSubstr(place + "from: is 2 s; the trajectory is from 100 to 102 s"));
+    EXPECT_EQ(late.code, 2);
+    EXPECT_THAT(late.err, HasSubstr(place + "to: is 103 s; the trajectory is from 100 to 102 s"));
+    ASSERT_EQ(make("").code, 0);
+    for (int i = 0; i < 3; ++i) {
+        const json record = recordOf("out", "00000" + std::to_string(i));
+        EXPECT_EQ(record["time_s"], 100 + i);
+        EXPECT_EQ(record["pose"]["position"][0], 4 + 2 * i);
+    }
+}
+
+TEST_F(DatasetCommandTest, AnotherFileThatTheSweepNamesIsAnotherDataSet) {
+    for (const char* place : {"settings: {scene.materials: [{sand: {table: sand.csv}}]}\n",
+                              "scenes: [{set: {scene.materials.sand.table: sand.csv}}]\n"}) {
+        writeFile(folder_ / "sand.csv", "grazing_deg,strength_db\n10,-30\n80,-20\n");
+        writeFile(folder_ / "sweep.yml", place + std::string("poses: {grid: {x: 5, y: -4, z: -5.5}}\n"));
+        const std::string out = place[1] == 'e' ? "settings" : "scenes";
+        const Outcome first = make(out);
+        ASSERT_EQ(first.code, 0) << first.err;
+        writeFile(folder_ / "sand.csv", "grazing_deg,strength_db\n10,-30\n80,-21\n");
+        const Outcome second = make(out);
+        EXPECT_EQ(second.code, 2) << place;
+        EXPECT_THAT(second.err, HasSubstr("a sample of another sweep, deployment, scene, format or version"));
+    }
+}
+
+TEST_F(DatasetCommandTest, TheFloorOfASurveyIsAScene) {
+    const std::string file = (root / "deploy/scenes/harbour.glb").string(),
+                      survey = (root / "deploy/scenes/bay.flt").string();
+    writeFile(folder_ / "d.yml", replaced(deployment, "file: " + file, "bathymetry: {file: " + survey + "}"));
+    writeFile(folder_ / "sweep.yml", "poses: {grid: {z: [-11, -10]}}\n");
+    const Outcome outcome = make("out");
+    ASSERT_EQ(outcome.code, 0) << outcome.err;
+    for (const char* index : {"000000", "000001"}) {
+        const json record = recordOf("out", index);
+        EXPECT_EQ(record["scene"], "bathymetry");
+        EXPECT_THAT(record["annotations"], IsEmpty());
+    }
+    EXPECT_THAT(json::parse(readFile(folder_ / "out/manifest.json"))["classes"], IsEmpty());
+    writeFile(folder_ / "sweep.yml", "poses: {grid: {z: -11}}\nclasses: {rock: rock_*}\n");
+    EXPECT_THAT(make("none").err,
+                HasSubstr("sweep.yml:2:11: classes.rock[0]: is rock_*, which is no name in the scene"));
+}
+
+TEST_F(DatasetCommandTest, ABudgetInAPropertyFileIsRefused) {
+    writeFile(folder_ / "sonar.yml", "--- name:default\nquality:\n  budget_ms: 5\n");
+    const std::string open = replaced(deployment, "quality: {rows: 128, columns_per_beam: 1}", "");
+    writeFile(folder_ / "d.yml",
+              replaced(open, "sonar::SonarTask\n", "sonar::SonarTask\n    property_files: {files: [sonar.yml]}\n"));
+    const Outcome outcome = make("out");
+    EXPECT_EQ(outcome.code, 2);
+    EXPECT_THAT(outcome.err,
+                HasSubstr("sonar.yml:3:14: quality.budget_ms: budget_ms lets the speed of the machine decide"));
 }
 
 TEST_F(DatasetCommandTest, ObjectsAreHeardWhereTheyArePlaced) {
@@ -351,7 +417,16 @@ INSTANTIATE_TEST_SUITE_P(
             "sweep.yml:3:21: settings.sonar.range[1]: tasks.sonar.properties.range: is -5 m; may be 0.001 to 100000 m"},
         BadSweep{"EmptySetting", grid + "settings: {sonar.range: []}\n", "settings.sonar.range: is empty"},
         BadSweep{"Budget", grid + "settings: {sonar.quality.budget_ms: [5]}\n",
-                 "sweep.yml:2:38: settings.sonar.quality.budget_ms: lets the speed of the machine decide"},
+                 "sweep.yml:2:38: settings.sonar.quality.budget_ms[0]: budget_ms lets the speed of the machine decide"},
+        BadSweep{"BudgetInABlock", grid + "settings:\n  sonar.quality: [{rows: 64}, {budget_ms: 5}]\n",
+                 "sweep.yml:3:31: settings.sonar.quality[1]: budget_ms lets the speed of the machine decide"},
+        BadSweep{"BudgetOfAScene", grid + "scenes: [{set: {sonar.quality.budget_ms: 5}}]\n",
+                 "sweep.yml:2:42: scenes[0].set.sonar.quality.budget_ms: budget_ms lets the speed of the machine"},
+        BadSweep{"SceneAsASetting", grid + "settings: {scene.file: [tank.glb]}\n",
+                 "sweep.yml:2:25: settings.scene.file[0]: names the file of scene, which decides what objects there "
+                 "are; name it under scenes"},
+        BadSweep{"SceneInASet", grid + "scenes: [{set: {scene.file: tank.glb}}]\n",
+                 "sweep.yml:2:29: scenes[0].set.scene.file: names the file of scene"},
         BadSweep{
             "NoObject", grid + "objects:\n  - {names: [rok_000], x: [0, 1], y: [0, 1]}\n",
             "sweep.yml:3:5: objects[0].names[0]: is rok_000, which is no name in the scene; did you mean rock_000?"},
@@ -374,7 +449,8 @@ TEST_F(DatasetCommandTest, WhatOnlyTheCommandLineCanSayIsCheckedAsWell) {
                 HasSubstr("no.yml"));
     writeFile(folder_ / "d.yml", deployment.substr(0, deployment.find("quality")) + "quality: {budget_ms: 5}\n" +
                                      deployment.substr(deployment.find("  noise:")));
-    EXPECT_THAT(make("out").err, HasSubstr("d.yml:20:28: tasks.sonar.properties.quality.budget_ms: lets the speed"));
+    EXPECT_THAT(make("out").err,
+                HasSubstr("d.yml:20:28: tasks.sonar.properties.quality.budget_ms: budget_ms lets the speed"));
     EXPECT_FALSE(fs::exists(folder_ / "out"));
 }
 

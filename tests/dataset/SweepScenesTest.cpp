@@ -1,0 +1,98 @@
+#include <gmock/gmock.h>
+
+#include <functional>
+#include <set>
+
+#include "components/deployer/SweepScenes.hpp"
+#include "types/ConfigError.hpp"
+
+namespace insonify::deployer {
+namespace {
+
+using testing::HasSubstr;
+
+/** Two floors of one triangle each, 1 m apart, and a node without any. */
+scene::Scene floors() {
+    types::Geometry geometry;
+    types::Mesh& mesh = geometry.meshes.emplace_back();
+    mesh.positions = {{0, 0, -5}, {4, 0, -5}, {0, 4, -5}};
+    mesh.indices = {0, 1, 2};
+    mesh.clusters = {{.index_count = 3}};
+    geometry.materials.push_back({.name = "sand"});
+    scene::Scene scene;
+    for (const char* name : {"floor_low", "floor_high", "frame"}) {
+        scene.nodes.emplace_back().name = name;
+        if (scene.nodes.size() == 3) break;
+        scene.object_nodes.push_back(static_cast<int>(geometry.objects.size()));
+        scene.node_from_object.emplace_back(1);
+        geometry.objects.emplace_back().name = name;
+    }
+    geometry.objects[1].world_from_object[3].z = 1;
+    scene.geometry = std::make_shared<const types::Geometry>(std::move(geometry));
+    return scene;
+}
+
+dataset::Sweep standingOn(const std::string& ground) {
+    dataset::Sweep sweep;
+    sweep.file = "sweep.yml";
+    dataset::ObjectGroup& group = sweep.objects.emplace_back();
+    group.ground = ground;
+    group.line = 4, group.column = 5;
+    return sweep;
+}
+
+TEST(SweepScenesTest, AGroundIsOfAllNodesThatItsPatternMatches) {
+    EXPECT_EQ(partsOf(standingOn("floor_low"), floors()).grounds.at("floor_low").size(), 1u);
+    const auto both = partsOf(standingOn("floor_*"), floors()).grounds.at("floor_*");
+    ASSERT_EQ(both.size(), 2u);
+    EXPECT_EQ(both[0][0].z, -5);
+    EXPECT_EQ(both[1][0].z, -4);
+}
+
+TEST(SweepScenesTest, AGroundWithoutASurfaceIsRefusedAtItsPlace) {
+    try {
+        partsOf(standingOn("frame"), floors());
+        FAIL() << "a node without meshes was taken for a ground";
+    } catch (const types::ConfigError& error) {
+        EXPECT_THAT(error.what(),
+                    HasSubstr("sweep.yml:4:5: objects[0].ground: is frame, which has no surface to stand on"));
+    }
+}
+
+TEST(SweepScenesTest, WhateverIsHeardOfAGeometryChangesItsDigest) {
+    const types::Geometry plain = [] {
+        types::Geometry geometry = *floors().geometry;
+        geometry.meshes[0].normals.assign(3, {0, 0, 1});
+        geometry.meshes[0].tangents.assign(3, {1, 0, 0, 1});
+        geometry.normal_maps.push_back({.width = 2, .height = 1, .rgb = {0, 0, 255, 0, 0, 255}});
+        return geometry;
+    }();
+    const std::vector<std::function<void(types::Geometry&)>> changes = {
+        [](auto& changed) { changed.meshes[0].positions[1].x = 5; },
+        [](auto& changed) { changed.meshes[0].tangents[0].w = -1; },
+        [](auto& changed) { changed.meshes[0].clusters[0].material = 1; },
+        [](auto& changed) { changed.meshes[0].clusters[0].first_index = 3; },
+        [](auto& changed) { changed.meshes[0].clusters[0].index_count = 0; },
+        [](auto& changed) { changed.objects[1].world_from_object[3].z = 2; },
+        [](auto& changed) { changed.materials[0].has_acoustics = true; },
+        [](auto& changed) {
+            changed.materials[0].measured = {{10, -30}};
+        },
+        [](auto& changed) { changed.materials[0].normal_map = 0; },
+        [](auto& changed) { changed.materials[0].normal_scale = 2; },
+        [](auto& changed) { std::swap(changed.normal_maps[0].width, changed.normal_maps[0].height); },
+        [](auto& changed) { changed.normal_maps[0].repeat_u = false; },
+        [](auto& changed) { changed.normal_maps[0].repeat_v = false; },
+        [](auto& changed) { changed.normal_maps[0].rgb[0] = 9; },
+    };
+    std::set<std::string> digests = {digestOf(plain)};
+    for (size_t i = 0; i < changes.size(); ++i) {
+        types::Geometry changed = plain;
+        changes[i](changed);
+        EXPECT_TRUE(digests.insert(digestOf(changed)).second) << i;
+    }
+    EXPECT_EQ(digestOf(plain), digestOf(types::Geometry(plain)));
+}
+
+}  // namespace
+}  // namespace insonify::deployer
