@@ -112,7 +112,7 @@ std::string StatisticsPage::text() const {
         objects.emplace_back(fmt::format("{} objects", number), count);
     std::string page =
         "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><title>" + escaped(title_) + "</title>\n" +
-        "<style>body{font:14px sans-serif;max-width:1200px;margin:2em auto;color:#222}table{border-collapse:collapse}"
+        "<style>body{font:14px sans-serif;max-width:1200px;margin:2em auto;padding:0 1em;color:#222}table{border-collapse:collapse}"
         "td,th{padding:2px 10px;text-align:right;border-bottom:1px solid #ddd}.bars text{font-size:12px}"
         ".bars rect{fill:#48a}figure{display:inline-block;margin:6px;width:370px}figure svg{width:100%;background:#000}"
         "figure rect{fill:none;stroke-width:2}</style></head>\n<body><h1>" +
