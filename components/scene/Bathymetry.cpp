@@ -67,10 +67,10 @@ void Bathymetry::addMaterial(Scene& scene) {
     scene.geometry = std::move(geometry);
 }
 
-/** Posts between which the floor reaches at least so far. The world's x is north of its zero, y west. */
-PostWindow Bathymetry::postsWithin(double reach, const glm::dvec3& place) const {
+/** Posts between which the floor reaches as far as it is to. The world's x is north of its zero, y west. */
+PostWindow Bathymetry::postsAbout(const glm::dvec3& place) const {
     const glm::dvec2 middle = survey_.postAt(zero_ + glm::dvec2(-place.y, place.x));
-    const glm::dvec2 half = reach / glm::abs(survey_.spacing());
+    const glm::dvec2 half = config_.reach / glm::abs(survey_.spacing());
     const int column = wholeDown(middle.x - half.x), row = wholeDown(middle.y - half.y);
     return {column, row, wholeDown(middle.x + half.x) + 2 - column, wholeDown(middle.y + half.y) + 2 - row};
 }
@@ -113,7 +113,7 @@ types::Mesh Bathymetry::meshOf(const PostWindow& posts) const {
 }
 
 types::GeometryPtr Bathymetry::about(const glm::dvec3& place, const types::GeometryPtr& rest) {
-    const PostWindow needed = postsWithin(config_.reach, place);
+    const PostWindow needed = postsAbout(place);
     if (window_ && rest == rest_ && window_->holds(clipped(needed))) return geometry_;
     const PostWindow window = clipped(wholeTiles(needed));
     types::Mesh mesh;

@@ -18,7 +18,7 @@ public:
 
     /** `rest` and the floor about a place in the world: the one of the call before as long as that reaches far enough
      *  on all sides, else one of whole tiles. `rest` alone where the survey has nothing. Throws SurveyError where the
-     * file cannot be read on. */
+     *  file cannot be read on. */
     types::GeometryPtr about(const glm::dvec3& place, const types::GeometryPtr& rest);
 
     /** Begins anew: what is there next follows from the place alone. */
@@ -29,7 +29,7 @@ public:
     static void addMaterial(Scene& scene);
 
 private:
-    PostWindow postsWithin(double reach, const glm::dvec3& place) const;
+    PostWindow postsAbout(const glm::dvec3& place) const;
     PostWindow wholeTiles(const PostWindow& posts) const;
     PostWindow clipped(PostWindow posts) const;
     types::Mesh meshOf(const PostWindow& posts) const;

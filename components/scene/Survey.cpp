@@ -22,7 +22,7 @@ namespace {
 constexpr int64_t cache_size = int64_t{64} << 20;
 
 /** Formats that are read by blocks. Not GDAL's others: of a text grid that ends too early it seeks the missing lines
- * for hours. */
+ *  for hours. */
 void prepareGdal() {
     static std::once_flag once;
     std::call_once(once, [] {
@@ -52,14 +52,14 @@ double metresOf(GDALDataset& dataset, const std::filesystem::path& file) {
     return map->GetLinearUnits();
 }
 
-/** Of files that are nothing but numbers: what such a file lacks GDAL reads as 0, and of a .flt it takes the numbers of
- * a shorter one for bytes. */
 void checkUnit(GDALRasterBand& band, const std::filesystem::path& file) {
     const std::string unit = band.GetUnitType();
     if (!unit.empty() && !std::set<std::string>{"m", "metre", "metres", "meter", "meters"}.contains(unit))
         refuse(file, "has elevations in " + unit + "; may be metres: gdal_calc.py -A IN --calc=A*0.3048 of feet");
 }
 
+/** Of files that are nothing but numbers: what such a file lacks GDAL reads as 0, and of a .flt it takes the numbers of
+ *  a shorter one for bytes. */
 void checkSize(GDALDataset& dataset, const std::filesystem::path& file) {
     const std::string format = dataset.GetDriverName();
     if (format != "EHdr" && format != "ENVI") return;

@@ -196,6 +196,8 @@ TEST_F(BathymetryTest, FilesThatAreNoSurveyAreRefused) {
     const auto with = [&](const std::string& transform) {
         return std::string(vrt).replace(vrt.find('%'), 1, transform);
     };
+    std::string in_feet = with("<GeoTransform>0, 2, 0, 0, 0, -2</GeoTransform>");
+    in_feet.replace(in_feet.find("/></VRT"), 2, "><UnitType>ft</UnitType></VRTRasterBand>");
     struct Case {
         std::string file, words;
         int band = 1;
@@ -211,6 +213,7 @@ TEST_F(BathymetryTest, FilesThatAreNoSurveyAreRefused) {
           Case{write("turned.vrt", with("<GeoTransform>0, 2, 0.1, 0, 0.1, -2</GeoTransform>")),
                "is turned against north"},
           Case{write("flat.vrt", with("<GeoTransform>0, 0, 0, 0, 0, -2</GeoTransform>")), "posts 0 m and -2 m apart"},
+          Case{write("feet.vrt", in_feet), "has elevations in ft; may be metres"},
           Case{grid("one", 9, 9), "has 1 bands, and not one of number 2", 2},
           Case{grid("fine", 9, 9), "at most 4096: lower reach", 1, 5000}}) {
         BathymetryConfig config = config_;
