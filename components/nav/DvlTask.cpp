@@ -26,6 +26,7 @@ void DvlTask::updateHook() {
     if (!isUsable(body)) return error("pose: is not finite, or its orientation has no length");
     if (state() == framework::TaskState::RunTimeError) recover();
     const std::optional<Motion> motion = tracker_.take(body);
+    if (const std::string told = tracker_.takeWarning(); !told.empty()) warn(told);
     if (motion && cadence_.isDue(motion->time)) measure(*motion);
 }
 

@@ -1,8 +1,11 @@
 #include "components/nav/Motion.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <glm/geometric.hpp>
+#include <utility>
 
 namespace insonify::nav {
 namespace {
@@ -33,7 +36,13 @@ bool isFinite(glm::dvec3 v) { return std::isfinite(v.x) && std::isfinite(v.y) &&
 
 std::optional<Motion> MotionTracker::take(const types::Pose& body) {
     const double seconds = count_ == 0 ? 0 : (body.time - poses_[2].time).seconds();
-    if (std::abs(seconds) > longest_gap) count_ = 0;
+    const bool paused = std::abs(seconds) > longest_gap;
+    if (pauses_.isDue(paused))
+        warning_ = fmt::format(
+            "poses {:.3g} s apart tell no motion; there are no measurements until three come that are at most {:g} s "
+            "apart",
+            std::abs(seconds), longest_gap);
+    if (paused) count_ = 0;
     if (count_ > 0 && seconds <= 0) return {};
     std::ranges::rotate(poses_, poses_.begin() + 1);
     types::place(body, mount_, poses_[2]);
@@ -43,6 +52,8 @@ std::optional<Motion> MotionTracker::take(const types::Pose& body) {
     const bool is_finite = isFinite(motion.velocity) && isFinite(motion.acceleration) && isFinite(motion.angular_rate);
     return is_finite ? std::optional(motion) : std::nullopt;
 }
+
+std::string MotionTracker::takeWarning() { return std::exchange(warning_, {}); }
 
 Motion MotionTracker::middle() const {
     const auto& [before, now, after] = poses_;

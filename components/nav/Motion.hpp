@@ -3,9 +3,11 @@
 #include <glm/gtc/quaternion.hpp>
 #include <glm/vec3.hpp>
 #include <optional>
+#include <string>
 
 #include "types/Mount.hpp"
 #include "types/Pose.hpp"
+#include "types/RecurringDiagnostic.hpp"
 
 namespace insonify::nav {
 
@@ -39,12 +41,18 @@ public:
      * than `longest_gap` earlier or later begins anew. A place far from the last is taken as motion, however fast. */
     std::optional<Motion> take(const types::Pose& body);
 
+    /** What to tell of a pause before the pose that was taken last: at the first, and again only after ten poses that
+     *  came in time (types::RecurringDiagnostic). Empty: nothing. */
+    std::string takeWarning();
+
 private:
     Motion middle() const;
 
     types::Mount mount_;
     std::array<types::Pose, 3> poses_;  ///< Of the sensor, the newest last.
     int count_ = 0;                     ///< Poses since it has begun, at most 3 [1].
+    types::RecurringDiagnostic pauses_;
+    std::string warning_;
 };
 
 /** When a measurement is due of those that come: the first on or after each multiple of a period, by their stamps. */

@@ -40,6 +40,16 @@ TEST_F(ImuTaskTest, TellsEachPoseOnceTheNextHasCome) {
     EXPECT_NEAR(imu.linear_acceleration.z, normalGravity(45), 1e-9);
 }
 
+TEST_F(ImuTaskTest, SaysThatPosesAreTooFarApart) {
+    std::vector<std::string> told;
+    const auto environment = std::make_shared<framework::Environment>();
+    environment->warn = [&](const std::string& text) { told.push_back(text); };
+    task_.setEnvironment(environment);
+    startWith({});
+    for (const double time : {1, 3, 5, 7}) EXPECT_TRUE(answerTo(poseAt(time, {})).time.isNull());
+    EXPECT_THAT(told, testing::ElementsAre(testing::StartsWith("task: poses 2 s apart tell no motion")));
+}
+
 TEST_F(ImuTaskTest, RocksSamplesSayTheSame) {
     test::Reader<types::ImuSensors> sensors;
     test::Reader<types::Pose> orientations;

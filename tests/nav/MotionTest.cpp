@@ -90,6 +90,20 @@ TEST(MotionTest, AfterAPauseOrAStartOverItBeginsAnew) {
     }
 }
 
+TEST(MotionTest, PosesTooFarApartAreToldOnceAndAgainAfterTenInTime) {
+    MotionTracker tracker;
+    double time = 0;
+    const auto warningAfter = [&](double seconds) {
+        tracker.take(poseAt(time += seconds, {}));
+        return tracker.takeWarning();
+    };
+    EXPECT_EQ(warningAfter(0), "") << "nothing lies before the first";
+    EXPECT_THAT(warningAfter(2), testing::StartsWith("poses 2 s apart tell no motion"));
+    EXPECT_EQ(warningAfter(2), "");
+    for (int i = 0; i < 10; ++i) EXPECT_EQ(warningAfter(1), "");
+    EXPECT_THAT(warningAfter(-100), testing::StartsWith("poses 100 s apart"));
+}
+
 TEST(MotionTest, AJumpIsMotionAndWhatNoNumberHoldsIsNone) {
     MotionTracker tracker;
     for (const double t : {0.0, 0.1}) tracker.take(poseAt(t, {}));
