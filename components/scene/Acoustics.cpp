@@ -8,7 +8,7 @@
 #include <iterator>
 #include <vector>
 
-#include "components/acoustics/BackscatterTable.hpp"
+#include "components/acoustics/Backscatter.hpp"
 #include "components/acoustics/Seabed.hpp"
 #include "types/ConfigError.hpp"
 #include "types/DidYouMean.hpp"
