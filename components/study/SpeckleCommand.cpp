@@ -6,7 +6,7 @@
 
 #include "components/command/Json.hpp"
 #include "components/command/OutputFolder.hpp"
-#include "components/sonar/CastEchoes.hpp"
+#include "components/sonar/EchoRenderer.hpp"
 #include "components/study/CodedPing.hpp"
 #include "components/study/SpeckleStudy.hpp"
 #include "components/study/StudyCommand.hpp"
