@@ -5,8 +5,13 @@
 #include <numbers>
 
 namespace insonify::acoustics {
+namespace {
 
 using std::numbers::pi;
+
+const double min_cosine = std::sin(0.001 * pi / 180);
+
+}  // namespace
 
 double lambertSection(double lambert_db, double cos_incidence) {
     return std::pow(10, lambert_db / 10) * cos_incidence * cos_incidence;
@@ -21,6 +26,21 @@ double objectSection(double lambert_db, double reflection, double mean_square_sl
     const double square = std::max(cos_incidence * cos_incidence, grazing), tangent_square = (1 - square) / square;
     const double lobe = std::exp(-tangent_square / mean_square_slope) / (square * square);
     return lambertSection(lambert_db, cos_incidence) + reflection * reflection * lobe / (4 * pi * mean_square_slope);
+}
+
+BackscatterTable::BackscatterTable(const std::function<double(double)>& section) {
+    for (int i = 0; i < entries; ++i) {
+        const double cosine = std::max(min_cosine, static_cast<double>(i) / (entries - 1));
+        values_[static_cast<size_t>(i)] = section(std::asin(cosine)) / cosine;
+    }
+}
+
+Curve readBackscatter(const std::string& file) {
+    return readCurve(file, {"grazing_deg", 0, 90}, {"strength_db", -300, 100});
+}
+
+double measuredSection(const Curve& measured, double grazing) {
+    return std::pow(10, measured.at(grazing * 180 / pi) / 10);
 }
 
 }  // namespace insonify::acoustics

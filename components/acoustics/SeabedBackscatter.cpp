@@ -5,7 +5,6 @@
 #include <complex>
 #include <numbers>
 
-#include "components/acoustics/Reflection.hpp"
 #include "components/acoustics/Validity.hpp"
 
 namespace insonify::acoustics {
@@ -49,6 +48,21 @@ double slopeOf(double alpha, double roughness, double wave_number) {
 double kirchhoffLevel(double alpha) { return std::pow(2, 2 * (1 - alpha) / alpha); }
 
 }  // namespace
+
+HalfSpace halfSpaceOf(const Seabed& seabed) { return {seabed.density_ratio, seabed.speed_ratio, seabed.loss}; }
+
+std::complex<double> waveNumberRatio(const HalfSpace& half_space) {
+    return std::complex<double>(1, half_space.loss) / half_space.speed_ratio;
+}
+
+std::complex<double> halfSpaceReflection(const HalfSpace& half_space, double grazing) {
+    const std::complex<double> kappa = waveNumberRatio(half_space);
+    const double cosine = std::cos(grazing);
+    const std::complex<double> below =
+        std::sqrt(kappa * kappa - cosine * cosine);  // sine in the half-space, times kappa
+    const std::complex<double> above = half_space.density_ratio * std::sin(grazing);
+    return (above - below) / (above + below);
+}
 
 SeabedBackscatter::SeabedBackscatter(const Seabed& seabed, double frequency_khz, double speed_of_sound)
     : seabed_(seabed),

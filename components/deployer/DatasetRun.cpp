@@ -14,7 +14,7 @@
 #include "components/deployer/SweepScenes.hpp"
 #include "components/deployer/Tasks.hpp"
 #include "components/pose/Trajectory.hpp"
-#include "components/sonar/CastEchoes.hpp"
+#include "components/sonar/EchoRenderer.hpp"
 #include "types/ConfigError.hpp"
 
 namespace insonify::deployer {

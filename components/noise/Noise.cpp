@@ -4,7 +4,6 @@
 #include <cmath>
 #include <string>
 
-#include "components/noise/Ambient.hpp"
 #include "components/noise/Random.hpp"
 #include "types/VectorMath.hpp"
 

@@ -88,6 +88,9 @@ struct NoiseConfig {
     }
 };
 
+/** Mean intensity of the noise in a bin, relative to the source: 10^((N + 10 log10 B - DI - SL) / 10) [1]. */
+double ambientIntensity(const AmbientConfig& ambient);
+
 }  // namespace insonify::noise
 
 template <>

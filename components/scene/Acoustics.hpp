@@ -7,6 +7,7 @@
 #include <variant>
 #include <vector>
 
+#include "components/scene/Scene.hpp"
 #include "types/Describe.hpp"
 #include "types/Geometry.hpp"
 
@@ -108,6 +109,12 @@ using AcousticValues = std::map<std::string, AcousticValue>;
  */
 Acoustics readAcoustics(const AcousticValues& values, const std::filesystem::path& folder,
                         types::Diagnostics& diagnostics);
+
+/** The geometry of `scene` with acoustic values replaced by name of a material, or of a node with all below it, which
+ *  goes before the material. Nothing is copied when there is nothing to replace. A name that is neither is a diagnostic
+ *  at path `materials.<name>`. */
+types::GeometryPtr overrideMaterials(const Scene& scene, const std::map<std::string, Acoustics>& materials,
+                                     types::Diagnostics& diagnostics);
 
 }  // namespace insonify::scene
 

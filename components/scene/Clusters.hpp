@@ -11,6 +11,8 @@ constexpr size_t clustered_from = 10'000;
 constexpr size_t cluster_triangles = 250;
 /** Smallest kind of patch, which has half as many at least; each larger kind has 4 times as many [triangles]. */
 constexpr size_t min_node_triangles = 1000;
+/** Triangles of a mesh's outline, at most, for each run of one material [triangles]. */
+constexpr size_t max_coarse_triangles = 4000;
 
 /** Orders triangles and vertices for the GPU. On entry `mesh.clusters` are runs of one material; on return each has its
  *  box, and runs of a large mesh are split where their triangles lie apart, with patches over them, an outline of

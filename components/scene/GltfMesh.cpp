@@ -6,7 +6,6 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 
-#include "components/scene/Tangents.hpp"
 #include "types/ConfigError.hpp"
 
 namespace insonify::scene {

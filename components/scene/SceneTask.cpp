@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "components/framework/Activity.hpp"
-#include "components/scene/Overrides.hpp"
+#include "components/scene/Acoustics.hpp"
 
 namespace insonify::scene {
 namespace {

@@ -26,7 +26,6 @@
 #include <set>
 
 #include "components/scene/SdfFile.hpp"
-#include "components/scene/SdfHeightmap.hpp"
 #include "components/scene/SdfMeshes.hpp"
 #include "components/scene/SdfShapes.hpp"
 #include "components/scene/UniqueNames.hpp"

@@ -38,4 +38,11 @@ void fillAttributes(types::Mesh& mesh);
 /** "<what>: <number>" where there are any. */
 void addCount(size_t number, const char* what, std::vector<std::string>& notices);
 
+/** Gives every triangle its own three vertices with the normal of its plane. */
+void makeFlatNormals(Surface& surface);
+
+/** Tangents along growing u from positions, normals and uvs; w says that -dP/dv is w cross(normal, tangent), as glTF
+ *  means it. A vertex between triangles whose uvs are mirrored is doubled. */
+void makeTangents(Surface& surface);
+
 }  // namespace insonify::scene

@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "components/sonar/Acoustics.hpp"
+#include "components/sonar/RenderPlan.hpp"
 
 namespace insonify::sonar {
 

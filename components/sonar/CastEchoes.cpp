@@ -1,5 +1,3 @@
-#include "components/sonar/CastEchoes.hpp"
-
 #include <algorithm>
 #include <array>
 #include <atomic>
@@ -7,13 +5,14 @@
 #include <cmath>
 #include <mutex>
 
-#include "components/sonar/Acoustics.hpp"
 #include "components/sonar/BinLevels.hpp"
 #include "components/sonar/EchoField.hpp"
 #include "components/sonar/EchoGrid.hpp"
+#include "components/sonar/EchoRenderer.hpp"
 #include "components/sonar/ObjectPlaces.hpp"
 #include "components/sonar/PathEchoes.hpp"
 #include "components/sonar/RayPaths.hpp"
+#include "components/sonar/RenderPlan.hpp"
 #include "components/sonar/SurfaceScene.hpp"
 #include "components/sonar/ThreadPool.hpp"
 #include "components/sonar/TileDeposit.hpp"

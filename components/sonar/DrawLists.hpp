@@ -3,7 +3,7 @@
 #include <span>
 #include <vector>
 
-#include "components/gpu/UploadList.hpp"
+#include "components/gpu/Objects.hpp"
 #include "components/sonar/Culler.hpp"
 #include "components/sonar/SurfaceScene.hpp"
 

@@ -1,5 +1,3 @@
-#include "components/sonar/DrawnEchoes.hpp"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -10,6 +8,7 @@
 #include "components/sonar/BinLevels.hpp"
 #include "components/sonar/CpuDeposit.hpp"
 #include "components/sonar/EchoGrid.hpp"
+#include "components/sonar/EchoRenderer.hpp"
 #include "components/sonar/SurfacePass.hpp"
 #include "components/sonar/TruthGrid.hpp"
 #include "types/Angle.hpp"

@@ -1,9 +1,11 @@
 #pragma once
 #include <array>
+#include <memory>
 #include <string>
 #include <vector>
 
 #include "components/sonar/RenderPlan.hpp"
+#include "types/Geometry.hpp"
 #include "types/Snapshot.hpp"
 #include "types/Sonar.hpp"
 #include "types/SonarTruth.hpp"
@@ -65,5 +67,17 @@ public:
         collect(ping, stages);
     }
 };
+
+/** Whether this build has rays. */
+bool haveRays();
+
+/** Pings by rays on the processor, without OpenGL. Beams are shared out to the threads as these come free; a beam's
+ *  rays are cast, deposited and turned into bins by one thread, while they are in its cache. Throws std::runtime_error
+ *  where the build has none, or Embree refuses the scene. */
+std::unique_ptr<EchoRenderer> makeCastEchoes(const RenderPlan& plan, types::GeometryPtr geometry);
+
+/** Pings drawn by OpenGL. Make it, use it and destroy it on one thread, under
+ *  EglContext::making(). Throws gpu::GlError when there is no OpenGL 4.5 context, or when it is lost. */
+std::unique_ptr<PipelinedEchoes> makeDrawnEchoes(const RenderPlan& plan, types::GeometryPtr geometry);
 
 }  // namespace insonify::sonar

@@ -5,7 +5,6 @@
 #include <limits>
 #include <numbers>
 
-#include "components/sonar/Acoustics.hpp"
 #include "components/sonar/Interface.hpp"
 #include "components/sonar/Volume.hpp"
 #include "types/Angle.hpp"

@@ -5,7 +5,7 @@
 #include <map>
 #include <numbers>
 
-#include "components/acoustics/BackscatterTable.hpp"
+#include "components/acoustics/Backscatter.hpp"
 #include "components/acoustics/Seabed.hpp"
 #include "components/acoustics/SeabedBackscatter.hpp"
 

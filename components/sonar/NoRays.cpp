@@ -1,7 +1,7 @@
 // In the place of CastEchoes.cpp where the build is without Embree.
 #include <stdexcept>
 
-#include "components/sonar/CastEchoes.hpp"
+#include "components/sonar/EchoRenderer.hpp"
 
 namespace insonify::sonar {
 

@@ -7,7 +7,7 @@
 #include <limits>
 #include <numbers>
 
-#include "components/sonar/BeamAngles.hpp"
+#include "components/sonar/BeamFan.hpp"
 #include "components/sonar/Estimators.hpp"
 #include "types/Angle.hpp"
 

@@ -5,8 +5,8 @@
 
 #include "components/sonar/BinLevels.hpp"
 #include "components/sonar/Mirrors.hpp"
-#include "components/sonar/PathTruth.hpp"
 #include "components/sonar/TileDeposit.hpp"
+#include "components/sonar/TruthGrid.hpp"
 
 namespace insonify::sonar {
 

@@ -8,7 +8,6 @@
 #include <numbers>
 
 #include "components/acoustics/SoundSpeed.hpp"
-#include "components/sonar/Acoustics.hpp"
 #include "components/sonar/BeamFan.hpp"
 #include "components/sonar/BinGrid.hpp"
 #include "components/sonar/Volume.hpp"

@@ -7,7 +7,6 @@
 #include <glm/gtc/quaternion.hpp>
 #include <numbers>
 
-#include "components/sonar/Acoustics.hpp"
 #include "components/sonar/EchoField.hpp"
 #include "components/sonar/RangeResponse.hpp"
 #include "types/Angle.hpp"

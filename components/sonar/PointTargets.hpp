@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "components/acoustics/Pulse.hpp"
-#include "components/sonar/BeamAngles.hpp"
+#include "components/sonar/BeamFan.hpp"
 #include "components/sonar/RayPaths.hpp"
 #include "components/sonar/RenderPlan.hpp"
 #include "components/sonar/TargetWays.hpp"

@@ -4,8 +4,8 @@
 #include <span>
 #include <vector>
 
+#include "components/sonar/AngularView.hpp"
 #include "components/sonar/Interface.hpp"
-#include "components/sonar/TileShape.hpp"
 #include "types/Snapshot.hpp"
 
 struct RTCRayHit16;

@@ -4,7 +4,6 @@
 #include <cctype>
 #include <cmath>
 
-#include "components/sonar/Acoustics.hpp"
 #include "components/sonar/RangeResponse.hpp"
 #include "types/Angle.hpp"
 #include "types/ConfigError.hpp"
@@ -230,6 +229,13 @@ RenderPlan makeRenderPlan(const SonarConfig& config, const types::Geometry& geom
         omitMeans(plan);
     omitEffects(geometry, plan);
     return plan;
+}
+
+acoustics::Absorption makeAbsorption(const SonarConfig& config) {
+    if (!config.absorption) return {};
+    const AbsorptionConfig& absorption = *config.absorption;
+    if (absorption.db_per_m) return {*absorption.db_per_m};
+    return {acoustics::absorptionDbPerM(absorption.law, config.absorbedKhz().value(), config.water.value())};
 }
 
 }  // namespace insonify::sonar

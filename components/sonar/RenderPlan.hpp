@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "components/acoustics/Absorption.hpp"
 #include "components/acoustics/SoundProfile.hpp"
 #include "components/sonar/BeamFan.hpp"
 #include "components/sonar/BinGrid.hpp"
@@ -180,6 +181,9 @@ double dopplerCoupling(const SonarConfig& config);
  *  these are too straight for it to matter.
  *  @throws types::ConfigError with all that is wrong with the profile's file */
 std::string whyStraight(const SonarConfig& config);
+
+/** The configured absorption; none when the block is absent. A law needs `water`. */
+acoustics::Absorption makeAbsorption(const SonarConfig& config);
 
 }  // namespace insonify::sonar
 

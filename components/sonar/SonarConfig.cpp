@@ -9,7 +9,7 @@
 #include "components/gpu/EglContext.hpp"
 #include "components/sonar/BeamFan.hpp"
 #include "components/sonar/BinGrid.hpp"
-#include "components/sonar/CastEchoes.hpp"
+#include "components/sonar/EchoRenderer.hpp"
 
 namespace insonify::sonar {
 namespace {

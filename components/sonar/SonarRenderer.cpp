@@ -4,18 +4,40 @@
 #include <stdexcept>
 
 #include "components/gpu/EglContext.hpp"
-#include "components/sonar/CastEchoes.hpp"
 #include "components/sonar/EchoField.hpp"
-#include "components/sonar/ElementSignals.hpp"
+#include "components/sonar/LineArray.hpp"
 #include "components/sonar/PlanReport.hpp"
 #include "components/sonar/PointTargets.hpp"
-#include "components/sonar/RingDown.hpp"
 
 namespace insonify::sonar {
-
 namespace {
 
 constexpr Stages no_time{{{"cull", 0}, {"draw", 0}, {"read", 0}, {"deposit", 0}, {"beams", 0}}};
+
+/** The transmitter, as every beam hears it in its first bins (ACOUSTICS.md 5.15). */
+class RingDown {
+public:
+    /** Of a plan whose pulse has one. */
+    explicit RingDown(const RenderPlan& plan);
+    /** Once the bins are filled. Allocates nothing. */
+    void add(types::Sonar& ping) const;
+
+private:
+    std::vector<float> bins_;  ///< Of each beam, as far as anything is left.
+};
+
+RingDown::RingDown(const RenderPlan& plan) {
+    for (int k = 0; k < plan.grid.bin_count; ++k) {
+        const double heard = plan.config.pulse->ring_down->mean(plan.grid.edge(k), plan.grid.edge(k + 1));
+        if (static_cast<float>(heard) == 0) return;
+        bins_.push_back(static_cast<float>(heard));
+    }
+}
+
+void RingDown::add(types::Sonar& ping) const {
+    for (size_t beam = 0; beam < ping.beam_count; ++beam)
+        for (size_t k = 0; k < bins_.size(); ++k) ping.bins[beam * ping.bin_count + k] += bins_[k];
+}
 
 /** A ping that is submitted. */
 struct UnderWay {

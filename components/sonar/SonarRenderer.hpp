@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "components/sonar/DrawnEchoes.hpp"
+#include "components/sonar/EchoRenderer.hpp"
 #include "components/sonar/SonarConfig.hpp"
 #include "types/Plan.hpp"
 #include "types/Snapshot.hpp"

@@ -4,7 +4,6 @@
 #include <cmath>
 #include <limits>
 
-#include "components/sonar/Acoustics.hpp"
 #include "types/Angle.hpp"
 
 namespace insonify::sonar {

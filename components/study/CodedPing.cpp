@@ -1,9 +1,34 @@
 #include "components/study/CodedPing.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
+
+#include "types/ConfigError.hpp"
 
 namespace insonify::study {
+namespace {
+
+namespace fs = std::filesystem;
+
+/** The files that are named, and those in the folders that are. */
+std::vector<fs::path> filesOf(const std::vector<std::string>& names) {
+    std::vector<fs::path> files;
+    for (const fs::path name : names) {
+        if (!fs::is_directory(name)) {
+            files.push_back(name);
+            continue;
+        }
+        for (const auto& entry : fs::directory_iterator(name))
+            if (entry.is_regular_file()) files.push_back(entry.path());
+    }
+    std::ranges::sort(files);
+    return files;
+}
+
+}  // namespace
 
 double CodedPing::levelDb(float code) const {
     const double least = 0.5 / (std::pow(2, bits) - 1), share = std::max(least, static_cast<double>(code));
@@ -37,6 +62,21 @@ CodedPing codedPing(const types::Sonar& ping, const receiver::CodeConfig& code, 
     for (const types::Angle& bearing : ping.bearings) coded.bearings.push_back(bearing.rad);
     for (float& each : coded.codes) each /= static_cast<float>((1 << code.bits) - 1);
     return coded;
+}
+
+std::vector<CodedPing> recordedPings(const std::vector<std::string>& names) {
+    std::vector<CodedPing> pings;
+    for (const fs::path& file : filesOf(names))
+        for (const device::OculusPing& ping : device::readOculusPings(file)) {
+            CodedPing coded = codedPing(ping, fmt::format("recorded_{}", ping.number));
+            coded.file = file.string();
+            const auto isSame = [&](const CodedPing& other) {
+                return other.name == coded.name && other.codes == coded.codes;
+            };
+            if (std::ranges::none_of(pings, isSame)) pings.push_back(std::move(coded));
+        }
+    if (pings.empty()) throw types::ConfigError(names.front(), "--real", "is a folder without a file");
+    return pings;
 }
 
 }  // namespace insonify::study

@@ -30,4 +30,8 @@ CodedPing codedPing(const device::OculusPing& ping, std::string name);
 /** A ping that a receiver gave out as codes, by what it was configured to. */
 CodedPing codedPing(const types::Sonar& ping, const receiver::CodeConfig& code, std::string name);
 
+/** The pings of Oculus recordings, files or folders of them, each once, named by its number: "recorded_5".
+ *  @throws types::ConfigError where a file holds none, or a folder no file */
+std::vector<CodedPing> recordedPings(const std::vector<std::string>& names);
+
 }  // namespace insonify::study

@@ -1,5 +1,3 @@
-#include "components/study/CoherentSpeckle.hpp"
-
 #include <array>
 #include <cmath>
 
@@ -8,6 +6,7 @@
 #include "components/study/Probe.hpp"
 #include "components/study/Shapes.hpp"
 #include "components/study/SpeckleStatistics.hpp"
+#include "components/study/SpeckleStudy.hpp"
 #include "types/Angle.hpp"
 
 namespace insonify::study {

@@ -10,7 +10,7 @@
 #include <thread>
 #include <utility>
 
-#include "components/study/LogLogPlot.hpp"
+#include "components/study/Plot.hpp"
 
 namespace insonify::study {
 namespace {

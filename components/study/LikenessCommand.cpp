@@ -6,8 +6,8 @@
 
 #include "components/command/Json.hpp"
 #include "components/command/OutputFolder.hpp"
+#include "components/study/CodedPing.hpp"
 #include "components/study/LikenessReport.hpp"
-#include "components/study/Recordings.hpp"
 #include "components/study/StudyCommand.hpp"
 
 namespace insonify::study {

@@ -10,7 +10,7 @@
 #include <stdexcept>
 
 #include "components/output/PictureFiles.hpp"
-#include "components/study/LinePlot.hpp"
+#include "components/study/Plot.hpp"
 
 namespace insonify::study {
 namespace {

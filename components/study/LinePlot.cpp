@@ -1,9 +1,9 @@
-#include "components/study/LinePlot.hpp"
-
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <iterator>
+
+#include "components/study/Plot.hpp"
 
 namespace insonify::study {
 namespace {

@@ -1,11 +1,11 @@
-#include "components/study/LogLogPlot.hpp"
-
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 #include <iterator>
 #include <limits>
+
+#include "components/study/Plot.hpp"
 
 namespace insonify::study {
 namespace {

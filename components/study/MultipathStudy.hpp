@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "components/study/ErrorAnalysis.hpp"
-#include "components/study/LinePlot.hpp"
+#include "components/study/Plot.hpp"
 
 namespace insonify::study {
 

@@ -6,9 +6,9 @@
 #include <iterator>
 #include <memory>
 
-#include "components/sonar/Acoustics.hpp"
 #include "components/sonar/BinGrid.hpp"
 #include "components/sonar/PlanReport.hpp"
+#include "components/sonar/RenderPlan.hpp"
 #include "components/sonar/SonarRenderer.hpp"
 #include "components/study/Metrics.hpp"
 

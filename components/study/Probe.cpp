@@ -4,9 +4,9 @@
 #include <cmath>
 #include <numeric>
 
-#include "components/sonar/Acoustics.hpp"
 #include "components/sonar/BeamFan.hpp"
 #include "components/sonar/BinGrid.hpp"
+#include "components/sonar/RenderPlan.hpp"
 #include "components/sonar/SonarRenderer.hpp"
 #include "components/study/EmbreeCaster.hpp"
 #include "components/study/Shapes.hpp"

@@ -6,9 +6,8 @@
 
 #include "components/command/Json.hpp"
 #include "components/command/OutputFolder.hpp"
-#include "components/sonar/CastEchoes.hpp"
-#include "components/study/CoherentSpeckle.hpp"
-#include "components/study/Recordings.hpp"
+#include "components/sonar/EchoRenderer.hpp"
+#include "components/study/CodedPing.hpp"
 #include "components/study/SpeckleStudy.hpp"
 #include "components/study/StudyCommand.hpp"
 #include "components/study/StudyScene.hpp"

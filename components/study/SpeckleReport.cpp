@@ -6,7 +6,7 @@
 #include <iterator>
 #include <stdexcept>
 
-#include "components/study/LinePlot.hpp"
+#include "components/study/Plot.hpp"
 #include "components/study/SpeckleStudy.hpp"
 
 namespace insonify::study {

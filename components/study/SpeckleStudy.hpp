@@ -40,6 +40,12 @@ std::vector<SpeckleRow> simulatedRows(const sonar::SonarConfig& config, const ty
 std::vector<Claim> lawClaims();
 std::vector<Claim> recordedClaims(const std::vector<SpeckleRow>& recorded);
 
+/** What is promised of a sonar with `speckle: {coherent: true}` over a level bottom: it stands still with the scene, is
+ *  Rayleigh's for many scatterers and K's for few, of a shape that goes as the range, is shared by neighbouring bins
+ *  and beams as pulse and pattern say, and is lost as the sonar moves aside by parts of its aperture. Takes some
+ *  seconds, and rays. */
+std::vector<Claim> coherentClaims();
+
 /** Names of the figures of a slice, and their values. */
 struct SpeckleFigure {
     const char* name;

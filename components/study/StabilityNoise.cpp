@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "components/noise/Noise.hpp"
-#include "components/study/StabilityGroups.hpp"
+#include "components/study/StabilityStudy.hpp"
 
 namespace insonify::study {
 namespace {

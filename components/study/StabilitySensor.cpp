@@ -1,17 +1,21 @@
-// Fans, beams and apertures.
+// Fans, beams, apertures, range bins, beam patterns and pulses at the ends of what they may be.
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
+#include <numeric>
 
+#include "components/sonar/BinGrid.hpp"
 #include "components/study/Probe.hpp"
 #include "components/study/Shapes.hpp"
-#include "components/study/StabilityGroups.hpp"
+#include "components/study/StabilityStudy.hpp"
 #include "types/Angle.hpp"
 
 namespace insonify::study {
 namespace {
 
+using sonar::SonarConfig;
 using types::radians;
 
 /** A room of 20 x 30 m, its bottom 4 m below the sonar, which stands off its middle. No wall stands at the edge of a
@@ -99,6 +103,82 @@ Outcome oneRow() {
                   "10 deg on a wall by one row and one column per beam", heard);
 }
 
+/** A Gaussian beam, which has no sidelobes: its integral over azimuth is known. */
+Outcome narrowBeam(double width_deg) {
+    sonar::SonarConfig config = fan(40, 40, 4, 25);
+    setSamples(config, 512, 1);
+    acoustics::BeamLaw& law = config.beam_pattern.emplace().receive.azimuth.emplace();
+    law.weighting = acoustics::Weighting::Gaussian;
+    law.width_deg = width_deg;
+    const Probe heard = probe(config, lookingAt(sceneOf({levelGround(-5)})));
+    const double integral = radians(width_deg) / 2 * std::sqrt(std::numbers::pi / std::numbers::ln2);
+    const double truth = planeTruth({0, 0, -1}, 5)({-integral / 2, integral / 2, radians(20)}, 0, 25);
+    double worst = 0;
+    for (uint32_t beam = 0; beam < 4; ++beam) worst = std::max(worst, off(heard.energy(beam), truth));
+    return within(0.01, worst, fmt::format("beams of {:g} deg every 10 deg, one column each, over a bottom", width_deg),
+                  heard);
+}
+
+types::Sonar pulsed(double bins_long, bool whole) {
+    sonar::SonarConfig config = fan(20, 20, 4, 25);
+    if (whole) config.pulse.emplace().duration_us = bins_long * 200;  // a bin of 0.1 m at 1000 m/s, there and back
+    return probe(config, lookingAt(sceneOf({facingWall(12)}))).ping;
+}
+
+/** Sums of the bins of a pulse so many bins long, over those without a pulse. */
+Outcome pulseEnergy(double bins_long, double expected) {
+    const types::Sonar plain = pulsed(bins_long, false), heard = pulsed(bins_long, true);
+    const auto sum = [](const types::Sonar& ping) { return std::accumulate(ping.bins.begin(), ping.bins.end(), 0.0); };
+    const double deviation = off(sum(heard), expected * sum(plain));
+    return {{},
+            fmt::format("a tone of {:g} bins: {:.6g} times what no pulse gives", bins_long, sum(heard) / sum(plain)),
+            deviation,
+            deviation <= 1e-5 ? Verdict::Pass : Verdict::Fail};
+}
+
+/** One bin against a thousand. */
+Outcome oneBin(const types::GeometryPtr& geometry, double pitch) {
+    SonarConfig many = fan(60, 40, 16, 50), one = many;
+    setSamples(many, 1024);
+    setSamples(one, 1024);
+    many.bin_count = 1000;
+    one.bin_count = 1;
+    const Probe in_one = probe(one, lookingAt(geometry, {}, 0, pitch)),
+                in_many = probe(many, lookingAt(geometry, {}, 0, pitch));
+    const double deviation = off(in_one.energy(), in_many.energy());
+    return within(1e-6, deviation, "the energy of one bin against the sum of 1000", in_one);
+}
+
+Outcome twentyThousandBins() {
+    SonarConfig config = fan(20, 20, 20, 2000);
+    const Probe heard = probe(config, lookingAt(sceneOf({levelGround(-5, 8000)})));
+    return within(1e-3, worstBeam(heard, config, planeTruth({0, 0, -1}, 5)),
+                  "20 beams over a bottom 5 m below, to 2 km", heard);
+}
+
+Outcome narrowBinsFarAway() {
+    SonarConfig config = fan(1, 1, 1, 2000);
+    config.bin_count = 65536;
+    config.range_rounding = sonar::RangeRounding::Exact;
+    const sonar::BinGrid grid = sonar::makeBinGrid(config);
+    const double distance = 1999.875;  // exact in float
+    const Probe heard = probe(config, lookingAt(sceneOf({facingWall(static_cast<float>(distance))})));
+    const int bin = static_cast<int>(distance / grid.bin_width);
+    Outcome outcome = within(
+        0, std::abs(heard.firstReturn(0) - bin),
+        fmt::format("bins of {:.3g} m, the narrowest at 2 km that may be; deviation in bins", grid.bin_width), heard);
+    outcome.conditions.push_back({"ulps_per_bin", grid.bin_width / 1.2207e-4});
+    return outcome;
+}
+
+Outcome noBlanking() {
+    SonarConfig config = fan(60, 40, 16, 10), blanked = config;
+    config.range_min = 0;
+    const auto geometry = sceneOf({levelGround(-2), facingWall(5)});
+    const Probe heard = probe(config, lookingAt(geometry)), plain = probe(blanked, lookingAt(geometry));
+    return within(1e-6, difference(heard.ping, plain.ping), "range_min 0 where nothing is nearer than 0.1 m", heard);
+}
+
 }  // namespace
 
 std::vector<StabilityCase> sensorCases() {
@@ -114,8 +194,19 @@ std::vector<StabilityCase> sensorCases() {
         {{23, "One beam", "to 1e-3 of the closed form", [] { return beamsBeforeAWall(1, 20); }},
          {23, "4096 beams", "to 1e-3 of the closed form", [] { return beamsBeforeAWall(4096, 120); }},
          {23, "More beams than columns", "no beam empty: each to 1e-3 of the closed form", moreBeamsThanColumns},
+         {24, "One bin, before a wall", "the energy of many bins, to 1e-6",
+          [] { return oneBin(sceneOf({facingWall(10)}), 0); }},
+         {24, "One bin, over a grazed bottom", "the energy of many bins, to 1e-6",
+          [] { return oneBin(sceneOf({levelGround(-5)}), 0.1); }},
+         {24, "20,000 bins", "every beam to 1e-3 of the closed form", twentyThousandBins},
+         {25, "Bins near the resolution of float", "first return in its bin", narrowBinsFarAway},
+         {27, "range_min of 0", "as with a blanking that hides nothing", noBlanking},
          {30, "Vertical aperture of 0.01 deg", "to 1e-3 of the closed form", thinAperture},
-         {30, "One image row", "to 1 % of the closed form", oneRow}});
+         {30, "One image row", "to 1 % of the closed form", oneRow},
+         {31, "Beams far narrower than their distance", "to 1 % of the closed form", [] { return narrowBeam(0.1); }},
+         {59, "A pulse shorter than a bin", "its length over the bin's, to 1e-5", [] { return pulseEnergy(0.6, 0.6); }},
+         {59, "A pulse longer than the range", "every bin has the whole energy, to 1e-5",
+          [] { return pulseEnergy(1000, 250); }}});
     return cases;
 }
 

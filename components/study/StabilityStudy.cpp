@@ -8,8 +8,6 @@
 #include <fstream>
 #include <stdexcept>
 
-#include "components/study/StabilityGroups.hpp"
-
 namespace insonify::study {
 namespace {
 
@@ -91,8 +89,7 @@ const char* nameOf(Verdict verdict) {
 
 std::vector<StabilityCase> stabilityCases() {
     std::vector<StabilityCase> all;
-    for (const auto& group : {precisionCases, geometryCases, sensorCases, rangeCases, levelCases, sumCases, noiseCases,
-                              patternCases, lobeCases})
+    for (const auto& group : {precisionCases, geometryCases, sensorCases, levelCases, sumCases, noiseCases})
         for (StabilityCase& added : group()) all.push_back(std::move(added));
     return all;
 }

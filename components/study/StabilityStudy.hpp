@@ -1,4 +1,5 @@
 #pragma once
+// The groups of ACOUSTICS.md 11, a file each.
 #include <filesystem>
 #include <functional>
 #include <string>
@@ -34,6 +35,14 @@ struct StabilityCase {
 
 /** Every case that has a figure to tell; those that only hold or do not are tests. */
 std::vector<StabilityCase> stabilityCases();
+
+// Its groups, a file each.
+std::vector<StabilityCase> precisionCases();  ///< Ranges, world offsets, grazing: 1 to 4, 7, 13 to 16, 60.
+std::vector<StabilityCase> geometryCases();   ///< Odd geometry: 5, 6, 12, 17, 56.
+std::vector<StabilityCase> sensorCases();     ///< Fans, bins, beam patterns, pulses: 21, 23 to 25, 27, 30, 31, 59.
+std::vector<StabilityCase> levelCases();      ///< Dynamic range: 32, 33, 35, 36, 38 to 40.
+std::vector<StabilityCase> sumCases();        ///< Sums, devices, sizes: 41, 44, 55, 58.
+std::vector<StabilityCase> noiseCases();      ///< Seeds and shapes of speckle: 47, 48.
 
 /** A case with its outcome. */
 struct StabilityRow {

@@ -5,8 +5,6 @@
 #include <numbers>
 
 #include "components/acoustics/Backscatter.hpp"
-#include "components/acoustics/BackscatterTable.hpp"
-#include "components/acoustics/Reflection.hpp"
 #include "components/acoustics/SeabedBackscatter.hpp"
 #include "tests/support/Folder.hpp"
 #include "types/ConfigError.hpp"

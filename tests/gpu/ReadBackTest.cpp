@@ -4,8 +4,8 @@
 #include <vector>
 
 #include "components/gpu/EglContext.hpp"
+#include "components/gpu/Objects.hpp"
 #include "components/gpu/ReadBack.hpp"
-#include "components/gpu/UploadList.hpp"
 
 namespace insonify::gpu {
 namespace {

@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "components/acoustics/AmbientNoise.hpp"
-#include "components/noise/Ambient.hpp"
+#include "components/noise/NoiseConfig.hpp"
 
 namespace insonify::noise {
 namespace {

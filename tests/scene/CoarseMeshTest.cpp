@@ -4,7 +4,6 @@
 #include <glm/geometric.hpp>
 
 #include "components/scene/Clusters.hpp"
-#include "components/scene/CoarseMesh.hpp"
 #include "tests/support/Scenes.hpp"
 
 namespace insonify::scene {

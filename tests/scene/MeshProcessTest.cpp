@@ -10,7 +10,6 @@
 #include "components/scene/AssimpFile.hpp"
 #include "components/scene/Gltf.hpp"
 #include "components/scene/MeshFile.hpp"
-#include "components/scene/MeshProcess.hpp"
 #include "tests/scene/Dae.hpp"
 #include "tests/scene/SdfFiles.hpp"
 

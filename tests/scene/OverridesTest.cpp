@@ -1,4 +1,4 @@
-#include "components/scene/Overrides.hpp"
+#include "components/scene/Acoustics.hpp"
 #include "tests/scene/SceneFiles.hpp"
 
 namespace insonify::scene {

@@ -1,7 +1,7 @@
 // Shapes, materials and heightmaps of SDF visuals, against their closed forms.
 #include <numbers>
 
-#include "components/scene/Overrides.hpp"
+#include "components/scene/Acoustics.hpp"
 #include "components/scene/SdfMeshes.hpp"
 #include "tests/scene/SdfFiles.hpp"
 

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 
-#include "components/scene/Tangents.hpp"
+#include "components/scene/Surface.hpp"
 
 namespace insonify::scene {
 namespace {

@@ -1,7 +1,7 @@
 #include <gtest/gtest.h>
 
 #include "components/acoustics/SoundSpeed.hpp"
-#include "components/sonar/Acoustics.hpp"
+#include "components/sonar/RenderPlan.hpp"
 
 namespace insonify::sonar {
 namespace {

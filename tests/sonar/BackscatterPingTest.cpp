@@ -7,9 +7,9 @@
 
 #include "components/acoustics/Seabed.hpp"
 #include "components/acoustics/SeabedBackscatter.hpp"
-#include "components/sonar/FacetSlopes.hpp"
 #include "components/sonar/PlanReport.hpp"
 #include "components/sonar/SonarRenderer.hpp"
+#include "components/sonar/SurfaceScene.hpp"
 #include "tests/support/ClosedForms.hpp"
 #include "tests/support/EveryWay.hpp"
 #include "tests/support/Scenes.hpp"

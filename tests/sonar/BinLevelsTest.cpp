@@ -3,8 +3,8 @@
 #include <cmath>
 #include <limits>
 
-#include "components/sonar/Acoustics.hpp"
 #include "components/sonar/BinLevels.hpp"
+#include "components/sonar/RenderPlan.hpp"
 
 namespace insonify::sonar {
 namespace {

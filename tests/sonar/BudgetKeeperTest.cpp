@@ -5,7 +5,7 @@
 #include <random>
 #include <vector>
 
-#include "components/sonar/BudgetKeeper.hpp"
+#include "components/sonar/QualityKeeper.hpp"
 
 namespace insonify::sonar {
 namespace {

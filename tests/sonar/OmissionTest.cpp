@@ -8,9 +8,9 @@
 #include <optional>
 #include <set>
 
-#include "components/sonar/Acoustics.hpp"
 #include "components/sonar/BinGrid.hpp"
 #include "components/sonar/PlanReport.hpp"
+#include "components/sonar/RenderPlan.hpp"
 #include "components/sonar/SonarRenderer.hpp"
 #include "tests/support/Folder.hpp"
 #include "tests/support/Surfaces.hpp"

@@ -2,7 +2,7 @@
 
 #include "components/framework/ConfigReader.hpp"
 #include "components/sonar/AltimeterTask.hpp"
-#include "components/sonar/HeadConfig.hpp"
+#include "components/sonar/HeadScan.hpp"
 #include "components/sonar/ProfilerTask.hpp"
 #include "components/sonar/SideScanTask.hpp"
 #include "components/sonar/Sonar3dTask.hpp"

@@ -1,4 +1,4 @@
-#include "components/noise/Ambient.hpp"
+#include "components/noise/NoiseConfig.hpp"
 
 #include <cmath>
 #include <string>
