@@ -7,7 +7,7 @@
 #include <string>
 
 #include "components/framework/TaskContext.hpp"
-#include "types/DeploymentStatus.hpp"
+#include "types/DeploymentControl.hpp"
 #include "types/Plan.hpp"
 #include "types/Time.hpp"
 

@@ -2,7 +2,7 @@
 #include <string>
 
 #include "components/framework/Graph.hpp"
-#include "types/DeploymentStatus.hpp"
+#include "types/DeploymentControl.hpp"
 
 namespace insonify::framework {
 
