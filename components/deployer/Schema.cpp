@@ -5,7 +5,7 @@
 #include <cmath>
 #include <set>
 
-#include "components/framework/DeploymentKeys.hpp"
+#include "components/framework/DeploymentSpec.hpp"
 #include "components/framework/Properties.hpp"
 #include "components/framework/Quantity.hpp"
 

@@ -62,6 +62,15 @@ public:
     virtual std::string indivisible() const { return {}; }
 };
 
+/** A task that may be in error only because nobody sends it anything: a run that ends so has not failed. */
+class Waits {
+public:
+    virtual ~Waits() = default;
+
+    /** Whether it is so now, having heard of somebody before. From any thread. */
+    virtual bool waits() const = 0;
+};
+
 /** Of a task that is Planned; null: it is not, or not yet. On the task's thread, or when it has stopped. */
 inline const types::Plan* planOf(const TaskContext& task) {
     const auto* const planned = dynamic_cast<const Planned*>(&task);
