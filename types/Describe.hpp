@@ -13,7 +13,7 @@
 #include <string_view>
 #include <vector>
 
-#include "types/Diagnostic.hpp"
+#include "types/ConfigError.hpp"
 
 namespace insonify::types {
 

@@ -1,6 +1,8 @@
 #pragma once
+#include <algorithm>
 #include <cmath>
 #include <glm/common.hpp>
+#include <glm/geometric.hpp>
 #include <glm/gtc/quaternion.hpp>
 #include <glm/mat3x3.hpp>
 #include <glm/mat4x4.hpp>
@@ -71,6 +73,20 @@ template <class Placed>
 void interpolate(const Placed& from, const Placed& to, double share, Pose& pose) {
     pose.position = glm::mix(from.position, to.position, share);
     pose.orientation = glm::normalize(glm::slerp(from.orientation, to.orientation, share));
+}
+
+/** A pose as its velocities have it at `time`, but at most `most` seconds on and never back; its stamp as well. As it
+ *  is where they are not known. */
+inline Pose extrapolatePose(Pose pose, Time time, double most) {
+    const double seconds = std::clamp((time - pose.time).seconds(), 0.0, most);
+    const double turn = glm::length(pose.angular_velocity) * seconds;
+    if (!std::isfinite(glm::length(pose.velocity)) || !std::isfinite(turn)) return pose;
+    pose.time.microseconds += std::llround(seconds * 1e6);
+    pose.position += pose.velocity * seconds;
+    if (turn > 0)
+        pose.orientation =
+            glm::normalize(pose.orientation) * glm::angleAxis(turn, glm::normalize(pose.angular_velocity));
+    return pose;
 }
 
 }  // namespace insonify::types

@@ -6,7 +6,7 @@
 #include "components/dds/SubscriberTask.hpp"
 #include "components/dds/TransformTask.hpp"
 #include "components/framework/ConfigReader.hpp"
-#include "components/framework/Latency.hpp"
+#include "components/framework/Timing.hpp"
 #include "components/framework/Upstream.hpp"
 #include "components/ros/Poses.hpp"
 #include "components/ros/Times.hpp"

@@ -11,7 +11,7 @@
 
 #include "components/acoustics/Backscatter.hpp"
 #include "components/acoustics/SeabedBackscatter.hpp"
-#include "components/deployer/Commands.hpp"
+#include "components/deployer/CommandLine.hpp"
 #include "components/deployer/Json.hpp"
 #include "components/scene/Acoustics.hpp"
 #include "types/DidYouMean.hpp"

@@ -5,7 +5,7 @@
 #include <fstream>
 #include <memory>
 
-#include "components/deployer/Commands.hpp"
+#include "components/deployer/CommandLine.hpp"
 #include "components/deployer/DeploymentFile.hpp"
 #include "components/deployer/Json.hpp"
 #include "components/deployer/Tasks.hpp"

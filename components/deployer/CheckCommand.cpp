@@ -3,7 +3,7 @@
 
 #include <memory>
 
-#include "components/deployer/Commands.hpp"
+#include "components/deployer/CommandLine.hpp"
 #include "components/deployer/DeploymentFile.hpp"
 #include "components/deployer/Json.hpp"
 #include "components/deployer/Tasks.hpp"

@@ -7,7 +7,6 @@
 #include <exception>
 #include <iostream>
 
-#include "components/deployer/Commands.hpp"
 #include "components/deployer/Pipeline.hpp"
 #include "types/ConfigError.hpp"
 #include "types/DidYouMean.hpp"

@@ -4,7 +4,7 @@
 
 #include <memory>
 
-#include "components/deployer/Commands.hpp"
+#include "components/deployer/CommandLine.hpp"
 #include "components/deployer/Starter.hpp"
 #include "components/deployer/Tasks.hpp"
 

@@ -7,7 +7,7 @@
 #include "components/command/OutputFolder.hpp"
 #include "components/command/ProgressLine.hpp"
 #include "components/dataset/Collection.hpp"
-#include "components/deployer/Commands.hpp"
+#include "components/deployer/CommandLine.hpp"
 #include "components/deployer/DatasetRun.hpp"
 #include "components/deployer/StopSignal.hpp"
 

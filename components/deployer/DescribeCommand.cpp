@@ -5,9 +5,9 @@
 #include <cmath>
 #include <memory>
 
-#include "components/deployer/Commands.hpp"
+#include "components/deployer/CommandLine.hpp"
 #include "components/deployer/Json.hpp"
-#include "components/deployer/SceneReport.hpp"
+#include "components/deployer/SceneCommand.hpp"
 #include "components/deployer/Tasks.hpp"
 #include "components/framework/Operation.hpp"
 #include "components/framework/Port.hpp"

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <memory>
 
-#include "components/deployer/Commands.hpp"
+#include "components/deployer/CommandLine.hpp"
 #include "components/deployer/Json.hpp"
 #include "components/deployer/Tasks.hpp"
 #include "components/device/Probe.hpp"

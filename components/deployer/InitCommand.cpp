@@ -5,7 +5,7 @@
 #include <fstream>
 #include <memory>
 
-#include "components/deployer/Commands.hpp"
+#include "components/deployer/CommandLine.hpp"
 #include "components/deployer/Starter.hpp"
 #include "types/ConfigError.hpp"
 

@@ -9,12 +9,11 @@
 #include <optional>
 #include <set>
 
-#include "components/deployer/Commands.hpp"
+#include "components/deployer/CommandLine.hpp"
 #include "components/deployer/DeploymentFile.hpp"
-#include "components/deployer/DeviceExport.hpp"
+#include "components/deployer/Export.hpp"
 #include "components/deployer/Import.hpp"
 #include "components/deployer/Json.hpp"
-#include "components/deployer/PictureExport.hpp"
 #include "components/deployer/StreamMeaning.hpp"
 #include "components/log/Check.hpp"
 #include "components/log/Copy.hpp"

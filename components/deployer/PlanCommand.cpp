@@ -4,7 +4,7 @@
 #include <memory>
 #include <stdexcept>
 
-#include "components/deployer/Commands.hpp"
+#include "components/deployer/CommandLine.hpp"
 #include "components/deployer/DeploymentFile.hpp"
 #include "components/deployer/Json.hpp"
 #include "components/deployer/Pipeline.hpp"

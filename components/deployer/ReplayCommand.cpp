@@ -8,14 +8,13 @@
 #include <functional>
 #include <memory>
 
-#include "components/deployer/Commands.hpp"
+#include "components/deployer/CommandLine.hpp"
 #include "components/deployer/RecordedSettings.hpp"
 #include "components/deployer/ReplaySpec.hpp"
-#include "components/deployer/RunOptions.hpp"
-#include "components/deployer/ScoreReport.hpp"
+#include "components/deployer/RunCommand.hpp"
+#include "components/deployer/Score.hpp"
 #include "components/deployer/StopSignal.hpp"
 #include "components/log/Reader.hpp"
-#include "types/Reason.hpp"
 #include "types/Reason.hpp"
 
 namespace insonify::deployer {

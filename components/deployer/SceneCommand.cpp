@@ -1,14 +1,156 @@
 // insonify scene FILE
-#include <fmt/core.h>
+#include "components/deployer/SceneCommand.hpp"
 
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <glm/geometric.hpp>
 #include <memory>
 
-#include "components/deployer/Commands.hpp"
+#include "components/deployer/CommandLine.hpp"
 #include "components/deployer/Json.hpp"
-#include "components/deployer/SceneReport.hpp"
+#include "components/scene/Scene.hpp"
+#include "types/Extent.hpp"
 
 namespace insonify::deployer {
 namespace {
+
+Json jsonOf(const glm::dvec3& v) { return {v.x, v.y, v.z}; }
+
+Json jsonOf(const types::Extent& extent) {
+    if (extent.isEmpty()) return nullptr;
+    return {{"min", jsonOf(extent.low)},
+            {"max", jsonOf(extent.high)},
+            {"size", jsonOf(extent.size())},
+            {"centre", jsonOf((extent.low + extent.high) / 2.0)}};
+}
+
+/** Area with its direction, half of the normal of its edges [m2]. */
+struct Face {
+    int material;
+    glm::dvec3 area;
+};
+
+/** Calls `visit` for each triangle of an object in the world. */
+template <class Visit>
+void eachFace(const types::Geometry& geometry, const types::Object& object, const Visit& visit) {
+    const types::Mesh& mesh = geometry.meshes[static_cast<size_t>(object.mesh)];
+    const auto corner = [&](size_t k) {
+        return glm::dvec3(object.world_from_object * glm::dvec4(mesh.positions[mesh.indices[k]], 1));
+    };
+    for (const types::Cluster& cluster : mesh.clusters)
+        for (size_t k = cluster.first_index; k < size_t{cluster.first_index} + cluster.index_count; k += 3)
+            visit(Face{cluster.material, glm::cross(corner(k + 1) - corner(k), corner(k + 2) - corner(k)) / 2.0});
+}
+
+/** How much surface there is of each material, and how much of it faces along each axis. */
+struct Surfaces {
+    std::vector<size_t> triangles;
+    std::vector<double> areas;  ///< [m2]
+    glm::dvec3 facing{0};       ///< Sum over faces of the size of each component [m2].
+
+    explicit Surfaces(const types::Geometry& geometry)
+        : triangles(geometry.materials.size()), areas(geometry.materials.size()) {
+        for (const types::Object& object : geometry.objects)
+            eachFace(geometry, object, [&](const Face& face) {
+                const auto material = static_cast<size_t>(face.material);
+                ++triangles[material];
+                areas[material] += glm::length(face.area);
+                facing += glm::abs(face.area);
+            });
+    }
+};
+
+Json jsonOf(const types::Material& material, size_t triangles, double area) {
+    return {{"name", material.name},
+            {"source", material.has_acoustics ? "file" : "default"},
+            {"lambert_db", material.lambert_db},
+            {"reflection", material.reflection},
+            {"roughness_slope", material.roughness_slope ? Json(*material.roughness_slope) : Json()},
+            {"sediment", material.seabed.empty() ? Json() : Json(material.seabed)},
+            {"measured_angles", material.measured.size()},
+            {"reflectivity", material.reflectivity},
+            {"normal_map", material.normal_map >= 0},
+            {"triangles", triangles},
+            {"area_m2", area}};
+}
+
+Json objectsOf(const types::Geometry& geometry) {
+    Json objects = Json::array();
+    for (const types::Object& object : geometry.objects) {
+        const types::Mesh& mesh = geometry.meshes[static_cast<size_t>(object.mesh)];
+        objects.push_back({{"name", object.name},
+                           {"triangles", mesh.indices.size() / 3},
+                           {"bounds", jsonOf(types::extentOf(mesh, object.world_from_object))}});
+    }
+    return objects;
+}
+
+bool isGltf(const std::string& file) {
+    const std::string extension = scene::extensionOf(file);
+    return extension == ".gltf" || extension == ".glb";
+}
+
+/** A sea floor that was written with z up stands as a wall across y once it has been turned from y-up. */
+bool liesOnItsSide(const types::Extent& extent, const glm::dvec3& facing) {
+    const double all = facing.x + facing.y + facing.z;
+    const glm::dvec3 size = extent.size();
+    return all > 0 && facing.y > 0.6 * all && size.z > 2 * size.y;
+}
+
+Json warningsOf(const std::string& file, const types::Extent& extent, const Surfaces& surfaces, const Json& materials) {
+    Json warnings = Json::array();
+    const glm::dvec3 facing = surfaces.facing;
+    if (isGltf(file) && liesOnItsSide(extent, facing))
+        warnings.push_back(fmt::format(
+            "the scene may lie on its side: {:.0f} % of its surface faces along y, and it is {:.3g} m high and {:.3g} "
+            "m "
+            "wide in y. glTF is y-up; a file written with z up comes out like this: export it with +Y up, or turn its "
+            "root node by -90 degrees about x",
+            100 * facing.y / (facing.x + facing.y + facing.z), extent.size().z, extent.size().y));
+    if (const glm::dvec3 size = extent.size(); std::max({size.x, size.y, size.z}) > 1e5)
+        warnings.push_back("the scene is more than 100 km wide; glTF and SDF are in metres");
+    const auto plain = std::ranges::count_if(materials, [](const Json& m) { return m["source"] == "default"; });
+    if (plain > 0)
+        warnings.push_back(
+            fmt::format("{} of {} materials have no acoustics and sound like medium sand; "
+                        "`insonify describe materials` lists names for extras.acoustics, and "
+                        "scene::SceneTask's property materials gives them from outside",
+                        plain, materials.size()));
+    return warnings;
+}
+
+std::string axesOf(const std::string& file) {
+    return isGltf(file) ? "glTF, y up in the file; turned to z up: (x, y, z) of the file is (x, -z, y) of the world"
+                        : "SDF, z up: x, y, z of the file are those of the world";
+}
+
+/** A scene file as a sonar will meet it, in the world's axes: {file, axes, bounds: {min, max, size, centre} [m] or
+ *  null, triangles, materials: [{name, source: file or default, lambert_db [dB], reflection, roughness_slope or null,
+ *  sediment or null, measured_angles, reflectivity, normal_map, triangles, area_m2}], objects: [{name, triangles,
+ *  bounds}], nodes: [names that a connection may move], not_understood: [], warnings: []}. Throws types::ConfigError
+ *  for a file that cannot be read. */
+Json sceneReport(const std::string& file) {
+    const scene::Scene scene = scene::readScene(file);
+    const types::Geometry& geometry = *scene.geometry;
+    const types::Extent extent = types::extentOf(geometry);
+    const Surfaces surfaces(geometry);
+    Json materials = Json::array(), nodes = Json::array();
+    for (size_t i = 0; i < geometry.materials.size(); ++i)
+        if (surfaces.triangles[i] > 0)
+            materials.push_back(jsonOf(geometry.materials[i], surfaces.triangles[i], surfaces.areas[i]));
+    for (const scene::Node& node : scene.nodes) nodes.push_back(node.name);
+    return {{"file", file},
+            {"axes", axesOf(file)},
+            {"bounds", jsonOf(extent)},
+            {"triangles", geometry.triangleCount()},
+            {"materials", materials},
+            {"objects", objectsOf(geometry)},
+            {"nodes", nodes},
+            {"not_understood", geometry.notices},
+            {"warnings", warningsOf(file, extent, surfaces, materials)}};
+}
 
 std::string text(const Json& vector) {
     return fmt::format("{:.6g}, {:.6g}, {:.6g}", vector[0].get<double>(), vector[1].get<double>(),
@@ -51,6 +193,11 @@ void printScene(const Json& scene) {
 }
 
 }  // namespace
+
+bool isSceneName(const std::string& name) {
+    const std::string extension = scene::extensionOf(name);
+    return isGltf(name) || extension == ".world" || extension == ".sdf";
+}
 
 int showScene(const std::string& file, bool json) {
     const Json scene = sceneReport(file);

@@ -1,7 +1,9 @@
 #pragma once
+#include <filesystem>
 #include <string>
 #include <vector>
 
+#include "components/deployer/Json.hpp"
 #include "components/log/Reader.hpp"
 #include "components/output/PictureConfig.hpp"
 #include "components/study/Metrics.hpp"
@@ -29,5 +31,21 @@ struct StreamScore {
 /** Compares the pings of a stream, pair by pair of the same time. Bins below 0 are taken for levels in dB; NaN counts
  *  as silence. */
 StreamScore score(log::Reader& recorded, log::Reader& rendered, const std::string& stream);
+
+/** How many pings were not compared, and why; empty: all were. */
+std::string leftOut(const StreamScore& score);
+
+/** For each stream a line on all of its pings, and a table of the worst of them. */
+std::string scoreTable(const std::vector<StreamScore>& streams, size_t worst);
+
+/** `{streams: [{stream, display: {dynamic_range_db, scale}, compared, not_rendered, not_recorded, other_shape, pings:
+ *  [{time, rel_l2, rel_l2_tvg, correlation, first_return_bins, ssim, level_distance_db, energy_bias}]}]}`, worst first.
+ */
+Json scoreJson(const std::vector<StreamScore>& streams);
+
+/** Writes pictures of the worst pings, recorded and rendered side by side on the same scale, worst first:
+ *  score_000000.png and on, on through the streams. A ping of one beam is shown on the disc of its scan. */
+void writeScorePictures(log::Reader& recorded, log::Reader& rendered, const std::vector<StreamScore>& streams,
+                        size_t worst, const std::filesystem::path& folder);
 
 }  // namespace insonify::deployer

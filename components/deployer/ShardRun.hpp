@@ -1,5 +1,5 @@
 #pragma once
-#include "components/deployer/RunOptions.hpp"
+#include "components/deployer/RunCommand.hpp"
 
 namespace insonify::deployer {
 

@@ -4,7 +4,6 @@
 #include "components/dds/PublisherTask.hpp"
 #endif
 #include "components/device/DeviceTask.hpp"
-#include "components/framework/LeftOut.hpp"
 #ifdef INSONIFY_GAZEBO
 #include "components/gazebo/PoseTask.hpp"
 #endif

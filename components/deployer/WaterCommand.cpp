@@ -7,7 +7,7 @@
 
 #include "components/acoustics/Absorption.hpp"
 #include "components/acoustics/SoundSpeed.hpp"
-#include "components/deployer/Commands.hpp"
+#include "components/deployer/CommandLine.hpp"
 #include "components/deployer/Json.hpp"
 
 namespace insonify::deployer {

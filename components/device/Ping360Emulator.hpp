@@ -3,8 +3,8 @@
 
 #include "components/device/Ping360Messages.hpp"
 #include "components/device/PingDevice.hpp"
+#include "types/ConfigError.hpp"
 #include "types/Describe.hpp"
-#include "types/Diagnostic.hpp"
 
 namespace insonify::device {
 

@@ -4,10 +4,10 @@
 #include <optional>
 
 #include "components/framework/LockstepExecutor.hpp"
+#include "components/framework/Offers.hpp"
 #include "components/framework/Operation.hpp"
+#include "components/framework/Properties.hpp"
 #include "components/framework/RealtimeExecutor.hpp"
-#include "components/framework/Status.hpp"
-#include "components/framework/Waits.hpp"
 #include "components/framework/Wiring.hpp"
 
 namespace insonify::framework {
@@ -43,6 +43,39 @@ std::optional<types::Time> firstTime(const Graph& graph) {
         if (const auto* source = dynamic_cast<const ClockSource*>(task.get()))
             if (const auto next = source->nextTime()) first = std::min(first.value_or(*next), *next);
     return first;
+}
+
+// What a deployment tells of itself while it runs; waits for no task.
+types::TaskStatus statusOf(const TaskContext& task, const std::string& type) {
+    types::TaskStatus status{task.record(),
+                             toString(task.state()),
+                             task.lastError(),
+                             task.timing().lastCycle(),
+                             task.timing().lastLatency(),
+                             task.recordedPlan(),
+                             {}};
+    status.record.type = type;
+    if (const auto* const player = dynamic_cast<const Player*>(&task)) status.playback = player->playback();
+    for (const OutputPortBase* port : task.outputs())
+        status.outputs.push_back({port->name(), port->typeName(), port->written()});
+    return status;
+}
+
+types::ConnectionStatus statusOf(const Connection& connection) {
+    const std::string_view policy = types::EnumNames<ConnPolicy::Type>::names[connection.policy.type];
+    return {connection.from->path(), connection.to->path(), std::string(policy), connection.channel->lost(),
+            connection.channel->passedOver()};
+}
+
+types::TaskInterface interfaceOf(const TaskContext& task) {
+    types::TaskInterface interface;
+    interface.name = task.name();
+    for (const PropertiesBase* properties : task.properties())
+        for (types::PropertyInfo& info : properties->list())
+            if (info.name.find_first_of(".[") == std::string::npos) interface.properties.push_back(std::move(info));
+    for (const OperationBase* operation : task.operations())
+        interface.operations.push_back(operation->name() + " " + operation->signature());
+    return interface;
 }
 
 }  // namespace

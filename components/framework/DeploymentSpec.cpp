@@ -4,7 +4,6 @@
 
 #include <algorithm>
 
-#include "components/framework/DeploymentKeys.hpp"
 #include "components/framework/PropertySources.hpp"
 #include "components/framework/YamlText.hpp"
 

@@ -7,6 +7,7 @@
 #include "components/framework/Activity.hpp"
 #include "components/framework/ConfigReader.hpp"
 #include "components/framework/ConnPolicy.hpp"
+#include "components/framework/PropertyList.hpp"
 
 namespace insonify::framework {
 
@@ -84,5 +85,12 @@ struct DeploymentSpec {
 
 /** "camera.image" -> {"camera", "image"}: split at the first dot; the second is empty when there is none. */
 std::pair<std::string, std::string> splitPort(const std::string& path);
+
+/** What a deployment file may say, from the descriptions that it is read by: the keys of the document, of a task and of
+ *  a connection, as `describe` lists properties. */
+struct DeploymentKeys {
+    std::vector<PropertyInfo> document, task, connection;
+};
+DeploymentKeys deploymentKeys();
 
 }  // namespace insonify::framework

@@ -7,7 +7,7 @@
 #include <string>
 
 #include "components/framework/TaskContext.hpp"
-#include "types/DeploymentStatus.hpp"
+#include "types/DeploymentControl.hpp"
 #include "types/Plan.hpp"
 #include "types/Time.hpp"
 
@@ -60,6 +60,15 @@ public:
     /** Why a run with this task, as its properties are, cannot be cut; empty: it can. Starts with the property that
      *  stands in the way and says what would do, "quality: is chosen ...". */
     virtual std::string indivisible() const { return {}; }
+};
+
+/** A task that may be in error only because nobody sends it anything: a run that ends so has not failed. */
+class Waits {
+public:
+    virtual ~Waits() = default;
+
+    /** Whether it is so now, having heard of somebody before. From any thread. */
+    virtual bool waits() const = 0;
 };
 
 /** Of a task that is Planned; null: it is not, or not yet. On the task's thread, or when it has stopped. */

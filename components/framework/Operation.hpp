@@ -40,6 +40,11 @@ private:
     std::string name_, doc_;
 };
 
+inline void OperationBase::requireCount(const std::vector<std::string>& arguments, size_t taken) const {
+    if (arguments.size() != taken)
+        throw types::ConfigError("", name_, fmt::format("has {} arguments, takes {}", arguments.size(), signature()));
+}
+
 template <class Signature>
 class Operation;
 

@@ -13,6 +13,7 @@
 #include <string>
 #include <vector>
 
+#include "components/framework/Activity.hpp"
 #include "components/framework/Channel.hpp"
 #include "components/framework/TaskContext.hpp"
 #include "types/TypeName.hpp"
@@ -65,8 +66,11 @@ public:
     void setTriggers(bool on) { triggers_ = on; }
 
 protected:
-    void signal() const;        ///< A sample has arrived: wakes the task if this port triggers.
-    bool newestCounts() const;  ///< The task runs in realtime.
+    /** A sample has arrived: wakes the task if this port triggers. */
+    void signal() const {
+        if (triggers_) owner().activity().trigger();
+    }
+    bool newestCounts() const { return owner().activity().realtime(); }  ///< The task runs in realtime.
 
 private:
     Need need_;
@@ -88,7 +92,7 @@ public:
 
 protected:
     /** A sample of this stamp has been written: the owner's latency in realtime. */
-    void noteWritten(types::Time stamp) const;
+    void noteWritten(types::Time stamp) const { noteLatency(owner(), stamp); }
 
     std::atomic<uint64_t> written_{0};
 };

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "components/framework/ConfigReader.hpp"
-#include "types/PropertyInfo.hpp"
+#include "types/TaskRecord.hpp"
 
 namespace insonify::framework {
 

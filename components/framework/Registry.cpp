@@ -3,6 +3,8 @@
 #include <dlfcn.h>
 
 #include <algorithm>
+#include <map>
+#include <mutex>
 
 namespace insonify::framework {
 
@@ -29,6 +31,34 @@ void Registry::loadLibrary(const std::filesystem::path& file) {
     const auto enter = reinterpret_cast<Register>(dlsym(library, "insonify_register"));
     if (!enter) throw types::ConfigError(file.string(), "", "has no function insonify_register(Registry&)");
     enter(*this);
+}
+
+namespace {
+
+/** What was lacking, by the beginnings of names. */
+struct Lacking {
+    std::mutex mutex;
+    std::map<std::string, std::string> all;
+};
+
+Lacking& lacking() {
+    static Lacking lacking;
+    return lacking;
+}
+
+}  // namespace
+
+void leaveOut(const std::string& begin, const std::string& package) {
+    const std::lock_guard lock(lacking().mutex);
+    lacking().all[begin] = package;
+}
+
+std::string whyLeftOut(const std::string& type) {
+    const std::lock_guard lock(lacking().mutex);
+    for (const auto& [begin, package] : lacking().all)
+        if (type.starts_with(begin))
+            return ", which is left out of this build: it was made without " + package + ", or told to be without it";
+    return {};
 }
 
 }  // namespace insonify::framework

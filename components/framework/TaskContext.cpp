@@ -4,7 +4,6 @@
 #include <chrono>
 
 #include "components/framework/Activity.hpp"
-#include "components/framework/LifeCycle.hpp"
 #include "components/framework/Offers.hpp"
 #include "components/framework/Operation.hpp"
 #include "components/framework/Port.hpp"
@@ -29,6 +28,28 @@ auto find(const Ports& ports, const std::string& name) -> typename Ports::value_
     for (auto* port : ports)
         if (port->name() == name) return port;
     return nullptr;
+}
+
+/** The transitions of a task as operations: configure, start, stop, cleanup, recover. A call that is refused throws
+ *  std::runtime_error with the reason. */
+std::vector<std::unique_ptr<OperationBase>> lifeCycleOperations(TaskContext& task) {
+    struct Transition {
+        const char *name, *doc;
+        Outcome (TaskContext::*make)();
+    };
+    static constexpr Transition transitions[] = {
+        {"configure", "PreOperational or Stopped -> Stopped", &TaskContext::configure},
+        {"start", "Stopped -> Running", &TaskContext::start},
+        {"stop", "Running or RunTimeError -> Stopped", &TaskContext::stop},
+        {"cleanup", "Stopped -> PreOperational", &TaskContext::cleanup},
+        {"recover", "RunTimeError -> Running; Exception -> PreOperational", &TaskContext::recover}};
+    std::vector<std::unique_ptr<OperationBase>> operations;
+    for (const Transition& transition : transitions)
+        operations.push_back(std::make_unique<Operation<void()>>(
+            &task, transition.name, transition.doc, [&task, make = transition.make] {
+                if (const Outcome outcome = (task.*make)(); !outcome) throw std::runtime_error(outcome.reason);
+            }));
+    return operations;
 }
 
 }  // namespace

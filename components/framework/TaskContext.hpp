@@ -10,7 +10,6 @@
 #include <string>
 #include <vector>
 
-#include "components/framework/Statistics.hpp"
 #include "components/framework/Timing.hpp"
 #include "types/ConfigError.hpp"
 #include "types/DeploymentControl.hpp"

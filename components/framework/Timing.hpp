@@ -1,11 +1,30 @@
 #pragma once
+#include <array>
 #include <atomic>
 #include <chrono>
 #include <cstdint>
 
-#include "components/framework/Statistics.hpp"
+#include "types/Time.hpp"
 
 namespace insonify::framework {
+
+/** Durations in a histogram of 1 % steps from 0.1 us to 1000 s: adding never allocates; quantiles are within 1 %. */
+class Statistics {
+public:
+    void add(double seconds);
+    uint64_t count() const { return count_; }
+    double median() const { return quantile(0.5); }
+    double p99() const { return quantile(0.99); }
+    double max() const { return max_; }
+    /** Smallest duration that a share `q` of all does not exceed [s]; 0 when there is none. */
+    double quantile(double q) const;
+
+private:
+    static constexpr int steps = 2315;  // ln(1e10) / ln(1.01)
+    std::array<uint32_t, steps> histogram_{};
+    uint64_t count_ = 0;
+    double max_ = 0;
+};
 
 /** How a task keeps its times. Written on the task's thread and read when it has stopped, but for what is atomic. */
 class Timing {
@@ -50,5 +69,11 @@ inline double Timing::end() {
     last_ = worked_;
     return static_cast<double>(worked_) * 1e-9;
 }
+
+class TaskContext;
+
+/** A sample of that stamp has left the task, by a port or otherwise: in realtime its latency counts, and it is late
+ *  after the activity's deadline. On the task's thread. */
+void noteLatency(TaskContext& task, types::Time stamp);
 
 }  // namespace insonify::framework

@@ -5,9 +5,9 @@
 #include <algorithm>
 #include <tuple>
 
-#include "components/framework/LeftOut.hpp"
 #include "components/framework/Offers.hpp"
 #include "components/framework/Properties.hpp"
+#include "components/framework/Registry.hpp"
 #include "types/Hash.hpp"
 
 namespace insonify::framework {

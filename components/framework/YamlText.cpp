@@ -1,12 +1,12 @@
 #include "components/framework/YamlText.hpp"
 
 #include <yaml-cpp/depthguard.h>
+#include <yaml-cpp/eventhandler.h>
 
 #include <algorithm>
 #include <fstream>
 #include <sstream>
 
-#include "components/framework/YamlDocuments.hpp"
 #include "types/ConfigError.hpp"
 
 namespace insonify::framework {
@@ -96,6 +96,38 @@ std::string yamlDiagnostic(const std::string& text, const YAML::Exception& error
     if (error.msg == "illegal map value")
         return "is not YAML: has a colon where there can be no key; a text with \": \" in it is put in quotes";
     return "is not YAML: " + error.msg;
+}
+
+class Progress final : public YAML::EventHandler {
+public:
+    void OnDocumentStart(const YAML::Mark& mark) override {
+        if (mark.pos == last_) throw YAML::ParserException(mark, "this cannot begin a value");
+        last_ = mark.pos;
+    }
+    void OnDocumentEnd() override {}
+    void OnNull(const YAML::Mark& /*mark*/, YAML::anchor_t /*anchor*/) override {}
+    void OnAlias(const YAML::Mark& /*mark*/, YAML::anchor_t /*anchor*/) override {}
+    void OnScalar(const YAML::Mark& /*mark*/, const std::string& /*tag*/, YAML::anchor_t /*anchor*/,
+                  const std::string& /*value*/) override {}
+    void OnSequenceStart(const YAML::Mark& /*mark*/, const std::string& /*tag*/, YAML::anchor_t /*anchor*/,
+                         YAML::EmitterStyle::value /*style*/) override {}
+    void OnSequenceEnd() override {}
+    void OnMapStart(const YAML::Mark& /*mark*/, const std::string& /*tag*/, YAML::anchor_t /*anchor*/,
+                    YAML::EmitterStyle::value /*style*/) override {}
+    void OnMapEnd() override {}
+
+private:
+    int last_ = -1;
+};
+
+/** Throws YAML::Exception where yaml-cpp would find documents without end: at what cannot begin a value, such as a
+ *  comma, it makes an empty one and stays where it is. */
+void checkDocuments(const std::string& text) {
+    std::istringstream stream(text);
+    YAML::Parser parser(stream);
+    Progress progress;
+    while (parser.HandleNextDocument(progress)) {
+    }
 }
 
 }  // namespace

@@ -3,8 +3,8 @@
 #include <string>
 #include <vector>
 
+#include "types/ConfigError.hpp"
 #include "types/Describe.hpp"
-#include "types/Diagnostic.hpp"
 #include "types/WorldFrame.hpp"
 
 namespace insonify::gazebo {

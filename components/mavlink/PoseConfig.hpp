@@ -6,8 +6,8 @@
 #include <string_view>
 #include <vector>
 
+#include "types/ConfigError.hpp"
 #include "types/Describe.hpp"
-#include "types/Diagnostic.hpp"
 
 namespace insonify::mavlink {
 

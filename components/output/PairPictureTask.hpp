@@ -1,4 +1,6 @@
 #pragma once
+#include <fmt/format.h>
+
 #include <memory>
 
 #include "components/framework/StreamAligner.hpp"
@@ -20,7 +22,11 @@ struct PairConfig : PictureConfig {
               self.timeout);
     }
     /** As for any pictures; the two together are at least twice as wide as one. */
-    void check(types::Diagnostics& diagnostics) const;
+    void check(types::Diagnostics& diagnostics) const {
+        PictureConfig::check(diagnostics);
+        if (width < 512)
+            diagnostics.push_back({"width", fmt::format("is {} px; two pictures side by side take 512", width)});
+    }
 };
 
 /** What the tasks have in common that show a ping beside what a sample of another port says of it. */

@@ -15,8 +15,17 @@ public:
 
 private:
     const PictureConfig& pictureConfig() const override { return *config; }
-    std::unique_ptr<Painter> makePainter() override;
-    void updateHook() override;
+    std::unique_ptr<Painter> makePainter() override {
+        auto painter = std::make_unique<SideScanImage>(*config);
+        painter_ = painter.get();
+        return painter;
+    }
+    void updateHook() override {
+        types::Range measured;
+        if (altitude.connected() && altitude.readNewest(measured) == framework::FlowStatus::NewData)
+            painter_->setAltitude(measured.range);
+        PictureTask::updateHook();
+    }
 
     SideScanImage* painter_ = nullptr;
 };

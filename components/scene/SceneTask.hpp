@@ -11,7 +11,6 @@
 #include "components/framework/Registry.hpp"
 #include "components/framework/SamplePool.hpp"
 #include "components/framework/TaskContext.hpp"
-#include "components/framework/Waits.hpp"
 #include "components/scene/Bathymetry.hpp"
 #include "components/scene/Scene.hpp"
 #include "components/scene/SceneConfig.hpp"

@@ -13,7 +13,7 @@
 #include "components/framework/Properties.hpp"
 #include "components/sonar/PlanReport.hpp"
 #include "types/ConfigError.hpp"
-#include "types/ExtrapolatePose.hpp"
+#include "types/Pose.hpp"
 
 namespace insonify::sonar {
 namespace {

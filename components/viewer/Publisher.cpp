@@ -6,8 +6,8 @@
 #include <chrono>
 #include <set>
 
-#include "components/viewer/Page.hpp"
 #include "components/viewer/SceneMesh.hpp"
+#include "components/viewer/Server.hpp"
 
 namespace insonify::viewer {
 namespace {

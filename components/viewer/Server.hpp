@@ -17,6 +17,8 @@ inline constexpr const char* page_protocol = "insonify.view.v1";
 struct PageFile {
     std::string_view type, content;  ///< MIME type, text.
 };
+/** A file of the page, all of which are in the program; "/" is the page itself. */
+std::optional<PageFile> pageFile(std::string_view path);
 
 /** What a server asks of who owns it; called on the server's thread. */
 class ServerHandler {

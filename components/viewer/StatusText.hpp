@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "components/viewer/Server.hpp"
-#include "types/DeploymentStatus.hpp"
+#include "types/DeploymentControl.hpp"
 
 namespace insonify::viewer {
 

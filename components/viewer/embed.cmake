@@ -2,7 +2,7 @@
 set(type_html "text/html; charset=utf-8")
 set(type_css "text/css; charset=utf-8")
 set(type_js "text/javascript; charset=utf-8")
-set(text "#include \"components/viewer/Page.hpp\"\n\nnamespace insonify::viewer {\n\n")
+set(text "#include \"components/viewer/Server.hpp\"\n\nnamespace insonify::viewer {\n\n")
 string(APPEND text "std::optional<PageFile> pageFile(std::string_view path) {\n")
 foreach(file ${FILES})
   get_filename_component(name ${file} NAME)

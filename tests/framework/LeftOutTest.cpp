@@ -1,7 +1,7 @@
 #include <gmock/gmock.h>
 
 #include "components/framework/Deployment.hpp"
-#include "components/framework/LeftOut.hpp"
+#include "components/framework/Registry.hpp"
 #include "tests/support/Folder.hpp"
 
 namespace insonify::framework {

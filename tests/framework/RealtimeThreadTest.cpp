@@ -6,7 +6,7 @@
 #include <thread>
 
 #include "components/framework/Activity.hpp"
-#include "components/framework/RealtimeThread.hpp"
+#include "components/framework/RealtimeExecutor.hpp"
 #include "tests/framework/Tasks.hpp"
 
 namespace insonify::framework {

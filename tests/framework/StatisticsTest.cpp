@@ -1,6 +1,6 @@
 #include <gtest/gtest.h>
 
-#include "components/framework/Statistics.hpp"
+#include "components/framework/Timing.hpp"
 
 namespace insonify::framework {
 namespace {

@@ -55,69 +55,6 @@ struct LingeringTask : PlannerTask {
     std::atomic<bool> lingering{false}, let_go{false};
 };
 
-TEST(LoggedRunTest, TheLogCarriesThePlanAndThePropertiesAreInALogBesideIt) {
-    const Folder folder;
-    framework::Registry registry;
-    logger::registerTasks(registry);
-    registry.add<PlannerTask>("test::PlannerTask", "a sonar");
-    framework::Deployment deployment(framework::DeploymentSpec::parse(R"(
-tasks:
-  sonar: {type: test::PlannerTask, activity: {period: 0.1}, properties: {range: 30}}
-  log: {type: logger::LoggerTask, properties: {file: x.0.log}}
-  second: {type: logger::LoggerTask, properties: {file: y.0.log, metadata: {vessel: Kai}}}
-connections:
-  - {from: sonar.ping, to: second.ping, policy: {type: buffer, size: 8}}
-  - {from: sonar.ping, to: log.ping, policy: {type: buffer, size: 8}}
-  - {from: sonar.depth, to: log.depth, policy: {type: buffer, size: 8}}
-)",
-                                                                      (folder / "x.yml").string()),
-                                     registry, folder.path());
-    deployment.configure();
-    const std::atomic<bool> never{false};
-    EXPECT_FALSE(deployment.run({.samples = 3}, never).failed());
-    EXPECT_THAT(deployment.cleanup(), testing::IsEmpty());
-
-    const log::pocolog::Reader log(folder / "x.0.log");
-    EXPECT_EQ(log.find("sonar.ping")->count, 3u);
-    EXPECT_EQ(log.find("sonar.ping")->metadata.at("insonify_plan"),
-              R"({"sonar": {"features": ["HAVE_\"TVG\""], "passes": [], "omitted": [{"name": "volume", "reason": )"
-              R"("absent"}], "notices": [], "rows": 0, "columns_per_beam": 0, "slabs": 0, "predicted_error": 0, )"
-              R"("device": ""}})");
-    EXPECT_NE(log.find("sonar.depth"), nullptr) << "declared, though never written";
-
-    EXPECT_EQ(log::pocolog::Reader(folder / "y.0.log").find("sonar.ping")->count, 3u);
-    log::pocolog::Reader properties(folder / "properties.0.log");
-    EXPECT_TRUE(properties.complete()) << "two loggers, one of them writes it";
-    std::vector<double> ranges;
-    properties.forEach<double>("sonar.range", [&](double value, const log::SampleRef&) { ranges.push_back(value); });
-    EXPECT_THAT(ranges, testing::ElementsAre(30));
-    EXPECT_EQ(properties.find("sonar.gain"), nullptr) << "absent";
-    EXPECT_NE(properties.find("log.file"), nullptr);
-}
-
-TEST(LoggedRunTest, ATaskIsOfOneModelInBothLogs) {
-    const Folder folder;
-    std::ofstream(folder / "rock::Sonar.yml") << "--- name:default\nrange: 30\n";
-    framework::Registry registry;
-    logger::registerTasks(registry);
-    registry.add<PlannerTask>("test::PlannerTask", "a sonar");
-    framework::Deployment deployment(framework::DeploymentSpec::parse(R"(
-tasks:
-  sonar: {type: test::PlannerTask, activity: {period: 0.1}, property_files: {files: ["rock::Sonar.yml"]}}
-  log: {type: logger::LoggerTask, properties: {file: x.0.log}}
-connections:
-  - {from: sonar.ping, to: log.ping, policy: {type: buffer, size: 8}}
-)",
-                                                                      (folder / "x.yml").string()),
-                                     registry, folder.path());
-    deployment.configure();
-    const std::atomic<bool> never{false};
-    EXPECT_FALSE(deployment.run({.samples = 1}, never).failed());
-    EXPECT_THAT(deployment.cleanup(), testing::IsEmpty());
-    for (const auto& [file, stream] : {std::pair{"x.0.log", "sonar.ping"}, {"properties.0.log", "sonar.range"}})
-        EXPECT_EQ(log::pocolog::Reader(folder / file).find(stream)->metadatum("rock_task_model"), "rock::Sonar");
-}
-
 /** Sets its range anew with its third ping. */
 struct ChangingTask : PlannerTask {
     using PlannerTask::PlannerTask;
@@ -129,38 +66,90 @@ struct ChangingTask : PlannerTask {
     int pings = 0;
 };
 
-TEST(LoggedRunTest, APropertyThatChangesDuringTheRunHasASampleForEachChange) {
-    const Folder folder;
-    framework::Registry registry;
-    logger::registerTasks(registry);
-    registry.add<ChangingTask>("test::ChangingTask", "a sonar");
-    framework::Deployment deployment(framework::DeploymentSpec::parse(R"(
-tasks:
-  sonar: {type: test::ChangingTask, activity: {period: 0.5}}
+/** A sonar, and a logger of its pings. */
+std::string loggedSonar(const std::string& sonar) {
+    return "tasks:\n  sonar: " + sonar + R"(
   log: {type: logger::LoggerTask, properties: {file: x.0.log}}
 connections:
   - {from: sonar.ping, to: log.ping, policy: {type: buffer, size: 8}}
+)";
+}
+
+class LoggedRunTest : public testing::Test {
+protected:
+    LoggedRunTest() {
+        registerTasks(registry_);
+        registry_.add<PlannerTask>("test::PlannerTask", "a sonar");
+        registry_.add<ChangingTask>("test::ChangingTask", "a sonar whose range changes");
+        registry_.add<LingeringTask>("test::LingeringTask", "a slow sonar");
+    }
+    framework::Deployment deploymentOf(const std::string& text) {
+        return {framework::DeploymentSpec::parse(text, (folder_ / "x.yml").string()), registry_, folder_.path()};
+    }
+    void run(const std::string& text, uint64_t pings) {
+        framework::Deployment deployment = deploymentOf(text);
+        deployment.configure();
+        const std::atomic<bool> never{false};
+        EXPECT_FALSE(deployment.run({.samples = pings}, never).failed());
+        EXPECT_THAT(deployment.cleanup(), testing::IsEmpty());
+    }
+
+    const Folder folder_;
+    framework::Registry registry_;
+};
+
+TEST_F(LoggedRunTest, TheLogCarriesThePlanAndThePropertiesAreInALogBesideIt) {
+    run(R"(
+tasks:
+  sonar: {type: test::PlannerTask, activity: {period: 0.1}, properties: {range: 30}}
+  log: {type: logger::LoggerTask, properties: {file: x.0.log}}
+  second: {type: logger::LoggerTask, properties: {file: y.0.log, metadata: {vessel: Kai}}}
+connections:
+  - {from: sonar.ping, to: second.ping, policy: {type: buffer, size: 8}}
+  - {from: sonar.ping, to: log.ping, policy: {type: buffer, size: 8}}
+  - {from: sonar.depth, to: log.depth, policy: {type: buffer, size: 8}}
 )",
-                                                                      (folder / "x.yml").string()),
-                                     registry, folder.path());
-    deployment.configure();
-    const std::atomic<bool> never{false};
-    EXPECT_FALSE(deployment.run({.samples = 5}, never).failed());
-    EXPECT_THAT(deployment.cleanup(), testing::IsEmpty());
+        3);
+
+    const log::pocolog::Reader log(folder_ / "x.0.log");
+    EXPECT_EQ(log.find("sonar.ping")->count, 3u);
+    EXPECT_EQ(log.find("sonar.ping")->metadata.at("insonify_plan"),
+              R"({"sonar": {"features": ["HAVE_\"TVG\""], "passes": [], "omitted": [{"name": "volume", "reason": )"
+              R"("absent"}], "notices": [], "rows": 0, "columns_per_beam": 0, "slabs": 0, "predicted_error": 0, )"
+              R"("device": ""}})");
+    EXPECT_NE(log.find("sonar.depth"), nullptr) << "declared, though never written";
+
+    EXPECT_EQ(log::pocolog::Reader(folder_ / "y.0.log").find("sonar.ping")->count, 3u);
+    log::pocolog::Reader properties(folder_ / "properties.0.log");
+    EXPECT_TRUE(properties.complete()) << "two loggers, one of them writes it";
+    std::vector<double> ranges;
+    properties.forEach<double>("sonar.range", [&](double value, const log::SampleRef&) { ranges.push_back(value); });
+    EXPECT_THAT(ranges, testing::ElementsAre(30));
+    EXPECT_EQ(properties.find("sonar.gain"), nullptr) << "absent";
+    EXPECT_NE(properties.find("log.file"), nullptr);
+}
+
+TEST_F(LoggedRunTest, ATaskIsOfOneModelInBothLogs) {
+    std::ofstream(folder_ / "rock::Sonar.yml") << "--- name:default\nrange: 30\n";
+    run(loggedSonar(
+            R"({type: test::PlannerTask, activity: {period: 0.1}, property_files: {files: ["rock::Sonar.yml"]}})"),
+        1);
+    for (const auto& [file, stream] : {std::pair{"x.0.log", "sonar.ping"}, {"properties.0.log", "sonar.range"}})
+        EXPECT_EQ(log::pocolog::Reader(folder_ / file).find(stream)->metadatum("rock_task_model"), "rock::Sonar");
+}
+
+TEST_F(LoggedRunTest, APropertyThatChangesDuringTheRunHasASampleForEachChange) {
+    run(loggedSonar("{type: test::ChangingTask, activity: {period: 0.5}}"), 5);
     std::vector<std::pair<double, double>> ranges;
-    log::pocolog::Reader(folder / "properties.0.log")
+    log::pocolog::Reader(folder_ / "properties.0.log")
         .forEach<double>("sonar.range", [&](double value, const log::SampleRef& at) {
             ranges.emplace_back(at.time.seconds(), value);
         });
     EXPECT_THAT(ranges, testing::ElementsAre(testing::Pair(1, 50), testing::Pair(2, 12)));
 }
 
-TEST(LoggedRunTest, InRealtimeLoggersWaitNeitherForEachOtherNorForTheHookOfATask) {
-    const Folder folder;
-    framework::Registry registry;
-    logger::registerTasks(registry);
-    registry.add<LingeringTask>("test::LingeringTask", "a slow sonar");
-    framework::Deployment deployment(framework::DeploymentSpec::parse(R"(
+TEST_F(LoggedRunTest, InRealtimeLoggersWaitNeitherForEachOtherNorForTheHookOfATask) {
+    framework::Deployment deployment = deploymentOf(R"(
 schedule: realtime
 tasks:
   sonar: {type: test::LingeringTask, activity: {period: 0.01}}
@@ -169,9 +158,7 @@ tasks:
 connections:
   - {from: sonar.ping, to: log.ping, policy: {type: buffer, size: 64}}
   - {from: sonar.ping, to: second.ping, policy: {type: buffer, size: 64}}
-)",
-                                                                      (folder / "x.yml").string()),
-                                     registry, folder.path());
+)");
     deployment.configure();
     auto& sonar = dynamic_cast<LingeringTask&>(*deployment.task("sonar"));
     const auto hasRead = [&](const char* logger) { return !deployment.task(logger)->input("ping")->hasNew(); };
@@ -186,17 +173,13 @@ connections:
     EXPECT_TRUE(both_read) << "while the sonar is in its first cycle";
     EXPECT_THAT(deployment.cleanup(), testing::IsEmpty());
     for (const char* file : {"x.0.log", "y.0.log"}) {
-        const log::pocolog::Reader log(folder / file);
+        const log::pocolog::Reader log(folder_ / file);
         EXPECT_THAT(log.find("sonar.ping")->metadata.at("insonify_plan"), testing::HasSubstr("volume"));
     }
 }
 
-TEST(LoggedRunTest, APropertySetAtRunTimeIsInTheRecordOfItsTask) {
-    framework::Registry registry;
-    registry.add<PlannerTask>("test::PlannerTask", "a sonar");
-    framework::Deployment deployment(
-        framework::DeploymentSpec::parse("tasks: {sonar: {type: test::PlannerTask, activity: {period: 1}}}", "x.yml"),
-        registry);
+TEST_F(LoggedRunTest, APropertySetAtRunTimeIsInTheRecordOfItsTask) {
+    framework::Deployment deployment = deploymentOf("tasks: {sonar: {type: test::PlannerTask, activity: {period: 1}}}");
     const auto range = [&] { return deployment.environment().records().at(0).properties.at("range"); };
     EXPECT_EQ(range(), types::PropertyValue(50.0)) << "before it is configured";
     deployment.configure();

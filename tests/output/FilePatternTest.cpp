@@ -1,7 +1,7 @@
 #include <gtest/gtest.h>
 
-#include "components/output/FilePattern.hpp"
 #include "components/output/PictureConfig.hpp"
+#include "components/output/PictureFiles.hpp"
 
 namespace insonify::output {
 namespace {

@@ -7,7 +7,7 @@
 #include "components/scene/SceneTask.hpp"
 #include "tests/scene/SceneFiles.hpp"
 #include "tests/support/Ports.hpp"
-#include "types/ExtrapolatePose.hpp"
+#include "types/Pose.hpp"
 
 namespace insonify::scene {
 namespace {

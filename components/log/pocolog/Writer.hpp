@@ -7,7 +7,7 @@
 
 #include "components/log/Files.hpp"
 #include "components/log/Writer.hpp"
-#include "components/log/pocolog/Block.hpp"
+#include "components/log/pocolog/BlockFile.hpp"
 #include "components/log/pocolog/Index.hpp"
 
 namespace insonify::log::pocolog {

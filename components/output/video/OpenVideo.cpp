@@ -1,6 +1,6 @@
-#include "components/output/video/OpenVideo.hpp"
-
 #include <opencv2/videoio.hpp>
+
+#include "components/output/VideoFile.hpp"
 
 namespace insonify::output {
 namespace {

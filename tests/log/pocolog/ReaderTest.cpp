@@ -1,7 +1,7 @@
 #include <gmock/gmock.h>
 #include <zlib.h>
 
-#include "components/log/pocolog/Block.hpp"
+#include "components/log/pocolog/BlockFile.hpp"
 #include "components/log/pocolog/Reader.hpp"
 #include "components/log/pocolog/Wire.hpp"
 #include "components/log/pocolog/Writer.hpp"

@@ -1,7 +1,10 @@
-#include "components/framework/Statistics.hpp"
+#include "components/framework/Timing.hpp"
 
 #include <algorithm>
 #include <cmath>
+
+#include "components/framework/Activity.hpp"
+#include "components/framework/TaskContext.hpp"
 
 namespace insonify::framework {
 namespace {
@@ -26,6 +29,15 @@ double Statistics::quantile(double q) const {
         if ((seen += histogram_[i]) >= wanted)
             return std::min(max_, shortest * std::exp(static_cast<double>(i) * step));
     return max_;
+}
+
+void noteLatency(TaskContext& task, types::Time stamp) {
+    const Activity& activity = task.activity();
+    if (!activity.realtime() || stamp.isNull()) return;
+    const double seconds = (task.environment().now() - stamp).seconds();
+    const double deadline = activity.settings().deadline;
+    task.timing().noteLatency(seconds);
+    task.timing().late += deadline > 0 && seconds > deadline ? 1 : 0;
 }
 
 }  // namespace insonify::framework
