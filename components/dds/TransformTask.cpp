@@ -3,7 +3,6 @@
 #include "components/ros/Cdr.hpp"
 #include "components/ros/Poses.hpp"
 #include "components/ros/Stamps.hpp"
-#include "components/ros/Times.hpp"
 
 namespace insonify::dds {
 namespace {
@@ -80,9 +79,7 @@ bool TransformTask::configureHook() {
 }
 
 bool TransformTask::startHook() {
-    outputs_.forEach([this](auto& output) {
-        output.kept = {entryOf(output.port.name())->frame_id, {}, {}, 0, {}};
-    });
+    outputs_.forEach([this](auto& output) { output.kept = {entryOf(output.port.name())->frame_id, {}, {}, 0, {}}; });
     return true;
 }
 

@@ -31,7 +31,8 @@ struct BeamErrors {
 };
 
 /** Four beams about an axis that looks down, out of it by `slant_deg`: a Janus configuration. */
-struct DvlConfig : SensorConfig {
+struct DvlConfig {
+    SensorConfig sensor{};
     double slant_deg = 30;
     double beam_azimuth_deg = 45;
     double min_altitude = 0.05;
@@ -43,7 +44,8 @@ struct DvlConfig : SensorConfig {
     template <class Self, class V>
     static void describe(Self& self, V& visit) {
         using types::Field;
-        SensorConfig::describe(self, visit, "of the instrument in the body; it looks down where it is not turned",
+        SensorConfig::describe(self.sensor, visit,
+                               "of the instrument in the body; it looks down where it is not turned",
                                "between pings; 0: one for each pose");
         visit(Field{"slant_deg", "deg", "of each beam out of the instrument's axis", 5, 60}, self.slant_deg);
         visit(Field{"beam_azimuth_deg", "deg", "of the first beam from ahead, positive to port; the others each 90 on",

@@ -63,7 +63,8 @@ struct AttitudeConfig {
     }
 };
 
-struct ImuConfig : SensorConfig {
+struct ImuConfig {
+    SensorConfig sensor{};
     double latitude_deg = 45;
     std::optional<double> gravity{};
     bool earth_rotation = false;
@@ -74,7 +75,8 @@ struct ImuConfig : SensorConfig {
     template <class Self, class V>
     static void describe(Self& self, V& visit) {
         using types::Field;
-        SensorConfig::describe(self, visit, "of the unit in the body", "between measurements; 0: one for each pose");
+        SensorConfig::describe(self.sensor, visit, "of the unit in the body",
+                               "between measurements; 0: one for each pose");
         visit(Field{"latitude_deg", "deg", "of the world, for gravity and the rotation of the earth", -90, 90},
               self.latitude_deg);
         visit(Field{"gravity", "m/s^2", "instead of WGS 84's normal gravity", 0, 1000}, self.gravity);

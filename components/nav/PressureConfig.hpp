@@ -24,7 +24,8 @@ struct GaugeErrors {
     }
 };
 
-struct PressureConfig : SensorConfig {
+struct PressureConfig {
+    SensorConfig sensor{};
     double water_surface = 0;
     double latitude_deg = 45;
     std::optional<double> density{};
@@ -35,7 +36,8 @@ struct PressureConfig : SensorConfig {
     template <class Self, class V>
     static void describe(Self& self, V& visit) {
         using types::Field;
-        SensorConfig::describe(self, visit, "of the gauge in the body", "between measurements; 0: one for each pose");
+        SensorConfig::describe(self.sensor, visit, "of the gauge in the body",
+                               "between measurements; 0: one for each pose");
         visit(Field{"water_surface", "m", "its height in the world", -1e5, 1e5}, self.water_surface);
         visit(Field{"latitude_deg", "deg", "of the world, for gravity", -90, 90}, self.latitude_deg);
         visit(Field{"density", "kg/m^3", "of water that is alike at all depths; absent: UNESCO's standard ocean (1983)",

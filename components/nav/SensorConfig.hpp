@@ -9,9 +9,8 @@ namespace insonify::nav {
 struct SensorConfig {
     types::Mount mount{};
     uint64_t seed = 1;
-    double period = 0;  ///< [s]
+    double period = 0;
 
-protected:
     /** The keys of all sensors, with what one says of its mount and of its period. */
     template <class Self, class V>
     static void describe(Self& self, V& visit, const char* mount, const char* period) {

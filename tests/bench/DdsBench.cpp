@@ -15,7 +15,7 @@
 #include "components/framework/Port.hpp"
 #include "components/ros/Cdr.hpp"
 #include "components/ros/Messages.hpp"
-#include "components/ros/Times.hpp"
+#include "components/ros/Stamps.hpp"
 #include "types/Sonar.hpp"
 
 using namespace insonify;

@@ -4,7 +4,7 @@
 #include "components/dds/Reader.hpp"
 #include "components/ros/Cdr.hpp"
 #include "components/ros/Messages.hpp"
-#include "components/ros/Times.hpp"
+#include "components/ros/Stamps.hpp"
 #include "tests/dds/Ends.hpp"
 
 using namespace insonify;

@@ -6,7 +6,6 @@
 #include "components/ros/Cdr.hpp"
 #include "components/ros/SonarMessages.hpp"
 #include "components/ros/Stamps.hpp"
-#include "components/ros/Times.hpp"
 #include "tests/dds/Ends.hpp"
 
 using namespace insonify;

@@ -4,7 +4,7 @@
 #include "components/dds/TransformTask.hpp"
 #include "components/dds/Writer.hpp"
 #include "components/ros/Cdr.hpp"
-#include "components/ros/Times.hpp"
+#include "components/ros/Stamps.hpp"
 #include "tests/dds/Ends.hpp"
 
 using namespace insonify;

@@ -5,7 +5,7 @@
 #include <limits>
 #include <random>
 
-#include "components/ros/FromSonar.hpp"
+#include "components/ros/Pings.hpp"
 #include "tests/ros/Samples.hpp"
 
 namespace insonify::ros {

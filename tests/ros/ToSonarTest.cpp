@@ -1,7 +1,6 @@
 #include <gmock/gmock.h>
 
-#include "components/ros/FromSonar.hpp"
-#include "components/ros/ToSonar.hpp"
+#include "components/ros/Pings.hpp"
 #include "tests/ros/Samples.hpp"
 
 namespace insonify::ros {
