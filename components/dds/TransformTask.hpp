@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
+#include "components/dds/Endpoints.hpp"
 #include "components/dds/Node.hpp"
-#include "components/dds/Reader.hpp"
 #include "components/dds/TransformConfig.hpp"
 #include "components/pose/ListenerTask.hpp"
 #include "components/ros/TransformTree.hpp"

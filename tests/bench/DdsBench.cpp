@@ -10,8 +10,8 @@
 #include <thread>
 #include <vector>
 
+#include "components/dds/Endpoints.hpp"
 #include "components/dds/PublisherTask.hpp"
-#include "components/dds/Reader.hpp"
 #include "components/framework/Port.hpp"
 #include "components/ros/Cdr.hpp"
 #include "components/ros/Messages.hpp"

@@ -1,7 +1,7 @@
 // A ROS 2 peer by another version of Cyclone: PyPI's.
 #include <gmock/gmock.h>
 
-#include "components/dds/Reader.hpp"
+#include "components/dds/Endpoints.hpp"
 #include "components/ros/Cdr.hpp"
 #include "components/ros/Messages.hpp"
 #include "components/ros/Stamps.hpp"

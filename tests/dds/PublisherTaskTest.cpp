@@ -3,8 +3,8 @@
 #include <cmath>
 #include <cstring>
 
+#include "components/dds/Endpoints.hpp"
 #include "components/dds/PublisherTask.hpp"
-#include "components/dds/Reader.hpp"
 #include "components/ros/Cdr.hpp"
 #include "components/ros/Pings.hpp"
 #include "components/ros/Stamps.hpp"
