@@ -4,10 +4,10 @@
 
 #include <charconv>
 #include <cstdlib>
+#include <memory>
 #include <mutex>
 #include <string>
 
-#include "components/dds/Qos.hpp"
 #include "types/ConfigError.hpp"
 
 namespace insonify::dds {
@@ -50,7 +50,7 @@ Entity joinDomain(uint32_t id, std::string_view user_data) {
     static std::mutex one_at_a_time;
     std::lock_guard lock(one_at_a_time);
     const LoggedErrors logged_errors;
-    const Qos qos(dds_create_qos());
+    const std::unique_ptr<dds_qos_t, decltype(&dds_delete_qos)> qos(dds_create_qos(), dds_delete_qos);
     dds_qset_userdata(qos.get(), user_data.data(), user_data.size());
     const dds_entity_t joined = dds_create_participant(id, qos.get(), nullptr);
     if (joined > 0) return Entity(joined);

@@ -8,8 +8,8 @@
 #include <cstring>
 
 #include "components/dds/DiscoveryMessages.hpp"
+#include "components/dds/Endpoints.hpp"
 #include "components/dds/RawType.hpp"
-#include "components/dds/Writer.hpp"
 #include "components/ros/Cdr.hpp"
 #include "types/ConfigError.hpp"
 

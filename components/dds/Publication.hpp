@@ -5,8 +5,8 @@
 #include <string>
 #include <utility>
 
+#include "components/dds/Endpoints.hpp"
 #include "components/dds/PublisherConfig.hpp"
-#include "components/dds/Writer.hpp"
 #include "components/ros/Cdr.hpp"
 #include "components/ros/Samples.hpp"
 #include "components/ros/Stamps.hpp"
@@ -20,10 +20,22 @@ struct TopicOptions {
     ros::MessageOptions messages;
     std::optional<std::string> world_frame_id, child_frame_id;  ///< In place of those that a pose names.
 };
-TopicOptions optionsOf(const PublisherConfig& config, const TopicOut& topic);
+inline TopicOptions optionsOf(const PublisherConfig& config, const TopicOut& topic) {
+    TopicOptions options{{}, config.world_frame_id, topic.child_frame_id};
+    static_cast<ros::SonarOptions&>(options.messages) = topic.sonar;
+    options.messages.world_frame = config.node.world_frame;
+    if (topic.sonar.frame_id.empty())
+        options.messages.frame_id = config.frame_id;
+    else
+        options.world_frame_id = topic.sonar.frame_id;
+    return options;
+}
 
 /** What is given, or what the pose says, or what is usual. */
-void nameFrame(std::string& frame, const std::optional<std::string>& given, const char* usual);
+inline void nameFrame(std::string& frame, const std::optional<std::string>& given, const char* usual) {
+    if (given) frame = *given;
+    if (frame.empty()) frame = usual;
+}
 
 /** Whether a T can be a message. */
 template <class T, class Message>
@@ -84,7 +96,12 @@ std::string messagesOf() {
 }
 
 /** The end of a topic that sends. */
-Writer writerOf(Node& node, const PublisherConfig& config, const TopicOut& topic);
+inline Writer writerOf(Node& node, const PublisherConfig& config, const TopicOut& topic) {
+    const Quality quality{.reliability = config.reliability, .depth = config.depth};
+    return withMessage(topic.type, [&]<class Message>(std::type_identity<Message>) {
+        return Writer(node, ddsTopic(topic.topic), Message::type_name, Message::type_hash, quality);
+    });
+}
 
 /** Sends samples as the messages of one topic. */
 template <class Sample>

@@ -9,7 +9,7 @@
 #include "components/framework/Timing.hpp"
 #include "components/framework/Upstream.hpp"
 #include "components/ros/Poses.hpp"
-#include "components/ros/Times.hpp"
+#include "components/ros/Stamps.hpp"
 #include "types/ConfigError.hpp"
 
 namespace insonify::dds {

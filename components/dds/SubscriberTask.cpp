@@ -1,36 +1,13 @@
 #include "components/dds/SubscriberTask.hpp"
 
-#include <algorithm>
-
 namespace insonify::dds {
 namespace {
 
 constexpr int max_at_once = 1000;  ///< Messages of a topic in one cycle: then others have their turn.
 
-const TopicIn* topicOf(const SubscriberConfig& config, const std::string& port) {
-    const auto found = std::ranges::find(config.topics, port, &TopicIn::port);
-    return found == config.topics.end() ? nullptr : &*found;
-}
-
 }  // namespace
 
-framework::OutputPortBase* SubscriberTask::makeOutput(const std::string& port) {
-    if (!topicOf(*config, port)) return nullptr;
-    return &outputs_.make<types::Pose>(port, "body in the world: x north, y west, z up").port;
-}
-
-void SubscriberTask::check(types::Diagnostics& diagnostics) const {
-    if (environment().lockstep)
-        diagnostics.push_back(
-            {"", "messages come on the wall clock's time, for which lockstep does not wait; set schedule: realtime"});
-    for (size_t i = 0; i < config->topics.size(); ++i) {
-        bool has_output = false;
-        outputs_.forEach([&](const auto& output) { has_output |= output.port.name() == config->topics[i].port; });
-        if (!has_output)
-            diagnostics.push_back({"topics[" + std::to_string(i) + "].port",
-                                   "no connection leads from " + name() + "." + config->topics[i].port});
-    }
-}
+SubscriberTask::~SubscriberTask() { cleanupHook(); }
 
 std::vector<std::string> SubscriberTask::notices() const { return drops_.summary(); }
 
@@ -41,7 +18,7 @@ bool SubscriberTask::configureHook() {
                   static_cast<size_t>(config->node.gid_size));
     outputs_.forEach([this](auto& output) {
         output.kept.subscription = std::make_unique<Subscription>(
-            *node_, *config, *topicOf(*config, output.port.name()), drops_, [this] { arrived_.raise(); });
+            *node_, *config, *entryOf(output.port.name()), drops_, [this] { arrived_.raise(); });
     });
     node_->announce();
     return true;

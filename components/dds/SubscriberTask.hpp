@@ -6,12 +6,15 @@
 
 #include "components/dds/Node.hpp"
 #include "components/dds/Subscription.hpp"
-#include "components/framework/DynamicPorts.hpp"
-#include "components/framework/Event.hpp"
-#include "components/framework/Properties.hpp"
-#include "components/framework/TaskContext.hpp"
+#include "components/pose/ListenerTask.hpp"
 
 namespace insonify::dds {
+
+/** The topic of an output of SubscriberTask. */
+template <class Sample>
+struct Topic {
+    std::unique_ptr<Subscription> subscription;
+};
 
 /** Reads poses that ROS 2 nodes send; for `schedule: realtime`.
  *
@@ -22,32 +25,20 @@ namespace insonify::dds {
  *  A message that is none, a pose that is not finite or a stamp that goes back is dropped and counted: a warning tells
  *  it at the first and then every ten seconds at most, and a notice tells the sum at the end. Refused in lockstep,
  *  whose time does not wait for messages. */
-class SubscriberTask final : public framework::TaskContext {
+class SubscriberTask final : public pose::ListenerTask<SubscriberConfig, &SubscriberConfig::topics, Topic> {
 public:
-    using TaskContext::TaskContext;
+    using ListenerTask::ListenerTask;
+    ~SubscriberTask() override;  // the subscriptions end before their node
 
-    framework::Properties<SubscriberConfig> config{this};
-
-    framework::OutputPortBase* makeOutput(const std::string& port) override;
-    void check(types::Diagnostics& diagnostics) const override;
     std::vector<std::string> notices() const override;
-    bool reachesOutside() const override { return true; }
 
 private:
-    /** The topic of an output. */
-    template <class Sample>
-    struct Topic {
-        std::unique_ptr<Subscription> subscription;
-    };
-
     bool configureHook() override;
     bool startHook() override;
     void updateHook() override;
     void cleanupHook() override;
 
-    framework::Event arrived_{this};  ///< A message; outlives the subscriptions.
     std::optional<Node> node_;
-    framework::DynamicOutputs<std::tuple<types::Pose>, Topic> outputs_{this};
     types::ThrottledWarning drops_{"message", "dropped"};
 };
 

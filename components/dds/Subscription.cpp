@@ -6,7 +6,6 @@
 #include "components/ros/Cdr.hpp"
 #include "components/ros/Poses.hpp"
 #include "components/ros/Stamps.hpp"
-#include "components/ros/Times.hpp"
 
 namespace insonify::dds {
 namespace {

@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "components/dds/Reader.hpp"
+#include "components/dds/Endpoints.hpp"
 #include "components/dds/SubscriberConfig.hpp"
 #include "components/ros/GeometryMessages.hpp"
 #include "types/Pose.hpp"

@@ -1,11 +1,8 @@
 #include "components/dds/TransformTask.hpp"
 
-#include <algorithm>
-
 #include "components/ros/Cdr.hpp"
 #include "components/ros/Poses.hpp"
 #include "components/ros/Stamps.hpp"
-#include "components/ros/Times.hpp"
 
 namespace insonify::dds {
 namespace {
@@ -22,11 +19,6 @@ std::unique_ptr<Reader> readerOf(Node& node, const std::string& topic, const Qua
                                          quality, std::move(arrived), largest);
     node.addReader(made->handle());
     return made;
-}
-
-const FrameOut* frameOf(const TransformConfig& config, const std::string& port) {
-    const auto found = std::ranges::find(config.frames, port, &FrameOut::port);
-    return found == config.frames.end() ? nullptr : &*found;
 }
 
 /** In our axes. */
@@ -64,25 +56,6 @@ void TransformConfig::check(types::Diagnostics& diagnostics) const {
     }
 }
 
-framework::OutputPortBase* TransformTask::makeOutput(const std::string& port) {
-    const FrameOut* frame = frameOf(*config, port);
-    if (!frame) return nullptr;
-    return &outputs_.make<types::Pose>(port, "body in the world: x north, y west, z up").port;
-}
-
-void TransformTask::check(types::Diagnostics& diagnostics) const {
-    if (environment().lockstep)
-        diagnostics.push_back(
-            {"", "messages come on the wall clock's time, for which lockstep does not wait; set schedule: realtime"});
-    for (size_t i = 0; i < config->frames.size(); ++i) {
-        bool has_output = false;
-        outputs_.forEach([&](const auto& output) { has_output |= output.port.name() == config->frames[i].port; });
-        if (!has_output)
-            diagnostics.push_back({"frames[" + std::to_string(i) + "].port",
-                                   "no connection leads from " + name() + "." + config->frames[i].port});
-    }
-}
-
 std::vector<std::string> TransformTask::notices() const {
     std::vector<std::string> all = drops_.summary();
     for (std::string& line : gaps_.summary()) all.push_back(std::move(line));
@@ -106,9 +79,7 @@ bool TransformTask::configureHook() {
 }
 
 bool TransformTask::startHook() {
-    outputs_.forEach([this](auto& output) {
-        output.kept = {frameOf(*config, output.port.name())->frame_id, {}, {}, 0, {}};
-    });
+    outputs_.forEach([this](auto& output) { output.kept = {entryOf(output.port.name())->frame_id, {}, {}, 0, {}}; });
     return true;
 }
 

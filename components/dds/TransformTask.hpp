@@ -4,18 +4,24 @@
 #include <string>
 #include <vector>
 
+#include "components/dds/Endpoints.hpp"
 #include "components/dds/Node.hpp"
-#include "components/dds/Reader.hpp"
 #include "components/dds/TransformConfig.hpp"
-#include "components/framework/DynamicPorts.hpp"
-#include "components/framework/Event.hpp"
-#include "components/framework/Properties.hpp"
-#include "components/framework/TaskContext.hpp"
+#include "components/pose/ListenerTask.hpp"
 #include "components/ros/TransformTree.hpp"
 #include "types/SenderClock.hpp"
 #include "types/ThrottledWarning.hpp"
 
 namespace insonify::dds {
+
+/** What an output of TransformTask tells of. */
+template <class Sample>
+struct Told {
+    std::string frame_id;
+    types::Time time, written;           ///< Of the last pose: its chain's, and by the clock.
+    uint64_t life = 0;                   ///< Of the tree, then.
+    std::optional<types::Time> lacking;  ///< Since when there is none.
+};
 
 /** Tells where frames of ROS 2's tf lie in the world; for `schedule: realtime`.
  *
@@ -26,29 +32,15 @@ namespace insonify::dds {
  *  What is refused of the messages is counted: a warning tells it at the first and then every ten seconds at most, a
  *  notice the sum at the end. A chain that leads nowhere, goes in a circle or is cut is told so once that has gone on
  * for two seconds. Refused in lockstep, whose time does not wait for messages. */
-class TransformTask final : public framework::TaskContext {
+class TransformTask final : public pose::ListenerTask<TransformConfig, &TransformConfig::frames, Told> {
 public:
-    using TaskContext::TaskContext;
+    using ListenerTask::ListenerTask;
 
-    framework::Properties<TransformConfig> config{this};
-
-    framework::OutputPortBase* makeOutput(const std::string& port) override;
-    void check(types::Diagnostics& diagnostics) const override;
     std::vector<std::string> notices() const override;
-    bool reachesOutside() const override { return true; }
     /** For chains that are static. */
     double wakeAfter() const override { return 0.1; }
 
 private:
-    /** What a port tells of. */
-    template <class Sample>
-    struct Told {
-        std::string frame_id;
-        types::Time time, written;           ///< Of the last pose: its chain's, and by the clock.
-        uint64_t life = 0;                   ///< Of the tree, then.
-        std::optional<types::Time> lacking;  ///< Since when there is none.
-    };
-
     bool configureHook() override;
     bool startHook() override;
     void updateHook() override;
@@ -59,13 +51,11 @@ private:
     template <class Output>
     void tell(Output& output);
 
-    framework::Event arrived_{this};  ///< A message; outlives the readers.
     std::optional<Node> node_;
     std::unique_ptr<Reader> moving_, fixed_;
     ros::TransformTree tree_;
     Bytes bytes_;
     ros::TFMessage message_;
-    framework::DynamicOutputs<std::tuple<types::Pose>, Told> outputs_{this};
     types::ThrottledWarning drops_{"transform", "dropped"}, gaps_{"pose", "missing"};
 };
 

@@ -1,7 +1,5 @@
 #include "components/gazebo/PoseTask.hpp"
 
-#include <algorithm>
-
 #include "types/ConfigError.hpp"
 
 namespace insonify::gazebo {
@@ -24,24 +22,6 @@ void PoseConfig::check(types::Diagnostics& diagnostics) const {
     }
     if (has_entity && world.empty() == pose_topic.empty())
         diagnostics.push_back({"world", "must be given for the poses of entities, or pose_topic, one of both"});
-}
-
-framework::OutputPortBase* PoseTask::makeOutput(const std::string& port) {
-    if (std::ranges::find(config->bodies, port, &BodyConfig::port) == config->bodies.end()) return nullptr;
-    return &outputs_.make<types::Pose>(port, "body in the world: x north, y west, z up").port;
-}
-
-void PoseTask::check(types::Diagnostics& diagnostics) const {
-    if (environment().lockstep)
-        diagnostics.push_back(
-            {"", "messages come on the wall clock's time, for which lockstep does not wait; set schedule: realtime"});
-    for (size_t i = 0; i < config->bodies.size(); ++i) {
-        bool has_output = false;
-        outputs_.forEach([&](const auto& output) { has_output |= output.port.name() == config->bodies[i].port; });
-        if (!has_output)
-            diagnostics.push_back({"bodies[" + std::to_string(i) + "].port",
-                                   "no connection leads from " + name() + "." + config->bodies[i].port});
-    }
 }
 
 std::vector<std::string> PoseTask::notices() const {

@@ -3,13 +3,10 @@
 #include <string>
 #include <vector>
 
-#include "components/framework/DynamicPorts.hpp"
-#include "components/framework/Event.hpp"
-#include "components/framework/Properties.hpp"
 #include "components/framework/Registry.hpp"
-#include "components/framework/TaskContext.hpp"
 #include "components/gazebo/PoseConfig.hpp"
 #include "components/gazebo/Subscriptions.hpp"
+#include "components/pose/ListenerTask.hpp"
 #include "types/SenderClock.hpp"
 #include "types/ThrottledWarning.hpp"
 
@@ -24,16 +21,11 @@ namespace insonify::gazebo {
  *
  *  What is dropped is counted: a warning tells it at the first and then every ten seconds at most, a notice the sum at
  *  the end. Refused in lockstep, whose time does not wait for messages. */
-class PoseTask final : public framework::TaskContext {
+class PoseTask final : public pose::ListenerTask<PoseConfig, &PoseConfig::bodies> {
 public:
-    using TaskContext::TaskContext;
+    using ListenerTask::ListenerTask;
 
-    framework::Properties<PoseConfig> config{this};
-
-    framework::OutputPortBase* makeOutput(const std::string& port) override;
-    void check(types::Diagnostics& diagnostics) const override;
     std::vector<std::string> notices() const override;
-    bool reachesOutside() const override { return true; }
     /** For what came before it ran. */
     double wakeAfter() const override { return 0.5; }
 
@@ -46,11 +38,9 @@ private:
     void take(Arrived& message);
     void write(Placed& placed, types::Time time);
 
-    framework::Event arrived_{this};  ///< A message; outlives the subscriptions.
     std::shared_ptr<Inbox> inbox_;
     std::unique_ptr<Subscriptions> subscriptions_;
     std::vector<types::SenderClock> clocks_;  ///< By topic.
-    framework::DynamicOutputs<std::tuple<types::Pose>> outputs_{this};
     types::ThrottledWarning drops_{"message", "dropped"};
 };
 

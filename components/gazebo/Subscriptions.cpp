@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <ignition/transport/Node.hh>
+#include <utility>
 
 #include "components/gazebo/Poses.hpp"
 #include "types/ConfigError.hpp"
@@ -26,6 +27,33 @@ void subscribe(ignition::transport::Node& node, const std::string& key, const st
 }
 
 }  // namespace
+
+void Inbox::put(Arrived message) {
+    std::lock_guard lock(mutex_);
+    if (!arrived_) return;
+    if (messages_.size() >= capacity) {
+        messages_.erase(messages_.begin());
+        ++lost_;
+    }
+    messages_.push_back(std::move(message));
+    arrived_();
+}
+
+std::vector<Arrived> Inbox::take() {
+    std::lock_guard lock(mutex_);
+    return std::exchange(messages_, {});
+}
+
+void Inbox::close() {
+    std::lock_guard lock(mutex_);
+    arrived_ = {};
+    messages_.clear();
+}
+
+uint64_t Inbox::lost() const {
+    std::lock_guard lock(mutex_);
+    return lost_;
+}
 
 struct Subscriptions::Transport {
     explicit Transport(const PoseConfig& config) : node(optionsOf(config)) {}

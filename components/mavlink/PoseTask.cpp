@@ -1,7 +1,5 @@
 #include "components/mavlink/PoseTask.hpp"
 
-#include <algorithm>
-
 #include "types/ConfigError.hpp"
 
 namespace insonify::mavlink {
@@ -9,11 +7,6 @@ namespace {
 
 constexpr uint8_t our_system = 255, our_component = 190;  // a ground station's
 constexpr types::Time request_period{1'000'000};
-
-const BodyConfig* bodyOf(const PoseConfig& config, const std::string& port) {
-    const auto found = std::ranges::find(config.bodies, port, &BodyConfig::port);
-    return found == config.bodies.end() ? nullptr : &*found;
-}
 
 std::string textOf(const Frame& frame) {
     const char* name = frame.message == AttitudeQuaternion::kind.message ? AttitudeQuaternion::name
@@ -24,24 +17,6 @@ std::string textOf(const Frame& frame) {
 }
 
 }  // namespace
-
-framework::OutputPortBase* PoseTask::makeOutput(const std::string& port) {
-    if (!bodyOf(*config, port)) return nullptr;
-    return &outputs_.make<types::Pose>(port, "body in the world: x north, y west, z up").port;
-}
-
-void PoseTask::check(types::Diagnostics& diagnostics) const {
-    if (environment().lockstep)
-        diagnostics.push_back(
-            {"", "messages come on the wall clock's time, for which lockstep does not wait; set schedule: realtime"});
-    for (size_t i = 0; i < config->bodies.size(); ++i) {
-        bool has_output = false;
-        outputs_.forEach([&](const auto& output) { has_output |= output.port.name() == config->bodies[i].port; });
-        if (!has_output)
-            diagnostics.push_back({"bodies[" + std::to_string(i) + "].port",
-                                   "no connection leads from " + name() + "." + config->bodies[i].port});
-    }
-}
 
 std::vector<std::string> PoseTask::notices() const {
     std::vector<std::string> all;
@@ -55,7 +30,7 @@ std::vector<std::string> PoseTask::notices() const {
 bool PoseTask::configureHook() {
     drops_.reset();
     others_.reset();
-    network_ = std::make_unique<device::Network>([this] { happened_.raise(); });
+    network_ = std::make_unique<device::Network>([this] { arrived_.raise(); });
     try {
         network_->listenUdp(config->address, static_cast<uint16_t>(config->port));
     } catch (const device::NetworkError& error) {
@@ -70,7 +45,7 @@ bool PoseTask::startHook() {
     requested_ = {};
     has_written_ = false;
     outputs_.forEach([this](auto& output) {
-        output.kept.body = std::make_unique<Body>(*bodyOf(*config, output.port.name()), config->origin);
+        output.kept.body = std::make_unique<Body>(*entryOf(output.port.name()), config->origin);
     });
     return true;
 }

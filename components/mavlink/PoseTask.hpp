@@ -6,15 +6,18 @@
 #include <vector>
 
 #include "components/device/Network.hpp"
-#include "components/framework/DynamicPorts.hpp"
-#include "components/framework/Event.hpp"
-#include "components/framework/Properties.hpp"
 #include "components/framework/Registry.hpp"
-#include "components/framework/TaskContext.hpp"
 #include "components/mavlink/Body.hpp"
+#include "components/pose/ListenerTask.hpp"
 #include "types/ThrottledWarning.hpp"
 
 namespace insonify::mavlink {
+
+/** Which messages an output of PoseTask is of. */
+template <class Sample>
+struct Follows {
+    std::unique_ptr<Body> body;
+};
 
 /** Reads the poses of vehicles from MAVLink over UDP; for `schedule: realtime`.
  *
@@ -25,27 +28,17 @@ namespace insonify::mavlink {
  *  the end. So are messages of other systems, warned of only as long as none has become a pose. With `request` a
  *  heartbeat goes to whoever has sent a frame, and a command for each message that stays away, once a second. Refused
  * in lockstep, whose time does not wait for messages. */
-class PoseTask final : public framework::TaskContext {
+class PoseTask final : public pose::ListenerTask<PoseConfig, &PoseConfig::bodies, Follows> {
 public:
-    using TaskContext::TaskContext;
+    using ListenerTask::ListenerTask;
 
-    framework::Properties<PoseConfig> config{this};
-
-    framework::OutputPortBase* makeOutput(const std::string& port) override;
-    void check(types::Diagnostics& diagnostics) const override;
     std::vector<std::string> notices() const override;
-    bool reachesOutside() const override { return true; }
     /** For what came before it ran, and for requests. */
     double wakeAfter() const override { return 0.5; }
     /** For tests with port 0. */
     uint16_t port() const { return network_->portOf(0); }
 
 private:
-    template <class Sample>
-    struct Follows {
-        std::unique_ptr<Body> body;
-    };
-
     bool configureHook() override;
     bool startHook() override;
     void updateHook() override;
@@ -59,9 +52,7 @@ private:
     template <class Message>
     void send(const Message& message, device::Client client);
 
-    framework::Event happened_{this};  ///< On the network; outlives it.
     std::unique_ptr<device::Network> network_;
-    framework::DynamicOutputs<std::tuple<types::Pose>, Follows> outputs_{this};
     types::ThrottledWarning drops_{"message", "dropped"}, others_{"message", "of others passed over"};
     std::map<device::Client, uint8_t> peers_;  ///< Who sends frames, and the number of the next one to it.
     types::Time requested_;

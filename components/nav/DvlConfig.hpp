@@ -1,8 +1,7 @@
 #pragma once
-#include <cstdint>
 #include <optional>
 
-#include "types/Mount.hpp"
+#include "components/nav/SensorConfig.hpp"
 
 namespace insonify::nav {
 
@@ -33,9 +32,7 @@ struct BeamErrors {
 
 /** Four beams about an axis that looks down, out of it by `slant_deg`: a Janus configuration. */
 struct DvlConfig {
-    types::Mount mount{};
-    uint64_t seed = 1;
-    double period = 0;
+    SensorConfig sensor{};
     double slant_deg = 30;
     double beam_azimuth_deg = 45;
     double min_altitude = 0.05;
@@ -47,9 +44,9 @@ struct DvlConfig {
     template <class Self, class V>
     static void describe(Self& self, V& visit) {
         using types::Field;
-        visit(Field{"mount", "", "of the instrument in the body; it looks down where it is not turned"}, self.mount);
-        visit(Field{"seed", "1", "of the random numbers: the same seed and poses give the same errors"}, self.seed);
-        visit(Field{"period", "s", "between pings; 0: one for each pose", 0, 1e6}, self.period);
+        SensorConfig::describe(self.sensor, visit,
+                               "of the instrument in the body; it looks down where it is not turned",
+                               "between pings; 0: one for each pose");
         visit(Field{"slant_deg", "deg", "of each beam out of the instrument's axis", 5, 60}, self.slant_deg);
         visit(Field{"beam_azimuth_deg", "deg", "of the first beam from ahead, positive to port; the others each 90 on",
                     -360, 360},

@@ -12,8 +12,8 @@ bool DvlTask::startHook() {
         error("there is no bottom: connect a scene's snapshot, or set bottom_height");
         return false;
     }
-    tracker_ = MotionTracker(config->mount);
-    cadence_ = Cadence(config->period);
+    tracker_ = MotionTracker(config->sensor.mount);
+    cadence_ = Cadence(config->sensor.period);
     bottom_ = snapshot.connected() ? Bottom() : Bottom(config->bottom_height);
     return true;
 }

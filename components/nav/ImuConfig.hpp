@@ -1,10 +1,9 @@
 #pragma once
-#include <cstdint>
 #include <glm/vec3.hpp>
 #include <optional>
 
 #include "components/nav/ErrorModel.hpp"
-#include "types/Mount.hpp"
+#include "components/nav/SensorConfig.hpp"
 
 namespace insonify::nav {
 
@@ -65,9 +64,7 @@ struct AttitudeConfig {
 };
 
 struct ImuConfig {
-    types::Mount mount{};
-    uint64_t seed = 1;
-    double period = 0;
+    SensorConfig sensor{};
     double latitude_deg = 45;
     std::optional<double> gravity{};
     bool earth_rotation = false;
@@ -78,9 +75,8 @@ struct ImuConfig {
     template <class Self, class V>
     static void describe(Self& self, V& visit) {
         using types::Field;
-        visit(Field{"mount", "", "of the unit in the body"}, self.mount);
-        visit(Field{"seed", "1", "of the random numbers: the same seed and poses give the same errors"}, self.seed);
-        visit(Field{"period", "s", "between measurements; 0: one for each pose", 0, 1e6}, self.period);
+        SensorConfig::describe(self.sensor, visit, "of the unit in the body",
+                               "between measurements; 0: one for each pose");
         visit(Field{"latitude_deg", "deg", "of the world, for gravity and the rotation of the earth", -90, 90},
               self.latitude_deg);
         visit(Field{"gravity", "m/s^2", "instead of WGS 84's normal gravity", 0, 1000}, self.gravity);

@@ -6,8 +6,8 @@
 namespace insonify::nav {
 
 bool ImuTask::configureHook() {
-    tracker_ = MotionTracker(config->mount);
-    cadence_ = Cadence(config->period);
+    tracker_ = MotionTracker(config->sensor.mount);
+    cadence_ = Cadence(config->sensor.period);
     unit_.emplace(*config);
     return true;
 }

@@ -1,8 +1,7 @@
 #pragma once
-#include <cstdint>
 #include <optional>
 
-#include "types/Mount.hpp"
+#include "components/nav/SensorConfig.hpp"
 
 namespace insonify::nav {
 
@@ -26,9 +25,7 @@ struct GaugeErrors {
 };
 
 struct PressureConfig {
-    types::Mount mount{};
-    uint64_t seed = 1;
-    double period = 0;
+    SensorConfig sensor{};
     double water_surface = 0;
     double latitude_deg = 45;
     std::optional<double> density{};
@@ -39,9 +36,8 @@ struct PressureConfig {
     template <class Self, class V>
     static void describe(Self& self, V& visit) {
         using types::Field;
-        visit(Field{"mount", "", "of the gauge in the body"}, self.mount);
-        visit(Field{"seed", "1", "of the random numbers: the same seed and poses give the same errors"}, self.seed);
-        visit(Field{"period", "s", "between measurements; 0: one for each pose", 0, 1e6}, self.period);
+        SensorConfig::describe(self.sensor, visit, "of the gauge in the body",
+                               "between measurements; 0: one for each pose");
         visit(Field{"water_surface", "m", "its height in the world", -1e5, 1e5}, self.water_surface);
         visit(Field{"latitude_deg", "deg", "of the world, for gravity", -90, 90}, self.latitude_deg);
         visit(Field{"density", "kg/m^3", "of water that is alike at all depths; absent: UNESCO's standard ocean (1983)",

@@ -4,11 +4,29 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <stdexcept>
+#include <utility>
 
 #include "types/Angle.hpp"
+#include "types/Csv.hpp"
 
 namespace insonify::pose {
 namespace {
+
+/** Second derivatives of one column at its knots: a tridiagonal system, zero at both ends. */
+std::vector<double> curvaturesOf(const std::vector<double>& times, const std::vector<Spline::Row>& rows,
+                                 size_t column) {
+    const size_t count = times.size();
+    std::vector<double> curvature(count, 0), factor(count, 0);
+    const auto slope = [&](size_t i) { return (rows[i + 1][column] - rows[i][column]) / (times[i + 1] - times[i]); };
+    for (size_t i = 1; i + 1 < count; ++i) {
+        const double before = times[i] - times[i - 1], after = times[i + 1] - times[i];
+        const double pivot = 2 * (before + after) - before * factor[i - 1];
+        factor[i] = after / pivot;
+        curvature[i] = (6 * (slope(i) - slope(i - 1)) - before * curvature[i - 1]) / pivot;
+    }
+    for (size_t i = count - 1; i-- > 1;) curvature[i] -= factor[i] * curvature[i + 1];
+    return curvature;
+}
 
 std::vector<Trajectory::Stamp> stampsOf(const std::vector<Waypoint>& waypoints) {
     std::vector<Trajectory::Stamp> stamps;
@@ -41,7 +59,44 @@ Spline splineThrough(const std::vector<Trajectory::Stamp>& stamps) {
     return {std::move(times), std::move(rows)};
 }
 
+constexpr double shortest_quaternion = 1e-6;
+
+glm::dquat orientationOf(const std::vector<double>& row) { return {row[4], row[5], row[6], row[7]}; }
+
+std::vector<types::CsvDiagnostic> judge(const std::vector<double>& row, const std::vector<double>* before) {
+    std::vector<types::CsvDiagnostic> diagnostics;
+    if (before && !(row[0] > before->front()))
+        diagnostics.push_back({0, "is not after the line before; times must increase"});
+    const double length = glm::length(orientationOf(row));
+    if (!(length >= shortest_quaternion) || !std::isfinite(length))
+        diagnostics.push_back({4, "starts a quaternion of no usable length; it must be about 1"});
+    return diagnostics;
+}
+
 }  // namespace
+
+Spline::Spline(std::vector<double> times, std::vector<Row> rows)
+    : times_(std::move(times)), rows_(std::move(rows)), curvatures_(rows_.size()) {
+    for (size_t column = 0; column < columns; ++column) {
+        const std::vector<double> curvature = curvaturesOf(times_, rows_, column);
+        for (size_t i = 0; i < curvature.size(); ++i) curvatures_[i][column] = curvature[i];
+    }
+}
+
+Spline::Point Spline::at(size_t knot, double time) const {
+    const double length = times_[knot] - times_[knot - 1];
+    const double b = (time - times_[knot - 1]) / length, a = 1 - b;
+    const Row &from = rows_[knot - 1], &to = rows_[knot];
+    const Row &bent_from = curvatures_[knot - 1], &bent_to = curvatures_[knot];
+    Point point;
+    for (size_t i = 0; i < columns; ++i) {
+        point.value[i] = a * from[i] + b * to[i] +
+                         ((a * a * a - a) * bent_from[i] + (b * b * b - b) * bent_to[i]) * length * length / 6;
+        point.rate[i] =
+            (to[i] - from[i]) / length + ((3 * b * b - 1) * bent_to[i] - (3 * a * a - 1) * bent_from[i]) * length / 6;
+    }
+    return point;
+}
 
 glm::dquat Waypoint::orientation() const {
     return glm::angleAxis(types::radians(yaw_deg), glm::dvec3(0, 0, 1)) *
@@ -105,6 +160,16 @@ types::Pose Trajectory::at(double time) const {
 double Trajectory::inLoop(double time) const {
     const double first = stamps_.front().time, length = stamps_.back().time - first;
     return length > 0 && time > first ? first + std::fmod(time - first, length) : time;
+}
+
+Trajectory Trajectory::fromCsv(const std::filesystem::path& file, bool smooth) {
+    static const std::vector<types::CsvColumn> columns{{"time"}, {"x"}, {"y"}, {"z"}, {"qw"}, {"qx"}, {"qy"}, {"qz"}};
+    std::vector<Stamp> stamps;
+    for (const std::vector<double>& row : types::readCsv(file, columns, 1, judge)) {
+        const glm::dquat orientation = orientationOf(row);
+        stamps.push_back({row[0], {row[1], row[2], row[3]}, orientation / glm::length(orientation)});
+    }
+    return Trajectory(std::move(stamps), smooth);
 }
 
 }  // namespace insonify::pose

@@ -9,6 +9,7 @@
 #include "components/log/Reader.hpp"
 #include "components/python/Arrays.hpp"
 #include "types/ConfigError.hpp"
+#include "types/RequireSound.hpp"
 
 namespace insonify::python {
 namespace {
@@ -93,25 +94,19 @@ struct PyStream {
     const log::Stream& declared() const { return log->streams()[stream]; }
 };
 
-/** The sample, if its lists are as long as it says, which arrays rely on. */
-template <class Sample>
-std::shared_ptr<Sample> soundOf(std::shared_ptr<Sample> sample) {
-    if (const char* diagnostic = sample->diagnostic())
-        throw types::ConfigError("", "", std::string("a sample of the log ") + diagnostic);
-    return sample;
-}
-
 py::object sampleOf(const PyStream& stream, size_t index) {
     const log::SampleRef& at = stream.log->samples()[stream.samples[index]];
     if (log::holdsPings(stream.declared())) {
         auto ping = std::make_shared<types::Sonar>();
         log::readPing(*stream.log, at, *ping);
-        return py::cast(PyPing{soundOf(ping), nullptr});
+        types::requireSound<types::ConfigError>(*ping, "a sample of the log", "", "");
+        return py::cast(PyPing{std::move(ping), nullptr});
     }
     if (stream.declared().holds<types::SonarTruth>()) {
         auto truth = std::make_shared<types::SonarTruth>();
         stream.log->read(at, *truth);
-        return truthOf(soundOf(truth));
+        types::requireSound<types::ConfigError>(*truth, "a sample of the log", "", "");
+        return truthOf(truth);
     }
     return std::visit(
         [](const auto* sample) -> py::object {

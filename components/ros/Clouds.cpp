@@ -7,7 +7,8 @@
 #include <stdexcept>
 
 #include "components/ros/Poses.hpp"
-#include "components/ros/Times.hpp"
+#include "components/ros/Stamps.hpp"
+#include "types/RequireSound.hpp"
 
 namespace insonify::ros {
 namespace {
@@ -83,8 +84,7 @@ void endCloud(uint32_t rows, PointCloud2& message) {
 }
 
 void convert(const types::PointCloud& cloud, WorldFrame frame, PointCloud2& message) {
-    if (const char* const diagnostic = cloud.diagnostic())
-        throw std::invalid_argument(std::string("the cloud ") + diagnostic);
+    types::requireSound(cloud, "the cloud");
     message.header.stamp = toRos(cloud.time);
     message.header.frame_id = "map";
     beginCloud({"x", "y", "z", "intensity"}, message);
@@ -113,8 +113,7 @@ void convert(const PointCloud2& message, WorldFrame frame, types::PointCloud& cl
 }
 
 void convert(const types::DepthMap& map, const std::string& frame_id, PointCloud2& message) {
-    if (const char* const diagnostic = map.diagnostic())
-        throw std::invalid_argument(std::string("the map ") + diagnostic);
+    types::requireSound(map, "the map");
     const bool polar =
         map.vertical_projection == types::Projection::Polar && map.horizontal_projection == types::Projection::Polar;
     if (!polar || map.vertical_interval.size() != map.vertical_size ||

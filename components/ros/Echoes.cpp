@@ -6,7 +6,7 @@
 #include <cmath>
 #include <cstring>
 
-#include "components/ros/FromSonar.hpp"
+#include "components/ros/Pings.hpp"
 
 namespace insonify::ros {
 

@@ -1,11 +1,12 @@
 #pragma once
-// ROS 2 messages of builtin_interfaces, std_msgs, rosgraph_msgs, geometry_msgs and nav_msgs, field for field.
+// ROS 2 messages of builtin_interfaces, std_msgs, rosgraph_msgs, geometry_msgs, nav_msgs and tf2_msgs, field for field.
 //
 // Each is described once (see types/Describe.hpp); its CDR bytes and its schema text follow from that. `type_hash` is
 // the RIHS01 hash of the type, as ROS 2 announces it to other nodes.
 #include <array>
 #include <cstdint>
 #include <string>
+#include <vector>
 
 #include "types/Describe.hpp"
 
@@ -185,6 +186,48 @@ struct Odometry {
         visit(Field{"child_frame_id", "", "the body"}, self.child_frame_id);
         visit(Field{"pose"}, self.pose);
         visit(Field{"twist"}, self.twist);
+    }
+};
+
+struct Transform {
+    static constexpr const char* type_name = "geometry_msgs/msg/Transform";
+    static constexpr const char* type_hash = "RIHS01_beb83fbe698636351461f6f35d1abb20010c43d55374d81bd041f1ba2581fddc";
+    Vector3 translation;
+    Quaternion rotation;
+
+    friend bool operator==(const Transform&, const Transform&) = default;
+    template <class Self, class V>
+    static void describe(Self& self, V& visit) {
+        visit(Field{"translation", "m", "origin of the child in the header's frame"}, self.translation);
+        visit(Field{"rotation", "1", "turns vectors of the child into the header's frame"}, self.rotation);
+    }
+};
+
+struct TransformStamped {
+    static constexpr const char* type_name = "geometry_msgs/msg/TransformStamped";
+    static constexpr const char* type_hash = "RIHS01_0a241f87d04668d94099cbb5ba11691d5ad32c2f29682e4eb5653424bd275206";
+    Header header;
+    std::string child_frame_id;
+    Transform transform;
+
+    friend bool operator==(const TransformStamped&, const TransformStamped&) = default;
+    template <class Self, class V>
+    static void describe(Self& self, V& visit) {
+        visit(Field{"header"}, self.header);
+        visit(Field{"child_frame_id"}, self.child_frame_id);
+        visit(Field{"transform"}, self.transform);
+    }
+};
+
+struct TFMessage {
+    static constexpr const char* type_name = "tf2_msgs/msg/TFMessage";
+    static constexpr const char* type_hash = "RIHS01_e369d0f05a23ae52508854b66f6aa0437f3449d652e8cbf22d5abe85d020f087";
+    std::vector<TransformStamped> transforms;
+
+    friend bool operator==(const TFMessage&, const TFMessage&) = default;
+    template <class Self, class V>
+    static void describe(Self& self, V& visit) {
+        visit(Field{"transforms"}, self.transforms);
     }
 };
 

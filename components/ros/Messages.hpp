@@ -3,14 +3,11 @@
 #include <tuple>
 #include <type_traits>
 
-#include "components/ros/ElementMessages.hpp"
 #include "components/ros/GeometryMessages.hpp"
+#include "components/ros/InsonifyMessages.hpp"
 #include "components/ros/SensorMessages.hpp"
-#include "components/ros/SettingsMessage.hpp"
 #include "components/ros/SonarMessages.hpp"
 #include "components/ros/StdMessages.hpp"
-#include "components/ros/TransformMessages.hpp"
-#include "components/ros/TruthMessages.hpp"
 
 namespace insonify::ros {
 

@@ -4,8 +4,9 @@
 #include <glm/matrix.hpp>
 #include <stdexcept>
 
-#include "components/ros/Times.hpp"
-#include "components/ros/Unknowns.hpp"
+#include "components/ros/Poses.hpp"
+#include "components/ros/Stamps.hpp"
+#include "types/RequireSound.hpp"
 #include "types/WorldFrame.hpp"
 
 namespace insonify::ros {
@@ -118,7 +119,7 @@ void convert(const Imu& message, WorldFrame frame, types::ImuSensors& sensors) {
 }
 
 void convert(const types::Dvl& dvl, const std::string& frame_id, Dvl& message) {
-    if (const char* why = dvl.diagnostic()) throw std::invalid_argument(std::string("a velocity log's sample ") + why);
+    types::requireSound(dvl, "a velocity log's sample");
     const glm::dvec3 v = turnedOver(dvl.velocity);
     message.header = {toRos(dvl.time), frame_id};
     message.velocity_mode = Dvl::bottom;

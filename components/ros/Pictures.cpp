@@ -3,7 +3,7 @@
 #include <limits>
 #include <stdexcept>
 
-#include "components/ros/Times.hpp"
+#include "components/ros/Stamps.hpp"
 
 namespace insonify::ros {
 

@@ -3,8 +3,7 @@
 #include <algorithm>
 #include <numbers>
 
-#include "components/ros/Times.hpp"
-#include "components/ros/Unknowns.hpp"
+#include "components/ros/Stamps.hpp"
 
 namespace insonify::ros {
 

@@ -1,7 +1,11 @@
 #pragma once
+#include <cmath>
+#include <glm/mat3x3.hpp>
+#include <glm/matrix.hpp>
+#include <glm/vec3.hpp>
+
 #include "components/ros/GeometryMessages.hpp"
 #include "components/ros/Options.hpp"
-#include "components/ros/TransformMessages.hpp"
 #include "types/Mount.hpp"
 #include "types/Pose.hpp"
 
@@ -28,5 +32,17 @@ Transform toTransform(const types::Mount& mount, WorldFrame frame, SensorFrame a
 /** The reverse. What the message does not tell is unknown. */
 void convert(const PoseStamped& message, WorldFrame frame, types::Pose& pose);
 void convert(const Odometry& message, WorldFrame frame, types::Pose& pose);
+
+// What poses and readings share: what is not known of them, and covariances in other axes.
+
+inline bool isUnknown(glm::dvec3 v) { return std::isnan(v.x) || std::isnan(v.y) || std::isnan(v.z); }
+inline bool isUnknown(const glm::dmat3& m) { return isUnknown(m[0]) || isUnknown(m[1]) || isUnknown(m[2]); }
+
+/** A covariance, whose columns are vectors, where `turn` turns a vector: C becomes A C A^T. */
+template <class Turn>
+glm::dmat3 both(const glm::dmat3& covariance, Turn&& turn) {
+    const auto columns = [&](const glm::dmat3& m) { return glm::dmat3(turn(m[0]), turn(m[1]), turn(m[2])); };
+    return columns(glm::transpose(columns(covariance)));
+}
 
 }  // namespace insonify::ros

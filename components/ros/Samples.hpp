@@ -4,17 +4,14 @@
 #include <type_traits>
 
 #include "components/ros/Clouds.hpp"
-#include "components/ros/Elements.hpp"
-#include "components/ros/FromSonar.hpp"
+#include "components/ros/InsonifyMessages.hpp"
 #include "components/ros/Messages.hpp"
 #include "components/ros/Navigation.hpp"
 #include "components/ros/Options.hpp"
 #include "components/ros/Pictures.hpp"
+#include "components/ros/Pings.hpp"
 #include "components/ros/Poses.hpp"
-#include "components/ros/Settings.hpp"
-#include "components/ros/Times.hpp"
-#include "components/ros/ToSonar.hpp"
-#include "components/ros/Truths.hpp"
+#include "components/ros/Stamps.hpp"
 #include "types/Samples.hpp"
 
 namespace insonify::ros {

@@ -1,5 +1,6 @@
 #pragma once
 // The text of a message's definition, as MCAP's schema encoding "ros2msg" has it, from the description of the message.
+#include <algorithm>
 #include <string>
 #include <vector>
 
@@ -8,7 +9,10 @@
 namespace insonify::ros {
 
 /** "std_msgs/Header" of "std_msgs/msg/Header". */
-std::string shortName(const std::string& type_name);
+inline std::string shortName(const std::string& type_name) {
+    const size_t middle = type_name.find("/msg/");
+    return type_name.substr(0, middle) + type_name.substr(middle + 4);
+}
 
 template <class T>
 std::string fieldType() {
@@ -63,7 +67,12 @@ private:
         else if (add(T::type_name, definitionOf<T>()))
             addPartsOf<T>();
     }
-    bool add(const std::string& type_name, const std::string& definition);
+    bool add(const std::string& type_name, const std::string& definition) {
+        if (std::ranges::count(known_, type_name)) return false;
+        known_.push_back(type_name);
+        text_ += std::string(80, '=') + "\nMSG: " + shortName(type_name) + "\n" + definition;
+        return true;
+    }
 
     std::vector<std::string> known_;
     std::string text_;

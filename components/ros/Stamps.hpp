@@ -1,12 +1,32 @@
 #pragma once
-// Stamps finer than a microsecond. Samples count whole microseconds, as Rock's do; messages count nanoseconds.
+// Times of samples as stamps of messages and back. Samples count whole microseconds, as Rock's do; messages count
+// nanoseconds.
 #include <array>
 #include <atomic>
 #include <cstdint>
+#include <limits>
+#include <stdexcept>
+#include <string>
 
-#include "components/ros/TransformMessages.hpp"
+#include "components/ros/GeometryMessages.hpp"
+#include "types/Time.hpp"
 
 namespace insonify::ros {
+
+/** Throws std::out_of_range for what 32 bits of seconds cannot hold: years before 1901 and after 2038. */
+inline Time toRos(types::Time time) {
+    const int64_t rest = (time.microseconds % 1'000'000 + 1'000'000) % 1'000'000;
+    const int64_t seconds = (time.microseconds - rest) / 1'000'000;
+    if (seconds < std::numeric_limits<int32_t>::min() || seconds > std::numeric_limits<int32_t>::max())
+        throw std::out_of_range("ROS holds no time of " + std::to_string(seconds) +
+                                " s: from -2147483648 s to 2147483647 s");
+    return {static_cast<int32_t>(seconds), static_cast<uint32_t>(rest * 1000)};
+}
+
+/** To the microsecond below. */
+inline types::Time fromRos(Time time) { return {time.sec * int64_t{1'000'000} + time.nanosec / 1000}; }
+
+inline Clock toClock(types::Time time) { return {toRos(time)}; }
 
 /** Keeps what stamps of messages had beyond the microseconds of their samples, so that what is made of these samples
  *  bears the whole stamp again: a ping that of its pose. Of the last few thousand stamps; of two within one microsecond

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "components/ros/TransformMessages.hpp"
+#include "components/ros/GeometryMessages.hpp"
 #include "types/Time.hpp"
 
 namespace insonify::ros {

@@ -23,17 +23,15 @@ int multipleDown(int value, int step) { return wholeDown(double(value) / step) *
 
 /** Triangles between posts that have a value, seen from above anticlockwise where `is_turned` is false. */
 void addTriangles(const std::vector<float>& values, const PostWindow& posts, bool is_turned, Surface& surface) {
-    const auto stride = static_cast<uint32_t>(posts.columns);
     const auto add = [&](uint32_t a, uint32_t b, uint32_t c) {
         if (std::isfinite(values[a] + values[b] + values[c]))
             surface.indices.insert(surface.indices.end(), {a, is_turned ? c : b, is_turned ? b : c});
     };
-    for (uint32_t row = 0; row + 1 < static_cast<uint32_t>(posts.rows); ++row)
-        for (uint32_t column = 0; column + 1 < stride; ++column) {
-            const uint32_t a = row * stride + column, b = a + 1, c = a + stride, d = c + 1;
-            add(a, c, b);
-            add(c, d, b);
-        }
+    forEachCell(static_cast<size_t>(posts.columns), static_cast<size_t>(posts.rows),
+                [&](uint32_t a, uint32_t b, uint32_t c, uint32_t d) {
+                    add(a, c, b);
+                    add(c, d, b);
+                });
 }
 
 }  // namespace

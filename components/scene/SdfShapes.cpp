@@ -112,12 +112,9 @@ Surface readHeightmap(const std::filesystem::path& file, glm::dvec3 size) {
             surface.positions.emplace_back(
                 size * glm::dvec3(double(column) / (width - 1) - 0.5, 0.5 - double(row) / (height - 1), value));
         }
-    const auto stride = static_cast<uint32_t>(columns.size());
-    for (uint32_t i = 0; i + 1 < rows.size(); ++i)
-        for (uint32_t j = 0; j + 1 < stride; ++j) {
-            const uint32_t a = i * stride + j, b = a + 1, c = b + stride, d = a + stride;
-            surface.indices.insert(surface.indices.end(), {a, d, c, a, c, b});
-        }
+    forEachCell(columns.size(), rows.size(), [&](uint32_t a, uint32_t b, uint32_t c, uint32_t d) {
+        surface.indices.insert(surface.indices.end(), {a, c, d, a, d, b});
+    });
     return surface;
 }
 

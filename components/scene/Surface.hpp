@@ -29,6 +29,18 @@ struct DroppedTriangles {
 /** Drops triangles that cannot be drawn and counts them; a damaged vertex, which none uses any more, goes to 0. */
 void cleanUp(Surface& surface, DroppedTriangles& dropped);
 
+/** Calls `use(a, b, c, d)` for each cell of a grid whose vertices stand row by row: a and b are of one row, c and d
+ *  those beyond them in the next. */
+template <class Use>
+void forEachCell(size_t columns, size_t rows, Use&& use) {
+    const auto stride = static_cast<uint32_t>(columns);
+    for (uint32_t row = 0; row + 1 < rows; ++row)
+        for (uint32_t column = 0; column + 1 < stride; ++column) {
+            const uint32_t a = row * stride + column, c = a + stride;
+            use(a, a + 1, c, c + 1);
+        }
+}
+
 /** Adds a surface to a mesh as one more cluster, still without bounds. */
 void appendSurface(const Surface& surface, int material, types::Mesh& mesh);
 

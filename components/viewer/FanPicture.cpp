@@ -6,7 +6,7 @@
 #include <stdexcept>
 
 #include "components/ros/Echoes.hpp"
-#include "components/ros/Times.hpp"
+#include "components/ros/Stamps.hpp"
 
 namespace insonify::viewer {
 namespace {

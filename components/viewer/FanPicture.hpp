@@ -9,7 +9,7 @@
 namespace insonify::viewer {
 
 /** Pings as sensor_msgs/Image, mono8: the fan as seen from above, ahead is up and port is left; a pixel has the
- * strongest of the echoes that it covers, as the levels of components/ros/FromSonar.hpp; 0 is no echo, and outside of
+ * strongest of the echoes that it covers, as the levels of components/ros/Pings.hpp; 0 is no echo, and outside of
  * the fan.
  *
  *  Where each pixel's echoes are is tabled, and kept until bearings, bins or range change. */

@@ -7,7 +7,7 @@
 
 #include "components/ros/Cdr.hpp"
 #include "components/ros/Poses.hpp"
-#include "components/ros/Times.hpp"
+#include "components/ros/Stamps.hpp"
 #include "components/viewer/FoxgloveMessages.hpp"
 
 namespace insonify::viewer {

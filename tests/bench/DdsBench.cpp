@@ -10,12 +10,12 @@
 #include <thread>
 #include <vector>
 
+#include "components/dds/Endpoints.hpp"
 #include "components/dds/PublisherTask.hpp"
-#include "components/dds/Reader.hpp"
 #include "components/framework/Port.hpp"
 #include "components/ros/Cdr.hpp"
 #include "components/ros/Messages.hpp"
-#include "components/ros/Times.hpp"
+#include "components/ros/Stamps.hpp"
 #include "types/Sonar.hpp"
 
 using namespace insonify;

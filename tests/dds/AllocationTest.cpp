@@ -1,6 +1,6 @@
 #include <gmock/gmock.h>
 
-#include "components/dds/Reader.hpp"
+#include "components/dds/Endpoints.hpp"
 #include "tests/dds/Ends.hpp"
 #include "tests/support/Allocations.hpp"
 

@@ -2,9 +2,8 @@
 
 #include "components/dds/DiscoveryMessages.hpp"
 #include "components/dds/Domain.hpp"
+#include "components/dds/Endpoints.hpp"
 #include "components/dds/Node.hpp"
-#include "components/dds/Reader.hpp"
-#include "components/dds/Writer.hpp"
 #include "components/ros/Cdr.hpp"
 #include "components/ros/GeometryMessages.hpp"
 #include "tests/dds/Loopback.hpp"

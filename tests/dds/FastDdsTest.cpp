@@ -6,7 +6,7 @@
 
 #include "components/ros/Cdr.hpp"
 #include "components/ros/GeometryMessages.hpp"
-#include "components/ros/Times.hpp"
+#include "components/ros/Stamps.hpp"
 #include "tests/dds/Ends.hpp"
 
 using namespace insonify;

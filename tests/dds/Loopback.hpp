@@ -1,19 +1,16 @@
 #pragma once
 // A DDS domain of the test's own on the loopback interface, and other peers on it.
 #include <gtest/gtest.h>
-#include <signal.h>
 #include <sys/socket.h>
 #include <sys/un.h>
 #include <unistd.h>
 
 #include <cstddef>
 #include <cstdlib>
-#include <optional>
 #include <random>
 #include <string>
 
-#include "tests/deployer/Command.hpp"
-#include "tests/support/Python.hpp"
+#include "tests/support/Peer.hpp"
 #include "tests/support/Waiting.hpp"
 
 namespace insonify::dds {
@@ -68,21 +65,13 @@ private:
     const OwnDomain domain_;
 };
 
-/** A peer by another DDS, which says when it is ready, then what it found. It is stopped at the end. */
-class Peer {
+/** A peer by another DDS, which says when it is ready, then what it found. */
+class Peer : public test::Peer {
 public:
     /** Of peer.py: "listen PoseStamped /pose 2" */
-    explicit Peer(const std::string& command) : Peer(wordsOf(command)) {}
+    explicit Peer(const std::string& command) : test::Peer("tests/dds/peer.py", command) {}
     /** A program and its arguments. */
-    explicit Peer(std::vector<std::string> words) {
-        process_.emplace(std::move(words), folder_.path());
-        ready_ = comesTrue([&] { return hasSaid("ready"); });
-    }
-    ~Peer() {
-        if (!process_) return;
-        signal(SIGKILL);
-        process_->wait();
-    }
+    explicit Peer(std::vector<std::string> words) : test::Peer(std::move(words)) {}
     /** Whether PyPI's cyclonedds is here. */
     static bool available() { return pythonHas("cyclonedds"); }
     bool ready() const { return ready_; }
@@ -95,11 +84,9 @@ public:
     void begin() const { signal(SIGUSR1); }
     /** Whether it has found what it looked for. */
     bool hasEnded() const { return hasSaid("{"); }
-    void signal(int number) const { process_->signal(number); }
     /** What it found; null, with a failure, if it ended otherwise. */
     nlohmann::json result() {
-        const deployer::Outcome outcome = process_->wait();
-        process_.reset();
+        const deployer::Outcome outcome = wait();
         EXPECT_EQ(outcome.code, 0) << outcome.err;
         const size_t begin = outcome.out.find('{');
         return outcome.code == 0 && begin != std::string::npos ? nlohmann::json::parse(outcome.out.substr(begin))
@@ -107,18 +94,7 @@ public:
     }
 
 private:
-    bool hasSaid(const std::string& text) const {
-        return deployer::readFile(folder_ / "stdout.txt").find(text) != std::string::npos;
-    }
-    static std::vector<std::string> wordsOf(std::string command) {
-        std::vector<std::string> words = {python(), INSONIFY_SOURCE_DIR "/tests/dds/peer.py"};
-        for (std::istringstream text(command); text >> command;) words.push_back(command);
-        return words;
-    }
-
-    deployer::TestFolder folder_;
-    std::optional<deployer::Process> process_;
-    bool ready_ = false;
+    const bool ready_ = comesTrue([&] { return hasSaid("ready"); });
 };
 
 /** For tests with a peer. */

@@ -1,10 +1,10 @@
 // A ROS 2 peer by another version of Cyclone: PyPI's.
 #include <gmock/gmock.h>
 
-#include "components/dds/Reader.hpp"
+#include "components/dds/Endpoints.hpp"
 #include "components/ros/Cdr.hpp"
 #include "components/ros/Messages.hpp"
-#include "components/ros/Times.hpp"
+#include "components/ros/Stamps.hpp"
 #include "tests/dds/Ends.hpp"
 
 using namespace insonify;

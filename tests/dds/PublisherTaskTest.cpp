@@ -3,11 +3,11 @@
 #include <cmath>
 #include <cstring>
 
+#include "components/dds/Endpoints.hpp"
 #include "components/dds/PublisherTask.hpp"
-#include "components/dds/Reader.hpp"
 #include "components/ros/Cdr.hpp"
-#include "components/ros/FromSonar.hpp"
-#include "components/ros/Times.hpp"
+#include "components/ros/Pings.hpp"
+#include "components/ros/Stamps.hpp"
 #include "tests/dds/Ends.hpp"
 #include "types/Mount.hpp"
 

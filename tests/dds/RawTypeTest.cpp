@@ -3,9 +3,8 @@
 
 #include <numeric>
 
+#include "components/dds/Endpoints.hpp"
 #include "components/dds/RawType.hpp"
-#include "components/dds/Reader.hpp"
-#include "components/dds/Writer.hpp"
 #include "components/ros/Cdr.hpp"
 #include "components/ros/SensorMessages.hpp"
 #include "tests/dds/Loopback.hpp"

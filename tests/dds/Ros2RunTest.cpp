@@ -1,7 +1,7 @@
 // deploy/ros2_fls.yml, deploy/ros2_tf.yml and what is wrong with others, as a user sees it.
 #include <gmock/gmock.h>
 
-#include "components/dds/Reader.hpp"
+#include "components/dds/Endpoints.hpp"
 #include "components/ros/Cdr.hpp"
 #include "components/ros/SonarMessages.hpp"
 #include "tests/dds/Loopback.hpp"

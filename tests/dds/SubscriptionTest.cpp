@@ -1,12 +1,11 @@
 // What a subscription refuses.
 #include <gmock/gmock.h>
 
+#include "components/dds/Endpoints.hpp"
 #include "components/dds/Subscription.hpp"
-#include "components/dds/Writer.hpp"
 #include "components/ros/Cdr.hpp"
 #include "components/ros/SonarMessages.hpp"
 #include "components/ros/Stamps.hpp"
-#include "components/ros/Times.hpp"
 #include "tests/dds/Ends.hpp"
 
 using namespace insonify;

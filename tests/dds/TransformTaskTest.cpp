@@ -1,11 +1,12 @@
 // tf as ROS 2 nodes tell it: by PyPI's cyclonedds, and by writers of the test.
 #include <gmock/gmock.h>
 
+#include "components/dds/Endpoints.hpp"
 #include "components/dds/TransformTask.hpp"
-#include "components/dds/Writer.hpp"
 #include "components/ros/Cdr.hpp"
-#include "components/ros/Times.hpp"
+#include "components/ros/Stamps.hpp"
 #include "tests/dds/Ends.hpp"
+#include "tests/support/Listening.hpp"
 
 using namespace insonify;
 using namespace insonify::dds;
@@ -14,36 +15,16 @@ using testing::HasSubstr;
 
 namespace {
 
-class TransformTaskTest : public Loopback {
+class TransformTaskTest : public Loopback, protected test::Listening<TransformTask> {
 protected:
-    ~TransformTaskTest() override { task.activity().hold(); }
+    TransformTaskTest() : Listening("tf") {}
 
     void startWith(std::vector<FrameOut> frames, const std::function<void(TransformConfig&)>& change = {}) {
         TransformConfig config;
         config.frames = std::move(frames);
         if (change) change(config);
-        task.config.set(config);
-        for (size_t i = 0; i < config.frames.size(); ++i)
-            task.makeOutput(config.frames[i].port)->connectTo(readers[i].port, framework::ConnPolicy::buffer(10'000));
-        const framework::Outcome configured = task.configure();
-        ASSERT_TRUE(configured) << configured.reason;
-        ASSERT_TRUE(task.start());
-        task.activity().release();
+        start(config, config.frames);
     }
-    std::optional<types::Pose> next(size_t reader = 0) {
-        types::Pose pose;
-        if (!comesTrue([&] { return readers[reader].port.readNew(pose); })) return std::nullopt;
-        return pose;
-    }
-    bool tells(const std::string& text) const {
-        return comesTrue([&] {
-            const std::vector<std::string> all = task.notices();
-            return std::ranges::any_of(all, [&](const auto& line) { return line.find(text) != std::string::npos; });
-        });
-    }
-
-    test::Reader<types::Pose> readers[2];
-    TransformTask task{"tf"};
 };
 
 /** A sender of transforms. */

@@ -3,9 +3,9 @@
 
 #include "components/ros/Cdr.hpp"
 #include "components/ros/Messages.hpp"
+#include "components/ros/Pings.hpp"
 #include "components/ros/Poses.hpp"
-#include "components/ros/Times.hpp"
-#include "components/ros/ToSonar.hpp"
+#include "components/ros/Stamps.hpp"
 #include "components/ros/TransformTree.hpp"
 #include "tests/support/Fuzz.hpp"
 

@@ -7,7 +7,7 @@
 #include "components/gazebo/PoseTask.hpp"
 #include "components/scene/SceneTask.hpp"
 #include "tests/gazebo/World.hpp"
-#include "tests/support/Ports.hpp"
+#include "tests/support/Listening.hpp"
 
 using namespace insonify;
 using namespace insonify::gazebo;
@@ -16,21 +16,16 @@ using testing::HasSubstr;
 
 namespace {
 
-class PoseTaskTest : public OwnPartition {
+class PoseTaskTest : public OwnPartition, protected test::Listening<PoseTask> {
 protected:
-    ~PoseTaskTest() override { task.activity().hold(); }
+    PoseTaskTest() : Listening("world", true) {}
 
     static BodyConfig entity(const std::string& port, const std::string& name) { return {port, name, ""}; }
     void startWith(std::vector<BodyConfig> bodies) {
         PoseConfig config;
         config.world = "sea";
         config.bodies = std::move(bodies);
-        task.config.set(config);
-        for (size_t i = 0; i < config.bodies.size(); ++i)
-            task.makeOutput(config.bodies[i].port)->connectTo(readers[i].port, framework::ConnPolicy::buffer(10'000));
-        const framework::Outcome configured = task.configure();
-        ASSERT_TRUE(configured) << configured.reason;
-        ASSERT_TRUE(task.start());
+        start(config, config.bodies);
     }
     /** Until a message has come; then nothing of it is left. */
     void meet(double seconds = 1) {
@@ -43,24 +38,8 @@ protected:
         task.update();
         for (auto& reader : readers) reader.port.clear();
     }
-    /** The next pose, which the message that `tell` sends becomes. */
-    std::optional<types::Pose> next(size_t reader = 0) {
-        types::Pose pose;
-        if (!comesTrue([&] { return task.update(), readers[reader].port.readNew(pose); })) return std::nullopt;
-        return pose;
-    }
-    /** Waits until something has been dropped, or not. */
-    bool tells(const std::string& text) {
-        return comesTrue([&] {
-            task.update();
-            const std::vector<std::string> all = task.notices();
-            return std::ranges::any_of(all, [&](const auto& line) { return line.find(text) != std::string::npos; });
-        });
-    }
 
     World world;
-    test::Reader<types::Pose> readers[2];
-    PoseTask task{"world"};
 };
 
 }  // namespace

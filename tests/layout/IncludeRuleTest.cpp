@@ -40,6 +40,8 @@ std::set<std::string> neighboursOf(const Source& source) {
     if (folder == "dds") allowed.insert("ros");
     if (folder == "log") allowed.insert("ros");
     if (folder == "mavlink") allowed.insert("device");  // its network
+    const std::set<std::string> pose_listeners = {"dds", "gazebo", "mavlink"};
+    if (source.isTaskHalf() && pose_listeners.contains(folder)) allowed.insert("pose");
     if (folder == "viewer") allowed.insert("ros");
     return allowed;
 }
@@ -150,6 +152,8 @@ TEST(IncludeRuleTest, TheRuleRefusesWhatItShould) {
     EXPECT_TRUE(allowed("components/log/mcap/SampleWriter.cpp", "components/ros/Cdr.hpp"));
     EXPECT_FALSE(allowed("components/dds/Node.cpp", "components/framework/Port.hpp"));
     EXPECT_TRUE(allowed("components/dds/Node.cpp", "components/ros/Cdr.hpp"));
+    EXPECT_TRUE(allowed("components/gazebo/PoseTask.hpp", "components/pose/ListenerTask.hpp"));
+    EXPECT_FALSE(allowed("components/gazebo/Poses.hpp", "components/pose/Trajectory.hpp"));
     EXPECT_TRUE(allowed("components/sonar/SonarRenderer.cpp", "components/gpu/Context.hpp"));
     EXPECT_TRUE(allowed("components/deployer/main.cpp", "components/noise/NoiseTask.hpp"));
 }

@@ -4,11 +4,9 @@
 #include <cmath>
 #include <numbers>
 
-#include "components/framework/Activity.hpp"
 #include "components/mavlink/PoseTask.hpp"
 #include "tests/mavlink/Vehicle.hpp"
-#include "tests/support/Ports.hpp"
-#include "tests/support/Python.hpp"
+#include "tests/support/Listening.hpp"
 #include "types/Mount.hpp"
 
 using namespace insonify;
@@ -18,31 +16,20 @@ using testing::HasSubstr;
 
 namespace {
 
-class PoseTaskTest : public testing::Test {
+class PoseTaskTest : public testing::Test, protected test::Listening<PoseTask> {
 protected:
+    PoseTaskTest() : Listening("vehicle") {}
     void SetUp() override {
         if (!Vehicle::available())
             GTEST_SKIP() << "PyPI's pymavlink is not in " << python() << ": scripts/setup puts it there";
     }
-    ~PoseTaskTest() override { task.activity().hold(); }
 
     void startWith(const std::function<void(PoseConfig&)>& change = {}) {
         PoseConfig config;
         config.port = 0;
         config.bodies.resize(1);
         if (change) change(config);
-        task.config.set(config);
-        for (size_t i = 0; i < config.bodies.size(); ++i)
-            task.makeOutput(config.bodies[i].port)->connectTo(readers[i].port, framework::ConnPolicy::buffer(10'000));
-        const framework::Outcome configured = task.configure();
-        ASSERT_TRUE(configured) << configured.reason;
-        ASSERT_TRUE(task.start());
-        task.activity().release();
-    }
-    std::optional<types::Pose> next(size_t reader = 0) {
-        types::Pose pose;
-        if (!comesTrue([&] { return readers[reader].port.readNew(pose); })) return std::nullopt;
-        return pose;
+        start(config, config.bodies);
     }
     /** A pose of vehicle.py, in our axes. */
     static void expectKnown(const types::Pose& pose) {
@@ -63,9 +50,6 @@ protected:
             last = pose->time;
         }
     }
-
-    test::Reader<types::Pose> readers[2];
-    PoseTask task{"vehicle"};
 };
 
 }  // namespace

@@ -42,7 +42,7 @@ TEST_F(DvlTaskTest, WithoutABottomItDoesNotStart) {
 
 TEST_F(DvlTaskTest, MeasuresOverTheFloorOfASceneFromItsPlaceInTheBody) {
     connectScene();
-    startWith({.mount = {.position = {0.5, 0, -1}, .yaw_deg = 90}});
+    startWith({.sensor = {.mount = {.position = {0.5, 0, -1}, .yaw_deg = 90}}});
     show(test::snapshotOf(test::sceneOf({test::ground(-17)})));
     const types::DvlPtr dvl = told(1, ahead_);
     ASSERT_TRUE(dvl);
@@ -83,7 +83,7 @@ TEST_F(DvlTaskTest, APeriodTellsFewerAndTheSameSeedTheSameBits) {
             if (const types::DvlPtr dvl = answerTo(ahead_(1 + i * 0.01))) velocities.push_back(dvl->velocity);
         return velocities;
     };
-    startWith({.period = 0.125, .bottom_height = -17.0, .errors = {.velocity_noise = 0.01}});
+    startWith({.sensor = {.period = 0.125}, .bottom_height = -17.0, .errors = {.velocity_noise = 0.01}});
     const std::vector<glm::dvec3> first = run();
     EXPECT_EQ(first.size(), 16u);
     ASSERT_TRUE(task_.stop() && task_.start());

@@ -162,7 +162,7 @@ TEST(DvlTest, WhatIsWrongForLongStaysAndIsOfItsDeviation) {
     constexpr int logs = 4000;
     double scale = 0, bias = 0;
     for (uint64_t seed = 0; seed < logs; ++seed) {
-        const Dvl log({.seed = seed, .errors = {.scale_error = 0.002, .velocity_bias = 0.001}});
+        const Dvl log({.sensor = {.seed = seed}, .errors = {.scale_error = 0.002, .velocity_bias = 0.001}});
         const Bottom bottom(-12.0);
         const double still = ping(log, moving({}), bottom).beam_velocities[0];
         const types::Dvl fast = ping(log, moving({0, 0, -10}), bottom);

@@ -83,7 +83,7 @@ TEST_F(ImuTaskTest, TheSameSeedAndPosesGiveTheSameBits) {
         EXPECT_EQ(again[i].orientation, first[i].orientation);
     }
     ImuConfig other = noisy();
-    other.seed = 2;
+    other.sensor.seed = 2;
     task_.stop();
     startWith(other);
     EXPECT_NE(told()[0].angular_velocity, first[0].angular_velocity);
@@ -100,7 +100,7 @@ TEST_F(ImuTaskTest, WithoutBiasesNoiseBelongsToTheStampAlone) {
 
 TEST_F(ImuTaskTest, APeriodTellsFewer) {
     ImuConfig config;
-    config.period = 0.05;
+    config.sensor.period = 0.05;
     startWith(config);
     EXPECT_EQ(told().size(), 20u);
 }

@@ -59,7 +59,7 @@ TEST(ImuTest, TheEarthTurnsItWhereItIsToldTo) {
 
 TEST(ImuTest, NoiseHasItsDensityOnEveryAxisAndTheCovarianceThatIsTold) {
     ImuConfig config;
-    config.seed = 3;
+    config.sensor.seed = 3;
     config.gyroscope.noise_density = 1e-3;
     config.accelerometer.noise_density = 2e-2;
     Imu unit(config);

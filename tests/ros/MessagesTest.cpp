@@ -4,8 +4,8 @@
 #include <fstream>
 
 #include "components/ros/Cdr.hpp"
-#include "components/ros/FromSonar.hpp"
 #include "components/ros/Messages.hpp"
+#include "components/ros/Pings.hpp"
 #include "components/ros/Poses.hpp"
 #include "components/ros/Schema.hpp"
 #include "tests/ros/Samples.hpp"

@@ -1,7 +1,7 @@
 #include <gmock/gmock.h>
 
 #include "components/ros/Poses.hpp"
-#include "components/ros/Times.hpp"
+#include "components/ros/Stamps.hpp"
 #include "tests/ros/Samples.hpp"
 
 namespace insonify::ros {

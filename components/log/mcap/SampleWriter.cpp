@@ -9,7 +9,6 @@
 #include "components/ros/Cdr.hpp"
 #include "components/ros/Schema.hpp"
 #include "components/ros/Stamps.hpp"
-#include "components/ros/Times.hpp"
 
 namespace insonify::log::mcap {
 namespace {

@@ -5,7 +5,7 @@
 #include <limits>
 #include <random>
 
-#include "components/ros/FromSonar.hpp"
+#include "components/ros/Pings.hpp"
 #include "tests/ros/Samples.hpp"
 
 namespace insonify::ros {
@@ -45,7 +45,17 @@ std::string diagnosticOf(const types::Sonar& ping) {
     }
 }
 
-TEST(FromSonarTest, AnImageTellsTheTimeTheWatersSpeedAndTheWidths) {
+std::string diagnosticOf(const ProjectedSonarImage& message) {
+    try {
+        types::Sonar ping;
+        convert(message, {}, ping);
+        return "";
+    } catch (const std::invalid_argument& error) {
+        return error.what();
+    }
+}
+
+TEST(PingsTest, AnImageTellsTheTimeTheWatersSpeedAndTheWidths) {
     SonarOptions options;
     options.frequency_khz = 750;
     const auto image = messageOf<ProjectedSonarImage>(smallPing(), options);
@@ -54,7 +64,7 @@ TEST(FromSonarTest, AnImageTellsTheTimeTheWatersSpeedAndTheWidths) {
     EXPECT_THAT(image.ranges, ElementsAre(FloatEq(0.375f), FloatEq(1.125f), FloatEq(1.875f)));
 }
 
-TEST(FromSonarTest, DirectionsHaveZAheadAndYToStarboardOrXAheadAndYToPort) {
+TEST(PingsTest, DirectionsHaveZAheadAndYToStarboardOrXAheadAndYToPort) {
     SonarOptions options;
     const auto z_forward = messageOf<ProjectedSonarImage>(smallPing(), options).beam_directions;
     EXPECT_THAT(z_forward,
@@ -64,13 +74,13 @@ TEST(FromSonarTest, DirectionsHaveZAheadAndYToStarboardOrXAheadAndYToPort) {
               (Vector3{std::cos(0.5), std::sin(0.5), 0}));
 }
 
-TEST(FromSonarTest, EightBitsAreDecibelsBelowTheStrongestEcho) {
+TEST(PingsTest, EightBitsAreDecibelsBelowTheStrongestEcho) {
     // levels 0, 9.5, 20 and -17, none, 30 dB; 30 dB is 255 and -30 dB is 0: 4.25 a dB
     EXPECT_THAT(messageOf<ProjectedSonarImage>(smallPing(), levels()).image.data,
                 ElementsAre(128, 55, 168, 0, 213, 255));
 }
 
-TEST(FromSonarTest, AFixedReferenceClipsWhatIsAboveIt) {
+TEST(PingsTest, AFixedReferenceClipsWhatIsAboveIt) {
     SonarOptions options = levels();
     options.order = ImageOrder::BeamMajor;
     options.reference_db = 10;
@@ -81,7 +91,7 @@ TEST(FromSonarTest, AFixedReferenceClipsWhatIsAboveIt) {
                 ElementsAre(140, 242, 255, 128, 0, 255));
 }
 
-TEST(FromSonarTest, EightBitsAreTheRoundedLevelOfEveryBin) {
+TEST(PingsTest, EightBitsAreTheRoundedLevelOfEveryBin) {
     types::Sonar ping;
     ping.resize(20000, 1);
     std::mt19937 random(1);
@@ -101,7 +111,7 @@ TEST(FromSonarTest, EightBitsAreTheRoundedLevelOfEveryBin) {
     }
 }
 
-TEST(FromSonarTest, APingWithoutEchoIsBlack) {
+TEST(PingsTest, APingWithoutEchoIsBlack) {
     types::Sonar ping = smallPing();
     ping.bins.assign(6, 0);
     EXPECT_THAT(messageOf<ProjectedSonarImage>(ping, levels()).image.data, testing::Each(0));
@@ -114,7 +124,7 @@ TEST(FromSonarTest, APingWithoutEchoIsBlack) {
     EXPECT_THAT(messageOf<SonarRanges>(ping, options).ranges, testing::Each(IsNan()));
 }
 
-TEST(FromSonarTest, FloatsAreTheBinsUnchangedInBothOrders) {
+TEST(PingsTest, FloatsAreTheBinsUnchangedInBothOrders) {
     SonarOptions options;  // float32, in logs and on the wire
     EXPECT_THAT(floatsOf(messageOf<ProjectedSonarImage>(smallPing(), options).image.data),
                 ElementsAre(1, 0.02f, 9, IsNan(), 100, 1000));
@@ -125,7 +135,7 @@ TEST(FromSonarTest, FloatsAreTheBinsUnchangedInBothOrders) {
     EXPECT_EQ(image.beam_count, 2u);
 }
 
-TEST(FromSonarTest, ARawImageHasTheRateThatGivesTheBinsTheirWidth) {
+TEST(PingsTest, ARawImageHasTheRateThatGivesTheBinsTheirWidth) {
     types::Sonar ping = smallPing();
     ping.timestamps = {ping.time, ping.time + types::Time{250}};
     const auto raw = messageOf<RawSonarImage>(ping, levels());
@@ -136,7 +146,7 @@ TEST(FromSonarTest, ARawImageHasTheRateThatGivesTheBinsTheirWidth) {
     EXPECT_THAT(raw.image.data, ElementsAre(128, 55, 168, 0, 213, 255));
 }
 
-TEST(FromSonarTest, RangesAreTheFirstBinsAboveTheThreshold) {
+TEST(PingsTest, RangesAreTheFirstBinsAboveTheThreshold) {
     types::Sonar ping = smallPing();
     ping.bins = {1.5f, 10, 100, 0.01f, 0.02f, 0.5f};  // 20 dB below the strongest: 1
     const auto ranges = messageOf<SonarRanges>(ping);
@@ -145,7 +155,7 @@ TEST(FromSonarTest, RangesAreTheFirstBinsAboveTheThreshold) {
     EXPECT_THAT(ranges.intensities, ElementsAre(1.5f, 0));
 }
 
-TEST(FromSonarTest, ACloudHoldsEveryBinAboveTheThreshold) {
+TEST(PingsTest, ACloudHoldsEveryBinAboveTheThreshold) {
     const auto cloud = messageOf<PointCloud2>(smallPing());  // 100 and 1000 are; x ahead, whatever `frame` is
     ASSERT_EQ(cloud.width, 2u);
     EXPECT_EQ(cloud.point_step, 16u);
@@ -156,7 +166,7 @@ TEST(FromSonarTest, ACloudHoldsEveryBinAboveTheThreshold) {
                             near(1.875 * std::cos(0.25)), near(-1.875 * std::sin(0.25)), 0, 1000));
 }
 
-TEST(FromSonarTest, AScanHasItsRaysWhereTheBeamsAre) {
+TEST(PingsTest, AScanHasItsRaysWhereTheBeamsAre) {
     SonarOptions options;
     options.threshold_db = -45;  // -15 dB: all but 0.02 and NaN
     const auto scan = messageOf<LaserScan>(smallPing(), options);
@@ -170,7 +180,7 @@ TEST(FromSonarTest, AScanHasItsRaysWhereTheBeamsAre) {
     EXPECT_THAT(messageOf<LaserScan>(silent, options).ranges, testing::Each(std::numeric_limits<float>::infinity()));
 }
 
-TEST(FromSonarTest, WhatCannotBeHeldIsRefused) {
+TEST(PingsTest, WhatCannotBeHeldIsRefused) {
     types::Sonar ping = smallPing();
     ping.bins.pop_back();
     EXPECT_EQ(diagnosticOf(ping), "the lists of the ping are not as long as its counts say");
@@ -181,6 +191,82 @@ TEST(FromSonarTest, WhatCannotBeHeldIsRefused) {
     ping = smallPing();
     ping.time = types::Time::fromSeconds(3e9);
     EXPECT_EQ(diagnosticOf(ping), "ROS holds no time of 3000000000 s: from -2147483648 s to 2147483647 s");
+}
+
+TEST(PingsTest, AFloatImageGivesThePingBack) {
+    for (const ImageOrder order : {ImageOrder::RangeMajor, ImageOrder::BeamMajor})
+        for (const SensorFrame frame : {SensorFrame::ZForward, SensorFrame::XForward}) {
+            SonarOptions options;
+            options.dtype = ImageType::Float32;
+            options.order = order;
+            options.frame = frame;
+            const types::Sonar ping = smallPing();
+            ProjectedSonarImage message;
+            convert(ping, options, message);
+            types::Sonar again;
+            convert(message, {order, frame}, again);
+            EXPECT_TRUE(again.wellShaped());
+            EXPECT_EQ(again.time, ping.time);
+            EXPECT_EQ(again.bin_duration, ping.bin_duration);
+            EXPECT_EQ(again.speed_of_sound, ping.speed_of_sound);
+            EXPECT_FLOAT_EQ(static_cast<float>(again.beam_width.rad), 0.03f);
+            EXPECT_FLOAT_EQ(static_cast<float>(again.beam_height.rad), 0.35f);
+            EXPECT_THAT(again.bins, testing::Pointwise(testing::NanSensitiveFloatEq(), ping.bins));
+            for (size_t beam = 0; beam < 2; ++beam)
+                EXPECT_NEAR(again.bearings[beam].rad, ping.bearings[beam].rad, 1e-15);
+        }
+}
+
+TEST(PingsTest, AnyBinDurationComesBackToTheMicrosecond) {
+    SonarOptions options;
+    for (int64_t duration = 1; duration < 100'000; duration = duration * 3 + 1)
+        for (const uint32_t bins : {1u, 7u, 4000u}) {
+            types::Sonar ping;
+            ping.bin_duration = {duration};
+            ping.speed_of_sound = 1481.7f;
+            ping.resize(bins, 1);
+            ProjectedSonarImage message;
+            convert(ping, options, message);
+            types::Sonar again;
+            convert(message, {}, again);
+            EXPECT_EQ(again.bin_duration.microseconds, duration);
+        }
+}
+
+TEST(PingsTest, WholeNumbersAreSharesOfTheirGreatestValue) {
+    ProjectedSonarImage message = smallImage();
+    types::Sonar ping;
+    convert(message, {}, ping);
+    EXPECT_FLOAT_EQ(ping.bins[1], 3 / 255.0f);  // beam 0, bin 1 of 1 2 | 3 4 | 5 6
+    message.image.dtype = SonarImageData::uint16;
+    message.image.data.assign(12, 0xff);
+    convert(message, {}, ping);
+    EXPECT_THAT(ping.bins, testing::Each(1));
+}
+
+TEST(PingsTest, WhatIsNoPingIsRefused) {
+    ProjectedSonarImage message = smallImage();
+    message.image.data.pop_back();
+    EXPECT_EQ(diagnosticOf(message), "sonar image: 5 bytes of data for 2 beams, 3 ranges and 1 bytes a number");
+    message = smallImage();
+    message.beam_directions.pop_back();
+    EXPECT_EQ(diagnosticOf(message), "sonar image: 1 directions for 2 beams");
+    message = smallImage();
+    message.image.dtype = 7;
+    EXPECT_EQ(diagnosticOf(message), "sonar image: dtype 7 is not read, only uint8, uint16, uint32, float32, float64");
+    message = smallImage();
+    message.ranges[1] = 1;
+    EXPECT_EQ(diagnosticOf(message),
+              "sonar image: range 1 is 1.000000 m; the ranges must be the centres of equal bins from 0 on");
+    message = smallImage();
+    message.ping_info.sound_speed = 0;
+    EXPECT_EQ(diagnosticOf(message), "sonar image: a speed of sound of 0.000000 m/s");
+}
+
+TEST(PingsTest, CountsWhoseProductExceedsTheWordAreRefused) {
+    ProjectedSonarImage message = smallImage();
+    message.image.beam_count = 0xffffffff;
+    EXPECT_EQ(diagnosticOf(message), "sonar image: 2 directions for 4294967295 beams");
 }
 
 }  // namespace

@@ -1,6 +1,7 @@
 #pragma once
-// A ping as ROS 2 messages. The message's memory is used again. All throw std::invalid_argument for a ping whose lists
-// are not as long as its counts say, and std::out_of_range for a time that ROS cannot hold.
+// A ping as ROS 2 messages, and back. The memory of what is written to is used again. What makes messages throws
+// std::invalid_argument for a ping whose lists are not as long as its counts say, and std::out_of_range for a time that
+// ROS cannot hold.
 #include "components/ros/Options.hpp"
 #include "components/ros/SensorMessages.hpp"
 #include "components/ros/SonarMessages.hpp"
@@ -30,5 +31,18 @@ void convert(const types::Sonar& ping, const SonarOptions& options, PointCloud2&
 /** First returns as above, infinite where there is none. Throws std::invalid_argument for beams that do not stand at
  *  equal angles from one another. */
 void convert(const types::Sonar& ping, const SonarOptions& options, LaserScan& message);
+
+/** How an image is to be read: its order and its axes. */
+struct ImageLayout {
+    ImageOrder order = ImageOrder::RangeMajor;
+    SensorFrame frame = SensorFrame::ZForward;
+};
+
+/** The ping of an image. Float bins are taken as they are, those of whole numbers with their
+ *  greatest value becoming 1. bin_duration, one way, is the whole number of microseconds nearest to what ranges and
+ *  speed of sound say; a time is cut to the microsecond. Throws std::invalid_argument, naming the diagnostic, for lists
+ *  of unequal lengths, types other than uint8, uint16, uint32, float32 and float64, big-endian numbers, no speed of
+ *  sound, and ranges that are not the centres of equal bins from 0 on. */
+void convert(const ProjectedSonarImage& message, const ImageLayout& layout, types::Sonar& ping);
 
 }  // namespace insonify::ros

@@ -1,15 +1,15 @@
-#include "components/ros/FromSonar.hpp"
+#include "components/ros/Pings.hpp"
 
 #include <cmath>
+#include <cstring>
 #include <limits>
 #include <stdexcept>
 
 #include "components/ros/Clouds.hpp"
 #include "components/ros/Echoes.hpp"
-#include "components/ros/Times.hpp"
+#include "components/ros/Stamps.hpp"
 
 namespace insonify::ros {
-
 namespace {
 
 void fillHeader(const types::Sonar& ping, const SonarOptions& options, Header& header) {
@@ -130,6 +130,113 @@ void convert(const types::Sonar& ping, const SonarOptions& options, LaserScan& m
             message.ranges[beam] = binCentre(ping, *bin);
             message.intensities[beam] = ping.bins[size_t{beam} * ping.bin_count + *bin];
         }
+}
+
+namespace {
+
+[[noreturn]] void refuse(const std::string& why) { throw std::invalid_argument("sonar image: " + why); }
+
+size_t sizeOf(uint32_t dtype) {
+    switch (dtype) {
+        case SonarImageData::uint8: return 1;
+        case SonarImageData::uint16: return 2;
+        case SonarImageData::uint32: return 4;
+        case SonarImageData::float32: return 4;
+        case SonarImageData::float64: return 8;
+        default:
+            refuse("dtype " + std::to_string(dtype) + " is not read, only uint8, uint16, uint32, float32, float64");
+    }
+}
+
+void checkShape(const ProjectedSonarImage& message) {
+    const SonarImageData& image = message.image;
+    if (message.beam_directions.size() != image.beam_count)
+        refuse(std::to_string(message.beam_directions.size()) + " directions for " + std::to_string(image.beam_count) +
+               " beams");
+    const size_t size = sizeOf(image.dtype);
+    if (image.is_bigendian && size > 1) refuse("big-endian numbers are not read");
+    if (image.data.size() / size != message.ranges.size() * image.beam_count || image.data.size() % size != 0)
+        refuse(std::to_string(image.data.size()) + " bytes of data for " + std::to_string(image.beam_count) +
+               " beams, " + std::to_string(message.ranges.size()) + " ranges and " + std::to_string(size) +
+               " bytes a number");
+}
+
+/** Width of the bins whose centres the ranges are [m]. */
+double binWidth(const std::vector<float>& ranges) {
+    const double width = static_cast<double>(ranges.back()) / (static_cast<double>(ranges.size()) - 0.5);
+    for (size_t k = 0; k < ranges.size(); ++k) {
+        const double expected = (static_cast<double>(k) + 0.5) * width;
+        if (!(std::abs(static_cast<double>(ranges[k]) - expected) <= 0.01 * width + 1e-6 * expected))
+            refuse("range " + std::to_string(k) + " is " + std::to_string(ranges[k]) +
+                   " m; the ranges must be the centres of equal bins from 0 on");
+    }
+    return width;
+}
+
+types::Time binDuration(const ProjectedSonarImage& message) {
+    const double speed = static_cast<double>(message.ping_info.sound_speed);
+    if (message.ranges.empty()) return {};
+    if (!(speed > 0) || !std::isfinite(speed)) refuse("a speed of sound of " + std::to_string(speed) + " m/s");
+    const double seconds = binWidth(message.ranges) / speed;
+    if (!(seconds >= 0.5e-6 && seconds < 1e6)) refuse("bins of " + std::to_string(seconds) + " s");
+    return types::Time::fromSeconds(seconds);
+}
+
+double bearingOf(const Vector3& direction, SensorFrame frame) {
+    return frame == SensorFrame::ZForward ? std::atan2(-direction.y, direction.z)
+                                          : std::atan2(direction.y, direction.x);
+}
+
+template <class Number>
+float numberAt(const uint8_t* data, size_t place) {
+    Number number;
+    std::memcpy(&number, data + place * sizeof number, sizeof number);
+    if constexpr (std::is_integral_v<Number>)
+        return static_cast<float>(static_cast<double>(number) / std::numeric_limits<Number>::max());
+    else
+        return static_cast<float>(number);
+}
+
+template <class Number>
+void readBins(const SonarImageData& image, ImageOrder order, types::Sonar& ping) {
+    const size_t bins = ping.bin_count, beams = ping.beam_count;
+    for (size_t beam = 0; beam < beams; ++beam)
+        for (size_t bin = 0; bin < bins; ++bin)
+            ping.bins[beam * bins + bin] = numberAt<Number>(
+                image.data.data(), order == ImageOrder::RangeMajor ? bin * beams + beam : beam * bins + bin);
+}
+
+void readBins(const SonarImageData& image, ImageOrder order, types::Sonar& ping) {
+    switch (image.dtype) {
+        case SonarImageData::uint8: return readBins<uint8_t>(image, order, ping);
+        case SonarImageData::uint16: return readBins<uint16_t>(image, order, ping);
+        case SonarImageData::uint32: return readBins<uint32_t>(image, order, ping);
+        case SonarImageData::float32: return readBins<float>(image, order, ping);
+        default: return readBins<double>(image, order, ping);
+    }
+}
+
+types::Angle widthOf(const std::vector<float>& widths) {
+    return widths.empty() ? types::Angle{} : types::Angle{static_cast<double>(widths.front())};
+}
+
+}  // namespace
+
+void convert(const ProjectedSonarImage& message, const ImageLayout& layout, types::Sonar& ping) {
+    checkShape(message);
+    ping.time = fromRos(message.header.stamp);
+    ping.timestamps.clear();
+    ping.bin_duration = binDuration(message);
+    ping.speed_of_sound = message.ping_info.sound_speed;
+    ping.beam_height = widthOf(message.ping_info.tx_beamwidths);
+    ping.beam_width = widthOf(message.ping_info.rx_beamwidths);
+    ping.beam_count = message.image.beam_count;
+    ping.bin_count = static_cast<uint32_t>(message.ranges.size());
+    ping.bearings.resize(ping.beam_count);
+    for (size_t beam = 0; beam < ping.beam_count; ++beam)
+        ping.bearings[beam] = types::Angle::fromRad(bearingOf(message.beam_directions[beam], layout.frame));
+    ping.bins.resize(size_t{ping.bin_count} * ping.beam_count);
+    readBins(message.image, layout.order, ping);
 }
 
 }  // namespace insonify::ros

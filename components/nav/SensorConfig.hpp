@@ -1,0 +1,24 @@
+#pragma once
+#include <cstdint>
+
+#include "types/Mount.hpp"
+
+namespace insonify::nav {
+
+/** What every sensor has: where it sits, how often it measures, and whose random numbers its errors are. */
+struct SensorConfig {
+    types::Mount mount{};
+    uint64_t seed = 1;
+    double period = 0;
+
+    /** The keys of all sensors, with what one says of its mount and of its period. */
+    template <class Self, class V>
+    static void describe(Self& self, V& visit, const char* mount, const char* period) {
+        using types::Field;
+        visit(Field{"mount", "", mount}, self.mount);
+        visit(Field{"seed", "1", "of the random numbers: the same seed and poses give the same errors"}, self.seed);
+        visit(Field{"period", "s", period, 0, 1e6}, self.period);
+    }
+};
+
+}  // namespace insonify::nav

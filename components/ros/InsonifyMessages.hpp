@@ -1,0 +1,154 @@
+#pragma once
+// insonify_msgs: messages of our own, for what ROS 2 has none, and the samples that they are. See GeometryMessages.hpp.
+#include <string>
+#include <vector>
+
+#include "components/ros/GeometryMessages.hpp"
+#include "types/SonarElements.hpp"
+#include "types/SonarReturns.hpp"
+#include "types/SonarSettings.hpp"
+#include "types/SonarTruth.hpp"
+
+namespace insonify::ros {
+
+/** What the bins of a ping show. Lists of numbers are beam-first: that of bin k of beam b stands at b * bin_count + k.
+ */
+struct SonarTruth {
+    static constexpr const char* type_name = "insonify_msgs/msg/SonarTruth";
+    static constexpr const char* type_hash = "RIHS01_82a4e12b239a23aa77bc5f78474dcd49c5fb906d7be1576282b6c1400131ecc5";
+    Header header;
+    int64_t bin_duration_us = 0;
+    float sound_speed = 0;
+    uint32_t bin_count = 0;
+    std::vector<double> bearings;
+    std::vector<std::string> objects;
+    std::vector<float> elevation;
+    std::vector<int32_t> object;
+    std::vector<float> share;
+    std::vector<uint32_t> hits;
+    std::vector<float> grazing;
+    std::vector<uint8_t> path;
+    std::vector<uint8_t> shadow;
+
+    friend bool operator==(const SonarTruth&, const SonarTruth&) = default;
+    template <class Self, class V>
+    static void describe(Self& self, V& visit) {
+        visit(Field{"header"}, self.header);
+        visit(Field{"bin_duration_us", "us", "one-way travel time through one bin"}, self.bin_duration_us);
+        visit(Field{"sound_speed", "m/s"}, self.sound_speed);
+        visit(Field{"bin_count", "1", "bins per beam"}, self.bin_count);
+        visit(Field{"bearings", "rad", "of each beam, positive to port"}, self.bearings);
+        visit(Field{"objects", "", "names of all objects"}, self.objects);
+        visit(Field{"elevation", "rad", "positive up"}, self.elevation);
+        visit(Field{"object", "1", "index into `objects`; -1: none"}, self.object);
+        visit(Field{"share", "1", "of that object in the energy"}, self.share);
+        visit(Field{"hits", "1", "samples"}, self.hits);
+        visit(Field{"grazing", "rad"}, self.grazing);
+        visit(Field{"path", "1", "0: direct"}, self.path);
+        visit(Field{"shadow", "", "1: nothing heard though nearer than the last echo"}, self.shadow);
+    }
+};
+
+/** Where the beams of a ping are met: a number for each beam; NaN: there is none. */
+struct SonarReturns {
+    static constexpr const char* type_name = "insonify_msgs/msg/SonarReturns";
+    static constexpr const char* type_hash = "RIHS01_886f7d15e37c56383d9cf3ff5d14971d9f7b1f4966719de81bed57380e1a6c41";
+    Header header;
+    std::vector<double> bearings;
+    std::vector<float> first_range;
+    std::vector<float> first_level;
+    std::vector<float> first_elevation;
+    std::vector<float> strongest_range;
+    std::vector<float> strongest_level;
+    std::vector<float> strongest_elevation;
+
+    friend bool operator==(const SonarReturns&, const SonarReturns&) = default;
+    template <class Self, class V>
+    static void describe(Self& self, V& visit) {
+        visit(Field{"header"}, self.header);
+        visit(Field{"bearings", "rad", "of each beam, positive to port"}, self.bearings);
+        visit(Field{"first_range", "m"}, self.first_range);
+        visit(Field{"first_level", "dB"}, self.first_level);
+        visit(Field{"first_elevation", "rad"}, self.first_elevation);
+        visit(Field{"strongest_range", "m"}, self.strongest_range);
+        visit(Field{"strongest_level", "dB"}, self.strongest_level);
+        visit(Field{"strongest_elevation", "rad"}, self.strongest_elevation);
+    }
+};
+
+/** What the elements of a straight array heard of a ping, as complex baseband: sample i of element m stands at [m *
+ * sample_count + i]. */
+struct SonarElements {
+    static constexpr const char* type_name = "insonify_msgs/msg/SonarElements";
+    static constexpr const char* type_hash = "RIHS01_4eccd6f1ed32d36fa56a2a55210b36158a616926e5e197ef069d433b385c33c7";
+    Header header;
+    double sound_speed = 0;
+    double wavelength = 0;
+    double first_range = 0;
+    double sample_spacing = 0;
+    uint32_t sample_count = 0;
+    std::vector<double> positions;
+    std::vector<double> weights;
+    std::vector<float> in_phase;
+    std::vector<float> quadrature;
+
+    friend bool operator==(const SonarElements&, const SonarElements&) = default;
+    template <class Self, class V>
+    static void describe(Self& self, V& visit) {
+        visit(Field{"header"}, self.header);
+        visit(Field{"sound_speed", "m/s"}, self.sound_speed);
+        visit(Field{"wavelength", "m"}, self.wavelength);
+        visit(Field{"first_range", "m", "of the first sample"}, self.first_range);
+        visit(Field{"sample_spacing", "m"}, self.sample_spacing);
+        visit(Field{"sample_count", "1", "of each element"}, self.sample_count);
+        visit(Field{"positions", "m", "of each element, positive to port"}, self.positions);
+        visit(Field{"weights", "1", "of each element"}, self.weights);
+        visit(Field{"in_phase", "1/m"}, self.in_phase);
+        visit(Field{"quadrature", "1/m"}, self.quadrature);
+    }
+};
+
+/** What a driver asks of a sonar. What is NaN, or 0 of a count, stays as it is. */
+struct SonarSettings {
+    static constexpr const char* type_name = "insonify_msgs/msg/SonarSettings";
+    static constexpr const char* type_hash = "RIHS01_9825b87f8b15ebda7ee51d90fbeca98dc442c3244fa4a81f841a6f71c4c44fb0";
+    Header header;
+    double range = 0;
+    double frequency_khz = 0;
+    double speed_of_sound = 0;
+    double gain_db = 0;
+    double bearing = 0;
+    double field_of_view = 0;
+    double beam_height = 0;
+    uint32_t bin_count = 0;
+    uint32_t beam_count = 0;
+
+    friend bool operator==(const SonarSettings&, const SonarSettings&) = default;
+    template <class Self, class V>
+    static void describe(Self& self, V& visit) {
+        visit(Field{"header"}, self.header);
+        visit(Field{"range", "m", "slant range at which the last bin ends"}, self.range);
+        visit(Field{"frequency_khz", "kHz"}, self.frequency_khz);
+        visit(Field{"speed_of_sound", "m/s"}, self.speed_of_sound);
+        visit(Field{"gain_db", "dB", "of the receiver"}, self.gain_db);
+        visit(Field{"bearing", "rad", "of the head, 0 ahead, positive to port"}, self.bearing);
+        visit(Field{"field_of_view", "rad"}, self.field_of_view);
+        visit(Field{"beam_height", "rad"}, self.beam_height);
+        visit(Field{"bin_count", "1"}, self.bin_count);
+        visit(Field{"beam_count", "1"}, self.beam_count);
+    }
+};
+
+// Samples as messages and back, number for number. Throw std::out_of_range for a time that ROS cannot hold, and
+// std::invalid_argument for lists of unequal lengths.
+
+void convert(const types::SonarTruth& truth, const std::string& frame_id, SonarTruth& message);
+void convert(const types::SonarReturns& returns, const std::string& frame_id, SonarReturns& message);
+void convert(const types::SonarElements& signals, const std::string& frame_id, SonarElements& message);
+void convert(const types::SonarSettings& settings, const std::string& frame_id, SonarSettings& message);
+void convert(const SonarTruth& message, types::SonarTruth& truth);
+void convert(const SonarReturns& message, types::SonarReturns& returns);
+void convert(const SonarElements& message, types::SonarElements& signals);
+void convert(const SonarSettings& message, types::SonarSettings& settings);
+
+}  // namespace insonify::ros

@@ -1,0 +1,62 @@
+#pragma once
+// A task that listens for the poses of others, and who reads its outputs.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "components/framework/Activity.hpp"
+#include "tests/support/Ports.hpp"
+#include "tests/support/Waiting.hpp"
+#include "types/Pose.hpp"
+
+namespace insonify::test {
+
+/** At work by itself once its activity is released; before, where `by_hand`, a cycle each time that something is waited
+ *  for. */
+template <class Task>
+class Listening {
+protected:
+    explicit Listening(const std::string& name, bool by_hand = false) : task(name), by_hand_(by_hand) {}
+    ~Listening() { task.activity().hold(); }
+
+    /** With a reader for each entry of a list of the configuration. */
+    template <class Config, class Entries>
+    void start(const Config& config, const Entries& entries) {
+        task.config.set(config);
+        for (size_t i = 0; i < entries.size(); ++i)
+            task.makeOutput(entries[i].port)->connectTo(readers[i].port, framework::ConnPolicy::buffer(10'000));
+        const framework::Outcome configured = task.configure();
+        ASSERT_TRUE(configured) << configured.reason;
+        ASSERT_TRUE(task.start());
+        if (!by_hand_) task.activity().release();
+    }
+    /** The next pose, waited for. */
+    std::optional<types::Pose> next(size_t reader = 0) {
+        types::Pose pose;
+        if (!comesTrue([&] { return work(), readers[reader].port.readNew(pose); })) return std::nullopt;
+        return pose;
+    }
+    /** Waits for a notice with this in it. */
+    bool tells(const std::string& text) {
+        return comesTrue([&] {
+            work();
+            const std::vector<std::string> all = task.notices();
+            return std::ranges::any_of(all, [&](const auto& line) { return line.find(text) != std::string::npos; });
+        });
+    }
+
+    Reader<types::Pose> readers[2];
+    Task task;
+
+private:
+    void work() {
+        if (by_hand_) task.update();
+    }
+
+    const bool by_hand_;
+};
+
+}  // namespace insonify::test

@@ -1,0 +1,54 @@
+#pragma once
+// A program beside a test.
+#include <signal.h>
+
+#include <optional>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "tests/deployer/Command.hpp"
+#include "tests/support/Python.hpp"
+
+namespace insonify::test {
+
+/** One that runs until it ends, or until this does. */
+class Peer {
+public:
+    /** A program and its arguments. */
+    explicit Peer(std::vector<std::string> words) { process_.emplace(std::move(words), folder_.path()); }
+    /** A script for python by its path from the root, and its arguments: "listen PoseStamped /pose 2". */
+    Peer(const std::string& script, const std::string& arguments) : Peer(wordsOf(script, arguments)) {}
+    ~Peer() {
+        if (!process_) return;
+        signal(SIGKILL);
+        process_->wait();
+    }
+    Peer(const Peer&) = delete;
+    Peer& operator=(const Peer&) = delete;
+
+    /** Whether it has printed this, among others. */
+    bool hasSaid(const std::string& text) const {
+        return deployer::readFile(folder_ / "stdout.txt").find(text) != std::string::npos;
+    }
+    void signal(int number) const { process_->signal(number); }
+    /** What came of it, once it has ended. */
+    deployer::Outcome wait() {
+        const deployer::Outcome outcome = process_->wait();
+        process_.reset();
+        return outcome;
+    }
+
+private:
+    static std::vector<std::string> wordsOf(const std::string& script, const std::string& arguments) {
+        std::vector<std::string> words = {python(), INSONIFY_SOURCE_DIR "/" + script};
+        std::istringstream text(arguments);
+        for (std::string word; text >> word;) words.push_back(word);
+        return words;
+    }
+
+    deployer::TestFolder folder_;
+    std::optional<deployer::Process> process_;
+};
+
+}  // namespace insonify::test
