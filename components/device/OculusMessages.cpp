@@ -143,6 +143,26 @@ std::string resultDiagnostic(std::span<const uint8_t> message, OculusResult& pin
     return numbersDiagnostic(ping, message.size());
 }
 
+/** Of the whole message that this is the header of; 0: none has such a header. */
+size_t messageSize(const OculusHeader& header) {
+    constexpr size_t most_of_others = 4096;
+    const size_t payload = header.payload_size;
+    const auto whole = [&](bool possible) { return possible ? OculusHeader::size + payload : 0; };
+    switch (static_cast<OculusId>(header.id)) {
+        case OculusId::Fire:
+            if (payload == 0) return header.version == 2 ? OculusFire::size_v2 : OculusFire::size_v1;
+            return whole(payload + OculusHeader::size >= OculusFire::size_v1 && payload <= 256);
+        case OculusId::UserConfig:
+            return whole(payload + OculusHeader::size >= OculusUserConfig::size && payload <= 64);
+        case OculusId::PingResult: return whole(payload + OculusHeader::size > OculusResult::size_v1);
+        case OculusId::FullResult: return whole(true);
+        case OculusId::Status:
+        case OculusId::Log:
+        case OculusId::Dummy: return whole(payload <= most_of_others);
+        default: return 0;
+    }
+}
+
 Bytes headerBytes(OculusHeader header) {
     Giver give;
     visitHeader(header, give);
@@ -262,52 +282,19 @@ Bytes oculusLog(uint16_t source, uint16_t part, const std::string& text) {
     return bytes;
 }
 
-size_t OculusFramer::sizeAt(const OculusHeader& header) const {
-    constexpr size_t most_of_others = 4096;
-    const size_t payload = header.payload_size;
-    const auto whole = [&](bool possible) { return possible ? OculusHeader::size + payload : 0; };
-    if (payload > largest_) return 0;
-    switch (static_cast<OculusId>(header.id)) {
-        case OculusId::Fire:
-            if (payload == 0) return header.version == 2 ? OculusFire::size_v2 : OculusFire::size_v1;
-            return whole(payload + OculusHeader::size >= OculusFire::size_v1 && payload <= 256);
-        case OculusId::UserConfig:
-            return whole(payload + OculusHeader::size >= OculusUserConfig::size && payload <= 64);
-        case OculusId::PingResult: return whole(payload + OculusHeader::size > OculusResult::size_v1);
-        case OculusId::FullResult: return whole(true);
-        case OculusId::Status:
-        case OculusId::Log:
-        case OculusId::Dummy: return whole(payload <= most_of_others);
-        default: return 0;
-    }
-}
-
-void OculusFramer::skip(size_t bytes) {
-    at_ += bytes;
-    skipped_ += bytes;
+size_t OculusFramer::sizeOf(std::span<const uint8_t> bytes) const {
+    if (bytes.size() < OculusHeader::size) return OculusHeader::size;
+    const auto header = oculusHeader(bytes);
+    return header && header->payload_size <= largest_ ? messageSize(*header) : 0;
 }
 
 Bytes OculusFramer::next() {
-    for (;;) {
-        const auto rest = std::span<const uint8_t>(buffer_).subspan(at_);
-        if (rest.size() < OculusHeader::size) break;
-        const auto header = oculusHeader(rest);
-        const size_t size = header ? sizeAt(*header) : 0;
-        if (size == 0) {
-            skip(1);
-            continue;
-        }
-        if (size > rest.size()) break;
-        at_ += size;
-        return {rest.begin(), rest.begin() + static_cast<std::ptrdiff_t>(size)};
-    }
-    buffer_.erase(buffer_.begin(), buffer_.begin() + static_cast<std::ptrdiff_t>(at_));
-    erased_ += std::exchange(at_, 0);
-    return {};
+    const auto message = nextFrame();
+    return {message.begin(), message.end()};
 }
 
 bool OculusFramer::giveUp() {
-    if (buffer_.size() < at_ + OculusHeader::size) return false;
+    if (waiting() < OculusHeader::size) return false;
     skip(1);
     return true;
 }

@@ -83,7 +83,7 @@ void PingDevice::receive(PingClient client, std::span<const uint8_t> bytes, bool
         for (const PingFrame& frame : pingFrames(bytes, max_payload)) handle(client, frame, now);
     } else {
         PingFrameReader& reader = readers_.try_emplace(client, max_payload).first->second;
-        reader.push(bytes);
+        reader.add(bytes);
         while (const auto frame = reader.next()) handle(client, *frame, now);
     }
     proceed(now);

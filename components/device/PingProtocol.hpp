@@ -3,7 +3,7 @@
 #include <optional>
 #include <string>
 
-#include "components/device/Bytes.hpp"
+#include "components/device/Framer.hpp"
 
 namespace insonify::device {
 
@@ -21,29 +21,20 @@ struct PingFrame {
 
 /** Finds frames in what a line brings, whatever lies between them.
  *
- *  What begins like a frame and does not add up is passed over by a byte, so that a frame within it is found. A frame
- * that is not whole yet is waited for, unless a whole one follows within its bytes: a stray beginning holds up nobody.
- */
-class PingFrameReader {
+ *  A frame that is not whole yet is waited for, unless a whole one follows within its bytes: a stray beginning holds up
+ *  nobody. */
+class PingFrameReader final : public Framer {
 public:
     /** @param max_payload a longer one is none: to a device at most tens of bytes go, from it 1,220 [bytes] */
-    explicit PingFrameReader(size_t max_payload) : max_payload_(max_payload) {}
+    explicit PingFrameReader(size_t max_payload) : Framer(CutOff::IsPassedOver), max_payload_(max_payload) {}
 
-    void push(std::span<const uint8_t> bytes);
     /** The next frame, if there is one. */
     std::optional<PingFrame> next();
-    /** Bytes that are kept until more come [1]. */
-    size_t waiting() const { return bytes_.size() - begin_; }
 
 private:
-    enum class Finding { None, Partial, Whole };
-    Finding findingAt(size_t at) const;
-    size_t sizeAt(size_t at) const;  ///< Of the frame that begins there [bytes].
-    PingFrame take(size_t at);
+    size_t sizeOf(std::span<const uint8_t> bytes) const override;
 
     size_t max_payload_;
-    Bytes bytes_;
-    size_t begin_ = 0;  ///< What is before has been read.
 };
 
 /** Every frame of one datagram. */

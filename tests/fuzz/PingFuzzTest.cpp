@@ -35,7 +35,7 @@ void readAs(const device::PingFrame& frame) {
 void readFrames(std::span<const uint8_t> bytes) {
     device::PingFrameReader reader(4096);
     for (size_t at = 0; at < bytes.size(); at += 5) {
-        reader.push(bytes.subspan(at, std::min<size_t>(5, bytes.size() - at)));
+        reader.add(bytes.subspan(at, std::min<size_t>(5, bytes.size() - at)));
         EXPECT_LE(reader.waiting(), 4096 + 15u);
         while (const auto frame = reader.next()) {
             expectThere(*frame, bytes);
