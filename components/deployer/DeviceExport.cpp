@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "components/deployer/StreamMeaning.hpp"
-#include "components/device/OculusEncoder.hpp"
+#include "components/device/OculusPing.hpp"
 #include "components/device/OculusRecording.hpp"
 #include "components/output/ByteFile.hpp"
 #include "components/output/Xtf.hpp"

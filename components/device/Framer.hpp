@@ -27,8 +27,8 @@ protected:
     enum class CutOff { Waits, IsPassedOver };
     explicit Framer(CutOff cut_off) : cut_off_(cut_off) {}
 
-    /** Size of the frame that begins with these bytes; 0: none does. More than there are: it may be one, and has so
-     * many at least [B]. */
+    /** Size of the frame that begins with these bytes; 0: none does. Where it is more than they are, it is the least
+     *  that what begins here may have [B]. */
     virtual size_t sizeOf(std::span<const uint8_t> bytes) const = 0;
     /** The next whole frame, until bytes are added; empty: there is none yet. */
     std::span<const uint8_t> nextFrame() {

@@ -4,8 +4,6 @@
 #include <cmath>
 #include <iterator>
 
-#include "components/device/Ipv4.hpp"
-
 namespace insonify::device {
 namespace {
 
@@ -19,6 +17,22 @@ Time periodOf(const OculusFire& fire) { return Time::fromSeconds(1 / fire.rateHz
 double usedGain(const OculusFire& fire) { return fire.mode == 2 ? 40 + 0.6 * fire.gain_percent : fire.gain_percent; }
 
 }  // namespace
+
+const OculusCapabilities& capabilitiesOf(OculusModel model) {
+    static const OculusCapabilities all[] = {
+        {1041, {375, 0.2, 200, 130, 20, 8e-3}, std::nullopt},
+        {1032, {750, 0.1, 120, 130, 20, 4e-3}, OculusMode{1200, 0.1, 40, 70, 12, 2.5e-3}},
+        {1042, {1200, 0.1, 40, 130, 20, 2.5e-3}, OculusMode{2100, 0.1, 10, 60, 12, 2.5e-3}},
+        {2203, {1200, 0.1, 30, 130, 20, 2.5e-3}, OculusMode{3000, 0.1, 5, 40, 20, 2e-3}},
+    };
+    return all[static_cast<size_t>(model)];
+}
+
+std::optional<OculusModel> oculusModelOf(uint16_t part) {
+    for (const OculusModel model : {OculusModel::M370s, OculusModel::M750d, OculusModel::M1200d, OculusModel::M3000d})
+        if (capabilitiesOf(model).part == part) return model;
+    return std::nullopt;
+}
 
 OculusEmulator::OculusEmulator(const OculusConfig& config, Time started)
     : config_(config), capabilities_(capabilitiesOf(config.model)), encoder_(config.code_bits), started_(started) {

@@ -6,16 +6,41 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
-#include "components/device/OculusEncoder.hpp"
 #include "components/device/OculusMessages.hpp"
-#include "components/device/OculusModels.hpp"
+#include "components/device/OculusPing.hpp"
+#include "types/Describe.hpp"
 #include "types/Sonar.hpp"
 #include "types/SonarSettings.hpp"
 #include "types/Time.hpp"
 
 namespace insonify::device {
+
+/** What each can do is in the maker's data sheets. */
+enum class OculusModel { M370s, M750d, M1200d, M3000d };
+
+/** One of the two frequencies of a model. */
+struct OculusMode {
+    double frequency_khz = 0;
+    double shortest_range = 0, longest_range = 0;  ///< [m]
+    double field_of_view_deg = 0, beam_height_deg = 0;
+    double finest_bin = 0;  ///< [m]
+};
+
+struct OculusCapabilities {
+    uint16_t part = 0;  ///< Part number, as on the wire.
+    OculusMode low;
+    std::optional<OculusMode> high;
+
+    /** Of the mode of a fire message: 2 is high, where there is one, and everything else is low. */
+    const OculusMode& mode(uint8_t number) const { return number == 2 && high ? *high : low; }
+};
+
+const OculusCapabilities& capabilitiesOf(OculusModel model);
+/** The model of a part number; none: not one of these. */
+std::optional<OculusModel> oculusModelOf(uint16_t part);
 
 /** What an Oculus is, beyond what drivers set. */
 struct OculusConfig {
@@ -114,3 +139,8 @@ private:
 };
 
 }  // namespace insonify::device
+
+template <>
+struct insonify::types::EnumNames<insonify::device::OculusModel> {
+    static constexpr std::string_view names[] = {"m370s", "m750d", "m1200d", "m3000d"};
+};

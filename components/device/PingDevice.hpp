@@ -5,7 +5,6 @@
 #include <utility>
 #include <vector>
 
-#include "components/device/PingMessages.hpp"
 #include "components/device/PingProtocol.hpp"
 #include "types/Sonar.hpp"
 #include "types/SonarSettings.hpp"

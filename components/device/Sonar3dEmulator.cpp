@@ -9,7 +9,6 @@
 #include <regex>
 #include <utility>
 
-#include "components/device/IsoTime.hpp"
 #include "types/Angle.hpp"
 
 namespace insonify::device {

@@ -4,7 +4,6 @@
 
 #include "components/device/Ping1dMessages.hpp"
 #include "components/device/Ping360Messages.hpp"
-#include "components/device/PingMessages.hpp"
 #include "components/device/PingProtocol.hpp"
 
 namespace insonify::device {
