@@ -96,11 +96,8 @@ types::SonarSettings OculusEmulator::settingsOf(const OculusFire& fire, Time now
 
 bool OculusEmulator::isDue(Time now) {
     if (!asked_.empty()) {
-        const types::SonarSettings& last = asked_.back().settings;
-        const double way = 2 * last.range / 1300, patience = 2 * static_cast<double>(asked_.size());
-        if ((now - last.time).seconds() < patience + way) return false;
+        if (now < asked_.deadline(2.0 * static_cast<double>(asked_.size()))) return false;
         ++lost_;
-        if (asked_.size() == most_asked) asked_.erase(asked_.begin());
     }
     return now >= last_ping_ + periodOf(fire_);
 }
@@ -122,8 +119,8 @@ OculusEmulator::Due OculusEmulator::tick(Time now) {
         return due;
     }
     if (isDue(now)) {
-        asked_.push_back({settingsOf(fire_, now), fire_});
-        due.ask = asked_.back().settings;
+        due.ask = settingsOf(fire_, now);
+        asked_.add(now, now + Time::fromSeconds(2 * due.ask->range / 1300), {*due.ask, fire_});
         const Time planned = last_ping_ + periodOf(fire_);  // the rate holds though a cycle comes late
         last_ping_ = now - planned < periodOf(fire_) ? planned : now;
     }
@@ -134,13 +131,11 @@ OculusEmulator::Due OculusEmulator::tick(Time now) {
 Bytes OculusEmulator::ping(const types::Sonar& codes) {
     const bool fits = codes.bin_count > 0 && codes.beam_count > 0 && codes.bin_count <= 65535 &&
                       codes.beam_count <= 65535 && codes.wellShaped();
-    const auto later = std::ranges::find_if(asked_, [&](const Asked& each) { return each.settings.time > codes.time; });
-    if (!fits || later == asked_.begin()) return {};
-    const Asked asked = *std::prev(later);
-    asked_.erase(asked_.begin(), later);
-    if (std::isnan(asked.settings.speed_of_sound)) own_speed_ = static_cast<double>(codes.speed_of_sound);
+    const auto asked = fits ? asked_.take(codes.time) : std::nullopt;
+    if (!asked) return {};
+    if (std::isnan(asked->settings.speed_of_sound)) own_speed_ = static_cast<double>(codes.speed_of_sound);
     if (standsBy()) return {};
-    return bytesOf(resultOf(asked, codes));
+    return bytesOf(resultOf(*asked, codes));
 }
 
 OculusResult OculusEmulator::resultOf(const Asked& asked, const types::Sonar& codes) {

@@ -9,6 +9,7 @@
 #include <string_view>
 #include <vector>
 
+#include "components/device/AskedPings.hpp"
 #include "components/device/OculusMessages.hpp"
 #include "components/device/OculusPing.hpp"
 #include "types/Describe.hpp"
@@ -108,7 +109,7 @@ public:
     uint64_t refused() const { return refused_; }  ///< Messages of clients that were no settings.
 
 private:
-    static constexpr size_t largest_message = 4096, most_asked = 4;
+    static constexpr size_t largest_message = 4096;
 
     struct Asked {
         types::SonarSettings settings;
@@ -131,7 +132,7 @@ private:
     types::Time started_;
     std::map<ClientId, OculusFramer> clients_;
     OculusFire fire_;
-    std::vector<Asked> asked_;  ///< Under way, the newest last; more than one: those before have not come in time.
+    AskedPings<Asked> asked_{4};  ///< More than one: those before the newest have not come in time.
     types::Time last_ping_, last_dummy_, last_status_;
     double own_speed_ = types::SonarSettings::unset;  ///< Of sound, of the sonar where no driver sets it [m/s].
     uint32_t number_ = 0;
