@@ -9,6 +9,7 @@
 #include <span>
 #include <string_view>
 #include <type_traits>
+#include <utility>
 #include <vector>
 
 namespace insonify::device {
@@ -37,6 +38,29 @@ void append(Bytes& bytes, T value) {
     bytes.resize(bytes.size() + sizeof value);
     write(bytes, bytes.size() - sizeof value, value);
 }
+
+/** Reads numbers that the caller knows to be there, one after the other. */
+class NumberReader {
+public:
+    explicit NumberReader(std::span<const uint8_t> bytes, size_t at = 0) : bytes_(bytes), at_(at) {}
+    template <class... T>
+    void operator()(T&... values) {
+        ((values = read<T>(bytes_, std::exchange(at_, at_ + sizeof values))), ...);
+    }
+
+private:
+    std::span<const uint8_t> bytes_;
+    size_t at_;
+};
+
+/** Writes numbers behind the last byte, one after the other. */
+struct NumberWriter {
+    template <class... T>
+    void operator()(const T&... values) {
+        (append(bytes, values), ...);
+    }
+    Bytes bytes;
+};
 
 using Ipv4 = std::array<uint8_t, 4>;
 
