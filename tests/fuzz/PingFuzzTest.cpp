@@ -12,10 +12,6 @@ namespace {
 
 using device::Bytes;
 
-std::span<const uint8_t> bytesOf(const Input& input) {
-    return {reinterpret_cast<const uint8_t*>(input.bytes().data()), input.bytes().size()};
-}
-
 /** A frame that is found is one that was there, byte for byte. */
 void expectThere(const device::PingFrame& frame, std::span<const uint8_t> bytes) {
     const Bytes again = frame.bytes();
@@ -80,9 +76,9 @@ void drive(device::PingDevice&& emulator, std::span<const uint8_t> bytes) {
 }
 
 void enter(const Input& input) {
-    readFrames(bytesOf(input));
-    drive(device::Ping360Emulator({}), bytesOf(input));
-    drive(device::Ping1dEmulator({}), bytesOf(input));
+    readFrames(input.octets());
+    drive(device::Ping360Emulator({}), input.octets());
+    drive(device::Ping1dEmulator({}), input.octets());
 }
 
 std::string words(const Bytes& bytes) { return {bytes.begin(), bytes.end()}; }
