@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "components/deployer/StreamMeaning.hpp"
-#include "components/device/OculusEncoder.hpp"
+#include "components/device/OculusPing.hpp"
 #include "components/device/OculusRecording.hpp"
 #include "components/log/Reader.hpp"
 #include "components/output/ByteFile.hpp"

@@ -10,10 +10,15 @@
 #include "components/framework/Port.hpp"
 #include "components/framework/Registry.hpp"
 #include "components/framework/TaskContext.hpp"
+#include "types/Describe.hpp"
 #include "types/SonarSettings.hpp"
 #include "types/Time.hpp"
 
 namespace insonify::device {
+
+/** Where a device listens, as a property of its task. */
+inline constexpr types::Field listen_address{"address", "",
+                                             "numeric address to listen on; 0.0.0.0: every network of this machine"};
 
 /** What the tasks share that stand in for an instrument: its ends on the network, and the port by which they ask a
  *  sonar for pings, each as the driver wants it.

@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "components/device/Bytes.hpp"
-#include "components/device/Ipv4.hpp"
 
 namespace insonify::device {
 

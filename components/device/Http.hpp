@@ -1,11 +1,12 @@
 #pragma once
-// HTTP/1.1 on bytes, as far as a device's API needs it.
+// HTTP/1.1 on bytes, and moments in its bodies, as far as a device's API needs them.
 #include <memory>
 #include <optional>
 #include <span>
 #include <string>
 
 #include "components/device/Bytes.hpp"
+#include "types/Time.hpp"
 
 namespace insonify::device {
 
@@ -53,5 +54,10 @@ private:
 
 /** `{"error": text}` with this status. */
 HttpReply httpError(int status, const std::string& text);
+
+/** A moment as ISO 8601 writes it in UTC: 2026-11-23T03:10:05.250000Z. */
+std::string isoText(types::Time time);
+/** With a zone, Z or +01:00, and any digits of a second; none where it is no such text. */
+std::optional<types::Time> isoTime(const std::string& text);
 
 }  // namespace insonify::device

@@ -14,7 +14,6 @@ namespace {
 constexpr double alive_period = 1;        // [s]
 constexpr double motor_unit = 10e-6;      // of motor_delay [s]
 constexpr double interval_unit = 640e-9;  // of ad_interval [s]
-constexpr double patience = 2;            // beyond sound's way, for a ping that was asked for [s]
 constexpr double clock_hz = 32e6;         // of which transmit frequencies are a share
 constexpr double full_gain = 210, usual_gain = 84, full_gain_db = 80;
 constexpr double largest_code = 65535;
@@ -106,8 +105,6 @@ void MicronEmulator::requestLine(Client client, types::Time now) {
 double MicronEmulator::listening() const { return command_.bins * command_.ad_interval * interval_unit; }
 
 void MicronEmulator::askForPing(types::Time now) {
-    line_->asked = true;
-    line_->sent = now;
     line_->whole = now + seconds(listening());
     types::SonarSettings settings;
     settings.time = now;
@@ -122,9 +119,9 @@ void MicronEmulator::askForPing(types::Time now) {
     settings.bearing = types::Angle::fromRad((command_.has(SeaNetControl::inverted) ? 1 : -1) * 2 * std::numbers::pi *
                                              clockwise / seanet_turn);
     if (command_.has(SeaNetControl::silent)) {
-        line_->heard = true;
         line_->data = dataOf({});
     } else {
+        line_->asked.add(now, line_->whole);
         outlet_.ask(settings);
     }
 }
@@ -149,9 +146,8 @@ Bytes MicronEmulator::dataOf(const types::Sonar& ping) const {
 }
 
 void MicronEmulator::heard(const types::Sonar& ping) {
-    if (!line_ || !line_->asked || line_->heard || ping.time < line_->sent) return;
+    if (!line_ || !line_->asked.take(ping.time)) return;
     warned_ = false;
-    line_->heard = true;
     line_->data = dataOf(ping);
 }
 
@@ -161,7 +157,7 @@ void MicronEmulator::finishLine() {
     answer.bearing = static_cast<uint16_t>(bearing_);
     if (!command_.has(SeaNetControl::continuous))
         answer.sweep = bearing_ == command_.left ? 1 : bearing_ == command_.right ? 2 : 0;
-    answer.data = std::move(line_->data);
+    answer.data = std::move(*line_->data);
     const Bytes packet = answer.message().packet();
     for (const Client client : line_->clients) outlet_.send(client, packet);
     arrived_ = line_->whole;
@@ -210,17 +206,17 @@ void MicronEmulator::tellAlive(types::Time now) {
 
 std::optional<types::Time> MicronEmulator::tick(types::Time now) {
     if (state_ == State::Off) reboot(now);
-    if (line_ && !line_->asked && now >= line_->ready) askForPing(now);
-    if (line_ && line_->heard && now >= line_->whole) finishLine();
-    if (line_ && line_->asked && !line_->heard && now >= line_->whole + seconds(patience)) {
+    if (line_ && line_->asked.empty() && !line_->data && now >= line_->ready) askForPing(now);
+    if (line_ && line_->data && now >= line_->whole) finishLine();
+    if (line_ && line_->asked.isLate(now)) {
         if (!warned_) outlet_.warn("no ping came that was asked for; its scan line is not answered");
         warned_ = true;
         line_.reset();
     }
     if (now >= next_alive_ && !line_) tellAlive(now);
     if (!line_) return next_alive_;
-    if (!line_->asked) return line_->ready;
-    return line_->heard ? line_->whole : line_->whole + seconds(patience);
+    if (line_->data) return line_->whole;
+    return line_->asked.empty() ? line_->ready : line_->asked.deadline();
 }
 
 }  // namespace insonify::device

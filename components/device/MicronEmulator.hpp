@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "components/device/AskedPings.hpp"
 #include "components/device/Network.hpp"
 #include "components/device/SeaNet.hpp"
 #include "types/Sonar.hpp"
@@ -62,11 +63,9 @@ private:
     /** A scan line on its way. */
     struct Line {
         types::Time ready;  ///< When the motor has arrived.
-        types::Time sent;   ///< When the ping was asked for.
         types::Time whole;  ///< When sound is back.
-        bool asked = false;
-        Bytes data;  ///< Once the ping has come.
-        bool heard = false;
+        AskedPings<> asked;
+        std::optional<Bytes> data;  ///< Once the ping has come.
         std::vector<Client> clients;
     };
 

@@ -5,7 +5,6 @@
 #include "components/device/DeviceTask.hpp"
 #include "components/device/MicronEmulator.hpp"
 #include "components/framework/Properties.hpp"
-#include "components/framework/Registry.hpp"
 
 namespace insonify::device {
 
@@ -18,8 +17,7 @@ struct MicronConfig {
     template <class Self, class V>
     static void describe(Self& self, V& visit) {
         using types::Field;
-        visit(Field{"address", "", "numeric address to listen on; 0.0.0.0: every network of this machine"},
-              self.address);
+        visit(listen_address, self.address);
         visit(Field{"port", "1", "TCP port; 0: any that is free, told in a notice", 0, 65535}, self.port);
         visit(Field{"serial", "",
                     "the file that drivers open as a serial line, relative to the run's output folder; "
@@ -40,11 +38,21 @@ public:
     framework::InputPort<types::SonarPtr> ping{this, "ping", "codes of 16 bits, logarithmic over 80 dB"};
 
 private:
-    void listen(Network& network) override;
+    void listen(Network& network) override {
+        network.listenTcp(config->address, static_cast<uint16_t>(config->port));
+        if (!config->serial.empty()) network.openSerial(outputPath(config->serial));
+        emulator_.emplace(
+            config->device,
+            MicronEmulator::Outlet{[this](const types::SonarSettings& asked) { settings.write(asked); },
+                                   [this](Client to, Bytes bytes) { this->network().send(to, std::move(bytes)); },
+                                   [this](const std::string& text) { warn(text); }});
+    }
     void opened(Client client) override { emulator_->opened(client); }
     void received(Client client, std::span<const uint8_t> bytes) override { emulator_->received(client, bytes, now()); }
     void closed(Client client) override { emulator_->closed(client); }
-    void takePings() override;
+    void takePings() override {
+        for (types::SonarPtr sample; ping.readNew(sample);) emulator_->heard(*sample);
+    }
     std::optional<types::Time> tick(types::Time now) override { return emulator_->tick(now); }
 
     std::optional<MicronEmulator> emulator_;

@@ -4,8 +4,6 @@
 #include <cmath>
 #include <iterator>
 
-#include "components/device/Ipv4.hpp"
-
 namespace insonify::device {
 namespace {
 
@@ -19,6 +17,22 @@ Time periodOf(const OculusFire& fire) { return Time::fromSeconds(1 / fire.rateHz
 double usedGain(const OculusFire& fire) { return fire.mode == 2 ? 40 + 0.6 * fire.gain_percent : fire.gain_percent; }
 
 }  // namespace
+
+const OculusCapabilities& capabilitiesOf(OculusModel model) {
+    static const OculusCapabilities all[] = {
+        {1041, {375, 0.2, 200, 130, 20, 8e-3}, std::nullopt},
+        {1032, {750, 0.1, 120, 130, 20, 4e-3}, OculusMode{1200, 0.1, 40, 70, 12, 2.5e-3}},
+        {1042, {1200, 0.1, 40, 130, 20, 2.5e-3}, OculusMode{2100, 0.1, 10, 60, 12, 2.5e-3}},
+        {2203, {1200, 0.1, 30, 130, 20, 2.5e-3}, OculusMode{3000, 0.1, 5, 40, 20, 2e-3}},
+    };
+    return all[static_cast<size_t>(model)];
+}
+
+std::optional<OculusModel> oculusModelOf(uint16_t part) {
+    for (const OculusModel model : {OculusModel::M370s, OculusModel::M750d, OculusModel::M1200d, OculusModel::M3000d})
+        if (capabilitiesOf(model).part == part) return model;
+    return std::nullopt;
+}
 
 OculusEmulator::OculusEmulator(const OculusConfig& config, Time started)
     : config_(config), capabilities_(capabilitiesOf(config.model)), encoder_(config.code_bits), started_(started) {
@@ -82,11 +96,8 @@ types::SonarSettings OculusEmulator::settingsOf(const OculusFire& fire, Time now
 
 bool OculusEmulator::isDue(Time now) {
     if (!asked_.empty()) {
-        const types::SonarSettings& last = asked_.back().settings;
-        const double way = 2 * last.range / 1300, patience = 2 * static_cast<double>(asked_.size());
-        if ((now - last.time).seconds() < patience + way) return false;
+        if (now < asked_.deadline(2.0 * static_cast<double>(asked_.size()))) return false;
         ++lost_;
-        if (asked_.size() == most_asked) asked_.erase(asked_.begin());
     }
     return now >= last_ping_ + periodOf(fire_);
 }
@@ -108,8 +119,8 @@ OculusEmulator::Due OculusEmulator::tick(Time now) {
         return due;
     }
     if (isDue(now)) {
-        asked_.push_back({settingsOf(fire_, now), fire_});
-        due.ask = asked_.back().settings;
+        due.ask = settingsOf(fire_, now);
+        asked_.add(now, now + Time::fromSeconds(2 * due.ask->range / 1300), {*due.ask, fire_});
         const Time planned = last_ping_ + periodOf(fire_);  // the rate holds though a cycle comes late
         last_ping_ = now - planned < periodOf(fire_) ? planned : now;
     }
@@ -120,13 +131,11 @@ OculusEmulator::Due OculusEmulator::tick(Time now) {
 Bytes OculusEmulator::ping(const types::Sonar& codes) {
     const bool fits = codes.bin_count > 0 && codes.beam_count > 0 && codes.bin_count <= 65535 &&
                       codes.beam_count <= 65535 && codes.wellShaped();
-    const auto later = std::ranges::find_if(asked_, [&](const Asked& each) { return each.settings.time > codes.time; });
-    if (!fits || later == asked_.begin()) return {};
-    const Asked asked = *std::prev(later);
-    asked_.erase(asked_.begin(), later);
-    if (std::isnan(asked.settings.speed_of_sound)) own_speed_ = static_cast<double>(codes.speed_of_sound);
+    const auto asked = fits ? asked_.take(codes.time) : std::nullopt;
+    if (!asked) return {};
+    if (std::isnan(asked->settings.speed_of_sound)) own_speed_ = static_cast<double>(codes.speed_of_sound);
     if (standsBy()) return {};
-    return bytesOf(resultOf(asked, codes));
+    return bytesOf(resultOf(*asked, codes));
 }
 
 OculusResult OculusEmulator::resultOf(const Asked& asked, const types::Sonar& codes) {

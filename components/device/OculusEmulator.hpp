@@ -6,16 +6,42 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
-#include "components/device/OculusEncoder.hpp"
+#include "components/device/AskedPings.hpp"
 #include "components/device/OculusMessages.hpp"
-#include "components/device/OculusModels.hpp"
+#include "components/device/OculusPing.hpp"
+#include "types/Describe.hpp"
 #include "types/Sonar.hpp"
 #include "types/SonarSettings.hpp"
 #include "types/Time.hpp"
 
 namespace insonify::device {
+
+/** What each can do is in the maker's data sheets. */
+enum class OculusModel { M370s, M750d, M1200d, M3000d };
+
+/** One of the two frequencies of a model. */
+struct OculusMode {
+    double frequency_khz = 0;
+    double shortest_range = 0, longest_range = 0;  ///< [m]
+    double field_of_view_deg = 0, beam_height_deg = 0;
+    double finest_bin = 0;  ///< [m]
+};
+
+struct OculusCapabilities {
+    uint16_t part = 0;  ///< Part number, as on the wire.
+    OculusMode low;
+    std::optional<OculusMode> high;
+
+    /** Of the mode of a fire message: 2 is high, where there is one, and everything else is low. */
+    const OculusMode& mode(uint8_t number) const { return number == 2 && high ? *high : low; }
+};
+
+const OculusCapabilities& capabilitiesOf(OculusModel model);
+/** The model of a part number; none: not one of these. */
+std::optional<OculusModel> oculusModelOf(uint16_t part);
 
 /** What an Oculus is, beyond what drivers set. */
 struct OculusConfig {
@@ -83,7 +109,7 @@ public:
     uint64_t refused() const { return refused_; }  ///< Messages of clients that were no settings.
 
 private:
-    static constexpr size_t largest_message = 4096, most_asked = 4;
+    static constexpr size_t largest_message = 4096;
 
     struct Asked {
         types::SonarSettings settings;
@@ -106,7 +132,7 @@ private:
     types::Time started_;
     std::map<ClientId, OculusFramer> clients_;
     OculusFire fire_;
-    std::vector<Asked> asked_;  ///< Under way, the newest last; more than one: those before have not come in time.
+    AskedPings<Asked> asked_{4};  ///< More than one: those before the newest have not come in time.
     types::Time last_ping_, last_dummy_, last_status_;
     double own_speed_ = types::SonarSettings::unset;  ///< Of sound, of the sonar where no driver sets it [m/s].
     uint32_t number_ = 0;
@@ -114,3 +140,8 @@ private:
 };
 
 }  // namespace insonify::device
+
+template <>
+struct insonify::types::EnumNames<insonify::device::OculusModel> {
+    static constexpr std::string_view names[] = {"m370s", "m750d", "m1200d", "m3000d"};
+};

@@ -10,107 +10,45 @@ namespace {
 
 constexpr size_t max_bins = 1 << 16;
 
-/** Takes the fields of a message out of bytes that hold them all. */
-class Taker {
-public:
-    explicit Taker(std::span<const uint8_t> bytes) : bytes_(bytes) {}
-    template <class T>
-    void operator()(T& value) {
-        value = read<T>(bytes_, at_);
-        at_ += sizeof value;
-    }
-
-private:
-    std::span<const uint8_t> bytes_;
-    size_t at_ = 0;
-};
-
-class Giver {
-public:
-    template <class T>
-    void operator()(const T& value) {
-        append(bytes, value);
-    }
-    Bytes bytes;
-};
-
 template <class Header, class Visit>
 void visitHeader(Header& header, Visit& visit) {
     uint16_t mark = oculus_mark;
-    visit(mark);
-    visit(header.source);
-    visit(header.destination);
-    visit(header.id);
-    visit(header.version);
-    visit(header.payload_size);
-    visit(header.part);
+    visit(mark, header.source, header.destination, header.id, header.version, header.payload_size, header.part);
 }
 
 template <class Fire, class Visit>
 void visitFire(Fire& fire, Visit& visit) {
     visitHeader(fire.header, visit);
-    visit(fire.mode);
-    visit(fire.rate);
-    visit(fire.network_speed);
-    visit(fire.gamma);
-    visit(fire.flags);
-    visit(fire.range);
-    visit(fire.gain_percent);
-    visit(fire.speed_of_sound);
-    visit(fire.salinity);
+    visit(fire.mode, fire.rate, fire.network_speed, fire.gamma, fire.flags, fire.range, fire.gain_percent,
+          fire.speed_of_sound, fire.salinity);
     if (!fire.isVersion2()) return;
-    visit(fire.extended_flags);
-    visit(fire.reserved);
+    visit(fire.extended_flags, fire.reserved);
 }
 
 template <class Result, class Visit>
 void visitResult(Result& result, Visit& visit) {
     visitFire(result.fire, visit);
     const bool version2 = result.fire.isVersion2();
-    visit(result.number);
-    visit(result.status);
-    visit(result.frequency_hz);
-    visit(result.temperature_celsius);
-    visit(result.pressure_bar);
-    if (version2) {
-        visit(result.heading_deg);
-        visit(result.pitch_deg);
-        visit(result.roll_deg);
-    }
+    visit(result.number, result.status, result.frequency_hz, result.temperature_celsius, result.pressure_bar);
+    if (version2) visit(result.heading_deg, result.pitch_deg, result.roll_deg);
     visit(result.speed_of_sound);
     version2 ? visit(result.start_s) : visit(result.start_ticks);
-    visit(result.code_size);
-    visit(result.range_resolution);
-    visit(result.bin_count);
-    visit(result.beam_count);
+    visit(result.code_size, result.range_resolution, result.bin_count, result.beam_count);
     if (version2) visit(result.spare);
-    visit(result.image_offset);
-    visit(result.image_size);
-    visit(result.message_size);
+    visit(result.image_offset, result.image_size, result.message_size);
 }
 
 template <class Status, class Visit>
 void visitStatus(Status& status, Visit& visit) {
     visitHeader(status.header, visit);
-    visit(status.device_id);
-    visit(status.device_type);
-    visit(status.part);
-    visit(status.status);
-    visit(status.versions);
-    visit(status.address);
-    visit(status.mask);
-    visit(status.connected);
-    visit(status.mac);
-    visit(status.temperatures);
-    visit(status.pressure_bar);
+    visit(status.device_id, status.device_type, status.part, status.status, status.versions, status.address,
+          status.mask, status.connected, status.mac, status.temperatures, status.pressure_bar);
 }
 
 template <class Config, class Visit>
 void visitUserConfig(Config& config, Visit& visit) {
     visitHeader(config.header, visit);
-    visit(config.address);
-    visit(config.mask);
-    visit(config.dhcp);
+    visit(config.address, config.mask, config.dhcp);
 }
 
 /** Why a ping whose fixed part is there cannot be one; empty: it can. */
@@ -138,15 +76,35 @@ std::string resultDiagnostic(std::span<const uint8_t> message, OculusResult& pin
     const size_t fixed = header->version == 2 ? OculusResult::size_v2 : OculusResult::size_v1;
     if (message.size() < fixed) return fmt::format("is cut off after {} bytes", message.size());
     ping.fire.header = *header;
-    Taker take(message);
+    NumberReader take(message);
     visitResult(ping, take);
     return numbersDiagnostic(ping, message.size());
 }
 
+/** Of the whole message that this is the header of; 0: none has such a header. */
+size_t messageSize(const OculusHeader& header) {
+    constexpr size_t most_of_others = 4096;
+    const size_t payload = header.payload_size;
+    const auto whole = [&](bool possible) { return possible ? OculusHeader::size + payload : 0; };
+    switch (static_cast<OculusId>(header.id)) {
+        case OculusId::Fire:
+            if (payload == 0) return header.version == 2 ? OculusFire::size_v2 : OculusFire::size_v1;
+            return whole(payload + OculusHeader::size >= OculusFire::size_v1 && payload <= 256);
+        case OculusId::UserConfig:
+            return whole(payload + OculusHeader::size >= OculusUserConfig::size && payload <= 64);
+        case OculusId::PingResult: return whole(payload + OculusHeader::size > OculusResult::size_v1);
+        case OculusId::FullResult: return whole(true);
+        case OculusId::Status:
+        case OculusId::Log:
+        case OculusId::Dummy: return whole(payload <= most_of_others);
+        default: return 0;
+    }
+}
+
 Bytes headerBytes(OculusHeader header) {
-    Giver give;
-    visitHeader(header, give);
-    return std::move(give.bytes);
+    NumberWriter writer;
+    visitHeader(header, writer);
+    return std::move(writer.bytes);
 }
 
 }  // namespace
@@ -171,7 +129,7 @@ void OculusResult::settle() {
 std::optional<OculusHeader> oculusHeader(std::span<const uint8_t> bytes) {
     if (bytes.size() < OculusHeader::size || read<uint16_t>(bytes, 0) != oculus_mark) return std::nullopt;
     OculusHeader header;
-    Taker take(bytes);
+    NumberReader take(bytes);
     visitHeader(header, take);
     return header;
 }
@@ -182,16 +140,16 @@ std::optional<OculusFire> oculusFire(std::span<const uint8_t> message) {
     Bytes whole(message.begin(), message.end());
     whole.resize(std::max(whole.size(), OculusFire::size_v2));  // what version 2 has left out is 0
     OculusFire fire{.header = *header};
-    Taker take(whole);
+    NumberReader take(whole);
     visitFire(fire, take);
     return fire;
 }
 
 Bytes bytesOf(OculusFire fire) {
     fire.header.payload_size = static_cast<uint32_t>(fire.size() - OculusHeader::size);
-    Giver give;
-    visitFire(fire, give);
-    return std::move(give.bytes);
+    NumberWriter writer;
+    visitFire(fire, writer);
+    return std::move(writer.bytes);
 }
 
 std::optional<OculusResult> oculusResult(std::span<const uint8_t> message, std::string* diagnostic) {
@@ -210,43 +168,43 @@ std::optional<OculusResult> oculusResult(std::span<const uint8_t> message, std::
 }
 
 Bytes bytesOf(const OculusResult& result) {
-    Giver give;
-    visitResult(result, give);
-    give.bytes.reserve(give.bytes.size() + 2 * result.bearings.size() + result.before_image.size() +
-                       result.image.size() + result.after_image.size());
-    for (const int16_t bearing : result.bearings) give(bearing);
+    NumberWriter writer;
+    visitResult(result, writer);
+    writer.bytes.reserve(writer.bytes.size() + 2 * result.bearings.size() + result.before_image.size() +
+                         result.image.size() + result.after_image.size());
+    for (const int16_t bearing : result.bearings) writer(bearing);
     for (const Bytes* part : {&result.before_image, &result.image, &result.after_image})
-        give.bytes.insert(give.bytes.end(), part->begin(), part->end());
-    return std::move(give.bytes);
+        writer.bytes.insert(writer.bytes.end(), part->begin(), part->end());
+    return std::move(writer.bytes);
 }
 
 std::optional<OculusStatus> oculusStatus(std::span<const uint8_t> datagram) {
     if (datagram.size() != OculusStatus::size || !oculusHeader(datagram)) return std::nullopt;
     OculusStatus status;
-    Taker take(datagram);
+    NumberReader take(datagram);
     visitStatus(status, take);
     return status;
 }
 
 Bytes bytesOf(const OculusStatus& status) {
-    Giver give;
-    visitStatus(status, give);
-    return std::move(give.bytes);
+    NumberWriter writer;
+    visitStatus(status, writer);
+    return std::move(writer.bytes);
 }
 
 std::optional<OculusUserConfig> oculusUserConfig(std::span<const uint8_t> message) {
     const auto header = oculusHeader(message);
     if (!header || !header->is(OculusId::UserConfig) || message.size() < OculusUserConfig::size) return std::nullopt;
     OculusUserConfig config;
-    Taker take(message);
+    NumberReader take(message);
     visitUserConfig(config, take);
     return config;
 }
 
 Bytes bytesOf(const OculusUserConfig& config) {
-    Giver give;
-    visitUserConfig(config, give);
-    return std::move(give.bytes);
+    NumberWriter writer;
+    visitUserConfig(config, writer);
+    return std::move(writer.bytes);
 }
 
 Bytes oculusDummy(uint16_t source, uint16_t part) {
@@ -262,52 +220,19 @@ Bytes oculusLog(uint16_t source, uint16_t part, const std::string& text) {
     return bytes;
 }
 
-size_t OculusFramer::sizeAt(const OculusHeader& header) const {
-    constexpr size_t most_of_others = 4096;
-    const size_t payload = header.payload_size;
-    const auto whole = [&](bool possible) { return possible ? OculusHeader::size + payload : 0; };
-    if (payload > largest_) return 0;
-    switch (static_cast<OculusId>(header.id)) {
-        case OculusId::Fire:
-            if (payload == 0) return header.version == 2 ? OculusFire::size_v2 : OculusFire::size_v1;
-            return whole(payload + OculusHeader::size >= OculusFire::size_v1 && payload <= 256);
-        case OculusId::UserConfig:
-            return whole(payload + OculusHeader::size >= OculusUserConfig::size && payload <= 64);
-        case OculusId::PingResult: return whole(payload + OculusHeader::size > OculusResult::size_v1);
-        case OculusId::FullResult: return whole(true);
-        case OculusId::Status:
-        case OculusId::Log:
-        case OculusId::Dummy: return whole(payload <= most_of_others);
-        default: return 0;
-    }
-}
-
-void OculusFramer::skip(size_t bytes) {
-    at_ += bytes;
-    skipped_ += bytes;
+size_t OculusFramer::sizeOf(std::span<const uint8_t> bytes) const {
+    if (bytes.size() < OculusHeader::size) return OculusHeader::size;
+    const auto header = oculusHeader(bytes);
+    return header && header->payload_size <= largest_ ? messageSize(*header) : 0;
 }
 
 Bytes OculusFramer::next() {
-    for (;;) {
-        const auto rest = std::span<const uint8_t>(buffer_).subspan(at_);
-        if (rest.size() < OculusHeader::size) break;
-        const auto header = oculusHeader(rest);
-        const size_t size = header ? sizeAt(*header) : 0;
-        if (size == 0) {
-            skip(1);
-            continue;
-        }
-        if (size > rest.size()) break;
-        at_ += size;
-        return {rest.begin(), rest.begin() + static_cast<std::ptrdiff_t>(size)};
-    }
-    buffer_.erase(buffer_.begin(), buffer_.begin() + static_cast<std::ptrdiff_t>(at_));
-    erased_ += std::exchange(at_, 0);
-    return {};
+    const auto message = nextFrame();
+    return {message.begin(), message.end()};
 }
 
 bool OculusFramer::giveUp() {
-    if (buffer_.size() < at_ + OculusHeader::size) return false;
+    if (waiting() < OculusHeader::size) return false;
     skip(1);
     return true;
 }

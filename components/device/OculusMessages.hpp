@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "components/device/Bytes.hpp"
+#include "components/device/Framer.hpp"
 
 namespace insonify::device {
 
@@ -161,29 +161,21 @@ Bytes oculusLog(uint16_t source, uint16_t part, const std::string& text);
 /** Cuts a stream of bytes into messages. Goes on with the next header after what is none, and after one of an unknown
  *  kind or of a size that no message of its kind has: so that a line that was damaged costs the messages that it
  * damaged. */
-class OculusFramer {
+class OculusFramer final : public Framer {
 public:
     /** @param largest payload of a message; a header that tells a larger one is none [B] */
-    explicit OculusFramer(size_t largest = size_t{1} << 28) : largest_(largest) {}
+    explicit OculusFramer(size_t largest = size_t{1} << 28) : Framer(CutOff::Waits), largest_(largest) {}
 
-    void add(std::span<const uint8_t> bytes) { buffer_.insert(buffer_.end(), bytes.begin(), bytes.end()); }
     /** The next whole message; empty: there is none yet. */
     Bytes next();
-    size_t skipped() const { return skipped_; }  ///< Bytes that were of no message.
     /** At the end of a stream: gives up the header whose message is not whole, so that next() goes on behind it. False:
      *  there is none. */
     bool giveUp();
-    /** Where the next message is looked for, from the beginning of the stream [B]. */
-    uint64_t position() const { return erased_ + at_; }
 
 private:
-    /** Whole size of the message that begins here; 0: none does. */
-    size_t sizeAt(const OculusHeader& header) const;
-    void skip(size_t bytes);
+    size_t sizeOf(std::span<const uint8_t> bytes) const override;
 
-    Bytes buffer_;
-    size_t largest_, at_ = 0, skipped_ = 0;
-    uint64_t erased_ = 0;  ///< Bytes that are no longer in the buffer.
+    size_t largest_;
 };
 
 }  // namespace insonify::device

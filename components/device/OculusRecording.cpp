@@ -16,40 +16,21 @@ constexpr size_t most_payload = size_t{1} << 28;
 
 template <class Header, class Visit>
 void visitFileHeader(Header& header, Visit&& visit) {
-    visit(header.source);
-    visit(header.version);
-    visit(header.encryption);
-    visit(header.unused);
-    visit(header.key);
-    visit(header.time);
+    visit(header.source, header.version, header.encryption, header.unused, header.key, header.time);
 }
 
 template <class Item, class Size, class Visit>
-void visitItem(Item& item, Size& payload_size, Visit&& visit) {
-    visit(item.type);
-    visit(item.version);
-    visit(item.unused_a);
-    visit(item.time);
-    visit(item.compression);
-    visit(item.unused_b);
-    visit(item.original_size);
-    visit(payload_size);
-    visit(item.unused_c);
+void visitItem(Item& item, Size&& payload_size, Visit&& visit) {
+    visit(item.type, item.version, item.unused_a, item.time, item.compression, item.unused_b, item.original_size,
+          payload_size, item.unused_c);
 }
 
-/** Takes the values that stand after mark and size. */
-auto takerOf(const Bytes& bytes) {
-    return [&bytes, at = size_t{8}](auto& value) mutable {
-        value = read<std::remove_cvref_t<decltype(value)>>(bytes, at);
-        at += sizeof value;
-    };
-}
+constexpr size_t mark_size = 8;  ///< Of mark and size.
 
 Bytes marked(uint32_t mark, size_t size) {
-    Bytes bytes;
-    append(bytes, mark);
-    append(bytes, static_cast<uint32_t>(size));
-    return bytes;
+    NumberWriter writer;
+    writer(mark, static_cast<uint32_t>(size));
+    return std::move(writer.bytes);
 }
 
 bool isMarked(const Bytes& bytes, uint32_t mark, size_t size) {
@@ -94,7 +75,7 @@ OculusRecording::OculusRecording(const std::filesystem::path& file) {
     const Bytes bytes = take(OculusFileHeader::size);
     if (!isMarked(bytes, file_mark, OculusFileHeader::size))
         throw types::ConfigError(file.string(), "", "does not begin as a recording of the maker's viewer does");
-    visitFileHeader(header_, takerOf(bytes));
+    visitFileHeader(header_, NumberReader(bytes, mark_size));
     at_ = OculusFileHeader::size;
 }
 
@@ -127,7 +108,7 @@ std::optional<OculusItem> OculusRecording::next() {
         if (!isMarked(bytes, item_mark, OculusItem::header_size)) continue;
         OculusItem item;
         uint32_t payload_size = 0;
-        visitItem(item, payload_size, takerOf(bytes));
+        visitItem(item, payload_size, NumberReader(bytes, mark_size));
         if (payload_size > most_payload || at_ + OculusItem::header_size + payload_size > size_) continue;
         at_ += OculusItem::header_size;
         item.payload = take(payload_size);
@@ -140,16 +121,15 @@ std::optional<OculusItem> OculusRecording::next() {
 OculusRecorder::OculusRecorder(const std::filesystem::path& file, const OculusFileHeader& header)
     : path_(file), file_(file, std::ios::binary) {
     if (!file_) throw types::ConfigError(file.string(), "", "cannot be written");
-    Bytes bytes = marked(file_mark, OculusFileHeader::size);
-    visitFileHeader(header, [&](const auto& value) { append(bytes, value); });
-    put(bytes);
+    NumberWriter writer{marked(file_mark, OculusFileHeader::size)};
+    visitFileHeader(header, writer);
+    put(writer.bytes);
 }
 
 void OculusRecorder::write(const OculusItem& item) {
-    Bytes bytes = marked(item_mark, OculusItem::header_size);
-    const auto payload_size = static_cast<uint32_t>(item.payload.size());
-    visitItem(item, payload_size, [&](const auto& value) { append(bytes, value); });
-    put(bytes);
+    NumberWriter writer{marked(item_mark, OculusItem::header_size)};
+    visitItem(item, static_cast<uint32_t>(item.payload.size()), writer);
+    put(writer.bytes);
     put(item.payload);
 }
 

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "components/device/Ipv4.hpp"
 #include "types/ConfigError.hpp"
 
 namespace insonify::device {

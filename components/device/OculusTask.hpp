@@ -23,8 +23,7 @@ struct OculusTaskConfig {
     template <class Self, class V>
     static void describe(Self& self, V& visit) {
         using types::Field;
-        visit(Field{"address", "", "numeric address to listen on; 0.0.0.0: every network of this machine"},
-              self.address);
+        visit(listen_address, self.address);
         visit(Field{"port", "1", "TCP port; drivers expect 52100; 0: any that is free, told in a notice", 0, 65535},
               self.port);
         visit(Field{"status_address", "",

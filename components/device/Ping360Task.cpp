@@ -6,8 +6,6 @@
 #include <cstdlib>
 #include <string_view>
 
-#include "components/device/Ipv4.hpp"
-
 namespace insonify::device {
 namespace {
 

@@ -9,7 +9,6 @@ namespace insonify::device {
 namespace {
 
 constexpr size_t max_payload = 64;  ///< Of what goes to a device.
-constexpr double patience = 2;      ///< With a sonar that is to answer, beyond the time that the sound takes [s].
 
 types::Time after(types::Time now, double seconds) { return now + types::Time::fromSeconds(seconds); }
 
@@ -32,7 +31,7 @@ Bytes bytesOfCodes(std::span<const float> codes, double most) {
 }
 
 void PingTurn::ask(types::SonarSettings wanted, double listens, double earliest, types::Time now) {
-    asked_ = wanted;
+    wanted_ = wanted;
     listens_ = listens;
     again_ = false;
     due_ = after(now, earliest);
@@ -40,22 +39,22 @@ void PingTurn::ask(types::SonarSettings wanted, double listens, double earliest,
 }
 
 void PingTurn::ask(types::Time now) {
-    asked_->time = now;
-    asked_->range = speed_of_sound_ * listens_ / 2;
-    unsent_ = asked_;
-    ping_.reset();
-    deadline_ = after(std::max(now, due_), listens_ + patience);
+    wanted_.time = now;
+    wanted_.range = speed_of_sound_ * listens_ / 2;
+    unsent_ = wanted_;
+    asked_.add(now, after(std::max(now, due_), listens_));
 }
 
 bool PingTurn::take(const types::SonarPtr& ping, types::Time now) {
-    if (!asked_ || ping_ || ping->time < asked_->time) return false;
-    if (ping->beam_count != 1 || ping->bin_count != asked_->bin_count || !ping->wellShaped()) {
+    if (!asked_.awaits(ping->time)) return false;
+    if (ping->beam_count != 1 || ping->bin_count != wanted_.bin_count || !ping->wellShaped()) {
         warning_ = fmt::format(
             "pings have {} beams of {} bins where the driver asked for one of {}; connect `settings` to a sonar of one "
             "beam",
-            ping->beam_count, ping->bin_count, asked_->bin_count);
+            ping->beam_count, ping->bin_count, wanted_.bin_count);
         return false;
     }
+    asked_.clear();
     const double speed = static_cast<double>(ping->speed_of_sound);
     const bool other = speed > 0 && std::abs(speed / speed_of_sound_ - 1) > 1e-6;
     if (other) speed_of_sound_ = speed;
@@ -67,14 +66,13 @@ bool PingTurn::take(const types::SonarPtr& ping, types::Time now) {
 }
 
 types::SonarPtr PingTurn::due(types::Time now) {
-    if (!asked_ || !ping_ || now < due_) return nullptr;
-    asked_.reset();
+    if (!ping_ || now < due_) return nullptr;
     return std::exchange(ping_, {});
 }
 
 bool PingTurn::failed(types::Time now) {
-    if (!asked_ || ping_ || now < deadline_) return false;
-    asked_.reset();
+    if (!asked_.isLate(now)) return false;
+    asked_.clear();
     return true;
 }
 
@@ -83,7 +81,7 @@ void PingDevice::receive(PingClient client, std::span<const uint8_t> bytes, bool
         for (const PingFrame& frame : pingFrames(bytes, max_payload)) handle(client, frame, now);
     } else {
         PingFrameReader& reader = readers_.try_emplace(client, max_payload).first->second;
-        reader.push(bytes);
+        reader.add(bytes);
         while (const auto frame = reader.next()) handle(client, *frame, now);
     }
     proceed(now);

@@ -5,7 +5,7 @@
 #include <utility>
 #include <vector>
 
-#include "components/device/PingMessages.hpp"
+#include "components/device/AskedPings.hpp"
 #include "components/device/PingProtocol.hpp"
 #include "types/Sonar.hpp"
 #include "types/SonarSettings.hpp"
@@ -45,15 +45,18 @@ public:
     void ask(types::SonarSettings wanted, double listens, double after, types::Time now);
     /** Takes a ping that answers what was asked; else false. */
     bool take(const types::SonarPtr& ping, types::Time now);
-    void drop() { asked_.reset(); }
+    void drop() {
+        asked_.clear();
+        ping_.reset();
+    }
 
-    bool underWay() const { return asked_.has_value(); }
+    bool underWay() const { return ping_ || !asked_.empty(); }
     /** The ping, once it has come and is due; then nothing is under way. */
     types::SonarPtr due(types::Time now);
     /** Whether no ping came in good time; then nothing is under way. */
     bool failed(types::Time now);
     /** When one of these can be true next; while under way. */
-    types::Time next() const { return ping_ ? due_ : deadline_; }
+    types::Time next() const { return ping_ ? due_ : asked_.deadline(); }
     /** What the sonar is to be asked, once. */
     std::optional<types::SonarSettings> takeAsked() { return std::exchange(unsent_, {}); }
     double speedOfSound() const { return speed_of_sound_; }  ///< Of the water [m/s].
@@ -63,10 +66,12 @@ public:
 private:
     void ask(types::Time now);
 
-    std::optional<types::SonarSettings> asked_, unsent_;
+    types::SonarSettings wanted_;
+    AskedPings<> asked_;
+    std::optional<types::SonarSettings> unsent_;
     double listens_ = 0, speed_of_sound_ = 1500;
     bool again_ = false;  ///< Asked a second time.
-    types::Time due_, deadline_;
+    types::Time due_;
     types::SonarPtr ping_;
     std::string warning_;
 };

@@ -19,8 +19,7 @@ struct PingEnds {
     template <class Self, class V>
     static void describe(Self& self, V& visit) {
         using types::Field;
-        visit(Field{"address", "", "numeric address to listen on; 0.0.0.0: every network of this machine"},
-              self.address);
+        visit(listen_address, self.address);
         visit(Field{"port", "1", "of UDP, and of TCP; 0: any that are free, told in a notice", 0, 65535}, self.port);
         visit(Field{"serial", "",
                     "a serial line as well: the file that drivers open, made when the task is configured, relative to "

@@ -25,47 +25,26 @@ Bytes PingFrame::bytes() const {
     return bytes;
 }
 
-void PingFrameReader::push(std::span<const uint8_t> bytes) {
-    bytes_.erase(bytes_.begin(), bytes_.begin() + static_cast<ptrdiff_t>(begin_));
-    begin_ = 0;
-    bytes_.insert(bytes_.end(), bytes.begin(), bytes.end());
-}
-
-size_t PingFrameReader::sizeAt(size_t at) const { return header_size + read<uint16_t>(bytes_, at + 2) + sum_size; }
-
-PingFrameReader::Finding PingFrameReader::findingAt(size_t at) const {
-    const size_t left = bytes_.size() - at;
-    if (bytes_[at] != 'B' || (left > 1 && bytes_[at + 1] != 'R')) return Finding::None;
-    if (left < 4) return Finding::Partial;
-    const size_t size = sizeAt(at);
-    if (size > header_size + max_payload_ + sum_size) return Finding::None;
-    if (left < size) return Finding::Partial;
-    const auto frame = std::span(bytes_).subspan(at, size);
-    return read<uint16_t>(frame, size - sum_size) == sumOf(frame.first(size - sum_size)) ? Finding::Whole
-                                                                                         : Finding::None;
-}
-
-PingFrame PingFrameReader::take(size_t at) {
-    const auto frame = std::span(bytes_).subspan(at, sizeAt(at));
-    const auto payload = frame.subspan(header_size, frame.size() - header_size - sum_size);
-    begin_ = at + frame.size();
-    return {read<uint16_t>(frame, 4), frame[6], frame[7], Bytes(payload.begin(), payload.end())};
+size_t PingFrameReader::sizeOf(std::span<const uint8_t> bytes) const {
+    constexpr size_t with_length = 4;
+    if (bytes[0] != 'B' || (bytes.size() > 1 && bytes[1] != 'R')) return 0;
+    if (bytes.size() < with_length) return with_length;
+    const size_t payload = read<uint16_t>(bytes, 2), size = header_size + payload + sum_size;
+    if (payload > max_payload_) return 0;
+    if (size > bytes.size()) return size;
+    return read<uint16_t>(bytes, size - sum_size) == sumOf(bytes.first(size - sum_size)) ? size : 0;
 }
 
 std::optional<PingFrame> PingFrameReader::next() {
-    std::optional<size_t> partial;
-    for (size_t at = begin_; at < bytes_.size(); ++at) {
-        const Finding finding = findingAt(at);
-        if (finding == Finding::Whole) return take(at);
-        if (finding == Finding::Partial && !partial) partial = at;
-    }
-    begin_ = partial.value_or(bytes_.size());
-    return {};
+    const auto frame = nextFrame();
+    if (frame.empty()) return {};
+    const auto payload = frame.subspan(header_size, frame.size() - header_size - sum_size);
+    return PingFrame{read<uint16_t>(frame, 4), frame[6], frame[7], Bytes(payload.begin(), payload.end())};
 }
 
 std::vector<PingFrame> pingFrames(std::span<const uint8_t> datagram, size_t max_payload) {
     PingFrameReader reader(max_payload);
-    reader.push(datagram);
+    reader.add(datagram);
     std::vector<PingFrame> frames;
     while (auto frame = reader.next()) frames.push_back(std::move(*frame));
     return frames;

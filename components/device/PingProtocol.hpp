@@ -3,7 +3,7 @@
 #include <optional>
 #include <string>
 
-#include "components/device/Bytes.hpp"
+#include "components/device/Framer.hpp"
 
 namespace insonify::device {
 
@@ -21,29 +21,20 @@ struct PingFrame {
 
 /** Finds frames in what a line brings, whatever lies between them.
  *
- *  What begins like a frame and does not add up is passed over by a byte, so that a frame within it is found. A frame
- * that is not whole yet is waited for, unless a whole one follows within its bytes: a stray beginning holds up nobody.
- */
-class PingFrameReader {
+ *  A frame that is not whole yet is waited for, unless a whole one follows within its bytes: a stray beginning holds up
+ *  nobody. */
+class PingFrameReader final : public Framer {
 public:
     /** @param max_payload a longer one is none: to a device at most tens of bytes go, from it 1,220 [bytes] */
-    explicit PingFrameReader(size_t max_payload) : max_payload_(max_payload) {}
+    explicit PingFrameReader(size_t max_payload) : Framer(CutOff::IsPassedOver), max_payload_(max_payload) {}
 
-    void push(std::span<const uint8_t> bytes);
     /** The next frame, if there is one. */
     std::optional<PingFrame> next();
-    /** Bytes that are kept until more come [1]. */
-    size_t waiting() const { return bytes_.size() - begin_; }
 
 private:
-    enum class Finding { None, Partial, Whole };
-    Finding findingAt(size_t at) const;
-    size_t sizeAt(size_t at) const;  ///< Of the frame that begins there [bytes].
-    PingFrame take(size_t at);
+    size_t sizeOf(std::span<const uint8_t> bytes) const override;
 
     size_t max_payload_;
-    Bytes bytes_;
-    size_t begin_ = 0;  ///< What is before has been read.
 };
 
 /** Every frame of one datagram. */
@@ -115,5 +106,83 @@ std::optional<Message> pingMessage(const PingFrame& frame) {
     if (frame.message != Message::message || !reader.complete()) return {};
     return message;
 }
+
+// Messages that every device has. Each lists its fields in the order of the wire, once for both directions: pingBytes
+// writes it, pingMessage reads it.
+
+struct PingAck {
+    static constexpr uint16_t message = 1;
+    uint16_t acked = 0;
+
+    template <class Self, class V>
+    static void describe(Self& self, V& visit) {
+        visit(self.acked);
+    }
+};
+
+struct PingNack {
+    static constexpr uint16_t message = 2;
+    uint16_t nacked = 0;
+    std::string text;
+
+    template <class Self, class V>
+    static void describe(Self& self, V& visit) {
+        visit(self.nacked, self.text);
+    }
+};
+
+struct PingText {
+    static constexpr uint16_t message = 3;
+    std::string text;
+
+    template <class Self, class V>
+    static void describe(Self& self, V& visit) {
+        visit(self.text);
+    }
+};
+
+enum class PingDeviceType : uint8_t { Unknown = 0, Ping1d = 1, Ping360 = 2 };
+
+struct PingDeviceInformation {
+    static constexpr uint16_t message = 4;
+    uint8_t type = 0;  ///< PingDeviceType, or one that came later.
+    uint8_t revision = 0, major = 0, minor = 0, patch = 0, reserved = 0;
+
+    template <class Self, class V>
+    static void describe(Self& self, V& visit) {
+        visit(self.type, self.revision, self.major, self.minor, self.patch, self.reserved);
+    }
+};
+
+struct PingProtocolVersion {
+    static constexpr uint16_t message = 5;
+    uint8_t major = 1, minor = 0, patch = 0, reserved = 0;
+
+    template <class Self, class V>
+    static void describe(Self& self, V& visit) {
+        visit(self.major, self.minor, self.patch, self.reserved);
+    }
+};
+
+/** Asks for a message. */
+struct PingGeneralRequest {
+    static constexpr uint16_t message = 6;
+    uint16_t requested = 0;
+
+    template <class Self, class V>
+    static void describe(Self& self, V& visit) {
+        visit(self.requested);
+    }
+};
+
+struct PingSetDeviceId {
+    static constexpr uint16_t message = 100;
+    uint8_t device_id = 0;
+
+    template <class Self, class V>
+    static void describe(Self& self, V& visit) {
+        visit(self.device_id);
+    }
+};
 
 }  // namespace insonify::device

@@ -9,9 +9,8 @@
 #include <string_view>
 
 #include "components/device/DriverLine.hpp"
-#include "components/device/OculusMessages.hpp"
-#include "components/device/OculusModels.hpp"
-#include "components/device/PingMessages.hpp"
+#include "components/device/OculusEmulator.hpp"
+#include "components/device/PingProtocol.hpp"
 #include "components/device/SeaNet.hpp"
 #include "types/ConfigError.hpp"
 

@@ -218,47 +218,21 @@ SeaNetMessage seaNetRequest(SeaNetType type) {
     return {type, seanet_computer, seanet_imaging_sonar, Bytes(type == SeaNetType::SendData ? 4 : 0)};
 }
 
-void SeaNetReader::add(std::span<const uint8_t> bytes) {
-    bytes_.erase(bytes_.begin(), bytes_.begin() + static_cast<std::ptrdiff_t>(begin_));
-    begin_ = 0;
-    bytes_.insert(bytes_.end(), bytes.begin(), bytes.end());
-}
-
-size_t SeaNetReader::sizeAt(size_t at) const { return read<uint16_t>(bytes_, at + 5) + outside; }
-
-SeaNetReader::Finding SeaNetReader::findingAt(size_t at) const {
-    const size_t left = bytes_.size() - at;
-    if (bytes_[at] != start) return Finding::None;
-    if (left < 7) return Finding::Partial;
-    const size_t size = sizeAt(at);
-    const auto digits = hexadecimal(std::span(bytes_).subspan(at + 1).first<4>());
-    if (digits != size - outside || size < frame_size || size > max_packet) return Finding::None;
-    if (left < size) return Finding::Partial;
-    return bytes_[at + size - 1] == end ? Finding::Whole : Finding::None;
-}
-
-SeaNetMessage SeaNetReader::take(size_t at) {
-    goOnAt(at);
-    const auto packet = std::span(bytes_).subspan(at, sizeAt(at));
-    const auto payload = packet.subspan(payload_at, packet.size() - payload_at - 1);
-    begin_ = at + packet.size();
-    return {static_cast<SeaNetType>(packet[10]), packet[7], packet[8], Bytes(payload.begin(), payload.end())};
-}
-
-void SeaNetReader::goOnAt(size_t at) {
-    skipped_ += at - begin_;
-    begin_ = at;
+size_t SeaNetReader::sizeOf(std::span<const uint8_t> bytes) const {
+    constexpr size_t with_lengths = 7;
+    if (bytes[0] != start) return 0;
+    if (bytes.size() < with_lengths) return with_lengths;
+    const size_t length = read<uint16_t>(bytes, 5), size = length + outside;
+    if (hexadecimal(bytes.subspan(1).first<4>()) != length || size < frame_size || size > max_packet) return 0;
+    return size > bytes.size() || bytes[size - 1] == end ? size : 0;
 }
 
 std::optional<SeaNetMessage> SeaNetReader::next() {
-    std::optional<size_t> partial;
-    for (size_t at = begin_; at < bytes_.size(); ++at) {
-        const Finding finding = findingAt(at);
-        if (finding == Finding::Whole) return take(at);
-        if (finding == Finding::Partial && !partial) partial = at;
-    }
-    goOnAt(partial.value_or(bytes_.size()));
-    return std::nullopt;
+    const auto packet = nextFrame();
+    if (packet.empty()) return std::nullopt;
+    const auto payload = packet.subspan(payload_at, packet.size() - payload_at - 1);
+    return SeaNetMessage{static_cast<SeaNetType>(packet[10]), packet[7], packet[8],
+                         Bytes(payload.begin(), payload.end())};
 }
 
 }  // namespace insonify::device

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "components/device/Bytes.hpp"
+#include "components/device/Framer.hpp"
 
 namespace insonify::device {
 
@@ -111,23 +111,14 @@ SeaNetMessage seaNetRequest(SeaNetType type);
 /** Finds packets in bytes as they come. What lies between them, and what begins like one and is none (two lengths that
  *  differ, no line feed where it ends), is passed over; so is one that is cut off, once a whole one has come behind it.
  */
-class SeaNetReader {
+class SeaNetReader final : public Framer {
 public:
-    void add(std::span<const uint8_t> bytes);
+    SeaNetReader() : Framer(CutOff::IsPassedOver) {}
+
     std::optional<SeaNetMessage> next();
-    size_t skipped() const { return skipped_; }  ///< Bytes that were no packets.
 
 private:
-    enum class Finding { None, Partial, Whole };
-
-    size_t sizeAt(size_t at) const;
-    Finding findingAt(size_t at) const;
-    SeaNetMessage take(size_t at);
-    void goOnAt(size_t at);
-
-    Bytes bytes_;
-    size_t begin_ = 0;  ///< Of what is still to be read.
-    size_t skipped_ = 0;
+    size_t sizeOf(std::span<const uint8_t> bytes) const override;
 };
 
 }  // namespace insonify::device

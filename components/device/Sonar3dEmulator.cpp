@@ -9,7 +9,6 @@
 #include <regex>
 #include <utility>
 
-#include "components/device/IsoTime.hpp"
 #include "types/Angle.hpp"
 
 namespace insonify::device {
@@ -20,11 +19,9 @@ namespace {
 
 constexpr double low_opening_deg = 90, high_opening_deg = 40, columns = 256;  // between the outermost columns
 constexpr double millimetre = 1e-3;   // of a pixel's unit, as far as 16 bits reach
-constexpr double patience = 2;        // beyond sound's way, for a ping that was asked for [s]
 constexpr double strength_unit = 30;  // that of the device's strengths
 constexpr double strongest_pixel = 255;
 constexpr double slowest = 1000, fastest = 2000;  // [m/s]
-constexpr size_t most_under_way = 8;              // that a sonar which is slow may answer still
 constexpr const char* prefix = "/api/v1/integration/";
 
 /** A request that the device does not take, and why. */
@@ -273,9 +270,9 @@ void Sonar3dEmulator::ask(types::Time now) {
     settings.speed_of_sound = speedOfSound();
     const double opening_deg = state_.high_frequency ? high_opening_deg : low_opening_deg;
     settings.field_of_view = types::Angle::fromDeg(opening_deg * columns / (columns - 1));  // to the edges of beams
-    if (under_way_.size() >= most_under_way) under_way_.erase(under_way_.begin());
-    under_way_.push_back({now, state_});
-    under_way_.back().state.speed_of_sound = settings.speed_of_sound;
+    Sonar3dState asked = state_;
+    asked.speed_of_sound = settings.speed_of_sound;
+    asked_.add(now, now + types::Time::fromSeconds(2 * settings.range / settings.speed_of_sound), std::move(asked));
     last_ = now;
     outlet_.ask(settings);
 }
@@ -283,23 +280,12 @@ void Sonar3dEmulator::ask(types::Time now) {
 std::optional<types::Time> Sonar3dEmulator::tick(types::Time now) {
     if (!state_.acoustics) return std::nullopt;
     types::Time due = last_ ? *last_ + types::Time::fromSeconds(period()) : now;
-    if (!under_way_.empty()) {
-        const Sonar3dState& asked = under_way_.back().state;
-        due = std::max(due, *last_ + types::Time::fromSeconds(patience + 2 * asked.range_max / asked.speed_of_sound));
-    }
+    if (!asked_.empty()) due = std::max(due, asked_.deadline());
     if (now < due) return due;
-    if (!under_way_.empty() && !std::exchange(warned_, true))
+    if (!asked_.empty() && !std::exchange(warned_, true))
         outlet_.warn("no range image came of a ping that was asked for; another is asked for");
     ask(now);
     return now + types::Time::fromSeconds(period());
-}
-
-std::optional<Sonar3dState> Sonar3dEmulator::takeAsked(types::Time heard) {
-    const auto later = std::ranges::find_if(under_way_, [&](const Asked& asked) { return asked.time > heard; });
-    if (later == under_way_.begin()) return std::nullopt;
-    Sonar3dState state = std::prev(later)->state;
-    under_way_.erase(under_way_.begin(), later);
-    return state;
 }
 
 RipImage Sonar3dEmulator::frameOf(const types::DepthMap& map, const Sonar3dState& asked) const {
@@ -323,7 +309,7 @@ void Sonar3dEmulator::send(const Bytes& packet) {
 }
 
 void Sonar3dEmulator::heard(const types::DepthMap& map) {
-    const auto asked = takeAsked(map.time);
+    const auto asked = asked_.take(map.time);
     if (!asked) return;
     warned_ = false;
     ++sequence_;

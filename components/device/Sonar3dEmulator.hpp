@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "components/device/AskedPings.hpp"
 #include "components/device/Http.hpp"
 #include "components/device/Rip2.hpp"
 #include "types/DepthMap.hpp"
@@ -84,11 +85,6 @@ public:
 
 private:
     struct Api;
-    /** A ping that was asked for, and what held then. */
-    struct Asked {
-        types::Time time;
-        Sonar3dState state;
-    };
     void ask(types::Time now);
     double speedOfSound() const;
     double period() const { return state_.high_frequency ? 1.0 / 20 : 1.0 / 5; }  ///< [s]
@@ -96,15 +92,13 @@ private:
         return state.high_frequency ? device_.high_frequency_khz : device_.low_frequency_khz;
     }
     RipImage frameOf(const types::DepthMap& map, const Sonar3dState& asked) const;
-    /** What held when this ping was asked for; none: nobody asked. */
-    std::optional<Sonar3dState> takeAsked(types::Time heard);
     void sendImages(const types::DepthMap& map, const Sonar3dState& asked);
     void send(const Bytes& packet);
 
     Sonar3dDevice device_;
     Outlet outlet_;
     Sonar3dState state_;
-    std::vector<Asked> under_way_;  ///< The oldest first.
+    AskedPings<Sonar3dState> asked_{8};  ///< What held when each was.
     std::optional<types::Time> last_;
     types::Time shift_;  ///< Of the device's clock.
     uint32_t sequence_ = 0;

@@ -17,8 +17,7 @@ struct Sonar3dDeviceConfig {
     template <class Self, class V>
     static void describe(Self& self, V& visit) {
         using types::Field;
-        visit(Field{"address", "", "numeric address to listen on; 0.0.0.0: every network of this machine"},
-              self.address);
+        visit(listen_address, self.address);
         visit(Field{"port", "1", "TCP port of the HTTP API; 0: any that is free, told in a notice", 0, 65535},
               self.port);
         Sonar3dDevice::describe(self.device, visit);
@@ -37,11 +36,32 @@ public:
                                                          "range and strength of each beam's return"};
 
 private:
-    void listen(Network& network) override;
+    void listen(Network& network) override {
+        network.listenTcp(config->address, static_cast<uint16_t>(config->port));
+        clients_.clear();
+        emulator_.emplace(config->device,
+                          Sonar3dEmulator::Outlet{[this](const types::SonarSettings& asked) { settings.write(asked); },
+                                                  [this](const std::string& address, uint16_t port, Bytes packet) {
+                                                      this->network().sendTo(address, port, std::move(packet));
+                                                  },
+                                                  [this](const std::string& text) { warn(text); }});
+    }
     void opened(Client client) override { clients_[client]; }
-    void received(Client client, std::span<const uint8_t> bytes) override;
+    void received(Client client, std::span<const uint8_t> bytes) override {
+        HttpReader& reader = clients_[client];
+        reader.add(bytes);
+        while (const auto request = reader.next()) {
+            network().send(client, httpBytes(emulator_->answer(*request, now()), request->keep_alive));
+            if (!request->keep_alive) network().close(client);
+        }
+        if (!reader.refusal()) return;
+        network().send(client, httpBytes(*reader.refusal(), false));
+        network().close(client);
+    }
     void closed(Client client) override { clients_.erase(client); }
-    void takePings() override;
+    void takePings() override {
+        for (types::DepthMapPtr map; range_image.readNew(map);) emulator_->heard(*map);
+    }
     std::optional<types::Time> tick(types::Time now) override { return emulator_->tick(now); }
 
     std::optional<Sonar3dEmulator> emulator_;

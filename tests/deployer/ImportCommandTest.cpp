@@ -1,7 +1,7 @@
 // Recordings of an Oculus become logs, which are replayed, rendered again and scored.
 #include <gmock/gmock.h>
 
-#include "components/device/OculusEncoder.hpp"
+#include "components/device/OculusPing.hpp"
 #include "components/device/OculusRecording.hpp"
 #include "components/log/Reader.hpp"
 #include "tests/deployer/Wall.hpp"

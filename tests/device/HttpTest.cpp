@@ -1,7 +1,6 @@
 #include <gmock/gmock.h>
 
 #include "components/device/Http.hpp"
-#include "components/device/IsoTime.hpp"
 
 namespace insonify::device {
 namespace {

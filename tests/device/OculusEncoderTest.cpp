@@ -3,7 +3,6 @@
 
 #include <cmath>
 
-#include "components/device/OculusEncoder.hpp"
 #include "components/device/OculusPing.hpp"
 
 namespace insonify::device {

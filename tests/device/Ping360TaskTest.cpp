@@ -39,7 +39,7 @@ public:
         give(pingBytes(message));
     }
     std::vector<PingFrame> heard() {
-        reader_.push(line_.receive(std::chrono::milliseconds(1)));
+        reader_.add(line_.receive(std::chrono::milliseconds(1)));
         std::vector<PingFrame> frames;
         while (auto frame = reader_.next()) frames.push_back(std::move(*frame));
         return frames;

@@ -4,7 +4,6 @@
 
 #include "components/device/Ping1dMessages.hpp"
 #include "components/device/Ping360Messages.hpp"
-#include "components/device/PingMessages.hpp"
 #include "components/device/PingProtocol.hpp"
 
 namespace insonify::device {
@@ -23,7 +22,7 @@ std::vector<uint16_t> messagesIn(PingFrameReader& reader) {
 
 std::vector<uint16_t> messagesIn(const Bytes& bytes) {
     PingFrameReader reader(largest);
-    reader.push(bytes);
+    reader.add(bytes);
     return messagesIn(reader);
 }
 
@@ -130,7 +129,7 @@ TEST(PingProtocolTest, FramesAreFoundInPiecesOfAnySize) {
         PingFrameReader reader(64);
         std::vector<uint16_t> found;
         for (size_t at = 0; at < line.size(); at += step) {
-            reader.push(std::span(line).subspan(at, std::min(step, line.size() - at)));
+            reader.add(std::span(line).subspan(at, std::min(step, line.size() - at)));
             for (const uint16_t message : messagesIn(reader)) found.push_back(message);
         }
         EXPECT_THAT(found, ElementsAre(6, 2903, 2601)) << step;
@@ -156,19 +155,19 @@ TEST(PingProtocolTest, AFrameThatDoesNotAddUpIsPassedOverAndTheNextIsFound) {
 TEST(PingProtocolTest, AStrayBeginningDoesNotHoldUpAWholeFrame) {
     const Bytes stray = {'B', 'R', 30, 0, 1, 2}, request = pingBytes(PingGeneralRequest{5});
     PingFrameReader reader(64);
-    reader.push(stray);
+    reader.add(stray);
     EXPECT_THAT(messagesIn(reader), IsEmpty());
-    reader.push(request);
+    reader.add(request);
     EXPECT_THAT(messagesIn(reader), ElementsAre(6)) << "before the 40 bytes that the stray one told are there";
 }
 
 TEST(PingProtocolTest, NothingIsKeptBeyondTheLongestFrame) {
     PingFrameReader reader(64);
     const Bytes junk(1 << 16, 'B');
-    reader.push(junk);
+    reader.add(junk);
     EXPECT_FALSE(reader.next());
     EXPECT_LE(reader.waiting(), 74u);
-    reader.push(Bytes{'B', 'R', 65, 0});
+    reader.add(Bytes{'B', 'R', 65, 0});
     EXPECT_FALSE(reader.next());
     EXPECT_EQ(reader.waiting(), 0u) << "longer than any that is waited for";
     EXPECT_THAT(pingFrames(PingFrame{7, 0, 0, Bytes(65)}.bytes(), 64), IsEmpty());
@@ -186,7 +185,7 @@ TEST(PingProtocolTest, EveryFrameOfANoisyLineThatIsWholeIsFound) {
     PingFrameReader reader(64);
     int found = 0;
     for (size_t at = 0; at < line.size(); at += 7) {
-        reader.push(std::span(line).subspan(at, std::min<size_t>(7, line.size() - at)));
+        reader.add(std::span(line).subspan(at, std::min<size_t>(7, line.size() - at)));
         while (const auto frame = reader.next()) {
             const auto command = pingMessage<Ping360Transducer>(*frame);
             ASSERT_TRUE(command);

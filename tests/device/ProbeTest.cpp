@@ -6,7 +6,7 @@
 #include "components/device/DriverLine.hpp"
 #include "components/device/Network.hpp"
 #include "components/device/OculusMessages.hpp"
-#include "components/device/PingMessages.hpp"
+#include "components/device/PingProtocol.hpp"
 #include "components/device/Probe.hpp"
 #include "components/device/SeaNet.hpp"
 #include "tests/support/OculusDriver.hpp"

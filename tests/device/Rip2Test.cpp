@@ -54,6 +54,17 @@ std::string diagnosticOf(const Bytes& bytes) {
     return diagnostics.empty() ? "" : diagnostics.front();
 }
 
+/** With its CRC-32 behind it, bit by bit. */
+Bytes withSum(Bytes bytes) {
+    uint32_t crc = 0xFFFFFFFF;
+    for (const uint8_t byte : bytes) {
+        crc ^= byte;
+        for (int bit = 0; bit < 8; ++bit) crc = crc >> 1 ^ (crc & 1 ? 0xEDB88320 : 0);
+    }
+    append(bytes, ~crc);
+    return bytes;
+}
+
 /** A packet whose payload is not ours, with the right length and checksum. */
 Bytes framed(const Bytes& payload) {
     RangePixels empty;
@@ -61,13 +72,7 @@ Bytes framed(const Bytes& payload) {
     bytes.resize(8);
     write(bytes, 4, static_cast<uint32_t>(payload.size() + 12));
     bytes.insert(bytes.end(), payload.begin(), payload.end());
-    uint32_t crc = 0xFFFFFFFF;  // CRC-32, bit by bit
-    for (const uint8_t byte : bytes) {
-        crc ^= byte;
-        for (int bit = 0; bit < 8; ++bit) crc = crc >> 1 ^ (crc & 1 ? 0xEDB88320 : 0);
-    }
-    append(bytes, ~crc);
-    return bytes;
+    return withSum(bytes);
 }
 
 Bytes wrapped(std::string_view type, const Bytes& message) {
@@ -176,14 +181,8 @@ TEST(Rip2Test, WhatContradictsItselfIsToldWithItsNumbers) {
 TEST(Rip2Test, APayloadThatIsNotSnappysIsNoPacket) {
     Bytes changed = framed({0xFF, 0xFF, 0xFF, 0xFF, 0x7F, 1, 2, 3});  // says that it holds 32 GB
     changed[3] = '2';
-    Bytes body(changed.begin(), changed.end() - 4);
-    uint32_t crc = 0xFFFFFFFF;
-    for (const uint8_t byte : body) {
-        crc ^= byte;
-        for (int bit = 0; bit < 8; ++bit) crc = crc >> 1 ^ (crc & 1 ? 0xEDB88320 : 0);
-    }
-    append(body, ~crc);
-    EXPECT_THAT(diagnosticOf(body), HasSubstr("is compressed by something else than snappy"));
+    changed.resize(changed.size() - 4);
+    EXPECT_THAT(diagnosticOf(withSum(changed)), HasSubstr("is compressed by something else than snappy"));
 }
 
 /** Pixels one by one, in another order and with fields that are new, as other writers may have them. */

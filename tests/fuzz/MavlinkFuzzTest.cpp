@@ -23,7 +23,7 @@ void expectSound(const mavlink::Frame& frame) {
 }
 
 void enter(const Input& input) {
-    const std::span<const uint8_t> bytes{reinterpret_cast<const uint8_t*>(input.bytes().data()), input.bytes().size()};
+    const auto bytes = input.octets();
     mavlink::Body bodies[] = {{{}, {0, 0, 0}}, {{.source = mavlink::Source::Vision}, {0, 0, 0}}};
     Time now = Time::fromSeconds(1e9);
     for (size_t at = 0; at < bytes.size(); at += 400) {

@@ -29,14 +29,10 @@ void read(const Input& input) try {
     expectOurWords(error.what());
 }
 
-std::span<const uint8_t> bytesIn(const Input& input) {
-    return {reinterpret_cast<const uint8_t*>(input.bytes().data()), input.bytes().size()};
-}
-
 /** Every ping of a stream is written as it was read. */
 void frame(const Input& input) {
     device::OculusFramer framer;
-    framer.add(bytesIn(input));
+    framer.add(input.octets());
     for (device::Bytes message = framer.next(); !message.empty(); message = framer.next()) {
         EXPECT_TRUE(device::oculusHeader(message));
         if (const auto ping = device::oculusResult(message)) {
@@ -55,7 +51,7 @@ void drive(const Input& input) {
     types::Time now{1'000'000};
     device::OculusEmulator emulator({}, now);
     emulator.opened(1);
-    const auto bytes = bytesIn(input);
+    const auto bytes = input.octets();
     for (size_t at = 0; at < bytes.size(); at += 64) {
         emulator.received(1, bytes.subspan(at, std::min<size_t>(64, bytes.size() - at)));
         now = now + types::Time{1'000'000};

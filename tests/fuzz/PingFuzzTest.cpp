@@ -12,10 +12,6 @@ namespace {
 
 using device::Bytes;
 
-std::span<const uint8_t> bytesOf(const Input& input) {
-    return {reinterpret_cast<const uint8_t*>(input.bytes().data()), input.bytes().size()};
-}
-
 /** A frame that is found is one that was there, byte for byte. */
 void expectThere(const device::PingFrame& frame, std::span<const uint8_t> bytes) {
     const Bytes again = frame.bytes();
@@ -35,7 +31,7 @@ void readAs(const device::PingFrame& frame) {
 void readFrames(std::span<const uint8_t> bytes) {
     device::PingFrameReader reader(4096);
     for (size_t at = 0; at < bytes.size(); at += 5) {
-        reader.push(bytes.subspan(at, std::min<size_t>(5, bytes.size() - at)));
+        reader.add(bytes.subspan(at, std::min<size_t>(5, bytes.size() - at)));
         EXPECT_LE(reader.waiting(), 4096 + 15u);
         while (const auto frame = reader.next()) {
             expectThere(*frame, bytes);
@@ -80,9 +76,9 @@ void drive(device::PingDevice&& emulator, std::span<const uint8_t> bytes) {
 }
 
 void enter(const Input& input) {
-    readFrames(bytesOf(input));
-    drive(device::Ping360Emulator({}), bytesOf(input));
-    drive(device::Ping1dEmulator({}), bytesOf(input));
+    readFrames(input.octets());
+    drive(device::Ping360Emulator({}), input.octets());
+    drive(device::Ping1dEmulator({}), input.octets());
 }
 
 std::string words(const Bytes& bytes) { return {bytes.begin(), bytes.end()}; }

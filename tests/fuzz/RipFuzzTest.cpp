@@ -47,7 +47,7 @@ void expectSound(std::span<const uint8_t> bytes) {
 }
 
 void read(const Input& input) {
-    const std::span<const uint8_t> bytes(reinterpret_cast<const uint8_t*>(input.bytes().data()), input.bytes().size());
+    const auto bytes = input.octets();
     expectSound(bytes);
     expectSound(mended(bytes));
 }

@@ -59,7 +59,7 @@ private:
 };
 
 void read(const Input& input) {
-    const std::span<const uint8_t> bytes(reinterpret_cast<const uint8_t*>(input.bytes().data()), input.bytes().size());
+    const auto bytes = input.octets();
     device::SeaNetReader reader;
     reader.add(bytes);
     while (const auto message = reader.next()) {

@@ -23,7 +23,7 @@ void read(const Input& input) {
                                        },
                                        [](const std::string&) {}});
     device::HttpReader reader;
-    const std::span<const uint8_t> bytes(reinterpret_cast<const uint8_t*>(input.bytes().data()), input.bytes().size());
+    const auto bytes = input.octets();
     types::Time now{1'700'000'000'000'000};
     for (size_t at = 0; at < bytes.size(); at += 1000) {
         reader.add(bytes.subspan(at, std::min<size_t>(1000, bytes.size() - at)));

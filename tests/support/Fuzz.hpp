@@ -1,5 +1,6 @@
 #pragma once
 // Doors through which bytes of others come in, and what pushes at them.
+#include <cstdint>
 #include <filesystem>
 #include <functional>
 #include <span>
@@ -15,6 +16,7 @@ public:
 
     const std::string& bytes() const { return bytes_; }
     std::span<const char> span() const { return bytes_; }
+    std::span<const uint8_t> octets() const { return {reinterpret_cast<const uint8_t*>(bytes_.data()), bytes_.size()}; }
     const std::filesystem::path& file() const { return file_; }
 
 private:

@@ -1,0 +1,56 @@
+#pragma once
+#include <algorithm>
+#include <iterator>
+#include <optional>
+#include <utility>
+#include <variant>
+#include <vector>
+
+#include "types/Time.hpp"
+
+namespace insonify::device {
+
+/** The pings that were asked of a sonar and have not come, the newest last, each with what is kept for its answer. */
+template <class Kept = std::monostate>
+class AskedPings {
+public:
+    /** @param most that a sonar which is slow may answer still; where there are more, the oldest is given up */
+    explicit AskedPings(size_t most = 1) : most_(most) {}
+
+    /** @param sound_is_back when its last echo has come, at the latest */
+    void add(types::Time now, types::Time sound_is_back, Kept kept = {}) {
+        if (asked_.size() >= most_) asked_.erase(asked_.begin());
+        asked_.push_back({now, sound_is_back, std::move(kept)});
+    }
+    void clear() { asked_.clear(); }
+
+    bool empty() const { return asked_.empty(); }
+    size_t size() const { return asked_.size(); }
+    /** Whether a ping of this time answers one of them. */
+    bool awaits(types::Time ping) const { return !asked_.empty() && ping >= asked_.front().time; }
+    /** What was kept for a ping of this time: it answers the newest that was asked for by then, and the older ones
+     *  never come. None: nobody has asked for it. */
+    std::optional<Kept> take(types::Time ping) {
+        if (!awaits(ping)) return std::nullopt;
+        const auto later = std::ranges::find_if(asked_, [&](const Asked& each) { return each.time > ping; });
+        std::optional<Kept> kept = std::move(std::prev(later)->kept);
+        asked_.erase(asked_.begin(), later);
+        return kept;
+    }
+    /** When the newest is late, where there is one. @param patience with the sonar, beyond the way of sound [s] */
+    types::Time deadline(double patience = 2) const {
+        return asked_.back().sound_is_back + types::Time::fromSeconds(patience);
+    }
+    bool isLate(types::Time now) const { return !empty() && now >= deadline(); }
+
+private:
+    struct Asked {
+        types::Time time, sound_is_back;
+        Kept kept;
+    };
+
+    size_t most_;
+    std::vector<Asked> asked_;
+};
+
+}  // namespace insonify::device
