@@ -10,6 +10,7 @@
 #include "tests/support/EveryWay.hpp"
 #include "tests/support/Folder.hpp"
 #include "tests/support/Scenes.hpp"
+#include "tests/support/Sonars.hpp"
 #include "types/Angle.hpp"
 
 namespace insonify::sonar {
@@ -29,15 +30,7 @@ acoustics::BeamLaw lawOf(Weighting weighting, double width_deg) {
 }
 
 SonarConfig sonarOf(double fov_deg, int beams, double bin, int bins) {
-    SonarConfig config;
-    config.speed_of_sound = 1000;  // bins of whole microseconds
-    config.range = bin * bins;
-    config.bin_count = bins;
-    config.beam_count = beams;
-    config.field_of_view_deg = fov_deg;
-    config.quality.rows = 512;
-    config.quality.columns_per_beam = 2;
-    return config;
+    return test::sonarOf({.beams = beams, .width_deg = fov_deg, .bins = bins, .bin = bin, .rows = 512, .columns = 2});
 }
 
 /** A flat bottom under a level fan: of what comes from an elevation, a share. */

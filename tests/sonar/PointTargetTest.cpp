@@ -12,6 +12,7 @@
 #include "components/sonar/SonarRenderer.hpp"
 #include "tests/support/EveryWay.hpp"
 #include "tests/support/Scenes.hpp"
+#include "tests/support/Sonars.hpp"
 #include "types/Angle.hpp"
 
 namespace insonify::sonar {
@@ -20,6 +21,7 @@ namespace {
 using acoustics::Weighting;
 using std::numbers::pi;
 using test::everyWay;
+using test::openWater;
 using test::pingOf;
 using types::radians;
 
@@ -32,20 +34,10 @@ acoustics::BeamLaw lawOf(Weighting weighting, double width_deg) {
 
 /** Bins of 0.1 m to 20 m, rays. */
 SonarConfig sonarOf(double fov_deg, int beams) {
-    SonarConfig config;
-    config.speed_of_sound = 1000;  // bins of whole microseconds
-    config.range = 20;
-    config.bin_count = 200;
-    config.beam_count = beams;
-    config.field_of_view_deg = fov_deg;
-    config.quality.rows = 16;
-    config.quality.columns_per_beam = 2;
+    SonarConfig config = test::sonarOf({.beams = beams, .width_deg = fov_deg, .bins = 200, .rows = 16, .columns = 2});
     config.visibility = Visibility::Cpu;
     return config;
 }
-
-/** Nothing that any sonar here hears. */
-types::GeometryPtr openWater() { return test::sceneOf({test::disc(1, 0.1f)}, 0, {{-500, 0, 0}}); }
 
 /** A level sonar at the origin with one target of 0 dB. */
 types::Snapshot withTarget(types::GeometryPtr geometry, glm::dvec3 position, double strength_db = 0) {
