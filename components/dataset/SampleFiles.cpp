@@ -67,17 +67,6 @@ std::string yoloOf(const Annotated& annotated, const output::PlainPicture& pictu
     return text;
 }
 
-void writeTexts(log::NpzFile& npz, const std::string& name, const std::vector<std::string>& texts) {
-    size_t longest = 1;
-    for (const std::string& text : texts) longest = std::max(longest, text.size());
-    npz.begin(name, "|S" + std::to_string(longest), {texts.size()});
-    for (std::string text : texts) {
-        text.resize(longest);
-        npz.append(text.data(), longest);
-    }
-    npz.end();
-}
-
 void writeNpz(const fs::path& file, const Heard& heard, const std::string& meta) {
     const types::Sonar& ping = heard.ping;
     const std::vector<size_t> shape{ping.beam_count, ping.bin_count};
@@ -94,7 +83,7 @@ void writeNpz(const fs::path& file, const Heard& heard, const std::string& meta)
             npz.append(numbers.data(), numbers.size() * sizeof(numbers[0]));
             npz.end();
         });
-    writeTexts(npz, "objects", heard.truth.objects);
+    npz.texts("objects", heard.truth.objects);
     npz.begin("meta", "|S" + std::to_string(meta.size()), {});
     npz.append(meta.data(), meta.size());
     npz.end();

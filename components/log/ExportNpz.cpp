@@ -94,17 +94,6 @@ void writeRun(Reader& log, const Run& run, NpzFile& npz, Sonar ping) {
     npz.array("range_m", {count, run.shape[1]}, range);
 }
 
-void writeTexts(NpzFile& npz, const std::string& name, const std::vector<std::string>& texts) {
-    size_t longest = 1;
-    for (const std::string& text : texts) longest = std::max(longest, text.size());
-    npz.begin(name, "|S" + std::to_string(longest), {texts.size()});
-    for (std::string text : texts) {
-        text.resize(longest);
-        npz.append(text.data(), longest);
-    }
-    npz.end();
-}
-
 /** Time and bearings; of samples of bins their ranges and the names of the objects, which are the first sample's. */
 template <types::Arrayed T>
 void writeGrid(Reader& log, const Run& run, NpzFile& npz, T sample) {
@@ -126,7 +115,7 @@ void writeGrid(Reader& log, const Run& run, NpzFile& npz, T sample) {
     npz.array("bearings", {count, run.shape[0]}, bearings);
     if constexpr (types::NamesObjects<T>) {
         npz.array("range_m", {count, run.shape[1]}, range);
-        writeTexts(npz, "objects", objects);
+        npz.texts("objects", objects);
     }
 }
 
@@ -268,7 +257,7 @@ void writeRows(Reader& log, const std::string& stream, const Path& path, const s
     npz.close();
 }
 
-void writeValue(NpzFile& npz, const std::vector<std::string>& texts) { writeTexts(npz, "value", texts); }
+void writeValue(NpzFile& npz, const std::vector<std::string>& texts) { npz.texts("value", texts); }
 template <class Number>
 void writeValue(NpzFile& npz, const std::vector<Number>& numbers) {
     npz.array("value", {numbers.size()}, numbers);

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <zlib.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <system_error>
 
@@ -102,6 +103,17 @@ void NpzFile::end() {
     file_.seekp(static_cast<std::streamoff>(entry.position));
     file_ << localHeader(entry.name, entry.crc, entry.size);
     file_.seekp(position);
+}
+
+void NpzFile::texts(const std::string& name, const std::vector<std::string>& values) {
+    size_t longest = 1;
+    for (const std::string& value : values) longest = std::max(longest, value.size());
+    begin(name, "|S" + std::to_string(longest), {values.size()});
+    for (std::string value : values) {
+        value.resize(longest);
+        append(value.data(), longest);
+    }
+    end();
 }
 
 void NpzFile::close() {

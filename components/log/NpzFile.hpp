@@ -33,6 +33,8 @@ public:
         append(values.data(), values.size() * sizeof(T));
         end();
     }
+    /** Texts, each padded with zeros to the length of the longest. */
+    void texts(const std::string& name, const std::vector<std::string>& values);
     void close();
 
 private:

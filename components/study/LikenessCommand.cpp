@@ -15,12 +15,6 @@ namespace {
 
 using command::Json;
 
-struct Options {
-    std::string deployment, out;
-    std::vector<std::string> real;
-    uint64_t ping = 1;
-};
-
 Json toJson(const LikenessRow& row) {
     Json json{{"name", row.name}};
     for (const LikenessFigure& figure : figuresOf(row)) json[figure.name] = figure.value;
@@ -34,11 +28,7 @@ Json toJson(const LikenessResult& result) {
     Json json{{"pings", Json::array()}, {"verdicts", Json::array()}};
     for (const LikenessRow& row : result.rows) json["pings"].push_back(toJson(row));
     const LikenessRow* simulated = result.row("simulated");
-    for (const Claim& claim : simulated ? claims(simulated->apart, result.recorded) : std::vector<Claim>())
-        json["verdicts"].push_back({{"claim", claim.text},
-                                    {"measured", claim.measured},
-                                    {"bound", claim.bound},
-                                    {"verdict", claim.verdict()}});
+    if (simulated) json["verdicts"] = verdictsOf(claims(simulated->apart, result.recorded));
     return json;
 }
 
@@ -68,7 +58,7 @@ bool printClaims(const LikenessResult& result) {
     return std::ranges::none_of(all, &Claim::fails);
 }
 
-int runStudy(const Options& options, const FindPing& pingAt) {
+int runStudy(const RecordingOptions& options, const FindPing& pingAt) {
     const std::vector<CodedPing> recorded = recordedPings(options.real);
     std::optional<CodedPing> simulated;
     if (!options.deployment.empty()) {
@@ -89,13 +79,10 @@ int runStudy(const Options& options, const FindPing& pingAt) {
 }  // namespace
 
 void addLikenessStudy(CLI::App& study, command::Action& action, const FindPing& pingAt) {
-    const auto options = std::make_shared<Options>();
+    const auto options = std::make_shared<RecordingOptions>();
     CLI::App* command = study.add_subcommand("likeness", "How like recordings of a real sonar simulated pings look");
-    command->add_option("DEPLOYMENT", options->deployment,
-                        "a YAML file whose receiver gives out codes; absent: what the recordings look like");
-    command->add_option("--real", options->real, "recordings of an Oculus: files, or folders of them")->required();
-    command->add_option("--out", options->out, "folder of the report");
-    command->add_option("--ping", options->ping, "which ping of the deployment")->check(CLI::PositiveNumber);
+    options->addTo(*command, "a YAML file whose receiver gives out codes; absent: what the recordings look like")
+        ->required();
     command->callback(
         [options, pingAt, &action] { action = [options, pingAt] { return runStudy(*options, pingAt); }; });
 }

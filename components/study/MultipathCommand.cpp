@@ -28,11 +28,7 @@ Json toJson(const MultipathResult& result) {
                                   {"worst", curve.worst()},
                                   {"points", std::move(points)}});
     }
-    for (const Claim& claim : result.claims)
-        json["verdicts"].push_back({{"claim", claim.text},
-                                    {"measured", claim.measured},
-                                    {"bound", claim.bound},
-                                    {"verdict", claim.verdict()}});
+    json["verdicts"] = verdictsOf(result.claims);
     return json;
 }
 

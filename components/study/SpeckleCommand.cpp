@@ -17,12 +17,6 @@ namespace {
 
 using command::Json;
 
-struct Options {
-    std::string deployment, out;
-    std::vector<std::string> real;
-    uint64_t ping = 1;
-};
-
 Json toJson(const SpeckleRow& row) {
     Json json{{"name", row.name}, {"loudest", row.loudest}, {"slices", Json::array()}};
     for (const SpeckleSlice& slice : row.slices) {
@@ -36,13 +30,8 @@ Json toJson(const SpeckleRow& row) {
 }
 
 Json toJson(const std::vector<SpeckleRow>& rows, const std::vector<Claim>& claims) {
-    Json json{{"pings", Json::array()}, {"verdicts", Json::array()}};
+    Json json{{"pings", Json::array()}, {"verdicts", verdictsOf(claims)}};
     for (const SpeckleRow& row : rows) json["pings"].push_back(toJson(row));
-    for (const Claim& claim : claims)
-        json["verdicts"].push_back({{"claim", claim.text},
-                                    {"measured", claim.measured},
-                                    {"bound", claim.bound},
-                                    {"verdict", claim.verdict()}});
     return json;
 }
 
@@ -88,7 +77,7 @@ SonarAt ownSonar() {
     return {scene.config, scene.snapshot};
 }
 
-int runStudy(const Options& options, const FindSonar& sonarAt) {
+int runStudy(const RecordingOptions& options, const FindSonar& sonarAt) {
     std::vector<SpeckleRow> rows = recordedRows(options.real);
     std::vector<Claim> claims = lawClaims();
     if (sonar::haveRays())
@@ -109,13 +98,9 @@ int runStudy(const Options& options, const FindSonar& sonarAt) {
 }  // namespace
 
 void addSpeckleStudy(CLI::App& study, command::Action& action, const FindSonar& sonarAt) {
-    const auto options = std::make_shared<Options>();
+    const auto options = std::make_shared<RecordingOptions>();
     CLI::App* command = study.add_subcommand("speckle", "Statistics of speckle, simulated and recorded");
-    command->add_option("DEPLOYMENT", options->deployment,
-                        "a YAML file whose sonar and scene are studied; absent: a fan over a flat bottom");
-    command->add_option("--real", options->real, "recordings of an Oculus: files, or folders of them");
-    command->add_option("--out", options->out, "folder of the report");
-    command->add_option("--ping", options->ping, "which ping of the deployment")->check(CLI::PositiveNumber);
+    options->addTo(*command, "a YAML file whose sonar and scene are studied; absent: a fan over a flat bottom");
     command->callback(
         [options, sonarAt, &action] { action = [options, sonarAt] { return runStudy(*options, sonarAt); }; });
 }

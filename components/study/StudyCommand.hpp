@@ -4,10 +4,13 @@
 #include <CLI/Formatter.hpp>
 #include <functional>
 #include <string>
+#include <vector>
 
 #include "components/command/Action.hpp"
+#include "components/command/Json.hpp"
 #include "components/receiver/ReceiverConfig.hpp"
 #include "components/sonar/SonarConfig.hpp"
+#include "components/study/ErrorAnalysis.hpp"
 #include "types/Snapshot.hpp"
 #include "types/Sonar.hpp"
 
@@ -32,6 +35,20 @@ using FindPing = std::function<PingAt(const std::string& deployment, uint64_t pi
 
 /** Adds the command `study` with its options to `app`; parsing it sets `action`. */
 void addCommand(CLI::App& app, command::Action& action, const FindSonar& sonarAt, const FindPing& pingAt);
+
+/** Options of the studies that set simulated pings beside recorded ones. */
+struct RecordingOptions {
+    std::string deployment, out;
+    std::vector<std::string> real;
+    uint64_t ping = 1;
+
+    /** Adds them to a command. @param deployment_help what the deployment is studied for
+     *  @return the option --real */
+    CLI::Option* addTo(CLI::App& command, const std::string& deployment_help);
+};
+
+/** {claim, measured, bound, verdict} of each. */
+command::Json verdictsOf(const std::vector<Claim>& claims);
 
 // Each adds one study to the command `study`.
 void addErrorStudy(CLI::App& study, command::Action& action, const FindSonar& sonarAt);

@@ -12,6 +12,7 @@
 #include <string>
 #include <vector>
 
+#include "tests/support/Folder.hpp"
 #include "tests/support/Waiting.hpp"
 
 namespace insonify::deployer {
@@ -28,23 +29,7 @@ inline std::string readFile(const fs::path& file) {
 
 inline void writeFile(const fs::path& file, const std::string& text) { std::ofstream(file, std::ios::binary) << text; }
 
-/** A fresh folder that is gone with its test. */
-class TestFolder {
-public:
-    TestFolder() {
-        std::string name = (fs::temp_directory_path() / "insonify-XXXXXX").string();
-        if (!mkdtemp(name.data())) throw std::runtime_error("no temporary folder");
-        path_ = name;
-    }
-    ~TestFolder() { fs::remove_all(path_); }
-    TestFolder(const TestFolder&) = delete;
-    TestFolder& operator=(const TestFolder&) = delete;
-    fs::path operator/(const std::string& name) const { return path_ / name; }
-    const fs::path& path() const { return path_; }
-
-private:
-    fs::path path_;
-};
+using TestFolder = Folder;
 
 struct Outcome {
     int code = -1;  ///< Exit code; minus the signal that killed it.
@@ -90,6 +75,14 @@ inline std::vector<std::string> insonifyWords(std::vector<std::string> arguments
 
 inline Outcome callInsonify(const TestFolder& folder, std::vector<std::string> arguments) {
     return Process(insonifyWords(std::move(arguments)), folder.path()).wait();
+}
+
+/** What a command that ends well prints with --json. */
+inline json jsonOf(const TestFolder& folder, std::vector<std::string> arguments) {
+    arguments.push_back("--json");
+    const Outcome outcome = callInsonify(folder, std::move(arguments));
+    EXPECT_EQ(outcome.code, 0) << outcome.err;
+    return json::parse(outcome.out);
 }
 
 /** Waits until a program has said something on its error output. */

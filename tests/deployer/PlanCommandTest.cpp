@@ -7,9 +7,7 @@ using testing::HasSubstr;
 
 TEST(PlanCommandTest, JsonTellsWhatIsRunAndWhatIsLeftOut) {
     const WallFolder folder;
-    const Outcome outcome = callInsonify(folder, {"plan", "wall.yml", "--json"});
-    ASSERT_EQ(outcome.code, 0) << outcome.err;
-    const json plan = json::parse(outcome.out);
+    const json plan = jsonOf(folder, {"plan", "wall.yml"});
     EXPECT_TRUE(plan["features"].is_array());
     EXPECT_FALSE(plan["passes"].empty());
     ASSERT_FALSE(plan["omitted"].empty());
@@ -46,9 +44,7 @@ TEST(PlanCommandTest, SeveralSonarsAreToldByName) {
     two = replaced(two, "  - {from: sonar.ping, to: noise.clean}\n",
                    "  - {from: sonar.ping, to: noise.clean}\n  - {from: scene.snapshot, to: second.snapshot}\n");
     const WallFolder folder(two);
-    const Outcome outcome = callInsonify(folder, {"plan", "wall.yml", "--json"});
-    ASSERT_EQ(outcome.code, 0) << outcome.err;
-    const json plans = json::parse(outcome.out);
+    const json plans = jsonOf(folder, {"plan", "wall.yml"});
     EXPECT_EQ(plans["sonar"]["quality"]["rows"], 32);
     EXPECT_TRUE(plans.contains("second"));
 }

@@ -10,11 +10,7 @@ using testing::Not;
 
 namespace {
 
-json sceneOf(const TestFolder& folder, const std::string& file) {
-    const Outcome outcome = callInsonify(folder, {"scene", file, "--json"});
-    EXPECT_EQ(outcome.code, 0) << outcome.err;
-    return json::parse(outcome.out);
-}
+json sceneOf(const TestFolder& folder, const std::string& file) { return jsonOf(folder, {"scene", file}); }
 
 /** A floor of 40 x 30 m at height -2, with a step to -1 in its middle; its file has z up, or y up as glTF wants it. */
 std::string floorGltf(bool z_up) {

@@ -13,12 +13,8 @@ using ::testing::Not;
 namespace {
 
 json waterOf(std::vector<std::string> options) {
-    const TestFolder folder;
     options.insert(options.begin(), "water");
-    options.push_back("--json");
-    const Outcome outcome = callInsonify(folder, options);
-    EXPECT_EQ(outcome.code, 0) << outcome.err;
-    return json::parse(outcome.out);
+    return jsonOf(TestFolder(), options);
 }
 
 std::vector<std::string> keysOf(const json& object) {

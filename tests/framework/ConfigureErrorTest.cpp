@@ -1,8 +1,9 @@
 // What a task finds wrong only when it is configured.
-#include <gtest/gtest.h>
+#include <gmock/gmock.h>
 
 #include "components/framework/Deployment.hpp"
 #include "components/framework/Properties.hpp"
+#include "tests/support/Refused.hpp"
 
 namespace insonify::framework {
 namespace {
@@ -30,14 +31,9 @@ TEST(ConfigureErrorTest, WhatConfiguringFindsIsToldWhereThePropertyStands) {
         "  a: {type: test::Listener, activity: {period: 1}, properties: {port: 7}}\n"
         "  b: {type: test::Listener, activity: {period: 1}}\n";
     Deployment deployment(DeploymentSpec::parse(yaml, "a.yml"), registry);
-    try {
-        deployment.configure();
-        FAIL();
-    } catch (const types::ConfigError& error) {
-        ASSERT_EQ(error.diagnostics().size(), 2u);
-        EXPECT_EQ(error.diagnostics()[0].text(), "a.yml:2:71: tasks.a.properties.port: is taken");
-        EXPECT_EQ(error.diagnostics()[1].text(), "a.yml:3:6: tasks.b.properties.port: is taken");
-    }
+    EXPECT_THAT(test::refused([&] { deployment.configure(); }),
+                testing::ElementsAre("a.yml:2:71: tasks.a.properties.port: is taken",
+                                     "a.yml:3:6: tasks.b.properties.port: is taken"));
 }
 
 }  // namespace

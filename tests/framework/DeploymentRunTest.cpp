@@ -1,6 +1,7 @@
-#include <gtest/gtest.h>
+#include <gmock/gmock.h>
 
 #include "tests/framework/Tasks.hpp"
+#include "tests/support/Refused.hpp"
 #include "types/Sonar.hpp"
 
 namespace insonify::framework {
@@ -209,14 +210,9 @@ TEST(DeploymentRunTest, TasksThatCannotBeConfiguredAreAllNamedAndTheRestIsCleane
         "  good: {type: test::Tracer, activity: {period: 1}}\n"
         "  bad2: {type: test::Tracer, activity: {period: 1}}\n";
     Deployment deployment(DeploymentSpec::parse(yaml, "a.yml"), registry);
-    try {
-        deployment.configure();
-        FAIL();
-    } catch (const types::ConfigError& error) {
-        ASSERT_EQ(error.diagnostics().size(), 2u);
-        EXPECT_EQ(error.diagnostics()[0].text(), "a.yml:2:8: tasks.bad: configureHook refused: out of order");
-        EXPECT_EQ(error.diagnostics()[1].text(), "a.yml:4:9: tasks.bad2: configureHook refused: out of order");
-    }
+    EXPECT_THAT(test::refused([&] { deployment.configure(); }),
+                testing::ElementsAre("a.yml:2:8: tasks.bad: configureHook refused: out of order",
+                                     "a.yml:4:9: tasks.bad2: configureHook refused: out of order"));
     EXPECT_EQ(all, (std::vector<std::string>{"configure bad", "configure good", "configure bad2", "cleanup good"}));
 }
 

@@ -5,6 +5,7 @@
 
 #include "components/framework/DeploymentSpec.hpp"
 #include "tests/framework/Tasks.hpp"
+#include "tests/support/Refused.hpp"
 
 namespace insonify::framework {
 namespace {
@@ -13,23 +14,14 @@ using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::UnorderedElementsAre;
 
-std::vector<std::string> texts(const types::ConfigError& error) {
-    std::vector<std::string> all;
-    for (const auto& diagnostic : error.diagnostics()) all.push_back(diagnostic.text());
-    return all;
-}
-
 /** Every diagnostic of a deployment, as told before anything starts. */
 std::vector<std::string> diagnosticsOf(const std::string& yaml, const std::vector<std::string>& sets = {}) {
     Registry registry = test::testRegistry();
-    try {
+    return test::refused([&] {
         DeploymentSpec spec = DeploymentSpec::parse(yaml, "a.yml");
         for (const std::string& set : sets) spec.set(set);
         Deployment deployment(spec, registry);
-    } catch (const types::ConfigError& error) {
-        return texts(error);
-    }
-    return {};
+    });
 }
 
 TEST(DeploymentSpecTest, AllDiagnosticsOfAFileAreToldInOneGo) {
@@ -164,16 +156,10 @@ TEST(DeploymentSpecTest, DeepNestingIsRefusedNotFatal) {
 }
 
 TEST(DeploymentSpecTest, AMissingFileAndADirectoryAreNamed) {
-    const auto loading = [](const std::string& file) {
-        try {
-            DeploymentSpec::load(file);
-        } catch (const types::ConfigError& error) {
-            return texts(error).front();
-        }
-        return std::string();
-    };
-    EXPECT_EQ(loading("no/such.yml"), "no/such.yml: cannot be opened; must be a deployment file");
-    EXPECT_EQ(loading("."), ".: is a directory; must be a deployment file");
+    EXPECT_THAT(test::refused([] { DeploymentSpec::load("no/such.yml"); }),
+                ElementsAre("no/such.yml: cannot be opened; must be a deployment file"));
+    EXPECT_THAT(test::refused([] { DeploymentSpec::load("."); }),
+                ElementsAre(".: is a directory; must be a deployment file"));
 }
 
 TEST(DeploymentSpecTest, ASettingIsALayerOverTheFile) {

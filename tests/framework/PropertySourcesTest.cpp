@@ -3,6 +3,7 @@
 #include "components/framework/DeploymentSpec.hpp"
 #include "tests/framework/Tasks.hpp"
 #include "tests/support/Folder.hpp"
+#include "tests/support/Refused.hpp"
 
 namespace insonify::framework {
 namespace {
@@ -27,15 +28,12 @@ protected:
     }
     /** Every diagnostic, without the folder. */
     std::vector<std::string> diagnostics(const std::string& yaml, const std::vector<std::string>& sets = {}) {
-        std::vector<std::string> texts;
         Registry registry = test::testRegistry();
-        try {
+        std::vector<std::string> texts = test::refused([&] {
             DeploymentSpec spec = parse(yaml);
             for (const std::string& set : sets) spec.set(set);
             Deployment deployment(spec, registry);
-        } catch (const types::ConfigError& error) {
-            for (const auto& diagnostic : error.diagnostics()) texts.push_back(diagnostic.text());
-        }
+        });
         const std::string prefix = folder_.path().string() + "/";
         for (std::string& text : texts)
             if (text.starts_with(prefix)) text.erase(0, prefix.size());

@@ -1,8 +1,9 @@
-#include <gtest/gtest.h>
+#include <gmock/gmock.h>
 
 #include "components/framework/Registry.hpp"
 #include "tests/framework/Tasks.hpp"
 #include "tests/support/Ports.hpp"
+#include "tests/support/Refused.hpp"
 
 namespace insonify::framework {
 namespace {
@@ -34,15 +35,10 @@ connections: [{from: plugin.value, to: relay.in}]
 TEST(RegistryTest, ALibraryThatIsNotThereOrHasNoEntryIsNamed) {
     Registry registry;
     const std::string yaml = std::string("libraries: [nowhere.so, ") + NO_PLUGIN + "]\ntasks: {a: {type: b::C}}\n";
-    try {
-        Deployment deployment(DeploymentSpec::parse(yaml, "plugin.yml"), registry);
-        FAIL();
-    } catch (const types::ConfigError& error) {
-        ASSERT_EQ(error.diagnostics().size(), 3u);
-        EXPECT_NE(error.diagnostics()[0].text().find("nowhere.so: cannot be loaded"), std::string::npos);
-        EXPECT_NE(error.diagnostics()[1].text().find("has no function insonify_register"), std::string::npos);
-        EXPECT_NE(error.diagnostics()[2].text().find("is b::C; there are none"), std::string::npos);
-    }
+    EXPECT_THAT(test::refused([&] { Deployment(DeploymentSpec::parse(yaml, "plugin.yml"), registry); }),
+                testing::ElementsAre(testing::HasSubstr("nowhere.so: cannot be loaded"),
+                                     testing::HasSubstr("has no function insonify_register"),
+                                     testing::HasSubstr("is b::C; there are none")));
 }
 
 }  // namespace

@@ -7,16 +7,22 @@
 namespace insonify::framework {
 namespace {
 
-TEST(StreamNamesTest, APortIsCalledByTheAliasThatLeadsToItElseByItself) {
+/** A deployment of the test's tasks. */
+struct Deployed {
+    explicit Deployed(const std::string& yaml) : deployment(DeploymentSpec::parse(yaml, "a.yml"), registry) {}
+
     Registry registry = test::testRegistry();
-    const Deployment deployment(DeploymentSpec::parse("tasks:\n"
-                                                      "  s: {type: test::Source, activity: {period: 1}}\n"
-                                                      "  r: {type: test::Relay, aliases: {samples: s.value}}\n"
-                                                      "connections:\n  - {from: r.samples, to: r.in}\n",
-                                                      "a.yml"),
-                                registry);
-    const StreamName aliased = streamNameOf(*deployment.task("s")->output("value")),
-                     own = streamNameOf(*deployment.task("r")->output("out"));
+    const Deployment deployment;
+};
+
+TEST(StreamNamesTest, APortIsCalledByTheAliasThatLeadsToItElseByItself) {
+    const Deployed two(
+        "tasks:\n"
+        "  s: {type: test::Source, activity: {period: 1}}\n"
+        "  r: {type: test::Relay, aliases: {samples: s.value}}\n"
+        "connections:\n  - {from: r.samples, to: r.in}\n");
+    const StreamName aliased = streamNameOf(*two.deployment.task("s")->output("value")),
+                     own = streamNameOf(*two.deployment.task("r")->output("out"));
     EXPECT_EQ(aliased.path(), "r.samples");
     EXPECT_EQ(aliased.model, "test::Relay");
     EXPECT_EQ(own.path(), "r.out");
@@ -37,30 +43,24 @@ TEST(StreamNamesTest, APortThatStandsForAnotherIsCalledAsThatOne) {
 }
 
 TEST(StreamNamesTest, AliasesOfPropertiesAreToldWithWhereTheyLead) {
-    Registry registry = test::testRegistry();
-    const Deployment deployment(
-        DeploymentSpec::parse("tasks:\n"
-                              "  s: {type: test::Source, activity: {period: 1}}\n"
-                              "  t: {type: test::Source, activity: {period: 1},\n"
-                              "      aliases: {count: s.last, samples: s.value, water.depth: s.last}}\n",
-                              "a.yml"),
-        registry);
-    const std::vector<PropertyAlias> aliases = propertyAliases(*deployment.task("t"));
+    const Deployed two(
+        "tasks:\n"
+        "  s: {type: test::Source, activity: {period: 1}}\n"
+        "  t: {type: test::Source, activity: {period: 1},\n"
+        "      aliases: {count: s.last, samples: s.value, water.depth: s.last}}\n");
+    const std::vector<PropertyAlias> aliases = propertyAliases(*two.deployment.task("t"));
     ASSERT_EQ(aliases.size(), 1u) << "neither a port nor a field of a block";
     EXPECT_EQ(aliases[0].name.path(), "t.count");
     EXPECT_EQ(aliases[0].task + "." + aliases[0].property, "s.last");
 }
 
 TEST(UpstreamTest, AValueComesFromTheNearestTaskThatHasIt) {
-    Registry registry = test::testRegistry();
-    const Deployment deployment(
-        DeploymentSpec::parse("tasks:\n"
-                              "  s: {type: test::Source, activity: {period: 1}, properties: {last: 7}}\n"
-                              "  a: {type: test::Relay}\n  b: {type: test::Relay}\n"
-                              "connections:\n  - {from: s.value, to: a.in}\n  - {from: a.out, to: b.in}\n",
-                              "a.yml"),
-        registry);
-    const InputPortBase& port = *deployment.task("b")->input("in");
+    const Deployed chain(
+        "tasks:\n"
+        "  s: {type: test::Source, activity: {period: 1}, properties: {last: 7}}\n"
+        "  a: {type: test::Relay}\n  b: {type: test::Relay}\n"
+        "connections:\n  - {from: s.value, to: a.in}\n  - {from: a.out, to: b.in}\n");
+    const InputPortBase& port = *chain.deployment.task("b")->input("in");
     const auto last = upstreamValue(port, {"nothing", "last"});
     ASSERT_TRUE(last);
     EXPECT_EQ(std::get<int64_t>(*last), 7);

@@ -1,15 +1,7 @@
-#include "components/scene/Scene.hpp"
-#include "tests/scene/SceneFiles.hpp"
-#include "tests/support/Fuzz.hpp"
+#include "tests/fuzz/SceneDoor.hpp"
 
 namespace insonify::fuzz {
 namespace {
-
-void read(const Input& input) try {
-    scene::expectSound(*scene::loadScene(input.file()));
-} catch (const types::ConfigError& error) {
-    expectOurWords(error.what());
-}
 
 const std::vector<std::string> words = {"\"nodes\":[",
                                         "\"mesh\":0",
@@ -37,9 +29,9 @@ const std::vector<std::string> words = {"\"nodes\":[",
                                         "\"name\":\"",
                                         "true"};
 
-TEST(GltfFuzzTest, EveryTextIsASoundSceneOrAnError) { push({"gltf", "scene.gltf", words, read}); }
+TEST(GltfFuzzTest, EveryTextIsASoundSceneOrAnError) { push({"gltf", "scene.gltf", words, readScene}); }
 
-TEST(GltfFuzzTest, EveryBinaryIsASoundSceneOrAnError) { push({"glb", "scene.glb", words, read}); }
+TEST(GltfFuzzTest, EveryBinaryIsASoundSceneOrAnError) { push({"glb", "scene.glb", words, readScene}); }
 
 }  // namespace
 }  // namespace insonify::fuzz

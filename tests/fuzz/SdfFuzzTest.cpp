@@ -1,15 +1,7 @@
-#include "components/scene/Scene.hpp"
-#include "tests/scene/SceneFiles.hpp"
-#include "tests/support/Fuzz.hpp"
+#include "tests/fuzz/SceneDoor.hpp"
 
 namespace insonify::fuzz {
 namespace {
-
-void read(const Input& input) try {
-    scene::expectSound(*scene::loadScene(input.file()));
-} catch (const types::ConfigError& error) {
-    expectOurWords(error.what());
-}
 
 TEST(SdfFuzzTest, EveryWorldIsASoundSceneOrAnError) {
     push({"sdf",
@@ -40,7 +32,7 @@ TEST(SdfFuzzTest, EveryWorldIsASoundSceneOrAnError) {
            "<?xml",
            "'",
            "nan"},
-          read});
+          readScene});
 }
 
 }  // namespace

@@ -29,6 +29,26 @@ types::Pose pose() {
     return sample;
 }
 
+/** A log of one stream, of samples that were received one after the other, open for reading. */
+struct Logged {
+    template <class T>
+    Logged(const std::string& stream, std::initializer_list<T> samples) : reader(written(stream, samples)) {}
+
+    const Folder folder;
+    pocolog::Reader reader;
+
+private:
+    template <class T>
+    std::filesystem::path written(const std::string& name, std::initializer_list<T> samples) const {
+        pocolog::Writer log(folder / "x.0.log");
+        const size_t stream = log.addStream<T>(name);
+        int64_t received = 0;
+        for (const T& sample : samples) log.write(stream, {++received}, sample);
+        log.close();
+        return folder / "x.0.log";
+    }
+};
+
 std::string textOf(const std::filesystem::path& path) {
     const std::vector<char> bytes = bytesOf(path);
     return {bytes.begin(), bytes.end()};
@@ -44,13 +64,7 @@ bool numpyIsThere() { return std::system((python() + " -c 'import numpy' 2> /dev
 
 TEST(ExportTest, NumpyReadsPings) {
     if (!numpyIsThere()) GTEST_SKIP() << "python3-numpy is not installed: the npz files are not read";
-    Folder folder;
-    pocolog::Writer log(folder / "x.0.log");
-    const size_t stream = log.addStream<types::Sonar>("sonar.ping");
-    log.write(stream, {1}, ping(1'000'000, 2, 3));
-    log.write(stream, {2}, ping(1'500'000, 2, 3));
-    log.close();
-    pocolog::Reader reader(folder / "x.0.log");
+    auto [folder, reader] = Logged("sonar.ping", {ping(1'000'000, 2, 3), ping(1'500'000, 2, 3)});
     EXPECT_THAT(exportNpz(reader, "sonar.ping", folder / "x.npz"), testing::ElementsAre(folder / "x.npz"));
     EXPECT_EQ(numpySays(folder / "x.npz", "sorted(x.files)"),
               "['bearings', 'bin_duration', 'bins', 'range_m', 'speed_of_sound', 'time']\n");
@@ -95,13 +109,7 @@ types::SonarTruth truth(int64_t time) {
 }
 
 TEST(ExportTest, NumpyReadsTheTruthOfPings) {
-    Folder folder;
-    pocolog::Writer log(folder / "x.0.log");
-    const size_t stream = log.addStream<types::SonarTruth>("sonar.truth");
-    log.write(stream, {1}, truth(1'000'000));
-    log.write(stream, {2}, truth(1'500'000));
-    log.close();
-    pocolog::Reader reader(folder / "x.0.log");
+    auto [folder, reader] = Logged("sonar.truth", {truth(1'000'000), truth(1'500'000)});
     exportNpz(reader, "sonar.truth", folder / "x.npz");
     if (!numpyIsThere()) GTEST_SKIP() << "python3-numpy is not installed: the npz files are not read";
     EXPECT_EQ(numpySays(folder / "x.npz", "sorted(x.files)"),
@@ -133,13 +141,7 @@ types::SonarElements elements(int64_t time) {
 }
 
 TEST(ExportTest, SignalsOfElementsAreArraysAndLines) {
-    Folder folder;
-    pocolog::Writer log(folder / "x.0.log");
-    const size_t stream = log.addStream<types::SonarElements>("sonar.elements");
-    log.write(stream, {1}, elements(1'000'000));
-    log.write(stream, {2}, elements(1'500'000));
-    log.close();
-    pocolog::Reader reader(folder / "x.0.log");
+    auto [folder, reader] = Logged("sonar.elements", {elements(1'000'000), elements(1'500'000)});
     exportCsv(reader, "sonar.elements", folder / "x.csv");
     EXPECT_THAT(textOf(folder / "x.csv"),
                 testing::StartsWith("time,element,position,sample,in_phase,quadrature\n1.000000,0,-0.5,0,1,0\n"
@@ -175,14 +177,7 @@ TEST(ExportTest, CsvOfTruthHasALineForEachBinAndThatOfReturnsForEachBeam) {
 }
 
 TEST(ExportTest, PingsOfAnotherShapeBeginANewFile) {
-    Folder folder;
-    pocolog::Writer log(folder / "x.0.log");
-    const size_t stream = log.addStream<types::Sonar>("sonar.ping");
-    log.write(stream, {1}, ping(1, 2, 3));
-    log.write(stream, {2}, ping(2, 2, 3));
-    log.write(stream, {3}, ping(3, 4, 3));
-    log.close();
-    pocolog::Reader reader(folder / "x.0.log");
+    auto [folder, reader] = Logged("sonar.ping", {ping(1, 2, 3), ping(2, 2, 3), ping(3, 4, 3)});
     EXPECT_THAT(exportNpz(reader, "sonar.ping", folder / "x.npz"),
                 testing::ElementsAre(folder / "x.0.npz", folder / "x.1.npz"));
     if (!numpyIsThere()) GTEST_SKIP() << "python3-numpy is not installed: the npz files are not read";
@@ -191,11 +186,7 @@ TEST(ExportTest, PingsOfAnotherShapeBeginANewFile) {
 }
 
 TEST(ExportTest, CsvOfPingsHasALineForEachBin) {
-    Folder folder;
-    pocolog::Writer log(folder / "x.0.log");
-    log.write(log.addStream<types::Sonar>("sonar.ping"), {1}, ping(1'500'000, 2, 2));
-    log.close();
-    pocolog::Reader reader(folder / "x.0.log");
+    auto [folder, reader] = Logged("sonar.ping", {ping(1'500'000, 2, 2)});
     exportCsv(reader, "sonar.ping", folder / "x.csv");
     EXPECT_EQ(textOf(folder / "x.csv"),
               "time,beam,bearing,bin,value\n"
@@ -206,11 +197,7 @@ TEST(ExportTest, CsvOfPingsHasALineForEachBin) {
 }
 
 TEST(ExportTest, CsvOfPosesIsATrajectory) {
-    Folder folder;
-    pocolog::Writer log(folder / "x.0.log");
-    log.write(log.addStream<types::Pose>("vehicle.pose"), {1}, pose());
-    log.close();
-    pocolog::Reader reader(folder / "x.0.log");
+    auto [folder, reader] = Logged("vehicle.pose", {pose()});
     exportCsv(reader, "vehicle.pose", folder / "x.csv");
     EXPECT_EQ(textOf(folder / "x.csv"), "time,x,y,z,qw,qx,qy,qz\n1.500000,1,2,-3.5,0.5,0.5,-0.5,0.5\n");
 }
@@ -251,11 +238,7 @@ types::Image picture() {
 }
 
 TEST(ExportTest, ScansAreExportedAsPingsWhoseBearingsFall) {
-    Folder folder;
-    pocolog::Writer log(folder / "x.0.log");
-    log.write(log.addStream<types::SonarScan>("micron.scan"), {1}, scan());
-    log.close();
-    pocolog::Reader reader(folder / "x.0.log");
+    auto [folder, reader] = Logged("micron.scan", {scan()});
     exportCsv(reader, "micron.scan", folder / "x.csv");
     EXPECT_EQ(textOf(folder / "x.csv"), "time,beam,bearing,bin,value\n2.000000,0,0.5,0,1\n2.000000,1,0.25,0,0.2\n");
     if (!numpyIsThere()) GTEST_SKIP() << "python3-numpy is not installed: the npz files are not read";

@@ -1,12 +1,10 @@
 // Disks that are full, folders that are not there.
 #include <gmock/gmock.h>
-#include <sys/resource.h>
-
-#include <csignal>
 
 #include "components/log/pocolog/Reader.hpp"
 #include "components/logger/LogThread.hpp"
 #include "components/logger/LoggerTask.hpp"
+#include "tests/logger/LimitedDisk.hpp"
 #include "tests/support/Folder.hpp"
 #include "tests/support/Ports.hpp"
 
@@ -23,14 +21,7 @@ LoggerConfig configFor(const std::string& file) {
     return config;
 }
 
-/** Logs texts of 1000 bytes until the task fails, at most 5000 of them. */
-void logUntilFailure(LoggerTask& task, test::Writer<std::string>& source) {
-    for (int i = 0; i < 5000 && task.state() == TaskState::Running; ++i) {
-        source.port.write(std::string(1000, 'x'));
-        task.update();
-        std::this_thread::sleep_for(std::chrono::microseconds(200));
-    }
-}
+std::string thousandBytes() { return std::string(1000, 'x'); }
 
 TEST(LogFailureTest, AFolderThatCannotBeMadeRefusesConfigure) {
     Folder folder;
@@ -64,7 +55,7 @@ TEST(LogFailureTest, AFullDiskEndsInExceptionWithTheSystemsReason) {
     source.port.connectTo(*task.makeInput("in", source.port), ConnPolicy::buffer(10));
     ASSERT_TRUE(task.configure());
     ASSERT_TRUE(task.start());
-    logUntilFailure(task, source);
+    logUntilFailure(task, source, thousandBytes);
     EXPECT_EQ(task.state(), TaskState::Exception);
     EXPECT_THAT(task.lastError(), testing::HasSubstr("No space left on device"));
 }
@@ -98,28 +89,9 @@ TEST(LogFailureTest, ADiskThatIsFullOnlyAtTheEndIsToldByStop) {
     EXPECT_THAT(task.lastError(), testing::HasSubstr("No space left on device"));
 }
 
-/** Logs into a file that may not exceed 50000 bytes; exits 0 when the task ends in Exception. With a queue of one
- *  sample the file is flushed every few samples, however the threads take turns. */
-[[noreturn]] void fillLimitedDisk(const std::filesystem::path& folder) {
-    const rlimit limit{50000, 50000};
-    setrlimit(RLIMIT_FSIZE, &limit);
-    std::signal(SIGXFSZ, SIG_IGN);
-    LoggerTask task("log");
-    task.environment().output_folder = folder;
-    LoggerConfig config = configFor("x.0.log");
-    config.queue = 1;
-    task.config.set(config);
-    test::Writer<std::string> source;
-    source.port.connectTo(*task.makeInput("in", source.port), ConnPolicy::buffer(10));
-    task.configure();
-    task.start();
-    logUntilFailure(task, source);
-    std::_Exit(task.state() == TaskState::Exception ? 0 : 1);
-}
-
 TEST(LogFailureTest, WhatWasFlushedBeforeTheDiskWasFullIsKeptWhole) {
     Folder folder;
-    EXPECT_EXIT(fillLimitedDisk(folder.path()), testing::ExitedWithCode(0), "");
+    EXPECT_EXIT(fillLimitedDisk(folder / "x.0.log", thousandBytes), testing::ExitedWithCode(0), "");
     log::pocolog::Reader log(folder / "x.0.log");
     EXPECT_TRUE(log.complete()) << log.diagnostic();
     EXPECT_GT(log.samples().size(), 5u);

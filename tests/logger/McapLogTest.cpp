@@ -1,14 +1,13 @@
 // The logger with a file that ends in .mcap.
 #include <gmock/gmock.h>
-#include <sys/resource.h>
 
 #include <algorithm>
-#include <csignal>
 #include <random>
 
 #include "components/log/Check.hpp"
 #include "components/log/Reader.hpp"
 #include "components/logger/LoggerTask.hpp"
+#include "tests/logger/LimitedDisk.hpp"
 #include "tests/support/Allocations.hpp"
 #include "tests/support/Folder.hpp"
 #include "tests/support/Ports.hpp"
@@ -116,36 +115,11 @@ std::string noise(std::minstd_rand& random) {
     return text;
 }
 
-/** Logs texts into a file that may not exceed 50000 bytes; exits 0 when the task tells of samples that it has lost.
- *  With a queue of one sample the file is flushed every few samples, however the threads take turns. */
-[[noreturn]] void fillLimitedDisk(const std::filesystem::path& folder) {
-    const rlimit limit{50000, 50000};
-    setrlimit(RLIMIT_FSIZE, &limit);
-    std::signal(SIGXFSZ, SIG_IGN);
-    LoggerTask task("log");
-    task.environment().output_folder = folder;
-    LoggerConfig config;
-    config.file = "x.0.mcap";
-    config.flush_period = 0.001;
-    config.queue = 1;
-    task.config.set(config);
-    test::Writer<std::string> source;
-    source.port.connectTo(*task.makeInput("in", source.port), ConnPolicy::buffer(10));
-    task.configure();
-    task.start();
-    std::minstd_rand random(1);
-    for (int i = 0; i < 5000 && task.state() == framework::TaskState::Running; ++i) {
-        source.port.write(noise(random));
-        task.update();
-        std::this_thread::sleep_for(std::chrono::microseconds(200));
-    }
-    const bool told = task.lastError().find("did not reach it") != std::string::npos;
-    std::_Exit(task.state() == framework::TaskState::Exception && told ? 0 : 1);
-}
-
 TEST(McapLogFailureTest, WhatWasFlushedBeforeTheDiskWasFullIsKeptWhole) {
     const Folder folder;
-    EXPECT_EXIT(fillLimitedDisk(folder.path()), testing::ExitedWithCode(0), "");
+    std::minstd_rand random(1);
+    const auto text = [&] { return noise(random); };
+    EXPECT_EXIT(fillLimitedDisk(folder / "x.0.mcap", text, "did not reach it"), testing::ExitedWithCode(0), "");
     const auto log = log::openLog(folder / "x.0.mcap");
     EXPECT_FALSE(log->complete());
     EXPECT_GT(log->samples().size(), 5u);

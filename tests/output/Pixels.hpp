@@ -16,6 +16,9 @@ inline cv::Mat pixelsOf(const types::Image& picture) {
         .clone();
 }
 
+/** The green of a pixel. */
+inline int levelAt(const types::Image& picture, cv::Point at) { return pixelsOf(picture).at<cv::Vec3b>(at)[1]; }
+
 /** Centre of gravity of where two pictures differ. */
 inline cv::Point2d centreOfDifference(const cv::Mat& a, const cv::Mat& b) {
     double sum = 0;

@@ -1,8 +1,8 @@
 #include <gmock/gmock.h>
 
 #include "components/output/ScanMosaicTask.hpp"
+#include "tests/output/PictureBench.hpp"
 #include "tests/output/Room.hpp"
-#include "tests/support/Ports.hpp"
 
 namespace insonify::output {
 namespace {
@@ -12,12 +12,9 @@ using testing::HasSubstr;
 using testing::IsEmpty;
 
 /** Where the task lays an echo 10 m straight ahead. */
-class ScanMosaicTaskTest : public ::testing::Test {
+class ScanMosaicTaskTest : public test::PictureBench<ScanMosaicTask, types::Pose> {
 protected:
-    ScanMosaicTaskTest() {
-        poses_.port.connectTo(task_.pose, framework::ConnPolicy::buffer(100));
-        pings_.port.connectTo(task_.ping, framework::ConnPolicy::buffer(100));
-        task_.image.connectTo(out_.port, framework::ConnPolicy::buffer(100));
+    ScanMosaicTaskTest() : PictureBench(&ScanMosaicTask::pose) {
         MosaicConfig config;
         config.width = 1200;
         config.reference_db = 0;
@@ -26,35 +23,18 @@ protected:
         config.mount.position = {1, 0, 0};
         task_.config.set(config);
     }
-    void start() {
-        ASSERT_TRUE(task_.configure());
-        ASSERT_TRUE(task_.start());
-    }
     void givePose(double seconds, double north, double yaw_deg = 0) {
         types::Pose pose;
         pose.time = types::Time::fromSeconds(seconds);
         pose.position.x = north;
         pose.orientation = glm::angleAxis(types::radians(yaw_deg), glm::dvec3(0, 0, 1));
-        poses_.port.write(pose);
-        task_.update();
+        giveBeside(pose);
     }
     void givePing(double seconds) {
         types::Sonar ping = test::withEcho(test::emptyPing(4, 1), 0, 20);
         ping.time = types::Time::fromSeconds(seconds);
-        pings_.port.write(std::make_shared<const types::Sonar>(ping));
-        task_.update();
+        give(ping);
     }
-    size_t pictures() {
-        size_t count = 0;
-        for (types::ImagePtr picture; out_.port.readNew(picture); ++count) last_ = picture;
-        return count;
-    }
-
-    ScanMosaicTask task_{"mosaic"};
-    test::Writer<types::Pose> poses_;
-    test::Writer<types::SonarPtr> pings_;
-    test::Reader<types::ImagePtr> out_;
-    types::ImagePtr last_;
 };
 
 TEST_F(ScanMosaicTaskTest, APingWaitsForThePoseAfterItAndIsLaidBetweenTheTwo) {

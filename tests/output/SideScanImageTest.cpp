@@ -9,6 +9,8 @@
 namespace insonify::output {
 namespace {
 
+using test::levelAt;
+
 /** A line of 50 m with single echoes to starboard and to port, in bins of half a metre. */
 types::Sonar lineWith(uint32_t starboard, uint32_t port) {
     types::Sonar ping = test::withEcho(test::withEcho(test::emptyPing(3, 2), 0, starboard), 1, port);
@@ -23,8 +25,6 @@ SideScanPictureConfig display() {
     config.colour_map = ColourMap::Gray;
     return config;
 }
-
-int levelAt(const types::Image& picture, cv::Point at) { return test::pixelsOf(picture).at<cv::Vec3b>(at)[1]; }
 
 /** Of the newest row, where range lies; positive to starboard [m]. */
 cv::Point at(const SideScanImage& image, double range) {

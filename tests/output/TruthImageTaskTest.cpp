@@ -1,9 +1,9 @@
 #include <gmock/gmock.h>
 
 #include "components/output/TruthImageTask.hpp"
+#include "tests/output/PictureBench.hpp"
 #include "tests/output/Pixels.hpp"
 #include "tests/support/Allocations.hpp"
-#include "tests/support/Ports.hpp"
 
 namespace insonify::output {
 namespace {
@@ -32,38 +32,17 @@ types::SonarTruth truthOf(const types::Sonar& ping) {
     return truth;
 }
 
-class TruthImageTaskTest : public ::testing::Test {
+class TruthImageTaskTest : public test::PictureBench<TruthImageTask, types::SonarTruthPtr> {
 protected:
-    TruthImageTaskTest() {
-        pings_.port.connectTo(task_.ping, framework::ConnPolicy::buffer(100));
-        truths_.port.connectTo(task_.truth, framework::ConnPolicy::buffer(100));
-        task_.image.connectTo(out_.port, framework::ConnPolicy::buffer(100));
+    TruthImageTaskTest() : PictureBench(&TruthImageTask::truth) {
         TruthImageConfig config;
         config.width = 1200;
         config.reference_db = 0;
         config.timeout = 0.5;
         task_.config.set(config);
     }
-    void start() { ASSERT_TRUE(task_.configure() && task_.start()) << task_.lastError(); }
-    void givePing(double seconds) {
-        pings_.port.write(std::make_shared<const types::Sonar>(pingAt(seconds)));
-        task_.update();
-    }
-    void giveTruth(double seconds) {
-        truths_.port.write(std::make_shared<const types::SonarTruth>(truthOf(pingAt(seconds))));
-        task_.update();
-    }
-    size_t pictures() {
-        size_t count = 0;
-        for (types::ImagePtr picture; out_.port.readNew(picture); ++count) last_ = picture;
-        return count;
-    }
-
-    TruthImageTask task_{"truth"};
-    test::Writer<types::SonarPtr> pings_;
-    test::Writer<types::SonarTruthPtr> truths_;
-    test::Reader<types::ImagePtr> out_;
-    types::ImagePtr last_;
+    void givePing(double seconds) { give(pingAt(seconds)); }
+    void giveTruth(double seconds) { giveBeside(std::make_shared<const types::SonarTruth>(truthOf(pingAt(seconds)))); }
 };
 
 TEST_F(TruthImageTaskTest, ObjectsHaveTheirColoursBesideTheFan) {
@@ -126,7 +105,7 @@ TEST_F(TruthImageTaskTest, ATruthOfAnotherSonarIsRefused) {
     start();
     types::Sonar other = pingAt(1);
     other.resize(50, 60);
-    truths_.port.write(std::make_shared<const types::SonarTruth>(truthOf(other)));
+    beside_.port.write(std::make_shared<const types::SonarTruth>(truthOf(other)));
     givePing(1);
     EXPECT_EQ(task_.state(), framework::TaskState::Exception);
     EXPECT_THAT(task_.lastError(), HasSubstr("a ping of 60 x 100 bins does not fit a truth of 60 x 50"));
@@ -144,7 +123,7 @@ TEST_F(TruthImageTaskTest, TwoPicturesTake512Pixels) {
 TEST_F(TruthImageTaskTest, ASteadyStreamAllocatesNothingOfOurs) {
     start();
     const auto cycle = [&](const types::SonarPtr& ping, const types::SonarTruthPtr& truth) {
-        truths_.port.write(truth);
+        beside_.port.write(truth);
         pings_.port.write(ping);
         task_.update();
         pictures();

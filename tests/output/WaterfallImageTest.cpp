@@ -6,6 +6,8 @@
 namespace insonify::output {
 namespace {
 
+using test::levelAt;
+
 DisplayConfig display() {
     DisplayConfig config;
     config.width = 600;
@@ -13,8 +15,6 @@ DisplayConfig display() {
     config.colour_map = ColourMap::Gray;
     return config;
 }
-
-int levelAt(const types::Image& picture, cv::Point at) { return test::pixelsOf(picture).at<cv::Vec3b>(at)[1]; }
 
 TEST(WaterfallImageTest, TheNewestPingIsOnTopAndRangeGrowsToTheRight) {
     WaterfallImage waterfall(display());

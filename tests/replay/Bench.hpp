@@ -55,6 +55,13 @@ struct Bench {
     void connect(const std::string& stream, test::Reader<T>& reader) {
         ASSERT_TRUE(task.makeOutput(stream)->connectTo(reader.port, framework::ConnPolicy::buffer(100)));
     }
+    /** Starts the task with a reader of one of its streams. */
+    template <class T>
+    void start(const std::string& stream, test::Reader<T>& reader) {
+        connect(stream, reader);
+        ASSERT_TRUE(task.configure());
+        ASSERT_TRUE(task.start());
+    }
     void updateAt(int64_t time) {
         clock = {time};
         task.update();

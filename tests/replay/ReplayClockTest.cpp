@@ -10,10 +10,8 @@ using testing::ElementsAre;
 TEST(ReplayClockTest, PaceScalesTheWallClock) {
     Bench bench(false, {.file = {}, .pace = 2});
     test::Reader<types::Pose> poses;
-    bench.connect("vehicle.pose", poses);
     bench.clock = {1'000'000};
-    ASSERT_TRUE(bench.task.configure());
-    ASSERT_TRUE(bench.task.start());
+    bench.start("vehicle.pose", poses);
     EXPECT_TRUE(bench.task.activity().settings().periodic()) << "nothing else would run it";
     bench.updateAt(1'000'004);
     EXPECT_THAT(stampsIn(poses), ElementsAre(10)) << "8 us of the log have gone by";
@@ -28,9 +26,7 @@ TEST(ReplayClockTest, WithoutPaceEachCyclePlaysOneInstant) {
     test::Reader<types::Pose> poses;
     test::Reader<types::SonarPtr> pings;
     bench.connect("vehicle.pose", poses);
-    bench.connect("sonar.ping", pings);
-    bench.task.configure();
-    bench.task.start();
+    bench.start("sonar.ping", pings);
     bench.task.update();
     EXPECT_THAT(stampsIn(poses), ElementsAre(10));
     bench.task.update();
@@ -54,9 +50,7 @@ TEST(ReplayClockTest, InRealtimeAllTasksReadTheLogsTime) {
 TEST(ReplayClockTest, WithoutPaceTheLogsTimeIsThatOfTheInstantThatIsPlayed) {
     Bench bench(false, {.file = {}, .pace = 0});
     test::Reader<types::Pose> poses;
-    bench.connect("vehicle.pose", poses);
-    bench.task.configure();
-    bench.task.start();
+    bench.start("vehicle.pose", poses);
     for (const int64_t time : {10, 20, 30}) {
         bench.task.update();
         EXPECT_EQ(bench.task.environment().now(), types::Time{time});
@@ -68,9 +62,7 @@ TEST(ReplayClockTest, ItStartsWhereItIsToldTo) {
     test::Reader<types::Pose> poses;
     test::Reader<types::SonarPtr> pings;
     bench.connect("vehicle.pose", poses);
-    bench.connect("sonar.ping", pings);
-    bench.task.configure();
-    bench.task.start();
+    bench.start("sonar.ping", pings);
     EXPECT_EQ(bench.task.nextTime(), types::Time{20});
     bench.updateAt(100);
     EXPECT_THAT(stampsIn(poses), ElementsAre(20, 30));
@@ -88,9 +80,7 @@ TEST(ReplayClockTest, AStartBeyondTheEndIsSeenBeforeAnythingStarts) {
 TEST(ReplayClockTest, InALoopStampsGoOnAndTimeNeverGoesBack) {
     Bench bench(true, {.file = {}, .loop = true});
     test::Reader<types::Pose> poses;
-    bench.connect("vehicle.pose", poses);
-    bench.task.configure();
-    bench.task.start();
+    bench.start("vehicle.pose", poses);
     std::vector<int64_t> instants;
     for (int i = 0; i < 7; ++i) {
         instants.push_back(bench.task.nextTime()->microseconds);
@@ -111,9 +101,7 @@ TEST(ReplayClockTest, InALoopStampsGoOnAndTimeNeverGoesBack) {
 TEST(ReplayClockTest, SeekGoesOnElsewhereInTheLogWhileTimeGoesOn) {
     Bench bench;
     test::Reader<types::Pose> poses;
-    bench.connect("vehicle.pose", poses);
-    bench.task.configure();
-    bench.task.start();
+    bench.start("vehicle.pose", poses);
     bench.updateAt(10);
     bench.updateAt(20);
     bench.task.seek(0);
@@ -130,9 +118,7 @@ TEST(ReplayClockTest, SeekGoesOnElsewhereInTheLogWhileTimeGoesOn) {
 TEST(ReplayClockTest, ASeekOutsideOfTheLogIsRefused) {
     Bench bench;
     test::Reader<types::Pose> poses;
-    bench.connect("vehicle.pose", poses);
-    bench.task.configure();
-    bench.task.start();
+    bench.start("vehicle.pose", poses);
     bench.updateAt(10);
     for (const double place : {-1.0, 22e-6, 1e300, std::numeric_limits<double>::quiet_NaN()})
         EXPECT_THROW(bench.task.seek(place), std::runtime_error) << place;
@@ -142,10 +128,8 @@ TEST(ReplayClockTest, ASeekOutsideOfTheLogIsRefused) {
 TEST(ReplayClockTest, AfterAPauseASeekInRealtimeGoesOnFromNowWithoutABurst) {
     Bench bench(false, {.file = {}, .pace = 2});
     test::Reader<types::Pose> poses;
-    bench.connect("vehicle.pose", poses);
     bench.clock = {1'000'000};
-    bench.task.configure();
-    bench.task.start();
+    bench.start("vehicle.pose", poses);
     bench.updateAt(1'000'010);
     EXPECT_THAT(stampsIn(poses), ElementsAre(10, 20, 30));
     bench.clock = {1'001'000};

@@ -15,9 +15,7 @@ TEST(ReplayTaskTest, WhatWasLoggedComesOutInTheOrderOfTheFileWhenItsTimeHasCome)
     test::Reader<types::Pose> poses;
     test::Reader<types::SonarPtr> pings;
     bench.connect("vehicle.pose", poses);
-    bench.connect("sonar.ping", pings);
-    ASSERT_TRUE(bench.task.configure());
-    ASSERT_TRUE(bench.task.start());
+    bench.start("sonar.ping", pings);
     EXPECT_EQ(bench.task.nextTime(), types::Time{10});
     bench.updateAt(9);
     EXPECT_THAT(stampsIn(poses), ElementsAre());
@@ -39,9 +37,7 @@ TEST(ReplayTaskTest, WhatWasLoggedComesOutInTheOrderOfTheFileWhenItsTimeHasCome)
 TEST(ReplayTaskTest, SamplesAreTheRecordedOnes) {
     Bench bench;
     test::Reader<types::SonarPtr> pings;
-    bench.connect("sonar.ping", pings);
-    bench.task.configure();
-    bench.task.start();
+    bench.start("sonar.ping", pings);
     bench.updateAt(30);
     types::SonarPtr first, second;
     ASSERT_TRUE(pings.port.readNew(first));
@@ -54,9 +50,7 @@ TEST(ReplayTaskTest, ItTellsWhereItIsInTheLog) {
     Bench bench;
     EXPECT_FALSE(bench.task.playback()) << "nothing is open";
     test::Reader<types::Pose> poses;
-    bench.connect("vehicle.pose", poses);
-    ASSERT_TRUE(bench.task.configure());
-    ASSERT_TRUE(bench.task.start());
+    bench.start("vehicle.pose", poses);
     const auto at = [&] { return std::lround(bench.task.playback()->at_s * 1e6); };
     EXPECT_NEAR(bench.task.playback()->length_s, 20e-6, 1e-12);
     EXPECT_EQ(at(), 0);
@@ -134,9 +128,7 @@ TEST(ReplayTaskTest, ASampleThatCannotBeDecodedEndsInException) {
     bytes[position + 15] = '\x7f';  // top byte of the length of a name
     writeBytes(bench.folder / "x.0.log", bytes);
     test::Reader<types::Pose> poses;
-    bench.connect("vehicle.pose", poses);
-    bench.task.configure();
-    bench.task.start();
+    bench.start("vehicle.pose", poses);
     bench.updateAt(10);
     EXPECT_EQ(bench.task.state(), TaskState::Exception);
     EXPECT_THAT(bench.task.lastError(), HasSubstr("vehicle.pose: the sample at byte"));

@@ -43,6 +43,13 @@ inline std::string buffers(const std::string& bytes) {
            R"(,"uri":"data:application/octet-stream;base64,)" + base64(bytes) + R"("}])";
 }
 
+/** `"accessors":[...],"bufferViews":[...],"buffers":[...]`: accessor 0 is the corners of a triangle. */
+inline std::string triangle(const std::string& corners = bytesOf<float>({0, 0, 0, 1, 0, 0, 0, 1, 0})) {
+    return R"("accessors":[{"bufferView":0,"componentType":5126,"type":"VEC3","count":3}],
+        "bufferViews":[{"buffer":0,"byteLength":36}],)" +
+           buffers(corners);
+}
+
 /** A folder of its own for each test. */
 class SceneFiles : public ::testing::Test {
 protected:

@@ -13,10 +13,8 @@ protected:
         config_.file = write("harbour.gltf", gltf(R"("scenes":[{"nodes":[0,2]}],
             "nodes":[{"mesh":0,"name":"boat","translation":[1,2,3],"scale":[2,2,2],"children":[1]},
                      {"mesh":0,"name":"mast","translation":[0,5,0]},{"mesh":0,"name":"quay"}],
-            "materials":[{"name":"wood"}],"meshes":[{"primitives":[{"attributes":{"POSITION":0},"material":0}]}],
-            "accessors":[{"bufferView":0,"componentType":5126,"type":"VEC3","count":3}],
-            "bufferViews":[{"buffer":0,"byteLength":36}],)" +
-                                                  buffers(bytesOf<float>({0, 0, 0, 1, 0, 0, 0, 1, 0}))))
+            "materials":[{"name":"wood"}],"meshes":[{"primitives":[{"attributes":{"POSITION":0},"material":0}]}],)" +
+                                                  triangle()))
                            .string();
         vehicle_.port.connectTo(task_.pose, framework::ConnPolicy::buffer(8));
         task_.snapshot.connectTo(out_.port, framework::ConnPolicy::buffer(8));

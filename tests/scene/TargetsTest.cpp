@@ -21,10 +21,8 @@ protected:
                       "scale":[2,2,2],"children":[1]},
                      {"name":"mast","translation":[0,5,0]},{"name":"quay","translation":[10,0,0]},
                      {"name":"dot","scale":[0,0,0]}],
-            "meshes":[{"primitives":[{"attributes":{"POSITION":0}}]}],
-            "accessors":[{"bufferView":0,"componentType":5126,"type":"VEC3","count":3}],
-            "bufferViews":[{"buffer":0,"byteLength":36}],)" +
-                                                  buffers(bytesOf<float>({0, 0, 0, 1, 0, 0, 0, 1, 0}))))
+            "meshes":[{"primitives":[{"attributes":{"POSITION":0}}]}],)" +
+                                                  triangle()))
                            .string();
         vehicle_.port.connectTo(task_.pose, framework::ConnPolicy::buffer(8));
         task_.snapshot.connectTo(out_.port, framework::ConnPolicy::buffer(8));

@@ -3,38 +3,31 @@
 #include "components/sonar/SonarRenderer.hpp"
 #include "tests/support/ClosedForms.hpp"
 #include "tests/support/Scenes.hpp"
+#include "tests/support/Sonars.hpp"
 #include "types/Angle.hpp"
 
 namespace insonify::sonar {
 namespace {
 
 using test::expectForm;
+using test::pingOf;
 using types::radians;
 
 /** Bins of whole microseconds at 1000 m/s: 0.1 m is 100 us. */
 SonarConfig sonarOf(double fov_deg, double height_deg, int beams, double bin, int bins) {
-    SonarConfig config;
-    config.speed_of_sound = 1000;
-    config.range = bin * bins;
-    config.bin_count = bins;
-    config.beam_count = beams;
-    config.field_of_view_deg = fov_deg;
-    config.beam_height_deg = height_deg;
-    config.quality.rows = 512;
-    config.quality.columns_per_beam = std::max(2, 512 / beams);
-    return config;
+    const int columns = std::max(2, 512 / beams);
+    return test::sonarOf({.beams = beams,
+                          .width_deg = fov_deg,
+                          .height_deg = height_deg,
+                          .bins = bins,
+                          .bin = bin,
+                          .rows = 512,
+                          .columns = columns});
 }
 
 SonarConfig published(SonarConfig config) {
     config.model = Model::Cerqueira2017;
     return config;
-}
-
-types::Sonar pingOf(const SonarConfig& config, const types::Snapshot& snapshot) {
-    SonarRenderer renderer(config, snapshot.geometry);
-    types::Sonar ping;
-    renderer.render(snapshot, ping);
-    return ping;
 }
 
 }  // namespace

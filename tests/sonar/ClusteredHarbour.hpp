@@ -8,6 +8,7 @@
 #include "components/scene/Clusters.hpp"
 #include "components/sonar/SonarRenderer.hpp"
 #include "tests/support/Scenes.hpp"
+#include "tests/support/Sonars.hpp"
 
 namespace insonify::sonar {
 
@@ -38,14 +39,8 @@ inline types::Mesh clusteredSheet(Random& random, int n) {
 }
 
 inline SonarConfig fan(double field_of_view_deg) {
-    SonarConfig config;
-    config.speed_of_sound = 1000;
-    config.range = 30;
-    config.bin_count = 300;
-    config.beam_count = 32;
-    config.field_of_view_deg = field_of_view_deg;
-    config.beam_height_deg = 50;
-    config.quality.rows = 96;
+    SonarConfig config =
+        test::sonarOf({.beams = 32, .width_deg = field_of_view_deg, .height_deg = 50, .bins = 300, .rows = 96});
     config.device = "software";
     return config;
 }

@@ -6,35 +6,25 @@
 #include <numeric>
 
 #include "components/sonar/SonarRenderer.hpp"
+#include "tests/support/Sonars.hpp"
 #include "tests/support/Surfaces.hpp"
 
 namespace insonify::sonar {
 namespace {
 
+using test::pingOf;
+
 SonarConfig fan(Model model, BeamGeometry beams, Deposit deposit, double field_of_view_deg = 130) {
-    SonarConfig config;
+    SonarConfig config =
+        test::sonarOf({.beams = 64, .width_deg = field_of_view_deg, .height_deg = 50, .bins = 400, .rows = 128});
     config.model = model;
     config.beam_geometry = beams;
     config.deposit = deposit;
     config.device = "software";
-    config.speed_of_sound = 1000;
-    config.range = 40;
-    config.bin_count = 400;
-    config.beam_count = 64;
-    config.field_of_view_deg = field_of_view_deg;
-    config.beam_height_deg = 50;
-    config.quality.rows = 128;
     return config;
 }
 
 types::Snapshot hardScene() { return test::snapshotOf(test::surfaces(), {0, 0, 0}, 0.1, 0.15, 0.05); }
-
-types::Sonar pingOf(const SonarConfig& config, const types::Snapshot& snapshot) {
-    SonarRenderer renderer(config, snapshot.geometry);
-    types::Sonar ping;
-    renderer.render(snapshot, ping);
-    return ping;
-}
 
 struct Kind {
     Model model;

@@ -13,10 +13,7 @@
 namespace insonify::sonar {
 namespace {
 
-using std::abs, std::exp, std::sqrt;
-inline double min(double a, double b) { return a < b ? a : b; }
-inline double max(double a, double b) { return a > b ? a : b; }
-inline uint min(uint a, uint b) { return a < b ? a : b; }
+using std::abs, std::exp, std::max, std::min, std::sqrt;
 #include "shaders/footprint.glsl"
 using real = double;
 #include "shaders/surface.glsl"

@@ -10,12 +10,14 @@
 #include "components/sonar/ScanningSonarTask.hpp"
 #include "components/sonar/SonarRenderer.hpp"
 #include "tests/support/Scenes.hpp"
+#include "tests/support/Sonars.hpp"
 #include "tests/support/TaskBench.hpp"
 #include "types/Angle.hpp"
 
 namespace insonify::sonar {
 namespace {
 
+using test::pingOf;
 using ::testing::HasSubstr;
 using types::radians;
 
@@ -58,13 +60,6 @@ types::Snapshot movingSonar(const types::GeometryPtr& geometry, glm::dvec3 veloc
     snapshot.sonar.velocity = velocity;
     snapshot.sonar.angular_velocity = turn;
     return snapshot;
-}
-
-types::Sonar pingOf(const SonarConfig& config, const types::Snapshot& snapshot) {
-    SonarRenderer renderer(config, snapshot.geometry);
-    types::Sonar ping;
-    renderer.render(snapshot, ping);
-    return ping;
 }
 
 /** The second ping of an object that has moved for 0.5 s, by its velocity, to where it is. */
@@ -167,7 +162,7 @@ TEST(MotionTest, AFloorUnderAMovingSonarHasTheEnergyOfOneUnderASonarAtRest) {
 }
 
 TEST(MotionTest, APointTargetIsHeardAtTheRangeOfSoundsExactWay) {
-    const auto nothing = test::sceneOf({test::disc(1, 0.1f)}, 0, {{-500, 0, 0}});
+    const auto nothing = test::openWater();
     SonarRenderer renderer(fan(), nothing);
     types::Sonar ping;
     const glm::dvec3 place(240, 30, 2), velocity(-15, 4, 0), sonar(20, 1, 0);

@@ -10,27 +10,21 @@
 #include "components/sonar/SonarRenderer.hpp"
 #include "tests/support/EveryWay.hpp"
 #include "tests/support/Scenes.hpp"
+#include "tests/support/Sonars.hpp"
 #include "types/Angle.hpp"
 
 namespace insonify::sonar {
 namespace {
 
 using std::numbers::pi;
+using test::openWater;
 using test::pingOf;
 using types::radians;
 
 /** Bins of 0.1 m to 30 m, rays that look 60 deg up and down. */
 SonarConfig sonarOf(double fov_deg, int beams) {
-    SonarConfig config;
-    config.speed_of_sound = 1000;  // bins of whole microseconds
-    config.range = 30;
-    config.bin_count = 300;
-    config.beam_count = beams;
-    config.field_of_view_deg = fov_deg;
-    config.beam_height_deg = 120;
-    config.quality.rows = 512;
-    config.quality.columns_per_beam = 2;
-    return config;
+    return test::sonarOf(
+        {.beams = beams, .width_deg = fov_deg, .height_deg = 120, .bins = 300, .rows = 512, .columns = 2});
 }
 
 SonarConfig mirrored(SonarConfig config, double wind = 0, int bounces = 1) {
@@ -39,9 +33,6 @@ SonarConfig mirrored(SonarConfig config, double wind = 0, int bounces = 1) {
     config.multipath->bounces = bounces;
     return config;
 }
-
-/** Nothing that any sonar here hears. */
-types::GeometryPtr openWater() { return test::sceneOf({test::disc(1, 0.1f)}, 0, {{-500, 0, 0}}); }
 
 types::Snapshot under(double surface, types::GeometryPtr geometry) {
     types::Snapshot snapshot = test::snapshotOf(std::move(geometry));

@@ -58,21 +58,11 @@ types::Snapshot ballAcrossItsBox() {
 
 /** Range at which the first bin with any echo ends [m]. */
 double firstEcho(Visibility visibility) {
-    SonarConfig config;
+    SonarConfig config = test::sonarOf(
+        {.beams = 32, .width_deg = 60, .height_deg = 60, .bins = 500, .bin = 0.02, .rows = 32, .columns = 1});
     config.visibility = visibility;
     config.device = "software";
-    config.speed_of_sound = 1000;
-    config.range = 10;
-    config.bin_count = 500;
-    config.beam_count = 32;
-    config.field_of_view_deg = 60;
-    config.beam_height_deg = 60;
-    config.quality.rows = 32;
-    config.quality.columns_per_beam = 1;
-    const types::Snapshot snapshot = ballAcrossItsBox();
-    SonarRenderer renderer(config, snapshot.geometry);
-    types::Sonar ping;
-    renderer.render(snapshot, ping);
+    const types::Sonar ping = test::pingOf(config, ballAcrossItsBox());
     size_t first = ping.bin_count;
     for (size_t i = 0; i < ping.bins.size(); ++i)
         if (ping.bins[i] > 0) first = std::min(first, i % ping.bin_count);

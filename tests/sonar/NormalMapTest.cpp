@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "components/sonar/SonarRenderer.hpp"
+#include "tests/support/Sonars.hpp"
 #include "tests/support/Surfaces.hpp"
 #include "types/Angle.hpp"
 
@@ -22,18 +23,9 @@ types::GeometryPtr wallWithNormalsAt(double lean) {
 }
 
 std::vector<float> echoOf(const types::GeometryPtr& geometry) {
-    SonarConfig config;
-    config.speed_of_sound = 1000;
-    config.range = 25;
-    config.bin_count = 250;
-    config.beam_count = 1;
-    config.field_of_view_deg = 2;
-    config.beam_height_deg = 2;
+    SonarConfig config = test::sonarOf({.width_deg = 2, .height_deg = 2, .bins = 250});
     config.device = "software";
-    SonarRenderer renderer(config, geometry);
-    types::Sonar ping;
-    renderer.render(test::snapshotOf(geometry), ping);
-    return ping.bins;
+    return test::pingOf(config, test::snapshotOf(geometry)).bins;
 }
 
 }  // namespace

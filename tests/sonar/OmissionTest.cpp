@@ -13,6 +13,7 @@
 #include "components/sonar/RenderPlan.hpp"
 #include "components/sonar/SonarRenderer.hpp"
 #include "tests/support/Folder.hpp"
+#include "tests/support/Sonars.hpp"
 #include "tests/support/Surfaces.hpp"
 #include "types/Angle.hpp"
 
@@ -23,15 +24,8 @@ using ::testing::HasSubstr;
 using Bins = std::vector<float>;
 
 SonarConfig plainSonar(Model model = Model::Physical) {
-    SonarConfig config;
+    SonarConfig config = test::sonarOf({.beams = 52, .width_deg = 130, .height_deg = 40, .bins = 400, .rows = 96});
     config.model = model;
-    config.speed_of_sound = 1000;
-    config.range = 40;
-    config.bin_count = 400;
-    config.beam_count = 52;
-    config.field_of_view_deg = 130;
-    config.beam_height_deg = 40;
-    config.quality.rows = 96;
     config.device = "software";
     return config;
 }

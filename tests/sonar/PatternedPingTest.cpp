@@ -6,10 +6,12 @@
 #include <numeric>
 
 #include "components/sonar/SonarRenderer.hpp"
+#include "tests/sonar/BeamCut.hpp"
 #include "tests/support/ClosedForms.hpp"
 #include "tests/support/EveryWay.hpp"
 #include "tests/support/Folder.hpp"
 #include "tests/support/Scenes.hpp"
+#include "tests/support/Sonars.hpp"
 #include "types/Angle.hpp"
 
 namespace insonify::sonar {
@@ -18,26 +20,12 @@ namespace {
 using acoustics::Weighting;
 using test::everyWay;
 using test::expectForm;
+using test::lawOf;
 using test::pingOf;
 using types::radians;
 
-acoustics::BeamLaw lawOf(Weighting weighting, double width_deg) {
-    acoustics::BeamLaw law;
-    law.weighting = weighting;
-    law.width_deg = width_deg;
-    return law;
-}
-
 SonarConfig sonarOf(double fov_deg, int beams, double bin, int bins) {
-    SonarConfig config;
-    config.speed_of_sound = 1000;  // bins of whole microseconds
-    config.range = bin * bins;
-    config.bin_count = bins;
-    config.beam_count = beams;
-    config.field_of_view_deg = fov_deg;
-    config.quality.rows = 512;
-    config.quality.columns_per_beam = 2;
-    return config;
+    return test::sonarOf({.beams = beams, .width_deg = fov_deg, .bins = bins, .bin = bin, .rows = 512, .columns = 2});
 }
 
 /** A flat bottom under a level fan: of what comes from an elevation, a share. */
@@ -162,11 +150,7 @@ TEST(PatternedPingTest, ThePlanTellsWhatIsFormedAndSpreadAndWhatIsNot) {
 }
 
 /** What a fan of close beams hears of a small disc straight ahead. */
-struct Cut {
-    double width_deg, first_null_deg, sidelobe_db;
-};
-
-Cut cutOf(const acoustics::BeamLaw& law) {
+BeamCut cutOf(const acoustics::BeamLaw& law) {
     SonarConfig config = sonarOf(24, 601, 0.5, 24);
     config.beam_height_deg = 2;
     config.quality.rows = 64;
@@ -177,36 +161,15 @@ Cut cutOf(const acoustics::BeamLaw& law) {
         const auto first = ping.bins.begin() + static_cast<long>(beam * ping.bin_count);
         level.push_back(std::accumulate(first, first + ping.bin_count, 0.0));
     }
-    const double step = 24.0 / 601, top = level[300];
-    size_t k = 300;
-    while (level[k] > 0.5 * top) ++k;
-    Cut cut{};
-    cut.width_deg = 2 * step * (static_cast<double>(k - 300) - (0.5 * top - level[k]) / (level[k - 1] - level[k]));
-    while (level[k + 1] < level[k]) ++k;
-    cut.first_null_deg = step * static_cast<double>(k - 300);
-    cut.sidelobe_db = 10 * std::log10(*std::max_element(level.begin() + static_cast<long>(k), level.end()) / top);
-    return cut;
+    return BeamCut(level, 300, 24.0 / 601);
 }
 
 TEST(PatternedPingTest, ATargetSweptAcrossABeamShowsTheTableOfWeightings) {
-    struct Row {
-        Weighting weighting;
-        double sidelobe_db;
-        int nbar;
-        double width, first_null, peak_db;  // in wavelengths per aperture, and below the axis
-    };
-    for (const Row& row :
-         {Row{Weighting::Uniform, 0, 0, 0.8859, 1.00, -13.26}, Row{Weighting::Cosine, 0, 0, 1.189, 1.50, -23.0},
-          Row{Weighting::Hann, 0, 0, 1.4406, 2.00, -31.5}, Row{Weighting::Hamming, 0, 0, 1.303, 2.00, -42.7},
-          Row{Weighting::Taylor, -25, 4, 1.057, 1.35, -25.4}, Row{Weighting::Taylor, -30, 4, 1.125, 1.51, -30.3},
-          Row{Weighting::Taylor, -35, 5, 1.188, 1.67, -35.2}}) {
-        acoustics::BeamLaw law = lawOf(row.weighting, 3);
-        if (row.nbar > 0) law.sidelobe_db = row.sidelobe_db, law.nbar = row.nbar;
-        const Cut cut = cutOf(law);
-        EXPECT_NEAR(cut.width_deg, 3, 0.03) << row.peak_db;
-        EXPECT_NEAR(cut.first_null_deg, 3 * row.first_null / row.width, 0.02 * 3 * row.first_null / row.width)
-            << row.peak_db;
-        EXPECT_NEAR(cut.sidelobe_db, row.peak_db, 0.3);
+    for (const test::WeightingRow& row : test::weightings) {
+        if (row.weighting == Weighting::Piston) continue;
+        acoustics::BeamLaw law = row.law();
+        law.width_deg = 3;
+        cutOf(law).expect(row);
     }
 }
 

@@ -10,8 +10,10 @@
 #include "components/acoustics/Pulse.hpp"
 #include "components/sonar/BinGrid.hpp"
 #include "components/sonar/SonarRenderer.hpp"
+#include "tests/sonar/BeamCut.hpp"
 #include "tests/support/EveryWay.hpp"
 #include "tests/support/Scenes.hpp"
+#include "tests/support/Sonars.hpp"
 #include "types/Angle.hpp"
 
 namespace insonify::sonar {
@@ -20,32 +22,17 @@ namespace {
 using acoustics::Weighting;
 using std::numbers::pi;
 using test::everyWay;
+using test::lawOf;
+using test::openWater;
 using test::pingOf;
 using types::radians;
 
-acoustics::BeamLaw lawOf(Weighting weighting, double width_deg) {
-    acoustics::BeamLaw law;
-    law.weighting = weighting;
-    law.width_deg = width_deg;
-    return law;
-}
-
 /** Bins of 0.1 m to 20 m, rays. */
 SonarConfig sonarOf(double fov_deg, int beams) {
-    SonarConfig config;
-    config.speed_of_sound = 1000;  // bins of whole microseconds
-    config.range = 20;
-    config.bin_count = 200;
-    config.beam_count = beams;
-    config.field_of_view_deg = fov_deg;
-    config.quality.rows = 16;
-    config.quality.columns_per_beam = 2;
+    SonarConfig config = test::sonarOf({.beams = beams, .width_deg = fov_deg, .bins = 200, .rows = 16, .columns = 2});
     config.visibility = Visibility::Cpu;
     return config;
 }
-
-/** Nothing that any sonar here hears. */
-types::GeometryPtr openWater() { return test::sceneOf({test::disc(1, 0.1f)}, 0, {{-500, 0, 0}}); }
 
 /** A level sonar at the origin with one target of 0 dB. */
 types::Snapshot withTarget(types::GeometryPtr geometry, glm::dvec3 position, double strength_db = 0) {
@@ -218,12 +205,8 @@ TEST(PointTargetTest, AllRoundItIsInOneBeamAlone) {
     }
 }
 
-/** What one beam hears of a target that is swept about it: level over an angle. */
-struct Cut {
-    double width_deg, first_null_deg, sidelobe_db;
-};
-
-Cut sweep(const SonarConfig& config, bool in_azimuth) {
+/** What one beam hears of a target that is swept about it. */
+BeamCut sweep(const SonarConfig& config, bool in_azimuth) {
     const auto geometry = openWater();
     SonarRenderer renderer(config, geometry);
     types::Sonar ping;
@@ -234,39 +217,18 @@ Cut sweep(const SonarConfig& config, bool in_azimuth) {
         renderer.render(withTarget(geometry, at), ping);
         level.push_back(sumOf(ping));
     }
-    size_t k = 0;
-    while (level[k] > 0.5 * level[0]) ++k;
-    Cut cut{};
-    cut.width_deg = 2 * step * (static_cast<double>(k) - (0.5 * level[0] - level[k]) / (level[k - 1] - level[k]));
-    while (level[k + 1] < level[k]) ++k;
-    cut.first_null_deg = step * static_cast<double>(k);
-    cut.sidelobe_db = 10 * std::log10(*std::max_element(level.begin() + static_cast<long>(k), level.end()) / level[0]);
-    return cut;
+    return BeamCut(level, 0, step);
 }
 
 TEST(PointTargetTest, SweptAcrossOneBeamItShowsTheTableOfWeightings) {
-    struct Row {
-        Weighting weighting;
-        double sidelobe_db;
-        int nbar;
-        double width, first_null, peak_db;  // in wavelengths per aperture, and below the axis
-    };
-    for (const Row& row :
-         {Row{Weighting::Uniform, 0, 0, 0.8859, 1.00, -13.26}, Row{Weighting::Cosine, 0, 0, 1.189, 1.50, -23.0},
-          Row{Weighting::Hann, 0, 0, 1.4406, 2.00, -31.5}, Row{Weighting::Hamming, 0, 0, 1.303, 2.00, -42.7},
-          Row{Weighting::Taylor, -25, 4, 1.057, 1.35, -25.4}, Row{Weighting::Taylor, -30, 4, 1.125, 1.51, -30.3},
-          Row{Weighting::Taylor, -35, 5, 1.188, 1.67, -35.2}, Row{Weighting::Piston, 0, 0, 1.029, 1.22, -17.6}})
+    for (const test::WeightingRow& row : test::weightings)
         for (const bool in_azimuth : {true, false}) {
-            acoustics::BeamLaw law = lawOf(row.weighting, 3);
-            if (row.nbar > 0) law.sidelobe_db = row.sidelobe_db, law.nbar = row.nbar;
+            acoustics::BeamLaw law = row.law();
+            law.width_deg = 3;
             SonarConfig config = sonarOf(2, 1);
             (in_azimuth ? config.beam_pattern.emplace().receive.azimuth
                         : config.beam_pattern.emplace().receive.elevation) = law;
-            const Cut cut = sweep(config, in_azimuth);
-            EXPECT_NEAR(cut.width_deg, 3, 0.03) << row.peak_db;
-            EXPECT_NEAR(cut.first_null_deg, 3 * row.first_null / row.width, 0.02 * 3 * row.first_null / row.width)
-                << row.peak_db;
-            EXPECT_NEAR(cut.sidelobe_db, row.peak_db, 0.3);
+            sweep(config, in_azimuth).expect(row);
         }
 }
 

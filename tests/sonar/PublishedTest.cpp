@@ -6,6 +6,7 @@
 
 #include "components/sonar/SonarRenderer.hpp"
 #include "tests/support/Scenes.hpp"
+#include "tests/support/Sonars.hpp"
 #include "types/Angle.hpp"
 
 namespace insonify::sonar {
@@ -28,10 +29,7 @@ SonarConfig published() {
 }
 
 std::vector<float> binsOf(const SonarConfig& config, const types::GeometryPtr& geometry) {
-    SonarRenderer renderer(config, geometry);
-    types::Sonar ping;
-    renderer.render(test::snapshotOf(geometry), ping);
-    return ping.bins;
+    return test::pingOf(config, test::snapshotOf(geometry)).bins;
 }
 
 double sigmoid(double z) { return 1 / (1 + std::exp(-18 * (z - 2.0 / 3))); }

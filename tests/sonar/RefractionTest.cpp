@@ -221,7 +221,7 @@ TEST(RefractionTest, APointTargetIsHeardWhereItsArcComesFromAndNotInAShadow) {
     const double elevation = -0.05, time = 1801 / 1500.0;
     std::vector<acoustics::RayPoint> at(1);
     acoustics::traceRay(acoustics::SoundProfile({{0, 1000}, {1500, 1600}}), 300, elevation, std::vector{time}, at);
-    const auto nothing = test::sceneOf({test::disc(1, 0.1f)}, 0, {{-500, 0, 0}});
+    const auto nothing = test::openWater();
     const auto heard = [&](const std::string& profile, double pitch, glm::dvec3 place) {
         types::Snapshot snapshot = test::snapshotOf(nothing, {0, 0, -300}, 0, pitch);
         snapshot.targets = {{place, 0}};

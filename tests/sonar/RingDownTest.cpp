@@ -5,33 +5,26 @@
 
 #include "components/sonar/SonarRenderer.hpp"
 #include "tests/support/Scenes.hpp"
+#include "tests/support/Sonars.hpp"
 
 namespace insonify::sonar {
 namespace {
 
 SonarConfig sonar() {
-    SonarConfig config;
-    config.speed_of_sound = 1000;
-    config.range = 20;
-    config.bin_count = 200;
-    config.beam_count = 4;
-    config.quality.rows = 32;
+    SonarConfig config = test::sonarOf({.beams = 4, .bins = 200, .rows = 32});
     config.visibility = Visibility::Cpu;
     config.pulse.emplace().bandwidth_khz = 4;
     return config;
 }
 
 types::Sonar pingOf(const SonarConfig& config, const types::GeometryPtr& geometry) {
-    SonarRenderer renderer(config, geometry);
-    types::Sonar ping;
-    renderer.render(test::snapshotOf(geometry), ping);
-    return ping;
+    return test::pingOf(config, test::snapshotOf(geometry));
 }
 
 TEST(RingDownTest, EveryBeamHearsTheMeanOfItsFallOverEachBin) {
     SonarConfig config = sonar();
     config.pulse->ring_down = acoustics::RingDownConfig{-30, 12};
-    const types::Sonar ping = pingOf(config, test::sceneOf({test::disc(1, 0.1f)}, 0, {{-500, 0, 0}}));
+    const types::Sonar ping = pingOf(config, test::openWater());
     const auto at = [](double r) { return std::pow(10, (-30 - 12 * r) / 10); };
     for (size_t beam = 0; beam < ping.beam_count; ++beam)
         for (size_t k = 0; k < ping.bin_count; ++k) {

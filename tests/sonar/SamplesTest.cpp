@@ -5,6 +5,7 @@
 
 #include "components/sonar/SonarRenderer.hpp"
 #include "tests/support/Scenes.hpp"
+#include "tests/support/Sonars.hpp"
 
 namespace insonify::sonar {
 namespace {
@@ -16,23 +17,14 @@ struct Sampled {
 };
 
 Sampled sonarOf(int rows, int columns, int samples) {
-    SonarConfig config;
-    config.speed_of_sound = 1000;
-    config.range = 30;
-    config.bin_count = 300;
-    config.beam_count = 8;
-    config.field_of_view_deg = 80;
-    config.beam_height_deg = 40;
-    config.quality.rows = rows;
-    config.quality.columns_per_beam = columns;
+    SonarConfig config =
+        test::sonarOf({.beams = 8, .width_deg = 80, .height_deg = 40, .bins = 300, .rows = rows, .columns = columns});
     config.device = "software";
     return {config, {.samples_per_pixel = samples}};
 }
 
 std::vector<float> binsOf(const Sampled& sonar, const types::GeometryPtr& geometry) {
-    types::Sonar ping;
-    SonarRenderer(sonar.config, geometry, sonar.options).render(test::snapshotOf(geometry), ping);
-    return ping.bins;
+    return test::pingOf(sonar.config, test::snapshotOf(geometry), sonar.options).bins;
 }
 
 double energyOf(const Sampled& sonar, const types::GeometryPtr& geometry) {

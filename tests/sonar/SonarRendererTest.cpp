@@ -8,6 +8,7 @@
 
 #include "components/gpu/EglContext.hpp"
 #include "components/sonar/SonarRenderer.hpp"
+#include "tests/support/Sonars.hpp"
 #include "tests/support/Surfaces.hpp"
 
 namespace insonify::sonar {
@@ -17,24 +18,12 @@ using ::testing::Each;
 using ::testing::HasSubstr;
 
 SonarConfig fan() {
-    SonarConfig config;
-    config.speed_of_sound = 1000;
-    config.range = 40;
-    config.bin_count = 400;
-    config.beam_count = 32;
-    config.field_of_view_deg = 100;
-    config.beam_height_deg = 40;
-    config.quality.rows = 128;
+    SonarConfig config = test::sonarOf({.beams = 32, .width_deg = 100, .height_deg = 40, .bins = 400, .rows = 128});
     config.device = "software";
     return config;
 }
 
-std::vector<float> binsOf(const types::Snapshot& snapshot) {
-    SonarRenderer renderer(fan(), snapshot.geometry);
-    types::Sonar ping;
-    renderer.render(snapshot, ping);
-    return ping.bins;
-}
+std::vector<float> binsOf(const types::Snapshot& snapshot) { return test::pingOf(fan(), snapshot).bins; }
 
 double energy(const std::vector<float>& bins) { return std::accumulate(bins.begin(), bins.end(), 0.0); }
 

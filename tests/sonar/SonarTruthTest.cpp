@@ -8,6 +8,7 @@
 #include "components/sonar/SonarTask.hpp"
 #include "tests/support/Ports.hpp"
 #include "tests/support/Scenes.hpp"
+#include "tests/support/Sonars.hpp"
 #include "types/SonarReturns.hpp"
 
 namespace insonify::sonar {
@@ -33,16 +34,7 @@ Told toldOf(const SonarConfig& config, const types::Snapshot& snapshot, int thre
 
 /** 16 beams of 5 deg, 200 bins of 0.1 m, 60 deg high. */
 SonarConfig fan() {
-    SonarConfig config;
-    config.speed_of_sound = 1000;
-    config.range = 20;
-    config.bin_count = 200;
-    config.beam_count = 16;
-    config.field_of_view_deg = 80;
-    config.beam_height_deg = 60;
-    config.quality.rows = 512;
-    config.quality.columns_per_beam = 4;
-    return config;
+    return test::sonarOf({.beams = 16, .width_deg = 80, .height_deg = 60, .bins = 200, .rows = 512, .columns = 4});
 }
 
 struct Way {

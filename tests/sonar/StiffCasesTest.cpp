@@ -6,6 +6,7 @@
 
 #include "components/sonar/PlanReport.hpp"
 #include "components/sonar/SonarRenderer.hpp"
+#include "tests/support/Sonars.hpp"
 #include "tests/support/Surfaces.hpp"
 
 namespace insonify::sonar {
@@ -17,21 +18,12 @@ using ::testing::Ge;
 using ::testing::HasSubstr;
 
 SonarConfig fan(double field_of_view_deg = 60, int beams = 16, int bins = 200) {
-    SonarConfig config;
-    config.speed_of_sound = 1000;
-    config.range = 0.1 * bins;
-    config.bin_count = bins;
-    config.beam_count = beams;
-    config.field_of_view_deg = field_of_view_deg;
-    config.beam_height_deg = 40;
-    return config;
+    return test::sonarOf({.beams = beams, .width_deg = field_of_view_deg, .height_deg = 40, .bins = bins});
 }
 
 std::vector<float> binsOf(const SonarConfig& config, const types::GeometryPtr& geometry,
                           const RenderOptions& options = {}) {
-    types::Sonar ping;
-    SonarRenderer(config, geometry, options).render(test::snapshotOf(geometry), ping);
-    return ping.bins;
+    return test::pingOf(config, test::snapshotOf(geometry), options).bins;
 }
 
 std::vector<types::Mesh> wallAndBall() { return {test::wall(12), test::sphere(1.5, 48)}; }

@@ -11,34 +11,22 @@
 #include "components/sonar/SonarRenderer.hpp"
 #include "components/sonar/SurfacePass.hpp"
 #include "tests/support/ClosedForms.hpp"
+#include "tests/support/Sonars.hpp"
 #include "tests/support/Surfaces.hpp"
 #include "types/Angle.hpp"
 
 namespace insonify::sonar {
 namespace {
 
+using test::pingOf;
 using types::radians;
 
 SonarConfig fan(Visibility visibility) {
-    SonarConfig config;
+    SonarConfig config =
+        test::sonarOf({.beams = 50, .width_deg = 100, .height_deg = 50, .bins = 400, .rows = 256, .columns = 8});
     config.visibility = visibility;
     if (visibility == Visibility::Gl) config.device = "software";
-    config.speed_of_sound = 1000;
-    config.range = 40;
-    config.bin_count = 400;
-    config.beam_count = 50;
-    config.field_of_view_deg = 100;
-    config.beam_height_deg = 50;
-    config.quality.rows = 256;
-    config.quality.columns_per_beam = 8;
     return config;
-}
-
-types::Sonar pingOf(const SonarConfig& config, const types::Snapshot& snapshot, const RenderOptions& options = {}) {
-    SonarRenderer renderer(config, snapshot.geometry, options);
-    types::Sonar ping;
-    renderer.render(snapshot, ping);
-    return ping;
 }
 
 /** An object and one of its triangles; no object: nothing. */

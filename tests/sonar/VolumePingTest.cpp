@@ -6,6 +6,7 @@
 #include "tests/support/ClosedForms.hpp"
 #include "tests/support/EveryWay.hpp"
 #include "tests/support/Scenes.hpp"
+#include "tests/support/Sonars.hpp"
 #include "types/Angle.hpp"
 
 namespace insonify::sonar {
@@ -23,16 +24,9 @@ VolumeLayer layer(double strength_db, std::optional<double> top = {}, std::optio
 }
 
 SonarConfig plainSonar() {
-    SonarConfig config;
-    config.speed_of_sound = 1000;  // bins of whole microseconds
-    config.range = 30;
+    SonarConfig config =
+        test::sonarOf({.beams = 8, .width_deg = 80, .height_deg = 40, .bins = 300, .rows = 512, .columns = 4});
     config.range_min = 1;
-    config.bin_count = 300;
-    config.beam_count = 8;
-    config.field_of_view_deg = 80;
-    config.beam_height_deg = 40;
-    config.quality.rows = 512;
-    config.quality.columns_per_beam = 4;
     return config;
 }
 

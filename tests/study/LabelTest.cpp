@@ -11,6 +11,7 @@
 #include "components/sonar/SonarRenderer.hpp"
 #include "components/study/RayTree.hpp"
 #include "components/study/Shapes.hpp"
+#include "tests/support/Sonars.hpp"
 #include "types/Angle.hpp"
 
 namespace insonify::study {
@@ -36,16 +37,7 @@ types::Snapshot tenObjects() {
 }
 
 sonar::SonarConfig fan() {
-    sonar::SonarConfig config;
-    config.speed_of_sound = 1000;
-    config.range = 25;
-    config.bin_count = 250;
-    config.beam_count = 64;
-    config.field_of_view_deg = 90;
-    config.beam_height_deg = 40;
-    config.quality.rows = 512;
-    config.quality.columns_per_beam = 4;
-    return config;
+    return test::sonarOf({.beams = 64, .width_deg = 90, .height_deg = 40, .bins = 250, .rows = 512, .columns = 4});
 }
 
 /** Energy of each object in each bin, [beam][bin][object], by the sonar equation along each of many rays. */

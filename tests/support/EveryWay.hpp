@@ -1,8 +1,8 @@
 #pragma once
-// A ping by each of the ways in which echoes are found and summed.
+// The ways in which echoes are found and summed.
 #include <vector>
 
-#include "components/sonar/SonarRenderer.hpp"
+#include "components/sonar/SonarConfig.hpp"
 
 namespace insonify::test {
 
@@ -15,13 +15,6 @@ inline std::vector<sonar::SonarConfig> everyWay(const sonar::SonarConfig& config
     all[2].deposit = sonar::Deposit::Gpu;
     for (sonar::SonarConfig& each : all) each.device = each.visibility == sonar::Visibility::Gl ? "software" : "";
     return all;
-}
-
-inline types::Sonar pingOf(const sonar::SonarConfig& config, const types::Snapshot& snapshot) {
-    sonar::SonarRenderer renderer(config, snapshot.geometry);
-    types::Sonar ping;
-    renderer.render(snapshot, ping);
-    return ping;
 }
 
 }  // namespace insonify::test

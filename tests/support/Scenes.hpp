@@ -38,6 +38,9 @@ inline types::GeometryPtr sceneOf(std::vector<types::Mesh> meshes, float mu_db =
     return geometry;
 }
 
+/** Nothing that a sonar about the origin hears. */
+inline types::GeometryPtr openWater() { return sceneOf({disc(1, 0.1f)}, 0, {{-500, 0, 0}}); }
+
 /** A sonar at `position`, turned by yaw, pitch, roll [rad] (R = Rz Ry Rx). */
 inline types::Snapshot snapshotOf(types::GeometryPtr geometry, glm::dvec3 position = {}, double yaw = 0,
                                   double pitch = 0, double roll = 0) {

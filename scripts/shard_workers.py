@@ -1,0 +1,24 @@
+"""What dataset_dask.py and dataset_ray.py share: their options, and what they print of each shard."""
+import argparse
+import sys
+
+
+def parser(text):
+    """Of the options that both have."""
+    options = argparse.ArgumentParser(description=text, formatter_class=argparse.RawDescriptionHelpFormatter)
+    options.add_argument("--shards", type=int, required=True, help="parts that the work is cut into")
+    options.add_argument("--workers", type=int, default=1, help="processes on this machine")
+    options.add_argument("command", nargs="+", help="after --: insonify run or dataset, with --out")
+    return options
+
+
+def tell(get, given_up, shards):
+    """Prints what `get()` tells of a shard, (index, exit code, error output), or that it raised `given_up`; returns
+    whether the shard is done."""
+    try:
+        index, code, told = get()
+    except given_up as error:
+        print(f"a shard was given up: {error}", file=sys.stderr)
+        return False
+    print(f"shard {index}/{shards}: {'done' if code == 0 else f'exit code {code}: {told}'}", flush=True)
+    return code == 0

@@ -1,0 +1,16 @@
+#pragma once
+// The door by which files of scenes come in.
+#include "components/scene/Scene.hpp"
+#include "tests/scene/SceneFiles.hpp"
+#include "tests/support/Fuzz.hpp"
+
+namespace insonify::fuzz {
+
+/** A file is a sound scene, or an error in our words. */
+inline void readScene(const Input& input) try {
+    scene::expectSound(*scene::loadScene(input.file()));
+} catch (const types::ConfigError& error) {
+    expectOurWords(error.what());
+}
+
+}  // namespace insonify::fuzz

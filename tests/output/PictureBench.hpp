@@ -1,0 +1,45 @@
+#pragma once
+// A lone task that makes pictures of pings and of another stream beside them.
+#include <gtest/gtest.h>
+
+#include "tests/support/Ports.hpp"
+#include "types/Image.hpp"
+#include "types/Sonar.hpp"
+
+namespace insonify::test {
+
+template <class Task, class Beside>
+class PictureBench : public ::testing::Test {
+protected:
+    explicit PictureBench(framework::InputPort<Beside> Task::*beside) {
+        pings_.port.connectTo(task_.ping, framework::ConnPolicy::buffer(100));
+        beside_.port.connectTo(task_.*beside, framework::ConnPolicy::buffer(100));
+        task_.image.connectTo(out_.port, framework::ConnPolicy::buffer(100));
+    }
+    void start() {
+        ASSERT_TRUE(task_.configure()) << task_.lastError();
+        ASSERT_TRUE(task_.start()) << task_.lastError();
+    }
+    void give(const types::Sonar& ping) {
+        pings_.port.write(std::make_shared<const types::Sonar>(ping));
+        task_.update();
+    }
+    void giveBeside(const Beside& sample) {
+        beside_.port.write(sample);
+        task_.update();
+    }
+    /** How many pictures have come since the last call; the newest is `last_`. */
+    size_t pictures() {
+        size_t count = 0;
+        for (types::ImagePtr picture; out_.port.readNew(picture); ++count) last_ = picture;
+        return count;
+    }
+
+    Task task_{"pictures"};
+    Writer<types::SonarPtr> pings_;
+    Writer<Beside> beside_;
+    Reader<types::ImagePtr> out_;
+    types::ImagePtr last_;
+};
+
+}  // namespace insonify::test

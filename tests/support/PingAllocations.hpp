@@ -1,0 +1,31 @@
+#pragma once
+// Tasks that take pings and give pings, and what they allocate.
+#include <gmock/gmock.h>
+
+#include "tests/support/Allocations.hpp"
+#include "tests/support/Pings.hpp"
+#include "tests/support/Ports.hpp"
+
+namespace insonify::test {
+
+/** Expects that a task that is fed by `input` and answers by `output` allocates nothing after the first ping. */
+template <class Task, class Config>
+void expectNoAllocation(const Config& config, framework::InputPort<types::SonarPtr> Task::*input,
+                        framework::OutputPort<types::SonarPtr> Task::*output) {
+    Task task("task");
+    Writer<types::SonarPtr> in;
+    Reader<types::SonarPtr> out;
+    in.port.connectTo(task.*input, {});
+    (task.*output).connectTo(out.port, {});
+    task.config.set(config);
+    ASSERT_TRUE(task.configure());
+    ASSERT_TRUE(task.start());
+    const auto cycle = [&](int64_t time) {
+        in.port.write(shared(pingOf(16, 100, 1, time)));
+        task.update();
+    };
+    EXPECT_THAT(allocationsAfterTheFirst(task, cycle), testing::IsEmpty());
+    EXPECT_EQ((task.*output).written(), 99u);
+}
+
+}  // namespace insonify::test

@@ -1,0 +1,42 @@
+#pragma once
+// Small forward-looking sonars, and the pings that they make.
+#include <optional>
+
+#include "components/sonar/SonarRenderer.hpp"
+
+namespace insonify::test {
+
+/** What most tests set of a sonar. What is absent is as a sonar::SonarConfig has it. */
+struct Fan {
+    int beams = 1;
+    std::optional<double> width_deg = {};  ///< Of all beams together.
+    double height_deg = 20;                ///< Aperture in elevation.
+    int bins = 300;
+    double bin = 0.1;                            ///< Length of each bin [m].
+    std::optional<int> rows = {}, columns = {};  ///< Of samples; the columns are those of each beam.
+};
+
+/** A sonar in water of 1000 m/s, where a bin of 0.1 m lasts 100 us. */
+inline sonar::SonarConfig sonarOf(const Fan& fan) {
+    sonar::SonarConfig config;
+    config.speed_of_sound = 1000;
+    config.range = fan.bin * fan.bins;
+    config.bin_count = fan.bins;
+    config.beam_count = fan.beams;
+    config.field_of_view_deg = fan.width_deg;
+    config.beam_height_deg = fan.height_deg;
+    config.quality.rows = fan.rows;
+    config.quality.columns_per_beam = fan.columns;
+    return config;
+}
+
+/** What a sonar hears in its first ping. */
+inline types::Sonar pingOf(const sonar::SonarConfig& config, const types::Snapshot& snapshot,
+                           const sonar::RenderOptions& options = {}) {
+    sonar::SonarRenderer renderer(config, snapshot.geometry, options);
+    types::Sonar ping;
+    renderer.render(snapshot, ping);
+    return ping;
+}
+
+}  // namespace insonify::test
