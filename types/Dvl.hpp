@@ -17,7 +17,7 @@ namespace insonify::types {
 struct Dvl {
     static constexpr const char* type_name = "/insonify/Dvl";
     static constexpr bool shared = true;
-    static constexpr size_t most_beams = 4;
+    static constexpr size_t max_beams = 4;
 
     Time time;
     glm::dvec3 velocity{Pose::unknown};
@@ -38,7 +38,7 @@ struct Dvl {
         return good;
     }
     const char* diagnostic() const {
-        if (beam_directions.size() > most_beams) return "has more than four beams";
+        if (beam_directions.size() > max_beams) return "has more than four beams";
         const size_t beams = beam_directions.size();
         return beam_ranges.size() == beams && beam_velocities.size() == beams && beam_velocity_variances.size() == beams
                    ? nullptr

@@ -175,8 +175,8 @@ struct Columns<Imu> {
 template <>
 struct Columns<Dvl> {
     /** A list of up to four as four numbers, unknown beyond its end. */
-    static std::array<double, Dvl::most_beams> four(const std::vector<double>& list) {
-        std::array<double, Dvl::most_beams> all;
+    static std::array<double, Dvl::max_beams> four(const std::vector<double>& list) {
+        std::array<double, Dvl::max_beams> all;
         all.fill(Pose::unknown);
         std::copy_n(list.begin(), std::min(list.size(), all.size()), all.begin());
         return all;

@@ -21,7 +21,7 @@ public:
     }
 
     void advance(double seconds) {
-        for (int crossings = 0; seconds > 0 && crossings < most_crossings; ++crossings) {
+        for (int crossings = 0; seconds > 0 && crossings < max_crossings; ++crossings) {
             const double boundary = timeToBoundary();
             move(std::min(seconds, boundary));
             seconds -= std::min(seconds, boundary);
@@ -38,7 +38,7 @@ public:
 private:
     /** A ray that is trapped about the depth of least speed may cross it again and again; after so many times in one
      *  step it goes on level [1]. */
-    static constexpr int most_crossings = 1000;
+    static constexpr int max_crossings = 1000;
 
     bool inside() const { return below_ > 0 && below_ < depths_.size(); }
     double gradient() const {

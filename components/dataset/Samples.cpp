@@ -13,7 +13,7 @@
 namespace insonify::dataset {
 namespace {
 
-constexpr uint64_t most_samples = 100'000'000;
+constexpr uint64_t max_samples = 100'000'000;
 constexpr uint64_t pose_stream = 0x706f7365, noise_stream = 0x6e6f697365;
 
 /** The coordinates of a pose of a grid. */
@@ -64,9 +64,9 @@ Samples::Samples(const Sweep& sweep, std::vector<TimedPose> trajectory, std::vec
     for (const Setting& setting : sweep.settings)
         settings_ = std::min<uint64_t>(settings_ * setting.values.size(), 1'000'000'000'000);
     const double all = static_cast<double>(poses_) * static_cast<double>(settings_) * double(sweep.scenes.size());
-    if (all > static_cast<double>(most_samples))
+    if (all > static_cast<double>(max_samples))
         throw types::ConfigError(sweep.file, "",
-                                 fmt::format("makes {:g} samples; at most {} go into one data set", all, most_samples));
+                                 fmt::format("makes {:g} samples; at most {} go into one data set", all, max_samples));
     count_ = poses_ * settings_ * sweep.scenes.size();
     names_.resize(scenes_.size());
     for (size_t scene = 0; scene < scenes_.size(); ++scene)

@@ -9,7 +9,7 @@
 namespace insonify::dataset {
 namespace {
 
-constexpr size_t most_examples = 12;
+constexpr size_t max_examples = 12;
 constexpr int range_step = 5;  ///< [m]
 
 std::string escaped(const std::string& text) {
@@ -45,7 +45,7 @@ void StatisticsPage::add(const Json& record, const std::string& picture) {
         ++ranges_[static_cast<int>((near + far) / 2) / range_step];
     }
     ++objects_in_picture_[record["annotations"].size()];
-    if (!picture.empty() && examples_.size() < most_examples) examples_.push_back(exampleOf(record, picture));
+    if (!picture.empty() && examples_.size() < max_examples) examples_.push_back(exampleOf(record, picture));
 }
 
 std::string StatisticsPage::exampleOf(const Json& record, const std::string& picture) {
@@ -112,7 +112,8 @@ std::string StatisticsPage::text() const {
         objects.emplace_back(fmt::format("{} objects", number), count);
     std::string page =
         "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><title>" + escaped(title_) + "</title>\n" +
-        "<style>body{font:14px sans-serif;max-width:1200px;margin:2em auto;padding:0 1em;color:#222}table{border-collapse:collapse}"
+        "<style>body{font:14px sans-serif;max-width:1200px;margin:2em auto;padding:0 "
+        "1em;color:#222}table{border-collapse:collapse}"
         "td,th{padding:2px 10px;text-align:right;border-bottom:1px solid #ddd}.bars text{font-size:12px}"
         ".bars rect{fill:#48a}figure{display:inline-block;margin:6px;width:370px}figure svg{width:100%;background:#000}"
         "figure rect{fill:none;stroke-width:2}</style></head>\n<body><h1>" +

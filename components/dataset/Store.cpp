@@ -71,7 +71,7 @@ std::string Store::stemOf(uint64_t index) const {
 }
 
 std::string Store::put(const std::string& name, const std::function<void(const fs::path&)>& writer) {
-    constexpr int most_tries = 5;
+    constexpr int max_tries = 5;
     for (int attempt = 1;; ++attempt) {
         const fs::path passing = folder_ / passingName(name);
         try {
@@ -83,7 +83,7 @@ std::string Store::put(const std::string& name, const std::function<void(const f
             std::error_code ignored;
             const bool was_taken = !fs::exists(passing, ignored);  // by who took it for a leftover
             fs::remove(passing, ignored);
-            if (!was_taken || attempt == most_tries) throw;
+            if (!was_taken || attempt == max_tries) throw;
         }
     }
 }

@@ -15,7 +15,7 @@
 namespace insonify::deployer {
 namespace {
 
-constexpr int done = 0, failed = 1, wrong = 2;
+constexpr int done = 0, failed = 1, bad_input = 2;
 
 /** Names of the commands, or of the options, that may stand after `command`. */
 std::vector<std::string> namesAfter(const CLI::App& command, bool of_options) {
@@ -50,7 +50,7 @@ int parseAndAct(CLI::App& app, Action& action, int argc, char** argv) {
     } catch (const CLI::ParseError& error) {  // also how --help and --version end, with code 0
         if (app.exit(error, std::cout, std::cerr) == 0) return done;
         if (const std::string near = meantWord(app, argc, argv); !near.empty()) fmt::print(stderr, "{}\n", near);
-        return wrong;
+        return bad_input;
     }
     return action();
 }
@@ -60,7 +60,7 @@ int guarded(CLI::App& app, Action& action, int argc, char** argv) {
         return parseAndAct(app, action, argc, argv);
     } catch (const types::ConfigError& error) {
         for (const types::Diagnostic& diagnostic : error.diagnostics()) fmt::print(stderr, "{}\n", diagnostic.text());
-        return wrong;
+        return bad_input;
     } catch (const std::exception& error) {
         fmt::print(stderr, "insonify: {}\n", types::reasonOf(error));
         return failed;

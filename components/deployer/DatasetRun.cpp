@@ -25,7 +25,7 @@ using dataset::Sweep;
 using framework::child, framework::splitPort;
 
 constexpr const char* scene_type = "scene::SceneTask";
-constexpr uint64_t most_poses = 1'000'000;  ///< Of a trajectory.
+constexpr uint64_t max_poses = 1'000'000;  ///< Of a trajectory.
 
 constexpr const char* no_budget =
     "budget_ms lets the speed of the machine decide how samples are rendered, which must not depend on it; "
@@ -48,9 +48,9 @@ std::vector<dataset::TimedPose> posesOf(const Sweep& sweep) {
                   fmt::format("is {:g} s; the trajectory is from {:g} to {:g} s", time, first, last), sweep.file,
                   asked.line, asked.column}});
     const auto count = asked.count ? uint64_t{*asked.count} : static_cast<uint64_t>(length / *asked.period + 1e-9) + 1;
-    if (count > most_poses)
+    if (count > max_poses)
         throw types::ConfigError(sweep.file, "poses.trajectory.period",
-                                 fmt::format("makes {} poses; at most {}", count, most_poses));
+                                 fmt::format("makes {} poses; at most {}", count, max_poses));
     for (uint64_t i = 0; i < count; ++i) {
         const double step = asked.count ? (count == 1 ? 0 : length / static_cast<double>(count - 1)) : *asked.period;
         const double time = from + step * static_cast<double>(i);
@@ -152,9 +152,9 @@ void DatasetRun::checkAssignment(const std::string& path, const std::string& pro
     framework::Registry registry = builtInTasks();
     framework::DeploymentSpec spec = framework::DeploymentSpec::load(deployment_);
     spec.set(property + "=" + value.yaml);
-    types::Diagnostics wrong;
+    types::Diagnostics diagnostics;
     const auto refuse = [&](const std::string& why) {
-        wrong.push_back({path, why, sweep_.file, value.line, value.column});
+        diagnostics.push_back({path, why, sweep_.file, value.line, value.column});
     };
     for (const framework::TaskSpec& each : spec.tasks) {
         const auto file = spec.origins.find(each.path() + ".properties.file");
@@ -170,7 +170,7 @@ void DatasetRun::checkAssignment(const std::string& path, const std::string& pro
         for (const types::Diagnostic& each : error.diagnostics())
             if (each.file == framework::set_origin) refuse(each.path + ": " + each.message);
     }
-    if (!wrong.empty()) throw types::ConfigError(wrong);
+    if (!diagnostics.empty()) throw types::ConfigError(diagnostics);
 }
 
 DatasetRun::SceneFile DatasetRun::readScene(const std::string& file) const {

@@ -213,11 +213,13 @@ int logImport(const Options& options) {
 }
 
 Json verdictJson(const log::Verdict& verdict) {
-    Json wrong;
+    Json diagnostic;
     if (const auto& found = verdict.diagnostic)
-        wrong = {{"file", found->file.string()}, {"byte", found->byte}, {"message", found->message}};
-    return {
-        {"valid", !verdict.diagnostic}, {"streams", verdict.streams}, {"samples", verdict.samples}, {"wrong", wrong}};
+        diagnostic = {{"file", found->file.string()}, {"byte", found->byte}, {"message", found->message}};
+    return {{"valid", !verdict.diagnostic},
+            {"streams", verdict.streams},
+            {"samples", verdict.samples},
+            {"wrong", diagnostic}};
 }
 
 int logCheck(const Options& options) {

@@ -34,21 +34,21 @@ std::string textOf(const auto& endpoint) {
 
 template <class Protocol>
 typename Protocol::endpoint endpointOf(const std::string& address, uint16_t port) {
-    error_code wrong;
-    const asio::ip::address parsed = asio::ip::make_address(address, wrong);
-    if (wrong) throw NetworkError("address", "is " + address + ", which is no address; write one as 127.0.0.1 or ::1");
+    error_code error;
+    const asio::ip::address parsed = asio::ip::make_address(address, error);
+    if (error) throw NetworkError("address", "is " + address + ", which is no address; write one as 127.0.0.1 or ::1");
     return {parsed, port};
 }
 
 /** Opens and binds; `what` is said before the port where it cannot be had. */
 template <class Socket, class Endpoint>
 void bindTo(Socket& socket, const Endpoint& endpoint) {
-    error_code wrong;
-    socket.open(endpoint.protocol(), wrong);
+    error_code error;
+    socket.open(endpoint.protocol(), error);
     if constexpr (std::is_same_v<Endpoint, Tcp::endpoint>)  // two that take the same datagrams would not be told
-        if (!wrong) socket.set_option(asio::socket_base::reuse_address(true), wrong);
-    if (!wrong) socket.bind(endpoint, wrong);
-    if (wrong) throw NetworkError("port", "is " + textOf(endpoint) + ", where it cannot listen: " + wrong.message());
+        if (!error) socket.set_option(asio::socket_base::reuse_address(true), error);
+    if (!error) socket.bind(endpoint, error);
+    if (error) throw NetworkError("port", "is " + textOf(endpoint) + ", where it cannot listen: " + error.message());
     fcntl(socket.native_handle(), F_SETFD, FD_CLOEXEC);
 }
 
@@ -131,8 +131,8 @@ public:
     void wakeAt(std::chrono::steady_clock::time_point when) {
         asio::post(io, [this, when] {
             timer_.expires_at(when);
-            timer_.async_wait([this](error_code wrong) {
-                if (!wrong) wake_();
+            timer_.async_wait([this](error_code error) {
+                if (!error) wake_();
             });
         });
     }
@@ -145,9 +145,9 @@ public:
             socket.set_option(asio::ip::multicast::enable_loopback(true), ignored);
             socket.non_blocking(true, ignored);
         }
-        error_code wrong;
-        socket.send_to(asio::buffer(bytes), to, 0, wrong);
-        if (wrong) ++dropped;
+        error_code error;
+        socket.send_to(asio::buffer(bytes), to, 0, error);
+        if (error) ++dropped;
     }
 
     asio::io_context io{1};
@@ -191,10 +191,10 @@ public:
         if (reading_ || closed_) return;
         reading_ = true;
         stream_.async_read_some(asio::buffer(buffer_),
-                                [self = this->shared_from_this()](error_code wrong, size_t count) {
+                                [self = this->shared_from_this()](error_code error, size_t count) {
                                     self->reading_ = false;
                                     if (self->closed_) return;
-                                    if (wrong) return self->end();
+                                    if (error) return self->end();
                                     const auto begin = self->buffer_.begin();
                                     const Bytes bytes(begin, begin + static_cast<std::ptrdiff_t>(count));
                                     if (self->core_.tell({NetworkEvent::Kind::Received, self->client_, bytes, ""}))
@@ -239,10 +239,10 @@ private:
             return;
         }
         writing_ = true;
-        asio::async_write(stream_, asio::buffer(sending_), [self = this->shared_from_this()](error_code wrong, size_t) {
+        asio::async_write(stream_, asio::buffer(sending_), [self = this->shared_from_this()](error_code error, size_t) {
             self->writing_ = false;
             if (self->closed_) return;
-            if (wrong) return self->end();
+            if (error) return self->end();
             self->write();
         });
     }
@@ -280,9 +280,9 @@ class TcpEnd final : public Network::Core::EndBase {
 public:
     TcpEnd(Network::Core& core, End end, const Tcp::endpoint& at) : core_(core), end_(end), acceptor_(core.io) {
         bindTo(acceptor_, at);
-        error_code wrong;
-        acceptor_.listen(asio::socket_base::max_listen_connections, wrong);
-        if (wrong) throw NetworkError("port", "is " + textOf(at) + ", where it cannot listen: " + wrong.message());
+        error_code error;
+        acceptor_.listen(asio::socket_base::max_listen_connections, error);
+        if (error) throw NetworkError("port", "is " + textOf(at) + ", where it cannot listen: " + error.message());
         port = acceptor_.local_endpoint().port();
         name = "TCP " + textOf(acceptor_.local_endpoint());
         accept();
@@ -314,10 +314,10 @@ private:
     void accept() {
         full_ = !core_.hasRoom();
         if (full_) return;
-        acceptor_.async_accept([this](error_code wrong, Tcp::socket socket) {
+        acceptor_.async_accept([this](error_code error, Tcp::socket socket) {
             if (!acceptor_.is_open()) return;
-            if (!wrong) open(std::move(socket));
-            if (!wrong) return accept();
+            if (!error) open(std::move(socket));
+            if (!error) return accept();
             retry_.expires_after(std::chrono::milliseconds(100));  // as when the process has no more files
             retry_.async_wait([this](error_code cancelled) {
                 if (!cancelled) accept();
@@ -325,10 +325,10 @@ private:
         });
     }
     void open(Tcp::socket socket) {
-        error_code wrong;
-        const Tcp::endpoint peer = socket.remote_endpoint(wrong);
-        if (wrong || sessions_.size() >= Network::max_clients) return;
-        socket.set_option(Tcp::no_delay(true), wrong);
+        error_code error;
+        const Tcp::endpoint peer = socket.remote_endpoint(error);
+        if (error || sessions_.size() >= Network::max_clients) return;
+        socket.set_option(Tcp::no_delay(true), error);
         keepAlive(socket.native_handle());
         fcntl(socket.native_handle(), F_SETFD, FD_CLOEXEC);
         const uint64_t number = next_++;
@@ -362,9 +362,9 @@ public:
     void send(uint64_t client, Bytes bytes, Network::Kind /*kind*/) override {
         const auto found = clients_.find(client);
         if (found == clients_.end()) return;
-        error_code wrong;
-        socket_.send_to(asio::buffer(bytes), found->second.endpoint, 0, wrong);
-        if (wrong) ++core_.dropped;
+        error_code error;
+        socket_.send_to(asio::buffer(bytes), found->second.endpoint, 0, error);
+        if (error) ++core_.dropped;
     }
     void close(uint64_t client) override {
         if (clients_.erase(client) > 0) core_.tell({NetworkEvent::Kind::Closed, {end_, client}, {}, ""});
@@ -381,9 +381,9 @@ private:
     };
 
     void read() {
-        socket_.async_receive_from(asio::buffer(buffer_), from_, [this](error_code wrong, size_t count) {
-            if (!socket_.is_open() || wrong == asio::error::operation_aborted) return;
-            if (!wrong) take(count);
+        socket_.async_receive_from(asio::buffer(buffer_), from_, [this](error_code error, size_t count) {
+            if (!socket_.is_open() || error == asio::error::operation_aborted) return;
+            if (!error) take(count);
             read();
         });
     }
@@ -443,13 +443,13 @@ class SerialEnd final : public Network::Core::EndBase {
 public:
     SerialEnd(Network::Core& core, End end, std::filesystem::path link)
         : core_(core), client_{end, 1}, link_(std::move(link)), terminal_(openTerminal()) {
-        std::error_code wrong;
-        if (std::filesystem::is_symlink(link_)) std::filesystem::remove(link_, wrong);
-        std::filesystem::create_symlink(terminal_.name, link_, wrong);
-        if (wrong) {
+        std::error_code error;
+        if (std::filesystem::is_symlink(link_)) std::filesystem::remove(link_, error);
+        std::filesystem::create_symlink(terminal_.name, link_, error);
+        if (error) {
             shut();
             ::close(terminal_.master);
-            throw NetworkError("serial", "is " + link_.string() + ", which cannot be made: " + wrong.message());
+            throw NetworkError("serial", "is " + link_.string() + ", which cannot be made: " + error.message());
         }
         name = "serial line " + link_.string();
         session_ = std::make_shared<Line>(core, asio::posix::stream_descriptor(core.io, terminal_.master), client_,

@@ -83,7 +83,7 @@ std::string resultDiagnostic(std::span<const uint8_t> message, OculusResult& pin
 
 /** Of the whole message that this is the header of; 0: none has such a header. */
 size_t messageSize(const OculusHeader& header) {
-    constexpr size_t most_of_others = 4096;
+    constexpr size_t max_other_payload = 4096;
     const size_t payload = header.payload_size;
     const auto whole = [&](bool possible) { return possible ? OculusHeader::size + payload : 0; };
     switch (static_cast<OculusId>(header.id)) {
@@ -96,7 +96,7 @@ size_t messageSize(const OculusHeader& header) {
         case OculusId::FullResult: return whole(true);
         case OculusId::Status:
         case OculusId::Log:
-        case OculusId::Dummy: return whole(payload <= most_of_others);
+        case OculusId::Dummy: return whole(payload <= max_other_payload);
         default: return 0;
     }
 }

@@ -11,7 +11,7 @@ namespace insonify::device {
 namespace {
 
 constexpr double gains[] = {0.6, 1.8, 5.5, 12.9, 30.2, 66.1, 144};  ///< Of amplitude.
-constexpr uint8_t most_gain = std::size(gains) - 1;
+constexpr uint8_t max_gain = std::size(gains) - 1;
 constexpr uint32_t shortest_scan = 1000;                                ///< [mm]
 constexpr uint16_t voltage_mv = 5000, temperature_centicelsius = 2000;  // of a board that is simulated alone
 constexpr size_t max_waiting = 64;
@@ -63,7 +63,7 @@ void Ping1dEmulator::command(PingClient client, const PingFrame& frame, types::T
         case Ping1dSetModeAuto::message: return set<Ping1dSetModeAuto>(client, frame, "mode_auto", 0, 1, mode_auto_);
         case Ping1dSetPingInterval::message:
             return set<Ping1dSetPingInterval>(client, frame, "ping_interval", 1, 65535, interval_);
-        case Ping1dSetGain::message: return set<Ping1dSetGain>(client, frame, "gain_setting", 0, most_gain, gain_);
+        case Ping1dSetGain::message: return set<Ping1dSetGain>(client, frame, "gain_setting", 0, max_gain, gain_);
         case Ping1dSetPingEnable::message:
             return set<Ping1dSetPingEnable>(client, frame, "ping_enabled", 0, 1, enabled_);
         case Ping1dContinuousStart::message:
@@ -190,7 +190,7 @@ void Ping1dEmulator::adapt(const Ping1dReturn& found) {
     const auto end = static_cast<uint32_t>(std::lround(1000 * config_.max_range));
     const uint8_t peak = last_.data.empty() ? 0 : *std::ranges::max_element(last_.data);
     if (peak == 255 && gain_ > 0) --gain_;
-    if (peak < 64 && gain_ < most_gain) ++gain_;
+    if (peak < 64 && gain_ < max_gain) ++gain_;
     start_ = 0;
     const uint32_t reach = found.confidence >= 50 ? 2 * last_.measurement.distance : 2 * length_;
     length_ = std::clamp(reach, shortest_scan, end);

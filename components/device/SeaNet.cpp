@@ -17,7 +17,7 @@ constexpr size_t max_packet = 4096;  // as drivers have it
 /** Places in payloads [bytes]. */
 namespace command_at {
 constexpr size_t control = 1, head = 3, transmit = 4, range = 22, left = 24, right = 26, ad_span = 28, ad_low = 29,
-                 gain = 30, motor_delay = 36, step = 37, ad_interval = 38, bins = 40, least_size = 42, size = 52;
+                 gain = 30, motor_delay = 36, step = 37, ad_interval = 38, bins = 40, min_size = 42, size = 52;
 }
 namespace data_at {
 constexpr size_t size = 0, head = 2, status = 3, sweep = 4, control = 5, range = 7, transmit = 9, gain = 13,
@@ -94,7 +94,7 @@ SeaNetMessage SeaNetHeadCommand::message() const {
 
 std::optional<SeaNetHeadCommand> SeaNetHeadCommand::in(const SeaNetMessage& message) {
     const Bytes& payload = message.payload;
-    if (message.type != SeaNetType::HeadCommand || payload.size() < command_at::least_size) return std::nullopt;
+    if (message.type != SeaNetType::HeadCommand || payload.size() < command_at::min_size) return std::nullopt;
     SeaNetHeadCommand command;
     command.control = read<uint16_t>(payload, command_at::control);
     for (size_t i = 0; i < 2; ++i) command.transmit[i] = read<uint32_t>(payload, command_at::transmit + 4 * i);

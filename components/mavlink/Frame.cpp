@@ -68,20 +68,20 @@ public:
 private:
     /** Bytes that have been dealt with. */
     size_t step() {
-        if (bytes_[0] != magic_1 && bytes_[0] != magic_2) return wrong("bytes that are no frame", 1);
+        if (bytes_[0] != magic_1 && bytes_[0] != magic_2) return refuse("bytes that are no frame", 1);
         const auto extent = extentOf(bytes_);
-        if (!extent) return wrong("a frame that is cut off", 1);
-        if ((extent->flags & ~is_signed) != 0) return wrong("a frame with flags that are not known", extent->whole());
+        if (!extent) return refuse("a frame that is cut off", 1);
+        if ((extent->flags & ~is_signed) != 0) return refuse("a frame with flags that are not known", extent->whole());
         Frame frame = frameOf(bytes_, *extent);
         const auto kind = std::ranges::find(kinds_, frame.message, &Kind::message);
         if (kind == kinds_.end()) return extent->whole();
-        if (!addsUp(bytes_, *extent, kind->crc_extra)) return wrong("a frame whose sum is wrong", 1);
+        if (!addsUp(bytes_, *extent, kind->crc_extra)) return refuse("a frame whose sum is wrong", 1);
         if (frame.version == 1 && frame.payload.size() != kind->size)
-            return wrong("a frame of another length than its message has", extent->whole());
+            return refuse("a frame of another length than its message has", extent->whole());
         found_.frames.push_back(std::move(frame));
         return extent->whole();
     }
-    size_t wrong(const char* what, size_t size) {
+    size_t refuse(const char* what, size_t size) {
         if (found_.diagnostic.empty()) found_.diagnostic = what;
         return size;
     }

@@ -8,7 +8,7 @@
 
 namespace insonify::nav {
 
-constexpr size_t beam_count = types::Dvl::most_beams;
+constexpr size_t beam_count = types::Dvl::max_beams;
 using BeamDirections = std::array<glm::dvec3, beam_count>;
 
 /** Unit vectors of the beams in the instrument: x forward, y left, z up [1]. */

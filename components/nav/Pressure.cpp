@@ -10,11 +10,12 @@ namespace insonify::nav {
 namespace {
 
 constexpr uint64_t noise_channel = 300, drift_channel = 301;
-constexpr double most_of_water = 1.3e8;  ///< More than at the deepest place; below it depth grows with pressure [Pa].
+constexpr double max_water_pressure =
+    1.3e8;  ///< More than at the deepest place; below it depth grows with pressure [Pa].
 
 /** The pressure that depthOfOcean has at a depth, halved in on [Pa]. */
 double pressureOfOcean(double depth, double latitude_deg) {
-    double low = 0, high = most_of_water;
+    double low = 0, high = max_water_pressure;
     while (high - low > 1e-6) {
         const double middle = (low + high) / 2;
         (depthOfOcean(middle, latitude_deg) < depth ? low : high) = middle;
@@ -41,7 +42,7 @@ double pressureAt(double depth, const PressureConfig& config) {
 }
 
 double depthAt(double pascal, const PressureConfig& config) {
-    const double of_water = std::clamp(pascal - config.atmosphere, 0.0, most_of_water);
+    const double of_water = std::clamp(pascal - config.atmosphere, 0.0, max_water_pressure);
     const double depth =
         config.density ? of_water / pascalPerMetre(config) : depthOfOcean(of_water, config.latitude_deg);
     return std::clamp(depth, 0.0, deepest);

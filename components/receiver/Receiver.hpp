@@ -36,9 +36,9 @@ public:
         bool blanked = false;   ///< Every bin is silenced.
         double saturated = 0;   ///< Share of the bins heard that have the largest code [1].
         bool all_zero = false;  ///< Every code is 0, and some bin that is heard has an intensity.
-        bool any() const { return blanked || all_zero || saturated > most_saturated; }
+        bool any() const { return blanked || all_zero || saturated > max_saturated; }
     };
-    static constexpr double most_saturated = 0.1;  ///< Of the bins: more are told of [1].
+    static constexpr double max_saturated = 0.1;  ///< Of the bins: more are told of [1].
     Flaws flawsOf(const types::Sonar& intensities, const types::Sonar& received) const;
     /** Of flaws: which, with numbers, and what helps. */
     std::string text(const Flaws& flaws, const types::Sonar& intensities) const;

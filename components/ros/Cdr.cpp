@@ -27,10 +27,10 @@ void CdrReader::raw(void* to, size_t size) {
     at_ += size;
 }
 
-uint32_t CdrReader::count(size_t minimum_size) {
+uint32_t CdrReader::count(size_t min_size) {
     uint32_t wanted = 0;
     value(wanted);
-    if (wanted > (bytes_.size() - at_) / minimum_size)
+    if (wanted > (bytes_.size() - at_) / min_size)
         throw CdrError(at_ - sizeof wanted,
                        std::to_string(wanted) + " elements are announced, more than the message holds");
     return wanted;

@@ -135,7 +135,7 @@ private:
     void raw(void* to, size_t size);
     void text(std::string& item);
     bool truth();
-    uint32_t count(size_t minimum_size);
+    uint32_t count(size_t min_size);
 
     std::span<const char> bytes_;
     size_t at_ = 4;

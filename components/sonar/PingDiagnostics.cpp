@@ -116,10 +116,10 @@ std::string targetText(const Coverage& coverage, const types::Snapshot& scene) {
 }
 
 /** S of what gives nothing back, and its rounding, in `cerqueira2017` (ACOUSTICS.md 8.1) [1]. */
-constexpr float least_mean = 6.2e-6f;
+constexpr float min_mean = 6.2e-6f;
 
 bool isLoud(Model model, const types::Sonar& ping) {
-    const float least = model == Model::Cerqueira2017 ? least_mean : 0;
+    const float least = model == Model::Cerqueira2017 ? min_mean : 0;
     return std::ranges::any_of(ping.bins, [least](float bin) { return bin > least; });
 }
 

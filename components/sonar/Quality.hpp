@@ -38,7 +38,7 @@ class QualityLadder {
 public:
     explicit QualityLadder(const SonarConfig& config);
     /** The one of fewest samples whose error is at most `target`, else the one of least error; of at least the rows and
-     *  columns of `least` and at most `most_samples` per beam, `least` itself where there is none. Its error is
+     *  columns of `least` and at most `max_samples` per beam, `least` itself where there is none. Its error is
      *  `model`'s. */
     Quality choose(const ErrorModel& model, double target, double max_samples, const Quality& least = {}) const;
 

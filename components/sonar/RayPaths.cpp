@@ -24,7 +24,7 @@ RayPaths::RayPaths(const RenderPlan& plan, const types::Geometry& geometry)
     if (plan.profile) table_.emplace(*plan.profile, plan.grid);
     if (plan.profile) stretch_ = std::max(1.0, plan.profile->fastest() / plan.grid.speed_of_sound);
     if (plan.features.has(Feature::MotionInPing)) motion_.emplace(geometry, 0.1 * plan.grid.speed_of_sound);
-    corners_.reserve(RayTable::most_corners + 1);
+    corners_.reserve(RayTable::max_corners + 1);
 }
 
 void RayPaths::place(const types::Snapshot& snapshot) {
@@ -49,7 +49,7 @@ void RayPaths::placeCorners() {
     const double spacing =
         std::sqrt(8 * 0.1 * plan_.grid.bin_width * plan_.grid.speed_of_sound / std::max(4 * turn, 1e-30));
     const double wanted = std::max(table_ ? static_cast<double>(table_->corners()) : 1, std::ceil(farthest / spacing));
-    const auto count = static_cast<size_t>(std::min(wanted, static_cast<double>(RayTable::most_corners)));
+    const auto count = static_cast<size_t>(std::min(wanted, static_cast<double>(RayTable::max_corners)));
     corners_.clear();
     for (size_t i = 0; i <= count; ++i)
         corners_.push_back(farthest * static_cast<double>(i) / static_cast<double>(count));
@@ -139,7 +139,7 @@ ApparentPlane RayPaths::apparent(const glm::dvec3& normal, double distance, cons
     ApparentPlane plane;
     plane.normal = direction / range - (slope_beside * beside + slope_upward * upward) / (range * range);
     plane.cosine = std::abs(facing) / (glm::length(normal) * pace);
-    plane.focus = std::min(range * range / area, most_focus);
+    plane.focus = std::min(range * range / area, max_focus);
     return plane;
 }
 

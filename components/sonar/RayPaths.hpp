@@ -31,7 +31,7 @@ struct HeardPoint {
  *  slant range is at a place that depends on both (ACOUSTICS.md 5.19, 5.20). */
 class RayPaths {
 public:
-    static constexpr double most_focus = 4;  ///< At a caustic rays would give infinitely much [1].
+    static constexpr double max_focus = 4;  ///< At a caustic rays would give infinitely much [1].
 
     /** Of a plan with Feature::Refraction or Feature::MotionInPing; both outlive it. */
     RayPaths(const RenderPlan& plan, const types::Geometry& geometry);

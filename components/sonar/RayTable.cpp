@@ -14,11 +14,11 @@ constexpr double steepest_ray = types::radians(89.99);
 constexpr double widest_step = 0.001;  ///< Between rays [rad].
 
 /** So far that an arc of the greatest curvature leaves its chord by a tenth of a bin at most [m]; no more than
- *  `most_corners` of them. */
+ *  `max_corners` of them. */
 double cornerSpacing(const acoustics::SoundProfile& profile, const BinGrid& grid) {
     const double radius = profile.slowest() / std::max(profile.steepest(), 1e-9);
     return std::max(std::sqrt(8 * 0.1 * grid.bin_width * radius),
-                    RayTable::beyond * grid.range_max / RayTable::most_corners);
+                    RayTable::beyond * grid.range_max / RayTable::max_corners);
 }
 
 }  // namespace

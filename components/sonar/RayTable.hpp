@@ -12,8 +12,8 @@ namespace insonify::sonar {
  *  where it has gone so far up or down that a hundredth of a bin may be missed (ACOUSTICS.md 5.19). */
 class RayTable {
 public:
-    static constexpr int most_corners = 512;  ///< [1]
-    static constexpr double beyond = 1.02;    ///< So far beyond the last bin rays go on, for cells at its edge [1].
+    static constexpr int max_corners = 512;  ///< [1]
+    static constexpr double beyond = 1.02;   ///< So far beyond the last bin rays go on, for cells at its edge [1].
 
     /** Where a ray is about the sonar: `spread` times the cosine of its elevation away from it, `rise` above it [m];
      *  and by how much both grow with the range [1]. In water of one speed, which is the sonar's, spread is the range.

@@ -168,11 +168,11 @@ void RenderPlan::setQuality(int rows, int columns_per_beam) {
 }
 
 double reflectedPower(const types::Material& material, int bounces) {
-    constexpr double least_reflection = 0.5, steepest = 0.3;
+    constexpr double min_reflection = 0.5, steepest = 0.3;
     const double reflection = std::abs(static_cast<double>(material.reflection));
     if (material.mirror && bounces > 0) return reflection > 0 ? reflection * reflection : 1;
     const bool smooth = material.roughness_slope && static_cast<double>(*material.roughness_slope) < steepest;
-    return bounces > 1 && smooth && reflection > least_reflection ? reflection * reflection : 0;
+    return bounces > 1 && smooth && reflection > min_reflection ? reflection * reflection : 0;
 }
 
 const LeftOut* RenderPlan::leftOut(Effect effect) const {

@@ -12,7 +12,7 @@ namespace {
 /** Range cells within the resolution, at least [1]. */
 constexpr double parts_of_resolution = 4;
 /** Scatterers of the scene for each of the lattice, at least: of rarer ones too much depends on single squares [1]. */
-constexpr double least_shape = 0.01;
+constexpr double min_shape = 0.01;
 constexpr int lowest_level = -60, highest_level = 40;
 
 acoustics::Pulse pulseOf(const RenderPlan& plan) {
@@ -56,7 +56,7 @@ std::vector<LatticeLevel> scattererLattice(const RenderPlan& plan) {
     for (int level = lowest_level; level <= highest_level; ++level) {
         const double square = std::exp2(level);  // [m^2]
         const double end = 2 * square / area_per_metre;
-        const bool too_fine = end <= plan.grid.range_min || (density > 0 && density * square < least_shape);
+        const bool too_fine = end <= plan.grid.range_min || (density > 0 && density * square < min_shape);
         if (level < highest_level && too_fine) continue;
         levels.push_back({end, std::sqrt(square), density * square, static_cast<uint32_t>(level - lowest_level)});
         if (end >= plan.grid.range_max) break;

@@ -11,18 +11,18 @@ namespace insonify::sonar {
 
 /** A part of a triangle's plane that neighbouring samples see; sonar axes. */
 struct Patch {
-    static constexpr size_t most_beams = 4;  ///< As many as a tile has columns.
+    static constexpr size_t max_beams = 4;  ///< As many as a tile has columns.
 
     glm::dvec3 normal;                  ///< Of any length [1].
     double distance;                    ///< normal.p of its points [m].
     glm::dvec3 middle;                  ///< Unit, to its middle [1].
     std::array<glm::dvec3, 4> corners;  ///< Unit, to its corners, one side after the other [1].
     AngularView::Direction low_bearing, high_bearing;
-    size_t beams;                                                      ///< In which it lies, neighbours [1].
-    std::array<AngularView::Direction, most_beams - 1> next_bearings;  ///< Where the second begins, and so on.
-    double low_sine, high_sine;                                        ///< Of its elevations [1].
-    double width, height;                                              ///< [rad]
-    double strength_range;                                             ///< Strength times slant range [m].
+    size_t beams;                                                     ///< In which it lies, neighbours [1].
+    std::array<AngularView::Direction, max_beams - 1> next_bearings;  ///< Where the second begins, and so on.
+    double low_sine, high_sine;                                       ///< Of its elevations [1].
+    double width, height;                                             ///< [rad]
+    double strength_range;                                            ///< Strength times slant range [m].
     double per_solid_angle;  ///< Two-way pattern in elevation, over the solid angle of a cell [1/sr].
     const ObjectRecord& object;
     uint32_t number;  ///< Of the object [1].

@@ -38,7 +38,7 @@ struct CastTile {
 /** Adds the echoes of tiles to the sums of beams, [beam - first_beam][bin][channel] in quanta, EchoRules::sumCount()
  *  numbers for each, or their fields, [..][real, imaginary] with sign, and what they hide of the volume to what follows
  *  there. Neighbouring samples of one triangle in one beam may be one cell, of fields those of up to
- *  Patch::most_beams. Allocates nothing. */
+ *  Patch::max_beams. Allocates nothing. */
 void deposit(const EchoRules& rules, const CastView& view, const PlacedScene& scene, std::span<const CastTile> tiles,
              int first_beam, uint64_t* sums);
 

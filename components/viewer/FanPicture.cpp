@@ -12,7 +12,7 @@ namespace insonify::viewer {
 namespace {
 
 constexpr int directions = 8192;
-constexpr double one_beam_width = 0.03, most_covered = 8;
+constexpr double one_beam_width = 0.03, max_covered = 8;
 
 /** Which beam a bearing belongs to, by its place between the outermost edges. */
 struct Beams {
@@ -83,7 +83,7 @@ void FanPicture::build(const types::Sonar& ping) {
     width_ = std::max(1u, static_cast<uint32_t>(across / pixel));
     height_ = std::max(1u, static_cast<uint32_t>(along / pixel));
     table_.assign(size_t{width_} * height_, {});
-    const auto covered = static_cast<uint32_t>(std::clamp(std::ceil(pixel * bin_count_), 1.0, most_covered));
+    const auto covered = static_cast<uint32_t>(std::clamp(std::ceil(pixel * bin_count_), 1.0, max_covered));
     for (uint32_t row = 0; row < height_; ++row)
         for (uint32_t column = 0; column < width_; ++column) {
             const double x = extent.x0 + (column + 0.5) * pixel, y = extent.y1 - (row + 0.5) * pixel;

@@ -64,7 +64,7 @@ def watch(text, limits, port=None):
                 sizes.append(size)
         if process.returncode != 0:
             fail("insonify run", process.returncode)
-        return {"settled_mb": sizes[0], "end_mb": sizes[-1], "most_mb": max(sizes), "seconds": time.monotonic() - start}
+        return {"settled_mb": sizes[0], "end_mb": sizes[-1], "max_mb": max(sizes), "seconds": time.monotonic() - start}
 
 
 def measure_memory(options):
@@ -80,4 +80,4 @@ def measure_memory(options):
 def show_memory(found):
     for name, run in found.items():
         print(f"{name}: {run['settled_mb']:.1f} MB after {SETTLED} s, {run['end_mb']:.1f} MB at the end, "
-              f"{run['most_mb']:.1f} MB at most; {run['seconds']:.0f} s")
+              f"{run['max_mb']:.1f} MB at most; {run['seconds']:.0f} s")

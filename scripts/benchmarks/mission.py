@@ -77,4 +77,4 @@ def measure_mission(options):
 def show_mission(run):
     print(f"{run['hours']:g} h, {run['way_km']:.1f} km over {run['survey_km']:.2f} x {run['survey_km']:.2f} km in "
           f"{run['seconds']:.0f} s, {3600 * run['hours'] / run['seconds']:.1f} times as fast as time goes; "
-          f"{run['settled_mb']:.1f} MB after {SETTLED} s, {run['end_mb']:.1f} MB at the end, {run['most_mb']:.1f} MB at most")
+          f"{run['settled_mb']:.1f} MB after {SETTLED} s, {run['end_mb']:.1f} MB at the end, {run['max_mb']:.1f} MB at most")

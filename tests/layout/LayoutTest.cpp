@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include <regex>
 #include <set>
 
 #include "tests/layout/Sources.hpp"
@@ -39,6 +40,16 @@ TEST(LayoutTest, AComponentsFolderIsItsNamespace) {
         };
         EXPECT_TRUE(std::ranges::any_of(source.lines, opensIt)) << source.path;
     }
+}
+
+TEST(LayoutTest, LimitsAreMaxAndMin) {
+    const std::regex other("\\b(most|least|maximum|minimum)_[a-z]\\w*");
+    for (const char* folder : {"types", "components", "shaders"})
+        for (const Source& source : sourcesIn(folder, {".hpp", ".cpp", ".glsl"}))
+            for (const std::string& line : source.lines) {
+                std::smatch found;
+                EXPECT_FALSE(std::regex_search(line, found, other)) << source.path << ": " << found[0];
+            }
 }
 
 TEST(LayoutTest, EveryTestFileIsNamedAfterWhatItTests) {
