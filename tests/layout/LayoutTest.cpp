@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include <map>
 #include <regex>
 #include <set>
 
@@ -14,6 +15,26 @@ std::string textOf(const std::string& path) {
     for (const std::string& line : readSource(std::filesystem::path(INSONIFY_SOURCE_DIR) / path).lines)
         text += line + "\n";
     return text;
+}
+
+/** The page of a source's component, or of types. */
+std::string pageOf(const Source& source) {
+    return (source.path.starts_with("types/") ? "" : "components/") + source.folder() + "/README.md";
+}
+
+/** What stands between "## Files" and the next heading of that level; "" where there is none. */
+std::string filesSectionOf(const std::string& page) {
+    const size_t begin = page.find("\n## Files\n");
+    return begin == std::string::npos ? "" : page.substr(begin, page.find("\n## ", begin + 1) - begin);
+}
+
+/** Headers and files of code that stand in back quotes, without those that a folder comes before. */
+std::set<std::string> filesNamedIn(const std::string& text) {
+    static const std::regex name(R"(`(\w+\.[hc]pp)`)");
+    std::set<std::string> names;
+    for (std::sregex_iterator it(text.begin(), text.end(), name); it != std::sregex_iterator(); ++it)
+        names.insert((*it)[1].str());
+    return names;
 }
 
 }  // namespace
@@ -50,6 +71,21 @@ TEST(LayoutTest, LimitsAreMaxAndMin) {
                 std::smatch found;
                 EXPECT_FALSE(std::regex_search(line, found, other)) << source.path << ": " << found[0];
             }
+}
+
+TEST(LayoutTest, EveryHeaderIsOnThePageOfItsFolder) {
+    std::map<std::string, std::set<std::string>> files;  // By page.
+    for (const char* folder : {"types", "components"})
+        for (const Source& source : sourcesIn(folder, {".hpp", ".cpp"}))
+            files[pageOf(source)].insert(std::filesystem::path(source.path).filename());
+    for (const auto& [page, names] : files) {
+        const std::string text = textOf(page);
+        for (const std::string& name : names)
+            EXPECT_TRUE(!name.ends_with(".hpp") || text.find("`" + name + "`") != std::string::npos)
+                << page << ": " << name;
+        for (const std::string& name : filesNamedIn(filesSectionOf(text)))
+            EXPECT_TRUE(names.contains(name)) << page << ": " << name;
+    }
 }
 
 TEST(LayoutTest, EveryTestFileIsNamedAfterWhatItTests) {
