@@ -61,7 +61,7 @@ bool isFirst(const Json& json, const char* first, const char* second) {
 }
 
 bool isAddress(const std::string& text) {
-    static const std::regex four(R"((25[0-5]|2[0-4]\d|1?\d?\d)(\.(25[0-5]|2[0-4]\d|1?\d?\d)){3})");
+    static const std::regex four(R"((25[0-5]|2[0-4]\d|1\d\d|[1-9]?\d)(\.(25[0-5]|2[0-4]\d|1\d\d|[1-9]?\d)){3})");
     return text.size() < 16 && std::regex_match(text, four);
 }
 

@@ -118,6 +118,7 @@ TEST_F(Sonar3dEmulatorTest, WhatIsOutOfBoundsIsRefusedWithTheBoundAndChangesNoth
     expectRefused("udp", R"({"mode": "broadcast"})", "must be \"multicast\", \"unicast\" or \"disabled\"");
     expectRefused("udp", R"({"mode": "unicast"})", "unicast_destination_ip is \"\"");
     expectRefused("udp", R"({"mode": "unicast", "unicast_destination_ip": "1.2.3.256"})", "must be like");
+    expectRefused("udp", R"({"mode": "unicast", "unicast_destination_ip": "01.2.3.4"})", "must be like");
     expectRefused("udp", R"({"mode": "unicast", "unicast_destination_ip": "1.2.3.4"})", "must be 1 to 65535");
     expectRefused("udp", R"({"mode": "disabled", "unicast_destination_port": 65536})", "port is 65536");
     expectRefused("udp", R"({"mode": "disabled", "unicast_destination_port": 1.5})", "port is 1.5");
