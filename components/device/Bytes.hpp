@@ -32,9 +32,9 @@ void write(Bytes& bytes, size_t at, T value) {
     std::memcpy(bytes.data() + at, &value, sizeof value);
 }
 
-/** Writes a number behind the last byte. */
+/** Writes a number behind the last byte. Not inlined, because g++ 12 then warns falsely of numbers in a row. */
 template <class T>
-void append(Bytes& bytes, T value) {
+[[gnu::noinline]] void append(Bytes& bytes, T value) {
     bytes.resize(bytes.size() + sizeof value);
     write(bytes, bytes.size() - sizeof value, value);
 }

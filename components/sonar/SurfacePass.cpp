@@ -1,3 +1,4 @@
+#include "components/sonar/SurfacePass.hpp"
 
 #include <algorithm>
 
