@@ -118,8 +118,8 @@ std::string noise(std::minstd_rand& random) {
 TEST(McapLogFailureTest, WhatWasFlushedBeforeTheDiskWasFullIsKeptWhole) {
     const Folder folder;
     std::minstd_rand random(1);
-    const auto text = [&] { return noise(random); };
-    EXPECT_EXIT(fillLimitedDisk(folder / "x.0.mcap", text, "did not reach it"), testing::ExitedWithCode(0), "");
+    const auto noisy = [&] { return noise(random); };
+    EXPECT_EXIT(fillLimitedDisk(folder / "x.0.mcap", noisy, "did not reach it"), testing::ExitedWithCode(0), "");
     const auto log = log::openLog(folder / "x.0.mcap");
     EXPECT_FALSE(log->complete());
     EXPECT_GT(log->samples().size(), 5u);
