@@ -30,7 +30,10 @@ SETTLED = 10  # from then on nothing is made for the first time any more [s]
 
 def resident(process):
     """Memory of a process [MB]; none: it has ended."""
-    lines = Path(f"/proc/{process.pid}/status").read_text().splitlines()
+    try:
+        lines = Path(f"/proc/{process.pid}/status").read_text().splitlines()
+    except FileNotFoundError:
+        return None
     found = [line.split()[1] for line in lines if line.startswith("VmRSS")]
     return int(found[0]) / 1024 if found else None
 
