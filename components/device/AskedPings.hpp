@@ -14,12 +14,12 @@ namespace insonify::device {
 template <class Kept = std::monostate>
 class AskedPings {
 public:
-    /** @param most that a sonar which is slow may answer still; where there are more, the oldest is given up */
-    explicit AskedPings(size_t most = 1) : most_(most) {}
+    /** @param max_waiting that a sonar which is slow may answer still; where there are more, the oldest is given up */
+    explicit AskedPings(size_t max_waiting = 1) : max_waiting_(max_waiting) {}
 
     /** @param sound_is_back when its last echo has come, at the latest */
     void add(types::Time now, types::Time sound_is_back, Kept kept = {}) {
-        if (asked_.size() >= most_) asked_.erase(asked_.begin());
+        if (asked_.size() >= max_waiting_) asked_.erase(asked_.begin());
         asked_.push_back({now, sound_is_back, std::move(kept)});
     }
     void clear() { asked_.clear(); }
@@ -49,7 +49,7 @@ private:
         Kept kept;
     };
 
-    size_t most_;
+    size_t max_waiting_;
     std::vector<Asked> asked_;
 };
 

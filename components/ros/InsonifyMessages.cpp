@@ -25,7 +25,7 @@ requires(!std::is_same_v<From, To> && requires(const From& from, To& to) {
 
 /** Hands on every field that both sides describe by the same name. */
 template <class From, class To>
-void copyNamesakes(const From& from, To& to) {
+void copyFieldsByName(const From& from, To& to) {
     auto take = [&](const Field& wanted, auto& target) {
         auto give = [&](const Field& given, const auto& value) {
             if (std::string_view(given.name) != wanted.name) return;
@@ -43,13 +43,13 @@ template <class Sample, class Message>
 void fill(const Sample& sample, const std::string& frame_id, Message& message) {
     types::requireSound(sample, "it");
     message.header = {toRos(sample.time), frame_id};
-    copyNamesakes(sample, message);
+    copyFieldsByName(sample, message);
 }
 
 template <class Message, class Sample>
 void read(const Message& message, Sample& sample) {
     sample.time = fromRos(message.header.stamp);
-    copyNamesakes(message, sample);
+    copyFieldsByName(message, sample);
 }
 
 }  // namespace
