@@ -91,10 +91,11 @@ AngularView::Direction AngularView::azimuthOf(double bearing, const Elevation& u
 
 AngularView makeAngularView(const RenderPlan& plan) {
     const SonarConfig& config = plan.sampled;
-    const std::vector<Beam>& beams = plan.cells;
+    const Fan& beams = plan.cells;
     AngularView view;
     view.beams = static_cast<int>(beams.size());
     view.beam_columns = config.columnsPerBeam();
+    view.joined = beams.joins();
     view.rows = config.rows();
     view.conical = config.beam_geometry == BeamGeometry::Conical;
     const auto widthOf = [](const Beam& beam) { return beam.high - beam.low; };
@@ -128,6 +129,7 @@ TileShape::TileShape(const AngularView& view, const BinGrid& bins, int beams) {
             at[count + i] = {at[i].columns + (widens ? across : 0), at[i].rows + (widens ? 0 : up)};
     }
     all = size[tile_samples];
+    max_patch = view.joined ? tile_samples : together * all.rows;
     max_merged = std::min(together * all.rows, mostMerged(view, bins));
 }
 

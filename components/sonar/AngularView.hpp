@@ -25,6 +25,7 @@ struct AngularView {
     int beam_columns = 0;  ///< Of each beam [1].
     int rows = 0;          ///< From below upwards [1].
     bool conical = false;
+    bool joined = true;  ///< Each beam begins where the one before it ends.
     bool weighted = false;     ///< By a pattern in elevation.
     double column_width = 0;   ///< Of the middle beam's columns, in bearing [rad].
     double row_height = 0;     ///< Of the tallest row [rad].
@@ -74,6 +75,7 @@ struct TileShape {
     Extent all{};                                  ///< Of the tile.
     Extent at[tile_samples] = {};                  ///< Of each sample from the tile's first.
     Extent size[tile_samples + 1] = {{}, {1, 1}};  ///< Of so many samples, a power of 2.
+    int max_patch = 1;   ///< Samples of one triangle that may become one patch of scatterers; a power of 2 [1].
     int max_merged = 1;  ///< Samples of one triangle that may become one cell, and are of one beam; a power of 2 [1].
 };
 

@@ -35,7 +35,7 @@ ShareRecord share(double from, double to, double u, double limit, uint32_t beam,
 }
 
 /** Beams that touch the frustum, with their edges in u, for one image row. */
-void addRow(const SonarConfig& config, const std::vector<Beam>& beams, const ViewFrustum& frustum, double v,
+void addRow(const SonarConfig& config, const Fan& beams, const ViewFrustum& frustum, double v,
             ColumnShares& result) {
     struct Edges {
         double low, high;
@@ -72,7 +72,7 @@ ViewFrustum publishedFrustum(const SonarConfig& config) {
 }
 
 /** Whole columns: beam k has [round(w/2 + tan(a_k) K), round(w/2 + tan(a_k+1) K)), K = (w/2) / tan(fov/2). */
-ColumnShares roundedShares(const std::vector<Beam>& beams, const ViewFrustum& frustum) {
+ColumnShares roundedShares(const Fan& beams, const ViewFrustum& frustum) {
     const auto column = [&](double bearing) {
         return static_cast<int>(std::lround(frustum.columns / 2.0 * (1 + std::tan(bearing) / frustum.extent_u)));
     };
@@ -95,7 +95,7 @@ double coneAzimuth(double bearing, double elevation) {
     return std::asin(std::clamp(std::sin(bearing) / std::cos(elevation), -1.0, 1.0));
 }
 
-std::vector<Beam> makeBeams(const SonarConfig& config) {
+Fan makeBeams(const SonarConfig& config) {
     std::vector<Beam> beams;
     if (!config.bearings_deg.empty()) {
         const double half = types::radians(config.beamWidthDeg()) / 2;
@@ -103,22 +103,17 @@ std::vector<Beam> makeBeams(const SonarConfig& config) {
             const double centre = types::radians(bearing);
             beams.push_back({centre, centre - half, centre + half});
         }
-        return beams;
+        return Fan(beams);
     }
     const double fov = types::radians(config.fieldOfViewDeg()), width = fov / config.beam_count;
     for (int k = 0; k < config.beam_count; ++k)
         beams.push_back({-fov / 2 + (k + 0.5) * width, -fov / 2 + k * width, -fov / 2 + (k + 1) * width});
-    return beams;
+    return Fan::sorted(std::move(beams));
 }
 
-std::vector<ViewFrustum> makeFrusta(const SonarConfig& config, const std::vector<Beam>& beams,
-                                    const RenderOptions& options) {
+std::vector<ViewFrustum> makeFrusta(const SonarConfig& config, const Fan& beams, const RenderOptions& options) {
     if (config.published || options.one_frustum) return {publishedFrustum(config)};
-    double low = beams.front().low, high = beams.front().high;
-    for (const Beam& beam : beams) {
-        low = std::min(low, beam.low);
-        high = std::max(high, beam.high);
-    }
+    double low = beams.low(), high = beams.high();
     const double half_elevation = halfElevation(config);
     if (config.beam_geometry == BeamGeometry::Conical) {
         low = coneAzimuth(low, half_elevation);
@@ -141,7 +136,7 @@ std::vector<ViewFrustum> makeFrusta(const SonarConfig& config, const std::vector
     return frusta;
 }
 
-ColumnShares makeShares(const SonarConfig& config, const std::vector<Beam>& beams, const ViewFrustum& frustum,
+ColumnShares makeShares(const SonarConfig& config, const Fan& beams, const ViewFrustum& frustum,
                         const RenderOptions& options) {
     if (config.published || options.one_frustum) return roundedShares(beams, frustum);
     ColumnShares result;

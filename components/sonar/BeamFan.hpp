@@ -6,19 +6,15 @@
 #include <glm/vec3.hpp>
 #include <vector>
 
+#include "components/sonar/Fan.hpp"
 #include "components/sonar/Interface.hpp"
 #include "components/sonar/RenderOptions.hpp"
 #include "components/sonar/SonarConfig.hpp"
 
 namespace insonify::sonar {
 
-/** One beam's share of bearings [rad], positive to port. */
-struct Beam {
-    double centre, low, high;
-};
-
-/** The beams of a configuration, in ascending bearing: a regular fan, or the explicit table. */
-std::vector<Beam> makeBeams(const SonarConfig& config);
+/** The beams of a configuration: a regular fan, or the explicit table. */
+Fan makeBeams(const SonarConfig& config);
 
 /** Azimuth at which a cone of bearing `bearing` meets elevation `elevation`; clamped to +-90 deg [rad]. */
 double coneAzimuth(double bearing, double elevation);
@@ -46,8 +42,7 @@ constexpr double tallest_image_deg = 150;
 
 /** As few frusta of at most 60 deg as cover the beams (ACOUSTICS.md 5.3); cones reach wider than their bearing. One
  *  with `published`. */
-std::vector<ViewFrustum> makeFrusta(const SonarConfig& config, const std::vector<Beam>& beams,
-                                    const RenderOptions& options = {});
+std::vector<ViewFrustum> makeFrusta(const SonarConfig& config, const Fan& beams, const RenderOptions& options = {});
 
 /** Overlap of columns and beams: fractional, or with `published` rounded to whole columns. Planar beams: one row of
  *  columns serves all image rows. */
@@ -61,7 +56,7 @@ struct ColumnShares {
     }
 };
 
-ColumnShares makeShares(const SonarConfig& config, const std::vector<Beam>& beams, const ViewFrustum& frustum,
+ColumnShares makeShares(const SonarConfig& config, const Fan& beams, const ViewFrustum& frustum,
                         const RenderOptions& options = {});
 
 /** Where a point lies from a sonar, as its beams see it [rad]. */

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "types/VectorMath.hpp"
 
@@ -20,7 +21,7 @@ double meanOver(const Beamformer::Rules& rules, const Beam& cell, double bearing
 double widthOf(const Beam& cell) { return cell.high - cell.low; }
 
 /** The first cell of each group, and the number of all. */
-std::vector<size_t> groupsOf(const std::vector<Beam>& cells) {
+std::vector<size_t> groupsOf(const Fan& cells) {
     const double narrow = 1.5 * widthOf(*std::ranges::min_element(cells, {}, widthOf));
     std::vector<size_t> starts{0};
     for (size_t i = 1; i < cells.size(); ++i)
@@ -58,13 +59,12 @@ INSONIFY_VECTOR_CLONES void addRows(const float* rows, std::span<const float> we
 
 }  // namespace
 
-Beamformer::Beamformer(const std::vector<Beam>& beams, const std::vector<Beam>& cells, size_t bin_count,
-                       const Rules& rules)
+Beamformer::Beamformer(const Fan& beams, const Fan& cells, size_t bin_count, const Rules& rules)
     : groups_(groupsOf(cells)), bin_count_(bin_count), grouped_(groupCount() * bin_count) {
     for (const Beam& beam : beams) bands_.push_back(bandOf(beam, cells, rules));
 }
 
-Beamformer::Band Beamformer::bandOf(const Beam& beam, const std::vector<Beam>& cells, const Rules& rules) const {
+Beamformer::Band Beamformer::bandOf(const Beam& beam, const Fan& cells, const Rules& rules) const {
     const auto weightOf = [&](size_t cell) { return meanOver(rules, cells[cell], beam.centre); };
     const double narrow = widthOf(*std::ranges::min_element(cells, {}, widthOf));
     const auto addGroup = [&](size_t group, Run& run) {
@@ -84,13 +84,29 @@ Beamformer::Band Beamformer::bandOf(const Beam& beam, const std::vector<Beam>& c
         while (group > 0 && cells[groups_[group]].low > azimuth) --group;
         return group;
     };
-    const size_t from = groupAt(beam.centre - rules.near), to = groupAt(beam.centre + rules.near) + 1;
-    Band band{{groups_[from], {}}, {{0, {}}, {to, {}}}};
-    for (size_t c = groups_[from]; c < groups_[to]; ++c) band.cells.weights.push_back(static_cast<float>(weightOf(c)));
-    for (size_t g = 0; g < from; ++g) addGroup(g, band.groups[0]);
-    for (size_t g = to; g < groupCount(); ++g) addGroup(g, band.groups[1]);
-    trim(band.cells, rules.floor);
-    for (Run& groups : band.groups) trim(groups, rules.floor);
+    constexpr double turn = 2 * std::numbers::pi;
+    const double low = beam.centre - rules.near, high = beam.centre + rules.near;
+    const size_t from = groupAt(low), to = groupAt(high) + 1;
+    // Groups [0, start) and [end, groupCount()) are near as well, by way of the seam.
+    const size_t start = cells.isRound() && high > cells.high() ? std::min(groupAt(high - turn) + 1, from) : 0;
+    const size_t end = cells.isRound() && low < cells.low() ? std::max(groupAt(low + turn), to) : groupCount();
+    Band band;
+    const auto addCells = [&](size_t first, size_t last, Run& run) {
+        run.first = groups_[first];
+        for (size_t c = groups_[first]; c < groups_[last]; ++c)
+            run.weights.push_back(static_cast<float>(weightOf(c)));
+    };
+    const auto addGroups = [&](size_t first, size_t last, Run& run) {
+        run.first = first;
+        for (size_t g = first; g < last; ++g) addGroup(g, run);
+    };
+    addCells(from, to, band.cells[0]);
+    if (start > 0) addCells(0, start, band.cells[1]);
+    if (start == 0) addCells(end, groupCount(), band.cells[1]);
+    addGroups(start, from, band.groups[0]);
+    addGroups(to, start > 0 ? groupCount() : end, band.groups[1]);
+    for (Run& run : band.cells) trim(run, rules.floor);
+    for (Run& run : band.groups) trim(run, rules.floor);
     return band;
 }
 
@@ -104,7 +120,7 @@ void Beamformer::sumGroup(size_t group, std::span<const float> echoes) {
 void Beamformer::form(size_t beam, std::span<const float> echoes, std::span<float> bins) const {
     const Band& band = bands_[beam];
     std::ranges::fill(bins, 0.0f);
-    addRows(echoes.data() + band.cells.first * bin_count_, band.cells.weights, bins.data(), bin_count_);
+    for (const Run& run : band.cells) addRows(echoes.data() + run.first * bin_count_, run.weights, bins.data(), bin_count_);
     for (const Run& run : band.groups)
         addRows(grouped_.data() + run.first * bin_count_, run.weights, bins.data(), bin_count_);
 }
@@ -112,8 +128,8 @@ void Beamformer::form(size_t beam, std::span<const float> echoes, std::span<floa
 std::vector<double> Beamformer::weights(size_t beam) const {
     std::vector<double> all(groups_.back());
     const Band& band = bands_[beam];
-    for (size_t i = 0; i < band.cells.weights.size(); ++i)
-        all[band.cells.first + i] = static_cast<double>(band.cells.weights[i]);
+    for (const Run& run : band.cells)
+        for (size_t i = 0; i < run.weights.size(); ++i) all[run.first + i] = static_cast<double>(run.weights[i]);
     for (const Run& run : band.groups)
         for (size_t i = 0; i < run.weights.size(); ++i)
             for (size_t c = groups_[run.first + i]; c < groups_[run.first + i + 1]; ++c)

@@ -1,5 +1,6 @@
 #pragma once
 #include <algorithm>
+#include <array>
 #include <functional>
 #include <span>
 #include <vector>
@@ -25,9 +26,9 @@ public:
         bool of_fields = false;  ///< Fields are summed; of groups, whose fields have any phase, the mean is of powers.
     };
 
-    /** `cells` are side by side, in ascending azimuth, and equal, but for some far from all beams that are wider and
-     *  count as a group each. */
-    Beamformer(const std::vector<Beam>& beams, const std::vector<Beam>& cells, size_t bin_count, const Rules& rules);
+    /** `cells` are side by side and equal. Cells that are wider count as a group each; they must be far from all beams.
+     *  Where the cells form a circle, what is near a beam continues across its seam. */
+    Beamformer(const Fan& beams, const Fan& cells, size_t bin_count, const Rules& rules);
 
     size_t groupCount() const { return groups_.size() - 1; }
     /** Sums one group of cells: each once a ping, before beams are formed. `echoes`: [cell][bin]. */
@@ -43,11 +44,11 @@ private:
         size_t first;
         std::vector<float> weights;
     };
-    /** What one beam hears: neighbouring cells, and neighbouring groups of cells on both sides. */
+    /** Cells near a beam, in two runs where these continue across the seam, and the groups of all other cells. */
     struct Band {
-        Run cells, groups[2];
+        std::array<Run, 2> cells, groups;
     };
-    Band bandOf(const Beam& beam, const std::vector<Beam>& cells, const Rules& rules) const;
+    Band bandOf(const Beam& beam, const Fan& cells, const Rules& rules) const;
     size_t cellsIn(size_t group) const { return groups_[group + 1] - groups_[group]; }
 
     std::vector<size_t> groups_;  ///< The first cell of each, and the number of all.

@@ -1,4 +1,5 @@
 #pragma once
+#include <cmath>
 #include <cstdint>
 
 #include "components/sonar/SonarConfig.hpp"
@@ -7,6 +8,10 @@ namespace insonify::sonar {
 
 /** Bins of all beams of a ping, at most: sums of 16 bytes take 256 MiB [1]. */
 constexpr int64_t max_bins = int64_t{1} << 24;
+
+/** Number of the bin of a width that holds a slant range, a whole number [m, m]. A range that lies on an edge but for
+ *  rounding, within 1e-9 bins, belongs to the bin behind the edge. */
+inline double binAt(double range, double bin_width) { return std::floor(range / bin_width + 1e-9); }
 
 /** The range bins of a ping: bin k holds slant ranges [edge(k), edge(k + 1)). */
 struct BinGrid {

@@ -47,13 +47,6 @@ double farthest(double outer, double inner, double floor, const Power& power) {
     return step > 0 ? std::max(outer, angle - step) : std::min(outer, angle - step);
 }
 
-double smallestSpacing(const std::vector<Beam>& beams) {
-    double smallest = 2 * pi;
-    for (size_t k = 1; k < beams.size(); ++k)
-        smallest = std::min(smallest, std::abs(beams[k].centre - beams[k - 1].centre));
-    return smallest;
-}
-
 }  // namespace
 
 Directivity::Directivity(const SonarConfig& config)
@@ -67,7 +60,9 @@ Directivity::Directivity(const SonarConfig& config)
     receive_elevation_ = patternOf(config.beam_pattern->receive.elevation, wavelength);
 }
 
-double Directivity::sentAzimuth(double azimuth) const { return powerOf(transmit_azimuth_, azimuth); }
+double Directivity::sentAzimuth(double azimuth) const {
+    return powerOf(transmit_azimuth_, conical_ ? azimuth : wrapped(azimuth));
+}
 
 double Directivity::heardAzimuth(double azimuth, double bearing) const {
     return conical_ ? powerOf(receive_azimuth_, azimuth, bearing)
@@ -78,7 +73,9 @@ double Directivity::azimuth(double azimuth, double bearing) const {
     return sentAzimuth(azimuth) * heardAzimuth(azimuth, bearing);
 }
 
-double Directivity::sentAmplitude(double azimuth) const { return amplitudeOf(transmit_azimuth_, azimuth); }
+double Directivity::sentAmplitude(double azimuth) const {
+    return amplitudeOf(transmit_azimuth_, conical_ ? azimuth : wrapped(azimuth));
+}
 
 double Directivity::heardAmplitude(double azimuth, double bearing) const {
     return conical_ ? amplitudeOf(receive_azimuth_, azimuth, bearing)
@@ -96,13 +93,13 @@ double Directivity::elevationReach() const {
     return farthest(pi / 2, 0, floor_, either);
 }
 
-Directivity::Span Directivity::azimuthSpan(const std::vector<Beam>& beams) const {
-    const double limit = conical_ ? pi / 2 : pi;
+Directivity::Span Directivity::azimuthSpan(const Fan& beams) const {
+    const double to = conical_ ? pi / 2 : beams.seam(), from = conical_ ? -to : to - 2 * pi;
     const auto any = [&](double at) {
         return std::max({azimuth(at, beams.front().centre), azimuth(at, beams[beams.size() / 2].centre),
                          azimuth(at, beams.back().centre)});
     };
-    return {farthest(-limit, beams.front().centre, floor_, any), farthest(limit, beams.back().centre, floor_, any)};
+    return {farthest(from, beams.front().centre, floor_, any), farthest(to, beams.back().centre, floor_, any)};
 }
 
 double Directivity::halfPowerAzimuth() const {
@@ -117,11 +114,11 @@ SonarConfig sampledConfig(const SonarConfig& config, const Directivity& directiv
         sampled.beam_height_deg =
             std::min(types::degrees(2 * directivity.elevationReach()), casts_rays ? 180 : tallest_image_deg);
     if (!directivity.hasAzimuth()) return sampled;
-    const std::vector<Beam> beams = makeBeams(config);
+    const Fan beams = makeBeams(config);
     const auto [low, high] = directivity.azimuthSpan(beams);
     const double fine =
-        std::min(smallestSpacing(beams), directivity.halfPowerAzimuth()) / std::max(min_cells, config.columnsPerBeam());
-    const int cells = std::clamp(static_cast<int>(std::ceil((high - low) / fine)), 1, max_cells);
+        std::min(beams.smallestSpacing(), directivity.halfPowerAzimuth()) / std::max(min_cells, config.columnsPerBeam());
+    const int cells = static_cast<int>(std::clamp(std::ceil((high - low) / fine), 1.0, double{max_cells}));
     const double width = types::degrees(high - low) / cells;
     sampled.bearings_deg.clear();
     for (int c = 0; c < cells; ++c) sampled.bearings_deg.push_back(types::degrees(low) + (c + 0.5) * width);
@@ -130,13 +127,15 @@ SonarConfig sampledConfig(const SonarConfig& config, const Directivity& directiv
     return sampled;
 }
 
-std::vector<Beam> azimuthCells(const SonarConfig& sampled, const std::vector<Beam>& beams,
-                               const Directivity& directivity, bool casts_rays) {
-    const std::vector<Beam> all = makeBeams(sampled);
+Fan azimuthCells(const SonarConfig& sampled, const Fan& beams, const Directivity& directivity, bool casts_rays) {
+    const Fan all = makeBeams(sampled);
     if (!casts_rays || !directivity.hasAzimuth()) return all;
     const double near = sampled.elements ? 2 * pi : directivity.nearAzimuth();  // elements hear each cell by itself
+    const double from = beams.front().centre - near, to = beams.back().centre + near;
     const auto side = [&](const Beam& cell) {
-        return cell.high < beams.front().centre - near ? -1 : cell.low > beams.back().centre + near ? 1 : 0;
+        if (cell.high + 2 * pi >= from && cell.low + 2 * pi <= to) return 0;  // across the seam
+        if (cell.high - 2 * pi >= from && cell.low - 2 * pi <= to) return 0;
+        return cell.high < from ? -1 : cell.low > to ? 1 : 0;
     };
     std::vector<Beam> cells;
     for (size_t i = 0; i < all.size();) {
@@ -145,7 +144,7 @@ std::vector<Beam> azimuthCells(const SonarConfig& sampled, const std::vector<Bea
         cells.push_back({0.5 * (all[i].low + all[end - 1].high), all[i].low, all[end - 1].high});
         i = end;
     }
-    return cells;
+    return Fan::sorted(std::move(cells));
 }
 
 std::string whyTooLarge(const SonarConfig& config) {

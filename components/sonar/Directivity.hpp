@@ -36,11 +36,11 @@ public:
 
     /** Elevation to either side beyond which it stays below the floor [rad], at most pi/2. */
     double elevationReach() const;
-    /** Azimuths of a fan between which any beam is above the floor [rad]. */
+    /** Azimuths of a fan between which any beam is above the floor, at most a whole turn from the fan's seam [rad]. */
     struct Span {
         double low, high;
     };
-    Span azimuthSpan(const std::vector<Beam>& beams) const;
+    Span azimuthSpan(const Fan& beams) const;
     /** Between the half-power points of a beam straight ahead, two way [rad]. */
     double halfPowerAzimuth() const;
     /** To either side of its bearing, within which a beam weighs each cell: all of the main lobe and the sidelobes that
@@ -60,8 +60,7 @@ SonarConfig sampledConfig(const SonarConfig& config, const Directivity& directiv
 
 /** The azimuth cells of a sonar that is sampled so. With rays those that are far from all beams are as wide as
  *  sixteen others, for they are heard by sidelobes alone. */
-std::vector<Beam> azimuthCells(const SonarConfig& sampled, const std::vector<Beam>& beams,
-                               const Directivity& directivity, bool casts_rays);
+Fan azimuthCells(const SonarConfig& sampled, const Fan& beams, const Directivity& directivity, bool casts_rays);
 
 /** Why the cells of a sonar would take more memory than there may be; empty where they do not.
  *  @throws types::ConfigError as Directivity does. */

@@ -96,9 +96,9 @@ void FieldResponse::spread(std::span<const float> sorted, std::span<float> field
 }
 
 double FieldResponse::amplitude(size_t sample, double range) const {
-    const double off = (static_cast<double>(sample) + 0.5) * sample_width_ - range;
-    if (pulse_) return pulse_->amplitude(off);
-    return off <= sample_width_ / 2 && off > -sample_width_ / 2 ? 1 : 0;
+    const auto number = static_cast<double>(sample);
+    if (pulse_) return pulse_->amplitude((number + 0.5) * sample_width_ - range);
+    return number == binAt(range, sample_width_) ? 1 : 0;
 }
 
 EchoField::EchoField(const RenderPlan& plan, int threads) : plan_(plan), response_(plan) {
@@ -196,8 +196,8 @@ void EchoField::form(ThreadPool& threads) {
 
 void EchoField::add(size_t beam, double range, std::complex<double> field) {
     const double width = response_.sampleWidth();
-    const double first = std::max(0.0, std::floor((range - response_.reach()) / width));
-    const double last = std::floor((range + response_.reach()) / width);
+    const double first = std::max(0.0, binAt(range - response_.reach(), width));
+    const double last = binAt(range + response_.reach(), width);
     float* const fields = &beams()[beam * numbers()];
     for (auto sample = static_cast<size_t>(first); sample < response_.samples() && static_cast<double>(sample) <= last;
          ++sample) {

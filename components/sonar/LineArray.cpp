@@ -136,7 +136,7 @@ ComplexRows LineArray::form(const ComplexRows& heard, std::span<const double> si
     return beams;
 }
 
-std::vector<Cone> conesOf(const std::vector<Beam>& beams) {
+std::vector<Cone> conesOf(const Fan& beams) {
     std::vector<Cone> cones;
     for (const Beam& beam : beams) cones.push_back({std::sin(beam.low), std::sin(beam.high)});
     return cones;

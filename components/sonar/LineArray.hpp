@@ -67,7 +67,7 @@ private:
 LineArray lineArrayOf(const SonarConfig& config);
 
 /** The beams of a plan as cones about the array. */
-std::vector<Cone> conesOf(const std::vector<Beam>& beams);
+std::vector<Cone> conesOf(const Fan& beams);
 
 /** What the elements hear of a field whose cells are filled, into all of `signals` but its time. Allocates. */
 void takeSignals(const RenderPlan& plan, const EchoField& field, const LineArray& array, types::SonarElements& signals);

@@ -34,7 +34,7 @@ double dot2(const glm::dvec3& v) { return glm::dot(v, v); }
 
 Reach reachOf(const RenderPlan& plan) {
     const double half_elevation = types::radians(plan.sampled.beam_height_deg) / 2;
-    double half_azimuth = std::max(std::abs(plan.cells.front().low), std::abs(plan.cells.back().high));
+    double half_azimuth = plan.cells.farthestAside();
     if (plan.features.has(Feature::Conical)) half_azimuth = coneAzimuth(half_azimuth, half_elevation);
     return {plan.grid.range_max, half_azimuth, half_elevation};
 }

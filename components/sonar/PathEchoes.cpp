@@ -131,9 +131,7 @@ WayPatterns::WayPatterns(const RenderPlan& plan)
       conical_(plan.features.has(Feature::Conical)),
       has_azimuth_(plan.has(Pass::Beamform)),
       reach_(std::sin(types::radians(plan.sampled.beam_height_deg) / 2)),
-      beam_width_(has_azimuth_ ? plan.directivity->halfPowerAzimuth() : types::radians(plan.config.beamWidthDeg())),
-      widest_(0) {
-    for (const Beam& cell : plan.cells) widest_ = std::max(widest_, cell.high - cell.low);
+      beam_width_(has_azimuth_ ? plan.directivity->halfPowerAzimuth() : types::radians(plan.config.beamWidthDeg())) {
     const bool patterned = plan.directivity && plan.directivity->hasElevation();
     for (int i = 0; i <= pattern_steps; ++i) {
         const double angle = std::asin(reach_ * (2.0 * i / pattern_steps - 1));
@@ -156,11 +154,7 @@ double WayPatterns::elevation(const std::vector<double>& table, double sine) con
 }
 
 double WayPatterns::sentAzimuth(double azimuth) const {
-    if (!has_azimuth_) {
-        const double middle = 0.5 * (plan_.cells.front().low + plan_.cells.back().high);
-        const double off = std::abs(std::remainder(azimuth - middle, 2 * pi));
-        return off <= 0.5 * (plan_.cells.back().high - plan_.cells.front().low) ? 1 : 0;
-    }
+    if (!has_azimuth_) return plan_.cells.spans(azimuth) ? 1 : 0;
     const double at = 0.5 * pattern_steps * (1 + std::remainder(azimuth, 2 * pi) / pi);
     const auto i = std::min(static_cast<size_t>(at), size_t{pattern_steps - 1});
     const double part = at - static_cast<double>(i);
@@ -176,16 +170,6 @@ double WayPatterns::power(const Way& sent, const Way& heard) const {
 
 bool WayPatterns::inOneBeam(const Way& a, const Way& b) const {
     return std::abs(std::remainder(a.azimuth - b.azimuth, 2 * pi)) < beam_width_;
-}
-
-template <class Use>
-void WayPatterns::eachCell(const Way& way, const Use& use) const {
-    const std::vector<Beam>& cells = plan_.cells;
-    for (const double azimuth : {way.azimuth, way.azimuth - 2 * pi, way.azimuth + 2 * pi}) {
-        const auto first = std::ranges::upper_bound(cells, azimuth - widest_, {}, &Beam::low);
-        for (auto cell = first; cell != cells.end() && cell->low <= azimuth; ++cell)
-            if (azimuth < cell->high) use(static_cast<uint32_t>(cell - cells.begin()));
-    }
 }
 
 /** Follows the rays of one tile after another. */
@@ -441,7 +425,7 @@ void PathEchoes::Tracer::depositOnce(const Angles& at, int i, const MirrorPlane&
         chain.begins_lobed && paths_.reflected_[hits_.command[i]] > 0 && !patterns.inOneBeam(by_mirror, by_itself);
     const double strength = scale * (given.diffuse + (comes_itself ? 0 : given.lobe));
     const Footprint cell = footprint(at, i, way, at.size * there);
-    patterns.eachCell(by_itself, [&](uint32_t heard) { bins_.depositCell(cell, heard, strength); });
+    patterns.eachCell(by_itself, [&](size_t heard) { bins_.depositCell(cell, static_cast<uint>(heard), strength); });
 }
 
 PathEchoes::PathEchoes(const RenderPlan& plan, const types::Geometry& geometry, const RayVisibility& visibility)

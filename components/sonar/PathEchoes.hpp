@@ -29,7 +29,9 @@ public:
     bool inOneBeam(const Way& a, const Way& b) const;
     /** Calls use(cell) for each azimuth cell that a way lies in. */
     template <class Use>
-    void eachCell(const Way& way, const Use& use) const;
+    void eachCell(const Way& way, const Use& use) const {
+        plan_.cells.eachAt(way.azimuth, use);
+    }
 
 private:
     double elevation(const std::vector<double>& table, double sine) const;
@@ -37,7 +39,7 @@ private:
 
     const RenderPlan& plan_;
     bool conical_, has_azimuth_;
-    double reach_, beam_width_, widest_;
+    double reach_, beam_width_;
     std::vector<double> sent_, heard_;  ///< Powers in elevation, over its sine from -reach_ on [1].
     std::vector<double> azimuths_;      ///< Power that is sent, over azimuths from -pi on [1].
 };

@@ -51,7 +51,7 @@ std::string aboveText(const RenderPlan& plan, double elevation_deg) {
 }
 
 std::string asideText(const RenderPlan& plan, double bearing_deg) {
-    const double low = degrees(plan.cells.front().low), high = degrees(plan.cells.back().high);
+    const double low = degrees(plan.cells.low()), high = degrees(plan.cells.high());
     const double middle = (low + high) / 2, off = std::remainder(bearing_deg - middle, 360);
     if (std::abs(off) <= (high - low) / 2) return "";
     return fmt::format("at a bearing of {:.4g} deg to {}, where the {} from {:.4g} deg to {} to {:.4g} deg to {}",

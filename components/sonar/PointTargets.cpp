@@ -75,13 +75,6 @@ double PointTargets::inPhase(const TargetWay& way) const {
     return coherentReflection(plan_.config.multipath->surface->wind_m_s, wavelength, way.sine_grazing);
 }
 
-bool PointTargets::isSent(const BeamAngles& direction) const {
-    const std::vector<Beam>& beams = plan_.beams;
-    const double middle = 0.5 * (beams.front().low + beams.back().high);
-    const double off = std::abs(std::remainder(direction.azimuth - middle, 2 * std::numbers::pi));
-    return off <= 0.5 * (beams.back().high - beams.front().low) * (1 + 1e-12);
-}
-
 double PointTargets::powerIn(const Beam& beam, const Return& echo) const {
     const auto& pattern = plan_.directivity;
     const double half_height = types::radians(plan_.config.beam_height_deg) / 2;
@@ -89,7 +82,7 @@ double PointTargets::powerIn(const Beam& beam, const Return& echo) const {
     const bool in_box = off >= beam.low - beam.centre && off < beam.high - beam.centre;
     const double across = pattern && pattern->hasAzimuth() ? pattern->sentAzimuth(echo.sent.azimuth) *
                                                                  pattern->heardAzimuth(echo.heard.azimuth, beam.centre)
-                                                           : in_box && isSent(echo.sent);
+                                                           : in_box && plan_.beams.spans(echo.sent.azimuth);
     const double along =
         pattern && pattern->hasElevation()
             ? pattern->sentElevation(echo.sent.elevation) * pattern->heardElevation(echo.heard.elevation)
@@ -100,8 +93,8 @@ double PointTargets::powerIn(const Beam& beam, const Return& echo) const {
 bool PointTargets::spread(double range) {
     const BinGrid& grid = plan_.grid;
     const double reach = pulse_ ? pulse_->reach() : 0;
-    const double first = std::max(0.0, std::floor((range - reach) / grid.bin_width));
-    const double last = std::min(grid.bin_count - 1.0, std::floor((range + reach) / grid.bin_width));
+    const double first = std::max(0.0, binAt(range - reach, grid.bin_width));
+    const double last = std::min(grid.bin_count - 1.0, binAt(range + reach, grid.bin_width));
     means_.clear();
     first_bin_ = static_cast<size_t>(first);
     for (double k = first; k <= last; ++k)

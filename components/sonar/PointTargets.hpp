@@ -57,7 +57,6 @@ private:
     std::optional<Return> returnOf(const TargetWay& out, const TargetWay& back, double strength_db) const;
     /** None where it is not heard. */
     static std::optional<TargetWay> bentWay(const RayPaths& bent, const types::Snapshot& snapshot, size_t target);
-    bool isSent(const BeamAngles& direction) const;
     double powerIn(const Beam& beam, const Return& echo) const;
     /** Fills means_ for bins from `first` on; whether there is any. */
     bool spread(double range);

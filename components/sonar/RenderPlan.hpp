@@ -135,10 +135,10 @@ struct RenderPlan {
     BinGrid grid;
     MaterialLaws laws;
     std::shared_ptr<const acoustics::SoundProfile> profile;  ///< That bends the rays; null: they are straight.
-    std::vector<Beam> beams;
+    Fan beams;
     std::optional<Directivity> directivity;  ///< None without a beam pattern.
     SonarConfig sampled;                     ///< What is sampled: sampledConfig(), or `config`.
-    std::vector<Beam> cells;                 ///< Its azimuth cells; the beams themselves without a pattern in azimuth.
+    Fan cells;                               ///< Its azimuth cells; the beams themselves without a pattern in azimuth.
     std::vector<ViewFrustum> frusta;         ///< Images of the cells; none with rays.
     std::vector<LeftOut> left_out;
 

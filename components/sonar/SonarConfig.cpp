@@ -235,8 +235,9 @@ double SonarConfig::bearingDeg(int k) const {
 
 double SonarConfig::coverageDeg() const {
     if (bearings_deg.empty()) return fieldOfViewDeg();
-    const auto [first, last] = std::minmax_element(bearings_deg.begin(), bearings_deg.end());
-    return std::min(*last - *first + beamWidthDeg(), 360.0);
+    const ArcOrder arc = alongArc(bearings_deg, 360);
+    const double first = bearings_deg[arc.order.front()], last = bearings_deg[arc.order.back()];
+    return std::min(last - first + (arc.turned > 0 ? 360 : 0) + beamWidthDeg(), 360.0);
 }
 
 std::optional<double> SonarConfig::targetError() const {

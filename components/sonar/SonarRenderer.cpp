@@ -115,7 +115,8 @@ void SonarRenderer::Parts::fillHeader(const types::Snapshot& snapshot, types::So
     ping.beam_width = types::Angle::fromDeg(plan.config.beamWidthDeg());
     ping.beam_height = types::Angle::fromDeg(plan.config.beam_height_deg);
     ping.bearings.resize(plan.beams.size());
-    for (size_t k = 0; k < plan.beams.size(); ++k) ping.bearings[k] = types::Angle::fromRad(plan.beams[k].centre);
+    for (size_t row = 0; row < plan.beams.size(); ++row)
+        ping.bearings[row] = types::Angle::fromRad(plan.beams.tableBearing(row));
     ping.speed_of_sound = static_cast<float>(plan.grid.speed_of_sound);
     ping.bin_count = static_cast<uint32_t>(plan.grid.bin_count);
     ping.beam_count = static_cast<uint32_t>(plan.beams.size());
@@ -138,6 +139,10 @@ void SonarRenderer::render(const types::Snapshot& snapshot, types::Sonar& ping) 
     parts_->echoes->render(snapshot, ping, parts_->stages);
     parts_->echoes->setTruth(nullptr);
     finish(snapshot, ping);
+    if (!truth) return;
+    types::SonarTruth::forEachArray(*truth, [&](const char*, auto& numbers, auto) {
+        parts_->plan.beams.toTableOrder(std::span(numbers), truth->bin_count);
+    });
 }
 
 void SonarRenderer::setTruth(const types::Sonar& ping, types::SonarTruth* truth) {
@@ -150,6 +155,7 @@ void SonarRenderer::finish(const types::Snapshot& snapshot, types::Sonar& ping) 
     parts_->addTargets(snapshot, ping);
     if (const EchoField* field = parts_->echoes->field()) field->detect(ping);
     if (parts_->ring_down) parts_->ring_down->add(ping);
+    parts_->plan.beams.toTableOrder(std::span(ping.bins), ping.bin_count);
     parts_->stages[BeamStage].seconds +=
         std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }

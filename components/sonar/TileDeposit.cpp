@@ -240,7 +240,7 @@ private:
     /** Samples from i on that are a rectangle of one triangle in one beam. */
     int sameFrom(const TileHits& hits, int i) const {
         const auto alignment = static_cast<uint32_t>(i == 0 ? tile_samples : i & -i);
-        const int largest = sums_fields<Estimator> ? tile_samples : shape_.max_merged;
+        const int largest = sums_fields<Estimator> ? shape_.max_patch : shape_.max_merged;
         const int most = scene_.paths ? 1 : std::min(static_cast<int>(alignment), largest);
         int run = 1;
         while (run < most && hits.triangle[i + run] == hits.triangle[i] && hits.command[i + run] == hits.command[i])

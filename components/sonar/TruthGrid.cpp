@@ -1,28 +1,27 @@
 #include "components/sonar/TruthGrid.hpp"
 
 #include <algorithm>
+#include <numbers>
 
 namespace insonify::sonar {
 namespace {
 
-/** Bearings half way between two beams, or as far beyond the outermost ones; of a single beam, its share of bearings.
- */
-std::vector<double> edgesOf(const std::vector<Beam>& beams) {
-    if (beams.size() == 1) return {beams[0].low, beams[0].high};
-    std::vector<double> edges{beams[0].centre - (beams[1].centre - beams[0].centre) / 2};
-    for (size_t k = 1; k < beams.size(); ++k) edges.push_back((beams[k - 1].centre + beams[k].centre) / 2);
-    edges.push_back(2 * beams.back().centre - edges.back());
-    return edges;
+constexpr double whole_turn = 2 * std::numbers::pi;
+
+/** The azimuth, or the same one a whole turn on or back where that alone lies between two others [rad]. */
+double turnedBetween(double low, double high, double azimuth) {
+    if (azimuth < low && azimuth + whole_turn < high) return azimuth + whole_turn;
+    return azimuth >= high && azimuth - whole_turn >= low ? azimuth - whole_turn : azimuth;
 }
 
 }  // namespace
 
 std::vector<int32_t> beamsOfCells(const RenderPlan& plan) {
     if (!plan.has(Pass::Beamform)) return {};
-    const std::vector<double> edges = edgesOf(plan.beams);
+    const std::vector<double> edges = plan.beams.halfways();
     std::vector<int32_t> beams;
     for (const Beam& cell : plan.cells) {
-        const auto above = std::upper_bound(edges.begin(), edges.end(), cell.centre);
+        const auto above = std::ranges::upper_bound(edges, turnedBetween(edges.front(), edges.back(), cell.centre));
         const bool outside = above == edges.begin() || above == edges.end();
         beams.push_back(outside ? -1 : static_cast<int32_t>(above - edges.begin()) - 1);
     }

@@ -14,11 +14,11 @@ using types::radians;
 
 constexpr size_t bin_count = 7;
 
-std::vector<Beam> sideBySide(double low, double high, int count) {
+Fan sideBySide(double low, double high, int count) {
     const double width = (high - low) / count;
     std::vector<Beam> all;
     for (int i = 0; i < count; ++i) all.push_back({low + (i + 0.5) * width, low + i * width, low + (i + 1) * width});
-    return all;
+    return Fan::sorted(std::move(all));
 }
 
 /** A lobe of 2 deg about each bearing, and sidelobes of 1e-3 all over. */
@@ -37,8 +37,8 @@ std::vector<float> formed(Beamformer& beamformer, size_t beam, const std::vector
 
 class BeamformerTest : public testing::Test {
 protected:
-    std::vector<Beam> beams_ = sideBySide(radians(-30), radians(30), 30);
-    std::vector<Beam> cells_ = sideBySide(radians(-60), radians(60), 237);  // the last group is not full
+    Fan beams_ = sideBySide(radians(-30), radians(30), 30);
+    Fan cells_ = sideBySide(radians(-60), radians(60), 237);  // the last group is not full
     Beamformer beamformer_{beams_, cells_, bin_count, {lobe, radians(8), 1e-6}};
 };
 

@@ -1,0 +1,274 @@
+// Pings, truth and returns of tables of bearings at random, with every effect: in any order the same rows, the same
+// wherever the fan lies about the seam, and each beam what it is alone.
+#include <gmock/gmock.h>
+
+#include <functional>
+
+#include "components/sonar/SonarRenderer.hpp"
+#include "tests/support/Surfaces.hpp"
+#include "tests/support/Tables.hpp"
+#include "types/Angle.hpp"
+#include "types/SonarReturns.hpp"
+
+namespace insonify::sonar {
+namespace {
+
+using types::radians;
+
+/** One effect, how it is asked for, and what it needs. */
+struct Effect {
+    const char* name;
+    std::function<void(SonarConfig&)> ask;
+    bool drawn = true;         ///< Pictures show it as well.
+    bool stands_alone = true;  ///< A beam's echoes do not depend on the other beams of the fan.
+    double alone = 0.03;       ///< How far they may be off, in relative L2 [1].
+};
+
+BeamPatternConfig pattern() {
+    BeamPatternConfig pattern;
+    pattern.receive.azimuth.emplace().width_deg = 4;
+    pattern.transmit.elevation.emplace().width_deg = 30;
+    return pattern;
+}
+
+std::vector<Effect> effects() {
+    const auto plain = [](SonarConfig&) {};
+    const auto coherent = [](SonarConfig& c) {
+        c.frequency_khz = 300;
+        c.speckle = SpeckleConfig{true, 5, {}};
+    };
+    return {
+        {"plain", plain},
+        {"conical", [](SonarConfig& c) { c.beam_geometry = BeamGeometry::Conical; }},
+        {"cerqueira2017", [](SonarConfig& c) { c.model = Model::Cerqueira2017; }},
+        {"volume", [](SonarConfig& c) { c.volume = {{{}, {}, -30}}; }},
+        {"layers", [](SonarConfig& c) { c.volume = {{{}, 2, -30}, {2, {}, -40}}; }},
+        {"pattern", [](SonarConfig& c) { c.beam_pattern = pattern(); }, true, true, 0.1},
+        {"pattern and pulse",
+         [](SonarConfig& c) {
+             c.beam_pattern = pattern();
+             c.pulse.emplace().bandwidth_khz = 2;
+         },
+         true, true, 0.1},
+        {"multipath",
+         [](SonarConfig& c) {
+             c.multipath.emplace().surface.emplace();
+             c.multipath->bounces = 2;
+         },
+         false, false},
+        {"motion", [](SonarConfig& c) { c.motion_in_ping = true; }, false, false},
+        {"coherent", coherent, false, true, 0.05},
+        {"coherent with pattern and pulse",
+         [coherent](SonarConfig& c) {
+             coherent(c);
+             c.beam_pattern = pattern();
+             c.pulse.emplace().bandwidth_khz = 2;
+         },
+         false, false},
+    };
+}
+
+/** A sonar of 100 bins of 0.2 m. */
+SonarConfig sonar(const test::Table& table, const Effect& effect, Visibility visibility = Visibility::Cpu) {
+    SonarConfig config;
+    config.speed_of_sound = 1000;
+    config.range = 20;
+    config.bin_count = 100;
+    config.beam_height_deg = 40;
+    config.bearings_deg = table.bearings_deg;
+    config.beam_width_deg = table.width_deg;
+    config.quality.rows = 96;
+    config.quality.columns_per_beam = 2;
+    config.visibility = visibility;
+    config.device = visibility == Visibility::Gl ? "software" : "";
+    effect.ask(config);
+    return config;
+}
+
+/** Seabed, ball, block, plate, wall and three point targets, 3 m below the surface, seen by a sonar that is turned by
+ *  `yaw` [rad]. */
+types::Snapshot scene(double yaw = 0) {
+    static const types::GeometryPtr geometry = test::surfaces();
+    types::Snapshot snapshot = test::snapshotOf(geometry, {}, yaw);
+    snapshot.targets = {{{8, 1, 0}, 5}, {{-9, 0.5, 0.2}, 5}, {{3, -9, -0.5}, 5}};
+    snapshot.target_names = std::make_shared<const std::vector<std::string>>(3, "target");
+    snapshot.water_surface = 3;
+    snapshot.sonar.velocity = {1.5, 0.2, 0};
+    snapshot.sonar.angular_velocity = {0, 0, 0.3};
+    return snapshot;
+}
+
+struct Shown {
+    types::Sonar ping;
+    types::SonarTruth truth;
+    types::SonarReturns returns;
+};
+
+Shown shownOf(const SonarConfig& config, const types::Snapshot& snapshot, int threads = 2) {
+    SonarRenderer renderer(config, snapshot.geometry, {.threads = threads});
+    Shown shown;
+    renderer.setTruth(shown.ping, &shown.truth);
+    renderer.render(snapshot, shown.ping);
+    shown.truth.objects.resize(snapshot.geometry->objects.size());
+    shown.returns.take(shown.ping, shown.truth);
+    return shown;
+}
+
+template <class T>
+std::span<const T> rowOf(const std::vector<T>& values, size_t row, size_t rows) {
+    return std::span(values).subspan(row * (values.size() / rows), values.size() / rows);
+}
+
+/** Whether two rows are the same bit for bit; NaN is NaN. */
+template <class T>
+bool same(std::span<const T> a, std::span<const T> b) {
+    return std::ranges::equal(a, b, [](T x, T y) { return x == y || (x != x && y != y); });
+}
+
+/** Row `row` of one is row `other_row` of the other, in all that is reported of a beam. */
+void expectSameRow(const Shown& shown, size_t row, const Shown& other, size_t other_row) {
+    const size_t beams = shown.ping.beam_count;
+    EXPECT_EQ(shown.ping.bearings[row].rad, other.ping.bearings[other_row].rad);
+    const auto compare = [&](const char* name, const auto& mine, const auto& theirs) {
+        EXPECT_TRUE(same(rowOf(mine, row, beams), rowOf(theirs, other_row, beams))) << name << " of row " << row;
+    };
+    compare("bins", shown.ping.bins, other.ping.bins);
+    compare("object", shown.truth.object, other.truth.object);
+    compare("elevation", shown.truth.elevation, other.truth.elevation);
+    compare("share", shown.truth.share, other.truth.share);
+    compare("hits", shown.truth.hits, other.truth.hits);
+    compare("grazing", shown.truth.grazing, other.truth.grazing);
+    compare("path", shown.truth.path, other.truth.path);
+    compare("shadow", shown.truth.shadow, other.truth.shadow);
+    compare("first range", shown.returns.first_range, other.returns.first_range);
+    compare("strongest level", shown.returns.strongest_level, other.returns.strongest_level);
+}
+
+double difference(std::span<const float> a, std::span<const float> b) {
+    double error = 0, norm = 0;
+    for (size_t i = 0; i < a.size(); ++i) {
+        error += std::pow(double{a[i]} - double{b[i]}, 2);
+        norm += std::pow(double{b[i]}, 2);
+    }
+    return norm > 0 ? std::sqrt(error / norm) : std::sqrt(error);
+}
+
+bool isAhead(const test::Table& table) {
+    return std::ranges::all_of(table.bearings_deg, [&](double b) { return std::abs(b) + table.width_deg / 2 < 90; });
+}
+
+/** Whether a straight array, which sees what is ahead, can have the fan. */
+bool canHave(const test::Table& table, const SonarConfig& config) {
+    return config.beam_geometry == BeamGeometry::Planar || isAhead(table);
+}
+
+class FanPingTest : public testing::TestWithParam<Effect> {
+protected:
+    template <class Use>
+    void forTables(int rounds, const Use& use) const {
+        std::mt19937 random(7);
+        for (int round = 0; round < rounds; ++round)
+            for (const test::Table& table : test::tablesOf(random)) {
+                SCOPED_TRACE(testing::PrintToString(table));
+                if (canHave(table, sonar(table, GetParam()))) use(table, random);
+            }
+    }
+};
+
+TEST_P(FanPingTest, AnyOrderOfTheTableGivesTheSameRows) {
+    forTables(2, [&](const test::Table& table, std::mt19937& random) {
+        for (const Visibility visibility : {Visibility::Cpu, Visibility::Gl}) {
+            if (visibility == Visibility::Gl && !GetParam().drawn) continue;
+            const Shown ascending = shownOf(sonar(table, GetParam(), visibility), scene());
+            std::vector<size_t> rows(table.bearings_deg.size());
+            for (size_t i = 0; i < rows.size(); ++i) rows[i] = rows.size() - 1 - i;
+            for (int order = 0; order < 2; ++order) {
+                test::Table other = table;
+                for (size_t i = 0; i < rows.size(); ++i) other.bearings_deg[i] = table.bearings_deg[rows[i]];
+                const Shown shown = shownOf(sonar(other, GetParam(), visibility), scene(), 1 + order);
+                for (size_t i = 0; i < rows.size(); ++i) expectSameRow(shown, i, ascending, rows[i]);
+                std::ranges::shuffle(rows, random);
+            }
+        }
+    });
+}
+
+TEST_P(FanPingTest, AFanIsTheSameWhereverItLiesAboutTheSeam) {
+    if (sonar({"", {0}, 1}, GetParam()).beam_geometry == BeamGeometry::Conical) return;  // sees what is ahead alone
+    forTables(1, [&](const test::Table& table, std::mt19937& random) {
+        const Shown here = shownOf(sonar(table, GetParam()), scene());
+        const double turn = std::uniform_real_distribution<double>(120, 240)(random);
+        test::Table turned = table;
+        for (double& bearing : turned.bearings_deg) bearing = test::wrappedDeg(bearing + turn);
+        const Shown there = shownOf(sonar(turned, GetParam()), scene(radians(-turn)));
+        for (size_t row = 0; row < table.bearings_deg.size(); ++row)
+            EXPECT_LT(difference(rowOf(there.ping.bins, row, table.bearings_deg.size()),
+                                 rowOf(here.ping.bins, row, table.bearings_deg.size())),
+                      0.03)
+                << "row " << row << " turned by " << turn;
+    });
+}
+
+TEST_P(FanPingTest, EachBeamIsWhatItIsAlone) {
+    if (!GetParam().stands_alone) return;
+    forTables(1, [&](const test::Table& table, std::mt19937&) {
+        const auto fine = [&](SonarConfig config) {
+            config.quality.rows = 256;
+            config.quality.columns_per_beam = 8;
+            return config;
+        };
+        const Shown all = shownOf(fine(sonar(table, GetParam())), scene());
+        for (size_t row = 0; row < table.bearings_deg.size(); ++row) {
+            const Shown alone =
+                shownOf(fine(sonar({"alone", {table.bearings_deg[row]}, table.width_deg}, GetParam())), scene());
+            EXPECT_LT(difference(rowOf(all.ping.bins, row, table.bearings_deg.size()), alone.ping.bins),
+                      GetParam().alone)
+                << "row " << row;
+        }
+    });
+}
+
+TEST_P(FanPingTest, RaysAndPicturesAgree) {
+    if (!GetParam().drawn) return;
+    forTables(1, [&](const test::Table& table, std::mt19937&) {
+        const auto fine = [&](SonarConfig config) {
+            config.quality.rows = 384;
+            config.quality.columns_per_beam = 8;
+            return config;
+        };
+        const Shown cast = shownOf(fine(sonar(table, GetParam())), scene());
+        const Shown drawn = shownOf(fine(sonar(table, GetParam(), Visibility::Gl)), scene());
+        EXPECT_LT(difference(drawn.ping.bins, cast.ping.bins), 0.05);
+    });
+}
+
+INSTANTIATE_TEST_SUITE_P(Effects, FanPingTest, testing::ValuesIn(effects()), [](const auto& effect) {
+    std::string name = effect.param.name;
+    std::ranges::replace(name, ' ', '_');
+    return name;
+});
+
+/** Coherent beams that overlap or leave gaps keep the energy of the ping that sums energies. */
+TEST(FanPingTest, CoherentSpeckleKeepsTheEnergyOfEveryTable) {
+    std::mt19937 random(3);
+    for (const test::Table& table : test::tablesOf(random)) {
+        SCOPED_TRACE(testing::PrintToString(table));
+        SonarConfig energies = sonar(table, effects().front());
+        energies.frequency_khz = 300;
+        energies.bin_count = 400;
+        energies.quality.rows = 256;
+        SonarConfig fields = energies;
+        fields.speckle = SpeckleConfig{true, 10, {}};
+        const types::Snapshot floor = test::snapshotOf(test::sceneOf({test::ground(-3)}));
+        const types::Sonar mean = shownOf(energies, floor).ping, speckled = shownOf(fields, floor).ping;
+        for (size_t row = 0; row < mean.beam_count; ++row) {
+            double sum = 0, count = 0;
+            for (size_t bin = 160; bin < 400; ++bin, ++count)
+                sum += double{speckled.bins[row * 400 + bin]} / double{mean.bins[row * 400 + bin]};
+            EXPECT_NEAR(sum / count, 1, 4 / std::sqrt(count)) << "beam " << row;
+        }
+    }
+}
+
+}  // namespace
+}  // namespace insonify::sonar
