@@ -38,8 +38,6 @@ public:
     /** Waits for the sums over all frusta taken, EchoRules::sumCount() for each beam, in quanta; valid until the slot
      *  begins another ping or another one's are waited for. */
     virtual std::span<const uint64_t> finish(size_t slot) = 0;
-    /** What is compiled into it. */
-    virtual Features compiled() const = 0;
 };
 
 /** The context outlives it. */

@@ -15,7 +15,7 @@
 #include "components/sonar/RenderPlan.hpp"
 #include "components/sonar/SurfaceScene.hpp"
 #include "components/sonar/ThreadPool.hpp"
-#include "components/sonar/TileDeposit.hpp"
+#include "components/sonar/TileCells.hpp"
 #include "components/sonar/TruthGrid.hpp"
 
 namespace insonify::sonar {
@@ -53,7 +53,6 @@ public:
         const std::optional<LeftOut> dark = paths_ ? paths_->leftOut() : std::nullopt;
         return dark ? std::vector{*dark} : std::vector<LeftOut>{};
     }
-    Features compiled() const override;
     const std::string& device() const override { return device_; }
 
 private:
@@ -143,16 +142,6 @@ CastEchoes::CastEchoes(const RenderPlan& plan, types::GeometryPtr geometry)
     takeQuality();
 }
 
-Features CastEchoes::compiled() const {
-    Features all = compiledForRays(plan_.features);
-    if (plan_.features.has(Feature::Speckle) && !rules_.lattice.empty()) all.add(Feature::Speckle);
-    if (view_.cells.weighted) all.add(Feature::ElevationPattern);
-    if (!rules_.laws.tables.empty() || rules_.laws.hasLobes()) all.add(Feature::BackscatterLaws);
-    if (plan_.profile && ray_paths_) all.add(Feature::Refraction);
-    if (plan_.config.motion_in_ping && ray_paths_) all.add(Feature::MotionInPing);
-    return all | (plan_.features & Features{Feature::Volume, Feature::VolumeLayers});
-}
-
 void CastEchoes::takeQuality() {
     rules_ = makeEchoRules(plan_);
     view_.cells = makeAngularView(plan_);
@@ -209,7 +198,7 @@ void CastEchoes::place(const types::Snapshot& snapshot) {
     if (ray_paths_) ray_paths_->place(snapshot);
     runs_.clear();
     for (const CommandRecord& command : visibility_.commands())
-        runs_.push_back(placedRun(places_.records()[command.object], command, rules_, 1, 0));
+        runs_.push_back(placedRun(places_.records()[command.object], command, rules_));
 }
 
 TileRays CastEchoes::raysOf(const CastTile& tile, int end_column) const {
@@ -262,12 +251,12 @@ bool CastEchoes::gather(const Part& part, Worker& worker) {
 
 void CastEchoes::depositPart(const Part& part, std::span<const CastTile> tiles, Worker& worker) {
     std::fill(worker.sums.begin(), worker.sums.end(), 0);
-    if (!truth_ || field_) deposit(rules_, view_, scene(), tiles, part.first_beam, worker.sums.data());
+    if (!truth_ || field_) depositTiles(rules_, view_, scene(), tiles, {part.first_beam, worker.sums.data()});
     if (!truth_) return;
     worker.shown->clear();
     std::vector<uint64_t>& told = field_ ? worker.told_sums : worker.sums;
-    depositAndTell(field_ ? *truth_rules_ : rules_, view_, scene(), tiles, part.first_beam, told.data(),
-                   {*worker.shown, {}, worker.one_beam});
+    const TruthSink truth{*worker.shown, {}, worker.one_beam};
+    depositTiles(field_ ? *truth_rules_ : rules_, view_, scene(), tiles, {part.first_beam, told.data(), &truth});
     for (int beam = 0; beam < part.beams; ++beam)
         truth_grid_->take(static_cast<size_t>(part.first_beam + beam), *worker.shown, static_cast<size_t>(beam),
                           *truth_);

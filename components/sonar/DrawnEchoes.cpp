@@ -6,7 +6,7 @@
 
 #include "components/gpu/EglContext.hpp"
 #include "components/sonar/BinLevels.hpp"
-#include "components/sonar/CpuDeposit.hpp"
+#include "components/sonar/PictureDeposit.hpp"
 #include "components/sonar/EchoGrid.hpp"
 #include "components/sonar/EchoRenderer.hpp"
 #include "components/sonar/SurfacePass.hpp"
@@ -46,7 +46,6 @@ public:
     void setTruth(types::SonarTruth* truth) override { truth_ = truth; }
     bool hasEchoes() const override;
     std::vector<LeftOut> culled() const override;
-    Features compiled() const override;
     const std::string& device() const override { return device_; }
     std::string notice() const override { return context_.fallback(); }
 
@@ -81,8 +80,8 @@ private:
     std::unique_ptr<BinDeposit> deposit_;
     types::SonarTruth* truth_ = nullptr;  ///< To be filled; null: none is.
     std::optional<TruthTable> shown_;     ///< Once it was wanted.
-    std::unique_ptr<CpuDeposit> beside_;  ///< The same, where the device deposits.
-    CpuDeposit* telling_ = nullptr;       ///< Which of the two deposits on the processor tells what is shown.
+    std::unique_ptr<PictureDeposit> beside_;  ///< The same, where the device deposits.
+    PictureDeposit* telling_ = nullptr;       ///< Which of the two deposits on the processor tells what is shown.
     std::optional<EchoGrid> grid_;
     EchoRules rules_;
     std::span<const uint64_t> sums_;  ///< Of the ping collected last.
@@ -135,7 +134,7 @@ void DrawnEchoes::makeDeposit() {
     rules_ = setup.rules;
     if (plan_.features.has(Feature::Volume)) volume_.emplace(plan_, plan_.grid);
     if (depositsOnProcessor())
-        deposit_ = std::make_unique<CpuDeposit>(std::move(setup), surface_, context_, threads_);
+        deposit_ = std::make_unique<PictureDeposit>(std::move(setup), surface_, context_, threads_);
     else
         deposit_ = makeGpuDeposit(setup, context_);
     beside_.reset();
@@ -144,12 +143,12 @@ void DrawnEchoes::makeDeposit() {
 
 void DrawnEchoes::makeTruth() {
     shown_.emplace(plan_.beams.size(), static_cast<size_t>(plan_.grid.bin_count));
-    telling_ = dynamic_cast<CpuDeposit*>(deposit_.get());
+    telling_ = dynamic_cast<PictureDeposit*>(deposit_.get());
     if (!telling_) {
         const auto alone = context_.transferring();
         DepositSetup setup = depositSetup(plan_);
         setup.slots = slots_;
-        beside_ = std::make_unique<CpuDeposit>(std::move(setup), surface_, context_, threads_);
+        beside_ = std::make_unique<PictureDeposit>(std::move(setup), surface_, context_, threads_);
         telling_ = beside_.get();
     }
     telling_->prepareTruth(beamsOfCells(plan_));
@@ -242,15 +241,6 @@ void DrawnEchoes::takeQuality() {
 bool DrawnEchoes::hasEchoes() const {
     const bool drawn = ended_ > 0 && !surface_.lists().empty(lastSlot());  // published counts what is not there
     return drawn && std::ranges::any_of(sums_, [](uint64_t sum) { return sum > 0; });
-}
-
-Features DrawnEchoes::compiled() const {
-    Features all = deposit_->compiled();
-    for (int i = 0; i < feature_count; ++i) {
-        const auto feature = static_cast<Feature>(i);
-        if (context_.programs().compiledWith(Features{feature}.defines().front())) all.add(feature);
-    }
-    return all;
 }
 
 std::vector<LeftOut> DrawnEchoes::culled() const {

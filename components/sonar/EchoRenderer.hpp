@@ -43,8 +43,6 @@ public:
     virtual bool hasEchoes() const = 0;
     /** What of the scene the last ping left out. */
     virtual std::vector<LeftOut> culled() const = 0;
-    /** What is compiled into what renders: what the plan wants, unless one of the two is wrong. */
-    virtual Features compiled() const = 0;
     /** What renders: an OpenGL renderer and its driver, or the processor. */
     virtual const std::string& device() const = 0;
     /** What a user should know of the device; empty: nothing. */

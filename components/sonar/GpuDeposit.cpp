@@ -20,7 +20,6 @@ public:
     void take(size_t slot, size_t frustum, const SurfacePass& surface) override;
     void ask(size_t slot) override { sums_[slot].ask(device_sums_); }
     std::span<const uint64_t> finish(size_t slot) override;
-    Features compiled() const override { return {}; }  // its program is in the context's list
 
 private:
     struct FrustumShares {

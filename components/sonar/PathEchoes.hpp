@@ -5,7 +5,7 @@
 
 #include "components/sonar/BinLevels.hpp"
 #include "components/sonar/Mirrors.hpp"
-#include "components/sonar/TileDeposit.hpp"
+#include "components/sonar/TileCells.hpp"
 #include "components/sonar/TruthGrid.hpp"
 
 namespace insonify::sonar {

@@ -208,7 +208,6 @@ std::vector<LeftOut> SonarRenderer::culled() const { return parts_->echoes->cull
 size_t SonarRenderer::targetsHeard() const { return parts_->targets_heard; }
 std::optional<LeftOut> SonarRenderer::targetsLeftOut() const { return parts_->targets_left_out; }
 const RenderPlan& SonarRenderer::renderPlan() const { return parts_->plan; }
-Features SonarRenderer::compiled() const { return parts_->echoes->compiled(); }
 const types::Plan& SonarRenderer::plan() const { return parts_->told; }
 const std::string& SonarRenderer::device() const { return parts_->echoes->device(); }
 

@@ -60,8 +60,6 @@ public:
     const RenderPlan& renderPlan() const;
     /** The same in words, with the device. */
     const types::Plan& plan() const;
-    /** What is compiled into what renders. */
-    Features compiled() const;
     /** Whether the last ping has any echo of a surface. */
     bool hasEchoes() const;
     /** What of the scene the last ping did not draw: objects, triangles, frusta; nothing with rays. */

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "components/sonar/CellDeposit.hpp"
+#include "components/sonar/Estimators.hpp"
 #include "types/Angle.hpp"
 
 namespace insonify::sonar {
@@ -27,7 +29,75 @@ double azimuthBetween(const SonarConfig& config, const Beam& cell, double elevat
     return coneAzimuth(cell.high, elevation) - coneAzimuth(cell.low, elevation);
 }
 
+/** Where shaders/volume.glsl adds what cells hide of the volume, or let hear of its layers. */
+struct VolumeChanges {
+    VolumeChanges(const EchoRules& rules, double height, uint64_t* all_sums)
+        : changes(all_sums + rules.volumeOffset()),
+          beam_sums(rules.sumCount()),
+          bin_count(static_cast<uint>(rules.bins.bin_count)),
+          bin_width(rules.bins.bin_width),
+          numbers(rules.layers.data()),
+          layer_count(static_cast<uint>(rules.layers.size() / 3)),
+          sonar_height(height) {}
+
+    void addVolume(uint beam, uint bin, double amount) const {
+        changes[beam * beam_sums + bin] +=
+            static_cast<uint64_t>(static_cast<int64_t>(amount * quanta_per_unit + (amount < 0 ? -0.5 : 0.5)));
+    }
+    double layerNumber(uint i) const { return numbers[i]; }
+
+    uint64_t* changes;
+    size_t beam_sums;
+    uint bin_count;
+    double bin_width;
+    const double* numbers;
+    uint layer_count;
+    double sonar_height;
+};
+#pragma GCC diagnostic push
+#pragma GCC diagnostic ignored "-Wunused-parameter"  // layers alone ask how steep a ray is
+struct OpenVolume : VolumeChanges {
+    static constexpr bool hears_misses = false;
+    using VolumeChanges::VolumeChanges;
+#include "shaders/volume.glsl"
+};
+#pragma GCC diagnostic pop
+#define HAVE_VOLUME_LAYERS
+struct LayeredVolume : VolumeChanges {
+    static constexpr bool hears_misses = true;
+    using VolumeChanges::VolumeChanges;
+#include "shaders/volume.glsl"
+};
+#undef HAVE_VOLUME_LAYERS
+
+/** Metres up in the world for each metre along the middle of cell i. */
+double riseOf(const WaterView& water, const Cells& cells, int i) {
+    return cells.cos_el[i] * (water.up.x * cells.cos_az[i] + water.up.y * cells.sin_az[i]) +
+           water.up.z * cells.sin_el[i];
+}
+
+template <class Volume>
+void hideVolumeBy(const EchoRules& rules, const WaterView& water, const Cells& cells, const Covered& covered,
+                  const EchoSums& to) {
+    Volume volume(rules, water.height, to.sums);
+    for (int i = 0; i < cells.count; ++i) {
+        const auto beam = static_cast<uint>(cells.beam[i] - to.first_beam);
+        if (covered.pixel[i] > 0)
+            volume.hideVolume(footprintOf(covered, i), beam, riseOf(water, cells, i), cells.size[i]);
+        else if constexpr (Volume::hears_misses)
+            volume.hearLayers(beam, riseOf(water, cells, i), rules.bins.range_max, cells.size[i]);
+    }
+}
+
 }  // namespace
+
+void hideVolume(const EchoRules& rules, const WaterView& water, const Cells& cells, const Covered& covered,
+                const EchoSums& to) {
+    if (rules.features.has(Feature::VolumeLayers))
+        hideVolumeBy<LayeredVolume>(rules, water, cells, covered, to);
+    else
+        hideVolumeBy<OpenVolume>(rules, water, cells, covered, to);
+}
 
 WaterView waterViewOf(const types::Snapshot& snapshot) {
     const glm::dvec3 up = glm::inverse(glm::normalize(snapshot.sonar.orientation)) * glm::dvec3(0, 0, 1);

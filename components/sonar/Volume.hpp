@@ -19,6 +19,13 @@ WaterView waterViewOf(const types::Snapshot& snapshot);
 /** The same up in the axes of a frustum. */
 glm::dvec3 upwardIn(const ViewFrustum& frustum, const WaterView& water);
 
+struct Cells;
+struct Covered;
+struct EchoSums;
+/** Adds to the sums what cells hide of the volume, or the layers of it up to where they end. */
+void hideVolume(const EchoRules& rules, const WaterView& water, const Cells& cells, const Covered& covered,
+                const EchoSums& to);
+
 /** The layers of a configuration as EchoRules::layers has them; none where there is one without bounds. */
 std::vector<double> layersOf(const SonarConfig& config);
 

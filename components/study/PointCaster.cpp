@@ -160,7 +160,7 @@ std::vector<double> PointCaster::render(const types::Pose& sonar, const sonar::S
                                         uint64_t seed) {
     tree_.takeLaws(config);
     const sonar::BinGrid grid = sonar::makeBinGrid(config);
-    const std::vector<sonar::Beam> beams = sonar::makeBeams(config);
+    const sonar::Fan beams = sonar::makeBeams(config);
     const double half = std::sin(types::radians(config.beam_height_deg) / 2);
     const int parts = std::max(1, min_parts / static_cast<int>(beams.size()));  // of each beam
     const auto bins = static_cast<size_t>(grid.bin_count);

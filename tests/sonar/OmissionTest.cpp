@@ -283,7 +283,7 @@ std::vector<std::pair<SonarConfig, RenderOptions>> sonarsOfAllFeatures() {
     return all;
 }
 
-TEST(OmissionTest, WhatIsCompiledAndRunIsWhatThePlanSays) {
+TEST(OmissionTest, EachFeatureRendersByTheWayOfItsPlan) {
     Features seen;
     for (const auto& [config, options] : sonarsOfAllFeatures())
         for (const types::GeometryPtr& geometry : {types::GeometryPtr(test::surfaces()), unmapped(), measured()}) {
@@ -291,7 +291,6 @@ TEST(OmissionTest, WhatIsCompiledAndRunIsWhatThePlanSays) {
             types::Sonar ping;
             renderer.render(test::snapshotOf(geometry, {}, 0.1, 0.15), ping);
             const RenderPlan& plan = renderer.renderPlan();
-            EXPECT_THAT(renderer.compiled().names(), testing::ElementsAreArray(plan.features.names()));
             for (int i = 0; i < feature_count; ++i)
                 if (plan.features.has(static_cast<Feature>(i))) seen.add(static_cast<Feature>(i));
             const bool drew = std::ranges::count(plan.passes, Pass::Surface) == 1;

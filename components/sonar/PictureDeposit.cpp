@@ -1,7 +1,6 @@
-#include "components/sonar/CpuDeposit.hpp"
+#include "components/sonar/PictureDeposit.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
 
 namespace insonify::sonar {
@@ -20,8 +19,8 @@ std::array<int, 2> touched(const ColumnShares& shares, uint first, uint last) {
 
 }  // namespace
 
-CpuDeposit::CpuDeposit(DepositSetup setup, const SurfacePass& surface, const gpu::EglContext& context,
-                       ThreadPool& threads)
+PictureDeposit::PictureDeposit(DepositSetup setup, const SurfacePass& surface, const gpu::EglContext& context,
+                               ThreadPool& threads)
     : setup_(std::move(setup)),
       context_(context),
       threads_(threads),
@@ -31,83 +30,76 @@ CpuDeposit::CpuDeposit(DepositSetup setup, const SurfacePass& surface, const gpu
       sums_(setup_.sumCount()) {
     for (size_t i = 0; i < pictures_.size(); ++i) {
         const VisibilityBuffer& drawn = surface.picture(i % setup_.frusta.size());
-        pictures_[i].channels = static_cast<size_t>(drawn.channels());
+        pictures_[i].view.channels = static_cast<size_t>(drawn.channels());
         pictures_[i].words = gpu::ReadBack(drawn.bytes());
-        pictures_[i].ranges.reserve(surface.lists().drawLimit());
+        pictures_[i].view.ranges.reserve(surface.lists().drawLimit());
     }
     touchColumns();
 }
 
-void CpuDeposit::begin(size_t slot, const WaterView& water) {
+void PictureDeposit::begin(size_t slot, const WaterView& water) {
     for (size_t i = 0; i < setup_.frusta.size(); ++i) {
         picture(slot, i).taken = false;
         picture(slot, i).water = water;
     }
 }
 
-void CpuDeposit::take(size_t slot, size_t frustum, const SurfacePass& surface) {
-    TakenPicture& picture = this->picture(slot, frustum);
+void PictureDeposit::take(size_t slot, size_t frustum, const SurfacePass& surface) {
+    Taken& picture = this->picture(slot, frustum);
     surface.picture(frustum).read(picture.words);
     picture.taken = true;
-    picture.ranges.clear();
-    picture.objects.clear();
-    const double cosine = std::cos(setup_.frusta[frustum].azimuth), sine = std::sin(setup_.frusta[frustum].azimuth);
+    picture.view.ranges.clear();
+    picture.view.objects.clear();
     for (const CommandRecord& command : surface.lists().commands(slot, frustum)) {
-        if (truth_) picture.objects.push_back(command.object);
-        picture.ranges.push_back(placedRun(surface.objects()[command.object], command, setup_.rules, cosine, sine));
+        if (truth_) picture.view.objects.push_back(command.object);
+        picture.view.ranges.push_back(placedRun(surface.objects()[command.object], command, setup_.rules));
     }
 }
 
-std::span<const uint64_t> CpuDeposit::finish(size_t slot) {
-    waitForPictures(slot);
+std::span<const uint64_t> PictureDeposit::finish(size_t slot) {
+    {
+        const auto alone = context_.transferring();
+        for (size_t i = 0; i < setup_.frusta.size(); ++i)
+            if (Taken& picture = this->picture(slot, i); picture.taken)
+                picture.view.pixels = static_cast<const uint32_t*>(picture.words.wait());
+    }
     threads_.run([&](int part, int) { depositPart(slot, static_cast<size_t>(part)); });
     return sums_;
 }
 
-void CpuDeposit::waitForPictures(size_t slot) {
-    const auto alone = context_.transferring();
-    for (size_t i = 0; i < setup_.frusta.size(); ++i)
-        if (TakenPicture& picture = this->picture(slot, i); picture.taken)
-            picture.pixels = static_cast<const uint32_t*>(picture.words.wait());
-}
-
-Features CpuDeposit::compiled() const {
-    Features all = compiledForPictures(setup_.rules.features);
-    if (!setup_.rules.elevation_powers.empty()) all.add(Feature::ElevationPattern);
-    if (!setup_.rules.laws.tables.empty() || setup_.rules.laws.hasLobes()) all.add(Feature::BackscatterLaws);
-    return all | (setup_.rules.features & Features{Feature::Volume, Feature::VolumeLayers});
-}
-
-void CpuDeposit::prepareTruth(std::vector<int32_t> beams) {
+void PictureDeposit::prepareTruth(std::vector<int32_t> beams) {
     truth_beams_ = std::move(beams);
     one_beam_.assign(columns_.size(), std::vector<uint64_t>(setup_.rules.sumCount()));
-    for (TakenPicture& picture : pictures_) picture.objects.reserve(picture.ranges.capacity());
+    for (Taken& picture : pictures_) picture.view.objects.reserve(picture.view.ranges.capacity());
     touchColumns();
 }
 
-void CpuDeposit::touchColumns() {
+void PictureDeposit::touchColumns() {
     for (size_t part = 0; part < columns_.size(); ++part)
         for (size_t i = 0; i < setup_.shares.size(); ++i)
             columns_[part][i] = touched(setup_.shares[i], firstBeam(part), firstBeam(part + 1));
 }
 
-void CpuDeposit::depositPart(size_t slot, size_t part) {
+void PictureDeposit::depositPart(size_t slot, size_t part) {
     const uint first = firstBeam(part), last = firstBeam(part + 1);
     const size_t stride = setup_.rules.sumCount();
     std::fill(sums_.begin() + static_cast<ptrdiff_t>(first * stride),
               sums_.begin() + static_cast<ptrdiff_t>(last * stride), 0);
     for (size_t i = 0; i < setup_.frusta.size(); ++i) {
-        if (!picture(slot, i).taken) continue;
-        const FrustumPart frustum{setup_.rules, setup_.frusta[i], setup_.shares[i], picture(slot, i), planes_, first,
-                                  last,         columns_[part][i]};
-        if (truth_)
-            depositAndTell(frustum, sums_.data(), {*truth_, truth_beams_, one_beam_[part]});
-        else
-            deposit(frustum, sums_.data());
+        const Taken& taken = picture(slot, i);
+        if (!taken.taken) continue;
+        const PicturePart frustum{setup_.rules, setup_.frusta[i], setup_.shares[i], taken.view, planes_, taken.water,
+                                  first,        last,             columns_[part][i]};
+        if (!truth_) {
+            depositPicture(frustum, {0, sums_.data()});
+            continue;
+        }
+        const TruthSink truth{*truth_, truth_beams_, one_beam_[part]};
+        depositPicture(frustum, {0, sums_.data(), &truth});
     }
 }
 
-uint32_t CpuDeposit::firstBeam(size_t part) const {
+uint32_t PictureDeposit::firstBeam(size_t part) const {
     auto first = static_cast<uint32_t>(setup_.beam_count * part / static_cast<size_t>(threads_.size()));
     // Those of one beam of the truth stay with one thread.
     while (!truth_beams_.empty() && first > 0 && first < setup_.beam_count &&

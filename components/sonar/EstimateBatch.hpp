@@ -1,8 +1,8 @@
 #pragma once
-// What deposits do besides where the truth of a ping is wanted. To be included by what deposits on the processor alone,
-// after Estimators.hpp.
+// How a batch of cells goes through an estimator, with or without the truth. Include it only in files of estimators.
 #include <cmath>
 
+#include "components/sonar/CellDeposit.hpp"
 #include "components/sonar/Estimators.hpp"
 #include "components/sonar/TruthTable.hpp"
 
@@ -16,29 +16,11 @@ struct CellTruth {
     double sine_elevation = 0, sine_grazing = 0;
 };
 
-/** What a stretch of cells shows. */
-template <int count>
-struct CellTruths {
-    int64_t object[count];
-    uint32_t hits[count];
-    double sine_elevation[count], sine_grazing[count];
-
-    CellTruth get(int i) const { return {object[i], hits[i], sine_elevation[i], sine_grazing[i]}; }
-};
-
-/** An estimator as it is: it tells no truth. */
-template <class Estimator>
-struct Untold : Estimator {
-    static constexpr bool tells_truth = false;
-    Untold(const EchoRules& rules, uint64_t* all_sums, const TruthSink*) : Estimator(rules, all_sums) {}
-};
-
 /** An estimator whose deposits go to one beam of their own first, and from there to the sums and to the truth: the same
  *  numbers in both. */
 template <class Estimator>
 class Told : public Estimator {
 public:
-    static constexpr bool tells_truth = true;
     Told(const EchoRules& rules, uint64_t* all_sums, const TruthSink* truth)
         : Estimator(rules, truth->one_beam.data()),
           truth_(*truth),
@@ -100,6 +82,32 @@ private:
     uint64_t* all_;
     CellTruth shown_;
 };
+
+/** Adds the echoes of a batch to the sums, and to the truth where it is wanted. */
+template <class Estimator>
+void sumBatch(const EchoRules& rules, const Cells& cells, const Covered& covered, const EchoSums& to) {
+    const auto beamOf = [&](int i) { return static_cast<uint>(cells.beam[i] - to.first_beam); };
+    if (!to.truth) {
+        Estimator estimator(rules, to.sums);
+        for (int i = 0; i < cells.count; ++i)
+            estimator.depositCell(footprintOf(covered, i), beamOf(i), covered.strength_range[i]);
+        return;
+    }
+    Told<Estimator> estimator(rules, to.sums, to.truth);
+    for (int i = 0; i < cells.count; ++i) {
+        const double x = cells.normal_x[i], y = cells.normal_y[i], z = cells.normal_z[i];
+        const double facing = (x * cells.cos_az[i] + y * cells.sin_az[i]) * cells.cos_el[i] + z * cells.sin_el[i];
+        estimator.regard({cells.object[i], cells.hits[i], cells.sin_el[i], abs(facing) / sqrt(x * x + y * y + z * z)});
+        estimator.depositCell(footprintOf(covered, i), beamOf(i), covered.strength_range[i]);
+    }
+}
+
+/** sumBatch() in versions for wide vectors. */
+#define INSONIFY_ESTIMATE(name, Estimator)                                                                           \
+    INSONIFY_VECTOR_CLONES __attribute__((flatten)) void name(const EchoRules& rules, const Cells& cells,            \
+                                                              const Covered& covered, const EchoSums& to) {         \
+        sumBatch<Estimator>(rules, cells, covered, to);                                                              \
+    }
 
 }  // namespace
 }  // namespace insonify::sonar

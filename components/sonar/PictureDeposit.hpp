@@ -1,32 +1,38 @@
 #pragma once
-#include "components/sonar/DepositRow.hpp"
+#include "components/gpu/ReadBack.hpp"
+#include "components/sonar/BinDeposit.hpp"
+#include "components/sonar/PictureCells.hpp"
 #include "components/sonar/ThreadPool.hpp"
 
 namespace insonify::sonar {
 
-/** The deposit on the processor: reads the pictures back; each thread owns a run of beams, so none waits for another.
+/** The deposit of pictures on the processor: reads them back; each thread owns a run of beams, so none waits for another.
  */
-class CpuDeposit final : public BinDeposit {
+class PictureDeposit final : public BinDeposit {
 public:
     /** All outlive it. */
-    CpuDeposit(DepositSetup setup, const SurfacePass& surface, const gpu::EglContext& context, ThreadPool& threads);
+    PictureDeposit(DepositSetup setup, const SurfacePass& surface, const gpu::EglContext& context, ThreadPool& threads);
     void begin(size_t slot, const WaterView& water) override;
     void take(size_t slot, size_t frustum, const SurfacePass& surface) override;
     void ask(size_t) override {}
     std::span<const uint64_t> finish(size_t slot) override;
-    Features compiled() const override;
 
-    /** Makes ready to tell of which objects the echoes are: to those beams of a table (as beamsOfCells). */
+    /** Prepares for the truth of the sums, in those beams of a table (as beamsOfCells). */
     void prepareTruth(std::vector<int32_t> beams);
-    /** What is begun from now on tells it to a table; null: no more. */
+    /** Pings begun from now on report their truth to a table; null: no more. */
     void setTruth(TruthTable* truth) { truth_ = truth; }
 
 private:
-    TakenPicture& picture(size_t slot, size_t frustum) { return pictures_[slot * setup_.frusta.size() + frustum]; }
-    void waitForPictures(size_t slot);
+    struct Taken {
+        gpu::ReadBack words;
+        PictureView view;
+        WaterView water;
+        bool taken = false;
+    };
+    Taken& picture(size_t slot, size_t frustum) { return pictures_[slot * setup_.frusta.size() + frustum]; }
     void depositPart(size_t slot, size_t part);
     void touchColumns();
-    /** Where a thread's run of beams begins. */
+    /** First beam of a thread's run. */
     uint32_t firstBeam(size_t part) const;
 
     DepositSetup setup_;
@@ -34,7 +40,7 @@ private:
     ThreadPool& threads_;
     const std::vector<PlaneRecord>& planes_;
     std::vector<std::vector<std::array<int, 2>>> columns_;  ///< Of each thread and frustum: from, to.
-    std::vector<TakenPicture> pictures_;                    ///< Slot after slot, of each frustum.
+    std::vector<Taken> pictures_;                           ///< Slot after slot, of each frustum.
     std::vector<uint64_t> sums_;
     TruthTable* truth_ = nullptr;
     std::vector<int32_t> truth_beams_;
