@@ -112,8 +112,9 @@ void addToBin(uint beam, uint bin, double amount, double weight) {
 }
 
 #include "jitter.glsl"
-#include "surface.glsl"
 #include "footprint.glsl"
+#include "plane.glsl"
+#include "picture.glsl"
 #define real double
 #include "trapezoid.glsl"
 #include "deposit.glsl"
@@ -149,16 +150,6 @@ dvec3 frustumFromSonar(dvec3 p) {
     return dvec3(frustum_axis.x * p.x + frustum_axis.y * p.y, frustum_axis.x * p.y - frustum_axis.y * p.x, p.z);
 }
 
-Surface surfaceOf(CommandRecord command, uint triangle, dvec2 uv) {
-    ObjectRecord object = objects[command.object];
-    PlaneRecord plane = planes[command.first_triangle + triangle];
-    dvec3 across = dvec3(plane.normal.xyz);
-    dvec3 normal = dvec3(dot(dvec3(object.normal_x.xyz), across), dot(dvec3(object.normal_y.xyz), across), dot(dvec3(object.normal_z.xyz), across));
-    double distance = dot(across, dvec3(plane.point.xyz) - (dvec3(object.eye.xyz) + dvec3(object.eye_rest.xyz))) + double(plane.normal.w);
-    normal = frustumFromSonar(normal);
-    return surfaceAt(normal.x, normal.y, normal.z, distance, uv.x, uv.y);
-}
-
 double strengthOf(uint material) {
 #ifdef HAVE_CERQUEIRA2017
     return double(materials[material].values.y) * strength_scale;
@@ -167,41 +158,42 @@ double strengthOf(uint material) {
 #endif
 }
 
-// What a pixel shows: its triangle's plane, and strength and reach of that.
+// What a pixel shows: its triangle's plane in the frustum's axes, and what belongs to its material and object.
 struct Seen {
-    Surface surface;
-    double strength;
-    dvec2 reach;    // inverse ranges of the object [1/m]
-    double weight;  // of the pattern in elevation [1]
+    dvec3 normal;
+    double distance;
+    dvec2 ray;        // where the pixel is looked at
+    double strength;  // at normal incidence
+    double mapped;    // cosine of a bent normal; 0: it is the plane's
+    dvec2 reach;      // inverse ranges of the object [1/m]
+    double weight;    // of the pattern in elevation [1]
+    uint material;
+    double facet_slope;
 };
 
 Seen seenAt(ivec2 pixel, dvec2 uv) {
-    Seen seen = Seen(Surface(0.0, 0.0, 0.0, 0.0, 0.0, 0.0), 0.0, dvec2(0.0), 1.0);
+    Seen seen = Seen(dvec3(1.0, 0.0, 0.0), 0.0, uv, 0.0, 0.0, dvec2(0.0), 1.0, 0u, 0.0);
 #ifdef HAVE_ELEVATION_PATTERN
     seen.weight = elevationWeight(uv.x, uv.y);
 #endif
     uvec4 texel = texelFetch(picture, pixel, 0);
     if (texel.x == 0u) return seen;
     CommandRecord command = commands[texel.x - 1u];
-    dvec2 ray = uv;
+    ObjectRecord object = objects[command.object];
+    PlaneRecord plane = planes[command.first_triangle + texel.y];
+    dvec3 across = dvec3(plane.normal.xyz);
+    seen.normal = frustumFromSonar(dvec3(dot(dvec3(object.normal_x.xyz), across), dot(dvec3(object.normal_y.xyz), across), dot(dvec3(object.normal_z.xyz), across)));
+    seen.distance = dot(across, dvec3(plane.point.xyz) - (dvec3(object.eye.xyz) + dvec3(object.eye_rest.xyz))) + double(plane.normal.w);
 #ifdef HAVE_JITTER
-    ray += pixel_size * dvec2(jitter(pixel.x, pixel.y, 0u), jitter(pixel.x, pixel.y, 1u));
+    seen.ray += pixel_size * dvec2(jitter(pixel.x, pixel.y, 0u), jitter(pixel.x, pixel.y, 1u));
 #endif
-    seen.surface = surfaceOf(command, texel.y, ray);
-    double cosine = seen.surface.cosine;
+    seen.strength = strengthOf(command.material);
 #ifdef HAVE_NORMAL_MAP
-    if (texel.z != 0u) cosine = double(uintBitsToFloat(texel.z));
+    if (texel.z != 0u) seen.mapped = double(uintBitsToFloat(texel.z));
 #endif
-    seen.strength = strengthOf(command.material) * cosine;
-#ifdef HAVE_BACKSCATTER_LAWS
-    MaterialRecord material = materials[command.material];
-    if (!FOLLOWS_LAMBERT(material.law)) {
-        double angle = max(pixel_size.x, pixel_size.y) / sqrt(1.0 + dot(uv, uv));
-        double slope = double(planes[command.first_triangle + texel.y].point.w) + slopeOfSample(angle);
-        seen.strength = backscatterOverCosine(material.law, double(material.values.x), cosine, slope) * strength_scale;
-    }
-#endif
-    seen.reach = dvec2(objects[command.object].extent.xy);
+    seen.reach = dvec2(object.extent.xy);
+    seen.material = command.material;
+    seen.facet_slope = double(plane.point.w);
     return seen;
 }
 
@@ -214,29 +206,55 @@ uint sharesOf(ivec2 pixel) {
 #endif
 }
 
-void depositPixel(ivec2 pixel, dvec2 uv, Seen seen) {
-    double per_pixel = 1.0 / (pixel_size.x * pixel_size.y);
-    Surface surface = seen.surface;
-    uint at = sharesOf(pixel);
-    for (uint i = share_starts[at]; i < share_starts[at + 1u]; ++i) {
-        ShareRecord share = shares[i];
-        Footprint cell = cellFootprint(uv.x, uv.y, share.middle, share.width, share.limit, share.shear, pixel_size.y,
-                                       surface.inverse_range, surface.slope_u, surface.slope_v, surface.nearest, seen.reach.x,
-                                       seen.reach.y, binEdge(0u), binEdge(bin_count), per_pixel);
-        cell.size *= seen.weight;
-        depositCell(cell, share.beam, seen.strength * surface.range);
-#ifdef HAVE_VOLUME
-        depositVolume(cell, share.beam, uv);
-#endif
+// Strength times slant range of a cell [m].
+double strengthRange(Seen seen, PlaneFootprint cell, double angle) {
+    double inverse_range = cell.footprint.pixel;
+    bool mapped = seen.mapped > 0.0 && cell.perpendicular > 0.0;
+#ifdef HAVE_BACKSCATTER_LAWS
+    MaterialRecord material = materials[seen.material];
+    if (!FOLLOWS_LAMBERT(material.law) && inverse_range > 0.0) {
+        double cosine = mapped ? seen.mapped : min(cell.perpendicular * inverse_range, 1.0);
+        double slope = seen.facet_slope + slopeOfSample(angle);
+        return strength_scale / inverse_range * backscatterOverCosine(material.law, double(material.values.x), cosine, slope);
     }
+#endif
+    return seen.strength * (mapped ? seen.mapped / inverse_range : cell.perpendicular);
+}
+
+double facingOf(dvec3 normal, dvec2 uv) { return dot(normal, dvec3(1.0, uv)) / sqrt(1.0 + dot(uv, uv)); }
+
+void depositShare(ShareRecord share, dvec2 uv, Seen seen) {
+    PictureCell at = pictureCell(uv.x, uv.y, share.middle, share.width, share.limit, share.shear, pixel_size.y,
+                                 1.0 / (pixel_size.x * pixel_size.y));
+#if defined(HAVE_NEAREST) || defined(HAVE_PUBLISHED)
+    dvec2 towards = seen.ray;
+#else
+    dvec2 towards = dvec2(at.u, at.v);
+    double of_ray = facingOf(seen.normal, uv), of_cell = facingOf(seen.normal, towards);
+    if (of_ray * of_cell > 0.0) seen.mapped *= of_cell / of_ray;
+#endif
+    double level = sqrt(1.0 + towards.x * towards.x), per_length = 1.0 / sqrt(1.0 + dot(towards, towards));
+    PlaneFootprint cell = planeFootprint(seen.normal.x, seen.normal.y, seen.normal.z, seen.distance, 1.0 / level,
+                                         towards.x / level, level * per_length, towards.y * per_length, at.width,
+                                         at.height, 0.0, at.size * seen.weight, seen.reach.x, seen.reach.y,
+                                         binEdge(0u), binEdge(bin_count));
+    depositCell(cell.footprint, share.beam, strengthRange(seen, cell, max(at.width, at.height)));
+#ifdef HAVE_VOLUME
+    cell.footprint.size = at.size * seen.weight;
+    depositVolume(cell.footprint, share.beam, towards);
+#endif
+}
+
+void depositPixel(ivec2 pixel, dvec2 uv, Seen seen) {
+    uint at = sharesOf(pixel);
+    for (uint i = share_starts[at]; i < share_starts[at + 1u]; ++i) depositShare(shares[i], uv, seen);
 }
 
 #ifdef HAVE_GROUP_SUMS
-// The bin that a pixel's echo begins in, nearly; bin_count: there is none.
-uint firstBin(Surface surface) {
-    double depth = 0.5 * (abs(surface.slope_u) * pixel_size.x + abs(surface.slope_v) * pixel_size.y);
-    double near_end = min(surface.inverse_range + depth, surface.nearest);
-    return near_end > 0.0 ? uint(min(1.0 / (near_end * bin_width), double(bin_count))) : bin_count;
+// The bin in which a pixel's echo lies, nearly; bin_count: there is none.
+uint firstBin(Seen seen) {
+    double inverse_range = seen.distance != 0.0 ? facingOf(seen.normal, seen.ray) / seen.distance : 0.0;
+    return inverse_range > 0.0 ? uint(min(1.0 / (inverse_range * bin_width), double(bin_count))) : bin_count;
 }
 #endif
 
@@ -251,7 +269,7 @@ void main() {
 #ifdef HAVE_GROUP_SUMS
     uint at = sharesOf(min(pixel, image_size - 1)), share = share_starts[at];
     bool heard = inside && share < share_starts[at + 1u];
-    beginGroup(heard ? shares[share].beam : 0u, heard ? firstBin(seen.surface) : bin_count);
+    beginGroup(heard ? shares[share].beam : 0u, heard ? firstBin(seen) : bin_count);
     if (inside) depositPixel(pixel, uv, seen);
     endGroup();
 #else
