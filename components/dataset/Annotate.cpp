@@ -72,7 +72,7 @@ private:
     }
 
     void addCell(uint32_t beam, uint32_t cell, uint32_t first, uint32_t last, int32_t object) {
-        const double bearing = ping_.bearings[beam].rad;
+        const double bearing = picture_.bearing(beam);
         Annotation& annotation = annotationOf(object, bearing, ping_.binStart(first));
         annotation.bearing_min = std::min(annotation.bearing_min, bearing);
         annotation.bearing_max = std::max(annotation.bearing_max, bearing);

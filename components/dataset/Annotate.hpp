@@ -26,7 +26,7 @@ struct Annotation {
     uint32_t bins = 0;                        ///< Of the ping, of which it is the strongest.
     double energy = 0;                        ///< Sum of these bins, its share of each; linear.
     double range_min = 0, range_max = 0;      ///< [m]
-    double bearing_min = 0, bearing_max = 0;  ///< [rad], positive to port.
+    double bearing_min = 0, bearing_max = 0;  ///< [rad], positive to port; above pi across +-180 degrees.
     std::vector<uint32_t> runs;  ///< Pixels column by column: so many that are not of it, so many that are, and so on.
 };
 

@@ -34,11 +34,11 @@ Json toJson(const Annotation& annotation, const Classes& classes, const output::
             {"segmentation", {{"size", {picture.height(), picture.width()}}, {"counts", annotation.runs}}}};
 }
 
-Json toJson(const types::Sonar& ping) {
+Json toJson(const types::Sonar& ping, const types::BeamArc& arc) {
     return {{"beams", ping.beam_count},
             {"bins", ping.bin_count},
             {"range_m", ping.binStart(ping.bin_count)},
-            {"bearing_rad", {ping.bearings.front().rad, ping.bearings.back().rad}},
+            {"bearing_rad", {arc.bearings.front(), arc.bearings.back()}},
             {"speed_of_sound_m_s", ping.speed_of_sound}};
 }
 
@@ -132,7 +132,7 @@ Json SampleFiles::recordOf(const Heard& heard, const Annotated& annotated) const
                 {"settings", Json::object()},
                 {"pose", toJson(sample.at)},
                 {"objects", Json::array()},
-                {"ping", toJson(heard.ping)},
+                {"ping", toJson(heard.ping, picture_.arc())},
                 {"picture",
                  {{"width", picture_.width()},
                   {"height", picture_.height()},

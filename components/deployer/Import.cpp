@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <algorithm>
 #include <cmath>
 #include <optional>
 
@@ -16,6 +15,7 @@
 #include "components/pose/TrajectoryTask.hpp"
 #include "components/sonar/SonarTask.hpp"
 #include "types/Angle.hpp"
+#include "types/BeamArc.hpp"
 #include "types/ConfigError.hpp"
 
 namespace insonify::deployer {
@@ -45,9 +45,9 @@ Chain chainOf(const DeploymentSpec& spec) {
 
 /** Properties with which the deployment's pings have the shape and the law of this one. */
 std::vector<std::string> propertiesOf(const Chain& chain, const device::OculusPing& ping) {
+    const types::Sonar logged = sonarOf(ping, {});  // its beams are in order
     std::vector<double> bearings;
-    for (const double bearing : ping.bearings) bearings.push_back(types::degrees(bearing));
-    std::ranges::sort(bearings);
+    for (const types::Angle bearing : logged.bearings) bearings.push_back(types::degrees(bearing.rad));
     std::vector<std::string> all;
     const auto set = [&](const std::string& task, const char* property, const auto& value) {
         all.push_back(fmt::format("{}.{}={}", task, property, value));
@@ -59,8 +59,7 @@ std::vector<std::string> propertiesOf(const Chain& chain, const device::OculusPi
     if (ping.frequency_hz > 0) set(chain.sonar, "frequency_khz", ping.frequency_hz / 1e3);
     set(chain.sonar, "bearings_deg", bearings);
     if (!chain.has_beam_width)  // as wide as they are apart
-        set(chain.sonar, "beam_width_deg",
-            (bearings.back() - bearings.front()) / std::max<size_t>(1, bearings.size() - 1));
+        set(chain.sonar, "beam_width_deg", types::degrees(types::BeamArc(logged).width));
     set(chain.receiver, "code.law", "sqrt");
     set(chain.receiver, "code.gamma", ping.gamma);
     return all;

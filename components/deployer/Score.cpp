@@ -23,7 +23,9 @@ namespace {
 constexpr double same_bearing = 1e-6;  ///< [rad]
 
 bool sameShape(const types::Sonar& a, const types::Sonar& b) {
-    const auto near = [](types::Angle x, types::Angle y) { return std::abs(x.rad - y.rad) < same_bearing; };
+    const auto near = [](types::Angle x, types::Angle y) {
+        return std::abs(types::Angle::fromRad(x.rad - y.rad).rad) < same_bearing;
+    };
     return a.beam_count == b.beam_count && a.bin_count == b.bin_count && a.bin_duration == b.bin_duration &&
            a.speed_of_sound == b.speed_of_sound && a.bins.size() == b.bins.size() &&
            std::ranges::equal(a.bearings, b.bearings, near);

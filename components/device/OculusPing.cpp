@@ -8,10 +8,11 @@
 #include <fstream>
 #include <iterator>
 #include <limits>
-#include <numeric>
+#include <numbers>
 
 #include "components/device/OculusRecording.hpp"
 #include "types/Angle.hpp"
+#include "types/BeamArc.hpp"
 #include "types/ConfigError.hpp"
 
 namespace insonify::device {
@@ -30,6 +31,19 @@ void takeImage(const OculusResult& result, OculusPing& ping) {
             std::memcpy(&ping.codes[beam * result.bin_count + k], result.image.data() + row + gain + beam * width,
                         width);
     }
+}
+
+/** The beams from starboard to port, at bearings that 16 bits hold in hundredths of a degree: an arc that goes too far
+ *  beyond 180 degrees begins astern instead. */
+types::BeamArc wireArc(const types::Sonar& codes) {
+    types::BeamArc arc(codes);
+    if (arc.beams.empty() || types::degrees(arc.bearings.back()) < 327) return arc;
+    const auto turned = std::ranges::upper_bound(arc.bearings, std::numbers::pi) - arc.bearings.begin();
+    for (auto bearing = arc.bearings.begin() + turned; bearing != arc.bearings.end(); ++bearing)
+        *bearing -= 2 * std::numbers::pi;
+    std::ranges::rotate(arc.bearings, arc.bearings.begin() + turned);
+    std::ranges::rotate(arc.beams, arc.beams.begin() + turned);
+    return arc;
 }
 
 bool beginsPing(std::span<const uint8_t> bytes) {
@@ -64,14 +78,15 @@ types::Sonar sonarOf(const OculusPing& ping, types::Time time) {
     sonar.bin_count = ping.bin_count;
     sonar.beam_count = ping.beamCount();
     sonar.bins.reserve(ping.codes.size());
-    std::vector<size_t> beams(ping.beamCount());
-    std::iota(beams.begin(), beams.end(), 0);
-    std::ranges::stable_sort(beams, {}, [&](size_t beam) { return ping.bearings[beam]; });
-    for (const size_t beam : beams) {
-        sonar.bearings.push_back({ping.bearings[beam]});
+    std::vector<types::Angle> table;
+    for (const double bearing : ping.bearings) table.push_back(types::Angle::fromRad(bearing));
+    types::BeamArc arc;
+    arc.take(table, {});
+    for (const uint32_t beam : arc.beams) {
+        sonar.bearings.push_back(table[beam]);
         for (size_t k = 0; k < ping.bin_count; ++k) {
             const double gain = ping.row_gains.empty() ? 1 : std::max(1u, ping.row_gains[k]);
-            sonar.bins.push_back(static_cast<float>(ping.codes[beam * ping.bin_count + k] / std::sqrt(gain)));
+            sonar.bins.push_back(static_cast<float>(ping.codes[size_t{beam} * ping.bin_count + k] / std::sqrt(gain)));
         }
     }
     return sonar;
@@ -129,13 +144,6 @@ void OculusEncoder::bend(double gamma) {
         bent_[code] = std::pow(static_cast<double>(code) / largest_in_, gamma);
 }
 
-std::vector<uint32_t> OculusEncoder::order(const types::Sonar& codes) {
-    std::vector<uint32_t> beams(codes.beam_count);
-    std::iota(beams.begin(), beams.end(), 0);
-    std::ranges::stable_sort(beams, std::greater(), [&](uint32_t beam) { return codes.bearings[beam].rad; });
-    return beams;
-}
-
 uint32_t OculusEncoder::indexOf(float code) const {
     if (!(code > 0)) return 0;  // what is not known as well
     return code < static_cast<float>(largest_in_) ? static_cast<uint32_t>(code + 0.5f) : largest_in_;
@@ -151,7 +159,7 @@ void OculusEncoder::rows(const types::Sonar& codes, const std::vector<uint32_t>&
             row[i] = bent_[indexOf(codes.bins[size_t{beams[i]} * codes.bin_count + bin])];
         double scale = largest;
         if (result.gainBytes() > 0) {
-            const double most = std::ranges::max(row);
+            const double most = row.empty() ? 1 : std::ranges::max(row);
             const auto gain = static_cast<uint32_t>(std::clamp(1 / (most * most), 1.0, 4294967295.0));
             std::memcpy(to, &gain, sizeof gain);
             to += sizeof gain;
@@ -168,12 +176,15 @@ void OculusEncoder::rows(const types::Sonar& codes, const std::vector<uint32_t>&
 void OculusEncoder::encode(const types::Sonar& codes, OculusResult& result) {
     bend(result.fire.gammaExponent());
     result.code_size = static_cast<uint8_t>(result.fire.codeBytes() - 1);
-    result.beam_count = static_cast<uint16_t>(codes.beam_count);
+    types::BeamArc arc = wireArc(codes);
+    std::ranges::reverse(arc.beams);
+    std::ranges::reverse(arc.bearings);
+    const std::vector<uint32_t>& beams = arc.beams;
+    result.beam_count = static_cast<uint16_t>(beams.size());
     result.bin_count = static_cast<uint16_t>(codes.bin_count);
-    const std::vector<uint32_t> beams = order(codes);
     result.bearings.clear();
-    for (const uint32_t beam : beams)
-        result.bearings.push_back(static_cast<int16_t>(std::lround(-100 * codes.bearings[beam].deg())));
+    for (const double bearing : arc.bearings)
+        result.bearings.push_back(static_cast<int16_t>(std::lround(-100 * types::Angle{bearing}.deg())));
     result.image.resize(result.bin_count * result.rowBytes());
     switch (result.fire.codeBytes()) {
         case 1: return rows<uint8_t>(codes, beams, result);

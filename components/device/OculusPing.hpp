@@ -53,13 +53,12 @@ public:
     /** @param bits of the receiver's codes */
     explicit OculusEncoder(int bits = 16) : largest_in_((1u << bits) - 1) {}
 
-    /** Sets image, bearings, counts and width of a code, as `result.fire` asks; beams go from port to starboard. */
+    /** Sets image, bearings, counts and width of a code, as `result.fire` asks. Beams go from port to starboard;
+     *  bearings ascend, and go on below -180 degrees. Beams of unknown bearing are omitted. */
     void encode(const types::Sonar& codes, OculusResult& result);
 
 private:
     void bend(double gamma);
-    /** Beams from port to starboard. */
-    static std::vector<uint32_t> order(const types::Sonar& codes);
     uint32_t indexOf(float code) const;
     template <class Code>
     void rows(const types::Sonar& codes, const std::vector<uint32_t>& beams, OculusResult& result) const;

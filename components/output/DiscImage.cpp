@@ -27,8 +27,7 @@ void drawHead(cv::Mat& canvas, const FanLayout& layout, double bearing) {
 void DiscImage::paint(const types::Sonar& ping, types::Image& picture) {
     skip(ping);
     cv::Mat canvas = fan_.draw(disc_, picture);
-    for (const types::Angle bearing : ping.bearings)
-        if (!bearing.isUnknown()) drawHead(canvas, fan_.layout(), bearing.rad);
+    for (const double bearing : arc_.bearings) drawHead(canvas, fan_.layout(), bearing);
     title_.draw(canvas, ping, fan_.scale());
 }
 
@@ -37,8 +36,8 @@ void DiscImage::skip(const types::Sonar& ping) {
                            disc_.speed_of_sound == ping.speed_of_sound && !disc_.bearings.empty();
     if (!same_bins) clear(ping);
     disc_.time = ping.time;
-    for (uint32_t beam = 0; beam < ping.beam_count && beam < ping.bearings.size(); ++beam)
-        if (!ping.bearings[beam].isUnknown()) overwrite(ping, beam);
+    arc_.take(ping);
+    for (size_t place = 0; place < arc_.beams.size(); ++place) overwrite(ping, place);
 }
 
 void DiscImage::clear(const types::Sonar& ping) {
@@ -52,13 +51,16 @@ void DiscImage::clear(const types::Sonar& ping) {
     disc_.bins.assign(size_t{sectors} * ping.bin_count, std::numeric_limits<float>::quiet_NaN());
 }
 
-/** Copies the beam into all sectors whose centre it covers, and in any case into the one that it points to. */
-void DiscImage::overwrite(const types::Sonar& ping, uint32_t beam) {
-    const double position = (ping.bearings[beam].rad + std::numbers::pi) / sector_width;
-    const double half_width = ping.beam_width.rad > 0 ? std::min(ping.beam_width.rad, full_turn) / 2 / sector_width : 0;
+/** Copies a beam into the sectors whose centre it covers and to which no other beam of the ping is nearer, and in any
+ *  case into the sector that it points to. */
+void DiscImage::overwrite(const types::Sonar& ping, size_t place) {
+    const uint32_t beam = arc_.beams[place];
+    const double half_width = ping.beam_width.rad > 0 ? std::min(ping.beam_width.rad, full_turn) / 2 : 0;
+    const types::BeamArc::Reach part = arc_.within(place, half_width);
+    const double position = (arc_.bearings[place] + std::numbers::pi) / sector_width;
     const int nearest = static_cast<int>(std::floor(position));
-    const int first = std::min(nearest, static_cast<int>(std::ceil(position - half_width - 0.5)));
-    const int last = std::max(nearest, static_cast<int>(std::floor(position + half_width - 0.5)));
+    const int first = std::min(nearest, static_cast<int>(std::ceil(position - part.right / sector_width - 0.5)));
+    const int last = std::max(nearest, static_cast<int>(std::floor(position + part.left / sector_width - 0.5)));
     for (int sector = first; sector <= last; ++sector) {
         const size_t turned = static_cast<size_t>((sector + static_cast<int>(2 * sectors)) % static_cast<int>(sectors));
         std::copy_n(&ping.bins[size_t{beam} * ping.bin_count], ping.bin_count, &disc_.bins[turned * ping.bin_count]);

@@ -4,7 +4,8 @@
 namespace insonify::output {
 
 /** The picture of a mechanically scanning sonar: a disc on which every ping overwrites the sector of its beam width,
- *  so that each direction shows the last echo from there. A line shows where the head looks. Ahead is up, port left.
+ *  so that each direction shows the last echo from there. Where beams of one ping overlap, the nearest centre counts.
+ *  A line shows where the head looks. Ahead is up, port left.
  *  A ping of other bins or range starts an empty disc. */
 class DiscImage final : public Painter {
 public:
@@ -20,10 +21,11 @@ public:
 
 private:
     void clear(const types::Sonar& ping);
-    void overwrite(const types::Sonar& ping, uint32_t beam);
+    void overwrite(const types::Sonar& ping, size_t place);
 
     FanImage fan_;
     types::Sonar disc_;
+    types::BeamArc arc_;  ///< The beams of the last ping.
     Title title_;
 };
 

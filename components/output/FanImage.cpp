@@ -66,12 +66,14 @@ void FanImage::buildTables() {
         for (int x = 0; x < column.cols; ++x) {
             const double ahead = origin.y - y, port = origin.x - x;
             const double distance = std::hypot(ahead, port), bearing = std::atan2(port, ahead);
-            if (distance >= layout_->radius() || bearing < shape_.right || bearing > shape_.left) continue;
+            if (distance >= layout_->radius()) continue;
+            const std::optional<double> place = shape_.placeAt(bearing);
+            if (!place) continue;
             if (spans_.empty() || spans_.back().row != y || spans_.back().end != x) spans_.push_back({y, x, x});
             spans_.back().end = x + 1;
             column.at<float>(y, x) =
                 static_cast<float>(std::clamp(distance * cells_per_pixel - 0.5, 0.0, columns_ - 1.0));
-            row.at<float>(y, x) = static_cast<float>(shape_.beamAt(bearing));
+            row.at<float>(y, x) = static_cast<float>(*place);
         }
     cv::convertMaps(column, row, source_, fraction_, CV_16SC2);
 }

@@ -9,47 +9,23 @@ namespace {
 
 constexpr double pi = std::numbers::pi;
 constexpr double side_margin = 56, label_margin = 34, bottom_margin = 26;  // [px]
-constexpr double single_beam_width = pi / 180;
-
-double beamWidth(const types::Sonar& ping, const std::vector<double>& bearings) {
-    if (ping.beam_width.rad > 0) return ping.beam_width.rad;
-    if (bearings.size() < 2) return single_beam_width;
-    return (bearings.back() - bearings.front()) / static_cast<double>(bearings.size() - 1);
-}
 
 }  // namespace
 
 FanShape FanShape::of(const types::Sonar& ping) {
     FanShape shape;
-    const auto bearingOf = [&](uint32_t beam) { return ping.bearings[beam].rad; };
-    const size_t beam_count = std::min<size_t>(ping.beam_count, ping.bearings.size());
-    for (uint32_t beam = 0; beam < beam_count; ++beam)
-        if (!ping.bearings[beam].isUnknown()) shape.beams.push_back(beam);
-    std::stable_sort(shape.beams.begin(), shape.beams.end(),
-                     [&](uint32_t a, uint32_t b) { return bearingOf(a) < bearingOf(b); });
-    for (const uint32_t beam : shape.beams) shape.bearings.push_back(bearingOf(beam));
+    shape.take(ping);
     shape.bin_count = ping.bin_count;
     shape.range = ping.binStart(ping.bin_count);
-    if (shape.bearings.empty()) return shape;
-    const double half = beamWidth(ping, shape.bearings) / 2;
-    shape.right = std::max(shape.bearings.front() - half, -pi);
-    shape.left = std::min(shape.bearings.back() + half, pi);
     return shape;
 }
 
-bool FanShape::fullCircle() const { return left - right > 2 * pi - 1e-6; }
-
-double FanShape::beamAt(double bearing) const {
-    const auto after = std::upper_bound(bearings.begin(), bearings.end(), bearing);
-    if (after == bearings.begin()) return 0;
-    const double index = static_cast<double>(after - bearings.begin() - 1);
-    if (after == bearings.end()) return index;
-    const double before = *(after - 1);
-    return index + (bearing - before) / (*after - before);
+double FanShape::halfAngle(double right, double left, double least) {
+    return std::min(std::max({std::abs(left), std::abs(right), least}), pi);
 }
 
 FanLayout::FanLayout(int width, double right, double left, double range) : range_(range), right_(right), left_(left) {
-    const double half_angle = std::max({std::abs(left), std::abs(right), pi / 180});
+    const double half_angle = FanShape::halfAngle(right, left, pi / 180);
     const double half_width = half_angle < pi / 2 ? std::sin(half_angle) : 1;
     const double depth = half_angle < pi / 2 ? 0 : -std::cos(half_angle);
     const int even_width = width + width % 2;

@@ -1,32 +1,25 @@
 #pragma once
 #include <cstdint>
 #include <opencv2/core.hpp>
-#include <vector>
 
-#include "types/Sonar.hpp"
+#include "types/BeamArc.hpp"
 
 namespace insonify::output {
 
-/** The beams of a ping in order of bearing: what of a ping decides where its bins go in the picture. */
-struct FanShape {
-    std::vector<double> bearings;  ///< Ascending: from starboard to port [rad].
-    std::vector<uint32_t> beams;   ///< The ping's beam at each of these bearings.
-    double right = 0, left = 0;    ///< Outer edges of the first and the last beam [rad].
+/** What of a ping decides where its bins go in the picture. */
+struct FanShape : types::BeamArc {
     uint32_t bin_count = 0;
     double range = 0;  ///< Far edge of the last bin [m].
 
-    /** Beams of unknown bearing are left out; edges lie half a beam width beyond the outermost centres (where the
-     *  width is unknown, half the distance to the neighbour). */
     static FanShape of(const types::Sonar& ping);
-    bool fullCircle() const;
-    /** Beam, counted in order of bearing, that a bearing falls on: between two centres a fraction [1]. */
-    double beamAt(double bearing) const;
+    /** The greatest angle from ahead, of at least `least` and at most half a turn [rad]. */
+    static double halfAngle(double right, double left, double least);
 };
 
 /** Where a fan of the given edges lies in a picture: ahead is up, port is left. */
 class FanLayout {
 public:
-    /** @param width of the picture [px]; an odd one is made even. */
+    /** @param width of the picture [px]; an odd one is made even. @param left may exceed pi, across +-180 degrees. */
     FanLayout(int width, double right, double left, double range);
 
     cv::Size size() const { return size_; }

@@ -36,9 +36,10 @@ void addRings(Overlay& overlay, const FanLayout& layout) {
         const double radius = range / metres_per_pixel;
         if (radius < layout.radius() - 1)
             overlay.arc(layout.origin(), radius, layout.right(), layout.left(), ring_opacity);
-        // Beside the starboard edge where there is room, else along the line to the right of the origin or straight
-        // ahead.
-        const double bearing = half_plane ? layout.right() : 0;
+        // Next to the starboard edge of a fan within the half plane ahead, else ahead, or in the middle of a fan that
+        // is not ahead.
+        const bool ahead = layout.right() <= 0 && layout.left() >= 0;
+        const double bearing = half_plane ? layout.right() : ahead ? 0 : (layout.right() + layout.left()) / 2;
         const cv::Point2d at = layout.pixel(range, bearing);
         const cv::Point2d aside = half_plane ? cv::Point2d(8, 9 * std::sin(-bearing)) : cv::Point2d(5, 9);
         if (half_plane || radius < layout.radius() - 12)
@@ -50,14 +51,15 @@ void addSpokes(Overlay& overlay, const FanLayout& layout) {
     const double step = spokeStep(layout.radius());
     const double left = types::degrees(layout.left()), right = types::degrees(layout.right());
     for (double degrees = std::ceil(right / step - 1e-6) * step; degrees < left + 1e-6; degrees += step) {
-        if (degrees < -180 + 1e-6) continue;
+        if (degrees + 360 < left + 1e-6) continue;  // drawn at the port edge
         const double bearing = types::radians(degrees);
         overlay.line(layout.pixel(layout.range() * 0.04, bearing), layout.pixel(layout.range(), bearing),
                      spoke_opacity);
         const cv::Point2d outward(-std::sin(bearing), -std::cos(bearing));
         const cv::Point2d end = layout.pixel(layout.range(), bearing);
         overlay.line(end, end + 5 * outward, full);
-        overlay.text(fmt::format("{:g}", degrees + 0.0), end + cv::Point2d(22 * outward.x, 15 * outward.y),
+        const double turn = degrees > 180 + 1e-6 ? -360 : degrees < -180 + 1e-6 ? 360 : 0, shown = degrees + turn;
+        overlay.text(fmt::format("{:g}", shown + 0.0), end + cv::Point2d(22 * outward.x, 15 * outward.y),
                      Overlay::Anchor::Centre, true);
     }
 }

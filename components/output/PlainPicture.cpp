@@ -13,7 +13,7 @@ constexpr double quarter_turn = std::numbers::pi / 2;
 
 /** The picture's width and height of a fan of unit radius, {half the width, what lies behind the sonar}. */
 std::pair<double, double> reachOf(const FanShape& shape) {
-    const double half_angle = std::max({std::abs(shape.left), std::abs(shape.right), 1e-3});
+    const double half_angle = FanShape::halfAngle(shape.right, shape.left, 1e-3);
     if (half_angle < quarter_turn) return {std::sin(half_angle), 0};
     return {1, -std::cos(half_angle)};
 }
@@ -49,8 +49,8 @@ void PlainPicture::take(const types::Sonar& ping) {
     time_ = ping.time;
     bins_per_cell_ = (ping.bin_count + config_.height - 1) / config_.height;
     cells_ = (ping.bin_count + bins_per_cell_ - 1) / bins_per_cell_;
-    bearing_of_.clear();
-    for (const types::Angle& bearing : ping.bearings) bearing_of_.push_back(bearing.rad);
+    bearing_of_.assign(ping.bearings.size(), types::Angle{}.rad);
+    for (size_t i = 0; i < shape_.beams.size(); ++i) bearing_of_[shape_.beams[i]] = shape_.bearings[i];
     if (config_.shape == PlainShape::Fan)
         buildFan();
     else
@@ -70,9 +70,9 @@ void PlainPicture::buildFan() {
             const double ahead = origin_.y - y, port = origin_.x - x;
             const double bearing = std::atan2(port, ahead);
             const auto cell = static_cast<uint32_t>(std::hypot(ahead, port) / radius_ * cells_);
-            if (cell >= cells_ || bearing < shape_.right || bearing > shape_.left) continue;
-            const uint32_t beam = shape_.beams[static_cast<size_t>(std::lround(shape_.beamAt(bearing)))];
-            cell_of_[size_t{y} * width_ + x] = static_cast<int32_t>(beam * cells_ + cell);
+            if (cell >= cells_) continue;
+            if (const auto beam = shape_.beamAt(bearing))
+                cell_of_[size_t{y} * width_ + x] = static_cast<int32_t>(*beam * cells_ + cell);
         }
 }
 

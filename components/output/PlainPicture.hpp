@@ -59,6 +59,10 @@ public:
     const std::vector<int32_t>& cells() const { return cell_of_; }
     /** Of each cell from black, 0, to white, 255. */
     const std::vector<uint8_t>& levels() const { return levels_; }
+    /** The ping's beams from starboard to port. */
+    const types::BeamArc& arc() const { return shape_; }
+    /** Bearing of a beam on that arc, which exceeds pi across +-180 degrees; NaN: unknown [rad]. */
+    double bearing(uint32_t beam) const { return bearing_of_[beam]; }
     /** The pixel nearest to the middle of a cell, {column, row}; inside of the picture. */
     cv::Point pixelOf(uint32_t beam, uint32_t cell) const;
     /** The level of white [dB]; 0 where bins are codes. */
@@ -74,7 +78,7 @@ private:
 
     PlainConfig config_;
     FanShape shape_;
-    std::vector<double> bearing_of_;   ///< Of each beam of the ping [rad].
+    std::vector<double> bearing_of_;   ///< The bearing of each of the ping's beams, on the arc [rad].
     std::vector<uint32_t> column_of_;  ///< Of each beam in a polar picture.
     uint32_t bins_per_cell_ = 1, cells_ = 0, width_ = 0, height_ = 0;
     cv::Point2d origin_{};  ///< The sonar in a fan [px].

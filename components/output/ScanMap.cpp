@@ -40,10 +40,12 @@ void ScanMap::lay(const types::Sonar& ping, const types::Pose& sonar) {
     world_from_plane_ = planeOf(sonar);
     sonar_ = sonar.position;
     moveTo(sonar_);
-    for (uint32_t beam = 0; beam < ping.beam_count && beam < ping.bearings.size(); ++beam) {
-        const double bearing = ping.bearings[beam].rad;
-        if (ping.bin_count > 0 && !ping.bearings[beam].isUnknown())
-            layBeam(&ping.bins[size_t{beam} * ping.bin_count], ping.bin_count, bearing, halfWidth(ping, bearing));
+    arc_.take(ping);
+    if (ping.bin_count == 0) return;
+    for (size_t place = 0; place < arc_.beams.size(); ++place) {
+        const double bearing = arc_.bearings[place];
+        layBeam(&ping.bins[size_t{arc_.beams[place]} * ping.bin_count], ping.bin_count, bearing,
+                arc_.within(place, halfWidth(ping, bearing)));
     }
 }
 
@@ -90,7 +92,7 @@ cv::Rect ScanMap::reach(double bearing, double half_width) const {
     return box & cv::Rect({}, cells_.size());
 }
 
-void ScanMap::layBeam(const float* bins, uint32_t bin_count, double bearing, double half_width) {
+void ScanMap::layBeam(const float* bins, uint32_t bin_count, double bearing, const types::BeamArc::Reach& part) {
     const int columns = std::min(static_cast<int>(bin_count), radius_);
     const cv::Mat all(1, static_cast<int>(bin_count), CV_32F, const_cast<float*>(bins));
     cv::resize(all, echo_, {columns, 1}, 0, 0, cv::INTER_AREA);
@@ -98,15 +100,16 @@ void ScanMap::layBeam(const float* bins, uint32_t bin_count, double bearing, dou
 
     const glm::dmat2 plane_from_world = glm::inverse(world_from_plane_);
     const glm::dvec2 axis = towards(bearing);
-    const double slope = std::tan(std::min(half_width, 0.49 * pi));
-    const cv::Rect box = reach(bearing, half_width);
+    const double to_right = std::tan(std::min(part.right, 0.49 * pi));
+    const double to_left = std::tan(std::min(part.left, 0.49 * pi));
+    const cv::Rect box = reach(bearing, std::max(part.right, part.left));
     for (int row = box.y; row < box.y + box.height; ++row)
         for (int column = box.x; column < box.x + box.width; ++column) {
             const glm::dvec2 place = middle_ + glm::dvec2(radius_ - row, radius_ - column) * cell_;
             const glm::dvec2 at = plane_from_world * (place - sonar_);
-            const double along = glm::dot(at, axis), across = std::abs(axis.x * at.y - axis.y * at.x);
-            const double range = glm::length(at);
-            if (along < 0 || range >= range_ || across > std::max(along * slope, cell_ / 2)) continue;
+            const double along = glm::dot(at, axis), port = axis.x * at.y - axis.y * at.x;
+            const double range = glm::length(at), slope = port > 0 ? to_left : to_right;
+            if (along < 0 || range >= range_ || std::abs(port) > std::max(along * slope, cell_ / 2)) continue;
             const double position = std::clamp(range / range_ * columns - 0.5, 0.0, columns - 1.0);
             const int before = static_cast<int>(position), after = std::min(before + 1, columns - 1);
             const float share = static_cast<float>(position - before);

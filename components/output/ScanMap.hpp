@@ -4,6 +4,7 @@
 #include <opencv2/core.hpp>
 #include <optional>
 
+#include "types/BeamArc.hpp"
 #include "types/Pose.hpp"
 #include "types/Sonar.hpp"
 
@@ -13,7 +14,8 @@ namespace insonify::output {
  *  cell, and forgets what it leaves behind; each ping overwrites what was heard before where its beam points.
  *
  *  Echoes are taken to lie in the plane of the sonar's x and y axes: elevation is not known. A beam covers its width,
- *  but no more than the turn since the beam before, so that neighbours do not cover each other's middle. */
+ *  but no more than the turn since the beam before, so that neighbours do not cover each other's middle. Where beams of
+ *  one ping overlap, the nearest centre counts. */
 class ScanMap {
 public:
     /** @param radius from the middle to each edge [cells]; @param range the same [m]. */
@@ -33,7 +35,8 @@ public:
 
 private:
     void moveTo(const glm::dvec2& place);
-    void layBeam(const float* bins, uint32_t bin_count, double bearing, double half_width);
+    /** @param part how far the beam reaches from its bearing to either side */
+    void layBeam(const float* bins, uint32_t bin_count, double bearing, const types::BeamArc::Reach& part);
     /** Cells that the beam may touch. */
     cv::Rect reach(double bearing, double half_width) const;
     double halfWidth(const types::Sonar& ping, double bearing);
@@ -45,6 +48,7 @@ private:
     glm::dvec2 sonar_{0};             ///< In the world, of the ping at hand [m].
     glm::dmat2 world_from_plane_{1};  ///< Of the ping at hand.
     std::optional<double> heading_;   ///< In the world, of the beam before [rad].
+    types::BeamArc arc_;              ///< The beams of the ping at hand.
 };
 
 }  // namespace insonify::output

@@ -4,18 +4,20 @@
 #include <opencv2/imgproc.hpp>
 
 #include "components/output/LevelScale.hpp"
+#include "types/BeamArc.hpp"
 
 namespace insonify::output {
 namespace {
 
 constexpr double white = 255;
 
-/** 8 bits a bin, as 64-bit floats. */
+/** 8 bits a bin, as 64-bit floats; neighbouring rows are neighbouring beams. */
 cv::Mat levelsOf(const types::Sonar& ping, LevelScale& scale) {
     const cv::Mat bins(static_cast<int>(ping.beam_count), static_cast<int>(ping.bin_count), CV_32F,
                        const_cast<float*>(ping.bins.data()));
-    cv::Mat levels;
-    scale.apply(bins, levels);
+    cv::Mat rows(0, bins.cols, CV_32F), levels;
+    for (const uint32_t beam : types::BeamArc(ping).beams) rows.push_back(bins.row(static_cast<int>(beam)));
+    scale.apply(rows.empty() ? bins : rows, levels);
     levels.convertTo(levels, CV_64F);
     return levels;
 }

@@ -71,9 +71,9 @@ void TruthImage::build(const types::Sonar& ping) {
             const double ahead = origin.y - y, port = origin.x - x;
             const double bearing = std::atan2(port, ahead);
             const auto bin = static_cast<uint32_t>(std::hypot(ahead, port) / layout().radius() * shape.bin_count);
-            if (bin >= shape.bin_count || bearing < shape.right || bearing > shape.left) continue;
-            const auto beam = static_cast<size_t>(std::lround(shape.beamAt(bearing)));
-            bin_of_.at<int32_t>(y, x) = static_cast<int32_t>(shape.beams[beam] * shape.bin_count + bin);
+            if (bin >= shape.bin_count) continue;
+            if (const auto beam = shape.beamAt(bearing))
+                bin_of_.at<int32_t>(y, x) = static_cast<int32_t>(*beam * shape.bin_count + bin);
         }
 }
 

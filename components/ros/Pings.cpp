@@ -1,5 +1,6 @@
 #include "components/ros/Pings.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <limits>
@@ -8,6 +9,7 @@
 #include "components/ros/Clouds.hpp"
 #include "components/ros/Echoes.hpp"
 #include "components/ros/Stamps.hpp"
+#include "types/BeamArc.hpp"
 
 namespace insonify::ros {
 namespace {
@@ -42,16 +44,25 @@ void fillDelays(const types::Sonar& ping, std::vector<float>& delays) {
         delays[beam] = static_cast<float>((ping.beamStart(beam) - ping.time).seconds());
 }
 
-/** From one bearing to the next; 0 for fewer than two [rad]. */
-double incrementOf(const types::Sonar& ping) {
-    const auto step = [&](size_t k) {
-        return types::Angle::fromRad(ping.bearings[k + 1].rad - ping.bearings[k].rad).rad;
-    };
-    if (ping.beam_count < 2) return 0;
-    for (size_t k = 0; k + 1 < ping.bearings.size(); ++k)
-        if (!(std::abs(step(k) - step(0)) < 1e-3 * std::abs(step(0))))
-            throw std::invalid_argument("the beams do not stand at equal angles from one another, as a LaserScan's do");
-    return step(0);
+double stepTo(const types::BeamArc& arc, size_t place) { return arc.bearings[place] - arc.bearings[place - 1]; }
+
+/** The smallest angle between two neighbouring beams; 0 for fewer than two beams [rad]. */
+double smallestStep(const types::BeamArc& arc) {
+    double smallest = arc.beams.size() > 1 ? stepTo(arc, 1) : 0;
+    for (size_t place = 2; place < arc.beams.size(); ++place) smallest = std::min(smallest, stepTo(arc, place));
+    return smallest;
+}
+
+/** The ray of a LaserScan that is the beam at a place, when the beam before it is ray `before`. */
+size_t rayOf(const types::BeamArc& arc, size_t place, double smallest, size_t before) {
+    constexpr double tolerance = 1e-3, max_rays = 16384;
+    const double step = stepTo(arc, place), steps = std::round(step / smallest);
+    if (!(std::abs(step - steps * smallest) < tolerance * steps * smallest) ||
+        static_cast<double>(before) + steps >= max_rays)
+        throw std::invalid_argument(
+            "the beams are not at equal angles from one another, nor at multiples of the smallest angle, as a "
+            "LaserScan needs; send them as PointCloud2 or SonarRanges");
+    return before + static_cast<size_t>(steps);
 }
 
 }  // namespace
@@ -116,20 +127,27 @@ void convert(const types::Sonar& ping, const SonarOptions& options, PointCloud2&
 
 void convert(const types::Sonar& ping, const SonarOptions& options, LaserScan& message) {
     fillHeader(ping, options, message.header);
-    const double increment = incrementOf(ping), first = ping.beam_count > 0 ? ping.bearings[0].rad : 0;
+    static thread_local types::BeamArc arc;  // its memory is used again
+    arc.take(ping);
+    const double smallest = smallestStep(arc);
+    const DetectionThreshold rule(ping, options);
+    message.ranges.clear();
+    message.intensities.clear();
+    for (size_t place = 0, ray = 0; place < arc.beams.size(); ++place) {
+        if (place > 0) ray = rayOf(arc, place, smallest, ray);
+        message.ranges.resize(ray + 1, std::numeric_limits<float>::quiet_NaN());
+        message.intensities.resize(ray + 1, 0);
+        const auto bin = rule.firstOf(arc.beams[place]);
+        message.ranges[ray] = bin ? binCentre(ping, *bin) : std::numeric_limits<float>::infinity();
+        if (bin) message.intensities[ray] = ping.bins[size_t{arc.beams[place]} * ping.bin_count + *bin];
+    }
+    const size_t rays = message.ranges.size();
+    const double first = rays > 0 ? arc.bearings.front() : 0, last = rays > 0 ? arc.bearings.back() : 0;
     message.angle_min = static_cast<float>(first);
-    message.angle_increment = static_cast<float>(increment);
-    message.angle_max = static_cast<float>(first + increment * (ping.beam_count > 0 ? ping.beam_count - 1 : 0));
+    message.angle_increment = rays > 1 ? static_cast<float>((last - first) / static_cast<double>(rays - 1)) : 0;
+    message.angle_max = static_cast<float>(last);
     message.range_min = 0;
     message.range_max = static_cast<float>(ping.binStart(ping.bin_count));
-    message.ranges.assign(ping.beam_count, std::numeric_limits<float>::infinity());
-    message.intensities.assign(ping.beam_count, 0);
-    const DetectionThreshold rule(ping, options);
-    for (uint32_t beam = 0; beam < ping.beam_count; ++beam)
-        if (const auto bin = rule.firstOf(beam)) {
-            message.ranges[beam] = binCentre(ping, *bin);
-            message.intensities[beam] = ping.bins[size_t{beam} * ping.bin_count + *bin];
-        }
 }
 
 namespace {

@@ -28,8 +28,9 @@ void convert(const types::Sonar& ping, const SonarOptions& options, SonarRanges&
 /** Every bin at or above the threshold as a point: x, y, z [m], intensity: the bin. */
 void convert(const types::Sonar& ping, const SonarOptions& options, PointCloud2& message);
 
-/** First returns as above, infinite where there is none. Throws std::invalid_argument for beams that do not stand at
- *  equal angles from one another. */
+/** First returns as above, infinite where there is none. The rays go from starboard to port whatever the order of the
+ *  beams; angles exceed pi across +-180 degrees. Beams at multiples of the smallest angle between two of them have rays
+ *  of range NaN between them. Throws std::invalid_argument for beams at other angles from one another. */
 void convert(const types::Sonar& ping, const SonarOptions& options, LaserScan& message);
 
 /** How an image is to be read: its order and its axes. */

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <filesystem>
 
+#include "types/BeamArc.hpp"
 #include "types/ConfigError.hpp"
 
 namespace insonify::study {
@@ -53,13 +54,19 @@ CodedPing codedPing(const device::OculusPing& ping, std::string name) {
 
 CodedPing codedPing(const types::Sonar& ping, const receiver::CodeConfig& code, std::string name) {
     CodedPing coded{.name = std::move(name),
-                    .beam_count = ping.beam_count,
+                    .beam_count = 0,
                     .bin_count = ping.bin_count,
                     .bearings = {},
-                    .codes = ping.bins,
+                    .codes = {},
                     .bits = code.bits,
                     .law = code};
-    for (const types::Angle& bearing : ping.bearings) coded.bearings.push_back(bearing.rad);
+    const types::BeamArc arc(ping);  // neighbouring rows are neighbouring beams
+    coded.beam_count = static_cast<uint32_t>(arc.beams.size());
+    for (const uint32_t beam : arc.beams) {
+        coded.bearings.push_back(ping.bearings[beam].rad);
+        const auto bins = ping.bins.begin() + static_cast<std::ptrdiff_t>(size_t{beam} * ping.bin_count);
+        coded.codes.insert(coded.codes.end(), bins, bins + ping.bin_count);
+    }
     for (float& each : coded.codes) each /= static_cast<float>((1 << code.bits) - 1);
     return coded;
 }

@@ -7,47 +7,41 @@
 
 #include "components/ros/Echoes.hpp"
 #include "components/ros/Stamps.hpp"
+#include "components/viewer/PingPicture.hpp"
+#include "types/BeamArc.hpp"
 
 namespace insonify::viewer {
 namespace {
 
 constexpr int directions = 8192;
-constexpr double one_beam_width = 0.03, max_covered = 8;
+constexpr double max_covered = 8;
+
+bool same(types::Angle a, types::Angle b) { return a.rad == b.rad || (a.isUnknown() && b.isUnknown()); }
 
 /** Which beam a bearing belongs to, by its place between the outermost edges. */
 struct Beams {
     double low = 0, high = 0;
     std::vector<int> beam;  ///< -1: none.
 
-    explicit Beams(const types::Sonar& ping) : beam(directions, -1) {
-        const std::vector<double> edges = edgesOf(ping);
-        low = *std::ranges::min_element(edges);
-        high = *std::ranges::max_element(edges);
-        for (size_t i = 0; i + 1 < edges.size(); ++i) {
-            const auto [from, to] = std::minmax({slot(edges[i]), slot(edges[i + 1])});
-            for (int k = std::max(from, 0); k < std::min(to, directions); ++k)
-                beam[static_cast<size_t>(k)] = static_cast<int>(i);
-        }
+    explicit Beams(const types::Sonar& ping) : beam(directions, -1), arc_(ping, lone_beam_width) {
+        const auto sectors = arc_.sectors();
+        if (sectors.empty()) return;
+        low = sectors.front().right;
+        high = sectors.back().left;
+        for (size_t i = 0; i < sectors.size(); ++i)
+            for (int k = std::max(slot(sectors[i].right), 0); k < std::min(slot(sectors[i].left), directions); ++k)
+                beam[static_cast<size_t>(k)] = static_cast<int>(arc_.beams[i]);
     }
-    int slot(double bearing) const { return static_cast<int>(std::floor((bearing - low) / (high - low) * directions)); }
     int at(double bearing) const {
-        const int k = slot(bearing);
+        if (arc_.beams.empty()) return -1;
+        const int k = slot(arc_.turned(bearing));
         return k >= 0 && k < directions ? beam[static_cast<size_t>(k)] : -1;
     }
 
 private:
-    /** One more than beams, in the middle between two. */
-    static std::vector<double> edgesOf(const types::Sonar& ping) {
-        const auto bearing = [&](size_t i) { return ping.bearings[i].isUnknown() ? 0.0 : ping.bearings[i].rad; };
-        const size_t n = ping.bearings.size();
-        const double alone = ping.beam_width.rad > 0 ? ping.beam_width.rad : one_beam_width;
-        const double first = n > 1 ? bearing(1) - bearing(0) : alone,
-                     last = n > 1 ? bearing(n - 1) - bearing(n - 2) : alone;
-        std::vector<double> edges{bearing(0) - first / 2};
-        for (size_t i = 1; i < n; ++i) edges.push_back((bearing(i - 1) + bearing(i)) / 2);
-        edges.push_back(bearing(n - 1) + last / 2);
-        return edges;
-    }
+    int slot(double bearing) const { return static_cast<int>(std::floor((bearing - low) / (high - low) * directions)); }
+
+    types::BeamArc arc_;
 };
 
 /** What of the plane the fan takes, for a range of 1: x to starboard, y ahead. */
@@ -68,12 +62,13 @@ struct Extent {
 }  // namespace
 
 bool FanPicture::fits(const types::Sonar& ping) const {
-    return ping.bin_count == bin_count_ && ping.binStart(1) == bin_m_ &&
-           std::ranges::equal(ping.bearings, bearings_, {}, &types::Angle::rad, &types::Angle::rad);
+    return ping.bin_count == bin_count_ && ping.binStart(1) == bin_m_ && same(ping.beam_width, beam_width_) &&
+           std::ranges::equal(ping.bearings, bearings_, same);
 }
 
 void FanPicture::build(const types::Sonar& ping) {
     bearings_ = ping.bearings;
+    beam_width_ = ping.beam_width;
     bin_count_ = ping.bin_count;
     bin_m_ = ping.binStart(1);
     const Beams beams(ping);

@@ -12,7 +12,7 @@ namespace insonify::viewer {
  * strongest of the echoes that it covers, as the levels of components/ros/Pings.hpp; 0 is no echo, and outside of
  * the fan.
  *
- *  Where each pixel's echoes are is tabled, and kept until bearings, bins or range change. */
+ *  Where each pixel's echoes are is tabled, and kept until bearings, widths, bins or range change. */
 class FanPicture {
 public:
     static constexpr uint32_t longest_side = 720;  ///< [px]
@@ -29,6 +29,7 @@ private:
     void build(const types::Sonar& ping);
 
     std::vector<types::Angle> bearings_;
+    types::Angle beam_width_;
     uint32_t bin_count_ = 0;
     double bin_m_ = 0;
     uint32_t width_ = 0, height_ = 0;

@@ -6,15 +6,17 @@
 #include <cstring>
 #include <nlohmann/json.hpp>
 
+#include "types/BeamArc.hpp"
+
 namespace insonify::viewer {
 namespace {
 
 constexpr float nothing_db = -10000;
 
-nlohmann::json bearingsOf(const types::Sonar& ping) {
-    nlohmann::json bearings = nlohmann::json::array();
-    for (const types::Angle& bearing : ping.bearings) bearings.push_back(bearing.isUnknown() ? 0.0 : bearing.rad);
-    return bearings;
+nlohmann::json edgesOf(const types::BeamArc& arc) {
+    nlohmann::json edges = nlohmann::json::array();
+    for (const auto& [right, left] : arc.sectors()) edges.insert(edges.end(), {right, left});
+    return edges;
 }
 
 /** NaN has no place in JSON. */
@@ -48,11 +50,12 @@ float PingPicture::decibels(float bin) const {
 std::string PingPicture::encode(const types::Sonar& ping, const PictureNote& note) const {
     const uint32_t pool = (ping.bin_count + max_bins - 1) / max_bins;
     const uint32_t bins = pool > 0 ? (ping.bin_count + pool - 1) / pool : 0;
-    std::vector<float> levels(size_t{bins} * ping.beam_count, nothing_db);
-    for (uint32_t beam = 0; beam < ping.beam_count; ++beam)
+    const types::BeamArc arc(ping, lone_beam_width);
+    std::vector<float> levels(size_t{bins} * arc.beams.size(), nothing_db);
+    for (size_t row = 0; row < arc.beams.size(); ++row)
         for (uint32_t bin = 0; bin < ping.bin_count; ++bin) {
-            float& level = levels[size_t{beam} * bins + bin / pool];
-            level = std::max(level, decibels(ping.bins[size_t{beam} * ping.bin_count + bin]));
+            float& level = levels[row * bins + bin / pool];
+            level = std::max(level, decibels(ping.bins[size_t{arc.beams[row]} * ping.bin_count + bin]));
         }
     float top = nothing_db;
     for (const float level : levels) top = std::max(top, level);
@@ -65,14 +68,15 @@ std::string PingPicture::encode(const types::Sonar& ping, const PictureNote& not
                                  {"time_us", ping.time.microseconds},
                                  {"count", note.count},
                                  {"latency_s", orZero(note.latency_s)},
-                                 {"beams", ping.beam_count},
+                                 {"beams", arc.beams.size()},
                                  {"bins", bins},
                                  {"bin_m", orZero(ping.binStart(pool))},
                                  {"top_db", top == nothing_db ? 0 : top},
                                  {"step_db", step_db},
                                  {"beam_width", orZero(ping.beam_width.rad)},
                                  {"beam_height", orZero(ping.beam_height.rad)},
-                                 {"bearings", bearingsOf(ping)}};
+                                 {"bearings", arc.bearings},
+                                 {"edges", edgesOf(arc)}};
     return pageMessage(ping_kind, json.dump(), data);
 }
 

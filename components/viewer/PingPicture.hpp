@@ -21,7 +21,10 @@ std::string pageMessage(uint32_t kind, std::string json, const std::string& data
 
 inline constexpr uint32_t ping_kind = 1, scene_kind = 2;
 
-/** Pings as messages for pages: a level of 8 bits for each beam and bin, beam-first.
+inline constexpr double lone_beam_width = 0.03;  ///< Shown for a single beam whose ping does not state it [rad].
+
+/** Pings as messages for pages: a level of 8 bits for each beam and bin, beam-first. The beams are those of
+ *  types::BeamArc, from starboard to port; `bearings` are their centres, `edges` two for each beam [rad].
  *
  *  255 stands for `top_db`, at or little above the strongest echo; each step below is `step_db`; 0 is no echo, or one
  *  below all steps. Of more than 4096 bins several become one, which has the strongest of their echoes. */

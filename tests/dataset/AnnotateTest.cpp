@@ -4,7 +4,7 @@
 #include <numeric>
 
 #include "components/dataset/Annotate.hpp"
-#include "tests/support/Pings.hpp"
+#include "tests/support/Fans.hpp"
 
 namespace insonify::dataset {
 namespace {
@@ -60,6 +60,38 @@ protected:
     AnnotationConfig config_;
     std::optional<output::PlainPicture> shown_;
 };
+
+TEST_F(AnnotateTest, TheOrderOfTheBeamsChangesNothing) {
+    const Annotated expected = annotated();
+    std::vector<uint32_t> order(beams);
+    for (uint32_t i = 0; i < beams; ++i) order[i] = (i * 23 + 5) % beams;
+    const types::Sonar ascending = ping_;
+    const types::SonarTruth truth = truth_;
+    ping_ = test::reordered(ascending, order);
+    for (size_t beam = 0; beam < beams; ++beam)
+        std::copy_n(&truth.object[size_t{order[beam]} * bins], bins, &truth_.object[beam * bins]);
+    const Annotated all = annotated();
+    EXPECT_EQ(all.labels, expected.labels);
+    ASSERT_THAT(all.annotations, SizeIs(2));
+    for (size_t i = 0; i < 2; ++i) {
+        EXPECT_EQ(all.annotations[i].box, expected.annotations[i].box);
+        EXPECT_EQ(all.annotations[i].runs, expected.annotations[i].runs);
+        EXPECT_EQ(all.annotations[i].bearing_min, expected.annotations[i].bearing_min);
+        EXPECT_EQ(all.annotations[i].bearing_max, expected.annotations[i].bearing_max);
+    }
+}
+
+TEST_F(AnnotateTest, TheBearingsOfAnObjectAcrossTheSeamAreOneInterval) {
+    for (types::Angle& bearing : ping_.bearings) bearing = types::Angle::fromRad(bearing.rad + std::numbers::pi);
+    const auto middle = static_cast<uint32_t>(beams / 2);
+    put(1, {middle - 2, middle + 3}, {80, 90});
+    put(1, {20, 24}, {50, 60}, 0.01f, 0);
+    const Annotated all = annotated();
+    ASSERT_THAT(all.annotations, SizeIs(2));
+    const double step = types::radians(120.0 / beams);
+    EXPECT_NEAR(all.annotations[0].bearing_min, std::numbers::pi - 2 * step, 1e-9);
+    EXPECT_NEAR(all.annotations[0].bearing_max, std::numbers::pi + 2 * step, 1e-9);
+}
 
 TEST_F(AnnotateTest, EachObjectOfAClassHasABoxThatHoldsItsBins) {
     const Annotated all = annotated();

@@ -218,7 +218,7 @@ TEST_F(PublisherTaskTest, WhatAMessageCannotHoldIsACountedDropAndTheRunGoesOn) {
     publishing.send(nullptr);
     EXPECT_EQ(publishing.task.state(), framework::TaskState::Running);
     ASSERT_EQ(told.size(), 1u);
-    EXPECT_THAT(told[0], HasSubstr("publisher: 1 message dropped; the last: /scan: the beams do not stand at equal"));
+    EXPECT_THAT(told[0], HasSubstr("publisher: 1 message dropped; the last: /scan: the beams are not at equal"));
     EXPECT_THAT(publishing.task.notices(),
                 testing::UnorderedElementsAre(HasSubstr("2 messages dropped: /scan: the beams"),
                                               HasSubstr("1 message dropped: publisher.in: a sample is null")));

@@ -1,9 +1,11 @@
 // Codes of a receiver as an Oculus sends them, and what drivers make of them.
 #include <gmock/gmock.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "components/device/OculusPing.hpp"
+#include "tests/support/Fans.hpp"
 
 namespace insonify::device {
 namespace {
@@ -55,6 +57,38 @@ TEST(OculusEncoderTest, CodesOfEveryWidthAreTheSameShareOfTheLargest) {
         for (size_t i = 0; i < 6; ++i)
             EXPECT_NEAR(ping.codes[i] / ping.largestCode(), shares[i], 0.5 / ping.largestCode() + 1e-5) << i;
     }
+}
+
+TEST(OculusEncoderTest, TheWireOfARandomFanAscendsAndTheBeamsComeBackWithTheirCodes) {
+    for (const test::RandomFan& fan : test::randomFans(5, 4)) {
+        types::Sonar ping = fan.ping;
+        for (float& bin : ping.bins) bin = std::floor(65535 * bin);
+        OculusResult result;
+        result.fire = fireOf(16);
+        OculusEncoder encoder;
+        encoder.encode(ping, result);
+        EXPECT_TRUE(std::ranges::is_sorted(result.bearings)) << fan.name;
+        const types::Sonar back = sonarOf(sent(ping, fireOf(16)), {});
+        ASSERT_EQ(back.beam_count, ping.beam_count);
+        for (uint32_t beam = 0; beam < ping.beam_count; ++beam) {
+            uint32_t found = 0;
+            while (found < back.beam_count && back.bins[found * 4] != ping.bins[beam * 4]) ++found;
+            ASSERT_LT(found, back.beam_count) << fan.name;
+            EXPECT_LT(test::apart(back.bearings[found].rad, ping.bearings[beam].rad), types::radians(0.0051))
+                << fan.name;
+        }
+        for (size_t beam = 0; beam < back.beam_count; ++beam)
+            EXPECT_LE(std::abs(back.bearings[beam].rad), std::numbers::pi) << fan.name;
+    }
+}
+
+TEST(OculusEncoderTest, BeamsOfUnknownBearingAreNotSent) {
+    types::Sonar ping = codes();
+    ping.bearings[0] = {};
+    const OculusPing read = sent(ping, fireOf(16));
+    ASSERT_EQ(read.beamCount(), 1u);
+    EXPECT_NEAR(types::degrees(read.bearings[0]), 30, 1e-9);
+    EXPECT_THAT(read.codes, ElementsAre(16384, 32768, 1));
 }
 
 TEST(OculusEncoderTest, GammaBrightensWeakEchoes) {

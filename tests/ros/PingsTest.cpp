@@ -7,6 +7,7 @@
 
 #include "components/ros/Pings.hpp"
 #include "tests/ros/Samples.hpp"
+#include "tests/support/Fans.hpp"
 
 namespace insonify::ros {
 namespace {
@@ -166,18 +167,69 @@ TEST(PingsTest, ACloudHoldsEveryBinAboveTheThreshold) {
                             near(1.875 * std::cos(0.25)), near(-1.875 * std::sin(0.25)), 0, 1000));
 }
 
-TEST(PingsTest, AScanHasItsRaysWhereTheBeamsAre) {
+TEST(PingsTest, AScanHasItsRaysWhereTheBeamsAreFromStarboardToPort) {
     SonarOptions options;
     options.threshold_db = -45;  // -15 dB: all but 0.02 and NaN
     const auto scan = messageOf<LaserScan>(smallPing(), options);
-    EXPECT_FLOAT_EQ(scan.angle_min, 0.5f);
-    EXPECT_FLOAT_EQ(scan.angle_increment, -0.75f);
-    EXPECT_FLOAT_EQ(scan.angle_max, -0.25f);
-    EXPECT_THAT(scan.ranges, ElementsAre(FloatEq(0.375f), FloatEq(1.875f)));
+    EXPECT_FLOAT_EQ(scan.angle_min, -0.25f);
+    EXPECT_FLOAT_EQ(scan.angle_increment, 0.75f);
+    EXPECT_FLOAT_EQ(scan.angle_max, 0.5f);
+    EXPECT_THAT(scan.ranges, ElementsAre(FloatEq(1.875f), FloatEq(0.375f)));
     EXPECT_FLOAT_EQ(scan.range_max, 2.25f);
     types::Sonar silent = smallPing();
     silent.bins.assign(6, 0);
     EXPECT_THAT(messageOf<LaserScan>(silent, options).ranges, testing::Each(std::numeric_limits<float>::infinity()));
+}
+
+TEST(PingsTest, AScanOfBeamsInAnyOrderHasNanBetweenThemAndGoesOnAcrossTheSeam) {
+    types::Sonar ping = test::pingOf(5, 4);
+    const double bearings_deg[] = {-170, 155, 175, 160, -175};
+    for (uint32_t beam = 0; beam < 5; ++beam) {
+        ping.bearings[beam] = types::Angle::fromDeg(bearings_deg[beam]);
+        std::fill_n(&ping.bins[beam * 4], 4, 0.0f);
+        if (beam < 4) ping.bins[beam * 4 + beam] = 1;
+    }
+    const auto scan = messageOf<LaserScan>(ping);
+    EXPECT_NEAR(scan.angle_min, types::radians(155), 1e-6);
+    EXPECT_NEAR(scan.angle_increment, types::radians(5), 1e-6);
+    EXPECT_NEAR(scan.angle_max, types::radians(190), 1e-6);
+    constexpr float none = std::numeric_limits<float>::infinity();
+    EXPECT_THAT(scan.ranges, ElementsAre(FloatEq(0.15f), FloatEq(0.35f), IsNan(), IsNan(), FloatEq(0.25f), IsNan(),
+                                         none, FloatEq(0.05f)));
+    EXPECT_THAT(scan.intensities, ElementsAre(1, 1, 0, 0, 1, 0, 0, 1));
+}
+
+TEST(PingsTest, AScanOfARandomFanHasEachBeamAtItsAngleOrIsRefused) {
+    size_t sent = 0;
+    for (const test::RandomFan& fan : test::randomFans(5, 8)) {
+        const types::Sonar& ping = fan.ping;
+        SonarOptions options;
+        options.threshold_db = -200;
+        LaserScan scan, ascending;
+        try {
+            convert(ping, options, scan);
+        } catch (const std::invalid_argument& error) {
+            EXPECT_THAT(error.what(), testing::HasSubstr("not at equal angles")) << fan.name;
+            EXPECT_THROW(convert(fan.ascending, options, ascending), std::invalid_argument) << fan.name;
+            continue;
+        }
+        ++sent;
+        convert(fan.ascending, options, ascending);
+        EXPECT_TRUE(scan.ranges.size() == ascending.ranges.size() && scan.angle_min == ascending.angle_min &&
+                    scan.angle_increment == ascending.angle_increment);
+        EXPECT_EQ(scan.intensities, ascending.intensities) << fan.name;
+        EXPECT_GE(scan.angle_increment, 0) << fan.name;
+        for (uint32_t beam = 0; beam < ping.beam_count; ++beam)
+            EXPECT_EQ(std::ranges::count(scan.intensities, ping.bins[size_t{beam} * ping.bin_count]), 1) << fan.name;
+        for (size_t ray = 0; ray < scan.ranges.size(); ++ray) {
+            if (std::isnan(scan.ranges[ray])) continue;
+            const double angle = static_cast<double>(scan.angle_min + static_cast<float>(ray) * scan.angle_increment);
+            uint32_t beam = 0;
+            while (ping.bins[size_t{beam} * ping.bin_count] != scan.intensities[ray]) ++beam;
+            EXPECT_LT(test::apart(ping.bearings[beam].rad, angle), 1e-5) << fan.name;
+        }
+    }
+    EXPECT_GE(sent, 20u) << "descending, shuffled, across the seam, all around, one";
 }
 
 TEST(PingsTest, WhatCannotBeHeldIsRefused) {
@@ -186,8 +238,10 @@ TEST(PingsTest, WhatCannotBeHeldIsRefused) {
     EXPECT_EQ(diagnosticOf(ping), "the lists of the ping are not as long as its counts say");
     ping = smallPing();
     ping.resize(3, 3);
-    ping.bearings[2] = {-0.5};
-    EXPECT_EQ(diagnosticOf(ping), "the beams do not stand at equal angles from one another, as a LaserScan's do");
+    ping.bearings[2] = {-0.6};
+    EXPECT_EQ(diagnosticOf(ping),
+              "the beams are not at equal angles from one another, nor at multiples of the smallest angle, as a "
+              "LaserScan needs; send them as PointCloud2 or SonarRanges");
     ping = smallPing();
     ping.time = types::Time::fromSeconds(3e9);
     EXPECT_EQ(diagnosticOf(ping), "ROS holds no time of 3000000000 s: from -2147483648 s to 2147483647 s");

@@ -88,6 +88,25 @@ TEST_F(PageTest, APingIsDrawnAsItIs) {
     EXPECT_NE(pixelAt(16, 0), darkest) << "beyond the last bin there is no picture";
 }
 
+TEST_F(PageTest, AFanAcrossTheSeamIsDrawnBehindTheSonarAndGapsAreEmpty) {
+    put("map", "gray");
+    click("freeze");
+    // Beams from 150 to 160 and from 170 to 190 degrees, silent but for the last one.
+    value(
+        "(() => { const {fan} = insonify, rad = (all) => all.map((each) => each * Math.PI / 180), bins = 10;"
+        "const ping = {...fan.ping, beams: 3, bins, bin_m: 1.5, edges: rad([150, 160, 170, 180, 180, 190]), data: new "
+        "Uint8Array(30)}; ping.data.fill(255, 20); fan.show(ping, ping.top_db); })()");
+    const json white = {255, 255, 255}, black = {0, 0, 0};
+    for (const bool polar : {false, true}) {
+        value(std::string("insonify.fan.polar = ") + (polar ? "true" : "false"));
+        for (const double bearing : {-172.0, -179.0, 181.5}) EXPECT_EQ(pixelAt(6.75, bearing), white) << bearing;
+        for (const double bearing : {179.0, 172.0, 155.0}) EXPECT_EQ(pixelAt(6.75, bearing), black) << bearing;
+        EXPECT_NE(pixelAt(6.75, 165), black) << "between beams there is no picture";
+        EXPECT_THAT(readAt(6.75, -175), HasSubstr("-175.0° stbd"));
+        EXPECT_EQ(readAt(6.75, 165), "");
+    }
+}
+
 TEST_F(PageTest, ColourMapAndGainChangeThePicture) {
     put("map", "gray");
     EXPECT_EQ(pixelAt(6.75, 0), json({255, 255, 255}));

@@ -75,6 +75,22 @@ TEST(PingPictureTest, OfManyBinsTheLoudestStandsForItsNeighbours) {
     EXPECT_EQ(message.levels.find('\xff'), size_t{3334 + 1});
 }
 
+TEST(PingPictureTest, BeamsGoFromStarboardToPortWithTheirEdgesAndUnknownBearingsAreOmitted) {
+    types::Sonar ping = pingOf(4, 1);
+    ping.bins = {0.1f, 1, 0.01f, 10};
+    ping.bearings = {types::Angle::fromDeg(-175), types::Angle::fromDeg(175), types::Angle{},
+                     types::Angle::fromDeg(150)};
+    ping.beam_width = types::Angle::fromDeg(10);
+    const Message message = takenApart(PingPicture(ros::BinScale::Linear).encode(ping, {}));
+    EXPECT_EQ(message.json["beams"], 3);
+    EXPECT_EQ(message.levels, std::string("\xff\xe6\xcd"));
+    const double edges_deg[] = {145, 155, 170, 180, 180, 190};
+    ASSERT_EQ(message.json["edges"].size(), 6u);
+    for (size_t i = 0; i < 6; ++i)
+        EXPECT_NEAR(types::degrees(message.json["edges"][i].get<double>()), edges_deg[i], 1e-9) << i;
+    EXPECT_NEAR(types::degrees(message.json["bearings"][2].get<double>()), 185, 1e-9);
+}
+
 TEST(PingPictureTest, APingWithoutEchoOrBinsIsOneToo) {
     types::Sonar silent = pingOf(1, 3);
     EXPECT_EQ(takenApart(PingPicture(ros::BinScale::Linear).encode(silent, {})).levels, std::string(3, '\0'));

@@ -1,6 +1,6 @@
 // The picture of a ping, drawn by the graphics device straight from its levels; rings and cursor on a canvas above.
 import {palette} from './colours.js';
-import {beamAt, levelAt} from './ping.js';
+import {beamAt, levelAt, sameBeams, turned} from './ping.js';
 
 const vertex = `#version 300 es
 void main() { gl_Position = vec4(vec2(gl_VertexID & 1, gl_VertexID >> 1) * 4. - 1., 0, 1); }`;
@@ -20,6 +20,7 @@ const vec3 nothing = vec3(.027, .035, .043);
 void main() {
   vec2 p = (gl_FragCoord.xy - origin) / scale;
   float range = polar ? p.y : length(p), bearing = polar ? -p.x : atan(p.x == 0. ? -1e-6 : -p.x, p.y);  // some devices have no atan(0, y)
+  if (!polar) bearing += 6.28318531 * ceil((bearings.x - bearing) / 6.28318531);  // the fan may lie across +-180 degrees
   float share = (bearing - bearings.x) / (bearings.y - bearings.x);
   int bin = int(floor(range / bins.y));
   colour = vec4(nothing, 1);
@@ -54,7 +55,8 @@ function textureOf(gl, unit) {
 }
 
 const table_size = 4096, degrees = 180 / Math.PI;
-const bearingText = (bearing) => `${(bearing * degrees).toFixed(1)}°` + (Math.abs(bearing) < 5e-4 ? '' : bearing > 0 ? ' port' : ' stbd');
+const shortest = (bearing) => bearing - 2 * Math.PI * Math.round(bearing / (2 * Math.PI));
+const bearingText = (any, bearing = shortest(any)) => `${(bearing * degrees).toFixed(1)}°` + (Math.abs(bearing) < 5e-4 ? '' : bearing > 0 ? ' port' : ' stbd');
 /** Ahead and to port [m], and back. */
 const metresOf = ({range, bearing}) => [range * Math.cos(bearing), range * Math.sin(bearing)];
 const placeOf = ([ahead, port]) => ({range: Math.hypot(ahead, port), bearing: Math.atan2(port, ahead)});
@@ -96,13 +98,13 @@ export class Fan {
       gl.activeTexture(gl.TEXTURE0);
       gl.texImage2D(gl.TEXTURE_2D, 0, gl.R8, ping.bins, ping.beams, 0, gl.RED, gl.UNSIGNED_BYTE, ping.data);
     }
-    if (!old || old.beams !== ping.beams || old.edges[0] !== ping.edges[0] || old.edges[1] !== ping.edges[1]) this.setBeams(ping);
+    if (!old || !sameBeams(old, ping)) this.setBeams(ping);
   }
 
   setBeams(ping) {
-    const gl = this.gl, ends = [ping.edges[0], ping.edges[ping.edges.length - 1]];
-    this.low = Math.min(...ends);
-    this.high = Math.max(...ends);
+    const gl = this.gl;
+    this.low = ping.edges[0];
+    this.high = ping.edges[ping.edges.length - 1];
     if (!gl) return;
     const table = new Float32Array(table_size);
     for (let i = 0; i < table_size; ++i) table[i] = 1 + beamAt(ping, this.low + (this.high - this.low) * (i + 0.5) / table_size);
@@ -158,7 +160,7 @@ export class Fan {
   /** Pixel of the canvas, from its lower left corner, at which a place is shown. */
   pixelOf(range, bearing) {
     const {scale, origin} = this.place();
-    const p = this.polar ? [-bearing, range] : [-range * Math.sin(bearing), range * Math.cos(bearing)];
+    const p = this.polar ? [-turned(this.ping, bearing), range] : [-range * Math.sin(bearing), range * Math.cos(bearing)];
     return [origin[0] + p[0] * scale[0], origin[1] + p[1] * scale[1]];
   }
   placeAt(x, y) {
@@ -229,7 +231,7 @@ export class Fan {
     const turn = (this.high - this.low) * degrees > 200 ? 45 : 15;
     for (let d = Math.ceil(this.low * degrees / turn) * turn; d <= this.high * degrees; d += turn) {
       line([[far * 0.985, d / degrees], [far, d / degrees]]);
-      label(`${d}°`, far, d / degrees, this.polar ? 0 : -14 * Math.sin(d / degrees), this.polar ? -6 : -8 * Math.cos(d / degrees) + 3);
+      label(`${d > 180 ? d - 360 : d}°`, far, d / degrees, this.polar ? 0 : -14 * Math.sin(d / degrees), this.polar ? -6 : -8 * Math.cos(d / degrees) + 3);
     }
   }
 

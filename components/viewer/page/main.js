@@ -88,7 +88,7 @@ function attitude() {
 function takePing(ping) {
   const chooser = byId('source');
   if (![...chooser.options].some((option) => option.value === ping.source)) chooser.append(element('option', {}, ping.source));
-  if (chooser.value !== ping.source) return;
+  if (chooser.value !== ping.source || !ping.beams) return;
   if (ping.beams === 1) {
     if (!scans.has(ping.source)) scans.set(ping.source, new Scan());
     ping = scans.get(ping.source).add(ping);

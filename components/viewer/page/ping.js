@@ -1,21 +1,12 @@
 // A ping as it came, or many of a scanning head's put together.
 
-/** Edges between beams, one more than beams, in the order of beams [rad]. */
-function edgesOf(bearings, width) {
-  const n = bearings.length;
-  if (n === 1) return [bearings[0] - width / 2, bearings[0] + width / 2];
-  const edges = [bearings[0] - (bearings[1] - bearings[0]) / 2];
-  for (let i = 1; i < n; ++i) edges.push((bearings[i - 1] + bearings[i]) / 2);
-  edges.push(bearings[n - 1] + (bearings[n - 1] - bearings[n - 2]) / 2);
-  return edges;
-}
-
+/** Its beams go from starboard to port; `edges` has the starboard and the port edge of each [rad]. */
 export function pingOf(message) {
-  const json = message.json;
-  return {...json, data: new Uint8Array(message.buffer, message.start), edges: edgesOf(json.bearings, json.beam_width || 0.03)};
+  return {...message.json, data: new Uint8Array(message.buffer, message.start)};
 }
 
 const turn = 2 * Math.PI, rows = 720;
+const whole_edges = Array.from({length: 2 * rows}, (_, i) => -Math.PI + Math.ceil(i / 2) * turn / rows);
 
 /** The last turn of a head of one beam, as one ping of beams all around. */
 export class Scan {
@@ -33,8 +24,7 @@ export class Scan {
     return {...this.whole, count: ping.count, time_us: ping.time_us, latency_s: ping.latency_s};
   }
   clear(ping) {
-    const bearings = Array.from({length: rows}, (_, i) => -Math.PI + (i + 0.5) * turn / rows);
-    this.whole = {...ping, beams: rows, bearings, edges: edgesOf(bearings, 0), data: new Uint8Array(rows * ping.bins),
+    this.whole = {...ping, beams: rows, edges: whole_edges, data: new Uint8Array(rows * ping.bins),
                   top_db: ping.top_db + 20};
   }
 }
@@ -49,11 +39,19 @@ export function strongLevel(ping) {
   return ping.top_db - (255 - level) * ping.step_db;
 }
 
+/** Whether two pings have the same beams. */
+export const sameBeams = ({edges: a}, {edges: b}) => a === b || (a.length === b.length && a.every((edge, i) => edge === b[i]));
+
+/** The same direction within half a turn of the fan's middle, if it is not between the fan's edges already. */
+export function turned({edges}, bearing) {
+  const low = edges[0], high = edges[edges.length - 1];
+  return bearing >= low && bearing <= high ? bearing : bearing - turn * Math.round((bearing - (low + high) / 2) / turn);
+}
+
 /** Which beam is at a bearing; -1: none. */
 export function beamAt(ping, bearing) {
-  const edges = ping.edges, up = edges[edges.length - 1] > edges[0];
-  for (let i = 0; i < ping.beams; ++i)
-    if (up ? bearing >= edges[i] && bearing < edges[i + 1] : bearing <= edges[i] && bearing > edges[i + 1]) return i;
+  const {edges} = ping, at = turned(ping, bearing);
+  for (let i = 0; i < ping.beams; ++i) if (at >= edges[2 * i] && at < edges[2 * i + 1]) return i;
   return -1;
 }
 

@@ -1,5 +1,6 @@
 // The scene, the sonar's fan in it, the water and the vehicles' paths, in three dimensions; z is up.
 import {palette} from './colours.js';
+import {sameBeams} from './ping.js';
 import {Vehicle} from './vehicle.js';
 
 const tints = {sand: 0xb09a6c, mud: 0x7d7058, clay: 0x8a7460, gravel: 0x8f877a, stone: 0x85817a, rock: 0x7a756d, concrete: 0x9da1a2,
@@ -135,8 +136,8 @@ export class World {
 
   /** The ping as it lies in the world, level 0 of the display as faint as it may be seen. */
   showPing(ping, top_db, span_db, map) {
-    const {THREE} = this, key = [ping.beams, ping.bins, ping.bin_m, ping.edges[0], ping.beam_height].join();
-    if (this.fan_key !== key) this.makeFan(ping, key);
+    const {THREE} = this, key = [ping.bins, ping.bin_m, ping.beam_height].join();
+    if (this.fan_key !== key || !sameBeams(this.shown, ping)) this.makeFan(ping, key);
     if (this.map !== map) {
       this.map = map;
       this.uniforms.colours.value?.dispose();
@@ -151,13 +152,14 @@ export class World {
   makeFan(ping, key) {
     const {THREE} = this, far = ping.bins * ping.bin_m, positions = [], uvs = [], indices = [];
     this.fan_key = key;
+    this.shown = ping;
     empty(this.sonar);
     this.levels?.dispose();
     this.uniforms?.colours.value?.dispose();
     ping.edges.forEach((edge, i) => {
       for (const r of [0.02 * far, far]) positions.push(r * Math.cos(edge), r * Math.sin(edge), 0);
-      for (const u of [0.02, 1]) uvs.push(u, i / ping.beams);
-      if (i > 0) indices.push(2 * i - 2, 2 * i - 1, 2 * i + 1, 2 * i - 2, 2 * i + 1, 2 * i);
+      for (const u of [0.02, 1]) uvs.push(u, Math.ceil(i / 2) / ping.beams);
+      if (i % 2) indices.push(2 * i - 2, 2 * i - 1, 2 * i + 1, 2 * i - 2, 2 * i + 1, 2 * i);
     });
     const geometry = new THREE.BufferGeometry();
     geometry.setAttribute('position', new THREE.Float32BufferAttribute(positions, 3));
@@ -174,12 +176,12 @@ export class World {
   }
   /** Edges of the water that the fan hears. */
   makeFrame(ping, far) {
-    const {THREE} = this, points = [], half = ping.beam_height / 2, n = ping.edges.length - 1;
+    const {THREE} = this, points = [], half = ping.beam_height / 2, low = ping.edges[0], high = ping.edges[ping.edges.length - 1];
     const at = (edge, up) => [far * Math.cos(up) * Math.cos(edge), far * Math.cos(up) * Math.sin(edge), far * Math.sin(up)];
     for (const up of [-half, half]) {
       for (let k = 0; k < 48; ++k)
-        for (const share of [k, k + 1]) points.push(...at(ping.edges[Math.round(n * share / 48)], up));
-      for (const edge of [ping.edges[0], ping.edges[n]]) points.push(0, 0, 0, ...at(edge, up));
+        for (const share of [k, k + 1]) points.push(...at(low + (high - low) * share / 48, up));
+      for (const edge of [low, high]) points.push(0, 0, 0, ...at(edge, up));
     }
     const geometry = new THREE.BufferGeometry();
     geometry.setAttribute('position', new THREE.Float32BufferAttribute(points, 3));

@@ -1,0 +1,62 @@
+#pragma once
+#include <cstdint>
+#include <numbers>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "types/Sonar.hpp"
+
+namespace insonify::types {
+
+/** The beams of a ping from starboard to port along the arc that they cover. The ping may list its beams in any order,
+ *  with gaps and overlaps, and across +-180 degrees: the arc leaves out the widest gap between two beams.
+ *
+ *  Beams of unknown bearing are omitted. Neighbours join when they are at most two widths apart, or when the ping does
+ *  not state the width. Joined beams meet half way between their centres. Other neighbours have a gap between them. */
+struct BeamArc {
+    std::vector<uint32_t> beams;   ///< Indices into the ping's beams.
+    std::vector<double> bearings;  ///< Centres of these beams, ascending; across +-180 degrees they exceed pi [rad].
+    double width = 0;              ///< Opening of one beam; when the ping does not state it, the mean spacing [rad].
+    double right = 0, left = 0;    ///< Outer edges, half a width beyond the outermost centres [rad].
+
+    static constexpr double usual_width = std::numbers::pi / 180;
+
+    BeamArc() = default;
+    explicit BeamArc(const Sonar& ping, double lone_width = usual_width) { take(ping, lone_width); }
+    /** @param lone_width the width of a single beam when the ping does not state it [rad] */
+    void take(const Sonar& ping, double lone_width = usual_width);
+    /** Allocates nothing when it had as many beams. */
+    void take(std::span<const Angle> table, Angle beam_width, double lone_width = usual_width);
+
+    bool fullCircle() const { return left - right > 2 * std::numbers::pi - 1e-6; }
+    /** Whether the beam at a place in `beams` joins the next one to port. */
+    bool joins(size_t place) const;
+    /** The place in `beams` at a bearing. Between the centres of two joined beams it is a fraction, which rounds to the
+     *  nearest beam. Nothing where no beam is. */
+    std::optional<double> placeAt(double bearing) const;
+    /** Index into the ping's beams of the beam whose centre is nearest to a bearing; nothing where no beam is. */
+    std::optional<uint32_t> beamAt(double bearing) const;
+    /** The same direction as `bearing`, within half a turn of the arc's middle [rad]. */
+    double turned(double bearing) const;
+
+    /** A part of the arc, from its starboard to its port edge [rad]. */
+    struct Sector {
+        double right, left;
+    };
+    /** What each beam shows of the arc. An outermost beam reaches as far outwards as towards its joined neighbour. */
+    std::vector<Sector> sectors() const;
+    /** How far a beam reaches from its centre to either side [rad]. */
+    struct Reach {
+        double right, left;
+    };
+    /** The reach of the beam at a place: `half_width`, but no more than half way to the next beam. */
+    Reach within(size_t place, double half_width) const;
+
+private:
+    double opposite() const { return (bearings.front() + bearings.back()) / 2 - std::numbers::pi; }
+
+    bool width_known_ = false;
+};
+
+}  // namespace insonify::types
