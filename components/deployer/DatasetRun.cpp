@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <iterator>
 #include <set>
 #include <stdexcept>
 
@@ -14,7 +15,6 @@
 #include "components/deployer/SweepScenes.hpp"
 #include "components/deployer/Tasks.hpp"
 #include "components/pose/Trajectory.hpp"
-#include "components/sonar/EchoRenderer.hpp"
 #include "types/ConfigError.hpp"
 
 namespace insonify::deployer {
@@ -218,12 +218,7 @@ std::vector<std::string> DatasetRun::overridesOf(size_t scene, size_t setting) c
     if (!choice.file.empty())
         for (const std::string& task : tasksOfType(scene_type))
             all.push_back(task + ".file=" + quoted(fs::absolute(choice.file).string()));
-    for (const framework::TaskSpec& task : spec_.tasks) {
-        const YAML::Node visibility = child(task.properties, "visibility");
-        const bool is_open = !visibility.IsDefined() || !visibility.IsScalar() || visibility.Scalar() == "auto";
-        if (task.type.starts_with("sonar::") && is_open && sonar::haveRays())
-            all.push_back(task.name + ".visibility=cpu");
-    }
+    std::ranges::copy(pinnedRays(spec_), std::back_inserter(all));
     for (const auto& [property, value] : choice.set) all.push_back(property + "=" + value.yaml);
     for (const auto& [property, value] : samples_->settingsOf(setting)) all.push_back(property + "=" + value);
     return all;

@@ -9,6 +9,7 @@
 #include "components/framework/Deployment.hpp"
 #include "components/framework/Port.hpp"
 #include "components/receiver/ReceiverTask.hpp"
+#include "components/sonar/EchoRenderer.hpp"
 #include "components/sonar/PingTask.hpp"
 #include "types/ConfigError.hpp"
 #include "types/Sonar.hpp"
@@ -48,6 +49,23 @@ receiver::ReceiverTask* codingReceiver(const Deployment& deployment) {
 }
 
 }  // namespace
+
+std::vector<std::string> pinnedRays(const DeploymentSpec& spec) {
+    std::vector<std::string> assignments;
+    for (const framework::TaskSpec& task : spec.tasks) {
+        const auto textOf = [&](const char* key) {
+            const YAML::Node value = framework::child(task.properties, key);
+            return value.IsDefined() && value.IsScalar() ? value.Scalar() : "";
+        };
+        const std::string visibility = textOf("visibility");
+        const bool is_drawn =
+            textOf("deposit") == "gpu" || framework::child(task.properties, "published").as<bool>(false);
+        if (task.type.starts_with("sonar::") && sonar::haveRays() && !is_drawn &&
+            (visibility.empty() || visibility == "auto"))
+            assignments.push_back(task.name + ".visibility=cpu");
+    }
+    return assignments;
+}
 
 receiver::ReceiverTask& codingReceiverOf(const Deployment& deployment, const std::string& file) {
     if (auto* found = codingReceiver(deployment)) return *found;

@@ -1,6 +1,7 @@
 #pragma once
 #include <set>
 #include <string>
+#include <vector>
 
 #include "components/framework/Deployment.hpp"
 #include "components/framework/DeploymentSpec.hpp"
@@ -21,6 +22,11 @@ std::set<std::string> pingTasks(const framework::DeploymentSpec& spec, framework
 
 /** These tasks and all from which they hear, directly or not. */
 std::set<std::string> upstreamOf(std::set<std::string> names, const framework::Deployment& deployment);
+
+/** Returns assignments (`--set`) that make pings independent of whether a machine has a graphics card: sonars that
+ *  would choose between rays and pictures cast rays. A `visibility` that is written stays. Sonars that need pictures
+ *  (`published`, `deposit: gpu`) draw on every machine. */
+std::vector<std::string> pinnedRays(const framework::DeploymentSpec& spec);
 
 /** The first receiver that gives out codes. Throws types::ConfigError where there is none. */
 receiver::ReceiverTask& codingReceiverOf(const framework::Deployment& deployment, const std::string& file);

@@ -201,6 +201,7 @@ struct Settings : RecordedSettings {
                 notice =
                     log.path().string() +
                     " has no properties.0.log of its run beside it: what was set by --set or while it ran is not known";
+            addFormerSeeds(deployment, log, tasks);
             return;
         }
         const auto properties = log::openLog(*file);
@@ -218,6 +219,15 @@ struct Settings : RecordedSettings {
             if (!history.changes.empty()) changed.push_back(history);
         }
         takeOut(deployment, present, histories);
+    }
+    /** Logs without a version are from before each task had a seed of its own: one that was not given was 1. */
+    void addFormerSeeds(const Deployment& deployment, const log::Reader& log, const std::set<std::string>& tasks) {
+        if (!log.metadatum("insonify_version").empty() || recordedSeed(log).value_or(1) != 0) return;
+        for (const std::string& property : optionalsOf(deployment, tasks)) {
+            const auto [task, name] = splitPort(property);
+            const bool is_written = framework::child(deployment.spec().task(task)->properties, name).IsDefined();
+            if (name == "seed" && !is_written && !settled.contains(property)) assignments.push_back(property + "=1");
+        }
     }
     /** Takes out what the deployment has and the log never had, of tasks that the log knows. */
     void takeOut(const Deployment& deployment, const std::map<std::string, std::string>& present,

@@ -51,7 +51,7 @@ void RunOptions::addTo(CLI::App& command) {
     command.add_option("--out", out, "folder for the files (default: out/<deployment>-<UTC time>)")->type_name("DIR");
     command.add_option("--set", set, "task.property.path=value: a property other than in the file; may be repeated")
         ->allow_extra_args(false);
-    command.add_option("--seed", seed, "seeds every task anew (0: as the file says)")
+    command.add_option("--seed", seed, "seeds every task with a hash of N and its name (0: as the file says)")
         ->type_name("N")
         ->check(refuseUnlessWhole);
     command.add_option("--summary", summary, "writes the summary as JSON")->type_name("FILE");

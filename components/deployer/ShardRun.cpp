@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "components/command/Sha256.hpp"
+#include "components/deployer/Pipeline.hpp"
 #include "components/deployer/ShardFolder.hpp"
 #include "components/deployer/StopSignal.hpp"
 #include "components/deployer/Tasks.hpp"
@@ -112,7 +113,8 @@ void refuseIndivisible(const Deployment& deployment) {
 
 int runShard(RunOptions options) {
     if (options.out.empty()) throw types::ConfigError("", "--out", "is missing; all shards of a run share a folder");
-    const DeploymentSpec spec = loadSpec(options);
+    DeploymentSpec spec = loadSpec(options);
+    for (const std::string& assignment : pinnedRays(spec)) spec.set(assignment);
     ShardFolder folder(options.out, *options.shard, runOf(options, spec));
     if (const auto manifest = folder.done()) {
         tell(options, *manifest, folder.path(), "were there already, in");

@@ -8,8 +8,8 @@
 #include <boost/beast/http/parser.hpp>
 #include <boost/beast/http/string_body.hpp>
 #include <boost/beast/http/write.hpp>
+#include <charconv>
 #include <cmath>
-#include <cstdio>
 #include <ctime>
 #include <nlohmann/json.hpp>
 #include <sstream>
@@ -38,16 +38,31 @@ Bytes serialised(Message& message) {
 
 std::string text(boost::beast::string_view view) { return {view.data(), view.size()}; }
 
-/** Of a zone, Z or +01:00 [s]. */
-std::optional<int> zoneSeconds(const std::string& zone) {
+bool take(std::string_view& text, char c) {
+    const bool is_there = text.starts_with(c);
+    text.remove_prefix(is_there ? 1 : 0);
+    return is_there;
+}
+
+/** Takes a number off the front of a text, in the C locale whatever the host's is. */
+template <class Number>
+bool take(std::string_view& text, Number& number, size_t max_characters) {
+    const char* const end = text.data() + std::min(max_characters, text.size());
+    const auto [stop, error] = std::from_chars(text.data(), end, number);
+    text.remove_prefix(static_cast<size_t>(stop - text.data()));
+    return error == std::errc();
+}
+
+/** Returns the seconds of a zone, Z or +01:00. */
+std::optional<int> zoneSeconds(std::string_view zone) {
     if (zone == "Z" || zone == "z") return 0;
-    char sign = 0;
-    int hours = 0, minutes = 0, length = 0;
-    if (std::sscanf(zone.c_str(), "%c%2d:%2d%n", &sign, &hours, &minutes, &length) != 3) return std::nullopt;
-    if (static_cast<size_t>(length) != zone.size() || (sign != '+' && sign != '-') || hours < 0 || minutes < 0 ||
-        hours > 23 || minutes > 59)
+    const bool is_west = take(zone, '-');
+    int hours = 0, minutes = 0;
+    if (!is_west && !take(zone, '+')) return std::nullopt;
+    if (!take(zone, hours, 2) || !take(zone, ':') || !take(zone, minutes, 2) || !zone.empty() || hours < 0 ||
+        minutes < 0 || hours > 23 || minutes > 59)
         return std::nullopt;
-    return (sign == '-' ? -1 : 1) * (hours * 3600 + minutes * 60);
+    return (is_west ? -1 : 1) * (hours * 3600 + minutes * 60);
 }
 
 bool isOfTheCalendar(const std::tm& day, double second) {
@@ -138,11 +153,15 @@ std::string isoText(types::Time time) {
 std::optional<types::Time> isoTime(const std::string& text) {
     std::tm day{};
     double second = 0;
-    int length = 0;
-    if (text.size() > 64 || std::sscanf(text.c_str(), "%4d-%2d-%2dT%2d:%2d:%20lf%n", &day.tm_year, &day.tm_mon,
-                                        &day.tm_mday, &day.tm_hour, &day.tm_min, &second, &length) != 6)
+    std::string_view rest = text;
+    const auto takePart = [&](int& part, size_t digits, char end) {
+        return take(rest, part, digits) && take(rest, end);
+    };
+    if (text.size() > 64 || !takePart(day.tm_year, 4, '-') || !takePart(day.tm_mon, 2, '-') ||
+        !takePart(day.tm_mday, 2, 'T') || !takePart(day.tm_hour, 2, ':') || !takePart(day.tm_min, 2, ':') ||
+        !take(rest, second, 20))
         return std::nullopt;
-    const auto zone = zoneSeconds(text.substr(static_cast<size_t>(length)));
+    const auto zone = zoneSeconds(rest);
     day.tm_year -= 1900;
     day.tm_mon -= 1;
     if (!std::isfinite(second)) return std::nullopt;

@@ -144,7 +144,10 @@ void Deployment::configure() {
 
 RunResult Deployment::run(const RunLimits& limits, const std::atomic<bool>& stop, const Executor::Report& report) {
     RunResult result;
-    warnings_.clear();
+    {
+        std::lock_guard lock(warning_mutex_);
+        warnings_.clear();
+    }
     environment_->is_shard = limits.shard.has_value();
     for (const std::string& line : spec_.unused()) warn(line);
     {
@@ -157,7 +160,10 @@ RunResult Deployment::run(const RunLimits& limits, const std::atomic<bool>& stop
         noteFailed(result.failures);
         stopAll(result.failures);
     }
-    result.warnings = warnings_;
+    {
+        std::lock_guard lock(warning_mutex_);
+        result.warnings = warnings_;
+    }
     static_cast<Progress&>(result) = executor_->progress();
     return result;
 }

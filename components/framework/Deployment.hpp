@@ -35,7 +35,8 @@ struct RunResult : Progress {
 class Deployment final : public types::DeploymentControl {
 public:
     /** Makes and checks; nothing is configured. Throws types::ConfigError with every diagnostic, those of `spec` first.
-     *  A `seed` that is not 0 gives each task that has a property of that name a hash of it and the task's name. */
+     *  A `seed` that is not 0 gives each task that has a property of that name a hash of it and the task's name; 0: the
+     *  tasks of which none is written get one of the deployment's seed. */
     Deployment(DeploymentSpec spec, Registry& registry, std::filesystem::path output_folder = ".", uint64_t seed = 0);
     ~Deployment() override;
     Deployment(const Deployment&) = delete;

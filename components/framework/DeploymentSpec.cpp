@@ -110,6 +110,7 @@ struct ConnectionKeys {
 struct DocumentKeys {
     Schedule schedule = Schedule::Lockstep;
     double start_time = 1, watchdog = 10;
+    uint64_t seed = 1;
     bool lock_memory = false;
     std::vector<std::string> libraries;
     YAML::Node tasks{YAML::NodeType::Undefined};
@@ -118,6 +119,7 @@ struct DocumentKeys {
     static void describe(Self& self, V& visit) {
         visit(Field{"schedule", "", "simulated time or the wall clock"}, self.schedule);
         visit(Field{"start_time", "s", "start of simulated time", 0, 4e9}, self.start_time);
+        visit(Field{"seed", "1", "a task without a seed gets a hash of this one and its name"}, self.seed);
         visit(Field{"watchdog", "s", "in realtime, time of a cycle after which it is reported", 1e-3, 1e6},
               self.watchdog);
         visit(Field{"lock_memory", "", "in realtime, all memory stays resident"}, self.lock_memory);
@@ -227,6 +229,7 @@ DeploymentSpec DeploymentSpec::parse(const std::string& text, const std::string&
     reader.read(document, "", keys);
     spec.lockstep = keys.schedule == Schedule::Lockstep;
     spec.start_time = keys.start_time;
+    spec.seed = keys.seed;
     spec.watchdog = keys.watchdog;
     spec.lock_memory = keys.lock_memory;
     spec.libraries = keys.libraries;

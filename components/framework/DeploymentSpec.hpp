@@ -56,6 +56,7 @@ struct DeploymentSpec {
     std::string text;  ///< The YAML as read.
     bool lockstep = true;
     double start_time = 1;               ///< Of simulated time [s].
+    uint64_t seed = 1;                   ///< From which each task without a `seed` of its own gets one, see seedOf.
     double watchdog = 10;                ///< In realtime, how long a cycle may take before it is reported [s].
     bool lock_memory = false;            ///< In realtime, all memory stays resident.
     std::vector<std::string> libraries;  ///< Shared objects, relative to the deployment file.

@@ -21,8 +21,7 @@ Progress Executor::progress() const {
 }
 
 bool Executor::isOver(const RunLimits& limits) const {
-    if (graph_.hasFailed()) return true;
-    return limits.samples > 0 && (graph_.hasSourceInError() || graph_.countedSamples() >= limits.samples);
+    return graph_.hasFailed() || (limits.samples > 0 && graph_.countedSamples() >= limits.samples);
 }
 
 }  // namespace insonify::framework

@@ -74,7 +74,7 @@ public:
 protected:
     using Clock = std::chrono::steady_clock;
 
-    /** A task has failed, or the count is reached, or can no longer be. */
+    /** A task has failed, or the count is reached. */
     bool isOver(const RunLimits& limits) const;
 
     const Graph& graph_;

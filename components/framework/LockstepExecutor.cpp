@@ -9,6 +9,8 @@
 namespace insonify::framework {
 namespace {
 
+constexpr int max_refusals = 100'000;  ///< Instants in a row after which no counted sample is expected any more.
+
 bool readsNothing(const TaskContext& task) {
     return std::ranges::none_of(task.inputs(), [](const auto* port) { return port->connected(); });
 }
@@ -92,8 +94,8 @@ bool LockstepExecutor::advance() {
 
 void LockstepExecutor::run(const RunLimits& limits, const std::atomic<bool>& stop, const Report& report) {
     findTasks();
+    refusals_ = 0;
     first_ = limits.shard ? limits.shard->first : 0;
-    const bool limited = limits.samples > 0 || limits.duration_s > 0;
     const types::Time end = limits.duration_s > 0 ? start_ + types::Time::fromSeconds(limits.duration_s) : never;
     for (types::Time instant = nextBetweenInstants(); !stop && instant < end; instant = nextBetweenInstants()) {
         standStill(stop);
@@ -107,7 +109,8 @@ void LockstepExecutor::run(const RunLimits& limits, const std::atomic<bool>& sto
             runInstant(now_due);
         }
         if (report) report(progress());
-        if (isOver(limits) || sourcesAreDone(limited)) return;
+        refusals_ = graph_.hasSourceInError() ? refusals_ + 1 : 0;
+        if (isOver(limits) || sourcesAreDone(limits)) return;
     }
 }
 
@@ -117,10 +120,14 @@ bool LockstepExecutor::takePart(const RunLimits& limits) {
     return !limits.shard || done < limits.shard->last;
 }
 
-bool LockstepExecutor::sourcesAreDone(bool limited) const {
-    const bool finished = std::ranges::all_of(sources_, [](const TaskContext* task) { return task->finished(); });
-    // With a limit a source that goes on holding its last value counts; one that gives nothing more does not.
-    return finished && (!limited || !sources_wrote_);
+bool LockstepExecutor::sourcesAreDone(const RunLimits& limits) const {
+    if (limits.samples > 0 && refusals_ >= max_refusals) return true;
+    if (!std::ranges::all_of(sources_, [](const TaskContext* task) { return task->finished(); })) return false;
+    // With a limit a source that goes on holding its last value counts, unless that value is refused; one that gives
+    // nothing more does not.
+    if (limits.samples > 0 && refusals_ > 0) return true;
+    const bool is_limited = limits.samples > 0 || limits.duration_s > 0;
+    return !is_limited || !sources_wrote_;
 }
 
 void LockstepExecutor::keepPace(double pace, types::Time instant, const std::atomic<bool>& stop) const {

@@ -44,8 +44,8 @@ private:
     void runInstant(types::Time instant);
     /** Sees to whether the next instant is rehearsed; false: it comes after the shard. */
     bool takePart(const RunLimits& limits);
-    /** Whether no source has anything more to say. */
-    bool sourcesAreDone(bool limited) const;
+    /** Whether no source has anything more to say, or a count is not to be reached any more. */
+    bool sourcesAreDone(const RunLimits& limits) const;
     /** Waits until an instant is due at the pace that is wanted, or time stands still. */
     void keepPace(double pace, types::Time instant, const std::atomic<bool>& stop) const;
     bool standsStill() const { return paused_ && steps_ == 0; }
@@ -58,6 +58,7 @@ private:
     std::vector<Timed> timed_;
     std::vector<TaskContext*> triggered_;
     std::vector<const TaskContext*> sources_;
+    int refusals_ = 0;            ///< Instants in a row in which a source of counted samples was in error.
     bool sources_wrote_ = false;  ///< Whether a task that runs by the clock wrote anything at the last instant.
     std::atomic<int64_t> now_us_;
     Clock::duration stood_still_{};  ///< In this run.

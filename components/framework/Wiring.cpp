@@ -124,14 +124,16 @@ void Wiring::makeTasks() {
 void Wiring::loadProperties(uint64_t seed) {
     for (const auto& task : graph_.tasks()) {
         TaskSpec& spec = *spec_.task(task->name());
-        if (seed != 0) seedTask(*task, spec, seed);
         ConfigReader reader(spec_.file, spec_.origins);
         reader.setFallback(spec.place.Mark());
         const std::string path = spec.path() + ".properties";
         const YAML::Node known = withoutUnknown(*task, spec, reader);
         for (PropertiesBase* properties : task->properties()) properties->load(reader, known, path);
         if (task->properties().empty()) reader.refuseUnknown(spec.properties, path, {});
-        if (reader.diagnostics().empty()) continue;
+        if (reader.diagnostics().empty()) {
+            seedTask(*task, spec, seed);
+            continue;
+        }
         unreliable_.push_back(task.get());
         diagnostics_.insert(diagnostics_.end(), reader.diagnostics().begin(), reader.diagnostics().end());
     }
@@ -183,12 +185,18 @@ YAML::Node Wiring::withoutUnknown(const TaskContext& task, const TaskSpec& spec,
 
 void Wiring::seedTask(const TaskContext& task, const TaskSpec& spec, uint64_t seed) {
     const std::string path = spec.path() + ".properties.seed";
-    const auto& origins = spec_.origins;
-    if (const auto found = origins.find(path); found != origins.end() && found->second.file == set_origin) return;
-    for (const PropertiesBase* properties : task.properties())
+    const auto origin = spec_.origins.find(path);
+    const bool is_set = origin != spec_.origins.end() && origin->second.file == set_origin;
+    const YAML::Node written = child(spec.properties, "seed");
+    if (written.IsDefined() && !written.IsNull() && (seed == 0 || is_set)) return;
+    const uint64_t own = seedOf(seed != 0 ? seed : spec_.seed, task.name());
+    for (PropertiesBase* properties : task.properties())
         for (const PropertyInfo& info : properties->list())
-            if (info.name == "seed")
-                return spec_.set(fmt::format("{}.seed={}", task.name(), seedOf(seed, task.name())));
+            if (info.name == "seed") try {
+                    properties->set("seed", std::to_string(own));
+                } catch (const types::ConfigError& error) {  // of a narrower type, which keeps its default
+                    if (seed != 0) report(spec.place, path, error.diagnostics().front().message);
+                }
 }
 
 void Wiring::connect() {

@@ -15,7 +15,7 @@ namespace insonify::framework {
  */
 class Wiring {
 public:
-    /** `environment` is for all tasks. A seed is set in `spec`. */
+    /** `environment` is for all tasks. */
     Wiring(DeploymentSpec& spec, std::shared_ptr<Environment> environment, Registry& registry)
         : spec_(spec), environment_(std::move(environment)), registry_(registry) {}
     /** Once. Throws types::ConfigError with every diagnostic, those of reading the file first. */
@@ -29,6 +29,8 @@ private:
     std::vector<std::string> aliasesOfProperties(const TaskSpec& spec) const;
     std::vector<std::string> aliasesOfPorts(const TaskSpec& spec, bool outputs) const;
     YAML::Node withoutUnknown(const TaskContext& task, const TaskSpec& spec, ConfigReader& reader) const;
+    /** Sets the `seed` of a task that has one: from `seed`, else from the deployment's unless one is written. A seed
+     *  given by --set stays. */
     void seedTask(const TaskContext& task, const TaskSpec& spec, uint64_t seed);
     void connect();
     void connectOne(const ConnectionSpec& connection);
@@ -56,7 +58,8 @@ private:
     std::vector<const TaskContext*> unreliable_;
 };
 
-/** Which seed a task gets from `run --seed`: stable over runs, machines and versions; below 2^53. */
+/** The seed of a task, from that of the deployment or of `run --seed`: stable over runs, machines and versions; below
+ *  2^53. */
 uint64_t seedOf(uint64_t seed, const std::string& task);
 
 }  // namespace insonify::framework

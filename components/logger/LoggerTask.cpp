@@ -93,6 +93,7 @@ void LoggerTask::checkInputs() const {
 log::Metadata LoggerTask::runMetadata() const {
     log::Metadata metadata = config->metadata;
     metadata["insonify_seed"] = std::to_string(environment().seed);
+    metadata["insonify_version"] = INSONIFY_VERSION;
     return metadata;
 }
 

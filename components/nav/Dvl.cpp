@@ -51,18 +51,19 @@ Dvl::Dvl(const DvlConfig& config)
       beams_(janusBeams(config.slant_deg, config.beam_azimuth_deg)),
       cosine_(std::cos(types::radians(config.slant_deg))) {
     for (size_t i = 0; i < beam_count; ++i) {
-        scale_[i] = config.errors.scale_error * normal(config.sensor.seed, channelOf(Scale, i), {});
-        bias_[i] = config.errors.velocity_bias * normal(config.sensor.seed, channelOf(Bias, i), {});
+        scale_[i] = config.errors.scale_error * normal(config.sensor.randomSeed(), channelOf(Scale, i), {});
+        bias_[i] = config.errors.velocity_bias * normal(config.sensor.randomSeed(), channelOf(Bias, i), {});
     }
 }
 
 double Dvl::range(size_t beam, const Motion& motion, const Bottom& bottom) const {
-    if (config_.errors.dropout > uniform(config_.sensor.seed, channelOf(Dropout, beam), motion.time))
+    if (config_.errors.dropout > uniform(config_.sensor.randomSeed(), channelOf(Dropout, beam), motion.time))
         return types::Pose::unknown;
     const glm::dvec3 direction = motion.orientation * beams_[beam];
     const auto met = bottom.range(motion.position, direction, config_.max_altitude / cosine_);
     if (!met || *met * cosine_ < config_.min_altitude) return types::Pose::unknown;
-    const double noise = config_.errors.range_noise * normal(config_.sensor.seed, channelOf(Range, beam), motion.time);
+    const double noise =
+        config_.errors.range_noise * normal(config_.sensor.randomSeed(), channelOf(Range, beam), motion.time);
     return std::max(*met + noise, 0.0);
 }
 
@@ -85,7 +86,7 @@ void Dvl::measure(const Motion& motion, const Bottom& bottom, types::Dvl& told) 
         if (std::isnan(told.beam_ranges[i])) continue;
         const double along = glm::dot(beams_[i], velocity);
         const double noise =
-            config_.errors.velocity_noise * normal(config_.sensor.seed, channelOf(Velocity, i), motion.time);
+            config_.errors.velocity_noise * normal(config_.sensor.randomSeed(), channelOf(Velocity, i), motion.time);
         told.beam_velocities[i] = (1 + scale_[i]) * along + bias_[i] + noise;
         told.beam_velocity_variances[i] = variance(along);
     }

@@ -15,7 +15,7 @@ constexpr uint64_t first_of_gyroscope = 0, first_of_accelerometer = 3, first_of_
 WanderingBias attitudeError(const ImuConfig& config, uint64_t axis) {
     const AttitudeConfig& errors = config.attitude;
     const double degrees = axis == 2 ? errors.heading_deviation_deg : errors.tilt_deviation_deg;
-    return {types::radians(degrees), errors.error_time, config.sensor.seed, first_of_attitude + axis};
+    return {types::radians(degrees), errors.error_time, config.sensor.randomSeed(), first_of_attitude + axis};
 }
 
 /** The turn of a rotation vector [rad]. */
@@ -37,8 +37,8 @@ Imu::Imu(const ImuConfig& config)
     : config_(config),
       gravity_(config.gravity.value_or(normalGravity(config.latitude_deg))),
       earth_(config.earth_rotation ? earthRotation(config.latitude_deg) : glm::dvec3(0)),
-      gyroscope_(triad(config.gyroscope, config.sensor.seed, first_of_gyroscope)),
-      accelerometer_(triad(config.accelerometer, config.sensor.seed, first_of_accelerometer)),
+      gyroscope_(triad(config.gyroscope, config.sensor.randomSeed(), first_of_gyroscope)),
+      accelerometer_(triad(config.accelerometer, config.sensor.randomSeed(), first_of_accelerometer)),
       attitude_errors_{attitudeError(config, 0), attitudeError(config, 1), attitudeError(config, 2)} {}
 
 Imu::Triad Imu::triad(const AxisErrors& errors, uint64_t seed, uint64_t first_channel) {

@@ -50,13 +50,13 @@ double depthAt(double pascal, const PressureConfig& config) {
 
 PressureGauge::PressureGauge(const PressureConfig& config)
     : config_(config),
-      drift_(config.errors.drift_deviation, config.errors.drift_time, config.sensor.seed, drift_channel) {}
+      drift_(config.errors.drift_deviation, config.errors.drift_time, config.sensor.randomSeed(), drift_channel) {}
 
 types::Pressure PressureGauge::measure(const types::Pose& gauge) {
     const GaugeErrors& errors = config_.errors;
     double pascal = pressureAt(config_.water_surface - gauge.position.z, config_);
-    pascal +=
-        errors.offset + drift_.at(gauge.time) + errors.noise * normal(config_.sensor.seed, noise_channel, gauge.time);
+    pascal += errors.offset + drift_.at(gauge.time) +
+              errors.noise * normal(config_.sensor.randomSeed(), noise_channel, gauge.time);
     const double most = config_.max_pressure.value_or(1e12);
     if (errors.resolution > 0) pascal = errors.resolution * std::round(pascal / errors.resolution);
     pascal = std::clamp(pascal, 0.0,

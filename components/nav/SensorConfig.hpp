@@ -1,5 +1,6 @@
 #pragma once
 #include <cstdint>
+#include <optional>
 
 #include "types/Mount.hpp"
 
@@ -8,15 +9,20 @@ namespace insonify::nav {
 /** What every sensor has: where it sits, how often it measures, and whose random numbers its errors are. */
 struct SensorConfig {
     types::Mount mount{};
-    uint64_t seed = 1;
+    std::optional<uint64_t> seed = {};  ///< None: 1. A deployment gives each task one of its own.
     double period = 0;
+
+    uint64_t randomSeed() const { return seed.value_or(1); }
 
     /** The keys of all sensors, with what one says of its mount and of its period. */
     template <class Self, class V>
     static void describe(Self& self, V& visit, const char* mount, const char* period) {
         using types::Field;
         visit(Field{"mount", "", mount}, self.mount);
-        visit(Field{"seed", "1", "of the random numbers: the same seed and poses give the same errors"}, self.seed);
+        visit(Field{"seed", "1",
+                    "of the random numbers: the same seed and poses give the same errors; absent: a hash of the "
+                    "deployment's seed and the task's name"},
+              self.seed);
         visit(Field{"period", "s", period, 0, 1e6}, self.period);
     }
 };

@@ -152,10 +152,10 @@ uint64_t Noise::addTo(const Run& run) const {
 
 uint64_t Noise::add(const types::Sonar& clean, types::Sonar& noisy) const {
     noisy.copyHeader(clean);
-    const uint64_t ping = static_cast<uint64_t>(clean.time.microseconds);
+    const uint64_t ping = static_cast<uint64_t>(clean.time.microseconds), seed = config_.seed.value_or(1);
     uint64_t clamped = 0;
     for (uint32_t beam = 0; beam < clean.beam_count; ++beam) {
-        const BeamKey key{{low(config_.seed), high(config_.seed)}, beam, low(ping), high(ping)};
+        const BeamKey key{{low(seed), high(seed)}, beam, low(ping), high(ping)};
         for (size_t bin = 0; bin < clean.bin_count; bin += chunk_bins) {
             const size_t offset = size_t{beam} * clean.bin_count + bin;
             const size_t size = std::min<size_t>(chunk_bins, clean.bin_count - bin);

@@ -68,7 +68,7 @@ struct AdditiveConfig {
 
 /** What noise a ping gets: a block that is absent is not computed. */
 struct NoiseConfig {
-    uint64_t seed = 1;
+    std::optional<uint64_t> seed = {};  ///< None: 1. A deployment gives each task one of its own.
     std::optional<SpeckleConfig> speckle;
     std::optional<AmbientConfig> ambient;
     std::optional<AdditiveConfig> additive;
@@ -78,7 +78,10 @@ struct NoiseConfig {
     template <class Self, class V>
     static void describe(Self& self, V& visit) {
         using types::Field;
-        visit(Field{"seed", "1", "of the random numbers: the same seed and ping times give the same noise"}, self.seed);
+        visit(Field{"seed", "1",
+                    "of the random numbers: the same seed and ping times give the same noise; absent: a hash of the "
+                    "deployment's seed and the task's name"},
+              self.seed);
         visit(Field{"speckle", "", "multiplicative noise; absent: none"}, self.speckle);
         visit(Field{"ambient", "",
                     "noise of the sea (Coates 1990), the same at every range before any gain; absent: none"},

@@ -18,9 +18,10 @@ namespace insonify::noise {
  *
  *  It comes before the receiver, whose gain raises noise and echoes alike. The bins must be linear intensities: a ping
  *  with bins below 0 leads to RunTimeError, from which the next good one recovers. The same seed and the same ping
- *  times give the same noise, in a replay too; two sonars that ping at the same times need different seeds. Without any
- *  noise the ping itself is passed on, not a copy. Properties that are set hold from the next ping on. A ping whose
- *  loudest echo is below the mean of the added noise is told of: once, and again only after echoes have stood out. */
+ *  times give the same noise, in a replay too; each task of a deployment has a seed of its own, unless one is written.
+ *  Without any noise the ping itself is passed on, not a copy. Properties that are set hold from the next ping on. A
+ *  warning reports a ping whose loudest echo is below the mean of the added noise: once, and again only after echoes
+ *  have stood out. */
 class NoiseTask final : public framework::TaskContext, public framework::Divisible {
 public:
     using TaskContext::TaskContext;

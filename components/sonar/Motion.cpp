@@ -52,13 +52,15 @@ void Motion::follow(const types::Snapshot& snapshot) {
 void Motion::followSonar(const types::Snapshot& snapshot) {
     const types::Pose& sonar = snapshot.sonar;
     velocity_ = turn_ = glm::dvec3(0);
+    const glm::dvec3 between = before_ ? (sonar.position - before_->sonar.position) / seconds_ : glm::dvec3(0);
+    const bool has_moved = before_ && glm::length(between) <= fastest_allowed_;
     if (isKnown(sonar.velocity) && glm::length(sonar.velocity) <= fastest_allowed_)
         velocity_ = sonar.velocity;
-    else if (before_)
-        velocity_ = (sonar.position - before_->sonar.position) / seconds_;
+    else if (has_moved)
+        velocity_ = between;
     if (isKnown(sonar.angular_velocity))
         turn_ = sonar.orientation * sonar.angular_velocity;
-    else if (before_)
+    else if (has_moved)
         turn_ = turnBetween(before_->sonar.orientation, sonar.orientation, seconds_);
 }
 

@@ -87,14 +87,21 @@ bool PingTask::configureHook() {
     return true;
 }
 
-const char* PingTask::useGeometry(const types::Snapshot& scene) {
+void PingTask::followSnapshot(const types::Snapshot& scene) {
     const std::optional<Mark> before = std::exchange(before_, Mark{scene.time, scene.sonar.position});
     const double seconds = before ? (scene.time - before->time).seconds() : 0;
-    if (!(seconds > 0)) return nullptr;
+    jumped_ = false;
+    if (!(seconds > 0)) return;
     shortest_ = std::min(shortest_, seconds);
     period_.note(seconds);
-    const bool too_fast = glm::distance(scene.sonar.position, before->position) > 0.1 * grid_.speed_of_sound * seconds;
-    return too_fast ? "the sonar moves faster than a tenth of the speed of sound" : nullptr;
+    const double way = glm::distance(scene.sonar.position, before->position);
+    const double fastest = 0.1 * grid_.speed_of_sound;
+    jumped_ = !(way <= fastest * seconds);
+    if (jumps_.isDue(jumped_))
+        warn(
+            fmt::format("the sonar has moved {:.4g} m in {:.4g} s, faster than a tenth of the speed of sound, {:.4g} "
+                        "m/s: it is taken as put there, at rest unless its pose has a velocity",
+                        way, seconds, fastest));
 }
 
 bool PingTask::takeGiven() {
@@ -174,8 +181,10 @@ void PingTask::updateHook() {
     const char* refusal = aimed_.geometry ? normalisePose(aimed_.sonar) : "the snapshot has no geometry";
     if (!refusal && activity().realtime() && (aimed_.time - now()).seconds() > 1)
         refusal = "the snapshot's time is ahead of the clock by more than a second";
-    if (!refusal) refusal = useGeometry(aimed_);
-    if (!refusal) refusal = steer(aimed_);
+    if (!refusal) {
+        followSnapshot(aimed_);
+        refusal = steer(aimed_);
+    }
     if (refusal) return error(refusal);
     if (state() == framework::TaskState::RunTimeError) recover();
     environment().rehearsing ? rehearse() : render();

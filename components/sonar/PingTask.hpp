@@ -13,6 +13,7 @@
 #include "components/sonar/PingDiagnostics.hpp"
 #include "components/sonar/QualityKeeper.hpp"
 #include "components/sonar/SonarRenderer.hpp"
+#include "types/RecurringDiagnostic.hpp"
 #include "types/Snapshot.hpp"
 #include "types/Sonar.hpp"
 #include "types/SonarElements.hpp"
@@ -25,8 +26,9 @@ namespace insonify::sonar {
 /** What the sonar tasks share: one ping for each snapshot, at the snapshot's time and sonar pose.
  *
  *  The renderer is made at the first snapshot, when the geometry is known, and again when the geometry changes. A
- *  snapshot that cannot be rendered (a pose that is not finite, a quaternion of no length, no geometry, a place that
- *  only more than a tenth of the speed of sound reaches) leads to RunTimeError, from which the next good one recovers.
+ *  snapshot that cannot be rendered (a pose that is not finite, a quaternion of no length, no geometry) leads to
+ *  RunTimeError, from which the next good one recovers. A sonar that only more than a tenth of the speed of sound takes
+ *  to its new place has been put there: a warning reports it, and the ping is made without a velocity from that way.
  *  In realtime the newest snapshot counts, and a ping is written once the last echo of its range has come back:
  *  2 range / c after its snapshot's time on the deployment's clock, and after the task took it, whichever is later.
  *  Pings thus never overlap. One whose listening is cut off by the stop is not written. A snapshot whose time is a
@@ -90,6 +92,8 @@ protected:
     /** Last changes to a snapshot with a valid pose before it is rendered; a reason refuses it. */
     virtual const char* steer(types::Snapshot& /*scene*/) { return nullptr; }
     double binWidth() const { return grid_.bin_width; }  ///< Exact, where `bin_duration` of a ping is rounded [m].
+    /** Whether the way from the snapshot before is no motion: faster than a tenth of the speed of sound. */
+    bool jumped() const { return jumped_; }
     /** Whether a ping is one rendering. Of several the truth is not told, nor what each of them left out. */
     virtual bool rendersOnce() const { return true; }
     /** Where the time of the last ping went. */
@@ -125,8 +129,8 @@ private:
         types::Time time;
         glm::dvec3 position;
     };
-    /** Judges the time and way since the snapshot before; a reason refuses this one. */
-    const char* useGeometry(const types::Snapshot& scene);
+    /** Evaluates the time and way since the snapshot before. */
+    void followSnapshot(const types::Snapshot& scene);
     double echoTime() const { return 2 * grid_.range_max / grid_.speed_of_sound; }  ///< To the range and back [s].
     void render();
     /** Does what later pings depend on. */
@@ -154,6 +158,8 @@ private:
 
     BinGrid grid_;
     std::optional<Mark> before_;
+    bool jumped_ = false;
+    types::RecurringDiagnostic jumps_;
     double shortest_ = std::numeric_limits<double>::infinity();  ///< Time between two snapshots so far [s].
     PeriodMeter period_;
     std::unique_ptr<SonarRenderer> renderer_;

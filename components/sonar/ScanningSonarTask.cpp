@@ -52,7 +52,7 @@ void ScanningSonarTask::turn(types::Pose& sonar, const Aim& aim, double seconds)
     glm::dvec3 turn(0);  // in the world
     if (std::isfinite(glm::length(sonar.angular_velocity)))
         turn = aim.body * sonar.angular_velocity;
-    else if (follows)
+    else if (follows && !jumped())
         turn = turnBetween(before_->body, aim.body, seconds);
     const double step = follows ? std::remainder(aim.bearing - before_->bearing, 2 * std::numbers::pi) : 0;
     if (config->head.sweeps && follows) turn += aim.body * glm::dvec3(0, 0, step / seconds);

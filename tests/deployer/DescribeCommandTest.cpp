@@ -52,6 +52,22 @@ TEST(DescribeCommandTest, TellsPortsPropertiesUnitsDefaultsAndBounds) {
     EXPECT_TRUE(sonar["operations"].is_array());
 }
 
+TEST(DescribeCommandTest, EverySeedSaysThatItsDefaultIsAHash) {
+    const TestFolder folder;
+    int seeds = 0;
+    for (const json& entry : json::parse(callInsonify(folder, {"describe", "--json"}).out)) {
+        const json task = json::parse(callInsonify(folder, {"describe", entry["type"], "--json"}).out);
+        const json seed = named(task["properties"], "seed");
+        if (seed.is_null()) continue;
+        ++seeds;
+        EXPECT_EQ(seed["type"], "integer >= 0, optional") << entry["type"];
+        EXPECT_TRUE(seed["default"].is_null()) << entry["type"];
+        EXPECT_THAT(seed["doc"], HasSubstr("absent: a hash of the deployment's seed and the task's name"))
+            << entry["type"];
+    }
+    EXPECT_GE(seeds, 4) << "noise and three sensors";
+}
+
 TEST(DescribeCommandTest, TheTextShowsTheSame) {
     const TestFolder folder;
     const Outcome outcome = callInsonify(folder, {"describe", "sonar::SonarTask"});

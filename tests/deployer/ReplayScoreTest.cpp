@@ -43,14 +43,17 @@ protected:
             EXPECT_NEAR(ping["ssim"], 1, 1e-12);
         }
     }
-    /** A copy of the log whose poses from the `first` on lie 10 cm ahead. */
-    void shiftPoses(int first) const {
+    /** A copy of the log whose poses from the `first` on lie 10 cm ahead, without one of its metadata. */
+    void shiftPoses(int first, const std::string& without = "") const {
         log::pocolog::Reader from(folder_ / "out/wall.0.log");
         log::pocolog::Writer to(folder_ / "shifted.0.log");
         std::vector<size_t> numbers;
-        for (const log::Stream& stream : from.streams())
-            numbers.push_back(stream.holds<types::Pose>() ? to.addStream<types::Pose>(stream.name, stream.metadata)
-                                                          : to.addStream<types::Sonar>(stream.name, stream.metadata));
+        for (const log::Stream& stream : from.streams()) {
+            log::Metadata metadata = stream.metadata;
+            metadata.erase(without);
+            numbers.push_back(stream.holds<types::Pose>() ? to.addStream<types::Pose>(stream.name, metadata)
+                                                          : to.addStream<types::Sonar>(stream.name, metadata));
+        }
         types::Pose pose;
         types::Sonar ping;
         for (const log::SampleRef& at : from.samples()) {
@@ -137,6 +140,30 @@ TEST_F(ReplayScoreTest, TheSeedIsThatOfTheLog) {
 TEST_F(ReplayScoreTest, TheSeedZeroIsThatOfTheFile) {
     record({"--pings", "3", "--seed", "5"});
     ASSERT_EQ(score("out/wall.0.log", {"--seed", "0"}).code, 0);
+    for (const json& ping : streams().at("noise.noisy")["pings"]) EXPECT_GT(ping["rel_l2"], 0.5);
+}
+
+TEST_F(ReplayScoreTest, ASeedThatIsNotWrittenIsTheSameAgain) {
+    writeFile(folder_ / "wall.yml", replaced(wall_deployment, "seed: 7, ", ""));
+    record();
+    ASSERT_EQ(score("out/wall.0.log").code, 0);
+    for (const auto& [name, stream] : streams()) expectSame(stream);
+    shiftPoses(1000);
+    ASSERT_EQ(score("shifted.0.log").code, 0) << "without the log of properties";
+    for (const auto& [name, stream] : streams()) expectSame(stream);
+}
+
+TEST_F(ReplayScoreTest, ASeedThatIsNotWrittenIsOneInLogsFromBeforeEachTaskHadItsOwn) {
+    writeFile(folder_ / "wall.yml", replaced(wall_deployment, "seed: 7, ", ""));
+    record({"--pings", "3", "--set", "noise.seed=1"});
+    const Outcome outcome = score("out/wall.0.log");
+    ASSERT_EQ(outcome.code, 0) << outcome.err;
+    EXPECT_THAT(outcome.err, HasSubstr("as in the log: noise.seed=1\n"));
+    for (const auto& [name, stream] : streams()) expectSame(stream);
+    shiftPoses(1000, "insonify_version");
+    ASSERT_EQ(score("shifted.0.log").code, 0) << "without the log of properties";
+    for (const auto& [name, stream] : streams()) expectSame(stream);
+    ASSERT_EQ(score("shifted.0.log", {"--set", "noise.seed=2"}).code, 0);
     for (const json& ping : streams().at("noise.noisy")["pings"]) EXPECT_GT(ping["rel_l2"], 0.5);
 }
 

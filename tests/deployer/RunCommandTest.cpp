@@ -102,6 +102,54 @@ TEST(RunCommandTest, LockstepRunTwiceGivesTheSameLogBitForBit) {
     EXPECT_TRUE(log == readFile(folder / "second/wall.0.log"));
 }
 
+namespace {
+
+/** Two sonars, and two sensors of each kind, on one vehicle; none has a seed. */
+std::string twins() {
+    std::string text = replaced(wall_deployment, "seed: 7, ", "");
+    const std::string tasks = R"(  twin: {type: noise::NoiseTask, properties: {speckle: {law: rayleigh}}}
+  imu_a: {type: nav::ImuTask, properties: {gyroscope: {noise_density: 1e-4}}}
+  imu_b: {type: nav::ImuTask, properties: {gyroscope: {noise_density: 1e-4}}}
+  dvl_a: {type: nav::DvlTask, properties: {bottom_height: -9, errors: {velocity_noise: 0.01}}}
+  dvl_b: {type: nav::DvlTask, properties: {bottom_height: -9, errors: {velocity_noise: 0.01}}}
+  gauge_a: {type: nav::PressureTask, properties: {errors: {noise: 10}}}
+  gauge_b: {type: nav::PressureTask, properties: {errors: {noise: 10}}}
+connections:
+  - {from: sonar.ping, to: twin.clean}
+  - {from: twin.noisy, to: log.twin, policy: {type: buffer, size: 64}}
+)";
+    std::string connections;
+    for (const std::string unit :
+         {"imu_a.imu", "imu_b.imu", "dvl_a.dvl", "dvl_b.dvl", "gauge_a.depth_samples", "gauge_b.depth_samples"}) {
+        const std::string task = unit.substr(0, unit.find('.'));
+        connections += "  - {from: vehicle.pose, to: " + task + ".pose, policy: {type: buffer, size: 64}}\n" +
+                       "  - {from: " + unit + ", to: log." + task + ", policy: {type: buffer, size: 64}}\n";
+    }
+    return replaced(text, "connections:\n", tasks + connections);
+}
+
+}  // namespace
+
+TEST(RunCommandTest, TasksOfOneKindHaveErrorsOfTheirOwnAndTheSameOnesAgain) {
+    const WallFolder folder(twins());
+    for (const auto& [out, seed] :
+         {std::pair("first", "0"), std::pair("second", "0"), std::pair("other", "1"), std::pair("third", "2")})
+        ASSERT_EQ(callInsonify(folder, {"run", "wall.yml", "--pings", "5", "--out", out, "--seed", seed}).code, 0);
+    const auto readings = [&](const std::string& out, const std::string& stream) {
+        const std::string log = out + "/wall.0.log";
+        EXPECT_EQ(callInsonify(folder, {"log", "export", log, "--stream", stream, "--to", "x.csv"}).code, 0) << stream;
+        return readFile(folder / "x.csv");
+    };
+    for (const auto& [one, twin] :
+         {std::pair("noise.noisy", "twin.noisy"), std::pair("imu_a.imu", "imu_b.imu"),
+          std::pair("dvl_a.dvl", "dvl_b.dvl"), std::pair("gauge_a.depth_samples", "gauge_b.depth_samples")}) {
+        EXPECT_NE(readings("first", one), readings("first", twin)) << one;
+        EXPECT_NE(readings("first", one), readings("third", one)) << one;
+        EXPECT_EQ(readings("first", one), readings("other", one)) << one << ": the deployment's seed is 1";
+    }
+    EXPECT_TRUE(readFile(folder / "first/wall.0.log") == readFile(folder / "second/wall.0.log"));
+}
+
 TEST(RunCommandTest, AnotherSeedGivesOtherNoise) {
     const WallFolder folder;
     for (const char* seed : {"3", "4"})

@@ -1,10 +1,12 @@
 // A run that is made in shards: its pings are those of the whole run, whoever makes them, and however often.
 #include <gmock/gmock.h>
 
+#include <iterator>
 #include <map>
 
 #include "components/command/Sha256.hpp"
 #include "components/deployer/ShardFolder.hpp"
+#include "components/log/pocolog/Reader.hpp"
 #include "tests/deployer/Wall.hpp"
 #include "tests/support/Folder.hpp"
 #include "types/ConfigError.hpp"
@@ -155,6 +157,27 @@ TEST(ShardRunTest, JoinedShardsAreTheWholeRunByteForByte) {
     }
     EXPECT_THAT(first, testing::ElementsAre(0, 3, 6));
     EXPECT_THAT(pings, testing::ElementsAre(3, 3, 4));
+}
+
+TEST(ShardRunTest, ItIsOfRaysWhateverDeviceAMachineHasUnlessVisibilityIsWritten) {
+    const auto deviceOf = [](const std::string& visibility) {
+        const Shards folder(replaced(wall_deployment, "range: 20", "range: 20" + visibility));
+        std::vector<std::string> words = {"env", "INSONIFY_EGL_DEVICE=software"};
+        std::ranges::copy(insonifyWords({"run", "wall.yml", "--out", "shards", "--pings", "2", "--shard", "1/2"}),
+                          std::back_inserter(words));
+        const Outcome made = Process(words, folder.path()).wait();
+        EXPECT_EQ(made.code, 0) << made.err;
+        const insonify::log::pocolog::Reader log(folder.path() / "shards/shard_1_of_2/wall.0.log");
+        const std::string plan = log.metadatum("insonify_plan");
+        const size_t device = plan.find("\"device\": ");
+        EXPECT_NE(device, plan.npos) << plan;
+        return plan.substr(device, plan.find(',', device) - device);
+    };
+    const std::string rays = deviceOf("\n      visibility: cpu"), drawn = deviceOf("\n      visibility: gl");
+    EXPECT_NE(rays, drawn);
+    EXPECT_EQ(deviceOf(""), rays);
+    EXPECT_EQ(deviceOf("\n      visibility: auto"), rays);
+    EXPECT_EQ(deviceOf("\n      deposit: gpu"), drawn) << "which pictures alone can have";
 }
 
 TEST(ShardRunTest, AHeadGoesOnWhereItWouldBeAndNodesAreWhereTheyWouldBe) {

@@ -1,6 +1,7 @@
 #include <gmock/gmock.h>
 
 #include "components/device/Http.hpp"
+#include "tests/support/CommaLocale.hpp"
 
 namespace insonify::device {
 namespace {
@@ -69,11 +70,36 @@ TEST(HttpTest, MomentsAreReadInAnyZone) {
     for (const char* text : {"2025-11-23T03:10:05.25Z", "2025-11-23T03:10:05.250000+00:00",
                              "2025-11-23T04:40:05.250000000+01:30", "2025-11-22T22:10:05.25-05:00"})
         EXPECT_EQ(isoTime(text), moment) << text;
-    for (const char* text :
-         {"", "now", "2025-11-23", "2025-11-23T03:10:05", "2025-13-23T03:10:05Z", "2025-02-30T03:10:05Z",
-          "2025-11-23T24:10:05Z", "2025-11-23T03:10:nanZ", "2025-11-23T03:10:05+25:00", "2025-11-23T03:10:05Zulu",
-          "1969-11-23T03:10:05Z", "1970-01-01T00:00:00+01:00"})
+    for (const char* text : {"",
+                             "now",
+                             "2025-11-23",
+                             "2025-11-23T03:10:05",
+                             "2025-13-23T03:10:05Z",
+                             "2025-02-30T03:10:05Z",
+                             "2025-11-23T24:10:05Z",
+                             "2025-11-23T03:10:nanZ",
+                             "2025-11-23T03:10:05+25:00",
+                             "2025-11-23T03:10:05Zulu",
+                             "1969-11-23T03:10:05Z",
+                             "1970-01-01T00:00:00+01:00",
+                             "2025-11-23T03:10:05,25Z",
+                             "2025-11-23T03:10:Z",
+                             "2025-11-23T03:10:05+",
+                             "2025-11-23T03:10:05+01",
+                             "2025-11-23T03:10:05+0100",
+                             "2025-11-23T03:10:05+-1:00",
+                             "2025-11-23T-3:10:05Z",
+                             "2025-11-23 03:10:05Z"})
         EXPECT_FALSE(isoTime(text)) << text;
+}
+
+TEST(HttpTest, MomentsAreReadWhateverNumbersTheHostHas) {
+    const test::CommaLocale german;
+    if (!german.isThere()) GTEST_SKIP() << german.why();
+    const types::Time moment{1'763'867'405'250'000};
+    EXPECT_EQ(isoTime("2025-11-23T03:10:05.25Z"), moment);
+    EXPECT_EQ(isoTime(isoText(moment)), moment);
+    EXPECT_FALSE(isoTime("2025-11-23T03:10:05,25Z"));
 }
 
 }  // namespace

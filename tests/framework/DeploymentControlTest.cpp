@@ -44,6 +44,23 @@ TEST(DeploymentControlTest, ItTellsTasksPortsAndConnections) {
     EXPECT_NE(std::ranges::find(interfaces[0].operations, "stop void()"), interfaces[0].operations.end());
 }
 
+TEST(DeploymentControlTest, WarningsComeFromOtherThreadsWhileRunsBeginAndEnd) {
+    Registry registry = test::testRegistry();
+    Deployment deployment(DeploymentSpec::parse(pair, "a.yml"), registry);
+    deployment.configure();
+    std::atomic<bool> stop{false};
+    std::thread other([&] {
+        while (!stop) deployment.environment().warn("from elsewhere");
+    });
+    for (int i = 0; i < 20; ++i) {
+        const RunResult result = deployment.run({.duration_s = 0.01}, stop);
+        EXPECT_FALSE(result.failed());
+        for (const std::string& warning : result.warnings) EXPECT_EQ(warning, "from elsewhere");
+    }
+    stop = true;
+    other.join();
+}
+
 TEST(DeploymentControlTest, InRealtimeNothingPausesTheWallClock) {
     Registry registry = test::testRegistry();
     Deployment deployment(DeploymentSpec::parse(std::string("schedule: realtime\n") + pair, "a.yml"), registry);

@@ -1,5 +1,6 @@
 #include <gmock/gmock.h>
 
+#include "components/framework/Wiring.hpp"
 #include "tests/framework/Tasks.hpp"
 #include "tests/support/Refused.hpp"
 #include "types/Sonar.hpp"
@@ -224,20 +225,71 @@ TEST(DeploymentRunTest, WithoutLimitsARunEndsWithItsSources) {
               5u);
 }
 
+using Seeds = std::vector<uint64_t>;
+
+/** The seeds of sources a and b, with these properties of b, keys of the document, seed of the run, and --set. */
+Seeds seedsOf(const std::string& of_b, const std::string& document = "", uint64_t seed = 0,
+              const std::string& set = "") {
+    Registry registry = test::testRegistry();
+    DeploymentSpec spec = DeploymentSpec::parse(document +
+                                                    "tasks:\n  a: {type: test::Source, activity: {period: 1}}\n"
+                                                    "  b: {type: test::Source, activity: {period: 1}, "
+                                                    "properties: {" +
+                                                    of_b + "}}\n",
+                                                "a.yml");
+    if (!set.empty()) spec.set(set);
+    const Deployment deployment(spec, registry, ".", seed);
+    Seeds seeds;
+    for (const auto& task : deployment.tasks()) seeds.push_back(dynamic_cast<test::Source&>(*task).config->seed);
+    return seeds;
+}
+
+TEST(DeploymentRunTest, EachTaskHasASeedOfItsOwnByTheDeploymentsAndItsName) {
+    EXPECT_EQ(seedsOf(""), (Seeds{seedOf(1, "a"), seedOf(1, "b")}));
+    EXPECT_NE(seedOf(1, "a"), seedOf(1, "b"));
+    EXPECT_EQ(seedsOf("", "seed: 1\n"), seedsOf(""));
+    EXPECT_EQ(seedsOf("", "seed: 5\n"), (Seeds{seedOf(5, "a"), seedOf(5, "b")}));
+    EXPECT_EQ(seedsOf("", "seed: 0\n"), (Seeds{seedOf(0, "a"), seedOf(0, "b")}));
+    EXPECT_EQ(seedsOf("last: 2"), seedsOf("")) << "other properties change nothing";
+    EXPECT_THAT(test::refused([&] { seedsOf("", "seed: many\n"); }),
+                testing::Contains(testing::StartsWith("a.yml:1:7: seed: ")));
+}
+
+TEST(DeploymentRunTest, ASeedThatIsWrittenStaysAsItIs) {
+    EXPECT_EQ(seedsOf("seed: 7"), (Seeds{seedOf(1, "a"), 7}));
+    EXPECT_EQ(seedsOf("seed: 1", "seed: 5\n"), (Seeds{seedOf(5, "a"), 1})) << "the struct's default, but written";
+    EXPECT_EQ(seedsOf("", "", 0, "b.seed=7"), (Seeds{seedOf(1, "a"), 7}));
+    EXPECT_EQ(seedsOf("seed: 7", "", 0, "b.seed=null"), seedsOf("")) << "taken out again";
+}
+
 TEST(DeploymentRunTest, ASeedOfTheRunReachesEveryTaskThatHasOne) {
-    const char* yaml =
-        "tasks: {a: {type: test::Source, activity: {period: 1}}, b: {type: test::Source, activity: {period: 1}}}";
-    const auto seeds = [&](uint64_t seed) {
-        LockstepRun run(yaml, {}, seed);
-        const auto of = [&](const char* name) {
-            return dynamic_cast<test::Source&>(*run.deployment->task(name)).config->seed;
-        };
-        return std::pair(of("a"), of("b"));
-    };
-    EXPECT_EQ(seeds(0), std::pair(uint64_t{1}, uint64_t{1}));
-    EXPECT_EQ(seeds(7), seeds(7));
-    EXPECT_NE(seeds(7), seeds(8));
-    EXPECT_NE(seeds(7).first, seeds(7).second);
+    EXPECT_EQ(seedsOf("", "", 5), seedsOf("", "seed: 5\n"));
+    EXPECT_EQ(seedsOf("seed: 7", "seed: 9\n", 5), seedsOf("", "", 5)) << "whatever is written";
+    EXPECT_EQ(seedsOf("seed: 7", "", 5, "b.seed=8"), (Seeds{seedOf(5, "a"), 8})) << "but for --set";
+}
+
+/** Has a seed that holds no hash. */
+struct NarrowConfig {
+    int seed = 3;
+    template <class Self, class V>
+    static void describe(Self& self, V& visit) {
+        visit(types::Field{"seed", "1", "of 31 bits", 0, 1e9}, self.seed);
+    }
+};
+struct Narrow : TaskContext {
+    using TaskContext::TaskContext;
+    Properties<NarrowConfig> config{this};
+};
+
+TEST(DeploymentRunTest, ASeedThatHoldsNoHashKeepsItsDefault) {
+    Registry registry;
+    registry.add<Narrow>("test::Narrow", "has 31 bits");
+    const DeploymentSpec spec =
+        DeploymentSpec::parse("tasks: {n: {type: test::Narrow, activity: {period: 1}}}", "a.yml");
+    const Deployment deployment(spec, registry);
+    EXPECT_EQ(dynamic_cast<Narrow&>(*deployment.task("n")).config->seed, 3);
+    EXPECT_THAT(test::refused([&] { Deployment(spec, registry, ".", 5); }),
+                testing::ElementsAre(testing::HasSubstr("tasks.n.properties.seed")));
 }
 
 TEST(DeploymentRunTest, OperationsOfTasksAreCalledByName) {

@@ -97,7 +97,7 @@ struct Misfire : Gun {
     }
 };
 
-TEST(GraphTest, ItTellsWhichErrorEndsARun) {
+TEST(GraphTest, ItKnowsErrorsOfSourcesAndFailures) {
     Graph graph;
     auto& gun = add<Misfire>(graph, "gun");
     graph.arrange();

@@ -1,6 +1,7 @@
 // The order of work on simulated time, of graphs made by hand; of whole deployments it is in DeploymentRunTest.
 #include <gmock/gmock.h>
 
+#include <cmath>
 #include <thread>
 
 #include "components/framework/LockstepExecutor.hpp"
@@ -122,6 +123,50 @@ TEST(LockstepExecutorTest, ACountThatCannotBeReachedAnyMoreEndsTheRun) {
     bench.add<Gun>("gun", 0.1).fails = true;
     bench.start();
     EXPECT_EQ(bench.run({.samples = 4}).samples, 2u);
+}
+
+/** Gives a shot for each number that is even, and is in error at others. */
+struct Picky : TaskContext {
+    using TaskContext::TaskContext;
+    InputPort<double> in{this, "in", "numbers"};
+    OutputPort<Shot> shot{this, "shot", "counted"};
+    void updateHook() override {
+        double number = 0;
+        if (!in.readNew(number)) return;
+        if (std::fmod(number, 2) != 0) return error("odd");
+        if (state() == TaskState::RunTimeError) recover();
+        shot.write({});
+    }
+    void errorHook() override { updateHook(); }
+};
+
+TEST(LockstepExecutorTest, ARefusedSampleDoesNotEndARunThatCounts) {
+    Bench bench;
+    auto& source = bench.add<test::Source>("source", 0.1);
+    source.config.set({.last = 100});
+    auto& picky = bench.add<Picky>("picky");
+    bench.graph.connect(source.value, picky.in, {});
+    bench.start();
+    EXPECT_EQ(bench.run({.samples = 5}).samples, 5u);
+    EXPECT_EQ(source.value.written(), 10u);
+}
+
+/** Gives 1 for ever, of which it has said all at once. */
+struct Held : TaskContext {
+    using TaskContext::TaskContext;
+    OutputPort<double> value{this, "value", "1"};
+    void updateHook() override { value.write(1); }
+    bool finished() const override { return true; }
+};
+
+TEST(LockstepExecutorTest, ACountEndsWithSourcesThatHoldWhatIsRefused) {
+    Bench bench;
+    auto& held = bench.add<Held>("held", 0.1);
+    auto& picky = bench.add<Picky>("picky");
+    bench.graph.connect(held.value, picky.in, {});
+    bench.start();
+    EXPECT_EQ(bench.run({.samples = 5}).samples, 0u);
+    EXPECT_EQ(held.value.written(), 1u);
 }
 
 TEST(LockstepExecutorTest, TheStopFlagAndTheReportAreLookedAtAfterEachInstant) {

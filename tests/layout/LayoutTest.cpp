@@ -73,6 +73,15 @@ TEST(LayoutTest, LimitsAreMaxAndMin) {
             }
 }
 
+TEST(LayoutTest, NoSourceReadsNumbersByTheLocaleOfTheHost) {
+    const std::regex by_locale(R"(\b(strto(d|f|ld)|v?f?s?scanf|atof|sto(d|f|ld))\()");
+    for (const char* folder : {"types", "components"})
+        for (const Source& source : sourcesIn(folder, {".hpp", ".cpp"}))
+            for (const std::string& line : source.lines)
+                EXPECT_FALSE(std::regex_search(line, by_locale))
+                    << source.path << ": std::from_chars instead: " << line;
+}
+
 TEST(LayoutTest, EveryHeaderIsOnThePageOfItsFolder) {
     std::map<std::string, std::set<std::string>> files;  // By page.
     for (const char* folder : {"types", "components"})

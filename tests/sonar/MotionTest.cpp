@@ -302,6 +302,35 @@ TEST(MotionTest, WhatJumpsHasBeenPutElsewhereAndDoesNotMove) {
     EXPECT_EQ(motion.targetVelocity(0), glm::dvec3(0));
 }
 
+TEST(MotionTest, ASonarThatJumpsHasNoVelocityButThatOfItsPose) {
+    const auto geometry = test::sceneOf({plate()});
+    Motion motion(*geometry, 150);
+    types::Snapshot snapshot = test::snapshotOf(geometry);
+    const auto putAt = [&](double x, double yaw) {
+        snapshot.sonar.position.x = x;
+        snapshot.sonar.orientation = glm::angleAxis(yaw, glm::dvec3(0, 0, 1));
+        snapshot.time.microseconds += 100'000;
+        motion.follow(snapshot);
+    };
+    putAt(0, 0);
+    putAt(14, 0.1);
+    EXPECT_NEAR(motion.velocity().x, 140, 1e-6);
+    EXPECT_NEAR(motion.turn().z, 1, 1e-6);
+    for (const double x : {1e3, 1e9, 1e30, 1e300, -1e300}) {
+        putAt(x, x > 1e9 ? 0.5 : 1.5);
+        EXPECT_EQ(motion.velocity(), glm::dvec3(0)) << x;
+        EXPECT_EQ(motion.turn(), glm::dvec3(0)) << x << ": what is put elsewhere has not turned there";
+    }
+    snapshot.sonar.velocity = {3, 0, 0};
+    snapshot.sonar.angular_velocity = {0, 0, 0.2};
+    putAt(0, 0);
+    EXPECT_EQ(motion.velocity(), glm::dvec3(3, 0, 0));
+    EXPECT_NEAR(motion.turn().z, 0.2, 1e-12);
+    snapshot.sonar.velocity.x = 1e4;
+    putAt(1, 0);
+    EXPECT_NEAR(motion.velocity().x, 10, 1e-6) << "no vehicle is so fast: that of the two places";
+}
+
 TEST(MotionTest, VelocitiesAreThoseOfThePoseElseOfTwoSnapshots) {
     const auto geometry = test::sceneOf({plate(), plate()});
     Motion motion(*geometry, 150);

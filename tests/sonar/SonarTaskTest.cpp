@@ -1,5 +1,6 @@
 #include <gmock/gmock.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numeric>
@@ -106,19 +107,35 @@ TEST_F(SonarTaskTest, PingsCloserThanSoundsWayThereAndBackAreToldToBeAmbiguous) 
     EXPECT_THAT(task_.notices(), warning);
 }
 
-TEST_F(SonarTaskTest, ASonarFasterThanATenthOfTheSpeedOfSoundIsRefused) {
-    const auto pingAt = [&](double seconds, double y) {
+TEST_F(SonarTaskTest, ASonarThatJumpsPingsFromWhereItIsPutAndIsWarnedOfOnce) {
+    std::vector<std::string> jumps;
+    task_.environment().warn = [&](const std::string& text) {
+        if (text.find("the sonar has moved") != std::string::npos) jumps.push_back(text);
+    };
+    double seconds = 0;
+    const auto pingAt = [&](double y) {
         types::Snapshot snapshot = facingWall(5);
-        snapshot.time = types::Time::fromSeconds(seconds);
+        snapshot.time = types::Time::fromSeconds(seconds += 1);
         snapshot.sonar.position.y = y;
         return pingOf(snapshot);
     };
     start();
-    EXPECT_TRUE(pingAt(1, 0));
-    EXPECT_TRUE(pingAt(2, 140));
-    EXPECT_FALSE(pingAt(3, 300)) << "160 m/s of 1500";
-    EXPECT_THAT(task_.lastError(), ::testing::HasSubstr("a tenth of the speed of sound"));
-    EXPECT_TRUE(pingAt(4, 310));
+    const auto first = pingAt(0);
+    ASSERT_TRUE(first && pingAt(140));
+    EXPECT_THAT(jumps, ::testing::IsEmpty());
+    for (const double far : {300.0, 3e3, 1e9, 1e30, 1e300, -1e300, std::numeric_limits<double>::max(), 0.0}) {
+        const auto ping = pingAt(far);
+        ASSERT_TRUE(ping) << far << ": " << task_.lastError();
+        EXPECT_TRUE(std::ranges::all_of(ping->bins, [](float bin) { return std::isfinite(bin); })) << far;
+        EXPECT_EQ(ping->bins == first->bins, far == 0) << "as if it had never been away";
+    }
+    EXPECT_THAT(jumps,
+                ::testing::ElementsAre("task: the sonar has moved 160 m in 1 s, faster than a tenth of the speed "
+                                       "of sound, 150 m/s: it is taken as put there, at rest unless its pose "
+                                       "has a velocity"));
+    for (int i = 0; i < 10; ++i) pingAt(0);
+    pingAt(200);
+    EXPECT_EQ(jumps.size(), 2u);
 }
 
 TEST_F(SonarTaskTest, ANewSceneIsRenderedFromThenOn) {

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 #include <cctype>
-#include <cstdlib>
+#include <charconv>
 
 #include "components/log/TypeNames.hpp"
 #include "components/log/mcap/Reader.hpp"
@@ -76,7 +76,8 @@ SampleWriter::Options SampleWriter::optionsOf(const std::string& stream, const M
     Options options{config_, {}, {}};
     const auto frequency = metadata.find("insonify_frequency_khz");
     if (options.frequency_khz == 0 && frequency != metadata.end())
-        options.frequency_khz = std::strtod(frequency->second.c_str(), nullptr);
+        std::from_chars(frequency->second.data(), frequency->second.data() + frequency->second.size(),
+                        options.frequency_khz);
     const auto given = config_.streams.find(stream);
     if (given == config_.streams.end()) return options;
     if (given->second.frame_id) options.frame_id = *given->second.frame_id;

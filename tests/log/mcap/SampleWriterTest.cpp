@@ -7,6 +7,7 @@
 #include "components/ros/Cdr.hpp"
 #include "components/ros/Stamps.hpp"
 #include "tests/log/mcap/SmallFile.hpp"
+#include "tests/support/CommaLocale.hpp"
 #include "types/Image.hpp"
 
 namespace insonify::log::mcap {
@@ -101,6 +102,19 @@ TEST(SampleWriterTest, AStreamMayHaveATopicFramesAndAFrequencyOfItsOwn) {
     EXPECT_EQ(pose.header.frame_id, "odom");
     EXPECT_EQ(pose.child_frame_id, "auv");
     EXPECT_EQ(messagesOf<ros::ProjectedSonarImage>(*open, "/other/sonar.ping").at(0).ping_info.frequency, 0);
+}
+
+TEST(SampleWriterTest, AFrequencyIsReadWhateverNumbersTheHostHas) {
+    const test::CommaLocale german;
+    if (!german.isThere()) GTEST_SKIP() << german.why();
+    const Folder folder;
+    {
+        SampleWriter log(folder / "x.mcap", {});
+        const size_t ping = log.addStream<types::Sonar>("sonar.ping", {{"insonify_frequency_khz", "0.5"}});
+        log.write(ping, {2}, smallPing(1));
+    }
+    const auto log = openLog(folder / "x.mcap");
+    EXPECT_EQ(messagesOf<ros::ProjectedSonarImage>(*log, "sonar.ping").at(0).ping_info.frequency, 500);
 }
 
 TEST(SampleWriterTest, AStreamIsFoundByTheTopicThatItWasGiven) {
