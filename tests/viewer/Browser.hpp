@@ -5,10 +5,12 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <array>
 #include <cstdio>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <string>
+#include <vector>
 
 #include "tests/support/Waiting.hpp"
 
@@ -58,8 +60,24 @@ public:
     bool becomes(const std::string& expression) {
         return ask({{"until", expression}, {"seconds", test::patience.count()}}) == true;
     }
-    /** Into what has the focus; then Enter. */
+    /** Presses the keys of a text, into what has the focus. */
     void type(const std::string& text) { ask({{"type", text}}); }
+    /** Presses a key by its name: "Tab", "Shift+Tab", "ArrowLeft". */
+    void press(const std::string& key, int times = 1) { ask({{"press", std::vector<std::string>(times, key)}}); }
+    /** Clicks the middle of an element, which is scrolled into view; a failure of the test where another covers it. */
+    void click(const std::string& element) { ask({{"click", element}}); }
+    /** What two fingers do: "touchStart", "touchMove"; without places, "touchEnd". */
+    void touch(const std::string& kind, const std::vector<std::array<double, 2>>& places) {
+        nlohmann::json points = nlohmann::json::array();
+        for (const auto& [x, y] : places) points.push_back({{"x", x}, {"y", y}, {"id", points.size()}});
+        ask({{"touch", {{"type", kind}, {"touchPoints", points}}}});
+    }
+    void saveFilesIn(const std::string& folder) { ask({{"downloads", folder}}); }
+    /** What the mouse does, as Input.dispatchMouseEvent has it, in pixels from the upper left corner of the page. */
+    void mouse(const std::string& kind, double x, double y, nlohmann::json more = nlohmann::json::object()) {
+        more.update({{"type", kind}, {"x", x}, {"y", y}});
+        ask({{"mouse", more}});
+    }
     /** Moves the mouse there, in pixels from the upper left corner of the page. */
     void point(double x, double y) { mouse("mouseMoved", x, y); }
     void click(double x, double y) {
@@ -77,10 +95,6 @@ public:
     void screenshot(const std::string& file) { ask({{"screenshot", file}}); }
 
 private:
-    void mouse(const std::string& kind, double x, double y, nlohmann::json more = nlohmann::json::object()) {
-        more.update({{"type", kind}, {"x", x}, {"y", y}});
-        ask({{"mouse", more}});
-    }
     nlohmann::json ask(const nlohmann::json& question) {
         fprintf(asks_, "%s\n", question.dump().c_str());
         fflush(asks_);

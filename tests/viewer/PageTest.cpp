@@ -1,174 +1,31 @@
 // The page in a real browser.
 #include <gmock/gmock.h>
 
-#include <optional>
-
-#include "tests/viewer/Browser.hpp"
 #include "tests/viewer/Client.hpp"
-#include "tests/viewer/Running.hpp"
+#include "tests/viewer/Page.hpp"
 
 namespace insonify::viewer {
 namespace {
 
-using nlohmann::json;
 using testing::HasSubstr;
-
-// Beams 10 to 19 of 32 over 90 degrees are at -16.9 to 11.25 degrees, bins 40 to 49 at 6 to 7.5 m; all else is silent.
-const json brightest = {255, 252, 236}, darkest = {6, 5, 6};
-
-class PageTest : public testing::Test {
-protected:
-    void SetUp() override {
-        if (!std::filesystem::exists(chromium)) GTEST_SKIP() << "NOT TESTED: there is no " << chromium;
-        if (pythonWithWebsockets().empty()) GTEST_SKIP() << "NOT TESTED: no python has websockets";
-        open();
-    }
-    void open(const std::string& first = "", uint16_t port = 0) {
-        browser.reset();
-        running.reset();
-        running.emplace(port);
-        browser.emplace("http://127.0.0.1:" + std::to_string(running->port()) + "/", first);
-        ASSERT_TRUE(browser->becomes("self.insonify && insonify.shown() > 3 && insonify.status()"));
-    }
-    json value(const std::string& expression) { return browser->value(expression); }
-    bool becomes(const std::string& expression) { return browser->becomes(expression); }
-    std::string text(const std::string& id) { return value("document.getElementById('" + id + "').textContent"); }
-    /** Sets a control, as a hand would. */
-    void put(const std::string& id, const std::string& what) {
-        value("(() => { const control = document.getElementById('" + id + "'); control.value = '" + what +
-              "'; for (const kind of ['input', 'change']) control.dispatchEvent(new Event(kind)); })()");
-    }
-    void click(const std::string& button) {
-        value("[...document.querySelectorAll('button')].find((one) => one.textContent === '" + button + "').click()");
-    }
-    /** Red, green and blue of the pixel at which a place is drawn. */
-    json pixelAt(double range, double bearing_deg) {
-        return value(
-            "(() => { const {fan} = insonify; fan.draw(); const p = new Uint8Array(4);"
-            "const [x, y] = fan.pixelOf(" +
-            std::to_string(range) + ", " + std::to_string(types::radians(bearing_deg)) +
-            "); fan.gl.readPixels(x, y, 1, 1, fan.gl.RGBA, fan.gl.UNSIGNED_BYTE, p);"
-            "return [...p].slice(0, 3); })()");
-    }
-    /** Where a place of the water is in the window [px]. */
-    std::array<double, 2> windowAt(double range, double bearing_deg) {
-        return value(
-            "(() => { const {fan} = insonify, box = fan.canvas.getBoundingClientRect(); fan.draw();"
-            "const [x, y] = fan.pixelOf(" +
-            std::to_string(range) + ", " + std::to_string(types::radians(bearing_deg)) +
-            "); return [box.left + x / devicePixelRatio, box.bottom - y / devicePixelRatio]; })()");
-    }
-    void nextFrame() { value("new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done)))"); }
-    /** Points with the mouse at a place; the text over the picture. */
-    std::string readAt(double range, double bearing_deg) {
-        const auto at = windowAt(range, bearing_deg);
-        browser->point(at[0], at[1]);
-        nextFrame();
-        return text("cursor");
-    }
-    void clickAt(double range, double bearing_deg) {
-        const auto at = windowAt(range, bearing_deg);
-        browser->click(at[0], at[1]);
-        nextFrame();
-    }
-    bool hasThree() { return value("fetch('three.min.js').then((answer) => answer.ok)"); }
-
-    std::optional<Running> running;
-    std::optional<Browser> browser;
-};
-
-TEST_F(PageTest, APingIsDrawnAsItIs) {
-    for (const bool polar : {false, true}) {
-        value(std::string("insonify.fan.polar = ") + (polar ? "true" : "false"));
-        for (const double bearing : {-16.0, 0.0, 10.5})
-            EXPECT_EQ(pixelAt(6.75, bearing), brightest) << bearing << (polar ? ", polar" : "");
-        for (const auto& [range, bearing] : {std::pair(5.7, 0.0), {7.8, 0.0}, {6.75, -18.0}, {6.75, 12.5}})
-            EXPECT_EQ(pixelAt(range, bearing), darkest) << range << " " << bearing << (polar ? ", polar" : "");
-    }
-    EXPECT_NE(pixelAt(16, 0), darkest) << "beyond the last bin there is no picture";
-}
-
-TEST_F(PageTest, AFanAcrossTheSeamIsDrawnBehindTheSonarAndGapsAreEmpty) {
-    put("map", "gray");
-    click("freeze");
-    // Beams from 150 to 160 and from 170 to 190 degrees, silent but for the last one.
-    value(
-        "(() => { const {fan} = insonify, rad = (all) => all.map((each) => each * Math.PI / 180), bins = 10;"
-        "const ping = {...fan.ping, beams: 3, bins, bin_m: 1.5, edges: rad([150, 160, 170, 180, 180, 190]), data: new "
-        "Uint8Array(30)}; ping.data.fill(255, 20); fan.show(ping, ping.top_db); })()");
-    const json white = {255, 255, 255}, black = {0, 0, 0};
-    for (const bool polar : {false, true}) {
-        value(std::string("insonify.fan.polar = ") + (polar ? "true" : "false"));
-        for (const double bearing : {-172.0, -179.0, 181.5}) EXPECT_EQ(pixelAt(6.75, bearing), white) << bearing;
-        for (const double bearing : {179.0, 172.0, 155.0}) EXPECT_EQ(pixelAt(6.75, bearing), black) << bearing;
-        EXPECT_NE(pixelAt(6.75, 165), black) << "between beams there is no picture";
-        EXPECT_THAT(readAt(6.75, -175), HasSubstr("-175.0° stbd"));
-        EXPECT_EQ(readAt(6.75, 165), "");
-    }
-}
-
-TEST_F(PageTest, ColourMapAndGainChangeThePicture) {
-    put("map", "gray");
-    EXPECT_EQ(pixelAt(6.75, 0), json({255, 255, 255}));
-    EXPECT_EQ(pixelAt(5.7, 0), json({0, 0, 0}));
-    put("gain", "-20");  // of 45 dB from black to white
-    EXPECT_NEAR(pixelAt(6.75, 0)[0].get<int>(), 255 * 25 / 45, 5);
-    EXPECT_EQ(text("gain_db"), "-20 dB");
-    put("span", "90");
-    EXPECT_NEAR(pixelAt(6.75, 0)[0].get<int>(), 255 * 70 / 90, 5);
-}
-
-TEST_F(PageTest, TheCursorTellsRangeBearingAndLevel) {
-    for (const char* level : {"0.0 dB", "10.0 dB"}) {
-        double range = 0, bearing = 0;
-        char side[8] = "", rest[32] = "";
-        const std::string told = readAt(6.75, 8);
-        ASSERT_EQ(std::sscanf(told.c_str(), "%lf m %lf° %7s %31[^\n]", &range, &bearing, side, rest), 4) << told;
-        EXPECT_NEAR(range, 6.75, 0.05);
-        EXPECT_NEAR(bearing, 8, 0.5);
-        EXPECT_STREQ(side, "port");
-        EXPECT_NEAR(std::stod(rest), std::stod(level), 0.05) << told;
-        running->deployment().call("source.setLevel", {"10"});
-        ASSERT_TRUE(becomes("Math.abs(insonify.fan.ping.top_db - 10) < 0.1"));
-    }
-    EXPECT_THAT(readAt(3, -20), testing::AllOf(HasSubstr("stbd"), HasSubstr("no echo")));
-    EXPECT_EQ(readAt(15.5, 0), "") << "beyond the last bin";
-}
 
 TEST_F(PageTest, APropertyIsSetWhereItStands) {
     EXPECT_EQ(value("[...document.getElementById('task').options].map((one) => one.value)"),
               json({"source", "world", "viewer"}));
-    put("task", "source");
-    const std::string row =
-        "[...document.querySelectorAll('#properties tr')].find((one) => one.cells[0].textContent === 'level')";
-    const auto type = [&](const std::string& number) {
-        value(row + ".querySelector('input').focus()");
-        value(row + ".querySelector('input').select()");
-        browser->type(number);
-    };
-    type("10");
+    choose("task", "source");
+    enter(fieldOf("level"), "10");
     EXPECT_TRUE(becomes("Math.abs(insonify.fan.ping.top_db - 10) < 0.1")) << "of a level ten times as high";
     EXPECT_TRUE(becomes("insonify.status().tasks[0].properties.level == 10"));
-    type("1000");
-    EXPECT_TRUE(becomes(row + ".querySelector('.refused').textContent === 'level: is 1000; may be 0 to 100'"));
-    EXPECT_TRUE(becomes(row + ".querySelector('input').value === '10'")) << "it shows what holds";
+    enter(fieldOf("level"), "1000");
+    EXPECT_TRUE(becomes(refusalOf(fieldOf("level")) + " === 'level: is 1000; may be 0 to 100'"));
+    EXPECT_TRUE(becomes(fieldOf("level") + ".value === '10'")) << "it shows what holds";
 }
 
 TEST_F(PageTest, ABlockIsSetToWhatIsWrittenThereSoThatRowsMayBecomeABudget) {
-    put("task", "source");
-    const std::string row =
-        "[...document.querySelectorAll('#properties tr')].find((one) => one.cells[0].textContent === 'quality')";
-    value(row + ".querySelector('input').focus()");
-    value(row + ".querySelector('input').select()");
-    browser->type("{budget_ms: 20}");
+    choose("task", "source");
+    enter(fieldOf("quality"), "{budget_ms: 20}");
     EXPECT_TRUE(becomes("insonify.status().tasks[0].properties.quality === '{\"budget_ms\": 20}'"));
-    EXPECT_EQ(value(row + ".querySelector('.refused').textContent"), "");
-}
-
-TEST_F(PageTest, BearingsAreSignedAsInPicturesAndTheRangeIsTold) {
-    EXPECT_THAT(readAt(6.75, -8), HasSubstr("-8"));
-    EXPECT_THAT(readAt(6.75, -8), HasSubstr("stbd"));
-    EXPECT_EQ(text("reach"), "15.0 m, 32 x 100, 150 mm");
+    EXPECT_EQ(value(refusalOf(fieldOf("quality"))), "");
 }
 
 TEST_F(PageTest, TheButtonsRecordPauseAndStep) {
@@ -261,126 +118,42 @@ TEST_F(PageTest, AllOfItCanBeReachedFrom400To1920Pixels) {
     EXPECT_EQ(value("document.querySelector('meta[name=viewport]').content"), "width=device-width, initial-scale=1");
 }
 
-TEST_F(PageTest, AFrozenPingStaysWhileTheSonarGoesOn) {
-    click("freeze");
-    const json frozen = value("insonify.fan.ping.time_us");
-    ASSERT_TRUE(
-        becomes("Number(document.getElementById('time').textContent.slice(0, -2)) > " + frozen.dump() + "e-6 + 0.2"));
-    EXPECT_EQ(value("insonify.fan.ping.time_us"), frozen);
-    EXPECT_EQ(pixelAt(6.75, 0), brightest);
-    click("freeze");
-    EXPECT_TRUE(becomes("insonify.fan.ping.time_us > " + frozen.dump()));
-}
-
-TEST_F(PageTest, TheWheelGoesNearerAndDraggingMovesThePicture) {
-    const auto at = windowAt(6.75, 0);
-    browser->wheel(at[0], at[1], -800);
-    ASSERT_TRUE(becomes("insonify.fan.zoom > 3"));
-    // The mouse stands at whole pixels.
-    EXPECT_NEAR(windowAt(6.75, 0)[0], at[0], 3) << "what is under the mouse stays there";
-    EXPECT_NEAR(windowAt(6.75, 0)[1], at[1], 3);
-    EXPECT_THAT(readAt(6.75, 0), HasSubstr("6.7"));
-    EXPECT_EQ(pixelAt(6.75, 0), brightest);
-    EXPECT_EQ(pixelAt(5.7, 0), darkest);
-    browser->drag(at[0], at[1], 40, -30);
-    nextFrame();
-    EXPECT_NEAR(windowAt(6.75, 0)[0], at[0] + 40, 3);
-    EXPECT_NEAR(windowAt(6.75, 0)[1], at[1] - 30, 3);
-    EXPECT_EQ(pixelAt(6.75, 0), brightest);
-    click("whole");
-    EXPECT_NEAR(windowAt(6.75, 0)[0], at[0], 1);
-    EXPECT_EQ(value("document.getElementById('whole').disabled"), true);
-}
-
-TEST_F(PageTest, TwoClicksMeasureHowFarAndWhichWay) {
-    click("measure");
-    clickAt(6, 30);
-    EXPECT_THAT(text("measured"), testing::StartsWith("6.0"));
-    clickAt(6 * std::sqrt(3), 0);  // of a triangle of 6 m, 6 m and 6 sqrt 3 m
-    const json found = value("insonify.fan.measured()");
-    EXPECT_NEAR(found["distance"], 6, 0.06);
-    EXPECT_NEAR(types::degrees(found["bearing"].get<double>()), -30, 1);
-    EXPECT_THAT(text("measured"), testing::AllOf(HasSubstr(" m apart, towards -"), HasSubstr("stbd, 0")));
-    double heading = 0;
-    const std::string told = text("measured");
-    ASSERT_EQ(std::sscanf(told.c_str() + told.find("stbd, ") + 6, "%lf° true", &heading), 1) << told;
-    EXPECT_NEAR(heading, 30, 1) << "the sonar looks north";
-    clickAt(3, 0);
-    EXPECT_EQ(value("insonify.fan.marks.length"), 1) << "a third begins anew";
-    click("measure");
-    nextFrame();
-    EXPECT_EQ(text("measured"), "");
-}
-
-TEST_F(PageTest, ASnapshotIsThePictureAsAFile) {
-    value(R"(HTMLAnchorElement.prototype.click = async function() {
-        const picture = await createImageBitmap(await (await fetch(this.href)).blob()), canvas = document.createElement('canvas');
-        Object.assign(canvas, {width: picture.width, height: picture.height});
-        canvas.getContext('2d').drawImage(picture, 0, 0);
-        self.saved = {name: this.download, height: picture.height, pixel: (x, y) => [...canvas.getContext('2d').getImageData(x, y, 1, 1).data].slice(0, 3)};
-    })");
-    value("insonify.fan.rings = false");
-    click("freeze");
-    click("snapshot");
-    ASSERT_TRUE(becomes("self.saved"));
-    EXPECT_EQ(value("saved.name"), value("`source.ping_${insonify.fan.ping.time_us}.png`"));
-    EXPECT_EQ(value("saved.height"), value("insonify.fan.canvas.height + 22"));
-    EXPECT_EQ(value("(() => { const [x, y] = insonify.fan.pixelOf(6.75, 0); return saved.pixel(x, "
-                    "insonify.fan.canvas.height - y); })()"),
-              brightest);
-}
-
-TEST_F(PageTest, AFrozenPictureIsSavedWithTheAttitudeThatItWasShownWith) {
-    ASSERT_TRUE(becomes("document.getElementById('attitude').textContent.includes('depth2.00 m')"));
-    click("freeze");
-    value(R"(import('./places.js').then(({Places}) => {
-        const {of} = Places.prototype;
-        Places.prototype.of = function(...asked) { return {...of.apply(this, asked), position: [0, 0, -9]}; };
-        const {fan} = insonify, draw = CanvasRenderingContext2D.prototype.fillText;
-        CanvasRenderingContext2D.prototype.fillText = function(text, ...more) {
-            if (text.startsWith(fan.ping.source)) self.caption = text;
-            return draw.call(this, text, ...more);
-        };
-        HTMLAnchorElement.prototype.click = () => {};
-    }))");
-    put("gain", "3");
-    click("snapshot");
-    ASSERT_TRUE(becomes("self.caption"));
-    EXPECT_THAT(value("self.caption").get<std::string>(), HasSubstr("depth 2.00 m"));
-}
-
-TEST_F(PageTest, HeadingDepthAndAttitudeStandOverThePicture) {
-    ASSERT_TRUE(becomes("!document.getElementById('attitude').hidden"));
-    EXPECT_TRUE(
-        becomes("document.getElementById('attitude').textContent === "
-                "'heading000.0°depth2.00 mpitch0.0°roll0.0°'"))
-        << text("attitude");
-    // Turned to starboard by 90 degrees, then nose down by 20, then starboard down by 10: z, y, x of the body.
-    const json turned = value(R"(import('./attitude.js').then(({attitudeOf}) => {
-        const half = (deg) => deg * Math.PI / 360, product = ([ax, ay, az, aw], [bx, by, bz, bw]) =>
-            [aw * bx + ax * bw + ay * bz - az * by, aw * by - ax * bz + ay * bw + az * bx, aw * bz + ax * by - ay * bx + az * bw,
-             aw * bw - ax * bx - ay * by - az * bz];
-        const about = (axis, deg) => [0, 1, 2].map((i) => i === axis ? Math.sin(half(deg)) : 0).concat(Math.cos(half(deg)));
-        const orientation = product(product(about(2, -90), about(1, 20)), about(0, 10));
-        return attitudeOf({orientation, position: [1, 2, -3.5]}, 0.5);
-    }))");
-    EXPECT_NEAR(turned["heading"], 90, 1e-9);
-    EXPECT_NEAR(turned["pitch"], 20, 1e-9);
-    EXPECT_NEAR(turned["roll"], 10, 1e-9);
-    EXPECT_NEAR(turned["depth"], 4, 1e-12);
-}
-
 TEST_F(PageTest, ALogsTimelineTellsWhereItIsAndGoesElsewhere) {
     ASSERT_TRUE(becomes("document.querySelector('.timeline .figure')?.textContent === '25.0 / 100.0 s'"));
-    const auto pull = [&](const std::string& to) {
-        value("(() => { const slider = document.querySelector('.timeline input'); slider.value = " + to +
-              "; slider.dispatchEvent(new Event('input')); slider.dispatchEvent(new Event('change')); })()");
+    const std::string slider = "document.querySelector('.timeline input')";
+    /** Drags the knob, or clicks the line where there is no knob. */
+    const auto pull = [&](double from_s, double to_s) {
+        const json box = value(slider + ".getBoundingClientRect().toJSON()");
+        const double knob = 16, width = box["width"].get<double>() - knob, y = box["top"].get<double>() + 8;
+        const auto at = [&](double s) { return box["left"].get<double>() + knob / 2 + width * s / 100; };
+        browser->drag(at(from_s), y, at(to_s) - at(from_s), 0);
     };
-    pull("60");
-    EXPECT_TRUE(becomes("document.querySelector('.timeline .figure').textContent === '60.0 / 100.0 s'"));
-    pull("95");
+    pull(25, 60);
+    EXPECT_TRUE(becomes("Math.abs(insonify.status().tasks[1].playback.at_s - 60) < 1"));
+    EXPECT_TRUE(
+        becomes("/^(59|60)[.0-9]* [/] 100.0 s$/.test(document.querySelector('.timeline .figure').textContent)"));
+    pull(60, 95);
     EXPECT_TRUE(becomes("/not the last 10 s/.test(document.querySelector('.timeline .refused').textContent)"));
-    EXPECT_TRUE(becomes("document.querySelector('.timeline input').value === '60'")) << "it shows where the log is";
+    EXPECT_TRUE(becomes("Math.abs(" + slider + ".value - 60) < 1")) << "it shows where the log is";
+
+    browser->click(slider);
+    browser->press("Home");
+    EXPECT_TRUE(becomes("insonify.status().tasks[1].playback.at_s === 0"));
+    browser->press("PageUp");
+    EXPECT_TRUE(becomes("insonify.status().tasks[1].playback.at_s > 5")) << "keys move it";
+    EXPECT_EQ(value("document.querySelector('.timeline .refused').textContent"), "");
+}
+
+TEST_F(PageTest, ATimelineThatIsDraggedThereAndBackGoesOnShowingWhereTheLogIs) {
+    ASSERT_TRUE(becomes("document.querySelector('.timeline .figure')?.textContent === '25.0 / 100.0 s'"));
+    const std::string slider = "document.querySelector('.timeline input')";
+    const json at = value("(() => { const box = " + slider + R"(.getBoundingClientRect();
+        return [box.left + 8 + (box.width - 16) * 0.25, box.top + 8]; })())");
+    for (const auto& [kind, dx] :
+         {std::pair("mousePressed", 0), {"mouseMoved", 50}, {"mouseMoved", 0}, {"mouseReleased", 0}})
+        browser->mouse(kind, at[0].get<double>() + dx, at[1], {{"button", "left"}, {"buttons", 1}, {"clickCount", 1}});
+    running->deployment().call("world.seek", {"70"});
+    EXPECT_TRUE(becomes("Math.abs(" + slider + ".value - 70) < 0.1"));
 }
 
 TEST_F(PageTest, RangeGainAndFrequencyComeFirst) {
@@ -437,6 +210,22 @@ TEST_F(PageTest, TheSceneTheWaterThePathAndTheFanAreDrawn) {
     EXPECT_TRUE(becomes("!insonify.world().water.visible")) << "a later snapshot has none";
 }
 
+TEST_F(PageTest, DraggingTurnsTheSceneAndTheWheelGoesNearer) {
+    if (!hasThree()) GTEST_SKIP() << "NOT TESTED: no three.js was built in";
+    ASSERT_TRUE(becomes("insonify.world()?.content && insonify.snapshot()"));
+    const json box = value(byId("view") + ".getBoundingClientRect().toJSON()");
+    const double x = box["left"].get<double>() + 200, y = box["top"].get<double>() + 200;
+    const json before =
+        value("(({azimuth, elevation, distance}) => ({azimuth, elevation, distance}))(insonify.world())");
+    browser->drag(x, y, 100, 50);
+    EXPECT_NEAR(value("insonify.world().azimuth"), before["azimuth"].get<double>() - 0.6, 0.01);
+    EXPECT_NEAR(value("insonify.world().elevation"), before["elevation"].get<double>() + 0.3, 0.01);
+    browser->point(x, y);
+    EXPECT_NEAR(value("insonify.world().azimuth"), before["azimuth"].get<double>() - 0.6, 0.01) << "the button is up";
+    browser->wheel(x, y, -300);
+    EXPECT_TRUE(becomes("insonify.world().distance < " + before["distance"].dump() + " * 0.8"));
+}
+
 TEST_F(PageTest, TheFanIsWhereItsPingWasMade) {
     if (!hasThree()) GTEST_SKIP() << "NOT TESTED: no three.js was built in";
     ASSERT_TRUE(becomes("insonify.world() && insonify.snapshot()"));
@@ -467,8 +256,7 @@ TEST_F(PageTest, EachVehicleHasAPathOfItsOwnThatEndsWhereTimeGoesBack) {
 TEST_F(PageTest, ABrokenConnectionComesBack) {
     const uint16_t port = quietPort();
     open("", port);
-    // A machine that stalls is not to look like a connection that says nothing.
-    value("Object.defineProperty(insonify.link, 'patience', {get: () => 1e9, set: () => {}})");
+    keepConnection();
     ASSERT_TRUE(becomes("document.getElementById('link').textContent === 'connected'"));
     const int opened = value("insonify.link.opened");
     running.reset();

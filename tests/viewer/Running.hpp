@@ -1,6 +1,7 @@
 #pragma once
 // A deployment with a viewer, while it runs.
 #include <atomic>
+#include <functional>
 #include <optional>
 #include <thread>
 
@@ -123,8 +124,15 @@ private:
 /** A lockstep deployment that runs on a thread of its own, slowly. */
 class Running {
 public:
+    /** What a test adds to the deployment. */
+    struct Additions {
+        std::vector<std::string> settings = {};    ///< "viewer.control=false"
+        std::string tasks = "", connections = "";  ///< In YAML, a line each.
+        std::function<void(framework::Registry&)> registerTasks = [](framework::Registry&) {};
+    };
     /** @param port 0: any that is free. */
-    explicit Running(uint16_t port = 0) : deployment_(spec(port), registry_) {
+    explicit Running(uint16_t port = 0) : Running(port, Additions()) {}
+    Running(uint16_t port, const Additions& additions) : deployment_(spec(port, additions), registry_) {
         deployment_.configure();
         thread_ = std::thread([this] { deployment_.run({.pace = 1}, stop_); });
     }
@@ -136,23 +144,26 @@ public:
     uint16_t port() const { return dynamic_cast<ViewerTask&>(*deployment_.task("viewer")).port(); }
 
 private:
-    framework::DeploymentSpec spec(uint16_t port) {
+    framework::DeploymentSpec spec(uint16_t port, const Additions& additions) {
         registry_.add<LevelTask>("test::LevelTask", "");
         registry_.add<WorldTask>("test::WorldTask", "");
         registerTasks(registry_);
+        additions.registerTasks(registry_);
         auto spec = framework::DeploymentSpec::parse(R"(
 tasks:
   source: {type: test::LevelTask, activity: {period: 0.01}}
   world:  {type: test::WorldTask, activity: {period: 0.02}}
   viewer: {type: viewer::ViewerTask, properties: {idle_timeout: 3600}}
+)" + additions.tasks + R"(
 connections:
   - {from: source.ping,    to: viewer.ping,  policy: {type: buffer, size: 8}}
   - {from: world.snapshot, to: viewer.scene, policy: {type: buffer, size: 8}}
   - {from: world.pose,     to: viewer.pose,  policy: {type: buffer, size: 1}}
   - {from: world.pose,     to: viewer.newest}
-)",
+)" + additions.connections,
                                                      "test.yml");
         spec.set("viewer.port=" + std::to_string(port));
+        for (const std::string& setting : additions.settings) spec.set(setting);
         return spec;
     }
     framework::Registry registry_;

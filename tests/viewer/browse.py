@@ -1,8 +1,18 @@
 """A headless Chromium that does what is asked: python3 browse.py CHROMIUM URL [SCRIPT]
 
-Reads lines of JSON and answers each with one: {"eval": EXPRESSION} gives its value, {"until": EXPRESSION, "seconds": S}
-waits until it is true, {"screenshot": FILE} writes a PNG, {"type": TEXT} types it and Enter, {"mouse": {"type": KIND,
-"x": X, "y": Y, ...}} is what the mouse does, {"size": [W, H]} makes the window so large. An expression that throws gives {"error": TEXT}. SCRIPT runs before those of the page.
+Reads lines of JSON and answers each with one. SCRIPT runs before those of the page. An expression that throws gives
+{"error": TEXT}; so does an element that a person could not reach.
+
+    {"eval": EXPRESSION}                   gives its value
+    {"until": EXPRESSION, "seconds": S}    waits until it is true
+    {"click": EXPRESSION}                  scrolls the element into view with the wheel and clicks its middle
+    {"type": TEXT}                         presses the keys of a text, one after the other
+    {"press": ["Tab", "Shift+Tab"]}        presses keys by name
+    {"mouse": {"type": KIND, ...}}         what the mouse does, as Input.dispatchMouseEvent has it
+    {"touch": {"type": KIND, ...}}         what fingers do, as Input.dispatchTouchEvent has it
+    {"downloads": FOLDER}                  where the browser saves files
+    {"size": [W, H]}                       makes the window that large
+    {"screenshot": FILE}                   writes a PNG
 """
 
 import asyncio
@@ -18,6 +28,7 @@ import time
 import urllib.request
 
 import websockets
+from keys import events_of
 
 FLAGS = [
     "--headless=new",
@@ -26,6 +37,7 @@ FLAGS = [
     "--disable-extensions",
     "--disable-background-networking",
     "--disable-dev-shm-usage",
+    "--disable-smooth-scrolling",
     "--use-gl=angle",
     "--use-angle=swiftshader",
     "--enable-unsafe-swiftshader",
@@ -34,6 +46,24 @@ FLAGS = [
     "--hide-scrollbars",
     "--remote-debugging-port=0",
 ]
+
+# The middle of an element, what is seen there instead of it, and a place where the wheel scrolls to it: over a canvas the
+# wheel does something else.
+LOOK = """(() => {
+  const element = %s;
+  if (!element) throw new Error('there is no such element');
+  const box = element.getBoundingClientRect(), middle = [box.left + box.width / 2, box.top + box.height / 2];
+  const seen = document.elementFromPoint(...middle);
+  let frame = element.parentElement;
+  while (frame && !(frame.scrollHeight > frame.clientHeight && /auto|scroll/.test(getComputedStyle(frame).overflowY)))
+    frame = frame.parentElement;
+  const edge = frame && frame !== document.body ? frame.getBoundingClientRect() : {left: 0, right: innerWidth, top: 0, bottom: innerHeight};
+  const x = (edge.left + edge.right) / 2, low = Math.max(0, edge.top), high = Math.min(innerHeight, edge.bottom);
+  const places = Array.from({length: 50}, (_, i) => [x, low + (high - low) * (i + 0.5) / 50]);
+  return {middle, wheel: places.findLast((place) => document.elementFromPoint(...place)?.tagName !== 'CANVAS') ?? places[0],
+          hidden: element.contains(seen) ? '' : seen?.outerHTML.slice(0, 80) ?? 'the edge of the window',
+          empty: !box.width || !box.height};
+})()"""
 
 
 def start(chromium, profile):
@@ -70,6 +100,11 @@ class Page:
             if message.get("id") == self.last_id:
                 return message.get("result", message)
 
+    async def act(self, method, **parameters):
+        """Like send, for what has no result."""
+        answer = await self.send(method, **parameters)
+        return {"error": answer["error"]} if "error" in answer else {"value": True}
+
     async def evaluate(self, expression):
         answer = await self.send("Runtime.evaluate", expression=expression, returnByValue=True, awaitPromise=True)
         if "exceptionDetails" in answer:
@@ -91,22 +126,62 @@ class Page:
         pathlib.Path(file).write_bytes(base64.b64decode(png["data"]))
         return {"value": True}
 
-
-    async def type(self, text):
-        await self.send("Input.insertText", text=text)
-        for kind in ("rawKeyDown", "keyUp"):
-            await self.send("Input.dispatchKeyEvent", type=kind, key="Enter", code="Enter", windowsVirtualKeyCode=13)
+    async def click(self, expression):
+        before = None
+        while True:
+            answer = await self.evaluate(LOOK % expression)
+            if "error" in answer:
+                return answer
+            look = answer["value"]
+            if look["empty"]:
+                return {"error": f"nothing is seen of {expression}"}
+            if not look["hidden"]:
+                break
+            if look["middle"] == before:
+                return {"error": f"{expression} is behind {look['hidden']}"}
+            before = look["middle"]
+            x, y = look["wheel"]
+            far = before[1] - y
+            await self.act("Input.dispatchMouseEvent", type="mouseWheel", x=x, y=y, deltaX=0, deltaY=far)
+            await self.evaluate("new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done)))")
+        x, y = look["middle"]
+        for kind in ("mousePressed", "mouseReleased"):
+            await self.act("Input.dispatchMouseEvent", type=kind, x=x, y=y, button="left", clickCount=1)
         return {"value": True}
 
-    async def mouse(self, event):
-        await self.send("Input.dispatchMouseEvent", **event)
+    async def press(self, keys):
+        for key in keys:
+            for event in events_of(key):
+                answer = await self.act("Input.dispatchKeyEvent", **event)
+                if "error" in answer:
+                    return answer
         return {"value": True}
 
     async def size(self, width, height):
-        await self.send(
+        return await self.act(
             "Emulation.setDeviceMetricsOverride", width=width, height=height, deviceScaleFactor=1, mobile=False
         )
-        return {"value": True}
+
+    async def answer(self, asked):
+        if "eval" in asked:
+            return await self.evaluate(asked["eval"])
+        if "until" in asked:
+            return await self.until(asked["until"], asked["seconds"])
+        if "click" in asked:
+            return await self.click(asked["click"])
+        if "type" in asked:
+            return await self.press(asked["type"])
+        if "press" in asked:
+            return await self.press(asked["press"])
+        if "mouse" in asked:
+            return await self.act("Input.dispatchMouseEvent", **asked["mouse"])
+        if "touch" in asked:
+            return await self.act("Input.dispatchTouchEvent", **asked["touch"])
+        if "downloads" in asked:
+            return await self.act("Page.setDownloadBehavior", behavior="allow", downloadPath=asked["downloads"])
+        if "size" in asked:
+            return await self.size(*asked["size"])
+        return await self.screenshot(asked["screenshot"])
 
 
 async def serve(address, url, script):
@@ -116,20 +191,7 @@ async def serve(address, url, script):
         await page.send("Page.addScriptToEvaluateOnNewDocument", source=script)
         await page.send("Page.navigate", url=url)
         while line := await asyncio.to_thread(sys.stdin.readline):
-            asked = json.loads(line)
-            if "eval" in asked:
-                answer = await page.evaluate(asked["eval"])
-            elif "until" in asked:
-                answer = await page.until(asked["until"], asked["seconds"])
-            elif "type" in asked:
-                answer = await page.type(asked["type"])
-            elif "mouse" in asked:
-                answer = await page.mouse(asked["mouse"])
-            elif "size" in asked:
-                answer = await page.size(*asked["size"])
-            else:
-                answer = await page.screenshot(asked["screenshot"])
-            print(json.dumps(answer), flush=True)
+            print(json.dumps(await page.answer(json.loads(line))), flush=True)
 
 
 with tempfile.TemporaryDirectory(ignore_cleanup_errors=True) as profile:

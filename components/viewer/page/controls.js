@@ -10,13 +10,13 @@ export class Controls {
     this.control = control;
     this.loggers = tasks.filter((task) => task.properties.some((property) => property.name === 'record')).map((task) => task.name);
     this.replays = tasks.filter((task) => task.operations.includes('pause void(bool)')).map((task) => task.name);
-    this.built = false;
+    this.built_for = null;
   }
   button(text, ask, title) {
     return element('button', {title, onclick: async () => { this.said.textContent = (await ask()).refused ?? ''; }}, text);
   }
   build(status) {
-    this.built = true;
+    this.built_for = status.lockstep;
     this.said = element('span', {className: 'refused'});
     this.records = new Map(this.loggers.map((name) => [name, this.button(`● ${name}`, () => this.record(name), 'record, or pause recording')]));
     this.pause = this.button('pause', () => this.link.ask({pause: !this.paused}), 'simulated time stands still');
@@ -31,7 +31,7 @@ export class Controls {
   record(name) { return this.link.call(`${name}.setRecord`, !this.recording.get(name)); }
   update(status) {
     if (!this.loggers) return;
-    if (!this.built) this.build(status);
+    if (this.built_for !== status.lockstep) this.build(status);
     this.paused = status.paused;
     this.pause.textContent = status.paused ? 'go on' : 'pause';
     this.step.disabled = !status.paused;

@@ -207,8 +207,9 @@ export class Fan {
       context.stroke();
     };
     const label = (text, range, bearing, dx, dy) => {
-      const [x, y] = this.pixelOf(range, bearing);
-      context.fillText(text, x + dx * devicePixelRatio, height - y + dy * devicePixelRatio);
+      const [x, y] = this.pixelOf(range, bearing), half = context.measureText(text).width / 2 + devicePixelRatio;
+      const middle = x + dx * devicePixelRatio, right = this.overlay.width - half;
+      if (x < this.overlay.width) context.fillText(text, Math.min(middle, right), height - y + dy * devicePixelRatio);
     };
     const arc = Array.from({length: 121}, (_, i) => this.low + (this.high - this.low) * i / 120);
     context.strokeStyle = 'rgba(150, 175, 190, .28)';

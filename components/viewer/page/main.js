@@ -17,7 +17,7 @@ import {World, loadThree} from './world.js';
 const byId = (id) => document.getElementById(id);
 const fan = new Fan(byId('fan'), byId('overlay'));
 const rates = new Rates(), scans = new Map(), arrivals = [], scenes = new Map(), places = new Places(), poses = new Places();
-let world = null, scene = null, snapshot = null, shown_attitude = null, placed = '', reference = null, missed = 0, last_count = null, shown = 0, needs_drawing = false, frozen = false;
+let interfaces = '', world = null, scene = null, snapshot = null, shown_attitude = null, placed = '', reference = null, missed = 0, last_count = null, shown = 0, needs_drawing = false, frozen = false;
 
 const link = new Link(take, (open) => {
   byId('link').className = open ? 'lamp' : 'lamp off';
@@ -31,6 +31,9 @@ const hands = new Hands(fan, () => { needs_drawing = true; });
 
 const show = {
   interfaces(message) {
+    const before = interfaces;
+    interfaces = JSON.stringify(message);
+    if (interfaces === before) return;  // the connection is back: fields stay, with what is being typed
     for (const part of [properties, controls, first, timelines]) part.setInterfaces(message);
   },
   status(status) {

@@ -79,9 +79,9 @@ function inputFor(property) {
   return element('input', {type: 'text', spellcheck: false, placeholder: property.type.includes('optional') ? 'none' : ''});
 }
 function put(input, value) {
-  if (document.activeElement === input) return;
-  if (input.type === 'checkbox') input.checked = value === true;
-  else input.value = value === undefined ? '' : typeof value === 'number' ? +value.toPrecision(9) : value;
+  if (input.type === 'checkbox') return void (input.checked = value === true);
+  const text = String(typeof value === 'number' && !Number.isInteger(value) ? +value.toPrecision(9) : value ?? '');
+  if (input.value !== text) input.value = text;  // or an open list and a selection would go
 }
 
 /** Names of the keys of a block in flow YAML, without those of blocks within it. */
@@ -98,7 +98,8 @@ function keysOf(block) {
  *  are taken out by null, and so is all of what has been emptied. */
 export function settingOf(type, before, after) {
   const text = after.trim(), isBlock = (one) => /^\{.*\}$/s.test(one);
-  if (!text) return type.includes('text') ? after : 'null';
+  if (!text) return 'null';
+  if (type === 'text' || type === 'text, optional') return JSON.stringify(after);  // YAML of its own signs: "a: b #c"
   if (!type.startsWith('block') || !isBlock(text) || !isBlock(before ?? '')) return after;
   const kept = keysOf(text), gone = keysOf(before).filter((key) => !kept.includes(key)).map((key) => `${key}: null`);
   return `{${[text.slice(1, -1).trim(), ...gone].filter((part) => part).join(', ')}}`;
@@ -109,16 +110,36 @@ export const rank = ({name}) => (['range', 'gain_db', 'gain', 'frequency_khz'].i
 
 const valuesOf = (status, task) => status?.tasks.find((one) => one.name === task)?.properties ?? {};
 
-/** A property where it can be set: its input, and what its last change was refused for. */
+/** A property where it can be set: its input, and what its last change was refused for. What is typed stays in the input
+ *  until Enter, or leaving it, sets the property, or Escape takes it back. */
 export function fieldOf(link, task, property, control) {
   const input = inputFor(property), said = element('span', {className: 'refused'});
-  const field = {input, said, update(status) { put(input, valuesOf(field.status = status, task)[property.name]); }};
+  let is_edited = false, unanswered = 0;
+  const held = () => valuesOf(field.status, task)[property.name];
+  const field = {input, said, update(status) {
+    field.status = status;
+    if (!is_edited && !unanswered) put(input, held());
+  }};
   input.disabled = !control;
+  input.oninput = () => { is_edited = true; };
   input.onchange = async () => {
-    const value = input.type === 'checkbox' ? input.checked : settingOf(property.type, valuesOf(field.status, task)[property.name], input.value);
-    said.textContent = (await link.call(`${task}.${setter(property.name)}`, value)).refused ?? '';
+    is_edited = false;
+    ++unanswered;
+    const value = input.type === 'checkbox' ? input.checked : settingOf(property.type, held(), input.value);
+    const {refused} = await link.call(`${task}.${setter(property.name)}`, value);
+    --unanswered;
+    said.textContent = refused ?? '';
+    if (is_edited || unanswered) return;
+    if (refused) put(input, held());
+    if (document.activeElement === input) input.select?.();  // so that typing replaces it
   };
-  input.onkeydown = (event) => event.key === 'Enter' && input.blur();
+  input.onblur = () => { is_edited = false; };
+  input.onkeydown = (event) => {
+    if (event.key !== 'Escape') return;
+    is_edited = false;
+    said.textContent = '';
+    put(input, held());
+  };
   return field;
 }
 

@@ -17,9 +17,9 @@ export class Timelines {
   row(name) {
     const slider = element('input', {type: 'range', min: 0, step: 0.01, disabled: !this.seekers?.has(name), title: `${name}: seconds after the first stamp of the log`});
     const told = element('span', {className: 'figure'}), said = element('span', {className: 'refused'});
-    slider.oninput = () => { slider.held = true; };
+    slider.onpointerdown = () => { slider.held = true; };
+    slider.onpointerup = slider.onpointercancel = () => { slider.held = false; };
     slider.onchange = async () => {
-      slider.held = false;
       said.textContent = (await this.link.call(`${name}.seek`, slider.value)).refused ?? '';
     };
     this.rows.set(name, {slider, told});

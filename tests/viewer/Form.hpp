@@ -1,0 +1,67 @@
+#pragma once
+// A task with a property of each type, for the fields of the page.
+#include "tests/viewer/Running.hpp"
+
+namespace insonify::viewer {
+enum class Shape { Round, Square, Flat };
+}  // namespace insonify::viewer
+template <>
+struct insonify::types::EnumNames<insonify::viewer::Shape> {
+    static constexpr std::string_view names[] = {"round", "square", "flat"};
+};
+
+namespace insonify::viewer {
+
+/** A property of each type. */
+struct FormConfig {
+    double range = 1;
+    std::optional<double> gain_db;
+    double frequency_khz = 700;
+    bool enabled = true;
+    Shape shape = Shape::Round;
+    std::optional<Shape> maybe;
+    int32_t count = 3;
+    uint64_t seed = 7;
+    std::string title = "first";
+    glm::dvec3 place{1, 2, 3};
+    std::vector<double> weights{0.5, 0.25};
+    QualityConfig quality{256, {}};
+    std::optional<QualityConfig> spare;
+    template <class Self, class V>
+    static void describe(Self& self, V& visit) {
+        visit(types::Field{"range", "m", "factor of the ping", 1, 100}, self.range);
+        visit(types::Field{"gain_db", "dB", "any"}, self.gain_db);
+        visit(types::Field{"frequency_khz", "kHz", "any", 1, 3000}, self.frequency_khz);
+        visit(types::Field{"enabled", "", "false is refused"}, self.enabled);
+        visit(types::Field{"shape", "", "flat is refused"}, self.shape);
+        visit(types::Field{"maybe", "", "any"}, self.maybe);
+        visit(types::Field{"count", "1", "any", 1, 1000}, self.count);
+        visit(types::Field{"seed", "1", "any"}, self.seed);
+        visit(types::Field{"title", "", "any"}, self.title);
+        visit(types::Field{"place", "m", "any"}, self.place);
+        visit(types::Field{"weights", "1", "any"}, self.weights);
+        visit(types::Field{"quality", "", "rows or a budget"}, self.quality);
+        visit(types::Field{"spare", "", "rows or a budget"}, self.spare);
+    }
+};
+
+class FormTask final : public framework::TaskContext {
+public:
+    using TaskContext::TaskContext;
+    framework::Properties<FormConfig> config{this};
+    framework::OutputPort<types::SonarPtr> ping{this, "ping", "of the range as level"};
+
+private:
+    bool propertiesHook() override {
+        if (!config->enabled) throw std::runtime_error("not without it today");
+        if (config->shape == Shape::Flat) throw std::runtime_error("flat is for later");
+        return true;
+    }
+    void updateHook() override {
+        const auto sample = blockPing(now().microseconds);
+        for (float& bin : sample->bins) bin *= static_cast<float>(config->range);
+        ping.write(sample);
+    }
+};
+
+}  // namespace insonify::viewer

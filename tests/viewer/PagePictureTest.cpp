@@ -1,0 +1,228 @@
+// The picture of a ping on the page, in a real browser.
+#include <gmock/gmock.h>
+
+#include <opencv2/imgcodecs.hpp>
+
+#include "tests/support/Folder.hpp"
+#include "tests/viewer/Page.hpp"
+
+namespace insonify::viewer {
+namespace {
+
+using testing::HasSubstr;
+
+TEST_F(PageTest, APingIsDrawnAsItIs) {
+    for (const bool polar : {false, true}) {
+        if (polar) click("fan");
+        for (const double bearing : {-16.0, 0.0, 10.5})
+            EXPECT_EQ(pixelAt(6.75, bearing), brightest) << bearing << (polar ? ", polar" : "");
+        for (const auto& [range, bearing] : {std::pair(5.7, 0.0), {7.8, 0.0}, {6.75, -18.0}, {6.75, 12.5}})
+            EXPECT_EQ(pixelAt(range, bearing), darkest) << range << " " << bearing << (polar ? ", polar" : "");
+    }
+    EXPECT_NE(pixelAt(16, 0), darkest) << "beyond the last bin there is no picture";
+}
+
+TEST_F(PageTest, AFanAcrossTheSeamIsDrawnBehindTheSonarAndGapsAreEmpty) {
+    choose("map", "gray");
+    click("freeze");
+    // Beams from 150 to 160 and from 170 to 190 degrees, silent but for the last one.
+    value(
+        "(() => { const {fan} = insonify, rad = (all) => all.map((each) => each * Math.PI / 180), bins = 10;"
+        "const ping = {...fan.ping, beams: 3, bins, bin_m: 1.5, edges: rad([150, 160, 170, 180, 180, 190]), data: new "
+        "Uint8Array(30)}; ping.data.fill(255, 20); fan.show(ping, ping.top_db); fan.draw(); })()");
+    const json white = {255, 255, 255}, black = {0, 0, 0};
+    for (const bool polar : {false, true}) {
+        if (polar) click("fan");
+        for (const double bearing : {-172.0, -179.0, 181.5}) EXPECT_EQ(pixelAt(6.75, bearing), white) << bearing;
+        for (const double bearing : {179.0, 172.0, 155.0}) EXPECT_EQ(pixelAt(6.75, bearing), black) << bearing;
+        EXPECT_NE(pixelAt(6.75, 165), black) << "between beams there is no picture";
+        EXPECT_THAT(readAt(6.75, -175), HasSubstr("-175.0° stbd"));
+        EXPECT_EQ(readAt(6.75, 165), "");
+    }
+}
+
+TEST_F(PageTest, ColourMapAndGainChangeThePicture) {
+    choose("map", "gray");
+    EXPECT_EQ(pixelAt(6.75, 0), json({255, 255, 255}));
+    EXPECT_EQ(pixelAt(5.7, 0), json({0, 0, 0}));
+    slide("gain", -20);  // of 45 dB from black to white
+    EXPECT_NEAR(pixelAt(6.75, 0)[0].get<int>(), 255 * 25 / 45, 5);
+    EXPECT_EQ(text("gain_db"), "-20 dB");
+    slide("span", 90);
+    EXPECT_NEAR(pixelAt(6.75, 0)[0].get<int>(), 255 * 70 / 90, 5);
+}
+
+TEST_F(PageTest, TheCursorTellsRangeBearingAndLevel) {
+    for (const char* level : {"0.0 dB", "10.0 dB"}) {
+        double range = 0, bearing = 0;
+        char side[8] = "", rest[32] = "";
+        const std::string told = readAt(6.75, 8);
+        ASSERT_EQ(std::sscanf(told.c_str(), "%lf m %lf° %7s %31[^\n]", &range, &bearing, side, rest), 4) << told;
+        EXPECT_NEAR(range, 6.75, 0.05);
+        EXPECT_NEAR(bearing, 8, 0.5);
+        EXPECT_STREQ(side, "port");
+        EXPECT_NEAR(std::stod(rest), std::stod(level), 0.05) << told;
+        running->deployment().call("source.setLevel", {"10"});
+        ASSERT_TRUE(becomes("Math.abs(insonify.fan.ping.top_db - 10) < 0.1"));
+    }
+    EXPECT_THAT(readAt(3, -20), testing::AllOf(HasSubstr("stbd"), HasSubstr("no echo")));
+    EXPECT_EQ(readAt(15.5, 0), "") << "beyond the last bin";
+}
+
+TEST_F(PageTest, BearingsAreSignedAsInPicturesAndTheRangeIsTold) {
+    EXPECT_THAT(readAt(6.75, -8), HasSubstr("-8"));
+    EXPECT_THAT(readAt(6.75, -8), HasSubstr("stbd"));
+    EXPECT_EQ(text("reach"), "15.0 m, 32 x 100, 150 mm");
+}
+
+TEST_F(PageTest, NoLabelOfThePictureIsCut) {
+    for (const int width : {400, 500, 1600}) {
+        browser->size(width, 900);
+        nextFrame();
+        // In one go, before the next ping is shown: a range at which rings have the widest labels.
+        const json cut = value(R"((() => {
+            const {fan} = insonify, {prototype} = CanvasRenderingContext2D, draw = prototype.fillText, texts = [];
+            prototype.fillText = function(text, x, ...more) {
+                const half = this.measureText(text).width / 2;
+                texts.push([text, x - half >= 0 && x + half <= fan.overlay.width]);
+                return draw.call(this, text, x, ...more);
+            };
+            for (const bin_m of [0.31, 1.01, 5.01]) {
+                fan.show({...fan.ping, bin_m}, 0);
+                fan.draw();
+            }
+            prototype.fillText = draw;
+            return [texts.map(([text]) => text).filter((text) => ['30 m', '100 m', '500 m'].includes(text)), texts.filter(([, whole]) => !whole)];
+        })())");
+        EXPECT_EQ(cut[0], json({"30 m", "100 m", "500 m"})) << width;
+        EXPECT_EQ(cut[1], json::array()) << width;
+    }
+}
+
+TEST_F(PageTest, AFrozenPingStaysWhileTheSonarGoesOn) {
+    click("freeze");
+    const json frozen = value("insonify.fan.ping.time_us");
+    ASSERT_TRUE(
+        becomes("Number(document.getElementById('time').textContent.slice(0, -2)) > " + frozen.dump() + "e-6 + 0.2"));
+    EXPECT_EQ(value("insonify.fan.ping.time_us"), frozen);
+    EXPECT_EQ(pixelAt(6.75, 0), brightest);
+    click("freeze");
+    EXPECT_TRUE(becomes("insonify.fan.ping.time_us > " + frozen.dump()));
+}
+
+TEST_F(PageTest, TheWheelGoesNearerAndDraggingMovesThePicture) {
+    const auto at = windowAt(6.75, 0);
+    browser->wheel(at[0], at[1], -800);
+    ASSERT_TRUE(becomes("insonify.fan.zoom > 3"));
+    // The mouse stands at whole pixels.
+    EXPECT_NEAR(windowAt(6.75, 0)[0], at[0], 3) << "what is under the mouse stays there";
+    EXPECT_NEAR(windowAt(6.75, 0)[1], at[1], 3);
+    EXPECT_THAT(readAt(6.75, 0), HasSubstr("6.7"));
+    EXPECT_EQ(pixelAt(6.75, 0), brightest);
+    EXPECT_EQ(pixelAt(5.7, 0), darkest);
+    browser->drag(at[0], at[1], 40, -30);
+    nextFrame();
+    EXPECT_NEAR(windowAt(6.75, 0)[0], at[0] + 40, 3);
+    EXPECT_NEAR(windowAt(6.75, 0)[1], at[1] - 30, 3);
+    EXPECT_EQ(pixelAt(6.75, 0), brightest);
+    click("whole");
+    EXPECT_NEAR(windowAt(6.75, 0)[0], at[0], 1);
+    EXPECT_EQ(value("document.getElementById('whole').disabled"), true);
+}
+
+TEST_F(PageTest, TwoFingersGoNearer) {
+    const auto at = windowAt(6.75, 0);
+    const auto fingers = [&](const char* kind, double apart) {
+        browser->touch(kind, {{at[0], at[1] - apart / 2}, {at[0], at[1] + apart / 2}});
+    };
+    fingers("touchStart", 60);
+    for (const double apart : {90, 120, 150, 180}) fingers("touchMove", apart);
+    browser->touch("touchEnd", {});
+    ASSERT_TRUE(becomes("insonify.fan.zoom > 2.5"));
+    EXPECT_NEAR(windowAt(6.75, 0)[1], at[1], 20);
+    browser->touch("touchStart", {at});
+    browser->touch("touchMove", {{at[0] + 40, at[1]}});
+    browser->touch("touchEnd", {});
+    EXPECT_NEAR(windowAt(6.75, 0)[0], at[0] + 40, 20) << "one finger moves it";
+}
+
+TEST_F(PageTest, TwoClicksMeasureHowFarAndWhichWay) {
+    click("measure");
+    clickAt(6, 30);
+    EXPECT_THAT(text("measured"), testing::StartsWith("6.0"));
+    clickAt(6 * std::sqrt(3), 0);  // of a triangle of 6 m, 6 m and 6 sqrt 3 m
+    const json found = value("insonify.fan.measured()");
+    EXPECT_NEAR(found["distance"], 6, 0.06);
+    EXPECT_NEAR(types::degrees(found["bearing"].get<double>()), -30, 1);
+    EXPECT_THAT(text("measured"), testing::AllOf(HasSubstr(" m apart, towards -"), HasSubstr("stbd, 0")));
+    double heading = 0;
+    const std::string told = text("measured");
+    ASSERT_EQ(std::sscanf(told.c_str() + told.find("stbd, ") + 6, "%lf° true", &heading), 1) << told;
+    EXPECT_NEAR(heading, 30, 1) << "the sonar looks north";
+    clickAt(3, 0);
+    EXPECT_EQ(value("insonify.fan.marks.length"), 1) << "a third begins anew";
+    click("measure");
+    nextFrame();
+    EXPECT_EQ(text("measured"), "");
+}
+
+TEST_F(PageTest, ASnapshotIsThePictureAsAFile) {
+    const Folder saved;
+    browser->saveFilesIn(saved.path());
+    browser->click(byId("rings"));
+    click("freeze");
+    click("snapshot");
+    const std::filesystem::path file =
+        saved / value("`source.ping_${insonify.fan.ping.time_us}.png`").get<std::string>();
+    ASSERT_TRUE(comesTrue([&] { return std::filesystem::exists(file); })) << file;
+    const cv::Mat picture = cv::imread(file.string());  // of blue, green, red
+    EXPECT_EQ(picture.rows, value("insonify.fan.canvas.height + 22"));
+    EXPECT_EQ(picture.cols, value("insonify.fan.canvas.width"));
+    const json at = value(
+        "(() => { const {fan} = insonify, [x, y] = fan.pixelOf(6.75, 0); return [x, fan.canvas.height - y]; })()");
+    const auto pixel = picture.at<cv::Vec3b>(at[1].get<int>(), at[0].get<int>());
+    EXPECT_EQ(json({pixel[2], pixel[1], pixel[0]}), brightest);
+}
+
+TEST_F(PageTest, AFrozenPictureIsSavedWithTheAttitudeThatItWasShownWith) {
+    ASSERT_TRUE(becomes("document.getElementById('attitude').textContent.includes('depth2.00 m')"));
+    click("freeze");
+    value(R"(import('./places.js').then(({Places}) => {
+        const {of} = Places.prototype;
+        Places.prototype.of = function(...asked) { return {...of.apply(this, asked), position: [0, 0, -9]}; };
+        const {fan} = insonify, draw = CanvasRenderingContext2D.prototype.fillText;
+        CanvasRenderingContext2D.prototype.fillText = function(text, ...more) {
+            if (text.startsWith(fan.ping.source)) self.caption = text;
+            return draw.call(this, text, ...more);
+        };
+        HTMLAnchorElement.prototype.click = () => {};
+    }))");
+    slide("gain", 3);
+    click("snapshot");
+    ASSERT_TRUE(becomes("self.caption"));
+    EXPECT_THAT(value("self.caption").get<std::string>(), HasSubstr("depth 2.00 m"));
+}
+
+TEST_F(PageTest, HeadingDepthAndAttitudeStandOverThePicture) {
+    ASSERT_TRUE(becomes("!document.getElementById('attitude').hidden"));
+    EXPECT_TRUE(
+        becomes("document.getElementById('attitude').textContent === "
+                "'heading000.0°depth2.00 mpitch0.0°roll0.0°'"))
+        << text("attitude");
+    // Turned to starboard by 90 degrees, then nose down by 20, then starboard down by 10: z, y, x of the body.
+    const json turned = value(R"(import('./attitude.js').then(({attitudeOf}) => {
+        const half = (deg) => deg * Math.PI / 360, product = ([ax, ay, az, aw], [bx, by, bz, bw]) =>
+            [aw * bx + ax * bw + ay * bz - az * by, aw * by - ax * bz + ay * bw + az * bx, aw * bz + ax * by - ay * bx + az * bw,
+             aw * bw - ax * bx - ay * by - az * bz];
+        const about = (axis, deg) => [0, 1, 2].map((i) => i === axis ? Math.sin(half(deg)) : 0).concat(Math.cos(half(deg)));
+        const orientation = product(product(about(2, -90), about(1, 20)), about(0, 10));
+        return attitudeOf({orientation, position: [1, 2, -3.5]}, 0.5);
+    }))");
+    EXPECT_NEAR(turned["heading"], 90, 1e-9);
+    EXPECT_NEAR(turned["pitch"], 20, 1e-9);
+    EXPECT_NEAR(turned["roll"], 10, 1e-9);
+    EXPECT_NEAR(turned["depth"], 4, 1e-12);
+}
+
+}  // namespace
+}  // namespace insonify::viewer
