@@ -1,5 +1,5 @@
 // One pixel: which triangle it shows, and with a normal map how steeply sound meets the mapped surface.
-// Range, slope and strength follow from the triangle's plane, exactly, in surface.glsl.
+// Range, slope and strength follow from the triangle's plane, exactly, in plane.glsl.
 
 flat in uvec2 seen;
 #ifdef HAVE_NORMAL_MAP

@@ -87,11 +87,4 @@ const Program& Programs::compute(std::string_view file, const std::vector<std::s
     return found != made_.end() ? found->second : made_.emplace(text, Program::compute(file, defines)).first->second;
 }
 
-bool Programs::compiledWith(const std::string& define) const {
-    return std::ranges::any_of(made_, [&](const auto& made) {
-        const auto has = [&](const std::string& words) { return made.first.find(words) != std::string::npos; };
-        return has("#define " + define + "\n") && (has("#ifdef " + define + "\n") || has("defined(" + define + ")"));
-    });
-}
-
 }  // namespace insonify::gpu

@@ -36,8 +36,6 @@ public:
     const Program& raster(std::string_view vertex, std::string_view fragment, const std::vector<std::string>& defines);
     const Program& compute(std::string_view file, const std::vector<std::string>& defines);
     size_t count() const { return made_.size(); }
-    /** Whether a program was made with `define`, and a shader of it has lines that depend on it. */
-    bool compiledWith(const std::string& define) const;
 
 private:
     std::map<std::string, Program, std::less<>> made_;  ///< By their final text.
