@@ -53,48 +53,7 @@ protected:
     /** All that can be set on the page now, but the choice of the task whose properties it shows. */
     const std::string fields =
         "[...document.querySelectorAll('input, select, textarea')].filter((one) => one.id !== 'task')";
-    void typeInto(const std::string& field);
-    void slideIn(const std::string& field);
 };
-
-void TypingTest::typeInto(const std::string& field) {
-    const json before = value(field + ".value");
-    browser->click(field);
-    EXPECT_TRUE(hasFocus(field));
-    browser->press("Control+a");
-    browser->type("aZ 1.5, {-}");
-    EXPECT_EQ(value(field + ".value"), "aZ 1.5, {-}");
-    browser->press("Backspace");
-    browser->press("ArrowLeft", 3);
-    browser->press("Delete");
-    browser->type("_");
-    EXPECT_EQ(value(field + ".value"), "aZ 1.5,_{-");
-    browser->press("Home");
-    browser->type("0");
-    nextStatuses();
-    EXPECT_EQ(value(field + ".value"), "0aZ 1.5,_{-") << "stays while it is being typed";
-    EXPECT_TRUE(hasFocus(field));
-    browser->press("Escape");
-    EXPECT_EQ(value(field + ".value"), before) << "Escape takes back what was typed";
-    EXPECT_TRUE(hasFocus(field));
-    browser->press("Tab");
-    EXPECT_FALSE(hasFocus(field));
-    nextStatuses();
-    EXPECT_EQ(value(field + ".value"), before);
-    EXPECT_EQ(value(refusalOf(field)), "");
-}
-
-void TypingTest::slideIn(const std::string& field) {
-    browser->click(field);
-    const std::string number = "Number(" + field + ".value)";
-    const double before = value(number), step = value("Number(" + field + ".step)");
-    browser->press("ArrowRight");
-    nextStatuses();
-    EXPECT_NEAR(value(number), before + step, 1e-9);
-    browser->press("Home");
-    nextStatuses();
-    EXPECT_EQ(value(number), value("Number(" + field + ".min)"));
-}
 
 TEST_F(TypingTest, ButtonsArePressedByKeys) {
     browser->click("document.getElementById('map')");
