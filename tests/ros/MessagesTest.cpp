@@ -79,7 +79,7 @@ TEST(MessagesTest, RosbagsComputesTheSameHashesAndReadsTheSameValues) {
     EXPECT_THAT(answer, testing::HasSubstr("RawSonarImage 1000.0 3 [-0.5, 0.25]\n"));
     EXPECT_THAT(answer, testing::HasSubstr("SonarRanges [1.875, 1.875] [0, 0] [100.0, 1000.0]\n"));
     EXPECT_THAT(answer, testing::HasSubstr("PointCloud2 2 16 ['x', 'y', 'z', 'intensity']\n"));
-    EXPECT_THAT(answer, testing::HasSubstr("LaserScan 0.5 -0.75 [1.875, 1.875]\n"));
+    EXPECT_THAT(answer, testing::HasSubstr("LaserScan -0.25 0.75 [1.875, 1.875]\n"));
     EXPECT_THAT(answer, testing::HasSubstr("Odometry world body [-2.0, 3.0, -5.0] [1.5, -0.5, -0.25] 2.0\n"));
 }
 
