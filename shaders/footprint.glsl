@@ -31,22 +31,3 @@ Footprint trapezoidFootprint(double inverse_range, double centre, double along, 
     cell.size = size;
     return cell;
 }
-
-// The share of pixel (u, v), bounded by curves of constant elevation and clipped at the aperture; shares are described
-// in interface.glsl. `slope`: of the inverse range over u and v; `per_pixel`: 1 / (du dv).
-Footprint cellFootprint(double u, double v, double middle, double width, double limit, double shear, double dv,
-                        double inverse_range, double slope_u, double slope_v, double nearest, double near_limit, double far_limit,
-                        double near_edge, double far_edge, double per_pixel) {
-    double aside = middle - u;
-    double lean = v * shear;
-    double at = v + lean * aside;
-    double low = max(at - 0.5 * dv, -limit);
-    double high = min(at + 0.5 * dv, limit);
-    double height = max(high - low, 0.0);
-    double centre_v = 0.5 * (low + high);
-    double along = abs(slope_u + slope_v * lean) * width;
-    double across = abs(slope_v) * height;
-    double q2 = 1.0 + middle * middle + centre_v * centre_v;
-    return trapezoidFootprint(inverse_range, inverse_range + slope_u * aside + slope_v * (centre_v - v), along, across, nearest,
-                              near_limit, far_limit, near_edge, far_edge, width * height / (q2 * sqrt(q2)) * per_pixel);
-}

@@ -15,8 +15,9 @@ namespace {
 
 using std::abs, std::exp, std::max, std::min, std::sqrt;
 #include "shaders/footprint.glsl"
+#include "shaders/picture.glsl"
+#include "shaders/plane.glsl"
 using real = double;
-#include "shaders/surface.glsl"
 #include "shaders/trapezoid.glsl"
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
@@ -68,7 +69,12 @@ struct Plane {
     double inverseRange(double x, double y, double z) const {
         return (n[0] * x + n[1] * y + n[2] * z) / (distance * sqrt(x * x + y * y + z * z));
     }
-    Surface at(double u, double v) const { return surfaceAt(n[0], n[1], n[2], distance, u, v); }
+    /** What a cell of an extent [rad] and a solid angle [1] covers about an azimuth and an elevation. */
+    PlaneFootprint seen(double azimuth, double elevation, double width, double height, double size,
+                        double far_edge = 0) const {
+        return planeFootprint(n[0], n[1], n[2], distance, std::cos(azimuth), std::sin(azimuth), std::cos(elevation),
+                              std::sin(elevation), width, height, 0, size, infinity, 0, 1e3, far_edge);
+    }
 };
 
 const Plane bottom(0, -std::numbers::pi / 2, 3), slope(0.4, -1.2, 3), wall(0.3, 0.2, 10);
@@ -79,16 +85,16 @@ constexpr int parts = 1000;  ///< Of a cell, each way.
 double part(double from, double to, int i) { return from + (to - from) * (i + 0.5) / parts; }
 
 /** A cell of the picture: the middle of its pixel, of which it is the columns [from, to], and the aperture's edge. */
-struct PictureCell {
+struct ShareOfPixel {
     double u, v, from, to, size, limit = infinity;
     bool upright = false;  ///< Not sheared: wrong.
 
     void deposit(const Plane& plane, Bins& bins) const {
-        const Surface s = plane.at(u, v);
-        bins.depositCell(cellFootprint(u, v, (from + to) / 2, to - from, limit, upright ? 0 : u / (1 + u * u), size,
-                                       s.inverse_range, s.slope_u, s.slope_v, s.nearest, infinity, 0, bins.binEdge(0),
-                                       bins.binEdge(Bins::bin_count), 1 / (size * size)),
-                         0, s.cosine * s.range);
+        const PictureCell cell =
+            pictureCell(u, v, (from + to) / 2, to - from, limit, upright ? 0 : u / (1 + u * u), size, 1 / (size * size));
+        const PlaneFootprint seen = plane.seen(std::atan(cell.u), std::atan(cell.v / std::hypot(1, cell.u)), cell.width,
+                                               cell.height, cell.size, bins.binEdge(Bins::bin_count));
+        bins.depositCell(seen.footprint, 0, seen.perpendicular);
     }
     /** Point by point between curves of constant elevation. */
     void cut(const Plane& plane, Bins& bins) const {
@@ -108,17 +114,9 @@ struct AngularCell {
     double a, e, da, de;
 
     void deposit(const Plane& plane, Bins& bins) const {
-        const auto& n = plane.n;
-        const double along = n[0] * std::cos(a) + n[1] * std::sin(a), aside = n[1] * std::cos(a) - n[0] * std::sin(a);
-        const double g = (std::cos(e) * along + std::sin(e) * n[2]) / plane.distance;
-        const double box_a = abs(std::cos(e) * aside / plane.distance) * da,
-                     box_e = abs((std::cos(e) * n[2] - std::sin(e) * along) / plane.distance) * de;
-        const double wide = max(box_a, box_e), narrow = max(min(box_a, box_e), 1e-12 * wide);
-        const double reach = (wide + narrow) / 2, nearest = 1 / plane.distance;
         const double size = (std::sin(e + de / 2) - std::sin(e - de / 2)) / de;
-        bins.depositCell({g, g, wide, narrow, 1 / wide, 0.5 / (wide * narrow), min(g + reach, nearest),
-                          max(g - reach, bins.binEdge(Bins::bin_count)), nearest, size},
-                         0, plane.distance);
+        const PlaneFootprint seen = plane.seen(a, e, da, de, size, bins.binEdge(Bins::bin_count));
+        bins.depositCell(seen.footprint, 0, seen.perpendicular);
     }
     void cut(const Plane& plane, Bins& bins) const {
         for (int i = 0; i < parts; ++i)
@@ -142,39 +140,49 @@ void expectFollows(const Cell& cell, const Plane& plane, double in_bins, double 
     EXPECT_NEAR(got.energy() / expected.energy(), 1, in_all);
 }
 
-TEST(FootprintTest, SlopesAreThoseOfTheInverseRangeOverThePicture) {
+TEST(FootprintTest, ACellIsAsDeepAsTheInverseRangeChangesOverIt) {
     constexpr double step = 1e-6;
     for (const Plane& plane : {bottom, slope, wall})
-        for (const auto& [u, v] : {std::pair{0.0, -0.15}, {0.5, -0.3}, {-0.4, -0.5}}) {
-            const Surface s = plane.at(u, v);
-            const auto inverse = [&](double x, double y) { return plane.inverseRange(1, x, y); };
-            EXPECT_NEAR(s.inverse_range, inverse(u, v), 1e-12);
-            EXPECT_NEAR(s.range * s.inverse_range, 1, 1e-12);
-            EXPECT_NEAR(s.cosine, plane.distance * inverse(u, v), 1e-12);
-            EXPECT_NEAR(s.nearest, 1 / plane.distance, 1e-12);
-            EXPECT_NEAR(s.slope_u, (inverse(u + step, v) - inverse(u - step, v)) / (2 * step), 1e-9);
-            EXPECT_NEAR(s.slope_v, (inverse(u, v + step) - inverse(u, v - step)) / (2 * step), 1e-9);
+        for (const auto& [azimuth, elevation] : {std::pair{0.0, -0.15}, {0.5, -0.3}, {-0.4, -0.5}}) {
+            const auto inverse = [&](double a, double e) {
+                return plane.inverseRange(std::cos(e) * std::cos(a), std::cos(e) * std::sin(a), std::sin(e));
+            };
+            const double width = 0.001, height = 0.002;
+            const PlaneFootprint seen = plane.seen(azimuth, elevation, width, height, 1);
+            EXPECT_NEAR(seen.footprint.pixel, inverse(azimuth, elevation), 1e-12);
+            EXPECT_NEAR(seen.perpendicular, plane.distance, 1e-12);
+            EXPECT_NEAR(seen.footprint.nearest, 1 / plane.distance, 1e-12);
+            const double across = abs(inverse(azimuth + step, elevation) - inverse(azimuth - step, elevation)) / (2 * step),
+                         along = abs(inverse(azimuth, elevation + step) - inverse(azimuth, elevation - step)) / (2 * step);
+            EXPECT_NEAR(seen.footprint.wide, max(across * width, along * height), 1e-11);
+            EXPECT_NEAR(seen.footprint.narrow, min(across * width, along * height), 1e-11);
         }
-    EXPECT_EQ(bottom.at(0, 0.1).inverse_range, 0) << "behind";
-    EXPECT_EQ(bottom.at(0, -0.99e-4).inverse_range, 0) << "edge-on";
+    EXPECT_EQ(bottom.seen(0, 0.1, 0.01, 0.01, 1).footprint.pixel, 0) << "behind";
+    EXPECT_EQ(bottom.seen(0, -0.99e-4, 0.01, 0.01, 1).footprint.pixel, 0) << "edge-on";
 }
 
 TEST(FootprintTest, ACellOfThePictureCoversTheBinsThatItsPointsDo) {
-    expectFollows(PictureCell{0.3, -0.12, 0.298, 0.302, 0.004}, bottom, 0.005, 5e-4);
-    expectFollows(PictureCell{0.3, -0.12, 0.298, 0.302, 0.004}, slope, 0.005, 5e-4);
-    expectFollows(PictureCell{0.3, -0.12, 0.301, 0.302, 0.004}, slope, 0.005, 5e-4);
-    expectFollows(PictureCell{0.5, 0.5, 0.48, 0.52, 0.04}, wall, 0.05, 3e-3);
-    PictureCell wide{0.3, -0.12, 0.25, 0.35, 0.004};
+    expectFollows(ShareOfPixel{0.3, -0.12, 0.298, 0.302, 0.004}, bottom, 0.005, 5e-4);
+    expectFollows(ShareOfPixel{0.3, -0.12, 0.298, 0.302, 0.004}, slope, 0.005, 5e-4);
+    expectFollows(ShareOfPixel{0.3, -0.12, 0.301, 0.302, 0.004}, slope, 0.005, 5e-4);
+    expectFollows(ShareOfPixel{0.5, 0.5, 0.48, 0.52, 0.04}, wall, 0.05, 3e-3);
+    ShareOfPixel wide{0.3, -0.12, 0.25, 0.35, 0.004};
     expectFollows(wide, bottom, 0.01, 2e-3);
-    wide.upright = true;
-    Bins got, expected;
-    wide.deposit(bottom, got);
-    wide.cut(bottom, expected);
-    EXPECT_GT(relativeL2(got, expected), 0.1) << "an upright cell covers others";
+    ShareOfPixel aside{0.3, -0.12, 0.325, 0.35, 0.004};
+    const auto off = [&] {
+        Bins got, expected;
+        aside.deposit(bottom, got);
+        aside.cut(bottom, expected);
+        return relativeL2(got, expected);
+    };
+    const double leaning = off();
+    EXPECT_LT(leaning, 0.1) << "its height is the pixel's; over both halves of the pixel that cancels";
+    aside.upright = true;
+    EXPECT_GT(off(), 3 * leaning) << "an upright cell covers others";
 }
 
 TEST(FootprintTest, ACellIsClippedAtTheAperture) {
-    PictureCell cell{0.3, -0.12, 0.298, 0.302, 0.004};
+    ShareOfPixel cell{0.3, -0.12, 0.298, 0.302, 0.004};
     Bins whole, clipped;
     cell.deposit(bottom, whole);
     cell.limit = 0.119;
