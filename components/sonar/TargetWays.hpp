@@ -11,7 +11,7 @@ namespace insonify::sonar {
 
 /** One way between the sonar and a point. */
 struct TargetWay {
-    static constexpr size_t max_mirrors = 2;
+    static constexpr size_t max_mirrors = MultipathConfig::max_bounces;
 
     double length = 0;        ///< [m]
     glm::dvec3 direction{0};  ///< From the sonar, unit, its axes [1].
