@@ -80,26 +80,39 @@ bool anyCluster(const Mesh& mesh, const MayMeet& mayMeet, const Use& use) {
     return false;
 }
 
-/** Calls `use(share, is_back)` for each triangle of a mesh in its place that the line from a point to `from + way`
- *  meets, at so much of the way [1], above 0 and below 1; ends when it says true, which is then returned. */
-template <class Use>
-bool anyTriangleMet(const Mesh& mesh, const glm::dmat4& world_from_object, const glm::dvec3& from,
-                    const glm::dvec3& way, const Use& use) {
-    const bool mirrored = glm::determinant(glm::dmat3(world_from_object)) < 0;
-    const auto mayMeet = [&](const glm::dvec3& centre, const glm::dvec3& half) {
-        const WorldBox box(world_from_object, centre, half);
-        return meetsBox(from, way, box.centre, box.half);
-    };
-    const auto corner = [&](size_t index) {
-        return glm::dvec3(world_from_object * glm::dvec4(mesh.positions[mesh.indices[index]], 1)) - from;
-    };
-    return anyCluster(mesh, mayMeet, [&](const Cluster& cluster) {
-        for (size_t i = cluster.first_index; i < cluster.first_index + cluster.index_count; i += 3) {
+/** The triangles of a mesh in its place, and the line from a point to `from + way`. */
+struct TrianglesOnLine {
+    const Mesh& mesh;
+    const glm::dmat4& world_from_object;
+    const glm::dvec3 &from, &way;
+    bool mirrored = glm::determinant(glm::dmat3(world_from_object)) < 0;
+
+    /** Calls `use(share, is_back)` for each triangle among `index_count` indices that the line meets. The share of the
+     *  way [1] is above 0 and below 1. Ends when `use` returns true, and returns that. */
+    template <class Use>
+    bool any(size_t first_index, size_t index_count, const Use& use) const {
+        for (size_t i = first_index; i < first_index + index_count; i += 3) {
             const auto met = meetTriangle(way, corner(i), corner(i + 1), corner(i + 2));
             if (met && met->share > 0 && met->share < 1 && use(met->share, met->is_back != mirrored)) return true;
         }
         return false;
-    });
+    }
+    glm::dvec3 corner(size_t index) const {
+        return glm::dvec3(world_from_object * glm::dvec4(mesh.positions[mesh.indices[index]], 1)) - from;
+    }
+};
+
+/** The same as TrianglesOnLine::any for all triangles of a mesh. Tests only clusters whose boxes the line meets. */
+template <class Use>
+bool anyTriangleMet(const Mesh& mesh, const glm::dmat4& world_from_object, const glm::dvec3& from,
+                    const glm::dvec3& way, const Use& use) {
+    const TrianglesOnLine line{mesh, world_from_object, from, way};
+    const auto mayMeet = [&](const glm::dvec3& centre, const glm::dvec3& half) {
+        const WorldBox box(world_from_object, centre, half);
+        return meetsBox(from, way, box.centre, box.half);
+    };
+    return anyCluster(mesh, mayMeet,
+                      [&](const Cluster& cluster) { return line.any(cluster.first_index, cluster.index_count, use); });
 }
 
 }  // namespace insonify::types

@@ -16,7 +16,7 @@ namespace {
 
 using std::numbers::pi;
 
-constexpr int max_bounces = 2;
+constexpr int max_bounces = MultipathConfig::max_bounces;
 constexpr int pattern_steps = 2048;
 constexpr double reaching_back = 1.1;  ///< Of the range, within which cells beyond it may reach back into it [1].
 constexpr double edge_on = 1e-4;       ///< Cosine below which a surface gives no echo [1].

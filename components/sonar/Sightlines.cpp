@@ -1,6 +1,7 @@
 #include "components/sonar/Sightlines.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 #include <glm/vector_relational.hpp>
@@ -15,9 +16,57 @@ namespace {
 constexpr glm::dvec3 ways_out[] = {
     {0.61, 0.57, 0.55}, {-0.53, 0.67, -0.52}, {0.49, -0.71, -0.51}, {-0.66, -0.44, 0.61}, {0.07, 0.11, -0.99}};
 
+constexpr size_t leaf_triangles = 4;  ///< Triangles below a leaf of a tree; they are neighbours in the mesh's indices.
+
+BoxTree treeOver(const types::Mesh& mesh) {
+    std::vector<Box> boxes((mesh.indices.size() / 3 + leaf_triangles - 1) / leaf_triangles);
+    for (size_t i = 0; i < mesh.indices.size(); ++i)
+        boxes[i / (3 * leaf_triangles)].add(mesh.positions[mesh.indices[i]]);
+    for (Box& box : boxes) {  // meetTriangle accepts a little beyond the edges
+        const glm::dvec3 slack = 1e-9 * (glm::max(glm::abs(box.low), glm::abs(box.high)) + box.half());
+        box.low -= slack, box.high += slack;
+    }
+    return BoxTree(boxes);
+}
+
+glm::dvec3 absoluteProduct(const glm::dmat3& matrix, const glm::dvec3& v) {
+    return glm::abs(matrix[0]) * v.x + glm::abs(matrix[1]) * v.y + glm::abs(matrix[2]) * v.z;
+}
+
+/** A line in the axes of an object, against boxes there. */
+class LineInObject {
+public:
+    LineInObject(const glm::dmat3& object_from_world, const glm::dvec3& origin, const glm::dvec3& from,
+                 const glm::dvec3& way)
+        : from_(object_from_world * (from - origin)),
+          inverse_(1.0 / (object_from_world * way)),
+          rounding_(1e-12 * absoluteProduct(object_from_world, glm::abs(from) + glm::abs(origin) + glm::abs(way))) {}
+
+    bool meets(const Box& box) const {
+        const glm::dvec3 a = (box.low - rounding_ - from_) * inverse_, b = (box.high + rounding_ - from_) * inverse_;
+        double enters = 0, leaves = 1;
+        for (int axis = 0; axis < 3; ++axis) {  // max and min pass over what is not a number
+            enters = std::max(enters, std::min(a[axis], b[axis]));
+            leaves = std::min(leaves, std::max(a[axis], b[axis]));
+        }
+        return enters <= leaves;
+    }
+
+private:
+    glm::dvec3 from_, inverse_, rounding_;
+};
+
+bool isFinite(const glm::dmat3& matrix) {
+    const glm::dvec3 sum = glm::abs(matrix[0]) + glm::abs(matrix[1]) + glm::abs(matrix[2]);
+    return std::isfinite(sum.x + sum.y + sum.z);
+}
+
 }  // namespace
 
-Sightlines::Sightlines(const types::Geometry& geometry) : geometry_(geometry), placed_(geometry.objects.size()) {
+Sightlines::Sightlines(const types::Geometry& geometry, Lines lines)
+    : geometry_(geometry), placed_(geometry.objects.size()) {
+    if (lines == Lines::Many)
+        for (const types::Mesh& mesh : geometry.meshes) trees_.push_back(treeOver(mesh));
     displaced_.reserve(placed_.size());
     for (size_t i = 0; i < placed_.size(); ++i) placeObject(i, geometry.objects[i].world_from_object);
 }
@@ -34,7 +83,9 @@ void Sightlines::placeObject(size_t object, const glm::dmat4& world_from_object)
         low = glm::min(low, box.centre - box.half);
         high = glm::max(high, box.centre + box.half);
     }
-    placed_[object] = {world_from_object, (low + high) / 2.0, (high - low) / 2.0};
+    placed_[object] = {world_from_object, (low + high) / 2.0, (high - low) / 2.0,
+                       glm::inverse(glm::dmat3(world_from_object)), false};
+    placed_[object].has_inverse = isFinite(placed_[object].object_from_world);
 }
 
 void Sightlines::place(const types::Snapshot& snapshot) {
@@ -50,10 +101,18 @@ void Sightlines::place(const types::Snapshot& snapshot) {
 template <class Use>
 bool Sightlines::anyMet(size_t object, const glm::dvec3& from, const glm::dvec3& end, const Use& use) const {
     const types::Mesh& mesh = meshOf(object);
-    const glm::dmat4& place = placed_[object].world_from_object;
-    if (mesh.clusters.empty() || !types::meetsBox(from, end, placed_[object].centre, placed_[object].half))
-        return false;
-    return types::anyTriangleMet(mesh, place, from, end, use);
+    const Placed& placed = placed_[object];
+    if (mesh.clusters.empty() || !types::meetsBox(from, end, placed.centre, placed.half)) return false;
+    if (trees_.empty() || !placed.has_inverse)
+        return types::anyTriangleMet(mesh, placed.world_from_object, from, end, use);
+    const LineInObject line(placed.object_from_world, glm::dvec3(placed.world_from_object[3]), from, end);
+    const types::TrianglesOnLine triangles{mesh, placed.world_from_object, from, end};
+    return trees_[static_cast<size_t>(geometry_.objects[object].mesh)].any(
+        [&](const Box& box) { return line.meets(box); },
+        [&](size_t item) {
+            const size_t first = 3 * leaf_triangles * item;
+            return triangles.any(first, std::min(3 * leaf_triangles, mesh.indices.size() - first), use);
+        });
 }
 
 bool Sightlines::isOpen(const glm::dvec3& from, const glm::dvec3& to) const {

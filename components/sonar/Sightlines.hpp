@@ -3,6 +3,7 @@
 #include <optional>
 #include <vector>
 
+#include "components/sonar/BoxTree.hpp"
 #include "types/Snapshot.hpp"
 
 namespace insonify::sonar {
@@ -14,8 +15,10 @@ class Sightlines {
 public:
     static constexpr double nearest = 1e-3;  ///< What is nearer to either end hides nothing [m].
 
-    /** `geometry` must outlive it. */
-    explicit Sightlines(const types::Geometry& geometry);
+    enum class Lines { Few, Many };
+
+    /** `geometry` must outlive it. For many lines a ping, meshes get trees of their triangles. */
+    explicit Sightlines(const types::Geometry& geometry, Lines lines = Lines::Few);
 
     /** Once a ping, before anything is asked of it. Allocates nothing. */
     void place(const types::Snapshot& snapshot);
@@ -31,6 +34,8 @@ private:
     struct Placed {
         glm::dmat4 world_from_object;
         glm::dvec3 centre, half;
+        glm::dmat3 object_from_world;  ///< Without the shift.
+        bool has_inverse;              ///< False where the object is flat.
     };
     void placeObject(size_t object, const glm::dmat4& world_from_object);
     const types::Mesh& meshOf(size_t object) const;
@@ -41,6 +46,7 @@ private:
 
     const types::Geometry& geometry_;
     std::vector<Placed> placed_;
+    std::vector<BoxTree> trees_;       ///< Of each mesh, over runs of its triangles; empty for few lines.
     std::vector<uint32_t> displaced_;  ///< Objects that are not where the geometry has them.
     glm::dvec3 sonar_{0};              ///< In the world [m].
 };

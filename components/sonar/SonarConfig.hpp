@@ -95,6 +95,8 @@ struct SurfaceMirrorConfig {
 
 /** Echoes that come by way of mirrors (ACOUSTICS.md 5.23). */
 struct MultipathConfig {
+    static constexpr int max_bounces = 2;
+
     std::optional<SurfaceMirrorConfig> surface;
     int bounces = 1;
 
@@ -106,7 +108,7 @@ struct MultipathConfig {
         visit(Field{"bounces", "1",
                     "reflections of one way, at most: 1 in the water surface and materials with `mirror: true`, 2 in "
                     "smooth materials as well; 0: none",
-                    0, 2},
+                    0, max_bounces},
               self.bounces);
     }
 };

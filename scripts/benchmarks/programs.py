@@ -1,4 +1,4 @@
-"""Programs of tests/bench: the framework's ports, the logger and pings that are under way together."""
+"""Programs of tests/bench: the framework's ports, the logger, pings that are under way together, and ways by mirrors."""
 import json
 import subprocess
 import tempfile
@@ -71,3 +71,17 @@ def show_pipeline(scenes):
         print(f"FLS 512 x 1000, {name}, gl, by {scene_found['device']}")
         for way, ms in scene_found["ms"].items():
             print(f"  {way:32}{ms:9.3f} ms{1000 / ms:9.1f} pings/s")
+
+
+def measure_ways(options):
+    """Results of ways_bench for at most 100 pings: processor time of the ways to 50 targets."""
+    done = subprocess.run([ROOT / "build/bin/ways_bench", str(min(options.pings, 100))], stdout=subprocess.PIPE)
+    if done.returncode != 0:
+        fail("ways_bench", done.returncode)
+    return json.loads(done.stdout)
+
+
+def show_ways(scenes):
+    for name, found in scenes.items():
+        print(f"ways to 50 targets, two bounces, {name:24}{found['median_ms']:9.3f} ms a ping, max {found['max_ms']:.3f}, "
+              f"{found['ways']:.1f} ways a target")

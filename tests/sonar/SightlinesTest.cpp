@@ -41,7 +41,7 @@ TEST(SightlinesTest, APointIsSeenWhereNoTriangleIsBeforeIt) {
     Random random(7);
     for (const types::GeometryPtr& geometry :
          {types::GeometryPtr(clusteredHarbour()), types::GeometryPtr(test::surfaces())}) {
-        Sightlines lines(*geometry);
+        Sightlines lines(*geometry), by_trees(*geometry, Sightlines::Lines::Many);
         types::Snapshot snapshot = test::snapshotOf(geometry);
         int open = 0;
         for (int ping = 0; ping < 20; ++ping) {
@@ -51,17 +51,28 @@ TEST(SightlinesTest, APointIsSeenWhereNoTriangleIsBeforeIt) {
                 snapshot.moved = {{1, glm::rotate(glm::translate(glm::dmat4(1), uniformVector(random, 6)), 0.4,
                                                   glm::dvec3(1, 2, 3))}};
             lines.place(snapshot);
+            by_trees.place(snapshot);
             const auto places = placesOf(snapshot);
             for (int i = 0; i < 25; ++i) {
                 const glm::dvec3 point = snapshot.sonar.position + uniformVector(random, 14);
                 const bool crossed = isCrossed(*geometry, places, snapshot.sonar.position, point);
                 EXPECT_EQ(lines.isOpen(point), !crossed) << ping << " " << i;
+                EXPECT_EQ(by_trees.isOpen(point), !crossed) << ping << " " << i;
                 open += crossed ? 0 : 1;
             }
         }
         EXPECT_GT(open, 50);
         EXPECT_LT(open, 450);
     }
+}
+
+TEST(SightlinesTest, AnObjectThatAScaleHasMadeFlatHidesByTreesToo) {
+    auto geometry = std::make_shared<types::Geometry>(*test::sceneOf({test::sphere(1, 20)}));
+    geometry->objects[0].world_from_object = glm::scale(glm::dmat4(1), {0.0, 1.0, 1.0});
+    Sightlines lines(*geometry, Sightlines::Lines::Many);
+    lines.place(test::snapshotOf(geometry, {-5, 0.1, 0.2}));
+    EXPECT_FALSE(lines.isOpen({5, 0.1, 0.2}));
+    EXPECT_TRUE(lines.isOpen({5, 2.5, 0.2}));
 }
 
 TEST(SightlinesTest, WhatIsWithinAMillimetreOfEitherEndHidesNothing) {
