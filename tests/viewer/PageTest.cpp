@@ -81,6 +81,8 @@ TEST_F(PageTest, WhatATaskHasRefusedStandsWhereItWasAskedForAndNotInTheTaskTable
 }
 
 TEST_F(PageTest, HoveringMovesNothing) {
+    running->deployment().pause(true);  // figures get wider as the vehicle goes on
+    ASSERT_TRUE(becomes("insonify.status().paused"));
     const std::string places =
         "JSON.stringify([...document.querySelectorAll('header, main, section, .bar, .picture, nav > *')].map((one) => "
         "one.getBoundingClientRect()))";

@@ -50,10 +50,142 @@ protected:
     }
     bool hasFocus(const std::string& field) { return value("document.activeElement === " + field); }
 
+    bool isRefused(const std::string& field) {
+        return value("!!" + field + ".parentElement.querySelector('.refused')?.textContent");
+    }
+
     /** All that can be set on the page now, but the choice of the task whose properties it shows. */
     const std::string fields =
         "[...document.querySelectorAll('input, select, textarea')].filter((one) => one.id !== 'task')";
+    void typeInto(const std::string& field);
+    void toggle(const std::string& field);
+    void chooseIn(const std::string& field);
+    void slideIn(const std::string& field);
 };
+
+void TypingTest::typeInto(const std::string& field) {
+    const json before = value(field + ".value");
+    browser->click(field);
+    EXPECT_TRUE(hasFocus(field));
+    browser->press("Control+a");
+    browser->type("aZ 1.5, {-}");
+    EXPECT_EQ(value(field + ".value"), "aZ 1.5, {-}");
+    browser->press("Backspace");
+    browser->press("ArrowLeft", 3);
+    browser->press("Delete");
+    browser->type("_");
+    EXPECT_EQ(value(field + ".value"), "aZ 1.5,_{-");
+    browser->press("Home");
+    browser->type("0");
+    nextStatuses();
+    EXPECT_EQ(value(field + ".value"), "0aZ 1.5,_{-") << "stays while it is being typed";
+    EXPECT_TRUE(hasFocus(field));
+    browser->press("Escape");
+    EXPECT_EQ(value(field + ".value"), before) << "Escape takes back what was typed";
+    EXPECT_TRUE(hasFocus(field));
+    browser->press("Tab");
+    EXPECT_FALSE(hasFocus(field));
+    nextStatuses();
+    EXPECT_EQ(value(field + ".value"), before);
+    EXPECT_EQ(value(refusalOf(field)), "");
+}
+
+void TypingTest::toggle(const std::string& field) {
+    const bool before = value(field + ".checked");
+    const auto settles = [&](bool wanted, const char* how) {
+        nextStatuses();
+        const bool is_refused = isRefused(field);
+        EXPECT_EQ(value(field + ".checked"), is_refused ? !wanted : wanted) << how;
+        return !is_refused;
+    };
+    browser->click(field);
+    if (!settles(!before, "by a click")) return;
+    browser->press("Space");
+    settles(before, "by Space");
+}
+
+void TypingTest::chooseIn(const std::string& field) {
+    const int before = value(field + ".selectedIndex"), count = value(field + ".options.length");
+    browser->click(field);
+    browser->press("Escape");  // closes its list
+    EXPECT_TRUE(hasFocus(field));
+    if (count < 2) return;
+    browser->press(before + 1 < count ? "ArrowDown" : "ArrowUp");
+    nextStatuses();
+    const int other = before + 1 < count ? before + 1 : before - 1;
+    EXPECT_EQ(value(field + ".selectedIndex"), isRefused(field) ? before : other);
+    EXPECT_TRUE(hasFocus(field));
+    browser->press(before + 1 < count ? "ArrowUp" : "ArrowDown");
+    nextStatuses();
+    EXPECT_EQ(value(field + ".selectedIndex"), before);
+}
+
+void TypingTest::slideIn(const std::string& field) {
+    browser->click(field);
+    const std::string number = "Number(" + field + ".value)";
+    const double before = value(number), step = value("Number(" + field + ".step)");
+    browser->press("ArrowRight");
+    nextStatuses();
+    EXPECT_NEAR(value(number), before + step, 1e-9);
+    browser->press("Home");
+    nextStatuses();
+    EXPECT_EQ(value(number), value("Number(" + field + ".min)"));
+}
+
+TEST_F(TypingTest, EveryFieldOfThePageTakesKeys) {
+    for (const std::string task : {"source", "world", "viewer", "form"}) {
+        choose("task", task);
+        const json kinds = value(fields + ".map((one) => one.tagName === 'SELECT' ? 'select' : one.type)");
+        ASSERT_GT(kinds.size(), 9u) << kinds;
+        for (size_t i = 0; i < kinds.size(); ++i) {
+            if (task != "form" && !value(fields + "[" + std::to_string(i) + "].closest('#properties') !== null"))
+                continue;
+            const std::string field = fields + "[" + std::to_string(i) + "]";
+            SCOPED_TRACE(task + ": " + value(field + ".closest('tr, label, div, header').textContent").dump());
+            if (kinds[i] == "text")
+                typeInto(field);
+            else if (kinds[i] == "checkbox")
+                toggle(field);
+            else if (kinds[i] == "select")
+                chooseIn(field);
+            else if (kinds[i] == "range")
+                slideIn(field);
+            else
+                ADD_FAILURE() << "a kind of field that no test uses: " << kinds[i];
+            EXPECT_EQ(value(fields + ".length"), kinds.size()) << "none has gone";
+        }
+    }
+}
+
+TEST_F(TypingTest, TabGoesToEveryControlAndShowsWhereItIs) {
+    const std::string all =
+        "[...document.querySelectorAll('button:enabled, input:enabled, select:enabled')].filter((one) => "
+        "one.getBoundingClientRect().width)";
+    const int count = value(all + ".length");
+    ASSERT_GT(count, 25);
+    const auto look = [&](int i) {
+        const json seen =
+            value("(() => { const one = " + all + "[" + std::to_string(i) + R"(], box = one.getBoundingClientRect();
+            const style = getComputedStyle(one), at = document.elementFromPoint((box.left + box.right) / 2, (box.top + box.bottom) / 2);
+            return {name: one.outerHTML.slice(0, 80), focus: document.activeElement === one, ring: style.outlineStyle !== 'none' && parseFloat(style.outlineWidth) >= 2,
+                    seen: one.contains(at)}; })())");
+        EXPECT_TRUE(seen["focus"] && seen["ring"] && seen["seen"]) << i << " of " << count << ": " << seen;
+    };
+    value("document.activeElement.blur()");
+    browser->click("document.querySelector('header b')");
+    const auto go = [&](const std::string& key) {  // parts that scroll have the focus in between
+        do browser->press(key);
+        while (!value("document.activeElement.matches('button, input, select, body')"));
+    };
+    for (int i = 0; i < count; ++i) {
+        go("Tab");
+        look(i);
+    }
+    for (int i = count - 2; i >= 0; --i) {
+        go("Shift+Tab");
+        look(i);
+    }
+}
 
 TEST_F(TypingTest, ButtonsArePressedByKeys) {
     browser->click("document.getElementById('map')");
@@ -79,6 +211,7 @@ TEST_F(TypingTest, WhatIsTypedReachesTheTask) {
                             {"gain_db", "-1e1", -10.0, "-10"},
                             {"gain_db", "", nullptr, ""},
                             {"count", "17", 17, "17"},
+                            {"count", "", 3, "3"},
                             {"seed", "123456789012", 123456789012, "123456789012"},
                             {"title", "a: b #c \"d\" [", "a: b #c \"d\" [", "a: b #c \"d\" ["},
                             {"title", "007", "007", "007"},
@@ -121,6 +254,115 @@ TEST_F(TypingTest, WhatIsTypedIsSetWhenTheFieldIsLeft) {
     clickAt(6.75, 0);
     EXPECT_TRUE(holds("range", 100.0)) << "by a click on the picture";
     EXPECT_TRUE(becomes(fieldOf("range") + ".value === '100'")) << "the table shows the same";
+}
+
+TEST_F(TypingTest, WhatIsRefusedIsRedAndTheFieldShowsWhatHolds) {
+    struct Case {
+        const char *property, *typed, *message;
+    };
+    for (const Case& one : {Case{"range", "1000", "range: is 1000 m; may be 1 to 100 m"},
+                            {"range", "abc", "range: is abc; must be a finite number"},
+                            {"range", "30 m", "range: is 30 m; write 30"},
+                            {"gain_db", "x", "gain_db: is x; must be a finite number"},
+                            {"frequency_khz", "0", "frequency_khz: is 0 kHz; may be 1 to 3000 kHz"},
+                            {"count", "1.5", "count: is "},
+                            {"seed", "-1", "seed: is -1"},
+                            {"maybe", "oval", "maybe: is oval; may be round, square, flat"},
+                            {"place", "[1, 2]", "place"},
+                            {"weights", "1, 2", "weights"},
+                            {"quality", "{rows: 5, budget_ms: 5}", "stands beside budget_ms"},
+                            {"quality", "{row: 5}", "row"},
+                            {"spare", "{rows: [", "spare"}}) {
+        const std::string field = fieldOf(one.property), message = refusalOf(field);
+        SCOPED_TRACE(std::string(one.property) + ": " + one.typed);
+        const json before = value(field + ".value"), held_before = held(one.property);
+        enter(field, one.typed);
+        if (!becomes(message + " !== ''")) continue;
+        EXPECT_THAT(value(message).get<std::string>(), HasSubstr(one.message));
+        EXPECT_EQ(value("getComputedStyle(" + field + ".parentElement.querySelector('.refused')).color"), red);
+        EXPECT_EQ(value(field + ".value"), before) << "as it was";
+        EXPECT_EQ(held(one.property), held_before);
+        EXPECT_TRUE(hasFocus(field));
+        nextStatuses();
+        EXPECT_NE(value(message), "") << "stays until the field is set again";
+        browser->press("Escape");
+        EXPECT_EQ(value(message), "");
+    }
+    // Typing again after a refusal replaces what the field shows.
+    enter(fieldOf("range"), "1000");
+    ASSERT_TRUE(becomes(refusalOf(fieldOf("range")) + " !== ''"));
+    browser->type("20");
+    browser->press("Enter");
+    EXPECT_TRUE(holds("range", 20.0)) << held("range");
+    EXPECT_TRUE(becomes(refusalOf(fieldOf("range")) + " === ''"));
+
+    browser->click(fieldOf("enabled"));
+    EXPECT_TRUE(becomes(refusalOf(fieldOf("enabled")) + ".includes('not without it today')"));
+    EXPECT_EQ(value(fieldOf("enabled") + ".checked"), true) << "a checkbox as well";
+    browser->click(fieldOf("shape"));
+    browser->type("flat");
+    browser->press("Enter");
+    EXPECT_TRUE(becomes(refusalOf(fieldOf("shape")) + ".includes('flat is for later')"));
+    EXPECT_EQ(value(fieldOf("shape") + ".value"), "round") << "and a list";
+}
+
+TEST_F(TypingTest, AFieldThatIsNotBeingTypedInShowsWhatOthersSet) {
+    browser->click(fieldOf("range"));
+    running->deployment().call("form.setRange", {"33"});
+    EXPECT_TRUE(becomes(fieldOf("range") + ".value === '33'"));
+    browser->press("Control+a");
+    browser->type("44");
+    running->deployment().call("form.setRange", {"55"});
+    ASSERT_TRUE(becomes("document.querySelector('#first input').value === '55'"));
+    EXPECT_EQ(value(fieldOf("range") + ".value"), "44");
+    browser->press("Control+a");
+    browser->type("33");
+    browser->press("Tab");
+    EXPECT_TRUE(becomes(fieldOf("range") + ".value === insonify.status().tasks.at(-1).properties.range.toString()"));
+}
+
+TEST_F(TypingTest, ABrokenConnectionLeavesWhatIsBeingTyped) {
+    const uint16_t port = quietPort();
+    openForm({}, "", port);
+    browser->click(fieldOf("title"));
+    browser->press("Control+a");
+    browser->type("half");
+    running.reset();
+    ASSERT_TRUE(becomes("document.getElementById('link').textContent === 'no connection'"));
+    running.emplace(port, additions());
+    ASSERT_TRUE(becomes("document.getElementById('link').textContent === 'connected'"));
+    nextStatuses();
+    browser->type(" done");
+    browser->press("Enter");
+    EXPECT_TRUE(holds("title", "half done")) << held("title");
+}
+
+TEST_F(TypingTest, TheToolbarOfThePictureIsOneLineOfEachKindFrom1280Pixels) {
+    for (const int width : {1280, 1920}) {
+        browser->size(width, 800);
+        nextFrame();
+        EXPECT_EQ(value("[...document.querySelectorAll('#sonar nav')].map((one) => one.offsetHeight < 32)"),
+                  json({true, true}))
+            << width;
+    }
+}
+
+TEST_F(TypingTest, AViewerWithoutControlShowsAndSetsNothing) {
+    openForm({"viewer.control=false"});
+    EXPECT_EQ(value("document.querySelectorAll('#properties input:enabled, #properties select:enabled, #first "
+                    "input:enabled, .timeline input:enabled, #controls button').length"),
+              0);
+    browser->click(fieldOf("range"));
+    browser->type("9");
+    browser->press("Enter");
+    nextStatuses();
+    EXPECT_EQ(value(fieldOf("range") + ".value"), "1");
+}
+
+TEST_F(TypingTest, APageWithATokenIsUsedLikeOneWithout) {
+    openForm({"viewer.token='p&ss w#rd'"}, "?token=p%26ss%20w%23rd");
+    enter(fieldOf("range"), "12");
+    EXPECT_TRUE(holds("range", 12.0));
 }
 
 }  // namespace
