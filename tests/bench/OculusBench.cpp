@@ -17,6 +17,7 @@
 #include "components/scene/SceneTask.hpp"
 #include "components/sonar/ScanningSonarTask.hpp"
 #include "tests/support/OculusDriver.hpp"
+#include "tests/support/Paths.hpp"
 
 namespace insonify {
 namespace {
@@ -58,7 +59,7 @@ void count(uint16_t port, double seconds) {
 }
 
 void bench(double seconds) {
-    auto spec = framework::DeploymentSpec::load(INSONIFY_SOURCE_DIR "/deploy/hil_oculus.yml");
+    auto spec = framework::DeploymentSpec::load(test::sourceFile("deploy/hil_oculus.yml"));
     spec.set("device.port=0");
     framework::Registry tasks = registry();
     framework::Deployment deployment(spec, tasks);

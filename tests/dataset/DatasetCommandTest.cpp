@@ -5,6 +5,7 @@
 #include <set>
 
 #include "tests/deployer/Command.hpp"
+#include "tests/support/Paths.hpp"
 #include "tests/support/Python.hpp"
 
 using namespace insonify::deployer;
@@ -15,7 +16,7 @@ using testing::IsEmpty;
 
 namespace {
 
-const fs::path root = INSONIFY_SOURCE_DIR;
+const fs::path root = insonify::test::source_dir;
 
 const std::string deployment = R"(schedule: lockstep
 tasks:

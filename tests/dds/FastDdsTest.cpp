@@ -8,6 +8,7 @@
 #include "components/ros/GeometryMessages.hpp"
 #include "components/ros/Stamps.hpp"
 #include "tests/dds/Ends.hpp"
+#include "tests/support/Paths.hpp"
 
 using namespace insonify;
 using namespace insonify::dds;
@@ -15,7 +16,7 @@ using nlohmann::json;
 
 namespace {
 
-const std::string program = INSONIFY_BIN_DIR "/dds_fast_peer";
+const std::string program = test::program("dds_fast_peer");
 
 class FastDdsTest : public Loopback {
 protected:

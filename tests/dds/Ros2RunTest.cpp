@@ -5,6 +5,7 @@
 #include "components/ros/Cdr.hpp"
 #include "components/ros/SonarMessages.hpp"
 #include "tests/dds/Loopback.hpp"
+#include "tests/support/Paths.hpp"
 
 using namespace insonify;
 using namespace insonify::dds;
@@ -16,8 +17,8 @@ namespace {
 class Ros2RunTest : public Loopback {
 protected:
     TestFolder folder;
-    const std::string fls = INSONIFY_SOURCE_DIR "/deploy/ros2_fls.yml";
-    const std::string tf = INSONIFY_SOURCE_DIR "/deploy/ros2_tf.yml";
+    const std::string fls = test::sourceFile("deploy/ros2_fls.yml");
+    const std::string tf = test::sourceFile("deploy/ros2_tf.yml");
 
     Outcome check(const std::string& yaml) {
         writeFile(folder / "x.yml", yaml);
@@ -31,8 +32,9 @@ const std::string patience = "scene.pose_timeout=60";
 /** A vehicle that tells where it is, twenty times a second. */
 const std::string vehicle =
     "schedule: realtime\ntasks:\n"
-    "  vehicle: {type: pose::TrajectoryTask, activity: {period: 0.05}, properties: {file: " INSONIFY_SOURCE_DIR
-    "/deploy/scenes/harbour_pass.csv}}\n"
+    "  vehicle: {type: pose::TrajectoryTask, activity: {period: 0.05}, properties: {file: " +
+    test::sourceFile("deploy/scenes/harbour_pass.csv") +
+    "}}\n"
     "  ros: {type: dds::PublisherTask, properties: {topics: [{port: pose, topic: /auv/odometry, type: "
     "nav_msgs/Odometry}]}}\n"
     "connections:\n  - {from: vehicle.pose, to: ros.pose, policy: {type: buffer, size: 8}}\n";
@@ -128,8 +130,8 @@ TEST_F(Ros2RunTest, DiagnosticsAreToldWithTheirPlace) {
 }
 
 TEST_F(Ros2RunTest, LockstepDoesNotReadPoses) {
-    const Outcome outcome = check(
-        replaced(replaced(readFile(fls), "realtime", "lockstep"), "scenes/", INSONIFY_SOURCE_DIR "/deploy/scenes/"));
+    const Outcome outcome =
+        check(replaced(replaced(readFile(fls), "realtime", "lockstep"), "scenes/", test::sourceFile("deploy/scenes/")));
     EXPECT_EQ(outcome.code, 2);
     EXPECT_THAT(outcome.err, HasSubstr("tasks.poses.properties: messages come on the wall clock's time"));
 }

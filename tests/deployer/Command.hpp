@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "tests/support/Folder.hpp"
+#include "tests/support/Paths.hpp"
 #include "tests/support/Waiting.hpp"
 
 namespace insonify::deployer {
@@ -69,7 +70,7 @@ private:
 };
 
 inline std::vector<std::string> insonifyWords(std::vector<std::string> arguments) {
-    arguments.insert(arguments.begin(), std::string(INSONIFY_BIN_DIR) + "/insonify");
+    arguments.insert(arguments.begin(), test::program("insonify"));
     return arguments;
 }
 

@@ -1,6 +1,7 @@
 #include <gmock/gmock.h>
 
 #include "tests/deployer/Wall.hpp"
+#include "tests/support/Paths.hpp"
 
 using namespace insonify::deployer;
 using testing::HasSubstr;
@@ -52,6 +53,6 @@ TEST(CommandLineTest, HelpNamesEveryCommand) {
 
 TEST(CommandLineTest, ResultsThatCannotBeWrittenAreAFailure) {
     const TestFolder folder;
-    const std::string command = std::string(INSONIFY_BIN_DIR) + "/insonify describe > /dev/full";
+    const std::string command = insonify::test::program("insonify") + " describe > /dev/full";
     EXPECT_EQ(Process({"sh", "-c", command}, folder.path()).wait().code, 1);
 }

@@ -1,6 +1,7 @@
 #include <gmock/gmock.h>
 
 #include "tests/deployer/Command.hpp"
+#include "tests/support/Paths.hpp"
 
 using namespace insonify::deployer;
 using testing::AllOf;
@@ -11,9 +12,9 @@ namespace {
 
 /** What bash offers after these words, the last of which is begun. */
 std::string offered(const TestFolder& folder, const std::string& words, int index) {
-    const std::string command =
-        "source <(" + std::string(INSONIFY_BIN_DIR) + "/insonify completion bash); COMP_WORDS=(" + words +
-        "); COMP_CWORD=" + std::to_string(index) + "; _insonify; printf '%s\\n' \"${COMPREPLY[@]}\"";
+    const std::string command = "source <(" + insonify::test::program("insonify") + " completion bash); COMP_WORDS=(" +
+                                words + "); COMP_CWORD=" + std::to_string(index) +
+                                "; _insonify; printf '%s\\n' \"${COMPREPLY[@]}\"";
     const Outcome outcome = Process({"bash", "-c", command}, folder.path()).wait();
     EXPECT_EQ(outcome.code, 0) << outcome.err;
     EXPECT_EQ(outcome.err, "");

@@ -4,12 +4,13 @@
 #include <gmock/gmock.h>
 
 #include "tests/deployer/Command.hpp"
+#include "tests/support/Paths.hpp"
 
 using namespace insonify::deployer;
 
 namespace {
 
-const fs::path deploy = fs::path(INSONIFY_SOURCE_DIR) / "deploy";
+const fs::path deploy = fs::path(insonify::test::source_dir) / "deploy";
 
 std::vector<std::string> deployments() {
     std::vector<std::string> names;

@@ -1,6 +1,7 @@
 #include <gmock/gmock.h>
 
 #include "tests/deployer/Command.hpp"
+#include "tests/support/Paths.hpp"
 
 using namespace insonify::deployer;
 using testing::AllOf;
@@ -26,8 +27,8 @@ TEST(DeviceCommandTest, AProbeTellsTheDeviceThatAnswers) {
         folder / "x.yml",
         "schedule: realtime\ntasks:\n  ping360: {type: device::Ping360Task, properties: {port: 0, serial: line}}\n"
         "  sonar: {type: sonar::ScanningSonarTask}\n  scene: {type: scene::SceneTask, properties: {file: " +
-            std::string(INSONIFY_SOURCE_DIR) +
-            "/deploy/scenes/wall.glb, pose_timeout: 600}}\n"
+            insonify::test::sourceFile("deploy/scenes/wall.glb") +
+            ", pose_timeout: 600}}\n"
             "  vehicle: {type: pose::TrajectoryTask, activity: {period: 0.1}, properties: {waypoints: [{time: 0, "
             "position: [0, 0, 0]}]}}\n"
             "  receiver: {type: receiver::ReceiverTask, properties: {output: code, code: {bits: 16}}}\n"

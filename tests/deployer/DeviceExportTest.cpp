@@ -3,6 +3,7 @@
 
 #include "components/log/Reader.hpp"
 #include "tests/deployer/Wall.hpp"
+#include "tests/support/Paths.hpp"
 #include "tests/support/Python.hpp"
 
 using namespace insonify::deployer;
@@ -57,8 +58,8 @@ protected:
         return callInsonify(folder_, words);
     }
     json readXtf(const std::string& name) const {
-        return json::parse(pythonSays(INSONIFY_SOURCE_DIR "/tests/output/read_xtf.py " + (folder_ / name).string(),
-                                      folder_ / "answer"));
+        return json::parse(
+            pythonSays(test::sourceFile("tests/output/read_xtf.py ") + (folder_ / name).string(), folder_ / "answer"));
     }
     void expectRefused(const std::string& stream, const std::string& to, std::vector<std::string> more,
                        const std::string& why, const std::string& log = "out/lines.0.log") const {

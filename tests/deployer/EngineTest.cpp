@@ -6,16 +6,16 @@
 #include <map>
 
 #include "tests/deployer/Wall.hpp"
+#include "tests/support/Paths.hpp"
 #include "tests/support/Python.hpp"
 
 using namespace insonify::deployer;
+using insonify::test::sourceFile;
 using testing::HasSubstr;
 
 namespace {
 
 constexpr int shard_count = 6;
-
-std::string sourceFile(const std::string& name) { return std::string(INSONIFY_SOURCE_DIR) + "/" + name; }
 
 class EngineTest : public testing::Test {
 protected:
@@ -87,7 +87,7 @@ protected:
     }
     /** Runs the command, but who gets shard 2 first stops in the middle of it for ever and tells who it is. */
     fs::path stallingProgram() const {
-        const std::string insonify = INSONIFY_BIN_DIR "/insonify", first = folder_ / "first",
+        const std::string insonify = insonify::test::program("insonify"), first = folder_ / "first",
                           shards = folder_ / "shards";
         writeFile(folder_ / "insonify",
                   "#!/bin/sh\n"
@@ -148,7 +148,7 @@ TEST_P(WorkersTest, OneOfTwoWorkersDiesInTheMiddleAndNothingIsLostOrDoubled) {
 
 TEST_P(WorkersTest, AShardThatFailsIsToldAndFailsTheWhole) {
     fs::remove(folder_ / "wall.gltf");
-    const Outcome outcome = Process(byWorkers(INSONIFY_BIN_DIR "/insonify", 1), folder_.path()).wait();
+    const Outcome outcome = Process(byWorkers(insonify::test::program("insonify"), 1), folder_.path()).wait();
     EXPECT_EQ(outcome.code, 1) << outcome.err;
     EXPECT_EQ(linesOf(outcome.out, ": exit code 2: "), size_t{shard_count}) << outcome.out;
     EXPECT_THAT(outcome.out, HasSubstr("wall.gltf"));
@@ -162,7 +162,7 @@ TEST_P(WorkersTest, ADataSetIsThatOfOneMachine) {
     };
     ASSERT_EQ(callInsonify(folder_, dataSet("one")).code, 0);
     const Outcome outcome =
-        Process(byWorkers(INSONIFY_BIN_DIR "/insonify", 2, dataSet("shards")), folder_.path()).wait();
+        Process(byWorkers(insonify::test::program("insonify"), 2, dataSet("shards")), folder_.path()).wait();
     EXPECT_EQ(outcome.code, 0) << outcome.out << outcome.err;
     std::map<std::string, std::string> one, shards;
     for (const auto& file : fs::directory_iterator(folder_ / "one"))
@@ -181,7 +181,7 @@ TEST_F(EngineTest, AnArrayOfSlurmMakesAllShards) {
     const std::string script = sourceFile("deploy/slurm/shards.sbatch");
     const auto job = [&](const std::string& index, const std::string& first) {
         std::vector<std::string> words = {"env",
-                                          "INSONIFY=" INSONIFY_BIN_DIR "/insonify",
+                                          "INSONIFY=" + insonify::test::program("insonify"),
                                           "SLURM_ARRAY_TASK_ID=" + index,
                                           "SLURM_ARRAY_TASK_MIN=" + first,
                                           "SLURM_ARRAY_TASK_MAX=5",

@@ -5,6 +5,7 @@
 #include "components/device/OculusRecording.hpp"
 #include "components/log/Reader.hpp"
 #include "tests/deployer/Wall.hpp"
+#include "tests/support/Paths.hpp"
 
 using namespace insonify::deployer;
 using namespace insonify;
@@ -87,9 +88,9 @@ TEST_F(ImportCommandTest, TheLogHasThePingsTimesAndThePosesOfTheTrajectory) {
 }
 
 TEST_F(ImportCommandTest, RealPingsAreLoggedReplayedAndScored) {
-    const fs::path recording = INSONIFY_SHARED_DATA "/sonar/oculus/three_pings_8bit.raw";
+    const fs::path recording = test::sharedFile("sonar/oculus/three_pings_8bit.raw");
     if (!fs::exists(recording)) GTEST_SKIP() << recording << " is not there: no recording of a device is tested";
-    const std::string deployment = INSONIFY_SOURCE_DIR "/deploy/hil_oculus.yml";
+    const std::string deployment = test::sourceFile("deploy/hil_oculus.yml");
     const Outcome outcome = import(recording, deployment);
     ASSERT_EQ(outcome.code, 0) << outcome.err;
     EXPECT_THAT(outcome.err, HasSubstr("as recorded: sonar.frequency_khz=2098.88"));

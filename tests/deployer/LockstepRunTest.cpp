@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "tests/deployer/Wall.hpp"
+#include "tests/support/Paths.hpp"
 
 using namespace insonify::deployer;
 
@@ -11,7 +12,7 @@ namespace {
 class DeployFolder : public TestFolder {
 public:
     DeployFolder(const std::string& name, const std::string& what, const std::string& with) {
-        const fs::path deploy = fs::path(INSONIFY_SOURCE_DIR) / "deploy";
+        const fs::path deploy = fs::path(insonify::test::source_dir) / "deploy";
         fs::create_symlink(deploy / "scenes", *this / "scenes");
         writeFile(*this / "x.yml", replaced(readFile(deploy / name), what, with));
     }

@@ -6,6 +6,7 @@
 #include "components/output/FanShape.hpp"
 #include "tests/deployer/Command.hpp"
 #include "tests/output/Room.hpp"
+#include "tests/support/Paths.hpp"
 
 using namespace insonify;
 using namespace insonify::deployer;
@@ -19,7 +20,7 @@ class MosaicRunTest : public testing::Test {
 protected:
     static void SetUpTestSuite() {
         const deployer::TestFolder folder;
-        const fs::path deployment = fs::path(INSONIFY_SOURCE_DIR) / "deploy/tank_mosaic.yml";
+        const fs::path deployment = fs::path(test::source_dir) / "deploy/tank_mosaic.yml";
         const Outcome outcome =
             callInsonify(folder, {"run", deployment, "--out", "out", "--set", "mosaic.every=400", "--set",
                                   "mosaic.colour_map=gray", "--set", "mosaic.width=" + std::to_string(2 * half_width)});
@@ -83,7 +84,7 @@ TEST_F(MosaicRunTest, NoPingIsLaidAtAPoseThatIsNotBetweenTwo) {
 
 TEST_F(MosaicRunTest, APoseThatHadToBeHeldIsToldWhenTheRunIsOver) {
     const deployer::TestFolder folder;
-    const fs::path deployment = fs::path(INSONIFY_SOURCE_DIR) / "deploy/tank_mosaic.yml";
+    const fs::path deployment = fs::path(test::source_dir) / "deploy/tank_mosaic.yml";
     const Outcome outcome = callInsonify(folder, {"run", deployment, "--out", "out", "--pings", "2"});
     ASSERT_EQ(outcome.code, 0) << outcome.err;
     EXPECT_NE(

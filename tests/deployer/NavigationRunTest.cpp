@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "tests/deployer/Command.hpp"
+#include "tests/support/Paths.hpp"
 #include "tests/support/Python.hpp"
 
 using namespace insonify;
@@ -12,7 +13,7 @@ using namespace insonify::deployer;
 
 namespace {
 
-const std::string deployment = INSONIFY_SOURCE_DIR "/deploy/navigation.yml";
+const std::string deployment = test::sourceFile("deploy/navigation.yml");
 
 class NavigationRunTest : public testing::Test {
 protected:
@@ -30,7 +31,7 @@ protected:
     /** What the reader says of a bag. */
     json read(const std::string& out) const {
         const std::string answer = pythonSays(
-            INSONIFY_SOURCE_DIR "/tests/deployer/read_navigation.py " + (folder_ / out).string(), folder_ / "answer");
+            test::sourceFile("tests/deployer/read_navigation.py ") + (folder_ / out).string(), folder_ / "answer");
         const json told = json::parse(answer, nullptr, false);
         EXPECT_FALSE(told.is_discarded()) << answer;
         return told;

@@ -5,6 +5,7 @@
 
 #include "tests/deployer/Command.hpp"
 #include "tests/support/OculusDriver.hpp"
+#include "tests/support/Paths.hpp"
 
 using namespace insonify;
 using namespace insonify::deployer;
@@ -38,7 +39,7 @@ protected:
     const TestFolder folder_;
     const test::OculusListener listener_;
     const Process run_{
-        insonifyWords({"run", INSONIFY_SOURCE_DIR "/deploy/hil_oculus.yml", "--out", "out", "--set", "device.port=0",
+        insonifyWords({"run", test::sourceFile("deploy/hil_oculus.yml"), "--out", "out", "--set", "device.port=0",
                        "--set", "device.status_port=" + std::to_string(listener_.port()), "--set",
                        "scene.pose_timeout=60"}),
         folder_.path()};
@@ -79,7 +80,7 @@ TEST_F(OculusRunTest, DriversHearTheHarbourWithTheirOwnSettings) {
 
 TEST(OculusLockstepTest, ADeploymentInLockstepIsRefused) {
     const TestFolder folder;
-    std::string text = readFile(INSONIFY_SOURCE_DIR "/deploy/hil_oculus.yml");
+    std::string text = readFile(test::sourceFile("deploy/hil_oculus.yml"));
     text.replace(text.find("schedule: realtime"), 18, "schedule: lockstep");
     writeFile(folder / "x.yml", text);
     EXPECT_THAT(callInsonify(folder, {"check", "x.yml"}).err, HasSubstr("set schedule: realtime"));

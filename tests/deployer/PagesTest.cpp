@@ -5,6 +5,7 @@
 
 #include "tests/deployer/Wall.hpp"
 #include "tests/support/Pages.hpp"
+#include "tests/support/Paths.hpp"
 
 using namespace insonify::deployer;
 using insonify::test::allPages;
@@ -16,7 +17,7 @@ using testing::HasSubstr;
 
 namespace {
 
-const fs::path root = INSONIFY_SOURCE_DIR;
+const fs::path root = insonify::test::source_dir;
 
 bool holdsCommands(const CodeBlock& block) { return block.language == "sh"; }
 
@@ -34,11 +35,11 @@ void makeCheckout(const TestFolder& folder) {
     for (const char* name : {"types", "components", "shaders", "scripts", "tests"})
         fs::create_directory_symlink(root / name, folder / name);
     fs::create_directories(folder / "build");
-    fs::create_directory_symlink(INSONIFY_BIN_DIR, folder / "build/bin");
+    fs::create_directory_symlink(insonify::test::bin_dir, folder / "build/bin");
 }
 
 Outcome runInBash(const TestFolder& folder, const std::string& commands) {
-    const std::string path = std::string("export PATH=") + INSONIFY_BIN_DIR + ":$PATH\n";
+    const std::string path = std::string("export PATH=") + insonify::test::bin_dir + ":$PATH\n";
     return Process({"bash", "-euo", "pipefail", "-c", path + commands}, folder.path()).wait();
 }
 

@@ -6,6 +6,7 @@
 #include <regex>
 
 #include "tests/deployer/Command.hpp"
+#include "tests/support/Paths.hpp"
 #include "tests/support/Python.hpp"
 
 using namespace insonify::deployer;
@@ -15,7 +16,7 @@ using testing::HasSubstr;
 
 namespace {
 
-const fs::path root = INSONIFY_SOURCE_DIR, deployment = root / "deploy/hil_ping360.yml";
+const fs::path root = insonify::test::source_dir, deployment = root / "deploy/hil_ping360.yml";
 
 /** The numbers in the first match of a pattern with groups of numbers. */
 std::vector<double> numbersIn(const std::string& text, const std::string& pattern) {

@@ -1,6 +1,7 @@
 #include <gmock/gmock.h>
 
 #include "tests/deployer/Wall.hpp"
+#include "tests/support/Paths.hpp"
 
 using namespace insonify::deployer;
 using testing::AllOf;
@@ -18,8 +19,8 @@ with open('seen.txt', 'wb') as seen:
         data = os.read(descriptor, 1024)
         seen.write(data)
         return data
-    sys.exit(pty.spawn([')" + std::string(INSONIFY_BIN_DIR) +
-                                R"(/insonify', 'run', 'wall.yml', '--duration', '1', '--out', 'out'], read) >> 8))";
+    sys.exit(pty.spawn([')" + insonify::test::program("insonify") +
+                                R"(', 'run', 'wall.yml', '--duration', '1', '--out', 'out'], read) >> 8))";
     const Outcome outcome = python(folder, program);
     EXPECT_EQ(outcome.code, 0) << outcome.err;
     EXPECT_THAT(readFile(folder / "seen.txt"), AllOf(HasSubstr(" of 1.0 s simulated"), HasSubstr(" % done, 1 s left")));
@@ -36,8 +37,8 @@ def read(descriptor):
     data = os.read(descriptor, 1024)
     seen += data
     return data
-pty.spawn([')" + std::string(INSONIFY_BIN_DIR) +
-                                R"(/insonify', 'study', 'stability', '--out', '.'], read)
+pty.spawn([')" + insonify::test::program("insonify") +
+                                R"(', 'study', 'stability', '--out', '.'], read)
 print(b'cases, 1 of ' in seen, b' so far, ' in seen, b' left' in seen))";
     EXPECT_TRUE(python(folder, program).out.ends_with("True True True\n"));
 }

@@ -4,13 +4,14 @@
 #include <map>
 
 #include "tests/deployer/Command.hpp"
+#include "tests/support/Paths.hpp"
 
 using namespace insonify::deployer;
 using testing::IsEmpty;
 
 namespace {
 
-const fs::path root = INSONIFY_SOURCE_DIR;
+const fs::path root = insonify::test::source_dir;
 
 using Lines = std::vector<std::string>;
 

@@ -9,6 +9,7 @@
 #include "components/log/pocolog/Reader.hpp"
 #include "tests/deployer/Growing.hpp"
 #include "tests/deployer/Wall.hpp"
+#include "tests/support/Paths.hpp"
 #include "types/Sonar.hpp"
 
 using namespace insonify::deployer;
@@ -66,10 +67,12 @@ TEST_F(ReplayPaceTest, InALoopTimeGoesOnAndTheLogIsPlayedAgain) {
     EXPECT_EQ(python(folder_,
                      "import subprocess, numpy\n"
                      "for log, stream in (('out', 'noise.noisy'), ('again', 'noise.noisy')):\n"
-                     "    subprocess.run(['" INSONIFY_BIN_DIR "/insonify', 'log', 'export', log + '/wall.0.log',"
-                     " '--stream', stream, '--to', log + '.npz'], stdout=subprocess.DEVNULL, check=True)\n"
-                     "a, b = numpy.load('out.npz')['bins'], numpy.load('again.npz')['bins']\n"
-                     "print((b == a[[0, 1, 2, 0, 1, 2, 0]]).all())")
+                     "    subprocess.run(['" +
+                         test::program("insonify") +
+                         "', 'log', 'export', log + '/wall.0.log',"
+                         " '--stream', stream, '--to', log + '.npz'], stdout=subprocess.DEVNULL, check=True)\n"
+                         "a, b = numpy.load('out.npz')['bins'], numpy.load('again.npz')['bins']\n"
+                         "print((b == a[[0, 1, 2, 0, 1, 2, 0]]).all())")
                   .out,
               "True\n");
 }
@@ -86,7 +89,7 @@ TEST_F(ReplayPaceTest, StepByStepItWaitsForALineAfterEachInstant) {
     ASSERT_EQ(mkfifo((folder_ / "lines").c_str(), 0600), 0);
     const Process process(
         {"/bin/sh", "-c",
-         "exec " INSONIFY_BIN_DIR "/insonify replay out/wall.0.log wall.yml --out again --step < lines"},
+         "exec " + test::program("insonify") + " replay out/wall.0.log wall.yml --out again --step < lines"},
         folder_.path());
     std::ofstream lines(folder_ / "lines");
     ASSERT_TRUE(says(folder_, "0.000000 s\n"));
@@ -103,8 +106,8 @@ TEST_F(ReplayPaceTest, StepByStepItWaitsForALineAfterEachInstant) {
 
 TEST_F(ReplayPaceTest, StepByStepALineSeeksToAPlaceInTheLog) {
     const Outcome outcome = Process({"/bin/sh", "-c",
-                                     "printf '\\nseek x\\nseek 0\\n' | " INSONIFY_BIN_DIR
-                                     "/insonify replay out/wall.0.log wall.yml --out again --step"},
+                                     "printf '\\nseek x\\nseek 0\\n' | " + test::program("insonify") +
+                                         " replay out/wall.0.log wall.yml --out again --step"},
                                     folder_.path())
                                 .wait();
     ASSERT_EQ(outcome.code, 0) << outcome.err;

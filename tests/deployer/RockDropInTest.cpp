@@ -5,6 +5,7 @@
 
 #include "components/log/Writer.hpp"
 #include "tests/deployer/SceneRun.hpp"
+#include "tests/support/Paths.hpp"
 #include "types/Angle.hpp"
 
 using namespace insonify;
@@ -19,7 +20,7 @@ const std::string multibeam_file = "deploy/rock/imaging_sonar_simulation::Multib
 class RockDropInTest : public testing::Test {
 protected:
     RockDropInTest() {
-        fs::copy(fs::path(INSONIFY_SOURCE_DIR) / "deploy", folder_ / "deploy", fs::copy_options::recursive);
+        fs::copy(fs::path(test::source_dir) / "deploy", folder_ / "deploy", fs::copy_options::recursive);
     }
     Outcome run(std::vector<std::string> more) const {
         std::vector<std::string> words = {"run",   "deploy/rock_dropin.yml", "--out", "out",

@@ -2,6 +2,7 @@
 #include <gmock/gmock.h>
 
 #include "tests/deployer/Wall.hpp"
+#include "tests/support/Paths.hpp"
 
 using namespace insonify::deployer;
 using testing::HasSubstr;
@@ -27,7 +28,7 @@ TEST(RunFailureTest, ASummaryThatCannotBeWrittenIsExitCode2BeforeTheRun) {
 
 TEST(RunFailureTest, AFullDiskIsExitCode1AndWhatWasFlushedIsKept) {
     const WallFolder folder;
-    const std::string run = std::string(INSONIFY_BIN_DIR) + "/insonify run wall.yml --out out --pings 400 --quiet";
+    const std::string run = insonify::test::program("insonify") + " run wall.yml --out out --pings 400 --quiet";
     const Outcome outcome = Process({"bash", "-c", "ulimit -f 1536; exec " + run}, folder.path()).wait();
     EXPECT_EQ(outcome.code, 1) << outcome.err;
     EXPECT_THAT(outcome.err, HasSubstr("log: "));

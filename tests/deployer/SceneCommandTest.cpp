@@ -1,6 +1,7 @@
 #include <gmock/gmock.h>
 
 #include "tests/deployer/Wall.hpp"
+#include "tests/support/Paths.hpp"
 
 using namespace insonify::deployer;
 using testing::ElementsAre;
@@ -28,7 +29,7 @@ std::string floorGltf(bool z_up) {
 
 TEST(SceneCommandTest, ASceneIsToldByBoxTrianglesMaterialsAndObjects) {
     const TestFolder folder;
-    const json scene = sceneOf(folder, fs::path(INSONIFY_SOURCE_DIR) / "deploy/scenes/wall.glb");
+    const json scene = sceneOf(folder, fs::path(insonify::test::source_dir) / "deploy/scenes/wall.glb");
     EXPECT_THAT(scene["bounds"]["min"], ElementsAre(10, -20, -3));
     EXPECT_THAT(scene["bounds"]["max"], ElementsAre(11, 20, 3));
     EXPECT_EQ(scene["objects"].size(), 1u);
@@ -40,7 +41,8 @@ TEST(SceneCommandTest, ASceneIsToldByBoxTrianglesMaterialsAndObjects) {
     EXPECT_NEAR(material["reflection"], 0.66, 0.1);
     EXPECT_NEAR(material["area_m2"], 2 * (40 * 6 + 40 + 6), 1e-3);
     EXPECT_THAT(scene["warnings"], IsEmpty());
-    const Outcome words = callInsonify(folder, {"scene", fs::path(INSONIFY_SOURCE_DIR) / "deploy/scenes/wall.glb"});
+    const Outcome words =
+        callInsonify(folder, {"scene", fs::path(insonify::test::source_dir) / "deploy/scenes/wall.glb"});
     EXPECT_THAT(words.out, HasSubstr("from [10, -20, -3] to [11, 20, 3] m"));
     EXPECT_THAT(words.out, HasSubstr("concrete"));
 }
@@ -57,7 +59,8 @@ TEST(SceneCommandTest, AFileWithZUpIsSuspectedToLieOnItsSideAndOneWithYUpIsNot) 
 TEST(SceneCommandTest, TheDeliveredScenesDoNotLieOnTheirSides) {
     const TestFolder folder;
     for (const char* name : {"harbour.glb", "tank.glb", "two_vehicles.world", "wall.glb"})
-        for (const json& warning : sceneOf(folder, fs::path(INSONIFY_SOURCE_DIR) / "deploy/scenes" / name)["warnings"])
+        for (const json& warning :
+             sceneOf(folder, fs::path(insonify::test::source_dir) / "deploy/scenes" / name)["warnings"])
             EXPECT_THAT(warning.get<std::string>(), Not(HasSubstr("on its side"))) << name;
 }
 

@@ -2,6 +2,7 @@
 #include <gmock/gmock.h>
 
 #include "tests/deployer/Wall.hpp"
+#include "tests/support/Paths.hpp"
 
 using namespace insonify::deployer;
 using testing::HasSubstr;
@@ -22,8 +23,9 @@ protected:
     }
     /** What the validator finds wrong, a line each. */
     std::string diagnosticsOf(std::vector<std::string> files) {
-        files.insert(files.begin(), {"/usr/bin/python3",
-                                     fs::path(INSONIFY_SOURCE_DIR) / "tests/deployer/check_schema.py", "schema.json"});
+        files.insert(files.begin(),
+                     {"/usr/bin/python3", fs::path(insonify::test::source_dir) / "tests/deployer/check_schema.py",
+                      "schema.json"});
         const Outcome outcome = Process(files, folder_.path()).wait();
         EXPECT_EQ(outcome.code, 0) << outcome.err;
         return outcome.out;
@@ -45,7 +47,7 @@ protected:
 
 TEST_F(SchemaTest, EveryDeploymentThatIsDeliveredIsValid) {
     std::vector<std::string> files;
-    for (const auto& entry : fs::directory_iterator(fs::path(INSONIFY_SOURCE_DIR) / "deploy"))
+    for (const auto& entry : fs::directory_iterator(fs::path(insonify::test::source_dir) / "deploy"))
         if (entry.path().extension() == ".yml") files.push_back(entry.path());
     ASSERT_GT(files.size(), 5u);
     for (const char* sonar : {"oculus_m750d", "micron"}) {

@@ -3,6 +3,7 @@
 
 #include "components/device/Http.hpp"
 #include "tests/deployer/HilRun.hpp"
+#include "tests/support/Paths.hpp"
 #include "tests/support/Python.hpp"
 #include "tests/support/Wire.hpp"
 
@@ -54,7 +55,7 @@ TEST_P(Sonar3dClientTest, TheMakersClientSetsItAndSeesTheWallAndTheBall) {
     HilRun run(deployment(folder), {"device.multicast_port=" + group_port});
     const int port = run.port();
     ASSERT_GT(port, 0) << readFile(run.folder() / "stderr.txt");
-    const std::string script = INSONIFY_SOURCE_DIR "/tests/deployer/sonar3d_client.py ";
+    const std::string script = test::sourceFile("tests/deployer/sonar3d_client.py ");
     const std::string said = pythonSays(script + std::to_string(port) + " " + (unicast ? "unicast" : group_port) + " " +
                                             (folder / "voxels.npz").string(),
                                         folder / "said.json");

@@ -2,6 +2,7 @@
 #include <gmock/gmock.h>
 
 #include "tests/deployer/Command.hpp"
+#include "tests/support/Paths.hpp"
 #include "tests/support/Python.hpp"
 
 using namespace insonify::deployer;
@@ -13,7 +14,7 @@ class TruthRunTest : public testing::Test {
 protected:
     void SetUp() override {
         const Outcome ran = callInsonify(
-            folder_, {"run", fs::path(INSONIFY_SOURCE_DIR) / "deploy/truth.yml", "--pings", "2", "--out", "out",
+            folder_, {"run", fs::path(insonify::test::source_dir) / "deploy/truth.yml", "--pings", "2", "--out", "out",
                       "--set", "sonar.beam_count=64", "--set", "sonar.bin_count=200", "--set", "picture.width=800"});
         ASSERT_EQ(ran.code, 0) << ran.err;
     }

@@ -4,6 +4,7 @@
 #include "components/device/OculusMessages.hpp"
 #include "tests/support/Folder.hpp"
 #include "tests/support/OculusMessage.hpp"
+#include "tests/support/Paths.hpp"
 
 namespace insonify::device {
 namespace {
@@ -43,8 +44,7 @@ Bytes joined(std::initializer_list<Bytes> parts) {
 }
 
 Bytes recording(const char* name) {
-    const std::vector<char> bytes =
-        insonify::bytesOf(std::filesystem::path(INSONIFY_SHARED_DATA "/sonar/oculus") / name);
+    const std::vector<char> bytes = insonify::bytesOf(std::filesystem::path(test::sharedFile("sonar/oculus")) / name);
     return {bytes.begin(), bytes.end()};
 }
 

@@ -5,6 +5,7 @@
 #include "components/device/OculusPing.hpp"
 #include "tests/support/Folder.hpp"
 #include "tests/support/OculusMessage.hpp"
+#include "tests/support/Paths.hpp"
 #include "types/Angle.hpp"
 #include "types/ConfigError.hpp"
 
@@ -107,7 +108,7 @@ TEST(OculusPingTest, AFileWithoutAPingIsRefusedWithTheReason) {
 }
 
 TEST(OculusPingTest, TheRecordingOfAnM1200dIsWhatItIsKnownToBe) {
-    const std::filesystem::path file = INSONIFY_SHARED_DATA "/sonar/oculus/three_pings_8bit.raw";
+    const std::filesystem::path file = test::sharedFile("sonar/oculus/three_pings_8bit.raw");
     if (!std::filesystem::exists(file)) GTEST_SKIP() << file << " is not there: no recording of a device is tested";
     const auto pings = readOculusPings(file);
     ASSERT_EQ(pings.size(), 3u);

@@ -8,6 +8,7 @@
 #include "components/device/OculusRecording.hpp"
 #include "tests/support/Folder.hpp"
 #include "tests/support/OculusMessage.hpp"
+#include "tests/support/Paths.hpp"
 #include "types/ConfigError.hpp"
 
 namespace insonify::device {
@@ -22,7 +23,7 @@ Bytes pingBytes(uint32_t number) { return test::OculusMessage{.number = number}.
 
 /** The messages of the three real pings; none where the recording is not there. */
 std::vector<Bytes> realPings() {
-    const std::vector<char> bytes = insonify::bytesOf(INSONIFY_SHARED_DATA "/sonar/oculus/three_pings_8bit.raw");
+    const std::vector<char> bytes = insonify::bytesOf(test::sharedFile("sonar/oculus/three_pings_8bit.raw"));
     OculusFramer framer;
     framer.add({reinterpret_cast<const uint8_t*>(bytes.data()), bytes.size()});
     std::vector<Bytes> messages;
@@ -114,7 +115,7 @@ TEST_F(OculusRecordingTest, RealPingsAreRecordedAndPlayedByteForByte) {
 
 TEST_F(OculusRecordingTest, ACaptureIsTimedByTheDevicesClock) {
     if (realPings().empty()) GTEST_SKIP() << "three_pings_8bit.raw is not there: no recording of a device is tested";
-    OculusPings pings(INSONIFY_SHARED_DATA "/sonar/oculus/three_pings_8bit.raw");
+    OculusPings pings(test::sharedFile("sonar/oculus/three_pings_8bit.raw"));
     for (int i = 0; i < 3; ++i) EXPECT_NEAR(pings.next().value().time, 0.1 * i, 1e-4);
     EXPECT_FALSE(pings.next());
 }

@@ -4,6 +4,7 @@
 
 #include "tests/deployer/Command.hpp"
 #include "tests/gazebo/World.hpp"
+#include "tests/support/Paths.hpp"
 
 using namespace insonify;
 using namespace insonify::deployer;
@@ -11,7 +12,7 @@ using testing::HasSubstr;
 
 namespace {
 
-const std::string deployment = INSONIFY_SOURCE_DIR "/deploy/gazebo_poses.yml";
+const std::string deployment = test::sourceFile("deploy/gazebo_poses.yml");
 
 class GazeboRunTest : public gazebo::OwnPartition {
 protected:

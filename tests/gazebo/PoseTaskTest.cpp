@@ -8,6 +8,7 @@
 #include "components/scene/SceneTask.hpp"
 #include "tests/gazebo/World.hpp"
 #include "tests/support/Listening.hpp"
+#include "tests/support/Paths.hpp"
 
 using namespace insonify;
 using namespace insonify::gazebo;
@@ -65,7 +66,7 @@ TEST_F(PoseTaskTest, AVehicleAndAnObjectOfTheWorldAreFollowed) {
 TEST_F(PoseTaskTest, AnObjectOfTheSceneMovesWithItsModelInGazebo) {
     scene::SceneTask scene("scene");
     scene::SceneConfig config;
-    config.file = INSONIFY_SOURCE_DIR "/deploy/scenes/two_vehicles.world";
+    config.file = test::sourceFile("deploy/scenes/two_vehicles.world");
     scene.config.set(config);
     PoseConfig poses;
     poses.world = "sea";

@@ -4,13 +4,14 @@
 #include <set>
 
 #include "tests/install/Outside.hpp"
+#include "tests/support/Paths.hpp"
 
 using namespace insonify::deployer;
 using testing::HasSubstr;
 
 namespace {
 
-const fs::path root = INSONIFY_SOURCE_DIR;
+const fs::path root = insonify::test::source_dir;
 
 std::set<std::string> wordsIn(const std::string& text) {
     std::istringstream words(text);

@@ -3,6 +3,7 @@
 
 #include "tests/install/Outside.hpp"
 #include "tests/support/Pages.hpp"
+#include "tests/support/Paths.hpp"
 
 using namespace insonify::deployer;
 using testing::HasSubstr;
@@ -22,8 +23,9 @@ TEST(DebTest, ThePackagesUnpackToACommandThatRunsAndAProjectThatBuilds) {
     const WallFolder folder;
     for (const char* tool : {"dpkg-deb", "dpkg-shlibdeps"})
         if (call(folder, {tool, "--version"}).code != 0) GTEST_SKIP() << "there is no " << tool << " on this system";
-    const Outcome packed = call(folder, {INSONIFY_CPACK, "-G", "DEB", "--config",
-                                         std::string(INSONIFY_BINARY_DIR) + "/CPackConfig.cmake", "-B", "packages"});
+    const Outcome packed =
+        call(folder, {INSONIFY_CPACK, "-G", "DEB", "--config",
+                      std::string(insonify::test::build_dir) + "/CPackConfig.cmake", "-B", "packages"});
     ASSERT_EQ(packed.code, 0) << packed.out << packed.err;
     for (const char* name : {"insonify", "insonify-dev"})
         ASSERT_EQ(call(folder, {"dpkg-deb", "-x", package(folder, name), "root"}).code, 0);

@@ -4,6 +4,7 @@
 #include "tests/install/Outside.hpp"
 #include "tests/scene/Dae.hpp"
 #include "tests/support/Pages.hpp"
+#include "tests/support/Paths.hpp"
 
 using namespace insonify::deployer;
 using testing::HasSubstr;
@@ -61,14 +62,14 @@ TEST(InstallTest, TheExamplesRunFromThePrefix) {
         call(folder, {insonify, "run", folder / "prefix/share/insonify/deploy/minimal.yml", "--out", "out"});
     EXPECT_EQ(ran.code, 0) << ran.err;
     EXPECT_TRUE(fs::exists(folder / "out/fan_000000.png"));
-    EXPECT_THAT(call(folder, {"ldd", insonify}).out, testing::Not(HasSubstr(INSONIFY_BINARY_DIR)));
+    EXPECT_THAT(call(folder, {"ldd", insonify}).out, testing::Not(HasSubstr(insonify::test::build_dir)));
 }
 
 TEST(InstallTest, TheServiceLiesWhereSystemdLooks) {
     const TestFolder folder;
     install(folder);
     EXPECT_EQ(readFile(folder / "prefix/lib/systemd/system/insonify.service"),
-              readFile(fs::path(INSONIFY_SOURCE_DIR) / "deploy/insonify.service"));
+              readFile(fs::path(insonify::test::source_dir) / "deploy/insonify.service"));
     EXPECT_TRUE(fs::exists(folder / "prefix/share/man/man1/insonify.1")) << "which the service names";
 }
 

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "tests/deployer/Wall.hpp"
+#include "tests/support/Paths.hpp"
 
 namespace insonify::deployer {
 
@@ -12,8 +13,7 @@ inline Outcome call(const TestFolder& folder, std::vector<std::string> words) {
 
 /** `cmake --install` into a prefix in the folder. */
 inline void install(const TestFolder& folder) {
-    const Outcome outcome =
-        call(folder, {INSONIFY_CMAKE, "--install", INSONIFY_BINARY_DIR, "--prefix", folder / "prefix"});
+    const Outcome outcome = call(folder, {INSONIFY_CMAKE, "--install", test::build_dir, "--prefix", folder / "prefix"});
     ASSERT_EQ(outcome.code, 0) << outcome.err;
 }
 

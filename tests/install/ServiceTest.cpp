@@ -4,12 +4,13 @@
 #include <map>
 
 #include "tests/install/Outside.hpp"
+#include "tests/support/Paths.hpp"
 
 using namespace insonify::deployer;
 
 namespace {
 
-const fs::path unit = fs::path(INSONIFY_SOURCE_DIR) / "deploy/insonify.service";
+const fs::path unit = fs::path(insonify::test::source_dir) / "deploy/insonify.service";
 
 std::map<std::string, std::string> settingsOf(const std::string& text) {
     std::map<std::string, std::string> settings;
@@ -47,7 +48,7 @@ TEST(ServiceTest, SystemdFindsNothingWrongWithIt) {
     if (call(folder, {"systemd-analyze", "--version"}).code != 0) GTEST_SKIP() << "there is no systemd-analyze here";
     // The command has to be there; here it is not where systemd searches.
     std::string text = readFile(unit);
-    text = replaced(text, "ExecStart=insonify", "ExecStart=" INSONIFY_BIN_DIR "/insonify");
+    text = replaced(text, "ExecStart=insonify", "ExecStart=" + insonify::test::program("insonify"));
     writeFile(folder / "insonify.service", text);
     const Outcome outcome = call(folder, {"systemd-analyze", "verify", "--man=no", folder / "insonify.service"});
     EXPECT_EQ(outcome.code, 0) << outcome.err;

@@ -6,6 +6,7 @@
 #include <set>
 
 #include "tests/layout/Sources.hpp"
+#include "tests/support/Paths.hpp"
 
 using namespace insonify::layout;
 using ::testing::ElementsAre;
@@ -23,7 +24,7 @@ std::vector<Source> projectFiles(const std::vector<std::string>& extensions) {
     std::vector<Source> all;
     for (const char* folder : {"types", "components", "shaders", "deploy", "tests", "scripts"})
         for (Source& source : sourcesIn(folder, extensions)) all.push_back(std::move(source));
-    for (const auto& entry : fs::directory_iterator(INSONIFY_SOURCE_DIR))
+    for (const auto& entry : fs::directory_iterator(insonify::test::source_dir))
         if (std::ranges::count(extensions, entry.path().extension().string())) all.push_back(readSource(entry.path()));
     return all;
 }
@@ -101,7 +102,7 @@ std::string textOf(const Source& source) {
 struct NamedTest {
     std::string file, suite, name;
     bool exists() const {
-        const std::string code = textOf(readSource(fs::path(INSONIFY_SOURCE_DIR) / file));
+        const std::string code = textOf(readSource(fs::path(insonify::test::source_dir) / file));
         return std::regex_search(code, std::regex("TEST(_F|_P)?\\(" + suite + ",\\s*" + name + "\\)"));
     }
 };
@@ -136,11 +137,11 @@ std::map<std::string, std::string> textsOf(const Source& page) {
 Names missingPaths(const std::string& text) {
     static const std::regex path("`((types|components|shaders|deploy|tests|scripts)/[\\w./-]+)`");
     Names missing = matches(text, path);
-    std::erase_if(missing, [](const std::string& p) { return fs::exists(fs::path(INSONIFY_SOURCE_DIR) / p); });
+    std::erase_if(missing, [](const std::string& p) { return fs::exists(fs::path(insonify::test::source_dir) / p); });
     return missing;
 }
 
-Source referencePage() { return readSource(fs::path(INSONIFY_SOURCE_DIR) / reference); }
+Source referencePage() { return readSource(fs::path(insonify::test::source_dir) / reference); }
 
 }  // namespace
 

@@ -2,6 +2,7 @@
 #include <gmock/gmock.h>
 
 #include "tests/support/Folder.hpp"
+#include "tests/support/Paths.hpp"
 #include "tests/support/Python.hpp"
 
 namespace insonify {
@@ -28,7 +29,7 @@ protected:
 
 TEST_F(FunctionTest, NoneIsLongOrHasManyBranches) {
     for (const char* folder : {"types", "components", "tests"})
-        EXPECT_THAT(tooMuchIn(std::string(INSONIFY_SOURCE_DIR) + "/" + folder), IsEmpty()) << folder;
+        EXPECT_THAT(tooMuchIn(test::sourceFile(folder)), IsEmpty()) << folder;
 }
 
 TEST_F(FunctionTest, TheRuleRefusesWhatItShould) {

@@ -5,6 +5,7 @@
 #include <set>
 
 #include "tests/layout/Sources.hpp"
+#include "tests/support/Paths.hpp"
 
 using namespace insonify::layout;
 
@@ -12,7 +13,7 @@ namespace {
 
 std::string textOf(const std::string& path) {
     std::string text;
-    for (const std::string& line : readSource(std::filesystem::path(INSONIFY_SOURCE_DIR) / path).lines)
+    for (const std::string& line : readSource(std::filesystem::path(insonify::test::source_dir) / path).lines)
         text += line + "\n";
     return text;
 }
@@ -44,7 +45,7 @@ TEST(LayoutTest, TheTopLevelHoldsOnlyWhatTheDesignNames) {
         "CMakeLists.txt", "README.md",   "LICENSE",    "CHANGELOG.md", "types",         "components",
         "shaders",        "deploy",      "tests",      "scripts",      ".ci",           ".git",
         ".clang-format",  ".clang-tidy", ".gitignore", "out",          "pyproject.toml"};
-    for (const auto& entry : std::filesystem::directory_iterator(INSONIFY_SOURCE_DIR)) {
+    for (const auto& entry : std::filesystem::directory_iterator(insonify::test::source_dir)) {
         const std::string name = entry.path().filename();
         EXPECT_TRUE(expected.contains(name) || name.starts_with("build")) << name;
     }

@@ -5,6 +5,7 @@
 
 #include "tests/layout/Sources.hpp"
 #include "tests/support/Pages.hpp"
+#include "tests/support/Paths.hpp"
 
 using namespace insonify::layout;
 using insonify::test::allPages;
@@ -20,7 +21,7 @@ namespace {
 
 using Names = std::vector<std::string>;
 
-const fs::path root = INSONIFY_SOURCE_DIR;
+const fs::path root = insonify::test::source_dir;
 
 bool isOnTheWeb(const std::string& link) { return link.find(':') != std::string::npos; }
 

@@ -5,6 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "tests/support/Paths.hpp"
+
 namespace insonify::layout {
 
 /** One source file of the project: path from the root with '/' between the parts, and its lines. */
@@ -24,7 +26,7 @@ struct Source {
 };
 
 inline Source readSource(const std::filesystem::path& file) {
-    Source source{std::filesystem::relative(file, INSONIFY_SOURCE_DIR).generic_string(), {}};
+    Source source{std::filesystem::relative(file, test::source_dir).generic_string(), {}};
     std::ifstream stream(file);
     for (std::string line; std::getline(stream, line);) source.lines.push_back(line);
     return source;
@@ -33,7 +35,7 @@ inline Source readSource(const std::filesystem::path& file) {
 /** All files below `folder` (from the root) with one of the extensions. */
 inline std::vector<Source> sourcesIn(const std::string& folder, const std::vector<std::string>& extensions) {
     std::vector<Source> found;
-    const std::filesystem::path root = std::filesystem::path(INSONIFY_SOURCE_DIR) / folder;
+    const std::filesystem::path root = std::filesystem::path(test::source_dir) / folder;
     if (!std::filesystem::exists(root)) return found;
     for (const auto& entry : std::filesystem::recursive_directory_iterator(root))
         if (std::ranges::count(extensions, entry.path().extension().string()))

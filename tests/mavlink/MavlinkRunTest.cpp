@@ -6,6 +6,7 @@
 
 #include "tests/deployer/Command.hpp"
 #include "tests/mavlink/Vehicle.hpp"
+#include "tests/support/Paths.hpp"
 
 using namespace insonify;
 using namespace insonify::deployer;
@@ -14,7 +15,7 @@ using testing::HasSubstr;
 
 namespace {
 
-const std::string deployment = INSONIFY_SOURCE_DIR "/deploy/mavlink_poses.yml";
+const std::string deployment = test::sourceFile("deploy/mavlink_poses.yml");
 
 class MavlinkRunTest : public testing::Test {
 protected:
@@ -106,7 +107,7 @@ TEST_F(MavlinkRunTest, TheDeploymentIsValidAndDiagnosticsAreToldWithTheirPlace) 
 TEST_F(MavlinkRunTest, LockstepDoesNotReadPoses) {
     std::string text = readFile(deployment);
     text.replace(text.find("realtime"), 8, "lockstep");
-    text.replace(text.find("scenes/"), 7, INSONIFY_SOURCE_DIR "/deploy/scenes/");
+    text.replace(text.find("scenes/"), 7, test::sourceFile("deploy/scenes/"));
     writeFile(folder / "x.yml", text);
     const Outcome outcome = callInsonify(folder, {"check", "x.yml"});
     EXPECT_EQ(outcome.code, 2);

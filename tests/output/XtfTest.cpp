@@ -5,6 +5,7 @@
 
 #include "components/output/XtfTask.hpp"
 #include "tests/support/Folder.hpp"
+#include "tests/support/Paths.hpp"
 #include "tests/support/Pings.hpp"
 #include "tests/support/Ports.hpp"
 #include "tests/support/Python.hpp"
@@ -70,8 +71,8 @@ protected:
     }
     /** What PyPI's pyxtf reads of the file. */
     json readBack() {
-        return json::parse(pythonSays(
-            INSONIFY_SOURCE_DIR "/tests/output/read_xtf.py " + (folder_ / "line.xtf").string(), folder_ / "answer"));
+        return json::parse(pythonSays(test::sourceFile("tests/output/read_xtf.py ") + (folder_ / "line.xtf").string(),
+                                      folder_ / "answer"));
     }
 
     Folder folder_;

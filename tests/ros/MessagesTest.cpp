@@ -10,6 +10,7 @@
 #include "components/ros/Schema.hpp"
 #include "tests/ros/Samples.hpp"
 #include "tests/support/Folder.hpp"
+#include "tests/support/Paths.hpp"
 #include "tests/support/Python.hpp"
 
 namespace insonify::ros {
@@ -70,8 +71,8 @@ TEST(MessagesTest, RosbagsComputesTheSameHashesAndReadsTheSameValues) {
     Odometry odometry;
     convert(smallPose(), WorldFrame::Enu, odometry);
     corpus.add(odometry);
-    const std::string answer = pythonSays(INSONIFY_SOURCE_DIR "/tests/ros/read_messages.py " + folder.path().string(),
-                                          folder.path() / "answer");
+    const std::string answer =
+        pythonSays(test::sourceFile("tests/ros/read_messages.py ") + folder.path().string(), folder.path() / "answer");
     EXPECT_THAT(answer, testing::StartsWith("45 messages as announced\n"));
     EXPECT_THAT(answer,
                 testing::HasSubstr("ProjectedSonarImage 1700000000.123456000 sonar 1500.0 [0.375, 1.125, 1.875] "

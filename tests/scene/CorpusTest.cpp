@@ -3,6 +3,7 @@
 #include <map>
 
 #include "tests/scene/SceneFiles.hpp"
+#include "tests/support/Paths.hpp"
 
 namespace insonify::scene {
 namespace {
@@ -33,7 +34,7 @@ protected:
         return scenes;
     }
 
-    std::filesystem::path models_ = std::filesystem::path(INSONIFY_SHARED_DATA) / "gltf";
+    std::filesystem::path models_ = std::filesystem::path(test::shared_data) / "gltf";
 };
 
 TEST_F(CorpusTest, EveryValidModelIsLoaded) { EXPECT_EQ(loadAll("valid", 11), 11u); }

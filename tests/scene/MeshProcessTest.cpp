@@ -12,6 +12,7 @@
 #include "components/scene/MeshFile.hpp"
 #include "tests/scene/Dae.hpp"
 #include "tests/scene/SdfFiles.hpp"
+#include "tests/support/Paths.hpp"
 
 namespace insonify::scene {
 namespace {
@@ -237,7 +238,7 @@ TEST_F(MeshProcessTest, EveryDamageIsAMeshOrAnError) {
 }
 
 TEST_F(MeshProcessTest, WhatOthersMadeIsReadAsWithoutAProcessBitForBit) {
-    const std::filesystem::path shared = INSONIFY_SHARED_DATA;
+    const std::filesystem::path shared = test::shared_data;
     if (!std::filesystem::is_directory(shared)) GTEST_SKIP() << "NO FILES AT " << shared << ": NOTHING WAS COMPARED";
     size_t files = 0;
     for (const auto& entry : std::filesystem::recursive_directory_iterator(shared)) {

@@ -1,10 +1,11 @@
 // Worlds, models and a sea floor made by others, from the shared folder.
 #include "tests/scene/SdfFiles.hpp"
+#include "tests/support/Paths.hpp"
 
 namespace insonify::scene {
 namespace {
 
-const std::filesystem::path shared_data = INSONIFY_SHARED_DATA;
+const std::filesystem::path shared_data = test::shared_data;
 const std::filesystem::path sdf_data = shared_data / "sdf";
 
 class SdfCorpusTest : public SdfFiles {

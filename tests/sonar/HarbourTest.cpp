@@ -10,12 +10,13 @@
 #include "components/scene/Scene.hpp"
 #include "components/scene/SceneConfig.hpp"
 #include "components/sonar/SonarRenderer.hpp"
+#include "tests/support/Paths.hpp"
 #include "types/Angle.hpp"
 
 namespace insonify::sonar {
 namespace {
 
-const std::filesystem::path deploy = std::filesystem::path(INSONIFY_SOURCE_DIR) / "deploy";
+const std::filesystem::path deploy = std::filesystem::path(test::source_dir) / "deploy";
 
 template <class Config>
 Config propertiesOf(const std::string& task) {

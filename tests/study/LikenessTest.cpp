@@ -6,6 +6,7 @@
 
 #include "components/study/Likeness.hpp"
 #include "components/study/LikenessReport.hpp"
+#include "tests/support/Paths.hpp"
 #include "types/Hash.hpp"
 
 namespace insonify::study {
@@ -151,7 +152,7 @@ TEST(LikenessTest, FansAreDrawnBesideEachOther) {
 }
 
 TEST(LikenessTest, RecordingsOfAnM1200dLookLikeEachOtherAndNotLikeWrongForms) {
-    const std::filesystem::path file = INSONIFY_SHARED_DATA "/sonar/oculus/three_pings_8bit.raw";
+    const std::filesystem::path file = test::sharedFile("sonar/oculus/three_pings_8bit.raw");
     if (!std::filesystem::exists(file)) GTEST_SKIP() << file << " is not there: nothing is held against recordings";
     std::vector<CodedPing> recorded;
     for (const auto& ping : device::readOculusPings(file))

@@ -8,6 +8,7 @@
 
 #include "components/noise/Noise.hpp"
 #include "components/study/SpeckleStatistics.hpp"
+#include "tests/support/Paths.hpp"
 #include "tests/support/Pings.hpp"
 #include "types/Hash.hpp"
 
@@ -164,7 +165,7 @@ TEST(SpeckleStatisticsTest, EighthsOfTheRangeAreToldOfByThemselves) {
 }
 
 TEST(SpeckleStatisticsTest, PingsOfAnM1200dStandStillWhereTheyAreLoudAndAreRayleighNoiseWhereTheyAreNot) {
-    const std::filesystem::path file = INSONIFY_SHARED_DATA "/sonar/oculus/three_pings_8bit.raw";
+    const std::filesystem::path file = test::sharedFile("sonar/oculus/three_pings_8bit.raw");
     if (!std::filesystem::exists(file)) GTEST_SKIP() << file << " is not there: nothing is held against recordings";
     std::vector<SpeckleField> loud, far;
     for (const device::OculusPing& recorded : device::readOculusPings(file)) {

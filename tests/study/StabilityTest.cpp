@@ -7,6 +7,7 @@
 
 #include "components/study/StabilityStudy.hpp"
 #include "tests/support/Folder.hpp"
+#include "tests/support/Paths.hpp"
 
 namespace insonify::study {
 
@@ -19,7 +20,7 @@ using ::testing::HasSubstr;
 /** The cases that subsection `heading` of the reference lists. */
 std::set<int> listedIn(const std::string& heading) {
     std::set<int> listed;
-    std::ifstream page(INSONIFY_SOURCE_DIR "/components/sonar/ACOUSTICS.md");
+    std::ifstream page(test::sourceFile("components/sonar/ACOUSTICS.md"));
     bool inside = false;
     for (std::string line; std::getline(page, line);) {
         if (line.starts_with("##")) inside = line.starts_with("### " + heading + " ");

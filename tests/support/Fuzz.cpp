@@ -16,6 +16,7 @@
 #include <random>
 
 #include "tests/support/Folder.hpp"
+#include "tests/support/Paths.hpp"
 
 namespace {
 
@@ -168,7 +169,7 @@ void fuzz(const Door& door, std::vector<std::string> corpus, double seconds, con
 
 void push(const Door& door) {
     const Folder own;
-    const std::vector<std::string> corpus = corpusIn(fs::path(INSONIFY_SOURCE_DIR) / "tests/fuzz/corpus" / door.name);
+    const std::vector<std::string> corpus = corpusIn(fs::path(test::source_dir) / "tests/fuzz/corpus" / door.name);
     ASSERT_FALSE(corpus.empty());
     for (const std::string& bytes : corpus) enter(door, bytes, own.path());
     leadsElsewhere();

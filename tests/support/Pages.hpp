@@ -10,6 +10,8 @@
 #include <string>
 #include <vector>
 
+#include "tests/support/Paths.hpp"
+
 namespace insonify::test {
 
 /** A block between two fences: "```sh", the text, "```". */
@@ -111,7 +113,7 @@ private:
 };
 
 inline Page readPage(const std::string& path) {
-    std::ifstream stream(std::filesystem::path(INSONIFY_SOURCE_DIR) / path);
+    std::ifstream stream(std::filesystem::path(source_dir) / path);
     std::ostringstream text;
     text << stream.rdbuf();
     return {path, text.str()};
@@ -120,7 +122,7 @@ inline Page readPage(const std::string& path) {
 /** All pages: those at the top, and those below its folders. */
 inline std::vector<Page> allPages() {
     namespace fs = std::filesystem;
-    const fs::path root = INSONIFY_SOURCE_DIR;
+    const fs::path root = source_dir;
     std::set<std::string> paths;
     const auto add = [&](const fs::path& file) {
         if (file.extension() == ".md") paths.insert(fs::relative(file, root).generic_string());

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "tests/deployer/Command.hpp"
+#include "tests/support/Paths.hpp"
 #include "tests/support/Python.hpp"
 
 namespace insonify::test {
@@ -41,7 +42,7 @@ public:
 
 private:
     static std::vector<std::string> wordsOf(const std::string& script, const std::string& arguments) {
-        std::vector<std::string> words = {python(), INSONIFY_SOURCE_DIR "/" + script};
+        std::vector<std::string> words = {python(), sourceFile(script)};
         std::istringstream text(arguments);
         for (std::string word; text >> word;) words.push_back(word);
         return words;

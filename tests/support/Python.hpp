@@ -5,12 +5,14 @@
 #include <iterator>
 #include <string>
 
+#include "tests/support/Paths.hpp"
+
 namespace insonify {
 
 /** That of scripts/setup has all that the tests use; Debian's python has Debian's numpy; another one in the path may
  *  have none. */
 inline std::string python() {
-    for (const char* candidate : {INSONIFY_SOURCE_DIR "/build/venv/bin/python3", "/usr/bin/python3"})
+    for (const std::string& candidate : {test::sourceFile("build/venv/bin/python3"), std::string("/usr/bin/python3")})
         if (std::filesystem::exists(candidate)) return candidate;
     return "python3";
 }

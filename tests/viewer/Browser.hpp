@@ -12,6 +12,7 @@
 #include <string>
 #include <vector>
 
+#include "tests/support/Paths.hpp"
 #include "tests/support/Waiting.hpp"
 
 namespace insonify::viewer {
@@ -20,7 +21,7 @@ inline const char* const chromium = "/usr/bin/chromium";
 
 /** A python that has websockets: that of scripts/setup, or Debian's; empty: there is none. */
 inline std::string pythonWithWebsockets() {
-    for (const std::string candidate : {INSONIFY_SOURCE_DIR "/build/venv/bin/python3", "/usr/bin/python3"})
+    for (const std::string& candidate : {test::sourceFile("build/venv/bin/python3"), std::string("/usr/bin/python3")})
         if (std::filesystem::exists(candidate) &&
             std::system((candidate + " -c 'import websockets' 2> /dev/null").c_str()) == 0)
             return candidate;
@@ -33,7 +34,7 @@ public:
     explicit Browser(const std::string& url, const std::string& first = "") {
         int to[2], from[2];
         if (pipe2(to, O_CLOEXEC) != 0 || pipe2(from, O_CLOEXEC) != 0) throw std::runtime_error("no pipe");
-        const std::string python = pythonWithWebsockets(), script = INSONIFY_SOURCE_DIR "/tests/viewer/browse.py";
+        const std::string python = pythonWithWebsockets(), script = test::sourceFile("tests/viewer/browse.py");
         pid_ = fork();
         if (pid_ == 0) {
             dup2(to[0], STDIN_FILENO);

@@ -8,6 +8,7 @@
 #include "components/viewer/Messages.hpp"
 #include "components/viewer/ViewerConfig.hpp"
 #include "tests/support/Folder.hpp"
+#include "tests/support/Paths.hpp"
 #include "tests/support/Python.hpp"
 #include "tests/viewer/Bench.hpp"
 
@@ -147,9 +148,9 @@ TEST(MessagesTest, RosbagsKnowsFoxglovesMessagesByTheSameHashes) {
     add(entity.texts[0].color);
     add(foxglove::FrameTransforms{{{}}});
     add(foxglove::FrameTransform{});
-    EXPECT_THAT(pythonSays(INSONIFY_SOURCE_DIR "/tests/ros/read_messages.py " + folder.path().string(),
-                           folder.path() / "answer"),
-                testing::StartsWith("16 messages as announced\n"));
+    EXPECT_THAT(
+        pythonSays(test::sourceFile("tests/ros/read_messages.py ") + folder.path().string(), folder.path() / "answer"),
+        testing::StartsWith("16 messages as announced\n"));
 }
 
 }  // namespace

@@ -2,6 +2,7 @@
 #include <gmock/gmock.h>
 
 #include "tests/log/mcap/SmallFile.hpp"
+#include "tests/support/Paths.hpp"
 #include "tests/support/Python.hpp"
 
 namespace insonify::log::mcap {
@@ -15,7 +16,7 @@ protected:
         if (!pythonHas("mcap, mcap_ros2, rosbags")) GTEST_SKIP() << missing;
     }
     std::string says(const std::string& script, const std::string& arguments) {
-        return pythonSays(INSONIFY_SOURCE_DIR "/tests/log/mcap/" + script + " " + arguments, answers_ / "answer");
+        return pythonSays(test::sourceFile("tests/log/mcap/") + script + " " + arguments, answers_ / "answer");
     }
     const Folder folder_, answers_;
 };

@@ -5,6 +5,7 @@
 
 #include "components/log/pocolog/Writer.hpp"
 #include "tests/support/Folder.hpp"
+#include "tests/support/Paths.hpp"
 #include "tests/support/Python.hpp"
 
 namespace insonify::log::pocolog {
@@ -13,7 +14,7 @@ namespace {
 using nlohmann::json;
 
 json readByPython(const std::filesystem::path& log) {
-    const std::string script = INSONIFY_SOURCE_DIR "/tests/log/pocolog/read_log.py";
+    const std::string script = test::sourceFile("tests/log/pocolog/read_log.py");
     const std::string said = pythonSays(script + " " + log.string(), log.parent_path() / "answer.txt");
     const json told = json::parse(said, nullptr, false);
     EXPECT_FALSE(told.is_discarded()) << said;
