@@ -2,12 +2,13 @@
 #include <cstdint>
 #include <memory>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "components/sonar/BeamFan.hpp"
 #include "components/sonar/EchoRules.hpp"
 #include "components/sonar/SurfacePass.hpp"
-#include "components/sonar/Volume.hpp"
+#include "components/sonar/WaterView.hpp"
 
 namespace insonify::sonar {
 
@@ -16,6 +17,7 @@ struct DepositSetup {
     EchoRules rules;
     std::vector<ViewFrustum> frusta;
     std::vector<ColumnShares> shares;  ///< One for each frustum.
+    std::vector<std::string> defines;  ///< Of the plan, for the shader.
     uint32_t beam_count = 0;
     size_t slots = 1;         ///< Pings that may be under way.
     bool group_sums = false;  ///< On a device: work groups sum in memory of their own first.

@@ -17,6 +17,7 @@
 #include "components/sonar/ThreadPool.hpp"
 #include "components/sonar/TileCells.hpp"
 #include "components/sonar/TruthGrid.hpp"
+#include "components/sonar/effects/Effects.hpp"
 
 namespace insonify::sonar {
 namespace {
@@ -42,7 +43,7 @@ struct Strip {
 
 class CastEchoes final : public EchoRenderer {
 public:
-    CastEchoes(const RenderPlan& plan, types::GeometryPtr geometry);
+    CastEchoes(const RenderPlan& plan, types::GeometryPtr geometry, const PingEffects& effects);
     void takeQuality() override;
     void render(const types::Snapshot& snapshot, types::Sonar& ping, Stages& stages) override;
     void setTruth(types::SonarTruth* truth) override { truth_ = truth; }
@@ -97,11 +98,11 @@ private:
 
     const RenderPlan& plan_;
     types::GeometryPtr geometry_;
+    const PingEffects& effects_;
     EchoRules rules_;
     std::optional<EchoRules> truth_rules_;  ///< Of energies, where fields are summed.
     CastView view_;
     BinLevels levels_;
-    std::optional<VolumeLevels> volume_;
     WaterView water_;                 ///< In this ping.
     std::optional<EchoGrid> grid_;    ///< Of energies,
     std::optional<EchoField> field_;  ///< or of fields.
@@ -123,10 +124,11 @@ private:
     std::optional<TruthGrid> truth_grid_;  ///< Once it was wanted.
 };
 
-CastEchoes::CastEchoes(const RenderPlan& plan, types::GeometryPtr geometry)
+CastEchoes::CastEchoes(const RenderPlan& plan, types::GeometryPtr geometry, const PingEffects& effects)
     : plan_(plan),
       geometry_(std::move(geometry)),
-      rules_(makeEchoRules(plan)),
+      effects_(effects),
+      rules_(makeEchoRules(plan, effects)),
       levels_(plan.config, summedGrid(plan)),
       places_(*geometry_, reachOf(plan), true),
       visibility_(*geometry_),
@@ -134,7 +136,7 @@ CastEchoes::CastEchoes(const RenderPlan& plan, types::GeometryPtr geometry)
       normal_maps_(*geometry_),
       threads_(plan.options.threads),
       workers_(static_cast<size_t>(threads_.size())) {
-    if (plan.features.has(Feature::Refraction) || plan.features.has(Feature::MotionInPing))
+    if (plan.profile || plan.config.motion_in_ping)
         ray_paths_.emplace(plan, *geometry_);
     runs_.reserve(visibility_.commands().size());
     for (size_t i = 0; i < workers_.size(); ++i) workers_[i].number = i;
@@ -143,14 +145,13 @@ CastEchoes::CastEchoes(const RenderPlan& plan, types::GeometryPtr geometry)
 }
 
 void CastEchoes::takeQuality() {
-    rules_ = makeEchoRules(plan_);
+    rules_ = makeEchoRules(plan_, effects_);
     view_.cells = makeAngularView(plan_);
     if (plan_.features.has(Feature::Speckle)) {
         field_.emplace(plan_, threads_.size());
-        truth_rules_ = makeEnergyRules(plan_);
+        truth_rules_ = makeEnergyRules(plan_, effects_);
     } else {
         grid_.emplace(plan_, threads_.size());
-        if (plan_.features.has(Feature::Volume)) volume_.emplace(plan_, plan_.grid);
     }
     shareOut();
     if (paths_) paths_->takeQuality(rules_, view_);
@@ -279,7 +280,7 @@ bool CastEchoes::fill(size_t cell, const Worker& worker, const uint64_t* sums, t
     if (field_) return field_->fill(cell, rules_, sums, view_.cells.cell(), worker.number);
     const std::span<float> bins = grid_->cell(cell, ping);
     const bool heard = levels_.fill(rules_, sums, view_.cells.cell(), bins);
-    if (volume_) volume_->add(sums + rules_.volumeOffset(), cell, view_.cells.cell(), bins);
+    addOwnSums(rules_, sums, cell, view_.cells.cell(), bins);
     return heard;
 }
 
@@ -346,8 +347,9 @@ void CastEchoes::render(const types::Snapshot& snapshot, types::Sonar& ping, Sta
 
 bool haveRays() { return true; }
 
-std::unique_ptr<EchoRenderer> makeCastEchoes(const RenderPlan& plan, types::GeometryPtr geometry) {
-    return std::make_unique<CastEchoes>(plan, std::move(geometry));
+std::unique_ptr<EchoRenderer> makeCastEchoes(const RenderPlan& plan, types::GeometryPtr geometry,
+                                             const PingEffects& effects) {
+    return std::make_unique<CastEchoes>(plan, std::move(geometry), effects);
 }
 
 }  // namespace insonify::sonar

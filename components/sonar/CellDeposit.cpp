@@ -5,6 +5,7 @@
 #include <stdexcept>
 
 #include "components/sonar/Estimators.hpp"
+#include "components/sonar/effects/Effect.hpp"
 
 namespace insonify::sonar {
 namespace {
@@ -95,7 +96,9 @@ CellDeposit::CellDeposit(const EchoRules& rules, const WaterView& water, bool be
     : rules_(rules), water_(water), bent_(bent), to_(to), estimator_(estimatorOf(rules.features)) {}
 
 void CellDeposit::finish() {
-    if (rules_.features.has(Feature::Volume)) hideVolume(rules_, water_, cells, covered, to_);
+    for (size_t i = 0; i < rules_.own.size(); ++i)
+        rules_.own[i]->addCells(
+            {rules_, water_, cells, covered, to_.first_beam, to_.sums + rules_.ownOffset(i), rules_.sumCount()});
     cells.count = 0;
 }
 

@@ -3,7 +3,7 @@
 
 #include "components/sonar/Cells.hpp"
 #include "components/sonar/TruthTable.hpp"
-#include "components/sonar/Volume.hpp"
+#include "components/sonar/WaterView.hpp"
 
 namespace insonify::sonar {
 
@@ -21,10 +21,10 @@ struct EstimatorEntry {
 };
 
 /** The one way from samples to bins on the processor. A source, rays (TileCells.hpp) or pictures (PictureCells.hpp),
- *  fills a batch of cells; their echoes, and what they hide of the volume, are added to the sums. */
+ *  fills a batch of cells; their echoes, and what effects make of them, are added to the sums. */
 class CellDeposit {
 public:
-    /** `water` is used with a volume; `bent`: cells have a focus. */
+    /** `water` is for effects; `bent`: cells have a focus. */
     CellDeposit(const EchoRules& rules, const WaterView& water, bool bent, const EchoSums& to);
 
     const EchoRules& rules() const { return rules_; }

@@ -11,6 +11,7 @@
 #include "components/sonar/EchoRenderer.hpp"
 #include "components/sonar/SurfacePass.hpp"
 #include "components/sonar/TruthGrid.hpp"
+#include "components/sonar/effects/Effects.hpp"
 #include "types/Angle.hpp"
 
 namespace insonify::sonar {
@@ -25,9 +26,10 @@ double nearPlane(const ViewFrustum& frustum) {
     return nearest_drawn / corner;
 }
 
-DepositSetup depositSetup(const RenderPlan& plan) {
+DepositSetup depositSetup(const RenderPlan& plan, const PingEffects& effects) {
     DepositSetup setup;
-    setup.rules = makeEchoRules(plan);
+    setup.rules = makeEchoRules(plan, effects);
+    setup.defines = plan.defines();
     setup.frusta = plan.frusta;
     for (const ViewFrustum& frustum : plan.frusta)
         setup.shares.push_back(makeShares(plan.sampled, plan.cells, frustum, plan.options));
@@ -35,9 +37,14 @@ DepositSetup depositSetup(const RenderPlan& plan) {
     return setup;
 }
 
+std::string outOfView(const LeftOut& what, const BinGrid& /*grid*/) {
+    return std::string("outside the fan or the range at the first ping") +
+           (what.effect == "triangles" ? ", or on the far side of a closed mesh" : "");
+}
+
 class DrawnEchoes final : public PipelinedEchoes {
 public:
-    DrawnEchoes(const RenderPlan& plan, types::GeometryPtr geometry);
+    DrawnEchoes(const RenderPlan& plan, types::GeometryPtr geometry, const PingEffects& effects);
     ~DrawnEchoes() override;
     void takeQuality() override;
     size_t ringSize() const override { return slots_; }
@@ -68,12 +75,12 @@ private:
 
     const RenderPlan& plan_;
     types::GeometryPtr geometry_;
+    const PingEffects& effects_;
     gpu::EglContext context_;
     size_t slots_;
     size_t begun_ = 0, ended_ = 0;  ///< Pings; ping n has slot n modulo slots_.
     std::string device_;
     BinLevels levels_;
-    std::optional<VolumeLevels> volume_;
     Culler culler_;
     ThreadPool threads_;
     SurfacePass surface_;
@@ -88,9 +95,10 @@ private:
     std::chrono::steady_clock::time_point last_;
 };
 
-DrawnEchoes::DrawnEchoes(const RenderPlan& plan, types::GeometryPtr geometry)
+DrawnEchoes::DrawnEchoes(const RenderPlan& plan, types::GeometryPtr geometry, const PingEffects& effects)
     : plan_(plan),
       geometry_(std::move(geometry)),
+      effects_(effects),
       context_(plan.config.device),
       slots_(plan.options.ring > 0   ? plan.options.ring
              : context_.isSoftware() ? 1
@@ -107,7 +115,8 @@ DrawnEchoes::DrawnEchoes(const RenderPlan& plan, types::GeometryPtr geometry)
 DrawnEchoes::~DrawnEchoes() = default;
 
 bool DrawnEchoes::depositsOnProcessor() const {
-    return plan_.config.deposit == Deposit::Cpu || (plan_.config.deposit == Deposit::Auto && context_.isSoftware());
+    return plan_.config.deposit == Deposit::Cpu || !effects_.areOnDevice() ||
+           (plan_.config.deposit == Deposit::Auto && context_.isSoftware());
 }
 
 SurfacePass::Setup DrawnEchoes::surfaceSetup() const {
@@ -117,22 +126,21 @@ SurfacePass::Setup DrawnEchoes::surfaceSetup() const {
     return {.geometry = *geometry_,
             .laws = plan_.laws,
             .frusta = plan_.frusta,
-            .defines = plan_.features.defines(),
+            .defines = plan_.defines(),
             .near_plane = nearPlane(plan_.frusta.front()),
-            .empty_too = plan_.config.published || plan_.features.has(Feature::VolumeLayers),
+            .empty_too = plan_.config.published || plan_.hears_misses,
             .slots = slots_,
             .cull_on_device = chosen == CullOn::Device};
 }
 
 void DrawnEchoes::makeDeposit() {
     using SumIn = RenderOptions::SumIn;
-    DepositSetup setup = depositSetup(plan_);
+    DepositSetup setup = depositSetup(plan_, effects_);
     setup.slots = slots_;
     setup.group_sums =
         plan_.options.sum_in == SumIn::Auto ? !context_.isSoftware() : plan_.options.sum_in == SumIn::Groups;
     grid_.emplace(plan_, threads_.size());
     rules_ = setup.rules;
-    if (plan_.features.has(Feature::Volume)) volume_.emplace(plan_, plan_.grid);
     if (depositsOnProcessor())
         deposit_ = std::make_unique<PictureDeposit>(std::move(setup), surface_, context_, threads_);
     else
@@ -146,7 +154,7 @@ void DrawnEchoes::makeTruth() {
     telling_ = dynamic_cast<PictureDeposit*>(deposit_.get());
     if (!telling_) {
         const auto alone = context_.transferring();
-        DepositSetup setup = depositSetup(plan_);
+        DepositSetup setup = depositSetup(plan_, effects_);
         setup.slots = slots_;
         beside_ = std::make_unique<PictureDeposit>(std::move(setup), surface_, context_, threads_);
         telling_ = beside_.get();
@@ -198,7 +206,7 @@ void DrawnEchoes::fillBins(types::Sonar& ping) {
 
 void DrawnEchoes::fill(size_t cell, const uint64_t* sums, double pixel, std::span<float> bins) const {
     levels_.fill(rules_, sums, pixel, bins);
-    if (volume_) volume_->add(sums + rules_.volumeOffset(), cell, pixel, bins);
+    addOwnSums(rules_, sums, cell, pixel, bins);
 }
 
 void DrawnEchoes::submit(const types::Snapshot& snapshot, Stages& stages) {
@@ -248,20 +256,22 @@ std::vector<LeftOut> DrawnEchoes::culled() const {
     if (ended_ == 0) return all;
     const Shown shown = surface_.lists().shown(lastSlot());
     const size_t triangles = geometry_->triangleCount();
-    const auto add = [&](Effect effect, size_t left_out, size_t of) {
+    const auto add = [&](const char* effect, size_t left_out, size_t of) {
         if (left_out > 0)
-            all.push_back({effect, Reason::OutOfView, static_cast<double>(left_out), static_cast<double>(of)});
+            all.push_back(
+                {effect, Reason::OutOfView, static_cast<double>(left_out), static_cast<double>(of), outOfView});
     };
-    add(Effect::Objects, static_cast<size_t>(std::ranges::count(shown.objects, false)), shown.objects.size());
-    add(Effect::Triangles, triangles - std::min(triangles, shown.triangles), triangles);
-    add(Effect::Slabs, shown.empty_frusta, plan_.frusta.size());
+    add("objects", static_cast<size_t>(std::ranges::count(shown.objects, false)), shown.objects.size());
+    add("triangles", triangles - std::min(triangles, shown.triangles), triangles);
+    add("slabs", shown.empty_frusta, plan_.frusta.size());
     return all;
 }
 
 }  // namespace
 
-std::unique_ptr<PipelinedEchoes> makeDrawnEchoes(const RenderPlan& plan, types::GeometryPtr geometry) {
-    return std::make_unique<DrawnEchoes>(plan, std::move(geometry));
+std::unique_ptr<PipelinedEchoes> makeDrawnEchoes(const RenderPlan& plan, types::GeometryPtr geometry,
+                                                 const PingEffects& effects) {
+    return std::make_unique<DrawnEchoes>(plan, std::move(geometry), effects);
 }
 
 }  // namespace insonify::sonar

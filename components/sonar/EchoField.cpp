@@ -7,6 +7,7 @@
 
 #include "components/sonar/RandomFields.hpp"
 #include "components/sonar/RangeResponse.hpp"
+#include "components/sonar/effects/Effects.hpp"
 #include "types/VectorMath.hpp"
 
 namespace insonify::sonar {
@@ -105,7 +106,6 @@ EchoField::EchoField(const RenderPlan& plan, int threads) : plan_(plan), respons
     const BinGrid grid = summedGrid(plan);
     const BinLevels levels(plan.config, grid);
     for (int k = 0; k < grid.bin_count; ++k) amplitudes_.push_back(std::sqrt(levels.factor(static_cast<size_t>(k))));
-    if (plan.features.has(Feature::Volume)) volume_.emplace(plan, grid);
     cells_.resize(plan.cells.size() * numbers());
     if (plan.has(Pass::Beamform)) {
         beamformer_ = fieldBeamformer(plan, numbers());
@@ -132,8 +132,8 @@ bool EchoField::fill(size_t cell, const EchoRules& rules, const uint64_t* sums, 
         field[0] = static_cast<float>(static_cast<double>(static_cast<int64_t>(real)) * unit);
         field[1] = static_cast<float>(static_cast<double>(static_cast<int64_t>(imaginary)) * unit);
     }
-    if (volume_) {
-        volume_->add(sums + rules.volumeOffset(), cell, solid_angle, energies(thread));
+    if (!rules.own.empty()) {
+        addOwnSums(rules, sums, cell, solid_angle, energies(thread));
         scatter(cell, scratch.energies, 1, scratch);
     }
     response_.spread(scratch.sorted, {&cells_[cell * numbers()], numbers()});

@@ -8,7 +8,7 @@
 #include "components/sonar/BinLevels.hpp"
 #include "components/sonar/EchoRules.hpp"
 #include "components/sonar/ThreadPool.hpp"
-#include "components/sonar/Volume.hpp"
+#include "types/Snapshot.hpp"
 #include "types/Sonar.hpp"
 
 namespace insonify::sonar {
@@ -89,7 +89,6 @@ private:
     const RenderPlan& plan_;
     FieldResponse response_;
     std::vector<double> amplitudes_;  ///< Spreading and absorption of the field in each range cell [1/m].
-    std::optional<VolumeLevels> volume_;
     std::optional<Beamformer> beamformer_;
     std::vector<float> cells_;  ///< [cell][sample][real, imaginary].
     std::vector<float> beams_;  ///< [beam][sample][real, imaginary]; none where cells are beams.

@@ -13,6 +13,7 @@
 namespace insonify::sonar {
 
 class EchoField;
+class PingEffects;
 class RayPaths;
 
 /** Where the time of a ping went: cull, draw, read, deposit, beams. */
@@ -23,7 +24,7 @@ struct Stage {
 using Stages = std::array<Stage, 5>;
 enum StageOf { CullStage, DrawStage, ReadStage, DepositStage, BeamStage };
 
-/** Fills the bins of pings as a plan says, which outlives it. One interface: drawn by OpenGL, or cast as rays on the
+/** Fills the bins of pings as a plan says; that and the effects outlive it. One interface: drawn by OpenGL, or cast as rays on the
  *  processor. */
 class EchoRenderer {
 public:
@@ -72,10 +73,12 @@ bool haveRays();
 /** Pings by rays on the processor, without OpenGL. Beams are shared out to the threads as these come free; a beam's
  *  rays are cast, deposited and turned into bins by one thread, while they are in its cache. Throws std::runtime_error
  *  where the build has none, or Embree refuses the scene. */
-std::unique_ptr<EchoRenderer> makeCastEchoes(const RenderPlan& plan, types::GeometryPtr geometry);
+std::unique_ptr<EchoRenderer> makeCastEchoes(const RenderPlan& plan, types::GeometryPtr geometry,
+                                             const PingEffects& effects);
 
 /** Pings drawn by OpenGL. Make it, use it and destroy it on one thread, under
  *  EglContext::making(). Throws gpu::GlError when there is no OpenGL 4.5 context, or when it is lost. */
-std::unique_ptr<PipelinedEchoes> makeDrawnEchoes(const RenderPlan& plan, types::GeometryPtr geometry);
+std::unique_ptr<PipelinedEchoes> makeDrawnEchoes(const RenderPlan& plan, types::GeometryPtr geometry,
+                                                 const PingEffects& effects);
 
 }  // namespace insonify::sonar

@@ -6,7 +6,7 @@
 #include <numbers>
 
 #include "components/sonar/Interface.hpp"
-#include "components/sonar/Volume.hpp"
+#include "components/sonar/effects/Effects.hpp"
 #include "types/Angle.hpp"
 
 namespace insonify::sonar {
@@ -46,7 +46,7 @@ double samplesOfLobe(const RenderPlan& plan, double samples) {
 
 }  // namespace
 
-EchoRules makeEchoRules(const RenderPlan& plan) {
+EchoRules makeEchoRules(const RenderPlan& plan, const PingEffects& effects) {
     const BinGrid bins = summedGrid(plan);
     EchoRules rules;
     rules.features = plan.features;
@@ -54,7 +54,7 @@ EchoRules makeEchoRules(const RenderPlan& plan) {
     rules.attenuation = makeAbsorption(plan.config).amplitudeNepersPerMetre();
     rules.strength_scale = strengthScale(plan);
     rules.laws = plan.laws;
-    rules.layers = layersOf(plan.config);
+    rules.hears_misses = plan.hears_misses;
     rules.lattice = scattererLattice(plan);
     if (plan.config.frequency_khz) rules.turns_per_metre = 2e3 * *plan.config.frequency_khz / bins.speed_of_sound;
     const double nearest = bins.range_min > 0 ? 1 / bins.range_min : std::numeric_limits<double>::max();
@@ -64,12 +64,13 @@ EchoRules makeEchoRules(const RenderPlan& plan) {
     rules.edges.resize(rules.edges.size() + bins_at_once);
     rules.middles.resize(rules.middles.size() + bins_at_once);
     if (rules.features.has(Feature::ElevationPattern)) tabulateElevation(plan, rules);
+    effects.giveRules(rules);
     return rules;
 }
 
-EchoRules makeEnergyRules(RenderPlan plan) {
+EchoRules makeEnergyRules(RenderPlan plan, const PingEffects& effects) {
     plan.features = plan.features.without(Feature::Speckle);
-    return makeEchoRules(plan);
+    return makeEchoRules(plan, effects);
 }
 
 double strengthScale(const RenderPlan& plan) {

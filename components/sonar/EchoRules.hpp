@@ -7,6 +7,9 @@
 
 namespace insonify::sonar {
 
+class PingEffect;
+class PingEffects;
+
 /** Bins that the processor fills together; lists of bins end in as many more. */
 constexpr int bins_at_once = 4;
 
@@ -27,21 +30,23 @@ struct EchoRules {
     MaterialLaws laws;
     std::vector<LatticeLevel> lattice;  ///< Of the scatterers; empty where energies are summed.
     double turns_per_metre = 0;         ///< Phase of an echo for each metre of its slant range, two way [1/m].
-    std::vector<double> layers;  ///< Three each: low and high above the water surface [m], share of the strongest [1].
+    std::vector<double> layers;              ///< Three each: low and high above the water surface [m], share of the strongest [1].
+    bool hears_misses = false;               ///< Whether effects hear cells that meet nothing.
+    std::vector<const PingEffect*> own;      ///< Effects with sums of their own, which come after the channels.
 
     size_t channels() const { return features.has(Feature::Cerqueira2017) || features.has(Feature::Speckle) ? 2 : 1; }
     /** Bins from one beam's first to the next one's. */
     size_t beamStride() const { return static_cast<size_t>(bins.bin_count) + bins_at_once; }
-    /** Numbers of a beam: [bin][channel], and with a volume its change in each bin. */
-    size_t sumCount() const { return beamStride() * (channels() + (features.has(Feature::Volume) ? 1 : 0)); }
-    /** Where in them the volume begins. */
-    size_t volumeOffset() const { return beamStride() * channels(); }
+    /** Numbers of a beam: [bin][channel], then for each effect with sums of its own one for each bin. */
+    size_t sumCount() const { return beamStride() * (channels() + own.size()); }
+    /** Where in them those of such an effect begin. */
+    size_t ownOffset(size_t effect) const { return beamStride() * (channels() + effect); }
 };
 
-/** Rules for the plan's quality. */
-EchoRules makeEchoRules(const RenderPlan& plan);
+/** Rules for the plan's quality; the effects outlive them. */
+EchoRules makeEchoRules(const RenderPlan& plan, const PingEffects& effects);
 /** The same with energies in the plan's bins, whatever it sums. */
-EchoRules makeEnergyRules(RenderPlan plan);
+EchoRules makeEnergyRules(RenderPlan plan, const PingEffects& effects);
 
 /** The power of 2, at most 1, by which strengths must be scaled so that no sum of quanta overflows: 1 but for
  *  materials, images or bins that are extreme together. */

@@ -43,7 +43,7 @@ private:
 };
 
 std::vector<std::string> definesOf(const DepositSetup& setup) {
-    std::vector<std::string> defines = setup.rules.features.defines();
+    std::vector<std::string> defines = setup.defines;
     if (setup.group_sums) defines.emplace_back("HAVE_GROUP_SUMS");
     return defines;
 }

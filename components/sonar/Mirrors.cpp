@@ -1,13 +1,37 @@
 #include "components/sonar/Mirrors.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <limits>
 #include <numbers>
 
-#include "components/sonar/Volume.hpp"
+#include "components/sonar/WaterView.hpp"
 #include "types/Hash.hpp"
 
 namespace insonify::sonar {
+namespace {
+
+std::string noSurface(const LeftOut& /*what*/, const BinGrid& /*grid*/) {
+    return "multipath.surface is given, and the scene has no water_surface";
+}
+std::string aboveSurface(const LeftOut& /*what*/, const BinGrid& /*grid*/) {
+    return "the sonar was above the water surface at the first ping";
+}
+std::string beyondRange(const LeftOut& what, const BinGrid& /*grid*/) {
+    return fmt::format("the water surface was {:.4g} m away at the first ping, beyond {:.4g} m", what.value, what.bound);
+}
+
+}  // namespace
+
+double reflectedPower(const types::Material& material, int bounces) {
+    constexpr double min_reflection = 0.5, steepest = 0.3;
+    const double reflection = std::abs(static_cast<double>(material.reflection));
+    if (material.mirror && bounces > 0) return reflection > 0 ? reflection * reflection : 1;
+    const bool smooth = material.roughness_slope && static_cast<double>(*material.roughness_slope) < steepest;
+    return bounces > 1 && smooth && reflection > min_reflection ? reflection * reflection : 0;
+}
+
 
 double slopeOfSea(double wind) {
     if (!(wind > 0)) return 0;
@@ -31,11 +55,11 @@ void WaterMirror::place(const types::Snapshot& snapshot, double range_max) {
     plane_ = {water.up, -water.height};
     left_out_.reset();
     if (wanted_ && !snapshot.water_surface)
-        left_out_ = LeftOut{Effect::Multipath, Reason::NoWaterSurface};
+        left_out_ = LeftOut{.effect = "multipath", .reason = Reason::Lacking, .words = noSurface};
     else if (wanted_ && !(plane_.distance > 0))
-        left_out_ = LeftOut{Effect::Multipath, Reason::AboveSurface};
+        left_out_ = LeftOut{.effect = "multipath", .reason = Reason::Other, .words = aboveSurface};
     else if (wanted_ && plane_.distance > range_max)
-        left_out_ = LeftOut{Effect::Multipath, Reason::BeyondRange, plane_.distance, range_max};
+        left_out_ = LeftOut{"multipath", Reason::Other, plane_.distance, range_max, beyondRange};
     reflects_ = wanted_ && !left_out_;
 }
 

@@ -7,7 +7,7 @@ namespace insonify::sonar {
 
 bool haveRays() { return false; }
 
-std::unique_ptr<EchoRenderer> makeCastEchoes(const RenderPlan&, types::GeometryPtr) {
+std::unique_ptr<EchoRenderer> makeCastEchoes(const RenderPlan&, types::GeometryPtr, const PingEffects&) {
     throw std::runtime_error("this build has no rays (Embree); visibility may be auto or gl");
 }
 

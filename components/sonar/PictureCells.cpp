@@ -66,7 +66,7 @@ public:
           cells_(deposit_.cells),
           frame_{std::cos(part.frustum.azimuth), std::sin(part.frustum.azimuth), part.frustum.dv(),
                  1 / (part.frustum.du() * part.frustum.dv()), has(Feature::Nearest) || has(Feature::Published)},
-          counts_misses_(has(Feature::Published) || has(Feature::VolumeLayers)),
+          counts_misses_(has(Feature::Published) || part.rules.hears_misses),
           jitters_(has(Feature::Jitter)) {}
 
     void run() {

@@ -130,9 +130,8 @@ bool isLoud(Model model, const types::Sonar& ping) {
 std::string silenceText(const RenderPlan& plan, bool all_round, const types::Snapshot& scene) {
     const Coverage coverage{plan, all_round};
     const glm::dvec3 ahead = scene.sonar.orientation * glm::dvec3(1, 0, 0);
-    const bool is_clear = plan.config.volume.empty();
     return fmt::format("{} {} and {}{}{}",
-                       is_clear ? "hears nothing. The sonar is at" : "hears nothing but the water. The sonar is at",
+                       plan.fills_water ? "hears nothing but the water. The sonar is at" : "hears nothing. The sonar is at",
                        text(scene.sonar.position), directionText(ahead), surfaceText(coverage, scene),
                        targetText(coverage, scene));
 }

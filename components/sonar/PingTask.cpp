@@ -12,6 +12,7 @@
 #include "components/framework/Activity.hpp"
 #include "components/framework/Properties.hpp"
 #include "components/sonar/PlanReport.hpp"
+#include "components/sonar/effects/Refraction.hpp"
 #include "types/ConfigError.hpp"
 #include "types/Pose.hpp"
 
@@ -235,7 +236,7 @@ void PingTask::followQuality(types::Sonar& sample, double ms) {
 
 bool PingTask::renderPing(SonarRenderer& renderer, types::Snapshot& scene, types::Sonar& sample) {
     renderer.render(scene, sample);
-    return renderer.hasEchoes() || renderer.targetsHeard() > 0;
+    return renderer.hasEchoes() || renderer.othersHeard() > 0;
 }
 
 RenderPlan PingTask::coverage(const types::Snapshot& /*scene*/) const { return renderer_->renderPlan(); }
@@ -255,12 +256,11 @@ void PingTask::render() {
     const std::chrono::duration<double, std::milli> took = std::chrono::steady_clock::now() - start;
     for (const Stage& stage : renderStages(*renderer_)) recordStage(stage.name, stage.seconds);
     if (std::exchange(culling_untold_, false) && rendersOnce()) {
-        for (const LeftOut& what : renderer_->culled()) {
+        for (const LeftOut& what : renderer_->leftOut()) {
             plan_->omitted.push_back(describe(what, grid_));
-            if (what.reason == Reason::NoWaterSurface)
+            if (what.reason == Reason::Lacking)
                 plan_->notices.push_back("Warning: " + plan_->omitted.back().reason);
         }
-        if (const auto what = renderer_->targetsLeftOut()) plan_->omitted.push_back(describe(*what, grid_));
     }
     followQuality(*sample, took.count());
     if (const std::string diagnostic = diagnosticOf(heard, *sample); !diagnostic.empty()) warn(diagnostic);

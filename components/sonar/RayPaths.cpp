@@ -6,7 +6,8 @@
 #include <glm/gtc/quaternion.hpp>
 #include <glm/matrix.hpp>
 
-#include "components/sonar/Volume.hpp"
+#include "components/sonar/WaterView.hpp"
+#include "components/sonar/effects/MotionInPing.hpp"
 
 namespace insonify::sonar {
 namespace {
@@ -23,7 +24,7 @@ RayPaths::RayPaths(const RenderPlan& plan, const types::Geometry& geometry)
     : plan_(plan), coupling_(dopplerCoupling(plan.config)), share_(plan.beams.size() == 1 ? 0.5 : 1), stretch_(1) {
     if (plan.profile) table_.emplace(*plan.profile, plan.grid);
     if (plan.profile) stretch_ = std::max(1.0, plan.profile->fastest() / plan.grid.speed_of_sound);
-    if (plan.features.has(Feature::MotionInPing)) motion_.emplace(geometry, 0.1 * plan.grid.speed_of_sound);
+    if (plan.config.motion_in_ping) motion_.emplace(geometry, 0.1 * plan.grid.speed_of_sound);
     corners_.reserve(RayTable::max_corners + 1);
 }
 

@@ -33,7 +33,7 @@ class RayPaths {
 public:
     static constexpr double max_focus = 4;  ///< At a caustic rays would give infinitely much [1].
 
-    /** Of a plan with Feature::Refraction or Feature::MotionInPing; both outlive it. */
+    /** Of a plan with refraction or motion within a ping; both outlive it. */
     RayPaths(const RenderPlan& plan, const types::Geometry& geometry);
 
     /** Once a ping. Allocates nothing after the second. */

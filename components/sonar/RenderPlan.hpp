@@ -4,6 +4,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "components/acoustics/Absorption.hpp"
@@ -18,7 +19,7 @@
 namespace insonify::sonar {
 
 /** What is compiled into the estimators where it is wanted: `#ifdef HAVE_<NAME>` in the shaders and in what the
- *  processor compiles of them. */
+ *  processor compiles of them. Effects add names of their own (RenderPlan::effect_features). */
 enum class Feature {
     Physical,
     Cerqueira2017,
@@ -30,13 +31,9 @@ enum class Feature {
     Jitter,
     ElevationPattern,
     BackscatterLaws,  ///< Of any material: a table, or a lobe.
-    Volume,
-    VolumeLayers,
-    Speckle,  ///< Fields of scatterers are summed, not energies.
-    Refraction,
-    MotionInPing
+    Speckle           ///< Fields of scatterers are summed, not energies.
 };
-constexpr int feature_count = 15;
+constexpr int feature_count = 11;
 
 /** A set of features. */
 class Features {
@@ -55,8 +52,6 @@ public:
     constexpr Features operator|(Features other) const { return Features(bits_ | other.bits_); }
     /** "physical", "normal_map"... */
     std::vector<std::string> names() const;
-    /** "HAVE_PHYSICAL", "HAVE_NORMAL_MAP"..., for the shaders. */
-    std::vector<std::string> defines() const;
 
     unsigned bits_ = 0;  ///< Public so that a set can be a template's parameter.
 
@@ -67,62 +62,30 @@ private:
 /** Work for each ping, in this order. */
 enum class Pass { Cull, Surface, Rays, Deposit, Paths, Beams, Beamform, Pulse, RingDown };
 
-/** What may be left out of a ping. */
-enum class Effect {
-    Absorption,
-    AbsorptionInBin,
-    SpecularLobe,
-    SeabedLaw,
-    MeasuredBackscatter,
-    Spreading,
-    BackscatterByMaterial,
-    RangeFootprints,
-    ElevationMask,
-    SharedColumns,
-    NearBlanking,
-    AzimuthPattern,
-    ElevationPattern,
-    RangePointSpread,
-    RingDown,
-    PointTargets,
-    Volume,
-    Speckle,
-    Multipath,
-    FurtherSlabs,
-    Refraction,
-    MotionInPing,
-    NormalMaps,
-    Objects,
-    Triangles,
-    Slabs
-};
-
-/** Why something is left out. */
+/** Why something is left out, as far as anybody asks; its words tell the rest. */
 enum class Reason {
     NotConfigured,
-    NoFrequency,
-    NoMaterialHasOne,
     NoneInScene,
-    MeansOfS,      ///< Bins of `cerqueira2017` are means of S(n.d).
-    Published,     ///< The published simulator has none.
+    Lacking,       ///< It is asked for, and the scene lacks what it needs: a warning.
     BelowBound,    ///< `value` is below `bound`.
     Approximated,  ///< `value` is what it amounts to.
-    NoBounces,     ///< As many reflections are asked for.
-    NoMirror,      ///< Nothing in the scene reflects, or is asked to.
-    NoWaterSurface,
-    AboveSurface,  ///< The sonar is not in the water.
-    BeyondRange,   ///< `value` is the distance of the mirror, `bound` the range [m].
-    OneImage,      ///< One image shows the whole fan.
-    OutOfView      ///< `value` of `bound` at the first ping.
+    OutOfView,     ///< `value` of `bound` at the first ping.
+    Other
 };
 
 /** Something that is left out, with the numbers that allow it. */
 struct LeftOut {
-    Effect effect;
+    /** The reason in words. */
+    using Words = std::string (*)(const LeftOut& what, const BinGrid& grid);
+
+    std::string_view effect;  ///< Its name in words, a constant.
     Reason reason;
-    double value = std::numeric_limits<double>::quiet_NaN();  ///< In the effect's unit, which the report tells.
+    double value = std::numeric_limits<double>::quiet_NaN();  ///< In the effect's unit, which the words give.
     double bound = std::numeric_limits<double>::quiet_NaN();
+    Words words = nullptr;  ///< Null: those of the reason.
 };
+
+class Effect;
 
 /** What is compiled and run for a sonar and a scene, decided once, without OpenGL: the renderer, both deposits, the
  *  studies and what a user is told all read it. */
@@ -131,7 +94,9 @@ struct RenderPlan {
     RenderOptions options;
     bool casts_rays = false;
     Features features;
-    std::vector<Pass> passes;
+    std::vector<std::string> effect_features;  ///< Of the effects' own: "motion_in_ping".
+    std::vector<const Effect*> effects;        ///< Those that take part, in order.
+    std::vector<Pass> passes;                  ///< In order.
     BinGrid grid;
     MaterialLaws laws;
     std::shared_ptr<const acoustics::SoundProfile> profile;  ///< That bends the rays; null: they are straight.
@@ -140,47 +105,26 @@ struct RenderPlan {
     SonarConfig sampled;                     ///< What is sampled: sampledConfig(), or `config`.
     Fan cells;                               ///< Its azimuth cells; the beams themselves without a pattern in azimuth.
     std::vector<ViewFrustum> frusta;         ///< Images of the cells; none with rays.
+    bool fills_water = false;                ///< Whether there are echoes where no surface is.
+    bool hears_misses = false;               ///< Whether effects hear samples that meet nothing.
     std::vector<LeftOut> left_out;
 
     /** Other rows and columns per beam [1], and the images that go with them. */
     void setQuality(int rows, int columns_per_beam);
     bool has(Pass pass) const { return std::ranges::count(passes, pass) > 0; }
-    /** What is left out of an effect, null where it is not. */
-    const LeftOut* leftOut(Effect effect) const;
+    /** Adds a pass at its place in the order. */
+    void add(Pass pass) { passes.insert(std::ranges::upper_bound(passes, pass), pass); }
+    bool hasFeature(std::string_view name) const;
+    /** "physical", "normal_map"..., then those of effects. */
+    std::vector<std::string> featureNames() const;
+    /** "HAVE_PHYSICAL", "HAVE_NORMAL_MAP"..., for the shaders. */
+    std::vector<std::string> defines() const;
+    /** What is left out of an effect, by its name in words; null where it is not. */
+    const LeftOut* leftOut(std::string_view effect) const;
 };
 
 RenderPlan makeRenderPlan(const SonarConfig& config, const types::Geometry& geometry,
                           const RenderOptions& options = {});
-
-/** Share of the sound that a material reflects as a mirror does, where `bounces` reflections of a way are asked for
- *  [1]: one that is declared to, or from two on one that is smooth (ACOUSTICS.md 5.23); 0: it does not. */
-double reflectedPower(const types::Material& material, int bounces);
-
-/** Gradient of the speed of sound with depth that refraction is judged by without a profile, a strong thermocline
- *  [1/s]. */
-constexpr double speed_gradient = 0.1;
-
-/** How far a ray is bent at the far edge by a gradient [1/s], and what of it can be ignored [m] (ACOUSTICS.md 12). */
-struct Bending {
-    double offset, tolerated;
-};
-Bending bending(const SonarConfig& config, const BinGrid& grid, double gradient = speed_gradient);
-
-/** From where on motion within a ping is heard: half a bin at the far edge, half the width of a beam (ACOUSTICS.md 12).
- */
-struct MotionBound {
-    double speed;  ///< [m/s]
-    double turn;   ///< [rad/s]
-};
-MotionBound motionBound(const SonarConfig& config, const BinGrid& grid);
-
-/** What a chirp adds to the range of an echo for each metre a second at which it recedes, f T / B; 0: nothing [s]. */
-double dopplerCoupling(const SonarConfig& config);
-
-/** Why a sonar cannot bend its rays as its profile of the speed of sound would have them; empty where it can, or where
- *  these are too straight for it to matter.
- *  @throws types::ConfigError with all that is wrong with the profile's file */
-std::string whyStraight(const SonarConfig& config);
 
 /** The configured absorption; none when the block is absent. A law needs `water`. */
 acoustics::Absorption makeAbsorption(const SonarConfig& config);
@@ -192,7 +136,7 @@ struct insonify::types::EnumNames<insonify::sonar::Feature> {
     static constexpr std::string_view names[] = {
         "physical",   "cerqueira2017", "absorption", "published",         "conical",
         "normal_map", "nearest",       "jitter",     "elevation_pattern", "backscatter_laws",
-        "volume",     "volume_layers", "speckle",    "refraction",        "motion_in_ping"};
+        "speckle"};
 };
 template <>
 struct insonify::types::EnumNames<insonify::sonar::Pass> {

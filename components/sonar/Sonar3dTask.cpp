@@ -90,7 +90,7 @@ bool Sonar3dTask::renderPing(SonarRenderer& renderer, types::Snapshot& scene, ty
         scene.sonar.orientation = ahead * glm::angleAxis(azimuth, glm::dvec3(0, 0, 1)) * stood_up;
         renderer.render(scene, fan_);
         for (size_t i = 0; i < fan_stages_.size(); ++i) fan_stages_[i].seconds += renderer.stages()[i].seconds;
-        heard = renderer.hasEchoes() || renderer.targetsHeard() > 0 || heard;
+        heard = renderer.hasEchoes() || renderer.othersHeard() > 0 || heard;
         if (column == 0) shape(sample);
         addTo(sample, column);
         if (wantsReturns()) detect(column);

@@ -10,11 +10,11 @@
 #include "components/sonar/BeamFan.hpp"
 #include "components/sonar/BinGrid.hpp"
 #include "components/sonar/EchoRenderer.hpp"
+#include "components/sonar/effects/Effects.hpp"
 
 namespace insonify::sonar {
 namespace {
 
-constexpr size_t max_layers = 16;
 constexpr int64_t max_ray_columns = int64_t{1} << 22;
 
 void checkPublished(const SonarConfig& config, types::Diagnostics& diagnostics) {
@@ -26,32 +26,6 @@ void checkPublished(const SonarConfig& config, types::Diagnostics& diagnostics) 
                                                         config.coverageDeg())});
     if (config.beam_geometry != BeamGeometry::Planar)
         diagnostics.push_back({"beam_geometry", "is conical; must be planar with published: true"});
-}
-
-/** Beams and pulses of the sonar equation, which bins of means know nothing of. */
-void checkPhysics(const SonarConfig& config, types::Diagnostics& diagnostics) {
-    const bool means = config.model == Model::Cerqueira2017;
-    if (means && config.beam_pattern)
-        diagnostics.push_back({"beam_pattern", "is given with model: cerqueira2017; it belongs to physical"});
-    if (means && !config.volume.empty())
-        diagnostics.push_back({"volume", "is given with model: cerqueira2017; it belongs to physical"});
-    if (config.volume.size() > max_layers)
-        diagnostics.push_back({"volume", fmt::format("has {} layers; may have {}", config.volume.size(), max_layers)});
-    if (means && config.pulse)
-        diagnostics.push_back({"pulse", "is given with model: cerqueira2017; it belongs to physical"});
-    if (config.pulse && config.pulse->chirp_us && !(config.motion_in_ping && config.frequency_khz))
-        diagnostics.push_back(
-            {"pulse.chirp_us", "is given without motion_in_ping: true and frequency_khz, both of which it needs"});
-    if (!config.beam_pattern || config.frequency_khz) return;
-    const auto checkLaw = [&](const std::string& path, const std::optional<acoustics::BeamLaw>& law) {
-        if (law && law->aperture_m)
-            diagnostics.push_back(
-                {"beam_pattern." + path + ".aperture_m", "is given without frequency_khz, which it needs"});
-    };
-    checkLaw("transmit.azimuth", config.beam_pattern->transmit.azimuth);
-    checkLaw("transmit.elevation", config.beam_pattern->transmit.elevation);
-    checkLaw("receive.azimuth", config.beam_pattern->receive.azimuth);
-    checkLaw("receive.elevation", config.beam_pattern->receive.elevation);
 }
 
 void checkRangeReached(const SonarConfig& config, types::Diagnostics& diagnostics) {
@@ -83,13 +57,6 @@ void checkStraightWays(const SonarConfig& config, types::Diagnostics& diagnostic
     if (!name.empty() && (bends || config.motion_in_ping))
         diagnostics.push_back({name, std::string("follows straight ways; leave it out, or ") +
                                          (bends ? "water.profile" : "motion_in_ping")});
-}
-
-void checkSpeckle(const SonarConfig& config, types::Diagnostics& diagnostics) {
-    if (config.speckle && !config.speckle->coherent && config.speckle->scatterers_per_m2)
-        diagnostics.push_back({"speckle.scatterers_per_m2", "is given without coherent: true, which it needs"});
-    if (config.isCoherent() && !config.frequency_khz)
-        diagnostics.push_back({"speckle", "is coherent without frequency_khz, which it needs"});
 }
 
 /** Why the receiver's law in azimuth is of no array of elements; empty where it is. */
@@ -207,14 +174,6 @@ void checkDevice(const std::string& device, types::Diagnostics& diagnostics) {
 void AbsorptionConfig::check(types::Diagnostics& diagnostics) const {
     if (db_per_m && frequency_khz)
         diagnostics.push_back({"db_per_m", "stands beside frequency_khz; give one of the two"});
-}
-
-void VolumeLayer::check(types::Diagnostics& diagnostics) const {
-    if (!strength_db)
-        diagnostics.push_back({"", "has no strength_db; open sea has -90 to -70, plumes of sediment -50"});
-    if (top_m && bottom_m && !(*top_m < *bottom_m))
-        diagnostics.push_back(
-            {"bottom_m", fmt::format("is {:g}, not below top_m, {:g}; depths grow downwards", *bottom_m, *top_m)});
 }
 
 ElementsConfig::Array ElementsConfig::arrayOf(double aperture_m, double wavelength) const {
@@ -342,11 +301,10 @@ void SonarConfig::checkBeam(types::Diagnostics& diagnostics) const {
     if (beam_width_deg > 120)
         diagnostics.push_back({"beam_width_deg", fmt::format("is {:g} deg; one beam may have 120", *beam_width_deg)});
     if (published) checkPublished(*this, diagnostics);
-    checkPhysics(*this, diagnostics);
+    for (const Effect* effect : sonar::effects()) effect->check(*this, diagnostics);
     checkRangeReached(*this, diagnostics);
     checkVisibility(*this, diagnostics);
     checkStraightWays(*this, diagnostics);
-    checkSpeckle(*this, diagnostics);
     checkElements(*this, diagnostics);
     if (!diagnostics.empty()) return;
     if (castsRays()) return checkRays(*this, diagnostics);

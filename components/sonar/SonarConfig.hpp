@@ -1,4 +1,5 @@
 #pragma once
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -234,10 +235,9 @@ struct SonarConfig {
     std::optional<SpeckleConfig> speckle;
     std::optional<ElementsConfig> elements;
     std::optional<MultipathConfig> multipath;
+    std::map<std::string, std::map<std::string, double>> effects;
     std::optional<types::MovedTo> tvg, gain, output, source_level_db;
 
-    /** Whether there is more than one water that scatters, or one with bounds. */
-    bool hasLayers() const { return volume.size() > 1 || (!volume.empty() && (volume[0].top_m || volume[0].bottom_m)); }
     /** Rows of samples and columns per beam, until others are chosen for an error or a time [1]. */
     int rows() const { return quality.rows.value_or(256); }
     int columnsPerBeam() const { return quality.columns_per_beam.value_or(2); }
@@ -343,6 +343,8 @@ void SonarConfig::describeBeam(Self& self, V& visit) {
                 "conical and a weighted aperture in beam_pattern.receive.azimuth; absent: they are not told"},
           self.elements);
     visit(Field{"multipath", "", "echoes by way of mirrors; absent: none"}, self.multipath);
+    visit(Field{"effects", "", "numbers of effects of other libraries, by name (components/sonar/README.md, A new effect)"},
+          self.effects);
     visit(Field{"tvg", "",
                 "has moved: a sonar gives intensities; tvg belongs to a receiver::ReceiverTask after the noise"},
           self.tvg);

@@ -62,12 +62,11 @@ public:
     const types::Plan& plan() const;
     /** Whether the last ping has any echo of a surface. */
     bool hasEchoes() const;
-    /** What of the scene the last ping did not draw: objects, triangles, frusta; nothing with rays. */
-    std::vector<LeftOut> culled() const;
-    /** How many point targets the last ping has heard [1]. */
-    size_t targetsHeard() const;
-    /** Point targets that it has not heard, or that there are none; none before the first ping, or if all are heard. */
-    std::optional<LeftOut> targetsLeftOut() const;
+    /** What the last ping left out: objects, triangles and pictures that were not drawn, point targets that are not
+     *  heard or not there, a water surface that does not reflect. */
+    std::vector<LeftOut> leftOut() const;
+    /** Of how many things other than surfaces the last ping has an echo: point targets [1]. */
+    size_t othersHeard() const;
     const std::string& device() const;  ///< What renders, with its driver.
 
 private:

@@ -26,7 +26,7 @@ public:
     TileCells(const EchoRules& rules, const CastView& view, const PlacedScene& scene, const EchoSums& to)
         : conical_(rules.features.has(Feature::Conical)),
           mapped_(rules.features.has(Feature::NormalMap)),
-          passes_volume_(rules.features.has(Feature::VolumeLayers)),
+          hears_misses_(rules.hears_misses),
           view_(view.cells),
           shape_(view.shape),
           scene_(scene),
@@ -41,7 +41,7 @@ public:
             const int merged = met ? sameFrom(*tile.hits, i) : 1;
             if (met)
                 addCell(tile, i, merged);
-            else if (passes_volume_)
+            else if (hears_misses_)
                 addMiss(tile, i);
             i += merged;
         }
@@ -115,7 +115,7 @@ private:
         if (++cells_.count == Cells::capacity) finish();
     }
 
-    /** Adds a sample that meets nothing: it passes through the layers of the volume. */
+    /** Adds a sample that meets nothing: effects alone hear it. */
     void addMiss(const CastTile& tile, int sample) {
         const int column = tile.first_column + shape_.at[sample].columns, i = cells_.count;
         if (column >= view_.columns() || tile.first_row + shape_.at[sample].rows >= view_.rows) return;
@@ -191,7 +191,7 @@ private:
             cells_.width[i] * (view.elevations[low + 2 * up].weighted - view.elevations[low].weighted) / view.cell();
     }
 
-    bool conical_, mapped_, passes_volume_;
+    bool conical_, mapped_, hears_misses_;
     const AngularView& view_;
     const TileShape& shape_;
     const PlacedScene& scene_;

@@ -3,13 +3,16 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <functional>
 #include <iterator>
+#include <map>
 #include <memory>
 
 #include "components/sonar/BinGrid.hpp"
 #include "components/sonar/PlanReport.hpp"
 #include "components/sonar/RenderPlan.hpp"
 #include "components/sonar/SonarRenderer.hpp"
+#include "components/sonar/effects/Effects.hpp"
 #include "components/study/Metrics.hpp"
 
 namespace insonify::study {
@@ -102,8 +105,7 @@ public:
         types::Sonar ping;
         renderer.render(snapshot, ping);
         left_out_ = renderer.renderPlan().left_out;
-        std::ranges::copy(renderer.culled(), std::back_inserter(left_out_));
-        if (const auto what = renderer.targetsLeftOut()) left_out_.push_back(*what);
+        std::ranges::copy(renderer.leftOut(), std::back_inserter(left_out_));
     }
 
     std::vector<OmissionRow> run() {
@@ -141,38 +143,53 @@ private:
             row.bound_of = of;
             return true;
         };
-        switch (what.effect) {
-            case sonar::Effect::Absorption:
-                with.config.absorption.emplace().db_per_m = 0;
-                return bound(0, "change: 0 dB/m");
-            case sonar::Effect::RangePointSpread:
-                return planned_.config.model == sonar::Model::Physical && neutralPulse(with, row);
-            case sonar::Effect::RingDown: return weakRingDown(with, row);
-            case sonar::Effect::PointTargets:
-                if (what.reason != sonar::Reason::NoneInScene) return false;
-                with.snapshot.targets = {{with.snapshot.sonar.worldFromBody() * glm::dvec4(1, 0, 0, 1), -3000}};
-                return bound(0, "change: a target of -3000 dB");
-            case sonar::Effect::Multipath:
-                if (what.reason != sonar::Reason::NotConfigured) return false;
-                with.config.multipath.emplace().bounces = 0;
-                return bound(0, "change: no bounces");
-            case sonar::Effect::NormalMaps:
-                with.snapshot.geometry = withFlatMap(*planned_.snapshot.geometry);
-                return bound(1e-6, "change: a map that bends nothing, in float");
-            case sonar::Effect::MotionInPing:
-                with.config.motion_in_ping = true;
-                return planned_.config.castsRays() && bound(0, "change: a sonar at rest");
-            case sonar::Effect::AbsorptionInBin: return splitBins(with, row);
-            case sonar::Effect::FurtherSlabs:
-                with.options.min_frusta = 2;
-                return bound(quality_, "rel_l2_tvg: what twice the rows and columns change");
-            case sonar::Effect::Objects:
-            case sonar::Effect::Triangles:
-            case sonar::Effect::Slabs:
-                with.config.draw_all = true;
-                return bound(1e-5, "change: pixels beyond the range that reach back into it");
-            default: return false;
-        }
+        using Put = std::function<bool()>;
+        const Put draw_all = [&] {
+            with.config.draw_all = true;
+            return bound(1e-5, "change: pixels beyond the range that reach back into it");
+        };
+        const std::map<std::string_view, Put> ways{
+            {"absorption",
+             [&] {
+                 with.config.absorption.emplace().db_per_m = 0;
+                 return bound(0, "change: 0 dB/m");
+             }},
+            {"range point-spread",
+             [&] { return planned_.config.model == sonar::Model::Physical && neutralPulse(with, row); }},
+            {"transmit ring-down", [&] { return weakRingDown(with, row); }},
+            {"point targets",
+             [&] {
+                 if (what.reason != sonar::Reason::NoneInScene) return false;
+                 with.snapshot.targets = {{with.snapshot.sonar.worldFromBody() * glm::dvec4(1, 0, 0, 1), -3000}};
+                 return bound(0, "change: a target of -3000 dB");
+             }},
+            {"multipath",
+             [&] {
+                 if (what.reason != sonar::Reason::NotConfigured) return false;
+                 with.config.multipath.emplace().bounces = 0;
+                 return bound(0, "change: no bounces");
+             }},
+            {"normal maps",
+             [&] {
+                 with.snapshot.geometry = withFlatMap(*planned_.snapshot.geometry);
+                 return bound(1e-6, "change: a map that bends nothing, in float");
+             }},
+            {"motion within a ping",
+             [&] {
+                 with.config.motion_in_ping = true;
+                 return planned_.config.castsRays() && bound(0, "change: a sonar at rest");
+             }},
+            {"absorption inside a bin", [&] { return splitBins(with, row); }},
+            {"further slabs",
+             [&] {
+                 with.options.min_frusta = 2;
+                 return bound(quality_, "rel_l2_tvg: what twice the rows and columns change");
+             }},
+            {"objects", draw_all},
+            {"triangles", draw_all},
+            {"slabs", draw_all}};
+        const auto way = ways.find(what.effect);
+        return way != ways.end() && way->second();
     }
 
     /** A tone as long as a bin, which changes nothing. */
@@ -211,40 +228,14 @@ private:
 
     void measureKept() {
         const SonarConfig& config = planned_.config;
+        for (const sonar::Effect* effect : sonar::effects()) {
+            Way without = planned_;
+            if (const std::string name = effect->takeOut(without.config); !name.empty()) keep(name, without);
+        }
         Way without = planned_;
-        if (config.absorption) {
-            without.config.absorption.reset();
-            keep("absorption", without);
-        }
-        without = planned_;
-        if (config.beam_pattern) {
-            without.config.beam_pattern.reset();
-            keep("beam pattern", without);
-        }
-        without = planned_;
-        if (config.pulse) {
-            without.config.pulse.reset();
-            keep("pulse", without);
-        }
-        without = planned_;
-        if (config.pulse && config.pulse->ring_down) {
-            without.config.pulse->ring_down.reset();
-            keep("transmit ring-down", without);
-        }
-        without = planned_;
         if (config.model == sonar::Model::Physical && !planned_.snapshot.targets.empty()) {
             without.snapshot.targets.clear();
             keep("point targets", without);
-        }
-        without = planned_;
-        if (!config.volume.empty()) {
-            without.config.volume.clear();
-            keep("volume reverberation", without);
-        }
-        without = planned_;
-        if (config.tracesPaths()) {
-            without.config.multipath.reset();
-            keep("multipath", without);
         }
         without = planned_;
         without.snapshot.geometry =
@@ -262,7 +253,7 @@ private:
             keep("normal maps", without);
     }
 
-    void keep(const char* name, const Way& without) {
+    void keep(const std::string& name, const Way& without) {
         progress_(name);
         rows_.push_back({name, "configured", compared(without, planned_, pings_), {}, "", true});
     }

@@ -9,6 +9,7 @@
 #include "components/sonar/PlanReport.hpp"
 #include "components/sonar/ScanningSonarTask.hpp"
 #include "components/sonar/SonarRenderer.hpp"
+#include "components/sonar/effects/MotionInPing.hpp"
 #include "tests/support/Scenes.hpp"
 #include "tests/support/Sonars.hpp"
 #include "tests/support/TaskBench.hpp"
@@ -235,13 +236,13 @@ TEST(MotionTest, ASonarAtRestAndOneThatIsSlowChangeNoBit) {
 TEST(MotionTest, ThePlanTellsFromWhichSpeedOnMotionIsFollowed) {
     const auto geometry = test::sceneOf({test::ground(-10)});
     const RenderPlan plan = makeRenderPlan(fan(), *geometry);
-    EXPECT_TRUE(plan.features.has(Feature::MotionInPing));
-    EXPECT_FALSE(plan.leftOut(Effect::MotionInPing));
+    EXPECT_TRUE(plan.hasFeature("motion_in_ping"));
+    EXPECT_FALSE(plan.leftOut("motion within a ping"));
     EXPECT_THAT(report(plan, *geometry).notices,
                 testing::Contains(HasSubstr("motion within a ping is followed from 0.12 m/s or 1.2 deg/s on")));
     SonarConfig without = fan();
     without.motion_in_ping = false;
-    EXPECT_TRUE(makeRenderPlan(without, *geometry).leftOut(Effect::MotionInPing));
+    EXPECT_TRUE(makeRenderPlan(without, *geometry).leftOut("motion within a ping"));
 }
 
 /** What is wrong with a configuration, joined. */

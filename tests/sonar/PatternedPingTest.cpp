@@ -129,7 +129,7 @@ TEST(PatternedPingTest, ThePlanTellsWhatIsFormedAndSpreadAndWhatIsNot) {
     SonarConfig config = sonarOf(60, 16, 0.1, 300);
     const RenderPlan plain = makeRenderPlan(config, *geometry);
     EXPECT_FALSE(plain.has(Pass::Beamform) || plain.has(Pass::Pulse));
-    for (const Effect effect : {Effect::AzimuthPattern, Effect::ElevationPattern, Effect::RangePointSpread}) {
+    for (const char* const effect : {"azimuth beam pattern", "elevation beam pattern", "range point-spread"}) {
         ASSERT_TRUE(plain.leftOut(effect));
         EXPECT_EQ(plain.leftOut(effect)->reason, Reason::NotConfigured);
     }
@@ -138,13 +138,13 @@ TEST(PatternedPingTest, ThePlanTellsWhatIsFormedAndSpreadAndWhatIsNot) {
     config.pulse.emplace().duration_us = 90;  // resolves 0.045 m, in bins of 0.1 m
     const RenderPlan formed = makeRenderPlan(config, *geometry);
     EXPECT_TRUE(formed.has(Pass::Beamform));
-    EXPECT_FALSE(formed.leftOut(Effect::AzimuthPattern));
-    EXPECT_TRUE(formed.leftOut(Effect::ElevationPattern));
+    EXPECT_FALSE(formed.leftOut("azimuth beam pattern"));
+    EXPECT_TRUE(formed.leftOut("elevation beam pattern"));
     EXPECT_GT(formed.cells.size(), 2 * formed.beams.size());
     EXPECT_FALSE(formed.has(Pass::Pulse));
-    ASSERT_TRUE(formed.leftOut(Effect::RangePointSpread));
-    EXPECT_EQ(formed.leftOut(Effect::RangePointSpread)->reason, Reason::BelowBound);
-    EXPECT_DOUBLE_EQ(formed.leftOut(Effect::RangePointSpread)->value, 0.045);
+    ASSERT_TRUE(formed.leftOut("range point-spread"));
+    EXPECT_EQ(formed.leftOut("range point-spread")->reason, Reason::BelowBound);
+    EXPECT_DOUBLE_EQ(formed.leftOut("range point-spread")->value, 0.045);
     config.pulse->duration_us = 300;
     EXPECT_TRUE(makeRenderPlan(config, *geometry).has(Pass::Pulse));
 }

@@ -290,19 +290,23 @@ TEST(PointTargetTest, WhatMovesAsideUncoversIt) {
     types::Snapshot snapshot = withTarget(geometry, {10, 0, 0}, 60);
     const auto targetsHeard = [&] {
         renderer.render(snapshot, ping);
-        return renderer.targetsHeard();
+        return renderer.othersHeard();
+    };
+    const auto leftOut = [&]() -> std::optional<Reason> {
+        for (const LeftOut& what : renderer.leftOut())
+            if (what.effect == "point targets") return what.reason;
+        return {};
     };
     EXPECT_EQ(targetsHeard(), 0u);
-    ASSERT_TRUE(renderer.targetsLeftOut());
-    EXPECT_EQ(renderer.targetsLeftOut()->reason, Reason::OutOfView);
+    EXPECT_EQ(leftOut(), Reason::OutOfView);
     snapshot.moved = {{0, glm::translate(glm::dmat4(1), {5.0, 3.0, 0.0})}};
     EXPECT_EQ(targetsHeard(), 1u);
-    EXPECT_FALSE(renderer.targetsLeftOut());
+    EXPECT_EQ(leftOut(), std::nullopt);
     snapshot.moved.clear();
     EXPECT_EQ(targetsHeard(), 0u) << "back where the scene has it";
     snapshot.targets.clear();
     EXPECT_EQ(targetsHeard(), 0u);
-    EXPECT_EQ(renderer.targetsLeftOut()->reason, Reason::NoneInScene);
+    EXPECT_EQ(leftOut(), Reason::NoneInScene);
 }
 
 TEST(PointTargetTest, FarFromTheOriginAndTurnedItIsTheSame) {

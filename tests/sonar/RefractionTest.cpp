@@ -10,6 +10,7 @@
 #include "components/acoustics/SoundProfile.hpp"
 #include "components/sonar/PlanReport.hpp"
 #include "components/sonar/SonarRenderer.hpp"
+#include "components/sonar/effects/Refraction.hpp"
 #include "components/sonar/SonarTask.hpp"
 #include "tests/support/Folder.hpp"
 #include "tests/support/Ports.hpp"
@@ -246,18 +247,18 @@ TEST(RefractionTest, ThePlanTellsWhetherRaysAreBentAndByWhichBound) {
         config.bin_count = 200;
         return makeRenderPlan(config, *geometry);
     };
-    EXPECT_TRUE(planOf(2000, thermocline()).features.has(Feature::Refraction));
-    EXPECT_FALSE(planOf(2000, thermocline()).leftOut(Effect::Refraction));
+    EXPECT_TRUE(planOf(2000, thermocline()).hasFeature("refraction"));
+    EXPECT_FALSE(planOf(2000, thermocline()).leftOut("refraction"));
     const RenderPlan near = planOf(20, profileOf({{0, 1500}, {20, 1500.2}}));
-    EXPECT_FALSE(near.features.has(Feature::Refraction));
-    ASSERT_TRUE(near.leftOut(Effect::Refraction));
-    EXPECT_NEAR(near.leftOut(Effect::Refraction)->value, 0.01 * 20 * 20 / 3000, 1e-9);
-    EXPECT_NEAR(near.leftOut(Effect::Refraction)->bound, 0.1 * 20 * radians(30), 1e-9);
-    EXPECT_THAT(describe(*near.leftOut(Effect::Refraction), near.grid).reason,
+    EXPECT_FALSE(near.hasFeature("refraction"));
+    ASSERT_TRUE(near.leftOut("refraction"));
+    EXPECT_NEAR(near.leftOut("refraction")->value, 0.01 * 20 * 20 / 3000, 1e-9);
+    EXPECT_NEAR(near.leftOut("refraction")->bound, 0.1 * 20 * radians(30), 1e-9);
+    EXPECT_THAT(describe(*near.leftOut("refraction"), near.grid).reason,
                 HasSubstr("a gradient of 0.01 1/s bends by"));
-    EXPECT_TRUE(planOf(100, profileOf({{0, 1490}, {9, 1490}})).features.has(Feature::Refraction))
+    EXPECT_TRUE(planOf(100, profileOf({{0, 1490}, {9, 1490}})).hasFeature("refraction"))
         << "no gradient, but another speed than the sonar's: 0.67 m at 100 m, by bins of 0.5 m";
-    EXPECT_FALSE(planOf(100, profileOf({{0, 1498}, {9, 1498}})).features.has(Feature::Refraction)) << "0.13 m";
+    EXPECT_FALSE(planOf(100, profileOf({{0, 1498}, {9, 1498}})).hasFeature("refraction")) << "0.13 m";
 }
 
 TEST(RefractionTest, WhatIsDrawnRefusesAProfileThatMatters) {

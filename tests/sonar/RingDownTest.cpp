@@ -56,10 +56,10 @@ TEST(RingDownTest, ItIsHeardBesideTheEchoesAndIsNone) {
 TEST(RingDownTest, ThePlanSaysWhetherItIsAdded) {
     const auto geometry = test::sceneOf({test::wall(10)});
     SonarConfig config = sonar();
-    EXPECT_EQ(makeRenderPlan(config, *geometry).leftOut(Effect::RingDown)->reason, Reason::NotConfigured);
+    EXPECT_EQ(makeRenderPlan(config, *geometry).leftOut("transmit ring-down")->reason, Reason::NotConfigured);
     config.pulse->ring_down = acoustics::RingDownConfig{0, 25};
     EXPECT_TRUE(makeRenderPlan(config, *geometry).has(Pass::RingDown));
-    EXPECT_FALSE(makeRenderPlan(config, *geometry).leftOut(Effect::RingDown));
+    EXPECT_FALSE(makeRenderPlan(config, *geometry).leftOut("transmit ring-down"));
 }
 
 }  // namespace

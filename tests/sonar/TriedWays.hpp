@@ -5,6 +5,7 @@
 #include <glm/gtc/quaternion.hpp>
 #include <vector>
 
+#include "components/sonar/Mirrors.hpp"
 #include "components/sonar/TargetWays.hpp"
 #include "types/MeshRays.hpp"
 

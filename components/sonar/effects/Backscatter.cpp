@@ -1,0 +1,70 @@
+#include <fmt/format.h>
+
+#include <numbers>
+
+#include "components/sonar/effects/Effect.hpp"
+
+namespace insonify::sonar {
+namespace {
+
+std::string noMaterial(const LeftOut& /*what*/, const BinGrid& /*grid*/) { return "no material has one"; }
+std::string noLobe(const LeftOut& /*what*/, const BinGrid& /*grid*/) {
+    return "no material has a reflection and a roughness_slope";
+}
+std::string noFrequency(const LeftOut& /*what*/, const BinGrid& /*grid*/) {
+    return "no frequency_khz; sediments follow Lambert's law by their lambert_db";
+}
+
+/** Names in quotes, at most five of them. */
+std::string listed(const std::vector<std::string>& names) {
+    std::string text;
+    for (size_t i = 0; i < names.size() && i < 5; ++i) text += fmt::format("{}'{}'", i ? ", " : "", names[i]);
+    return names.size() > 5 ? text + ", ..." : text;
+}
+
+/** What materials give back other than by Lambert's law: lobes, seabeds, tables (ACOUSTICS.md 3). */
+class Backscatter final : public Effect {
+public:
+    bool plan(const types::Geometry& /*geometry*/, RenderPlan& plan) const override {
+        const MaterialLaws& laws = plan.laws;
+        if (!laws.tables.empty() || laws.hasLobes()) plan.features.add(Feature::BackscatterLaws);
+        if (plan.config.model != Model::Physical) return plan.features.has(Feature::BackscatterLaws);
+        const auto omitUnless = [&](bool has, const char* effect, LeftOut::Words words) {
+            if (!has) plan.left_out.push_back({.effect = effect, .reason = Reason::NoneInScene, .words = words});
+        };
+        omitUnless(laws.hasLobes(), "specular lobe", noLobe);
+        omitUnless(laws.has_seabeds, "seabeds by TR 9407", laws.lacks_frequency ? noFrequency : noMaterial);
+        omitUnless(laws.has_measured, "measured backscatter", noMaterial);
+        return plan.features.has(Feature::BackscatterLaws);
+    }
+    void note(const RenderPlan& plan, const types::Geometry& geometry,
+              std::vector<std::string>& notices) const override {
+        if (plan.config.model != Model::Physical) return;
+        std::vector<std::string> plain, loud;
+        for (size_t i = 0; i < geometry.materials.size(); ++i) {
+            const types::Material& material = geometry.materials[i];
+            if (!material.has_acoustics) plain.push_back(material.name);
+            const MaterialRecord& record = plan.laws.records[i];
+            if (record.law.x < 0 && record.values.x > std::numbers::inv_pi_v<float>) loud.push_back(material.name);
+        }
+        if (!plain.empty())
+            notices.push_back(fmt::format("{} of {} materials have no acoustic values and are medium sand, -16.7 dB: {}",
+                                          plain.size(), geometry.materials.size(), listed(plain)));
+        if (!loud.empty())
+            notices.push_back(
+                fmt::format("Warning: a lambert_db above -4.97 dB gives back more than it gets: {}", listed(loud)));
+        if (!plan.laws.outside_validity.empty())
+            notices.push_back(fmt::format(
+                "Warning: backscatter of seabeds is extrapolated outside its law's validity: {}",
+                plan.laws.outside_validity));
+    }
+};
+
+}  // namespace
+
+const Effect& backscatter() {
+    static const Backscatter effect;
+    return effect;
+}
+
+}  // namespace insonify::sonar

@@ -1,0 +1,47 @@
+#include "components/sonar/Mirrors.hpp"
+#include "components/sonar/effects/Effect.hpp"
+
+namespace insonify::sonar {
+namespace {
+
+std::string noBounces(const LeftOut& /*what*/, const BinGrid& /*grid*/) { return "bounces is 0"; }
+std::string noMirror(const LeftOut& /*what*/, const BinGrid& /*grid*/) {
+    return "no surface is asked for, and no material is `mirror: true` or smooth enough";
+}
+
+/** What there is to reflect sound; `bounces` says which of it does. */
+bool hasMirrors(const MultipathConfig& multipath, const types::Geometry& geometry) {
+    return multipath.surface || std::ranges::any_of(geometry.materials, [&](const types::Material& material) {
+               return reflectedPower(material, multipath.bounces) > 0;
+           });
+}
+
+/** Echoes by way of mirrors (ACOUSTICS.md 5.23). Rays alone follow them: PathEchoes, beside the cells. */
+class Multipath final : public Effect {
+public:
+    bool plan(const types::Geometry& geometry, RenderPlan& plan) const override {
+        constexpr const char* name = "multipath";
+        const std::optional<MultipathConfig>& multipath = plan.config.multipath;
+        if (!multipath) return leaveOut(plan, {name, Reason::NotConfigured});
+        if (!plan.config.tracesPaths())
+            return leaveOut(plan, {.effect = name, .reason = Reason::Other, .words = noBounces});
+        if (!hasMirrors(*multipath, geometry))
+            return leaveOut(plan, {.effect = name, .reason = Reason::Other, .words = noMirror});
+        plan.add(Pass::Paths);
+        return true;
+    }
+    std::string takeOut(SonarConfig& config) const override {
+        if (!config.tracesPaths()) return {};
+        config.multipath.reset();
+        return "multipath";
+    }
+};
+
+}  // namespace
+
+const Effect& multipath() {
+    static const Multipath effect;
+    return effect;
+}
+
+}  // namespace insonify::sonar

@@ -1,0 +1,26 @@
+#include "components/sonar/effects/Effect.hpp"
+
+namespace insonify::sonar {
+namespace {
+
+std::string noMaterial(const LeftOut& /*what*/, const BinGrid& /*grid*/) { return "no material has one"; }
+
+/** Normals by a texture of the material (ACOUSTICS.md 3.3). */
+class NormalMaps final : public Effect {
+public:
+    bool plan(const types::Geometry& geometry, RenderPlan& plan) const override {
+        if (std::ranges::none_of(geometry.materials, [](const auto& material) { return material.normal_map >= 0; }))
+            return leaveOut(plan, {.effect = "normal maps", .reason = Reason::NoneInScene, .words = noMaterial});
+        plan.features.add(Feature::NormalMap);
+        return true;
+    }
+};
+
+}  // namespace
+
+const Effect& normalMaps() {
+    static const NormalMaps effect;
+    return effect;
+}
+
+}  // namespace insonify::sonar

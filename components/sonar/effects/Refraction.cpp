@@ -1,0 +1,80 @@
+#include "components/sonar/effects/Refraction.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "components/sonar/effects/Effect.hpp"
+#include "types/Angle.hpp"
+#include "types/ConfigError.hpp"
+
+namespace insonify::sonar {
+namespace {
+
+bool hasProfile(const SonarConfig& config) { return config.water && config.water->profile; }
+
+/** Whether a profile puts any echo elsewhere: by bending its ray, or by another speed of sound than the sonar's. */
+bool matters(const acoustics::SoundProfile& profile, const SonarConfig& config, const BinGrid& grid) {
+    const double c = grid.speed_of_sound, slow = profile.slowest();
+    const Bending bent = bending(config, grid, profile.steepest() * c / slow);
+    const double off = std::max(c / slow - 1, 1 - c / profile.fastest()) * grid.range_max;
+    return !(bent.offset < bent.tolerated) || !(off < grid.bin_width / 2);
+}
+
+std::shared_ptr<const acoustics::SoundProfile> bendingProfile(const SonarConfig& config, const BinGrid& grid) {
+    if (!hasProfile(config)) return nullptr;
+    auto profile =
+        std::make_shared<const acoustics::SoundProfile>(acoustics::SoundProfile::read(*config.water->profile));
+    return matters(*profile, config, grid) ? profile : nullptr;
+}
+
+std::string words(const LeftOut& what, const BinGrid& grid) {
+    return fmt::format("a gradient of {:.3g} 1/s bends by {:.2g} m at {:.4g} m < {:.2g} m",
+                       2 * what.value * grid.speed_of_sound / (grid.range_max * grid.range_max), what.value,
+                       grid.range_max, what.bound);
+}
+
+/** Rays that a profile of the speed of sound bends (ACOUSTICS.md 5.19); RayPaths follows them. */
+class Refraction final : public Effect {
+public:
+    bool plan(const types::Geometry& /*geometry*/, RenderPlan& plan) const override {
+        if (plan.casts_rays)
+            plan.profile = bendingProfile(plan.config, plan.grid);
+        else if (const std::string why = whyStraight(plan.config); !why.empty())
+            throw types::ConfigError("", "water.profile", why);
+        if (plan.profile) {
+            plan.effect_features.emplace_back("refraction");
+            return true;
+        }
+        const double gradient = hasProfile(plan.config)
+                                    ? acoustics::SoundProfile::read(*plan.config.water->profile).steepest()
+                                    : speed_gradient;
+        const Bending bent = bending(plan.config, plan.grid, gradient);
+        if (bent.offset < bent.tolerated)
+            leaveOut(plan, {"refraction", Reason::BelowBound, bent.offset, bent.tolerated, words});
+        return false;
+    }
+    std::vector<std::string> features() const override { return {"refraction"}; }
+};
+
+}  // namespace
+
+Bending bending(const SonarConfig& config, const BinGrid& grid, double gradient) {
+    const double r = grid.range_max;
+    return {gradient * r * r / (2 * grid.speed_of_sound),
+            std::max(grid.bin_width, 0.1 * r * types::radians(config.beam_height_deg))};
+}
+
+std::string whyStraight(const SonarConfig& config) {
+    const bool drawn = hasProfile(config) && !config.castsRays();
+    if (!bendingProfile(config, makeBinGrid(config)) || !drawn) return {};
+    return "bends what a sonar hears of this range, which rays alone show; visibility may be auto or cpu, without "
+           "published: true and deposit: gpu, in a build with rays";
+}
+
+const Effect& refraction() {
+    static const Refraction effect;
+    return effect;
+}
+
+}  // namespace insonify::sonar

@@ -1,0 +1,51 @@
+#include "components/sonar/effects/Effect.hpp"
+
+namespace insonify::sonar {
+namespace {
+
+/** The transmitter, as every beam hears it in its first bins. */
+class RingDownInPings final : public PingEffect {
+public:
+    explicit RingDownInPings(const RenderPlan& plan) {
+        for (int k = 0; k < plan.grid.bin_count; ++k) {
+            const double heard = plan.config.pulse->ring_down->mean(plan.grid.edge(k), plan.grid.edge(k + 1));
+            if (static_cast<float>(heard) == 0) return;
+            bins_.push_back(static_cast<float>(heard));
+        }
+    }
+    void addToBins(types::Sonar& ping) override {
+        for (size_t beam = 0; beam < ping.beam_count; ++beam)
+            for (size_t k = 0; k < bins_.size(); ++k) ping.bins[beam * ping.bin_count + k] += bins_[k];
+    }
+
+private:
+    std::vector<float> bins_;  ///< Of each beam, as far as anything is left.
+};
+
+/** The transmit ring-down (ACOUSTICS.md 5.15). */
+class RingDown final : public Effect {
+public:
+    bool plan(const types::Geometry& /*geometry*/, RenderPlan& plan) const override {
+        if (!plan.config.pulse || !plan.config.pulse->ring_down)
+            return leaveOut(plan, {"transmit ring-down", Reason::NotConfigured});
+        plan.add(Pass::RingDown);
+        return true;
+    }
+    std::unique_ptr<PingEffect> make(const RenderPlan& plan, const types::Geometry& /*geometry*/) const override {
+        return std::make_unique<RingDownInPings>(plan);
+    }
+    std::string takeOut(SonarConfig& config) const override {
+        if (!config.pulse || !config.pulse->ring_down) return {};
+        config.pulse->ring_down.reset();
+        return "transmit ring-down";
+    }
+};
+
+}  // namespace
+
+const Effect& ringDown() {
+    static const RingDown effect;
+    return effect;
+}
+
+}  // namespace insonify::sonar

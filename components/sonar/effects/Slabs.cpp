@@ -1,0 +1,29 @@
+#include <fmt/format.h>
+
+#include "components/sonar/effects/Effect.hpp"
+
+namespace insonify::sonar {
+namespace {
+
+std::string oneImage(const LeftOut& what, const BinGrid& /*grid*/) {
+    return fmt::format("one image shows all {:g} deg", what.value);
+}
+
+/** Pictures of a fan that is too wide for one. */
+class Slabs final : public Effect {
+public:
+    bool plan(const types::Geometry& /*geometry*/, RenderPlan& plan) const override {
+        if (plan.frusta.size() != 1) return !plan.frusta.empty();
+        return leaveOut(plan, {.effect = "further slabs", .reason = Reason::Other, .value = plan.config.coverageDeg(),
+                               .words = oneImage});
+    }
+};
+
+}  // namespace
+
+const Effect& slabs() {
+    static const Slabs effect;
+    return effect;
+}
+
+}  // namespace insonify::sonar

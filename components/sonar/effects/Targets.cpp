@@ -1,0 +1,63 @@
+#include "components/sonar/PointTargets.hpp"
+#include "components/sonar/effects/Effect.hpp"
+
+namespace insonify::sonar {
+namespace {
+
+constexpr const char* name = "point targets";
+
+std::string means(const LeftOut& /*what*/, const BinGrid& /*grid*/) {
+    return "cerqueira2017: bins are means of S(n.d)";
+}
+std::string unheard(const LeftOut& /*what*/, const BinGrid& /*grid*/) {
+    return "hidden, or out of the pattern or the range, at the first ping";
+}
+
+/** Those of the snapshots, which a plan knows nothing of. */
+class TargetsInPings final : public PingEffect {
+public:
+    TargetsInPings(const RenderPlan& plan, const types::Geometry& geometry) : plan_(plan), geometry_(geometry) {}
+
+    void addEchoes(PingInMaking& ping) override {
+        all_ = ping.snapshot.targets.size();
+        heard_ = 0;
+        pinged_ = true;
+        if (all_ == 0) return;
+        if (!targets_) targets_.emplace(plan_, geometry_);
+        heard_ = targets_->add(ping.snapshot, ping.ping, ping.field, ping.bent);
+    }
+    size_t heard() const override { return heard_; }
+    std::optional<LeftOut> leftOut() const override {
+        if (!pinged_ || (all_ > 0 && heard_ == all_)) return {};
+        if (all_ == 0) return LeftOut{name, Reason::NoneInScene};
+        return LeftOut{name, Reason::OutOfView, static_cast<double>(all_ - heard_), static_cast<double>(all_), unheard};
+    }
+
+private:
+    const RenderPlan& plan_;
+    const types::Geometry& geometry_;
+    std::optional<PointTargets> targets_;  ///< From the first ping with any on.
+    size_t all_ = 0, heard_ = 0;           ///< In the last ping [1].
+    bool pinged_ = false;
+};
+
+/** Point targets (ACOUSTICS.md 5.14). */
+class Targets final : public Effect {
+public:
+    bool plan(const types::Geometry& /*geometry*/, RenderPlan& plan) const override {
+        if (plan.config.model == Model::Physical) return true;
+        return leaveOut(plan, {.effect = name, .reason = Reason::Other, .words = means});
+    }
+    std::unique_ptr<PingEffect> make(const RenderPlan& plan, const types::Geometry& geometry) const override {
+        return std::make_unique<TargetsInPings>(plan, geometry);
+    }
+};
+
+}  // namespace
+
+const Effect& pointTargets() {
+    static const Targets effect;
+    return effect;
+}
+
+}  // namespace insonify::sonar

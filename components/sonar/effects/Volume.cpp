@@ -1,0 +1,221 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "components/sonar/CellDeposit.hpp"
+#include "components/sonar/Estimators.hpp"
+#include "components/sonar/ScattererLattice.hpp"
+#include "components/sonar/effects/Effect.hpp"
+#include "types/Angle.hpp"
+
+namespace insonify::sonar {
+namespace {
+
+constexpr double no_strength_db = -200;
+constexpr size_t max_layers = 16;
+
+/** Whether there is more than one water that scatters, or one with bounds. */
+bool hasLayers(const SonarConfig& config) {
+    const std::vector<VolumeLayer>& volume = config.volume;
+    return volume.size() > 1 || (!volume.empty() && (volume[0].top_m || volume[0].bottom_m));
+}
+
+/** Backscattering strength as a number [1/m]; 0 at its least. */
+double strengthOf(const VolumeLayer& layer) {
+    return *layer.strength_db <= no_strength_db ? 0 : std::pow(10, *layer.strength_db / 10);
+}
+
+double strongest(const SonarConfig& config) {
+    double most = 0;
+    for (const VolumeLayer& layer : config.volume) most = std::max(most, strengthOf(layer));
+    return most;
+}
+
+double azimuthBetween(const SonarConfig& config, const Beam& cell, double elevation) {
+    if (config.beam_geometry == BeamGeometry::Planar) return cell.high - cell.low;
+    return coneAzimuth(cell.high, elevation) - coneAzimuth(cell.low, elevation);
+}
+
+/** Where shaders/volume.glsl adds what cells hide of the volume, or let hear of its layers. */
+struct VolumeChanges {
+    explicit VolumeChanges(const CellBatch& batch)
+        : changes(batch.own),
+          beam_sums(batch.beam_stride),
+          bin_count(static_cast<uint>(batch.rules.bins.bin_count)),
+          bin_width(batch.rules.bins.bin_width),
+          numbers(batch.rules.layers.data()),
+          layer_count(static_cast<uint>(batch.rules.layers.size() / 3)),
+          sonar_height(batch.water.height) {}
+
+    void addVolume(uint beam, uint bin, double amount) const {
+        changes[beam * beam_sums + bin] +=
+            static_cast<uint64_t>(static_cast<int64_t>(amount * quanta_per_unit + (amount < 0 ? -0.5 : 0.5)));
+    }
+    double layerNumber(uint i) const { return numbers[i]; }
+
+    uint64_t* changes;
+    size_t beam_sums;
+    uint bin_count;
+    double bin_width;
+    const double* numbers;
+    uint layer_count;
+    double sonar_height;
+};
+#pragma GCC diagnostic push
+#pragma GCC diagnostic ignored "-Wunused-parameter"  // layers alone ask how steep a ray is
+struct OpenVolume : VolumeChanges {
+    static constexpr bool hears_misses = false;
+    using VolumeChanges::VolumeChanges;
+#include "shaders/volume.glsl"
+};
+#pragma GCC diagnostic pop
+#define HAVE_VOLUME_LAYERS
+struct LayeredVolume : VolumeChanges {
+    static constexpr bool hears_misses = true;
+    using VolumeChanges::VolumeChanges;
+#include "shaders/volume.glsl"
+};
+#undef HAVE_VOLUME_LAYERS
+
+/** Metres up in the world for each metre along the middle of cell i. */
+double riseOf(const WaterView& water, const Cells& cells, int i) {
+    return cells.cos_el[i] * (water.up.x * cells.cos_az[i] + water.up.y * cells.sin_az[i]) +
+           water.up.z * cells.sin_el[i];
+}
+
+template <class Water>
+void hideVolumeBy(const CellBatch& batch) {
+    const Cells& cells = batch.cells;
+    Water water(batch);
+    for (int i = 0; i < cells.count; ++i) {
+        const auto beam = static_cast<uint>(cells.beam[i] - batch.first_beam);
+        if (batch.covered.pixel[i] > 0)
+            water.hideVolume(footprintOf(batch.covered, i), beam, riseOf(batch.water, cells, i), cells.size[i]);
+        else if constexpr (Water::hears_misses)
+            water.hearLayers(beam, riseOf(batch.water, cells, i), batch.rules.bins.range_max, cells.size[i]);
+    }
+}
+
+/** The layers of a configuration as EchoRules::layers has them; none where there is one without bounds. */
+std::vector<double> layersOf(const SonarConfig& config) {
+    if (!hasLayers(config)) return {};
+    const double most = strongest(config);
+    std::vector<double> layers;
+    for (const VolumeLayer& layer : config.volume) {
+        constexpr double far = 1e9;
+        layers.push_back(layer.bottom_m ? -*layer.bottom_m : -far);
+        layers.push_back(layer.top_m ? -*layer.top_m : far);
+        layers.push_back(most > 0 ? strengthOf(layer) / most : 0);
+    }
+    return layers;
+}
+
+/** Solid angle of each of a plan's azimuth cells within its aperture, weighted by the pattern in elevation [sr]. */
+std::vector<double> openSolidAngles(const RenderPlan& plan) {
+    constexpr int steps = 2048;
+    const double half = types::radians(plan.sampled.beam_height_deg) / 2, step = 2 * half / steps;
+    std::vector<double> all(plan.cells.size(), 0.0);
+    for (int i = 0; i < steps; ++i) {
+        const double elevation = (i + 0.5) * step - half;
+        const bool weighted = plan.features.has(Feature::ElevationPattern);
+        const double part = std::cos(elevation) * step * (weighted ? plan.directivity->elevation(elevation) : 1);
+        for (size_t k = 0; k < all.size(); ++k) all[k] += part * azimuthBetween(plan.sampled, plan.cells[k], elevation);
+    }
+    return all;
+}
+
+/** Intensity of the water itself, from the solid angle in which it is heard. */
+class VolumeInPings final : public PingEffect {
+public:
+    explicit VolumeInPings(const RenderPlan& plan) : plan_(plan), layers_(layersOf(plan.config)) { takeQuality(); }
+
+    void takeQuality() override;
+    void giveRules(EchoRules& rules) const override { rules.layers = layers_; }
+    bool hasSums() const override { return true; }
+    bool isOnDevice() const override { return true; }
+    void addCells(const CellBatch& batch) const override {
+        if (layers_.empty())
+            hideVolumeBy<OpenVolume>(batch);
+        else
+            hideVolumeBy<LayeredVolume>(batch);
+    }
+    void addToCell(const uint64_t* changes, size_t cell, double unit, std::span<float> bins) const override;
+
+private:
+    const RenderPlan& plan_;
+    std::vector<double> layers_;
+    std::vector<double> open_;  ///< Of each cell where nothing hides it [sr]; 0 with layers, whose cells add all of it.
+    std::vector<double> intensity_;  ///< Of each bin, for a steradian [1/sr].
+};
+
+void VolumeInPings::takeQuality() {
+    const BinGrid grid = summedGrid(plan_);
+    open_.assign(plan_.cells.size(), 0.0);
+    if (layers_.empty()) open_ = openSolidAngles(plan_);
+    const double strength = strongest(plan_.config), beta = makeAbsorption(plan_.config).intensityPerMetre();
+    const double nearest = std::max(grid.range_min, grid.bin_width / 4);
+    intensity_.clear();
+    for (int j = 0; j < grid.bin_count; ++j) {
+        const double from = std::max(grid.edge(j), nearest), to = std::max(grid.edge(j + 1), from);
+        intensity_.push_back(strength * (1 / from - 1 / to) * std::exp(-beta * grid.centre(j)));
+    }
+}
+
+void VolumeInPings::addToCell(const uint64_t* changes, size_t cell, double unit, std::span<float> bins) const {
+    const double quantum = unit / quanta_per_unit;
+    uint64_t sum = 0;
+    for (size_t j = 0; j < bins.size(); ++j) {
+        sum += changes[j];
+        const double heard = std::max(0.0, open_[cell] + static_cast<double>(static_cast<int64_t>(sum)) * quantum);
+        bins[j] = static_cast<float>(
+            std::min(double{bins[j]} + intensity_[j] * heard, double{std::numeric_limits<float>::max()}));
+    }
+}
+
+/** Volume reverberation (ACOUSTICS.md 3.9): the water itself, in layers too, but for what cells hide of it. */
+class Volume final : public Effect {
+public:
+    void check(const SonarConfig& config, types::Diagnostics& diagnostics) const override {
+        if (config.model == Model::Cerqueira2017 && !config.volume.empty())
+            diagnostics.push_back({"volume", "is given with model: cerqueira2017; it belongs to physical"});
+        if (config.volume.size() > max_layers)
+            diagnostics.push_back(
+                {"volume", fmt::format("has {} layers; may have {}", config.volume.size(), max_layers)});
+    }
+    bool plan(const types::Geometry& /*geometry*/, RenderPlan& plan) const override {
+        if (plan.config.volume.empty()) return leaveOut(plan, {"volume reverberation", Reason::NotConfigured});
+        plan.effect_features.emplace_back("volume");
+        plan.hears_misses = hasLayers(plan.config);
+        if (plan.hears_misses) plan.effect_features.emplace_back("volume_layers");
+        plan.fills_water = true;
+        return true;
+    }
+    std::vector<std::string> features() const override { return {"volume", "volume_layers"}; }
+    std::unique_ptr<PingEffect> make(const RenderPlan& plan, const types::Geometry& /*geometry*/) const override {
+        return std::make_unique<VolumeInPings>(plan);
+    }
+    std::string takeOut(SonarConfig& config) const override {
+        if (config.volume.empty()) return {};
+        config.volume.clear();
+        return "volume reverberation";
+    }
+};
+
+}  // namespace
+
+void VolumeLayer::check(types::Diagnostics& diagnostics) const {
+    if (!strength_db)
+        diagnostics.push_back({"", "has no strength_db; open sea has -90 to -70, plumes of sediment -50"});
+    if (top_m && bottom_m && !(*top_m < *bottom_m))
+        diagnostics.push_back(
+            {"bottom_m", fmt::format("is {:g}, not below top_m, {:g}; depths grow downwards", *bottom_m, *top_m)});
+}
+
+const Effect& volume() {
+    static const Volume effect;
+    return effect;
+}
+
+}  // namespace insonify::sonar
