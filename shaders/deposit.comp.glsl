@@ -60,7 +60,6 @@ void addToMemory(uint cell, uvec2 quanta) {
     if (high != 0u) atomicAdd(sums[cell].y, high);
 }
 
-#ifdef HAVE_GROUP_SUMS
 // The pixels of a group lie in few beams and, as a rule, in a narrow span of bins. What lies there is summed in the group's
 // own memory, and each of its sums is brought out once.
 const uint group_beams = 8u, group_bins = 32u, group_cells = group_beams * group_bins * channels;
@@ -100,9 +99,6 @@ void endGroup() {
         if (quanta != uvec2(0u)) addToMemory(cellOf(beam, bin, i % channels), quanta);
     }
 }
-#else
-void add(uint beam, uint bin, uint channel, double amount) { addToMemory(cellOf(beam, bin, channel), quantaOf(amount)); }
-#endif
 
 void addToBin(uint beam, uint bin, double amount, double weight) {
     add(beam, bin, 0u, amount);
@@ -250,29 +246,20 @@ void depositPixel(ivec2 pixel, dvec2 uv, Seen seen) {
     for (uint i = share_starts[at]; i < share_starts[at + 1u]; ++i) depositShare(shares[i], uv, seen);
 }
 
-#ifdef HAVE_GROUP_SUMS
 // The bin in which a pixel's echo lies, nearly; bin_count: there is none.
 uint firstBin(Seen seen) {
     double inverse_range = seen.distance != 0.0 ? facingOf(seen.normal, seen.ray) / seen.distance : 0.0;
     return inverse_range > 0.0 ? uint(min(1.0 / (inverse_range * bin_width), double(bin_count))) : bin_count;
 }
-#endif
 
 void main() {
     ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
     bool inside = all(lessThan(pixel, image_size));
-#ifndef HAVE_GROUP_SUMS
-    if (!inside) return;
-#endif
     dvec2 uv = (dvec2(pixel) + 0.5) * pixel_size - extent;
     Seen seen = seenAt(min(pixel, image_size - 1), uv);
-#ifdef HAVE_GROUP_SUMS
     uint at = sharesOf(min(pixel, image_size - 1)), share = share_starts[at];
     bool heard = inside && share < share_starts[at + 1u];
     beginGroup(heard ? shares[share].beam : 0u, heard ? firstBin(seen) : bin_count);
     if (inside) depositPixel(pixel, uv, seen);
     endGroup();
-#else
-    depositPixel(pixel, uv, seen);
-#endif
 }

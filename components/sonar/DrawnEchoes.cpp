@@ -35,14 +35,12 @@ DepositSetup depositSetup(const RenderPlan& plan) {
     return setup;
 }
 
-class DrawnEchoes final : public PipelinedEchoes {
+class DrawnEchoes final : public EchoRenderer {
 public:
     DrawnEchoes(const RenderPlan& plan, types::GeometryPtr geometry);
     ~DrawnEchoes() override;
     void takeQuality() override;
-    size_t ringSize() const override { return slots_; }
-    void submit(const types::Snapshot& snapshot, Stages& stages) override;
-    void collect(types::Sonar& ping, Stages& stages) override;
+    void render(const types::Snapshot& snapshot, types::Sonar& ping, Stages& stages) override;
     void setTruth(types::SonarTruth* truth) override { truth_ = truth; }
     bool hasEchoes() const override;
     std::vector<LeftOut> culled() const override;
@@ -55,22 +53,18 @@ private:
     void makeDeposit();
     void makeTruth();
     void prepareTruth();
-    /** Fills it, once a slot's sums are there. */
-    void tellTruth(size_t slot);
-    /** Asks for the sums of what is drawn. */
-    void take(size_t slot, const WaterView& water);
+    /** Fills it, once the sums are there. */
+    void fillTruth();
+    /** Gives what is drawn to the deposits. */
+    void take(const WaterView& water);
     void fillBins(types::Sonar& ping);
     void fill(size_t cell, const uint64_t* sums, double pixel, std::span<float> bins) const;
-    /** Of the ping collected last. */
-    size_t lastSlot() const { return (ended_ - 1) % slots_; }
     /** Seconds since the last call, put down for a stage. */
     void lap(Stage& stage);
 
     const RenderPlan& plan_;
     types::GeometryPtr geometry_;
     gpu::EglContext context_;
-    size_t slots_;
-    size_t begun_ = 0, ended_ = 0;  ///< Pings; ping n has slot n modulo slots_.
     std::string device_;
     BinLevels levels_;
     std::optional<VolumeLevels> volume_;
@@ -84,7 +78,8 @@ private:
     PictureDeposit* telling_ = nullptr;       ///< Which of the two deposits on the processor tells what is shown.
     std::optional<EchoGrid> grid_;
     EchoRules rules_;
-    std::span<const uint64_t> sums_;  ///< Of the ping collected last.
+    std::span<const uint64_t> sums_;  ///< Of the last ping, until the quality changes.
+    bool rendered_ = false;           ///< Whether there is a last ping.
     std::chrono::steady_clock::time_point last_;
 };
 
@@ -92,9 +87,6 @@ DrawnEchoes::DrawnEchoes(const RenderPlan& plan, types::GeometryPtr geometry)
     : plan_(plan),
       geometry_(std::move(geometry)),
       context_(plan.config.device),
-      slots_(plan.options.ring > 0   ? plan.options.ring
-             : context_.isSoftware() ? 1
-                                     : 3),
       device_(fmt::format("{}, OpenGL {}", context_.renderer(), context_.driver())),
       levels_(plan.config, plan.grid),
       culler_(*geometry_, {nearest_drawn, reachOf(plan), plan.config.draw_all}),
@@ -111,25 +103,17 @@ bool DrawnEchoes::depositsOnProcessor() const {
 }
 
 SurfacePass::Setup DrawnEchoes::surfaceSetup() const {
-    using CullOn = RenderOptions::CullOn;
-    const CullOn best = !context_.isSoftware() && !depositsOnProcessor() ? CullOn::Device : CullOn::Processor;
-    const CullOn chosen = plan_.options.cull_on == CullOn::Auto ? best : plan_.options.cull_on;
     return {.geometry = *geometry_,
             .laws = plan_.laws,
             .frusta = plan_.frusta,
             .defines = plan_.features.defines(),
             .near_plane = nearPlane(plan_.frusta.front()),
             .empty_too = plan_.config.published || plan_.features.has(Feature::VolumeLayers),
-            .slots = slots_,
-            .cull_on_device = chosen == CullOn::Device};
+            .cull_on_device = !depositsOnProcessor()};
 }
 
 void DrawnEchoes::makeDeposit() {
-    using SumIn = RenderOptions::SumIn;
     DepositSetup setup = depositSetup(plan_);
-    setup.slots = slots_;
-    setup.group_sums =
-        plan_.options.sum_in == SumIn::Auto ? !context_.isSoftware() : plan_.options.sum_in == SumIn::Groups;
     grid_.emplace(plan_, threads_.size());
     rules_ = setup.rules;
     if (plan_.features.has(Feature::Volume)) volume_.emplace(plan_, plan_.grid);
@@ -146,9 +130,7 @@ void DrawnEchoes::makeTruth() {
     telling_ = dynamic_cast<PictureDeposit*>(deposit_.get());
     if (!telling_) {
         const auto alone = context_.transferring();
-        DepositSetup setup = depositSetup(plan_);
-        setup.slots = slots_;
-        beside_ = std::make_unique<PictureDeposit>(std::move(setup), surface_, context_, threads_);
+        beside_ = std::make_unique<PictureDeposit>(depositSetup(plan_), surface_, context_, threads_);
         telling_ = beside_.get();
     }
     telling_->prepareTruth(beamsOfCells(plan_));
@@ -159,8 +141,8 @@ void DrawnEchoes::prepareTruth() {
     if (shown_) telling_->setTruth(truth_ ? &*shown_ : nullptr);
 }
 
-void DrawnEchoes::tellTruth(size_t slot) {
-    if (beside_) beside_->finish(slot);
+void DrawnEchoes::fillTruth() {
+    if (beside_) beside_->finish();
     threads_.run([&](int part, int parts) {
         for (auto beam = static_cast<size_t>(part); beam < plan_.beams.size(); beam += static_cast<size_t>(parts))
             shown_->tell(beam, beam, *truth_);
@@ -173,18 +155,15 @@ void DrawnEchoes::lap(Stage& stage) {
     last_ = now;
 }
 
-void DrawnEchoes::take(size_t slot, const WaterView& water) {
+void DrawnEchoes::take(const WaterView& water) {
     const auto alone = context_.transferring();
     const auto takeAll = [&](BinDeposit& deposit) {
-        deposit.begin(slot, water);
+        deposit.begin(water);
         for (size_t i = 0; i < plan_.frusta.size(); ++i)
-            if (surface_.draws(slot, i)) deposit.take(slot, i, surface_);
-        deposit.ask(slot);
+            if (surface_.draws(i)) deposit.take(i, surface_);
     };
     takeAll(*deposit_);
     if (truth_ && beside_) takeAll(*beside_);
-    surface_.ask(slot);
-    glFlush();  // or a device would begin when its sums are waited for
 }
 
 void DrawnEchoes::fillBins(types::Sonar& ping) {
@@ -201,31 +180,24 @@ void DrawnEchoes::fill(size_t cell, const uint64_t* sums, double pixel, std::spa
     if (volume_) volume_->add(sums + rules_.volumeOffset(), cell, pixel, bins);
 }
 
-void DrawnEchoes::submit(const types::Snapshot& snapshot, Stages& stages) {
+void DrawnEchoes::render(const types::Snapshot& snapshot, types::Sonar& ping, Stages& stages) {
     context_.requireThread();
-    const size_t slot = begun_ % slots_;
     prepareTruth();
     last_ = std::chrono::steady_clock::now();
     culler_.place(snapshot);
-    surface_.cull(slot);
+    surface_.cull();
     lap(stages[CullStage]);
-    surface_.draw(slot);
+    surface_.draw();
     lap(stages[DrawStage]);
-    take(slot, waterViewOf(snapshot));
+    take(waterViewOf(snapshot));
     context_.check();
     lap(stages[ReadStage]);
-    ++begun_;
-}
-
-void DrawnEchoes::collect(types::Sonar& ping, Stages& stages) {
-    context_.requireThread();
-    last_ = std::chrono::steady_clock::now();
-    const size_t slot = ended_++ % slots_;
     if (truth_) shown_->clear();
-    sums_ = deposit_->finish(slot);
-    if (truth_) tellTruth(slot);
+    sums_ = deposit_->finish();
+    if (truth_) fillTruth();
     lap(stages[DepositStage]);
     fillBins(ping);
+    rendered_ = true;
     lap(stages[BeamStage]);
 }
 
@@ -239,14 +211,14 @@ void DrawnEchoes::takeQuality() {
 }
 
 bool DrawnEchoes::hasEchoes() const {
-    const bool drawn = ended_ > 0 && !surface_.lists().empty(lastSlot());  // published counts what is not there
+    const bool drawn = rendered_ && !surface_.lists().empty();  // published counts what is not there
     return drawn && std::ranges::any_of(sums_, [](uint64_t sum) { return sum > 0; });
 }
 
 std::vector<LeftOut> DrawnEchoes::culled() const {
     std::vector<LeftOut> all;
-    if (ended_ == 0) return all;
-    const Shown shown = surface_.lists().shown(lastSlot());
+    if (!rendered_) return all;
+    const Shown shown = surface_.lists().shown();
     const size_t triangles = geometry_->triangleCount();
     const auto add = [&](Effect effect, size_t left_out, size_t of) {
         if (left_out > 0)
@@ -260,7 +232,7 @@ std::vector<LeftOut> DrawnEchoes::culled() const {
 
 }  // namespace
 
-std::unique_ptr<PipelinedEchoes> makeDrawnEchoes(const RenderPlan& plan, types::GeometryPtr geometry) {
+std::unique_ptr<EchoRenderer> makeDrawnEchoes(const RenderPlan& plan, types::GeometryPtr geometry) {
     return std::make_unique<DrawnEchoes>(plan, std::move(geometry));
 }
 

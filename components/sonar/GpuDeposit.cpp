@@ -13,13 +13,12 @@ namespace {
 class GpuDeposit final : public BinDeposit {
 public:
     GpuDeposit(const DepositSetup& setup, gpu::EglContext& context);
-    void begin(size_t, const WaterView& water) override {
+    void begin(const WaterView& water) override {
         water_ = water;
         device_sums_.clear();
     }
-    void take(size_t slot, size_t frustum, const SurfacePass& surface) override;
-    void ask(size_t slot) override { sums_[slot].ask(device_sums_); }
-    std::span<const uint64_t> finish(size_t slot) override;
+    void take(size_t frustum, const SurfacePass& surface) override;
+    std::span<const uint64_t> finish() override;
 
 private:
     struct FrustumShares {
@@ -39,17 +38,13 @@ private:
     WaterView water_;         ///< Of the ping that is taken.
     gpu::Buffer edges_, tables_, device_sums_;
     std::vector<FrustumShares> shares_;
-    std::vector<gpu::ReadBack> sums_;  ///< Of each slot.
+    gpu::ReadBack sums_;
 };
 
-std::vector<std::string> definesOf(const DepositSetup& setup) {
-    std::vector<std::string> defines = setup.rules.features.defines();
-    if (setup.group_sums) defines.emplace_back("HAVE_GROUP_SUMS");
-    return defines;
-}
-
 GpuDeposit::GpuDeposit(const DepositSetup& setup, gpu::EglContext& context)
-    : setup_(setup), context_(context), program_(context.programs().compute("deposit.comp.glsl", definesOf(setup))) {
+    : setup_(setup),
+      context_(context),
+      program_(context.programs().compute("deposit.comp.glsl", setup.rules.features.defines())) {
     const auto at = [this](const char* name) { return glGetUniformLocation(program_.id(), name); };
     uniforms_ = {at("image_size"),     at("bin_count"),    at("beam_stride"), at("bin_width"),  at("attenuation"),
                  at("strength_scale"), at("frustum_axis"), at("extent"),      at("pixel_size"), at("elevation_reach"),
@@ -65,7 +60,7 @@ GpuDeposit::GpuDeposit(const DepositSetup& setup, gpu::EglContext& context)
     device_sums_ = gpu::Buffer(setup.sumCount() * sizeof(uint64_t));
     for (const ColumnShares& frustum : setup.shares)
         shares_.push_back({gpu::Buffer::of(std::span(frustum.starts)), gpu::Buffer::of(std::span(frustum.shares))});
-    for (size_t slot = 0; slot < setup.slots; ++slot) sums_.emplace_back(setup.sumCount() * sizeof(uint64_t));
+    sums_ = gpu::ReadBack(setup.sumCount() * sizeof(uint64_t));
 }
 
 void GpuDeposit::setUniforms(const ViewFrustum& frustum) const {
@@ -87,10 +82,10 @@ void GpuDeposit::setUniforms(const ViewFrustum& frustum) const {
     glUniform1ui(uniforms_.first_layer, first_layer_);
 }
 
-void GpuDeposit::take(size_t slot, size_t frustum, const SurfacePass& surface) {
+void GpuDeposit::take(size_t frustum, const SurfacePass& surface) {
     program_.use();
     setUniforms(setup_.frusta[frustum]);
-    surface.bindResults(slot, frustum);
+    surface.bindResults(frustum);
     shares_[frustum].shares.bindBase(GL_SHADER_STORAGE_BUFFER, SHARES_BINDING);
     shares_[frustum].starts.bindBase(GL_SHADER_STORAGE_BUFFER, SHARE_STARTS_BINDING);
     if (tables_.bytes() > 0) tables_.bindBase(GL_SHADER_STORAGE_BUFFER, TABLES_BINDING);
@@ -101,9 +96,10 @@ void GpuDeposit::take(size_t slot, size_t frustum, const SurfacePass& surface) {
     glDispatchCompute(groups(setup_.frusta[frustum].columns), groups(setup_.frusta[frustum].rows), 1);
 }
 
-std::span<const uint64_t> GpuDeposit::finish(size_t slot) {
+std::span<const uint64_t> GpuDeposit::finish() {
     const auto alone = context_.transferring();
-    return {static_cast<const uint64_t*>(sums_[slot].wait()), setup_.sumCount()};
+    sums_.ask(device_sums_);
+    return {static_cast<const uint64_t*>(sums_.wait()), setup_.sumCount()};
 }
 
 }  // namespace
