@@ -8,7 +8,7 @@ layout(std430, binding = PLANES_BINDING) readonly buffer Planes { PlaneRecord pl
 layout(std430, binding = MATERIALS_BINDING) readonly buffer Materials { MaterialRecord materials[]; };
 layout(std430, binding = SHARES_BINDING) readonly buffer Shares { ShareRecord shares[]; };
 layout(std430, binding = SHARE_STARTS_BINDING) readonly buffer ShareStarts { uint share_starts[]; };
-layout(std430, binding = EDGES_BINDING) readonly buffer Edges { double edges[]; };
+layout(std430, binding = NUMBERS_BINDING) readonly buffer Numbers { double numbers[]; };  // edges of the bins, then tables
 layout(std430, binding = SUMS_BINDING) buffer Sums { uvec2 sums[]; };  // low and high word
 
 uniform ivec2 image_size;
@@ -16,23 +16,19 @@ uniform uint bin_count, beam_stride;
 uniform double bin_width, attenuation, strength_scale;
 uniform dvec2 extent, pixel_size, frustum_axis;
 
-#if defined(HAVE_ELEVATION_PATTERN) || defined(HAVE_BACKSCATTER_LAWS) || defined(HAVE_VOLUME_LAYERS)
-layout(std430, binding = TABLES_BINDING) readonly buffer Tables { double tables[]; };
-#endif
 #ifdef HAVE_ELEVATION_PATTERN
 uniform double elevation_reach;
-double elevationPower(uint i) { return tables[i]; }
+uniform uint first_elevation;  // among the numbers
+double elevationPower(uint i) { return numbers[first_elevation + i]; }
 #include "elevation.glsl"
-const uint first_backscatter = uint(ELEVATION_STEPS + 1);
-#else
-const uint first_backscatter = 0u;
 #endif
 #ifdef HAVE_BACKSCATTER_LAWS
-double backscatterEntry(uint i) { return tables[first_backscatter + i]; }
+uniform uint first_backscatter;
+double backscatterEntry(uint i) { return numbers[first_backscatter + i]; }
 #include "backscatter.glsl"
 #endif
 
-double binEdge(uint k) { return edges[k]; }
+double binEdge(uint k) { return numbers[k]; }
 
 #ifdef HAVE_CERQUEIRA2017
 const uint channels = 2u;
@@ -125,7 +121,7 @@ void addVolume(uint beam, uint bin, double amount) {
 uniform uint layer_count, first_layer;
 uniform double sonar_height;
 uniform dvec3 upward;
-double layerNumber(uint i) { return tables[first_layer + i]; }
+double layerNumber(uint i) { return numbers[first_layer + i]; }
 #endif
 #include "volume.glsl"
 

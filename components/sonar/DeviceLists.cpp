@@ -64,7 +64,6 @@ DeviceLists::DeviceLists(const Setup& setup, gpu::EglContext& context)
     std::vector<ClusterRecord> clusters;
     for (uint32_t i = 0; i < setup.geometry.objects.size(); ++i) addClusters(clusters, i);
     const size_t count = clusters.size(), counts = setup.frusta + setup.geometry.objects.size();
-    context.requireStorage(count * sizeof(NormalTransform), "the clusters of all objects");
     clusters_ = gpu::Buffer::of(std::span<const ClusterRecord>(clusters));
     device_commands_ = gpu::Buffer::of(std::span<const CommandRecord>(commands_));
     const size_t mapped = setup.scene.withNormalMaps() ? count : 0;

@@ -6,9 +6,10 @@
 
 #include "components/gpu/EglContext.hpp"
 #include "components/sonar/BinLevels.hpp"
-#include "components/sonar/PictureDeposit.hpp"
+#include "components/sonar/DeviceNeeds.hpp"
 #include "components/sonar/EchoGrid.hpp"
 #include "components/sonar/EchoRenderer.hpp"
+#include "components/sonar/PictureDeposit.hpp"
 #include "components/sonar/SurfacePass.hpp"
 #include "components/sonar/TruthGrid.hpp"
 #include "types/Angle.hpp"
@@ -45,10 +46,13 @@ public:
     bool hasEchoes() const override;
     std::vector<LeftOut> culled() const override;
     const std::string& device() const override { return device_; }
-    std::string notice() const override { return context_.fallback(); }
+    std::string notice() const override { return why_on_processor_.empty() ? context_.fallback() : why_on_processor_; }
 
 private:
-    bool depositsOnProcessor() const;
+    bool wantsProcessor() const;
+    /** Throws GlError where the device cannot draw the plan's pictures. Returns whyOnProcessor(). */
+    std::string checkLimits() const;
+    bool depositsOnProcessor() const { return wantsProcessor() || !why_on_processor_.empty(); }
     SurfacePass::Setup surfaceSetup() const;
     void makeDeposit();
     void makeTruth();
@@ -65,6 +69,7 @@ private:
     const RenderPlan& plan_;
     types::GeometryPtr geometry_;
     gpu::EglContext context_;
+    std::string why_on_processor_;  ///< Empty unless the device was to sum the pictures and cannot.
     std::string device_;
     BinLevels levels_;
     std::optional<VolumeLevels> volume_;
@@ -72,8 +77,8 @@ private:
     ThreadPool threads_;
     SurfacePass surface_;
     std::unique_ptr<BinDeposit> deposit_;
-    types::SonarTruth* truth_ = nullptr;  ///< To be filled; null: none is.
-    std::optional<TruthTable> shown_;     ///< Once it was wanted.
+    types::SonarTruth* truth_ = nullptr;      ///< To be filled; null: none is.
+    std::optional<TruthTable> shown_;         ///< Once it was wanted.
     std::unique_ptr<PictureDeposit> beside_;  ///< The same, where the device deposits.
     PictureDeposit* telling_ = nullptr;       ///< Which of the two deposits on the processor tells what is shown.
     std::optional<EchoGrid> grid_;
@@ -87,6 +92,7 @@ DrawnEchoes::DrawnEchoes(const RenderPlan& plan, types::GeometryPtr geometry)
     : plan_(plan),
       geometry_(std::move(geometry)),
       context_(plan.config.device),
+      why_on_processor_(checkLimits()),
       device_(fmt::format("{}, OpenGL {}", context_.renderer(), context_.driver())),
       levels_(plan.config, plan.grid),
       culler_(*geometry_, {nearest_drawn, reachOf(plan), plan.config.draw_all}),
@@ -98,8 +104,15 @@ DrawnEchoes::DrawnEchoes(const RenderPlan& plan, types::GeometryPtr geometry)
 
 DrawnEchoes::~DrawnEchoes() = default;
 
-bool DrawnEchoes::depositsOnProcessor() const {
+bool DrawnEchoes::wantsProcessor() const {
     return plan_.config.deposit == Deposit::Cpu || (plan_.config.deposit == Deposit::Auto && context_.isSoftware());
+}
+
+std::string DrawnEchoes::checkLimits() const {
+    requireDrawing(context_.limits(), drawingNeeds(plan_, *geometry_), context_.renderer());
+    if (wantsProcessor()) return {};
+    return whyOnProcessor(plan_.config.deposit, context_.limits(), depositNeeds(depositSetup(plan_), *geometry_),
+                          context_.renderer());
 }
 
 SurfacePass::Setup DrawnEchoes::surfaceSetup() const {
@@ -204,6 +217,7 @@ void DrawnEchoes::render(const types::Snapshot& snapshot, types::Sonar& ping, St
 void DrawnEchoes::takeQuality() {
     context_.requireThread();
     const auto alone = context_.transferring();
+    why_on_processor_ = checkLimits();
     surface_.resize(plan_.frusta);
     sums_ = {};
     makeDeposit();

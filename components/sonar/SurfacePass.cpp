@@ -157,7 +157,6 @@ void SurfacePass::drawPart(size_t part) {
 }
 
 void SurfacePass::bindResults(size_t frustum) const {
-    context_.requireStorage(scene_.planes().size() * sizeof(PlaneRecord), "the planes of all triangles");
     pictures_[frustum]->bindTexture(0);
     scene_.bindRecords();
     lists_->objects().bindBase(GL_SHADER_STORAGE_BUFFER, OBJECTS_BINDING);
