@@ -10,7 +10,7 @@ double tabulatedBackscatter(uint table, double cosine) {
 
 // `power`: R^2 / (4 pi).
 double lobeOverCosine(double power, double mean_square_slope, double cosine) {
-    double secant = 1.0 / max(cosine, 1e-6);
+    double secant = 1.0 / max(cosine, MIN_LOBE_COSINE);
     double square = secant * secant;
     double part = double(exp(float((1.0 - square) / mean_square_slope)));
     return power / mean_square_slope * part * square * square * secant;

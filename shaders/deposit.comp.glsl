@@ -8,7 +8,7 @@ layout(std430, binding = PLANES_BINDING) readonly buffer Planes { PlaneRecord pl
 layout(std430, binding = MATERIALS_BINDING) readonly buffer Materials { MaterialRecord materials[]; };
 layout(std430, binding = SHARES_BINDING) readonly buffer Shares { ShareRecord shares[]; };
 layout(std430, binding = SHARE_STARTS_BINDING) readonly buffer ShareStarts { uint share_starts[]; };
-layout(std430, binding = EDGES_BINDING) readonly buffer Edges { double edges[]; };
+layout(std430, binding = NUMBERS_BINDING) readonly buffer Numbers { double numbers[]; };  // edges of the bins, then tables
 layout(std430, binding = SUMS_BINDING) buffer Sums { uvec2 sums[]; };  // low and high word
 
 uniform ivec2 image_size;
@@ -16,23 +16,19 @@ uniform uint bin_count, beam_stride;
 uniform double bin_width, attenuation, strength_scale;
 uniform dvec2 extent, pixel_size, frustum_axis;
 
-#if defined(HAVE_ELEVATION_PATTERN) || defined(HAVE_BACKSCATTER_LAWS) || defined(HAVE_VOLUME_LAYERS)
-layout(std430, binding = TABLES_BINDING) readonly buffer Tables { double tables[]; };
-#endif
 #ifdef HAVE_ELEVATION_PATTERN
 uniform double elevation_reach;
-double elevationPower(uint i) { return tables[i]; }
+uniform uint first_elevation;  // among the numbers
+double elevationPower(uint i) { return numbers[first_elevation + i]; }
 #include "elevation.glsl"
-const uint first_backscatter = uint(ELEVATION_STEPS + 1);
-#else
-const uint first_backscatter = 0u;
 #endif
 #ifdef HAVE_BACKSCATTER_LAWS
-double backscatterEntry(uint i) { return tables[first_backscatter + i]; }
+uniform uint first_backscatter;
+double backscatterEntry(uint i) { return numbers[first_backscatter + i]; }
 #include "backscatter.glsl"
 #endif
 
-double binEdge(uint k) { return edges[k]; }
+double binEdge(uint k) { return numbers[k]; }
 
 #ifdef HAVE_CERQUEIRA2017
 const uint channels = 2u;
@@ -60,7 +56,6 @@ void addToMemory(uint cell, uvec2 quanta) {
     if (high != 0u) atomicAdd(sums[cell].y, high);
 }
 
-#ifdef HAVE_GROUP_SUMS
 // The pixels of a group lie in few beams and, as a rule, in a narrow span of bins. What lies there is summed in the group's
 // own memory, and each of its sums is brought out once.
 const uint group_beams = 8u, group_bins = 32u, group_cells = group_beams * group_bins * channels;
@@ -100,9 +95,6 @@ void endGroup() {
         if (quanta != uvec2(0u)) addToMemory(cellOf(beam, bin, i % channels), quanta);
     }
 }
-#else
-void add(uint beam, uint bin, uint channel, double amount) { addToMemory(cellOf(beam, bin, channel), quantaOf(amount)); }
-#endif
 
 void addToBin(uint beam, uint bin, double amount, double weight) {
     add(beam, bin, 0u, amount);
@@ -129,7 +121,7 @@ void addVolume(uint beam, uint bin, double amount) {
 uniform uint layer_count, first_layer;
 uniform double sonar_height;
 uniform dvec3 upward;
-double layerNumber(uint i) { return tables[first_layer + i]; }
+double layerNumber(uint i) { return numbers[first_layer + i]; }
 #endif
 #include "volume.glsl"
 
@@ -250,29 +242,20 @@ void depositPixel(ivec2 pixel, dvec2 uv, Seen seen) {
     for (uint i = share_starts[at]; i < share_starts[at + 1u]; ++i) depositShare(shares[i], uv, seen);
 }
 
-#ifdef HAVE_GROUP_SUMS
 // The bin in which a pixel's echo lies, nearly; bin_count: there is none.
 uint firstBin(Seen seen) {
     double inverse_range = seen.distance != 0.0 ? facingOf(seen.normal, seen.ray) / seen.distance : 0.0;
     return inverse_range > 0.0 ? uint(min(1.0 / (inverse_range * bin_width), double(bin_count))) : bin_count;
 }
-#endif
 
 void main() {
     ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
     bool inside = all(lessThan(pixel, image_size));
-#ifndef HAVE_GROUP_SUMS
-    if (!inside) return;
-#endif
     dvec2 uv = (dvec2(pixel) + 0.5) * pixel_size - extent;
     Seen seen = seenAt(min(pixel, image_size - 1), uv);
-#ifdef HAVE_GROUP_SUMS
     uint at = sharesOf(min(pixel, image_size - 1)), share = share_starts[at];
     bool heard = inside && share < share_starts[at + 1u];
     beginGroup(heard ? shares[share].beam : 0u, heard ? firstBin(seen) : bin_count);
     if (inside) depositPixel(pixel, uv, seen);
     endGroup();
-#else
-    depositPixel(pixel, uv, seen);
-#endif
 }

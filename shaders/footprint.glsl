@@ -20,8 +20,8 @@ Footprint trapezoidFootprint(double inverse_range, double centre, double along, 
     Footprint cell;
     cell.pixel = inverse_range;
     cell.centre = min(centre, nearest);
-    cell.wide = max(max(along, across), 1e-12 * inverse_range + 1e-300);
-    cell.narrow = max(min(along, across), 1e-12 * cell.wide);
+    cell.wide = max(max(along, across), MIN_WIDTH_RATIO * inverse_range + MIN_WIDTH);
+    cell.narrow = max(min(along, across), MIN_WIDTH_RATIO * cell.wide);
     cell.per_wide = 1.0 / cell.wide;
     cell.steepness = 0.5 * cell.per_wide / cell.narrow;
     double half_length = 0.5 * (cell.wide + cell.narrow);

@@ -1,14 +1,29 @@
 // Shared by C++ and GLSL: what the surface pass and the deposit are told. Groups of 16 bytes, so that std430 and C++ agree.
 
+// Numbers in double precision. GLSL rounds a literal to single precision unless it ends in `lf`, a suffix that C++ lacks.
+#ifdef GLSL
+#define EDGE_ON_COSINE 1e-4lf
+#define MIN_LOBE_COSINE 1e-6lf
+#define MIN_RISE 1e-9lf
+#define MIN_WIDTH_RATIO 1e-12lf
+#define MIN_WIDTH 1e-300lf
+#else
+#define EDGE_ON_COSINE 1e-4
+#define MIN_LOBE_COSINE 1e-6
+#define MIN_RISE 1e-9
+#define MIN_WIDTH_RATIO 1e-12
+#define MIN_WIDTH 1e-300
+#endif
+
+// OpenGL 4.5 promises eight storage buffers for a compute shader, 0 to 7.
 #define OBJECTS_BINDING 0
 #define COMMANDS_BINDING 1
 #define PLANES_BINDING 2
 #define MATERIALS_BINDING 3
 #define SHARES_BINDING 4
 #define SHARE_STARTS_BINDING 5
-#define EDGES_BINDING 6
+#define NUMBERS_BINDING 6
 #define SUMS_BINDING 7
-#define TABLES_BINDING 8
 
 // Steps of the table of an elevation pattern, which comes first among the tables, and entries of a table of backscatter.
 #define ELEVATION_STEPS 4096

@@ -10,7 +10,7 @@ struct PlaneFootprint {
 // The trapezoid of inverse ranges that a cell covers of a plane normal.p = distance: n.d / D is linear in azimuth and
 // elevation but for the curvature of sine and cosine. The normal may have any length and sign. `cos_az` to `sin_el`: of
 // the direction of the cell's middle; `width`, `height` [rad]; `lean`: dazimuth / delevation of the cell's sides. Closer
-// to edge-on than 1e-4 rad there is no echo, but still a shadow.
+// to edge-on than EDGE_ON_COSINE there is no echo, but still a shadow.
 PlaneFootprint planeFootprint(double normal_x, double normal_y, double normal_z, double distance, double cos_az,
                               double sin_az, double cos_el, double sin_el, double width, double height, double lean,
                               double size, double near_limit, double far_limit, double near_edge, double far_edge) {
@@ -18,11 +18,11 @@ PlaneFootprint planeFootprint(double normal_x, double normal_y, double normal_z,
     double ahead = normal_x * cos_az + normal_y * sin_az;
     double aside = normal_y * cos_az - normal_x * sin_az;
     double facing = ahead * cos_el + normal_z * sin_el;
-    bool echo = abs(facing) > 1e-4 * normal && distance * facing > 0.0;
+    bool echo = abs(facing) > EDGE_ON_COSINE * normal && distance * facing > 0.0;
     double per_distance = echo ? 1.0 / distance : 0.0;
     double inverse_range = facing * per_distance;
     // 1/r is a sinusoid of either angle, so its mean over the cell is a little less than at its middle.
-    double sag = (width * width * ahead * cos_el * per_distance + height * height * inverse_range) * (1.0 / 24.0);
+    double sag = (width * width * ahead * cos_el * per_distance + height * height * inverse_range) * (double(1.0) / 24.0);
     double slope_a = aside * cos_el * per_distance;
     double slope_e = (normal_z * cos_el - ahead * sin_el) * per_distance;
     PlaneFootprint seen;

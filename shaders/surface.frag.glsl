@@ -21,7 +21,7 @@ float mappedCosine(vec3 direction, float scale) {
     vec3 texel = texture(normal_map, map_uv).xyz * 2.0 - 1.0;
     vec3 bent = normalize(mat3(t, cross(n, t) * frustum_tangent.w, n) * (texel * vec3(scale, scale, 1.0)));
     float cosine = -dot(bent, direction) * sign(-dot(n, direction));  // both sides of a surface reflect
-    return cosine > 1e-6 ? cosine : 1e-6;                              // also where normal and tangent make no frame
+    return cosine > 1e-6f ? cosine : 1e-6f;                            // also where normal and tangent make no frame
 }
 
 void main() {

@@ -26,7 +26,7 @@ void changeVolume(uint beam, double range, double amount) {
 void hearLayers(uint beam, double rise, double end, double amount) {
     for (uint i = 0u; i < layer_count; ++i) {
         double low = layerNumber(3u * i) - sonar_height, high = layerNumber(3u * i + 1u) - sonar_height;
-        double slope = abs(rise) > 1e-9 ? rise : 1e-9;
+        double slope = abs(rise) > MIN_RISE ? rise : MIN_RISE;
         double enters = max(min(low / slope, high / slope), 0.0), leaves = min(max(low / slope, high / slope), end);
         if (!(enters < leaves)) continue;
         changeVolume(beam, enters, amount * layerNumber(3u * i + 2u));

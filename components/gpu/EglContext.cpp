@@ -4,6 +4,7 @@
 #include <epoxy/gl.h>
 
 #include <algorithm>
+#include <cctype>
 #include <charconv>
 #include <cstdlib>
 #include <filesystem>
@@ -85,21 +86,26 @@ size_t indexOf(const std::string& device, size_t count) {
 }
 
 /** A display that is initialised when it is its turn: to initialise one may wake a card and load its driver. */
-using Candidate = std::function<EGLDisplay()>;
+struct Candidate {
+    std::function<EGLDisplay()> display;
+    bool may_be_card = false;  ///< Its GL_RENDERER decides: a display chip's may be llvmpipe.
+};
 
 /** The displays that a choice of device allows, best first. */
 std::vector<Candidate> candidates(const std::string& device) {
     std::vector<Candidate> displays;
     const auto all = devices();
-    const auto add = [&](EGLDeviceEXT one) { displays.push_back([one] { return deviceDisplay(one); }); };
+    const auto add = [&](EGLDeviceEXT one, bool may_be_card) {
+        displays.push_back({[one] { return deviceDisplay(one); }, may_be_card});
+    };
     if (!isWord(device)) {
-        add(all[indexOf(device, all.size())]);
+        add(all[indexOf(device, all.size())], false);
         return displays;
     }
     for (bool software : {false, true})
         for (EGLDeviceEXT candidate : all)
-            if (isSoftwareDevice(candidate) == software && (software || device == "auto")) add(candidate);
-    displays.push_back(surfacelessDisplay);
+            if (isSoftwareDevice(candidate) == software && (software || device == "auto")) add(candidate, !software);
+    displays.push_back({surfacelessDisplay, device == "auto" && all.empty()});
     return displays;
 }
 
@@ -123,12 +129,40 @@ std::string cardOfSystem() {
 
 std::string textOf(GLenum name) { return reinterpret_cast<const char*>(glGetString(name)); }
 
+/** Whether a display gives a context on a graphics card. Leaves no context current on this thread. */
+bool isCard(EGLDisplay display) {
+    const EGLContext context = display == EGL_NO_DISPLAY ? EGL_NO_CONTEXT : contextOn(display, false, EGL_NO_CONTEXT);
+    if (context == EGL_NO_CONTEXT) return false;
+    const bool is_card = !isSoftwareRenderer(textOf(GL_RENDERER));
+    eglMakeCurrent(display, EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT);
+    eglDestroyContext(display, context);
+    return is_card;
+}
+
 void GLAPIENTRY remember(GLenum, GLenum type, GLuint, GLenum, GLsizei, const GLchar* message, const void* first) {
     auto& text = *static_cast<std::string*>(const_cast<void*>(first));
     if (type == GL_DEBUG_TYPE_ERROR && text.empty()) text = message;
 }
 
 }  // namespace
+
+bool isSoftwareRenderer(std::string_view renderer) {
+    constexpr std::string_view words[] = {"llvmpipe", "lavapipe",    "softpipe",    "software",
+                                          "swrast",   "swiftshader", "basic render"};
+    std::string name(renderer);
+    std::ranges::transform(name, name.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+    return std::ranges::any_of(words, [&](std::string_view word) { return name.find(word) != std::string::npos; });
+}
+
+std::optional<size_t> preferredRenderer(std::span<const std::string> renderers) {
+    std::optional<size_t> software;
+    for (size_t i = 0; i < renderers.size(); ++i) {
+        if (renderers[i].empty()) continue;
+        if (!isSoftwareRenderer(renderers[i])) return i;
+        if (!software) software = i;
+    }
+    return software;
+}
 
 EglContext::EglContext(const std::string& device) : wanted_(chosen(device)) {
     create(wanted_);
@@ -145,9 +179,18 @@ bool EglContext::isAskedFor(const std::string& device) {
 }
 
 bool EglContext::hasCard() {
-    static const bool has = std::ranges::any_of(devices(), [](EGLDeviceEXT device) {
-        return !isSoftwareDevice(device) && deviceDisplay(device) != EGL_NO_DISPLAY;
-    });
+    static const bool has = [] {
+        std::vector<Candidate> all = candidates("auto");
+        std::erase_if(all, [](const Candidate& candidate) { return !candidate.may_be_card; });
+        if (all.empty()) return false;
+        const auto alone = making();
+        bool found = false;
+        const auto look = [&] {
+            found = std::ranges::any_of(all, isCard, [](const auto& one) { return one.display(); });
+        };
+        std::thread(look).join();  // a thread of its own, so that the caller's context stays current
+        return found;
+    }();
     return has;
 }
 
@@ -160,16 +203,30 @@ EglContext::EglContext(Sharing with) : wanted_(with.other.wanted_) {
 
 EglContext::~EglContext() {
     programs_.reset();
+    destroy();
+}
+
+void EglContext::destroy() {
     if (std::this_thread::get_id() == thread_) eglMakeCurrent(display_, nullptr, nullptr, nullptr);
     eglDestroyContext(display_, context_);  // the display is shared by all contexts of this process and stays
 }
 
 void EglContext::create(const std::string& device) {
-    for (const Candidate& candidate : candidates(device)) {
-        const EGLDisplay display = candidate();
-        for (bool robust : {true, false})
-            if (display != EGL_NO_DISPLAY && createOn(display, robust, EGL_NO_CONTEXT)) return;
+    const std::vector<Candidate> all = candidates(device);
+    const auto opens = [&](const Candidate& candidate) {
+        const EGLDisplay display = candidate.display();
+        return display != EGL_NO_DISPLAY &&
+               (createOn(display, true, EGL_NO_CONTEXT) || createOn(display, false, EGL_NO_CONTEXT));
+    };
+    std::vector<std::string> renderers(all.size());
+    for (size_t i = 0; i < all.size(); ++i) {
+        if (!all[i].may_be_card && preferredRenderer(renderers)) break;  // no card comes after it
+        if (!opens(all[i])) continue;
+        renderers[i] = textOf(GL_RENDERER);
+        if (!all[i].may_be_card || !isSoftwareRenderer(renderers[i])) return;
+        destroy();
     }
+    if (const auto best = preferredRenderer(renderers); best && opens(all[*best])) return;
     throw GlError("no OpenGL 4.5 core context from EGL device '" + device + "': " + hint);
 }
 
@@ -183,8 +240,8 @@ bool EglContext::createOn(void* display, bool robust, void* shared) {
 void EglContext::watch() {
     renderer_ = textOf(GL_RENDERER);
     driver_ = textOf(GL_VERSION);
-    software_ = renderer_.find("llvmpipe") != std::string::npos || renderer_.find("softpipe") != std::string::npos;
-    glGetInteger64v(GL_MAX_SHADER_STORAGE_BLOCK_SIZE, &max_storage_);
+    software_ = isSoftwareRenderer(renderer_);
+    limits_ = Limits::ofCurrentContext();
     programs_ = std::make_unique<Programs>();
     if (!wantsDebug()) return;
     glEnable(GL_DEBUG_OUTPUT);
@@ -208,13 +265,6 @@ std::string EglContext::fallback() const {
     return "Warning: drawn in software by " + renderer_ + ": the system has a graphics card (" + card +
            "), but EGL gives no OpenGL 4.5 on it; install its driver's EGL (NVIDIA: libegl-nvidia0, in a container "
            "NVIDIA_DRIVER_CAPABILITIES=graphics), or set device: software";
-}
-
-void EglContext::requireStorage(size_t bytes, const char* what) const {
-    if (bytes > static_cast<size_t>(max_storage_))
-        throw GlError(std::string(what) + " take " + std::to_string(bytes >> 20) + " MiB; shaders of " + renderer_ +
-                      " read at most " + std::to_string(max_storage_ >> 20) +
-                      " MiB in one buffer: set deposit: cpu, or take fewer triangles or bins");
 }
 
 namespace {

@@ -2,10 +2,15 @@
 #include <cstdint>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <shared_mutex>
+#include <span>
 #include <stdexcept>
 #include <string>
+#include <string_view>
 #include <thread>
+
+#include "components/gpu/Limits.hpp"
 
 namespace insonify::gpu {
 
@@ -16,11 +21,18 @@ struct GlError : std::runtime_error {
 
 class Programs;
 
+/** Whether a GL_RENDERER draws on the processor, through Vulkan too: "zink (llvmpipe ...)". */
+bool isSoftwareRenderer(std::string_view renderer);
+
+/** Position of the renderer that "auto" takes: the first graphics card, otherwise the first that draws on the
+ *  processor. `renderers` are the GL_RENDERER of all devices, empty for a device without OpenGL 4.5. */
+std::optional<size_t> preferredRenderer(std::span<const std::string> renderers);
+
 /** A headless OpenGL 4.5 core context, current on the thread that made it and usable only there.
  *
  *  Needs no X server: devices by EGL_EXT_platform_device, else Mesa's surfaceless platform. `device` chooses:
- *  "software" (Mesa llvmpipe), a number (position in EGL's device list), "auto" (the first graphics card that
- *  gives a context, else software); empty: the environment variable INSONIFY_EGL_DEVICE, else "auto".
+ *  "software" (Mesa llvmpipe), a number (position in EGL's device list), "auto" (preferredRenderer() of all devices);
+ *  empty: the environment variable INSONIFY_EGL_DEVICE, else "auto".
  *
  *  With INSONIFY_GL_DEBUG=1, and in debug builds unless it is 0, GL tells at once and in words what it refuses. */
 class EglContext {
@@ -30,7 +42,8 @@ public:
     static void requireDevice(const std::string& device);
     /** Whether `device` or the environment names one, be it "auto". */
     static bool isAskedFor(const std::string& device);
-    /** Whether EGL has a graphics card that can be used; looked for once. */
+    /** Whether "auto" takes a graphics card. The first call makes a context on each device that may be one. Not to be
+     *  called while EglContext::making() is held. */
     static bool hasCard();
     struct Sharing {
         const EglContext& other;
@@ -47,8 +60,6 @@ public:
     void requireThread() const;
     /** Throws GlError with the first error that GL has reported since the last call, or when the context is lost. */
     void check();
-    /** Throws GlError when no buffer of so many bytes can be given to a shader; `what` is in the plural. */
-    void requireStorage(size_t bytes, const char* what) const;
 
     /** Held while something is drawn, side by side with other contexts; and while data goes to the device or comes from
      *  it, or objects are made or destroyed: then nothing may be drawn in any context of this process. Mesa's software
@@ -61,6 +72,7 @@ public:
 
     const std::string& renderer() const { return renderer_; }  ///< "llvmpipe (LLVM 15.0.6, 256 bits)".
     const std::string& driver() const { return driver_; }      ///< "4.5 (Core Profile) Mesa 22.3.6".
+    const Limits& limits() const { return limits_; }
     bool isSoftware() const { return software_; }
     /** Why it is drawn in software though nobody asked for that, a sentence that may begin with "Warning: "; empty when
      *  it is not. */
@@ -71,6 +83,7 @@ public:
 
 private:
     void create(const std::string& device);
+    void destroy();
     bool createOn(void* display, bool robust, void* shared);
     void watch();
 
@@ -79,7 +92,7 @@ private:
     std::thread::id thread_ = std::this_thread::get_id();
     std::string wanted_, renderer_, driver_;
     std::string error_;
-    int64_t max_storage_ = 0;  ///< Bytes that a shader may have in one buffer.
+    Limits limits_;
     std::unique_ptr<Programs> programs_;
     bool software_ = false;
     bool robust_ = false;

@@ -33,18 +33,30 @@ std::string buildLog(GLuint id, Get get, GetLog getLog) {
     return text;
 }
 
-GLuint compiled(GLenum stage, std::string_view file, const std::vector<std::string>& defines) {
-    const std::string text = shaderSource(file, defines);
-    const char* begin = text.c_str();
-    const GLuint shader = glCreateShader(stage);
-    glShaderSource(shader, 1, &begin, nullptr);
-    glCompileShader(shader);
+GLuint compiled(const Shader& shader) {
+    const char* begin = shader.text.c_str();
+    const GLuint id = glCreateShader(shader.stage);
+    glShaderSource(id, 1, &begin, nullptr);
+    glCompileShader(id);
     GLint ok = 0;
-    glGetShaderiv(shader, GL_COMPILE_STATUS, &ok);
-    if (ok) return shader;
-    const std::string log = buildLog(shader, glGetShaderiv, glGetShaderInfoLog);
-    glDeleteShader(shader);
-    throw GlError(std::string(file) + ": " + log);
+    glGetShaderiv(id, GL_COMPILE_STATUS, &ok);
+    if (ok) return id;
+    const std::string log = buildLog(id, glGetShaderiv, glGetShaderInfoLog);
+    glDeleteShader(id);
+    throw GlError(shader.file + ": " + log);
+}
+
+Shader shaderOf(GLenum stage, std::string_view file, const std::vector<std::string>& defines) {
+    return {stage, std::string(file), shaderSource(file, defines)};
+}
+
+std::vector<Shader> rasterShaders(std::string_view vertex, std::string_view fragment,
+                                  const std::vector<std::string>& defines) {
+    return {shaderOf(GL_VERTEX_SHADER, vertex, defines), shaderOf(GL_FRAGMENT_SHADER, fragment, defines)};
+}
+
+std::vector<Shader> computeShaders(std::string_view file, const std::vector<std::string>& defines) {
+    return {shaderOf(GL_COMPUTE_SHADER, file, defines)};
 }
 
 }  // namespace
@@ -55,36 +67,43 @@ std::string shaderSource(std::string_view name, const std::vector<std::string>& 
     return text + withIncludes(shaderFile(name));
 }
 
-Program::Program(std::initializer_list<GLuint> shaders)
+Program::Program(const std::vector<Shader>& shaders)
     : name_(glCreateProgram(), [](GLuint id) { glDeleteProgram(id); }) {
-    for (GLuint shader : shaders) glAttachShader(id(), shader);
+    std::vector<GLuint> ids;
+    for (const Shader& shader : shaders) glAttachShader(id(), ids.emplace_back(compiled(shader)));
     glLinkProgram(id());
-    for (GLuint shader : shaders) glDeleteShader(shader);
+    for (GLuint shader : ids) glDeleteShader(shader);
     GLint ok = 0;
     glGetProgramiv(id(), GL_LINK_STATUS, &ok);
     if (!ok) throw GlError("linking: " + buildLog(id(), glGetProgramiv, glGetProgramInfoLog));
 }
 
 Program Program::raster(std::string_view vertex, std::string_view fragment, const std::vector<std::string>& defines) {
-    return Program({compiled(GL_VERTEX_SHADER, vertex, defines), compiled(GL_FRAGMENT_SHADER, fragment, defines)});
+    return Program(rasterShaders(vertex, fragment, defines));
 }
 
 Program Program::compute(std::string_view file, const std::vector<std::string>& defines) {
-    return Program({compiled(GL_COMPUTE_SHADER, file, defines)});
+    return Program(computeShaders(file, defines));
 }
 
 const Program& Programs::raster(std::string_view vertex, std::string_view fragment,
                                 const std::vector<std::string>& defines) {
-    const std::string text = shaderSource(vertex, defines) + shaderSource(fragment, defines);
-    const auto found = made_.find(text);
-    return found != made_.end() ? found->second
-                                : made_.emplace(text, Program::raster(vertex, fragment, defines)).first->second;
+    return made(rasterShaders(vertex, fragment, defines));
 }
 
 const Program& Programs::compute(std::string_view file, const std::vector<std::string>& defines) {
-    const std::string text = shaderSource(file, defines);
-    const auto found = made_.find(text);
-    return found != made_.end() ? found->second : made_.emplace(text, Program::compute(file, defines)).first->second;
+    return made(computeShaders(file, defines));
+}
+
+const Program& Programs::made(const std::vector<Shader>& shaders) {
+    const auto found = made_.find(shaders);
+    return found != made_.end() ? found->second : made_.emplace(shaders, Program(shaders)).first->second;
+}
+
+std::vector<Shader> Programs::shaders() const {
+    std::vector<Shader> all;
+    for (const auto& [shaders, program] : made_) all.insert(all.end(), shaders.begin(), shaders.end());
+    return all;
 }
 
 }  // namespace insonify::gpu

@@ -1,5 +1,5 @@
 #pragma once
-#include <initializer_list>
+#include <compare>
 #include <map>
 #include <string>
 #include <string_view>
@@ -16,17 +16,24 @@ std::string_view shaderFile(std::string_view name);
 /** The file with its `#include "x.glsl"` lines replaced and `#define` lines put after `#version 450 core`. */
 std::string shaderSource(std::string_view name, const std::vector<std::string>& defines);
 
+/** One stage of a program. */
+struct Shader {
+    GLenum stage;
+    std::string file, text;  ///< `text` as shaderSource() makes it of the file.
+    auto operator<=>(const Shader&) const = default;
+};
+
 /** A linked program. Compiler messages become the text of a GlError. */
 class Program {
 public:
     Program() = default;
+    explicit Program(const std::vector<Shader>& shaders);
     static Program raster(std::string_view vertex, std::string_view fragment, const std::vector<std::string>& defines);
     static Program compute(std::string_view file, const std::vector<std::string>& defines);
     void use() const { glUseProgram(name_.id()); }
     GLuint id() const { return name_.id(); }
 
 private:
-    explicit Program(std::initializer_list<GLuint> shaders);
     Name name_;
 };
 
@@ -36,9 +43,12 @@ public:
     const Program& raster(std::string_view vertex, std::string_view fragment, const std::vector<std::string>& defines);
     const Program& compute(std::string_view file, const std::vector<std::string>& defines);
     size_t count() const { return made_.size(); }
+    /** The stages of all programs. */
+    std::vector<Shader> shaders() const;
 
 private:
-    std::map<std::string, Program, std::less<>> made_;  ///< By their final text.
+    const Program& made(const std::vector<Shader>& shaders);
+    std::map<std::vector<Shader>, Program> made_;
 };
 
 }  // namespace insonify::gpu

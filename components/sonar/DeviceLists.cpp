@@ -12,14 +12,13 @@ namespace {
 class DeviceLists final : public DrawLists {
 public:
     DeviceLists(const Setup& setup, gpu::EglContext& context);
-    void list(size_t slot, size_t frustum, const ViewFrustum& view) override;
-    bool mayShow(size_t slot, size_t frustum) const override { return viewed(slot, frustum).any; }
-    void prepare(size_t slot, std::span<const ViewFrustum> views) override;
-    Draws draws(size_t slot, size_t frustum) const override;
-    std::span<const CommandRecord> commands(size_t, size_t) const override { return commands_; }
-    void ask(size_t slot) override;
-    bool empty(size_t slot) const override;
-    Shown shown(size_t slot) const override;
+    void list(size_t frustum, const ViewFrustum& view) override;
+    bool mayShow(size_t frustum) const override { return views_[frustum].any; }
+    void prepare(std::span<const ViewFrustum> views) override;
+    Draws draws(size_t frustum) const override;
+    std::span<const CommandRecord> commands(size_t) const override { return commands_; }
+    bool empty() const override;
+    Shown shown() const override;
 
 private:
     /** How one frustum sees all objects in one ping. */
@@ -34,23 +33,22 @@ private:
     struct Uniforms {
         GLint cluster_count, frustum, frustum_count, outward, range_max;
     };
-    const View& viewed(size_t slot, size_t frustum) const { return views_[slot * setup_.frusta + frustum]; }
     void addClusters(std::vector<ClusterRecord>& clusters, uint32_t object);
     ViewedObject viewedObject(size_t object, const ViewFrustum& view, uint32_t in_view) const;
-    void cull(size_t slot, size_t frustum, const ViewFrustum& view) const;
+    void cull(size_t frustum, const ViewFrustum& view) const;
     void setUniforms(size_t frustum, const ViewFrustum& view) const;
-    /** Triangles that each frustum showed, then whether each object was. */
-    std::span<const uint32_t> counts(size_t slot) const;
+    /** Triangles that each frustum showed, then whether each object was; waits for the device. */
+    std::span<const uint32_t> counts() const;
 
     gpu::EglContext& context_;
     const gpu::Program& program_;
     Uniforms uniforms_;
     std::vector<CommandRecord> commands_;  ///< Of each cluster, the same for all pings.
     std::vector<DrawGroup> groups_;
-    std::vector<View> views_;   ///< Slot after slot, of each frustum.
+    std::vector<View> views_;   ///< Of each frustum.
     std::vector<Found> found_;  ///< Of each frustum: the device culls, draws and culls again in order.
     gpu::Buffer clusters_, device_commands_, shown_;
-    std::vector<gpu::ReadBack> asked_;  ///< Of each slot.
+    mutable gpu::ReadBack asked_;
 };
 
 std::vector<std::string> definesOf(const SurfaceScene& scene) {
@@ -66,7 +64,6 @@ DeviceLists::DeviceLists(const Setup& setup, gpu::EglContext& context)
     std::vector<ClusterRecord> clusters;
     for (uint32_t i = 0; i < setup.geometry.objects.size(); ++i) addClusters(clusters, i);
     const size_t count = clusters.size(), counts = setup.frusta + setup.geometry.objects.size();
-    context.requireStorage(count * sizeof(NormalTransform), "the clusters of all objects");
     clusters_ = gpu::Buffer::of(std::span<const ClusterRecord>(clusters));
     device_commands_ = gpu::Buffer::of(std::span<const CommandRecord>(commands_));
     const size_t mapped = setup.scene.withNormalMaps() ? count : 0;
@@ -74,8 +71,8 @@ DeviceLists::DeviceLists(const Setup& setup, gpu::EglContext& context)
         found_.push_back({gpu::Buffer(count * sizeof(DrawCommand)), gpu::Buffer(count * sizeof(Clip)),
                           gpu::Buffer(mapped * sizeof(NormalTransform))});
     shown_ = gpu::Buffer(counts * sizeof(uint32_t));
-    for (size_t slot = 0; slot < setup.slots; ++slot) asked_.emplace_back(counts * sizeof(uint32_t));
-    for (size_t i = 0; i < setup.slots * setup.frusta; ++i)
+    asked_ = gpu::ReadBack(counts * sizeof(uint32_t));
+    for (size_t i = 0; i < setup.frusta; ++i)
         views_.push_back({gpu::UploadList<ViewedObject>(setup.geometry.objects.size())});
 }
 
@@ -96,8 +93,8 @@ void DeviceLists::addClusters(std::vector<ClusterRecord>& clusters, uint32_t obj
     }
 }
 
-void DeviceLists::list(size_t slot, size_t frustum, const ViewFrustum& frustum_view) {
-    View& view = views_[slot * setup_.frusta + frustum];
+void DeviceLists::list(size_t frustum, const ViewFrustum& frustum_view) {
+    View& view = views_[frustum];
     view.objects.clear();
     view.any = false;
     const Culler::View planes = Culler::viewOf(frustum_view);
@@ -137,12 +134,12 @@ void DeviceLists::setUniforms(size_t frustum, const ViewFrustum& view) const {
     glUniform1f(uniforms_.range_max, setup_.culler.rangeMax());
 }
 
-void DeviceLists::cull(size_t slot, size_t frustum, const ViewFrustum& view) const {
+void DeviceLists::cull(size_t frustum, const ViewFrustum& view) const {
     setUniforms(frustum, view);
     const auto bind = [](const gpu::Buffer& buffer, GLuint at) { buffer.bindBase(GL_SHADER_STORAGE_BUFFER, at); };
-    bind(objects(slot), OBJECTS_BINDING);
+    bind(objects(), OBJECTS_BINDING);
     bind(clusters_, CLUSTERS_BINDING);
-    bind(viewed(slot, frustum).objects.buffer(), VIEWED_BINDING);
+    bind(views_[frustum].objects.buffer(), VIEWED_BINDING);
     bind(found_[frustum].draws, DRAWS_BINDING);
     bind(found_[frustum].clips, CLIPS_BINDING);
     bind(found_[frustum].normal_transforms, NORMAL_TRANSFORMS_BINDING);
@@ -150,7 +147,7 @@ void DeviceLists::cull(size_t slot, size_t frustum, const ViewFrustum& view) con
     glDispatchCompute(static_cast<GLuint>((commands_.size() + 63) / 64), 1, 1);
 }
 
-void DeviceLists::prepare(size_t slot, std::span<const ViewFrustum> views) {
+void DeviceLists::prepare(std::span<const ViewFrustum> views) {
     // Before: the last ping is drawn from what is written anew. After: it is drawn from.
     const auto order = [] {
         glMemoryBarrier(GL_COMMAND_BARRIER_BIT | GL_VERTEX_ATTRIB_ARRAY_BARRIER_BIT | GL_SHADER_STORAGE_BARRIER_BIT);
@@ -159,34 +156,33 @@ void DeviceLists::prepare(size_t slot, std::span<const ViewFrustum> views) {
     program_.use();
     order();
     for (size_t i = 0; i < views.size(); ++i)
-        if (mayShow(slot, i)) cull(slot, i, views[i]);
+        if (mayShow(i)) cull(i, views[i]);
     order();
 }
 
-Draws DeviceLists::draws(size_t slot, size_t frustum) const {
+Draws DeviceLists::draws(size_t frustum) const {
     const Found& found = found_[frustum];
     const std::span<const DrawGroup> groups = groups_;
     return {&found.clips,
             &found.normal_transforms,
             &device_commands_,
             &found.draws,
-            mayShow(slot, frustum) ? groups : groups.first(0),
+            mayShow(frustum) ? groups : groups.first(0),
             {}};
 }
 
-void DeviceLists::ask(size_t slot) { asked_[slot].ask(shown_); }
-
-std::span<const uint32_t> DeviceLists::counts(size_t slot) const {
+std::span<const uint32_t> DeviceLists::counts() const {
     const auto alone = context_.transferring();
-    return {static_cast<const uint32_t*>(asked_[slot].wait()), setup_.frusta + setup_.geometry.objects.size()};
+    asked_.ask(shown_);
+    return {static_cast<const uint32_t*>(asked_.wait()), setup_.frusta + setup_.geometry.objects.size()};
 }
 
-bool DeviceLists::empty(size_t slot) const {
-    return std::ranges::all_of(counts(slot).first(setup_.frusta), [](uint32_t count) { return count == 0; });
+bool DeviceLists::empty() const {
+    return std::ranges::all_of(counts().first(setup_.frusta), [](uint32_t count) { return count == 0; });
 }
 
-Shown DeviceLists::shown(size_t slot) const {
-    const std::span<const uint32_t> counts = this->counts(slot), triangles = counts.first(setup_.frusta);
+Shown DeviceLists::shown() const {
+    const std::span<const uint32_t> counts = this->counts(), triangles = counts.first(setup_.frusta);
     Shown shown;
     for (uint32_t of_object : counts.subspan(setup_.frusta)) shown.objects.push_back(of_object > 0);
     for (uint32_t count : triangles) shown.triangles += count;

@@ -8,14 +8,14 @@ namespace {
 class ProcessorLists final : public DrawLists {
 public:
     explicit ProcessorLists(const Setup& setup);
-    void list(size_t slot, size_t frustum, const ViewFrustum& view) override;
-    bool mayShow(size_t slot, size_t frustum) const override { return !listed(slot, frustum).ranges.empty(); }
-    Draws draws(size_t slot, size_t frustum) const override;
-    std::span<const CommandRecord> commands(size_t slot, size_t frustum) const override {
-        return listed(slot, frustum).commands;
+    void list(size_t frustum, const ViewFrustum& view) override;
+    bool mayShow(size_t frustum) const override { return !listed_[frustum].ranges.empty(); }
+    Draws draws(size_t frustum) const override;
+    std::span<const CommandRecord> commands(size_t frustum) const override {
+        return listed_[frustum].commands;
     }
-    bool empty(size_t slot) const override;
-    Shown shown(size_t slot) const override;
+    bool empty() const override;
+    Shown shown() const override;
 
 private:
     /** Of one frustum in one ping: one of each for each draw. */
@@ -31,10 +31,9 @@ private:
         gpu::UploadList<CommandRecord> device_commands;
         gpu::UploadList<DrawCommand> device_draws;
     };
-    const Listed& listed(size_t slot, size_t frustum) const { return listed_[slot * setup_.frusta + frustum]; }
     void add(Listed& listed, const Culler::DrawRange& range, const ViewFrustum& view) const;
 
-    std::vector<Listed> listed_;  ///< Slot after slot.
+    std::vector<Listed> listed_;  ///< Of each frustum.
 };
 
 ProcessorLists::Listed::Listed(size_t limit, bool with_normal_maps)
@@ -46,12 +45,12 @@ ProcessorLists::Listed::Listed(size_t limit, bool with_normal_maps)
 }
 
 ProcessorLists::ProcessorLists(const Setup& setup) : DrawLists(setup) {
-    for (size_t i = 0; i < setup.slots * setup.frusta; ++i)
+    for (size_t i = 0; i < setup.frusta; ++i)
         listed_.emplace_back(setup.culler.drawRangeLimit(), setup.scene.withNormalMaps());
 }
 
-void ProcessorLists::list(size_t slot, size_t frustum, const ViewFrustum& view) {
-    Listed& listed = listed_[slot * setup_.frusta + frustum];
+void ProcessorLists::list(size_t frustum, const ViewFrustum& view) {
+    Listed& listed = listed_[frustum];
     listed.commands.clear();
     listed.draws.clear();
     listed.groups.clear();
@@ -81,8 +80,8 @@ void ProcessorLists::add(Listed& listed, const Culler::DrawRange& range, const V
     listed.groups.back().last = at + 1;
 }
 
-Draws ProcessorLists::draws(size_t slot, size_t frustum) const {
-    const Listed& all = listed(slot, frustum);
+Draws ProcessorLists::draws(size_t frustum) const {
+    const Listed& all = listed_[frustum];
     return {&all.clips.buffer(),
             &all.normal_transforms.buffer(),
             &all.device_commands.buffer(),
@@ -91,17 +90,17 @@ Draws ProcessorLists::draws(size_t slot, size_t frustum) const {
             all.draws};
 }
 
-bool ProcessorLists::empty(size_t slot) const {
+bool ProcessorLists::empty() const {
     for (size_t i = 0; i < setup_.frusta; ++i)
-        if (mayShow(slot, i)) return false;
+        if (mayShow(i)) return false;
     return true;
 }
 
-Shown ProcessorLists::shown(size_t slot) const {
+Shown ProcessorLists::shown() const {
     Shown shown;
     shown.objects.resize(setup_.geometry.objects.size());
     for (size_t i = 0; i < setup_.frusta; ++i) {
-        const auto& ranges = listed(slot, i).ranges;
+        const auto& ranges = listed_[i].ranges;
         shown.empty_frusta += ranges.empty();
         for (const Culler::DrawRange& range : ranges) {
             shown.objects[range.object] = true;
@@ -130,13 +129,11 @@ NormalTransform normalTransformOf(const ObjectRecord& object, const ViewFrustum&
     return rows;
 }
 
-DrawLists::DrawLists(const Setup& setup) : setup_(setup) {
-    for (size_t slot = 0; slot < setup.slots; ++slot) objects_.emplace_back(setup.geometry.objects.size());
-}
+DrawLists::DrawLists(const Setup& setup) : setup_(setup), objects_(setup.geometry.objects.size()) {}
 
-void DrawLists::place(size_t slot) {
-    objects_[slot].clear();
-    for (const ObjectRecord& record : setup_.culler.records()) objects_[slot].push_back(record);
+void DrawLists::place() {
+    objects_.clear();
+    for (const ObjectRecord& record : setup_.culler.records()) objects_.push_back(record);
 }
 
 std::unique_ptr<DrawLists> makeProcessorLists(const DrawLists::Setup& setup) {

@@ -51,46 +51,42 @@ struct Shown {
     size_t empty_frusta = 0;
 };
 
-/** What is drawn of each frustum in the pings that are under way, each of which has a slot of its own: what the device
- *  is told of one lies untouched until it is collected. */
+/** What is drawn of each frustum in a ping. */
 class DrawLists {
 public:
     struct Setup {
         const types::Geometry& geometry;
         const SurfaceScene& scene;
         Culler& culler;
-        size_t slots, frusta;
+        size_t frusta;
     };
     explicit DrawLists(const Setup& setup);
     virtual ~DrawLists() = default;
 
     /** Tells the device where the culler has placed the objects. */
-    void place(size_t slot);
-    const gpu::Buffer& objects(size_t slot) const { return objects_[slot].buffer(); }
+    void place();
+    const gpu::Buffer& objects() const { return objects_.buffer(); }
 
     /** Finds what a frustum may see of what is placed. Frusta may be listed side by side. */
-    virtual void list(size_t slot, size_t frustum, const ViewFrustum& view) = 0;
+    virtual void list(size_t frustum, const ViewFrustum& view) = 0;
     /** Whether there may be anything to draw. */
-    virtual bool mayShow(size_t slot, size_t frustum) const = 0;
+    virtual bool mayShow(size_t frustum) const = 0;
     /** Asks the device for what comes before the drawing of all frusta. */
-    virtual void prepare(size_t, std::span<const ViewFrustum>) {}
+    virtual void prepare(std::span<const ViewFrustum>) {}
     /** Most draws of a frustum that there can be. */
     size_t drawLimit() const { return setup_.culler.drawRangeLimit(); }
-    virtual Draws draws(size_t slot, size_t frustum) const = 0;
-    /** What the draws of a frustum are of, of the ping that was listed last. */
-    virtual std::span<const CommandRecord> commands(size_t slot, size_t frustum) const = 0;
-    /** Asks the device for what has been shown; all frusta are drawn. */
-    virtual void ask(size_t) {}
-
-    /** Once the ping is collected and before its slot is used again. */
-    virtual bool empty(size_t slot) const = 0;
-    virtual Shown shown(size_t slot) const = 0;
+    virtual Draws draws(size_t frustum) const = 0;
+    /** What the draws of a frustum are of. */
+    virtual std::span<const CommandRecord> commands(size_t frustum) const = 0;
+    /** Once all frusta are drawn, until the next ping is listed. */
+    virtual bool empty() const = 0;
+    virtual Shown shown() const = 0;
 
 protected:
     Setup setup_;
 
 private:
-    std::vector<gpu::UploadList<ObjectRecord>> objects_;
+    gpu::UploadList<ObjectRecord> objects_;
 };
 
 /** Listed by the processor. */

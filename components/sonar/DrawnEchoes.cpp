@@ -6,9 +6,10 @@
 
 #include "components/gpu/EglContext.hpp"
 #include "components/sonar/BinLevels.hpp"
-#include "components/sonar/PictureDeposit.hpp"
+#include "components/sonar/DeviceNeeds.hpp"
 #include "components/sonar/EchoGrid.hpp"
 #include "components/sonar/EchoRenderer.hpp"
+#include "components/sonar/PictureDeposit.hpp"
 #include "components/sonar/SurfacePass.hpp"
 #include "components/sonar/TruthGrid.hpp"
 #include "components/sonar/effects/Effects.hpp"
@@ -42,34 +43,33 @@ std::string outOfView(const LeftOut& what, const BinGrid& /*grid*/) {
            (what.effect == "triangles" ? ", or on the far side of a closed mesh" : "");
 }
 
-class DrawnEchoes final : public PipelinedEchoes {
+class DrawnEchoes final : public EchoRenderer {
 public:
     DrawnEchoes(const RenderPlan& plan, types::GeometryPtr geometry, const PingEffects& effects);
     ~DrawnEchoes() override;
     void takeQuality() override;
-    size_t ringSize() const override { return slots_; }
-    void submit(const types::Snapshot& snapshot, Stages& stages) override;
-    void collect(types::Sonar& ping, Stages& stages) override;
+    void render(const types::Snapshot& snapshot, types::Sonar& ping, Stages& stages) override;
     void setTruth(types::SonarTruth* truth) override { truth_ = truth; }
     bool hasEchoes() const override;
     std::vector<LeftOut> culled() const override;
     const std::string& device() const override { return device_; }
-    std::string notice() const override { return context_.fallback(); }
+    std::string notice() const override { return why_on_processor_.empty() ? context_.fallback() : why_on_processor_; }
 
 private:
-    bool depositsOnProcessor() const;
+    bool wantsProcessor() const;
+    /** Throws GlError where the device cannot draw the plan's pictures. Returns whyOnProcessor(). */
+    std::string checkLimits() const;
+    bool depositsOnProcessor() const { return wantsProcessor() || !why_on_processor_.empty(); }
     SurfacePass::Setup surfaceSetup() const;
     void makeDeposit();
     void makeTruth();
     void prepareTruth();
-    /** Fills it, once a slot's sums are there. */
-    void tellTruth(size_t slot);
-    /** Asks for the sums of what is drawn. */
-    void take(size_t slot, const WaterView& water);
+    /** Fills it, once the sums are there. */
+    void fillTruth();
+    /** Gives what is drawn to the deposits. */
+    void take(const WaterView& water);
     void fillBins(types::Sonar& ping);
     void fill(size_t cell, const uint64_t* sums, double pixel, std::span<float> bins) const;
-    /** Of the ping collected last. */
-    size_t lastSlot() const { return (ended_ - 1) % slots_; }
     /** Seconds since the last call, put down for a stage. */
     void lap(Stage& stage);
 
@@ -77,21 +77,21 @@ private:
     types::GeometryPtr geometry_;
     const PingEffects& effects_;
     gpu::EglContext context_;
-    size_t slots_;
-    size_t begun_ = 0, ended_ = 0;  ///< Pings; ping n has slot n modulo slots_.
+    std::string why_on_processor_;  ///< Empty unless the device was to sum the pictures and cannot.
     std::string device_;
     BinLevels levels_;
     Culler culler_;
     ThreadPool threads_;
     SurfacePass surface_;
     std::unique_ptr<BinDeposit> deposit_;
-    types::SonarTruth* truth_ = nullptr;  ///< To be filled; null: none is.
-    std::optional<TruthTable> shown_;     ///< Once it was wanted.
+    types::SonarTruth* truth_ = nullptr;      ///< To be filled; null: none is.
+    std::optional<TruthTable> shown_;         ///< Once it was wanted.
     std::unique_ptr<PictureDeposit> beside_;  ///< The same, where the device deposits.
     PictureDeposit* telling_ = nullptr;       ///< Which of the two deposits on the processor tells what is shown.
     std::optional<EchoGrid> grid_;
     EchoRules rules_;
-    std::span<const uint64_t> sums_;  ///< Of the ping collected last.
+    std::span<const uint64_t> sums_;  ///< Of the last ping, until the quality changes.
+    bool rendered_ = false;           ///< Whether there is a last ping.
     std::chrono::steady_clock::time_point last_;
 };
 
@@ -100,9 +100,7 @@ DrawnEchoes::DrawnEchoes(const RenderPlan& plan, types::GeometryPtr geometry, co
       geometry_(std::move(geometry)),
       effects_(effects),
       context_(plan.config.device),
-      slots_(plan.options.ring > 0   ? plan.options.ring
-             : context_.isSoftware() ? 1
-                                     : 3),
+      why_on_processor_(checkLimits()),
       device_(fmt::format("{}, OpenGL {}", context_.renderer(), context_.driver())),
       levels_(plan.config, plan.grid),
       culler_(*geometry_, {nearest_drawn, reachOf(plan), plan.config.draw_all}),
@@ -114,31 +112,30 @@ DrawnEchoes::DrawnEchoes(const RenderPlan& plan, types::GeometryPtr geometry, co
 
 DrawnEchoes::~DrawnEchoes() = default;
 
-bool DrawnEchoes::depositsOnProcessor() const {
+bool DrawnEchoes::wantsProcessor() const {
     return plan_.config.deposit == Deposit::Cpu || !effects_.areOnDevice() ||
            (plan_.config.deposit == Deposit::Auto && context_.isSoftware());
 }
 
+std::string DrawnEchoes::checkLimits() const {
+    requireDrawing(context_.limits(), drawingNeeds(plan_, *geometry_), context_.renderer());
+    if (wantsProcessor()) return {};
+    return whyOnProcessor(plan_.config.deposit, context_.limits(), depositNeeds(depositSetup(plan_, effects_), *geometry_),
+                          context_.renderer());
+}
+
 SurfacePass::Setup DrawnEchoes::surfaceSetup() const {
-    using CullOn = RenderOptions::CullOn;
-    const CullOn best = !context_.isSoftware() && !depositsOnProcessor() ? CullOn::Device : CullOn::Processor;
-    const CullOn chosen = plan_.options.cull_on == CullOn::Auto ? best : plan_.options.cull_on;
     return {.geometry = *geometry_,
             .laws = plan_.laws,
             .frusta = plan_.frusta,
             .defines = plan_.defines(),
             .near_plane = nearPlane(plan_.frusta.front()),
             .empty_too = plan_.config.published || plan_.hears_misses,
-            .slots = slots_,
-            .cull_on_device = chosen == CullOn::Device};
+            .cull_on_device = !depositsOnProcessor()};
 }
 
 void DrawnEchoes::makeDeposit() {
-    using SumIn = RenderOptions::SumIn;
     DepositSetup setup = depositSetup(plan_, effects_);
-    setup.slots = slots_;
-    setup.group_sums =
-        plan_.options.sum_in == SumIn::Auto ? !context_.isSoftware() : plan_.options.sum_in == SumIn::Groups;
     grid_.emplace(plan_, threads_.size());
     rules_ = setup.rules;
     if (depositsOnProcessor())
@@ -154,9 +151,7 @@ void DrawnEchoes::makeTruth() {
     telling_ = dynamic_cast<PictureDeposit*>(deposit_.get());
     if (!telling_) {
         const auto alone = context_.transferring();
-        DepositSetup setup = depositSetup(plan_, effects_);
-        setup.slots = slots_;
-        beside_ = std::make_unique<PictureDeposit>(std::move(setup), surface_, context_, threads_);
+        beside_ = std::make_unique<PictureDeposit>(depositSetup(plan_, effects_), surface_, context_, threads_);
         telling_ = beside_.get();
     }
     telling_->prepareTruth(beamsOfCells(plan_));
@@ -167,8 +162,8 @@ void DrawnEchoes::prepareTruth() {
     if (shown_) telling_->setTruth(truth_ ? &*shown_ : nullptr);
 }
 
-void DrawnEchoes::tellTruth(size_t slot) {
-    if (beside_) beside_->finish(slot);
+void DrawnEchoes::fillTruth() {
+    if (beside_) beside_->finish();
     threads_.run([&](int part, int parts) {
         for (auto beam = static_cast<size_t>(part); beam < plan_.beams.size(); beam += static_cast<size_t>(parts))
             shown_->tell(beam, beam, *truth_);
@@ -181,18 +176,15 @@ void DrawnEchoes::lap(Stage& stage) {
     last_ = now;
 }
 
-void DrawnEchoes::take(size_t slot, const WaterView& water) {
+void DrawnEchoes::take(const WaterView& water) {
     const auto alone = context_.transferring();
     const auto takeAll = [&](BinDeposit& deposit) {
-        deposit.begin(slot, water);
+        deposit.begin(water);
         for (size_t i = 0; i < plan_.frusta.size(); ++i)
-            if (surface_.draws(slot, i)) deposit.take(slot, i, surface_);
-        deposit.ask(slot);
+            if (surface_.draws(i)) deposit.take(i, surface_);
     };
     takeAll(*deposit_);
     if (truth_ && beside_) takeAll(*beside_);
-    surface_.ask(slot);
-    glFlush();  // or a device would begin when its sums are waited for
 }
 
 void DrawnEchoes::fillBins(types::Sonar& ping) {
@@ -209,37 +201,31 @@ void DrawnEchoes::fill(size_t cell, const uint64_t* sums, double pixel, std::spa
     addOwnSums(rules_, sums, cell, pixel, bins);
 }
 
-void DrawnEchoes::submit(const types::Snapshot& snapshot, Stages& stages) {
+void DrawnEchoes::render(const types::Snapshot& snapshot, types::Sonar& ping, Stages& stages) {
     context_.requireThread();
-    const size_t slot = begun_ % slots_;
     prepareTruth();
     last_ = std::chrono::steady_clock::now();
     culler_.place(snapshot);
-    surface_.cull(slot);
+    surface_.cull();
     lap(stages[CullStage]);
-    surface_.draw(slot);
+    surface_.draw();
     lap(stages[DrawStage]);
-    take(slot, waterViewOf(snapshot));
+    take(waterViewOf(snapshot));
     context_.check();
     lap(stages[ReadStage]);
-    ++begun_;
-}
-
-void DrawnEchoes::collect(types::Sonar& ping, Stages& stages) {
-    context_.requireThread();
-    last_ = std::chrono::steady_clock::now();
-    const size_t slot = ended_++ % slots_;
     if (truth_) shown_->clear();
-    sums_ = deposit_->finish(slot);
-    if (truth_) tellTruth(slot);
+    sums_ = deposit_->finish();
+    if (truth_) fillTruth();
     lap(stages[DepositStage]);
     fillBins(ping);
+    rendered_ = true;
     lap(stages[BeamStage]);
 }
 
 void DrawnEchoes::takeQuality() {
     context_.requireThread();
     const auto alone = context_.transferring();
+    why_on_processor_ = checkLimits();
     surface_.resize(plan_.frusta);
     sums_ = {};
     makeDeposit();
@@ -247,14 +233,14 @@ void DrawnEchoes::takeQuality() {
 }
 
 bool DrawnEchoes::hasEchoes() const {
-    const bool drawn = ended_ > 0 && !surface_.lists().empty(lastSlot());  // published counts what is not there
+    const bool drawn = rendered_ && !surface_.lists().empty();  // published counts what is not there
     return drawn && std::ranges::any_of(sums_, [](uint64_t sum) { return sum > 0; });
 }
 
 std::vector<LeftOut> DrawnEchoes::culled() const {
     std::vector<LeftOut> all;
-    if (ended_ == 0) return all;
-    const Shown shown = surface_.lists().shown(lastSlot());
+    if (!rendered_) return all;
+    const Shown shown = surface_.lists().shown();
     const size_t triangles = geometry_->triangleCount();
     const auto add = [&](const char* effect, size_t left_out, size_t of) {
         if (left_out > 0)
@@ -269,8 +255,8 @@ std::vector<LeftOut> DrawnEchoes::culled() const {
 
 }  // namespace
 
-std::unique_ptr<PipelinedEchoes> makeDrawnEchoes(const RenderPlan& plan, types::GeometryPtr geometry,
-                                                 const PingEffects& effects) {
+std::unique_ptr<EchoRenderer> makeDrawnEchoes(const RenderPlan& plan, types::GeometryPtr geometry,
+                                              const PingEffects& effects) {
     return std::make_unique<DrawnEchoes>(plan, std::move(geometry), effects);
 }
 

@@ -50,23 +50,6 @@ public:
     virtual std::string notice() const { return {}; }
 };
 
-/** A renderer that begins pings before earlier ones are done: they are submitted, and collected in the same order. What
- *  is told of the last ping is of the one that was collected last, and only until the next is submitted. */
-class PipelinedEchoes : public EchoRenderer {
-public:
-    /** How many pings may be submitted and not collected [1]; of render() and takeQuality(), none may be. */
-    virtual size_t ringSize() const = 0;
-    /** Begins a ping of what the snapshot shows now and waits for nothing. Allocates nothing after the first ring. */
-    virtual void submit(const types::Snapshot& snapshot, Stages& stages) = 0;
-    /** Waits for the oldest ping and fills ping.bins. */
-    virtual void collect(types::Sonar& ping, Stages& stages) = 0;
-
-    void render(const types::Snapshot& snapshot, types::Sonar& ping, Stages& stages) final {
-        submit(snapshot, stages);
-        collect(ping, stages);
-    }
-};
-
 /** Whether this build has rays. */
 bool haveRays();
 
@@ -78,7 +61,7 @@ std::unique_ptr<EchoRenderer> makeCastEchoes(const RenderPlan& plan, types::Geom
 
 /** Pings drawn by OpenGL. Make it, use it and destroy it on one thread, under
  *  EglContext::making(). Throws gpu::GlError when there is no OpenGL 4.5 context, or when it is lost. */
-std::unique_ptr<PipelinedEchoes> makeDrawnEchoes(const RenderPlan& plan, types::GeometryPtr geometry,
-                                                 const PingEffects& effects);
+std::unique_ptr<EchoRenderer> makeDrawnEchoes(const RenderPlan& plan, types::GeometryPtr geometry,
+                                              const PingEffects& effects);
 
 }  // namespace insonify::sonar

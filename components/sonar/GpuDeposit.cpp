@@ -13,13 +13,12 @@ namespace {
 class GpuDeposit final : public BinDeposit {
 public:
     GpuDeposit(const DepositSetup& setup, gpu::EglContext& context);
-    void begin(size_t, const WaterView& water) override {
+    void begin(const WaterView& water) override {
         water_ = water;
         device_sums_.clear();
     }
-    void take(size_t slot, size_t frustum, const SurfacePass& surface) override;
-    void ask(size_t slot) override { sums_[slot].ask(device_sums_); }
-    std::span<const uint64_t> finish(size_t slot) override;
+    void take(size_t frustum, const SurfacePass& surface) override;
+    std::span<const uint64_t> finish() override;
 
 private:
     struct FrustumShares {
@@ -28,44 +27,45 @@ private:
     void setUniforms(const ViewFrustum& frustum) const;
     struct Uniforms {
         GLint image_size, bin_count, beam_stride, bin_width, attenuation, strength_scale, frustum_axis, extent,
-            pixel_size, elevation_reach, upward, sonar_height, layer_count, first_layer;
+            pixel_size, elevation_reach, upward, sonar_height, layer_count, first_elevation, first_backscatter,
+            first_layer;
     };
 
     DepositSetup setup_;
     const gpu::EglContext& context_;
     const gpu::Program& program_;
     Uniforms uniforms_;
-    GLuint first_layer_ = 0;  ///< Among the tables [1].
-    WaterView water_;         ///< Of the ping that is taken.
-    gpu::Buffer edges_, tables_, device_sums_;
+    GLuint first_elevation_ = 0, first_backscatter_ = 0, first_layer_ = 0;  ///< Among the numbers [1].
+    WaterView water_;                                                       ///< Of the ping that is taken.
+    gpu::Buffer numbers_, device_sums_;
     std::vector<FrustumShares> shares_;
-    std::vector<gpu::ReadBack> sums_;  ///< Of each slot.
+    gpu::ReadBack sums_;
 };
 
-std::vector<std::string> definesOf(const DepositSetup& setup) {
-    std::vector<std::string> defines = setup.defines;
-    if (setup.group_sums) defines.emplace_back("HAVE_GROUP_SUMS");
-    return defines;
-}
-
 GpuDeposit::GpuDeposit(const DepositSetup& setup, gpu::EglContext& context)
-    : setup_(setup), context_(context), program_(context.programs().compute("deposit.comp.glsl", definesOf(setup))) {
+    : setup_(setup),
+      context_(context),
+      program_(context.programs().compute("deposit.comp.glsl", setup.defines)) {
     const auto at = [this](const char* name) { return glGetUniformLocation(program_.id(), name); };
-    uniforms_ = {at("image_size"),     at("bin_count"),    at("beam_stride"), at("bin_width"),  at("attenuation"),
-                 at("strength_scale"), at("frustum_axis"), at("extent"),      at("pixel_size"), at("elevation_reach"),
-                 at("upward"),         at("sonar_height"), at("layer_count"), at("first_layer")};
-    context.requireStorage(setup.sumCount() * sizeof(uint64_t), "the sums of all bins");
-    edges_ = gpu::Buffer::of(std::span(setup.rules.edges));
-    std::vector<double> tables = setup.rules.elevation_powers;
-    for (const std::vector<double>* more : {&setup.rules.laws.tables, &setup.rules.layers}) {
-        first_layer_ = static_cast<GLuint>(tables.size());
-        tables.insert(tables.end(), more->begin(), more->end());
-    }
-    if (!tables.empty()) tables_ = gpu::Buffer::of(std::span<const double>(tables));
+    uniforms_ = {
+        at("image_size"),     at("bin_count"),    at("beam_stride"), at("bin_width"),       at("attenuation"),
+        at("strength_scale"), at("frustum_axis"), at("extent"),      at("pixel_size"),      at("elevation_reach"),
+        at("upward"),         at("sonar_height"), at("layer_count"), at("first_elevation"), at("first_backscatter"),
+        at("first_layer")};
+    std::vector<double> numbers = setup.rules.edges;
+    const auto append = [&](const std::vector<double>& table) {
+        const auto first = static_cast<GLuint>(numbers.size());
+        numbers.insert(numbers.end(), table.begin(), table.end());
+        return first;
+    };
+    first_elevation_ = append(setup.rules.elevation_powers);
+    first_backscatter_ = append(setup.rules.laws.tables);
+    first_layer_ = append(setup.rules.layers);
+    numbers_ = gpu::Buffer::of(std::span<const double>(numbers));
     device_sums_ = gpu::Buffer(setup.sumCount() * sizeof(uint64_t));
     for (const ColumnShares& frustum : setup.shares)
         shares_.push_back({gpu::Buffer::of(std::span(frustum.starts)), gpu::Buffer::of(std::span(frustum.shares))});
-    for (size_t slot = 0; slot < setup.slots; ++slot) sums_.emplace_back(setup.sumCount() * sizeof(uint64_t));
+    sums_ = gpu::ReadBack(setup.sumCount() * sizeof(uint64_t));
 }
 
 void GpuDeposit::setUniforms(const ViewFrustum& frustum) const {
@@ -79,6 +79,8 @@ void GpuDeposit::setUniforms(const ViewFrustum& frustum) const {
     glUniform2d(uniforms_.extent, frustum.extent_u, frustum.extent_v);
     if (uniforms_.elevation_reach >= 0) glUniform1d(uniforms_.elevation_reach, setup_.rules.elevation_reach);
     glUniform2d(uniforms_.pixel_size, frustum.du(), frustum.dv());
+    glUniform1ui(uniforms_.first_elevation, first_elevation_);  // without the feature its place is -1, which GL ignores
+    glUniform1ui(uniforms_.first_backscatter, first_backscatter_);
     if (uniforms_.layer_count < 0) return;
     const glm::dvec3 up = upwardIn(frustum, water_);
     glUniform3d(uniforms_.upward, up.x, up.y, up.z);
@@ -87,23 +89,23 @@ void GpuDeposit::setUniforms(const ViewFrustum& frustum) const {
     glUniform1ui(uniforms_.first_layer, first_layer_);
 }
 
-void GpuDeposit::take(size_t slot, size_t frustum, const SurfacePass& surface) {
+void GpuDeposit::take(size_t frustum, const SurfacePass& surface) {
     program_.use();
     setUniforms(setup_.frusta[frustum]);
-    surface.bindResults(slot, frustum);
+    surface.bindResults(frustum);
     shares_[frustum].shares.bindBase(GL_SHADER_STORAGE_BUFFER, SHARES_BINDING);
     shares_[frustum].starts.bindBase(GL_SHADER_STORAGE_BUFFER, SHARE_STARTS_BINDING);
-    if (tables_.bytes() > 0) tables_.bindBase(GL_SHADER_STORAGE_BUFFER, TABLES_BINDING);
-    edges_.bindBase(GL_SHADER_STORAGE_BUFFER, EDGES_BINDING);
+    numbers_.bindBase(GL_SHADER_STORAGE_BUFFER, NUMBERS_BINDING);
     device_sums_.bindBase(GL_SHADER_STORAGE_BUFFER, SUMS_BINDING);
     glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_FRAMEBUFFER_BARRIER_BIT);
     const auto groups = [](int pixels) { return static_cast<GLuint>((pixels + 7) / 8); };
     glDispatchCompute(groups(setup_.frusta[frustum].columns), groups(setup_.frusta[frustum].rows), 1);
 }
 
-std::span<const uint64_t> GpuDeposit::finish(size_t slot) {
+std::span<const uint64_t> GpuDeposit::finish() {
     const auto alone = context_.transferring();
-    return {static_cast<const uint64_t*>(sums_[slot].wait()), setup_.sumCount()};
+    sums_.ask(device_sums_);
+    return {static_cast<const uint64_t*>(sums_.wait()), setup_.sumCount()};
 }
 
 }  // namespace

@@ -26,10 +26,10 @@ PictureDeposit::PictureDeposit(DepositSetup setup, const SurfacePass& surface, c
       threads_(threads),
       planes_(surface.scene().planes()),
       columns_(static_cast<size_t>(threads.size()), std::vector<std::array<int, 2>>(setup_.shares.size())),
-      pictures_(setup_.slots * setup_.frusta.size()),
+      pictures_(setup_.frusta.size()),
       sums_(setup_.sumCount()) {
     for (size_t i = 0; i < pictures_.size(); ++i) {
-        const VisibilityBuffer& drawn = surface.picture(i % setup_.frusta.size());
+        const VisibilityBuffer& drawn = surface.picture(i);
         pictures_[i].view.channels = static_cast<size_t>(drawn.channels());
         pictures_[i].words = gpu::ReadBack(drawn.bytes());
         pictures_[i].view.ranges.reserve(surface.lists().drawLimit());
@@ -37,33 +37,30 @@ PictureDeposit::PictureDeposit(DepositSetup setup, const SurfacePass& surface, c
     touchColumns();
 }
 
-void PictureDeposit::begin(size_t slot, const WaterView& water) {
-    for (size_t i = 0; i < setup_.frusta.size(); ++i) {
-        picture(slot, i).taken = false;
-        picture(slot, i).water = water;
-    }
+void PictureDeposit::begin(const WaterView& water) {
+    for (Taken& picture : pictures_) picture.taken = false;
+    water_ = water;
 }
 
-void PictureDeposit::take(size_t slot, size_t frustum, const SurfacePass& surface) {
-    Taken& picture = this->picture(slot, frustum);
+void PictureDeposit::take(size_t frustum, const SurfacePass& surface) {
+    Taken& picture = pictures_[frustum];
     surface.picture(frustum).read(picture.words);
     picture.taken = true;
     picture.view.ranges.clear();
     picture.view.objects.clear();
-    for (const CommandRecord& command : surface.lists().commands(slot, frustum)) {
+    for (const CommandRecord& command : surface.lists().commands(frustum)) {
         if (truth_) picture.view.objects.push_back(command.object);
         picture.view.ranges.push_back(placedRun(surface.objects()[command.object], command, setup_.rules));
     }
 }
 
-std::span<const uint64_t> PictureDeposit::finish(size_t slot) {
+std::span<const uint64_t> PictureDeposit::finish() {
     {
         const auto alone = context_.transferring();
-        for (size_t i = 0; i < setup_.frusta.size(); ++i)
-            if (Taken& picture = this->picture(slot, i); picture.taken)
-                picture.view.pixels = static_cast<const uint32_t*>(picture.words.wait());
+        for (Taken& picture : pictures_)
+            if (picture.taken) picture.view.pixels = static_cast<const uint32_t*>(picture.words.wait());
     }
-    threads_.run([&](int part, int) { depositPart(slot, static_cast<size_t>(part)); });
+    threads_.run([&](int part, int) { depositPart(static_cast<size_t>(part)); });
     return sums_;
 }
 
@@ -80,15 +77,15 @@ void PictureDeposit::touchColumns() {
             columns_[part][i] = touched(setup_.shares[i], firstBeam(part), firstBeam(part + 1));
 }
 
-void PictureDeposit::depositPart(size_t slot, size_t part) {
+void PictureDeposit::depositPart(size_t part) {
     const uint first = firstBeam(part), last = firstBeam(part + 1);
     const size_t stride = setup_.rules.sumCount();
     std::fill(sums_.begin() + static_cast<ptrdiff_t>(first * stride),
               sums_.begin() + static_cast<ptrdiff_t>(last * stride), 0);
     for (size_t i = 0; i < setup_.frusta.size(); ++i) {
-        const Taken& taken = picture(slot, i);
+        const Taken& taken = pictures_[i];
         if (!taken.taken) continue;
-        const PicturePart frustum{setup_.rules, setup_.frusta[i], setup_.shares[i], taken.view, planes_, taken.water,
+        const PicturePart frustum{setup_.rules, setup_.frusta[i], setup_.shares[i], taken.view, planes_, water_,
                                   first,        last,             columns_[part][i]};
         if (!truth_) {
             depositPicture(frustum, {0, sums_.data()});

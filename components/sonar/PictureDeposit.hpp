@@ -12,10 +12,9 @@ class PictureDeposit final : public BinDeposit {
 public:
     /** All outlive it. */
     PictureDeposit(DepositSetup setup, const SurfacePass& surface, const gpu::EglContext& context, ThreadPool& threads);
-    void begin(size_t slot, const WaterView& water) override;
-    void take(size_t slot, size_t frustum, const SurfacePass& surface) override;
-    void ask(size_t) override {}
-    std::span<const uint64_t> finish(size_t slot) override;
+    void begin(const WaterView& water) override;
+    void take(size_t frustum, const SurfacePass& surface) override;
+    std::span<const uint64_t> finish() override;
 
     /** Prepares for the truth of the sums, in those beams of a table (as beamsOfCells). */
     void prepareTruth(std::vector<int32_t> beams);
@@ -26,11 +25,9 @@ private:
     struct Taken {
         gpu::ReadBack words;
         PictureView view;
-        WaterView water;
         bool taken = false;
     };
-    Taken& picture(size_t slot, size_t frustum) { return pictures_[slot * setup_.frusta.size() + frustum]; }
-    void depositPart(size_t slot, size_t part);
+    void depositPart(size_t part);
     void touchColumns();
     /** First beam of a thread's run. */
     uint32_t firstBeam(size_t part) const;
@@ -40,7 +37,8 @@ private:
     ThreadPool& threads_;
     const std::vector<PlaneRecord>& planes_;
     std::vector<std::vector<std::array<int, 2>>> columns_;  ///< Of each thread and frustum: from, to.
-    std::vector<Taken> pictures_;                           ///< Slot after slot, of each frustum.
+    std::vector<Taken> pictures_;                           ///< Of each frustum.
+    WaterView water_;                                       ///< Of the ping that is taken.
     std::vector<uint64_t> sums_;
     TruthTable* truth_ = nullptr;
     std::vector<int32_t> truth_beams_;

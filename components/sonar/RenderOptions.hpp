@@ -10,19 +10,13 @@ enum class Estimator {
     NearestJitter,  ///< All in the bin of a point drawn at random in it.
 };
 
-/** Ways to render that no property asks for: those that studies compare with the usual, and tests. */
+/** Ways to render that no property asks for: studies compare them with the usual one. */
 struct RenderOptions {
-    enum class CullOn { Auto, Processor, Device };
-    enum class SumIn { Auto, Memory, Groups };
-
     Estimator estimator = Estimator::Footprint;  ///< Others than the first: `physical` only.
     bool one_frustum = false;                    ///< One wide image and rounded columns, as `published`.
     int samples_per_pixel = 1;                   ///< 1, or 4 on a rotated grid, for edges along the rows [1].
-    int min_frusta = 1;                          ///< More images than the fan needs [1].
+    int min_frusta = 1;                          ///< At least so many images [1].
     int threads = 0;                             ///< 0: as many as there are cores [1].
-    size_t ring = 0;                ///< Drawn pings that may be under way; 0: three on a graphics card, else one.
-    CullOn cull_on = CullOn::Auto;  ///< Who culls clusters; auto: a graphics card that deposits as well.
-    SumIn sum_in = SumIn::Auto;     ///< Where a device's deposit sums first; auto: in work groups on a graphics card.
 
     /** Whether only an image shows what is asked for, whatever the configuration says. */
     bool needImages() const { return one_frustum || samples_per_pixel > 1 || estimator != Estimator::Footprint; }

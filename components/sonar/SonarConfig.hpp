@@ -187,20 +187,6 @@ struct QualityConfig {
     void check(types::Diagnostics& diagnostics) const;
 };
 
-/** What simplified meshes may cost. A bound, not a wish: all meshes are drawn in full, for on rough floors those that
- *  keep to the default are hardly simpler (components/sonar/README.md, The plan). */
-struct DetailConfig {
-    double error = 0.005;
-
-    template <class Self, class V>
-    static void describe(Self& self, V& visit) {
-        visit(types::Field{"error", "1",
-                           "largest rel_l2_tvg that simplified meshes may add; all are drawn in full, which adds 0", 0,
-                           1},
-              self.error);
-    }
-};
-
 /** An imaging sonar. Beam k of a fan covers bearings [-fov/2 + k fov/N, -fov/2 + (k + 1) fov/N], positive to port;
  *  `bearings_deg` takes the place of `field_of_view_deg` and `beam_count`; `beam_width_deg` alone that of
  *  `field_of_view_deg`; with both, each beam is as wide as it says, and beams may overlap. */
@@ -223,7 +209,6 @@ struct SonarConfig {
     QualityConfig quality;
     RangeRounding range_rounding = RangeRounding::Sample;
     bool published = false;
-    DetailConfig detail;
     bool draw_all = false;
     Visibility visibility = Visibility::Auto;
     std::string device;
@@ -326,7 +311,6 @@ void SonarConfig::describeBeam(Self& self, V& visit) {
           self.visibility);
     visit(Field{"device", "", "EGL device to draw on; absent: INSONIFY_EGL_DEVICE, else the first"}, self.device);
     visit(Field{"deposit", "", "where samples are summed into bins"}, self.deposit);
-    visit(Field{"detail", "", "what simplified meshes may add to the error"}, self.detail);
     visit(Field{"draw_all", "", "draws what is outside the fan and the range as well, to compare; rays meet it anyway"},
           self.draw_all);
     visit(Field{"beam_pattern", "", "directivity of transmitter and receiver; absent: beams are boxes side by side"},

@@ -16,12 +16,6 @@ namespace {
 
 constexpr Stages no_time{{{"cull", 0}, {"draw", 0}, {"read", 0}, {"deposit", 0}, {"beams", 0}}};
 
-/** A ping that is submitted. */
-struct UnderWay {
-    types::SnapshotPtr snapshot;
-    Stages stages = no_time;
-};
-
 }  // namespace
 
 struct SonarRenderer::Parts {
@@ -35,12 +29,9 @@ struct SonarRenderer::Parts {
     types::Plan told;
     Stages stages = no_time;
     std::unique_ptr<EchoRenderer> echoes;
-    PipelinedEchoes* pipeline = nullptr;  ///< The same where it draws.
     const types::Sonar* told_ping = nullptr;
     types::SonarTruth* truth = nullptr;  ///< Filled with that ping; null: none is.
-    std::vector<UnderWay> ring;
     std::optional<LineArray> array;  ///< From the first ping whose signals are taken on.
-    size_t begun = 0, ended = 0;  ///< Pings that were submitted; ping n has place n modulo the ring's size.
 };
 
 SonarRenderer::Parts::Parts(const SonarConfig& config, types::GeometryPtr scene, const RenderOptions& options)
@@ -52,11 +43,8 @@ SonarRenderer::Parts::Parts(const SonarConfig& config, types::GeometryPtr scene,
         echoes = makeCastEchoes(plan, std::move(scene), effects);
     } else {
         const auto alone = gpu::EglContext::making();
-        auto drawn = makeDrawnEchoes(plan, std::move(scene), effects);
-        pipeline = drawn.get();
-        echoes = std::move(drawn);
+        echoes = makeDrawnEchoes(plan, std::move(scene), effects);
     }
-    ring.resize(pipeline ? pipeline->ringSize() : 1);
     told.device = echoes->device();
     if (const std::string notice = echoes->notice(); !notice.empty()) told.notices.push_back(notice);
 }
@@ -88,8 +76,6 @@ SonarRenderer::SonarRenderer(const SonarConfig& config, types::GeometryPtr geome
 SonarRenderer::~SonarRenderer() = default;
 
 void SonarRenderer::render(const types::Snapshot& snapshot, types::Sonar& ping) {
-    if (parts_->begun != parts_->ended)
-        throw std::logic_error("pings that were submitted are to be collected before another is rendered");
     parts_->stages = no_time;
     parts_->fillHeader(snapshot, ping);
     types::SonarTruth* const truth = &ping == parts_->told_ping ? parts_->truth : nullptr;
@@ -130,34 +116,7 @@ void SonarRenderer::takeElements(const types::Sonar& ping, types::SonarElements&
     signals.time = ping.time;
 }
 
-size_t SonarRenderer::ringSize() const { return parts_->ring.size(); }
-
-void SonarRenderer::submit(types::SnapshotPtr snapshot) {
-    if (parts_->begun - parts_->ended == ringSize())
-        throw std::logic_error("a ping is to be collected before another is submitted");
-    UnderWay& ping = parts_->ring[parts_->begun % ringSize()];
-    ping.stages = no_time;
-    if (parts_->pipeline) parts_->pipeline->submit(*snapshot, ping.stages);
-    ping.snapshot = std::move(snapshot);
-    ++parts_->begun;
-}
-
-void SonarRenderer::collect(types::Sonar& ping) {
-    if (parts_->begun == parts_->ended) throw std::logic_error("no ping is submitted that could be collected");
-    UnderWay& first = parts_->ring[parts_->ended++ % ringSize()];
-    const types::SnapshotPtr snapshot = std::move(first.snapshot);
-    parts_->stages = first.stages;
-    parts_->fillHeader(*snapshot, ping);
-    if (parts_->pipeline)
-        parts_->pipeline->collect(ping, parts_->stages);
-    else
-        parts_->echoes->render(*snapshot, ping, parts_->stages);
-    finish(*snapshot, ping);
-}
-
 void SonarRenderer::setQuality(int rows, int columns_per_beam) {
-    if (parts_->begun != parts_->ended)
-        throw std::logic_error("pings that were submitted are to be collected before their quality changes");
     parts_->plan.setQuality(rows, columns_per_beam);
     parts_->told.rows = rows;
     parts_->told.columns_per_beam = columns_per_beam;

@@ -27,30 +27,19 @@ public:
     ~SonarRenderer();
 
     /** One ping from snapshot.sonar (sonar frame in the world; orientation of unit length). Fills the whole sample;
-     *  allocates nothing when `ping` has been filled by this renderer before. Throws std::logic_error while pings are
-     *  submitted and not collected. */
+     *  allocates nothing when `ping` has been filled by this renderer before. */
     void render(const types::Snapshot& snapshot, types::Sonar& ping);
 
     /** Each time that `ping` is rendered from now on, `truth` is filled as well, with what its bins show
      *  (types::SonarTruth; its list of names is left alone); null: no more. Other pings tell nothing, and nothing is
      *  computed or kept for them. Of a beam that is formed from finer azimuth cells, the truth is that of the cells
      *  within half its spacing to its neighbours: what it hears in its sidelobes is not told, nor what the pulse
-     *  spreads into a bin, nor what the water scatters. Pings that are submitted tell none. */
+     *  spreads into a bin, nor what the water scatters. */
     void setTruth(const types::Sonar& ping, types::SonarTruth* truth);
 
     /** Of a sonar with `elements`: what they heard of `ping`, the last that was rendered. Takes some time and
      *  allocates. Throws std::logic_error where the sonar has none. */
     void takeElements(const types::Sonar& ping, types::SonarElements& signals);
-
-    /** How many pings may be submitted and not collected [1]: more than one only pays where a graphics card draws. */
-    size_t ringSize() const;
-    /** Begins a ping of what the snapshot shows now, which must not change before it is collected, and waits for
-     *  nothing: a graphics card draws, rays wait for collect(). Throws std::logic_error when ringSize() are under way.
-     */
-    void submit(types::SnapshotPtr snapshot);
-    /** Ends the ping that was submitted first: as render(). Throws std::logic_error when there is none. What is told of
-     *  the last ping is of this one, and only until the next is submitted. */
-    void collect(types::Sonar& ping);
 
     /** Renders from now on with so many rows of samples and columns per beam [1]; allocates. */
     void setQuality(int rows, int columns_per_beam);

@@ -18,7 +18,7 @@ size_t partCount(const gpu::EglContext& context, const SurfacePass::Setup& setup
 
 std::unique_ptr<DrawLists> makeLists(const SurfacePass::Setup& setup, const SurfaceScene& scene, Culler& culler,
                                      gpu::EglContext& context) {
-    const DrawLists::Setup lists{setup.geometry, scene, culler, setup.slots, setup.frusta.size()};
+    const DrawLists::Setup lists{setup.geometry, scene, culler, setup.frusta.size()};
     return setup.cull_on_device ? makeDeviceLists(lists, context) : makeProcessorLists(lists);
 }
 
@@ -129,43 +129,38 @@ void SurfacePass::makePictures(size_t part) {
             std::make_unique<VisibilityBuffer>(setup_.frusta[frustum], hasNormalMaps(setup_), contextOf(part));
 }
 
-void SurfacePass::cull(size_t slot) {
-    lists_->place(slot);
+void SurfacePass::cull() {
+    lists_->place();
     onEachPart([&](size_t part) {
         for (size_t frustum = part; frustum < pictures_.size(); frustum += parts_.size())
-            lists_->list(slot, frustum, setup_.frusta[frustum]);
+            lists_->list(frustum, setup_.frusta[frustum]);
     });
 }
 
-void SurfacePass::draw(size_t slot) {
-    if (parts_.size() > 1 && setup_.slots > 1) {  // other contexts draw into what this one may still read
-        const auto alone = context_.transferring();
-        gpu::Fence::here().wait();
-    }
+void SurfacePass::draw() {
     onEachPart([&](size_t part) {
         // A device that culls is asked for more than draws.
         const auto alone = setup_.cull_on_device ? context_.transferring() : std::unique_lock<std::shared_mutex>();
         const auto together = setup_.cull_on_device ? std::shared_lock<std::shared_mutex>() : context_.drawing();
-        lists_->prepare(slot, setup_.frusta);
-        drawPart(slot, part);
+        lists_->prepare(setup_.frusta);
+        drawPart(part);
         if (context_.isSoftware()) gpu::Fence::here().wait();  // for other contexts; a card's own takes its turn
         if (parts_[part].own) parts_[part].own->check();
     });
 }
 
-void SurfacePass::drawPart(size_t slot, size_t part) {
+void SurfacePass::drawPart(size_t part) {
     for (size_t frustum = part; frustum < pictures_.size(); frustum += parts_.size()) {
-        if (!draws(slot, frustum)) continue;
-        parts_[part].painter->draw(*pictures_[frustum], lists_->draws(slot, frustum));
+        if (!draws(frustum)) continue;
+        parts_[part].painter->draw(*pictures_[frustum], lists_->draws(frustum));
     }
 }
 
-void SurfacePass::bindResults(size_t slot, size_t frustum) const {
-    context_.requireStorage(scene_.planes().size() * sizeof(PlaneRecord), "the planes of all triangles");
+void SurfacePass::bindResults(size_t frustum) const {
     pictures_[frustum]->bindTexture(0);
     scene_.bindRecords();
-    lists_->objects(slot).bindBase(GL_SHADER_STORAGE_BUFFER, OBJECTS_BINDING);
-    lists_->draws(slot, frustum).commands->bindBase(GL_SHADER_STORAGE_BUFFER, COMMANDS_BINDING);
+    lists_->objects().bindBase(GL_SHADER_STORAGE_BUFFER, OBJECTS_BINDING);
+    lists_->draws(frustum).commands->bindBase(GL_SHADER_STORAGE_BUFFER, COMMANDS_BINDING);
 }
 
 }  // namespace insonify::sonar

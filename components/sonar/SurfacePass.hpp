@@ -48,7 +48,6 @@ public:
         std::vector<std::string> defines;  ///< As the plan's features.
         double near_plane;                 ///< [m]
         bool empty_too;                    ///< Frusta that see nothing are drawn as well: misses count.
-        size_t slots = 1;                  ///< Pings that may be under way.
         bool cull_on_device = false;       ///< Clusters; objects are culled by the processor.
     };
     /** `context` is current on this thread; context, geometry, laws, culler and threads must outlive the pass. */
@@ -58,17 +57,14 @@ public:
     /** Other pictures of the same frusta: as many, in more or fewer pixels. */
     void resize(const std::vector<ViewFrustum>& frusta);
 
-    /** Lists for a slot what each frustum sees of what the culler has placed. */
-    void cull(size_t slot);
+    /** Lists what each frustum sees of what the culler has placed. */
+    void cull();
     /** Whether a frustum's picture is drawn. */
-    bool draws(size_t slot, size_t frustum) const { return setup_.empty_too || lists_->mayShow(slot, frustum); }
-    /** Draws the frusta as the slot lists them. A graphics card may still be at it when this returns; what its context
+    bool draws(size_t frustum) const { return setup_.empty_too || lists_->mayShow(frustum); }
+    /** Draws the frusta as they are listed. A graphics card may still be at it when this returns; what its context
      *  is asked for then comes after. Throws GlError. All other functions but cull(), draws() and what reads lists want
      *  EglContext::transferring(); this one does that itself. */
-    void draw(size_t slot);
-
-    /** Asks for what has been shown, once all is drawn. */
-    void ask(size_t slot) { lists_->ask(slot); }
+    void draw();
 
     const VisibilityBuffer& picture(size_t frustum) const { return *pictures_[frustum]; }
     const SurfaceScene& scene() const { return scene_; }
@@ -76,7 +72,7 @@ public:
     /** Where the culler has placed the objects. */
     const std::vector<ObjectRecord>& objects() const { return culler_.records(); }
     /** Binds a picture (unit 0), its commands, objects, planes and materials, for a compute shader. */
-    void bindResults(size_t slot, size_t frustum) const;
+    void bindResults(size_t frustum) const;
 
 private:
     /** One thread's part; made, used and destroyed there. */
@@ -90,7 +86,7 @@ private:
     void makePictures(size_t part);
     template <class Job>
     void onEachPart(const Job& job);
-    void drawPart(size_t slot, size_t part);
+    void drawPart(size_t part);
 
     Setup setup_;
     gpu::EglContext& context_;

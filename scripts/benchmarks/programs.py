@@ -1,10 +1,9 @@
-"""Programs of tests/bench: the framework's ports, the logger, pings that are under way together, and ways by mirrors."""
+"""Programs of tests/bench: the framework's ports, the logger, and ways by mirrors."""
 import json
 import subprocess
 import tempfile
 
 from benchmarks.common import BENCH, ROOT, fail
-from benchmarks.fans import SCENES, scene
 
 
 def measure_ports(_options):
@@ -52,25 +51,6 @@ def measure_oculus(options):
 def show_oculus(oculus):
     print(f"Oculus, 512 x 1000 codes of 16 bits at 40 Hz over TCP: {oculus['received']} pings received of "
           f"{oculus['asked']:.0f} asked for in {oculus['seconds']:.0f} s, {oculus['mb_per_s']:.1f} MB/s")
-
-
-def measure_pipeline(options):
-    """What pipeline_bench tells of each scene: milliseconds a ping, from the first that is begun to the last that ends."""
-    found = {}
-    for name, scene_options in SCENES.items():
-        command = [ROOT / "build/bin/pipeline_bench", scene(scene_options), str(options.pings)]
-        done = subprocess.run(command, stdout=subprocess.PIPE, text=True)
-        if done.returncode != 0:
-            fail("pipeline_bench", done.returncode)
-        found[name] = json.loads(done.stdout)
-    return found
-
-
-def show_pipeline(scenes):
-    for name, scene_found in scenes.items():
-        print(f"FLS 512 x 1000, {name}, gl, by {scene_found['device']}")
-        for way, ms in scene_found["ms"].items():
-            print(f"  {way:32}{ms:9.3f} ms{1000 / ms:9.1f} pings/s")
 
 
 def measure_ways(options):

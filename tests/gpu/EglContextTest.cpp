@@ -137,19 +137,9 @@ TEST(EglContextTest, ThatItDrawsInSoftwareIsToldWhereNobodyAskedForIt) {
     EXPECT_EQ(EglContext("software").fallback(), "");
     const DeviceVariable variable("auto");
     const EglContext context;
-    const std::string expected = context.isSoftware() ? "drawn in software by llvmpipe" : "";
+    const std::string expected = context.isSoftware() ? "drawn in software by " + context.renderer() : "";
     EXPECT_THAT(context.fallback(), HasSubstr(expected));
     EXPECT_EQ(context.fallback().empty(), expected.empty());
-}
-
-TEST(EglContextTest, ABufferTooLargeForAShaderIsRefusedInWords) {
-    const EglContext context("software");
-    GLint64 most = 0;
-    glGetInteger64v(GL_MAX_SHADER_STORAGE_BLOCK_SIZE, &most);
-    const auto bytes = static_cast<size_t>(most);
-    EXPECT_EQ(errorOf([&] { context.requireStorage(bytes, "the planes"); }), "");
-    EXPECT_THAT(errorOf([&] { context.requireStorage(bytes + 1, "the planes"); }),
-                AllOf(HasSubstr("the planes take " + std::to_string(bytes >> 20) + " MiB"), HasSubstr("deposit: cpu")));
 }
 
 TEST(EglContextTest, OfTwoMistakesTheFirstIsTold) {
@@ -158,6 +148,37 @@ TEST(EglContextTest, OfTwoMistakesTheFirstIsTold) {
     glEnable(GL_TEXTURE_2D);
     glBindFramebuffer(GL_FRAMEBUFFER, 4711);
     EXPECT_THAT(errorOf([&] { context.check(); }), HasSubstr("glEnable"));
+}
+
+TEST(EglContextTest, RenderersOnTheProcessorAreKnownByTheirNames) {
+    for (const char* renderer : {"llvmpipe (LLVM 15.0.6, 256 bits)", "softpipe", "Software Rasterizer",
+                                 "Google SwiftShader", "zink (llvmpipe (LLVM 15.0.6, 256 bits))",
+                                 "zink Vulkan 1.3(llvmpipe (LLVM 19.1.7, 256 bits) (MESA_LLVMPIPE))",
+                                 "ANGLE (Google, Vulkan 1.3.0 (SwiftShader Device (Subzero)), SwiftShader driver)",
+                                 "D3D12 (Microsoft Basic Render Driver)"})
+        EXPECT_TRUE(isSoftwareRenderer(renderer)) << renderer;
+    for (const char* renderer : {"NVIDIA H100 80GB HBM3/PCIe", "NVIDIA GeForce RTX 4090/PCIe/SSE2",
+                                 "AMD Radeon RX 6800 (radeonsi, navi21, LLVM 15.0.6, DRM 3.49, 6.1.0)",
+                                 "Mesa Intel(R) UHD Graphics 620 (KBL GT2)", "zink (NVIDIA GeForce RTX 3080)"})
+        EXPECT_FALSE(isSoftwareRenderer(renderer)) << renderer;
+}
+
+TEST(EglContextTest, ACardGoesBeforeADisplayChipThatDrawsOnTheProcessor) {
+    const std::string chip = "llvmpipe (LLVM 15.0.6, 256 bits)", card = "NVIDIA L40S/PCIe/SSE2",
+                      other = "Mesa Intel(R) UHD Graphics 620 (KBL GT2)", none;
+    const auto preferred = [](const std::vector<std::string>& renderers) { return preferredRenderer(renderers); };
+    EXPECT_EQ(preferred({chip, card}), 1u);
+    EXPECT_EQ(preferred({card, chip}), 0u);
+    EXPECT_EQ(preferred({none, chip, "softpipe", other, card}), 3u) << "the first card of EGL's list";
+    EXPECT_EQ(preferred({none, chip, "softpipe"}), 1u) << "no card";
+    EXPECT_EQ(preferred({none, none}), std::nullopt);
+    EXPECT_EQ(preferred({}), std::nullopt);
+}
+
+TEST(EglContextTest, TheSearchForACardLeavesTheContextCurrent) {
+    EglContext context("software");
+    EglContext::hasCard();
+    EXPECT_EQ(errorOf([&] { context.check(); }), "");
 }
 
 TEST(EglContextTest, ASecondContextOnAnotherThreadSharesTheBuffersOfTheFirst) {

@@ -1,13 +1,19 @@
 #include <gmock/gmock.h>
 
+#include <filesystem>
+#include <regex>
+
 #include "components/gpu/Program.hpp"
 #include "tests/gpu/ErrorOf.hpp"
+#include "tests/support/Paths.hpp"
 
 namespace insonify::gpu {
 namespace {
 
 using ::testing::AllOf;
+using ::testing::ElementsAre;
 using ::testing::HasSubstr;
+using ::testing::IsEmpty;
 using ::testing::Not;
 using ::testing::StartsWith;
 
@@ -37,6 +43,29 @@ TEST(ProgramTest, DefinesStandAfterTheVersionAndBeforeTheText) {
     ASSERT_NE(first, std::string::npos);
     EXPECT_LT(first, second);
     EXPECT_LT(second, source.find("flat in uvec2 seen"));
+}
+
+/** Numbers of a file that GLSL rounds to single precision: literals that do not end in f or lf, and their quotients. */
+std::vector<std::string> roundedNumbers(const std::string& text) {
+    static const std::regex unread("//[^\n]*|#ifdef GLSL\n|#else\n(#define \\w+ [\\d.e-]+\n)+#endif"),
+        numbers("(^|[^\\w.])((\\d+\\.\\d*(?:e-?\\d+)?|\\d+e-?\\d+)(?![\\w.])(?: / (\\d+\\.\\d*)(?![\\w.]))?)");
+    const std::string code = std::regex_replace(text, unread, "");
+    std::vector<std::string> all;
+    for (std::sregex_iterator at(code.begin(), code.end(), numbers), end; at != end; ++at) {
+        const double value = std::stod((*at)[3]) / ((*at)[4].matched ? std::stod((*at)[4]) : 1);
+        if (double{static_cast<float>(value)} != value) all.push_back((*at)[2]);
+    }
+    return all;
+}
+
+TEST(ProgramTest, NoNumberIsRoundedToSinglePrecision) {
+    for (const auto& entry : std::filesystem::directory_iterator(test::sourceFile("shaders"))) {
+        const std::string name = entry.path().filename();
+        EXPECT_THAT(roundedNumbers(std::string(shaderFile(name))), IsEmpty()) << name;
+    }
+    EXPECT_THAT(roundedNumbers("double x = 1e-300 + 0.5 * 0.1 + 1.5e-3 + (1.0 / 24.0);  // 0.3\n"),
+                ElementsAre("1e-300", "0.1", "1.5e-3", "1.0 / 24.0"));
+    EXPECT_THAT(roundedNumbers("float y = 0.1f; double z2 = 1e-3lf + 1.0 / 4.0 + double(1.0) / 24.0;\n"), IsEmpty());
 }
 
 TEST(ProgramTest, WhatTheShadersHaveCompilesInEveryCombination) {

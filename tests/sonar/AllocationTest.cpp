@@ -6,7 +6,6 @@
 #include "components/sonar/ScanningSonarTask.hpp"
 #include "components/sonar/SideScanTask.hpp"
 #include "components/sonar/Sonar3dTask.hpp"
-#include "components/sonar/SonarRenderer.hpp"
 #include "components/sonar/SonarTask.hpp"
 #include "tests/support/Allocations.hpp"
 #include "tests/support/Ports.hpp"
@@ -162,28 +161,6 @@ TEST(AllocationTest, NorDoesItWithTheDepositOnTheGraphicsDevice) {
     SonarConfig config = fan();
     config.deposit = Deposit::Gpu;
     expectNoAllocation<SonarTask>(config);
-}
-
-TEST(AllocationTest, NorForPingsThatAreUnderWayTogether) {
-    using CullOn = RenderOptions::CullOn;
-    const std::vector<types::SnapshotPtr> snapshots = turning();
-    for (Deposit deposit : {Deposit::Cpu, Deposit::Gpu})
-        for (CullOn cull_on : {CullOn::Processor, CullOn::Device}) {
-            SonarConfig config = fan();
-            config.deposit = deposit;
-            SonarRenderer renderer(config, snapshots[0]->geometry, {.ring = 2, .cull_on = cull_on});
-            types::Sonar ping;
-            const auto next = [&](size_t i) {
-                renderer.submit(snapshots[i]);
-                if (i > 0) renderer.collect(ping);
-            };
-            for (size_t i = 0; i < 3; ++i) next(i);
-            test::takeCounted();
-            test::countHere(true);
-            for (size_t i = 3; i < snapshots.size(); ++i) next(i);
-            test::countHere(false);
-            EXPECT_THAT(test::takeCounted(), testing::IsEmpty());
-        }
 }
 
 TEST(AllocationTest, NorWithEveryEffectThereIs) {

@@ -39,6 +39,15 @@ protected:
     }
 };
 
+double relativeL2(const types::Sonar& got, const types::Sonar& reference) {
+    double error = 0, norm = 0;
+    for (size_t i = 0; i < reference.bins.size(); ++i) {
+        error += std::pow(double{got.bins[i]} - reference.bins[i], 2);
+        norm += std::pow(reference.bins[i], 2);
+    }
+    return std::sqrt(error / norm);
+}
+
 double sum(const types::Sonar& ping) { return std::accumulate(ping.bins.begin(), ping.bins.end(), 0.0); }
 
 void expectAgreement(const types::Sonar& cpu, const types::Sonar& gpu) {
@@ -108,6 +117,14 @@ TEST_P(DepositTest, EachIsBitForBitItselfAgainAndInANewRenderer) {
     }
 }
 
+TEST_P(DepositTest, TheyAgreeInFewBinsAndInMoreThanAWorkGroupHolds) {
+    for (const int bins : {30, 6000}) {
+        SonarConfig cpu = with(Deposit::Cpu), gpu = with(Deposit::Gpu);
+        cpu.bin_count = gpu.bin_count = bins;
+        EXPECT_LT(relativeL2(pingOf(gpu, hardScene()), pingOf(cpu, hardScene())), 1e-5) << bins;
+    }
+}
+
 INSTANTIATE_TEST_SUITE_P(Kinds, DepositTest,
                          testing::Values(Kind{Model::Physical, BeamGeometry::Planar, 130},
                                          Kind{Model::Physical, BeamGeometry::Conical, 130},
@@ -120,6 +137,14 @@ INSTANTIATE_TEST_SUITE_P(Kinds, DepositTest,
                                     (kind.param.beams == BeamGeometry::Planar ? "Planar" : "Conical") +
                                     std::to_string(static_cast<int>(kind.param.field_of_view_deg));
                          });
+
+TEST(DepositPublishedTest, TheyAgreeInThePublishedModelWhereMissesCount) {
+    SonarConfig cpu = fan(Model::Cerqueira2017, BeamGeometry::Planar, Deposit::Cpu, 60);
+    cpu.published = true;
+    SonarConfig gpu = cpu;
+    gpu.deposit = Deposit::Gpu;
+    EXPECT_LT(relativeL2(pingOf(gpu, hardScene()), pingOf(cpu, hardScene())), 1e-5);
+}
 
 TEST(DepositEnergyTest, OneBinHoldsTheEnergyOfTheManyThatItCovers) {
     // A pixel's energy is that of the middle of its part of each bin: exact to second order in the pixel's depth, so

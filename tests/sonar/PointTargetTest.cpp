@@ -333,21 +333,5 @@ TEST(PointTargetTest, NothingOfItChangesNoBit) {
     }
 }
 
-TEST(PointTargetTest, PingsThatAreUnderWayTogetherHaveTheirOwnTargets) {
-    SonarConfig config = sonarOf(40, 20);
-    config.visibility = Visibility::Gl;
-    config.device = "software";
-    const auto geometry = openWater();
-    SonarRenderer renderer(config, geometry, {.ring = 2});
-    types::Sonar ping;
-    for (const double x : {5.0, 9.0})
-        renderer.submit(std::make_shared<const types::Snapshot>(withTarget(geometry, {x, 0.1, 0})));
-    for (const size_t bin : {50u, 90u}) {
-        renderer.collect(ping);
-        const auto top = std::ranges::max_element(ping.bins) - ping.bins.begin();
-        EXPECT_EQ(static_cast<size_t>(top) % ping.bin_count, bin);
-    }
-}
-
 }  // namespace
 }  // namespace insonify::sonar

@@ -41,15 +41,15 @@ std::vector<Seen> drawn(const types::Snapshot& snapshot, const std::vector<ViewF
     const MaterialLaws laws = makeMaterialLaws({}, *snapshot.geometry);
     SurfacePass surface(context, {*snapshot.geometry, laws, frusta, {}, 1e-3, true}, culler, threads);
     culler.place(snapshot);
-    surface.cull(0);
-    surface.draw(0);
+    surface.cull();
+    surface.draw();
     std::vector<Seen> seen;
     for (size_t i = 0; i < frusta.size(); ++i) {
         const size_t count = 2 * static_cast<size_t>(frusta[i].columns * frusta[i].rows);
         gpu::ReadBack read(surface.picture(i).bytes());
         surface.picture(i).read(read);
         const std::span words(static_cast<const uint32_t*>(read.wait()), count);
-        const auto commands = surface.lists().commands(0, i);
+        const auto commands = surface.lists().commands(i);
         for (size_t pixel = 0; pixel < words.size(); pixel += 2)
             seen.push_back(words[pixel] == 0 ? nothing : Seen{commands[words[pixel] - 1].object, words[pixel + 1]});
     }

@@ -1,0 +1,39 @@
+#include <gmock/gmock.h>
+
+#include "components/gpu/EglContext.hpp"
+#include "components/gpu/Limits.hpp"
+
+namespace insonify::gpu {
+namespace {
+
+using ::testing::IsEmpty;
+
+TEST(LimitsTest, AContextHasAtLeastWhatOpenGl45Promises) {
+    const EglContext context("software");
+    EXPECT_THAT(context.limits().shortfall({.texture_size = 16384,
+                                            .viewport_size = 16384,
+                                            .integer_samples = 1,
+                                            .depth_samples = 1,
+                                            .storage_blocks = 8,
+                                            .storage_bindings = 8,
+                                            .storage_bytes = 1 << 27,
+                                            .shared_bytes = 32768,
+                                            .group_invocations = 1024,
+                                            .group_size = 1024,
+                                            .group_count = 65535}),
+                IsEmpty());
+    EXPECT_THAT(context.limits().shortfall({.draw_parameters = 1, .doubles = 1}), IsEmpty()) << "and the extensions";
+}
+
+TEST(LimitsTest, AShortfallIsTheFirstLimitWithBothNumbers) {
+    const Limits limits{.draw_parameters = 1, .texture_size = 4096, .storage_blocks = 8, .shared_bytes = 32768};
+    EXPECT_EQ(limits.shortfall({}), "");
+    EXPECT_EQ(limits.shortfall(limits), "");
+    EXPECT_EQ(limits.shortfall({.texture_size = 4097, .shared_bytes = 40000}),
+              "GL_MAX_TEXTURE_SIZE is 4096, and 4097 is needed");
+    EXPECT_EQ(limits.shortfall({.storage_blocks = 9}), "GL_MAX_COMPUTE_SHADER_STORAGE_BLOCKS is 8, and 9 is needed");
+    EXPECT_EQ(limits.shortfall({.draw_parameters = 1, .doubles = 1}), "GL_ARB_gpu_shader_fp64 is missing");
+}
+
+}  // namespace
+}  // namespace insonify::gpu

@@ -1,0 +1,116 @@
+// What drawing needs of OpenGL's limits, held against drivers that do not exist.
+#include <gmock/gmock.h>
+
+#include "components/sonar/DeviceNeeds.hpp"
+#include "tests/gpu/ErrorOf.hpp"
+#include "tests/support/Sonars.hpp"
+#include "tests/support/Surfaces.hpp"
+
+namespace insonify::sonar {
+namespace {
+
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+
+const std::string renderer = "Imaginary GPU";
+
+/** What OpenGL 4.5 promises, with both extensions. */
+gpu::Limits promised() {
+    return {.draw_parameters = 1,
+            .doubles = 1,
+            .texture_size = 16384,
+            .viewport_size = 16384,
+            .integer_samples = 1,
+            .depth_samples = 1,
+            .storage_blocks = 8,
+            .storage_bindings = 8,
+            .storage_bytes = 1 << 27,
+            .shared_bytes = 32768,
+            .group_invocations = 1024,
+            .group_size = 1024,
+            .group_count = 65535};
+}
+
+RenderPlan planOf(const types::Geometry& geometry, const RenderOptions& options = {}) {
+    SonarConfig config = test::sonarOf({.beams = 256, .width_deg = 60, .bins = 500, .rows = 512, .columns = 8});
+    config.visibility = Visibility::Gl;
+    config.device = "software";
+    return makeRenderPlan(config, geometry, options);
+}
+
+DepositSetup setupOf(const RenderPlan& plan) {
+    DepositSetup setup;
+    setup.rules = makeEchoRules(plan);
+    setup.frusta = plan.frusta;
+    for (const ViewFrustum& frustum : plan.frusta)
+        setup.shares.push_back(makeShares(plan.sampled, plan.cells, frustum, plan.options));
+    setup.beam_count = static_cast<uint32_t>(plan.cells.size());
+    return setup;
+}
+
+std::string drawingError(const gpu::Limits& limits, const gpu::Limits& needs) {
+    return gpu::errorOf([&] { requireDrawing(limits, needs, renderer); });
+}
+
+TEST(DeviceNeedsTest, ADriverThatKeepsToOpenGl45DrawsAndSums) {
+    const auto geometry = test::surfaces();
+    const RenderPlan plan = planOf(*geometry);
+    EXPECT_NO_THROW(requireDrawing(promised(), drawingNeeds(plan, *geometry), renderer));
+    for (Deposit deposit : {Deposit::Auto, Deposit::Gpu})
+        EXPECT_EQ(whyOnProcessor(deposit, promised(), depositNeeds(setupOf(plan), *geometry), renderer), "");
+}
+
+TEST(DeviceNeedsTest, ALimitThatIsTooLowToDrawIsNamed) {
+    const auto geometry = test::surfaces();
+    const RenderPlan plan = planOf(*geometry);
+    gpu::Limits limits = promised();
+    limits.draw_parameters = 0;
+    EXPECT_THAT(drawingError(limits, drawingNeeds(plan, *geometry)),
+                AllOf(HasSubstr(renderer), HasSubstr("GL_ARB_shader_draw_parameters is missing"),
+                      HasSubstr("visibility: cpu")));
+    limits = promised();
+    limits.texture_size = 1024;
+    EXPECT_THAT(drawingError(limits, drawingNeeds(plan, *geometry)),
+                HasSubstr("GL_MAX_TEXTURE_SIZE is 1024, and " + std::to_string(plan.frusta[0].columns) + " is needed"));
+    geometry->normal_maps[0].width = 20'000;
+    EXPECT_THAT(drawingError(promised(), drawingNeeds(plan, *geometry)), HasSubstr("and 20000 is needed"));
+}
+
+TEST(DeviceNeedsTest, SeveralSamplesAPixelNeedMultisampledIntegers) {
+    const auto geometry = test::surfaces();
+    const gpu::Limits needs = drawingNeeds(planOf(*geometry, {.samples_per_pixel = 4}), *geometry);
+    EXPECT_THAT(drawingError(promised(), needs), HasSubstr("GL_MAX_INTEGER_SAMPLES is 1, and 4 is needed"));
+}
+
+TEST(DeviceNeedsTest, WhereTheDeviceCannotSumTheProcessorDoesUnlessTheDeviceIsAskedFor) {
+    const auto geometry = test::surfaces();
+    const gpu::Limits needs = depositNeeds(setupOf(planOf(*geometry)), *geometry);
+    const std::pair<int64_t gpu::Limits::*, std::string> limits[] = {
+        {&gpu::Limits::doubles, "GL_ARB_gpu_shader_fp64 is missing"},
+        {&gpu::Limits::storage_blocks, "GL_MAX_COMPUTE_SHADER_STORAGE_BLOCKS is 0, and 8 is needed"},
+        {&gpu::Limits::storage_bytes, "GL_MAX_SHADER_STORAGE_BLOCK_SIZE is 0, and"},
+        {&gpu::Limits::shared_bytes, "GL_MAX_COMPUTE_SHARED_MEMORY_SIZE is 0, and"},
+        {&gpu::Limits::group_invocations, "GL_MAX_COMPUTE_WORK_GROUP_INVOCATIONS is 0, and 64 is needed"},
+        {&gpu::Limits::group_count, "GL_MAX_COMPUTE_WORK_GROUP_COUNT is 0, and"}};
+    for (const auto& [limit, words] : limits) {
+        gpu::Limits low = promised();
+        low.*limit = 0;
+        EXPECT_THAT(whyOnProcessor(Deposit::Auto, low, needs, renderer),
+                    AllOf(HasSubstr("summed on the processor"), HasSubstr(renderer), HasSubstr(words)));
+        EXPECT_THAT(gpu::errorOf([&] { whyOnProcessor(Deposit::Gpu, low, needs, renderer); }),
+                    AllOf(HasSubstr(renderer), HasSubstr(words), HasSubstr("deposit: cpu")));
+    }
+}
+
+TEST(DeviceNeedsTest, TheLargestBufferIsOfTrianglesOrOfBins) {
+    const auto geometry = test::surfaces();
+    DepositSetup setup = setupOf(planOf(*geometry));
+    const auto bytes = [&] { return static_cast<size_t>(depositNeeds(setup, *geometry).storage_bytes); };
+    setup.beam_count = 100'000;
+    EXPECT_EQ(bytes(), setup.sumCount() * sizeof(uint64_t));
+    geometry->meshes[0].indices.resize(3 * 50'000'000);
+    EXPECT_GE(bytes(), 50'000'000 * sizeof(PlaneRecord));
+}
+
+}  // namespace
+}  // namespace insonify::sonar
