@@ -52,7 +52,8 @@ void PictureDeposit::take(size_t slot, size_t frustum, const SurfacePass& surfac
     picture.view.objects.clear();
     for (const CommandRecord& command : surface.lists().commands(slot, frustum)) {
         if (truth_) picture.view.objects.push_back(command.object);
-        picture.view.ranges.push_back(placedRun(surface.objects()[command.object], command, setup_.rules));
+        picture.view.ranges.push_back(placedRun(surface.objects()[command.object], command, setup_.rules,
+                                                planes_.data() + command.first_triangle));
     }
 }
 
@@ -88,7 +89,7 @@ void PictureDeposit::depositPart(size_t slot, size_t part) {
     for (size_t i = 0; i < setup_.frusta.size(); ++i) {
         const Taken& taken = picture(slot, i);
         if (!taken.taken) continue;
-        const PicturePart frustum{setup_.rules, setup_.frusta[i], setup_.shares[i], taken.view, planes_, taken.water,
+        const PicturePart frustum{setup_.rules, setup_.frusta[i], setup_.shares[i], taken.view, taken.water,
                                   first,        last,             columns_[part][i]};
         if (!truth_) {
             depositPicture(frustum, {0, sums_.data()});

@@ -2,6 +2,7 @@
 
 #include <chrono>
 #include <stdexcept>
+#include <utility>
 
 #include "components/gpu/EglContext.hpp"
 #include "components/sonar/EchoField.hpp"
@@ -51,6 +52,9 @@ struct SonarRenderer::Parts {
     Parts(const SonarConfig& config, types::GeometryPtr scene, const RenderOptions& options);
     ~Parts();
     void fillHeader(const types::Snapshot& snapshot, types::Sonar& ping) const;
+    void makeEchoes();
+    bool takeScene(types::GeometryPtr scene);
+    void describePlan();
     void addTargets(const types::Snapshot& snapshot, types::Sonar& ping);
 
     types::GeometryPtr geometry;
@@ -71,19 +75,41 @@ struct SonarRenderer::Parts {
 };
 
 SonarRenderer::Parts::Parts(const SonarConfig& config, types::GeometryPtr scene, const RenderOptions& options)
-    : geometry(scene), plan(makeRenderPlan(config, *scene, options)), told(report(plan, *scene)) {
+    : geometry(scene), plan(makeRenderPlan(config, *scene, options)) {
     if (plan.has(Pass::RingDown)) ring_down.emplace(plan);
-    if (plan.casts_rays) {
-        echoes = makeCastEchoes(plan, std::move(scene));
-    } else {
-        const auto alone = gpu::EglContext::making();
-        auto drawn = makeDrawnEchoes(plan, std::move(scene));
-        pipeline = drawn.get();
-        echoes = std::move(drawn);
-    }
+    makeEchoes();
     ring.resize(pipeline ? pipeline->ringSize() : 1);
+    describePlan();
+}
+
+void SonarRenderer::Parts::makeEchoes() {
+    if (plan.casts_rays) {
+        echoes = makeCastEchoes(plan, geometry);
+        return;
+    }
+    const auto alone = gpu::EglContext::making();
+    echoes.reset();
+    auto drawn = makeDrawnEchoes(plan, geometry);
+    pipeline = drawn.get();
+    echoes = std::move(drawn);
+}
+
+void SonarRenderer::Parts::describePlan() {
+    told = report(plan, *geometry);
     told.device = echoes->device();
     if (const std::string notice = echoes->notice(); !notice.empty()) told.notices.push_back(notice);
+}
+
+bool SonarRenderer::Parts::takeScene(types::GeometryPtr scene) {
+    if (scene == geometry) return false;
+    const bool same_plan =
+        scene->materials == geometry->materials && scene->normal_maps.sharesAll(geometry->normal_maps);
+    if (!same_plan) plan = makeRenderPlan(plan.config, *scene, plan.options);
+    const types::GeometryPtr before = std::exchange(geometry, scene);  // until nothing refers to it
+    if (!echoes->takeScene(std::move(scene), same_plan)) makeEchoes();
+    if (targets) targets->takeScene(*geometry);
+    if (!same_plan) describePlan();
+    return !same_plan;
 }
 
 SonarRenderer::Parts::~Parts() {
@@ -191,6 +217,12 @@ void SonarRenderer::collect(types::Sonar& ping) {
     else
         parts_->echoes->render(*snapshot, ping, parts_->stages);
     finish(*snapshot, ping);
+}
+
+bool SonarRenderer::setGeometry(types::GeometryPtr geometry) {
+    if (parts_->begun != parts_->ended)
+        throw std::logic_error("pings that were submitted are to be collected before their geometry changes");
+    return parts_->takeScene(std::move(geometry));
 }
 
 void SonarRenderer::setQuality(int rows, int columns_per_beam) {

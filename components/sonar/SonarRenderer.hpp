@@ -52,6 +52,11 @@ public:
      *  the last ping is of this one, and only until the next is submitted. */
     void collect(types::Sonar& ping);
 
+    /** Renders another geometry from now on, at the quality in force. Threads, and with rays whatever is made of meshes
+     *  that both geometries have, are kept. Takes more time where materials change, or where it draws. Returns
+     *  whether the plan is another one. Throws std::logic_error while pings are submitted and not collected. */
+    bool setGeometry(types::GeometryPtr geometry);
+
     /** Renders from now on with so many rows of samples and columns per beam [1]; allocates. */
     void setQuality(int rows, int columns_per_beam);
 
