@@ -34,7 +34,9 @@ std::shared_ptr<const Scene> SceneTask::load() const {
                                      "is missing; give the path of a .gltf, .glb, .world or .sdf file, or bathymetry");
         if (!config->file.empty()) scene_ = sharedScene(file);
         if (has_survey) {
-            Scene scene = config->file.empty() ? Scene{std::make_shared<const types::Geometry>()} : *scene_;
+            Scene scene;
+            scene.geometry = std::make_shared<const types::Geometry>();
+            if (!config->file.empty()) scene = *scene_;
             Bathymetry::addMaterial(scene);
             scene_ = std::make_shared<const Scene>(std::move(scene));
         }

@@ -69,7 +69,7 @@ std::string spread(std::vector<double> ms) {
     return fmt::format("[{:.3f}, {:.3f}, {:.3f}]", share(0.5), share(0.99), ms.back());
 }
 
-/** 2000 m at 0.5 m a ping, each ping as soon as the one before has ended. */
+/** 1900 m at 1 m a ping, each ping as soon as the one before has ended. */
 void mission(const std::string& folder) {
     scene::BathymetryConfig config;
     config.easting = config.northing = 0;
@@ -83,8 +83,8 @@ void mission(const std::string& folder) {
     types::GeometryPtr before;
     types::Sonar ping;
     std::vector<double> all, changed;
-    for (int i = 0; i < 3800; ++i) {
-        const glm::dvec3 place(60 + 0.5 * i, -100, -4);
+    for (int i = 0; i < 1900; ++i) {
+        const glm::dvec3 place(60.0 + i, -100, -4);
         types::Snapshot snapshot = at(place, i);
         const auto start = Clock::now();
         snapshot.geometry = floor.about(place, scene.geometry);

@@ -204,7 +204,9 @@ TEST(ChangingSceneTest, MeshesTreesAndThreadsAreKept) {
                 }
         EXPECT_GE(same, before->meshes.size() * 2 / 3) << "but for the tiles that are left behind";
         if (way > 70 && running == 0) running = threads();
-        if (running > 0) EXPECT_EQ(threads(), running);
+        if (running > 0) {
+            EXPECT_EQ(threads(), running);
+        }
         before = snapshot.geometry;
     }
 }
