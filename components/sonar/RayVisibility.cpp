@@ -115,10 +115,10 @@ void forgetHits(RTCRayHit16& all) {
     std::fill_n(all.hit.instID[0], tile_samples, RTC_INVALID_GEOMETRY_ID);
 }
 
-RTCIntersectContext coherentRays() {
+RTCIntersectContext raysOf(bool are_coherent) {
     RTCIntersectContext context;
     rtcInitIntersectContext(&context);
-    context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
+    context.flags = are_coherent ? RTC_INTERSECT_CONTEXT_FLAG_COHERENT : RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT;
     return context;
 }
 
@@ -329,7 +329,7 @@ void RayVisibility::cast(std::span<const TileRays> rays, std::span<TileHits> hit
         extend(rays[i], static_cast<float>(nearest), all[i]);
         aim(world, place_, rays[i], all[i]);
     }
-    RTCIntersectContext context = coherentRays();
+    RTCIntersectContext context = raysOf(true);
     rtcIntersectNM(here_->trees->scene(), &context, reinterpret_cast<RTCRayHitN*>(all.data()), tile_samples,
                    static_cast<unsigned>(rays.size()), sizeof(RTCRayHit16));
     for (size_t i = 0; i < rays.size(); ++i) {
@@ -343,7 +343,7 @@ void RayVisibility::cast(std::span<const TileRays> rays, std::span<TileHits> hit
 void RayVisibility::castAtMovers(const TileRays& rays, RTCRayHit16& all, TileHits& hits) const {
     alignas(64) int valid[tile_samples];
     for (int i = 0; i < tile_samples; ++i) valid[i] = (rays.active >> i & 1) ? -1 : 0;
-    RTCIntersectContext context = coherentRays();
+    RTCIntersectContext context = raysOf(true);
     for (const Mover& mover : here_->movers) {
         if (!mover.mayMeet(rays)) continue;
         aim(Rows(mover.from_sonar), mover.place, rays, all);
@@ -376,7 +376,7 @@ void RayVisibility::castPiece(const RayPaths& paths, const TileRays& rays, const
                               TileHits& hits) const {
     alignas(64) int valid[tile_samples];
     for (int i = 0; i < tile_samples; ++i) valid[i] = (rays.active >> i & 1) ? -1 : 0;
-    RTCIntersectContext context = coherentRays();
+    RTCIntersectContext context = raysOf(true);
     aim(Rows(world_from_sonar_), place_, piece.from, piece.to, all);
     rtcIntersect16(valid, here_->trees->scene(), &context, &all);
     take(all, hits, [this](uint32_t geometry, uint32_t instance) { return here_->trees->meaning(geometry, instance); });
@@ -399,7 +399,7 @@ void RayVisibility::cast(const PathRays& rays, TileHits& hits) const {
     bound(rays, all.ray);
     aim(Rows(world_from_sonar_), place_, rays, all.ray);
     forgetHits(all);
-    RTCIntersectContext context = coherentRays();
+    RTCIntersectContext context = raysOf(true);
     rtcIntersect16(valid.of, here_->trees->scene(), &context, &all);
     take(all, hits, [this](uint32_t geometry, uint32_t instance) { return here_->trees->meaning(geometry, instance); });
     for (const Mover& mover : here_->movers) {
@@ -416,7 +416,8 @@ uint32_t RayVisibility::blocked(const PathRays& rays) const {
     const Valid valid(rays.towards.active);
     bound(rays, all);
     aim(Rows(world_from_sonar_), place_, rays, all);
-    RTCIntersectContext context = coherentRays();
+    // Embree 3.13 may never return from rtcOccluded16 of coherent rays through instances.
+    RTCIntersectContext context = raysOf(!here_->trees->hasInstances());
     rtcOccluded16(valid.of, here_->trees->scene(), &context, &all);
     for (const Mover& mover : here_->movers) {
         if (!mover.placed) continue;

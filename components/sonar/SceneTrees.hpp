@@ -103,6 +103,7 @@ public:
      *  with Embree's error. */
     SceneTrees(const std::vector<TreeObject>& still, const std::vector<TreeObject>& apart);
 
+    bool hasInstances() const { return top_ != nullptr; }
     RTCScene scene() const { return (top_ ? *top_ : still_->tree()).scene(); }
     /** The command and triangle of a hit. */
     TreePart meaning(uint32_t geometry, uint32_t instance) const {
