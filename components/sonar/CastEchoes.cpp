@@ -3,6 +3,7 @@
 #include <atomic>
 #include <chrono>
 #include <cmath>
+#include <memory>
 #include <mutex>
 #include <utility>
 
@@ -110,11 +111,11 @@ private:
     WaterView water_;                 ///< In this ping.
     std::optional<EchoGrid> grid_;    ///< Of energies,
     std::optional<EchoField> field_;  ///< or of fields.
-    std::optional<ObjectPlaces> places_;
+    std::unique_ptr<ObjectPlaces> places_;
     RayVisibility visibility_;
     std::optional<RayPaths> ray_paths_;      ///< None where rays are straight.
     std::vector<MeshFacts::Planes> planes_;  ///< Of each mesh.
-    std::optional<NormalMapping> normal_maps_;
+    std::unique_ptr<NormalMapping> normal_maps_;
     MeshesAhead ahead_;
     std::vector<PlacedRun> runs_;      ///< Of the visibility's commands, in this ping.
     std::optional<PathEchoes> paths_;  ///< By way of mirrors, where the plan has them.
@@ -144,8 +145,9 @@ CastEchoes::CastEchoes(const RenderPlan& plan, types::GeometryPtr geometry)
 bool CastEchoes::takeScene(types::GeometryPtr geometry, bool same_plan) {
     const types::GeometryPtr before = std::exchange(geometry_, std::move(geometry));  // until nothing refers to it
     if (before != geometry_) visibility_.takeScene(*geometry_);
-    places_.emplace(*geometry_, reachOf(plan_), true);
-    normal_maps_.emplace(*geometry_);
+    // What these share with their predecessors is kept, for the predecessors go after they are made.
+    places_ = std::make_unique<ObjectPlaces>(*geometry_, reachOf(plan_), true);
+    normal_maps_ = std::make_unique<NormalMapping>(*geometry_);
     std::vector<MeshFacts::Planes> planes;
     for (size_t i = 0; i < geometry_->meshes.size(); ++i)
         planes.push_back(MeshFacts::of(geometry_->meshes.shared(i))->planes(scaleOf(*geometry_, i), plan_.laws));

@@ -223,6 +223,7 @@ TEST_F(ChosenQualityTest, IsKeptAndIsNotChosenAgainForTheNextTile) {
     const types::GeometryPtr rest = withFloor(test::sceneOf({test::block()}, -10, {{30, -60, -9}}));
     SonarConfig config = fan();
     config.quality = {};
+    config.quality.target_error = 0.01;
     startWith(config);
     std::set<types::GeometryPtr> scenes;
     std::pair<int, int> chosen;
