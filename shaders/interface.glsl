@@ -60,7 +60,8 @@ struct PlaneRecord {
 
 // One draw of a run of triangles.
 struct CommandRecord {
-    uint object, first_triangle, material, unused;  // first_triangle: of the mesh, among all planes
+    // first_triangle: of the mesh, among all planes; lattice: the object with which it shares its lattice of scatterers
+    uint object, first_triangle, material, lattice;
 };
 
 // What the model needs of a material.

@@ -10,6 +10,8 @@
 #include <string>
 #include <vector>
 
+#include "types/SharedList.hpp"
+
 namespace insonify::types {
 
 /** What a surface does to sound. Neutral: medium sand in `physical`, reflectivity 1 in `cerqueira2017`. */
@@ -26,6 +28,8 @@ struct Material {
     bool double_sided = false;                  ///< As the file says; sound is reflected by both sides in any case.
     int normal_map = -1;                        ///< Index into Geometry::normal_maps, -1 for none [1].
     float normal_scale = 1;                     ///< Scale of the map's x and y [1].
+
+    bool operator==(const Material&) const = default;
 };
 
 /** A tangent-space normal map: RGB, 8 bits, rows from top to bottom; (r, g, b) * 2 / 255 - 1 is the normal. */
@@ -70,19 +74,25 @@ struct Mesh {
     std::vector<uint32_t> coarse_indices;    ///< A large mesh in few triangles, to look at; never what a sonar hears.
 };
 
+using MeshPtr = std::shared_ptr<const Mesh>;
+
 /** One placing of a mesh in the world. */
 struct Object {
-    std::string name;                 ///< Of the node; unique within the geometry.
+    std::string name;                 ///< Of the node; unique, but that all tiles of a survey have the same.
     int mesh = 0;                     ///< Index into Geometry::meshes.
     glm::dmat4 world_from_object{1};  ///< May scale and mirror [m].
+    /** Whether it appears and disappears from one geometry to the next: what a renderer makes of its mesh is then kept
+     *  apart from the rest, so that the rest is not made again. */
+    bool transient = false;
 };
 
-/** A scene, immutable once loaded: an equal pointer means that nothing changed. World is z-up. */
+/** A scene, immutable once loaded: an equal pointer means that nothing changed. A geometry that is copied and then
+ *  changed shares with the first one all that has not changed. World is z-up. */
 struct Geometry {
-    std::vector<Mesh> meshes;
+    SharedList<Mesh> meshes;
     std::vector<Object> objects;
     std::vector<Material> materials;  ///< Never empty when there is a mesh.
-    std::vector<NormalMap> normal_maps;
+    SharedList<NormalMap> normal_maps;
     std::vector<std::string> notices;  ///< What the loader left out or mended, a sentence each.
 
     size_t triangleCount() const {

@@ -31,6 +31,8 @@ struct Snapshot {
     double max_extrapolation =
         0;  ///< How far `sonar` may be carried on by its velocities, to the time of the ping [s].
     GeometryPtr geometry;
+    /** Meshes that later geometries may have: what takes long to make of them may be made before. Null: none known. */
+    std::shared_ptr<const std::vector<MeshPtr>> ahead;
     std::vector<MovedObject> moved;
     std::vector<PointTarget> targets;
     std::shared_ptr<const std::vector<std::string>> target_names;  ///< Of each of `targets`; may be null without any.

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <iterator>
 #include <set>
+#include <utility>
 #include <vector>
 
 #include "components/acoustics/Backscatter.hpp"
@@ -152,7 +153,7 @@ bool overrideMaterial(types::Geometry& geometry, const std::string& name, const 
 
 /** Gives an object a mesh of its own whose materials are its own as well. */
 void overrideObject(types::Geometry& geometry, types::Object& object, const Acoustics& acoustics) {
-    types::Mesh mesh = geometry.meshes[static_cast<size_t>(object.mesh)];
+    types::Mesh mesh = std::as_const(geometry.meshes)[static_cast<size_t>(object.mesh)];
     std::map<int, int> own;
     for (types::Cluster& cluster : mesh.clusters) {
         const auto [known, is_new] = own.try_emplace(cluster.material, static_cast<int>(geometry.materials.size()));

@@ -90,7 +90,20 @@ PostWindow Bathymetry::clipped(PostWindow posts) const {
     return posts.isEmpty() ? PostWindow{} : posts;
 }
 
-types::Mesh Bathymetry::meshOf(const PostWindow& posts) const {
+std::vector<Bathymetry::Tile> Bathymetry::tilesOf(const PostWindow& posts) const {
+    std::vector<Tile> tiles;
+    if (posts.isEmpty()) return tiles;
+    const auto below = [&](int value) { return multipleDown(value, config_.tile) / config_.tile; };
+    for (int row = below(posts.row); row <= below(posts.row + posts.rows - 2); ++row)
+        for (int column = below(posts.column); column <= below(posts.column + posts.columns - 2); ++column)
+            tiles.emplace_back(column, row);
+    return tiles;
+}
+
+types::MeshPtr Bathymetry::meshOf(const Tile& tile, int material) const {
+    const PostWindow posts =
+        clipped({tile.first * config_.tile, tile.second * config_.tile, config_.tile + 1, config_.tile + 1});
+    if (posts.isEmpty()) return nullptr;
     const std::vector<float> values = survey_.read(posts);
     Surface surface;
     surface.positions.reserve(values.size());
@@ -105,29 +118,114 @@ types::Mesh Bathymetry::meshOf(const PostWindow& posts) const {
     mesh.name = name;
     DroppedTriangles dropped;
     cleanUp(surface, dropped);
-    if (surface.indices.empty()) return mesh;
-    appendSurface(surface, 0, mesh);
-    return mesh;
+    if (surface.indices.empty()) return nullptr;
+    appendSurface(surface, material, mesh);
+    buildClusters(mesh);
+    return std::make_shared<types::Mesh>(std::move(mesh));
+}
+
+Bathymetry::~Bathymetry() {
+    {
+        const std::lock_guard alone(mutex_);
+        quit_ = true;
+    }
+    asked_.notify_one();
+    if (worker_.joinable()) worker_.join();
+}
+
+void Bathymetry::work() {
+    for (std::unique_lock lock(mutex_);;) {
+        asked_.wait(lock, [this] { return quit_ || !queue_.empty(); });
+        if (quit_) return;
+        const Tile tile = queue_.front();
+        const int material = material_;
+        queue_.pop_front();
+        lock.unlock();
+        Read read{true, nullptr, nullptr};
+        try {
+            read.mesh = meshOf(tile, material);
+        } catch (...) {
+            read.failure = std::current_exception();
+        }
+        lock.lock();
+        const auto wanted = tiles_.find(tile);
+        if (wanted != tiles_.end() && material == material_) wanted->second = std::move(read);
+        read_.notify_all();
+    }
+}
+
+void Bathymetry::ask(const std::vector<Tile>& tiles, bool first) {
+    {
+        const std::lock_guard alone(mutex_);
+        std::deque<Tile> wanted;
+        for (const Tile& tile : tiles) {
+            const auto [at, is_new] = tiles_.try_emplace(tile);
+            if (!is_new && first && !at->second.done && std::erase(queue_, tile) > 0) wanted.push_back(tile);
+            if (is_new) wanted.push_back(tile);
+        }
+        queue_.insert(first ? queue_.begin() : queue_.end(), wanted.begin(), wanted.end());
+    }
+    if (!worker_.joinable()) worker_ = std::thread([this] { work(); });
+    asked_.notify_one();
+}
+
+void Bathymetry::keep(const std::vector<Tile>& tiles) {
+    const std::lock_guard alone(mutex_);
+    const auto is_over = [&](const Tile& tile) { return std::ranges::find(tiles, tile) == tiles.end(); };
+    std::erase_if(queue_, is_over);
+    std::erase_if(tiles_, [&](const auto& each) { return is_over(each.first); });
+}
+
+types::MeshPtr Bathymetry::wait(const Tile& tile) {
+    std::unique_lock lock(mutex_);
+    const auto read = tiles_.find(tile);
+    read_.wait(lock, [&] { return read->second.done; });
+    if (!read->second.failure) return read->second.mesh;
+    const std::exception_ptr failure = read->second.failure;
+    tiles_.erase(read);
+    std::rethrow_exception(failure);
 }
 
 types::GeometryPtr Bathymetry::about(const glm::dvec3& place, const types::GeometryPtr& rest) {
     const PostWindow needed = postsAbout(place);
-    if (window_ && rest == rest_ && window_->holds(clipped(needed))) return geometry_;
-    const PostWindow window = clipped(wholeTiles(needed));
-    types::Mesh mesh;
-    if (!window.isEmpty()) mesh = meshOf(window);
+    if (rest != rest_) {
+        const auto material = std::ranges::find(rest->materials, name, &types::Material::name);
+        keep({});
+        const std::lock_guard alone(mutex_);
+        material_ = static_cast<int>(material - rest->materials.begin());
+    }
+    const bool is_there = window_ && rest == rest_ && window_->holds(clipped(needed));
+    const PostWindow window = is_there ? *window_ : clipped(wholeTiles(needed));
+    const int early = (config_.tile + 1) / 2;
+    std::vector<Tile> tiles = tilesOf(window);
+    around_ = tilesOf(
+        clipped({needed.column - early, needed.row - early, needed.columns + 2 * early, needed.rows + 2 * early}));
+    std::erase_if(around_, [&](const Tile& tile) { return std::ranges::find(tiles, tile) != tiles.end(); });
+    if (!is_there) ask(tiles, true);
+    ask(around_, false);
+    if (is_there) return geometry_;
     auto geometry = std::make_shared<types::Geometry>(*rest);
-    if (!mesh.indices.empty()) {
-        const auto material = std::ranges::find(geometry->materials, name, &types::Material::name);
-        for (types::Cluster& cluster : mesh.clusters)
-            cluster.material = static_cast<int>(material - geometry->materials.begin());
-        buildClusters(mesh);
-        geometry->objects.push_back({name, static_cast<int>(geometry->meshes.size()), glm::dmat4(1)});
+    for (const Tile& tile : tiles) {
+        types::MeshPtr mesh = wait(tile);
+        if (!mesh) continue;
+        geometry->objects.push_back({name, static_cast<int>(geometry->meshes.size()), glm::dmat4(1), true});
         geometry->meshes.push_back(std::move(mesh));
     }
+    tiles.insert(tiles.end(), around_.begin(), around_.end());
+    keep(tiles);
     window_ = window;
     rest_ = rest;
     return geometry_ = std::move(geometry);
+}
+
+std::shared_ptr<const std::vector<types::MeshPtr>> Bathymetry::ahead() {
+    std::vector<types::MeshPtr> meshes;
+    const std::lock_guard alone(mutex_);
+    for (const Tile& tile : around_)
+        if (const auto read = tiles_.find(tile); read != tiles_.end() && read->second.mesh)
+            meshes.push_back(read->second.mesh);
+    if (!ahead_ || *ahead_ != meshes) ahead_ = std::make_shared<const std::vector<types::MeshPtr>>(std::move(meshes));
+    return ahead_;
 }
 
 }  // namespace insonify::scene

@@ -8,6 +8,10 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <tuple>
 
 #include "components/scene/Gltf.hpp"
 #include "components/scene/Sdf.hpp"
@@ -85,6 +89,22 @@ Scene readScene(const std::filesystem::path& file) {
     if (extension == ".world" || extension == ".sdf") return readSdf(file);
     throw types::ConfigError(file.string(), "",
                              fmt::format("has extension \"{}\"; may be .gltf, .glb, .world or .sdf", extension));
+}
+
+std::shared_ptr<const Scene> sharedScene(const std::filesystem::path& file) {
+    using Key = std::tuple<std::filesystem::path, std::filesystem::file_time_type, uintmax_t>;
+    static std::mutex mutex;
+    static std::map<Key, std::weak_ptr<const Scene>> scenes;
+    std::error_code none;  // what is wrong with a file is readScene()'s to find
+    const Key key(std::filesystem::weakly_canonical(file, none), std::filesystem::last_write_time(file, none),
+                  std::filesystem::file_size(file, none));
+    const std::lock_guard alone(mutex);
+    std::erase_if(scenes, [](const auto& each) { return each.second.expired(); });
+    if (const auto known = scenes.find(key); known != scenes.end())
+        if (auto scene = known->second.lock()) return scene;
+    auto scene = std::make_shared<const Scene>(readScene(file));
+    scenes[key] = scene;
+    return scene;
 }
 
 bool isFinite(const glm::dmat4& matrix) {

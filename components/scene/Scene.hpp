@@ -36,6 +36,9 @@ struct Part {
  *  Throws types::ConfigError for whatever is wrong with the file; what was left out is in Geometry::notices. */
 Scene readScene(const std::filesystem::path& file);
 
+/** The same, of which all who hold the scene of a file have one, unless the file has changed meanwhile. */
+std::shared_ptr<const Scene> sharedScene(const std::filesystem::path& file);
+
 /** ".glb" of "Harbour.GLB". */
 std::string extensionOf(const std::filesystem::path& file);
 

@@ -32,11 +32,14 @@ std::shared_ptr<const Scene> SceneTask::load() const {
         if (config->file.empty() && !has_survey)
             throw types::ConfigError("", name() + ".file",
                                      "is missing; give the path of a .gltf, .glb, .world or .sdf file, or bathymetry");
-        auto scene = std::make_shared<Scene>();
-        scene->geometry = std::make_shared<const types::Geometry>();
-        if (!config->file.empty()) *scene = readScene(file);
-        if (has_survey) Bathymetry::addMaterial(*scene);
-        scene_ = std::move(scene);
+        if (!config->file.empty()) scene_ = sharedScene(file);
+        if (has_survey) {
+            Scene scene;
+            scene.geometry = std::make_shared<const types::Geometry>();
+            if (!config->file.empty()) scene = *scene_;
+            Bathymetry::addMaterial(scene);
+            scene_ = std::make_shared<const Scene>(std::move(scene));
+        }
         scene_file_ = file;
         scene_has_survey_ = has_survey;
     }
@@ -178,6 +181,7 @@ void SceneTask::updateHook() try {
     sample->max_extrapolation = config->extrapolate.value_or(0);
     if (config->extrapolate) moveAlong(body, config->mount, sample->sonar);
     sample->geometry = bathymetry_ ? bathymetry_->about(sample->sonar.position, geometry_) : geometry_;
+    sample->ahead = bathymetry_ ? bathymetry_->ahead() : nullptr;
     sample->water_surface = config->water_surface;
     addMoved(sample->moved);
     addTargets(sample->targets);

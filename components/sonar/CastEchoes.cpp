@@ -3,12 +3,15 @@
 #include <atomic>
 #include <chrono>
 #include <cmath>
+#include <memory>
 #include <mutex>
+#include <utility>
 
 #include "components/sonar/BinLevels.hpp"
 #include "components/sonar/EchoField.hpp"
 #include "components/sonar/EchoGrid.hpp"
 #include "components/sonar/EchoRenderer.hpp"
+#include "components/sonar/MeshesAhead.hpp"
 #include "components/sonar/ObjectPlaces.hpp"
 #include "components/sonar/PathEchoes.hpp"
 #include "components/sonar/RayPaths.hpp"
@@ -45,6 +48,7 @@ class CastEchoes final : public EchoRenderer {
 public:
     CastEchoes(const RenderPlan& plan, types::GeometryPtr geometry, const PingEffects& effects);
     void takeQuality() override;
+    bool takeScene(types::GeometryPtr geometry, bool same_plan) override;
     void render(const types::Snapshot& snapshot, types::Sonar& ping, Stages& stages) override;
     void setTruth(types::SonarTruth* truth) override { truth_ = truth; }
     EchoField* field() override { return field_ ? &*field_ : nullptr; }
@@ -76,14 +80,16 @@ private:
             last = now;
         }
     };
+    void takePlan();
     void shareOut();
     int beamsTogether() const {
         return std::min(view_.cells.beams, (3 + view_.cells.beam_columns) / view_.cells.beam_columns);
     }
     void place(const types::Snapshot& snapshot);
+    void placeRuns();
     void makeTruth();
     PlacedScene scene() const {
-        return {visibility_.commands(), runs_, places_.records(), planes_, normal_maps_, water_, bent()};
+        return {visibility_.commands(), runs_, places_->records(), *normal_maps_, water_, bent()};
     }
     void addPaths(types::Sonar& ping);
     void depositPart(const Part& part, std::span<const CastTile> tiles, Worker& worker);
@@ -106,11 +112,12 @@ private:
     WaterView water_;                 ///< In this ping.
     std::optional<EchoGrid> grid_;    ///< Of energies,
     std::optional<EchoField> field_;  ///< or of fields.
-    ObjectPlaces places_;
+    std::unique_ptr<ObjectPlaces> places_;
     RayVisibility visibility_;
-    std::optional<RayPaths> ray_paths_;  ///< None where rays are straight.
-    std::vector<PlaneRecord> planes_;
-    NormalMapping normal_maps_;
+    std::optional<RayPaths> ray_paths_;      ///< None where rays are straight.
+    std::vector<MeshFacts::Planes> planes_;  ///< Of each mesh.
+    std::unique_ptr<NormalMapping> normal_maps_;
+    MeshesAhead ahead_;
     std::vector<PlacedRun> runs_;      ///< Of the visibility's commands, in this ping.
     std::optional<PathEchoes> paths_;  ///< By way of mirrors, where the plan has them.
     ThreadPool threads_;
@@ -130,17 +137,39 @@ CastEchoes::CastEchoes(const RenderPlan& plan, types::GeometryPtr geometry, cons
       effects_(effects),
       rules_(makeEchoRules(plan, effects)),
       levels_(plan.config, summedGrid(plan)),
-      places_(*geometry_, reachOf(plan), true),
       visibility_(*geometry_),
-      planes_(planesOf(*geometry_, plan.laws)),
-      normal_maps_(*geometry_),
       threads_(plan.options.threads),
       workers_(static_cast<size_t>(threads_.size())) {
-    if (plan.profile || plan.config.motion_in_ping)
-        ray_paths_.emplace(plan, *geometry_);
-    runs_.reserve(visibility_.commands().size());
     for (size_t i = 0; i < workers_.size(); ++i) workers_[i].number = i;
-    if (plan.has(Pass::Paths)) paths_.emplace(plan, *geometry_, visibility_);
+    takeScene(geometry_, false);
+}
+
+bool CastEchoes::takeScene(types::GeometryPtr geometry, bool same_plan) {
+    const types::GeometryPtr before = std::exchange(geometry_, std::move(geometry));  // until nothing refers to it
+    if (before != geometry_) visibility_.takeScene(*geometry_);
+    // What these share with their predecessors is kept, for the predecessors go after they are made.
+    places_ = std::make_unique<ObjectPlaces>(*geometry_, reachOf(plan_), true);
+    normal_maps_ = std::make_unique<NormalMapping>(*geometry_);
+    std::vector<MeshFacts::Planes> planes;
+    for (size_t i = 0; i < geometry_->meshes.size(); ++i)
+        planes.push_back(MeshFacts::of(geometry_->meshes.shared(i))->planes(scaleOf(*geometry_, i), plan_.laws));
+    planes_ = std::move(planes);
+    runs_.reserve(visibility_.commands().size());
+    if (ray_paths_) ray_paths_->takeScene(*geometry_);
+    if (paths_) paths_->takeScene(*geometry_);
+    if (!same_plan) takePlan();
+    return true;
+}
+
+void CastEchoes::takePlan() {
+    levels_ = BinLevels(plan_.config, summedGrid(plan_));
+    if (plan_.profile || plan_.config.motion_in_ping) {
+        if (!ray_paths_) ray_paths_.emplace(plan_, *geometry_);
+    } else {
+        ray_paths_.reset();
+    }
+    paths_.reset();
+    if (plan_.has(Pass::Paths)) paths_.emplace(plan_, *geometry_, visibility_);
     takeQuality();
 }
 
@@ -193,13 +222,20 @@ void CastEchoes::makeTruth() {
 
 void CastEchoes::place(const types::Snapshot& snapshot) {
     water_ = waterViewOf(snapshot);
-    places_.place(snapshot);
+    places_->place(snapshot);
     visibility_.place(snapshot);
     if (paths_) paths_->begin(snapshot, truth_);
     if (ray_paths_) ray_paths_->place(snapshot);
+    placeRuns();
+    ahead_.take(snapshot.ahead, plan_.laws);
+}
+
+void CastEchoes::placeRuns() {
     runs_.clear();
-    for (const CommandRecord& command : visibility_.commands())
-        runs_.push_back(placedRun(places_.records()[command.object], command, rules_));
+    for (const CommandRecord& command : visibility_.commands()) {
+        const auto mesh = static_cast<size_t>(geometry_->objects[command.object].mesh);
+        runs_.push_back(placedRun(places_->records()[command.object], command, rules_, planes_[mesh]->data()));
+    }
 }
 
 TileRays CastEchoes::raysOf(const CastTile& tile, int end_column) const {

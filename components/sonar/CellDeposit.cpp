@@ -50,7 +50,8 @@ const EstimatorEntry& estimatorOf(const Features& features) {
 
 }  // namespace
 
-PlacedRun placedRun(const ObjectRecord& object, const CommandRecord& command, const EchoRules& rules) {
+PlacedRun placedRun(const ObjectRecord& object, const CommandRecord& command, const EchoRules& rules,
+                    const PlaneRecord* planes) {
     const vec4& values = rules.laws.records[command.material].values;
     const double strength = double{rules.features.has(Feature::Cerqueira2017) ? values.y : values.x};
     PlacedRun run{{},
@@ -60,7 +61,7 @@ PlacedRun placedRun(const ObjectRecord& object, const CommandRecord& command, co
                   object.extent.x,
                   object.extent.y,
                   strength * rules.strength_scale,
-                  command.first_triangle,
+                  planes,
                   command.material};
     for (int i = 0; i < 3; ++i) {
         run.normal_x[i] = double{object.normal_x[i]};

@@ -12,10 +12,12 @@ struct PlacedRun {
     double eye[3];                                 ///< The sonar's place in object axes [m].
     double near_limit, far_limit;                  ///< Inverse ranges of the object [1/m].
     double strength;                               ///< Of the material at normal incidence [1].
-    uint32_t first_triangle;                       ///< Of the mesh, among all planes [1].
+    const PlaneRecord* planes;                     ///< Of the mesh's triangles.
     uint32_t material;                             ///< Its law in EchoRules::laws [1].
 };
-PlacedRun placedRun(const ObjectRecord& object, const CommandRecord& command, const EchoRules& rules);
+/** `planes`: of the triangles of the object's mesh. */
+PlacedRun placedRun(const ObjectRecord& object, const CommandRecord& command, const EchoRules& rules,
+                    const PlaneRecord* planes);
 
 /** A batch of cells. A cell is the part of a triangle's plane that is seen within a rectangle of azimuth and elevation:
  *  by one ray, by neighbouring rays of one beam, or by a beam's share of a pixel. All in sonar axes. */

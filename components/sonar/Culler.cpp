@@ -54,7 +54,7 @@ void Culler::visible(const ViewFrustum& frustum, std::vector<DrawRange>& ranges)
 uint32_t Culler::inView(const View& view, size_t object) const {
     if (places_.isFar(object)) return NOT_IN_VIEW;
     if (rules_.draw_all) return DRAWN_WHOLE;
-    const ObjectPlaces::Box& box = places_.box(object);
+    const Box& box = places_.box(object);
     const glm::vec3 centre(box.low * 0.5 + box.high * 0.5), half(box.high * 0.5 - box.low * 0.5);
     const float distance = nearest(view, records()[object], centre, half);
     if (!(distance <= range_max_)) return NOT_IN_VIEW;

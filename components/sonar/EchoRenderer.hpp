@@ -31,6 +31,9 @@ public:
     virtual ~EchoRenderer() = default;
     /** Renders from now on with the quality that the plan has by now; allocates. */
     virtual void takeQuality() = 0;
+    /** Renders another geometry from now on, and keeps what has not changed; false: it cannot, another renderer is to be
+     *  made. `same_plan`: the plan is as it was; else it may have other laws, features and passes. */
+    virtual bool takeScene(types::GeometryPtr /*geometry*/, bool /*same_plan*/) { return false; }
     /** Fills ping.bins, which have their size; adds to `stages`. Allocates nothing after the first ping. */
     virtual void render(const types::Snapshot& snapshot, types::Sonar& ping, Stages& stages) = 0;
     /** Pings rendered from now on tell there what their bins show, in their own grid, which it has; null: none is told.

@@ -5,18 +5,12 @@
 #include <glm/geometric.hpp>
 #include <glm/gtc/quaternion.hpp>
 #include <glm/matrix.hpp>
+#include <utility>
 
 namespace insonify::sonar {
 namespace {
 
 bool isKnown(const glm::dvec3& v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
-
-std::pair<glm::dvec3, glm::dvec3> boxOf(const types::Mesh& mesh) {
-    if (mesh.positions.empty()) return {};
-    glm::vec3 low = mesh.positions.front(), high = low;
-    for (const glm::vec3& p : mesh.positions) low = glm::min(low, p), high = glm::max(high, p);
-    return {glm::dvec3(low), glm::dvec3(high)};
-}
 
 }  // namespace
 
@@ -28,10 +22,18 @@ glm::dvec3 turnBetween(const glm::dquat& from, const glm::dquat& to, double seco
     return sine > 0 ? axis * (2 * std::atan2(sine, turned.w) / (sine * seconds)) : glm::dvec3(0);
 }
 
-Motion::Motion(const types::Geometry& geometry, double fastest)
-    : fastest_allowed_(fastest), drifts_(geometry.objects.size()) {
+Motion::Motion(const types::Geometry& geometry, double fastest) : fastest_allowed_(fastest) { takeScene(geometry); }
+
+void Motion::takeScene(const types::Geometry& geometry) {
+    const std::vector<Thing> old = std::exchange(things_, {});
     for (const types::Object& object : geometry.objects)
-        boxes_.push_back(boxOf(geometry.meshes[static_cast<size_t>(object.mesh)]));
+        things_.push_back({object.name, MeshFacts::of(geometry.meshes.shared(static_cast<size_t>(object.mesh)))});
+    const auto isNew = [&](const types::MovedObject& moved) {
+        return moved.object >= things_.size() || moved.object >= old.size() ||
+               things_[moved.object] != old[moved.object];
+    };
+    if (now_) std::erase_if(now_->moved, isNew);
+    drifts_.assign(things_.size(), std::nullopt);
 }
 
 void Motion::follow(const types::Snapshot& snapshot) {
@@ -84,7 +86,7 @@ void Motion::driftOf(const types::Pose& sonar, const types::MovedObject& now, co
     Drift drift;
     drift.linear = glm::transpose(turn) * world * turn;
     drift.constant = (world * (sonar.position - glm::dvec3(place[3])) + glm::dvec3(rate[3])) * turn;
-    const auto& [low, high] = boxes_[now.object];
+    const auto& [low, high] = things_[now.object].mesh->box();
     for (int corner = 0; corner < 8; ++corner) {
         const glm::dvec4 p(corner & 1 ? high.x : low.x, corner & 2 ? high.y : low.y, corner & 4 ? high.z : low.z, 1);
         drift.fastest = std::max(drift.fastest, glm::length(glm::dvec3(rate * p)));

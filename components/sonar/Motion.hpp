@@ -5,6 +5,7 @@
 #include <optional>
 #include <vector>
 
+#include "components/sonar/MeshFacts.hpp"
 #include "types/Snapshot.hpp"
 
 namespace insonify::sonar {
@@ -26,6 +27,9 @@ public:
     /** What seems to move faster than `fastest` [m/s] has been put elsewhere, and is taken to be at rest. */
     Motion(const types::Geometry& geometry, double fastest);
 
+    /** Another geometry from the next ping on. Objects are the same ones where they have the same numbers, meshes and
+     *  names; the others are at rest at first. */
+    void takeScene(const types::Geometry& geometry);
     /** Once a ping; several of one time are one. Allocates nothing after the second. */
     void follow(const types::Snapshot& snapshot);
 
@@ -45,11 +49,17 @@ private:
         std::vector<types::MovedObject> moved;
         std::vector<types::PointTarget> targets;
     };
+    /** What counts of an object. */
+    struct Thing {
+        std::string name;
+        std::shared_ptr<MeshFacts> mesh;
+        bool operator==(const Thing&) const = default;
+    };
     void followSonar(const types::Snapshot& snapshot);
     void followObjects(const types::Snapshot& snapshot);
     void driftOf(const types::Pose& sonar, const types::MovedObject& now, const glm::dmat4& before);
 
-    std::vector<std::pair<glm::dvec3, glm::dvec3>> boxes_;  ///< Of each object's mesh, low and high [m].
+    std::vector<Thing> things_;  ///< Each object.
     std::optional<Mark> before_, now_;
     double fastest_allowed_;  ///< [m/s]
     double seconds_ = 0;      ///< Between the two.

@@ -3,6 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <glm/geometric.hpp>
+#include <utility>
+
+#include "components/sonar/SharedValues.hpp"
 
 namespace insonify::sonar {
 namespace {
@@ -39,13 +42,21 @@ void appendScaled(const uint8_t* rgb, float scale, std::vector<uint8_t>& texels)
 
 NormalMapping::NormalMapping(const types::Geometry& geometry) : geometry_(geometry) {
     for (const types::Material& material : geometry.materials)
-        maps_.push_back(material.normal_map < 0 ? Map{}
-                                                : mapOf(geometry.normal_maps[static_cast<size_t>(material.normal_map)],
-                                                        material.normal_scale));
+        maps_.push_back(material.normal_map < 0
+                            ? nullptr
+                            : sharedMap(geometry.normal_maps.shared(static_cast<size_t>(material.normal_map)),
+                                        material.normal_scale));
 }
 
-NormalMapping::Map NormalMapping::mapOf(const types::NormalMap& map, float scale) {
-    Map result{map.repeat_u, map.repeat_v, {}};
+std::shared_ptr<const NormalMapping::Map> NormalMapping::sharedMap(
+    const std::shared_ptr<const types::NormalMap>& source, float scale) {
+    static SharedValues<std::pair<const types::NormalMap*, float>, const Map> all;
+    return all.of({source.get(), scale}, [&] { return std::make_shared<const Map>(mapOf(source, scale)); });
+}
+
+NormalMapping::Map NormalMapping::mapOf(std::shared_ptr<const types::NormalMap> source, float scale) {
+    const types::NormalMap& map = *source;
+    Map result{std::move(source), map.repeat_u, map.repeat_v, {}};
     Level level{map.width, map.height, {}};
     for (size_t i = 0; i + 2 < map.rgb.size(); i += 3) appendScaled(&map.rgb[i], scale, level.texels);
     while (level.width > 1 || level.height > 1) {
@@ -96,7 +107,7 @@ float NormalMapping::texelsPerMetre(const ObjectRecord& placed, const types::Mes
 
 float NormalMapping::cosine(const ObjectRecord& placed, const Place& place) const {
     const types::Mesh& mesh = geometry_.meshes[static_cast<size_t>(geometry_.objects[place.object].mesh)];
-    const Map& map = maps_[static_cast<size_t>(place.material)];
+    const Map& map = *maps_[static_cast<size_t>(place.material)];
     const uint32_t* corners = mesh.indices.data() + 3 * static_cast<size_t>(place.triangle);
     const auto between = [&](const auto& of) {
         return (1 - place.u - place.v) * of[corners[0]] + place.u * of[corners[1]] + place.v * of[corners[2]];

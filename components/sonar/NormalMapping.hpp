@@ -1,5 +1,6 @@
 #pragma once
 #include <cstdint>
+#include <memory>
 #include <vector>
 
 #include "components/sonar/Interface.hpp"
@@ -34,17 +35,20 @@ private:
         std::vector<uint8_t> texels;
     };
     struct Map {
+        std::shared_ptr<const types::NormalMap> source;
         bool repeat_u, repeat_v;
         std::vector<Level> levels;
     };
-    static Map mapOf(const types::NormalMap& map, float scale);
+    static Map mapOf(std::shared_ptr<const types::NormalMap> source, float scale);
+    /** The same; all who ask for the same map and scale share it. */
+    static std::shared_ptr<const Map> sharedMap(const std::shared_ptr<const types::NormalMap>& source, float scale);
     static glm::vec3 texel(const Map& map, glm::vec2 uv, float level);
     /** Texels of a map on a metre of a triangle as it is placed. */
     float texelsPerMetre(const ObjectRecord& placed, const types::Mesh& mesh, const uint32_t* corners,
                          const Level& finest) const;
 
     const types::Geometry& geometry_;
-    std::vector<Map> maps_;  ///< Of each material, with its scale; empty for one without.
+    std::vector<std::shared_ptr<const Map>> maps_;  ///< Of each material, with its scale; null for one without.
 };
 
 }  // namespace insonify::sonar

@@ -40,14 +40,7 @@ Reach reachOf(const RenderPlan& plan) {
 }
 
 ObjectPlaces::ObjectPlaces(const types::Geometry& geometry, const Reach& reach, bool all)
-    : geometry_(geometry), reach_(reach), all_(all) {
-    for (const types::Mesh& mesh : geometry.meshes) {
-        Box box{glm::dvec3(std::numeric_limits<double>::max()), glm::dvec3(std::numeric_limits<double>::lowest())};
-        for (const glm::vec3& p : mesh.positions)
-            box = {glm::min(box.low, glm::dvec3(p)), glm::max(box.high, glm::dvec3(p))};
-        mesh_boxes_.push_back(box);
-        longest_edges_.push_back(longestEdge(mesh));
-    }
+    : geometry_(geometry), reach_(reach), all_(all), meshes_(MeshFacts::ofAll(geometry)) {
     records_.resize(geometry.objects.size());
     scratch_.reserve(4096);
     far_.resize(geometry.objects.size());
@@ -85,7 +78,7 @@ vec4 ObjectPlaces::extent(size_t index, const glm::dmat4& m, bool in_view) {
     const size_t mesh = meshOf(index);
     const double rounding = 1e-6 * farthest;  // of the floats that the nearest point is found in, at most
     const double nearest =
-        in_view ? nearestDistance(geometry_.meshes[mesh], longest_edges_[mesh], m, scratch_) - rounding : 0;
+        in_view ? nearestDistance(geometry_.meshes[mesh], meshes_[mesh]->longestEdge(), m, scratch_) - rounding : 0;
     const double slack = 1e-5;  // of the float that carries it
     return vec4(nearest > 1e-6 ? (1 + slack) / nearest : 1e6, farthest > 0 ? (1 - slack) / farthest : 0, 0, 0);
 }

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "components/sonar/Interface.hpp"
+#include "components/sonar/MeshFacts.hpp"
 #include "components/sonar/RenderPlan.hpp"
 #include "types/Snapshot.hpp"
 
@@ -20,10 +21,6 @@ Reach reachOf(const RenderPlan& plan);
 /** Where the objects of a scene stand about the sonar in this ping. */
 class ObjectPlaces {
 public:
-    struct Box {
-        glm::dvec3 low{0}, high{0};
-    };
-
     /** `geometry` must outlive it. `all`: what is out of range is placed as well. */
     ObjectPlaces(const types::Geometry& geometry, const Reach& reach, bool all);
 
@@ -33,7 +30,7 @@ public:
     /** Out of range and not placed: its record is not of this ping. */
     bool isFar(size_t object) const { return far_[object]; }
     /** Of an object's mesh, in its coordinates. */
-    const Box& box(size_t object) const { return mesh_boxes_[meshOf(object)]; }
+    const Box& box(size_t object) const { return meshes_[meshOf(object)]->box(); }
 
 private:
     size_t meshOf(size_t object) const { return static_cast<size_t>(geometry_.objects[object].mesh); }
@@ -45,8 +42,7 @@ private:
     const types::Geometry& geometry_;
     Reach reach_;
     bool all_;
-    std::vector<Box> mesh_boxes_;
-    std::vector<double> longest_edges_;  ///< Of each mesh [m].
+    std::vector<std::shared_ptr<MeshFacts>> meshes_;
     std::vector<glm::dmat4> world_from_object_;
     std::vector<ObjectRecord> records_;
     std::vector<bool> far_;

@@ -259,7 +259,7 @@ bool PathEchoes::Tracer::begin(const CastTile& tile) {
 
 MirrorPlane PathEchoes::Tracer::planeOf(const TileHits& hits, int i) const {
     const PlacedRun& run = scene_.ranges[hits.command[i]];
-    const PlaneRecord& plane = scene_.planes[run.first_triangle + hits.triangle[i]];
+    const PlaneRecord& plane = run.planes[hits.triangle[i]];
     const glm::dvec3 n(plane.normal), p(plane.point);
     const auto turned = [&](const double* row) { return row[0] * n.x + row[1] * n.y + row[2] * n.z; };
     const glm::dvec3 normal(turned(run.normal_x), turned(run.normal_y), turned(run.normal_z));
@@ -285,7 +285,7 @@ void PathEchoes::Tracer::reflect(int i, const glm::dvec3& from, const glm::dvec3
     const MirrorPlane plane = planeOf(hits, i);
     const double cosine = std::abs(glm::dot(plane.normal, way));
     if (reflected == 0 || !(cosine > edge_on)) return drop(i);
-    const PlaneRecord& record = scene_.planes[scene_.ranges[hits.command[i]].first_triangle + hits.triangle[i]];
+    const PlaneRecord& record = scene_.ranges[hits.command[i]].planes[hits.triangle[i]];
     chain.names[k] = uint64_t{hits.command[i]} << 32 | hits.triangle[i];
     chain.power *= reflected;
     chain.widest = std::max(chain.widest, static_cast<double>(record.point.w) / cosine);
@@ -378,7 +378,7 @@ void PathEchoes::Tracer::deposit(const Angles& at, int i, double open) {
     const double facing = glm::dot(plane.normal, at.middle);
     if (!(std::abs(facing) > edge_on && plane.distance * facing > 0)) return;
     const PlacedRun& run = scene_.ranges[hits_.command[i]];
-    const PlaneRecord& record = scene_.planes[run.first_triangle + hits_.triangle[i]];
+    const PlaneRecord& record = run.planes[hits_.triangle[i]];
     tellWay(i, true);
     const HalfWay twice = halfWay(plane, glm::dvec3(0), at);
     const double strength = rules_.strength_scale * chain.power * chain.power *
@@ -392,7 +392,7 @@ void PathEchoes::Tracer::deposit(const Angles& at, int i, double open) {
 MaterialLaws::Bistatic PathEchoes::Tracer::section(const Angles& at, int i, const MirrorPlane& plane,
                                                    const HalfWay& way) const {
     const PlacedRun& run = scene_.ranges[hits_.command[i]];
-    const double facet = static_cast<double>(scene_.planes[run.first_triangle + hits_.triangle[i]].point.w);
+    const double facet = static_cast<double>(run.planes[hits_.triangle[i]].point.w);
     const double angle = std::max(at.width, at.height);
     const double direct = std::abs(glm::dot(plane.normal, way.from_focus));
     const double mirrored = std::abs(glm::dot(plane.normal, at.middle));
@@ -429,9 +429,14 @@ void PathEchoes::Tracer::depositOnce(const Angles& at, int i, const MirrorPlane&
 }
 
 PathEchoes::PathEchoes(const RenderPlan& plan, const types::Geometry& geometry, const RayVisibility& visibility)
-    : plan_(plan), geometry_(geometry), visibility_(visibility), water_(plan.config) {
-    for (const CommandRecord& command : visibility.commands())
-        reflected_.push_back(reflectedPower(geometry_.materials[command.material], plan.config.multipath->bounces));
+    : plan_(plan), visibility_(visibility), water_(plan.config) {
+    takeScene(geometry);
+}
+
+void PathEchoes::takeScene(const types::Geometry& geometry) {
+    reflected_.clear();
+    for (const CommandRecord& command : visibility_.commands())
+        reflected_.push_back(reflectedPower(geometry.materials[command.material], plan_.config.multipath->bounces));
 }
 
 void PathEchoes::takeQuality(const EchoRules& rules, const CastView& view) {

@@ -49,8 +49,10 @@ private:
  *  summed in whole quanta, in any order. */
 class PathEchoes {
 public:
-    /** Of a plan with Pass::Paths; it, the geometry and the visibility must outlive it. */
+    /** Of a plan with Pass::Paths; it and the visibility, which has the geometry, must outlive it. */
     PathEchoes(const RenderPlan& plan, const types::Geometry& geometry, const RayVisibility& visibility);
+    /** Once the visibility has another geometry. */
+    void takeScene(const types::Geometry& geometry);
 
     /** With the quality that the plan has by now; `rules` and `view` must outlive it. Allocates. */
     void takeQuality(const EchoRules& rules, const CastView& view);
@@ -78,7 +80,6 @@ private:
     double quantum() const;
 
     const RenderPlan& plan_;
-    const types::Geometry& geometry_;
     const RayVisibility& visibility_;
     const EchoRules* rules_ = nullptr;
     const CastView* view_ = nullptr;

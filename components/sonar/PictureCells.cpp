@@ -96,7 +96,7 @@ private:
             cells_.setMiss(i);
         } else {
             const PlacedRun& run = part_.picture.ranges[texel[0] - 1];
-            cells_.setPlane(i, run, part_.planes[run.first_triangle + texel[1]]);
+            cells_.setPlane(i, run, run.planes[texel[1]]);
             if (part_.picture.channels == 4) cells_.mapped[i] = static_cast<double>(std::bit_cast<float>(texel[2]));
             if (deposit_.to().truth) cells_.object[i] = part_.picture.objects[texel[0] - 1];
             cells_.hits[i] = 1;

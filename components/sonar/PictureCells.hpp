@@ -22,7 +22,6 @@ struct PicturePart {
     const ViewFrustum& frustum;
     const ColumnShares& shares;
     const PictureView& picture;
-    const std::vector<PlaneRecord>& planes;
     WaterView water;
     uint32_t first, last;        ///< Beams [1].
     std::array<int, 2> columns;  ///< From, to: those that these beams touch [1].

@@ -50,7 +50,8 @@ void PictureDeposit::take(size_t frustum, const SurfacePass& surface) {
     picture.view.objects.clear();
     for (const CommandRecord& command : surface.lists().commands(frustum)) {
         if (truth_) picture.view.objects.push_back(command.object);
-        picture.view.ranges.push_back(placedRun(surface.objects()[command.object], command, setup_.rules));
+        picture.view.ranges.push_back(placedRun(surface.objects()[command.object], command, setup_.rules,
+                                                planes_.data() + command.first_triangle));
     }
 }
 
@@ -85,7 +86,7 @@ void PictureDeposit::depositPart(size_t part) {
     for (size_t i = 0; i < setup_.frusta.size(); ++i) {
         const Taken& taken = pictures_[i];
         if (!taken.taken) continue;
-        const PicturePart frustum{setup_.rules, setup_.frusta[i], setup_.shares[i], taken.view, planes_, water_,
+        const PicturePart frustum{setup_.rules, setup_.frusta[i], setup_.shares[i], taken.view, taken.water,
                                   first,        last,             columns_[part][i]};
         if (!truth_) {
             depositPicture(frustum, {0, sums_.data()});

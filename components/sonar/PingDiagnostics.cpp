@@ -150,8 +150,8 @@ std::string enclosureText(const types::Snapshot& scene, uint32_t object) {
 std::string PingDiagnostics::follow(bool heard, Model model, const types::Snapshot& scene, const types::Sonar& ping,
                                     const std::function<RenderPlan()>& coverage) {
     if (pings_++ % between_looks == 0) {
-        sightlines_.place(scene);
-        const auto around = sightlines_.enclosing();
+        sightlines_->place(scene);
+        const auto around = sightlines_->enclosing();
         inside_ = around.has_value();
         if (enclosure_.isDue(inside_)) return enclosureText(scene, *around);
     }

@@ -1,5 +1,6 @@
 #pragma once
 #include <functional>
+#include <optional>
 #include <string>
 
 #include "components/sonar/Sightlines.hpp"
@@ -13,7 +14,9 @@ namespace insonify::sonar {
 class PingDiagnostics {
 public:
     /** `geometry` must outlive it. `turn`: pings in which a head comes round [1]. */
-    PingDiagnostics(const types::Geometry& geometry, int turn) : turn_(turn), sightlines_(geometry) {}
+    PingDiagnostics(const types::Geometry& geometry, int turn) : turn_(turn) { takeScene(geometry); }
+    /** Another geometry from the next ping on, which must outlive it. */
+    void takeScene(const types::Geometry& geometry) { sightlines_.emplace(geometry); }
 
     /** What is to be told of a ping; usually nothing, for which nothing is allocated. `heard`: it has an echo;
      *  `coverage`: the plan of a sonar that looks where this one does. */
@@ -28,7 +31,7 @@ private:
     bool inside_ = false;
     int silent_ = 0;  ///< Pings without any echo, one after the other [1].
     types::RecurringDiagnostic silence_, enclosure_;
-    Sightlines sightlines_;
+    std::optional<Sightlines> sightlines_;
 };
 
 }  // namespace insonify::sonar

@@ -20,26 +20,16 @@ namespace insonify::sonar {
 namespace {
 
 /** A quality to begin with, until something is heard, where none is given. */
-SonarConfig begun(SonarConfig config) {
+SonarConfig coarsest(SonarConfig config) {
     if (!config.choosesQuality()) return config;
-    const Quality coarsest;
+    const Quality quality;
     config.quality = {};
-    config.quality.rows = coarsest.rows;
-    config.quality.columns_per_beam = coarsest.columns_per_beam;
+    config.quality.rows = quality.rows;
+    config.quality.columns_per_beam = quality.columns_per_beam;
     return config;
 }
 
 }  // namespace
-
-const char* normalisePose(types::Pose& pose) {
-    const glm::dvec3& p = pose.position;
-    if (!std::isfinite(p.x) || !std::isfinite(p.y) || !std::isfinite(p.z)) return "the sonar's position is not finite";
-    const double length = glm::length(pose.orientation);
-    if (!std::isfinite(length)) return "the sonar's orientation is not finite";
-    if (length < 1e-6) return "the sonar's orientation is a quaternion of no length";
-    pose.orientation /= length;
-    return nullptr;
-}
 
 PingTask::~PingTask() {
     stop();
@@ -48,11 +38,11 @@ PingTask::~PingTask() {
 
 std::vector<std::string> PingTask::notices() const {
     std::vector<std::string> all = plan_ ? plan_->notices : configNotices(sonarConfig());
-    if (shortest_ < echoTime() * (1 - 1e-6))
+    if (shortestPeriod() < echoTime() * (1 - 1e-6))
         all.push_back(fmt::format(
             "Warning: pings {:.3g} s apart are ambiguous in range, sound takes {:.3g} s to {:.4g} m and back; each "
             "is rendered by itself",
-            shortest_, echoTime(), grid_.range_max));
+            shortestPeriod(), echoTime(), grid().range_max));
     return all;
 }
 
@@ -80,113 +70,16 @@ bool PingTask::configureHook() {
     if (elements.connected() && !rendersOnce())
         throw types::ConfigError("", name() + ".elements",
                                  "is connected; a sonar that renders a ping in many parts tells no signals");
+    sonarConfig().requireDevice(name());
     renderer_.reset();
     plan_.reset();
-    grid_ = makeBinGrid(sonarConfig());
-    shortest_ = std::numeric_limits<double>::infinity();
-    period_ = {};
+    resetAim();
     return true;
-}
-
-void PingTask::followSnapshot(const types::Snapshot& scene) {
-    const std::optional<Mark> before = std::exchange(before_, Mark{scene.time, scene.sonar.position});
-    const double seconds = before ? (scene.time - before->time).seconds() : 0;
-    jumped_ = false;
-    if (!(seconds > 0)) return;
-    shortest_ = std::min(shortest_, seconds);
-    period_.note(seconds);
-    const double way = glm::distance(scene.sonar.position, before->position);
-    const double fastest = 0.1 * grid_.speed_of_sound;
-    jumped_ = !(way <= fastest * seconds);
-    if (jumps_.isDue(jumped_))
-        warn(
-            fmt::format("the sonar has moved {:.4g} m in {:.4g} s, faster than a tenth of the speed of sound, {:.4g} "
-                        "m/s: it is taken as put there, at rest unless its pose has a velocity",
-                        way, seconds, fastest));
-}
-
-bool PingTask::takeGiven() {
-    types::SnapshotPtr sample;
-    types::Pose given;
-    if (!given_pose.readNew(given) || snapshot.readNewest(sample) == framework::FlowStatus::NoData) return false;
-    begun_ = now();
-    aimed_ = *sample;
-    aimed_.sonar = given;
-    aimed_.time = given.time;
-    used_ = std::move(given);
-    return true;
-}
-
-std::map<std::string, std::string> PingTask::changedBy(const types::SonarSettings& asked) const {
-    const SonarConfig config = sonarConfig();
-    std::map<std::string, std::string> changed;
-    const auto compare = [&](const char* name, double wanted, std::optional<double> now) {
-        if (std::isfinite(wanted) && wanted != now) changed[name] = fmt::format("{}", wanted);
-    };
-    const auto compareCount = [&](const char* name, uint32_t wanted, uint32_t now) {
-        if (wanted != 0 && wanted != now) changed[name] = fmt::format("{}", wanted);
-    };
-    compare("range", asked.range, config.range);
-    compare("frequency_khz", asked.frequency_khz, config.frequency_khz);
-    compare("speed_of_sound", asked.speed_of_sound, config.speed_of_sound);
-    compare("field_of_view_deg", asked.field_of_view.deg(), config.field_of_view_deg);
-    compare("beam_height_deg", asked.beam_height.deg(), config.beam_height_deg);
-    compareCount("bin_count", asked.bin_count, static_cast<uint32_t>(config.bin_count));
-    compareCount("beam_count", asked.beam_count, static_cast<uint32_t>(config.beam_count));
-    return changed;
-}
-
-void PingTask::applySettings(const types::SonarSettings& asked) {
-    const auto changed = changedBy(asked);
-    if (!changed.empty()) properties().front()->setAll(changed);
-    if (!asked.bearing.isUnknown()) turnHead(asked.bearing);
-}
-
-bool PingTask::takeAsked() {
-    types::SonarSettings asked;
-    types::SnapshotPtr sample;
-    if (snapshot.readNewest(sample) == framework::FlowStatus::NoData || !settings.takeNext(asked)) return false;
-    try {
-        applySettings(asked);
-    } catch (const std::exception& refused) {
-        error(std::string("settings: ") + refused.what());
-        return false;
-    }
-    aim(*sample);
-    aimed_.time = std::max(aimed_.time, asked.time);
-    used_.time = aimed_.time;
-    return true;
-}
-
-bool PingTask::takeNext() {
-    if (given_pose.connected()) return takeGiven();
-    if (settings.connected()) return takeAsked();
-    types::SnapshotPtr sample;
-    if (!snapshot.takeNext(sample)) return false;
-    aim(*sample);
-    return true;
-}
-
-void PingTask::aim(const types::Snapshot& scene) {
-    begun_ = now();
-    aimed_ = scene;
-    if (activity().realtime() && aimed_.max_extrapolation > 0) {
-        aimed_.sonar = types::extrapolatePose(aimed_.sonar, begun_, aimed_.max_extrapolation);
-        aimed_.time = aimed_.sonar.time;
-    }
-    used_ = aimed_.sonar;
 }
 
 void PingTask::updateHook() {
     if (!takeNext()) return;
-    const char* refusal = aimed_.geometry ? normalisePose(aimed_.sonar) : "the snapshot has no geometry";
-    if (!refusal && activity().realtime() && (aimed_.time - now()).seconds() > 1)
-        refusal = "the snapshot's time is ahead of the clock by more than a second";
-    if (!refusal) {
-        followSnapshot(aimed_);
-        refusal = steer(aimed_);
-    }
-    if (refusal) return error(refusal);
+    if (const char* why = refusal()) return error(why);
     if (state() == framework::TaskState::RunTimeError) recover();
     environment().rehearsing ? rehearse() : render();
     goOn();
@@ -194,8 +87,8 @@ void PingTask::updateHook() {
 
 void PingTask::rehearse() {
     const auto sample = std::make_shared<types::Sonar>();
-    sample->time = aimed_.time;
-    if (pose.connected()) pose.write(used_);
+    sample->time = aimed().time;
+    if (pose.connected()) pose.write(usedPose());
     ping.write(sample);
 }
 
@@ -206,26 +99,35 @@ std::string PingTask::indivisible() const {
            "as a run of a few pings tells";
 }
 
-void PingTask::makeRenderer() {
-    renderer_.reset();
-    quality_.reset();
-    geometry_ = aimed_.geometry;
-    diagnostics_.emplace(*geometry_, pingsPerTurn());
+void PingTask::prepareRenderer() {
+    if (renderer_ && geometry_ == aimed().geometry) return;
+    const types::GeometryPtr before = std::exchange(geometry_, aimed().geometry);  // until nothing refers to it
+    aimed().moved.reserve(geometry_->objects.size());
+    if (renderer_) {
+        diagnostics_->takeScene(*geometry_);
+        if (renderer_->setGeometry(geometry_)) takePlan();
+        return;
+    }
     const SonarConfig config = locatedConfig();
-    renderer_ = std::make_unique<SonarRenderer>(begun(config), geometry_);
+    quality_.reset();
+    diagnostics_.emplace(*geometry_, pingsPerTurn());
+    renderer_ = std::make_unique<SonarRenderer>(coarsest(config), geometry_);
     if (config.choosesQuality()) quality_.emplace(config, pingsPerTurn());
+    takePlan();
+}
+
+void PingTask::takePlan() {
     plan_ = renderer_->plan();
-    if (const std::string note = depthNotice(renderer_->renderPlan(), aimed_); !note.empty())
+    if (const std::string note = depthNotice(renderer_->renderPlan(), aimed()); !note.empty())
         plan_->notices.push_back(note);
+    if (quality_ && quality_->isChosen()) plan_->predicted_error = quality_->quality().error;
     culling_untold_ = true;
     plan_told_ = false;
-    aimed_.moved.reserve(geometry_->objects.size());
 }
 
 void PingTask::followQuality(types::Sonar& sample, double ms) {
     if (!quality_) return;
-    const double period_ms = activity().realtime() ? 1e3 * period_.period() : 0;
-    const bool changed = quality_->follow(*renderer_, aimed_, sample, ms, period_ms);
+    const bool changed = quality_->follow(*renderer_, aimed(), sample, ms, 1e3 * realtimePeriod());
     std::ranges::move(quality_->takeNotices(), std::back_inserter(plan_->notices));
     if (!changed) return;
     plan_->rows = quality_->quality().rows;
@@ -243,21 +145,21 @@ RenderPlan PingTask::coverage(const types::Snapshot& /*scene*/) const { return r
 
 std::string PingTask::diagnosticOf(bool heard, const types::Sonar& sample) {
     const Model model = renderer_->renderPlan().config.model;
-    return diagnostics_->follow(heard, model, aimed_, sample, [this] { return coverage(aimed_); });
+    return diagnostics_->follow(heard, model, aimed(), sample, [this] { return coverage(aimed()); });
 }
 
 void PingTask::render() {
-    if (!renderer_ || geometry_ != aimed_.geometry) makeRenderer();
+    prepareRenderer();
     const auto sample = pool_.take();
     const auto told = takeTruth();
     renderer_->setTruth(*sample, told.get());
     const auto start = std::chrono::steady_clock::now();
-    const bool heard = renderPing(*renderer_, aimed_, *sample);
+    const bool heard = renderPing(*renderer_, aimed(), *sample);
     const std::chrono::duration<double, std::milli> took = std::chrono::steady_clock::now() - start;
     for (const Stage& stage : renderStages(*renderer_)) recordStage(stage.name, stage.seconds);
     if (std::exchange(culling_untold_, false) && rendersOnce()) {
         for (const LeftOut& what : renderer_->leftOut()) {
-            plan_->omitted.push_back(describe(what, grid_));
+            plan_->omitted.push_back(describe(what, grid()));
             if (what.reason == Reason::Lacking)
                 plan_->notices.push_back("Warning: " + plan_->omitted.back().reason);
         }
@@ -268,8 +170,8 @@ void PingTask::render() {
     pool_.stock(*sample);
     if (!std::exchange(plan_told_, true)) refreshRecord();
     if (!waitForLastEcho()) return;
-    if (pose.connected()) pose.write(used_);
-    tellMore(*sample, aimed_.sonar);
+    if (pose.connected()) pose.write(usedPose());
+    tellMore(*sample, aimed().sonar);
     ping.write(sample);
     if (told) writeTruth(*sample, told);
     if (elements.connected()) writeElements(*sample);
@@ -302,7 +204,7 @@ void PingTask::writeElements(const types::Sonar& sample) {
 
 bool PingTask::waitForLastEcho() {
     if (!activity().realtime()) return true;
-    const types::Time heard{std::max(aimed_.time, begun_).microseconds +
+    const types::Time heard{std::max(aimed().time, begun()).microseconds +
                             static_cast<int64_t>(std::ceil(echoTime() * 1e6))};
     return activity().sleepUntil(heard);
 }

@@ -47,10 +47,13 @@ double PulseMeans::mean(double low, double high) const {
 }
 
 PointTargets::PointTargets(const RenderPlan& plan, const types::Geometry& geometry)
-    : plan_(plan), ways_(plan.config, geometry), absorption_(makeAbsorption(plan.config).intensityPerMetre()) {
+    : plan_(plan), absorption_(makeAbsorption(plan.config).intensityPerMetre()) {
     if (plan.has(Pass::Pulse)) pulse_.emplace(acoustics::Pulse(*plan.config.pulse, plan.grid.speed_of_sound));
     means_.reserve(static_cast<size_t>(plan.grid.bin_count));
+    takeScene(geometry);
 }
+
+void PointTargets::takeScene(const types::Geometry& geometry) { ways_.emplace(plan_.config, geometry); }
 
 std::optional<BeamAngles> PointTargets::directionOf(const glm::dvec3& way) const {
     const bool conical = plan_.features.has(Feature::Conical);
@@ -146,13 +149,13 @@ std::optional<TargetWay> PointTargets::bentWay(const RayPaths& bent, const types
 }
 
 size_t PointTargets::add(const types::Snapshot& snapshot, types::Sonar& ping, EchoField* field, const RayPaths* bent) {
-    ways_.place(snapshot, plan_.grid.range_max + (pulse_ ? pulse_->reach() : 0));
+    ways_->place(snapshot, plan_.grid.range_max + (pulse_ ? pulse_->reach() : 0));
     size_t heard = 0;
     const auto time = static_cast<uint64_t>(snapshot.time.microseconds);
     for (size_t i = 0; i < snapshot.targets.size(); ++i) {
         const types::PointTarget& target = snapshot.targets[i];
         bool any = false;
-        std::span<const TargetWay> ways = ways_.waysTo(target.position);
+        std::span<const TargetWay> ways = ways_->waysTo(target.position);
         const auto way = bent && !ways.empty() ? bentWay(*bent, snapshot, i) : std::nullopt;
         if (bent) ways = {way ? &*way : nullptr, way ? 1u : 0u};
         for (const TargetWay& out : ways)

@@ -39,6 +39,8 @@ public:
     /** Of a plan for model `physical`; plan and geometry must outlive it. */
     PointTargets(const RenderPlan& plan, const types::Geometry& geometry);
 
+    /** Another geometry from the next ping on; the plan may be another one as well. */
+    void takeScene(const types::Geometry& geometry);
     /** Once the bins are filled, or `field` is, where there is one; how many targets any beam hears. `bent`: the ways
      * of this ping, null where they are straight. Allocates nothing where nothing reflects. */
     size_t add(const types::Snapshot& snapshot, types::Sonar& ping, EchoField* field, const RayPaths* bent);
@@ -66,7 +68,7 @@ private:
     double inPhase(const TargetWay& way) const;
 
     const RenderPlan& plan_;
-    TargetWays ways_;
+    std::optional<TargetWays> ways_;
     double absorption_;  ///< Two-way, of intensity [1/m].
     std::optional<PulseMeans> pulse_;
     std::vector<double> means_;  ///< Of h, for bins from first_bin_ on [1].

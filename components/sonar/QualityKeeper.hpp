@@ -68,6 +68,8 @@ public:
     bool follow(SonarRenderer& renderer, const types::Snapshot& scene, types::Sonar& ping, double ms,
                 double period_ms = 0);
     const Quality& quality() const { return model_.at; }
+    /** Whether a ping has been good enough to choose it. */
+    bool isChosen() const { return chosen_; }
     /** What there is to tell since the last call, a sentence each. */
     std::vector<std::string> takeNotices() { return std::exchange(notices_, {}); }
 

@@ -36,6 +36,8 @@ public:
     /** Of a plan with refraction or motion within a ping; both outlive it. */
     RayPaths(const RenderPlan& plan, const types::Geometry& geometry);
 
+    /** Another geometry from the next ping on. */
+    void takeScene(const types::Geometry& geometry);
     /** Once a ping. Allocates nothing after the second. */
     void place(const types::Snapshot& snapshot);
     /** Whether all ways of this ping are as good as straight: nothing is bent, and nothing moves enough. */

@@ -6,7 +6,9 @@
 #include <glm/gtc/quaternion.hpp>
 #include <glm/matrix.hpp>
 #include <limits>
+#include <optional>
 
+#include "components/sonar/MeshFacts.hpp"
 #include "components/sonar/RayPaths.hpp"
 #include "components/sonar/SceneTrees.hpp"
 
@@ -23,6 +25,17 @@ glm::dvec3 originNear(const glm::dvec3& sonar) { return origin_spacing * glm::ro
 /** Triangles that are copied to where they stand, once for each object; of larger scenes, meshes that stand in several
  *  places are instances of one tree, through which rays take longer [1]. */
 constexpr size_t max_copied = 4'000'000;
+
+/** The object whose lattice of scatterers an object has: its own; of the tiles of a survey that of the first, whatever
+ *  tiles there are. */
+uint32_t latticeOf(const types::Geometry& geometry, size_t object) {
+    const types::Object& own = geometry.objects[object];
+    const auto is_same = [&](const types::Object& other) {
+        return other.transient && other.name == own.name && other.world_from_object == own.world_from_object;
+    };
+    if (!own.transient) return static_cast<uint32_t>(object);
+    return static_cast<uint32_t>(std::ranges::find_if(geometry.objects, is_same) - geometry.objects.begin());
+}
 
 /** The three rows of a matrix that takes directions and places from one frame to another. */
 struct Rows {
@@ -102,19 +115,19 @@ void forgetHits(RTCRayHit16& all) {
     std::fill_n(all.hit.instID[0], tile_samples, RTC_INVALID_GEOMETRY_ID);
 }
 
-RTCIntersectContext coherentRays() {
+RTCIntersectContext raysOf(bool are_coherent) {
     RTCIntersectContext context;
     rtcInitIntersectContext(&context);
-    context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
+    context.flags = are_coherent ? RTC_INTERSECT_CONTEXT_FLAG_COHERENT : RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT;
     return context;
 }
 
-/** Writes down what rays have met now; `meaning` of a geometry and an instance is a SceneTrees::Part. */
+/** Writes down what rays have met now; `meaning` of a geometry and an instance is a TreePart. */
 template <class Meaning>
 void take(const RTCRayHit16& all, TileHits& hits, const Meaning& meaning) {
     for (int i = 0; i < tile_samples; ++i) {
         if (all.hit.geomID[i] == RTC_INVALID_GEOMETRY_ID) continue;
-        const SceneTrees::Part part = meaning(all.hit.geomID[i], all.hit.instID[0][i]);
+        const TreePart part = meaning(all.hit.geomID[i], all.hit.instID[0][i]);
         hits.command[i] = part.command;
         hits.triangle[i] = part.first_triangle + all.hit.primID[i];
         hits.u[i] = all.hit.u[i];
@@ -154,8 +167,9 @@ void aim(const Rows& turn, glm::vec3 place, const Places& from, const Places& to
 /** An object that moves. */
 struct RayVisibility::Mover {
     uint32_t object, first_command;
-    const SceneTrees::MeshTree* mesh;
-    glm::vec3 low, high;          ///< Box in its own axes [m].
+    std::shared_ptr<MeshTree> mesh;
+    RTCScene tree;
+    Box box;                      ///< In its own axes [m].
     bool placed = false;          ///< Whether rays can meet it.
     glm::mat3 from_sonar{1};      ///< Directions in sonar axes to its own.
     glm::vec3 place{0};           ///< Of the sonar in its axes [m].
@@ -164,8 +178,8 @@ struct RayVisibility::Mover {
 
     void placeAt(const glm::dmat4& sonar_from_object);
     bool mayMeet(const TileRays& rays) const;
-    SceneTrees::Part meaning(uint32_t geometry) const {
-        const SceneTrees::Part& part = mesh->parts[geometry];
+    TreePart meaning(uint32_t geometry) const {
+        const TreePart& part = mesh->parts()[geometry];
         return {first_command + part.command, part.first_triangle};
     }
 };
@@ -173,13 +187,13 @@ struct RayVisibility::Mover {
 void RayVisibility::Mover::placeAt(const glm::dmat4& sonar_from_object) {
     const glm::dmat3 linear(sonar_from_object);
     const double volume = glm::determinant(linear);
-    placed = std::isfinite(volume) && volume != 0 && !mesh->parts.empty();
+    placed = std::isfinite(volume) && volume != 0 && !mesh->parts().empty();
     if (!placed) return;
     const glm::dmat3 inverse = glm::inverse(linear);
     from_sonar = glm::mat3(inverse);
     place = glm::vec3(-(inverse * glm::dvec3(sonar_from_object[3])));
-    const glm::dvec3 half = 0.5 * (glm::dvec3(high) - glm::dvec3(low));
-    const glm::dvec3 middle(sonar_from_object * glm::dvec4(0.5 * (glm::dvec3(high) + glm::dvec3(low)), 1));
+    const glm::dvec3 half = box.half();
+    const glm::dvec3 middle(sonar_from_object * glm::dvec4(box.centre(), 1));
     const double radius = std::abs(half.x) * glm::length(linear[0]) + std::abs(half.y) * glm::length(linear[1]) +
                           std::abs(half.z) * glm::length(linear[2]);
     const double distance = glm::length(middle), share = 1.001 * radius / distance;
@@ -204,36 +218,41 @@ bool RayVisibility::Mover::mayMeet(const TileRays& rays) const {
 
 /** The scene about one origin. */
 struct RayVisibility::Tree {
-    explicit Tree(const types::Geometry& geometry) : trees(geometry) {}
-
-    SceneTrees trees;
+    std::optional<SceneTrees> trees;
     std::vector<Mover> movers;
     glm::dvec3 origin{0};  ///< In the world [m].
     bool is_built = false;
 };
 
 RayVisibility::RayVisibility(const types::Geometry& geometry)
-    : geometry_(geometry),
-      moves_(geometry.objects.size()),
-      here_(std::make_unique<Tree>(geometry)),
-      before_(std::make_unique<Tree>(geometry)) {
-    listCommands();
+    : here_(std::make_unique<Tree>()), before_(std::make_unique<Tree>()) {
+    takeScene(geometry);
 }
 
 RayVisibility::~RayVisibility() = default;
 
+void RayVisibility::takeScene(const types::Geometry& geometry) {
+    geometry_ = &geometry;
+    moves_.resize(geometry.objects.size());
+    here_->is_built = before_->is_built = false;
+    listCommands();
+}
+
 void RayVisibility::listCommands() {
+    commands_.clear();
+    first_command_.clear();
     uint32_t planes = 0;
     std::vector<uint32_t> first_plane;
-    for (const types::Mesh& mesh : geometry_.meshes) {
+    for (const types::Mesh& mesh : geometry_->meshes) {
         first_plane.push_back(planes);
         planes += static_cast<uint32_t>(mesh.indices.size() / 3);
     }
-    for (size_t i = 0; i < geometry_.objects.size(); ++i) {
+    for (size_t i = 0; i < geometry_->objects.size(); ++i) {
         first_command_.push_back(static_cast<uint32_t>(commands_.size()));
-        const auto mesh = static_cast<size_t>(geometry_.objects[i].mesh);
-        for (const MaterialRun& run : materialRuns(geometry_.meshes[mesh]))
-            commands_.push_back({static_cast<uint32_t>(i), first_plane[mesh], static_cast<uint32_t>(run.material), 0});
+        const auto mesh = static_cast<size_t>(geometry_->objects[i].mesh);
+        for (const MaterialRun& run : materialRuns(geometry_->meshes[mesh]))
+            commands_.push_back({static_cast<uint32_t>(i), first_plane[mesh], static_cast<uint32_t>(run.material),
+                                 latticeOf(*geometry_, i)});
     }
 }
 
@@ -259,30 +278,33 @@ void RayVisibility::forgetTrees(const types::Snapshot& snapshot) {
 void RayVisibility::build(const glm::dvec3& origin) {
     here_->is_built = false;
     here_->origin = origin;
-    here_->movers.clear();
-    here_->trees.clear();
-    std::vector<size_t> uses(geometry_.meshes.size());
-    for (const types::Object& object : geometry_.objects) ++uses[static_cast<size_t>(object.mesh)];
-    const bool copied = geometry_.triangleCount() <= max_copied;
-    for (size_t i = 0; i < geometry_.objects.size(); ++i) {
-        const types::Object& object = geometry_.objects[i];
-        const types::Mesh& mesh = geometry_.meshes[static_cast<size_t>(object.mesh)];
-        if (mesh.indices.empty()) continue;
+    std::vector<Mover> movers;
+    std::vector<TreeObject> still, apart;
+    std::vector<size_t> uses(geometry_->meshes.size());
+    size_t triangles = 0;
+    for (const types::Object& object : geometry_->objects) {
+        const auto mesh = static_cast<size_t>(object.mesh);
+        ++uses[mesh];
+        if (!object.transient) triangles += geometry_->meshes[mesh].indices.size() / 3;
+    }
+    for (size_t i = 0; i < geometry_->objects.size(); ++i) {
+        const types::Object& object = geometry_->objects[i];
+        const auto mesh = static_cast<size_t>(object.mesh);
+        if (geometry_->meshes[mesh].indices.empty()) continue;
+        const types::MeshPtr& shared = geometry_->meshes.shared(mesh);
         glm::dmat4 place = object.world_from_object;
         place[3] -= glm::dvec4(origin, 0);
         if (moves_[i]) {
-            Mover mover{static_cast<uint32_t>(i), first_command_[i], &here_->trees.treeOf(object.mesh), {}, {}};
-            mover.low = mover.high = mesh.positions.front();
-            for (const glm::vec3& p : mesh.positions)
-                mover.low = glm::min(mover.low, p), mover.high = glm::max(mover.high, p);
-            here_->movers.push_back(mover);
-        } else if (copied || uses[static_cast<size_t>(object.mesh)] == 1) {
-            here_->trees.copy(object.mesh, place, first_command_[i]);
+            Mover& mover = movers.emplace_back(static_cast<uint32_t>(i), first_command_[i], MeshTree::of(shared));
+            mover.tree = mover.mesh->tree().scene();
+            mover.box = MeshFacts::of(shared)->box();
         } else {
-            here_->trees.instance(object.mesh, place, first_command_[i]);
+            const bool is_apart = object.transient || (triangles > max_copied && uses[mesh] > 1);
+            (is_apart ? apart : still).push_back({shared, place, first_command_[i]});
         }
     }
-    here_->trees.commit();
+    here_->trees.emplace(SceneTrees(still, apart));  // those before it are kept until it has found them
+    here_->movers = std::move(movers);
     here_->is_built = true;
 }
 
@@ -292,7 +314,7 @@ void RayVisibility::placeMovers(const types::Snapshot& snapshot) {
     for (Mover& mover : here_->movers) {
         const auto moved = std::ranges::find(snapshot.moved, mover.object, &types::MovedObject::object);
         const glm::dmat4& world_from_object = moved == snapshot.moved.end()
-                                                  ? geometry_.objects[mover.object].world_from_object
+                                                  ? geometry_->objects[mover.object].world_from_object
                                                   : moved->world_from_object;
         glm::dmat4 place(sonar_from_world * glm::dmat3(world_from_object));
         place[3] = glm::dvec4(sonar_from_world * (glm::dvec3(world_from_object[3]) - snapshot.sonar.position), 1);
@@ -307,13 +329,13 @@ void RayVisibility::cast(std::span<const TileRays> rays, std::span<TileHits> hit
         extend(rays[i], static_cast<float>(nearest), all[i]);
         aim(world, place_, rays[i], all[i]);
     }
-    RTCIntersectContext context = coherentRays();
-    rtcIntersectNM(here_->trees.still(), &context, reinterpret_cast<RTCRayHitN*>(all.data()), tile_samples,
+    RTCIntersectContext context = raysOf(true);
+    rtcIntersectNM(here_->trees->scene(), &context, reinterpret_cast<RTCRayHitN*>(all.data()), tile_samples,
                    static_cast<unsigned>(rays.size()), sizeof(RTCRayHit16));
     for (size_t i = 0; i < rays.size(); ++i) {
         std::fill_n(hits[i].command, tile_samples, TileHits::nothing);
         take(all[i], hits[i],
-             [this](uint32_t geometry, uint32_t instance) { return here_->trees.meaning(geometry, instance); });
+             [this](uint32_t geometry, uint32_t instance) { return here_->trees->meaning(geometry, instance); });
         castAtMovers(rays[i], all[i], hits[i]);
     }
 }
@@ -321,11 +343,11 @@ void RayVisibility::cast(std::span<const TileRays> rays, std::span<TileHits> hit
 void RayVisibility::castAtMovers(const TileRays& rays, RTCRayHit16& all, TileHits& hits) const {
     alignas(64) int valid[tile_samples];
     for (int i = 0; i < tile_samples; ++i) valid[i] = (rays.active >> i & 1) ? -1 : 0;
-    RTCIntersectContext context = coherentRays();
+    RTCIntersectContext context = raysOf(true);
     for (const Mover& mover : here_->movers) {
         if (!mover.mayMeet(rays)) continue;
         aim(Rows(mover.from_sonar), mover.place, rays, all);
-        rtcIntersect16(valid, mover.mesh->scene, &context, &all);
+        rtcIntersect16(valid, mover.tree, &context, &all);
         take(all, hits, [&](uint32_t geometry, uint32_t) { return mover.meaning(geometry); });
     }
 }
@@ -354,10 +376,10 @@ void RayVisibility::castPiece(const RayPaths& paths, const TileRays& rays, const
                               TileHits& hits) const {
     alignas(64) int valid[tile_samples];
     for (int i = 0; i < tile_samples; ++i) valid[i] = (rays.active >> i & 1) ? -1 : 0;
-    RTCIntersectContext context = coherentRays();
+    RTCIntersectContext context = raysOf(true);
     aim(Rows(world_from_sonar_), place_, piece.from, piece.to, all);
-    rtcIntersect16(valid, here_->trees.still(), &context, &all);
-    take(all, hits, [this](uint32_t geometry, uint32_t instance) { return here_->trees.meaning(geometry, instance); });
+    rtcIntersect16(valid, here_->trees->scene(), &context, &all);
+    take(all, hits, [this](uint32_t geometry, uint32_t instance) { return here_->trees->meaning(geometry, instance); });
     for (const Mover& mover : here_->movers) {
         if (!mover.placed) continue;
         if (const Drift* drift = paths.drift(mover.object))
@@ -365,7 +387,7 @@ void RayVisibility::castPiece(const RayPaths& paths, const TileRays& rays, const
                 placesOf(paths, rays, piece.end, drift), all);
         else
             aim(Rows(mover.from_sonar), mover.place, piece.from, piece.to, all);
-        rtcIntersect16(valid, mover.mesh->scene, &context, &all);
+        rtcIntersect16(valid, mover.tree, &context, &all);
         take(all, hits, [&](uint32_t geometry, uint32_t) { return mover.meaning(geometry); });
     }
 }
@@ -377,14 +399,14 @@ void RayVisibility::cast(const PathRays& rays, TileHits& hits) const {
     bound(rays, all.ray);
     aim(Rows(world_from_sonar_), place_, rays, all.ray);
     forgetHits(all);
-    RTCIntersectContext context = coherentRays();
-    rtcIntersect16(valid.of, here_->trees.still(), &context, &all);
-    take(all, hits, [this](uint32_t geometry, uint32_t instance) { return here_->trees.meaning(geometry, instance); });
+    RTCIntersectContext context = raysOf(true);
+    rtcIntersect16(valid.of, here_->trees->scene(), &context, &all);
+    take(all, hits, [this](uint32_t geometry, uint32_t instance) { return here_->trees->meaning(geometry, instance); });
     for (const Mover& mover : here_->movers) {
         if (!mover.placed) continue;
         aim(Rows(mover.from_sonar), mover.place, rays, all.ray);
         forgetHits(all);
-        rtcIntersect16(valid.of, mover.mesh->scene, &context, &all);
+        rtcIntersect16(valid.of, mover.tree, &context, &all);
         take(all, hits, [&](uint32_t geometry, uint32_t) { return mover.meaning(geometry); });
     }
 }
@@ -394,12 +416,13 @@ uint32_t RayVisibility::blocked(const PathRays& rays) const {
     const Valid valid(rays.towards.active);
     bound(rays, all);
     aim(Rows(world_from_sonar_), place_, rays, all);
-    RTCIntersectContext context = coherentRays();
-    rtcOccluded16(valid.of, here_->trees.still(), &context, &all);
+    // Embree 3.13 may never return from rtcOccluded16 of coherent rays through instances.
+    RTCIntersectContext context = raysOf(!here_->trees->hasInstances());
+    rtcOccluded16(valid.of, here_->trees->scene(), &context, &all);
     for (const Mover& mover : here_->movers) {
         if (!mover.placed) continue;
         aim(Rows(mover.from_sonar), mover.place, rays, all);
-        rtcOccluded16(valid.of, mover.mesh->scene, &context, &all);
+        rtcOccluded16(valid.of, mover.tree, &context, &all);
     }
     uint32_t met = 0;
     for (int i = 0; i < tile_samples; ++i) met |= static_cast<uint32_t>(all.tfar[i] < 0) << i;

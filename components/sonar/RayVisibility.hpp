@@ -13,7 +13,6 @@ struct RTCRayHit16;
 namespace insonify::sonar {
 
 class RayPaths;
-class SceneTrees;
 
 /** Directions of a tile's rays in sonar axes, of any length above 0 [1]; `active`: bit i is set where ray i is cast. */
 struct TileRays {
@@ -40,8 +39,9 @@ struct PathRays {
 };
 
 /** Which triangle is seen in which direction, by rays on the processor (Embree). What does not move is one tree about
- *  an origin near the sonar, on a coarse grid, so that world coordinates may be large; each object that moves has a
- * tree of its own, which is re-placed each ping and never built again. Surfaces nearer than `nearest` are not seen. */
+ *  an origin near the sonar, on a coarse grid, so that world coordinates may be large. Each object that moves, or is
+ *  transient, has a tree of its mesh, which is placed anew and never built again. All trees are shared with whoever
+ *  else renders the same meshes. Surfaces nearer than `nearest` are not seen. */
 class RayVisibility {
 public:
     static constexpr double nearest = 1e-3;     ///< [m]
@@ -50,6 +50,9 @@ public:
     /** The geometry must outlive it. Throws std::runtime_error where Embree refuses it. */
     explicit RayVisibility(const types::Geometry& geometry);
     ~RayVisibility();
+
+    /** Another geometry from the next ping on, which must outlive it. Trees of what has not changed are kept. */
+    void takeScene(const types::Geometry& geometry);
 
     /** Places the sonar and what moves, once a ping. Builds the tree anew when an object moves that never did before,
      *  or when the sonar has gone to another origin than the last two; allocates only then. What is seen follows from
@@ -90,7 +93,7 @@ private:
     void placeMovers(const types::Snapshot& snapshot);
     void castAtMovers(const TileRays& rays, RTCRayHit16& all, TileHits& hits) const;
 
-    const types::Geometry& geometry_;
+    const types::Geometry* geometry_;
     std::vector<CommandRecord> commands_;
     std::vector<uint32_t> first_command_;  ///< Of each object.
     std::vector<bool> moves_;              ///< Whether an object has ever moved.

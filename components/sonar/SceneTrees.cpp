@@ -1,10 +1,37 @@
 #include "components/sonar/SceneTrees.hpp"
 
+#include <bit>
 #include <stdexcept>
 #include <string>
-#include <utility>
+
+#include "components/sonar/SharedValues.hpp"
 
 namespace insonify::sonar {
+namespace {
+
+std::shared_ptr<RTCDeviceTy> sharedDevice() {
+    static SharedValues<int, RTCDeviceTy> devices;
+    return devices.of(0, [] {
+        RTCDevice device = rtcNewDevice("threads=1");
+        if (!device) throw std::runtime_error("Embree has no device on this processor");
+        return std::shared_ptr<RTCDeviceTy>(device, rtcReleaseDevice);
+    });
+}
+
+/** Numbers that are equal for equal objects. */
+std::vector<uint64_t> keyOf(const std::vector<TreeObject>& objects) {
+    std::vector<uint64_t> key;
+    key.reserve(18 * objects.size());
+    for (const TreeObject& object : objects) {
+        key.push_back(reinterpret_cast<uintptr_t>(object.mesh.get()));
+        key.push_back(object.command);
+        for (int i = 0; i < 16; ++i) key.push_back(std::bit_cast<uint64_t>(object.place[i / 4][i % 4]));
+    }
+    return key;
+}
+
+}  // namespace
+
 std::vector<MaterialRun> materialRuns(const types::Mesh& mesh) {
     std::vector<MaterialRun> ranges;
     for (const types::Cluster& cluster : mesh.clusters) {
@@ -16,90 +43,106 @@ std::vector<MaterialRun> materialRuns(const types::Mesh& mesh) {
     return ranges;
 }
 
-SceneTrees::SceneTrees(const types::Geometry& geometry)
-    : geometry_(geometry), device_(rtcNewDevice("threads=1")), meshes_(geometry.meshes.size()) {
-    if (!device_) throw std::runtime_error("Embree has no device on this processor");
+EmbreeScene::EmbreeScene() : device_(sharedDevice()), scene_(rtcNewScene(device_.get())) {
+    rtcSetSceneFlags(scene_, RTC_SCENE_FLAG_ROBUST);
 }
 
-SceneTrees::~SceneTrees() {
-    for (MeshTree& tree : meshes_)
-        if (tree.scene) rtcReleaseScene(tree.scene);
-    if (still_) rtcReleaseScene(still_);
-    rtcReleaseDevice(device_);
-}
+EmbreeScene::~EmbreeScene() { rtcReleaseScene(scene_); }
 
-RTCScene SceneTrees::newScene() const {
-    RTCScene scene = rtcNewScene(device_);
-    rtcSetSceneFlags(scene, RTC_SCENE_FLAG_ROBUST);
-    return scene;
-}
-
-void SceneTrees::clear() {
-    if (still_) rtcReleaseScene(still_);
-    still_ = newScene();
-    parts_.clear();
-    instances_.clear();
-    positions_.clear();
-    positions_.reserve(geometry_.objects.size());
-}
-
-void SceneTrees::commit() {
-    rtcCommitScene(still_);
-    const RTCError error = rtcGetDeviceError(device_);
-    if (error == RTC_ERROR_NONE) return;
-    rtcReleaseScene(std::exchange(still_, nullptr));
-    throw std::runtime_error("Embree cannot build the scene: error " + std::to_string(error));
-}
-
-void SceneTrees::addRun(RTCScene scene, const types::Mesh& mesh, const MaterialRun& run,
-                        const std::vector<glm::vec3>& at) const {
-    RTCGeometry triangles = rtcNewGeometry(device_, RTC_GEOMETRY_TYPE_TRIANGLE);
+void EmbreeScene::add(const types::Mesh& mesh, const MaterialRun& run, const std::vector<glm::vec3>& at) {
+    RTCGeometry triangles = rtcNewGeometry(device_.get(), RTC_GEOMETRY_TYPE_TRIANGLE);
     rtcSetSharedGeometryBuffer(triangles, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, at.data(), 0, sizeof(glm::vec3),
                                at.size() - 1);
     rtcSetSharedGeometryBuffer(triangles, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, mesh.indices.data(),
                                run.first_index * sizeof(uint32_t), 3 * sizeof(uint32_t), run.index_count / 3);
-    rtcCommitGeometry(triangles);
-    rtcAttachGeometry(scene, triangles);
-    rtcReleaseGeometry(triangles);
+    attach(triangles);
 }
 
-const SceneTrees::MeshTree& SceneTrees::treeOf(int index) {
-    MeshTree& tree = meshes_[static_cast<size_t>(index)];
-    if (tree.scene) return tree;
-    tree.positions = mesh(index).positions;
-    tree.positions.emplace_back();  // Embree reads 16 bytes at each position
-    tree.scene = newScene();
-    for (const MaterialRun& run : materialRuns(mesh(index))) {
-        addRun(tree.scene, mesh(index), run, tree.positions);
-        tree.parts.push_back({static_cast<uint32_t>(tree.parts.size()), run.first_index / 3});
+void EmbreeScene::add(const EmbreeScene& other, const glm::dmat4& place) {
+    const glm::mat4 matrix(place);
+    RTCGeometry instance = rtcNewGeometry(device_.get(), RTC_GEOMETRY_TYPE_INSTANCE);
+    rtcSetGeometryInstancedScene(instance, other.scene());
+    rtcSetGeometryTransform(instance, 0, RTC_FORMAT_FLOAT4X4_COLUMN_MAJOR, &matrix);
+    attach(instance);
+}
+
+void EmbreeScene::attach(RTCGeometry geometry) {
+    rtcCommitGeometry(geometry);
+    rtcAttachGeometry(scene_, geometry);
+    rtcReleaseGeometry(geometry);
+}
+
+void EmbreeScene::commit() {
+    rtcCommitScene(scene_);
+    if (const RTCError error = rtcGetDeviceError(device_.get()); error != RTC_ERROR_NONE)
+        throw std::runtime_error("Embree cannot build the scene: error " + std::to_string(error));
+}
+
+std::shared_ptr<MeshTree> MeshTree::of(const types::MeshPtr& mesh) {
+    static SharedValues<const types::Mesh*, MeshTree> all;
+    return all.of(mesh.get(), [&] { return std::make_shared<MeshTree>(mesh); });
+}
+
+const EmbreeScene& MeshTree::tree() {
+    std::call_once(built_, [this] {
+        parts_.clear();
+        positions_ = mesh_->positions;
+        positions_.emplace_back();  // Embree reads 16 bytes at each position
+        auto tree = std::make_unique<EmbreeScene>();
+        for (const MaterialRun& run : materialRuns(*mesh_)) {
+            tree->add(*mesh_, run, positions_);
+            parts_.push_back({static_cast<uint32_t>(parts_.size()), run.first_index / 3});
+        }
+        tree->commit();
+        tree_ = std::move(tree);
+    });
+    return *tree_;
+}
+
+std::shared_ptr<StillTree> StillTree::of(const std::vector<TreeObject>& objects) {
+    static SharedValues<std::vector<uint64_t>, StillTree> all;
+    return all.of(keyOf(objects), [&] { return std::make_shared<StillTree>(objects); });
+}
+
+const EmbreeScene& StillTree::tree() {
+    std::call_once(built_, [this] { build(); });
+    return *tree_;
+}
+
+void StillTree::build() {
+    auto tree = std::make_unique<EmbreeScene>();
+    parts_.clear();
+    positions_.clear();
+    positions_.reserve(objects_.size());
+    for (const TreeObject& object : objects_) {
+        std::vector<glm::vec3>& placed = positions_.emplace_back();
+        placed.reserve(object.mesh->positions.size() + 1);
+        for (const glm::vec3& p : object.mesh->positions) placed.emplace_back(object.place * glm::dvec4(p, 1));
+        placed.emplace_back();
+        uint32_t command = object.command;
+        for (const MaterialRun& run : materialRuns(*object.mesh)) {
+            tree->add(*object.mesh, run, placed);
+            parts_.push_back({command++, run.first_index / 3});
+        }
     }
-    rtcCommitScene(tree.scene);
-    return tree;
+    tree->commit();
+    tree_ = std::move(tree);
 }
 
-void SceneTrees::copy(int index, const glm::dmat4& place, uint32_t command) {
-    std::vector<glm::vec3>& placed = positions_.emplace_back();
-    placed.reserve(mesh(index).positions.size() + 1);
-    for (const glm::vec3& p : mesh(index).positions) placed.emplace_back(place * glm::dvec4(p, 1));
-    placed.emplace_back();
-    for (const MaterialRun& run : materialRuns(mesh(index))) {
-        addRun(still_, mesh(index), run, placed);
-        parts_.push_back({command++, run.first_index / 3});
+SceneTrees::SceneTrees(const std::vector<TreeObject>& still, const std::vector<TreeObject>& apart)
+    : still_(StillTree::of(still)) {
+    const EmbreeScene& tree = still_->tree();
+    if (apart.empty()) return;
+    top_ = std::make_unique<EmbreeScene>();
+    if (!still_->isEmpty()) {
+        top_->add(tree, glm::dmat4(1));
         instances_.emplace_back();
     }
-}
-
-void SceneTrees::instance(int index, const glm::dmat4& place, uint32_t command) {
-    const glm::mat4 matrix(place);
-    const MeshTree& tree = treeOf(index);
-    RTCGeometry geometry = rtcNewGeometry(device_, RTC_GEOMETRY_TYPE_INSTANCE);
-    rtcSetGeometryInstancedScene(geometry, tree.scene);
-    rtcSetGeometryTransform(geometry, 0, RTC_FORMAT_FLOAT4X4_COLUMN_MAJOR, &matrix);
-    rtcCommitGeometry(geometry);
-    rtcAttachGeometry(still_, geometry);
-    rtcReleaseGeometry(geometry);
-    parts_.emplace_back();
-    instances_.push_back({&tree, command});
+    for (const TreeObject& object : apart) {
+        const Instance& instance = instances_.emplace_back(MeshTree::of(object.mesh), object.command);
+        top_->add(instance.mesh->tree(), object.place);
+    }
+    top_->commit();
 }
 
 }  // namespace insonify::sonar

@@ -2,6 +2,8 @@
 #include <embree3/rtcore.h>
 
 #include <glm/mat4x4.hpp>
+#include <memory>
+#include <mutex>
 #include <vector>
 
 #include "types/Geometry.hpp"
@@ -15,63 +17,110 @@ struct MaterialRun {
 };
 std::vector<MaterialRun> materialRuns(const types::Mesh& mesh);
 
-/** Embree's trees of a geometry, and what the numbers of their hits mean. Built by one thread, so that of surfaces in
- *  the same place the same one is met on any machine. */
+/** What a geometry of a tree is: a command, and the first triangle of its run. */
+struct TreePart {
+    uint32_t command, first_triangle;
+};
+
+/** A scene of Embree. All scenes of a process are of one device, which builds each scene with one thread, so that of
+ *  surfaces in the same place the same one is met on any machine. */
+class EmbreeScene {
+public:
+    /** Throws std::runtime_error where Embree has no device. */
+    EmbreeScene();
+    ~EmbreeScene();
+    EmbreeScene(const EmbreeScene&) = delete;
+    EmbreeScene& operator=(const EmbreeScene&) = delete;
+
+    RTCScene scene() const { return scene_; }
+    /** Adds a run of a mesh whose vertices are at `at`, which has one more; both must outlive the scene. */
+    void add(const types::Mesh& mesh, const MaterialRun& run, const std::vector<glm::vec3>& at);
+    /** Adds another scene, which must outlive this one. */
+    void add(const EmbreeScene& other, const glm::dmat4& place);
+    /** Builds the tree. Throws std::runtime_error with Embree's error. */
+    void commit();
+
+private:
+    void attach(RTCGeometry geometry);
+
+    std::shared_ptr<RTCDeviceTy> device_;
+    RTCScene scene_;
+};
+
+/** The tree of a mesh in its own axes, with a part for each run of one material. Commands are counted from the object's
+ *  first. All who ask for the tree of a mesh share it. */
+class MeshTree {
+public:
+    static std::shared_ptr<MeshTree> of(const types::MeshPtr& mesh);
+    explicit MeshTree(types::MeshPtr mesh) : mesh_(std::move(mesh)) {}
+
+    /** Built when it is first asked for; several threads may ask at a time. */
+    const EmbreeScene& tree();
+    const std::vector<TreePart>& parts() const { return parts_; }  ///< Once the tree is built.
+
+private:
+    types::MeshPtr mesh_;
+    std::once_flag built_;
+    std::vector<glm::vec3> positions_;
+    std::vector<TreePart> parts_;
+    std::unique_ptr<EmbreeScene> tree_;
+};
+
+/** An object at its place, and the command of its first run. */
+struct TreeObject {
+    types::MeshPtr mesh;
+    glm::dmat4 place;
+    uint32_t command;
+};
+
+/** The tree of objects that stand still, their triangles copied to their places. All who ask for the same objects share
+ *  it. */
+class StillTree {
+public:
+    static std::shared_ptr<StillTree> of(const std::vector<TreeObject>& objects);
+    explicit StillTree(const std::vector<TreeObject>& objects) : objects_(objects) {}
+
+    /** Built when it is first asked for; several threads may ask at a time. */
+    const EmbreeScene& tree();
+    const TreePart& part(uint32_t geometry) const { return parts_[geometry]; }
+    bool isEmpty() const { return objects_.empty(); }
+
+private:
+    void build();
+
+    std::vector<TreeObject> objects_;
+    std::once_flag built_;
+    std::vector<std::vector<glm::vec3>> positions_;  ///< Of each object.
+    std::vector<TreePart> parts_;                    ///< Of each geometry.
+    std::unique_ptr<EmbreeScene> tree_;
+};
+
+/** Embree's trees of a scene about an origin, and what the numbers of their hits mean: the tree of what stands still,
+ *  alone or as one of the instances of a tree of trees. */
 class SceneTrees {
 public:
-    /** What a geometry of a tree is: a command, and the first triangle of its run. */
-    struct Part {
-        uint32_t command, first_triangle;
-    };
-    /** A mesh in its own axes: a part for each run of one material, with commands counted from the object's first. */
-    struct MeshTree {
-        RTCScene scene = nullptr;
-        std::vector<glm::vec3> positions;
-        std::vector<Part> parts;
-    };
+    /** `apart`: objects whose meshes have trees of their own. Builds what is not there yet. Throws std::runtime_error
+     *  with Embree's error. */
+    SceneTrees(const std::vector<TreeObject>& still, const std::vector<TreeObject>& apart);
 
-    /** Throws std::runtime_error where Embree has no device. */
-    explicit SceneTrees(const types::Geometry& geometry);
-    ~SceneTrees();
-    SceneTrees(const SceneTrees&) = delete;
-    SceneTrees& operator=(const SceneTrees&) = delete;
-
-    /** Forgets what stands still. */
-    void clear();
-    /** Adds an object that stands still, its triangles copied to their places, or as an instance of its mesh's tree. */
-    void copy(int mesh, const glm::dmat4& place, uint32_t command);
-    void instance(int mesh, const glm::dmat4& place, uint32_t command);
-    /** Builds the tree of what stands still. Throws std::runtime_error with Embree's error. */
-    void commit();
-    /** The tree of a mesh, built when it is first asked for. */
-    const MeshTree& treeOf(int mesh);
-
-    RTCScene still() const { return still_; }  ///< Null before the first commit.
-    /** The command and triangle of a hit in still(). */
-    Part meaning(uint32_t geometry, uint32_t instance) const {
-        if (instance == RTC_INVALID_GEOMETRY_ID) return parts_[geometry];
-        const Part& part = instances_[instance].mesh->parts[geometry];
+    bool hasInstances() const { return top_ != nullptr; }
+    RTCScene scene() const { return (top_ ? *top_ : still_->tree()).scene(); }
+    /** The command and triangle of a hit. */
+    TreePart meaning(uint32_t geometry, uint32_t instance) const {
+        if (instance == RTC_INVALID_GEOMETRY_ID || !instances_[instance].mesh) return still_->part(geometry);
+        const TreePart& part = instances_[instance].mesh->parts()[geometry];
         return {instances_[instance].command + part.command, part.first_triangle};
     }
 
 private:
-    /** What a geometry of still() is an instance of; no mesh: it is none. */
+    /** A geometry of the tree of trees; no mesh: it is what stands still. */
     struct Instance {
-        const MeshTree* mesh = nullptr;
+        std::shared_ptr<MeshTree> mesh;
         uint32_t command = 0;
     };
-    RTCScene newScene() const;
-    void addRun(RTCScene scene, const types::Mesh& mesh, const MaterialRun& run,
-                const std::vector<glm::vec3>& at) const;
-    const types::Mesh& mesh(int index) const { return geometry_.meshes[static_cast<size_t>(index)]; }
-
-    const types::Geometry& geometry_;
-    RTCDevice device_;
-    RTCScene still_ = nullptr;
-    std::vector<Part> parts_;                        ///< Of each geometry of still().
-    std::vector<Instance> instances_;                ///< The same.
-    std::vector<std::vector<glm::vec3>> positions_;  ///< Of what is copied.
-    std::vector<MeshTree> meshes_;
+    std::shared_ptr<StillTree> still_;
+    std::vector<Instance> instances_;
+    std::unique_ptr<EmbreeScene> top_;
 };
 
 }  // namespace insonify::sonar

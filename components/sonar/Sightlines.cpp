@@ -16,18 +16,7 @@ namespace {
 constexpr glm::dvec3 ways_out[] = {
     {0.61, 0.57, 0.55}, {-0.53, 0.67, -0.52}, {0.49, -0.71, -0.51}, {-0.66, -0.44, 0.61}, {0.07, 0.11, -0.99}};
 
-constexpr size_t leaf_triangles = 4;  ///< Triangles below a leaf of a tree; they are neighbours in the mesh's indices.
-
-BoxTree treeOver(const types::Mesh& mesh) {
-    std::vector<Box> boxes((mesh.indices.size() / 3 + leaf_triangles - 1) / leaf_triangles);
-    for (size_t i = 0; i < mesh.indices.size(); ++i)
-        boxes[i / (3 * leaf_triangles)].add(mesh.positions[mesh.indices[i]]);
-    for (Box& box : boxes) {  // meetTriangle accepts a little beyond the edges
-        const glm::dvec3 slack = 1e-9 * (glm::max(glm::abs(box.low), glm::abs(box.high)) + box.half());
-        box.low -= slack, box.high += slack;
-    }
-    return BoxTree(boxes);
-}
+constexpr size_t leaf_triangles = MeshFacts::leaf_triangles;
 
 glm::dvec3 absoluteProduct(const glm::dmat3& matrix, const glm::dvec3& v) {
     return glm::abs(matrix[0]) * v.x + glm::abs(matrix[1]) * v.y + glm::abs(matrix[2]) * v.z;
@@ -65,8 +54,7 @@ bool isFinite(const glm::dmat3& matrix) {
 
 Sightlines::Sightlines(const types::Geometry& geometry, Lines lines)
     : geometry_(geometry), placed_(geometry.objects.size()) {
-    if (lines == Lines::Many)
-        for (const types::Mesh& mesh : geometry.meshes) trees_.push_back(treeOver(mesh));
+    if (lines == Lines::Many) meshes_ = MeshFacts::ofAll(geometry);
     displaced_.reserve(placed_.size());
     for (size_t i = 0; i < placed_.size(); ++i) placeObject(i, geometry.objects[i].world_from_object);
 }
@@ -103,11 +91,11 @@ bool Sightlines::anyMet(size_t object, const glm::dvec3& from, const glm::dvec3&
     const types::Mesh& mesh = meshOf(object);
     const Placed& placed = placed_[object];
     if (mesh.clusters.empty() || !types::meetsBox(from, end, placed.centre, placed.half)) return false;
-    if (trees_.empty() || !placed.has_inverse)
+    if (meshes_.empty() || !placed.has_inverse)
         return types::anyTriangleMet(mesh, placed.world_from_object, from, end, use);
     const LineInObject line(placed.object_from_world, glm::dvec3(placed.world_from_object[3]), from, end);
     const types::TrianglesOnLine triangles{mesh, placed.world_from_object, from, end};
-    return trees_[static_cast<size_t>(geometry_.objects[object].mesh)].any(
+    return meshes_[static_cast<size_t>(geometry_.objects[object].mesh)]->triangles().any(
         [&](const Box& box) { return line.meets(box); },
         [&](size_t item) {
             const size_t first = 3 * leaf_triangles * item;

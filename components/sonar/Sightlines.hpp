@@ -3,7 +3,7 @@
 #include <optional>
 #include <vector>
 
-#include "components/sonar/BoxTree.hpp"
+#include "components/sonar/MeshFacts.hpp"
 #include "types/Snapshot.hpp"
 
 namespace insonify::sonar {
@@ -46,9 +46,9 @@ private:
 
     const types::Geometry& geometry_;
     std::vector<Placed> placed_;
-    std::vector<BoxTree> trees_;       ///< Of each mesh, over runs of its triangles; empty for few lines.
-    std::vector<uint32_t> displaced_;  ///< Objects that are not where the geometry has them.
-    glm::dvec3 sonar_{0};              ///< In the world [m].
+    std::vector<std::shared_ptr<MeshFacts>> meshes_;  ///< Of the geometry; empty for few lines.
+    std::vector<uint32_t> displaced_;                 ///< Objects that are not where the geometry has them.
+    glm::dvec3 sonar_{0};                             ///< In the world [m].
 };
 
 }  // namespace insonify::sonar

@@ -161,14 +161,6 @@ void checkImages(const SonarConfig& config, types::Diagnostics& diagnostics) {
                          max_image_size)});
 }
 
-void checkDevice(const std::string& device, types::Diagnostics& diagnostics) {
-    try {
-        gpu::EglContext::requireDevice(device);
-    } catch (const gpu::GlError& error) {
-        diagnostics.push_back({"device", error.what()});
-    }
-}
-
 }  // namespace
 
 void AbsorptionConfig::check(types::Diagnostics& diagnostics) const {
@@ -211,12 +203,24 @@ std::string SonarConfig::needsRays() const {
     return tracesPaths() ? "multipath" : motion_in_ping ? "motion_in_ping" : "";
 }
 
-bool SonarConfig::castsRays() const {
+std::optional<bool> SonarConfig::choosesRays() const {
     if (visibility != Visibility::Auto) return visibility == Visibility::Cpu;
     if (!needsRays().empty()) return true;
     if (!haveRays() || published || deposit == Deposit::Gpu) return false;
     if (!fitsImages(*this) || (water && water->profile) || motion_in_ping) return true;
-    return !gpu::EglContext::isAskedFor(device) && !gpu::EglContext::hasCard();
+    if (gpu::EglContext::isAskedFor(device)) return false;
+    return {};
+}
+
+bool SonarConfig::castsRays() const { return choosesRays().value_or(!gpu::EglContext::hasCard()); }
+
+void SonarConfig::requireDevice(const std::string& task) const {
+    if (castsRays()) return;
+    try {
+        gpu::EglContext::requireDevice(device);
+    } catch (const gpu::GlError& error) {
+        throw types::ConfigError("", task + ".device", error.what());
+    }
 }
 
 std::optional<double> SonarConfig::mostSamples() const {
@@ -307,9 +311,7 @@ void SonarConfig::checkBeam(types::Diagnostics& diagnostics) const {
     checkStraightWays(*this, diagnostics);
     checkElements(*this, diagnostics);
     if (!diagnostics.empty()) return;
-    if (castsRays()) return checkRays(*this, diagnostics);
-    checkDevice(device, diagnostics);
-    checkImages(*this, diagnostics);
+    choosesRays().value_or(true) ? checkRays(*this, diagnostics) : checkImages(*this, diagnostics);
 }
 
 }  // namespace insonify::sonar

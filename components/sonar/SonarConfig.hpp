@@ -251,9 +251,13 @@ struct SonarConfig {
     bool isCoherent() const { return speckle && speckle->coherent; }
     /** The property that only rays can follow; empty where there is none. */
     std::string needsRays() const;
-    /** Whether triangles are found by rays on the processor, else by drawing. Looks for a graphics card where nothing
-     *  else decides. */
+    /** Whether triangles are found by rays on the processor, else by drawing, as far as the configuration and the
+     *  environment decide; none: it depends on whether there is a graphics card. */
+    std::optional<bool> choosesRays() const;
+    /** The same; looks for a graphics card where nothing else decides. */
     bool castsRays() const;
+    /** Throws types::ConfigError where the configuration needs a graphics device that EGL does not list. */
+    void requireDevice(const std::string& task) const;
     /** Frequency that a law of absorption is for: its own, or the sonar's [kHz]; none where absorption follows no law.
      */
     std::optional<double> absorbedKhz() const;

@@ -4,6 +4,7 @@
 #include <chrono>
 #include <iterator>
 #include <stdexcept>
+#include <utility>
 
 #include "components/gpu/EglContext.hpp"
 #include "components/sonar/EchoField.hpp"
@@ -22,6 +23,9 @@ struct SonarRenderer::Parts {
     Parts(const SonarConfig& config, types::GeometryPtr scene, const RenderOptions& options);
     ~Parts();
     void fillHeader(const types::Snapshot& snapshot, types::Sonar& ping) const;
+    void makeEchoes();
+    bool takeScene(types::GeometryPtr scene);
+    void describePlan();
 
     types::GeometryPtr geometry;
     RenderPlan plan;
@@ -35,18 +39,41 @@ struct SonarRenderer::Parts {
 };
 
 SonarRenderer::Parts::Parts(const SonarConfig& config, types::GeometryPtr scene, const RenderOptions& options)
-    : geometry(scene),
-      plan(makeRenderPlan(config, *scene, options)),
-      effects(plan, *scene),
-      told(report(plan, *scene)) {
+    : geometry(scene), plan(makeRenderPlan(config, *scene, options)), effects(plan, *scene) {
+    makeEchoes();
+    describePlan();
+}
+
+void SonarRenderer::Parts::makeEchoes() {
     if (plan.casts_rays) {
-        echoes = makeCastEchoes(plan, std::move(scene), effects);
-    } else {
-        const auto alone = gpu::EglContext::making();
-        echoes = makeDrawnEchoes(plan, std::move(scene), effects);
+        echoes = makeCastEchoes(plan, geometry, effects);
+        return;
     }
+    const auto alone = gpu::EglContext::making();
+    echoes.reset();
+    echoes = makeDrawnEchoes(plan, geometry, effects);
+}
+
+void SonarRenderer::Parts::describePlan() {
+    told = report(plan, *geometry);
     told.device = echoes->device();
     if (const std::string notice = echoes->notice(); !notice.empty()) told.notices.push_back(notice);
+}
+
+bool SonarRenderer::Parts::takeScene(types::GeometryPtr scene) {
+    if (scene == geometry) return false;
+    const bool same_plan =
+        scene->materials == geometry->materials && scene->normal_maps.sharesAll(geometry->normal_maps);
+    if (same_plan) {
+        effects.takeScene(*scene);
+    } else {
+        plan = makeRenderPlan(plan.config, *scene, plan.options);
+        effects = PingEffects(plan, *scene);
+    }
+    const types::GeometryPtr before = std::exchange(geometry, scene);  // until nothing refers to it
+    if (!echoes->takeScene(std::move(scene), same_plan)) makeEchoes();
+    if (!same_plan) describePlan();
+    return !same_plan;
 }
 
 SonarRenderer::Parts::~Parts() {
@@ -115,6 +142,8 @@ void SonarRenderer::takeElements(const types::Sonar& ping, types::SonarElements&
     takeSignals(parts_->plan, *field, *parts_->array, signals);
     signals.time = ping.time;
 }
+
+bool SonarRenderer::setGeometry(types::GeometryPtr geometry) { return parts_->takeScene(std::move(geometry)); }
 
 void SonarRenderer::setQuality(int rows, int columns_per_beam) {
     parts_->plan.setQuality(rows, columns_per_beam);

@@ -41,6 +41,11 @@ public:
      *  allocates. Throws std::logic_error where the sonar has none. */
     void takeElements(const types::Sonar& ping, types::SonarElements& signals);
 
+    /** Renders another geometry from now on, at the quality in force. Threads, and with rays whatever is made of meshes
+     *  that both geometries have, are kept. Takes more time where materials change, or where it draws. Returns
+     *  whether the plan is another one. */
+    bool setGeometry(types::GeometryPtr geometry);
+
     /** Renders from now on with so many rows of samples and columns per beam [1]; allocates. */
     void setQuality(int rows, int columns_per_beam);
 

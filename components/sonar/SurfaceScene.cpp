@@ -134,29 +134,6 @@ PlaneRecord planeOf(glm::dvec3 a, glm::dvec3 b, glm::dvec3 c) {
     return {vec4(glm::vec3(normal), static_cast<float>(glm::dot(normal, a - glm::dvec3(point)))), vec4(point, 0)};
 }
 
-/** World metres to a unit of a mesh, as the first object that it is places it. */
-double scaleOf(const types::Geometry& geometry, size_t mesh) {
-    const auto placed = std::ranges::find(geometry.objects, static_cast<int>(mesh), &types::Object::mesh);
-    if (placed == geometry.objects.end()) return 1;
-    return std::cbrt(std::abs(glm::determinant(glm::dmat3(placed->world_from_object))));
-}
-
-/** Of the meshes that have a material with a lobe. */
-void addFacetSlopes(const types::Geometry& geometry, const MaterialLaws& laws, std::vector<PlaneRecord>& planes) {
-    const auto hasLobe = [&](const types::Cluster& cluster) {
-        return laws.records[static_cast<size_t>(cluster.material)].law.y > 0;
-    };
-    size_t first = 0;
-    for (size_t i = 0; i < geometry.meshes.size(); ++i) {
-        const types::Mesh& mesh = geometry.meshes[i];
-        if (std::ranges::any_of(mesh.clusters, hasLobe)) {
-            const std::vector<float> slopes = facetSlopes(mesh, scaleOf(geometry, i), laws.wavelength.value_or(0));
-            for (size_t k = 0; k < slopes.size(); ++k) planes[first + k].point.w = slopes[k];
-        }
-        first += mesh.indices.size() / 3;
-    }
-}
-
 gpu::Texture uploadedMap(int width, int height, const uint8_t* rgb, bool repeat_u, bool repeat_v) {
     gpu::Texture texture(GL_RGB8, width, height, true);
     glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
@@ -194,13 +171,36 @@ std::vector<float> facetSlopes(const types::Mesh& mesh, double scale, double wav
     return all;
 }
 
+bool hasLobes(const types::Mesh& mesh, const MaterialLaws& laws) {
+    return std::ranges::any_of(mesh.clusters, [&](const types::Cluster& cluster) {
+        return laws.records[static_cast<size_t>(cluster.material)].law.y > 0;
+    });
+}
+
+double scaleOf(const types::Geometry& geometry, size_t mesh) {
+    const auto placed = std::ranges::find(geometry.objects, static_cast<int>(mesh), &types::Object::mesh);
+    if (placed == geometry.objects.end()) return 1;
+    return std::cbrt(std::abs(glm::determinant(glm::dmat3(placed->world_from_object))));
+}
+
+std::vector<PlaneRecord> planesOf(const types::Mesh& mesh, double scale, const MaterialLaws& laws) {
+    std::vector<PlaneRecord> planes;
+    planes.reserve(mesh.indices.size() / 3);
+    for (size_t i = 0; i + 2 < mesh.indices.size(); i += 3)
+        planes.push_back(planeOf(mesh.positions[mesh.indices[i]], mesh.positions[mesh.indices[i + 1]],
+                                 mesh.positions[mesh.indices[i + 2]]));
+    if (!hasLobes(mesh, laws)) return planes;
+    const std::vector<float> slopes = facetSlopes(mesh, scale, laws.wavelength.value_or(0));
+    for (size_t k = 0; k < slopes.size(); ++k) planes[k].point.w = slopes[k];
+    return planes;
+}
+
 std::vector<PlaneRecord> planesOf(const types::Geometry& geometry, const MaterialLaws& laws) {
     std::vector<PlaneRecord> planes;
-    for (const types::Mesh& mesh : geometry.meshes)
-        for (size_t i = 0; i + 2 < mesh.indices.size(); i += 3)
-            planes.push_back(planeOf(mesh.positions[mesh.indices[i]], mesh.positions[mesh.indices[i + 1]],
-                                     mesh.positions[mesh.indices[i + 2]]));
-    if (laws.hasLobes()) addFacetSlopes(geometry, laws, planes);
+    for (size_t i = 0; i < geometry.meshes.size(); ++i) {
+        const std::vector<PlaneRecord> added = planesOf(std::as_const(geometry).meshes[i], scaleOf(geometry, i), laws);
+        planes.insert(planes.end(), added.begin(), added.end());
+    }
     return planes;
 }
 

@@ -14,6 +14,12 @@ namespace insonify::sonar {
  *  world to a unit of the mesh; `wavelength` [m], 0: none is known. */
 std::vector<float> facetSlopes(const types::Mesh& mesh, double scale, double wavelength);
 
+/** Whether any triangle of a mesh has a material whose law has a lobe. */
+bool hasLobes(const types::Mesh& mesh, const MaterialLaws& laws);
+/** World metres to a unit of a mesh, as the first object that it is places it; 1 where there is none. */
+double scaleOf(const types::Geometry& geometry, size_t mesh);
+/** Planes of a mesh's triangles, with what facets add to lobes where it has some. */
+std::vector<PlaneRecord> planesOf(const types::Mesh& mesh, double scale, const MaterialLaws& laws);
 /** Planes of all meshes' triangles, mesh after mesh, without those that stand for patches: as SurfaceScene::planes().
  */
 std::vector<PlaneRecord> planesOf(const types::Geometry& geometry, const MaterialLaws& laws);

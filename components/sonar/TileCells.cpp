@@ -17,7 +17,7 @@ struct CellPlace {
     size_t left, right;  ///< Its edges in AngularView::bearings.
     size_t low, high;    ///< In AngularView::elevations.
     int first, last;     ///< Its columns.
-    uint32_t object;
+    uint32_t object, lattice;
 };
 
 /** Makes cells of tiles, a batch at a time. */
@@ -80,7 +80,7 @@ private:
                     deposit_.covered.strength_range[i],
                     cells_.size[i] / (cells_.width[i] * (high.sine - low.sine)),
                     scene_.objects[place.object],
-                    place.object,
+                    place.lattice,
                     conical_};
         for (int column = place.first + 1; column <= place.last; ++column)
             if (view_.beam_of[static_cast<size_t>(column)] != view_.beam_of[static_cast<size_t>(column) - 1])
@@ -101,11 +101,12 @@ private:
 
     void addCell(const CastTile& tile, int sample, int merged) {
         const PlacedRun& run = scene_.ranges[tile.hits->command[sample]];
-        const uint32_t object = scene_.commands[tile.hits->command[sample]].object;
+        const CommandRecord& command = scene_.commands[tile.hits->command[sample]];
+        const uint32_t object = command.object;
         const int i = cells_.count;
-        cells_.setPlane(i, run, scene_.planes[run.first_triangle + tile.hits->triangle[sample]]);
+        cells_.setPlane(i, run, run.planes[tile.hits->triangle[sample]]);
         aim(tile, sample, merged);
-        if (fields_) places_[i].object = object;
+        if (fields_) places_[i].object = object, places_[i].lattice = command.lattice;
         if (mapped_) cells_.mapped[i] = mappedCosine(tile, sample, merged);
         if (scene_.paths) bend(static_cast<double>(tile.hits->range[sample]), scene_.paths->drift(object));
         if (deposit_.to().truth) {
@@ -186,7 +187,7 @@ private:
             cells_.width[i] = view.bearings[right] - view.bearings[left];
             cells_.lean[i] = 0;
         }
-        if (fields_) places_[i] = {left, right, low, low + 2 * up, column, last, 0};
+        if (fields_) places_[i] = {left, right, low, low + 2 * up, column, last, 0, 0};
         cells_.size[i] =
             cells_.width[i] * (view.elevations[low + 2 * up].weighted - view.elevations[low].weighted) / view.cell();
     }

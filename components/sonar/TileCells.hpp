@@ -9,12 +9,11 @@
 
 namespace insonify::sonar {
 
-/** What the numbers of hits mean in this ping: commands, each with its triangles turned into sonar axes, and planes. */
+/** What the numbers of hits mean in this ping: commands, each with its triangles turned into sonar axes. */
 struct PlacedScene {
     std::span<const CommandRecord> commands;
     std::span<const PlacedRun> ranges;
     std::span<const ObjectRecord> objects;
-    const std::vector<PlaneRecord>& planes;
     const NormalMapping& normal_maps;
     WaterView water;
     const RayPaths* paths = nullptr;  ///< Null where rays are straight.

@@ -65,3 +65,26 @@ def show_ways(scenes):
     for name, found in scenes.items():
         print(f"ways to 50 targets, two bounces, {name:24}{found['median_ms']:9.3f} ms a ping, max {found['max_ms']:.3f}, "
               f"{found['ways']:.1f} ways a target")
+
+
+def measure_scenes(_options):
+    """What scene_bench tells of a mission over tiles of a survey, and of the memory of 1 and of 16 sonars of one scene."""
+    def told(*arguments):
+        done = subprocess.run([ROOT / "build/bin/scene_bench", *arguments], stdout=subprocess.PIPE, text=True)
+        if done.returncode != 0:
+            fail("scene_bench", done.returncode)
+        return json.loads(done.stdout)
+    with tempfile.TemporaryDirectory(dir=BENCH) as folder:
+        mission = told("mission", folder)
+    return {"mission": mission, "memory": [told("memory", count, "708") for count in ("1", "16")]}
+
+
+def show_scenes(scenes):
+    mission = scenes["mission"]
+    for name, key in [(f"{mission['pings']} pings", "ms"), (f"{mission['changes']} with new tiles", "ms_of_changes")]:
+        median, p99, slowest = mission[key]
+        print(f"mission, {name:22} median {median:7.2f} ms, p99 {p99:7.2f}, max {slowest:7.2f}: "
+              f"{slowest / mission['ms'][0]:.2f} times the median of all")
+    for row in scenes["memory"]:
+        print(f"{row['sonars']:2} sonars of {row['triangles']} triangles: {row['mb']:.1f} MB, of which the scene without "
+              f"sonars is {row['mb_scene']:.1f} MB")

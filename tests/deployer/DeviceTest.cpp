@@ -9,6 +9,20 @@ using testing::HasSubstr;
 
 namespace {
 
+/** What a command says of wall.yml where EGL has one vendor, and whether it has asked EGL for anything. */
+std::pair<Outcome, bool> witnessed(const WallFolder& folder, std::vector<std::string> arguments) {
+    const fs::path vendor = folder / "vendor.json", mark = folder / "asked";
+    fs::remove(mark);
+    std::ofstream(vendor) << R"({"file_format_version": "1.0.0", "ICD": {"library_path": ")"
+                          << insonify::test::program("libinsonify_egl_witness.so") << "\"}}";
+    std::vector<std::string> words = {"env", "__EGL_VENDOR_LIBRARY_FILENAMES=" + vendor.string(),
+                                      "INSONIFY_EGL_WITNESS=" + mark.string()};
+    const auto command = insonifyWords(std::move(arguments));
+    words.insert(words.end(), command.begin(), command.end());
+    Outcome outcome = Process(words, folder.path()).wait();
+    return {std::move(outcome), fs::exists(mark)};
+}
+
 /** `insonify run wall.yml` with `variables` (NAME=value) in its environment. */
 Outcome runWith(const WallFolder& folder, std::vector<std::string> variables, std::vector<std::string> more = {}) {
     std::vector<std::string> words = {"env"};
@@ -53,4 +67,27 @@ TEST(DeviceTest, ThePropertyGoesBeforeTheVariable) {
     const WallFolder folder;
     const Outcome outcome = runWith(folder, {"INSONIFY_EGL_DEVICE=quantum"}, {"--set", "sonar.device=software"});
     EXPECT_EQ(outcome.code, 0) << outcome.err;
+}
+
+TEST(DeviceTest, ADeploymentIsCheckedWithoutAskingForADevice) {
+    for (const std::string visibility : {"auto", "gl", "cpu"}) {
+        const auto with = [&](const std::string& more) {
+            return WallFolder(
+                replaced(wall_deployment, "range: 20", "visibility: " + visibility + "\n      range: " + more));
+        };
+        const auto [good, asked_for_good] = witnessed(with("20"), {"check", "wall.yml"});
+        EXPECT_EQ(good.code, 0) << good.err;
+        EXPECT_FALSE(asked_for_good) << visibility;
+        const auto [bad, asked_for_bad] = witnessed(with("-20"), {"check", "wall.yml"});
+        EXPECT_EQ(bad.code, 2);
+        EXPECT_THAT(bad.err, HasSubstr("range"));
+        EXPECT_FALSE(asked_for_bad) << visibility;
+        const auto [refused, asked_for_refused] = witnessed(with("-20"), {"run", "wall.yml", "--pings", "1"});
+        EXPECT_EQ(refused.code, 2);
+        EXPECT_FALSE(asked_for_refused) << "what is wrong is found before";
+    }
+    const WallFolder drawn(replaced(wall_deployment, "range: 20", "visibility: gl\n      range: 20"));
+    const auto [outcome, asked] = witnessed(drawn, {"run", "wall.yml", "--pings", "1"});
+    EXPECT_TRUE(asked) << "the witness works";
+    EXPECT_EQ(outcome.code, 1) << "it is no device";
 }

@@ -46,6 +46,8 @@ public:
 
     /** Renders from now on with the quality that the plan has by now; may allocate. */
     virtual void takeQuality() {}
+    /** Pings are of another scene from now on, with the same materials; the last one's goes. */
+    virtual void takeScene(const types::Geometry& /*geometry*/) {}
     /** Once a ping, before all else. */
     virtual void begin(const types::Snapshot& /*snapshot*/) {}
 

@@ -52,6 +52,10 @@ void PingEffects::takeQuality() {
     for (const auto& effect : all_) effect->takeQuality();
 }
 
+void PingEffects::takeScene(const types::Geometry& geometry) {
+    for (const auto& effect : all_) effect->takeScene(geometry);
+}
+
 void PingEffects::begin(const types::Snapshot& snapshot) {
     for (const auto& effect : all_) effect->begin(snapshot);
 }

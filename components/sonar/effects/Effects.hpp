@@ -21,6 +21,7 @@ public:
     PingEffects(const RenderPlan& plan, const types::Geometry& geometry);
 
     void takeQuality();
+    void takeScene(const types::Geometry& geometry);
     void begin(const types::Snapshot& snapshot);
     void giveRules(EchoRules& rules) const;
     /** Whether a compute shader can sum what they sum. */

@@ -16,14 +16,18 @@ std::string unheard(const LeftOut& /*what*/, const BinGrid& /*grid*/) {
 /** Those of the snapshots, which a plan knows nothing of. */
 class TargetsInPings final : public PingEffect {
 public:
-    TargetsInPings(const RenderPlan& plan, const types::Geometry& geometry) : plan_(plan), geometry_(geometry) {}
+    TargetsInPings(const RenderPlan& plan, const types::Geometry& geometry) : plan_(plan), geometry_(&geometry) {}
 
+    void takeScene(const types::Geometry& geometry) override {
+        geometry_ = &geometry;
+        if (targets_) targets_->takeScene(geometry);
+    }
     void addEchoes(PingInMaking& ping) override {
         all_ = ping.snapshot.targets.size();
         heard_ = 0;
         pinged_ = true;
         if (all_ == 0) return;
-        if (!targets_) targets_.emplace(plan_, geometry_);
+        if (!targets_) targets_.emplace(plan_, *geometry_);
         heard_ = targets_->add(ping.snapshot, ping.ping, ping.field, ping.bent);
     }
     size_t heard() const override { return heard_; }
@@ -35,7 +39,7 @@ public:
 
 private:
     const RenderPlan& plan_;
-    const types::Geometry& geometry_;
+    const types::Geometry* geometry_;
     std::optional<PointTargets> targets_;  ///< From the first ping with any on.
     size_t all_ = 0, heard_ = 0;           ///< In the last ping [1].
     bool pinged_ = false;

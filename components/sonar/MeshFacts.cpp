@@ -1,0 +1,58 @@
+#include "components/sonar/MeshFacts.hpp"
+
+#include <limits>
+
+#include "components/sonar/NearestPoint.hpp"
+#include "components/sonar/SurfaceScene.hpp"
+
+namespace insonify::sonar {
+namespace {
+
+BoxTree treeOver(const types::Mesh& mesh) {
+    constexpr size_t leaf = 3 * MeshFacts::leaf_triangles;
+    std::vector<Box> boxes((mesh.indices.size() + leaf - 1) / leaf);
+    for (size_t i = 0; i < mesh.indices.size(); ++i) boxes[i / leaf].add(mesh.positions[mesh.indices[i]]);
+    for (Box& box : boxes) {  // meetTriangle accepts a little beyond the edges
+        const glm::dvec3 slack = 1e-9 * (glm::max(glm::abs(box.low), glm::abs(box.high)) + box.half());
+        box.low -= slack, box.high += slack;
+    }
+    return BoxTree(boxes);
+}
+
+}  // namespace
+
+std::shared_ptr<MeshFacts> MeshFacts::of(const types::MeshPtr& mesh) {
+    static SharedValues<const types::Mesh*, MeshFacts> all;
+    return all.of(mesh.get(), [&] { return std::make_shared<MeshFacts>(mesh); });
+}
+
+std::vector<std::shared_ptr<MeshFacts>> MeshFacts::ofAll(const types::Geometry& geometry) {
+    std::vector<std::shared_ptr<MeshFacts>> all;
+    for (size_t i = 0; i < geometry.meshes.size(); ++i) all.push_back(of(geometry.meshes.shared(i)));
+    return all;
+}
+
+const Box& MeshFacts::box() {
+    return box_.get([this] {
+        Box box{glm::dvec3(std::numeric_limits<double>::max()), glm::dvec3(std::numeric_limits<double>::lowest())};
+        for (const glm::vec3& p : mesh_->positions) box.add(p);
+        return box;
+    });
+}
+
+double MeshFacts::longestEdge() {
+    return longest_edge_.get([this] { return sonar::longestEdge(*mesh_); });
+}
+
+const BoxTree& MeshFacts::triangles() {
+    return triangles_.get([this] { return treeOver(*mesh_); });
+}
+
+MeshFacts::Planes MeshFacts::planes(double scale, const MaterialLaws& laws) {
+    const bool lobed = hasLobes(*mesh_, laws);
+    const std::pair key(lobed ? scale : 0, lobed ? laws.wavelength.value_or(0) : -1);
+    return planes_.of(key,
+                      [&] { return std::make_shared<const std::vector<PlaneRecord>>(planesOf(*mesh_, scale, laws)); });
+}
+
+}  // namespace insonify::sonar

@@ -1,0 +1,46 @@
+#pragma once
+#include <map>
+#include <memory>
+#include <mutex>
+
+namespace insonify::sonar {
+
+/** Values that all who ask for the same key share. A value lives as long as somebody holds it. */
+template <class Key, class Value>
+class SharedValues {
+public:
+    /** Returns the value of a key, by `make()` where nobody holds one. Several threads may ask at a time; all wait
+     * while a value is made. */
+    template <class Make>
+    std::shared_ptr<Value> of(const Key& key, const Make& make) {
+        const std::lock_guard alone(mutex_);
+        const auto known = values_.find(key);
+        if (known != values_.end())
+            if (auto value = known->second.lock()) return value;
+        std::erase_if(values_, [](const auto& each) { return each.second.expired(); });
+        std::shared_ptr<Value> made = make();
+        values_.emplace(key, made);
+        return made;
+    }
+
+private:
+    std::mutex mutex_;
+    std::map<Key, std::weak_ptr<Value>> values_;
+};
+
+/** Something that is made when it is first asked for. Several threads may ask at a time; they wait for the first. */
+template <class Value>
+class Lazy {
+public:
+    template <class Make>
+    const Value& get(const Make& make) {
+        std::call_once(made_, [&] { value_ = make(); });
+        return value_;
+    }
+
+private:
+    std::once_flag made_;
+    Value value_{};
+};
+
+}  // namespace insonify::sonar

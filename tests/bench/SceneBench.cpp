@@ -1,0 +1,161 @@
+// What a scene costs sonars that share it, and a sonar whose scene changes:
+//   scene_bench mission FOLDER      prints JSON: milliseconds a ping [median, p99, max] of a mission over more than 100
+//                                   tiles of a survey that it writes there, and of the pings with new tiles; by rays.
+//   scene_bench memory SONARS CELLS prints JSON: megabytes of the scene's file in memory and of the process with so
+//   many
+//                                   sonars that have all pinged, before a floor of 2 CELLS^2 triangles.
+#include <fmt/core.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <cstdlib>
+#include <fstream>
+#include <string_view>
+#include <thread>
+
+#include "components/scene/Bathymetry.hpp"
+#include "components/scene/Clusters.hpp"
+#include "components/sonar/SonarRenderer.hpp"
+#include "components/study/Shapes.hpp"
+
+namespace insonify {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+sonar::SonarConfig fan() {
+    sonar::SonarConfig config;
+    config.visibility = sonar::Visibility::Cpu;
+    config.beam_count = 256;
+    config.bin_count = 500;
+    config.range = 50;
+    config.field_of_view_deg = 120;
+    config.beam_height_deg = 40;
+    config.quality.rows = 256;
+    config.quality.columns_per_beam = 2;
+    return config;
+}
+
+double hill(double x, double y) { return -12 + std::sin(0.31 * x) * std::cos(0.23 * y) + 0.3 * std::sin(1.7 * x + y); }
+
+types::Snapshot at(const glm::dvec3& place, int ping) {
+    types::Snapshot snapshot;
+    snapshot.time.microseconds = 100'000 * ping;
+    snapshot.sonar.position = place;
+    snapshot.sonar.orientation = glm::angleAxis(0.4, glm::dvec3(0, 1, 0));
+    return snapshot;
+}
+
+/** Posts 0.5 m apart: 4096 north of the first, 400 east of it. */
+std::string survey(const std::string& folder) {
+    constexpr int columns = 400, rows = 4096;
+    std::vector<float> values;
+    for (int row = rows - 1; row >= 0; --row)
+        for (int column = 0; column < columns; ++column)
+            values.push_back(static_cast<float>(hill(0.5 * column, 0.5 * row)));
+    std::ofstream(folder + "/floor.hdr") << fmt::format(
+        "ncols {}\nnrows {}\nxllcenter 0\nyllcenter 0\ncellsize 0.5\nbyteorder LSBFIRST\n", columns, rows);
+    std::ofstream(folder + "/floor.flt")
+        .write(reinterpret_cast<const char*>(values.data()),
+               static_cast<std::streamsize>(values.size() * sizeof(float)));
+    return folder + "/floor.flt";
+}
+
+std::string spread(std::vector<double> ms) {
+    std::ranges::sort(ms);
+    const auto share = [&](double part) { return ms[static_cast<size_t>(part * static_cast<double>(ms.size() - 1))]; };
+    return fmt::format("[{:.3f}, {:.3f}, {:.3f}]", share(0.5), share(0.99), ms.back());
+}
+
+/** 1900 m at 1 m a ping, each ping as soon as the one before has ended. */
+void mission(const std::string& folder) {
+    scene::BathymetryConfig config;
+    config.easting = config.northing = 0;
+    config.reach = 55;
+    config.tile = 32;
+    scene::Bathymetry floor(config, survey(folder));
+    scene::Scene scene;
+    scene.geometry = std::make_shared<types::Geometry>();
+    scene::Bathymetry::addMaterial(scene);
+    std::unique_ptr<sonar::SonarRenderer> renderer;
+    types::GeometryPtr before;
+    types::Sonar ping;
+    std::vector<double> all, changed;
+    for (int i = 0; i < 1900; ++i) {
+        const glm::dvec3 place(60.0 + i, -100, -4);
+        types::Snapshot snapshot = at(place, i);
+        const auto start = Clock::now();
+        snapshot.geometry = floor.about(place, scene.geometry);
+        snapshot.ahead = floor.ahead();
+        if (!renderer) renderer = std::make_unique<sonar::SonarRenderer>(fan(), snapshot.geometry);
+        renderer->setGeometry(snapshot.geometry);
+        renderer->render(snapshot, ping);
+        const double ms = std::chrono::duration<double, std::milli>(Clock::now() - start).count();
+        const bool is_changed = snapshot.geometry != std::exchange(before, snapshot.geometry);
+        if (i < 20) continue;  // the first pings make the renderer
+        all.push_back(ms);
+        if (is_changed) changed.push_back(ms);
+    }
+    fmt::print("{{\"pings\": {}, \"changes\": {}, \"ms\": {}, \"ms_of_changes\": {}}}\n", all.size(), changed.size(),
+               spread(all), spread(changed));
+}
+
+double megabytes() {
+    size_t total = 0, resident = 0;
+    std::ifstream("/proc/self/statm") >> total >> resident;
+    return static_cast<double>(resident * static_cast<size_t>(sysconf(_SC_PAGESIZE))) / 1e6;
+}
+
+types::GeometryPtr field(uint32_t cells) {
+    std::vector<glm::vec3> positions;
+    std::vector<uint32_t> indices;
+    for (uint32_t row = 0; row <= cells; ++row)
+        for (uint32_t column = 0; column <= cells; ++column) {
+            const double x = 100.0 * row / cells, y = 100.0 * column / cells - 50;
+            positions.emplace_back(x, y, hill(x, y));
+        }
+    for (uint32_t row = 0; row < cells; ++row)
+        for (uint32_t column = 0; column < cells; ++column) {
+            const uint32_t k = row * (cells + 1) + column;
+            indices.insert(indices.end(), {k, k + cells + 1, k + 1, k + 1, k + cells + 1, k + cells + 2});
+        }
+    types::Mesh mesh = study::meshOf(positions, indices);
+    scene::buildClusters(mesh);
+    auto geometry = std::make_shared<types::Geometry>();
+    geometry->materials.emplace_back();
+    geometry->objects.emplace_back();
+    geometry->meshes.push_back(std::move(mesh));
+    return geometry;
+}
+
+void memory(int count, uint32_t cells) {
+    const types::GeometryPtr geometry = field(cells);
+    const double loaded = megabytes();
+    sonar::RenderOptions one_thread;
+    one_thread.threads = 1;
+    std::vector<std::unique_ptr<sonar::SonarRenderer>> sonars;
+    for (int i = 0; i < count; ++i) {
+        types::Snapshot snapshot = at({5 + 0.1 * i, 0, -4}, i);
+        snapshot.geometry = geometry;
+        sonars.push_back(std::make_unique<sonar::SonarRenderer>(fan(), geometry, one_thread));
+        types::Sonar ping;
+        sonars.back()->render(snapshot, ping);
+    }
+    fmt::print("{{\"sonars\": {}, \"triangles\": {}, \"mb_scene\": {:.1f}, \"mb\": {:.1f}}}\n", count,
+               geometry->triangleCount(), loaded, megabytes());
+}
+
+int run(int argc, char** argv) {
+    const std::string_view what = argc > 1 ? argv[1] : "";
+    if (what == "mission" && argc == 3) return mission(argv[2]), 0;
+    if (what == "memory" && argc == 4) return memory(std::atoi(argv[2]), static_cast<uint32_t>(std::atoi(argv[3]))), 0;
+    fmt::print(stderr, "usage: scene_bench mission FOLDER | scene_bench memory SONARS CELLS\n");
+    return 2;
+}
+
+}  // namespace
+}  // namespace insonify
+
+int main(int argc, char** argv) { return insonify::run(argc, argv); }
