@@ -6,13 +6,17 @@
 
 namespace insonify::study {
 
+/** Planes that fill the view, whose error falls by a power of the number of cells. */
+inline constexpr const char* slope_scenes[] = {"flat_bottom",  "flat_bottom_edge",       "flat_bottom_pitched",
+                                               "tilted_plane", "pitched_bottom_pattern", "wall"};
+
 /** What the reference of a scene is wrong by; 0 when it is exact. */
 double referenceError(const ErrorResult& result, const std::string& scene);
 
 /** The points of a scene and method in which rows and columns are doubled together, coarsest first. */
 std::vector<Measurement> ladder(const ErrorResult& result, const std::string& scene, Method method);
 
-/** Slope of ln(rel_l2) over ln(samples), fitted through the points with an error below one half and above 10 times that
+/** Slope of ln(rel_l2) over ln(cells), fitted through the points with an error below one half and above 10 times that
  *  of the reference; nothing with fewer than two of them. */
 std::optional<double> slope(const std::vector<Measurement>& points, double reference_error);
 
@@ -48,7 +52,8 @@ struct Claim {
     std::string text;
     double measured, bound;
     bool at_most;         ///< The bound is an upper one, else a lower one.
-    bool settled = true;  ///< False: it is about the study itself, or its reference is too coarse to tell.
+    bool settled = true;  ///< False: it is about the study itself, or its reference or levels are too coarse to tell.
+    bool timed = false;   ///< It compares run times, which a busy machine may change.
     bool holds() const { return at_most ? measured <= bound : measured >= bound; }
     bool fails() const { return settled && !holds(); }
     /** "pass", "FAIL", or "open": does not hold, but that is the study's limit and says nothing about the scene. */

@@ -3,8 +3,11 @@
 
 #include <algorithm>
 #include <cctype>
+#include <fstream>
 #include <memory>
+#include <thread>
 
+#include "components/command/Json.hpp"
 #include "components/command/OutputFolder.hpp"
 #include "components/command/ProgressLine.hpp"
 #include "components/sonar/BinGrid.hpp"
@@ -79,6 +82,70 @@ std::vector<StudyScene> scenesOf(const Options& options, const FindSonar& sonarA
     return scenes;
 }
 
+using command::Json;
+
+Json toJson(const Measurement& m, const ErrorResult& result) {
+    return {{"scene", m.scene},
+            {"method", nameOf(m.method)},
+            {"rows", m.rows},
+            {"columns_per_beam", m.columns_per_beam},
+            {"rel_l2", m.metrics.rel_l2},
+            {"rel_l2_tvg", m.metrics.rel_l2_tvg},
+            {"energy_bias", m.metrics.energy_bias},
+            {"kappa_max", m.kappa_max},
+            {"median_ms", m.median_ms},
+            {"p99_ms", m.p99_ms},
+            {"cpu_ms", m.cpu_ms},
+            {"pareto", onParetoFront(m, result)}};
+}
+
+/** Each method's ladder on each scene: slope, times to the goals and how they were found. */
+Json methodsOf(const ErrorResult& result) {
+    Json all = Json::array();
+    for (const Reference& reference : result.references)
+        for (const Method method : methods) {
+            const auto points = ladder(result, reference.scene, method);
+            if (points.empty()) continue;
+            const auto fitted = slope(points, reference.error);
+            Json each{{"scene", reference.scene},
+                      {"method", nameOf(method)},
+                      {"slope", fitted ? Json(*fitted) : Json()},
+                      {"points", Json::array()}};
+            for (const double goal : goals) {
+                const auto time = timeTo(goal, points);
+                const std::string key = fmt::format("ms_to_{:g}_percent", 100 * goal);
+                each[key] = time ? Json(time->ms) : Json();
+                each[key + "_is"] = time ? Json(nameOf(time->kind)) : Json();
+                each[key + "_open"] = goal < blurred * reference.error;
+            }
+            for (const Measurement& m : points) each["points"].push_back(toJson(m, result));
+            all.push_back(std::move(each));
+        }
+    return all;
+}
+
+Json toJson(const ErrorResult& result) {
+    Json json{{"device", result.device},      {"cores", std::thread::hardware_concurrency()},
+              {"references", Json::array()},  {"methods", methodsOf(result)},
+              {"predictions", Json::array()}, {"verdicts", verdictsOf(claims(result))},
+              {"points", Json::array()}};
+    for (const Reference& r : result.references)
+        json["references"].push_back({{"scene", r.scene},
+                                      {"source", r.source},
+                                      {"rays", r.rays},
+                                      {"error", r.error},
+                                      {"error_tvg", r.error_tvg}});
+    for (const Prediction& p : result.predictions)
+        json["predictions"].push_back({{"scene", p.scene},
+                                       {"target_error", p.target_error},
+                                       {"rows", p.rows},
+                                       {"columns_per_beam", p.columns_per_beam},
+                                       {"predicted_error", p.predicted_error},
+                                       {"rel_l2_tvg", p.error}});
+    for (const Measurement& m : result.measurements) json["points"].push_back(toJson(m, result));
+    return json;
+}
+
 int runStudy(Options options, const FindSonar& sonarAt) {
     const std::vector<StudyScene> scenes = scenesOf(options, sonarAt);
     command::OutputFolder folder(options.out, "study_error");
@@ -90,7 +157,10 @@ int runStudy(Options options, const FindSonar& sonarAt) {
     };
     const ErrorResult result = studyError(scenes, options.study);
     folder.keep();
-    writeReport(result, folder.path());
+    command::write(toJson(result), (folder.path() / "error_time.json").string());
+    const std::filesystem::path sheet = folder.path() / "error_time.md";
+    if (std::ofstream file(sheet, std::ios::binary); !(file << sheetOf(result)).flush())
+        throw std::runtime_error(sheet.string() + " cannot be written");
     progress.end();
 
     bool all = true, open = false;
@@ -101,7 +171,7 @@ int runStudy(Options options, const FindSonar& sonarAt) {
                    claim.at_most ? "at most" : "at least", claim.bound);
     }
     if (open) fmt::print("open: --levels or --reference-rays are too few to tell; nothing is wrong with the scene\n");
-    fmt::print("{} points; report in {}\n", result.measurements.size(), (folder.path() / "index.html").string());
+    fmt::print("{} points; report in {}\n", result.measurements.size(), sheet.string());
     return all ? 0 : 1;
 }
 

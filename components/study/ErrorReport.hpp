@@ -1,21 +1,16 @@
 #pragma once
-#include <filesystem>
+#include <string>
 
 #include "components/study/ErrorAnalysis.hpp"
 
 namespace insonify::study {
 
-/** `error_time.csv`: one line for each point. */
-std::string csvOf(const ErrorResult& result);
-/** `error_time.json`: points, references, slopes, times to 10, 1 and 0.1 % and how they were found, verdicts, device.
- */
-std::string jsonOf(const ErrorResult& result);
-/** One diagram of a scene, rel_l2 over median time. */
-std::string diagramOf(const ErrorResult& result, const std::string& scene);
-/** A page that holds it all and needs nothing else. */
-std::string pageOf(const ErrorResult& result);
+/** Errors whose times are reported [1]. */
+inline constexpr double goals[] = {0.1, 0.01, 0.001};
+/** Below so many times its own error a reference adds more than 5 % to what is measured [1]. */
+inline constexpr double blurred = 3;
 
-/** Writes error_time.csv, error_time.json, SCENE.svg and index.html. Throws std::runtime_error when it cannot. */
-void writeReport(const ErrorResult& result, const std::filesystem::path& folder);
+/** Tables in Markdown: references, times to an error, chosen qualities, claims, every point. */
+std::string sheetOf(const ErrorResult& result);
 
 }  // namespace insonify::study

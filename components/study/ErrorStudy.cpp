@@ -10,7 +10,7 @@
 #include <memory>
 #include <stdexcept>
 
-#include "components/sonar/BeamFan.hpp"
+#include "components/sonar/AngularView.hpp"
 #include "components/sonar/BinGrid.hpp"
 #include "components/sonar/Quality.hpp"
 #include "components/sonar/SonarRenderer.hpp"
@@ -61,13 +61,18 @@ sonar::SonarConfig configOf(const StudyScene& scene, const Measurement& point) {
 
 sonar::RenderOptions optionsOf(const Measurement& point) {
     sonar::RenderOptions options;
-    options.min_frusta = point.slabs;
-    options.samples_per_pixel = point.samples_per_pixel;
     if (point.method == Method::Nearest || point.method == Method::Published)
         options.estimator = sonar::Estimator::Nearest;
     if (point.method == Method::NearestJitter) options.estimator = sonar::Estimator::NearestJitter;
     options.one_frustum = point.method == Method::Published;
     return options;
+}
+
+/** Samples of one plane that rays make one cell of, at most; 1 where none are cast [1]. */
+int mergedBy(const sonar::RenderPlan& plan) {
+    if (!plan.casts_rays) return 1;
+    const sonar::AngularView view = sonar::makeAngularView(plan);
+    return sonar::TileShape(view, plan.grid, view.beams).max_merged;
 }
 
 /** One scene under study: what measures a point of it, and its reference. */
@@ -115,20 +120,16 @@ private:
     }
 
     void measureAll() {
-        const int slabs = static_cast<int>(sonar::makeFrusta(scene_.config, sonar::makeBeams(scene_.config)).size());
         for (const Method method : methods)
             if (canRun(method))
                 for (int level = 0; level < levels(); ++level)
-                    measure(method, min_rows << level, base_columns_ << level, method == Method::Published ? 1 : slabs);
+                    measure(method, min_rows << level, base_columns_ << level);
         for (int level = 0; level < levels(); ++level)
-            if (base_columns_ << level != 2) measure(Method::Footprint, min_rows << level, 2, slabs);
-        for (const int more : {2 * slabs, 4 * slabs}) measure(Method::Footprint, 4 * min_rows, 4 * base_columns_, more);
-        for (int level = 0; level + 1 < levels(); ++level)
-            measure(Method::Footprint, min_rows << level, base_columns_ << level, slabs, 4);
+            if (base_columns_ << level != 2) measure(Method::Footprint, min_rows << level, 2);
     }
 
-    void measure(Method method, int rows, int columns, int slabs, int samples = 1) {
-        Heard heard{{scene_.name, method, rows, columns, samples, slabs, {}, 0, 0, 0, 0}, {}};
+    void measure(Method method, int rows, int columns) {
+        Heard heard{{scene_.name, method, rows, columns, 1, {}, 0, 0, 0, 0}, {}};
         options_.progress(fmt::format("{} {} {} x {}", scene_.name, nameOf(method), rows, columns));
         const sonar::SonarConfig config = configOf(scene_, heard.point);
         if (method == Method::Embree) {
@@ -147,6 +148,7 @@ private:
         types::Sonar ping;
         time([&](auto&) { renderer.render(scene_.snapshot, ping); }, options_.pings, heard.energies, heard.point);
         heard.energies = ping.bins;
+        heard.point.merged = mergedBy(renderer.renderPlan());
         result_.device = renderer.device();
     }
 

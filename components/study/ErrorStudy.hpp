@@ -21,11 +21,13 @@ const char* nameOf(Method method);
 struct Measurement {
     std::string scene;
     Method method = Method::Footprint;
-    int rows = 0, columns_per_beam = 0, samples_per_pixel = 1, slabs = 0;  ///< [1]
+    int rows = 0, columns_per_beam = 0;  ///< [1]
+    int merged = 1;  ///< Neighbouring samples of one plane that are one cell, at most (ACOUSTICS.md 4.4) [1].
     Metrics metrics;
     double kappa_max = 0;                          ///< Bins that the longest cell covers; 0: not known [1].
     double median_ms = 0, p99_ms = 0, cpu_ms = 0;  ///< Of one ping: wall time, and processor time of the process.
-    double samples() const { return static_cast<double>(rows) * columns_per_beam * samples_per_pixel; }  ///< Per beam.
+    double samples() const { return static_cast<double>(rows) * columns_per_beam; }  ///< Per beam.
+    double cells() const { return samples() / merged; }  ///< Per beam, where one plane fills it.
 };
 
 /** What a reference is to be finer by than any point that is compared with it [1]. */
@@ -61,7 +63,7 @@ struct ErrorOptions {
 };
 
 /** Measures all methods on all scenes: rows and columns doubled together from 64 rows on; footprints also with rows
- *  alone (2 columns per beam) and with more slabs. A scene without truth gets a reference by brute force (PointCaster):
+ *  alone (2 columns per beam). A scene without truth gets a reference by brute force (PointCaster):
  *  two independent halves, made finer until their mean is ten times finer than every point, or the rays are used up. */
 ErrorResult studyError(const std::vector<StudyScene>& scenes, const ErrorOptions& options);
 

@@ -12,7 +12,7 @@ namespace {
 void addLadder(ErrorResult& result, const std::string& scene, Method method, double error, double power,
                int levels = 4) {
     for (int level = 0; level < levels; ++level) {
-        Measurement m{scene, method, 64 << level, 1 << level, 1, 1, {}, 0, 0, 0, 0};
+        Measurement m{scene, method, 64 << level, 1 << level, 1, {}, 0, 0, 0, 0};
         m.metrics.rel_l2 = error * std::pow(m.samples() / 64, power);
         m.median_ms = m.samples() / 64;
         result.measurements.push_back(m);
@@ -29,7 +29,7 @@ ErrorResult made() {
 
 TEST(ErrorAnalysisTest, TheLadderLeavesOutOtherSweeps) {
     ErrorResult result = made();
-    result.measurements.push_back({"flat_bottom", Method::Footprint, 128, 4, 1, 1, {}, 0, 0, 0, 0});
+    result.measurements.push_back({"flat_bottom", Method::Footprint, 128, 4, 1, {}, 0, 0, 0, 0});
     EXPECT_EQ(ladder(result, "flat_bottom", Method::Footprint).size(), 4u);
     EXPECT_TRUE(ladder(result, "wall", Method::Footprint).empty());
 }
@@ -39,6 +39,25 @@ TEST(ErrorAnalysisTest, TheSlopeIsThatOfTheLine) {
     EXPECT_NEAR(*slope(ladder(result, "flat_bottom", Method::Nearest), 0), -0.8, 1e-9);
     EXPECT_NEAR(*slope(ladder(result, "flat_bottom", Method::Footprint), 1e-6), -1, 1e-9);
     EXPECT_FALSE(slope(ladder(result, "flat_bottom", Method::Footprint), 1e-4)) << "too near the reference's own error";
+}
+
+TEST(ErrorAnalysisTest, ASlopeIsOverCellsOfWhichOneMayBeManySamples) {
+    ErrorResult result;
+    addLadder(result, "wall", Method::Footprint, 0.001, -1);
+    for (Measurement& m : result.measurements)
+        if (m.rows == 512) m.merged = 4, m.metrics.rel_l2 *= 4;  // as good as the level before
+    EXPECT_NEAR(*slope(ladder(result, "wall", Method::Footprint), 0), -1, 1e-9);
+}
+
+TEST(ErrorAnalysisTest, ASlopeOfFewLevelsIsOpen) {
+    ErrorResult result;
+    result.references = {{"wall", "closed form", 0}};
+    addLadder(result, "wall", Method::Footprint, 0.001, -0.5, 3);
+    ASSERT_EQ(claims(result).size(), 1u);
+    EXPECT_STREQ(claims(result)[0].verdict(), "open");
+    addLadder(result = {}, "wall", Method::Footprint, 0.001, -0.5, 4);
+    result.references = {{"wall", "closed form", 0}};
+    EXPECT_STREQ(claims(result)[0].verdict(), "FAIL");
 }
 
 TEST(ErrorAnalysisTest, TimesAndErrorsLieOnTheLineOrBeyondItsEnd) {
