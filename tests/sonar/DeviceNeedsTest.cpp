@@ -2,6 +2,7 @@
 #include <gmock/gmock.h>
 
 #include "components/sonar/DeviceNeeds.hpp"
+#include "components/sonar/effects/Effects.hpp"
 #include "tests/gpu/ErrorOf.hpp"
 #include "tests/support/Sonars.hpp"
 #include "tests/support/Surfaces.hpp"
@@ -40,7 +41,7 @@ RenderPlan planOf(const types::Geometry& geometry, const RenderOptions& options 
 
 DepositSetup setupOf(const RenderPlan& plan) {
     DepositSetup setup;
-    setup.rules = makeEchoRules(plan);
+    setup.rules = makeEchoRules(plan, PingEffects(plan, *test::surfaces()));
     setup.frusta = plan.frusta;
     for (const ViewFrustum& frustum : plan.frusta)
         setup.shares.push_back(makeShares(plan.sampled, plan.cells, frustum, plan.options));

@@ -10,6 +10,7 @@
 #include "components/gpu/Program.hpp"
 #include "components/sonar/BinDeposit.hpp"
 #include "components/sonar/RenderPlan.hpp"
+#include "components/sonar/effects/Effects.hpp"
 #include "tests/support/Folder.hpp"
 #include "tests/support/Sonars.hpp"
 #include "tests/support/Surfaces.hpp"
@@ -63,7 +64,7 @@ std::vector<types::GeometryPtr> scenes() {
 /** Calls use(plan, geometry) for each set of features of a drawn sonar. */
 template <class Use>
 void forEachFeatureSet(const Use& use) {
-    std::set<unsigned> seen;
+    std::set<std::vector<std::string>> seen;
     const std::vector<types::GeometryPtr> geometries = scenes();
     for (const SonarConfig& config : drawnSonars())
         for (const types::GeometryPtr& geometry : geometries)
@@ -71,7 +72,7 @@ void forEachFeatureSet(const Use& use) {
                 if (estimator != Estimator::Footprint && config.model != Model::Physical) continue;
                 const RenderPlan plan =
                     makeRenderPlan(config, *geometry, {.estimator = estimator, .samples_per_pixel = 4});
-                if (seen.insert(plan.features.bits_).second) use(plan, *geometry);
+                if (seen.insert(plan.defines()).second) use(plan, *geometry);
             }
 }
 
@@ -91,7 +92,9 @@ std::vector<gpu::Shader> allShaders() {
                                    .cull_on_device = true},
                                   culler, threads);
         DepositSetup setup;
-        setup.rules = makeEchoRules(plan);
+        const PingEffects effects(plan, geometry);
+        setup.rules = makeEchoRules(plan, effects);
+        setup.defines = plan.defines();
         makeGpuDeposit(setup, context);
     });
     context.check();
