@@ -305,7 +305,7 @@ void SonarConfig::checkBeam(types::Diagnostics& diagnostics) const {
     if (beam_width_deg > 120)
         diagnostics.push_back({"beam_width_deg", fmt::format("is {:g} deg; one beam may have 120", *beam_width_deg)});
     if (published) checkPublished(*this, diagnostics);
-    for (const Effect* effect : sonar::effects()) effect->check(*this, diagnostics);
+    checkEffects(*this, diagnostics);
     checkRangeReached(*this, diagnostics);
     checkVisibility(*this, diagnostics);
     checkStraightWays(*this, diagnostics);

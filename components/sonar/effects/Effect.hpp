@@ -82,6 +82,10 @@ class Effect {
 public:
     virtual ~Effect() = default;
 
+    /** The key of its numbers in SonarConfig::effects; empty: what it needs are fields of the configuration. */
+    virtual std::string key() const { return {}; }
+    /** Those numbers: name, unit, meaning and bounds of each. */
+    virtual std::vector<types::Field> numbers() const { return {}; }
     /** What does not go together in a configuration. */
     virtual void check(const SonarConfig& /*config*/, types::Diagnostics& /*diagnostics*/) const {}
     /** Whether it takes part: adds its features and passes to the plan, else why it is left out. */

@@ -1,6 +1,12 @@
 #include "components/sonar/effects/Effects.hpp"
 
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+
 #include "components/sonar/EchoRules.hpp"
+#include "types/DidYouMean.hpp"
 
 namespace insonify::sonar {
 
@@ -34,13 +40,53 @@ List& list() {
     return list;
 }
 
+std::vector<std::string> keys() {
+    std::vector<std::string> keys;
+    for (const Effect* effect : list().all)
+        if (!effect->key().empty()) keys.push_back(effect->key());
+    return keys;
+}
+
+std::string whyUnknown(const std::string& name, const std::vector<std::string>& known, const char* is,
+                       const char* they) {
+    if (known.empty()) return fmt::format("{}: no library has added any", is);
+    return fmt::format("{}; {}{} are: {}", is, types::didYouMean(name, known), they, fmt::join(known, ", "));
+}
+
+void checkNumbers(const std::string& path, const std::vector<types::Field>& fields,
+                  const std::map<std::string, double>& numbers, types::Diagnostics& diagnostics) {
+    std::vector<std::string> names;
+    for (const types::Field& field : fields) names.emplace_back(field.name);
+    for (const auto& [name, value] : numbers) {
+        const auto field = std::ranges::find(fields, name, &types::Field::name);
+        if (field == fields.end())
+            diagnostics.push_back({path + name, whyUnknown(name, names, "is no number of this effect", "they")});
+        else if (!(value >= field->min && value <= field->max))
+            diagnostics.push_back(
+                {path + name, fmt::format("is {:g}; must be {:g} to {:g} {}", value, field->min, field->max, field->unit)});
+    }
+}
+
 }  // namespace
 
 std::span<const Effect* const> effects() { return list().all; }
 
 void addEffect(std::unique_ptr<const Effect> effect) {
+    const auto same = [&](const Effect* other) { return !effect->key().empty() && other->key() == effect->key(); };
+    if (std::ranges::any_of(list().all, same)) return;
     list().all.push_back(effect.get());
     list().added.push_back(std::move(effect));
+}
+
+void checkEffects(const SonarConfig& config, types::Diagnostics& diagnostics) {
+    for (const auto& [key, numbers] : config.effects) {
+        const auto found = std::ranges::find(effects(), key, &Effect::key);
+        if (found == effects().end())
+            diagnostics.push_back({"effects." + key, whyUnknown(key, keys(), "is no effect", "effects")});
+        else
+            checkNumbers("effects." + key + ".", (*found)->numbers(), numbers, diagnostics);
+    }
+    for (const Effect* effect : effects()) effect->check(config, diagnostics);
 }
 
 PingEffects::PingEffects(const RenderPlan& plan, const types::Geometry& geometry) {

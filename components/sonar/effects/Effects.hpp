@@ -11,8 +11,11 @@ namespace insonify::sonar {
 std::span<const Effect* const> effects();
 
 /** Adds an effect of a library to the end of the list; it stays until the process ends. Before any sonar is configured,
- *  from `insonify_register` or from main. */
+ *  from `insonify_register` or from main. One whose key is there already is not added. */
 void addEffect(std::unique_ptr<const Effect> effect);
+
+/** Diagnostics of SonarConfig::effects: keys and numbers that no effect has, numbers out of bounds; and of each effect. */
+void checkEffects(const SonarConfig& config, types::Diagnostics& diagnostics);
 
 /** The effects of a plan in the pings of one renderer, in order. */
 class PingEffects {

@@ -1,0 +1,69 @@
+// An effect in a library outside of the tree, by the recipe of components/sonar/README.md alone.
+#include <gmock/gmock.h>
+
+#include "tests/install/Outside.hpp"
+#include "tests/support/Pages.hpp"
+#include "tests/support/Python.hpp"
+
+using namespace insonify::deployer;
+using testing::HasSubstr;
+
+namespace {
+
+/** The wall, heard with numbers of the effect. */
+std::string deploymentWith(const std::string& effects) {
+    return replaced(replaced(wall_deployment, "tasks:\n", "libraries: [build/afterglow.so]\ntasks:\n"),
+                    "      range: 20\n", "      range: 20\n      effects: " + effects + "\n");
+}
+
+/** Builds the library of the page in the folder. */
+void buildEffect(const TestFolder& folder) {
+    install(folder);
+    const insonify::test::Page page = insonify::test::readPage("components/sonar/README.md");
+    writeFile(folder / "afterglow.cpp", codeOf(page, "cpp", "A new effect"));
+    writeFile(folder / "CMakeLists.txt", R"(cmake_minimum_required(VERSION 3.22)
+project(Afterglow CXX)
+find_package(Insonify REQUIRED COMPONENTS sonar)
+add_library(afterglow MODULE afterglow.cpp)
+set_target_properties(afterglow PROPERTIES PREFIX "")
+target_link_libraries(afterglow PRIVATE Insonify::framework Insonify::sonar)
+)");
+    const Outcome built = buildOutside(folder, folder / "prefix");
+    ASSERT_EQ(built.code, 0) << built.out << built.err;
+}
+
+}  // namespace
+
+TEST(EffectTest, ALibrarysEffectWithStateIsPlannedHeardAndRefusedLikeOurs) {
+    const WallFolder folder(deploymentWith("{afterglow: {kept: 0.5}}"));
+    buildEffect(folder);
+    const std::string insonify = folder / "prefix/bin/insonify";
+    const Outcome ran = call(folder, {insonify, "run", "wall.yml", "--pings", "3", "--out", "out"});
+    ASSERT_EQ(ran.code, 0) << ran.err;
+    ASSERT_EQ(call(folder, {insonify, "log", "export", "out/wall.0.log", "--stream", "sonar.ping", "--to", "p.npz"}).code, 0);
+    const std::string ratios =
+        "import numpy; b = numpy.load('p.npz')['bins']; print(*[float((b[i] / b[0])[b[0] > 0].mean().round(6)) for i in (1, 2)])";
+    EXPECT_EQ(python(folder, ratios).out, "1.5 1.75\n") << "half of it is left after each ping, of a wall that stands still";
+    EXPECT_THAT(call(folder, {insonify, "plan", "wall.yml"}).out, HasSubstr("afterglow"));
+
+    writeFile(folder / "wall.yml", deploymentWith("{}"));
+    EXPECT_THAT(call(folder, {insonify, "plan", "wall.yml"}).out, HasSubstr("not configured"));
+    const std::pair<const char*, const char*> refused[] = {
+        {"{afterglow: {kept: 2}}", "effects.afterglow.kept is 2; must be 0 to 1"},
+        {"{afterglow: {kpet: 0.5, kept: 0.5}}", "did you mean kept?"},
+        {"{afterglow: {}}", "effects.afterglow has no kept"},
+        {"{afterglw: {kept: 0.5}}", "did you mean afterglow?"}};
+    for (const auto& [effects, why] : refused) {
+        writeFile(folder / "wall.yml", deploymentWith(effects));
+        const Outcome outcome = call(folder, {insonify, "check", "wall.yml"});
+        EXPECT_EQ(outcome.code, 2) << effects;
+        EXPECT_THAT(outcome.err, HasSubstr(why)) << effects;
+    }
+}
+
+TEST(EffectTest, AnEffectThatNoLibraryHasAddedIsRefused) {
+    const WallFolder folder(replaced(wall_deployment, "      range: 20\n", "      range: 20\n      effects: {bubbles: {}}\n"));
+    const Outcome outcome = callInsonify(folder, {"check", "wall.yml"});
+    EXPECT_EQ(outcome.code, 2);
+    EXPECT_THAT(outcome.err, HasSubstr("effects.bubbles is no effect: no library has added any"));
+}
