@@ -36,6 +36,10 @@ private:
     size_t meshOf(size_t object) const { return static_cast<size_t>(geometry_.objects[object].mesh); }
     void placeObject(size_t index, const glm::dmat4& sonar_from_object);
     vec4 extent(size_t index, const glm::dmat4& sonar_from_object, bool in_view);
+    /** Finds the objects that continue each other's surface. */
+    void findSurfaces();
+    /** Gives the objects of one surface the inverse ranges of the whole surface. */
+    void joinExtents();
     /** Whether any of a ball may be heard. */
     bool reaches(const glm::dvec3& centre, double radius) const;
 
@@ -45,7 +49,8 @@ private:
     std::vector<std::shared_ptr<MeshFacts>> meshes_;
     std::vector<glm::dmat4> world_from_object_;
     std::vector<ObjectRecord> records_;
-    std::vector<bool> far_;
+    std::vector<bool> far_, in_view_;
+    std::vector<std::vector<size_t>> surfaces_;  ///< Each of two objects or more.
     std::vector<float> scratch_;
 };
 

@@ -1,6 +1,9 @@
 // Pings of scenes whose echo is known in closed form (ACOUSTICS.md 9), drawn through OpenGL. Every form stands beside
 // a deliberately wrong one, which must fail by the same measure.
 #include "components/sonar/SonarRenderer.hpp"
+#include "components/study/FractalFloor.hpp"
+#include "components/study/Metrics.hpp"
+#include "components/study/StudyScene.hpp"
 #include "tests/support/ClosedForms.hpp"
 #include "tests/support/Scenes.hpp"
 #include "tests/support/Sonars.hpp"
@@ -127,6 +130,35 @@ TEST(ClosedFormTest, ShadowBehindAScreenEndsWhereTheTopRayMeetsTheBottom) {
     while (end < 400 && ping.bins[end] == 0) ++end;
     EXPECT_NEAR(end * 0.1, test::shadowEnd(height, screen, ground_range), 0.1) << "shadow [m]";
     EXPECT_GT(std::abs(end * 0.1 - ground_range * height / (height - screen)), 0.1) << "ground range is wrong";
+}
+
+TEST(ClosedFormTest, AMeshSoundsAsItsTilesDo) {
+    study::StudyScene scene = study::roughFloor();
+    scene.config.visibility = Visibility::Cpu;
+    std::vector<types::Mesh> tiles = study::tilesOf(study::FractalFloor{}, 8);  // of 64 x 64 squares
+    std::vector<glm::dvec3> a_millimetre_apart;
+    for (size_t i = 0; i < tiles.size(); ++i)
+        a_millimetre_apart.push_back(1e-3 *
+                                     glm::dvec3(static_cast<double>(i / 8) - 4, static_cast<double>(i % 8) - 4, 0));
+    types::Snapshot cut = scene.snapshot, apart = scene.snapshot;
+    cut.geometry = study::sceneOf(tiles);
+    apart.geometry = study::sceneOf(std::move(tiles), std::move(a_millimetre_apart));
+    scene.config.quality.columns_per_beam = 2;
+    for (const int rows : {128, 256}) {
+        scene.config.quality.rows = rows;
+        const types::Sonar whole = pingOf(scene.config, scene.snapshot);
+        const auto off = [&](const types::Snapshot& snapshot) {
+            const std::vector<double> reference(whole.bins.begin(), whole.bins.end());
+            return study::compare(pingOf(scene.config, snapshot).bins, reference,
+                                  {static_cast<int>(whole.beam_count), static_cast<int>(whole.bin_count),
+                                   whole.binStart(1) - whole.binStart(0), 0})
+                .rel_l2_tvg;
+        };
+        const double joined = off(cut);
+        EXPECT_LT(joined, 0.002) << rows << " rows";
+        EXPECT_GT(off(apart), 0.002) << rows << " rows, each tile ends at its own ranges";
+        RecordProperty("joined_" + std::to_string(rows), std::to_string(joined));
+    }
 }
 
 TEST(CerqueiraLimitTest, EveryPlaneIsTheSigmoidOfDistanceOverRange) {

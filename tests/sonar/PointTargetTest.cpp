@@ -5,6 +5,8 @@
 #include <glm/gtc/matrix_transform.hpp>
 #include <numbers>
 #include <numeric>
+#include <random>
+#include <span>
 
 #include "components/acoustics/BeamPattern.hpp"
 #include "components/acoustics/Pulse.hpp"
@@ -194,6 +196,58 @@ TEST(PointTargetTest, WithoutAPatternABeamHearsItInItsBoxAndTheAperture) {
         EXPECT_EQ(heardIn(175, 0), Beams{});
         EXPECT_EQ(heardIn(20.1, 9.9), fan == BeamGeometry::Conical ? Beams{4} : Beams{5}) << "cones bend";
     }
+}
+
+/** Energies in both ways of seeing, and fields. */
+std::vector<SonarConfig> energiesAndFields(SonarConfig config) {
+    std::vector<SonarConfig> all(3, config);
+    all[1].visibility = Visibility::Gl;
+    all[1].device = "software";
+    all[2].speckle.emplace().coherent = true;
+    all[2].frequency_khz = 500;
+    return all;
+}
+
+TEST(PointTargetTest, OnTheEdgeOfABinItIsInTheBinThatBinAtPromises) {
+    std::mt19937 random(71);
+    const auto uniform = [&](double low, double high) {
+        return std::uniform_real_distribution<double>(low, high)(random);
+    };
+    const auto geometry = openWater();
+    types::Sonar ping;
+    int tried = 0;
+    for (int round = 0; round < 12; ++round) {
+        SonarConfig fan = sonarOf(60, 7);
+        fan.range = uniform(5, 30);
+        fan.range_rounding = round % 2 == 0 ? RangeRounding::Exact : RangeRounding::Sample;
+        fan.speed_of_sound = uniform(1400, 1600);
+        const BinGrid grid = makeBinGrid(fan);
+        for (const SonarConfig& config : energiesAndFields(fan)) {
+            const auto hear = [&](const SonarConfig& sonar, const auto& expect) {
+                SonarRenderer renderer(sonar, geometry);
+                for (int k = 20 + round; k < grid.bin_count - 20; k += 12, ++tried) {
+                    ASSERT_EQ(binAt(grid.edge(k), grid.bin_width), k);
+                    renderer.render(withTarget(geometry, {grid.edge(k), 0, 0}), ping);
+                    expect(k, std::span(ping.bins).subspan(3 * ping.bin_count, ping.bin_count));  // of the middle beam
+                }
+            };
+            hear(config, [&](int k, std::span<const float> beam) {
+                EXPECT_GT(beam[static_cast<size_t>(k)], 0) << grid.edge(k) << " m";
+                EXPECT_EQ(std::ranges::count_if(ping.bins, [](float echo) { return echo > 0; }), 1);
+            });
+            SonarConfig pulsed = config;
+            pulsed.pulse.emplace().bandwidth_khz = grid.speed_of_sound / 2 / (3 * grid.bin_width) / 1000;  // 3 bins
+            hear(pulsed, [&](int k, std::span<const float> beam) {
+                double sum = 0, moment = 0;
+                for (int i = k - 6; i < k + 6; ++i) {
+                    const double energy = double{beam[static_cast<size_t>(i)]} * std::pow(grid.centre(i), 4);
+                    sum += energy, moment += energy * (i + 0.5 - k);
+                }
+                EXPECT_NEAR(moment / sum, 0, 0.1) << "bins from the edge at " << grid.edge(k) << " m";
+            });
+        }
+    }
+    EXPECT_GT(tried, 800);
 }
 
 TEST(PointTargetTest, AllRoundItIsInOneBeamAlone) {
