@@ -11,6 +11,7 @@
 #include "components/command/OutputFolder.hpp"
 #include "components/command/ProgressLine.hpp"
 #include "components/sonar/BinGrid.hpp"
+#include "components/study/ErrorEffects.hpp"
 #include "components/study/ErrorReport.hpp"
 #include "components/study/StudyCommand.hpp"
 #include "types/ConfigError.hpp"
@@ -23,10 +24,10 @@ struct Options {
     std::vector<std::string> scenes;
     uint64_t ping = 1;
     ErrorOptions study;
-    bool quiet = false;
+    bool effects = false, quiet = false;
 };
 
-/** What a study can take away without changing where echoes come from: absorption, model, beam pattern, pulse. */
+/** Echoes of surfaces by Lambert's law alone, in boxes of beams and bins. */
 sonar::SonarConfig plain(sonar::SonarConfig config, const std::string& file) {
     if (!config.bearings_deg.empty() || config.beam_geometry != sonar::BeamGeometry::Planar)
         throw types::ConfigError(
@@ -42,6 +43,10 @@ sonar::SonarConfig plain(sonar::SonarConfig config, const std::string& file) {
     config.beam_pattern.reset();
     config.pulse.reset();
     config.multipath.reset();
+    config.volume.clear();
+    config.speckle.reset();
+    config.elements.reset();
+    config.frequency_khz.reset();
     return config;
 }
 
@@ -79,6 +84,8 @@ std::vector<StudyScene> scenesOf(const Options& options, const FindSonar& sonarA
             if (wanted(scene.name)) scenes.push_back(scene.make());
     if (!options.deployment.empty())
         scenes.push_back(studied(options.deployment, sonarAt(options.deployment, options.ping)));
+    for (size_t i = 0, plain = scenes.size(); options.effects && i < plain; ++i)
+        for (const Effect effect : effects) scenes.push_back(withEffect(scenes[i], effect));
     return scenes;
 }
 
@@ -185,6 +192,10 @@ void addErrorStudy(CLI::App& study, command::Action& action, const FindSonar& so
         "a YAML file whose sonar and scene are studied, normal maps as drawn; absent: all scenes of the study");
     command->add_option("--out", options->out, "folder of the report");
     command->add_option("--scene", options->scenes, "only this scene of the study (more than one: say it again)");
+    command->add_flag(
+        "--effects", options->effects,
+        "each scene again with beam pattern and pulse, with seabeds by TR 9407, with water that scatters, "
+        "under a flat surface, and with coherent speckle");
     command->add_option("--ping", options->ping, "which ping of the deployment")->check(CLI::PositiveNumber);
     command->add_option("--pings", options->study.pings, "timed for each point")->check(CLI::Range(1, 1000));
     command
@@ -193,8 +204,10 @@ void addErrorStudy(CLI::App& study, command::Action& action, const FindSonar& so
         ->check(CLI::Range(1, 6));
     command
         ->add_option("--reference-rays", options->study.reference_rays,
-                     "cast at most for the reference of a scene without a closed form")
+                     "rays and points, at most, of a reference that has no closed form")
         ->check(CLI::Range(1e3, 1e12));
+    command->add_option("--poses", options->study.coherent_poses, "over which pings with coherent speckle are averaged")
+        ->check(CLI::Range(2, 100000));
     command->add_flag("--quiet", options->quiet, "no progress");
     command->callback(
         [options, sonarAt, &action] { action = [options, sonarAt] { return runStudy(*options, sonarAt); }; });

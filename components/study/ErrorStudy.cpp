@@ -14,7 +14,9 @@
 #include "components/sonar/BinGrid.hpp"
 #include "components/sonar/Quality.hpp"
 #include "components/sonar/SonarRenderer.hpp"
+#include "components/study/CoherentError.hpp"
 #include "components/study/EmbreeCaster.hpp"
+#include "components/study/PathCaster.hpp"
 #include "components/study/PointCaster.hpp"
 
 namespace insonify::study {
@@ -75,6 +77,23 @@ int mergedBy(const sonar::RenderPlan& plan) {
     return sonar::TileShape(view, plan.grid, view.beams).max_merged;
 }
 
+/** Casts so many tiles up and across each beam with a seed; adds to the number of rays [1]. */
+using ReferenceCast = std::function<std::vector<double>(int up, int across, uint64_t seed, double& rays)>;
+
+template <class Caster>
+ReferenceCast castBy(const StudyScene& scene) {
+    return
+        [&scene, caster = std::make_shared<Caster>(scene.snapshot)](int up, int across, uint64_t seed, double& rays) {
+            auto energies = caster->render(scene.snapshot.sonar, scene.config, up, across, seed);
+            rays += caster->rays();
+            return energies;
+        };
+}
+
+ReferenceCast referenceOf(const StudyScene& scene) {
+    return scene.config.multipath ? castBy<PathCaster>(scene) : castBy<PointCaster>(scene);
+}
+
 /** One scene under study: what measures a point of it, and its reference. */
 class SceneStudy {
 public:
@@ -86,6 +105,7 @@ public:
     }
 
     void run() {
+        if (scene_.config.isCoherent()) return studyCoherent(scene_, options_, min_rows, base_columns_, result_);
         makeReference();
         measureAll();
         predict();
@@ -113,9 +133,12 @@ private:
         return scene_.config.fieldOfViewDeg() < 175 && columns * scene_.config.beam_count <= sonar::max_image_size;
     }
 
-    /** The caster knows nothing of water that scatters. */
+    /** Other methods than the sonar's own know no more than surfaces, the caster a pattern in elevation as well. */
     bool canRun(Method method) const {
-        if (method == Method::Embree) return scene_.config.volume.empty();
+        const sonar::SonarConfig& config = scene_.config;
+        if (method == Method::Footprint) return true;
+        if (!config.volume.empty() || config.pulse || config.multipath || config.isCoherent()) return false;
+        if (config.beam_pattern && config.beam_pattern->hasAzimuth()) return false;
         return method != Method::Published || fitsOneFrustum();
     }
 
@@ -139,7 +162,7 @@ private:
         } else {
             timeRenderer(config, heard);
         }
-        if (method != Method::Published) heard.point.kappa_max = kappa(config);
+        if (method == Method::Embree) heard.point.kappa_max = caster_.kappaMax();
         heard_.push_back(std::move(heard));
     }
 
@@ -168,13 +191,6 @@ private:
         prediction_ = {scene_.name, chosen.rows, chosen.columns_per_beam, target, chosen.error, 0};
     }
 
-    double kappa(const sonar::SonarConfig& config) {
-        std::vector<float> unused;
-        caster_.prepare(config);
-        caster_.render(scene_.snapshot.sonar, unused);
-        return caster_.kappaMax();
-    }
-
     /** Of a scene without a closed form a coarse one, which tells whether there is anything to hear. */
     void makeReference() {
         reference_ = {scene_.name, "closed form", 0, 0, 0};
@@ -182,7 +198,7 @@ private:
             energies_ = trueEnergies(scene_);
             return;
         }
-        points_.emplace(scene_.snapshot);
+        cast_ = referenceOf(scene_);
         castReference(1);
         if (std::ranges::none_of(energies_, [](double energy) { return energy > 0; }))
             throw std::runtime_error(scene_.name +
@@ -208,26 +224,23 @@ private:
         double rays = 0;
         const auto half = [&](uint64_t seed) {
             options_.progress(fmt::format("{} reference, {} x {} tiles", scene_.name, up, across));
-            auto energies = points_->render(scene_.snapshot.sonar, scene_.config, up, across, seed);
-            rays += points_->rays();
-            return energies;
+            return cast_(up, across, seed, rays);
         };
         energies_ = half(2 * static_cast<uint64_t>(refinement));
         const std::vector<float> first(energies_.begin(), energies_.end());
         const std::vector<double> second = half(2 * static_cast<uint64_t>(refinement) + 1);
         for (size_t i = 0; i < second.size(); ++i) energies_[i] = (energies_[i] + second[i]) / 2;
         const Metrics apart = compare(first, energies_, layout_);
-        reference_ = {
-            scene_.name,
-            fmt::format("brute force by points, two halves of {} x {} tiles a beam, {:.2g} rays", up, across, rays),
-            apart.rel_l2, apart.rel_l2_tvg, rays};
+        reference_ = {scene_.name,
+                      fmt::format("brute force, two halves of {} x {} tiles a beam, {:.2g} rays", up, across, rays),
+                      apart.rel_l2, apart.rel_l2_tvg, rays};
     }
 
     const StudyScene& scene_;
     const ErrorOptions& options_;
     ErrorResult& result_;
     EmbreeCaster caster_;
-    std::optional<PointCaster> points_;
+    ReferenceCast cast_;
     Layout layout_{};
     int base_columns_ = 1;
     std::vector<Heard> heard_;

@@ -38,7 +38,7 @@ struct Reference {
     std::string scene, source;  ///< "closed form", or how it was computed.
     double error = 0;           ///< Its own rel_l2, estimated from two independent halves; 0: exact to rounding.
     double error_tvg = 0;       ///< Its own rel_l2_tvg, likewise.
-    double rays = 0;            ///< Cast for it; 0: none [1].
+    double rays = 0;            ///< Cast for it, and points drawn; 0: none [1].
 };
 
 /** What `quality: {target_error}` chose for a scene, and what became of it; errors are rel_l2_tvg. */
@@ -58,7 +58,8 @@ struct ErrorResult {
 struct ErrorOptions {
     int pings = 30;  ///< Timed for each point, after a warm-up [1].
     int levels = 5;  ///< Rows and columns are doubled together so often, less one; at most 4 without a closed form [1].
-    double reference_rays = 2e9;  ///< At most for the finest reference of a scene without a closed form [1].
+    double reference_rays = 2e9;  ///< And points, at most, for the finest reference that has no closed form [1].
+    int coherent_poses = 64;      ///< Over which pings with coherent speckle are averaged [1].
     std::function<void(const std::string&)> progress = [](const std::string&) {};
 };
 

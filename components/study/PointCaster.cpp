@@ -6,7 +6,10 @@
 #include <glm/geometric.hpp>
 #include <glm/gtc/quaternion.hpp>
 #include <numbers>
+#include <stdexcept>
 
+#include "components/acoustics/BeamPattern.hpp"
+#include "components/acoustics/Pulse.hpp"
 #include "components/sonar/BeamFan.hpp"
 #include "components/sonar/BinGrid.hpp"
 #include "types/Angle.hpp"
@@ -50,15 +53,57 @@ double boundary(int k, int n, uint64_t seed) {
     return (k + moved) / n;
 }
 
-/** The points of some tiles of one beam. */
+double powerOf(const std::optional<acoustics::BeamLaw>& law, double angle) {
+    return law ? acoustics::BeamPattern(*law).power(angle) : 1;
+}
+
+/** What a pattern hears of an elevation there and back, by its sine. */
+class Aperture {
+public:
+    explicit Aperture(const sonar::SonarConfig& config) : half_(std::sin(types::radians(config.beam_height_deg) / 2)) {
+        if (!config.beam_pattern || !config.beam_pattern->hasElevation()) return;
+        const sonar::BeamPatternConfig& pattern = *config.beam_pattern;
+        std::vector<double> all;
+        for (int i = 0; i <= steps; ++i) {
+            const double angle = std::asin(2.0 * i / steps - 1);
+            all.push_back(powerOf(pattern.transmit.elevation, angle) * powerOf(pattern.receive.elevation, angle));
+        }
+        const double floor = std::pow(10, pattern.floor_db / 10);
+        const auto heard = std::ranges::find_if(all, [&](double power) { return power >= floor; }) - all.begin();
+        half_ = 1 - 2.0 * static_cast<double>(heard) / steps;
+        weights_ = std::move(all);
+    }
+    double half() const { return half_; }  ///< Sine of the highest elevation that is heard [1].
+    double weight(double up) const {
+        if (weights_.empty()) return 1;
+        const double place = std::clamp((up + 1) / 2, 0.0, 1.0) * steps;
+        const auto i = std::min(static_cast<size_t>(place), weights_.size() - 2);
+        const double beyond = place - static_cast<double>(i);
+        return (1 - beyond) * weights_[i] + beyond * weights_[i + 1];
+    }
+
+private:
+    static constexpr int steps = 1 << 16;
+    double half_;
+    std::vector<double> weights_;
+};
+
+/** Sums of a strip's points: echoes in each bin, and the solid angle that ends in it. */
+struct Sums {
+    std::vector<double> echoes, ended, partial;  ///< `partial`: of what ends in a bin, times 1/edge - 1/range.
+};
+
+/** The points of some tiles of one strip. */
 class Part {
 public:
-    Part(const RayTree& tree, const types::Pose& sonar, const sonar::BinGrid& grid, double* bins)
+    Part(const RayTree& tree, const types::Pose& sonar, const sonar::BinGrid& grid, const Aperture& aperture,
+         Sums& sums)
         : tree_(tree),
           grid_(grid),
+          aperture_(aperture),
           world_from_sonar_(glm::mat3_cast(sonar.orientation)),
           from_(sonar.position - tree.origin()),
-          bins_(bins) {}
+          sums_(sums) {}
 
     double rays() const { return rays_; }
 
@@ -77,8 +122,8 @@ private:
             directions[static_cast<size_t>(i)] = tile.at(i % split / (split - 1.0), i / split / (split - 1.0));
         const RayTree::Found seen = castRays(directions);
         if (std::ranges::count(seen, seen[0]) == RayTree::packet) {
-            if (seen[0] != RayTree::none)
-                fillWith(seen[0], tile, tree_[seen[0]].mapped ? mapped_fill[partings_left] : fill[partings_left]);
+            const bool mapped = seen[0] != RayTree::none && tree_[seen[0]].mapped;
+            fillWith(seen[0], tile, mapped ? mapped_fill[partings_left] : fill[partings_left]);
         } else if (partings_left > 0) {
             for (int i = 0; i < RayTree::packet; ++i) cast(tile.part(i % split, i / split), partings_left - 1);
         } else {
@@ -92,8 +137,7 @@ private:
         for (int i = 0; i < RayTree::packet; ++i)
             directions[static_cast<size_t>(i)] = tile.part(i % split, i / split).at(draw(), draw());
         const RayTree::Found found = castRays(directions);
-        for (size_t i = 0; i < found.size(); ++i)
-            if (found[i] != RayTree::none) hear(found[i], directions[i], tile.solidAngle() / RayTree::packet);
+        for (size_t i = 0; i < found.size(); ++i) hear(found[i], directions[i], tile.solidAngle() / RayTree::packet);
     }
 
     RayTree::Found castRays(const Directions& directions) {
@@ -107,8 +151,10 @@ private:
 
     /** Points in columns, each moved up against the one before by the golden section, so that no two lie level. */
     void fillWith(uint32_t triangle, const Tile& tile, int count) {
+        if (triangle == RayTree::none && sums_.ended.empty()) return;
         const double right = draw(), each = tile.solidAngle() / (count * count);
         double high = draw();
+        rays_ += count * count;
         for (int i = 0; i < count; ++i) {
             const double azimuth = tile.azimuth + (i + right) * tile.width / count;
             const double cosine = std::cos(azimuth), sine = std::sin(azimuth);
@@ -122,17 +168,33 @@ private:
     }
 
     void hear(uint32_t number, const glm::dvec3& direction, double solid_angle) {
+        solid_angle *= aperture_.weight(direction.z);
+        if (number == RayTree::none) return endAt(grid_.range_max, solid_angle);
         const RayTree::Triangle& triangle = tree_[number];
         if (number != last_) aimAt(number);
         const double facing = glm::dot(normal_, direction), range = distance_ / facing;
+        endAt(range, solid_angle);
         if (!(range >= grid_.range_min && range < grid_.range_max)) return;
         double cosine = std::abs(facing);
         if (triangle.mapped) {
             const glm::dvec3 ahead = world_from_sonar_ * direction;
             cosine = tree_.mappedCosine(number, from_ + range * ahead, ahead);
         }
-        bins_[std::min(static_cast<int>(range / grid_.bin_width), grid_.bin_count - 1)] +=
-            solid_angle * tree_.backscatter(number, cosine) / (range * range);
+        sums_.echoes[binOf(range)] += solid_angle * tree_.backscatter(number, cosine) / (range * range);
+    }
+
+    size_t binOf(double range) const {
+        return static_cast<size_t>(std::min(static_cast<int>(range / grid_.bin_width), grid_.bin_count - 1));
+    }
+
+    /** Water is heard up to a range. */
+    void endAt(double range, double solid_angle) {
+        if (sums_.ended.empty() || !(range > grid_.range_min)) return;
+        const double end = std::min(range, grid_.range_max);
+        const size_t bin = binOf(end);
+        sums_.ended[bin] += solid_angle;
+        sums_.partial[bin] +=
+            solid_angle * (1 / std::max(grid_.edge(static_cast<int>(bin)), grid_.range_min) - 1 / end);
     }
 
     void aimAt(uint32_t number) {
@@ -144,9 +206,10 @@ private:
 
     const RayTree& tree_;
     const sonar::BinGrid& grid_;
+    const Aperture& aperture_;
     glm::dmat3 world_from_sonar_;
     glm::dvec3 from_;
-    double* bins_;
+    Sums& sums_;
     double rays_ = 0;
     uint64_t seed_ = 0, drawn_ = 0;
     uint32_t last_ = RayTree::none;  ///< The triangle of which normal and distance are at hand.
@@ -154,37 +217,133 @@ private:
     double distance_ = 0;            ///< Of the plane along it [m].
 };
 
+/** A stretch of azimuth [rad]. */
+struct Strip {
+    double low, high;
+};
+
+/** The beams; with a pattern in azimuth eight strips to a beam or to its width, whichever is less, all around. */
+std::vector<Strip> stripsOf(const sonar::SonarConfig& config) {
+    std::vector<Strip> strips;
+    if (!config.beam_pattern || !config.beam_pattern->hasAzimuth()) {
+        for (const sonar::Beam& beam : sonar::makeBeams(config)) strips.push_back({beam.low, beam.high});
+        return strips;
+    }
+    const auto& law = config.beam_pattern->receive.azimuth;
+    const double beam = types::radians(config.beamWidthDeg());
+    const double width = law && law->width_deg ? std::min(beam, types::radians(*law->width_deg)) : beam;
+    const int count = static_cast<int>(std::ceil(2 * std::numbers::pi / (width / 8)));
+    for (int i = 0; i < count; ++i)
+        strips.push_back({std::numbers::pi * (2.0 * i / count - 1), std::numbers::pi * (2.0 * (i + 1) / count - 1)});
+    return strips;
+}
+
+/** Strips that any beam hears, so that nothing is cast elsewhere. */
+std::vector<std::vector<double>> weightsOf(const sonar::SonarConfig& config, const std::vector<Strip>& strips) {
+    const sonar::BeamPatternConfig& pattern = *config.beam_pattern;
+    const auto law = [](const std::optional<acoustics::BeamLaw>& of) {
+        return of ? std::optional<acoustics::BeamPattern>(*of) : std::nullopt;
+    };
+    const auto sent = law(pattern.transmit.azimuth), heard = law(pattern.receive.azimuth);
+    std::vector<std::vector<double>> weights;
+    for (const sonar::Beam& beam : sonar::makeBeams(config)) {
+        const double axis = (beam.low + beam.high) / 2;
+        std::vector<double>& each = weights.emplace_back();
+        for (const Strip& strip : strips) {
+            constexpr double gauss = 0.7745966692414834;  // three points of Gauss and Legendre
+            const auto power = [&](double share) {
+                const double a = (strip.low + strip.high + share * (strip.high - strip.low)) / 2;
+                return (sent ? sent->power(a) : 1) * (heard ? heard->power(a - axis) : 1);
+            };
+            each.push_back((5 * power(-gauss) + 8 * power(0) + 5 * power(gauss)) / 18);
+        }
+    }
+    return weights;
+}
+
+/** Echoes and water of a strip [bin]. */
+void takeWater(Sums& sums, const sonar::BinGrid& grid, double strength) {
+    double beyond = 0;
+    for (int k = grid.bin_count - 1; k >= 0; --k) {
+        const auto bin = static_cast<size_t>(k);
+        const double near = std::max(grid.edge(k), grid.range_min), whole = 1 / near - 1 / grid.edge(k + 1);
+        sums.echoes[bin] += strength * (sums.partial[bin] + (whole > 0 ? beyond * whole : 0));
+        beyond += sums.ended[bin];
+    }
+}
+
+/** Each bin as the sum of all by the pulse. */
+void takePulse(std::vector<double>& energies, const sonar::BinGrid& grid, const acoustics::PulseConfig& config) {
+    const acoustics::Pulse pulse(config, grid.speed_of_sound);
+    std::vector<double> response;
+    for (int m = 0; m < grid.bin_count; ++m)
+        response.push_back(pulse.mean((m - 0.5) * grid.bin_width, (m + 0.5) * grid.bin_width));
+    const auto bins = static_cast<size_t>(grid.bin_count);
+    for (size_t first = 0; first < energies.size(); first += bins) {
+        const std::vector<double> beam(energies.begin() + static_cast<std::ptrdiff_t>(first),
+                                       energies.begin() + static_cast<std::ptrdiff_t>(first + bins));
+        for (size_t j = 0; j < bins; ++j) {
+            double sum = 0;
+            for (size_t i = 0; i < bins; ++i) sum += response[i < j ? j - i : i - j] * beam[i];
+            energies[first + j] = sum;
+        }
+    }
+}
+
 }  // namespace
 
 std::vector<double> PointCaster::render(const types::Pose& sonar, const sonar::SonarConfig& config, int up, int across,
                                         uint64_t seed) {
+    if (config.hasLayers()) throw std::invalid_argument("points hear one water alone, no layers");
     tree_.takeLaws(config);
     const sonar::BinGrid grid = sonar::makeBinGrid(config);
-    const sonar::Fan beams = sonar::makeBeams(config);
-    const double half = std::sin(types::radians(config.beam_height_deg) / 2);
-    const int parts = std::max(1, min_parts / static_cast<int>(beams.size()));  // of each beam
-    const auto bins = static_cast<size_t>(grid.bin_count);
-    std::vector<double> sums(beams.size() * static_cast<size_t>(parts) * bins), rays(sums.size() / bins);
-    workers_.forEach(static_cast<int>(rays.size()), [&](int number) {
-        const auto which = static_cast<uint64_t>(number / parts);
-        const sonar::Beam& beam = beams[which];
+    const std::vector<Strip> strips = stripsOf(config);
+    const bool formed = config.beam_pattern && config.beam_pattern->hasAzimuth();
+    const auto weights = formed ? weightsOf(config, strips) : std::vector<std::vector<double>>{};
+    const auto isHeard = [&](size_t strip) {
+        return !formed || std::ranges::any_of(weights, [&](const auto& beam) { return beam[strip] > 0; });
+    };
+    const Aperture aperture(config);
+    const auto count = static_cast<int>(strips.size());
+    const int parts = std::max(1, min_parts / count);  // of each strip
+    if (formed) across = std::max(1, across * config.beams() / count);
+    const auto bins = static_cast<size_t>(grid.bin_count), water = config.volume.empty() ? 0 : bins;
+    std::vector<Sums> sums(strips.size() * static_cast<size_t>(parts));
+    std::vector<double> rays(sums.size());
+    workers_.forEach(static_cast<int>(sums.size()), [&](int number) {
+        const auto which = static_cast<size_t>(number / parts);
+        const Strip& strip = strips[which];
         const auto azimuth = [&](int k) {
-            return beam.low + (beam.high - beam.low) * boundary(k, across, types::hashed(seed, which, 0));
+            return strip.low + (strip.high - strip.low) * boundary(k, across, types::hashed(seed, which, 0));
         };
-        const auto sine = [&](int k) { return half * (2 * boundary(k, up, types::hashed(seed, which, 1)) - 1); };
-        Part part(tree_, sonar, grid, sums.data() + static_cast<size_t>(number) * bins);
+        const auto sine = [&](int k) {
+            return aperture.half() * (2 * boundary(k, up, types::hashed(seed, which, 1)) - 1);
+        };
+        Sums& own = sums[static_cast<size_t>(number)];
+        own = {std::vector<double>(bins), std::vector<double>(water), std::vector<double>(water)};
+        if (!isHeard(which)) return;
+        Part part(tree_, sonar, grid, aperture, own);
         for (int row = number % parts; row < up; row += parts)
             for (int column = 0; column < across; ++column)
                 part.cast(
                     {azimuth(column), azimuth(column + 1) - azimuth(column), sine(row), sine(row + 1) - sine(row)},
                     types::hashed(seed, which, static_cast<uint64_t>(row + 1) << 32 | static_cast<uint32_t>(column)));
+        if (water > 0) takeWater(own, grid, std::pow(10, *config.volume.front().strength_db / 10));
         rays[static_cast<size_t>(number)] = part.rays();
     });
     rays_ = 0;
     for (const double cast : rays) rays_ += cast;
-    std::vector<double> energies(beams.size() * bins);
-    for (size_t i = 0; i < sums.size(); ++i)
-        energies[i / bins / static_cast<size_t>(parts) * bins + i % bins] += sums[i];
+    std::vector<double> energies(static_cast<size_t>(config.beams()) * bins);
+    workers_.forEach(config.beams(), [&](int number) {
+        const auto beam = static_cast<size_t>(number);
+        for (size_t i = 0; i < sums.size(); ++i) {
+            const size_t strip = i / static_cast<size_t>(parts);
+            const double weight = formed ? weights[beam][strip] : strip == beam ? 1 : 0;
+            if (weight > 0)
+                for (size_t bin = 0; bin < bins; ++bin) energies[beam * bins + bin] += weight * sums[i].echoes[bin];
+        }
+    });
+    if (config.pulse) takePulse(energies, grid, *config.pulse);
     return energies;
 }
 

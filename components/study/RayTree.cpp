@@ -86,7 +86,8 @@ void RayTree::Embree::commit(std::span<const glm::dvec3> corners) {
         throw std::runtime_error("Embree cannot build the scene: error " + std::to_string(error));
 }
 
-void RayTree::Rays::set(int i, const glm::dvec3& direction) {
+void RayTree::Rays::set(int i, const glm::dvec3& direction, double nearest_met) {
+    nearest[i] = static_cast<float>(nearest_met);
     x[i] = static_cast<float>(direction.x), y[i] = static_cast<float>(direction.y),
     z[i] = static_cast<float>(direction.z);
 }
@@ -158,7 +159,7 @@ void RayTree::cast(glm::dvec3 from, std::span<const Rays> rays, std::span<Found>
             hit.ray.org_x[i] = static_cast<float>(from.x), hit.ray.org_y[i] = static_cast<float>(from.y),
             hit.ray.org_z[i] = static_cast<float>(from.z);
             hit.ray.dir_x[i] = rays[k].x[i], hit.ray.dir_y[i] = rays[k].y[i], hit.ray.dir_z[i] = rays[k].z[i];
-            hit.ray.tnear[i] = 0, hit.ray.tfar[i] = std::numeric_limits<float>::infinity();
+            hit.ray.tnear[i] = rays[k].nearest[i], hit.ray.tfar[i] = std::numeric_limits<float>::infinity();
             hit.ray.mask[i] = ~0u, hit.ray.time[i] = 0, hit.ray.flags[i] = 0;
             hit.hit.geomID[i] = RTC_INVALID_GEOMETRY_ID;
         }
@@ -171,6 +172,13 @@ void RayTree::cast(glm::dvec3 from, std::span<const Rays> rays, std::span<Found>
     for (size_t k = 0; k < rays.size(); ++k)
         for (size_t i = 0; i < packet; ++i)
             found[k][i] = hits[k].hit.geomID[i] == RTC_INVALID_GEOMETRY_ID ? none : hits[k].hit.primID[i];
+}
+
+double RayTree::bistatic(uint32_t triangle, double cosine, double other, double half) const {
+    const Triangle& plane = triangles_[triangle];
+    if (laws_.records.empty()) return plane.mu * other;
+    const auto section = laws_.bistatic(static_cast<size_t>(plane.material), other, cosine, half, plane.facet_slope);
+    return section.diffuse + section.lobe;
 }
 
 double RayTree::mappedCosine(uint32_t triangle, glm::dvec3 point, glm::dvec3 direction) const {

@@ -30,10 +30,10 @@ public:
         int material;
         float facet_slope = 0;  ///< What it adds to the mean square slope of a lobe [1].
     };
-    /** Directions in the axes of the world, of any length. */
+    /** Directions in the axes of the world, of any length; what is nearer than so many lengths is not met. */
     struct Rays {
-        alignas(64) float x[packet], y[packet], z[packet];
-        void set(int i, const glm::dvec3& direction);
+        alignas(64) float x[packet], y[packet], z[packet], nearest[packet];
+        void set(int i, const glm::dvec3& direction, double nearest_met = 0);
     };
     using Found = std::array<uint32_t, packet>;
 
@@ -57,6 +57,10 @@ public:
                                      : laws_.overCosine(static_cast<size_t>(plane.material), cosine,
                                                         static_cast<double>(plane.facet_slope), 0);
     }
+
+    /** sigma_b over the cosine of one way, of sound that comes or goes at the other, `half` the cosine of the middle of
+     *  the two [1]; ACOUSTICS.md 5.23. */
+    double bistatic(uint32_t triangle, double cosine, double other, double half) const;
 
     const glm::dvec3& origin() const { return origin_; }  ///< In the world [m].
     const Triangle& operator[](uint32_t triangle) const { return triangles_[triangle]; }

@@ -3,9 +3,12 @@
 
 #include <algorithm>
 
+#include "components/sonar/SonarRenderer.hpp"
 #include "components/study/ErrorAnalysis.hpp"
+#include "components/study/ErrorEffects.hpp"
 #include "components/study/ErrorReport.hpp"
 #include "components/study/ErrorStudy.hpp"
+#include "components/study/Probe.hpp"
 
 namespace insonify::study {
 namespace {
@@ -53,6 +56,43 @@ TEST_P(ClosedFormStudyTest, EveryClaimHolds) {
     EXPECT_EQ(std::ranges::count_if(all, [](const Claim& c) { return c.text.find("slope of") < c.text.size(); }),
               plane ? 3 : 0);
     EXPECT_EQ(std::ranges::count(all, std::string("open"), &Claim::verdict), 0);
+}
+
+/** What errors less than four times the reference's own, and less than this, are one with. */
+constexpr double effect_bound = 0.02;
+
+class EffectTest : public testing::TestWithParam<Effect> {};
+INSTANTIATE_TEST_SUITE_P(Effects, EffectTest, testing::ValuesIn(effects));
+
+TEST_P(EffectTest, PingsAreThoseOfBruteForceOnFlatAndRoughFloors) {
+    for (StudyScene plain : {closedFormScenes().front().make(), smallRoughFloor()}) {
+        plain.config.beam_count = 4;
+        plain.config.field_of_view_deg = 8;
+        ErrorOptions options = quick(1e7);
+        options.levels = 3;
+        options.coherent_poses = 100;
+        const ErrorResult result = studyError({withEffect(plain, GetParam())}, options);
+        const Reference& reference = onlyReference(result);
+        const auto points = ladder(result, reference.scene, Method::Footprint);
+        ASSERT_GE(points.size(), 3u);
+        EXPECT_LT(reference.error, 0.1) << reference.scene << " is too coarse to show anything";
+        EXPECT_LT(points.back().metrics.rel_l2, std::hypot(4 * reference.error, effect_bound)) << reference.scene;
+        EXPECT_LT(std::abs(points.back().metrics.energy_bias), std::hypot(0.01, reference.error)) << reference.scene;
+        EXPECT_THAT(failuresOf(result), testing::IsEmpty());
+    }
+}
+
+TEST(ErrorEffectsTest, EachEffectIsMoreThanItsBoundOffThePlainPing) {
+    StudyScene plain = closedFormScenes().front().make();
+    plain.config.beam_count = 4;
+    plain.config.field_of_view_deg = 8;
+    types::Sonar without, with;
+    sonar::SonarRenderer(plain.config, plain.snapshot.geometry).render(plain.snapshot, without);
+    for (const Effect effect : effects) {
+        const StudyScene scene = withEffect(plain, effect);
+        sonar::SonarRenderer(scene.config, scene.snapshot.geometry).render(scene.snapshot, with);
+        EXPECT_GT(difference(with, without), effect_bound) << scene.name;
+    }
 }
 
 TEST(ErrorStudyTest, AReferenceIsMadeFinerUntilItIsTenTimesFinerThanEveryPoint) {
