@@ -9,6 +9,7 @@
 #define EDGES_BINDING 6
 #define SUMS_BINDING 7
 #define TABLES_BINDING 8
+#define FACETS_BINDING 9
 
 // Steps of the table of an elevation pattern, which comes first among the tables, and entries of a table of backscatter.
 #define ELEVATION_STEPS 4096
@@ -39,8 +40,20 @@ struct ObjectRecord {
 // A triangle's plane, in object axes: as exact as the triangle is small, wherever the object's origin lies.
 struct PlaneRecord {
     vec4 normal;  // xyz: unit normal [1]; w: what is to be added to distances of `point` along it [m]
-    vec4 point;   // xyz: close to the triangle, on the plane but for the rounding that normal.w makes up for [m]; w: what
-                  // the facet adds to the mean square slope of a lobe [1]
+    vec4 point;   // xyz: close to the triangle, on the plane but for the rounding that normal.w makes up for [m]
+};
+
+// How a facet spreads the lobe of its material, in two principal directions of its plane.
+struct FacetRecord {
+    vec4 axis;           // xyz: the first direction, which is turned as normals are, of any length
+    vec4 first, second;  // x, y: mean square slopes of steps and of diffraction [1], z: curvature [1/m]; w: the smooth surface's
+                         // slope along the second is first.w + second.w times the square of that along the first [1]
+};
+
+// How a lobe is seen in two directions across each other: squares of the sines of the way to the normal, mean square slopes of
+// all that widens it, and of these the part of diffraction [1].
+struct LobeSlopes {
+    double sine_1, sine_2, square_1, square_2, wave_1, wave_2;
 };
 
 // One draw of a run of triangles.

@@ -82,7 +82,7 @@ private:
     void place(const types::Snapshot& snapshot);
     void makeTruth();
     PlacedScene scene() const {
-        return {visibility_.commands(), runs_, places_.records(), planes_, normal_maps_, water_, bent()};
+        return {visibility_.commands(), runs_, places_.records(), planes_, facets_, normal_maps_, water_, bent()};
     }
     void addPaths(types::Sonar& ping);
     void depositPart(const Part& part, std::span<const CastTile> tiles, Worker& worker);
@@ -109,6 +109,7 @@ private:
     RayVisibility visibility_;
     std::optional<RayPaths> ray_paths_;  ///< None where rays are straight.
     std::vector<PlaneRecord> planes_;
+    std::vector<FacetRecord> facets_;
     NormalMapping normal_maps_;
     std::vector<PlacedRun> runs_;      ///< Of the visibility's commands, in this ping.
     std::optional<PathEchoes> paths_;  ///< By way of mirrors, where the plan has them.
@@ -130,7 +131,8 @@ CastEchoes::CastEchoes(const RenderPlan& plan, types::GeometryPtr geometry)
       levels_(plan.config, summedGrid(plan)),
       places_(*geometry_, reachOf(plan), true),
       visibility_(*geometry_),
-      planes_(planesOf(*geometry_, plan.laws)),
+      planes_(planesOf(*geometry_)),
+      facets_(facetLobes(*geometry_, plan.laws)),
       normal_maps_(*geometry_),
       threads_(plan.options.threads),
       workers_(static_cast<size_t>(threads_.size())) {

@@ -96,7 +96,8 @@ private:
             cells_.setMiss(i);
         } else {
             const PlacedRun& run = part_.picture.ranges[texel[0] - 1];
-            cells_.setPlane(i, run, part_.planes[run.first_triangle + texel[1]]);
+            const uint32_t triangle = run.first_triangle + texel[1];
+            cells_.setPlane(i, run, part_.planes[triangle], facetAt(part_.facets, triangle));
             if (part_.picture.channels == 4) cells_.mapped[i] = static_cast<double>(std::bit_cast<float>(texel[2]));
             if (deposit_.to().truth) cells_.object[i] = part_.picture.objects[texel[0] - 1];
             cells_.hits[i] = 1;
@@ -121,7 +122,8 @@ private:
             if (!(cells_.mapped[i] > 0)) continue;
             const double u = shares_.u[i], v = shares_.v[i], per_length = 1 / sqrt(1 + u * u + v * v);
             const double x = frame_.cosine - frame_.sine * u, y = frame_.sine + frame_.cosine * u;
-            const double of_ray = (cells_.normal_x[i] * x + cells_.normal_y[i] * y + cells_.normal_z[i] * v) * per_length;
+            const double of_ray =
+                (cells_.normal_x[i] * x + cells_.normal_y[i] * y + cells_.normal_z[i] * v) * per_length;
             const double of_cell =
                 (cells_.normal_x[i] * cells_.cos_az[i] + cells_.normal_y[i] * cells_.sin_az[i]) * cells_.cos_el[i] +
                 cells_.normal_z[i] * cells_.sin_el[i];

@@ -23,6 +23,7 @@ struct PicturePart {
     const ColumnShares& shares;
     const PictureView& picture;
     const std::vector<PlaneRecord>& planes;
+    std::span<const FacetRecord> facets;  ///< Of the same triangles; empty where no material has a lobe.
     WaterView water;
     uint32_t first, last;        ///< Beams [1].
     std::array<int, 2> columns;  ///< From, to: those that these beams touch [1].

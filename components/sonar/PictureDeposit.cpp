@@ -25,6 +25,7 @@ PictureDeposit::PictureDeposit(DepositSetup setup, const SurfacePass& surface, c
       context_(context),
       threads_(threads),
       planes_(surface.scene().planes()),
+      facets_(surface.scene().facets()),
       columns_(static_cast<size_t>(threads.size()), std::vector<std::array<int, 2>>(setup_.shares.size())),
       pictures_(setup_.slots * setup_.frusta.size()),
       sums_(setup_.sumCount()) {
@@ -88,7 +89,7 @@ void PictureDeposit::depositPart(size_t slot, size_t part) {
     for (size_t i = 0; i < setup_.frusta.size(); ++i) {
         const Taken& taken = picture(slot, i);
         if (!taken.taken) continue;
-        const PicturePart frustum{setup_.rules, setup_.frusta[i], setup_.shares[i], taken.view, planes_, taken.water,
+        const PicturePart frustum{setup_.rules, setup_.frusta[i], setup_.shares[i], taken.view, planes_, facets_, taken.water,
                                   first,        last,             columns_[part][i]};
         if (!truth_) {
             depositPicture(frustum, {0, sums_.data()});

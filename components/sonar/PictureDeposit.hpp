@@ -39,6 +39,7 @@ private:
     const gpu::EglContext& context_;
     ThreadPool& threads_;
     const std::vector<PlaneRecord>& planes_;
+    const std::vector<FacetRecord>& facets_;
     std::vector<std::vector<std::array<int, 2>>> columns_;  ///< Of each thread and frustum: from, to.
     std::vector<Taken> pictures_;                           ///< Slot after slot, of each frustum.
     std::vector<uint64_t> sums_;

@@ -103,7 +103,8 @@ private:
         const PlacedRun& run = scene_.ranges[tile.hits->command[sample]];
         const uint32_t object = scene_.commands[tile.hits->command[sample]].object;
         const int i = cells_.count;
-        cells_.setPlane(i, run, scene_.planes[run.first_triangle + tile.hits->triangle[sample]]);
+        const uint32_t triangle = run.first_triangle + tile.hits->triangle[sample];
+        cells_.setPlane(i, run, scene_.planes[triangle], facetAt(scene_.facets, triangle));
         aim(tile, sample, merged);
         if (fields_) places_[i].object = object;
         if (mapped_) cells_.mapped[i] = mappedCosine(tile, sample, merged);
@@ -205,8 +206,7 @@ private:
 
 INSONIFY_VECTOR_CLONES __attribute__((flatten)) void depositTiles(const EchoRules& rules, const CastView& view,
                                                                   const PlacedScene& scene,
-                                                                  std::span<const CastTile> tiles,
-                                                                  const EchoSums& to) {
+                                                                  std::span<const CastTile> tiles, const EchoSums& to) {
     TileCells cells(rules, view, scene, to);
     for (const CastTile& tile : tiles) cells.add(tile);
     cells.finish();

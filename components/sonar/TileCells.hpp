@@ -15,6 +15,7 @@ struct PlacedScene {
     std::span<const PlacedRun> ranges;
     std::span<const ObjectRecord> objects;
     const std::vector<PlaneRecord>& planes;
+    std::span<const FacetRecord> facets;  ///< Of the same triangles; empty where no material has a lobe.
     const NormalMapping& normal_maps;
     WaterView water;
     const RayPaths* paths = nullptr;  ///< Null where rays are straight.
