@@ -46,7 +46,7 @@ double backscatterOverCosine(vec4 law, double mu, double cosine, LobeSlopes slop
 // of the angle by which a sample turns against the normal, so that samples together catch all of a lobe that is narrower.
 // `sample_square`: of the sample's width [rad^2].
 double meanSquareSlope(vec4 direction, double relief, double sample_square, double range) {
-    double turn = 1.0 + range * double(direction.z);
+    double turn = 1.0 + 4.0 * range * double(direction.z);
     return relief + double(direction.x) + double(direction.y) + 0.5 * sample_square * turn * turn;
 }
 
@@ -70,8 +70,13 @@ LobeSlopes lobeSlopes(FacetRecord facet, double relief, double range, double nor
                     sqrt(normal_x * normal_x + normal_y * normal_y + normal_z * normal_z);
     double cosine_square = max(facing * facing, 1e-12);
     LobeSlopes slopes;
+    double wide = width * width, high = height * height;
+    slopes.square_1 = meanSquareSlope(
+        facet.first, relief, (wide * aside_1 * aside_1 + high * (up_1 * up_1 + 1e-30)) / across_1, range);
+    slopes.square_2 = meanSquareSlope(
+        facet.second, relief, (wide * aside_2 * aside_2 + high * (up_2 * up_2 + 1e-30)) / across_2, range);
     slopes.sine_1 = along_1 * along_1 / (along_1 * along_1 + across_1);
-    double bow = min(slopes.sine_1 / cosine_square, 4.0 * double(facet.first.x));
+    double bow = min(slopes.sine_1 / cosine_square, 4.0 * slopes.square_1);
     double sine_2 = along_2 / sqrt(along_2 * along_2 + across_2) - (double(facet.first.w) + double(facet.second.w) * bow) * facing;
     slopes.sine_2 = sine_2 * sine_2;
     if (bent > 0.0) {
@@ -79,11 +84,6 @@ LobeSlopes lobeSlopes(FacetRecord facet, double relief, double range, double nor
         slopes.sine_1 = share * max(1.0 - bent * bent, 0.0);
         slopes.sine_2 = (1.0 - share) * max(1.0 - bent * bent, 0.0);
     }
-    double wide = width * width, high = height * height;
-    slopes.square_1 = meanSquareSlope(
-        facet.first, relief, (wide * aside_1 * aside_1 + high * (up_1 * up_1 + 1e-30)) / across_1, range);
-    slopes.square_2 = meanSquareSlope(
-        facet.second, relief, (wide * aside_2 * aside_2 + high * (up_2 * up_2 + 1e-30)) / across_2, range);
     slopes.wave_1 = double(facet.first.y);
     slopes.wave_2 = double(facet.second.y);
     return slopes;

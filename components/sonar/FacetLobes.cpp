@@ -102,6 +102,8 @@ struct FlatPart {
     glm::dmat3 steps{0};                  ///< Of its facets, by their areas [m^2].
     glm::dvec3 lean{0};                   ///< Slopes at its edges, by the squares of the turns there [rad^3].
     double turns = 0, fourths = 0;        ///< Sums of the squares of these turns, and of their fourth powers.
+    glm::dvec3 outward{0};                ///< Turns at its edges by their lengths, as vectors across the edges [m].
+    glm::dmat3 bend{0};                   ///< The same as a tensor [m].
     std::array<glm::dvec3, 2> axes{};     ///< Of its longest and of its shortest extent.
     std::array<double, 2> low{}, high{};  ///< Where it ends along these [m].
     std::array<double, 2> lengths{};      ///< Coherent lengths along these [m].
@@ -111,6 +113,11 @@ struct FlatPart {
         axes[1] = glm::cross(normal, axes[0]);
         low.fill(INFINITY);
         high.fill(-INFINITY);
+    }
+    /** Whether it is part of a curve in a direction: both sides turn away alike. What turns on one side ends there. */
+    bool bendsAlong(const glm::dvec3& axis) const {
+        constexpr double one_sided = 0.7;
+        return std::abs(glm::dot(outward, axis)) < one_sided * along(bend, axis);
     }
     void reachTo(const glm::dvec3& corner) {
         for (size_t k = 0; k < 2; ++k) {
@@ -198,16 +205,16 @@ private:
         });
     }
     /** A facet's part in the turn at an edge: half of it, but hardly any beside a facet that is much smaller, which is
-     *  the curve where a flat part ends. */
+     *  the curve where a flat part ends. `ratio`: of its area to the other's. */
+    static double shareOf(double ratio) {
+        if (ratio < 1) return 1 - shareOf(1 / ratio);
+        return ratio > similar ? similar * similar / (2 * ratio * ratio) : 0.5;
+    }
     void turnAt(uint32_t t, uint32_t neighbour, double turn, const glm::dvec3& edge) {
         Facet& facet = facets_[t];
         const auto free = std::ranges::find(facet.neighbours, nobody);
         if (free != facet.neighbours.end()) *free = neighbour;
-        const auto partOf = [](double ratio) {
-            return ratio > similar ? similar * similar / (2 * ratio * ratio) : 0.5;
-        };
-        const double ratio = facet.area / facets_[neighbour].area;
-        const double own = turn * (ratio < 1 ? 1 - partOf(1 / ratio) : partOf(ratio));
+        const double own = turn * shareOf(facet.area / facets_[neighbour].area);
         const double length = glm::length(edge);
         const glm::dvec3 across = glm::cross(edge, facet.normal) / length;
         const glm::dmat3 square = glm::outerProduct(across, across);
@@ -215,9 +222,15 @@ private:
         facet.curvature += glm::mat3(own * length / facet.area * square);
     }
     /** Half of the way to the neighbour's normal is the slope of a smooth surface at the edge. */
-    void leanAt(uint32_t t, uint32_t neighbour, double turn) {
+    void leanAt(uint32_t t, uint32_t neighbour, double turn, const glm::dvec3& edge) {
         FlatPart& part = parts_[facets_[t].part];
-        part.lean += turn * turn / 2 * (facets_[neighbour].normal - facets_[t].normal);
+        const glm::dvec3 way = facets_[neighbour].normal - facets_[t].normal;
+        const double share = shareOf(facets_[t].area / facets_[neighbour].area), length = glm::length(edge);
+        const glm::dvec3 across = glm::cross(edge, facets_[t].normal) / length;
+        part.outward += share * length * way;
+        part.bend += share * length * turn * glm::outerProduct(across, across);
+        if (std::abs(glm::dot(across, part.axes[0])) > 0.5) return;  // at an end
+        part.lean += turn * turn / 2 * way;
         part.turns += turn * turn;
         part.fourths += std::pow(turn * std::sin(turn), 2);
     }
@@ -268,11 +281,11 @@ private:
             part.moments.add(facets_[t].area, cornersOf(t));
             part.steps += facets_[t].area * glm::dmat3(facets_[t].steps);
         });
-        eachBend([&](uint32_t one, uint32_t other, double turn, const glm::dvec3&) {
-            leanAt(one, other, turn);
-            leanAt(other, one, turn);
-        });
         for (FlatPart& part : parts_) part.turnAxes();
+        eachBend([&](uint32_t one, uint32_t other, double turn, const glm::dvec3& edge) {
+            leanAt(one, other, turn, edge);
+            leanAt(other, one, turn, edge);
+        });
         each([&](uint32_t t, FlatPart& part) {
             for (const glm::dvec3& corner : cornersOf(t)) part.reachTo(corner);
         });
@@ -290,14 +303,11 @@ private:
         axes[1] = glm::cross(facet.normal, axes[0]);
         std::array<double, 2> waves{}, steps{}, curvatures{};
         std::array<bool, 2> curved{};
-        // Edges that converge lean along the facet: the square of their lean is no curvature in that direction.
-        const double lean = part.turns > 0 ? glm::dot(part.lean, axes[1]) / part.turns : 0;
-        const double half_turn_square = part.turns > 0 ? part.fourths / part.turns / 4 : 1;
-        const double leaning = std::min(lean * lean / half_turn_square, 0.5);
         for (size_t k = 0; k < 2; ++k) {
-            const double other = k == 0 ? 0 : leaning / (1 - leaning);
-            steps[k] = std::max(along(glm::dmat3(facet.steps), axes[k]) - other * steps[0], 0.0);
-            curvatures[k] = std::max(along(glm::dmat3(facet.curvature), axes[k]) - other * curvatures[0], 0.0);
+            if (part.bendsAlong(axes[k])) {
+                steps[k] = along(glm::dmat3(facet.steps), axes[k]);
+                curvatures[k] = along(glm::dmat3(facet.curvature), axes[k]);
+            }
             const double inverse = along(per_square, axes[k]);
             curved[k] = curvatures[k] > flat / 2 * std::sqrt(inverse);
             waves[k] = scale * (curved[k] ? 1 / std::max(12 * along(smooth_[facet.smooth], axes[k]), 1e-12) : inverse);
@@ -307,9 +317,10 @@ private:
         const auto direction = [&](size_t k, double shape) { return vec4(steps[k], waves[k], curvatures[k], shape); };
         // A cone's normals lie on a circle, that of a facet within it: along the facet they lean by (1 + x^2) / 2 of
         // what they do at its edges, where its slope across, x in units of half the turn there, is 1.
-        const bool leans = curved[0] && !curved[1];
-        return {vec4(glm::vec3(glm::transpose(world_from_mesh_) * axes[0]), 0), direction(0, leans ? lean / 2 : 0),
-                direction(1, leans ? lean / 2 / half_turn_square : 0)};
+        const bool leans = curved[0] && !curved[1] && part.turns > 0;
+        const double lean = leans ? glm::dot(part.lean, axes[1]) / part.turns / 2 : 0;
+        return {vec4(glm::vec3(glm::transpose(world_from_mesh_) * axes[0]), 0), direction(0, lean),
+                direction(1, leans ? lean * 4 * part.turns / part.fourths : 0)};
     }
 
     const types::Mesh& mesh_;

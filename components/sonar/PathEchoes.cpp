@@ -404,8 +404,11 @@ LobeSlopes PathEchoes::Tracer::lobeSlopes(const Angles& at, int i, const MirrorP
                                           const glm::dvec3& direction, double range) const {
     const PlacedRun& run = scene_.ranges[hits_.command[i]];
     if (scene_.facets.empty() || !rules_.laws.hasLobe(run.material)) return {};
-    const FacetRecord& facet = facetOf(hits_, i);
-    LobeSample sample{facet, plane.normal, chains_[static_cast<size_t>(i)].turned(turned(run, facet.axis)), range};
+    LobeSample sample{};
+    sample.facet = facetOf(hits_, i);
+    sample.normal = plane.normal;
+    sample.axis = chains_[static_cast<size_t>(i)].turned(turned(run, sample.facet.axis));
+    sample.range = range;
     sample.lookAlong(direction);
     sample.width = at.width;
     sample.height = at.height;

@@ -128,7 +128,11 @@ sonar::LobeSlopes RayTree::lobeSlopes(uint32_t triangle, double cosine, const gl
                                       double range) const {
     const Triangle& plane = triangles_[triangle];
     if (!laws_.hasLobe(static_cast<size_t>(plane.material))) return {};
-    sonar::LobeSample sample{facets_[triangle], plane.normal, glm::dvec3(facets_[triangle].axis), range};
+    sonar::LobeSample sample{};
+    sample.facet = facets_[triangle];
+    sample.normal = plane.normal;
+    sample.axis = glm::dvec3(facets_[triangle].axis);
+    sample.range = range;
     sample.lookAlong(direction);
     if (plane.mapped) sample.bent = cosine;
     return laws_.lobeSlopes(static_cast<size_t>(plane.material), sample);

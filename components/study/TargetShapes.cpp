@@ -30,7 +30,7 @@ glm::dmat4 movedTo(double x, double y = 0, double z = 0) { return glm::translate
 
 /** Of two radii of curvature at normal incidence by geometric optics, from a range [m^2]. */
 double curvedSection(double range, double one, double other) {
-    return one * range / (one + range) * (other * range / (other + range)) / 4;
+    return 1 / ((1 / one + 1 / range) * (1 / other + 1 / range)) / 4;
 }
 
 /** Power of a flat length's end-on interference over that of broadside; beyond the main lobe its mean. */

@@ -68,7 +68,7 @@ TEST(TargetStrengthTest, SmoothBodiesHaveTheirTargetStrengthInAnyMesh) {
 }
 
 TEST(TargetStrengthTest, APipeBroadsideIsTheSameByRaysAndDrawn) {
-    const Encounter met{300, 500, 64, 0.3};
+    const Encounter met{300, 1000, 64, 0.3};
     const Target target = study::cylinderTarget(met, 0.1, 1, 0);
     EXPECT_NEAR(target.strength_db, 10, 0.1);
     for (const SonarConfig& way : test::everyWay(study::targetSonar(met, target, 512)))
