@@ -312,6 +312,11 @@ private:
             curved[k] = curvatures[k] > flat / 2 * std::sqrt(inverse);
             waves[k] = scale * (curved[k] ? 1 / std::max(12 * along(smooth_[facet.smooth], axes[k]), 1e-12) : inverse);
         }
+        if (!curved[0] && curved[1]) {
+            axes = {axes[1], -axes[0]};
+            for (std::array<double, 2>* pair : {&waves, &steps, &curvatures}) std::swap((*pair)[0], (*pair)[1]);
+            std::swap(curved[0], curved[1]);
+        }
         if (!curved[0] && !curved[1])  // a plate of any shape returns A^2 / lambda^2
             for (double& wave : waves) wave *= part.lengths[0] * part.lengths[1] / part.moments.area;
         const auto direction = [&](size_t k, double shape) { return vec4(steps[k], waves[k], curvatures[k], shape); };
