@@ -132,7 +132,7 @@ private:
             cosine = tree_.mappedCosine(number, from_ + range * ahead, ahead);
         }
         bins_[std::min(static_cast<int>(range / grid_.bin_width), grid_.bin_count - 1)] +=
-            solid_angle * tree_.backscatter(number, cosine) / (range * range);
+            solid_angle * tree_.backscatter(number, cosine, world_from_sonar_ * direction, range) / (range * range);
     }
 
     void aimAt(uint32_t number) {
