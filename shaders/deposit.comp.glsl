@@ -4,7 +4,7 @@ layout(local_size_x = 8, local_size_y = 8) in;
 layout(binding = 0) uniform usampler2D picture;
 layout(std430, binding = OBJECTS_BINDING) readonly buffer Objects { ObjectRecord objects[]; };
 layout(std430, binding = COMMANDS_BINDING) readonly buffer Commands { CommandRecord commands[]; };
-layout(std430, binding = PLANES_BINDING) readonly buffer Planes { PlaneRecord planes[]; };
+layout(std430, binding = PLANES_BINDING) readonly buffer Planes { vec4 planes[]; };  // PlaneRecords, then FacetRecords
 layout(std430, binding = MATERIALS_BINDING) readonly buffer Materials { MaterialRecord materials[]; };
 layout(std430, binding = SHARES_BINDING) readonly buffer Shares { ShareRecord shares[]; };
 layout(std430, binding = SHARE_STARTS_BINDING) readonly buffer ShareStarts { uint share_starts[]; };
@@ -23,7 +23,12 @@ double elevationPower(uint i) { return numbers[first_elevation + i]; }
 #include "elevation.glsl"
 #endif
 #ifdef HAVE_BACKSCATTER_LAWS
-uniform uint first_backscatter;
+uniform uint first_backscatter;  // among the numbers
+uniform uint first_facet;        // among the vectors of the planes
+FacetRecord facetOf(uint triangle) {
+    uint at = first_facet + 3u * triangle;
+    return FacetRecord(planes[at], planes[at + 1u], planes[at + 2u]);
+}
 double backscatterEntry(uint i) { return numbers[first_backscatter + i]; }
 #include "backscatter.glsl"
 #endif
@@ -159,12 +164,17 @@ struct Seen {
     double mapped;    // cosine of a bent normal; 0: it is the plane's
     dvec2 reach;      // inverse ranges of the object [1/m]
     double weight;    // of the pattern in elevation [1]
-    uint material;
-    double facet_slope;
+    uint material, triangle;
+    dvec3 axis;  // of the facet's lobe
 };
 
+// A normal, or what is turned as normals are, in the frustum's axes.
+dvec3 placed(ObjectRecord object, dvec3 normal) {
+    return frustumFromSonar(dvec3(dot(dvec3(object.normal_x.xyz), normal), dot(dvec3(object.normal_y.xyz), normal), dot(dvec3(object.normal_z.xyz), normal)));
+}
+
 Seen seenAt(ivec2 pixel, dvec2 uv) {
-    Seen seen = Seen(dvec3(1.0, 0.0, 0.0), 0.0, uv, 0.0, 0.0, dvec2(0.0), 1.0, 0u, 0.0);
+    Seen seen = Seen(dvec3(1.0, 0.0, 0.0), 0.0, uv, 0.0, 0.0, dvec2(0.0), 1.0, 0u, 0u, dvec3(0.0));
 #ifdef HAVE_ELEVATION_PATTERN
     seen.weight = elevationWeight(uv.x, uv.y);
 #endif
@@ -172,9 +182,10 @@ Seen seenAt(ivec2 pixel, dvec2 uv) {
     if (texel.x == 0u) return seen;
     CommandRecord command = commands[texel.x - 1u];
     ObjectRecord object = objects[command.object];
-    PlaneRecord plane = planes[command.first_triangle + texel.y];
+    seen.triangle = command.first_triangle + texel.y;
+    PlaneRecord plane = PlaneRecord(planes[2u * seen.triangle], planes[2u * seen.triangle + 1u]);
     dvec3 across = dvec3(plane.normal.xyz);
-    seen.normal = frustumFromSonar(dvec3(dot(dvec3(object.normal_x.xyz), across), dot(dvec3(object.normal_y.xyz), across), dot(dvec3(object.normal_z.xyz), across)));
+    seen.normal = placed(object, across);
     seen.distance = dot(across, dvec3(plane.point.xyz) - (dvec3(object.eye.xyz) + dvec3(object.eye_rest.xyz))) + double(plane.normal.w);
 #ifdef HAVE_JITTER
     seen.ray += pixel_size * dvec2(jitter(pixel.x, pixel.y, 0u), jitter(pixel.x, pixel.y, 1u));
@@ -185,7 +196,9 @@ Seen seenAt(ivec2 pixel, dvec2 uv) {
 #endif
     seen.reach = dvec2(object.extent.xy);
     seen.material = command.material;
-    seen.facet_slope = double(plane.point.w);
+#ifdef HAVE_BACKSCATTER_LAWS
+    if (materials[seen.material].law.y > 0.0) seen.axis = placed(object, dvec3(facetOf(seen.triangle).axis.xyz));
+#endif
     return seen;
 }
 
@@ -198,16 +211,22 @@ uint sharesOf(ivec2 pixel) {
 #endif
 }
 
-// Strength times slant range of a cell [m].
-double strengthRange(Seen seen, PlaneFootprint cell, double angle) {
+// Strength times slant range of a cell that is looked at along `towards` [m].
+double strengthRange(Seen seen, PlaneFootprint cell, dvec2 towards, double width, double height) {
     double inverse_range = cell.footprint.pixel;
     bool mapped = seen.mapped > 0.0 && cell.perpendicular > 0.0;
 #ifdef HAVE_BACKSCATTER_LAWS
     MaterialRecord material = materials[seen.material];
     if (!FOLLOWS_LAMBERT(material.law) && inverse_range > 0.0) {
         double cosine = mapped ? seen.mapped : min(cell.perpendicular * inverse_range, 1.0);
-        double slope = seen.facet_slope + slopeOfSample(angle);
-        return strength_scale / inverse_range * backscatterOverCosine(material.law, double(material.values.x), cosine, slope);
+        LobeSlopes slopes = LobeSlopes(0.0, 0.0, 0.0, 0.0, 0.0, 0.0);
+        if (material.law.y > 0.0) {
+            double level = sqrt(1.0 + towards.x * towards.x), per_length = 1.0 / sqrt(1.0 + dot(towards, towards));
+            slopes = lobeSlopes(facetOf(seen.triangle), double(material.law.z), 1.0 / inverse_range, seen.normal.x, seen.normal.y,
+                                seen.normal.z, seen.axis.x, seen.axis.y, seen.axis.z, 1.0 / level, towards.x / level,
+                                level * per_length, towards.y * per_length, width, height, seen.mapped);
+        }
+        return strength_scale / inverse_range * backscatterOverCosine(material.law, double(material.values.x), cosine, slopes);
     }
 #endif
     return seen.strength * (mapped ? seen.mapped / inverse_range : cell.perpendicular);
@@ -230,7 +249,7 @@ void depositShare(ShareRecord share, dvec2 uv, Seen seen) {
                                          towards.x / level, level * per_length, towards.y * per_length, at.width,
                                          at.height, 0.0, at.size * seen.weight, seen.reach.x, seen.reach.y,
                                          binEdge(0u), binEdge(bin_count));
-    depositCell(cell.footprint, share.beam, strengthRange(seen, cell, max(at.width, at.height)));
+    depositCell(cell.footprint, share.beam, strengthRange(seen, cell, towards, at.width, at.height));
 #ifdef HAVE_VOLUME
     cell.footprint.size = at.size * seen.weight;
     depositVolume(cell.footprint, share.beam, towards);

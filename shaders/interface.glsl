@@ -4,12 +4,18 @@
 #ifdef GLSL
 #define EDGE_ON_COSINE 1e-4lf
 #define MIN_LOBE_COSINE 1e-6lf
+#define MIN_ACROSS 1e-30lf
+#define MIN_SINE_SQUARE 1e-12lf
+#define LOBE_PI 3.14159265358979323846lf
 #define MIN_RISE 1e-9lf
 #define MIN_WIDTH_RATIO 1e-12lf
 #define MIN_WIDTH 1e-300lf
 #else
 #define EDGE_ON_COSINE 1e-4
 #define MIN_LOBE_COSINE 1e-6
+#define MIN_ACROSS 1e-30
+#define MIN_SINE_SQUARE 1e-12
+#define LOBE_PI 3.14159265358979323846
 #define MIN_RISE 1e-9
 #define MIN_WIDTH_RATIO 1e-12
 #define MIN_WIDTH 1e-300
@@ -54,8 +60,20 @@ struct ObjectRecord {
 // A triangle's plane, in object axes: as exact as the triangle is small, wherever the object's origin lies.
 struct PlaneRecord {
     vec4 normal;  // xyz: unit normal [1]; w: what is to be added to distances of `point` along it [m]
-    vec4 point;   // xyz: close to the triangle, on the plane but for the rounding that normal.w makes up for [m]; w: what
-                  // the facet adds to the mean square slope of a lobe [1]
+    vec4 point;   // xyz: close to the triangle, on the plane but for the rounding that normal.w makes up for [m]
+};
+
+// How a facet spreads the lobe of its material, in two principal directions of its plane.
+struct FacetRecord {
+    vec4 axis;           // xyz: the first direction, which is turned as normals are, of any length
+    vec4 first, second;  // x, y: mean square slopes of steps and of diffraction [1], z: curvature [1/m]; w: the smooth surface's
+                         // slope along the second is first.w + second.w times the square of that along the first [1]
+};
+
+// How a lobe is seen in two directions across each other: squares of the sines of the way to the normal, mean square slopes of
+// all that widens it, and of these the part of diffraction [1].
+struct LobeSlopes {
+    double sine_1, sine_2, square_1, square_2, wave_1, wave_2;
 };
 
 // One draw of a run of triangles.

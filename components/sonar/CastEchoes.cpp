@@ -11,6 +11,7 @@
 #include "components/sonar/EchoField.hpp"
 #include "components/sonar/EchoGrid.hpp"
 #include "components/sonar/EchoRenderer.hpp"
+#include "components/sonar/FacetLobes.hpp"
 #include "components/sonar/MeshesAhead.hpp"
 #include "components/sonar/ObjectPlaces.hpp"
 #include "components/sonar/PathEchoes.hpp"
@@ -116,6 +117,7 @@ private:
     RayVisibility visibility_;
     std::optional<RayPaths> ray_paths_;      ///< None where rays are straight.
     std::vector<MeshFacts::Planes> planes_;  ///< Of each mesh.
+    std::vector<MeshFacts::Facets> facets_;  ///< Of each mesh.
     std::unique_ptr<NormalMapping> normal_maps_;
     MeshesAhead ahead_;
     std::vector<PlacedRun> runs_;      ///< Of the visibility's commands, in this ping.
@@ -151,9 +153,14 @@ bool CastEchoes::takeScene(types::GeometryPtr geometry, bool same_plan) {
     places_ = std::make_unique<ObjectPlaces>(*geometry_, reachOf(plan_), true);
     normal_maps_ = std::make_unique<NormalMapping>(*geometry_);
     std::vector<MeshFacts::Planes> planes;
-    for (size_t i = 0; i < geometry_->meshes.size(); ++i)
-        planes.push_back(MeshFacts::of(geometry_->meshes.shared(i))->planes(scaleOf(*geometry_, i), plan_.laws));
+    std::vector<MeshFacts::Facets> facets;
+    for (size_t i = 0; i < geometry_->meshes.size(); ++i) {
+        const auto facts = MeshFacts::of(geometry_->meshes.shared(i));
+        planes.push_back(facts->planes());
+        facets.push_back(facts->facets(worldFromMesh(*geometry_, i), plan_.laws));
+    }
     planes_ = std::move(planes);
+    facets_ = std::move(facets);
     runs_.reserve(visibility_.commands().size());
     if (ray_paths_) ray_paths_->takeScene(*geometry_);
     if (paths_) paths_->takeScene(*geometry_);
@@ -234,7 +241,8 @@ void CastEchoes::placeRuns() {
     runs_.clear();
     for (const CommandRecord& command : visibility_.commands()) {
         const auto mesh = static_cast<size_t>(geometry_->objects[command.object].mesh);
-        runs_.push_back(placedRun(places_->records()[command.object], command, rules_, planes_[mesh]->data()));
+        const FacetRecord* facets = facets_[mesh] ? facets_[mesh]->data() : nullptr;
+        runs_.push_back(placedRun(places_->records()[command.object], command, rules_, planes_[mesh]->data(), facets));
     }
 }
 

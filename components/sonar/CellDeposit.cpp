@@ -16,10 +16,10 @@ INSONIFY_VECTOR_CLONES void coverAll(const Cells& cells, double near_edge, doubl
                                      Covered& __restrict covered) {
     const int count = cells.count;
     for (int i = 0; i < count; ++i) {
-        const PlaneFootprint seen = planeFootprint(
-            cells.normal_x[i], cells.normal_y[i], cells.normal_z[i], cells.distance[i], cells.cos_az[i],
-            cells.sin_az[i], cells.cos_el[i], cells.sin_el[i], cells.width[i], cells.height[i], cells.lean[i],
-            cells.size[i], cells.near_limit[i], cells.far_limit[i], near_edge, far_edge);
+        const PlaneFootprint seen =
+            planeFootprint(cells.normal_x[i], cells.normal_y[i], cells.normal_z[i], cells.distance[i], cells.cos_az[i],
+                           cells.sin_az[i], cells.cos_el[i], cells.sin_el[i], cells.width[i], cells.height[i],
+                           cells.lean[i], cells.size[i], cells.near_limit[i], cells.far_limit[i], near_edge, far_edge);
         const Footprint& cell = seen.footprint;
         covered.pixel[i] = cell.pixel;
         covered.centre[i] = cell.centre;
@@ -51,7 +51,7 @@ const EstimatorEntry& estimatorOf(const Features& features) {
 }  // namespace
 
 PlacedRun placedRun(const ObjectRecord& object, const CommandRecord& command, const EchoRules& rules,
-                    const PlaneRecord* planes) {
+                    const PlaneRecord* planes, const FacetRecord* facets) {
     const vec4& values = rules.laws.records[command.material].values;
     const double strength = double{rules.features.has(Feature::Cerqueira2017) ? values.y : values.x};
     PlacedRun run{{},
@@ -62,6 +62,7 @@ PlacedRun placedRun(const ObjectRecord& object, const CommandRecord& command, co
                   object.extent.y,
                   strength * rules.strength_scale,
                   planes,
+                  facets,
                   command.material};
     for (int i = 0; i < 3; ++i) {
         run.normal_x[i] = double{object.normal_x[i]};
@@ -87,10 +88,24 @@ void CellDeposit::applyLaws() {
                                    cells.normal_z[i] * cells.normal_z[i]);
         const double cosine =
             cells.mapped[i] > 0 ? cells.mapped[i] : min(abs(cells.distance[i]) * covered.pixel[i] / normal, 1.0);
-        covered.strength_range[i] = rules_.strength_scale / covered.pixel[i] *
-                                    rules_.laws.overCosine(cells.material[i], cosine, cells.facet_slope[i],
-                                                           max(cells.width[i], cells.height[i]));
+        covered.strength_range[i] =
+            rules_.strength_scale / covered.pixel[i] * rules_.laws.overCosine(cells.material[i], cosine, lobeSlopes(i));
     }
+}
+
+LobeSlopes CellDeposit::lobeSlopes(int i) const {
+    if (cells.facet[i] == nullptr || !rules_.laws.hasLobe(cells.material[i])) return {};
+    return rules_.laws.lobeSlopes(cells.material[i], {*cells.facet[i],
+                                                      {cells.normal_x[i], cells.normal_y[i], cells.normal_z[i]},
+                                                      turned(*cells.run[i], cells.facet[i]->axis),
+                                                      1 / covered.pixel[i],
+                                                      cells.cos_az[i],
+                                                      cells.sin_az[i],
+                                                      cells.cos_el[i],
+                                                      cells.sin_el[i],
+                                                      cells.width[i],
+                                                      cells.height[i],
+                                                      cells.mapped[i]});
 }
 
 CellDeposit::CellDeposit(const EchoRules& rules, const WaterView& water, bool bent, const EchoSums& to)

@@ -9,8 +9,8 @@ namespace insonify::sonar {
 
 /** Where the echoes of cells go. */
 struct EchoSums {
-    int first_beam;    ///< Of the sums [1].
-    uint64_t* sums;    ///< EchoRules::sumCount() for each beam from the first on: [bin][channel] in quanta.
+    int first_beam;  ///< Of the sums [1].
+    uint64_t* sums;  ///< EchoRules::sumCount() for each beam from the first on: [bin][channel] in quanta.
     const TruthSink* truth = nullptr;  ///< Where the truth of the sums is reported; null: nowhere.
 };
 
@@ -41,6 +41,8 @@ public:
 
 private:
     void applyLaws();
+    /** How the lobe of cell i is seen; zeros where its material has none. */
+    LobeSlopes lobeSlopes(int i) const;
 
     const EchoRules& rules_;
     WaterView water_;

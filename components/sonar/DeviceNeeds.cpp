@@ -32,8 +32,9 @@ int64_t largestBuffer(const DepositSetup& setup, const types::Geometry& geometry
         shares = std::max(shares, frustum.shares.size());
         starts = std::max(starts, frustum.starts.size());
     }
+    const size_t triangle = sizeof(PlaneRecord) + (setup.rules.laws.hasLobes() ? sizeof(FacetRecord) : 0);
     return static_cast<int64_t>(
-        std::max({setup.sumCount() * sizeof(uint64_t), triangles * sizeof(PlaneRecord), shares * sizeof(ShareRecord),
+        std::max({setup.sumCount() * sizeof(uint64_t), triangles * triangle, shares * sizeof(ShareRecord),
                   starts * sizeof(uint32_t), geometry.objects.size() * sizeof(ObjectRecord),
                   static_cast<size_t>(clusterCount(geometry)) * sizeof(NormalTransform)}));
 }

@@ -24,11 +24,11 @@ private:
     struct FrustumShares {
         gpu::Buffer starts, shares;
     };
-    void setUniforms(const ViewFrustum& frustum) const;
+    void setUniforms(const ViewFrustum& frustum, const SurfacePass& surface) const;
     struct Uniforms {
         GLint image_size, bin_count, beam_stride, bin_width, attenuation, strength_scale, frustum_axis, extent,
             pixel_size, elevation_reach, upward, sonar_height, layer_count, first_elevation, first_backscatter,
-            first_layer;
+            first_facet, first_layer;
     };
 
     DepositSetup setup_;
@@ -43,15 +43,13 @@ private:
 };
 
 GpuDeposit::GpuDeposit(const DepositSetup& setup, gpu::EglContext& context)
-    : setup_(setup),
-      context_(context),
-      program_(context.programs().compute("deposit.comp.glsl", setup.defines)) {
+    : setup_(setup), context_(context), program_(context.programs().compute("deposit.comp.glsl", setup.defines)) {
     const auto at = [this](const char* name) { return glGetUniformLocation(program_.id(), name); };
     uniforms_ = {
         at("image_size"),     at("bin_count"),    at("beam_stride"), at("bin_width"),       at("attenuation"),
         at("strength_scale"), at("frustum_axis"), at("extent"),      at("pixel_size"),      at("elevation_reach"),
         at("upward"),         at("sonar_height"), at("layer_count"), at("first_elevation"), at("first_backscatter"),
-        at("first_layer")};
+        at("first_facet"),    at("first_layer")};
     std::vector<double> numbers = setup.rules.edges;
     const auto append = [&](const std::vector<double>& table) {
         const auto first = static_cast<GLuint>(numbers.size());
@@ -68,7 +66,7 @@ GpuDeposit::GpuDeposit(const DepositSetup& setup, gpu::EglContext& context)
     sums_ = gpu::ReadBack(setup.sumCount() * sizeof(uint64_t));
 }
 
-void GpuDeposit::setUniforms(const ViewFrustum& frustum) const {
+void GpuDeposit::setUniforms(const ViewFrustum& frustum, const SurfacePass& surface) const {
     glUniform2i(uniforms_.image_size, frustum.columns, frustum.rows);
     glUniform1ui(uniforms_.bin_count, static_cast<GLuint>(setup_.rules.bins.bin_count));
     glUniform1ui(uniforms_.beam_stride, static_cast<GLuint>(setup_.rules.beamStride()));
@@ -81,6 +79,8 @@ void GpuDeposit::setUniforms(const ViewFrustum& frustum) const {
     glUniform2d(uniforms_.pixel_size, frustum.du(), frustum.dv());
     glUniform1ui(uniforms_.first_elevation, first_elevation_);  // without the feature its place is -1, which GL ignores
     glUniform1ui(uniforms_.first_backscatter, first_backscatter_);
+    const size_t vectors = surface.scene().planes().size() * sizeof(PlaneRecord) / sizeof(vec4);
+    glUniform1ui(uniforms_.first_facet, static_cast<GLuint>(vectors));
     if (uniforms_.layer_count < 0) return;
     const glm::dvec3 up = upwardIn(frustum, water_);
     glUniform3d(uniforms_.upward, up.x, up.y, up.z);
@@ -91,7 +91,7 @@ void GpuDeposit::setUniforms(const ViewFrustum& frustum) const {
 
 void GpuDeposit::take(size_t frustum, const SurfacePass& surface) {
     program_.use();
-    setUniforms(setup_.frusta[frustum]);
+    setUniforms(setup_.frusta[frustum], surface);
     surface.bindResults(frustum);
     shares_[frustum].shares.bindBase(GL_SHADER_STORAGE_BUFFER, SHARES_BINDING);
     shares_[frustum].starts.bindBase(GL_SHADER_STORAGE_BUFFER, SHARE_STARTS_BINDING);

@@ -9,8 +9,8 @@ using glm::vec4;
 using uint = uint32_t;
 #include "shaders/interface.glsl"
 
-static_assert(sizeof(ObjectRecord) == 144 && sizeof(PlaneRecord) == 32 && sizeof(CommandRecord) == 16 &&
-              sizeof(MaterialRecord) == 32 && sizeof(ShareRecord) == 40 && sizeof(ClusterRecord) == 80 &&
-              sizeof(ViewedObject) == 160);
+static_assert(sizeof(ObjectRecord) == 144 && sizeof(PlaneRecord) == 32 && sizeof(FacetRecord) == 48 &&
+              sizeof(CommandRecord) == 16 && sizeof(MaterialRecord) == 32 && sizeof(ShareRecord) == 40 &&
+              sizeof(ClusterRecord) == 80 && sizeof(ViewedObject) == 160);
 
 }  // namespace insonify::sonar

@@ -19,6 +19,7 @@ struct Shared {
     const double* entries;
     double backscatterEntry(uint i) const { return entries[i]; }
     static double exp(float x) { return double{std::exp(x)}; }
+    static double sqrt(double x) { return std::sqrt(x); }
     static double min(double a, double b) { return std::min(a, b); }
     static double max(double a, double b) { return std::max(a, b); }
     static uint min(uint a, uint b) { return std::min(a, b); }
@@ -83,15 +84,30 @@ bool MaterialLaws::hasLobes() const {
     return std::ranges::any_of(records, [](const MaterialRecord& record) { return record.law.y > 0; });
 }
 
-double MaterialLaws::overCosine(size_t material, double cosine, double facet_slope, double sample_angle) const {
+void LobeSample::lookAlong(const glm::dvec3& direction) {
+    const double level = std::hypot(direction.x, direction.y);
+    cos_az = level > 0 ? direction.x / level : 1;
+    sin_az = level > 0 ? direction.y / level : 0;
+    cos_el = level;
+    sin_el = direction.z;
+}
+
+double MaterialLaws::overCosine(size_t material, double cosine, const LobeSlopes& slopes) const {
     Shared shared{tables.data()};
     const MaterialRecord& record = records[material];
-    return shared.backscatterOverCosine(record.law, double{record.values.x}, cosine,
-                                        facet_slope + shared.slopeOfSample(sample_angle));
+    return shared.backscatterOverCosine(record.law, double{record.values.x}, cosine, slopes);
+}
+
+LobeSlopes MaterialLaws::lobeSlopes(size_t material, const LobeSample& sample) const {
+    Shared shared{tables.data()};
+    const glm::dvec3 &n = sample.normal, &a = sample.axis;
+    return shared.lobeSlopes(sample.facet, double{records[material].law.z}, sample.range, n.x, n.y, n.z, a.x, a.y, a.z,
+                             sample.cos_az, sample.sin_az, sample.cos_el, sample.sin_el, sample.width, sample.height,
+                             sample.bent);
 }
 
 MaterialLaws::Bistatic MaterialLaws::bistatic(size_t material, double in, double out, double half,
-                                              double mean_square_slope) const {
+                                              const LobeSlopes& slopes) const {
     Shared shared{tables.data()};
     const MaterialRecord& record = records[material];
     const auto diffuse = [&](double cosine) {  // over the cosine
@@ -99,9 +115,7 @@ MaterialLaws::Bistatic MaterialLaws::bistatic(size_t material, double in, double
                                 : shared.tabulatedBackscatter(static_cast<uint>(record.law.x), cosine);
     };
     Bistatic section{std::sqrt(diffuse(in) * diffuse(out) * in / out), 0};
-    if (record.law.y > 0)
-        section.lobe =
-            shared.lobeOverCosine(double{record.law.y}, double{record.law.z} + mean_square_slope, half) * half / out;
+    if (record.law.y > 0) section.lobe = shared.lobeOverCosine(double{record.law.y}, slopes, half) * half / out;
     return section;
 }
 
@@ -118,9 +132,11 @@ double MaterialLaws::loudestLobe(double sample_angle) const {
     double strongest = 0;
     for (const MaterialRecord& record : records) {
         if (record.law.y == 0) continue;
-        const double slope = double{record.law.z} + shared.slopeOfSample(sample_angle);
+        const double slope = shared.meanSquareSlope(vec4(0), double{record.law.z}, sample_angle * sample_angle, 0);
         for (double cosine = 1; cosine > 1e-3; cosine *= 0.95)
-            strongest = std::max(strongest, shared.lobeOverCosine(double{record.law.y}, slope, cosine));
+            strongest = std::max(
+                strongest,
+                shared.lobeOverCosine(double{record.law.y}, {1 - cosine * cosine, 0, slope, slope, 0, 0}, cosine));
     }
     return strongest;
 }

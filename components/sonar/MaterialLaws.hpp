@@ -1,4 +1,5 @@
 #pragma once
+#include <glm/vec3.hpp>
 #include <optional>
 #include <string>
 #include <vector>
@@ -8,6 +9,19 @@
 #include "types/Geometry.hpp"
 
 namespace insonify::sonar {
+
+/** A sample of a facet: the part of its plane that a sonar sees within a rectangle of azimuth and elevation. */
+struct LobeSample {
+    FacetRecord facet;
+    glm::dvec3 normal, axis;                ///< Of the facet, in the axes of the direction, of any length.
+    double range;                           ///< [m]
+    double cos_az, sin_az, cos_el, sin_el;  ///< Direction of the sample's middle.
+    double width = 0, height = 0;           ///< [rad]
+    double bent = 0;                        ///< Cosine of a bent normal; 0: it is the plane's [1].
+
+    /** Sets the direction, a unit vector. */
+    void lookAlong(const glm::dvec3& direction);
+};
 
 /** What materials give back to a sonar (ACOUSTICS.md 3): by Lambert's law, or by a table, and by a lobe about the
  *  normal. */
@@ -22,17 +36,19 @@ struct MaterialLaws {
 
     bool hasLobes() const;
     bool followsLambert(size_t material) const { return FOLLOWS_LAMBERT(records[material].law); }
-    /** sigma_b / cos(theta) of a material at a cosine [1]; its lobe is widened by what the facet adds to its mean
-     *  square slope [1], and by how wide the sample is [rad]. */
-    double overCosine(size_t material, double cosine, double facet_slope, double sample_angle) const;
+    bool hasLobe(size_t material) const { return records[material].law.y > 0; }
+    /** sigma_b / cos(theta) of a material at a cosine [1]; of one with a lobe, as the lobe is seen. */
+    double overCosine(size_t material, double cosine, const LobeSlopes& slopes = {}) const;
+    /** How the lobe of a material is seen in a sample of a facet. */
+    LobeSlopes lobeSlopes(size_t material, const LobeSample& sample) const;
     /** The same of sound that comes and goes at other angles (ACOUSTICS.md 5.23): of what comes in at one cosine, over
      *  the other of them [1]. */
     struct Bistatic {
         double diffuse, lobe;
     };
-    /** `half`: cosine between the normal and the middle of the two directions [1]. `mean_square_slope`: what facets
-     *  and the sample add to that of the lobe [1]. */
-    Bistatic bistatic(size_t material, double in, double out, double half, double mean_square_slope) const;
+    /** `half`: cosine between the normal and the middle of the two directions [1], in which the lobe is seen as given.
+     */
+    Bistatic bistatic(size_t material, double in, double out, double half, const LobeSlopes& slopes) const;
     /** Largest sigma_b / cos(theta) of any material but for its lobe [1]. */
     double loudest() const;
     /** The same of lobes alone, in samples that are so wide [1, rad]. */

@@ -1,7 +1,9 @@
 #include "components/sonar/MeshFacts.hpp"
 
+#include <algorithm>
 #include <limits>
 
+#include "components/sonar/FacetLobes.hpp"
 #include "components/sonar/NearestPoint.hpp"
 #include "components/sonar/SurfaceScene.hpp"
 
@@ -48,11 +50,19 @@ const BoxTree& MeshFacts::triangles() {
     return triangles_.get([this] { return treeOver(*mesh_); });
 }
 
-MeshFacts::Planes MeshFacts::planes(double scale, const MaterialLaws& laws) {
-    const bool lobed = hasLobes(*mesh_, laws);
-    const std::pair key(lobed ? scale : 0, lobed ? laws.wavelength.value_or(0) : -1);
-    return planes_.of(key,
-                      [&] { return std::make_shared<const std::vector<PlaneRecord>>(planesOf(*mesh_, scale, laws)); });
+MeshFacts::Planes MeshFacts::planes() {
+    return planes_.get([this] { return std::make_shared<const std::vector<PlaneRecord>>(planesOf(*mesh_)); });
+}
+
+MeshFacts::Facets MeshFacts::facets(const glm::dmat3& world_from_mesh, const MaterialLaws& laws) {
+    if (!hasLobes(*mesh_, laws)) return nullptr;
+    const double wavelength = laws.wavelength.value_or(0);
+    std::array<double, 10> key{};
+    std::copy_n(&world_from_mesh[0].x, 9, key.begin());
+    key[9] = wavelength;
+    return facets_.of(key, [&] {
+        return std::make_shared<const std::vector<FacetRecord>>(facetLobes(*mesh_, world_from_mesh, wavelength));
+    });
 }
 
 }  // namespace insonify::sonar

@@ -1,4 +1,6 @@
 #pragma once
+#include <array>
+#include <glm/mat3x3.hpp>
 #include <memory>
 #include <utility>
 #include <vector>
@@ -16,6 +18,7 @@ namespace insonify::sonar {
 class MeshFacts {
 public:
     using Planes = std::shared_ptr<const std::vector<PlaneRecord>>;
+    using Facets = std::shared_ptr<const std::vector<FacetRecord>>;
 
     static constexpr size_t leaf_triangles = 4;  ///< Triangles below a leaf of triangles(), neighbours in the indices.
 
@@ -31,16 +34,18 @@ public:
     double longestEdge();
     /** A tree over runs of leaf_triangles triangles. */
     const BoxTree& triangles();
-    /** A plane for each triangle, as planesOf() makes it of the mesh at a scale, which they depend on where the laws of
-     *  its materials have lobes. */
-    Planes planes(double scale, const MaterialLaws& laws);
+    /** A plane for each triangle, as planesOf() makes it. */
+    Planes planes();
+    /** How each triangle spreads a lobe, as facetLobes() finds it; null where no material of the mesh has one. */
+    Facets facets(const glm::dmat3& world_from_mesh, const MaterialLaws& laws);
 
 private:
     types::MeshPtr mesh_;
     Lazy<Box> box_;
     Lazy<double> longest_edge_;
     Lazy<BoxTree> triangles_;
-    SharedValues<std::pair<double, double>, const std::vector<PlaneRecord>> planes_;  ///< By scale and wavelength [m].
+    Lazy<Planes> planes_;
+    SharedValues<std::array<double, 10>, const std::vector<FacetRecord>> facets_;  ///< By matrix and wavelength [m].
 };
 
 }  // namespace insonify::sonar

@@ -27,11 +27,12 @@ void MeshesAhead::take(const Meshes& meshes, const MaterialLaws& laws) {
 }
 
 MeshesAhead::Made MeshesAhead::make(const types::MeshPtr& mesh, const MaterialLaws& laws) try {
-    Made made{MeshTree::of(mesh), MeshFacts::of(mesh), {}};
+    Made made{MeshTree::of(mesh), MeshFacts::of(mesh), {}, {}};
     made.tree->tree();
     made.facts->box();
     made.facts->longestEdge();
-    made.planes = made.facts->planes(1, laws);
+    made.planes = made.facts->planes();
+    made.facets = made.facts->facets(glm::dmat3(1), laws);
     return made;
 } catch (const std::exception&) {
     return {};  // the ping that needs it meets the same, and reports it

@@ -31,6 +31,7 @@ private:
         std::shared_ptr<MeshTree> tree;
         std::shared_ptr<MeshFacts> facts;
         MeshFacts::Planes planes;
+        MeshFacts::Facets facets;
     };
     void work();
     static Made make(const types::MeshPtr& mesh, const MaterialLaws& laws);

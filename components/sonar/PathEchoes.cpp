@@ -214,6 +214,8 @@ private:
     void hear(const CastTile& tile);
     int sameFrom(int i) const;
     void deposit(const Angles& at, int i, double open);
+    LobeSlopes lobeSlopes(const Angles& at, int i, const MirrorPlane& plane, const glm::dvec3& direction,
+                          double range) const;
     MaterialLaws::Bistatic section(const Angles& at, int i, const MirrorPlane& plane, const HalfWay& way) const;
     void depositOnce(const Angles& at, int i, const MirrorPlane& plane, double open);
     Footprint footprint(const Angles& at, int i, const HalfWay& way, double size) const;
@@ -260,9 +262,7 @@ bool PathEchoes::Tracer::begin(const CastTile& tile) {
 MirrorPlane PathEchoes::Tracer::planeOf(const TileHits& hits, int i) const {
     const PlacedRun& run = scene_.ranges[hits.command[i]];
     const PlaneRecord& plane = run.planes[hits.triangle[i]];
-    const glm::dvec3 n(plane.normal), p(plane.point);
-    const auto turned = [&](const double* row) { return row[0] * n.x + row[1] * n.y + row[2] * n.z; };
-    const glm::dvec3 normal(turned(run.normal_x), turned(run.normal_y), turned(run.normal_z));
+    const glm::dvec3 n(plane.normal), p(plane.point), normal = turned(run, plane.normal);
     const double distance =
         glm::dot(n, p - glm::dvec3(run.eye[0], run.eye[1], run.eye[2])) + static_cast<double>(plane.normal.w);
     const double length = glm::length(normal);
@@ -285,10 +285,15 @@ void PathEchoes::Tracer::reflect(int i, const glm::dvec3& from, const glm::dvec3
     const MirrorPlane plane = planeOf(hits, i);
     const double cosine = std::abs(glm::dot(plane.normal, way));
     if (reflected == 0 || !(cosine > edge_on)) return drop(i);
-    const PlaneRecord& record = scene_.ranges[hits.command[i]].planes[hits.triangle[i]];
     chain.names[k] = uint64_t{hits.command[i]} << 32 | hits.triangle[i];
     chain.power *= reflected;
-    chain.widest = std::max(chain.widest, static_cast<double>(record.point.w) / cosine);
+    if (const FacetRecord* facets = scene_.ranges[hits.command[i]].facets) {
+        const FacetRecord& facet = facets[hits.triangle[i]];
+        const auto spread = [](const vec4& along) {
+            return static_cast<double>(along.x) + static_cast<double>(along.y);
+        };
+        chain.widest = std::max(chain.widest, std::sqrt(spread(facet.first) * spread(facet.second)) / cosine);
+    }
     chain.begins_lobed |= k == 0 && rules_.laws.records[command.material].law.y > 0;
     send(i, plane, from, way, double{hits.distance[i]});
 }
@@ -378,29 +383,45 @@ void PathEchoes::Tracer::deposit(const Angles& at, int i, double open) {
     const double facing = glm::dot(plane.normal, at.middle);
     if (!(std::abs(facing) > edge_on && plane.distance * facing > 0)) return;
     const PlacedRun& run = scene_.ranges[hits_.command[i]];
-    const PlaneRecord& record = run.planes[hits_.triangle[i]];
     tellWay(i, true);
     const HalfWay twice = halfWay(plane, glm::dvec3(0), at);
-    const double strength = rules_.strength_scale * chain.power * chain.power *
-                            rules_.laws.overCosine(run.material, std::abs(facing), static_cast<double>(record.point.w),
-                                                   std::max(at.width, at.height));
+    const double strength =
+        rules_.strength_scale * chain.power * chain.power *
+        rules_.laws.overCosine(run.material, std::abs(facing), lobeSlopes(at, i, plane, at.middle, 1 / twice.inverse));
     bins_.depositCell(footprint(at, i, twice, at.weighted), static_cast<uint>(at.cell), strength / twice.inverse);
     if (open > 0) depositOnce(at, i, plane, open);
+}
+
+/** How the lobe of a cell is seen along a direction, in the image of space behind the mirrors. */
+LobeSlopes PathEchoes::Tracer::lobeSlopes(const Angles& at, int i, const MirrorPlane& plane,
+                                          const glm::dvec3& direction, double range) const {
+    const PlacedRun& run = scene_.ranges[hits_.command[i]];
+    if (!run.facets || !rules_.laws.hasLobe(run.material)) return {};
+    LobeSample sample{};
+    sample.facet = run.facets[hits_.triangle[i]];
+    sample.normal = plane.normal;
+    sample.axis = chains_[static_cast<size_t>(i)].turned(turned(run, sample.facet.axis));
+    sample.range = range;
+    sample.lookAlong(direction);
+    sample.width = at.width;
+    sample.height = at.height;
+    return rules_.laws.lobeSlopes(run.material, sample);
 }
 
 /** What a cell gives back of sound that comes directly and goes by the mirrors, or the other way round. */
 MaterialLaws::Bistatic PathEchoes::Tracer::section(const Angles& at, int i, const MirrorPlane& plane,
                                                    const HalfWay& way) const {
     const PlacedRun& run = scene_.ranges[hits_.command[i]];
-    const double facet = static_cast<double>(run.planes[hits_.triangle[i]].point.w);
-    const double angle = std::max(at.width, at.height);
     const double direct = std::abs(glm::dot(plane.normal, way.from_focus));
     const double mirrored = std::abs(glm::dot(plane.normal, at.middle));
     if (!(direct > edge_on)) return {0, 0};
     const double widest = chains_[static_cast<size_t>(i)].widest;
-    const double slope = std::max(widest / mirrored, facet / (direct * mirrored)) + 0.5 * angle * angle;
-    const double half = std::abs(glm::dot(plane.normal, glm::normalize(at.middle + way.from_focus)));
-    return rules_.laws.bistatic(run.material, direct, mirrored, half, slope);
+    const glm::dvec3 middle = glm::normalize(at.middle + way.from_focus);
+    LobeSlopes slopes = lobeSlopes(at, i, plane, middle, 1 / way.inverse);
+    slopes.square_1 += std::max(widest / mirrored, slopes.wave_1 / (direct * mirrored)) - slopes.wave_1;
+    slopes.square_2 += std::max(widest / mirrored, slopes.wave_2 / (direct * mirrored)) - slopes.wave_2;
+    slopes.wave_1 = slopes.wave_2 = 0;  // what a chain of plates shows of a plate ends in no edge of its own
+    return rules_.laws.bistatic(run.material, direct, mirrored, std::abs(glm::dot(plane.normal, middle)), slopes);
 }
 
 /** Out directly and back by the mirrors, and the other way round, which is the same but for where it is sent and

@@ -96,7 +96,7 @@ private:
             cells_.setMiss(i);
         } else {
             const PlacedRun& run = part_.picture.ranges[texel[0] - 1];
-            cells_.setPlane(i, run, run.planes[texel[1]]);
+            cells_.setPlane(i, run, texel[1]);
             if (part_.picture.channels == 4) cells_.mapped[i] = static_cast<double>(std::bit_cast<float>(texel[2]));
             if (deposit_.to().truth) cells_.object[i] = part_.picture.objects[texel[0] - 1];
             cells_.hits[i] = 1;
@@ -121,7 +121,8 @@ private:
             if (!(cells_.mapped[i] > 0)) continue;
             const double u = shares_.u[i], v = shares_.v[i], per_length = 1 / sqrt(1 + u * u + v * v);
             const double x = frame_.cosine - frame_.sine * u, y = frame_.sine + frame_.cosine * u;
-            const double of_ray = (cells_.normal_x[i] * x + cells_.normal_y[i] * y + cells_.normal_z[i] * v) * per_length;
+            const double of_ray =
+                (cells_.normal_x[i] * x + cells_.normal_y[i] * y + cells_.normal_z[i] * v) * per_length;
             const double of_cell =
                 (cells_.normal_x[i] * cells_.cos_az[i] + cells_.normal_y[i] * cells_.sin_az[i]) * cells_.cos_el[i] +
                 cells_.normal_z[i] * cells_.sin_el[i];

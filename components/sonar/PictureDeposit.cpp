@@ -25,6 +25,7 @@ PictureDeposit::PictureDeposit(DepositSetup setup, const SurfacePass& surface, c
       context_(context),
       threads_(threads),
       planes_(surface.scene().planes()),
+      facets_(surface.scene().facets()),
       columns_(static_cast<size_t>(threads.size()), std::vector<std::array<int, 2>>(setup_.shares.size())),
       pictures_(setup_.frusta.size()),
       sums_(setup_.sumCount()) {
@@ -50,8 +51,9 @@ void PictureDeposit::take(size_t frustum, const SurfacePass& surface) {
     picture.view.objects.clear();
     for (const CommandRecord& command : surface.lists().commands(frustum)) {
         if (truth_) picture.view.objects.push_back(command.object);
+        const FacetRecord* facets = facets_.empty() ? nullptr : facets_.data() + command.first_triangle;
         picture.view.ranges.push_back(placedRun(surface.objects()[command.object], command, setup_.rules,
-                                                planes_.data() + command.first_triangle));
+                                                planes_.data() + command.first_triangle, facets));
     }
 }
 
@@ -86,8 +88,8 @@ void PictureDeposit::depositPart(size_t part) {
     for (size_t i = 0; i < setup_.frusta.size(); ++i) {
         const Taken& taken = pictures_[i];
         if (!taken.taken) continue;
-        const PicturePart frustum{setup_.rules, setup_.frusta[i], setup_.shares[i], taken.view, water_,
-                                  first,        last,             columns_[part][i]};
+        const PicturePart frustum{setup_.rules, setup_.frusta[i], setup_.shares[i], taken.view, water_, first,
+                                  last,         columns_[part][i]};
         if (!truth_) {
             depositPicture(frustum, {0, sums_.data()});
             continue;

@@ -6,7 +6,8 @@
 
 namespace insonify::sonar {
 
-/** The deposit of pictures on the processor: reads them back; each thread owns a run of beams, so none waits for another.
+/** The deposit of pictures on the processor: reads them back; each thread owns a run of beams, so none waits for
+ * another.
  */
 class PictureDeposit final : public BinDeposit {
 public:
@@ -36,6 +37,7 @@ private:
     const gpu::EglContext& context_;
     ThreadPool& threads_;
     const std::vector<PlaneRecord>& planes_;
+    const std::vector<FacetRecord>& facets_;
     std::vector<std::vector<std::array<int, 2>>> columns_;  ///< Of each thread and frustum: from, to.
     std::vector<Taken> pictures_;                           ///< Of each frustum.
     WaterView water_;                                       ///< Of the ping that is taken.

@@ -104,7 +104,7 @@ private:
         const CommandRecord& command = scene_.commands[tile.hits->command[sample]];
         const uint32_t object = command.object;
         const int i = cells_.count;
-        cells_.setPlane(i, run, run.planes[tile.hits->triangle[sample]]);
+        cells_.setPlane(i, run, tile.hits->triangle[sample]);
         aim(tile, sample, merged);
         if (fields_) places_[i].object = object, places_[i].lattice = command.lattice;
         if (mapped_) cells_.mapped[i] = mappedCosine(tile, sample, merged);
@@ -206,8 +206,7 @@ private:
 
 INSONIFY_VECTOR_CLONES __attribute__((flatten)) void depositTiles(const EchoRules& rules, const CastView& view,
                                                                   const PlacedScene& scene,
-                                                                  std::span<const CastTile> tiles,
-                                                                  const EchoSums& to) {
+                                                                  std::span<const CastTile> tiles, const EchoSums& to) {
     TileCells cells(rules, view, scene, to);
     for (const CastTile& tile : tiles) cells.add(tile);
     cells.finish();

@@ -144,7 +144,11 @@ public:
             plane.mapped ? mapped(triangle, across.middle, up.middle, middle) : middle * std::abs(distance);
         const Spread spread({inverseRange(across.low, up.low), inverseRange(across.low, up.high),
                              inverseRange(across.high, up.low), inverseRange(across.high, up.high)});
-        share(spread, across.size * up.size * fan_.tree.backscatter(triangle, cosine) / middle,
+        const glm::dvec3 ahead(across.middle.cosine * up.middle.cosine, across.middle.sine * up.middle.cosine,
+                               up.middle.sine);
+        const double strength = fan_.tree.backscatter(
+            triangle, cosine, fan_.tree.hasLobes() ? ahead * sonar_from_world_ : ahead, 1 / middle);
+        share(spread, across.size * up.size * strength / middle,
               beam(static_cast<size_t>(column / fan_.columns_per_beam)));
     }
 

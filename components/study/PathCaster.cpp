@@ -104,7 +104,8 @@ private:
             double cosine = std::abs(glm::dot(plane.normal, point.direction));
             if (point.is_direct && plane.mapped)
                 cosine = tree_.mappedCosine(point.triangle, point.place(), point.direction);
-            add(point.range, tree_.backscatter(point.triangle, cosine) / (point.range * point.range));
+            add(point.range, tree_.backscatter(point.triangle, cosine, point.direction, point.range) /
+                                 (point.range * point.range));
         }
     }
 
@@ -135,9 +136,10 @@ private:
             const glm::dvec3& normal = tree_[point.triangle].normal;
             const double back = glm::dot(normal, point.direction), there = glm::dot(normal, out[i]);
             if (!(back * there > 0)) continue;  // lit from behind
-            const double half = std::abs(glm::dot(normal, glm::normalize(point.direction + out[i])));
-            add((point.range + reach[i]) / 2,
-                tree_.bistatic(point.triangle, std::abs(back), std::abs(there), half) / (reach[i] * reach[i]));
+            const double range = (point.range + reach[i]) / 2;
+            add(range, tree_.bistatic(point.triangle, std::abs(back), std::abs(there),
+                                      glm::normalize(point.direction + out[i]), range) /
+                           (reach[i] * reach[i]));
         }
     }
 

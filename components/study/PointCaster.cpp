@@ -180,7 +180,7 @@ private:
             const glm::dvec3 ahead = world_from_sonar_ * direction;
             cosine = tree_.mappedCosine(number, from_ + range * ahead, ahead);
         }
-        sums_.echoes[binOf(range)] += solid_angle * tree_.backscatter(number, cosine) / (range * range);
+        sums_.echoes[binOf(range)] += solid_angle * tree_.backscatter(number, cosine, world_from_sonar_ * direction, range) / (range * range);
     }
 
     size_t binOf(double range) const {

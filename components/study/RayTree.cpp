@@ -12,7 +12,7 @@
 #include <stdexcept>
 #include <string>
 
-#include "components/sonar/SurfaceScene.hpp"
+#include "components/sonar/FacetLobes.hpp"
 
 namespace insonify::study {
 namespace {
@@ -112,15 +112,31 @@ void RayTree::takeLaws(const sonar::SonarConfig& config) {
     const Hearer hearer{config.model, config.frequency_khz, config.speedOfSound()};
     if (std::exchange(heard_by_, hearer) == hearer) return;
     laws_ = sonar::makeMaterialLaws(config, *geometry_);
+    facets_.clear();
     if (laws_.tables.empty() && !laws_.hasLobes()) return void(laws_.records.clear());
     std::vector<size_t> first{0};
     for (const types::Mesh& mesh : geometry_->meshes) first.push_back(first.back() + mesh.indices.size() / 3);
-    const std::vector<sonar::PlaneRecord> planes = sonar::planesOf(*geometry_, laws_);
-    for (size_t i = 0; i < triangles_.size(); ++i) {
-        const Source& source = sources_[i];
+    const std::vector<sonar::FacetRecord> facets = sonar::facetLobes(*geometry_, laws_);
+    if (facets.empty()) return;
+    for (const Source& source : sources_) {
         const size_t mesh = static_cast<size_t>(geometry_->objects[source.object].mesh);
-        triangles_[i].facet_slope = planes[first[mesh] + source.first_index / 3].point.w;
+        sonar::FacetRecord& facet = facets_.emplace_back(facets[first[mesh] + source.first_index / 3]);
+        facet.axis = glm::vec4(glm::vec3(places_[source.object].normals * glm::dvec3(facet.axis)), 0);
     }
+}
+
+sonar::LobeSlopes RayTree::lobeSlopes(uint32_t triangle, double cosine, const glm::dvec3& direction,
+                                      double range) const {
+    const Triangle& plane = triangles_[triangle];
+    if (!laws_.hasLobe(static_cast<size_t>(plane.material))) return {};
+    sonar::LobeSample sample{};
+    sample.facet = facets_[triangle];
+    sample.normal = plane.normal;
+    sample.axis = glm::dvec3(facets_[triangle].axis);
+    sample.range = range;
+    sample.lookAlong(direction);
+    if (plane.mapped) sample.bent = cosine;
+    return laws_.lobeSlopes(static_cast<size_t>(plane.material), sample);
 }
 
 void RayTree::add(uint32_t object, std::vector<glm::dvec3>& corners) {
@@ -174,10 +190,13 @@ void RayTree::cast(glm::dvec3 from, std::span<const Rays> rays, std::span<Found>
             found[k][i] = hits[k].hit.geomID[i] == RTC_INVALID_GEOMETRY_ID ? none : hits[k].hit.primID[i];
 }
 
-double RayTree::bistatic(uint32_t triangle, double cosine, double other, double half) const {
+double RayTree::bistatic(uint32_t triangle, double cosine, double other, const glm::dvec3& middle,
+                         double range) const {
     const Triangle& plane = triangles_[triangle];
     if (laws_.records.empty()) return plane.mu * other;
-    const auto section = laws_.bistatic(static_cast<size_t>(plane.material), other, cosine, half, plane.facet_slope);
+    const double half = std::abs(glm::dot(plane.normal, middle));
+    const auto section = laws_.bistatic(static_cast<size_t>(plane.material), other, cosine, half,
+                                        lobeSlopes(triangle, half, middle, range));
     return section.diffuse + section.lobe;
 }
 

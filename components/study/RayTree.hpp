@@ -28,7 +28,6 @@ public:
         double mu;          ///< Its Lambert parameter [1].
         bool mapped;        ///< Its material has a normal map.
         int material;
-        float facet_slope = 0;  ///< What it adds to the mean square slope of a lobe [1].
     };
     /** Directions in the axes of the world, of any length; what is nearer than so many lengths is not met. */
     struct Rays {
@@ -50,18 +49,20 @@ public:
     /** Materials give back what they do to a sonar of this configuration; Lambert's law before that. Nothing is done
      *  for one that materials are the same to as to the last. */
     void takeLaws(const sonar::SonarConfig& config);
-    /** sigma_b / cos(theta) of a triangle [1]. */
-    double backscatter(uint32_t triangle, double cosine) const {
+    /** sigma_b / cos(theta) of a triangle that is met along a unit direction, axes of the world, at a range [1, m]. */
+    double backscatter(uint32_t triangle, double cosine, const glm::dvec3& direction, double range) const {
         const Triangle& plane = triangles_[triangle];
-        return laws_.records.empty() ? plane.mu * cosine
-                                     : laws_.overCosine(static_cast<size_t>(plane.material), cosine,
-                                                        static_cast<double>(plane.facet_slope), 0);
+        if (laws_.records.empty()) return plane.mu * cosine;
+        const auto material = static_cast<size_t>(plane.material);
+        return laws_.overCosine(material, cosine, lobeSlopes(triangle, cosine, direction, range));
     }
 
-    /** sigma_b over the cosine of one way, of sound that comes or goes at the other, `half` the cosine of the middle of
-     *  the two [1]; ACOUSTICS.md 5.23. */
-    double bistatic(uint32_t triangle, double cosine, double other, double half) const;
+    /** sigma_b over the cosine of one way, of sound that comes or goes at the other [1]; `middle`: of the two directions,
+     *  unit, axes of the world, at half of the way out and back [m]. ACOUSTICS.md 5.23. */
+    double bistatic(uint32_t triangle, double cosine, double other, const glm::dvec3& middle, double range) const;
 
+    /** Whether a material has a lobe, for which directions and ranges matter. */
+    bool hasLobes() const { return !facets_.empty(); }
     const glm::dvec3& origin() const { return origin_; }  ///< In the world [m].
     const Triangle& operator[](uint32_t triangle) const { return triangles_[triangle]; }
     /** The object that a triangle is part of: index into the geometry's [1]. */
@@ -73,6 +74,8 @@ public:
     double mappedCosine(uint32_t triangle, glm::dvec3 point, glm::dvec3 direction) const;
 
 private:
+    sonar::LobeSlopes lobeSlopes(uint32_t triangle, double cosine, const glm::dvec3& direction, double range) const;
+
     struct Embree;
     /** Where a triangle comes from. */
     struct Source {
@@ -98,8 +101,9 @@ private:
     glm::dvec3 origin_;
     std::vector<Place> places_;  ///< Of each object.
     std::vector<Triangle> triangles_;
-    std::vector<Source> sources_;  ///< Of each triangle.
-    sonar::MaterialLaws laws_;     ///< None where all follow Lambert's.
+    std::vector<sonar::FacetRecord> facets_;  ///< Of each triangle, its axis in the world; empty without lobes.
+    std::vector<Source> sources_;             ///< Of each triangle.
+    sonar::MaterialLaws laws_;                ///< None where all follow Lambert's.
     std::optional<Hearer> heard_by_;
     std::unique_ptr<Embree> embree_;
 };

@@ -89,7 +89,8 @@ const char* nameOf(Verdict verdict) {
 
 std::vector<StabilityCase> stabilityCases() {
     std::vector<StabilityCase> all;
-    for (const auto& group : {precisionCases, geometryCases, sensorCases, levelCases, sumCases, noiseCases})
+    for (const auto& group :
+         {precisionCases, geometryCases, sensorCases, levelCases, sumCases, noiseCases, targetCases})
         for (StabilityCase& added : group()) all.push_back(std::move(added));
     return all;
 }

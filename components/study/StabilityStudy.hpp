@@ -42,6 +42,7 @@ std::vector<StabilityCase> geometryCases();   ///< Odd geometry: 5, 6, 12, 17, 5
 std::vector<StabilityCase> sensorCases();     ///< Fans, bins, beam patterns, pulses: 21, 23 to 25, 27, 30, 31, 59.
 std::vector<StabilityCase> levelCases();      ///< Dynamic range: 32, 33, 35, 36, 38 to 40.
 std::vector<StabilityCase> sumCases();        ///< Sums, devices, sizes: 41, 44, 55, 58.
+std::vector<StabilityCase> targetCases();     ///< Target strengths of smooth bodies: 61.
 std::vector<StabilityCase> noiseCases();      ///< Seeds and shapes of speckle: 47, 48.
 
 /** A case with its outcome. */

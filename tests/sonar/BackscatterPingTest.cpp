@@ -9,7 +9,6 @@
 #include "components/acoustics/SeabedBackscatter.hpp"
 #include "components/sonar/PlanReport.hpp"
 #include "components/sonar/SonarRenderer.hpp"
-#include "components/sonar/SurfaceScene.hpp"
 #include "tests/support/ClosedForms.hpp"
 #include "tests/support/EveryWay.hpp"
 #include "tests/support/Scenes.hpp"
@@ -193,17 +192,6 @@ TEST(BackscatterPingTest, ALobeIsHeardWithoutAnyLambertianPart) {
         EXPECT_NEAR(10 * std::log10(std::accumulate(ping.bins.begin(), ping.bins.end(), 0.0)),
                     10 * std::log10(0.25 / 400), 0.5);
     }
-}
-
-TEST(BackscatterPingTest, ARowOfFacetsIsWidenedByItsStepsAndAFlatPlateByItsSize) {
-    const std::vector<float> plate = facetSlopes(test::quad({0, 0, 0}, {2, 0, 0}, {0, 1, 0}), 1, 0.01);
-    ASSERT_EQ(plate.size(), 2u);
-    EXPECT_NEAR(plate[0], 1e-4 / (4 * pi * 2), 1e-10) << "both triangles are one flat part";
-    const std::vector<float> twice = facetSlopes(test::quad({0, 0, 0}, {2, 0, 0}, {0, 1, 0}), 2, 0.01);
-    EXPECT_NEAR(twice[0], plate[0] / 4, 1e-10);
-    const double step = pi / 64;
-    const std::vector<float> ball = facetSlopes(test::sphere(1, 64), 1, 0);
-    EXPECT_NEAR(ball[ball.size() / 2], step * step / 2, 0.05 * step * step) << "at the equator";
 }
 
 }  // namespace

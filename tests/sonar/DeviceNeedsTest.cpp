@@ -113,5 +113,18 @@ TEST(DeviceNeedsTest, TheLargestBufferIsOfTrianglesOrOfBins) {
     EXPECT_GE(bytes(), 50'000'000 * sizeof(PlaneRecord));
 }
 
+TEST(DeviceNeedsTest, FacetsLieBehindThePlanesWhereAMaterialHasALobe) {
+    for (const bool lobed : {false, true}) {
+        const auto geometry = test::surfaces();
+        if (lobed) geometry->materials.back().reflection = 0.9f, geometry->materials.back().roughness_slope = 0.1f;
+        const DepositSetup setup = setupOf(planOf(*geometry));
+        geometry->meshes[0].indices.resize(3 * 1'000'000);
+        size_t triangles = 0;
+        for (const types::Mesh& mesh : geometry->meshes) triangles += mesh.indices.size() / 3;
+        EXPECT_EQ(static_cast<size_t>(depositNeeds(setup, *geometry).storage_bytes),
+                  triangles * (sizeof(PlaneRecord) + (lobed ? sizeof(FacetRecord) : 0)));
+    }
+}
+
 }  // namespace
 }  // namespace insonify::sonar
