@@ -85,8 +85,8 @@ void PictureDeposit::depositPart(size_t part) {
     for (size_t i = 0; i < setup_.frusta.size(); ++i) {
         const Taken& taken = pictures_[i];
         if (!taken.taken) continue;
-        const PicturePart frustum{setup_.rules, setup_.frusta[i], setup_.shares[i], taken.view, planes_, water_,
-                                  first,        last,             columns_[part][i]};
+        const PicturePart frustum{setup_.rules, setup_.frusta[i], setup_.shares[i], taken.view, planes_, water_, first,
+                                  last,         columns_[part][i]};
         if (!truth_) {
             depositPicture(frustum, {0, sums_.data()});
             continue;

@@ -6,7 +6,8 @@
 
 namespace insonify::sonar {
 
-/** The deposit of pictures on the processor: reads them back; each thread owns a run of beams, so none waits for another.
+/** The deposit of pictures on the processor: reads them back; each thread owns a run of beams, so none waits for
+ * another.
  */
 class PictureDeposit final : public BinDeposit {
 public:

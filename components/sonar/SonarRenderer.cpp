@@ -53,7 +53,7 @@ struct SonarRenderer::Parts {
     Stages stages = no_time;
     std::unique_ptr<EchoRenderer> echoes;
     const types::Sonar* told_ping = nullptr;
-    types::SonarTruth* truth = nullptr;  ///< Filled with that ping; null: none is.
+    types::SonarTruth* truth = nullptr;   ///< Filled with that ping; null: none is.
     std::optional<PointTargets> targets;  ///< From the first ping with any on.
     std::optional<RingDown> ring_down;
     std::optional<LineArray> array;  ///< From the first ping whose signals are taken on.
