@@ -31,7 +31,7 @@ private:
 };
 
 /** What comes back from the device, in memory that both see: a read is asked for like a draw, and nobody waits before
- *  the bytes are wanted. One read at a time; of several that are under way, each has a ReadBack of its own. */
+ *  the bytes are wanted. One read at a time. */
 class ReadBack {
 public:
     ReadBack() = default;

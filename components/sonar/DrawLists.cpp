@@ -11,9 +11,7 @@ public:
     void list(size_t frustum, const ViewFrustum& view) override;
     bool mayShow(size_t frustum) const override { return !listed_[frustum].ranges.empty(); }
     Draws draws(size_t frustum) const override;
-    std::span<const CommandRecord> commands(size_t frustum) const override {
-        return listed_[frustum].commands;
-    }
+    std::span<const CommandRecord> commands(size_t frustum) const override { return listed_[frustum].commands; }
     bool empty() const override;
     Shown shown() const override;
 

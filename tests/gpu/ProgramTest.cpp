@@ -32,7 +32,8 @@ TEST(ProgramTest, IncludesAreReplacedByTheirFiles) {
     ASSERT_THAT(std::string(shaderFile("deposit.comp.glsl")), HasSubstr("#include \"interface.glsl\""));
     const std::string source = shaderSource("deposit.comp.glsl", {});
     EXPECT_THAT(source, Not(HasSubstr("#include")));
-    for (const char* file : {"interface.glsl", "footprint.glsl", "plane.glsl", "picture.glsl", "trapezoid.glsl", "deposit.glsl"})
+    for (const char* file :
+         {"interface.glsl", "footprint.glsl", "plane.glsl", "picture.glsl", "trapezoid.glsl", "deposit.glsl"})
         EXPECT_THAT(source, HasSubstr(std::string(shaderFile(file)))) << file;
 }
 
