@@ -1,10 +1,12 @@
 // What a scene costs sonars that share it, and a sonar whose scene changes:
 //   scene_bench mission FOLDER      prints JSON: milliseconds a ping [median, p99, max] of a mission over more than 100
-//                                   tiles of a survey that it writes there, and of the pings with new tiles; by rays.
+//                                   tiles of a survey that it writes there, by rays of one thread: of all pings and of
+//                                   those with new tiles, by the clock and of that thread's processor time.
 //   scene_bench memory SONARS CELLS prints JSON: megabytes of the scene's file in memory and of the process with so
 //   many
 //                                   sonars that have all pinged, before a floor of 2 CELLS^2 triangles.
 #include <fmt/core.h>
+#include <time.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -69,6 +71,13 @@ std::string spread(std::vector<double> ms) {
     return fmt::format("[{:.3f}, {:.3f}, {:.3f}]", share(0.5), share(0.99), ms.back());
 }
 
+/** Processor time of this thread so far. */
+double busyMs() {
+    timespec now{};
+    clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
+    return 1e3 * static_cast<double>(now.tv_sec) + 1e-6 * static_cast<double>(now.tv_nsec);
+}
+
 /** 1900 m at 1 m a ping, each ping as soon as the one before has ended. */
 void mission(const std::string& folder) {
     scene::BathymetryConfig config;
@@ -82,24 +91,33 @@ void mission(const std::string& folder) {
     std::unique_ptr<sonar::SonarRenderer> renderer;
     types::GeometryPtr before;
     types::Sonar ping;
-    std::vector<double> all, changed;
+    sonar::RenderOptions one_thread;
+    one_thread.threads = 1;
+    std::vector<double> all, changed, all_busy, changed_busy;
     for (int i = 0; i < 1900; ++i) {
         const glm::dvec3 place(60.0 + i, -100, -4);
         types::Snapshot snapshot = at(place, i);
         const auto start = Clock::now();
+        const double start_busy = busyMs();
         snapshot.geometry = floor.about(place, scene.geometry);
         snapshot.ahead = floor.ahead();
-        if (!renderer) renderer = std::make_unique<sonar::SonarRenderer>(fan(), snapshot.geometry);
+        if (!renderer) renderer = std::make_unique<sonar::SonarRenderer>(fan(), snapshot.geometry, one_thread);
         renderer->setGeometry(snapshot.geometry);
         renderer->render(snapshot, ping);
         const double ms = std::chrono::duration<double, std::milli>(Clock::now() - start).count();
+        const double busy = busyMs() - start_busy;
         const bool is_changed = snapshot.geometry != std::exchange(before, snapshot.geometry);
         if (i < 20) continue;  // the first pings make the renderer
         all.push_back(ms);
-        if (is_changed) changed.push_back(ms);
+        all_busy.push_back(busy);
+        if (!is_changed) continue;
+        changed.push_back(ms);
+        changed_busy.push_back(busy);
     }
-    fmt::print("{{\"pings\": {}, \"changes\": {}, \"ms\": {}, \"ms_of_changes\": {}}}\n", all.size(), changed.size(),
-               spread(all), spread(changed));
+    fmt::print(
+        "{{\"pings\": {}, \"changes\": {}, \"ms\": {}, \"ms_of_changes\": {}, \"busy_ms\": {}, "
+        "\"busy_ms_of_changes\": {}}}\n",
+        all.size(), changed.size(), spread(all), spread(changed), spread(all_busy), spread(changed_busy));
 }
 
 double megabytes() {
