@@ -34,9 +34,7 @@ double dot2(const glm::dvec3& v) { return glm::dot(v, v); }
 
 constexpr double same_place = 1e-4;  ///< Corners closer than this are one [m].
 
-using Box = ObjectPlaces::Box;
-
-/** The box along the world's axes around a placed box; a point at the origin for that of a mesh without corners [m]. */
+/** The box along the world's axes around a placed box; an empty one for that of a mesh without corners [m]. */
 Box placedBox(const Box& box, const glm::dmat4& place) {
     if (!(box.low.x <= box.high.x)) return {};
     const glm::dvec3 centre(place * glm::dvec4((box.low + box.high) / 2.0, 1)), half = (box.high - box.low) / 2.0;
@@ -88,7 +86,7 @@ void ObjectPlaces::findSurfaces() {
     for (size_t i = 0; i < objects.size(); ++i) boxes.push_back(placedBox(box(i), objects[i].world_from_object));
     const auto longestEdge = [&](size_t i) {
         const glm::dmat3 m(objects[i].world_from_object);
-        return longest_edges_[meshOf(i)] * std::sqrt(dot2(m[0]) + dot2(m[1]) + dot2(m[2]));
+        return meshes_[meshOf(i)]->longestEdge() * std::sqrt(dot2(m[0]) + dot2(m[1]) + dot2(m[2]));
     };
     const auto share = [&](size_t a, size_t b) {
         const Box both{glm::max(boxes[a].low, boxes[b].low), glm::min(boxes[a].high, boxes[b].high)};

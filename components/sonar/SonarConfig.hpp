@@ -223,6 +223,8 @@ struct SonarConfig {
     std::map<std::string, std::map<std::string, double>> effects;
     std::optional<types::MovedTo> tvg, gain, output, source_level_db;
 
+    /** Whether there is more than one water that scatters, or one with bounds. */
+    bool hasLayers() const { return volume.size() > 1 || (!volume.empty() && (volume[0].top_m || volume[0].bottom_m)); }
     /** Rows of samples and columns per beam, until others are chosen for an error or a time [1]. */
     int rows() const { return quality.rows.value_or(256); }
     int columnsPerBeam() const { return quality.columns_per_beam.value_or(2); }

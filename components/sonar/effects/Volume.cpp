@@ -16,12 +16,6 @@ namespace {
 constexpr double no_strength_db = -200;
 constexpr size_t max_layers = 16;
 
-/** Whether there is more than one water that scatters, or one with bounds. */
-bool hasLayers(const SonarConfig& config) {
-    const std::vector<VolumeLayer>& volume = config.volume;
-    return volume.size() > 1 || (!volume.empty() && (volume[0].top_m || volume[0].bottom_m));
-}
-
 /** Backscattering strength as a number [1/m]; 0 at its least. */
 double strengthOf(const VolumeLayer& layer) {
     return *layer.strength_db <= no_strength_db ? 0 : std::pow(10, *layer.strength_db / 10);
@@ -100,7 +94,7 @@ void hideVolumeBy(const CellBatch& batch) {
 
 /** The layers of a configuration as EchoRules::layers has them; none where there is one without bounds. */
 std::vector<double> layersOf(const SonarConfig& config) {
-    if (!hasLayers(config)) return {};
+    if (!config.hasLayers()) return {};
     const double most = strongest(config);
     std::vector<double> layers;
     for (const VolumeLayer& layer : config.volume) {
@@ -187,7 +181,7 @@ public:
     bool plan(const types::Geometry& /*geometry*/, RenderPlan& plan) const override {
         if (plan.config.volume.empty()) return leaveOut(plan, {"volume reverberation", Reason::NotConfigured});
         plan.effect_features.emplace_back("volume");
-        plan.hears_misses = hasLayers(plan.config);
+        plan.hears_misses = plan.config.hasLayers();
         if (plan.hears_misses) plan.effect_features.emplace_back("volume_layers");
         plan.fills_water = true;
         return true;
