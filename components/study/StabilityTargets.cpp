@@ -40,7 +40,7 @@ Outcome errorOf(const Shape& shape, double length, std::initializer_list<double>
 }
 
 Outcome far(const Shape& shape, double length) { return errorOf(shape, length, {0.1, 0.2}); }
-Outcome near(const Shape& shape, double length) { return errorOf(shape, length, {8, 40}); }
+Outcome near(const Shape& shape, double length) { return errorOf(shape, length, {8, 20}); }
 
 Target cylinder(const Encounter& met, double tilt_deg) {
     return cylinderTarget(met, 0.1, 0.5, types::radians(tilt_deg));
