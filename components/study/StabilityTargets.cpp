@@ -39,7 +39,7 @@ Outcome errorOf(const Shape& shape, double length, std::initializer_list<double>
     return within(tolerance, worst, "at most " + where, heard);
 }
 
-Outcome far(const Shape& shape, double length) { return errorOf(shape, length, {0.1, 0.2}); }
+Outcome far(const Shape& shape, double length) { return errorOf(shape, length, {0.05, 0.1}); }
 Outcome near(const Shape& shape, double length) { return errorOf(shape, length, {8, 20}); }
 
 Target cylinder(const Encounter& met, double tilt_deg) {
