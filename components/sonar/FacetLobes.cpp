@@ -101,7 +101,7 @@ struct FlatPart {
     Moments moments;
     glm::dmat3 steps{0};                  ///< Of its facets, by their areas [m^2].
     glm::dvec3 lean{0};                   ///< Slopes at its edges, by the squares of the turns there [rad^3].
-    double turns = 0, fourths = 0;        ///< Sums of the squares of these turns, and of their fourth powers.
+    double turns = 0, fourths = 0;        ///< Of squares of these turns, and of these by those of half of them.
     glm::dvec3 outward{0};                ///< Turns at its edges by their lengths, as vectors across the edges [m].
     glm::dmat3 bend{0};                   ///< The same as a tensor [m].
     std::array<glm::dvec3, 2> axes{};     ///< Of its longest and of its shortest extent.
@@ -230,9 +230,9 @@ private:
         part.outward += share * length * way;
         part.bend += share * length * turn * glm::outerProduct(across, across);
         if (std::abs(glm::dot(across, part.axes[0])) > 0.5) return;  // at an end
-        part.lean += turn * turn / 2 * way;
+        part.lean += turn * turn / (1 + std::cos(turn)) * way;
         part.turns += turn * turn;
-        part.fourths += std::pow(turn * std::sin(turn), 2);
+        part.fourths += std::pow(turn * std::tan(turn / 2), 2);
     }
 
     /** Gives a number to all facets that can be reached from one another, where `joined` allows the step. */
@@ -325,7 +325,7 @@ private:
         const bool leans = curved[0] && !curved[1] && part.turns > 0;
         const double lean = leans ? glm::dot(part.lean, axes[1]) / part.turns / 2 : 0;
         return {vec4(glm::vec3(glm::transpose(world_from_mesh_) * axes[0]), 0), direction(0, lean),
-                direction(1, leans ? lean * 4 * part.turns / part.fourths : 0)};
+                direction(1, leans ? lean * part.turns / part.fourths : 0)};
     }
 
     const types::Mesh& mesh_;
