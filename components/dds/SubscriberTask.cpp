@@ -17,8 +17,8 @@ bool SubscriberTask::configureHook() {
     node_.emplace(domainId(config->node.domain), config->node.nameOr(name()),
                   static_cast<size_t>(config->node.gid_size));
     outputs_.forEach([this](auto& output) {
-        output.kept.subscription = std::make_unique<Subscription>(
-            *node_, *config, *entryOf(output.port.name()), drops_, [this] { arrived_.raise(); });
+        output.kept.subscription = std::make_unique<Subscription>(*node_, *config, *entryOf(output.port.name()), drops_,
+                                                                  [this] { arrived_.raise(); });
     });
     node_->announce();
     return true;

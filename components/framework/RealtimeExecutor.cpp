@@ -33,9 +33,9 @@ std::string useProcessors(const std::vector<uint32_t>& cpus) {
     for (const uint32_t cpu : cpus) CPU_SET(cpu, &wanted);
     const int error = pthread_setaffinity_np(pthread_self(), sizeof wanted, &wanted);
     if (error == 0) return {};
-    return fmt::format("does not keep to the CPUs {}: {}", fmt::join(cpus, ", "),
-                       error == EINVAL ? "there are none of these, or none that this process may use"
-                                            : std::strerror(error));
+    return fmt::format(
+        "does not keep to the CPUs {}: {}", fmt::join(cpus, ", "),
+        error == EINVAL ? "there are none of these, or none that this process may use" : std::strerror(error));
 }
 
 }  // namespace

@@ -175,12 +175,13 @@ void exportCsv(Reader& log, const std::string& stream, const std::filesystem::pa
         done = true;
     });
     if (!done)
-        throw types::ConfigError(log.path(), stream,
-                                 "holds " + declared.type +
-                                     "; as text can be written pings, beams and scans of sonars, truth, returns and "
-                                     "elements of pings, points, maps of distances, ranges, poses, readings of navigation's "
-                                     "sensors, numbers and texts "
-                                     "(pictures: .png and .npz)");
+        throw types::ConfigError(
+            log.path(), stream,
+            "holds " + declared.type +
+                "; as text can be written pings, beams and scans of sonars, truth, returns and "
+                "elements of pings, points, maps of distances, ranges, poses, readings of navigation's "
+                "sensors, numbers and texts "
+                "(pictures: .png and .npz)");
 }
 
 }  // namespace insonify::log

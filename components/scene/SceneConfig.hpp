@@ -46,7 +46,8 @@ struct BathymetryConfig {
     static void describe(Self& self, V& visit) {
         using types::Field;
         visit(Field{"file", "",
-                    "elevations on a map in metres: GeoTIFF, BAG, netCDF, ESRI .flt, ENVI, Erdas .img, or a mosaic of them (.vrt)"},
+                    "elevations on a map in metres: GeoTIFF, BAG, netCDF, ESRI .flt, ENVI, Erdas .img, or a mosaic of "
+                    "them (.vrt)"},
               self.file);
         visit(Field{"easting", "m", "of the world's zero on the map; absent: the middle of the survey", -1e8, 1e8},
               self.easting);

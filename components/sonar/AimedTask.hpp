@@ -6,9 +6,9 @@
 
 #include "components/framework/Port.hpp"
 #include "components/framework/TaskContext.hpp"
-#include "components/sonar/BinGrid.hpp"
-#include "components/sonar/QualityKeeper.hpp"
-#include "components/sonar/SonarConfig.hpp"
+#include "components/sonar/fan/BinGrid.hpp"
+#include "components/sonar/plan/SonarConfig.hpp"
+#include "components/sonar/quality/QualityKeeper.hpp"
 #include "types/RecurringDiagnostic.hpp"
 #include "types/Snapshot.hpp"
 #include "types/SonarSettings.hpp"

@@ -1,7 +1,7 @@
 #pragma once
 #include "components/framework/Properties.hpp"
-#include "components/sonar/Detection.hpp"
 #include "components/sonar/PingTask.hpp"
+#include "components/sonar/echo/Detection.hpp"
 #include "types/Range.hpp"
 
 namespace insonify::sonar {

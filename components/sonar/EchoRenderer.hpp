@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "components/sonar/RenderPlan.hpp"
+#include "components/sonar/plan/RenderPlan.hpp"
 #include "types/Geometry.hpp"
 #include "types/Snapshot.hpp"
 #include "types/Sonar.hpp"
@@ -24,15 +24,15 @@ struct Stage {
 using Stages = std::array<Stage, 5>;
 enum StageOf { CullStage, DrawStage, ReadStage, DepositStage, BeamStage };
 
-/** Fills the bins of pings as a plan says; that and the effects outlive it. One interface: drawn by OpenGL, or cast as rays on the
- *  processor. */
+/** Fills the bins of pings as a plan says; that and the effects outlive it. One interface: drawn by OpenGL, or cast as
+ * rays on the processor. */
 class EchoRenderer {
 public:
     virtual ~EchoRenderer() = default;
     /** Renders from now on with the quality that the plan has by now; allocates. */
     virtual void takeQuality() = 0;
-    /** Renders another geometry from now on, and keeps what has not changed; false: it cannot, another renderer is to be
-     *  made. `same_plan`: the plan is as it was; else it may have other laws, features and passes. */
+    /** Renders another geometry from now on, and keeps what has not changed; false: it cannot, another renderer is to
+     * be made. `same_plan`: the plan is as it was; else it may have other laws, features and passes. */
     virtual bool takeScene(types::GeometryPtr /*geometry*/, bool /*same_plan*/) { return false; }
     /** Fills ping.bins, which have their size; adds to `stages`. Allocates nothing after the first ping. */
     virtual void render(const types::Snapshot& snapshot, types::Sonar& ping, Stages& stages) = 0;

@@ -8,7 +8,7 @@
 #include <glm/geometric.hpp>
 #include <glm/gtc/quaternion.hpp>
 
-#include "components/sonar/BeamFan.hpp"
+#include "components/sonar/fan/BeamFan.hpp"
 #include "types/Angle.hpp"
 #include "types/Extent.hpp"
 
@@ -130,10 +130,10 @@ bool isLoud(Model model, const types::Sonar& ping) {
 std::string silenceText(const RenderPlan& plan, bool all_round, const types::Snapshot& scene) {
     const Coverage coverage{plan, all_round};
     const glm::dvec3 ahead = scene.sonar.orientation * glm::dvec3(1, 0, 0);
-    return fmt::format("{} {} and {}{}{}",
-                       plan.fills_water ? "hears nothing but the water. The sonar is at" : "hears nothing. The sonar is at",
-                       text(scene.sonar.position), directionText(ahead), surfaceText(coverage, scene),
-                       targetText(coverage, scene));
+    return fmt::format(
+        "{} {} and {}{}{}",
+        plan.fills_water ? "hears nothing but the water. The sonar is at" : "hears nothing. The sonar is at",
+        text(scene.sonar.position), directionText(ahead), surfaceText(coverage, scene), targetText(coverage, scene));
 }
 
 /** That the sonar is inside of an object, with where it is and how far the object's nearest point. */

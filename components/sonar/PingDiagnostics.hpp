@@ -3,8 +3,8 @@
 #include <optional>
 #include <string>
 
-#include "components/sonar/Sightlines.hpp"
 #include "components/sonar/SonarRenderer.hpp"
+#include "components/sonar/places/Sightlines.hpp"
 #include "types/RecurringDiagnostic.hpp"
 
 namespace insonify::sonar {

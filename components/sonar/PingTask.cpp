@@ -11,8 +11,8 @@
 
 #include "components/framework/Activity.hpp"
 #include "components/framework/Properties.hpp"
-#include "components/sonar/PlanReport.hpp"
 #include "components/sonar/effects/Refraction.hpp"
+#include "components/sonar/plan/PlanReport.hpp"
 #include "types/ConfigError.hpp"
 #include "types/Pose.hpp"
 
@@ -160,8 +160,7 @@ void PingTask::render() {
     if (std::exchange(culling_untold_, false) && rendersOnce()) {
         for (const LeftOut& what : renderer_->leftOut()) {
             plan_->omitted.push_back(describe(what, grid()));
-            if (what.reason == Reason::Lacking)
-                plan_->notices.push_back("Warning: " + plan_->omitted.back().reason);
+            if (what.reason == Reason::Lacking) plan_->notices.push_back("Warning: " + plan_->omitted.back().reason);
         }
     }
     followQuality(*sample, took.count());

@@ -7,11 +7,11 @@
 #include <numbers>
 
 #include "components/sonar/AltimeterTask.hpp"
-#include "components/sonar/Motion.hpp"
 #include "components/sonar/ProfilerTask.hpp"
 #include "components/sonar/SideScanTask.hpp"
 #include "components/sonar/Sonar3dTask.hpp"
 #include "components/sonar/SonarTask.hpp"
+#include "components/sonar/places/Motion.hpp"
 #include "types/Angle.hpp"
 #include "types/ConfigError.hpp"
 

@@ -3,8 +3,8 @@
 
 #include "components/framework/Properties.hpp"
 #include "components/framework/Registry.hpp"
-#include "components/sonar/HeadScan.hpp"
 #include "components/sonar/PingTask.hpp"
+#include "components/sonar/fan/HeadScan.hpp"
 
 namespace insonify::sonar {
 

@@ -2,8 +2,8 @@
 #include <vector>
 
 #include "components/framework/Properties.hpp"
-#include "components/sonar/Detection.hpp"
 #include "components/sonar/PingTask.hpp"
+#include "components/sonar/echo/Detection.hpp"
 #include "types/DepthMap.hpp"
 #include "types/PointCloud.hpp"
 

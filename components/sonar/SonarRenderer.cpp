@@ -7,10 +7,10 @@
 #include <utility>
 
 #include "components/gpu/EglContext.hpp"
-#include "components/sonar/EchoField.hpp"
-#include "components/sonar/LineArray.hpp"
-#include "components/sonar/PlanReport.hpp"
 #include "components/sonar/effects/Effects.hpp"
+#include "components/sonar/field/EchoField.hpp"
+#include "components/sonar/field/LineArray.hpp"
+#include "components/sonar/plan/PlanReport.hpp"
 
 namespace insonify::sonar {
 namespace {
@@ -35,7 +35,7 @@ struct SonarRenderer::Parts {
     std::unique_ptr<EchoRenderer> echoes;
     const types::Sonar* told_ping = nullptr;
     types::SonarTruth* truth = nullptr;  ///< Filled with that ping; null: none is.
-    std::optional<LineArray> array;  ///< From the first ping whose signals are taken on.
+    std::optional<LineArray> array;      ///< From the first ping whose signals are taken on.
 };
 
 SonarRenderer::Parts::Parts(const SonarConfig& config, types::GeometryPtr scene, const RenderOptions& options)

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "components/sonar/EchoRenderer.hpp"
-#include "components/sonar/SonarConfig.hpp"
+#include "components/sonar/plan/SonarConfig.hpp"
 #include "types/Plan.hpp"
 #include "types/Snapshot.hpp"
 #include "types/Sonar.hpp"

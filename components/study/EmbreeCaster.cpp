@@ -7,8 +7,8 @@
 #include <glm/gtc/quaternion.hpp>
 
 #include "components/acoustics/BeamPattern.hpp"
-#include "components/sonar/BeamFan.hpp"
-#include "components/sonar/BinGrid.hpp"
+#include "components/sonar/fan/BeamFan.hpp"
+#include "components/sonar/fan/BinGrid.hpp"
 #include "components/study/RayTree.hpp"
 #include "components/study/Workers.hpp"
 #include "types/Angle.hpp"

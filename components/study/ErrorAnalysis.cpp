@@ -6,7 +6,7 @@
 #include <cmath>
 #include <limits>
 
-#include "components/sonar/Quality.hpp"
+#include "components/sonar/quality/Quality.hpp"
 
 namespace insonify::study {
 namespace {

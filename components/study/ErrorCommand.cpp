@@ -10,7 +10,7 @@
 #include "components/command/Json.hpp"
 #include "components/command/OutputFolder.hpp"
 #include "components/command/ProgressLine.hpp"
-#include "components/sonar/BinGrid.hpp"
+#include "components/sonar/fan/BinGrid.hpp"
 #include "components/study/ErrorEffects.hpp"
 #include "components/study/ErrorReport.hpp"
 #include "components/study/StudyCommand.hpp"

@@ -10,10 +10,10 @@
 #include <memory>
 #include <stdexcept>
 
-#include "components/sonar/AngularView.hpp"
-#include "components/sonar/BinGrid.hpp"
-#include "components/sonar/Quality.hpp"
 #include "components/sonar/SonarRenderer.hpp"
+#include "components/sonar/fan/BinGrid.hpp"
+#include "components/sonar/quality/Quality.hpp"
+#include "components/sonar/rays/AngularView.hpp"
 #include "components/study/CoherentError.hpp"
 #include "components/study/EmbreeCaster.hpp"
 #include "components/study/PathCaster.hpp"

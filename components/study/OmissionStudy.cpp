@@ -8,11 +8,11 @@
 #include <map>
 #include <memory>
 
-#include "components/sonar/BinGrid.hpp"
-#include "components/sonar/PlanReport.hpp"
-#include "components/sonar/RenderPlan.hpp"
 #include "components/sonar/SonarRenderer.hpp"
 #include "components/sonar/effects/Effects.hpp"
+#include "components/sonar/fan/BinGrid.hpp"
+#include "components/sonar/plan/PlanReport.hpp"
+#include "components/sonar/plan/RenderPlan.hpp"
 #include "components/study/Metrics.hpp"
 
 namespace insonify::study {

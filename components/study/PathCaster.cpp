@@ -7,8 +7,8 @@
 #include <glm/gtc/quaternion.hpp>
 #include <limits>
 
-#include "components/sonar/BeamFan.hpp"
-#include "components/sonar/BinGrid.hpp"
+#include "components/sonar/fan/BeamFan.hpp"
+#include "components/sonar/fan/BinGrid.hpp"
 #include "types/Angle.hpp"
 #include "types/Hash.hpp"
 
@@ -104,8 +104,8 @@ private:
             double cosine = std::abs(glm::dot(plane.normal, point.direction));
             if (point.is_direct && plane.mapped)
                 cosine = tree_.mappedCosine(point.triangle, point.place(), point.direction);
-            add(point.range, tree_.backscatter(point.triangle, cosine, point.direction, point.range) /
-                                 (point.range * point.range));
+            add(point.range,
+                tree_.backscatter(point.triangle, cosine, point.direction, point.range) / (point.range * point.range));
         }
     }
 

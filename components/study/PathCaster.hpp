@@ -2,7 +2,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "components/sonar/SonarConfig.hpp"
+#include "components/sonar/plan/SonarConfig.hpp"
 #include "components/study/RayTree.hpp"
 #include "components/study/Workers.hpp"
 

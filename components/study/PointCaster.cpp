@@ -10,8 +10,8 @@
 
 #include "components/acoustics/BeamPattern.hpp"
 #include "components/acoustics/Pulse.hpp"
-#include "components/sonar/BeamFan.hpp"
-#include "components/sonar/BinGrid.hpp"
+#include "components/sonar/fan/BeamFan.hpp"
+#include "components/sonar/fan/BinGrid.hpp"
 #include "types/Angle.hpp"
 #include "types/Hash.hpp"
 
@@ -180,7 +180,8 @@ private:
             const glm::dvec3 ahead = world_from_sonar_ * direction;
             cosine = tree_.mappedCosine(number, from_ + range * ahead, ahead);
         }
-        sums_.echoes[binOf(range)] += solid_angle * tree_.backscatter(number, cosine, world_from_sonar_ * direction, range) / (range * range);
+        sums_.echoes[binOf(range)] +=
+            solid_angle * tree_.backscatter(number, cosine, world_from_sonar_ * direction, range) / (range * range);
     }
 
     size_t binOf(double range) const {

@@ -4,10 +4,10 @@
 #include <cmath>
 #include <numeric>
 
-#include "components/sonar/BeamFan.hpp"
-#include "components/sonar/BinGrid.hpp"
-#include "components/sonar/RenderPlan.hpp"
 #include "components/sonar/SonarRenderer.hpp"
+#include "components/sonar/fan/BeamFan.hpp"
+#include "components/sonar/fan/BinGrid.hpp"
+#include "components/sonar/plan/RenderPlan.hpp"
 #include "components/study/EmbreeCaster.hpp"
 #include "components/study/Shapes.hpp"
 #include "types/Angle.hpp"

@@ -12,7 +12,7 @@
 #include <stdexcept>
 #include <string>
 
-#include "components/sonar/FacetLobes.hpp"
+#include "components/sonar/echo/FacetLobes.hpp"
 
 namespace insonify::study {
 namespace {
@@ -190,8 +190,7 @@ void RayTree::cast(glm::dvec3 from, std::span<const Rays> rays, std::span<Found>
             found[k][i] = hits[k].hit.geomID[i] == RTC_INVALID_GEOMETRY_ID ? none : hits[k].hit.primID[i];
 }
 
-double RayTree::bistatic(uint32_t triangle, double cosine, double other, const glm::dvec3& middle,
-                         double range) const {
+double RayTree::bistatic(uint32_t triangle, double cosine, double other, const glm::dvec3& middle, double range) const {
     const Triangle& plane = triangles_[triangle];
     if (laws_.records.empty()) return plane.mu * other;
     const double half = std::abs(glm::dot(plane.normal, middle));

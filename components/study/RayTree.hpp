@@ -9,7 +9,7 @@
 #include <span>
 #include <vector>
 
-#include "components/sonar/MaterialLaws.hpp"
+#include "components/sonar/echo/MaterialLaws.hpp"
 #include "types/Snapshot.hpp"
 
 namespace insonify::study {
@@ -57,8 +57,8 @@ public:
         return laws_.overCosine(material, cosine, lobeSlopes(triangle, cosine, direction, range));
     }
 
-    /** sigma_b over the cosine of one way, of sound that comes or goes at the other [1]; `middle`: of the two directions,
-     *  unit, axes of the world, at half of the way out and back [m]. ACOUSTICS.md 5.23. */
+    /** sigma_b over the cosine of one way, of sound that comes or goes at the other [1]; `middle`: of the two
+     * directions, unit, axes of the world, at half of the way out and back [m]. ACOUSTICS.md 5.23. */
     double bistatic(uint32_t triangle, double cosine, double other, const glm::dvec3& middle, double range) const;
 
     /** Whether a material has a lobe, for which directions and ranges matter. */

@@ -7,8 +7,8 @@
 #include <numbers>
 
 #include "components/receiver/Receiver.hpp"
-#include "components/sonar/BinGrid.hpp"
-#include "components/sonar/RenderPlan.hpp"
+#include "components/sonar/fan/BinGrid.hpp"
+#include "components/sonar/plan/RenderPlan.hpp"
 #include "components/study/Probe.hpp"
 #include "components/study/Shapes.hpp"
 #include "components/study/StabilityStudy.hpp"

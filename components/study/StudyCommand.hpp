@@ -9,7 +9,7 @@
 #include "components/command/Action.hpp"
 #include "components/command/Json.hpp"
 #include "components/receiver/ReceiverConfig.hpp"
-#include "components/sonar/SonarConfig.hpp"
+#include "components/sonar/plan/SonarConfig.hpp"
 #include "components/study/ErrorAnalysis.hpp"
 #include "types/Snapshot.hpp"
 #include "types/Sonar.hpp"

@@ -2,7 +2,7 @@
 #include <string>
 #include <vector>
 
-#include "components/sonar/SonarConfig.hpp"
+#include "components/sonar/plan/SonarConfig.hpp"
 #include "components/study/Truth.hpp"
 #include "types/Snapshot.hpp"
 

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "components/sonar/SonarConfig.hpp"
+#include "components/sonar/plan/SonarConfig.hpp"
 #include "types/Geometry.hpp"
 
 namespace insonify::study {

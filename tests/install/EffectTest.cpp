@@ -40,10 +40,13 @@ TEST(EffectTest, ALibrarysEffectWithStateIsPlannedHeardAndRefusedLikeOurs) {
     const std::string insonify = folder / "prefix/bin/insonify";
     const Outcome ran = call(folder, {insonify, "run", "wall.yml", "--pings", "3", "--out", "out"});
     ASSERT_EQ(ran.code, 0) << ran.err;
-    ASSERT_EQ(call(folder, {insonify, "log", "export", "out/wall.0.log", "--stream", "sonar.ping", "--to", "p.npz"}).code, 0);
+    ASSERT_EQ(
+        call(folder, {insonify, "log", "export", "out/wall.0.log", "--stream", "sonar.ping", "--to", "p.npz"}).code, 0);
     const std::string ratios =
-        "import numpy; b = numpy.load('p.npz')['bins']; print(*[float((b[i] / b[0])[b[0] > 0].mean().round(6)) for i in (1, 2)])";
-    EXPECT_EQ(python(folder, ratios).out, "1.5 1.75\n") << "half of it is left after each ping, of a wall that stands still";
+        "import numpy; b = numpy.load('p.npz')['bins']; print(*[float((b[i] / b[0])[b[0] > 0].mean().round(6)) for i "
+        "in (1, 2)])";
+    EXPECT_EQ(python(folder, ratios).out, "1.5 1.75\n")
+        << "half of it is left after each ping, of a wall that stands still";
     EXPECT_THAT(call(folder, {insonify, "plan", "wall.yml"}).out, HasSubstr("afterglow"));
 
     writeFile(folder / "wall.yml", deploymentWith("{}"));
@@ -62,7 +65,8 @@ TEST(EffectTest, ALibrarysEffectWithStateIsPlannedHeardAndRefusedLikeOurs) {
 }
 
 TEST(EffectTest, AnEffectThatNoLibraryHasAddedIsRefused) {
-    const WallFolder folder(replaced(wall_deployment, "      range: 20\n", "      range: 20\n      effects: {bubbles: {}}\n"));
+    const WallFolder folder(
+        replaced(wall_deployment, "      range: 20\n", "      range: 20\n      effects: {bubbles: {}}\n"));
     const Outcome outcome = callInsonify(folder, {"check", "wall.yml"});
     EXPECT_EQ(outcome.code, 2);
     EXPECT_THAT(outcome.err, HasSubstr("effects.bubbles is no effect: no library has added any"));

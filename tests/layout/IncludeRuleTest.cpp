@@ -135,7 +135,7 @@ TEST(IncludeRuleTest, TheRuleRefusesWhatItShould) {
     EXPECT_FALSE(allowed("components/noise/NoiseTask.cpp", "components/command/Json.hpp"));
     EXPECT_TRUE(allowed("components/noise/NoiseTask.cpp", "components/noise/Speckle.hpp"));
     EXPECT_TRUE(allowed("components/noise/NoiseConfig.cpp", "components/acoustics/AmbientNoise.hpp"));
-    EXPECT_FALSE(allowed("components/acoustics/Water.hpp", "components/sonar/SonarConfig.hpp"));
+    EXPECT_FALSE(allowed("components/acoustics/Water.hpp", "components/sonar/plan/SonarConfig.hpp"));
     EXPECT_FALSE(allowed("components/receiver/Receiver.cpp", "components/acoustics/Water.hpp"));
     EXPECT_FALSE(allowed("components/ros/Cdr.hpp", "components/log/Writer.hpp"));
     EXPECT_FALSE(allowed("components/logger/LoggerTask.cpp", "components/log/pocolog/Writer.hpp"));

@@ -1,7 +1,7 @@
 #include <gtest/gtest.h>
 
 #include "components/acoustics/SoundSpeed.hpp"
-#include "components/sonar/RenderPlan.hpp"
+#include "components/sonar/plan/RenderPlan.hpp"
 
 namespace insonify::sonar {
 namespace {

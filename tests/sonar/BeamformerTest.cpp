@@ -3,8 +3,8 @@
 #include <cmath>
 #include <numbers>
 
-#include "components/sonar/Beamformer.hpp"
-#include "components/sonar/Directivity.hpp"
+#include "components/sonar/echo/Beamformer.hpp"
+#include "components/sonar/fan/Directivity.hpp"
 #include "types/Angle.hpp"
 
 namespace insonify::sonar {

@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "components/sonar/BinGrid.hpp"
+#include "components/sonar/fan/BinGrid.hpp"
 
 namespace insonify::sonar {
 namespace {

@@ -3,8 +3,8 @@
 #include <cmath>
 #include <limits>
 
-#include "components/sonar/BinLevels.hpp"
-#include "components/sonar/RenderPlan.hpp"
+#include "components/sonar/echo/BinLevels.hpp"
+#include "components/sonar/plan/RenderPlan.hpp"
 
 namespace insonify::sonar {
 namespace {

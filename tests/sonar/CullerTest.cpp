@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "components/sonar/Culler.hpp"
+#include "components/sonar/pictures/Culler.hpp"
 #include "tests/sonar/ClusteredHarbour.hpp"
 
 namespace insonify::sonar {

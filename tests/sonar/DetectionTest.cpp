@@ -3,7 +3,7 @@
 #include <cmath>
 #include <limits>
 
-#include "components/sonar/Detection.hpp"
+#include "components/sonar/echo/Detection.hpp"
 #include "tests/support/Pings.hpp"
 
 namespace insonify::sonar {

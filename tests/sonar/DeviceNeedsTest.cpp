@@ -1,8 +1,8 @@
 // What drawing needs of OpenGL's limits, held against drivers that do not exist.
 #include <gmock/gmock.h>
 
-#include "components/sonar/DeviceNeeds.hpp"
 #include "components/sonar/effects/Effects.hpp"
+#include "components/sonar/pictures/DeviceNeeds.hpp"
 #include "tests/gpu/ErrorOf.hpp"
 #include "tests/support/Sonars.hpp"
 #include "tests/support/Surfaces.hpp"

@@ -4,9 +4,9 @@
 #include <cmath>
 #include <numbers>
 
-#include "components/sonar/LineArray.hpp"
 #include "components/sonar/SonarRenderer.hpp"
 #include "components/sonar/SonarTask.hpp"
+#include "components/sonar/field/LineArray.hpp"
 #include "tests/support/Scenes.hpp"
 #include "tests/support/TaskBench.hpp"
 #include "types/Angle.hpp"

@@ -44,8 +44,14 @@ std::vector<Effect> effects() {
         {"plain", plain},
         {"conical", [](SonarConfig& c) { c.beam_geometry = BeamGeometry::Conical; }, true, true, 0.03, true, 0.12},
         {"cerqueira2017", [](SonarConfig& c) { c.model = Model::Cerqueira2017; }, true, true, 0.03, false, 0.2},
-        {"volume", [](SonarConfig& c) { c.volume = {{{}, {}, -30}}; }},
-        {"layers", [](SonarConfig& c) { c.volume = {{{}, 2, -30}, {2, {}, -40}}; }},
+        {"volume",
+         [](SonarConfig& c) {
+             c.volume = {{{}, {}, -30}};
+         }},
+        {"layers",
+         [](SonarConfig& c) {
+             c.volume = {{{}, 2, -30}, {2, {}, -40}};
+         }},
         {"pattern", [](SonarConfig& c) { c.beam_pattern = pattern(); }, true, true, 0.1, false, 0.12},
         {"pattern and pulse",
          [](SonarConfig& c) {
@@ -91,7 +97,8 @@ SonarConfig sonar(const test::Table& table, const Effect& effect, Visibility vis
 /** Seabed, balls, wall and three point targets, 3 m below the surface. Nothing is thinner than a sample. */
 types::GeometryPtr resolved() {
     auto geometry = test::surfaces();
-    std::erase_if(geometry->objects, [](const types::Object& object) { return object.name == "plate" || object.name == "block"; });
+    std::erase_if(geometry->objects,
+                  [](const types::Object& object) { return object.name == "plate" || object.name == "block"; });
     return geometry;
 }
 

@@ -1,11 +1,10 @@
 // Tables of bearings in any order, with gaps and overlaps, and across the seam at 180 degrees.
-#include "components/sonar/Fan.hpp"
-
 #include <gmock/gmock.h>
 
 #include <numeric>
 
-#include "components/sonar/BeamFan.hpp"
+#include "components/sonar/fan/BeamFan.hpp"
+#include "components/sonar/fan/Fan.hpp"
 #include "tests/support/Tables.hpp"
 #include "types/Angle.hpp"
 

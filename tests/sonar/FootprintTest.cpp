@@ -8,7 +8,7 @@
 #include <numbers>
 #include <vector>
 
-#include "components/sonar/Interface.hpp"
+#include "components/sonar/echo/Interface.hpp"
 
 namespace insonify::sonar {
 namespace {
@@ -90,8 +90,8 @@ struct ShareOfPixel {
     bool upright = false;  ///< Not sheared: wrong.
 
     void deposit(const Plane& plane, Bins& bins) const {
-        const PictureCell cell =
-            pictureCell(u, v, (from + to) / 2, to - from, limit, upright ? 0 : u / (1 + u * u), size, 1 / (size * size));
+        const PictureCell cell = pictureCell(u, v, (from + to) / 2, to - from, limit, upright ? 0 : u / (1 + u * u),
+                                             size, 1 / (size * size));
         const PlaneFootprint seen = plane.seen(std::atan(cell.u), std::atan(cell.v / std::hypot(1, cell.u)), cell.width,
                                                cell.height, cell.size, bins.binEdge(Bins::bin_count));
         bins.depositCell(seen.footprint, 0, seen.perpendicular);
@@ -152,8 +152,10 @@ TEST(FootprintTest, ACellIsAsDeepAsTheInverseRangeChangesOverIt) {
             EXPECT_NEAR(seen.footprint.pixel, inverse(azimuth, elevation), 1e-12);
             EXPECT_NEAR(seen.perpendicular, plane.distance, 1e-12);
             EXPECT_NEAR(seen.footprint.nearest, 1 / plane.distance, 1e-12);
-            const double across = abs(inverse(azimuth + step, elevation) - inverse(azimuth - step, elevation)) / (2 * step),
-                         along = abs(inverse(azimuth, elevation + step) - inverse(azimuth, elevation - step)) / (2 * step);
+            const double across =
+                             abs(inverse(azimuth + step, elevation) - inverse(azimuth - step, elevation)) / (2 * step),
+                         along =
+                             abs(inverse(azimuth, elevation + step) - inverse(azimuth, elevation - step)) / (2 * step);
             EXPECT_NEAR(seen.footprint.wide, max(across * width, along * height), 1e-11);
             EXPECT_NEAR(seen.footprint.narrow, min(across * width, along * height), 1e-11);
         }

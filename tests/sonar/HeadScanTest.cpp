@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "components/sonar/HeadScan.hpp"
+#include "components/sonar/fan/HeadScan.hpp"
 
 namespace insonify::sonar {
 namespace {

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "components/sonar/LineArray.hpp"
+#include "components/sonar/field/LineArray.hpp"
 #include "types/Hash.hpp"
 
 namespace insonify::sonar {

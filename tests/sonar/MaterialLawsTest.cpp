@@ -5,7 +5,7 @@
 
 #include "components/acoustics/Seabed.hpp"
 #include "components/acoustics/SeabedBackscatter.hpp"
-#include "components/sonar/MaterialLaws.hpp"
+#include "components/sonar/echo/MaterialLaws.hpp"
 #include "types/Angle.hpp"
 
 namespace insonify::sonar {

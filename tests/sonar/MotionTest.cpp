@@ -5,11 +5,11 @@
 #include <glm/geometric.hpp>
 #include <glm/gtc/quaternion.hpp>
 
-#include "components/sonar/Motion.hpp"
-#include "components/sonar/PlanReport.hpp"
 #include "components/sonar/ScanningSonarTask.hpp"
 #include "components/sonar/SonarRenderer.hpp"
 #include "components/sonar/effects/MotionInPing.hpp"
+#include "components/sonar/places/Motion.hpp"
+#include "components/sonar/plan/PlanReport.hpp"
 #include "tests/support/Scenes.hpp"
 #include "tests/support/Sonars.hpp"
 #include "tests/support/TaskBench.hpp"

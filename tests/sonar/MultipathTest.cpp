@@ -6,8 +6,8 @@
 #include <glm/gtc/quaternion.hpp>
 #include <numbers>
 
-#include "components/sonar/Mirrors.hpp"
 #include "components/sonar/SonarRenderer.hpp"
+#include "components/sonar/ways/Mirrors.hpp"
 #include "tests/support/EveryWay.hpp"
 #include "tests/support/Scenes.hpp"
 #include "tests/support/Sonars.hpp"
@@ -407,7 +407,8 @@ TEST(MultipathTest, ADihedralHasItsTargetStrengthOverFortyDegrees) {
     EXPECT_NEAR(20 * std::log10(2 * a * b * std::sin(radians(45)) / wavelength),
                 20 * std::log10(std::numbers::sqrt2 * a * b / wavelength), 1e-9);
     // Without a mirror there is no second bounce: what is left are the sidelobes of both plates (ACOUSTICS.md 3.6).
-    const double beta = 2 * pi / wavelength * a * std::sin(radians(45)), plate = a * b / wavelength * std::cos(radians(45));
+    const double beta = 2 * pi / wavelength * a * std::sin(radians(45)),
+                 plate = a * b / wavelength * std::cos(radians(45));
     EXPECT_NEAR(strengthOf(bouncing(cornerSonar(), 1), dihedral(a, b, 0)),
                 10 * std::log10(2 * plate * plate / (2 * beta * beta)), 0.5);
 }

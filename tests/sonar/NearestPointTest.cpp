@@ -6,9 +6,9 @@
 #include <glm/gtc/matrix_transform.hpp>
 
 #include "components/scene/Clusters.hpp"
-#include "components/sonar/NearestPoint.hpp"
-#include "components/sonar/ObjectPlaces.hpp"
 #include "components/sonar/SonarRenderer.hpp"
+#include "components/sonar/places/NearestPoint.hpp"
+#include "components/sonar/places/ObjectPlaces.hpp"
 #include "tests/sonar/ClusteredHarbour.hpp"
 #include "tests/support/Scenes.hpp"
 

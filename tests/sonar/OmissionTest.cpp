@@ -8,11 +8,11 @@
 #include <optional>
 #include <set>
 
-#include "components/sonar/BinGrid.hpp"
-#include "components/sonar/PlanReport.hpp"
-#include "components/sonar/RenderPlan.hpp"
 #include "components/sonar/SonarRenderer.hpp"
 #include "components/sonar/effects/Effects.hpp"
+#include "components/sonar/fan/BinGrid.hpp"
+#include "components/sonar/plan/PlanReport.hpp"
+#include "components/sonar/plan/RenderPlan.hpp"
 #include "tests/support/Folder.hpp"
 #include "tests/support/Sonars.hpp"
 #include "tests/support/Surfaces.hpp"
@@ -82,24 +82,23 @@ Bins times(Bins bins, float factor) {
 }  // namespace
 
 TEST(OmissionTest, NoEffectIsLeftOutThatIsNotTestedHere) {
-    const std::set<std::string_view> tested = {"absorption", "absorption inside a bin", "specular lobe",
-                                     "spreading", "backscatter by material", "further slabs",
-                                     "refraction", "motion within a ping", "normal maps",
-                                     // in RingDownTest.cpp and PointTargetTest.cpp:
-                                     "transmit ring-down", "point targets",
-                                     // where fields are summed, in tests/study/SpecklePingTest.cpp:
-                                     "coherent speckle",
-                                     // in BackscatterPingTest.cpp:
-                                     "seabeds by TR 9407", "measured backscatter",
-                                     // in VolumePingTest.cpp:
-                                     "volume reverberation",
-                                     // of `published`, in PublishedTest.cpp:
-                                     "range footprints", "elevation mask", "shared columns",
-                                     "near blanking",
-                                     // without values yet; SonarConfig refuses them:
-                                     "azimuth beam pattern", "elevation beam pattern", "range point-spread",
-                                     // in MultipathTest.cpp:
-                                     "multipath"};
+    const std::set<std::string_view> tested = {"absorption", "absorption inside a bin", "specular lobe", "spreading",
+                                               "backscatter by material", "further slabs", "refraction",
+                                               "motion within a ping", "normal maps",
+                                               // in RingDownTest.cpp and PointTargetTest.cpp:
+                                               "transmit ring-down", "point targets",
+                                               // where fields are summed, in tests/study/SpecklePingTest.cpp:
+                                               "coherent speckle",
+                                               // in BackscatterPingTest.cpp:
+                                               "seabeds by TR 9407", "measured backscatter",
+                                               // in VolumePingTest.cpp:
+                                               "volume reverberation",
+                                               // of `published`, in PublishedTest.cpp:
+                                               "range footprints", "elevation mask", "shared columns", "near blanking",
+                                               // without values yet; SonarConfig refuses them:
+                                               "azimuth beam pattern", "elevation beam pattern", "range point-spread",
+                                               // in MultipathTest.cpp:
+                                               "multipath"};
     SonarConfig absorbing = plainSonar(), published = plainSonar(Model::Cerqueira2017);
     absorbing.absorption.emplace().db_per_m = 0.1;
     absorbing.field_of_view_deg = 50;

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "components/sonar/PlanReport.hpp"
+#include "components/sonar/plan/PlanReport.hpp"
 
 namespace insonify::sonar {
 namespace {

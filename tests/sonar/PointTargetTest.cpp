@@ -10,8 +10,8 @@
 
 #include "components/acoustics/BeamPattern.hpp"
 #include "components/acoustics/Pulse.hpp"
-#include "components/sonar/BinGrid.hpp"
 #include "components/sonar/SonarRenderer.hpp"
+#include "components/sonar/fan/BinGrid.hpp"
 #include "tests/sonar/BeamCut.hpp"
 #include "tests/support/EveryWay.hpp"
 #include "tests/support/Scenes.hpp"

@@ -2,10 +2,10 @@
 
 #include <cmath>
 
-#include "components/sonar/Quality.hpp"
-#include "components/sonar/QualityKeeper.hpp"
 #include "components/sonar/ScanningSonarTask.hpp"
 #include "components/sonar/SonarTask.hpp"
+#include "components/sonar/quality/Quality.hpp"
+#include "components/sonar/quality/QualityKeeper.hpp"
 #include "components/study/FractalFloor.hpp"
 #include "tests/support/Ports.hpp"
 #include "tests/support/Scenes.hpp"

@@ -3,7 +3,7 @@
 
 #include <numeric>
 
-#include "components/sonar/RangeResponse.hpp"
+#include "components/sonar/echo/RangeResponse.hpp"
 
 namespace insonify::sonar {
 namespace {

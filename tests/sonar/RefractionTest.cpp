@@ -8,10 +8,10 @@
 #include <numeric>
 
 #include "components/acoustics/SoundProfile.hpp"
-#include "components/sonar/PlanReport.hpp"
 #include "components/sonar/SonarRenderer.hpp"
-#include "components/sonar/effects/Refraction.hpp"
 #include "components/sonar/SonarTask.hpp"
+#include "components/sonar/effects/Refraction.hpp"
+#include "components/sonar/plan/PlanReport.hpp"
 #include "tests/support/Folder.hpp"
 #include "tests/support/Ports.hpp"
 #include "tests/support/Scenes.hpp"
@@ -254,8 +254,7 @@ TEST(RefractionTest, ThePlanTellsWhetherRaysAreBentAndByWhichBound) {
     ASSERT_TRUE(near.leftOut("refraction"));
     EXPECT_NEAR(near.leftOut("refraction")->value, 0.01 * 20 * 20 / 3000, 1e-9);
     EXPECT_NEAR(near.leftOut("refraction")->bound, 0.1 * 20 * radians(30), 1e-9);
-    EXPECT_THAT(describe(*near.leftOut("refraction"), near.grid).reason,
-                HasSubstr("a gradient of 0.01 1/s bends by"));
+    EXPECT_THAT(describe(*near.leftOut("refraction"), near.grid).reason, HasSubstr("a gradient of 0.01 1/s bends by"));
     EXPECT_TRUE(planOf(100, profileOf({{0, 1490}, {9, 1490}})).hasFeature("refraction"))
         << "no gradient, but another speed than the sonar's: 0.67 m at 100 m, by bins of 0.5 m";
     EXPECT_FALSE(planOf(100, profileOf({{0, 1498}, {9, 1498}})).hasFeature("refraction")) << "0.13 m";

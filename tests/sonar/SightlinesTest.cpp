@@ -1,7 +1,7 @@
 // Lines from the sonar against every triangle of a scene, and sonars inside of things.
 #include <gmock/gmock.h>
 
-#include "components/sonar/Sightlines.hpp"
+#include "components/sonar/places/Sightlines.hpp"
 #include "tests/sonar/ClusteredHarbour.hpp"
 #include "tests/support/Surfaces.hpp"
 

@@ -2,11 +2,11 @@
 
 #include "components/framework/ConfigReader.hpp"
 #include "components/sonar/AltimeterTask.hpp"
-#include "components/sonar/HeadScan.hpp"
 #include "components/sonar/ProfilerTask.hpp"
 #include "components/sonar/SideScanTask.hpp"
 #include "components/sonar/Sonar3dTask.hpp"
-#include "components/sonar/SonarConfig.hpp"
+#include "components/sonar/fan/HeadScan.hpp"
+#include "components/sonar/plan/SonarConfig.hpp"
 
 namespace insonify::sonar {
 namespace {

@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "components/sonar/PlanReport.hpp"
 #include "components/sonar/SonarRenderer.hpp"
+#include "components/sonar/plan/PlanReport.hpp"
 #include "tests/support/Sonars.hpp"
 #include "tests/support/Surfaces.hpp"
 

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "components/sonar/TruthTable.hpp"
+#include "components/sonar/echo/TruthTable.hpp"
 
 namespace insonify::sonar {
 namespace {

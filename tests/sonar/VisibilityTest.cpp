@@ -6,10 +6,10 @@
 #include <numeric>
 
 #include "components/gpu/EglContext.hpp"
-#include "components/sonar/Culler.hpp"
-#include "components/sonar/RayVisibility.hpp"
 #include "components/sonar/SonarRenderer.hpp"
-#include "components/sonar/SurfacePass.hpp"
+#include "components/sonar/pictures/Culler.hpp"
+#include "components/sonar/pictures/SurfacePass.hpp"
+#include "components/sonar/rays/RayVisibility.hpp"
 #include "tests/support/ClosedForms.hpp"
 #include "tests/support/Sonars.hpp"
 #include "tests/support/Surfaces.hpp"

@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "components/sonar/BinGrid.hpp"
+#include "components/sonar/fan/BinGrid.hpp"
 #include "components/study/EmbreeCaster.hpp"
 #include "components/study/Metrics.hpp"
 #include "components/study/Probe.hpp"

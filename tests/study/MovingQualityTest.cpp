@@ -4,10 +4,10 @@
 #include <algorithm>
 #include <cmath>
 
-#include "components/sonar/BinGrid.hpp"
 #include "components/sonar/ScanningSonarTask.hpp"
 #include "components/sonar/SonarRenderer.hpp"
 #include "components/sonar/SonarTask.hpp"
+#include "components/sonar/fan/BinGrid.hpp"
 #include "components/study/FractalFloor.hpp"
 #include "components/study/Metrics.hpp"
 #include "tests/support/Ports.hpp"

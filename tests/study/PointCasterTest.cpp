@@ -5,8 +5,8 @@
 #include <numeric>
 #include <stdexcept>
 
-#include "components/sonar/BinGrid.hpp"
 #include "components/sonar/SonarRenderer.hpp"
+#include "components/sonar/fan/BinGrid.hpp"
 #include "components/study/Metrics.hpp"
 #include "components/study/PointCaster.hpp"
 #include "components/study/Probe.hpp"

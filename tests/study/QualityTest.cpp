@@ -5,9 +5,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "components/sonar/BinGrid.hpp"
-#include "components/sonar/Quality.hpp"
 #include "components/sonar/SonarRenderer.hpp"
+#include "components/sonar/fan/BinGrid.hpp"
+#include "components/sonar/quality/Quality.hpp"
 #include "components/study/FractalFloor.hpp"
 #include "components/study/Metrics.hpp"
 #include "components/study/StudyScene.hpp"

@@ -1,4 +1,5 @@
-// An EGL vendor's library that renders nothing: it leaves a file where it is loaded, which it is when somebody asks EGL.
+// An EGL vendor's library that renders nothing: it leaves a file where it is loaded, which it is when somebody asks
+// EGL.
 #include <cstdlib>
 #include <fstream>
 

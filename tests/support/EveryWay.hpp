@@ -2,7 +2,7 @@
 // The ways in which echoes are found and summed.
 #include <vector>
 
-#include "components/sonar/SonarConfig.hpp"
+#include "components/sonar/plan/SonarConfig.hpp"
 
 namespace insonify::test {
 

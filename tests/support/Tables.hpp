@@ -40,11 +40,13 @@ inline std::vector<Table> tablesOf(std::mt19937& random) {
     tables.push_back({"gaps", evenly(-60, between(8, 12), 11), 3});
     tables.push_back({"overlaps", evenly(-20, 3, 13), between(6, 14)});
     Table irregular{"irregular", {-70}, between(2, 5)};
-    while (irregular.bearings_deg.size() < 12) irregular.bearings_deg.push_back(irregular.bearings_deg.back() + between(0.7, 20));
+    while (irregular.bearings_deg.size() < 12)
+        irregular.bearings_deg.push_back(irregular.bearings_deg.back() + between(0.7, 20));
     tables.push_back(irregular);
     tables.push_back({"one beam", {between(-80, 80)}, 5});
     Table astern{"across the seam", {}, 5};
-    for (const double bearing : evenly(between(140, 165), between(4, 7), 9)) astern.bearings_deg.push_back(wrappedDeg(bearing));
+    for (const double bearing : evenly(between(140, 165), between(4, 7), 9))
+        astern.bearings_deg.push_back(wrappedDeg(bearing));
     tables.push_back(astern);
     tables.push_back({"all round", evenly(-172.5, 15, 24), 15});
     return tables;

@@ -48,15 +48,16 @@ public:
             if (record.law.x < 0 && record.values.x > std::numbers::inv_pi_v<float>) loud.push_back(material.name);
         }
         if (!plain.empty())
-            notices.push_back(fmt::format("{} of {} materials have no acoustic values and are medium sand, -16.7 dB: {}",
-                                          plain.size(), geometry.materials.size(), listed(plain)));
+            notices.push_back(
+                fmt::format("{} of {} materials have no acoustic values and are medium sand, -16.7 dB: {}",
+                            plain.size(), geometry.materials.size(), listed(plain)));
         if (!loud.empty())
             notices.push_back(
                 fmt::format("Warning: a lambert_db above -4.97 dB gives back more than it gets: {}", listed(loud)));
         if (!plan.laws.outside_validity.empty())
-            notices.push_back(fmt::format(
-                "Warning: backscatter of seabeds is extrapolated outside its law's validity: {}",
-                plan.laws.outside_validity));
+            notices.push_back(
+                fmt::format("Warning: backscatter of seabeds is extrapolated outside its law's validity: {}",
+                            plan.laws.outside_validity));
     }
 };
 

@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "components/sonar/RenderPlan.hpp"
-#include "components/sonar/WaterView.hpp"
+#include "components/sonar/plan/RenderPlan.hpp"
+#include "components/sonar/plan/WaterView.hpp"
 #include "types/Geometry.hpp"
 #include "types/Snapshot.hpp"
 #include "types/Sonar.hpp"

@@ -5,7 +5,7 @@
 
 #include <algorithm>
 
-#include "components/sonar/EchoRules.hpp"
+#include "components/sonar/echo/EchoRules.hpp"
 #include "types/DidYouMean.hpp"
 
 namespace insonify::sonar {
@@ -30,9 +30,9 @@ namespace {
 
 struct List {
     std::vector<std::unique_ptr<const Effect>> added;
-    std::vector<const Effect*> all{&absorption(), &backscatter(), &publishedMeans(), &beamPatterns(),  &pulse(),
-                                   &ringDown(),   &volume(),      &speckle(),        &multipath(),    &slabs(),
-                                   &refraction(), &motionInPing(), &normalMaps(),    &pointTargets()};
+    std::vector<const Effect*> all{&absorption(), &backscatter(),  &publishedMeans(), &beamPatterns(), &pulse(),
+                                   &ringDown(),   &volume(),       &speckle(),        &multipath(),    &slabs(),
+                                   &refraction(), &motionInPing(), &normalMaps(),     &pointTargets()};
 };
 
 List& list() {
@@ -62,8 +62,8 @@ void checkNumbers(const std::string& path, const std::vector<types::Field>& fiel
         if (field == fields.end())
             diagnostics.push_back({path + name, whyUnknown(name, names, "is no number of this effect", "they")});
         else if (!(value >= field->min && value <= field->max))
-            diagnostics.push_back(
-                {path + name, fmt::format("is {:g}; must be {:g} to {:g} {}", value, field->min, field->max, field->unit)});
+            diagnostics.push_back({path + name, fmt::format("is {:g}; must be {:g} to {:g} {}", value, field->min,
+                                                            field->max, field->unit)});
     }
 }
 

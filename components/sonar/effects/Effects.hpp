@@ -14,7 +14,8 @@ std::span<const Effect* const> effects();
  *  from `insonify_register` or from main. One whose key is there already is not added. */
 void addEffect(std::unique_ptr<const Effect> effect);
 
-/** Diagnostics of SonarConfig::effects: keys and numbers that no effect has, numbers out of bounds; and of each effect. */
+/** Diagnostics of SonarConfig::effects: keys and numbers that no effect has, numbers out of bounds; and of each effect.
+ */
 void checkEffects(const SonarConfig& config, types::Diagnostics& diagnostics);
 
 /** The effects of a plan in the pings of one renderer, in order. */
@@ -31,7 +32,7 @@ public:
     bool areOnDevice() const;
     void addEchoes(PingInMaking& ping);
     void addToBins(types::Sonar& ping);
-    size_t heard() const;                 ///< [1]
+    size_t heard() const;  ///< [1]
     std::vector<LeftOut> leftOut() const;
 
 private:

@@ -19,8 +19,10 @@ class MotionInPing final : public Effect {
 public:
     bool plan(const types::Geometry& /*geometry*/, RenderPlan& plan) const override {
         if (!plan.config.motion_in_ping)
-            return leaveOut(plan, {.effect = "motion within a ping", .reason = Reason::Approximated,
-                                   .value = motionBound(plan.config, plan.grid).speed, .words = words});
+            return leaveOut(plan, {.effect = "motion within a ping",
+                                   .reason = Reason::Approximated,
+                                   .value = motionBound(plan.config, plan.grid).speed,
+                                   .words = words});
         plan.effect_features.emplace_back("motion_in_ping");
         return true;
     }
@@ -29,10 +31,11 @@ public:
               std::vector<std::string>& notices) const override {
         if (!plan.config.motion_in_ping) return;
         const MotionBound bound = motionBound(plan.config, plan.grid);
-        notices.push_back(fmt::format(
-            "motion within a ping is followed from {:.2g} m/s or {:.2g} deg/s on; below that it is under half a bin and "
-            "half a beam",
-            bound.speed, types::degrees(bound.turn)));
+        notices.push_back(
+            fmt::format("motion within a ping is followed from {:.2g} m/s or {:.2g} deg/s on; below that it is under "
+                        "half a bin and "
+                        "half a beam",
+                        bound.speed, types::degrees(bound.turn)));
     }
 };
 

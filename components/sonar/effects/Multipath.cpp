@@ -1,5 +1,5 @@
-#include "components/sonar/Mirrors.hpp"
 #include "components/sonar/effects/Effect.hpp"
+#include "components/sonar/ways/Mirrors.hpp"
 
 namespace insonify::sonar {
 namespace {

@@ -1,6 +1,6 @@
 #include <fmt/format.h>
 
-#include "components/sonar/RangeResponse.hpp"
+#include "components/sonar/echo/RangeResponse.hpp"
 #include "components/sonar/effects/Effect.hpp"
 
 namespace insonify::sonar {

@@ -1,6 +1,6 @@
 #pragma once
-#include "components/sonar/BinGrid.hpp"
-#include "components/sonar/SonarConfig.hpp"
+#include "components/sonar/fan/BinGrid.hpp"
+#include "components/sonar/plan/SonarConfig.hpp"
 
 namespace insonify::sonar {
 

@@ -14,7 +14,9 @@ class Slabs final : public Effect {
 public:
     bool plan(const types::Geometry& /*geometry*/, RenderPlan& plan) const override {
         if (plan.frusta.size() != 1) return !plan.frusta.empty();
-        return leaveOut(plan, {.effect = "further slabs", .reason = Reason::Other, .value = plan.config.coverageDeg(),
+        return leaveOut(plan, {.effect = "further slabs",
+                               .reason = Reason::Other,
+                               .value = plan.config.coverageDeg(),
                                .words = oneImage});
     }
 };

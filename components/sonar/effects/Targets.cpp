@@ -1,5 +1,5 @@
-#include "components/sonar/PointTargets.hpp"
 #include "components/sonar/effects/Effect.hpp"
+#include "components/sonar/ways/PointTargets.hpp"
 
 namespace insonify::sonar {
 namespace {

@@ -4,10 +4,10 @@
 #include <cmath>
 #include <limits>
 
-#include "components/sonar/CellDeposit.hpp"
-#include "components/sonar/Estimators.hpp"
-#include "components/sonar/ScattererLattice.hpp"
+#include "components/sonar/echo/CellDeposit.hpp"
+#include "components/sonar/echo/Estimators.hpp"
 #include "components/sonar/effects/Effect.hpp"
+#include "components/sonar/field/ScattererLattice.hpp"
 #include "types/Angle.hpp"
 
 namespace insonify::sonar {

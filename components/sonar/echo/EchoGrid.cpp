@@ -1,0 +1,51 @@
+#include "components/sonar/echo/EchoGrid.hpp"
+
+#include <algorithm>
+
+namespace insonify::sonar {
+
+Beamformer beamformerOf(const RenderPlan& plan) {
+    const Directivity& directivity = *plan.directivity;
+    return {plan.beams,
+            plan.cells,
+            static_cast<size_t>(plan.grid.bin_count),
+            {[&](double azimuth, double bearing) { return directivity.azimuth(azimuth, bearing); },
+             directivity.nearAzimuth(), directivity.floor()}};
+}
+
+EchoGrid::EchoGrid(const RenderPlan& plan, int threads)
+    : bin_count_(static_cast<size_t>(plan.grid.bin_count)), beam_count_(plan.beams.size()) {
+    if (plan.has(Pass::Beamform)) beamformer_ = beamformerOf(plan);
+    if (plan.has(Pass::Pulse))
+        response_.emplace(acoustics::Pulse(*plan.config.pulse, plan.grid.speed_of_sound), plan.grid);
+    if (!passes()) echoes_.resize(plan.cells.size() * bin_count_);
+    if (response_)
+        padded_.assign(static_cast<size_t>(threads), std::vector<float>(bin_count_ + 2 * response_->margin()));
+}
+
+void EchoGrid::finishBeam(size_t beam, std::span<float> padded, types::Sonar& ping) const {
+    const std::span<float> bins(ping.bins.data() + beam * bin_count_, bin_count_);
+    const std::span<float> formed = response_ ? padded.subspan(response_->margin(), bin_count_) : bins;
+    if (beamformer_)
+        beamformer_->form(beam, echoes_, formed);
+    else
+        std::copy_n(echoes_.data() + beam * bin_count_, bin_count_, formed.data());
+    if (response_) response_->spread(padded, bins);
+}
+
+void EchoGrid::finish(types::Sonar& ping, ThreadPool& threads) {
+    if (passes()) return;
+    const auto eachOf = [&](size_t count, const auto& work) {
+        threads.run([&](int part, int parts) {
+            for (auto i = static_cast<size_t>(part); i < count; i += static_cast<size_t>(parts))
+                work(i, static_cast<size_t>(part));
+        });
+    };
+    if (beamformer_)
+        eachOf(beamformer_->groupCount(), [&](size_t group, size_t) { beamformer_->sumGroup(group, echoes_); });
+    eachOf(beam_count_, [&](size_t beam, size_t part) {
+        finishBeam(beam, response_ ? std::span<float>(padded_[part]) : std::span<float>(), ping);
+    });
+}
+
+}  // namespace insonify::sonar

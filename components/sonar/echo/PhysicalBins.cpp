@@ -1,0 +1,55 @@
+#include "components/sonar/echo/EstimateBatch.hpp"
+
+namespace insonify::sonar {
+namespace {
+
+/** Several numbers at a time. */
+using Lanes = double __attribute__((vector_size(bins_at_once * sizeof(double))));
+
+inline Lanes min(Lanes a, double b) { return a < b ? a : Lanes{} + b; }
+inline Lanes max(Lanes a, double b) { return a > b ? a : Lanes{} + b; }
+inline Lanes abs(Lanes a) { return a < 0.0 ? -a : a; }
+inline Lanes load(const double* from) {
+    Lanes lanes;
+    std::memcpy(&lanes, from, sizeof lanes);
+    return lanes;
+}
+
+/** Energies of footprints: what deposit.glsl does with HAVE_PHYSICAL, several bins at once. */
+struct PhysicalBins : Bins {
+    static constexpr Features features{Feature::Physical};
+    using Bins::Bins;
+
+    void depositCell(const Footprint& cell, uint beam, double strength_range) {
+        if (!(cell.near_end > cell.far_end && strength_range >= 0.0)) return;
+        uint bin = min(uint(1.0 / (cell.near_end * bin_width)), bin_count - 1u);
+        while (bin > 0u && edges[bin] < cell.near_end) --bin;
+        while (edges[bin + 1u] >= cell.near_end) ++bin;
+        uint64_t* of_beam = sums + beam * beam_sums;
+        for (; edges[bin] > cell.far_end; bin += bins_at_once) addBins(cell, strength_range, bin, of_beam);
+    }
+
+private:
+    using real = Lanes;
+#include "shaders/trapezoid.glsl"
+
+    void addBins(const Footprint& cell, double strength_range, uint first, uint64_t* of_beam) {
+        const Lanes above = max(min(load(edges + first), cell.near_end), cell.far_end);
+        const Lanes below = max(min(load(edges + first + 1), cell.near_end), cell.far_end);
+        const Lanes to_above = trapezoidShare(cell, above - cell.centre);
+        const Lanes share =
+            (above < cell.nearest ? to_above : Lanes{} + 0.5) - trapezoidShare(cell, below - cell.centre);
+        const Lanes amounts = partEnergy(cell, strength_range, share, load(middles + first), above, below);
+        for (int i = 0; i < bins_at_once; ++i) of_beam[first + i] += quanta(amounts[i]);
+    }
+};
+
+INSONIFY_ESTIMATE(sumPhysical, PhysicalBins)
+
+constexpr EstimatorEntry entries[] = {{PhysicalBins::features, sumPhysical}};
+
+}  // namespace
+
+std::span<const EstimatorEntry> physicalEstimators() { return entries; }
+
+}  // namespace insonify::sonar

@@ -1,0 +1,104 @@
+#include "components/sonar/echo/TruthGrid.hpp"
+
+#include <algorithm>
+#include <numbers>
+
+namespace insonify::sonar {
+namespace {
+
+constexpr double whole_turn = 2 * std::numbers::pi;
+
+/** The azimuth, or the same one a whole turn on or back where that alone lies between two others [rad]. */
+double turnedBetween(double low, double high, double azimuth) {
+    if (azimuth < low && azimuth + whole_turn < high) return azimuth + whole_turn;
+    return azimuth >= high && azimuth - whole_turn >= low ? azimuth - whole_turn : azimuth;
+}
+
+}  // namespace
+
+std::vector<int32_t> beamsOfCells(const RenderPlan& plan) {
+    if (!plan.has(Pass::Beamform)) return {};
+    const std::vector<double> edges = plan.beams.halfways();
+    std::vector<int32_t> beams;
+    for (const Beam& cell : plan.cells) {
+        const auto above = std::ranges::upper_bound(edges, turnedBetween(edges.front(), edges.back(), cell.centre));
+        const bool outside = above == edges.begin() || above == edges.end();
+        beams.push_back(outside ? -1 : static_cast<int32_t>(above - edges.begin()) - 1);
+    }
+    return beams;
+}
+
+TruthGrid::TruthGrid(const RenderPlan& plan, bool whole)
+    : beams_of_cells_(beamsOfCells(plan)), beam_count_(plan.beams.size()) {
+    if (whole && beams_of_cells_.empty()) return;
+    gathered_.emplace(beam_count_, static_cast<size_t>(plan.grid.bin_count));
+    alone_.resize(beam_count_);
+}
+
+void TruthGrid::begin() {
+    if (gathered_) gathered_->clear();
+}
+
+void TruthGrid::take(size_t cell, const TruthTable& echoes, size_t of, types::SonarTruth& truth) {
+    const int32_t row = beams_of_cells_.empty() ? static_cast<int32_t>(cell) : beams_of_cells_[cell];
+    if (row < 0) return;
+    const auto beam = static_cast<size_t>(row);
+    if (!gathered_) return echoes.tell(of, beam, truth);
+    const std::lock_guard one_at_a_time(alone_[beam]);
+    gathered_->merge(beam, echoes, of);
+}
+
+void TruthGrid::finish(types::SonarTruth& truth, ThreadPool& threads) const {
+    if (!gathered_) return;
+    threads.run([&](int part, int parts) {
+        for (auto beam = static_cast<size_t>(part); beam < beam_count_; beam += static_cast<size_t>(parts))
+            gathered_->tell(beam, beam, truth);
+    });
+}
+
+PathTruth::PathTruth(const RenderPlan& plan, size_t bin_count)
+    : beams_of_cells_(beamsOfCells(plan)), sum_count_(bin_count), bin_count_(static_cast<size_t>(plan.grid.bin_count)) {
+    for (std::vector<uint64_t>& sums : sums_) sums.resize(plan.cells.size() * sum_count_);
+    for (std::vector<double>& energies : energies_) energies.resize(plan.beams.size() * bin_count_);
+}
+
+void PathTruth::begin() {
+    for (std::vector<uint64_t>& sums : sums_) std::ranges::fill(sums, 0);
+    for (std::vector<double>& energies : energies_) std::ranges::fill(energies, 0.0);
+}
+
+void PathTruth::take(size_t cell, std::span<const float> direct, const BinLevels& levels, double quantum) {
+    const int32_t beam = beams_of_cells_.empty() ? static_cast<int32_t>(cell) : beams_of_cells_[cell];
+    if (beam < 0) return;
+    const size_t first = static_cast<size_t>(beam) * bin_count_, per_bin = sum_count_ / bin_count_;
+    knows_direct_ = !direct.empty();
+    for (size_t j = 0; j < direct.size(); ++j) energies_[0][first + j] += double{direct[j]};
+    for (size_t path = 0; path < sums_.size(); ++path)
+        for (size_t j = 0; j < sum_count_; ++j) {
+            const uint64_t sum = sums_[path][cell * sum_count_ + j];
+            if (sum > 0)
+                energies_[path + 1][first + j / per_bin] +=
+                    double{levels.intensity(j, static_cast<double>(sum) * quantum)};
+        }
+}
+
+void PathTruth::tell(types::SonarTruth& truth) const {
+    for (size_t beam = 0; beam < truth.beam_count; ++beam) {
+        size_t last = 0;
+        for (size_t j = 0; j < bin_count_; ++j) {
+            const size_t at = beam * bin_count_ + j;
+            uint8_t loudest = 0;
+            for (uint8_t path = 1; path < energies_.size(); ++path)
+                if (energies_[path][at] > energies_[loudest][at]) loudest = path;
+            if (!knows_direct_ && truth.hits[at] > 0) loudest = 0;
+            truth.path[at] = loudest;
+            if (loudest > 0 || truth.hits[at] > 0) last = j;
+        }
+        for (size_t j = 0; j < bin_count_; ++j) {
+            const size_t at = beam * bin_count_ + j;
+            truth.shadow[at] = j < last && truth.path[at] == 0 && truth.hits[at] == 0;
+        }
+    }
+}
+
+}  // namespace insonify::sonar

@@ -1,0 +1,79 @@
+#pragma once
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <glm/geometric.hpp>
+#include <glm/vec3.hpp>
+#include <vector>
+
+#include "components/sonar/echo/Interface.hpp"
+#include "components/sonar/fan/Fan.hpp"
+#include "components/sonar/plan/RenderOptions.hpp"
+#include "components/sonar/plan/SonarConfig.hpp"
+
+namespace insonify::sonar {
+
+/** The beams of a configuration: a regular fan, or the explicit table. */
+Fan makeBeams(const SonarConfig& config);
+
+/** Azimuth at which a cone of bearing `bearing` meets elevation `elevation`; clamped to +-90 deg [rad]. */
+double coneAzimuth(double bearing, double elevation);
+
+/** One perspective image of the fan. u = tan(azimuth - centre), growing to port; v = tan(elevation) / cos(...). */
+struct ViewFrustum {
+    double azimuth = 0;     ///< Of the image's centre in the sonar frame [rad].
+    double half_width = 0;  ///< [rad]
+    int columns = 0, rows = 0;
+    double extent_u = 0;  ///< u at the left edge: tan(half_width) [1].
+    double extent_v = 0;  ///< v at the top edge [1].
+    int samples = 1;      ///< 4: two columns and rows are one pixel of the device, its samples on a rotated grid [1].
+
+    double du() const { return 2 * extent_u / columns; }
+    double dv() const { return 2 * extent_v / rows; }
+    double u(double column) const { return column * du() - extent_u; }
+    double v(double row) const { return row * dv() - extent_v; }
+};
+
+/** Rows or columns that an image may have: what every OpenGL 4.5 device can draw [1]. */
+constexpr int max_image_size = 16384;
+
+/** Elevation that an image may show [deg]. */
+constexpr double tallest_image_deg = 150;
+
+/** As few frusta of at most 60 deg as cover the beams (ACOUSTICS.md 5.3); cones reach wider than their bearing. One
+ *  with `published`. */
+std::vector<ViewFrustum> makeFrusta(const SonarConfig& config, const Fan& beams, const RenderOptions& options = {});
+
+/** Overlap of columns and beams: fractional, or with `published` rounded to whole columns. Planar beams: one row of
+ *  columns serves all image rows. */
+struct ColumnShares {
+    std::vector<uint32_t> starts;  ///< Shares of (row, column) begin at starts[row * columns + column].
+    std::vector<ShareRecord> shares;
+    bool per_row = false;  ///< Conical beams: the boundary between beams bends with elevation.
+
+    size_t cell(int row, int column, int columns) const {
+        return static_cast<size_t>(per_row ? row : 0) * static_cast<size_t>(columns) + static_cast<size_t>(column);
+    }
+};
+
+ColumnShares makeShares(const SonarConfig& config, const Fan& beams, const ViewFrustum& frustum,
+                        const RenderOptions& options = {});
+
+/** Where a point lies from a sonar, as its beams see it [rad]. */
+struct BeamAngles {
+    double azimuth;    ///< Positive to port: about the z-axis; of a conical fan above the plane square to the y-axis.
+    double elevation;  ///< Above the sonar's plane.
+};
+
+/** The azimuth of a direction, unit, in the sonar's axes: of a conical fan its cone's bearing [rad]. */
+inline double beamAzimuthOf(const glm::dvec3& direction, bool conical) {
+    return conical ? std::asin(std::clamp(direction.y, -1.0, 1.0)) : std::atan2(direction.y, direction.x);
+}
+
+/** Of a point in the sonar's axes [m]; of the sonar's own place it is 0, 0. */
+inline BeamAngles beamAnglesOf(const glm::dvec3& at, bool conical) {
+    const glm::dvec3 direction = at / std::max(glm::length(at), 1e-12);
+    return {beamAzimuthOf(direction, conical), std::asin(std::clamp(direction.z, -1.0, 1.0))};
+}
+
+}  // namespace insonify::sonar

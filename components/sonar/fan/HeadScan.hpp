@@ -1,0 +1,83 @@
+#pragma once
+#include <cstdint>
+#include <optional>
+
+#include "components/sonar/plan/SonarConfig.hpp"
+
+namespace insonify::sonar {
+
+/** How a mechanically scanning head turns; bearings are positive to port. */
+struct HeadConfig {
+    double left_deg = 180;
+    double right_deg = -180;
+    double step_deg = 1.8;
+    std::optional<bool> continuous;
+    std::optional<double> speed_deg_per_s;
+    bool sweeps = false;
+
+    double sectorDeg() const { return left_deg - right_deg; }
+    /** Whether the head turns on and on, rather than back at its limits. */
+    bool turnsOn() const { return continuous.value_or(sectorDeg() == 360); }
+
+    template <class Self, class V>
+    static void describe(Self& self, V& visit) {
+        using types::Field;
+        visit(Field{"left_deg", "deg", "where a scan starts", -360, 360}, self.left_deg);
+        visit(Field{"right_deg", "deg", "where a sector scan turns back", -360, 360}, self.right_deg);
+        visit(Field{"step_deg", "deg", "turn between two pings", 0.001, 360}, self.step_deg);
+        visit(Field{"continuous", "",
+                    "turns on and on from left_deg, whatever right_deg is; absent: when they are 360 deg apart"},
+              self.continuous);
+        visit(Field{"speed_deg_per_s", "deg/s", "of the head; absent: every step is reached", 0.001, 1e6},
+              self.speed_deg_per_s);
+        visit(Field{"sweeps", "", "turns evenly while it listens, with motion_in_ping; false: stands at each step"},
+              self.sweeps);
+    }
+    void check(types::Diagnostics& diagnostics) const;
+    friend bool operator==(const HeadConfig&, const HeadConfig&) = default;
+};
+
+/** A sonar of one beam on a turning head. */
+struct ScanningSonarConfig {
+    SonarConfig sonar;
+    HeadConfig head;
+
+    ScanningSonarConfig() {
+        sonar.beam_width_deg = 3;
+        sonar.beam_height_deg = 35;
+    }
+    /** The sonar of one beam, straight ahead of the head. */
+    SonarConfig beam() const;
+
+    template <class Self, class V>
+    static void describe(Self& self, V& visit) {
+        SonarConfig::describeBeam(self.sonar, visit);
+        visit(types::Field{"head", "", "how the head turns; absent: all round, 1.8 deg a ping"}, self.head);
+    }
+    void check(types::Diagnostics& diagnostics) const;
+};
+
+/** Where the head of a scanning sonar looks, ping by ping. A sector scan goes from left to right and back, without
+ *  a doubled ping where it turns; a continuous one goes on to starboard. Bearings are computed from the number of
+ *  steps, so they do not drift. */
+class HeadScan {
+public:
+    explicit HeadScan(const HeadConfig& config);
+    /** Bearing of the ping at hand [deg], positive to port; in [left - 360, left] when continuous. */
+    double bearingDeg() const;
+    void advance();
+    /** Until it looks where it looked before, in the same direction of turn [1]. */
+    int pingsPerTurn() const;
+    const HeadConfig& config() const { return config_; }
+    void restart() { ping_ = 0; }
+
+private:
+    HeadConfig config_;
+    int64_t steps_;     ///< From the left limit to the last position before the right one [1].
+    int64_t ping_ = 0;  ///< Since the start.
+};
+
+/** Shortest time in which the head makes a step [s]; 0 when its speed is not limited. */
+double stepDuration(const HeadConfig& config);
+
+}  // namespace insonify::sonar

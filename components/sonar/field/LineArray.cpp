@@ -1,0 +1,169 @@
+#include "components/sonar/field/LineArray.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <numbers>
+#include <stdexcept>
+
+namespace insonify::sonar {
+namespace {
+
+using std::numbers::pi;
+using Complex = std::complex<double>;
+
+constexpr size_t oversampling = 16;
+
+/** Weights across an aperture whose far field is `taper`: its Fourier series, of which the coefficients are the far
+ *  field at whole u (Woodward 1946), as far as so many elements can tell and there are directions: `aperture` in
+ *  wavelengths. */
+std::vector<double> weightsOf(size_t count, double aperture, const acoustics::Taper& taper) {
+    std::vector<double> weights;
+    const auto terms = static_cast<size_t>(std::ceil(std::min(0.5 * static_cast<double>(count), aperture)));
+    const auto size = static_cast<double>(count);
+    for (size_t m = 0; m < count; ++m) {
+        const double place = (static_cast<double>(m) + 0.5) / size - 0.5;
+        double weight = 1;
+        for (size_t n = 1; n < terms; ++n)
+            weight += 2 * taper.amplitude(static_cast<double>(n)) * std::cos(2 * pi * static_cast<double>(n) * place);
+        weights.push_back(weight / size);
+    }
+    return weights;
+}
+
+/** Mean of exp(2 pi i place sine) over the sines of a cell. */
+Complex meanTurn(double place, const Cone& cell) {
+    const double half = pi * place * (cell.high - cell.low);
+    const double size = std::abs(half) < 1e-6 ? 1 : std::sin(half) / half;
+    return std::polar(1.0, 2 * pi * place * cell.middle()) * size;
+}
+
+/** sum over m of values[m] exp(-2 pi i m q / size) in place of values[q]; a power of two of them. */
+void transform(std::vector<Complex>& values) {
+    const size_t size = values.size();
+    for (size_t i = 1, j = 0; i < size; ++i) {
+        size_t bit = size >> 1;
+        for (; j & bit; bit >>= 1) j ^= bit;
+        j ^= bit;
+        if (i < j) std::swap(values[i], values[j]);
+    }
+    for (size_t length = 2; length <= size; length <<= 1)
+        for (size_t k = 0; k < length / 2; ++k) {
+            const Complex turn = std::polar(1.0, -2 * pi * static_cast<double>(k) / static_cast<double>(length));
+            for (size_t from = k; from < size; from += length) {
+                const Complex odd = values[from + length / 2] * turn;
+                values[from + length / 2] = values[from] - odd;
+                values[from] += odd;
+            }
+        }
+}
+
+/** Where a direction lies on the circle of a transform: between two of its values, and how it is turned back to the
+ *  array's middle. */
+struct Direction {
+    size_t low, high;
+    float share;  ///< Of `high` [1].
+    Complex turn_low, turn_high;
+};
+
+/** Of the azimuth cells, as loud as they are sent at. */
+ComplexRows sentField(const RenderPlan& plan, const EchoField& field) {
+    ComplexRows rows(plan.cells.size(), field.response().samples());
+    for (size_t cell = 0; cell < plan.cells.size(); ++cell) {
+        const double azimuth = plan.cells[cell].centre;
+        const auto sent = static_cast<float>(plan.directivity->azimuthAmplitude(azimuth, azimuth));
+        const std::span<const float> numbers = field.cell(cell);
+        const auto row = rows.row(cell);
+        for (size_t i = 0; i < row.size(); ++i) row[i] = {sent * numbers[2 * i], sent * numbers[2 * i + 1]};
+    }
+    return rows;
+}
+
+}  // namespace
+
+LineArray::LineArray(size_t count, double spacing, double wavelength, const acoustics::Taper& taper)
+    : spacing_(spacing),
+      wavelength_(wavelength),
+      weights_(weightsOf(count, static_cast<double>(count) * spacing / wavelength, taper)) {}
+
+double LineArray::position(size_t element) const {
+    return (static_cast<double>(element) - 0.5 * static_cast<double>(count() - 1)) * spacing_;
+}
+
+ComplexRows LineArray::hear(const ComplexRows& field, std::span<const Cone> cells) const {
+    if (field.rowCount() != cells.size()) throw std::invalid_argument("a field has one row for each cell");
+    ComplexRows heard(count(), field.sample_count);
+    for (size_t m = 0; m < count(); ++m) {
+        const auto sum = heard.row(m);
+        for (size_t cell = 0; cell < cells.size(); ++cell) {
+            const std::complex<float> turn(meanTurn(position(m) / wavelength_, cells[cell]));
+            const auto echoes = field.row(cell);
+            for (size_t i = 0; i < sum.size(); ++i) {  // by parts, for that of std::complex looks for infinities
+                const float re = echoes[i].real(), im = echoes[i].imag();
+                sum[i] += std::complex<float>(re * turn.real() - im * turn.imag(), re * turn.imag() + im * turn.real());
+            }
+        }
+    }
+    return heard;
+}
+
+ComplexRows LineArray::form(const ComplexRows& heard, std::span<const double> sines) const {
+    if (heard.rowCount() != count()) throw std::invalid_argument("there is one row for each element");
+    const size_t size = std::bit_ceil(oversampling * count());
+    std::vector<Direction> directions;
+    for (const double sine : sines) {
+        const double place = sine * spacing_ / wavelength_ * static_cast<double>(size), low = std::floor(place);
+        const auto wrapped = [&](double q) { return static_cast<size_t>(static_cast<long>(q)) & (size - 1); };
+        const auto turn = [&](double q) {  // element 0 is not in the middle
+            return std::polar(1.0, -2 * pi * q / static_cast<double>(size) * position(0) / spacing_);
+        };
+        directions.push_back(
+            {wrapped(low), wrapped(low + 1), static_cast<float>(place - low), turn(low), turn(low + 1)});
+    }
+    ComplexRows beams(sines.size(), heard.sample_count);
+    std::vector<Complex> spectrum;
+    for (size_t i = 0; i < heard.sample_count; ++i) {
+        spectrum.assign(size, 0.0);
+        for (size_t m = 0; m < count(); ++m) spectrum[m] = weights_[m] * Complex(heard.row(m)[i]);
+        transform(spectrum);
+        for (size_t k = 0; k < sines.size(); ++k) {
+            const Direction& direction = directions[k];
+            const Complex low = spectrum[direction.low] * direction.turn_low,
+                          high = spectrum[direction.high] * direction.turn_high;
+            beams.row(k)[i] = std::complex<float>(low + static_cast<double>(direction.share) * (high - low));
+        }
+    }
+    return beams;
+}
+
+std::vector<Cone> conesOf(const Fan& beams) {
+    std::vector<Cone> cones;
+    for (const Beam& beam : beams) cones.push_back({std::sin(beam.low), std::sin(beam.high)});
+    return cones;
+}
+
+LineArray lineArrayOf(const SonarConfig& config) {
+    const double wavelength = config.speedOfSound() / (1e3 * *config.frequency_khz);
+    const acoustics::BeamPattern pattern(*config.beam_pattern->receive.azimuth, wavelength);
+    const ElementsConfig::Array array = config.elements->arrayOf(pattern.aperture() * wavelength, wavelength);
+    return {array.count, array.spacing, wavelength, pattern.taper()};
+}
+
+void takeSignals(const RenderPlan& plan, const EchoField& field, const LineArray& array,
+                 types::SonarElements& signals) {
+    const ComplexRows heard = array.hear(sentField(plan, field), conesOf(plan.cells));
+    signals.speed_of_sound = plan.grid.speed_of_sound;
+    signals.wavelength = array.wavelength();
+    signals.sample_spacing = field.response().sampleWidth();
+    signals.first_range = 0.5 * signals.sample_spacing;
+    signals.sample_count = static_cast<uint32_t>(heard.sample_count);
+    signals.positions.clear();
+    for (size_t m = 0; m < array.count(); ++m) signals.positions.push_back(array.position(m));
+    signals.weights = array.weights();
+    signals.in_phase.resize(heard.values.size());
+    signals.quadrature.resize(heard.values.size());
+    std::ranges::transform(heard.values, signals.in_phase.begin(), [](const auto& value) { return value.real(); });
+    std::ranges::transform(heard.values, signals.quadrature.begin(), [](const auto& value) { return value.imag(); });
+}
+
+}  // namespace insonify::sonar

@@ -1,0 +1,75 @@
+#pragma once
+#include <complex>
+#include <span>
+#include <vector>
+
+#include "components/acoustics/Taper.hpp"
+#include "components/sonar/field/EchoField.hpp"
+#include "components/sonar/plan/RenderPlan.hpp"
+#include "types/SonarElements.hpp"
+
+namespace insonify::sonar {
+
+/** Rows of complex samples of equal length: of azimuth cells, of elements, or of beams. */
+struct ComplexRows {
+    ComplexRows() = default;
+    ComplexRows(size_t rows, size_t samples) : sample_count(samples), values(rows * samples) {}
+
+    size_t rowCount() const { return sample_count == 0 ? 0 : values.size() / sample_count; }
+    std::span<std::complex<float>> row(size_t i) { return {values.data() + i * sample_count, sample_count}; }
+    std::span<const std::complex<float>> row(size_t i) const {
+        return {values.data() + i * sample_count, sample_count};
+    }
+
+    size_t sample_count = 0;
+    std::vector<std::complex<float>> values;
+};
+
+/** Directions about an array between two sines, positive to port. */
+struct Cone {
+    double low, high;
+    double middle() const { return 0.5 * (low + high); }
+};
+
+/** A straight array of elements side by side across the sonar, and the weights by which its beams are formed
+ *  (ACOUSTICS.md 5.22). Directions are cones about the array: their sines, positive to port. */
+class LineArray {
+public:
+    /** `spacing` of neighbouring elements and `wavelength` [m]; `taper` is the far field of the aperture, count *
+     *  spacing long, that the weights make; a Gaussian is that of no finite aperture, and is made wider than it is. */
+    LineArray(size_t count, double spacing, double wavelength, const acoustics::Taper& taper);
+
+    size_t count() const { return weights_.size(); }
+    double spacing() const { return spacing_; }
+    double wavelength() const { return wavelength_; }
+    /** Of an element from the array's middle, positive to port [m]. */
+    double position(size_t element) const;
+    /** Of each element, which sum up to 1. */
+    const std::vector<double>& weights() const { return weights_; }
+
+    /** What the elements hear of echoes from cones: sum over the cells of field times the mean of exp(i k position
+     *  sine) over the cell's sines, k the wavenumber. The field's phase is that of the way to the array's middle and
+     *  back. One row per cell. @throws std::invalid_argument when there are other numbers of rows and cells */
+    ComplexRows hear(const ComplexRows& field, std::span<const Cone> cells) const;
+
+    /** Beams that look to cones, formed by a Fourier transform over the elements, 16 times as long as the array at
+     *  least, and straight lines between its directions: sum over the elements of weight * heard * exp(-i k position
+     *  sine), within 0.5 %. Elements more than half a wavelength apart cannot tell all directions from each other.
+     *  @throws std::invalid_argument when there are other numbers of rows and elements */
+    ComplexRows form(const ComplexRows& heard, std::span<const double> sines) const;
+
+private:
+    double spacing_, wavelength_;
+    std::vector<double> weights_;
+};
+
+/** The array of a sonar with `elements`, whose aperture is that of its receiver's law in azimuth. */
+LineArray lineArrayOf(const SonarConfig& config);
+
+/** The beams of a plan as cones about the array. */
+std::vector<Cone> conesOf(const Fan& beams);
+
+/** What the elements hear of a field whose cells are filled, into all of `signals` but its time. Allocates. */
+void takeSignals(const RenderPlan& plan, const EchoField& field, const LineArray& array, types::SonarElements& signals);
+
+}  // namespace insonify::sonar

@@ -1,0 +1,263 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+
+#include "components/gpu/EglContext.hpp"
+#include "components/sonar/EchoRenderer.hpp"
+#include "components/sonar/echo/BinLevels.hpp"
+#include "components/sonar/echo/EchoGrid.hpp"
+#include "components/sonar/echo/TruthGrid.hpp"
+#include "components/sonar/effects/Effects.hpp"
+#include "components/sonar/pictures/DeviceNeeds.hpp"
+#include "components/sonar/pictures/PictureDeposit.hpp"
+#include "components/sonar/pictures/SurfacePass.hpp"
+#include "types/Angle.hpp"
+
+namespace insonify::sonar {
+namespace {
+
+/** Slant range before which nothing is drawn [m]. What is nearer than the blanking is: it casts its shadow. */
+constexpr double nearest_drawn = 1e-3;
+
+/** Distance of the image plane that is nowhere farther than `nearest_drawn`, even in the picture's corners. */
+double nearPlane(const ViewFrustum& frustum) {
+    const double corner = std::sqrt(1 + frustum.extent_u * frustum.extent_u + frustum.extent_v * frustum.extent_v);
+    return nearest_drawn / corner;
+}
+
+DepositSetup depositSetup(const RenderPlan& plan, const PingEffects& effects) {
+    DepositSetup setup;
+    setup.rules = makeEchoRules(plan, effects);
+    setup.defines = plan.defines();
+    setup.frusta = plan.frusta;
+    for (const ViewFrustum& frustum : plan.frusta)
+        setup.shares.push_back(makeShares(plan.sampled, plan.cells, frustum, plan.options));
+    setup.beam_count = static_cast<uint32_t>(plan.cells.size());
+    return setup;
+}
+
+std::string outOfView(const LeftOut& what, const BinGrid& /*grid*/) {
+    return std::string("outside the fan or the range at the first ping") +
+           (what.effect == "triangles" ? ", or on the far side of a closed mesh" : "");
+}
+
+class DrawnEchoes final : public EchoRenderer {
+public:
+    DrawnEchoes(const RenderPlan& plan, types::GeometryPtr geometry, const PingEffects& effects);
+    ~DrawnEchoes() override;
+    void takeQuality() override;
+    void render(const types::Snapshot& snapshot, types::Sonar& ping, Stages& stages) override;
+    void setTruth(types::SonarTruth* truth) override { truth_ = truth; }
+    bool hasEchoes() const override;
+    std::vector<LeftOut> culled() const override;
+    const std::string& device() const override { return device_; }
+    std::string notice() const override { return why_on_processor_.empty() ? context_.fallback() : why_on_processor_; }
+
+private:
+    bool wantsProcessor() const;
+    /** Throws GlError where the device cannot draw the plan's pictures. Returns whyOnProcessor(). */
+    std::string checkLimits() const;
+    bool depositsOnProcessor() const { return wantsProcessor() || !why_on_processor_.empty(); }
+    SurfacePass::Setup surfaceSetup() const;
+    void makeDeposit();
+    void makeTruth();
+    void prepareTruth();
+    /** Fills it, once the sums are there. */
+    void fillTruth();
+    /** Gives what is drawn to the deposits. */
+    void take(const WaterView& water);
+    void fillBins(types::Sonar& ping);
+    void fill(size_t cell, const uint64_t* sums, double pixel, std::span<float> bins) const;
+    /** Seconds since the last call, put down for a stage. */
+    void lap(Stage& stage);
+
+    const RenderPlan& plan_;
+    types::GeometryPtr geometry_;
+    const PingEffects& effects_;
+    gpu::EglContext context_;
+    std::string why_on_processor_;  ///< Empty unless the device was to sum the pictures and cannot.
+    std::string device_;
+    BinLevels levels_;
+    Culler culler_;
+    ThreadPool threads_;
+    SurfacePass surface_;
+    std::unique_ptr<BinDeposit> deposit_;
+    types::SonarTruth* truth_ = nullptr;      ///< To be filled; null: none is.
+    std::optional<TruthTable> shown_;         ///< Once it was wanted.
+    std::unique_ptr<PictureDeposit> beside_;  ///< The same, where the device deposits.
+    PictureDeposit* telling_ = nullptr;       ///< Which of the two deposits on the processor tells what is shown.
+    std::optional<EchoGrid> grid_;
+    EchoRules rules_;
+    std::span<const uint64_t> sums_;  ///< Of the last ping, until the quality changes.
+    bool rendered_ = false;           ///< Whether there is a last ping.
+    std::chrono::steady_clock::time_point last_;
+};
+
+DrawnEchoes::DrawnEchoes(const RenderPlan& plan, types::GeometryPtr geometry, const PingEffects& effects)
+    : plan_(plan),
+      geometry_(std::move(geometry)),
+      effects_(effects),
+      context_(plan.config.device),
+      why_on_processor_(checkLimits()),
+      device_(fmt::format("{}, OpenGL {}", context_.renderer(), context_.driver())),
+      levels_(plan.config, plan.grid),
+      culler_(*geometry_, {nearest_drawn, reachOf(plan), plan.config.draw_all}),
+      threads_(plan.options.threads),
+      surface_(context_, surfaceSetup(), culler_, threads_) {
+    makeDeposit();
+    context_.check();
+}
+
+DrawnEchoes::~DrawnEchoes() = default;
+
+bool DrawnEchoes::wantsProcessor() const {
+    return plan_.config.deposit == Deposit::Cpu || !effects_.areOnDevice() ||
+           (plan_.config.deposit == Deposit::Auto && context_.isSoftware());
+}
+
+std::string DrawnEchoes::checkLimits() const {
+    requireDrawing(context_.limits(), drawingNeeds(plan_, *geometry_), context_.renderer());
+    if (wantsProcessor()) return {};
+    return whyOnProcessor(plan_.config.deposit, context_.limits(),
+                          depositNeeds(depositSetup(plan_, effects_), *geometry_), context_.renderer());
+}
+
+SurfacePass::Setup DrawnEchoes::surfaceSetup() const {
+    return {.geometry = *geometry_,
+            .laws = plan_.laws,
+            .frusta = plan_.frusta,
+            .defines = plan_.defines(),
+            .near_plane = nearPlane(plan_.frusta.front()),
+            .empty_too = plan_.config.published || plan_.hears_misses,
+            .cull_on_device = !depositsOnProcessor()};
+}
+
+void DrawnEchoes::makeDeposit() {
+    DepositSetup setup = depositSetup(plan_, effects_);
+    grid_.emplace(plan_, threads_.size());
+    rules_ = setup.rules;
+    if (depositsOnProcessor())
+        deposit_ = std::make_unique<PictureDeposit>(std::move(setup), surface_, context_, threads_);
+    else
+        deposit_ = makeGpuDeposit(setup, context_);
+    beside_.reset();
+    shown_.reset();
+}
+
+void DrawnEchoes::makeTruth() {
+    shown_.emplace(plan_.beams.size(), static_cast<size_t>(plan_.grid.bin_count));
+    telling_ = dynamic_cast<PictureDeposit*>(deposit_.get());
+    if (!telling_) {
+        const auto alone = context_.transferring();
+        beside_ = std::make_unique<PictureDeposit>(depositSetup(plan_, effects_), surface_, context_, threads_);
+        telling_ = beside_.get();
+    }
+    telling_->prepareTruth(beamsOfCells(plan_));
+}
+
+void DrawnEchoes::prepareTruth() {
+    if (truth_ && !shown_) makeTruth();
+    if (shown_) telling_->setTruth(truth_ ? &*shown_ : nullptr);
+}
+
+void DrawnEchoes::fillTruth() {
+    if (beside_) beside_->finish();
+    threads_.run([&](int part, int parts) {
+        for (auto beam = static_cast<size_t>(part); beam < plan_.beams.size(); beam += static_cast<size_t>(parts))
+            shown_->tell(beam, beam, *truth_);
+    });
+}
+
+void DrawnEchoes::lap(Stage& stage) {
+    const auto now = std::chrono::steady_clock::now();
+    stage.seconds += std::chrono::duration<double>(now - last_).count();
+    last_ = now;
+}
+
+void DrawnEchoes::take(const WaterView& water) {
+    const auto alone = context_.transferring();
+    const auto takeAll = [&](BinDeposit& deposit) {
+        deposit.begin(water);
+        for (size_t i = 0; i < plan_.frusta.size(); ++i)
+            if (surface_.draws(i)) deposit.take(i, surface_);
+    };
+    takeAll(*deposit_);
+    if (truth_ && beside_) takeAll(*beside_);
+}
+
+void DrawnEchoes::fillBins(types::Sonar& ping) {
+    const double pixel = plan_.frusta.front().du() * plan_.frusta.front().dv();  // solid angle of a whole pixel [sr]
+    threads_.run([&](int part, int parts) {
+        for (auto cell = static_cast<size_t>(part); cell < plan_.cells.size(); cell += static_cast<size_t>(parts))
+            fill(cell, &sums_[cell * rules_.sumCount()], pixel, grid_->cell(cell, ping));
+    });
+    grid_->finish(ping, threads_);
+}
+
+void DrawnEchoes::fill(size_t cell, const uint64_t* sums, double pixel, std::span<float> bins) const {
+    levels_.fill(rules_, sums, pixel, bins);
+    addOwnSums(rules_, sums, cell, pixel, bins);
+}
+
+void DrawnEchoes::render(const types::Snapshot& snapshot, types::Sonar& ping, Stages& stages) {
+    context_.requireThread();
+    prepareTruth();
+    last_ = std::chrono::steady_clock::now();
+    culler_.place(snapshot);
+    surface_.cull();
+    lap(stages[CullStage]);
+    surface_.draw();
+    lap(stages[DrawStage]);
+    take(waterViewOf(snapshot));
+    context_.check();
+    lap(stages[ReadStage]);
+    if (truth_) shown_->clear();
+    sums_ = deposit_->finish();
+    if (truth_) fillTruth();
+    lap(stages[DepositStage]);
+    fillBins(ping);
+    rendered_ = true;
+    lap(stages[BeamStage]);
+}
+
+void DrawnEchoes::takeQuality() {
+    context_.requireThread();
+    const auto alone = context_.transferring();
+    why_on_processor_ = checkLimits();
+    surface_.resize(plan_.frusta);
+    sums_ = {};
+    makeDeposit();
+    context_.check();
+}
+
+bool DrawnEchoes::hasEchoes() const {
+    const bool drawn = rendered_ && !surface_.lists().empty();  // published counts what is not there
+    return drawn && std::ranges::any_of(sums_, [](uint64_t sum) { return sum > 0; });
+}
+
+std::vector<LeftOut> DrawnEchoes::culled() const {
+    std::vector<LeftOut> all;
+    if (!rendered_) return all;
+    const Shown shown = surface_.lists().shown();
+    const size_t triangles = geometry_->triangleCount();
+    const auto add = [&](const char* effect, size_t left_out, size_t of) {
+        if (left_out > 0)
+            all.push_back(
+                {effect, Reason::OutOfView, static_cast<double>(left_out), static_cast<double>(of), outOfView});
+    };
+    add("objects", static_cast<size_t>(std::ranges::count(shown.objects, false)), shown.objects.size());
+    add("triangles", triangles - std::min(triangles, shown.triangles), triangles);
+    add("slabs", shown.empty_frusta, plan_.frusta.size());
+    return all;
+}
+
+}  // namespace
+
+std::unique_ptr<EchoRenderer> makeDrawnEchoes(const RenderPlan& plan, types::GeometryPtr geometry,
+                                              const PingEffects& effects) {
+    return std::make_unique<DrawnEchoes>(plan, std::move(geometry), effects);
+}
+
+}  // namespace insonify::sonar

@@ -1,0 +1,33 @@
+#pragma once
+#include <array>
+#include <span>
+#include <vector>
+
+#include "components/sonar/echo/CellDeposit.hpp"
+#include "components/sonar/fan/BeamFan.hpp"
+
+namespace insonify::sonar {
+
+/** A frustum's picture in memory, and what its numbers mean. */
+struct PictureView {
+    const uint32_t* pixels = nullptr;  ///< `channels` words each, row by row from below.
+    size_t channels = 2;               ///< Words of a pixel [1].
+    std::vector<PlacedRun> ranges;     ///< Of each draw, its triangles turned into sonar axes.
+    std::vector<uint32_t> objects;     ///< Of each draw.
+};
+
+/** What one thread deposits of one frustum: the beams [first, last). */
+struct PicturePart {
+    const EchoRules& rules;
+    const ViewFrustum& frustum;
+    const ColumnShares& shares;
+    const PictureView& picture;
+    WaterView water;
+    uint32_t first, last;        ///< Beams [1].
+    std::array<int, 2> columns;  ///< From, to: those that these beams touch [1].
+};
+
+/** Adds the echoes of a part of a picture to sums: each share that a beam has of a pixel is a cell. */
+void depositPicture(const PicturePart& part, const EchoSums& to);
+
+}  // namespace insonify::sonar

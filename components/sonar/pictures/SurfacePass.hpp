@@ -1,0 +1,101 @@
+#pragma once
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "components/gpu/Program.hpp"
+#include "components/sonar/ThreadPool.hpp"
+#include "components/sonar/pictures/DrawLists.hpp"
+#include "components/sonar/pictures/VisibilityBuffer.hpp"
+
+namespace insonify::sonar {
+
+/** Draws frusta in the context in which it was made. */
+class SurfacePainter {
+public:
+    /** `defines` as the plan's features; nothing nearer than `near_plane` [m] along a frustum's axis is drawn.
+     *  `scene` and `context`, which is current, must outlive the painter; the scene may be another context's. */
+    SurfacePainter(const SurfaceScene& scene, const std::vector<std::string>& defines, double near_plane,
+                   gpu::EglContext& context);
+
+    /** Draws what is listed; everything else in the picture is a miss. */
+    void draw(const VisibilityBuffer& picture, const Draws& draws) const;
+
+private:
+    void setUniforms(const ViewFrustum& frustum) const;
+    void drawGroup(const Draws& draws, const DrawGroup& group) const;
+
+    const SurfaceScene& scene_;
+    double near_plane_;
+    bool software_;
+    const gpu::Program& program_;
+    gpu::VertexArray vertices_;
+    struct Uniforms {
+        GLint extent, pixel_size, near_plane, mapped;
+    } uniforms_;
+};
+
+/** Draws what all frusta see, ping after ping into the same pictures. On a graphics card one context does it; Mesa's
+ *  software renderer prepares triangles on the calling thread alone, so there each thread of the pool has a context and
+ *  a share of the frusta. */
+class SurfacePass {
+public:
+    struct Setup {
+        const types::Geometry& geometry;
+        const MaterialLaws& laws;
+        std::vector<ViewFrustum> frusta;
+        std::vector<std::string> defines;  ///< As the plan's features.
+        double near_plane;                 ///< [m]
+        bool empty_too;                    ///< Frusta that see nothing are drawn as well: misses count.
+        bool cull_on_device = false;       ///< Clusters; objects are culled by the processor.
+    };
+    /** `context` is current on this thread; context, geometry, laws, culler and threads must outlive the pass. */
+    SurfacePass(gpu::EglContext& context, Setup setup, Culler& culler, ThreadPool& threads);
+    ~SurfacePass();
+
+    /** Other pictures of the same frusta: as many, in more or fewer pixels. */
+    void resize(const std::vector<ViewFrustum>& frusta);
+
+    /** Lists what each frustum sees of what the culler has placed. */
+    void cull();
+    /** Whether a frustum's picture is drawn. */
+    bool draws(size_t frustum) const { return setup_.empty_too || lists_->mayShow(frustum); }
+    /** Draws the frusta as they are listed. A graphics card may still be at it when this returns; what its context
+     *  is asked for then comes after. Throws GlError. All other functions but cull(), draws() and what reads lists want
+     *  EglContext::transferring(); this one does that itself. */
+    void draw();
+
+    const VisibilityBuffer& picture(size_t frustum) const { return *pictures_[frustum]; }
+    const SurfaceScene& scene() const { return scene_; }
+    const DrawLists& lists() const { return *lists_; }
+    /** Where the culler has placed the objects. */
+    const std::vector<ObjectRecord>& objects() const { return culler_.records(); }
+    /** Binds a picture (unit 0), its commands, objects, planes and materials, for a compute shader. */
+    void bindResults(size_t frustum) const;
+
+private:
+    /** One thread's part; made, used and destroyed there. */
+    struct Part {
+        std::optional<gpu::EglContext> own;  ///< Of all threads but the first, which has the renderer's.
+        std::optional<SurfacePainter> painter;
+    };
+    gpu::EglContext& contextOf(size_t part) { return parts_[part].own ? *parts_[part].own : context_; }
+    void release();
+    void makePart(size_t part);
+    void makePictures(size_t part);
+    template <class Job>
+    void onEachPart(const Job& job);
+    void drawPart(size_t part);
+
+    Setup setup_;
+    gpu::EglContext& context_;
+    Culler& culler_;
+    ThreadPool& threads_;
+    SurfaceScene scene_;
+    std::unique_ptr<DrawLists> lists_;
+    std::vector<Part> parts_;
+    std::vector<std::unique_ptr<VisibilityBuffer>> pictures_;
+};
+
+}  // namespace insonify::sonar

@@ -1,0 +1,169 @@
+#include "components/sonar/pictures/SurfaceScene.hpp"
+
+#include <algorithm>
+#include <glm/geometric.hpp>
+
+namespace insonify::sonar {
+namespace {
+
+/** A mesh as it is drawn: triangle t ends in vertex t, which no other triangle ends in. So the last vertex of a
+ *  triangle, the provoking one, tells which triangle it is, and gl_PrimitiveID, for which llvmpipe takes meshes apart,
+ *  is not needed. */
+class Drawn {
+public:
+    explicit Drawn(const types::Mesh& mesh) : indices(mesh.indices), place_(mesh.positions.size(), nobody) {
+        sources.resize(indices.size() / 3);
+        for (size_t t = 0; t < sources.size(); ++t) endInOwnVertex(t);
+        for (size_t i = 0; i < indices.size(); ++i)
+            indices[i] = i % 3 == 2 ? static_cast<uint32_t>(i / 3) : at(indices[i]);
+    }
+
+    std::vector<uint32_t> sources;  ///< Of each drawn vertex, in the mesh.
+    std::vector<uint32_t> indices;
+
+private:
+    static constexpr uint32_t nobody = 0xffffffff;
+
+    void endInOwnVertex(size_t t) {
+        uint32_t* corners = indices.data() + 3 * t;
+        uint32_t* free = std::find_if(corners, corners + 3, [&](uint32_t vertex) { return place_[vertex] == nobody; });
+        std::rotate(corners, free == corners + 3 ? corners : free + 1, corners + 3);
+        sources[t] = corners[2];
+        if (place_[corners[2]] == nobody) place_[corners[2]] = static_cast<uint32_t>(t);
+    }
+
+    uint32_t at(uint32_t vertex) {
+        if (place_[vertex] == nobody) {
+            place_[vertex] = static_cast<uint32_t>(sources.size());
+            sources.push_back(vertex);
+        }
+        return place_[vertex];
+    }
+
+    std::vector<uint32_t> place_;  ///< Where each vertex of the mesh is drawn.
+};
+
+/** One attribute of all drawn vertices; `neutral` where a mesh has none. */
+template <class T>
+std::vector<T> joined(const types::Geometry& geometry, const std::vector<Drawn>& meshes,
+                      std::vector<T> types::Mesh::*attribute, T neutral) {
+    std::vector<T> all;
+    for (size_t m = 0; m < meshes.size(); ++m) {
+        const std::vector<T>& values = geometry.meshes[m].*attribute;
+        for (uint32_t source : meshes[m].sources) all.push_back(values.empty() ? neutral : values[source]);
+    }
+    return all;
+}
+
+template <class T>
+gpu::Buffer uploaded(const std::vector<T>& items) {
+    return gpu::Buffer::of(std::span(items));
+}
+
+/** Of what has no area: no normal, which is no echo. The point is that of the plane which is nearest to the origin
+ *  within the triangle's reach: even of a huge triangle it is close to what is seen, if that is close to the origin. */
+PlaneRecord planeOf(glm::dvec3 a, glm::dvec3 b, glm::dvec3 c) {
+    const glm::dvec3 across = glm::cross(b - a, c - a), middle = (a + b + c) / 3.0;
+    if (!(glm::length(across) > 0)) return {vec4(0), vec4(0)};
+    const glm::dvec3 normal = glm::normalize(across), way = normal * glm::dot(normal, middle) - middle;
+    const double reach = glm::distance(middle, a), length = glm::length(way);
+    const glm::vec3 point(length > reach ? middle + way * (reach / length) : middle + way);
+    return {vec4(glm::vec3(normal), static_cast<float>(glm::dot(normal, a - glm::dvec3(point)))), vec4(point, 0)};
+}
+
+gpu::Texture uploadedMap(int width, int height, const uint8_t* rgb, bool repeat_u, bool repeat_v) {
+    gpu::Texture texture(GL_RGB8, width, height, true);
+    glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
+    glTextureSubImage2D(texture.id(), 0, 0, 0, width, height, GL_RGB, GL_UNSIGNED_BYTE, rgb);
+    glGenerateTextureMipmap(texture.id());
+    glTextureParameteri(texture.id(), GL_TEXTURE_MIN_FILTER, GL_LINEAR_MIPMAP_LINEAR);
+    glTextureParameteri(texture.id(), GL_TEXTURE_WRAP_S, repeat_u ? GL_REPEAT : GL_CLAMP_TO_EDGE);
+    glTextureParameteri(texture.id(), GL_TEXTURE_WRAP_T, repeat_v ? GL_REPEAT : GL_CLAMP_TO_EDGE);
+    return texture;
+}
+
+}  // namespace
+
+std::vector<PlaneRecord> planesOf(const types::Mesh& mesh) {
+    std::vector<PlaneRecord> planes;
+    planes.reserve(mesh.indices.size() / 3);
+    for (size_t i = 0; i + 2 < mesh.indices.size(); i += 3)
+        planes.push_back(planeOf(mesh.positions[mesh.indices[i]], mesh.positions[mesh.indices[i + 1]],
+                                 mesh.positions[mesh.indices[i + 2]]));
+    return planes;
+}
+
+std::vector<PlaneRecord> planesOf(const types::Geometry& geometry) {
+    std::vector<PlaneRecord> planes;
+    for (const types::Mesh& mesh : geometry.meshes) {
+        const std::vector<PlaneRecord> added = planesOf(mesh);
+        planes.insert(planes.end(), added.begin(), added.end());
+    }
+    return planes;
+}
+
+SurfaceScene::SurfaceScene(const types::Geometry& geometry, const MaterialLaws& laws, bool with_normal_maps)
+    : with_normal_maps_(with_normal_maps),
+      plane_list_(planesOf(geometry)),
+      facet_list_(facetLobes(geometry, laws)),
+      materials_(uploaded(laws.records)) {
+    uploadVertices(geometry);
+    if (with_normal_maps) uploadNormalMaps(geometry);
+}
+
+void SurfaceScene::uploadVertices(const types::Geometry& geometry) {
+    std::vector<Drawn> meshes;
+    std::vector<uint32_t> indices;
+    uint32_t vertex = 0;
+    for (const types::Mesh& mesh : geometry.meshes) {
+        const Drawn& added = meshes.emplace_back(mesh);
+        const auto first_index = static_cast<uint32_t>(indices.size());
+        places_.push_back({vertex, first_index, first_index / 3});
+        vertex += static_cast<uint32_t>(added.sources.size());
+        indices.insert(indices.end(), added.indices.begin(), added.indices.end());
+    }
+    indices_ = uploaded(indices);
+    positions_ = uploaded(joined(geometry, meshes, &types::Mesh::positions, glm::vec3(0)));
+    if (!with_normal_maps_) return;
+    normals_ = uploaded(joined(geometry, meshes, &types::Mesh::normals, glm::vec3(0, 0, 1)));
+    tangents_ = uploaded(joined(geometry, meshes, &types::Mesh::tangents, glm::vec4(1, 0, 0, 1)));
+    uvs_ = uploaded(joined(geometry, meshes, &types::Mesh::uvs, glm::vec2(0)));
+}
+
+void SurfaceScene::uploadNormalMaps(const types::Geometry& geometry) {
+    for (const types::NormalMap& map : geometry.normal_maps)
+        normal_maps_.push_back(uploadedMap(map.width, map.height, map.rgb.data(), map.repeat_u, map.repeat_v));
+    // No map is one texel that bends nothing: (0.5, 0.5, 1) up to the quantisation of 8 bits.
+    gpu::Texture flat(GL_RGB32F, 1, 1);
+    const float up[] = {0.5f, 0.5f, 1.0f};
+    glTextureSubImage2D(flat.id(), 0, 0, 0, 1, 1, GL_RGB, GL_FLOAT, up);
+    normal_maps_.push_back(std::move(flat));
+}
+
+void SurfaceScene::describe(const gpu::VertexArray& vertices) const {
+    vertices.indices(indices_);
+    vertices.attribute(0, positions_, 3);
+    if (!with_normal_maps_) return;
+    vertices.attribute(4, normals_, 3);
+    vertices.attribute(5, tangents_, 4);
+    vertices.attribute(6, uvs_, 2);
+}
+
+void SurfaceScene::bindRecords() const {
+    if (triangles_.bytes() == 0) {
+        const std::span planes(plane_list_);
+        const std::span facets(facet_list_);
+        triangles_ = gpu::Buffer(planes.size_bytes() + facets.size_bytes());
+        triangles_.write(planes.data(), planes.size_bytes());
+        if (!facets.empty()) triangles_.write(facets.data(), facets.size_bytes(), planes.size_bytes());
+    }
+    triangles_.bindBase(GL_SHADER_STORAGE_BUFFER, PLANES_BINDING);
+    materials_.bindBase(GL_SHADER_STORAGE_BUFFER, MATERIALS_BINDING);
+}
+
+void SurfaceScene::bindNormalMap(int map) const {
+    if (normal_maps_.empty()) return;
+    (map < 0 ? normal_maps_.back() : normal_maps_[static_cast<size_t>(map)]).bind(0);
+}
+
+}  // namespace insonify::sonar

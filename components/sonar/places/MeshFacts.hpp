@@ -1,0 +1,51 @@
+#pragma once
+#include <array>
+#include <glm/mat3x3.hpp>
+#include <memory>
+#include <utility>
+#include <vector>
+
+#include "components/sonar/echo/Interface.hpp"
+#include "components/sonar/echo/MaterialLaws.hpp"
+#include "components/sonar/places/BoxTree.hpp"
+#include "components/sonar/places/SharedValues.hpp"
+#include "types/Geometry.hpp"
+
+namespace insonify::sonar {
+
+/** What sonars derive from a mesh and nothing else, made when it is first asked for. All sonars of a process, and all
+ *  geometries that share the mesh, have the same MeshFacts. Several threads may ask at a time. */
+class MeshFacts {
+public:
+    using Planes = std::shared_ptr<const std::vector<PlaneRecord>>;
+    using Facets = std::shared_ptr<const std::vector<FacetRecord>>;
+
+    static constexpr size_t leaf_triangles = 4;  ///< Triangles below a leaf of triangles(), neighbours in the indices.
+
+    /** Returns the facts of a mesh; they keep it. */
+    static std::shared_ptr<MeshFacts> of(const types::MeshPtr& mesh);
+    /** Returns the facts of each mesh of a geometry. */
+    static std::vector<std::shared_ptr<MeshFacts>> ofAll(const types::Geometry& geometry);
+    explicit MeshFacts(types::MeshPtr mesh) : mesh_(std::move(mesh)) {}
+
+    /** The box of all positions, in the mesh's axes [m]. */
+    const Box& box();
+    /** Of all triangles [m]. */
+    double longestEdge();
+    /** A tree over runs of leaf_triangles triangles. */
+    const BoxTree& triangles();
+    /** A plane for each triangle, as planesOf() makes it. */
+    Planes planes();
+    /** How each triangle spreads a lobe, as facetLobes() finds it; null where no material of the mesh has one. */
+    Facets facets(const glm::dmat3& world_from_mesh, const MaterialLaws& laws);
+
+private:
+    types::MeshPtr mesh_;
+    Lazy<Box> box_;
+    Lazy<double> longest_edge_;
+    Lazy<BoxTree> triangles_;
+    Lazy<Planes> planes_;
+    SharedValues<std::array<double, 10>, const std::vector<FacetRecord>> facets_;  ///< By matrix and wavelength [m].
+};
+
+}  // namespace insonify::sonar

@@ -1,0 +1,115 @@
+#include "components/sonar/plan/PlanReport.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <limits>
+
+#include "components/acoustics/SoundSpeed.hpp"
+#include "components/sonar/effects/Effects.hpp"
+#include "components/sonar/effects/Refraction.hpp"
+#include "components/sonar/fan/BinGrid.hpp"
+#include "components/sonar/plan/WaterView.hpp"
+
+namespace insonify::sonar {
+namespace {
+
+std::string reasonOf(const LeftOut& what, const BinGrid& grid) {
+    if (what.words) return what.words(what, grid);
+    switch (what.reason) {
+        case Reason::NotConfigured: return "not configured";
+        case Reason::NoneInScene: return "the scene has none";
+        case Reason::OutOfView: return "outside the fan or the range at the first ping";
+        default: return {};
+    }
+}
+
+void noteRange(const SonarConfig& config, const BinGrid& grid, std::vector<std::string>& notices) {
+    const double read = static_cast<double>(grid.bin_duration_us) * 1e-6 * grid.speed_of_sound;
+    const double off = grid.range_max / read - grid.range_max / grid.bin_width;
+    if (config.range_rounding == RangeRounding::Exact && std::abs(off) > 1e-6)
+        notices.push_back(
+            fmt::format("Warning: bin_duration, one way, is {} us in whole microseconds; a reader of it is off by "
+                        "{:.3g} bins at the far edge",
+                        grid.bin_duration_us, std::abs(off)));
+    const double longer = grid.range_max / config.range - 1;
+    if (std::abs(longer) > 1e-9)
+        notices.push_back(fmt::format("{}range reached is {:.6g} m, {:.2g} % more than {:g} m: bins last {} us one way",
+                                      longer > 0.01 ? "Warning: " : "", grid.range_max, 100 * longer, config.range,
+                                      grid.bin_duration_us));
+    const float far = static_cast<float>(grid.range_max);
+    const double ulp = static_cast<double>(std::nextafter(far, std::numeric_limits<float>::infinity()) - far);
+    if (grid.bin_width < ulp)
+        notices.push_back(
+            fmt::format("Warning: a bin of {:.2g} m is smaller than the {:.2g} m between neighbouring "
+                        "float ranges; bins merge",
+                        grid.bin_width, ulp));
+}
+
+void noteWater(const SonarConfig& config, const BinGrid& grid, std::vector<std::string>& notices) {
+    if (grid.speed_of_sound < 1350 || grid.speed_of_sound > 1650)
+        notices.push_back(
+            fmt::format("Warning: speed of sound is {:g} m/s; water has 1350 to 1650", grid.speed_of_sound));
+    if (config.water && !config.speed_of_sound) {
+        const std::string outside = acoustics::outsideValidity(config.water->sound_speed_law, *config.water);
+        if (!outside.empty())
+            notices.push_back(
+                fmt::format("Warning: speed of sound is extrapolated outside its law's validity: {}", outside));
+    }
+    if (config.absorbedKhz()) {
+        const std::string outside =
+            acoustics::outsideValidity(config.absorption->law, *config.absorbedKhz(), *config.water);
+        if (!outside.empty())
+            notices.push_back(
+                fmt::format("Warning: absorption is extrapolated outside its law's validity: {}", outside));
+    }
+    const Bending bent = bending(config, grid);
+    if (bent.offset >= bent.tolerated && !(config.water && config.water->profile))
+        notices.push_back(
+            fmt::format("Warning: rays are straight; a gradient of {} 1/s would bend them by {:.3g} m at "
+                        "{:.4g} m",
+                        speed_gradient, bent.offset, grid.range_max));
+}
+
+}  // namespace
+
+std::vector<std::string> configNotices(const SonarConfig& config) {
+    const BinGrid grid = makeBinGrid(config);
+    std::vector<std::string> notices;
+    noteRange(config, grid, notices);
+    noteWater(config, grid, notices);
+    return notices;
+}
+
+std::string depthNotice(const RenderPlan& plan, const types::Snapshot& snapshot) {
+    if (!plan.profile) return {};
+    const double depth = -waterViewOf(snapshot).height, top = plan.profile->top(), bottom = plan.profile->bottom();
+    if (depth >= top && depth <= bottom) return {};
+    return fmt::format(
+        "Warning: at the first ping the sonar is {:.4g} m deep, its profile of the speed of sound goes from {:g} to "
+        "{:g} m; beyond them the speed is that of the nearer end",
+        depth, top, bottom);
+}
+
+types::Omission describe(const LeftOut& what, const BinGrid& grid) {
+    const std::string name(what.effect);
+    if (what.reason != Reason::OutOfView) return {name, reasonOf(what, grid)};
+    return {fmt::format("{}{:.0f} of {:.0f} {}", name == "triangles" ? "at least " : "", what.value, what.bound, name),
+            reasonOf(what, grid)};
+}
+
+types::Plan report(const RenderPlan& plan, const types::Geometry& geometry) {
+    types::Plan told;
+    told.rows = plan.config.rows();
+    told.columns_per_beam = plan.config.columnsPerBeam();
+    told.slabs = static_cast<int>(plan.frusta.size());
+    told.predicted_error = std::numeric_limits<double>::quiet_NaN();
+    told.features = plan.featureNames();
+    for (Pass pass : plan.passes) told.passes.emplace_back(types::EnumNames<Pass>::names[static_cast<size_t>(pass)]);
+    for (const LeftOut& what : plan.left_out) told.omitted.push_back(describe(what, plan.grid));
+    told.notices = configNotices(plan.config);
+    for (const Effect* effect : effects()) effect->note(plan, geometry, told.notices);
+    return told;
+}
+
+}  // namespace insonify::sonar

@@ -1,0 +1,83 @@
+#include "components/sonar/plan/RenderPlan.hpp"
+
+#include <algorithm>
+#include <cctype>
+
+#include "components/sonar/effects/Effects.hpp"
+
+namespace insonify::sonar {
+namespace {
+
+/** What the configuration compiles into the estimators; effects add the rest. */
+Features featuresOf(const SonarConfig& config, const RenderOptions& options) {
+    Features features{config.model == Model::Physical ? Feature::Physical : Feature::Cerqueira2017};
+    if (config.beam_geometry == BeamGeometry::Conical) features.add(Feature::Conical);
+    if (options.estimator != Estimator::Footprint) features.add(Feature::Nearest);
+    if (options.estimator == Estimator::NearestJitter) features.add(Feature::Jitter);
+    return features;
+}
+
+}  // namespace
+
+std::vector<std::string> Features::names() const {
+    std::vector<std::string> all;
+    for (int i = 0; i < feature_count; ++i)
+        if (has(static_cast<Feature>(i))) all.emplace_back(types::EnumNames<Feature>::names[i]);
+    return all;
+}
+
+bool RenderPlan::hasFeature(std::string_view name) const { return std::ranges::count(featureNames(), name) > 0; }
+
+std::vector<std::string> RenderPlan::featureNames() const {
+    std::vector<std::string> all = features.names();
+    all.insert(all.end(), effect_features.begin(), effect_features.end());
+    return all;
+}
+
+std::vector<std::string> RenderPlan::defines() const {
+    std::vector<std::string> all = featureNames();
+    for (std::string& name : all) {
+        std::ranges::transform(name, name.begin(), [](unsigned char c) { return static_cast<char>(std::toupper(c)); });
+        name.insert(0, "HAVE_");
+    }
+    return all;
+}
+
+void RenderPlan::setQuality(int rows, int columns_per_beam) {
+    config.quality.rows = rows;
+    config.quality.columns_per_beam = columns_per_beam;
+    sampled = directivity ? sampledConfig(config, *directivity, casts_rays) : config;
+    cells = directivity ? azimuthCells(sampled, beams, *directivity, casts_rays) : beams;
+    if (!casts_rays) frusta = makeFrusta(sampled, cells, options);
+}
+
+const LeftOut* RenderPlan::leftOut(std::string_view effect) const {
+    const auto found = std::ranges::find(left_out, effect, &LeftOut::effect);
+    return found == left_out.end() ? nullptr : &*found;
+}
+
+RenderPlan makeRenderPlan(const SonarConfig& config, const types::Geometry& geometry, const RenderOptions& options) {
+    RenderPlan plan;
+    plan.config = config;
+    plan.options = options;
+    plan.casts_rays = !options.needImages() && config.castsRays();
+    plan.grid = makeBinGrid(config);
+    plan.laws = makeMaterialLaws(config, geometry);
+    plan.features = featuresOf(config, options);
+    plan.passes = {Pass::Cull, plan.casts_rays ? Pass::Rays : Pass::Surface, Pass::Deposit, Pass::Beams};
+    plan.beams = makeBeams(config);
+    if (config.beam_pattern) plan.directivity.emplace(config);
+    plan.setQuality(config.rows(), config.columnsPerBeam());
+    for (const Effect* effect : effects())
+        if (effect->plan(geometry, plan)) plan.effects.push_back(effect);
+    return plan;
+}
+
+acoustics::Absorption makeAbsorption(const SonarConfig& config) {
+    if (!config.absorption) return {};
+    const AbsorptionConfig& absorption = *config.absorption;
+    if (absorption.db_per_m) return {*absorption.db_per_m};
+    return {acoustics::absorptionDbPerM(absorption.law, config.absorbedKhz().value(), config.water.value())};
+}
+
+}  // namespace insonify::sonar

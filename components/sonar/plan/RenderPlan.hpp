@@ -1,0 +1,144 @@
+#pragma once
+#include <algorithm>
+#include <limits>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "components/acoustics/Absorption.hpp"
+#include "components/acoustics/SoundProfile.hpp"
+#include "components/sonar/echo/MaterialLaws.hpp"
+#include "components/sonar/fan/BeamFan.hpp"
+#include "components/sonar/fan/BinGrid.hpp"
+#include "components/sonar/fan/Directivity.hpp"
+#include "components/sonar/plan/SonarConfig.hpp"
+#include "types/Geometry.hpp"
+
+namespace insonify::sonar {
+
+/** What is compiled into the estimators where it is wanted: `#ifdef HAVE_<NAME>` in the shaders and in what the
+ *  processor compiles of them. Effects add names of their own (RenderPlan::effect_features). */
+enum class Feature {
+    Physical,
+    Cerqueira2017,
+    Absorption,
+    Published,
+    Conical,
+    NormalMap,
+    Nearest,
+    Jitter,
+    ElevationPattern,
+    BackscatterLaws,  ///< Of any material: a table, or a lobe.
+    Speckle           ///< Fields of scatterers are summed, not energies.
+};
+constexpr int feature_count = 11;
+
+/** A set of features. */
+class Features {
+public:
+    constexpr Features() = default;
+    constexpr Features(std::initializer_list<Feature> features) {
+        for (Feature feature : features) add(feature);
+    }
+    constexpr void add(Feature feature) { bits_ |= 1u << static_cast<unsigned>(feature); }
+    constexpr bool has(Feature feature) const { return bits_ >> static_cast<unsigned>(feature) & 1u; }
+    constexpr Features without(Feature feature) const {
+        return Features(bits_ & ~(1u << static_cast<unsigned>(feature)));
+    }
+    constexpr bool operator==(const Features&) const = default;
+    constexpr Features operator&(Features other) const { return Features(bits_ & other.bits_); }
+    constexpr Features operator|(Features other) const { return Features(bits_ | other.bits_); }
+    /** "physical", "normal_map"... */
+    std::vector<std::string> names() const;
+
+    unsigned bits_ = 0;  ///< Public so that a set can be a template's parameter.
+
+private:
+    constexpr explicit Features(unsigned bits) : bits_(bits) {}
+};
+
+/** Work for each ping, in this order. */
+enum class Pass { Cull, Surface, Rays, Deposit, Paths, Beams, Beamform, Pulse, RingDown };
+
+/** Why something is left out, as far as anybody asks; its words tell the rest. */
+enum class Reason {
+    NotConfigured,
+    NoneInScene,
+    Lacking,       ///< It is asked for, and the scene lacks what it needs: a warning.
+    BelowBound,    ///< `value` is below `bound`.
+    Approximated,  ///< `value` is what it amounts to.
+    OutOfView,     ///< `value` of `bound` at the first ping.
+    Other
+};
+
+/** Something that is left out, with the numbers that allow it. */
+struct LeftOut {
+    /** The reason in words. */
+    using Words = std::string (*)(const LeftOut& what, const BinGrid& grid);
+
+    std::string_view effect;  ///< Its name in words, a constant.
+    Reason reason;
+    double value = std::numeric_limits<double>::quiet_NaN();  ///< In the effect's unit, which the words give.
+    double bound = std::numeric_limits<double>::quiet_NaN();
+    Words words = nullptr;  ///< Null: those of the reason.
+};
+
+class Effect;
+
+/** What is compiled and run for a sonar and a scene, decided once, without OpenGL: the renderer, both deposits, the
+ *  studies and what a user is told all read it. */
+struct RenderPlan {
+    SonarConfig config;  ///< With the quality that is in force.
+    RenderOptions options;
+    bool casts_rays = false;
+    Features features;
+    std::vector<std::string> effect_features;  ///< Of the effects' own: "motion_in_ping".
+    std::vector<const Effect*> effects;        ///< Those that take part, in order.
+    std::vector<Pass> passes;                  ///< In order.
+    BinGrid grid;
+    MaterialLaws laws;
+    std::shared_ptr<const acoustics::SoundProfile> profile;  ///< That bends the rays; null: they are straight.
+    Fan beams;
+    std::optional<Directivity> directivity;  ///< None without a beam pattern.
+    SonarConfig sampled;                     ///< What is sampled: sampledConfig(), or `config`.
+    Fan cells;                               ///< Its azimuth cells; the beams themselves without a pattern in azimuth.
+    std::vector<ViewFrustum> frusta;         ///< Images of the cells; none with rays.
+    bool fills_water = false;                ///< Whether there are echoes where no surface is.
+    bool hears_misses = false;               ///< Whether effects hear samples that meet nothing.
+    std::vector<LeftOut> left_out;
+
+    /** Other rows and columns per beam [1], and the images that go with them. */
+    void setQuality(int rows, int columns_per_beam);
+    bool has(Pass pass) const { return std::ranges::count(passes, pass) > 0; }
+    /** Adds a pass at its place in the order. */
+    void add(Pass pass) { passes.insert(std::ranges::upper_bound(passes, pass), pass); }
+    bool hasFeature(std::string_view name) const;
+    /** "physical", "normal_map"..., then those of effects. */
+    std::vector<std::string> featureNames() const;
+    /** "HAVE_PHYSICAL", "HAVE_NORMAL_MAP"..., for the shaders. */
+    std::vector<std::string> defines() const;
+    /** What is left out of an effect, by its name in words; null where it is not. */
+    const LeftOut* leftOut(std::string_view effect) const;
+};
+
+RenderPlan makeRenderPlan(const SonarConfig& config, const types::Geometry& geometry,
+                          const RenderOptions& options = {});
+
+/** The configured absorption; none when the block is absent. A law needs `water`. */
+acoustics::Absorption makeAbsorption(const SonarConfig& config);
+
+}  // namespace insonify::sonar
+
+template <>
+struct insonify::types::EnumNames<insonify::sonar::Feature> {
+    static constexpr std::string_view names[] = {"physical",          "cerqueira2017",    "absorption", "published",
+                                                 "conical",           "normal_map",       "nearest",    "jitter",
+                                                 "elevation_pattern", "backscatter_laws", "speckle"};
+};
+template <>
+struct insonify::types::EnumNames<insonify::sonar::Pass> {
+    static constexpr std::string_view names[] = {"cull",  "surface",  "rays",  "deposit",  "paths",
+                                                 "beams", "beamform", "pulse", "ring_down"};
+};

@@ -1,0 +1,19 @@
+#pragma once
+#include <glm/vec3.hpp>
+
+#include "components/sonar/fan/BeamFan.hpp"
+#include "types/Snapshot.hpp"
+
+namespace insonify::sonar {
+
+/** How the sonar of one ping lies in the water. */
+struct WaterView {
+    glm::dvec3 up{0, 0, 1};  ///< The world's z in sonar axes, unit [1].
+    double height = 0;       ///< Of the sonar above the water surface, or above the world's z = 0 [m].
+};
+WaterView waterViewOf(const types::Snapshot& snapshot);
+
+/** The same up in the axes of a frustum. */
+glm::dvec3 upwardIn(const ViewFrustum& frustum, const WaterView& water);
+
+}  // namespace insonify::sonar

@@ -1,0 +1,205 @@
+#include "components/sonar/quality/QualityKeeper.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <utility>
+
+namespace insonify::sonar {
+namespace {
+
+constexpr int patience_after_fall = 20, max_patience = 320, forgiven_after = 400;
+constexpr double fall_to = 0.9, climb_to = 0.97, max_change = 4, min_climb = 1.09;
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+constexpr double watched_share = 0.2618034;  ///< Of all pings; irrational, so that a head is watched at all bearings.
+constexpr double first_turn_share = 0.5;     ///< The same while a head sees what it has not seen before.
+constexpr int rarely = 16;                   ///< Of the pings to watch, where the time is up without it.
+constexpr double off_target = 1.2, off_prediction = 1.5, well_within = 0.5, worth_lowering = 0.7, near_limit = 0.8;
+constexpr double overhead = 0.15, pings_to_choose = 10;  ///< What estimates may cost in all [1 of the pings, pings].
+constexpr int min_pings = 64, settled = 20, max_notices = 20;
+constexpr double worth_telling = 1.2, too_far_from_model = 4;
+
+}  // namespace
+
+bool BudgetKeeper::moveTo(double limit) {
+    limit_ = limit;
+    pings_ = 0;
+    return true;
+}
+
+double BudgetKeeper::slowButOne() const {
+    std::array<double, window> times = times_;
+    const auto last = times.begin() + std::min(pings_, window);
+    std::nth_element(times.begin(), times.begin() + 1, last, std::greater<>());
+    return times[1];
+}
+
+bool BudgetKeeper::note(double ms, double samples) {
+    times_[static_cast<size_t>(pings_++ % window)] = ms;
+    if (since_fall_ >= 0) ++since_fall_;
+    if (pings_ < 2) return false;
+    const double slow = slowButOne();
+    if (slow > budget_ms_) {
+        const bool again = since_fall_ >= 0 && since_fall_ < forgiven_after;
+        patience_ = again ? std::min(2 * patience_, max_patience) : patience_after_fall;
+        since_fall_ = 0;
+        return moveTo(samples * std::max(fall_to * budget_ms_ / slow, 1 / max_change));
+    }
+    const double room = std::min(climb_to * budget_ms_ / slow, max_change);
+    if (pings_ < patience_ || room < min_climb || samples * room <= limit_) return false;
+    return moveTo(samples * room);
+}
+
+double PeriodMeter::period() const {
+    if (count_ == 0) return 0;
+    std::array<double, 16> seconds = seconds_;
+    const auto count = static_cast<std::ptrdiff_t>(std::min(count_, seconds.size()));
+    std::nth_element(seconds.begin(), seconds.begin() + count / 4, seconds.begin() + count);
+    return seconds[static_cast<size_t>(count / 4)];
+}
+
+QualityKeeper::QualityKeeper(const SonarConfig& config, int turn)
+    : config_(config),
+      beams_(config.beams()),
+      target_(config.targetError().value_or(0)),
+      turn_(turn),
+      ladder_(config),
+      estimator_(config) {
+    if (config.quality.budget_ms) budget_.emplace(*config.quality.budget_ms, Quality().samples() * beams_);
+}
+
+double QualityKeeper::mostSamples() const {
+    const double most = std::min(config_.mostSamples().value_or(infinity), budget_ ? budget_->limit() : infinity);
+    return std::max(most / beams_, Quality().samples());
+}
+
+bool QualityKeeper::follow(SonarRenderer& renderer, const types::Snapshot& scene, types::Sonar& ping, double ms,
+                           double period_ms) {
+    if (!renderer.hasEchoes()) return false;
+    ++pings_;
+    ++since_change_;
+    heard_samples_ += model_.at.samples();
+    if (!std::exchange(chosen_, true)) {
+        choose(renderer, scene, ping);
+        return true;
+    }
+    const bool limited = keepBudget(renderer, scene, ping, ms, period_ms);
+    const bool watched = !limited && isDue() && watch(renderer, scene, ping);
+    tellBudget(scene, ms);
+    return limited || watched;
+}
+
+void QualityKeeper::choose(SonarRenderer& renderer, const types::Snapshot& scene, types::Sonar& ping) {
+    const Quality before = model_.at;
+    const bool is_first = pings_ == 1, sees_all = turn_ == 1;
+    model_ = climb(estimator_, ladder_, renderer, scene, before, {target_, mostSamples(), is_first || sees_all}, ping);
+    const Quality enough = ladder_.choose(model_, aim_share * target_, mostSamples(), before);
+    if (enough.samples() <= worth_lowering * model_.at.samples()) moveTo(renderer, enough);
+    modelled_ = model_.at.samples();
+    since_change_ = 0;
+    worst_ = 0;
+    tellChoice(scene);
+}
+
+void QualityKeeper::moveTo(SonarRenderer& renderer, const Quality& quality) {
+    model_ = {quality, model_.of_rows * model_.at.rows / quality.rows,
+              model_.of_columns * model_.at.columns_per_beam / quality.columns_per_beam};
+    renderer.setQuality(quality.rows, quality.columns_per_beam);
+}
+
+bool QualityKeeper::isDue() {
+    const auto watched = [](int64_t pings, double share) { return std::floor(static_cast<double>(pings) * share); };
+    if (estimator_.rendered() > overhead * heard_samples_ + pings_to_choose * model_.at.samples()) return false;
+    const bool no_time = budget_ && model_.at.samples() > near_limit * budget_->limit() / beams_;
+    const bool is_first_turn = turn_ > 1 && pings_ <= turn_;
+    const double share = no_time ? watched_share / rarely : is_first_turn ? first_turn_share : watched_share;
+    return watched(pings_, share) != watched(pings_ - 1, share);
+}
+
+bool QualityKeeper::watch(SonarRenderer& renderer, const types::Snapshot& scene, types::Sonar& ping) {
+    const double error = estimator_.error(renderer, scene, ping, model_.at);
+    worst_ = std::max(worst_, error);
+    if (error > std::max(off_target * target_, off_prediction * model_.at.error)) {
+        choose(renderer, scene, ping);
+        return true;
+    }
+    return since_change_ >= std::max(turn_, min_pings) && lower(renderer, scene, ping);
+}
+
+bool QualityKeeper::lower(SonarRenderer& renderer, const types::Snapshot& scene, types::Sonar& ping) {
+    const double worst = std::exchange(worst_, 0);
+    since_change_ = 0;
+    if (worst > well_within * target_ || model_.at == Quality()) return false;
+    ErrorModel model = estimator_.model(renderer, scene, ping, model_.at);
+    const double scale = model.error() > 0 ? std::max(1.0, worst / model.error()) : 1;
+    model.of_rows *= scale;
+    model.of_columns *= scale;
+    const Quality enough = ladder_.choose(model, aim_share * target_, mostSamples());
+    if (enough.samples() > worth_lowering * model_.at.samples()) return false;
+    model_ = model;
+    moveTo(renderer, enough);
+    tellChoice(scene);
+    return true;
+}
+
+bool QualityKeeper::keepBudget(SonarRenderer& renderer, const types::Snapshot& scene, types::Sonar& ping, double ms,
+                               double period_ms) {
+    const QualityConfig& wanted = config_.quality;
+    const bool by_period = period_ms > 0 && !wanted.target_error && !wanted.max_samples && !wanted.budget_ms;
+    if (by_period && budget_) budget_->setBudget(period_ms);
+    if (by_period && !budget_) budget_.emplace(period_ms);
+    const double before = mostSamples();
+    if (!budget_ || !budget_->note(ms, model_.at.samples() * beams_)) return false;
+    const bool rises = mostSamples() > before;
+    if (rises && mostSamples() > too_far_from_model * modelled_) {
+        choose(renderer, scene, ping);
+        return true;
+    }
+    const Quality next = ladder_.choose(model_, aim_share * target_, mostSamples(), rises ? model_.at : Quality());
+    if (next == model_.at) return false;
+    moveTo(renderer, next);
+    since_change_ = 0;
+    return true;
+}
+
+void QualityKeeper::tell(const std::string& notice) {
+    if (notices_told_ < max_notices) notices_.push_back(notice);
+    if (++notices_told_ == max_notices) notices_.push_back("further changes of the quality are not told");
+}
+
+std::string QualityKeeper::text() const {
+    const Quality& quality = model_.at;
+    return fmt::format("quality: {} rows, {} columns per beam, {:.0f} samples a ping, predicted error {:.2g}",
+                       quality.rows, quality.columns_per_beam, quality.samples() * beams_, quality.error);
+}
+
+std::string QualityKeeper::limitText() const {
+    if (budget_ && budget_->limit() < config_.mostSamples().value_or(infinity))
+        return fmt::format("{:.4g} ms allow no more", budget_->budget());
+    return config_.mostSamples() ? fmt::format("max_samples {:.0f} allows no more", *config_.mostSamples())
+                                 : "there is nothing finer to choose";
+}
+
+void QualityKeeper::tellChoice(const types::Snapshot& scene) {
+    const std::string when = notices_told_ ? fmt::format("from {:.3f} s on ", scene.time.seconds()) : "";
+    told_ = model_.at;
+    if (target_ == 0)
+        return tell(fmt::format("{}{}; {:g} ms are used and kept", when, text(), *config_.quality.budget_ms));
+    if (model_.at.error <= target_ || std::exchange(missed_, true))
+        return tell(fmt::format("{}{}, target {:g}", when, text(), target_));
+    tell(fmt::format("Warning: {}{}, misses the target of {:g}: {}", when, text(), target_, limitText()));
+}
+
+void QualityKeeper::tellBudget(const types::Snapshot& scene, double ms) {
+    if (!budget_) return;
+    if (model_.at == Quality() && budget_->limit() < model_.at.samples() * beams_ && !std::exchange(late_told_, true))
+        tell(fmt::format("Warning: the coarsest quality that is chosen takes {:.3g} ms; the budget is {:.4g} ms", ms,
+                         budget_->budget()));
+    const double ratio = model_.at.samples() / told_.samples();
+    if (since_change_ == settled && std::max(ratio, 1 / ratio) > worth_telling) tellChoice(scene);
+}
+
+}  // namespace insonify::sonar

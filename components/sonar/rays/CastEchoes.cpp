@@ -1,0 +1,399 @@
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <chrono>
+#include <cmath>
+#include <memory>
+#include <mutex>
+#include <utility>
+
+#include "components/sonar/EchoRenderer.hpp"
+#include "components/sonar/ThreadPool.hpp"
+#include "components/sonar/echo/BinLevels.hpp"
+#include "components/sonar/echo/EchoGrid.hpp"
+#include "components/sonar/echo/FacetLobes.hpp"
+#include "components/sonar/echo/TruthGrid.hpp"
+#include "components/sonar/effects/Effects.hpp"
+#include "components/sonar/field/EchoField.hpp"
+#include "components/sonar/pictures/SurfaceScene.hpp"
+#include "components/sonar/places/MeshesAhead.hpp"
+#include "components/sonar/places/ObjectPlaces.hpp"
+#include "components/sonar/plan/RenderPlan.hpp"
+#include "components/sonar/rays/RayPaths.hpp"
+#include "components/sonar/rays/TileCells.hpp"
+#include "components/sonar/ways/PathEchoes.hpp"
+
+namespace insonify::sonar {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+/** Samples of a part: few enough to stay in a thread's cache, and to share out one beam of very many [1]. */
+constexpr int part_samples = 8192;
+
+/** What one thread takes at a time: some rows of neighbouring beams, enough of these to fill a tile's columns. */
+struct Part {
+    int first_beam, beams, first_row, rows;
+    size_t strip;
+};
+
+/** All parts of the same beams. */
+struct Strip {
+    int parts = 0;
+    int left = 0;                ///< Parts that are not gathered yet in this ping.
+    std::vector<uint64_t> sums;  ///< Of several parts.
+    std::mutex mutex;
+};
+
+class CastEchoes final : public EchoRenderer {
+public:
+    CastEchoes(const RenderPlan& plan, types::GeometryPtr geometry, const PingEffects& effects);
+    void takeQuality() override;
+    bool takeScene(types::GeometryPtr geometry, bool same_plan) override;
+    void render(const types::Snapshot& snapshot, types::Sonar& ping, Stages& stages) override;
+    void setTruth(types::SonarTruth* truth) override { truth_ = truth; }
+    EchoField* field() override { return field_ ? &*field_ : nullptr; }
+    const RayPaths* bent() const override { return ray_paths_ && !ray_paths_->areStraight() ? &*ray_paths_ : nullptr; }
+    bool hasEchoes() const override { return heard_; }
+    std::vector<LeftOut> culled() const override {
+        const std::optional<LeftOut> dark = paths_ ? paths_->leftOut() : std::nullopt;
+        return dark ? std::vector{*dark} : std::vector<LeftOut>{};
+    }
+    const std::string& device() const override { return device_; }
+
+private:
+    /** What one thread works with. */
+    struct Worker {
+        std::vector<CastTile> tiles;
+        std::vector<TileHits> hits;  ///< Of each tile.
+        std::vector<uint64_t> sums;
+        std::optional<TruthTable> shown;  ///< What they are of, where it is told.
+        std::vector<uint64_t> one_beam;   ///< For TruthSink.
+        std::vector<uint64_t> told_sums;  ///< Of energies, where the truth is told of fields.
+        size_t number = 0;
+        Stages stages{};
+        Clock::time_point last;
+        bool heard = false;
+
+        void lap(StageOf stage) {
+            const Clock::time_point now = Clock::now();
+            stages[stage].seconds += std::chrono::duration<double>(now - last).count();
+            last = now;
+        }
+    };
+    void takePlan();
+    void shareOut();
+    int beamsTogether() const {
+        return std::min(view_.cells.beams, (3 + view_.cells.beam_columns) / view_.cells.beam_columns);
+    }
+    void place(const types::Snapshot& snapshot);
+    void placeRuns();
+    void makeTruth();
+    PlacedScene scene() const {
+        return {visibility_.commands(), runs_, places_->records(), *normal_maps_, water_, bent()};
+    }
+    void addPaths(types::Sonar& ping);
+    void depositPart(const Part& part, std::span<const CastTile> tiles, Worker& worker);
+    void work(Worker& worker, types::Sonar& ping);
+    void workOn(const Part& part, Worker& worker, types::Sonar& ping);
+    std::span<const CastTile> cast(const Part& part, Worker& worker) const;
+    TileRays raysOf(const CastTile& tile, int end_column) const;
+    /** Fills the bins of a cell from its sums; whether it has any echo. */
+    bool fill(size_t cell, const Worker& worker, const uint64_t* sums, types::Sonar& ping);
+    /** Adds a part's sums to its strip's; whether they are complete now, and in the worker. */
+    bool gather(const Part& part, Worker& worker);
+
+    const RenderPlan& plan_;
+    types::GeometryPtr geometry_;
+    const PingEffects& effects_;
+    EchoRules rules_;
+    std::optional<EchoRules> truth_rules_;  ///< Of energies, where fields are summed.
+    CastView view_;
+    BinLevels levels_;
+    WaterView water_;                 ///< In this ping.
+    std::optional<EchoGrid> grid_;    ///< Of energies,
+    std::optional<EchoField> field_;  ///< or of fields.
+    std::unique_ptr<ObjectPlaces> places_;
+    RayVisibility visibility_;
+    std::optional<RayPaths> ray_paths_;      ///< None where rays are straight.
+    std::vector<MeshFacts::Planes> planes_;  ///< Of each mesh.
+    std::vector<MeshFacts::Facets> facets_;  ///< Of each mesh.
+    std::unique_ptr<NormalMapping> normal_maps_;
+    MeshesAhead ahead_;
+    std::vector<PlacedRun> runs_;      ///< Of the visibility's commands, in this ping.
+    std::optional<PathEchoes> paths_;  ///< By way of mirrors, where the plan has them.
+    ThreadPool threads_;
+    std::vector<Worker> workers_;
+    std::vector<Part> parts_;
+    std::vector<Strip> strips_;
+    std::atomic<size_t> next_ = 0;
+    std::string device_ = "rays on the processor";
+    bool heard_ = false;
+    types::SonarTruth* truth_ = nullptr;   ///< To be filled; null: none is.
+    std::optional<TruthGrid> truth_grid_;  ///< Once it was wanted.
+};
+
+CastEchoes::CastEchoes(const RenderPlan& plan, types::GeometryPtr geometry, const PingEffects& effects)
+    : plan_(plan),
+      geometry_(std::move(geometry)),
+      effects_(effects),
+      rules_(makeEchoRules(plan, effects)),
+      levels_(plan.config, summedGrid(plan)),
+      visibility_(*geometry_),
+      threads_(plan.options.threads),
+      workers_(static_cast<size_t>(threads_.size())) {
+    for (size_t i = 0; i < workers_.size(); ++i) workers_[i].number = i;
+    takeScene(geometry_, false);
+}
+
+bool CastEchoes::takeScene(types::GeometryPtr geometry, bool same_plan) {
+    const types::GeometryPtr before = std::exchange(geometry_, std::move(geometry));  // until nothing refers to it
+    if (before != geometry_) visibility_.takeScene(*geometry_);
+    // What these share with their predecessors is kept, for the predecessors go after they are made.
+    places_ = std::make_unique<ObjectPlaces>(*geometry_, reachOf(plan_), true);
+    normal_maps_ = std::make_unique<NormalMapping>(*geometry_);
+    std::vector<MeshFacts::Planes> planes;
+    std::vector<MeshFacts::Facets> facets;
+    for (size_t i = 0; i < geometry_->meshes.size(); ++i) {
+        const auto facts = MeshFacts::of(geometry_->meshes.shared(i));
+        planes.push_back(facts->planes());
+        facets.push_back(facts->facets(worldFromMesh(*geometry_, i), plan_.laws));
+    }
+    planes_ = std::move(planes);
+    facets_ = std::move(facets);
+    runs_.reserve(visibility_.commands().size());
+    if (ray_paths_) ray_paths_->takeScene(*geometry_);
+    if (paths_) paths_->takeScene(*geometry_);
+    if (!same_plan) takePlan();
+    return true;
+}
+
+void CastEchoes::takePlan() {
+    levels_ = BinLevels(plan_.config, summedGrid(plan_));
+    if (plan_.profile || plan_.config.motion_in_ping) {
+        if (!ray_paths_) ray_paths_.emplace(plan_, *geometry_);
+    } else {
+        ray_paths_.reset();
+    }
+    paths_.reset();
+    if (plan_.has(Pass::Paths)) paths_.emplace(plan_, *geometry_, visibility_);
+    takeQuality();
+}
+
+void CastEchoes::takeQuality() {
+    rules_ = makeEchoRules(plan_, effects_);
+    view_.cells = makeAngularView(plan_);
+    if (plan_.features.has(Feature::Speckle)) {
+        field_.emplace(plan_, threads_.size());
+        truth_rules_ = makeEnergyRules(plan_, effects_);
+    } else {
+        grid_.emplace(plan_, threads_.size());
+    }
+    shareOut();
+    if (paths_) paths_->takeQuality(rules_, view_);
+    truth_grid_.reset();
+}
+
+void CastEchoes::shareOut() {
+    const int beam_columns = view_.cells.beam_columns, beams = view_.cells.beams, together = beamsTogether();
+    view_.shape = TileShape(view_.cells, rules_.bins, together);
+    const int wanted = std::max(1, part_samples / (together * beam_columns)), up = view_.shape.all.rows;
+    const int rows = std::min((wanted + up - 1) / up * up, (view_.cells.rows + up - 1) / up * up);
+    parts_.clear();
+    strips_ = std::vector<Strip>(static_cast<size_t>((beams + together - 1) / together));
+    for (size_t strip = 0; strip < strips_.size(); ++strip) {
+        const int first = static_cast<int>(strip) * together;
+        for (int row = 0; row < view_.cells.rows; row += rows, ++strips_[strip].parts)
+            parts_.push_back(
+                {first, std::min(together, beams - first), row, std::min(rows, view_.cells.rows - row), strip});
+        if (strips_[strip].parts > 1) strips_[strip].sums.resize(static_cast<size_t>(together) * rules_.sumCount());
+    }
+    const int across = (together * beam_columns + view_.shape.all.columns - 1) / view_.shape.all.columns;
+    for (Worker& worker : workers_) {
+        worker.hits.resize(static_cast<size_t>(across * (rows / up)));
+        worker.tiles.resize(worker.hits.size());
+        worker.sums.resize(static_cast<size_t>(together) * rules_.sumCount());
+    }
+}
+
+void CastEchoes::makeTruth() {
+    const bool whole = std::ranges::all_of(strips_, [](const Strip& strip) { return strip.parts == 1; });
+    truth_grid_.emplace(plan_, whole);
+    for (Worker& worker : workers_) {
+        worker.shown.emplace(static_cast<size_t>(beamsTogether()), static_cast<size_t>(plan_.grid.bin_count));
+        const EchoRules& told = field_ ? *truth_rules_ : rules_;
+        worker.one_beam.assign(told.sumCount(), 0);
+        if (field_) worker.told_sums.assign(static_cast<size_t>(beamsTogether()) * told.sumCount(), 0);
+    }
+}
+
+void CastEchoes::place(const types::Snapshot& snapshot) {
+    water_ = waterViewOf(snapshot);
+    places_->place(snapshot);
+    visibility_.place(snapshot);
+    if (paths_) paths_->begin(snapshot, truth_);
+    if (ray_paths_) ray_paths_->place(snapshot);
+    placeRuns();
+    ahead_.take(snapshot.ahead, plan_.laws);
+}
+
+void CastEchoes::placeRuns() {
+    runs_.clear();
+    for (const CommandRecord& command : visibility_.commands()) {
+        const auto mesh = static_cast<size_t>(geometry_->objects[command.object].mesh);
+        const FacetRecord* facets = facets_[mesh] ? facets_[mesh]->data() : nullptr;
+        runs_.push_back(placedRun(places_->records()[command.object], command, rules_, planes_[mesh]->data(), facets));
+    }
+}
+
+TileRays CastEchoes::raysOf(const CastTile& tile, int end_column) const {
+    const AngularView& view = view_.cells;
+    TileRays rays;
+    rays.active = 0;
+    for (int i = 0; i < tile_samples; ++i) {
+        const int column = tile.first_column + view_.shape.at[i].columns, row = tile.first_row + view_.shape.at[i].rows;
+        rays.active |= static_cast<uint32_t>(column < end_column && row < view.rows) << i;
+        const glm::vec3 ray(view.direction(std::min(column, end_column - 1), std::min(row, view.rows - 1)));
+        rays.x[i] = ray.x;
+        rays.y[i] = ray.y;
+        rays.z[i] = ray.z;
+    }
+    return rays;
+}
+
+std::span<const CastTile> CastEchoes::cast(const Part& part, Worker& worker) const {
+    const int begin = part.first_beam * view_.cells.beam_columns, end = begin + part.beams * view_.cells.beam_columns;
+    std::array<TileRays, RayVisibility::tiles_at_once> rays;
+    size_t count = 0, waiting = 0;
+    const auto castWaiting = [&] {
+        TileHits* const hits = &worker.hits[count - waiting];
+        if (!bent()) visibility_.cast({rays.data(), waiting}, {hits, waiting});
+        for (size_t i = 0; bent() && i < waiting; ++i) visibility_.castAlong(*ray_paths_, rays[i], hits[i]);
+        waiting = 0;
+    };
+    for (int column = begin; column < end; column += view_.shape.all.columns)
+        for (int row = part.first_row; row < part.first_row + part.rows; row += view_.shape.all.rows) {
+            CastTile& tile = worker.tiles[count];
+            tile = {column, row, &worker.hits[count]};
+            ++count;
+            rays[waiting++] = raysOf(tile, end);
+            if (waiting == rays.size()) castWaiting();
+        }
+    if (waiting > 0) castWaiting();
+    for (size_t i = 0; paths_ && i < count; ++i) paths_->endAtSurface(worker.tiles[i], worker.hits[i]);
+    return {worker.tiles.data(), count};
+}
+
+bool CastEchoes::gather(const Part& part, Worker& worker) {
+    Strip& strip = strips_[part.strip];
+    if (strip.parts == 1) return true;
+    const std::lock_guard alone(strip.mutex);
+    for (size_t i = 0; i < strip.sums.size(); ++i) strip.sums[i] += worker.sums[i];
+    if (--strip.left > 0) return false;
+    std::copy(strip.sums.begin(), strip.sums.end(), worker.sums.begin());
+    return true;
+}
+
+void CastEchoes::depositPart(const Part& part, std::span<const CastTile> tiles, Worker& worker) {
+    std::fill(worker.sums.begin(), worker.sums.end(), 0);
+    if (!truth_ || field_) depositTiles(rules_, view_, scene(), tiles, {part.first_beam, worker.sums.data()});
+    if (!truth_) return;
+    worker.shown->clear();
+    std::vector<uint64_t>& told = field_ ? worker.told_sums : worker.sums;
+    const TruthSink truth{*worker.shown, {}, worker.one_beam};
+    depositTiles(field_ ? *truth_rules_ : rules_, view_, scene(), tiles, {part.first_beam, told.data(), &truth});
+    for (int beam = 0; beam < part.beams; ++beam)
+        truth_grid_->take(static_cast<size_t>(part.first_beam + beam), *worker.shown, static_cast<size_t>(beam),
+                          *truth_);
+}
+
+void CastEchoes::workOn(const Part& part, Worker& worker, types::Sonar& ping) {
+    const std::span<const CastTile> tiles = cast(part, worker);
+    worker.lap(DrawStage);
+    depositPart(part, tiles, worker);
+    if (paths_) paths_->trace(scene(), tiles, (part.first_beam + part.beams) * view_.cells.beam_columns);
+    worker.lap(DepositStage);
+    if (gather(part, worker))
+        for (int beam = 0; beam < part.beams; ++beam)
+            worker.heard |= fill(static_cast<size_t>(part.first_beam + beam), worker,
+                                 &worker.sums[static_cast<size_t>(beam) * rules_.sumCount()], ping);
+    worker.lap(BeamStage);
+}
+
+bool CastEchoes::fill(size_t cell, const Worker& worker, const uint64_t* sums, types::Sonar& ping) {
+    if (field_) return field_->fill(cell, rules_, sums, view_.cells.cell(), worker.number);
+    const std::span<float> bins = grid_->cell(cell, ping);
+    const bool heard = levels_.fill(rules_, sums, view_.cells.cell(), bins);
+    addOwnSums(rules_, sums, cell, view_.cells.cell(), bins);
+    return heard;
+}
+
+void CastEchoes::addPaths(types::Sonar& ping) {
+    for (size_t cell = 0; truth_ && cell < plan_.cells.size(); ++cell)
+        paths_->takeDirect(cell, levels_, field_ ? std::span<const float>() : grid_->cell(cell, ping));
+    threads_.run([&](int part, int parts) {
+        for (int cell = part; cell < view_.cells.beams; cell += parts) {
+            const auto i = static_cast<size_t>(cell);
+            const auto thread = static_cast<size_t>(part);
+            const std::span<float> bins = field_ ? field_->energies(thread) : grid_->cell(i, ping);
+            const bool any = paths_->addTo(i, levels_, bins);
+            if (any && field_) field_->addEnergies(i, bins, thread);
+            workers_[thread].heard |= any;
+        }
+    });
+}
+
+void CastEchoes::work(Worker& worker, types::Sonar& ping) {
+    worker.last = Clock::now();
+    for (size_t i = next_++; i < parts_.size(); i = next_++) workOn(parts_[i], worker, ping);
+}
+
+void CastEchoes::render(const types::Snapshot& snapshot, types::Sonar& ping, Stages& stages) {
+    Worker& own = workers_.front();
+    own.last = Clock::now();
+    place(snapshot);
+    if (field_) field_->begin(snapshot);
+    if (truth_ && !truth_grid_) makeTruth();
+    if (truth_) truth_grid_->begin();
+    stages[CullStage].seconds += std::chrono::duration<double>(Clock::now() - own.last).count();
+    next_ = 0;
+    for (Worker& worker : workers_) {
+        worker.heard = false;
+        for (Stage& stage : worker.stages) stage.seconds = 0;
+    }
+    for (Strip& strip : strips_) {
+        strip.left = strip.parts;
+        std::fill(strip.sums.begin(), strip.sums.end(), 0);
+    }
+    const bool alone = parts_.size() == 1;
+    if (alone)
+        work(own, ping);
+    else
+        threads_.share([&](int part, int) { work(workers_[static_cast<size_t>(part)], ping); });
+    own.last = Clock::now();
+    if (paths_) addPaths(ping);
+    if (field_)
+        field_->form(threads_);
+    else
+        grid_->finish(ping, threads_);
+    if (truth_) truth_grid_->finish(*truth_, threads_);
+    if (truth_ && paths_) paths_->tell(*truth_);
+    stages[BeamStage].seconds += std::chrono::duration<double>(Clock::now() - own.last).count();
+    heard_ = false;
+    for (const Worker& worker : workers_) {
+        for (size_t i = 0; i < stages.size(); ++i)
+            stages[i].seconds += worker.stages[i].seconds / static_cast<double>(alone ? 1 : workers_.size());
+        heard_ = heard_ || worker.heard;
+    }
+}
+
+}  // namespace
+
+bool haveRays() { return true; }
+
+std::unique_ptr<EchoRenderer> makeCastEchoes(const RenderPlan& plan, types::GeometryPtr geometry,
+                                             const PingEffects& effects) {
+    return std::make_unique<CastEchoes>(plan, std::move(geometry), effects);
+}
+
+}  // namespace insonify::sonar

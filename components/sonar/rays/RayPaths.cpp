@@ -1,0 +1,151 @@
+#include "components/sonar/rays/RayPaths.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <glm/gtc/quaternion.hpp>
+#include <glm/matrix.hpp>
+
+#include "components/sonar/effects/MotionInPing.hpp"
+#include "components/sonar/plan/WaterView.hpp"
+
+namespace insonify::sonar {
+namespace {
+
+/** A unit vector at right angles to a direction. */
+glm::dvec3 besideOf(const glm::dvec3& direction) {
+    const glm::dvec3 up = std::abs(direction.z) < 0.9 ? glm::dvec3(0, 0, 1) : glm::dvec3(1, 0, 0);
+    return glm::normalize(glm::cross(up, direction));
+}
+
+}  // namespace
+
+RayPaths::RayPaths(const RenderPlan& plan, const types::Geometry& geometry)
+    : plan_(plan), coupling_(dopplerCoupling(plan.config)), share_(plan.beams.size() == 1 ? 0.5 : 1), stretch_(1) {
+    if (plan.profile) table_.emplace(*plan.profile, plan.grid);
+    if (plan.profile) stretch_ = std::max(1.0, plan.profile->fastest() / plan.grid.speed_of_sound);
+    if (plan.config.motion_in_ping) motion_.emplace(geometry, 0.1 * plan.grid.speed_of_sound);
+    corners_.reserve(RayTable::max_corners + 1);
+}
+
+void RayPaths::takeScene(const types::Geometry& geometry) {
+    if (motion_) motion_->takeScene(geometry);
+}
+
+void RayPaths::place(const types::Snapshot& snapshot) {
+    world_from_sonar_ = glm::mat3_cast(glm::normalize(snapshot.sonar.orientation));
+    if (table_) table_->place(-waterViewOf(snapshot).height);
+    if (motion_) placeMotion(snapshot);
+    placeCorners();
+}
+
+void RayPaths::placeMotion(const types::Snapshot& snapshot) {
+    motion_->follow(snapshot);
+    velocity_ = motion_->velocity() * world_from_sonar_;
+    turn_ = motion_->turn() * world_from_sonar_;
+    fastest_ = glm::length(velocity_) + motion_->fastest();
+    const MotionBound bound = motionBound(plan_.config, plan_.grid);
+    moves_ = fastest_ >= bound.speed || glm::length(turn_) >= bound.turn;
+}
+
+void RayPaths::placeCorners() {
+    const double farthest = RayTable::beyond * plan_.grid.range_max, turn = moves_ ? share_ * glm::length(turn_) : 0;
+    // A ray that turns has the curvature 4 turn / c; its arc leaves the chord by a tenth of a bin at most.
+    const double spacing =
+        std::sqrt(8 * 0.1 * plan_.grid.bin_width * plan_.grid.speed_of_sound / std::max(4 * turn, 1e-30));
+    const double wanted = std::max(table_ ? static_cast<double>(table_->corners()) : 1, std::ceil(farthest / spacing));
+    const auto count = static_cast<size_t>(std::min(wanted, static_cast<double>(RayTable::max_corners)));
+    corners_.clear();
+    for (size_t i = 0; i <= count; ++i)
+        corners_.push_back(farthest * static_cast<double>(i) / static_cast<double>(count));
+}
+
+std::optional<HeardPoint> RayPaths::heard(const glm::dvec3& place, size_t target) const {
+    constexpr int steps = 100;
+    Drift drift;
+    if (motion_) drift.constant = motion_->targetVelocity(target) * world_from_sonar_;
+    glm::dvec3 point = place, missed(0);  // what is heard as from `point` is `missed` away from the target
+    for (int i = 0; i < steps; ++i) {
+        missed = place - at(glm::normalize(point), glm::length(point), &drift);
+        if (glm::length(missed) < 1e-6 * glm::length(place)) break;
+        point += missed;
+    }
+    if (!(glm::length(missed) < 0.1 * plan_.grid.bin_width)) return {};
+    const double range = glm::length(point);
+    const glm::dvec3 direction = point / range;
+    return HeardPoint{point, apparent(direction, glm::dot(direction, place), direction, range, &drift).focus};
+}
+
+glm::dvec3 RayPaths::movedBy(const glm::dvec3& direction, double range, const Drift* drift) const {
+    const double c = plan_.grid.speed_of_sound, back = 2 * range / c;
+    const glm::dvec3 swept = turn_ * (back * share_);
+    const double angle = glm::length(swept);
+    const glm::dvec3 ray = angle > 0 ? glm::angleAxis(angle, swept / angle) * direction : direction;
+    // Sent from the origin, heard after `range` / c from `there` in the direction `ray`: an ellipsoid about both.
+    const glm::dvec3 there = velocity_ * back;
+    const double leg = (4 * range * range - glm::dot(there, there)) / (4 * range + 2 * glm::dot(ray, there));
+    const glm::dvec3 met = there + leg * ray;
+    return drift ? met - drift->at(met) * ((2 * range - leg) / c) : met;
+}
+
+glm::dvec3 RayPaths::at(const glm::dvec3& direction, double range, const Drift* drift) const {
+    glm::dvec3 met = direction * range;
+    if (moves_ && range > 0) {
+        const glm::dvec3 closing = velocity_ - (drift ? drift->at(met) : glm::dvec3(0));
+        range = std::max(range + coupling_ * glm::dot(closing, direction), 1e-9);
+        met = movedBy(direction, range, drift);
+    }
+    if (!table_) return met;
+    const glm::dvec3 ray = world_from_sonar_ * direction;
+    const RayTable::Place place = table_->at(std::asin(std::clamp(ray.z, -1.0, 1.0)), range);
+    const glm::dvec3 bent = glm::dvec3(place.spread * ray.x, place.spread * ray.y, place.rise) * world_from_sonar_;
+    return bent + (met - range * direction);
+}
+
+double RayPaths::nearLimit(double inverse_distance) const {
+    const double speed = moves_ ? fastest_ : 0;
+    const double stretched = stretch_ * (1 + 2 * speed / plan_.grid.speed_of_sound);
+    const double range = 1 / (inverse_distance * stretched) - coupling_ * speed;
+    return range > 1e-6 ? 1 / range : 1e6;
+}
+
+double RayPaths::rangeOf(const glm::dvec3& normal, double distance, const glm::dvec3& direction, double near,
+                         const Drift* drift) const {
+    constexpr int steps = 3;
+    double range = near;
+    for (int i = 0; i < steps; ++i) {
+        const double here = glm::dot(normal, at(direction, range, drift)) - distance;
+        const double apart = 1e-3 * near;
+        const double there = glm::dot(normal, at(direction, range + apart, drift)) - distance;
+        const double step = apart * here / (there - here);
+        if (!(std::abs(step) < 0.1 * near)) break;  // along the plane
+        range -= step;
+    }
+    return range;
+}
+
+ApparentPlane RayPaths::apparent(const glm::dvec3& normal, double distance, const glm::dvec3& direction, double near,
+                                 const Drift* drift) const {
+    const double range = rangeOf(normal, distance, direction, near, drift);
+    const glm::dvec3 beside = besideOf(direction), upward = glm::cross(direction, beside);
+    const double angle = table_ ? table_->elevationStep() : 1e-3, length = 1e-3 * range;
+    const auto turned = [&](const glm::dvec3& aside) {
+        const auto to = [&](double by) { return at(glm::normalize(direction + by * aside), range, drift); };
+        return (to(angle) - to(-angle)) / (2 * angle);
+    };
+    const glm::dvec3 by_beside = turned(beside), by_upward = turned(upward);
+    const glm::dvec3 onward =
+        (at(direction, range + length, drift) - at(direction, range - length, drift)) / (2 * length);
+    const double facing = glm::dot(normal, onward), pace = glm::length(onward);
+    // On the plane normal . at(direction, range) = distance, range changes with the direction by these [m].
+    const double slope_beside = -glm::dot(normal, by_beside) / facing;
+    const double slope_upward = -glm::dot(normal, by_upward) / facing;
+    const double area = std::abs(glm::dot(glm::cross(by_beside, by_upward), onward)) / pace;  // of a steradian [m^2]
+    ApparentPlane plane;
+    plane.normal = direction / range - (slope_beside * beside + slope_upward * upward) / (range * range);
+    plane.cosine = std::abs(facing) / (glm::length(normal) * pace);
+    plane.focus = std::min(range * range / area, max_focus);
+    return plane;
+}
+
+}  // namespace insonify::sonar

@@ -1,0 +1,83 @@
+#pragma once
+#include <glm/mat3x3.hpp>
+#include <glm/vec3.hpp>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "components/sonar/places/Motion.hpp"
+#include "components/sonar/plan/RenderPlan.hpp"
+#include "components/sonar/rays/RayTable.hpp"
+#include "types/Snapshot.hpp"
+
+namespace insonify::sonar {
+
+/** A plane as the sonar hears it: not where it is, but where it seems to be from the directions and the times of its
+ *  echoes. All in sonar axes. */
+struct ApparentPlane {
+    glm::dvec3 normal{0};  ///< Of the plane normal . place = 1 that seems to be about the direction at hand [1/m].
+    double cosine = 0;     ///< Of the angle at which sound meets the true one [1].
+    double focus = 0;      ///< Intensity there, over that of straight rays of the same range [1].
+};
+
+/** A point that is not heard from where it is. */
+struct HeardPoint {
+    glm::dvec3 place;  ///< Where it seems to be, sonar axes [m].
+    double focus;      ///< Intensity there, over that of straight rays of the same range [1].
+};
+
+/** The ways that sound takes where it does not come straight from where an object is: bent by a profile of the speed
+ *  of sound, or because sonar and objects move and turn while it is under way. What is heard from a direction at a
+ *  slant range is at a place that depends on both (ACOUSTICS.md 5.19, 5.20). */
+class RayPaths {
+public:
+    static constexpr double max_focus = 4;  ///< At a caustic rays would give infinitely much [1].
+
+    /** Of a plan with refraction or motion within a ping; both outlive it. */
+    RayPaths(const RenderPlan& plan, const types::Geometry& geometry);
+
+    /** Another geometry from the next ping on. */
+    void takeScene(const types::Geometry& geometry);
+    /** Once a ping. Allocates nothing after the second. */
+    void place(const types::Snapshot& snapshot);
+    /** Whether all ways of this ping are as good as straight: nothing is bent, and nothing moves enough. */
+    bool areStraight() const { return !table_ && !moves_; }
+    /** How an object moves in this ping; null where it does not. */
+    const Drift* drift(uint32_t object) const { return moves_ ? motion_->drift(object) : nullptr; }
+    /** What is heard from a direction, unit, at a slant range [m], was there about the sonar when the pulse was sent
+     *  [m]; of an object that moves by `drift`. */
+    glm::dvec3 at(const glm::dvec3& direction, double range, const Drift* drift = nullptr) const;
+    /** Ranges between which all ways are nearly straight, from 0 on [m]. */
+    std::span<const double> corners() const { return corners_; }
+    /** Of the plane normal . place = distance as it is met in a direction near a range [m]. */
+    ApparentPlane apparent(const glm::dvec3& normal, double distance, const glm::dvec3& direction, double near,
+                           const Drift* drift) const;
+    /** From where a point target of this ping is heard that was there about the sonar, sonar axes, when the pulse was
+     *  sent [m]: the place that is nearest to the straight one, as if it were heard along a straight ray; none where
+     *  there is none, as in a shadow. */
+    std::optional<HeardPoint> heard(const glm::dvec3& place, size_t target) const;
+    /** The greatest inverse range at which something is heard that is within an inverse distance [1/m]. */
+    double nearLimit(double inverse_distance) const;
+
+private:
+    void placeMotion(const types::Snapshot& snapshot);
+    void placeCorners();
+    /** Of a place that is heard so and moves by `drift`: where it was when the pulse was sent, over straight rays. */
+    glm::dvec3 movedBy(const glm::dvec3& direction, double range, const Drift* drift) const;
+    double rangeOf(const glm::dvec3& normal, double distance, const glm::dvec3& direction, double near,
+                   const Drift* drift) const;
+
+    const RenderPlan& plan_;
+    std::optional<RayTable> table_;
+    std::optional<Motion> motion_;
+    double coupling_;  ///< dopplerCoupling() [s].
+    double share_;     ///< Of a turn during the flight that what is heard is turned by [1].
+    double stretch_;   ///< No place is further away than its slant range times this, but for the coupling [1].
+    glm::dmat3 world_from_sonar_{1};  ///< [1]
+    bool moves_ = false;
+    glm::dvec3 velocity_{0}, turn_{0};  ///< Of the sonar, sonar axes [m/s], [rad/s].
+    double fastest_ = 0;                ///< At which any place comes nearer or goes away, at most [m/s].
+    std::vector<double> corners_;
+};
+
+}  // namespace insonify::sonar

@@ -1,0 +1,432 @@
+#include "components/sonar/rays/RayVisibility.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <glm/gtc/quaternion.hpp>
+#include <glm/matrix.hpp>
+#include <limits>
+#include <optional>
+
+#include "components/sonar/places/MeshFacts.hpp"
+#include "components/sonar/rays/RayPaths.hpp"
+#include "components/sonar/rays/SceneTrees.hpp"
+
+namespace insonify::sonar {
+namespace {
+
+/** On each axis, between places where a tree may have its origin: at most 444 m from the sonar, where float has 0.03
+ * mm. */
+constexpr double origin_spacing = 512;
+
+/** Follows from where the sonar is alone, so that no ping depends on those before it [m]. */
+glm::dvec3 originNear(const glm::dvec3& sonar) { return origin_spacing * glm::round(sonar / origin_spacing); }
+
+/** Triangles that are copied to where they stand, once for each object; of larger scenes, meshes that stand in several
+ *  places are instances of one tree, through which rays take longer [1]. */
+constexpr size_t max_copied = 4'000'000;
+
+/** The object whose lattice of scatterers an object has: its own; of the tiles of a survey that of the first, whatever
+ *  tiles there are. */
+uint32_t latticeOf(const types::Geometry& geometry, size_t object) {
+    const types::Object& own = geometry.objects[object];
+    const auto is_same = [&](const types::Object& other) {
+        return other.transient && other.name == own.name && other.world_from_object == own.world_from_object;
+    };
+    if (!own.transient) return static_cast<uint32_t>(object);
+    return static_cast<uint32_t>(std::ranges::find_if(geometry.objects, is_same) - geometry.objects.begin());
+}
+
+/** The three rows of a matrix that takes directions and places from one frame to another. */
+struct Rows {
+    glm::vec3 x, y, z;
+
+    explicit Rows(const glm::mat3& m)
+        : x(m[0][0], m[1][0], m[2][0]), y(m[0][1], m[1][1], m[2][1]), z(m[0][2], m[1][2], m[2][2]) {}
+};
+
+/** Aims the rays that are active; what they have met before stays. */
+void aim(const Rows& turn, glm::vec3 from, const TileRays& rays, RTCRayHit16& all) {
+    for (int i = 0; i < tile_samples; ++i) {
+        const float x = rays.x[i], y = rays.y[i], z = rays.z[i];
+        all.ray.org_x[i] = from.x;
+        all.ray.org_y[i] = from.y;
+        all.ray.org_z[i] = from.z;
+        all.ray.dir_x[i] = turn.x.x * x + turn.x.y * y + turn.x.z * z;
+        all.ray.dir_y[i] = turn.y.x * x + turn.y.y * y + turn.y.z * z;
+        all.ray.dir_z[i] = turn.z.x * x + turn.z.y * y + turn.z.z * z;
+        all.hit.geomID[i] = RTC_INVALID_GEOMETRY_ID;
+        all.hit.instID[0][i] = RTC_INVALID_GEOMETRY_ID;
+    }
+}
+
+/** Lets rays that are active reach all that lies beyond `nearest` [m]; the others end before they begin. */
+void extend(const TileRays& rays, float nearest, RTCRayHit16& all) {
+    constexpr float infinity = std::numeric_limits<float>::infinity();
+    for (int i = 0; i < tile_samples; ++i) {
+        const bool active = rays.active >> i & 1;
+        all.ray.tnear[i] = active ? nearest : infinity;
+        all.ray.tfar[i] = active ? infinity : -infinity;
+        all.ray.time[i] = 0;
+        all.ray.mask[i] = 0xffffffff;
+        all.ray.flags[i] = 0;
+    }
+}
+
+/** Aims rays that begin elsewhere, in the axes that `turn` and `place` of the sonar tell. */
+template <class Rays>
+void aim(const Rows& turn, glm::vec3 place, const PathRays& rays, Rays& ray) {
+    const auto turned = [](glm::vec3 row, float x, float y, float z) { return row.x * x + row.y * y + row.z * z; };
+    for (int i = 0; i < tile_samples; ++i) {
+        ray.org_x[i] = place.x + turned(turn.x, rays.from_x[i], rays.from_y[i], rays.from_z[i]);
+        ray.org_y[i] = place.y + turned(turn.y, rays.from_x[i], rays.from_y[i], rays.from_z[i]);
+        ray.org_z[i] = place.z + turned(turn.z, rays.from_x[i], rays.from_y[i], rays.from_z[i]);
+        ray.dir_x[i] = turned(turn.x, rays.towards.x[i], rays.towards.y[i], rays.towards.z[i]);
+        ray.dir_y[i] = turned(turn.y, rays.towards.x[i], rays.towards.y[i], rays.towards.z[i]);
+        ray.dir_z[i] = turned(turn.z, rays.towards.x[i], rays.towards.y[i], rays.towards.z[i]);
+    }
+}
+
+/** Lets rays meet what lies between their own bounds; those that are not active end before they begin. */
+template <class Rays>
+void bound(const PathRays& rays, Rays& ray) {
+    constexpr float infinity = std::numeric_limits<float>::infinity();
+    for (int i = 0; i < tile_samples; ++i) {
+        const bool active = rays.towards.active >> i & 1;
+        ray.tnear[i] = active ? rays.nearest[i] : infinity;
+        ray.tfar[i] = active ? rays.farthest[i] : -infinity;
+        ray.time[i] = 0;
+        ray.mask[i] = 0xffffffff;
+        ray.flags[i] = 0;
+    }
+}
+
+/** Which rays Embree is to look at. */
+struct Valid {
+    alignas(64) int of[tile_samples];
+
+    explicit Valid(uint32_t active) {
+        for (int i = 0; i < tile_samples; ++i) of[i] = (active >> i & 1) ? -1 : 0;
+    }
+};
+
+void forgetHits(RTCRayHit16& all) {
+    std::fill_n(all.hit.geomID, tile_samples, RTC_INVALID_GEOMETRY_ID);
+    std::fill_n(all.hit.instID[0], tile_samples, RTC_INVALID_GEOMETRY_ID);
+}
+
+RTCIntersectContext raysOf(bool are_coherent) {
+    RTCIntersectContext context;
+    rtcInitIntersectContext(&context);
+    context.flags = are_coherent ? RTC_INTERSECT_CONTEXT_FLAG_COHERENT : RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT;
+    return context;
+}
+
+/** Writes down what rays have met now; `meaning` of a geometry and an instance is a TreePart. */
+template <class Meaning>
+void take(const RTCRayHit16& all, TileHits& hits, const Meaning& meaning) {
+    for (int i = 0; i < tile_samples; ++i) {
+        if (all.hit.geomID[i] == RTC_INVALID_GEOMETRY_ID) continue;
+        const TreePart part = meaning(all.hit.geomID[i], all.hit.instID[0][i]);
+        hits.command[i] = part.command;
+        hits.triangle[i] = part.first_triangle + all.hit.primID[i];
+        hits.u[i] = all.hit.u[i];
+        hits.v[i] = all.hit.v[i];
+        hits.distance[i] = all.ray.tfar[i];
+    }
+}
+
+using Places = std::array<glm::vec3, tile_samples>;
+
+/** Where a tile's rays are at one range, for an object that moves by `drift`. */
+Places placesOf(const RayPaths& paths, const TileRays& rays, double range, const Drift* drift = nullptr) {
+    Places places;
+    for (int i = 0; i < tile_samples; ++i)
+        places[static_cast<size_t>(i)] =
+            glm::vec3(paths.at(glm::normalize(glm::dvec3(rays.x[i], rays.y[i], rays.z[i])), range, drift));
+    return places;
+}
+
+/** Aims the rays from one place to another; what they have met before stays. */
+void aim(const Rows& turn, glm::vec3 place, const Places& from, const Places& to, RTCRayHit16& all) {
+    for (size_t i = 0; i < tile_samples; ++i) {
+        const glm::vec3 way = to[i] - from[i];
+        all.ray.org_x[i] = place.x + glm::dot(turn.x, from[i]);
+        all.ray.org_y[i] = place.y + glm::dot(turn.y, from[i]);
+        all.ray.org_z[i] = place.z + glm::dot(turn.z, from[i]);
+        all.ray.dir_x[i] = glm::dot(turn.x, way);
+        all.ray.dir_y[i] = glm::dot(turn.y, way);
+        all.ray.dir_z[i] = glm::dot(turn.z, way);
+        all.hit.geomID[i] = RTC_INVALID_GEOMETRY_ID;
+        all.hit.instID[0][i] = RTC_INVALID_GEOMETRY_ID;
+    }
+}
+
+}  // namespace
+
+/** An object that moves. */
+struct RayVisibility::Mover {
+    uint32_t object, first_command;
+    std::shared_ptr<MeshTree> mesh;
+    RTCScene tree;
+    Box box;                      ///< In its own axes [m].
+    bool placed = false;          ///< Whether rays can meet it.
+    glm::mat3 from_sonar{1};      ///< Directions in sonar axes to its own.
+    glm::vec3 place{0};           ///< Of the sonar in its axes [m].
+    glm::vec3 towards{0};         ///< Unit, from the sonar to the middle of a ball about it, sonar axes.
+    float cosine = -1, sine = 0;  ///< Of the angle under which the ball's half is seen; -1: the sonar is inside.
+
+    void placeAt(const glm::dmat4& sonar_from_object);
+    bool mayMeet(const TileRays& rays) const;
+    TreePart meaning(uint32_t geometry) const {
+        const TreePart& part = mesh->parts()[geometry];
+        return {first_command + part.command, part.first_triangle};
+    }
+};
+
+void RayVisibility::Mover::placeAt(const glm::dmat4& sonar_from_object) {
+    const glm::dmat3 linear(sonar_from_object);
+    const double volume = glm::determinant(linear);
+    placed = std::isfinite(volume) && volume != 0 && !mesh->parts().empty();
+    if (!placed) return;
+    const glm::dmat3 inverse = glm::inverse(linear);
+    from_sonar = glm::mat3(inverse);
+    place = glm::vec3(-(inverse * glm::dvec3(sonar_from_object[3])));
+    const glm::dvec3 half = box.half();
+    const glm::dvec3 middle(sonar_from_object * glm::dvec4(box.centre(), 1));
+    const double radius = std::abs(half.x) * glm::length(linear[0]) + std::abs(half.y) * glm::length(linear[1]) +
+                          std::abs(half.z) * glm::length(linear[2]);
+    const double distance = glm::length(middle), share = 1.001 * radius / distance;
+    cosine = -1;
+    if (!(share < 1)) return;
+    towards = glm::vec3(middle / distance);
+    sine = static_cast<float>(share);
+    cosine = static_cast<float>(std::sqrt(1 - share * share));
+}
+
+/** Whether the cone about a tile's rays touches that about the ball. */
+bool RayVisibility::Mover::mayMeet(const TileRays& rays) const {
+    if (!placed) return false;
+    if (cosine < 0) return true;
+    const auto ray = [&](int i) { return glm::normalize(glm::vec3(rays.x[i], rays.y[i], rays.z[i])); };
+    const glm::vec3 axis = glm::normalize(ray(0) + ray(tile_samples - 1));
+    float narrowest = 1;
+    for (int i = 0; i < tile_samples; ++i) narrowest = std::min(narrowest, glm::dot(axis, ray(i)));
+    const float half = std::clamp(narrowest - 1e-6f, -1.0f, 1.0f), half_sine = std::sqrt(1 - half * half);
+    return glm::dot(axis, towards) >= half * cosine - half_sine * sine || half * sine + half_sine * cosine < 0;
+}
+
+/** The scene about one origin. */
+struct RayVisibility::Tree {
+    std::optional<SceneTrees> trees;
+    std::vector<Mover> movers;
+    glm::dvec3 origin{0};  ///< In the world [m].
+    bool is_built = false;
+};
+
+RayVisibility::RayVisibility(const types::Geometry& geometry)
+    : here_(std::make_unique<Tree>()), before_(std::make_unique<Tree>()) {
+    takeScene(geometry);
+}
+
+RayVisibility::~RayVisibility() = default;
+
+void RayVisibility::takeScene(const types::Geometry& geometry) {
+    geometry_ = &geometry;
+    moves_.resize(geometry.objects.size());
+    here_->is_built = before_->is_built = false;
+    listCommands();
+}
+
+void RayVisibility::listCommands() {
+    commands_.clear();
+    first_command_.clear();
+    uint32_t planes = 0;
+    std::vector<uint32_t> first_plane;
+    for (const types::Mesh& mesh : geometry_->meshes) {
+        first_plane.push_back(planes);
+        planes += static_cast<uint32_t>(mesh.indices.size() / 3);
+    }
+    for (size_t i = 0; i < geometry_->objects.size(); ++i) {
+        first_command_.push_back(static_cast<uint32_t>(commands_.size()));
+        const auto mesh = static_cast<size_t>(geometry_->objects[i].mesh);
+        for (const MaterialRun& run : materialRuns(geometry_->meshes[mesh]))
+            commands_.push_back({static_cast<uint32_t>(i), first_plane[mesh], static_cast<uint32_t>(run.material),
+                                 latticeOf(*geometry_, i)});
+    }
+}
+
+bool RayVisibility::hasNewMover(const types::Snapshot& snapshot) const {
+    return std::ranges::any_of(snapshot.moved, [this](const auto& moved) { return !moves_[moved.object]; });
+}
+
+void RayVisibility::place(const types::Snapshot& snapshot) {
+    const glm::dvec3 origin = originNear(snapshot.sonar.position);
+    if (hasNewMover(snapshot)) forgetTrees(snapshot);
+    if (here_->is_built && here_->origin != origin) std::swap(here_, before_);
+    if (!here_->is_built || here_->origin != origin) build(origin);
+    world_from_sonar_ = glm::mat3(glm::mat3_cast(snapshot.sonar.orientation));
+    place_ = glm::vec3(snapshot.sonar.position - origin);
+    placeMovers(snapshot);
+}
+
+void RayVisibility::forgetTrees(const types::Snapshot& snapshot) {
+    for (const types::MovedObject& moved : snapshot.moved) moves_[moved.object] = true;
+    here_->is_built = before_->is_built = false;
+}
+
+void RayVisibility::build(const glm::dvec3& origin) {
+    here_->is_built = false;
+    here_->origin = origin;
+    std::vector<Mover> movers;
+    std::vector<TreeObject> still, apart;
+    std::vector<size_t> uses(geometry_->meshes.size());
+    size_t triangles = 0;
+    for (const types::Object& object : geometry_->objects) {
+        const auto mesh = static_cast<size_t>(object.mesh);
+        ++uses[mesh];
+        if (!object.transient) triangles += geometry_->meshes[mesh].indices.size() / 3;
+    }
+    for (size_t i = 0; i < geometry_->objects.size(); ++i) {
+        const types::Object& object = geometry_->objects[i];
+        const auto mesh = static_cast<size_t>(object.mesh);
+        if (geometry_->meshes[mesh].indices.empty()) continue;
+        const types::MeshPtr& shared = geometry_->meshes.shared(mesh);
+        glm::dmat4 place = object.world_from_object;
+        place[3] -= glm::dvec4(origin, 0);
+        if (moves_[i]) {
+            Mover& mover = movers.emplace_back(static_cast<uint32_t>(i), first_command_[i], MeshTree::of(shared));
+            mover.tree = mover.mesh->tree().scene();
+            mover.box = MeshFacts::of(shared)->box();
+        } else {
+            const bool is_apart = object.transient || (triangles > max_copied && uses[mesh] > 1);
+            (is_apart ? apart : still).push_back({shared, place, first_command_[i]});
+        }
+    }
+    here_->trees.emplace(SceneTrees(still, apart));  // those before it are kept until it has found them
+    here_->movers = std::move(movers);
+    here_->is_built = true;
+}
+
+void RayVisibility::placeMovers(const types::Snapshot& snapshot) {
+    if (here_->movers.empty()) return;
+    const glm::dmat3 sonar_from_world = glm::transpose(glm::mat3_cast(snapshot.sonar.orientation));
+    for (Mover& mover : here_->movers) {
+        const auto moved = std::ranges::find(snapshot.moved, mover.object, &types::MovedObject::object);
+        const glm::dmat4& world_from_object = moved == snapshot.moved.end()
+                                                  ? geometry_->objects[mover.object].world_from_object
+                                                  : moved->world_from_object;
+        glm::dmat4 place(sonar_from_world * glm::dmat3(world_from_object));
+        place[3] = glm::dvec4(sonar_from_world * (glm::dvec3(world_from_object[3]) - snapshot.sonar.position), 1);
+        mover.placeAt(place);
+    }
+}
+
+void RayVisibility::cast(std::span<const TileRays> rays, std::span<TileHits> hits) const {
+    std::array<RTCRayHit16, tiles_at_once> all;
+    const Rows world(world_from_sonar_);
+    for (size_t i = 0; i < rays.size(); ++i) {
+        extend(rays[i], static_cast<float>(nearest), all[i]);
+        aim(world, place_, rays[i], all[i]);
+    }
+    RTCIntersectContext context = raysOf(true);
+    rtcIntersectNM(here_->trees->scene(), &context, reinterpret_cast<RTCRayHitN*>(all.data()), tile_samples,
+                   static_cast<unsigned>(rays.size()), sizeof(RTCRayHit16));
+    for (size_t i = 0; i < rays.size(); ++i) {
+        std::fill_n(hits[i].command, tile_samples, TileHits::nothing);
+        take(all[i], hits[i],
+             [this](uint32_t geometry, uint32_t instance) { return here_->trees->meaning(geometry, instance); });
+        castAtMovers(rays[i], all[i], hits[i]);
+    }
+}
+
+void RayVisibility::castAtMovers(const TileRays& rays, RTCRayHit16& all, TileHits& hits) const {
+    alignas(64) int valid[tile_samples];
+    for (int i = 0; i < tile_samples; ++i) valid[i] = (rays.active >> i & 1) ? -1 : 0;
+    RTCIntersectContext context = raysOf(true);
+    for (const Mover& mover : here_->movers) {
+        if (!mover.mayMeet(rays)) continue;
+        aim(Rows(mover.from_sonar), mover.place, rays, all);
+        rtcIntersect16(valid, mover.tree, &context, &all);
+        take(all, hits, [&](uint32_t geometry, uint32_t) { return mover.meaning(geometry); });
+    }
+}
+
+void RayVisibility::castAlong(const RayPaths& paths, const TileRays& rays, TileHits& hits) const {
+    const std::span<const double> corners = paths.corners();
+    std::fill_n(hits.command, tile_samples, TileHits::nothing);
+    TileRays left = rays;
+    Piece piece{};
+    for (size_t k = 1; k < corners.size() && left.active; ++k) {
+        const double start = corners[k - 1], length = corners[k] - start;
+        piece = {start, corners[k], piece.to, placesOf(paths, rays, corners[k])};
+        RTCRayHit16 all;
+        extend(left, k == 1 ? static_cast<float>(nearest / length) : 0, all);
+        for (float& end : all.ray.tfar) end = std::min(end, 1.0f);
+        castPiece(paths, left, piece, all, hits);
+        for (uint32_t i = 0; i < tile_samples; ++i) {
+            if (hits.command[i] == TileHits::nothing || !(left.active >> i & 1)) continue;
+            hits.range[i] = static_cast<float>(start + static_cast<double>(all.ray.tfar[i]) * length);
+            left.active &= ~(1u << i);
+        }
+    }
+}
+
+void RayVisibility::castPiece(const RayPaths& paths, const TileRays& rays, const Piece& piece, RTCRayHit16& all,
+                              TileHits& hits) const {
+    alignas(64) int valid[tile_samples];
+    for (int i = 0; i < tile_samples; ++i) valid[i] = (rays.active >> i & 1) ? -1 : 0;
+    RTCIntersectContext context = raysOf(true);
+    aim(Rows(world_from_sonar_), place_, piece.from, piece.to, all);
+    rtcIntersect16(valid, here_->trees->scene(), &context, &all);
+    take(all, hits, [this](uint32_t geometry, uint32_t instance) { return here_->trees->meaning(geometry, instance); });
+    for (const Mover& mover : here_->movers) {
+        if (!mover.placed) continue;
+        if (const Drift* drift = paths.drift(mover.object))
+            aim(Rows(mover.from_sonar), mover.place, placesOf(paths, rays, piece.start, drift),
+                placesOf(paths, rays, piece.end, drift), all);
+        else
+            aim(Rows(mover.from_sonar), mover.place, piece.from, piece.to, all);
+        rtcIntersect16(valid, mover.tree, &context, &all);
+        take(all, hits, [&](uint32_t geometry, uint32_t) { return mover.meaning(geometry); });
+    }
+}
+
+void RayVisibility::cast(const PathRays& rays, TileHits& hits) const {
+    std::fill_n(hits.command, tile_samples, TileHits::nothing);
+    RTCRayHit16 all;
+    const Valid valid(rays.towards.active);
+    bound(rays, all.ray);
+    aim(Rows(world_from_sonar_), place_, rays, all.ray);
+    forgetHits(all);
+    RTCIntersectContext context = raysOf(true);
+    rtcIntersect16(valid.of, here_->trees->scene(), &context, &all);
+    take(all, hits, [this](uint32_t geometry, uint32_t instance) { return here_->trees->meaning(geometry, instance); });
+    for (const Mover& mover : here_->movers) {
+        if (!mover.placed) continue;
+        aim(Rows(mover.from_sonar), mover.place, rays, all.ray);
+        forgetHits(all);
+        rtcIntersect16(valid.of, mover.tree, &context, &all);
+        take(all, hits, [&](uint32_t geometry, uint32_t) { return mover.meaning(geometry); });
+    }
+}
+
+uint32_t RayVisibility::blocked(const PathRays& rays) const {
+    RTCRay16 all;
+    const Valid valid(rays.towards.active);
+    bound(rays, all);
+    aim(Rows(world_from_sonar_), place_, rays, all);
+    // Embree 3.13 may never return from rtcOccluded16 of coherent rays through instances.
+    RTCIntersectContext context = raysOf(!here_->trees->hasInstances());
+    rtcOccluded16(valid.of, here_->trees->scene(), &context, &all);
+    for (const Mover& mover : here_->movers) {
+        if (!mover.placed) continue;
+        aim(Rows(mover.from_sonar), mover.place, rays, all);
+        rtcOccluded16(valid.of, mover.tree, &context, &all);
+    }
+    uint32_t met = 0;
+    for (int i = 0; i < tile_samples; ++i) met |= static_cast<uint32_t>(all.tfar[i] < 0) << i;
+    return met & rays.towards.active;
+}
+
+}  // namespace insonify::sonar

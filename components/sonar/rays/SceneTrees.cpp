@@ -1,0 +1,148 @@
+#include "components/sonar/rays/SceneTrees.hpp"
+
+#include <bit>
+#include <stdexcept>
+#include <string>
+
+#include "components/sonar/places/SharedValues.hpp"
+
+namespace insonify::sonar {
+namespace {
+
+std::shared_ptr<RTCDeviceTy> sharedDevice() {
+    static SharedValues<int, RTCDeviceTy> devices;
+    return devices.of(0, [] {
+        RTCDevice device = rtcNewDevice("threads=1");
+        if (!device) throw std::runtime_error("Embree has no device on this processor");
+        return std::shared_ptr<RTCDeviceTy>(device, rtcReleaseDevice);
+    });
+}
+
+/** Numbers that are equal for equal objects. */
+std::vector<uint64_t> keyOf(const std::vector<TreeObject>& objects) {
+    std::vector<uint64_t> key;
+    key.reserve(18 * objects.size());
+    for (const TreeObject& object : objects) {
+        key.push_back(reinterpret_cast<uintptr_t>(object.mesh.get()));
+        key.push_back(object.command);
+        for (int i = 0; i < 16; ++i) key.push_back(std::bit_cast<uint64_t>(object.place[i / 4][i % 4]));
+    }
+    return key;
+}
+
+}  // namespace
+
+std::vector<MaterialRun> materialRuns(const types::Mesh& mesh) {
+    std::vector<MaterialRun> ranges;
+    for (const types::Cluster& cluster : mesh.clusters) {
+        if (!ranges.empty() && ranges.back().material == cluster.material)
+            ranges.back().index_count += cluster.index_count;
+        else
+            ranges.push_back({cluster.first_index, cluster.index_count, cluster.material});
+    }
+    return ranges;
+}
+
+EmbreeScene::EmbreeScene() : device_(sharedDevice()), scene_(rtcNewScene(device_.get())) {
+    rtcSetSceneFlags(scene_, RTC_SCENE_FLAG_ROBUST);
+}
+
+EmbreeScene::~EmbreeScene() { rtcReleaseScene(scene_); }
+
+void EmbreeScene::add(const types::Mesh& mesh, const MaterialRun& run, const std::vector<glm::vec3>& at) {
+    RTCGeometry triangles = rtcNewGeometry(device_.get(), RTC_GEOMETRY_TYPE_TRIANGLE);
+    rtcSetSharedGeometryBuffer(triangles, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, at.data(), 0, sizeof(glm::vec3),
+                               at.size() - 1);
+    rtcSetSharedGeometryBuffer(triangles, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, mesh.indices.data(),
+                               run.first_index * sizeof(uint32_t), 3 * sizeof(uint32_t), run.index_count / 3);
+    attach(triangles);
+}
+
+void EmbreeScene::add(const EmbreeScene& other, const glm::dmat4& place) {
+    const glm::mat4 matrix(place);
+    RTCGeometry instance = rtcNewGeometry(device_.get(), RTC_GEOMETRY_TYPE_INSTANCE);
+    rtcSetGeometryInstancedScene(instance, other.scene());
+    rtcSetGeometryTransform(instance, 0, RTC_FORMAT_FLOAT4X4_COLUMN_MAJOR, &matrix);
+    attach(instance);
+}
+
+void EmbreeScene::attach(RTCGeometry geometry) {
+    rtcCommitGeometry(geometry);
+    rtcAttachGeometry(scene_, geometry);
+    rtcReleaseGeometry(geometry);
+}
+
+void EmbreeScene::commit() {
+    rtcCommitScene(scene_);
+    if (const RTCError error = rtcGetDeviceError(device_.get()); error != RTC_ERROR_NONE)
+        throw std::runtime_error("Embree cannot build the scene: error " + std::to_string(error));
+}
+
+std::shared_ptr<MeshTree> MeshTree::of(const types::MeshPtr& mesh) {
+    static SharedValues<const types::Mesh*, MeshTree> all;
+    return all.of(mesh.get(), [&] { return std::make_shared<MeshTree>(mesh); });
+}
+
+const EmbreeScene& MeshTree::tree() {
+    std::call_once(built_, [this] {
+        parts_.clear();
+        positions_ = mesh_->positions;
+        positions_.emplace_back();  // Embree reads 16 bytes at each position
+        auto tree = std::make_unique<EmbreeScene>();
+        for (const MaterialRun& run : materialRuns(*mesh_)) {
+            tree->add(*mesh_, run, positions_);
+            parts_.push_back({static_cast<uint32_t>(parts_.size()), run.first_index / 3});
+        }
+        tree->commit();
+        tree_ = std::move(tree);
+    });
+    return *tree_;
+}
+
+std::shared_ptr<StillTree> StillTree::of(const std::vector<TreeObject>& objects) {
+    static SharedValues<std::vector<uint64_t>, StillTree> all;
+    return all.of(keyOf(objects), [&] { return std::make_shared<StillTree>(objects); });
+}
+
+const EmbreeScene& StillTree::tree() {
+    std::call_once(built_, [this] { build(); });
+    return *tree_;
+}
+
+void StillTree::build() {
+    auto tree = std::make_unique<EmbreeScene>();
+    parts_.clear();
+    positions_.clear();
+    positions_.reserve(objects_.size());
+    for (const TreeObject& object : objects_) {
+        std::vector<glm::vec3>& placed = positions_.emplace_back();
+        placed.reserve(object.mesh->positions.size() + 1);
+        for (const glm::vec3& p : object.mesh->positions) placed.emplace_back(object.place * glm::dvec4(p, 1));
+        placed.emplace_back();
+        uint32_t command = object.command;
+        for (const MaterialRun& run : materialRuns(*object.mesh)) {
+            tree->add(*object.mesh, run, placed);
+            parts_.push_back({command++, run.first_index / 3});
+        }
+    }
+    tree->commit();
+    tree_ = std::move(tree);
+}
+
+SceneTrees::SceneTrees(const std::vector<TreeObject>& still, const std::vector<TreeObject>& apart)
+    : still_(StillTree::of(still)) {
+    const EmbreeScene& tree = still_->tree();
+    if (apart.empty()) return;
+    top_ = std::make_unique<EmbreeScene>();
+    if (!still_->isEmpty()) {
+        top_->add(tree, glm::dmat4(1));
+        instances_.emplace_back();
+    }
+    for (const TreeObject& object : apart) {
+        const Instance& instance = instances_.emplace_back(MeshTree::of(object.mesh), object.command);
+        top_->add(instance.mesh->tree(), object.place);
+    }
+    top_->commit();
+}
+
+}  // namespace insonify::sonar

@@ -1,0 +1,513 @@
+#include "components/sonar/ways/PathEchoes.hpp"
+
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <bit>
+#include <limits>
+#include <numbers>
+
+#include "components/sonar/echo/Estimators.hpp"
+#include "components/sonar/fan/BeamFan.hpp"
+#include "types/Angle.hpp"
+
+namespace insonify::sonar {
+namespace {
+
+using std::numbers::pi;
+
+constexpr int max_bounces = MultipathConfig::max_bounces;
+constexpr int pattern_steps = 2048;
+constexpr double reaching_back = 1.1;  ///< Of the range, within which cells beyond it may reach back into it [1].
+constexpr double edge_on = 1e-4;       ///< Cosine below which a surface gives no echo [1].
+constexpr uint64_t surface_name = std::numeric_limits<uint64_t>::max();  ///< Among the mirrors of a chain.
+
+/** What of a part's energy goes to a bin, whichever thread brings it. */
+#define HAVE_PHYSICAL
+struct SharedBins : Bins {
+    using Bins::Bins;
+    void addToBin(uint cell, uint bin, double amount, double) const {
+        if (!(amount > 0)) return;
+        std::atomic_ref(sums[size_t{cell} * bin_count + bin]).fetch_add(quanta(amount), relaxed);
+        if (told) std::atomic_ref(told[size_t{cell} * bin_count + bin]).fetch_add(quanta(amount), relaxed);
+    }
+    uint64_t* told = nullptr;  ///< Sums by the way of what is deposited now, where they are told.
+    static constexpr std::memory_order relaxed = std::memory_order_relaxed;
+#include "shaders/deposit.glsl"
+};
+#undef HAVE_PHYSICAL
+
+/** The mirrors that a ray has met, in its order. */
+struct Chain {
+    int count = 0;
+    std::array<uint64_t, max_bounces> names{};  ///< The same for all rays that meet the same one.
+    std::array<MirrorPlane, max_bounces> planes;
+    double power = 1;           ///< What they leave of it [1].
+    double widest = 0;          ///< Most of what a facet of them adds to a mean square slope, over its cosine [1].
+    bool begins_lobed = false;  ///< The first of them has a lobe of its own.
+
+    bool sameAs(const Chain& other) const {
+        return count == other.count && std::equal(names.begin(), names.begin() + count, other.names.begin());
+    }
+    glm::dvec3 image(glm::dvec3 place) const {
+        for (int k = count; k-- > 0;) place = planes[static_cast<size_t>(k)].image(place);
+        return place;
+    }
+    glm::dvec3 turned(glm::dvec3 way) const {
+        for (int k = count; k-- > 0;) way = planes[static_cast<size_t>(k)].turned(way);
+        return way;
+    }
+    /** Undoes turned(). */
+    glm::dvec3 turnedBack(glm::dvec3 way) const {
+        for (int k = 0; k < count; ++k) way = planes[static_cast<size_t>(k)].turned(way);
+        return way;
+    }
+};
+
+/** The directions of a rectangle of samples of a tile. */
+struct Angles {
+    glm::dvec3 middle, per_azimuth, per_elevation;  ///< Unit, and its derivatives [1].
+    double width, height, lean;                     ///< [rad], [rad], dazimuth / delevation of its sides [1].
+    double size, weighted;  ///< Solid angle, and the same by the pattern of both ways, in cells at elevation 0 [1].
+    int cell;
+
+    Angles(const CastView& view, const CastTile& tile, int sample, int merged);
+};
+
+Angles::Angles(const CastView& cast, const CastTile& tile, int sample, int merged) {
+    const AngularView& view = cast.cells;
+    const TileShape::Extent at = cast.shape.at[sample], covered = cast.shape.size[merged];
+    const int column = tile.first_column + at.columns;
+    const size_t left = view.at(column), low = 2 * static_cast<size_t>(tile.first_row + at.rows);
+    const auto across = static_cast<size_t>(covered.columns), up = static_cast<size_t>(covered.rows);
+    const AngularView::Elevation& e = view.elevations[low + up];
+    const bool cones = view.conical;
+    const AngularView::Direction a =
+        cones ? AngularView::azimuthOf(view.bearings[left + across], e) : view.azimuths[left + across];
+    const auto edge = [&](size_t i) { return cones ? coneAzimuth(view.bearings[i], e.angle) : view.bearings[i]; };
+    cell = view.beam_of[static_cast<size_t>(column)];
+    middle = {e.cosine * a.cosine, e.cosine * a.sine, e.sine};
+    per_azimuth = {-e.cosine * a.sine, e.cosine * a.cosine, 0};
+    per_elevation = {-e.sine * a.cosine, -e.sine * a.sine, e.cosine};
+    width = edge(left + 2 * across) - edge(left);
+    height = view.height(low / 2, up);
+    lean = cones && std::abs(a.sine) < 0.997 ? a.sine / a.cosine * e.sine / e.cosine : 0;
+    size = width * (view.elevations[low + 2 * up].sine - view.elevations[low].sine) / view.cell();
+    weighted = width * (view.elevations[low + 2 * up].weighted - view.elevations[low].weighted) / view.cell();
+}
+
+/** Inverse ranges: of a way there and back that is half along a direction to a plane and half from there to a focus,
+ *  with what it changes by with the direction. */
+struct HalfWay {
+    double inverse, per_azimuth, per_elevation, nearest;  ///< [1/m], [1/m rad], [1/m rad], [1/m].
+    double back;                                          ///< From the plane to the focus [m].
+    glm::dvec3 from_focus;                                ///< Unit.
+};
+
+HalfWay halfWay(const MirrorPlane& plane, const glm::dvec3& focus, const Angles& at) {
+    const double g = glm::dot(plane.normal, at.middle) / plane.distance, r = 1 / g;
+    const glm::dvec3 place = r * at.middle, from = place - focus;
+    HalfWay way;
+    way.back = glm::length(from);
+    way.from_focus = from / way.back;
+    const double range = 0.5 * (r + way.back), along = 1 + glm::dot(way.from_focus, at.middle);
+    const auto change = [&](const glm::dvec3& turn) {
+        const double of_range = -r * r * glm::dot(plane.normal, turn) / plane.distance;
+        return -0.5 * (along * of_range + r * glm::dot(way.from_focus, turn)) / (range * range);
+    };
+    way.inverse = 1 / range;
+    way.per_azimuth = change(at.per_azimuth);
+    way.per_elevation = change(at.per_elevation);
+    const double side = glm::dot(plane.normal, focus) - plane.distance;
+    const bool same_side = side * plane.distance < 0;
+    way.nearest = 2 / glm::length(same_side ? plane.image(focus) : focus);
+    return way;
+}
+
+}  // namespace
+
+WayPatterns::WayPatterns(const RenderPlan& plan)
+    : plan_(plan),
+      conical_(plan.features.has(Feature::Conical)),
+      has_azimuth_(plan.has(Pass::Beamform)),
+      reach_(std::sin(types::radians(plan.sampled.beam_height_deg) / 2)),
+      beam_width_(has_azimuth_ ? plan.directivity->halfPowerAzimuth() : types::radians(plan.config.beamWidthDeg())) {
+    const bool patterned = plan.directivity && plan.directivity->hasElevation();
+    for (int i = 0; i <= pattern_steps; ++i) {
+        const double angle = std::asin(reach_ * (2.0 * i / pattern_steps - 1));
+        sent_.push_back(patterned ? plan.directivity->sentElevation(angle) : 1);
+        heard_.push_back(patterned ? plan.directivity->heardElevation(angle) : 1);
+        if (has_azimuth_) azimuths_.push_back(plan.directivity->sentAzimuth(pi * (2.0 * i / pattern_steps - 1)));
+    }
+}
+
+WayPatterns::Way WayPatterns::wayOf(const glm::dvec3& direction) const {
+    return {beamAzimuthOf(direction, conical_), direction.z, !conical_ || direction.x >= 0};
+}
+
+double WayPatterns::elevation(const std::vector<double>& table, double sine) const {
+    const double at = 0.5 * pattern_steps * (1 + sine / reach_);
+    if (!(at >= 0 && at <= pattern_steps)) return 0;
+    const auto i = std::min(static_cast<size_t>(at), size_t{pattern_steps - 1});
+    const double part = at - static_cast<double>(i);
+    return table[i] * (1 - part) + table[i + 1] * part;
+}
+
+double WayPatterns::sentAzimuth(double azimuth) const {
+    if (!has_azimuth_) return plan_.cells.spans(azimuth) ? 1 : 0;
+    const double at = 0.5 * pattern_steps * (1 + std::remainder(azimuth, 2 * pi) / pi);
+    const auto i = std::min(static_cast<size_t>(at), size_t{pattern_steps - 1});
+    const double part = at - static_cast<double>(i);
+    return azimuths_[i] * (1 - part) + azimuths_[i + 1] * part;
+}
+
+double WayPatterns::power(const Way& sent, const Way& heard) const {
+    if (!sent.heard || !heard.heard) return 0;
+    const double here = sentAzimuth(heard.azimuth);
+    return here > 0 ? elevation(sent_, sent.sine) * elevation(heard_, heard.sine) * sentAzimuth(sent.azimuth) / here
+                    : 0;
+}
+
+bool WayPatterns::inOneBeam(const Way& a, const Way& b) const {
+    return std::abs(std::remainder(a.azimuth - b.azimuth, 2 * pi)) < beam_width_;
+}
+
+/** Follows the rays of one tile after another. */
+class PathEchoes::Tracer {
+public:
+    Tracer(PathEchoes& paths, const PlacedScene& scene, int end_column)
+        : paths_(paths),
+          rules_(*paths.rules_),
+          view_(*paths.view_),
+          scene_(scene),
+          end_column_(end_column),
+          bins_(rules_, paths.sums_.data()),
+          near_edge_(rules_.edges.front()),
+          far_edge_(rules_.edges[static_cast<size_t>(rules_.bins.bin_count)]) {}
+
+    void follow(const CastTile& tile) {
+        if (!begin(tile)) return;
+        const int bounces = paths_.plan_.config.multipath->bounces;
+        for (int depth = 1; rays_.towards.active; ++depth) {
+            castOn();
+            hear(tile);
+            if (depth == bounces) return;
+            for (int i = 0; i < tile_samples; ++i)
+                if (isActive(i)) reflect(i, from(i), towards(i), hits_, false);
+        }
+    }
+
+private:
+    bool isActive(int i) const { return rays_.towards.active >> i & 1; }
+    glm::dvec3 from(int i) const { return {rays_.from_x[i], rays_.from_y[i], rays_.from_z[i]}; }
+    glm::dvec3 towards(int i) const { return {rays_.towards.x[i], rays_.towards.y[i], rays_.towards.z[i]}; }
+    glm::dvec3 met(int i) const { return from(i) + double{hits_.distance[i]} * towards(i); }
+    void drop(int i) { rays_.towards.active &= ~(1u << i); }
+
+    bool begin(const CastTile& tile);
+    /** Sends a ray on from the mirror that it has met; drops one that has met none in reach. */
+    void reflect(int i, const glm::dvec3& from, const glm::dvec3& way, const TileHits& hits, bool tilts);
+    void send(int i, const MirrorPlane& plane, const glm::dvec3& from, const glm::dvec3& way, double distance);
+    MirrorPlane planeOf(const TileHits& hits, int i) const;
+    void castOn();
+    uint32_t openBack() const;
+    void hear(const CastTile& tile);
+    int sameFrom(int i) const;
+    void deposit(const Angles& at, int i, double open);
+    LobeSlopes lobeSlopes(const Angles& at, int i, const MirrorPlane& plane, const glm::dvec3& direction,
+                          double range) const;
+    MaterialLaws::Bistatic section(const Angles& at, int i, const MirrorPlane& plane, const HalfWay& way) const;
+    void depositOnce(const Angles& at, int i, const MirrorPlane& plane, double open);
+    Footprint footprint(const Angles& at, int i, const HalfWay& way, double size) const;
+    void tellWay(int i, bool twice) {
+        if (!paths_.tells_) return;
+        const Chain& chain = chains_[static_cast<size_t>(i)];
+        const bool by_surface = std::all_of(chain.names.begin(), chain.names.begin() + chain.count,
+                                            [](uint64_t name) { return name == surface_name; });
+        const PathTruth::Path way = twice ? PathTruth::SurfaceTwice : PathTruth::SurfaceOnce;
+        bins_.told = paths_.truth_->sums(by_surface ? way : PathTruth::Bounced);
+    }
+
+    PathEchoes& paths_;
+    const EchoRules& rules_;
+    const CastView& view_;
+    const PlacedScene& scene_;
+    int end_column_;
+    SharedBins bins_;
+    double near_edge_, far_edge_;
+    PathRays rays_{};
+    TileHits hits_{};
+    std::array<Chain, tile_samples> chains_;
+    std::array<double, tile_samples> lengths_;  ///< Of each ray's way so far [m].
+    uint64_t key_ = 0;                          ///< Of the tile.
+};
+
+bool PathEchoes::Tracer::begin(const CastTile& tile) {
+    rays_.towards.active = 0;
+    key_ = static_cast<uint64_t>(tile.first_column) << 32 | static_cast<uint32_t>(tile.first_row);
+    for (int i = 0; i < tile_samples; ++i) {
+        const uint32_t command = tile.hits->command[i];
+        const bool misses = command == TileHits::nothing;
+        if (misses ? !paths_.water_.reflects() : paths_.reflected_[command] == 0) continue;
+        const int column = tile.first_column + view_.shape.at[i].columns, row = tile.first_row + view_.shape.at[i].rows;
+        if (column >= end_column_ || row >= view_.cells.rows) continue;
+        rays_.towards.active |= 1u << i;
+        chains_[static_cast<size_t>(i)] = {};
+        lengths_[static_cast<size_t>(i)] = 0;
+        reflect(i, glm::dvec3(0), view_.cells.direction(column, row), *tile.hits, true);
+    }
+    return rays_.towards.active;
+}
+
+MirrorPlane PathEchoes::Tracer::planeOf(const TileHits& hits, int i) const {
+    const PlacedRun& run = scene_.ranges[hits.command[i]];
+    const PlaneRecord& plane = run.planes[hits.triangle[i]];
+    const glm::dvec3 n(plane.normal), p(plane.point), normal = turned(run, plane.normal);
+    const double distance =
+        glm::dot(n, p - glm::dvec3(run.eye[0], run.eye[1], run.eye[2])) + static_cast<double>(plane.normal.w);
+    const double length = glm::length(normal);
+    return {normal / length, distance / length};
+}
+
+void PathEchoes::Tracer::reflect(int i, const glm::dvec3& from, const glm::dvec3& way, const TileHits& hits,
+                                 bool tilts) {
+    Chain& chain = chains_[static_cast<size_t>(i)];
+    const auto k = static_cast<size_t>(chain.count);
+    if (hits.command[i] == TileHits::nothing) {
+        const double distance = paths_.water_.distance(from, way);
+        if (!(lengths_[static_cast<size_t>(i)] + distance < rules_.bins.range_max)) return drop(i);
+        const glm::dvec3 at = from + distance * way;
+        chain.names[k] = surface_name;
+        return send(i, tilts ? paths_.water_.facet(at, way, key_) : paths_.water_.plane(), from, way, distance);
+    }
+    const CommandRecord& command = scene_.commands[hits.command[i]];
+    const double reflected = paths_.reflected_[hits.command[i]];
+    const MirrorPlane plane = planeOf(hits, i);
+    const double cosine = std::abs(glm::dot(plane.normal, way));
+    if (reflected == 0 || !(cosine > edge_on)) return drop(i);
+    chain.names[k] = uint64_t{hits.command[i]} << 32 | hits.triangle[i];
+    chain.power *= reflected;
+    if (const FacetRecord* facets = scene_.ranges[hits.command[i]].facets) {
+        const FacetRecord& facet = facets[hits.triangle[i]];
+        const auto spread = [](const vec4& along) {
+            return static_cast<double>(along.x) + static_cast<double>(along.y);
+        };
+        chain.widest = std::max(chain.widest, std::sqrt(spread(facet.first) * spread(facet.second)) / cosine);
+    }
+    chain.begins_lobed |= k == 0 && rules_.laws.records[command.material].law.y > 0;
+    send(i, plane, from, way, double{hits.distance[i]});
+}
+
+void PathEchoes::Tracer::send(int i, const MirrorPlane& plane, const glm::dvec3& from, const glm::dvec3& way,
+                              double distance) {
+    Chain& chain = chains_[static_cast<size_t>(i)];
+    const glm::dvec3 at = from + distance * way, on = plane.turned(way);
+    double& length = lengths_[static_cast<size_t>(i)];
+    length += distance;
+    const double left = 2 * rules_.bins.range_max - length;
+    if (!(left > 0)) return drop(i);
+    chain.planes[static_cast<size_t>(chain.count++)] = plane;
+    const glm::vec3 begin(at), ahead(on);
+    rays_.from_x[i] = begin.x, rays_.from_y[i] = begin.y, rays_.from_z[i] = begin.z;
+    rays_.towards.x[i] = ahead.x, rays_.towards.y[i] = ahead.y, rays_.towards.z[i] = ahead.z;
+    rays_.nearest[i] = static_cast<float>(RayVisibility::nearest + 1e-6 * length);
+    rays_.farthest[i] = static_cast<float>(std::min(left, paths_.water_.distance(at, on) + 1e-3));
+}
+
+void PathEchoes::Tracer::castOn() { paths_.visibility_.cast(rays_, hits_); }
+
+/** Of the rays that have met something, those from where the sonar is seen on the side that they came to. */
+uint32_t PathEchoes::Tracer::openBack() const {
+    PathRays back{};
+    back.towards.active = 0;
+    for (int i = 0; i < tile_samples; ++i) {
+        back.nearest[i] = 1, back.farthest[i] = 0;
+        if (!isActive(i) || hits_.command[i] == TileHits::nothing) continue;
+        const glm::dvec3 at = met(i);
+        const double range = glm::length(at),
+                     mean = 0.5 * (range + lengths_[static_cast<size_t>(i)] + double{hits_.distance[i]});
+        const MirrorPlane plane = planeOf(hits_, i);
+        const bool same_side = glm::dot(plane.normal, towards(i)) * glm::dot(plane.normal, at) > 0;
+        if (!same_side || !(mean < reaching_back * rules_.bins.range_max) || !(range > RayVisibility::nearest))
+            continue;
+        const glm::vec3 begin(at);
+        back.from_x[i] = begin.x, back.from_y[i] = begin.y, back.from_z[i] = begin.z;
+        back.towards.x[i] = -begin.x, back.towards.y[i] = -begin.y, back.towards.z[i] = -begin.z;
+        back.nearest[i] = static_cast<float>(RayVisibility::nearest / range + 1e-6);
+        back.farthest[i] = static_cast<float>(1 - RayVisibility::nearest / range);
+        back.towards.active |= 1u << i;
+    }
+    return back.towards.active ? back.towards.active & ~paths_.visibility_.blocked(back) : 0;
+}
+
+/** Samples from i on that are a rectangle which the same mirrors show of one triangle. */
+int PathEchoes::Tracer::sameFrom(int i) const {
+    const auto alignment = static_cast<uint32_t>(i == 0 ? tile_samples : i & -i);
+    const int most = std::min(static_cast<int>(alignment), view_.shape.max_merged);
+    int run = 1;
+    while (run < most && isActive(i + run) && hits_.triangle[i + run] == hits_.triangle[i] &&
+           hits_.command[i + run] == hits_.command[i] &&
+           chains_[static_cast<size_t>(i + run)].sameAs(chains_[static_cast<size_t>(i)]))
+        ++run;
+    return static_cast<int>(std::bit_floor(static_cast<uint32_t>(run)));
+}
+
+void PathEchoes::Tracer::hear(const CastTile& tile) {
+    const uint32_t open = openBack();
+    for (int i = 0; i < tile_samples;) {
+        if (!isActive(i) || hits_.command[i] == TileHits::nothing) {
+            ++i;
+            continue;
+        }
+        const int merged = sameFrom(i);
+        const uint32_t of_these = open >> i & ((1u << merged) - 1);
+        deposit(Angles(view_, tile, i, merged), i, static_cast<double>(std::popcount(of_these)) / merged);
+        i += merged;
+    }
+}
+
+Footprint PathEchoes::Tracer::footprint(const Angles& at, int i, const HalfWay& way, double size) const {
+    const PlacedRun& run = scene_.ranges[hits_.command[i]];
+    // No way by a mirror is shorter than the direct one, nor longer than that and the way to the sonar's image.
+    const double image = glm::length(chains_[static_cast<size_t>(i)].image(glm::dvec3(0)));
+    return trapezoidFootprint(way.inverse, way.inverse, std::abs(way.per_azimuth) * at.width,
+                              std::abs(way.per_elevation + way.per_azimuth * at.lean) * at.height, way.nearest,
+                              run.near_limit, 1 / (1 / run.far_limit + image), near_edge_, far_edge_, size);
+}
+
+void PathEchoes::Tracer::deposit(const Angles& at, int i, double open) {
+    const Chain& chain = chains_[static_cast<size_t>(i)];
+    const MirrorPlane real = planeOf(hits_, i);
+    const glm::dvec3 focus = chain.image(glm::dvec3(0)), normal = chain.turned(real.normal);
+    const MirrorPlane plane{normal, real.distance + glm::dot(normal, focus)};
+    const double facing = glm::dot(plane.normal, at.middle);
+    if (!(std::abs(facing) > edge_on && plane.distance * facing > 0)) return;
+    const PlacedRun& run = scene_.ranges[hits_.command[i]];
+    tellWay(i, true);
+    const HalfWay twice = halfWay(plane, glm::dvec3(0), at);
+    const double strength =
+        rules_.strength_scale * chain.power * chain.power *
+        rules_.laws.overCosine(run.material, std::abs(facing), lobeSlopes(at, i, plane, at.middle, 1 / twice.inverse));
+    bins_.depositCell(footprint(at, i, twice, at.weighted), static_cast<uint>(at.cell), strength / twice.inverse);
+    if (open > 0) depositOnce(at, i, plane, open);
+}
+
+/** How the lobe of a cell is seen along a direction, in the image of space behind the mirrors. */
+LobeSlopes PathEchoes::Tracer::lobeSlopes(const Angles& at, int i, const MirrorPlane& plane,
+                                          const glm::dvec3& direction, double range) const {
+    const PlacedRun& run = scene_.ranges[hits_.command[i]];
+    if (!run.facets || !rules_.laws.hasLobe(run.material)) return {};
+    LobeSample sample{};
+    sample.facet = run.facets[hits_.triangle[i]];
+    sample.normal = plane.normal;
+    sample.axis = chains_[static_cast<size_t>(i)].turned(turned(run, sample.facet.axis));
+    sample.range = range;
+    sample.lookAlong(direction);
+    sample.width = at.width;
+    sample.height = at.height;
+    return rules_.laws.lobeSlopes(run.material, sample);
+}
+
+/** What a cell gives back of sound that comes directly and goes by the mirrors, or the other way round. */
+MaterialLaws::Bistatic PathEchoes::Tracer::section(const Angles& at, int i, const MirrorPlane& plane,
+                                                   const HalfWay& way) const {
+    const PlacedRun& run = scene_.ranges[hits_.command[i]];
+    const double direct = std::abs(glm::dot(plane.normal, way.from_focus));
+    const double mirrored = std::abs(glm::dot(plane.normal, at.middle));
+    if (!(direct > edge_on)) return {0, 0};
+    const double widest = chains_[static_cast<size_t>(i)].widest;
+    const glm::dvec3 middle = glm::normalize(at.middle + way.from_focus);
+    LobeSlopes slopes = lobeSlopes(at, i, plane, middle, 1 / way.inverse);
+    slopes.square_1 += std::max(widest / mirrored, slopes.wave_1 / (direct * mirrored)) - slopes.wave_1;
+    slopes.square_2 += std::max(widest / mirrored, slopes.wave_2 / (direct * mirrored)) - slopes.wave_2;
+    slopes.wave_1 = slopes.wave_2 = 0;  // what a chain of plates shows of a plate ends in no edge of its own
+    return rules_.laws.bistatic(run.material, direct, mirrored, std::abs(glm::dot(plane.normal, middle)), slopes);
+}
+
+/** Out directly and back by the mirrors, and the other way round, which is the same but for where it is sent and
+ *  heard. */
+void PathEchoes::Tracer::depositOnce(const Angles& at, int i, const MirrorPlane& plane, double open) {
+    const Chain& chain = chains_[static_cast<size_t>(i)];
+    const HalfWay way = halfWay(plane, chain.image(glm::dvec3(0)), at);
+    const MaterialLaws::Bistatic given = section(at, i, plane, way);
+    const double scale =
+        rules_.strength_scale * chain.power * open / (way.back * way.back * way.inverse * way.inverse * way.inverse);
+    tellWay(i, false);
+    const WayPatterns& patterns = *paths_.patterns_;
+    const WayPatterns::Way by_mirror = patterns.wayOf(at.middle);
+    const WayPatterns::Way by_itself = patterns.wayOf(chain.turnedBack(way.from_focus));
+    const double back = patterns.power(by_itself, by_mirror), there = patterns.power(by_mirror, by_itself);
+    if (back > 0)
+        bins_.depositCell(footprint(at, i, way, at.size * back), static_cast<uint>(at.cell),
+                          scale * (given.diffuse + given.lobe));
+    if (!(there > 0)) return;
+    // What this surface and the first mirror both reflect and scatter comes by rays of its own from the other end.
+    const bool comes_itself =
+        chain.begins_lobed && paths_.reflected_[hits_.command[i]] > 0 && !patterns.inOneBeam(by_mirror, by_itself);
+    const double strength = scale * (given.diffuse + (comes_itself ? 0 : given.lobe));
+    const Footprint cell = footprint(at, i, way, at.size * there);
+    patterns.eachCell(by_itself, [&](size_t heard) { bins_.depositCell(cell, static_cast<uint>(heard), strength); });
+}
+
+PathEchoes::PathEchoes(const RenderPlan& plan, const types::Geometry& geometry, const RayVisibility& visibility)
+    : plan_(plan), visibility_(visibility), water_(plan.config) {
+    takeScene(geometry);
+}
+
+void PathEchoes::takeScene(const types::Geometry& geometry) {
+    reflected_.clear();
+    for (const CommandRecord& command : visibility_.commands())
+        reflected_.push_back(reflectedPower(geometry.materials[command.material], plan_.config.multipath->bounces));
+}
+
+void PathEchoes::takeQuality(const EchoRules& rules, const CastView& view) {
+    rules_ = &rules;
+    view_ = &view;
+    patterns_.emplace(plan_);
+    truth_.reset();
+    sums_.assign(plan_.cells.size() * static_cast<size_t>(rules.bins.bin_count), 0);
+}
+
+void PathEchoes::begin(const types::Snapshot& snapshot, bool tells) {
+    tells_ = tells;
+    if (tells && !truth_) truth_.emplace(plan_, static_cast<size_t>(rules_->bins.bin_count));
+    if (tells) truth_->begin();
+    water_.place(snapshot, plan_.grid.range_max);
+    std::ranges::fill(sums_, 0);
+}
+
+void PathEchoes::endAtSurface(const CastTile& tile, TileHits& hits) const {
+    if (!water_.reflects()) return;
+    for (int i = 0; i < tile_samples; ++i) {
+        if (hits.command[i] == TileHits::nothing) continue;
+        const glm::dvec3 way = view_->cells.direction(tile.first_column + view_->shape.at[i].columns,
+                                                      tile.first_row + view_->shape.at[i].rows);
+        if (double{hits.distance[i]} > water_.distance(glm::dvec3(0), way)) hits.command[i] = TileHits::nothing;
+    }
+}
+
+void PathEchoes::trace(const PlacedScene& scene, std::span<const CastTile> tiles, int end_column) {
+    Tracer tracer(*this, scene, end_column);
+    for (const CastTile& tile : tiles) tracer.follow(tile);
+}
+
+double PathEchoes::quantum() const { return view_->cells.cell() / (quanta_per_unit * rules_->strength_scale); }
+
+void PathEchoes::takeDirect(size_t cell, const BinLevels& levels, std::span<const float> bins) {
+    truth_->take(cell, bins, levels, quantum());
+}
+
+bool PathEchoes::addTo(size_t cell, const BinLevels& levels, std::span<float> bins) const {
+    const double quantum = this->quantum();
+    const uint64_t* sums = sums_.data() + cell * bins.size();
+    uint64_t any = 0;
+    for (size_t j = 0; j < bins.size(); ++j) {
+        if (sums[j] == 0) continue;
+        any |= sums[j];
+        const double sum = double{bins[j]} + double{levels.intensity(j, static_cast<double>(sums[j]) * quantum)};
+        bins[j] = static_cast<float>(std::min(sum, double{std::numeric_limits<float>::max()}));
+    }
+    return any != 0;
+}
+
+}  // namespace insonify::sonar

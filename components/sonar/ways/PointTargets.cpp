@@ -1,0 +1,174 @@
+#include "components/sonar/ways/PointTargets.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <complex>
+#include <glm/geometric.hpp>
+#include <glm/gtc/quaternion.hpp>
+#include <numbers>
+
+#include "components/sonar/echo/RangeResponse.hpp"
+#include "components/sonar/field/EchoField.hpp"
+#include "types/Angle.hpp"
+#include "types/Hash.hpp"
+
+namespace insonify::sonar {
+namespace {
+
+/** Steps of the table over the width of h [1]. */
+constexpr double steps_per_width = 256;
+
+}  // namespace
+
+PulseMeans::PulseMeans(const acoustics::Pulse& pulse) : reach_(pulse.extent(RangeResponse::floor_db)) {
+    if (!pulse.peakSidelobeDb()) {
+        tone_ = pulse;
+        return;
+    }
+    step_ = pulse.resolution() / steps_per_width;
+    const auto steps = static_cast<size_t>(std::ceil(reach_ / step_)) + 1;
+    integral_.push_back(0);
+    for (size_t i = 0; i <= steps; ++i) {
+        response_.push_back(pulse.response(static_cast<double>(i) * step_));
+        if (i > 0) integral_.push_back(integral_.back() + step_ * (response_[i - 1] + response_[i]) / 2);
+    }
+}
+
+double PulseMeans::integralTo(double distance) const {
+    const double at = std::min(std::abs(distance), reach_) / step_;
+    const auto i = static_cast<size_t>(at);
+    const double rest = at - static_cast<double>(i), slope = response_[i + 1] - response_[i];
+    return std::copysign(integral_[i] + step_ * rest * (response_[i] + rest * slope / 2), distance);
+}
+
+double PulseMeans::mean(double low, double high) const {
+    if (tone_) return tone_->mean(low, high);
+    return (integralTo(high) - integralTo(low)) / (high - low);
+}
+
+PointTargets::PointTargets(const RenderPlan& plan, const types::Geometry& geometry)
+    : plan_(plan), absorption_(makeAbsorption(plan.config).intensityPerMetre()) {
+    if (plan.has(Pass::Pulse)) pulse_.emplace(acoustics::Pulse(*plan.config.pulse, plan.grid.speed_of_sound));
+    means_.reserve(static_cast<size_t>(plan.grid.bin_count));
+    takeScene(geometry);
+}
+
+void PointTargets::takeScene(const types::Geometry& geometry) { ways_.emplace(plan_.config, geometry); }
+
+std::optional<BeamAngles> PointTargets::directionOf(const glm::dvec3& way) const {
+    const bool conical = plan_.features.has(Feature::Conical);
+    if (conical && way.x < 0) return {};
+    return beamAnglesOf(way, conical);
+}
+
+std::optional<PointTargets::Return> PointTargets::returnOf(const TargetWay& out, const TargetWay& back,
+                                                           double strength_db) const {
+    const auto sent = directionOf(out.direction), heard = directionOf(back.direction);
+    const double range = 0.5 * (out.length + back.length);
+    if (!sent || !heard || !(range >= plan_.grid.range_min)) return {};
+    const double intensity = std::pow(10, strength_db / 10) * out.power * back.power * std::exp(-absorption_ * range) /
+                             (out.length * out.length * back.length * back.length);
+    return Return{
+        range, *sent, *heard, intensity, out.by_surface == back.by_surface ? 1.0 : -1.0, inPhase(out) * inPhase(back)};
+}
+
+double PointTargets::inPhase(const TargetWay& way) const {
+    if (!way.by_surface || !plan_.config.frequency_khz) return 1;
+    const double wavelength = plan_.grid.speed_of_sound / (1e3 * *plan_.config.frequency_khz);
+    return coherentReflection(plan_.config.multipath->surface->wind_m_s, wavelength, way.sine_grazing);
+}
+
+double PointTargets::powerIn(const Beam& beam, const Return& echo) const {
+    const auto& pattern = plan_.directivity;
+    const double half_height = types::radians(plan_.config.beam_height_deg) / 2;
+    const double off = std::remainder(echo.heard.azimuth - beam.centre, 2 * std::numbers::pi);
+    const bool in_box = off >= beam.low - beam.centre && off < beam.high - beam.centre;
+    const double across = pattern && pattern->hasAzimuth() ? pattern->sentAzimuth(echo.sent.azimuth) *
+                                                                 pattern->heardAzimuth(echo.heard.azimuth, beam.centre)
+                                                           : in_box && plan_.beams.spans(echo.sent.azimuth);
+    const double along =
+        pattern && pattern->hasElevation()
+            ? pattern->sentElevation(echo.sent.elevation) * pattern->heardElevation(echo.heard.elevation)
+            : std::abs(echo.heard.elevation) <= half_height && std::abs(echo.sent.elevation) <= half_height;
+    return pattern && across * along < pattern->floor() ? 0 : across * along;
+}
+
+bool PointTargets::spread(double range) {
+    const BinGrid& grid = plan_.grid;
+    const double reach = pulse_ ? pulse_->reach() : 0;
+    const double first = std::max(0.0, binAt(range - reach, grid.bin_width));
+    const double last = std::min(grid.bin_count - 1.0, binAt(range + reach, grid.bin_width));
+    means_.clear();
+    first_bin_ = static_cast<size_t>(first);
+    for (double k = first; k <= last; ++k)
+        means_.push_back(pulse_ ? pulse_->mean(k * grid.bin_width - range, (k + 1) * grid.bin_width - range) : 1);
+    return !means_.empty();
+}
+
+bool PointTargets::addTo(types::Sonar& ping, const Return& echo) const {
+    bool heard = false;
+    for (size_t beam = 0; beam < plan_.beams.size(); ++beam) {
+        const double power = powerIn(plan_.beams[beam], echo);
+        if (!(power > 0)) continue;
+        float* bins = &ping.bins[beam * ping.bin_count + first_bin_];
+        for (size_t i = 0; i < means_.size(); ++i) bins[i] += static_cast<float>(echo.intensity * power * means_[i]);
+        heard = true;
+    }
+    return heard;
+}
+
+bool PointTargets::addTo(EchoField& field, const Return& echo, uint64_t key) const {
+    constexpr double turn = 2 * std::numbers::pi;
+    const double turns = 2e3 * *plan_.config.frequency_khz / plan_.grid.speed_of_sound * echo.range;
+    const double phase = turn * (turns - std::floor(turns)), loose = turn * static_cast<double>(key >> 11) * 0x1p-53;
+    const std::complex<double> unit = echo.sign * (std::polar(echo.in_phase, phase) +
+                                                   std::polar(std::sqrt(1 - echo.in_phase * echo.in_phase), loose));
+    bool heard = false;
+    for (size_t k = 0; k < plan_.beams.size(); ++k) {
+        const double power = powerIn(plan_.beams[k], echo);
+        if (!(power > 0)) continue;
+        double sign = 1;
+        if (plan_.directivity && plan_.directivity->hasAzimuth())
+            sign = plan_.directivity->sentAmplitude(echo.sent.azimuth) *
+                   plan_.directivity->heardAmplitude(echo.heard.azimuth, plan_.beams[k].centre);
+        field.add(k, echo.range, std::copysign(std::sqrt(echo.intensity * power), sign) * unit);
+        heard = true;
+    }
+    return heard;
+}
+
+std::optional<TargetWay> PointTargets::bentWay(const RayPaths& bent, const types::Snapshot& snapshot, size_t target) {
+    const glm::dvec3 from_sonar = snapshot.targets[target].position - snapshot.sonar.position;
+    const auto heard = bent.heard(glm::conjugate(snapshot.sonar.orientation) * from_sonar, target);
+    if (!heard) return {};
+    TargetWay way;
+    way.length = glm::length(heard->place);
+    way.direction = heard->place / way.length;
+    way.power = heard->focus;
+    return way;
+}
+
+size_t PointTargets::add(const types::Snapshot& snapshot, types::Sonar& ping, EchoField* field, const RayPaths* bent) {
+    ways_->place(snapshot, plan_.grid.range_max + (pulse_ ? pulse_->reach() : 0));
+    size_t heard = 0;
+    const auto time = static_cast<uint64_t>(snapshot.time.microseconds);
+    for (size_t i = 0; i < snapshot.targets.size(); ++i) {
+        const types::PointTarget& target = snapshot.targets[i];
+        bool any = false;
+        std::span<const TargetWay> ways = ways_->waysTo(target.position);
+        const auto way = bent && !ways.empty() ? bentWay(*bent, snapshot, i) : std::nullopt;
+        if (bent) ways = {way ? &*way : nullptr, way ? 1u : 0u};
+        for (const TargetWay& out : ways)
+            for (const TargetWay& back : ways) {
+                const auto echo = returnOf(out, back, target.strength_db);
+                if (!echo || !spread(echo->range)) continue;
+                const auto pair =
+                    static_cast<uint64_t>((&out - ways.data()) * std::ssize(ways) + (&back - ways.data()));
+                any |= field ? addTo(*field, *echo, types::hashed(time, i, pair)) : addTo(ping, *echo);
+            }
+        heard += any ? 1 : 0;
+    }
+    return heard;
+}
+
+}  // namespace insonify::sonar
