@@ -67,21 +67,13 @@ std::string StatisticsPage::exampleOf(const Json& record, const std::string& pic
 }
 
 std::string StatisticsPage::drawn(const std::string& caption, const Bars& bars) {
-    constexpr int left = 200, width = 320, row = 20;
     uint64_t most = 1;
     for (const auto& [name, count] : bars) most = std::max(most, count);
-    std::string text = fmt::format("<h2>{}</h2>\n<svg class=\"bars\" width=\"640\" height=\"{}\">\n", escaped(caption),
-                                   bars.size() * row + 4);
-    int y = 0;
-    for (const auto& [name, count] : bars) {
-        const double length = width * static_cast<double>(count) / static_cast<double>(most);
-        text += fmt::format(
-            "<text x=\"{}\" y=\"{}\" text-anchor=\"end\">{}</text>"
-            "<rect x=\"{}\" y=\"{}\" width=\"{:.1f}\" height=\"14\"/><text x=\"{:.1f}\" y=\"{}\">{}</text>\n",
-            left - 8, y + 14, escaped(name), left, y + 3, length, left + length + 6, y + 14, count);
-        y += row;
-    }
-    return text + "</svg>\n";
+    std::string text = fmt::format("<h2>{}</h2>\n<table>\n", escaped(caption));
+    for (const auto& [name, count] : bars)
+        text += fmt::format("<tr><td>{}</td><td><meter max=\"{}\" value=\"{}\"></meter></td><td>{}</td></tr>\n",
+                            escaped(name), most, count, count);
+    return text + "</table>\n";
 }
 
 std::string StatisticsPage::tableOfClasses() const {
@@ -110,14 +102,14 @@ std::string StatisticsPage::text() const {
         ranges.emplace_back(fmt::format("{} to {} m", step * range_step, (step + 1) * range_step), count);
     for (const auto& [number, count] : objects_in_picture_)
         objects.emplace_back(fmt::format("{} objects", number), count);
-    std::string page =
-        "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><title>" + escaped(title_) + "</title>\n" +
-        "<style>body{font:14px sans-serif;max-width:1200px;margin:2em auto;padding:0 "
-        "1em;color:#222}table{border-collapse:collapse}"
-        "td,th{padding:2px 10px;text-align:right;border-bottom:1px solid #ddd}.bars text{font-size:12px}"
-        ".bars rect{fill:#48a}figure{display:inline-block;margin:6px;width:370px}figure svg{width:100%;background:#000}"
-        "figure rect{fill:none;stroke-width:2}</style></head>\n<body><h1>" +
-        escaped(title_) + fmt::format("</h1>\n<p>{} samples</p>\n", samples_);
+    std::string page = "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><title>" + escaped(title_) +
+                       "</title>\n" +
+                       "<style>body{font:14px sans-serif;max-width:1200px;margin:2em auto;padding:0 "
+                       "1em;color:#222}table{border-collapse:collapse}"
+                       "td,th{padding:2px 10px;text-align:right;border-bottom:1px solid #ddd}meter{width:320px}"
+                       "figure{display:inline-block;margin:6px;width:370px}figure svg{width:100%;background:#000}"
+                       "figure rect{fill:none;stroke-width:2}</style></head>\n<body><h1>" +
+                       escaped(title_) + fmt::format("</h1>\n<p>{} samples</p>\n", samples_);
     page += drawn("Samples by part", named(parts_)) + drawn("Samples by scene", named(scenes_));
     if (!settings_.empty()) page += drawn("Samples by setting", named(settings_));
     page += tableOfClasses();

@@ -2,7 +2,6 @@
 #include <fmt/core.h>
 
 #include <cmath>
-#include <fstream>
 #include <memory>
 
 #include "components/deployer/CommandLine.hpp"
@@ -92,41 +91,8 @@ void printCut(const char* name, const Cut& cut) {
                degrees(cut.shape.width_3db), shown(first_null, "deg"), shown(cut.shape.peak_sidelobe_db, "dB"));
 }
 
-/** One cut as an SVG drawing of 720 x 300 from `top` on: angles to both sides, levels down to -80 dB. */
-std::string drawn(const char* name, const Cut& cut, int top) {
-    constexpr double left = 60, width = 640, height = 240, floor_db = -80;
-    const double reach = std::max(std::abs(cut.angle_deg.front()), std::abs(cut.angle_deg.back()));
-    std::string text =
-        fmt::format("<g transform=\"translate({},{})\" fill=\"none\" stroke=\"#bbb\">\n", left, top + 30);
-    for (int level = 0; level >= -80; level -= 20) {
-        const double y = height * level / floor_db;
-        text += fmt::format("<path d=\"M0 {0}H{1}\"/><text x=\"-8\" y=\"{2}\" text-anchor=\"end\">{3} dB</text>\n", y,
-                            width, y + 4, level);
-    }
-    for (int i = -4; i <= 4; ++i) {
-        const double x = width * (0.5 + i / 8.0);
-        text += fmt::format("<path d=\"M{0} 0V{1}\"/><text x=\"{0}\" y=\"{2}\" text-anchor=\"middle\">{3:.3g}</text>\n",
-                            x, height, height + 16, reach * i / 4.0);
-    }
-    text += "<path stroke=\"#06c\" d=\"";
-    for (size_t i = 0; i < cut.angle_deg.size(); ++i)
-        text += fmt::format("{}{:.2f} {:.2f}", i ? "L" : "M", width * (0.5 + cut.angle_deg[i] / reach / 2),
-                            height * std::max(cut.level_db[i], floor_db) / floor_db);
-    return text +
-           fmt::format("\"/><text x=\"{}\" y=\"-10\" text-anchor=\"middle\">{} [deg]</text></g>\n", width / 2, name);
-}
-
-void writeDrawing(const std::string& file, const Cut& azimuth, const Cut& elevation) {
-    std::ofstream out(file);
-    out << "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 720 620\">\n"
-           "<style>text{font:12px sans-serif;fill:#222;stroke:none}</style><rect width=\"720\" height=\"620\" "
-           "fill=\"#fff\"/>\n"
-        << drawn("azimuth", azimuth, 0) << drawn("elevation", elevation, 310) << "</svg>\n";
-    if (!out.flush()) throw types::ConfigError(file, "--to", "cannot be written");
-}
-
 struct BeamOptions {
-    std::string deployment, task, drawing;
+    std::string deployment, task;
     bool json = false;
 };
 
@@ -148,7 +114,6 @@ int showBeam(const BeamOptions& options) {
     const sonar::RenderPlan plan =
         sonar::makeRenderPlan(sonarOf(deployment, options).locatedConfig(), types::Geometry{});
     const Cut azimuth = azimuthCut(plan), elevation = elevationCut(plan);
-    if (!options.drawing.empty()) writeDrawing(options.drawing, azimuth, elevation);
     if (options.json) {
         print(Json{{"azimuth", toJson(azimuth)}, {"elevation", toJson(elevation)}});
     } else {
@@ -165,8 +130,7 @@ void addBeamCommand(CLI::App& app, Action& action) {
     CLI::App* command = app.add_subcommand("beam", "Shows a sonar's beam, two way, as its echoes are weighed");
     command->add_option("DEPLOYMENT", options->deployment, "a YAML file, or a folder with one deployment")->required();
     command->add_option("--task", options->task, "the sonar; absent: the first");
-    auto* json = command->add_flag("--json", options->json, "for machines");
-    command->add_option("--to", options->drawing, "an SVG drawing of both cuts")->excludes(json);
+    command->add_flag("--json", options->json, "for machines; scripts/plot draws it");
     command->callback([options, &action] { action = [options] { return showBeam(*options); }; });
 }
 

@@ -10,19 +10,12 @@
 #include <stdexcept>
 
 #include "components/output/PictureFiles.hpp"
-#include "components/study/Plot.hpp"
 
 namespace insonify::study {
 namespace {
 
 constexpr int fan_height = 600, gap = 12;  // [pixels]
 using Out = std::back_insert_iterator<std::string>;
-
-std::string colourOf(const LikenessRow& row) {
-    if (row.name == "simulated") return "#0b6e99";
-    if (row.name == "uniform") return "#edae49";
-    return row.name == "cosine" ? "#d1495b" : "#555555";
-}
 
 /** Where each pixel of a fan of some half-opening comes from. */
 class Fan {
@@ -61,20 +54,6 @@ private:
     int width_;
     std::vector<size_t> order_;  ///< Beams by bearing.
 };
-
-Line histogramOf(const LikenessRow& row) {
-    Line line{row.name, colourOf(row), {}};
-    for (size_t code = 0; code < code_classes; ++code)
-        line.points.push_back({static_cast<double>(code), 100 * row.looks.histogram[code]});
-    return line;
-}
-
-Line levelsOf(const LikenessRow& row) {
-    Line line{row.name, colourOf(row), {}};
-    for (size_t slice = 0; slice < range_slices; ++slice)
-        line.points.push_back({(static_cast<double>(slice) + 0.5) / range_slices, row.looks.level_db[slice]});
-    return line;
-}
 
 void write(const std::filesystem::path& path, const std::string& text) {
     std::ofstream file(path, std::ios::binary);
@@ -159,26 +138,6 @@ std::string profilesCsvOf(const LikenessResult& result) {
     return text;
 }
 
-std::string plotOf(const LikenessResult& result) {
-    Diagram histogram{"How often each code stands in a ping", "code", "share of the bins [%]", 0, 255, 51, 0, 8, 1, {}};
-    Diagram levels{"Fall-off with range",
-                   "range over the farthest",
-                   "mean level below the largest code [dB]",
-                   0,
-                   1,
-                   0.25,
-                   -70,
-                   0,
-                   10,
-                   {}};
-    for (const LikenessRow& row : result.rows) {
-        if (row.name == "uniform") continue;  // one spike
-        histogram.lines.push_back(histogramOf(row));
-        levels.lines.push_back(levelsOf(row));
-    }
-    return linePlot({histogram, levels});
-}
-
 types::Image fansOf(const std::vector<CodedPing>& pings) {
     std::vector<Fan> fans;
     int width = -gap;
@@ -204,7 +163,6 @@ void writeReport(const LikenessResult& result, const std::filesystem::path& fold
     std::filesystem::create_directories(folder);
     write(folder / "likeness.csv", csvOf(result));
     write(folder / "profiles.csv", profilesCsvOf(result));
-    write(folder / "likeness.svg", plotOf(result));
     output::writePng(folder / "fans.png", fansOf(result.shown));
 }
 

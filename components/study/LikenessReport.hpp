@@ -36,12 +36,11 @@ std::vector<LikenessFigure> figuresOf(const LikenessRow& row);
 
 std::string csvOf(const LikenessResult& result);          ///< A line for each row, its figures and distances.
 std::string profilesCsvOf(const LikenessResult& result);  ///< Histograms by code, codes and levels by slice of range.
-std::string plotOf(const LikenessResult& result);         ///< SVG: histograms, level over range.
 
 /** Pings as fans beside each other, grey, codes as they are. */
 types::Image fansOf(const std::vector<CodedPing>& pings);
 
-/** Writes likeness.csv, profiles.csv, likeness.svg and fans.png. Throws std::runtime_error when one cannot be written.
+/** Writes likeness.csv, profiles.csv and fans.png. Throws std::runtime_error when one cannot be written.
  */
 void writeReport(const LikenessResult& result, const std::filesystem::path& folder);
 

@@ -23,6 +23,7 @@ Json toJson(const MultipathResult& result) {
         for (const HeardPoint& point : curve.points)
             points.push_back({{"x", point.x}, {"heard", point.heard}, {"expected", point.expected}});
         json["curves"].push_back({{"name", curve.name},
+                                  {"title", curve.title},
                                   {"x", curve.x_label},
                                   {"y", curve.y_label},
                                   {"worst", curve.worst()},
@@ -42,7 +43,6 @@ int runStudy(const std::string& out) {
     command::OutputFolder folder(out, "study_multipath");
     folder.keep();
     write(folder.path() / "multipath.csv", csvOf(result));
-    write(folder.path() / "multipath.svg", plotOf(result));
     command::write(toJson(result), (folder.path() / "multipath.json").string());
     for (const Claim& claim : result.claims)
         fmt::print("{}  {}: {:.3g}, at most {:.3g}\n", claim.verdict(), claim.text, claim.measured, claim.bound);

@@ -193,31 +193,6 @@ void studyCorner(MultipathResult& result, const std::string& name, const Scene& 
     result.curves.push_back(std::move(curve));
 }
 
-Diagram diagramOf(const HeardCurve& curve) {
-    double low = curve.points.front().heard, high = low;
-    for (const HeardPoint& point : curve.points) {
-        low = std::min({low, point.heard, point.expected});
-        high = std::max({high, point.heard, point.expected});
-    }
-    const double step = high - low > 20 ? 10 : high - low > 5 ? 2 : 1;
-    const double from = curve.points.front().x, to = curve.points.back().x;
-    Diagram diagram{curve.title,
-                    curve.x_label,
-                    curve.y_label,
-                    std::floor(from),
-                    std::ceil(to),
-                    to - from > 10 ? 5.0 : 1.0,
-                    std::floor(low / step) * step - step,
-                    std::ceil(high / step) * step + step,
-                    step,
-                    {{"expected", "#edae49", {}}, {"heard", "#0b6e99", {}}}};
-    for (const HeardPoint& point : curve.points) {
-        diagram.lines[0].points.push_back({point.x, point.expected});
-        diagram.lines[1].points.push_back({point.x, point.heard});
-    }
-    return diagram;
-}
-
 }  // namespace
 
 double HeardCurve::worst() const {
@@ -248,12 +223,6 @@ std::string csvOf(const MultipathResult& result) {
             fmt::format_to(std::back_inserter(text), "{},{:.6g},{:.6g},{:.6g}\n", curve.name, point.x, point.heard,
                            point.expected);
     return text;
-}
-
-std::string plotOf(const MultipathResult& result) {
-    std::vector<Diagram> diagrams;
-    for (const HeardCurve& curve : result.curves) diagrams.push_back(diagramOf(curve));
-    return linePlot(diagrams);
 }
 
 }  // namespace insonify::study

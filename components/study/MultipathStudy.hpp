@@ -3,7 +3,6 @@
 #include <vector>
 
 #include "components/study/ErrorAnalysis.hpp"
-#include "components/study/Plot.hpp"
 
 namespace insonify::study {
 
@@ -28,7 +27,6 @@ struct MultipathResult {
  *  are turned; and what none of it may change, the first echo. */
 MultipathResult studyMultipath();
 
-std::string csvOf(const MultipathResult& result);   ///< curve,x,heard,expected.
-std::string plotOf(const MultipathResult& result);  ///< SVG, a diagram for each curve.
+std::string csvOf(const MultipathResult& result);  ///< curve,x,heard,expected.
 
 }  // namespace insonify::study

@@ -63,16 +63,6 @@ TEST_F(BeamCommandTest, WithoutAPatternABeamIsABox) {
     EXPECT_THAT(cuts["azimuth"]["level_db"], testing::ElementsAre(0, 0));
 }
 
-TEST_F(BeamCommandTest, DrawsBothCuts) {
-    const Outcome outcome = call("beam_pattern: {receive: {azimuth: {width_deg: 2}}}", {"--to", "beam.svg"});
-    EXPECT_EQ(outcome.code, 0) << outcome.err;
-    std::ifstream file(folder_ / "beam.svg");
-    const std::string drawing{std::istreambuf_iterator<char>(file), {}};
-    EXPECT_THAT(drawing, testing::StartsWith("<svg"));
-    EXPECT_THAT(drawing, HasSubstr("azimuth [deg]"));
-    EXPECT_THAT(drawing, HasSubstr("elevation [deg]"));
-}
-
 TEST_F(BeamCommandTest, WhatCannotBeShownIsTold) {
     const Outcome no_task = call("", {"--task", "sona"});
     EXPECT_EQ(no_task.code, 2);
