@@ -14,11 +14,12 @@ namespace {
 using Shape = std::function<Target(const Encounter&)>;
 
 constexpr int samples = 512;
-constexpr double tolerance = 0.5;  ///< [dB]
+constexpr double tolerance = 0.5;       ///< [dB]
+constexpr double tilted_tolerance = 1;  ///< Of means over sidelobes, which bodies of finite range smear [dB]
 
 /** Largest error over facets round and frequencies, `waves` being the Fresnel number of a flat length [m]; without one
  *  at a range of 5 and of 100 m. */
-Outcome errorOf(const Shape& shape, double length, std::initializer_list<double> numbers) {
+Outcome errorOf(const Shape& shape, double length, std::initializer_list<double> numbers, double allowed = tolerance) {
     double worst = 0;
     std::string where;
     Probe heard;
@@ -36,7 +37,7 @@ Outcome errorOf(const Shape& shape, double length, std::initializer_list<double>
                 }
             }
     heard.ping.bins = {1};
-    return within(tolerance, worst, "at most " + where, heard);
+    return within(allowed, worst, "at most " + where, heard);
 }
 
 Outcome far(const Shape& shape, double length) { return errorOf(shape, length, {0.05, 0.1}); }
@@ -74,10 +75,11 @@ std::vector<StabilityCase> targetCases() {
         {61, "Hull of a torpedo broadside, far", expected, [=] { return far(hull, 1); }},
         {61, "Hull of a torpedo broadside, near", expected, [=] { return near(hull, 1); }}};
     for (const double tilt : {1., 3., 10.})
-        cases.push_back(
-            {61, fmt::format("Cylinder {:.0f} deg off broadside", tilt), expected + "; means of sidelobes", [=] {
-                 return errorOf([=](const Encounter& met) { return cylinder(met, tilt); }, 0, {50, 200});
-             }});
+        cases.push_back({61, fmt::format("Cylinder {:.0f} deg off broadside", tilt),
+                         "to 1 dB with 32 to 2048 facets round, 100 kHz to 3 MHz; means of sidelobes", [=] {
+                             return errorOf([=](const Encounter& met) { return cylinder(met, tilt); }, 0, {50, 200},
+                                            tilted_tolerance);
+                         }});
     return cases;
 }
 

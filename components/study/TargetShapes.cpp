@@ -84,7 +84,7 @@ Target cylinderTarget(const Encounter& met, double radius, double length, double
                        diffraction(2 * pi / met.wavelength() * length * std::sin(tilt));
     const double near = curvedSection(met.range, radius, INFINITY);
     return {shiny(revolved({{radius, -length / 2}, {radius, length / 2}}, met.around, met.turn, 2 * pi), place), length,
-            decibels(met.fresnelNumber(length) < 1 ? far : near)};
+            decibels(tilt != 0 || met.fresnelNumber(length) < 1 ? far : near)};
 }
 
 Target plateTarget(const Encounter& met, double width, double height) {
