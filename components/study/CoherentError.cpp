@@ -13,7 +13,7 @@
 namespace insonify::study {
 namespace {
 
-constexpr int most_levels = 3;
+constexpr int max_levels = 3;
 constexpr int finer = 8;   ///< Rows of the energies over those of the coarsest ping, and columns [1].
 constexpr double far = 1;  ///< Poses are so far from the scene's along x and y, at most [m].
 
@@ -69,7 +69,7 @@ void studyCoherent(const StudyScene& scene, const ErrorOptions& options, int min
     energies.speckle.reset();
     const Halves expected = meansOf(scene, energies, poses, nullptr, result.device);
     double chance = 0;
-    for (int level = 0; level < std::min(options.levels, most_levels); ++level) {
+    for (int level = 0; level < std::min(options.levels, max_levels); ++level) {
         Measurement point{scene.name, Method::Footprint, min_rows << level, base_columns << level, 1, {}, 0, 0, 0, 0};
         options.progress(fmt::format("{} footprint {} x {}", scene.name, point.rows, point.columns_per_beam));
         std::vector<double> times;

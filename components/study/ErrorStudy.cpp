@@ -23,7 +23,7 @@ namespace insonify::study {
 namespace {
 
 constexpr int min_rows = 64;
-constexpr int max_levels_computed = 4;  ///< Without a closed form: the reference has to be finer still.
+constexpr int max_computed_levels = 4;  ///< Without a closed form: the reference has to be finer still.
 
 double wallMs() {
     return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now().time_since_epoch()).count();
@@ -125,7 +125,7 @@ private:
         std::vector<float> energies;
     };
 
-    int levels() const { return scene_.truth ? options_.levels : std::min(options_.levels, max_levels_computed); }
+    int levels() const { return scene_.truth ? options_.levels : std::min(options_.levels, max_computed_levels); }
 
     /** Whether one perspective image can hold the fan, at all levels. */
     bool fitsOneFrustum() const {
