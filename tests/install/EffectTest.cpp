@@ -52,9 +52,9 @@ TEST(EffectTest, ALibrarysEffectWithStateIsPlannedHeardAndRefusedLikeOurs) {
     writeFile(folder / "wall.yml", deploymentWith("{}"));
     EXPECT_THAT(call(folder, {insonify, "plan", "wall.yml"}).out, HasSubstr("not configured"));
     const std::pair<const char*, const char*> refused[] = {
-        {"{afterglow: {kept: 2}}", "effects.afterglow.kept is 2; must be 0 to 1"},
+        {"{afterglow: {kept: 2}}", "effects.afterglow.kept: is 2; must be 0 to 1\n"},
         {"{afterglow: {kpet: 0.5, kept: 0.5}}", "did you mean kept?"},
-        {"{afterglow: {}}", "effects.afterglow has no kept"},
+        {"{afterglow: {}}", "effects.afterglow: has no kept"},
         {"{afterglw: {kept: 0.5}}", "did you mean afterglow?"}};
     for (const auto& [effects, why] : refused) {
         writeFile(folder / "wall.yml", deploymentWith(effects));
@@ -69,5 +69,5 @@ TEST(EffectTest, AnEffectThatNoLibraryHasAddedIsRefused) {
         replaced(wall_deployment, "      range: 20\n", "      range: 20\n      effects: {bubbles: {}}\n"));
     const Outcome outcome = callInsonify(folder, {"check", "wall.yml"});
     EXPECT_EQ(outcome.code, 2);
-    EXPECT_THAT(outcome.err, HasSubstr("effects.bubbles is no effect: no library has added any"));
+    EXPECT_THAT(outcome.err, HasSubstr("effects.bubbles: is no effect: no library has added any"));
 }

@@ -62,8 +62,10 @@ void checkNumbers(const std::string& path, const std::vector<types::Field>& fiel
         if (field == fields.end())
             diagnostics.push_back({path + name, whyUnknown(name, names, "is no number of this effect", "they")});
         else if (!(value >= field->min && value <= field->max))
-            diagnostics.push_back({path + name, fmt::format("is {:g}; must be {:g} to {:g} {}", value, field->min,
-                                                            field->max, field->unit)});
+            diagnostics.push_back(
+                {path + name,
+                 fmt::format("is {:g}; must be {:g} to {:g}{}", value, field->min, field->max,
+                             std::string_view(field->unit) == "1" ? "" : fmt::format(" {}", field->unit))});
     }
 }
 
