@@ -28,9 +28,9 @@ TEST(StatisticsPageTest, ItTellsCountsSizesAndRangesAndShowsExamples) {
     EXPECT_THAT(text, HasSubstr("<p>2 samples</p>"));
     EXPECT_THAT(text, HasSubstr("<td>pile</td><td>2</td><td>2</td><td>200</td><td>4.00</td><td>8.50</td>"));
     EXPECT_THAT(text, HasSubstr("<td>rock</td><td>0</td>"));
-    EXPECT_THAT(text, HasSubstr(">64 to 127 px</text>"));
-    EXPECT_THAT(text, HasSubstr(">256 to 511 px</text>"));
-    EXPECT_THAT(text, HasSubstr(">5 to 10 m</text>"));
+    EXPECT_THAT(text, HasSubstr(">64 to 127 px</td>"));
+    EXPECT_THAT(text, HasSubstr(">256 to 511 px</td>"));
+    EXPECT_THAT(text, HasSubstr(">5 to 10 m</td>"));
     EXPECT_THAT(text, HasSubstr("sonar.range = 30"));
     EXPECT_THAT(text, HasSubstr("har&lt;bour&gt;.glb"));
     EXPECT_THAT(text, HasSubstr("<image href=\"000001_b.png\" width=\"100\" height=\"50\"/>"));
