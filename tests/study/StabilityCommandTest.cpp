@@ -13,7 +13,7 @@ TEST(StabilityCommandTest, EveryCaseIsJudgedOnBothSheetsAndNoneFails) {
     EXPECT_THAT(outcome.out, HasSubstr(" 0 fail, "));
     const json rows = json::parse(readFile(folder / "new/sheets/stability.json"));
     const std::string sheet = readFile(folder / "new/sheets/stability.md");
-    EXPECT_EQ(rows.size(), 56u);
+    EXPECT_EQ(rows.size(), 69u);
     for (const json& row : rows) {
         EXPECT_THAT(row.at("verdict"), AnyOf("pass", "not run")) << row;
         EXPECT_TRUE(row.at("conditions").is_object() && row.at("deviation").is_number()) << row;
