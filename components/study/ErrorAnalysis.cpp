@@ -22,7 +22,7 @@ const Measurement* find(const ErrorResult& result, const std::string& scene, Met
     return found == result.measurements.end() ? nullptr : &*found;
 }
 
-constexpr size_t slope_points = 4;  ///< A slope of fewer is open [1].
+constexpr size_t slope_points = 4;  ///< A slope of fewer, and a time extrapolated from fewer, is open [1].
 /** What a ping may take to 1 %, of the time of the caster: both cast rays, and clocks are not quiet [1]. */
 constexpr double as_fast_as_rays = 1.25;
 constexpr double farthest_extension = 30;  ///< Times the finest point's: farther is called "never" [1].
@@ -53,7 +53,9 @@ void judgeFlatBottom(const ErrorResult& result, std::vector<Claim>& all) {
     const auto slow = timeTo(0.01, nearest), fast = timeTo(0.01, footprint);
     if (slow && fast)
         all.push_back({"flat bottom, error of 1 %: time of nearest bin over that of footprints" + marked(*slow, *fast),
-                       slow->ms / fast->ms, 30, false, true, true});
+                       slow->ms / fast->ms, 30, false,
+                       marked(*slow, *fast).empty() || std::min(nearest.size(), footprint.size()) >= slope_points,
+                       true});
     const double ms = std::min(nearest.back().median_ms, footprint.back().median_ms);
     all.push_back({fmt::format("flat bottom, {:.3g} ms: error of nearest bin over that of footprints", ms),
                    *errorAt(ms, nearest) / *errorAt(ms, footprint), 20, false, true, true});

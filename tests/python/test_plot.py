@@ -15,8 +15,7 @@ def plot(*arguments):
 
 def study(tmp_path, *arguments):
     out = tmp_path / "report"
-    done = subprocess.run([INSONIFY, "study", *arguments, "--out", out], capture_output=True, text=True, timeout=600)
-    assert done.returncode in (0, 1), done.stderr  # 1: a claim about times may fail on a busy machine
+    subprocess.run([INSONIFY, "study", *arguments, "--out", out], check=True, capture_output=True, timeout=600)
     return out
 
 

@@ -104,6 +104,19 @@ TEST(ErrorAnalysisTest, AClaimOnTimesThatWereNotMeasuredSaysSo) {
     EXPECT_TRUE(std::ranges::any_of(all, [](const Claim& c) { return c.text.ends_with("footprints (extrapolated)"); }));
 }
 
+TEST(ErrorAnalysisTest, ATimeExtrapolatedFromFewLevelsIsOpen) {
+    for (const int levels : {2, 3, 4, 5}) {
+        ErrorResult result;
+        result.references = {{"flat_bottom", "closed form", 0}};
+        addLadder(result, "flat_bottom", Method::Footprint, 0.001, -1, levels);
+        addLadder(result, "flat_bottom", Method::Nearest, 0.9, -0.1, levels);
+        for (Measurement& m : result.measurements)
+            if (m.method == Method::Nearest) m.median_ms = 1e-6 * m.samples();  // never at 1 %, and soon extrapolated
+        for (const Claim& claim : claims(result))
+            if (claim.text.ends_with("(extrapolated)")) EXPECT_EQ(claim.settled, levels >= 4) << levels;
+    }
+}
+
 TEST(ErrorAnalysisTest, AReferenceTooCoarseToTellLeavesClaimsOpen) {
     ErrorResult result;
     result.references = {{"reef", "brute force", 0.004, 0.004, 1e6}};

@@ -1,7 +1,6 @@
 #include <gmock/gmock.h>
 
 #include <algorithm>
-#include <sstream>
 
 #include "tests/deployer/Wall.hpp"
 
@@ -12,14 +11,7 @@ TEST(ErrorCommandTest, WritesTablesAndJson) {
     const WallFolder folder;
     const Outcome outcome = callInsonify(
         folder, {"study", "error", "--scene", "flat_bottom", "--levels", "2", "--pings", "2", "--out", "report"});
-    bool fails = false;
-    std::istringstream claims(outcome.out);
-    for (std::string claim; std::getline(claims, claim);) {
-        if (!claim.starts_with("FAIL")) continue;
-        fails = true;
-        EXPECT_THAT(claim, HasSubstr("time of ")) << "times alone depend on what else the machine does";
-    }
-    EXPECT_EQ(outcome.code, fails ? 1 : 0) << outcome.out << outcome.err;
+    EXPECT_EQ(outcome.code, 0) << outcome.out << outcome.err;
     EXPECT_THAT(outcome.out, HasSubstr("flat_bottom: slope of footprints over cells"));
     const json report = json::parse(readFile(folder / "report/error_time.json"));
     EXPECT_EQ(report["references"][0]["source"], "closed form");

@@ -10,7 +10,7 @@
 
 namespace insonify::sonar {
 
-// Each stands in the file of its name.
+// Each is defined in a file of this folder.
 const Effect& absorption();
 const Effect& backscatter();
 const Effect& publishedMeans();

@@ -62,7 +62,7 @@ private:
 /** Work for each ping, in this order. */
 enum class Pass { Cull, Surface, Rays, Deposit, Paths, Beams, Beamform, Pulse, RingDown };
 
-/** Why something is left out, as far as anybody asks; its words tell the rest. */
+/** Why something is left out; LeftOut::words have the rest. */
 enum class Reason {
     NotConfigured,
     NoneInScene,
