@@ -18,7 +18,8 @@ PlaneFootprint planeFootprint(double normal_x, double normal_y, double normal_z,
     double ahead = normal_x * cos_az + normal_y * sin_az;
     double aside = normal_y * cos_az - normal_x * sin_az;
     double facing = ahead * cos_el + normal_z * sin_el;
-    bool echo = abs(facing) > EDGE_ON_COSINE * normal && distance * facing > 0.0;
+    // Both at once, without a branch, so that a processor does several cells together.
+    bool echo = (distance * facing > 0.0 ? abs(facing) - EDGE_ON_COSINE * normal : 0.0) > 0.0;
     double per_distance = echo ? 1.0 / distance : 0.0;
     double inverse_range = facing * per_distance;
     // 1/r is a sinusoid of either angle, so its mean over the cell is a little less than at its middle.

@@ -12,8 +12,8 @@ namespace {
 
 #include "shaders/plane.glsl"
 
-INSONIFY_VECTOR_CLONES void coverAll(const Cells& cells, double near_edge, double far_edge,
-                                     Covered& __restrict covered) {
+INSONIFY_VECTOR_CLONES __attribute__((flatten)) void coverAll(const Cells& cells, double near_edge, double far_edge,
+                                                              Covered& __restrict covered) {
     const int count = cells.count;
     for (int i = 0; i < count; ++i) {
         const PlaneFootprint seen =
@@ -31,8 +31,8 @@ INSONIFY_VECTOR_CLONES void coverAll(const Cells& cells, double near_edge, doubl
         covered.far_end[i] = cell.far_end;
         covered.nearest[i] = cell.nearest;
         covered.size[i] = cell.size;
-        const double cosine_range =
-            cells.mapped[i] > 0.0 && seen.perpendicular > 0.0 ? cells.mapped[i] / cell.pixel : seen.perpendicular;
+        const double mapped = seen.perpendicular > 0.0 ? cells.mapped[i] : 0.0;
+        const double cosine_range = mapped > 0.0 ? mapped / cell.pixel : seen.perpendicular;
         covered.strength_range[i] = cells.strength[i] * cosine_range;
     }
 }

@@ -6,6 +6,9 @@ namespace {
 /** Several numbers at a time. */
 using Lanes = double __attribute__((vector_size(bins_at_once * sizeof(double))));
 
+/** The same in whole quanta. */
+using Counts = int64_t __attribute__((vector_size(bins_at_once * sizeof(int64_t))));
+
 inline Lanes min(Lanes a, double b) { return a < b ? a : Lanes{} + b; }
 inline Lanes max(Lanes a, double b) { return a > b ? a : Lanes{} + b; }
 inline Lanes abs(Lanes a) { return a < 0.0 ? -a : a; }
@@ -40,7 +43,12 @@ private:
         const Lanes share =
             (above < cell.nearest ? to_above : Lanes{} + 0.5) - trapezoidShare(cell, below - cell.centre);
         const Lanes amounts = partEnergy(cell, strength_range, share, load(middles + first), above, below);
-        for (int i = 0; i < bins_at_once; ++i) of_beam[first + i] += quanta(amounts[i]);
+        uint64_t* const to = of_beam + first;
+        Counts counts;
+        std::memcpy(&counts, to, sizeof counts);
+        // Signed, for which there is an instruction.
+        counts += __builtin_convertvector(min(amounts, 1048576.0) * quanta_per_unit + 0.5, Counts);
+        std::memcpy(to, &counts, sizeof counts);
     }
 };
 

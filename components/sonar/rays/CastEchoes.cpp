@@ -20,7 +20,7 @@
 #include "components/sonar/places/ObjectPlaces.hpp"
 #include "components/sonar/plan/RenderPlan.hpp"
 #include "components/sonar/rays/RayPaths.hpp"
-#include "components/sonar/rays/TileCells.hpp"
+#include "components/sonar/rays/TileDirections.hpp"
 #include "components/sonar/ways/PathEchoes.hpp"
 
 namespace insonify::sonar {
@@ -97,7 +97,6 @@ private:
     void work(Worker& worker, types::Sonar& ping);
     void workOn(const Part& part, Worker& worker, types::Sonar& ping);
     std::span<const CastTile> cast(const Part& part, Worker& worker) const;
-    TileRays raysOf(const CastTile& tile, int end_column) const;
     /** Fills the bins of a cell from its sums; whether it has any echo. */
     bool fill(size_t cell, const Worker& worker, const uint64_t* sums, types::Sonar& ping);
     /** Adds a part's sums to its strip's; whether they are complete now, and in the worker. */
@@ -109,6 +108,7 @@ private:
     EchoRules rules_;
     std::optional<EchoRules> truth_rules_;  ///< Of energies, where fields are summed.
     CastView view_;
+    TileDirections directions_;
     BinLevels levels_;
     WaterView water_;                 ///< In this ping.
     std::optional<EchoGrid> grid_;    ///< Of energies,
@@ -197,6 +197,7 @@ void CastEchoes::takeQuality() {
 void CastEchoes::shareOut() {
     const int beam_columns = view_.cells.beam_columns, beams = view_.cells.beams, together = beamsTogether();
     view_.shape = TileShape(view_.cells, rules_.bins, together);
+    directions_ = TileDirections(view_, together * beam_columns);
     const int wanted = std::max(1, part_samples / (together * beam_columns)), up = view_.shape.all.rows;
     const int rows = std::min((wanted + up - 1) / up * up, (view_.cells.rows + up - 1) / up * up);
     parts_.clear();
@@ -246,21 +247,6 @@ void CastEchoes::placeRuns() {
     }
 }
 
-TileRays CastEchoes::raysOf(const CastTile& tile, int end_column) const {
-    const AngularView& view = view_.cells;
-    TileRays rays;
-    rays.active = 0;
-    for (int i = 0; i < tile_samples; ++i) {
-        const int column = tile.first_column + view_.shape.at[i].columns, row = tile.first_row + view_.shape.at[i].rows;
-        rays.active |= static_cast<uint32_t>(column < end_column && row < view.rows) << i;
-        const glm::vec3 ray(view.direction(std::min(column, end_column - 1), std::min(row, view.rows - 1)));
-        rays.x[i] = ray.x;
-        rays.y[i] = ray.y;
-        rays.z[i] = ray.z;
-    }
-    return rays;
-}
-
 std::span<const CastTile> CastEchoes::cast(const Part& part, Worker& worker) const {
     const int begin = part.first_beam * view_.cells.beam_columns, end = begin + part.beams * view_.cells.beam_columns;
     std::array<TileRays, RayVisibility::tiles_at_once> rays;
@@ -276,7 +262,7 @@ std::span<const CastTile> CastEchoes::cast(const Part& part, Worker& worker) con
             CastTile& tile = worker.tiles[count];
             tile = {column, row, &worker.hits[count]};
             ++count;
-            rays[waiting++] = raysOf(tile, end);
+            rays[waiting++] = directions_.rays(view_.cells, column, row);
             if (waiting == rays.size()) castWaiting();
         }
     if (waiting > 0) castWaiting();

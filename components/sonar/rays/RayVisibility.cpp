@@ -11,6 +11,7 @@
 #include "components/sonar/places/MeshFacts.hpp"
 #include "components/sonar/rays/RayPaths.hpp"
 #include "components/sonar/rays/SceneTrees.hpp"
+#include "types/VectorMath.hpp"
 
 namespace insonify::sonar {
 namespace {
@@ -125,14 +126,23 @@ RTCIntersectContext raysOf(bool are_coherent) {
 /** Writes down what rays have met now; `meaning` of a geometry and an instance is a TreePart. */
 template <class Meaning>
 void take(const RTCRayHit16& all, TileHits& hits, const Meaning& meaning) {
+    TreePart part{};
+    unsigned geometry = RTC_INVALID_GEOMETRY_ID, instance = RTC_INVALID_GEOMETRY_ID;
     for (int i = 0; i < tile_samples; ++i) {
         if (all.hit.geomID[i] == RTC_INVALID_GEOMETRY_ID) continue;
-        const TreePart part = meaning(all.hit.geomID[i], all.hit.instID[0][i]);
+        if (all.hit.geomID[i] != geometry || all.hit.instID[0][i] != instance) {
+            geometry = all.hit.geomID[i];
+            instance = all.hit.instID[0][i];
+            part = meaning(geometry, instance);
+        }
         hits.command[i] = part.command;
         hits.triangle[i] = part.first_triangle + all.hit.primID[i];
-        hits.u[i] = all.hit.u[i];
-        hits.v[i] = all.hit.v[i];
-        hits.distance[i] = all.ray.tfar[i];
+    }
+    for (int i = 0; i < tile_samples; ++i) {
+        const bool met = all.hit.geomID[i] != RTC_INVALID_GEOMETRY_ID;
+        hits.u[i] = met ? all.hit.u[i] : hits.u[i];
+        hits.v[i] = met ? all.hit.v[i] : hits.v[i];
+        hits.distance[i] = met ? all.ray.tfar[i] : hits.distance[i];
     }
 }
 
@@ -322,7 +332,8 @@ void RayVisibility::placeMovers(const types::Snapshot& snapshot) {
     }
 }
 
-void RayVisibility::cast(std::span<const TileRays> rays, std::span<TileHits> hits) const {
+INSONIFY_VECTOR_CLONES __attribute__((flatten)) void RayVisibility::cast(std::span<const TileRays> rays,
+                                                                         std::span<TileHits> hits) const {
     std::array<RTCRayHit16, tiles_at_once> all;
     const Rows world(world_from_sonar_);
     for (size_t i = 0; i < rays.size(); ++i) {

@@ -35,6 +35,13 @@ public:
         if (rules.features.has(Feature::Speckle)) fields_.emplace(rules, to.sums);
     }
 
+    /** Asks for the planes that the next tile needs, which are wherever its triangles are in memory. */
+    void fetchFor(const CastTile& tile) const {
+        for (int i = 0; i < tile_samples; ++i)
+            if (const uint32_t command = tile.hits->command[i]; command != TileHits::nothing)
+                __builtin_prefetch(scene_.ranges[command].planes + tile.hits->triangle[i]);
+    }
+
     void add(const CastTile& tile) {
         for (int i = 0; i < tile_samples;) {
             const bool met = tile.hits->command[i] != TileHits::nothing;
@@ -47,6 +54,8 @@ public:
         }
     }
     void finish() {
+        const double unit = view_.cell();
+        for (int i = 0; i < cells_.count; ++i) cells_.size[i] /= unit;
         if (!fields_) return deposit_.flush();
         deposit_.cover();
         for (int i = 0; i < cells_.count; ++i)
@@ -160,7 +169,7 @@ private:
              v * per_sample, glm::vec3(ray), static_cast<float>(range * std::max(cells_.width[i], cells_.height[i]))}));
     }
 
-    /** Direction, extent and solid angle of a cell of `merged` samples. */
+    /** Direction, extent and solid angle [sr], which finish() makes relative, of a cell of `merged` samples. */
     void aim(const CastTile& tile, int sample, int merged) {
         const AngularView& view = view_;
         const int column = tile.first_column + shape_.at[sample].columns, i = cells_.count;
@@ -188,8 +197,7 @@ private:
             cells_.lean[i] = 0;
         }
         if (fields_) places_[i] = {left, right, low, low + 2 * up, column, last, 0, 0};
-        cells_.size[i] =
-            cells_.width[i] * (view.elevations[low + 2 * up].weighted - view.elevations[low].weighted) / view.cell();
+        cells_.size[i] = cells_.width[i] * (view.elevations[low + 2 * up].weighted - view.elevations[low].weighted);
     }
 
     bool conical_, mapped_, hears_misses_;
@@ -208,7 +216,10 @@ INSONIFY_VECTOR_CLONES __attribute__((flatten)) void depositTiles(const EchoRule
                                                                   const PlacedScene& scene,
                                                                   std::span<const CastTile> tiles, const EchoSums& to) {
     TileCells cells(rules, view, scene, to);
-    for (const CastTile& tile : tiles) cells.add(tile);
+    for (size_t i = 0; i < tiles.size(); ++i) {
+        if (i + 2 < tiles.size()) cells.fetchFor(tiles[i + 2]);
+        cells.add(tiles[i]);
+    }
     cells.finish();
 }
 
