@@ -1,6 +1,7 @@
 #include "components/sonar/rays/RayVisibility.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <glm/gtc/quaternion.hpp>
@@ -46,31 +47,36 @@ struct Rows {
         : x(m[0][0], m[1][0], m[2][0]), y(m[0][1], m[1][1], m[2][1]), z(m[0][2], m[1][2], m[2][2]) {}
 };
 
+void forgetHits(RTCRayHit16& all) {
+    std::fill_n(all.hit.geomID, tile_samples, RTC_INVALID_GEOMETRY_ID);
+    std::fill_n(all.hit.instID[0], tile_samples, RTC_INVALID_GEOMETRY_ID);
+}
+
 /** Aims the rays that are active; what they have met before stays. */
 void aim(const Rows& turn, glm::vec3 from, const TileRays& rays, RTCRayHit16& all) {
+    std::fill_n(all.ray.org_x, tile_samples, from.x);
+    std::fill_n(all.ray.org_y, tile_samples, from.y);
+    std::fill_n(all.ray.org_z, tile_samples, from.z);
     for (int i = 0; i < tile_samples; ++i) {
         const float x = rays.x[i], y = rays.y[i], z = rays.z[i];
-        all.ray.org_x[i] = from.x;
-        all.ray.org_y[i] = from.y;
-        all.ray.org_z[i] = from.z;
         all.ray.dir_x[i] = turn.x.x * x + turn.x.y * y + turn.x.z * z;
         all.ray.dir_y[i] = turn.y.x * x + turn.y.y * y + turn.y.z * z;
         all.ray.dir_z[i] = turn.z.x * x + turn.z.y * y + turn.z.z * z;
-        all.hit.geomID[i] = RTC_INVALID_GEOMETRY_ID;
-        all.hit.instID[0][i] = RTC_INVALID_GEOMETRY_ID;
     }
+    forgetHits(all);
 }
 
 /** Lets rays that are active reach all that lies beyond `nearest` [m]; the others end before they begin. */
 void extend(const TileRays& rays, float nearest, RTCRayHit16& all) {
     constexpr float infinity = std::numeric_limits<float>::infinity();
-    for (int i = 0; i < tile_samples; ++i) {
-        const bool active = rays.active >> i & 1;
-        all.ray.tnear[i] = active ? nearest : infinity;
-        all.ray.tfar[i] = active ? infinity : -infinity;
-        all.ray.time[i] = 0;
-        all.ray.mask[i] = 0xffffffff;
-        all.ray.flags[i] = 0;
+    std::fill_n(all.ray.tnear, tile_samples, nearest);
+    std::fill_n(all.ray.tfar, tile_samples, infinity);
+    std::fill_n(all.ray.time, tile_samples, 0.0f);
+    std::fill_n(all.ray.mask, tile_samples, 0xffffffff);
+    std::fill_n(all.ray.flags, tile_samples, 0u);
+    for (uint32_t ended = ~rays.active & 0xffff; ended != 0; ended &= ended - 1) {
+        all.ray.tnear[std::countr_zero(ended)] = infinity;
+        all.ray.tfar[std::countr_zero(ended)] = -infinity;
     }
 }
 
@@ -111,11 +117,6 @@ struct Valid {
     }
 };
 
-void forgetHits(RTCRayHit16& all) {
-    std::fill_n(all.hit.geomID, tile_samples, RTC_INVALID_GEOMETRY_ID);
-    std::fill_n(all.hit.instID[0], tile_samples, RTC_INVALID_GEOMETRY_ID);
-}
-
 RTCIntersectContext raysOf(bool are_coherent) {
     RTCIntersectContext context;
     rtcInitIntersectContext(&context);
@@ -126,20 +127,24 @@ RTCIntersectContext raysOf(bool are_coherent) {
 /** Writes down what rays have met now; `meaning` of a geometry and an instance is a TreePart. */
 template <class Meaning>
 void take(const RTCRayHit16& all, TileHits& hits, const Meaning& meaning) {
-    TreePart part{};
-    unsigned geometry = RTC_INVALID_GEOMETRY_ID, instance = RTC_INVALID_GEOMETRY_ID;
-    for (int i = 0; i < tile_samples; ++i) {
-        if (all.hit.geomID[i] == RTC_INVALID_GEOMETRY_ID) continue;
-        if (all.hit.geomID[i] != geometry || all.hit.instID[0][i] != instance) {
-            geometry = all.hit.geomID[i];
-            instance = all.hit.instID[0][i];
-            part = meaning(geometry, instance);
+    const unsigned* const geometry = all.hit.geomID;
+    const unsigned* const instance = all.hit.instID[0];
+    unsigned others = 0;
+    for (int i = 1; i < tile_samples; ++i) others |= (geometry[i] ^ geometry[0]) | (instance[i] ^ instance[0]);
+    if (others != 0) {
+        for (int i = 0; i < tile_samples; ++i) {
+            if (geometry[i] == RTC_INVALID_GEOMETRY_ID) continue;
+            const TreePart part = meaning(geometry[i], instance[i]);
+            hits.command[i] = part.command;
+            hits.triangle[i] = part.first_triangle + all.hit.primID[i];
         }
-        hits.command[i] = part.command;
-        hits.triangle[i] = part.first_triangle + all.hit.primID[i];
+    } else if (geometry[0] != RTC_INVALID_GEOMETRY_ID) {
+        const TreePart part = meaning(geometry[0], instance[0]);
+        std::fill_n(hits.command, tile_samples, part.command);
+        for (int i = 0; i < tile_samples; ++i) hits.triangle[i] = part.first_triangle + all.hit.primID[i];
     }
     for (int i = 0; i < tile_samples; ++i) {
-        const bool met = all.hit.geomID[i] != RTC_INVALID_GEOMETRY_ID;
+        const bool met = geometry[i] != RTC_INVALID_GEOMETRY_ID;
         hits.u[i] = met ? all.hit.u[i] : hits.u[i];
         hits.v[i] = met ? all.hit.v[i] : hits.v[i];
         hits.distance[i] = met ? all.ray.tfar[i] : hits.distance[i];

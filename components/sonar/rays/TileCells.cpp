@@ -33,19 +33,24 @@ public:
           deposit_(rules, scene.water, scene.paths, to),
           cells_(deposit_.cells) {
         if (rules.features.has(Feature::Speckle)) fields_.emplace(rules, to.sums);
+        max_merged_ = scene.paths ? 1 : fields_ ? shape_.max_patch : shape_.max_merged;
     }
 
     /** Asks for the planes that the next tile needs, which are wherever its triangles are in memory. */
     void fetchFor(const CastTile& tile) const {
-        for (int i = 0; i < tile_samples; ++i)
-            if (const uint32_t command = tile.hits->command[i]; command != TileHits::nothing)
-                __builtin_prefetch(scene_.ranges[command].planes + tile.hits->triangle[i]);
+        for (int i = 0; i < tile_samples; ++i) {
+            if (tile.hits->command[i] == TileHits::nothing) continue;
+            const PlaneRecord& plane = scene_.ranges[tile.hits->command[i]].planes[tile.hits->triangle[i]];
+            __builtin_prefetch(&plane.normal);
+            __builtin_prefetch(&plane.point);  // in the next line of the cache, perhaps
+        }
     }
 
     void add(const CastTile& tile) {
+        const uint32_t same = sameAsNext(*tile.hits);
         for (int i = 0; i < tile_samples;) {
             const bool met = tile.hits->command[i] != TileHits::nothing;
-            const int merged = met ? sameFrom(*tile.hits, i) : 1;
+            const int merged = met ? sameFrom(same, i) : 1;
             if (met)
                 addCell(tile, i, merged);
             else if (hears_misses_)
@@ -97,15 +102,22 @@ private:
         return patch;
     }
 
+    /** Bit i: samples i and i + 1 have met the same triangle. */
+    static uint32_t sameAsNext(const TileHits& hits) {
+        uint32_t same = 0;
+        for (int i = 0; i + 1 < tile_samples; ++i)
+            same |= static_cast<uint32_t>((hits.triangle[i + 1] == hits.triangle[i]) &
+                                          (hits.command[i + 1] == hits.command[i]))
+                    << i;
+        return same;
+    }
+
     /** Samples from i on that are a rectangle of one triangle in one beam. */
-    int sameFrom(const TileHits& hits, int i) const {
+    int sameFrom(uint32_t same, int i) const {
         const auto alignment = static_cast<uint32_t>(i == 0 ? tile_samples : i & -i);
-        const int largest = fields_ ? shape_.max_patch : shape_.max_merged;
-        const int most = scene_.paths ? 1 : std::min(static_cast<int>(alignment), largest);
-        int run = 1;
-        while (run < most && hits.triangle[i + run] == hits.triangle[i] && hits.command[i + run] == hits.command[i])
-            ++run;
-        return static_cast<int>(std::bit_floor(static_cast<uint32_t>(run)));
+        const int most = std::min(static_cast<int>(alignment), max_merged_);
+        const int run = std::countr_one(same >> i) + 1;
+        return static_cast<int>(std::bit_floor(static_cast<uint32_t>(std::min(run, most))));
     }
 
     void addCell(const CastTile& tile, int sample, int merged) {
@@ -175,7 +187,7 @@ private:
         const int column = tile.first_column + shape_.at[sample].columns, i = cells_.count;
         const int across = shape_.size[merged].columns, last = column + across - 1;
         const size_t left = view.at(column), right = view.at(last) + 2;
-        const size_t middle = across > 1 ? view.at(column + across / 2) : left + 1;
+        const size_t middle = view.at(column + across / 2) + (across == 1);
         const size_t low = 2 * static_cast<size_t>(tile.first_row + shape_.at[sample].rows);
         const auto up = static_cast<size_t>(shape_.size[merged].rows);
         cells_.beam[i] = view.beam_of[static_cast<size_t>(column)];
@@ -201,6 +213,7 @@ private:
     }
 
     bool conical_, mapped_, hears_misses_;
+    int max_merged_;  ///< Samples of one cell.
     const AngularView& view_;
     const TileShape& shape_;
     const PlacedScene& scene_;
