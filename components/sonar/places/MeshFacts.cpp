@@ -1,6 +1,8 @@
 #include "components/sonar/places/MeshFacts.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <glm/geometric.hpp>
 #include <limits>
 
 #include "components/sonar/echo/FacetLobes.hpp"
@@ -19,6 +21,22 @@ BoxTree treeOver(const types::Mesh& mesh) {
         box.low -= slack, box.high += slack;
     }
     return BoxTree(boxes);
+}
+
+std::vector<float> mapDensityOf(const types::Mesh& mesh) {
+    std::vector<float> all;
+    all.reserve(mesh.indices.size() / 3);
+    for (size_t i = 0; i + 2 < mesh.indices.size(); i += 3) {
+        const uint32_t* const corners = &mesh.indices[i];
+        const glm::dvec3 a = mesh.positions[corners[0]];
+        const glm::dvec2 uv = mesh.uvs[corners[0]];
+        const glm::dvec2 to_b = glm::dvec2(mesh.uvs[corners[1]]) - uv, to_c = glm::dvec2(mesh.uvs[corners[2]]) - uv;
+        const double area = glm::length(
+            glm::cross(glm::dvec3(mesh.positions[corners[1]]) - a, glm::dvec3(mesh.positions[corners[2]]) - a));
+        const double covered = std::abs(to_b.x * to_c.y - to_b.y * to_c.x);
+        all.push_back(area > 0 ? static_cast<float>(std::sqrt(covered / area)) : 0.0f);
+    }
+    return all;
 }
 
 }  // namespace
@@ -52,6 +70,10 @@ const BoxTree& MeshFacts::triangles() {
 
 MeshFacts::Planes MeshFacts::planes() {
     return planes_.get([this] { return std::make_shared<const std::vector<PlaneRecord>>(planesOf(*mesh_)); });
+}
+
+const std::vector<float>& MeshFacts::mapDensity() {
+    return map_density_.get([this] { return mapDensityOf(*mesh_); });
 }
 
 MeshFacts::Facets MeshFacts::facets(const glm::dmat3& world_from_mesh, const MaterialLaws& laws) {

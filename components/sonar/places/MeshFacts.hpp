@@ -39,12 +39,17 @@ public:
     /** How each triangle spreads a lobe, as facetLobes() finds it; null where no material of the mesh has one. */
     Facets facets(const glm::dmat3& world_from_mesh, const MaterialLaws& laws);
 
+    /** For each triangle, lengths in its map's coordinates per metre, the mean of all directions [1/m]; 0 where it has
+     *  no area. The mesh must have uvs. */
+    const std::vector<float>& mapDensity();
+
 private:
     types::MeshPtr mesh_;
     Lazy<Box> box_;
     Lazy<double> longest_edge_;
     Lazy<BoxTree> triangles_;
     Lazy<Planes> planes_;
+    Lazy<std::vector<float>> map_density_;
     SharedValues<std::array<double, 10>, const std::vector<FacetRecord>> facets_;  ///< By matrix and wavelength [m].
 };
 

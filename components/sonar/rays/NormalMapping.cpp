@@ -1,33 +1,17 @@
 #include "components/sonar/rays/NormalMapping.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
+#include <cstring>
 #include <glm/geometric.hpp>
 #include <utility>
 
 #include "components/sonar/places/SharedValues.hpp"
+#include "types/VectorMath.hpp"
 
 namespace insonify::sonar {
 namespace {
-
-glm::vec3 turned(const vec4& x, const vec4& y, const vec4& z, glm::vec3 v) {
-    return {x.x * v.x + x.y * v.y + x.z * v.z, y.x * v.x + y.y * v.y + y.z * v.z, z.x * v.x + z.y * v.y + z.z * v.z};
-}
-
-/** The two texels about a coordinate of a map, and the share of the second. */
-struct Neighbours {
-    int first, second;
-    float share;
-};
-Neighbours neighbours(float coordinate, int size, bool repeats) {
-    if (!(std::abs(coordinate) < 1e6f)) coordinate = 0;  // NaN and what is as good as lost
-    const auto texels = static_cast<float>(size);
-    if (repeats) coordinate -= std::floor(coordinate);
-    const float at = coordinate * texels - 0.5f, low = std::floor(at);
-    const int first = static_cast<int>(std::clamp(low, -1.0f, texels)), second = first + 1, last = size - 1;
-    if (!repeats) return {std::clamp(first, 0, last), std::clamp(second, 0, last), at - low};
-    return {first < 0 ? last : std::min(first, last), second > last ? 0 : second, at - low};
-}
 
 /** A texel, its lean scaled, as a unit normal again. */
 void appendScaled(const uint8_t* rgb, float scale, std::vector<uint8_t>& texels) {
@@ -38,6 +22,33 @@ void appendScaled(const uint8_t* rgb, float scale, std::vector<uint8_t>& texels)
     texels.push_back(0);
 }
 
+/** The halving of a map that is nearest to log2 of the texels that a sample covers. */
+int levelOf(float covered) {
+    const float root_2 = 1.41421356f, bounded = covered > 1 ? (covered < 1e30f ? covered : 1e30f) : 1.0f;
+    return (std::bit_cast<int32_t>(bounded * root_2) >> 23) - 127;
+}
+
+/** The two texels about a coordinate of a map, and the share of the second. */
+struct Neighbours {
+    int first, second;
+    float share;
+};
+Neighbours neighbours(float coordinate, float texels, bool repeats) {
+    const float known = std::abs(coordinate) < 1e6f ? coordinate : 0.0f;  // not NaN, nor as good as lost
+    const float wrapped = repeats ? known - std::floor(known) : known;
+    const float at = wrapped * texels - 0.5f, low = std::floor(at);
+    const float held = low < -1.0f ? -1.0f : low > texels ? texels : low;
+    const int first = static_cast<int>(held), second = first + 1, last = static_cast<int>(texels) - 1;
+    const int before = repeats ? last : 0, behind = repeats ? 0 : last;
+    return {first < 0      ? before
+            : first > last ? last
+                           : first,
+            second > last ? behind
+            : second < 0  ? 0
+                          : second,
+            at - low};
+}
+
 }  // namespace
 
 NormalMapping::NormalMapping(const types::Geometry& geometry) : geometry_(geometry) {
@@ -46,6 +57,12 @@ NormalMapping::NormalMapping(const types::Geometry& geometry) : geometry_(geomet
                             ? nullptr
                             : sharedMap(geometry.normal_maps.shared(static_cast<size_t>(material.normal_map)),
                                         material.normal_scale));
+    facts_ = MeshFacts::ofAll(geometry);
+    for (size_t i = 0; i < geometry.meshes.size(); ++i) {
+        const auto& clusters = geometry.meshes[i].clusters;
+        const bool any = std::ranges::any_of(clusters, [&](const auto& cluster) { return isMapped(cluster.material); });
+        density_.push_back(any ? facts_[i]->mapDensity().data() : nullptr);
+    }
 }
 
 std::shared_ptr<const NormalMapping::Map> NormalMapping::sharedMap(
@@ -79,54 +96,119 @@ NormalMapping::Map NormalMapping::mapOf(std::shared_ptr<const types::NormalMap> 
     return result;
 }
 
-/** Bilinear, in the halving that is nearest to `level`. */
-glm::vec3 NormalMapping::texel(const Map& map, glm::vec2 uv, float level) {
-    const auto coarsest = static_cast<float>(map.levels.size() - 1);
-    const Level& texels = map.levels[static_cast<size_t>(std::clamp(level, 0.0f, coarsest) + 0.5f)];
-    const Neighbours x = neighbours(uv.x, texels.width, map.repeat_u),
-                     y = neighbours(uv.y, texels.height, map.repeat_v);
-    const auto at = [&](int column, int row) {
-        const uint8_t* rgb = texels.texels.data() + 4 * static_cast<size_t>(row * texels.width + column);
-        return glm::vec3(rgb[0], rgb[1], rgb[2]);
-    };
-    const auto mixed = [&](int row) { return at(x.first, row) * (1 - x.share) + at(x.second, row) * x.share; };
-    const glm::vec3 sum = mixed(y.first) * (1 - y.share) + mixed(y.second) * y.share;
-    return sum * (2 / 255.0f) - 1.0f;
+struct NormalMapping::Frames {
+    alignas(64) float normal_x[max_samples], normal_y[max_samples], normal_z[max_samples];  // of the mesh, then unit
+    float along_x[max_samples], along_y[max_samples], along_z[max_samples], hand[max_samples];  // tangents
+    float u[max_samples], v[max_samples], density[max_samples];
+    float covered[max_samples];  // texels of the finest level
+};
+
+struct NormalMapping::Leanings {
+    alignas(64) float x[max_samples], y[max_samples], z[max_samples];
+};
+
+void NormalMapping::interpolate(uint32_t object, const Samples& samples, Frames& frames) const {
+    const auto number = static_cast<size_t>(geometry_.objects[object].mesh);
+    const types::Mesh& mesh = geometry_.meshes[number];
+    for (int i = 0; i < samples.count; ++i) {
+        const uint32_t* corners = mesh.indices.data() + 3 * static_cast<size_t>(samples.triangle[i]);
+        const float u = samples.u[i], v = samples.v[i], w = 1 - u - v;
+        const auto between = [&](const auto& of) {
+            return w * of[corners[0]] + u * of[corners[1]] + v * of[corners[2]];
+        };
+        const glm::vec3 normal = between(mesh.normals);
+        const glm::vec4 along = between(mesh.tangents);
+        const glm::vec2 uv = between(mesh.uvs);
+        frames.normal_x[i] = normal.x, frames.normal_y[i] = normal.y, frames.normal_z[i] = normal.z;
+        frames.along_x[i] = along.x, frames.along_y[i] = along.y, frames.along_z[i] = along.z;
+        frames.hand[i] = along.w;
+        frames.u[i] = uv.x, frames.v[i] = uv.y;
+        frames.density[i] = density_[number][samples.triangle[i]];
+    }
 }
 
-float NormalMapping::texelsPerMetre(const ObjectRecord& placed, const types::Mesh& mesh, const uint32_t* corners,
-                                    const Level& finest) const {
-    const glm::vec3 a = mesh.positions[corners[0]];
-    const glm::vec3 ab = turned(placed.row_x, placed.row_y, placed.row_z, mesh.positions[corners[1]] - a);
-    const glm::vec3 ac = turned(placed.row_x, placed.row_y, placed.row_z, mesh.positions[corners[2]] - a);
-    const glm::vec2 size(finest.width, finest.height), uv = mesh.uvs[corners[0]];
-    const glm::vec2 to_b = size * (mesh.uvs[corners[1]] - uv), to_c = size * (mesh.uvs[corners[2]] - uv);
-    const float area = glm::length(glm::cross(ab, ac)), texels = std::abs(to_b.x * to_c.y - to_b.y * to_c.x);
-    return area > 0 ? std::sqrt(texels / area) : 0;
+void NormalMapping::place(const ObjectRecord& placed, float texels, const Samples& samples, Frames& frames) {
+    const vec4 &nx = placed.normal_x, &ny = placed.normal_y, &nz = placed.normal_z;
+    const vec4 &rx = placed.row_x, &ry = placed.row_y, &rz = placed.row_z;
+    const float volume = std::abs(glm::dot(glm::vec3(rx), glm::cross(glm::vec3(ry), glm::vec3(rz))));
+    for (int i = 0; i < samples.count; ++i) {
+        const float mx = frames.normal_x[i], my = frames.normal_y[i], mz = frames.normal_z[i];
+        float x = nx.x * mx + nx.y * my + nx.z * mz, y = ny.x * mx + ny.y * my + ny.z * mz,
+              z = nz.x * mx + nz.y * my + nz.z * mz;
+        const float per_length = 1 / std::sqrt(x * x + y * y + z * z);
+        x *= per_length, y *= per_length, z *= per_length;
+        const float ax = frames.along_x[i], ay = frames.along_y[i], az = frames.along_z[i];
+        float tx = rx.x * ax + rx.y * ay + rx.z * az, ty = ry.x * ax + ry.y * ay + ry.z * az,
+              tz = rz.x * ax + rz.y * ay + rz.z * az;
+        const float lean = x * tx + y * ty + z * tz;
+        tx -= x * lean, ty -= y * lean, tz -= z * lean;
+        const float per_along = 1 / std::sqrt(tx * tx + ty * ty + tz * tz);
+        frames.normal_x[i] = x, frames.normal_y[i] = y, frames.normal_z[i] = z;
+        frames.along_x[i] = tx * per_along, frames.along_y[i] = ty * per_along, frames.along_z[i] = tz * per_along;
+        const float facing = std::abs(x * samples.x[i] + y * samples.y[i] + z * samples.z[i]);
+        // Areas grow by the volume times the turned normal's length.
+        frames.covered[i] = samples.extent[i] / (facing > 0.01f ? facing : 0.01f) * texels * frames.density[i] /
+                            std::sqrt(volume * samples.normal[i]);
+    }
 }
 
-float NormalMapping::cosine(const ObjectRecord& placed, const Place& place) const {
-    const types::Mesh& mesh = geometry_.meshes[static_cast<size_t>(geometry_.objects[place.object].mesh)];
-    const Map& map = *maps_[static_cast<size_t>(place.material)];
-    const uint32_t* corners = mesh.indices.data() + 3 * static_cast<size_t>(place.triangle);
-    const auto between = [&](const auto& of) {
-        return (1 - place.u - place.v) * of[corners[0]] + place.u * of[corners[1]] + place.v * of[corners[2]];
-    };
-    const glm::vec3 n =
-        glm::normalize(turned(placed.normal_x, placed.normal_y, placed.normal_z, between(mesh.normals)));
-    const glm::vec4 along = between(mesh.tangents);
-    const glm::vec3 leaning = turned(placed.row_x, placed.row_y, placed.row_z, glm::vec3(along));
-    const glm::vec3 t = glm::normalize(leaning - n * glm::dot(n, leaning));
-    const float facing = -glm::dot(n, place.direction);
-    const float covered =
-        place.extent / std::max(std::abs(facing), 0.01f) * texelsPerMetre(placed, mesh, corners, map.levels.front());
-    const float level = covered > 1 ? std::log2(covered) : 0.0f;
-    const glm::vec3 bent = texel(map, between(mesh.uvs), level);
-    glm::vec3 normal = t * bent.x + glm::cross(n, t) * (along.w * bent.y) + n * bent.z;
-    // A mean of several unit normals is shorter than 1: what it gives is the mean of their cosines.
-    if (level < 0.5f) normal = glm::normalize(normal);
-    const float cosine = glm::dot(normal, place.direction) * (facing > 0 ? -1.0f : 1.0f);
-    return cosine > 1e-6f ? cosine : 1e-6f;  // also where normal and tangent make no frame
+void NormalMapping::lookUp(const Map& map, int count, const Frames& frames, Leanings& bent) {
+    const uint8_t* texels[max_samples];
+    alignas(64) float width[max_samples], height[max_samples], share_u[max_samples], share_v[max_samples];
+    alignas(64) int at[4][max_samples];
+    alignas(64) uint32_t rgb[4][max_samples];
+    const auto coarsest = static_cast<int>(map.levels.size()) - 1;
+    for (int i = 0; i < count; ++i) {
+        const Level& level = map.levels[static_cast<size_t>(std::min(levelOf(frames.covered[i]), coarsest))];
+        texels[i] = level.texels.data();
+        width[i] = static_cast<float>(level.width), height[i] = static_cast<float>(level.height);
+    }
+    const bool repeat_u = map.repeat_u, repeat_v = map.repeat_v;
+    for (int i = 0; i < count; ++i) {
+        const Neighbours x = neighbours(frames.u[i], width[i], repeat_u),
+                         y = neighbours(frames.v[i], height[i], repeat_v);
+        const int columns = static_cast<int>(width[i]);
+        at[0][i] = y.first * columns + x.first, at[1][i] = y.first * columns + x.second;
+        at[2][i] = y.second * columns + x.first, at[3][i] = y.second * columns + x.second;
+        share_u[i] = x.share, share_v[i] = y.share;
+    }
+    for (int i = 0; i < count; ++i)
+        for (int k = 0; k < 4; ++k) std::memcpy(&rgb[k][i], texels[i] + 4 * static_cast<size_t>(at[k][i]), 4);
+    for (int i = 0; i < count; ++i) {
+        const auto mixed = [&](int shift) {
+            const auto channel = [&](int k) { return static_cast<float>(static_cast<int>(rgb[k][i] >> shift & 255)); };
+            const float low = channel(0) * (1 - share_u[i]) + channel(1) * share_u[i];
+            const float high = channel(2) * (1 - share_u[i]) + channel(3) * share_u[i];
+            return (low * (1 - share_v[i]) + high * share_v[i]) * (2 / 255.0f) - 1.0f;
+        };
+        bent.x[i] = mixed(0), bent.y[i] = mixed(8), bent.z[i] = mixed(16);
+    }
+}
+
+INSONIFY_VECTOR_CLONES __attribute__((flatten)) void NormalMapping::cosines(const ObjectRecord& placed, uint32_t object,
+                                                                            int material, const Samples& samples,
+                                                                            double* cosine) const {
+    const Map& map = *maps_[static_cast<size_t>(material)];
+    const Level& finest = map.levels.front();
+    Frames frames;
+    Leanings bent;
+    interpolate(object, samples, frames);
+    place(placed, std::sqrt(static_cast<float>(finest.width) * static_cast<float>(finest.height)), samples, frames);
+    lookUp(map, samples.count, frames, bent);
+    for (int i = 0; i < samples.count; ++i) {
+        const float nx = frames.normal_x[i], ny = frames.normal_y[i], nz = frames.normal_z[i];
+        const float tx = frames.along_x[i], ty = frames.along_y[i], tz = frames.along_z[i];
+        const float across = frames.hand[i] * bent.y[i];
+        const float x = tx * bent.x[i] + (ny * tz - nz * ty) * across + nx * bent.z[i];
+        const float y = ty * bent.x[i] + (nz * tx - nx * tz) * across + ny * bent.z[i];
+        const float z = tz * bent.x[i] + (nx * ty - ny * tx) * across + nz * bent.z[i];
+        const float facing = nx * samples.x[i] + ny * samples.y[i] + nz * samples.z[i];
+        const float along = x * samples.x[i] + y * samples.y[i] + z * samples.z[i];
+        // A mean of several unit normals is shorter than 1: what it gives is the mean of their cosines.
+        const float length = levelOf(frames.covered[i]) == 0 ? std::sqrt(x * x + y * y + z * z) : 1.0f;
+        const float towards = (facing < 0 ? -along : along) / length;
+        cosine[i] = towards > 1e-6f ? static_cast<double>(towards) : 1e-6;  // also where there is no frame
+    }
 }
 
 }  // namespace insonify::sonar

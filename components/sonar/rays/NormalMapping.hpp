@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "components/sonar/echo/Interface.hpp"
+#include "components/sonar/places/MeshFacts.hpp"
 #include "types/Geometry.hpp"
 
 namespace insonify::sonar {
@@ -11,22 +12,27 @@ namespace insonify::sonar {
 /** How normal maps bend what rays meet: looked up for what is seen, once for each sample. */
 class NormalMapping {
 public:
-    /** Where a ray has met a triangle. */
-    struct Place {
-        uint32_t object, triangle;  ///< Of the geometry; within the object's mesh [1].
-        int material;
-        float u, v;           ///< Barycentric coordinates of the triangle's second and third corner [1].
-        glm::vec3 direction;  ///< Of the ray, unit, sonar axes [1].
-        float extent;         ///< Of the sample across the ray [m].
+    static constexpr int max_samples = 64;  ///< Of one call of cosines() [1].
+
+    /** Where rays have met triangles of one material of one object: arrays of `count` entries. */
+    struct Samples {
+        int count;
+        const uint32_t* triangle;  ///< Within the object's mesh [1].
+        const float *u, *v;        ///< Barycentric coordinates of the triangle's second and third corner [1].
+        const float *x, *y, *z;    ///< Directions of the rays, unit, sonar axes [1].
+        const float* extent;       ///< Of the sample across the ray [m].
+        const float* normal;  ///< Length of the triangle's unit normal once it is turned by ObjectRecord::normal_x to
+                              ///< normal_z [1].
     };
 
     /** The geometry must outlive it. */
     explicit NormalMapping(const types::Geometry& geometry);
-    bool isMapped(int material) const { return geometry_.materials[static_cast<size_t>(material)].normal_map >= 0; }
-    /** Cosine of the angle between the ray and the bent normal, on the side that the ray meets; at least 1e-6. Cosines
-     *  are averaged over as much of the map as the sample covers. `placed`: the object relative to
+    bool isMapped(int material) const { return maps_[static_cast<size_t>(material)] != nullptr; }
+    /** Fills `cosine` with the cosines of the angles between rays and bent normals, on the side that the ray meets; at
+     *  least 1e-6. Cosines are averaged over as much of the map as the sample covers. `placed`: the object relative to
      *  the sonar. */
-    float cosine(const ObjectRecord& placed, const Place& place) const;
+    void cosines(const ObjectRecord& placed, uint32_t object, int material, const Samples& samples,
+                 double* cosine) const;
 
 private:
     /** A map and its halvings, four bytes a texel. */
@@ -42,13 +48,20 @@ private:
     static Map mapOf(std::shared_ptr<const types::NormalMap> source, float scale);
     /** The same; all who ask for the same map and scale share it. */
     static std::shared_ptr<const Map> sharedMap(const std::shared_ptr<const types::NormalMap>& source, float scale);
-    static glm::vec3 texel(const Map& map, glm::vec2 uv, float level);
-    /** Texels of a map on a metre of a triangle as it is placed. */
-    float texelsPerMetre(const ObjectRecord& placed, const types::Mesh& mesh, const uint32_t* corners,
-                         const Level& finest) const;
+    /** Frames and coordinates of the map where samples are. */
+    struct Frames;
+    /** Normals of the map, bilinear, each in a halving of its own. */
+    struct Leanings;
+    void interpolate(uint32_t object, const Samples& samples, Frames& frames) const;
+    /** Turns normals and tangents into unit frames of sonar axes, and finds how many texels samples cover. `texels`: of
+     *  the map's sides, the geometric mean. */
+    static void place(const ObjectRecord& placed, float texels, const Samples& samples, Frames& frames);
+    static void lookUp(const Map& map, int count, const Frames& frames, Leanings& bent);
 
     const types::Geometry& geometry_;
     std::vector<std::shared_ptr<const Map>> maps_;  ///< Of each material, with its scale; null for one without.
+    std::vector<const float*> density_;  ///< MeshFacts::mapDensity() of each mesh; null for one without maps.
+    std::vector<std::shared_ptr<MeshFacts>> facts_;  ///< Which keep the densities.
 };
 
 }  // namespace insonify::sonar

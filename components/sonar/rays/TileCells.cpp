@@ -12,6 +12,8 @@
 namespace insonify::sonar {
 namespace {
 
+using std::abs, std::sqrt;
+
 /** Where in the view, and of which object, a cell is. */
 struct CellPlace {
     size_t left, right;  ///< Its edges in AngularView::bearings.
@@ -19,6 +21,18 @@ struct CellPlace {
     int first, last;     ///< Its columns.
     uint32_t object, lattice;
 };
+
+/** Where cells lie in normal maps, for NormalMapping::cosines(). */
+struct PlacesInMaps {
+    uint32_t command[Cells::capacity], triangle[Cells::capacity];
+    float u[Cells::capacity], v[Cells::capacity], x[Cells::capacity], y[Cells::capacity], z[Cells::capacity],
+        extent[Cells::capacity], normal[Cells::capacity];
+
+    NormalMapping::Samples from(int i, int count) const {
+        return {count, triangle + i, u + i, v + i, x + i, y + i, z + i, extent + i, normal + i};
+    }
+};
+static_assert(Cells::capacity <= NormalMapping::max_samples);
 
 /** Makes cells of tiles, a batch at a time. */
 class TileCells {
@@ -61,6 +75,7 @@ public:
     void finish() {
         const double unit = view_.cell();
         for (int i = 0; i < cells_.count; ++i) cells_.size[i] /= unit;
+        if (mapped_ && !scene_.paths) mapCosines(0, cells_.count);
         if (!fields_) return deposit_.flush();
         deposit_.cover();
         for (int i = 0; i < cells_.count; ++i)
@@ -128,7 +143,8 @@ private:
         cells_.setPlane(i, run, tile.hits->triangle[sample]);
         aim(tile, sample, merged);
         if (fields_) places_[i].object = object, places_[i].lattice = command.lattice;
-        if (mapped_) cells_.mapped[i] = mappedCosine(tile, sample, merged);
+        if (mapped_) placeInMap(i, *tile.hits, sample, merged);
+        if (mapped_ && scene_.paths) mapCosines(i, i + 1);
         if (scene_.paths) bend(static_cast<double>(tile.hits->range[sample]), scene_.paths->drift(object));
         if (deposit_.to().truth) {
             cells_.object[i] = object;
@@ -142,6 +158,7 @@ private:
         const int column = tile.first_column + shape_.at[sample].columns, i = cells_.count;
         if (column >= view_.columns() || tile.first_row + shape_.at[sample].rows >= view_.rows) return;
         cells_.setMiss(i);
+        in_map_.command[i] = TileHits::nothing;
         aim(tile, sample, 1);
         if (++cells_.count == Cells::capacity) finish();
     }
@@ -163,22 +180,41 @@ private:
         cells_.far_limit[i] = 0;  // bent rays may take any way round
     }
 
-    /** Of the middle of the cell that aim() has just put down; 0 where its material has no map. */
-    double mappedCosine(const CastTile& tile, int sample, int merged) const {
-        const CommandRecord& command = scene_.commands[tile.hits->command[sample]];
-        if (!scene_.normal_maps.isMapped(static_cast<int>(command.material))) return 0;
-        const int i = cells_.count;
+    /** Writes down where the samples of cell i lie in their triangle, in the mean. */
+    void placeInMap(int i, const TileHits& hits, int sample, int merged) {
         float u = 0, v = 0;
-        for (int k = sample; k < sample + merged; ++k) u += tile.hits->u[k], v += tile.hits->v[k];
+        for (int k = sample; k < sample + merged; ++k) u += hits.u[k], v += hits.v[k];
         const auto per_sample = 1 / static_cast<float>(merged);
-        const glm::dvec3 ray(cells_.cos_el[i] * cells_.cos_az[i], cells_.cos_el[i] * cells_.sin_az[i],
-                             cells_.sin_el[i]);
-        const glm::dvec3 normal(cells_.normal_x[i], cells_.normal_y[i], cells_.normal_z[i]);
-        const double range = std::abs(cells_.distance[i]) / std::max(std::abs(glm::dot(normal, ray)), 1e-6);
-        return static_cast<double>(scene_.normal_maps.cosine(
-            scene_.objects[command.object],
-            {command.object, tile.hits->triangle[sample], static_cast<int>(command.material), u * per_sample,
-             v * per_sample, glm::vec3(ray), static_cast<float>(range * std::max(cells_.width[i], cells_.height[i]))}));
+        in_map_.command[i] = hits.command[sample];
+        in_map_.triangle[i] = hits.triangle[sample];
+        in_map_.u[i] = u * per_sample;
+        in_map_.v[i] = v * per_sample;
+    }
+
+    /** Sets the cosines of cells from `first` to before `end` whose materials have maps. */
+    void mapCosines(int first, int end) {
+        for (int i = first; i < end; ++i) {
+            const double x = cells_.cos_el[i] * cells_.cos_az[i], y = cells_.cos_el[i] * cells_.sin_az[i],
+                         z = cells_.sin_el[i];
+            const double nx = cells_.normal_x[i], ny = cells_.normal_y[i], nz = cells_.normal_z[i];
+            const double facing = abs(nx * x + ny * y + nz * z), larger = facing > 1e-6 ? facing : 1e-6;
+            const double extent = cells_.width[i] > cells_.height[i] ? cells_.width[i] : cells_.height[i];
+            in_map_.x[i] = static_cast<float>(x);
+            in_map_.y[i] = static_cast<float>(y);
+            in_map_.z[i] = static_cast<float>(z);
+            in_map_.extent[i] = static_cast<float>(abs(cells_.distance[i]) / larger * extent);
+            in_map_.normal[i] = static_cast<float>(sqrt(nx * nx + ny * ny + nz * nz));
+        }
+        for (int i = first, next; i < end; i = next) {
+            const uint32_t number = in_map_.command[i];
+            for (next = i + 1; next < end && in_map_.command[next] == number;) ++next;
+            if (number == TileHits::nothing) continue;
+            const CommandRecord& command = scene_.commands[number];
+            if (!scene_.normal_maps.isMapped(static_cast<int>(command.material))) continue;
+            scene_.normal_maps.cosines(scene_.objects[command.object], command.object,
+                                       static_cast<int>(command.material), in_map_.from(i, next - i),
+                                       cells_.mapped + i);
+        }
     }
 
     /** Direction, extent and solid angle [sr], which finish() makes relative, of a cell of `merged` samples. */
@@ -221,6 +257,7 @@ private:
     Cells& cells_;
     std::optional<Scatterers> fields_;  ///< None where energies are summed.
     CellPlace places_[Cells::capacity];
+    PlacesInMaps in_map_;
 };
 
 }  // namespace
