@@ -274,7 +274,7 @@ std::span<const CastTile> CastEchoes::cast(const Part& part, Worker& worker) con
     for (int column = begin; column < end; column += view_.shape.all.columns)
         for (int row = part.first_row; row < part.first_row + part.rows; row += view_.shape.all.rows) {
             CastTile& tile = worker.tiles[count];
-            tile = {column, row, &worker.hits[count]};
+            tile = {column, row, end, &worker.hits[count]};
             ++count;
             rays[waiting++] = raysOf(tile, end);
             if (waiting == rays.size()) castWaiting();
