@@ -25,6 +25,7 @@ const Effect& refraction();
 const Effect& motionInPing();
 const Effect& normalMaps();
 const Effect& pointTargets();
+const Effect& truth();
 
 namespace {
 
@@ -32,7 +33,7 @@ struct List {
     std::vector<std::unique_ptr<const Effect>> added;
     std::vector<const Effect*> all{&absorption(), &backscatter(),  &publishedMeans(), &beamPatterns(), &pulse(),
                                    &ringDown(),   &volume(),       &speckle(),        &multipath(),    &slabs(),
-                                   &refraction(), &motionInPing(), &normalMaps(),     &pointTargets()};
+                                   &refraction(), &motionInPing(), &normalMaps(),     &pointTargets(), &truth()};
 };
 
 List& list() {
