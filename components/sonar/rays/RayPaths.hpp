@@ -28,7 +28,10 @@ struct HeardPoint {
 
 /** The ways that sound takes where it does not come straight from where an object is: bent by a profile of the speed
  *  of sound, or because sonar and objects move and turn while it is under way. What is heard from a direction at a
- *  slant range is at a place that depends on both (ACOUSTICS.md 5.19, 5.20). */
+ *  slant range is at a place that depends on both (ACOUSTICS.md 5.19, 5.20).
+ *
+ *  The ray-tracer owns them instead of a PingEffect: two effects, refraction and motion, share one object, and it
+ * replaces how rays are cast and how planes become cells, which a call per tile could not. */
 class RayPaths {
 public:
     static constexpr double max_focus = 4;  ///< At a caustic rays would give infinitely much [1].
