@@ -142,7 +142,7 @@ private:
         cells_.far_limit[i] = 0;  // bent rays may take any way round
     }
 
-    /** Of the middle of the cell that aim() has just put down; 0 where its material has no map. */
+    /** Mapped cosine at the middle of the cell that aim() has just put down; 0 where its material has no map. */
     double mappedCosine(const CastTile& tile, int sample, int merged) const {
         const CommandRecord& command = scene_.commands[tile.hits->command[sample]];
         if (!scene_.normal_maps.isMapped(static_cast<int>(command.material))) return 0;

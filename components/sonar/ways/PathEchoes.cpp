@@ -23,7 +23,7 @@ using std::numbers::pi;
 
 constexpr int max_bounces = MultipathConfig::max_bounces;
 constexpr int pattern_steps = 2048;
-constexpr double reaching_back = 1.1;  ///< Of the range, within which cells beyond it may reach back into it [1].
+constexpr double reaching_back = 1.1;  ///< Share of the range from which cells beyond it may reach back into it [1].
 constexpr double edge_on = 1e-4;       ///< Cosine below which a surface gives no echo [1].
 constexpr uint64_t surface_name = std::numeric_limits<uint64_t>::max();  ///< Among the mirrors of a chain.
 
@@ -105,7 +105,7 @@ Angles::Angles(const CastView& cast, const CastTile& tile, int sample, int merge
  *  with what it changes by with the direction. */
 struct HalfWay {
     double inverse, per_azimuth, per_elevation, nearest;  ///< [1/m], [1/m rad], [1/m rad], [1/m].
-    double back;                                          ///< From the plane to the focus [m].
+    double back;                                          ///< Distance from the plane to the focus [m].
     glm::dvec3 from_focus;                                ///< Unit.
 };
 
@@ -137,7 +137,7 @@ public:
     /** A direction in sonar axes. */
     struct Way {
         double azimuth = 0;  ///< As cells have it: of cones their bearing [rad].
-        double sine = 0;     ///< Of the elevation [1].
+        double sine = 0;     ///< Sine of the elevation [1].
         bool heard = false;  ///< Not behind a straight array.
     };
     Way wayOf(const glm::dvec3& direction) const;
@@ -191,7 +191,7 @@ private:
     std::optional<WayPatterns> patterns_;
     WaterMirror water_;
     std::vector<double> reflected_;   ///< Share of the power that each material reflects as a mirror [1].
-    size_t bin_count_ = 0;            ///< Of a cell's sums [1].
+    size_t bin_count_ = 0;            ///< Sums of a cell [1].
     std::vector<uint64_t> sums_;      ///< [cell][bin], in quanta.
     std::optional<PathTruth> truth_;  ///< From the first ping whose truth is recorded.
     std::vector<float> direct_;       ///< [cell][bin], in pings whose truth is recorded; empty where fields are summed.
@@ -311,8 +311,8 @@ private:
     PathRays rays_{};
     TileHits hits_{};
     std::array<Chain, tile_samples> chains_;
-    std::array<double, tile_samples> lengths_;  ///< Of each ray's way so far [m].
-    uint64_t key_ = 0;                          ///< Of the tile.
+    std::array<double, tile_samples> lengths_;  ///< Length of each ray's way so far [m].
+    uint64_t key_ = 0;                          ///< The tile's number.
 };
 
 bool PathEchoes::Tracer::begin(const CastTile& tile) {
@@ -389,7 +389,7 @@ void PathEchoes::Tracer::send(int i, const MirrorPlane& plane, const glm::dvec3&
 
 void PathEchoes::Tracer::castOn() { visibility_.cast(rays_, hits_); }
 
-/** Of the rays that have met something, those from where the sonar is seen on the side that they came to. */
+/** Returns the rays, as bits, that have met something with a free way back to the sonar, on the side that they met. */
 uint32_t PathEchoes::Tracer::openBack() const {
     PathRays back{};
     back.towards.active = 0;
