@@ -12,6 +12,8 @@
 #include "components/deployer/Tasks.hpp"
 #include "components/framework/Deployment.hpp"
 #include "components/framework/Offers.hpp"
+#include "components/framework/Port.hpp"
+#include "components/sonar/PingTask.hpp"
 
 namespace insonify::deployer {
 namespace {
@@ -28,6 +30,25 @@ void printPlan(const std::string& task, const types::Plan& plan) {
     for (const std::string& notice : plan.notices) fmt::print("  notice: {}\n", notice);
 }
 
+/** Stands for those who read what a sonar's bins show: they have no part in the run, and what is computed depends on
+ *  them. */
+struct TruthReader : framework::TaskContext {
+    using TaskContext::TaskContext;
+    framework::InputPort<types::SonarTruthPtr> truth{this, "truth", "the newest"};
+    framework::InputPort<types::SonarReturnsPtr> returns{this, "returns", "the newest"};
+};
+
+/** Connects the ports of a sonar that are connected in the whole deployment. */
+void connectAsIn(const Deployment& whole, sonar::PingTask& sonar, TruthReader& reader) {
+    for (const framework::Connection& connection : whole.connections()) {
+        if (connection.from->owner().name() != sonar.name()) continue;
+        if (connection.from->name() == sonar.truth.name() && !sonar.truth.connected())
+            sonar.truth.connectTo(reader.truth, framework::ConnPolicy::data());
+        if (connection.from->name() == sonar.returns.name() && !sonar.returns.connected())
+            sonar.returns.connectTo(reader.returns, framework::ConnPolicy::data());
+    }
+}
+
 using Plans = std::vector<std::pair<std::string, const types::Plan*>>;
 
 /** One sonar: its plan; several: plans by task. */
@@ -40,7 +61,13 @@ void printJson(const Plans& plans) {
 
 int showPlan(const std::string& file, bool json) {
     framework::Registry registry = builtInTasks();
-    Deployment deployment(pipelineOf(DeploymentSpec::load(file), registry), registry);
+    const DeploymentSpec spec = DeploymentSpec::load(file);
+    Deployment deployment(pipelineOf(spec, registry), registry);
+    const Deployment whole(spec, registry);
+    std::vector<std::unique_ptr<TruthReader>> readers;
+    for (const auto& task : deployment.tasks())
+        if (auto* sonar = dynamic_cast<sonar::PingTask*>(task.get()))
+            connectAsIn(whole, *sonar, *readers.emplace_back(std::make_unique<TruthReader>("reader")));
     deployment.configure();
     const framework::RunResult result = deployment.run({.samples = 1}, stopOnSignals());
     if (result.failed()) throw std::runtime_error(result.failures.front());

@@ -12,7 +12,9 @@
 #include "types/Pose.hpp"
 
 namespace insonify::sonar {
+namespace {
 
+/** Makes a pose's quaternion one of unit length. Returns why the pose cannot be used, null where it can. */
 const char* normalisePose(types::Pose& pose) {
     const glm::dvec3& p = pose.position;
     if (!std::isfinite(p.x) || !std::isfinite(p.y) || !std::isfinite(p.z)) return "the sonar's position is not finite";
@@ -22,6 +24,8 @@ const char* normalisePose(types::Pose& pose) {
     pose.orientation /= length;
     return nullptr;
 }
+
+}  // namespace
 
 double AimedTask::realtimePeriod() const { return activity().realtime() ? period_.period() : 0; }
 

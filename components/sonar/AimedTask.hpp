@@ -102,7 +102,4 @@ private:
     types::Time begun_;
 };
 
-/** Why a pose cannot be used, null when it can; makes its quaternion one of unit length. */
-const char* normalisePose(types::Pose& pose);
-
 }  // namespace insonify::sonar

@@ -16,7 +16,7 @@ class EchoField;
 class PingEffects;
 class RayPaths;
 
-/** Where the time of a ping went: cull, draw, read, deposit, beams. */
+/** Time that a ping spent in a stage: cull, draw, read, deposit, beams. */
 struct Stage {
     const char* name;
     double seconds;
@@ -24,45 +24,43 @@ struct Stage {
 using Stages = std::array<Stage, 5>;
 enum StageOf { CullStage, DrawStage, ReadStage, DepositStage, BeamStage };
 
-/** Fills the bins of pings as a plan says; that and the effects outlive it. One interface: drawn by OpenGL, or cast as
- * rays on the processor. */
+/** Fills the bins of pings by a plan, rasterised by OpenGL or ray-traced on the processor. Plan and effects outlive it.
+ */
 class EchoRenderer {
 public:
     virtual ~EchoRenderer() = default;
-    /** Renders from now on with the quality that the plan has by now; allocates. */
+    /** Switches to the plan's current quality. Allocates memory. */
     virtual void takeQuality() = 0;
-    /** Renders another geometry from now on, and keeps what has not changed; false: it cannot, another renderer is to
-     * be made. `same_plan`: the plan is as it was; else it may have other laws, features and passes. */
+    /** Switches to another geometry and keeps what has not changed. Returns false where another renderer is needed.
+     *  Without `same_plan` the plan may have other laws, features and passes. */
     virtual bool takeScene(types::GeometryPtr /*geometry*/, bool /*same_plan*/) { return false; }
     /** Fills ping.bins, which have their size; adds to `stages`. Allocates nothing after the first ping. */
     virtual void render(const types::Snapshot& snapshot, types::Sonar& ping, Stages& stages) = 0;
-    /** Pings rendered from now on tell there what their bins show, in their own grid, which it has; null: none is told.
-     */
+    /** Sets the truth that the next pings fill, in their own grid, which it has; null: no truth is recorded. */
     virtual void setTruth(types::SonarTruth* truth) = 0;
-    /** The field of the last ping, whose squares are still to be its bins; null where energies are summed. */
+    /** Returns the field of the last ping, which is to be squared into its bins; null where energies are summed. */
     virtual EchoField* field() { return nullptr; }
-    /** The ways of sound in the last ping; null where all are straight. */
+    /** Returns the ways of sound in the last ping; null where all are straight. */
     virtual const RayPaths* bent() const { return nullptr; }
-    /** Whether the last ping has any echo. */
+    /** Returns whether the last ping has any echo. */
     virtual bool hasEchoes() const = 0;
-    /** What of the scene the last ping left out. */
-    virtual std::vector<LeftOut> culled() const = 0;
-    /** What renders: an OpenGL renderer and its driver, or the processor. */
+    /** Returns the parts of the scene that the last ping omitted. */
+    virtual std::vector<LeftOut> culled() const { return {}; }
+    /** Returns the device: an OpenGL renderer and its driver, or the processor. */
     virtual const std::string& device() const = 0;
-    /** What a user should know of the device; empty: nothing. */
+    /** Returns what a user should know of the device; may be empty. */
     virtual std::string notice() const { return {}; }
 };
 
 /** Whether this build has rays. */
 bool haveRays();
 
-/** Pings by rays on the processor, without OpenGL. Beams are shared out to the threads as these come free; a beam's
- *  rays are cast, deposited and turned into bins by one thread, while they are in its cache. Throws std::runtime_error
- *  where the build has none, or Embree refuses the scene. */
-std::unique_ptr<EchoRenderer> makeCastEchoes(const RenderPlan& plan, types::GeometryPtr geometry,
-                                             const PingEffects& effects);
+/** Ray-traced pings, on the processor, without OpenGL. Threads take beams as they come free. One thread casts a beam's
+ *  rays, deposits them and fills its bins, while they are in its cache. Throws std::runtime_error where the build has
+ *  no rays, or Embree refuses the scene. */
+std::unique_ptr<EchoRenderer> makeCastEchoes(const RenderPlan& plan, types::GeometryPtr geometry, PingEffects& effects);
 
-/** Pings drawn by OpenGL. Make it, use it and destroy it on one thread, under
+/** Pings rasterised by OpenGL. Make it, use it and destroy it on one thread, under
  *  EglContext::making(). Throws gpu::GlError when there is no OpenGL 4.5 context, or when it is lost. */
 std::unique_ptr<EchoRenderer> makeDrawnEchoes(const RenderPlan& plan, types::GeometryPtr geometry,
                                               const PingEffects& effects);

@@ -5,16 +5,13 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <glm/geometric.hpp>
 #include <iterator>
 #include <utility>
 
 #include "components/framework/Activity.hpp"
-#include "components/framework/Properties.hpp"
 #include "components/sonar/effects/Refraction.hpp"
 #include "components/sonar/plan/PlanReport.hpp"
 #include "types/ConfigError.hpp"
-#include "types/Pose.hpp"
 
 namespace insonify::sonar {
 namespace {

@@ -107,7 +107,7 @@ void SonarRenderer::render(const types::Snapshot& snapshot, types::Sonar& ping) 
     parts_->fillHeader(snapshot, ping);
     types::SonarTruth* const truth = &ping == parts_->told_ping ? parts_->truth : nullptr;
     if (truth) truth->takeGrid(ping);
-    parts_->effects.begin(snapshot);
+    parts_->effects.begin({snapshot, truth});
     parts_->echoes->setTruth(truth);
     parts_->echoes->render(snapshot, ping, parts_->stages);
     parts_->echoes->setTruth(nullptr);

@@ -15,9 +15,9 @@
 #include "components/sonar/quality/Quality.hpp"
 #include "components/sonar/rays/AngularView.hpp"
 #include "components/study/CoherentError.hpp"
-#include "components/study/EmbreeCaster.hpp"
-#include "components/study/PathCaster.hpp"
-#include "components/study/PointCaster.hpp"
+#include "components/study/oracles/EmbreeCaster.hpp"
+#include "components/study/oracles/PathCaster.hpp"
+#include "components/study/oracles/PointCaster.hpp"
 
 namespace insonify::study {
 namespace {

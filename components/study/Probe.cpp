@@ -8,8 +8,8 @@
 #include "components/sonar/fan/BeamFan.hpp"
 #include "components/sonar/fan/BinGrid.hpp"
 #include "components/sonar/plan/RenderPlan.hpp"
-#include "components/study/EmbreeCaster.hpp"
 #include "components/study/Shapes.hpp"
+#include "components/study/oracles/EmbreeCaster.hpp"
 #include "types/Angle.hpp"
 
 namespace insonify::study {

@@ -4,7 +4,7 @@
 
 #include "components/sonar/plan/SonarConfig.hpp"
 #include "components/study/StabilityStudy.hpp"
-#include "components/study/Truth.hpp"
+#include "components/study/oracles/Truth.hpp"
 #include "types/Plan.hpp"
 #include "types/Snapshot.hpp"
 #include "types/Sonar.hpp"

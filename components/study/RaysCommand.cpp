@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "components/command/Json.hpp"
-#include "components/study/EmbreeCaster.hpp"
 #include "components/study/StudyCommand.hpp"
+#include "components/study/oracles/EmbreeCaster.hpp"
 
 namespace insonify::study {
 namespace {

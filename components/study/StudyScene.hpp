@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "components/sonar/plan/SonarConfig.hpp"
-#include "components/study/Truth.hpp"
+#include "components/study/oracles/Truth.hpp"
 #include "types/Snapshot.hpp"
 
 namespace insonify::study {

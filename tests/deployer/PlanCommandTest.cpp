@@ -30,6 +30,22 @@ TEST(PlanCommandTest, TheTextNamesEachOmissionWithItsReason) {
     EXPECT_THAT(outcome.out, HasSubstr("  left out: "));
 }
 
+TEST(PlanCommandTest, TruthIsOmittedUnlessTheDeploymentConnectsIt) {
+    const std::string ping = "  - {from: sonar.ping, to: log.clean, policy: {type: buffer, size: 64}}\n";
+    const auto printed = [](const std::string& deployment) {
+        const WallFolder folder(deployment);
+        const Outcome outcome = callInsonify(folder, {"plan", "wall.yml"});
+        EXPECT_EQ(outcome.code, 0) << outcome.err;
+        return outcome.out;
+    };
+    const auto omitted = HasSubstr("left out: truth: nobody is connected");
+    EXPECT_THAT(printed(wall_deployment), omitted);
+    for (const std::string port : {"truth", "returns"}) {
+        const std::string reader = "  - {from: sonar." + port + ", to: log." + port + "}\n";
+        EXPECT_THAT(printed(replaced(wall_deployment, ping, ping + reader)), testing::Not(omitted)) << port;
+    }
+}
+
 TEST(PlanCommandTest, NothingIsWritten) {
     const WallFolder folder;
     ASSERT_EQ(callInsonify(folder, {"plan", "wall.yml"}).code, 0);

@@ -42,7 +42,7 @@ std::vector<Result> rendered(const SonarConfig& config, const std::vector<types:
         renderer.render(snapshot, ping);
         Result& result = results.emplace_back(Result{ping.bins, {}});
         for (const LeftOut& what : renderer.leftOut())
-            if (what.effect != "point targets") result.culled.emplace_back(what.effect, what.value, what.bound);
+            if (what.reason == Reason::OutOfView) result.culled.emplace_back(what.effect, what.value, what.bound);
         EXPECT_EQ(renderer.hasEchoes(), *std::ranges::max_element(ping.bins) > 0);
     }
     return results;

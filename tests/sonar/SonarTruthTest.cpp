@@ -242,6 +242,24 @@ TEST(SonarTaskTruthTest, NothingIsToldWhereNobodyListensAndTheQualityThatIsChose
     EXPECT_EQ(told.task.returns.written(), 0u);
 }
 
+TEST(SonarTaskTruthTest, ThePlanListsTheTruthAsOmittedWhereNobodyIsConnected) {
+    for (const Way& way : ways) {
+        Bench alone(way.of(fan())), to_truth(way.of(fan())), to_returns(way.of(fan()));
+        to_truth.task.truth.connectTo(to_truth.truths.port, framework::ConnPolicy::data());
+        to_returns.task.returns.connectTo(to_returns.returns.port, framework::ConnPolicy::data());
+        for (Bench* bench : {&alone, &to_truth, &to_returns}) {
+            ASSERT_TRUE(bench->pingOf(balls()));
+            std::vector<std::string> omitted;
+            for (const types::Omission& omission : bench->task.plan()->omitted)
+                if (omission.name == "truth") omitted.push_back(omission.reason);
+            if (bench == &alone)
+                EXPECT_THAT(omitted, testing::ElementsAre(testing::HasSubstr("nobody is connected")));
+            else
+                EXPECT_THAT(omitted, testing::IsEmpty());
+        }
+    }
+}
+
 /** A plate square to the sound 9 m ahead, and a bottom below: the bottom is met first, the plate is stronger. */
 TEST(SonarTaskTruthTest, ReturnsAreTheFirstAndTheStrongestOfEachBeam) {
     Bench bench(ways[0].of(fan()));

@@ -3,6 +3,8 @@
 #include <gmock/gmock.h>
 
 #include "components/sonar/SonarRenderer.hpp"
+#include "components/sonar/effects/Effects.hpp"
+#include "components/sonar/rays/TileCells.hpp"
 #include "tests/support/ClosedForms.hpp"
 #include "tests/support/EveryWay.hpp"
 #include "tests/support/Scenes.hpp"
@@ -121,6 +123,42 @@ TEST(VolumePingTest, WaterThatScattersNothingLeavesEveryBinAsItIs) {
         EXPECT_EQ(pingOf(silent, snapshot).bins, pingOf(way, snapshot).bins);
         EXPECT_EQ(pingOf(layered, snapshot).bins, pingOf(way, snapshot).bins);
     }
+}
+
+/** Sums of all beams, after tiles in which no ray meets anything are deposited for the first `beams` of them. */
+std::vector<uint64_t> sumsOfMisses(const RenderPlan& plan, const types::Geometry& geometry, int beams) {
+    const PingEffects effects(plan, geometry);
+    const EchoRules rules = makeEchoRules(plan, effects);
+    CastView view{makeAngularView(plan), {}};
+    view.shape = TileShape(view.cells, rules.bins, beams);
+    TileHits misses{};
+    std::ranges::fill(misses.command, TileHits::nothing);
+    std::vector<CastTile> tiles;
+    const int end = beams * view.cells.beam_columns;
+    for (int column = 0; column < end; column += view.shape.all.columns)
+        for (int row = 0; row < view.cells.rows; row += view.shape.all.rows)
+            tiles.push_back({column, row, end, &misses});
+    std::vector<uint64_t> sums(plan.cells.size() * rules.sumCount());
+    const NormalMapping normal_maps(geometry);
+    depositTiles(rules, view, {{}, {}, {}, normal_maps, waterViewOf({})}, tiles, {0, sums.data()});
+    return sums;
+}
+
+TEST(VolumePingTest, LayersAddNothingToBeamsBeyondTheTiles) {
+    const types::GeometryPtr geometry = test::openWater();
+    for (int columns = 1; columns <= 7; ++columns)
+        for (int beams = 1; beams <= 3; ++beams) {
+            SonarConfig config = sonarIn({layer(-70, {}, 3), layer(-60, 3)});
+            config.quality.columns_per_beam = columns;
+            const auto sums = sumsOfMisses(makeRenderPlan(config, *geometry), *geometry, beams);
+            const size_t of_beam = sums.size() / static_cast<size_t>(config.beam_count);
+            for (size_t beam = 0; beam < static_cast<size_t>(config.beam_count); ++beam) {
+                const auto own = std::span(sums).subspan(beam * of_beam, of_beam);
+                EXPECT_EQ(std::ranges::any_of(own, [](uint64_t sum) { return sum != 0; }),
+                          beam < static_cast<size_t>(beams))
+                    << columns << " columns, beam " << beam << " of " << beams;
+            }
+        }
 }
 
 }  // namespace

@@ -4,11 +4,11 @@
 #include <algorithm>
 
 #include "components/sonar/fan/BinGrid.hpp"
-#include "components/study/EmbreeCaster.hpp"
 #include "components/study/Metrics.hpp"
 #include "components/study/Probe.hpp"
 #include "components/study/Shapes.hpp"
 #include "components/study/StudyScene.hpp"
+#include "components/study/oracles/EmbreeCaster.hpp"
 #include "tests/support/Allocations.hpp"
 
 namespace insonify::study {

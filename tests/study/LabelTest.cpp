@@ -9,8 +9,8 @@
 #include <numeric>
 
 #include "components/sonar/SonarRenderer.hpp"
-#include "components/study/RayTree.hpp"
 #include "components/study/Shapes.hpp"
+#include "components/study/oracles/RayTree.hpp"
 #include "tests/support/Sonars.hpp"
 #include "types/Angle.hpp"
 

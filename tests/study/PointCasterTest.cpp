@@ -8,10 +8,10 @@
 #include "components/sonar/SonarRenderer.hpp"
 #include "components/sonar/fan/BinGrid.hpp"
 #include "components/study/Metrics.hpp"
-#include "components/study/PointCaster.hpp"
 #include "components/study/Probe.hpp"
 #include "components/study/Shapes.hpp"
 #include "components/study/StudyScene.hpp"
+#include "components/study/oracles/PointCaster.hpp"
 #include "types/Angle.hpp"
 
 namespace insonify::study {

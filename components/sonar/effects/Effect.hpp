@@ -10,100 +10,124 @@
 #include "types/Geometry.hpp"
 #include "types/Snapshot.hpp"
 #include "types/Sonar.hpp"
+#include "types/SonarTruth.hpp"
 
 namespace insonify::sonar {
 
 class EchoField;
 class RayPaths;
+struct CastPing;
+struct CastTile;
 struct EchoRules;
 struct Cells;
 struct Covered;
 
-/** A batch of cells whose echoes are summed, and where an effect sums what is its own. */
+/** A ping that begins. */
+struct PingStart {
+    const types::Snapshot& snapshot;
+    types::SonarTruth* truth;  ///< Filled with what the bins show; null where no truth is recorded.
+};
+
+/** A batch of cells whose echoes are summed, with the sums of one effect. */
 struct CellBatch {
     const EchoRules& rules;
     const WaterView& water;
     const Cells& cells;
     const Covered& covered;
-    int first_beam;      ///< Of the sums [1].
-    uint64_t* own;       ///< Of the first beam: a number for each bin, in whole quanta; one more behind the last bin.
-    size_t beam_stride;  ///< From one beam's numbers to the next one's [1].
+    int first_beam;      ///< Beam of the first sums [1].
+    uint64_t* own;       ///< Sums of the first beam in whole quanta, one for each bin and one behind the last bin.
+    size_t beam_stride;  ///< Numbers from the sums of one beam to the sums of the next beam [1].
 };
 
-/** A ping whose surfaces are heard. */
+/** A ping that has the echoes of its surfaces. */
 struct PingInMaking {
     const types::Snapshot& snapshot;
     types::Sonar& ping;    ///< Its bins hold intensities of the sorted beams, unless `field` is given.
-    EchoField* field;      ///< What the bins will be the squares of; null where energies are summed.
+    EchoField* field;      ///< The field that is squared into the bins; null where energies are summed.
     const RayPaths* bent;  ///< The ways of sound; null where they are straight.
 };
 
-/** What an effect is in the pings of one renderer: its numbers, and what it keeps from ping to ping. No call for a ping
- *  allocates after the first ones. */
+/** An effect in the pings of one renderer, with the state that it keeps from ping to ping. No call for a ping
+ *  allocates after the first pings. */
 class PingEffect {
 public:
     virtual ~PingEffect() = default;
 
-    /** Renders from now on with the quality that the plan has by now; may allocate. */
+    /** Switches to the plan's current quality. May allocate. */
     virtual void takeQuality() {}
-    /** Pings are of another scene from now on, with the same materials; the last one's goes. */
+    /** Switches to another scene with the same materials. The scene before ends its life after the call. */
     virtual void takeScene(const types::Geometry& /*geometry*/) {}
-    /** Once a ping, before all else. */
-    virtual void begin(const types::Snapshot& /*snapshot*/) {}
+    /** Begins a ping, before all else. */
+    virtual void begin(const PingStart& /*start*/) {}
 
-    /** What it adds to the numbers that cells are summed by. */
+    /** Adds the effect's numbers to the rules by which cells are summed. */
     virtual void giveRules(EchoRules& /*rules*/) const {}
-    /** Whether addCells() and addToCell() are called: a number for each bin of a beam is summed for it. */
+    /** Returns whether addCells() and addToCell() are called, with one sum for each bin of a beam. */
     virtual bool hasSums() const { return false; }
-    /** Whether the compute shader makes the same sums. One at most does; with others, pictures are summed on the
-     *  processor. */
+    /** Returns whether the compute shader makes the same sums. It can do so for one effect. With two or more, pictures
+     *  are summed on the processor. */
     virtual bool isOnDevice() const { return false; }
-    /** Of each batch of cells: adds to its sums. On several threads. */
+    /** Adds a batch of cells to the effect's sums. Several threads call it. */
     virtual void addCells(const CellBatch& /*batch*/) const {}
-    /** Adds to the intensities of a cell's bins what its sums amount to. `unit`: the solid angle of a whole sample
-     *  [sr]. On several threads. */
+    /** Turns a cell's sums into intensities and adds these to the cell's bins. `unit` is the solid angle of a whole
+     *  sample [sr]. Several threads call it. */
     virtual void addToCell(const uint64_t* /*sums*/, size_t /*cell*/, double /*unit*/,
                            std::span<float> /*bins*/) const {}
 
+    /** Returns whether followRays(), addEnergies() and addToTruth() are called in pings that are ray-traced. */
+    virtual bool followsRays() const { return false; }
+    /** Follows rays on from what they have met, before their tiles are summed. May change what they have met. Several
+     *  threads call it, each with tiles of its own. */
+    virtual void followRays(const CastPing& /*ping*/, std::span<const CastTile> /*tiles*/) {}
+    /** Adds to the intensities of a cell's bins once the rays of all cells are followed. Where fields are summed, the
+     *  bins are 0 before. Returns whether it has added any. Called once for each cell, by several threads. */
+    virtual bool addEnergies(const CastPing& /*ping*/, size_t /*cell*/, std::span<float> /*bins*/) { return false; }
+    /** Adds to the truth of a ping, whose beams are sorted, once the truth of its surfaces is complete. */
+    virtual void addToTruth(const CastPing& /*ping*/, types::SonarTruth& /*truth*/) {}
+
     /** Adds echoes to beams, before fields are squared. */
     virtual void addEchoes(PingInMaking& /*ping*/) {}
-    /** Changes the bins of a ping, when all echoes are in them. */
+    /** Changes the bins of a ping that has all its echoes. */
     virtual void addToBins(types::Sonar& /*ping*/) {}
 
-    /** Of how many things the last ping has an echo, beside surfaces [1]. */
+    /** Returns the number of things, other than surfaces, of which the last ping has an echo [1]. */
     virtual size_t heard() const { return 0; }
-    /** What the last ping left out of it; none before the first. */
+    /** Returns what the effect omitted in the last ping; none before the first ping. */
     virtual std::optional<LeftOut> leftOut() const { return {}; }
 };
 
-/** An effect of a sonar's configuration or scene on its pings, in one file. The list of them (Effects.hpp) is the plan:
- *  what is compiled and run, and what is left out for which reason. */
+/** An effect of a sonar's configuration or scene on its pings, in one file. The list of effects (Effects.hpp) is the
+ *  plan: the features and passes, and what is omitted for which reason. */
 class Effect {
 public:
     virtual ~Effect() = default;
 
-    /** The key of its numbers in SonarConfig::effects; empty: what it needs are fields of the configuration. */
+    /** Returns the key of its numbers in SonarConfig::effects; empty where it reads other fields of the configuration.
+     */
     virtual std::string key() const { return {}; }
-    /** Those numbers: name, unit, meaning and bounds of each. */
+    /** Returns the name, unit, meaning and bounds of each of its numbers. */
     virtual std::vector<types::Field> numbers() const { return {}; }
-    /** What does not go together in a configuration. */
+    /** Adds a diagnostic for each contradiction in a configuration. */
     virtual void check(const SonarConfig& /*config*/, types::Diagnostics& /*diagnostics*/) const {}
-    /** Whether it takes part: adds its features and passes to the plan, else why it is left out. */
+    /** Adds its features and passes to the plan and returns true, or adds the reason for omitting it and returns false.
+     */
     virtual bool plan(const types::Geometry& geometry, RenderPlan& plan) const = 0;
-    /** Names that it may add to RenderPlan::effect_features; each is HAVE_<NAME> in the shaders. */
+    /** Returns all names that it may add to RenderPlan::effect_features. Each is HAVE_<NAME> in the shaders. */
     virtual std::vector<std::string> features() const { return {}; }
-    /** What a user should know of it in this plan. */
+    /** Adds what a user should know of the effect in this plan. */
     virtual void note(const RenderPlan& /*plan*/, const types::Geometry& /*geometry*/,
                       std::vector<std::string>& /*notices*/) const {}
-    /** Of a plan in which it takes part; both outlive what is made. Null: nothing of its own happens in a ping. */
+    /** Makes the effect's part in the pings of a plan that it takes part in. Plan and geometry outlive what is made.
+     *  Null where the effect does nothing in a ping. */
     virtual std::unique_ptr<PingEffect> make(const RenderPlan& /*plan*/, const types::Geometry& /*geometry*/) const {
         return nullptr;
     }
-    /** Takes the effect out of a configuration, to measure what it does: its name; empty where it is not in it. */
+    /** Removes the effect from a configuration, to measure what it does. Returns its name; empty where the
+     *  configuration does not have it. */
     virtual std::string takeOut(SonarConfig& /*config*/) const { return {}; }
 };
 
-/** For Effect::plan(): leaves it out. */
+/** Omits an effect, for Effect::plan(). */
 inline bool leaveOut(RenderPlan& plan, const LeftOut& what) {
     plan.left_out.push_back(what);
     return false;

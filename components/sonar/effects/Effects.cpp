@@ -25,6 +25,7 @@ const Effect& refraction();
 const Effect& motionInPing();
 const Effect& normalMaps();
 const Effect& pointTargets();
+const Effect& truth();
 
 namespace {
 
@@ -32,7 +33,7 @@ struct List {
     std::vector<std::unique_ptr<const Effect>> added;
     std::vector<const Effect*> all{&absorption(), &backscatter(),  &publishedMeans(), &beamPatterns(), &pulse(),
                                    &ringDown(),   &volume(),       &speckle(),        &multipath(),    &slabs(),
-                                   &refraction(), &motionInPing(), &normalMaps(),     &pointTargets()};
+                                   &refraction(), &motionInPing(), &normalMaps(),     &pointTargets(), &truth()};
 };
 
 List& list() {
@@ -104,8 +105,8 @@ void PingEffects::takeScene(const types::Geometry& geometry) {
     for (const auto& effect : all_) effect->takeScene(geometry);
 }
 
-void PingEffects::begin(const types::Snapshot& snapshot) {
-    for (const auto& effect : all_) effect->begin(snapshot);
+void PingEffects::begin(const PingStart& start) {
+    for (const auto& effect : all_) effect->begin(start);
 }
 
 void PingEffects::giveRules(EchoRules& rules) const {
@@ -122,6 +123,25 @@ bool PingEffects::areOnDevice() const {
         if (!effect->isOnDevice() || ++with_sums > 1) return false;
     }
     return true;
+}
+
+bool PingEffects::followsRays() const { return std::ranges::any_of(all_, &PingEffect::followsRays); }
+
+void PingEffects::followRays(const CastPing& ping, std::span<const CastTile> tiles) {
+    for (const auto& effect : all_)
+        if (effect->followsRays()) effect->followRays(ping, tiles);
+}
+
+bool PingEffects::addEnergies(const CastPing& ping, size_t cell, std::span<float> bins) {
+    bool any = false;
+    for (const auto& effect : all_)
+        if (effect->followsRays()) any |= effect->addEnergies(ping, cell, bins);
+    return any;
+}
+
+void PingEffects::addToTruth(const CastPing& ping, types::SonarTruth& truth) {
+    for (const auto& effect : all_)
+        if (effect->followsRays()) effect->addToTruth(ping, truth);
 }
 
 void PingEffects::addEchoes(PingInMaking& ping) {

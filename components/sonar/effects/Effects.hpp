@@ -10,26 +10,30 @@ namespace insonify::sonar {
 /** All effects, in the order in which they are planned, reported and run. */
 std::span<const Effect* const> effects();
 
-/** Adds an effect of a library to the end of the list; it stays until the process ends. Before any sonar is configured,
- *  from `insonify_register` or from main. One whose key is there already is not added. */
+/** Adds an effect of a library to the end of the list, until the process ends. To be called before any sonar is
+ *  configured, from `insonify_register` or from main. Does nothing where the list has an effect of the same key. */
 void addEffect(std::unique_ptr<const Effect> effect);
 
-/** Diagnostics of SonarConfig::effects: keys and numbers that no effect has, numbers out of bounds; and of each effect.
- */
+/** Adds diagnostics of SonarConfig::effects: unknown keys and numbers, numbers out of bounds. Adds those of each
+ *  effect, Effect::check(). */
 void checkEffects(const SonarConfig& config, types::Diagnostics& diagnostics);
 
 /** The effects of a plan in the pings of one renderer, in order. */
 class PingEffects {
 public:
-    /** Both outlive it. */
+    /** Plan and geometry outlive the effects. */
     PingEffects(const RenderPlan& plan, const types::Geometry& geometry);
 
     void takeQuality();
     void takeScene(const types::Geometry& geometry);
-    void begin(const types::Snapshot& snapshot);
+    void begin(const PingStart& start);
     void giveRules(EchoRules& rules) const;
     /** Whether a compute shader can sum what they sum. */
     bool areOnDevice() const;
+    bool followsRays() const;
+    void followRays(const CastPing& ping, std::span<const CastTile> tiles);
+    bool addEnergies(const CastPing& ping, size_t cell, std::span<float> bins);
+    void addToTruth(const CastPing& ping, types::SonarTruth& truth);
     void addEchoes(PingInMaking& ping);
     void addToBins(types::Sonar& ping);
     size_t heard() const;  ///< [1]
@@ -39,7 +43,7 @@ private:
     std::vector<std::unique_ptr<PingEffect>> all_;
 };
 
-/** Adds to a cell's bins what the effects with sums of their own make of these. `sums`: all of the cell. */
+/** Adds to a cell's bins the intensities of the effects that have sums of their own. `sums` are all of the cell. */
 void addOwnSums(const EchoRules& rules, const uint64_t* sums, size_t cell, double unit, std::span<float> bins);
 
 }  // namespace insonify::sonar

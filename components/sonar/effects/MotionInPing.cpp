@@ -14,7 +14,7 @@ std::string words(const LeftOut& what, const BinGrid& /*grid*/) {
     return fmt::format("below {:.2g} m/s it is under half a bin", what.value);
 }
 
-/** Sonar and objects that move while sound is under way (ACOUSTICS.md 5.20); RayPaths follows them. */
+/** Sonar and objects that move while sound is under way (ACOUSTICS.md 5.20). RayPaths computes their ways. */
 class MotionInPing final : public Effect {
 public:
     bool plan(const types::Geometry& /*geometry*/, RenderPlan& plan) const override {

@@ -1,5 +1,6 @@
 #include "components/sonar/effects/Effect.hpp"
 #include "components/sonar/ways/Mirrors.hpp"
+#include "components/sonar/ways/PathEchoes.hpp"
 
 namespace insonify::sonar {
 namespace {
@@ -16,7 +17,7 @@ bool hasMirrors(const MultipathConfig& multipath, const types::Geometry& geometr
            });
 }
 
-/** Echoes by way of mirrors (ACOUSTICS.md 5.23). Rays alone follow them: PathEchoes, beside the cells. */
+/** Echoes by way of mirrors (ACOUSTICS.md 5.23), in pings that are ray-traced. */
 class Multipath final : public Effect {
 public:
     bool plan(const types::Geometry& geometry, RenderPlan& plan) const override {
@@ -29,6 +30,9 @@ public:
             return leaveOut(plan, {.effect = name, .reason = Reason::Other, .words = noMirror});
         plan.add(Pass::Paths);
         return true;
+    }
+    std::unique_ptr<PingEffect> make(const RenderPlan& plan, const types::Geometry& geometry) const override {
+        return plan.casts_rays ? makePathEchoes(plan, geometry) : nullptr;
     }
     std::string takeOut(SonarConfig& config) const override {
         if (!config.tracesPaths()) return {};

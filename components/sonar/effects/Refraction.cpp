@@ -34,7 +34,7 @@ std::string words(const LeftOut& what, const BinGrid& grid) {
                        grid.range_max, what.bound);
 }
 
-/** Rays that a profile of the speed of sound bends (ACOUSTICS.md 5.19); RayPaths follows them. */
+/** Rays that a profile of the speed of sound bends (ACOUSTICS.md 5.19). RayPaths computes them. */
 class Refraction final : public Effect {
 public:
     bool plan(const types::Geometry& /*geometry*/, RenderPlan& plan) const override {

@@ -19,7 +19,7 @@ public:
     }
 
 private:
-    std::vector<float> bins_;  ///< Of each beam, as far as anything is left.
+    std::vector<float> bins_;  ///< The ring-down in the first bins of every beam.
 };
 
 /** The transmit ring-down (ACOUSTICS.md 5.15). */

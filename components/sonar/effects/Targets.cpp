@@ -13,7 +13,7 @@ std::string unheard(const LeftOut& /*what*/, const BinGrid& /*grid*/) {
     return "hidden, or out of the pattern or the range, at the first ping";
 }
 
-/** Those of the snapshots, which a plan knows nothing of. */
+/** Targets of the snapshots, which a plan does not know. */
 class TargetsInPings final : public PingEffect {
 public:
     TargetsInPings(const RenderPlan& plan, const types::Geometry& geometry) : plan_(plan), geometry_(&geometry) {}
@@ -40,8 +40,8 @@ public:
 private:
     const RenderPlan& plan_;
     const types::Geometry* geometry_;
-    std::optional<PointTargets> targets_;  ///< From the first ping with any on.
-    size_t all_ = 0, heard_ = 0;           ///< In the last ping [1].
+    std::optional<PointTargets> targets_;  ///< Made at the first ping with a target.
+    size_t all_ = 0, heard_ = 0;           ///< Targets of the last ping, and those with an echo [1].
     bool pinged_ = false;
 };
 

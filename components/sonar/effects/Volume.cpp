@@ -16,7 +16,7 @@ namespace {
 constexpr double no_strength_db = -200;
 constexpr size_t max_layers = 16;
 
-/** Backscattering strength as a number [1/m]; 0 at its least. */
+/** Backscattering strength as a number [1/m]; 0 at its min. */
 double strengthOf(const VolumeLayer& layer) {
     return *layer.strength_db <= no_strength_db ? 0 : std::pow(10, *layer.strength_db / 10);
 }
@@ -32,7 +32,7 @@ double azimuthBetween(const SonarConfig& config, const Beam& cell, double elevat
     return coneAzimuth(cell.high, elevation) - coneAzimuth(cell.low, elevation);
 }
 
-/** Where shaders/volume.glsl adds what cells hide of the volume, or let hear of its layers. */
+/** Sums to which shaders/volume.glsl adds the water that cells hide, or the layers up to each cell. */
 struct VolumeChanges {
     explicit VolumeChanges(const CellBatch& batch)
         : changes(batch.own),
@@ -120,7 +120,7 @@ std::vector<double> openSolidAngles(const RenderPlan& plan) {
     return all;
 }
 
-/** Intensity of the water itself, from the solid angle in which it is heard. */
+/** Intensity of the water itself, by the solid angle that receives its echo. */
 class VolumeInPings final : public PingEffect {
 public:
     explicit VolumeInPings(const RenderPlan& plan) : plan_(plan), layers_(layersOf(plan.config)) { takeQuality(); }
@@ -140,8 +140,8 @@ public:
 private:
     const RenderPlan& plan_;
     std::vector<double> layers_;
-    std::vector<double> open_;  ///< Of each cell where nothing hides it [sr]; 0 with layers, whose cells add all of it.
-    std::vector<double> intensity_;  ///< Of each bin, for a steradian [1/sr].
+    std::vector<double> open_;  ///< Solid angle of each cell without obstacles [sr]; 0 with layers, whose cells add it.
+    std::vector<double> intensity_;  ///< Intensity of each bin for a steradian [1/sr].
 };
 
 void VolumeInPings::takeQuality() {
@@ -168,7 +168,7 @@ void VolumeInPings::addToCell(const uint64_t* changes, size_t cell, double unit,
     }
 }
 
-/** Volume reverberation (ACOUSTICS.md 3.9): the water itself, in layers too, but for what cells hide of it. */
+/** Volume reverberation (ACOUSTICS.md 3.9): echoes of the water, also in layers, without the part that cells hide. */
 class Volume final : public Effect {
 public:
     void check(const SonarConfig& config, types::Diagnostics& diagnostics) const override {

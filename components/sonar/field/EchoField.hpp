@@ -47,7 +47,10 @@ private:
 };
 
 /** The fields of a coherent sonar on their way from azimuth cells to the bins of a ping: the pulse spreads them in
- *  range, beams are formed of the cells, points are added, and their squares are what the bins hold. */
+ *  range, beams are formed of the cells, points are added, and their squares are what the bins hold.
+ *
+ *  The ray-tracer owns it instead of a PingEffect, because it replaces the sums themselves, which all other effects add
+ *  to. */
 class EchoField {
 public:
     /** `plan` outlives it. `threads`: of the pool that fills it. */

@@ -21,7 +21,6 @@
 #include "components/sonar/plan/RenderPlan.hpp"
 #include "components/sonar/rays/RayPaths.hpp"
 #include "components/sonar/rays/TileDirections.hpp"
-#include "components/sonar/ways/PathEchoes.hpp"
 
 namespace insonify::sonar {
 namespace {
@@ -47,7 +46,7 @@ struct Strip {
 
 class CastEchoes final : public EchoRenderer {
 public:
-    CastEchoes(const RenderPlan& plan, types::GeometryPtr geometry, const PingEffects& effects);
+    CastEchoes(const RenderPlan& plan, types::GeometryPtr geometry, PingEffects& effects);
     void takeQuality() override;
     bool takeScene(types::GeometryPtr geometry, bool same_plan) override;
     void render(const types::Snapshot& snapshot, types::Sonar& ping, Stages& stages) override;
@@ -55,10 +54,6 @@ public:
     EchoField* field() override { return field_ ? &*field_ : nullptr; }
     const RayPaths* bent() const override { return ray_paths_ && !ray_paths_->areStraight() ? &*ray_paths_ : nullptr; }
     bool hasEchoes() const override { return heard_; }
-    std::vector<LeftOut> culled() const override {
-        const std::optional<LeftOut> dark = paths_ ? paths_->leftOut() : std::nullopt;
-        return dark ? std::vector{*dark} : std::vector<LeftOut>{};
-    }
     const std::string& device() const override { return device_; }
 
 private:
@@ -92,7 +87,8 @@ private:
     PlacedScene scene() const {
         return {visibility_.commands(), runs_, places_->records(), *normal_maps_, water_, bent()};
     }
-    void addPaths(types::Sonar& ping);
+    CastPing castPing() const { return {rules_, levels_, view_, visibility_, scene()}; }
+    void addEnergies(types::Sonar& ping);
     void depositPart(const Part& part, std::span<const CastTile> tiles, Worker& worker);
     void work(Worker& worker, types::Sonar& ping);
     void workOn(const Part& part, Worker& worker, types::Sonar& ping);
@@ -104,7 +100,7 @@ private:
 
     const RenderPlan& plan_;
     types::GeometryPtr geometry_;
-    const PingEffects& effects_;
+    PingEffects& effects_;
     EchoRules rules_;
     std::optional<EchoRules> truth_rules_;  ///< Of energies, where fields are summed.
     CastView view_;
@@ -120,8 +116,7 @@ private:
     std::vector<MeshFacts::Facets> facets_;  ///< Of each mesh.
     std::unique_ptr<NormalMapping> normal_maps_;
     MeshesAhead ahead_;
-    std::vector<PlacedRun> runs_;      ///< Of the visibility's commands, in this ping.
-    std::optional<PathEchoes> paths_;  ///< By way of mirrors, where the plan has them.
+    std::vector<PlacedRun> runs_;  ///< Of the visibility's commands, in this ping.
     ThreadPool threads_;
     std::vector<Worker> workers_;
     std::vector<Part> parts_;
@@ -133,7 +128,7 @@ private:
     std::optional<TruthGrid> truth_grid_;  ///< Once it was wanted.
 };
 
-CastEchoes::CastEchoes(const RenderPlan& plan, types::GeometryPtr geometry, const PingEffects& effects)
+CastEchoes::CastEchoes(const RenderPlan& plan, types::GeometryPtr geometry, PingEffects& effects)
     : plan_(plan),
       geometry_(std::move(geometry)),
       effects_(effects),
@@ -163,7 +158,6 @@ bool CastEchoes::takeScene(types::GeometryPtr geometry, bool same_plan) {
     facets_ = std::move(facets);
     runs_.reserve(visibility_.commands().size());
     if (ray_paths_) ray_paths_->takeScene(*geometry_);
-    if (paths_) paths_->takeScene(*geometry_);
     if (!same_plan) takePlan();
     return true;
 }
@@ -175,8 +169,6 @@ void CastEchoes::takePlan() {
     } else {
         ray_paths_.reset();
     }
-    paths_.reset();
-    if (plan_.has(Pass::Paths)) paths_.emplace(plan_, *geometry_, visibility_);
     takeQuality();
 }
 
@@ -190,7 +182,6 @@ void CastEchoes::takeQuality() {
         grid_.emplace(plan_, threads_.size());
     }
     shareOut();
-    if (paths_) paths_->takeQuality(rules_, view_);
     truth_grid_.reset();
 }
 
@@ -232,7 +223,6 @@ void CastEchoes::place(const types::Snapshot& snapshot) {
     water_ = waterViewOf(snapshot);
     places_->place(snapshot);
     visibility_.place(snapshot);
-    if (paths_) paths_->begin(snapshot, truth_);
     if (ray_paths_) ray_paths_->place(snapshot);
     placeRuns();
     ahead_.take(snapshot.ahead, plan_.laws);
@@ -260,13 +250,12 @@ std::span<const CastTile> CastEchoes::cast(const Part& part, Worker& worker) con
     for (int column = begin; column < end; column += view_.shape.all.columns)
         for (int row = part.first_row; row < part.first_row + part.rows; row += view_.shape.all.rows) {
             CastTile& tile = worker.tiles[count];
-            tile = {column, row, &worker.hits[count]};
+            tile = {column, row, end, &worker.hits[count]};
             ++count;
             rays[waiting++] = directions_.rays(view_.cells, column, row);
             if (waiting == rays.size()) castWaiting();
         }
     if (waiting > 0) castWaiting();
-    for (size_t i = 0; paths_ && i < count; ++i) paths_->endAtSurface(worker.tiles[i], worker.hits[i]);
     return {worker.tiles.data(), count};
 }
 
@@ -296,8 +285,8 @@ void CastEchoes::depositPart(const Part& part, std::span<const CastTile> tiles, 
 void CastEchoes::workOn(const Part& part, Worker& worker, types::Sonar& ping) {
     const std::span<const CastTile> tiles = cast(part, worker);
     worker.lap(DrawStage);
+    effects_.followRays(castPing(), tiles);
     depositPart(part, tiles, worker);
-    if (paths_) paths_->trace(scene(), tiles, (part.first_beam + part.beams) * view_.cells.beam_columns);
     worker.lap(DepositStage);
     if (gather(part, worker))
         for (int beam = 0; beam < part.beams; ++beam)
@@ -314,15 +303,14 @@ bool CastEchoes::fill(size_t cell, const Worker& worker, const uint64_t* sums, t
     return heard;
 }
 
-void CastEchoes::addPaths(types::Sonar& ping) {
-    for (size_t cell = 0; truth_ && cell < plan_.cells.size(); ++cell)
-        paths_->takeDirect(cell, levels_, field_ ? std::span<const float>() : grid_->cell(cell, ping));
+void CastEchoes::addEnergies(types::Sonar& ping) {
+    const CastPing cast = castPing();
     threads_.run([&](int part, int parts) {
         for (int cell = part; cell < view_.cells.beams; cell += parts) {
             const auto i = static_cast<size_t>(cell);
             const auto thread = static_cast<size_t>(part);
             const std::span<float> bins = field_ ? field_->energies(thread) : grid_->cell(i, ping);
-            const bool any = paths_->addTo(i, levels_, bins);
+            const bool any = effects_.addEnergies(cast, i, bins);
             if (any && field_) field_->addEnergies(i, bins, thread);
             workers_[thread].heard |= any;
         }
@@ -357,13 +345,13 @@ void CastEchoes::render(const types::Snapshot& snapshot, types::Sonar& ping, Sta
     else
         threads_.share([&](int part, int) { work(workers_[static_cast<size_t>(part)], ping); });
     own.last = Clock::now();
-    if (paths_) addPaths(ping);
+    if (effects_.followsRays()) addEnergies(ping);
     if (field_)
         field_->form(threads_);
     else
         grid_->finish(ping, threads_);
     if (truth_) truth_grid_->finish(*truth_, threads_);
-    if (truth_ && paths_) paths_->tell(*truth_);
+    if (truth_) effects_.addToTruth(castPing(), *truth_);
     stages[BeamStage].seconds += std::chrono::duration<double>(Clock::now() - own.last).count();
     heard_ = false;
     for (const Worker& worker : workers_) {
@@ -378,7 +366,7 @@ void CastEchoes::render(const types::Snapshot& snapshot, types::Sonar& ping, Sta
 bool haveRays() { return true; }
 
 std::unique_ptr<EchoRenderer> makeCastEchoes(const RenderPlan& plan, types::GeometryPtr geometry,
-                                             const PingEffects& effects) {
+                                             PingEffects& effects) {
     return std::make_unique<CastEchoes>(plan, std::move(geometry), effects);
 }
 

@@ -1,14 +1,17 @@
-// In the place of CastEchoes.cpp where the build is without Embree.
+// In place of CastEchoes.cpp and PathEchoes.cpp where the build is without Embree.
 #include <stdexcept>
 
 #include "components/sonar/EchoRenderer.hpp"
+#include "components/sonar/ways/PathEchoes.hpp"
 
 namespace insonify::sonar {
 
 bool haveRays() { return false; }
 
-std::unique_ptr<EchoRenderer> makeCastEchoes(const RenderPlan&, types::GeometryPtr, const PingEffects&) {
+std::unique_ptr<EchoRenderer> makeCastEchoes(const RenderPlan&, types::GeometryPtr, PingEffects&) {
     throw std::runtime_error("this build has no rays (Embree); visibility may be auto or gl");
 }
+
+std::unique_ptr<PingEffect> makePathEchoes(const RenderPlan&, const types::Geometry&) { return nullptr; }
 
 }  // namespace insonify::sonar

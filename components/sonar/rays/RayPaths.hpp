@@ -12,15 +12,14 @@
 
 namespace insonify::sonar {
 
-/** A plane as the sonar hears it: not where it is, but where it seems to be from the directions and the times of its
- *  echoes. All in sonar axes. */
+/** A plane where it seems to be by the directions and the times of its echoes. All in sonar axes. */
 struct ApparentPlane {
-    glm::dvec3 normal{0};  ///< Of the plane normal . place = 1 that seems to be about the direction at hand [1/m].
-    double cosine = 0;     ///< Of the angle at which sound meets the true one [1].
+    glm::dvec3 normal{0};  ///< The plane is normal . place = 1 about the direction at hand [1/m].
+    double cosine = 0;     ///< Cosine of the angle at which sound meets the true plane [1].
     double focus = 0;      ///< Intensity there, over that of straight rays of the same range [1].
 };
 
-/** A point that is not heard from where it is. */
+/** A point whose echo comes from another place. */
 struct HeardPoint {
     glm::dvec3 place;  ///< Where it seems to be, sonar axes [m].
     double focus;      ///< Intensity there, over that of straight rays of the same range [1].
@@ -28,15 +27,18 @@ struct HeardPoint {
 
 /** The ways that sound takes where it does not come straight from where an object is: bent by a profile of the speed
  *  of sound, or because sonar and objects move and turn while it is under way. What is heard from a direction at a
- *  slant range is at a place that depends on both (ACOUSTICS.md 5.19, 5.20). */
+ *  slant range is at a place that depends on both (ACOUSTICS.md 5.19, 5.20).
+ *
+ *  The ray-tracer owns them instead of a PingEffect: two effects, refraction and motion, share one object, and it
+ * replaces how rays are cast and how planes become cells, which a call per tile could not. */
 class RayPaths {
 public:
     static constexpr double max_focus = 4;  ///< At a caustic rays would give infinitely much [1].
 
-    /** Of a plan with refraction or motion within a ping; both outlive it. */
+    /** The plan has refraction or motion within a ping. Plan and geometry outlive the paths. */
     RayPaths(const RenderPlan& plan, const types::Geometry& geometry);
 
-    /** Another geometry from the next ping on. */
+    /** Switches to another geometry from the next ping on. */
     void takeScene(const types::Geometry& geometry);
     /** Once a ping. Allocates nothing after the second. */
     void place(const types::Snapshot& snapshot);
@@ -49,7 +51,7 @@ public:
     glm::dvec3 at(const glm::dvec3& direction, double range, const Drift* drift = nullptr) const;
     /** Ranges between which all ways are nearly straight, from 0 on [m]. */
     std::span<const double> corners() const { return corners_; }
-    /** Of the plane normal . place = distance as it is met in a direction near a range [m]. */
+    /** Returns the apparent plane of normal . place = distance, as it is met in a direction near a range [m]. */
     ApparentPlane apparent(const glm::dvec3& normal, double distance, const glm::dvec3& direction, double near,
                            const Drift* drift) const;
     /** From where a point target of this ping is heard that was there about the sonar, sonar axes, when the pulse was
@@ -62,7 +64,7 @@ public:
 private:
     void placeMotion(const types::Snapshot& snapshot);
     void placeCorners();
-    /** Of a place that is heard so and moves by `drift`: where it was when the pulse was sent, over straight rays. */
+    /** Returns where a place that moves by `drift` was when the pulse was sent, over straight rays [m]. */
     glm::dvec3 movedBy(const glm::dvec3& direction, double range, const Drift* drift) const;
     double rangeOf(const glm::dvec3& normal, double distance, const glm::dvec3& direction, double near,
                    const Drift* drift) const;
@@ -71,11 +73,11 @@ private:
     std::optional<RayTable> table_;
     std::optional<Motion> motion_;
     double coupling_;  ///< dopplerCoupling() [s].
-    double share_;     ///< Of a turn during the flight that what is heard is turned by [1].
+    double share_;     ///< Share of a turn during the flight by which echoes are turned [1].
     double stretch_;   ///< No place is further away than its slant range times this, but for the coupling [1].
     glm::dmat3 world_from_sonar_{1};  ///< [1]
     bool moves_ = false;
-    glm::dvec3 velocity_{0}, turn_{0};  ///< Of the sonar, sonar axes [m/s], [rad/s].
+    glm::dvec3 velocity_{0}, turn_{0};  ///< The sonar's, in sonar axes [m/s], [rad/s].
     double fastest_ = 0;                ///< At which any place comes nearer or goes away, at most [m/s].
     std::vector<double> corners_;
 };

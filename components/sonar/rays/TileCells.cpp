@@ -156,7 +156,7 @@ private:
     /** Adds a sample that meets nothing: effects alone hear it. */
     void addMiss(const CastTile& tile, int sample) {
         const int column = tile.first_column + shape_.at[sample].columns, i = cells_.count;
-        if (column >= view_.columns() || tile.first_row + shape_.at[sample].rows >= view_.rows) return;
+        if (column >= tile.end_column || tile.first_row + shape_.at[sample].rows >= view_.rows) return;
         cells_.setMiss(i);
         in_map_.command[i] = TileHits::nothing;
         aim(tile, sample, 1);

@@ -9,6 +9,8 @@
 
 namespace insonify::sonar {
 
+class BinLevels;
+
 /** What the numbers of hits mean in this ping: commands, each with its triangles turned into sonar axes. */
 struct PlacedScene {
     std::span<const CommandRecord> commands;
@@ -25,10 +27,20 @@ struct CastView {
     TileShape shape;
 };
 
-/** A tile that has been cast: where it lies in the view and what it met. */
+/** A tile that has been cast: where it is in the view and what it has met. */
 struct CastTile {
     int first_column, first_row;
-    const TileHits* hits;
+    int end_column;  ///< Samples from this column on are not the tile's: they were not cast, and are no misses.
+    TileHits* hits;
+};
+
+/** A ping that is ray-traced, at the quality in force. */
+struct CastPing {
+    const EchoRules& rules;
+    const BinLevels& levels;  ///< Of the rules' bins.
+    const CastView& view;
+    const RayVisibility& visibility;  ///< Placed in this ping.
+    PlacedScene scene;
 };
 
 /** Adds the echoes of tiles to sums: energies, or fields as [bin][real, imaginary] with sign. Neighbouring samples of

@@ -7,8 +7,13 @@
 #include <limits>
 #include <numbers>
 
+#include "components/sonar/echo/BinLevels.hpp"
 #include "components/sonar/echo/Estimators.hpp"
+#include "components/sonar/echo/TruthGrid.hpp"
 #include "components/sonar/fan/BeamFan.hpp"
+#include "components/sonar/field/ScattererLattice.hpp"
+#include "components/sonar/rays/TileCells.hpp"
+#include "components/sonar/ways/Mirrors.hpp"
 #include "types/Angle.hpp"
 
 namespace insonify::sonar {
@@ -18,20 +23,20 @@ using std::numbers::pi;
 
 constexpr int max_bounces = MultipathConfig::max_bounces;
 constexpr int pattern_steps = 2048;
-constexpr double reaching_back = 1.1;  ///< Of the range, within which cells beyond it may reach back into it [1].
+constexpr double reaching_back = 1.1;  ///< Share of the range from which cells beyond it may reach back into it [1].
 constexpr double edge_on = 1e-4;       ///< Cosine below which a surface gives no echo [1].
 constexpr uint64_t surface_name = std::numeric_limits<uint64_t>::max();  ///< Among the mirrors of a chain.
 
-/** What of a part's energy goes to a bin, whichever thread brings it. */
+/** Adds energies to bins that all threads share. */
 #define HAVE_PHYSICAL
 struct SharedBins : Bins {
     using Bins::Bins;
     void addToBin(uint cell, uint bin, double amount, double) const {
         if (!(amount > 0)) return;
         std::atomic_ref(sums[size_t{cell} * bin_count + bin]).fetch_add(quanta(amount), relaxed);
-        if (told) std::atomic_ref(told[size_t{cell} * bin_count + bin]).fetch_add(quanta(amount), relaxed);
+        if (by_way) std::atomic_ref(by_way[size_t{cell} * bin_count + bin]).fetch_add(quanta(amount), relaxed);
     }
-    uint64_t* told = nullptr;  ///< Sums by the way of what is deposited now, where they are told.
+    uint64_t* by_way = nullptr;  ///< Further sums, of echoes by the way at hand; null where no truth is recorded.
     static constexpr std::memory_order relaxed = std::memory_order_relaxed;
 #include "shaders/deposit.glsl"
 };
@@ -100,7 +105,7 @@ Angles::Angles(const CastView& cast, const CastTile& tile, int sample, int merge
  *  with what it changes by with the direction. */
 struct HalfWay {
     double inverse, per_azimuth, per_elevation, nearest;  ///< [1/m], [1/m rad], [1/m rad], [1/m].
-    double back;                                          ///< From the plane to the focus [m].
+    double back;                                          ///< Distance from the plane to the focus [m].
     glm::dvec3 from_focus;                                ///< Unit.
 };
 
@@ -124,7 +129,74 @@ HalfWay halfWay(const MirrorPlane& plane, const glm::dvec3& focus, const Angles&
     return way;
 }
 
-}  // namespace
+/** Power of the beam pattern on the way out and on the way back (ACOUSTICS.md 5.9), and the cells that receive it. */
+class WayPatterns {
+public:
+    explicit WayPatterns(const RenderPlan& plan);
+
+    /** A direction in sonar axes. */
+    struct Way {
+        double azimuth = 0;  ///< As cells have it: of cones their bearing [rad].
+        double sine = 0;     ///< Sine of the elevation [1].
+        bool heard = false;  ///< Not behind a straight array.
+    };
+    Way wayOf(const glm::dvec3& direction) const;
+    /** Power that is sent along one way and heard along another, over what the cell that hears it makes of it in
+     *  azimuth [1]. */
+    double power(const Way& sent, const Way& heard) const;
+    /** Whether both are within one beam. */
+    bool inOneBeam(const Way& a, const Way& b) const;
+    /** Calls use(cell) for each azimuth cell that a way lies in. */
+    template <class Use>
+    void eachCell(const Way& way, const Use& use) const {
+        plan_.cells.eachAt(way.azimuth, use);
+    }
+
+private:
+    double elevation(const std::vector<double>& table, double sine) const;
+    double sentAzimuth(double azimuth) const;
+
+    const RenderPlan& plan_;
+    bool conical_, has_azimuth_;
+    double reach_, beam_width_;
+    std::vector<double> sent_, heard_;  ///< Powers in elevation, over its sine from -reach_ on [1].
+    std::vector<double> azimuths_;      ///< Power that is sent, over azimuths from -pi on [1].
+};
+
+/** A quantum of the sums [sr]. */
+double quantumOf(const CastPing& ping) {
+    return ping.view.cells.cell() / (quanta_per_unit * ping.rules.strength_scale);
+}
+
+class PathEchoes final : public PingEffect {
+public:
+    PathEchoes(const RenderPlan& plan, const types::Geometry& geometry);
+
+    void takeQuality() override;
+    void begin(const PingStart& start) override;
+    bool followsRays() const override { return true; }
+    void followRays(const CastPing& ping, std::span<const CastTile> tiles) override;
+    bool addEnergies(const CastPing& ping, size_t cell, std::span<float> bins) override;
+    void addToTruth(const CastPing& ping, types::SonarTruth& truth) override;
+    std::optional<LeftOut> leftOut() const override { return water_.leftOut(); }
+
+private:
+    class Tracer;
+    /** Takes away what the rays of a tile have met beyond the water surface. */
+    void endAtSurface(const CastView& view, const CastTile& tile) const;
+    /** The directly received intensities of a cell; none where fields are summed. */
+    std::span<float> direct(size_t cell);
+
+    const RenderPlan& plan_;
+    std::optional<WayPatterns> patterns_;
+    WaterMirror water_;
+    std::vector<double> reflected_;   ///< Share of the power that each material reflects as a mirror [1].
+    size_t bin_count_ = 0;            ///< Sums of a cell [1].
+    std::vector<uint64_t> sums_;      ///< [cell][bin], in quanta.
+    std::optional<PathTruth> truth_;  ///< From the first ping whose truth is recorded.
+    std::vector<float> direct_;       ///< [cell][bin], in pings whose truth is recorded; empty where fields are summed.
+    bool records_truth_ = false;
+};
 
 WayPatterns::WayPatterns(const RenderPlan& plan)
     : plan_(plan),
@@ -175,12 +247,12 @@ bool WayPatterns::inOneBeam(const Way& a, const Way& b) const {
 /** Follows the rays of one tile after another. */
 class PathEchoes::Tracer {
 public:
-    Tracer(PathEchoes& paths, const PlacedScene& scene, int end_column)
+    Tracer(PathEchoes& paths, const CastPing& ping)
         : paths_(paths),
-          rules_(*paths.rules_),
-          view_(*paths.view_),
-          scene_(scene),
-          end_column_(end_column),
+          rules_(ping.rules),
+          view_(ping.view),
+          visibility_(ping.visibility),
+          scene_(ping.scene),
           bins_(rules_, paths.sums_.data()),
           near_edge_(rules_.edges.front()),
           far_edge_(rules_.edges[static_cast<size_t>(rules_.bins.bin_count)]) {}
@@ -202,6 +274,7 @@ private:
     glm::dvec3 from(int i) const { return {rays_.from_x[i], rays_.from_y[i], rays_.from_z[i]}; }
     glm::dvec3 towards(int i) const { return {rays_.towards.x[i], rays_.towards.y[i], rays_.towards.z[i]}; }
     glm::dvec3 met(int i) const { return from(i) + double{hits_.distance[i]} * towards(i); }
+    double reflected(uint32_t command) const { return paths_.reflected_[scene_.commands[command].material]; }
     void drop(int i) { rays_.towards.active &= ~(1u << i); }
 
     bool begin(const CastTile& tile);
@@ -219,27 +292,27 @@ private:
     MaterialLaws::Bistatic section(const Angles& at, int i, const MirrorPlane& plane, const HalfWay& way) const;
     void depositOnce(const Angles& at, int i, const MirrorPlane& plane, double open);
     Footprint footprint(const Angles& at, int i, const HalfWay& way, double size) const;
-    void tellWay(int i, bool twice) {
-        if (!paths_.tells_) return;
+    void recordWay(int i, bool twice) {
+        if (!paths_.records_truth_) return;
         const Chain& chain = chains_[static_cast<size_t>(i)];
         const bool by_surface = std::all_of(chain.names.begin(), chain.names.begin() + chain.count,
                                             [](uint64_t name) { return name == surface_name; });
         const PathTruth::Path way = twice ? PathTruth::SurfaceTwice : PathTruth::SurfaceOnce;
-        bins_.told = paths_.truth_->sums(by_surface ? way : PathTruth::Bounced);
+        bins_.by_way = paths_.truth_->sums(by_surface ? way : PathTruth::Bounced);
     }
 
     PathEchoes& paths_;
     const EchoRules& rules_;
     const CastView& view_;
+    const RayVisibility& visibility_;
     const PlacedScene& scene_;
-    int end_column_;
     SharedBins bins_;
     double near_edge_, far_edge_;
     PathRays rays_{};
     TileHits hits_{};
     std::array<Chain, tile_samples> chains_;
-    std::array<double, tile_samples> lengths_;  ///< Of each ray's way so far [m].
-    uint64_t key_ = 0;                          ///< Of the tile.
+    std::array<double, tile_samples> lengths_;  ///< Length of each ray's way so far [m].
+    uint64_t key_ = 0;                          ///< The tile's number.
 };
 
 bool PathEchoes::Tracer::begin(const CastTile& tile) {
@@ -248,9 +321,9 @@ bool PathEchoes::Tracer::begin(const CastTile& tile) {
     for (int i = 0; i < tile_samples; ++i) {
         const uint32_t command = tile.hits->command[i];
         const bool misses = command == TileHits::nothing;
-        if (misses ? !paths_.water_.reflects() : paths_.reflected_[command] == 0) continue;
+        if (misses ? !paths_.water_.reflects() : reflected(command) == 0) continue;
         const int column = tile.first_column + view_.shape.at[i].columns, row = tile.first_row + view_.shape.at[i].rows;
-        if (column >= end_column_ || row >= view_.cells.rows) continue;
+        if (column >= tile.end_column || row >= view_.cells.rows) continue;
         rays_.towards.active |= 1u << i;
         chains_[static_cast<size_t>(i)] = {};
         lengths_[static_cast<size_t>(i)] = 0;
@@ -281,7 +354,7 @@ void PathEchoes::Tracer::reflect(int i, const glm::dvec3& from, const glm::dvec3
         return send(i, tilts ? paths_.water_.facet(at, way, key_) : paths_.water_.plane(), from, way, distance);
     }
     const CommandRecord& command = scene_.commands[hits.command[i]];
-    const double reflected = paths_.reflected_[hits.command[i]];
+    const double reflected = this->reflected(hits.command[i]);
     const MirrorPlane plane = planeOf(hits, i);
     const double cosine = std::abs(glm::dot(plane.normal, way));
     if (reflected == 0 || !(cosine > edge_on)) return drop(i);
@@ -314,9 +387,9 @@ void PathEchoes::Tracer::send(int i, const MirrorPlane& plane, const glm::dvec3&
     rays_.farthest[i] = static_cast<float>(std::min(left, paths_.water_.distance(at, on) + 1e-3));
 }
 
-void PathEchoes::Tracer::castOn() { paths_.visibility_.cast(rays_, hits_); }
+void PathEchoes::Tracer::castOn() { visibility_.cast(rays_, hits_); }
 
-/** Of the rays that have met something, those from where the sonar is seen on the side that they came to. */
+/** Returns the rays, as bits, that have met something with a free way back to the sonar, on the side that they met. */
 uint32_t PathEchoes::Tracer::openBack() const {
     PathRays back{};
     back.towards.active = 0;
@@ -337,7 +410,7 @@ uint32_t PathEchoes::Tracer::openBack() const {
         back.farthest[i] = static_cast<float>(1 - RayVisibility::nearest / range);
         back.towards.active |= 1u << i;
     }
-    return back.towards.active ? back.towards.active & ~paths_.visibility_.blocked(back) : 0;
+    return back.towards.active ? back.towards.active & ~visibility_.blocked(back) : 0;
 }
 
 /** Samples from i on that are a rectangle which the same mirrors show of one triangle. */
@@ -377,13 +450,13 @@ Footprint PathEchoes::Tracer::footprint(const Angles& at, int i, const HalfWay& 
 
 void PathEchoes::Tracer::deposit(const Angles& at, int i, double open) {
     const Chain& chain = chains_[static_cast<size_t>(i)];
-    const MirrorPlane real = planeOf(hits_, i);
-    const glm::dvec3 focus = chain.image(glm::dvec3(0)), normal = chain.turned(real.normal);
-    const MirrorPlane plane{normal, real.distance + glm::dot(normal, focus)};
+    const MirrorPlane seen = planeOf(hits_, i);
+    const glm::dvec3 focus = chain.image(glm::dvec3(0)), normal = chain.turned(seen.normal);
+    const MirrorPlane plane{normal, seen.distance + glm::dot(normal, focus)};
     const double facing = glm::dot(plane.normal, at.middle);
     if (!(std::abs(facing) > edge_on && plane.distance * facing > 0)) return;
     const PlacedRun& run = scene_.ranges[hits_.command[i]];
-    tellWay(i, true);
+    recordWay(i, true);
     const HalfWay twice = halfWay(plane, glm::dvec3(0), at);
     const double strength =
         rules_.strength_scale * chain.power * chain.power *
@@ -432,7 +505,7 @@ void PathEchoes::Tracer::depositOnce(const Angles& at, int i, const MirrorPlane&
     const MaterialLaws::Bistatic given = section(at, i, plane, way);
     const double scale =
         rules_.strength_scale * chain.power * open / (way.back * way.back * way.inverse * way.inverse * way.inverse);
-    tellWay(i, false);
+    recordWay(i, false);
     const WayPatterns& patterns = *paths_.patterns_;
     const WayPatterns::Way by_mirror = patterns.wayOf(at.middle);
     const WayPatterns::Way by_itself = patterns.wayOf(chain.turnedBack(way.from_focus));
@@ -443,71 +516,81 @@ void PathEchoes::Tracer::depositOnce(const Angles& at, int i, const MirrorPlane&
     if (!(there > 0)) return;
     // What this surface and the first mirror both reflect and scatter comes by rays of its own from the other end.
     const bool comes_itself =
-        chain.begins_lobed && paths_.reflected_[hits_.command[i]] > 0 && !patterns.inOneBeam(by_mirror, by_itself);
+        chain.begins_lobed && reflected(hits_.command[i]) > 0 && !patterns.inOneBeam(by_mirror, by_itself);
     const double strength = scale * (given.diffuse + (comes_itself ? 0 : given.lobe));
     const Footprint cell = footprint(at, i, way, at.size * there);
     patterns.eachCell(by_itself, [&](size_t heard) { bins_.depositCell(cell, static_cast<uint>(heard), strength); });
 }
 
-PathEchoes::PathEchoes(const RenderPlan& plan, const types::Geometry& geometry, const RayVisibility& visibility)
-    : plan_(plan), visibility_(visibility), water_(plan.config) {
-    takeScene(geometry);
+PathEchoes::PathEchoes(const RenderPlan& plan, const types::Geometry& geometry) : plan_(plan), water_(plan.config) {
+    for (const types::Material& material : geometry.materials)
+        reflected_.push_back(reflectedPower(material, plan.config.multipath->bounces));
+    takeQuality();
 }
 
-void PathEchoes::takeScene(const types::Geometry& geometry) {
-    reflected_.clear();
-    for (const CommandRecord& command : visibility_.commands())
-        reflected_.push_back(reflectedPower(geometry.materials[command.material], plan_.config.multipath->bounces));
-}
-
-void PathEchoes::takeQuality(const EchoRules& rules, const CastView& view) {
-    rules_ = &rules;
-    view_ = &view;
+void PathEchoes::takeQuality() {
     patterns_.emplace(plan_);
     truth_.reset();
-    sums_.assign(plan_.cells.size() * static_cast<size_t>(rules.bins.bin_count), 0);
+    bin_count_ = static_cast<size_t>(summedGrid(plan_).bin_count);
+    sums_.assign(plan_.cells.size() * bin_count_, 0);
 }
 
-void PathEchoes::begin(const types::Snapshot& snapshot, bool tells) {
-    tells_ = tells;
-    if (tells && !truth_) truth_.emplace(plan_, static_cast<size_t>(rules_->bins.bin_count));
-    if (tells) truth_->begin();
-    water_.place(snapshot, plan_.grid.range_max);
+void PathEchoes::begin(const PingStart& start) {
+    records_truth_ = start.truth;
+    if (records_truth_ && !truth_) {
+        truth_.emplace(plan_, bin_count_);
+        direct_.assign(plan_.features.has(Feature::Speckle) ? 0 : sums_.size(), 0);
+    }
+    if (records_truth_) truth_->begin();
+    water_.place(start.snapshot, plan_.grid.range_max);
     std::ranges::fill(sums_, 0);
 }
 
-void PathEchoes::endAtSurface(const CastTile& tile, TileHits& hits) const {
-    if (!water_.reflects()) return;
+void PathEchoes::endAtSurface(const CastView& view, const CastTile& tile) const {
+    TileHits& hits = *tile.hits;
     for (int i = 0; i < tile_samples; ++i) {
         if (hits.command[i] == TileHits::nothing) continue;
-        const glm::dvec3 way = view_->cells.direction(tile.first_column + view_->shape.at[i].columns,
-                                                      tile.first_row + view_->shape.at[i].rows);
+        const glm::dvec3 way =
+            view.cells.direction(tile.first_column + view.shape.at[i].columns, tile.first_row + view.shape.at[i].rows);
         if (double{hits.distance[i]} > water_.distance(glm::dvec3(0), way)) hits.command[i] = TileHits::nothing;
     }
 }
 
-void PathEchoes::trace(const PlacedScene& scene, std::span<const CastTile> tiles, int end_column) {
-    Tracer tracer(*this, scene, end_column);
+void PathEchoes::followRays(const CastPing& ping, std::span<const CastTile> tiles) {
+    if (water_.reflects())
+        for (const CastTile& tile : tiles) endAtSurface(ping.view, tile);
+    Tracer tracer(*this, ping);
     for (const CastTile& tile : tiles) tracer.follow(tile);
 }
 
-double PathEchoes::quantum() const { return view_->cells.cell() / (quanta_per_unit * rules_->strength_scale); }
-
-void PathEchoes::takeDirect(size_t cell, const BinLevels& levels, std::span<const float> bins) {
-    truth_->take(cell, bins, levels, quantum());
+std::span<float> PathEchoes::direct(size_t cell) {
+    return direct_.empty() ? std::span<float>() : std::span(direct_).subspan(cell * bin_count_, bin_count_);
 }
 
-bool PathEchoes::addTo(size_t cell, const BinLevels& levels, std::span<float> bins) const {
-    const double quantum = this->quantum();
+bool PathEchoes::addEnergies(const CastPing& ping, size_t cell, std::span<float> bins) {
+    if (records_truth_ && !direct_.empty()) std::ranges::copy(bins, direct(cell).begin());
+    const double quantum = quantumOf(ping);
     const uint64_t* sums = sums_.data() + cell * bins.size();
     uint64_t any = 0;
     for (size_t j = 0; j < bins.size(); ++j) {
         if (sums[j] == 0) continue;
         any |= sums[j];
-        const double sum = double{bins[j]} + double{levels.intensity(j, static_cast<double>(sums[j]) * quantum)};
+        const double sum = double{bins[j]} + double{ping.levels.intensity(j, static_cast<double>(sums[j]) * quantum)};
         bins[j] = static_cast<float>(std::min(sum, double{std::numeric_limits<float>::max()}));
     }
     return any != 0;
+}
+
+void PathEchoes::addToTruth(const CastPing& ping, types::SonarTruth& truth) {
+    for (size_t cell = 0; cell < plan_.cells.size(); ++cell)
+        truth_->take(cell, direct(cell), ping.levels, quantumOf(ping));
+    truth_->tell(truth);
+}
+
+}  // namespace
+
+std::unique_ptr<PingEffect> makePathEchoes(const RenderPlan& plan, const types::Geometry& geometry) {
+    return std::make_unique<PathEchoes>(plan, geometry);
 }
 
 }  // namespace insonify::sonar

@@ -1,4 +1,4 @@
-#include "components/study/EmbreeCaster.hpp"
+#include "components/study/oracles/EmbreeCaster.hpp"
 
 #include <algorithm>
 #include <array>
@@ -9,8 +9,8 @@
 #include "components/acoustics/BeamPattern.hpp"
 #include "components/sonar/fan/BeamFan.hpp"
 #include "components/sonar/fan/BinGrid.hpp"
-#include "components/study/RayTree.hpp"
-#include "components/study/Workers.hpp"
+#include "components/study/oracles/RayTree.hpp"
+#include "components/study/oracles/Workers.hpp"
 #include "types/Angle.hpp"
 
 namespace insonify::study {

@@ -1,4 +1,4 @@
-#include "components/study/Truth.hpp"
+#include "components/study/oracles/Truth.hpp"
 
 #include <algorithm>
 #include <array>

@@ -3,8 +3,8 @@
 #include <vector>
 
 #include "components/sonar/plan/SonarConfig.hpp"
-#include "components/study/RayTree.hpp"
-#include "components/study/Workers.hpp"
+#include "components/study/oracles/RayTree.hpp"
+#include "components/study/oracles/Workers.hpp"
 
 namespace insonify::study {
 

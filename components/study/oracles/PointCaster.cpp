@@ -1,4 +1,4 @@
-#include "components/study/PointCaster.hpp"
+#include "components/study/oracles/PointCaster.hpp"
 
 #include <algorithm>
 #include <array>

@@ -1,4 +1,4 @@
-#include "components/study/Workers.hpp"
+#include "components/study/oracles/Workers.hpp"
 
 #include <algorithm>
 

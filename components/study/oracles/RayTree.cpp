@@ -1,4 +1,4 @@
-#include "components/study/RayTree.hpp"
+#include "components/study/oracles/RayTree.hpp"
 
 #include <embree3/rtcore.h>
 

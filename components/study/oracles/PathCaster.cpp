@@ -1,4 +1,4 @@
-#include "components/study/PathCaster.hpp"
+#include "components/study/oracles/PathCaster.hpp"
 
 #include <algorithm>
 #include <array>

@@ -1,0 +1,40 @@
+#include "components/sonar/effects/Effect.hpp"
+
+namespace insonify::sonar {
+namespace {
+
+std::string nobody(const LeftOut& /*what*/, const BinGrid& /*grid*/) {
+    return "nobody is connected to truth or returns at the first ping";
+}
+
+/** Whether pings record it, which a plan does not know. */
+class TruthInPings final : public PingEffect {
+public:
+    void begin(const PingStart& start) override { omitted_ = !start.truth; }
+    std::optional<LeftOut> leftOut() const override {
+        if (!omitted_) return {};
+        return LeftOut{.effect = "truth", .reason = Reason::Other, .words = nobody};
+    }
+
+private:
+    bool omitted_ = false;
+};
+
+/** What the bins of a ping show (types::SonarTruth). The deposit of cells records it, because it counts the same
+ *  energies. */
+class Truth final : public Effect {
+public:
+    bool plan(const types::Geometry& /*geometry*/, RenderPlan& /*plan*/) const override { return true; }
+    std::unique_ptr<PingEffect> make(const RenderPlan& /*plan*/, const types::Geometry& /*geometry*/) const override {
+        return std::make_unique<TruthInPings>();
+    }
+};
+
+}  // namespace
+
+const Effect& truth() {
+    static const Truth effect;
+    return effect;
+}
+
+}  // namespace insonify::sonar
