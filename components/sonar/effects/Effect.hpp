@@ -56,7 +56,7 @@ public:
     /** Whether addCells() and addToCell() are called: a number for each bin of a beam is summed for it. */
     virtual bool hasSums() const { return false; }
     /** Whether the compute shader makes the same sums. One at most does; with others, pictures are summed on the
-     *  processor. */
+     *  processor, and where the device was to sum them a notice says so. */
     virtual bool isOnDevice() const { return false; }
     /** Of each batch of cells: adds to its sums. On several threads. */
     virtual void addCells(const CellBatch& /*batch*/) const {}

@@ -1,6 +1,7 @@
 #pragma once
 #include <memory>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "components/sonar/effects/Effect.hpp"
@@ -28,8 +29,8 @@ public:
     void takeScene(const types::Geometry& geometry);
     void begin(const types::Snapshot& snapshot);
     void giveRules(EchoRules& rules) const;
-    /** Whether a compute shader can sum what they sum. */
-    bool areOnDevice() const;
+    /** Why a compute shader cannot sum what they sum, a clause. Empty: it can. */
+    std::string whyNotOnDevice() const;
     void addEchoes(PingInMaking& ping);
     void addToBins(types::Sonar& ping);
     size_t heard() const;  ///< [1]
@@ -37,6 +38,7 @@ public:
 
 private:
     std::vector<std::unique_ptr<PingEffect>> all_;
+    std::vector<std::string> keys_;  ///< Effect::key() of each.
 };
 
 /** Adds to a cell's bins what the effects with sums of their own make of these. `sums`: all of the cell. */
