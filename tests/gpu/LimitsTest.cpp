@@ -2,6 +2,7 @@
 
 #include "components/gpu/EglContext.hpp"
 #include "components/gpu/Limits.hpp"
+#include "tests/support/PromisedLimits.hpp"
 
 namespace insonify::gpu {
 namespace {
@@ -10,19 +11,7 @@ using ::testing::IsEmpty;
 
 TEST(LimitsTest, AContextHasAtLeastWhatOpenGl45Promises) {
     const EglContext context("software");
-    EXPECT_THAT(context.limits().shortfall({.texture_size = 16384,
-                                            .viewport_size = 16384,
-                                            .integer_samples = 1,
-                                            .depth_samples = 1,
-                                            .storage_blocks = 8,
-                                            .storage_bindings = 8,
-                                            .storage_bytes = 1 << 27,
-                                            .shared_bytes = 32768,
-                                            .group_invocations = 1024,
-                                            .group_size = 1024,
-                                            .group_count = 65535}),
-                IsEmpty());
-    EXPECT_THAT(context.limits().shortfall({.draw_parameters = 1, .doubles = 1}), IsEmpty()) << "and the extensions";
+    EXPECT_THAT(context.limits().shortfall(test::promisedLimits()), IsEmpty());
 }
 
 TEST(LimitsTest, AShortfallIsTheFirstLimitWithBothNumbers) {

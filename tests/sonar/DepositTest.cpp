@@ -1,11 +1,12 @@
 // Both deposits, on the processor and by compute shader, in the pings that they make.
-#include <gtest/gtest.h>
+#include <gmock/gmock.h>
 
 #include <algorithm>
 #include <cmath>
 #include <numeric>
 
 #include "components/sonar/SonarRenderer.hpp"
+#include "components/sonar/effects/Effects.hpp"
 #include "tests/support/Sonars.hpp"
 #include "tests/support/Surfaces.hpp"
 
@@ -86,6 +87,21 @@ double manyOverOne(SonarConfig config, const types::Snapshot& snapshot) {
     return many / sum(pingOf(config, snapshot));
 }
 
+/** Sums that no compute shader makes. */
+class OwnSums final : public PingEffect {
+    bool hasSums() const override { return true; }
+};
+
+class OwnSumsEffect final : public Effect {
+    std::string key() const override { return "own_sums"; }
+    bool plan(const types::Geometry& /*geometry*/, RenderPlan& plan) const override {
+        return plan.config.effects.contains("own_sums");
+    }
+    std::unique_ptr<PingEffect> make(const RenderPlan& /*plan*/, const types::Geometry& /*geometry*/) const override {
+        return std::make_unique<OwnSums>();
+    }
+};
+
 }  // namespace
 
 TEST_P(DepositTest, TheProcessorAndTheComputeShaderAgree) {
@@ -144,6 +160,25 @@ TEST(DepositPublishedTest, TheyAgreeInThePublishedModelWhereMissesCount) {
     SonarConfig gpu = cpu;
     gpu.deposit = Deposit::Gpu;
     EXPECT_LT(relativeL2(pingOf(gpu, hardScene()), pingOf(cpu, hardScene())), 1e-5);
+}
+
+TEST(DepositEffectTest, ANoticeSaysThatAnEffectWithSumsOfItsOwnKeepsTheDeviceFromSumming) {
+    addEffect(std::make_unique<OwnSumsEffect>());
+    const types::Snapshot snapshot = hardScene();
+    const std::string notice =
+        "pictures are summed on the processor: the compute shader does not sum what the effect 'own_sums' sums";
+    for (const bool with_effect : {false, true})
+        for (Deposit where : {Deposit::Cpu, Deposit::Gpu}) {
+            SonarConfig config = fan(Model::Physical, BeamGeometry::Planar, where);
+            if (with_effect) config.effects["own_sums"] = {};
+            const SonarRenderer renderer(config, snapshot.geometry);
+            EXPECT_EQ(std::ranges::count(renderer.plan().notices, notice), with_effect && where == Deposit::Gpu)
+                << "effect " << with_effect << ", on the device " << (where == Deposit::Gpu);
+        }
+    SonarConfig cpu = fan(Model::Physical, BeamGeometry::Planar, Deposit::Cpu), gpu = cpu;
+    gpu.deposit = Deposit::Gpu;
+    gpu.effects["own_sums"] = {};
+    EXPECT_EQ(pingOf(gpu, snapshot).bins, pingOf(cpu, snapshot).bins);
 }
 
 TEST(DepositEnergyTest, OneBinHoldsTheEnergyOfTheManyThatItCovers) {

@@ -4,6 +4,7 @@
 #include "components/sonar/effects/Effects.hpp"
 #include "components/sonar/pictures/DeviceNeeds.hpp"
 #include "tests/gpu/ErrorOf.hpp"
+#include "tests/support/PromisedLimits.hpp"
 #include "tests/support/Sonars.hpp"
 #include "tests/support/Surfaces.hpp"
 
@@ -14,23 +15,6 @@ using ::testing::AllOf;
 using ::testing::HasSubstr;
 
 const std::string renderer = "Imaginary GPU";
-
-/** What OpenGL 4.5 promises, with both extensions. */
-gpu::Limits promised() {
-    return {.draw_parameters = 1,
-            .doubles = 1,
-            .texture_size = 16384,
-            .viewport_size = 16384,
-            .integer_samples = 1,
-            .depth_samples = 1,
-            .storage_blocks = 8,
-            .storage_bindings = 8,
-            .storage_bytes = 1 << 27,
-            .shared_bytes = 32768,
-            .group_invocations = 1024,
-            .group_size = 1024,
-            .group_count = 65535};
-}
 
 RenderPlan planOf(const types::Geometry& geometry, const RenderOptions& options = {}) {
     SonarConfig config = test::sonarOf({.beams = 256, .width_deg = 60, .bins = 500, .rows = 512, .columns = 8});
@@ -56,31 +40,32 @@ std::string drawingError(const gpu::Limits& limits, const gpu::Limits& needs) {
 TEST(DeviceNeedsTest, ADriverThatKeepsToOpenGl45DrawsAndSums) {
     const auto geometry = test::surfaces();
     const RenderPlan plan = planOf(*geometry);
-    EXPECT_NO_THROW(requireDrawing(promised(), drawingNeeds(plan, *geometry), renderer));
+    EXPECT_NO_THROW(requireDrawing(test::promisedLimits(), drawingNeeds(plan, *geometry), renderer));
     for (Deposit deposit : {Deposit::Auto, Deposit::Gpu})
-        EXPECT_EQ(whyOnProcessor(deposit, promised(), depositNeeds(setupOf(plan), *geometry), renderer), "");
+        EXPECT_EQ(whyOnProcessor(deposit, test::promisedLimits(), depositNeeds(setupOf(plan), *geometry), renderer),
+                  "");
 }
 
 TEST(DeviceNeedsTest, ALimitThatIsTooLowToDrawIsNamed) {
     const auto geometry = test::surfaces();
     const RenderPlan plan = planOf(*geometry);
-    gpu::Limits limits = promised();
+    gpu::Limits limits = test::promisedLimits();
     limits.draw_parameters = 0;
     EXPECT_THAT(drawingError(limits, drawingNeeds(plan, *geometry)),
                 AllOf(HasSubstr(renderer), HasSubstr("GL_ARB_shader_draw_parameters is missing"),
                       HasSubstr("visibility: cpu")));
-    limits = promised();
+    limits = test::promisedLimits();
     limits.texture_size = 1024;
     EXPECT_THAT(drawingError(limits, drawingNeeds(plan, *geometry)),
                 HasSubstr("GL_MAX_TEXTURE_SIZE is 1024, and " + std::to_string(plan.frusta[0].columns) + " is needed"));
     geometry->normal_maps[0].width = 20'000;
-    EXPECT_THAT(drawingError(promised(), drawingNeeds(plan, *geometry)), HasSubstr("and 20000 is needed"));
+    EXPECT_THAT(drawingError(test::promisedLimits(), drawingNeeds(plan, *geometry)), HasSubstr("and 20000 is needed"));
 }
 
 TEST(DeviceNeedsTest, SeveralSamplesAPixelNeedMultisampledIntegers) {
     const auto geometry = test::surfaces();
     const gpu::Limits needs = drawingNeeds(planOf(*geometry, {.samples_per_pixel = 4}), *geometry);
-    EXPECT_THAT(drawingError(promised(), needs), HasSubstr("GL_MAX_INTEGER_SAMPLES is 1, and 4 is needed"));
+    EXPECT_THAT(drawingError(test::promisedLimits(), needs), HasSubstr("GL_MAX_INTEGER_SAMPLES is 1, and 4 is needed"));
 }
 
 TEST(DeviceNeedsTest, WhereTheDeviceCannotSumTheProcessorDoesUnlessTheDeviceIsAskedFor) {
@@ -94,7 +79,7 @@ TEST(DeviceNeedsTest, WhereTheDeviceCannotSumTheProcessorDoesUnlessTheDeviceIsAs
         {&gpu::Limits::group_invocations, "GL_MAX_COMPUTE_WORK_GROUP_INVOCATIONS is 0, and 64 is needed"},
         {&gpu::Limits::group_count, "GL_MAX_COMPUTE_WORK_GROUP_COUNT is 0, and"}};
     for (const auto& [limit, words] : limits) {
-        gpu::Limits low = promised();
+        gpu::Limits low = test::promisedLimits();
         low.*limit = 0;
         EXPECT_THAT(whyOnProcessor(Deposit::Auto, low, needs, renderer),
                     AllOf(HasSubstr("summed on the processor"), HasSubstr(renderer), HasSubstr(words)));

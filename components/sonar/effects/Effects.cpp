@@ -94,7 +94,10 @@ void checkEffects(const SonarConfig& config, types::Diagnostics& diagnostics) {
 
 PingEffects::PingEffects(const RenderPlan& plan, const types::Geometry& geometry) {
     for (const Effect* effect : plan.effects)
-        if (auto made = effect->make(plan, geometry)) all_.push_back(std::move(made));
+        if (auto made = effect->make(plan, geometry)) {
+            all_.push_back(std::move(made));
+            keys_.push_back(effect->key());
+        }
 }
 
 void PingEffects::takeQuality() {
@@ -116,13 +119,15 @@ void PingEffects::giveRules(EchoRules& rules) const {
     }
 }
 
-bool PingEffects::areOnDevice() const {
+std::string PingEffects::whyNotOnDevice() const {
     size_t with_sums = 0;
-    for (const auto& effect : all_) {
-        if (!effect->hasSums()) continue;
-        if (!effect->isOnDevice() || ++with_sums > 1) return false;
+    for (size_t i = 0; i < all_.size(); ++i) {
+        if (!all_[i]->hasSums()) continue;
+        if (!all_[i]->isOnDevice())
+            return fmt::format("the compute shader does not sum what the effect '{}' sums", keys_[i]);
+        if (++with_sums > 1) return "the compute shader has sums for one effect, and this sonar has several";
     }
-    return true;
+    return {};
 }
 
 bool PingEffects::followsRays() const { return std::ranges::any_of(all_, &PingEffect::followsRays); }

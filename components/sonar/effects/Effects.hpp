@@ -1,6 +1,7 @@
 #pragma once
 #include <memory>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "components/sonar/effects/Effect.hpp"
@@ -28,8 +29,8 @@ public:
     void takeScene(const types::Geometry& geometry);
     void begin(const PingStart& start);
     void giveRules(EchoRules& rules) const;
-    /** Whether a compute shader can sum what they sum. */
-    bool areOnDevice() const;
+    /** Why a compute shader cannot sum what they sum, a clause. Empty: it can. */
+    std::string whyNotOnDevice() const;
     bool followsRays() const;
     void followRays(const CastPing& ping, std::span<const CastTile> tiles);
     bool addEnergies(const CastPing& ping, size_t cell, std::span<float> bins);
@@ -41,6 +42,7 @@ public:
 
 private:
     std::vector<std::unique_ptr<PingEffect>> all_;
+    std::vector<std::string> keys_;  ///< Effect::key() of each.
 };
 
 /** Adds to a cell's bins the intensities of the effects that have sums of their own. `sums` are all of the cell. */

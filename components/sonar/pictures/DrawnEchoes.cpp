@@ -57,8 +57,9 @@ public:
 
 private:
     bool wantsProcessor() const;
-    /** Throws GlError where the device cannot draw the plan's pictures. Returns whyOnProcessor(). */
-    std::string checkLimits() const;
+    /** Throws GlError where the device cannot draw the plan's pictures. Returns why pictures that it was to sum are
+     *  summed on the processor, for its limits or an effect; empty where neither is so. */
+    std::string checkDevice() const;
     bool depositsOnProcessor() const { return wantsProcessor() || !why_on_processor_.empty(); }
     SurfacePass::Setup surfaceSetup() const;
     void makeDeposit();
@@ -100,7 +101,7 @@ DrawnEchoes::DrawnEchoes(const RenderPlan& plan, types::GeometryPtr geometry, co
       geometry_(std::move(geometry)),
       effects_(effects),
       context_(plan.config.device),
-      why_on_processor_(checkLimits()),
+      why_on_processor_(checkDevice()),
       device_(fmt::format("{}, OpenGL {}", context_.renderer(), context_.driver())),
       levels_(plan.config, plan.grid),
       culler_(*geometry_, {nearest_drawn, reachOf(plan), plan.config.draw_all}),
@@ -113,13 +114,14 @@ DrawnEchoes::DrawnEchoes(const RenderPlan& plan, types::GeometryPtr geometry, co
 DrawnEchoes::~DrawnEchoes() = default;
 
 bool DrawnEchoes::wantsProcessor() const {
-    return plan_.config.deposit == Deposit::Cpu || !effects_.areOnDevice() ||
-           (plan_.config.deposit == Deposit::Auto && context_.isSoftware());
+    return plan_.config.deposit == Deposit::Cpu || (plan_.config.deposit == Deposit::Auto && context_.isSoftware());
 }
 
-std::string DrawnEchoes::checkLimits() const {
+std::string DrawnEchoes::checkDevice() const {
     requireDrawing(context_.limits(), drawingNeeds(plan_, *geometry_), context_.renderer());
     if (wantsProcessor()) return {};
+    if (const std::string why = effects_.whyNotOnDevice(); !why.empty())
+        return fmt::format("pictures are summed on the processor: {}", why);
     return whyOnProcessor(plan_.config.deposit, context_.limits(),
                           depositNeeds(depositSetup(plan_, effects_), *geometry_), context_.renderer());
 }
@@ -225,7 +227,7 @@ void DrawnEchoes::render(const types::Snapshot& snapshot, types::Sonar& ping, St
 void DrawnEchoes::takeQuality() {
     context_.requireThread();
     const auto alone = context_.transferring();
-    why_on_processor_ = checkLimits();
+    why_on_processor_ = checkDevice();
     surface_.resize(plan_.frusta);
     sums_ = {};
     makeDeposit();
