@@ -4,21 +4,11 @@
 #include <bit>
 #include <cmath>
 #include <glm/geometric.hpp>
-#include <optional>
 
-#include "components/sonar/field/Scatterers.hpp"
 #include "types/VectorMath.hpp"
 
 namespace insonify::sonar {
 namespace {
-
-/** Where in the view, and of which object, a cell is. */
-struct CellPlace {
-    size_t left, right;  ///< Its edges in AngularView::bearings.
-    size_t low, high;    ///< In AngularView::elevations.
-    int first, last;     ///< Its columns.
-    uint32_t object, lattice;
-};
 
 /** Makes cells of tiles, a batch at a time. */
 class TileCells {
@@ -31,9 +21,7 @@ public:
           shape_(view.shape),
           scene_(scene),
           deposit_(rules, scene.water, scene.paths, to),
-          cells_(deposit_.cells) {
-        if (rules.features.has(Feature::Speckle)) fields_.emplace(rules, to.sums);
-    }
+          cells_(deposit_.cells) {}
 
     void add(const CastTile& tile) {
         for (int i = 0; i < tile_samples;) {
@@ -46,53 +34,13 @@ public:
             i += merged;
         }
     }
-    void finish() {
-        if (!fields_) return deposit_.flush();
-        deposit_.cover();
-        for (int i = 0; i < cells_.count; ++i)
-            if (deposit_.covered.pixel[i] > 0 && cells_.width[i] > 0)  // beyond a cone's end there is no direction
-                fields_->deposit(patchOf(i), static_cast<uint>(cells_.beam[i] - deposit_.to().first_beam));
-        deposit_.finish();
-    }
+    void finish() { deposit_.flush(); }
 
 private:
-    Patch patchOf(int i) const {
-        const CellPlace& place = places_[i];
-        const AngularView::Elevation &low = view_.elevations[place.low], &high = view_.elevations[place.high];
-        const auto direction = [&](size_t side, const AngularView::Elevation& up) {
-            const AngularView::Direction around =
-                conical_ ? AngularView::azimuthOf(view_.bearings[side], up) : view_.azimuths[side];
-            return glm::dvec3(up.cosine * around.cosine, up.cosine * around.sine, up.sine);
-        };
-        Patch patch{{cells_.normal_x[i], cells_.normal_y[i], cells_.normal_z[i]},
-                    cells_.distance[i],
-                    {cells_.cos_el[i] * cells_.cos_az[i], cells_.cos_el[i] * cells_.sin_az[i], cells_.sin_el[i]},
-                    {direction(place.left, low), direction(place.left, high), direction(place.right, high),
-                     direction(place.right, low)},
-                    view_.azimuths[place.left],
-                    view_.azimuths[place.right],
-                    1,
-                    {},
-                    low.sine,
-                    high.sine,
-                    cells_.width[i],
-                    cells_.height[i],
-                    deposit_.covered.strength_range[i],
-                    cells_.size[i] / (cells_.width[i] * (high.sine - low.sine)),
-                    scene_.objects[place.object],
-                    place.lattice,
-                    conical_};
-        for (int column = place.first + 1; column <= place.last; ++column)
-            if (view_.beam_of[static_cast<size_t>(column)] != view_.beam_of[static_cast<size_t>(column) - 1])
-                patch.next_bearings[patch.beams++ - 1] = view_.azimuths[view_.at(column)];
-        return patch;
-    }
-
     /** Samples from i on that are a rectangle of one triangle in one beam. */
     int sameFrom(const TileHits& hits, int i) const {
         const auto alignment = static_cast<uint32_t>(i == 0 ? tile_samples : i & -i);
-        const int largest = fields_ ? shape_.max_patch : shape_.max_merged;
-        const int most = scene_.paths ? 1 : std::min(static_cast<int>(alignment), largest);
+        const int most = scene_.paths ? 1 : std::min(static_cast<int>(alignment), shape_.max_merged);
         int run = 1;
         while (run < most && hits.triangle[i + run] == hits.triangle[i] && hits.command[i + run] == hits.command[i])
             ++run;
@@ -106,7 +54,6 @@ private:
         const int i = cells_.count;
         cells_.setPlane(i, run, tile.hits->triangle[sample]);
         aim(tile, sample, merged);
-        if (fields_) places_[i].object = object, places_[i].lattice = command.lattice;
         if (mapped_) cells_.mapped[i] = mappedCosine(tile, sample, merged);
         if (scene_.paths) bend(static_cast<double>(tile.hits->range[sample]), scene_.paths->drift(object));
         if (deposit_.to().truth) {
@@ -187,7 +134,6 @@ private:
             cells_.width[i] = view.bearings[right] - view.bearings[left];
             cells_.lean[i] = 0;
         }
-        if (fields_) places_[i] = {left, right, low, low + 2 * up, column, last, 0, 0};
         cells_.size[i] =
             cells_.width[i] * (view.elevations[low + 2 * up].weighted - view.elevations[low].weighted) / view.cell();
     }
@@ -198,8 +144,6 @@ private:
     const PlacedScene& scene_;
     CellDeposit deposit_;
     Cells& cells_;
-    std::optional<Scatterers> fields_;  ///< None where energies are summed.
-    CellPlace places_[Cells::capacity];
 };
 
 }  // namespace

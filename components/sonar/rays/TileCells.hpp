@@ -31,9 +31,8 @@ struct CastTile {
     const TileHits* hits;
 };
 
-/** Adds the echoes of tiles to sums: energies, or fields as [bin][real, imaginary] with sign. Neighbouring samples of
- * one triangle in one beam may be one cell; with fields also samples of up to Patch::max_beams beams that join.
- * Allocates nothing. */
+/** Adds the energies of tiles to sums. Neighbouring samples of one triangle in one beam may be one cell. Allocates
+ *  nothing. */
 void depositTiles(const EchoRules& rules, const CastView& view, const PlacedScene& scene,
                   std::span<const CastTile> tiles, const EchoSums& to);
 
