@@ -18,9 +18,9 @@ struct LatticePatch {
     struct Plane {
         float constant, along_u, along_v;
     };
-    uint32_t key, base_u, base_v;  ///< The square of the middle.
-    float middle_u, middle_v;      ///< Where it lies in that [spacings].
-    float range;                   ///< Of the middle [m].
+    uint32_t key, base_u, base_v;                               ///< The square of the middle.
+    float middle_u, middle_v;                                   ///< Where it lies in that [spacings].
+    float range;                                                ///< Of the middle [m].
     float square_u, square_v, square_uu, square_uv, square_vv;  ///< Of the square of the slant range over the middle's.
     Plane height, aside, ahead;                                 ///< In the direction of the middle's bearing [m].
     float ahead_per_range;
@@ -80,8 +80,7 @@ INSONIFY_VECTOR_CLONES void scatter(const LatticePatch& patch, const LatticeSqua
         const float further = change * per_both * range, per_range = per_both * sum;
         const float height = p.height.constant + u * p.height.along_u + v * p.height.along_v;
         const float aside = p.aside.constant + u * p.aside.along_u + v * p.aside.along_v;
-        const float ahead =
-            p.ahead.constant + u * p.ahead.along_u + v * p.ahead.along_v + p.ahead_per_range * range;
+        const float ahead = p.ahead.constant + u * p.ahead.along_u + v * p.ahead.along_v + p.ahead_per_range * range;
         int32_t sample = 0, first_sum = p.sum;
         for (int k = 0; k < 3; ++k) {
             sample += height >= p.rows[k + 1] * range ? Patch::max_columns : 0;
@@ -326,8 +325,10 @@ void Scatterers::deposit(const Patch& patch) {
     }
 }
 
-void Scatterers::depositLevel(const Patch& patch, const PatchLattice& lattice, const LatticeLevel& level,
-                              const Ranges& ranges) {
+INSONIFY_VECTOR_CLONES __attribute__((flatten)) void Scatterers::depositLevel(const Patch& patch,
+                                                                              const PatchLattice& lattice,
+                                                                              const LatticeLevel& level,
+                                                                              const Ranges& ranges) {
     const glm::dvec2 base = glm::floor(lattice.middle / level.spacing);
     LatticePatch part = partOf(rules_, patch, lattice, base, level);
     part.near_end = static_cast<float>(ranges.near - lattice.range);
@@ -342,7 +343,8 @@ void Scatterers::depositLevel(const Patch& patch, const PatchLattice& lattice, c
                 add(part, level, count);
                 count = 0;
             }
-            for (int i = 0; i < LatticeSquares::at_once; ++i) across[count + i] = at + i, up[count + i] = row;
+            for (int i = 0; i < LatticeSquares::at_once; ++i) across[count + i] = at + i;
+            for (int i = 0; i < LatticeSquares::at_once; ++i) up[count + i] = row;
             count += std::min(last - at + 1, LatticeSquares::at_once);
         }
     add(part, level, count);

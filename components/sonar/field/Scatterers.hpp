@@ -19,12 +19,13 @@ struct Patch {
     std::array<glm::dvec3, 4> corners;  ///< Unit, to its corners, one side after the other [1].
     double width, height;               ///< [rad]
     AngularView::Direction bearing;     ///< Of the middle.
-    std::array<double, max_columns + 1> columns;  ///< Edges: tangents about `bearing`, or sines of cones; the last again.
-    std::array<double, max_rows + 1> rows;        ///< Edges: sines of elevation; the last again.
-    uint32_t seen;                                ///< Bit max_columns * row + column of each sample that sees the plane.
-    std::array<uint32_t, max_columns> beams;      ///< Of the columns, from the first beam of the sums [1].
-    double strength_range;                        ///< Strength times slant range [m].
-    double per_solid_angle;  ///< Two-way pattern in elevation, over the solid angle of a cell [1/sr].
+    std::array<double, max_columns + 1>
+        columns;                              ///< Edges: tangents about `bearing`, or sines of cones; the last again.
+    std::array<double, max_rows + 1> rows;    ///< Edges: sines of elevation; the last again.
+    uint32_t seen;                            ///< Bit max_columns * row + column of each sample that sees the plane.
+    std::array<uint32_t, max_columns> beams;  ///< Of the columns, from the first beam of the sums [1].
+    double strength_range;                    ///< Strength times slant range [m].
+    double per_solid_angle;                   ///< Two-way pattern in elevation, over the solid angle of a cell [1/sr].
     const ObjectRecord& object;
     uint32_t number;  ///< Of the object [1].
     bool conical;     ///< Bearings are those of cones.

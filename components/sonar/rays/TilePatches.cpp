@@ -6,11 +6,13 @@
 #include <glm/geometric.hpp>
 
 #include "components/sonar/field/Scatterers.hpp"
+#include "types/VectorMath.hpp"
 
 namespace insonify::sonar {
 namespace {
 
-/** A rectangle of samples. Edges and middles: of columns in AngularView::bearings, of rows in AngularView::elevations. */
+/** A rectangle of samples. Edges and middles: of columns in AngularView::bearings, of rows in AngularView::elevations.
+ */
 struct Rectangle {
     int first_column, columns, first_row, rows;
     size_t left, right, low, high;
@@ -86,8 +88,7 @@ private:
     int rowOf(int place) const { return place / shape_.all.columns; }
     uint32_t bits(int column, int columns, int row, int rows) const {
         uint32_t all = 0;
-        for (int up = row; up < row + rows; ++up)
-            all |= ((1u << columns) - 1) << (up * shape_.all.columns + column);
+        for (int up = row; up < row + rows; ++up) all |= ((1u << columns) - 1) << (up * shape_.all.columns + column);
         return all;
     }
     Rectangle around(const CastTile& tile, uint32_t samples) const {
@@ -189,8 +190,8 @@ private:
             cells_.width[i] = view_.bearings[all.right] - view_.bearings[all.left];
             cells_.lean[i] = 0;
         }
-        cells_.size[i] = cells_.width[i] *
-                         (view_.elevations[all.high].weighted - view_.elevations[all.low].weighted) / view_.cell();
+        cells_.size[i] =
+            cells_.width[i] * (view_.elevations[all.high].weighted - view_.elevations[all.low].weighted) / view_.cell();
     }
 
     /** Of the middle of the cell that aim() has just set; 0 where its material has no map. */
@@ -224,8 +225,8 @@ private:
                          ahead = edge.cosine * middle.cosine + edge.sine * middle.sine;
             patch.columns[static_cast<size_t>(k)] = conical_ ? edge.sine : aside / std::max(ahead, 1e-9);
             if (k < Patch::max_columns)
-                patch.beams[static_cast<size_t>(k)] = static_cast<uint32_t>(
-                    view_.beam_of[static_cast<size_t>(column)] - deposit_.to().first_beam);
+                patch.beams[static_cast<size_t>(k)] =
+                    static_cast<uint32_t>(view_.beam_of[static_cast<size_t>(column)] - deposit_.to().first_beam);
         }
     }
 
@@ -278,16 +279,18 @@ private:
     CellDeposit deposit_;
     Cells& cells_;
     Scatterers fields_;
-    int place_[tile_samples];   ///< Of each sample, row by row.
-    int sample_[tile_samples];  ///< At each place.
+    int place_[tile_samples];                                              ///< Of each sample, row by row.
+    int sample_[tile_samples];                                             ///< At each place.
     alignas(64) uint32_t command_[tile_samples], triangle_[tile_samples];  ///< Of the tile at hand, row by row.
     Source sources_[Cells::capacity];
 };
 
 }  // namespace
 
-void depositPatches(const EchoRules& rules, const CastView& view, const PlacedScene& scene,
-                    std::span<const CastTile> tiles, const EchoSums& to) {
+INSONIFY_VECTOR_CLONES __attribute__((flatten)) void depositPatches(const EchoRules& rules, const CastView& view,
+                                                                    const PlacedScene& scene,
+                                                                    std::span<const CastTile> tiles,
+                                                                    const EchoSums& to) {
     TilePatches patches(rules, view, scene, to);
     for (const CastTile& tile : tiles) patches.add(tile);
     patches.finish();
