@@ -46,7 +46,8 @@ public:
           scene_(scene),
           deposit_(rules, scene.water, false, to),
           cells_(deposit_.cells),
-          fields_(rules, to.sums) {
+          fields_(rules, to.sums),
+          column_bits_(std::countr_zero(static_cast<uint32_t>(shape_.all.columns))) {
         for (int i = 0; i < tile_samples; ++i) {
             place_[i] = shape_.at[i].rows * shape_.all.columns + shape_.at[i].columns;
             sample_[place_[i]] = i;
@@ -84,8 +85,8 @@ public:
 
 private:
     /** Samples are numbered row by row here: bit all.columns * row + column. */
-    int columnOf(int place) const { return place % shape_.all.columns; }
-    int rowOf(int place) const { return place / shape_.all.columns; }
+    int columnOf(int place) const { return place & (shape_.all.columns - 1); }
+    int rowOf(int place) const { return place >> column_bits_; }
     uint32_t bits(int column, int columns, int row, int rows) const {
         uint32_t all = 0;
         for (int up = row; up < row + rows; ++up) all |= ((1u << columns) - 1) << (up * shape_.all.columns + column);
@@ -279,8 +280,9 @@ private:
     CellDeposit deposit_;
     Cells& cells_;
     Scatterers fields_;
-    int place_[tile_samples];                                              ///< Of each sample, row by row.
-    int sample_[tile_samples];                                             ///< At each place.
+    int column_bits_;           ///< Columns of a tile are a power of 2: of this [1].
+    int place_[tile_samples];   ///< Of each sample, row by row.
+    int sample_[tile_samples];  ///< At each place.
     alignas(64) uint32_t command_[tile_samples], triangle_[tile_samples];  ///< Of the tile at hand, row by row.
     Source sources_[Cells::capacity];
 };
