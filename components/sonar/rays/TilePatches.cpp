@@ -218,16 +218,21 @@ private:
 
     /** Columns' edges: tangents about the middle of the rectangle, or sines of cones; and their beams. */
     void setColumns(const Rectangle& all, Patch& patch) const {
-        for (int k = 0; k <= Patch::max_columns; ++k) {
+        const AngularView::Direction& middle = patch.bearing;
+        const auto first_beam = deposit_.to().first_beam;
+        for (int k = 0; k <= all.columns; ++k) {
             const int column = all.first_column + std::min(k, all.columns - 1);
             const AngularView::Direction& edge = view_.azimuths[k < all.columns ? view_.at(column) : all.right];
-            const AngularView::Direction& middle = patch.bearing;
             const double aside = edge.sine * middle.cosine - edge.cosine * middle.sine,
                          ahead = edge.cosine * middle.cosine + edge.sine * middle.sine;
             patch.columns[static_cast<size_t>(k)] = conical_ ? edge.sine : aside / std::max(ahead, 1e-9);
             if (k < Patch::max_columns)
                 patch.beams[static_cast<size_t>(k)] =
-                    static_cast<uint32_t>(view_.beam_of[static_cast<size_t>(column)] - deposit_.to().first_beam);
+                    static_cast<uint32_t>(view_.beam_of[static_cast<size_t>(column)] - first_beam);
+        }
+        for (auto k = static_cast<size_t>(all.columns); k < Patch::max_columns; ++k) {
+            patch.columns[k + 1] = patch.columns[k];
+            patch.beams[k] = patch.beams[k - 1];
         }
     }
 
