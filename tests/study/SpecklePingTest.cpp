@@ -296,6 +296,19 @@ TEST(SpecklePingTest, WaterThatScattersHasSpeckleToo) {
     EXPECT_EQ(pingOf(config, open).bins, pingOf(config, open).bins);
 }
 
+TEST(SpecklePingTest, WaterInFrontOfABottomIsInTheBeamThatHearsIt) {
+    // Most samples of two beams side by side see the same triangle.
+    SonarConfig config = coherent(boxes());
+    config.volume = {VolumeLayer{{}, {}, -10}};
+    const SpeckleField field = fieldOf(config, overBottom());
+    const auto bins = static_cast<size_t>(config.bin_count);
+    double sums[2] = {}, counts[2] = {};
+    for (size_t i = 0; i < field.relative.size(); ++i)
+        if (std::isfinite(field.relative[i])) sums[i / bins % 2] += field.relative[i], ++counts[i / bins % 2];
+    EXPECT_NEAR(sums[0] / counts[0], 1, 0.04) << "beams of even numbers";
+    EXPECT_NEAR(sums[1] / counts[1], 1, 0.04) << "beams of odd numbers";
+}
+
 TEST(SpecklePingTest, WaterAndMirrorsAddTheirEnergiesForTheirFieldsHaveNothingInCommon) {
     SonarConfig config = coherent(boxes());
     config.volume = {VolumeLayer{{}, {}, -20}};

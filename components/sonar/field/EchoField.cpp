@@ -1,6 +1,7 @@
 #include "components/sonar/field/EchoField.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <glm/gtc/quaternion.hpp>
 #include <limits>
@@ -16,6 +17,26 @@ namespace {
 /** fields[j] += weight * from[j]. */
 INSONIFY_VECTOR_CLONES void addScaled(const float* from, float weight, float* __restrict fields, size_t count) {
     for (size_t j = 0; j < count; ++j) fields[j] += weight * from[j];
+}
+
+/** fields[j] += sum of weights[i] * from[i][j]. */
+INSONIFY_VECTOR_CLONES void addFour(const std::array<const float*, 4>& from, const std::array<float, 4>& weights,
+                                    float* __restrict fields, size_t count) {
+    const float *const a = from[0], *const b = from[1], *const c = from[2], *const d = from[3];
+    for (size_t j = 0; j < count; ++j)
+        fields[j] += (weights[0] * a[j] + weights[1] * b[j]) + (weights[2] * c[j] + weights[3] * d[j]);
+}
+
+/** Fields of every `stride`-th range cell, from their sums. */
+INSONIFY_VECTOR_CLONES void scaleSums(const uint64_t* sums, const double* amplitudes, size_t stride, double quantum,
+                                      float* __restrict fields, size_t count) {
+    for (size_t j = 0; j < count; ++j) {
+        const double unit = amplitudes[stride * j] * quantum;
+        const auto real = static_cast<int64_t>(sums[2 * stride * j]),
+                   imaginary = static_cast<int64_t>(sums[2 * stride * j + 1]);
+        fields[2 * j] = static_cast<float>(static_cast<double>(real) * unit);
+        fields[2 * j + 1] = static_cast<float>(static_cast<double>(imaginary) * unit);
+    }
 }
 
 INSONIFY_VECTOR_CLONES void square(const float* fields, float* __restrict intensities, size_t count) {
@@ -90,10 +111,17 @@ void FieldResponse::spread(std::span<const float> sorted, std::span<float> field
         return;
     }
     std::ranges::fill(fields, 0.0f);
-    for (const Tap& tap : taps_) {
-        const ptrdiff_t first = static_cast<ptrdiff_t>(tap.run * runLength() + 2 * margin_) + 2 * tap.shift;
-        addScaled(sorted.data() + first, tap.weight, fields.data(), fields.size());
+    const auto fromOf = [&](const Tap& tap) {
+        return sorted.data() + (static_cast<ptrdiff_t>(tap.run * runLength() + 2 * margin_) + 2 * tap.shift);
+    };
+    size_t t = 0;
+    for (; t + 4 <= taps_.size(); t += 4) {
+        std::array<const float*, 4> from;
+        std::array<float, 4> weights;
+        for (size_t i = 0; i < 4; ++i) from[i] = fromOf(taps_[t + i]), weights[i] = taps_[t + i].weight;
+        addFour(from, weights, fields.data(), fields.size());
     }
+    for (; t < taps_.size(); ++t) addScaled(fromOf(taps_[t]), taps_[t].weight, fields.data(), fields.size());
 }
 
 double FieldResponse::amplitude(size_t sample, double range) const {
@@ -123,21 +151,16 @@ EchoField::EchoField(const RenderPlan& plan, int threads) : plan_(plan), respons
 bool EchoField::fill(size_t cell, const EchoRules& rules, const uint64_t* sums, double solid_angle, size_t thread) {
     Scratch& scratch = scratch_[thread];
     const double quantum = std::sqrt(solid_angle / rules.strength_scale) / quanta_per_unit;
-    uint64_t any = 0;
-    for (size_t k = 0; k < response_.cells(); ++k) {
-        const uint64_t real = sums[2 * k], imaginary = sums[2 * k + 1];
-        any |= real | imaginary;
-        float* const field = &scratch.sorted[response_.place(k)];
-        const double unit = amplitudes_[k] * quantum;
-        field[0] = static_cast<float>(static_cast<double>(static_cast<int64_t>(real)) * unit);
-        field[1] = static_cast<float>(static_cast<double>(static_cast<int64_t>(imaginary)) * unit);
-    }
+    const size_t cells = response_.cells(), samples = response_.samples(), stride = cells / samples;
+    for (size_t run = 0; run < stride; ++run)
+        scaleSums(sums + 2 * run, amplitudes_.data() + run, stride, quantum, &scratch.sorted[response_.place(run)],
+                  samples);
     if (!rules.own.empty()) {
         addOwnSums(rules, sums, cell, solid_angle, energies(thread));
         scatter(cell, scratch.energies, 1, scratch);
     }
     response_.spread(scratch.sorted, {&cells_[cell * numbers()], numbers()});
-    return any != 0;
+    return std::any_of(sums, sums + 2 * cells, [](uint64_t sum) { return sum != 0; });
 }
 
 std::span<float> EchoField::energies(size_t thread) {

@@ -5,27 +5,33 @@
 #include <glm/geometric.hpp>
 #include <glm/vec2.hpp>
 #include <limits>
+#include <utility>
 
 #include "components/sonar/field/RandomFields.hpp"
 #include "types/VectorMath.hpp"
 
 namespace insonify::sonar {
 
-/** What is the same for all scatterers of a patch on one lattice, about its middle. */
+/** What is the same for all scatterers of a patch on one lattice. They lie u and v spacings from its middle. */
 struct LatticePatch {
-    uint32_t key, base_u, base_v;       ///< The square of the middle.
-    float middle_u, middle_v;           ///< Where it lies in that [spacings].
-    float along_u[3], along_v[3];       ///< A spacing further on the plane [m].
-    float at[3], range;                 ///< The middle [m].
-    float low[2], low_at, low_cone;     ///< Past its lower bearing: low.d + low_at - low_cone range >= 0 [1, m, 1].
-    float high[2], high_at, high_cone;  ///< The same of the upper one,
-    float next[3][2], next_at[3], next_cone[3];  ///< and of those between beams.
-    float low_sine, high_sine;                   ///< Of elevation [1].
-    float near_end, far_end;                     ///< Slant ranges, from the middle's [m].
-    float amplitude;                             ///< Times the square root of a power over the square of the range.
-    float turns, turns_per_metre;                ///< Phase of the middle, two way.
-    float cell_offset, cells_per_metre, cell_width;
-    int32_t first_cell, cell_count;
+    /** Of u and v: constant + u * along_u + v * along_v. */
+    struct Plane {
+        float constant, along_u, along_v;
+    };
+    uint32_t key, base_u, base_v;                               ///< The square of the middle.
+    float middle_u, middle_v;                                   ///< Where it lies in that [spacings].
+    float range;                                                ///< Of the middle [m].
+    float square_u, square_v, square_uu, square_uv, square_vv;  ///< Of the square of the slant range over the middle's.
+    Plane height, aside, ahead;                                 ///< In the direction of the middle's bearing [m].
+    float ahead_per_range;
+    float columns[Patch::max_columns + 1], rows[Patch::max_rows + 1];
+    uint32_t seen;
+    int32_t sum, next_sums[Patch::max_columns - 1];  ///< The beam's first sum; on to that of the next column.
+    float near_end, far_end;                         ///< Slant ranges, from the middle's [m].
+    float amplitude;                                 ///< Times the square root of a power over the square of the range.
+    float turns, turns_per_metre;                    ///< Phase of the middle, two way.
+    float cells_per_metre;
+    uint32_t cell_count;
 };
 
 /** A patch in the coordinates of the lattice of its object: two of the object's axes, in metres. */
@@ -60,42 +66,40 @@ float gammaStrength(float shape, uint32_t bits) {
 INSONIFY_VECTOR_CLONES void scatter(const LatticePatch& patch, const LatticeSquares& squares, int count,
                                     ScatteredFields& __restrict fields) {
     const LatticePatch p = patch;
-    const int whole_vectors = (count + 15) & ~15;
+    const int whole_vectors = (count + LatticeSquares::at_once - 1) & ~(LatticeSquares::at_once - 1);
     for (int i = 0; i < whole_vectors; ++i) {
         const uint32_t place = mixed(mixed(p.base_u + static_cast<uint32_t>(squares.u[i]) + p.key) + p.base_v +
                                      static_cast<uint32_t>(squares.v[i]));
         const uint32_t power = mixed(place + 0x632be5abu);
-        const float on_u = static_cast<float>(squares.u[i]) + uniform(place) - p.middle_u;
-        const float on_v = static_cast<float>(squares.v[i]) + uniform(place >> 16) - p.middle_v;
-        const float x = on_u * p.along_u[0] + on_v * p.along_v[0], y = on_u * p.along_u[1] + on_v * p.along_v[1],
-                    z = on_u * p.along_u[2] + on_v * p.along_v[2];
-        const float change = 2 * (p.at[0] * x + p.at[1] * y + p.at[2] * z) + (x * x + y * y + z * z);
+        const float u = static_cast<float>(squares.u[i]) + uniform(place) - p.middle_u;
+        const float v = static_cast<float>(squares.v[i]) + uniform(place >> 16) - p.middle_v;
+        const float change = u * (p.square_u + p.square_uu * u + p.square_uv * v) + v * (p.square_v + p.square_vv * v);
         const float square = p.range * p.range + change;
         const float range = std::sqrt(square > 1e-12f ? square : 1e-12f), sum = p.range + range;
         const float per_both = 1 / (range * sum);  // one division for two
         const float further = change * per_both * range, per_range = per_both * sum;
-        const float past_low = p.low[0] * x + p.low[1] * y + p.low_at - p.low_cone * range;
-        const float past_high = p.high[0] * x + p.high[1] * y + p.high_at - p.high_cone * range;
-        const float height = p.at[2] + z;
-        const float cells = (further + p.cell_offset) * p.cells_per_metre;
-        const auto whole = static_cast<int32_t>(cells);
-        const int32_t cell = p.first_cell + whole - (cells < static_cast<float>(whole) ? 1 : 0);
-        const int inside = (height >= p.low_sine * range) & (height < p.high_sine * range) & (further >= p.near_end) &
-                           (further < p.far_end) & (past_low >= 0) & (past_high < 0) & (cell >= 0) &
-                           (cell < p.cell_count);
-        const float middle = (static_cast<float>(cell) + 0.5f) * p.cell_width;
-        const float whole_field =
-            p.amplitude * std::sqrt(-logarithm(uniform(power))) * per_range * per_range * per_range * middle;
-        const float field = inside != 0 ? whole_field : 0.0f;
+        const float height = p.height.constant + u * p.height.along_u + v * p.height.along_v;
+        const float aside = p.aside.constant + u * p.aside.along_u + v * p.aside.along_v;
+        const float ahead = p.ahead.constant + u * p.ahead.along_u + v * p.ahead.along_v + p.ahead_per_range * range;
+        int32_t sample = 0, first_sum = p.sum;
+        for (int k = 0; k < 3; ++k) {
+            sample += height >= p.rows[k + 1] * range ? Patch::max_columns : 0;
+            const bool past = aside >= p.columns[k + 1] * ahead;
+            sample += past ? 1 : 0;
+            first_sum += past ? p.next_sums[k] : 0;
+        }
+        const auto cell = static_cast<int32_t>(range * p.cells_per_metre);
+        const int inside = (height >= p.rows[0] * range) & (height < p.rows[4] * range) &
+                           (aside >= p.columns[0] * ahead) & (aside < p.columns[4] * ahead) & (further >= p.near_end) &
+                           (further < p.far_end) & (static_cast<uint32_t>(cell) < p.cell_count) &
+                           static_cast<int>(p.seen >> sample);
+        const float field = p.amplitude * std::sqrt(-logarithm(uniform(power))) * per_range * per_range * per_range *
+                            (static_cast<float>(cell) + 0.5f);
         const float phase = p.turns + p.turns_per_metre * further + uniform(power >> 16);
         const float turns = phase - nearest(phase);
         fields.real[i] = field * cosineOf(turns);
         fields.imaginary[i] = field * sineOf(turns);
-        int32_t beam = 0;
-        for (int k = 0; k < 3; ++k)
-            beam += p.next[k][0] * x + p.next[k][1] * y + p.next_at[k] - p.next_cone[k] * range >= 0;
-        fields.cell[i] = inside != 0 ? cell : 0;
-        fields.beam[i] = inside != 0 ? beam : 0;
+        fields.sum[i] = (inside & 1) != 0 ? first_sum + static_cast<int32_t>(2 * static_cast<uint32_t>(cell)) : -1;
         fields.bits[i] = place;
     }
 }
@@ -123,69 +127,65 @@ struct PatchOutline {
     }
 };
 
-/** An outline row by row of squares. */
+/** The squares of a lattice that an outline meets, row by row. */
 class OutlineRows {
 public:
     /** Rows are counted along the axis in which the outline is shorter. */
     explicit OutlineRows(const PatchOutline& outline) {
         const Span u = outline.extent(0), v = outline.extent(1);
-        axis = v.high - v.low <= u.high - u.low ? 1 : 0;
-        const Span rows = axis == 1 ? v : u;
+        axis_ = v.high - v.low <= u.high - u.low ? 1 : 0;
+        const Span rows = axis_ == 1 ? v : u, across = axis_ == 1 ? u : v;
         first = below(rows.low);
         last = below(rows.high);
-        const Span other = axis == 1 ? u : v;
-        first_across = below(other.low);
-        last_across = below(other.high);
-        if (isSmall()) return;
-        margin_ = outline.margin;
-        for (size_t k = 0; k < 4; ++k) {
-            const glm::dvec2 a = outline.corners[k], b = outline.corners[(k + 1) % 4];
-            const double rise = b[axis] - a[axis];
-            sides_[k] = {std::min(a[axis], b[axis]), std::max(a[axis], b[axis]), 0,
-                         rise != 0 ? (b[1 - axis] - a[1 - axis]) / rise : 0};
-            sides_[k].at_zero = a[1 - axis] - sides_[k].slope * a[axis];
-        }
+        first_across_ = below(across.low);
+        last_across_ = below(across.high);
+        if ((last - first + 1.0) * (last_across_ - first_across_ + 1.0) > LatticeSquares::at_once) setSides(outline);
     }
-    /** What of it lies in a row, along the other axis. */
-    Span span(int row) const {
-        const double from = row - margin_[axis], to = row + 1 + margin_[axis];
-        Span span{std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity()};
-        for (const Side& side : sides_) {
-            const double low = std::max(side.low, from), high = std::min(side.high, to);
-            if (low > high) continue;
-            const double one = side.at_zero + low * side.slope, other = side.at_zero + high * side.slope;
-            span = {std::min({span.low, one, other}), std::max({span.high, one, other})};
-        }
-        return {span.low - margin_[1 - axis], span.high + margin_[1 - axis]};
+    bool isAlong(int axis) const { return axis == axis_; }
+    /** The first and the last square of a row, along the other axis. */
+    std::pair<int32_t, int32_t> across(int32_t row) const {
+        double low = first_across_, high = last_across_;
+        for (const Side& side : {lows_[0], lows_[1]}) low = std::max(low, side.at_zero + row * side.slope);
+        for (const Side& side : {highs_[0], highs_[1]}) high = std::min(high, side.at_zero + row * side.slope);
+        return {-below(-std::min(low, last_across_ + 1.0)), below(std::max(high, first_across_ - 1.0))};
     }
 
-    /** Few squares, all of which are as good as those of each row. */
-    bool isSmall() const { return (last - first + 1) * (last_across - first_across + 1) <= small; }
-
-    static constexpr int small = 32;
-    int axis;
     int32_t first, last;
-    int32_t first_across, last_across;
 
 private:
+    /** Where a square of a row touches it. */
     struct Side {
-        double low, high, at_zero, slope;
+        double at_zero, slope = 0;
     };
-    Side sides_[4];
-    glm::dvec2 margin_;
+
+    /** Half planes: what lies within those of all sides is the outline, or more where it is not convex. */
+    void setSides(const PatchOutline& outline) {
+        const auto& corners = outline.corners;
+        const glm::dvec2 a = corners[2] - corners[0], b = corners[3] - corners[1];
+        const double turn = a.x * b.y - a.y * b.x >= 0 ? 1 : -1;
+        size_t lows = 0, highs = 0;
+        for (size_t k = 0; k < 4; ++k) {
+            const glm::dvec2 along = corners[(k + 1) % 4] - corners[k], out(turn * along.y, -turn * along.x);
+            const double across = out[1 - axis_], up = out[axis_];
+            std::array<Side, 2>& sides = across < 0 ? lows_ : highs_;
+            size_t& count = across < 0 ? lows : highs;
+            if (across == 0 || count == sides.size()) continue;
+            double end = glm::dot(out, corners[0]);
+            for (const glm::dvec2& corner : corners) end = std::max(end, glm::dot(out, corner));
+            end += std::abs(out.x) * outline.margin.x + std::abs(out.y) * outline.margin.y - std::min(out.x, 0.0) -
+                   std::min(out.y, 0.0);
+            sides[count++] = {end / across, -up / across};
+        }
+    }
+
+    int axis_;
+    int32_t first_across_, last_across_;
+    std::array<Side, 2> lows_{Side{-unbounded}, Side{-unbounded}}, highs_{Side{unbounded}, Side{unbounded}};
+    static constexpr double unbounded = std::numeric_limits<double>::infinity();
 };
 
 double inverseRange(const Patch& patch, const glm::dvec3& direction) {
     return glm::dot(patch.normal, direction) / patch.distance;
-}
-
-/** How a point lies past a bearing: past.d + from - cone * range [1, m, 1]. */
-void setBearing(bool conical, AngularView::Direction bearing, const glm::dvec3& at, float* past, float& from,
-                float& cone) {
-    past[0] = static_cast<float>(conical ? 0 : -bearing.sine);
-    past[1] = static_cast<float>(conical ? 1 : bearing.cosine);
-    from = static_cast<float>(conical ? at.y : bearing.cosine * at.y - bearing.sine * at.x);
-    cone = static_cast<float>(conical ? bearing.sine : 0);
 }
 
 PatchOutline outlineOf(const Patch& patch, const PatchLattice& lattice, const glm::dvec2& base, double spacing,
@@ -208,42 +208,54 @@ PatchOutline outlineOf(const Patch& patch, const PatchLattice& lattice, const gl
     return outline;
 }
 
-/** The phase of the middle of a patch, and the range cell that it is in. */
-void setRange(const EchoRules& rules, double range, LatticePatch& part) {
-    const double width = rules.bins.bin_width, turns = rules.turns_per_metre * range, cell = std::floor(range / width);
-    part.range = static_cast<float>(range);
-    part.turns = static_cast<float>(turns - std::floor(turns));
-    part.turns_per_metre = static_cast<float>(rules.turns_per_metre);
-    part.cell_offset = static_cast<float>(range - cell * width);
-    part.cells_per_metre = static_cast<float>(1 / width);
-    part.cell_width = static_cast<float>(width);
-    part.first_cell = static_cast<int32_t>(cell);
-    part.cell_count = static_cast<int32_t>(rules.bins.bin_count);
+/** Of a point at `at`, and u and v along: its part in a direction. */
+LatticePatch::Plane planeOf(const glm::dvec3& direction, const glm::dvec3& at, const glm::dvec3& along_u,
+                            const glm::dvec3& along_v) {
+    const auto part = [&](const glm::dvec3& of) { return static_cast<float>(glm::dot(direction, of)); };
+    return {part(at), part(along_u), part(along_v)};
+}
+
+/** Sets where scatterers are seen: edges of samples, and the sums of their beams. */
+void setSamples(const EchoRules& rules, const Patch& patch, LatticePatch& part) {
+    std::ranges::transform(patch.columns, part.columns, [](double edge) { return static_cast<float>(edge); });
+    std::ranges::transform(patch.rows, part.rows, [](double edge) { return static_cast<float>(edge); });
+    part.seen = patch.seen;
+    const auto sums = static_cast<int32_t>(rules.sumCount());
+    part.sum = static_cast<int32_t>(patch.beams[0]) * sums;
+    for (size_t k = 0; k + 1 < Patch::max_columns; ++k)
+        part.next_sums[k] = static_cast<int32_t>(patch.beams[k + 1] - patch.beams[k]) * sums;
 }
 
 LatticePatch partOf(const EchoRules& rules, const Patch& patch, const PatchLattice& lattice, const glm::dvec2& base,
                     const LatticeLevel& level) {
-    const glm::dvec3 at = lattice.range * patch.middle;
+    const glm::dvec3 at = lattice.range * patch.middle, along_u = level.spacing * lattice.along[0],
+                     along_v = level.spacing * lattice.along[1];
     LatticePatch part{};
     part.key = mixed(patch.number * 6 + lattice.side + mixed(level.number + 1));
     part.base_u = squareOf(base.x);
     part.base_v = squareOf(base.y);
     part.middle_u = static_cast<float>(lattice.middle.x / level.spacing - base.x);
     part.middle_v = static_cast<float>(lattice.middle.y / level.spacing - base.y);
-    for (int i = 0; i < 3; ++i) {
-        part.along_u[i] = static_cast<float>(level.spacing * lattice.along[0][i]);
-        part.along_v[i] = static_cast<float>(level.spacing * lattice.along[1][i]);
-        part.at[i] = static_cast<float>(at[i]);
-    }
-    setRange(rules, lattice.range, part);
-    setBearing(patch.conical, patch.low_bearing, at, part.low, part.low_at, part.low_cone);
-    setBearing(patch.conical, patch.high_bearing, at, part.high, part.high_at, part.high_cone);
-    std::ranges::fill(part.next_at, -1.0f);
-    for (size_t k = 0; k + 1 < patch.beams; ++k)
-        setBearing(patch.conical, patch.next_bearings[k], at, part.next[k], part.next_at[k], part.next_cone[k]);
-    part.low_sine = static_cast<float>(patch.low_sine);
-    part.high_sine = static_cast<float>(patch.high_sine);
-    part.amplitude = static_cast<float>(level.spacing *
+    part.range = static_cast<float>(lattice.range);
+    part.square_u = static_cast<float>(2 * glm::dot(at, along_u));
+    part.square_v = static_cast<float>(2 * glm::dot(at, along_v));
+    part.square_uu = static_cast<float>(glm::dot(along_u, along_u));
+    part.square_uv = static_cast<float>(2 * glm::dot(along_u, along_v));
+    part.square_vv = static_cast<float>(glm::dot(along_v, along_v));
+    const AngularView::Direction towards = patch.conical ? AngularView::Direction{1, 0} : patch.bearing;
+    part.height = planeOf({0, 0, 1}, at, along_u, along_v);
+    part.aside = planeOf({-towards.sine, towards.cosine, 0}, at, along_u, along_v);
+    if (patch.conical)
+        part.ahead_per_range = 1;
+    else
+        part.ahead = planeOf({towards.cosine, towards.sine, 0}, at, along_u, along_v);
+    setSamples(rules, patch, part);
+    const double turns = rules.turns_per_metre * lattice.range;
+    part.turns = static_cast<float>(turns - std::floor(turns));
+    part.turns_per_metre = static_cast<float>(rules.turns_per_metre);
+    part.cells_per_metre = static_cast<float>(1 / rules.bins.bin_width);
+    part.cell_count = static_cast<uint32_t>(rules.bins.bin_count);
+    part.amplitude = static_cast<float>(rules.bins.bin_width * level.spacing *
                                         std::sqrt(patch.strength_range * patch.per_solid_angle * lattice.area_height));
     return part;
 }
@@ -296,7 +308,7 @@ Scatterers::Ranges Scatterers::rangesOf(const Patch& patch) const {
     return {1 / std::min({high + bulge, nearest_inverse, rules_.edges.front()}), 1 / std::max(low - bulge, far_edge)};
 }
 
-void Scatterers::deposit(const Patch& patch, size_t beam) {
+void Scatterers::deposit(const Patch& patch) {
     if (!(patch.strength_range > 0)) return;
     const Ranges all = rangesOf(patch);
     if (!(all.near < all.far)) return;
@@ -309,47 +321,48 @@ void Scatterers::deposit(const Patch& patch, size_t beam) {
     for (const LatticeLevel& level : rules_.lattice) {
         const Ranges here{std::max(all.near, begin), std::min(all.far, level.range_end)};
         begin = level.range_end;
-        if (here.near < here.far) depositLevel(patch, lattice, level, here, sums_ + beam * beam_sums_);
+        if (here.near < here.far) depositLevel(patch, lattice, level, here);
     }
 }
 
-void Scatterers::depositLevel(const Patch& patch, const PatchLattice& lattice, const LatticeLevel& level,
-                              const Ranges& ranges, uint64_t* of_beam) {
+INSONIFY_VECTOR_CLONES __attribute__((flatten)) void Scatterers::depositLevel(const Patch& patch,
+                                                                              const PatchLattice& lattice,
+                                                                              const LatticeLevel& level,
+                                                                              const Ranges& ranges) {
     const glm::dvec2 base = glm::floor(lattice.middle / level.spacing);
     LatticePatch part = partOf(rules_, patch, lattice, base, level);
     part.near_end = static_cast<float>(ranges.near - lattice.range);
     part.far_end = static_cast<float>(ranges.far - lattice.range);
     const OutlineRows rows(outlineOf(patch, lattice, base, level.spacing, ranges.near, ranges.far));
-    int32_t* const across = rows.axis == 1 ? squares_.u : squares_.v;
-    int32_t* const up = rows.axis == 1 ? squares_.v : squares_.u;
+    int32_t* const across = rows.isAlong(1) ? squares_.u : squares_.v;
+    int32_t* const up = rows.isAlong(1) ? squares_.v : squares_.u;
     int count = 0;
-    const auto add = [&] {
-        for (int i = count; i < LatticeSquares::most && i % 16 != 0; ++i) squares_.u[i] = squares_.v[i] = 0;
-        scatter(part, squares_, count, fields_);
-        sum(level, count, of_beam);
-        count = 0;
-    };
-    for (int32_t row = rows.first; rows.isSmall() && row <= rows.last; ++row)
-        for (int32_t at = rows.first_across; at <= rows.last_across; ++at, ++count) across[count] = at, up[count] = row;
-    for (int32_t row = rows.first; !rows.isSmall() && row <= rows.last; ++row) {
-        const Span span = rows.span(row);
-        if (!(span.low <= span.high)) continue;
-        const int32_t last = below(span.high);
-        for (int32_t at = below(span.low); at <= last;) {
-            const int32_t end = std::min(last + 1, at + LatticeSquares::most - count);
-            for (; at < end; ++at, ++count) across[count] = at, up[count] = row;
-            if (count == LatticeSquares::most) add();
+    for (int32_t row = rows.first; row <= rows.last; ++row)
+        for (auto [at, last] = rows.across(row); at <= last; at += LatticeSquares::at_once) {
+            if (count > LatticeSquares::most - LatticeSquares::at_once) {
+                add(part, level, count);
+                count = 0;
+            }
+            for (int i = 0; i < LatticeSquares::at_once; ++i) across[count + i] = at + i;
+            for (int i = 0; i < LatticeSquares::at_once; ++i) up[count + i] = row;
+            count += std::min(last - at + 1, LatticeSquares::at_once);
         }
-    }
-    add();
+    add(part, level, count);
 }
 
-void Scatterers::sum(const LatticeLevel& level, int count, uint64_t* of_beam) {
+void Scatterers::add(const LatticePatch& part, const LatticeLevel& level, int count) {
+    scatter(part, squares_, count, fields_);
+    int inside = 0;
     for (int i = 0; i < count; ++i) {
+        inside_[inside] = i;
+        inside += fields_.sum[i] >= 0 ? 1 : 0;
+    }
+    for (int k = 0; k < inside; ++k) {
+        const int i = inside_[k];
         float root = 1;
         if (level.stands_for > 0)
             root = std::sqrt(gammaStrength(static_cast<float>(level.stands_for), mixed(fields_.bits[i] + 0x5bd1e995u)));
-        uint64_t* const cell = of_beam + static_cast<size_t>(fields_.beam[i]) * beam_sums_ + 2 * fields_.cell[i];
+        uint64_t* const cell = sums_ + fields_.sum[i];
         cell[0] += signedQuanta(root * fields_.real[i]);
         cell[1] += signedQuanta(root * fields_.imaginary[i]);
     }

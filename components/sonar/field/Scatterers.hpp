@@ -9,21 +9,23 @@
 
 namespace insonify::sonar {
 
-/** A part of a triangle's plane that neighbouring samples see; sonar axes. */
+/** The part of a triangle's plane that samples of one rectangle see; sonar axes. */
 struct Patch {
-    static constexpr size_t max_beams = 4;  ///< As many as a tile has columns.
+    static constexpr int max_columns = 4, max_rows = 4;  ///< Of the rectangle, unless all of it is seen.
 
     glm::dvec3 normal;                  ///< Of any length [1].
     double distance;                    ///< normal.p of its points [m].
-    glm::dvec3 middle;                  ///< Unit, to its middle [1].
+    glm::dvec3 middle;                  ///< Unit, to the rectangle's middle [1].
     std::array<glm::dvec3, 4> corners;  ///< Unit, to its corners, one side after the other [1].
-    AngularView::Direction low_bearing, high_bearing;
-    size_t beams;                                                     ///< In which it lies, neighbours [1].
-    std::array<AngularView::Direction, max_beams - 1> next_bearings;  ///< Where the second begins, and so on.
-    double low_sine, high_sine;                                       ///< Of its elevations [1].
-    double width, height;                                             ///< [rad]
-    double strength_range;                                            ///< Strength times slant range [m].
-    double per_solid_angle;  ///< Two-way pattern in elevation, over the solid angle of a cell [1/sr].
+    double width, height;               ///< [rad]
+    AngularView::Direction bearing;     ///< Of the middle.
+    std::array<double, max_columns + 1>
+        columns;                              ///< Edges: tangents about `bearing`, or sines of cones; the last again.
+    std::array<double, max_rows + 1> rows;    ///< Edges: sines of elevation; the last again.
+    uint32_t seen;                            ///< Bit max_columns * row + column of each sample that sees the plane.
+    std::array<uint32_t, max_columns> beams;  ///< Of the columns, from the first beam of the sums [1].
+    double strength_range;                    ///< Strength times slant range [m].
+    double per_solid_angle;                   ///< Two-way pattern in elevation, over the solid angle of a cell [1/sr].
     const ObjectRecord& object;
     uint32_t number;  ///< Of the object [1].
     bool conical;     ///< Bearings are those of cones.
@@ -45,15 +47,14 @@ struct LatticePatch;
 
 /** Squares of a lattice in which scatterers of a patch may be, from the square that holds its middle. */
 struct LatticeSquares {
-    static constexpr int most = 256;
-    alignas(64) int32_t u[most] = {}, v[most] = {};
+    static constexpr int most = 256, at_once = 16;
+    alignas(64) int32_t u[most + at_once] = {}, v[most + at_once] = {};
 };
 
-/** What scatterers add: a field in units of the square root of a whole cell, and to which range cell; 0 to the first:
- *  none. */
+/** What scatterers add: a field in units of the square root of a whole cell, and to which of the sums. */
 struct ScatteredFields {
     alignas(64) float real[LatticeSquares::most], imaginary[LatticeSquares::most];
-    alignas(64) int32_t cell[LatticeSquares::most], beam[LatticeSquares::most];  ///< The beam from the patch's first.
+    alignas(64) int32_t sum[LatticeSquares::most];  ///< Number of the real part's; -1: the patch does not hold it.
     alignas(64) uint32_t bits[LatticeSquares::most];
 };
 
@@ -65,10 +66,9 @@ public:
     static constexpr Features features{Feature::Physical, Feature::Speckle};
 
     /** `sums`: EchoRules::sumCount() for each beam, [range cell][real, imaginary] in quanta, with sign. */
-    Scatterers(const EchoRules& rules, uint64_t* sums) : rules_(rules), beam_sums_(rules.sumCount()), sums_(sums) {}
+    Scatterers(const EchoRules& rules, uint64_t* sums) : rules_(rules), sums_(sums) {}
 
-    /** `beam`: the patch's first. */
-    void deposit(const Patch& patch, size_t beam);
+    void deposit(const Patch& patch);
 
 private:
     /** Slant ranges [m]. */
@@ -76,18 +76,17 @@ private:
         double near, far;
     };
     Ranges rangesOf(const Patch& patch) const;
-    void depositLevel(const Patch& patch, const PatchLattice& lattice, const LatticeLevel& level, const Ranges& ranges,
-                      uint64_t* of_beam);
-    /** Adds the first of fields_ to the sums. */
-    void sum(const LatticeLevel& level, int count, uint64_t* of_beam);
+    void depositLevel(const Patch& patch, const PatchLattice& lattice, const LatticeLevel& level, const Ranges& ranges);
+    /** Adds the fields of the first squares. */
+    void add(const LatticePatch& part, const LatticeLevel& level, int count);
 
     const EchoRules& rules_;
-    size_t beam_sums_;  ///< Numbers of a beam [1].
     uint64_t* sums_;
     LatticeFrame frame_;
     uint32_t frame_of_ = 0xffffffff;  ///< An object's number.
     LatticeSquares squares_;
     ScatteredFields fields_;
+    int32_t inside_[LatticeSquares::most];  ///< Numbers of the fields that the patch holds.
 };
 
 }  // namespace insonify::sonar

@@ -129,7 +129,6 @@ TileShape::TileShape(const AngularView& view, const BinGrid& bins, int beams) {
             at[count + i] = {at[i].columns + (widens ? across : 0), at[i].rows + (widens ? 0 : up)};
     }
     all = size[tile_samples];
-    max_patch = view.joined ? tile_samples : together * all.rows;
     max_merged = std::min(together * all.rows, mostMerged(view, bins));
 }
 

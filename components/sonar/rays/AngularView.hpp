@@ -75,7 +75,6 @@ struct TileShape {
     Extent all{};                                  ///< Of the tile.
     Extent at[tile_samples] = {};                  ///< Of each sample from the tile's first.
     Extent size[tile_samples + 1] = {{}, {1, 1}};  ///< Of so many samples, a power of 2.
-    int max_patch = 1;   ///< Samples of one triangle that may become one patch of scatterers; a power of 2 [1].
     int max_merged = 1;  ///< Samples of one triangle that may become one cell, and are of one beam; a power of 2 [1].
 };
 

@@ -21,6 +21,7 @@
 #include "components/sonar/plan/RenderPlan.hpp"
 #include "components/sonar/rays/RayPaths.hpp"
 #include "components/sonar/rays/TileDirections.hpp"
+#include "components/sonar/rays/TilePatches.hpp"
 
 namespace insonify::sonar {
 namespace {
@@ -271,7 +272,11 @@ bool CastEchoes::gather(const Part& part, Worker& worker) {
 
 void CastEchoes::depositPart(const Part& part, std::span<const CastTile> tiles, Worker& worker) {
     std::fill(worker.sums.begin(), worker.sums.end(), 0);
-    if (!truth_ || field_) depositTiles(rules_, view_, scene(), tiles, {part.first_beam, worker.sums.data()});
+    const EchoSums sums{part.first_beam, worker.sums.data()};
+    if (field_)
+        depositPatches(rules_, view_, scene(), tiles, sums);
+    else if (!truth_)
+        depositTiles(rules_, view_, scene(), tiles, sums);
     if (!truth_) return;
     worker.shown->clear();
     std::vector<uint64_t>& told = field_ ? worker.told_sums : worker.sums;

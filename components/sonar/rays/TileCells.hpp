@@ -43,9 +43,18 @@ struct CastPing {
     PlacedScene scene;
 };
 
-/** Adds the echoes of tiles to sums: energies, or fields as [bin][real, imaginary] with sign. Neighbouring samples of
- * one triangle in one beam may be one cell; with fields also samples of up to Patch::max_beams beams that join.
- * Allocates nothing. */
+/** Asks for the planes that a tile to come needs, which are wherever its triangles are in memory. */
+inline void fetchPlanes(const PlacedScene& scene, const CastTile& tile) {
+    for (int i = 0; i < tile_samples; ++i) {
+        if (tile.hits->command[i] == TileHits::nothing) continue;
+        const PlaneRecord& plane = scene.ranges[tile.hits->command[i]].planes[tile.hits->triangle[i]];
+        __builtin_prefetch(&plane.normal);
+        __builtin_prefetch(&plane.point);  // in the next line of the cache, perhaps
+    }
+}
+
+/** Adds the energies of tiles to sums. Neighbouring samples of one triangle in one beam may be one cell. Allocates
+ *  nothing. */
 void depositTiles(const EchoRules& rules, const CastView& view, const PlacedScene& scene,
                   std::span<const CastTile> tiles, const EchoSums& to);
 

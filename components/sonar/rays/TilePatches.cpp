@@ -1,0 +1,305 @@
+#include "components/sonar/rays/TilePatches.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <glm/geometric.hpp>
+
+#include "components/sonar/field/Scatterers.hpp"
+#include "components/sonar/rays/MappedCells.hpp"
+#include "types/VectorMath.hpp"
+
+namespace insonify::sonar {
+namespace {
+
+/** A rectangle of samples. Edges and middles: of columns in AngularView::bearings, of rows in AngularView::elevations.
+ */
+struct Rectangle {
+    int first_column, columns, first_row, rows;
+    size_t left, right, low, high;
+
+    Rectangle() = default;
+    Rectangle(const AngularView& view, int column, int across, int row, int up)
+        : first_column(column),
+          columns(across),
+          first_row(row),
+          rows(up),
+          left(view.at(column)),
+          right(view.at(column + across - 1) + 2),
+          low(2 * static_cast<size_t>(row)),
+          high(low + 2 * static_cast<size_t>(up)) {}
+    size_t across(const AngularView& view) const {
+        return view.at(first_column + columns / 2) + static_cast<size_t>(columns % 2);
+    }
+    size_t up() const { return (low + high) / 2; }
+};
+
+/** Makes patches of tiles, a batch at a time. */
+class TilePatches {
+public:
+    TilePatches(const EchoRules& rules, const CastView& view, const PlacedScene& scene, const EchoSums& to)
+        : conical_(rules.features.has(Feature::Conical)),
+          mapped_(rules.features.has(Feature::NormalMap)),
+          has_own_(!rules.own.empty()),
+          hears_misses_(rules.hears_misses),
+          view_(view.cells),
+          shape_(view.shape),
+          scene_(scene),
+          deposit_(rules, scene.water, false, to),
+          cells_(deposit_.cells),
+          fields_(rules, to.sums),
+          column_bits_(std::countr_zero(static_cast<uint32_t>(shape_.all.columns))) {
+        for (int i = 0; i < tile_samples; ++i) {
+            place_[i] = shape_.at[i].rows * shape_.all.columns + shape_.at[i].columns;
+            sample_[place_[i]] = i;
+        }
+    }
+
+    void add(const CastTile& tile) {
+        uint32_t met = 0;
+        for (int i = 0; i < tile_samples; ++i) {
+            command_[place_[i]] = tile.hits->command[i];
+            triangle_[place_[i]] = tile.hits->triangle[i];
+            met |= static_cast<uint32_t>(tile.hits->command[i] != TileHits::nothing) << place_[i];
+        }
+        for (uint32_t left = hears_misses_ ? ~met & 0xffff : 0; left != 0; left &= left - 1)
+            addMiss(tile, std::countr_zero(left));
+        while (met != 0) {
+            const int first = std::countr_zero(met);
+            uint32_t same = 0;
+            for (int i = 0; i < tile_samples; ++i)
+                same |= static_cast<uint32_t>((command_[i] == command_[first]) & (triangle_[i] == triangle_[first]))
+                        << i;
+            same = partOf(tile, same & met);
+            addPatch(tile, same);
+            met &= ~same;
+        }
+    }
+
+    void finish() {
+        if (mapped_) in_map_.setCosines(scene_, 0, cells_.count, cells_);
+        deposit_.cover();
+        for (int i = 0; i < cells_.count; ++i)
+            if (deposit_.covered.pixel[i] > 0 && cells_.width[i] > 0)  // beyond a cone's end there is no direction
+                fields_.deposit(patchOf(i));
+        deposit_.finish();
+    }
+
+private:
+    /** Samples are numbered row by row here: bit all.columns * row + column. */
+    int columnOf(int place) const { return place & (shape_.all.columns - 1); }
+    int rowOf(int place) const { return place >> column_bits_; }
+    uint32_t bits(int column, int columns, int row, int rows) const {
+        uint32_t all = 0;
+        for (int up = row; up < row + rows; ++up) all |= ((1u << columns) - 1) << (up * shape_.all.columns + column);
+        return all;
+    }
+    Rectangle around(const CastTile& tile, uint32_t samples) const {
+        uint32_t columns = 0;
+        for (uint32_t left = samples; left != 0; left >>= shape_.all.columns) columns |= left;
+        columns &= (1u << shape_.all.columns) - 1;
+        const int column = std::countr_zero(columns), row = rowOf(std::countr_zero(samples));
+        return {view_, tile.first_column + column, static_cast<int>(std::bit_width(columns)) - column,
+                tile.first_row + row, rowOf(static_cast<int>(std::bit_width(samples)) - 1) - row + 1};
+    }
+    int beamAt(const CastTile& tile, int place) const {
+        return view_.beam_of[static_cast<size_t>(tile.first_column + columnOf(place))];
+    }
+
+    /** Of samples that meet the same triangle, those from the lowest on that are one patch: where beams do not join, of
+     *  one beam; where effects have sums of their own, which are of whole cells, a rectangle of one beam. */
+    uint32_t partOf(const CastTile& tile, uint32_t same) const {
+        const int first = std::countr_zero(same);
+        if (has_own_ || !view_.joined) {
+            int column = columnOf(first), end = column + 1;
+            const auto isBeside = [&](int other) {
+                return other >= 0 && other < shape_.all.columns && beamAt(tile, other) == beamAt(tile, first);
+            };
+            while (isBeside(end)) ++end;
+            while (isBeside(column - 1)) --column;
+            same &= bits(column, end - column, 0, shape_.all.rows);
+        }
+        const int row = rowOf(first);
+        if (has_own_) {
+            int column = columnOf(first), end = column + 1;
+            while (end < shape_.all.columns && (same & bits(end, 1, row, 1)) != 0) ++end;
+            int top = row + 1;
+            const auto row_bits = [&](int up) { return bits(column, end - column, up, 1); };
+            while (top < shape_.all.rows && (same & row_bits(top)) == row_bits(top)) ++top;
+            return bits(column, end - column, row, top - row);
+        }
+        if (isRectangle(around(tile, same), same)) return same;
+        return same & bits(0, shape_.all.columns, row, std::min(Patch::max_rows, shape_.all.rows - row));
+    }
+    static bool isRectangle(const Rectangle& all, uint32_t samples) {
+        return std::popcount(samples) == all.columns * all.rows;
+    }
+
+    /** Adds a sample that meets nothing: effects alone hear it. */
+    void addMiss(const CastTile& tile, int place) {
+        const int column = tile.first_column + columnOf(place), row = tile.first_row + rowOf(place);
+        if (column >= tile.end_column || row >= view_.rows) return;
+        cells_.setMiss(cells_.count);
+        in_map_.placeMiss(cells_.count);
+        aim({view_, column, 1, row, 1});
+        count();
+    }
+
+    void addPatch(const CastTile& tile, uint32_t samples) {
+        const int i = cells_.count, first = std::countr_zero(samples);
+        const Rectangle all = around(tile, samples);
+        const CommandRecord& command = scene_.commands[command_[first]];
+        cells_.setPlane(i, scene_.ranges[command_[first]], triangle_[first]);
+        aim(all);
+        sources_[i] = {all, samplesIn(all, samples, tile), command.object, command.lattice};
+        if (mapped_) placeInMap(i, *tile.hits, samples);
+        count();
+    }
+
+    /** As in Patch. */
+    uint32_t samplesIn(const Rectangle& all, uint32_t samples, const CastTile& tile) const {
+        const uint32_t row_bits = (1u << all.columns) - 1;
+        if (isRectangle(all, samples)) return row_bits;
+        uint32_t seen = 0;
+        for (int row = 0; row < all.rows; ++row) {
+            const int place = (all.first_row - tile.first_row + row) * shape_.all.columns;
+            seen |= (samples >> (place + all.first_column - tile.first_column) & row_bits) << Patch::max_columns * row;
+        }
+        return seen;
+    }
+
+    void count() {
+        if (++cells_.count == Cells::capacity) finish();
+    }
+
+    /** Direction, extent and solid angle of the cell at hand. */
+    void aim(const Rectangle& all) {
+        const int i = cells_.count;
+        const AngularView::Elevation& up = view_.elevations[all.up()];
+        cells_.beam[i] = view_.beam_of[static_cast<size_t>(all.first_column)];
+        cells_.cos_el[i] = up.cosine;
+        cells_.sin_el[i] = up.sine;
+        cells_.height[i] = view_.elevations[all.high].angle - view_.elevations[all.low].angle;
+        const size_t middle = all.across(view_);
+        if (conical_) {
+            const double azimuth = coneAzimuth(view_.bearings[middle], up.angle);
+            cells_.cos_az[i] = std::cos(azimuth);
+            cells_.sin_az[i] = std::sin(azimuth);
+            cells_.width[i] =
+                coneAzimuth(view_.bearings[all.right], up.angle) - coneAzimuth(view_.bearings[all.left], up.angle);
+            cells_.lean[i] = std::abs(azimuth) < 1.5 ? std::tan(azimuth) * up.sine / up.cosine : 0;
+        } else {
+            cells_.cos_az[i] = view_.azimuths[middle].cosine;
+            cells_.sin_az[i] = view_.azimuths[middle].sine;
+            cells_.width[i] = view_.bearings[all.right] - view_.bearings[all.left];
+            cells_.lean[i] = 0;
+        }
+        cells_.size[i] =
+            cells_.width[i] * (view_.elevations[all.high].weighted - view_.elevations[all.low].weighted) / view_.cell();
+    }
+
+    /** Writes down where the samples of cell i lie in their triangle, in the mean. */
+    void placeInMap(int i, const TileHits& hits, uint32_t samples) {
+        float u = 0, v = 0;
+        for (uint32_t left = samples; left != 0; left &= left - 1) {
+            const int sample = sample_[std::countr_zero(left)];
+            u += hits.u[sample];
+            v += hits.v[sample];
+        }
+        const float per_sample = 1 / static_cast<float>(std::popcount(samples));
+        const int first = std::countr_zero(samples);
+        in_map_.place(i, command_[first], triangle_[first], u * per_sample, v * per_sample);
+    }
+
+    /** Columns' edges: tangents about the middle of the rectangle, or sines of cones; and their beams. */
+    void setColumns(const Rectangle& all, Patch& patch) const {
+        const AngularView::Direction& middle = patch.bearing;
+        const auto first_beam = deposit_.to().first_beam;
+        for (int k = 0; k <= all.columns; ++k) {
+            const int column = all.first_column + std::min(k, all.columns - 1);
+            const AngularView::Direction& edge = view_.azimuths[k < all.columns ? view_.at(column) : all.right];
+            const double aside = edge.sine * middle.cosine - edge.cosine * middle.sine,
+                         ahead = edge.cosine * middle.cosine + edge.sine * middle.sine;
+            patch.columns[static_cast<size_t>(k)] = conical_ ? edge.sine : aside / std::max(ahead, 1e-9);
+            if (k < Patch::max_columns)
+                patch.beams[static_cast<size_t>(k)] =
+                    static_cast<uint32_t>(view_.beam_of[static_cast<size_t>(column)] - first_beam);
+        }
+        for (auto k = static_cast<size_t>(all.columns); k < Patch::max_columns; ++k) {
+            patch.columns[k + 1] = patch.columns[k];
+            patch.beams[k] = patch.beams[k - 1];
+        }
+    }
+
+    Patch patchOf(int i) const {
+        const Source& source = sources_[i];
+        const Rectangle& all = source.all;
+        const AngularView::Elevation &low = view_.elevations[all.low], &high = view_.elevations[all.high];
+        const auto direction = [&](size_t side, const AngularView::Elevation& up) {
+            const AngularView::Direction around =
+                conical_ ? AngularView::azimuthOf(view_.bearings[side], up) : view_.azimuths[side];
+            return glm::dvec3(up.cosine * around.cosine, up.cosine * around.sine, up.sine);
+        };
+        Patch patch{{cells_.normal_x[i], cells_.normal_y[i], cells_.normal_z[i]},
+                    cells_.distance[i],
+                    {cells_.cos_el[i] * cells_.cos_az[i], cells_.cos_el[i] * cells_.sin_az[i], cells_.sin_el[i]},
+                    {direction(all.left, low), direction(all.left, high), direction(all.right, high),
+                     direction(all.right, low)},
+                    cells_.width[i],
+                    cells_.height[i],
+                    view_.azimuths[all.across(view_)],
+                    {},
+                    {},
+                    source.seen,
+                    {},
+                    deposit_.covered.strength_range[i],
+                    cells_.size[i] / (cells_.width[i] * (high.sine - low.sine)),
+                    scene_.objects[source.object],
+                    source.lattice,
+                    conical_};
+        setColumns(all, patch);
+        const bool is_one_row = source.seen < 1u << Patch::max_columns;
+        for (size_t k = 0; k < patch.rows.size(); ++k) {
+            const size_t edge = is_one_row && k > 0 ? all.high : std::min(all.low + 2 * k, all.high);
+            patch.rows[k] = view_.elevations[edge].sine;
+        }
+        return patch;
+    }
+
+    /** Of what a cell is a patch. */
+    struct Source {
+        Rectangle all;
+        uint32_t seen;  ///< As in Patch.
+        uint32_t object, lattice;
+    };
+
+    bool conical_, mapped_, has_own_, hears_misses_;
+    const AngularView& view_;
+    const TileShape& shape_;
+    const PlacedScene& scene_;
+    CellDeposit deposit_;
+    Cells& cells_;
+    Scatterers fields_;
+    int column_bits_;           ///< Columns of a tile are a power of 2: of this [1].
+    int place_[tile_samples];   ///< Of each sample, row by row.
+    int sample_[tile_samples];  ///< At each place.
+    alignas(64) uint32_t command_[tile_samples], triangle_[tile_samples];  ///< Of the tile at hand, row by row.
+    Source sources_[Cells::capacity];
+    MappedCells in_map_;
+};
+
+}  // namespace
+
+INSONIFY_VECTOR_CLONES __attribute__((flatten)) void depositPatches(const EchoRules& rules, const CastView& view,
+                                                                    const PlacedScene& scene,
+                                                                    std::span<const CastTile> tiles,
+                                                                    const EchoSums& to) {
+    TilePatches patches(rules, view, scene, to);
+    for (size_t i = 0; i < tiles.size(); ++i) {
+        if (i + 2 < tiles.size()) fetchPlanes(scene, tiles[i + 2]);
+        patches.add(tiles[i]);
+    }
+    patches.finish();
+}
+
+}  // namespace insonify::sonar
