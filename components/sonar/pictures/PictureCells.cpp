@@ -38,13 +38,16 @@ struct Frame {
     bool by_rays;  ///< Cells are seen along the rays of their pixels, not in their own middles.
 };
 
-/** Sets direction, extent and solid angle of all cells. */
-INSONIFY_VECTOR_CLONES void aimAll(const Shares& shares, const Frame& frame, Cells& __restrict cells) {
+/** Sets direction, extent and solid angle of all cells. `by_rays`: as in Frame, for compilers vectorise no loop that
+ *  chooses by it. */
+template <bool by_rays>
+inline __attribute__((always_inline)) void aimEach(const Shares& shares, const Frame& frame, Cells& __restrict cells) {
     const int count = cells.count;
     for (int i = 0; i < count; ++i) {
-        const PictureCell cell = pictureCell(shares.u[i], shares.v[i], shares.middle[i], shares.width[i],
-                                             shares.limit[i], shares.shear[i], frame.dv, frame.per_pixel);
-        const double u = frame.by_rays ? shares.u[i] : cell.u, v = frame.by_rays ? shares.v[i] : cell.v;
+        const double ray_u = shares.u[i], ray_v = shares.v[i];
+        const PictureCell cell = pictureCell(ray_u, ray_v, shares.middle[i], shares.width[i], shares.limit[i],
+                                             shares.shear[i], frame.dv, frame.per_pixel);
+        const double u = by_rays ? ray_u : cell.u, v = by_rays ? ray_v : cell.v;
         const double level = sqrt(1.0 + u * u), per_level = 1.0 / level, per_length = 1.0 / sqrt(1.0 + u * u + v * v);
         cells.cos_az[i] = (frame.cosine - frame.sine * u) * per_level;
         cells.sin_az[i] = (frame.sine + frame.cosine * u) * per_level;
@@ -55,6 +58,14 @@ INSONIFY_VECTOR_CLONES void aimAll(const Shares& shares, const Frame& frame, Cel
         cells.lean[i] = 0;
         cells.size[i] = cell.size;
     }
+}
+
+INSONIFY_VECTOR_CLONES __attribute__((flatten)) void aimAll(const Shares& shares, const Frame& frame,
+                                                            Cells& __restrict cells) {
+    if (frame.by_rays)
+        aimEach<true>(shares, frame, cells);
+    else
+        aimEach<false>(shares, frame, cells);
 }
 
 /** Makes cells of pixels, a batch at a time. */
