@@ -139,8 +139,9 @@ std::optional<double> slope(const std::vector<Measurement>& points, double refer
         const double a = std::log(m.cells()), b = std::log(m.metrics.rel_l2);
         n += 1, x += a, y += b, xx += a * a, xy += a * b;
     }
-    if (n < 2) return std::nullopt;
-    return (n * xy - x * y) / (n * xx - x * x);
+    const double spread = n * xx - x * x;
+    if (n < 2 || !(spread > 1e-9 * n * xx)) return std::nullopt;  // also where merging leaves as many cells
+    return (n * xy - x * y) / spread;
 }
 
 const char* nameOf(ReachTime::Kind kind) {

@@ -2,6 +2,7 @@
 // range stays (ACOUSTICS.md 3.4).
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "components/sonar/SonarRenderer.hpp"
@@ -28,7 +29,37 @@ std::vector<float> echoOf(const types::GeometryPtr& geometry) {
     return test::pingOf(config, test::snapshotOf(geometry)).bins;
 }
 
+/** A wall 20 m ahead with a fine bumpy map, stretched by its vertices or by its object. */
+types::GeometryPtr bumpyWall(const glm::dvec3& size, bool by_object) {
+    types::Mesh mesh = test::mappedWall();
+    if (!by_object)
+        for (glm::vec3& position : mesh.positions) position *= glm::vec3(size);
+    auto geometry = std::make_shared<types::Geometry>(*test::sceneOf({mesh}));
+    const glm::dmat4 place = glm::translate(glm::dmat4(1), {20.03, 0, 0});  // within a bin
+    geometry->objects[0].world_from_object = by_object ? glm::scale(place, size) : place;
+    geometry->normal_maps = {test::bumpyMap(256)};
+    geometry->materials[0].normal_map = 0;
+    return geometry;
+}
+
 }  // namespace
+
+TEST(NormalMapTest, RaysAverageAsMuchOfAMapWhicheverWayTheWallIsStretched) {
+    SonarConfig config = test::sonarOf({.beams = 24, .width_deg = 24, .bins = 300, .rows = 64, .columns = 2});
+    config.visibility = Visibility::Cpu;
+    const auto echo = [&](const glm::dvec3& size, bool by_object) {
+        return test::pingOf(config, test::snapshotOf(bumpyWall(size, by_object))).bins;
+    };
+    for (const glm::dvec3 size : {glm::dvec3(1, 5, 5), {1, 1, 8}, {1, 9, 2}, {4, 5, 5}, {0.1, 6, 4}}) {
+        const std::vector<float> stretched = echo(size, true), made = echo(size, false);
+        const double loudest = double{*std::ranges::max_element(made)};
+        ASSERT_GT(loudest, 0);
+        // Rounding may take one sample in some thousand to the next halving of the map.
+        for (size_t k = 0; k < made.size(); ++k) EXPECT_NEAR(stretched[k], made[k], 2e-3 * loudest) << k;
+    }
+    const std::vector<float> fine = echo({1, 5, 5}, true), coarse = echo({1, 60, 60}, true);
+    EXPECT_NE(fine, coarse) << "another part of the map, which must show";
+}
 
 TEST(NormalMapTest, AnEchoGoesWithTheCosineOfTheBentNormal) {
     const std::vector<float> plain = echoOf(wallWithNormalsAt(0));

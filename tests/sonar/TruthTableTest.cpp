@@ -19,7 +19,7 @@ types::SonarTruth told(const TruthTable& table) {
     ping.bearings.resize(1);
     types::SonarTruth truth;
     truth.takeGrid(ping);
-    table.tell(0, 0, truth);
+    table.report(0, 0, truth);
     return truth;
 }
 

@@ -49,6 +49,14 @@ TEST(ErrorAnalysisTest, ASlopeIsOverCellsOfWhichOneMayBeManySamples) {
     EXPECT_NEAR(*slope(ladder(result, "wall", Method::Footprint), 0), -1, 1e-9);
 }
 
+TEST(ErrorAnalysisTest, LevelsWithTheSameNumberOfCellsHaveNoSlope) {
+    ErrorResult result;
+    addLadder(result, "wall", Method::Footprint, 0.001, -1, 2);
+    result.measurements[1].merged = 4;  // twice the rows and columns, and as many cells as before
+    ASSERT_EQ(result.measurements[0].cells(), result.measurements[1].cells());
+    EXPECT_FALSE(slope(ladder(result, "wall", Method::Footprint), 0));
+}
+
 TEST(ErrorAnalysisTest, ASlopeOfFewLevelsIsOpen) {
     ErrorResult result;
     result.references = {{"wall", "closed form", 0}};

@@ -43,7 +43,7 @@ void TruthGrid::take(size_t cell, const TruthTable& echoes, size_t of, types::So
     const int32_t row = beams_of_cells_.empty() ? static_cast<int32_t>(cell) : beams_of_cells_[cell];
     if (row < 0) return;
     const auto beam = static_cast<size_t>(row);
-    if (!gathered_) return echoes.tell(of, beam, truth);
+    if (!gathered_) return echoes.report(of, beam, truth);
     const std::lock_guard one_at_a_time(alone_[beam]);
     gathered_->merge(beam, echoes, of);
 }
@@ -52,7 +52,7 @@ void TruthGrid::finish(types::SonarTruth& truth, ThreadPool& threads) const {
     if (!gathered_) return;
     threads.run([&](int part, int parts) {
         for (auto beam = static_cast<size_t>(part); beam < beam_count_; beam += static_cast<size_t>(parts))
-            gathered_->tell(beam, beam, truth);
+            gathered_->report(beam, beam, truth);
     });
 }
 
@@ -82,7 +82,7 @@ void PathTruth::take(size_t cell, std::span<const float> direct, const BinLevels
         }
 }
 
-void PathTruth::tell(types::SonarTruth& truth) const {
+void PathTruth::report(types::SonarTruth& truth) const {
     for (size_t beam = 0; beam < truth.beam_count; ++beam) {
         size_t last = 0;
         for (size_t j = 0; j < bin_count_; ++j) {

@@ -54,7 +54,7 @@ public:
      *  energies are not known. `quantum`: of the sums [sr]. */
     void take(size_t cell, std::span<const float> direct, const BinLevels& levels, double quantum);
     /** Once all cells are taken, and the rest of the truth is told. */
-    void tell(types::SonarTruth& truth) const;
+    void report(types::SonarTruth& truth) const;
 
 private:
     std::vector<int32_t> beams_of_cells_;  ///< Empty: they are the beams.

@@ -70,7 +70,7 @@ void TruthTable::merge(size_t beam, const TruthTable& other, size_t of) {
     }
 }
 
-void TruthTable::tellBin(size_t at, size_t to, types::SonarTruth& truth) const {
+void TruthTable::reportBin(size_t at, size_t to, types::SonarTruth& truth) const {
     const ObjectEcho* strongest = &first_[at];
     ObjectEcho all = *strongest;
     for (size_t i = 1; i < objectsAt(at); ++i) {
@@ -92,7 +92,7 @@ void TruthTable::tellBin(size_t at, size_t to, types::SonarTruth& truth) const {
     truth.hits[to] = all.hits;
 }
 
-void TruthTable::tell(size_t beam, size_t to, types::SonarTruth& truth) const {
+void TruthTable::report(size_t beam, size_t to, types::SonarTruth& truth) const {
     constexpr float unknown = std::numeric_limits<float>::quiet_NaN();
     bool echo_beyond = false;
     for (size_t bin = bins_; bin-- > 0;) {
@@ -102,7 +102,7 @@ void TruthTable::tell(size_t beam, size_t to, types::SonarTruth& truth) const {
         truth.shadow[at] = !heard && echo_beyond;
         echo_beyond = echo_beyond || heard;
         if (heard) {
-            tellBin(from, at, truth);
+            reportBin(from, at, truth);
         } else {
             truth.object[at] = types::SonarTruth::no_object;
             truth.share[at] = 0;

@@ -59,7 +59,7 @@ public:
     /** Adds a beam of another table with as many bins. */
     void merge(size_t beam, const TruthTable& other, size_t of);
     /** Fills beam `to` of a truth that has these bins, direct path and shadow included. */
-    void tell(size_t beam, size_t to, types::SonarTruth& truth) const;
+    void report(size_t beam, size_t to, types::SonarTruth& truth) const;
 
 private:
     static constexpr uint8_t more = told_apart + 1;  ///< In used_: there is a rest.
@@ -73,7 +73,7 @@ private:
     void addToOthers(size_t at, const ObjectEcho& echo);
     void addRest(size_t at, const ObjectEcho& echo);
     /** Sines for angles. */
-    void tellBin(size_t at, size_t to, types::SonarTruth& truth) const;
+    void reportBin(size_t at, size_t to, types::SonarTruth& truth) const;
 
     size_t bins_;
     std::vector<uint8_t> used_;       ///< Objects of each bin; or `more`.

@@ -14,15 +14,16 @@ namespace insonify::sonar {
 
 /** What is the same for all scatterers of a patch on one lattice. They lie u and v spacings from its middle. */
 struct LatticePatch {
-    /** Of u and v: constant + u * along_u + v * along_v. */
+    /** A linear function of u and v: constant + u * along_u + v * along_v. */
     struct Plane {
         float constant, along_u, along_v;
     };
-    uint32_t key, base_u, base_v;                               ///< The square of the middle.
-    float middle_u, middle_v;                                   ///< Where it lies in that [spacings].
-    float range;                                                ///< Of the middle [m].
-    float square_u, square_v, square_uu, square_uv, square_vv;  ///< Of the square of the slant range over the middle's.
-    Plane height, aside, ahead;                                 ///< In the direction of the middle's bearing [m].
+    uint32_t key, base_u, base_v;  ///< The square of the middle.
+    float middle_u, middle_v;      ///< Where it lies in that [spacings].
+    float range;                   ///< Slant range of the middle [m].
+    float square_u, square_v, square_uu, square_uv,
+        square_vv;               ///< Change of the squared slant range from the middle on.
+    Plane height, aside, ahead;  ///< In the direction of the middle's bearing [m].
     float ahead_per_range;
     float columns[Patch::max_columns + 1], rows[Patch::max_rows + 1];
     uint32_t seen;
@@ -45,7 +46,7 @@ struct PatchLattice {
     const glm::dvec3* inverse[2];
     glm::dvec3 along[2];  ///< On the plane, a metre further along each [m].
     glm::dvec2 middle;    ///< Where the patch's middle is [m].
-    double range;         ///< Of the middle [m].
+    double range;         ///< Slant range of the middle [m].
     uint32_t side;        ///< The axis that the patch faces most, and whether from behind: 0 to 5.
     double area_height;   ///< Of the plane over a square metre of the lattice, times its distance from the sonar [m].
 };
@@ -208,7 +209,7 @@ PatchOutline outlineOf(const Patch& patch, const PatchLattice& lattice, const gl
     return outline;
 }
 
-/** Of a point at `at`, and u and v along: its part in a direction. */
+/** Returns the part in a direction of a point at `at`, and of u and v along their axes. */
 LatticePatch::Plane planeOf(const glm::dvec3& direction, const glm::dvec3& at, const glm::dvec3& along_u,
                             const glm::dvec3& along_v) {
     const auto part = [&](const glm::dvec3& of) { return static_cast<float>(glm::dot(direction, of)); };

@@ -11,19 +11,19 @@ namespace insonify::sonar {
 
 /** The part of a triangle's plane that samples of one rectangle see; sonar axes. */
 struct Patch {
-    static constexpr int max_columns = 4, max_rows = 4;  ///< Of the rectangle, unless all of it is seen.
+    static constexpr int max_columns = 4, max_rows = 4;  ///< Bounds of a rectangle that is not seen whole.
 
     glm::dvec3 normal;                  ///< Of any length [1].
     double distance;                    ///< normal.p of its points [m].
     glm::dvec3 middle;                  ///< Unit, to the rectangle's middle [1].
     std::array<glm::dvec3, 4> corners;  ///< Unit, to its corners, one side after the other [1].
     double width, height;               ///< [rad]
-    AngularView::Direction bearing;     ///< Of the middle.
+    AngularView::Direction bearing;     ///< Bearing of the middle.
     std::array<double, max_columns + 1>
         columns;                              ///< Edges: tangents about `bearing`, or sines of cones; the last again.
     std::array<double, max_rows + 1> rows;    ///< Edges: sines of elevation; the last again.
     uint32_t seen;                            ///< Bit max_columns * row + column of each sample that sees the plane.
-    std::array<uint32_t, max_columns> beams;  ///< Of the columns, from the first beam of the sums [1].
+    std::array<uint32_t, max_columns> beams;  ///< Beam of each column, from the first beam of the sums on [1].
     double strength_range;                    ///< Strength times slant range [m].
     double per_solid_angle;                   ///< Two-way pattern in elevation, over the solid angle of a cell [1/sr].
     const ObjectRecord& object;

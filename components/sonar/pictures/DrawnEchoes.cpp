@@ -168,7 +168,7 @@ void DrawnEchoes::fillTruth() {
     if (beside_) beside_->finish();
     threads_.run([&](int part, int parts) {
         for (auto beam = static_cast<size_t>(part); beam < plan_.beams.size(); beam += static_cast<size_t>(parts))
-            shown_->tell(beam, beam, *truth_);
+            shown_->report(beam, beam, *truth_);
     });
 }
 

@@ -117,7 +117,7 @@ private:
     std::vector<MeshFacts::Facets> facets_;  ///< Of each mesh.
     std::unique_ptr<NormalMapping> normal_maps_;
     MeshesAhead ahead_;
-    std::vector<PlacedRun> runs_;  ///< Of the visibility's commands, in this ping.
+    std::vector<PlacedRun> runs_;  ///< The visibility's commands as they are placed in this ping.
     ThreadPool threads_;
     std::vector<Worker> workers_;
     std::vector<Part> parts_;

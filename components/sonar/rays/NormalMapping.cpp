@@ -58,11 +58,9 @@ NormalMapping::NormalMapping(const types::Geometry& geometry) : geometry_(geomet
                             : sharedMap(geometry.normal_maps.shared(static_cast<size_t>(material.normal_map)),
                                         material.normal_scale));
     facts_ = MeshFacts::ofAll(geometry);
-    for (size_t i = 0; i < geometry.meshes.size(); ++i) {
-        const auto& clusters = geometry.meshes[i].clusters;
-        const bool any = std::ranges::any_of(clusters, [&](const auto& cluster) { return isMapped(cluster.material); });
-        density_.push_back(any ? facts_[i]->mapDensity().data() : nullptr);
-    }
+    for (size_t i = 0; i < geometry.meshes.size(); ++i)
+        if (std::ranges::any_of(geometry.meshes[i].clusters, [this](const auto& c) { return isMapped(c.material); }))
+            facts_[i]->mapDensity();  // before the first ping needs it
 }
 
 std::shared_ptr<const NormalMapping::Map> NormalMapping::sharedMap(
@@ -110,6 +108,7 @@ struct NormalMapping::Leanings {
 void NormalMapping::interpolate(uint32_t object, const Samples& samples, Frames& frames) const {
     const auto number = static_cast<size_t>(geometry_.objects[object].mesh);
     const types::Mesh& mesh = geometry_.meshes[number];
+    const float* const density = facts_[number]->mapDensity().data();
     for (int i = 0; i < samples.count; ++i) {
         const uint32_t* corners = mesh.indices.data() + 3 * static_cast<size_t>(samples.triangle[i]);
         const float u = samples.u[i], v = samples.v[i], w = 1 - u - v;
@@ -123,7 +122,7 @@ void NormalMapping::interpolate(uint32_t object, const Samples& samples, Frames&
         frames.along_x[i] = along.x, frames.along_y[i] = along.y, frames.along_z[i] = along.z;
         frames.hand[i] = along.w;
         frames.u[i] = uv.x, frames.v[i] = uv.y;
-        frames.density[i] = density_[number][samples.triangle[i]];
+        frames.density[i] = density[samples.triangle[i]];
     }
 }
 

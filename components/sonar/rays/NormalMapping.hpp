@@ -12,7 +12,7 @@ namespace insonify::sonar {
 /** How normal maps bend what rays meet: looked up for what is seen, once for each sample. */
 class NormalMapping {
 public:
-    static constexpr int max_samples = 64;  ///< Of one call of cosines() [1].
+    static constexpr int max_samples = 64;  ///< At most so many for one call of cosines() [1].
 
     /** Where rays have met triangles of one material of one object: arrays of `count` entries. */
     struct Samples {
@@ -20,7 +20,7 @@ public:
         const uint32_t* triangle;  ///< Within the object's mesh [1].
         const float *u, *v;        ///< Barycentric coordinates of the triangle's second and third corner [1].
         const float *x, *y, *z;    ///< Directions of the rays, unit, sonar axes [1].
-        const float* extent;       ///< Of the sample across the ray [m].
+        const float* extent;       ///< Extent of the sample across the ray [m].
         const float* normal;  ///< Length of the triangle's unit normal once it is turned by ObjectRecord::normal_x to
                               ///< normal_z [1].
     };
@@ -53,15 +53,14 @@ private:
     /** Normals of the map, bilinear, each in a halving of its own. */
     struct Leanings;
     void interpolate(uint32_t object, const Samples& samples, Frames& frames) const;
-    /** Turns normals and tangents into unit frames of sonar axes, and finds how many texels samples cover. `texels`: of
-     *  the map's sides, the geometric mean. */
+    /** Turns normals and tangents into unit frames of sonar axes, and finds how many texels samples cover. `texels` is
+     *  the geometric mean of the map's sides. */
     static void place(const ObjectRecord& placed, float texels, const Samples& samples, Frames& frames);
     static void lookUp(const Map& map, int count, const Frames& frames, Leanings& bent);
 
     const types::Geometry& geometry_;
-    std::vector<std::shared_ptr<const Map>> maps_;  ///< Of each material, with its scale; null for one without.
-    std::vector<const float*> density_;  ///< MeshFacts::mapDensity() of each mesh; null for one without maps.
-    std::vector<std::shared_ptr<MeshFacts>> facts_;  ///< Which keep the densities.
+    std::vector<std::shared_ptr<const Map>> maps_;   ///< Of each material, with its scale; null for one without.
+    std::vector<std::shared_ptr<MeshFacts>> facts_;  ///< Facts of each mesh, for MeshFacts::mapDensity().
 };
 
 }  // namespace insonify::sonar

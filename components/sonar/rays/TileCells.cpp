@@ -38,14 +38,13 @@ public:
         }
     }
     void finish() {
-        const double unit = view_.cell();
-        for (int i = 0; i < cells_.count; ++i) cells_.size[i] /= unit;
+        relateSizes(view_, cells_);
         if (mapped_ && !scene_.paths) in_map_.setCosines(scene_, 0, cells_.count, cells_);
         deposit_.flush();
     }
 
 private:
-    /** Bit i: samples i and i + 1 have met the same triangle. */
+    /** Returns the samples, as bits, that have met the same triangle as the sample after them. */
     static uint32_t sameAsNext(const TileHits& hits) {
         uint32_t same = 0;
         for (int i = 0; i + 1 < tile_samples; ++i)
@@ -115,34 +114,12 @@ private:
         in_map_.place(i, hits.command[sample], hits.triangle[sample], u * per_sample, v * per_sample);
     }
 
-    /** Direction, extent and solid angle [sr], which finish() makes relative, of a cell of `merged` samples. */
+    /** Sets where the cell at hand looks, of `merged` samples. */
     void aim(const CastTile& tile, int sample, int merged) {
-        const AngularView& view = view_;
-        const int column = tile.first_column + shape_.at[sample].columns, i = cells_.count;
-        const int across = shape_.size[merged].columns, last = column + across - 1;
-        const size_t left = view.at(column), right = view.at(last) + 2;
-        const size_t middle = view.at(column + across / 2) + (across == 1);
-        const size_t low = 2 * static_cast<size_t>(tile.first_row + shape_.at[sample].rows);
-        const auto up = static_cast<size_t>(shape_.size[merged].rows);
-        cells_.beam[i] = view.beam_of[static_cast<size_t>(column)];
-        const AngularView::Elevation& elevation = view.elevations[low + up];
-        cells_.cos_el[i] = elevation.cosine;
-        cells_.sin_el[i] = elevation.sine;
-        cells_.height[i] = view.height(low / 2, up);
-        if (conical_) {
-            const double at = elevation.angle;
-            const double azimuth = coneAzimuth(view.bearings[middle], at);
-            cells_.cos_az[i] = std::cos(azimuth);
-            cells_.sin_az[i] = std::sin(azimuth);
-            cells_.width[i] = coneAzimuth(view.bearings[right], at) - coneAzimuth(view.bearings[left], at);
-            cells_.lean[i] = std::abs(azimuth) < 1.5 ? std::tan(azimuth) * elevation.sine / elevation.cosine : 0;
-        } else {
-            cells_.cos_az[i] = view.azimuths[middle].cosine;
-            cells_.sin_az[i] = view.azimuths[middle].sine;
-            cells_.width[i] = view.bearings[right] - view.bearings[left];
-            cells_.lean[i] = 0;
-        }
-        cells_.size[i] = cells_.width[i] * (view.elevations[low + 2 * up].weighted - view.elevations[low].weighted);
+        const TileShape::Extent at = shape_.at[sample], size = shape_.size[merged];
+        setLookDirection(view_, conical_,
+                         {view_, tile.first_column + at.columns, size.columns, tile.first_row + at.rows, size.rows},
+                         cells_.count, cells_);
     }
 
     bool conical_, mapped_, hears_misses_;
@@ -151,7 +128,7 @@ private:
     const PlacedScene& scene_;
     CellDeposit deposit_;
     Cells& cells_;
-    int max_merged_;  ///< Samples of one cell.
+    int max_merged_;  ///< At most so many samples become one cell [1].
     MappedCells in_map_;
 };
 

@@ -1,4 +1,5 @@
 #pragma once
+#include <cmath>
 #include <span>
 #include <vector>
 
@@ -37,11 +38,66 @@ struct CastTile {
 /** A ping that is ray-traced, at the quality in force. */
 struct CastPing {
     const EchoRules& rules;
-    const BinLevels& levels;  ///< Of the rules' bins.
+    const BinLevels& levels;  ///< Intensities of the rules' bins.
     const CastView& view;
     const RayVisibility& visibility;  ///< Placed in this ping.
     PlacedScene scene;
 };
+
+/** A rectangle of samples of a view. */
+struct SampleRectangle {
+    int first_column, columns, first_row, rows;
+    size_t left, right;  ///< Its edges in AngularView::bearings.
+    size_t low, high;    ///< Its edges in AngularView::elevations.
+
+    SampleRectangle() = default;
+    SampleRectangle(const AngularView& view, int column, int across, int row, int up)
+        : first_column(column),
+          columns(across),
+          first_row(row),
+          rows(up),
+          left(view.at(column)),
+          right(view.at(column + across - 1) + 2),
+          low(2 * static_cast<size_t>(row)),
+          high(low + 2 * static_cast<size_t>(up)) {}
+    /** Its middle in AngularView::bearings. */
+    size_t across(const AngularView& view) const {
+        return view.at(first_column + columns / 2) + static_cast<size_t>(columns % 2);
+    }
+    /** Its middle in AngularView::elevations. */
+    size_t up() const { return (low + high) / 2; }
+};
+
+/** Sets beam, direction and extent of cell i, and its solid angle [sr], which relateSizes() makes relative. */
+inline void setLookDirection(const AngularView& view, bool conical, const SampleRectangle& all, int i, Cells& cells) {
+    const AngularView::Elevation &up = view.elevations[all.up()], &low = view.elevations[all.low],
+                                 &high = view.elevations[all.high];
+    const size_t middle = all.across(view);
+    cells.beam[i] = view.beam_of[static_cast<size_t>(all.first_column)];
+    cells.cos_el[i] = up.cosine;
+    cells.sin_el[i] = up.sine;
+    cells.height[i] = high.angle - low.angle;
+    if (conical) {
+        const double azimuth = coneAzimuth(view.bearings[middle], up.angle);
+        cells.cos_az[i] = std::cos(azimuth);
+        cells.sin_az[i] = std::sin(azimuth);
+        cells.width[i] =
+            coneAzimuth(view.bearings[all.right], up.angle) - coneAzimuth(view.bearings[all.left], up.angle);
+        cells.lean[i] = std::abs(azimuth) < 1.5 ? std::tan(azimuth) * up.sine / up.cosine : 0;
+    } else {
+        cells.cos_az[i] = view.azimuths[middle].cosine;
+        cells.sin_az[i] = view.azimuths[middle].sine;
+        cells.width[i] = view.bearings[all.right] - view.bearings[all.left];
+        cells.lean[i] = 0;
+    }
+    cells.size[i] = cells.width[i] * (high.weighted - low.weighted);
+}
+
+/** Makes the solid angles of a batch relative to a sample of the middle beam. */
+inline void relateSizes(const AngularView& view, Cells& cells) {
+    const double unit = view.cell();
+    for (int i = 0; i < cells.count; ++i) cells.size[i] /= unit;
+}
 
 /** Asks for the planes that a tile to come needs, which are wherever its triangles are in memory. */
 inline void fetchPlanes(const PlacedScene& scene, const CastTile& tile) {

@@ -12,28 +12,6 @@
 namespace insonify::sonar {
 namespace {
 
-/** A rectangle of samples. Edges and middles: of columns in AngularView::bearings, of rows in AngularView::elevations.
- */
-struct Rectangle {
-    int first_column, columns, first_row, rows;
-    size_t left, right, low, high;
-
-    Rectangle() = default;
-    Rectangle(const AngularView& view, int column, int across, int row, int up)
-        : first_column(column),
-          columns(across),
-          first_row(row),
-          rows(up),
-          left(view.at(column)),
-          right(view.at(column + across - 1) + 2),
-          low(2 * static_cast<size_t>(row)),
-          high(low + 2 * static_cast<size_t>(up)) {}
-    size_t across(const AngularView& view) const {
-        return view.at(first_column + columns / 2) + static_cast<size_t>(columns % 2);
-    }
-    size_t up() const { return (low + high) / 2; }
-};
-
 /** Makes patches of tiles, a batch at a time. */
 class TilePatches {
 public:
@@ -77,6 +55,7 @@ public:
     }
 
     void finish() {
+        relateSizes(view_, cells_);
         if (mapped_) in_map_.setCosines(scene_, 0, cells_.count, cells_);
         deposit_.cover();
         for (int i = 0; i < cells_.count; ++i)
@@ -94,7 +73,7 @@ private:
         for (int up = row; up < row + rows; ++up) all |= ((1u << columns) - 1) << (up * shape_.all.columns + column);
         return all;
     }
-    Rectangle around(const CastTile& tile, uint32_t samples) const {
+    SampleRectangle around(const CastTile& tile, uint32_t samples) const {
         uint32_t columns = 0;
         for (uint32_t left = samples; left != 0; left >>= shape_.all.columns) columns |= left;
         columns &= (1u << shape_.all.columns) - 1;
@@ -106,8 +85,9 @@ private:
         return view_.beam_of[static_cast<size_t>(tile.first_column + columnOf(place))];
     }
 
-    /** Of samples that meet the same triangle, those from the lowest on that are one patch: where beams do not join, of
-     *  one beam; where effects have sums of their own, which are of whole cells, a rectangle of one beam. */
+    /** Returns the samples that are one patch with the lowest one, of samples that meet the same triangle. Where beams
+     * do not join, a patch has one beam. Where effects have sums of their own, which need whole cells, it is a
+     * rectangle of one beam. */
     uint32_t partOf(const CastTile& tile, uint32_t same) const {
         const int first = std::countr_zero(same);
         if (has_own_ || !view_.joined) {
@@ -131,7 +111,7 @@ private:
         if (isRectangle(around(tile, same), same)) return same;
         return same & bits(0, shape_.all.columns, row, std::min(Patch::max_rows, shape_.all.rows - row));
     }
-    static bool isRectangle(const Rectangle& all, uint32_t samples) {
+    static bool isRectangle(const SampleRectangle& all, uint32_t samples) {
         return std::popcount(samples) == all.columns * all.rows;
     }
 
@@ -141,23 +121,23 @@ private:
         if (column >= tile.end_column || row >= view_.rows) return;
         cells_.setMiss(cells_.count);
         in_map_.placeMiss(cells_.count);
-        aim({view_, column, 1, row, 1});
+        setLookDirection(view_, conical_, {view_, column, 1, row, 1}, cells_.count, cells_);
         count();
     }
 
     void addPatch(const CastTile& tile, uint32_t samples) {
         const int i = cells_.count, first = std::countr_zero(samples);
-        const Rectangle all = around(tile, samples);
+        const SampleRectangle all = around(tile, samples);
         const CommandRecord& command = scene_.commands[command_[first]];
         cells_.setPlane(i, scene_.ranges[command_[first]], triangle_[first]);
-        aim(all);
+        setLookDirection(view_, conical_, all, i, cells_);
         sources_[i] = {all, samplesIn(all, samples, tile), command.object, command.lattice};
         if (mapped_) placeInMap(i, *tile.hits, samples);
         count();
     }
 
     /** As in Patch. */
-    uint32_t samplesIn(const Rectangle& all, uint32_t samples, const CastTile& tile) const {
+    uint32_t samplesIn(const SampleRectangle& all, uint32_t samples, const CastTile& tile) const {
         const uint32_t row_bits = (1u << all.columns) - 1;
         if (isRectangle(all, samples)) return row_bits;
         uint32_t seen = 0;
@@ -170,32 +150,6 @@ private:
 
     void count() {
         if (++cells_.count == Cells::capacity) finish();
-    }
-
-    /** Direction, extent and solid angle of the cell at hand. */
-    void aim(const Rectangle& all) {
-        const int i = cells_.count;
-        const AngularView::Elevation& up = view_.elevations[all.up()];
-        cells_.beam[i] = view_.beam_of[static_cast<size_t>(all.first_column)];
-        cells_.cos_el[i] = up.cosine;
-        cells_.sin_el[i] = up.sine;
-        cells_.height[i] = view_.elevations[all.high].angle - view_.elevations[all.low].angle;
-        const size_t middle = all.across(view_);
-        if (conical_) {
-            const double azimuth = coneAzimuth(view_.bearings[middle], up.angle);
-            cells_.cos_az[i] = std::cos(azimuth);
-            cells_.sin_az[i] = std::sin(azimuth);
-            cells_.width[i] =
-                coneAzimuth(view_.bearings[all.right], up.angle) - coneAzimuth(view_.bearings[all.left], up.angle);
-            cells_.lean[i] = std::abs(azimuth) < 1.5 ? std::tan(azimuth) * up.sine / up.cosine : 0;
-        } else {
-            cells_.cos_az[i] = view_.azimuths[middle].cosine;
-            cells_.sin_az[i] = view_.azimuths[middle].sine;
-            cells_.width[i] = view_.bearings[all.right] - view_.bearings[all.left];
-            cells_.lean[i] = 0;
-        }
-        cells_.size[i] =
-            cells_.width[i] * (view_.elevations[all.high].weighted - view_.elevations[all.low].weighted) / view_.cell();
     }
 
     /** Writes down where the samples of cell i lie in their triangle, in the mean. */
@@ -212,7 +166,7 @@ private:
     }
 
     /** Columns' edges: tangents about the middle of the rectangle, or sines of cones; and their beams. */
-    void setColumns(const Rectangle& all, Patch& patch) const {
+    void setColumns(const SampleRectangle& all, Patch& patch) const {
         const AngularView::Direction& middle = patch.bearing;
         const auto first_beam = deposit_.to().first_beam;
         for (int k = 0; k <= all.columns; ++k) {
@@ -233,7 +187,7 @@ private:
 
     Patch patchOf(int i) const {
         const Source& source = sources_[i];
-        const Rectangle& all = source.all;
+        const SampleRectangle& all = source.all;
         const AngularView::Elevation &low = view_.elevations[all.low], &high = view_.elevations[all.high];
         const auto direction = [&](size_t side, const AngularView::Elevation& up) {
             const AngularView::Direction around =
@@ -266,9 +220,9 @@ private:
         return patch;
     }
 
-    /** Of what a cell is a patch. */
+    /** The samples and the object of a cell. */
     struct Source {
-        Rectangle all;
+        SampleRectangle all;
         uint32_t seen;  ///< As in Patch.
         uint32_t object, lattice;
     };
@@ -281,9 +235,10 @@ private:
     Cells& cells_;
     Scatterers fields_;
     int column_bits_;           ///< Columns of a tile are a power of 2: of this [1].
-    int place_[tile_samples];   ///< Of each sample, row by row.
+    int place_[tile_samples];   ///< The place of each sample, row by row.
     int sample_[tile_samples];  ///< At each place.
-    alignas(64) uint32_t command_[tile_samples], triangle_[tile_samples];  ///< Of the tile at hand, row by row.
+    alignas(64) uint32_t command_[tile_samples],
+        triangle_[tile_samples];  ///< What the tile at hand has met, row by row.
     Source sources_[Cells::capacity];
     MappedCells in_map_;
 };

@@ -584,7 +584,7 @@ bool PathEchoes::addEnergies(const CastPing& ping, size_t cell, std::span<float>
 void PathEchoes::addToTruth(const CastPing& ping, types::SonarTruth& truth) {
     for (size_t cell = 0; cell < plan_.cells.size(); ++cell)
         truth_->take(cell, direct(cell), ping.levels, quantumOf(ping));
-    truth_->tell(truth);
+    truth_->report(truth);
 }
 
 }  // namespace
